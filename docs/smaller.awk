@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Makes an SVG of Cairo's a third as large, alike to the eye: places to a hundredth of a point, lines
-# told by their steps, letters' halos by the letters, letters as paths, what goes without saying left
-# out.
+# Makes an SVG of Cairo's a third as large, alike to the eye: places to a hundredth of a point, relative
+# lines, letters as paths without symbols, halos by reference to their letters, no default attributes.
 
 # The shortest text of a number in hundredths.
 function short(hundredths,   text) {
@@ -18,15 +17,13 @@ function hundredths(text,   value) {
   return value < 0 ? -int(0.5 - value) : int(value + 0.5)
 }
 
-# Appends a number to a path: a sign parts it from the one before as well as a space does, and so does
-# a point from a number that has one already.
+# Appends a number to a path: a sign parts it from the one before as well as a space does.
 function append(text) {
-  path = path (last == "" || text ~ /^-/ || (text ~ /^[.]/ && last ~ /[.]/) ? "" : " ") text
-  last = text
+  path = path (path ~ /[0-9.]$/ && text !~ /^-/ ? " " : "") text
 }
 
 # The same path, each step from where the last one ended.
-function relative(d,   n, i, word, command, k, x, y, at, startx, starty) {
+function relative(d,   n, i, word, command, k, x, y, px, py, at, startx, starty) {
   n = split(d, word, /[ \t]+/)
   path = ""
   x = y = 0
@@ -34,24 +31,22 @@ function relative(d,   n, i, word, command, k, x, y, at, startx, starty) {
     if (word[i] == "") { i++; continue }
     if (word[i] == "Z") {
       path = path "z"
-      last = ""
       x = startx; y = starty
       i++
       continue
     }
     if (word[i] !~ /^[MLC]$/) return d # something unknown: better large than wrong
     command = word[i++]
-    last = ""
+    at = command == "C" ? 6 : 2
     px = hundredths(word[i]); py = hundredths(word[i + 1])
-    if (command == "L" && (px == x || py == y)) { # level or upright
-      path = path (py == y ? "h" : "v")
-      append(short(py == y ? px - x : py - y))
+    if (command == "L" && (px == x) != (py == y)) { # level or upright
+      path = path (px == x ? "v" : "h")
+      append(px == x ? short(py - y) : short(px - x))
       x = px; y = py
-      i += 2
+      i += at
       continue
     }
     path = path (command == "M" ? "M" : tolower(command))
-    at = command == "C" ? 6 : 2
     for (k = 0; k < at; k += 2) {
       px = hundredths(word[i + k]); py = hundredths(word[i + k + 1])
       append(short(command == "M" ? px : px - x))
@@ -98,30 +93,20 @@ function colours(line,   part, out) {
   gsub(/id="glyph/, "id=\"g", line)
   sub(/zM[-0-9. ]+"/, "z\"", line) # where Cairo would go on after closing
   if (inside) gsub(/ style="stroke:none;"/, "", line) # letters: an edge comes from whoever uses them
-  if (line ~ /<defs>/) inside = 1
-  if (line ~ /<\/defs>/) inside = 0
-  line = colours(line)
-  # A letter of one path is that path.
-  if (line ~ /^<symbol overflow="visible" id="[^"]*">$/) {
+  if (inside && line ~ /^<symbol /) {
     letter = line
     sub(/.* id="/, "", letter)
     sub(/".*/, "", letter)
-    held_symbol = line
     next
   }
-  if (letter != "" && line ~ /^<path d="[^"]*"\/>$/ && held_path == "") {
-    held_path = line
+  if (letter != "" && line ~ /^<\/symbol>/) {
+    letter = ""
     next
   }
-  if (letter != "" && line == "</symbol>" && held_path != "") {
-    sub(/^<path /, "<path id=\"" letter "\" ", held_path)
-    line = held_path
-    letter = held_path = ""
-  } else if (letter != "") {
-    print held_symbol
-    if (held_path != "") print held_path
-    letter = held_path = ""
-  }
+  if (letter != "") sub(/^<path /, "<path id=\"" letter "\" ", line)
+  if (line ~ /<defs>/) inside = 1
+  if (line ~ /<\/defs>/) inside = 0
+  line = colours(line)
   # The halo of a text is its letters once more, with an edge; the text follows.
   if (halo != "" && line ~ /^<g /) {
     print "<use xlink:href=\"#t" ++texts "\" style=\"" halo "\"/>"

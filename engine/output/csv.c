@@ -94,7 +94,7 @@ static strut_status begin_table(csv *self, int kind, const strut_record_layout *
   }
   if (total == 0) return STRUT_OK;
   t->columns = strut_allocate(total, sizeof *t->columns);
-  if (!t->columns) return strut_fail(error, STRUT_NO_MEMORY, "out of memory for the CSV columns");
+  if (!t->columns) return strut_no_memory(error, "for the CSV columns");
   strut_status status = strut_file_open(&t->file, self->directory, kinds[kind].name, error);
   if (status != STRUT_OK) return status;
   fputs("time [s]", t->file.stream);

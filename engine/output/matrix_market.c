@@ -9,6 +9,7 @@
 #include "engine/base/number_text.h"
 #include "engine/output/file.h"
 #include "engine/output/results.h"
+#include "engine/statics/rigidity/linear_matrices.h"
 
 static const char *const names[] = {"node_names.csv",
                                     "rows.csv",

@@ -103,10 +103,6 @@ static bool take_row(keeper *k, const double *row) {
   return true;
 }
 
-static strut_status no_memory(strut_error *error) {
-  return strut_fail(error, STRUT_NO_MEMORY, "out of memory for the recorded motion");
-}
-
 static bool trajectory_contacts(strut_trajectory *t, const strut_scene *scene) {
   t->contact_count = scene->contact_count;
   t->contact_node = strut_arena_allocate(&t->arena, scene->contact_count, sizeof *t->contact_node);
@@ -137,13 +133,13 @@ static strut_status begin(void *context, const strut_record_layout *layout, stru
   k->last = strut_allocate(k->width, sizeof *k->last);
   bool ready = k->last && trajectory_contacts(t, k->scene) &&
                grow(k, k->most < FIRST_FRAMES ? k->most : FIRST_FRAMES);
-  return ready ? STRUT_OK : no_memory(error);
+  return ready ? STRUT_OK : strut_no_memory(error, "for the recorded motion");
 }
 
 static strut_status take_rows(void *context, const double *rows, size_t count, strut_error *error) {
   keeper *k = context;
   for (size_t i = 0; i < count; i++)
-    if (!take_row(k, rows + i * k->width)) return no_memory(error);
+    if (!take_row(k, rows + i * k->width)) return strut_no_memory(error, "for the recorded motion");
   return STRUT_OK;
 }
 
@@ -152,7 +148,8 @@ static strut_status end(void *context, strut_status run_status, strut_error *err
   keeper *k = context;
   k->t->status = run_status;
   if (!k->waiting) return STRUT_OK;
-  if (k->t->frames == k->capacity && !grow(k, k->capacity + 1)) return no_memory(error);
+  if (k->t->frames == k->capacity && !grow(k, k->capacity + 1))
+    return strut_no_memory(error, "for the recorded motion");
   store(k, k->last);
   k->waiting = false;
   return STRUT_OK;
@@ -218,7 +215,7 @@ static strut_status trouble(const reader *r, const char *what) {
 }
 
 static strut_status report_no_memory(const reader *r) {
-  return strut_fail(r->error, STRUT_NO_MEMORY, "out of memory for the recorded motion");
+  return strut_no_memory(r->error, "for the recorded motion");
 }
 
 static size_t items_of(const reader *r, strut_channel id) {
@@ -304,7 +301,7 @@ static strut_status read_channel(reader *r, int i) {
   bool good = values && read_rows(dataset, 3, shape, r->t->frames, r->t->every, size, values);
   *trajectory_array_of(r->t, channels[i].id) = values;
   if (dataset >= 0) H5Dclose(dataset);
-  if (!fits) return trouble(r, "it is of another structure than the scene beside it");
+  if (!fits) return trouble(r, "it belongs to another structure than the scene beside it");
   return good ? STRUT_OK : values ? trouble(r, "it is damaged") : report_no_memory(r);
 }
 
@@ -315,7 +312,7 @@ static strut_status read_time(reader *r, size_t room) {
       H5Lexists(r->file, "time", H5P_DEFAULT) > 0 ? H5Dopen2(r->file, "time", H5P_DEFAULT) : -1;
   if (dataset < 0 || !shape_of(dataset, 1, shape)) {
     if (dataset >= 0) H5Dclose(dataset);
-    return trouble(r, "no trajectory of strut");
+    return trouble(r, "not a trajectory of strut");
   }
   strut_trajectory *t = r->t;
   size_t frame = 1;
@@ -360,7 +357,7 @@ static strut_status read_file(reader *r, size_t room) {
       !same_names(r, "member", t->member_count, member_name) ||
       !same_names(r, "hinge", t->hinge_count, hinge_name) ||
       !same_names(r, "contact_node", r->scene->contact_count, contact_name))
-    return trouble(r, "it is of another structure than the scene beside it");
+    return trouble(r, "it belongs to another structure than the scene beside it");
   if (!trajectory_contacts(t, r->scene)) return report_no_memory(r);
   t->status = run_status(r);
   strut_status status = read_time(r, room);
@@ -373,7 +370,7 @@ strut_status strut_trajectory_read(const char *directory, const strut_scene *sce
   size_t length = strlen(directory) + sizeof "/trajectory.h5";
   char *path = strut_allocate(length, 1);
   *trajectory = (strut_trajectory){0};
-  if (!path) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!path) return strut_no_memory(error, "");
   snprintf(path, length, "%s/trajectory.h5", directory);
   reader r = {.path = path, .scene = scene, .t = trajectory, .error = error};
   strut_status status = STRUT_OK;

@@ -5,6 +5,7 @@
 #ifndef STRUT_ENGINE_OUTPUT_TRAJECTORY_H
 #define STRUT_ENGINE_OUTPUT_TRAJECTORY_H
 
+#include "engine/run/measure/summary.h"
 #include "engine/run/recorder.h"
 
 /** Frames over time, SI. What was not recorded is NULL. Zero-initialise. */
@@ -25,7 +26,9 @@ typedef struct strut_trajectory {
   strut_status status;   /* of the run: STRUT_OK, STRUT_DIVERGED or STRUT_INTERRUPTED */
   strut_arena arena;
 } strut_trajectory;
-enum { STRUT_ENERGIES = 10 };
+#define STRUT_ENERGY_ONE(name, kind, label) +1
+enum { STRUT_ENERGIES = STRUT_ENERGY_TABLE(STRUT_ENERGY_ONE) };
+#undef STRUT_ENERGY_ONE
 
 /** Default limit on the doubles of a trajectory: half a gigabyte. */
 #define STRUT_TRAJECTORY_ROOM ((size_t)1 << 26)

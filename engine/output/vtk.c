@@ -93,7 +93,7 @@ static void begin_names(strut_buffer *buffer, const char *name, size_t count) {
                    name, count);
 }
 
-/* One text of an array of them: its bytes as numbers up to the 0 that ends it. */
+/* Writes one text of a string array: its bytes as numbers, ended by 0. */
 static void add_name(strut_buffer *buffer, const char *text) {
   for (; *text; text++) strut_buffer_add(buffer, "%d ", (unsigned char)*text);
   strut_buffer_add(buffer, "0 ");
@@ -306,7 +306,7 @@ static strut_status write_text(const char *directory, const char *name, strut_bu
   FILE *stream = NULL;
   strut_status status = STRUT_OK;
   if (buffer->failed || !path) {
-    status = strut_fail(error, STRUT_NO_MEMORY, "out of memory while writing files");
+    status = strut_no_memory(error, "while writing files");
   } else {
     errno = 0;
     stream = fopen(path, "wb");
@@ -328,7 +328,7 @@ static strut_status write_frames(const char *stage, const strut_model *model,
   vtk_frame frame;
   strut_status status = STRUT_OK;
   if (!vtk_frame_create(&frame, model, motion))
-    status = strut_fail(error, STRUT_NO_MEMORY, "out of memory while writing files");
+    status = strut_no_memory(error, "while writing files");
   for (size_t i = 0; i < written->frames && status == STRUT_OK; i++) {
     char name[FRAME_NAME];
     vtk_frame_write(&frame, i * written->every, buffer);
@@ -397,7 +397,7 @@ strut_status strut_vtk_write(const char *directory, const strut_model *model,
   written->every = motion->frames > most ? (motion->frames + most - 1) / most : 1;
   written->frames = (motion->frames + written->every - 1) / written->every;
   const char **names = file_names(directory, written->frames, &arena);
-  if (!names) return strut_fail(error, STRUT_NO_MEMORY, "out of memory while writing files");
+  if (!names) return strut_no_memory(error, "while writing files");
   strut_status status = strut_results_begin_named(&results, directory, names, error);
   if (status == STRUT_OK) {
     status = write_all(results.stage, model, motion, written, error);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "engine/integrate/limit/step_limit.h"
+#include "engine/model/mass.h"
 
 static const strut_plan_term terms[STRUT_PLAN_TERMS] = {
     {STRUT_TERM_MEMBERS, "member springs", "a member", false},

@@ -9,20 +9,12 @@
 #include "engine/base/memory_limit.h"
 #include "engine/forces/energy.h"
 #include "engine/forces/forces.h"
+#include "engine/run/measure/summary.h"
 
 static const char *const xy[] = {"x", "y"};
 static const char *const single[] = {""};
 static const char *const reactions[] = {"normal", "friction"};
-static const char *const energies[] = {"kinetic",
-                                       "elastic",
-                                       "gravity",
-                                       "contact",
-                                       "drive_work",
-                                       "load_work",
-                                       "belt_work",
-                                       "dissipated_members",
-                                       "dissipated_contact",
-                                       "dissipated_friction"};
+static const char *const energies[] = {STRUT_ENERGY_NAMES};
 static const char *const total[] = {"total"};
 
 static const struct {
@@ -41,7 +33,7 @@ static const struct {
     {STRUT_CHANNEL_ENERGY, "energy", "J", sizeof energies / sizeof energies[0], energies},
 };
 
-/* Names of the items of a channel, in the arena; *count of them. */
+/* The *count names of the items of a channel, in the arena. */
 static const char *const *item_names(const strut_model *model, strut_channel id, strut_arena *arena,
                                      size_t *count) {
   const strut_scene *scene = model->scene;

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "engine/forces/energy.h"
+#include "engine/forces/forces.h"
 #include "engine/integrate/integrator.h"
 #include "engine/model/pose.h"
 
@@ -156,7 +157,7 @@ strut_status strut_relaxation_create(const strut_model *model, const strut_exper
   r->method = strut_integrator_for_settling(r->model);
   const strut_integrator_settings settings = strut_integrator_settings_of(experiment);
   r->workspace = r->method->create(r->model, r->state, &settings);
-  return r->workspace ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  return r->workspace ? STRUT_OK : strut_no_memory(error, "");
 }
 
 void strut_relaxation_free(strut_relaxation *r) {

@@ -37,7 +37,7 @@ typedef enum strut_member_kind {
   STRUT_CABLE   /* pulls only: force max(0, elastic + damper) while stretched, 0 while slack */
 } strut_member_kind;
 
-/** How the rest length is given; strut_member_rest turns each into the others. */
+/** The quantity that defines the rest length; strut_member_rest converts it to the others. */
 typedef enum strut_rest_kind {
   STRUT_REST_RATIO,        /* rest length / drawn length [1]; the default, with value 1 */
   STRUT_REST_LENGTH,       /* rest length [m] */
@@ -76,7 +76,7 @@ typedef struct strut_hinge {
   strut_law law;     /* of the angle and the moment */
 } strut_hinge;
 
-/** How the ground damps; d is the depth, d' its rate. */
+/** Damping law of the ground; d is the depth, d' its rate. */
 typedef enum strut_ground_damping {
   STRUT_DAMPING_APPROACH,     /* (8): c_g d + k_g max(d', 0), which jumps at touchdown */
   STRUT_DAMPING_HUNT_CROSSLEY /* c_g d (1 + chi d'), never pulling: continuous */

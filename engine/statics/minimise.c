@@ -201,7 +201,7 @@ static double try_step(strut_minimiser *m, const double *q, double here, double 
   return ratio;
 }
 
-/* How much longer the next step may be. Short ones grow as long as the quadratic is true. */
+/* Growth factor of the next step. Short steps grow while the quadratic model holds. */
 static double radius_growth(const strut_minimiser *m, double ratio) {
   if (!m->short_steps) return 2.5;
   return fabs(ratio - 1.0) < 0.01 ? 10.0 : fabs(ratio - 1.0) < 0.25 ? 2.5 : 1.0;

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/cli/analysis.h"
 #include "parser/cli/commands.h"
 
 #include <math.h>
@@ -8,11 +9,8 @@
 #include "engine/base/memory.h"
 #include "engine/base/number_text.h"
 #include "engine/output/figures/statics_figures.h"
-#include "engine/output/file.h"
 #include "engine/output/report/path_report.h"
 #include "engine/statics/path/path.h"
-#include "parser/cli/open_model.h"
-#include "parser/cli/option_values.h"
 #include "parser/cli/options.h"
 #include "parser/cli/streams.h"
 
@@ -240,33 +238,20 @@ static const strut_option options[] = {
     {STRUT_OPTION_OUTPUT, "output", "DIR", "write path.json and path.csv into DIR"},
     {STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object"},
     STRUT_PLOT_OPTIONS,
+    STRUT_AXIS_OPTIONS,
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
-
-static strut_status write_files(const char *directory, const strut_path *path,
-                                const strut_scene *scene, strut_error *error) {
-  strut_status status = strut_directory_create(directory, error);
-  if (status == STRUT_OK)
-    status = strut_file_write_block(directory, "path.json", strut_path_json(path, scene), error);
-  if (status == STRUT_OK)
-    status = strut_file_write_block(directory, "path.csv", strut_path_csv(path, scene), error);
-  return status;
-}
 
 /* Writes, prints and draws the path; reports what fails on stderr. */
 static strut_status report_path(const strut_arguments *arguments, const strut_plot *plot,
                                 const strut_model *model, const strut_path *path) {
   strut_error error = {0};
-  strut_status status = STRUT_OK;
-  if (arguments->output) status = write_files(arguments->output, path, model->scene, &error);
-  if (status == STRUT_OK) {
-    char *text = arguments->json ? strut_path_json(path, model->scene)
-                                 : strut_path_table(path, model->scene);
-    status = strut_print_report(arguments, text);
-    if (status != STRUT_OK || !plot->path) return status;
-    status = strut_path_figure(plot->path, plot->width, model, path, &error);
-  }
-  return strut_print_failure(status, &error);
+  strut_status status = strut_report(arguments, file_names, strut_path_json(path, model->scene),
+                                     strut_path_csv(path, model->scene),
+                                     strut_path_table(path, model->scene), &error);
+  if (status == STRUT_OK && plot->path) status = strut_path_figure(plot, model, path, &error);
+  if (status != STRUT_OK && error.message[0]) strut_print_error(&error);
+  return status;
 }
 
 static strut_status follow_path(const strut_arguments *arguments, const strut_plot *plot,

@@ -20,7 +20,7 @@ static strut_compiled *push(strut_expression_reader *r) {
 /* Numbers on the stack after the instructions so far. */
 static size_t stacked(const strut_compiler *c) {
   static const size_t operands[] = {
-#define STRUT_OPERANDS(id, count, word) count,
+#define STRUT_OPERANDS(id, count, ...) count,
       STRUT_OPERATION_TABLE(STRUT_OPERANDS)
 #undef STRUT_OPERANDS
   };

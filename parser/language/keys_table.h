@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * The table of the language: one row for each key. keys.h says what is made of it.
+ * The table of the language, one row per key; keys.h lists what is generated from it.
  *
  * X(section, id, name, type, measure, range, default, need, set, words, field, description)
  *
@@ -85,6 +85,10 @@
   X(FRICTION, MU, "mu", NUMBER, NONE, NOT_NEGATIVE, "", OPTIONAL, 0, "", BY_HAND, "Both friction coefficients.") \
   X(FRICTION, MU_STATIC, "mu_static", NUMBER, NONE, NOT_NEGATIVE, "", WRITTEN, 0, "", FIELD(strut_friction, mu_static), "Coefficient of static friction.") \
   X(FRICTION, MU_KINETIC, "mu_kinetic", NUMBER, NONE, NOT_NEGATIVE, "", WRITTEN, 0, "", FIELD(strut_friction, mu_kinetic), "Coefficient of kinetic friction.") \
+  X(FRICTION, MU_FORWARD, "mu_forward", NUMBER, NONE, NOT_NEGATIVE, "", OPTIONAL, 0, "", BY_HAND, "Both coefficients against motion towards +x along the ground, where those against motion towards -x differ.") \
+  X(FRICTION, MU_FORWARD_STATIC, "mu_forward_static", NUMBER, NONE, NOT_NEGATIVE, "`mu_forward`", OPTIONAL, 0, "", BY_HAND, "Coefficient of static friction against motion towards +x.") \
+  X(FRICTION, MU_BACKWARD, "mu_backward", NUMBER, NONE, NOT_NEGATIVE, "as forward", OPTIONAL, 0, "", BY_HAND, "Both coefficients against motion towards -x along the ground.") \
+  X(FRICTION, MU_BACKWARD_STATIC, "mu_backward_static", NUMBER, NONE, NOT_NEGATIVE, "`mu_backward`", OPTIONAL, 0, "", BY_HAND, "Coefficient of static friction against motion towards -x.") \
   X(FRICTION, STICK_VELOCITY, "stick_velocity", NUMBER, VELOCITY, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_friction, stick_velocity), "Half the width of the stick band; Karnopp's law needs it.") \
   X(FRICTION, WIDTH, "width", NUMBER, VELOCITY, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_friction, width), "Sliding speed at which the smooth law reaches 0.71 of the full friction; that law needs it.") \
   X(CONTACT, GROUP, "group", GROUPS, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Groups that provide defaults; later groups take precedence.") \
@@ -204,7 +208,12 @@
   X(FIGURE, TO, "to", NUMBER, TIME, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, to), "Motion: end of the time range.") \
   X(FIGURE, SCALE, "scale", PAIR, NONE, ANY, "[1, 1]", OPTIONAL, 0, "", FIELD(strut_study_figure, scale), "Period: magnification of the motion along x and y.") \
   X(FIGURE, TIMES, "times", TIMES, NONE, ANY, "six", OPTIONAL, 0, "", BY_HAND, "Snapshots: the times to draw.") \
-  X(FIGURE, TITLE, "title", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, title), "Title of the figure.")
+  X(FIGURE, TITLE, "title", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, title), "Title of the figure.") \
+  X(FIGURE, X_LABEL, "x_label", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, x_label), "Lines, map and motion: label of the x axis instead of the column's name; the unit is added.") \
+  X(FIGURE, Y_LABEL, "y_label", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, y_label), "Likewise of the y axis.") \
+  X(FIGURE, X_LIMITS, "x_limits", PAIR, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, x_limits), "Lines, map and motion: ends of the x axis in the column's SI unit, ascending.") \
+  X(FIGURE, Y_LIMITS, "y_limits", PAIR, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, y_limits), "Likewise of the y axis.") \
+  X(FIGURE, COLORS, "colors", WORD, NONE, ANY, "auto", OPTIONAL, 0, "auto|sequential|diverging|grey", FIELD(strut_study_figure, colours), "Map: the colour scale of numbers.")
 /* clang-format on */
 
 #endif

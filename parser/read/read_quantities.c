@@ -42,7 +42,7 @@ static bool is(strut_piece piece, const char *word) {
   return strlen(word) == piece.length && memcmp(word, piece.text, piece.length) == 0;
 }
 
-/* Which owners a name has, and what a message calls it. */
+/* The owners that a name may refer to, and their words in messages. */
 typedef struct found_owner {
   unsigned owners; /* bits 1 << strut_column_owner */
   int32_t node, member, hinge;

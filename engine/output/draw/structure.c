@@ -128,7 +128,7 @@ static void draw_supports(strut_canvas *canvas, const strut_window *w, const str
   }
 }
 
-/* Where the ground's line enters and leaves the window's neighbourhood [pt]. */
+/* The ends of the ground's line in the window's neighbourhood [pt]. */
 static void find_ground_line(const strut_window *w, const strut_model *model, double ends[2][2]) {
   const strut_ground *ground = &model->scene->ground;
   for (int k = 0; k < 2; k++) {
@@ -244,7 +244,7 @@ double strut_distance_to_segment(const double p[2], const double a[2], const dou
   return hypot(p[0] - a[0] - t * along[0], p[1] - a[1] - t * along[1]);
 }
 
-/* Whether a point is on the hatching below the ground's line. */
+/* True if a point is on the hatching below the ground's line. */
 static bool is_on_hatching(const obstacles *o, const double p[2]) {
   const double *a = o->surface[0], *b = o->surface[1];
   double along[2] = {b[0] - a[0], b[1] - a[1]}, length = hypot(along[0], along[1]);

@@ -27,7 +27,7 @@ STRUT_API void strut_bounds_add(strut_bounds *bounds, const strut_model *model, 
  * The window in `box` that shows the bounds with `margin` [pt] around them for names and arrows.
  */
 STRUT_API strut_window strut_window_fit(strut_box box, strut_bounds bounds, double margin);
-/** Where a point of the plane [m] is on the page [pt]. */
+/** Maps a point of the plane [m] to the page [pt]. */
 STRUT_API void strut_window_point(const strut_window *window, const double position[2],
                                   double point[2]);
 
@@ -43,7 +43,7 @@ typedef enum strut_colouring {
   STRUT_COLOUR_ONE    /* all in `colour` */
 } strut_colouring;
 
-/** How a structure is drawn; zero-initialised it is drawn by kinds, thick and opaque. */
+/** Style of a structure; zero-initialised: coloured by kind, thick and opaque. */
 typedef struct strut_structure_style {
   strut_colouring colouring;
   const double *values; /* (member_count) force [N] or strain; for STRUT_COLOUR_FORCE */

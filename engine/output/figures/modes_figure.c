@@ -175,7 +175,7 @@ static void write_title(const strut_mode *mode, size_t number, char title[TITLE]
   strut_c_locale_leave(locale);
 }
 
-/* Which nodes move. Colours show the strained members. */
+/* Names the moving nodes. Colours show the strained members. */
 static void describe_mode(const strut_mode *mode, char words[TITLE + TITLE / 2]) {
   const char *end = strchr(mode->description, ';');
   char growth[TITLE / 2] = "";
@@ -229,7 +229,7 @@ static size_t draw_arrows(figure *f, const strut_window *window) {
   return count;
 }
 
-/* Whether names cover little of the drawing; the texts name the moving nodes anyway. */
+/* True if names cover little of the drawing; the texts name the moving nodes anyway. */
 static bool names_fit(figure *f, strut_box box) {
   double covered = 0.0;
   if (f->model->node_count > NAMED) return false;
@@ -334,7 +334,9 @@ static strut_status measure_texts(figure *f, double width, const strut_key_item 
   return STRUT_OK;
 }
 
-static strut_status draw_figure(figure *f, const char *path, double width, strut_error *error) {
+static strut_status draw_figure(figure *f, const strut_plot *plot, strut_error *error) {
+  const char *title = strut_plot_title(plot, f->model->scene->name);
+  double width = plot->width;
   char at[TITLE], rest[TITLE];
   strut_key_item items[ITEMS] = {{0}};
   size_t count = make_key(f, at, rest, items);
@@ -343,9 +345,9 @@ static strut_status draw_figure(figure *f, const char *path, double width, strut
   if (status != STRUT_OK) return status;
   for (size_t row = 0; row < f->rows; row++) height += row_height(f, row) + GAP;
   height += NAME_LINE + key - 0.5 * GAP;
-  status = strut_canvas_open(path, width, height, f->model->scene->name, &f->canvas, error);
+  status = strut_canvas_open(plot->path, width, height, title, &f->canvas, error);
   if (status != STRUT_OK) return status;
-  strut_draw_heading(f->canvas, EDGE, f->model->scene->name, "");
+  strut_draw_heading(f->canvas, EDGE, title, "");
   strut_box box = {EDGE, EDGE + NAME_LINE, f->panel_width, 0};
   for (size_t row = 0; row < f->rows; row++, box.y += box.height + GAP) {
     box.height = row_height(f, row);
@@ -361,7 +363,7 @@ static strut_status draw_figure(figure *f, const char *path, double width, strut
   return status;
 }
 
-strut_status strut_modes_figure(const char *path, double width, const strut_model *model,
+strut_status strut_modes_figure(const strut_plot *plot, const strut_model *model,
                                 const strut_modes *modes, size_t panels, strut_error *error) {
   figure f = {.model = model, .modes = modes, .head = TITLE_LINE + WORD_LINES + 2.0};
   choose_modes(&f, panels);
@@ -369,10 +371,10 @@ strut_status strut_modes_figure(const char *path, double width, const strut_mode
   if (allocate_arrays(&f)) {
     find_taut(&f);
     find_bounds(&f);
-    arrange(&f, width);
-    status = draw_figure(&f, path, width, error);
+    arrange(&f, plot->width);
+    status = draw_figure(&f, plot, error);
   } else {
-    strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    strut_no_memory(error, "");
   }
   strut_arena_free(&f.arena);
   return status;

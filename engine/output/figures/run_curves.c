@@ -20,7 +20,7 @@ static const double CLOSED = 1e-3;   /* of the model's size: closer to the groun
 static const double ROUNDING = 1e-9; /* of an energy */
 static const double ROOM = 0.06;     /* above and below the curves */
 
-/* What a panel draws, and its curves; values are (frames) each. */
+/* A panel and its curves of (frames) values each. */
 typedef struct panel {
   const char *name, *unit;
   double least; /* range at least */
@@ -72,7 +72,7 @@ static double value_at(const strut_run_scene *run, int kind, size_t item, size_t
   }
 }
 
-/* Whether a contact ever touches the ground; heights of others are omitted. */
+/* True if a contact ever touches the ground; heights of others are omitted. */
 static bool comes_down(const strut_run_scene *run, size_t contact) {
   for (size_t f = 0; f < run->frames; f++)
     if (value_at(run, STRUT_RUN_HEIGHTS, contact, f) < CLOSED * run->model->size) return true;
@@ -288,7 +288,7 @@ strut_status strut_run_curves(strut_run_scene *run, strut_canvas *canvas) {
     box.y += CURVES_HEIGHT;
     drawn++;
   }
-  strut_run_draw_title(run, canvas, drawn ? "all that was recorded" : "nothing changed", true);
+  strut_run_draw_title(run, canvas, drawn ? "everything recorded" : "nothing changed", true);
   return STRUT_OK;
 }
 
@@ -344,7 +344,7 @@ static int panels_of(const strut_run_scene *run, int panels[MOST_PANELS]) {
   return count;
 }
 
-/* Whether any path is long enough to be visible. */
+/* True if any path is long enough to be visible. */
 static bool has_visible_paths(const strut_run_scene *run) {
   size_t last = run->frames - 1, nodes = run->motion->node_count;
   strut_bounds b = bounds_of(run);
@@ -363,7 +363,7 @@ static size_t make_key(strut_run_scene *run, char texts[ITEMS][120], strut_key_i
   if (strut_run_arrow_item(run, texts[0], &items[0])) count++;
   if (has_visible_paths(run)) {
     double span = strut_run_time_from(run, first_of_paths(run));
-    snprintf(texts[count], 120, "node paths, last %s, dark to bright",
+    snprintf(texts[count], 120, "trajectories, last %s, dark to bright",
              strut_drawn_quantity(span, 3, "s").text);
     items[count] = (strut_key_item){.sign = STRUT_KEY_WORDS, .text = texts[count]};
     count++;

@@ -248,7 +248,7 @@ void strut_run_draw_reactions(strut_run_scene *run, strut_canvas *canvas,
   }
 }
 
-/* Whether a path is longer than a dot on the page. */
+/* True if a path is longer than a dot on the page. */
 static bool is_visible(const strut_window *window, const double (*path)[2], size_t count) {
   double first[2], at[2];
   for (size_t i = 0; i < count; i++) {

@@ -387,7 +387,7 @@ char *strut_page_html(const strut_page *page, strut_page_frames *frames, strut_e
   strut_buffer html = {0};
   const char *at = strut_page_template->text, *next;
   if (!data) {
-    strut_fail(error, STRUT_NO_MEMORY, "out of memory for the page");
+    strut_no_memory(error, "for the page");
     return NULL;
   }
   while ((next = strstr(at, open)) != NULL) {
@@ -398,7 +398,7 @@ char *strut_page_html(const strut_page *page, strut_page_frames *frames, strut_e
   strut_buffer_add(&html, "%s", at);
   strut_release(data);
   char *text = strut_buffer_take(&html);
-  if (!text) strut_fail(error, STRUT_NO_MEMORY, "out of memory for the page");
+  if (!text) strut_no_memory(error, "for the page");
   if (frames) *frames = taken;
   return text;
 }

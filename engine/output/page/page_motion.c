@@ -172,16 +172,7 @@ static const double DIVERGED_REACH = 1e3;
 enum { TIME, POSITION, FORCE, CONTACT, ENERGY, ANGLE, MOMENT, BLOCKS };
 static const char *const keys[BLOCKS] = {"time",   "position", "force", "contact",
                                          "energy", "angle",    "moment"};
-static const char *const energy_names[STRUT_ENERGIES] = {"kinetic",
-                                                         "elastic",
-                                                         "gravity",
-                                                         "contact",
-                                                         "drive_work",
-                                                         "load_work",
-                                                         "belt_work",
-                                                         "dissipated_members",
-                                                         "dissipated_contact",
-                                                         "dissipated_friction"};
+static const char *const energy_names[STRUT_ENERGIES] = {STRUT_ENERGY_NAMES};
 
 typedef struct motion {
   const strut_page *page;
@@ -197,7 +188,7 @@ static bool all_finite(const double *values, size_t count) {
   return true;
 }
 
-/* Whether every node is within reach of its start; `reach` in sizes. */
+/* True if every node is within `reach` model sizes of its start. */
 static bool is_within(const strut_model *model, const double *q, double reach) {
   for (int32_t i = 0; i < 2 * model->node_count; i++)
     if (fabs(q[i] - model->start[i]) > reach * model->size) return false;

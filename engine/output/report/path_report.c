@@ -49,7 +49,7 @@ static double shown_force(double value, double largest) {
   return fabs(value) > ROUNDING * largest ? value : 0.0;
 }
 
-/* Does the coordinate have a reaction, as it is supported or displaced? */
+/* True if the coordinate is supported or displaced, and so has a reaction. */
 static bool is_held(const strut_path *path, const strut_scene *scene, size_t node, int axis) {
   return scene->nodes[node].fixed[axis] || path->coordinate == (int32_t)(2 * node) + axis;
 }

@@ -299,7 +299,7 @@ static void add_verdicts(strut_buffer *table, const strut_rigidity *r) {
   if (r->bars_at_node > 0)
     strut_buffer_add(
         table, "  class              %d: %s\n", r->bars_at_node,
-        r->bars_at_node == 1 ? "no two bars meet" : "at most so many bars meet at a node");
+        r->bars_at_node == 1 ? "no two bars meet" : "at most this many bars meet at a node");
   strut_buffer_add(table, "  super stable       %s\n", super_stability_words(r, words));
   if (r->has_cables && r->states.force && r->states.count > 0)
     strut_buffer_add(table, "  cables             %s\n",

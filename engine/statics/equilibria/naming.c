@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
+#include "engine/statics/search/critical.h"
 
 enum { MOST_LISTED = 4 };
 

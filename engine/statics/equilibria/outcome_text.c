@@ -10,7 +10,7 @@
 
 /* Nodes that move at least this share of the one that moves most. */
 static const double MOVES = 0.1;
-/* How far it is pushed, and how far it must stay away, in model sizes. */
+/* Size of the push, and the distance at which it must stay away, in model sizes. */
 static const double PUSHED = 0.02, AWAY = 0.005;
 
 /* A velocity of one node, and a rate of turning about it. */
@@ -37,7 +37,7 @@ static int32_t flag_moving(const strut_model *model, const strut_critical_point 
   return count;
 }
 
-/* The rigid motion that goes with node a, and with b as far as turning can. */
+/* The rigid motion that follows node a, and b as far as a rotation can. */
 static whole rigid_motion_of(const strut_critical_point *point, bool turns, int32_t a, int32_t b) {
   const double *q = point->q, *mode = point->softest;
   double dx = q[2 * b] - q[2 * a], dy = q[2 * b + 1] - q[2 * a + 1], square = dx * dx + dy * dy;
@@ -276,7 +276,7 @@ static void describe_outcome(strut_equilibrium_search *h, strut_candidate_equili
       snprintf(e->verdict, room, "unstable: %d negative eigenvalue%s", (int)e->point.negative,
                e->point.negative == 1 ? "" : "s");
       break;
-    default: describe_no_rest(h, e); break;
+    case STRUT_OUTCOME_NO_REST: describe_no_rest(h, e); break;
   }
 }
 

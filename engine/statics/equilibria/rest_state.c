@@ -54,7 +54,7 @@ static strut_status judge_rest(const strut_model *model, strut_arena *arena, str
     double rounding = 4 * strut_potential_rounding(potential, rest->q);
     rest->at_rest = rest->residual <= fmax(AT_REST * rest->scale, rounding);
   } else {
-    status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    status = strut_no_memory(error, "");
   }
   strut_release(g);
   strut_potential_free(potential);
@@ -104,7 +104,7 @@ static strut_status relax_to_rest(strut_equilibrium_search *h, const char *what,
   if (h->potential->n == 0) return STRUT_OK;
   double *near = strut_arena_allocate(&h->out->arena, 1, bytes);
   double *from = strut_arena_allocate(&h->out->arena, 1, bytes);
-  if (!near || !from) return strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");
+  if (!near || !from) return strut_no_memory(h->error, "");
   memcpy(near, q, bytes);
   memcpy(from, q, bytes);
   strut_relax_down(h->relaxer, near, &relaxed);
@@ -150,7 +150,7 @@ static strut_status relax_from_shape(strut_equilibrium_search *h, const strut_co
                                      double *q, bool *found, strut_node_set *rests_on) {
   size_t nodes = h->level.scene.node_count;
   double *shape = strut_arena_allocate(&h->out->arena, (size_t)h->model->length, sizeof *shape);
-  if (!shape) return strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");
+  if (!shape) return strut_no_memory(h->error, "");
   memcpy(shape, c->position[0], 2 * nodes * sizeof *shape);
   for (size_t i = 0; i < nodes; i++) /* held coordinates stay */
     for (size_t k = 0; k < 2; k++)
@@ -240,7 +240,7 @@ static strut_status find_in_list(const strut_model *model, const strut_experimen
     if (strcmp(e->name, name) != 0) continue;
     found = true;
     rest->name = strut_arena_text(arena, name, strlen(name));
-    if (!rest->name) status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    if (!rest->name) status = strut_no_memory(error, "");
     bool stands = e->outcome == STRUT_OUTCOME_STANDS && e->rest;
     memcpy(rest->q, stands ? e->rest : e->point.q, (size_t)model->length * sizeof *rest->q);
   }
@@ -292,7 +292,7 @@ strut_status strut_rest_state_find(const strut_model *model, const strut_experim
   bool start = !name || strcmp(name, "start") == 0, drawn = name && strcmp(name, "drawn") == 0;
   *rest = (strut_rest_state){.name = start ? "start" : "drawn"};
   rest->q = strut_arena_allocate(arena, (size_t)model->length, sizeof *rest->q);
-  if (!rest->q) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!rest->q) return strut_no_memory(error, "");
   if (name && (c = find_configuration(scene, name)))
     start = drawn = false; /* a configuration has this name */
   if (!c && !start && !drawn) {

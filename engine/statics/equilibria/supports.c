@@ -105,7 +105,7 @@ strut_status strut_level_frame_create(const strut_scene *original, strut_level_f
   level->scene.arena = (strut_arena){0};
   if (!copy_arrays(level)) {
     strut_level_frame_free(level);
-    return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    return strut_no_memory(error, "");
   }
   if (original->ground.present && level->oblique_node < 0 && original->ground.slope != 0.0) {
     level->cosine = cos(original->ground.slope);
@@ -181,7 +181,7 @@ static strut_status use_requested_set(const strut_scene *scene, const strut_node
           scene->nodes[node].name);
   }
   supports->sets = strut_arena_allocate(arena, 1, sizeof *supports->sets);
-  if (!supports->sets) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!supports->sets) return strut_no_memory(error, "");
   supports->sets[0] = *wanted;
   supports->count = 1;
   return STRUT_OK;
@@ -195,7 +195,7 @@ static strut_status use_all_sets(const strut_scene *scene, size_t size, strut_ar
   if (supports->many || n < size) return STRUT_OK;
   supports->sets = strut_arena_allocate(arena, count, sizeof *supports->sets);
   int32_t *node = strut_arena_allocate(arena, count * size, sizeof *node);
-  if (!supports->sets || !node) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!supports->sets || !node) return strut_no_memory(error, "");
   for (size_t i = 0; i < n; i++)
     for (size_t j = size == 1 ? n - 1 : i + 1; j < n; j++, at++) {
       node[at * size] = scene->contacts[i].node;

@@ -218,7 +218,7 @@ strut_status strut_form_densities(strut_former *f, strut_error *error) {
                        .x = strut_arena_allocate(&f->arena, 2 * nodes, sizeof(double)),
                        .held = strut_arena_allocate(&f->arena, 2 * nodes, 1)};
   double *given = strut_arena_allocate(&f->arena, members, sizeof *given);
-  if (!p.q || !p.x || !p.held || !given) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!p.q || !p.x || !p.held || !given) return strut_no_memory(error, "");
   strut_status status = read_densities(&p, error);
   if (status) return status;
   memcpy(given, p.q, members * sizeof *given);
@@ -331,7 +331,7 @@ static bool undo_drift(const strut_former *f, double *q) {
   return true;
 }
 
-/* Whichever node moved most between the start and q; how far. */
+/* The node that moved most between the start and q, and its distance. */
 static double farthest(const strut_scene *scene, const double *q, size_t *node) {
   double most = -1;
   for (size_t i = 0; i < scene->node_count; i++) {
@@ -376,7 +376,7 @@ static strut_status polish(strut_former *f, strut_error *error) {
   if (status == STRUT_OK) status = strut_potential_create(model, NULL, true, &potential, error);
   if (status == STRUT_OK) status = strut_minimiser_create(potential, &minimiser, error);
   if (status == STRUT_OK) q = strut_arena_allocate(&f->arena, (size_t)model->length, sizeof *q);
-  if (status == STRUT_OK && !q) status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (status == STRUT_OK && !q) status = strut_no_memory(error, "");
   if (status == STRUT_OK) {
     memcpy(q, model->start, (size_t)model->length * sizeof *q);
     strut_descent descent = strut_minimise(minimiser, q, 0.0);
@@ -439,7 +439,7 @@ static strut_status find(strut_former *f, strut_error *error) {
   return status == STRUT_OK ? add_run(f, error) : status;
 }
 
-/* How far every node was drawn from where it is now. */
+/* Distance of every node from its drawn position. */
 static double moved_from(const double *drawn, const strut_scene *scene) {
   double most = 0;
   for (size_t i = 0; i < scene->node_count; i++)
@@ -467,8 +467,8 @@ strut_status strut_form_find(strut_setup *setup, const strut_form_options *optio
   strut_former f = {
       .scene = scene, .experiment = &setup->experiment, .options = options, .form = form};
   double *drawn = strut_arena_allocate(&f.arena, 2 * scene->node_count, sizeof *drawn);
-  strut_status status = drawn ? strut_model_compile(scene, &model, error)
-                              : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  strut_status status =
+      drawn ? strut_model_compile(scene, &model, error) : strut_no_memory(error, "");
   if (status == STRUT_OK) status = strut_potential_create(model, NULL, true, &potential, error);
   if (status == STRUT_OK) {
     for (size_t i = 0; i < 2 * scene->node_count; i++)

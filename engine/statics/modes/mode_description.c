@@ -98,7 +98,7 @@ strut_status strut_modes_rigid(strut_modes_work *work, strut_error *error) {
   gsl_matrix_free(vector);
   gsl_vector_free(value);
   gsl_eigen_symmv_free(w);
-  return good ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  return good ? STRUT_OK : strut_no_memory(error, "");
 }
 
 /* Description of a mode in words, from its computed quantities. */
@@ -144,7 +144,7 @@ static const char *direction_text(const double d[2]) {
   return "";
 }
 
-/* Where the cosine with the leading motion lies: 1 with it, -1 against it, 0 across. */
+/* Direction relative to the leading motion: 1 along it, -1 against it, 0 across. */
 static int side_of(const double lead[2], const double d[2]) {
   double cosine = (lead[0] * d[0] + lead[1] * d[1]) / (hypot(lead[0], lead[1]) * hypot(d[0], d[1]));
   return cosine > 0.5 ? 1 : cosine < -0.5 ? -1 : 0;
@@ -174,7 +174,7 @@ static void describe_nodes(const strut_vibration *v, const double *x, strut_mode
   int count = name_side(v, x, leader, lead, 1, "", mode);
   append_text(mode, count == 1 ? " moves%s" : " move%s", direction_text(lead));
   name_side(v, x, leader, lead, -1, " against ", mode);
-  name_side(v, x, leader, lead, 0, ", across them ", mode);
+  if (name_side(v, x, leader, lead, 0, ", ", mode) > 0) append_text(mode, " sideways");
 }
 
 /* Energies of half a stiffness each: stretch of the members, closed contacts. */
@@ -235,9 +235,9 @@ static void describe_rigid(const strut_vibration *v, const double *x, strut_mode
   }
   const char *way = direction_text(first);
   if (shift)
-    append_text(mode, "the whole moves%s", *way ? way : " freely");
+    append_text(mode, "the structure moves%s", *way ? way : " freely");
   else
-    append_text(mode, "the whole turns freely");
+    append_text(mode, "the structure rotates freely");
 }
 
 void strut_modes_describe(const strut_modes_work *work, const double *x, strut_mode *mode) {
@@ -249,7 +249,7 @@ void strut_modes_describe(const strut_modes_work *work, const double *x, strut_m
   }
   describe_nodes(v, x, mode);
   if (mode->kind == STRUT_MODE_MECHANISM) {
-    append_text(mode, "; nothing resists");
+    append_text(mode, "; no stiffness resists");
     return;
   }
   energies e = energies_of(v, x);

@@ -115,7 +115,7 @@ static void measure_noise(strut_modes_work *work, const double *noise) {
 
 strut_status strut_modes_settle(strut_modes_work *work, strut_error *error) {
   strut_dd *step = strut_arena_allocate(work->arena, (size_t)work->v->n, sizeof *step);
-  if (!step) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!step) return strut_no_memory(error, "");
   if (!settle(work, FIRM, step)) settle(work, HARDLY, step);
   return STRUT_OK;
 }
@@ -133,7 +133,7 @@ strut_status strut_modes_noise(strut_modes_work *work, bool at_rest, strut_error
   strut_vibration *v = work->v;
   strut_dd *step = strut_arena_allocate(work->arena, (size_t)v->n, sizeof *step);
   double *noise = strut_arena_allocate(work->arena, (size_t)v->model->members.count, sizeof *noise);
-  if (!step || !noise) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!step || !noise) return strut_no_memory(error, "");
   if (at_rest) strut_modes_factorise(&work->solver, find_soft(work));
   for (uint64_t sample = 0; sample < SAMPLES; sample++) {
     sample_noise(work, at_rest, sample, noise, step);
@@ -146,7 +146,7 @@ strut_status strut_modes_noise(strut_modes_work *work, bool at_rest, strut_error
 
 enum { MOST_ITERATIONS = 5 };
 
-/* Below the largest eigenvalue by this much there is nothing but zero. */
+/* Eigenvalues below the largest by this factor are zero. */
 static const double NOTHING = 1e-24;
 /* Eigenvalues are one where they differ by less than this, relative. */
 static const double CLUSTER = 1e-6;
@@ -303,7 +303,7 @@ strut_status strut_modes_refine(strut_modes_work *work, strut_error *error) {
             .mx = strut_arena_allocate(&scratch, n, sizeof *p.mx),
             .kx = strut_arena_allocate(&scratch, n, sizeof *p.kx)};
   strut_status status = STRUT_OK;
-  if (!p.x || !p.mx || !p.kx) status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!p.x || !p.mx || !p.kx) status = strut_no_memory(error, "");
   for (int32_t i = 0; i < set->count && status == STRUT_OK; i++) {
     double *x = set->vector + (size_t)i * n, gap = gap_of(work, i);
     for (size_t k = 0; k < n; k++) p.x[k] = dd_of(x[k]);

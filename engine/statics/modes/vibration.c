@@ -174,12 +174,11 @@ strut_status strut_vibration_create(const strut_model *model, const double *q,
                                     const uint8_t *held, strut_vibration **vibration,
                                     strut_error *error) {
   strut_vibration *v = *vibration = strut_allocate(1, sizeof *v);
-  if (!v) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!v) return strut_no_memory(error, "");
   v->model = model;
   strut_status status = strut_potential_create(model, held, true, &v->shape, error);
   if (status == STRUT_OK) v->n = v->shape->n;
-  if (status == STRUT_OK && !allocate(v))
-    status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (status == STRUT_OK && !allocate(v)) status = strut_no_memory(error, "");
   if (status != STRUT_OK) {
     strut_vibration_free(v);
     *vibration = NULL;

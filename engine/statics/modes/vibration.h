@@ -62,7 +62,7 @@ void strut_vibration_multiply(const strut_vibration *vibration, const double *ma
 /** y = M x. */
 void strut_vibration_mass(const strut_vibration *vibration, const strut_dd *x, strut_dd *y);
 
-/** How far the ends of member j move apart in the motion x (n), along it and across it. */
+/** Relative motion of the ends of member j in the motion x (n), along it and across it. */
 typedef struct strut_end_displacement {
   double along, across;
 } strut_end_displacement;

@@ -18,7 +18,7 @@ static const double NARROW = 1e-13; /* of the piece's length */
  * Of the eigenvalue at the ends. Nearer to zero Newton's method may leave by the other branch, and
  */
 static const double FORK = 1e-4;
-static const double BLURRED = 100; /* so it may within so many roundings of the stiffness. */
+static const double BLURRED = 100; /* and this many roundings of the stiffness */
 
 double strut_path_measure_switch(strut_path_system *s, const double *y,
                                  const strut_path_piece *piece, int32_t which) {
@@ -207,7 +207,7 @@ static void set_switches(strut_path_system *s, const switch_group *g, unsigned t
     strut_path_switch_set(s, g->which[i], g->was_on[i] != (thrown >> i & 1));
 }
 
-/* How much a switch's value changes a little ahead along a tangent [m]. */
+/* Change of a switch's value over a small step along a tangent [m]. */
 static double change_ahead(strut_path_walk *w, const switch_group *g, int32_t i,
                            const double *tangent) {
   strut_path_system *s = &w->system;
@@ -218,7 +218,7 @@ static double change_ahead(strut_path_walk *w, const switch_group *g, int32_t i,
 
 /*
  * The tangent with these switches thrown, into w->next_tangent, so that each switch goes on to
- * where it was put. False: there is none, or it contradicts a switch.
+ * where it was put. False: no such tangent exists, or it contradicts a switch.
  */
 static bool find_tangent(strut_path_walk *w, const switch_group *g, unsigned thrown,
                          const double *beyond) {

@@ -149,7 +149,7 @@ static bool difference_scenes(strut_path_parameter *p, double value, strut_path_
   return true;
 }
 
-/* Of a built-in parameter the rates never change: `rates` holds zeros elsewhere from the start. */
+/* The rates of a built-in parameter never change; the other entries of `rates` stay zero. */
 bool strut_path_parameter_rates(strut_path_parameter *p, double value, strut_path_terms *rates) {
   int32_t at = p->options->index;
   switch (p->options->over) {
@@ -211,7 +211,7 @@ strut_status strut_path_parameter_create(const strut_model *model,
   if (!strut_path_terms_create(model, arena, &p->base) ||
       !strut_path_terms_create(model, arena, &p->low) ||
       !strut_path_terms_create(model, arena, &p->high))
-    return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    return strut_no_memory(error, "");
   read_terms(model, &p->base);
   memcpy(p->base.position, position, (size_t)model->length * sizeof *position);
   return check_effect(p, error);

@@ -20,7 +20,7 @@ static const double ZERO_VALUE = 1e-13; /* of a soft mode's largest parts: no si
 static const double NO_VALUE = 1e-20;   /* of the largest eigenvalue, likewise */
 static const double ROUNDING = 2e-16;   /* of a double */
 
-/* How a mode of the free coordinates moves the second end of a member against the first. */
+/* Displacement of a member's second end relative to its first in a mode of the free coordinates. */
 static void relative_motion(const strut_path_system *s, int32_t j, size_t mode, double d[2]) {
   const strut_member_table *t = &s->model->members;
   for (uint32_t c = 0; c < 2; c++) {
@@ -118,7 +118,7 @@ static void find_vectors(strut_path_system *s) {
   gsl_eigen_symmv_sort(s->values, s->vectors, GSL_EIGEN_SORT_VAL_ASC);
 }
 
-/* The soft eigenvalues stand together: the first of them and how many, nearest to zero. */
+/* The soft eigenvalues are contiguous: index of the first and their number, nearest to zero. */
 static size_t find_soft(const strut_path_system *s, double below, size_t *first) {
   size_t count = 0, nearest = 0;
   for (size_t i = 1; i < (size_t)s->n; i++)

@@ -55,12 +55,12 @@ strut_status strut_path_system_create(const strut_model *model, const uint8_t *h
                                       strut_path_system *s, strut_error *error) {
   *s = (strut_path_system){.model = model};
   s->size = model->size > 0 ? model->size : 1.0;
-  if (!make_arrays(s)) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!make_arrays(s)) return strut_no_memory(error, "");
   strut_status status = strut_potential_create(model, held, false, &s->potential, error);
   if (status) return status;
   s->n = s->potential->n;
   if (s->n > STRUT_PATH_COORDINATES || make_matrices(s)) return STRUT_OK;
-  return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  return strut_no_memory(error, "");
 }
 
 void strut_path_system_free(strut_path_system *s) {
@@ -146,7 +146,7 @@ static void add_stiffness(strut_path_system *s, const int32_t *row, int count, d
         *gsl_matrix_ptr(s->hessian, (size_t)row[a], (size_t)row[b]) += block[a][b];
 }
 
-/* How a member's force on its second node changes with the parameter, its free ends held. */
+/* Derivative of a member's force on its second node with respect to the parameter, at fixed nodes. */
 static void member_rate(const strut_path_system *s, int32_t j, double rate[2]) {
   const strut_path_member *m = &s->member[j];
   const uint32_t a = s->model->members.from[j], b = s->model->members.to[j];

@@ -78,7 +78,7 @@ void strut_path_reactions(const strut_path_system *system, double *reaction, dou
  */
 int strut_path_correct(strut_path_system *system, const double *row, double value, double *y);
 
-/** The unit tangent with row . tangent > 0; false where there is none. */
+/** The unit tangent with row . tangent > 0; false if the system is singular. */
 bool strut_path_tangent(strut_path_system *system, const double *y, const double *row,
                         double *tangent);
 

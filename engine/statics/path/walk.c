@@ -100,7 +100,7 @@ static const double LONGEST_HELD =
 static const double BEND = 0.97;    /* cosine that tangents of neighbouring points keep */
 static const double COUPLED = 1e-6; /* of the load: what a null vector feels at a limit point */
 static const double BOUND = 1e3, DEEP = -10; /* sizes away; ranges the other way */
-/* Of the size: a loose cable that is as long as its rest length all along, but for rounding. */
+/* Relative to the size: a cable whose length equals its rest length along the path, up to rounding. */
 static const double HANGING = 1e-15;
 static const double CLOSE = 1e-6;  /* of the range: a value refused so near ends the path */
 static const double NEARBY = 1e-6; /* largest correction of the start */

@@ -7,6 +7,7 @@
 
 #include "engine/forces/tangent.h"
 #include "engine/model/pose.h"
+#include "engine/statics/rigidity/linear_matrices.h"
 
 enum { ENTRIES = 4 }; /* of a column at most */
 

@@ -12,7 +12,7 @@
 /** Residual forces up to this share of the largest force in the shape count as balance. */
 #define STRUT_BALANCE_TOLERANCE 1e-8
 
-/** Which member forces a verdict is about. */
+/** The member forces that a verdict refers to. */
 typedef enum strut_stress_source {
   STRUT_STRESS_NONE,        /* there is no state of self-stress */
   STRUT_STRESS_STATE,       /* the only state */

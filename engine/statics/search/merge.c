@@ -187,7 +187,7 @@ strut_status strut_stationary_set_add(strut_stationary_set *g, const double *q, 
     if (!*fresh && is_degenerate(&point)) make_degenerate(&g->points[*index], &point);
   }
   if (*fresh) {
-    if (!reserve_points(g)) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    if (!reserve_points(g)) return strut_no_memory(error, "");
     *index = (int32_t)g->count++;
     g->placement[*index] = NULL;
     g->points[*index] = point;
@@ -196,7 +196,7 @@ strut_status strut_stationary_set_add(strut_stationary_set *g, const double *q, 
   strut_critical_point *known = &g->points[*index];
   known->found++;
   if (is_degenerate(known) && !*fresh) return STRUT_OK;
-  if (!remember_placement(g, *index, q)) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!remember_placement(g, *index, q)) return strut_no_memory(error, "");
   known->placements = count_placements(g, *index);
   return STRUT_OK;
 }
@@ -224,7 +224,7 @@ void strut_number_shapes(const strut_stationary_set *like, strut_critical_point 
   }
 }
 
-/* How far two shapes are from each other after the best rigid motion (Procrustes in the plane). */
+/* Distance of two shapes after the best rigid motion (Procrustes in the plane). */
 
 static void centre_of(const strut_model *model, const double *q, double centre[2]) {
   centre[0] = centre[1] = 0.0;
