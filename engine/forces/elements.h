@@ -33,8 +33,8 @@ static inline double strut_element_natural(const strut_element *e, const double 
  * The element at positions q, without dampers. turn: the value near which an angle is taken; NAN: its
  * natural one.
  */
-void strut_element_evaluate(const strut_model *model, int32_t element, const double *rest,
-                            const double *q, double turn, strut_element_pose *pose);
+STRUT_API void strut_element_evaluate(const strut_model *model, int32_t element, const double *rest,
+                                      const double *q, double turn, strut_element_pose *pose);
 /** de/dt at velocities v, for a pose of the same element. */
 double strut_element_rate(const strut_model *model, int32_t element, const strut_element_pose *pose,
                           const double *v);
@@ -62,10 +62,11 @@ double strut_elements_energy(const strut_model *model, const double *rest, const
                              const double *q);
 
 /** Elastic force of member j at q, of its spring or of its elements, tension positive [N]. */
-double strut_member_elastic_tension(const strut_model *model, const double *rest, int32_t member,
-                                    const double *q);
+STRUT_API double strut_member_elastic_tension(const strut_model *model, const double *rest,
+                                              int32_t member, const double *q);
 /** Length of member j at q, over its guides [m]. */
-double strut_member_path_length(const strut_model *model, int32_t member, const double *q);
+STRUT_API double strut_member_path_length(const strut_model *model, int32_t member,
+                                          const double *q);
 
 /** A visited element with its pose; `context` is the visitor's own. */
 typedef void strut_visit_element(void *context, int32_t element, const strut_element_pose *pose);

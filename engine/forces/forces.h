@@ -34,6 +34,13 @@ typedef struct strut_member_values {
 } strut_member_values;
 STRUT_API strut_member_values strut_member_measure(const strut_model *model,
                                                    const strut_state *state, int32_t member);
+/** A hinge at the state: angle [rad], its rate [rad/s], moment [N m] that closes it where positive. */
+typedef struct strut_hinge_values {
+  double angle, rate, moment;
+} strut_hinge_values;
+/** By its element, see strut_element_of_hinge. */
+strut_hinge_values strut_hinge_measure(const strut_model *model, const strut_state *state,
+                                       int32_t element);
 /** Lengths [m] and forces [N] (tension positive) of all members at the state, (count) each. */
 STRUT_API void strut_members_measure(const strut_model *model, const strut_state *state,
                                      double *length, double *force);

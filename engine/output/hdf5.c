@@ -9,7 +9,7 @@
 #include "engine/output/hdf5_disk.h"
 #include "engine/output/hdf5_parts.h"
 
-enum { CHUNK_BYTES = 1 << 18, CHUNK_DOUBLES = CHUNK_BYTES / 8, CHANNELS = 6, SCALES = 12 };
+enum { CHUNK_BYTES = 1 << 18, CHUNK_DOUBLES = CHUNK_BYTES / 8, CHANNELS = 8, SCALES = 12 };
 
 /* One growing dataset; rows are collected until they fill a chunk. */
 typedef struct series {
@@ -40,6 +40,8 @@ static const char *item_scale(strut_channel id) {
     case STRUT_CHANNEL_VELOCITY: return "node";
     case STRUT_CHANNEL_LENGTH:
     case STRUT_CHANNEL_FORCE: return "member";
+    case STRUT_CHANNEL_ANGLE:
+    case STRUT_CHANNEL_MOMENT: return "hinge";
     case STRUT_CHANNEL_CONTACT: return "contact_node";
     case STRUT_CHANNEL_ENERGY: break;
   }
@@ -53,7 +55,9 @@ static const char *component_scale(strut_channel id) {
     case STRUT_CHANNEL_POSITION:
     case STRUT_CHANNEL_VELOCITY:
     case STRUT_CHANNEL_LENGTH:
-    case STRUT_CHANNEL_FORCE: break;
+    case STRUT_CHANNEL_FORCE:
+    case STRUT_CHANNEL_ANGLE:
+    case STRUT_CHANNEL_MOMENT: break;
   }
   return "axis";
 }

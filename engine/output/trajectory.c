@@ -11,7 +11,7 @@
 #include "engine/base/memory.h"
 #include "engine/output/hdf5_parts.h"
 
-enum { STRUT_TRAJECTORY_ARRAYS = 7 };
+enum { STRUT_TRAJECTORY_ARRAYS = 9 };
 
 /* One array of a trajectory: `size` doubles of each frame. */
 typedef struct trajectory_array {
@@ -42,6 +42,8 @@ static double **trajectory_array_of(strut_trajectory *t, strut_channel id) {
     case STRUT_CHANNEL_LENGTH: return &t->length;
     case STRUT_CHANNEL_FORCE: return &t->force;
     case STRUT_CHANNEL_CONTACT: return &t->contact;
+    case STRUT_CHANNEL_ANGLE: return &t->angle;
+    case STRUT_CHANNEL_MOMENT: return &t->moment;
     case STRUT_CHANNEL_ENERGY: break;
   }
   return &t->energy;
@@ -112,8 +114,10 @@ static bool trajectory_contacts(strut_trajectory *t, const strut_scene *scene) {
 static strut_status begin(void *context, const strut_record_layout *layout, strut_error *error) {
   keeper *k = context;
   strut_trajectory *t = k->t;
-  *t = (strut_trajectory){
-      .every = 1, .node_count = k->scene->node_count, .member_count = k->scene->member_count};
+  *t = (strut_trajectory){.every = 1,
+                          .node_count = k->scene->node_count,
+                          .member_count = k->scene->member_count,
+                          .hinge_count = k->scene->hinge_count};
   k->width = layout->width;
   k->arrays[0] = (trajectory_array){.values = &t->time, .size = 1};
   k->array_count = k->frame_size = 1;
@@ -176,6 +180,8 @@ void strut_trajectory_free(strut_trajectory *t) {
   strut_release(t->length);
   strut_release(t->force);
   strut_release(t->contact);
+  strut_release(t->angle);
+  strut_release(t->moment);
   strut_release(t->energy);
   strut_arena_free(&t->arena);
   *t = (strut_trajectory){0};
@@ -191,6 +197,7 @@ static const struct {
     {STRUT_CHANNEL_POSITION, "position", 2}, {STRUT_CHANNEL_VELOCITY, "velocity", 2},
     {STRUT_CHANNEL_LENGTH, "length", 1},     {STRUT_CHANNEL_FORCE, "force", 1},
     {STRUT_CHANNEL_CONTACT, "contact", 2},   {STRUT_CHANNEL_ENERGY, "energy", STRUT_ENERGIES},
+    {STRUT_CHANNEL_ANGLE, "angle", 1},       {STRUT_CHANNEL_MOMENT, "moment", 1},
 };
 enum { CHANNELS = sizeof channels / sizeof *channels };
 
@@ -214,6 +221,7 @@ static strut_status report_no_memory(const reader *r) {
 static size_t items_of(const reader *r, strut_channel id) {
   if (id == STRUT_CHANNEL_POSITION || id == STRUT_CHANNEL_VELOCITY) return r->scene->node_count;
   if (id == STRUT_CHANNEL_LENGTH || id == STRUT_CHANNEL_FORCE) return r->scene->member_count;
+  if (id == STRUT_CHANNEL_ANGLE || id == STRUT_CHANNEL_MOMENT) return r->scene->hinge_count;
   return id == STRUT_CHANNEL_CONTACT ? r->scene->contact_count : 1;
 }
 
@@ -277,6 +285,7 @@ static const char *node_name(const strut_scene *scene, size_t i) { return scene-
 static const char *member_name(const strut_scene *scene, size_t i) {
   return scene->members[i].name;
 }
+static const char *hinge_name(const strut_scene *scene, size_t i) { return scene->hinges[i].name; }
 static const char *contact_name(const strut_scene *scene, size_t i) {
   return scene->nodes[scene->contacts[i].node].name;
 }
@@ -343,8 +352,10 @@ static strut_status read_file(reader *r, size_t room) {
   strut_trajectory *t = r->t;
   t->node_count = r->scene->node_count;
   t->member_count = r->scene->member_count;
+  t->hinge_count = r->scene->hinge_count;
   if (!same_names(r, "node", t->node_count, node_name) ||
       !same_names(r, "member", t->member_count, member_name) ||
+      !same_names(r, "hinge", t->hinge_count, hinge_name) ||
       !same_names(r, "contact_node", r->scene->contact_count, contact_name))
     return trouble(r, "it belongs to another structure than the scene beside it");
   if (!trajectory_contacts(t, r->scene)) return report_no_memory(r);

@@ -10,7 +10,7 @@
 
 /** Frames over time, SI. What was not recorded is NULL. Zero-initialise. */
 typedef struct strut_trajectory {
-  size_t frames, node_count, member_count, contact_count;
+  size_t frames, node_count, member_count, hinge_count, contact_count;
   size_t every;          /* stride of the frames in the recorded samples; 1: all */
   size_t recorded;       /* number of recorded samples */
   double *time;          /* (frames) */
@@ -19,6 +19,8 @@ typedef struct strut_trajectory {
   double *length;        /* (frames, members) */
   double *force;         /* (frames, members) tension positive */
   double *contact;       /* (frames, contacts, 2) normal, friction */
+  double *angle;         /* (frames, hinges) */
+  double *moment;        /* (frames, hinges) */
   int32_t *contact_node; /* (contacts) index of the node in the scene */
   double *energy;        /* (frames, STRUT_ENERGIES) in the recorder's order */
   strut_status status;   /* of the run: STRUT_OK, STRUT_DIVERGED or STRUT_INTERRUPTED */

@@ -19,6 +19,7 @@ typedef enum strut_column_owner {
   STRUT_COLUMN_OF_NODE,    /* NODE.y */
   STRUT_COLUMN_OF_CONTACT, /* NODE.normal, of a node that may touch the ground */
   STRUT_COLUMN_OF_MEMBER,  /* MEMBER.force */
+  STRUT_COLUMN_OF_HINGE,   /* HINGE.moment */
   STRUT_COLUMN_OF_PAIR,    /* angle(NODE, NODE) */
   STRUT_COLUMN_OF_CENTRE,  /* com.vx */
   STRUT_COLUMN_OF_ENERGY,  /* energy.kinetic */
@@ -41,6 +42,9 @@ typedef enum strut_column_owner {
   X(RATE, MEMBER, "rate", 0, 1, -1, 0)      /* of the length */                                    \
   X(FORCE, MEMBER, "force", 1, 1, -2, 0)                                                           \
   X(TILT, MEMBER, "angle", 0, 0, 0, 1) /* of its direction, from +x, counted on beyond a turn */   \
+  X(HINGE_ANGLE, HINGE, "angle", 0, 0, 0, 1)                                                       \
+  X(HINGE_RATE, HINGE, "rate", 0, 0, -1, 1) /* of the angle */                                     \
+  X(MOMENT, HINGE, "moment", 1, 2, -2, 0)                                                          \
   X(ANGLE, PAIR, "angle", 0, 0, 0, 1)                                                              \
   X(DISTANCE, PAIR, "distance", 0, 1, 0, 0)                                                        \
   X(CENTRE_X, CENTRE, "x", 0, 1, 0, 0)                                                             \
@@ -70,7 +74,7 @@ typedef enum strut_column_kind {
 /** A column of the motion: a number at every step. */
 typedef struct strut_column {
   strut_column_kind kind;
-  int32_t item, other; /* node, contact or member; the second node of a pair; else -1 */
+  int32_t item, other; /* node, contact, member or hinge; the second node of a pair; else -1 */
 } strut_column;
 
 /** How a result changes with its operands; see quantity_program.c. */

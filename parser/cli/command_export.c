@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "engine/forces/elements.h"
 #include "engine/output/matrix_market.h"
 #include "engine/output/vtk.h"
 #include "parser/cli/options.h"
@@ -20,7 +21,6 @@ static strut_status still_of(const strut_arguments *arguments, const strut_opene
   strut_status status =
       strut_named_shape_find(arguments, model, &opened->setup.experiment, arena, &shape, error);
   if (status != STRUT_OK) return status;
-  const strut_member_table *table = &model->members;
   size_t nodes = model->scene->node_count, members = model->scene->member_count;
   *motion = (strut_trajectory){.frames = 1, .node_count = nodes, .member_count = members};
   motion->position = strut_arena_allocate(arena, 2 * nodes, sizeof(double));
@@ -29,10 +29,9 @@ static strut_status still_of(const strut_arguments *arguments, const strut_opene
   if (!motion->position || !motion->length || !motion->force) return strut_no_memory(error, "");
   for (size_t i = 0; i < 2 * nodes; i++) motion->position[i] = shape.q[i];
   for (size_t i = 0; i < members; i++) {
-    const double *from = shape.q + table->from[i], *to = shape.q + table->to[i];
-    motion->length[i] = hypot(to[0] - from[0], to[1] - from[1]);
-    double elastic = table->stiffness[i] * (motion->length[i] - table->rest[i]);
-    motion->force[i] = elastic < table->slack[i] ? table->slack[i] : elastic;
+    motion->length[i] = strut_member_path_length(model, (int32_t)i, shape.q);
+    motion->force[i] =
+        strut_member_elastic_tension(model, model->members.rest, (int32_t)i, shape.q);
   }
   return STRUT_OK;
 }

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/forces/elements.h"
 #include "engine/output/figures/statics_figures.h"
 
 #include <math.h>
@@ -18,11 +19,7 @@ static const double NARROW = 170, FOOT = 50, LEAST_MARGIN = 8;
 static double find_forces(const strut_model *model, double *force) {
   double most = 0;
   for (size_t j = 0; j < model->scene->member_count; j++) {
-    const strut_member *m = &model->scene->members[j];
-    const double *a = model->start + 2 * m->node[0], *b = model->start + 2 * m->node[1];
-    force[j] = fmax(
-        model->members.stiffness[j] * (hypot(b[0] - a[0], b[1] - a[1]) - model->members.rest[j]),
-        model->members.slack[j]);
+    force[j] = strut_member_elastic_tension(model, model->members.rest, (int32_t)j, model->start);
     most = fmax(most, fabs(force[j]));
   }
   return most;

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/forces/elements.h"
 #include "engine/output/figures/statics_figures.h"
 
 #include <math.h>
@@ -73,15 +74,19 @@ static double compute_strains(figure *f) {
   const double *q = f->modes->q;
   double largest = 0.0;
   for (size_t j = 0; j < f->model->scene->member_count; j++) {
-    const int32_t *node = f->model->scene->members[j].node;
-    double along[2], change = 0.0, square = 0.0;
-    for (int d = 0; d < 2; d++) {
-      along[d] = q[2 * node[1] + d] - q[2 * node[0] + d];
-      square += along[d] * along[d];
-      change += along[d] * (f->moved[2 * node[1] + d] - q[2 * node[1] + d] -
-                            f->moved[2 * node[0] + d] + q[2 * node[0] + d]);
+    const strut_member *m = &f->model->scene->members[j];
+    double change = 0.0, length = 0.0;
+    for (size_t k = 0; k <= m->guide_count; k++) {
+      int32_t a = strut_member_node(m, k), b = strut_member_node(m, k + 1);
+      double along[2], part, own = 0.0;
+      for (int d = 0; d < 2; d++) {
+        along[d] = q[2 * b + d] - q[2 * a + d];
+        own += along[d] * (f->moved[2 * b + d] - q[2 * b + d] - f->moved[2 * a + d] + q[2 * a + d]);
+      }
+      length += part = hypot(along[0], along[1]);
+      change += part > 0 ? own / part : 0.0;
     }
-    f->strain[j] = square > 0 ? change / square : 0.0;
+    f->strain[j] = length > 0 ? change / length : 0.0;
     largest = fmax(largest, fabs(f->strain[j]));
   }
   return largest > UNSTRAINED ? largest : 0.0;
@@ -91,9 +96,8 @@ static void find_taut(figure *f) {
   const double *q = f->modes->q;
   for (size_t j = 0; j < f->model->scene->member_count; j++) {
     const strut_member *m = &f->model->scene->members[j];
-    const double *a = q + 2 * m->node[0], *b = q + 2 * m->node[1];
-    bool slack = m->kind == STRUT_CABLE &&
-                 hypot(b[0] - a[0], b[1] - a[1]) <= f->model->members.rest[j] * (1 - 1e-12);
+    bool slack = m->kind == STRUT_CABLE && strut_member_path_length(f->model, (int32_t)j, q) <=
+                                               f->model->members.rest[j] * (1 - 1e-12);
     f->taut[j] = slack ? 0.0 : 1.0;
   }
 }

@@ -337,12 +337,12 @@ static void draw_shapes(path_picture *p, strut_box box) {
                                          .thinness = 0.3,
                                          .no_supports = i > 0};
     strut_draw_structure(p->canvas, &window, p->model, enlarged(p, q), &style);
-    for (size_t j = 0; i > 0 && j < p->model->scene->member_count; j++) {
-      const int32_t *node = p->model->scene->members[j].node;
-      double ends[2][2];
-      for (int k = 0; k < 2; k++) strut_window_point(&window, p->shape + 2 * node[k], ends[k]);
-      add_obstacle(p, ends[0], ends[1]);
-    }
+    for (size_t j = 0; i > 0 && j < p->model->scene->member_count; j++)
+      for (size_t k = 0; k < strut_member_segments(p->model, j); k++) {
+        double ends[2][2];
+        strut_window_segment(&window, p->model, p->shape, j, k, ends);
+        add_obstacle(p, ends[0], ends[1]);
+      }
   }
   for (size_t l = 0; l < p->model->scene->load_count; l++) {
     if (!load_arrow(p, &window, &p->model->scene->loads[l], arrow)) continue;

@@ -430,9 +430,11 @@ static void draw_members(const view *v, sketch_grid *grid) {
   for (size_t i = 0; i < scene->member_count; i++) {
     const strut_member *member = &scene->members[i];
     double from[2], to[2];
-    place(v, v->q + 2 * member->node[0], from);
-    place(v, v->q + 2 * member->node[1], to);
-    sketch_line(grid, from, to, 1, member->kind == STRUT_BAR ? 0 : 1);
+    for (size_t k = 0; k <= member->guide_count; k++) {
+      place(v, v->q + 2 * strut_member_node(member, k), from);
+      place(v, v->q + 2 * strut_member_node(member, k + 1), to);
+      sketch_line(grid, from, to, 1, member->kind == STRUT_BAR ? 0 : 1);
+    }
   }
 }
 

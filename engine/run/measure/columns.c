@@ -5,6 +5,7 @@
 
 #include "engine/base/vec.h"
 #include "engine/forces/drive.h"
+#include "engine/forces/elements.h"
 #include "engine/forces/forces.h"
 
 /* Rounding of positions, relative to the structure's size; and of sums over many steps. */
@@ -21,7 +22,7 @@ static const struct column_row {
 #undef STRUT_COLUMN_ROW
 };
 
-static bool is_angle(strut_column_kind kind) { return rows[kind].angle == 1; }
+static bool is_angle(strut_column_kind kind) { return rows[kind].angle == 1 && rows[kind].s == 0; }
 
 static bool is_speed(strut_column_kind kind) {
   return rows[kind].kg == 0 && rows[kind].m == 1 && rows[kind].s == -1;
@@ -51,17 +52,23 @@ static int32_t find_contact(const strut_model *model, int32_t node) {
   return -1;
 }
 
+static bool is_of_hinge(strut_column_kind kind) {
+  return rows[kind].owner == STRUT_COLUMN_OF_HINGE;
+}
+
 static void note_needs(strut_columns *c, strut_column_kind kind) {
   bool rigid = c->model->plan & STRUT_TERM_RIGID;
   if (rows[kind].owner == STRUT_COLUMN_OF_CONTACT || (kind == STRUT_COLUMN_FORCE && rigid))
     c->forces = true;
   if (rows[kind].owner == STRUT_COLUMN_OF_ENERGY) c->energies = true;
-  if (is_speed(kind)) c->speeds = true;
+  if (is_speed(kind) || kind == STRUT_COLUMN_HINGE_RATE) c->speeds = true;
 }
 
 size_t strut_columns_add(strut_columns *c, strut_column column) {
   if (column.kind == STRUT_COLUMN_NORMAL || column.kind == STRUT_COLUMN_FRICTION)
     column.item = find_contact(c->model, column.item);
+  if (is_of_hinge(column.kind))
+    column.item = strut_element_of_hinge(&c->model->elements, column.item);
   for (size_t i = 0; i < c->count; i++) {
     const strut_column *other = &c->column[i];
     if (other->kind == column.kind && other->item == column.item && other->other == column.other)
@@ -88,6 +95,14 @@ static double mean_by_mass(const strut_model *model, const double *from, double 
 /* Height above the ground, along its normal. */
 static double height_above_ground(const strut_columns *c, const double q[2]) {
   return q[0] * c->normal[0] + (q[1] - c->model->scene->ground.height) * c->normal[1];
+}
+
+static double evaluate_hinge(const strut_columns *c, const strut_state *state,
+                             strut_column column) {
+  strut_hinge_values h = strut_hinge_measure(c->model, state, column.item);
+  return column.kind == STRUT_COLUMN_HINGE_ANGLE  ? h.angle
+         : column.kind == STRUT_COLUMN_HINGE_RATE ? h.rate
+                                                  : h.moment;
 }
 
 /* Difference of two node positions. */
@@ -125,6 +140,9 @@ static double evaluate_column(const strut_columns *c, const strut_state *state, 
       return strut_member_measure(c->model, state, column.item).length - state->rest[column.item];
     case STRUT_COLUMN_RATE: return strut_member_measure(c->model, state, column.item).rate;
     case STRUT_COLUMN_FORCE: return strut_member_measure(c->model, state, column.item).force;
+    case STRUT_COLUMN_HINGE_ANGLE:
+    case STRUT_COLUMN_HINGE_RATE:
+    case STRUT_COLUMN_MOMENT: return evaluate_hinge(c, state, column);
     case STRUT_COLUMN_TILT:
     case STRUT_COLUMN_ANGLE: node_difference(c, state, column, d); return atan2(d[1], d[0]);
     case STRUT_COLUMN_DISTANCE: node_difference(c, state, column, d); return hypot(d[0], d[1]);
@@ -196,13 +214,25 @@ double strut_columns_span(const strut_columns *c, size_t index) {
   return sums ? c->largest[index] : c->most[index] - c->least[index];
 }
 
+/* The stiffest spring of a member, or of its elements. */
+static double member_stiffness(const strut_model *model, int32_t member) {
+  const strut_element *e = strut_element_of_member(&model->elements, member);
+  double stiffest = model->members.stiffness[member];
+  for (; e; e = e->sibling >= 0 ? &model->elements.element[e->sibling] : NULL)
+    stiffest = fmax(stiffest, e->numbers.stiffness);
+  return stiffest;
+}
+
 double strut_columns_noise(const strut_columns *c, size_t index) {
   strut_column column = c->column[index];
   double length = POSITION_ROUNDING * c->model->size;
   if (is_length(column.kind)) return length;
   if (is_angle(column.kind)) return POSITION_ROUNDING;
   if (is_speed(column.kind)) return SUM_ROUNDING * c->fastest;
-  if (column.kind == STRUT_COLUMN_FORCE) return length * c->model->members.stiffness[column.item];
+  if (column.kind == STRUT_COLUMN_FORCE) return length * member_stiffness(c->model, column.item);
+  if (column.kind == STRUT_COLUMN_HINGE_RATE) return SUM_ROUNDING * c->fastest / c->model->size;
+  if (column.kind == STRUT_COLUMN_MOMENT)
+    return POSITION_ROUNDING * c->model->elements.element[column.item].numbers.stiffness;
   if (column.kind == STRUT_COLUMN_NORMAL && column.item >= 0)
     return length * c->model->contacts.entry[column.item].stiffness;
   return 0.0;

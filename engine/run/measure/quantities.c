@@ -62,7 +62,8 @@ static bool find_primitive(strut_column column, strut_column *primitive) {
                                                {STRUT_COLUMN_NODE_VY, STRUT_COLUMN_NODE_Y},
                                                {STRUT_COLUMN_CENTRE_VX, STRUT_COLUMN_CENTRE_X},
                                                {STRUT_COLUMN_CENTRE_VY, STRUT_COLUMN_CENTRE_Y},
-                                               {STRUT_COLUMN_RATE, STRUT_COLUMN_LENGTH}};
+                                               {STRUT_COLUMN_RATE, STRUT_COLUMN_LENGTH},
+                                               {STRUT_COLUMN_HINGE_RATE, STRUT_COLUMN_HINGE_ANGLE}};
   *primitive = column;
   for (size_t i = 0; i < sizeof rates / sizeof rates[0]; i++) {
     if (column.kind != rates[i][0]) continue;

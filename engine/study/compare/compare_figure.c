@@ -66,24 +66,30 @@ static strut_bounds shown(const sheet *s, const strut_compare_column *c) {
   return b;
 }
 
+/* A driven member's segment, as a broad line that leaves its nodes visible. */
+static void mark_segment(const sheet *s, double from[2], double to[2]) {
+  double length = hypot(to[0] - from[0], to[1] - from[1]);
+  for (int d = 0; d < 2 && length > 3 * DOT; d++) {
+    double step = DOT * (to[d] - from[d]) / length;
+    from[d] += step;
+    to[d] -= step;
+  }
+  strut_draw_segment(s->canvas, from[0], from[1], to[0], to[1],
+                     (strut_pen){.colour = strut_grey(1.0), .width = 4.2});
+  strut_draw_segment(s->canvas, from[0], from[1], to[0], to[1],
+                     (strut_pen){.colour = strut_palette_thing(DRIVEN), .width = 2.6});
+}
+
 static void mark_driven(const sheet *s, const strut_window *window, const strut_compare_column *c) {
   const strut_scene *scene = c->model->scene;
   for (size_t i = 0; i < scene->actuator_count; i++) {
     if (scene->actuators[i].member < 0) continue;
-    const strut_member *m = &scene->members[scene->actuators[i].member];
-    double from[2], to[2];
-    strut_window_point(window, c->q + 2 * m->node[0], from);
-    strut_window_point(window, c->q + 2 * m->node[1], to);
-    double length = hypot(to[0] - from[0], to[1] - from[1]);
-    for (int d = 0; d < 2 && length > 3 * DOT; d++) { /* keep nodes visible */
-      double step = DOT * (to[d] - from[d]) / length;
-      from[d] += step;
-      to[d] -= step;
+    size_t member = (size_t)scene->actuators[i].member;
+    for (size_t k = 0; k < strut_member_segments(c->model, member); k++) {
+      double ends[2][2];
+      strut_window_segment(window, c->model, c->q, member, k, ends);
+      mark_segment(s, ends[0], ends[1]);
     }
-    strut_draw_segment(s->canvas, from[0], from[1], to[0], to[1],
-                       (strut_pen){.colour = strut_grey(1.0), .width = 4.2});
-    strut_draw_segment(s->canvas, from[0], from[1], to[0], to[1],
-                       (strut_pen){.colour = strut_palette_thing(DRIVEN), .width = 2.6});
   }
 }
 
