@@ -9,6 +9,7 @@
 #include "engine/forces/strains/length.h"
 #include "engine/forces/strains/path.h"
 #include "engine/forces/strains/reach.h"
+#include "engine/model/element_compile.h"
 #include "engine/model/pose.h"
 
 /* Strain and gradient. */

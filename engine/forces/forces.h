@@ -39,8 +39,8 @@ typedef struct strut_hinge_values {
   double angle, rate, moment;
 } strut_hinge_values;
 /** By its element, see strut_element_of_hinge. */
-strut_hinge_values strut_hinge_measure(const strut_model *model, const strut_state *state,
-                                       int32_t element);
+STRUT_API strut_hinge_values strut_hinge_measure(const strut_model *model, const strut_state *state,
+                                                 int32_t element);
 /** Lengths [m] and forces [N] (tension positive) of all members at the state, (count) each. */
 STRUT_API void strut_members_measure(const strut_model *model, const strut_state *state,
                                      double *length, double *force);

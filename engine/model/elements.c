@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/model/elements.h"
+#include "engine/model/element_compile.h"
 
 #include <assert.h>
 #include <gsl/gsl_interp.h>
@@ -93,26 +93,16 @@ static const strut_law_curve *make_curve(strut_model *model, const strut_law *la
 static bool set_numbers(strut_model *model, const strut_law *law, double stiffness,
                         strut_law_numbers *numbers) {
   *numbers = (strut_law_numbers){.stiffness = stiffness};
-  switch (law->kind) {
-    case STRUT_LAW_LINEAR:
-    case STRUT_LAW_LOGARITHMIC: break;
-    case STRUT_LAW_BILINEAR:
-      numbers->first = law->knee, numbers->second = law->second_stiffness;
-      break;
-    case STRUT_LAW_PLAY: numbers->first = law->gap; break;
-    case STRUT_LAW_EXPONENTIAL: numbers->first = law->scale; break;
-    case STRUT_LAW_POLYNOMIAL:
-      numbers->coefficient = law->force;
-      numbers->count = law->count;
-      numbers->stiffness = law->count ? law->force[0] : 0.0;
-      break;
-    case STRUT_LAW_TABLE:
-      numbers->curve = make_curve(model, law);
-      if (!numbers->curve) return false;
-      numbers->stiffness = strut_law_table(numbers, 0.0, 0.0, -1).slope;
-      break;
-    case STRUT_LAW_COUNT: break;
-  }
+#define STRUT_LAW_ROW(NAME, field, ...) numbers->field = law->field;
+  STRUT_LAW_PARAMETERS(STRUT_LAW_ROW)
+#undef STRUT_LAW_ROW
+  if (strut_law_needs(law->kind, STRUT_LAW_PARAMETER_COEFFICIENTS))
+    numbers->coefficient = law->force, numbers->count = law->count;
+  if (strut_law_needs(law->kind, STRUT_LAW_PARAMETER_POINTS) &&
+      !(numbers->curve = make_curve(model, law)))
+    return false;
+  if (strut_law_at(law->kind)->own)
+    numbers->stiffness = strut_law_respond(law->kind, numbers, 0.0, 0.0, -1).slope;
   return true;
 }
 

@@ -70,22 +70,6 @@ typedef struct strut_element_table {
   const int32_t *of_member;         /* (members) first element of a member, or -1; NULL: none */
 } strut_element_table;
 
-struct strut_model;
-
-/** Slots for natural strains of elements that are no members, behind the members' own. */
-size_t strut_element_slots(const strut_scene *scene);
-
-/**
- * Fills model->elements from the scene, whose members stand in the model's tables already, and takes out
- * of those what elements do instead. False: out of memory.
- */
-bool strut_elements_compile(struct strut_model *model);
-
-/** Value near which an element's strain is taken at the start: its natural strain. */
-double strut_element_start(const struct strut_model *model, int32_t element);
-/** Slot of the natural strain that actuator i of the scene drives. */
-int32_t strut_actuator_slot(const struct strut_model *model, size_t i);
-
 /** The first element of member j, or NULL for a plain member without stops. */
 static inline const strut_element *strut_element_of_member(const strut_element_table *t,
                                                            int32_t j) {

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/model/element_compile.h"
 #include "engine/model/memory_estimate.h"
 
 strut_status strut_state_create(const strut_model *model, strut_state **result,

@@ -8,41 +8,49 @@
 /* Methods with events number the pieces of a law by 16 bits. */
 enum { MOST_POINTS = 30000 };
 
-/* A law without a finding of its own, or what is wrong with it. */
-static const char *fault_of(const strut_law *law) {
-  const double numbers[] = {law->knee, law->second_stiffness, law->gap, law->scale};
-  if ((unsigned)law->kind >= STRUT_LAW_COUNT) return "is of an unknown kind";
-  if ((unsigned)law->carries > STRUT_CARRIES_COMPRESSION) return "carries an unknown sign";
-  for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
-    if (!isfinite(numbers[i])) return "has a number that is not finite";
+/* What is wrong with the lists of a law, or NULL. */
+static const char *fault_of_lists(const strut_law *law) {
+  bool points = strut_law_needs(law->kind, STRUT_LAW_PARAMETER_POINTS);
   for (size_t i = 0; i < law->count; i++)
-    if (!isfinite(law->force[i]) || (law->kind == STRUT_LAW_TABLE && !isfinite(law->x[i])))
+    if (!isfinite(law->force[i]) || (points && !isfinite(law->x[i])))
       return "has a number that is not finite";
   if (law->count > MOST_POINTS) return "has more than 30000 points";
-  switch (law->kind) {
-    case STRUT_LAW_BILINEAR: return law->knee > 0.0 ? NULL : "needs a knee above zero";
-    case STRUT_LAW_PLAY: return law->gap > 0.0 ? NULL : "needs a gap above zero";
-    case STRUT_LAW_EXPONENTIAL: return law->scale > 0.0 ? NULL : "needs a scale above zero";
-    case STRUT_LAW_POLYNOMIAL: return law->count ? NULL : "needs at least one coefficient";
-    case STRUT_LAW_TABLE:
-      if (law->count < 2) return "needs at least two points";
-      for (size_t i = 1; i < law->count; i++)
-        if (!(law->x[i] > law->x[i - 1])) return "needs points with increasing x";
-      return NULL;
-    case STRUT_LAW_LINEAR:
-    case STRUT_LAW_LOGARITHMIC:
-    case STRUT_LAW_COUNT: break;
-  }
+  if (strut_law_needs(law->kind, STRUT_LAW_PARAMETER_COEFFICIENTS) && !law->count)
+    return "needs at least one coefficient";
+  if (points && law->count < 2) return "needs at least two points";
+  for (size_t i = 1; i < law->count && points; i++)
+    if (!(law->x[i] > law->x[i - 1])) return "needs points with increasing x";
   return NULL;
+}
+
+/* The law of `owner` by itself. */
+static bool check_numbers(strut_checker *checker, strut_subject subject, size_t index,
+                          const char *owner, const strut_law *law) {
+  const char *fault = (unsigned)law->kind >= STRUT_LAW_COUNT ? "is of an unknown kind"
+                      : (unsigned)law->carries > STRUT_CARRIES_COMPRESSION
+                          ? "carries an unknown sign"
+                          : fault_of_lists(law);
+  if (fault) {
+    strut_report_finding(checker, subject, index, "law", "the law of %s %s", owner, fault);
+    return false;
+  }
+  bool valid = true;
+  for (int p = 0; p < STRUT_LAW_NUMBER_COUNT; p++) {
+    double value = strut_law_value(law, p);
+    bool needed = strut_law_needs(law->kind, p);
+    if (isfinite(value) && !(needed && strut_law_above_zero(p) && !(value > 0.0))) continue;
+    strut_report_finding(checker, subject, index, "law", "the law of %s needs a %s%s", owner,
+                         strut_law_key(p), strut_law_above_zero(p) ? " above zero" : "");
+    valid = false;
+  }
+  return valid;
 }
 
 /* Is the law valid, and the stiffness given where and only where the law does not bring its own? */
 static bool check_law(strut_checker *checker, strut_subject subject, size_t index,
                       const char *owner, const strut_law *law, bool stiffness) {
-  const char *fault = fault_of(law);
-  if (fault)
-    strut_report_finding(checker, subject, index, "law", "the law of %s %s", owner, fault);
-  else if (stiffness && strut_law_at(law->kind)->own)
+  if (!check_numbers(checker, subject, index, owner, law)) return false;
+  if (stiffness && strut_law_at(law->kind)->own)
     strut_report_finding(checker, subject, index, "stiffness",
                          "%s gives a stiffness beside its law, which has its own", owner);
   else if (!stiffness && !strut_law_at(law->kind)->own && law->kind != STRUT_LAW_LINEAR)

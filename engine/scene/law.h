@@ -18,18 +18,9 @@
 #include "engine/scene/laws/polynomial.h"
 #include "engine/scene/laws/table.h"
 
-/** Numbers of the laws: X(NAME, field). The field is also the key. */
-#define STRUT_LAW_PARAMETERS(X)                                                                    \
-  X(KNEE, knee)                         /* |x| at which a bilinear law changes its slope */        \
-  X(SECOND_STIFFNESS, second_stiffness) /* slope beyond it */                                      \
-  X(GAP, gap)                           /* free play on either side of the natural strain */       \
-  X(SCALE, scale)                       /* x over which an exponential law grows by e */           \
-  X(COEFFICIENTS, coefficients)         /* of a polynomial: of x, x^2, ... */                      \
-  X(POINTS, points)                     /* of a table */
-
 /**
  * The laws: X(NAME, name, word, needs, context); context is passed on. needs: bits of the parameters
- * that the law needs; OWN: it has a stiffness of its own, so that the element must not give one.
+ * (laws/parameters.h) that the law needs; OWN: it has a stiffness of its own, so that the element must not give one.
  */
 #define STRUT_LAWS(X, context)                                                                     \
   X(LINEAR, linear, "linear", 0, context)                                                          \
@@ -48,10 +39,11 @@ typedef enum strut_law_kind {
 } strut_law_kind;
 
 enum {
-#define STRUT_LAW_ROW(NAME, field) STRUT_LAW_PARAMETER_##NAME,
-  STRUT_LAW_PARAMETERS(STRUT_LAW_ROW)
+#define STRUT_LAW_ROW(NAME, ...) STRUT_LAW_PARAMETER_##NAME,
+  STRUT_LAW_PARAMETERS(STRUT_LAW_ROW) STRUT_LAW_LISTS(STRUT_LAW_ROW)
 #undef STRUT_LAW_ROW
-      STRUT_LAW_PARAMETER_COUNT
+      STRUT_LAW_PARAMETER_COUNT,
+  STRUT_LAW_NUMBER_COUNT = STRUT_LAW_PARAMETER_COEFFICIENTS /* the lists come last */
 };
 
 /** Which sign of force is carried. One that is not carried, or beyond the natural strain, is none. */
@@ -65,7 +57,9 @@ typedef enum strut_carries {
 typedef struct strut_law {
   strut_law_kind kind;
   strut_carries carries;
-  double knee, second_stiffness, gap, scale;
+#define STRUT_LAW_ROW(NAME, field, ...) double field;
+  STRUT_LAW_PARAMETERS(STRUT_LAW_ROW)
+#undef STRUT_LAW_ROW
   size_t count;
   const double *x, *force; /* (count) points of a table; of a polynomial coefficients, in `force` */
   bool smooth;             /* of a table: a monotone spline instead of straight lines */
@@ -84,8 +78,8 @@ typedef struct strut_law_row {
 /** The row of a valid law. */
 static inline const strut_law_row *strut_law_at(strut_law_kind kind) {
   enum {
-#define STRUT_LAW_ROW(NAME, field) NAME##_BIT = 1 << STRUT_LAW_PARAMETER_##NAME,
-    STRUT_LAW_PARAMETERS(STRUT_LAW_ROW)
+#define STRUT_LAW_ROW(NAME, ...) NAME##_BIT = 1 << STRUT_LAW_PARAMETER_##NAME,
+    STRUT_LAW_PARAMETERS(STRUT_LAW_ROW) STRUT_LAW_LISTS(STRUT_LAW_ROW)
 #undef STRUT_LAW_ROW
         OWN = 1 << STRUT_LAW_PARAMETER_COUNT
   };
@@ -98,14 +92,55 @@ static inline const strut_law_row *strut_law_at(strut_law_kind kind) {
   return &rows[kind];
 }
 
+static inline bool strut_law_needs(strut_law_kind kind, int parameter) {
+  return strut_law_at(kind)->needs >> parameter & 1u;
+}
+
 /** Key of a parameter. */
 static inline const char *strut_law_key(int parameter) {
   static const char *const keys[] = {
-#define STRUT_LAW_ROW(NAME, field) #field,
-      STRUT_LAW_PARAMETERS(STRUT_LAW_ROW)
+#define STRUT_LAW_ROW(NAME, field, ...) #field,
+      STRUT_LAW_PARAMETERS(STRUT_LAW_ROW) STRUT_LAW_LISTS(STRUT_LAW_ROW)
 #undef STRUT_LAW_ROW
   };
   return keys[parameter];
+}
+
+/** Must number p be above zero where the law needs it? */
+static inline bool strut_law_above_zero(int p) {
+  enum { ANY_NUMBER, ABOVE_ZERO };
+  static const bool above[] = {
+#define STRUT_LAW_ROW(NAME, field, range, measure) range == ABOVE_ZERO,
+      STRUT_LAW_PARAMETERS(STRUT_LAW_ROW)
+#undef STRUT_LAW_ROW
+  };
+  return above[p];
+}
+
+/** Is number p a slope, force per strain? Otherwise it is a strain. */
+static inline bool strut_law_is_slope(int p) {
+  enum { STRAIN, SLOPE };
+  static const bool slope[] = {
+#define STRUT_LAW_ROW(NAME, field, range, measure) measure == SLOPE,
+      STRUT_LAW_PARAMETERS(STRUT_LAW_ROW)
+#undef STRUT_LAW_ROW
+  };
+  return slope[p];
+}
+
+/** The law's number p, p < STRUT_LAW_NUMBER_COUNT. */
+static inline double *strut_law_number(strut_law *law, int p) {
+  double *const numbers[] = {
+#define STRUT_LAW_ROW(NAME, field, ...) &law->field,
+      STRUT_LAW_PARAMETERS(STRUT_LAW_ROW)
+#undef STRUT_LAW_ROW
+  };
+  return numbers[p];
+}
+
+static inline double strut_law_value(const strut_law *law, int p) {
+  strut_law copy = *law;
+  return *strut_law_number(&copy, p);
 }
 
 /** Force, energy and slope at strain e. piece: the smooth piece to stay on, or -1 for the one at e. */
@@ -118,7 +153,7 @@ static inline strut_law_response strut_law_respond(strut_law_kind kind, const st
 #undef STRUT_LAW_ROW
     case STRUT_LAW_COUNT: break;
   }
-  return (strut_law_response){0};
+  return (strut_law_response){0.0, 0.0, 0.0, 0.0};
 }
 
 /** Number of x at which the law changes its slope or jumps. */

@@ -19,22 +19,14 @@ static strut_dimension per_strain(strut_dimension force, strut_dimension strain,
 
 static bool read_numbers(strut_reader *reader, const strut_fields *fields, strut_owner owner,
                          strut_dimension strain, strut_dimension force, strut_law *law) {
-  const struct {
-    int key;
-    strut_dimension dimension;
-    double *number;
-  } numbers[] = {
-      {STRUT_KEY_LAW_KNEE, strain, &law->knee},
-      {STRUT_KEY_LAW_SECOND_STIFFNESS, per_strain(force, strain, 1), &law->second_stiffness},
-      {STRUT_KEY_LAW_GAP, strain, &law->gap},
-      {STRUT_KEY_LAW_SCALE, strain, &law->scale}};
   bool fine = true;
-  for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
-    const strut_slot *slot = strut_slot_of((strut_fields *)fields, numbers[i].key);
-    const strut_key *key = strut_key_at(numbers[i].key);
+  for (int p = 0; p < STRUT_LAW_NUMBER_COUNT; p++) {
+    int key = strut_key_find(STRUT_SECTION_LAW, strut_law_key(p));
+    const strut_slot *slot = strut_slot_of((strut_fields *)fields, key);
+    strut_dimension dimension = strut_law_is_slope(p) ? per_strain(force, strain, 1) : strain;
     if (slot->state != STRUT_GIVEN) continue;
-    fine = strut_read_number(reader, slot->value, key->name, owner, numbers[i].dimension,
-                             key->limits.range, numbers[i].number) &&
+    fine = strut_read_number(reader, slot->value, strut_law_key(p), owner, dimension,
+                             strut_key_at(key)->limits.range, strut_law_number(law, p)) &&
            fine;
   }
   return fine;
@@ -91,7 +83,7 @@ static bool check_needs(strut_reader *reader, strut_fields *fields, strut_owner 
   for (int p = 0; p < STRUT_LAW_PARAMETER_COUNT; p++) {
     int key = strut_key_find(STRUT_SECTION_LAW, strut_law_key(p));
     const strut_slot *slot = strut_slot_of(fields, key);
-    bool needed = strut_law_at(law->kind)->needs >> p & 1u;
+    bool needed = strut_law_needs(law->kind, p);
     if (needed == (slot->state != STRUT_ABSENT)) continue;
     fine = false;
     if (needed)

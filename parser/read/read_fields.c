@@ -329,12 +329,13 @@ static void check_coefficients(strut_reader *reader, strut_fields *fields, strut
   const strut_slot *kinetics = strut_slot_of(fields, STRUT_KEY_FRICTION_MU_KINETIC);
   const strut_slot *forward = strut_slot_of(fields, STRUT_KEY_FRICTION_MU_FORWARD);
   const strut_slot *rival = statics->key ? statics : kinetics->key ? kinetics : forward;
+  bool directions = forward->key != NULL;
   if (!mu->key) mu = forward;
   if (!mu->key || !rival->key || rival == mu) return;
-  strut_report_error(reader, mu->key->place,
-                     "%s gives both '%s' and '%s', expected 'mu', or 'mu_static' and 'mu_kinetic', "
-                     "or 'mu_forward' and 'mu_backward'",
-                     strut_owner_text(reader, owner), mu->key->text, rival->key->text);
+  strut_report_error(reader, mu->key->place, "%s gives both '%s' and '%s', expected %s",
+                     strut_owner_text(reader, owner), mu->key->text, rival->key->text,
+                     directions ? "'mu', or 'mu_forward' and 'mu_backward'"
+                                : "'mu', or 'mu_static' and 'mu_kinetic'");
   fields->broken = true;
 }
 

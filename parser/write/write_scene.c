@@ -78,14 +78,11 @@ static void put_law_by_hand(strut_writer *writer, strut_mapping *mapping, int ke
   while (parameter < STRUT_LAW_PARAMETER_COUNT &&
          strcmp(strut_law_key(parameter), strut_key_at(key)->name) != 0)
     parameter++;
-  if (!(strut_law_at(law->kind)->needs >> parameter & 1u)) return;
+  if (parameter == STRUT_LAW_PARAMETER_COUNT || !strut_law_needs(law->kind, parameter)) return;
   strut_put_key_name(writer, mapping, key);
-  switch (key) {
-    case STRUT_KEY_LAW_KNEE: strut_put_number(writer, law->knee); return;
-    case STRUT_KEY_LAW_SECOND_STIFFNESS: strut_put_number(writer, law->second_stiffness); return;
-    case STRUT_KEY_LAW_GAP: strut_put_number(writer, law->gap); return;
-    case STRUT_KEY_LAW_SCALE: strut_put_number(writer, law->scale); return;
-    default: break;
+  if (parameter < STRUT_LAW_NUMBER_COUNT) {
+    strut_put_number(writer, strut_law_value(law, parameter));
+    return;
   }
   for (size_t i = 0; i < law->count; i++) {
     strut_put(writer, i ? ", " : "[");

@@ -103,7 +103,8 @@ static double member_energy(const structure *s, size_t j, const double *q) {
   else if (m->kind != STRUT_CABLE || x > 0)
     sum = m->stiffness * x * x / 2;
   if (length < m->shortest) sum += STOP * (m->shortest - length) * (m->shortest - length) / 2;
-  if (length > m->longest) sum += STOP * (length - m->longest) * (length - m->longest) / 2;
+  if (m->longest > 0 && length > m->longest)
+    sum += STOP * (length - m->longest) * (length - m->longest) / 2;
   return sum;
 }
 

@@ -265,8 +265,13 @@ static void test_force_is_the_slope_of_the_energy(void **unused) {
 static void test_laws_at_known_places(void **unused) {
   (void)unused;
   const double c[] = {2, -1, 3};
-  const strut_law_numbers n = {
-      .stiffness = 4, .first = 0.5, .second = 10, .coefficient = c, .count = 3};
+  const strut_law_numbers n = {.stiffness = 4,
+                               .knee = 0.5,
+                               .gap = 0.5,
+                               .scale = 0.5,
+                               .second_stiffness = 10,
+                               .coefficient = c,
+                               .count = 3};
   assert_near(strut_law_respond(STRUT_LAW_BILINEAR, &n, 2.25, 2, -1).force, 1, 1e-15);
   assert_near(strut_law_respond(STRUT_LAW_BILINEAR, &n, 3, 2, -1).force, 7, 1e-15);
   assert_near(strut_law_respond(STRUT_LAW_BILINEAR, &n, 1, 2, -1).force, -7, 1e-15);

@@ -5,6 +5,7 @@
 
 #include "engine/forces/energy.h"
 #include "engine/integrate/events/event_kernel.h"
+#include "engine/model/element_compile.h"
 
 /* A root this close to where the step begins, in grid steps, is there already. */
 static const double AT_ONCE = 1e-9;

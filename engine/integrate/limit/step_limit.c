@@ -264,8 +264,15 @@ static void digest_elements(const strut_element_table *t, uint64_t key[2]) {
   for (int32_t i = 0; i < t->count; i++) {
     const strut_element *e = &t->element[i];
     const strut_law_numbers *n = &e->numbers;
-    const double numbers[] = {e->strain,  e->law,       e->slot,  e->natural, e->carries,
-                              e->damping, n->stiffness, n->first, n->second};
+#define STRUT_LAW_ROW(NAME, field, ...) n->field,
+    const double numbers[] = {e->strain,
+                              e->law,
+                              e->slot,
+                              e->natural,
+                              e->carries,
+                              e->damping,
+                              STRUT_LAW_PARAMETERS(STRUT_LAW_ROW) n->stiffness};
+#undef STRUT_LAW_ROW
     digest(key, numbers, sizeof numbers);
     digest(key, n->coefficient, n->count * sizeof(double));
     for (int32_t k = 0; k < e->nodes; k++) digest_number(key, t->at[e->first + k]);

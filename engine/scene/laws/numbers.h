@@ -8,6 +8,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "engine/scene/laws/parameters.h"
+
 /**
  * A piecewise cubic force: between x[i] and x[i+1] it is c0 + c1 d + c2 d^2 + c3 d^3 with d = x - x[i];
  * beyond the ends it is straight on with the slope at the end.
@@ -22,8 +24,10 @@ typedef struct strut_law_curve {
 
 /** A law with its numbers, as functions of it take it. */
 typedef struct strut_law_numbers {
-  double stiffness;             /* force per strain at x = 0, of laws that use it */
-  double first, second;         /* the law's own, as its header says */
+  double stiffness; /* force per strain at x = 0, of laws that use it */
+#define STRUT_LAW_ROW(NAME, field, ...) double field;
+  STRUT_LAW_PARAMETERS(STRUT_LAW_ROW)
+#undef STRUT_LAW_ROW
   const strut_law_curve *curve; /* of a table */
   size_t count;                 /* of a polynomial */
   const double *coefficient;    /* (count) of x, x^2, ... */

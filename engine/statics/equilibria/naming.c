@@ -9,6 +9,7 @@
 #include "engine/base/memory.h"
 #include "engine/base/vec.h"
 #include "engine/forces/elements.h"
+#include "engine/model/element_compile.h"
 #include "engine/statics/search/critical.h"
 
 enum { MOST_LISTED = 4 };

@@ -3,6 +3,7 @@
  * Built-in parameters are linear in one term; scenes are compiled anew, and their terms compared.
  */
 #include "engine/statics/path/parameter.h"
+#include "engine/model/element_compile.h"
 
 #include <math.h>
 #include <string.h>
@@ -229,9 +230,11 @@ static bool are_laws_different(const strut_element_table *a, const strut_element
   for (int32_t i = 0; i < a->count; i++) {
     const strut_element *s = &a->element[i], *t = &b->element[i];
     const strut_law_numbers *m = &s->numbers, *n = &t->numbers;
-    if (s->natural != t->natural || m->stiffness != n->stiffness || m->first != n->first ||
-        m->second != n->second || m->count != n->count)
-      return true;
+    bool numbers = m->stiffness != n->stiffness || m->count != n->count;
+#define STRUT_LAW_ROW(NAME, field, ...) numbers = numbers || m->field != n->field;
+    STRUT_LAW_PARAMETERS(STRUT_LAW_ROW)
+#undef STRUT_LAW_ROW
+    if (numbers || s->natural != t->natural) return true;
     if (m->count && !is_equal(m->coefficient, n->coefficient, m->count)) return true;
     if (m->curve &&
         (m->curve->count != n->curve->count ||

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/model/element_compile.h"
 #include "engine/statics/equilibria/rest_state.h"
 #include "engine/statics/minimise.h"
 #include "engine/statics/path/walk.h"

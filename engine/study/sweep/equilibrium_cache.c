@@ -77,9 +77,11 @@ static void add_nodes(structure *s, const strut_scene *scene) {
 }
 
 static void add_law(structure *s, const strut_law *law) {
-  const double values[] = {law->kind, law->carries, law->knee,   law->second_stiffness,
-                           law->gap,  law->scale,   law->smooth, (double)law->count};
-  add_all(s, values, sizeof values / sizeof values[0]);
+  add(s, law->kind);
+  add(s, law->carries);
+  add(s, law->smooth);
+  add(s, (double)law->count);
+  for (int p = 0; p < STRUT_LAW_NUMBER_COUNT; p++) add(s, strut_law_value(law, p));
   add_all(s, law->force, law->count);
   if (law->kind == STRUT_LAW_TABLE) add_all(s, law->x, law->count);
 }

@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/** From the members and hinges of a scene to the elements of a model; see elements.h. */
+#ifndef STRUT_ENGINE_MODEL_ELEMENT_COMPILE_H
+#define STRUT_ENGINE_MODEL_ELEMENT_COMPILE_H
+
+#include "engine/model/model.h"
+
+/** Slots for natural strains of elements that are no members, behind the members' own. */
+size_t strut_element_slots(const strut_scene *scene);
+
+/**
+ * Fills model->elements from the scene, whose members stand in the model's tables already, and takes out
+ * of those what elements do instead. False: out of memory.
+ */
+bool strut_elements_compile(strut_model *model);
+
+/** Value near which an element's strain is taken at the start: its natural strain. */
+double strut_element_start(const strut_model *model, int32_t element);
+/** Slot of the natural strain that actuator i of the scene drives. */
+int32_t strut_actuator_slot(const strut_model *model, size_t i);
+
+#endif
