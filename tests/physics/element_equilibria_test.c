@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "engine/statics/search/critical.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"
@@ -37,7 +38,7 @@ static int32_t add_spring(structure *s, uint64_t *r, int32_t a, int32_t b) {
 /* A node in or on the unit square about the middle. */
 static void add_nodes(structure *s, uint64_t *r) {
   for (int i = 0; i < ANCHORS; i++) {
-    double turn = 2 * M_PI * (i + random_between(r, -0.2, 0.2)) / ANCHORS;
+    double turn = STRUT_TAU * (i + random_between(r, -0.2, 0.2)) / ANCHORS;
     build_support(&s->setup.scene, cos(turn), sin(turn));
   }
   for (int i = 0; i < FREE; i++)
@@ -50,7 +51,7 @@ static void add_hinge(strut_scene *scene, uint64_t *r, int32_t a, int32_t b, int
   h->name = scene->hinge_count == 1 ? "h1" : "h2";
   h->node[0] = a, h->node[1] = b, h->node[2] = c;
   h->stiffness = random_between(r, 0.1, 1.0);
-  h->rest_angle = random_between(r, -M_PI, M_PI);
+  h->rest_angle = random_between(r, -STRUT_TAU / 2, STRUT_TAU / 2);
 }
 
 /* Springs that hold every free node, a running cable, two hinges, stops and a hardening spring. */
@@ -110,7 +111,7 @@ static double member_energy(const structure *s, size_t j, const double *q) {
 static double hinge_energy(const strut_hinge *h, const double *q) {
   const double *a = q + 2 * h->node[0], *b = q + 2 * h->node[1], *c = q + 2 * h->node[2];
   double x = atan2(c[1] - b[1], c[0] - b[0]) - atan2(a[1] - b[1], a[0] - b[0]) - h->rest_angle;
-  x = remainder(x, 2 * M_PI);
+  x = remainder(x, STRUT_TAU);
   return h->stiffness * x * x / 2;
 }
 

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "engine/statics/rigidity/rigidity.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"
@@ -45,7 +46,7 @@ static double measure(const strut_model *model, int32_t column, const double *q)
     double x = atan2(q[2 * n[2] + 1] - q[2 * n[1] + 1], q[2 * n[2]] - q[2 * n[1]]) -
                atan2(q[2 * n[0] + 1] - q[2 * n[1] + 1], q[2 * n[0]] - q[2 * n[1]]);
     double drawn = strut_hinge_rest(scene, (size_t)(column - model->members.count));
-    return model->size * (drawn + remainder(x - drawn, 2 * M_PI));
+    return model->size * (drawn + remainder(x - drawn, STRUT_TAU));
   }
   const strut_member *m = &scene->members[column];
   double sum = 0;
@@ -58,10 +59,10 @@ static double measure(const strut_model *model, int32_t column, const double *q)
 
 /* The measure after a step along a motion of the free coordinates. */
 static double moved(const strut_model *model, const strut_equilibrium_matrix *a, int32_t column,
-                    const double *motion, double far) {
+                    const double *along, double far) {
   double q[2 * NODES];
   memcpy(q, model->start, sizeof q);
-  for (int32_t r = 0; r < a->rows; r++) q[a->coordinate[r]] += far * motion[r];
+  for (int32_t r = 0; r < a->rows; r++) q[a->coordinate[r]] += far * along[r];
   return measure(model, column, q);
 }
 
