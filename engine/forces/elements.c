@@ -211,6 +211,19 @@ void strut_elements_add_forces(const strut_model *model, strut_state *state, con
   }
 }
 
+bool strut_hinges_have_collapsed(const strut_model *model, const double *q) {
+  const double gone = 1e-4; /* of the arm at the start */
+  for (int32_t i = 0; i < model->elements.count; i++) {
+    const strut_element *e = &model->elements.element[i];
+    const uint32_t *at = model->elements.at + e->first;
+    for (int arm = 0; arm < 3 && e->strain == STRUT_STRAIN_ANGLE; arm += 2)
+      if (strut_distance(q + at[arm], q + at[1]) <
+          gone * strut_distance(model->start + at[arm], model->start + at[1]))
+        return true;
+  }
+  return false;
+}
+
 bool strut_element_has_collapsed(const strut_model *model, int32_t element, double share,
                                  const double *q) {
   const strut_element *e = &model->elements.element[element];

@@ -84,6 +84,12 @@ void strut_elements_visit(const strut_model *model, const double *rest, const do
 bool strut_element_has_collapsed(const strut_model *model, int32_t element, double share,
                                  const double *q);
 
+/**
+ * True where an arm of some hinge is all but gone beside what it is at the start: its angle has no
+ * meaning then, and its moment pushes with forces beyond all measure.
+ */
+bool strut_hinges_have_collapsed(const strut_model *model, const double *q);
+
 /** Strain beyond the natural one, its rate, and the force as if the element acted. */
 typedef struct strut_element_motion {
   double stretch, rate, force;

@@ -59,10 +59,10 @@ static double measure(const strut_model *model, int32_t column, const double *q)
 
 /* The measure after a step along a motion of the free coordinates. */
 static double moved(const strut_model *model, const strut_equilibrium_matrix *a, int32_t column,
-                    const double *direction, double far) {
+                    const double *along, double far) {
   double q[2 * NODES];
   memcpy(q, model->start, sizeof q);
-  for (int32_t r = 0; r < a->rows; r++) q[a->coordinate[r]] += far * direction[r];
+  for (int32_t r = 0; r < a->rows; r++) q[a->coordinate[r]] += far * along[r];
   return measure(model, column, q);
 }
 
