@@ -632,6 +632,27 @@ static void test_turned_mirrored_and_scaled_models(void **unused) {
     for (size_t k = 0; k < sizeof maps / sizeof maps[0]; k++) compare_maps(seed, &maps[k]);
 }
 
+/* A refusal of memory at any place is passed on. */
+static void test_refused_memory(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  random_elements(&scene, 3, 1);
+  for (int64_t n = 0;; n++) {
+    strut_model *model = NULL;
+    strut_state *state = NULL;
+    strut_fail_allocation_after(n);
+    strut_status status = strut_model_compile(&scene, &model, NULL);
+    if (status == STRUT_OK) status = strut_state_create(model, &state, NULL);
+    strut_fail_allocation_after(-1);
+    strut_state_free(state);
+    strut_model_free(model);
+    if (status == STRUT_OK) break;
+    assert_int_equal(status, STRUT_NO_MEMORY);
+    assert_true(n < 200);
+  }
+  strut_scene_free(&scene);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_gradients_and_second_derivatives_of_strains),
@@ -647,6 +668,7 @@ int main(void) {
       cmocka_unit_test(test_the_ledger_books_what_forces_do),
       cmocka_unit_test(test_a_hinge_counts_its_turns),
       cmocka_unit_test(test_turned_mirrored_and_scaled_models),
+      cmocka_unit_test(test_refused_memory),
   };
   return cmocka_run_group_tests_name("elements", tests, NULL, NULL);
 }

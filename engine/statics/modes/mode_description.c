@@ -7,6 +7,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/forces/elements.h"
+
 /* The motions of the plane as a whole that supports and closed contacts leave free. */
 
 /* A motion (a, b, w): a - w (y - y0) / size in x, b + w (x - x0) / size in y. */
@@ -177,20 +179,50 @@ static void describe_nodes(const strut_vibration *v, const double *x, strut_mode
   name_side(v, x, leader, lead, 0, ", across them ", mode);
 }
 
-/* Energies of half a stiffness each: stretch of the members, closed contacts. */
+/* Energies of half a stiffness each: strain of members and hinges, closed contacts. */
 typedef struct energies {
   double members, ground, all;
 } energies;
 
-static double stretch_energy(const strut_vibration *v, int32_t j, const double *x) {
+static double element_energy(const strut_vibration *v, int32_t i, const double *x) {
+  const strut_element *e = &v->model->elements.element[i];
+  strut_element_pose pose;
+  double rate = 0.0, d[2];
+  strut_element_evaluate(v->model, i, v->model->members.rest, v->rounded, (double)NAN, &pose);
+  for (int32_t k = 0; k < e->nodes; k++) {
+    motion_of(v, x, (int32_t)(v->model->elements.at[e->first + k] / 2), d);
+    rate += pose.b[2 * k] * d[0] + pose.b[2 * k + 1] * d[1];
+  }
+  return pose.slope * rate * rate;
+}
+
+/* What is strained: the members, and behind them the elements, of which hinges count. */
+static int32_t count_strained(const strut_model *model) {
+  return model->members.count + model->elements.count;
+}
+
+static double strain_energy(const strut_vibration *v, int32_t j, const double *x) {
+  const strut_element_table *t = &v->model->elements;
+  int32_t i = j - v->model->members.count;
+  if (i >= 0) return t->element[i].role == STRUT_ELEMENT_HINGE ? element_energy(v, i, x) : 0.0;
   double e = v->member[j].taut ? strut_vibration_spread(v, j, x).along : 0.0;
-  return v->model->members.stiffness[j] * e * e;
+  double sum = v->model->members.stiffness[j] * e * e;
+  const strut_element *own = strut_element_of_member(t, j);
+  for (; own; own = own->sibling >= 0 ? &t->element[own->sibling] : NULL)
+    sum += element_energy(v, (int32_t)(own - t->element), x);
+  return sum;
+}
+
+static const char *strained_name(const strut_model *model, int32_t j) {
+  int32_t i = j - model->members.count;
+  return i < 0 ? model->scene->members[j].name
+               : model->scene->hinges[model->elements.element[i].item].name;
 }
 
 static energies energies_of(const strut_vibration *v, const double *x) {
   energies e = {0};
   const strut_contact_table *c = &v->model->contacts;
-  for (int32_t j = 0; j < v->model->members.count; j++) e.members += stretch_energy(v, j, x);
+  for (int32_t j = 0; j < count_strained(v->model); j++) e.members += strain_energy(v, j, x);
   for (int32_t i = 0; i < c->count; i++) {
     double d[2];
     if (!v->closed[i]) continue;
@@ -209,16 +241,16 @@ static void describe_members(const strut_vibration *v, const double *x, const en
   for (; count < MOST_MEMBERS; count++) {
     double most = COUNTS * e->all;
     named[count] = -1;
-    for (int32_t j = 0; j < v->model->members.count; j++) {
-      double energy = stretch_energy(v, j, x);
+    for (int32_t j = 0; j < count_strained(v->model); j++) {
+      double energy = strain_energy(v, j, x);
       bool known = false;
       for (int k = 0; k < count; k++) known = known || named[k] == j;
       if (!known && energy > most) most = energy * (1 + 1e-9), named[count] = j;
     }
     if (named[count] < 0) break;
-    double share = 100.0 * stretch_energy(v, named[count], x) / e->all;
-    append_text(mode, "%s%s %.0f %%", count ? ", " : "; ",
-                v->model->scene->members[named[count]].name, share);
+    double share = 100.0 * strain_energy(v, named[count], x) / e->all;
+    append_text(mode, "%s%s %.0f %%", count ? ", " : "; ", strained_name(v->model, named[count]),
+                share);
   }
   if (e->ground > 0.05 * e->all)
     append_text(mode, "%sthe ground %.0f %%", count++ ? ", " : "; ", 100.0 * e->ground / e->all);
