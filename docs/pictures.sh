@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Draws pictures of README.md into DIRECTORY: the crawler after 1,100 periods and the page of a run.
-# The paper's figure 8 is drawn by docs/paper.sh.
+# Draws the pictures of README.md into DIRECTORY, the crawler after 1,100 periods and the page of a run, and
+# that of docs/how-to/compare-designs.md, compare/five.svg. docs/paper.sh draws the paper's figure 8.
 #
 #   sh docs/pictures.sh build/release/strut docs
 set -eu
@@ -17,6 +17,13 @@ sed 's/^initial: .*/initial: {configuration: start, settle: true}/' \
 grep -q '^initial: {configuration: start, settle: true}' "$work/settled.yaml"
 "$strut" run "$work/settled.yaml" --quiet --plot "$work/crawler.svg"
 awk -f "$here/smaller.awk" "$work/crawler.svg" >"$output/crawler.svg"
+# The command of the page: it begins with a line "cd models/topologies".
+compare=$(sed -n 's/^strut \(compare nine-member.*\) -o five$/\1/p' "$here/how-to/compare-designs.md")
+strut=$(cd "$(dirname "$strut")" && pwd)/$(basename "$strut")
+# shellcheck disable=SC2086 # words of a command
+(cd "$here/../models/topologies" && "$strut" $compare --quiet -o "$work/five")
+mkdir -p "$output/compare"
+awk -f "$here/smaller.awk" "$work/five/compare.svg" >"$output/compare/five.svg"
 # The page as a browser shows it; without Chromium the old picture stays.
 if command -v chromium >/dev/null; then
   "$strut" run "$work/settled.yaml" --quiet -o "$work/run"

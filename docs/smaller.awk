@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Makes an SVG of Cairo's a third as large, alike to the eye: places to a hundredth of a point, lines
-# told by their steps, letters' halos by the letters, what goes without saying left out.
+# Makes an SVG of Cairo's a third as large, alike to the eye: places to a hundredth of a point, relative
+# lines, letters as paths without symbols, halos by reference to their letters, no default attributes.
 
 # The shortest text of a number in hundredths.
 function short(hundredths,   text) {
@@ -23,7 +23,7 @@ function append(text) {
 }
 
 # The same path, each step from where the last one ended.
-function relative(d,   n, i, word, command, k, x, y, at, startx, starty) {
+function relative(d,   n, i, word, command, k, x, y, px, py, at, startx, starty) {
   n = split(d, word, /[ \t]+/)
   path = ""
   x = y = 0
@@ -37,8 +37,16 @@ function relative(d,   n, i, word, command, k, x, y, at, startx, starty) {
     }
     if (word[i] !~ /^[MLC]$/) return d # something unknown: better large than wrong
     command = word[i++]
-    path = path (command == "M" ? "M" : tolower(command))
     at = command == "C" ? 6 : 2
+    px = hundredths(word[i]); py = hundredths(word[i + 1])
+    if (command == "L" && (px == x) != (py == y)) { # level or upright
+      path = path (px == x ? "v" : "h")
+      append(px == x ? short(py - y) : short(px - x))
+      x = px; y = py
+      i += at
+      continue
+    }
+    path = path (command == "M" ? "M" : tolower(command))
     for (k = 0; k < at; k += 2) {
       px = hundredths(word[i + k]); py = hundredths(word[i + k + 1])
       append(short(command == "M" ? px : px - x))
@@ -85,6 +93,17 @@ function colours(line,   part, out) {
   gsub(/id="glyph/, "id=\"g", line)
   sub(/zM[-0-9. ]+"/, "z\"", line) # where Cairo would go on after closing
   if (inside) gsub(/ style="stroke:none;"/, "", line) # letters: an edge comes from whoever uses them
+  if (inside && line ~ /^<symbol /) {
+    letter = line
+    sub(/.* id="/, "", letter)
+    sub(/".*/, "", letter)
+    next
+  }
+  if (letter != "" && line ~ /^<\/symbol>/) {
+    letter = ""
+    next
+  }
+  if (letter != "") sub(/^<path /, "<path id=\"" letter "\" ", line)
   if (line ~ /<defs>/) inside = 1
   if (line ~ /<\/defs>/) inside = 0
   line = colours(line)

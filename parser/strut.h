@@ -10,7 +10,7 @@
 #ifndef STRUT_PARSER_STRUT_H
 #define STRUT_PARSER_STRUT_H
 
-/* The system's headers first, so that none of them lands inside the extern "C" below. */
+/* System headers come first, so that none is included inside the extern "C" below. */
 #include <math.h>
 #include <signal.h>
 #include <stdbool.h>
@@ -25,6 +25,7 @@ extern "C" {
 
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
+#include "engine/forces/forces.h"
 #include "engine/integrate/integrator.h"
 #include "engine/model/model.h"
 #include "engine/model/state.h"

@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Every header compiles alone: as C17 with all warnings, twice in one file (its guard holds), and,
 # if strut.h leads to it, as C++17 too. All of them compile in one file: no name means two things.
-# First proves on made-up headers that it notices.
+# What strut.h leads to declares only what the libraries export. First proves on made-up headers that
+# it notices.
 #
-#   sh tests/headers.sh ROOT CC CXX [FOLDER...]
+#   sh tests/headers.sh ROOT CC CXX [FOLDER|LIBRARY...]
 #
 # CXX may be empty: then C++ is left out. In the folders are other libraries' headers, for ours that
-# are not public.
+# are not public. Without libraries (.a, .so) exports are left out.
 # shellcheck disable=SC2086  # lists of words are meant to split
 set -eu
 root=$(cd "$1" && pwd)
@@ -15,7 +16,10 @@ cc=$2
 cxx=$3
 shift 3
 others=
-for folder; do others="$others -isystem $folder"; done
+libraries=
+for given; do
+  if [ -d "$given" ]; then others="$others -isystem $given"; else libraries="$libraries $given"; fi
+done
 warnings="-Wall -Wextra -Wpedantic -Wshadow -Wundef -Werror"
 
 # compiles ROOT HEADER: says why not.
@@ -37,6 +41,53 @@ compiles_as_cxx() {
   [ "$2" != parser/strut.h ] || lent=
   printf '#include "%s"\n' "$2" |
     $cxx -std=c++17 -Wall -Wextra -Wshadow -Wundef -Werror $lent -I "$1" -fsyntax-only -x c++ -
+}
+# preprocessed ROOT HEADER LANGUAGE: c or c++, with the lines that say which file a line comes from.
+preprocessed() {
+  case $3 in
+  c) printf '#include "%s"\n' "$2" | $cc -std=c17 -D_POSIX_C_SOURCE=200809L -I "$1" -E -x c - ;;
+  *) printf '#include "%s"\n' "$2" | $cxx -std=c++17 -Drestrict=__restrict -I "$1" -E -x c++ - ;;
+  esac
+}
+# declared ROOT: the functions and objects with a linker's name that the preprocessed text on standard
+# input declares in files of ROOT. Bodies are skipped; a declaration ends at a semicolon or a body.
+declared() {
+  awk -v root="$1/" '
+    function end_declaration() {
+      gsub(/__attribute__ *\(\([^()]*(\([^()]*\))?[^()]*\)\)/, "", text)
+      gsub(/extern *"C"( *"C[+][+]")?/, "", text)
+      if (text ~ /^ *(typedef|static) / || text ~ /^ *_Static_assert/) return text = ""
+      if (match(text, /[A-Za-z_][A-Za-z_0-9]* *\(/)) {
+        name = substr(text, RSTART, RLENGTH - 1)
+      } else if (text ~ /^ *extern /) {
+        name = text
+        sub(/ *(\[.*|=.*)?$/, "", name)
+        sub(/.*[^A-Za-z_0-9]/, "", name)
+      } else {
+        return text = ""
+      }
+      gsub(/ /, "", name)
+      print name
+      text = ""
+    }
+    /^# [0-9]+ "/ { ours = index($3, "\"" root) == 1; next }
+    !ours || /^#/ { next }
+    {
+      for (i = 1; i <= length($0); i++) {
+        c = substr($0, i, 1)
+        if (c == "{" && depth == 0 && text ~ /extern *"C" *$/) text = ""
+        else if (c == "{") depth++
+        else if (c == "}" && depth > 0 && --depth == 0 && text ~ /\) *$/) end_declaration()
+        else if (c == ";" && depth == 0) end_declaration()
+        else if (c != "}" && depth == 0) text = text c
+      }
+      text = text " "
+    }' | sort -u
+}
+# exported LIBRARY...: the names that others may link to.
+exported() {
+  readelf -sW "$@" | awk '$5 ~ /GLOBAL|WEAK/ && $6 == "DEFAULT" && $7 != "UND" { print $8 }' |
+    sort -u
 }
 # reachable ROOT HEADER: the header and all of ours that it includes, once each.
 reachable() {
@@ -73,6 +124,41 @@ compile_together "$scratch" a.h d.h || fail "self-test: headers without a clash 
 if [ -n "$cxx" ]; then
   ! compiles_as_cxx "$scratch" d.h 2>/dev/null || fail "self-test: C++'s words pass as names"
 fi
+cat >"$scratch/f.h" <<'END'
+#define API __attribute__((visibility("default")))
+#ifdef __cplusplus
+extern "C" {
+#endif
+struct inner { int (*call)(int); struct { int a; } b; };
+typedef struct outer { struct inner a; } outer;
+typedef int (*callback)(void);
+enum { ONE = 1 };
+static inline int local(int a) { if (a) { return a; } return ONE; }
+API int exported_call(const struct inner *a,
+                      callback b);
+int hidden_call(void); int
+hidden_too (struct inner a);
+extern API const int exported_rows[];
+extern const struct inner *hidden_row;
+#ifdef __cplusplus
+}
+#endif
+END
+names='exported_call exported_rows hidden_call hidden_row hidden_too '
+for language in c ${cxx:+c++}; do
+  found=$(preprocessed "$scratch" f.h $language | declared "$scratch" | tr '\n' ' ')
+  [ "$found" = "$names" ] || fail "self-test: of f.h's declarations in $language it sees: $found"
+done
+cat >"$scratch/f.c" <<'END'
+#define API __attribute__((visibility("default")))
+API int exported_call(void) { return 0; }
+int hidden_call(void) { return 0; }
+API extern const int exported_rows[];
+const int exported_rows[] = {1};
+END
+$cc -fvisibility=hidden -c "$scratch/f.c" -o "$scratch/f.o"
+[ "$(exported "$scratch/f.o" | tr '\n' ' ')" = 'exported_call exported_rows ' ] ||
+  fail "self-test: exported"
 [ "$(reachable "$scratch" a.h | tr '\n' ' ')" = 'a.h b.h ' ] || fail "self-test: reachable"
 
 headers=$(cd "$root" && find engine parser -name '*.h' | sort)
@@ -84,6 +170,18 @@ done
 if [ -n "$cxx" ]; then
   for header in $public; do
     compiles_as_cxx "$root" "$header" || fail "$header does not compile as C++"
+  done
+fi
+if [ -n "$libraries" ]; then
+  exported $libraries >"$scratch/exported"
+  for language in c ${cxx:+c++}; do
+    for header in $public; do
+      preprocessed "$root" "$header" $language
+    done | declared "$root" >"$scratch/declared"
+    [ "$(wc -l <"$scratch/declared")" -gt 100 ] || fail "too few declarations looked at"
+    for name in $(comm -23 "$scratch/declared" "$scratch/exported"); do
+      fail "$name is declared in a header that is installed, but not exported"
+    done
   done
 fi
 [ "$(echo "$headers" | wc -l)" -gt 15 ] || fail "too few headers looked at"

@@ -22,7 +22,7 @@ static uint64_t join(uint64_t sum, uint64_t lane) {
   return (sum ^ stir(0, lane)) * PRIME_1 + PRIME_4;
 }
 
-/* What is left below 32 bytes, and the last mixing. */
+/* Hashes the remaining bytes, fewer than 32, and mixes for the last time. */
 static uint64_t finish(uint64_t sum, const uint8_t *at, size_t left) {
   for (; left >= 8; left -= 8, at += 8)
     sum = turn(sum ^ stir(0, load_64(at)), 27) * PRIME_1 + PRIME_4;

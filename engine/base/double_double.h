@@ -14,7 +14,7 @@ typedef struct strut_dd {
   double hi, lo; /* |lo| <= half of the last bit of hi */
 } strut_dd;
 
-/** What a rounding of such a number amounts to, relative to it: 2^-104. */
+/** Relative rounding error of such a number: 2^-104. */
 #define STRUT_DD_EPSILON 0x1p-104
 
 static inline strut_dd dd_of(double a) { return (strut_dd){a, 0.0}; }

@@ -18,7 +18,7 @@ struct strut_arena_chunk {
 static atomic_uint_fast64_t allocation_count;
 static atomic_int_fast64_t failure_countdown = -1;
 
-/* True where a test asked for this allocation to fail. */
+/* True if a test makes this allocation fail. */
 static int must_fail(void) {
   atomic_fetch_add_explicit(&allocation_count, 1, memory_order_relaxed);
   if (atomic_load_explicit(&failure_countdown, memory_order_relaxed) < 0) return 0;

@@ -46,7 +46,7 @@ double strut_memory_most(const char **whose) {
   return bound[least].bytes;
 }
 
-/* What is below is not looked up: no process lives with so little. */
+/* Smaller requests are not checked: every process has this much. */
 static const double ALWAYS = 16e6;
 
 static strut_status say(const char *begin, double bytes, const char *what, strut_error *error) {

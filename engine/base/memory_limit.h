@@ -3,7 +3,7 @@
  * How much memory the process may have at all, and the refusal of what needs more.
  *
  * What is taken already is not counted: freed blocks serve again, so that only a need above the whole
- * is certain not to be met. Whoever runs out below it says so with strut_memory_fail.
+ * certainly cannot be met. If memory runs out below the limit, strut_memory_fail reports it.
  */
 #ifndef STRUT_ENGINE_BASE_MEMORY_LIMIT_H
 #define STRUT_ENGINE_BASE_MEMORY_LIMIT_H

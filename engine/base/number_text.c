@@ -77,7 +77,7 @@ static wide difference_of(wide a, wide b) {
 /* floor(w / 2^128), its last bit set where anything was cut off. */
 static uint64_t top_of(wide w) { return w.high | (w.middle > 1); }
 
-/* Of s and s + 1, the one inside [lower, upper]; of both, the nearer to `quadruple` / 4. */
+/* Whichever of s and s + 1 lies inside [lower, upper]; if both do, the nearer to `quadruple` / 4. */
 static uint64_t nearest(uint64_t s, uint64_t lower, uint64_t upper, uint64_t quadruple) {
   bool down = lower <= 4 * s, up = 4 * s + 4 <= upper;
   if (down != up) return s + up;

@@ -36,3 +36,7 @@ strut_status strut_fail(strut_error *error, strut_status status, const char *for
   }
   return status;
 }
+
+strut_status strut_no_memory(strut_error *error, const char *purpose) {
+  return strut_fail(error, STRUT_NO_MEMORY, "out of memory%s%s", *purpose ? " " : "", purpose);
+}

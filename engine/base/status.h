@@ -32,7 +32,7 @@ typedef enum strut_status {
       STRUT_STATUS_COUNT
 } strut_status;
 
-/** What went wrong, in one sentence. A zeroed struct means "nothing". */
+/** One sentence that describes an error. Zeroed: no error. */
 typedef struct strut_error {
   strut_status status;
   char message[600];
@@ -47,5 +47,8 @@ STRUT_API int strut_status_exit_code(strut_status status);
 /** Writes status and printf-style message into error (may be NULL); returns status. */
 STRUT_API strut_status strut_fail(strut_error *error, strut_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+
+/** The same for STRUT_NO_MEMORY: "out of memory", and what for, such as "while drawing", or "". */
+STRUT_API strut_status strut_no_memory(strut_error *error, const char *purpose);
 
 #endif

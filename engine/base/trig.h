@@ -5,7 +5,7 @@
  * libm picks another routine where the processor has fused multiply-add, so its last bit may change
  * from machine to machine. These use plain products and sums only. Because the angle comes in turns
  * (cycles), its reduction is exact: a drive of f hertz at t seconds needs the turns f*t, and no
- * multiple of pi is ever subtracted. In a header, since a drive asks for them at every force evaluation.
+ * multiple of pi is ever subtracted. In a header, since a drive needs them at every force evaluation.
  */
 #ifndef STRUT_ENGINE_BASE_TRIG_H
 #define STRUT_ENGINE_BASE_TRIG_H

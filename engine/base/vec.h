@@ -43,7 +43,7 @@ static inline double strut_dot(const double *x, const double *y, ptrdiff_t n) {
   return sum;
 }
 
-/** Largest |x[i]|, i < n; 0 of none, NAN if one of them is. */
+/** Largest |x[i]|, i < n; 0 if n is 0, NAN if any is NAN. */
 static inline double strut_largest_magnitude(const double *x, ptrdiff_t n) {
   double largest = 0.0;
   for (ptrdiff_t i = 0; i < n && !isnan(largest); i++)

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/forces/drive.h"
 #include "engine/forces/elements.h"
-#include "engine/forces/forces.h"
 #include "engine/model/pose.h"
 
 bool strut_discrete_gradient_create(const strut_model *model, strut_state *state,

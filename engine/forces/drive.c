@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Hot: what changes with time alone: driven rest lengths (6) and loads on a signal. */
-#include "engine/forces/forces.h"
+#include "engine/forces/drive.h"
 
 #include <math.h>
 

@@ -110,6 +110,20 @@ void strut_elements_visit(const strut_model *model, const double *rest, const do
   }
 }
 
+double strut_element_stiffest(const strut_model *model, int32_t element) {
+  static const double places[] = {-0.3, -0.1, -0.01, 0.0, 0.01, 0.1, 0.3};
+  const strut_element *e = &model->elements.element[element];
+  double natural = strut_element_start(model, element), stiffest = 0.0;
+  double size = model->size > 0.0 ? model->size : 1.0;
+  bool angle = e->strain == STRUT_STRAIN_ANGLE;
+  for (size_t k = 0; k < sizeof places / sizeof *places; k++) {
+    double x = places[k] * (angle ? 1.0 : natural > 0.0 ? natural : size);
+    double slope = strut_law_respond(e->law, &e->numbers, natural + x, natural, -1).slope;
+    stiffest = fmax(stiffest, fabs(slope));
+  }
+  return angle ? stiffest / (size * size) : stiffest;
+}
+
 double strut_elements_energy(const strut_model *model, const double *rest, const double *turn,
                              const double *q) {
   double sum = 0.0;
@@ -194,6 +208,15 @@ void strut_elements_add_forces(const strut_model *model, strut_state *state, con
     const strut_element_block *block = &model->elements.block[b];
     adders[block->strain][block->law](model, state, block, q, v, force);
   }
+}
+
+bool strut_element_has_collapsed(const strut_model *model, int32_t element, double share,
+                                 const double *q) {
+  const strut_element *e = &model->elements.element[element];
+  if (e->strain != STRUT_STRAIN_LENGTH || e->carries > 0) return false;
+  strut_element_pose pose;
+  strut_element_evaluate(model, element, model->members.rest, q, (double)NAN, &pose);
+  return pose.strain < share * pose.natural && pose.force < 0.0;
 }
 
 strut_element_motion strut_element_move(const strut_model *model, const strut_state *state,

@@ -33,8 +33,8 @@ static inline double strut_element_natural(const strut_element *e, const double 
  * The element at positions q, without dampers. turn: the value near which an angle is taken; NAN: its
  * natural one.
  */
-void strut_element_evaluate(const strut_model *model, int32_t element, const double *rest,
-                            const double *q, double turn, strut_element_pose *pose);
+STRUT_API void strut_element_evaluate(const strut_model *model, int32_t element, const double *rest,
+                                      const double *q, double turn, strut_element_pose *pose);
 /** de/dt at velocities v, for a pose of the same element. */
 double strut_element_rate(const strut_model *model, int32_t element, const strut_element_pose *pose,
                           const double *v);
@@ -51,15 +51,22 @@ void strut_element_stiffness(const strut_model *model, int32_t element,
  */
 void strut_elements_add_forces(const strut_model *model, strut_state *state, const double *q,
                                const double *v, double *force);
+/**
+ * The largest slope of an element's law near its natural strain, as a stiffness [N/m]: that of a hinge
+ * over the square of the model's size.
+ */
+double strut_element_stiffest(const strut_model *model, int32_t element);
+
 /** Elastic energy of all elements [J]; turn (elements): see strut_element_evaluate, or NULL. */
 double strut_elements_energy(const strut_model *model, const double *rest, const double *turn,
                              const double *q);
 
 /** Elastic force of member j at q, of its spring or of its elements, tension positive [N]. */
-double strut_member_elastic_tension(const strut_model *model, const double *rest, int32_t member,
-                                    const double *q);
+STRUT_API double strut_member_elastic_tension(const strut_model *model, const double *rest,
+                                              int32_t member, const double *q);
 /** Length of member j at q, over its guides [m]. */
-double strut_member_path_length(const strut_model *model, int32_t member, const double *q);
+STRUT_API double strut_member_path_length(const strut_model *model, int32_t member,
+                                          const double *q);
 
 /** A visited element with its pose; `context` is the visitor's own. */
 typedef void strut_visit_element(void *context, int32_t element, const strut_element_pose *pose);
@@ -69,6 +76,13 @@ typedef void strut_visit_element(void *context, int32_t element, const strut_ele
  */
 void strut_elements_visit(const strut_model *model, const double *rest, const double *q,
                           double least, bool stops, void *context, strut_visit_element *visit);
+
+/**
+ * True of a straight element that pushes and has shrunk to less than `share` of its natural length: it
+ * has no direction then, and its force no gradient.
+ */
+bool strut_element_has_collapsed(const strut_model *model, int32_t element, double share,
+                                 const double *q);
 
 /** Strain beyond the natural one, its rate, and the force as if the element acted. */
 typedef struct strut_element_motion {

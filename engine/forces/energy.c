@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/forces/energy.h"
 
+#include "engine/forces/drive.h"
 #include "engine/forces/elements.h"
-#include "engine/forces/forces.h"
 #include "engine/model/pose.h"
 
 double strut_energy_kinetic(const strut_model *model, const double *v) {

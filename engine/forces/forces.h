@@ -28,23 +28,19 @@ STRUT_API void strut_forces_evaluate(const strut_model *model, strut_state *stat
  */
 STRUT_API void strut_forces_observe(const strut_model *model, strut_state *state, double t);
 
-/* Terms that change with time alone; those of members and ground are in *_kernel.h. */
-
-/** Driven rest lengths and their rates (6): state->rest, rest_rate. */
-void strut_drive_apply(const strut_model *model, strut_state *state, double t);
-/** Adds the loads that change with time at velocities v (for their power). */
-void strut_loads_apply(const strut_model *model, strut_state *state, double t,
-                       const double *restrict v);
-
-/** The first time after t [s] at which a drive, a load or its rate jumps; INFINITY if none does. */
-double strut_drive_next_break(const strut_model *model, double t);
-
 /** One member at the state: length [m], its rate [m/s], force [N] (tension positive). */
 typedef struct strut_member_values {
   double length, rate, force;
 } strut_member_values;
-strut_member_values strut_member_measure(const strut_model *model, const strut_state *state,
-                                         int32_t member);
+STRUT_API strut_member_values strut_member_measure(const strut_model *model,
+                                                   const strut_state *state, int32_t member);
+/** A hinge at the state: angle [rad], its rate [rad/s], moment [N m] that closes it where positive. */
+typedef struct strut_hinge_values {
+  double angle, rate, moment;
+} strut_hinge_values;
+/** By its element, see strut_element_of_hinge. */
+strut_hinge_values strut_hinge_measure(const strut_model *model, const strut_state *state,
+                                       int32_t element);
 /** Lengths [m] and forces [N] (tension positive) of all members at the state, (count) each. */
 STRUT_API void strut_members_measure(const strut_model *model, const strut_state *state,
                                      double *length, double *force);

@@ -18,6 +18,7 @@
 #include "engine/forces/lane_tables.h"
 #include "engine/forces/member_law.h"
 #include "engine/model/hot.h"
+#include "engine/model/mass.h"
 
 #ifndef STRUT_LANE_WIDTH
 #define STRUT_LANE_WIDTH 2
@@ -292,10 +293,17 @@ STRUT_LANE_INLINE void lane_members(strut_lane_tables *t, const double *restrict
 
 /* See strut_friction_force_KARNOPP. */
 STRUT_LANE_INLINE lane_real lane_friction(const double *entry, int p, lane_real normal,
-                                          lane_real slip, lane_real applied) {
+                                          lane_real slip, lane_real applied, bool directional) {
   lane_mask slides = lane_magnitude(slip) >= lane_row(entry, STRUT_LANE_STICK, p);
-  lane_mask pushed = lane_magnitude(applied) >= lane_row(entry, STRUT_LANE_MU_STATIC, p) * normal;
-  lane_real most = -lane_row(entry, STRUT_LANE_MU_KINETIC, p) * normal;
+  lane_real holding = lane_row(entry, STRUT_LANE_MU_STATIC, p);
+  lane_real sliding = lane_row(entry, STRUT_LANE_MU_KINETIC, p), zero = {0};
+  if (directional) {
+    lane_mask backward = lane_choose(slides, slip, applied) < zero;
+    holding = lane_choose(backward, lane_row(entry, STRUT_LANE_MU_STATIC_BACKWARD, p), holding);
+    sliding = lane_choose(backward, lane_row(entry, STRUT_LANE_MU_KINETIC_BACKWARD, p), sliding);
+  }
+  lane_mask pushed = lane_magnitude(applied) >= holding * normal;
+  lane_real most = -sliding * normal;
   return lane_choose(slides | pushed, most * lane_sign(lane_choose(slides, slip, applied)),
                      -applied);
 }
@@ -318,7 +326,9 @@ STRUT_LANE_INLINE void lane_touch(strut_lane_tables *t, const double *restrict v
   lane_real belt_speed = lane_row(g, STRUT_LANE_BELT, p), slip = along - belt_speed;
   lane_real damper = lane_choose(into < zero, -lane_row(entry, STRUT_LANE_DAMPING, p) * into, zero);
   lane_real normal = -lane_row(entry, STRUT_LANE_STIFFNESS, p) * gap + damper;
-  if (rough) friction = lane_friction(entry, p, normal, slip, sloped ? fx * tx + fy * ty : fx);
+  if (rough)
+    friction = lane_friction(entry, p, normal, slip, sloped ? fx * tx + fy * ty : fx,
+                             t->first->plan & STRUT_TERM_DIRECTION);
   lane_add(t->force, at, p, where, sloped ? friction * tx + normal * nx : friction);
   lane_add(t->force, at + 1, p, where, sloped ? friction * ty + normal * ny : normal);
   if (!ledger) return;

@@ -5,11 +5,24 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
+#include "engine/model/mass.h"
+
+/* Does every contact have the printed laws, whose coefficients may differ by direction? */
+static bool laws_are_printed(const strut_model *model) {
+  for (int32_t i = 0; i < model->contacts.count; i++) {
+    const strut_contact_entry *e = &model->contacts.entry[i];
+    bool printed =
+        e->friction.law == STRUT_FRICTION_KARNOPP || e->friction.law == STRUT_FRICTION_NONE;
+    if (!printed || e->dissipation > 0.0) return false;
+  }
+  return true;
+}
 
 bool strut_lanes_possible(const strut_model *model) {
   const strut_mass *mass = model->mass;
-  if (!mass || (model->plan & (STRUT_TERM_RIGID | STRUT_TERM_LAWS | STRUT_TERM_ELEMENTS)))
-    return false;
+  if (!mass || (model->plan & (STRUT_TERM_RIGID | STRUT_TERM_ELEMENTS))) return false;
+  bool directional = model->plan & STRUT_TERM_DIRECTION;
+  if ((model->plan & STRUT_TERM_LAWS) && !(directional && laws_are_printed(model))) return false;
   return !mass->coordinate[0].factor && !mass->coordinate[1].factor;
 }
 
@@ -148,11 +161,14 @@ static void fill_signals(strut_lane_tables *t, int32_t lane, const strut_model *
 static void fill_ground(strut_lane_tables *t, int32_t lane, const strut_contact_table *c) {
   for (int32_t i = 0; i < c->count; i++) {
     const strut_contact_entry *e = &c->entry[i];
-    const double row[STRUT_LANE_CONTACT_ROWS] = {[STRUT_LANE_STIFFNESS] = e->stiffness,
-                                                 [STRUT_LANE_DAMPING] = e->damping,
-                                                 [STRUT_LANE_MU_STATIC] = e->friction.mu_static,
-                                                 [STRUT_LANE_MU_KINETIC] = e->friction.mu_kinetic,
-                                                 [STRUT_LANE_STICK] = e->friction.stick_velocity};
+    const double row[STRUT_LANE_CONTACT_ROWS] = {
+        [STRUT_LANE_STIFFNESS] = e->stiffness,
+        [STRUT_LANE_DAMPING] = e->damping,
+        [STRUT_LANE_MU_STATIC] = e->friction.mu_static,
+        [STRUT_LANE_MU_KINETIC] = e->friction.mu_kinetic,
+        [STRUT_LANE_MU_STATIC_BACKWARD] = strut_friction_static(&e->friction, -1.0),
+        [STRUT_LANE_MU_KINETIC_BACKWARD] = strut_friction_kinetic(&e->friction, -1.0),
+        [STRUT_LANE_STICK] = e->friction.stick_velocity};
     spread(t->contact + i * STRUT_LANE_CONTACT_ROWS * t->width, t->width, lane, row,
            STRUT_LANE_CONTACT_ROWS);
   }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lengths and forces of members for observers (recording, measuring). The step's own loop:
+/* Lengths and forces of members and hinges for observers (recording, measuring). The step's own loop:
    members_kernel.h. */
 #include "engine/forces/elements.h"
 #include "engine/forces/forces.h"
@@ -36,6 +36,14 @@ strut_member_values strut_member_measure(const strut_model *model, const strut_s
   strut_member_values values = measure(model, state, member);
   if (state->rigid) values.force += strut_rigid_tension(state->rigid, member);
   return values;
+}
+
+strut_hinge_values strut_hinge_measure(const strut_model *model, const strut_state *state,
+                                       int32_t element) {
+  strut_element_pose pose;
+  double moment = strut_element_measure(model, state, element, &pose);
+  return (strut_hinge_values){pose.strain, strut_element_rate(model, element, &pose, state->v),
+                              moment};
 }
 
 void strut_members_measure(const strut_model *model, const strut_state *state, double *length,

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/model/mass.h"
 #include "engine/model/pose.h"
 
 /* Lengths are put right until they are so near, relative to themselves and to the coordinates. */
@@ -195,13 +196,15 @@ static bool release(const strut_model *model, strut_state *state, strut_rigid *g
   double most = 0.0;
   for (int32_t k = 0; k < *stuck; k++) {
     int32_t i = g->stuck[k];
-    double excess = fabs(g->right[g->bars + k]) - c->entry[i].friction.mu_static * state->normal[i];
+    double held = g->right[g->bars + k];
+    double limit = strut_friction_static(&c->entry[i].friction, -held) * state->normal[i];
+    double excess = fabs(held) - limit;
     if (excess >= 0.0 && (worst < 0 || excess > most)) worst = k, most = excess;
   }
   if (worst < 0) return false;
   int32_t i = g->stuck[worst];
   double hold = g->right[g->bars + worst],
-         slide = c->entry[i].friction.mu_kinetic * state->normal[i];
+         slide = strut_friction_kinetic(&c->entry[i].friction, -hold) * state->normal[i];
   double friction = hold > 0.0 ? slide : hold < 0.0 ? -slide : 0.0;
   state->friction[i] = friction;
   for (int k = 0; k < 2; k++) state->force[c->at[i] + (uint32_t)k] += friction * c->tangent[k];

@@ -6,6 +6,11 @@
 
 #include "engine/forces/rigid.h"
 
+/* The rows, each defined in its method's own file. */
+#define STRUT_INTEGRATOR_ROW(row, word) extern const strut_integrator strut_integrator_##row;
+STRUT_INTEGRATORS(STRUT_INTEGRATOR_ROW)
+#undef STRUT_INTEGRATOR_ROW
+
 static const strut_integrator *const table[] = {
 #define STRUT_INTEGRATOR_ROW(row, word) &strut_integrator_##row,
     STRUT_INTEGRATORS(STRUT_INTEGRATOR_ROW)

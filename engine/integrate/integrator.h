@@ -5,7 +5,7 @@
 #ifndef STRUT_ENGINE_INTEGRATE_INTEGRATOR_H
 #define STRUT_ENGINE_INTEGRATE_INTEGRATOR_H
 
-#include "engine/forces/forces.h"
+#include "engine/model/state.h"
 #include "engine/scene/experiment.h"
 
 /** Which steps are stable, by the eigenvalues of small motions: see stability.h. */
@@ -95,10 +95,5 @@ static inline strut_integrator_settings strut_integrator_settings_of(const strut
 STRUT_API strut_status strut_integrator_check(const strut_model *model,
                                               const strut_experiment *experiment,
                                               strut_error *error);
-
-/* The rows of the table. */
-#define STRUT_INTEGRATOR_ROW(row, word) extern const strut_integrator strut_integrator_##row;
-STRUT_INTEGRATORS(STRUT_INTEGRATOR_ROW)
-#undef STRUT_INTEGRATOR_ROW
 
 #endif

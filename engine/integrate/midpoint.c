@@ -11,6 +11,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/forces/drive.h"
 #include "engine/forces/elements.h"
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/midpoint_matrix.h"

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/model/mass.h"
+
 static void add_masses(const strut_model *model, const int32_t *row_of, strut_triplets *sum) {
   for (int c = 0; c < 2; c++) {
     const strut_mass_operator *op = &model->mass->coordinate[c];

@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <math.h>
 
+#include "engine/model/mass.h"
 #include "engine/model/memory_estimate.h"
 #include "engine/model/model.h"
 
@@ -188,6 +189,7 @@ static void compile_contacts(strut_model *model, bool *failed) {
     entry[i].friction = contact->friction;
     model->plan |= STRUT_TERM_FRICTION;
     if (contact->friction.law != STRUT_FRICTION_KARNOPP) model->plan |= STRUT_TERM_LAWS;
+    if (contact->friction.directional) model->plan |= STRUT_TERM_LAWS | STRUT_TERM_DIRECTION;
   }
   *t = (strut_contact_table){
       (int32_t)count, at, entry, {1, 0}, {0, 1}, scene->ground.height, scene->ground.belt_speed};

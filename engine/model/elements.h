@@ -92,6 +92,14 @@ static inline const strut_element *strut_element_of_member(const strut_element_t
   return t->of_member && t->of_member[j] >= 0 ? &t->element[t->of_member[j]] : NULL;
 }
 
+/** The element of hinge i. Found by a search, so not for the step. */
+static inline int32_t strut_element_of_hinge(const strut_element_table *t, int32_t i) {
+  int32_t k = 0;
+  while (k < t->count && (t->element[k].role != STRUT_ELEMENT_HINGE || t->element[k].item != i))
+    k++;
+  return k < t->count ? k : -1;
+}
+
 /** Does an element take the place of the plain member j? */
 static inline bool strut_member_is_element(const strut_element_table *t, int32_t j) {
   const strut_element *e = strut_element_of_member(t, j);

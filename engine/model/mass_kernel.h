@@ -6,6 +6,7 @@
 #define STRUT_ENGINE_MODEL_MASS_KERNEL_H
 
 #include "engine/model/hot.h"
+#include "engine/model/mass.h"
 #include "engine/model/model.h"
 
 /* x and y of one dense block of n nodes together: they have the same inverse. */

@@ -5,6 +5,7 @@
 #ifndef STRUT_ENGINE_MODEL_MASS_MATRIX_H
 #define STRUT_ENGINE_MODEL_MASS_MATRIX_H
 
+#include "engine/model/linear_solver.h"
 #include "engine/model/model.h"
 
 /**

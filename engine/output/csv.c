@@ -7,7 +7,7 @@
 #include "engine/base/number_text.h"
 #include "engine/output/file.h"
 
-enum { BUFFER = 1 << 16, FILE_COUNT = 4 };
+enum { BUFFER = 1 << 16, FILE_COUNT = 5 };
 
 /* The channels of each file; a file without channels is not written. */
 static const struct {
@@ -16,6 +16,7 @@ static const struct {
 } kinds[FILE_COUNT] = {
     {"nodes.csv", STRUT_CHANNEL_POSITION | STRUT_CHANNEL_VELOCITY},
     {"members.csv", STRUT_CHANNEL_LENGTH | STRUT_CHANNEL_FORCE},
+    {"hinges.csv", STRUT_CHANNEL_ANGLE | STRUT_CHANNEL_MOMENT},
     {"contacts.csv", STRUT_CHANNEL_CONTACT},
     {"energy.csv", STRUT_CHANNEL_ENERGY},
 };
@@ -93,7 +94,7 @@ static strut_status begin_table(csv *self, int kind, const strut_record_layout *
   }
   if (total == 0) return STRUT_OK;
   t->columns = strut_allocate(total, sizeof *t->columns);
-  if (!t->columns) return strut_fail(error, STRUT_NO_MEMORY, "out of memory for the CSV columns");
+  if (!t->columns) return strut_no_memory(error, "for the CSV columns");
   strut_status status = strut_file_open(&t->file, self->directory, kinds[kind].name, error);
   if (status != STRUT_OK) return status;
   fputs("time [s]", t->file.stream);

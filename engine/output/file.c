@@ -26,15 +26,11 @@ static bool is_directory(const char *path) {
   return stat(path, &found) == 0 && S_ISDIR(found.st_mode);
 }
 
-static strut_status no_memory(strut_error *error) {
-  return strut_fail(error, STRUT_NO_MEMORY, "out of memory while writing files");
-}
-
 strut_status strut_directory_create(const char *directory, strut_error *error) {
   size_t length = strlen(directory);
   if (length == 0) return trouble(error, "create directory", directory, ENOENT);
   char *path = strut_allocate(length + 1, 1);
-  if (!path) return no_memory(error);
+  if (!path) return strut_no_memory(error, "while writing files");
   strut_status status = STRUT_OK;
   memcpy(path, directory, length);
   for (size_t i = 1; i <= length && status == STRUT_OK; i++) {
@@ -73,7 +69,7 @@ static strut_status open_beside(strut_file *file, strut_error *error) {
   file->part = strut_allocate(capacity, 1);
   if (!file->path || !file->part) {
     forget(file);
-    return no_memory(error);
+    return strut_no_memory(error, "while writing files");
   }
   strut_status status = STRUT_OK;
   int descriptor = -1, code = EISDIR;
@@ -151,7 +147,8 @@ strut_status strut_file_commit(strut_file *file, strut_error *error) {
   if (status != STRUT_OK) unlink(file->part);
   if (code) {
     unlink(renamed ? file->path : file->part);
-    status = code == ENOMEM ? no_memory(error) : trouble(error, "write", file->path, code);
+    status = code == ENOMEM ? strut_no_memory(error, "while writing files")
+                            : trouble(error, "write", file->path, code);
   }
   forget(file);
   return status;
@@ -166,7 +163,7 @@ void strut_file_abandon(strut_file *file) {
 }
 
 strut_status strut_file_trouble(const strut_file *file, strut_error *error) {
-  if (errno == ENOMEM) return no_memory(error);
+  if (errno == ENOMEM) return strut_no_memory(error, "while writing files");
   return trouble(error, "write", file->path, errno ? errno : EIO);
 }
 
@@ -196,7 +193,7 @@ strut_status strut_file_write_text(const char *directory, const char *name, cons
 
 strut_status strut_file_write_block(const char *directory, const char *name, char *text,
                                     strut_error *error) {
-  if (!text) return no_memory(error);
+  if (!text) return strut_no_memory(error, "while writing files");
   strut_status status = strut_file_write_text(directory, name, text, error);
   strut_release(text);
   return status;

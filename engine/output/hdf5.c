@@ -9,7 +9,7 @@
 #include "engine/output/hdf5_disk.h"
 #include "engine/output/hdf5_parts.h"
 
-enum { CHUNK_BYTES = 1 << 18, CHUNK_DOUBLES = CHUNK_BYTES / 8, CHANNELS = 6, SCALES = 12 };
+enum { CHUNK_BYTES = 1 << 18, CHUNK_DOUBLES = CHUNK_BYTES / 8, CHANNELS = 8, SCALES = 12 };
 
 /* One growing dataset; rows are collected until they fill a chunk. */
 typedef struct series {
@@ -40,6 +40,8 @@ static const char *item_scale(strut_channel id) {
     case STRUT_CHANNEL_VELOCITY: return "node";
     case STRUT_CHANNEL_LENGTH:
     case STRUT_CHANNEL_FORCE: return "member";
+    case STRUT_CHANNEL_ANGLE:
+    case STRUT_CHANNEL_MOMENT: return "hinge";
     case STRUT_CHANNEL_CONTACT: return "contact_node";
     case STRUT_CHANNEL_ENERGY: break;
   }
@@ -50,8 +52,14 @@ static const char *component_scale(strut_channel id) {
   switch (id) {
     case STRUT_CHANNEL_CONTACT: return "contact_component";
     case STRUT_CHANNEL_ENERGY: return "energy_component";
-    default: return "axis";
+    case STRUT_CHANNEL_POSITION:
+    case STRUT_CHANNEL_VELOCITY:
+    case STRUT_CHANNEL_LENGTH:
+    case STRUT_CHANNEL_FORCE:
+    case STRUT_CHANNEL_ANGLE:
+    case STRUT_CHANNEL_MOMENT: break;
   }
+  return "axis";
 }
 
 /* Closes the HDF5 file; false if not all of it could be written. */
@@ -149,14 +157,10 @@ static bool create_all(hdf5 *self, const strut_record_layout *layout) {
   return written(self) && good;
 }
 
-static strut_status no_memory(strut_error *error) {
-  return strut_fail(error, STRUT_NO_MEMORY, "out of memory while writing files");
-}
-
 static strut_status begin(void *context, const strut_record_layout *layout, strut_error *error) {
   hdf5 *self = context;
   self->width = layout->width;
-  if (!strut_hdf5_has_memory()) return no_memory(error);
+  if (!strut_hdf5_has_memory()) return strut_no_memory(error, "while writing files");
   strut_status status = strut_file_open(&self->file, self->directory, "trajectory.h5", error);
   if (status != STRUT_OK) return status;
   strut_hdf5_quiet quiet = strut_hdf5_hush();

@@ -11,7 +11,7 @@
 
 #include <hdf5.h>
 
-/** Where one file's bytes go. Must outlive the file's closing. */
+/** Destination of one file's bytes. Must outlive the file's closing. */
 typedef struct strut_hdf5_disk {
   int descriptor;                 /* open for reading and writing; not owned */
   int trouble;                    /* errno of the first failure, or 0 */

@@ -4,16 +4,15 @@
 #include <cjson/cJSON.h>
 #include <math.h>
 
-#include "engine/output/json_value.h"
+#include "engine/output/json_settle.h"
 
 /* Every helper does nothing once memory was out, so that only the end has to ask. */
 
 static void add_steady(strut_json *json, cJSON *to, const strut_steady_summary *s) {
-  static const char *const kinds[] = {"", "periodic", "irregular", "transient"};
   double sizes[STRUT_MOST_MULTIPLIERS];
   if (s->kind == STRUT_MOTION_NOT_WATCHED) return;
   cJSON *steady = strut_json_object(json, to, "steady");
-  strut_json_text(json, steady, "kind", kinds[s->kind]);
+  strut_json_text(json, steady, "kind", strut_motion_name(s->kind));
   strut_json_integer(json, steady, "repeats", s->repeats);
   strut_json_integer(json, steady, "periods", s->periods);
   strut_json_number(json, steady, "velocity_interval", s->interval);
@@ -128,7 +127,7 @@ static void add_contacts(strut_json *json, cJSON *to, const strut_summary *s) {
   }
 }
 
-/* Only what there is: a scene that measures nothing else has no such key. */
+/* The key exists only if the scene measures quantities. */
 static void add_measured(strut_json *json, cJSON *to, const strut_summary *s) {
   if (!s->measured_count) return;
   cJSON *measured = strut_json_object(json, to, "measured");
@@ -150,16 +149,9 @@ static void add_energy(strut_json *json, cJSON *to, const strut_summary *s) {
   static const char *const balances[] = {NULL, "closed", "open"};
   const strut_energy *e = &s->energy;
   cJSON *energy = strut_json_object(json, to, "energy");
-  strut_json_number(json, energy, "kinetic", e->kinetic);
-  strut_json_number(json, energy, "elastic", e->elastic);
-  strut_json_number(json, energy, "gravity", e->gravity);
-  strut_json_number(json, energy, "contact", e->contact);
-  strut_json_number(json, energy, "drive_work", e->drive_work);
-  strut_json_number(json, energy, "load_work", e->load_work);
-  strut_json_number(json, energy, "belt_work", e->belt_work);
-  strut_json_number(json, energy, "dissipated_members", e->dissipated_members);
-  strut_json_number(json, energy, "dissipated_contact", e->dissipated_contact);
-  strut_json_number(json, energy, "dissipated_friction", e->dissipated_friction);
+#define ADD_TERM(name, kind, label) strut_json_number(json, energy, #name, e->name);
+  STRUT_ENERGY_TABLE(ADD_TERM)
+#undef ADD_TERM
   strut_json_number(json, energy, "initial", e->initial);
   strut_json_number(json, energy, "residual", e->residual);
   strut_json_number(json, energy, "exchanged", e->moved);

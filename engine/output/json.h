@@ -7,7 +7,6 @@
 
 #include <stdbool.h>
 
-#include "engine/output/json_value.h"
 #include "engine/run/measure/summary.h"
 #include "engine/scene/experiment.h"
 
@@ -19,8 +18,5 @@ STRUT_API char *strut_summary_json(const strut_summary *summary, const strut_sce
                                    bool with_wall_time);
 /** A table of a screenful in a block of strut_allocate, or NULL when memory is out. */
 STRUT_API char *strut_summary_table(const strut_summary *summary, const strut_scene *scene);
-
-/** Adds how a start settled as the member `settle`; nothing where it did not. */
-void strut_json_settle(strut_json *json, struct cJSON *to, const strut_settle_summary *how);
 
 #endif

@@ -9,6 +9,7 @@
 #include "engine/base/number_text.h"
 #include "engine/output/file.h"
 #include "engine/output/results.h"
+#include "engine/statics/rigidity/linear_matrices.h"
 
 static const char *const names[] = {"node_names.csv",
                                     "rows.csv",
@@ -87,6 +88,16 @@ static void write_columns(FILE *stream, const source *from) {
     write_text(stream, scene->nodes[member->node[0]].name);
     fputc(',', stream);
     write_text(stream, scene->nodes[member->node[1]].name);
+    fputc('\n', stream);
+  }
+  for (size_t i = 0; i < scene->hinge_count; i++) {
+    const strut_hinge *hinge = &scene->hinges[i];
+    fprintf(stream, "%zu,", scene->member_count + i + 1);
+    write_text(stream, hinge->name);
+    fputs(",hinge,", stream);
+    write_text(stream, scene->nodes[hinge->node[0]].name);
+    fputc(',', stream);
+    write_text(stream, scene->nodes[hinge->node[2]].name);
     fputc('\n', stream);
   }
 }

@@ -24,10 +24,6 @@ typedef struct list {
       at; /* after the entry found last, as names are mostly requested in the order of the list */
 } list;
 
-static strut_status no_memory(strut_error *error) {
-  return strut_fail(error, STRUT_NO_MEMORY, "out of memory while writing files");
-}
-
 static strut_status trouble(strut_error *error, const char *what, const char *directory,
                             const char *name, int code) {
   char reason[128];
@@ -88,7 +84,7 @@ static strut_status read_list(int folder, list *l, strut_error *error) {
     if (got > 0) l->length += (size_t)got;
   }
   if (file >= 0) close(file);
-  return l->text ? STRUT_OK : no_memory(error);
+  return l->text ? STRUT_OK : strut_no_memory(error, "while writing files");
 }
 
 /* Finds the next entry of that name, cyclically from the current place; false: none is left. */
@@ -147,7 +143,7 @@ strut_status strut_ownership_check(const char *directory, const char *const *nam
                           "changed since; move it away, or give another name",
                           directory, names[i]);
     else if (code == ENOMEM)
-      status = no_memory(error);
+      status = strut_no_memory(error, "while writing files");
     else if (code)
       status = trouble(error, "write", directory, names[i], code);
   }
@@ -199,7 +195,7 @@ static strut_status claim(const char *directory, const char *stage, const char *
   for (int i = 0; usable && names[i] && status == STRUT_OK; i++) {
     int code = claim_one(folder, &l, from, sources[i], names[i]);
     if (code == ENOMEM)
-      status = no_memory(error);
+      status = strut_no_memory(error, "while writing files");
     else if (code)
       status = trouble(error, "write", directory, names[i], code);
   }
@@ -233,7 +229,7 @@ static bool is_stage(const char *folder) {
 strut_status strut_ownership_check_path(const char *path, strut_error *error) {
   const char *names[2] = {NULL, NULL};
   char *folder = split(path, &names[0]);
-  if (!folder) return no_memory(error);
+  if (!folder) return strut_no_memory(error, "while writing files");
   strut_status status = is_stage(folder) ? STRUT_OK : strut_ownership_check(folder, names, error);
   strut_release(folder);
   return status;
@@ -242,7 +238,7 @@ strut_status strut_ownership_check_path(const char *path, strut_error *error) {
 strut_status strut_ownership_claim_path(const char *path, const char *part, strut_error *error) {
   const char *names[2] = {NULL, NULL}, *sources[2] = {NULL, NULL};
   char *folder = split(path, &names[0]);
-  if (!folder) return no_memory(error);
+  if (!folder) return strut_no_memory(error, "while writing files");
   const char *slash = strrchr(part, '/'); /* beside it */
   sources[0] = slash ? slash + 1 : part;
   strut_status status = is_stage(folder) ? STRUT_OK : claim(folder, folder, sources, names, error);

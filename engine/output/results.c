@@ -12,9 +12,9 @@
 #include "engine/output/file.h"
 #include "engine/output/ownership.h"
 
-static const char *const run_names[] = {
-    "summary.json", "scene.yaml", "nodes.csv",     "members.csv",
-    "contacts.csv", "energy.csv", "trajectory.h5", NULL};
+static const char *const run_names[] = {"summary.json", "scene.yaml",    "nodes.csv",
+                                        "members.csv",  "hinges.csv",    "contacts.csv",
+                                        "energy.csv",   "trajectory.h5", NULL};
 
 const char *strut_results_name(int i) { return run_names[i]; }
 
@@ -40,7 +40,7 @@ strut_status strut_results_begin_named(strut_results *results, const char *direc
   results->directory = strut_allocate(strlen(directory) + 1, 1);
   if (!results->directory) {
     if (results->made) rmdir(directory);
-    return strut_fail(error, STRUT_NO_MEMORY, "out of memory while writing files");
+    return strut_no_memory(error, "while writing files");
   }
   memcpy(results->directory, directory, strlen(directory));
   status = strut_ownership_check(directory, names, error);

@@ -14,7 +14,7 @@
 
 /* The file that marks a folder: its first line names the owner, its second the machine. */
 #define MARK ".strut-stage"
-#define MARK_BEGIN "strut gathers results here; this may be removed when it does not run any more\n"
+#define MARK_BEGIN "strut collects results here; remove this only when no strut is running\n"
 
 enum { MOST_NAMES = 1000, NUMBER_ROOM = 48, HOST_MOST = 64 };
 
@@ -129,7 +129,7 @@ static bool hold(strut_stage *stage) {
 strut_status strut_stage_create(strut_stage *stage, const char *directory, strut_error *error) {
   size_t capacity = strlen(directory) + NUMBER_ROOM;
   *stage = (strut_stage){.path = strut_allocate(capacity, 1)};
-  if (!stage->path) return strut_fail(error, STRUT_NO_MEMORY, "out of memory while writing files");
+  if (!stage->path) return strut_no_memory(error, "while writing files");
   strut_stage_sweep(directory);
   int code = EEXIST;
   for (int i = 0; i < MOST_NAMES && (code == EEXIST || code == ENOENT); i++) {

@@ -8,6 +8,7 @@
 
 #include "engine/base/c_locale.h"
 #include "engine/output/quantity_text.h"
+#include "engine/run/measure/summary.h"
 
 enum { DIGITS = 4, MOST_CONTACTS = 12, LABEL = 300, VALUE = 800 };
 
@@ -88,9 +89,8 @@ static void add_measured(rows *r) {
     snprintf(value, sizeof value, "%s%s%s%s", strut_quantity_of_any(number_of, DIGITS, unit).text,
              isfinite(spread) ? ", spread " : "",
              isfinite(spread) ? strut_quantity_of_any(spread, DIGITS, unit).text : "",
-             cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(item, "zero"))
-                 ? ", zero but for rounding"
-                 : "");
+             cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(item, "zero")) ? ", zero up to rounding"
+                                                                          : "");
     add_row(r, item->string, value);
   }
 }
@@ -128,21 +128,21 @@ static void add_contacts(rows *r) {
 
 /* Works and losses that are not zero, and the residual of the balance. */
 static void add_energy(rows *r) {
+  enum { ENERGY, WORK, LOSSES };
   static const struct {
+    int kind;
     const char *key, *label;
   } parts[] = {
-      {"drive_work", "drive work"},
-      {"load_work", "load work"},
-      {"belt_work", "belt work"},
-      {"dissipated_members", "dissipated in members"},
-      {"dissipated_contact", "dissipated in contacts"},
-      {"dissipated_friction", "dissipated by friction"},
+#define ENERGY_ROW(name, kind, label) {kind, #name, label},
+      STRUT_ENERGY_TABLE(ENERGY_ROW)
+#undef ENERGY_ROW
   };
   const cJSON *energy = cJSON_GetObjectItemCaseSensitive(r->from, "energy");
   char value[VALUE];
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     double amount = number(energy, parts[i].key);
-    if (isfinite(amount) && amount != 0) add_row(r, parts[i].label, in(amount, "J").text);
+    if (parts[i].kind != ENERGY && isfinite(amount) && amount != 0)
+      add_row(r, parts[i].label, in(amount, "J").text);
   }
   double residual = number(energy, "residual"), moved = number(energy, "exchanged");
   if (!isfinite(moved)) moved = number(energy, "moved"); /* its name up to version 0.1 */

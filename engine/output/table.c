@@ -82,7 +82,7 @@ static void add_head(strut_buffer *table, const strut_summary *s, const strut_sc
   }
   strut_buffer_add(table, ", from %s%s\n", in(s->window_start, "s").text,
                    s->velocity_zero && s->velocity != 0.0 && !(s->accuracy.wanted > 0.0)
-                       ? ", zero but for rounding"
+                       ? ", zero up to rounding"
                        : "");
   strut_buffer_add(table, "  duration    %s, %" PRId64 " steps", in(s->duration, "s").text,
                    s->steps);
@@ -124,7 +124,7 @@ static void add_measured(strut_buffer *table, const strut_summary *s) {
     if (isfinite(m->spread))
       strut_buffer_add(table, " %14s", strut_quantity_of_any(m->spread, DIGITS, m->unit).text);
     if (isnan(m->value)) strut_buffer_add(table, "  %s", missing(s));
-    if (m->zero) strut_buffer_add(table, "  zero but for rounding");
+    if (m->zero) strut_buffer_add(table, "  zero up to rounding");
     if (isfinite(m->expected))
       strut_buffer_add(table, "  %s within %s",
                        m->kept ? "known" : "NOT as accurate as requested, but",
@@ -178,17 +178,10 @@ static void add_energy(strut_buffer *table, const strut_energy *e) {
     const char *name;
     double value;
   } rows[] = {
-      {"kinetic", e->kinetic},
-      {"elastic", e->elastic},
-      {"gravity", e->gravity},
-      {"ground springs", e->contact},
-      {"drive work", e->drive_work},
-      {"load work", e->load_work},
-      {"belt work", e->belt_work},
-      {"lost in members", e->dissipated_members},
-      {"lost in contact", e->dissipated_contact},
-      {"lost to friction", e->dissipated_friction},
-      {"residual", e->residual},
+#define ENERGY_ROW(name, kind, label) {label, e->name},
+      STRUT_ENERGY_TABLE(ENERGY_ROW)
+#undef ENERGY_ROW
+          {"residual", e->residual},
   };
   strut_buffer_add(table, "\n  energy\n");
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {

@@ -11,7 +11,7 @@
 #include "engine/base/memory.h"
 #include "engine/output/hdf5_parts.h"
 
-enum { STRUT_TRAJECTORY_ARRAYS = 7 };
+enum { STRUT_TRAJECTORY_ARRAYS = 9 };
 
 /* One array of a trajectory: `size` doubles of each frame. */
 typedef struct trajectory_array {
@@ -42,6 +42,8 @@ static double **trajectory_array_of(strut_trajectory *t, strut_channel id) {
     case STRUT_CHANNEL_LENGTH: return &t->length;
     case STRUT_CHANNEL_FORCE: return &t->force;
     case STRUT_CHANNEL_CONTACT: return &t->contact;
+    case STRUT_CHANNEL_ANGLE: return &t->angle;
+    case STRUT_CHANNEL_MOMENT: return &t->moment;
     case STRUT_CHANNEL_ENERGY: break;
   }
   return &t->energy;
@@ -101,10 +103,6 @@ static bool take_row(keeper *k, const double *row) {
   return true;
 }
 
-static strut_status no_memory(strut_error *error) {
-  return strut_fail(error, STRUT_NO_MEMORY, "out of memory for the recorded motion");
-}
-
 static bool trajectory_contacts(strut_trajectory *t, const strut_scene *scene) {
   t->contact_count = scene->contact_count;
   t->contact_node = strut_arena_allocate(&t->arena, scene->contact_count, sizeof *t->contact_node);
@@ -116,8 +114,10 @@ static bool trajectory_contacts(strut_trajectory *t, const strut_scene *scene) {
 static strut_status begin(void *context, const strut_record_layout *layout, strut_error *error) {
   keeper *k = context;
   strut_trajectory *t = k->t;
-  *t = (strut_trajectory){
-      .every = 1, .node_count = k->scene->node_count, .member_count = k->scene->member_count};
+  *t = (strut_trajectory){.every = 1,
+                          .node_count = k->scene->node_count,
+                          .member_count = k->scene->member_count,
+                          .hinge_count = k->scene->hinge_count};
   k->width = layout->width;
   k->arrays[0] = (trajectory_array){.values = &t->time, .size = 1};
   k->array_count = k->frame_size = 1;
@@ -133,13 +133,13 @@ static strut_status begin(void *context, const strut_record_layout *layout, stru
   k->last = strut_allocate(k->width, sizeof *k->last);
   bool ready = k->last && trajectory_contacts(t, k->scene) &&
                grow(k, k->most < FIRST_FRAMES ? k->most : FIRST_FRAMES);
-  return ready ? STRUT_OK : no_memory(error);
+  return ready ? STRUT_OK : strut_no_memory(error, "for the recorded motion");
 }
 
 static strut_status take_rows(void *context, const double *rows, size_t count, strut_error *error) {
   keeper *k = context;
   for (size_t i = 0; i < count; i++)
-    if (!take_row(k, rows + i * k->width)) return no_memory(error);
+    if (!take_row(k, rows + i * k->width)) return strut_no_memory(error, "for the recorded motion");
   return STRUT_OK;
 }
 
@@ -148,7 +148,8 @@ static strut_status end(void *context, strut_status run_status, strut_error *err
   keeper *k = context;
   k->t->status = run_status;
   if (!k->waiting) return STRUT_OK;
-  if (k->t->frames == k->capacity && !grow(k, k->capacity + 1)) return no_memory(error);
+  if (k->t->frames == k->capacity && !grow(k, k->capacity + 1))
+    return strut_no_memory(error, "for the recorded motion");
   store(k, k->last);
   k->waiting = false;
   return STRUT_OK;
@@ -179,6 +180,8 @@ void strut_trajectory_free(strut_trajectory *t) {
   strut_release(t->length);
   strut_release(t->force);
   strut_release(t->contact);
+  strut_release(t->angle);
+  strut_release(t->moment);
   strut_release(t->energy);
   strut_arena_free(&t->arena);
   *t = (strut_trajectory){0};
@@ -194,6 +197,7 @@ static const struct {
     {STRUT_CHANNEL_POSITION, "position", 2}, {STRUT_CHANNEL_VELOCITY, "velocity", 2},
     {STRUT_CHANNEL_LENGTH, "length", 1},     {STRUT_CHANNEL_FORCE, "force", 1},
     {STRUT_CHANNEL_CONTACT, "contact", 2},   {STRUT_CHANNEL_ENERGY, "energy", STRUT_ENERGIES},
+    {STRUT_CHANNEL_ANGLE, "angle", 1},       {STRUT_CHANNEL_MOMENT, "moment", 1},
 };
 enum { CHANNELS = sizeof channels / sizeof *channels };
 
@@ -211,12 +215,13 @@ static strut_status trouble(const reader *r, const char *what) {
 }
 
 static strut_status report_no_memory(const reader *r) {
-  return strut_fail(r->error, STRUT_NO_MEMORY, "out of memory for the recorded motion");
+  return strut_no_memory(r->error, "for the recorded motion");
 }
 
 static size_t items_of(const reader *r, strut_channel id) {
   if (id == STRUT_CHANNEL_POSITION || id == STRUT_CHANNEL_VELOCITY) return r->scene->node_count;
   if (id == STRUT_CHANNEL_LENGTH || id == STRUT_CHANNEL_FORCE) return r->scene->member_count;
+  if (id == STRUT_CHANNEL_ANGLE || id == STRUT_CHANNEL_MOMENT) return r->scene->hinge_count;
   return id == STRUT_CHANNEL_CONTACT ? r->scene->contact_count : 1;
 }
 
@@ -280,6 +285,7 @@ static const char *node_name(const strut_scene *scene, size_t i) { return scene-
 static const char *member_name(const strut_scene *scene, size_t i) {
   return scene->members[i].name;
 }
+static const char *hinge_name(const strut_scene *scene, size_t i) { return scene->hinges[i].name; }
 static const char *contact_name(const strut_scene *scene, size_t i) {
   return scene->nodes[scene->contacts[i].node].name;
 }
@@ -295,7 +301,7 @@ static strut_status read_channel(reader *r, int i) {
   bool good = values && read_rows(dataset, 3, shape, r->t->frames, r->t->every, size, values);
   *trajectory_array_of(r->t, channels[i].id) = values;
   if (dataset >= 0) H5Dclose(dataset);
-  if (!fits) return trouble(r, "it is of another structure than the scene beside it");
+  if (!fits) return trouble(r, "it belongs to another structure than the scene beside it");
   return good ? STRUT_OK : values ? trouble(r, "it is damaged") : report_no_memory(r);
 }
 
@@ -306,7 +312,7 @@ static strut_status read_time(reader *r, size_t room) {
       H5Lexists(r->file, "time", H5P_DEFAULT) > 0 ? H5Dopen2(r->file, "time", H5P_DEFAULT) : -1;
   if (dataset < 0 || !shape_of(dataset, 1, shape)) {
     if (dataset >= 0) H5Dclose(dataset);
-    return trouble(r, "no trajectory of strut");
+    return trouble(r, "not a trajectory of strut");
   }
   strut_trajectory *t = r->t;
   size_t frame = 1;
@@ -346,10 +352,12 @@ static strut_status read_file(reader *r, size_t room) {
   strut_trajectory *t = r->t;
   t->node_count = r->scene->node_count;
   t->member_count = r->scene->member_count;
+  t->hinge_count = r->scene->hinge_count;
   if (!same_names(r, "node", t->node_count, node_name) ||
       !same_names(r, "member", t->member_count, member_name) ||
+      !same_names(r, "hinge", t->hinge_count, hinge_name) ||
       !same_names(r, "contact_node", r->scene->contact_count, contact_name))
-    return trouble(r, "it is of another structure than the scene beside it");
+    return trouble(r, "it belongs to another structure than the scene beside it");
   if (!trajectory_contacts(t, r->scene)) return report_no_memory(r);
   t->status = run_status(r);
   strut_status status = read_time(r, room);
@@ -362,7 +370,7 @@ strut_status strut_trajectory_read(const char *directory, const strut_scene *sce
   size_t length = strlen(directory) + sizeof "/trajectory.h5";
   char *path = strut_allocate(length, 1);
   *trajectory = (strut_trajectory){0};
-  if (!path) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!path) return strut_no_memory(error, "");
   snprintf(path, length, "%s/trajectory.h5", directory);
   reader r = {.path = path, .scene = scene, .t = trajectory, .error = error};
   strut_status status = STRUT_OK;

@@ -5,11 +5,12 @@
 #ifndef STRUT_ENGINE_OUTPUT_TRAJECTORY_H
 #define STRUT_ENGINE_OUTPUT_TRAJECTORY_H
 
+#include "engine/run/measure/summary.h"
 #include "engine/run/recorder.h"
 
 /** Frames over time, SI. What was not recorded is NULL. Zero-initialise. */
 typedef struct strut_trajectory {
-  size_t frames, node_count, member_count, contact_count;
+  size_t frames, node_count, member_count, hinge_count, contact_count;
   size_t every;          /* stride of the frames in the recorded samples; 1: all */
   size_t recorded;       /* number of recorded samples */
   double *time;          /* (frames) */
@@ -18,12 +19,16 @@ typedef struct strut_trajectory {
   double *length;        /* (frames, members) */
   double *force;         /* (frames, members) tension positive */
   double *contact;       /* (frames, contacts, 2) normal, friction */
+  double *angle;         /* (frames, hinges) */
+  double *moment;        /* (frames, hinges) */
   int32_t *contact_node; /* (contacts) index of the node in the scene */
   double *energy;        /* (frames, STRUT_ENERGIES) in the recorder's order */
   strut_status status;   /* of the run: STRUT_OK, STRUT_DIVERGED or STRUT_INTERRUPTED */
   strut_arena arena;
 } strut_trajectory;
-enum { STRUT_ENERGIES = 10 };
+#define STRUT_ENERGY_ONE(name, kind, label) +1
+enum { STRUT_ENERGIES = STRUT_ENERGY_TABLE(STRUT_ENERGY_ONE) };
+#undef STRUT_ENERGY_ONE
 
 /** Default limit on the doubles of a trajectory: half a gigabyte. */
 #define STRUT_TRAJECTORY_ROOM ((size_t)1 << 26)

@@ -9,6 +9,7 @@
 
 #include "engine/base/c_locale.h"
 #include "engine/base/number_text.h"
+#include "engine/forces/elements.h"
 #include "engine/model/model.h"
 #include "engine/output/buffer.h"
 #include "engine/output/file.h"
@@ -21,7 +22,7 @@ typedef struct vtk_frame {
   const strut_trajectory *motion;
   double *points; /* (nodes, 3) */
   double *cells;  /* (members) */
-  int32_t *whole; /* (max(2 members, nodes)) */
+  int32_t *whole; /* (max(members, points of their lines, nodes)) */
   strut_arena arena;
 } vtk_frame;
 
@@ -36,7 +37,9 @@ static const char tail[] = "</Piece>\n</PolyData>\n</VTKFile>\n";
 static bool vtk_frame_create(vtk_frame *frame, const strut_model *model,
                              const strut_trajectory *motion) {
   size_t nodes = model->scene->node_count, members = model->scene->member_count;
-  size_t whole = 2 * members > nodes ? 2 * members : nodes;
+  size_t whole = nodes, points = 0;
+  for (size_t j = 0; j < members; j++) points += model->scene->members[j].guide_count + 2;
+  if (points > whole) whole = points;
   *frame = (vtk_frame){.model = model, .motion = motion};
   frame->points = strut_arena_allocate(&frame->arena, 3 * nodes, sizeof(double));
   frame->cells = strut_arena_allocate(&frame->arena, members, sizeof(double));
@@ -90,7 +93,7 @@ static void begin_names(strut_buffer *buffer, const char *name, size_t count) {
                    name, count);
 }
 
-/* One text of an array of them: its bytes as numbers up to the 0 that ends it. */
+/* Writes one text of a string array: its bytes as numbers, ended by 0. */
 static void add_name(strut_buffer *buffer, const char *text) {
   for (; *text; text++) strut_buffer_add(buffer, "%d ", (unsigned char)*text);
   strut_buffer_add(buffer, "0 ");
@@ -158,12 +161,9 @@ static void gather_lengths(vtk_frame *frame, size_t i) {
   const strut_scene *scene = frame->model->scene;
   const strut_trajectory *motion = frame->motion;
   const double *q = motion->position + 2 * scene->node_count * i;
-  for (size_t k = 0; k < scene->member_count; k++) {
-    const int32_t *node = scene->members[k].node;
+  for (size_t k = 0; k < scene->member_count; k++)
     frame->cells[k] = motion->length ? motion->length[scene->member_count * i + k]
-                                     : hypot(q[2 * node[1]] - q[2 * node[0]],
-                                             q[2 * node[1] + 1] - q[2 * node[0] + 1]);
-  }
+                                     : strut_member_path_length(frame->model, (int32_t)k, q);
 }
 
 static void add_cell_data(vtk_frame *frame, size_t i, strut_buffer *buffer) {
@@ -188,20 +188,30 @@ static void add_cell_data(vtk_frame *frame, size_t i, strut_buffer *buffer) {
   strut_buffer_add(buffer, "</CellData>\n");
 }
 
-/* Cells of `points` points each. */
-static void add_cells(vtk_frame *frame, const char *name, size_t cells, int each,
-                      strut_buffer *buffer) {
-  const strut_member *members = frame->model->scene->members;
-  for (size_t k = 0; k < cells; k++) {
-    if (each == 1) frame->whole[k] = (int32_t)k;
-    for (int end = 0; each == 2 && end < 2; end++)
-      frame->whole[2 * k + (size_t)end] = members[k].node[end];
-  }
-  strut_buffer_add(buffer, "<%s>\n", name);
-  add_array(buffer, "Int32", "connectivity", 1, frame->whole, cells * (size_t)each);
-  for (size_t k = 0; k < cells; k++) frame->whole[k] = (int32_t)(k + 1) * each;
-  add_array(buffer, "Int32", "offsets", 1, frame->whole, cells);
-  strut_buffer_add(buffer, "</%s>\n", name);
+/* The members as lines, a running cable over its guides. */
+static void add_lines(vtk_frame *frame, strut_buffer *buffer) {
+  const strut_scene *scene = frame->model->scene;
+  size_t points = 0, end = 0;
+  for (size_t j = 0; j < scene->member_count; j++)
+    for (size_t k = 0; k < scene->members[j].guide_count + 2; k++)
+      frame->whole[points++] = strut_member_node(&scene->members[j], k);
+  strut_buffer_add(buffer, "<Lines>\n");
+  add_array(buffer, "Int32", "connectivity", 1, frame->whole, points);
+  for (size_t j = 0; j < scene->member_count; j++)
+    frame->whole[j] = (int32_t)(end += scene->members[j].guide_count + 2);
+  add_array(buffer, "Int32", "offsets", 1, frame->whole, scene->member_count);
+  strut_buffer_add(buffer, "</Lines>\n");
+}
+
+/* Nodes without members, each a cell of its own. */
+static void add_vertices(vtk_frame *frame, strut_buffer *buffer) {
+  size_t nodes = frame->model->scene->node_count;
+  for (size_t k = 0; k < nodes; k++) frame->whole[k] = (int32_t)k;
+  strut_buffer_add(buffer, "<Verts>\n");
+  add_array(buffer, "Int32", "connectivity", 1, frame->whole, nodes);
+  for (size_t k = 0; k < nodes; k++) frame->whole[k] = (int32_t)k + 1;
+  add_array(buffer, "Int32", "offsets", 1, frame->whole, nodes);
+  strut_buffer_add(buffer, "</Verts>\n");
 }
 
 static void vtk_frame_write(vtk_frame *frame, size_t i, strut_buffer *buffer) {
@@ -219,9 +229,9 @@ static void vtk_frame_write(vtk_frame *frame, size_t i, strut_buffer *buffer) {
   add_array(buffer, "Float64", "Points", 3, frame->points, 3 * nodes);
   strut_buffer_add(buffer, "</Points>\n");
   if (members) {
-    add_cells(frame, "Lines", members, 2, buffer);
+    add_lines(frame, buffer);
   } else {
-    add_cells(frame, "Verts", nodes, 1, buffer);
+    add_vertices(frame, buffer);
   }
   strut_buffer_add(buffer, "%s", tail);
 }
@@ -296,7 +306,7 @@ static strut_status write_text(const char *directory, const char *name, strut_bu
   FILE *stream = NULL;
   strut_status status = STRUT_OK;
   if (buffer->failed || !path) {
-    status = strut_fail(error, STRUT_NO_MEMORY, "out of memory while writing files");
+    status = strut_no_memory(error, "while writing files");
   } else {
     errno = 0;
     stream = fopen(path, "wb");
@@ -318,7 +328,7 @@ static strut_status write_frames(const char *stage, const strut_model *model,
   vtk_frame frame;
   strut_status status = STRUT_OK;
   if (!vtk_frame_create(&frame, model, motion))
-    status = strut_fail(error, STRUT_NO_MEMORY, "out of memory while writing files");
+    status = strut_no_memory(error, "while writing files");
   for (size_t i = 0; i < written->frames && status == STRUT_OK; i++) {
     char name[FRAME_NAME];
     vtk_frame_write(&frame, i * written->every, buffer);
@@ -387,7 +397,7 @@ strut_status strut_vtk_write(const char *directory, const strut_model *model,
   written->every = motion->frames > most ? (motion->frames + most - 1) / most : 1;
   written->frames = (motion->frames + written->every - 1) / written->every;
   const char **names = file_names(directory, written->frames, &arena);
-  if (!names) return strut_fail(error, STRUT_NO_MEMORY, "out of memory while writing files");
+  if (!names) return strut_no_memory(error, "while writing files");
   strut_status status = strut_results_begin_named(&results, directory, names, error);
   if (status == STRUT_OK) {
     status = write_all(results.stage, model, motion, written, error);

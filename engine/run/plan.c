@@ -1,12 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/run/plan.h"
 
+#include <math.h>
+#include <string.h>
+
 #include "engine/integrate/limit/step_limit.h"
+#include "engine/model/mass.h"
 
 static const strut_plan_term terms[STRUT_PLAN_TERMS] = {
     {STRUT_TERM_MEMBERS, "member springs", "a member", false},
     {STRUT_TERM_DAMPING, "member dampers", "a member with damping", false},
     {STRUT_TERM_SLACK, "slack test", "a cable", false},
+    {STRUT_TERM_ELEMENTS, "running cables", "a cable that runs over guides", false},
+    {STRUT_TERM_ELEMENTS, "member laws", "a member with another law than the linear one", false},
+    {STRUT_TERM_ELEMENTS, "stops", "a member with a shortest or longest length", false},
+    {STRUT_TERM_ELEMENTS, "hinges", "a hinge", false},
     {STRUT_TERM_DRIVE, "driven rest lengths", "an actuator", false},
     {STRUT_TERM_CONSTANT, "constant forces", "gravity, or a load without a signal", false},
     {STRUT_TERM_LOADS, "driven loads", "a load with a signal", false},
@@ -25,10 +33,31 @@ static void count_elements(const strut_model *model, strut_plan *plan) {
     plan->springs += scene->members[j].kind == STRUT_SPRING;
     plan->cables += scene->members[j].kind == STRUT_CABLE;
   }
+  for (size_t j = 0; j < scene->member_count; j++) {
+    const strut_member *m = &scene->members[j];
+    plan->running_cables += m->guide_count > 0;
+    plan->laws += m->law.kind != STRUT_LAW_LINEAR || m->law.carries == STRUT_CARRIES_COMPRESSION;
+    plan->stops += (size_t)(m->shortest > 0.0) + (size_t)isfinite(m->longest);
+  }
+  plan->hinges = scene->hinge_count;
   plan->contacts = (size_t)model->contacts.count;
   plan->actuators = scene->actuator_count;
   plan->loads = scene->load_count;
   plan->bytes = model->arena.bytes + sizeof *model;
+}
+
+/* Elements are one term of the model, and one line here for each kind of them. */
+static bool has_element(const strut_plan *plan, const char *name) {
+  const struct {
+    const char *name;
+    size_t count;
+  } kinds[] = {{"running cables", plan->running_cables},
+               {"member laws", plan->laws},
+               {"stops", plan->stops},
+               {"hinges", plan->hinges}};
+  for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++)
+    if (strcmp(kinds[i].name, name) == 0) return kinds[i].count > 0;
+  return true;
 }
 
 strut_status strut_plan_describe(const strut_model *model, strut_plan *plan, strut_error *error) {
@@ -36,7 +65,7 @@ strut_status strut_plan_describe(const strut_model *model, strut_plan *plan, str
   count_elements(model, plan);
   for (int i = 0; i < STRUT_PLAN_TERMS; i++) {
     plan->terms[i] = terms[i];
-    plan->terms[i].in = model->plan & terms[i].term;
+    plan->terms[i].in = model->plan & terms[i].term && has_element(plan, terms[i].name);
   }
   if (!model->mass) return STRUT_OK;
   plan->runnable = true;

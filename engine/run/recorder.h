@@ -16,10 +16,10 @@
 /** One quantity of every item of a kind: (items, components) doubles of a row from `offset` on. */
 typedef struct strut_record_channel {
   strut_channel id;
-  const char *name; /* "position", "velocity", "length", "force", "contact", "energy" */
-  const char *unit; /* "m", "m/s", "m", "N", "N", "J" */
+  const char *name; /* "position", "velocity", "length", "force", "contact", "angle", ... */
+  const char *unit; /* "m", "m/s", "m", "N", "N", "rad", ... */
   size_t items, components, offset;
-  const char *const *item_names;      /* (items) node or member names; {"total"} for energy */
+  const char *const *item_names; /* (items) of nodes, members or hinges; {"total"} for energy */
   const char *const *component_names; /* (components) {"x", "y"}; {""} for a single one;
                                          contact: {"normal", "friction"}; energy: {"kinetic", ...} */
 } strut_record_channel;

@@ -9,20 +9,12 @@
 #include "engine/base/memory_limit.h"
 #include "engine/forces/energy.h"
 #include "engine/forces/forces.h"
+#include "engine/run/measure/summary.h"
 
 static const char *const xy[] = {"x", "y"};
 static const char *const single[] = {""};
 static const char *const reactions[] = {"normal", "friction"};
-static const char *const energies[] = {"kinetic",
-                                       "elastic",
-                                       "gravity",
-                                       "contact",
-                                       "drive_work",
-                                       "load_work",
-                                       "belt_work",
-                                       "dissipated_members",
-                                       "dissipated_contact",
-                                       "dissipated_friction"};
+static const char *const energies[] = {STRUT_ENERGY_NAMES};
 static const char *const total[] = {"total"};
 
 static const struct {
@@ -36,24 +28,29 @@ static const struct {
     {STRUT_CHANNEL_LENGTH, "length", "m", 1, single},
     {STRUT_CHANNEL_FORCE, "force", "N", 1, single},
     {STRUT_CHANNEL_CONTACT, "contact", "N", 2, reactions},
+    {STRUT_CHANNEL_ANGLE, "angle", "rad", 1, single},
+    {STRUT_CHANNEL_MOMENT, "moment", "N m", 1, single},
     {STRUT_CHANNEL_ENERGY, "energy", "J", sizeof energies / sizeof energies[0], energies},
 };
 
-/* Names of the items of a channel, in the arena; *count of them. */
+/* The *count names of the items of a channel, in the arena. */
 static const char *const *item_names(const strut_model *model, strut_channel id, strut_arena *arena,
                                      size_t *count) {
   const strut_scene *scene = model->scene;
   bool of_nodes = id == STRUT_CHANNEL_POSITION || id == STRUT_CHANNEL_VELOCITY;
   bool of_contacts = id == STRUT_CHANNEL_CONTACT;
+  bool of_hinges = id == STRUT_CHANNEL_ANGLE || id == STRUT_CHANNEL_MOMENT;
   *count = 1;
   if (id == STRUT_CHANNEL_ENERGY) return total;
   *count = of_nodes      ? scene->node_count
            : of_contacts ? (size_t)model->contacts.count
+           : of_hinges   ? scene->hinge_count
                          : scene->member_count;
   const char **names = strut_arena_allocate(arena, *count, sizeof *names);
   for (size_t i = 0; names && i < *count; i++)
     names[i] = of_nodes      ? scene->nodes[i].name
                : of_contacts ? scene->nodes[model->contacts.entry[i].node].name
+               : of_hinges   ? scene->hinges[i].name
                              : scene->members[i].name;
   return names;
 }
@@ -111,6 +108,22 @@ static bool create_parts(const strut_experiment *experiment, strut_recording *r)
   return r->parts && (all_whole || r->picked);
 }
 
+/* Space for what is measured of members and hinges. */
+static bool create_scratch(const strut_model *model, strut_recording *r) {
+  size_t members = model->scene->member_count, hinges = model->scene->hinge_count;
+  r->length = strut_arena_allocate(&r->arena, members, sizeof(double));
+  r->force = strut_arena_allocate(&r->arena, members, sizeof(double));
+  r->angle = strut_arena_allocate(&r->arena, hinges, sizeof(double));
+  r->moment = strut_arena_allocate(&r->arena, hinges, sizeof(double));
+  r->hinge = strut_arena_allocate(&r->arena, hinges, sizeof *r->hinge);
+  if (!r->length || !r->force || !r->angle || !r->moment || !r->hinge) return false;
+  for (int32_t i = 0; i < model->elements.count; i++) {
+    const strut_element *e = &model->elements.element[i];
+    if (e->role == STRUT_ELEMENT_HINGE) r->hinge[e->item] = i;
+  }
+  return true;
+}
+
 static strut_status begin_sinks(strut_recording *r, strut_error *error) {
   for (; r->begun < r->sink_count; r->begun++) {
     strut_sink *sink = r->sinks[r->begun];
@@ -128,12 +141,9 @@ strut_status strut_recording_create(const strut_model *model, const strut_experi
   strut_span span = strut_experiment_span(experiment, model->scene);
   r->start = begin + span.record_start;
   r->every = span.record_every;
-  size_t members = model->scene->member_count;
   unsigned wanted = 0;
   for (size_t s = 0; s < sink_count; s++) wanted |= requested_channels(experiment, sinks[s]);
-  r->length = strut_arena_allocate(&r->arena, members, sizeof(double));
-  r->force = strut_arena_allocate(&r->arena, members, sizeof(double));
-  bool ready = r->length && r->force && create_layout(model, wanted, r);
+  bool ready = create_scratch(model, r) && create_layout(model, wanted, r);
   double expected = (span.duration - span.record_start) / fmax(span.record_every, grid->step) + 1.0;
   r->layout.expected_rows = expected < 1e15 ? (size_t)expected : (size_t)1e15;
   char what[80];
@@ -169,6 +179,8 @@ static void fill_channel(const strut_model *model, strut_state *state, const str
     case STRUT_CHANNEL_VELOCITY: memcpy(out, from, 2 * c->items * sizeof *out); break;
     case STRUT_CHANNEL_LENGTH: memcpy(out, r->length, c->items * sizeof *out); break;
     case STRUT_CHANNEL_FORCE: memcpy(out, r->force, c->items * sizeof *out); break;
+    case STRUT_CHANNEL_ANGLE: memcpy(out, r->angle, c->items * sizeof *out); break;
+    case STRUT_CHANNEL_MOMENT: memcpy(out, r->moment, c->items * sizeof *out); break;
     case STRUT_CHANNEL_CONTACT:
       for (size_t i = 0; i < c->items; i++) {
         out[2 * i] = state->normal[i];
@@ -187,6 +199,14 @@ static void fill_channel(const strut_model *model, strut_state *state, const str
           w[STRUT_POWER_CONTACT], w[STRUT_POWER_FRICTION]};
       memcpy(out, values, sizeof values);
     }
+  }
+}
+
+static void measure_hinges(const strut_model *model, const strut_state *state, strut_recording *r) {
+  for (size_t i = 0; i < model->scene->hinge_count; i++) {
+    strut_hinge_values values = strut_hinge_measure(model, state, r->hinge[i]);
+    r->angle[i] = values.angle;
+    r->moment[i] = values.moment;
   }
 }
 
@@ -225,6 +245,7 @@ strut_status strut_recording_sample(const strut_model *model, strut_state *state
   double *row = r->rows + r->row_count++ * r->layout.width;
   strut_forces_observe(model, state, t);
   strut_members_measure(model, state, r->length, r->force);
+  measure_hinges(model, state, r);
   row[0] = strut_time_grid_real(&r->grid, state->step);
   for (size_t k = 0; k < r->layout.channel_count; k++)
     fill_channel(model, state, r, &r->channel[k], row + r->channel[k].offset);

@@ -9,7 +9,7 @@
 #include "engine/run/measure/time_grid.h"
 #include "engine/run/recorder.h"
 
-enum { STRUT_CHANNELS = 6 };
+enum { STRUT_CHANNELS = 8 };
 
 /** Channels of one sink, as a layout of their own. */
 typedef struct strut_recording_part {
@@ -32,6 +32,8 @@ typedef struct strut_recording {
   double start, every;    /* first sample, interval [s] */
   int64_t sampled, last;  /* samples so far; step of the latest, -1 before the first */
   double *length, *force; /* (members) scratch */
+  double *angle, *moment; /* (hinges) scratch */
+  int32_t *hinge;         /* (hinges) their elements */
   strut_arena arena;
 } strut_recording;
 

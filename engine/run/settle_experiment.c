@@ -101,7 +101,8 @@ static void add_stick_stiffness(const strut_model *model, const double *q, strut
     const strut_contact_entry *e = &c->entry[i];
     const double *t = c->tangent;
     bool touches = strut_contact_gap(c, i, q) < 0.0;
-    if (!touches || e->friction.law == STRUT_FRICTION_NONE || !(e->friction.mu_static > 0.0))
+    if (!touches || e->friction.law == STRUT_FRICTION_NONE ||
+        !(e->friction.mu_static > 0.0 || e->friction.mu_static_backward > 0.0))
       continue;
     strut_sparse *k = tangent->stiffness;
     const int32_t row[2] = {find_row(tangent, (int32_t)c->at[i]),
@@ -305,12 +306,11 @@ strut_status strut_settle_model(const strut_model *model, const strut_experiment
   *start = (strut_settled_start){.model = model};
   if (!experiment->settle.wanted) return STRUT_OK;
   double *q = strut_arena_allocate(&start->arena, (size_t)model->length, sizeof *q);
-  if (!q) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!q) return strut_no_memory(error, "");
   strut_status status = strut_settle_experiment(model, experiment, NULL, interrupt, q, &start->time,
                                                 &start->how, error);
   if (status) return status;
-  if (move_start(model->scene, q, start))
-    return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (move_start(model->scene, q, start)) return strut_no_memory(error, "");
   status = strut_model_compile(start->scene, &start->own, error);
   start->model = start->own;
   return status;

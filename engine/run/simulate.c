@@ -188,7 +188,7 @@ static strut_status shoot_orbit(strut_run *r) {
   strut_steady_summary *found = &r->steady.result;
   strut_period_map map = {.model = NULL};
   double travel = 0.0, *y = strut_allocate(2 * length + 1, sizeof *y);
-  if (!y) return strut_fail(r->error, STRUT_NO_MEMORY, "out of memory");
+  if (!y) return strut_no_memory(r->error, "");
   strut_status status =
       strut_period_map_create(r->model, r->experiment, found->repeats, &map, r->error);
   if (!status) {

@@ -155,6 +155,11 @@ static void check_friction(strut_checker *checker, size_t index, const char *own
         checker, STRUT_ON_CONTACT, index, strut_friction_key(p), owner, strut_friction_value(f, p),
         strut_friction_needs(f->law, p) && strut_friction_above_zero(p) ? STRUT_ABOVE_ZERO
                                                                         : STRUT_NOT_NEGATIVE);
+  if (!f->directional) return;
+  strut_check_range(checker, STRUT_ON_CONTACT, index, "mu_backward", owner, f->mu_kinetic_backward,
+                    STRUT_NOT_NEGATIVE);
+  strut_check_range(checker, STRUT_ON_CONTACT, index, "mu_backward_static", owner,
+                    f->mu_static_backward, STRUT_NOT_NEGATIVE);
 }
 
 void strut_check_ground(strut_checker *checker) {

@@ -62,15 +62,12 @@ static bool check_stops(strut_checker *checker, size_t index, const char *owner)
                              m->stop_stiffness, STRUT_NOT_NEGATIVE);
   valid &= strut_check_range(checker, STRUT_ON_MEMBER, index, "stop_damping", owner,
                              m->stop_damping, STRUT_NOT_NEGATIVE);
-  if (isnan(m->longest) || m->longest <= 0.0) {
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, "longest",
-                         "the longest of %s must be above zero, found %g", owner, m->longest);
-    return false;
-  }
-  bool stops = m->shortest > 0.0 || isfinite(m->longest);
+  valid &= strut_check_range(checker, STRUT_ON_MEMBER, index, "longest", owner, m->longest,
+                             STRUT_NOT_NEGATIVE);
+  bool stops = m->shortest > 0.0 || m->longest > 0.0;
   bool stiff = m->stop_stiffness > 0.0 || m->stiffness > 0.0 || m->axial_stiffness > 0.0 ||
                strut_law_at(m->law.kind)->own;
-  if (valid && m->shortest >= m->longest)
+  if (valid && m->longest > 0.0 && m->shortest >= m->longest)
     strut_report_finding(checker, STRUT_ON_MEMBER, index, "longest",
                          "the longest of %s, %g m, must be above its shortest, %g m", owner,
                          m->longest, m->shortest);

@@ -36,13 +36,15 @@ typedef enum strut_channel {
   STRUT_CHANNEL_LENGTH = 4,
   STRUT_CHANNEL_FORCE = 8,
   STRUT_CHANNEL_CONTACT = 16,
-  STRUT_CHANNEL_ENERGY = 32
+  STRUT_CHANNEL_ENERGY = 32,
+  STRUT_CHANNEL_ANGLE = 64, /* of hinges */
+  STRUT_CHANNEL_MOMENT = 128
 } strut_channel;
 
 enum { STRUT_MOST_STARTS = 1000000000 };
 #define STRUT_MOST_SEED 9007199254740992.0 /* 2^53: every seed is a number of the language */
 
-/** How equilibria are searched. */
+/** Settings of the search for equilibria. */
 typedef struct strut_search {
   size_t support_count;     /* sets of contact nodes to hold in turn; 0: all that are needed */
   strut_node_set *supports; /* (support_count) of each set the first node is pinned, others roll */

@@ -60,7 +60,32 @@ typedef struct strut_friction {
 #define STRUT_FRICTION_ROW(NAME, field, range) double field;
   STRUT_FRICTION_PARAMETERS(STRUT_FRICTION_ROW)
 #undef STRUT_FRICTION_ROW
+  bool
+      directional; /* motion towards -x along the ground has coefficients of its own, the next two: */
+  double mu_static_backward, mu_kinetic_backward; /* [1] */
 } strut_friction;
+
+/** Coefficient of static friction against a push along the ground in this direction. */
+static inline double strut_friction_static(const strut_friction *f, double direction) {
+  return f->directional && direction < 0.0 ? f->mu_static_backward : f->mu_static;
+}
+
+/** Coefficient of kinetic friction against sliding in this direction. */
+static inline double strut_friction_kinetic(const strut_friction *f, double direction) {
+  return f->directional && direction < 0.0 ? f->mu_kinetic_backward : f->mu_kinetic;
+}
+
+/** Do static and kinetic coefficients differ in some direction? */
+static inline bool strut_friction_drops(const strut_friction *f) {
+  return f->mu_static != f->mu_kinetic ||
+         (f->directional && f->mu_static_backward != f->mu_kinetic_backward);
+}
+
+/** The largest kinetic coefficient, of either direction. */
+static inline double strut_friction_largest(const strut_friction *f) {
+  bool back = f->directional && f->mu_kinetic_backward > f->mu_kinetic;
+  return back ? f->mu_kinetic_backward : f->mu_kinetic;
+}
 
 /** A row of the laws' table. */
 typedef struct strut_friction_law_row {
@@ -178,7 +203,7 @@ static inline double strut_friction_force_SMOOTH(const strut_friction *f, double
   return -f->mu_kinetic * normal * slip / sqrt(slip * slip + f->width * f->width);
 }
 static inline double strut_friction_slope_SMOOTH(const strut_friction *f, double normal) {
-  return normal * f->mu_kinetic / f->width;
+  return normal * strut_friction_largest(f) / f->width;
 }
 
 /** Contact states of a law; see strut_friction_class. */
@@ -193,9 +218,15 @@ static inline strut_friction_class strut_friction_states(strut_friction_law law)
   return STRUT_FRICTION_ABSENT;
 }
 
-/** Force of the law [N]; see the laws' own. */
+/** Force of the law [N]; see the laws' own. A directional one is that of the direction it resists. */
 static inline double strut_friction_force(const strut_friction *f, double normal, double slip,
                                           double applied) {
+  strut_friction towards = *f;
+  bool slides = slip != 0.0 && (slip < 0.0 ? -slip : slip) >= f->stick_velocity;
+  double direction = slides ? slip : applied;
+  towards.mu_static = strut_friction_static(f, direction);
+  towards.mu_kinetic = strut_friction_kinetic(f, direction);
+  f = &towards;
   switch (f->law) {
 #define STRUT_FRICTION_ROW(NAME, ...)                                                              \
   case STRUT_FRICTION_##NAME: return strut_friction_force_##NAME(f, normal, slip, applied);

@@ -118,7 +118,7 @@ static inline strut_law_response strut_law_respond(strut_law_kind kind, const st
 #undef STRUT_LAW_ROW
     case STRUT_LAW_COUNT: break;
   }
-  return (strut_law_response){0};
+  return (strut_law_response){0.0, 0.0, 0.0, 0.0};
 }
 
 /** Number of x at which the law changes its slope or jumps. */

@@ -19,6 +19,7 @@ typedef enum strut_column_owner {
   STRUT_COLUMN_OF_NODE,    /* NODE.y */
   STRUT_COLUMN_OF_CONTACT, /* NODE.normal, of a node that may touch the ground */
   STRUT_COLUMN_OF_MEMBER,  /* MEMBER.force */
+  STRUT_COLUMN_OF_HINGE,   /* HINGE.moment */
   STRUT_COLUMN_OF_PAIR,    /* angle(NODE, NODE) */
   STRUT_COLUMN_OF_CENTRE,  /* com.vx */
   STRUT_COLUMN_OF_ENERGY,  /* energy.kinetic */
@@ -41,6 +42,9 @@ typedef enum strut_column_owner {
   X(RATE, MEMBER, "rate", 0, 1, -1, 0)      /* of the length */                                    \
   X(FORCE, MEMBER, "force", 1, 1, -2, 0)                                                           \
   X(TILT, MEMBER, "angle", 0, 0, 0, 1) /* of its direction, from +x, counted on beyond a turn */   \
+  X(HINGE_ANGLE, HINGE, "angle", 0, 0, 0, 1)                                                       \
+  X(HINGE_RATE, HINGE, "rate", 0, 0, -1, 1) /* of the angle */                                     \
+  X(MOMENT, HINGE, "moment", 1, 2, -2, 0)                                                          \
   X(ANGLE, PAIR, "angle", 0, 0, 0, 1)                                                              \
   X(DISTANCE, PAIR, "distance", 0, 1, 0, 0)                                                        \
   X(CENTRE_X, CENTRE, "x", 0, 1, 0, 0)                                                             \
@@ -70,37 +74,49 @@ typedef enum strut_column_kind {
 /** A column of the motion: a number at every step. */
 typedef struct strut_column {
   strut_column_kind kind;
-  int32_t item, other; /* node, contact or member; the second node of a pair; else -1 */
+  int32_t item, other; /* node, contact, member or hinge; the second node of a pair; else -1 */
 } strut_column;
 
-/** X(id, operands, word); the functions are those of the language. */
+/** How a result changes with its operands; see quantity_program.c. */
+typedef enum strut_sensitivity {
+  STRUT_SENSITIVITY_SUM, /* as much as they do */
+  STRUT_SENSITIVITY_PRODUCT,
+  STRUT_SENSITIVITY_QUOTIENT,
+  STRUT_SENSITIVITY_POWER,
+  STRUT_SENSITIVITY_ROOT,
+  STRUT_SENSITIVITY_EXPONENTIAL,
+  STRUT_SENSITIVITY_LOGARITHM, /* relative to the first */
+  STRUT_SENSITIVITY_BOUNDED    /* likewise, while it is at most 1 */
+} strut_sensitivity;
+
+/** X(id, operands, word, sensitivity); the functions are those of the language. */
 #define STRUT_OPERATION_TABLE(X)                                                                   \
-  X(NUMBER, 0, "")                                                                                 \
-  X(COLUMN, 0, "")                                                                                 \
-  X(ADD, 2, "+")                                                                                   \
-  X(SUBTRACT, 2, "-")                                                                              \
-  X(MULTIPLY, 2, "*")                                                                              \
-  X(DIVIDE, 2, "/")                                                                                \
-  X(POWER, 2, "^")                                                                                 \
-  X(NEGATE, 1, "-")                                                                                \
-  X(SIN, 1, "sin")                                                                                 \
-  X(COS, 1, "cos")                                                                                 \
-  X(TAN, 1, "tan")                                                                                 \
-  X(ASIN, 1, "asin")                                                                               \
-  X(ACOS, 1, "acos")                                                                               \
-  X(ATAN, 1, "atan")                                                                               \
-  X(ATAN2, 2, "atan2")                                                                             \
-  X(SQRT, 1, "sqrt")                                                                               \
-  X(EXP, 1, "exp")                                                                                 \
-  X(LOG, 1, "log")                                                                                 \
-  X(LOG10, 1, "log10")                                                                             \
-  X(ABS, 1, "abs")                                                                                 \
-  X(MIN, 2, "min")                                                                                 \
-  X(MAX, 2, "max")                                                                                 \
-  X(FLOOR, 1, "floor")                                                                             \
-  X(CEIL, 1, "ceil")                                                                               \
-  X(ROUND, 1, "round")                                                                             \
-  X(HYPOT, 2, "hypot")
+  X(NUMBER, 0, "", SUM)                                                                            \
+  X(COLUMN, 0, "", SUM)                                                                            \
+  X(ADD, 2, "+", SUM)                                                                              \
+  X(SUBTRACT, 2, "-", SUM)                                                                         \
+  X(MULTIPLY, 2, "*", PRODUCT)                                                                     \
+  X(DIVIDE, 2, "/", QUOTIENT)                                                                      \
+  X(POWER, 2, "^", POWER)                                                                          \
+  X(NEGATE, 1, "-", SUM)                                                                           \
+  X(SIN, 1, "sin", BOUNDED)                                                                        \
+  X(COS, 1, "cos", BOUNDED)                                                                        \
+  X(TAN, 1, "tan", SUM)                                                                            \
+  X(ASIN, 1, "asin", BOUNDED)                                                                      \
+  X(ACOS, 1, "acos", BOUNDED)                                                                      \
+  X(ATAN, 1, "atan", BOUNDED)                                                                      \
+  X(ATAN2, 2, "atan2", LOGARITHM)                                                                  \
+  X(SQRT, 1, "sqrt", ROOT)                                                                         \
+  X(EXP, 1, "exp", EXPONENTIAL)                                                                    \
+  X(LOG, 1, "log", LOGARITHM)                                                                      \
+  X(LOG10, 1, "log10", LOGARITHM)                                                                  \
+  X(ABS, 1, "abs", SUM)                                                                            \
+  X(MIN, 2, "min", SUM)                                                                            \
+  X(MAX, 2, "max", SUM)                                                                            \
+  X(FLOOR, 1, "floor", SUM)                                                                        \
+  X(CEIL, 1, "ceil", SUM)                                                                          \
+  X(ROUND, 1, "round", SUM)                                                                        \
+  X(HYPOT, 2, "hypot", SUM)
 
 typedef enum strut_operation {
 #define STRUT_OPERATION_ENUM(id, ...) STRUT_OPERATION_##id,

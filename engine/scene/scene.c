@@ -21,8 +21,7 @@ strut_member strut_member_default(void) {
                         .node = {-1, -1},
                         .kind = STRUT_BAR,
                         .rest_kind = STRUT_REST_RATIO,
-                        .rest_value = 1,
-                        .longest = (double)INFINITY};
+                        .rest_value = 1};
 }
 
 strut_hinge strut_hinge_default(void) {
@@ -57,7 +56,7 @@ double strut_hinge_rest(const strut_scene *scene, size_t index) {
   return isnan(rest) ? strut_hinge_drawn(scene, index) : rest;
 }
 
-/* Rest length that gives `force` in the drawn shape; NAN where there is none. */
+/* Rest length that gives `force` in the drawn shape; NAN if none does. */
 static double length_under(const strut_member *member, double drawn, double force) {
   if (force == 0.0) return drawn;
   if (member->axial_stiffness > 0.0) {
@@ -69,7 +68,7 @@ static double length_under(const strut_member *member, double drawn, double forc
 
 bool strut_member_rest(const strut_scene *scene, size_t index, strut_rest *rest) {
   const strut_member *member = &scene->members[index];
-  double drawn = drawn_length(scene, member), force = (double)NAN, length;
+  double drawn = drawn_length(scene, member), force = (double)NAN, length = (double)NAN;
   switch (member->rest_kind) {
     case STRUT_REST_RATIO: length = member->rest_value * drawn; break;
     case STRUT_REST_LENGTH: length = member->rest_value; break;
@@ -79,7 +78,6 @@ bool strut_member_rest(const strut_scene *scene, size_t index, strut_rest *rest)
     case STRUT_REST_FORCE_DENSITY:
       length = length_under(member, drawn, force = member->rest_value * drawn);
       break;
-    default: return false;
   }
   bool by_ea = member->axial_stiffness > 0.0;
   if (!isfinite(drawn) || !isfinite(length) || length < 0.0 || (by_ea && length == 0.0))

@@ -37,7 +37,7 @@ typedef enum strut_member_kind {
   STRUT_CABLE   /* pulls only: force max(0, elastic + damper) while stretched, 0 while slack */
 } strut_member_kind;
 
-/** How the rest length is given; strut_member_rest turns each into the others. */
+/** The quantity that defines the rest length; strut_member_rest converts it to the others. */
 typedef enum strut_rest_kind {
   STRUT_REST_RATIO,        /* rest length / drawn length [1]; the default, with value 1 */
   STRUT_REST_LENGTH,       /* rest length [m] */
@@ -61,7 +61,7 @@ typedef struct strut_member {
   strut_rest_kind rest_kind;
   double rest_value;        /* in the unit of rest_kind */
   strut_law law;            /* linear by default; a cable carries tension whatever the law says */
-  double shortest, longest; /* lengths at which stops act [m]; 0 and INFINITY: none */
+  double shortest, longest; /* lengths at which stops act [m]; 0: none */
   double stop_stiffness;    /* [N/m]; 0: 100 times the member's */
   double stop_damping;      /* [N s/m] of a stop while it acts */
 } strut_member;
@@ -76,7 +76,7 @@ typedef struct strut_hinge {
   strut_law law;     /* of the angle and the moment */
 } strut_hinge;
 
-/** How the ground damps; d is the depth, d' its rate. */
+/** Damping law of the ground; d is the depth, d' its rate. */
 typedef enum strut_ground_damping {
   STRUT_DAMPING_APPROACH,     /* (8): c_g d + k_g max(d', 0), which jumps at touchdown */
   STRUT_DAMPING_HUNT_CROSSLEY /* c_g d (1 + chi d'), never pulling: continuous */
@@ -103,8 +103,8 @@ typedef struct strut_contact {
 /** Drives the rest length of a member, or the rest angle of a hinge: rest + signal(t). */
 typedef struct strut_actuator {
   const char *name;
-  int32_t member, hinge; /* one of them is -1 */
-  int32_t signal;
+  int32_t member, signal;
+  int32_t hinge; /* where member is -1 */
 } strut_actuator;
 
 /** A force on a node: force, times signal(t) if there is one. */

@@ -51,22 +51,18 @@ static void evaluate_other(const strut_signal *signals, int32_t index, double t,
                            double *value, double *rate) {
   const strut_signal *s = &signals[index];
   *value = *rate = 0.0;
-  if (s->kind == STRUT_RAMP) {
-    evaluate_ramp(s, t, value, rate);
-    return;
-  }
-  if (s->kind == STRUT_TABLE) {
-    evaluate_table(s, t, value, rate);
-    return;
-  }
-  if (t < s->start || t >= s->stop) return;
+  bool holds = s->kind == STRUT_RAMP || s->kind == STRUT_TABLE; /* a value outside its time */
+  if (!holds && (t < s->start || t >= s->stop)) return;
   switch (s->kind) {
+    case STRUT_SINE: break;
+    case STRUT_RAMP: evaluate_ramp(s, t, value, rate); break;
+    case STRUT_TABLE: evaluate_table(s, t, value, rate); break;
     case STRUT_CONSTANT: *value = s->amplitude; break;
     case STRUT_HALF_SINE:
       if (turns < 0.5) evaluate_wave(s, turns, value, rate);
       break;
     case STRUT_SQUARE: *value = turns - floor(turns) < 0.5 ? s->amplitude : -s->amplitude; break;
-    default:
+    case STRUT_SUM:
       for (size_t i = 0; i < s->term_count; i++) {
         double part, part_rate;
         strut_signal_evaluate(signals, s->terms[i], t, &part, &part_rate);
@@ -123,7 +119,7 @@ double strut_signal_next_break(const strut_signal *signals, int32_t index, doubl
   return t < s->stop ? fmin(first, s->stop) : (double)INFINITY;
 }
 
-/* Longest period among a signal's repeating parts, or among its pulses; 0 where there is none. */
+/* Longest period among a signal's repeating parts, or among its pulses; 0 without any. */
 static double longest_period(const strut_signal *signals, int32_t index, bool pulses) {
   const strut_signal *s = &signals[index];
   bool repeats = s->kind == STRUT_SINE || s->kind == STRUT_SQUARE;

@@ -19,7 +19,7 @@
 /** Most points of a study, and most values of one list. */
 #define STRUT_STUDY_MOST_POINTS ((int64_t)1000000000)
 
-/** How an axis gives a parameter its values. */
+/** Form of the values of an axis. */
 typedef enum strut_range_kind {
   STRUT_RANGE_LIST, /* number, or word where the parameter is a text */
   STRUT_RANGE_EVEN, /* count values from `from` to `to`, both among them */
@@ -96,18 +96,29 @@ typedef enum strut_study_figure_kind {
   STRUT_FIGURE_SNAPSHOTS /* shapes of each run */
 } strut_study_figure_kind;
 
+/** Colour scale of a map, as strut_colours of the figures. */
+typedef enum strut_study_colours {
+  STRUT_STUDY_COLOURS_AUTO,
+  STRUT_STUDY_COLOURS_SEQUENTIAL,
+  STRUT_STUDY_COLOURS_DIVERGING,
+  STRUT_STUDY_COLOURS_GREY
+} strut_study_colours;
+
 /** A figure of the table or of recorded runs. */
 typedef struct strut_study_figure {
   const char *name;
   strut_study_figure_kind kind;
   /* columns of the table; NULL where none is named */
   const char *x, *y, *series, *color, *panels, *difference;
-  const char *band, *only; /* "COLUMN=TEXT", or NULL */
-  const char *title;       /* or NULL */
-  double from, to;         /* of MOTION [s]; without limits infinite */
-  double scale[2];         /* of PERIOD; 0: 1 */
-  size_t time_count;       /* of SNAPSHOTS; 0: six */
-  const double *times;     /* (time_count) [s] */
+  const char *band, *only;         /* "COLUMN=TEXT", or NULL */
+  const char *title;               /* or NULL */
+  const char *x_label, *y_label;   /* or NULL: the columns' names */
+  double x_limits[2], y_limits[2]; /* in the columns' units; 0, 0: from the data */
+  strut_study_colours colours;     /* of a MAP */
+  double from, to;                 /* of MOTION [s]; without limits infinite */
+  double scale[2];                 /* of PERIOD; 0: 1 */
+  size_t time_count;               /* of SNAPSHOTS; 0: six */
+  const double *times;             /* (time_count) [s] */
 } strut_study_figure;
 
 typedef struct strut_study {

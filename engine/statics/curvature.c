@@ -272,7 +272,7 @@ static bool find_shift(sparse_curvature *r, double *low, double *shift) {
   return false;
 }
 
-/* From a shift that is larger than need be towards `low`, which is too small: a longer step. */
+/* Reduces a shift that is larger than necessary towards `low`, which is too small: a longer step. */
 static double lengthen_step(sparse_curvature *r, const double *g, double radius, double low,
                             double shift, double length, double *s) {
   for (int i = 0; i < 3 && low > 0 && length < 0.7 * radius; i++) {

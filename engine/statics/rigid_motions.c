@@ -44,7 +44,7 @@ void strut_symmetric_3(double matrix[3][3], double value[3], double vector[3][3]
     }
 }
 
-/* What a unit of (along x, along y, turning about the centre by 1/size) does to coordinate `at`. */
+/* Displacement of coordinate `at` per unit of (along x, along y, rotation about the centre by 1/size). */
 typedef struct frame {
   double centre[2], size;
 } frame;

@@ -15,7 +15,7 @@ STRUT_API int32_t strut_rigid_motions(const strut_potential *potential, const do
                                       double *motion);
 
 /**
- * Of the first `count` of them, those combinations that the Hessian meets with no more than
+ * Finds the combinations of the first `count` rigid motions that the Hessian resists with no more than
  * `tolerance` [N/m]: they come first then; returns how many. work: (3 n).
  */
 int32_t strut_rigid_motions_free(const strut_sparse *hessian, double tolerance, int32_t count,

@@ -7,6 +7,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/base/vec.h"
+#include "engine/forces/elements.h"
 #include "engine/integrate/integrator.h"
 #include "engine/output/json_value.h"
 #include "engine/output/quantity_text.h"
@@ -44,6 +45,10 @@ static void print_counts(const strut_plan *plan) {
          plan->degrees_of_freedom);
   printf("  members            %zu: bars %zu, springs %zu, cables %zu\n", members, plan->bars,
          plan->springs, plan->cables);
+  if (plan->running_cables + plan->laws + plan->stops > 0)
+    printf("  of them            running cables %zu, with a law %zu, stops %zu\n",
+           plan->running_cables, plan->laws, plan->stops);
+  if (plan->hinges) printf("  hinges             %zu\n", plan->hinges);
   printf("  contacts           %zu\n  actuators          %zu\n  loads              %zu\n",
          plan->contacts, plan->actuators, plan->loads);
   printf("  memory             %s\n", in((double)plan->bytes, "B").text);
@@ -125,15 +130,40 @@ static void print_terms(const strut_plan *plan, bool wanted, const char *title) 
   }
 }
 
+/* Positions of the drawn shape (length), or NULL. */
+static double *drawn_shape(const strut_model *model) {
+  double *q = strut_allocate((size_t)model->length, sizeof *q);
+  for (size_t i = 0; q && i < model->scene->node_count; i++) {
+    q[2 * i] = model->scene->nodes[i].position[0];
+    q[2 * i + 1] = model->scene->nodes[i].position[1];
+  }
+  return q;
+}
+
+/* Rest length, force and stiffness of a member as drawn; of one that is an element by its law. */
+static bool describe_member(const strut_model *model, const double *q, size_t j, strut_rest *rest) {
+  if (!strut_member_rest(model->scene, j, rest)) return false;
+  const strut_element *e = strut_element_of_member(&model->elements, (int32_t)j);
+  if (!e || e->role != STRUT_ELEMENT_MEMBER) return true;
+  strut_element_pose pose;
+  strut_element_evaluate(model, (int32_t)(e - model->elements.element), model->members.rest, q,
+                         (double)NAN, &pose);
+  rest->pretension = pose.force;
+  rest->force_density = rest->drawn_length > 0.0 ? pose.force / rest->drawn_length : 0.0;
+  rest->stiffness = e->numbers.stiffness;
+  return true;
+}
+
 /* Every member's rest length in the four forms that the language accepts. */
-static void print_members(const strut_scene *scene) {
+static void print_members(const strut_model *model, const double *q) {
+  const strut_scene *scene = model->scene;
   if (scene->member_count == 0) return;
   printf("\n  %-12s %-6s %12s %12s %10s %12s %13s %12s\n", "member", "kind", "drawn", "rest length",
          "ratio", "pretension", "force density", "stiffness");
   for (size_t i = 0; i < scene->member_count && i < MOST_MEMBERS; i++) {
     strut_rest rest;
     const strut_member *member = &scene->members[i];
-    if (!strut_member_rest(scene, i, &rest)) continue;
+    if (!describe_member(model, q, i, &rest)) continue;
     printf("  %-12s %-6s %12s %12s %10.5g %12s %13s %12s\n", member->name, kind_name(member->kind),
            in(rest.drawn_length, "m").text, in(rest.length, "m").text, rest.ratio,
            in(rest.pretension, "N").text, in(rest.force_density, "N/m").text,
@@ -144,18 +174,88 @@ static void print_members(const strut_scene *scene) {
   }
 }
 
-/* Sketches the drawn shape, whatever a run starts with, since that is where typing errors show. */
-static strut_status print_sketch(const strut_model *model) {
+static void print_running_cables(const strut_scene *scene) {
+  size_t printed = 0;
+  for (size_t i = 0; i < scene->member_count && printed < MOST_MEMBERS; i++) {
+    const strut_member *m = &scene->members[i];
+    if (!m->guide_count) continue;
+    if (!printed++) printf("\n  %-12s over\n", "running");
+    printf("  %-12s ", m->name);
+    for (size_t k = 0; k < m->guide_count + 2; k++)
+      printf("%s%s", k ? ", " : "", scene->nodes[strut_member_node(m, k)].name);
+    printf("\n");
+  }
+}
+
+static const char *carries_name(const strut_member *m) {
+  static const char *const names[] = {"both", "tension", "compression"};
+  return names[m->kind == STRUT_CABLE ? STRUT_CARRIES_TENSION : m->law.carries];
+}
+
+static void print_laws(const strut_scene *scene) {
+  size_t printed = 0;
+  for (size_t i = 0; i < scene->member_count && printed < MOST_MEMBERS; i++) {
+    const strut_member *m = &scene->members[i];
+    if (m->law.kind == STRUT_LAW_LINEAR && m->law.carries == STRUT_CARRIES_BOTH) continue;
+    if (!printed++) printf("\n  %-12s %-12s carries\n", "law of", "kind");
+    printf("  %-12s %-12s %s\n", m->name, strut_law_at(m->law.kind)->word, carries_name(m));
+  }
+}
+
+/* The stiffness of a member's stops [N/m]. */
+static double stop_stiffness(const strut_model *model, size_t j) {
+  const strut_element *e = strut_element_of_member(&model->elements, (int32_t)j);
+  while (e && e->role == STRUT_ELEMENT_MEMBER)
+    e = e->sibling >= 0 ? &model->elements.element[e->sibling] : NULL;
+  return e ? e->numbers.stiffness : 0.0;
+}
+
+static void print_stops(const strut_model *model) {
   const strut_scene *scene = model->scene;
+  size_t printed = 0;
+  for (size_t i = 0; i < scene->member_count && printed < MOST_MEMBERS; i++) {
+    const strut_member *m = &scene->members[i];
+    bool shortest = m->shortest > 0.0, longest = isfinite(m->longest);
+    if (!shortest && !longest) continue;
+    if (!printed++)
+      printf("\n  %-12s %12s %12s %12s %12s\n", "stops of", "shortest", "longest", "stiffness",
+             "damping");
+    printf("  %-12s %12s %12s %12s %12s\n", m->name, shortest ? in(m->shortest, "m").text : "-",
+           longest ? in(m->longest, "m").text : "-", in(stop_stiffness(model, i), "N/m").text,
+           in(m->stop_damping, "N s/m").text);
+  }
+}
+
+/* A hinge as drawn. */
+static strut_element_pose describe_hinge(const strut_model *model, const double *q, size_t i,
+                                         double *stiffness) {
+  int32_t element = strut_element_of_hinge(&model->elements, (int32_t)i);
+  strut_element_pose pose;
+  strut_element_evaluate(model, element, model->members.rest, q, (double)NAN, &pose);
+  *stiffness = model->elements.element[element].numbers.stiffness;
+  return pose;
+}
+
+static void print_hinges(const strut_model *model, const double *q) {
+  const strut_scene *scene = model->scene;
+  for (size_t i = 0; i < scene->hinge_count && i < MOST_MEMBERS; i++) {
+    double stiffness, degree = STRUT_PI / 180.0;
+    strut_element_pose pose = describe_hinge(model, q, i, &stiffness);
+    if (!i)
+      printf("\n  %-12s %12s %12s %12s %14s\n", "hinge", "drawn", "rest angle", "moment",
+             "stiffness");
+    printf("  %-12s %8.5g deg %8.5g deg %12s %14s\n", scene->hinges[i].name, pose.strain / degree,
+           pose.natural / degree, in(pose.force, "N m").text, in(stiffness, "N m/rad").text);
+  }
+  if (scene->hinge_count > MOST_MEMBERS)
+    printf("  ... and %zu more; --json lists all\n", scene->hinge_count - MOST_MEMBERS);
+}
+
+/* Sketches the drawn shape, whatever a run starts with, since that is where typing errors show. */
+static strut_status print_sketch(const strut_model *model, const double *q) {
   int columns = strut_terminal_columns(STDOUT_FILENO, SKETCH_COLUMNS);
   if (columns > SKETCH_COLUMNS) columns = SKETCH_COLUMNS;
-  double *q = strut_allocate((size_t)model->length, sizeof *q);
-  for (size_t i = 0; q && i < scene->node_count; i++) {
-    q[2 * i] = scene->nodes[i].position[0];
-    q[2 * i + 1] = scene->nodes[i].position[1];
-  }
-  char *text = q ? strut_sketch(model, q, columns, SKETCH_ROWS, strut_terminal_unicode()) : NULL;
-  strut_release(q);
+  char *text = strut_sketch(model, q, columns, SKETCH_ROWS, strut_terminal_unicode());
   if (!text) return strut_print_out_of_memory();
   if (*text) printf("\n%s\n", text);
   strut_release(text);
@@ -165,13 +265,20 @@ static strut_status print_sketch(const strut_model *model) {
 static strut_status print_plan(const strut_plan *plan, const strut_model *model,
                                const strut_experiment *experiment) {
   const strut_scene *scene = model->scene;
+  double *q = drawn_shape(model);
+  if (!q) return strut_print_out_of_memory();
   printf("%s%svalid\n", scene->name, *scene->name ? ": " : "");
-  strut_status status = print_sketch(model);
+  strut_status status = print_sketch(model, q);
   print_counts(plan);
   print_run(plan, experiment);
   print_terms(plan, true, "each step evaluates");
   print_terms(plan, false, "omitted, as the scene does not need it");
-  print_members(scene);
+  print_members(model, q);
+  print_running_cables(scene);
+  print_laws(scene);
+  print_stops(model);
+  print_hinges(model, q);
+  strut_release(q);
   return status;
 }
 
@@ -186,6 +293,9 @@ static void add_plan(strut_json *json, const strut_plan *plan, const strut_setup
   strut_json_integer(json, root, "bars", (int64_t)plan->bars);
   strut_json_integer(json, root, "springs", (int64_t)plan->springs);
   strut_json_integer(json, root, "cables", (int64_t)plan->cables);
+  strut_json_integer(json, root, "running_cables", (int64_t)plan->running_cables);
+  strut_json_integer(json, root, "laws", (int64_t)plan->laws);
+  strut_json_integer(json, root, "stops", (int64_t)plan->stops);
   strut_json_integer(json, root, "contacts", (int64_t)plan->contacts);
   strut_json_integer(json, root, "actuators", (int64_t)plan->actuators);
   strut_json_integer(json, root, "loads", (int64_t)plan->loads);
@@ -213,12 +323,46 @@ static void add_terms(strut_json *json, const strut_plan *plan) {
   }
 }
 
-static void add_members(strut_json *json, const strut_scene *scene) {
+/* What a plain member has not: guides, a law, stops. */
+static void add_extras(strut_json *json, struct cJSON *row, const strut_model *model, size_t j) {
+  const strut_scene *scene = model->scene;
+  const strut_member *m = &scene->members[j];
+  if (m->guide_count) {
+    struct cJSON *nodes = strut_json_array(json, row, "nodes");
+    for (size_t k = 0; k < m->guide_count + 2; k++)
+      strut_json_text(json, nodes, NULL, scene->nodes[strut_member_node(m, k)].name);
+  }
+  if (m->law.kind != STRUT_LAW_LINEAR || m->law.carries != STRUT_CARRIES_BOTH) {
+    strut_json_text(json, row, "law", strut_law_at(m->law.kind)->word);
+    strut_json_text(json, row, "carries", carries_name(m));
+  }
+  if (m->shortest > 0.0) strut_json_number(json, row, "shortest", m->shortest);
+  if (isfinite(m->longest)) strut_json_number(json, row, "longest", m->longest);
+  if (m->shortest > 0.0 || isfinite(m->longest))
+    strut_json_number(json, row, "stop_stiffness", stop_stiffness(model, j));
+}
+
+static void add_hinges(strut_json *json, const strut_model *model, const double *q) {
+  const strut_scene *scene = model->scene;
+  struct cJSON *hinges = strut_json_object(json, json->root, "hinges");
+  for (size_t i = 0; i < scene->hinge_count; i++) {
+    double stiffness;
+    strut_element_pose pose = describe_hinge(model, q, i, &stiffness);
+    struct cJSON *row = strut_json_object(json, hinges, scene->hinges[i].name);
+    strut_json_number(json, row, "drawn_angle", pose.strain);
+    strut_json_number(json, row, "rest_angle", pose.natural);
+    strut_json_number(json, row, "moment", pose.force);
+    strut_json_number(json, row, "stiffness", stiffness);
+  }
+}
+
+static void add_members(strut_json *json, const strut_model *model, const double *q) {
+  const strut_scene *scene = model->scene;
   struct cJSON *members = strut_json_object(json, json->root, "members");
   for (size_t i = 0; i < scene->member_count; i++) {
     strut_rest rest;
     const strut_member *member = &scene->members[i];
-    if (!strut_member_rest(scene, i, &rest)) continue;
+    if (!describe_member(model, q, i, &rest)) continue;
     struct cJSON *row = strut_json_object(json, members, member->name);
     strut_json_text(json, row, "kind", kind_name(member->kind));
     strut_json_number(json, row, "drawn_length", rest.drawn_length);
@@ -227,6 +371,7 @@ static void add_members(strut_json *json, const strut_scene *scene) {
     strut_json_number(json, row, "pretension", rest.pretension);
     strut_json_number(json, row, "force_density", rest.force_density);
     strut_json_number(json, row, "stiffness", rest.stiffness);
+    add_extras(json, row, model, i);
   }
 }
 
@@ -243,11 +388,16 @@ static bool add_warnings(strut_json *json, const strut_setup *setup) {
   return status == STRUT_OK;
 }
 
-static strut_status print_json(const strut_plan *plan, const strut_setup *setup) {
+static strut_status print_json(const strut_plan *plan, const strut_model *model,
+                               const strut_setup *setup) {
+  double *q = drawn_shape(model);
+  if (!q) return strut_print_out_of_memory();
   strut_json json = strut_json_begin();
   add_plan(&json, plan, setup);
   add_terms(&json, plan);
-  add_members(&json, &setup->scene);
+  add_members(&json, model, q);
+  add_hinges(&json, model, q);
+  strut_release(q);
   if (!add_warnings(&json, setup)) json.failed = true;
   return strut_print_block(strut_json_end(&json));
 }
@@ -282,7 +432,7 @@ static strut_status run_check(const strut_arguments *arguments) {
   } else if (status != STRUT_OK) {
     strut_print_error(&error);
   } else if (arguments->json) {
-    status = print_json(&plan, &setup);
+    status = print_json(&plan, model, &setup);
   } else if (!arguments->quiet) {
     status = print_plan(&plan, model, &setup.experiment);
   }
@@ -300,7 +450,8 @@ const strut_command strut_command_check = {
         "the\n"
         "equations that a step evaluates and those it omits, the largest stable step, and for "
         "each\n"
-        "member its rest length in each of the four forms that the language accepts.\n",
+        "member its rest length in each of the four forms that the language accepts. Running\n"
+        "cables, laws, stops and hinges have tables of their own.\n",
     .options = options,
     .run = run_check,
 };

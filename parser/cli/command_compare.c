@@ -47,7 +47,7 @@ static bool is_taken(const compared_models *compared, size_t count, const char *
   return false;
 }
 
-/* The label with what --set behind the model says: "crawler friction=0.2". */
+/* The label with the values of --set behind the model: "crawler friction=0.2". */
 static const char *add_own_settings(const strut_arguments *arguments, compared_models *compared,
                                     size_t number, const char *label) {
   for (size_t i = 0; i < arguments->override_count && label; i++)
@@ -160,7 +160,7 @@ static strut_status open_one(const strut_arguments *arguments, compared_models *
   return status;
 }
 
-/* ---- all of them ---- */
+/* ---- all models ---- */
 
 /* Parameters of all models, concatenated: candidates for suggestions. */
 static const char *parameter_at(const void *context, size_t i) {
@@ -300,7 +300,8 @@ static strut_status draw_comparison(const char *stage, const char *name, double 
   char path[PATH];
   if (snprintf(path, sizeof path, "%s/%s", stage, name) >= (int)sizeof path)
     return strut_fail(error, STRUT_FILE_TROUBLE, "cannot write '%s': the path is too long", name);
-  return strut_compare_figure(path, width, result, first, count, error);
+  return strut_compare_figure(&(strut_plot){.path = path, .width = width}, result, first, count,
+                              error);
 }
 
 /* Writes all files, or none. */
@@ -370,7 +371,7 @@ static strut_status compare_models(const strut_arguments *arguments, const strut
     status = write_files(&files, &names, &result);
     if (status == STRUT_OK) status = print_comparison(arguments, &result);
     if (status == STRUT_OK && plot->path) {
-      status = strut_compare_figure(plot->path, plot->width, &result, 0, result.count, &error);
+      status = strut_compare_figure(plot, &result, 0, result.count, &error);
       if (status != STRUT_OK) strut_print_error(&error);
     }
     if (status == STRUT_OK) status = report_failures(&result);

@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/cli/analysis.h"
 #include "parser/cli/commands.h"
 
 #include <stdio.h>
 #include <string.h>
 
 #include "engine/output/figures/statics_figures.h"
-#include "engine/output/file.h"
 #include "engine/output/report/equilibria_report.h"
-#include "parser/cli/open_model.h"
-#include "parser/cli/option_values.h"
 #include "parser/cli/streams.h"
 #include "parser/yaml/diagnostics.h"
 
@@ -85,62 +83,24 @@ static strut_status read_options(const strut_arguments *arguments, strut_setup *
   return status;
 }
 
-static strut_status report_equilibria(const strut_arguments *arguments, const strut_equilibria *all,
-                                      const strut_model *model) {
-  strut_error error = {0};
-  if (arguments->output) {
-    strut_status status = strut_directory_create(arguments->output, &error);
-    if (!status)
-      status = strut_file_write_block(arguments->output, "equilibria.json",
-                                      strut_equilibria_json(all, model), &error);
-    if (status) return strut_print_failure(status, &error);
-  }
-  return strut_print_report(arguments, arguments->json
-                                           ? strut_equilibria_json(all, model)
-                                           : strut_equilibria_table(all, model, arguments->all));
-}
-
-static strut_status find_and_report(const strut_arguments *arguments, const strut_plot *plot,
-                                    strut_setup *setup) {
-  strut_equilibria_options options_read;
-  strut_model *model = NULL;
+static strut_status analyse_equilibria(strut_analysis *a, strut_error *error) {
+  strut_equilibria_options wanted;
   strut_equilibria all = {0};
-  strut_error error = {0};
   uint64_t seed;
-  strut_status status = read_options(arguments, setup, &options_read, &seed);
-  if (status) return status;
-  status = strut_model_compile(&setup->scene, &model, &error);
+  strut_status status = read_options(a->arguments, &a->setup, &wanted, &seed);
+  if (!status) status = strut_equilibria_find(a->model, &a->setup.experiment, &wanted, &all, error);
   if (!status)
-    status = strut_equilibria_find(model, &setup->experiment, &options_read, &all, &error);
-  if (status) {
-    strut_print_error(&error);
-  } else {
-    status = report_equilibria(arguments, &all, model);
-    if (!status && plot->path && all.count > 0) {
-      status = strut_equilibria_figure(plot->path, plot->width, model, &all, &error);
-      if (status) strut_print_error(&error);
-    }
-    if (!status && all.count == 0) {
-      strut_fail(&error, status = STRUT_NOT_SETTLED, "%s", all.remark);
-      strut_print_error(&error);
-    }
-  }
+    status = strut_report(a->arguments, a->names, strut_equilibria_json(&all, a->model), NULL,
+                          strut_equilibria_table(&all, a->model, a->arguments->all), error);
+  if (!status && a->plot.path && all.count > 0)
+    status = strut_equilibria_figure(&a->plot, a->model, &all, error);
+  if (!status && all.count == 0) status = strut_fail(error, STRUT_NOT_SETTLED, "%s", all.remark);
   strut_equilibria_free(&all);
-  strut_model_free(model);
   return status;
 }
 
 static strut_status run_equilibria(const strut_arguments *arguments) {
-  strut_setup setup;
-  strut_plot plot;
-  strut_status status = strut_check_output_writable(arguments, file_names);
-  if (status == STRUT_OK) status = strut_plot_read(&strut_command_equilibria, arguments, 0, &plot);
-  if (status != STRUT_OK) return status;
-  status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &setup);
-  if (status != STRUT_OK) return status;
-  status = find_and_report(arguments, &plot, &setup);
-  strut_setup_free(&setup);
-  return status;
+  return strut_analysis_run(&strut_command_equilibria, arguments, file_names, analyse_equilibria);
 }
 
 const strut_command strut_command_equilibria = {

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/cli/analysis.h"
 #include "parser/cli/commands.h"
 
 #include <math.h>
 #include <stdio.h>
 
+#include "engine/forces/elements.h"
 #include "engine/output/matrix_market.h"
 #include "engine/output/vtk.h"
-#include "parser/cli/open_model.h"
-#include "parser/cli/option_values.h"
 #include "parser/cli/options.h"
 #include "parser/cli/streams.h"
 
@@ -21,20 +21,17 @@ static strut_status still_of(const strut_arguments *arguments, const strut_opene
   strut_status status =
       strut_named_shape_find(arguments, model, &opened->setup.experiment, arena, &shape, error);
   if (status != STRUT_OK) return status;
-  const strut_member_table *table = &model->members;
   size_t nodes = model->scene->node_count, members = model->scene->member_count;
   *motion = (strut_trajectory){.frames = 1, .node_count = nodes, .member_count = members};
   motion->position = strut_arena_allocate(arena, 2 * nodes, sizeof(double));
   motion->length = strut_arena_allocate(arena, members, sizeof(double));
   motion->force = strut_arena_allocate(arena, members, sizeof(double));
-  if (!motion->position || !motion->length || !motion->force)
-    return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!motion->position || !motion->length || !motion->force) return strut_no_memory(error, "");
   for (size_t i = 0; i < 2 * nodes; i++) motion->position[i] = shape.q[i];
   for (size_t i = 0; i < members; i++) {
-    const double *from = shape.q + table->from[i], *to = shape.q + table->to[i];
-    motion->length[i] = hypot(to[0] - from[0], to[1] - from[1]);
-    double elastic = table->stiffness[i] * (motion->length[i] - table->rest[i]);
-    motion->force[i] = elastic < table->slack[i] ? table->slack[i] : elastic;
+    motion->length[i] = strut_member_path_length(model, (int32_t)i, shape.q);
+    motion->force[i] =
+        strut_member_elastic_tension(model, model->members.rest, (int32_t)i, shape.q);
   }
   return STRUT_OK;
 }
@@ -88,14 +85,14 @@ static const strut_option options[] = {
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
-static strut_status write_matrices(const strut_arguments *arguments, const char *directory,
-                                   const strut_model *model, const strut_experiment *experiment,
-                                   strut_error *error) {
+static strut_status write_matrices(strut_analysis *a, strut_error *error) {
+  const char *directory = strut_option_text(a->arguments, STRUT_OPTION_MATRICES);
   strut_arena arena = {0};
   strut_named_shape shape;
-  strut_status status = strut_named_shape_find(arguments, model, experiment, &arena, &shape, error);
+  strut_status status =
+      strut_named_shape_find(a->arguments, a->model, &a->setup.experiment, &arena, &shape, error);
   if (status == STRUT_OK)
-    status = strut_matrices_write(directory, model, shape.q, shape.name, error);
+    status = strut_matrices_write(directory, a->model, shape.q, shape.name, error);
   strut_arena_free(&arena);
   return status;
 }
@@ -115,9 +112,6 @@ static strut_status export_format(const strut_arguments *arguments, const char *
 
 static strut_status run_export(const strut_arguments *arguments) {
   const char *directory = strut_option_text(arguments, STRUT_OPTION_MATRICES);
-  strut_setup setup;
-  strut_model *model = NULL;
-  strut_error error = {0};
   if (strut_option_text(arguments, STRUT_OPTION_FORMAT)) return export_format(arguments, directory);
   if (!directory || !*directory || arguments->output) {
     fprintf(stderr, "strut export: %s\n",
@@ -125,15 +119,7 @@ static strut_status run_export(const strut_arguments *arguments) {
                               : "missing --matrices DIR, or --format vtk -o DIR");
     return STRUT_USAGE;
   }
-  strut_status status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &setup);
-  if (status != STRUT_OK) return status;
-  status = strut_model_compile(&setup.scene, &model, &error);
-  if (status == STRUT_OK)
-    status = write_matrices(arguments, directory, model, &setup.experiment, &error);
-  if (status != STRUT_OK) strut_print_error(&error);
-  strut_model_free(model);
-  strut_setup_free(&setup);
-  return status;
+  return strut_analysis_run(&strut_command_export, arguments, NULL, write_matrices);
 }
 
 const strut_command strut_command_export = {

@@ -84,7 +84,7 @@ static strut_status draw_form(const strut_plot *plot, const strut_scene *scene,
   strut_model *model = NULL;
   if (!plot->path) return STRUT_OK;
   strut_status status = strut_model_compile(scene, &model, error);
-  if (status == STRUT_OK) status = strut_form_figure(plot->path, plot->width, model, drawn, error);
+  if (status == STRUT_OK) status = strut_form_figure(plot, model, drawn, error);
   strut_model_free(model);
   return status;
 }

@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/cli/analysis.h"
 #include "parser/cli/commands.h"
 
 #include "engine/output/figures/statics_figures.h"
-#include "engine/output/file.h"
 #include "engine/output/report/modes_report.h"
-#include "parser/cli/open_model.h"
-#include "parser/cli/option_values.h"
-#include "parser/cli/streams.h"
 
 enum { MOST_MODES = 1000 };
 
@@ -24,60 +21,27 @@ static const strut_option options[] = {
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
-static strut_status write_files(const char *directory, const strut_model *model,
-                                const strut_modes *modes, strut_error *error) {
-  strut_status status = strut_directory_create(directory, error);
+static strut_status analyse_modes(strut_analysis *a, strut_error *error) {
+  strut_modes modes = {0};
+  int64_t count = 0;
+  strut_status status = strut_option_integer(&strut_command_modes, a->arguments, STRUT_OPTION_COUNT,
+                                             1, MOST_MODES, &count);
+  if (status != STRUT_OK) return status;
+  strut_modes_options wanted = {.at = strut_option_text(a->arguments, STRUT_OPTION_AT),
+                                .count = (int32_t)count,
+                                .stuck = a->arguments->stuck};
+  status = strut_modes_find(a->model, &a->setup.experiment, &wanted, &modes, error);
   if (status == STRUT_OK)
-    status = strut_file_write_block(directory, "modes.json", strut_modes_json(model, modes), error);
-  if (status == STRUT_OK)
-    status = strut_file_write_block(directory, "modes.csv", strut_modes_csv(modes), error);
+    status = strut_report(a->arguments, a->names, strut_modes_json(a->model, &modes),
+                          strut_modes_csv(&modes), strut_modes_table(a->model, &modes), error);
+  if (status == STRUT_OK && a->plot.path)
+    status = strut_modes_figure(&a->plot, a->model, &modes, (size_t)count, error);
+  strut_modes_free(&modes);
   return status;
-}
-
-/* `panels`: the value of --count, or 0 without it. */
-static strut_status report_modes(const strut_arguments *arguments, const strut_plot *plot,
-                                 const strut_model *model, const strut_modes *modes,
-                                 size_t panels) {
-  strut_error error = {0};
-  if (arguments->output && write_files(arguments->output, model, modes, &error) != STRUT_OK)
-    return strut_print_failure(error.status, &error);
-  strut_status status =
-      strut_print_report(arguments, arguments->json ? strut_modes_json(model, modes)
-                                                    : strut_modes_table(model, modes));
-  if (status != STRUT_OK || !plot->path) return status;
-  status = strut_modes_figure(plot->path, plot->width, model, modes, panels, &error);
-  return strut_print_failure(status, &error);
 }
 
 static strut_status run_modes(const strut_arguments *arguments) {
-  strut_setup setup;
-  strut_model *model = NULL;
-  strut_modes modes = {0};
-  strut_error error = {0};
-  strut_plot plot;
-  int64_t count = 0;
-  strut_status status = strut_option_integer(&strut_command_modes, arguments, STRUT_OPTION_COUNT, 1,
-                                             MOST_MODES, &count);
-  if (status == STRUT_OK) status = strut_plot_read(&strut_command_modes, arguments, 0, &plot);
-  if (status != STRUT_OK) return status;
-  status = strut_check_output_writable(arguments, file_names);
-  if (status != STRUT_OK) return status;
-  status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &setup);
-  if (status != STRUT_OK) return status;
-  strut_modes_options wanted = {.at = strut_option_text(arguments, STRUT_OPTION_AT),
-                                .count = (int32_t)count,
-                                .stuck = arguments->stuck};
-  status = strut_model_compile(&setup.scene, &model, &error);
-  if (status == STRUT_OK)
-    status = strut_modes_find(model, &setup.experiment, &wanted, &modes, &error);
-  if (status != STRUT_OK)
-    strut_print_error(&error);
-  else
-    status = report_modes(arguments, &plot, model, &modes, (size_t)count);
-  strut_modes_free(&modes);
-  strut_model_free(model);
-  strut_setup_free(&setup);
-  return status;
+  return strut_analysis_run(&strut_command_modes, arguments, file_names, analyse_modes);
 }
 
 const strut_command strut_command_modes = {

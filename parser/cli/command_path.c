@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/cli/analysis.h"
 #include "parser/cli/commands.h"
 
 #include <math.h>
@@ -8,11 +9,8 @@
 #include "engine/base/memory.h"
 #include "engine/base/number_text.h"
 #include "engine/output/figures/statics_figures.h"
-#include "engine/output/file.h"
 #include "engine/output/report/path_report.h"
 #include "engine/statics/path/path.h"
-#include "parser/cli/open_model.h"
-#include "parser/cli/option_values.h"
 #include "parser/cli/options.h"
 #include "parser/cli/streams.h"
 
@@ -187,7 +185,10 @@ static strut_status choose_followed(const strut_arguments *arguments, const stru
   }
   wanted->over = STRUT_PATH_OVER_ACTUATOR;
   wanted->index = find_actuator(scene, name);
-  if (wanted->index >= 0) return STRUT_OK;
+  if (wanted->index >= 0) {
+    if (scene->actuators[wanted->index].member < 0) *dimension = STRUT_DIM_ANGLE;
+    return STRUT_OK;
+  }
   wanted->over = STRUT_PATH_OVER_COORDINATE;
   wanted->index = find_coordinate(scene, name);
   return wanted->index >= 0 ? STRUT_OK : reject_name(scene, name);
@@ -240,33 +241,20 @@ static const strut_option options[] = {
     {STRUT_OPTION_OUTPUT, "output", "DIR", "write path.json and path.csv into DIR"},
     {STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object"},
     STRUT_PLOT_OPTIONS,
+    STRUT_AXIS_OPTIONS,
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
-
-static strut_status write_files(const char *directory, const strut_path *path,
-                                const strut_scene *scene, strut_error *error) {
-  strut_status status = strut_directory_create(directory, error);
-  if (status == STRUT_OK)
-    status = strut_file_write_block(directory, "path.json", strut_path_json(path, scene), error);
-  if (status == STRUT_OK)
-    status = strut_file_write_block(directory, "path.csv", strut_path_csv(path, scene), error);
-  return status;
-}
 
 /* Writes, prints and draws the path; reports what fails on stderr. */
 static strut_status report_path(const strut_arguments *arguments, const strut_plot *plot,
                                 const strut_model *model, const strut_path *path) {
   strut_error error = {0};
-  strut_status status = STRUT_OK;
-  if (arguments->output) status = write_files(arguments->output, path, model->scene, &error);
-  if (status == STRUT_OK) {
-    char *text = arguments->json ? strut_path_json(path, model->scene)
-                                 : strut_path_table(path, model->scene);
-    status = strut_print_report(arguments, text);
-    if (status != STRUT_OK || !plot->path) return status;
-    status = strut_path_figure(plot->path, plot->width, model, path, &error);
-  }
-  return strut_print_failure(status, &error);
+  strut_status status = strut_report(arguments, file_names, strut_path_json(path, model->scene),
+                                     strut_path_csv(path, model->scene),
+                                     strut_path_table(path, model->scene), &error);
+  if (status == STRUT_OK && plot->path) status = strut_path_figure(plot, model, path, &error);
+  if (status != STRUT_OK && error.message[0]) strut_print_error(&error);
+  return status;
 }
 
 static strut_status follow_path(const strut_arguments *arguments, const strut_plot *plot,
@@ -319,8 +307,8 @@ const strut_command strut_command_path = {
         "limit points, bifurcations, cables that become slack or taut, and nodes that touch or\n"
         "leave the ground, each with its effect on stability. Friction and drives are ignored.\n"
         "--over varies something else at constant loads: a number under 'parameters' (from its\n"
-        "value in the file), an actuator (the change of its member's rest length), or the\n"
-        "prescribed displacement of a node along x or y.\n",
+        "value in the file), an actuator (the change of its member's rest length or its hinge's\n"
+        "rest angle), or the prescribed displacement of a node along x or y.\n",
     .options = options,
     .run = run_path,
     .timed = true,

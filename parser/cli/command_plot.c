@@ -12,27 +12,24 @@
 #include "parser/yaml/diagnostics.h"
 
 static const strut_option options[] = {
-    {STRUT_OPTION_PLOT, "plot", "FILE", "the figure: FILE ends with .svg, .pdf or .png"},
+    {STRUT_OPTION_PLOT, "plot", "FILE", "write the figure into FILE (.svg, .pdf or .png)"},
     {STRUT_OPTION_WIDTH, "width", "WIDTH",
-     "of the figure: page (180 mm), column (88 mm), or a length such as 120 mm"},
-    {STRUT_OPTION_KIND, "kind", "KIND", "curves (if not given), map or work-precision"},
-    {STRUT_OPTION_X, "x", "COLUMN", "along x; the first if not given"},
-    {STRUT_OPTION_Y, "y", "COLUMN,...", "along y; the second if not given"},
-    {STRUT_OPTION_BY, "by", "COLUMN", "a curve, or a method, for each of what stands there"},
-    {STRUT_OPTION_PANELS, "panels", "COLUMN", "a panel for each of what stands there"},
-    {STRUT_OPTION_BAND, "band", "COLUMN=TEXT", "grey where the column has that text"},
-    {STRUT_OPTION_ONLY, "only", "COLUMN=TEXT", "only rows whose column has that text"},
+     "width of the figure: page (180 mm, default), column (88 mm) or a length"},
+    {STRUT_OPTION_KIND, "kind", "KIND", "curves (default), map or work-precision"},
+    {STRUT_OPTION_X, "x", "COLUMN", "column of the x axis (default: the first)"},
+    {STRUT_OPTION_Y, "y", "COLUMN,...", "columns of the y axis (default: the second)"},
+    {STRUT_OPTION_BY, "by", "COLUMN", "one curve, or method, for each value of the column"},
+    {STRUT_OPTION_PANELS, "panels", "COLUMN", "one panel for each value of the column"},
+    {STRUT_OPTION_BAND, "band", "COLUMN=TEXT", "grey background where COLUMN is TEXT"},
+    {STRUT_OPTION_ONLY, "only", "COLUMN=TEXT", "only rows in which COLUMN is TEXT"},
     {STRUT_OPTION_DIFFERENCE, "difference", "COLUMN",
-     "of its two texts the second less the first; of maps hatched where they differ"},
+     "draw the column's second text minus its first; hatch maps where they differ"},
     {STRUT_OPTION_LABEL, "label", "COLUMN",
-     "of a map: what is shown; of work-precision: beside the best"},
-    {STRUT_OPTION_DOUBT, "doubt", "COLUMN", "of a map: hatched where it says anything but 0"},
-    {STRUT_OPTION_LOG, "log", "AXES", "logarithmic: x, y or xy"},
+     "values of a map; labels of the Pareto front of work-precision"},
+    {STRUT_OPTION_DOUBT, "doubt", "COLUMN", "hatch a map where COLUMN is not 0"},
+    {STRUT_OPTION_LOG, "log", "AXES", "logarithmic axes: x, y or xy"},
     {STRUT_OPTION_TITLE, "title", "TEXT", "title above the figure"},
-    {STRUT_OPTION_X_LABEL, "x-label", "TEXT", "label of the x axis, instead of the column's name"},
-    {STRUT_OPTION_Y_LABEL, "y-label", "TEXT", "label of the (left) y axis"},
-    {STRUT_OPTION_X_LIMITS, "x-limits", "LOW,HIGH", "range of the x axis, in the column's unit"},
-    {STRUT_OPTION_Y_LIMITS, "y-limits", "LOW,HIGH", "range of the (left) y axis"},
+    STRUT_AXIS_OPTIONS,
     {STRUT_OPTION_COLORS, "colors", "SCALE",
      "colour scale of a map: auto (default), sequential, diverging or grey"},
     {STRUT_OPTION_END, NULL, NULL, NULL},
@@ -59,7 +56,7 @@ static int find_column(const strut_table *table, const char *option, const char 
   return STRUT_NO_COLUMN;
 }
 
-/* An option that names a column: false with a message where there is none of that name. */
+/* Reads an option that names a column: false with a message if the table has no such column. */
 static bool read_column(const strut_arguments *arguments, const strut_table *table,
                         strut_option_id id, const char *option, int *column) {
   const char *text = strut_option_text(arguments, id);
@@ -124,31 +121,6 @@ static bool read_log(const strut_arguments *arguments, strut_table_figure *figur
 /* Words of --colors, in the order of strut_colours. */
 static const char *const scales[] = {"auto", "sequential", "diverging", "grey", NULL};
 
-/* --x-label and --x-limits, or those of y. */
-static bool read_axis(const strut_arguments *arguments, strut_option_id label,
-                      strut_option_id limits, char letter, bool logarithmic,
-                      strut_table_axis *axis) {
-  const char *text = strut_option_text(arguments, limits);
-  double range[2];
-  axis->label = strut_option_text(arguments, label);
-  if (!text) return true;
-  axis->limited = strut_option_numbers(text, STRUT_DIM_NONE, range, 2) == 2 &&
-                  range[0] < range[1] && (!logarithmic || range[0] > 0);
-  axis->low = range[0];
-  axis->high = range[1];
-  if (!axis->limited)
-    fprintf(stderr,
-            "strut plot: --%c-limits expects two ascending numbers%s, such as 1,10; not '%s'\n",
-            letter, logarithmic ? " above 0" : "", text);
-  return axis->limited;
-}
-
-static bool read_axes(const strut_arguments *arguments, bool log_x, bool log_y, strut_table_axis *x,
-                      strut_table_axis *y) {
-  return read_axis(arguments, STRUT_OPTION_X_LABEL, STRUT_OPTION_X_LIMITS, 'x', log_x, x) &&
-         read_axis(arguments, STRUT_OPTION_Y_LABEL, STRUT_OPTION_Y_LIMITS, 'y', log_y, y);
-}
-
 static strut_status draw_map(const strut_arguments *arguments, const strut_plot *plot,
                              const strut_table *table, strut_error *error) {
   int third = table->column_count > 2 ? 2 : STRUT_NO_COLUMN;
@@ -165,7 +137,8 @@ static strut_status draw_map(const strut_arguments *arguments, const strut_plot 
               read_column(arguments, table, STRUT_OPTION_PANELS, "panels", &figure.panels) &&
               read_column(arguments, table, STRUT_OPTION_DOUBT, "doubt", &figure.doubt) &&
               read_choice(arguments, table, &figure.choice) &&
-              read_axes(arguments, false, false, &figure.x_axis, &figure.y_axis);
+              strut_axes_read(&strut_command_plot, arguments, false, false, &figure.x_axis,
+                              &figure.y_axis) == STRUT_OK;
   int colours = STRUT_COLOURS_AUTO;
   if (good && strut_option_word(&strut_command_plot, arguments, STRUT_OPTION_COLORS, scales,
                                 &colours) != STRUT_OK)
@@ -189,7 +162,8 @@ static strut_status draw_work_precision(const strut_arguments *arguments, const 
               read_column(arguments, table, STRUT_OPTION_Y, "y", &figure.y) &&
               read_column(arguments, table, STRUT_OPTION_BY, "by", &figure.by) &&
               read_column(arguments, table, STRUT_OPTION_LABEL, "label", &figure.label) &&
-              read_axes(arguments, true, true, &figure.x_axis, &figure.y_axis);
+              strut_axes_read(&strut_command_plot, arguments, true, true, &figure.x_axis,
+                              &figure.y_axis) == STRUT_OK;
   return good ? strut_table_savings(plot->path, &figure, table, error) : STRUT_USAGE;
 }
 
@@ -208,11 +182,12 @@ static strut_status draw_curves(const strut_arguments *arguments, const strut_pl
       read_column(arguments, table, STRUT_OPTION_PANELS, "panels", &figure.panels) &&
       read_match(arguments, table, STRUT_OPTION_BAND, "band", &figure.band, &figure.band_value) &&
       read_choice(arguments, table, &figure.choice) && read_log(arguments, &figure) &&
-      read_axes(arguments, figure.log_x, figure.log_y, &figure.x_axis, &figure.y_axis);
+      strut_axes_read(&strut_command_plot, arguments, figure.log_x, figure.log_y, &figure.x_axis,
+                      &figure.y_axis) == STRUT_OK;
   return good ? strut_table_curves(plot->path, &figure, table, error) : STRUT_USAGE;
 }
 
-/* Kinds of diagrams, and the options that only some of them have. */
+/* Kinds of diagrams, and the options that belong to some of them only. */
 static const char *const kinds[] = {"curves", "map", "work-precision", NULL};
 static strut_status (*const draws[])(const strut_arguments *arguments, const strut_plot *plot,
                                      const strut_table *table, strut_error *error) = {

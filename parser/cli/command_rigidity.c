@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/cli/analysis.h"
 #include "parser/cli/commands.h"
 
 #include "engine/output/figures/statics_figures.h"
-#include "engine/output/file.h"
 #include "engine/output/report/rigidity_report.h"
-#include "parser/cli/open_model.h"
-#include "parser/cli/option_values.h"
-#include "parser/cli/streams.h"
 
 static const char *const file_names[] = {"rigidity.json", NULL};
 
@@ -19,54 +16,26 @@ static const strut_option options[] = {
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
-static strut_status report_rigidity(const strut_arguments *arguments, const strut_model *model,
-                                    const strut_named_shape *shape, const strut_rigidity *rigidity,
-                                    strut_error *error) {
-  strut_status status = STRUT_OK;
-  if (arguments->output) status = strut_directory_create(arguments->output, error);
-  if (arguments->output && status == STRUT_OK)
-    status = strut_file_write_block(arguments->output, "rigidity.json",
-                                    strut_rigidity_json(rigidity, model, shape->name), error);
-  if (status != STRUT_OK) return status;
-  return strut_print_report(arguments, arguments->json
-                                           ? strut_rigidity_json(rigidity, model, shape->name)
-                                           : strut_rigidity_table(rigidity, model, shape->name));
-}
-
-static strut_status analyse_rigidity(const strut_arguments *arguments, const strut_plot *plot,
-                                     const strut_model *model, const strut_experiment *experiment,
-                                     strut_error *error) {
+static strut_status analyse_rigidity(strut_analysis *a, strut_error *error) {
+  const strut_model *model = a->model;
   strut_arena arena = {0};
   strut_named_shape shape;
   strut_rigidity rigidity = {0};
-  strut_status status = strut_named_shape_find(arguments, model, experiment, &arena, &shape, error);
+  strut_status status =
+      strut_named_shape_find(a->arguments, model, &a->setup.experiment, &arena, &shape, error);
   if (status == STRUT_OK) status = strut_rigidity_find(model, shape.q, &rigidity, error);
-  if (status == STRUT_OK) status = report_rigidity(arguments, model, &shape, &rigidity, error);
-  if (status == STRUT_OK && plot->path)
-    status = strut_rigidity_figure(plot->path, plot->width, model, shape.q, shape.name, &rigidity,
-                                   error);
+  if (status == STRUT_OK)
+    status = strut_report(a->arguments, a->names, strut_rigidity_json(&rigidity, model, shape.name),
+                          NULL, strut_rigidity_table(&rigidity, model, shape.name), error);
+  if (status == STRUT_OK && a->plot.path)
+    status = strut_rigidity_figure(&a->plot, model, shape.q, shape.name, &rigidity, error);
   strut_rigidity_free(&rigidity);
   strut_arena_free(&arena);
   return status;
 }
 
 static strut_status run_rigidity(const strut_arguments *arguments) {
-  strut_setup setup;
-  strut_model *model = NULL;
-  strut_error error = {0};
-  strut_plot plot;
-  strut_status status = strut_check_output_writable(arguments, file_names);
-  if (status == STRUT_OK) status = strut_plot_read(&strut_command_rigidity, arguments, 0, &plot);
-  if (status != STRUT_OK) return status;
-  status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &setup);
-  if (status != STRUT_OK) return status;
-  status = strut_model_compile(&setup.scene, &model, &error);
-  if (status == STRUT_OK)
-    status = analyse_rigidity(arguments, &plot, model, &setup.experiment, &error);
-  if (status != STRUT_OK && error.message[0]) strut_print_error(&error);
-  strut_model_free(model);
-  strut_setup_free(&setup);
-  return status;
+  return strut_analysis_run(&strut_command_rigidity, arguments, file_names, analyse_rigidity);
 }
 
 const strut_command strut_command_rigidity = {

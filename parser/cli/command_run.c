@@ -55,7 +55,7 @@ static strut_status begin_results(const strut_arguments *arguments, const strut_
         strut_hdf5_create(keep->results.stage, keep->scene_text);
   }
   if (keep->csv && keep->hdf5) return STRUT_OK;
-  return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  return strut_no_memory(error, "");
 }
 
 /* Adds the summary and the scene, and makes all files appear. */
@@ -140,7 +140,7 @@ static strut_status run_model(const strut_arguments *arguments, const strut_setu
     strut_status written = complete_results(&keep, &summary, model->scene, &late);
     if (written == STRUT_OK) written = strut_run_pictures_draw(pictures, model, &summary, &late);
     if (written != STRUT_OK) strut_print_error(&late);
-    /* A failed run is reported as such, not as a missing figure. */
+    /* The failure of the run is reported, not the missing figure. */
     if (written == STRUT_USAGE && status != STRUT_OK) written = status;
     if (written != STRUT_OK) status = written;
     strut_status printed = print_summary(arguments, &summary, model->scene);

@@ -51,20 +51,29 @@ static strut_status read_source(const strut_arguments *arguments, const source *
   return status;
 }
 
+/* Reads the scene and keeps its text, which is NULL after a failure. */
+static strut_status open_text(const strut_arguments *arguments, strut_purpose purpose, source *from,
+                              strut_setup *setup) {
+  strut_error error = {0};
+  *from = (source){.name = strcmp(arguments->model, "-") == 0 ? "<stdin>" : arguments->model};
+  strut_status status = strut_file_read(arguments->model, &from->text, &from->length, &error);
+  if (status != STRUT_OK) return strut_print_failure(status, &error);
+  status = read_source(arguments, from, purpose, setup);
+  if (status == STRUT_OK) return STRUT_OK;
+  strut_release(from->text);
+  from->text = NULL;
+  return status;
+}
+
 strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpose purpose,
                               strut_setup *setup) {
-  source from = {.name = strcmp(arguments->model, "-") == 0 ? "<stdin>" : arguments->model};
+  source from;
   strut_error error = {0};
-  strut_status status = strut_file_read(arguments->model, &from.text, &from.length, &error);
-  if (status != STRUT_OK) {
-    strut_print_error(&error);
-    return status;
-  }
   bool told = strut_option_text(arguments, STRUT_OPTION_ACCURACY) ||
               strut_option_text(arguments, STRUT_OPTION_STEP);
   strut_purpose run = told ? STRUT_FOR_RUN_STEP_LATER : STRUT_FOR_RUN;
-  status =
-      read_source(arguments, &from, purpose == STRUT_OPEN_FOR_RUN ? run : STRUT_FOR_ANY, setup);
+  strut_status status =
+      open_text(arguments, purpose == STRUT_OPEN_FOR_RUN ? run : STRUT_FOR_ANY, &from, setup);
   strut_release(from.text);
   if (status != STRUT_OK || purpose == STRUT_OPEN_FOR_ANY) return status;
   status = strut_resolve_start_equilibrium(setup, &error);
@@ -86,22 +95,11 @@ strut_status strut_warn_of_scene(const strut_setup *setup) {
 
 strut_status strut_open_model_text(const strut_arguments *arguments, char **text, size_t *length,
                                    strut_setup *setup) {
-  source from = {.name = strcmp(arguments->model, "-") == 0 ? "<stdin>" : arguments->model};
-  strut_error error = {0};
-  strut_status status = strut_file_read(arguments->model, &from.text, &from.length, &error);
-  *text = NULL;
-  if (status != STRUT_OK) {
-    strut_print_error(&error);
-    return status;
-  }
-  status = read_source(arguments, &from, STRUT_FOR_ANY, setup);
-  if (status != STRUT_OK) {
-    strut_release(from.text);
-    return status;
-  }
+  source from;
+  strut_status status = open_text(arguments, STRUT_FOR_ANY, &from, setup);
   *text = from.text;
   *length = from.length;
-  return STRUT_OK;
+  return status;
 }
 
 strut_status strut_check_output_writable(const strut_arguments *arguments,
@@ -192,7 +190,7 @@ static strut_status open_directory(const strut_arguments *arguments, size_t room
   char *scene = inside(arena, directory, "scene.yaml");
   char *trajectory = inside(arena, directory, "trajectory.h5");
   char *summary = inside(arena, directory, "summary.json");
-  if (!scene || !trajectory || !summary) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!scene || !trajectory || !summary) return strut_no_memory(error, "");
   strut_status status = check_files(directory, scene, trajectory, error);
   if (status != STRUT_OK) return status;
   strut_arguments inner = *arguments;

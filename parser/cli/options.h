@@ -129,7 +129,7 @@ typedef struct strut_arguments {
 typedef struct strut_command {
   const char *name;
   const char *model;           /* its one argument, such as "MODEL", or NULL */
-  bool model_optional, many;   /* many: one or more of them */
+  bool model_optional, many;   /* many: one or more models */
   const char *summary;         /* half a sentence for the list of commands */
   const char *details;         /* lines for its own help; may be NULL */
   const strut_option *options; /* besides --quiet and --help, which every command has; or NULL */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* TIOCGWINSZ is not in POSIX 2008; without it COLUMNS tells. */
+/* TIOCGWINSZ is not in POSIX 2008; without it, COLUMNS gives the width. */
 #define _DEFAULT_SOURCE 1
 #include "parser/cli/progress.h"
 
@@ -54,7 +54,7 @@ int strut_terminal_columns(int descriptor, int usual) {
 
 /* ---- progress ---- */
 
-enum { WIDTH = 30, USUAL = 80, PARTS = 8, BAR_ROOM = 3 * WIDTH + 1, TEXT = 96, LEAST = 8 };
+enum { WIDTH = 30, USUAL = 80, PARTS = 8, BAR_ROOM = 3 * WIDTH + 1, TEXT = 128, LEAST = 8 };
 
 /* Runs shorter than this show no bar [s]. */
 static const double PATIENCE = 0.5;
@@ -119,21 +119,40 @@ void strut_progress_bar(char *bar, int width, double fraction, bool unicode) {
 void strut_progress_phase(void *context, const char *name) {
   strut_progress *progress = context;
   progress->phase = name;
+  progress->run_start = now();
+  progress->last = 0;
+}
+
+/* ", up to 12 s left in this run": a run may stop early; what follows it is unknown. Empty at first. */
+static void write_run_left(strut_progress *progress, double fraction, char *text, size_t size) {
+  char left[32];
+  if (fraction < progress->last) progress->run_start = now(); /* the phase begins another run */
+  progress->last = fraction;
+  double elapsed = now() - progress->run_start;
+  *text = '\0';
+  if (elapsed < PATIENCE || !(fraction > 0)) return;
+  strut_progress_time(left, sizeof left, elapsed * (1.0 - fraction) / fraction);
+  snprintf(text, size, ", up to %s left in this run", left);
 }
 
 void strut_progress_show(void *context, double fraction) {
   strut_progress *progress = context;
-  char bar[BAR_ROOM], left[32], simulated[48], text[TEXT];
+  char bar[BAR_ROOM], left[32], simulated[48], run_left[64], text[TEXT];
   double elapsed = now() - progress->start;
-  if (now() - progress->start < PATIENCE) return;
+  write_run_left(progress, fraction, run_left, sizeof run_left);
+  if (elapsed < PATIENCE) return;
   strut_progress_time(left, sizeof left,
                       fraction > 0 ? elapsed * (1.0 - fraction) / fraction : HUGE_VAL);
   write_simulated(simulated, sizeof simulated, fraction, progress->span);
   double percent = floor(100.0 * fraction);
   int length;
-  if (progress->phase) { /* nobody knows how many parts follow: no time left is shown */
+  if (progress->phase) { /* the number of runs that follow is unknown */
     strut_progress_time(left, sizeof left, elapsed);
-    length = snprintf(text, sizeof text, " %s: %.0f %%, %s so far", progress->phase, percent, left);
+    length = snprintf(text, sizeof text, " %s: %.0f %%, %s so far%s", progress->phase, percent,
+                      left, run_left);
+    if (progress->columns - 1 - length < LEAST)
+      length =
+          snprintf(text, sizeof text, " %s: %.0f %%, %s so far", progress->phase, percent, left);
   } else {
     length = snprintf(text, sizeof text, " %3.0f %%, %s%s left", percent, simulated, left);
   }

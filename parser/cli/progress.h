@@ -9,20 +9,21 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/** Whether the user's locale writes UTF-8. */
+/** True if the user's locale writes UTF-8. */
 bool strut_terminal_unicode(void);
-/** Columns of the terminal on that descriptor, else what COLUMNS says, else `usual`. */
+/** Columns of the terminal on that descriptor, else the value of COLUMNS, else `usual`. */
 int strut_terminal_columns(int descriptor, int usual);
 
 typedef struct strut_progress {
-  bool wanted;       /* stderr is a terminal, and --quiet is not given */
-  bool colour;       /* the terminal knows escape sequences and NO_COLOR is not set */
-  bool shown;        /* there is a bar to erase */
-  bool unicode;      /* the locale writes UTF-8: the bar is made of blocks */
-  const char *phase; /* part of the work that the bar shows, in words; NULL: the whole */
-  double start;      /* [s] of the monotonic clock */
-  double span;       /* simulated time of the whole [s]; 0: not shown */
-  int columns;       /* of the terminal */
+  bool wanted;            /* stderr is a terminal, and --quiet is not given */
+  bool colour;            /* the terminal knows escape sequences and NO_COLOR is not set */
+  bool shown;             /* there is a bar to erase */
+  bool unicode;           /* the locale writes UTF-8: the bar is made of blocks */
+  const char *phase;      /* part of the work that the bar shows, in words; NULL: the whole */
+  double run_start, last; /* of the phase's present run: clock [s] and the last fraction */
+  double start;           /* [s] of the monotonic clock */
+  double span;            /* simulated time of the whole [s]; 0: not shown */
+  int columns;            /* of the terminal */
 } strut_progress;
 
 strut_progress strut_progress_begin(bool quiet);

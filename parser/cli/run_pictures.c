@@ -65,7 +65,7 @@ static void print_film(const strut_film *film, const strut_film_made *made) {
          made->frames, strut_quantity_of((double)made->frames / made->fps, DIGITS, "s").text);
   printf(film->speed == 1 ? " at real speed\n" : " at %.4g times real speed\n", film->speed);
   if (made->lasts < SHORT && motion > 0)
-    printf("  the recording lasts only %s: --speed 1/%.0f makes a film of %s\n",
+    printf("  the recording lasts only %s; --speed 1/%.0f makes a film of %s\n",
            strut_quantity_of(motion, DIGITS, "s").text, fmax(2, better_speed(motion)),
            strut_quantity_of(motion * fmax(2, better_speed(motion)), 2, "s").text);
   if (made->every > 1.5 * made->shown)
@@ -97,7 +97,7 @@ strut_status strut_run_film_make(strut_film *film, const strut_model *model,
 
 static const char *const views[] = {"overview", "period", "snapshots", "curves", NULL};
 
-/* An option that goes with one view only. */
+/* Refuses an option that belongs to another view. */
 static strut_status belongs(const strut_command *command, const strut_run_pictures *p,
                             const char *text, const char *option, strut_run_view view) {
   if (!text || (p->plot.path && p->figure.view == view)) return STRUT_OK;
@@ -137,21 +137,12 @@ static strut_status read_times(const strut_command *command, const strut_argumen
 strut_status strut_run_pictures_read(const strut_command *command, const strut_arguments *arguments,
                                      strut_run_pictures *p) {
   int view = STRUT_RUN_OVERVIEW;
-  const char *draw = strut_option_text(arguments, STRUT_OPTION_DRAW);
   strut_status status = strut_plot_read(command, arguments, 0, &p->plot);
   if (status == STRUT_OK)
     status = strut_option_word(command, arguments, STRUT_OPTION_DRAW, views, &view);
-  if (status == STRUT_OK && draw && !p->plot.path) {
-    fprintf(stderr, "strut %s: --draw needs --plot FILE\n", command->name);
-    status = STRUT_USAGE;
-  }
   p->figure.view = (strut_run_view)view;
   p->figure.width = p->plot.width;
-  p->figure.title = strut_option_text(arguments, STRUT_OPTION_TITLE);
-  if (status == STRUT_OK && p->figure.title && !p->plot.path) {
-    fprintf(stderr, "strut %s: --title needs --plot FILE\n", command->name);
-    status = STRUT_USAGE;
-  }
+  p->figure.title = p->plot.title;
   if (status == STRUT_OK) status = read_scale(command, arguments, p);
   if (status == STRUT_OK) status = read_times(command, arguments, p);
   p->quiet = arguments->quiet;

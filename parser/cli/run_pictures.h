@@ -48,8 +48,6 @@ typedef struct strut_run_pictures {
   STRUT_PLOT_OPTIONS,                                                                              \
       {STRUT_OPTION_DRAW, "draw", "WHAT", "overview (default), period, snapshots or curves"},      \
       {STRUT_OPTION_SCALE, "scale", "X,Y", "magnification of the motion in the figure period"},    \
-      {STRUT_OPTION_TITLE, "title", "TEXT",                                                        \
-       "title above the figure, instead of the model's name"},                                     \
       {STRUT_OPTION_TIMES, "times", "TIME,...", "instants of the snapshots, such as 0 s,80 ms"},   \
       STRUT_RUN_FILM_OPTIONS
 

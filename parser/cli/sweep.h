@@ -73,7 +73,7 @@ void strut_sweep_print_warnings(const strut_sweep_state *state);
 /** Prints the final report on stdout. `table`: its path. */
 strut_status strut_sweep_print_end(const strut_sweep_state *state, const char *table, bool json);
 
-/** A line, or an object of a JSON list, for each shard in the directory that is begun or missing. */
+/** Prints a line, or an object of a JSON list, for each started or missing shard. */
 strut_status strut_sweep_print_shards(const char *directory, const strut_shards_found *found,
                                       strut_arena *arena, bool json);
 

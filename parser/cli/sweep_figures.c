@@ -108,8 +108,8 @@ strut_status strut_sweep_figures_check_files(const strut_sweep_plan *plan, const
     names[i + 1] = strut_arena_format(&arena, "%s.svg", study->figures[i].name);
     if (!names[i + 1]) names = NULL;
   }
-  strut_status status = names ? strut_ownership_check(directory, names, error)
-                              : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  strut_status status =
+      names ? strut_ownership_check(directory, names, error) : strut_no_memory(error, "");
   strut_arena_free(&arena);
   return status;
 }
@@ -132,6 +132,10 @@ static int column_of_match(const strut_table *table, const char *match, const ch
   return STRUT_NO_COLUMN;
 }
 
+static strut_axis_choice axis_of(const char *label, const double limits[2]) {
+  return (strut_axis_choice){label, limits[0] < limits[1], limits[0], limits[1]};
+}
+
 static strut_status draw_table(const strut_study_figure *f, const char *path,
                                const strut_table *table, strut_error *error) {
   strut_table_choice choice = {.difference = column_of(table, f->difference)};
@@ -142,6 +146,9 @@ static strut_status draw_table(const strut_study_figure *f, const char *path,
                                         .x = column_of(table, f->x),
                                         .y = column_of(table, f->y),
                                         .value = column_of(table, f->color),
+                                        .x_axis = axis_of(f->x_label, f->x_limits),
+                                        .y_axis = axis_of(f->y_label, f->y_limits),
+                                        .colours = (strut_colours)f->colours,
                                         .panels = column_of(table, f->panels),
                                         .doubt = column_of(table, "flips"),
                                         .choice = choice};
@@ -152,6 +159,8 @@ static strut_status draw_table(const strut_study_figure *f, const char *path,
                               .x = column_of(table, f->x),
                               .y = {column_of(table, f->y)},
                               .y_count = 1,
+                              .x_axis = axis_of(f->x_label, f->x_limits),
+                              .y_axis = axis_of(f->y_label, f->y_limits),
                               .by = column_of(table, f->series),
                               .panels = column_of(table, f->panels),
                               .choice = choice,

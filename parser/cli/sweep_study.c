@@ -103,10 +103,6 @@ typedef struct copy {
 enum { COPIES = 2 };
 static const char model_name[] = "model.yaml";
 
-static strut_status no_memory(strut_error *error) {
-  return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-}
-
 static bool same_file(const char *a, const char *b) {
   struct stat first, second;
   return stat(a, &first) == 0 && stat(b, &second) == 0 && first.st_dev == second.st_dev &&
@@ -136,7 +132,7 @@ static strut_status check_copy(const char *directory, const copy *c, strut_arena
                                strut_error *error) {
   struct stat found;
   char *path = strut_arena_format(arena, "%s/%s", directory, c->name);
-  if (!path) return no_memory(error);
+  if (!path) return strut_no_memory(error, "");
   if (stat(path, &found) != 0 || same_file(path, c->source) || holds_text(path, c->text))
     return STRUT_OK;
   if (!lies_in(directory, c->study, arena) && !lies_in(directory, c->model, arena))
@@ -151,7 +147,7 @@ static strut_status check_copy(const char *directory, const copy *c, strut_arena
 static strut_status write_copy(const char *directory, const copy *c, strut_arena *arena,
                                strut_error *error) {
   char *path = strut_arena_format(arena, "%s/%s", directory, c->name);
-  if (!path) return no_memory(error);
+  if (!path) return strut_no_memory(error, "");
   if (same_file(path, c->source) || holds_text(path, c->text)) return STRUT_OK; /* already there */
   return strut_file_write_text(directory, c->name, c->text, error);
 }
@@ -166,7 +162,7 @@ static strut_status for_each(const strut_arguments *arguments, const strut_sweep
   const char *study_path = file->path, *model_path = file->model_path;
   const copy copies[COPIES] = {{"study.yaml", study_path, text, study_path, model_path},
                                {model_name, model_path, file->model_text, study_path, model_path}};
-  strut_status status = text ? STRUT_OK : no_memory(error);
+  strut_status status = text ? STRUT_OK : strut_no_memory(error, "");
   for (int i = 0; i < COPIES && status == STRUT_OK; i++)
     status = what(arguments->output, &copies[i], &arena, error);
   strut_release(text);

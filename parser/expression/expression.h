@@ -64,7 +64,7 @@ typedef struct strut_refusal {
 } strut_refusal;
 
 /**
- * Finds the column OWNER.FIELD; with an empty owner FIELD is a word alone. `kind`: "node" or "member"
+ * Finds the column OWNER.FIELD; with an empty owner FIELD is a word alone. `kind`: "node", "member" or "hinge"
  * where the text says which, else NULL. Returns 1 and fills column and dimension; 0: nothing has that
  * name; -1: refused.
  */

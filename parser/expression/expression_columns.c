@@ -20,7 +20,7 @@ static strut_compiled *push(strut_expression_reader *r) {
 /* Numbers on the stack after the instructions so far. */
 static size_t stacked(const strut_compiler *c) {
   static const size_t operands[] = {
-#define STRUT_OPERANDS(id, count, word) count,
+#define STRUT_OPERANDS(id, count, ...) count,
       STRUT_OPERATION_TABLE(STRUT_OPERANDS)
 #undef STRUT_OPERANDS
   };
@@ -100,7 +100,7 @@ static bool read_raw_name(strut_expression_reader *r, char last, strut_piece *na
   return strut_expression_unexpected(r, last == ',' ? "',' and a second node" : "')'");
 }
 
-/* node(NAME).FIELD and member(NAME).FIELD, for names that expressions would take apart. */
+/* node(NAME).FIELD, member(NAME).FIELD and hinge(NAME).FIELD, for names that expressions would take apart. */
 static int read_quoted(strut_expression_reader *r, const char *kind, size_t begin,
                        strut_quantity *q) {
   strut_piece name;
@@ -110,7 +110,9 @@ static int read_quoted(strut_expression_reader *r, const char *kind, size_t begi
   if (!word) {
     strut_expression_fail(r, begin, r->at, "expected a column of the %s, such as %s(%.*s).%s", kind,
                           kind, name.length > 40 ? 40 : (int)name.length, name.text,
-                          kind[0] == 'n' ? "y" : "force");
+                          kind[0] == 'n'   ? "y"
+                          : kind[0] == 'h' ? "moment"
+                                           : "force");
     return -1;
   }
   size_t field = r->at + 1;
@@ -129,15 +131,15 @@ static int read_pair(strut_expression_reader *r, strut_piece word, size_t begin,
   return take(r, begin, r->at, found, column, dimension, &refusal, q);
 }
 
-/* What looks like a function: node(A).x, member(A).force, angle(A, B), distance(A, B). */
+/* What looks like a function: node(A).x, member(A).force, hinge(A).moment, angle(A, B), distance(A, B). */
 static int read_call(strut_expression_reader *r, size_t begin, size_t length, strut_quantity *q) {
-  static const char *const words[] = {"node", "member", "angle", "distance"};
+  static const char *const words[] = {"node", "member", "hinge", "angle", "distance"};
   for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
     if (strlen(words[i]) != length || memcmp(words[i], r->text + begin, length) != 0) continue;
     r->at = begin + length;
     if (strut_expression_peek(r) != '(') break;
     r->at++;
-    return i < 2 ? read_quoted(r, words[i], begin, q)
+    return i < 3 ? read_quoted(r, words[i], begin, q)
                  : read_pair(r, piece(r, begin, begin + length), begin, q);
   }
   r->at = begin;

@@ -176,8 +176,10 @@ strut_dimension strut_measure_dimension(strut_measure measure) {
     case STRUT_MEASURE_DISSIPATION: return STRUT_DIM_DISSIPATION;
     case STRUT_MEASURE_ANGULAR_STIFFNESS: return STRUT_DIM_ANGULAR_STIFFNESS;
     case STRUT_MEASURE_ANGULAR_DAMPING: return STRUT_DIM_ANGULAR_DAMPING;
-    default: return STRUT_DIM_NONE;
+    case STRUT_MEASURE_NONE:
+    case STRUT_MEASURE_CONTEXT: break;
   }
+  return STRUT_DIM_NONE;
 }
 
 const char *strut_expected_number(strut_dimension dimension, char *buffer, size_t size) {
@@ -231,35 +233,6 @@ const char *strut_words_text(const char *words, char *buffer, size_t size) {
   return buffer;
 }
 
-/* The types whose values are no number and have no words of their own. */
-static const char *expected_shape(strut_key_type type) {
-  switch (type) {
-    case STRUT_TYPE_VERSION: return "the language version 1";
-    case STRUT_TYPE_TEXT: return "a text";
-    case STRUT_TYPE_NAME: return "a name";
-    case STRUT_TYPE_NODE_PATH: return "two nodes such as [n1, n2], or the nodes of a running cable";
-    case STRUT_TYPE_NODE_TRIPLE: return "three nodes such as [n1, n2, n3]";
-    case STRUT_TYPE_NUMBERS: return "a list of numbers";
-    case STRUT_TYPE_POINTS: return "a list of points such as [[0, 0], [2 mm, 3 N]]";
-    case STRUT_TYPE_LAW:
-      return "a law such as {kind: bilinear, knee: 2 mm, second_stiffness: 5 N/m}";
-    case STRUT_TYPE_CONTACT_NODES: return "all, or a list of nodes such as [n1, n2]";
-    case STRUT_TYPE_NODE_SETS: return "nodes such as [n1, n2], or a list of such lists";
-    case STRUT_TYPE_GROUPS: return "a group, or a list of groups";
-    case STRUT_TYPE_SIGNAL:
-      return "a signal such as {sine: {amplitude: 1 mm, frequency: 10 Hz}}, or a signal's name";
-    case STRUT_TYPE_SIGNALS: return "a list of signals";
-    case STRUT_TYPE_TABLE: return "a list of points such as [[0 s, 0], [1 s, 2]]";
-    case STRUT_TYPE_SETTLE: return "true, or a mapping such as {limit: 100 s}";
-    case STRUT_TYPE_STEADY: return "true, or a mapping such as {tolerance: 0.5 %}";
-    case STRUT_TYPE_EXPRESSION: return "an expression such as com.vy, n1.y - n2.y or m1.force";
-    case STRUT_TYPE_AXES: return "a list of axes such as [{friction: [0.1, 0.2]}]";
-    case STRUT_TYPE_TIMES: return "a list of times such as [0 s, 20 ms]";
-    case STRUT_TYPE_MAP: return "a mapping {key: value, ...}";
-    default: return "a mapping {name: ..., ...}";
-  }
-}
-
 const char *strut_key_expected(int key, char *buffer, size_t size) {
   const strut_key *k = strut_key_at(key);
   char text[400];
@@ -287,7 +260,29 @@ const char *strut_key_expected(int key, char *buffer, size_t size) {
       snprintf(buffer, size, "%s, or a list of x and y",
                strut_words_text(k->words, text, sizeof text));
       break;
-    default: snprintf(buffer, size, "%s", expected_shape(k->type));
+    case STRUT_TYPE_VERSION: return "the language version 1";
+    case STRUT_TYPE_TEXT: return "a text";
+    case STRUT_TYPE_NAME: return "a name";
+    case STRUT_TYPE_NODE_PATH: return "two nodes such as [n1, n2], or the nodes of a running cable";
+    case STRUT_TYPE_NODE_TRIPLE: return "three nodes such as [n1, n2, n3]";
+    case STRUT_TYPE_NUMBERS: return "a list of numbers";
+    case STRUT_TYPE_POINTS: return "a list of points such as [[0, 0], [2 mm, 3 N]]";
+    case STRUT_TYPE_LAW:
+      return "a law such as {kind: bilinear, knee: 2 mm, second_stiffness: 5 N/m}";
+    case STRUT_TYPE_CONTACT_NODES: return "all, or a list of nodes such as [n1, n2]";
+    case STRUT_TYPE_NODE_SETS: return "nodes such as [n1, n2], or a list of such lists";
+    case STRUT_TYPE_GROUPS: return "a group, or a list of groups";
+    case STRUT_TYPE_SIGNAL:
+      return "a signal such as {sine: {amplitude: 1 mm, frequency: 10 Hz}}, or a signal's name";
+    case STRUT_TYPE_SIGNALS: return "a list of signals";
+    case STRUT_TYPE_TABLE: return "a list of points such as [[0 s, 0], [1 s, 2]]";
+    case STRUT_TYPE_SETTLE: return "true, or a mapping such as {limit: 100 s}";
+    case STRUT_TYPE_STEADY: return "true, or a mapping such as {tolerance: 0.5 %}";
+    case STRUT_TYPE_EXPRESSION: return "an expression such as com.vy, n1.y - n2.y or m1.force";
+    case STRUT_TYPE_AXES: return "a list of axes such as [{friction: [0.1, 0.2]}]";
+    case STRUT_TYPE_TIMES: return "a list of times such as [0 s, 20 ms]";
+    case STRUT_TYPE_MAP: return "a mapping {key: value, ...}";
+    case STRUT_TYPE_THINGS: return "a mapping {name: ..., ...}";
   }
   return buffer;
 }

@@ -117,7 +117,7 @@ typedef enum strut_key_need {
   STRUT_REQUIRED
 } strut_key_need;
 
-/** How a field keeps its value. */
+/** The C type of a field. */
 typedef enum strut_field_kind {
   STRUT_FIELD_BY_HAND, /* no field: the section's reader and writer have code for the key */
   STRUT_FIELD_DOUBLE,
@@ -131,7 +131,7 @@ typedef enum strut_field_kind {
   STRUT_FIELD_TEXT /* const char *; of a WORD, the word itself */
 } strut_field_kind;
 
-/** Where a key's value is kept in the object of its section. */
+/** The field that holds a key's value in the object of its section. */
 typedef struct strut_field {
   strut_field_kind kind;
   size_t offset, object_size;
@@ -210,7 +210,7 @@ STRUT_API bool strut_key_is_bound(const strut_key *key);
 STRUT_API strut_dimension strut_measure_dimension(strut_measure measure);
 /** "a length such as '10 mm'"; written into buffer. */
 STRUT_API const char *strut_expected_number(strut_dimension dimension, char *buffer, size_t size);
-/** What a key's value should be, for messages: "bar, spring or cable"; written into buffer. */
+/** Describes the values of a key for messages, such as "bar, spring or cable", in buffer. */
 STRUT_API const char *strut_key_expected(int key, char *buffer, size_t size);
 /** "bar, spring or cable" from "bar|spring|cable". */
 STRUT_API const char *strut_words_text(const char *words, char *buffer, size_t size);

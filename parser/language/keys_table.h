@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * The table of the language: one row for each key. keys.h says what is made of it.
+ * The table of the language, one row per key; keys.h lists what is generated from it.
  *
  * X(section, id, name, type, measure, range, default, need, set, words, field, description)
  *
@@ -62,7 +62,7 @@
   X(HINGE, DAMPING, "damping", NUMBER, ANGULAR_DAMPING, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_hinge, damping), "Moment per angular velocity.") \
   X(HINGE, REST_ANGLE, "rest_angle", NUMBER, ANGLE, ANY, "as drawn", OPTIONAL, 0, "", FIELD(strut_hinge, rest_angle), "Angle at which the hinge has no moment. The angle is continuous over whole turns; at the start it is within half a turn of this one.") \
   X(HINGE, LAW, "law", LAW, NONE, ANY, "linear", OPTIONAL, 0, "", BY_HAND, "Law of the moment over angle - rest angle.") \
-  X(LAW, KIND, "kind", WORD, NONE, ANY, "linear", WRITTEN, 0, STRUT_LAW_WORDS, FIELD(strut_law, kind), "With the stiffness k and x the elongation: `linear`, k x. `bilinear`, k x up to |x| = knee, then with the slope `second_stiffness`. `play`, no force up to |x| = gap, then k (|x| - gap). `polynomial`, c1 x + c2 x^2 + ... `logarithmic`, k L ln(length / L) with the rest length L. `exponential`, k s (exp(x / s) - 1) with the scale s. `table`, through points.") \
+  X(LAW, KIND, "kind", WORD, NONE, ANY, "linear", WRITTEN, 0, STRUT_LAW_WORDS, FIELD(strut_law, kind), "With the stiffness k and x the elongation: `linear`, k x. `bilinear`, k x up to the knee on either side, then with the slope `second_stiffness`. `play`, no force within the gap on either side, beyond it k times the excess. `polynomial`, c1 x + c2 x^2 + ... `logarithmic`, k L ln(length / L) with the rest length L. `exponential`, k s (exp(x / s) - 1) with the scale s. `table`, through points.") \
   X(LAW, CARRIES, "carries", WORD, NONE, ANY, "both", OPTIONAL, 0, "both|tension|compression", FIELD(strut_law, carries), "Forces that are carried: with `tension` the element acts beyond its rest length only, with `compression` below it.") \
   X(LAW, KNEE, "knee", NUMBER, CONTEXT, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_law, knee), "Elongation at which a bilinear law changes its slope.") \
   X(LAW, SECOND_STIFFNESS, "second_stiffness", NUMBER, CONTEXT, ANY, "", OPTIONAL, 0, "", FIELD(strut_law, second_stiffness), "Slope of a bilinear law beyond its knee.") \
@@ -85,6 +85,10 @@
   X(FRICTION, MU, "mu", NUMBER, NONE, NOT_NEGATIVE, "", OPTIONAL, 0, "", BY_HAND, "Both friction coefficients.") \
   X(FRICTION, MU_STATIC, "mu_static", NUMBER, NONE, NOT_NEGATIVE, "", WRITTEN, 0, "", FIELD(strut_friction, mu_static), "Coefficient of static friction.") \
   X(FRICTION, MU_KINETIC, "mu_kinetic", NUMBER, NONE, NOT_NEGATIVE, "", WRITTEN, 0, "", FIELD(strut_friction, mu_kinetic), "Coefficient of kinetic friction.") \
+  X(FRICTION, MU_FORWARD, "mu_forward", NUMBER, NONE, NOT_NEGATIVE, "", OPTIONAL, 0, "", BY_HAND, "Both coefficients against motion towards +x along the ground, where those against motion towards -x differ.") \
+  X(FRICTION, MU_FORWARD_STATIC, "mu_forward_static", NUMBER, NONE, NOT_NEGATIVE, "`mu_forward`", OPTIONAL, 0, "", BY_HAND, "Coefficient of static friction against motion towards +x.") \
+  X(FRICTION, MU_BACKWARD, "mu_backward", NUMBER, NONE, NOT_NEGATIVE, "as forward", OPTIONAL, 0, "", BY_HAND, "Both coefficients against motion towards -x along the ground.") \
+  X(FRICTION, MU_BACKWARD_STATIC, "mu_backward_static", NUMBER, NONE, NOT_NEGATIVE, "`mu_backward`", OPTIONAL, 0, "", BY_HAND, "Coefficient of static friction against motion towards -x.") \
   X(FRICTION, STICK_VELOCITY, "stick_velocity", NUMBER, VELOCITY, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_friction, stick_velocity), "Half the width of the stick band; Karnopp's law needs it.") \
   X(FRICTION, WIDTH, "width", NUMBER, VELOCITY, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_friction, width), "Sliding speed at which the smooth law reaches 0.71 of the full friction; that law needs it.") \
   X(CONTACT, GROUP, "group", GROUPS, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Groups that provide defaults; later groups take precedence.") \
@@ -163,7 +167,7 @@
   X(STEADY, SHOOTING, "shooting", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_steady, shooting), "Solve for the periodic orbit by Newton's method (shooting) and report its Floquet multipliers; for structures with up to 48 degrees of freedom.") \
   X(OUTPUT, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, "a thousandth of the recorded time", OPTIONAL, 0, "", FIELD(strut_experiment, output_every), "Time between two samples.") \
   X(OUTPUT, LAST, "last", NUMBER, CONTEXT, ABOVE_ZERO, "the whole run", OPTIONAL, 0, "", FIELD(strut_experiment, output_last), "Record only the end of the run: a number of periods if the run is given in periods, otherwise a time.") \
-  X(OUTPUT, CHANNELS, "channels", WORDS, NONE, ANY, "[position, length, force]", WRITTEN, 0, "position|velocity|length|force|contact|energy", FIELD(strut_experiment, channels), "The channels to record.") \
+  X(OUTPUT, CHANNELS, "channels", WORDS, NONE, ANY, "[position, length, force]", WRITTEN, 0, "position|velocity|length|force|contact|energy|angle|moment", FIELD(strut_experiment, channels), "The channels to record: `position` and `velocity` of nodes, `length` and `force` of members, `contact` forces, `energy`, `angle` and `moment` of hinges.") \
   X(STUDY, VERSION, "strut", VERSION, NONE, ANY, "", REQUIRED, 0, "1", BY_HAND, "Version of the language.") \
   X(STUDY, NAME, "study", TEXT, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_study, name), "Name of the study.") \
   X(STUDY, DESCRIPTION, "description", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study, description), "What the study is for.") \
@@ -204,7 +208,12 @@
   X(FIGURE, TO, "to", NUMBER, TIME, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, to), "Motion: end of the time range.") \
   X(FIGURE, SCALE, "scale", PAIR, NONE, ANY, "[1, 1]", OPTIONAL, 0, "", FIELD(strut_study_figure, scale), "Period: magnification of the motion along x and y.") \
   X(FIGURE, TIMES, "times", TIMES, NONE, ANY, "six", OPTIONAL, 0, "", BY_HAND, "Snapshots: the times to draw.") \
-  X(FIGURE, TITLE, "title", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, title), "Title of the figure.")
+  X(FIGURE, TITLE, "title", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, title), "Title of the figure.") \
+  X(FIGURE, X_LABEL, "x_label", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, x_label), "Lines, map and motion: label of the x axis instead of the column's name; the unit is added.") \
+  X(FIGURE, Y_LABEL, "y_label", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, y_label), "Likewise of the y axis.") \
+  X(FIGURE, X_LIMITS, "x_limits", PAIR, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, x_limits), "Lines, map and motion: ends of the x axis in the column's SI unit, ascending.") \
+  X(FIGURE, Y_LIMITS, "y_limits", PAIR, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, y_limits), "Likewise of the y axis.") \
+  X(FIGURE, COLORS, "colors", WORD, NONE, ANY, "auto", OPTIONAL, 0, "auto|sequential|diverging|grey", FIELD(strut_study_figure, colours), "Map: the colour scale of numbers.")
 /* clang-format on */
 
 #endif

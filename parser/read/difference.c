@@ -6,7 +6,7 @@
 
 #include "parser/yaml/document.h"
 
-/* What is being compared. */
+/* The two scenes under comparison. */
 typedef struct comparison {
   strut_arena *arena; /* of the results */
   strut_difference *list;

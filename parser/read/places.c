@@ -127,7 +127,15 @@ static bool single_place(strut_reader *reader, const strut_finding *finding, str
       fields = &reader->output, section = STRUT_KEY_SCENE_OUTPUT;
       broken = fields->broken || reader->run.broken;
       break;
-    default:
+    case STRUT_ON_SCENE:
+    case STRUT_ON_NODE:
+    case STRUT_ON_MEMBER:
+    case STRUT_ON_HINGE:
+    case STRUT_ON_CONTACT:
+    case STRUT_ON_ACTUATOR:
+    case STRUT_ON_LOAD:
+    case STRUT_ON_SIGNAL:
+    case STRUT_ON_CONFIGURATION:
       broken =
           key && strut_key_find(STRUT_SECTION_SCENE, key) >= 0 &&
           strut_slot_of(fields, strut_key_find(STRUT_SECTION_SCENE, key))->state == STRUT_BROKEN;

@@ -15,7 +15,7 @@ static bool nodes_known(strut_reader *reader) {
   return strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN;
 }
 
-/* Of the configuration that is being read: the last one. */
+/* The configuration that is being read, which is the last one. */
 static void take_position(strut_reader *reader, int32_t node, const double pair[2],
                           const strut_tree *value) {
   strut_scene *scene = reader->scene;

@@ -35,7 +35,7 @@ static const char *name_of_sections(const void *context, size_t i) {
   return key < 0 ? NULL : strut_key_at(key)->name;
 }
 
-/* What was probably meant by a key that no section has; NULL: nothing is near. */
+/* Suggests a known key for an unknown one; NULL if none is near. */
 static const char *nearest_key(strut_reader *reader, const char *text,
                                const sections_context *context) {
   for (size_t i = 0; i < context->count; i++) {
@@ -199,8 +199,11 @@ static bool shape_fits(strut_key_type type, const strut_tree *value) {
     case STRUT_TYPE_TEXT:
     case STRUT_TYPE_NAME:
     case STRUT_TYPE_EXPRESSION: return scalar;
-    default: return true; /* the readers of numbers and words report it */
+    case STRUT_TYPE_NUMBER:
+    case STRUT_TYPE_PAIR:
+    case STRUT_TYPE_WORD: break; /* their readers report it */
   }
+  return true;
 }
 
 static bool read_version(strut_reader *reader, const strut_tree *value) {
@@ -212,28 +215,28 @@ static bool read_version(strut_reader *reader, const strut_tree *value) {
   return false;
 }
 
-/* Reads the value; false if it was reported. */
+static bool read_number(strut_reader *reader, const strut_key *key, const strut_tree *value,
+                        strut_owner owner, double *number) {
+  if (key->measure == STRUT_MEASURE_CONTEXT) return true;
+  bool whole = key->limits.range == STRUT_RANGE_WHOLE;
+  return strut_read_number(reader, value, key->name, owner, strut_measure_dimension(key->measure),
+                           whole ? STRUT_RANGE_ANY : key->limits.range, number) &&
+         (!whole || strut_check_whole(reader, value, key, owner, *number));
+}
+
+/* Reads a value whose type needs no code of the section's own; false if it was reported. */
 static bool read_typed(strut_reader *reader, const strut_key *key, const strut_tree *value,
                        strut_owner owner, strut_slot *slot) {
-  strut_dimension dimension = strut_measure_dimension(key->measure);
-  switch (key->type) {
-    case STRUT_TYPE_VERSION: return read_version(reader, value);
-    case STRUT_TYPE_NUMBER:
-      if (key->measure == STRUT_MEASURE_CONTEXT) return true;
-      if (key->limits.range == STRUT_RANGE_WHOLE)
-        return strut_read_number(reader, value, key->name, owner, dimension, STRUT_RANGE_ANY,
-                                 &slot->number[0]) &&
-               strut_check_whole(reader, value, key, owner, slot->number[0]);
-      return strut_read_number(reader, value, key->name, owner, dimension, key->limits.range,
-                               &slot->number[0]);
-    case STRUT_TYPE_PAIR:
-      if (key->section == STRUT_SECTION_SCENE) return true; /* its parameters are not read yet */
-      return strut_read_pair(reader, value, key->name, owner, dimension, slot->number);
-    case STRUT_TYPE_WORD: return strut_read_word(reader, key, value, owner, &slot->word);
-    case STRUT_TYPE_WORDS: return read_words(reader, key, value, owner, &slot->word);
-    case STRUT_TYPE_FIXED: return read_fixed(reader, key, value, owner, &slot->word);
-    default: return true;
-  }
+  strut_key_type type = key->type;
+  if (type == STRUT_TYPE_VERSION) return read_version(reader, value);
+  if (type == STRUT_TYPE_NUMBER) return read_number(reader, key, value, owner, slot->number);
+  if (type == STRUT_TYPE_WORD) return strut_read_word(reader, key, value, owner, &slot->word);
+  if (type == STRUT_TYPE_WORDS) return read_words(reader, key, value, owner, &slot->word);
+  if (type == STRUT_TYPE_FIXED) return read_fixed(reader, key, value, owner, &slot->word);
+  if (type != STRUT_TYPE_PAIR || key->section == STRUT_SECTION_SCENE) /* no parameters yet */
+    return true;
+  return strut_read_pair(reader, value, key->name, owner, strut_measure_dimension(key->measure),
+                         slot->number);
 }
 
 void strut_read_slot(strut_reader *reader, int key, const strut_tree *key_tree,
@@ -272,7 +275,7 @@ static void store_value(strut_reader *reader, strut_arena *arena, const strut_ke
       for (int c = 0; c < 2; c++) ((bool *)field)[c] = (slot->word >> c & 1) != 0;
       break;
     case STRUT_FIELD_TEXT: *(const char **)field = store_text(reader, arena, key, slot); break;
-    default: assert(false);
+    case STRUT_FIELD_BY_HAND: assert(false);
   }
 }
 
@@ -324,11 +327,14 @@ static void check_coefficients(strut_reader *reader, strut_fields *fields, strut
   const strut_slot *mu = strut_slot_of(fields, STRUT_KEY_FRICTION_MU);
   const strut_slot *statics = strut_slot_of(fields, STRUT_KEY_FRICTION_MU_STATIC);
   const strut_slot *kinetics = strut_slot_of(fields, STRUT_KEY_FRICTION_MU_KINETIC);
-  const strut_slot *rival = statics->key ? statics : kinetics;
-  if (!mu->key || !rival->key) return;
+  const strut_slot *forward = strut_slot_of(fields, STRUT_KEY_FRICTION_MU_FORWARD);
+  const strut_slot *rival = statics->key ? statics : kinetics->key ? kinetics : forward;
+  if (!mu->key) mu = forward;
+  if (!mu->key || !rival->key || rival == mu) return;
   strut_report_error(reader, mu->key->place,
-                     "%s gives both 'mu' and '%s', expected 'mu', or 'mu_static' and 'mu_kinetic'",
-                     strut_owner_text(reader, owner), rival->key->text);
+                     "%s gives both '%s' and '%s', expected 'mu', or 'mu_static' and 'mu_kinetic', "
+                     "or 'mu_forward' and 'mu_backward'",
+                     strut_owner_text(reader, owner), mu->key->text, rival->key->text);
   fields->broken = true;
 }
 

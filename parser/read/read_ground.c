@@ -17,6 +17,35 @@ static unsigned key_bit(int key) {
   return 1u << (key - strut_section_first(STRUT_SECTION_FRICTION));
 }
 
+static bool is_given(strut_fields *fields, int key, double *number) {
+  const strut_slot *slot = strut_slot_of(fields, key);
+  if (slot->state == STRUT_GIVEN) *number = slot->number[0];
+  return slot->state == STRUT_GIVEN;
+}
+
+/*
+ * Coefficients of a layer beside mu_static and mu_kinetic. Those without a direction replace both
+ * directions of the layers below.
+ */
+static void set_coefficients(friction_layers *f, strut_fields *fields) {
+  strut_friction *all = &f->friction;
+  double mu;
+  bool both = is_given(fields, STRUT_KEY_FRICTION_MU, &mu);
+  if (both || is_given(fields, STRUT_KEY_FRICTION_MU_STATIC, &all->mu_static) ||
+      is_given(fields, STRUT_KEY_FRICTION_MU_KINETIC, &all->mu_kinetic))
+    all->directional = false;
+  if (both || is_given(fields, STRUT_KEY_FRICTION_MU_FORWARD, &mu)) {
+    all->mu_static = all->mu_kinetic = mu;
+    f->given |= key_bit(STRUT_KEY_FRICTION_MU_STATIC) | key_bit(STRUT_KEY_FRICTION_MU_KINETIC);
+  }
+  is_given(fields, STRUT_KEY_FRICTION_MU_FORWARD_STATIC, &all->mu_static);
+  if (is_given(fields, STRUT_KEY_FRICTION_MU_BACKWARD, &mu)) {
+    all->directional = true;
+    all->mu_static_backward = all->mu_kinetic_backward = mu;
+  }
+  is_given(fields, STRUT_KEY_FRICTION_MU_BACKWARD_STATIC, &all->mu_static_backward);
+}
+
 static void add_layer(strut_reader *reader, friction_layers *f, strut_fields *fields,
                       strut_owner owner) {
   f->any = true;
@@ -26,10 +55,7 @@ static void add_layer(strut_reader *reader, friction_layers *f, strut_fields *fi
   strut_store_fields(reader, fields, &reader->scene->arena, &f->friction, sizeof f->friction);
   for (int i = 0; i < strut_section_size(STRUT_SECTION_FRICTION); i++)
     if (fields->slot[i].state == STRUT_GIVEN) f->given |= 1u << i;
-  const strut_slot *mu = strut_slot_of(fields, STRUT_KEY_FRICTION_MU);
-  if (mu->state != STRUT_GIVEN) return;
-  f->friction.mu_static = f->friction.mu_kinetic = mu->number[0];
-  f->given |= key_bit(STRUT_KEY_FRICTION_MU_STATIC) | key_bit(STRUT_KEY_FRICTION_MU_KINETIC);
+  set_coefficients(f, fields);
 }
 
 /* Reports a key that the law needs and no layer gives, at the top layer. */
@@ -63,11 +89,18 @@ static bool complete_friction(strut_reader *reader, friction_layers *f,
       report_lack(reader, f, both ? STRUT_KEY_FRICTION_MU : key);
     reported_mu = reported_mu || both;
   }
+  bool forward = f->given & (key_bit(STRUT_KEY_FRICTION_MU_FORWARD) |
+                             key_bit(STRUT_KEY_FRICTION_MU_FORWARD_STATIC) |
+                             key_bit(STRUT_KEY_FRICTION_MU_BACKWARD_STATIC));
+  if (forward && !f->friction.directional) {
+    if (*reported != f->last) report_lack(reader, f, STRUT_KEY_FRICTION_MU_BACKWARD);
+    complete = false;
+  }
   if (!complete) *reported = f->last;
   return complete;
 }
 
-/* What all contacts of the ground start from. */
+/* The defaults of all contacts: those of the ground. */
 typedef struct ground_defaults {
   strut_contact contact;
   friction_layers friction;

@@ -42,11 +42,11 @@ static bool is(strut_piece piece, const char *word) {
   return strlen(word) == piece.length && memcmp(word, piece.text, piece.length) == 0;
 }
 
-/* Which owners a name has, and what a message calls it. */
+/* The owners that a name may refer to, and their words in messages. */
 typedef struct found_owner {
   unsigned owners; /* bits 1 << strut_column_owner */
-  int32_t node, member;
-  const char *what; /* "node", "member", "the energy" */
+  int32_t node, member, hinge;
+  const char *what; /* "node", "member", "hinge", "the energy" */
 } found_owner;
 
 #define OWNER(name) (1u << STRUT_COLUMN_OF_##name)
@@ -60,7 +60,7 @@ static const char *text_of(strut_reader *reader, strut_piece piece) {
   return text ? text : "";
 }
 
-/* Nodes, members and the owners above, for suggestions. */
+/* Nodes, members, hinges and the owners above, for suggestions. */
 static const char *owner_name(const void *context, size_t i) {
   const strut_reader *reader = context;
   const strut_scene *scene = reader->scene;
@@ -68,21 +68,27 @@ static const char *owner_name(const void *context, size_t i) {
   i -= scene->node_count;
   if (i < scene->member_count) return scene->members[i].name;
   i -= scene->member_count;
+  if (i < scene->hinge_count) return scene->hinges[i].name;
+  i -= scene->hinge_count;
   return i < GROUP_COUNT ? groups[i].word : NULL;
 }
 
 static bool all_known(strut_reader *reader) {
   return strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN &&
-         strut_slot_of(&reader->top, STRUT_KEY_SCENE_MEMBERS)->state != STRUT_BROKEN;
+         strut_slot_of(&reader->top, STRUT_KEY_SCENE_MEMBERS)->state != STRUT_BROKEN &&
+         strut_slot_of(&reader->top, STRUT_KEY_SCENE_HINGES)->state != STRUT_BROKEN;
 }
 
 static found_owner find_owner(strut_reader *reader, const char *kind, strut_piece name) {
-  found_owner found = {.node = -1, .member = -1};
+  found_owner found = {.node = -1, .member = -1, .hinge = -1};
   const char *text = text_of(reader, name);
   if (!kind || strcmp(kind, "member") == 0)
     found.member = strut_name_map_find(&reader->member_names, text);
   if (!kind || strcmp(kind, "node") == 0)
     found.node = strut_name_map_find(&reader->node_names, text);
+  if (!kind || strcmp(kind, "hinge") == 0)
+    found.hinge = strut_name_map_find(&reader->hinge_names, text);
+  if (found.hinge >= 0) found.owners |= OWNER(HINGE), found.what = "hinge";
   if (found.member >= 0) found.owners |= OWNER(MEMBER), found.what = "member";
   if (found.node >= 0) found.owners |= OWNER(NODE) | OWNER(CONTACT), found.what = "node";
   for (size_t i = 0; i < GROUP_COUNT && !kind; i++)
@@ -123,9 +129,13 @@ static const char *field_list(unsigned owners, char *text, size_t size) {
 static int refuse_owner(strut_reader *reader, const char *kind, strut_piece owner,
                         strut_refusal *refusal) {
   if (!all_known(reader)) return -1;
-  size_t count = reader->scene->node_count + reader->scene->member_count + GROUP_COUNT;
+  size_t count = reader->scene->node_count + reader->scene->member_count +
+                 reader->scene->hinge_count + GROUP_COUNT;
   snprintf(refusal->text, sizeof refusal->text, "unknown %s '%.*s'%s",
-           kind ? kind : "node or member", shown(owner.length), owner.text,
+           kind                         ? kind
+           : reader->scene->hinge_count ? "node, member or hinge"
+                                        : "node or member",
+           shown(owner.length), owner.text,
            strut_hint(reader, text_of(reader, owner), owner_name, reader, count));
   return -1;
 }
@@ -133,7 +143,7 @@ static int refuse_owner(strut_reader *reader, const char *kind, strut_piece owne
 static int refuse_field(strut_reader *reader, const found_owner *found, strut_piece owner,
                         strut_piece field, strut_refusal *refusal) {
   char list[200];
-  bool thing = found->node >= 0 || found->member >= 0;
+  bool thing = found->node >= 0 || found->member >= 0 || found->hinge >= 0;
   const char *hint = strut_hint(reader, text_of(reader, field), field_name, &found->owners,
                                 field_count(found->owners));
   snprintf(refusal->text, sizeof refusal->text, "%s%s%.*s%s has no column '%.*s'%s%s%s",
@@ -204,15 +214,21 @@ static int find_column(void *context, const char *kind, strut_piece owner, strut
   }
   if (!count) return refuse_field(reader, &found, owner, field, refusal);
   if (count > 1) {
+    bool hinges = reader->scene->hinge_count > 0;
+    char text[80];
+    snprintf(text, sizeof text, " or hinge(%.*s)", shown(owner.length), owner.text);
     snprintf(refusal->text, sizeof refusal->text,
-             "'%.*s.%.*s' means two things, since a node or a member is called '%.*s'; rename it, "
-             "or write node(%.*s) or member(%.*s) for it",
-             shown(owner.length), owner.text, shown(field.length), field.text, shown(owner.length),
-             owner.text, shown(owner.length), owner.text, shown(owner.length), owner.text);
+             "'%.*s.%.*s' means two things, since a node%s is called '%.*s'; rename it, or write "
+             "node(%.*s)%smember(%.*s)%s for it",
+             shown(owner.length), owner.text, shown(field.length), field.text,
+             hinges ? ", a member or a hinge" : " or a member", shown(owner.length), owner.text,
+             shown(owner.length), owner.text, hinges ? ", " : " or ", shown(owner.length),
+             owner.text, hinges ? text : "");
     return -1;
   }
   strut_column_owner of = columns[column->kind].owner;
   if (of == STRUT_COLUMN_OF_MEMBER) column->item = found.member;
+  if (of == STRUT_COLUMN_OF_HINGE) column->item = found.hinge;
   if (of != STRUT_COLUMN_OF_NODE && of != STRUT_COLUMN_OF_CONTACT) return 1;
   column->item = found.node;
   return touches(reader, column->kind, found.node, refusal) ? 1 : -1;

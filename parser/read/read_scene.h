@@ -39,7 +39,7 @@ STRUT_API strut_status strut_setup_read(strut_setup *setup, const char *file, co
 /** A text as a tree, read once, of which scenes are made again and again. Constant: threads share it. */
 typedef struct strut_scene_source strut_scene_source;
 
-/** What a scene's text says of one of its parameters. */
+/** The declaration of a parameter in a scene's text. */
 typedef struct strut_declared {
   const char *name;
   bool text, bare; /* a text; a number that fits any dimension */
@@ -54,10 +54,10 @@ STRUT_API strut_status strut_scene_source_open(const char *file, const char *tex
                                                strut_diagnostics *diagnostics,
                                                strut_scene_source **source);
 STRUT_API void strut_scene_source_free(strut_scene_source *source); /* NULL is allowed */
-/** The parameters in the text's order; *count of them. */
+/** The *count parameters, in the text's order. */
 STRUT_API const strut_declared *strut_scene_source_parameters(const strut_scene_source *source,
                                                               size_t *count);
-/** The tree; whoever changes it does so before the first scene is made. */
+/** The tree, which may be changed until the first scene is made. */
 STRUT_API strut_document *strut_scene_source_document(strut_scene_source *source);
 /** As strut_setup_read, from the tree, with settings in place of overrides. */
 STRUT_API strut_status strut_scene_source_read(const strut_scene_source *source,

@@ -7,7 +7,7 @@
 #include "engine/base/vec.h"
 #include "parser/read/reader.h"
 
-/* What the values of a signal under construction measure. */
+/* The dimension of a signal under construction. */
 typedef struct meaning {
   const strut_dimension *expected; /* NULL: anything */
   strut_dimension dimension;       /* found so far, unless bare */

@@ -45,7 +45,7 @@ const char *strut_keep_text(strut_reader *reader, const char *text) {
   return "";
 }
 
-/* What arena functions give, or a stand-in that remembers that memory is out. */
+/* Returns an allocated text, or a stand-in after recording that memory ran out. */
 static const char *kept(strut_reader *reader, const char *text) {
   if (text) return text;
   reader->out_of_memory = true;
@@ -146,7 +146,7 @@ bool strut_read_scalar(strut_reader *reader, const strut_tree *value, const char
   return false;
 }
 
-/* Where in the file an error within an expression is; the whole value where that is not simple. */
+/* The place in the file of an error within an expression; the whole value if quotes or escapes hide it. */
 static strut_place place_within(const strut_tree *value, const strut_expression_error *error) {
   strut_place place = value->place;
   size_t points = strut_text_points(value->text, strlen(value->text));

@@ -264,7 +264,7 @@ void strut_report_idle_settings(strut_reader *reader);
 strut_scope strut_parameter_scope(strut_reader *reader);
 /** The parameter of that name, or NULL. */
 strut_parameter_state *strut_parameter_find(strut_reader *reader, const char *name);
-/** Its name by number, for suggestions. */
+/** The name with that number, for suggestions. */
 const char *strut_parameter_name(const void *reader, size_t i);
 
 /* The sections, in the order in which they are read. */

@@ -167,6 +167,15 @@ static void require_columns(strut_study_reader *r, const strut_fields *fields,
   if (f->kind == STRUT_FIGURE_MAP) require_column(r, fields, key, kind, "color", f->color);
 }
 
+/* Reports limits that do not ascend. */
+static void check_limits(strut_study_reader *r, const strut_slot *slot, const strut_tree *key,
+                         const double limits[2]) {
+  if (slot->state == STRUT_GIVEN && !(limits[0] < limits[1]))
+    strut_report_error(r->reader, slot->value->place,
+                       "'%s' of figure '%s' must be two ascending numbers", slot->key->text,
+                       key->text);
+}
+
 static void read_times(strut_study_reader *r, const strut_slot *slot, strut_owner owner,
                        strut_study_figure *figure) {
   if (slot->state != STRUT_GIVEN) return;
@@ -187,6 +196,8 @@ static void read_figure(strut_study_reader *r, const strut_tree *key, strut_stud
   *figure = (strut_study_figure){.name = key->text, .from = -HUGE_VAL, .to = HUGE_VAL};
   strut_store_fields(r->reader, &fields, &r->file->arena, figure, sizeof *figure);
   read_times(r, strut_slot_of(&fields, STRUT_KEY_FIGURE_TIMES), owner, figure);
+  check_limits(r, strut_slot_of(&fields, STRUT_KEY_FIGURE_X_LIMITS), key, figure->x_limits);
+  check_limits(r, strut_slot_of(&fields, STRUT_KEY_FIGURE_Y_LIMITS), key, figure->y_limits);
   require_columns(r, &fields, key, figure);
 }
 
@@ -275,7 +286,7 @@ strut_status strut_study_open(const char *path, const strut_override *overrides,
   if (status != STRUT_OK) return status;
   strut_setup setup;
   strut_reader *reader = strut_allocate(1, sizeof *reader);
-  if (!reader) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!reader) return strut_no_memory(error, "");
   strut_setup_init(&setup);
   strut_reader_target(reader, &setup);
   reader->diagnostics = &file->diagnostics;

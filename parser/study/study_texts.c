@@ -10,7 +10,7 @@
 
 static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 
-/* Where the text of a node begins and ends. */
+/* First and last byte of a node's text. */
 static void find_span(const strut_study_file *file, strut_place place, size_t *from, size_t *to) {
   strut_cursor at = strut_cursor_begin(file->text, file->length);
   strut_cursor_to_line(&at, place.line);

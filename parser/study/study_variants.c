@@ -161,7 +161,7 @@ static const struct {
                 {"initial", STRUT_KEY_STUDY_INITIAL, STRUT_KEY_VARIANT_INITIAL},
                 {"output", STRUT_KEY_STUDY_OUTPUT, STRUT_KEY_VARIANT_OUTPUT}};
 
-/* The model's file, beside the study's unless it says where it is. */
+/* The model's file, relative to the study's folder unless its path is absolute. */
 static char *model_path(const char *study, const char *model) {
   const char *slash = strrchr(study, '/');
   size_t folder = *model == '/' || !slash ? 0 : (size_t)(slash - study) + 1;

@@ -32,7 +32,8 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
         "`friction: {...}` of the ground, of a group, or of a contact; keys of a contact take "
         "precedence over those of its groups, and these over those of the ground. Karnopp's law "
         "and `coulomb` need `mu`, or `mu_static` and `mu_kinetic`; Karnopp's law also needs "
-        "`stick_velocity`. The smooth law needs `mu` or `mu_kinetic`, and `width`.",
+        "`stick_velocity`. The smooth law needs `mu` or `mu_kinetic`, and `width`. Where friction "
+        "depends on the direction, `mu_forward` and `mu_backward` replace `mu`, in every law.",
     [STRUT_SECTION_CONTACT] = "`ground: {contacts: {NODE: {...}}}`: settings of a single contact.",
     [STRUT_SECTION_ACTUATOR] = "`actuators: {NAME: {...}}`.",
     [STRUT_SECTION_LOAD] = "`loads: {NAME: {...}}`.",
@@ -102,7 +103,7 @@ static void put_limits(strut_writer *writer, strut_key_limits limits) {
       strut_put(writer, " to ");
       strut_put_number(writer, limits.most);
       break;
-    default: break;
+    case STRUT_RANGE_ANY: break;
   }
 }
 

@@ -10,7 +10,7 @@ static const struct operation_row {
   size_t operands;
   const char *word;
 } operations[] = {
-#define STRUT_OPERATION_ROW(id, operands, word) {operands, word},
+#define STRUT_OPERATION_ROW(id, operands, word, sensitivity) {operands, word},
     STRUT_OPERATION_TABLE(STRUT_OPERATION_ROW)
 #undef STRUT_OPERATION_ROW
 };
@@ -19,16 +19,12 @@ static const struct operation_row {
 enum { OF_SUM = 1, OF_PRODUCT, OF_SIGN, OF_POWER, OF_PRIMARY };
 
 static int binding(const strut_instruction *p) {
-  switch (p->operation) {
-    case STRUT_OPERATION_ADD:
-    case STRUT_OPERATION_SUBTRACT: return OF_SUM;
-    case STRUT_OPERATION_MULTIPLY:
-    case STRUT_OPERATION_DIVIDE: return OF_PRODUCT;
-    case STRUT_OPERATION_NEGATE: return OF_SIGN;
-    case STRUT_OPERATION_POWER: return OF_POWER;
-    case STRUT_OPERATION_NUMBER: return p->unit || signbit(p->number) ? 0 : OF_PRIMARY;
-    default: return OF_PRIMARY;
-  }
+  static const int operators[STRUT_OPERATION_COUNT] = {
+      [STRUT_OPERATION_ADD] = OF_SUM,          [STRUT_OPERATION_SUBTRACT] = OF_SUM,
+      [STRUT_OPERATION_MULTIPLY] = OF_PRODUCT, [STRUT_OPERATION_DIVIDE] = OF_PRODUCT,
+      [STRUT_OPERATION_NEGATE] = OF_SIGN,      [STRUT_OPERATION_POWER] = OF_POWER};
+  if (p->operation == STRUT_OPERATION_NUMBER && (p->unit || signbit(p->number))) return 0;
+  return operators[p->operation] ? operators[p->operation] : OF_PRIMARY;
 }
 
 /* Index of the first instruction of the operand whose last one is program[end - 1]. */
@@ -69,6 +65,8 @@ static void put_column(strut_writer *writer, strut_column column) {
   }
   if (owner == STRUT_COLUMN_OF_MEMBER)
     put_owner(writer, "member", scene->members[column.item].name);
+  else if (owner == STRUT_COLUMN_OF_HINGE)
+    put_owner(writer, "hinge", scene->hinges[column.item].name);
   else if (owner == STRUT_COLUMN_OF_NODE || owner == STRUT_COLUMN_OF_CONTACT)
     put_owner(writer, "node", scene->nodes[column.item].name);
   else if (owner != STRUT_COLUMN_OF_RUN)

@@ -174,23 +174,34 @@ static void put_hinges(strut_writer *writer) {
 
 static const strut_friction no_friction;
 
-static bool has_friction(const strut_friction *f) {
-  return strut_fields_differ(STRUT_SECTION_FRICTION, f, &no_friction);
+static bool frictions_differ(const strut_friction *a, const strut_friction *b) {
+  return strut_fields_differ(STRUT_SECTION_FRICTION, a, b) || a->directional != b->directional ||
+         (a->directional && (a->mu_static_backward != b->mu_static_backward ||
+                             a->mu_kinetic_backward != b->mu_kinetic_backward));
+}
+
+static bool has_friction(const strut_friction *f) { return frictions_differ(f, &no_friction); }
+
+static void put_friction_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
+                                 const void *object) {
+  const strut_friction *f = object;
+  bool backward = key == STRUT_KEY_FRICTION_MU_BACKWARD;
+  if (!f->directional || (!backward && key != STRUT_KEY_FRICTION_MU_BACKWARD_STATIC)) return;
+  strut_put_key_name(writer, mapping, key);
+  strut_put_number(writer, backward ? f->mu_kinetic_backward : f->mu_static_backward);
 }
 
 static void put_friction(strut_writer *writer, const strut_friction *f) {
   strut_mapping mapping = STRUT_MAPPING_INLINE;
   strut_put(writer, "{");
-  strut_put_fields(writer, &mapping, STRUT_SECTION_FRICTION, f, &no_friction, NULL);
+  strut_put_fields(writer, &mapping, STRUT_SECTION_FRICTION, f, &no_friction, put_friction_by_hand);
   strut_put(writer, "}");
 }
 
 /* Friction is written once for all contacts where they share it, else for each contact that has it. */
 static bool friction_is_shared(const strut_scene *scene) {
   for (size_t i = 1; i < scene->contact_count; i++)
-    if (strut_fields_differ(STRUT_SECTION_FRICTION, &scene->contacts[i].friction,
-                            &scene->contacts[0].friction))
-      return false;
+    if (frictions_differ(&scene->contacts[i].friction, &scene->contacts[0].friction)) return false;
   return true;
 }
 

@@ -136,7 +136,7 @@ static void put_field(strut_writer *writer, const strut_key *key, const void *fi
       else
         strut_put_name(writer, *(const char *const *)field);
       break;
-    default: assert(false);
+    case STRUT_FIELD_BY_HAND: assert(false);
   }
 }
 

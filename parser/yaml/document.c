@@ -429,7 +429,7 @@ static bool read_end(reader *r, const yaml_event_t *event) {
 }
 
 static bool handle_event(reader *r, const yaml_event_t *event) {
-  switch (event->type) {
+  switch ((int)event->type) { /* as an int: of libyaml's kinds not all matter */
     case YAML_SCALAR_EVENT: return read_scalar(r, event);
     case YAML_ALIAS_EVENT: return read_alias(r, event);
     case YAML_MAPPING_START_EVENT:

@@ -193,7 +193,7 @@ check_frequencies(CRAWLER, crawler["values"])
 check_motion(CRAWLER, crawler)
 same("mass", crawler["values"]["mass"], 0.14)
 if crawler["values"]["lowest_energy"] is not None or \
-        crawler["reasons"]["lowest_energy"] != "not asked for":
+        crawler["reasons"]["lowest_energy"] != "not requested":
     fail("states that were not asked for")
 
 # ---- unlike structures, settings, CSV ----

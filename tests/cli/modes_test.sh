@@ -22,7 +22,7 @@ END
 expect 0 modes frame.yaml
 err_empty
 for text in "Frame: modes at" "8 coordinates, all modes computed" "rigid-body" \
-  "the whole turns freely" "19.0307 Hz" "elastic" "of the energy"; do out_has "$text"; done
+  "the structure rotates freely" "19.0307 Hz" "elastic" "of the energy"; do out_has "$text"; done
 expect 0 modes frame.yaml --json
 err_empty
 for key in '"name":	"Frame"' '"coordinates":	8' '"method":	"dense"' '"contacts":	[]' \
@@ -88,7 +88,7 @@ gravity: [0, -9.81]
 ground: {stiffness: 1e5, damping: 20, nodes: [a, b]}
 END
 expect 0 modes standing.yaml
-for text in "on a, b" "6 coordinates" "the whole moves along x" "the ground"; do out_has "$text"; done
+for text in "on a, b" "6 coordinates" "the structure moves along x" "the ground"; do out_has "$text"; done
 expect 0 modes standing.yaml --stuck
 out_has "4 coordinates"
 grep -q rigid-body out && fail "held along the ground it has no rigid motion"

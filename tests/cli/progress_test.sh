@@ -25,11 +25,16 @@ if script -qec true /dev/null >/dev/null 2>&1 </dev/null; then
   widest() {
     sed "s/$(printf '\033')\\[[0-9;]*[mK]//g" out | grep left | LC_ALL=C.UTF-8 wc -L
   }
-  # Runs in several parts say which; how many follow nobody knows, so that no time left is promised.
+  # Runs in several parts name the part. The number of parts is unknown, so that only the time left in the
+  # present run is shown.
   on_terminal --accuracy 1%
   out_has " so far"
   grep -qE '(run|motion|orbit|steps)[^:]*: [0-9]+ %' out || fail "the part is not named"
-  out_has_not " left"
+  grep ' left' out | grep -qv ' left in this run' && fail "a time left of all parts"
+  columns=100
+  on_terminal --accuracy 1%
+  out_has " left in this run"
+  columns=80
   TERM=xterm
   LC_ALL=C.UTF-8
   export TERM LC_ALL

@@ -38,15 +38,15 @@ same in-5/table.csv whole/table.csv
 
 # What is wrong is said.
 expect 1 sweep study.yaml -o in-5 --shard 1/4
-err_has "shards of 5, and this would be one of 4"
+err_has "is divided into 5 shards, not 4"
 expect 1 sweep study.yaml -o in-5
-err_has "holds shards of the study"
+err_has "holds 5 shards of the study"
 expect 1 sweep study.yaml -o in-5 --shard 0/5 --set seconds=0.02
 err_has "another study"
 expect 1 sweep study.yaml -o new --shard 5/5
 err_has "numbered 0 to 4"
 expect 1 sweep study.yaml -o new --shard slurm/5
-err_has "no task of a Slurm job array"
+err_has "not a task of a Slurm job array"
 absent new
 rm in-5/shards/shard-0001-of-0005.slots in-5/shards/shard-0003-of-0005.slots
 rm in-5/table.csv
@@ -60,7 +60,7 @@ expect 0 sweep study.yaml -o in-5 --status --json
 out_has '{"shard": 4, "points": 3, "done": 3, "missing": 0, "failed": 0}]}'
 expect 0 sweep study.yaml -o in-5 --shard 1/5 --quiet --set seconds=0.02
 expect 1 merge in-5
-err_has "shards 0 and 1 are not of one study, they differ in the model"
+err_has "shards 0 and 1 belong to different studies, which differ in the model"
 expect 4 merge nowhere
 expect 1 merge
 

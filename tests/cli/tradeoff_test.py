@@ -218,7 +218,7 @@ if answer:
     if {round(p["mu"], 9) for p in answer["points"]} != {0.2, 0.3}:
         fail(f"words: {answer['points']}")
     names = [m["name"] for m in answer["models"]]
-    if names[0] != "the scene's own model" or "Coulomb friction" not in names:
+    if names[0] != "unchanged model" or "Coulomb friction" not in names:
         fail(f"models of a block: {names}")
     coulomb = answer["models"][names.index("Coulomb friction")]
     for point, value in zip(answer["points"], coulomb["values"]):

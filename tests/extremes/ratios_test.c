@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "engine/model/mass.h"
 #include "engine/statics/minimise.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"

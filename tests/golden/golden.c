@@ -22,6 +22,8 @@ static uint64_t add(uint64_t hash, const void *data, size_t size) {
   return hash;
 }
 
+extern const strut_integrator strut_integrator_rk4, strut_integrator_verlet_events;
+
 static const strut_integrator *const methods[] = {&strut_integrator_rk4,
                                                   &strut_integrator_verlet_events};
 

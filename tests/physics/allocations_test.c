@@ -2,6 +2,7 @@
 /* Steps allocate nothing, whatever the scene needs. */
 #include <stdlib.h>
 
+#include "engine/model/mass.h"
 #include "tests/physics/random_scene.h"
 #include "tests/support/allocations.h"
 #include "tests/support/build.h"

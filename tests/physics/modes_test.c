@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "engine/forces/tangent.h"
+#include "engine/model/mass.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"
 #include "tests/support/motion.h"

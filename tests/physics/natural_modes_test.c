@@ -67,8 +67,8 @@ static void test_x_frame(void **unused) {
     assert_true(modes.list[3 + i].error < 1e-12);
     assert_true(modes.list[3 + i].residual < 1e-10);
   }
-  assert_string_equal(modes.list[0].description, "the whole moves along x");
-  assert_string_equal(modes.list[2].description, "the whole turns freely");
+  assert_string_equal(modes.list[0].description, "the structure moves along x");
+  assert_string_equal(modes.list[2].description, "the structure rotates freely");
   free_modes(&setup);
 }
 
@@ -261,7 +261,7 @@ static void test_mechanism_beside_rigid_motions(void **unused) {
   assert_int_equal(count_kind(STRUT_MODE_MECHANISM), 1);
   assert_int_equal(count_kind(STRUT_MODE_ELASTIC), 4);
   assert_int_equal(modes.list[3].kind, STRUT_MODE_MECHANISM);
-  assert_non_null(strstr(modes.list[3].description, "nothing resists"));
+  assert_non_null(strstr(modes.list[3].description, "no stiffness resists"));
   const double *x = modes.list[3].shape; /* the sides keep their lengths */
   assert_near(x[0], x[2], 1e-12);
   assert_near(x[3], x[5], 1e-12);
@@ -451,7 +451,7 @@ static void test_crawler_bends_near_its_critical_band(void **unused) {
   assert_int_equal(modes.count, 10);
   assert_int_equal(modes.closed_count, 2);
   assert_int_equal(modes.list[0].kind, STRUT_MODE_RIGID);
-  assert_string_equal(modes.list[0].description, "the whole moves along x");
+  assert_string_equal(modes.list[0].description, "the structure moves along x");
   assert_near(modes.list[1].angular_frequency / (2 * PI), 10.3851, 1e-4);
   assert_within(modes.list[9].angular_frequency, 1.9e4, 2.1e4); /* the short bars */
   strut_modes_free(&modes);

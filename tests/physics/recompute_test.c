@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/model/mass.h"
 #include "tests/physics/random_scene.h"
 #include "tests/physics/slow_model.h"
 #include "tests/support/check.h"

@@ -214,4 +214,29 @@ for bad, code in (("x.gif", 1), ("nowhere/x.svg", 4)):
                           "--plot", bad], capture_output=True)
     if run.returncode != code or run.stdout or not run.stderr:
         fail(f"--plot {bad}: exit code {run.returncode}, {run.stdout}, {run.stderr}")
+# Title, labels and limits; an event beyond the limits has no marker there.
+with tempfile.TemporaryDirectory() as there:
+    call = [strut, "path", "models/gallery/von-mises.yaml", "--set", "load=0.1", "--quiet"]
+    words = ["--title", "Own title", "--x-label", "own label", "--x-limits", "0,0.02", "--y-limits", "-0.02,0.05"]
+    for name, more in (("plain.svg", []), ("own.svg", words)):
+        subprocess.run(call + more + ["--plot", f"{there}/{name}"], check=True)
+    plain, own = (read(f"{there}/{name}")[2] for name in ("plain.svg", "own.svg"))
+    left = [len([c for c in centres(p, None) if c[0] < 250 and c[1] < 170]) for p in (plain, own)]
+    if left != [4, 1]:
+        fail(f"path: {left} markers on the curve without and with limits, not 4 and 1")
+    for bad, why in ((["--x-limits", "2,1", "--plot", f"{there}/bad.svg"], "two ascending numbers"),
+                     (["--title", "x"], "--title needs --plot"), (["--y-label", "x"], "--y-label needs --plot")):
+        done = subprocess.run(call + bad, capture_output=True, text=True)
+        if done.returncode != 1 or why not in done.stderr:
+            fail(f"path {bad}: {done.returncode} {done.stderr}")
+    # The other commands take a title.
+    for command in (["modes"], ["rigidity"], ["equilibria"], ["form"], ["compare", "--no-motion", "--no-states"]):
+        texts = []
+        for title in ("A", "A longer title"):
+            subprocess.run([strut, *command, "models/gallery/x-frame.yaml", "--quiet", "--title", title, "--plot",
+                            f"{there}/a.svg"], check=True, stdout=subprocess.DEVNULL)
+            texts.append(open(f"{there}/a.svg", encoding="utf-8").read().count("<use "))
+        if texts[1] - texts[0] != 13:
+            fail(f"{command[0]} --title: {texts} letters")
+
 finish()

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""README's pictures are what strut draws today, and the table of figure 8 is what strut computes today.
+"""The pictures of README, of the comparison of designs and of the tutorial are what strut draws today, and the
+table of figure 8 is what strut computes today.
 
 usage: readme_test.py STRUT
 """
@@ -30,10 +31,16 @@ with tempfile.TemporaryDirectory() as now:
                         "--title", title, "--plot", f"{now}/large.svg"], check=True)
         with open(f"{now}/figure-8-{variant}.svg", "w", encoding="utf-8") as small:
             subprocess.run(["awk", "-f", "docs/smaller.awk", f"{now}/large.svg"], stdout=small, check=True)
-    for name in ("crawler.svg", "paper/figure-8-paper.svg", "paper/figure-8-strut.svg"):
-        why = differ(f"docs/{name}", os.path.join(now, os.path.basename(name)))
+    subprocess.run(["sh", "docs/tutorial.sh", strut, f"{now}/tutorial"], check=True)
+    shown = re.findall(r"!\[[^]]+\]\((tutorial/[^)]+)\)", open("docs/tutorial.md", encoding="utf-8").read())
+    if sorted(shown) != sorted(f"tutorial/{name}" for name in os.listdir("docs/tutorial")) or len(shown) < 3:
+        fail(f"docs/tutorial.md shows {shown}, docs/tutorial holds {os.listdir('docs/tutorial')}")
+    for name, drawn in [("crawler.svg", "crawler.svg"), ("compare/five.svg", "compare/five.svg"),
+                        ("paper/figure-8-paper.svg", "figure-8-paper.svg"),
+                        ("paper/figure-8-strut.svg", "figure-8-strut.svg"), *zip(shown, shown)]:
+        why = differ(f"docs/{name}", f"{now}/{drawn}")
         if why:
-            fail(f"docs/{name} is not what strut draws today: {why}; sh docs/pictures.sh, docs/paper.sh")
+            fail(f"docs/{name} is not what strut draws today: {why}; sh docs/redraw.sh")
 
     # One frequency again, which forgets its roundings.
     shutil.copy("models/crawler/crawler.yaml", now)

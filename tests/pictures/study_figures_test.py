@@ -107,6 +107,15 @@ late = [line for path in read("out/late.svg")[2] if near(path.stroke, FIRST) and
         for line in path.lines if len(line) > 20]
 check(not late, "late.svg: the wall does not move, so that its curve has no bends")
 
+# Labels and limits of an axis: the motion of x, 0.1 sin(10 t) and 0.2 cos(10 t), in ranges of 1 m and 2 m.
+sweep(STUDY + "".join(
+    f"  y{k}: {{kind: motion, x: time, y: x, only: node=block, difference: variant, "
+    f"x_label: moment, y_limits: [-{k}, {k}], x_limits: [0, 2]}}\n" for k in (1, 2)))
+high = [max(p[1] for p in line) - min(p[1] for p in line) for line in (curve("out/y1.svg"), curve("out/y2.svg"))]
+check(abs(high[0] / high[1] - 2) < 0.01, f"y_limits: heights {high}")
+wide = max(p[0] for p in curve("out/y1.svg")) - min(p[0] for p in curve("out/y1.svg"))
+check(0.35 < wide / 510 < 0.5, f"x_limits: a curve of {wide} pt")
+
 os.rename("out", "free")
 
 # A driven structure: a period each, one file for each point; the same motion dashed upon itself.
@@ -137,6 +146,8 @@ for figure, wanted in (
         ("{kind: snapshots, times: 3 s}", "expected a list of times such as"),
         ("{kind: snapshots, times: [3 kg]}", "expected a time such as"),
         ("{x: time, y: velocity}", "the table has no column 'time'"),
+        ("{x: variant, y: velocity, x_limits: [2, 1]}", "'x_limits' of figure 'bad' must be two ascending"),
+        ("{kind: map, colors: red}", "'colors'"),
         ("{kind: snapshots, only: node}", "'only' expects COLUMN=TEXT")):
     said = sweep(STUDY + f"  bad: {figure}\n", code=2)
     check(wanted in said, f"{figure}: {said}")
@@ -144,7 +155,7 @@ said = sweep(STUDY.replace("trajectories: yes\n", "") + "  bad: {kind: period}\n
 check("add 'trajectories: yes' to the study" in said, said)
 os.rename("out", "before")
 said = sweep(STUDY + "  bad: {kind: motion, x: time, y: x, only: node=blok}\n", code=1)
-check("no run recorded any of it" in said, said)
+check("no run recorded any of this" in said, said)
 said = sweep(STUDY + "  bad: {kind: snapshots, difference: mass}\n", code=1)
 check("'difference' needs an axis of two values; 'mass' has 1" in said, said)
 finish()

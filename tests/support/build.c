@@ -134,8 +134,10 @@ int32_t build_contact(strut_scene *scene, int32_t node, double stiffness, double
 int32_t build_rough_contact(strut_scene *scene, int32_t node, double stiffness, double damping,
                             double mu_static, double mu_kinetic, double stick_velocity) {
   int32_t i = build_contact(scene, node, stiffness, damping);
-  scene->contacts[i].friction =
-      (strut_friction){STRUT_FRICTION_KARNOPP, mu_static, mu_kinetic, stick_velocity, 0};
+  scene->contacts[i].friction = (strut_friction){.law = STRUT_FRICTION_KARNOPP,
+                                                 .mu_static = mu_static,
+                                                 .mu_kinetic = mu_kinetic,
+                                                 .stick_velocity = stick_velocity};
   return i;
 }
 

@@ -158,7 +158,8 @@ static void told(void **unused) {
   }
   assert_true(fabs(result.columns[0].cell[STRUT_COMPARE_MASS].value - 2.0) < 1e-12);
   assert_true(fabs(result.columns[0].cell[STRUT_COMPARE_DRIVE_FREQUENCY].value - 5.0) < 1e-12);
-  assert_int_equal(strut_compare_figure("/nowhere/at/all.svg", 200, &result, 0, 1, &error),
+  assert_int_equal(strut_compare_figure(&(strut_plot){.path = "/nowhere/at/all.svg", .width = 200},
+                                        &result, 0, 1, &error),
                    STRUT_FILE_TROUBLE);
   strut_compare_free(&result);
   strut_setup_free(&setup);

@@ -47,8 +47,8 @@ static void test_texts(void **unused) {
 
 static void test_arrays(void **unused) {
   (void)unused;
-  refuse("slurm", &nowhere, "no task of a Slurm job array");
-  refuse("slurm/8", &nowhere, "no task of a Slurm job array");
+  refuse("slurm", &nowhere, "not a task of a Slurm job array");
+  refuse("slurm/8", &nowhere, "not a task of a Slurm job array");
   expect("slurm", &(strut_array_task){"3", "0", "7", "1", "8"}, 3, 8);
   expect("slurm", &(strut_array_task){"3", "1", "8", "1", "8"}, 2, 8);
   expect("slurm", &(strut_array_task){"4", "0", "6", "2", "4"}, 2, 4);
@@ -174,7 +174,7 @@ static void test_what_is_missing(void **unused) {
   run_shard(study, (strut_shard){5, 8}, 0);
   expect_merge(STRUT_FILE_TROUBLE,
                ": 5 of 8 shards are missing (0, 3 to 4, 6 to 7), shard 2 lacks 2 of its 3 points, "
-               "shard 5 lacks 3 of its 3 points; run these shards again, they go on");
+               "shard 5 lacks 3 of its 3 points; run these shards again to resume them");
   for (int64_t k = 0; k < 8; k++)
     if (k != 6) run_shard(study, (strut_shard){k, 8}, 100);
   expect_merge(STRUT_FILE_TROUBLE, ": 1 of 8 shards is missing (6); run");
@@ -193,18 +193,19 @@ static void test_what_does_not_belong_together(void **unused) {
   scratch_make();
   run_shard(study, (strut_shard){0, 3}, 100);
   run_shard(other, (strut_shard){2, 3}, 100);
-  expect_merge(STRUT_USAGE, "shards 0 and 2 are not of one study, they differ in the model");
+  expect_merge(STRUT_USAGE,
+               "shards 0 and 2 belong to different studies, which differ in the model");
   assert_int_equal(strut_shard_begin(scratch_path("d"), (strut_shard){0, 2}, &error), STRUT_USAGE);
-  assert_non_null(strstr(error.message, "shards of 3, and this would be one of 2"));
+  assert_non_null(strstr(error.message, "is divided into 3 shards, not 2"));
   assert_int_equal(strut_shard_begin(scratch_path("d"), (strut_shard){0}, &error), STRUT_USAGE);
-  assert_non_null(strstr(error.message, "holds shards of the study, 3 in all"));
+  assert_non_null(strstr(error.message, "holds 3 shards of the study"));
   scratch_remove();
   scratch_make(); /* the same shard under two names */
   run_shard(study, (strut_shard){0, 2}, 100);
   assert_int_equal(link(scratch_path("d/shards/shard-0000-of-0002.slots"),
                         scratch_path("d/shards/shard-0001-of-0002.slots")),
                    0);
-  expect_merge(STRUT_USAGE, "is for other points than its name says");
+  expect_merge(STRUT_USAGE, "holds other points than its name says");
   scratch_remove();
   scratch_make();
   run_shard(study, (strut_shard){0, 0}, 100);
@@ -214,7 +215,7 @@ static void test_what_does_not_belong_together(void **unused) {
   strut_file_write_text(scratch_path("d/shards"), "shard-0001-of-0004.slots", "x", NULL);
   expect_merge(STRUT_USAGE, "holds the study twice");
   assert_int_equal(unlink(scratch_path("d/points.slots")), 0);
-  expect_merge(STRUT_FILE_TROUBLE, "no file of a study's results");
+  expect_merge(STRUT_FILE_TROUBLE, "not a file of study results");
   strut_file_write_text(scratch_path("d/shards"), "shard-0001-of-0003.slots", "x", NULL);
   expect_merge(STRUT_USAGE, "which overlap");
   scratch_remove();

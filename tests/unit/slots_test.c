@@ -304,7 +304,7 @@ static void test_other_studies_are_refused(void **unused) {
   expect_refused(path, &plan, STRUT_USAGE, "the columns");
   plan = a_plan(9);
   plan.stride = 2, plan.count = 5;
-  expect_refused(path, &plan, STRUT_USAGE, "which points they are for");
+  expect_refused(path, &plan, STRUT_USAGE, "their points");
   char *now = scratch_read(path, &after);
   assert_int_equal(after, length);
   assert_memory_equal(now, bytes, length);
@@ -320,7 +320,7 @@ static void test_foreign_files_are_refused(void **unused) {
   const char *path = scratch_path("a");
   size_t length = 0;
   write_bytes(path, "frequency,velocity\n1,2\n", 23);
-  expect_refused(path, &plan, STRUT_FILE_TROUBLE, "no file of a study's results");
+  expect_refused(path, &plan, STRUT_FILE_TROUBLE, "not a file of study results");
   char *text = scratch_read(path, &length);
   assert_string_equal(text, "frequency,velocity\n1,2\n");
   free(text);
@@ -332,7 +332,7 @@ static void test_foreign_files_are_refused(void **unused) {
     bytes[11 - i] = swap;
   }
   write_bytes(path, bytes, length);
-  expect_refused(path, &plan, STRUT_FILE_TROUBLE, "another order of bytes");
+  expect_refused(path, &plan, STRUT_FILE_TROUBLE, "another byte order");
   free(bytes);
   bytes = scratch_read(scratch_path("b"), &length);
   bytes[12] = 2;
@@ -357,7 +357,7 @@ static void test_one_writer_at_a_time(void **unused) {
     strut_slots_plan there;
     strut_error error = {0};
     bool refused = strut_slots_open(path, &plan, &other, &error) == STRUT_FILE_TROUBLE &&
-                   strstr(error.message, "at work on");
+                   strstr(error.message, "is writing");
     bool reads = strut_slots_read(path, &other, &there, &error) == STRUT_OK &&
                  strut_slots_done(other, 0) && strut_slots_missing(other) == 8;
     _exit(refused ? reads ? 0 : 2 : 1);

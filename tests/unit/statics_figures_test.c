@@ -41,11 +41,13 @@ static void fails_cleanly(drawing draw, const strut_model *model, const void *wh
 }
 
 static strut_status draw_modes(const strut_model *model, const void *what, strut_error *error) {
-  return strut_modes_figure(scratch_path("a.svg"), 300, model, what, 0, error);
+  return strut_modes_figure(&(strut_plot){.path = scratch_path("a.svg"), .width = 300}, model, what,
+                            0, error);
 }
 
 static strut_status draw_path(const strut_model *model, const void *what, strut_error *error) {
-  return strut_path_figure(scratch_path("a.svg"), 300, model, what, error);
+  return strut_path_figure(&(strut_plot){.path = scratch_path("a.svg"), .width = 300}, model, what,
+                           error);
 }
 
 static void test_modes(void **state) {

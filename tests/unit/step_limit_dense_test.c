@@ -10,6 +10,7 @@
 #include "engine/forces/tangent.h"
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/integrate/limit/tangent_bound.h"
+#include "engine/model/mass.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"
 #include "tests/support/motion.h"

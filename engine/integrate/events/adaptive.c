@@ -115,16 +115,17 @@ static bool contradicts_at_stage(const strut_model *model, const strut_event_ste
                                  int32_t i) {
   const strut_contact_entry *e = &model->contacts.entry[i];
   const strut_touch *o = &l->next->touch[i];
-  double most = e->friction.mu_static * o->normal, part = STAGE_ERROR;
+  const strut_friction *f = &e->friction;
+  double part = STAGE_ERROR, held = strut_friction_static(f, -o->friction) * o->normal,
+         most = strut_friction_static(f, o->applied) * o->normal;
   if (!(o->normal > 0.0)) return false;
   switch ((strut_contact_mode)l->mode[i]) {
-    case STRUT_MODE_STICK: return fabs(o->friction) > most * (1.0 + part);
-    case STRUT_MODE_BAND:
-      return e->friction.mu_static != e->friction.mu_kinetic &&
-             fabs(o->applied) > most * (1.0 + part);
+    case STRUT_MODE_STICK: return fabs(o->friction) > held * (1.0 + part);
+    case STRUT_MODE_BAND: return strut_friction_drops(f) && fabs(o->applied) > most * (1.0 + part);
     case STRUT_MODE_PUSH: return fabs(o->applied) < most * (1.0 - part);
     case STRUT_MODE_CREEP:
-      return l->side[i] * o->friction < -e->friction.mu_kinetic * o->normal * (1.0 + part);
+      return l->side[i] * o->friction <
+             -strut_friction_kinetic(f, l->side[i]) * o->normal * (1.0 + part);
     case STRUT_MODE_OPEN:
     case STRUT_MODE_SLIDE:
     case STRUT_MODE_SLIP: /* by earliest_dip */

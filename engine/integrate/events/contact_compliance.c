@@ -173,18 +173,18 @@ static void list_sliding_contacts(const strut_model *model, strut_event_stepper 
     const strut_contact_compliance *r = &l->response[i];
     bool slips = l->mode[i] == STRUT_MODE_SLIP;
     l->all_sliding = is_sliding(l, e, i);
-    l->sliding[k] =
-        (strut_sliding_contact){.at = model->contacts.at[i],
-                                .index = i,
-                                .nodes = r->count,
-                                .stiffness = e->stiffness,
-                                .damping = e->damping,
-                                .answer = r->normal,
-                                .friction = slips ? -l->side[i] * e->friction.mu_kinetic : 0.0,
-                                .side = slips ? l->side[i] : 0.0,
-                                .edge = slips ? stick_band_edge(e) : 0.0,
-                                .place = r->at,
-                                .xy = r->xy};
+    l->sliding[k] = (strut_sliding_contact){
+        .at = model->contacts.at[i],
+        .index = i,
+        .nodes = r->count,
+        .stiffness = e->stiffness,
+        .damping = e->damping,
+        .answer = r->normal,
+        .friction = slips ? -l->side[i] * strut_friction_kinetic(&e->friction, l->side[i]) : 0.0,
+        .side = slips ? l->side[i] : 0.0,
+        .edge = slips ? stick_band_edge(e) : 0.0,
+        .place = r->at,
+        .xy = r->xy};
   }
 }
 

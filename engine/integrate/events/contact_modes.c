@@ -91,7 +91,8 @@ static int32_t overloaded(const strut_model *model, const strut_event_stepper *l
     int32_t i = l->closed[k];
     if (l->mode[i] != STRUT_MODE_STICK) continue;
     const strut_touch *o = &l->now->touch[i];
-    double most = model->contacts.entry[i].friction.mu_static * o->normal;
+    double most =
+        strut_friction_static(&model->contacts.entry[i].friction, -o->friction) * o->normal;
     double over = fabs(o->friction) - most;
     /* Without any normal force yet nothing can be said: the end of the step will tell. */
     if (!(over > worst * fabs(o->friction)) || !(o->normal > 0.0)) continue;
@@ -191,10 +192,9 @@ static void decide_at_edge(const strut_model *model, strut_state *state, strut_e
   strut_evaluate_acceleration(model, state, l, t);
   const strut_touch *o = &l->now->touch[i];
   double outside = s * o->slip_rate;
-  double most = e->friction.mu_static * o->normal;
+  double most = strut_friction_static(&e->friction, o->applied) * o->normal;
   bool pushed = fabs(o->applied) >= most;
-  l->mode[i] =
-      pushed && e->friction.mu_static != e->friction.mu_kinetic ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
+  l->mode[i] = pushed && strut_friction_drops(&e->friction) ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
   l->side[i] = (int8_t)(l->mode[i] == STRUT_MODE_PUSH ? strut_sign(o->applied) : s);
   strut_update_active_set(model, l);
   strut_evaluate_acceleration(model, state, l, t);
@@ -247,7 +247,8 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_event
       break;
     case STRUT_EVENT_YIELDED: {
       const strut_touch *o = &l->now->touch[i];
-      bool over = fabs(o->applied) > model->contacts.entry[i].friction.mu_static * o->normal;
+      const strut_friction *f = &model->contacts.entry[i].friction;
+      bool over = fabs(o->applied) > strut_friction_static(f, o->applied) * o->normal;
       l->mode[i] = over ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
       l->side[i] = o->applied < 0.0 ? -1 : 1;
       break;
@@ -255,7 +256,7 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_event
     case STRUT_EVENT_DAMPER: l->damper[i] = (int8_t)-l->damper[i]; break;
     case STRUT_EVENT_ACTS: set_acting(state, l, i, !l->acting[i]); break;
     case STRUT_EVENT_KINK: pass_kink(model, state, l, i); break;
-    default: break;
+    case STRUT_EVENT_NONE: break;
   }
   derive_consistently(model, state, l, t);
 }

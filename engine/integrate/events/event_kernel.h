@@ -29,31 +29,36 @@ static const double STRUT_YIELD_LAYER = 1e-3;
 
 /* Friction between holding and pushing, by how far the applied force is through the layer. */
 STRUT_INLINE double yield_friction(const strut_contact_entry *e, double normal, double applied) {
-  double threshold = e->friction.mu_static * normal, half = STRUT_YIELD_LAYER * threshold;
+  double threshold = strut_friction_static(&e->friction, applied) * normal,
+         half = STRUT_YIELD_LAYER * threshold;
   double size = applied < 0.0 ? -applied : applied;
   double pushed = half > 0.0 ? 0.5 + 0.5 * (size - threshold) / half : 1.0;
   pushed = pushed < 0.0 ? 0.0 : pushed > 1.0 ? 1.0 : pushed;
-  double friction = (1.0 - pushed) * size + pushed * e->friction.mu_kinetic * normal;
+  double friction =
+      (1.0 - pushed) * size + pushed * strut_friction_kinetic(&e->friction, applied) * normal;
   return applied < 0.0 ? friction : -friction;
 }
 
 /* Friction by the mode; a multiplier, which comes later, is 0 here. */
 STRUT_INLINE double friction_in_mode(const strut_contact_entry *e, uint8_t mode, int8_t side,
                                      double normal, double slip, double applied) {
-  switch (mode) {
+  switch ((strut_contact_mode)mode) {
     case STRUT_MODE_SLIP:
-    case STRUT_MODE_PUSH: return -side * e->friction.mu_kinetic * normal;
+    case STRUT_MODE_PUSH: return -side * strut_friction_kinetic(&e->friction, side) * normal;
     case STRUT_MODE_SLIDE:
       return strut_friction_states(e->friction.law) == STRUT_FRICTION_CONTINUOUS
                  ? strut_friction_force(&e->friction, normal, slip, applied)
                  : 0.0;
     case STRUT_MODE_BAND: {
-      double most = e->friction.mu_static * normal;
+      double most = strut_friction_static(&e->friction, applied) * normal;
       return applied > most ? -most : applied < -most ? most : -applied;
     }
     case STRUT_MODE_YIELD: return yield_friction(e, normal, applied);
-    default: return 0.0;
+    case STRUT_MODE_OPEN:
+    case STRUT_MODE_STICK:
+    case STRUT_MODE_CREEP: break;
   }
+  return 0.0;
 }
 
 /* Kinematics of contact i at q, v. */
@@ -180,43 +185,48 @@ STRUT_INLINE double stick_band_edge(const strut_contact_entry *e) {
 }
 
 STRUT_INLINE double stick_band_force(const strut_contact_entry *e, const strut_touch *o) {
-  double most = e->friction.mu_static * o->normal;
+  double most = strut_friction_static(&e->friction, o->applied) * o->normal;
   if (fabs(o->applied) < most) return -o->applied;
-  return -e->friction.mu_kinetic * o->normal * strut_sign(o->applied);
+  return -strut_friction_kinetic(&e->friction, o->applied) * o->normal * strut_sign(o->applied);
 }
 
 /* How far the applied force is from either end of where a contact goes on yielding [N]. */
 STRUT_INLINE double yield_margin(const strut_contact_entry *e, const strut_touch *o) {
-  double threshold = e->friction.mu_static * o->normal;
+  double threshold = strut_friction_static(&e->friction, o->applied) * o->normal;
   return 2.0 * STRUT_YIELD_LAYER * threshold - fabs(fabs(o->applied) - threshold);
 }
 
 /* What a closed contact's state at the end of a step contradicts of its mode. */
 STRUT_INLINE strut_event_kind contradicting_event(const strut_contact_entry *e,
                                                   const strut_touch *o, uint8_t mode, double s) {
-  switch (mode) {
+  switch ((strut_contact_mode)mode) {
     case STRUT_MODE_SLIP:
       return s * o->slip < stick_band_edge(e) ? STRUT_EVENT_SLIP_ENDS : STRUT_EVENT_NONE;
     case STRUT_MODE_STICK:
       /* also where the gap is open by then: what holds a node lets go before that */
-      return fabs(o->friction) > e->friction.mu_static * o->normal ? STRUT_EVENT_STICK_BREAKS
-                                                                   : STRUT_EVENT_NONE;
+      return fabs(o->friction) > strut_friction_static(&e->friction, -o->friction) * o->normal
+                 ? STRUT_EVENT_STICK_BREAKS
+                 : STRUT_EVENT_NONE;
     case STRUT_MODE_CREEP:
-      if (s * o->friction < -e->friction.mu_kinetic * o->normal) return STRUT_EVENT_CREEP_OUT;
+      if (s * o->friction < -strut_friction_kinetic(&e->friction, s) * o->normal)
+        return STRUT_EVENT_CREEP_OUT;
       return s * (stick_band_force(e, o) - o->friction) < 0.0 ? STRUT_EVENT_CREEP_IN
                                                               : STRUT_EVENT_NONE;
     case STRUT_MODE_BAND:
     case STRUT_MODE_PUSH:
       if (fabs(o->slip) > stick_band_edge(e)) return STRUT_EVENT_LEAVES_STICK_BAND;
-      if (e->friction.mu_static == e->friction.mu_kinetic) return STRUT_EVENT_NONE;
-      return (fabs(o->applied) > e->friction.mu_static * o->normal) == (mode == STRUT_MODE_PUSH)
+      if (!strut_friction_drops(&e->friction)) return STRUT_EVENT_NONE;
+      return (fabs(o->applied) > strut_friction_static(&e->friction, o->applied) * o->normal) ==
+                     (mode == STRUT_MODE_PUSH)
                  ? STRUT_EVENT_NONE
                  : STRUT_EVENT_PUSH;
     case STRUT_MODE_YIELD:
       if (fabs(o->slip) > stick_band_edge(e)) return STRUT_EVENT_LEAVES_STICK_BAND;
       return yield_margin(e, o) < 0.0 ? STRUT_EVENT_YIELDED : STRUT_EVENT_NONE;
-    default: return STRUT_EVENT_NONE;
+    case STRUT_MODE_OPEN:
+    case STRUT_MODE_SLIDE: break;
   }
+  return STRUT_EVENT_NONE;
 }
 
 /* next becomes now: q and v are the state's own and are copied, the rest changes hands. */

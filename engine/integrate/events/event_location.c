@@ -36,30 +36,45 @@ double strut_event_value(const strut_model *model, const strut_event_stepper *l,
     case STRUT_EVENT_OPEN: return -strut_contact_gap(&model->contacts, i, end->q);
     case STRUT_EVENT_SLIP_ENDS: return s * o->slip - stick_band_edge(e);
     case STRUT_EVENT_LEAVES_STICK_BAND: return stick_band_edge(e) - way_out(l, o, i) * o->slip;
-    case STRUT_EVENT_STICK_BREAKS: return e->friction.mu_static * o->normal - fabs(o->friction);
-    case STRUT_EVENT_CREEP_OUT: return s * o->friction + e->friction.mu_kinetic * o->normal;
+    case STRUT_EVENT_STICK_BREAKS:
+      return strut_friction_static(&e->friction, -o->friction) * o->normal - fabs(o->friction);
+    case STRUT_EVENT_CREEP_OUT:
+      return s * o->friction + strut_friction_kinetic(&e->friction, s) * o->normal;
     case STRUT_EVENT_CREEP_IN: return s * (stick_band_force(e, o) - o->friction);
     case STRUT_EVENT_PUSH: {
-      double room = e->friction.mu_static * o->normal - fabs(o->applied);
+      double most = strut_friction_static(&e->friction, o->applied) * o->normal;
+      double room = most - fabs(o->applied);
       return l->mode[i] == STRUT_MODE_BAND ? room : -room;
     }
     case STRUT_EVENT_YIELDED: return yield_margin(e, o);
     case STRUT_EVENT_DAMPER: return l->damper[i] > 0 ? -o->into : o->into;
-    default: return 1.0;
+    case STRUT_EVENT_NONE:
+    case STRUT_EVENT_ACTS:
+    case STRUT_EVENT_KINK: break;
   }
+  return 1.0;
 }
 
 bool strut_event_rate(const strut_event_stepper *l, const strut_step_end *end,
                       strut_event_kind kind, int32_t i, double *rate) {
-  if (kind == STRUT_EVENT_ACTS || kind == STRUT_EVENT_KINK) return false;
+  if (kind == STRUT_EVENT_ACTS || kind == STRUT_EVENT_KINK) return false; /* i is no contact */
   const strut_touch *o = &end->touch[i];
   switch (kind) {
     case STRUT_EVENT_OPEN: *rate = -o->into; return true;
     case STRUT_EVENT_SLIP_ENDS: *rate = l->side[i] * o->slip_rate; return true;
     case STRUT_EVENT_LEAVES_STICK_BAND: *rate = -way_out(l, o, i) * o->slip_rate; return true;
     case STRUT_EVENT_DAMPER: *rate = l->damper[i] > 0 ? -o->into_rate : o->into_rate; return true;
-    default: return false;
+    case STRUT_EVENT_NONE:
+    case STRUT_EVENT_TOUCH:
+    case STRUT_EVENT_STICK_BREAKS:
+    case STRUT_EVENT_CREEP_OUT:
+    case STRUT_EVENT_CREEP_IN:
+    case STRUT_EVENT_PUSH:
+    case STRUT_EVENT_YIELDED:
+    case STRUT_EVENT_ACTS:
+    case STRUT_EVENT_KINK: break;
   }
+  return false;
 }
 
 /* First root in [0, 1] of the cubic with these values and slopes at 0 and 1; g0 > 0 > g1. */
@@ -87,7 +102,7 @@ static double cubic_root(double g0, double d0, double g1, double d1) {
 static double room_to_leave(const strut_model *model, const strut_event_stepper *l, int32_t i,
                             double room) {
   const strut_contact_entry *e = &model->contacts.entry[i];
-  if (!l->stepper->exact && e->friction.mu_static == e->friction.mu_kinetic) return room;
+  if (!l->stepper->exact && !strut_friction_drops(&e->friction)) return room;
   double faint = 1e-9 * stick_band_edge(e), rate = 0.0;
   double balanced = TIED * l->now->touch[i].normal * l->response[i].tangent;
   strut_event_rate(l, l->now, STRUT_EVENT_LEAVES_STICK_BAND, i, &rate);

@@ -6,6 +6,7 @@
 
 #include "engine/base/vec.h"
 #include "engine/forces/rigid.h"
+#include "engine/model/mass.h"
 
 bool strut_krylov_basis_create(const strut_model *model, const strut_tangent *tangent, int most,
                                strut_arena *arena, strut_krylov_basis *space) {

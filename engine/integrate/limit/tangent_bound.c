@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/model/mass.h"
+
 /* Passes that improve the weights; rays along which RK4's region is looked at. */
 enum { PASSES = 24, RAYS = 256 };
 /* Weights and masses never fall below; what rays between those looked at may be short of; and for

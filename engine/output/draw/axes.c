@@ -242,6 +242,13 @@ static double widest_tick(strut_canvas *canvas, const strut_axis *axis, double h
   return widest;
 }
 
+void strut_axis_choose(strut_axis *axis, const strut_axis_choice *choice) {
+  if (choice->label) axis->name = choice->label;
+  if (!choice->limited) return;
+  axis->low = choice->low;
+  axis->high = choice->high;
+}
+
 strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut_axis x, strut_axis y,
                             const strut_axis *second, const char *title) {
   double width, line, label, above = 0.5 * TICK_SIZE;

@@ -15,6 +15,13 @@ typedef struct strut_axis {
   double low, high; /* the range; both NAN: from the data, with a little room */
 } strut_axis;
 
+/** A label and a range that replace those of an axis. Zero-initialised: none. */
+typedef struct strut_axis_choice {
+  const char *label; /* replaces the name; the unit still follows; NULL: the name stays */
+  bool limited;      /* the axis goes from low to high, in its unit */
+  double low, high;
+} strut_axis_choice;
+
 /** A pair of axes laid out in a box. strut_axes_place makes it. */
 typedef struct strut_axes {
   strut_axis x, y;  /* ranges settled */
@@ -37,6 +44,8 @@ STRUT_API void strut_axis_include(strut_axis *axis, double value);
  * axis, 0 to 1 where nothing was included; widened by `room` of its width on either side.
  */
 STRUT_API void strut_axis_settle(strut_axis *axis, double room);
+/** Replaces the name and, after strut_axis_settle, the range of an axis where `choice` has one. */
+STRUT_API void strut_axis_choose(strut_axis *axis, const strut_axis_choice *choice);
 /**
  * Lays out a frame for settled axes in `box`, leaving room for ticks, labels, a second y axis on
  * the right (NULL: none) and a title (NULL: none); panels side by side line up when their boxes do.
@@ -49,7 +58,7 @@ STRUT_API strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut
 STRUT_API void strut_draw_axes(strut_canvas *canvas, const strut_axes *axes, const char *title);
 /** The y axis with its grid only, for diagrams whose x axis has no numbers. */
 STRUT_API void strut_draw_vertical_axis(strut_canvas *canvas, const strut_axes *axes);
-/** Where a pair of values is on the page, y on the left axis. */
+/** Maps a pair of values to the page, y on the left axis. */
 STRUT_API void strut_axes_point(const strut_axes *axes, double x, double y, double point[2]);
 /** The same axes with the right one as their y, to place what belongs to it. */
 STRUT_API strut_axes strut_axes_right(const strut_axes *axes);
@@ -77,7 +86,7 @@ typedef struct strut_tick_set {
   char text[STRUT_MOST_TICKS][STRUT_TICK_TEXT]; /* in the prefixed unit; "" for no text */
   char label[200]; /* "velocity in mm/s", with an offset where one was taken */
 } strut_tick_set;
-/** Fills `set` for an axis that has room for about `wanted` of them. */
+/** Fills `set` with about `wanted` ticks. */
 STRUT_API void strut_axis_ticks(const strut_axis *axis, int wanted, strut_tick_set *set);
 
 /** A colour bar beside a drawing, with name, ticks and unit. */

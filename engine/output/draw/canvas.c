@@ -269,7 +269,7 @@ strut_status strut_canvas_open(const char *path, double width, double height, co
   strut_status status = strut_canvas_check_name(path, error);
   if (status != STRUT_OK) return status;
   strut_canvas *c = strut_allocate(1, sizeof *c);
-  if (!c) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!c) return strut_no_memory(error, "");
   *c = (strut_canvas){.box = {0, 0, width, height}};
   status = strut_file_open_path(&c->file, path, error);
   if (status == STRUT_OK) {
@@ -289,7 +289,7 @@ strut_status strut_canvas_open_pixels(int width, int height, double scale, strut
                                       strut_error *error) {
   strut_canvas *c = strut_allocate(1, sizeof *c);
   *canvas = NULL;
-  if (!c) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!c) return strut_no_memory(error, "");
   *c = (strut_canvas){.box = {0, 0, width / scale, height / scale}};
   strut_status status =
       open_context(c, cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height), scale, error);
@@ -328,8 +328,7 @@ strut_status strut_canvas_commit(strut_canvas *c, strut_error *error) {
     if (status == CAIRO_STATUS_SUCCESS && c->is_svg) status = write_svg(c);
   }
   if (status == CAIRO_STATUS_SUCCESS) return strut_file_commit(&c->file, error);
-  strut_status ours = status == CAIRO_STATUS_NO_MEMORY
-                          ? strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing")
+  strut_status ours = status == CAIRO_STATUS_NO_MEMORY ? strut_no_memory(error, "while drawing")
                       : status == CAIRO_STATUS_WRITE_ERROR
                           ? strut_file_trouble(&c->file, error)
                           : strut_fail(error, STRUT_FILE_TROUBLE, "cannot draw '%s': %s",

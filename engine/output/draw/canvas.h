@@ -26,7 +26,7 @@ typedef struct strut_box {
   double x, y, width, height;
 } strut_box;
 
-/** How a line is drawn. Zero dash lengths: solid. */
+/** Style of a line. Zero dash lengths: solid. */
 typedef struct strut_pen {
   strut_colour colour;
   double width;   /* [pt] */
@@ -43,14 +43,14 @@ typedef enum strut_hatch {
   STRUT_HATCH_DOTS
 } strut_hatch;
 
-/** How an area is filled: a colour, and over it lines of another. */
+/** Fill of an area: a colour, with hatching in another colour over it. */
 typedef struct strut_fill {
   strut_colour colour;
   strut_hatch hatch;
   strut_colour hatch_colour;
 } strut_fill;
 
-/** How a text is set. Font size in pt; 0: 8. */
+/** Style of a text. Font size in pt; 0: 8. */
 typedef struct strut_font {
   double size;
   bool bold, italic;
@@ -71,14 +71,14 @@ STRUT_API strut_status strut_canvas_open(const char *path, double width, double 
 /** A page of width by height pixels, white, on which `scale` pixels are a point. */
 STRUT_API strut_status strut_canvas_open_pixels(int width, int height, double scale,
                                                 strut_canvas **canvas, strut_error *error);
-/** Its pixels, (height, *stride) bytes: blue, green, red, unused. Owned by the canvas. */
+/** The canvas's pixels, (height, *stride) bytes: blue, green, red, unused. Owned by the canvas. */
 STRUT_API const unsigned char *strut_canvas_pixels(strut_canvas *canvas, size_t *stride);
 /** Makes the file appear. */
 STRUT_API strut_status strut_canvas_commit(strut_canvas *canvas, strut_error *error);
 /** NULL is allowed; a page that was not committed leaves no file. */
 STRUT_API void strut_canvas_free(strut_canvas *canvas);
 
-/** Its size [pt]. */
+/** Size of the page [pt]. */
 STRUT_API strut_box strut_canvas_box(const strut_canvas *canvas);
 /** Fills the page with one colour. */
 STRUT_API void strut_canvas_clear(strut_canvas *canvas, strut_colour colour);

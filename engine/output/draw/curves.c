@@ -191,7 +191,7 @@ static size_t covered(const plotter *p, strut_box box) {
   return count;
 }
 
-/* Finds a place for a legend of this size that covers no curve; false where there is none. */
+/* Finds a place for a legend of this size that covers no curve; false if every place covers one. */
 static bool find_corner(const plotter *p, const double size[2], double corner[2]) {
   const strut_box *f = &p->axes.frame;
   if (size[0] > 0.6 * f->width || size[1] > 0.6 * f->height) return false;

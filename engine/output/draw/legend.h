@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * How series are told apart (colour, dashes, markers), the legends of diagrams, keys below
+ * Styles that distinguish series (colour, dashes, markers), the legends of diagrams, keys below
  * drawings, and texts cut to fit.
  */
 #ifndef STRUT_ENGINE_OUTPUT_DRAW_LEGEND_H
@@ -10,7 +10,7 @@
 
 /** The pen of the i-th style: its colour and dashes. */
 strut_pen strut_series_pen(size_t look);
-/** Its marker at x, y. */
+/** Draws the marker of a series at x, y. */
 void strut_draw_marker(strut_canvas *canvas, size_t look, double x, double y, double size);
 /** The fill of the i-th grey area. */
 strut_fill strut_band_fill(int look);
@@ -26,7 +26,7 @@ typedef struct strut_legend_entry {
   const char *label;
   bool area;
   size_t look;       /* of a line */
-  bool line, marker; /* which of them */
+  bool line, marker; /* the parts that are drawn */
   strut_fill fill;   /* of an area */
 } strut_legend_entry;
 

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
+#include "engine/forces/elements.h"
 #include "engine/output/draw/axes.h"
 #include "engine/output/draw/legend.h"
 #include "engine/output/draw/palette.h"
@@ -50,11 +51,28 @@ void strut_window_point(const strut_window *w, const double position[2], double 
   point[1] = w->box.y + (w->top - position[1]) * w->scale;
 }
 
-/* Where the ends of a member are on the page [pt]. */
-static void find_member_ends(const strut_window *w, const strut_model *model, const double *q,
-                             size_t member, double ends[2][2]) {
+size_t strut_member_segments(const strut_model *model, size_t member) {
+  return model->scene->members[member].guide_count + 1;
+}
+
+void strut_window_segment(const strut_window *w, const strut_model *model, const double *q,
+                          size_t member, size_t k, double ends[2][2]) {
   const strut_member *m = &model->scene->members[member];
-  for (int k = 0; k < 2; k++) strut_window_point(w, q + 2 * m->node[k], ends[k]);
+  for (size_t end = 0; end < 2; end++)
+    strut_window_point(w, q + 2 * strut_member_node(m, k + end), ends[end]);
+}
+
+/* The longest segment of a member, where its name and its stop stand. */
+static void find_longest_segment(const strut_window *w, const strut_model *model, const double *q,
+                                 size_t member, double longest[2][2]) {
+  double ends[2][2], most = -1;
+  for (size_t k = 0; k < strut_member_segments(model, member); k++) {
+    strut_window_segment(w, model, q, member, k, ends);
+    double length = hypot(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]);
+    if (k && !(length > most)) continue;
+    most = length;
+    memcpy(longest, ends, sizeof ends);
+  }
 }
 
 /* Around a structure: supports, ground, contact forces, node paths, the scale bar. */
@@ -110,7 +128,7 @@ static void draw_supports(strut_canvas *canvas, const strut_window *w, const str
   }
 }
 
-/* Where the ground's line enters and leaves the window's neighbourhood [pt]. */
+/* The ends of the ground's line in the window's neighbourhood [pt]. */
 static void find_ground_line(const strut_window *w, const strut_model *model, double ends[2][2]) {
   const strut_ground *ground = &model->scene->ground;
   for (int k = 0; k < 2; k++) {
@@ -209,10 +227,10 @@ static const double SUPPORT = 5.0; /* half the width of a support [pt] */
 static const double HATCHED = 2.0, FREE = 1.0,
                     FAR = 6.0; /* cost, enough freedom, second try [pt] */
 
-/* What names must not cover. */
+/* What names must not cover: segments, the first of which are the members' longest. */
 typedef struct obstacles {
-  size_t member_count, label_count;
-  double (*ends)[2]; /* (2 member_count) [pt] */
+  size_t segment_count, label_count;
+  double (*ends)[2]; /* (2 segment_count) [pt] */
   strut_box *labels; /* those placed so far */
   strut_box inside;  /* names stay in here */
   bool ground;       /* hatched to GROUND_DEPTH below the segment `surface` */
@@ -226,7 +244,7 @@ double strut_distance_to_segment(const double p[2], const double a[2], const dou
   return hypot(p[0] - a[0] - t * along[0], p[1] - a[1] - t * along[1]);
 }
 
-/* Whether a point is on the hatching below the ground's line. */
+/* True if a point is on the hatching below the ground's line. */
 static bool is_on_hatching(const obstacles *o, const double p[2]) {
   const double *a = o->surface[0], *b = o->surface[1];
   double along[2] = {b[0] - a[0], b[1] - a[1]}, length = hypot(along[0], along[1]);
@@ -243,7 +261,7 @@ static double clearance(const obstacles *o, strut_box box) {
       const double p[2] = {box.x + 0.25 * i * box.width, box.y + 0.5 * k * box.height};
       if (is_on_hatching(o, p)) least = -HATCHED;
     }
-  for (size_t j = 0; j < o->member_count; j++)
+  for (size_t j = 0; j < o->segment_count; j++)
     for (int i = 0; i <= 4; i++)
       for (int k = 0; k <= 2; k++) {
         const double p[2] = {box.x + 0.25 * i * box.width, box.y + 0.5 * k * box.height};
@@ -304,7 +322,7 @@ static void add_supports(const strut_window *w, const strut_model *model, const 
   for (int32_t i = 0; i < model->node_count; i++) {
     if (!model->scene->nodes[i].fixed[1]) continue;
     for (int side = -1; side <= 1; side += 2) {
-      double(*ends)[2] = o->ends + 2 * o->member_count++;
+      double(*ends)[2] = o->ends + 2 * o->segment_count++;
       strut_window_point(w, q + 2 * i, ends[0]);
       ends[1][0] = ends[0][0] + side * SUPPORT;
       ends[1][1] = ends[0][1] + 2 * SUPPORT;
@@ -314,18 +332,24 @@ static void add_supports(const strut_window *w, const strut_model *model, const 
 
 static bool collect_obstacles(const strut_window *w, const strut_model *model, const double *q,
                               size_t others, obstacles *o, strut_arena *arena) {
-  size_t members = model->scene->member_count, nodes = (size_t)model->node_count;
-  o->member_count = members;
-  o->ends = strut_arena_allocate(arena, 2 * (members + 1 + 2 * nodes + others), sizeof *o->ends);
+  size_t members = model->scene->member_count, nodes = (size_t)model->node_count, all = members;
+  for (size_t j = 0; j < members; j++)
+    if (model->scene->members[j].guide_count) all += strut_member_segments(model, j);
+  o->ends = strut_arena_allocate(arena, 2 * (all + 1 + 2 * nodes + others), sizeof *o->ends);
   o->labels = strut_arena_allocate(arena, nodes + members, sizeof *o->labels);
   o->inside = w->box;
   if (!o->ends || !o->labels) return false;
-  for (size_t j = 0; j < members; j++) find_member_ends(w, model, q, j, o->ends + 2 * j);
+  for (size_t j = 0; j < members; j++)
+    find_longest_segment(w, model, q, j, o->ends + 2 * o->segment_count++);
+  for (size_t j = 0; j < members; j++)
+    for (size_t k = 0; model->scene->members[j].guide_count && k < strut_member_segments(model, j);
+         k++)
+      strut_window_segment(w, model, q, j, k, o->ends + 2 * o->segment_count++);
   if (model->scene->ground.present) { /* its line is one more segment */
-    find_ground_line(w, model, o->ends + 2 * members);
-    memcpy(o->surface, o->ends + 2 * members, sizeof o->surface);
+    double(*line)[2] = o->ends + 2 * o->segment_count++;
+    find_ground_line(w, model, line);
+    memcpy(o->surface, line, sizeof o->surface);
     o->ground = true;
-    o->member_count++;
   }
   add_supports(w, model, q, o);
   return true;
@@ -338,15 +362,15 @@ void strut_draw_names(strut_canvas *canvas, const strut_window *w, const strut_m
   strut_arena arena = {0};
   obstacles o = {0};
   if (scene->node_count <= MOST_NAMED && collect_obstacles(w, model, q, other_count, &o, &arena)) {
-    if (other_count) memcpy(o.ends + 2 * o.member_count, others, 2 * other_count * sizeof *others);
-    o.member_count += other_count;
+    if (other_count) memcpy(o.ends + 2 * o.segment_count, others, 2 * other_count * sizeof *others);
+    o.segment_count += other_count;
     for (size_t i = 0; i < scene->node_count && nodes; i++) {
       double at[2];
       strut_window_point(w, q + 2 * i, at);
       if (isfinite(at[0]) && isfinite(at[1])) draw_name(canvas, &o, at, GAP, scene->nodes[i].name);
     }
     for (size_t j = 0; j < scene->member_count && members; j++) {
-      /* the middle of its line */
+      /* the middle of its longest segment */
       const double at[2] = {0.5 * (o.ends[2 * j][0] + o.ends[2 * j + 1][0]),
                             0.5 * (o.ends[2 * j][1] + o.ends[2 * j + 1][1])};
       if (isfinite(at[0]) && isfinite(at[1]))
@@ -356,18 +380,22 @@ void strut_draw_names(strut_canvas *canvas, const strut_window *w, const strut_m
   strut_arena_free(&arena);
 }
 
-/* Members and nodes. */
+/* Members, hinges, stops and nodes. */
+
+enum { ARC = 24 };                           /* pieces of a hinge's arc */
+static const double HINGE = 7.0, STOP = 4.0; /* radius of the arc, half a stop's bar [pt] */
 
 /* Factor for line widths, from the mean length of the members on the page. */
 static double thinning(const strut_window *w, const strut_model *model, const double *q) {
   double sum = 0;
   size_t count = model->scene->member_count, finite = 0;
-  for (size_t j = 0; j < count; j++) {
-    double ends[2][2];
-    find_member_ends(w, model, q, j, ends);
-    double length = hypot(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]);
-    if (isfinite(length)) sum += length, finite++;
-  }
+  for (size_t j = 0; j < count; j++)
+    for (size_t k = 0; k < strut_member_segments(model, j); k++) {
+      double ends[2][2];
+      strut_window_segment(w, model, q, j, k, ends);
+      double length = hypot(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]);
+      if (isfinite(length)) sum += length, finite++;
+    }
   return finite ? fmax(THINNEST, fmin(1.0, sum / (double)finite / FULL_LENGTH)) : 1.0;
 }
 
@@ -384,7 +412,7 @@ static void draw_batch(batch *b) {
   b->count = 0;
 }
 
-static void add_segment(batch *b, const double ends[2][2]) {
+static void add_segment(batch *b, double ends[2][2]) {
   for (int k = 0; k < 2; k++)
     for (int d = 0; d < 2; d++) b->ends[2 * b->count + (size_t)k][d] = ends[k][d];
   if (++b->count == BATCH) draw_batch(b);
@@ -400,10 +428,9 @@ typedef struct drawing {
 
 static bool is_slack(const drawing *d, size_t j) {
   if (d->model->scene->members[j].kind != STRUT_CABLE) return false;
-  if (d->style->slack_forces) return !(d->style->slack_forces[j] > 0);
-  const strut_member *m = &d->model->scene->members[j];
-  const double *a = d->q + 2 * m->node[0], *b = d->q + 2 * m->node[1];
-  return hypot(b[0] - a[0], b[1] - a[1]) < d->model->members.rest[j] * (1 - 1e-12);
+  if (d->style->slack_forces) return !(fabs(d->style->slack_forces[j]) > 0);
+  return strut_member_path_length(d->model, (int32_t)j, d->q) <
+         d->model->members.rest[j] * (1 - 1e-12);
 }
 
 static double width_of(const drawing *d, size_t j) {
@@ -429,16 +456,23 @@ static strut_colour colour_of(const drawing *d, strut_member_kind kind, bool sla
                                 : strut_palette_thing(1);
 }
 
+/* Adds all segments of a member. */
+static void add_member(batch *b, const drawing *d, size_t j) {
+  double ends[2][2];
+  for (size_t k = 0; k < strut_member_segments(d->model, j); k++) {
+    strut_window_segment(d->window, d->model, d->q, j, k, ends);
+    add_segment(b, ends);
+  }
+}
+
 /* A dark edge separates light colours from the paper. */
 static void draw_casings(strut_canvas *canvas, const drawing *d, strut_member_kind kind) {
   batch b = {.canvas = canvas};
   b.pen.colour = strut_faded(strut_grey(0.1), d->opacity);
   for (size_t j = 0; j < d->model->scene->member_count; j++) {
-    double ends[2][2];
     if (d->model->scene->members[j].kind != kind) continue;
     b.pen.width = width_of(d, j) + CASING * d->thin;
-    find_member_ends(d->window, d->model, d->q, j, ends);
-    add_segment(&b, (const double(*)[2])ends);
+    add_member(&b, d, j);
   }
   draw_batch(&b);
 }
@@ -454,12 +488,10 @@ static void draw_alike(strut_canvas *canvas, const drawing *d, strut_member_kind
     b.pen.butt = true;
   }
   for (size_t j = 0; j < d->model->scene->member_count; j++) {
-    double ends[2][2];
     if (d->model->scene->members[j].kind != kind || is_slack(d, j) != slack) continue;
     if (!slack && shade_of(d, j) != shade) continue;
     b.pen.width = width_of(d, j);
-    find_member_ends(d->window, d->model, d->q, j, ends);
-    add_segment(&b, (const double(*)[2])ends);
+    add_member(&b, d, j);
   }
   draw_batch(&b);
 }
@@ -474,6 +506,53 @@ static void draw_members(strut_canvas *canvas, const drawing *d) {
     if (!shaded) draw_alike(canvas, d, order[k], false, -1);
     for (int shade = 0; shaded && shade < SHADES; shade++)
       draw_alike(canvas, d, order[k], false, shade);
+  }
+}
+
+/* A hinge: an arc around its node, from the first arm to the second by its angle. */
+static void draw_hinge(strut_canvas *canvas, const drawing *d, const strut_hinge *h, double angle,
+                       strut_pen pen) {
+  double at[3][2], arc[ARC + 1][2], arm = HUGE_VAL;
+  for (int k = 0; k < 3; k++) strut_window_point(d->window, d->q + 2 * h->node[k], at[k]);
+  for (int k = 0; k < 3; k += 2) arm = fmin(arm, hypot(at[k][0] - at[1][0], at[k][1] - at[1][1]));
+  double radius = fmin(HINGE * d->thin, 0.4 * arm);
+  double first = atan2(at[1][1] - at[0][1], at[0][0] - at[1][0]);
+  angle = fmax(-STRUT_TAU, fmin(STRUT_TAU, angle));
+  if (!isfinite(first + radius + angle)) return;
+  for (int i = 0; i <= ARC; i++) {
+    arc[i][0] = at[1][0] + radius * cos(first + angle * i / ARC);
+    arc[i][1] = at[1][1] - radius * sin(first + angle * i / ARC);
+  }
+  strut_draw_line(canvas, (const double(*)[2])arc, ARC + 1, pen);
+}
+
+/* A stop that acts: a bar across the middle of its member. */
+static void draw_stop(strut_canvas *canvas, const drawing *d, size_t member, strut_pen pen) {
+  double ends[2][2] = {{0}};
+  find_longest_segment(d->window, d->model, d->q, member, ends);
+  double x = ends[1][0] - ends[0][0], y = ends[1][1] - ends[0][1], length = hypot(x, y);
+  if (!(length > 0) || !isfinite(length)) return;
+  double half = STOP * d->thin / length, middle[2];
+  for (int k = 0; k < 2; k++) middle[k] = 0.5 * (ends[0][k] + ends[1][k]);
+  strut_draw_segment(canvas, middle[0] - half * y, middle[1] + half * x, middle[0] + half * y,
+                     middle[1] - half * x, pen);
+}
+
+static void draw_elements(strut_canvas *canvas, const drawing *d) {
+  bool one = d->style->colouring == STRUT_COLOUR_ONE;
+  strut_pen pen = {.colour =
+                       strut_faded(one ? d->style->colour : strut_palette_thing(2), d->opacity)};
+  strut_element_pose pose;
+  if (d->thin < 0.3) return; /* too small to be drawn */
+  for (int32_t i = 0; i < d->model->elements.count; i++) {
+    const strut_element *e = &d->model->elements.element[i];
+    if (e->role == STRUT_ELEMENT_MEMBER) continue;
+    strut_element_evaluate(d->model, i, d->model->members.rest, d->q, (double)NAN, &pose);
+    pen.width = (e->role == STRUT_ELEMENT_HINGE ? 1.0 : 1.6) * d->thin / (1 + d->style->thinness);
+    if (e->role == STRUT_ELEMENT_HINGE)
+      draw_hinge(canvas, d, &d->model->scene->hinges[e->item], pose.strain, pen);
+    else if (pose.acts)
+      draw_stop(canvas, d, (size_t)e->item, pen);
   }
 }
 
@@ -500,6 +579,7 @@ void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
                      .opacity = style->opacity > 0 ? style->opacity : 1.0};
   if (!style->no_supports) draw_supports(canvas, window, model, q, fmax(d.thin, 0.3), d.opacity);
   draw_members(canvas, &d);
+  draw_elements(canvas, &d);
   if (!style->no_nodes) draw_nodes(canvas, &d);
   if (style->node_names || style->member_names)
     strut_draw_names(canvas, window, model, q, style->node_names, style->member_names, NULL, 0);

@@ -27,9 +27,15 @@ STRUT_API void strut_bounds_add(strut_bounds *bounds, const strut_model *model, 
  * The window in `box` that shows the bounds with `margin` [pt] around them for names and arrows.
  */
 STRUT_API strut_window strut_window_fit(strut_box box, strut_bounds bounds, double margin);
-/** Where a point of the plane [m] is on the page [pt]. */
+/** Maps a point of the plane [m] to the page [pt]. */
 STRUT_API void strut_window_point(const strut_window *window, const double position[2],
                                   double point[2]);
+
+/** Segments of a member on the page: one, or one more than a running cable has guides. */
+STRUT_API size_t strut_member_segments(const strut_model *model, size_t member);
+/** Where the ends of a member's segment k are on the page [pt], in the shape q. */
+STRUT_API void strut_window_segment(const strut_window *window, const strut_model *model,
+                                    const double *q, size_t member, size_t k, double ends[2][2]);
 
 typedef enum strut_colouring {
   STRUT_COLOUR_KIND,  /* bars dark, springs and cables by kind */
@@ -37,7 +43,7 @@ typedef enum strut_colouring {
   STRUT_COLOUR_ONE    /* all in `colour` */
 } strut_colouring;
 
-/** How a structure is drawn; zero-initialised it is drawn by kinds, thick and opaque. */
+/** Style of a structure; zero-initialised: coloured by kind, thick and opaque. */
 typedef struct strut_structure_style {
   strut_colouring colouring;
   const double *values; /* (member_count) force [N] or strain; for STRUT_COLOUR_FORCE */
@@ -51,7 +57,8 @@ typedef struct strut_structure_style {
 } strut_structure_style;
 
 /**
- * Members, nodes and supports of the shape q (model->length). Widths adapt to how many there are.
+ * Members, nodes, supports, hinges (an arc from arm to arm) and stops that act (a bar across their
+ * member) of the shape q (model->length). Widths adapt to how many there are.
  */
 STRUT_API void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
                                     const strut_model *model, const double *q,

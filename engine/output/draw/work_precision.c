@@ -105,7 +105,7 @@ static bool overlap(strut_box a, strut_box b) {
   return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
 }
 
-/* Whether a label fits there: inside the frame, on no other label and no marker. */
+/* True if a label fits there: inside the frame, on no other label and no marker. */
 static bool is_free(const diagram *d, strut_box box) {
   const strut_box *f = &d->axes.frame;
   if (box.x < f->x + 1 || box.x + box.width > f->x + f->width - 1 || box.y < f->y + 1 ||

@@ -19,7 +19,7 @@ static const double *drawn_shape(const strut_equilibria *all, size_t i) {
   return on_ground(e) && e->ends_as == (int32_t)i ? e->rest : e->point.q;
 }
 
-/* Its energy there [J]. */
+/* Energy of the equilibrium at rest [J]. */
 static double drawn_energy(const strut_equilibria *all, size_t i) {
   const strut_equilibrium *e = &all->list[i];
   return on_ground(e) && e->ends_as == (int32_t)i ? e->rest_energy : e->energy;
@@ -150,8 +150,9 @@ static const double EDGE = 5, TITLE = 28, LINES = 23, MARGIN = 17, NARROW = 110,
                     LADDER = 150;
 enum { MOST_CARDS = 12, MOST_SMALL = 6 };
 
-/* Which equilibria are drawn, and how large. */
+/* The equilibria that are drawn, and the sizes of their cards. */
 typedef struct plan {
+  const char *title;
   const strut_model *model;
   const strut_equilibria *all;
   size_t *standing, standing_count; /* stable on the ground, by energy */
@@ -367,7 +368,7 @@ static strut_status draw_figure(plan *p, strut_canvas *canvas) {
            p->standing_count == 1 ? "um" : "a",
            p->model->scene->ground.present ? " on the ground" : "",
            p->cards < p->standing_count ? ", the lowest are drawn" : "");
-  strut_draw_heading(canvas, EDGE, p->model->scene->name, text);
+  strut_draw_heading(canvas, EDGE, p->title, text);
   y = draw_cards(p, canvas, y, &good);
   if (!good) return STRUT_NO_MEMORY;
   if (p->ladder) {
@@ -389,16 +390,17 @@ static strut_status draw_figure(plan *p, strut_canvas *canvas) {
   return STRUT_OK;
 }
 
-strut_status strut_equilibria_figure(const char *path, double width, const strut_model *model,
+strut_status strut_equilibria_figure(const strut_plot *plot, const strut_model *model,
                                      const strut_equilibria *equilibria, strut_error *error) {
-  plan p = {.model = model, .all = equilibria, .width = width};
+  plan p = {.model = model,
+            .all = equilibria,
+            .width = plot->width,
+            .title = strut_plot_title(plot, model->scene->name)};
   strut_canvas *canvas = NULL;
-  strut_status status = choose_equilibria(&p)
-                            ? STRUT_OK
-                            : strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
+  strut_status status = choose_equilibria(&p) ? STRUT_OK : strut_no_memory(error, "while drawing");
   if (status == STRUT_OK) {
     lay_out_cards(&p);
-    status = strut_canvas_open(path, width, figure_height(&p), model->scene->name, &canvas, error);
+    status = strut_canvas_open(plot->path, plot->width, figure_height(&p), p.title, &canvas, error);
   }
   if (status == STRUT_OK) {
     status = draw_figure(&p, canvas);

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/forces/elements.h"
 #include "engine/output/figures/statics_figures.h"
 
 #include <math.h>
@@ -18,11 +19,7 @@ static const double NARROW = 170, FOOT = 50, LEAST_MARGIN = 8;
 static double find_forces(const strut_model *model, double *force) {
   double most = 0;
   for (size_t j = 0; j < model->scene->member_count; j++) {
-    const strut_member *m = &model->scene->members[j];
-    const double *a = model->start + 2 * m->node[0], *b = model->start + 2 * m->node[1];
-    force[j] = fmax(
-        model->members.stiffness[j] * (hypot(b[0] - a[0], b[1] - a[1]) - model->members.rest[j]),
-        model->members.slack[j]);
+    force[j] = strut_member_elastic_tension(model, model->members.rest, (int32_t)j, model->start);
     most = fmax(most, fabs(force[j]));
   }
   return most;
@@ -36,9 +33,9 @@ static double farthest(const strut_model *model, const double (*drawn)[2]) {
   return most;
 }
 
-static void draw_form(strut_canvas *canvas, const strut_model *model, const double *before,
-                      const double (*drawn)[2], const double *force, double limit,
-                      strut_bounds bounds) {
+static void draw_form(strut_canvas *canvas, const char *title, const strut_model *model,
+                      const double *before, const double (*drawn)[2], const double *force,
+                      double limit, strut_bounds bounds) {
   strut_box page = strut_canvas_box(canvas);
   double inner = page.width - 2 * EDGE, moved = farthest(model, drawn);
   bool narrow = page.width < NARROW;
@@ -48,12 +45,12 @@ static void draw_form(strut_canvas *canvas, const strut_model *model, const doub
   char text[200];
   bool same = moved <= 1e-9 * model->size;
   if (same) {
-    snprintf(text, sizeof text, "the shape as drawn, and the forces that hold it");
+    snprintf(text, sizeof text, "the drawn shape, and the forces that hold it");
   } else {
-    snprintf(text, sizeof text, "grey: as drawn; nodes moved by up to %s",
+    snprintf(text, sizeof text, "grey: drawn shape; nodes moved by up to %s",
              strut_drawn_quantity(moved, 3, "m").text);
   }
-  strut_draw_heading(canvas, EDGE, model->scene->name, text);
+  strut_draw_heading(canvas, EDGE, title, text);
   const strut_structure_style pale = {.colouring = STRUT_COLOUR_ONE,
                                       .colour = strut_grey(0.75),
                                       .thinness = 0.4,
@@ -77,15 +74,17 @@ static void draw_form(strut_canvas *canvas, const strut_model *model, const doub
   if (limit > 0) strut_draw_colour_scale(canvas, narrow ? below : beside, &scale);
 }
 
-strut_status strut_form_figure(const char *path, double width, const strut_model *model,
+strut_status strut_form_figure(const strut_plot *plot, const strut_model *model,
                                const double (*drawn)[2], strut_error *error) {
   strut_arena arena = {0};
   strut_canvas *canvas = NULL;
+  const char *title = strut_plot_title(plot, model->scene->name);
+  double width = plot->width;
   double *before = strut_arena_allocate(&arena, (size_t)model->length, sizeof *before);
   double *force = strut_arena_allocate(&arena, model->scene->member_count + 1, sizeof *force);
   if (!before || !force) {
     strut_arena_free(&arena);
-    return strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
+    return strut_no_memory(error, "while drawing");
   }
   memcpy(before, drawn, (size_t)model->node_count * sizeof *drawn);
   strut_bounds bounds = strut_bounds_none();
@@ -98,9 +97,9 @@ strut_status strut_form_figure(const char *path, double width, const strut_model
   double high = room * (aspect >= 0 && aspect < 10 ? aspect : 1) + 2 * margin;
   high = fmax(0.25 * width, fmin(high, 0.9 * width)) + (narrow ? FOOT : 0);
   strut_status status =
-      strut_canvas_open(path, width, 2 * EDGE + TITLE + high, model->scene->name, &canvas, error);
+      strut_canvas_open(plot->path, width, 2 * EDGE + TITLE + high, title, &canvas, error);
   if (status == STRUT_OK) {
-    draw_form(canvas, model, before, drawn, force, limit, bounds);
+    draw_form(canvas, title, model, before, drawn, force, limit, bounds);
     status = strut_canvas_commit(canvas, error);
   }
   strut_canvas_free(canvas);

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/forces/elements.h"
 #include "engine/output/figures/statics_figures.h"
 
 #include <math.h>
@@ -73,15 +74,19 @@ static double compute_strains(figure *f) {
   const double *q = f->modes->q;
   double largest = 0.0;
   for (size_t j = 0; j < f->model->scene->member_count; j++) {
-    const int32_t *node = f->model->scene->members[j].node;
-    double along[2], change = 0.0, square = 0.0;
-    for (int d = 0; d < 2; d++) {
-      along[d] = q[2 * node[1] + d] - q[2 * node[0] + d];
-      square += along[d] * along[d];
-      change += along[d] * (f->moved[2 * node[1] + d] - q[2 * node[1] + d] -
-                            f->moved[2 * node[0] + d] + q[2 * node[0] + d]);
+    const strut_member *m = &f->model->scene->members[j];
+    double change = 0.0, length = 0.0;
+    for (size_t k = 0; k <= m->guide_count; k++) {
+      int32_t a = strut_member_node(m, k), b = strut_member_node(m, k + 1);
+      double along[2], part, own = 0.0;
+      for (int d = 0; d < 2; d++) {
+        along[d] = q[2 * b + d] - q[2 * a + d];
+        own += along[d] * (f->moved[2 * b + d] - q[2 * b + d] - f->moved[2 * a + d] + q[2 * a + d]);
+      }
+      length += part = hypot(along[0], along[1]);
+      change += part > 0 ? own / part : 0.0;
     }
-    f->strain[j] = square > 0 ? change / square : 0.0;
+    f->strain[j] = length > 0 ? change / length : 0.0;
     largest = fmax(largest, fabs(f->strain[j]));
   }
   return largest > UNSTRAINED ? largest : 0.0;
@@ -91,9 +96,8 @@ static void find_taut(figure *f) {
   const double *q = f->modes->q;
   for (size_t j = 0; j < f->model->scene->member_count; j++) {
     const strut_member *m = &f->model->scene->members[j];
-    const double *a = q + 2 * m->node[0], *b = q + 2 * m->node[1];
-    bool slack = m->kind == STRUT_CABLE &&
-                 hypot(b[0] - a[0], b[1] - a[1]) <= f->model->members.rest[j] * (1 - 1e-12);
+    bool slack = m->kind == STRUT_CABLE && strut_member_path_length(f->model, (int32_t)j, q) <=
+                                               f->model->members.rest[j] * (1 - 1e-12);
     f->taut[j] = slack ? 0.0 : 1.0;
   }
 }
@@ -171,7 +175,7 @@ static void write_title(const strut_mode *mode, size_t number, char title[TITLE]
   strut_c_locale_leave(locale);
 }
 
-/* Which nodes move. Colours show the strained members. */
+/* Names the moving nodes. Colours show the strained members. */
 static void describe_mode(const strut_mode *mode, char words[TITLE + TITLE / 2]) {
   const char *end = strchr(mode->description, ';');
   char growth[TITLE / 2] = "";
@@ -225,7 +229,7 @@ static size_t draw_arrows(figure *f, const strut_window *window) {
   return count;
 }
 
-/* Whether names cover little of the drawing; the texts name the moving nodes anyway. */
+/* True if names cover little of the drawing; the texts name the moving nodes anyway. */
 static bool names_fit(figure *f, strut_box box) {
   double covered = 0.0;
   if (f->model->node_count > NAMED) return false;
@@ -330,7 +334,9 @@ static strut_status measure_texts(figure *f, double width, const strut_key_item 
   return STRUT_OK;
 }
 
-static strut_status draw_figure(figure *f, const char *path, double width, strut_error *error) {
+static strut_status draw_figure(figure *f, const strut_plot *plot, strut_error *error) {
+  const char *title = strut_plot_title(plot, f->model->scene->name);
+  double width = plot->width;
   char at[TITLE], rest[TITLE];
   strut_key_item items[ITEMS] = {{0}};
   size_t count = make_key(f, at, rest, items);
@@ -339,9 +345,9 @@ static strut_status draw_figure(figure *f, const char *path, double width, strut
   if (status != STRUT_OK) return status;
   for (size_t row = 0; row < f->rows; row++) height += row_height(f, row) + GAP;
   height += NAME_LINE + key - 0.5 * GAP;
-  status = strut_canvas_open(path, width, height, f->model->scene->name, &f->canvas, error);
+  status = strut_canvas_open(plot->path, width, height, title, &f->canvas, error);
   if (status != STRUT_OK) return status;
-  strut_draw_heading(f->canvas, EDGE, f->model->scene->name, "");
+  strut_draw_heading(f->canvas, EDGE, title, "");
   strut_box box = {EDGE, EDGE + NAME_LINE, f->panel_width, 0};
   for (size_t row = 0; row < f->rows; row++, box.y += box.height + GAP) {
     box.height = row_height(f, row);
@@ -357,7 +363,7 @@ static strut_status draw_figure(figure *f, const char *path, double width, strut
   return status;
 }
 
-strut_status strut_modes_figure(const char *path, double width, const strut_model *model,
+strut_status strut_modes_figure(const strut_plot *plot, const strut_model *model,
                                 const strut_modes *modes, size_t panels, strut_error *error) {
   figure f = {.model = model, .modes = modes, .head = TITLE_LINE + WORD_LINES + 2.0};
   choose_modes(&f, panels);
@@ -365,10 +371,10 @@ strut_status strut_modes_figure(const char *path, double width, const strut_mode
   if (allocate_arrays(&f)) {
     find_taut(&f);
     find_bounds(&f);
-    arrange(&f, width);
-    status = draw_figure(&f, path, width, error);
+    arrange(&f, plot->width);
+    status = draw_figure(&f, plot, error);
   } else {
-    strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    strut_no_memory(error, "");
   }
   strut_arena_free(&f.arena);
   return status;

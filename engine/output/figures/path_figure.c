@@ -33,6 +33,7 @@ typedef struct path_stop {
 } path_stop;
 
 typedef struct path_picture {
+  const strut_plot *plot;
   strut_canvas *canvas;
   const strut_model *model;
   const strut_path *path;
@@ -51,7 +52,7 @@ typedef struct path_picture {
   double (*others)[2]; /* (other_room, 2) lines that names keep off [pt] */
 } path_picture;
 
-/* Whether the path scales this load. */
+/* True if the path scales this load. */
 static bool load_grows(const strut_path *path, const strut_load *load) {
   if (path->over != STRUT_PATH_OVER_LOAD) return false;
   if (path->load) return strcmp(load->name, path->load) == 0;
@@ -74,13 +75,16 @@ static void add_obstacle(path_picture *p, const double a[2], const double b[2]) 
   }
 }
 
-/* Draws letters beside the stops, clear of the line through p->points and of each other. */
+/*
+ * Draws letters beside the stops, clear of the line through p->points and of each other. A stop at NAN
+ * is not shown.
+ */
 static void draw_letters(path_picture *p, strut_box inside, const double (*points)[2]) {
   double placed[MOST_STOPS][2];
   size_t count = 0;
   for (size_t i = 0; i < p->stop_count; i++) {
     double best = -HUGE_VAL;
-    if (!p->stops[i].letter[0]) continue;
+    if (!p->stops[i].letter[0] || isnan(points[i][0])) continue;
     for (int k = 0; k < DIRECTIONS; k++) {
       double angle = 2 * STRUT_PI * (k + 0.5) / DIRECTIONS, free = LETTER;
       const double at[2] = {points[i][0] + LETTER * cos(angle), points[i][1] - LETTER * sin(angle)};
@@ -114,10 +118,18 @@ static void draw_letters(path_picture *p, strut_box inside, const double (*point
   }
 }
 
+/* Is the point within the box, its edges included up to rounding? */
+static bool is_inside(strut_box box, const double at[2]) {
+  const double edge = 0.01; /* [pt] */
+  return at[0] >= box.x - edge && at[0] <= box.x + box.width + edge && at[1] >= box.y - edge &&
+         at[1] <= box.y + box.height + edge;
+}
+
 static void draw_markers(path_picture *p, const double (*points)[2]) {
   const strut_pen edge = {.colour = strut_grey(0.1), .width = 0.6};
   for (size_t i = 0; i < p->stop_count; i++) {
     const strut_fill fill = {.colour = p->stops[i].colour};
+    if (isnan(points[i][0])) continue;
     strut_draw_circle(p->canvas, points[i][0], points[i][1], MARKER, &fill, &edge);
   }
 }
@@ -164,8 +176,10 @@ static strut_axes place_axes(path_picture *p, strut_box box, char labels[2][LABE
   }
   strut_axis_settle(&motion, 0.05);
   strut_axis_settle(&height, 0.05);
-  return strut_axes_place(p->canvas, box, p->upright ? height : motion,
-                          p->upright ? motion : height, NULL, NULL);
+  strut_axis x = p->upright ? height : motion, y = p->upright ? motion : height;
+  strut_axis_choose(&x, &p->plot->x);
+  strut_axis_choose(&y, &p->plot->y);
+  return strut_axes_place(p->canvas, box, x, y, NULL, NULL);
 }
 
 static void draw_curve(path_picture *p, strut_box box) {
@@ -196,8 +210,11 @@ static void draw_curve(path_picture *p, strut_box box) {
     first = k;
   }
   strut_canvas_unclip(p->canvas);
-  for (size_t i = 0; i < p->stop_count; i++)
-    for (int d = 0; d < 2; d++) stops[i][d] = p->points[p->stops[i].vertex][d];
+  for (size_t i = 0; i < p->stop_count; i++) {
+    const double *at = p->points[p->stops[i].vertex];
+    bool shown = is_inside(axes.frame, at);
+    for (int d = 0; d < 2; d++) stops[i][d] = shown ? at[d] : (double)NAN;
+  }
   draw_markers(p, (const double(*)[2])stops);
   draw_letters(p, axes.frame, (const double(*)[2])stops);
 }
@@ -320,12 +337,12 @@ static void draw_shapes(path_picture *p, strut_box box) {
                                          .thinness = 0.3,
                                          .no_supports = i > 0};
     strut_draw_structure(p->canvas, &window, p->model, enlarged(p, q), &style);
-    for (size_t j = 0; i > 0 && j < p->model->scene->member_count; j++) {
-      const int32_t *node = p->model->scene->members[j].node;
-      double ends[2][2];
-      for (int k = 0; k < 2; k++) strut_window_point(&window, p->shape + 2 * node[k], ends[k]);
-      add_obstacle(p, ends[0], ends[1]);
-    }
+    for (size_t j = 0; i > 0 && j < p->model->scene->member_count; j++)
+      for (size_t k = 0; k < strut_member_segments(p->model, j); k++) {
+        double ends[2][2];
+        strut_window_segment(&window, p->model, p->shape, j, k, ends);
+        add_obstacle(p, ends[0], ends[1]);
+      }
   }
   for (size_t l = 0; l < p->model->scene->load_count; l++) {
     if (!load_arrow(p, &window, &p->model->scene->loads[l], arrow)) continue;
@@ -417,6 +434,11 @@ static void describe_event(const path_picture *p, const strut_path_event *event,
     name = scene->members[event->index].name;
   if (event->kind == STRUT_PATH_TOUCHDOWN || event->kind == STRUT_PATH_LIFT_OFF)
     name = scene->nodes[event->index].name;
+  if (event->kind >= STRUT_PATH_ENGAGE) {
+    const strut_element *e = &p->model->elements.element[event->index];
+    bool hinge = e->role == STRUT_ELEMENT_HINGE;
+    name = hinge ? scene->hinges[e->item].name : scene->members[e->item].name;
+  }
   int length = strut_text_bytes(name, NAME);
   if (used + NAME + 60 > STOP_TEXT) return; /* no room: the rest of the events here is not named */
   if (before && before->kind == event->kind)
@@ -530,8 +552,9 @@ static size_t make_key(const path_picture *p, char notes[2][NOTE], strut_key_ite
   return count;
 }
 
-static strut_status draw_picture(path_picture *p, const char *name, double width,
-                                 strut_error *error) {
+static strut_status draw_picture(path_picture *p, strut_error *error) {
+  const char *title = strut_plot_title(p->plot, p->model->scene->name);
+  double width = p->plot->width;
   char notes[2][NOTE];
   strut_key_item items[ITEMS] = {{0}};
   size_t count = make_key(p, notes, items);
@@ -551,10 +574,9 @@ static strut_status draw_picture(path_picture *p, const char *name, double width
     shapes.height = fmin(shapes_height(p, inside), 0.9 * inside);
   }
   double below = shapes.y + shapes.height + 0.5 * BETWEEN;
-  status =
-      strut_canvas_open(name, width, below + key + EDGE, p->model->scene->name, &p->canvas, error);
+  status = strut_canvas_open(p->plot->path, width, below + key + EDGE, title, &p->canvas, error);
   if (status != STRUT_OK) return status;
-  strut_draw_heading(p->canvas, EDGE, p->model->scene->name, "");
+  strut_draw_heading(p->canvas, EDGE, title, "");
   draw_curve(p, curve);
   draw_shapes(p, shapes);
   strut_draw_key(p->canvas, (strut_box){EDGE, below, inside, key}, items, count);
@@ -563,13 +585,12 @@ static strut_status draw_picture(path_picture *p, const char *name, double width
   return status;
 }
 
-strut_status strut_path_figure(const char *path_name, double width, const strut_model *model,
+strut_status strut_path_figure(const strut_plot *plot, const strut_model *model,
                                const strut_path *path, strut_error *error) {
   strut_arena arena = {0};
-  path_picture picture = {.model = model, .path = path};
-  strut_status status = prepare_picture(&picture, &arena)
-                            ? draw_picture(&picture, path_name, width, error)
-                            : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  path_picture picture = {.plot = plot, .model = model, .path = path};
+  strut_status status = prepare_picture(&picture, &arena) ? draw_picture(&picture, error)
+                                                          : strut_no_memory(error, "");
   strut_arena_free(&arena);
   return status;
 }

@@ -14,8 +14,9 @@ static const double EDGE = 5, TITLE = 28, LINE = 12, MARGIN = 18, NARROW = 110, 
 static const double SWING = 0.12; /* the largest motion as drawn, of the larger extent */
 enum { ROWS = 4, COLUMNS = 3 };
 
-/* What the panels show, in this order. */
+/* Contents of the panels, in this order. */
 typedef struct plan {
+  const char *title;
   const strut_model *model;
   const double *q;
   const strut_rigidity *rigidity;
@@ -28,7 +29,7 @@ typedef struct plan {
 
 static int32_t panels_of(const plan *p) { return p->forces + p->states + p->motions; }
 
-/* Whether members pull or push more than the rounding of their lengths does. */
+/* True if member forces exceed the effect of rounding in their lengths. */
 static bool forces_told(const plan *p) {
   double most = 0, scale = 0;
   for (size_t j = 0; j < p->model->scene->member_count; j++) {
@@ -151,7 +152,7 @@ static void draw_panel(const plan *p, strut_canvas *canvas, int32_t k, strut_box
   } else if (k < p->forces + p->states) {
     size_t state = (size_t)(k - p->forces);
     draw_forces(p, canvas, &window,
-                p->rigidity->states.force + state * p->model->scene->member_count);
+                p->rigidity->states.force + state * (size_t)p->rigidity->matrix.columns);
   } else {
     draw_motion(p, canvas, &window, p->rigidity->mechanisms.list[k - p->forces - p->states].motion);
   }
@@ -167,8 +168,8 @@ static void draw_title(const plan *p, strut_canvas *canvas, const char *at) {
                       (int)r->states.count, r->states.count == 1 ? "" : "s",
                       (int)r->mechanisms.count, r->mechanisms.count == 1 ? "" : "s");
   if (left_out > 0)
-    snprintf(text + used, sizeof text - (size_t)used, "; %d of them are not drawn", (int)left_out);
-  strut_draw_heading(canvas, EDGE, p->model->scene->name, text);
+    snprintf(text + used, sizeof text - (size_t)used, "; %d not drawn", (int)left_out);
+  strut_draw_heading(canvas, EDGE, p->title, text);
 }
 
 static void draw_figure(const plan *p, strut_canvas *canvas, const char *at) {
@@ -200,19 +201,22 @@ static void draw_figure(const plan *p, strut_canvas *canvas, const char *at) {
     strut_draw_colour_scale(canvas, (strut_box){p->width - EDGE - wide, y, wide, SCALE}, &scale);
 }
 
-strut_status strut_rigidity_figure(const char *path, double width, const strut_model *model,
+strut_status strut_rigidity_figure(const strut_plot *plot, const strut_model *model,
                                    const double *q, const char *at, const strut_rigidity *rigidity,
                                    strut_error *error) {
-  plan p = {.model = model, .q = q, .rigidity = rigidity, .width = width};
+  plan p = {.model = model,
+            .q = q,
+            .rigidity = rigidity,
+            .width = plot->width,
+            .title = strut_plot_title(plot, model->scene->name)};
   strut_arena arena = {0};
   strut_canvas *canvas = NULL;
   p.moved = strut_arena_allocate(&arena, (size_t)model->length, sizeof *p.moved);
-  strut_status status =
-      p.moved ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
+  strut_status status = p.moved ? STRUT_OK : strut_no_memory(error, "while drawing");
   if (status == STRUT_OK) {
     lay_out_panels(&p);
     double height = 2 * EDGE + TITLE + (double)p.rows * p.cell[1] + SCALE;
-    status = strut_canvas_open(path, width, height, model->scene->name, &canvas, error);
+    status = strut_canvas_open(plot->path, plot->width, height, p.title, &canvas, error);
   }
   if (status == STRUT_OK) {
     draw_figure(&p, canvas, at);

@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
+#include "engine/forces/elements.h"
 #include "engine/output/draw/curves.h"
 #include "engine/output/figures/run_parts.h"
 
@@ -18,7 +20,7 @@ static const double CLOSED = 1e-3;   /* of the model's size: closer to the groun
 static const double ROUNDING = 1e-9; /* of an energy */
 static const double ROOM = 0.06;     /* above and below the curves */
 
-/* What a panel draws, and its curves; values are (frames) each. */
+/* A panel and its curves of (frames) values each. */
 typedef struct panel {
   const char *name, *unit;
   double least; /* range at least */
@@ -27,12 +29,23 @@ typedef struct panel {
   const char *labels[MOST_CURVES];
 } panel;
 
+/* Drives of members; a driven hinge shows in its angle. */
+static size_t count_driven(const strut_run_scene *run) {
+  const strut_drive_table *drives = &run->model->drives;
+  size_t count = 0;
+  for (int32_t i = 0; i < drives->count; i++)
+    count += drives->member[i] < run->model->members.count;
+  return count;
+}
+
 static size_t count_items(const strut_run_scene *run, int kind) {
   const strut_trajectory *m = run->motion;
   switch (kind) {
     case STRUT_RUN_DISPLACEMENT: return run->model->scene->ground.present ? 1 : 2;
     case STRUT_RUN_NORMALS: return m->contact ? m->contact_count : 0;
-    case STRUT_RUN_DRIVE: return (size_t)run->model->drives.count;
+    case STRUT_RUN_DRIVE: return count_driven(run);
+    case STRUT_RUN_ANGLES: return m->angle ? m->hinge_count : 0;
+    case STRUT_RUN_MOMENTS: return m->moment ? m->hinge_count : 0;
     case STRUT_RUN_HEIGHTS: return run->model->scene->ground.present ? m->contact_count : 0;
     case STRUT_RUN_FORCES: return m->force ? m->member_count : 0;
     default: return m->energy ? 4 : 0;
@@ -53,11 +66,13 @@ static double value_at(const strut_run_scene *run, int kind, size_t item, size_t
              cos(run->model->scene->ground.slope);
     }
     case STRUT_RUN_FORCES: return m->force[f * m->member_count + item];
+    case STRUT_RUN_ANGLES: return m->angle[f * m->hinge_count + item] * (180.0 / STRUT_PI);
+    case STRUT_RUN_MOMENTS: return m->moment[f * m->hinge_count + item];
     default: return m->energy[f * STRUT_ENERGIES + item];
   }
 }
 
-/* Whether a contact ever touches the ground; heights of others are omitted. */
+/* True if a contact ever touches the ground; heights of others are omitted. */
 static bool comes_down(const strut_run_scene *run, size_t contact) {
   for (size_t f = 0; f < run->frames; f++)
     if (value_at(run, STRUT_RUN_HEIGHTS, contact, f) < CLOSED * run->model->size) return true;
@@ -71,6 +86,8 @@ static const char *label_of(const strut_run_scene *run, int kind, size_t item) {
   switch (kind) {
     case STRUT_RUN_DISPLACEMENT: return axes[item];
     case STRUT_RUN_FORCES: return scene->members[item].name;
+    case STRUT_RUN_ANGLES:
+    case STRUT_RUN_MOMENTS: return scene->hinges[item].name;
     case STRUT_RUN_ENERGIES: return energies[item];
     default: return scene->nodes[run->motion->contact_node[item]].name;
   }
@@ -100,6 +117,7 @@ static double least_range(const strut_run_scene *run, int kind) {
   bool length =
       kind == STRUT_RUN_DISPLACEMENT || kind == STRUT_RUN_HEIGHTS || kind == STRUT_RUN_DRIVE;
   double most = 0;
+  if (kind == STRUT_RUN_ANGLES) return STANDING * 180.0 / STRUT_PI;
   if (length) return STANDING * run->model->size;
   for (size_t i = 0; i < count_items(run, kind) && kind == STRUT_RUN_ENERGIES; i++)
     most = fmax(most, fabs(value_at(run, kind, i, 0)));
@@ -169,9 +187,7 @@ static double driven_by(const strut_run_scene *run, int32_t member, double time)
 }
 
 static double length_at(const strut_run_scene *run, int32_t member, size_t f) {
-  const int32_t *node = run->model->scene->members[member].node;
-  const double *q = strut_run_positions(run, f);
-  return hypot(q[2 * node[1]] - q[2 * node[0]], q[2 * node[1] + 1] - q[2 * node[0] + 1]);
+  return strut_member_path_length(run->model, member, strut_run_positions(run, f));
 }
 
 /* Actuated rest lengths and actual lengths, as changes from the first frame. */
@@ -180,8 +196,8 @@ static bool fill_drive(strut_run_scene *run, size_t first, panel *p) {
   size_t frames = run->frames - first;
   for (int32_t i = 0; i < drives->count && p->count < 2 * MOST_DRIVEN; i++) {
     int32_t member = drives->member[i];
+    if (!drives->first[i] || member >= run->model->members.count) continue;
     const char *name = run->model->scene->members[member].name;
-    if (!drives->first[i]) continue;
     for (int k = 0; k < 2; k++) {
       double *values = strut_arena_allocate(&run->arena, frames, sizeof *values);
       if (!values) return false;
@@ -228,6 +244,8 @@ strut_status strut_run_draw_panel(strut_run_scene *run, strut_canvas *canvas, st
                                          [STRUT_RUN_DRIVE] = {"change", "m"},
                                          [STRUT_RUN_HEIGHTS] = {"height", "m"},
                                          [STRUT_RUN_FORCES] = {"member force", "N"},
+                                         [STRUT_RUN_ANGLES] = {"angle", "deg"},
+                                         [STRUT_RUN_MOMENTS] = {"moment", "N m"},
                                          [STRUT_RUN_ENERGIES] = {"energy change", "J"}};
   panel p = {.name = names[kind][0], .unit = names[kind][1]};
   size_t frames = run->frames - first;
@@ -270,7 +288,7 @@ strut_status strut_run_curves(strut_run_scene *run, strut_canvas *canvas) {
     box.y += CURVES_HEIGHT;
     drawn++;
   }
-  strut_run_draw_title(run, canvas, drawn ? "all that was recorded" : "nothing changed", true);
+  strut_run_draw_title(run, canvas, drawn ? "everything recorded" : "nothing changed", true);
   return STRUT_OK;
 }
 
@@ -319,14 +337,14 @@ static bool has_two_columns(const strut_run_scene *run) { return run->figure->wi
 
 static int panels_of(const strut_run_scene *run, int panels[MOST_PANELS]) {
   static const int order[] = {STRUT_RUN_DISPLACEMENT, STRUT_RUN_NORMALS, STRUT_RUN_DRIVE,
-                              STRUT_RUN_HEIGHTS, STRUT_RUN_FORCES};
+                              STRUT_RUN_HEIGHTS,      STRUT_RUN_ANGLES,  STRUT_RUN_FORCES};
   int count = 0, most = has_two_columns(run) ? MOST_PANELS : MOST_STACKED;
   for (size_t i = 0; run->frames > 1 && i < sizeof order / sizeof *order && count < most; i++)
     if (strut_run_panel_wanted(run, order[i])) panels[count++] = order[i];
   return count;
 }
 
-/* Whether any path is long enough to be visible. */
+/* True if any path is long enough to be visible. */
 static bool has_visible_paths(const strut_run_scene *run) {
   size_t last = run->frames - 1, nodes = run->motion->node_count;
   strut_bounds b = bounds_of(run);
@@ -345,7 +363,7 @@ static size_t make_key(strut_run_scene *run, char texts[ITEMS][120], strut_key_i
   if (strut_run_arrow_item(run, texts[0], &items[0])) count++;
   if (has_visible_paths(run)) {
     double span = strut_run_time_from(run, first_of_paths(run));
-    snprintf(texts[count], 120, "node paths, last %s, dark to bright",
+    snprintf(texts[count], 120, "trajectories, last %s, dark to bright",
              strut_drawn_quantity(span, 3, "s").text);
     items[count] = (strut_key_item){.sign = STRUT_KEY_WORDS, .text = texts[count]};
     count++;

@@ -19,12 +19,13 @@ static const struct {
   unsigned channels;
 } views[] = {
     [STRUT_RUN_OVERVIEW] = {strut_run_overview_height, strut_run_overview,
-                            STRUT_CHANNEL_FORCE | STRUT_CHANNEL_CONTACT},
+                            STRUT_CHANNEL_FORCE | STRUT_CHANNEL_CONTACT | STRUT_CHANNEL_ANGLE},
     [STRUT_RUN_PERIOD] = {strut_run_period_height, strut_run_period, 0},
     [STRUT_RUN_SNAPSHOTS] = {strut_run_snapshots_height, strut_run_snapshots,
                              STRUT_CHANNEL_FORCE | STRUT_CHANNEL_CONTACT},
     [STRUT_RUN_CURVES] = {strut_run_curves_height, strut_run_curves,
-                          STRUT_CHANNEL_FORCE | STRUT_CHANNEL_CONTACT | STRUT_CHANNEL_ENERGY},
+                          STRUT_CHANNEL_FORCE | STRUT_CHANNEL_CONTACT | STRUT_CHANNEL_ENERGY |
+                              STRUT_CHANNEL_ANGLE | STRUT_CHANNEL_MOMENT},
 };
 
 unsigned strut_run_figure_channels(strut_run_view view) {
@@ -247,7 +248,7 @@ void strut_run_draw_reactions(strut_run_scene *run, strut_canvas *canvas,
   }
 }
 
-/* Whether a path is longer than a dot on the page. */
+/* True if a path is longer than a dot on the page. */
 static bool is_visible(const strut_window *window, const double (*path)[2], size_t count) {
   double first[2], at[2];
   for (size_t i = 0; i < count; i++) {
@@ -366,12 +367,12 @@ void strut_run_draw_other(const strut_run_scene *other, strut_canvas *canvas,
                           const strut_window *window, size_t frame) {
   const strut_scene *scene = other->model->scene;
   const double *q = strut_run_positions(other, frame);
-  for (size_t i = 0; i < scene->member_count; i++) {
-    double from[2], to[2];
-    strut_window_point(window, q + 2 * scene->members[i].node[0], from);
-    strut_window_point(window, q + 2 * scene->members[i].node[1], to);
-    strut_draw_segment(canvas, from[0], from[1], to[0], to[1], PEN);
-  }
+  for (size_t i = 0; i < scene->member_count; i++)
+    for (size_t k = 0; k < strut_member_segments(other->model, i); k++) {
+      double ends[2][2];
+      strut_window_segment(window, other->model, q, i, k, ends);
+      strut_draw_segment(canvas, ends[0][0], ends[0][1], ends[1][0], ends[1][1], PEN);
+    }
 }
 
 bool strut_run_draw_other_path(strut_run_scene *other, strut_canvas *canvas,

@@ -15,7 +15,7 @@ typedef enum strut_run_view {
   STRUT_RUN_OVERVIEW,  /* the last shape, the paths to it, and curves of the last periods */
   STRUT_RUN_PERIOD,    /* node trajectories over the last period, dark to bright, enlarged */
   STRUT_RUN_SNAPSHOTS, /* shapes side by side */
-  STRUT_RUN_CURVES     /* all that was recorded over time */
+  STRUT_RUN_CURVES     /* everything recorded over time */
 } strut_run_view;
 
 typedef struct strut_run_figure {

@@ -44,9 +44,9 @@ double *strut_run_shape(strut_run_scene *run, size_t frame);
 size_t strut_run_since(const strut_run_scene *run, double duration);
 /** Time from one frame to the last [s]. */
 double strut_run_time_from(const strut_run_scene *run, size_t frame);
-/** Where the measured point is along an axis, 0 or 1, in a frame [m]. */
+/** Coordinate of the measured point along an axis, 0 or 1, in a frame [m]. */
 double strut_run_measured(const strut_run_scene *run, size_t frame, int axis);
-/** Its name: a node's, or "centre of mass". */
+/** Name of the measured point: a node's, or "centre of mass". */
 const char *strut_run_measured_name(const strut_run_scene *run);
 /** Height of the ground's line at x [m]; only where there is one. */
 double strut_run_ground_at(const strut_run_scene *run, double x);
@@ -76,10 +76,10 @@ void strut_run_draw_path(strut_run_scene *run, strut_canvas *canvas, const strut
  * none.
  */
 bool strut_run_find_other(const strut_run_scene *run, strut_run_scene *other);
-/** Its members in a frame, dashed. */
+/** Draws the second motion's members in a frame, dashed. */
 void strut_run_draw_other(const strut_run_scene *other, strut_canvas *canvas,
                           const strut_window *window, size_t frame);
-/** Its path through (count) positions [m], dashed; false: memory is out. */
+/** Draws the second motion's path through (count) positions [m], dashed; false: out of memory. */
 bool strut_run_draw_other_path(strut_run_scene *other, strut_canvas *canvas,
                                const strut_window *window, const double (*path)[2], size_t count);
 /** Appends ", black dashes: NAME" to a text where there is another motion. */
@@ -104,10 +104,12 @@ enum {
   STRUT_RUN_DRIVE,
   STRUT_RUN_HEIGHTS,
   STRUT_RUN_FORCES,
+  STRUT_RUN_ANGLES,
+  STRUT_RUN_MOMENTS,
   STRUT_RUN_ENERGIES,
   STRUT_RUN_PANELS
 };
-/** Whether there is anything to draw in a panel. */
+/** True if a panel has something to draw. */
 bool strut_run_panel_wanted(const strut_run_scene *run, int panel);
 /** Draws one from frame `first` on. */
 strut_status strut_run_draw_panel(strut_run_scene *run, strut_canvas *canvas, strut_box box,

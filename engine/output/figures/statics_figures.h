@@ -1,21 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Figures of statics: equilibria, forms, modes, paths, rigidity. Each writes the file `path` (SVG,
- * PDF or PNG by its ending), `width` [pt] wide, and fails as strut_canvas_open and
- * strut_canvas_commit, or with STRUT_NO_MEMORY.
+ * Figures of statics: equilibria, forms, modes, paths, rigidity. Each writes the file of its plot and
+ * fails as strut_canvas_open and strut_canvas_commit, or with STRUT_NO_MEMORY.
  */
 #ifndef STRUT_ENGINE_OUTPUT_FIGURES_STATICS_FIGURES_H
 #define STRUT_ENGINE_OUTPUT_FIGURES_STATICS_FIGURES_H
 
 #include "engine/model/model.h"
+#include "engine/output/draw/plot.h"
 #include "engine/statics/equilibria/equilibria.h"
 #include "engine/statics/modes/modes.h"
 #include "engine/statics/path/path.h"
 #include "engine/statics/rigidity/rigidity.h"
 
-/** Those stable on the ground as cards, an energy ladder with barriers, and the others small. */
-STRUT_API strut_status strut_equilibria_figure(const char *path, double width,
-                                               const strut_model *model,
+/** Draws the equilibria that stand as cards, their energies with barriers, and the others small. */
+STRUT_API strut_status strut_equilibria_figure(const strut_plot *plot, const strut_model *model,
                                                const strut_equilibria *equilibria,
                                                strut_error *error);
 
@@ -23,7 +22,7 @@ STRUT_API strut_status strut_equilibria_figure(const char *path, double width,
  * The found form coloured by force over the drawn one in grey. `model` is that of the found scene;
  * drawn (node_count) are the original positions [m].
  */
-STRUT_API strut_status strut_form_figure(const char *path, double width, const strut_model *model,
+STRUT_API strut_status strut_form_figure(const strut_plot *plot, const strut_model *model,
                                          const double (*drawn)[2], strut_error *error);
 
 /** Default number of panels, and the largest. */
@@ -38,7 +37,7 @@ enum { STRUT_MODES_FIGURE_PANELS = 6, STRUT_MODES_FIGURE_MOST = 24 };
  * grey and the displaced shape coloured by the members' strains, relative to the largest in that
  * mode; arrows join both where nodes are few.
  */
-STRUT_API strut_status strut_modes_figure(const char *path, double width, const strut_model *model,
+STRUT_API strut_status strut_modes_figure(const strut_plot *plot, const strut_model *model,
                                           const strut_modes *modes, size_t panels,
                                           strut_error *error);
 
@@ -48,17 +47,15 @@ STRUT_API strut_status strut_modes_figure(const char *path, double width, const 
  * letters and drawn as shapes, dark to bright, with start and end; small displacements are enlarged
  * by a round factor given in the key.
  */
-STRUT_API strut_status strut_path_figure(const char *path_name, double width,
-                                         const strut_model *model, const strut_path *path,
-                                         strut_error *error);
+STRUT_API strut_status strut_path_figure(const strut_plot *plot, const strut_model *model,
+                                         const strut_path *path, strut_error *error);
 
 /**
  * The shape q (length), called `at`, in panels: its forces if it has any, then states of
  * self-stress, then mechanisms, as many as fit in four rows.
  */
-STRUT_API strut_status strut_rigidity_figure(const char *path, double width,
-                                             const strut_model *model, const double *q,
-                                             const char *at, const strut_rigidity *rigidity,
-                                             strut_error *error);
+STRUT_API strut_status strut_rigidity_figure(const strut_plot *plot, const strut_model *model,
+                                             const double *q, const char *at,
+                                             const strut_rigidity *rigidity, strut_error *error);
 
 #endif

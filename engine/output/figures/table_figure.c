@@ -98,7 +98,7 @@ typedef struct maker {
   strut_arena arena;
 } maker;
 
-strut_axis strut_table_axis_of(const strut_table_axis *wanted, const char *name, const char *unit,
+strut_axis strut_table_axis_of(const strut_axis_choice *wanted, const char *name, const char *unit,
                                bool logarithmic) {
   strut_axis axis = {wanted->label ? wanted->label : name, unit, logarithmic, (double)NAN,
                      (double)NAN};
@@ -209,7 +209,7 @@ static const char *name_y_axis(maker *m, bool right) {
 static void find_axes(maker *m) {
   const strut_table_figure *f = m->figure;
   const strut_table_column *columns = m->table->columns, *x = &columns[f->x];
-  const strut_table_axis own = {0};
+  const strut_axis_choice own = {0};
   m->x = strut_table_axis_of(&f->x_axis, x->name, x->unit, f->log_x);
   m->y = strut_table_axis_of(&f->y_axis, name_y_axis(m, false), columns[f->y[0]].unit, f->log_y);
   for (int k = 0; k < f->y_count; k++) {
@@ -295,8 +295,7 @@ static strut_status draw_page(maker *m, const char *path, strut_error *error) {
   double size[2] = {0, 0};
   m->entries = strut_arena_allocate(&m->arena, MOST_ENTRIES, sizeof *m->entries);
   char(*text)[200] = strut_arena_allocate(&m->arena, MOST_ENTRIES, sizeof *text);
-  if (!m->entries || !text)
-    return strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
+  if (!m->entries || !text) return strut_no_memory(error, "while drawing");
   m->entry_count = name_entries(m, text);
   strut_status status = strut_canvas_open_pixels(1, 1, 1, &ruler, error);
   if (status != STRUT_OK) return status;

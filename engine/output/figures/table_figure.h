@@ -13,7 +13,7 @@
 
 enum { STRUT_NO_COLUMN = -1, STRUT_MOST_Y = 20, STRUT_MOST_PANELS = 24 };
 
-/** Which rows are drawn, and whether as differences. */
+/** Selection of rows, and whether their differences are drawn. */
 typedef struct strut_table_choice {
   int only; /* rows whose column has the text `only_value` */
   const char *only_value;
@@ -23,21 +23,14 @@ typedef struct strut_table_choice {
 #define STRUT_TABLE_ALL                                                                            \
   { .only = STRUT_NO_COLUMN, .difference = STRUT_NO_COLUMN }
 
-/** Label and range that replace those from the column. Zero-initialised: none. */
-typedef struct strut_table_axis {
-  const char *label; /* replaces the column's name; the unit still follows; NULL: the name */
-  bool limited;      /* the axis goes from low to high, in the column's unit */
-  double low, high;
-} strut_table_axis;
-
 /** Curves from the columns of a table. Columns by number, STRUT_NO_COLUMN for none. */
 typedef struct strut_table_figure {
-  const char *title;               /* may be NULL */
-  double width;                    /* [pt] */
-  int x, y[STRUT_MOST_Y], y_count; /* y of two units: the second unit has the right axis */
-  strut_table_axis x_axis, y_axis; /* y_axis: the left one */
-  int by;                          /* a curve for each of its texts */
-  int panels;                      /* a panel for each of its texts */
+  const char *title;                /* may be NULL */
+  double width;                     /* [pt] */
+  int x, y[STRUT_MOST_Y], y_count;  /* y of two units: the second unit has the right axis */
+  strut_axis_choice x_axis, y_axis; /* y_axis: the left one */
+  int by;                           /* a curve for each of its texts */
+  int panels;                       /* a panel for each of its texts */
   int band; /* grey where it has the text `band_value`, midway to the next points */
   const char *band_value;
   bool log_x, log_y;
@@ -58,7 +51,7 @@ typedef struct strut_table_map_figure {
   const char *title;
   double width;    /* [pt] */
   int x, y, value; /* value: texts are categories, numbers get a colour scale */
-  strut_table_axis x_axis, y_axis;
+  strut_axis_choice x_axis, y_axis;
   strut_colours colours;
   int panels, doubt; /* doubt: hatched where it is not empty, 0, false or no */
   strut_table_choice choice;
@@ -75,7 +68,7 @@ STRUT_API strut_status strut_table_map(const char *path, const strut_table_map_f
 typedef struct strut_table_savings_figure {
   const char *title;
   double width;
-  strut_table_axis x_axis, y_axis;
+  strut_axis_choice x_axis, y_axis;
   int x, y, by, label; /* by: the method; label: text beside points of the front */
 } strut_table_savings_figure;
 

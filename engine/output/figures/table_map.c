@@ -162,7 +162,7 @@ static strut_status prepare_grid(mapper *m, strut_error *error) {
   find_range(m);
   m->xs = distinct_values(m, f->x, &m->columns);
   m->ys = distinct_values(m, f->y, &m->rows);
-  if (!m->xs || !m->ys) return strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
+  if (!m->xs || !m->ys) return strut_no_memory(error, "while drawing");
   if (!m->columns || !m->rows || m->rows > MOST_CELLS / m->columns)
     return strut_fail(error, STRUT_USAGE,
                       "the map would have %zu by %zu cells: its x and y have to form a grid",
@@ -257,7 +257,7 @@ strut_status strut_table_savings(const char *path, const strut_table_savings_fig
                                      &t.methods, error);
   if (status == STRUT_OK) {
     t.bargains = strut_arena_allocate(&arena, table->row_count, sizeof *t.bargains);
-    if (!t.bargains) status = strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
+    if (!t.bargains) status = strut_no_memory(error, "while drawing");
   }
   if (status == STRUT_OK) {
     if (figure->by == STRUT_NO_COLUMN) t.methods.name[0] = table->columns[figure->y].name;

@@ -20,7 +20,7 @@ typedef struct strut_table_groups {
 strut_status strut_table_groups_find(const strut_table *table, int column, size_t most,
                                      const char *what, strut_table_groups *groups,
                                      strut_error *error);
-/** Whether a row belongs to a group of that column. */
+/** True if a row belongs to a group of that column. */
 bool strut_table_belongs(const strut_table *table, int column, const char *name, size_t row);
 /** STRUT_USAGE where the column does not hold numbers. */
 strut_status strut_table_numbers(const strut_table *table, int column, strut_error *error);
@@ -29,7 +29,7 @@ void strut_table_panel_title(const strut_table *table, int column, const char *n
                              char title[300]);
 
 /** The axis for a column named `name` with that unit; its range is NAN where it is not limited. */
-strut_axis strut_table_axis_of(const strut_table_axis *wanted, const char *name, const char *unit,
+strut_axis strut_table_axis_of(const strut_axis_choice *wanted, const char *name, const char *unit,
                                bool logarithmic);
 
 /** A page of panels of one size, below a title and `head` [pt] for a legend. */
@@ -50,7 +50,7 @@ strut_status strut_panel_page_draw(const char *path, const char *title,
 
 enum { STRUT_MOST_KEYS_OF_ROWS = 4 };
 
-/** Which rows are compared in which columns. Columns by number. */
+/** The rows and columns under comparison. Columns by number. */
 typedef struct strut_table_pairing {
   int of;                            /* its two texts are the sides: first, second */
   int keys[STRUT_MOST_KEYS_OF_ROWS]; /* equal in matching rows; -1: unused */

@@ -6,10 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static strut_status no_memory(strut_error *error) {
-  return strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
-}
-
 /* A copy of the columns with the rows named (count) and room for one column more. */
 static strut_status copy_rows(const strut_table *table, const size_t *rows, size_t count,
                               strut_table *some, strut_error *error) {
@@ -17,12 +13,12 @@ static strut_status copy_rows(const strut_table *table, const size_t *rows, size
   some->column_count = table->column_count;
   some->columns =
       strut_arena_allocate(&some->arena, table->column_count + 1, sizeof *some->columns);
-  if (!some->columns) return no_memory(error);
+  if (!some->columns) return strut_no_memory(error, "while drawing");
   for (size_t i = 0; i < table->column_count; i++) {
     const strut_table_column *from = &table->columns[i];
     const char **text = strut_arena_allocate(&some->arena, count, sizeof *text);
     double *value = strut_arena_allocate(&some->arena, count, sizeof *value);
-    if (!text || !value) return no_memory(error);
+    if (!text || !value) return strut_no_memory(error, "while drawing");
     for (size_t k = 0; k < count; k++) {
       if (from->text) text[k] = from->text[rows[k]];
       if (from->value) value[k] = from->value[rows[k]];
@@ -48,7 +44,7 @@ strut_status strut_table_only(const strut_table *table, int column, const char *
   size_t count;
   *some = (strut_table){0};
   size_t *rows = rows_with(table, column, text, &some->arena, &count);
-  if (!rows) return no_memory(error);
+  if (!rows) return strut_no_memory(error, "while drawing");
   if (!count)
     return strut_fail(error, STRUT_USAGE, "no row of the table has '%.60s' in column '%.60s'", text,
                       table->columns[column].name);
@@ -96,12 +92,12 @@ static strut_status find_sides(const strut_table *table, const strut_table_pairi
   if (status) return status;
   if (s->names.count < 2)
     return strut_fail(error, STRUT_USAGE,
-                      "column '%.60s' has one text, '%.60s': there is nothing to compare", name,
-                      s->names.name[0]);
+                      "column '%.60s' has only the text '%.60s', so there is nothing to compare",
+                      name, s->names.name[0]);
   size_t *rows = rows_with(table, p->of, s->names.name[0], arena, &s->first_count);
   s->second = rows_with(table, p->of, s->names.name[1], arena, &s->second_count);
   s->first = strut_arena_allocate(arena, s->first_count, sizeof *s->first);
-  if (!rows || !s->second || !s->first) return no_memory(error);
+  if (!rows || !s->second || !s->first) return strut_no_memory(error, "while drawing");
   for (size_t i = 0; i < s->first_count; i++)
     s->first[i] = (keyed){.table = table, .pairing = p, .row = rows[i]};
   qsort(s->first, s->first_count, sizeof *s->first, compare_keys);
@@ -114,7 +110,7 @@ typedef struct partner {
   double weight;    /* of `next` */
 } partner;
 
-/* Whether all keys but the last are equal. */
+/* True if all keys but the last are equal. */
 static bool alongside(const keyed *a, const keyed *b) {
   strut_table_pairing but_last = *a->pairing;
   but_last.key_count--;
@@ -174,14 +170,15 @@ static strut_status subtract_sides(const strut_table *table, const strut_table_p
   partner *partners = strut_arena_allocate(&out->arena, s->second_count, sizeof *partners);
   const char **mark = strut_arena_allocate(&out->arena, s->second_count, sizeof *mark);
   const char *name = strut_arena_format(&out->arena, "%s: other", s->names.name[0]);
-  if (!partners || !mark || !name) return no_memory(error);
+  if (!partners || !mark || !name) return strut_no_memory(error, "while drawing");
   for (size_t k = 0; k < s->second_count; k++) {
     const keyed wanted = {.table = table, .pairing = p, .row = s->second[k]};
     partners[k] = find_partner(s, &wanted);
     mark[k] = "0";
   }
   for (size_t i = 0; i < p->value_count; i++)
-    if (!compare_column(table, s, partners, p->values[i], out, mark)) return no_memory(error);
+    if (!compare_column(table, s, partners, p->values[i], out, mark))
+      return strut_no_memory(error, "while drawing");
   out->columns[out->column_count++] = (strut_table_column){.name = name, .unit = "", .text = mark};
   return STRUT_OK;
 }

@@ -49,7 +49,7 @@ strut_status strut_encoder_format(const char *path, strut_film_format *format, s
     return STRUT_OK;
   }
   return strut_fail(error, STRUT_USAGE,
-                    "'%s' is no name of a film: it ends with .mp4, .webm or .gif", path);
+                    "'%s' is not the name of a film: it must end in .mp4, .webm or .gif", path);
 }
 
 static strut_status not_found(strut_error *error) {
@@ -159,7 +159,7 @@ strut_status strut_encoder_begin(strut_encoder *encoder, const char *path, int w
     strut_c_locale_leave(locale);
     status = start_process(encoder, words, error);
   } else {
-    status = strut_fail(error, STRUT_NO_MEMORY, "out of memory while writing a film");
+    status = strut_no_memory(error, "while writing a film");
   }
   strut_arena_free(&arena);
   if (status != STRUT_OK) strut_encoder_abandon(encoder);

@@ -39,13 +39,9 @@ strut_status strut_film_check_length(const strut_film *film, double motion, stru
   double lasts = motion / film->speed;
   if (!film->path || lasts <= STRUT_FILM_LONGEST) return STRUT_OK;
   return strut_fail(error, STRUT_USAGE,
-                    "the film would last %.4g s, and more than %d s nobody watches: give a higher "
+                    "the film would last %.4g s, at most %d s are allowed: give a higher "
                     "--speed, or record less of the run (output: last)",
                     lasts, STRUT_FILM_LONGEST);
-}
-
-static strut_status no_memory(strut_error *error) {
-  return strut_fail(error, STRUT_NO_MEMORY, "out of memory while making a film");
 }
 
 /* Sets the number of pictures, their size and their spacing in time. */
@@ -55,7 +51,7 @@ static strut_status count_frames(making *m, strut_film_format format, strut_erro
   bool gif = format == STRUT_FILM_GIF;
   m->shown = strut_frames_to_show(m->model, m->motion);
   if (m->shown == 0)
-    return strut_fail(error, STRUT_DIVERGED, "there is no motion to make a film of");
+    return strut_fail(error, STRUT_DIVERGED, "the recording holds no motion to film");
   double usual = gif ? STRUT_FILM_GIF_FPS : STRUT_FILM_FPS;
   double lasts = time[m->shown - 1] - time[0];
   *made = (strut_film_made){.width = gif ? GIF_WIDTH : WIDTH,
@@ -129,11 +125,11 @@ static strut_status draw_frames(making *m, strut_canvas *canvas, strut_encoder *
   for (size_t i = 0; i < m->made->frames && status == STRUT_OK; i++) {
     size_t stride = 0;
     if (film->interrupt && *film->interrupt)
-      return strut_fail(error, STRUT_INTERRUPTED, "interrupted: there is no film");
+      return strut_fail(error, STRUT_INTERRUPTED, "interrupted; no film was written");
     strut_moment_at(&m->moment, m->motion, m->shown, frame_time(m, i));
     strut_view_frame_draw(&m->scenery, canvas, i, &m->moment);
     const unsigned char *pixels = strut_canvas_pixels(canvas, &stride);
-    if (!pixels) return no_memory(error);
+    if (!pixels) return strut_no_memory(error, "while making a film");
     status = strut_encoder_frame(encoder, pixels, m->made->width, m->made->height, stride, error);
     if (film->progress) film->progress(film->progress_context, (double)i / (double)m->made->frames);
   }
@@ -170,7 +166,7 @@ strut_status strut_film_make(const strut_film *film, const strut_model *model,
   strut_film_format format;
   strut_status status = strut_encoder_format(film->path, &format, error);
   if (status == STRUT_OK) status = count_frames(&m, format, error);
-  if (status == STRUT_OK && !survey(&m)) status = no_memory(error);
+  if (status == STRUT_OK && !survey(&m)) status = strut_no_memory(error, "while making a film");
   if (status == STRUT_OK) {
     find_scales(&m);
     status = encode(&m, error);

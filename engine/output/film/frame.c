@@ -66,7 +66,7 @@ bool strut_camera_plan(strut_camera *camera, const strut_bounds *bounds, size_t 
 
 static const double FAR = 20; /* a diverged shape larger than this, in sizes, is not drawn */
 
-/* Whether a shape is finite, and of drawable size if the run diverged. */
+/* True if a shape is finite and, if the run diverged, of drawable size. */
 static bool is_drawable(const strut_model *model, const strut_trajectory *motion, const double *q) {
   double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
   for (size_t i = 0; i < 2 * motion->node_count; i++) {

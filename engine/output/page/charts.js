@@ -67,6 +67,12 @@
     if (motion.force)
       kinds.push({ name: "member force", unit: "N", curves: data.members.map((m, j) => ({
         name: m.name, at: column(motion.force, data.members.length, j) })) });
+    if (motion.angle)
+      kinds.push({ name: "angle", unit: "rad", curves: data.hinges.map((h, i) => ({
+        name: h.name, at: column(motion.angle, data.hinges.length, i) })) });
+    if (motion.moment)
+      kinds.push({ name: "moment", unit: "N m", curves: data.hinges.map((h, i) => ({
+        name: h.name, at: column(motion.moment, data.hinges.length, i) })) });
     if (data.ground && data.contacts.length) {
       const slope = Math.tan(data.ground.slope), cosine = Math.cos(data.ground.slope);
       kinds.push({ name: "height above the ground", unit: "m", curves: data.contacts.map((n) => ({

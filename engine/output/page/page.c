@@ -205,6 +205,21 @@ static void add_members(strut_json *json, const strut_scene *scene) {
     strut_json_integer(json, to, "from", member->node[0]);
     strut_json_integer(json, to, "to", member->node[1]);
     strut_json_text(json, to, "kind", kinds[member->kind]);
+    if (!member->guide_count) continue;
+    struct cJSON *guides = strut_json_array(json, to, "guides");
+    for (size_t k = 0; k < member->guide_count; k++)
+      strut_json_integer(json, guides, NULL, member->guides[k]);
+  }
+}
+
+static void add_hinges(strut_json *json, const strut_scene *scene) {
+  struct cJSON *hinges = strut_json_array(json, json->root, "hinges");
+  for (size_t i = 0; i < scene->hinge_count; i++) {
+    struct cJSON *to = strut_json_object(json, hinges, NULL);
+    strut_json_text(json, to, "name", scene->hinges[i].name);
+    struct cJSON *nodes = strut_json_array(json, to, "nodes");
+    for (int k = 0; k < 3; k++) strut_json_integer(json, nodes, NULL, scene->hinges[i].node[k]);
+    strut_json_number(json, to, "rest_angle", strut_hinge_rest(scene, i));
   }
 }
 
@@ -268,6 +283,7 @@ static char *still_data(const strut_page *page) {
   strut_json_text(&json, json.root, "source", scene->source);
   add_nodes(&json, scene);
   add_members(&json, scene);
+  add_hinges(&json, scene);
   add_ground(&json, scene);
   strut_json_numbers(&json, json.root, "start", model->start, 2 * (size_t)model->node_count);
   strut_json_number(&json, json.root, "size", model->size);
@@ -371,7 +387,7 @@ char *strut_page_html(const strut_page *page, strut_page_frames *frames, strut_e
   strut_buffer html = {0};
   const char *at = strut_page_template->text, *next;
   if (!data) {
-    strut_fail(error, STRUT_NO_MEMORY, "out of memory for the page");
+    strut_no_memory(error, "for the page");
     return NULL;
   }
   while ((next = strstr(at, open)) != NULL) {
@@ -382,7 +398,7 @@ char *strut_page_html(const strut_page *page, strut_page_frames *frames, strut_e
   strut_buffer_add(&html, "%s", at);
   strut_release(data);
   char *text = strut_buffer_take(&html);
-  if (!text) strut_fail(error, STRUT_NO_MEMORY, "out of memory for the page");
+  if (!text) strut_no_memory(error, "for the page");
   if (frames) *frames = taken;
   return text;
 }

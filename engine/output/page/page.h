@@ -42,7 +42,7 @@
 #include "engine/scene/experiment.h"
 #include "engine/statics/equilibria/equilibria.h"
 
-/** What a page shows. Nothing is owned. */
+/** The content of a page. Nothing is owned. */
 typedef struct strut_page {
   const strut_model *model;
   const strut_experiment *experiment; /* that `motion` is of */

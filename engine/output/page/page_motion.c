@@ -169,18 +169,10 @@ static const double POSITION_QUANTUM = 1e-6, VALUE_QUANTUM = 1e-5, COLUMN_QUANTU
 /* A diverged run is shown up to this distance from its start, in sizes. */
 static const double DIVERGED_REACH = 1e3;
 
-enum { TIME, POSITION, FORCE, CONTACT, ENERGY, BLOCKS };
-static const char *const keys[BLOCKS] = {"time", "position", "force", "contact", "energy"};
-static const char *const energy_names[STRUT_ENERGIES] = {"kinetic",
-                                                         "elastic",
-                                                         "gravity",
-                                                         "contact",
-                                                         "drive_work",
-                                                         "load_work",
-                                                         "belt_work",
-                                                         "dissipated_members",
-                                                         "dissipated_contact",
-                                                         "dissipated_friction"};
+enum { TIME, POSITION, FORCE, CONTACT, ENERGY, ANGLE, MOMENT, BLOCKS };
+static const char *const keys[BLOCKS] = {"time",   "position", "force", "contact",
+                                         "energy", "angle",    "moment"};
+static const char *const energy_names[STRUT_ENERGIES] = {STRUT_ENERGY_NAMES};
 
 typedef struct motion {
   const strut_page *page;
@@ -196,7 +188,7 @@ static bool all_finite(const double *values, size_t count) {
   return true;
 }
 
-/* Whether every node is within reach of its start; `reach` in sizes. */
+/* True if every node is within `reach` model sizes of its start. */
 static bool is_within(const strut_model *model, const double *q, double reach) {
   for (int32_t i = 0; i < 2 * model->node_count; i++)
     if (fabs(q[i] - model->start[i]) > reach * model->size) return false;
@@ -225,6 +217,8 @@ static void find_rows(motion *m) {
   m->rows[FORCE] = (strut_rows){t->force, t->frames, t->member_count, 1};
   m->rows[CONTACT] = (strut_rows){t->contact, t->frames, 2 * t->contact_count, 1};
   m->rows[ENERGY] = (strut_rows){t->energy, t->frames, STRUT_ENERGIES, 1};
+  m->rows[ANGLE] = (strut_rows){t->angle, t->frames, t->hinge_count, 1};
+  m->rows[MOMENT] = (strut_rows){t->moment, t->frames, t->hinge_count, 1};
   m->frames = count_frames(m);
   for (int b = 0; b < BLOCKS; b++) m->rows[b].frames = m->frames;
 }

@@ -19,7 +19,7 @@ typedef struct strut_rows {
 
 /** The number of frames used. */
 STRUT_API size_t strut_rows_taken(const strut_rows *rows);
-/** Where the i-th of them begins. */
+/** Offset of the i-th series. */
 STRUT_API const double *strut_rows_at(const strut_rows *rows, size_t i);
 /** The largest magnitude among all frames. */
 STRUT_API double strut_rows_largest(const strut_rows *rows);
@@ -32,7 +32,7 @@ STRUT_API double strut_rows_largest(const strut_rows *rows);
  * large enough that `largest` has at most STRUT_MOST_QUANTA of it.
  */
 STRUT_API double strut_round_quantum(double wanted, double largest);
-/** Whether every value of rows is a whole multiple of `quantum`, to the last bits of a double. */
+/** True if every value of rows is a whole multiple of `quantum`, to the last bits of a double. */
 STRUT_API bool strut_rows_multiples(const strut_rows *rows, double quantum);
 
 /** The bytes of a block before they become base64. */

@@ -43,7 +43,8 @@ window.strutPage = {};
   page.decodeMotion = async function (motion) {
     if (!motion) return null;
     const decoded = { frames: motion.frames };
-    for (const name of ["time", "position", "length", "force", "contact", "energy"])
+    for (const name of ["time", "position", "length", "force", "contact", "energy", "angle",
+      "moment"])
       decoded[name] = await page.decodeBlock(motion[name], motion.frames);
     return decoded;
   };

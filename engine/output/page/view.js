@@ -40,7 +40,7 @@
 
   /* Data that do not change between frames. */
   page.structureOf = function (data) {
-    const count = data.members.length;
+    const count = data.members.length, guides = data.members.map((m) => m.guides || []);
     const shades = count > 500 ? 9 : 33; /* strokes cost more than members */
     const from = new Int32Array(count), to = new Int32Array(count), kind = new Uint8Array(count);
     data.members.forEach((m, j) => {
@@ -49,7 +49,7 @@
       kind[j] = KINDS[m.kind];
     });
     const buckets = 3 * shades + 1; /* the last: slack cables */
-    return { data, count, from, to, kind, shades, buckets, bucket: new Int32Array(count),
+    return { data, count, from, to, kind, guides, shades, buckets, bucket: new Int32Array(count),
       start: new Int32Array(buckets + 1), order: new Int32Array(count) };
   };
 
@@ -89,7 +89,7 @@
     for (let j = 0; j < s.count; j++) {
       let b;
       const force = shape.force ? shape.force[j] : 0;
-      if (s.kind[j] === 2 && shape.force && !(force > 0)) b = last;
+      if (s.kind[j] === 2 && shape.force && force === 0) b = last;
       else {
         const part = limit > 0 ? Math.max(-1, Math.min(1, force / limit)) : 0;
         b = s.kind[j] * s.shades + Math.round(middle * (part + 1));
@@ -107,7 +107,25 @@
     for (let k = first; k < last; k++) {
       const j = s.order[k];
       c.moveTo(px[s.from[j]], py[s.from[j]]);
+      for (const g of s.guides[j]) c.lineTo(px[g], py[g]);
       c.lineTo(px[s.to[j]], py[s.to[j]]);
+    }
+  }
+
+  /* Hinges: an arc around the node, from the first arm to the second by the angle nearest to rest. */
+  function drawHinges(c, data, px, py, options) {
+    c.strokeStyle = options.theme.accent;
+    c.lineWidth = 1.4;
+    for (const h of data.hinges) {
+      const [a, b, o] = [h.nodes[0], h.nodes[2], h.nodes[1]];
+      const first = Math.atan2(py[a] - py[o], px[a] - px[o]);
+      const arm = Math.min(Math.hypot(px[a] - px[o], py[a] - py[o]),
+        Math.hypot(px[b] - px[o], py[b] - py[o]));
+      let angle = first - Math.atan2(py[b] - py[o], px[b] - px[o]); /* counter-clockwise */
+      angle += 2 * Math.PI * Math.round((h.rest_angle - angle) / (2 * Math.PI));
+      c.beginPath();
+      c.arc(px[o], py[o], Math.min(options.small ? 5 : 12, 0.4 * arm), first, first - angle, angle > 0);
+      c.stroke();
     }
   }
 
@@ -166,9 +184,12 @@
   function memberAngles(s, px, py) {
     const angles = s.data.nodes.map(() => []);
     for (let j = 0; j < s.count; j++) {
-      const dx = px[s.to[j]] - px[s.from[j]], dy = py[s.to[j]] - py[s.from[j]];
-      angles[s.from[j]].push(Math.atan2(dy, dx));
-      angles[s.to[j]].push(Math.atan2(-dy, -dx));
+      const way = [s.from[j], ...s.guides[j], s.to[j]];
+      for (let k = 0; k + 1 < way.length; k++) {
+        const dx = px[way[k + 1]] - px[way[k]], dy = py[way[k + 1]] - py[way[k]];
+        angles[way[k]].push(Math.atan2(dy, dx));
+        angles[way[k + 1]].push(Math.atan2(-dy, -dx));
+      }
     }
     return angles;
   }
@@ -334,6 +355,7 @@
     }
     drawMembers(c, s, shape, options, px, py,
       thinness(s, shape.position, camera) * (options.small ? 0.6 : 1));
+    if (data.hinges.length <= 400) drawHinges(c, data, px, py, options);
     drawNodes(c, s, px, py, options);
     drawForces(c, data, shape, options, px, py);
   };

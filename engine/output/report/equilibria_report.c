@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a search for equilibria found, as tables of a screenful. */
+/* Reports the results of a search for equilibria in tables that fit a screen. */
 #include "engine/output/report/equilibria_report.h"
 
 #include <assert.h>
@@ -10,7 +10,7 @@
 
 #include "engine/base/c_locale.h"
 #include "engine/output/buffer.h"
-#include "engine/output/json.h"
+#include "engine/output/json_settle.h"
 #include "engine/output/json_value.h"
 #include "engine/output/quantity_text.h"
 
@@ -233,7 +233,7 @@ static void describe_flaws(strut_shape_flaws flaws, char text[NAMES]) {
     snprintf(text, NAMES, "-");
 }
 
-/* Where a saddle leads down to, else what becomes of the equilibrium; nothing to say of standing. */
+/* The minima on both sides of a saddle, else the outcome of the equilibrium; empty if it stands. */
 static void add_end(strut_buffer *table, const strut_equilibria *all, const strut_equilibrium *e) {
   const int32_t *down = e->point.down;
   if (e->outcome == STRUT_OUTCOME_STANDS) return;
@@ -276,7 +276,7 @@ static void add_section(strut_buffer *table, const strut_equilibria *all, const 
     strut_buffer_add(table, "  ... and %zu more; --all lists every row\n", count - most);
 }
 
-/* What the short table leaves out. */
+/* Counts the equilibria that the short table leaves out. */
 static void add_counts(strut_buffer *table, const strut_equilibria *all) {
   size_t fates[STRUT_OUTCOME_NO_REST + 1] = {0}, any = 0;
   static const char *const words[] = {
@@ -294,7 +294,7 @@ static void add_counts(strut_buffer *table, const strut_equilibria *all) {
   if (any) strut_buffer_add(table, "; --all lists them\n");
 }
 
-/* Where it rests, and what presses there. */
+/* The nodes on which it rests, with their contact forces. */
 static void add_shape(strut_buffer *table, const strut_scene *scene, const strut_equilibrium *e) {
   strut_buffer_add(table, "\n  %-12s %14s %14s", e->name, "x", "y");
   strut_buffer_add(table, e->contact_count ? " %14s\n" : "\n", "presses with");

@@ -9,11 +9,11 @@
 #include "engine/statics/equilibria/equilibria.h"
 
 STRUT_API char *strut_equilibria_json(const strut_equilibria *equilibria, const strut_model *model);
-/** What stands on the ground and the barriers between; with `all` every equilibrium and its shape. */
+/** Lists the equilibria that stand and their barriers; with `all` every equilibrium and its shape. */
 STRUT_API char *strut_equilibria_table(const strut_equilibria *equilibria, const strut_model *model,
                                        bool all);
 
-/** What may be odd about a shape. */
+/** Oddities of a shape: coinciding nodes, crossing members. */
 typedef struct strut_shape_flaws {
   bool collapsed;    /* two nodes coincide, or a member has no length, within 1e-4 model sizes */
   int32_t crossings; /* pairs of members that cross, away from their ends */

@@ -8,7 +8,7 @@
 #include "engine/base/number_text.h"
 #include "engine/base/vec.h"
 #include "engine/output/buffer.h"
-#include "engine/output/json.h"
+#include "engine/output/json_settle.h"
 #include "engine/output/json_value.h"
 #include "engine/output/quantity_text.h"
 

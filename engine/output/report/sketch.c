@@ -23,7 +23,7 @@ enum {
   STRUT_SKETCH_NODE = 0x25cf
 };
 
-/* Dots are counted from the upper left: two columns and four rows of them in every cell. */
+/* Dots are counted from the upper left, in two columns and four rows per cell. */
 typedef struct sketch_grid {
   int columns, rows;
   uint8_t *dots;    /* (rows, columns) which of the eight are set, as in U+2800 + dots */
@@ -321,7 +321,7 @@ enum { MARGIN_ROWS = 3, DIGITS = 4, CROWD = 6, MOST_NAMED = 2000 };
 
 static const double NEAR = 0.5; /* of the structure's size: a ground farther away is not shown */
 
-/* Where the plane is in the grid, in dots: x runs right, y down. */
+/* Map from the plane to the grid, in dots: x runs right, y down. */
 typedef struct view {
   const strut_model *model;
   const double *q;
@@ -430,9 +430,11 @@ static void draw_members(const view *v, sketch_grid *grid) {
   for (size_t i = 0; i < scene->member_count; i++) {
     const strut_member *member = &scene->members[i];
     double from[2], to[2];
-    place(v, v->q + 2 * member->node[0], from);
-    place(v, v->q + 2 * member->node[1], to);
-    sketch_line(grid, from, to, 1, member->kind == STRUT_BAR ? 0 : 1);
+    for (size_t k = 0; k <= member->guide_count; k++) {
+      place(v, v->q + 2 * strut_member_node(member, k), from);
+      place(v, v->q + 2 * strut_member_node(member, k + 1), to);
+      sketch_line(grid, from, to, 1, member->kind == STRUT_BAR ? 0 : 1);
+    }
   }
 }
 

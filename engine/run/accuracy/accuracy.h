@@ -66,7 +66,7 @@ bool strut_accuracy_orbit_covers_window(const strut_accuracy *a,
  * than one by the cheapest explicit method. *done is false where this fails or does not apply.
  */
 strut_status strut_accuracy_try_midpoint(strut_accuracy *a, bool *done);
-/** Tries the periodic orbit; *done is false where there is none. */
+/** Tries to find a periodic orbit; *done is false if that fails. */
 strut_status strut_accuracy_try_orbit(strut_accuracy *a, bool *done);
 /** Repeats the run with ever finer steps and tolerances until two runs agree. */
 strut_status strut_accuracy_climb_ladder(strut_accuracy *a);

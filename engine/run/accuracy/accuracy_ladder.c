@@ -277,9 +277,11 @@ static strut_status run_next_rung(ladder *l) {
 
 /* Tracks closer than this, relative to the range of motion, are the same motion. */
 static const double SAME_MOTION = 0.03;
-/* The same over the accuracy wanted, for two runs by different methods that shall be enough: a mean velocity
-   that is small beside the nodes' may agree by chance where their motions do not. */
-static const double SAME_MOTION_OF_TWO = 0.5;
+/*
+ * The same for two runs by different methods that shall be enough: over the accuracy wanted, and at most. A
+ * mean velocity that is small beside the nodes' may agree by chance where their motions do not.
+ */
+static const double SAME_MOTION_OF_TWO = 0.5, MOST_APART_OF_TWO = 0.005;
 /*
  * Expected error that is accepted, as part of the wanted one: of two runs by different methods, the
  * first coarse and of unknown convergence; and of later runs.
@@ -289,9 +291,11 @@ static const double ENOUGH_OF_TWO = 0.2, ENOUGH = 0.3;
  * The same for the first two runs with error control: both may have taken the longest step, so that
  * their tolerances changed nothing, and no third run shows the convergence.
  */
-static const double ENOUGH_OF_FIRST_PAIR = 0.15;
+static const double ENOUGH_OF_FIRST_PAIR = 0.05;
 /* The same where only one method suits the scene. */
 static const double ENOUGH_ALONE = 0.05;
+/* Runs converge whose differences shrink from one to the next by this factor or a smaller one. */
+static const double CONVERGING = 0.7;
 /* Runs needed for a mean over different motions. */
 enum { LEAST_MEANS = 5 };
 /* Part of the wanted error within which means of different motions must agree. */
@@ -309,11 +313,12 @@ static double estimate_motion_error(const ladder *l) {
   bool series = l->runs > 3 || (l->a->single_method && l->runs > 2);
   double ratio = series && l->earlier_change > 0.0 ? l->change / l->earlier_change : 0.5;
   double noise = 1e-9; /* smaller differences are rounding and show no convergence */
-  if (!(ratio < 0.7) && l->change > noise) return HUGE_VAL;
-  /* after differences that grew, one that is small may be chance */
-  bool grew = l->earlier_change > l->earliest_change && l->earlier_change > l->a->target;
-  if (series && grew && l->change > noise) return HUGE_VAL;
-  return l->change * fmax(1.0, ratio / (1.0 - fmin(ratio, 0.7)));
+  if (!(ratio < CONVERGING) && l->change > noise) return HUGE_VAL;
+  /* after differences that did not shrink, one that is small may be chance */
+  bool stalled = l->earlier_change > CONVERGING * l->earliest_change &&
+                 l->earlier_change > ENOUGH * l->a->target;
+  if (series && stalled && l->change > noise) return HUGE_VAL;
+  return l->change * fmax(1.0, ratio / (1.0 - fmin(ratio, CONVERGING)));
 }
 
 /*
@@ -338,7 +343,7 @@ static void judge_agreement(ladder *l) {
   l->same_motion = l->distance <= SAME_MOTION;
   /* steps of one method must agree twice: a single agreement may be chance */
   bool once = l->a->single_method && l->runs < 3;
-  bool apart = l->runs == 2 && l->distance > SAME_MOTION_OF_TWO * wanted;
+  bool apart = l->runs == 2 && l->distance > fmin(SAME_MOTION_OF_TWO * wanted, MOST_APART_OF_TWO);
   l->kept = !once && !apart && l->expected <= enough * wanted;
   if (l->kept || l->same_motion) return;
   l->expected = estimate_mean_error(l);

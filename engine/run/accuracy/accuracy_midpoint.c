@@ -255,7 +255,7 @@ strut_status strut_accuracy_try_midpoint(strut_accuracy *a, bool *done) {
   h.fast_motion.model = a->model;
   for (int k = 0; k < 2 && !status; k++)
     if (!(h.fast_motion.before[k] = strut_arena_allocate(&h.arena, both, sizeof(double))))
-      status = strut_fail(a->error, STRUT_NO_MEMORY, "out of memory");
+      status = strut_no_memory(a->error, "");
   if (!status) status = halve_until_kept(&h, done);
   strut_summary_free(&h.now);
   strut_summary_free(&h.before);

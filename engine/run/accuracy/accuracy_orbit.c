@@ -50,7 +50,7 @@ static strut_status allocate_arrays(strut_orbit_solve *solve, const strut_model 
   solve->orbit.y = strut_arena_allocate(&solve->arena, 2 * length + 1, sizeof(double));
   if (solve->end_state.q && solve->end_state.v && solve->fixed_point && solve->orbit.y)
     return STRUT_OK;
-  return strut_fail(solve->a->error, STRUT_NO_MEMORY, "out of memory");
+  return strut_no_memory(solve->a->error, "");
 }
 
 /*
@@ -375,7 +375,9 @@ static void explain_orbit(const strut_orbit_solve *solve, strut_accuracy_summary
           "%.1g) does not: their mean velocities and that with half the step agree to %.2g m/s",
           step, tolerance, solve->error);
       return;
-    default:
+    case STRUT_ORBIT_NONE:
+    case STRUT_ORBIT_CORRECTED:
+    case STRUT_ORBIT_REFERENCE:
       snprintf(
           to->why, size,
           "verlet-events with a step of %.3g s until the motion was steady; its orbit was then "

@@ -154,7 +154,7 @@ static strut_status correct_with_finer_tolerance(strut_orbit_solve *solve) {
   strut_experiment finer = solve->reference;
   strut_period_map map = {.model = NULL};
   strut_orbit there = {.y = strut_arena_allocate(&solve->arena, both, sizeof(double))};
-  if (!there.y) return strut_fail(a->error, STRUT_NO_MEMORY, "out of memory");
+  if (!there.y) return strut_no_memory(a->error, "");
   memcpy(there.y, solve->orbit.y, both * sizeof(double));
   finer.tolerance = fmax(1e-12, 0.1 * finer.tolerance);
   double size = strut_accuracy_velocity_scale(a, solve->orbit.velocity),

@@ -4,10 +4,33 @@
 #include <math.h>
 
 #include "engine/base/vec.h"
+#include "engine/forces/drive.h"
+#include "engine/forces/elements.h"
 #include "engine/forces/forces.h"
 
 /* Rounding of positions, relative to the structure's size; and of sums over many steps. */
 static const double POSITION_ROUNDING = 1e-12, SUM_ROUNDING = 1e-10;
+
+/* What a column belongs to, and the powers of its unit. */
+static const struct column_row {
+  strut_column_owner owner;
+  int kg, m, s, angle;
+} rows[] = {
+#define STRUT_COLUMN_ROW(id, owner, word, kg, m, s, angle)                                         \
+  {STRUT_COLUMN_OF_##owner, kg, m, s, angle},
+    STRUT_COLUMN_TABLE(STRUT_COLUMN_ROW)
+#undef STRUT_COLUMN_ROW
+};
+
+static bool is_angle(strut_column_kind kind) { return rows[kind].angle == 1 && rows[kind].s == 0; }
+
+static bool is_speed(strut_column_kind kind) {
+  return rows[kind].kg == 0 && rows[kind].m == 1 && rows[kind].s == -1;
+}
+
+static bool is_length(strut_column_kind kind) {
+  return rows[kind].kg == 0 && rows[kind].m == 1 && rows[kind].s == 0;
+}
 
 bool strut_columns_create(const strut_model *model, double step, size_t most, strut_arena *arena,
                           strut_columns *c) {
@@ -29,29 +52,23 @@ static int32_t find_contact(const strut_model *model, int32_t node) {
   return -1;
 }
 
+static bool is_of_hinge(strut_column_kind kind) {
+  return rows[kind].owner == STRUT_COLUMN_OF_HINGE;
+}
+
 static void note_needs(strut_columns *c, strut_column_kind kind) {
   bool rigid = c->model->plan & STRUT_TERM_RIGID;
-  switch (kind) {
-    case STRUT_COLUMN_NORMAL:
-    case STRUT_COLUMN_FRICTION: c->forces = true; break;
-    case STRUT_COLUMN_FORCE: c->forces = c->forces || rigid; break;
-    case STRUT_COLUMN_KINETIC:
-    case STRUT_COLUMN_ELASTIC:
-    case STRUT_COLUMN_GRAVITY:
-    case STRUT_COLUMN_GROUND:
-    case STRUT_COLUMN_TOTAL: c->energies = true; break;
-    case STRUT_COLUMN_NODE_VX:
-    case STRUT_COLUMN_NODE_VY:
-    case STRUT_COLUMN_CENTRE_VX:
-    case STRUT_COLUMN_CENTRE_VY:
-    case STRUT_COLUMN_RATE: c->speeds = true; break;
-    default: break;
-  }
+  if (rows[kind].owner == STRUT_COLUMN_OF_CONTACT || (kind == STRUT_COLUMN_FORCE && rigid))
+    c->forces = true;
+  if (rows[kind].owner == STRUT_COLUMN_OF_ENERGY) c->energies = true;
+  if (is_speed(kind) || kind == STRUT_COLUMN_HINGE_RATE) c->speeds = true;
 }
 
 size_t strut_columns_add(strut_columns *c, strut_column column) {
   if (column.kind == STRUT_COLUMN_NORMAL || column.kind == STRUT_COLUMN_FRICTION)
     column.item = find_contact(c->model, column.item);
+  if (is_of_hinge(column.kind))
+    column.item = strut_element_of_hinge(&c->model->elements, column.item);
   for (size_t i = 0; i < c->count; i++) {
     const strut_column *other = &c->column[i];
     if (other->kind == column.kind && other->item == column.item && other->other == column.other)
@@ -80,15 +97,12 @@ static double height_above_ground(const strut_columns *c, const double q[2]) {
   return q[0] * c->normal[0] + (q[1] - c->model->scene->ground.height) * c->normal[1];
 }
 
-static double evaluate_member(const strut_columns *c, const strut_state *state,
-                              strut_column column) {
-  strut_member_values m = strut_member_measure(c->model, state, column.item);
-  switch (column.kind) {
-    case STRUT_COLUMN_LENGTH: return m.length;
-    case STRUT_COLUMN_STRETCH: return m.length - state->rest[column.item];
-    case STRUT_COLUMN_RATE: return m.rate;
-    default: return m.force;
-  }
+static double evaluate_hinge(const strut_columns *c, const strut_state *state,
+                             strut_column column) {
+  strut_hinge_values h = strut_hinge_measure(c->model, state, column.item);
+  return column.kind == STRUT_COLUMN_HINGE_ANGLE  ? h.angle
+         : column.kind == STRUT_COLUMN_HINGE_RATE ? h.rate
+                                                  : h.moment;
 }
 
 /* Difference of two node positions. */
@@ -101,21 +115,7 @@ static void node_difference(const strut_columns *c, const strut_state *state, st
   for (size_t k = 0; k < 2; k++) d[k] = state->q[b + k] - state->q[a + k];
 }
 
-static double evaluate_ledger(const strut_columns *c, const strut_state *state,
-                              strut_column_kind kind, double *size) {
-  const double *w = state->work;
-  double sum = w[STRUT_POWER_MEMBERS] + w[STRUT_POWER_CONTACT] + w[STRUT_POWER_FRICTION];
-  switch (kind) {
-    case STRUT_COLUMN_DRIVES: return w[STRUT_POWER_DRIVE];
-    case STRUT_COLUMN_LOADS: return w[STRUT_POWER_LOAD] + strut_energy_load_work(c->model, state);
-    case STRUT_COLUMN_BELT: return w[STRUT_POWER_BELT];
-    case STRUT_COLUMN_LOST_MEMBERS: return w[STRUT_POWER_MEMBERS];
-    case STRUT_COLUMN_LOST_CONTACT: return w[STRUT_POWER_CONTACT];
-    case STRUT_COLUMN_LOST_FRICTION: return w[STRUT_POWER_FRICTION];
-    case STRUT_COLUMN_LOST: return sum;
-    default: break;
-  }
-  const strut_energies *s = &c->stored;
+static double total_energy(const strut_energies *s, double *size) {
   *size = fabs(s->kinetic) + fabs(s->elastic) + fabs(s->gravity) + fabs(s->contact);
   return s->kinetic + s->elastic + s->gravity + s->contact;
 }
@@ -124,6 +124,7 @@ static double evaluate_ledger(const strut_columns *c, const strut_state *state,
 static double evaluate_column(const strut_columns *c, const strut_state *state, strut_column column,
                               double *size) {
   size_t at = 2 * (size_t)(column.item < 0 ? 0 : column.item);
+  const double *w = state->work;
   double d[2];
   switch (column.kind) {
     case STRUT_COLUMN_TIME: return (double)state->step * c->step + c->shorter + state->time_offset;
@@ -134,10 +135,14 @@ static double evaluate_column(const strut_columns *c, const strut_state *state, 
     case STRUT_COLUMN_HEIGHT: return height_above_ground(c, state->q + at);
     case STRUT_COLUMN_NORMAL: return column.item < 0 ? 0.0 : state->normal[column.item];
     case STRUT_COLUMN_FRICTION: return column.item < 0 ? 0.0 : state->friction[column.item];
-    case STRUT_COLUMN_LENGTH:
+    case STRUT_COLUMN_LENGTH: return strut_member_measure(c->model, state, column.item).length;
     case STRUT_COLUMN_STRETCH:
-    case STRUT_COLUMN_RATE:
-    case STRUT_COLUMN_FORCE: return evaluate_member(c, state, column);
+      return strut_member_measure(c->model, state, column.item).length - state->rest[column.item];
+    case STRUT_COLUMN_RATE: return strut_member_measure(c->model, state, column.item).rate;
+    case STRUT_COLUMN_FORCE: return strut_member_measure(c->model, state, column.item).force;
+    case STRUT_COLUMN_HINGE_ANGLE:
+    case STRUT_COLUMN_HINGE_RATE:
+    case STRUT_COLUMN_MOMENT: return evaluate_hinge(c, state, column);
     case STRUT_COLUMN_TILT:
     case STRUT_COLUMN_ANGLE: node_difference(c, state, column, d); return atan2(d[1], d[0]);
     case STRUT_COLUMN_DISTANCE: node_difference(c, state, column, d); return hypot(d[0], d[1]);
@@ -149,8 +154,18 @@ static double evaluate_column(const strut_columns *c, const strut_state *state, 
     case STRUT_COLUMN_ELASTIC: return c->stored.elastic;
     case STRUT_COLUMN_GRAVITY: return c->stored.gravity;
     case STRUT_COLUMN_GROUND: return c->stored.contact;
-    default: return evaluate_ledger(c, state, column.kind, size);
+    case STRUT_COLUMN_TOTAL: return total_energy(&c->stored, size);
+    case STRUT_COLUMN_DRIVES: return w[STRUT_POWER_DRIVE];
+    case STRUT_COLUMN_LOADS: return w[STRUT_POWER_LOAD] + strut_energy_load_work(c->model, state);
+    case STRUT_COLUMN_BELT: return w[STRUT_POWER_BELT];
+    case STRUT_COLUMN_LOST_MEMBERS: return w[STRUT_POWER_MEMBERS];
+    case STRUT_COLUMN_LOST_CONTACT: return w[STRUT_POWER_CONTACT];
+    case STRUT_COLUMN_LOST_FRICTION: return w[STRUT_POWER_FRICTION];
+    case STRUT_COLUMN_LOST:
+      return w[STRUT_POWER_MEMBERS] + w[STRUT_POWER_CONTACT] + w[STRUT_POWER_FRICTION];
+    case STRUT_COLUMN_COUNT: break;
   }
+  return 0.0;
 }
 
 /* Computes forces and energies at the state where a column needs them. */
@@ -163,10 +178,6 @@ static void prepare_state(strut_columns *c, strut_state *state) {
   if (c->energies) c->stored = strut_energy_evaluate(c->model, state, t);
   for (int32_t i = 0; c->speeds && i < c->model->node_count; i++)
     c->fastest = fmax(c->fastest, hypot(state->v[2 * i], state->v[2 * i + 1]));
-}
-
-static bool is_angle(strut_column_kind kind) {
-  return kind == STRUT_COLUMN_TILT || kind == STRUT_COLUMN_ANGLE;
 }
 
 static void note_extremes(strut_columns *c, size_t i, double size) {
@@ -203,28 +214,26 @@ double strut_columns_span(const strut_columns *c, size_t index) {
   return sums ? c->largest[index] : c->most[index] - c->least[index];
 }
 
+/* The stiffest spring of a member, or of its elements. */
+static double member_stiffness(const strut_model *model, int32_t member) {
+  const strut_element *e = strut_element_of_member(&model->elements, member);
+  double stiffest = model->members.stiffness[member];
+  for (; e; e = e->sibling >= 0 ? &model->elements.element[e->sibling] : NULL)
+    stiffest = fmax(stiffest, e->numbers.stiffness);
+  return stiffest;
+}
+
 double strut_columns_noise(const strut_columns *c, size_t index) {
-  const strut_model *m = c->model;
-  int32_t item = c->column[index].item;
-  double length = POSITION_ROUNDING * m->size;
-  switch (c->column[index].kind) {
-    case STRUT_COLUMN_NODE_X:
-    case STRUT_COLUMN_NODE_Y:
-    case STRUT_COLUMN_HEIGHT:
-    case STRUT_COLUMN_LENGTH:
-    case STRUT_COLUMN_STRETCH:
-    case STRUT_COLUMN_DISTANCE:
-    case STRUT_COLUMN_CENTRE_X:
-    case STRUT_COLUMN_CENTRE_Y: return length;
-    case STRUT_COLUMN_TILT:
-    case STRUT_COLUMN_ANGLE: return POSITION_ROUNDING;
-    case STRUT_COLUMN_NODE_VX:
-    case STRUT_COLUMN_NODE_VY:
-    case STRUT_COLUMN_CENTRE_VX:
-    case STRUT_COLUMN_CENTRE_VY:
-    case STRUT_COLUMN_RATE: return SUM_ROUNDING * c->fastest;
-    case STRUT_COLUMN_FORCE: return length * m->members.stiffness[item];
-    case STRUT_COLUMN_NORMAL: return item < 0 ? 0.0 : length * m->contacts.entry[item].stiffness;
-    default: return 0.0;
-  }
+  strut_column column = c->column[index];
+  double length = POSITION_ROUNDING * c->model->size;
+  if (is_length(column.kind)) return length;
+  if (is_angle(column.kind)) return POSITION_ROUNDING;
+  if (is_speed(column.kind)) return SUM_ROUNDING * c->fastest;
+  if (column.kind == STRUT_COLUMN_FORCE) return length * member_stiffness(c->model, column.item);
+  if (column.kind == STRUT_COLUMN_HINGE_RATE) return SUM_ROUNDING * c->fastest / c->model->size;
+  if (column.kind == STRUT_COLUMN_MOMENT)
+    return POSITION_ROUNDING * c->model->elements.element[column.item].numbers.stiffness;
+  if (column.kind == STRUT_COLUMN_NORMAL && column.item >= 0)
+    return length * c->model->contacts.entry[column.item].stiffness;
+  return 0.0;
 }

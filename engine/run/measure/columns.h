@@ -14,15 +14,16 @@ typedef struct strut_columns {
   double shorter;   /* length of the latest step minus dt: below 0 where the run ends [s] */
   double normal[2]; /* of the ground */
   size_t count;
-  strut_column *column; /* (count) `item` of CONTACT indexes the model's contacts; -1: no contact */
-  double *value;        /* (count) now, SI */
-  double *before;       /* (count) one step before */
-  double *least, *most; /* (count) over the window */
-  double *largest;      /* (count) largest absolute value of the terms that it sums */
-  double fastest;       /* largest speed of a node in the window [m/s]; only with `speeds` */
-  bool forces;          /* some column needs the forces at the state */
-  bool energies;        /* some column needs the stored energies */
-  bool speeds;          /* some column is a velocity, whose rounding scales with the node speeds */
+  strut_column *column;  /* (count) `item` of CONTACT indexes the model's contacts, -1: no contact;
+                           that of HINGE indexes its elements */
+  double *value;         /* (count) now, SI */
+  double *before;        /* (count) one step before */
+  double *least, *most;  /* (count) over the window */
+  double *largest;       /* (count) largest absolute value of the terms that it sums */
+  double fastest;        /* largest speed of a node in the window [m/s]; only with `speeds` */
+  bool forces;           /* some column needs the forces at the state */
+  bool energies;         /* some column needs the stored energies */
+  bool speeds;           /* some column is a velocity, whose rounding scales with the node speeds */
   strut_energies stored; /* [J]; with `energies` */
 } strut_columns;
 

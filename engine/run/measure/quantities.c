@@ -58,15 +58,19 @@ static const size_t NONE = (size_t)-1;
 
 /* The column whose time derivative a column is. */
 static bool find_primitive(strut_column column, strut_column *primitive) {
+  static const strut_column_kind rates[][2] = {{STRUT_COLUMN_NODE_VX, STRUT_COLUMN_NODE_X},
+                                               {STRUT_COLUMN_NODE_VY, STRUT_COLUMN_NODE_Y},
+                                               {STRUT_COLUMN_CENTRE_VX, STRUT_COLUMN_CENTRE_X},
+                                               {STRUT_COLUMN_CENTRE_VY, STRUT_COLUMN_CENTRE_Y},
+                                               {STRUT_COLUMN_RATE, STRUT_COLUMN_LENGTH},
+                                               {STRUT_COLUMN_HINGE_RATE, STRUT_COLUMN_HINGE_ANGLE}};
   *primitive = column;
-  switch (column.kind) {
-    case STRUT_COLUMN_NODE_VX: primitive->kind = STRUT_COLUMN_NODE_X; return true;
-    case STRUT_COLUMN_NODE_VY: primitive->kind = STRUT_COLUMN_NODE_Y; return true;
-    case STRUT_COLUMN_CENTRE_VX: primitive->kind = STRUT_COLUMN_CENTRE_X; return true;
-    case STRUT_COLUMN_CENTRE_VY: primitive->kind = STRUT_COLUMN_CENTRE_Y; return true;
-    case STRUT_COLUMN_RATE: primitive->kind = STRUT_COLUMN_LENGTH; return true;
-    default: return false;
+  for (size_t i = 0; i < sizeof rates / sizeof rates[0]; i++) {
+    if (column.kind != rates[i][0]) continue;
+    primitive->kind = rates[i][1];
+    return true;
   }
+  return false;
 }
 
 static bool make_meter(strut_quantities *q, const strut_quantity_definition *d, strut_arena *arena,
@@ -153,8 +157,9 @@ static double reduce_stretch(const meter *m, const stretch *s, double time, doub
     case STRUT_TAKE_RMS: return sqrt(s->square / length);
     case STRUT_TAKE_FINAL: return value;
     case STRUT_TAKE_CHANGE: return value - s->begin;
-    default: return (value - s->begin) / length;
+    case STRUT_TAKE_RATE: return (value - s->begin) / length;
   }
+  return (double)NAN;
 }
 
 static void open_window(meter *m, double time, double value, double place) {

@@ -29,18 +29,23 @@ static double apply_operation(strut_operation operation, double a, double b) {
     case STRUT_OPERATION_FLOOR: return floor(a);
     case STRUT_OPERATION_CEIL: return ceil(a);
     case STRUT_OPERATION_ROUND: return round(a);
-    default: return hypot(a, b);
+    case STRUT_OPERATION_HYPOT: return hypot(a, b);
+    case STRUT_OPERATION_NUMBER:
+    case STRUT_OPERATION_COLUMN:
+    case STRUT_OPERATION_COUNT: break;
   }
+  return (double)NAN;
 }
 
-static int count_operands(strut_operation operation) {
-  static const int counts[] = {
-#define STRUT_OPERANDS(id, count, word) count,
-      STRUT_OPERATION_TABLE(STRUT_OPERANDS)
-#undef STRUT_OPERANDS
-  };
-  return counts[operation];
-}
+static const struct operation_row {
+  int operands;
+  strut_sensitivity sensitivity;
+} rows[] = {
+#define STRUT_OPERATION_ROW(id, operands, word, sensitivity)                                       \
+  {operands, STRUT_SENSITIVITY_##sensitivity},
+    STRUT_OPERATION_TABLE(STRUT_OPERATION_ROW)
+#undef STRUT_OPERATION_ROW
+};
 
 double strut_quantity_program_evaluate(const strut_quantity_definition *d, const size_t *index,
                                        const double *value, double *stack) {
@@ -52,7 +57,7 @@ double strut_quantity_program_evaluate(const strut_quantity_definition *d, const
     } else if (p->operation == STRUT_OPERATION_COLUMN) {
       stack[top++] = value[index[i]];
     } else {
-      int count = count_operands(p->operation);
+      int count = rows[p->operation].operands;
       top -= (size_t)count;
       assert(top < d->depth);
       stack[top] = apply_operation(p->operation, stack[top], count > 1 ? stack[top + 1] : 0.0);
@@ -66,37 +71,33 @@ double strut_quantity_program_evaluate(const strut_quantity_definition *d, const
 /* Propagates the uncertainties da and db of the operands to the result. */
 static double propagate_uncertainty(strut_operation operation, double a, double b, double da,
                                     double db) {
-  switch (operation) {
-    case STRUT_OPERATION_MULTIPLY: return a * db + b * da;
-    case STRUT_OPERATION_DIVIDE: return da / b + a * db / (b * b);
-    case STRUT_OPERATION_POWER: return a > 0.0 ? fabs(b) * pow(a, b) * da / a : da;
-    case STRUT_OPERATION_SQRT: return a > 0.0 ? 0.5 * da / sqrt(a) : sqrt(da);
-    case STRUT_OPERATION_EXP: return exp(a) * da;
-    case STRUT_OPERATION_LOG:
-    case STRUT_OPERATION_LOG10:
-    case STRUT_OPERATION_ATAN2: return a > 0.0 ? da / a : 0.0;
-    default: return da + db;
+  switch (rows[operation].sensitivity) {
+    case STRUT_SENSITIVITY_PRODUCT: return a * db + b * da;
+    case STRUT_SENSITIVITY_QUOTIENT: return da / b + a * db / (b * b);
+    case STRUT_SENSITIVITY_POWER: return a > 0.0 ? fabs(b) * pow(a, b) * da / a : da;
+    case STRUT_SENSITIVITY_ROOT: return a > 0.0 ? 0.5 * da / sqrt(a) : sqrt(da);
+    case STRUT_SENSITIVITY_EXPONENTIAL: return exp(a) * da;
+    case STRUT_SENSITIVITY_LOGARITHM: return a > 0.0 ? da / a : 0.0;
+    case STRUT_SENSITIVITY_SUM:
+    case STRUT_SENSITIVITY_BOUNDED: break;
   }
+  return da + db;
 }
 
 static strut_magnitude combine_magnitudes(strut_operation operation, strut_magnitude a,
                                           strut_magnitude b) {
-  double size;
-  switch (operation) {
-    case STRUT_OPERATION_MULTIPLY:
-    case STRUT_OPERATION_DIVIDE:
-    case STRUT_OPERATION_POWER:
-    case STRUT_OPERATION_SQRT:
-    case STRUT_OPERATION_EXP: size = fabs(apply_operation(operation, a.size, b.size)); break;
-    case STRUT_OPERATION_SIN:
-    case STRUT_OPERATION_COS:
-    case STRUT_OPERATION_ASIN:
-    case STRUT_OPERATION_ACOS:
-    case STRUT_OPERATION_ATAN:
-    case STRUT_OPERATION_ATAN2:
-    case STRUT_OPERATION_LOG:
-    case STRUT_OPERATION_LOG10: size = 1.0; break;
-    default: size = fmax(a.size, b.size); break;
+  double size = 1.0;
+  switch (rows[operation].sensitivity) {
+    case STRUT_SENSITIVITY_PRODUCT:
+    case STRUT_SENSITIVITY_QUOTIENT:
+    case STRUT_SENSITIVITY_POWER:
+    case STRUT_SENSITIVITY_ROOT:
+    case STRUT_SENSITIVITY_EXPONENTIAL:
+      size = fabs(apply_operation(operation, a.size, b.size));
+      break;
+    case STRUT_SENSITIVITY_SUM: size = fmax(a.size, b.size); break;
+    case STRUT_SENSITIVITY_LOGARITHM:
+    case STRUT_SENSITIVITY_BOUNDED: break;
   }
   return (strut_magnitude){size, propagate_uncertainty(operation, a.size, b.size, a.span, b.span),
                            propagate_uncertainty(operation, a.size, b.size, a.noise, b.noise)};
@@ -113,7 +114,7 @@ strut_magnitude strut_quantity_program_magnitude(const strut_quantity_definition
     } else if (p->operation == STRUT_OPERATION_COLUMN) {
       stack[top++] = value[index[i]];
     } else {
-      int count = count_operands(p->operation);
+      int count = rows[p->operation].operands;
       strut_magnitude none = {0};
       top -= (size_t)count;
       assert(top < d->depth);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "engine/integrate/limit/step_limit.h"
+#include "engine/model/mass.h"
 
 /* Force evaluations between two samples, power iterations per sample and at the start. */
 enum { EVALUATIONS_PER_SAMPLE = 256, ITERATIONS = 1, FIRST_ITERATIONS = 30 };

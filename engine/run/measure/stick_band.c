@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "engine/model/mass.h"
 #include "engine/model/pose.h"
 
 /* Samples per solved acceleration; fewest of those for a mean. */
@@ -24,7 +25,7 @@ static bool has_band(const strut_contact_entry *e) {
 }
 
 static bool is_stronger_at_rest(const strut_contact_entry *e) {
-  return has_band(e) && e->friction.mu_static > e->friction.mu_kinetic;
+  return has_band(e) && strut_friction_drops(&e->friction);
 }
 
 /* Contact with stronger static friction at a coordinate, or -1; contacts are in ascending order. */
@@ -76,7 +77,9 @@ static void sample_tie(const strut_model *model, const strut_state *state, doubl
     const strut_contact_entry *one = &e[tie->contact[k]];
     held = is_stuck(model, state, tie->contact[k], &normal[k]) && held;
     creep += one->friction.stick_velocity * time;
-    resistance = fmin(resistance, one->friction.mu_static * normal[k]);
+    double least = fmin(strut_friction_static(&one->friction, 1.0),
+                        strut_friction_static(&one->friction, -1.0));
+    resistance = fmin(resistance, least * normal[k]);
   }
   /* a larger change means that one of them has slid */
   if (held && tie->held && fabs(change) <= creep)
@@ -93,9 +96,9 @@ double strut_stick_band_needed(const strut_model *model, const strut_integrator 
   const strut_contact_table *c = &model->contacts;
   const strut_contact_entry *e = &c->entry[contact];
   const double *g = model->scene->gravity;
-  if (method->events || !has_band(e) || !(e->friction.mu_kinetic > 0.0)) return 0.0;
+  if (method->events || !has_band(e) || !(strut_friction_largest(&e->friction) > 0.0)) return 0.0;
   double down = -(g[0] * c->normal[0] + g[1] * c->normal[1]);
-  return down > 0.0 && step > 0.0 ? e->friction.mu_kinetic * down * step : 0.0;
+  return down > 0.0 && step > 0.0 ? strut_friction_largest(&e->friction) * down * step : 0.0;
 }
 
 bool strut_stick_band_create(const strut_model *model, strut_state *state,
@@ -104,7 +107,7 @@ bool strut_stick_band_create(const strut_model *model, strut_state *state,
   *band = (strut_stick_band){.step = step};
   for (int32_t i = 0; i < model->contacts.count; i++)
     any = any || (has_band(&model->contacts.entry[i]) &&
-                  model->contacts.entry[i].friction.mu_kinetic > 0.0);
+                  strut_friction_largest(&model->contacts.entry[i].friction) > 0.0);
   if (!any || method->events) return true;
   size_t length = (size_t)model->length, contacts = (size_t)model->contacts.count;
   band->a = strut_arena_allocate(&state->arena, length, sizeof(double));
@@ -142,7 +145,7 @@ double strut_stick_band_missed(const strut_model *model, const strut_stick_band 
   if (!band->contacts || !has_band(e)) return 0.0;
   const strut_stick_band_monitor *w = &band->contacts[contact];
   double needed = w->sliding >= LEAST_SAMPLES ? w->change / w->sliding : 0.0;
-  double least = e->friction.mu_static > e->friction.mu_kinetic ? ALWAYS_MISSED : MET_BY_CHANCE;
+  double least = strut_friction_drops(&e->friction) ? ALWAYS_MISSED : MET_BY_CHANCE;
   return e->friction.stick_velocity < least * needed ? needed : 0.0;
 }
 

@@ -8,6 +8,11 @@
 
 #include "engine/base/memory.h"
 
+const char *strut_motion_name(strut_motion motion) {
+  static const char *const names[] = {"", "periodic", "irregular", "transient"};
+  return names[motion];
+}
+
 void strut_summary_warn(strut_summary *summary, const char *code, const char *format, ...) {
   size_t i = 0;
   assert(summary->warning_count <= STRUT_MOST_WARNINGS);

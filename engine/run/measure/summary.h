@@ -9,19 +9,35 @@
 
 #include "engine/base/status.h"
 
-/** Energies at the end, works and losses [J]; works and losses count from t = 0. */
+/**
+ * Energies, works and losses [J] in the order of all outputs, with their kind and what people read.
+ * Energies are those at the end; works and losses count from t = 0.
+ */
+#define STRUT_ENERGY_TABLE(X)                                                                      \
+  X(kinetic, ENERGY, "kinetic")                                                                    \
+  X(elastic, ENERGY, "elastic")                                                                    \
+  X(gravity, ENERGY, "gravity")                    /* zero at y = 0 (x = 0) */                     \
+  X(contact, ENERGY, "ground springs")             /* elastic */                                   \
+  X(drive_work, WORK, "drive work")                /* done on the structure by the actuators */    \
+  X(load_work, WORK, "load work")                  /* by loads */                                  \
+  X(belt_work, WORK, "belt work")                  /* by the moving ground */                      \
+  X(dissipated_members, LOSSES, "lost in members") /* positive: lost */                            \
+  X(dissipated_contact, LOSSES, "lost in contact")                                                 \
+  X(dissipated_friction, LOSSES, "lost to friction")
+
 typedef struct strut_energy {
-  double kinetic, elastic, gravity; /* at the end; gravity is zero at y = 0 (x = 0) */
-  double contact;                   /* elastic energy of the ground's springs at the end */
-  double drive_work;                /* done on the structure by the actuators */
-  double load_work;                 /* by loads */
-  double belt_work;                 /* by the moving ground */
-  double dissipated_members, dissipated_contact, dissipated_friction; /* positive: lost */
+#define STRUT_ENERGY_FIELD(name, kind, label) double name;
+  STRUT_ENERGY_TABLE(STRUT_ENERGY_FIELD)
+#undef STRUT_ENERGY_FIELD
   double initial;  /* kinetic + elastic + gravity + contact at t = 0 */
   double residual; /* end total - initial - works + losses; 0 but for the integration error */
   double moved;    /* sum of the absolute energies exchanged, or the largest kinetic energy seen if
                       that is more: the scale of the residual */
 } strut_energy;
+
+/** Their names as a list of strings, for outputs. */
+#define STRUT_ENERGY_NAME(name, kind, label) #name,
+#define STRUT_ENERGY_NAMES STRUT_ENERGY_TABLE(STRUT_ENERGY_NAME)
 
 /** State of the energy balance. Open: the residual is more than 1 % of the exchanged energy. */
 typedef enum strut_balance {
@@ -57,10 +73,13 @@ typedef enum strut_motion {
   STRUT_MOTION_TRANSIENT  /* the run ended before either was established */
 } strut_motion;
 
+/** "periodic", "irregular", "transient", or "" where not watched. */
+STRUT_API const char *strut_motion_name(strut_motion motion);
+
 enum { STRUT_MOST_MULTIPLIERS = 8 };
 typedef struct strut_steady_summary {
   strut_motion kind;
-  int32_t repeats; /* n of a period-n motion; 1: every drive period alike */
+  int32_t repeats; /* n of a period-n motion; 1: every drive period is the same */
   int64_t periods; /* drive periods until that was known */
   double interval; /* half-width of the confidence interval of the velocity [m/s] */
   double residual; /* change of the shape over one repetition, relative to the shape's motion */

@@ -24,7 +24,7 @@ strut_status strut_period_map_create(const strut_model *model, const strut_exper
   if (!status) map->workspace = map->method->create(model, map->state, &settings);
   if (!status &&
       (!map->workspace || strut_measure_create(model, experiment, &grid, 0, 0, &map->measure)))
-    status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    status = strut_no_memory(error, "");
   if (status) {
     strut_period_map_free(map);
     return status;

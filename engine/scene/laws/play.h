@@ -9,7 +9,7 @@ static inline strut_law_response strut_law_play(const strut_law_numbers *n, doub
                                                 int piece) {
   double x = e - e0, gap = n->first;
   if (piece < 0) piece = x > gap ? 2 : x > -gap ? 1 : 0;
-  if (piece == 1) return (strut_law_response){0};
+  if (piece == 1) return (strut_law_response){0.0, 0.0, 0.0, 0.0};
   double beyond = piece == 2 ? x - gap : x + gap, force = n->stiffness * beyond;
   return (strut_law_response){force, 0.5 * force * beyond, n->stiffness, 0.0};
 }

@@ -10,10 +10,6 @@
 #include "engine/statics/equilibria/equilibrium_search.h"
 #include "engine/statics/equilibria/naming.h"
 
-static strut_status no_memory(strut_equilibrium_search *h) {
-  return strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");
-}
-
 /* Adds a search's counts; of its estimates the largest is kept. */
 static void count_starts(strut_equilibrium_search *h, const strut_critical_set *set) {
   h->out->starts += set->starts;
@@ -53,7 +49,7 @@ static strut_status add_points(strut_equilibrium_search *h, const strut_critical
                                const strut_node_set *supports, int32_t group) {
   for (size_t i = 0; i < set->count; i++) {
     int32_t at = strut_equilibrium_search_add(h);
-    if (at < 0) return no_memory(h);
+    if (at < 0) return strut_no_memory(h->error, "");
     h->candidates[at].group = group;
     h->candidates[at].number = (int32_t)i;
     strut_status status = strut_equilibrium_search_fill(h, &h->candidates[at], potential, held,
@@ -69,7 +65,7 @@ static strut_status search_held(strut_equilibrium_search *h, const strut_potenti
   const strut_equilibria_options *o = h->options;
   size_t shapes = h->level.scene.configuration_count, length = (size_t)h->model->length;
   const double **extra = strut_arena_allocate(arena, shapes + 1, sizeof *extra);
-  if (!extra) return no_memory(h);
+  if (!extra) return strut_no_memory(h->error, "");
   strut_critical_effort effort = {.starts = o->starts ? o->starts : h->experiment->search.starts,
                                   .seed = h->out->seed,
                                   .searches = (int32_t)h->supports.count + 1,
@@ -95,8 +91,8 @@ static strut_status search_on_supports(strut_equilibrium_search *h, int32_t grou
   size_t length = (size_t)h->model->length;
   double *shape = place_shapes(h, set, &placed, length, &scratch);
   uint8_t *held = strut_arena_allocate(&scratch, length, 1);
-  strut_status status =
-      shape && held ? strut_model_compile(&placed, &model, h->error) : no_memory(h);
+  strut_status status = shape && held ? strut_model_compile(&placed, &model, h->error)
+                                      : strut_no_memory(h->error, "");
   if (!status) {
     strut_supports_hold(&h->supports, set, held);
     status = strut_potential_create(model, held, false, &potential, h->error);
@@ -138,7 +134,7 @@ static strut_status add_ground(strut_equilibrium_search *h) {
   for (size_t i = 0; i < set->count; i++) {
     if ((int32_t)i < h->landscape.minima && has_standing_candidate(h, (int32_t)i)) continue;
     int32_t at = strut_equilibrium_search_add(h);
-    if (at < 0) return no_memory(h);
+    if (at < 0) return strut_no_memory(h->error, "");
     strut_candidate_equilibrium *f = &h->candidates[at];
     strut_equilibrium *e = &f->e;
     f->group = (int32_t)h->supports.count;
@@ -220,9 +216,9 @@ static strut_status report_equilibria(strut_equilibrium_search *h) {
   if (h->count) qsort(h->candidates, h->count, sizeof *h->candidates, compare_candidates);
   strut_equilibrium **list = strut_arena_allocate(arena, h->count, sizeof *list);
   h->out->list = strut_arena_allocate(arena, h->count, sizeof *h->out->list);
-  if (!list || !h->out->list) return no_memory(h);
+  if (!list || !h->out->list) return strut_no_memory(h->error, "");
   for (size_t i = 0; i < h->count; i++) list[i] = &h->candidates[i].e;
-  if (strut_name_equilibria(h->model, h->count, list, arena)) return no_memory(h);
+  if (strut_name_equilibria(h->model, h->count, list, arena)) return strut_no_memory(h->error, "");
   link_ends(h);
   link_saddles(h);
   strut_report_candidates(h, h->candidates, h->count);
@@ -313,7 +309,7 @@ static strut_status settle_start(strut_equilibrium_search *h, const strut_model 
   h->out->start = -1;
   if (!h->experiment->settle.wanted || !model->mass || h->options->standing_only) return STRUT_OK;
   q = strut_arena_allocate(&h->out->arena, (size_t)model->length, sizeof *q);
-  if (!q) return no_memory(h);
+  if (!q) return strut_no_memory(h->error, "");
   strut_status status = strut_settle_experiment(model, h->experiment, NULL, h->options->interrupt,
                                                 q, &time, &h->out->settle, &trouble);
   if (!status) h->out->start = find_nearest(model, h->out, q);

@@ -8,9 +8,10 @@
 
 #include <signal.h>
 
+#include "engine/model/model.h"
 #include "engine/run/measure/summary.h"
 #include "engine/scene/experiment.h"
-#include "engine/statics/search/critical.h"
+#include "engine/statics/search/critical_point.h"
 
 typedef enum strut_outcome {
   STRUT_OUTCOME_STANDS,       /* rests on the contacts it was found with */

@@ -91,12 +91,12 @@ strut_status strut_equilibrium_search_fill(strut_equilibrium_search *h,
   e->below = strut_arena_allocate(arena, nodes, 1);
   e->member_force = strut_arena_allocate(arena, (size_t)h->model->members.count, sizeof(double));
   if (!e->reaction || !e->below || !e->member_force || !copy_point(h, point, &e->point))
-    return strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");
+    return strut_no_memory(h->error, "");
   bool placed = 2 * h->model->node_count - potential->n <=
                 3; /* the shape may be mirrored as a whole: orient it */
   if ((placed && strut_orient_shape(h->model, held, e->point.q, e->point.softest)) ||
       !measure_reactions(h, potential, held, find))
-    return strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");
+    return strut_no_memory(h->error, "");
   e->energy = strut_potential_energy(potential, e->point.q);
   measure_members(h->model, e->point.q, e->member_force);
   find_nodes_below(h, held, e);
@@ -104,7 +104,7 @@ strut_status strut_equilibrium_search_fill(strut_equilibrium_search *h,
   e->contacts = set->node;
   e->contact_count = (int32_t)set->count;
   e->normal = strut_arena_allocate(arena, set->count, sizeof *e->normal);
-  if (!e->normal) return strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");
+  if (!e->normal) return strut_no_memory(h->error, "");
   for (size_t i = 0; i < set->count; i++) e->normal[i] = e->reaction[set->node[i]][1];
   return STRUT_OK;
 }
@@ -115,7 +115,7 @@ strut_status strut_equilibrium_search_contacts(strut_equilibrium_search *h, cons
   size_t most = h->on_ground ? (size_t)c->count : 0;
   e->contacts = strut_arena_allocate(&h->out->arena, most, sizeof *e->contacts);
   e->normal = strut_arena_allocate(&h->out->arena, most, sizeof *e->normal);
-  if (!e->contacts || !e->normal) return strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");
+  if (!e->contacts || !e->normal) return strut_no_memory(h->error, "");
   e->contact_count = 0;
   for (size_t i = 0; i < most; i++) {
     double normal = -c->entry[i].stiffness * strut_contact_gap(c, (int32_t)i, q);
@@ -224,7 +224,7 @@ static strut_status follow_candidate(strut_equilibrium_search *h, strut_candidat
   size_t length = (size_t)h->model->length;
   strut_relaxed relaxed;
   double *q = strut_arena_allocate(&h->out->arena, length, sizeof *q);
-  if (!q) return strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");
+  if (!q) return strut_no_memory(h->error, "");
   memcpy(q, e->point.q, length * sizeof *q);
   strut_status status = strut_relax(h->relaxer, q, strut_landscape_pass, &h->landscape,
                                     h->options->interrupt, &relaxed, h->error);

@@ -29,7 +29,7 @@ static strut_status find_lowest(strut_landscape *l, strut_error *error) {
     l->minima++;
   l->lowest = strut_arena_allocate(&l->arena, (size_t)l->minima, sizeof *l->lowest);
   l->parent = strut_arena_allocate(&l->arena, (size_t)l->minima, sizeof *l->parent);
-  if (!l->lowest || !l->parent) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!l->lowest || !l->parent) return strut_no_memory(error, "");
   for (int32_t i = 0; i < l->minima; i++) {
     l->lowest[i] = HUGE_VAL;
     for (size_t k = (size_t)l->minima; k < set->count; k++) {
@@ -226,5 +226,5 @@ strut_status strut_barriers_find(strut_equilibrium_search *h) {
                           &h->out->barriers[h->out->barrier_count++]);
     }
   strut_release(of_state);
-  return good ? STRUT_OK : strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");
+  return good ? STRUT_OK : strut_no_memory(h->error, "");
 }

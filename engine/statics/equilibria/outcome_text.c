@@ -10,7 +10,7 @@
 
 /* Nodes that move at least this share of the one that moves most. */
 static const double MOVES = 0.1;
-/* How far it is pushed, and how far it must stay away, in model sizes. */
+/* Size of the push, and the distance at which it must stay away, in model sizes. */
 static const double PUSHED = 0.02, AWAY = 0.005;
 
 /* A velocity of one node, and a rate of turning about it. */
@@ -37,7 +37,7 @@ static int32_t flag_moving(const strut_model *model, const strut_critical_point 
   return count;
 }
 
-/* The rigid motion that goes with node a, and with b as far as turning can. */
+/* The rigid motion that follows node a, and b as far as a rotation can. */
 static whole rigid_motion_of(const strut_critical_point *point, bool turns, int32_t a, int32_t b) {
   const double *q = point->q, *mode = point->softest;
   double dx = q[2 * b] - q[2 * a], dy = q[2 * b + 1] - q[2 * a + 1], square = dx * dx + dy * dy;
@@ -83,15 +83,13 @@ static double distance_moved(const strut_model *model, const strut_critical_poin
 static bool stays_displaced(const strut_potential *p, const strut_critical_point *point) {
   const strut_model *model = p->model;
   size_t length = (size_t)model->length;
-  double size = model->size > 0 ? model->size : 1.0, most = 0.0, stiffest = 0.0;
+  double size = model->size > 0 ? model->size : 1.0, most = 0.0;
   strut_minimiser *minimiser = NULL;
   double *q = strut_allocate(length, sizeof *q);
   bool good = q && strut_minimiser_create(p, &minimiser, NULL) == STRUT_OK, stays = false;
   for (int32_t at = 0; at < 2 * model->node_count; at++)
     most = fmax(most, fabs(point->softest[at]));
-  for (int32_t j = 0; j < model->members.count; j++)
-    stiffest = fmax(stiffest, model->members.stiffness[j]);
-  double same = 1e-12 * (fabs(point->potential) + stiffest * size * size);
+  double same = 1e-12 * (fabs(point->potential) + strut_stiffest(model) * size * size);
   for (int side = -1; side <= 1 && good && most > 0 && !stays; side += 2) {
     memcpy(q, point->q, length * sizeof *q);
     for (int32_t at = 0; at < 2 * model->node_count; at++)
@@ -276,7 +274,7 @@ static void describe_outcome(strut_equilibrium_search *h, strut_candidate_equili
       snprintf(e->verdict, room, "unstable: %d negative eigenvalue%s", (int)e->point.negative,
                e->point.negative == 1 ? "" : "s");
       break;
-    default: describe_no_rest(h, e); break;
+    case STRUT_OUTCOME_NO_REST: describe_no_rest(h, e); break;
   }
 }
 

@@ -43,6 +43,8 @@ struct strut_relaxer {
 static bool loses_energy(const strut_model *model) {
   for (int32_t j = 0; j < model->members.count; j++)
     if (model->members.damping[j] > 0) return true;
+  for (int32_t i = 0; i < model->elements.count; i++)
+    if (model->elements.element[i].damping > 0) return true;
   for (int32_t i = 0; i < model->contacts.count; i++)
     if (model->contacts.entry[i].damping > 0) return true;
   return false;
@@ -61,14 +63,14 @@ static strut_status prepare_motion(strut_relaxer *r, strut_error *error) {
   if ((status = strut_state_create(r->model, &r->state, error))) return status;
   const strut_integrator_settings settings = {.step = r->step};
   r->workspace = r->method->create(r->model, r->state, &settings);
-  return r->workspace ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  return r->workspace ? STRUT_OK : strut_no_memory(error, "");
 }
 
 strut_status strut_relaxer_create(const strut_potential *potential, double limit,
                                   strut_relaxer **result, strut_error *error) {
   assert(limit > 0.0);
   strut_relaxer *r = *result = strut_allocate(1, sizeof *r);
-  if (!r) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!r) return strut_no_memory(error, "");
   size_t length = (size_t)potential->model->length;
   r->potential = potential;
   r->limit = limit;
@@ -78,7 +80,7 @@ strut_status strut_relaxer_create(const strut_potential *potential, double limit
   r->start = strut_arena_allocate(&r->arena, length, sizeof(double));
   strut_status status = r->quenched && r->last && r->start
                             ? strut_minimiser_create(potential, &r->minimiser, error)
-                            : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+                            : strut_no_memory(error, "");
   if (!status) status = prepare_motion(r, error);
   if (status) {
     strut_relaxer_free(r);

@@ -3,7 +3,7 @@
  * Dynamic relaxation on the real ground: where (10) without drive and friction comes to rest.
  *
  * The model itself is simulated, with no damping but its own, until it can end in one place only;
- * Newton's method then goes there. So the end is that of the undamped model, without its waiting.
+ * Newton's method then converges to it. The result is that of the undamped model, at less cost.
  */
 #ifndef STRUT_ENGINE_STATICS_EQUILIBRIA_RELAX_H
 #define STRUT_ENGINE_STATICS_EQUILIBRIA_RELAX_H

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "engine/forces/elements.h"
-#include "engine/model/pose.h"
 #include "engine/run/settle.h"
 #include "engine/statics/equilibria/equilibrium_search.h"
 #include "engine/statics/equilibria/naming.h"
@@ -16,19 +15,26 @@ static const double NEAR = 0.01;
 /* The residual of a drawn shape that counts as at rest, in weights. */
 static const double AT_REST = 1e-8;
 
-/* Of hinges: their moments over the first arm. */
+/* A hinge pushes on its nodes with its moment over the arms. */
+typedef struct hinge_sum {
+  const strut_model *model;
+  double sum;
+} hinge_sum;
+
+static void add_hinge_force(void *context, int32_t element, const strut_element_pose *pose) {
+  hinge_sum *s = context;
+  if (s->model->elements.element[element].role == STRUT_ELEMENT_HINGE)
+    s->sum += fabs(pose->force) * hypot(pose->b[0], pose->b[1]);
+}
+
 static double sum_member_forces(const strut_model *model, const double *q) {
   const strut_member_table *t = &model->members;
   double sum = 0.0;
   for (int32_t j = 0; j < t->count; j++)
     sum += fabs(strut_member_elastic_tension(model, t->rest, j, q));
-  for (int32_t i = 0; i < model->elements.count; i++) {
-    strut_element_pose pose;
-    if (model->elements.element[i].role != STRUT_ELEMENT_HINGE) continue;
-    strut_element_evaluate(model, i, t->rest, q, (double)NAN, &pose);
-    sum += fabs(pose.force) * sqrt(pose.b[0] * pose.b[0] + pose.b[1] * pose.b[1]);
-  }
-  return sum;
+  hinge_sum hinges = {model, 0.0};
+  strut_elements_visit(model, t->rest, q, -HUGE_VAL, false, &hinges, add_hinge_force);
+  return sum + hinges.sum;
 }
 
 static bool find_closed(const strut_model *model, strut_arena *arena, strut_rest_state *rest) {
@@ -60,7 +66,7 @@ static strut_status judge_rest(const strut_model *model, strut_arena *arena, str
     double rounding = 4 * strut_potential_rounding(potential, rest->q);
     rest->at_rest = rest->residual <= fmax(AT_REST * rest->scale, rounding);
   } else {
-    status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    status = strut_no_memory(error, "");
   }
   strut_release(g);
   strut_potential_free(potential);
@@ -110,7 +116,7 @@ static strut_status relax_to_rest(strut_equilibrium_search *h, const char *what,
   if (h->potential->n == 0) return STRUT_OK;
   double *near = strut_arena_allocate(&h->out->arena, 1, bytes);
   double *from = strut_arena_allocate(&h->out->arena, 1, bytes);
-  if (!near || !from) return strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");
+  if (!near || !from) return strut_no_memory(h->error, "");
   memcpy(near, q, bytes);
   memcpy(from, q, bytes);
   strut_relax_down(h->relaxer, near, &relaxed);
@@ -156,7 +162,7 @@ static strut_status relax_from_shape(strut_equilibrium_search *h, const strut_co
                                      double *q, bool *found, strut_node_set *rests_on) {
   size_t nodes = h->level.scene.node_count;
   double *shape = strut_arena_allocate(&h->out->arena, (size_t)h->model->length, sizeof *shape);
-  if (!shape) return strut_fail(h->error, STRUT_NO_MEMORY, "out of memory");
+  if (!shape) return strut_no_memory(h->error, "");
   memcpy(shape, c->position[0], 2 * nodes * sizeof *shape);
   for (size_t i = 0; i < nodes; i++) /* held coordinates stay */
     for (size_t k = 0; k < 2; k++)
@@ -246,7 +252,7 @@ static strut_status find_in_list(const strut_model *model, const strut_experimen
     if (strcmp(e->name, name) != 0) continue;
     found = true;
     rest->name = strut_arena_text(arena, name, strlen(name));
-    if (!rest->name) status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    if (!rest->name) status = strut_no_memory(error, "");
     bool stands = e->outcome == STRUT_OUTCOME_STANDS && e->rest;
     memcpy(rest->q, stands ? e->rest : e->point.q, (size_t)model->length * sizeof *rest->q);
   }
@@ -298,7 +304,7 @@ strut_status strut_rest_state_find(const strut_model *model, const strut_experim
   bool start = !name || strcmp(name, "start") == 0, drawn = name && strcmp(name, "drawn") == 0;
   *rest = (strut_rest_state){.name = start ? "start" : "drawn"};
   rest->q = strut_arena_allocate(arena, (size_t)model->length, sizeof *rest->q);
-  if (!rest->q) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!rest->q) return strut_no_memory(error, "");
   if (name && (c = find_configuration(scene, name)))
     start = drawn = false; /* a configuration has this name */
   if (!c && !start && !drawn) {

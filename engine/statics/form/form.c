@@ -218,7 +218,7 @@ strut_status strut_form_densities(strut_former *f, strut_error *error) {
                        .x = strut_arena_allocate(&f->arena, 2 * nodes, sizeof(double)),
                        .held = strut_arena_allocate(&f->arena, 2 * nodes, 1)};
   double *given = strut_arena_allocate(&f->arena, members, sizeof *given);
-  if (!p.q || !p.x || !p.held || !given) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!p.q || !p.x || !p.held || !given) return strut_no_memory(error, "");
   strut_status status = read_densities(&p, error);
   if (status) return status;
   memcpy(given, p.q, members * sizeof *given);
@@ -285,7 +285,7 @@ static strut_status check_lengths(const strut_former *f, strut_error *error) {
   return STRUT_OK;
 }
 
-/* Writes rest lengths as lengths: given otherwise they would change with the drawn shape. */
+/* Writes rest lengths as lengths, rest angles as angles: given otherwise they would change with the drawn shape. */
 static void fix_lengths(strut_scene *scene) {
   for (size_t j = 0; j < scene->member_count; j++) {
     strut_rest rest;
@@ -294,6 +294,8 @@ static void fix_lengths(strut_scene *scene) {
     m->rest_kind = STRUT_REST_LENGTH;
     m->rest_value = rest.length;
   }
+  for (size_t i = 0; i < scene->hinge_count; i++)
+    scene->hinges[i].rest_angle = strut_hinge_rest(scene, i);
 }
 
 /* Finds whether the structure is free to shift along x, and to turn and shift in the plane. */
@@ -331,7 +333,7 @@ static bool undo_drift(const strut_former *f, double *q) {
   return true;
 }
 
-/* Whichever node moved most between the start and q; how far. */
+/* The node that moved most between the start and q, and its distance. */
 static double farthest(const strut_scene *scene, const double *q, size_t *node) {
   double most = -1;
   for (size_t i = 0; i < scene->node_count; i++) {
@@ -376,7 +378,7 @@ static strut_status polish(strut_former *f, strut_error *error) {
   if (status == STRUT_OK) status = strut_potential_create(model, NULL, true, &potential, error);
   if (status == STRUT_OK) status = strut_minimiser_create(potential, &minimiser, error);
   if (status == STRUT_OK) q = strut_arena_allocate(&f->arena, (size_t)model->length, sizeof *q);
-  if (status == STRUT_OK && !q) status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (status == STRUT_OK && !q) status = strut_no_memory(error, "");
   if (status == STRUT_OK) {
     memcpy(q, model->start, (size_t)model->length * sizeof *q);
     strut_descent descent = strut_minimise(minimiser, q, 0.0);
@@ -439,7 +441,7 @@ static strut_status find(strut_former *f, strut_error *error) {
   return status == STRUT_OK ? add_run(f, error) : status;
 }
 
-/* How far every node was drawn from where it is now. */
+/* Distance of every node from its drawn position. */
 static double moved_from(const double *drawn, const strut_scene *scene) {
   double most = 0;
   for (size_t i = 0; i < scene->node_count; i++)
@@ -458,6 +460,25 @@ static void drop_shapes(strut_scene *scene) {
   }
 }
 
+/* Densities and forces that hold a shape are found for straight members with a linear law only. */
+static strut_status refuse_elements(const strut_scene *scene, strut_form_source from,
+                                    strut_error *error) {
+  if (from == STRUT_FORM_LENGTHS) return STRUT_OK;
+  for (size_t j = 0; j < scene->member_count; j++) {
+    const strut_member *m = &scene->members[j];
+    if (!strut_member_is_special(m)) continue;
+    return strut_fail(error, STRUT_BAD_SCENE,
+                      "form finding by %s knows straight members with a linear law only: %s %s",
+                      strut_form_source_name(from), m->name,
+                      m->guide_count ? "runs over guides" : "has another law");
+  }
+  if (scene->hinge_count == 0) return STRUT_OK;
+  return strut_fail(
+      error, STRUT_BAD_SCENE,
+      "form finding by %s knows straight members with a linear law only: %s is a hinge",
+      strut_form_source_name(from), scene->hinges[0].name);
+}
+
 strut_status strut_form_find(strut_setup *setup, const strut_form_options *options,
                              strut_form *form, strut_error *error) {
   strut_scene *scene = &setup->scene;
@@ -467,8 +488,8 @@ strut_status strut_form_find(strut_setup *setup, const strut_form_options *optio
   strut_former f = {
       .scene = scene, .experiment = &setup->experiment, .options = options, .form = form};
   double *drawn = strut_arena_allocate(&f.arena, 2 * scene->node_count, sizeof *drawn);
-  strut_status status = drawn ? strut_model_compile(scene, &model, error)
-                              : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  strut_status status =
+      drawn ? strut_model_compile(scene, &model, error) : strut_no_memory(error, "");
   if (status == STRUT_OK) status = strut_potential_create(model, NULL, true, &potential, error);
   if (status == STRUT_OK) {
     for (size_t i = 0; i < 2 * scene->node_count; i++)
@@ -481,6 +502,7 @@ strut_status strut_form_find(strut_setup *setup, const strut_form_options *optio
                           "units",
                           f.size);
     form->driven = scene->actuator_count > 0 || model->loads.count > 0;
+    if (status == STRUT_OK) status = refuse_elements(scene, form->from, error);
     if (status == STRUT_OK) status = find(&f, error);
   }
   if (status == STRUT_OK) {

@@ -18,7 +18,7 @@ typedef enum strut_form_source {
 /** "scene", "densities", "lengths", "prestress". */
 STRUT_API const char *strut_form_source_name(strut_form_source source);
 
-/** Which of many states of prestress is taken. */
+/** The objective that selects one state of prestress among many. */
 typedef enum strut_form_objective {
   STRUT_FORM_LARGEST, /* the largest magnitude of a force is least, then the sum of magnitudes */
   STRUT_FORM_SUM,     /* the sum of the magnitudes is least */
@@ -40,7 +40,7 @@ typedef struct strut_form {
   double moved;           /* farthest that a node was moved from where it was drawn [m] */
   double residual;        /* largest net force on a free coordinate at the start [N] */
   double density_change;  /* largest change of a force density, of the largest one [1] */
-  double least_tension;   /* asked of the cables [N] */
+  double least_tension;   /* lower bound for the cables [N] */
   double largest_force;   /* magnitude [N] */
   bool run_added;         /* the scene had no run: a step and 10 s were given to it */
   bool driven;            /* the scene has drives or loads with a signal: they will move it */
@@ -52,7 +52,8 @@ typedef struct strut_form {
  * are drawn; gravity, constant loads and the ground are reckoned with, friction is not. The result
  * is an equilibrium that is stable or floppy. Fails with STRUT_NOT_SETTLED and a sentence that
  * names nodes where there is no such shape, no such forces or no stability, STRUT_SINGULAR where
- * densities determine no shape, STRUT_NO_MEMORY; then the scene is of no further use.
+ * densities determine no shape, STRUT_BAD_SCENE where densities or a prestress are wanted of running
+ * cables, hinges or members with another law than the linear one, STRUT_NO_MEMORY; then the scene is of no further use.
  */
 STRUT_API strut_status strut_form_find(strut_setup *setup, const strut_form_options *options,
                                        strut_form *form, strut_error *error);

@@ -228,7 +228,7 @@ static bool improve(joint *p, bool nearest) {
 static strut_status not_found(const joint *p, strut_error *error) {
   uint8_t *marked = strut_allocate(p->f->scene->node_count, 1);
   char names[200];
-  if (!marked) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!marked) return strut_no_memory(error, "");
   for (size_t i = 0; i < 2 * p->f->scene->node_count; i++)
     if (p->row_of[i] >= 0 && fabs(gsl_vector_get(p->force, (size_t)p->row_of[i])) > EXACT)
       marked[i / 2] = 1;
@@ -244,7 +244,7 @@ static strut_status solve(joint *p, strut_error *error) {
   double left = evaluate(p);
   for (int k = 0; k < STEPS; k++) {
     double before = left;
-    if (!improve(p, k < NEAREST_STEPS)) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    if (!improve(p, k < NEAREST_STEPS)) return strut_no_memory(error, "");
     left = evaluate(p);
     if (!isfinite(left)) break;
     if (left <= STILL || (k > NEAREST_STEPS && left <= EXACT && left >= before)) break;
@@ -259,15 +259,14 @@ strut_status strut_form_nearest(strut_former *f, const uint8_t *held, bool stand
   double *q_given = strut_arena_allocate(&f->arena, members, sizeof *q_given);
   int32_t *row_of = strut_arena_allocate(&f->arena, coordinates, sizeof *row_of);
   joint p = {.f = f, .row_of = row_of, .x = x, .q = q, .x_given = x_given, .q_given = q_given};
-  if (!x_given || !q_given || !row_of) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!x_given || !q_given || !row_of) return strut_no_memory(error, "");
   if (coordinates > MOST_COORDINATES)
     return strut_fail(error, STRUT_SINGULAR,
                       "the densities alone determine no shape, and the structure is too large to "
                       "adjust them: %zu coordinates, at most %d",
                       coordinates, MOST_COORDINATES);
   memcpy(x_given, x, coordinates * sizeof *x);
-  if (standing && !take_turns(f, x_given, x, q))
-    return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (standing && !take_turns(f, x_given, x, q)) return strut_no_memory(error, "");
   if (standing) lay_down(f->scene, held, x_given, x);
   for (size_t i = 0; i < coordinates; i++) row_of[i] = held[i] ? -1 : p.n++;
   for (size_t i = 0; i < coordinates; i++)
@@ -278,9 +277,8 @@ strut_status strut_form_nearest(strut_former *f, const uint8_t *held, bool stand
   p.slope = gsl_matrix_alloc((size_t)p.n + members, (size_t)p.n);
   p.force = gsl_vector_alloc((size_t)p.n);
   p.step = gsl_vector_alloc((size_t)p.n + members);
-  strut_status status = p.slope && p.force && p.step && p.unit > 0
-                            ? solve(&p, error)
-                            : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  strut_status status =
+      p.slope && p.force && p.step && p.unit > 0 ? solve(&p, error) : strut_no_memory(error, "");
   gsl_matrix_free(p.slope);
   gsl_vector_free(p.force);
   gsl_vector_free(p.step);

@@ -294,7 +294,7 @@ static strut_status cannot_hold(const prestress *p, strut_error *error) {
   uint8_t *marked = strut_allocate(f->scene->node_count, 1);
   char names[200];
   double worst = 0;
-  if (!marked) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!marked) return strut_no_memory(error, "");
   for (int32_t i = 0; i < at->n; i++) {
     double missing = fmax(p->x[at->up + i], p->x[at->down + i]);
     if (missing > MISSING) marked[f->potential->coordinate[i] / 2] = 1;
@@ -421,7 +421,7 @@ static strut_status compute_forces(prestress *p, strut_error *error) {
     status = find_forces(p, error);
     if (status == STRUT_OK && p->f->options->objective == STRUT_FORM_SQUARES &&
         !minimise_squares(p))
-      status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+      status = strut_no_memory(error, "");
   } else {
     strut_fail(error, status, "out of memory");
   }
@@ -435,7 +435,7 @@ strut_status strut_form_prestress(strut_former *f, strut_error *error) {
   if (!(p.scale > 0)) p.scale = 1.0;
   f->form->least_tension = p.least;
   p.x = strut_arena_allocate(&f->arena, (size_t)p.at.count, sizeof *p.x);
-  if (!p.x) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!p.x) return strut_no_memory(error, "");
   for (size_t i = 0; i < f->scene->node_count; i++)
     memcpy(f->scene->nodes[i].start, f->scene->nodes[i].position, sizeof f->scene->nodes[i].start);
   strut_status status = STRUT_OK;

@@ -156,7 +156,7 @@ strut_status strut_modes_damping(const strut_modes_work *work, bool exactly, str
   quadratic p = {.n = (size_t)work->set.count};
   strut_status status = STRUT_OK;
   if (!allocate_quadratic(work, &p)) {
-    status = strut_fail(error, STRUT_NO_MEMORY, "out of memory for damped modes");
+    status = strut_no_memory(error, "for damped modes");
   } else if (fill_damping(work, p.damping)) {
     fill_system(work, &p);
     if (gsl_eigen_nonsymmv(p.system, p.value, p.vector, p.w) == 0) {

@@ -221,7 +221,7 @@ strut_status strut_modes_dense(strut_modes_work *work, strut_error *error) {
   gsl_matrix_free(d.b);
   gsl_matrix_free(d.vector);
   gsl_vector_free(d.value);
-  return good ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory for all modes");
+  return good ? STRUT_OK : strut_no_memory(error, "for all modes");
 }
 
 /* The lowest modes of a large structure: bracketed by counting, found by Lanczos's method. */
@@ -270,7 +270,7 @@ strut_status strut_modes_sparse(strut_modes_work *work, int32_t count, strut_err
   set->count = below;
   set->value = strut_arena_allocate(work->arena, room, sizeof *set->value);
   set->vector = strut_arena_allocate(work->arena, room * (size_t)v->n, sizeof *set->vector);
-  if (!set->value || !set->vector) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!set->value || !set->vector) return strut_no_memory(error, "");
   for (int i = 0; i < MOST_FACTORS && count_below(work, shift) > 0; i++) shift *= 4.0;
   strut_lanczos_problem problem = {v->n, shift, work, apply_inverse, apply_mass};
   strut_status status = strut_lanczos(&problem, below, set->value, set->vector, error);

@@ -93,7 +93,7 @@ strut_status strut_lanczos(const strut_lanczos_problem *problem, int32_t count, 
   if (s.vectors > s.n) s.vectors = s.n;
   strut_status status = STRUT_OK;
   if (!begin(&s, &arena)) {
-    status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    status = strut_no_memory(error, "");
   } else {
     pthread_mutex_lock(&arpack_lock);
     a_int info = iterate(problem, &s);

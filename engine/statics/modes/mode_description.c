@@ -7,8 +7,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/forces/elements.h"
-
 /* The motions of the plane as a whole that supports and closed contacts leave free. */
 
 /* A motion (a, b, w): a - w (y - y0) / size in x, b + w (x - x0) / size in y. */
@@ -100,7 +98,7 @@ strut_status strut_modes_rigid(strut_modes_work *work, strut_error *error) {
   gsl_matrix_free(vector);
   gsl_vector_free(value);
   gsl_eigen_symmv_free(w);
-  return good ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  return good ? STRUT_OK : strut_no_memory(error, "");
 }
 
 /* Description of a mode in words, from its computed quantities. */
@@ -146,7 +144,7 @@ static const char *direction_text(const double d[2]) {
   return "";
 }
 
-/* Where the cosine with the leading motion lies: 1 with it, -1 against it, 0 across. */
+/* Direction relative to the leading motion: 1 along it, -1 against it, 0 across. */
 static int side_of(const double lead[2], const double d[2]) {
   double cosine = (lead[0] * d[0] + lead[1] * d[1]) / (hypot(lead[0], lead[1]) * hypot(d[0], d[1]));
   return cosine > 0.5 ? 1 : cosine < -0.5 ? -1 : 0;
@@ -176,53 +174,42 @@ static void describe_nodes(const strut_vibration *v, const double *x, strut_mode
   int count = name_side(v, x, leader, lead, 1, "", mode);
   append_text(mode, count == 1 ? " moves%s" : " move%s", direction_text(lead));
   name_side(v, x, leader, lead, -1, " against ", mode);
-  name_side(v, x, leader, lead, 0, ", across them ", mode);
+  if (name_side(v, x, leader, lead, 0, ", ", mode) > 0) append_text(mode, " sideways");
 }
 
-/* Energies of half a stiffness each: strain of members and hinges, closed contacts. */
+/* Energies of half a stiffness each: stretch of the members, closed contacts. */
 typedef struct energies {
   double members, ground, all;
 } energies;
 
+/* Energy of an element's slope: of its law, not of the bend of its strain. */
 static double element_energy(const strut_vibration *v, int32_t i, const double *x) {
-  const strut_element *e = &v->model->elements.element[i];
   strut_element_pose pose;
-  double rate = 0.0, d[2];
-  strut_element_evaluate(v->model, i, v->model->members.rest, v->rounded, (double)NAN, &pose);
-  for (int32_t k = 0; k < e->nodes; k++) {
-    motion_of(v, x, (int32_t)(v->model->elements.at[e->first + k] / 2), d);
-    rate += pose.b[2 * k] * d[0] + pose.b[2 * k + 1] * d[1];
-  }
-  return pose.slope * rate * rate;
+  double along = strut_vibration_pose(v, i, &pose) ? strut_vibration_strain(v, i, &pose, x) : 0.0;
+  return pose.slope * along * along;
 }
 
-/* What is strained: the members, and behind them the elements, of which hinges count. */
-static int32_t count_strained(const strut_model *model) {
-  return model->members.count + model->elements.count;
-}
-
-static double strain_energy(const strut_vibration *v, int32_t j, const double *x) {
-  const strut_element_table *t = &v->model->elements;
-  int32_t i = j - v->model->members.count;
-  if (i >= 0) return t->element[i].role == STRUT_ELEMENT_HINGE ? element_energy(v, i, x) : 0.0;
+static double stretch_energy(const strut_vibration *v, int32_t j, const double *x) {
   double e = v->member[j].taut ? strut_vibration_spread(v, j, x).along : 0.0;
-  double sum = v->model->members.stiffness[j] * e * e;
-  const strut_element *own = strut_element_of_member(t, j);
-  for (; own; own = own->sibling >= 0 ? &t->element[own->sibling] : NULL)
-    sum += element_energy(v, (int32_t)(own - t->element), x);
-  return sum;
+  return v->model->members.stiffness[j] * e * e;
 }
 
-static const char *strained_name(const strut_model *model, int32_t j) {
-  int32_t i = j - model->members.count;
-  return i < 0 ? model->scene->members[j].name
-               : model->scene->hinges[model->elements.element[i].item].name;
+/* Energies (members, then hinges) of a motion; a member's with those of its elements. */
+static void fill_energies(const strut_vibration *v, const double *x, double *energy) {
+  const strut_element_table *t = &v->model->elements;
+  int32_t members = v->model->members.count;
+  for (int32_t j = 0; j < members; j++) energy[j] = stretch_energy(v, j, x);
+  for (int32_t i = 0; i < t->count; i++) {
+    bool hinge = t->element[i].role == STRUT_ELEMENT_HINGE;
+    energy[hinge ? members + t->element[i].item : t->element[i].item] += element_energy(v, i, x);
+  }
 }
 
-static energies energies_of(const strut_vibration *v, const double *x) {
+static energies energies_of(const strut_vibration *v, const double *x, const double *energy) {
   energies e = {0};
   const strut_contact_table *c = &v->model->contacts;
-  for (int32_t j = 0; j < count_strained(v->model); j++) e.members += strain_energy(v, j, x);
+  int32_t items = v->model->members.count + (int32_t)v->model->scene->hinge_count;
+  for (int32_t j = 0; j < items; j++) e.members += energy[j];
   for (int32_t i = 0; i < c->count; i++) {
     double d[2];
     if (!v->closed[i]) continue;
@@ -234,23 +221,24 @@ static energies energies_of(const strut_vibration *v, const double *x) {
   return e;
 }
 
-static void describe_members(const strut_vibration *v, const double *x, const energies *e,
+static void describe_members(const strut_vibration *v, const double *energy, const energies *e,
                              strut_mode *mode) {
-  int32_t named[MOST_MEMBERS];
+  const strut_scene *scene = v->model->scene;
+  int32_t named[MOST_MEMBERS], members = v->model->members.count;
   int count = 0;
   for (; count < MOST_MEMBERS; count++) {
     double most = COUNTS * e->all;
     named[count] = -1;
-    for (int32_t j = 0; j < count_strained(v->model); j++) {
-      double energy = strain_energy(v, j, x);
+    for (int32_t j = 0; j < members + (int32_t)scene->hinge_count; j++) {
       bool known = false;
       for (int k = 0; k < count; k++) known = known || named[k] == j;
-      if (!known && energy > most) most = energy * (1 + 1e-9), named[count] = j;
+      if (!known && energy[j] > most) most = energy[j] * (1 + 1e-9), named[count] = j;
     }
-    if (named[count] < 0) break;
-    double share = 100.0 * strain_energy(v, named[count], x) / e->all;
-    append_text(mode, "%s%s %.0f %%", count ? ", " : "; ", strained_name(v->model, named[count]),
-                share);
+    int32_t j = named[count];
+    if (j < 0) break;
+    append_text(mode, "%s%s %.0f %%", count ? ", " : "; ",
+                j < members ? scene->members[j].name : scene->hinges[j - members].name,
+                100.0 * energy[j] / e->all);
   }
   if (e->ground > 0.05 * e->all)
     append_text(mode, "%sthe ground %.0f %%", count++ ? ", " : "; ", 100.0 * e->ground / e->all);
@@ -267,9 +255,9 @@ static void describe_rigid(const strut_vibration *v, const double *x, strut_mode
   }
   const char *way = direction_text(first);
   if (shift)
-    append_text(mode, "the whole moves%s", *way ? way : " freely");
+    append_text(mode, "the structure moves%s", *way ? way : " freely");
   else
-    append_text(mode, "the whole turns freely");
+    append_text(mode, "the structure rotates freely");
 }
 
 void strut_modes_describe(const strut_modes_work *work, const double *x, strut_mode *mode) {
@@ -281,18 +269,22 @@ void strut_modes_describe(const strut_modes_work *work, const double *x, strut_m
   }
   describe_nodes(v, x, mode);
   if (mode->kind == STRUT_MODE_MECHANISM) {
-    append_text(mode, "; nothing resists");
+    append_text(mode, "; no stiffness resists");
     return;
   }
-  energies e = energies_of(v, x);
+  size_t items = (size_t)v->model->members.count + v->model->scene->hinge_count;
+  double *energy = strut_allocate(items + 1, sizeof *energy);
+  if (!energy) return; /* the mode stays, with fewer words */
+  fill_energies(v, x, energy);
+  energies e = energies_of(v, x, energy);
   double mass = 0.0, *product = (double *)v->work;
   strut_vibration_multiply(v, v->m, x, product);
   for (int32_t i = 0; i < v->n; i++) mass += x[i] * product[i];
   double stiffness = mode->eigenvalue * mass;
-  if (e.all < 0.5 * fabs(stiffness)) {
+  bool geometric = e.all < 0.5 * fabs(stiffness);
+  if (geometric)
     append_text(mode, "; %.0f %% of the stiffness is geometric",
                 fmin(100.0 * (1.0 - e.all / fabs(stiffness)), 100.0));
-    if (e.all < 0.01 * fabs(stiffness)) return;
-  }
-  describe_members(v, x, &e, mode);
+  if (!(e.all < 0.01 * fabs(stiffness))) describe_members(v, energy, &e, mode);
+  strut_release(energy);
 }

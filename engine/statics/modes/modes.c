@@ -140,7 +140,7 @@ static strut_mode_kind *find_kinds(strut_modes_work *work, strut_error *error) {
   if (kind && zeros > 0)
     rigid = sort_zeros(work, set->vector + (size_t)first * (size_t)set->n, zeros);
   if (!kind || rigid < 0) {
-    strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    strut_no_memory(error, "");
     return NULL;
   }
   for (int32_t i = first; i < first + zeros; i++) {
@@ -207,12 +207,11 @@ static strut_status fill_modes(strut_modes_work *work, int32_t wanted, strut_mod
   strut_mode_kind *kind = find_kinds(work, error);
   if (!kind) return STRUT_NO_MEMORY;
   modes->list = strut_arena_allocate(work->arena, found, sizeof *modes->list);
-  if (!modes->list) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!modes->list) return strut_no_memory(error, "");
   modes->condition = condition_of(work, modes->dense);
   modes->count = found < (size_t)wanted ? found : (size_t)wanted;
   for (size_t i = 0; i < found; i++)
-    if (fill_mode(work, (int32_t)i, kind[i], &modes->list[i]))
-      return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    if (fill_mode(work, (int32_t)i, kind[i], &modes->list[i])) return strut_no_memory(error, "");
   modes->damped_exactly =
       modes->dense && set->count <= STRUT_DAMPED_MODES && work->v->massive == work->v->n;
   strut_status status = strut_modes_damping(work, modes->damped_exactly, modes->list, error);
@@ -235,7 +234,7 @@ static strut_status solve_modes(strut_modes_work *work, int32_t wanted, strut_mo
   work->set.error = strut_arena_allocate(work->arena, count, sizeof(double));
   work->set.residual = strut_arena_allocate(work->arena, count, sizeof(double));
   if (!work->set.noise || !work->set.error || !work->set.residual)
-    return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    return strut_no_memory(error, "");
   status = strut_modes_noise(work, modes->at_rest, error);
   if (status == STRUT_OK) status = strut_modes_rigid(work, error);
   if (status == STRUT_OK) status = strut_modes_refine(work, error);
@@ -264,7 +263,7 @@ strut_status strut_modes_find(const strut_model *model, const strut_experiment *
   modes->closed = rest.closed;
   modes->closed_count = rest.closed_count;
   uint8_t *held = strut_arena_allocate(&modes->arena, (size_t)model->length, sizeof *held);
-  if (!held) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!held) return strut_no_memory(error, "");
   if (options->stuck) status = hold_stuck(model, &rest, held, error);
   if (status == STRUT_OK)
     status =

@@ -35,7 +35,7 @@ static strut_status find_pattern(const strut_sparse *pattern, strut_factor **fac
 strut_status strut_extended_create(const strut_sparse *pattern, strut_extended_factor **result,
                                    strut_error *error) {
   strut_extended_factor *f = *result = strut_allocate(1, sizeof *f);
-  if (!f) return strut_fail(error, STRUT_NO_MEMORY, "out of memory while factorising a matrix");
+  if (!f) return strut_no_memory(error, "while factorising a matrix");
   f->n = pattern->n;
   strut_status status = find_pattern(pattern, &f->owned, error);
   if (status == STRUT_OK) {
@@ -53,7 +53,7 @@ strut_status strut_extended_create(const strut_sparse *pattern, strut_extended_f
       for (int32_t i = 0; i < f->n; i++) f->inverse[f->owned->order[i]] = i;
       return STRUT_OK;
     }
-    status = strut_fail(error, STRUT_NO_MEMORY, "out of memory while factorising a matrix");
+    status = strut_no_memory(error, "while factorising a matrix");
   }
   strut_extended_free(f);
   *result = NULL;
@@ -162,7 +162,7 @@ void strut_extended_solve(const strut_extended_factor *f, strut_dd *x) {
   for (int32_t i = 0; i < f->n; i++) x[f->pattern->order[i]] = y[i];
 }
 
-/* Of the largest eigenvalue: below this a shift may drown in a plain factor's rounding. */
+/* Relative to the largest eigenvalue: a smaller shift may drown in a plain factor's rounding. */
 static const double SAFE_SHIFT = 1e-10;
 static const double SAFE_PIVOT = 1e-9; /* relative: what is less may have the wrong sign */
 
@@ -178,7 +178,7 @@ strut_status strut_modes_solver_create(const strut_vibration *v, strut_modes_sol
   solver->mx = strut_arena_allocate(&solver->arena, n, sizeof *solver->mx);
   solver->step = strut_arena_allocate(&solver->arena, n, sizeof *solver->step);
   if (!solver->sum.value || !solver->b || !solver->r || !solver->mx || !solver->step)
-    return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    return strut_no_memory(error, "");
   strut_status status = strut_ldl_create(v->shape->pattern, &solver->plain, error);
   if (status != STRUT_OK) return status;
   return strut_extended_create(v->shape->pattern, &solver->extended, error);

@@ -12,14 +12,22 @@
 
 enum { DEFAULT_STEPS = 400, NAMES = 400 };
 
-/* Of the rounding in forces: what a descent may leave, as the path is corrected further anyway. */
+/* Residual that a descent may leave, relative to the rounding in forces; the path is corrected later. */
 static const double NEARLY = 1e6;
 static const double ALIKE = 1e-12; /* forces of several loads that count as one number */
 
 const char *strut_path_event_name(strut_path_event_kind kind) {
-  static const char *const names[] = {
-      "limit point",           "bifurcation",          "slack", "taut", "touchdown", "lift-off",
-      "limit point at a kink", "bifurcation at a kink"};
+  static const char *const names[] = {"limit point",
+                                      "bifurcation",
+                                      "slack",
+                                      "taut",
+                                      "touchdown",
+                                      "lift-off",
+                                      "limit point at a kink",
+                                      "bifurcation at a kink",
+                                      "engages",
+                                      "releases",
+                                      "kink of a law"};
   return names[kind];
 }
 
@@ -102,15 +110,31 @@ static bool scale_loads(path_start *b) {
   return true;
 }
 
+/* The driven hinge with the rest angle that the path begins with. */
+static strut_status turn_hinge(path_start *b, strut_error *error) {
+  const strut_scene *drawn = b->drawn->scene;
+  int32_t slot = strut_actuator_slot(b->drawn, (size_t)b->options->index);
+  strut_hinge *hinges = strut_arena_allocate(&b->arena, drawn->hinge_count, sizeof *hinges);
+  if (!hinges) return strut_no_memory(error, "");
+  memcpy(hinges, drawn->hinges, drawn->hinge_count * sizeof *hinges);
+  b->setup.scene.hinges = hinges;
+  hinges[drawn->actuators[b->options->index].hinge].rest_angle =
+      b->drawn->members.rest[slot] + b->options->from;
+  return STRUT_OK;
+}
+
 /* The driven member with the rest length that the path begins with. */
 static strut_status lengthen_member(path_start *b, strut_error *error) {
   const strut_scene *drawn = b->drawn->scene;
   int32_t driven = drawn->actuators[b->options->index].member;
+  strut_rest rest;
+  if (driven < 0) return turn_hinge(b, error);
   strut_member *members = strut_arena_allocate(&b->arena, drawn->member_count, sizeof *members);
-  if (!members) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!members) return strut_no_memory(error, "");
   memcpy(members, drawn->members, drawn->member_count * sizeof *members);
   b->setup.scene.members = members;
-  members[driven].stiffness = b->drawn->members.stiffness[driven];
+  if (!strut_member_rest(drawn, (size_t)driven, &rest)) rest.stiffness = members[driven].stiffness;
+  if (members[driven].axial_stiffness > 0) members[driven].stiffness = rest.stiffness;
   members[driven].axial_stiffness = 0;
   members[driven].rest_kind = STRUT_REST_LENGTH;
   members[driven].rest_value = b->drawn->members.rest[driven] + b->options->from;
@@ -140,7 +164,7 @@ static strut_status make_model(path_start *b, strut_error *error) {
   if (o->over == STRUT_PATH_OVER_LOAD) made = scale_loads(b);
   if (o->over == STRUT_PATH_OVER_COORDINATE) made = move_support(b);
   if (o->over == STRUT_PATH_OVER_ACTUATOR) status = lengthen_member(b, error);
-  if (!made) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!made) return strut_no_memory(error, "");
   if (o->over == STRUT_PATH_OVER_SCENE) {
     status = o->scene_at(o->context, o->from, &b->setup, error);
     b->owned = status == STRUT_OK;
@@ -148,7 +172,7 @@ static strut_status make_model(path_start *b, strut_error *error) {
   return status ? status : strut_model_compile(&b->setup.scene, &b->model, error);
 }
 
-/* q goes downhill to an equilibrium, with `held` coordinates where they are. */
+/* Descends from q to an equilibrium, with the `held` coordinates fixed. */
 static strut_status descend_to_rest(const strut_model *model, const uint8_t *held, bool without,
                                     double *q, strut_error *error) {
   strut_potential *potential = NULL;
@@ -198,7 +222,7 @@ static strut_status find_start(path_start *b, strut_error *error) {
       o->at ? start_at_name(b, error) : descend_to_rest(b->model, NULL, without, b->q, error);
   if (status || o->over != STRUT_PATH_OVER_COORDINATE || b->model->fixed[o->index]) return status;
   b->held = strut_arena_allocate(&b->arena, length, sizeof *b->held);
-  if (!b->held) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!b->held) return strut_no_memory(error, "");
   b->held[o->index] = 1;
   if (o->from == 0) return STRUT_OK;
   b->q[o->index] += o->from;
@@ -227,7 +251,7 @@ static strut_status create_walk(path_start *b, double until, strut_path_walk *w,
     return strut_fail(error, STRUT_USAGE,
                       "the structure has %d free coordinates; paths are followed with up to %d",
                       (int)s->n, STRUT_PATH_COORDINATES);
-  if (!allocate_walk(w)) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!allocate_walk(w)) return strut_no_memory(error, "");
   return strut_path_parameter_create(b->model, b->options, b->load, b->options->from, until, b->q,
                                      &s->arena, &s->parameter, error);
 }
@@ -245,7 +269,7 @@ static strut_status walk_from(path_start *b, double until, int32_t steps, strut_
       status = strut_fail(error, STRUT_NOT_SETTLED,
                           "nothing holds the structure against %s: it moves as a whole",
                           path->over == STRUT_PATH_OVER_LOAD ? "the load" : path->name);
-    if (w.failed) status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    if (w.failed) status = strut_no_memory(error, "");
   }
   if (status == STRUT_OK && path->point_count == 0)
     status = strut_fail(
@@ -254,6 +278,10 @@ static strut_status walk_from(path_start *b, double until, int32_t steps, strut_
         path->over == STRUT_PATH_OVER_LOAD ? "the load" : path->name);
   strut_path_system_free(&w.system);
   return status;
+}
+
+static bool is_hinge_driven(const strut_model *model, const strut_path_options *o) {
+  return o->over == STRUT_PATH_OVER_ACTUATOR && model->scene->actuators[o->index].member < 0;
 }
 
 /* Names the path's parameter for messages. */
@@ -265,6 +293,7 @@ static strut_status name_parameter(const strut_model *model, const strut_path_op
   path->coordinate = o->over == STRUT_PATH_OVER_COORDINATE ? o->index : -1;
   path->unit = o->over == STRUT_PATH_OVER_LOAD    ? ""
                : o->over == STRUT_PATH_OVER_SCENE ? o->unit
+               : is_hinge_driven(model, o)        ? "rad"
                                                   : "m";
   if (o->over == STRUT_PATH_OVER_LOAD) path->name = o->load ? o->load : "all loads";
   if (o->over == STRUT_PATH_OVER_ACTUATOR) path->name = scene->actuators[o->index].name;
@@ -272,7 +301,7 @@ static strut_status name_parameter(const strut_model *model, const strut_path_op
   if (o->over == STRUT_PATH_OVER_COORDINATE)
     path->name = strut_arena_format(&path->arena, "%s.%c", scene->nodes[o->index / 2].name,
                                     o->index % 2 ? 'y' : 'x');
-  return path->name ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  return path->name ? STRUT_OK : strut_no_memory(error, "");
 }
 
 strut_status strut_path_follow(const strut_model *model, const strut_experiment *experiment,
@@ -289,8 +318,8 @@ strut_status strut_path_follow(const strut_model *model, const strut_experiment 
     return strut_fail(error, STRUT_USAGE, "the path ends where it starts, at %.6g", until);
   b.load = strut_arena_allocate(&b.arena, length, sizeof *b.load);
   b.q = strut_arena_allocate(&b.arena, length, sizeof *b.q);
-  strut_status status = b.load && b.q ? name_parameter(model, options, path, error)
-                                      : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  strut_status status =
+      b.load && b.q ? name_parameter(model, options, path, error) : strut_no_memory(error, "");
   if (status == STRUT_OK && over_load)
     status = choose_loads(model->scene, options->load, b.load, path, error);
   if (status == STRUT_OK) status = make_model(&b, error);

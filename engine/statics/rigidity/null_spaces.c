@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/statics/rigidity/null_space_methods.h"
 #include "engine/statics/rigidity/sparse_qr.h"
 
 /* Bases with more vectors, or more numbers, than these are for nobody to read. */
@@ -17,10 +18,6 @@ typedef struct tall {
   bool turned; /* T = A' */
   double *u, *v, *s, *work;
 } tall;
-
-static strut_status out_of_memory(strut_error *error) {
-  return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-}
 
 static bool allocate_tall(const strut_equilibrium_matrix *a, strut_arena *arena, tall *t) {
   t->turned = a->columns > a->rows;
@@ -70,7 +67,7 @@ static double *right_null(const tall *t, size_t rank, strut_arena *arena) {
   return basis;
 }
 
-/* What is orthogonal to the left singular vectors kept: the end of the Q of their QR. */
+/* Basis orthogonal to the left singular vectors kept: the last columns of the Q of their QR. */
 static double *left_null(const tall *t, size_t rank, strut_arena *scratch, strut_arena *arena) {
   size_t m = t->rows, count = m - rank;
   double *basis = strut_arena_allocate(arena, count * m + 1, sizeof *basis);
@@ -106,7 +103,7 @@ static strut_status trivial(const strut_equilibrium_matrix *a, strut_arena *aren
   spaces->states = a->columns, spaces->motions = a->rows;
   if (n > MOST_VECTORS) return STRUT_OK;
   double *basis = strut_arena_allocate(arena, n * n + 1, sizeof *basis);
-  if (!basis) return out_of_memory(error);
+  if (!basis) return strut_no_memory(error, "");
   for (size_t i = 0; i < n; i++) basis[i * n + i] = 1.0;
   spaces->state = a->columns ? basis : NULL;
   spaces->motion = a->rows ? basis : NULL;
@@ -121,7 +118,7 @@ strut_status strut_null_spaces_dense(const strut_equilibrium_matrix *a, strut_ar
   strut_status status = STRUT_OK;
   tall t = {0};
   if (!allocate_tall(a, &scratch, &t)) {
-    status = out_of_memory(error);
+    status = strut_no_memory(error, "");
   } else {
     fill_tall(a, &t);
     if (decompose(&t) != 0)
@@ -134,7 +131,7 @@ strut_status strut_null_spaces_dense(const strut_equilibrium_matrix *a, strut_ar
     double *right = right_null(&t, rank, arena), *left = left_null(&t, rank, &scratch, arena);
     spaces->states = a->columns - spaces->rank, spaces->motions = a->rows - spaces->rank;
     spaces->state = t.turned ? left : right, spaces->motion = t.turned ? right : left;
-    if (!right || !left) status = out_of_memory(error);
+    if (!right || !left) status = strut_no_memory(error, "");
   }
   strut_arena_free(&scratch);
   return status;
@@ -158,11 +155,11 @@ strut_status strut_null_spaces_sparse(const strut_equilibrium_matrix *a, strut_a
   spaces->states = a->columns - spaces->rank, spaces->motions = a->rows - spaces->rank;
   if (few(spaces->states, a->columns)) {
     spaces->state = strut_arena_allocate(arena, (size_t)spaces->states * columns, sizeof(double));
-    if (!spaces->state) status = out_of_memory(error);
+    if (!spaces->state) status = strut_no_memory(error, "");
   }
   if (few(spaces->motions, a->rows)) {
     spaces->motion = strut_arena_allocate(arena, (size_t)spaces->motions * rows, sizeof(double));
-    if (!spaces->motion) status = out_of_memory(error);
+    if (!spaces->motion) status = strut_no_memory(error, "");
   }
   for (int32_t i = 0; i < spaces->states && spaces->state; i++)
     strut_sparse_qr_null(qr, i, spaces->state + (size_t)i * columns);

@@ -33,10 +33,4 @@ typedef struct strut_null_spaces {
 STRUT_API strut_status strut_null_spaces_find(const strut_equilibrium_matrix *a, strut_arena *arena,
                                               strut_null_spaces *spaces, strut_error *error);
 
-/* Both decompositions, for tests. */
-strut_status strut_null_spaces_dense(const strut_equilibrium_matrix *a, strut_arena *arena,
-                                     strut_null_spaces *spaces, strut_error *error);
-strut_status strut_null_spaces_sparse(const strut_equilibrium_matrix *a, strut_arena *arena,
-                                      strut_null_spaces *spaces, strut_error *error);
-
 #endif

@@ -74,7 +74,7 @@ strut_status strut_sparse_qr_create(int32_t rows, int32_t columns, const int32_t
                                     const int32_t *row, const double *value, double tolerance,
                                     strut_sparse_qr **result, strut_error *error) {
   strut_sparse_qr *qr = *result = strut_allocate(1, sizeof *qr);
-  if (!qr) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!qr) return strut_no_memory(error, "");
   cholmod_l_start(&qr->common);
   qr->common.print = 0;
   qr->common.error_handler = NULL;
@@ -88,7 +88,7 @@ strut_status strut_sparse_qr_create(int32_t rows, int32_t columns, const int32_t
   if (done) return STRUT_OK;
   strut_sparse_qr_free(qr);
   *result = NULL;
-  if (memory) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (memory) return strut_no_memory(error, "");
   return strut_fail(error, STRUT_SINGULAR, "the equilibrium matrix could not be factorised");
 }
 

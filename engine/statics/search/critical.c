@@ -34,7 +34,7 @@ typedef struct search {
   strut_task task[STRUT_BATCH];
   size_t tasks;
   int64_t random, room; /* random starts made; how many points `hits` has room for */
-  int64_t *hits;        /* of them, on each point; of strut_allocate */
+  int64_t *hits;        /* (count) starts that ended at each point; of strut_allocate */
   int64_t climbs_left;
   double cost, spent, budget; /* of one Hessian, so far, and at most */
   size_t batch_size;          /* tasks before the work done is looked at again */
@@ -69,7 +69,7 @@ static strut_status read_result(search *s, const strut_task *task,
   if (result->end != STRUT_DESCENT_REACHED) return STRUT_OK;
   strut_status status = strut_stationary_set_add(&s->all, result->q, &index, &fresh, s->error);
   if (status) return status;
-  if (!reserve_hits(s)) return strut_fail(s->error, STRUT_NO_MEMORY, "out of memory");
+  if (!reserve_hits(s)) return strut_no_memory(s->error, "");
   if (task->kind == STRUT_TASK_RANDOM) s->hits[index]++;
   if (!down) return STRUT_OK;
   s->all.points[index].found--;
@@ -403,7 +403,7 @@ static strut_status sort_into_set(search *s) {
   if (good) strut_number_shapes(&s->all, s->set->points, count);
   s->set->count = good ? count : 0;
   strut_arena_free(&scratch);
-  return good ? STRUT_OK : strut_fail(s->error, STRUT_NO_MEMORY, "out of memory");
+  return good ? STRUT_OK : strut_no_memory(s->error, "");
 }
 
 strut_status strut_critical_search(const strut_potential *potential,

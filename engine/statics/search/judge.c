@@ -19,7 +19,7 @@ typedef struct judgement {
   strut_sparse *hessian; /* at the shape, without cables and contacts that rounding alone closes */
   double least;          /* [N] what they must pull or push by */
   double *motion;        /* (3, n) rigid-body motions without stiffness, orthonormal */
-  int32_t rigid;         /* how many of them there are */
+  int32_t rigid;         /* number of rigid-body motions */
   double *work;          /* (3 n) */
 } judgement;
 
@@ -274,5 +274,5 @@ strut_status strut_critical_judge(const strut_potential *potential, const double
     return strut_fail(error, STRUT_DIVERGED,
                       "the structure moves to where energies and stiffnesses leave the range of "
                       "numbers; check the units of sizes, stiffnesses and loads");
-  return good ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  return good ? STRUT_OK : strut_no_memory(error, "");
 }

@@ -39,12 +39,10 @@ static void find_free_motions(strut_stationary_set *g) {
 void strut_stationary_set_start(strut_stationary_set *g, const strut_potential *potential,
                                 strut_arena *arena) {
   const strut_model *model = potential->model;
-  double size = model->size > 0 ? model->size : 1.0, stiffest = 0.0;
+  double size = model->size > 0 ? model->size : 1.0;
   *g = (strut_stationary_set){.potential = potential, .arena = arena};
-  for (int32_t j = 0; j < model->members.count; j++)
-    stiffest = fmax(stiffest, model->members.stiffness[j]);
   g->near = 1e-6 * size;
-  g->flat = 1e-15 * stiffest * size * size + 1e-12 * potential->force_scale * size;
+  g->flat = 1e-15 * strut_stiffest(model) * size * size + 1e-12 * potential->force_scale * size;
   find_free_motions(g);
 }
 
@@ -187,7 +185,7 @@ strut_status strut_stationary_set_add(strut_stationary_set *g, const double *q, 
     if (!*fresh && is_degenerate(&point)) make_degenerate(&g->points[*index], &point);
   }
   if (*fresh) {
-    if (!reserve_points(g)) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    if (!reserve_points(g)) return strut_no_memory(error, "");
     *index = (int32_t)g->count++;
     g->placement[*index] = NULL;
     g->points[*index] = point;
@@ -196,7 +194,7 @@ strut_status strut_stationary_set_add(strut_stationary_set *g, const double *q, 
   strut_critical_point *known = &g->points[*index];
   known->found++;
   if (is_degenerate(known) && !*fresh) return STRUT_OK;
-  if (!remember_placement(g, *index, q)) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!remember_placement(g, *index, q)) return strut_no_memory(error, "");
   known->placements = count_placements(g, *index);
   return STRUT_OK;
 }
@@ -224,7 +222,7 @@ void strut_number_shapes(const strut_stationary_set *like, strut_critical_point 
   }
 }
 
-/* How far two shapes are from each other after the best rigid motion (Procrustes in the plane). */
+/* Distance of two shapes after the best rigid motion (Procrustes in the plane). */
 
 static void centre_of(const strut_model *model, const double *q, double centre[2]) {
   centre[0] = centre[1] = 0.0;

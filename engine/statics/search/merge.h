@@ -23,7 +23,7 @@ void strut_stationary_set_start(strut_stationary_set *set, const strut_potential
                                 strut_arena *arena);
 void strut_stationary_set_free(strut_stationary_set *set);
 
-/** Which point q is, or -1. */
+/** Index of the point that q equals, or -1. */
 int32_t strut_stationary_set_find(const strut_stationary_set *set, const double *q);
 /** Finds or judges and adds q; *index is its point, whose `found` has grown by one. */
 strut_status strut_stationary_set_add(strut_stationary_set *set, const double *q, int32_t *index,

@@ -51,7 +51,7 @@ strut_status strut_search_tasks_create(const strut_potential *potential, uint64_
                                        strut_search_tasks **batch, strut_error *error) {
   strut_search_tasks *b = *batch = strut_allocate(1, sizeof *b);
   size_t length = (size_t)potential->model->length;
-  if (!b) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!b) return strut_no_memory(error, "");
   b->potential = potential;
   b->seed = seed;
   b->worker_count = thread_count();
@@ -68,7 +68,7 @@ strut_status strut_search_tasks_create(const strut_potential *potential, uint64_
   if (good) return STRUT_OK;
   strut_search_tasks_free(b);
   *batch = NULL;
-  return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  return strut_no_memory(error, "");
 }
 
 void strut_search_tasks_free(strut_search_tasks *batch) {

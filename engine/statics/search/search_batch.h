@@ -2,7 +2,7 @@
 /**
  * Descents and climbs side by side: each task by itself, results read in the tasks' order.
  *
- * A task depends on nothing but its own description, so the number of threads changes no bit.
+ * A task depends only on its own description, so the number of threads changes no bit.
  */
 #ifndef STRUT_ENGINE_STATICS_SEARCH_SEARCH_BATCH_H
 #define STRUT_ENGINE_STATICS_SEARCH_SEARCH_BATCH_H

@@ -63,7 +63,7 @@ static void fold_side(const strut_potential *p, int32_t member, double side, dou
   }
 }
 
-/* One end of a member goes across the line through the other end and one more neighbour of its. */
+/* Mirrors one end of a member in the line through its other end and a further neighbour. */
 static void flip_end(const strut_potential *p, int32_t member, bool first, double *q) {
   const strut_member_table *t = &p->model->members;
   uint32_t moved = first ? t->from[member] : t->to[member];

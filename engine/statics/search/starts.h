@@ -7,7 +7,7 @@
 
 #include "engine/statics/potential.h"
 
-/** How many folds of a shape there are: mirror images of the whole, of a member's either side, and
+/** Number of folds of a shape: mirror images of the whole, of either side of a member, and
     of single nodes across the line through two of their neighbours. */
 int64_t strut_fold_count(const strut_potential *potential);
 /** q (length) becomes fold number `fold` of itself; held coordinates stay. */
@@ -17,7 +17,7 @@ void strut_fold(const strut_potential *potential, int64_t fold, double *q);
 void strut_random_shape(const strut_potential *potential, uint64_t seed, uint64_t index, double *q);
 
 /**
- * Every node of q goes, or not, to where it is in `other`, by the bits of number `index` of `seed`.
+ * Replaces nodes of q by those of `other`, chosen by the bits of random number `index` of `seed`.
  */
 void strut_cross(const strut_potential *potential, uint64_t seed, uint64_t index,
                  const double *other, double *q);

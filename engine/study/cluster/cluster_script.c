@@ -129,5 +129,5 @@ strut_status strut_cluster_script_write(strut_cluster cluster, const strut_clust
     *text =
         fill(cluster == STRUT_CLUSTER_SLURM ? strut_slurm_template : strut_parallel_template, all);
   strut_arena_free(&arena);
-  return *text ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory for the script");
+  return *text ? STRUT_OK : strut_no_memory(error, "for the script");
 }

@@ -13,7 +13,7 @@
 
 typedef enum strut_cluster { STRUT_CLUSTER_SLURM, STRUT_CLUSTER_PARALLEL } strut_cluster;
 
-/** What fills a template. Texts may hold any characters, unless said otherwise. */
+/** The values of a template. Texts may hold any characters unless noted. */
 typedef struct strut_cluster_script {
   const char *name;           /* of the study; Slurm only */
   const char *program;        /* path of strut */

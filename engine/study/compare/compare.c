@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a structure consists of, and how it is driven. */
+/* Counts of a structure's parts, and its drive. */
 #include "engine/study/compare/compare.h"
 
 #include <math.h>

@@ -12,6 +12,7 @@
 #include <stdbool.h>
 
 #include "engine/model/model.h"
+#include "engine/output/draw/plot.h"
 #include "engine/run/measure/summary.h"
 #include "engine/scene/difference.h"
 #include "engine/scene/experiment.h"
@@ -87,7 +88,7 @@ typedef struct strut_compare_barrier {
   double height; /* [J] above `from` */
 } strut_compare_barrier;
 
-/** What is compared. Scenes are checked for any purpose; a start equilibrium may be unresolved. */
+/** A model to compare. Scenes are checked for any purpose; a start equilibrium may be unresolved. */
 typedef struct strut_compare_input {
   const char *label;                   /* unique */
   strut_setup *setup;                  /* its start is resolved here, and its accuracy is set */
@@ -157,13 +158,12 @@ STRUT_API char *strut_compare_csv(const strut_compare *result);
 STRUT_API char *strut_compare_json(const strut_compare *result);
 
 /**
- * Draws the structures [first, first + count) of a comparison into the file `path`, `width` [pt] wide:
- * each in the shape in which it stands, members by kind, driven ones marked, its name and a few of its
- * numbers above. All to one scale unless some are more than four times as large as others; a rod tells
- * it. Fails as strut_canvas_open and strut_canvas_commit; STRUT_NO_MEMORY.
+ * Draws the structures [first, first + count) of a comparison: each in the shape in which it stands,
+ * members by kind, driven ones marked, its name and a few of its numbers above. They have the same scale
+ * unless some are more than four times as large as others. Without a title of the plot there is none.
+ * Fails as strut_canvas_open and strut_canvas_commit; STRUT_NO_MEMORY.
  */
-STRUT_API strut_status strut_compare_figure(const char *path, double width,
-                                            const strut_compare *result, size_t first, size_t count,
-                                            strut_error *error);
+STRUT_API strut_status strut_compare_figure(const strut_plot *plot, const strut_compare *result,
+                                            size_t first, size_t count, strut_error *error);
 
 #endif

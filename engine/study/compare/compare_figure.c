@@ -10,7 +10,8 @@
 #include "engine/output/draw/palette.h"
 #include "engine/output/draw/structure.h"
 
-static const double EDGE = 5, GAP = 12, TITLE = 13, LINE = 11, MARGIN = 16, NARROWEST = 150;
+static const double EDGE = 5, HEADING = 18, GAP = 12, TITLE = 13, LINE = 11, MARGIN = 16,
+                    NARROWEST = 150;
 static const double FOOT = 0.08; /* space for the scale bar, relative to the extent */
 static const double DOT = 4.0;   /* radius around a node [pt] */
 static const double UNLIKE = 4.0, FLATTEST = 0.35, TALLEST = 1.2;
@@ -20,7 +21,7 @@ typedef struct sheet {
   const strut_compare_column *columns; /* (count) */
   size_t count, across, rows;
   double width, cell, height; /* of a panel, its texts included [pt] */
-  bool alike;                 /* one scale for all */
+  bool alike;                 /* the same scale for all */
   double size[2];             /* the largest extents [m] */
   strut_canvas *canvas;
 } sheet;
@@ -65,24 +66,30 @@ static strut_bounds shown(const sheet *s, const strut_compare_column *c) {
   return b;
 }
 
+/* A driven member's segment, as a broad line that leaves its nodes visible. */
+static void mark_segment(const sheet *s, double from[2], double to[2]) {
+  double length = hypot(to[0] - from[0], to[1] - from[1]);
+  for (int d = 0; d < 2 && length > 3 * DOT; d++) {
+    double step = DOT * (to[d] - from[d]) / length;
+    from[d] += step;
+    to[d] -= step;
+  }
+  strut_draw_segment(s->canvas, from[0], from[1], to[0], to[1],
+                     (strut_pen){.colour = strut_grey(1.0), .width = 4.2});
+  strut_draw_segment(s->canvas, from[0], from[1], to[0], to[1],
+                     (strut_pen){.colour = strut_palette_thing(DRIVEN), .width = 2.6});
+}
+
 static void mark_driven(const sheet *s, const strut_window *window, const strut_compare_column *c) {
   const strut_scene *scene = c->model->scene;
   for (size_t i = 0; i < scene->actuator_count; i++) {
     if (scene->actuators[i].member < 0) continue;
-    const strut_member *m = &scene->members[scene->actuators[i].member];
-    double from[2], to[2];
-    strut_window_point(window, c->q + 2 * m->node[0], from);
-    strut_window_point(window, c->q + 2 * m->node[1], to);
-    double length = hypot(to[0] - from[0], to[1] - from[1]);
-    for (int d = 0; d < 2 && length > 3 * DOT; d++) { /* keep nodes visible */
-      double step = DOT * (to[d] - from[d]) / length;
-      from[d] += step;
-      to[d] -= step;
+    size_t member = (size_t)scene->actuators[i].member;
+    for (size_t k = 0; k < strut_member_segments(c->model, member); k++) {
+      double ends[2][2];
+      strut_window_segment(window, c->model, c->q, member, k, ends);
+      mark_segment(s, ends[0], ends[1]);
     }
-    strut_draw_segment(s->canvas, from[0], from[1], to[0], to[1],
-                       (strut_pen){.colour = strut_grey(1.0), .width = 4.2});
-    strut_draw_segment(s->canvas, from[0], from[1], to[0], to[1],
-                       (strut_pen){.colour = strut_palette_thing(DRIVEN), .width = 2.6});
   }
 }
 
@@ -100,11 +107,12 @@ static void words_of(const strut_compare_column *c, char words[LINES][WORDS]) {
   if (states > 0)
     used = snprintf(words[1], WORDS, "%.0f stable state%s", states, states > 1 ? "s" : "");
   if (isfinite(lowest))
-    snprintf(words[1] + used, WORDS - (size_t)used, "%s%s", used ? ", from " : "from ",
+    snprintf(words[1] + used, WORDS - (size_t)used, "%s%s",
+             used ? ", lowest frequency " : "lowest frequency ",
              strut_drawn_quantity(lowest, 3, "Hz").text);
   used = 0;
   if (c->still)
-    snprintf(words[2], WORDS, "moves on the spot");
+    snprintf(words[2], WORDS, "no net motion");
   else if (isfinite(v[STRUT_COMPARE_VELOCITY].value))
     used = snprintf(words[2], WORDS, "%s",
                     strut_drawn_quantity(v[STRUT_COMPARE_VELOCITY].value, 3, "m/s").text);
@@ -158,12 +166,13 @@ static size_t make_key(const sheet *s, strut_key_item items[KEYS]) {
   if (any(s, STRUT_COMPARE_ACTUATORS))
     items[count++] = line(strut_palette_thing(DRIVEN), 2.6, "driven");
   if (s->alike && s->count > 1)
-    items[count++] = (strut_key_item){.sign = STRUT_KEY_WORDS, .text = "all to one scale"};
+    items[count++] = (strut_key_item){.sign = STRUT_KEY_WORDS, .text = "same scale"};
   return count;
 }
 
-strut_status strut_compare_figure(const char *path, double width, const strut_compare *result,
-                                  size_t first, size_t count, strut_error *error) {
+strut_status strut_compare_figure(const strut_plot *plot, const strut_compare *result, size_t first,
+                                  size_t count, strut_error *error) {
+  double width = plot->width, top = EDGE + (plot->title ? HEADING : 0);
   sheet s = {.columns = result->columns + first, .count = count, .width = width};
   strut_key_item items[KEYS] = {{0}};
   lay_out(&s);
@@ -173,13 +182,15 @@ strut_status strut_compare_figure(const char *path, double width, const strut_co
   if (status != STRUT_OK) return status;
   double key = strut_key_height(ruler, width - 2 * EDGE, items, keys);
   strut_canvas_free(ruler);
-  double height = 2 * EDGE + (double)s.rows * (s.height + GAP) + key;
-  status = strut_canvas_open(path, width, height, "Structures side by side", &s.canvas, error);
+  double height = top + EDGE + (double)s.rows * (s.height + GAP) + key;
+  status = strut_canvas_open(plot->path, width, height,
+                             strut_plot_title(plot, "Structures side by side"), &s.canvas, error);
   if (status != STRUT_OK) return status;
+  if (plot->title) strut_draw_heading(s.canvas, EDGE, plot->title, "");
   for (size_t i = 0; i < count; i++)
     draw_panel(&s, &s.columns[i],
                (strut_box){EDGE + (double)(i % s.across) * (s.cell + GAP),
-                           EDGE + (double)(i / s.across) * (s.height + GAP), s.cell, s.height});
+                           top + (double)(i / s.across) * (s.height + GAP), s.cell, s.height});
   strut_draw_key(s.canvas, (strut_box){EDGE, height - EDGE - key, width - 2 * EDGE, key}, items,
                  keys);
   status = strut_canvas_commit(s.canvas, error);

@@ -15,8 +15,7 @@ enum { LONG_WINDOW = 20 }; /* periods of a motion that is not periodic */
 static const double WINDOW_TOLERANCE = 1e-6, STEPS = 50.0;
 
 static const char *word_of(strut_motion kind) {
-  static const char *const words[] = {NULL, "periodic", "irregular", "transient"};
-  return words[kind];
+  return kind == STRUT_MOTION_NOT_WATCHED ? NULL : strut_motion_name(kind);
 }
 
 /* The steady motion over whole periods, from where the run ended. */
@@ -86,7 +85,7 @@ static void put_energy(strut_compare_work *work, double drive_work, double secon
   else
     strut_compare_leave(work, STRUT_COMPARE_TRANSPORT, STRUT_COMPARE_TRANSPORT,
                         !(weight > 0.0)       ? "there is no weight"
-                        : work->column->still ? "the velocity may as well be 0"
+                        : work->column->still ? "the velocity is zero within its error"
                                               : "the drives do no work");
 }
 
@@ -137,8 +136,8 @@ static strut_status put_motion(strut_compare_work *work, const strut_summary *ru
 
 strut_status strut_compare_motion(strut_compare_work *work, const strut_model *model) {
   strut_experiment *e = &work->column->input->setup->experiment;
-  const char *none = work->options->no_motion               ? "not asked for"
-                     : !(e->duration > 0 || e->periods > 0) ? "the model says nothing of a run"
+  const char *none = work->options->no_motion               ? "not requested"
+                     : !(e->duration > 0 || e->periods > 0) ? "the model has no run"
                                                             : NULL;
   if (none) {
     strut_compare_leave(work, STRUT_COMPARE_VELOCITY, STRUT_COMPARE_CPU, none);

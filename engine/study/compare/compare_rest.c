@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How a structure is at rest: rigidity, forces, states, frequencies. */
+/* Properties of a structure at rest: rigidity, forces, states, frequencies. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -9,6 +9,7 @@
 #include "engine/statics/modes/modes.h"
 #include "engine/statics/rigid_motions.h"
 #include "engine/statics/rigidity/equilibrium_matrix.h"
+#include "engine/statics/rigidity/linear_matrices.h"
 #include "engine/statics/rigidity/rigidity.h"
 #include "engine/study/compare/compare_parts.h"
 
@@ -129,7 +130,7 @@ static void put_barrier(strut_compare_work *work, const char *from, const strut_
   else
     strut_compare_leave(
         work, at, at,
-        from ? "no way to another state is known" : "it starts in no state of the list");
+        from ? "no path to another state is known" : "the start is in none of the listed states");
 }
 
 static void put_states(strut_compare_work *work, const char *from, const strut_equilibria *all) {
@@ -153,7 +154,7 @@ strut_status strut_compare_states(strut_compare_work *work, const strut_model *m
   strut_error error = {0};
   strut_equilibria all = {0};
   if (work->options->no_states) {
-    strut_compare_leave(work, STRUT_COMPARE_STATES, STRUT_COMPARE_LOWEST_BARRIER, "not asked for");
+    strut_compare_leave(work, STRUT_COMPARE_STATES, STRUT_COMPARE_LOWEST_BARRIER, "not requested");
     return STRUT_OK;
   }
   strut_status status =
@@ -180,7 +181,7 @@ strut_status strut_compare_frequencies(strut_compare_work *work, const strut_mod
   if (status == STRUT_OK) {
     int found = 0;
     strut_compare_leave(work, STRUT_COMPARE_FREQUENCY_1, STRUT_COMPARE_FREQUENCY_3,
-                        "there are fewer elastic modes");
+                        "the model has fewer elastic modes");
     for (size_t i = 0; i < modes.count && found < STRUT_COMPARE_FREQUENCIES; i++)
       if (modes.list[i].kind == STRUT_MODE_ELASTIC)
         strut_compare_put(work, (strut_compare_quantity)(STRUT_COMPARE_FREQUENCY_1 + found++),
@@ -215,7 +216,7 @@ static void add_sparse(stiff *s, const strut_sparse *a) {
     }
 }
 
-/* What linear_matrices adds into the ground, along it too. */
+/* Adds to K a contact stiffness along the ground, equal to that normal to it. */
 static void hold_contacts(stiff *s, const strut_model *model, const double *q,
                           const int32_t *row_of) {
   const strut_contact_table *c = &model->contacts;
@@ -244,7 +245,7 @@ static double form(const stiff *s, const double *x, const double *y) {
   return sum;
 }
 
-/* Of the rigid motions those that K does not resist, as combinations; and makes K resist them. */
+/* Finds the rigid motions without stiffness in K, as combinations, and adds stiffness against them. */
 static void lift_rigid(stiff *s) {
   double a[3][3] = {{0}}, value[3], vector[3][3], largest = largest_diagonal(s);
   int32_t count = s->rigid_count, kept = 0;
@@ -318,7 +319,7 @@ static void put_softest(strut_compare_work *work, const strut_model *model) {
     if (c->softest[d] >= 0)
       strut_compare_put(work, at, c->stiffness[c->softest[d]][d]);
     else
-      strut_compare_leave(work, at, at, "no node can move that way");
+      strut_compare_leave(work, at, at, "no node can move in that direction");
   }
 }
 
@@ -333,7 +334,7 @@ static strut_status measure(strut_compare_work *work, const strut_model *model,
   if (!factorise(s)) {
     c->stiffness = NULL;
     strut_compare_leave(work, STRUT_COMPARE_STIFFNESS_X, STRUT_COMPARE_STIFFNESS_Y,
-                        "some motion meets no stiffness");
+                        "a motion has no stiffness");
     return STRUT_OK;
   }
   for (size_t i = 0; i < nodes; i++)

@@ -47,16 +47,15 @@ static strut_status read_array(const char *text, const strut_array_task *task, s
   if (id < 0 || low < 0 || high < 0 || step < 1 || count < 1)
     return strut_fail(
         error, STRUT_USAGE,
-        "%s: this is no task of a Slurm job array (SLURM_ARRAY_TASK_ID, _MIN, _MAX and "
+        "%s: this is not a task of a Slurm job array (SLURM_ARRAY_TASK_ID, _MIN, _MAX and "
         "_COUNT are not all set)",
         text);
   bool dense = (high - low) / step + 1 == count && (id - low) % step == 0;
   if (!dense || low > 1)
-    return strut_fail(
-        error, STRUT_USAGE,
-        "%s: this array, %lld tasks from %lld to %lld, has not a task for each shard, "
-        "counted from 0 or 1; say how many shards there are: slurm/N",
-        text, (long long)count, (long long)low, (long long)high);
+    return strut_fail(error, STRUT_USAGE,
+                      "%s: this array, %lld tasks from %lld to %lld, lacks a task for each shard, "
+                      "counted from 0 or 1; give the number of shards: slurm/N",
+                      text, (long long)count, (long long)low, (long long)high);
   *shard = (strut_shard){(id - low) / step, count};
   return check(text, *shard, error);
 }
@@ -73,9 +72,9 @@ strut_status strut_shard_read(const char *text, const strut_array_task *task, st
   if (shard->count < 0 || (shard->index < 0 && !from_slurm))
     return strut_fail(error, STRUT_USAGE, "expected K/N, slurm or slurm/N, not '%s'", text);
   if (shard->index < 0)
-    return strut_fail(error, STRUT_USAGE,
-                      "%s: this is no task of a Slurm job array (SLURM_ARRAY_TASK_ID is not set)",
-                      text);
+    return strut_fail(
+        error, STRUT_USAGE,
+        "%s: this is not a task of a Slurm job array (SLURM_ARRAY_TASK_ID is not set)", text);
   return check(text, *shard, error);
 }
 
@@ -113,7 +112,7 @@ static strut_status note(strut_shards_found *found, strut_shard shard, strut_are
                          strut_error *error) {
   if (!found->count) {
     found->there = strut_arena_allocate(arena, (size_t)shard.count, 1);
-    if (!found->there) return strut_fail(error, STRUT_NO_MEMORY, "out of memory for shards");
+    if (!found->there) return strut_no_memory(error, "for shards");
     found->count = shard.count;
   }
   if (shard.count == found->count) {
@@ -129,7 +128,7 @@ strut_status strut_shards_find(const char *directory, strut_shards_found *found,
   *found = (strut_shards_found){0};
   char *whole = strut_arena_format(arena, "%s/%s", directory, WHOLE);
   char *folder = strut_arena_format(arena, "%s/%s", directory, FOLDER);
-  if (!whole || !folder) return strut_fail(error, STRUT_NO_MEMORY, "out of memory for shards");
+  if (!whole || !folder) return strut_no_memory(error, "for shards");
   found->whole = access(whole, F_OK) == 0;
   DIR *open = opendir(folder);
   if (!open && errno == ENOENT) return STRUT_OK;
@@ -147,18 +146,18 @@ static strut_status agree(const char *directory, strut_shard shard, const strut_
                           strut_error *error) {
   if (shard.count && found->whole)
     return strut_fail(error, STRUT_USAGE,
-                      "'%s' holds the study in one piece ('%s'): go on without --shard, or give "
+                      "'%s' holds the study in one piece ('%s'): omit --shard, or give "
                       "another directory",
                       directory, WHOLE);
   if (!shard.count && found->count)
     return strut_fail(error, STRUT_USAGE,
-                      "'%s' holds shards of the study, %lld in all: give --shard as for these, or "
+                      "'%s' holds %lld shards of the study: give --shard as for these, or "
                       "another directory",
                       directory, (long long)found->count);
   int64_t count = found->other && found->count == shard.count ? found->other : found->count;
   if (count && count != shard.count)
     return strut_fail(error, STRUT_USAGE,
-                      "'%s' holds shards of %lld, and this would be one of %lld: say --shard with "
+                      "'%s' is divided into %lld shards, not %lld: give --shard with "
                       "/%lld, or give another directory",
                       directory, (long long)count, (long long)shard.count, (long long)count);
   return STRUT_OK;
@@ -171,8 +170,7 @@ strut_status strut_shard_begin(const char *directory, strut_shard shard, strut_e
   if (status == STRUT_OK) status = agree(directory, shard, &found, error);
   if (status == STRUT_OK) {
     char *folder = strut_arena_format(&arena, shard.count ? "%s/%s" : "%s", directory, FOLDER);
-    status = folder ? strut_directory_create(folder, error)
-                    : strut_fail(error, STRUT_NO_MEMORY, "out of memory for shards");
+    status = folder ? strut_directory_create(folder, error) : strut_no_memory(error, "for shards");
   }
   strut_arena_free(&arena);
   return status;
@@ -190,10 +188,6 @@ typedef struct merge {
   size_t count;
   strut_arena arena;
 } merge;
-
-static strut_status no_memory(strut_error *error) {
-  return strut_fail(error, STRUT_NO_MEMORY, "out of memory for shards");
-}
 
 /* A sentence being built, truncated at its capacity. */
 typedef struct sentence {
@@ -238,7 +232,7 @@ static strut_status check_gaps(const merge *m, strut_error *error) {
     long long of = (long long)strut_slots_plan_of(m->sources[i])->count;
     if (!m->found.count)
       return strut_fail(error, STRUT_FILE_TROUBLE,
-                        "'%s': %lld of %lld points are missing: run the study again, it goes on",
+                        "'%s': %lld of %lld points are missing: run the study again to resume it",
                         m->directory, (long long)missing, of);
     if (unfinished < MOST_NAMED)
       add(&lacks, "%s shard %zu lacks %lld of its %lld points", unfinished || absent ? "," : "", i,
@@ -250,28 +244,30 @@ static strut_status check_gaps(const merge *m, strut_error *error) {
   if (absent)
     add(&gone, " %lld of %lld shards %s missing (%s)", (long long)absent, (long long)m->found.count,
         absent == 1 ? "is" : "are", names.text);
-  return strut_fail(error, STRUT_FILE_TROUBLE, "'%s':%s%.300s; run these shards again, they go on",
-                    m->directory, gone.text, lacks.text);
+  return strut_fail(error, STRUT_FILE_TROUBLE,
+                    "'%s':%s%.300s; run these shards again to resume them", m->directory, gone.text,
+                    lacks.text);
 }
 
 /* Opens the existing shards; the others stay NULL. */
 static strut_status open_sources(merge *m, strut_error *error) {
   strut_status status = STRUT_OK;
   m->sources = strut_arena_allocate(&m->arena, m->count, sizeof *m->sources);
-  if (!m->sources) return no_memory(error);
+  if (!m->sources) return strut_no_memory(error, "for shards");
   for (size_t i = 0; i < m->count && status == STRUT_OK; i++) {
     strut_slots_plan plan;
     if (m->found.count && !m->found.there[i]) continue;
     strut_shard shard = {(int64_t)i, m->found.count};
     char *path = strut_shard_path(m->directory, shard, &m->arena);
-    status = path ? strut_slots_read(path, &m->sources[i], &plan, error) : no_memory(error);
+    status = path ? strut_slots_read(path, &m->sources[i], &plan, error)
+                  : strut_no_memory(error, "for shards");
     if (status != STRUT_OK) break;
     strut_shard_points(shard, &plan);
     const strut_slots_plan *own = strut_slots_plan_of(m->sources[i]);
     if (plan.first != own->first || plan.count != own->count || plan.stride != own->stride)
-      status =
-          strut_fail(error, STRUT_USAGE,
-                     "'%s' is for other points than its name says: is it a copy of another?", path);
+      status = strut_fail(
+          error, STRUT_USAGE,
+          "'%s' holds other points than its name says; it may be a copy of another shard", path);
   }
   return status;
 }
@@ -285,10 +281,11 @@ static strut_status check_study(const merge *m, strut_error *error) {
     const char *difference = strut_slots_difference(strut_slots_plan_of(m->sources[first]),
                                                     strut_slots_plan_of(m->sources[i]));
     if (difference)
-      return strut_fail(error, STRUT_USAGE,
-                        "'%s': shards %zu and %zu are not of one study, they differ in %s: remove "
-                        "those that are out of date and run them again",
-                        m->directory, first, i, difference);
+      return strut_fail(
+          error, STRUT_USAGE,
+          "'%s': shards %zu and %zu belong to different studies, which differ in %s: remove "
+          "those that are outdated and run them again",
+          m->directory, first, i, difference);
   }
   return STRUT_OK;
 }
@@ -297,9 +294,10 @@ static strut_status find(merge *m, strut_error *error) {
   strut_status status = strut_shards_find(m->directory, &m->found, &m->arena, error);
   if (status != STRUT_OK) return status;
   if (!m->found.whole && !m->found.count)
-    return strut_fail(error, STRUT_FILE_TROUBLE,
-                      "'%s' holds no results of a study: neither 'points.slots' nor 'shards'",
-                      m->directory);
+    return strut_fail(
+        error, STRUT_FILE_TROUBLE,
+        "'%s' holds no results of a study: it has neither 'points.slots' nor 'shards'",
+        m->directory);
   if (m->found.whole && m->found.count)
     return strut_fail(error, STRUT_USAGE,
                       "'%s' holds the study twice, in one piece ('points.slots') and in 'shards': "

@@ -128,8 +128,8 @@ static strut_status lock(const strut_slots *s, strut_error *error) {
   char who[48] = "another process";
   if (fcntl(s->descriptor, F_GETLK, &wanted) == 0 && wanted.l_type != F_UNLCK && wanted.l_pid > 0)
     snprintf(who, sizeof who, "another process (%ld)", (long)wanted.l_pid);
-  return strut_fail(error, STRUT_FILE_TROUBLE,
-                    "%s is at work on '%s': wait for it, or stop it first", who, s->path);
+  return strut_fail(error, STRUT_FILE_TROUBLE, "%s is writing '%s': wait for it, or stop it first",
+                    who, s->path);
 }
 
 /* The header of a new file, or of one whose header was never finished. */

@@ -97,7 +97,7 @@ STRUT_API strut_status strut_slots_put(strut_slots *slots, int64_t point,
                                        const strut_result_slot *row, strut_error *error);
 /**
  * Points that failed count as missing from now on. Their rows stay in the file until they have others,
- * so that whoever opens it next finds them still, unless they were computed.
+ * so that the next process that opens the file finds them, unless they were computed meanwhile.
  */
 STRUT_API strut_status strut_slots_retry(strut_slots *slots, strut_error *error);
 /** Waits until all rows have reached the disk. */

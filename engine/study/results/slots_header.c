@@ -195,12 +195,12 @@ strut_status strut_slots_read_header(int descriptor, const char *path, size_t mo
   *torn = is_torn(descriptor, (unsigned char *)&fixed, got, most);
   bool ours = memcmp(fixed.magic, MAGIC, sizeof MAGIC) == 0;
   if (got < (int64_t)sizeof fixed || !ours)
-    return *torn ? STRUT_OK : foreign(error, path, "no file of a study's results");
+    return *torn ? STRUT_OK : foreign(error, path, "not a file of study results");
   if (fixed.byte_order == FOREIGN_MARK)
-    return foreign(error, path, "of a machine with another order of bytes");
+    return foreign(error, path, "written by a machine with another byte order");
   if (fixed.byte_order == BYTE_ORDER_MARK && fixed.format != FORMAT)
     return strut_fail(error, STRUT_FILE_TROUBLE,
-                      "'%s' is of format %u, and this program knows %u only", path, fixed.format,
+                      "'%s' is of format %u, but this program reads only %u", path, fixed.format,
                       FORMAT);
   const char *damaged = "damaged: its header does not agree with itself";
   if (fixed.header_bytes < sizeof fixed || fixed.header_bytes > MOST_HEADER ||
@@ -262,10 +262,10 @@ strut_status strut_slots_compare(const char *path, const strut_slots_plan *there
              (long long)wanted->points);
   else if (!difference && (there->first != wanted->first || there->count != wanted->count ||
                            there->stride != wanted->stride))
-    difference = "which points they are for";
+    difference = "their points";
   if (!difference) return STRUT_OK;
   return strut_fail(error, STRUT_USAGE,
                     "'%.250s' holds results of another study, which differs in %s%s: give another "
-                    "directory, or remove that file to begin anew",
+                    "directory, or remove that file to start anew",
                     path, difference, detail);
 }

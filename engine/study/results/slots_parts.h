@@ -27,7 +27,7 @@ unsigned char *strut_slots_header(const strut_slots_plan *plan, const strut_slot
 /**
  * Reads the header of an open file into *plan, its texts owned by the arena. *torn is set, with
  * STRUT_OK, where the file has up to `most` bytes and these are zeros or the begin of a header:
- * whoever wrote it was stopped before the first slot.
+ * the process that wrote it was stopped before the first slot.
  */
 strut_status strut_slots_read_header(int descriptor, const char *path, size_t most,
                                      strut_slots_plan *plan, strut_slots_layout *layout,

@@ -243,7 +243,7 @@ strut_status strut_equilibrium_cache_resolve(strut_equilibrium_cache *standing, 
   bool own;
   if (scene->start_equilibrium < 0) return STRUT_OK;
   structure *s = structure_of(standing, setup, &own);
-  if (!s) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!s) return strut_no_memory(error, "");
   const found *f = find(s, setup, (size_t)scene->start_equilibrium);
   strut_status status = f->status;
   if (status) strut_fail(error, status, "%s", f->error.message);
@@ -303,5 +303,5 @@ strut_status strut_equilibrium_cache_nearest(strut_equilibrium_cache *standing,
   if (s) *index = nearest(s, &drawn, positions);
   strut_release(drawn.scene.nodes);
   if (own) free_structure(s);
-  return s ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  return s ? STRUT_OK : strut_no_memory(error, "");
 }

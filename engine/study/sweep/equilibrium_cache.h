@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Equilibria of a study's scenes, found once for all points that stand alike.
+ * Equilibria of a study's scenes, found once for all points with the same statics.
  *
  * Where a structure stands does not depend on its drive, on friction or on how it is integrated. So
  * the points of most studies have their equilibria in common; those that have are known by the

@@ -23,10 +23,6 @@ static const size_t MOST_ROWS = 20000000;
 
 const char *strut_study_motion_column(size_t i) { return i < COLUMNS ? columns[i].name : NULL; }
 
-static strut_status no_memory(strut_error *error) {
-  return strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
-}
-
 bool strut_study_shows(const strut_study_figure *figure, const char *column, const char *text) {
   if (!figure->only) return true;
   size_t length = strcspn(figure->only, "=");
@@ -41,14 +37,14 @@ static strut_status read_values(const strut_sweep_plan *plan, const strut_study_
   size_t count = plan->axis_columns;
   o->values = strut_arena_allocate(&o->arena, count + 1, sizeof *o->values);
   o->texts = strut_arena_allocate(&o->arena, count + 1, sizeof *o->texts);
-  if (!o->values || !o->texts) return no_memory(error);
+  if (!o->values || !o->texts) return strut_no_memory(error, "while drawing");
   strut_grid_values(plan->study, point, o->values);
   for (size_t i = 0; i < count; i++) {
     char number[STRUT_NUMBER_TEXT];
     strut_number_text(o->values[i].number, number);
     o->texts[i] =
         o->values[i].word ? o->values[i].word : strut_arena_text(&o->arena, number, strlen(number));
-    if (!o->texts[i]) return no_memory(error);
+    if (!o->texts[i]) return strut_no_memory(error, "while drawing");
     *shown = *shown && strut_study_shows(figure, plan->columns[i].name, o->texts[i]);
   }
   return STRUT_OK;
@@ -65,7 +61,7 @@ strut_status strut_study_run_open(const strut_sweep_plan *plan, const char *dire
   if (status || !shown) return status;
   const char *folder = strut_arena_format(&o->arena, "%s/runs/%09lld", directory, (long long)point);
   const char *file = folder ? strut_arena_format(&o->arena, "%s/trajectory.h5", folder) : NULL;
-  if (!file) return no_memory(error);
+  if (!file) return strut_no_memory(error, "while drawing");
   if (stat(file, &found) != 0) return STRUT_OK; /* it failed before recording anything */
   status = plan->scenes.setup(plan->scenes.context, o->values, &o->setup, error);
   if (!status)
@@ -152,7 +148,7 @@ static strut_status add_run(builder *b, const strut_study_run *run, strut_error 
   const char *texts[64];
   for (size_t i = 0; i < b->plan->axis_columns; i++) {
     texts[i] = kept(b, run->texts[i]);
-    if (!texts[i]) return no_memory(error);
+    if (!texts[i]) return strut_no_memory(error, "while drawing");
   }
   if (m->frames > MOST_ROWS / m->node_count || b->rows > MOST_ROWS - m->frames * m->node_count)
     return strut_fail(error, STRUT_USAGE, "figure '%.60s' of the study: more than %zu rows",
@@ -160,7 +156,7 @@ static strut_status add_run(builder *b, const strut_study_run *run, strut_error 
   for (size_t node = 0; node < m->node_count; node++) {
     if (!strut_study_shows(b->figure, "node", run->scene->nodes[node].name)) continue;
     const char *name = kept(b, run->scene->nodes[node].name);
-    if (!name || !reserve(b, b->rows + m->frames)) return no_memory(error);
+    if (!name || !reserve(b, b->rows + m->frames)) return strut_no_memory(error, "while drawing");
     for (size_t f = 0; f < m->frames; f++)
       if (m->time[f] >= b->figure->from && m->time[f] <= b->figure->to)
         add_row(b, run, texts, f, node, name);
@@ -180,7 +176,7 @@ static strut_status finish(builder *b, strut_error *error) {
   size_t axes = b->plan->axis_columns;
   t->row_count = b->rows;
   t->columns = strut_arena_allocate(&t->arena, axes + COLUMNS, sizeof *t->columns);
-  if (!t->columns) return no_memory(error);
+  if (!t->columns) return strut_no_memory(error, "while drawing");
   for (size_t i = 0; i < axes + COLUMNS; i++) {
     bool axis = i < axes, word = axis ? b->plan->columns[i].word : i == axes;
     strut_table_column *c = &t->columns[t->column_count++];
@@ -189,7 +185,8 @@ static strut_status finish(builder *b, strut_error *error) {
     c->unit = strcmp(unit, "1") == 0 ? "" : unit;
     if (i <= axes) c->text = owned(b, b->texts[i], sizeof(char *));
     if (!word) c->value = owned(b, axis ? b->axes[i] : b->numbers[i - axes - 1], sizeof(double));
-    if ((i <= axes && !c->text) || (!word && !c->value)) return no_memory(error);
+    if ((i <= axes && !c->text) || (!word && !c->value))
+      return strut_no_memory(error, "while drawing");
   }
   return STRUT_OK;
 }
@@ -211,7 +208,7 @@ strut_status strut_study_motion(const strut_sweep_plan *plan, const char *direct
   }
   if (!status && !b.rows)
     status = strut_fail(error, STRUT_USAGE,
-                        "figure '%.60s' of the study: no run recorded any of it", figure->name);
+                        "figure '%.60s' of the study: no run recorded any of this", figure->name);
   if (!status) status = finish(&b, error);
   for (size_t i = 0; i <= plan->axis_columns; i++) strut_release(b.texts[i]);
   for (size_t i = 0; i < plan->axis_columns; i++) strut_release(b.axes[i]);
@@ -280,7 +277,7 @@ static strut_status draw(const strut_sweep_plan *plan, const char *directory,
       .other = other ? &other->motion : NULL,
       .other_name = other_name};
   const char *path = file_of(plan, directory, figure, o);
-  if (!path) return strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
+  if (!path) return strut_no_memory(error, "while drawing");
   strut_status status = strut_model_compile(&o->setup.scene, &model, error);
   if (!status) status = strut_run_figure_draw(path, &picture, model, &o->motion, NULL, error);
   strut_model_free(model);
@@ -321,6 +318,6 @@ strut_status strut_study_pictures(const strut_sweep_plan *plan, const char *dire
   for (int64_t point = 0; point < plan->points && !status; point++)
     status = draw_point(plan, directory, figure, width, axis, point, &drawn, error);
   if (status || drawn) return status;
-  return strut_fail(error, STRUT_USAGE, "figure '%.60s' of the study: no run recorded any of it",
+  return strut_fail(error, STRUT_USAGE, "figure '%.60s' of the study: no run recorded any of this",
                     figure->name);
 }

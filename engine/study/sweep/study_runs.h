@@ -39,7 +39,7 @@ STRUT_API strut_status strut_study_pictures(const strut_sweep_plan *plan, const 
                                             const strut_study_figure *figure, double width,
                                             strut_error *error);
 
-/** What strut_study_pictures and strut_study_motion are made of: a run, opened. Zero-initialise. */
+/** An opened run, from which pictures and motions are drawn. Zero-initialise. */
 typedef struct strut_study_opened {
   strut_study_run run;
   strut_study_value *values;

@@ -22,7 +22,7 @@ typedef struct strut_sweep_scenes {
   void *context;
 } strut_sweep_scenes;
 
-/** What the table of a study holds. Constant once made. */
+/** Columns and points of a study's table. Constant once made. */
 typedef struct strut_sweep_plan {
   const strut_study *study;
   strut_sweep_scenes scenes;
@@ -56,7 +56,7 @@ typedef struct strut_sweep_warning {
 } strut_sweep_warning;
 enum { STRUT_SWEEP_MOST_WARNINGS = 16 };
 
-/** How far a sweep is. */
+/** Progress of a sweep. */
 typedef struct strut_sweep_state {
   int64_t points, done, failed; /* of the file; done includes earlier and failed points */
   int64_t computed;             /* by this call */

@@ -12,7 +12,37 @@
 static const unsigned USUAL = BIT(VELOCITY) | BIT(SPREAD) | BIT(MOTION) | BIT(PERIODS) |
                               BIT(EVALUATIONS) | BIT(OUTCOME) | BIT(QUANTITIES);
 
-/* The columns of each word of `keep`, in order. */
+/*
+ * The columns of each word of `keep`, in order: word, name, unit, whether its cells are words, and the
+ * value in a summary s, where `watched` says whether steady motion was looked for.
+ */
+#define ENTRY_TABLE(X)                                                                             \
+  X(VELOCITY, "velocity", "m/s", false, s->velocity)                                               \
+  X(SPREAD, "velocity_spread", "m/s", false, s->velocity_spread)                                   \
+  X(INTERVAL, "velocity_interval", "m/s", false, watched ? s->steady.interval : (double)NAN)       \
+  X(MOTION, "motion", "1", true, (double)NAN)                                                      \
+  X(REPEATS, "repeats", "1", false, watched ? (double)s->steady.repeats : (double)NAN)             \
+  X(PERIODS, "periods", "1", false,                                                                \
+    watched        ? (double)s->steady.periods                                                     \
+    : period > 0.0 ? s->duration / period                                                          \
+                   : (double)NAN)                                                                  \
+  X(DISTANCE, "distance", "m", false, period > 0.0 ? s->velocity * period : (double)NAN)           \
+  X(DURATION, "duration", "s", false, s->duration)                                                 \
+  X(SETTLE_TIME, "settle_time", "s", false, s->settle_time)                                        \
+  X(STEPS, "steps", "1", false, (double)s->steps)                                                  \
+  X(EVALUATIONS, "force_evaluations", "1", false, (double)s->force_evaluations)                    \
+  X(CHECKS, "check_evaluations", "1", false, (double)s->accuracy.check_evaluations)                \
+  X(EVENTS, "events", "1", false, (double)s->events)                                               \
+  X(METHOD, "method", "1", true, (double)NAN)                                                      \
+  X(STEP, "step", "s", false, s->step)                                                             \
+  X(STEP_LIMIT, "step_limit", "s", false, s->step_limit)                                           \
+  X(EXPECTED, "expected_error", "1", false,                                                        \
+    s->accuracy.wanted > 0.0 ? s->accuracy.expected : (double)NAN)                                 \
+  X(KEPT, "accuracy_kept", "1", false,                                                             \
+    s->accuracy.wanted > 0.0 ? (double)s->accuracy.kept : (double)NAN)                             \
+  STRUT_ENERGY_TABLE(ENERGY_##X)                                                                   \
+  X(RESIDUAL, "residual", "J", false, s->energy.residual)
+
 typedef struct entry {
   strut_keep keep;
   const char *name, *unit;
@@ -20,36 +50,9 @@ typedef struct entry {
 } entry;
 
 static const entry entries[] = {
-    {STRUT_KEEP_VELOCITY, "velocity", "m/s", false},
-    {STRUT_KEEP_SPREAD, "velocity_spread", "m/s", false},
-    {STRUT_KEEP_INTERVAL, "velocity_interval", "m/s", false},
-    {STRUT_KEEP_MOTION, "motion", "1", true},
-    {STRUT_KEEP_REPEATS, "repeats", "1", false},
-    {STRUT_KEEP_PERIODS, "periods", "1", false},
-    {STRUT_KEEP_DISTANCE, "distance", "m", false},
-    {STRUT_KEEP_DURATION, "duration", "s", false},
-    {STRUT_KEEP_SETTLE_TIME, "settle_time", "s", false},
-    {STRUT_KEEP_STEPS, "steps", "1", false},
-    {STRUT_KEEP_EVALUATIONS, "force_evaluations", "1", false},
-    {STRUT_KEEP_CHECKS, "check_evaluations", "1", false},
-    {STRUT_KEEP_EVENTS, "events", "1", false},
-    {STRUT_KEEP_METHOD, "method", "1", true},
-    {STRUT_KEEP_STEP, "step", "s", false},
-    {STRUT_KEEP_STEP_LIMIT, "step_limit", "s", false},
-    {STRUT_KEEP_EXPECTED, "expected_error", "1", false},
-    {STRUT_KEEP_KEPT, "accuracy_kept", "1", false},
-    {STRUT_KEEP_ENERGY, "kinetic", "J", false},
-    {STRUT_KEEP_ENERGY, "elastic", "J", false},
-    {STRUT_KEEP_ENERGY, "gravity", "J", false},
-    {STRUT_KEEP_ENERGY, "contact", "J", false},
-    {STRUT_KEEP_WORK, "drive_work", "J", false},
-    {STRUT_KEEP_WORK, "load_work", "J", false},
-    {STRUT_KEEP_WORK, "belt_work", "J", false},
-    {STRUT_KEEP_LOSSES, "dissipated_members", "J", false},
-    {STRUT_KEEP_LOSSES, "dissipated_contact", "J", false},
-    {STRUT_KEEP_LOSSES, "dissipated_friction", "J", false},
-    {STRUT_KEEP_RESIDUAL, "residual", "J", false},
-};
+#define ENTRY(keep, name, unit, word, value) {STRUT_KEEP_##keep, name, unit, word},
+#define ENERGY_ENTRY(name, kind, label) ENTRY(kind, #name, "J", false, )
+    ENTRY_TABLE(ENTRY)};
 enum { ENTRIES = sizeof entries / sizeof entries[0] };
 
 static bool keeps(const strut_sweep_plan *plan, strut_keep keep) { return plan->keep >> keep & 1u; }
@@ -147,7 +150,7 @@ static strut_status choose_columns(strut_sweep_plan *plan, const strut_setup *se
   plan->columns = strut_arena_allocate(&plan->arena, most, sizeof *plan->columns);
   plan->quantities = strut_arena_allocate(&plan->arena, quantities, sizeof *plan->quantities);
   if (!plan->columns || !plan->quantities || !add_columns(plan, setup))
-    return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    return strut_no_memory(error, "");
   return STRUT_OK;
 }
 
@@ -156,11 +159,12 @@ strut_status strut_sweep_plan_make(const strut_study *study, const strut_sweep_s
   *plan = (strut_sweep_plan){.study = study, .scenes = *scenes};
   plan->points = strut_grid_points(study);
   plan->axis_columns = strut_grid_columns(study);
-  if (plan->points < 0) return strut_fail(error, STRUT_USAGE, "a study has 1e9 points at most");
+  if (plan->points < 0)
+    return strut_fail(error, STRUT_USAGE, "a study may have at most 1e9 points");
   strut_setup setup;
   strut_study_value *values =
       strut_arena_allocate(&plan->arena, plan->axis_columns + 1, sizeof *values);
-  if (!values) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (!values) return strut_no_memory(error, "");
   strut_grid_values(study, 0, values);
   strut_status status = scenes->setup(scenes->context, values, &setup, error);
   if (status) return status;
@@ -188,43 +192,15 @@ void strut_sweep_word(strut_row_buffer *cells, const char *word) {
 static double number_of(const strut_summary *s, const strut_setup *setup, size_t index) {
   double period = strut_experiment_span(&setup->experiment, &setup->scene).period;
   bool watched = s->steady.kind != STRUT_MOTION_NOT_WATCHED;
-  const double values[ENTRIES] = {s->velocity,
-                                  s->velocity_spread,
-                                  watched ? s->steady.interval : (double)NAN,
-                                  (double)NAN,
-                                  watched ? (double)s->steady.repeats : (double)NAN,
-                                  watched        ? (double)s->steady.periods
-                                  : period > 0.0 ? s->duration / period
-                                                 : (double)NAN,
-                                  period > 0.0 ? s->velocity * period : (double)NAN,
-                                  s->duration,
-                                  s->settle_time,
-                                  (double)s->steps,
-                                  (double)s->force_evaluations,
-                                  (double)s->accuracy.check_evaluations,
-                                  (double)s->events,
-                                  (double)NAN,
-                                  s->step,
-                                  s->step_limit,
-                                  s->accuracy.wanted > 0.0 ? s->accuracy.expected : (double)NAN,
-                                  s->accuracy.wanted > 0.0 ? (double)s->accuracy.kept : (double)NAN,
-                                  s->energy.kinetic,
-                                  s->energy.elastic,
-                                  s->energy.gravity,
-                                  s->energy.contact,
-                                  s->energy.drive_work,
-                                  s->energy.load_work,
-                                  s->energy.belt_work,
-                                  s->energy.dissipated_members,
-                                  s->energy.dissipated_contact,
-                                  s->energy.dissipated_friction,
-                                  s->energy.residual};
+  const double values[] = {
+#define VALUE(keep, name, unit, word, value) value,
+#define ENERGY_VALUE(name, kind, label) s->energy.name,
+      ENTRY_TABLE(VALUE)};
   return values[index];
 }
 
 static const char *word_of(const strut_summary *s, strut_keep keep) {
-  static const char *const kinds[] = {"", "periodic", "irregular", "transient"};
-  return keep == STRUT_KEEP_METHOD ? s->method : kinds[s->steady.kind];
+  return keep == STRUT_KEEP_METHOD ? s->method : strut_motion_name(s->steady.kind);
 }
 
 static void fill_things(const strut_sweep_plan *plan, const strut_scene *scene,

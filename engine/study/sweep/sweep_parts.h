@@ -72,7 +72,7 @@ void strut_sweep_job_finish(const strut_sweep_worker *worker, strut_sweep_job *j
 
 /* sweep_lanes.c */
 
-/** Where one thread's points come from and go to. */
+/** Input and output of one thread's points. */
 typedef struct strut_sweep_queue {
   void *context;
   bool (*next)(void *context, int64_t *point);

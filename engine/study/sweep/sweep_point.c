@@ -14,7 +14,7 @@ static bool stops(strut_status status) {
   return status == STRUT_NO_MEMORY || status == STRUT_FILE_TROUBLE || status == STRUT_INTERRUPTED;
 }
 
-/* What is not known of a point that failed. */
+/* The columns that a failed point leaves empty. */
 static void pad_cells(const strut_sweep_plan *plan, strut_row_buffer *cells) {
   size_t words = 0;
   for (size_t i = 0; i < plan->column_count; i++) words += plan->columns[i].word;
@@ -47,7 +47,7 @@ static bool finish_with_scene(const strut_sweep_worker *w, strut_sweep_job *job,
   return finish_point(w, job, status);
 }
 
-/* Records the run into its own folder, as `strut run -o` does, if the study asks for it. */
+/* Records the run into its own folder, as `strut run -o` does, if the study keeps trajectories. */
 static strut_status begin_record(const strut_sweep_worker *w, strut_sweep_job *job) {
   job->options = (strut_run_options){.interrupt = w->options->interrupt};
   job->files = NULL;
@@ -116,8 +116,7 @@ static void refine_experiment(const strut_study *study, strut_experiment *e) {
 
 static const char *outcome_word(const strut_sweep_worker *w, const strut_summary *summary,
                                 const char *outcome) {
-  static const char *const kinds[] = {"", "periodic", "irregular", "transient"};
-  return w->plan->flips ? outcome : kinds[summary->steady.kind];
+  return w->plan->flips ? outcome : strut_motion_name(summary->steady.kind);
 }
 
 static bool finish_first_run(const strut_sweep_worker *w, strut_sweep_job *job, strut_status status,

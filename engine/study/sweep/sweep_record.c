@@ -64,7 +64,7 @@ strut_sweep_record *strut_sweep_record_begin(const char *directory, int64_t poin
   char *path = strut_arena_format(&arena, "%s/runs/%09lld", directory, (long long)point);
   char *text = strut_arena_format(&arena, "%s", scene_text);
   if (!record || !path || !text) {
-    strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    strut_no_memory(error, "");
     strut_release(record);
     strut_arena_free(&arena);
     return NULL;
@@ -72,7 +72,7 @@ strut_sweep_record *strut_sweep_record_begin(const char *directory, int64_t poin
   strut_status status = strut_results_begin(&record->results, path, error);
   if (!status) {
     record->hdf5 = strut_hdf5_create(record->results.stage, text);
-    if (!record->hdf5) status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    if (!record->hdf5) status = strut_no_memory(error, "");
   }
   if (!status) status = strut_file_write_text(record->results.stage, "scene.yaml", text, error);
   strut_arena_free(&arena);
@@ -104,7 +104,7 @@ strut_status strut_sweep_record_end(strut_sweep_record *record, const strut_scen
   strut_status status = STRUT_OK;
   if (keep) {
     char *json = strut_summary_json(summary, scene, false);
-    if (!json) status = strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+    if (!json) status = strut_no_memory(error, "");
     if (!status) status = strut_file_write_text(record->results.stage, "summary.json", json, error);
     if (!status) status = strut_results_commit(&record->results, error);
     strut_release(json);

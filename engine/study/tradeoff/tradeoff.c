@@ -120,7 +120,7 @@ static bool has_member_mass(const strut_scene *scene) {
   return false;
 }
 
-/* Are there bars, none of them driven, that could be rigid? */
+/* True if there are bars and none is driven, so that they could be rigid. */
 static bool has_still_bars(const strut_scene *scene) {
   bool any = false;
   for (size_t i = 0; i < scene->member_count; i++) any = any || scene->members[i].kind == STRUT_BAR;
@@ -142,7 +142,7 @@ static bool has_any_friction(const strut_scene *scene) {
   return false;
 }
 
-/* Depth of a contact at rest if all of them carried the weight alike [m]; 0 without gravity. */
+/* Depth of a contact at rest if all contacts shared the weight equally [m]; 0 without gravity. */
 static double depth_at_rest(const strut_scene *scene, const strut_contact *contact) {
   double mass = 0, gravity = hypot(scene->gravity[0], scene->gravity[1]);
   for (size_t i = 0; i < scene->node_count; i++) mass += scene->nodes[i].mass;
@@ -169,8 +169,9 @@ static bool makes_sense(const strut_scene *scene, kind what) {
     case COULOMB: return has_any_friction(scene) && !has_friction(scene, STRUT_FRICTION_COULOMB);
     case SMOOTH: return has_any_friction(scene) && !has_friction(scene, STRUT_FRICTION_SMOOTH);
     case GROUND: return scene->contact_count > 0 && has_damped_ground(scene);
-    default: return false;
+    case KINDS: break;
   }
+  return false;
 }
 
 /* The regularisation speed for friction laws that need one [m/s]. */
@@ -181,7 +182,7 @@ static double regularisation_speed(const tradeoff_study *s, const strut_friction
 
 static void describe(const tradeoff_study *s, kind what, strut_model_variant *f) {
   const strut_scene *scene = &s->setups[0]->scene;
-  if (what == OWN) snprintf(f->name, sizeof f->name, "the scene's own model");
+  if (what == OWN) snprintf(f->name, sizeof f->name, "unchanged model");
   if (what == COULOMB) snprintf(f->name, sizeof f->name, "Coulomb friction");
   if (what == MASS)
     snprintf(f->name, sizeof f->name, "%s masses",
@@ -197,9 +198,9 @@ static void describe(const tradeoff_study *s, kind what, strut_model_variant *f)
   if (what != GROUND) return;
   bool printed = scene->ground.damping_law == STRUT_DAMPING_APPROACH;
   snprintf(f->name, sizeof f->name, "%s",
-           printed ? "Hunt-Crossley ground" : "printed ground damping");
+           printed ? "Hunt-Crossley ground" : "approach-only ground damping");
   snprintf(f->remark, sizeof f->remark,
-           "damps as the scene's law does at the depth at which the ground carries the weight, %s",
+           "damped as by the scene's law at the depth at which the ground carries the weight, %s",
            strut_quantity_of(depth_at_rest(scene, &scene->contacts[0]), 3, "m").text);
 }
 
@@ -298,9 +299,7 @@ static const double USUAL_BUDGET = 120, FIRST_TARGET = 1e-4, SPEED_SHARE = 1e-3;
 /* Cumulative shares of the budget for the unchanged model: references, rows, refined references. */
 static const double OWN_REFERENCE = 0.3, OWN_ROWS = 0.6, OWN_REFINED = 0.75;
 
-static strut_status out_of_memory(tradeoff_study *s) {
-  return strut_fail(s->error, STRUT_NO_MEMORY, "out of memory");
-}
+static strut_status out_of_memory(tradeoff_study *s) { return strut_no_memory(s->error, ""); }
 
 strut_status strut_tradeoff_compile(const tradeoff_study *s, size_t point, int variant,
                                     const strut_model **model) {
@@ -310,7 +309,7 @@ strut_status strut_tradeoff_compile(const tradeoff_study *s, size_t point, int v
   if (!m->model) {
     m->scene = s->setups[point]->scene;
     status = strut_tradeoff_change_scene(s, variant, &m->scene, &m->arena)
-                 ? strut_fail(s->error, STRUT_NO_MEMORY, "out of memory")
+                 ? strut_no_memory(s->error, "")
                  : strut_model_compile(&m->scene, &m->model, s->error);
   }
   *model = m->model;

@@ -4,7 +4,7 @@
  *
  * Two errors are kept apart. The *step error* of a run is its distance from the converged answer of
  * the same model. The *model error* of a variant (lumped masses, another friction law, ...) is the
- * distance of its converged answer from that of the scene's own model. The *total error* is the
+ * distance of its converged answer from that of the unchanged model. The *total error* is the
  * distance of a run from the latter.
  *
  * A reference is what two different methods agree on, each refined until they agree to a hundredth

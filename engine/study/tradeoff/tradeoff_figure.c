@@ -55,7 +55,7 @@ static bool add_saving(panel *p, const strut_tradeoff *r, const strut_tradeoff_r
   return true;
 }
 
-/* Step errors of the scene's own model, a group for each method. */
+/* Step errors of the unchanged model, a group for each method. */
 static bool fill_methods(panel *p, const strut_tradeoff *r, strut_arena *arena) {
   int last = -1;
   for (size_t i = 0; i < r->row_count; i++) {
@@ -142,12 +142,12 @@ static strut_status draw(const char *path, double width, const strut_tradeoff *r
   double height = (two ? 2 * box.height + BETWEEN : box.height) + 2 * EDGE;
   strut_status status = strut_canvas_open(path, width, height, r->name, &canvas, error);
   if (status != STRUT_OK) return status;
-  status = draw_panel(canvas, box, &panels[0],
-                      "Methods: the scene's own model (beyond 1000 %: diverged)", names[0], r);
+  status = draw_panel(canvas, box, &panels[0], "Methods: unchanged model (beyond 1000 %: diverged)",
+                      names[0], r);
   box.y += box.height + BETWEEN;
   if (two && status == STRUT_OK)
-    status = draw_panel(canvas, box, &panels[1], "Models: the best of the methods for each",
-                        names[1], r);
+    status =
+        draw_panel(canvas, box, &panels[1], "Models: cheapest method for each error", names[1], r);
   if (status != STRUT_OK)
     strut_fail(error, status, "out of memory while drawing");
   else
@@ -166,7 +166,7 @@ strut_status strut_tradeoff_figure(const char *path, double width, const strut_t
   bool good = begin_panel(&panels[0], r, &arena) && begin_panel(&panels[1], r, &arena) &&
               fill_methods(&panels[0], r, &arena) && fill_models(&panels[1], r, &arena);
   strut_status status = good ? draw(path, width, r, panels, models > 1, error)
-                             : strut_fail(error, STRUT_NO_MEMORY, "out of memory while drawing");
+                             : strut_no_memory(error, "while drawing");
   strut_c_locale_leave(locale);
   strut_arena_free(&arena);
   return status;

@@ -22,7 +22,7 @@ typedef struct tradeoff_outcome {
   double step_limit; /* [s] */
 } tradeoff_outcome;
 
-enum { TRADEOFF_VARIANTS = 7 }; /* at most, with the scene's own model */
+enum { TRADEOFF_VARIANTS = 7 }; /* at most, the unchanged model included */
 
 /** A point's scene in a variant, and its model once that was needed. */
 typedef struct tradeoff_model {
@@ -79,7 +79,7 @@ bool strut_tradeoff_can_run(const tradeoff_study *s, const strut_integrator *met
 /** As strut_tradeoff_can_run, and the options do not exclude the method. */
 bool strut_tradeoff_is_wanted(const tradeoff_study *s, const strut_integrator *method, int variant);
 
-/** Lists the scene's own model and those that make sense beside it. STRUT_OK or STRUT_NO_MEMORY. */
+/** Lists the unchanged model and the variants that apply to it. STRUT_OK or STRUT_NO_MEMORY. */
 strut_status strut_tradeoff_list_variants(tradeoff_study *s);
 /** Changes a scene into that of a variant; new contacts come from the arena. */
 strut_status strut_tradeoff_change_scene(const tradeoff_study *s, int variant, strut_scene *scene,

@@ -82,7 +82,8 @@ static void take_values(const tradeoff_study *s, const strut_summary *summary, d
     case STRUT_TRADEOFF_ENERGY:
       value[0] = summary->energy.moved > 0 ? summary->energy.residual / summary->energy.moved : 0;
       break;
-    default: value[0] = summary->velocity;
+    case STRUT_TRADEOFF_AUTOMATIC:
+    case STRUT_TRADEOFF_VELOCITY: value[0] = summary->velocity; break;
   }
 }
 
@@ -225,13 +226,12 @@ strut_status strut_tradeoff_reference_begin(tradeoff_study *s, int variant, trad
   r->latest = strut_arena_allocate(&result->arena, 2 * result->value_count, sizeof *r->latest);
   r->before = strut_arena_allocate(&result->arena, 2 * result->value_count * result->point_count,
                                    sizeof *r->before);
-  if (!r->level || !r->idle || !r->latest || !r->before)
-    return strut_fail(s->error, STRUT_NO_MEMORY, "out of memory");
+  if (!r->level || !r->idle || !r->latest || !r->before) return strut_no_memory(s->error, "");
   f->run = true;
   for (size_t p = 0; p < result->point_count; p++) f->floor[p] = HUGE_VAL;
   if (result->measure == STRUT_TRADEOFF_ENERGY) {
     for (size_t p = 0; p < result->point_count; p++) f->floor[p] = 0;
-    snprintf(f->reference[0], sizeof f->reference[0], "none: a balance closes at 0");
+    snprintf(f->reference[0], sizeof f->reference[0], "none: an exact balance closes at 0");
     return STRUT_OK;
   }
   strut_status status = choose(s, r, 0, NULL);
@@ -335,9 +335,7 @@ static void report_progress(const tradeoff_study *s, double fraction) {
   if (s->options->progress) s->options->progress(s->options->progress_context, fraction);
 }
 
-static strut_status out_of_memory(tradeoff_study *s) {
-  return strut_fail(s->error, STRUT_NO_MEMORY, "out of memory");
-}
+static strut_status out_of_memory(tradeoff_study *s) { return strut_no_memory(s->error, ""); }
 
 /* ---- rows ---- */
 

@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/** Forces' terms that change with time alone; those of members and ground are in *_kernel.h. */
+#ifndef STRUT_ENGINE_FORCES_DRIVE_H
+#define STRUT_ENGINE_FORCES_DRIVE_H
+
+#include "engine/model/state.h"
+
+/** Driven rest lengths and their rates (6): state->rest, rest_rate. */
+void strut_drive_apply(const strut_model *model, strut_state *state, double t);
+/** Adds the loads that change with time at velocities v (for their power). */
+void strut_loads_apply(const strut_model *model, strut_state *state, double t,
+                       const double *restrict v);
+
+/** The first time after t [s] at which a drive, a load or its rate jumps; INFINITY if none does. */
+double strut_drive_next_break(const strut_model *model, double t);
+
+#endif
