@@ -65,7 +65,7 @@ static void add_member(strut_scene *scene, int32_t a, int32_t b, double damping,
   if (strut_law_at(kind)->own) m->stiffness = 0;
   if (random_once_in(r, 2)) m->longest = drawn * random_between(r, 1.02, 1.1);
   if (random_once_in(r, 2)) m->shortest = drawn * random_between(r, 0.9, 0.98);
-  bool stops = m->shortest > 0.0 || isfinite(m->longest);
+  bool stops = m->shortest > 0.0 || m->longest > 0.0;
   if (stops) m->stop_stiffness = 500, m->stop_damping = damping * random_between(r, 0.0, 3.0);
 }
 
