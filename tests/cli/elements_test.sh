@@ -54,6 +54,10 @@ near '.equilibria[] | select(.label == "stable" and .nodes.c[0] > 0) | .nodes.b 
   10 1e-5
 near '.equilibria[] | select(.label == "stable" and .nodes.c[0] > 0) | .congruent_copies' 2 0
 
+# By path the straight shape bifurcates there.
+expect 0 path links.yaml --load press --until 1.5 --json
+near '[.events[] | select(.kind == "bifurcation")][0].factor' 0.8 1e-5
+
 # Hencky's chain of n links: the lowest stiffness falls to zero at 4 n^2 sin^2(pi / 2n) EI / L^2, as a
 # line of the load.
 chain() {
