@@ -20,7 +20,8 @@ bool strut_discrete_gradient_create(const strut_model *model, strut_state *state
   step->middle = strut_arena_allocate(&state->arena, (size_t)model->length, sizeof(double));
   step->strain0 = strut_arena_allocate(&state->arena, elements, sizeof(double));
   step->energy0 = strut_arena_allocate(&state->arena, elements, sizeof(double));
-  return step->middle && step->strain0 && step->energy0;
+  step->element_slope = strut_arena_allocate(&state->arena, elements, sizeof(double));
+  return step->middle && step->strain0 && step->energy0 && step->element_slope;
 }
 
 void strut_discrete_gradient_begin(const strut_model *model, strut_state *state, const double *q,
@@ -131,6 +132,13 @@ static double average_force(const strut_element *e, const strut_element_pose *en
   return strut_law_respond(e->law, &e->numbers, middle, end->natural, -1).force;
 }
 
+/* What that changes by with the strain at the end: exact, but where it would be rounding. */
+static double average_slope(const strut_element_pose *end, double stretch0, double elastic) {
+  double stretch1 = end->strain - end->natural, change = stretch1 - stretch0;
+  double scale = fmax(fabs(stretch0), fabs(stretch1));
+  return fabs(change) > 1e-3 * scale ? (end->force - elastic) / change : 0.5 * end->slope;
+}
+
 /* The part of the step in which an element that carries one sign is beyond its natural strain. */
 static double part_beyond(const strut_element *e, double stretch0, double stretch1) {
   double s0 = e->carries * stretch0, s1 = e->carries * stretch1;
@@ -161,8 +169,12 @@ static void add_element(const strut_model *model, strut_state *state, strut_disc
   double stretch0 = step->strain0[i] - natural0, stretch1 = end.strain - end.natural;
   double energy0 = energy_at(e, end.natural, stretch0);
   double elastic = average_force(e, &end, stretch0, energy0);
-  double force = elastic + e->damping * rate * part_beyond(e, stretch0, stretch1);
-  if (e->carries && !(e->carries * force > 0.0)) force = 0.0;
+  double damping = e->damping * part_beyond(e, stretch0, stretch1);
+  double force = elastic + damping * rate;
+  bool none = e->carries && !(e->carries * force > 0.0);
+  if (none) force = 0.0;
+  double slope = average_slope(&end, stretch0, elastic) + damping / step->h;
+  step->element_slope[i] = none ? 0.0 : fmax(slope, 0.0);
   for (int32_t k = 0; k < 2 * e->nodes; k++) {
     uint32_t c = at[k / 2] + (uint32_t)(k % 2);
     state->force[c] -= force * (middle.b[k] + more * (q1[c] - q0[c]));

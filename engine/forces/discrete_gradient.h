@@ -28,6 +28,7 @@ typedef struct strut_discrete_gradient {
   double *slope;     /* d tension / d length at the end [N/m] */
   double *middle; /* (length) positions half-way, where the gradients of elements are taken [m] */
   double *strain0, *energy0; /* (elements) strains and energies [J] at the begin */
+  double *element_slope;     /* (elements) d force / d strain at the end, not below 0 */
 } strut_discrete_gradient;
 
 /** Arrays in the state's arena. False: out of memory. */

@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "engine/forces/drive.h"
+#include "engine/forces/elements.h"
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/midpoint_matrix.h"
 
@@ -45,6 +46,18 @@ static double stiffest_of(const strut_model *model) {
       if (model->fixed[at] && model->fixed[at + 1]) continue;
       most = fmax(most, 4.0 * t->stiffness[j] / model->weight[at / 2]);
     }
+  for (int32_t i = 0; i < model->elements.count; i++) {
+    const strut_element *e = &model->elements.element[i];
+    const uint32_t *at = model->elements.at + e->first;
+    strut_element_pose pose;
+    strut_element_evaluate(model, i, t->rest, model->start, (double)NAN, &pose);
+    double stiffness = fmax(pose.slope, e->numbers.stiffness);
+    for (int32_t k = 0; k < e->nodes; k++) {
+      if (model->fixed[at[k]] && model->fixed[at[k] + 1]) continue;
+      double square = pose.b[2 * k] * pose.b[2 * k] + pose.b[2 * k + 1] * pose.b[2 * k + 1];
+      most = fmax(most, 4.0 * stiffness * square / model->weight[at[k] / 2]);
+    }
+  }
   return most;
 }
 

@@ -93,18 +93,16 @@ static void add_member(const strut_discrete_gradient *step, int32_t j, double te
                       m->matrix->value);
 }
 
-/* The tangent stiffness at the end of the step, half of which the average force changes by. */
+/* What the average force changes by with the end; it turns with half of the force there. */
 static void add_element(const strut_model *model, const strut_discrete_gradient *step, int32_t i,
                         const double *rest, const double *q, bool clip, strut_midpoint_matrix *m) {
-  const strut_element *e = &model->elements.element[i];
   double k[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
-  int32_t n = 2 * e->nodes;
+  int32_t n = 2 * model->elements.element[i].nodes;
   strut_element_pose pose;
   strut_element_evaluate(model, i, rest, q, step->strain0[i], &pose);
-  double slope = 0.5 * pose.slope + (pose.acts ? e->damping / step->h : 0.0);
-  double half = 0.5 * step->h * step->h;
+  double half = 0.5 * step->h * step->h, along = half * step->element_slope[i];
   for (int32_t r = 0; r < n; r++)
-    for (int32_t c = 0; c < n; c++) k[r * n + c] = half * fmax(slope, 0.0) * pose.b[r] * pose.b[c];
+    for (int32_t c = 0; c < n; c++) k[r * n + c] = along * pose.b[r] * pose.b[c];
   if (!clip) strut_element_bend(model, i, q, 0.5 * half * pose.force, k);
   strut_element_scatter(model, i, k, m->place + strut_places_of_elements(model), m->matrix->value);
 }

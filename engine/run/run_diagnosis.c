@@ -143,14 +143,15 @@ static void warn_of_limit(const strut_run *r) {
 static const double JUMP = 1e-3;
 
 typedef struct jump {
-  const char *member;
-  double change, time; /* [m], [s] */
+  const char *name; /* of a member or a hinge */
+  bool hinge;
+  double change, time; /* [m] or [rad], [s] */
 } jump;
 
 /* Finds the largest jump of a drive between two times, relative to its member. */
 static jump find_jump(const strut_run *r, double from, double to) {
   const strut_scene *scene = r->model->scene;
-  jump found = {.member = NULL};
+  jump found = {.name = NULL};
   double worst = JUMP;
   for (size_t i = 0; i < scene->actuator_count; i++) {
     const strut_actuator *a = &scene->actuators[i];
@@ -159,8 +160,8 @@ static jump find_jump(const strut_run *r, double from, double to) {
     double change = strut_signal_jump(scene->signals, a->signal, r->dt, from, to, &when);
     if (!(change > worst * length)) continue;
     worst = change / length;
-    found =
-        (jump){hinge ? scene->hinges[a->hinge].name : scene->members[a->member].name, change, when};
+    const char *name = hinge ? scene->hinges[a->hinge].name : scene->members[a->member].name;
+    found = (jump){name, hinge, change, when};
   }
   return found;
 }
@@ -168,6 +169,14 @@ static jump find_jump(const strut_run *r, double from, double to) {
 static bool has_touchdowns(const strut_run *r) {
   for (size_t i = 0; i < r->summary->contact_count; i++)
     if (r->summary->contacts[i].max_height > 0.0) return true;
+  return false;
+}
+
+static bool has_switches(const strut_model *model) {
+  for (int32_t i = 0; i < model->elements.count; i++) {
+    const strut_element *e = &model->elements.element[i];
+    if (e->carries || strut_law_kinks(e->law, &e->numbers)) return true;
+  }
   return false;
 }
 
@@ -179,7 +188,8 @@ static const char *describe_missed_events(const strut_run *r) {
   if (bounces && friction) return "touchdowns and changes between sticking and slipping";
   if (bounces) return "touchdowns";
   if (friction) return "changes between sticking and slipping";
-  return cables ? "cables that become taut" : NULL;
+  if (cables) return "cables that become taut";
+  return has_switches(r->model) ? "stops, cables or kinks of laws" : NULL;
 }
 
 /* Explains an open balance: likely cause and remedy. */
@@ -198,12 +208,12 @@ static void explain_balance(const strut_run *r, char *text, size_t size) {
   }
   int used = sudden ? snprintf(text, size, ", most of it by t = %.6g s", to) : 0;
   text += used, size -= (size_t)used;
-  if (j.member)
-    snprintf(
-        text, size,
-        "; likely because the drive of member '%s' changes its length by %.3g m within one step at "
-        "t = %.6g s; spread the change over many steps, use a smaller step, or --accuracy 1%%",
-        j.member, j.change, j.time);
+  if (j.name)
+    snprintf(text, size,
+             "; likely because the drive of %s '%s' changes its %s by %.3g %s within one step at "
+             "t = %.6g s; spread the change over many steps, use a smaller step, or --accuracy 1%%",
+             j.hinge ? "hinge" : "member", j.name, j.hinge ? "angle" : "length", j.change,
+             j.hinge ? "rad" : "m", j.time);
   else if (over)
     snprintf(text, size,
              "; likely because fixed steps pass over %s; use rk4-events, a smaller step, or "

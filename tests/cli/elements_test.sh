@@ -54,6 +54,10 @@ near '.equilibria[] | select(.label == "stable" and .nodes.c[0] > 0) | .nodes.b 
   10 1e-5
 near '.equilibria[] | select(.label == "stable" and .nodes.c[0] > 0) | .congruent_copies' 2 0
 
+# By path the straight shape bifurcates there.
+expect 0 path links.yaml --load press --until 1.5 --json
+near '[.events[] | select(.kind == "bifurcation")][0].factor' 0.8 1e-5
+
 # Hencky's chain of n links: the lowest stiffness falls to zero at 4 n^2 sin^2(pi / 2n) EI / L^2, as a
 # line of the load.
 chain() {
@@ -90,6 +94,11 @@ gravity: [0, -9.81]
 END
 expect 0 modes pendulum.yaml --json
 near '.modes[0].angular_frequency' '(3 / (2 * 0.25) + 9.81 / 0.5) | sqrt' 1e-6
+out_has "geometric"
+sed '/gravity/d' pendulum.yaml >weightless.yaml
+expect 0 modes weightless.yaml
+out_has "h 100 % of the energy"
+out_has_not "geometric"
 
 # A cantilever of four links and hinges under a couple: every hinge turns by the same angle M / kappa,
 # with M = 2 a F cos(tip), as the forces keep their directions.
@@ -167,4 +176,36 @@ END
 expect 0 equilibria bent.yaml --json
 near '[.equilibria[] | select(.label == "stable" and .nodes.b[1] > 0)][0].nodes.c[0]' 1 1e-6
 
+# What fixed steps miss is told by name: a hinge whose angle jumps, and stops.
+cat >jump.yaml <<'END'
+strut: 1
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0], mass: 1}
+  c: {position: [2, 0.1], mass: 1}
+members:
+  ab: {kind: spring, nodes: [a, b], stiffness: 100}
+  bc: {kind: spring, nodes: [b, c], stiffness: 100}
+hinges:
+  h: {nodes: [a, b, c], stiffness: 3}
+actuators:
+  m: {hinge: h, signal: {square: {amplitude: 0.4, frequency: 2.3 Hz}}}
+solver: {step: 0.1 ms}
+run: {duration: 1 s}
+END
+expect 0 run jump.yaml
+err_has "the drive of hinge 'h' changes its angle by 0.8 rad within one step"
+cat >stop.yaml <<'END'
+strut: 1
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0], mass: 1}
+members:
+  m: {kind: spring, nodes: [a, b], stiffness: 1, longest: 1.1, stop_stiffness: 1e5, stop_damping: 300}
+initial: {velocities: {b: [3, 0]}}
+solver: {step: 4 ms}
+run: {duration: 0.1 s}
+END
+expect 0 run stop.yaml
+err_has "fixed steps pass over stops"
 done_testing

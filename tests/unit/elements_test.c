@@ -285,6 +285,33 @@ static void test_laws_at_known_places(void **unused) {
   assert_near(strut_law_respond(STRUT_LAW_EXPONENTIAL, &n, 3, 2, -1).force, 2 * expm1(2), 1e-14);
 }
 
+/* Energies of small strains, as series; and what a change of the natural strain does to them. */
+static void test_energies_of_small_strains_keep_their_digits(void **unused) {
+  (void)unused;
+  const strut_law_numbers n = {.stiffness = 4, .first = 0.5};
+  for (double u = 1e-9; u < 0.2; u *= 1.5)
+    for (int sign = -1; sign <= 1; sign += 2) {
+      double x = sign * u, e0 = 2, h = 1e-4;
+      long double w = sign * (long double)u, grown = expm1l(w / 0.5L) - w / 0.5L;
+      long double part = w / 2, rest = (1 + part) * log1pl(part) - part;
+      if (u < 1e-3) { /* where even these lose digits */
+        long double v = w / 0.5L;
+        grown = v * v / 2 * (1 + v / 3 * (1 + v / 4 * (1 + v / 5 * (1 + v / 6))));
+        rest = part * part *
+               (0.5L - part * (1 / 6.0L - part * (1 / 12.0L - part * (0.05L - part / 30))));
+      }
+      strut_law_response exponential = strut_law_respond(STRUT_LAW_EXPONENTIAL, &n, 2 + x, 2, -1);
+      strut_law_response logarithmic = strut_law_respond(STRUT_LAW_LOGARITHMIC, &n, 2 + x, 2, -1);
+      double blur = 2e-16 / u + 1e-14; /* of the strain itself */
+      assert_relative(exponential.energy, (double)grown, 4 * blur);
+      assert_relative(logarithmic.energy, (double)(16 * rest), 4 * blur);
+      if (u < 0.01) continue;
+      double up = strut_law_respond(STRUT_LAW_LOGARITHMIC, &n, e0 + x, e0 + h, -1).energy;
+      double down = strut_law_respond(STRUT_LAW_LOGARITHMIC, &n, e0 + x, e0 - h, -1).energy;
+      assert_near(logarithmic.excess - logarithmic.force, (up - down) / (2 * h), 1e-8);
+    }
+}
+
 /* A spline is smooth at its points, keeps to the range of two neighbours, and is straight on beyond. */
 static void test_a_smooth_table_has_no_kinks_and_does_not_overshoot(void **unused) {
   (void)unused;
@@ -610,6 +637,27 @@ static void test_turned_mirrored_and_scaled_models(void **unused) {
     for (size_t k = 0; k < sizeof maps / sizeof maps[0]; k++) compare_maps(seed, &maps[k]);
 }
 
+/* A refusal of memory at any place is passed on. */
+static void test_refused_memory(void **unused) {
+  (void)unused;
+  strut_scene scene;
+  random_elements(&scene, 3, 1);
+  for (int64_t n = 0;; n++) {
+    strut_model *model = NULL;
+    strut_state *state = NULL;
+    strut_fail_allocation_after(n);
+    strut_status status = strut_model_compile(&scene, &model, NULL);
+    if (status == STRUT_OK) status = strut_state_create(model, &state, NULL);
+    strut_fail_allocation_after(-1);
+    strut_state_free(state);
+    strut_model_free(model);
+    if (status == STRUT_OK) break;
+    assert_int_equal(status, STRUT_NO_MEMORY);
+    assert_true(n < 200);
+  }
+  strut_scene_free(&scene);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_gradients_and_second_derivatives_of_strains),
@@ -618,12 +666,14 @@ int main(void) {
       cmocka_unit_test(test_strains_without_a_direction_are_finite),
       cmocka_unit_test(test_force_is_the_slope_of_the_energy),
       cmocka_unit_test(test_laws_at_known_places),
+      cmocka_unit_test(test_energies_of_small_strains_keep_their_digits),
       cmocka_unit_test(test_a_smooth_table_has_no_kinks_and_does_not_overshoot),
       cmocka_unit_test(test_forces_of_a_model_are_the_slope_of_its_energy),
       cmocka_unit_test(test_the_hessian_of_a_model_is_the_slope_of_its_gradient),
       cmocka_unit_test(test_the_ledger_books_what_forces_do),
       cmocka_unit_test(test_a_hinge_counts_its_turns),
       cmocka_unit_test(test_turned_mirrored_and_scaled_models),
+      cmocka_unit_test(test_refused_memory),
   };
   return cmocka_run_group_tests_name("elements", tests, NULL, NULL);
 }

@@ -7,10 +7,10 @@
 
 static inline strut_law_response strut_law_logarithmic(const strut_law_numbers *n, double e,
                                                        double e0, int piece) {
-  double strain = log1p((e - e0) / e0), k = n->stiffness * e0;
+  double u = (e - e0) / e0, strain = log1p(u), k = n->stiffness * e0;
   (void)piece;
-  double excess = n->stiffness * ((e + e0) * strain - 2.0 * (e - e0));
-  return (strut_law_response){k * strain, k * (e * strain - (e - e0)), k / e, excess};
+  double excess = k * (2.0 * e0 * strut_law_log_rest(u) - (e - e0) * strain) / e0;
+  return (strut_law_response){k * strain, k * e0 * strut_law_log_rest(u), k / e, excess};
 }
 STRUT_LAW_WITHOUT_KINKS(logarithmic)
 

@@ -39,6 +39,25 @@ typedef struct strut_law_response {
   double excess; /* d energy / d e0 + force: 0 of a law of e - e0 alone */
 } strut_law_response;
 
+/* Beyond this a difference of functions loses no more digits than its series has terms. */
+#define STRUT_LAW_SERIES 0.05
+
+/** exp(u) - 1 - u, to rounding. */
+static inline double strut_law_exp_rest(double u) {
+  if (fabs(u) > STRUT_LAW_SERIES) return expm1(u) - u;
+  double sum = 1.0;
+  for (int n = 10; n > 2; n--) sum = 1.0 + sum * u / n;
+  return 0.5 * u * u * sum;
+}
+
+/** (1 + u) log(1 + u) - u, to rounding. */
+static inline double strut_law_log_rest(double u) {
+  if (fabs(u) > STRUT_LAW_SERIES) return (1.0 + u) * log1p(u) - u;
+  double sum = 0.0;
+  for (int n = 13; n > 1; n--) sum = 1.0 / (n * (n - 1)) - u * sum;
+  return u * u * sum;
+}
+
 /** The functions of a law without kinks. */
 #define STRUT_LAW_WITHOUT_KINKS(name)                                                              \
   static inline int strut_law_##name##_kinks(const strut_law_numbers *n) {                         \
