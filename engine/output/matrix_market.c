@@ -76,10 +76,25 @@ static void write_rows(FILE *stream, const source *from) {
   }
 }
 
+/* The nodes that a running cable passes between its ends, as one cell. */
+static void write_guides(FILE *stream, const strut_scene *scene, const strut_member *member) {
+  fputc(',', stream);
+  for (size_t k = 0; k < member->guide_count; k++)
+    fprintf(stream, "%s%s", k ? " " : "", scene->nodes[member->guides[k]].name);
+}
+
+static bool has_running_cable(const strut_scene *scene) {
+  for (size_t j = 0; j < scene->member_count; j++)
+    if (scene->members[j].guide_count) return true;
+  return false;
+}
+
+/* With a column of guides where some cable runs over any. */
 static void write_columns(FILE *stream, const source *from) {
   static const char *const kinds[] = {"bar", "spring", "cable"};
   const strut_scene *scene = from->model->scene;
-  fputs("column,member,kind,from,to\n", stream);
+  bool guides = has_running_cable(scene);
+  fprintf(stream, "column,member,kind,from,to%s\n", guides ? ",guides" : "");
   for (size_t j = 0; j < scene->member_count; j++) {
     const strut_member *member = &scene->members[j];
     fprintf(stream, "%zu,", j + 1);
@@ -88,6 +103,7 @@ static void write_columns(FILE *stream, const source *from) {
     write_text(stream, scene->nodes[member->node[0]].name);
     fputc(',', stream);
     write_text(stream, scene->nodes[member->node[1]].name);
+    if (guides) write_guides(stream, scene, member);
     fputc('\n', stream);
   }
 }
