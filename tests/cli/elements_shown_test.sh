@@ -63,6 +63,8 @@ expect 0 run all.yaml --quiet -o run --plot run.svg
 [ "$(wc -l <run/hinges.csv)" -eq 102 ] || fail "rows of hinges.csv"
 expect 0 run all.yaml --json
 jq -r '.measured[] | .value' out >measured
+jq -e '.measured.bend.value == .hinges.elbow.angle and .measured.moment.value == .hinges.elbow.moment' \
+  out >/dev/null || fail "hinges at the end"
 jq -e '.measured | map(.value) | .[3] as $stretch | .[4] as $length
   | ($length - $stretch - 0.31 | fabs) < 1e-12 and .[5] < 1e-7' out >/dev/null || fail "measured"
 last=$(tail -n 1 run/hinges.csv)
