@@ -114,6 +114,12 @@ static void add_members(const strut_model *model, strut_state *state, strut_disc
   }
 }
 
+/* Energy of an element at a stretch from its natural strain at the step's end. */
+static double energy_at(const strut_element *e, double natural, double stretch) {
+  if (e->carries && !(e->carries * stretch > 0.0)) return 0.0;
+  return strut_law_respond(e->law, &e->numbers, natural + stretch, natural, -1).energy;
+}
+
 /* The energy's change over the stretch's; where that is rounding, the force half-way. */
 static double average_force(const strut_element *e, const strut_element_pose *end, double stretch0,
                             double energy0) {
@@ -123,6 +129,13 @@ static double average_force(const strut_element *e, const strut_element_pose *en
   double middle = end->natural + 0.5 * (stretch0 + stretch1);
   if (e->carries && !(e->carries * (middle - end->natural) > 0.0)) return 0.0;
   return strut_law_respond(e->law, &e->numbers, middle, end->natural, -1).force;
+}
+
+/* The part of the step in which an element that carries one sign is beyond its natural strain. */
+static double part_beyond(const strut_element *e, double stretch0, double stretch1) {
+  double s0 = e->carries * stretch0, s1 = e->carries * stretch1;
+  if (!e->carries || (s0 > 0.0 && s1 > 0.0)) return 1.0;
+  return s0 > 0.0 || s1 > 0.0 ? fmax(s0, s1) / fabs(s1 - s0) : 0.0;
 }
 
 /*
@@ -145,9 +158,11 @@ static void add_element(const strut_model *model, strut_state *state, strut_disc
     square += d * d, work += middle.b[k] * d;
   }
   double more = square > 0.0 ? (change - work) / square : 0.0;
-  double elastic = average_force(e, &end, step->strain0[i] - natural0, step->energy0[i]);
-  double force = elastic + e->damping * rate;
-  if (e->carries && (elastic == 0.0 || e->carries * force <= 0.0)) force = elastic = 0.0;
+  double stretch0 = step->strain0[i] - natural0, stretch1 = end.strain - end.natural;
+  double energy0 = energy_at(e, end.natural, stretch0);
+  double elastic = average_force(e, &end, stretch0, energy0);
+  double force = elastic + e->damping * rate * part_beyond(e, stretch0, stretch1);
+  if (e->carries && !(e->carries * force > 0.0)) force = 0.0;
   for (int32_t k = 0; k < 2 * e->nodes; k++) {
     uint32_t c = at[k / 2] + (uint32_t)(k % 2);
     state->force[c] -= force * (middle.b[k] + more * (q1[c] - q0[c]));
@@ -156,6 +171,10 @@ static void add_element(const strut_model *model, strut_state *state, strut_disc
   const average now = {.tension = force, .elastic = elastic};
   const stretching m = {.rate = rate, .h = step->h};
   add_powers(state, &now, &m, end.natural - natural0, rest_rate);
+  /* what the drive does to the energy at the same stretch, of a law that depends on more */
+  double excess = (energy0 - step->energy0[i]) / step->h;
+  state->power[STRUT_POWER_DRIVE] += excess;
+  state->power[STRUT_POWER_EXCHANGED] += fabs(excess);
 }
 
 static void add_elements(const strut_model *model, strut_state *state,

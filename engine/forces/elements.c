@@ -110,6 +110,20 @@ void strut_elements_visit(const strut_model *model, const double *rest, const do
   }
 }
 
+double strut_element_stiffest(const strut_model *model, int32_t element) {
+  static const double places[] = {-0.3, -0.1, -0.01, 0.0, 0.01, 0.1, 0.3};
+  const strut_element *e = &model->elements.element[element];
+  double natural = strut_element_start(model, element), stiffest = 0.0;
+  double size = model->size > 0.0 ? model->size : 1.0;
+  bool angle = e->strain == STRUT_STRAIN_ANGLE;
+  for (size_t k = 0; k < sizeof places / sizeof *places; k++) {
+    double x = places[k] * (angle ? 1.0 : natural > 0.0 ? natural : size);
+    double slope = strut_law_respond(e->law, &e->numbers, natural + x, natural, -1).slope;
+    stiffest = fmax(stiffest, fabs(slope));
+  }
+  return angle ? stiffest / (size * size) : stiffest;
+}
+
 double strut_elements_energy(const strut_model *model, const double *rest, const double *turn,
                              const double *q) {
   double sum = 0.0;
@@ -121,9 +135,9 @@ double strut_elements_energy(const strut_model *model, const double *rest, const
   return sum;
 }
 
-/* An element with its damper: what it exerts, the elastic part, and rates. */
+/* An element with its damper: what it exerts, the elastic part, and rates; excess as of its law. */
 typedef struct exertion {
-  double force, elastic, own_rate;
+  double force, elastic, own_rate, excess;
 } exertion;
 
 /* Its modes are those that a method with events has frozen, or those that hold here. */
@@ -134,13 +148,14 @@ static inline exertion exert(const strut_element *e, const strut_state *state, i
     int8_t mode = state->element_acts[i];
     bool acts = mode ? mode > 0 : e->carries * x > 0.0 && e->carries * force > 0.0;
     /* a damper may outweigh the spring: that relaxes then, and the damper takes its energy */
-    if (!acts) return (exertion){0.0, e->carries * x > 0.0 ? r->force : 0.0, own_rate};
+    bool beyond = e->carries * x > 0.0;
+    if (!acts) return (exertion){0.0, beyond ? r->force : 0.0, own_rate, beyond ? r->excess : 0.0};
   }
-  return (exertion){force, r->force, own_rate};
+  return (exertion){force, r->force, own_rate, r->excess};
 }
 
 static inline void add_powers(strut_state *state, const exertion *x, double rest_rate) {
-  double drive = -x->force * rest_rate, lost = (x->force - x->elastic) * x->own_rate;
+  double drive = (x->excess - x->force) * rest_rate, lost = (x->force - x->elastic) * x->own_rate;
   state->power[STRUT_POWER_DRIVE] += drive;
   state->power[STRUT_POWER_MEMBERS] += lost;
   state->power[STRUT_POWER_EXCHANGED] += fabs(drive) + lost;
@@ -193,6 +208,15 @@ void strut_elements_add_forces(const strut_model *model, strut_state *state, con
     const strut_element_block *block = &model->elements.block[b];
     adders[block->strain][block->law](model, state, block, q, v, force);
   }
+}
+
+bool strut_element_has_collapsed(const strut_model *model, int32_t element, double share,
+                                 const double *q) {
+  const strut_element *e = &model->elements.element[element];
+  if (e->strain != STRUT_STRAIN_LENGTH || e->carries > 0) return false;
+  strut_element_pose pose;
+  strut_element_evaluate(model, element, model->members.rest, q, (double)NAN, &pose);
+  return pose.strain < share * pose.natural && pose.force < 0.0;
 }
 
 strut_element_motion strut_element_move(const strut_model *model, const strut_state *state,

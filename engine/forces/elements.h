@@ -51,6 +51,12 @@ void strut_element_stiffness(const strut_model *model, int32_t element,
  */
 void strut_elements_add_forces(const strut_model *model, strut_state *state, const double *q,
                                const double *v, double *force);
+/**
+ * The largest slope of an element's law near its natural strain, as a stiffness [N/m]: that of a hinge
+ * over the square of the model's size.
+ */
+double strut_element_stiffest(const strut_model *model, int32_t element);
+
 /** Elastic energy of all elements [J]; turn (elements): see strut_element_evaluate, or NULL. */
 double strut_elements_energy(const strut_model *model, const double *rest, const double *turn,
                              const double *q);
@@ -70,6 +76,13 @@ typedef void strut_visit_element(void *context, int32_t element, const strut_ele
  */
 void strut_elements_visit(const strut_model *model, const double *rest, const double *q,
                           double least, bool stops, void *context, strut_visit_element *visit);
+
+/**
+ * True of a straight element that pushes and has shrunk to less than `share` of its natural length: it
+ * has no direction then, and its force no gradient.
+ */
+bool strut_element_has_collapsed(const strut_model *model, int32_t element, double share,
+                                 const double *q);
 
 /** Strain beyond the natural one, its rate, and the force as if the element acted. */
 typedef struct strut_element_motion {

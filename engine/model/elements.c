@@ -30,7 +30,7 @@ double strut_element_start(const strut_model *model, int32_t element) {
 }
 
 static size_t elements_of_member(const strut_member *m) {
-  return (size_t)strut_member_is_special(m) + (size_t)isfinite(m->longest) +
+  return (size_t)strut_member_is_special(m) + (size_t)(m->longest > 0.0) +
          (size_t)(m->shortest > 0.0);
 }
 
@@ -206,7 +206,7 @@ static void add_member(compilation *c, size_t j) {
   }
   double stop = m->stop_stiffness > 0.0 ? m->stop_stiffness : USUAL_STOP * stiffness;
   if (m->shortest > 0.0) add_stop(c, j, STRUT_ELEMENT_SHORTEST, m->shortest, stop);
-  if (isfinite(m->longest)) add_stop(c, j, STRUT_ELEMENT_LONGEST, m->longest, stop);
+  if (m->longest > 0.0) add_stop(c, j, STRUT_ELEMENT_LONGEST, m->longest, stop);
 }
 
 static void add_hinge(compilation *c, size_t i) {

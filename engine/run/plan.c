@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/run/plan.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "engine/integrate/limit/step_limit.h"
@@ -37,7 +36,7 @@ static void count_elements(const strut_model *model, strut_plan *plan) {
     const strut_member *m = &scene->members[j];
     plan->running_cables += m->guide_count > 0;
     plan->laws += m->law.kind != STRUT_LAW_LINEAR || m->law.carries == STRUT_CARRIES_COMPRESSION;
-    plan->stops += (size_t)(m->shortest > 0.0) + (size_t)isfinite(m->longest);
+    plan->stops += (size_t)(m->shortest > 0.0) + (size_t)(m->longest > 0.0);
   }
   plan->hinges = scene->hinge_count;
   plan->contacts = (size_t)model->contacts.count;

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/forces/elements.h"
 #include "engine/forces/energy.h"
 #include "engine/forces/forces.h"
 #include "engine/integrate/integrator.h"
@@ -48,6 +49,24 @@ static double find_largest(const double *x, int32_t n, int32_t *node) {
   return most;
 }
 
+/* The last bits of strains and positions, through slope and gradient, as forces on the nodes. */
+static void add_element_rounding(const strut_relaxation *r, double *force) {
+  const strut_element_table *t = &r->model->elements;
+  const double *q = r->state->q;
+  strut_element_pose pose;
+  for (int32_t i = 0; i < t->count; i++) {
+    const strut_element *e = &t->element[i];
+    const uint32_t *at = t->at + e->first;
+    strut_element_evaluate(r->model, i, r->state->rest, q, r->state->element_turn[i], &pose);
+    double bits = fabs(pose.strain) * DBL_EPSILON;
+    for (int32_t k = 0; k < e->nodes; k++)
+      bits +=
+          hypot(pose.b[2 * k], pose.b[2 * k + 1]) * strut_coordinate_rounding(q + at[k], q + at[k]);
+    for (int32_t k = 0; k < e->nodes; k++)
+      force[at[k]] += fabs(pose.slope) * bits * hypot(pose.b[2 * k], pose.b[2 * k + 1]);
+  }
+}
+
 /* The acceleration that rounding of the positions may cause at a node of stiff members. */
 static double rounding_acceleration(const strut_relaxation *r) {
   const strut_model *model = r->model;
@@ -60,6 +79,7 @@ static double rounding_acceleration(const strut_relaxation *r) {
     force[t->from[j]] += t->stiffness[j] * far;
     force[t->to[j]] += t->stiffness[j] * far;
   }
+  add_element_rounding(r, force);
   for (int32_t i = 0; i < model->node_count; i++)
     if (model->weight[i] > 0.0) worst = fmax(worst, force[2 * i] / model->weight[i]);
   return 4.0 * worst;

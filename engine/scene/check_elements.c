@@ -5,6 +5,9 @@
 #include "engine/base/vec.h"
 #include "engine/scene/check_rules.h"
 
+/* Methods with events number the pieces of a law by 16 bits. */
+enum { MOST_POINTS = 30000 };
+
 /* A law without a finding of its own, or what is wrong with it. */
 static const char *fault_of(const strut_law *law) {
   const double numbers[] = {law->knee, law->second_stiffness, law->gap, law->scale};
@@ -15,6 +18,7 @@ static const char *fault_of(const strut_law *law) {
   for (size_t i = 0; i < law->count; i++)
     if (!isfinite(law->force[i]) || (law->kind == STRUT_LAW_TABLE && !isfinite(law->x[i])))
       return "has a number that is not finite";
+  if (law->count > MOST_POINTS) return "has more than 30000 points";
   switch (law->kind) {
     case STRUT_LAW_BILINEAR: return law->knee > 0.0 ? NULL : "needs a knee above zero";
     case STRUT_LAW_PLAY: return law->gap > 0.0 ? NULL : "needs a gap above zero";
@@ -58,15 +62,12 @@ static bool check_stops(strut_checker *checker, size_t index, const char *owner)
                              m->stop_stiffness, STRUT_NOT_NEGATIVE);
   valid &= strut_check_range(checker, STRUT_ON_MEMBER, index, "stop_damping", owner,
                              m->stop_damping, STRUT_NOT_NEGATIVE);
-  if (isnan(m->longest) || m->longest <= 0.0) {
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, "longest",
-                         "the longest of %s must be above zero, found %g", owner, m->longest);
-    return false;
-  }
-  bool stops = m->shortest > 0.0 || isfinite(m->longest);
+  valid &= strut_check_range(checker, STRUT_ON_MEMBER, index, "longest", owner, m->longest,
+                             STRUT_NOT_NEGATIVE);
+  bool stops = m->shortest > 0.0 || m->longest > 0.0;
   bool stiff = m->stop_stiffness > 0.0 || m->stiffness > 0.0 || m->axial_stiffness > 0.0 ||
                strut_law_at(m->law.kind)->own;
-  if (valid && m->shortest >= m->longest)
+  if (valid && m->longest > 0.0 && m->shortest >= m->longest)
     strut_report_finding(checker, STRUT_ON_MEMBER, index, "longest",
                          "the longest of %s, %g m, must be above its shortest, %g m", owner,
                          m->longest, m->shortest);

@@ -21,8 +21,7 @@ strut_member strut_member_default(void) {
                         .node = {-1, -1},
                         .kind = STRUT_BAR,
                         .rest_kind = STRUT_REST_RATIO,
-                        .rest_value = 1,
-                        .longest = (double)INFINITY};
+                        .rest_value = 1};
 }
 
 strut_hinge strut_hinge_default(void) {

@@ -61,7 +61,7 @@ typedef struct strut_member {
   strut_rest_kind rest_kind;
   double rest_value;        /* in the unit of rest_kind */
   strut_law law;            /* linear by default; a cable carries tension whatever the law says */
-  double shortest, longest; /* lengths at which stops act [m]; 0 and INFINITY: none */
+  double shortest, longest; /* lengths at which stops act [m]; 0: none */
   double stop_stiffness;    /* [N/m]; 0: 100 times the member's */
   double stop_damping;      /* [N s/m] of a stop while it acts */
 } strut_member;
@@ -103,8 +103,8 @@ typedef struct strut_contact {
 /** Drives the rest length of a member, or the rest angle of a hinge: rest + signal(t). */
 typedef struct strut_actuator {
   const char *name;
-  int32_t member, hinge; /* one of them is -1 */
-  int32_t signal;
+  int32_t member, signal;
+  int32_t hinge; /* where member is -1 */
 } strut_actuator;
 
 /** A force on a node: force, times signal(t) if there is one. */

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
+#include "engine/forces/elements.h"
 #include "engine/statics/curvature.h"
 
 enum { MOST_STEPS = 400, MOST_POLISH = 30, MOST_EXTRA = 25, MOST_BENDS = 4 };
@@ -138,6 +139,27 @@ static bool leave_ridge(strut_minimiser *m, double *q, double radius) {
   return false;
 }
 
+/* Moves a free end of a straight member aside; false if both are held. */
+static bool move_end(const strut_potential *p, uint32_t from, uint32_t to, double far, double *q) {
+  bool free = p->row_of[to] >= 0 || p->row_of[to + 1] >= 0;
+  uint32_t end = free ? to : from;
+  bool any = false;
+  if (p->row_of[end] >= 0) q[end] += far, any = true;
+  if (p->row_of[end + 1] >= 0) q[end + 1] += 0.7 * far, any = true;
+  return any;
+}
+
+/* The same of members with other laws, and of stops that push. */
+static bool leave_collapsed_elements(strut_minimiser *m, double *q, double far) {
+  const strut_element_table *t = &m->potential->model->elements;
+  bool any = false;
+  for (int32_t i = 0; i < t->count; i++)
+    if (strut_element_has_collapsed(m->potential->model, i, 1e-8, q) &&
+        move_end(m->potential, t->at[t->element[i].first], t->at[t->element[i].first + 1], far, q))
+      any = true;
+  return any;
+}
+
 /*
  * A member that has shrunk to a point pushes its ends apart, but its gradient is undefined: moves
  * its free end aside. False if there is no such member.
@@ -158,6 +180,7 @@ static bool leave_collapse(strut_minimiser *m, double *q) {
     if (row[0] >= 0) moved[0] += far, any = true;
     if (row[1] >= 0) moved[1] += 0.7 * far, any = true;
   }
+  if (leave_collapsed_elements(m, q, far)) any = true;
   if (any) strut_potential_gradient(p, q, m->g);
   return any;
 }

@@ -209,6 +209,15 @@ double strut_potential_rounding(const strut_potential *p, const double *q) {
   return largest + forces * DBL_EPSILON;
 }
 
+double strut_stiffest(const strut_model *model) {
+  double stiffest = 0.0;
+  for (int32_t j = 0; j < model->members.count; j++)
+    stiffest = fmax(stiffest, model->members.stiffness[j]);
+  for (int32_t i = 0; i < model->elements.count; i++)
+    stiffest = fmax(stiffest, strut_element_stiffest(model, i));
+  return stiffest;
+}
+
 strut_sparse *strut_potential_matrix(const strut_potential *p, strut_arena *arena) {
   const strut_sparse *pattern = p->pattern;
   strut_sparse *matrix = strut_arena_allocate(arena, 1, sizeof *matrix);

@@ -57,6 +57,9 @@ STRUT_API void strut_potential_force(const strut_potential *potential, const dou
  */
 STRUT_API double strut_potential_rounding(const strut_potential *potential, const double *q);
 
+/** The largest stiffness of a model's members and elements [N/m]; see strut_element_stiffest. */
+STRUT_API double strut_stiffest(const strut_model *model);
+
 /** A Hessian of zeros to be filled, in the arena; NULL: out of memory. */
 STRUT_API strut_sparse *strut_potential_matrix(const strut_potential *potential,
                                                strut_arena *arena);

@@ -34,6 +34,11 @@ static bool is_uneven(const strut_model *model) {
     if (!(c > 0)) continue;
     low = fmin(low, c), high = fmax(high, c);
   }
+  for (int32_t i = 0; i < model->elements.count; i++) {
+    double c = strut_element_stiffest(model, i);
+    if (!(c > 0)) continue;
+    low = fmin(low, c), high = fmax(high, c);
+  }
   for (int32_t i = 0; i < model->contacts.count; i++) {
     double c = model->contacts.entry[i].stiffness;
     low = fmin(low, c), high = fmax(high, c);
@@ -139,6 +144,19 @@ static void add_member(void *context, int32_t j, const strut_member_tangent *m) 
   add_form(room, sum->count, m->along, m->across, length > 0.0 ? m->along * bit / length : 0.0);
 }
 
+/* The force that last bits of positions and strain are worth. */
+static double uncertain_force(const strut_model *model, int32_t i, const strut_element_pose *pose,
+                              const double *q) {
+  const strut_element *e = &model->elements.element[i];
+  double bits = fabs(pose->strain) * DBL_EPSILON;
+  for (int32_t k = 0; k < e->nodes; k++) {
+    const double *at = q + model->elements.at[e->first + k];
+    bits =
+        fmax(bits, hypot(pose->b[2 * k], pose->b[2 * k + 1]) * strut_coordinate_rounding(at, at));
+  }
+  return fabs(pose->slope) * bits;
+}
+
 /* Along its gradient like a member; what its force adds by bending the strain directly. */
 static void add_element(void *context, int32_t i, const strut_element_pose *pose) {
   const form_sum *sum = context;
@@ -148,7 +166,8 @@ static void add_element(void *context, int32_t i, const strut_element_pose *pose
   const uint32_t *at = model->elements.at + e->first;
   int32_t n = 2 * e->nodes;
   double bend[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT] = {0}, own[STRUT_MOST_GRADIENT];
-  strut_element_bend(model, i, sum->q, pose->force, bend);
+  strut_element_bend(model, i, sum->q, 1.0, bend);
+  double uncertain = uncertain_force(model, i, pose, sum->q);
   for (int32_t k = 0; k < sum->count; k++) {
     const double *mode = room->vector + (size_t)k * (size_t)room->potential->n;
     room->along[k] = room->across[k] = 0.0;
@@ -170,8 +189,9 @@ static void add_element(void *context, int32_t i, const strut_element_pose *pose
         double x = own[r] * moved(room, other, at[r / 2] + (uint32_t)(r % 2));
         form += x, size += fabs(x);
       }
-      room->soft[k * sum->count + l] += form;
-      if (l == k) room->form_noise[k] += 16.0 * DBL_EPSILON * size;
+      room->soft[k * sum->count + l] += pose->force * form;
+      if (l == k)
+        room->form_noise[k] += (16.0 * DBL_EPSILON * fabs(pose->force) + uncertain) * size;
     }
   }
 }

@@ -215,7 +215,7 @@ static void print_stops(const strut_model *model) {
   size_t printed = 0;
   for (size_t i = 0; i < scene->member_count && printed < MOST_MEMBERS; i++) {
     const strut_member *m = &scene->members[i];
-    bool shortest = m->shortest > 0.0, longest = isfinite(m->longest);
+    bool shortest = m->shortest > 0.0, longest = m->longest > 0.0;
     if (!shortest && !longest) continue;
     if (!printed++)
       printf("\n  %-12s %12s %12s %12s %12s\n", "stops of", "shortest", "longest", "stiffness",
@@ -337,8 +337,8 @@ static void add_extras(strut_json *json, struct cJSON *row, const strut_model *m
     strut_json_text(json, row, "carries", carries_name(m));
   }
   if (m->shortest > 0.0) strut_json_number(json, row, "shortest", m->shortest);
-  if (isfinite(m->longest)) strut_json_number(json, row, "longest", m->longest);
-  if (m->shortest > 0.0 || isfinite(m->longest))
+  if (m->longest > 0.0) strut_json_number(json, row, "longest", m->longest);
+  if (m->shortest > 0.0 || m->longest > 0.0)
     strut_json_number(json, row, "stop_stiffness", stop_stiffness(model, j));
 }
 

@@ -185,7 +185,10 @@ static strut_status choose_followed(const strut_arguments *arguments, const stru
   }
   wanted->over = STRUT_PATH_OVER_ACTUATOR;
   wanted->index = find_actuator(scene, name);
-  if (wanted->index >= 0) return STRUT_OK;
+  if (wanted->index >= 0) {
+    if (scene->actuators[wanted->index].member < 0) *dimension = STRUT_DIM_ANGLE;
+    return STRUT_OK;
+  }
   wanted->over = STRUT_PATH_OVER_COORDINATE;
   wanted->index = find_coordinate(scene, name);
   return wanted->index >= 0 ? STRUT_OK : reject_name(scene, name);
@@ -304,8 +307,8 @@ const strut_command strut_command_path = {
         "limit points, bifurcations, cables that become slack or taut, and nodes that touch or\n"
         "leave the ground, each with its effect on stability. Friction and drives are ignored.\n"
         "--over varies something else at constant loads: a number under 'parameters' (from its\n"
-        "value in the file), an actuator (the change of its member's rest length), or the\n"
-        "prescribed displacement of a node along x or y.\n",
+        "value in the file), an actuator (the change of its member's rest length or its hinge's\n"
+        "rest angle), or the prescribed displacement of a node along x or y.\n",
     .options = options,
     .run = run_path,
     .timed = true,

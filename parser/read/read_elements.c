@@ -74,6 +74,11 @@ static bool read_points(strut_reader *reader, const strut_tree *list, strut_owne
     fine = strut_read_number(reader, point->first->next, "points", owner, force, STRUT_RANGE_ANY,
                              &y[i]) &&
            fine;
+    if (!fine || i == 0 || x[i] > x[i - 1]) continue;
+    strut_report_error(reader, point->place,
+                       "expected points with increasing x for 'points' of %s, found %g after %g",
+                       strut_owner_text(reader, owner), x[i], x[i - 1]);
+    fine = false;
   }
   law->x = x, law->force = y;
   return fine;
@@ -98,21 +103,26 @@ static bool check_needs(strut_reader *reader, strut_fields *fields, strut_owner 
                          strut_owner_text(reader, owner), strut_law_key(p),
                          strut_law_at(law->kind)->word);
   }
-  return fine;
+  const strut_slot *smooth = strut_slot_of(fields, STRUT_KEY_LAW_SMOOTH);
+  if (smooth->state == STRUT_ABSENT || law->kind == STRUT_LAW_TABLE) return fine;
+  strut_report_error(reader, smooth->key->place, "%s gives 'smooth', which only a table has",
+                     strut_owner_text(reader, owner));
+  return false;
 }
 
-/* `law: bilinear` lacks its numbers and is refused by check_needs; the others are complete. */
+/* `law: bilinear` lacks its numbers and is refused; the others are complete. */
 static bool read_word(strut_reader *reader, const strut_tree *value, strut_owner owner,
                       strut_law *law) {
-  int one_sided = strut_word_find("tension_only|compression_only", value->text);
-  strut_slot slot;
-  if (one_sided >= 0) {
-    law->carries = one_sided ? STRUT_CARRIES_COMPRESSION : STRUT_CARRIES_TENSION;
+  static const char words[] = "tension_only|compression_only" STRUT_LAWS(STRUT_LAW_WORD, );
+  strut_key key = *strut_key_at(STRUT_KEY_MEMBER_LAW);
+  int word;
+  key.words = words;
+  if (!strut_read_word(reader, &key, value, owner, &word)) return false;
+  if (word < 2) {
+    law->carries = word ? STRUT_CARRIES_COMPRESSION : STRUT_CARRIES_TENSION;
     return true;
   }
-  strut_read_slot(reader, STRUT_KEY_LAW_KIND, value, value, owner, &slot);
-  if (slot.state != STRUT_GIVEN) return false;
-  law->kind = (strut_law_kind)slot.word;
+  law->kind = (strut_law_kind)(word - 2);
   if (!strut_law_at(law->kind)->needs) return true;
   strut_report_error(reader, value->place,
                      "the law %s of %s needs numbers: write a mapping {kind: %s, ...}", value->text,

@@ -101,8 +101,8 @@ static const char *name_of_words(const void *context, size_t i) {
   return i < (size_t)words->count ? words->word[i] : NULL;
 }
 
-static bool read_word(strut_reader *reader, const strut_key *key, const strut_tree *value,
-                      strut_owner owner, int *word) {
+bool strut_read_word(strut_reader *reader, const strut_key *key, const strut_tree *value,
+                     strut_owner owner, int *word) {
   char expected[400];
   if (value->kind == STRUT_TREE_SCALAR && (*word = strut_word_find(key->words, value->text)) >= 0)
     return true; /* scenes of a study are read by the million */
@@ -138,7 +138,7 @@ static bool read_words(strut_reader *reader, const strut_key *key, const strut_t
   *bits = 0;
   for (const strut_tree *item = value->first; item; item = item->next) {
     int word;
-    if (!read_word(reader, key, item, owner, &word)) {
+    if (!strut_read_word(reader, key, item, owner, &word)) {
       fine = false;
     } else if (*bits & 1 << word) {
       strut_report_error(reader, item->place, "'%s' appears twice in '%s' of %s", item->text,
@@ -154,7 +154,7 @@ static bool read_words(strut_reader *reader, const strut_key *key, const strut_t
 /* Supports: none, x, y, both, or a list of x and y. Bit 1: x, bit 2: y. */
 static bool read_fixed(strut_reader *reader, const strut_key *key, const strut_tree *value,
                        strut_owner owner, int *bits) {
-  if (value->kind != STRUT_TREE_LIST) return read_word(reader, key, value, owner, bits);
+  if (value->kind != STRUT_TREE_LIST) return strut_read_word(reader, key, value, owner, bits);
   strut_key in_list = *key;
   in_list.words = "x|y";
   return read_words(reader, &in_list, value, owner, bits);
@@ -230,7 +230,7 @@ static bool read_typed(strut_reader *reader, const strut_key *key, const strut_t
   strut_key_type type = key->type;
   if (type == STRUT_TYPE_VERSION) return read_version(reader, value);
   if (type == STRUT_TYPE_NUMBER) return read_number(reader, key, value, owner, slot->number);
-  if (type == STRUT_TYPE_WORD) return read_word(reader, key, value, owner, &slot->word);
+  if (type == STRUT_TYPE_WORD) return strut_read_word(reader, key, value, owner, &slot->word);
   if (type == STRUT_TYPE_WORDS) return read_words(reader, key, value, owner, &slot->word);
   if (type == STRUT_TYPE_FIXED) return read_fixed(reader, key, value, owner, &slot->word);
   if (type != STRUT_TYPE_PAIR || key->section == STRUT_SECTION_SCENE) /* no parameters yet */

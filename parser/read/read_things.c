@@ -189,8 +189,10 @@ static bool read_actuator(strut_reader *reader, const strut_tree *key, strut_act
     actuator->member =
         strut_read_reference(reader, member->value, "member", owner, "member",
                              &reader->member_names, strut_member_name, reader->scene->member_count);
-  if (signal->state == STRUT_GIVEN)
-    actuator->signal = strut_read_signal(reader, signal->value, "signal", owner, &driven);
+  bool drives = member->state != STRUT_ABSENT || hinge->state != STRUT_ABSENT;
+  if (signal->state == STRUT_GIVEN) /* of what, tells its dimension */
+    actuator->signal =
+        strut_read_signal(reader, signal->value, "signal", owner, drives ? &driven : NULL);
   return fine && !fields.broken && (actuator->member >= 0 || actuator->hinge >= 0) &&
          actuator->signal >= 0;
 }

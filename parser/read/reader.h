@@ -216,6 +216,9 @@ void strut_read_fields(strut_reader *reader, strut_section section, const strut_
 /** Reports what is required and absent, at the place given. */
 void strut_require(strut_reader *reader, strut_fields *fields, strut_owner owner,
                    strut_place place);
+/** One of the words of `key`; false where it is none of them, which was reported. */
+bool strut_read_word(strut_reader *reader, const strut_key *key, const strut_tree *value,
+                     strut_owner owner, int *word);
 /** Reads a value by the table's line for the key. */
 void strut_read_slot(strut_reader *reader, int key, const strut_tree *key_tree,
                      const strut_tree *value, strut_owner owner, strut_slot *slot);

@@ -74,7 +74,8 @@ strut_status bench_crawler_scene(strut_setup *setup, double f, double a, double 
   setup->scene.contact_count = 5, setup->scene.signal_count = setup->scene.actuator_count = 1;
   for (int i = 0; i < 5; i++) {
     setup->scene.contacts[i] = (strut_contact){.node = i, .stiffness = 1e5, .damping = 100};
-    setup->scene.contacts[i].friction = (strut_friction){STRUT_FRICTION_KARNOPP, mu, mu, 1e-4, 0};
+    setup->scene.contacts[i].friction = (strut_friction){
+        .law = STRUT_FRICTION_KARNOPP, .mu_static = mu, .mu_kinetic = mu, .stick_velocity = 1e-4};
   }
   setup->scene.signals[0] = strut_signal_default(STRUT_SINE);
   setup->scene.signals[0].amplitude = a, setup->scene.signals[0].frequency = f;

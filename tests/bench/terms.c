@@ -42,7 +42,8 @@ static void no_friction(strut_setup *s) {
 }
 static void smooth(strut_setup *s) {
   for (size_t i = 0; i < s->scene.contact_count; i++)
-    s->scene.contacts[i].friction = (strut_friction){STRUT_FRICTION_SMOOTH, 0.1, 0.1, 0, 1e-4};
+    s->scene.contacts[i].friction = (strut_friction){
+        .law = STRUT_FRICTION_SMOOTH, .mu_static = 0.1, .mu_kinetic = 0.1, .width = 1e-4};
 }
 static void exact(strut_setup *s) {
   for (size_t i = 0; i < s->scene.contact_count; i++)

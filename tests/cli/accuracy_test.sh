@@ -223,7 +223,7 @@ chance 1% 0.01 0.036670
 chance 2% 0.02 0.036670
 growing 0.5% 0.005 0.054808
 stalled 1% 0.01 0.0510317
-pair 0.15% 0.0015 -0.008768495
+pair 0.3% 0.003 -0.0495417
 END
 
 # What makes no sense is refused.

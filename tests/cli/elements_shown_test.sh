@@ -93,6 +93,7 @@ sed -n 's/.*Name="offsets"[^>]*>\([^<]*\)<.*/\1/p' vtk/structure_00000.vtp | bas
   od -An -v -t d4 -j 8 | tr -s ' \n' '  ' | grep -q '^ 3 5 7 9 $' || fail "offsets of the lines"
 expect 0 export all.yaml --matrices m
 grep -qx '1,rope,cable,a,b,p' m/columns.csv || fail "columns.csv lacks the guide"
+grep -qx '5,elbow,hinge,a,d,p' m/columns.csv || fail "columns.csv lacks the hinge"
 for draw in snapshots curves; do expect 0 run all.yaml --quiet --draw $draw --plot $draw.svg; done
 for what in equilibria "modes --at start" rigidity; do
   # shellcheck disable=SC2086

@@ -36,10 +36,11 @@ static strut_status end(void *context, strut_status status, strut_error *error) 
   return STRUT_OK;
 }
 
-void model_read(model_run *run, const char *name, const char *const *settings) {
-  char path[256], names[MOST_SETTINGS][NAME_ROOM];
+void model_read_text(model_run *run, const char *name, const char *text,
+                     const char *const *settings) {
+  char names[MOST_SETTINGS][NAME_ROOM];
   strut_override overrides[MOST_SETTINGS];
-  size_t count = 0, length = 0;
+  size_t count = 0;
   for (; settings[count]; count++) {
     const char *sign = strchr(settings[count], '=');
     assert_true(sign && count < MOST_SETTINGS && sign - settings[count] < NAME_ROOM);
@@ -47,15 +48,22 @@ void model_read(model_run *run, const char *name, const char *const *settings) {
     overrides[count] = (strut_override){names[count], sign + 1};
   }
   *run = (model_run){.model = NULL};
+  strut_diagnostics diagnostics = {0};
+  strut_status status = strut_setup_read(&run->setup, name, text, strlen(text), overrides, count,
+                                         STRUT_FOR_RUN, &diagnostics);
+  for (size_t i = 0; i < diagnostics.count; i++)
+    print_error("%s:%u: %s\n", name, diagnostics.items[i].place.line, diagnostics.items[i].message);
+  if (status) fail_msg("%s is not valid: %s", name, strut_status_text(status));
+  strut_diagnostics_free(&diagnostics);
+}
+
+void model_read(model_run *run, const char *name, const char *const *settings) {
+  char path[256], *text = NULL;
+  size_t length = 0;
   snprintf(path, sizeof path, "models/%s.yaml", name);
-  char *text = NULL;
   strut_error error = {0};
   if (strut_file_read(path, &text, &length, &error)) fail_msg("%s: %s", path, error.message);
-  strut_diagnostics diagnostics = {0};
-  strut_status status = strut_setup_read(&run->setup, path, text, length, overrides, count,
-                                         STRUT_FOR_RUN, &diagnostics);
-  if (status) fail_msg("%s is not valid: %s", path, strut_status_text(status));
-  strut_diagnostics_free(&diagnostics);
+  model_read_text(run, path, text, settings);
   strut_release(text);
 }
 

@@ -26,6 +26,9 @@ typedef struct model_run {
 
 /** Reads models/NAME.yaml; fails the test if it is not valid. */
 void model_read(model_run *run, const char *name, const char *const *settings);
+/** Reads a scene from its text; `name` is for messages. */
+void model_read_text(model_run *run, const char *name, const char *text,
+                     const char *const *settings);
 /** Compiles and runs what was read (and perhaps changed); fails the test unless it completes. */
 void model_simulate(model_run *run);
 /** Both. */

@@ -85,9 +85,31 @@ int32_t build_sine(strut_scene *scene, double amplitude, double frequency) {
 int32_t build_actuator(strut_scene *scene, int32_t member, int32_t signal) {
   size_t i = scene->actuator_count;
   scene->actuators = grown(scene, scene->actuators, i, sizeof *scene->actuators);
-  scene->actuators[i] = (strut_actuator){name(scene, "a", i), member, signal};
+  scene->actuators[i] = (strut_actuator){
+      .name = name(scene, "a", i), .member = member, .hinge = -1, .signal = signal};
   scene->actuator_count++;
   return (int32_t)i;
+}
+
+int32_t build_hinge(strut_scene *scene, int32_t a, int32_t b, int32_t c, double stiffness,
+                    double damping) {
+  size_t i = scene->hinge_count;
+  scene->hinges = grown(scene, scene->hinges, i, sizeof *scene->hinges);
+  strut_hinge *hinge = &scene->hinges[i];
+  *hinge = strut_hinge_default();
+  hinge->name = name(scene, "h", i);
+  hinge->node[0] = a, hinge->node[1] = b, hinge->node[2] = c;
+  hinge->stiffness = stiffness, hinge->damping = damping;
+  scene->hinge_count++;
+  return (int32_t)i;
+}
+
+void build_guides(strut_scene *scene, int32_t member, const int32_t *guides, size_t count) {
+  int32_t *copy = strut_arena_allocate(&scene->arena, count, sizeof *copy);
+  assert_non_null(copy);
+  memcpy(copy, guides, count * sizeof *copy);
+  scene->members[member].guides = copy;
+  scene->members[member].guide_count = count;
 }
 
 int32_t build_load(strut_scene *scene, int32_t node, double x, double y, int32_t signal) {
@@ -112,8 +134,10 @@ int32_t build_contact(strut_scene *scene, int32_t node, double stiffness, double
 int32_t build_rough_contact(strut_scene *scene, int32_t node, double stiffness, double damping,
                             double mu_static, double mu_kinetic, double stick_velocity) {
   int32_t i = build_contact(scene, node, stiffness, damping);
-  scene->contacts[i].friction =
-      (strut_friction){STRUT_FRICTION_KARNOPP, mu_static, mu_kinetic, stick_velocity, 0};
+  scene->contacts[i].friction = (strut_friction){.law = STRUT_FRICTION_KARNOPP,
+                                                 .mu_static = mu_static,
+                                                 .mu_kinetic = mu_kinetic,
+                                                 .stick_velocity = stick_velocity};
   return i;
 }
 

@@ -25,6 +25,11 @@ int32_t build_sized(strut_scene *scene, strut_member_kind kind, int32_t from, in
 int32_t build_signal(strut_scene *scene, strut_signal signal);
 int32_t build_sine(strut_scene *scene, double amplitude, double frequency);
 int32_t build_actuator(strut_scene *scene, int32_t member, int32_t signal);
+/** A hinge at b, from the arm b-a to the arm b-c, at rest as drawn: [N m/rad], [N m s/rad]. */
+int32_t build_hinge(strut_scene *scene, int32_t a, int32_t b, int32_t c, double stiffness,
+                    double damping);
+/** Lets a member run over further nodes between its ends. */
+void build_guides(strut_scene *scene, int32_t member, const int32_t *guides, size_t count);
 /** signal: -1 for a constant load. */
 int32_t build_load(strut_scene *scene, int32_t node, double x, double y, int32_t signal);
 /** A contact without friction; makes the ground present. Call it in the order of the nodes. */

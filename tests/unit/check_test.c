@@ -43,7 +43,8 @@ static void fill_structure(sample *s) {
     s->contacts[i] = strut_contact_default();
     s->contacts[i].node = i + 1;
     s->contacts[i].stiffness = 100;
-    s->contacts[i].friction = (strut_friction){STRUT_FRICTION_KARNOPP, 0.2, 0.1, 1e-4, 0};
+    s->contacts[i].friction = (strut_friction){
+        .law = STRUT_FRICTION_KARNOPP, .mu_static = 0.2, .mu_kinetic = 0.1, .stick_velocity = 1e-4};
   }
 }
 
@@ -58,7 +59,7 @@ static void fill_drives(sample *s) {
   s->signals[2].terms = s->terms, s->signals[2].term_count = 2;
   s->signals[3] = strut_signal_default(STRUT_RAMP);
   s->signals[3].amplitude = 1, s->signals[3].stop = 2;
-  s->actuators[0] = (strut_actuator){"drive", 1, 2};
+  s->actuators[0] = (strut_actuator){.name = "drive", .member = 1, .signal = 2};
   s->loads[0] = (strut_load){"push", 2, {1, 0}, -1};
   s->loads[1] = (strut_load){"swell", 1, {1, 0}, 3};
 }

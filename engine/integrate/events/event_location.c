@@ -21,11 +21,12 @@ double strut_event_value(const strut_model *model, const strut_event_stepper *l,
                          const strut_step_end *end, strut_event_kind kind, int32_t i) {
   if (kind == STRUT_EVENT_KINK) return end->tension[i];
   if (kind == STRUT_EVENT_ACTS) {
-    if (l->acting[i]) return end->tension[i];
     /* It acts where stretch and force are positive; the lesser decides, both in newtons. */
     double k = l->laws[i].stiffness, d = l->laws[i].damping;
-    double elastic = (k > 0.0 ? k : d / l->wanted_step) * end->stretch[i];
-    return elastic < end->tension[i] ? -elastic : -end->tension[i];
+    double elastic = (k > 0.0 ? k : d > 0.0 ? d / l->wanted_step : 1.0) * end->stretch[i];
+    if (l->acting[i] && !l->laws[i].abrupt) return end->tension[i];
+    double lesser = elastic < end->tension[i] ? elastic : end->tension[i];
+    return l->acting[i] ? lesser : -lesser;
   }
   const strut_contact_entry *e = &model->contacts.entry[i];
   const strut_touch *o = &end->touch[i];

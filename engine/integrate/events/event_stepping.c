@@ -63,10 +63,14 @@ static bool list_laws(const strut_model *model, strut_state *state, strut_event_
   if (!l->laws || !l->acting) return false;
   for (int32_t j = 0; j < t->count; j++)
     if (t->slack[j] == 0.0)
-      l->laws[l->law_count++] = (strut_law_switch){j, -1, false, t->stiffness[j], t->damping[j]};
+      l->laws[l->law_count++] =
+          (strut_law_switch){j, -1, false, false, t->stiffness[j], t->damping[j]};
   for (int32_t i = 0; i < model->elements.count; i++) {
     const strut_element *e = &model->elements.element[i];
-    const strut_law_switch own = {-1, i, false, e->numbers.stiffness, e->damping};
+    double natural = strut_element_start(model, i);
+    strut_law_response rest = strut_law_respond(e->law, &e->numbers, natural, natural, -1);
+    bool abrupt = e->carries * rest.force > 0.0 || (rest.force == 0.0 && !(rest.slope > 0.0));
+    const strut_law_switch own = {-1, i, false, abrupt, e->numbers.stiffness, e->damping};
     if (e->carries) l->laws[l->law_count++] = own;
     if (!strut_law_kinks(e->law, &e->numbers)) continue;
     l->laws[l->law_count] = own;

@@ -70,9 +70,11 @@ typedef struct strut_sliding_contact {
 
 /** Something that a law switches: a cable or an element that carries one sign, or an element's kinks. */
 typedef struct strut_law_switch {
-  int32_t member;   /* of a cable; -1: of an element */
-  int32_t element;  /* of an element; -1: of a cable */
-  bool kinks;       /* the law's kinks, where its pieces meet */
+  int32_t member;  /* of a cable; -1: of an element */
+  int32_t element; /* of an element; -1: of a cable */
+  bool kinks;      /* the law's kinks, where its pieces meet */
+  bool
+      abrupt; /* its force has a jump or no slope where it begins to act: the stretch ends it, too */
   double stiffness; /* force per strain, by which stretch and force are compared */
   double damping;
 } strut_law_switch;

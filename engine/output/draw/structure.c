@@ -527,7 +527,7 @@ static void draw_hinge(strut_canvas *canvas, const drawing *d, const strut_hinge
 
 /* A stop that acts: a bar across the middle of its member. */
 static void draw_stop(strut_canvas *canvas, const drawing *d, size_t member, strut_pen pen) {
-  double ends[2][2];
+  double ends[2][2] = {{0}};
   find_longest_segment(d->window, d->model, d->q, member, ends);
   double x = ends[1][0] - ends[0][0], y = ends[1][1] - ends[0][1], length = hypot(x, y);
   if (!(length > 0) || !isfinite(length)) return;

@@ -434,6 +434,11 @@ static void describe_event(const path_picture *p, const strut_path_event *event,
     name = scene->members[event->index].name;
   if (event->kind == STRUT_PATH_TOUCHDOWN || event->kind == STRUT_PATH_LIFT_OFF)
     name = scene->nodes[event->index].name;
+  if (event->kind >= STRUT_PATH_ENGAGE) {
+    const strut_element *e = &p->model->elements.element[event->index];
+    bool hinge = e->role == STRUT_ELEMENT_HINGE;
+    name = hinge ? scene->hinges[e->item].name : scene->members[e->item].name;
+  }
   int length = strut_text_bytes(name, NAME);
   if (used + NAME + 60 > STOP_TEXT) return; /* no room: the rest of the events here is not named */
   if (before && before->kind == event->kind)

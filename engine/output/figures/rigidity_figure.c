@@ -152,7 +152,7 @@ static void draw_panel(const plan *p, strut_canvas *canvas, int32_t k, strut_box
   } else if (k < p->forces + p->states) {
     size_t state = (size_t)(k - p->forces);
     draw_forces(p, canvas, &window,
-                p->rigidity->states.force + state * p->model->scene->member_count);
+                p->rigidity->states.force + state * (size_t)p->rigidity->matrix.columns);
   } else {
     draw_motion(p, canvas, &window, p->rigidity->mechanisms.list[k - p->forces - p->states].motion);
   }

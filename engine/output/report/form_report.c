@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "engine/base/c_locale.h"
+#include "engine/forces/elements.h"
 #include "engine/output/buffer.h"
 #include "engine/output/json_value.h"
 #include "engine/output/quantity_text.h"
@@ -41,28 +42,46 @@ typedef struct pose {
   double length, force, density;
 } pose;
 
-static pose pose_of(const strut_scene *scene, size_t j) {
+/* model: of the scene, or NULL where it has straight members with a linear law only. */
+static pose pose_of(const strut_scene *scene, const strut_model *model, size_t j) {
   const strut_member *m = &scene->members[j];
   const double *a = scene->nodes[m->node[0]].start, *b = scene->nodes[m->node[1]].start;
   pose p = {.length = hypot(b[0] - a[0], b[1] - a[1])};
   if (!strut_member_rest(scene, j, &p.rest)) return p;
+  if (model && strut_element_of_member(&model->elements, (int32_t)j)) {
+    p.length = strut_member_path_length(model, (int32_t)j, model->start);
+    p.force = strut_member_elastic_tension(model, model->members.rest, (int32_t)j, model->start);
+    p.density = p.length > 0 ? p.force / p.length : 0;
+    return p;
+  }
   p.force = p.rest.stiffness * (p.length - p.rest.length);
   if (m->kind == STRUT_CABLE && p.force < 0) p.force = 0;
   p.density = p.length > 0 ? p.force / p.length : 0;
   return p;
 }
 
+/* The model of a scene whose members have other laws, guides or stops; else NULL. */
+static strut_model *compile_elements(const strut_scene *scene) {
+  strut_model *model = NULL;
+  strut_error error = {0};
+  if (strut_model_compile(scene, &model, &error) != STRUT_OK) return NULL;
+  if (model->elements.count) return model;
+  strut_model_free(model);
+  return NULL;
+}
+
 char *strut_form_table(const strut_form *form, const strut_setup *setup) {
   const strut_scene *scene = &setup->scene;
   static const char *const kinds[] = {"bar", "spring", "cable"};
   strut_buffer table = {0};
+  strut_model *model = compile_elements(scene);
   strut_c_locale locale = strut_c_locale_enter();
   add_head(&table, form, setup);
   strut_buffer_add(&table, "\n  %-12s %-6s %14s %14s %14s %14s\n", "member", "kind", "length",
                    "rest length", "force", "force density");
   for (size_t j = 0; j < scene->member_count && j < MOST_MEMBERS; j++) {
     const strut_member *m = &scene->members[j];
-    pose p = pose_of(scene, j);
+    pose p = pose_of(scene, model, j);
     strut_buffer_add(&table, "  %-12s %-6s %14s %14s %14s %14s\n", m->name, kinds[m->kind],
                      in(p.length, "m").text, in(p.rest.length, "m").text, in(p.force, "N").text,
                      in(p.density, "N/m").text);
@@ -70,6 +89,7 @@ char *strut_form_table(const strut_form *form, const strut_setup *setup) {
   if (scene->member_count > MOST_MEMBERS)
     strut_buffer_add(&table, "  ... and %zu more\n", scene->member_count - MOST_MEMBERS);
   strut_c_locale_leave(locale);
+  strut_model_free(model);
   return strut_buffer_take(&table);
 }
 
@@ -97,13 +117,15 @@ char *strut_form_json(const strut_form *form, const strut_scene *scene) {
   struct cJSON *densities = strut_json_object(&json, json.root, "densities");
   for (size_t i = 0; i < scene->node_count; i++)
     strut_json_numbers(&json, nodes, scene->nodes[i].name, scene->nodes[i].start, 2);
+  strut_model *model = compile_elements(scene);
   for (size_t j = 0; j < scene->member_count; j++) {
     const char *name = scene->members[j].name;
-    pose p = pose_of(scene, j);
+    pose p = pose_of(scene, model, j);
     strut_json_number(&json, lengths, name, p.length);
     strut_json_number(&json, rests, name, p.rest.length);
     strut_json_number(&json, forces, name, p.force);
     strut_json_number(&json, densities, name, p.density);
   }
+  strut_model_free(model);
   return strut_json_end(&json);
 }

@@ -26,21 +26,30 @@ static const double ROUNDING = 1e-12; /* of the largest force */
 /* One line of a path, a point or an event. */
 typedef struct state {
   double factor, arc;
-  const double *q, *force, *reaction, *contact;
+  const double *q, *force, *moment, *reaction, *contact;
 } state;
 
 static state state_of_point(const strut_path_point *p) {
-  return (state){p->factor, p->arc, p->q, p->force, p->reaction, p->contact};
+  return (state){p->factor, p->arc, p->q, p->force, p->moment, p->reaction, p->contact};
 }
 
 static state state_of_event(const strut_path_event *e) {
-  return (state){e->factor, e->arc, e->q, e->force, e->reaction, e->contact};
+  return (state){e->factor, e->arc, e->q, e->force, e->moment, e->reaction, e->contact};
 }
 
 /* The largest member force there [N]. */
 static double largest_force(const state *at, const strut_scene *scene) {
   double most = 0;
   for (size_t j = 0; j < scene->member_count; j++) most = fmax(most, fabs(at->force[j]));
+  return most;
+}
+
+/* The largest moment of a hinge anywhere on the path [N m]. */
+static double largest_moment(const strut_path *path, const strut_scene *scene) {
+  double most = 0;
+  for (size_t k = 0; k < path->point_count; k++)
+    for (size_t i = 0; i < scene->hinge_count; i++)
+      most = fmax(most, fabs(path->points[k].moment[i]));
   return most;
 }
 
@@ -66,6 +75,11 @@ static void add_forces(strut_json *json, struct cJSON *to, const strut_path *pat
   struct cJSON *forces = strut_json_object(json, to, "forces");
   for (size_t j = 0; j < scene->member_count; j++)
     strut_json_number(json, forces, scene->members[j].name, at->force[j]);
+  if (scene->hinge_count) {
+    struct cJSON *moments = strut_json_object(json, to, "moments");
+    for (size_t i = 0; i < scene->hinge_count; i++)
+      strut_json_number(json, moments, scene->hinges[i].name, at->moment[i]);
+  }
   struct cJSON *reactions = strut_json_object(json, to, "reactions");
   for (size_t i = 0; i < scene->node_count; i++)
     if (is_held(path, scene, i, 0) || is_held(path, scene, i, 1))
@@ -233,15 +247,16 @@ static size_t choose_stops(const strut_path *path, state stops[MOST_STOPS],
   return count;
 }
 
-static void add_force_row(strut_buffer *table, const char *name, const char *which, size_t count,
-                          const double *values, const double *largest) {
+static void add_force_row(strut_buffer *table, const char *name, const char *which,
+                          const char *unit, size_t count, const double *values,
+                          const double *largest) {
   char text[STRUT_QUANTITY_TEXT];
   int characters, bytes = text_bytes(name, LABEL - (int)strlen(which), &characters);
   strut_buffer_add(table, "  %.*s%s%*s", bytes, name, which,
                    LABEL - (int)strlen(which) - characters, "");
   for (size_t k = 0; k < count; k++)
     strut_buffer_add(table, "  %14s",
-                     strut_quantity_text(shown_force(values[k], largest[k]), DIGITS, "N", text));
+                     strut_quantity_text(shown_force(values[k], largest[k]), DIGITS, unit, text));
   strut_buffer_add(table, "\n");
 }
 
@@ -266,20 +281,27 @@ static void add_force_table(strut_buffer *table, const strut_path *path, const s
   for (size_t j = 0; j < scene->member_count; j++) {
     for (size_t k = 0; k < count; k++) values[k] = stops[k].force[j];
     if (rows++ < MOST_FORCES)
-      add_force_row(table, scene->members[j].name, "", count, values, largest);
+      add_force_row(table, scene->members[j].name, "", "N", count, values, largest);
+  }
+  double moments[MOST_STOPS];
+  for (size_t k = 0; k < count; k++) moments[k] = largest_moment(path, scene);
+  for (size_t i = 0; i < scene->hinge_count; i++) {
+    for (size_t k = 0; k < count; k++) values[k] = stops[k].moment[i];
+    if (rows++ < MOST_FORCES)
+      add_force_row(table, scene->hinges[i].name, " moment", "N m", count, values, moments);
   }
   for (size_t i = 0; i < 2 * scene->node_count; i++) {
     if (!is_held(path, scene, i / 2, i % 2)) continue;
     for (size_t k = 0; k < count; k++) values[k] = stops[k].reaction[i];
     if (rows++ < MOST_FORCES)
-      add_force_row(table, scene->nodes[i / 2].name, i % 2 ? " support y" : " support x", count,
-                    values, largest);
+      add_force_row(table, scene->nodes[i / 2].name, i % 2 ? " support y" : " support x", "N",
+                    count, values, largest);
   }
   for (size_t i = 0; i < scene->contact_count; i++) {
     for (size_t k = 0; k < count; k++) values[k] = stops[k].contact[i];
     if (rows++ < MOST_FORCES)
-      add_force_row(table, scene->nodes[scene->contacts[i].node].name, " ground", count, values,
-                    largest);
+      add_force_row(table, scene->nodes[scene->contacts[i].node].name, " ground", "N", count,
+                    values, largest);
   }
   left = rows > MOST_FORCES ? rows - MOST_FORCES : 0;
   if (left) strut_buffer_add(table, "  and %zu more; -o DIR writes all of them\n", left);
@@ -338,6 +360,8 @@ static void add_header(strut_buffer *csv, const strut_path *path, const strut_sc
     add_cell(csv, scene->nodes[i / 2].name, axes[i % 2]);
   for (size_t j = 0; j < scene->member_count; j++)
     add_cell(csv, scene->members[j].name, "force [N]");
+  for (size_t i = 0; i < scene->hinge_count; i++)
+    add_cell(csv, scene->hinges[i].name, "moment [N m]");
   for (size_t i = 0; i < 2 * scene->node_count; i++)
     if (is_held(path, scene, i / 2, i % 2))
       add_cell(csv, scene->nodes[i / 2].name, reactions[i % 2]);
@@ -357,6 +381,7 @@ static void add_numbers(strut_buffer *csv, const strut_path *path, const strut_s
   strut_buffer_add(csv, ",%s,%s", negative, event);
   for (size_t i = 0; i < 2 * scene->node_count; i++) add_number(csv, at->q[i]);
   for (size_t j = 0; j < scene->member_count; j++) add_number(csv, at->force[j]);
+  for (size_t i = 0; i < scene->hinge_count; i++) add_number(csv, at->moment[i]);
   for (size_t i = 0; i < 2 * scene->node_count; i++)
     if (is_held(path, scene, i / 2, i % 2)) add_number(csv, at->reaction[i]);
   for (size_t i = 0; i < scene->contact_count; i++) add_number(csv, at->contact[i]);

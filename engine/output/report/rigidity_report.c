@@ -73,6 +73,9 @@ static const char *super_stability_words(const strut_rigidity *r,
   const char *source = stress_source_words(r->source);
   if (r->states.count == 0)
     snprintf(words, STRUT_RIGIDITY_WORDS, "no: %s", source);
+  else if (r->stress.by_elements)
+    snprintf(words, STRUT_RIGIDITY_WORDS, "not judged: elements (hinges, running cables) carry %s",
+             source);
   else if (!r->stress.tested)
     snprintf(words, STRUT_RIGIDITY_WORDS, "not tested: the structure is too large");
   else if (r->stress.super_stable)
@@ -95,6 +98,16 @@ static void put_map(strut_json *json, struct cJSON *to, const char *key, const s
   }
 }
 
+/* Moments of hinges that go with forces of members: [N m] for forces in [N]. */
+static void put_moments(strut_json *json, struct cJSON *to, const char *key,
+                        const strut_rigidity *r, const strut_scene *scene, const double *force) {
+  if (scene->hinge_count == 0) return;
+  struct cJSON *map = strut_json_object(json, to, key);
+  for (size_t i = 0; i < scene->hinge_count; i++)
+    strut_json_number(json, map, scene->hinges[i].name,
+                      force[scene->member_count + i] * r->matrix.size);
+}
+
 static void put_head(strut_json *json, const strut_rigidity *r, const strut_model *model,
                      const char *at) {
   const strut_scene *scene = model->scene;
@@ -104,6 +117,7 @@ static void put_head(strut_json *json, const strut_rigidity *r, const strut_mode
   strut_json_text(json, root, "at", at);
   strut_json_integer(json, root, "nodes", (int64_t)scene->node_count);
   strut_json_integer(json, root, "members", (int64_t)scene->member_count);
+  if (scene->hinge_count) strut_json_integer(json, root, "hinges", (int64_t)scene->hinge_count);
   strut_json_integer(json, root, "free_coordinates", r->matrix.rows);
   strut_json_integer(json, root, "supports", 2 * model->node_count - r->matrix.rows);
   strut_json_text(json, root, "method", r->spaces.dense ? "svd" : "qr");
@@ -118,7 +132,7 @@ static void put_head(strut_json *json, const strut_rigidity *r, const strut_mode
 
 static void put_self_stress(strut_json *json, const strut_rigidity *r, const strut_scene *scene) {
   struct cJSON *stress = strut_json_object(json, json->root, "self_stress");
-  size_t members = scene->member_count;
+  size_t columns = (size_t)r->matrix.columns;
   strut_json_integer(json, stress, "count", r->states.count);
   if (r->states.count > 0 && !r->states.force) {
     strut_json_text(json, stress, "states", NULL);
@@ -126,17 +140,20 @@ static void put_self_stress(strut_json *json, const strut_rigidity *r, const str
   }
   struct cJSON *states = strut_json_array(json, stress, "states");
   for (int32_t i = 0; i < r->states.count; i++) {
-    const double *force = r->states.force + (size_t)i * members;
+    const double *force = r->states.force + (size_t)i * columns;
     struct cJSON *state = strut_json_object(json, states, NULL);
     put_map(json, state, "forces", scene, force, NULL);
     put_map(json, state, "force_densities", scene, force, r->matrix.length);
+    put_moments(json, state, "moments", r, scene, force);
     strut_json_bool(json, state, "feasible", r->states.cables_pull[i]);
   }
   if (r->states.count == 0) return;
-  if (r->feasible)
+  if (r->feasible) {
     put_map(json, stress, "feasible", scene, r->feasible, NULL);
-  else
+    put_moments(json, stress, "feasible_moments", r, scene, r->feasible);
+  } else {
     strut_json_text(json, stress, "feasible", NULL);
+  }
 }
 
 /* Scaled so that the node that moves most moves by 1. */
@@ -184,7 +201,9 @@ static void put_mechanisms(strut_json *json, const strut_rigidity *r, const stru
     strut_json_text(json, row, "test", mechanism_words(m, mode, words));
     put_motion(json, row, r, scene, mode->motion);
   }
-  if (m->stiffener) put_map(json, to, "stiffened_by", scene, m->stiffener, NULL);
+  if (!m->stiffener) return;
+  put_map(json, to, "stiffened_by", scene, m->stiffener, NULL);
+  put_moments(json, to, "stiffened_by_moments", r, scene, m->stiffener);
 }
 
 static void put_verdicts(strut_json *json, const strut_rigidity *r) {
@@ -238,6 +257,14 @@ static void put_members(strut_json *json, const strut_rigidity *r, const strut_s
     strut_json_number(json, row, "force_density",
                       r->matrix.length[j] > 0 ? r->density[j] : (double)NAN);
   }
+  if (scene->hinge_count == 0) return;
+  struct cJSON *hinges = strut_json_object(json, json->root, "hinges_at");
+  for (size_t i = 0; i < scene->hinge_count; i++) {
+    struct cJSON *row = strut_json_object(json, hinges, scene->hinges[i].name);
+    size_t j = scene->member_count + i;
+    strut_json_number(json, row, "angle", r->matrix.length[j] / r->matrix.size);
+    strut_json_number(json, row, "moment", r->force[j] * r->matrix.size);
+  }
 }
 
 char *strut_rigidity_json(const strut_rigidity *rigidity, const strut_model *model,
@@ -289,8 +316,10 @@ static void add_counts(strut_buffer *table, const strut_rigidity *r) {
                      strut_motion_kind_name((strut_motion_kind)i));
     before = ", ";
   }
-  strut_buffer_add(table, "\n  Maxwell-Calladine  %d members - %d free coordinates = %d = s - f\n",
-                   r->matrix.columns, r->matrix.rows, r->matrix.columns - r->matrix.rows);
+  strut_buffer_add(table,
+                   "\n  Maxwell-Calladine  %d members%s - %d free coordinates = %d = s - f\n",
+                   r->matrix.columns, r->matrix.columns > r->matrix.members ? " and hinges" : "",
+                   r->matrix.rows, r->matrix.columns - r->matrix.rows);
 }
 
 static void add_verdicts(strut_buffer *table, const strut_rigidity *r) {
@@ -318,8 +347,29 @@ static void add_verdicts(strut_buffer *table, const strut_rigidity *r) {
                      r->without_length);
 }
 
+/* Moments of the states go with forces of 1 N. */
+static void add_hinges(strut_buffer *table, const strut_rigidity *r, const strut_scene *scene,
+                       int32_t states) {
+  size_t columns = (size_t)r->matrix.columns, first = scene->member_count;
+  double size = r->matrix.size;
+  if (scene->hinge_count)
+    strut_buffer_add(table, "  %-12s %-6s %12s %12s\n", "hinge", "", "angle", "moment");
+  for (size_t i = 0; i < scene->hinge_count && i < MOST_ROWS; i++) {
+    size_t j = first + i;
+    strut_buffer_add(table, "  %-12s %-6s %12s %12s %13s", scene->hinges[i].name, "",
+                     in(r->matrix.length[j] / size, "rad").text, in(r->force[j] * size, "N m").text,
+                     "");
+    for (int32_t k = 0; k < states; k++)
+      strut_buffer_add(table, " %10.6g", r->states.force[(size_t)k * columns + j] * size);
+    strut_buffer_add(table, "\n");
+  }
+  if (scene->hinge_count > MOST_ROWS)
+    strut_buffer_add(table, "  ... and %zu more; --json lists all\n",
+                     scene->hinge_count - MOST_ROWS);
+}
+
 static void add_members(strut_buffer *table, const strut_rigidity *r, const strut_scene *scene) {
-  size_t members = scene->member_count;
+  size_t members = scene->member_count, columns = (size_t)r->matrix.columns;
   int32_t states = r->states.force ? r->states.count : 0;
   if (states > MOST_STATES) states = MOST_STATES;
   strut_buffer_add(table, "\n  %-12s %-6s %12s %12s %13s", "member", "kind", "length", "force",
@@ -331,11 +381,12 @@ static void add_members(strut_buffer *table, const strut_rigidity *r, const stru
                      member_kind_words(scene->members[j].kind), in(r->matrix.length[j], "m").text,
                      in(r->force[j], "N").text, in(r->density[j], "N/m").text);
     for (int32_t i = 0; i < states; i++)
-      strut_buffer_add(table, " %10.6g", r->states.force[(size_t)i * members + j]);
+      strut_buffer_add(table, " %10.6g", r->states.force[(size_t)i * columns + j]);
     strut_buffer_add(table, "\n");
   }
   if (members > MOST_ROWS)
     strut_buffer_add(table, "  ... and %zu more; --json lists all\n", members - MOST_ROWS);
+  add_hinges(table, r, scene, states);
   if (r->states.count > states)
     strut_buffer_add(table, "  %d more self-stress states%s\n", r->states.count - states,
                      r->states.force ? "; --json lists all" : ": too many to list");

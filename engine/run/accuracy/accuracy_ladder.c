@@ -291,7 +291,7 @@ static const double ENOUGH_OF_TWO = 0.2, ENOUGH = 0.3;
  * The same for the first two runs with error control: both may have taken the longest step, so that
  * their tolerances changed nothing, and no third run shows the convergence.
  */
-static const double ENOUGH_OF_FIRST_PAIR = 0.15;
+static const double ENOUGH_OF_FIRST_PAIR = 0.05;
 /* The same where only one method suits the scene. */
 static const double ENOUGH_ALONE = 0.05;
 /* Runs converge whose differences shrink from one to the next by this factor or a smaller one. */

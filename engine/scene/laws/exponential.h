@@ -9,7 +9,7 @@ static inline strut_law_response strut_law_exponential(const strut_law_numbers *
                                                        double e0, int piece) {
   double x = e - e0, s = n->first, k = n->stiffness, growth = expm1(x / s);
   (void)piece;
-  return (strut_law_response){k * s * growth, k * s * (s * growth - x), k * (growth + 1.0)};
+  return (strut_law_response){k * s * growth, k * s * (s * growth - x), k * (growth + 1.0), 0.0};
 }
 STRUT_LAW_WITHOUT_KINKS(exponential)
 

@@ -9,7 +9,7 @@ static inline strut_law_response strut_law_linear(const strut_law_numbers *n, do
                                                   int piece) {
   double x = e - e0, force = n->stiffness * x;
   (void)piece;
-  return (strut_law_response){force, 0.5 * force * x, n->stiffness};
+  return (strut_law_response){force, 0.5 * force * x, n->stiffness, 0.0};
 }
 STRUT_LAW_WITHOUT_KINKS(linear)
 

@@ -9,7 +9,8 @@ static inline strut_law_response strut_law_logarithmic(const strut_law_numbers *
                                                        double e0, int piece) {
   double strain = log1p((e - e0) / e0), k = n->stiffness * e0;
   (void)piece;
-  return (strut_law_response){k * strain, k * (e * strain - (e - e0)), k / e};
+  double excess = n->stiffness * ((e + e0) * strain - 2.0 * (e - e0));
+  return (strut_law_response){k * strain, k * (e * strain - (e - e0)), k / e, excess};
 }
 STRUT_LAW_WITHOUT_KINKS(logarithmic)
 

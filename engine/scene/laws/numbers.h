@@ -32,6 +32,7 @@ typedef struct strut_law_numbers {
 /** What a law gives at a strain: force, energy from the natural strain on, and slope d force / d e. */
 typedef struct strut_law_response {
   double force, energy, slope;
+  double excess; /* d energy / d e0 + force: 0 of a law of e - e0 alone */
 } strut_law_response;
 
 /** The functions of a law without kinks. */

@@ -11,7 +11,7 @@ static inline strut_law_response strut_law_play(const strut_law_numbers *n, doub
   if (piece < 0) piece = x > gap ? 2 : x > -gap ? 1 : 0;
   if (piece == 1) return (strut_law_response){0};
   double beyond = piece == 2 ? x - gap : x + gap, force = n->stiffness * beyond;
-  return (strut_law_response){force, 0.5 * force * beyond, n->stiffness};
+  return (strut_law_response){force, 0.5 * force * beyond, n->stiffness, 0.0};
 }
 static inline int strut_law_play_kinks(const strut_law_numbers *n) {
   (void)n;

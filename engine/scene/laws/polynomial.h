@@ -15,7 +15,7 @@ static inline strut_law_response strut_law_polynomial(const strut_law_numbers *n
     energy = energy * x + c / (order + 1.0);
     slope = slope * x + c * order;
   }
-  return (strut_law_response){force * x, energy * x * x, slope};
+  return (strut_law_response){force * x, energy * x * x, slope, 0.0};
 }
 STRUT_LAW_WITHOUT_KINKS(polynomial)
 

@@ -13,7 +13,7 @@ static inline strut_law_response strut_law_curve_piece(const strut_law_curve *c,
   return (strut_law_response){
       p[0] + d * (p[1] + d * (p[2] + d * p[3])),
       c->energy[i] + d * (p[0] + d * (p[1] / 2.0 + d * (p[2] / 3.0 + d * p[3] / 4.0))),
-      p[1] + d * (2.0 * p[2] + d * 3.0 * p[3])};
+      p[1] + d * (2.0 * p[2] + d * 3.0 * p[3]), 0.0};
 }
 
 static inline strut_law_response strut_law_table(const strut_law_numbers *n, double e, double e0,
@@ -27,7 +27,8 @@ static inline strut_law_response strut_law_table(const strut_law_numbers *n, dou
     strut_law_response r = strut_law_curve_piece(c, end ? end - 1 : 0, c->x[end]);
     double beyond = x - c->x[end];
     return (strut_law_response){r.force + r.slope * beyond,
-                                r.energy + beyond * (r.force + 0.5 * r.slope * beyond), r.slope};
+                                r.energy + beyond * (r.force + 0.5 * r.slope * beyond), r.slope,
+                                0.0};
   }
   while (high - low > 1) {
     size_t middle = (low + high) / 2;

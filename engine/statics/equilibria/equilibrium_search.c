@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/forces/elements.h"
 #include "engine/model/pose.h"
 #include "engine/statics/equilibria/naming.h"
 
@@ -45,10 +46,8 @@ static bool copy_point(strut_equilibrium_search *h, const strut_critical_point *
 
 static void measure_members(const strut_model *model, const double *q, double *force) {
   const strut_member_table *t = &model->members;
-  for (int32_t j = 0; j < t->count; j++) {
-    strut_member_pose pose = strut_member_pose_at(t, t->rest, j, q);
-    force[j] = strut_member_elastic_force(t, j, &pose);
-  }
+  for (int32_t j = 0; j < t->count; j++)
+    force[j] = strut_member_elastic_tension(model, t->rest, j, q);
 }
 
 /* Reactions on held coordinates: minus the net force there. */

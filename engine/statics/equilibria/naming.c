@@ -7,6 +7,8 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
+#include "engine/base/vec.h"
+#include "engine/forces/elements.h"
 #include "engine/statics/search/critical.h"
 
 enum { MOST_LISTED = 4 };
@@ -40,6 +42,10 @@ void strut_list_nodes(const strut_scene *scene, const uint8_t *flag, size_t size
 static bool mirror_axis(const strut_model *model, const uint8_t *held, const double *q, double *x) {
   bool any = false;
   double sum = 0.0;
+  for (int32_t b = 0; b < model->elements.block_count; b++)
+    if (model->elements.block[b].strain == STRUT_STRAIN_ANGLE ||
+        model->elements.block[b].strain == STRUT_STRAIN_AREA)
+      return false; /* they change their sign */
   for (int32_t i = 0; i < model->node_count; i++) {
     if (model->constant_force && model->constant_force[2 * i] != 0.0) return false;
     sum += q[2 * i];
@@ -72,10 +78,31 @@ static double distance_to_drawn(const strut_model *model, const double *q, doubl
   return strut_shape_distance(model, scratch, q, false, NULL);
 }
 
+/*
+ * A mirror image turns the angles of hinges round. It is an equilibrium too only where all rest angles
+ * are straight or folded, and all laws odd.
+ */
+static bool do_hinges_allow_mirrors(const strut_model *model) {
+  static const double places[] = {0.01, 0.1, 1.0};
+  for (int32_t i = 0; i < model->elements.count; i++) {
+    const strut_element *e = &model->elements.element[i];
+    if (e->role != STRUT_ELEMENT_HINGE) continue;
+    double rest = strut_element_start(model, i), half = 0.5 * STRUT_TAU;
+    if (e->carries || fabs(rest - half * rint(rest / half)) > 1e-12) return false;
+    for (size_t k = 0; k < sizeof places / sizeof *places; k++) {
+      double x = places[k];
+      double there = strut_law_respond(e->law, &e->numbers, rest + x, rest, -1).force;
+      double back = strut_law_respond(e->law, &e->numbers, rest - x, rest, -1).force;
+      if (fabs(there + back) > 1e-9 * (fabs(there) + fabs(back))) return false;
+    }
+  }
+  return true;
+}
+
 strut_status strut_orient_shape(const strut_model *model, const uint8_t *held, double *q,
                                 double *softest) {
   double x = 0.0;
-  if (!mirror_axis(model, held, q, &x)) return STRUT_OK;
+  if (!mirror_axis(model, held, q, &x) || !do_hinges_allow_mirrors(model)) return STRUT_OK;
   size_t length = (size_t)model->length;
   double *mirrored = strut_allocate(2 * length, sizeof *mirrored);
   if (!mirrored) return STRUT_NO_MEMORY;

@@ -83,15 +83,13 @@ static double distance_moved(const strut_model *model, const strut_critical_poin
 static bool stays_displaced(const strut_potential *p, const strut_critical_point *point) {
   const strut_model *model = p->model;
   size_t length = (size_t)model->length;
-  double size = model->size > 0 ? model->size : 1.0, most = 0.0, stiffest = 0.0;
+  double size = model->size > 0 ? model->size : 1.0, most = 0.0;
   strut_minimiser *minimiser = NULL;
   double *q = strut_allocate(length, sizeof *q);
   bool good = q && strut_minimiser_create(p, &minimiser, NULL) == STRUT_OK, stays = false;
   for (int32_t at = 0; at < 2 * model->node_count; at++)
     most = fmax(most, fabs(point->softest[at]));
-  for (int32_t j = 0; j < model->members.count; j++)
-    stiffest = fmax(stiffest, model->members.stiffness[j]);
-  double same = 1e-12 * (fabs(point->potential) + stiffest * size * size);
+  double same = 1e-12 * (fabs(point->potential) + strut_stiffest(model) * size * size);
   for (int side = -1; side <= 1 && good && most > 0 && !stays; side += 2) {
     memcpy(q, point->q, length * sizeof *q);
     for (int32_t at = 0; at < 2 * model->node_count; at++)

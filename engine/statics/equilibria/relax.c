@@ -43,6 +43,8 @@ struct strut_relaxer {
 static bool loses_energy(const strut_model *model) {
   for (int32_t j = 0; j < model->members.count; j++)
     if (model->members.damping[j] > 0) return true;
+  for (int32_t i = 0; i < model->elements.count; i++)
+    if (model->elements.element[i].damping > 0) return true;
   for (int32_t i = 0; i < model->contacts.count; i++)
     if (model->contacts.entry[i].damping > 0) return true;
   return false;

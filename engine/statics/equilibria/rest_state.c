@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/model/pose.h"
+#include "engine/forces/elements.h"
 #include "engine/run/settle.h"
 #include "engine/statics/equilibria/equilibrium_search.h"
 #include "engine/statics/equilibria/naming.h"
@@ -15,14 +15,26 @@ static const double NEAR = 0.01;
 /* The residual of a drawn shape that counts as at rest, in weights. */
 static const double AT_REST = 1e-8;
 
+/* A hinge pushes on its nodes with its moment over the arms. */
+typedef struct hinge_sum {
+  const strut_model *model;
+  double sum;
+} hinge_sum;
+
+static void add_hinge_force(void *context, int32_t element, const strut_element_pose *pose) {
+  hinge_sum *s = context;
+  if (s->model->elements.element[element].role == STRUT_ELEMENT_HINGE)
+    s->sum += fabs(pose->force) * hypot(pose->b[0], pose->b[1]);
+}
+
 static double sum_member_forces(const strut_model *model, const double *q) {
   const strut_member_table *t = &model->members;
   double sum = 0.0;
-  for (int32_t j = 0; j < t->count; j++) {
-    strut_member_pose pose = strut_member_pose_at(t, t->rest, j, q);
-    sum += fabs(strut_member_elastic_force(t, j, &pose));
-  }
-  return sum;
+  for (int32_t j = 0; j < t->count; j++)
+    sum += fabs(strut_member_elastic_tension(model, t->rest, j, q));
+  hinge_sum hinges = {model, 0.0};
+  strut_elements_visit(model, t->rest, q, -HUGE_VAL, false, &hinges, add_hinge_force);
+  return sum + hinges.sum;
 }
 
 static bool find_closed(const strut_model *model, strut_arena *arena, strut_rest_state *rest) {

@@ -43,11 +43,13 @@ static bool copy_arrays(strut_level_frame *level) {
   strut_scene *s = &level->scene;
   s->nodes = copy_array(&level->arena, s->nodes, s->node_count, sizeof *s->nodes);
   s->members = copy_array(&level->arena, s->members, s->member_count, sizeof *s->members);
+  s->hinges = copy_array(&level->arena, s->hinges, s->hinge_count, sizeof *s->hinges);
   s->contacts = copy_array(&level->arena, s->contacts, s->contact_count, sizeof *s->contacts);
   s->loads = copy_array(&level->arena, s->loads, s->load_count, sizeof *s->loads);
   s->configurations = copy_array(&level->arena, s->configurations, s->configuration_count,
                                  sizeof *s->configurations);
-  if (!s->nodes || !s->members || !s->contacts || !s->loads || !s->configurations) return false;
+  if (!s->nodes || !s->members || !s->hinges || !s->contacts || !s->loads || !s->configurations)
+    return false;
   for (size_t i = 0; i < s->configuration_count; i++) {
     strut_configuration *c = &s->configurations[i];
     if (c->position)
@@ -57,7 +59,7 @@ static bool copy_arrays(strut_level_frame *level) {
   return true;
 }
 
-/* Rest lengths as resolved in the original, so that turning changes no bit of them. */
+/* Rest lengths and angles as resolved in the original, so that turning changes no bit of them. */
 static void keep_rest_lengths(const strut_scene *original, strut_scene *s) {
   for (size_t j = 0; j < s->member_count; j++) {
     strut_rest rest;
@@ -67,6 +69,8 @@ static void keep_rest_lengths(const strut_scene *original, strut_scene *s) {
     s->members[j].stiffness = rest.stiffness;
     s->members[j].axial_stiffness = 0.0;
   }
+  for (size_t i = 0; i < s->hinge_count; i++)
+    s->hinges[i].rest_angle = strut_hinge_rest(original, i);
 }
 
 static void remove_motion(strut_scene *s) {

@@ -285,7 +285,7 @@ static strut_status check_lengths(const strut_former *f, strut_error *error) {
   return STRUT_OK;
 }
 
-/* Writes rest lengths as lengths: given otherwise they would change with the drawn shape. */
+/* Writes rest lengths as lengths, rest angles as angles: given otherwise they would change with the drawn shape. */
 static void fix_lengths(strut_scene *scene) {
   for (size_t j = 0; j < scene->member_count; j++) {
     strut_rest rest;
@@ -294,6 +294,8 @@ static void fix_lengths(strut_scene *scene) {
     m->rest_kind = STRUT_REST_LENGTH;
     m->rest_value = rest.length;
   }
+  for (size_t i = 0; i < scene->hinge_count; i++)
+    scene->hinges[i].rest_angle = strut_hinge_rest(scene, i);
 }
 
 /* Finds whether the structure is free to shift along x, and to turn and shift in the plane. */
@@ -458,6 +460,25 @@ static void drop_shapes(strut_scene *scene) {
   }
 }
 
+/* Densities and forces that hold a shape are found for straight members with a linear law only. */
+static strut_status refuse_elements(const strut_scene *scene, strut_form_source from,
+                                    strut_error *error) {
+  if (from == STRUT_FORM_LENGTHS) return STRUT_OK;
+  for (size_t j = 0; j < scene->member_count; j++) {
+    const strut_member *m = &scene->members[j];
+    if (!strut_member_is_special(m)) continue;
+    return strut_fail(error, STRUT_BAD_SCENE,
+                      "form finding by %s knows straight members with a linear law only: %s %s",
+                      strut_form_source_name(from), m->name,
+                      m->guide_count ? "runs over guides" : "has another law");
+  }
+  if (scene->hinge_count == 0) return STRUT_OK;
+  return strut_fail(
+      error, STRUT_BAD_SCENE,
+      "form finding by %s knows straight members with a linear law only: %s is a hinge",
+      strut_form_source_name(from), scene->hinges[0].name);
+}
+
 strut_status strut_form_find(strut_setup *setup, const strut_form_options *options,
                              strut_form *form, strut_error *error) {
   strut_scene *scene = &setup->scene;
@@ -481,6 +502,7 @@ strut_status strut_form_find(strut_setup *setup, const strut_form_options *optio
                           "units",
                           f.size);
     form->driven = scene->actuator_count > 0 || model->loads.count > 0;
+    if (status == STRUT_OK) status = refuse_elements(scene, form->from, error);
     if (status == STRUT_OK) status = find(&f, error);
   }
   if (status == STRUT_OK) {

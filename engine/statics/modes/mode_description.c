@@ -182,15 +182,34 @@ typedef struct energies {
   double members, ground, all;
 } energies;
 
+/* Energy of an element's slope: of its law, not of the bend of its strain. */
+static double element_energy(const strut_vibration *v, int32_t i, const double *x) {
+  strut_element_pose pose;
+  double along = strut_vibration_pose(v, i, &pose) ? strut_vibration_strain(v, i, &pose, x) : 0.0;
+  return pose.slope * along * along;
+}
+
 static double stretch_energy(const strut_vibration *v, int32_t j, const double *x) {
   double e = v->member[j].taut ? strut_vibration_spread(v, j, x).along : 0.0;
   return v->model->members.stiffness[j] * e * e;
 }
 
-static energies energies_of(const strut_vibration *v, const double *x) {
+/* Energies (members, then hinges) of a motion; a member's with those of its elements. */
+static void fill_energies(const strut_vibration *v, const double *x, double *energy) {
+  const strut_element_table *t = &v->model->elements;
+  int32_t members = v->model->members.count;
+  for (int32_t j = 0; j < members; j++) energy[j] = stretch_energy(v, j, x);
+  for (int32_t i = 0; i < t->count; i++) {
+    bool hinge = t->element[i].role == STRUT_ELEMENT_HINGE;
+    energy[hinge ? members + t->element[i].item : t->element[i].item] += element_energy(v, i, x);
+  }
+}
+
+static energies energies_of(const strut_vibration *v, const double *x, const double *energy) {
   energies e = {0};
   const strut_contact_table *c = &v->model->contacts;
-  for (int32_t j = 0; j < v->model->members.count; j++) e.members += stretch_energy(v, j, x);
+  int32_t items = v->model->members.count + (int32_t)v->model->scene->hinge_count;
+  for (int32_t j = 0; j < items; j++) e.members += energy[j];
   for (int32_t i = 0; i < c->count; i++) {
     double d[2];
     if (!v->closed[i]) continue;
@@ -202,23 +221,24 @@ static energies energies_of(const strut_vibration *v, const double *x) {
   return e;
 }
 
-static void describe_members(const strut_vibration *v, const double *x, const energies *e,
+static void describe_members(const strut_vibration *v, const double *energy, const energies *e,
                              strut_mode *mode) {
-  int32_t named[MOST_MEMBERS];
+  const strut_scene *scene = v->model->scene;
+  int32_t named[MOST_MEMBERS], members = v->model->members.count;
   int count = 0;
   for (; count < MOST_MEMBERS; count++) {
     double most = COUNTS * e->all;
     named[count] = -1;
-    for (int32_t j = 0; j < v->model->members.count; j++) {
-      double energy = stretch_energy(v, j, x);
+    for (int32_t j = 0; j < members + (int32_t)scene->hinge_count; j++) {
       bool known = false;
       for (int k = 0; k < count; k++) known = known || named[k] == j;
-      if (!known && energy > most) most = energy * (1 + 1e-9), named[count] = j;
+      if (!known && energy[j] > most) most = energy[j] * (1 + 1e-9), named[count] = j;
     }
-    if (named[count] < 0) break;
-    double share = 100.0 * stretch_energy(v, named[count], x) / e->all;
+    int32_t j = named[count];
+    if (j < 0) break;
     append_text(mode, "%s%s %.0f %%", count ? ", " : "; ",
-                v->model->scene->members[named[count]].name, share);
+                j < members ? scene->members[j].name : scene->hinges[j - members].name,
+                100.0 * energy[j] / e->all);
   }
   if (e->ground > 0.05 * e->all)
     append_text(mode, "%sthe ground %.0f %%", count++ ? ", " : "; ", 100.0 * e->ground / e->all);
@@ -252,15 +272,19 @@ void strut_modes_describe(const strut_modes_work *work, const double *x, strut_m
     append_text(mode, "; no stiffness resists");
     return;
   }
-  energies e = energies_of(v, x);
+  size_t items = (size_t)v->model->members.count + v->model->scene->hinge_count;
+  double *energy = strut_allocate(items + 1, sizeof *energy);
+  if (!energy) return; /* the mode stays, with fewer words */
+  fill_energies(v, x, energy);
+  energies e = energies_of(v, x, energy);
   double mass = 0.0, *product = (double *)v->work;
   strut_vibration_multiply(v, v->m, x, product);
   for (int32_t i = 0; i < v->n; i++) mass += x[i] * product[i];
   double stiffness = mode->eigenvalue * mass;
-  if (e.all < 0.5 * fabs(stiffness)) {
+  bool geometric = e.all < 0.5 * fabs(stiffness);
+  if (geometric)
     append_text(mode, "; %.0f %% of the stiffness is geometric",
                 fmin(100.0 * (1.0 - e.all / fabs(stiffness)), 100.0));
-    if (e.all < 0.01 * fabs(stiffness)) return;
-  }
-  describe_members(v, x, &e, mode);
+  if (!(e.all < 0.01 * fabs(stiffness))) describe_members(v, energy, &e, mode);
+  strut_release(energy);
 }

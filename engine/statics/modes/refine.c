@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/model/pose.h"
+
 /* The shape to twice a double's precision, and what last bits do to a stiffness. */
 
 enum { MOST_STEPS = 8, SAMPLES = 3 };
@@ -64,12 +66,45 @@ static double stirred(uint64_t i) {
   return (double)((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1.0;
 }
 
+/* Elements: the last bits of strain and natural strain, and of the positions they are made of. */
+static void sample_elements(const strut_modes_work *work, bool at_rest, uint64_t first,
+                            double *noise, strut_dd *x) {
+  const strut_vibration *v = work->v;
+  const strut_element_table *t = &v->model->elements;
+  strut_element_pose pose;
+  for (int32_t i = 0; i < t->count; i++) {
+    const strut_element *e = &t->element[i];
+    bool acts = strut_vibration_pose(v, i, &pose);
+    double bits = DBL_EPSILON * (fabs(pose.strain) + fabs(pose.natural));
+    if (e->strain == STRUT_STRAIN_ANGLE) bits += 4.0 * DBL_EPSILON; /* of directions */
+    for (int32_t k = 0; k < e->nodes && !at_rest; k++) {
+      const double *at = v->rounded + t->at[e->first + k];
+      bits += hypot(pose.b[2 * k], pose.b[2 * k + 1]) * strut_coordinate_rounding(at, at);
+    }
+    noise[i] = acts ? -pose.slope * bits * stirred(first + (uint64_t)i) : 0.0;
+    for (int32_t k = 0; k < 2 * e->nodes && at_rest; k++) {
+      int32_t row = v->shape->row_of[t->at[e->first + k / 2] + (uint32_t)(k % 2)];
+      if (row >= 0) x[row] = dd_sub(x[row], dd_of(noise[i] * pose.b[k]));
+    }
+  }
+}
+
+/* How the forces of elements follow once the shape has come to rest again. */
+static void settle_elements(const strut_modes_work *work, const double *moved, double *noise) {
+  const strut_vibration *v = work->v;
+  strut_element_pose pose;
+  for (int32_t i = 0; i < v->model->elements.count; i++) {
+    if (strut_vibration_pose(v, i, &pose))
+      noise[i] += pose.slope * strut_vibration_strain(v, i, &pose, moved);
+  }
+}
+
 /*
  * Rest lengths off by up to half of their last bit: how the forces follow once it has come to rest
  * again; or, in a shape that is not at rest, lengths off by their last bits.
  */
 static void sample_noise(strut_modes_work *work, bool at_rest, uint64_t sample, double *noise,
-                         strut_dd *x) {
+                         double *elements, strut_dd *x) {
   const strut_vibration *v = work->v;
   const strut_member_table *t = &v->model->members;
   uint64_t first = sample * (uint64_t)t->count;
@@ -87,6 +122,8 @@ static void sample_noise(strut_modes_work *work, bool at_rest, uint64_t sample, 
       if (b >= 0) x[b] = dd_sub(x[b], dd_of(pull[c]));
     }
   }
+  uint64_t behind = SAMPLES * (uint64_t)t->count + sample * (uint64_t)v->model->elements.count;
+  sample_elements(work, at_rest, behind, elements, x);
   if (at_rest) {
     strut_modes_solve(&work->solver, x);
     double *moved = (double *)v->work;
@@ -94,12 +131,40 @@ static void sample_noise(strut_modes_work *work, bool at_rest, uint64_t sample, 
     for (int32_t j = 0; j < t->count; j++)
       if (v->member[j].taut)
         noise[j] += t->stiffness[j] * strut_vibration_spread(v, j, moved).along;
+    settle_elements(work, moved, elements);
   }
   for (int32_t j = 0; j < t->count; j++)
     noise[j] = v->member[j].length > 0 ? noise[j] / v->member[j].length : 0.0;
 }
 
-static void measure_noise(strut_modes_work *work, const double *noise) {
+/* What the noise of its force, and the rounding of its gradient, do to a motion x (n). */
+static double element_noise(const strut_vibration *v, int32_t i, double noise, const double *x) {
+  const strut_element *e = &v->model->elements.element[i];
+  const uint32_t *at = v->model->elements.at + e->first;
+  double bend[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT] = {0}, sum = 0.0, size = 0.0, far = 0.0;
+  double blur = 2.0 * DBL_EPSILON; /* relative, of second derivatives */
+  int32_t n = 2 * e->nodes;
+  strut_element_pose pose;
+  if (!strut_vibration_pose(v, i, &pose)) return 0.0;
+  strut_element_bend(v->model, i, v->rounded, 1.0, bend);
+  for (int32_t k = 0; k < e->nodes && e->strain == STRUT_STRAIN_ANGLE; k++) {
+    const double *place = v->rounded + at[k];
+    blur += 2.0 * hypot(pose.b[2 * k], pose.b[2 * k + 1]) * strut_coordinate_rounding(place, place);
+  }
+  for (int32_t r = 0; r < n - 2; r++) { /* of the last node nothing: it moves by 0 against itself */
+    double own = strut_vibration_relative(v, i, r, x);
+    far += fabs(pose.b[r] * own);
+    for (int32_t c = 0; c < n - 2; c++) {
+      double part = own * bend[r * n + c] * strut_vibration_relative(v, i, c, x);
+      sum += part, size += fabs(part);
+    }
+  }
+  double along = fabs(strut_vibration_strain(v, i, &pose, x)), bits = 2.0 * DBL_EPSILON * far;
+  return fabs(noise * sum) + blur * fabs(pose.force) * size +
+         fabs(pose.slope) * bits * (2.0 * along + bits);
+}
+
+static void measure_noise(strut_modes_work *work, const double *noise, const double *elements) {
   const strut_vibration *v = work->v;
   strut_eigen_set *set = &work->set;
   for (int32_t i = 0; i < set->count; i++) {
@@ -109,6 +174,8 @@ static void measure_noise(strut_modes_work *work, const double *noise) {
       double across = strut_vibration_spread(v, j, set->vector + (size_t)i * (size_t)v->n).across;
       sum += noise[j] * across * across;
     }
+    for (int32_t j = 0; j < v->model->elements.count; j++)
+      sum = fabs(sum) + element_noise(v, j, elements[j], set->vector + (size_t)i * (size_t)v->n);
     set->noise[i] = fmax(set->noise[i], 2.0 * fabs(sum)); /* twice: there are few samples */
   }
 }
@@ -133,11 +200,13 @@ strut_status strut_modes_noise(strut_modes_work *work, bool at_rest, strut_error
   strut_vibration *v = work->v;
   strut_dd *step = strut_arena_allocate(work->arena, (size_t)v->n, sizeof *step);
   double *noise = strut_arena_allocate(work->arena, (size_t)v->model->members.count, sizeof *noise);
-  if (!step || !noise) return strut_no_memory(error, "");
+  double *elements =
+      strut_arena_allocate(work->arena, (size_t)v->model->elements.count, sizeof *elements);
+  if (!step || !noise || !elements) return strut_no_memory(error, "");
   if (at_rest) strut_modes_factorise(&work->solver, find_soft(work));
   for (uint64_t sample = 0; sample < SAMPLES; sample++) {
-    sample_noise(work, at_rest, sample, noise, step);
-    measure_noise(work, noise);
+    sample_noise(work, at_rest, sample, noise, elements, step);
+    measure_noise(work, noise, elements);
   }
   return STRUT_OK;
 }

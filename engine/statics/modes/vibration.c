@@ -43,44 +43,105 @@ static void add_member(strut_vibration *v, int32_t j) {
   strut_block_scatter(&damper, STRUT_MEMBER_ENTRIES, place - STRUT_MEMBER_ENTRIES, v->d);
 }
 
-/* Of elements in single precision of a double: their rounding is that of their stiffness. */
+/* Elements have strains and gradients in a double, which rounds their directions alone. */
 typedef struct element_sum {
   strut_vibration *vibration;
   strut_dd *force; /* NULL: stiffness and damping */
 } element_sum;
 
-static void add_element(void *context, int32_t i, const strut_element_pose *pose) {
+bool strut_vibration_pose(const strut_vibration *v, int32_t i, strut_element_pose *pose) {
+  const strut_element *e = &v->model->elements.element[i];
+  const uint32_t *at = v->model->elements.at + e->first;
+  double bend[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT] = {0}, low[STRUT_MOST_GRADIENT];
+  double change = 0.0;
+  int32_t n = 2 * e->nodes;
+  bool any = false;
+  strut_element_evaluate(v->model, i, v->model->members.rest, v->rounded, (double)NAN, pose);
+  for (int32_t k = 0; k < n; k++) {
+    low[k] = v->q[at[k / 2] + (uint32_t)(k % 2)].lo;
+    any = any || low[k] != 0.0;
+    change += pose->b[k] * low[k];
+  }
+  if (!any || !pose->acts) return pose->acts;
+  strut_element_bend(v->model, i, v->rounded, 1.0, bend);
+  for (int32_t r = 0; r < n; r++)
+    for (int32_t c = 0; c < n; c++) pose->b[r] += bend[r * n + c] * low[c];
+  pose->strain += change;
+  pose->force += pose->slope * change;
+  return true;
+}
+
+/* The gradient with a last node that makes its sum vanish to all digits: a shift costs nothing. */
+static void balance_gradient(const strut_element_pose *pose, int32_t nodes, strut_dd *b) {
+  for (int32_t c = 0; c < 2; c++) {
+    strut_dd sum = dd_of(0.0);
+    for (int32_t k = 0; k + 1 < nodes; k++) {
+      b[2 * k + c] = dd_of(pose->b[2 * k + c]);
+      sum = dd_add(sum, b[2 * k + c]);
+    }
+    b[2 * (nodes - 1) + c] = dd_negative(sum);
+  }
+}
+
+/* Entry r, c of a second derivative, those of one node from the others', likewise. */
+static strut_dd balanced_entry(const double *k, int32_t n, int32_t r, int32_t c) {
+  if (r / 2 != c / 2) return dd_of(k[r * n + c]);
+  strut_dd sum = dd_of(0.0);
+  for (int32_t other = c % 2; other < n; other += 2)
+    if (other / 2 != c / 2) sum = dd_sub(sum, dd_of(k[r * n + other]));
+  return sum;
+}
+
+static void add_element(void *context, int32_t i, const strut_element_pose *rounded) {
   strut_vibration *v = ((const element_sum *)context)->vibration;
+  strut_element_pose sharp, *pose = &sharp;
+  (void)rounded;
+  strut_vibration_pose(v, i, pose);
   const strut_element *e = &v->model->elements.element[i];
   const int32_t *place = v->shape->place + strut_places_of_elements(v->model);
   double k[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
   int32_t n = 2 * e->nodes;
-  strut_element_stiffness(v->model, i, pose, v->rounded, k);
-  strut_element_scatter(v->model, i, k, place, v->sum);
+  memset(k, 0, sizeof k);
+  strut_element_bend(v->model, i, v->rounded, pose->force, k);
+  const int32_t *own = place + e->place;
+  strut_dd b[STRUT_MOST_GRADIENT];
+  balance_gradient(pose, e->nodes, b);
+  const uint32_t *at = v->model->elements.at + e->first;
+  for (int32_t r = 0; r < n;
+       r++) /* a sum of squares to all digits, so that soft motions stay soft */
+    for (int32_t c = 0; c <= r; c++, own++) {
+      if (*own < 0) continue;
+      bool both = r != c && at[r / 2] == at[c / 2] && r % 2 == c % 2; /* a node met twice */
+      strut_dd entry = dd_scale(dd_mul(b[r], b[c]), pose->slope);
+      entry = dd_add(entry, balanced_entry(k, n, r, c));
+      v->k[*own] = dd_add(v->k[*own], both ? dd_add(entry, entry) : entry);
+    }
   for (int32_t r = 0; r < n; r++)
     for (int32_t c = 0; c < n; c++) k[r * n + c] = e->damping * pose->b[r] * pose->b[c];
   strut_element_scatter(v->model, i, k, place, v->d);
 }
 
-static void add_element_force(void *context, int32_t i, const strut_element_pose *pose) {
+static void add_element_force(void *context, int32_t i, const strut_element_pose *rounded) {
   const element_sum *s = context;
+  strut_element_pose sharp, *pose = &sharp;
+  (void)rounded;
+  strut_vibration_pose(s->vibration, i, pose);
   const strut_element_table *t = &s->vibration->model->elements;
   const strut_element *e = &t->element[i];
+  strut_dd b[STRUT_MOST_GRADIENT];
+  balance_gradient(pose, e->nodes, b);
   for (int32_t k = 0; k < 2 * e->nodes; k++) {
     int32_t row = s->vibration->shape->row_of[t->at[e->first + k / 2] + (uint32_t)(k % 2)];
-    if (row >= 0) s->force[row] = dd_add(s->force[row], dd_product(-pose->force, pose->b[k]));
+    if (row >= 0) s->force[row] = dd_sub(s->force[row], dd_scale(b[k], pose->force));
   }
 }
 
 static void add_elements(strut_vibration *v) {
   element_sum sum = {v, NULL};
-  size_t entries = (size_t)v->shape->pattern->start[v->n];
   if (!v->model->elements.count) return;
   for (int32_t i = 0; i < v->model->length; i++) v->rounded[i] = dd_double(v->q[i]);
-  memset(v->sum, 0, entries * sizeof *v->sum);
   strut_elements_visit(v->model, v->model->members.rest, v->rounded, -HUGE_VAL, false, &sum,
                        add_element);
-  for (size_t i = 0; i < entries; i++) v->k[i] = dd_add(v->k[i], dd_of(v->sum[i]));
 }
 
 static void add_contact(strut_vibration *v, int32_t i) {
@@ -162,11 +223,9 @@ static bool allocate(strut_vibration *v) {
   v->m = strut_arena_allocate(&v->arena, entries, sizeof *v->m);
   v->d = strut_arena_allocate(&v->arena, entries, sizeof *v->d);
   v->rounded = strut_arena_allocate(&v->arena, (size_t)model->length, sizeof *v->rounded);
-  v->sum = strut_arena_allocate(&v->arena, entries, sizeof *v->sum);
   v->mass = strut_arena_allocate(&v->arena, n, sizeof *v->mass);
   v->work = strut_arena_allocate(&v->arena, n, sizeof *v->work);
-  return v->rounded && v->sum && v->q && v->member && v->closed && v->k && v->m && v->d &&
-         v->mass && v->work;
+  return v->rounded && v->q && v->member && v->closed && v->k && v->m && v->d && v->mass && v->work;
 }
 
 strut_status strut_vibration_create(const strut_model *model, const double *q,
@@ -278,4 +337,23 @@ strut_end_displacement strut_vibration_spread(const strut_vibration *v, int32_t 
   }
   double ux = v->member[j].ux.hi, uy = v->member[j].uy.hi;
   return (strut_end_displacement){ux * d[0] + uy * d[1], ux * d[1] - uy * d[0]};
+}
+
+double strut_vibration_relative(const strut_vibration *v, int32_t element, int32_t k,
+                                const double *x) {
+  const strut_element *e = &v->model->elements.element[element];
+  const uint32_t *at = v->model->elements.at + e->first;
+  uint32_t axis = (uint32_t)(k % 2);
+  int32_t own = v->shape->row_of[at[k / 2] + axis];
+  int32_t last = v->shape->row_of[at[e->nodes - 1] + axis];
+  return (own >= 0 ? x[own] : 0.0) - (last >= 0 ? x[last] : 0.0);
+}
+
+double strut_vibration_strain(const strut_vibration *v, int32_t element,
+                              const strut_element_pose *pose, const double *x) {
+  const strut_element *e = &v->model->elements.element[element];
+  double sum = 0.0;
+  for (int32_t k = 0; k < 2 * (e->nodes - 1); k++)
+    sum += pose->b[k] * strut_vibration_relative(v, element, k, x);
+  return sum;
 }

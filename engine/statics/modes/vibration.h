@@ -3,12 +3,13 @@
  * Small motions about a shape: M x'' + D x' + K x = 0 on the free coordinates.
  *
  * K and the forces are computed in twice a double's precision, because the softest motions of a
- * structure may be 1e-16 times as stiff as its hardest. Drives are at rest, friction does not act.
+ * structure may be 1e-16 times as stiff as its hardest; strains of elements in a double's. Drives are at rest, friction does not act.
  */
 #ifndef STRUT_ENGINE_STATICS_MODES_VIBRATION_H
 #define STRUT_ENGINE_STATICS_MODES_VIBRATION_H
 
 #include "engine/base/double_double.h"
+#include "engine/forces/elements.h"
 #include "engine/statics/potential.h"
 
 /** A member in the shape. */
@@ -30,7 +31,6 @@ typedef struct strut_vibration {
   uint8_t *closed;                /* (contacts) 1 where the ground pushes, there with stiffness */
   strut_dd *k;                    /* K [N/m], in the pattern's places as the next two */
   double *m, *d;                  /* M [kg], D [N s/m] */
-  double *sum;                    /* scratch at the same places */
   double *mass;                   /* (n) row sums of M: 0 where nothing has mass */
   int32_t massive;                /* rows with mass */
   double largest;                 /* an upper bound of the eigenvalues of K x = z M x [1/s^2] */
@@ -68,5 +68,18 @@ typedef struct strut_end_displacement {
 } strut_end_displacement;
 strut_end_displacement strut_vibration_spread(const strut_vibration *vibration, int32_t j,
                                               const double *x);
+
+/**
+ * An element in the shape: strain, force and gradient with the digits of positions that a double does
+ * not have, to first order. False where it does not act.
+ */
+bool strut_vibration_pose(const strut_vibration *vibration, int32_t element,
+                          strut_element_pose *pose);
+/** How the motion x (n) of its coordinate k (2 nodes) differs from that of an element's last node. */
+double strut_vibration_relative(const strut_vibration *vibration, int32_t element, int32_t k,
+                                const double *x);
+/** How the strain of an element changes in the motion x (n). */
+double strut_vibration_strain(const strut_vibration *vibration, int32_t element,
+                              const strut_element_pose *pose, const double *x);
 
 #endif

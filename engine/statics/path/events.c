@@ -262,26 +262,60 @@ static bool choose_switches(strut_path_walk *w, const switch_group *g, const dou
   return false;
 }
 
+/* What an element does as its switch is thrown: "m1 reaches its longest length". */
+static strut_path_event_kind describe_element(const strut_path_system *s, int32_t which, bool on,
+                                              char *text, size_t room) {
+  const strut_scene *scene = s->model->scene;
+  const strut_path_element_switch *w = &s->elements.switches[which];
+  const strut_element *e = &s->model->elements.element[w->element];
+  bool hinge = e->role == STRUT_ELEMENT_HINGE;
+  const char *name = hinge ? scene->hinges[e->item].name : scene->members[e->item].name;
+  strut_path_event_kind kind = on ? STRUT_PATH_ENGAGE : STRUT_PATH_RELEASE;
+  const char *what = on ? "begins to act" : "ceases to act";
+  if (w->kink >= 0) kind = STRUT_PATH_LAW, what = "passes a kink of its law";
+  if (e->role == STRUT_ELEMENT_LONGEST)
+    what = on ? "reaches its longest length" : "leaves its longest length";
+  if (e->role == STRUT_ELEMENT_SHORTEST)
+    what = on ? "reaches its shortest length" : "leaves its shortest length";
+  if (w->kink < 0 && e->role == STRUT_ELEMENT_MEMBER) {
+    bool cable = scene->members[e->item].kind == STRUT_CABLE;
+    if (cable) kind = on ? STRUT_PATH_TAUT : STRUT_PATH_SLACK;
+    what = cable            ? (on ? "begins to pull" : "goes slack")
+           : e->carries > 0 ? (on ? "begins to pull" : "ceases to pull")
+                            : (on ? "begins to push" : "ceases to push");
+  }
+  snprintf(text, room, "%s %s", name, what);
+  return kind;
+}
+
 static void report_switch(strut_path_walk *w, int32_t which, int32_t before, int32_t after) {
-  const strut_scene *scene = w->system.model->scene;
-  int32_t members = w->system.model->members.count;
-  bool on = strut_path_switch_is_on(&w->system, which);
+  const strut_path_system *s = &w->system;
+  const strut_scene *scene = s->model->scene;
+  int32_t members = s->model->members.count, elements = strut_path_first_element_switch(s);
+  bool on = strut_path_switch_is_on(s, which);
   const char *stable = !before && after   ? ", unstable from here"
                        : before && !after ? ", stable from here"
                                           : "";
-  char detail[300];
-  if (which < members) {
-    snprintf(detail, sizeof detail, "%s %s%s", scene->members[which].name,
-             on ? "begins to pull" : "goes slack", stable);
-    strut_path_add_event(w, on ? STRUT_PATH_TAUT : STRUT_PATH_SLACK, w->y, which, before, after,
-                         detail);
-    return;
+  char detail[300], what[240];
+  int32_t index = which;
+  strut_path_event_kind kind = on ? STRUT_PATH_TAUT : STRUT_PATH_SLACK;
+  if (which >= elements) {
+    int32_t element = s->elements.switches[which - elements].element;
+    kind = describe_element(s, which - elements, on, what, sizeof what);
+    index = kind == STRUT_PATH_TAUT || kind == STRUT_PATH_SLACK
+                ? s->model->elements.element[element].item
+                : element;
+  } else if (which < members) {
+    snprintf(what, sizeof what, "%s %s", scene->members[which].name,
+             on ? "begins to pull" : "goes slack");
+  } else {
+    index = s->model->contacts.entry[which - members].node;
+    kind = on ? STRUT_PATH_TOUCHDOWN : STRUT_PATH_LIFT_OFF;
+    snprintf(what, sizeof what, "%s %s", scene->nodes[index].name,
+             on ? "touches the ground" : "leaves the ground");
   }
-  int32_t node = w->system.model->contacts.entry[which - members].node;
-  snprintf(detail, sizeof detail, "%s %s%s", scene->nodes[node].name,
-           on ? "touches the ground" : "leaves the ground", stable);
-  strut_path_add_event(w, on ? STRUT_PATH_TOUCHDOWN : STRUT_PATH_LIFT_OFF, w->y, node, before,
-                       after, detail);
+  snprintf(detail, sizeof detail, "%s%s", what, stable);
+  strut_path_add_event(w, kind, w->y, index, before, after, detail);
 }
 
 /* Reports a parameter that turns back at the kink, or a change of stability if it continues. */

@@ -22,6 +22,30 @@ bool strut_path_terms_create(const strut_model *model, strut_arena *arena, strut
          t->ground;
 }
 
+/* A scene at a value with its model, kept as long as laws of its elements are used. */
+struct strut_path_scene {
+  strut_setup setup;
+  strut_model *model;
+};
+
+static void free_scene(struct strut_path_scene *scene) {
+  if (!scene) return;
+  strut_model_free(scene->model);
+  strut_setup_free(&scene->setup);
+  strut_release(scene);
+}
+
+void strut_path_terms_release(strut_path_terms *terms) {
+  free_scene(terms->scene);
+  terms->scene = NULL;
+}
+
+void strut_path_parameter_free(strut_path_parameter *p) {
+  strut_path_terms_release(&p->base);
+  strut_path_terms_release(&p->low);
+  strut_path_terms_release(&p->high);
+}
+
 static void copy_terms(const strut_model *model, const strut_path_terms *from,
                        strut_path_terms *to) {
   size_t length = (size_t)model->length * sizeof(double);
@@ -35,6 +59,7 @@ static void copy_terms(const strut_model *model, const strut_path_terms *from,
   memcpy(to->ground, from->ground, (size_t)model->contacts.count * sizeof(double));
   memcpy(to->normal, from->normal, sizeof to->normal);
   to->height = from->height;
+  to->laws = from->laws;
 }
 
 static void read_terms(const strut_model *model, strut_path_terms *t) {
@@ -53,9 +78,24 @@ static void read_terms(const strut_model *model, strut_path_terms *t) {
   for (int32_t i = 0; i < c->count; i++) t->ground[i] = c->entry[i].stiffness;
   memcpy(t->normal, c->normal, sizeof t->normal);
   t->height = c->height;
+  t->laws = model;
 }
 
-/* Two models of one structure: the same members, supports and contacts. */
+/* The same elements: strains, laws and kinks, whatever their numbers. */
+static bool are_elements_alike(const strut_element_table *a, const strut_element_table *b) {
+  if (a->count != b->count) return false;
+  for (int32_t i = 0; i < a->count; i++) {
+    const strut_element *s = &a->element[i], *t = &b->element[i];
+    if (s->strain != t->strain || s->law != t->law || s->role != t->role || s->item != t->item ||
+        s->nodes != t->nodes || s->carries != t->carries || s->slot != t->slot ||
+        strut_law_kinks(s->law, &s->numbers) != strut_law_kinks(t->law, &t->numbers) ||
+        memcmp(a->at + s->first, b->at + t->first, (size_t)s->nodes * sizeof *a->at) != 0)
+      return false;
+  }
+  return true;
+}
+
+/* Two models of one structure: the same members, elements, supports and contacts. */
 static bool is_same_structure(const strut_model *a, const strut_model *b) {
   const strut_member_table *s = &a->members, *t = &b->members;
   if (a->node_count != b->node_count || a->length != b->length || s->count != t->count ||
@@ -66,7 +106,8 @@ static bool is_same_structure(const strut_model *a, const strut_model *b) {
       return false;
   for (int32_t i = 0; i < a->contacts.count; i++)
     if (a->contacts.at[i] != b->contacts.at[i]) return false;
-  return memcmp(a->fixed, b->fixed, (size_t)a->length * sizeof *a->fixed) == 0;
+  return memcmp(a->fixed, b->fixed, (size_t)a->length * sizeof *a->fixed) == 0 &&
+         are_elements_alike(&a->elements, &b->elements);
 }
 
 /* Records why the scene is invalid at a value. */
@@ -77,20 +118,33 @@ static bool refuse_value(strut_path_parameter *p, double value, const strut_erro
 }
 
 static bool read_scene_terms(strut_path_parameter *p, double value, strut_path_terms *terms) {
-  strut_setup setup;
-  strut_model *model = NULL;
   strut_error error = {0};
-  strut_status status = p->options->scene_at(p->options->context, value, &setup, &error);
-  if (status != STRUT_OK) return refuse_value(p, value, &error);
-  status = strut_model_compile(&setup.scene, &model, &error);
-  if (status == STRUT_OK && !is_same_structure(p->model, model))
+  struct strut_path_scene *scene = strut_allocate(1, sizeof *scene);
+  if (!scene) {
+    strut_no_memory(&error, "");
+    return refuse_value(p, value, &error);
+  }
+  strut_status status = p->options->scene_at(p->options->context, value, &scene->setup, &error);
+  if (status != STRUT_OK) {
+    strut_release(scene);
+    return refuse_value(p, value, &error);
+  }
+  status = strut_model_compile(&scene->setup.scene, &scene->model, &error);
+  if (status == STRUT_OK && !is_same_structure(p->model, scene->model))
     status = strut_fail(&error, STRUT_USAGE,
-                        "%s changes what the structure is made of (nodes, members, supports or "
-                        "contacts); a path needs the same structure throughout",
+                        "%s changes what the structure is made of (nodes, members, hinges, laws, "
+                        "supports or contacts); a path needs the same structure throughout",
                         p->options->name);
-  if (status == STRUT_OK) read_terms(model, terms);
-  strut_model_free(model);
-  strut_setup_free(&setup);
+  if (status == STRUT_OK) {
+    read_terms(scene->model, terms);
+    strut_path_terms_release(terms);
+    if (scene->model->elements.count) {
+      terms->scene = scene;
+      return true;
+    }
+    terms->laws = p->model;
+  }
+  free_scene(scene);
   return status == STRUT_OK || refuse_value(p, value, &error);
 }
 
@@ -104,9 +158,10 @@ bool strut_path_parameter_terms(strut_path_parameter *p, strut_dd value, strut_p
     for (int32_t i = 0; i < p->model->length; i++) t->force[i] += dd_double(change) * p->load[i];
   } else if (p->options->over == STRUT_PATH_OVER_ACTUATOR) {
     int32_t member = p->model->scene->actuators[at].member;
-    strut_dd rest = dd_add(dd_of(p->base.rest[member]), change);
-    t->rest[member] = rest.hi, t->rest_low[member] = rest.lo;
-    if (rest.hi < 0) {
+    int32_t slot = strut_actuator_slot(p->model, (size_t)at);
+    strut_dd rest = dd_add(dd_of(p->base.rest[slot]), change);
+    t->rest[slot] = rest.hi, t->rest_low[slot] = rest.lo;
+    if (member >= 0 && rest.hi < 0) {
       strut_fail(&error, STRUT_BAD_SCENE, "the rest length of %s would be negative",
                  p->model->scene->members[member].name);
       return refuse_value(p, dd_double(value), &error);
@@ -138,7 +193,7 @@ static bool difference_scenes(strut_path_parameter *p, double value, strut_path_
     if (low == high || !read_scene_terms(p, high, b)) return false;
   }
   p->refused_at = refused_at, p->refusal = refusal;
-  double apart = high - low;
+  double apart = p->apart = high - low;
   divide_difference(a->stiffness, b->stiffness, apart, slots, rates->stiffness);
   divide_difference(a->rest, b->rest, apart, slots, rates->rest);
   divide_difference(a->position, b->position, apart, length, rates->position);
@@ -158,7 +213,7 @@ bool strut_path_parameter_rates(strut_path_parameter *p, double value, strut_pat
       memcpy(rates->force, p->load, (size_t)p->model->length * sizeof(double));
       return true;
     case STRUT_PATH_OVER_ACTUATOR:
-      rates->rest[p->model->scene->actuators[at].member] = 1;
+      rates->rest[strut_actuator_slot(p->model, (size_t)at)] = 1;
       return true;
     case STRUT_PATH_OVER_COORDINATE: rates->position[at] = 1; return true;
   }
@@ -169,6 +224,24 @@ static bool is_equal(const double *a, const double *b, size_t count) {
   return memcmp(a, b, count * sizeof *a) == 0;
 }
 
+/* Do the elements' laws have other numbers? */
+static bool are_laws_different(const strut_element_table *a, const strut_element_table *b) {
+  for (int32_t i = 0; i < a->count; i++) {
+    const strut_element *s = &a->element[i], *t = &b->element[i];
+    const strut_law_numbers *m = &s->numbers, *n = &t->numbers;
+    if (s->natural != t->natural || m->stiffness != n->stiffness || m->first != n->first ||
+        m->second != n->second || m->count != n->count)
+      return true;
+    if (m->count && !is_equal(m->coefficient, n->coefficient, m->count)) return true;
+    if (m->curve &&
+        (m->curve->count != n->curve->count ||
+         !is_equal(m->curve->x, n->curve->x, m->curve->count) ||
+         !is_equal(&m->curve->piece[0][0], &n->curve->piece[0][0], 4 * (m->curve->count - 1))))
+      return true;
+  }
+  return false;
+}
+
 /* True if the terms differ in equilibrium; positions matter only where they are held. */
 static bool is_different(const strut_model *model, const strut_path_terms *a,
                          const strut_path_terms *b) {
@@ -176,7 +249,8 @@ static bool is_different(const strut_model *model, const strut_path_terms *a,
   for (int32_t i = 0; i < 2 * model->node_count; i++)
     if (model->fixed[i] ? a->position[i] != b->position[i] : a->force[i] != b->force[i])
       return true;
-  return !is_equal(a->stiffness, b->stiffness, slots) || !is_equal(a->rest, b->rest, slots) ||
+  return are_laws_different(&a->laws->elements, &b->laws->elements) ||
+         !is_equal(a->stiffness, b->stiffness, slots) || !is_equal(a->rest, b->rest, slots) ||
          !is_equal(a->ground, b->ground, (size_t)model->contacts.count) ||
          !is_equal(a->normal, b->normal, 2) || a->height != b->height;
 }

@@ -16,6 +16,8 @@ typedef struct strut_path_terms {
   double *force;                   /* (length) gravity and loads [N] */
   double *ground;                  /* (contacts) stiffness [N/m] */
   double normal[2], height;        /* of the ground */
+  const strut_model *laws;         /* whose elements have laws and natural strains of these terms */
+  struct strut_path_scene *scene; /* that `laws` is of if it is not the path's own model, or NULL */
 } strut_path_terms;
 
 /** strut_path_parameter_create fills it; of the one in use the address must not change. */
@@ -25,12 +27,15 @@ typedef struct strut_path_parameter {
   const double *load;       /* (length) loads at factor 1 [N] */
   double from, range;       /* [SI]; range is not 0 */
   strut_path_terms base, low, high;
+  double apart;        /* of low and high as a derivative took them */
   double refused_at;   /* the last value that was refused, and why */
   strut_error refusal; /* STRUT_OK: none was */
 } strut_path_parameter;
 
 /** Terms of zeros in the arena; false: out of memory. */
 bool strut_path_terms_create(const strut_model *model, strut_arena *arena, strut_path_terms *terms);
+/** Releases the scene that terms were read from; what lies in the arena stays. */
+void strut_path_terms_release(strut_path_terms *terms);
 
 /**
  * `position` (length) are the held coordinates at `from`. STRUT_USAGE where the parameter changes
@@ -41,6 +46,9 @@ strut_status strut_path_parameter_create(const strut_model *model,
                                          double from, double until, const double *position,
                                          strut_arena *arena, strut_path_parameter *parameter,
                                          strut_error *error);
+
+/** Releases what its terms hold outside of the arena; zero-initialised ones may be freed. */
+void strut_path_parameter_free(strut_path_parameter *parameter);
 
 /** The terms at a value; false: there are none, parameter->refusal says why. */
 bool strut_path_parameter_terms(strut_path_parameter *parameter, strut_dd value,

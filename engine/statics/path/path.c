@@ -17,9 +17,17 @@ static const double NEARLY = 1e6;
 static const double ALIKE = 1e-12; /* forces of several loads that count as one number */
 
 const char *strut_path_event_name(strut_path_event_kind kind) {
-  static const char *const names[] = {
-      "limit point",           "bifurcation",          "slack", "taut", "touchdown", "lift-off",
-      "limit point at a kink", "bifurcation at a kink"};
+  static const char *const names[] = {"limit point",
+                                      "bifurcation",
+                                      "slack",
+                                      "taut",
+                                      "touchdown",
+                                      "lift-off",
+                                      "limit point at a kink",
+                                      "bifurcation at a kink",
+                                      "engages",
+                                      "releases",
+                                      "kink of a law"};
   return names[kind];
 }
 
@@ -102,15 +110,31 @@ static bool scale_loads(path_start *b) {
   return true;
 }
 
+/* The driven hinge with the rest angle that the path begins with. */
+static strut_status turn_hinge(path_start *b, strut_error *error) {
+  const strut_scene *drawn = b->drawn->scene;
+  int32_t slot = strut_actuator_slot(b->drawn, (size_t)b->options->index);
+  strut_hinge *hinges = strut_arena_allocate(&b->arena, drawn->hinge_count, sizeof *hinges);
+  if (!hinges) return strut_no_memory(error, "");
+  memcpy(hinges, drawn->hinges, drawn->hinge_count * sizeof *hinges);
+  b->setup.scene.hinges = hinges;
+  hinges[drawn->actuators[b->options->index].hinge].rest_angle =
+      b->drawn->members.rest[slot] + b->options->from;
+  return STRUT_OK;
+}
+
 /* The driven member with the rest length that the path begins with. */
 static strut_status lengthen_member(path_start *b, strut_error *error) {
   const strut_scene *drawn = b->drawn->scene;
   int32_t driven = drawn->actuators[b->options->index].member;
+  strut_rest rest;
+  if (driven < 0) return turn_hinge(b, error);
   strut_member *members = strut_arena_allocate(&b->arena, drawn->member_count, sizeof *members);
   if (!members) return strut_no_memory(error, "");
   memcpy(members, drawn->members, drawn->member_count * sizeof *members);
   b->setup.scene.members = members;
-  members[driven].stiffness = b->drawn->members.stiffness[driven];
+  if (!strut_member_rest(drawn, (size_t)driven, &rest)) rest.stiffness = members[driven].stiffness;
+  if (members[driven].axial_stiffness > 0) members[driven].stiffness = rest.stiffness;
   members[driven].axial_stiffness = 0;
   members[driven].rest_kind = STRUT_REST_LENGTH;
   members[driven].rest_value = b->drawn->members.rest[driven] + b->options->from;
@@ -256,6 +280,10 @@ static strut_status walk_from(path_start *b, double until, int32_t steps, strut_
   return status;
 }
 
+static bool is_hinge_driven(const strut_model *model, const strut_path_options *o) {
+  return o->over == STRUT_PATH_OVER_ACTUATOR && model->scene->actuators[o->index].member < 0;
+}
+
 /* Names the path's parameter for messages. */
 static strut_status name_parameter(const strut_model *model, const strut_path_options *o,
                                    strut_path *path, strut_error *error) {
@@ -265,6 +293,7 @@ static strut_status name_parameter(const strut_model *model, const strut_path_op
   path->coordinate = o->over == STRUT_PATH_OVER_COORDINATE ? o->index : -1;
   path->unit = o->over == STRUT_PATH_OVER_LOAD    ? ""
                : o->over == STRUT_PATH_OVER_SCENE ? o->unit
+               : is_hinge_driven(model, o)        ? "rad"
                                                   : "m";
   if (o->over == STRUT_PATH_OVER_LOAD) path->name = o->load ? o->load : "all loads";
   if (o->over == STRUT_PATH_OVER_ACTUATOR) path->name = scene->actuators[o->index].name;

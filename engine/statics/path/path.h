@@ -19,20 +19,24 @@
 enum { STRUT_PATH_COORDINATES = 600 };
 
 typedef enum strut_path_event_kind {
-  STRUT_PATH_LIMIT,       /* the parameter turns back */
-  STRUT_PATH_BIFURCATION, /* an eigenvalue of the stiffness changes its sign, the parameter
+  STRUT_PATH_LIMIT,            /* the parameter turns back */
+  STRUT_PATH_BIFURCATION,      /* an eigenvalue of the stiffness changes its sign, the parameter
                                   goes on */
-  STRUT_PATH_SLACK,       /* a cable ceases to pull */
-  STRUT_PATH_TAUT,        /* a cable begins to pull */
-  STRUT_PATH_TOUCHDOWN,   /* a node meets the ground */
-  STRUT_PATH_LIFT_OFF,    /* a node leaves it */
-  STRUT_PATH_KINK_LIMIT,  /* the parameter turns back at a kink: no eigenvalue passes zero */
-  STRUT_PATH_KINK_BIFURCATION /* the parameter continues, but the number of negative eigenvalues jumps */
+  STRUT_PATH_SLACK,            /* a cable ceases to pull */
+  STRUT_PATH_TAUT,             /* a cable begins to pull */
+  STRUT_PATH_TOUCHDOWN,        /* a node meets the ground */
+  STRUT_PATH_LIFT_OFF,         /* a node leaves it */
+  STRUT_PATH_KINK_LIMIT,       /* the parameter turns back at a kink: no eigenvalue passes zero */
+  STRUT_PATH_KINK_BIFURCATION, /* the parameter continues, but the number of negative eigenvalues
+                                  jumps */
+  STRUT_PATH_ENGAGE,           /* a stop is reached, or another element of one sign begins to act */
+  STRUT_PATH_RELEASE,          /* it ceases to act */
+  STRUT_PATH_LAW               /* a law passes a kink */
 } strut_path_event_kind;
 
 /**
  * "limit point", "bifurcation", "slack", "taut", "touchdown", "lift-off", "limit point at a kink",
- * "bifurcation at a kink".
+ * "bifurcation at a kink", "engages", "releases", "kink of a law".
  */
 STRUT_API const char *strut_path_event_name(strut_path_event_kind kind);
 
@@ -42,7 +46,8 @@ typedef struct strut_path_point {
                         parameter in units of the range asked for [1] */
   int32_t negative; /* eigenvalues of the stiffness below zero as the path goes on: 0 is stable */
   double *q;        /* (length) [m] */
-  double *force;    /* (members) tension [N] */
+  double *force;    /* (members) tension, with stops [N] */
+  double *moment;   /* (hinges) [N m] */
   double *reaction; /* (length) force of supports on held coordinates, else 0 [N] */
   double *contact;  /* (contacts) normal force of the ground [N] */
 } strut_path_point;
@@ -51,10 +56,11 @@ typedef struct strut_path_event {
   strut_path_event_kind kind;
   double factor, arc;
   int32_t index; /* of the member or node that changes; of the node that moves most at a limit
-                         point or bifurcation */
+                         point or bifurcation; of the element that engages, releases or passes a
+                         kink */
   int32_t before, after; /* eigenvalues of the stiffness below zero on its two sides */
   const char *detail;    /* in words */
-  double *q, *force, *reaction, *contact; /* as of a point */
+  double *q, *force, *moment, *reaction, *contact; /* as of a point */
 } strut_path_event;
 
 typedef enum strut_path_end {
@@ -68,7 +74,8 @@ typedef enum strut_path_end {
 /** The parameter of the continuation. */
 typedef enum strut_path_over {
   STRUT_PATH_OVER_LOAD,       /* a factor of loads */
-  STRUT_PATH_OVER_ACTUATOR,   /* what an actuator adds to its member's rest length [m] */
+  STRUT_PATH_OVER_ACTUATOR,   /* what an actuator adds to its member's rest length [m], or to its
+                                 hinge's rest angle [rad] */
   STRUT_PATH_OVER_COORDINATE, /* displacement of a node along x or y [m] */
   STRUT_PATH_OVER_SCENE       /* a number that scenes are made of */
 } strut_path_over;

@@ -52,8 +52,39 @@ static void add_square(gsl_matrix *ritz, const double *part, double factor) {
       *gsl_matrix_ptr(ritz, k, l) += factor * part[k] * part[l];
 }
 
+/* slope b b' + t d2e/dq2 of an element, and the largest of its parts. */
+static void project_element(strut_path_system *s, int32_t i, size_t first, gsl_matrix *ritz) {
+  const strut_element *e = &s->model->elements.element[i];
+  const strut_element_pose *pose = &s->elements.element[i].pose;
+  const uint32_t *at = s->model->elements.at + e->first;
+  double along[MOST_SOFT], motion[MOST_SOFT][STRUT_MOST_GRADIENT];
+  double bend[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT] = {0};
+  int32_t n = 2 * e->nodes;
+  size_t count = ritz->size1;
+  strut_element_bend(s->model, i, s->q, pose->force, bend);
+  for (size_t k = 0; k < count; k++) {
+    along[k] = 0.0;
+    for (int32_t c = 0; c < n; c++) {
+      int32_t row = s->potential->row_of[at[c / 2] + (uint32_t)(c % 2)];
+      motion[k][c] = row >= 0 ? gsl_matrix_get(s->vectors, (size_t)row, first + k) : 0.0;
+      along[k] += pose->b[c] * motion[k][c];
+    }
+  }
+  add_square(ritz, along, pose->slope);
+  for (size_t k = 0; k < count; k++)
+    for (size_t l = 0; l < count; l++) {
+      double sum = 0.0;
+      for (int32_t a = 0; a < n; a++)
+        for (int32_t b = 0; b < n; b++) sum += motion[k][a] * bend[a * n + b] * motion[l][b];
+      *gsl_matrix_ptr(ritz, k, l) += sum;
+      if (k == l)
+        s->soft_parts =
+            fmax(s->soft_parts, fmax(fabs(sum), fabs(pose->slope) * along[k] * along[k]));
+    }
+}
+
 /* The stiffness seen by the modes first, first + 1, ... */
-static void project(const strut_path_system *s, size_t first, gsl_matrix *ritz) {
+static void project(strut_path_system *s, size_t first, gsl_matrix *ritz) {
   double along[MOST_SOFT], across[MOST_SOFT];
   size_t count = ritz->size1;
   gsl_matrix_set_zero(ritz);
@@ -69,6 +100,9 @@ static void project(const strut_path_system *s, size_t first, gsl_matrix *ritz) 
     add_square(ritz, along, m->length > 0 ? s->terms.stiffness[j] : m->across);
     add_square(ritz, across, m->across);
   }
+  s->soft_parts = 0.0;
+  for (int32_t i = 0; i < s->model->elements.count; i++)
+    if (s->elements.element[i].acts) project_element(s, i, first, ritz);
   for (int32_t i = 0; i < s->model->contacts.count; i++) {
     for (size_t k = 0; k < count; k++) along[k] = contact_motion(s, i, first + k);
     if (s->touching[i]) add_square(ritz, along, s->terms.ground[i]);
@@ -155,7 +189,8 @@ bool strut_path_spectrum(strut_path_system *s, const double *y, strut_path_spect
     soft = find_soft(s, below, &first);
   }
   if (soft && !refine(s, first, soft)) return false;
-  double zero = fmax(ZERO_VALUE * largest_across(s), NO_VALUE * largest);
+  double parts = fmax(largest_across(s), soft ? s->soft_parts : 0.0);
+  double zero = fmax(ZERO_VALUE * parts, NO_VALUE * largest);
   s->noise = ROUNDING * largest;
   for (size_t i = 0; i < (size_t)s->n; i++) {
     bool is_soft = i >= first && i < first + soft;

@@ -47,6 +47,7 @@ static bool make_arrays(strut_path_system *s) {
   s->member = strut_arena_allocate(&s->arena, members, sizeof *s->member);
   if (!s->pulling || !s->touching || !s->member) return false;
   memset(s->pulling, 1, members);
+  if (!strut_path_elements_create(s->model, &s->arena, &s->elements)) return false;
   return strut_path_terms_create(s->model, &s->arena, &s->terms) &&
          strut_path_terms_create(s->model, &s->arena, &s->rates);
 }
@@ -75,6 +76,8 @@ void strut_path_system_free(strut_path_system *s) {
   gsl_eigen_symmv_free(s->eigen);
   gsl_eigen_symm_free(s->values_only);
   strut_potential_free(s->potential);
+  strut_path_parameter_free(&s->parameter);
+  strut_path_terms_release(&s->terms);
   strut_arena_free(&s->arena);
   *s = (strut_path_system){0};
 }
@@ -289,6 +292,7 @@ static bool evaluate(strut_path_system *s, const double *y, bool exactly) {
   }
   gsl_matrix_set_zero(s->hessian);
   add_members(s);
+  strut_path_add_elements(s);
   add_contacts(s);
   for (int32_t i = 0; i < s->n; i++) s->slope[i] *= s->parameter.range;
   hold_rigid_motions(s);
@@ -306,6 +310,7 @@ void strut_path_reactions(const strut_path_system *s, double *reaction, double *
     reaction[t->from[j]] -= fx, reaction[t->from[j] + 1] -= fy;
     reaction[t->to[j]] += fx, reaction[t->to[j] + 1] += fy;
   }
+  strut_path_element_reactions(s, reaction);
   for (int32_t i = 0; i < s->model->contacts.count; i++) {
     contact[i] = s->touching[i] ? 0.0 - s->terms.ground[i] * gap_of(s, i) : 0.0;
     for (uint32_t c = 0; c < 2; c++)
@@ -380,27 +385,41 @@ bool strut_path_tangent(strut_path_system *s, const double *y, const double *row
   return true;
 }
 
-int32_t strut_path_switch_count(const strut_path_system *s) {
+int32_t strut_path_first_element_switch(const strut_path_system *s) {
   return s->model->members.count + s->model->contacts.count;
 }
 
+int32_t strut_path_switch_count(const strut_path_system *s) {
+  return strut_path_first_element_switch(s) + s->elements.switch_count;
+}
+
+/* Plain cables alone: a running one and one with another law is an element. */
+static bool is_plain_cable(const strut_model *model, int32_t j) {
+  return model->scene->members[j].kind == STRUT_CABLE &&
+         !strut_member_is_element(&model->elements, j);
+}
+
 double strut_path_switch_value(strut_path_system *s, int32_t which, const double *y) {
-  const strut_member_table *t = &s->model->members;
+  int32_t members = s->model->members.count, elements = strut_path_first_element_switch(s);
   strut_path_member m;
-  if (which < t->count && s->model->scene->members[which].kind != STRUT_CABLE) return -HUGE_VAL;
+  if (which < members && !is_plain_cable(s->model, which)) return -HUGE_VAL;
   if (!place(s, y)) return (double)NAN;
-  return which < t->count ? measure_member(s, which, &m) : -gap_of(s, which - t->count);
+  if (which >= elements) return strut_path_element_switch_value(s, which - elements);
+  return which < members ? measure_member(s, which, &m) : -gap_of(s, which - members);
 }
 
 bool strut_path_switch_is_on(const strut_path_system *s, int32_t which) {
-  int32_t members = s->model->members.count;
+  int32_t members = s->model->members.count, elements = strut_path_first_element_switch(s);
+  if (which >= elements) return strut_path_element_switch_is_on(s, which - elements);
   return which < members ? s->pulling[which] : s->touching[which - members] != 0;
 }
 
 void strut_path_switch_set(strut_path_system *s, int32_t which, bool on) {
   assert(which >= 0 && which < strut_path_switch_count(s));
-  int32_t members = s->model->members.count;
-  if (which < members)
+  int32_t members = s->model->members.count, elements = strut_path_first_element_switch(s);
+  if (which >= elements)
+    strut_path_element_switch_set(s, which - elements, on);
+  else if (which < members)
     s->pulling[which] = on;
   else
     s->touching[which - members] = on;

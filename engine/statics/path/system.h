@@ -13,6 +13,7 @@
 #include <gsl/gsl_permutation.h>
 
 #include "engine/statics/path/parameter.h"
+#include "engine/statics/path/path_elements.h"
 #include "engine/statics/potential.h"
 
 enum { STRUT_PATH_MOTIONS = 3 };
@@ -38,6 +39,7 @@ typedef struct strut_path_system {
   uint8_t *pulling, *touching; /* (members), (contacts) 1 where forces act, of whatever sign */
   double *q, *q_low, *g, *slope, *row; /* (length), (length), (n), (n) dg/dy_n, (n + 1) scratch */
   strut_path_member *member;           /* (members) */
+  strut_path_elements elements;
   double forces;      /* the largest force at the last place: what g is compared with [N] */
   int32_t held_count; /* motions of the whole that were given a stiffness `held_by` */
   double held_by, *held[STRUT_PATH_MOTIONS]; /* (n) each */
@@ -48,8 +50,9 @@ typedef struct strut_path_system {
   gsl_permutation *order;
   gsl_eigen_symm_workspace *values_only;
   gsl_eigen_symmv_workspace *eigen;
-  int32_t negative; /* eigenvalues below zero, after strut_path_spectrum */
-  double noise;     /* rounding of the stiffness's entries [N/m], likewise */
+  int32_t negative;  /* eigenvalues below zero, after strut_path_spectrum */
+  double noise;      /* rounding of the stiffness's entries [N/m], likewise */
+  double soft_parts; /* the largest part that an element has in a soft eigenvalue [N/m] */
   strut_arena arena;
 } strut_path_system;
 
@@ -96,11 +99,13 @@ typedef enum strut_path_spectrum_detail {
 bool strut_path_spectrum(strut_path_system *system, const double *y,
                          strut_path_spectrum_detail wanted);
 
-/** Cables first, then contacts: what may change along the path. */
+/** Cables first, then contacts, then elements: what may change along the path. */
 int32_t strut_path_switch_count(const strut_path_system *system);
+/** Index of the first switch of elements. */
+int32_t strut_path_first_element_switch(const strut_path_system *system);
 /**
  * Above 0 where it ought to be on (pulls, touches) [m], NAN where no scene has this value;
- * -INFINITY for members that are no cables.
+ * -INFINITY for what never changes: members that are no cables, kinks where an element does not act.
  */
 double strut_path_switch_value(strut_path_system *system, int32_t which, const double *y);
 bool strut_path_switch_is_on(const strut_path_system *system, int32_t which);

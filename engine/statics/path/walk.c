@@ -34,10 +34,11 @@ static bool keep_state(strut_path_walk *w, const double *y, strut_path_point *po
   size_t length = (size_t)model->length, members = (size_t)model->members.count;
   point->q = strut_arena_allocate(&w->path->arena, length, sizeof(double));
   point->force = strut_arena_allocate(&w->path->arena, members, sizeof(double));
+  point->moment = strut_arena_allocate(&w->path->arena, model->scene->hinge_count, sizeof(double));
   point->reaction = strut_arena_allocate(&w->path->arena, length, sizeof(double));
   point->contact =
       strut_arena_allocate(&w->path->arena, (size_t)model->contacts.count, sizeof(double));
-  if (!point->q || !point->force || !point->reaction || !point->contact) {
+  if (!point->q || !point->force || !point->moment || !point->reaction || !point->contact) {
     w->failed = true;
     return false;
   }
@@ -46,7 +47,10 @@ static bool keep_state(strut_path_walk *w, const double *y, strut_path_point *po
   for (size_t j = 0; j < members; j++) {
     bool cable = model->scene->members[j].kind == STRUT_CABLE; /* at a kink a rounding may push */
     point->force[j] = cable ? fmax(s->member[j].tension, 0.0) : s->member[j].tension;
+    if (strut_element_of_member(&model->elements, (int32_t)j))
+      point->force[j] += strut_path_element_tension(s, (int32_t)j);
   }
+  strut_path_moments(s, point->moment);
   strut_path_reactions(s, point->reaction, point->contact);
   return true;
 }
@@ -59,6 +63,7 @@ void strut_path_add_point(strut_path_walk *w, int32_t negative) {
   if (!keep_state(w, w->y, &point) ||
       !reserve_items(w, &items, p->point_count, &w->point_room, sizeof *p->points))
     return;
+  strut_path_keep_turns(&w->system);
   p->points = items;
   p->points[p->point_count++] = point;
 }
@@ -83,6 +88,7 @@ void strut_path_add_event(strut_path_walk *w, strut_path_event_kind kind, const 
                             .detail = detail,
                             .q = state.q,
                             .force = state.force,
+                            .moment = state.moment,
                             .reaction = state.reaction,
                             .contact = state.contact};
   size_t at = p->event_count++; /* in the order of the path */

@@ -23,9 +23,9 @@ static int compare_rows(const void *a, const void *b) {
   return x < y ? -1 : x > y;
 }
 
-/* Of a running cable: its gradient, with the entries of a node that it meets twice summed. */
+/* Gradient of an element times `scale`, with the entries of a node that it meets twice summed. */
 static void add_gradient(const strut_model *model, const strut_element *e, const double *q,
-                         strut_equilibrium_matrix *a) {
+                         double scale, strut_equilibrium_matrix *a) {
   strut_element_pose pose;
   double entry[STRUT_MOST_GRADIENT][2];
   size_t count = 0, n = 2 * (size_t)e->nodes;
@@ -34,7 +34,7 @@ static void add_gradient(const strut_model *model, const strut_element *e, const
   for (size_t k = 0; k < n; k++) {
     uint32_t at = model->elements.at[(size_t)e->first + k / 2] + (uint32_t)(k % 2);
     if (a->row_of[at] < 0) continue;
-    entry[count][0] = a->row_of[at], entry[count++][1] = pose.b[k];
+    entry[count][0] = a->row_of[at], entry[count++][1] = scale * pose.b[k];
   }
   qsort(entry, count, sizeof entry[0], compare_rows);
   for (size_t k = 0; k < count; k++) {
@@ -42,11 +42,36 @@ static void add_gradient(const strut_model *model, const strut_element *e, const
     while (k + 1 < count && entry[k + 1][0] == entry[k][0]) sum += entry[++k][1];
     add_entry(a, (int32_t)entry[k][0], sum);
   }
-  a->length[a->columns - 1] = pose.strain;
+  a->length[a->columns - 1] = scale * pose.strain;
+}
+
+/* What the forces of a column lend to motions across it; false: out of memory. */
+static bool add_bend(const strut_model *model, const strut_element *e, const double *q,
+                     double scale, strut_arena *arena, strut_equilibrium_matrix *a) {
+  int32_t j = a->columns - 1;
+  size_t n = 2 * (size_t)e->nodes;
+  double largest = 0.0, *bend = a->bend[j] = strut_arena_allocate(arena, n * n, sizeof *bend);
+  if (!bend) return false;
+  a->curved[j] = (int32_t)(e - model->elements.element);
+  strut_element_bend(model, a->curved[j], q, scale, bend);
+  for (size_t k = 0; k < n * n; k++) largest = fmax(largest, fabs(bend[k]));
+  a->curvature[j] = largest;
+  for (size_t k = 0; k < n * n && largest > 0; k++) bend[k] /= largest;
+  return true;
+}
+
+/* The column of a hinge after the last. */
+static bool add_hinge(const strut_model *model, const strut_element *e, const double *q,
+                      strut_arena *arena, strut_equilibrium_matrix *a) {
+  int32_t j = a->columns++;
+  a->start[j + 1] = a->start[j];
+  add_gradient(model, e, q, a->size, a);
+  return add_bend(model, e, q, a->size, arena, a);
 }
 
 /* The column after the last; rows of the node that comes first in the model come first. */
-static void add_column(const strut_model *model, const double *q, strut_equilibrium_matrix *a) {
+static bool add_column(const strut_model *model, const double *q, strut_arena *arena,
+                       strut_equilibrium_matrix *a) {
   int32_t j = a->columns;
   uint32_t from = model->members.from[j], to = model->members.to[j];
   strut_vec2 span = strut_member_span(&model->members, j, q);
@@ -56,37 +81,60 @@ static void add_column(const strut_model *model, const double *q, strut_equilibr
   double sign = from < to ? -1.0 : 1.0;
   uint32_t first = from < to ? from : to, second = from < to ? to : from;
   a->columns++;
+  a->curved[j] = -1;
   a->start[j + 1] = a->start[j];
   if (strut_member_is_element(&model->elements, j)) {
-    add_gradient(model, strut_element_of_member(&model->elements, j), q, a);
-    return;
+    const strut_element *e = strut_element_of_member(&model->elements, j);
+    add_gradient(model, e, q, 1.0, a);
+    return e->strain == STRUT_STRAIN_LENGTH || add_bend(model, e, q, 1.0, arena, a);
   }
   add_entry(a, a->row_of[first], sign * u.x);
   add_entry(a, a->row_of[first + 1], sign * u.y);
   add_entry(a, a->row_of[second], -sign * u.x);
   add_entry(a, a->row_of[second + 1], -sign * u.y);
+  return true;
+}
+
+/* Hinges in the scene's order. */
+static bool add_hinges(const strut_model *model, const double *q, strut_arena *arena,
+                       strut_equilibrium_matrix *a) {
+  const strut_element_table *t = &model->elements;
+  size_t hinges = model->scene->hinge_count;
+  const strut_element **element = strut_arena_allocate(arena, hinges + 1, sizeof *element);
+  if (!element) return false;
+  for (int32_t i = 0; i < t->count; i++)
+    if (t->element[i].role == STRUT_ELEMENT_HINGE) element[t->element[i].item] = &t->element[i];
+  for (size_t i = 0; i < hinges; i++)
+    if (!add_hinge(model, element[i], q, arena, a)) return false;
+  return true;
 }
 
 strut_status strut_equilibrium_matrix_build(const strut_model *model, const double *q,
                                             strut_arena *arena, strut_equilibrium_matrix *a) {
   size_t members = (size_t)model->members.count, length = (size_t)model->length;
-  *a = (strut_equilibrium_matrix){0};
+  size_t columns = (size_t)strut_equilibrium_columns(model);
+  *a = (strut_equilibrium_matrix){.members = model->members.count,
+                                  .size = model->size > 0 ? model->size : 1.0};
   a->coordinate = strut_arena_allocate(arena, length, sizeof *a->coordinate);
   a->row_of = strut_arena_allocate(arena, length, sizeof *a->row_of);
-  a->length = strut_arena_allocate(arena, members + 1, sizeof *a->length);
-  a->direction = strut_arena_allocate(arena, members + 1, sizeof *a->direction);
-  a->start = strut_arena_allocate(arena, members + 1, sizeof *a->start);
+  a->length = strut_arena_allocate(arena, columns + 1, sizeof *a->length);
+  a->direction = strut_arena_allocate(arena, columns + 1, sizeof *a->direction);
+  a->start = strut_arena_allocate(arena, columns + 1, sizeof *a->start);
+  a->curved = strut_arena_allocate(arena, columns + 1, sizeof *a->curved);
+  a->curvature = strut_arena_allocate(arena, columns + 1, sizeof *a->curvature);
+  a->bend = strut_arena_allocate(arena, columns + 1, sizeof *a->bend);
   size_t most = ENTRIES * members + 1;
   for (int32_t i = 0; i < model->elements.count; i++)
     most += 2 * (size_t)model->elements.element[i].nodes;
   a->row = strut_arena_allocate(arena, most, sizeof *a->row);
   a->value = strut_arena_allocate(arena, most, sizeof *a->value);
   if (!a->coordinate || !a->row_of || !a->length || !a->direction || !a->start || !a->row ||
-      !a->value)
+      !a->value || !a->curved || !a->curvature || !a->bend)
     return STRUT_NO_MEMORY;
   a->rows = strut_number_free(model, NULL, a->row_of, a->coordinate);
-  for (int32_t j = 0; j < model->members.count; j++) add_column(model, q, a);
-  return STRUT_OK;
+  for (int32_t j = 0; j < model->members.count; j++)
+    if (!add_column(model, q, arena, a)) return STRUT_NO_MEMORY;
+  return add_hinges(model, q, arena, a) ? STRUT_OK : STRUT_NO_MEMORY;
 }
 
 void strut_equilibrium_multiply(const strut_equilibrium_matrix *a, const double *t, double *y) {

@@ -37,7 +37,8 @@ typedef struct walker {
 } walker;
 
 static bool allocate_walk(walker *w, const double *q, strut_arena *arena, int32_t rows) {
-  size_t length = (size_t)w->model->length, members = (size_t)w->model->members.count;
+  size_t length = (size_t)w->model->length;
+  size_t members = (size_t)strut_equilibrium_columns(w->model);
   w->start = q;
   w->q = strut_arena_allocate(arena, length, sizeof(double));
   w->before = strut_arena_allocate(arena, length, sizeof(double));
@@ -76,7 +77,9 @@ static bool solve_gram(walker *w, double *x) {
 
 static double largest_strain(const walker *w) {
   double largest = 0.0;
-  for (int32_t j = 0; j < w->a.columns; j++)
+  for (int32_t j = w->a.members; j < w->a.columns; j++) /* change of an angle */
+    largest = fmax(largest, fabs(w->a.length[j] - w->length[j]) / w->a.size);
+  for (int32_t j = 0; j < w->a.members; j++)
     if (w->length[j] > 0)
       largest = fmax(largest, fabs(w->a.length[j] - w->length[j]) / w->length[j]);
     else
@@ -146,7 +149,7 @@ static double change_of_shape(const walker *w) {
 static strut_status walk_finite_motion(const strut_model *model, const double *q,
                                        const double *motion, finite_walk *walk) {
   *walk = (finite_walk){.moved = (double)NAN, .strain = (double)NAN};
-  if (model->members.count > WALK_MEMBERS) return STRUT_OK;
+  if (strut_equilibrium_columns(model) > WALK_MEMBERS) return STRUT_OK;
   strut_arena scratch = {0};
   walker w = {.model = model};
   strut_status status = STRUT_NO_MEMORY;
@@ -185,7 +188,7 @@ typedef struct sorter {
   const strut_self_stress *states;
   strut_arena *arena;
   strut_arena scratch;
-  size_t rows, members, n; /* n: motions that are not rigid-body */
+  size_t rows, members, n; /* members: and hinges; n: motions that are not rigid-body */
   double *motion;          /* (3 + n, rows): rigid-body ones, then the others */
   double *inner;           /* where the others begin */
   double *density;         /* (members) scratch */
@@ -231,7 +234,7 @@ static void collect(sorter *s, const double *space, size_t count, size_t rigid) 
 static double set_density(sorter *s, const double *force) {
   double largest = 0.0;
   for (size_t j = 0; j < s->members; j++) {
-    s->density[j] = s->a->length[j] > 0 ? force[j] / s->a->length[j] : 0.0;
+    s->density[j] = strut_column_density(s->a, (int32_t)j, force[j]);
     largest = fmax(largest, fabs(s->density[j]));
   }
   return largest;

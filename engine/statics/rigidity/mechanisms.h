@@ -31,8 +31,9 @@ typedef struct strut_mechanisms {
   int32_t rigid_body, infinitesimal, finite, undecided;
   strut_mechanism *list; /* (count) rigid-body ones first; NULL: none or too many */
   bool by_forces;        /* the forces in the shape stiffen all that are not rigid-body */
-  double *stiffener;     /* (members) a self-stress that does, largest force 1; NULL: none found */
-  bool stiffener_pulls;  /* and presses no cable */
+  double
+      *stiffener; /* (members, hinges) a self-stress that does, largest force 1; NULL: none found */
+  bool stiffener_pulls; /* and presses no cable */
 } strut_mechanisms;
 
 /**

@@ -42,10 +42,11 @@ static bool inside(const strut_model *model, const double *q, const strut_rigidi
   int32_t net = -1;
   for (int32_t i = 0; i < model->node_count; i++) parent[i] = i;
   for (int32_t j = 0; j < t->count; j++) {
-    int32_t a = (int32_t)(t->from[j] / 2), b = (int32_t)(t->to[j] / 2);
+    const strut_member *m = &model->scene->members[j];
     if (sign_of(r, j, largest) <= 0) continue;
-    parent[root(parent, a)] = root(parent, b);
-    net = b;
+    net = (int32_t)(t->to[j] / 2);
+    for (size_t k = 0; k <= m->guide_count; k++)
+      parent[root(parent, strut_member_node(m, k))] = root(parent, net);
   }
   if (net < 0) return false;
   for (int32_t j = 0; j < t->count; j++) {
@@ -129,9 +130,20 @@ static strut_status judge_tensegrity(const strut_model *model, const double *q, 
   return STRUT_OK;
 }
 
+static void measure_hinges(const strut_model *model, const double *q, strut_rigidity *r) {
+  const strut_equilibrium_matrix *a = &r->matrix;
+  strut_element_pose pose;
+  for (int32_t j = a->members; j < a->columns; j++) {
+    strut_element_evaluate(model, a->curved[j], model->members.rest, q, (double)NAN, &pose);
+    double force = r->force[j] = pose.force / a->size + 0.0; /* + 0.0: no -0 */
+    for (int32_t k = a->start[j]; k < a->start[j + 1]; k++)
+      r->largest_force = fmax(r->largest_force, fabs(force * a->value[k]));
+  }
+}
+
 static bool measure_forces(const strut_model *model, const double *q, strut_rigidity *r) {
   const strut_member_table *t = &model->members;
-  r->force = strut_arena_allocate(&r->arena, (size_t)t->count + 1, sizeof *r->force);
+  r->force = strut_arena_allocate(&r->arena, (size_t)r->matrix.columns + 1, sizeof *r->force);
   r->density = strut_arena_allocate(&r->arena, (size_t)t->count + 1, sizeof *r->density);
   if (!r->force || !r->density) return false;
   for (int32_t j = 0; j < t->count; j++) {
@@ -144,6 +156,7 @@ static bool measure_forces(const strut_model *model, const double *q, strut_rigi
     r->largest_force = fmax(r->largest_force, fabs(r->force[j]));
     if (model->scene->members[j].kind == STRUT_CABLE) r->has_cables = true;
   }
+  measure_hinges(model, q, r);
   return true;
 }
 
@@ -243,7 +256,7 @@ static void respect_cables(const strut_model *model, strut_rigidity *r) {
   double largest = 0.0;
   for (int32_t j = 0; j < r->matrix.columns; j++) largest = fmax(largest, fabs(r->judged[j]));
   for (int32_t j = 0; j < r->matrix.columns; j++)
-    if (model->scene->members[j].kind == STRUT_CABLE && r->judged[j] < -1e-9 * largest)
+    if (strut_column_is_cable(model, j) && r->judged[j] < -1e-9 * largest)
       r->stress.super_stable = false;
 }
 

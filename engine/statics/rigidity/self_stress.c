@@ -117,8 +117,10 @@ static size_t unit_member(const strut_model *model, const double *force, size_t 
   double largest = 0.0;
   for (size_t j = 0; j < columns; j++) largest = fmax(largest, fabs(force[j]));
   for (int i = 0; i < 3; i++)
-    for (size_t j = 0; j < columns; j++)
+    for (size_t j = 0; j < model->scene->member_count; j++)
       if (model->scene->members[j].kind == order[i] && fabs(force[j]) > LEADS * largest) return j;
+  for (size_t j = model->scene->member_count; j < columns; j++) /* hinges alone */
+    if (fabs(force[j]) > LEADS * largest) return j;
   return 0;
 }
 
@@ -126,7 +128,7 @@ static void count_cables(const strut_model *model, const double *force, size_t c
                          size_t *pulled, size_t *pressed) {
   *pulled = *pressed = 0;
   for (size_t j = 0; j < columns; j++) {
-    if (model->scene->members[j].kind != STRUT_CABLE) continue;
+    if (!strut_column_is_cable(model, (int32_t)j)) continue;
     *pulled += force[j] > 0;
     *pressed += force[j] < 0;
   }
@@ -144,7 +146,7 @@ strut_status strut_self_stress_sort(const strut_model *model, const strut_null_s
                                     strut_arena *arena, strut_self_stress *states) {
   *states = (strut_self_stress){.count = spaces->states};
   if (spaces->states == 0 || !spaces->state) return STRUT_OK;
-  size_t count = (size_t)spaces->states, columns = (size_t)model->members.count;
+  size_t count = (size_t)spaces->states, columns = (size_t)strut_equilibrium_columns(model);
   strut_arena scratch = {0};
   states->force = strut_arena_allocate(arena, count * columns, sizeof *states->force);
   states->cables_pull = strut_arena_allocate(arena, count, sizeof *states->cables_pull);
@@ -170,10 +172,10 @@ typedef struct search {
   const strut_model *model;
   const strut_self_stress *states;
   const strut_stress_wish *wish;
-  size_t states_count, members, motions;
-  double *weight; /* (states) the combination */
-  double *pull;   /* (states) a demand's coefficients: it wants weight . pull > 0 */
-  double *cable;  /* (members) norm of a member's coefficients, 0 where nothing is asked of it */
+  size_t states_count, members, motions; /* members: and hinges */
+  double *weight;                        /* (states) the combination */
+  double *pull;  /* (states) a demand's coefficients: it wants weight . pull > 0 */
+  double *cable; /* (members) norm of a member's coefficients, 0 where nothing is asked of it */
   double *form, *value, *vector; /* (motions, motions), (motions), (motions, motions) */
 } search;
 
@@ -204,7 +206,7 @@ static bool allocate(search *s, strut_arena *scratch) {
 
 static void measure_cables(search *s) {
   for (size_t j = 0; j < s->members; j++) {
-    if (!s->wish->cables || s->model->scene->members[j].kind != STRUT_CABLE) continue;
+    if (!s->wish->cables || !strut_column_is_cable(s->model, (int32_t)j)) continue;
     for (size_t i = 0; i < s->states_count; i++) {
       double t = s->states->force[i * s->members + j];
       s->cable[j] += t * t;
@@ -287,7 +289,7 @@ strut_status strut_self_stress_combine(const strut_model *model, const strut_sel
   if (states->count == 0 || !states->force) return STRUT_OK;
   strut_arena scratch = {0};
   search s = {.model = model, .states = states, .wish = wish};
-  s.states_count = (size_t)states->count, s.members = (size_t)model->members.count;
+  s.states_count = (size_t)states->count, s.members = (size_t)strut_equilibrium_columns(model);
   s.motions = (size_t)wish->motions;
   bool good = allocate(&s, &scratch);
   if (good) {
@@ -303,7 +305,7 @@ strut_status strut_self_stress_combine(const strut_model *model, const strut_sel
 
 typedef struct cables {
   const strut_self_stress *states;
-  size_t members;
+  size_t members; /* and hinges */
   int32_t count;
   int32_t *member; /* (count) cables that some state loads */
 } cables;
@@ -347,7 +349,7 @@ strut_status strut_self_stress_pull_cables(const strut_model *model,
   *found = false;
   if (states->count == 0 || !states->force) return STRUT_OK;
   strut_arena scratch = {0};
-  cables c = {.states = states, .members = (size_t)model->members.count};
+  cables c = {.states = states, .members = (size_t)strut_equilibrium_columns(model)};
   strut_linear_program program = {0};
   strut_linear_program_end end = STRUT_PROGRAM_FAILED;
   double sum = 0.0;

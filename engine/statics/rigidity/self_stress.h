@@ -12,7 +12,7 @@
  */
 typedef struct strut_self_stress {
   int32_t count;     /* s */
-  double *force;     /* (count, members) [1]; NULL: none or too many to list */
+  double *force;     /* (count, members, then hinges) [1]; NULL: none or too many to list */
   bool *cables_pull; /* (count) no cable is pressed in it */
 } strut_self_stress;
 

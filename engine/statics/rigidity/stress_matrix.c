@@ -14,11 +14,30 @@ static double moved(const strut_equilibrium_matrix *a, const double *motion, uin
   return row < 0 ? 0.0 : motion[row];
 }
 
+/* x' bend y of a running cable or a hinge. */
+static double bend_form(const strut_model *model, const strut_equilibrium_matrix *a, int32_t j,
+                        const double *x, const double *y) {
+  const strut_element *e = &model->elements.element[a->curved[j]];
+  const uint32_t *at = model->elements.at + e->first;
+  int32_t n = 2 * e->nodes;
+  double sum = 0.0;
+  for (int32_t r = 0; r < n; r++) {
+    double left = moved(a, x, at[r / 2] + (uint32_t)(r % 2));
+    for (int32_t c = 0; c < n && left != 0.0; c++)
+      sum += left * a->bend[j][r * n + c] * moved(a, y, at[c / 2] + (uint32_t)(c % 2));
+  }
+  return sum;
+}
+
 double strut_stress_form(const strut_model *model, const strut_equilibrium_matrix *a,
                          const double *density, const double *x, const double *y) {
   double sum = 0.0;
   for (int32_t j = 0; j < a->columns; j++) {
     if (density[j] == 0.0) continue;
+    if (a->curved[j] >= 0) {
+      sum += density[j] * bend_form(model, a, j, x, y);
+      continue;
+    }
     uint32_t from = model->members.from[j], to = model->members.to[j];
     double dx = moved(a, x, to) - moved(a, x, from);
     double dy = moved(a, x, to + 1) - moved(a, x, from + 1);
@@ -43,7 +62,7 @@ void strut_stress_form_on(const strut_model *model, const strut_equilibrium_matr
 static bool balances_alone(const strut_model *model, const strut_equilibrium_matrix *a,
                            const double *force, double *sum) {
   double largest = 0.0;
-  for (int32_t j = 0; j < a->columns; j++) {
+  for (int32_t j = 0; j < a->members; j++) {
     uint32_t from = model->members.from[j], to = model->members.to[j];
     largest = fmax(largest, fabs(force[j]));
     for (uint32_t k = 0; k < 2; k++) {
@@ -68,7 +87,7 @@ static void add_density(double *matrix, size_t n, int32_t i, int32_t k, double d
 static void fill(const strut_model *model, const strut_equilibrium_matrix *a, const double *force,
                  bool supported, int32_t *row, double *matrix, size_t n) {
   int32_t nodes = 0;
-  for (int32_t j = 0; j < a->columns; j++) {
+  for (int32_t j = 0; j < a->members; j++) {
     uint32_t from = model->members.from[j], to = model->members.to[j];
     double density = a->length[j] > 0 ? force[j] / a->length[j] : 0.0;
     if (supported) {
@@ -85,7 +104,8 @@ static void fill(const strut_model *model, const strut_equilibrium_matrix *a, co
 /* Is there a symmetric Q with u' Q u = 0 for all members that carry force? */
 static bool lies_on_conic(const strut_equilibrium_matrix *a) {
   double gram[9] = {0}, value[3], vector[9];
-  for (int32_t j = 0; j < a->columns; j++) {
+  for (int32_t j = 0; j < a->members; j++) {
+    if (a->curved[j] >= 0) continue;
     double x = a->direction[j][0], y = a->direction[j][1], row[3] = {x * x, 2 * x * y, y * y};
     for (int i = 0; i < 3; i++)
       for (int k = 0; k < 3; k++) gram[3 * i + k] += row[i] * row[k];
@@ -108,7 +128,7 @@ static int32_t count_nodes(const strut_model *model, int32_t *row) {
 static void judge(const strut_equilibrium_matrix *a, const double *force,
                   strut_stress_matrix *stress) {
   double largest = 0.0;
-  for (int32_t j = 0; j < a->columns; j++)
+  for (int32_t j = 0; j < a->members; j++)
     if (a->length[j] > 0) largest = fmax(largest, fabs(force[j]) / a->length[j]);
   stress->positive = largest > 0;
   for (int32_t i = 0; i < stress->count; i++) {
@@ -119,11 +139,21 @@ static void judge(const strut_equilibrium_matrix *a, const double *force,
   stress->super_stable = stress->positive && least && (stress->supported || !stress->on_conic);
 }
 
+/* Does a running cable or a hinge carry a part of the forces? Its energy is no quadratic form. */
+static bool are_elements_loaded(const strut_equilibrium_matrix *a, const double *force) {
+  double largest = 0.0;
+  for (int32_t j = 0; j < a->columns; j++) largest = fmax(largest, fabs(force[j]));
+  for (int32_t j = 0; j < a->columns; j++)
+    if (a->curved[j] >= 0 && fabs(force[j]) > ROUNDING * largest) return true;
+  return false;
+}
+
 strut_status strut_stress_matrix_judge(const strut_model *model, const strut_equilibrium_matrix *a,
                                        const double *force, strut_arena *arena,
                                        strut_stress_matrix *stress) {
   *stress = (strut_stress_matrix){0};
-  if (model->node_count > STRUT_DENSE_STRESS) return STRUT_OK;
+  stress->by_elements = are_elements_loaded(a, force);
+  if (model->node_count > STRUT_DENSE_STRESS || stress->by_elements) return STRUT_OK;
   strut_arena scratch = {0};
   strut_status status = STRUT_NO_MEMORY;
   size_t most = (size_t)model->length;

@@ -24,7 +24,8 @@ STRUT_API void strut_stress_form_on(const strut_model *model, const strut_equili
                                     double *form);
 
 typedef struct strut_stress_matrix {
-  bool tested;         /* false: too large, or memory for nothing else */
+  bool tested;         /* false: too large, or by_elements */
+  bool by_elements;    /* running cables or hinges carry a part of the forces: not judged */
   bool supported;      /* the supports carry forces: eigenvalues on the free coordinates instead */
   int32_t count;       /* eigenvalues */
   double *eigenvalues; /* (count) ascending [N/m] */
@@ -39,7 +40,8 @@ enum { STRUT_DENSE_STRESS = 300 };
 
 /**
  * Super stability (Connelly): the form is positive semidefinite, vanishes on affine motions alone
- * (nullity 3 in the plane), and no affine motion keeps all lengths. Where supports carry forces of
+ * (nullity 3 in the plane), and no affine motion keeps all lengths. That is proven
+ * for straight members: not judged where running cables or hinges carry a part. Where supports carry forces of
  * the state, the form on the free coordinates must be positive definite instead. force (columns) is
  * a state of self-stress. STRUT_OK or STRUT_NO_MEMORY; eigenvalues in the arena.
  */

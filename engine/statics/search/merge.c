@@ -39,12 +39,10 @@ static void find_free_motions(strut_stationary_set *g) {
 void strut_stationary_set_start(strut_stationary_set *g, const strut_potential *potential,
                                 strut_arena *arena) {
   const strut_model *model = potential->model;
-  double size = model->size > 0 ? model->size : 1.0, stiffest = 0.0;
+  double size = model->size > 0 ? model->size : 1.0;
   *g = (strut_stationary_set){.potential = potential, .arena = arena};
-  for (int32_t j = 0; j < model->members.count; j++)
-    stiffest = fmax(stiffest, model->members.stiffness[j]);
   g->near = 1e-6 * size;
-  g->flat = 1e-15 * stiffest * size * size + 1e-12 * potential->force_scale * size;
+  g->flat = 1e-15 * strut_stiffest(model) * size * size + 1e-12 * potential->force_scale * size;
   find_free_motions(g);
 }
 

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
+#include "engine/forces/elements.h"
 #include "engine/model/pose.h"
 #include "engine/statics/curvature.h"
 #include "engine/statics/spectrum.h"
@@ -222,6 +223,8 @@ static bool has_collapsed(const strut_climber *c, const double *q) {
     if (t->slack[j] != 0.0 && t->rest[j] > 0 && t->stiffness[j] > 0 && length < 1e-7 * t->rest[j])
       return true;
   }
+  for (int32_t i = 0; i < c->potential->model->elements.count; i++)
+    if (strut_element_has_collapsed(c->potential->model, i, 1e-7, q)) return true;
   return false;
 }
 

@@ -1,0 +1,624 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Elements: every strain and every law against differences, whole models against their energy, and
+ * turned, mirrored and scaled models against each other.
+ */
+#include "engine/forces/elements.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "engine/forces/strains/angle.h"
+#include "engine/forces/strains/area.h"
+#include "engine/forces/strains/length.h"
+#include "engine/forces/strains/path.h"
+#include "engine/forces/strains/reach.h"
+#include "engine/statics/potential.h"
+#include "tests/physics/random_elements.h"
+#include "tests/support/build.h"
+#include "tests/support/check.h"
+#include "tests/support/motion.h"
+#include "tests/support/random.h"
+
+/* Richardson's extrapolation of central differences with steps h, h/2, h/4: error of sixth order. */
+static double extrapolated(double a, double b, double c) {
+  double first = (4 * b - a) / 3, second = (4 * c - b) / 3;
+  return (16 * second - first) / 15;
+}
+
+/* ---- strains ---- */
+
+enum { MOST_NODES = 6, MOST_PLACES = 2 * MOST_NODES };
+
+typedef struct strain {
+  const char *name;
+  double (*value)(const uint32_t *at, int n, const double *q, double reference, double *b);
+  void (*bend)(const uint32_t *at, int n, const double *q, double t, double *h);
+  int least, most; /* nodes */
+} strain;
+
+static const strain strains[] = {
+#define NODES_length 2, 2
+#define NODES_path 2, MOST_NODES
+#define NODES_angle 3, 3
+#define NODES_area 3, MOST_NODES
+#define NODES_reach 3, 3
+#define STRAIN(NAME, name, unit, context)                                                          \
+  {#name, strut_strain_##name, strut_strain_##name##_bend, NODES_##name},
+    STRUT_STRAINS(STRAIN, )};
+enum { STRAINS = sizeof strains / sizeof strains[0] };
+
+static const uint32_t places[MOST_NODES] = {4, 0, 10, 2, 8, 6}; /* not in the order of the nodes */
+
+/* Nodes about points of a zigzag, so that no two are near each other; now and then far from the origin. */
+static void place_nodes(double *q, uint64_t *r) {
+  double far = random_once_in(r, 4) ? 100.0 : 0.0;
+  for (int k = 0; k < MOST_NODES; k++) {
+    q[2 * k] = far + k + random_between(r, -0.4, 0.4);
+    q[2 * k + 1] = k % 2 + random_between(r, -0.4, 0.4);
+  }
+}
+
+/* Would the nearest point of the segment change from beside it to one of its ends? */
+static bool near_end(const strain *s, const double *q) {
+  if (s->value != strut_strain_reach) return false;
+  strut_reach to = strut_reach_of(places, q);
+  double w2 = to.length * to.length;
+  double along = ((q[places[0]] - q[places[1]]) * (q[places[2]] - q[places[1]]) +
+                  (q[places[0] + 1] - q[places[1] + 1]) * (q[places[2] + 1] - q[places[1] + 1])) /
+                 w2;
+  return fabs(along) < 0.02 || fabs(along - 1.0) < 0.02 || to.distance < 0.3;
+}
+
+static void strain_slopes(const strain *s, int n, double *q, uint32_t at, double h, double *value,
+                          double *b) {
+  double up[MOST_PLACES] = {0}, down[MOST_PLACES] = {0}, keep = q[at];
+  q[at] = keep + h;
+  double high = s->value(places, n, q, 0.3, up);
+  q[at] = keep - h;
+  double low = s->value(places, n, q, 0.3, down);
+  q[at] = keep;
+  *value = (high - low) / (2 * h);
+  for (int i = 0; i < 2 * n; i++) b[i] = (up[i] - down[i]) / (2 * h);
+}
+
+static void check_strain(const strain *s, int n, double *q, uint64_t *r) {
+  double b[MOST_PLACES], bend[MOST_PLACES * MOST_PLACES] = {0}, t = random_between(r, -3, 3);
+  int side = 2 * n;
+  for (int i = 0; i < side * side; i++) bend[i] = 0.5; /* it adds */
+  s->value(places, n, q, 0.3, b);
+  s->bend(places, n, q, t, bend);
+  for (int j = 0; j < side; j++) {
+    double value[3], slope[3][MOST_PLACES];
+    for (int k = 0; k < 3; k++)
+      strain_slopes(s, n, q, places[j / 2] + (uint32_t)(j % 2), ldexp(2e-3, -k), &value[k],
+                    slope[k]);
+    assert_near(b[j], extrapolated(value[0], value[1], value[2]), 1e-9);
+    for (int i = 0; i < side; i++) {
+      double d = extrapolated(slope[0][i], slope[1][i], slope[2][i]);
+      assert_near(bend[i * side + j] - 0.5, t * d, 1e-9 * (1 + fabs(t)));
+      assert_near(bend[i * side + j], bend[j * side + i], 1e-14);
+    }
+  }
+}
+
+static void test_gradients_and_second_derivatives_of_strains(void **unused) {
+  (void)unused;
+  uint64_t r = 11;
+  for (int k = 0; k < STRAINS; k++)
+    for (int pass = 0; pass < 200; pass++) {
+      const strain *s = &strains[k];
+      double q[MOST_PLACES];
+      int n = s->least + random_below(&r, s->most - s->least + 1);
+      place_nodes(q, &r);
+      if (near_end(s, q)) continue;
+      check_strain(s, n, q, &r);
+    }
+}
+
+/* A gradient has no part along a shift, nor, but for an angle's, a part that a turn does not explain. */
+static void test_strains_do_not_feel_a_shift_or_a_turn(void **unused) {
+  (void)unused;
+  uint64_t r = 12;
+  for (int k = 0; k < STRAINS; k++)
+    for (int pass = 0; pass < 100; pass++) {
+      const strain *s = &strains[k];
+      double q[MOST_PLACES], b[MOST_PLACES], x = 0, y = 0, turn = 0;
+      int n = s->least + random_below(&r, s->most - s->least + 1);
+      place_nodes(q, &r);
+      s->value(places, n, q, 0, b);
+      for (int i = 0; i < n; i++) {
+        const double *at = q + places[i];
+        x += b[2 * i], y += b[2 * i + 1], turn += b[2 * i + 1] * at[0] - b[2 * i] * at[1];
+      }
+      assert_near(x, 0, 1e-13);
+      assert_near(y, 0, 1e-13);
+      assert_near(turn, 0, 1e-11);
+    }
+}
+
+static void test_strains_of_known_figures(void **unused) {
+  (void)unused;
+  const double q[] = {0, 0, 4, 0, 4, 3, 0, 3};
+  const uint32_t ring[] = {0, 2, 4, 6, 0}, back[] = {6, 4, 2, 0}, corner[] = {4, 0, 2};
+  const uint32_t beside[] = {6, 0, 2}, beyond[] = {4, 0, 6};
+  double b[MOST_PLACES];
+  assert_near(strut_strain_path(ring, 5, q, 0, b), 14, 1e-15);
+  assert_near(strut_strain_length(ring, 2, q, 0, b), 4, 1e-15);
+  assert_near(strut_strain_area(ring, 4, q, 0, b), 12, 1e-15);
+  assert_near(strut_strain_area(back, 4, q, 0, b), -12, 1e-15);
+  assert_near(strut_strain_angle(corner, 3, q, 0, b), -atan(0.75), 1e-15);
+  assert_near(strut_strain_angle(corner, 3, q, 12, b), 2 * STRUT_TAU - atan(0.75), 1e-14);
+  assert_near(strut_strain_reach(beside, 3, q, 0, b), 3, 1e-15);
+  assert_near(strut_strain_reach(beyond, 3, q, 0, b), 4, 1e-15);
+}
+
+/* Nodes in one place: no direction, but numbers. */
+static void test_strains_without_a_direction_are_finite(void **unused) {
+  (void)unused;
+  const double q[MOST_PLACES] = {0};
+  for (int k = 0; k < STRAINS; k++) {
+    double b[MOST_PLACES], h[MOST_PLACES * MOST_PLACES] = {0};
+    int n = strains[k].most;
+    assert_near(strains[k].value(places, n, q, 0, b), 0, 0);
+    strains[k].bend(places, n, q, 1, h);
+    for (int i = 0; i < 2 * n; i++) assert_near(b[i], 0, 0);
+    for (int i = 0; i < 4 * n * n; i++) assert_true(isfinite(h[i]));
+  }
+}
+
+/* ---- laws ---- */
+
+/* A spring of that law between two nodes; its numbers belong to the model. */
+typedef struct law_model {
+  strut_scene scene;
+  strut_model *model;
+  const strut_element *element;
+} law_model;
+
+static void make_law(law_model *m, strut_law_kind kind, uint64_t *r) {
+  strut_scene_init(&m->scene);
+  build_support(&m->scene, 0, 0);
+  build_mass(&m->scene, 1, 0, 1);
+  int32_t j = build_member(&m->scene, STRUT_SPRING, 0, 1, random_between(r, 0.5, 5), 0, 0);
+  strut_member *member = &m->scene.members[j];
+  member->law = random_law(&m->scene, kind, 0.3, 0.3 * member->stiffness, r);
+  if (kind == STRUT_LAW_LINEAR) member->law.carries = STRUT_CARRIES_COMPRESSION; /* an element */
+  if (strut_law_at(kind)->own) member->stiffness = 0;
+  m->model = motion_compile(&m->scene);
+  m->element = m->model->elements.element;
+  assert_int_equal(m->model->elements.count, 1);
+}
+
+static void free_law(law_model *m) {
+  strut_model_free(m->model);
+  strut_scene_free(&m->scene);
+}
+
+static strut_law_response respond(const strut_element *e, double x, double e0, int piece) {
+  return strut_law_respond(e->law, &e->numbers, e0 + x, e0, piece);
+}
+
+static void check_slopes(const strut_element *e, double x, double e0, int piece) {
+  strut_law_response at = respond(e, x, e0, piece);
+  double force[3], slope[3];
+  for (int k = 0; k < 3; k++) {
+    double h = ldexp(1e-3, -k);
+    strut_law_response up = respond(e, x + h, e0, piece), down = respond(e, x - h, e0, piece);
+    force[k] = (up.energy - down.energy) / (2 * h);
+    slope[k] = (up.force - down.force) / (2 * h);
+  }
+  double scale = 1 + fabs(at.force) + fabs(at.slope);
+  assert_near(at.force, extrapolated(force[0], force[1], force[2]), 1e-9 * scale);
+  assert_near(at.slope, extrapolated(slope[0], slope[1], slope[2]), 1e-9 * scale);
+}
+
+/* Is x near a place where the force is not smooth: a kink, or a point of a spline? */
+static bool near_point(const strut_element *e, double x) {
+  const strut_law_curve *c = e->law == STRUT_LAW_TABLE ? e->numbers.curve : NULL;
+  for (int k = 0; k < strut_law_kinks(e->law, &e->numbers); k++)
+    if (fabs(x - strut_law_kink(e->law, &e->numbers, k)) < 2e-3) return true;
+  for (size_t k = 0; c && k < c->count; k++)
+    if (fabs(x - c->x[k]) < 2e-3) return true;
+  return false;
+}
+
+static void check_law(strut_law_kind kind, uint64_t *r) {
+  law_model m = {0};
+  make_law(&m, kind, r);
+  const strut_element *e = m.element;
+  int kinks = strut_law_kinks(e->law, &e->numbers);
+  for (int pass = 0; pass < 40; pass++) {
+    double x = random_between(r, -0.7, 0.9), e0 = random_between(r, 0.8, 1.2);
+    if (kind == STRUT_LAW_TABLE && pass % 4 == 0) x *= 5; /* beyond the ends */
+    if (!near_point(e, x)) check_slopes(e, x, e0, -1);
+    /* a frozen piece gives the same bits on the piece, and is smooth beyond its ends */
+    int piece = strut_law_piece(e->law, &e->numbers, e0 + x - e0);
+    strut_law_response free = respond(e, x, e0, -1), frozen = respond(e, x, e0, piece);
+    if (kinks) assert_near(frozen.force, free.force, 1e-14 * (1 + fabs(free.force)));
+    if (kinks) assert_near(frozen.energy, free.energy, 1e-14 * (1 + fabs(free.energy)));
+    for (int other = 0; other <= kinks && kinks; other++) check_slopes(e, x, e0, other);
+  }
+  for (int k = 0; k < kinks; k++) {
+    double at = strut_law_kink(e->law, &e->numbers, k);
+    strut_law_response left = respond(e, at, 0, k), right = respond(e, at, 0, k + 1);
+    assert_near(left.force, right.force, 1e-14 * (1 + fabs(left.force)));
+    assert_near(left.energy, right.energy, 1e-14 * (1 + fabs(left.energy)));
+    if (k) assert_true(at > strut_law_kink(e->law, &e->numbers, k - 1));
+    assert_int_equal(strut_law_piece(e->law, &e->numbers, at - 1e-9), k);
+    assert_int_equal(strut_law_piece(e->law, &e->numbers, at + 1e-9), k + 1);
+  }
+  assert_near(respond(e, 0, 1, -1).energy, 0, 1e-16);
+  if (kind != STRUT_LAW_PLAY)
+    assert_relative(respond(e, 0, 1, -1).slope, e->numbers.stiffness, 1e-14);
+  free_law(&m);
+}
+
+static void test_force_is_the_slope_of_the_energy(void **unused) {
+  (void)unused;
+  uint64_t r = 21;
+  for (int kind = 0; kind < STRUT_LAW_COUNT; kind++)
+    for (int pass = 0; pass < 20; pass++) check_law((strut_law_kind)kind, &r);
+}
+
+/* Values, from the formulas of the reference. */
+static void test_laws_at_known_places(void **unused) {
+  (void)unused;
+  const double c[] = {2, -1, 3};
+  const strut_law_numbers n = {
+      .stiffness = 4, .first = 0.5, .second = 10, .coefficient = c, .count = 3};
+  assert_near(strut_law_respond(STRUT_LAW_BILINEAR, &n, 2.25, 2, -1).force, 1, 1e-15);
+  assert_near(strut_law_respond(STRUT_LAW_BILINEAR, &n, 3, 2, -1).force, 7, 1e-15);
+  assert_near(strut_law_respond(STRUT_LAW_BILINEAR, &n, 1, 2, -1).force, -7, 1e-15);
+  assert_near(strut_law_respond(STRUT_LAW_BILINEAR, &n, 3, 2, -1).energy, 0.5 + 1 + 1.25, 1e-15);
+  assert_near(strut_law_respond(STRUT_LAW_PLAY, &n, 2.5, 2, -1).force, 0, 0);
+  assert_near(strut_law_respond(STRUT_LAW_PLAY, &n, 3, 2, -1).force, 2, 1e-15);
+  assert_near(strut_law_respond(STRUT_LAW_PLAY, &n, 1, 2, -1).energy, 0.5, 1e-15);
+  assert_near(strut_law_respond(STRUT_LAW_POLYNOMIAL, &n, 4, 2, -1).force, 24, 1e-14);
+  assert_near(strut_law_respond(STRUT_LAW_POLYNOMIAL, &n, 4, 2, -1).energy, 4 - 8. / 3 + 12, 1e-14);
+  assert_near(strut_law_respond(STRUT_LAW_LOGARITHMIC, &n, 4, 2, -1).force, 8 * log(2), 1e-14);
+  assert_near(strut_law_respond(STRUT_LAW_EXPONENTIAL, &n, 3, 2, -1).force, 2 * expm1(2), 1e-14);
+}
+
+/* A spline is smooth at its points, keeps to the range of two neighbours, and is straight on beyond. */
+static void test_a_smooth_table_has_no_kinks_and_does_not_overshoot(void **unused) {
+  (void)unused;
+  const double x[] = {-2, -1, 0, 1, 1.5, 3}, y[] = {-1, -1, 0, 4, 4, 5};
+  law_model m = {0};
+  strut_scene_init(&m.scene);
+  build_support(&m.scene, 0, 0);
+  build_mass(&m.scene, 5, 0, 1);
+  int32_t j = build_member(&m.scene, STRUT_SPRING, 0, 1, 0, 0, 0);
+  m.scene.members[j].law =
+      (strut_law){.kind = STRUT_LAW_TABLE, .count = 6, .smooth = true, .x = x, .force = y};
+  m.model = motion_compile(&m.scene);
+  m.element = m.model->elements.element;
+  assert_int_equal(strut_law_kinks(m.element->law, &m.element->numbers), 0);
+  for (int k = 0; k < 6; k++) {
+    strut_law_response left = respond(m.element, x[k] - 1e-9, 0, -1);
+    strut_law_response right = respond(m.element, x[k] + 1e-9, 0, -1);
+    assert_near(respond(m.element, x[k], 0, -1).force, y[k], 1e-15);
+    assert_near(left.slope, right.slope, 1e-7);
+    assert_near(left.force, right.force, 1e-7);
+    assert_near(left.energy, right.energy, 1e-7);
+    for (double at = x[k]; k < 5 && at <= x[k + 1]; at += 0.01)
+      assert_within(respond(m.element, at, 0, -1).force, y[k] - 1e-14, y[k + 1] + 1e-14);
+  }
+  strut_law_response end = respond(m.element, 3, 0, -1), out = respond(m.element, 7, 0, -1);
+  assert_near(out.force, end.force + 4 * end.slope, 1e-14);
+  assert_near(out.energy, end.energy + 4 * end.force + 8 * end.slope, 1e-13);
+  free_law(&m);
+}
+
+/* ---- whole models ---- */
+
+enum { SCENES = 150 };
+
+typedef struct fixture {
+  strut_scene scene;
+  strut_model *model;
+  strut_state *state;
+  strut_potential *potential;
+  double *q, *g, *up, *down;
+  int32_t n;
+} fixture;
+
+static void set_up(fixture *f, uint64_t seed, double damping) {
+  random_elements(&f->scene, seed, damping);
+  f->model = motion_compile(&f->scene);
+  assert_int_equal(strut_state_create(f->model, &f->state, NULL), STRUT_OK);
+  assert_int_equal(strut_potential_create(f->model, NULL, true, &f->potential, NULL), STRUT_OK);
+  size_t length = (size_t)f->model->length;
+  double **all[] = {&f->q, &f->g, &f->up, &f->down};
+  for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
+    assert_non_null(*all[i] = strut_arena_allocate(&f->scene.arena, length, sizeof(double)));
+  f->n = f->potential->n;
+}
+
+static void tear_down(fixture *f) {
+  strut_potential_free(f->potential);
+  strut_state_free(f->state);
+  strut_model_free(f->model);
+  strut_scene_free(&f->scene);
+}
+
+/* Is every element clear of kinks, of where it begins to act, and of half a turn from its rest? */
+static bool clear_of_kinks(const fixture *f) {
+  const strut_model *model = f->model;
+  for (int32_t i = 0; i < model->elements.count; i++) {
+    const strut_element *e = &model->elements.element[i];
+    strut_element_pose pose;
+    strut_element_evaluate(model, i, model->members.rest, f->q, (double)NAN, &pose);
+    double x = pose.strain - pose.natural;
+    if (near_point(e, x) || (e->carries && fabs(x) < 2e-2)) return false;
+    for (int k = 0; k < strut_law_kinks(e->law, &e->numbers); k++)
+      if (fabs(x - strut_law_kink(e->law, &e->numbers, k)) < 2e-2) return false;
+    if (e->strain == STRUT_STRAIN_ANGLE && fabs(x) > 3.0) return false;
+    for (int k = 0; k < 2 * e->nodes; k++)
+      if (fabs(pose.b[k]) > 4.0) return false;
+  }
+  return true;
+}
+
+/* Moves the free nodes to where all is smooth; false if no such place is found. */
+static bool move_away(fixture *f, uint64_t seed) {
+  uint64_t r = seed + 77;
+  for (int again = 0; again < 50; again++) {
+    memcpy(f->q, f->model->start, (size_t)f->model->length * sizeof *f->q);
+    for (int32_t i = 0; i < f->n; i++)
+      f->q[f->potential->coordinate[i]] += random_between(&r, -0.15, 0.15);
+    if (clear_of_kinks(f)) return true;
+  }
+  return false;
+}
+
+static double value_slope(fixture *f, int32_t at, double h) {
+  double keep = f->q[at];
+  f->q[at] = keep + h;
+  double up = strut_potential_value(f->potential, f->q);
+  f->q[at] = keep - h;
+  double down = strut_potential_value(f->potential, f->q);
+  f->q[at] = keep;
+  return (up - down) / (2 * h);
+}
+
+static void gradient_slope(fixture *f, int32_t at, double h, double *slope) {
+  double keep = f->q[at];
+  f->q[at] = keep + h;
+  strut_potential_gradient(f->potential, f->q, f->up);
+  f->q[at] = keep - h;
+  strut_potential_gradient(f->potential, f->q, f->down);
+  f->q[at] = keep;
+  for (int32_t i = 0; i < f->n; i++) slope[i] = (f->up[i] - f->down[i]) / (2 * h);
+}
+
+static double largest_of(const double *x, int32_t n) {
+  double largest = 1;
+  for (int32_t i = 0; i < n; i++) largest = fmax(largest, fabs(x[i]));
+  return largest;
+}
+
+static void test_forces_of_a_model_are_the_slope_of_its_energy(void **unused) {
+  (void)unused;
+  int tried = 0;
+  for (uint64_t seed = 0; seed < SCENES; seed++) {
+    fixture f = {0};
+    set_up(&f, seed, 1);
+    if (move_away(&f, seed)) {
+      strut_potential_gradient(f.potential, f.q, f.g);
+      double scale = largest_of(f.g, f.n);
+      for (int32_t i = 0; i < f.n; i++) {
+        int32_t at = f.potential->coordinate[i];
+        double d = extrapolated(value_slope(&f, at, 1e-3), value_slope(&f, at, 5e-4),
+                                value_slope(&f, at, 2.5e-4));
+        assert_near(f.g[i], d, 1e-9 * scale);
+      }
+      /* the forces of a run are the same where nothing moves */
+      memset(f.up, 0, (size_t)f.model->length * sizeof *f.up);
+      strut_forces_evaluate(f.model, f.state, 0, f.q, f.up);
+      for (int32_t i = 0; i < f.n; i++)
+        assert_near(f.state->force[f.potential->coordinate[i]], -f.g[i], 1e-12 * scale);
+      tried++;
+    }
+    tear_down(&f);
+  }
+  assert_true(tried > SCENES / 2);
+}
+
+/* Every entry, those that the pattern lacks too: they must be zero. */
+static void test_the_hessian_of_a_model_is_the_slope_of_its_gradient(void **unused) {
+  (void)unused;
+  int tried = 0;
+  for (uint64_t seed = 0; seed < SCENES; seed++) {
+    fixture f = {0};
+    set_up(&f, seed, 1);
+    if (move_away(&f, seed)) {
+      strut_sparse *k = strut_potential_matrix(f.potential, &f.scene.arena);
+      double x[MOST_PLACES * 2] = {0}, column[MOST_PLACES * 2], slope[3][MOST_PLACES * 2];
+      assert_non_null(k);
+      strut_potential_hessian(f.potential, f.q, k);
+      double scale = largest_of(k->value, k->start[f.n]);
+      for (int32_t j = 0; j < f.n; j++) {
+        for (int p = 0; p < 3; p++)
+          gradient_slope(&f, f.potential->coordinate[j], ldexp(1e-3, -p), slope[p]);
+        memset(x, 0, sizeof x);
+        x[j] = 1;
+        strut_sparse_multiply(k, x, column);
+        for (int32_t i = 0; i < f.n; i++)
+          assert_near(column[i], extrapolated(slope[0][i], slope[1][i], slope[2][i]), 1e-9 * scale);
+      }
+      tried++;
+    }
+    tear_down(&f);
+  }
+  assert_true(tried > SCENES / 2);
+}
+
+/* What an element dissipates is never negative, and forces do the work that the ledger books. */
+static void test_the_ledger_books_what_forces_do(void **unused) {
+  (void)unused;
+  for (uint64_t seed = 0; seed < SCENES; seed++) {
+    fixture f = {0};
+    set_up(&f, seed, 1);
+    uint64_t r = seed;
+    if (move_away(&f, seed)) {
+      double *v = f.up, work = 0, gained, h = 1e-5;
+      memset(v, 0, (size_t)f.model->length * sizeof *v);
+      for (int32_t i = 0; i < f.n; i++) v[f.potential->coordinate[i]] = random_between(&r, -2, 2);
+      f.state->ledger = true;
+      strut_forces_evaluate(f.model, f.state, 0, f.q, v);
+      for (int32_t i = 0; i < f.model->length; i++) work += f.state->force[i] * v[i];
+      for (int32_t i = 0; i < f.model->length; i++) f.down[i] = f.q[i] + h * v[i];
+      gained = strut_potential_value(f.potential, f.down);
+      for (int32_t i = 0; i < f.model->length; i++) f.down[i] = f.q[i] - h * v[i];
+      gained = (gained - strut_potential_value(f.potential, f.down)) / (2 * h);
+      double lost = f.state->power[STRUT_POWER_MEMBERS];
+      assert_true(lost >= 0);
+      assert_near(-work, gained + lost, 1e-6 * (1 + fabs(work) + lost));
+    }
+    tear_down(&f);
+  }
+}
+
+/* An arm that turns round and round against a hinge: its moment grows with every turn. */
+static void test_a_hinge_counts_its_turns(void **unused) {
+  (void)unused;
+  const double kappa = 3, arm = 0.5;
+  strut_scene scene;
+  strut_state *state;
+  strut_scene_init(&scene);
+  build_support(&scene, 1, 0);
+  build_support(&scene, 0, 0);
+  build_mass(&scene, arm, 0, 1);
+  int32_t i = build_hinge(&scene, 0, 1, 2, kappa, 0);
+  scene.hinges[i].rest_angle = 0.25;
+  strut_model *model = motion_compile(&scene);
+  assert_int_equal(strut_state_create(model, &state, NULL), STRUT_OK);
+  for (int sign = 1; sign >= -1; sign -= 2) {
+    strut_state_reset(model, state);
+    for (int k = 0; k <= 100; k++) {
+      double angle = sign * 0.4 * k, moment = kappa * (angle - 0.25);
+      state->q[4] = arm * cos(angle), state->q[5] = arm * sin(angle);
+      strut_forces_evaluate(model, state, 0, state->q, state->v);
+      assert_near(state->force[4], moment / arm * sin(angle), 1e-11);
+      assert_near(state->force[5], -moment / arm * cos(angle), 1e-11);
+      double energy = strut_elements_energy(model, state->rest, state->element_turn, state->q);
+      assert_near(energy, 0.5 * kappa * (angle - 0.25) * (angle - 0.25), 1e-10);
+    }
+  }
+  strut_state_free(state);
+  strut_model_free(model);
+  strut_scene_free(&scene);
+}
+
+/* ---- the same model elsewhere ---- */
+
+/* A map of the plane: turned by an angle, mirrored in x first if so, and scaled. */
+typedef struct map {
+  double turn, scale;
+  bool mirrored;
+} map;
+
+static void map_point(const map *m, const double *from, double *to) {
+  double x = m->scale * (m->mirrored ? -from[0] : from[0]), y = m->scale * from[1];
+  to[0] = cos(m->turn) * x - sin(m->turn) * y;
+  to[1] = sin(m->turn) * x + cos(m->turn) * y;
+}
+
+/* With lengths s times as long and the same stiffnesses, forces are s times, moments s^2 times as large. */
+static void scale_law(strut_scene *scene, strut_law *law, double length, double force) {
+  double *x = (double *)build_numbers(scene, law->x ? law->x : &length, law->x ? law->count : 1);
+  double *y =
+      (double *)build_numbers(scene, law->force ? law->force : &force, law->force ? law->count : 1);
+  law->knee *= length, law->gap *= length, law->scale *= length;
+  law->second_stiffness *= force / length;
+  for (size_t i = 0; i < law->count; i++)
+    if (law->kind == STRUT_LAW_TABLE)
+      x[i] *= length, y[i] *= force;
+    else
+      y[i] *= force / pow(length, (double)i + 1);
+  law->x = x, law->force = y;
+}
+
+static void map_scene(strut_scene *scene, const map *m) {
+  for (size_t i = 0; i < scene->node_count; i++) {
+    map_point(m, scene->nodes[i].position, scene->nodes[i].position + 0);
+    map_point(m, scene->nodes[i].start, scene->nodes[i].start);
+  }
+  for (size_t j = 0; j < scene->member_count; j++) {
+    strut_member *member = &scene->members[j];
+    if (member->rest_kind == STRUT_REST_LENGTH) member->rest_value *= m->scale;
+    member->shortest *= m->scale, member->longest *= m->scale;
+    scale_law(scene, &member->law, m->scale, m->scale);
+  }
+  for (size_t i = 0; i < scene->hinge_count; i++) {
+    strut_hinge *h = &scene->hinges[i];
+    int32_t a = h->node[0];
+    if (m->mirrored) h->node[0] = h->node[2], h->node[2] = a;
+    h->stiffness *= m->scale * m->scale, h->damping *= m->scale * m->scale;
+    scale_law(scene, &h->law, 1.0, m->scale * m->scale);
+  }
+}
+
+static void compare_maps(uint64_t seed, const map *m) {
+  fixture f = {0}, g = {0};
+  uint64_t r = seed;
+  set_up(&f, seed, 1);
+  random_elements(&g.scene, seed, 1);
+  map_scene(&g.scene, m);
+  g.model = motion_compile(&g.scene);
+  assert_int_equal(strut_state_create(g.model, &g.state, NULL), STRUT_OK);
+  double *v = f.up, *w = f.down, *there = f.g;
+  memcpy(f.q, f.model->start, (size_t)f.model->length * sizeof *f.q);
+  for (int32_t i = 0; i < 2 * f.model->node_count; i++) {
+    f.q[i] += random_between(&r, -0.3, 0.3);
+    v[i] = random_between(&r, -1, 1);
+  }
+  for (int32_t i = 0; i < 2 * f.model->node_count; i += 2) {
+    map_point(m, f.q + i, there + i);
+    map_point(m, v + i, w + i);
+  }
+  strut_forces_evaluate(f.model, f.state, 0, f.q, v);
+  strut_forces_evaluate(g.model, g.state, 0, there, w);
+  double scale = m->scale * largest_of(f.state->force, f.model->length);
+  for (int32_t i = 0; i < 2 * f.model->node_count; i += 2) {
+    double expected[2];
+    map_point(m, f.state->force + i, expected);
+    assert_near(g.state->force[i], expected[0], 1e-10 * scale);
+    assert_near(g.state->force[i + 1], expected[1], 1e-10 * scale);
+  }
+  assert_relative(strut_elements_energy(g.model, g.state->rest, g.state->element_turn, there),
+                  m->scale * m->scale *
+                      strut_elements_energy(f.model, f.state->rest, f.state->element_turn, f.q),
+                  1e-10);
+  strut_state_free(g.state);
+  strut_model_free(g.model);
+  strut_scene_free(&g.scene);
+  tear_down(&f);
+}
+
+static void test_turned_mirrored_and_scaled_models(void **unused) {
+  (void)unused;
+  const map maps[] = {{0.7, 1, false}, {STRUT_PI, 1, false}, {0, 1, true},
+                      {2.3, 1, true},  {0, 0.01, false},     {-1.2, 100, true}};
+  for (uint64_t seed = 0; seed < 60; seed++)
+    for (size_t k = 0; k < sizeof maps / sizeof maps[0]; k++) compare_maps(seed, &maps[k]);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_gradients_and_second_derivatives_of_strains),
+      cmocka_unit_test(test_strains_do_not_feel_a_shift_or_a_turn),
+      cmocka_unit_test(test_strains_of_known_figures),
+      cmocka_unit_test(test_strains_without_a_direction_are_finite),
+      cmocka_unit_test(test_force_is_the_slope_of_the_energy),
+      cmocka_unit_test(test_laws_at_known_places),
+      cmocka_unit_test(test_a_smooth_table_has_no_kinks_and_does_not_overshoot),
+      cmocka_unit_test(test_forces_of_a_model_are_the_slope_of_its_energy),
+      cmocka_unit_test(test_the_hessian_of_a_model_is_the_slope_of_its_gradient),
+      cmocka_unit_test(test_the_ledger_books_what_forces_do),
+      cmocka_unit_test(test_a_hinge_counts_its_turns),
+      cmocka_unit_test(test_turned_mirrored_and_scaled_models),
+  };
+  return cmocka_run_group_tests_name("elements", tests, NULL, NULL);
+}
