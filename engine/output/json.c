@@ -116,6 +116,16 @@ static void add_nodes(strut_json *json, cJSON *to, const strut_summary *s) {
   }
 }
 
+/* The key exists only if the scene has hinges. */
+static void add_hinges(strut_json *json, cJSON *to, const strut_summary *s) {
+  cJSON *hinges = s->hinge_count ? strut_json_object(json, to, "hinges") : NULL;
+  for (size_t i = 0; i < s->hinge_count; i++) {
+    cJSON *hinge = strut_json_object(json, hinges, s->hinges[i].hinge);
+    strut_json_number(json, hinge, "angle", s->hinges[i].angle);
+    strut_json_number(json, hinge, "moment", s->hinges[i].moment);
+  }
+}
+
 static void add_contacts(strut_json *json, cJSON *to, const strut_summary *s) {
   cJSON *contacts = strut_json_object(json, to, "contacts");
   for (size_t i = 0; i < s->contact_count; i++) {
@@ -168,6 +178,7 @@ char *strut_summary_json(const strut_summary *summary, const strut_scene *scene,
   add_measured(&json, json.root, summary);
   add_parameters(&json, json.root, scene);
   add_nodes(&json, json.root, summary);
+  add_hinges(&json, json.root, summary);
   add_contacts(&json, json.root, summary);
   add_energy(&json, json.root, summary);
   return strut_json_end(&json);

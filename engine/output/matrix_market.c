@@ -76,30 +76,50 @@ static void write_rows(FILE *stream, const source *from) {
   }
 }
 
-static void write_columns(FILE *stream, const source *from) {
+/* The nodes that a running cable passes between its ends, as one cell. */
+static void write_guides(FILE *stream, const strut_scene *scene, const strut_member *member) {
+  fputc(',', stream);
+  for (size_t k = 0; k < member->guide_count; k++)
+    fprintf(stream, "%s%s", k ? " " : "", scene->nodes[member->guides[k]].name);
+}
+
+static bool has_inner_nodes(const strut_scene *scene) {
+  for (size_t j = 0; j < scene->member_count; j++)
+    if (scene->members[j].guide_count) return true;
+  return scene->hinge_count > 0;
+}
+
+static void write_member_column(FILE *stream, const strut_scene *scene, size_t j, bool inner) {
   static const char *const kinds[] = {"bar", "spring", "cable"};
+  const strut_member *member = &scene->members[j];
+  fprintf(stream, "%zu,", j + 1);
+  write_text(stream, member->name);
+  fprintf(stream, ",%s,", kinds[member->kind]);
+  write_text(stream, scene->nodes[member->node[0]].name);
+  fputc(',', stream);
+  write_text(stream, scene->nodes[member->node[1]].name);
+  if (inner) write_guides(stream, scene, member);
+  fputc('\n', stream);
+}
+
+static void write_hinge_column(FILE *stream, const strut_scene *scene, size_t i) {
+  const strut_hinge *hinge = &scene->hinges[i];
+  fprintf(stream, "%zu,", scene->member_count + i + 1);
+  write_text(stream, hinge->name);
+  fputs(",hinge,", stream);
+  for (int k = 0; k < 3; k++) {
+    write_text(stream, scene->nodes[hinge->node[(int[]){0, 2, 1}[k]]].name);
+    fputc(k < 2 ? ',' : '\n', stream);
+  }
+}
+
+/* A column `over` of the nodes in between where there are running cables or hinges. */
+static void write_columns(FILE *stream, const source *from) {
   const strut_scene *scene = from->model->scene;
-  fputs("column,member,kind,from,to\n", stream);
-  for (size_t j = 0; j < scene->member_count; j++) {
-    const strut_member *member = &scene->members[j];
-    fprintf(stream, "%zu,", j + 1);
-    write_text(stream, member->name);
-    fprintf(stream, ",%s,", kinds[member->kind]);
-    write_text(stream, scene->nodes[member->node[0]].name);
-    fputc(',', stream);
-    write_text(stream, scene->nodes[member->node[1]].name);
-    fputc('\n', stream);
-  }
-  for (size_t i = 0; i < scene->hinge_count; i++) {
-    const strut_hinge *hinge = &scene->hinges[i];
-    fprintf(stream, "%zu,", scene->member_count + i + 1);
-    write_text(stream, hinge->name);
-    fputs(",hinge,", stream);
-    write_text(stream, scene->nodes[hinge->node[0]].name);
-    fputc(',', stream);
-    write_text(stream, scene->nodes[hinge->node[2]].name);
-    fputc('\n', stream);
-  }
+  bool inner = has_inner_nodes(scene);
+  fprintf(stream, "column,member,kind,from,to%s\n", inner ? ",over" : "");
+  for (size_t j = 0; j < scene->member_count; j++) write_member_column(stream, scene, j, inner);
+  for (size_t i = 0; i < scene->hinge_count; i++) write_hinge_column(stream, scene, i);
 }
 
 static void write_banner(FILE *stream, const source *from, const char *kind, const char *what) {

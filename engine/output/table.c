@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "engine/base/c_locale.h"
+#include "engine/base/vec.h"
 #include "engine/output/buffer.h"
 #include "engine/output/json.h"
 #include "engine/output/quantity_text.h"
@@ -146,6 +147,14 @@ static void add_positions(strut_buffer *table, const strut_summary *s) {
   add_more(table, s->node_count);
 }
 
+static void add_hinges(strut_buffer *table, const strut_summary *s) {
+  if (s->hinge_count) strut_buffer_add(table, "\n  %-16s %14s %14s\n", "hinge", "angle", "moment");
+  for (size_t i = 0; i < s->hinge_count && i < MOST_ROWS; i++)
+    strut_buffer_add(table, "  %-16s %10.5g deg %14s\n", s->hinges[i].hinge,
+                     s->hinges[i].angle * (180.0 / STRUT_PI), in(s->hinges[i].moment, "N m").text);
+  add_more(table, s->hinge_count);
+}
+
 static void add_contacts(strut_buffer *table, const strut_summary *s) {
   if (s->contact_count) {
     strut_buffer_add(table, "\n  %-16s %14s %14s\n", "contact", "contact time", "max. height");
@@ -196,6 +205,7 @@ char *strut_summary_table(const strut_summary *summary, const strut_scene *scene
   add_head(&table, summary, scene);
   add_measured(&table, summary);
   add_positions(&table, summary);
+  add_hinges(&table, summary);
   add_contacts(&table, summary);
   add_energy(&table, &summary->energy);
   add_balance(&table, summary);

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/run/plan.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "engine/integrate/limit/step_limit.h"

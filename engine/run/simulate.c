@@ -7,6 +7,8 @@
 #include <time.h>
 
 #include "engine/base/subnormals.h"
+#include "engine/forces/drive.h"
+#include "engine/forces/forces.h"
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/model/memory_estimate.h"
 #include "engine/run/orbit/shooting.h"
@@ -47,11 +49,14 @@ static strut_status allocate_summary(strut_run *r) {
   s->node_names = strut_allocate(scene->node_count, sizeof *s->node_names);
   s->positions = strut_allocate(2 * scene->node_count, sizeof *s->positions);
   s->contacts = strut_allocate(contacts, sizeof *s->contacts);
+  s->hinges = strut_allocate(scene->hinge_count, sizeof *s->hinges);
   if (e->quantity_count) s->measured = strut_allocate(e->quantity_count, sizeof *s->measured);
-  if (!s->node_names || !s->positions || !s->contacts || (e->quantity_count && !s->measured))
+  if (!s->node_names || !s->positions || !s->contacts || !s->hinges ||
+      (e->quantity_count && !s->measured))
     return strut_memory_fail_model(r->model->scene, r->error);
   s->node_count = scene->node_count;
   s->contact_count = contacts;
+  s->hinge_count = scene->hinge_count;
   s->measured_count = e->quantity_count;
   if (e->measure_node >= 0) s->measured_node = scene->nodes[e->measure_node].name;
   for (size_t i = 0; i < s->measured_count; i++)
@@ -62,6 +67,8 @@ static strut_status allocate_summary(strut_run *r) {
                                       .scale = (double)NAN,
                                       .expected = (double)NAN};
   for (size_t i = 0; i < s->node_count; i++) s->node_names[i] = scene->nodes[i].name;
+  for (size_t i = 0; i < s->hinge_count; i++)
+    s->hinges[i] = (strut_hinge_summary){scene->hinges[i].name, (double)NAN, (double)NAN};
   for (size_t i = 0; i < contacts; i++)
     s->contacts[i].node = scene->nodes[r->model->contacts.entry[i].node].name;
   return STRUT_OK;
@@ -386,6 +393,20 @@ static void fill_contacts(strut_run *r) {
     r->summary->contacts[i].band_needed = strut_stick_band_missed(r->model, &r->band, i);
 }
 
+/* Angles and moments of the hinges at the end. */
+static void measure_hinges(strut_run *r) {
+  const strut_scene *scene = r->model->scene;
+  if (!scene->hinge_count) return;
+  strut_drive_apply(r->model, r->state, strut_time_grid_at(&r->grid, r->state->step));
+  for (int32_t i = 0; i < r->model->elements.count; i++) {
+    const strut_element *e = &r->model->elements.element[i];
+    if (e->role != STRUT_ELEMENT_HINGE) continue;
+    strut_hinge_values values = strut_hinge_measure(r->model, r->state, i);
+    r->summary->hinges[e->item].angle = values.angle;
+    r->summary->hinges[e->item].moment = values.moment;
+  }
+}
+
 static void fill_summary(strut_run *r, strut_status status) {
   strut_summary *s = r->summary;
   fill_contacts(r);
@@ -404,6 +425,7 @@ static void fill_summary(strut_run *r, strut_status status) {
   if (r->detect_steady) strut_steady_detector_finish(&r->steady, s);
   s->velocity_zero = strut_measure_is_zero(&r->measure, s->velocity);
   for (size_t i = 0; i < 2 * s->node_count; i++) s->positions[i] = r->state->q[i];
+  measure_hinges(r);
   if (r->state->ledger) {
     sample_balance(r);
     s->balance = strut_balance_judge(&s->energy, s->steps);

@@ -346,6 +346,12 @@ static bool ends_at_comma(strut_reader *reader, const strut_tree *of, strut_owne
   return true;
 }
 
+/* A moment is no energy, though the dimension is that of one. */
+static bool is_moment(const strut_quantity_definition *d) {
+  return d->length == 1 && d->program[0].operation == STRUT_OPERATION_COLUMN &&
+         d->program[0].column.kind == STRUT_COLUMN_MOMENT && d->take != STRUT_TAKE_RATE;
+}
+
 static void read_quantity(strut_reader *reader, const strut_tree *key,
                           strut_quantity_definition *d) {
   strut_owner owner = {"quantity", key->text};
@@ -371,7 +377,7 @@ static void read_quantity(strut_reader *reader, const strut_tree *key,
   read_accuracy(reader, strut_slot_of(&fields, STRUT_KEY_QUANTITY_ACCURACY), owner, dimension,
                 known, d);
   strut_dimension_suffix(dimension, unit, sizeof unit);
-  d->unit = *unit ? strut_keep_text(reader, unit) : "1";
+  d->unit = is_moment(d) ? "N m" : *unit ? strut_keep_text(reader, unit) : "1";
 }
 
 /* The name becomes a column of a study's table and a word of `keep`. */

@@ -513,6 +513,51 @@ static void test_a_steady_run_measures_its_whole_orbit(void **unused) {
   end_run(&r);
 }
 
+/* A mass on an arm with a hinge: sqrt(kappa/(m l^2)) = 2 rad/s, 0.3 rad about the rest angle. */
+static void test_a_hinge_swings(void **unused) {
+  (void)unused;
+  measured_run r = run_text(
+      "strut: 1\n"
+      "nodes: {a: {position: [-1, 0], fixed: both}, o: {position: [0, 0], fixed: both},"
+      " c: {position: [1, 0], mass: 0.5 kg}}\n"
+      "members: {arm: {nodes: [o, c], kind: bar, stiffness: 1e6}}\n"
+      "hinges: {h: {nodes: [a, o, c], stiffness: 2 N m/rad, rest_angle: 180 deg}}\n"
+      "initial: {positions: {c: [cos(0.3), sin(0.3)]}}\n"
+      "solver: {step: pi/6000}\n"
+      "run: {duration: pi, measure: {quantities: {angle: h.angle, far: {of: h.angle, take: range},"
+      " rate: {of: h.rate, take: max}, mean: h.rate, moment: {of: h.moment, take: min}}}}\n");
+  assert_near(value(&r, "angle"), PI, 1e-6);
+  assert_relative(value(&r, "far"), 0.6, 1e-6);
+  assert_relative(value(&r, "rate"), 0.6, 1e-5);
+  assert_relative(value(&r, "moment"), -0.6, 1e-6);
+  assert_near(value(&r, "mean"), 0, 1e-6);
+  assert_string_equal(get(&r, "rate")->unit, "rad/s");
+  assert_string_equal(get(&r, "moment")->unit, "N m");
+  end_run(&r);
+}
+
+/* A running cable's length is its path's; its stretch is the tension over the stiffness. */
+static void test_a_running_cable(void **unused) {
+  (void)unused;
+  measured_run r = run_text(
+      "strut: 1\n"
+      "nodes: {low: {position: [0, -1], mass: 3 kg}, left: {position: [0, 0], fixed: both},"
+      " right: {position: [1, 0], fixed: both}, high: {position: [1, -2], mass: 1 kg}}\n"
+      "gravity: [0, -10]\n"
+      "members: {rope: {nodes: [low, left, right, high], kind: cable, stiffness: 3 kN/m,"
+      " pretension: 15 N}}\n" /* 2 m1 m2 g/(m1 + m2) */
+      "solver: {step: 1 ms}\n"
+      "run: {duration: 0.4 s, measure: {quantities: {force: rope.force, stretch: rope.stretch,"
+      " length: {of: rope.length, take: final}, rate: {of: rope.rate, take: max},"
+      " fall: {of: low.y, take: change}}}}\n");
+  assert_relative(value(&r, "force"), 15, 1e-12);
+  assert_relative(value(&r, "stretch"), 0.005, 1e-10);
+  assert_relative(value(&r, "length"), 4, 1e-12);
+  assert_near(value(&r, "rate"), 0, 1e-12);
+  assert_relative(value(&r, "fall"), -0.4, 1e-12); /* 5 m/s^2 */
+  end_run(&r);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_a_mass_caught_by_a_cable),
@@ -531,6 +576,8 @@ int main(void) {
       cmocka_unit_test(test_steps_allocate_nothing),
       cmocka_unit_test(test_memory_that_runs_out),
       cmocka_unit_test(test_a_steady_run_measures_its_whole_orbit),
+      cmocka_unit_test(test_a_hinge_swings),
+      cmocka_unit_test(test_a_running_cable),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -65,13 +65,12 @@ void strut_window_segment(const strut_window *w, const strut_model *model, const
 /* The longest segment of a member, where its name and its stop stand. */
 static void find_longest_segment(const strut_window *w, const strut_model *model, const double *q,
                                  size_t member, double longest[2][2]) {
-  double ends[2][2], most = -1;
-  for (size_t k = 0; k < strut_member_segments(model, member); k++) {
+  strut_window_segment(w, model, q, member, 0, longest);
+  for (size_t k = 1; k < strut_member_segments(model, member); k++) {
+    double ends[2][2], x = longest[1][0] - longest[0][0], y = longest[1][1] - longest[0][1];
     strut_window_segment(w, model, q, member, k, ends);
-    double length = hypot(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]);
-    if (k && !(length > most)) continue;
-    most = length;
-    memcpy(longest, ends, sizeof ends);
+    if (hypot(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]) > hypot(x, y))
+      memcpy(longest, ends, sizeof ends);
   }
 }
 

@@ -31,12 +31,15 @@ void strut_summary_free(strut_summary *summary) {
   strut_release(summary->node_names);
   strut_release(summary->positions);
   strut_release(summary->contacts);
+  strut_release(summary->hinges);
   strut_release(summary->measured);
   summary->node_names = NULL;
   summary->positions = NULL;
   summary->contacts = NULL;
+  summary->hinges = NULL;
   summary->measured = NULL;
-  summary->node_count = summary->contact_count = summary->measured_count = 0;
+  summary->node_count = summary->contact_count = summary->hinge_count = 0;
+  summary->measured_count = 0;
 }
 
 void strut_summary_warn_of_start(strut_summary *summary) {

@@ -53,6 +53,12 @@ typedef struct strut_contact_summary {
   double band_needed; /* width needed where a step passes over the stick band [m/s]; otherwise 0 */
 } strut_contact_summary;
 
+/** A hinge at the end. */
+typedef struct strut_hinge_summary {
+  const char *hinge;    /* its name, owned by the scene */
+  double angle, moment; /* [rad], [N m] */
+} strut_hinge_summary;
+
 /** A quantity of `measure` in the scene, over the window. */
 typedef struct strut_measured {
   const char *name, *unit; /* owned by the scene */
@@ -144,10 +150,11 @@ typedef struct strut_summary {
   double step, step_limit;          /* [s]; step_limit is INFINITY where nothing limits it */
   strut_step_limit_violation limit_fell;
   double wall_time; /* seconds spent stepping; never written into a file */
-  size_t node_count, contact_count;
+  size_t node_count, contact_count, hinge_count;
   const char **node_names;         /* (node_count) names owned by the scene */
   double *positions;               /* (node_count, 2) at the end [m] */
   strut_contact_summary *contacts; /* (contact_count) */
+  strut_hinge_summary *hinges;     /* (hinge_count) */
   const char *measured_node;       /* node of the measured velocity; NULL: centre of mass */
   size_t measured_count;
   strut_measured *measured; /* (measured_count) in the experiment's order */

@@ -1,0 +1,106 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Running cables, laws, stops and hinges in what is printed, recorded, drawn, exported and written.
+. "$(dirname "$0")/lib.sh"
+
+cat >all.yaml <<'YAML'
+strut: 1
+name: all elements
+nodes:
+  a: {position: [0, 0], fixed: both}
+  p: {position: [0.1, -0.06], mass: 0.1}
+  b: {position: [0.3, 0], fixed: both}
+  d: {position: [0.1, -0.16], mass: 0.1}
+gravity: [0, -9.81]
+members:
+  rope: {kind: cable, nodes: [a, p, b], stiffness: 500, damping: 1, rest_length: 0.31}
+  rod: {kind: bar, nodes: [p, d], stiffness: 2000, damping: 1, longest: 0.1002}
+  soft: {kind: spring, nodes: [a, d], law: {kind: table, points: [[-0.1, -1], [0, 0], [0.1, 2]]}}
+  prop: {kind: spring, nodes: [b, d], stiffness: 10, law: compression_only}
+hinges:
+  elbow: {nodes: [a, p, d], stiffness: 0.05, damping: 0.001, rest_angle: 100 deg}
+actuators: {motor: {hinge: elbow, signal: {sine: {amplitude: 10 deg, frequency: 5 Hz}}}}
+solver: {integrator: rk4-events, step: 0.1 ms}
+run:
+  duration: 0.1 s
+  measure:
+    quantities:
+      bend: {of: elbow.angle, take: final}
+      spin: {of: elbow.rate, take: max}
+      moment: {of: hinge(elbow).moment, take: final}
+      stretch: {of: rope.stretch, take: final}
+      length: {of: rope.length, take: final}
+      balance: {of: energy.total - work.drives + losses.total, take: range}
+output: {every: 1 ms, channels: [position, length, force, angle, moment]}
+YAML
+
+# What check prints: terms, and a table of each kind.
+expect 0 check all.yaml
+for line in "  hinges             1" "  running cables       for a cable that runs over guides" \
+  "  member laws          for a member with another law than the linear one" \
+  "  stops                for a member with a shortest or longest length" \
+  "  hinges               for a hinge" "  rope         a, p, b" "  soft         table        both" \
+  "  prop         linear       compression" "    200 kN/m" "100 deg"; do
+  out_has "$line"
+done
+expect 0 check all.yaml --json
+jq -e '.running_cables == 1 and .laws == 2 and .stops == 1 and .members.rope.nodes == ["a", "p", "b"]
+  and .members.rod.stop_stiffness == 200000 and .members.soft.law == "table"
+  and (.hinges.elbow.moment - 0.05 * (.hinges.elbow.drawn_angle - .hinges.elbow.rest_angle) | fabs) < 1e-15
+  and (.hinges.elbow.rest_angle - 100 * 3.141592653589793 / 180 | fabs) < 1e-15
+  and .terms.hinges and .terms.stops' out >/dev/null || fail "check --json"
+
+# What needs none of them says so.
+printf 'strut: 1\nnodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1}}\n%s\n' \
+  'members: {m: {kind: bar, nodes: [a, b], stiffness: 1}}' >plain.yaml
+expect 0 check plain.yaml
+out_has "  hinges               needs a hinge"
+out_has "  stops                needs a member with a shortest or longest length"
+
+# Recorded: the channels of the hinge, and of the members their sums.
+expect 0 run all.yaml --quiet -o run --plot run.svg
+[ "$(head -n 1 run/hinges.csv)" = "time [s],elbow.angle [rad],elbow.moment [N m]" ] || fail "hinges.csv"
+[ "$(wc -l <run/hinges.csv)" -eq 102 ] || fail "rows of hinges.csv"
+expect 0 run all.yaml --json
+jq -r '.measured[] | .value' out >measured
+jq -e '.measured.bend.value == .hinges.elbow.angle and .measured.moment.value == .hinges.elbow.moment' \
+  out >/dev/null || fail "hinges at the end"
+jq -e '.measured | map(.value) | .[3] as $stretch | .[4] as $length
+  | ($length - $stretch - 0.31 | fabs) < 1e-12 and .[5] < 1e-7' out >/dev/null || fail "measured"
+last=$(tail -n 1 run/hinges.csv)
+awk -F, -v bend="$(sed -n 1p measured)" -v moment="$(sed -n 3p measured)" \
+  'function far(a, b) { return a - b > 1e-12 || b - a > 1e-12 }
+   { exit far($2, bend) || far($3, moment) }' <<END || fail "the last row is $last"
+$last
+END
+
+# The effective scene is the scene.
+expect 0 write all.yaml
+mv out written.yaml
+expect 0 write run/scene.yaml
+same out written.yaml
+expect 0 run run/scene.yaml --quiet -o again
+same run/hinges.csv again/hinges.csv
+same run/members.csv again/members.csv
+
+# Drawn and exported: the cable over its guide in VTK (three points of nine), on the page, in CSV.
+expect 0 view run -o page.html --quiet
+grep -q '"guides":\[1\]' page.html || fail "the page has no guides"
+grep -q '"name":"elbow","nodes":\[0, 1, 3\]' page.html || fail "the page has no hinge"
+expect 0 export run --format vtk -o vtk --quiet
+grep -q '<Lines>' vtk/structure_00000.vtp || fail "no lines"
+sed -n 's/.*Name="offsets"[^>]*>\([^<]*\)<.*/\1/p' vtk/structure_00000.vtp | base64 -d 2>/dev/null |
+  od -An -v -t d4 -j 8 | tr -s ' \n' '  ' | grep -q '^ 3 5 7 9 $' || fail "offsets of the lines"
+expect 0 export all.yaml --matrices m
+grep -qx '1,rope,cable,a,b,p' m/columns.csv || fail "columns.csv lacks the guide"
+grep -qx '5,elbow,hinge,a,d,p' m/columns.csv || fail "columns.csv lacks the hinge"
+for draw in snapshots curves; do expect 0 run all.yaml --quiet --draw $draw --plot $draw.svg; done
+for what in equilibria "modes --at start" rigidity; do
+  # shellcheck disable=SC2086
+  set -- $what
+  command=$1
+  shift
+  expect 0 "$command" all.yaml "$@" --quiet --plot "$command.svg"
+done
+
+[ $failures -eq 0 ]
