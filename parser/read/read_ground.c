@@ -29,10 +29,9 @@ static bool is_given(strut_fields *fields, int key, double *number) {
  */
 static void set_coefficients(friction_layers *f, strut_fields *fields) {
   strut_friction *all = &f->friction;
-  const unsigned directions = key_bit(STRUT_KEY_FRICTION_MU_FORWARD) |
-                              key_bit(STRUT_KEY_FRICTION_MU_FORWARD_STATIC) |
-                              key_bit(STRUT_KEY_FRICTION_MU_BACKWARD) |
-                              key_bit(STRUT_KEY_FRICTION_MU_BACKWARD_STATIC);
+  const unsigned directions =
+      key_bit(STRUT_KEY_FRICTION_MU_FORWARD) | key_bit(STRUT_KEY_FRICTION_MU_FORWARD_STATIC) |
+      key_bit(STRUT_KEY_FRICTION_MU_BACKWARD) | key_bit(STRUT_KEY_FRICTION_MU_BACKWARD_STATIC);
   double mu;
   bool both = is_given(fields, STRUT_KEY_FRICTION_MU, &mu);
   if (both || is_given(fields, STRUT_KEY_FRICTION_MU_STATIC, &all->mu_static) ||

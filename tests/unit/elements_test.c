@@ -288,7 +288,7 @@ static void test_laws_at_known_places(void **unused) {
 /* Energies of small strains, as series; and what a change of the natural strain does to them. */
 static void test_energies_of_small_strains_keep_their_digits(void **unused) {
   (void)unused;
-  const strut_law_numbers n = {.stiffness = 4, .first = 0.5};
+  const strut_law_numbers n = {.stiffness = 4, .scale = 0.5};
   for (double u = 1e-9; u < 0.2; u *= 1.5)
     for (int sign = -1; sign <= 1; sign += 2) {
       double x = sign * u, e0 = 2, h = 1e-4;
