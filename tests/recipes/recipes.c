@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * What docs/recipes.md adds works: its friction law in every method that takes it, its method of
- * integration on a smooth scene, and both through the language and back.
+ * What docs/recipes.md adds works: its friction law and its law of members in every method that takes
+ * them, its method of integration on a smooth scene, and all through the language and back.
  */
 #include <math.h>
 #include <stdio.h>
@@ -31,6 +31,14 @@ static const char OSCILLATOR[] =
     "members: {spring: {kind: spring, nodes: [wall, block], stiffness: 100, rest_length: 1}}\n"
     "initial: {positions: {block: [1.01, 0]}}\n"
     "solver: {integrator: euler-forward, step: 1e-4}\nrun: {duration: 1}\n";
+
+static const char STIFFENING[] =
+    "strut: 1\nname: stiffening\n"
+    "nodes: {wall: {position: [0, 0], fixed: both},\n"
+    "        block: {position: [1.5, 0], mass: 1, fixed: y}}\n"
+    "members: {spring: {kind: spring, nodes: [wall, block], stiffness: 4, rest_length: 1,\n"
+    "                   law: {kind: stiffening, scale: 0.3}}}\n"
+    "solver: {step: 1e-3}\nrun: {duration: 1}\n";
 
 static int failures;
 
@@ -104,6 +112,40 @@ static void test_the_law_in_every_method(void) {
   strut_setup_free(&setup);
 }
 
+/* x'' = -k x (1 + (x/s)^2) from x = 0.5 on, by small steps of its own; x after time t. */
+static double stiffened(double t) {
+  enum { STEPS = 1000000 };
+  double x = 0.5, h = t / STEPS, v = 0;
+  for (int i = 0; i < STEPS; i++) {
+    double half = v - 0.5 * h * 4 * x * (1 + x * x / 0.09);
+    x += h * half;
+    v = half - 0.5 * h * 4 * x * (1 + x * x / 0.09);
+  }
+  return x;
+}
+
+static void test_the_member_law_in_every_method(void) {
+  strut_setup setup, again;
+  if (!read_setup(STIFFENING, &setup, true)) {
+    expect(false, "is refused", "the member law's scene", 0);
+    return;
+  }
+  char *text = strut_setup_write(&setup);
+  bool back = text && read_setup(text, &again, true);
+  expect(back && again.scene.members[0].law.scale == 0.3, "is lost when the scene is written",
+         "the member law", 0);
+  if (back) strut_setup_free(&again);
+  strut_release(text);
+  double end = 1 + stiffened(1);
+  for (size_t i = 0; strut_integrator_at(i); i++) {
+    const strut_integrator *method = strut_integrator_at(i);
+    double x, v, tolerance = method->order == 1 ? 1e-2 : 1e-5;
+    run(&setup, method, 1e-3, 1.0, 1, &x, &v);
+    expect(fabs(x - end) < tolerance, "the block swings by another law", method->name, x - end);
+  }
+  strut_setup_free(&setup);
+}
+
 static void test_the_method(void) {
   strut_setup setup;
   if (!read_setup(OSCILLATOR, &setup, true)) {
@@ -128,6 +170,7 @@ static void test_the_method(void) {
 
 int main(void) {
   test_the_law_in_every_method();
+  test_the_member_law_in_every_method();
   test_the_method();
   if (!failures) printf("the recipes work\n");
   return failures > 0;

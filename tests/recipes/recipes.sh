@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The recipes for a friction law and a method of integration do what they promise: copies the sources,
+# The recipes for a friction law, a law of members and a method of integration do what they promise: copies the sources,
 # applies the ```diff blocks of docs/recipes.md, compiles what recipes.c runs, and runs it.
 # Usage: recipes.sh ROOT SCRATCH CC INCLUDES LIBRARIES
 set -eu
@@ -13,6 +13,10 @@ cp -R "$root/tests/recipes" "$scratch/tests/"
 awk '/^```diff/ { inside = 1; blocks++; next } /^```/ { inside = 0 } inside { print }
   END { exit blocks == 0 }' "$root/docs/recipes.md" >"$scratch/recipes.diff"
 cd "$scratch"
+touched=$(sed -n 's/^+++ b\///p' recipes.diff | sort | tr '\n' ' ')
+expected="engine/integrate/euler_forward.c engine/scene/experiment.h engine/scene/friction.h \
+engine/scene/law.h engine/scene/laws/stiffening.h "
+[ "$touched" = "$expected" ] || { echo "the recipes touch other files: $touched"; exit 1; }
 patch -s -p1 <recipes.diff
 
 # Without kernels for several runs in lanes, which take long to compile.
