@@ -230,8 +230,10 @@ static bool sort_elements(compilation *c, strut_element_table *t) {
         if ((int)e->strain == strain && (int)e->law == law) sorted[t->count++] = *e;
       }
       if (t->count == begin) continue;
-      block[t->block_count++] =
-          (strut_element_block){(strut_strain_kind)strain, (strut_law_kind)law, begin, t->count};
+      bool both = true;
+      for (int32_t i = begin; i < t->count; i++) both = both && !sorted[i].carries;
+      block[t->block_count++] = (strut_element_block){(strut_strain_kind)strain,
+                                                      (strut_law_kind)law, begin, t->count, both};
     }
   for (int32_t i = 0; i < t->count; i++) {
     int32_t rows = 2 * sorted[i].nodes;

@@ -58,6 +58,7 @@ typedef struct strut_element_block {
   strut_strain_kind strain;
   strut_law_kind law;
   int32_t begin, end;
+  bool both_signs; /* all of them carry both */
 } strut_element_block;
 
 typedef struct strut_element_table {

@@ -5,8 +5,11 @@
  */
 #include "engine/forces/elements.h"
 
+#include <float.h>
 #include <math.h>
+
 #include <string.h>
+#include "engine/forces/forces.h"
 
 #include "engine/forces/strains/angle.h"
 #include "engine/forces/strains/area.h"
@@ -658,8 +661,65 @@ static void test_refused_memory(void **unused) {
   strut_scene_free(&scene);
 }
 
+/* In all directions and beside the axes, against the library's, to four units in the last place. */
+static void test_directions_are_those_of_atan2(void **unused) {
+  (void)unused;
+  const double tiny[] = {0.0, 5e-324, 1e-300, 1e-17, 1e-9, 1e-3};
+  for (int i = 0; i < 200000; i++) {
+    double angle = STRUT_TAU * (i / 200000.0 - 0.5) + 1e-6, size = pow(10.0, i % 7 - 3);
+    double x = size * cos(angle), y = size * sin(angle), expected = atan2(y, x);
+    double found = strut_angle_of((strut_lanes){x}, (strut_lanes){y})[0];
+    assert_true(fabs(found - expected) <= 4 * DBL_EPSILON * fmax(fabs(expected), 1e-300));
+  }
+  for (size_t i = 0; i < sizeof tiny / sizeof tiny[0]; i++)
+    for (int sign = -1; sign <= 1; sign += 2) {
+      double x = sign, y = tiny[i];
+      assert_near(strut_angle_of((strut_lanes){x}, (strut_lanes){y})[0], atan2(y, x), 1e-15);
+      assert_near(strut_angle_of((strut_lanes){y}, (strut_lanes){x})[0], atan2(x, y), 1e-15);
+    }
+  assert_true(strut_angle_of((strut_lanes){0.0}, (strut_lanes){0.0})[0] == 0.0);
+}
+
+/* Hinges are stepped four at a time: the forces of seven are those of each alone, to the bit. */
+static void test_hinges_in_vectors_have_the_forces_of_single_ones(void **unused) {
+  (void)unused;
+  enum { HINGES = 7 };
+  double together[2 * (HINGES + 2)], alone[2 * (HINGES + 2)] = {0};
+  for (int only = -1; only < HINGES; only++) {
+    strut_scene scene;
+    strut_model *model = NULL;
+    strut_state *state = NULL;
+    strut_scene_init(&scene);
+    for (int i = 0; i < HINGES + 2; i++) build_mass(&scene, 0.1 * i, 0.03 * (i * i % 5), 1);
+    scene.hinges = strut_arena_allocate(&scene.arena, HINGES, sizeof *scene.hinges);
+    for (int i = 0; i < HINGES; i++) {
+      if (only >= 0 && only != i) continue;
+      strut_hinge *h = &scene.hinges[scene.hinge_count++];
+      *h = strut_hinge_default();
+      h->name = "h", h->stiffness = 0.3 + 0.1 * i, h->damping = i % 2 ? 0.02 : 0.0;
+      h->rest_angle = 2.5 + 0.2 * i;
+      for (int k = 0; k < 3; k++) h->node[k] = i + k;
+    }
+    assert_int_equal(strut_model_compile(&scene, &model, NULL), STRUT_OK);
+    assert_int_equal(strut_state_create(model, &state, NULL), STRUT_OK);
+    for (int i = 0; i < 2 * (HINGES + 2); i++) state->v[i] = sin(1.0 + i);
+    strut_forces_evaluate(model, state, 0.0, state->q, state->v);
+    for (int i = 0; i < 2 * (HINGES + 2); i++)
+      if (only < 0)
+        together[i] = state->force[i];
+      else
+        alone[i] += state->force[i];
+    strut_state_free(state);
+    strut_model_free(model);
+    strut_scene_free(&scene);
+  }
+  for (int i = 0; i < 2 * (HINGES + 2); i++) assert_true(alone[i] == together[i]);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_directions_are_those_of_atan2),
+      cmocka_unit_test(test_hinges_in_vectors_have_the_forces_of_single_ones),
       cmocka_unit_test(test_gradients_and_second_derivatives_of_strains),
       cmocka_unit_test(test_strains_do_not_feel_a_shift_or_a_turn),
       cmocka_unit_test(test_strains_of_known_figures),

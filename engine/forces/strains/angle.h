@@ -10,6 +10,49 @@
 #include <stdint.h>
 
 #include "engine/base/vec.h"
+#include "engine/model/hot.h"
+
+/* atan t / t - 1 for |t| <= tan(pi/16), from its series, whose next term is below 1e-18. */
+STRUT_INLINE strut_lanes strut_angle_series(strut_lanes z) {
+  strut_lanes z2 = z * z, z4 = z2 * z2, z8 = z4 * z4;
+  strut_lanes a = (-1.0 / 3.0 + z * (1.0 / 5.0)) + z2 * (-1.0 / 7.0 + z * (1.0 / 9.0));
+  strut_lanes b = (-1.0 / 11.0 + z * (1.0 / 13.0)) + z2 * (-1.0 / 15.0 + z * (1.0 / 17.0));
+  strut_lanes c = (-1.0 / 19.0 + z * (1.0 / 21.0)) + z2 * (-1.0 / 23.0 + z * (1.0 / 25.0));
+  return z * (a + z4 * b + z8 * c);
+}
+
+/**
+ * The directions of the vectors (x, y) [rad], in [-pi, pi]: atan2 with the same bits on every machine, to
+ * three units in the last place. Within an octant the vector is turned back by 0, 1 or 2 times pi/8.
+ */
+STRUT_INLINE strut_lanes strut_angle_of(strut_lanes x, strut_lanes y) {
+  const strut_lanes zero = {0}, one = zero + 1.0;
+  strut_lanes ax = strut_lanes_magnitude(x), ay = strut_lanes_magnitude(y);
+  strut_lane_mask steep = ay > ax;
+  strut_lanes big = strut_lanes_choose(steep, ay, ax), small = strut_lanes_choose(steep, ax, ay);
+  strut_lane_mask once = small > 0.198912367379658 * big,
+                  twice = small > 0.6681786379192989 * big; /* tan pi/16, tan 3 pi/16 */
+  strut_lanes c = strut_lanes_choose(twice, zero + 0.7071067811865476,
+                                     strut_lanes_choose(once, zero + 0.9238795325112867, one));
+  strut_lanes s = strut_lanes_choose(twice, zero + 0.7071067811865476,
+                                     strut_lanes_choose(once, zero + 0.3826834323650898, zero));
+  strut_lanes base = strut_lanes_choose(twice, zero + 0.25 * STRUT_PI,
+                                        strut_lanes_choose(once, zero + 0.125 * STRUT_PI, zero));
+  strut_lanes across = small * c - big * s, along = big * c + small * s;
+  strut_lanes t = across / strut_lanes_choose(along > zero, along, one);
+  strut_lanes angle = base + (t + t * strut_angle_series(t * t));
+  angle = strut_lanes_choose(steep, 0.5 * STRUT_PI - angle, angle);
+  angle = strut_lanes_choose(x < zero, STRUT_PI - angle, angle);
+  return strut_lanes_choose(y < zero, -angle, angle);
+}
+
+/* The angle that differs from `angle` by whole turns and is nearest to `reference`. */
+STRUT_INLINE strut_lanes strut_angle_near(strut_lanes angle, strut_lanes reference) {
+  const double rounder =
+      6755399441055744.0; /* numbers of a size at which units are the last bits */
+  strut_lanes turns = (reference - angle) * (1.0 / STRUT_TAU);
+  return angle + STRUT_TAU * ((turns + rounder) - rounder);
+}
 
 static inline double strut_strain_angle(const uint32_t *at, int n, const double *q,
                                         double reference, double *b) {
@@ -17,12 +60,13 @@ static inline double strut_strain_angle(const uint32_t *at, int n, const double 
   double ux = a[0] - o[0], uy = a[1] - o[1], vx = c[0] - o[0], vy = c[1] - o[1];
   double u2 = ux * ux + uy * uy, v2 = vx * vx + vy * vy;
   double iu = u2 > 0.0 ? 1.0 / u2 : 0.0, iv = v2 > 0.0 ? 1.0 / v2 : 0.0;
-  double angle = atan2(ux * vy - uy * vx, ux * vx + uy * vy);
+  strut_lanes angle =
+      strut_angle_of((strut_lanes){ux * vx + uy * vy}, (strut_lanes){ux * vy - uy * vx});
   (void)n;
   b[0] = iu * uy, b[1] = -iu * ux;
   b[4] = -iv * vy, b[5] = iv * vx;
   b[2] = -b[0] - b[4], b[3] = -b[1] - b[5];
-  return angle + STRUT_TAU * rint((reference - angle) * (1.0 / STRUT_TAU));
+  return strut_angle_near(angle, (strut_lanes){reference})[0];
 }
 
 /* Of the direction of an arm (x, y), second derivatives 2 x y / r^4 and (y^2 - x^2) / r^4. */
