@@ -180,6 +180,13 @@ static inline double strut_law_kink(strut_law_kind kind, const strut_law_numbers
   return 0.0;
 }
 
+/** Distances of x from the lower and the upper end of a piece; INFINITY where it has none. */
+static inline void strut_law_margins(strut_law_kind kind, const strut_law_numbers *n, int piece,
+                                     double x, double *low, double *high) {
+  *low = piece > 0 ? x - strut_law_kink(kind, n, piece - 1) : HUGE_VAL;
+  *high = piece < strut_law_kinks(kind, n) ? strut_law_kink(kind, n, piece) - x : HUGE_VAL;
+}
+
 /** The smooth piece in which x lies: the number of kinks below it. */
 static inline int strut_law_piece(strut_law_kind kind, const strut_law_numbers *n, double x) {
   int kinks = strut_law_kinks(kind, n), piece = 0;

@@ -132,10 +132,8 @@ static void pass_kink(const strut_model *model, strut_state *state, strut_event_
                       int32_t k) {
   const strut_element *e = &model->elements.element[l->laws[k].element];
   int piece = state->element_piece[l->laws[k].element];
-  int kinks = strut_law_kinks(e->law, &e->numbers);
-  double low = HUGE_VAL, high = HUGE_VAL, x = l->now->stretch[k];
-  if (piece > 0) low = x - strut_law_kink(e->law, &e->numbers, piece - 1);
-  if (piece < kinks) high = strut_law_kink(e->law, &e->numbers, piece) - x;
+  double low, high;
+  strut_law_margins(e->law, &e->numbers, piece, l->now->stretch[k], &low, &high);
   set_piece(state, l, k, low < high ? piece - 1 : piece + 1);
 }
 

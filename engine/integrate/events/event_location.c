@@ -155,10 +155,9 @@ static void measure_element(const strut_model *model, const strut_state *state,
     end->tension[k] = e->carries * m.force;
     return;
   }
-  int piece = state->element_piece[law->element], kinks = strut_law_kinks(e->law, &e->numbers);
-  double low = HUGE_VAL, high = HUGE_VAL;
-  if (piece > 0) low = m.stretch - strut_law_kink(e->law, &e->numbers, piece - 1);
-  if (piece < kinks) high = strut_law_kink(e->law, &e->numbers, piece) - m.stretch;
+  int piece = state->element_piece[law->element];
+  double low, high;
+  strut_law_margins(e->law, &e->numbers, piece, m.stretch, &low, &high);
   end->stretch[k] = m.stretch;
   end->stretch_rate[k] = m.rate;
   end->tension[k] = fmin(low, high);
