@@ -204,8 +204,8 @@ static inline int32_t strut_member_node(const strut_member *member, size_t k) {
 
 /** True for a member whose force is not that of a plain spring or cable between two nodes. */
 static inline bool strut_member_is_special(const strut_member *member) {
-  return member->guide_count || member->law.kind != STRUT_LAW_LINEAR ||
-         member->law.carries == STRUT_CARRIES_COMPRESSION;
+  bool one_sided = member->law.carries != STRUT_CARRIES_BOTH && member->kind != STRUT_CABLE;
+  return member->guide_count || member->law.kind != STRUT_LAW_LINEAR || one_sided;
 }
 
 /** Angle of a hinge as drawn, in (-pi, pi] [rad]. */

@@ -208,4 +208,23 @@ run: {duration: 0.1 s}
 END
 expect 0 run stop.yaml
 err_has "fixed steps pass over stops"
+# A bar or a spring that carries one sign only does so with the linear law, too.
+for kind in bar spring; do
+  for law in tension_only compression_only '{carries: tension}' '{carries: compression}'; do
+    cat >one.yaml <<END
+strut: 1
+nodes: {o: {position: [0, 0], fixed: both}, m: {position: [at, 0], mass: 1, fixed: y}}
+parameters: {at: 0.5}
+members: {s: {nodes: [o, m], kind: $kind, stiffness: 100, rest_length: 1, law: $law}}
+solver: {integrator: rk4-events, step: 1 ms}
+run: {duration: 0.1}
+END
+    case $law in *tension*) idle=0.5 busy=1.5 ;; *) idle=1.5 busy=0.5 ;; esac
+    expect 0 run one.yaml --set at=$idle --json
+    jq -e ".nodes.m.position[0] == $idle" out >value || fail "$kind, $law: moves from $idle"
+    expect 0 run one.yaml --set at=$busy --json
+    jq -e "(.nodes.m.position[0] - (1 + ($busy - 1) * (1 | cos)) | fabs) < 1e-6" out >value ||
+      fail "$kind, $law: moves otherwise from $busy"
+  done
+done
 done_testing
