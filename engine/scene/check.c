@@ -208,7 +208,7 @@ static bool check_law(strut_checker *checker, size_t index, const char *owner) {
   if (m->stiffness > 0.0 && m->axial_stiffness > 0.0)
     strut_report_finding(checker, STRUT_ON_MEMBER, index, "axial_stiffness",
                          "%s has both a stiffness and an axial_stiffness; give one", owner);
-  else if (!elastic && m->damping == 0.0)
+  else if (!elastic && m->damping == 0.0 && !strut_is_pulled(checker->scene, (int32_t)index, -1))
     strut_report_finding(checker, STRUT_ON_MEMBER, index, NULL,
                          "%s has neither stiffness nor damping, so it does nothing", owner);
   else if (force && !linear)

@@ -100,11 +100,15 @@ typedef struct strut_contact {
   strut_friction friction;
 } strut_contact;
 
-/** Drives the rest length of a member, or the rest angle of a hinge: rest + signal(t). */
+/**
+ * Drives the rest length of a member, or the rest angle of a hinge: rest + signal(t). Or adds a force
+ * along the member, tension positive, or a moment that closes the hinge where positive.
+ */
 typedef struct strut_actuator {
   const char *name;
   int32_t member, signal;
   int32_t hinge; /* where member is -1 */
+  bool force; /* the signal is a force [N] or a moment [N m] added to the member's or hinge's own */
 } strut_actuator;
 
 /** A force on a node: force, times signal(t) if there is one. */

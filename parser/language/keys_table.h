@@ -28,7 +28,7 @@
   X(SCENE, BARS, "bars", WORD, NONE, ANY, "elastic", OPTIONAL, 0, "elastic|rigid", FIELD(strut_scene, bar_model), "`rigid` bars keep, during a run, the length they have at its start; their stiffness and damping then count only while the structure settles.") \
   X(SCENE, GRAVITY, "gravity", PAIR, ACCELERATION, ANY, "[0, 0]", WRITTEN, 0, "", FIELD(strut_scene, gravity), "Gravitational acceleration.") \
   X(SCENE, GROUND, "ground", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "The line that nodes may touch; without it there is no ground.") \
-  X(SCENE, ACTUATORS, "actuators", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of an actuator", BY_HAND, "Members whose rest length a signal changes. Several actuators on one member add up.") \
+  X(SCENE, ACTUATORS, "actuators", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of an actuator", BY_HAND, "Members whose rest length a signal changes, or to which it adds a force. Several actuators on one member add up.") \
   X(SCENE, LOADS, "loads", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a load", BY_HAND, "Forces on nodes.") \
   X(SCENE, SIGNALS, "signals", THINGS, NONE, ANY, "", OPTIONAL, 0, "a signal", BY_HAND, "Named signals, for use in several places.") \
   X(SCENE, CONFIGURATIONS, "configurations", THINGS, NONE, ANY, "", OPTIONAL, 0, "`{NODE: [x, y], ...}` or the keys of a [configuration](#configuration)", BY_HAND, "Named shapes: to start from, and to name equilibria. Nodes that are not listed stay as drawn.") \
@@ -96,9 +96,11 @@
   X(CONTACT, DAMPING, "damping", NUMBER, DAMPING, NOT_NEGATIVE, "the ground's", OPTIONAL, 0, "", FIELD(strut_contact, damping), "Replaces the value of the ground.") \
   X(CONTACT, DISSIPATION, "dissipation", NUMBER, DISSIPATION, NOT_NEGATIVE, "the ground's", OPTIONAL, 0, "", FIELD(strut_contact, dissipation), "Replaces the value of the ground.") \
   X(CONTACT, FRICTION, "friction", MAP, NONE, ANY, "the ground's", OPTIONAL, 0, "", BY_HAND, "Replaces single keys of the ground's friction.") \
-  X(ACTUATOR, MEMBER, "member", NAME, NONE, ANY, "", OPTIONAL, 6, "", BY_HAND, "The member whose rest length it changes.") \
-  X(ACTUATOR, HINGE, "hinge", NAME, NONE, ANY, "", OPTIONAL, 6, "", BY_HAND, "The hinge whose rest angle it changes.") \
-  X(ACTUATOR, SIGNAL, "signal", SIGNAL, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "Added to the rest length of the member, or to the rest angle of the hinge.") \
+  X(ACTUATOR, MEMBER, "member", NAME, NONE, ANY, "", OPTIONAL, 6, "", BY_HAND, "The member whose rest length it changes, or to which it adds a force.") \
+  X(ACTUATOR, HINGE, "hinge", NAME, NONE, ANY, "", OPTIONAL, 6, "", BY_HAND, "The hinge whose rest angle it changes, or to which it adds a moment.") \
+  X(ACTUATOR, SIGNAL, "signal", SIGNAL, CONTEXT, ANY, "", OPTIONAL, 7, "", BY_HAND, "Added to the rest length of the member, or to the rest angle of the hinge.") \
+  X(ACTUATOR, FORCE, "force", SIGNAL, FORCE, ANY, "", OPTIONAL, 7, "", BY_HAND, "Instead of `signal`: a force added to the member's own, tension positive. Statics leave it out.") \
+  X(ACTUATOR, MOMENT, "moment", SIGNAL, CONTEXT, ANY, "", OPTIONAL, 7, "", BY_HAND, "Instead of `signal`: a moment added to the hinge's own, which closes its angle where positive. Statics leave it out.") \
   X(LOAD, NODE, "node", NAME, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "The node on which the force acts.") \
   X(LOAD, FORCE, "force", PAIR, FORCE, ANY, "", REQUIRED, 0, "", FIELD(strut_load, force), "The force; with a signal, the force while the signal is 1.") \
   X(LOAD, SIGNAL, "signal", SIGNAL, NONE, ANY, "constant 1", OPTIONAL, 0, "", BY_HAND, "Factor on the force.") \
