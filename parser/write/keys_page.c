@@ -27,6 +27,9 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
         "hinge "
         "read angle for length and moment for force. `polynomial` and `table` bring their own "
         "stiffness, so that the member must not give one.",
+    [STRUT_SECTION_RAYLEIGH] =
+        "`rayleigh: {...}`: a mode of angular frequency w gets the damping ratio alpha / (2 w) + "
+        "beta w / 2, beside what members' own dampers give.",
     [STRUT_SECTION_GROUND] = "`ground: {...}`: the line that nodes may touch.",
     [STRUT_SECTION_FRICTION] =
         "`friction: {...}` of the ground, of a group, or of a contact; keys of a contact take "

@@ -123,4 +123,78 @@ err_has "actuator 'winch' gives a force, which statics leaves out"
 expect 0 check run_over.yaml
 out_has "actuator forces"
 
+# A damping ratio: the free oscillation decays by exp(-zeta w t), of one mass and of two that are free,
+# with the reduced mass; a bar's own mass counts half at each end.
+cat >ratio.yaml <<'END'
+strut: 1
+mass_model: lumped
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0], mass: 1.5}
+  c: {position: [0, 2], mass: 1.5}
+  d: {position: [1, 3], mass: 5.5}
+members:
+  one: {kind: spring, nodes: [a, b], stiffness: 200, mass: 1, damping_ratio: 0.05}
+  two: {kind: spring, nodes: [c, d], stiffness: 300, mass: 1, damping_ratio: 0.1}
+initial:
+  velocities: {b: [1, 0], c: [-0.53033008588991065, -0.53033008588991065], d: [0.17677669529663688, 0.17677669529663688]}
+solver: {integrator: rk4, step: 1 ms}
+run:
+  duration: 1 s
+  measure: {quantities: {one: {of: one.stretch, take: final}, two: {of: two.stretch, take: final}}}
+END
+expect 0 run ratio.yaml --json
+# decayed W ZETA: the stretch after 1 s of an oscillation that begins with 1 m/s
+decayed() { echo "(($1) as \$w | $2 as \$z | (\$w * (1 - \$z * \$z | sqrt)) as \$d |
+  (-\$z * \$w | exp) * (\$d | sin) / \$d)"; }
+near "$(value one)" "$(decayed 10 0.05)" 1e-8
+near "$(value two)" "$(decayed '300 / 1.5 | sqrt' 0.1)" 1e-8
+closes 1e-9
+expect 0 modes ratio.yaml --json
+near '[.modes[].damping_ratio | select(. > 0.01)] | min' 0.05 1e-9
+near '[.modes[].damping_ratio | select(. > 0.01)] | max' 0.1 1e-9
+
+# Rayleigh's damping of two masses between three springs that have mass: both modes decay by
+# zeta = alpha / (2 w) + beta w / 2, by every method, and the ledger has what is lost.
+rayleigh() {
+  cat <<END
+strut: 1
+rayleigh: {mass: 0.8 s^-1, stiffness: 4 ms}
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0], fixed: y, mass: 1}
+  c: {position: [2, 0], fixed: y, mass: 1}
+  d: {position: [3, 0], fixed: both}
+members:
+  ab: {kind: spring, nodes: [a, b], stiffness: 100, mass: 0.6}
+  bc: {kind: spring, nodes: [b, c], stiffness: 100, mass: 0.6}
+  cd: {kind: spring, nodes: [c, d], stiffness: 100, mass: 0.6}
+initial: {velocities: {b: [1, 0], c: [$1, 0]}}
+solver: {integrator: $2, step: $3}
+run:
+  duration: 1 s
+  measure: {quantities: {x: {of: ab.stretch, take: final}}}
+END
+}
+slow='(100 / 1.5 | sqrt)' fast='(300 / 1.3 | sqrt)'
+rate() { echo "(0.4 / $1 + 0.002 * $1)"; }
+for method in $methods; do
+  case $method in euler*) error=5e-3 ;; rk4* | adaptive) error=1e-8 ;; *) error=1e-5 ;; esac
+  step="1 ms"
+  [ "$method" != adaptive ] || step="1 ms, tolerance: 1e-10"
+  rayleigh 1 "$method" "$step" >rayleigh.yaml
+  expect 0 run rayleigh.yaml --json
+  near "$(value x)" "$(decayed "$slow" "$(rate "$slow")")" $error
+  first_order "$method" || closes 1e-4
+  rayleigh -1 "$method" "$step" >rayleigh.yaml
+  expect 0 run rayleigh.yaml --json
+  near "$(value x)" "$(decayed "$fast" "$(rate "$fast")")" $error
+  first_order "$method" || closes 1e-4
+done
+expect 0 modes rayleigh.yaml --json
+near '.modes[0].damping_ratio' "$(rate "$slow")" 1e-9
+near '.modes[1].damping_ratio' "$(rate "$fast")" 1e-9
+expect 0 check rayleigh.yaml
+out_has "damping by mass"
+
 done_testing
