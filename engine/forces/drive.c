@@ -44,5 +44,7 @@ double strut_drive_next_break(const strut_model *model, double t) {
     first = fmin(first, strut_signal_next_break(signals, model->drives.signal[i], t));
   for (int32_t i = 0; i < model->loads.count; i++)
     first = fmin(first, strut_signal_next_break(signals, model->loads.signal[i], t));
+  for (int32_t i = 0; i < model->actuator_forces.count; i++)
+    first = fmin(first, strut_signal_next_break(signals, model->actuator_forces.item[i].signal, t));
   return first;
 }

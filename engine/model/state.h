@@ -79,6 +79,7 @@ typedef struct strut_state {
   bool ledger;               /* keep the ledger? It costs some arithmetic per evaluation */
   double *scratch;           /* (length) for the mass solve */
   strut_arena arena;
+  double *actuator_force; /* (actuator forces) when last evaluated [N], [N m] */
 } strut_state;
 
 /** All memory a run needs; an integrator adds its own to the arena. STRUT_OK or STRUT_NO_MEMORY. */
