@@ -34,6 +34,7 @@ strut_law random_law(strut_scene *scene, strut_law_kind kind, double size, doubl
       law.second_stiffness = random_between(r, 0.1, 3.0) * stiffness;
       break;
     case STRUT_LAW_PLAY: law.gap = random_between(r, 0.1, 0.8) * size; break;
+    case STRUT_LAW_ELASTIC_PLASTIC: law.yield = 1e6 * force; break; /* never */
     case STRUT_LAW_EXPONENTIAL: law.scale = random_between(r, 0.5, 2.0) * size; break;
     case STRUT_LAW_POLYNOMIAL: {
       const double c[] = {random_between(r, 0.1, 1.0) * stiffness,
