@@ -51,8 +51,7 @@ void strut_element_evaluate(const strut_model *model, int32_t element, const dou
   const strut_element *e = &model->elements.element[element];
   pose->natural = strut_element_natural(e, rest);
   double near = strut_element_is_gone(pose->natural) ? 0.0 : pose->natural;
-  pose->strain =
-      strain_of(e, model->elements.at + e->first, q, isnan(turn) ? near : turn, pose->b);
+  pose->strain = strain_of(e, model->elements.at + e->first, q, isnan(turn) ? near : turn, pose->b);
   if (strut_element_is_gone(pose->natural)) {
     pose->acts = false;
     pose->force = pose->energy = pose->slope = 0.0;

@@ -52,8 +52,7 @@ double strut_memory_natural(const strut_model *model, const strut_state *state, 
   if (strut_element_is_gone(state->rest[e->slot])) return state->rest[e->slot];
   if (!yields(e)) return base;
   int direction = direction_at(state, e, i, strain - base);
-  double plastic =
-      direction ? plastic_at(e, strain - base, direction) : state->plastic[e->memory];
+  double plastic = direction ? plastic_at(e, strain - base, direction) : state->plastic[e->memory];
   return base + shift_of(e, plastic);
 }
 

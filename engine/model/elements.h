@@ -53,7 +53,8 @@ typedef struct strut_element {
   strut_law_numbers numbers;
   /* an element with memory has a slot of its own, which follows that of its member or hinge */
   bool remembers;
-  int32_t base;   /* the slot that it follows; -1: its natural strain is `natural` before it has yielded */
+  int32_t
+      base; /* the slot that it follows; -1: its natural strain is `natural` before it has yielded */
   int32_t memory; /* place among the elements with memory */
 } strut_element;
 

@@ -35,8 +35,8 @@ typedef enum strut_term {
   STRUT_TERM_SLOPE = 1 << 8,    /* the ground is inclined */
   STRUT_TERM_SOLVE = 1 << 9,    /* the mass matrix is not diagonal */
   STRUT_TERM_LAWS = 1 << 10, /* some contact has another law of damping or friction than (8), (9) */
-  STRUT_TERM_RIGID = 1 << 11,    /* bars keep their lengths */
-  STRUT_TERM_ELEMENTS = 1 << 12, /* elements other than plain members */
+  STRUT_TERM_RIGID = 1 << 11,     /* bars keep their lengths */
+  STRUT_TERM_ELEMENTS = 1 << 12,  /* elements other than plain members */
   STRUT_TERM_DIRECTION = 1 << 13, /* friction that differs by direction; with LAWS */
   STRUT_TERM_MEMORY = 1 << 20     /* elements that break, are released, yield or rub at guides */
 } strut_term;

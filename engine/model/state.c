@@ -24,7 +24,8 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
   state->element_acts = strut_arena_allocate(arena, elements, sizeof *state->element_acts);
   state->element_piece = strut_arena_allocate(arena, elements, sizeof *state->element_piece);
   state->element_turn = strut_arena_allocate(arena, elements, sizeof *state->element_turn);
-  state->plastic = strut_arena_allocate(arena, (size_t)model->elements.memory_count, sizeof(double));
+  state->plastic =
+      strut_arena_allocate(arena, (size_t)model->elements.memory_count, sizeof(double));
   state->broken_at =
       strut_arena_allocate(arena, (size_t)model->elements.breakable_count, sizeof(double));
   state->memory_kept = strut_arena_allocate(
@@ -36,7 +37,8 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
   state->scratch = strut_arena_allocate(arena, both, sizeof(double));
   if (!state->q || !state->v || !state->rest || !state->element_acts || !state->element_piece ||
       !state->element_turn || !state->slack_length_threshold || !state->slack_force_threshold ||
-      !state->rest_rate || !state->plastic || !state->broken_at || !state->memory_kept || !state->force || !state->normal || !state->friction || !state->scratch) {
+      !state->rest_rate || !state->plastic || !state->broken_at || !state->memory_kept ||
+      !state->force || !state->normal || !state->friction || !state->scratch) {
     strut_state_free(state);
     *result = NULL;
     return strut_memory_fail_model(model->scene, error);

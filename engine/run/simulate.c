@@ -260,8 +260,7 @@ static strut_status detect_steady_motion(strut_run *r) {
   if (memory && r->experiment->steady.shooting)
     snprintf(r->steady.result.reason, sizeof r->steady.result.reason,
              "what breaks, is released or yields has a memory that shooting does not correct");
-  strut_status status =
-      r->experiment->steady.shooting && !memory ? shoot_orbit(r) : STRUT_OK;
+  strut_status status = r->experiment->steady.shooting && !memory ? shoot_orbit(r) : STRUT_OK;
   if (status) return status;
   double now = (double)n * r->dt, period = r->steady.period;
   int64_t periods = r->recorded_periods, repeats = r->steady.result.repeats;

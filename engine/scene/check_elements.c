@@ -76,8 +76,8 @@ static bool check_hardening(strut_checker *checker, strut_subject subject, size_
 /* Force and time from which on something carries nothing. */
 static bool check_end(strut_checker *checker, strut_subject subject, size_t index,
                       const char *owner, double force, double time) {
-  bool valid = strut_check_range(checker, subject, index, "breaks_at", owner, force,
-                                 STRUT_NOT_NEGATIVE);
+  bool valid =
+      strut_check_range(checker, subject, index, "breaks_at", owner, force, STRUT_NOT_NEGATIVE);
   return strut_check_range(checker, subject, index, "released_at", owner, time,
                            STRUT_NOT_NEGATIVE) &&
          valid;

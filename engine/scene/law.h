@@ -28,7 +28,8 @@
   X(LINEAR, linear, "linear", 0, context)                                                          \
   X(BILINEAR, bilinear, "bilinear", KNEE_BIT | SECOND_STIFFNESS_BIT, context)                      \
   X(PLAY, play, "play", GAP_BIT, context)                                                          \
-  X(ELASTIC_PLASTIC, elastic_plastic, "elastic_plastic", YIELD_BIT | SECOND_STIFFNESS_MAY, context)\
+  X(ELASTIC_PLASTIC, elastic_plastic, "elastic_plastic", YIELD_BIT | SECOND_STIFFNESS_MAY,         \
+    context)                                                                                       \
   X(POLYNOMIAL, polynomial, "polynomial", COEFFICIENTS_BIT | OWN, context)                         \
   X(LOGARITHMIC, logarithmic, "logarithmic", 0, context)                                           \
   X(EXPONENTIAL, exponential, "exponential", SCALE_BIT, context)                                   \

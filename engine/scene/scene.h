@@ -64,19 +64,19 @@ typedef struct strut_member {
   double shortest, longest; /* lengths at which stops act [m]; 0: none */
   double stop_stiffness;    /* [N/m]; 0: 100 times the member's */
   double stop_damping;      /* [N s/m] of a stop while it acts */
-  double breaks_at;   /* tension from which on the member carries nothing [N]; 0: never */
-  double released_at; /* time from which on it carries nothing [s]; 0: never */
+  double breaks_at;         /* tension from which on the member carries nothing [N]; 0: never */
+  double released_at;       /* time from which on it carries nothing [s]; 0: never */
 } strut_member;
 
 /** A spring of the angle at the second of three nodes, from the first to the third. */
 typedef struct strut_hinge {
   const char *name;
   int32_t node[3];
-  double stiffness;  /* [N m/rad] */
-  double damping;    /* [N m s/rad] */
-  double rest_angle; /* [rad]; NAN: as drawn, within half a turn */
-  strut_law law;     /* of the angle and the moment */
-  double breaks_at;  /* size of the moment from which on the hinge has none [N m]; 0: never */
+  double stiffness;   /* [N m/rad] */
+  double damping;     /* [N m s/rad] */
+  double rest_angle;  /* [rad]; NAN: as drawn, within half a turn */
+  strut_law law;      /* of the angle and the moment */
+  double breaks_at;   /* size of the moment from which on the hinge has none [N m]; 0: never */
   double released_at; /* time from which on it has none [s]; 0: never */
 } strut_hinge;
 

@@ -50,9 +50,10 @@ void strut_warn_of_overload(const strut_model *model, const double *q, const cha
   strut_overload worst;
   if (!strut_memory_overload(model, q, &worst)) return;
   const char *unit = worst.hinge ? "N m" : "N";
-  fprintf(stderr,
-          "strut: warning: %s %s '%s' carries %.4g %s, above the %.4g %s at which it %s; statics take "
-          "it as %s\n",
-          where, worst.hinge ? "hinge" : "member", worst.name, worst.force, unit, worst.limit, unit,
-          worst.breaks ? "breaks" : "yields", worst.breaks ? "whole" : "elastic");
+  fprintf(
+      stderr,
+      "strut: warning: %s %s '%s' carries %.4g %s, above the %.4g %s at which it %s; statics take "
+      "it as %s\n",
+      where, worst.hinge ? "hinge" : "member", worst.name, worst.force, unit, worst.limit, unit,
+      worst.breaks ? "breaks" : "yields", worst.breaks ? "whole" : "elastic");
 }

@@ -265,10 +265,11 @@ static void warn_of_overload(const strut_scene *scene, const strut_path *path) {
   for (size_t i = 0; i < path->point_count; i++) {
     const char *name = overloaded_at(scene, &path->points[i]);
     if (!name) continue;
-    fprintf(stderr,
-            "strut: warning: from the factor %.4g on '%s' carries more than it can; paths take what "
-            "breaks as whole and what yields as elastic\n",
-            path->points[i].factor, name);
+    fprintf(
+        stderr,
+        "strut: warning: from the factor %.4g on '%s' carries more than it can; paths take what "
+        "breaks as whole and what yields as elastic\n",
+        path->points[i].factor, name);
     return;
   }
 }

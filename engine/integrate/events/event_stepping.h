@@ -191,8 +191,8 @@ typedef enum strut_event_kind {
   STRUT_EVENT_PUSH,              /* |F_res| passes mu_0 N inside the band, either way */
   STRUT_EVENT_YIELDED,           /* F_res leaves the layer about mu_0 N */
   STRUT_EVENT_DAMPER,            /* the ground damper's sign changes */
-  STRUT_EVENT_ACTS, /* a cable or an element that carries one sign begins or ceases to act */
-  STRUT_EVENT_KINK,  /* an element's strain passes a kink of its law */
+  STRUT_EVENT_ACTS,   /* a cable or an element that carries one sign begins or ceases to act */
+  STRUT_EVENT_KINK,   /* an element's strain passes a kink of its law */
   STRUT_EVENT_SLIDER, /* a slider gives way, or holds again */
   STRUT_EVENT_BREAK   /* a member or a hinge breaks */
 } strut_event_kind;
