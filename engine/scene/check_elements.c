@@ -147,7 +147,8 @@ bool strut_check_member_law(strut_checker *checker, size_t index, const char *ow
     return false;
   }
   strut_rest rest;
-  double slope = strut_member_rest(checker->scene, index, &rest) ? rest.stiffness : HUGE_VAL;
+  bool known = !checker->loose[index] && strut_member_rest(checker->scene, index, &rest);
+  double slope = known ? rest.stiffness : HUGE_VAL;
   return check_hardening(checker, STRUT_ON_MEMBER, index, owner, &m->law, slope) &&
          check_end_of_member(checker, index, owner) && check_stops(checker, index, owner);
 }
