@@ -35,10 +35,13 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
   state->normal = strut_arena_allocate(arena, contacts, sizeof(double));
   state->friction = strut_arena_allocate(arena, contacts, sizeof(double));
   state->scratch = strut_arena_allocate(arena, both, sizeof(double));
+  state->actuator_force =
+      strut_arena_allocate(arena, (size_t)model->actuator_forces.count, sizeof(double));
   if (!state->q || !state->v || !state->rest || !state->element_acts || !state->element_piece ||
       !state->element_turn || !state->slack_length_threshold || !state->slack_force_threshold ||
       !state->rest_rate || !state->plastic || !state->broken_at || !state->memory_kept ||
-      !state->force || !state->normal || !state->friction || !state->scratch) {
+      !state->force || !state->normal || !state->friction || !state->scratch ||
+      !state->actuator_force) {
     strut_state_free(state);
     *result = NULL;
     return strut_memory_fail_model(model->scene, error);

@@ -22,6 +22,8 @@ static const strut_plan_term terms[STRUT_PLAN_TERMS] = {
     {STRUT_TERM_FRICTION, "friction", "a ground with friction", false},
     {STRUT_TERM_SLOPE, "inclined ground", "a ground with a slope", false},
     {STRUT_TERM_SOLVE, "mass solve", "consistent masses of members", false},
+    {STRUT_TERM_ACTUATOR_FORCES, "actuator forces", "an actuator with a force or moment", false},
+    {STRUT_TERM_MASS_DAMPING, "damping by mass", "rayleigh with mass", false},
 };
 
 static void count_elements(const strut_model *model, strut_plan *plan) {

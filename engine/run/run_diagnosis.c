@@ -156,6 +156,7 @@ static jump find_jump(const strut_run *r, double from, double to) {
   for (size_t i = 0; i < scene->actuator_count; i++) {
     const strut_actuator *a = &scene->actuators[i];
     bool hinge = a->member < 0;
+    if (a->force) continue;
     double when = 0.0, length = hinge ? 1.0 : r->model->members.rest[a->member];
     double change = strut_signal_jump(scene->signals, a->signal, r->dt, from, to, &when);
     if (!(change > worst * length)) continue;

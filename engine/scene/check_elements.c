@@ -201,7 +201,8 @@ void strut_check_hinges(strut_checker *checker) {
     if (valid && h->law.kind == STRUT_LAW_LOGARITHMIC)
       strut_report_finding(checker, STRUT_ON_HINGE, i, "law",
                            "the law logarithmic is for members, not for %s", owner);
-    else if (valid && h->stiffness == 0.0 && h->damping == 0.0 && !strut_law_at(h->law.kind)->own)
+    else if (valid && h->stiffness == 0.0 && h->damping == 0.0 && !strut_law_at(h->law.kind)->own &&
+             !strut_is_pulled(scene, -1, (int32_t)i))
       strut_report_finding(checker, STRUT_ON_HINGE, i, NULL,
                            "%s has neither stiffness nor damping, so it does nothing", owner);
     check_arms(checker, i, owner);

@@ -66,6 +66,7 @@ typedef struct strut_member {
   double stop_damping;      /* [N s/m] of a stop while it acts */
   double breaks_at;         /* tension from which on the member carries nothing [N]; 0: never */
   double released_at;       /* time from which on it carries nothing [s]; 0: never */
+  double damping_ratio;     /* instead of damping, or 0: of the critical one, see theory.md */
 } strut_member;
 
 /** A spring of the angle at the second of three nodes, from the first to the third. */
@@ -104,11 +105,15 @@ typedef struct strut_contact {
   strut_friction friction;
 } strut_contact;
 
-/** Drives the rest length of a member, or the rest angle of a hinge: rest + signal(t). */
+/**
+ * Drives the rest length of a member, or the rest angle of a hinge: rest + signal(t). Or adds a force
+ * along the member, tension positive, or a moment that closes the hinge where positive.
+ */
 typedef struct strut_actuator {
   const char *name;
   int32_t member, signal;
   int32_t hinge; /* where member is -1 */
+  bool force; /* the signal is a force [N] or a moment [N m] added to the member's or hinge's own */
 } strut_actuator;
 
 /** A force on a node: force, times signal(t) if there is one. */
@@ -168,6 +173,8 @@ typedef struct strut_scene {
   int32_t start_equilibrium; /* configuration at whose equilibrium a run starts, or -1. A run wants
                                 it resolved into positions: strut_resolve_start_equilibrium */
   strut_arena arena;         /* owns every text and array above */
+  double rayleigh_mass;      /* damping by mass, alpha M v [1/s] */
+  double rayleigh_stiffness; /* damping by stiffness, beta c in every member and hinge [s] */
 } strut_scene;
 
 /** Default structs: zero except where stated above, names empty, indices -1. */

@@ -166,6 +166,14 @@ static bool read_hinge(strut_reader *reader, const strut_tree *key, strut_hinge 
   return fine && !fields.broken;
 }
 
+void strut_read_rayleigh(strut_reader *reader) {
+  strut_fields fields;
+  if (strut_read_section(reader, STRUT_KEY_SCENE_RAYLEIGH, STRUT_SECTION_RAYLEIGH, "rayleigh",
+                         &fields))
+    strut_store_fields(reader, &fields, &reader->scene->arena, reader->scene,
+                       sizeof *reader->scene);
+}
+
 void strut_read_hinges(strut_reader *reader) {
   strut_scene *scene = reader->scene;
   const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_HINGES);

@@ -169,6 +169,15 @@ static void put_hinges(strut_writer *writer) {
   }
 }
 
+static void put_rayleigh(strut_writer *writer) {
+  strut_mapping mapping = STRUT_MAPPING_INLINE;
+  if (!strut_fields_differ(STRUT_SECTION_RAYLEIGH, writer->scene, &writer->usual.scene)) return;
+  strut_put(writer, "rayleigh: {");
+  strut_put_fields(writer, &mapping, STRUT_SECTION_RAYLEIGH, writer->scene, &writer->usual.scene,
+                   NULL);
+  strut_put(writer, "}\n");
+}
+
 static const strut_friction no_friction;
 
 static bool frictions_differ(const strut_friction *a, const strut_friction *b) {
@@ -284,6 +293,7 @@ char *strut_setup_write(const strut_setup *setup) {
   put_nodes(&writer);
   put_members(&writer);
   put_hinges(&writer);
+  put_rayleigh(&writer);
   put_ground(&writer);
   strut_put_drives(&writer);
   strut_put_shapes(&writer);
