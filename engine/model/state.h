@@ -83,8 +83,8 @@ typedef struct strut_state {
   double *plastic; /* (memory_count) plastic strain */
   double
       *broken_at; /* (breakable_count) since when it carries nothing [s]; INFINITY: it does not */
-  double *memory_kept; /* both of the above as they were at an earlier time */
-  bool forgetful;      /* nothing yields or breaks: while settling; strut_state_reset keeps it */
+  double *memory_kept;    /* both of the above as they were at an earlier time */
+  bool forgetful;         /* nothing yields or breaks: while settling; strut_state_reset keeps it */
   double *actuator_force; /* (actuator forces) when last evaluated [N], [N m] */
 } strut_state;
 
