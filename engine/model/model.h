@@ -40,7 +40,8 @@ typedef enum strut_term {
   STRUT_TERM_ELEMENTS = 1 << 12,        /* elements other than plain members */
   STRUT_TERM_DIRECTION = 1 << 13,       /* friction that differs by direction; with LAWS */
   STRUT_TERM_ACTUATOR_FORCES = 1 << 14, /* actuators that give a force or a moment */
-  STRUT_TERM_MASS_DAMPING = 1 << 15     /* Rayleigh's damping by mass */
+  STRUT_TERM_MASS_DAMPING = 1 << 15,    /* Rayleigh's damping by mass */
+  STRUT_TERM_MEMORY = 1 << 20           /* elements that break, are released, yield or rub */
 } strut_term;
 
 /**
