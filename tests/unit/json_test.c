@@ -83,6 +83,7 @@ static void assert_energy(const cJSON *energy, const strut_energy *e) {
       {"drive_work", e->drive_work},
       {"load_work", e->load_work},
       {"belt_work", e->belt_work},
+      {"support_work", e->support_work},
       {"dissipated_members", e->dissipated_members},
       {"dissipated_contact", e->dissipated_contact},
       {"dissipated_friction", e->dissipated_friction},
