@@ -303,11 +303,14 @@ static void read_moves_of(strut_reader *reader, size_t node) {
   const strut_dimension length = STRUT_DIM_LENGTH;
   strut_fields fields;
   strut_read_fields(reader, STRUT_SECTION_MOVES, reader->node_moves[node], owner, &fields);
+  if (fields.broken) reader->node_source[node].broken = true;
   for (int c = 0; c < 2; c++) {
     const strut_slot *slot = strut_slot_of(&fields, STRUT_KEY_MOVES_ALONG_X + c);
     if (slot->state != STRUT_GIVEN) continue;
     int32_t signal = strut_read_signal(reader, slot->value, c ? "y" : "x", owner, &length);
-    if (signal >= 0)
+    if (signal < 0)
+      reader->node_source[node].broken = true;
+    else
       scene->support_motions[scene->support_motion_count++] =
           (strut_support_motion){(int32_t)node, c, signal};
   }
