@@ -59,7 +59,6 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, verlet
       w->power[p] = state->power[p];
     }
     w->a = next, w->next = a;
-    double t = ((double)state->step + 1.0) * dt;
     if (model->plan & STRUT_TERM_MEMORY && strut_memory_renew(model, state, t)) {
       forces_kernel(model, state, t, q, v, w->a, ledger);
       for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) w->power[p] = state->power[p];

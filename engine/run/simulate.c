@@ -172,7 +172,6 @@ static strut_status prepare_run(strut_run *r) {
                                                         span.period, begin, &r->steady)))
     return strut_memory_fail_model(r->model->scene, r->error);
   if ((status = place_state(r))) return status;
-  r->state->time_offset = r->grid.offset;
   if (r->model->plan & STRUT_TERM_SUPPORT_MOTION)
     strut_support_motion_place(r->model, r->state, begin, r->state->q, r->state->v);
   if (r->model->plan & STRUT_TERM_MEMORY) begin_memory(r, begin);
