@@ -90,6 +90,11 @@ bool strut_element_has_collapsed(const strut_model *model, int32_t element, doub
  */
 bool strut_hinges_have_collapsed(const strut_model *model, const double *q);
 
+/** A cell with next to no area left, or turned over, or -1: it encloses nothing any more. */
+STRUT_API int32_t strut_cell_that_collapsed(const strut_model *model, const double *q);
+/** True where a hinge or a cell has collapsed. */
+bool strut_shape_has_collapsed(const strut_model *model, const double *q);
+
 /** Strain beyond the natural one, its rate, and the force as if the element acted. */
 typedef struct strut_element_motion {
   double stretch, rate, force;

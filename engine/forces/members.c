@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lengths and forces of members and hinges for observers (recording, measuring). The step's own loop:
+/* Lengths and forces of members, hinges and cells for observers (recording, measuring). The step's own loop:
    members_kernel.h. */
 #include "engine/forces/elements.h"
 #include "engine/forces/forces.h"
@@ -44,6 +44,14 @@ strut_hinge_values strut_hinge_measure(const strut_model *model, const strut_sta
   double moment = strut_element_measure(model, state, element, &pose);
   return (strut_hinge_values){pose.strain, strut_element_rate(model, element, &pose, state->v),
                               moment};
+}
+
+strut_cell_values strut_cell_measure(const strut_model *model, const strut_state *state,
+                                     int32_t element) {
+  strut_element_pose pose;
+  double force = strut_element_measure(model, state, element, &pose);
+  return (strut_cell_values){pose.strain,
+                             model->elements.element[element].numbers.outside - force};
 }
 
 void strut_members_measure(const strut_model *model, const strut_state *state, double *length,

@@ -11,7 +11,9 @@
 /* A stop is this many times stiffer than its member where the scene does not say. */
 static const double USUAL_STOP = 100.0;
 
-size_t strut_element_slots(const strut_scene *scene) { return scene->hinge_count; }
+size_t strut_element_slots(const strut_scene *scene) {
+  return scene->hinge_count + scene->cell_count;
+}
 
 /* The slots stand behind those of the members. */
 static int32_t hinge_slot(const strut_model *model, int32_t hinge) {
@@ -19,9 +21,15 @@ static int32_t hinge_slot(const strut_model *model, int32_t hinge) {
   return members + hinge;
 }
 
+static int32_t cell_slot(const strut_model *model, int32_t cell) {
+  return hinge_slot(model, (int32_t)model->scene->hinge_count + cell);
+}
+
 int32_t strut_actuator_slot(const strut_model *model, size_t i) {
   const strut_actuator *a = &model->scene->actuators[i];
-  return a->member >= 0 ? a->member : hinge_slot(model, a->hinge);
+  return a->member >= 0  ? a->member
+         : a->hinge >= 0 ? hinge_slot(model, a->hinge)
+                         : cell_slot(model, a->cell);
 }
 
 double strut_element_start(const strut_model *model, int32_t element) {
@@ -35,8 +43,9 @@ static size_t elements_of_member(const strut_member *m) {
 }
 
 static void count_elements(const strut_scene *scene, size_t *elements, size_t *nodes) {
-  *elements = scene->hinge_count;
+  *elements = scene->hinge_count + scene->cell_count;
   *nodes = 3 * scene->hinge_count;
+  for (size_t i = 0; i < scene->cell_count; i++) *nodes += scene->cells[i].node_count;
   for (size_t j = 0; j < scene->member_count; j++) {
     size_t own = elements_of_member(&scene->members[j]);
     *elements += own;
@@ -215,6 +224,32 @@ static void add_hinge(compilation *c, size_t i) {
   if (!set_numbers(model, &h->law, h->stiffness, &e->numbers)) c->failed = true;
 }
 
+/* Its nodes run counter-clockwise, so that its area is positive. */
+static void add_cell(compilation *c, size_t i) {
+  strut_model *model = c->model;
+  const strut_cell *cell = &model->scene->cells[i];
+  double area = strut_cell_drawn(model->scene, i);
+  int32_t slot = cell_slot(model, (int32_t)i);
+  double stiffness = strut_law_respond(cell->law,
+                                       &(strut_law_numbers){.area = fabs(area),
+                                                            .exponent = cell->exponent,
+                                                            .outside = cell->outside},
+                                       fabs(area), cell->pressure, -1)
+                         .slope;
+  strut_element *e = add_element(c, (strut_element){.strain = STRUT_STRAIN_AREA,
+                                                    .law = cell->law,
+                                                    .role = STRUT_ELEMENT_CELL,
+                                                    .item = (int32_t)i,
+                                                    .slot = slot,
+                                                    .numbers = {.stiffness = stiffness,
+                                                                .area = fabs(area),
+                                                                .exponent = cell->exponent,
+                                                                .outside = cell->outside}});
+  for (size_t k = 0; k < cell->node_count; k++)
+    add_node(c, e, cell->node[area < 0.0 ? cell->node_count - 1 - k : k]);
+  ((double *)model->members.rest)[slot] = cell->pressure;
+}
+
 /* Blocks of one strain and one law, in the tables' order; in a block the scene's order. */
 static bool sort_elements(compilation *c, strut_element_table *t) {
   strut_arena *arena = &c->model->arena;
@@ -256,7 +291,7 @@ static bool link_members(strut_model *model) {
   for (int own = 0; own < 2; own++)
     for (int32_t i = 0; i < t->count; i++) {
       strut_element *e = &element[i];
-      if (e->role == STRUT_ELEMENT_HINGE || (e->role == STRUT_ELEMENT_MEMBER) != own) continue;
+      if (!strut_element_is_of_member(e) || (e->role == STRUT_ELEMENT_MEMBER) != own) continue;
       e->sibling = of_member[e->item];
       of_member[e->item] = i;
     }
@@ -276,6 +311,7 @@ bool strut_elements_compile(strut_model *model) {
   for (size_t j = 0; j < scene->member_count; j++)
     if (elements_of_member(&scene->members[j])) add_member(&c, j);
   for (size_t i = 0; i < scene->hinge_count; i++) add_hinge(&c, i);
+  for (size_t i = 0; i < scene->cell_count; i++) add_cell(&c, i);
   assert(c.count == (int32_t)elements && c.nodes <= (int32_t)nodes);
   model->elements.at = c.at;
   model->plan |= STRUT_TERM_ELEMENTS;

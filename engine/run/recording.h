@@ -34,6 +34,8 @@ typedef struct strut_recording {
   double *length, *force; /* (members) scratch */
   double *angle, *moment; /* (hinges) scratch */
   int32_t *hinge;         /* (hinges) their elements */
+  double *area, *pressure; /* (cells) scratch */
+  int32_t *cell;           /* (cells) their elements */
   strut_arena arena;
 } strut_recording;
 

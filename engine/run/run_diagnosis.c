@@ -40,6 +40,13 @@ strut_status strut_run_fail_lost_node(const strut_run *r, int32_t node) {
                     r->summary->node_names[node], strut_run_time(r), r->dt, least, remedy);
 }
 
+strut_status strut_run_fail_flat_cell(const strut_run *r, int32_t cell) {
+  return strut_fail(r->error, STRUT_DIVERGED,
+                    "the area of cell '%s' reached zero at t = %.9g s, so that it encloses nothing; "
+                    "keep its nodes apart, or use a smaller step if they should not meet",
+                    r->model->scene->cells[cell].name, strut_run_time(r));
+}
+
 strut_status strut_run_fail_method(const strut_run *r) {
   static const char *const why[] = {
       [STRUT_FAILURE_STEP] =
@@ -143,10 +150,25 @@ static void warn_of_limit(const strut_run *r) {
 static const double JUMP = 1e-3;
 
 typedef struct jump {
-  const char *name; /* of a member or a hinge */
-  bool hinge;
-  double change, time; /* [m] or [rad], [s] */
+  const char *name;              /* of what is driven */
+  const char *kind, *what, *unit; /* "member", "length", "m" */
+  double change, time;           /* in that unit, [s] */
 } jump;
+
+/* What actuator i drives, and a value beside which its changes are large or small. */
+static jump describe_drive(const strut_model *model, const strut_actuator *a, double *scale) {
+  const strut_scene *scene = model->scene;
+  if (a->member >= 0) {
+    *scale = model->members.rest[a->member];
+    return (jump){scene->members[a->member].name, "member", "length", "m", 0.0, 0.0};
+  }
+  *scale = 1.0;
+  if (a->hinge >= 0)
+    return (jump){scene->hinges[a->hinge].name, "hinge", "angle", "rad", 0.0, 0.0};
+  *scale = fmax(fabs(scene->cells[a->cell].pressure), fabs(scene->signals[a->signal].amplitude));
+  *scale = fmax(*scale, DBL_MIN);
+  return (jump){scene->cells[a->cell].name, "cell", "pressure", "N/m", 0.0, 0.0};
+}
 
 /* Finds the largest jump of a drive between two times, relative to its member. */
 static jump find_jump(const strut_run *r, double from, double to) {
@@ -155,13 +177,13 @@ static jump find_jump(const strut_run *r, double from, double to) {
   double worst = JUMP;
   for (size_t i = 0; i < scene->actuator_count; i++) {
     const strut_actuator *a = &scene->actuators[i];
-    bool hinge = a->member < 0;
-    double when = 0.0, length = hinge ? 1.0 : r->model->members.rest[a->member];
+    double when = 0.0, length;
+    jump drive = describe_drive(r->model, a, &length);
     double change = strut_signal_jump(scene->signals, a->signal, r->dt, from, to, &when);
     if (!(change > worst * length)) continue;
     worst = change / length;
-    const char *name = hinge ? scene->hinges[a->hinge].name : scene->members[a->member].name;
-    found = (jump){name, hinge, change, when};
+    found = drive;
+    found.change = change, found.time = when;
   }
   return found;
 }
@@ -212,8 +234,7 @@ static void explain_balance(const strut_run *r, char *text, size_t size) {
     snprintf(text, size,
              "; likely because the drive of %s '%s' changes its %s by %.3g %s within one step at "
              "t = %.6g s; spread the change over many steps, use a smaller step, or --accuracy 1%%",
-             j.hinge ? "hinge" : "member", j.name, j.hinge ? "angle" : "length", j.change,
-             j.hinge ? "rad" : "m", j.time);
+             j.kind, j.name, j.what, j.change, j.unit, j.time);
   else if (over)
     snprintf(text, size,
              "; likely because fixed steps pass over %s; use rk4-events, a smaller step, or "

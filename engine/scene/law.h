@@ -4,7 +4,8 @@
  *
  * A law is a row of STRUT_LAWS and a header of engine/scene/laws with two functions. It knows material
  * only: e is any strain (a length [m], an angle [rad], an area [m^2]), e0 its natural value, x = e - e0,
- * and the force is the one that does work on e. Reader, checks, forces, energies, stiffness, statics and
+ * and the force is the one that does work on e. Laws of cells, in STRUT_CELL_LAWS, take the pressure as
+ * drawn [N/m] for e0. Reader, checks, forces, energies, stiffness, statics and
  * located events loop over this table, so that a law is added only here; see docs/recipes.md.
  */
 #ifndef STRUT_ENGINE_SCENE_LAW_H
@@ -12,10 +13,13 @@
 
 #include "engine/scene/laws/bilinear.h"
 #include "engine/scene/laws/exponential.h"
+#include "engine/scene/laws/isentropic.h"
+#include "engine/scene/laws/isothermal.h"
 #include "engine/scene/laws/linear.h"
 #include "engine/scene/laws/logarithmic.h"
 #include "engine/scene/laws/play.h"
 #include "engine/scene/laws/polynomial.h"
+#include "engine/scene/laws/pressure.h"
 #include "engine/scene/laws/table.h"
 
 /**
@@ -31,9 +35,17 @@
   X(EXPONENTIAL, exponential, "exponential", SCALE_BIT, context)                                   \
   X(TABLE, table, "table", POINTS_BIT | OWN, context)
 
+/** Laws of areas, which no member and no hinge can have; the rows are alike. */
+#define STRUT_CELL_LAWS(X, context)                                                                \
+  X(PRESSURE, pressure, "pressure", 0, context)                                                    \
+  X(ISOTHERMAL, isothermal, "isothermal", 0, context)                                              \
+  X(ISENTROPIC, isentropic, "isentropic", 0, context)
+
+#define STRUT_ALL_LAWS(X, context) STRUT_LAWS(X, context) STRUT_CELL_LAWS(X, context)
+
 typedef enum strut_law_kind {
 #define STRUT_LAW_ROW(NAME, ...) STRUT_LAW_##NAME,
-  STRUT_LAWS(STRUT_LAW_ROW, )
+  STRUT_ALL_LAWS(STRUT_LAW_ROW, )
 #undef STRUT_LAW_ROW
       STRUT_LAW_COUNT
 } strut_law_kind;
@@ -86,11 +98,14 @@ static inline const strut_law_row *strut_law_at(strut_law_kind kind) {
   static const strut_law_row rows[] = {
 #define STRUT_LAW_ROW(NAME, name, word, needs, context)                                            \
   {word, (needs) & ~(unsigned)OWN, ((needs)&OWN) != 0},
-      STRUT_LAWS(STRUT_LAW_ROW, )
+      STRUT_ALL_LAWS(STRUT_LAW_ROW, )
 #undef STRUT_LAW_ROW
   };
   return &rows[kind];
 }
+
+/** Is it a law of STRUT_CELL_LAWS? */
+static inline bool strut_law_is_of_cells(strut_law_kind kind) { return kind >= STRUT_LAW_PRESSURE; }
 
 static inline bool strut_law_needs(strut_law_kind kind, int parameter) {
   return strut_law_at(kind)->needs >> parameter & 1u;
@@ -149,7 +164,7 @@ static inline strut_law_response strut_law_respond(strut_law_kind kind, const st
   switch (kind) {
 #define STRUT_LAW_ROW(NAME, name, ...)                                                             \
   case STRUT_LAW_##NAME: return strut_law_##name(n, e, e0, piece);
-    STRUT_LAWS(STRUT_LAW_ROW, )
+    STRUT_ALL_LAWS(STRUT_LAW_ROW, )
 #undef STRUT_LAW_ROW
     case STRUT_LAW_COUNT: break;
   }
@@ -161,7 +176,7 @@ static inline int strut_law_kinks(strut_law_kind kind, const strut_law_numbers *
   switch (kind) {
 #define STRUT_LAW_ROW(NAME, name, ...)                                                             \
   case STRUT_LAW_##NAME: return strut_law_##name##_kinks(n);
-    STRUT_LAWS(STRUT_LAW_ROW, )
+    STRUT_ALL_LAWS(STRUT_LAW_ROW, )
 #undef STRUT_LAW_ROW
     case STRUT_LAW_COUNT: break;
   }
@@ -173,7 +188,7 @@ static inline double strut_law_kink(strut_law_kind kind, const strut_law_numbers
   switch (kind) {
 #define STRUT_LAW_ROW(NAME, name, ...)                                                             \
   case STRUT_LAW_##NAME: return strut_law_##name##_kink(n, k);
-    STRUT_LAWS(STRUT_LAW_ROW, )
+    STRUT_ALL_LAWS(STRUT_LAW_ROW, )
 #undef STRUT_LAW_ROW
     case STRUT_LAW_COUNT: break;
   }

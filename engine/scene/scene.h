@@ -76,6 +76,17 @@ typedef struct strut_hinge {
   strut_law law;     /* of the angle and the moment */
 } strut_hinge;
 
+/** A polygon of nodes, in either sense, under a given pressure or filled with a closed gas. */
+typedef struct strut_cell {
+  const char *name;
+  int32_t *node; /* (node_count) */
+  size_t node_count;
+  strut_law_kind law; /* one of STRUT_CELL_LAWS */
+  double pressure;    /* [N/m], pushing outwards; of a gas as drawn, absolute */
+  double exponent;    /* of an isentropic gas, > 1 */
+  double outside;     /* pressure outside a gas [N/m] */
+} strut_cell;
+
 /** Damping law of the ground; d is the depth, d' its rate. */
 typedef enum strut_ground_damping {
   STRUT_DAMPING_APPROACH,     /* (8): c_g d + k_g max(d', 0), which jumps at touchdown */
@@ -100,11 +111,12 @@ typedef struct strut_contact {
   strut_friction friction;
 } strut_contact;
 
-/** Drives the rest length of a member, or the rest angle of a hinge: rest + signal(t). */
+/** Drives the rest length of a member, the rest angle of a hinge or the pressure of a cell: it + signal(t). */
 typedef struct strut_actuator {
   const char *name;
   int32_t member, signal;
   int32_t hinge; /* where member is -1 */
+  int32_t cell;  /* where both are -1 */
 } strut_actuator;
 
 /** A force on a node: force, times signal(t) if there is one. */
@@ -163,7 +175,9 @@ typedef struct strut_scene {
   strut_configuration *configurations;
   int32_t start_equilibrium; /* configuration at whose equilibrium a run starts, or -1. A run wants
                                 it resolved into positions: strut_resolve_start_equilibrium */
-  strut_arena arena;         /* owns every text and array above */
+  strut_arena arena;         /* owns every text and array of the scene */
+  size_t cell_count;
+  strut_cell *cells;
 } strut_scene;
 
 /** Default structs: zero except where stated above, names empty, indices -1. */
@@ -172,6 +186,7 @@ STRUT_API strut_node strut_node_default(void);
 STRUT_API strut_member strut_member_default(void);
 STRUT_API strut_hinge strut_hinge_default(void);
 STRUT_API strut_contact strut_contact_default(void);
+STRUT_API strut_cell strut_cell_default(void);
 /** Frees the contents of the scene and zeroes it. */
 STRUT_API void strut_scene_free(strut_scene *scene);
 
@@ -212,5 +227,8 @@ static inline bool strut_member_is_special(const strut_member *member) {
 STRUT_API double strut_hinge_drawn(const strut_scene *scene, size_t hinge);
 /** Rest angle of a hinge [rad]. */
 STRUT_API double strut_hinge_rest(const strut_scene *scene, size_t hinge);
+
+/** Area of a cell as drawn, positive where its nodes run counter-clockwise [m^2]. */
+STRUT_API double strut_cell_drawn(const strut_scene *scene, size_t cell);
 
 #endif

@@ -194,6 +194,8 @@ static void warn_of_loose_masses(strut_checker *checker) {
       used[strut_member_node(&scene->members[i], k)] = true;
   for (size_t i = 0; i < scene->hinge_count; i++)
     for (int k = 0; k < 3; k++) used[scene->hinges[i].node[k]] = true;
+  for (size_t i = 0; i < scene->cell_count; i++)
+    for (size_t k = 0; k < scene->cells[i].node_count; k++) used[scene->cells[i].node[k]] = true;
   for (size_t i = 0; i < scene->node_count && scene->member_count; i++) {
     const strut_node *node = &scene->nodes[i];
     if (!used[i] && node->mass > 0.0 && !(node->fixed[0] && node->fixed[1]))

@@ -49,6 +49,7 @@ static void print_counts(const strut_plan *plan) {
     printf("  of them            running cables %zu, with a law %zu, stops %zu\n",
            plan->running_cables, plan->laws, plan->stops);
   if (plan->hinges) printf("  hinges             %zu\n", plan->hinges);
+  if (plan->cells) printf("  cells              %zu\n", plan->cells);
   printf("  contacts           %zu\n  actuators          %zu\n  loads              %zu\n",
          plan->contacts, plan->actuators, plan->loads);
   printf("  memory             %s\n", in((double)plan->bytes, "B").text);
@@ -251,6 +252,25 @@ static void print_hinges(const strut_model *model, const double *q) {
     printf("  ... and %zu more; --json lists all\n", scene->hinge_count - MOST_MEMBERS);
 }
 
+static const char *cell_content(const strut_cell *cell) {
+  return cell->law == STRUT_LAW_PRESSURE     ? "given pressure"
+         : cell->law == STRUT_LAW_ISOTHERMAL ? "isothermal gas"
+                                             : "isentropic gas";
+}
+
+static void print_cells(const strut_scene *scene) {
+  for (size_t i = 0; i < scene->cell_count && i < MOST_MEMBERS; i++) {
+    const strut_cell *cell = &scene->cells[i];
+    if (!i)
+      printf("\n  %-12s %12s %12s %12s  content\n", "cell", "drawn", "pressure", "outside");
+    printf("  %-12s %8.4g m^2 %12s %12s  %s\n", cell->name,
+           fabs(strut_cell_drawn(scene, i)), in(cell->pressure, "N/m").text,
+           in(cell->outside, "N/m").text, cell_content(cell));
+  }
+  if (scene->cell_count > MOST_MEMBERS)
+    printf("  ... and %zu more; --json lists all\n", scene->cell_count - MOST_MEMBERS);
+}
+
 /* Sketches the drawn shape, whatever a run starts with, since that is where typing errors show. */
 static strut_status print_sketch(const strut_model *model, const double *q) {
   int columns = strut_terminal_columns(STDOUT_FILENO, SKETCH_COLUMNS);
@@ -278,6 +298,7 @@ static strut_status print_plan(const strut_plan *plan, const strut_model *model,
   print_laws(scene);
   print_stops(model);
   print_hinges(model, q);
+  print_cells(scene);
   strut_release(q);
   return status;
 }
@@ -356,6 +377,17 @@ static void add_hinges(strut_json *json, const strut_model *model, const double 
   }
 }
 
+static void add_cells(strut_json *json, const strut_scene *scene) {
+  struct cJSON *cells = strut_json_object(json, json->root, "cells");
+  for (size_t i = 0; i < scene->cell_count; i++) {
+    struct cJSON *row = strut_json_object(json, cells, scene->cells[i].name);
+    strut_json_number(json, row, "drawn_area", fabs(strut_cell_drawn(scene, i)));
+    strut_json_number(json, row, "pressure", scene->cells[i].pressure);
+    strut_json_number(json, row, "outside", scene->cells[i].outside);
+    strut_json_text(json, row, "content", cell_content(&scene->cells[i]));
+  }
+}
+
 static void add_members(strut_json *json, const strut_model *model, const double *q) {
   const strut_scene *scene = model->scene;
   struct cJSON *members = strut_json_object(json, json->root, "members");
@@ -397,6 +429,7 @@ static strut_status print_json(const strut_plan *plan, const strut_model *model,
   add_terms(&json, plan);
   add_members(&json, model, q);
   add_hinges(&json, model, q);
+  add_cells(&json, model->scene);
   strut_release(q);
   if (!add_warnings(&json, setup)) json.failed = true;
   return strut_print_block(strut_json_end(&json));

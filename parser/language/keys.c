@@ -35,6 +35,8 @@ static const int first[] = {STRUT_KEY_SCENE_VERSION,
                             STRUT_KEY_NODE_POSITION,
                             STRUT_KEY_MEMBER_GROUP,
                             STRUT_KEY_HINGE_NODES,
+                            STRUT_KEY_CELL_NODES,
+                            STRUT_KEY_GAS_KIND,
                             STRUT_KEY_LAW_KIND,
                             STRUT_KEY_GROUND_HEIGHT,
                             STRUT_KEY_FRICTION_LAW,
@@ -64,7 +66,7 @@ static const int first[] = {STRUT_KEY_SCENE_VERSION,
                             STRUT_KEY_COUNT};
 
 static const char *const section_names[] = {
-    "scene",      "node",    "member",   "hinge",         "law",      "ground",
+    "scene",      "node",    "member",   "hinge",  "cell", "gas",       "law",      "ground",
     "friction",   "contact", "actuator", "load",          "signal",   "sine",
     "half_sine",  "square",  "ramp",     "configuration", "initial",  "settle",
     "equilibria", "solver",  "run",      "measure",       "quantity", "steady",
@@ -264,6 +266,7 @@ const char *strut_key_expected(int key, char *buffer, size_t size) {
     case STRUT_TYPE_TEXT: return "a text";
     case STRUT_TYPE_NAME: return "a name";
     case STRUT_TYPE_NODE_PATH: return "two nodes such as [n1, n2], or the nodes of a running cable";
+    case STRUT_TYPE_NODE_RING: return "three nodes or more such as [n1, n2, n3]";
     case STRUT_TYPE_NODE_TRIPLE: return "three nodes such as [n1, n2, n3]";
     case STRUT_TYPE_NUMBERS: return "a list of numbers";
     case STRUT_TYPE_POINTS: return "a list of points such as [[0, 0], [2 mm, 3 N]]";

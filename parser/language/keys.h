@@ -21,6 +21,8 @@ typedef enum strut_section {
   STRUT_SECTION_NODE,
   STRUT_SECTION_MEMBER,
   STRUT_SECTION_HINGE,
+  STRUT_SECTION_CELL,
+  STRUT_SECTION_GAS,
   STRUT_SECTION_LAW,
   STRUT_SECTION_GROUND,
   STRUT_SECTION_FRICTION,
@@ -77,7 +79,8 @@ typedef enum strut_key_type {
   STRUT_TYPE_AXES,          /* a list of axes of a study */
   STRUT_TYPE_TIMES,         /* a list of times */
   STRUT_TYPE_MAP,           /* the keys of the section that has the key's name */
-  STRUT_TYPE_THINGS         /* a mapping from names to things, described by `words` */
+  STRUT_TYPE_THINGS,        /* a mapping from names to things, described by `words` */
+  STRUT_TYPE_NODE_RING      /* the names of three nodes or more */
 } strut_key_type;
 
 /** The dimension of a number; CONTEXT: it depends on the use of the mapping. */
@@ -166,7 +169,7 @@ enum {
       STRUT_KEY_COUNT
 };
 
-enum { STRUT_MOST_KEYS = 24 }; /* of one section */
+enum { STRUT_MOST_KEYS = 40 }; /* of one section */
 
 STRUT_API const strut_key *strut_key_at(int key);
 /** First key and number of keys of a section. */

@@ -171,9 +171,13 @@ static bool read_actuator(strut_reader *reader, const strut_tree *key, strut_act
   const strut_slot *member = strut_slot_of(&fields, STRUT_KEY_ACTUATOR_MEMBER);
   const strut_slot *signal = strut_slot_of(&fields, STRUT_KEY_ACTUATOR_SIGNAL);
   const strut_slot *hinge = strut_slot_of(&fields, STRUT_KEY_ACTUATOR_HINGE);
-  strut_dimension driven = hinge->key ? STRUT_DIM_ANGLE : STRUT_DIM_LENGTH;
+  const strut_slot *cell = strut_slot_of(&fields, STRUT_KEY_ACTUATOR_CELL);
+  strut_dimension driven = hinge->key  ? STRUT_DIM_ANGLE
+                           : cell->key ? STRUT_DIM_STIFFNESS
+                                       : STRUT_DIM_LENGTH;
   bool known = strut_slot_of(&reader->top, STRUT_KEY_SCENE_MEMBERS)->state != STRUT_BROKEN;
-  if (member->state == STRUT_ABSENT && hinge->state == STRUT_ABSENT && !fields.broken) {
+  if (member->state == STRUT_ABSENT && hinge->state == STRUT_ABSENT &&
+      cell->state == STRUT_ABSENT && !fields.broken) {
     strut_report_error(reader, key->place,
                        "%s lacks 'member', expected the name of a member, or "
                        "'hinge' with the name of a hinge",
@@ -185,15 +189,21 @@ static bool read_actuator(strut_reader *reader, const strut_tree *key, strut_act
     actuator->hinge =
         strut_read_reference(reader, hinge->value, "hinge", owner, "hinge", &reader->hinge_names,
                              strut_hinge_name, reader->scene->hinge_count);
+  if (cell->state == STRUT_GIVEN &&
+      strut_slot_of(&reader->top, STRUT_KEY_SCENE_CELLS)->state != STRUT_BROKEN)
+    actuator->cell = strut_read_reference(reader, cell->value, "cell", owner, "cell",
+                                          &reader->cell_names, strut_cell_name,
+                                          reader->scene->cell_count);
   if (member->state == STRUT_GIVEN && known)
     actuator->member =
         strut_read_reference(reader, member->value, "member", owner, "member",
                              &reader->member_names, strut_member_name, reader->scene->member_count);
-  bool drives = member->state != STRUT_ABSENT || hinge->state != STRUT_ABSENT;
+  bool drives = member->state != STRUT_ABSENT || hinge->state != STRUT_ABSENT ||
+                cell->state != STRUT_ABSENT;
   if (signal->state == STRUT_GIVEN) /* of what, tells its dimension */
     actuator->signal =
         strut_read_signal(reader, signal->value, "signal", owner, drives ? &driven : NULL);
-  return fine && !fields.broken && (actuator->member >= 0 || actuator->hinge >= 0) &&
+  return fine && !fields.broken && (actuator->member >= 0 || actuator->hinge >= 0 || actuator->cell >= 0) &&
          actuator->signal >= 0;
 }
 
@@ -208,7 +218,7 @@ static void read_actuators(strut_reader *reader) {
   if (!scene->actuators || !reader->actuator_source) return;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
     size_t i = strut_next_entry(reader, &scene->actuator_count);
-    scene->actuators[i] = (strut_actuator){strut_keep_text(reader, key->text), -1, -1, -1};
+    scene->actuators[i] = (strut_actuator){strut_keep_text(reader, key->text), -1, -1, -1, -1};
     strut_add_name(reader, &reader->actuator_names, scene->actuators[i].name, i);
     bool fine = read_actuator(reader, key, &scene->actuators[i]);
     reader->actuator_source[i] = (strut_source){key, key->next, !fine};

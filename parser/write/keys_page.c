@@ -21,6 +21,10 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
     [STRUT_SECTION_HINGE] =
         "`hinges: {NAME: {...}}`. A hinge needs a stiffness, a damping, or a "
         "law that brings its own stiffness.",
+    [STRUT_SECTION_CELL] =
+        "`cells: {NAME: {...}}`: either `pressure` or `gas`. In the plane a pressure is a force per "
+        "length.",
+    [STRUT_SECTION_GAS] = "`cells: {NAME: {gas: {...}}}`.",
     [STRUT_SECTION_LAW] =
         "`law: {...}` of a member or a hinge, or only its kind, such as `law: logarithmic`; "
         "`law: tension_only` and `law: compression_only` are linear and carry one sign. For a "
@@ -39,7 +43,7 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
     [STRUT_SECTION_LOAD] = "`loads: {NAME: {...}}`.",
     [STRUT_SECTION_SIGNAL] =
         "A signal is a mapping with one of these keys, or the name of an entry of `signals`. The "
-        "unit of its values follows from its use: a length or an angle for an actuator, a number "
+        "unit of its values follows from its use: a length, an angle or a pressure for an actuator, a number "
         "without unit "
         "for a load.",
     [STRUT_SECTION_SINE] = "`{sine: {...}}`.",
@@ -116,6 +120,7 @@ static void put_type(strut_writer *writer, const strut_key *key) {
       [STRUT_TYPE_NAME] = "name",
       [STRUT_TYPE_NODE_PATH] = "names of two nodes or more",
       [STRUT_TYPE_NODE_TRIPLE] = "names of three nodes",
+      [STRUT_TYPE_NODE_RING] = "names of three nodes or more",
       [STRUT_TYPE_NUMBERS] = "list of numbers",
       [STRUT_TYPE_POINTS] = "list of `[x, force]`",
       [STRUT_TYPE_LAW] = "[law](#law), or the kind of one",

@@ -284,6 +284,7 @@ char *strut_setup_write(const strut_setup *setup) {
   put_nodes(&writer);
   put_members(&writer);
   put_hinges(&writer);
+  strut_put_cells(&writer);
   put_ground(&writer);
   strut_put_drives(&writer);
   strut_put_shapes(&writer);

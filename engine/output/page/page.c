@@ -223,6 +223,18 @@ static void add_hinges(strut_json *json, const strut_scene *scene) {
   }
 }
 
+static void add_cells(strut_json *json, const strut_scene *scene) {
+  struct cJSON *cells = strut_json_array(json, json->root, "cells");
+  for (size_t i = 0; i < scene->cell_count; i++) {
+    const strut_cell *cell = &scene->cells[i];
+    struct cJSON *to = strut_json_object(json, cells, NULL);
+    strut_json_text(json, to, "name", cell->name);
+    struct cJSON *nodes = strut_json_array(json, to, "nodes");
+    for (size_t k = 0; k < cell->node_count; k++)
+      strut_json_integer(json, nodes, NULL, cell->node[k]);
+  }
+}
+
 static void add_ground(strut_json *json, const strut_scene *scene) {
   struct cJSON *contacts = strut_json_array(json, json->root, "contacts");
   for (size_t i = 0; i < scene->contact_count; i++)
@@ -284,6 +296,7 @@ static char *still_data(const strut_page *page) {
   add_nodes(&json, scene);
   add_members(&json, scene);
   add_hinges(&json, scene);
+  add_cells(&json, scene);
   add_ground(&json, scene);
   strut_json_numbers(&json, json.root, "start", model->start, 2 * (size_t)model->node_count);
   strut_json_number(&json, json.root, "size", model->size);

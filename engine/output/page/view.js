@@ -129,6 +129,18 @@
     }
   }
 
+  /* Cells: filled polygons below the members. */
+  function drawCells(c, data, px, py, options) {
+    c.fillStyle = options.theme.accent;
+    c.globalAlpha = 0.15;
+    for (const cell of data.cells) {
+      c.beginPath();
+      for (const n of cell.nodes) c.lineTo(px[n], py[n]);
+      c.fill();
+    }
+    c.globalAlpha = 1;
+  }
+
   function drawMembers(c, s, shape, options, px, py, thin) {
     const theme = options.theme, coloured = options.colour && shape.force;
     const plain = [theme.bar, theme.spring, theme.cable], slack = s.buckets - 1;
@@ -353,6 +365,7 @@
         c.stroke();
       }
     }
+    drawCells(c, data, px, py, options);
     drawMembers(c, s, shape, options, px, py,
       thinness(s, shape.position, camera) * (options.small ? 0.6 : 1));
     if (data.hinges.length <= 400) drawHinges(c, data, px, py, options);

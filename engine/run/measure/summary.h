@@ -59,6 +59,12 @@ typedef struct strut_hinge_summary {
   double angle, moment; /* [rad], [N m] */
 } strut_hinge_summary;
 
+/** A cell at the end. */
+typedef struct strut_cell_summary {
+  const char *cell;      /* its name, owned by the scene */
+  double area, pressure; /* [m^2], [N/m] */
+} strut_cell_summary;
+
 /** A quantity of `measure` in the scene, over the window. */
 typedef struct strut_measured {
   const char *name, *unit; /* owned by the scene */
@@ -165,6 +171,8 @@ typedef struct strut_summary {
   char caveat[400]; /* why the error of the result is not known, and how to learn it; else empty */
   size_t warning_count;
   strut_warning warnings[STRUT_MOST_WARNINGS];
+  size_t cell_count;
+  strut_cell_summary *cells; /* (cell_count) */
 } strut_summary;
 
 /** Adds a warning with a printf-style text; replaces one with the same code. */

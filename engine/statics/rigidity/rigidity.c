@@ -130,12 +130,14 @@ static strut_status judge_tensegrity(const strut_model *model, const double *q, 
   return STRUT_OK;
 }
 
-static void measure_hinges(const strut_model *model, const double *q, strut_rigidity *r) {
+static void measure_elements(const strut_model *model, const double *q, strut_rigidity *r) {
   const strut_equilibrium_matrix *a = &r->matrix;
   strut_element_pose pose;
   for (int32_t j = a->members; j < a->columns; j++) {
     strut_element_evaluate(model, a->curved[j], model->members.rest, q, (double)NAN, &pose);
-    double force = r->force[j] = pose.force / a->size + 0.0; /* + 0.0: no -0 */
+    bool cell = model->elements.element[a->curved[j]].role == STRUT_ELEMENT_CELL;
+    double scale = cell ? 1.0 / a->size : a->size;
+    double force = r->force[j] = pose.force / scale + 0.0; /* + 0.0: no -0 */
     for (int32_t k = a->start[j]; k < a->start[j + 1]; k++)
       r->largest_force = fmax(r->largest_force, fabs(force * a->value[k]));
   }
@@ -156,7 +158,7 @@ static bool measure_forces(const strut_model *model, const double *q, strut_rigi
     r->largest_force = fmax(r->largest_force, fabs(r->force[j]));
     if (model->scene->members[j].kind == STRUT_CABLE) r->has_cables = true;
   }
-  measure_hinges(model, q, r);
+  measure_elements(model, q, r);
   return true;
 }
 
