@@ -163,7 +163,8 @@ static void add_element(const strut_model *model, strut_state *state, strut_disc
   strut_element_evaluate(model, i, state->rest, step->middle, step->strain0[i], &middle);
   double natural0 = e->slot >= 0 ? step->rest0[e->slot] : e->natural, square = 0.0, work = 0.0;
   double rest_rate = e->slot >= 0 ? step->rest_rate[e->slot] : 0.0;
-  double origin0 = strut_element_origin(e, natural0), origin1 = strut_element_origin(e, end.natural);
+  double origin0 = strut_element_origin(e, natural0),
+         origin1 = strut_element_origin(e, end.natural);
   if (e->strain == STRUT_STRAIN_AREA) rest_rate = 0.0; /* its drive is all excess */
   double change = end.strain - step->strain0[i], rate = change / step->h - rest_rate;
   for (int32_t k = 0; k < 2 * e->nodes; k++) {

@@ -50,8 +50,7 @@ strut_cell_values strut_cell_measure(const strut_model *model, const strut_state
                                      int32_t element) {
   strut_element_pose pose;
   double force = strut_element_measure(model, state, element, &pose);
-  return (strut_cell_values){pose.strain,
-                             model->elements.element[element].numbers.outside - force};
+  return (strut_cell_values){pose.strain, model->elements.element[element].numbers.outside - force};
 }
 
 void strut_members_measure(const strut_model *model, const strut_state *state, double *length,

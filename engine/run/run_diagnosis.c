@@ -41,10 +41,11 @@ strut_status strut_run_fail_lost_node(const strut_run *r, int32_t node) {
 }
 
 strut_status strut_run_fail_flat_cell(const strut_run *r, int32_t cell) {
-  return strut_fail(r->error, STRUT_DIVERGED,
-                    "the area of cell '%s' reached zero at t = %.9g s, so that it encloses nothing; "
-                    "keep its nodes apart, or use a smaller step if they should not meet",
-                    r->model->scene->cells[cell].name, strut_run_time(r));
+  return strut_fail(
+      r->error, STRUT_DIVERGED,
+      "the area of cell '%s' reached zero at t = %.9g s, so that it encloses nothing; "
+      "keep its nodes apart, or use a smaller step if they should not meet",
+      r->model->scene->cells[cell].name, strut_run_time(r));
 }
 
 strut_status strut_run_fail_method(const strut_run *r) {
@@ -150,9 +151,9 @@ static void warn_of_limit(const strut_run *r) {
 static const double JUMP = 1e-3;
 
 typedef struct jump {
-  const char *name;              /* of what is driven */
+  const char *name;               /* of what is driven */
   const char *kind, *what, *unit; /* "member", "length", "m" */
-  double change, time;           /* in that unit, [s] */
+  double change, time;            /* in that unit, [s] */
 } jump;
 
 /* What actuator i drives, and a value beside which its changes are large or small. */
@@ -163,8 +164,7 @@ static jump describe_drive(const strut_model *model, const strut_actuator *a, do
     return (jump){scene->members[a->member].name, "member", "length", "m", 0.0, 0.0};
   }
   *scale = 1.0;
-  if (a->hinge >= 0)
-    return (jump){scene->hinges[a->hinge].name, "hinge", "angle", "rad", 0.0, 0.0};
+  if (a->hinge >= 0) return (jump){scene->hinges[a->hinge].name, "hinge", "angle", "rad", 0.0, 0.0};
   *scale = fmax(fabs(scene->cells[a->cell].pressure), fabs(scene->signals[a->signal].amplitude));
   *scale = fmax(*scale, DBL_MIN);
   return (jump){scene->cells[a->cell].name, "cell", "pressure", "N/m", 0.0, 0.0};

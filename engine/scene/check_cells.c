@@ -91,7 +91,7 @@ static void check_area(strut_checker *checker, size_t index, const char *owner) 
   const strut_cell *c = &scene->cells[index];
   polygon drawn = polygon_of(scene, c, false), start = polygon_of(scene, c, true);
   double area = area_of(&drawn), circumference = circumference_of(&drawn);
-  size_t n = c->node_count, j, i = crossing_side(&drawn, &j);
+  size_t n = c->node_count, j = 0, i = crossing_side(&drawn, &j);
   if (!isfinite(area) || !isfinite(area_of(&start))) return; /* reported at the node */
   if (i < n)
     strut_report_finding(
@@ -104,8 +104,7 @@ static void check_area(strut_checker *checker, size_t index, const char *owner) 
                          owner);
   else if (!(area_of(&start) / area > STRUT_CELL_COLLAPSED))
     strut_report_finding(checker, STRUT_ON_CELL, index, "nodes",
-                         "%s starts without an area, or turned over beside how it is drawn",
-                         owner);
+                         "%s starts without an area, or turned over beside how it is drawn", owner);
 }
 
 void strut_check_cells(strut_checker *checker) {

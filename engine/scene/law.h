@@ -4,22 +4,20 @@
  *
  * A law is a row of STRUT_LAWS and a header of engine/scene/laws with two functions. It knows material
  * only: e is any strain (a length [m], an angle [rad], an area [m^2]), e0 its natural value, x = e - e0,
- * and the force is the one that does work on e. Laws of cells, in STRUT_CELL_LAWS, take the pressure as
- * drawn [N/m] for e0. Reader, checks, forces, energies, stiffness, statics and
- * located events loop over this table, so that a law is added only here; see docs/recipes.md.
+ * and the force is the one that does work on e. Laws of cells are in laws/cell_laws.h.
+ * Reader, checks, forces, energies, stiffness, statics and located events loop over this table, so that a
+ * law is added only here; see docs/recipes.md.
  */
 #ifndef STRUT_ENGINE_SCENE_LAW_H
 #define STRUT_ENGINE_SCENE_LAW_H
 
 #include "engine/scene/laws/bilinear.h"
+#include "engine/scene/laws/cell_laws.h"
 #include "engine/scene/laws/exponential.h"
-#include "engine/scene/laws/isentropic.h"
-#include "engine/scene/laws/isothermal.h"
 #include "engine/scene/laws/linear.h"
 #include "engine/scene/laws/logarithmic.h"
 #include "engine/scene/laws/play.h"
 #include "engine/scene/laws/polynomial.h"
-#include "engine/scene/laws/pressure.h"
 #include "engine/scene/laws/table.h"
 
 /**
@@ -35,20 +33,14 @@
   X(EXPONENTIAL, exponential, "exponential", SCALE_BIT, context)                                   \
   X(TABLE, table, "table", POINTS_BIT | OWN, context)
 
-/** Laws of areas, which no member and no hinge can have; the rows are alike. */
-#define STRUT_CELL_LAWS(X, context)                                                                \
-  X(PRESSURE, pressure, "pressure", 0, context)                                                    \
-  X(ISOTHERMAL, isothermal, "isothermal", 0, context)                                              \
-  X(ISENTROPIC, isentropic, "isentropic", 0, context)
-
-#define STRUT_ALL_LAWS(X, context) STRUT_LAWS(X, context) STRUT_CELL_LAWS(X, context)
-
 typedef enum strut_law_kind {
 #define STRUT_LAW_ROW(NAME, ...) STRUT_LAW_##NAME,
   STRUT_ALL_LAWS(STRUT_LAW_ROW, )
 #undef STRUT_LAW_ROW
       STRUT_LAW_COUNT
 } strut_law_kind;
+/** Laws of members and hinges. */
+enum { STRUT_MEMBER_LAW_COUNT = STRUT_LAW_PRESSURE };
 
 enum {
 #define STRUT_LAW_ROW(NAME, ...) STRUT_LAW_PARAMETER_##NAME,

@@ -261,11 +261,9 @@ static const char *cell_content(const strut_cell *cell) {
 static void print_cells(const strut_scene *scene) {
   for (size_t i = 0; i < scene->cell_count && i < MOST_MEMBERS; i++) {
     const strut_cell *cell = &scene->cells[i];
-    if (!i)
-      printf("\n  %-12s %12s %12s %12s  content\n", "cell", "drawn", "pressure", "outside");
-    printf("  %-12s %8.4g m^2 %12s %12s  %s\n", cell->name,
-           fabs(strut_cell_drawn(scene, i)), in(cell->pressure, "N/m").text,
-           in(cell->outside, "N/m").text, cell_content(cell));
+    if (!i) printf("\n  %-12s %12s %12s %12s  content\n", "cell", "drawn", "pressure", "outside");
+    printf("  %-12s %8.4g m^2 %12s %12s  %s\n", cell->name, fabs(strut_cell_drawn(scene, i)),
+           in(cell->pressure, "N/m").text, in(cell->outside, "N/m").text, cell_content(cell));
   }
   if (scene->cell_count > MOST_MEMBERS)
     printf("  ... and %zu more; --json lists all\n", scene->cell_count - MOST_MEMBERS);

@@ -308,7 +308,8 @@ const strut_command strut_command_path = {
         "limit points, bifurcations, cables that become slack or taut, and nodes that touch or\n"
         "leave the ground, each with its effect on stability. Friction and drives are ignored.\n"
         "--over varies something else at constant loads: a number under 'parameters' (from its\n"
-        "value in the file), an actuator (the change of its member's rest length, its hinge's rest\n"
+        "value in the file), an actuator (the change of its member's rest length, its hinge's "
+        "rest\n"
         "angle or its cell's pressure), or the prescribed displacement of a node along x or y.\n",
     .options = options,
     .run = run_path,

@@ -66,11 +66,11 @@ static const int first[] = {STRUT_KEY_SCENE_VERSION,
                             STRUT_KEY_COUNT};
 
 static const char *const section_names[] = {
-    "scene",      "node",    "member",   "hinge",  "cell", "gas",       "law",      "ground",
-    "friction",   "contact", "actuator", "load",          "signal",   "sine",
-    "half_sine",  "square",  "ramp",     "configuration", "initial",  "settle",
-    "equilibria", "solver",  "run",      "measure",       "quantity", "steady",
-    "output",     "study",   "range",    "variant",       "check",    "figure"};
+    "scene",     "node",     "member",  "hinge",         "cell",    "gas",    "law",
+    "ground",    "friction", "contact", "actuator",      "load",    "signal", "sine",
+    "half_sine", "square",   "ramp",    "configuration", "initial", "settle", "equilibria",
+    "solver",    "run",      "measure", "quantity",      "steady",  "output", "study",
+    "range",     "variant",  "check",   "figure"};
 
 _Static_assert(sizeof first / sizeof first[0] == STRUT_SECTION_COUNT + 1, "one for each section");
 _Static_assert(sizeof section_names / sizeof section_names[0] == STRUT_SECTION_COUNT,

@@ -149,8 +149,7 @@ static int refuse_owner(strut_reader *reader, const char *kind, strut_piece owne
 static int refuse_field(strut_reader *reader, const found_owner *found, strut_piece owner,
                         strut_piece field, strut_refusal *refusal) {
   char list[200];
-  bool thing = found->node >= 0 || found->member >= 0 || found->hinge >= 0 ||
-               found->cell >= 0;
+  bool thing = found->node >= 0 || found->member >= 0 || found->hinge >= 0 || found->cell >= 0;
   const char *hint = strut_hint(reader, text_of(reader, field), field_name, &found->owners,
                                 field_count(found->owners));
   snprintf(refusal->text, sizeof refusal->text, "%s%s%.*s%s has no column '%.*s'%s%s%s",

@@ -191,19 +191,20 @@ static bool read_actuator(strut_reader *reader, const strut_tree *key, strut_act
                              strut_hinge_name, reader->scene->hinge_count);
   if (cell->state == STRUT_GIVEN &&
       strut_slot_of(&reader->top, STRUT_KEY_SCENE_CELLS)->state != STRUT_BROKEN)
-    actuator->cell = strut_read_reference(reader, cell->value, "cell", owner, "cell",
-                                          &reader->cell_names, strut_cell_name,
-                                          reader->scene->cell_count);
+    actuator->cell =
+        strut_read_reference(reader, cell->value, "cell", owner, "cell", &reader->cell_names,
+                             strut_cell_name, reader->scene->cell_count);
   if (member->state == STRUT_GIVEN && known)
     actuator->member =
         strut_read_reference(reader, member->value, "member", owner, "member",
                              &reader->member_names, strut_member_name, reader->scene->member_count);
-  bool drives = member->state != STRUT_ABSENT || hinge->state != STRUT_ABSENT ||
-                cell->state != STRUT_ABSENT;
+  bool drives =
+      member->state != STRUT_ABSENT || hinge->state != STRUT_ABSENT || cell->state != STRUT_ABSENT;
   if (signal->state == STRUT_GIVEN) /* of what, tells its dimension */
     actuator->signal =
         strut_read_signal(reader, signal->value, "signal", owner, drives ? &driven : NULL);
-  return fine && !fields.broken && (actuator->member >= 0 || actuator->hinge >= 0 || actuator->cell >= 0) &&
+  return fine && !fields.broken &&
+         (actuator->member >= 0 || actuator->hinge >= 0 || actuator->cell >= 0) &&
          actuator->signal >= 0;
 }
 

@@ -22,7 +22,8 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
         "`hinges: {NAME: {...}}`. A hinge needs a stiffness, a damping, or a "
         "law that brings its own stiffness.",
     [STRUT_SECTION_CELL] =
-        "`cells: {NAME: {...}}`: either `pressure` or `gas`. In the plane a pressure is a force per "
+        "`cells: {NAME: {...}}`: either `pressure` or `gas`. In the plane a pressure is a force "
+        "per "
         "length.",
     [STRUT_SECTION_GAS] = "`cells: {NAME: {gas: {...}}}`.",
     [STRUT_SECTION_LAW] =
@@ -43,7 +44,8 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
     [STRUT_SECTION_LOAD] = "`loads: {NAME: {...}}`.",
     [STRUT_SECTION_SIGNAL] =
         "A signal is a mapping with one of these keys, or the name of an entry of `signals`. The "
-        "unit of its values follows from its use: a length, an angle or a pressure for an actuator, a number "
+        "unit of its values follows from its use: a length, an angle or a pressure for an "
+        "actuator, a number "
         "without unit "
         "for a load.",
     [STRUT_SECTION_SINE] = "`{sine: {...}}`.",

@@ -104,9 +104,7 @@ static void put_actuators(strut_writer *writer) {
     strut_put(writer, "  ");
     strut_put_name(writer, scene->actuators[i].name);
     const strut_actuator *a = &scene->actuators[i];
-    strut_put(writer, a->member >= 0  ? ": {member: "
-                      : a->hinge >= 0 ? ": {hinge: "
-                                      : ": {cell: ");
+    strut_put(writer, a->member >= 0 ? ": {member: " : a->hinge >= 0 ? ": {hinge: " : ": {cell: ");
     strut_put_name(writer, a->member >= 0  ? scene->members[a->member].name
                            : a->hinge >= 0 ? scene->hinges[a->hinge].name
                                            : scene->cells[a->cell].name);

@@ -46,6 +46,9 @@ strut_law random_law(strut_scene *scene, strut_law_kind kind, double size, doubl
     case STRUT_LAW_TABLE: make_table(scene, &law, size, force, r); break;
     case STRUT_LAW_LINEAR:
     case STRUT_LAW_LOGARITHMIC:
+    case STRUT_LAW_PRESSURE:
+    case STRUT_LAW_ISOTHERMAL:
+    case STRUT_LAW_ISENTROPIC:
     case STRUT_LAW_COUNT: break;
   }
   return law;
@@ -55,7 +58,7 @@ strut_law random_law(strut_scene *scene, strut_law_kind kind, double size, doubl
 static void add_member(strut_scene *scene, int32_t a, int32_t b, double damping, uint64_t *r) {
   const double *from = scene->nodes[a].position, *to = scene->nodes[b].position;
   double drawn = strut_distance(from, to), stiffness = random_between(r, 50, 200);
-  strut_law_kind kind = (strut_law_kind)random_below(r, STRUT_LAW_COUNT);
+  strut_law_kind kind = (strut_law_kind)random_below(r, STRUT_MEMBER_LAW_COUNT);
   int32_t j =
       build_sized(scene, random_once_in(r, 3) ? STRUT_CABLE : STRUT_SPRING, a, b, stiffness,
                   damping * random_between(r, 0.1, 1.0), 0, drawn * random_between(r, 0.8, 1.1));
@@ -72,7 +75,7 @@ static void add_member(strut_scene *scene, int32_t a, int32_t b, double damping,
 static void add_hinge(strut_scene *scene, int32_t a, int32_t b, int32_t c, double damping,
                       uint64_t *r) {
   double stiffness = random_between(r, 5, 20);
-  strut_law_kind kind = (strut_law_kind)random_below(r, STRUT_LAW_COUNT);
+  strut_law_kind kind = (strut_law_kind)random_below(r, STRUT_MEMBER_LAW_COUNT);
   if (kind == STRUT_LAW_LOGARITHMIC) kind = STRUT_LAW_LINEAR;
   int32_t i = build_hinge(scene, a, b, c, stiffness, 0.1 * damping * random_between(r, 0.1, 1.0));
   strut_hinge *h = &scene->hinges[i];

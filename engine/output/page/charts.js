@@ -192,7 +192,8 @@
     function add(kind) {
       const box = document.createElement("div"), title = document.createElement("div");
       const plot = document.createElement("div"), cursor = document.createElement("div");
-      const holder = document.createElement("div"), prefix = prefixOf(kind.curves, motion.frames);
+      const holder = document.createElement("div"), prefix = kind.unit === "m^2"
+        ? { text: "", factor: 1 } : prefixOf(kind.curves, motion.frames);
       const chart = { kind, box, plot, cursor };
       chart.scaled = kind.curves.map((c) => ({ at: (f) => c.at(f) / prefix.factor }));
       title.className = "chart-title";

@@ -170,9 +170,8 @@ static const double POSITION_QUANTUM = 1e-6, VALUE_QUANTUM = 1e-5, COLUMN_QUANTU
 static const double DIVERGED_REACH = 1e3;
 
 enum { TIME, POSITION, FORCE, CONTACT, ENERGY, ANGLE, MOMENT, AREA, PRESSURE, BLOCKS };
-static const char *const keys[BLOCKS] = {"time",   "position", "force", "contact",
-                                         "energy", "angle",    "moment", "area",
-                                         "pressure"};
+static const char *const keys[BLOCKS] = {"time",  "position", "force", "contact", "energy",
+                                         "angle", "moment",   "area",  "pressure"};
 static const char *const energy_names[STRUT_ENERGIES] = {STRUT_ENERGY_NAMES};
 
 typedef struct motion {

@@ -30,11 +30,13 @@ typedef struct state {
 } state;
 
 static state state_of_point(const strut_path_point *p) {
-  return (state){p->factor, p->arc, p->q, p->force, p->moment, p->reaction, p->contact, p->pressure};
+  return (state){p->factor, p->arc,      p->q,       p->force,
+                 p->moment, p->reaction, p->contact, p->pressure};
 }
 
 static state state_of_event(const strut_path_event *e) {
-  return (state){e->factor, e->arc, e->q, e->force, e->moment, e->reaction, e->contact, e->pressure};
+  return (state){e->factor, e->arc,      e->q,       e->force,
+                 e->moment, e->reaction, e->contact, e->pressure};
 }
 
 /* The largest member force there [N]. */

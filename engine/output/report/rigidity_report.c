@@ -74,8 +74,8 @@ static const char *super_stability_words(const strut_rigidity *r,
   if (r->states.count == 0)
     snprintf(words, STRUT_RIGIDITY_WORDS, "no: %s", source);
   else if (r->stress.by_elements)
-    snprintf(words, STRUT_RIGIDITY_WORDS, "not judged: elements (hinges, cells, running cables) carry %s",
-             source);
+    snprintf(words, STRUT_RIGIDITY_WORDS,
+             "not judged: elements (hinges, cells, running cables) carry %s", source);
   else if (!r->stress.tested)
     snprintf(words, STRUT_RIGIDITY_WORDS, "not tested: the structure is too large");
   else if (r->stress.super_stable)
@@ -271,8 +271,7 @@ static void put_members(strut_json *json, const strut_rigidity *r, const strut_s
     strut_json_number(json, row, "force_density",
                       r->matrix.length[j] > 0 ? r->density[j] : (double)NAN);
   }
-  struct cJSON *cells =
-      scene->cell_count ? strut_json_object(json, json->root, "cells_at") : NULL;
+  struct cJSON *cells = scene->cell_count ? strut_json_object(json, json->root, "cells_at") : NULL;
   for (size_t i = 0; i < scene->cell_count; i++) {
     struct cJSON *row = strut_json_object(json, cells, scene->cells[i].name);
     size_t j = scene->member_count + scene->hinge_count + i;
@@ -403,8 +402,7 @@ static void add_cells(strut_buffer *table, const strut_rigidity *r, const strut_
   for (size_t i = 0; i < scene->cell_count && i < MOST_ROWS; i++) {
     size_t j = first + i;
     strut_buffer_add(table, "  %-12s %-6s %8.6g m^2 %12s %13s", scene->cells[i].name, "",
-                     r->matrix.length[j] * size,
-                     in(-r->force[j] / size + 0.0, "N/m").text, "");
+                     r->matrix.length[j] * size, in(-r->force[j] / size + 0.0, "N/m").text, "");
     for (int32_t k = 0; k < states; k++)
       strut_buffer_add(table, " %10.6g", -r->states.force[(size_t)k * columns + j] / size + 0.0);
     strut_buffer_add(table, "\n");

@@ -203,8 +203,7 @@ static int32_t count_items(const strut_model *model) {
 static int32_t item_of(const strut_model *model, const strut_element *e) {
   int32_t hinges = model->members.count;
   if (e->role == STRUT_ELEMENT_HINGE) return hinges + e->item;
-  if (e->role == STRUT_ELEMENT_CELL)
-    return hinges + (int32_t)model->scene->hinge_count + e->item;
+  if (e->role == STRUT_ELEMENT_CELL) return hinges + (int32_t)model->scene->hinge_count + e->item;
   return e->item;
 }
 
@@ -255,8 +254,8 @@ static void describe_members(const strut_vibration *v, const double *energy, con
     }
     int32_t j = named[count];
     if (j < 0) break;
-    append_text(mode, "%s%s %.0f %%", count ? ", " : "; ",
-                name_of_item(scene, (size_t)j), 100.0 * energy[j] / e->all);
+    append_text(mode, "%s%s %.0f %%", count ? ", " : "; ", name_of_item(scene, (size_t)j),
+                100.0 * energy[j] / e->all);
   }
   if (e->ground > 0.05 * e->all)
     append_text(mode, "%sthe ground %.0f %%", count++ ? ", " : "; ", 100.0 * e->ground / e->all);

@@ -22,9 +22,10 @@ typedef struct strut_equilibrium_matrix {
   double size;         /* of the model, by which hinges' moments are divided [m] */
   int32_t *coordinate; /* (rows) index into coordinate arrays */
   int32_t *row_of;     /* (length) row of a coordinate, -1 where fixed */
-  double *length;      /* (columns) of the members in the shape; of hinges angle * size, of cells area / size [m] */
+  double *
+      length; /* (columns) of the members in the shape; of hinges angle * size, of cells area / size [m] */
   double (*direction)[2]; /* (columns) unit vector from first node to second; 0, 0 without length */
-  int32_t *curved;   /* (columns) element of a running cable, hinge or cell; -1: a straight member */
+  int32_t *curved; /* (columns) element of a running cable, hinge or cell; -1: a straight member */
   double *curvature; /* (columns) largest second derivative of such an element [1/m] */
   double **bend;     /* (columns) its second derivatives / curvature (2 nodes, 2 nodes), or NULL */
   int32_t *start;    /* (columns + 1) A by columns */
@@ -34,8 +35,7 @@ typedef struct strut_equilibrium_matrix {
 
 /** Columns of the equilibrium matrix of a model. */
 static inline int32_t strut_equilibrium_columns(const strut_model *model) {
-  return model->members.count +
-         (int32_t)(model->scene->hinge_count + model->scene->cell_count);
+  return model->members.count + (int32_t)(model->scene->hinge_count + model->scene->cell_count);
 }
 
 /** Is column j a cable? */
