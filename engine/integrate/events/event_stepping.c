@@ -13,14 +13,8 @@ static const double AT_ONCE = 1e-9;
    modes say: switches may follow each other faster and faster without end (Zeno). */
 enum { MOST_AT_ONCE = 8, MOST_SWITCHES = 2000, MOST_TRIALS = 60 };
 
-/* Most laws that switch: each cable, each element by its sign and by its kinks. */
-static size_t most_switches(const strut_model *model) {
-  bool slack = model->plan & STRUT_TERM_SLACK;
-  return (slack ? (size_t)model->members.count : 0) + 2 * (size_t)model->elements.count;
-}
-
 static bool make_end(const strut_model *model, strut_arena *arena, strut_step_end *end, bool own) {
-  size_t length = (size_t)model->length, switches = most_switches(model) + 1;
+  size_t length = (size_t)model->length, switches = strut_most_law_switches(model) + 1;
   if (!own) end->q = strut_arena_allocate(arena, length, sizeof(double));
   if (!own) end->v = strut_arena_allocate(arena, length, sizeof(double));
   end->a = strut_arena_allocate(arena, length, sizeof(double));
@@ -57,7 +51,7 @@ static bool make_arrays(const strut_model *model, strut_state *state, strut_even
 
 static bool list_laws(const strut_model *model, strut_state *state, strut_event_stepper *l) {
   const strut_member_table *t = &model->members;
-  size_t most = most_switches(model);
+  size_t most = strut_most_law_switches(model);
   if (!most) return true;
   l->laws = strut_arena_allocate(&state->arena, most, sizeof *l->laws);
   l->acting = strut_arena_allocate(&state->arena, most, 1);

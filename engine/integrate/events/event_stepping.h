@@ -144,6 +144,12 @@ struct strut_event_stepper {
   bool tried;       /* next is the end of the step that is due */
 };
 
+/** Most laws that switch: each cable, each element by its sign and by its kinks. */
+static inline size_t strut_most_law_switches(const strut_model *model) {
+  bool slack = model->plan & STRUT_TERM_SLACK;
+  return (slack ? (size_t)model->members.count : 0) + 2 * (size_t)model->elements.count;
+}
+
 /** Workspace for a method with `stepper`; NULL: out of memory. */
 void *strut_event_stepper_create(const strut_model *model, strut_state *state,
                                  const strut_step_formula *stepper,
