@@ -99,7 +99,8 @@ void strut_elements_visit(const strut_model *model, const double *rest, const do
   for (int32_t i = 0; i < model->elements.count; i++) {
     const strut_element *e = &model->elements.element[i];
     strut_element_evaluate(model, i, rest, q, (double)NAN, &pose);
-    bool stop = e->role == STRUT_ELEMENT_LONGEST || e->role == STRUT_ELEMENT_SHORTEST;
+    bool stop = e->role == STRUT_ELEMENT_LONGEST || e->role == STRUT_ELEMENT_SHORTEST ||
+                e->role == STRUT_ELEMENT_COLLISION;
     if (stops && stop && !pose.acts) {
       pose.acts = true;
       pose.slope = e->numbers.stiffness;

@@ -72,7 +72,7 @@ STRUT_API double strut_member_path_length(const strut_model *model, int32_t memb
 typedef void strut_visit_element(void *context, int32_t element, const strut_element_pose *pose);
 /**
  * Calls `visit` for every element that acts at q with more than `least` in size, for one that carries
- * both signs always; with `stops` for all stops, too, those that do not act as if at their kink.
+ * both signs always; with `stops` for all stops and collisions, too, those that do not act as if at their kink.
  */
 void strut_elements_visit(const strut_model *model, const double *rest, const double *q,
                           double least, bool stops, void *context, strut_visit_element *visit);

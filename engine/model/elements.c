@@ -37,6 +37,9 @@ double strut_element_start(const strut_model *model, int32_t element) {
   return e->slot >= 0 ? model->members.rest[e->slot] : e->natural;
 }
 
+/* A collision of two members is that of each of their four ends with the other member. */
+enum { MOST_PAIRS = 4 };
+
 static size_t elements_of_member(const strut_member *m) {
   return (size_t)strut_member_is_special(m) + (size_t)(m->longest > 0.0) +
          (size_t)(m->shortest > 0.0);
@@ -46,6 +49,8 @@ static void count_elements(const strut_scene *scene, size_t *elements, size_t *n
   *elements = scene->hinge_count + scene->cell_count;
   *nodes = 3 * scene->hinge_count;
   for (size_t i = 0; i < scene->cell_count; i++) *nodes += scene->cells[i].node_count;
+  *elements += MOST_PAIRS * scene->collision_count;
+  *nodes += 3 * MOST_PAIRS * scene->collision_count;
   for (size_t j = 0; j < scene->member_count; j++) {
     size_t own = elements_of_member(&scene->members[j]);
     *elements += own;
@@ -250,6 +255,36 @@ static void add_cell(compilation *c, size_t i) {
   ((double *)model->members.rest)[slot] = cell->pressure;
 }
 
+/* Of a node with the segment from a to b, or with the node a where b is -1. */
+static void add_pair(compilation *c, size_t i, int32_t node, int32_t a, int32_t b) {
+  const strut_collision *s = &c->model->scene->collisions[i];
+  strut_element *e =
+      add_element(c, (strut_element){.strain = b < 0 ? STRUT_STRAIN_LENGTH : STRUT_STRAIN_REACH,
+                                     .law = STRUT_LAW_LINEAR,
+                                     .role = STRUT_ELEMENT_COLLISION,
+                                     .item = (int32_t)i,
+                                     .slot = -1,
+                                     .carries = -1,
+                                     .natural = s->thickness,
+                                     .damping = s->damping,
+                                     .numbers = {.stiffness = s->stiffness}});
+  add_node(c, e, node);
+  add_node(c, e, a);
+  if (b >= 0) add_node(c, e, b);
+}
+
+static void add_collision(compilation *c, size_t i) {
+  const strut_scene *scene = c->model->scene;
+  const strut_collision *s = &scene->collisions[i];
+  const strut_member *m[2] = {NULL, NULL};
+  for (int k = 0; k < 2; k++)
+    if (s->member[k] >= 0) m[k] = &scene->members[s->member[k]];
+  if (!m[0]) add_pair(c, i, s->node[0], s->node[1], -1);
+  if (m[0] && !m[1]) add_pair(c, i, s->node[0], m[0]->node[0], m[0]->node[1]);
+  for (int k = 0; k < MOST_PAIRS && m[0] && m[1]; k++)
+    add_pair(c, i, m[k / 2]->node[k % 2], m[1 - k / 2]->node[0], m[1 - k / 2]->node[1]);
+}
+
 /* Blocks of one strain and one law, in the tables' order; in a block the scene's order. */
 static bool sort_elements(compilation *c, strut_element_table *t) {
   strut_arena *arena = &c->model->arena;
@@ -312,7 +347,8 @@ bool strut_elements_compile(strut_model *model) {
     if (elements_of_member(&scene->members[j])) add_member(&c, j);
   for (size_t i = 0; i < scene->hinge_count; i++) add_hinge(&c, i);
   for (size_t i = 0; i < scene->cell_count; i++) add_cell(&c, i);
-  assert(c.count == (int32_t)elements && c.nodes <= (int32_t)nodes);
+  for (size_t i = 0; i < scene->collision_count; i++) add_collision(&c, i);
+  assert(c.count <= (int32_t)elements && c.nodes <= (int32_t)nodes);
   model->elements.at = c.at;
   model->plan |= STRUT_TERM_ELEMENTS;
   return !c.failed && sort_elements(&c, &model->elements) && link_members(model);

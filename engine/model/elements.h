@@ -5,7 +5,7 @@
  * A strain is one number e made of the positions of a few nodes (engine/forces/strains); a law is the
  * force that works on it (engine/scene/laws). A plain member, `length` with the linear law, is stepped
  * by the vector kernel from the member table instead. All other pairs are elements: members that run
- * over guides, with other laws or with stops, hinges, and cells.
+ * over guides, with other laws or with stops, hinges, cells, and collisions.
  */
 #ifndef STRUT_ENGINE_MODEL_ELEMENTS_H
 #define STRUT_ENGINE_MODEL_ELEMENTS_H
@@ -36,14 +36,15 @@ typedef enum strut_element_role {
   STRUT_ELEMENT_LONGEST,  /* a stop of a member, which pulls beyond its longest length */
   STRUT_ELEMENT_SHORTEST, /* a stop of a member, which pushes below its shortest length */
   STRUT_ELEMENT_HINGE,    /* the moment of a hinge */
-  STRUT_ELEMENT_CELL      /* the pressure in a cell */
+  STRUT_ELEMENT_CELL,     /* the pressure in a cell */
+  STRUT_ELEMENT_COLLISION /* what two bodies exert on each other; of two members it has four elements */
 } strut_element_role;
 
 typedef struct strut_element {
   strut_strain_kind strain;
   strut_law_kind law;
   strut_element_role role;
-  int32_t item;         /* member, hinge or cell of the scene */
+  int32_t item;         /* member, hinge, ... of the scene */
   int32_t first, nodes; /* its nodes: `nodes` entries of the table's `at`, from `first` on */
   int32_t slot;         /* where its natural strain stands in arrays of rest lengths; -1: fixed */
   double natural;       /* natural strain where there is no slot */
@@ -92,6 +93,19 @@ static inline int32_t strut_element_of_cell(const strut_element_table *t, int32_
   return strut_element_find(t, STRUT_ELEMENT_CELL, i);
 }
 
+static inline int32_t strut_element_of_collision(const strut_element_table *t, int32_t i) {
+  return strut_element_find(t, STRUT_ELEMENT_COLLISION, i);
+}
+
+/** The element behind the last one of the same item; elements of a collision follow each other. */
+static inline int32_t strut_element_end(const strut_element_table *t, int32_t first) {
+  int32_t k = first;
+  while (k < t->count && t->element[k].role == t->element[first].role &&
+         t->element[k].item == t->element[first].item)
+    k++;
+  return k;
+}
+
 /** Is it the force or a stop of a member? */
 static inline bool strut_element_is_of_member(const strut_element *e) {
   return e->role == STRUT_ELEMENT_MEMBER || e->role == STRUT_ELEMENT_LONGEST ||
@@ -103,6 +117,7 @@ static inline const char *strut_element_name(const strut_scene *scene, const str
   switch (e->role) {
     case STRUT_ELEMENT_HINGE: return scene->hinges[e->item].name;
     case STRUT_ELEMENT_CELL: return scene->cells[e->item].name;
+    case STRUT_ELEMENT_COLLISION: return scene->collisions[e->item].name;
     case STRUT_ELEMENT_MEMBER:
     case STRUT_ELEMENT_LONGEST:
     case STRUT_ELEMENT_SHORTEST: break;

@@ -15,6 +15,7 @@ static const strut_plan_term terms[STRUT_PLAN_TERMS] = {
     {STRUT_TERM_ELEMENTS, "stops", "a member with a shortest or longest length", false},
     {STRUT_TERM_ELEMENTS, "hinges", "a hinge", false},
     {STRUT_TERM_ELEMENTS, "cells", "a cell", false},
+    {STRUT_TERM_ELEMENTS, "collisions", "a collision", false},
     {STRUT_TERM_DRIVE, "driven rest lengths", "an actuator", false},
     {STRUT_TERM_CONSTANT, "constant forces", "gravity, or a load without a signal", false},
     {STRUT_TERM_LOADS, "driven loads", "a load with a signal", false},
@@ -41,6 +42,7 @@ static void count_elements(const strut_model *model, strut_plan *plan) {
   }
   plan->hinges = scene->hinge_count;
   plan->cells = scene->cell_count;
+  plan->collisions = scene->collision_count;
   plan->contacts = (size_t)model->contacts.count;
   plan->actuators = scene->actuator_count;
   plan->loads = scene->load_count;
@@ -56,7 +58,8 @@ static bool has_element(const strut_plan *plan, const char *name) {
                {"member laws", plan->laws},
                {"stops", plan->stops},
                {"hinges", plan->hinges},
-               {"cells", plan->cells}};
+               {"cells", plan->cells},
+               {"collisions", plan->collisions}};
   for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++)
     if (strcmp(kinds[i].name, name) == 0) return kinds[i].count > 0;
   return true;

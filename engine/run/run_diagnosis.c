@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/forces/elements.h"
 #include "engine/run/simulate_parts.h"
 
 /* A run beyond this multiple of the scene's size counts as diverged. */
@@ -38,6 +39,50 @@ strut_status strut_run_fail_lost_node(const strut_run *r, int32_t node) {
                     "node '%s' left all bounds at t = %.9g s with dt = %g s (largest stable step "
                     "at the start: %.4g s); %s",
                     r->summary->node_names[node], strut_run_time(r), r->dt, least, remedy);
+}
+
+/* Bodies this near to each other beside their thickness may soon have passed through each other. */
+static const double DEEP = 0.5;
+
+static double speed_of(const strut_run *r, uint32_t at) {
+  return hypot(r->state->v[at], r->state->v[at + 1]);
+}
+
+void strut_run_watch_collisions(strut_run *r) {
+  const strut_element_table *t = &r->model->elements;
+  for (int32_t i = 0; i < t->count && !r->tunnel; i++) {
+    const strut_element *e = &t->element[i];
+    const uint32_t *at = t->at + e->first;
+    if (e->role != STRUT_ELEMENT_COLLISION) continue;
+    double other = speed_of(r, at[1]);
+    if (e->nodes > 2) other = fmax(other, speed_of(r, at[2]));
+    double speed = speed_of(r, at[0]) + other;
+    bool fast = speed * r->dt > e->natural;
+    strut_element_pose pose;
+    strut_element_evaluate(r->model, i, r->state->rest, r->state->q, (double)NAN, &pose);
+    if (!fast && !(pose.strain < DEEP * e->natural)) continue;
+    r->tunnel = i + 1;
+    r->tunnel_speed = fast ? speed : 0.0;
+  }
+}
+
+static void warn_of_tunnelling(const strut_run *r) {
+  if (!r->tunnel) return;
+  const strut_element *e = &r->model->elements.element[r->tunnel - 1];
+  const strut_collision *c = &r->model->scene->collisions[e->item];
+  if (r->tunnel_speed == 0.0) {
+    strut_summary_warn(
+        r->summary, "tunnelling",
+        "the sides of collision '%s' were pressed into each other by more than half "
+        "its thickness of %.3g m, and may have passed through; use a larger stiffness",
+        c->name, c->thickness);
+    return;
+  }
+  strut_summary_warn(r->summary, "tunnelling",
+                     "the sides of collision '%s' moved at up to %.3g m/s, which is more than its "
+                     "thickness of %.3g m in a step of %g s: they may have passed through each "
+                     "other; use a smaller step",
+                     c->name, r->tunnel_speed, c->thickness, r->dt);
 }
 
 strut_status strut_run_fail_flat_cell(const strut_run *r, int32_t cell) {
@@ -292,4 +337,5 @@ void strut_run_warn(const strut_run *r) {
   warn_of_narrow_bands(r);
   warn_of_creep(r);
   warn_of_limit(r);
+  warn_of_tunnelling(r);
 }

@@ -352,6 +352,7 @@ strut_status strut_run_sample(strut_run *r, int64_t *stop) {
   *stop = n;
   if (limit_status) return limit_status;
   if (lost >= 0) return strut_run_fail_lost_node(r, lost);
+  if (r->model->scene->collision_count) strut_run_watch_collisions(r);
   int32_t flat = strut_cell_that_collapsed(r->model, r->state->q);
   if (flat >= 0) return strut_run_fail_flat_cell(r, flat);
   if (n >= r->balance.next) sample_balance(r);
@@ -456,7 +457,8 @@ strut_status strut_run_begin(const strut_model *model, const strut_experiment *e
                    .limits = limits,
                    .summary = summary,
                    .error = error};
-  if (model->scene->cell_count) chunk = 1; /* a cell that collapses is noticed at once */
+  if (model->scene->cell_count || model->scene->collision_count)
+    chunk = 1; /* cells that collapse and bodies that pass through each other are noticed at once */
   r->chunk = chunk < 1 ? 1 : chunk > LONGEST_CHUNK ? LONGEST_CHUNK : chunk;
   strut_status status = prepare_run(r);
   r->ready = !status;

@@ -15,17 +15,18 @@
 
 /** Owner of a column: how the column is written, and what its items index. */
 typedef enum strut_column_owner {
-  STRUT_COLUMN_OF_RUN,     /* the word alone: time */
-  STRUT_COLUMN_OF_NODE,    /* NODE.y */
-  STRUT_COLUMN_OF_CONTACT, /* NODE.normal, of a node that may touch the ground */
-  STRUT_COLUMN_OF_MEMBER,  /* MEMBER.force */
-  STRUT_COLUMN_OF_HINGE,   /* HINGE.moment */
-  STRUT_COLUMN_OF_PAIR,    /* angle(NODE, NODE) */
-  STRUT_COLUMN_OF_CENTRE,  /* com.vx */
-  STRUT_COLUMN_OF_ENERGY,  /* energy.kinetic */
-  STRUT_COLUMN_OF_WORK,    /* work.drives */
-  STRUT_COLUMN_OF_LOSSES,  /* losses.friction */
-  STRUT_COLUMN_OF_CELL     /* CELL.area */
+  STRUT_COLUMN_OF_RUN,      /* the word alone: time */
+  STRUT_COLUMN_OF_NODE,     /* NODE.y */
+  STRUT_COLUMN_OF_CONTACT,  /* NODE.normal, of a node that may touch the ground */
+  STRUT_COLUMN_OF_MEMBER,   /* MEMBER.force */
+  STRUT_COLUMN_OF_HINGE,    /* HINGE.moment */
+  STRUT_COLUMN_OF_PAIR,     /* angle(NODE, NODE) */
+  STRUT_COLUMN_OF_CENTRE,   /* com.vx */
+  STRUT_COLUMN_OF_ENERGY,   /* energy.kinetic */
+  STRUT_COLUMN_OF_WORK,     /* work.drives */
+  STRUT_COLUMN_OF_LOSSES,   /* losses.friction */
+  STRUT_COLUMN_OF_CELL,     /* CELL.area */
+  STRUT_COLUMN_OF_COLLISION /* COLLISION.gap */
 } strut_column_owner;
 
 /** X(id, owner, word, powers of kg, m, s, angle) */
@@ -65,7 +66,9 @@ typedef enum strut_column_owner {
   X(LOST_FRICTION, LOSSES, "friction", 1, 2, -2, 0)                                                \
   X(LOST, LOSSES, "total", 1, 2, -2, 0)                                                            \
   X(CELL_AREA, CELL, "area", 0, 2, 0, 0)                                                           \
-  X(PRESSURE, CELL, "pressure", 1, 0, -2, 0)
+  X(PRESSURE, CELL, "pressure", 1, 0, -2, 0)                                                       \
+  X(COLLISION_GAP, COLLISION, "gap", 0, 1, 0, 0)                                                   \
+  X(COLLISION_FORCE, COLLISION, "force", 1, 1, -2, 0)
 
 typedef enum strut_column_kind {
 #define STRUT_COLUMN_ENUM(id, ...) STRUT_COLUMN_##id,

@@ -34,6 +34,10 @@ strut_cell strut_cell_default(void) {
   return (strut_cell){.name = "", .law = STRUT_LAW_PRESSURE, .exponent = 1.4};
 }
 
+strut_collision strut_collision_default(void) {
+  return (strut_collision){.name = "", .node = {-1, -1}, .member = {-1, -1}};
+}
+
 void strut_scene_free(strut_scene *scene) {
   strut_arena_free(&scene->arena);
   memset(scene, 0, sizeof *scene);

@@ -87,6 +87,18 @@ typedef struct strut_cell {
   double outside;     /* pressure outside a gas [N/m] */
 } strut_cell;
 
+/**
+ * Two bodies that may touch: two of nodes and members, each as thick as half of `thickness`. A node is a
+ * disc, a member a straight rod with round ends. They push each other apart and never pull.
+ */
+typedef struct strut_collision {
+  const char *name;
+  int32_t node[2], member[2]; /* two of these, node[0] and member[0] first; the others -1 */
+  double thickness;           /* distance of their axes at which they touch [m], > 0 */
+  double stiffness;           /* [N/m], > 0 */
+  double damping;             /* [N s/m] while they push */
+} strut_collision;
+
 /** Damping law of the ground; d is the depth, d' its rate. */
 typedef enum strut_ground_damping {
   STRUT_DAMPING_APPROACH,     /* (8): c_g d + k_g max(d', 0), which jumps at touchdown */
@@ -178,6 +190,8 @@ typedef struct strut_scene {
   strut_arena arena;         /* owns every text and array of the scene */
   size_t cell_count;
   strut_cell *cells;
+  size_t collision_count;
+  strut_collision *collisions;
 } strut_scene;
 
 /** Default structs: zero except where stated above, names empty, indices -1. */
@@ -187,6 +201,7 @@ STRUT_API strut_member strut_member_default(void);
 STRUT_API strut_hinge strut_hinge_default(void);
 STRUT_API strut_contact strut_contact_default(void);
 STRUT_API strut_cell strut_cell_default(void);
+STRUT_API strut_collision strut_collision_default(void);
 /** Frees the contents of the scene and zeroes it. */
 STRUT_API void strut_scene_free(strut_scene *scene);
 

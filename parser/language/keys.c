@@ -37,6 +37,7 @@ static const int first[] = {STRUT_KEY_SCENE_VERSION,
                             STRUT_KEY_HINGE_NODES,
                             STRUT_KEY_CELL_NODES,
                             STRUT_KEY_GAS_KIND,
+                            STRUT_KEY_COLLISION_NODE,
                             STRUT_KEY_LAW_KIND,
                             STRUT_KEY_GROUND_HEIGHT,
                             STRUT_KEY_FRICTION_LAW,
@@ -66,11 +67,11 @@ static const int first[] = {STRUT_KEY_SCENE_VERSION,
                             STRUT_KEY_COUNT};
 
 static const char *const section_names[] = {
-    "scene",     "node",     "member",  "hinge",         "cell",    "gas",    "law",
-    "ground",    "friction", "contact", "actuator",      "load",    "signal", "sine",
-    "half_sine", "square",   "ramp",    "configuration", "initial", "settle", "equilibria",
-    "solver",    "run",      "measure", "quantity",      "steady",  "output", "study",
-    "range",     "variant",  "check",   "figure"};
+    "scene",      "node",      "member",   "hinge",   "cell",          "gas",     "collision",
+    "law",        "ground",    "friction", "contact", "actuator",      "load",    "signal",
+    "sine",       "half_sine", "square",   "ramp",    "configuration", "initial", "settle",
+    "equilibria", "solver",    "run",      "measure", "quantity",      "steady",  "output",
+    "study",      "range",     "variant",  "check",   "figure"};
 
 _Static_assert(sizeof first / sizeof first[0] == STRUT_SECTION_COUNT + 1, "one for each section");
 _Static_assert(sizeof section_names / sizeof section_names[0] == STRUT_SECTION_COUNT,
@@ -267,6 +268,7 @@ const char *strut_key_expected(int key, char *buffer, size_t size) {
     case STRUT_TYPE_NAME: return "a name";
     case STRUT_TYPE_NODE_PATH: return "two nodes such as [n1, n2], or the nodes of a running cable";
     case STRUT_TYPE_NODE_RING: return "three nodes or more such as [n1, n2, n3]";
+    case STRUT_TYPE_NAME_PAIR: return "two names such as [a, b]";
     case STRUT_TYPE_NODE_TRIPLE: return "three nodes such as [n1, n2, n3]";
     case STRUT_TYPE_NUMBERS: return "a list of numbers";
     case STRUT_TYPE_POINTS: return "a list of points such as [[0, 0], [2 mm, 3 N]]";

@@ -23,6 +23,7 @@ typedef enum strut_section {
   STRUT_SECTION_HINGE,
   STRUT_SECTION_CELL,
   STRUT_SECTION_GAS,
+  STRUT_SECTION_COLLISION,
   STRUT_SECTION_LAW,
   STRUT_SECTION_GROUND,
   STRUT_SECTION_FRICTION,
@@ -80,7 +81,8 @@ typedef enum strut_key_type {
   STRUT_TYPE_TIMES,         /* a list of times */
   STRUT_TYPE_MAP,           /* the keys of the section that has the key's name */
   STRUT_TYPE_THINGS,        /* a mapping from names to things, described by `words` */
-  STRUT_TYPE_NODE_RING      /* the names of three nodes or more */
+  STRUT_TYPE_NODE_RING,     /* the names of three nodes or more */
+  STRUT_TYPE_NAME_PAIR      /* the names of two things */
 } strut_key_type;
 
 /** The dimension of a number; CONTEXT: it depends on the use of the mapping. */

@@ -25,6 +25,7 @@
   X(SCENE, MEMBERS, "members", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a member", BY_HAND, "The bars, springs and cables between the nodes.") \
   X(SCENE, HINGES, "hinges", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a hinge", BY_HAND, "Springs of the angle between two arms that meet in a node.") \
   X(SCENE, CELLS, "cells", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a cell", BY_HAND, "Polygons of nodes under pressure.") \
+  X(SCENE, COLLISIONS, "collisions", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a collision", BY_HAND, "Pairs of nodes and members that do not pass through each other.") \
   X(SCENE, MASS_MODEL, "mass_model", WORD, NONE, ANY, "consistent", WRITTEN, 0, "consistent|lumped", FIELD(strut_scene, mass_model), "How a member's mass acts: `consistent` as that of a uniform rod (the paper's model), `lumped` as half of it at each end.") \
   X(SCENE, BARS, "bars", WORD, NONE, ANY, "elastic", OPTIONAL, 0, "elastic|rigid", FIELD(strut_scene, bar_model), "`rigid` bars keep, during a run, the length they have at its start; their stiffness and damping then count only while the structure settles.") \
   X(SCENE, GRAVITY, "gravity", PAIR, ACCELERATION, ANY, "[0, 0]", WRITTEN, 0, "", FIELD(strut_scene, gravity), "Gravitational acceleration.") \
@@ -70,6 +71,13 @@
   X(GAS, PRESSURE, "pressure", NUMBER, STIFFNESS, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_cell, pressure), "Absolute pressure as drawn.") \
   X(GAS, EXPONENT, "exponent", NUMBER, NONE, ABOVE_ZERO, "1.4", OPTIONAL, 0, "", FIELD(strut_cell, exponent), "Isentropic exponent, above 1.") \
   X(GAS, OUTSIDE, "outside", NUMBER, STIFFNESS, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_cell, outside), "Absolute pressure outside, which pushes inwards.") \
+  X(COLLISION, NODE, "node", NAME, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "A node that may touch the `member`.") \
+  X(COLLISION, MEMBER, "member", NAME, NONE, ANY, "", OPTIONAL, 8, "", BY_HAND, "The member that the `node` may touch; a straight line between its ends, which are round.") \
+  X(COLLISION, NODES, "nodes", NAME_PAIR, NONE, ANY, "", OPTIONAL, 8, "", BY_HAND, "Two nodes that may touch each other as discs.") \
+  X(COLLISION, MEMBERS, "members", NAME_PAIR, NONE, ANY, "", OPTIONAL, 8, "", BY_HAND, "Two members that may touch each other: each end of one with the other.") \
+  X(COLLISION, THICKNESS, "thickness", NUMBER, LENGTH, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_collision, thickness), "Distance of the two axes or centres at which they touch.") \
+  X(COLLISION, STIFFNESS, "stiffness", NUMBER, STIFFNESS, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_collision, stiffness), "Force per depth.") \
+  X(COLLISION, DAMPING, "damping", NUMBER, DAMPING, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_collision, damping), "Force per speed of approach while they touch; a collision never pulls.") \
   X(LAW, KIND, "kind", WORD, NONE, ANY, "linear", WRITTEN, 0, STRUT_LAW_WORDS, FIELD(strut_law, kind), "With the stiffness k and x the elongation: `linear`, k x. `bilinear`, k x up to the knee on either side, then with the slope `second_stiffness`. `play`, no force within the gap on either side, beyond it k times the excess. `polynomial`, c1 x + c2 x^2 + ... `logarithmic`, k L ln(length / L) with the rest length L. `exponential`, k s (exp(x / s) - 1) with the scale s. `table`, through points.") \
   X(LAW, CARRIES, "carries", WORD, NONE, ANY, "both", OPTIONAL, 0, "both|tension|compression", FIELD(strut_law, carries), "Forces that are carried: with `tension` the element acts beyond its rest length only, with `compression` below it.") \
   X(LAW, KNEE, "knee", NUMBER, CONTEXT, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_law, knee), "Elongation at which a bilinear law changes its slope.") \

@@ -81,6 +81,7 @@ static bool many_place(strut_reader *reader, const strut_finding *finding, strut
                                    [STRUT_ON_MEMBER] = reader->member_source,
                                    [STRUT_ON_HINGE] = reader->hinge_source,
                                    [STRUT_ON_CELL] = reader->cell_source,
+                                   [STRUT_ON_COLLISION] = reader->collision_source,
                                    [STRUT_ON_CONTACT] = reader->contact_source,
                                    [STRUT_ON_ACTUATOR] = reader->actuator_source,
                                    [STRUT_ON_LOAD] = reader->load_source,
@@ -133,6 +134,7 @@ static bool single_place(strut_reader *reader, const strut_finding *finding, str
     case STRUT_ON_MEMBER:
     case STRUT_ON_HINGE:
     case STRUT_ON_CELL:
+    case STRUT_ON_COLLISION:
     case STRUT_ON_CONTACT:
     case STRUT_ON_ACTUATOR:
     case STRUT_ON_LOAD:
@@ -153,7 +155,8 @@ void strut_place_findings(strut_reader *reader, const strut_findings *findings) 
     bool many = finding->subject == STRUT_ON_NODE || finding->subject == STRUT_ON_MEMBER ||
                 finding->subject == STRUT_ON_HINGE || finding->subject == STRUT_ON_CONTACT ||
                 finding->subject == STRUT_ON_ACTUATOR || finding->subject == STRUT_ON_LOAD ||
-                finding->subject == STRUT_ON_CELL || finding->subject == STRUT_ON_CONFIGURATION;
+                finding->subject == STRUT_ON_CELL || finding->subject == STRUT_ON_COLLISION ||
+                finding->subject == STRUT_ON_CONFIGURATION;
     bool fresh = many                                  ? many_place(reader, finding, &place)
                  : finding->subject == STRUT_ON_SIGNAL ? signal_place(reader, finding, &place)
                                                        : single_place(reader, finding, &place);

@@ -106,14 +106,14 @@ typedef struct strut_reader {
   strut_purpose purpose;
   strut_fields top;
   strut_name_map node_names, member_names, group_names, parameter_names, signal_names,
-      configuration_names, actuator_names, load_names, hinge_names, cell_names;
+      configuration_names, actuator_names, load_names, hinge_names, cell_names, collision_names;
   strut_group *groups;
   size_t group_count;
   strut_parameter_state *parameters;
   size_t parameter_count, parameter_depth;
   strut_parameter_state *parameter_stack[STRUT_DEEPEST_PARAMETER]; /* being read */
   strut_source *node_source, *member_source, *actuator_source, *load_source, *contact_source,
-      *hinge_source, *cell_source;
+      *hinge_source, *cell_source, *collision_source;
   const strut_tree **velocity_source; /* (node_count) or NULL: where single velocities stand */
   strut_named_signal *named;
   size_t named_count, signal_depth, signal_capacity;
@@ -323,6 +323,9 @@ void strut_read_hinges(strut_reader *reader);
 /** Name of cell i, or NULL after the last; the context is the reader. */
 const char *strut_cell_name(const void *reader, size_t i);
 void strut_read_cells(strut_reader *reader);
+
+/* read_collisions.c */
+void strut_read_collisions(strut_reader *reader);
 
 /* places.c */
 

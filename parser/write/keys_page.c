@@ -26,6 +26,9 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
         "per "
         "length.",
     [STRUT_SECTION_GAS] = "`cells: {NAME: {gas: {...}}}`.",
+    [STRUT_SECTION_COLLISION] =
+        "`collisions: {NAME: {...}}`: `node` and `member`, or `nodes`, or `members`. Things pass "
+        "through each other unless a collision names them.",
     [STRUT_SECTION_LAW] =
         "`law: {...}` of a member or a hinge, or only its kind, such as `law: logarithmic`; "
         "`law: tension_only` and `law: compression_only` are linear and carry one sign. For a "
@@ -122,6 +125,7 @@ static void put_type(strut_writer *writer, const strut_key *key) {
       [STRUT_TYPE_NAME] = "name",
       [STRUT_TYPE_NODE_PATH] = "names of two nodes or more",
       [STRUT_TYPE_NODE_TRIPLE] = "names of three nodes",
+      [STRUT_TYPE_NAME_PAIR] = "two names",
       [STRUT_TYPE_NODE_RING] = "names of three nodes or more",
       [STRUT_TYPE_NUMBERS] = "list of numbers",
       [STRUT_TYPE_POINTS] = "list of `[x, force]`",

@@ -285,6 +285,7 @@ char *strut_setup_write(const strut_setup *setup) {
   put_members(&writer);
   put_hinges(&writer);
   strut_put_cells(&writer);
+  strut_put_collisions(&writer);
   put_ground(&writer);
   strut_put_drives(&writer);
   strut_put_shapes(&writer);

@@ -235,6 +235,22 @@ static void add_cells(strut_json *json, const strut_scene *scene) {
   }
 }
 
+static void add_collisions(strut_json *json, const strut_scene *scene) {
+  struct cJSON *collisions = strut_json_array(json, json->root, "collisions");
+  for (size_t i = 0; i < scene->collision_count; i++) {
+    const strut_collision *c = &scene->collisions[i];
+    struct cJSON *to = strut_json_object(json, collisions, NULL);
+    strut_json_text(json, to, "name", c->name);
+    strut_json_number(json, to, "thickness", c->thickness);
+    struct cJSON *nodes = strut_json_array(json, to, "nodes");
+    struct cJSON *members = strut_json_array(json, to, "members");
+    for (int k = 0; k < 2; k++) {
+      if (c->node[k] >= 0) strut_json_integer(json, nodes, NULL, c->node[k]);
+      if (c->member[k] >= 0) strut_json_integer(json, members, NULL, c->member[k]);
+    }
+  }
+}
+
 static void add_ground(strut_json *json, const strut_scene *scene) {
   struct cJSON *contacts = strut_json_array(json, json->root, "contacts");
   for (size_t i = 0; i < scene->contact_count; i++)
@@ -297,6 +313,7 @@ static char *still_data(const strut_page *page) {
   add_members(&json, scene);
   add_hinges(&json, scene);
   add_cells(&json, scene);
+  add_collisions(&json, scene);
   add_ground(&json, scene);
   strut_json_numbers(&json, json.root, "start", model->start, 2 * (size_t)model->node_count);
   strut_json_number(&json, json.root, "size", model->size);

@@ -194,23 +194,34 @@ static double stretch_energy(const strut_vibration *v, int32_t j, const double *
   return v->model->members.stiffness[j] * e * e;
 }
 
-/* Members, then hinges, then cells. */
+/* Members, hinges, cells, collisions. */
 static int32_t count_items(const strut_model *model) {
   const strut_scene *scene = model->scene;
-  return model->members.count + (int32_t)(scene->hinge_count + scene->cell_count);
+  return model->members.count +
+         (int32_t)(scene->hinge_count + scene->cell_count + scene->collision_count);
 }
 
 static int32_t item_of(const strut_model *model, const strut_element *e) {
-  int32_t hinges = model->members.count;
-  if (e->role == STRUT_ELEMENT_HINGE) return hinges + e->item;
-  if (e->role == STRUT_ELEMENT_CELL) return hinges + (int32_t)model->scene->hinge_count + e->item;
-  return e->item;
+  const strut_scene *scene = model->scene;
+  size_t before = scene->member_count;
+  switch (e->role) {
+    case STRUT_ELEMENT_MEMBER:
+    case STRUT_ELEMENT_LONGEST:
+    case STRUT_ELEMENT_SHORTEST: return e->item;
+    case STRUT_ELEMENT_HINGE: break;
+    case STRUT_ELEMENT_CELL: before += scene->hinge_count; break;
+    case STRUT_ELEMENT_COLLISION: before += scene->hinge_count + scene->cell_count; break;
+  }
+  return (int32_t)before + e->item;
 }
 
 static const char *name_of_item(const strut_scene *scene, size_t j) {
   if (j < scene->member_count) return scene->members[j].name;
   j -= scene->member_count;
-  return j < scene->hinge_count ? scene->hinges[j].name : scene->cells[j - scene->hinge_count].name;
+  if (j < scene->hinge_count) return scene->hinges[j].name;
+  j -= scene->hinge_count;
+  return j < scene->cell_count ? scene->cells[j].name
+                               : scene->collisions[j - scene->cell_count].name;
 }
 
 /* Energies of the items in a motion; a member's with those of its elements. */

@@ -276,6 +276,7 @@ static strut_path_event_kind describe_element(const strut_path_system *s, int32_
     what = on ? "reaches its longest length" : "leaves its longest length";
   if (e->role == STRUT_ELEMENT_SHORTEST)
     what = on ? "reaches its shortest length" : "leaves its shortest length";
+  if (e->role == STRUT_ELEMENT_COLLISION) what = on ? "touches" : "separates";
   if (w->kink < 0 && e->role == STRUT_ELEMENT_MEMBER) {
     bool cable = scene->members[e->item].kind == STRUT_CABLE;
     if (cable) kind = on ? STRUT_PATH_TAUT : STRUT_PATH_SLACK;
