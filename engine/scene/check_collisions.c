@@ -98,7 +98,8 @@ static double distance_to_segment(const double p[2], const double a[2], const do
 
 /* Least distance of the two axes at the start. */
 static double start_distance(const strut_scene *scene, const strut_collision *c) {
-  const double *node[2] = {NULL, NULL}, *end[2][2];
+  const double *node[2] = {NULL, NULL};
+  const double *end[2][2] = {{NULL, NULL}, {NULL, NULL}};
   for (int k = 0; k < 2; k++) {
     if (c->node[k] >= 0) node[k] = scene->nodes[c->node[k]].start;
     for (int e = 0; e < 2 && c->member[k] >= 0; e++)

@@ -38,6 +38,7 @@ static const int first[] = {STRUT_KEY_SCENE_VERSION,
                             STRUT_KEY_CELL_NODES,
                             STRUT_KEY_GAS_KIND,
                             STRUT_KEY_COLLISION_NODE,
+                            STRUT_KEY_BEAM_NODES,
                             STRUT_KEY_LAW_KIND,
                             STRUT_KEY_GROUND_HEIGHT,
                             STRUT_KEY_FRICTION_LAW,
@@ -67,11 +68,11 @@ static const int first[] = {STRUT_KEY_SCENE_VERSION,
                             STRUT_KEY_COUNT};
 
 static const char *const section_names[] = {
-    "scene",      "node",      "member",   "hinge",   "cell",          "gas",     "collision",
-    "law",        "ground",    "friction", "contact", "actuator",      "load",    "signal",
-    "sine",       "half_sine", "square",   "ramp",    "configuration", "initial", "settle",
-    "equilibria", "solver",    "run",      "measure", "quantity",      "steady",  "output",
-    "study",      "range",     "variant",  "check",   "figure"};
+    "scene",  "node",       "member",    "hinge",    "cell",    "gas",           "collision",
+    "beam",   "law",        "ground",    "friction", "contact", "actuator",      "load",
+    "signal", "sine",       "half_sine", "square",   "ramp",    "configuration", "initial",
+    "settle", "equilibria", "solver",    "run",      "measure", "quantity",      "steady",
+    "output", "study",      "range",     "variant",  "check",   "figure"};
 
 _Static_assert(sizeof first / sizeof first[0] == STRUT_SECTION_COUNT + 1, "one for each section");
 _Static_assert(sizeof section_names / sizeof section_names[0] == STRUT_SECTION_COUNT,
@@ -178,6 +179,7 @@ strut_dimension strut_measure_dimension(strut_measure measure) {
     case STRUT_MEASURE_DAMPING: return STRUT_DIM_DAMPING;
     case STRUT_MEASURE_DISSIPATION: return STRUT_DIM_DISSIPATION;
     case STRUT_MEASURE_ANGULAR_STIFFNESS: return STRUT_DIM_ANGULAR_STIFFNESS;
+    case STRUT_MEASURE_BENDING_STIFFNESS: return STRUT_DIM_BENDING_STIFFNESS;
     case STRUT_MEASURE_ANGULAR_DAMPING: return STRUT_DIM_ANGULAR_DAMPING;
     case STRUT_MEASURE_NONE:
     case STRUT_MEASURE_CONTEXT: break;

@@ -24,6 +24,7 @@ typedef enum strut_section {
   STRUT_SECTION_CELL,
   STRUT_SECTION_GAS,
   STRUT_SECTION_COLLISION,
+  STRUT_SECTION_BEAM,
   STRUT_SECTION_LAW,
   STRUT_SECTION_GROUND,
   STRUT_SECTION_FRICTION,
@@ -101,7 +102,8 @@ typedef enum strut_measure {
   STRUT_MEASURE_DAMPING,
   STRUT_MEASURE_DISSIPATION,
   STRUT_MEASURE_ANGULAR_STIFFNESS,
-  STRUT_MEASURE_ANGULAR_DAMPING
+  STRUT_MEASURE_ANGULAR_DAMPING,
+  STRUT_MEASURE_BENDING_STIFFNESS
 } strut_measure;
 
 typedef enum strut_key_range {
@@ -147,6 +149,21 @@ typedef struct strut_ground_section {
   strut_ground ground;
   strut_contact contact;
 } strut_ground_section;
+
+enum { STRUT_USUAL_PARTS = 10 };
+
+/** The object of the section `beam`, which the reader turns into nodes, members and hinges. */
+typedef struct strut_beam {
+  const char *name;
+  const struct strut_tree *key; /* its place */
+  int32_t node[2];
+  double bending_stiffness, axial_stiffness; /* EI [N m^2], EA [N] */
+  double mass, damping;                      /* [kg] of the whole; over stiffness [s] */
+  int32_t parts;
+  uint32_t clamped;                  /* bits: at its first node, at its second */
+  int32_t first_node, clamp_node[2]; /* of the nodes that it has added */
+  bool broken;
+} strut_beam;
 
 /** One row of the table. */
 typedef struct strut_key {

@@ -127,6 +127,8 @@ typedef struct strut_reader {
   const char *asking_set;   /* or the parameter whose setting is */
   unsigned spellings;       /* one bit for each former name that was noted */
   size_t suggestions;       /* names compared so far, to bound the effort */
+  strut_beam *beams;        /* (beam_count) those that could be read */
+  size_t beam_count;
   bool holes;          /* refused parts are missing from the tree: absent keys are not reported */
   bool ends_unknown;   /* some member or load could not be tied to its nodes */
   bool masses_unknown; /* some mass could not be read */
@@ -326,6 +328,13 @@ void strut_read_cells(strut_reader *reader);
 
 /* read_collisions.c */
 void strut_read_collisions(strut_reader *reader);
+
+/* read_beams.c */
+
+/** Reads the beams and adds their nodes; the others add their members and hinges, when those are read. */
+void strut_read_beams(strut_reader *reader);
+void strut_add_beam_members(strut_reader *reader);
+void strut_add_beam_hinges(strut_reader *reader);
 
 /* places.c */
 

@@ -29,6 +29,12 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
     [STRUT_SECTION_COLLISION] =
         "`collisions: {NAME: {...}}`: `node` and `member`, or `nodes`, or `members`. Things pass "
         "through each other unless a collision names them.",
+    [STRUT_SECTION_BEAM] =
+        "`beams: {NAME: {...}}`. A beam is short for nodes `NAME.1`, `NAME.2`, ... between its "
+        "ends, "
+        "bars `NAME.1`, ... and hinges `NAME.1`, ... at these nodes; at a clamp also the fixed "
+        "node "
+        "and the hinge `NAME.start` or `NAME.end`. `strut write` writes these.",
     [STRUT_SECTION_LAW] =
         "`law: {...}` of a member or a hinge, or only its kind, such as `law: logarithmic`; "
         "`law: tension_only` and `law: compression_only` are linear and carry one sign. For a "
