@@ -206,6 +206,15 @@ void strut_check_ground(strut_checker *checker) {
 
 static bool exists(int32_t index, size_t count) { return index >= 0 && (size_t)index < count; }
 
+bool strut_is_pulled(const strut_scene *scene, int32_t member, int32_t hinge) {
+  for (size_t i = 0; i < scene->actuator_count; i++) {
+    const strut_actuator *a = &scene->actuators[i];
+    if (a->force && (a->member >= 0 ? a->member == member : a->hinge >= 0 && a->hinge == hinge))
+      return true;
+  }
+  return false;
+}
+
 void strut_check_drives(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   char owner[200];
@@ -219,6 +228,9 @@ void strut_check_drives(strut_checker *checker) {
                            "%s drives the pressure of cell '%s', but the pressure of a gas follows "
                            "from its area; give the cell a pressure instead of a gas",
                            owner, scene->cells[a->cell].name);
+    else if (cell && a->force)
+      strut_report_finding(checker, STRUT_ON_ACTUATOR, i, "cell",
+                           "%s gives a force to a cell, whose pressure a signal drives", owner);
     else if (!hinge && !cell && !exists(a->member, scene->member_count))
       strut_report_finding(checker, STRUT_ON_ACTUATOR, i, "member",
                            "%s drives a member that does not exist", owner);

@@ -108,7 +108,7 @@ static void put_actuators(strut_writer *writer) {
     strut_put_name(writer, a->member >= 0  ? scene->members[a->member].name
                            : a->hinge >= 0 ? scene->hinges[a->hinge].name
                                            : scene->cells[a->cell].name);
-    strut_put(writer, ", signal: ");
+    strut_put(writer, !a->force ? ", signal: " : a->member >= 0 ? ", force: " : ", moment: ");
     put_reference(writer, scene->actuators[i].signal);
     strut_put(writer, "}\n");
   }

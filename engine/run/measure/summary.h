@@ -65,6 +65,14 @@ typedef struct strut_cell_summary {
   double area, pressure; /* [m^2], [N/m] */
 } strut_cell_summary;
 
+/** A member or a hinge that broke or was released. */
+typedef struct strut_break_summary {
+  const char *name; /* owned by the scene */
+  bool hinge;
+  bool released; /* at its time; otherwise it broke */
+  double time;   /* [s] */
+} strut_break_summary;
+
 /** A quantity of `measure` in the scene, over the window. */
 typedef struct strut_measured {
   const char *name, *unit; /* owned by the scene */
@@ -173,6 +181,8 @@ typedef struct strut_summary {
   strut_warning warnings[STRUT_MOST_WARNINGS];
   size_t cell_count;
   strut_cell_summary *cells; /* (cell_count) */
+  size_t break_count;
+  strut_break_summary *breaks; /* (break_count) in the scene's order, members first */
 } strut_summary;
 
 /** Adds a warning with a printf-style text; replaces one with the same code. */
