@@ -176,7 +176,8 @@ static void add_outer_forces(const strut_model *model, const double *q, double *
     strut_element_pose pose;
     if (e->role != STRUT_ELEMENT_COLLISION) continue;
     strut_element_evaluate(model, i, model->members.rest, q, (double)NAN, &pose);
-    for (int32_t k = 0; k < 2 * e->nodes; k++) net[at[k / 2] + (uint32_t)(k % 2)] -= pose.force * pose.b[k];
+    for (int32_t k = 0; k < 2 * e->nodes; k++)
+      net[at[k / 2] + (uint32_t)(k % 2)] -= pose.force * pose.b[k];
   }
   for (int32_t i = 0; i < c->count; i++) {
     double gap = strut_contact_gap(c, i, q);
