@@ -120,23 +120,27 @@ static void add_members(const strut_model *model, strut_state *state, strut_disc
 /* Energy of an element at a stretch from its natural strain at the step's end. */
 static double energy_at(const strut_element *e, double natural, double stretch) {
   if (e->carries && !(e->carries * stretch > 0.0)) return 0.0;
-  return strut_law_respond(e->law, &e->numbers, natural + stretch, natural, -1).energy;
+  double strain = strut_element_origin(e, natural) + stretch;
+  return strut_law_respond(e->law, &e->numbers, strain, natural, -1).energy;
 }
 
 /* The energy's change over the stretch's; where that is rounding, the force half-way. */
 static double average_force(const strut_element *e, const strut_element_pose *end, double stretch0,
                             double energy0) {
-  double stretch1 = end->strain - end->natural, change = stretch1 - stretch0;
+  double origin = strut_element_origin(e, end->natural);
+  double stretch1 = end->strain - origin, change = stretch1 - stretch0;
   double scale = fmax(fabs(stretch0), fabs(stretch1)) + 1e-300;
   if (fabs(change) > 1e-6 * scale) return (end->energy - energy0) / change;
-  double middle = end->natural + 0.5 * (stretch0 + stretch1);
-  if (e->carries && !(e->carries * (middle - end->natural) > 0.0)) return 0.0;
+  double middle = origin + 0.5 * (stretch0 + stretch1);
+  if (e->carries && !(e->carries * (middle - origin) > 0.0)) return 0.0;
   return strut_law_respond(e->law, &e->numbers, middle, end->natural, -1).force;
 }
 
 /* What that changes by with the strain at the end: exact, but where it would be rounding. */
-static double average_slope(const strut_element_pose *end, double stretch0, double elastic) {
-  double stretch1 = end->strain - end->natural, change = stretch1 - stretch0;
+static double average_slope(const strut_element *e, const strut_element_pose *end, double stretch0,
+                            double elastic) {
+  double stretch1 = end->strain - strut_element_origin(e, end->natural);
+  double change = stretch1 - stretch0;
   double scale = fmax(fabs(stretch0), fabs(stretch1));
   return fabs(change) > 1e-3 * scale ? (end->force - elastic) / change : 0.5 * end->slope;
 }
@@ -161,6 +165,9 @@ static void add_element(const strut_model *model, strut_state *state, strut_disc
   strut_element_evaluate(model, i, state->rest, step->middle, step->strain0[i], &middle);
   double natural0 = e->slot >= 0 ? step->rest0[e->slot] : e->natural, square = 0.0, work = 0.0;
   double rest_rate = e->slot >= 0 ? step->rest_rate[e->slot] : 0.0;
+  double origin0 = strut_element_origin(e, natural0),
+         origin1 = strut_element_origin(e, end.natural);
+  if (e->strain == STRUT_STRAIN_AREA) rest_rate = 0.0; /* its drive is all excess */
   double change = end.strain - step->strain0[i], rate = change / step->h - rest_rate;
   for (int32_t k = 0; k < 2 * e->nodes; k++) {
     uint32_t c = at[k / 2] + (uint32_t)(k % 2);
@@ -168,14 +175,14 @@ static void add_element(const strut_model *model, strut_state *state, strut_disc
     square += d * d, work += middle.b[k] * d;
   }
   double more = square > 0.0 ? (change - work) / square : 0.0;
-  double stretch0 = step->strain0[i] - natural0, stretch1 = end.strain - end.natural;
+  double stretch0 = step->strain0[i] - origin0, stretch1 = end.strain - origin1;
   double energy0 = energy_at(e, end.natural, stretch0);
   double elastic = average_force(e, &end, stretch0, energy0);
   double damping = e->damping * part_beyond(e, stretch0, stretch1);
   double force = elastic + damping * rate;
   bool none = e->carries && !(e->carries * force > 0.0);
   if (none) force = 0.0;
-  double slope = average_slope(&end, stretch0, elastic) + damping / step->h;
+  double slope = average_slope(e, &end, stretch0, elastic) + damping / step->h;
   step->element_slope[i] = none ? 0.0 : fmax(slope, 0.0);
   for (int32_t k = 0; k < 2 * e->nodes; k++) {
     uint32_t c = at[k / 2] + (uint32_t)(k % 2);
@@ -184,7 +191,7 @@ static void add_element(const strut_model *model, strut_state *state, strut_disc
   if (!state->ledger) return;
   const average now = {.tension = force, .elastic = elastic};
   const stretching m = {.rate = rate, .h = step->h};
-  add_powers(state, &now, &m, end.natural - natural0, rest_rate);
+  add_powers(state, &now, &m, origin1 - origin0, rest_rate);
   /* what the drive does to the energy at the same stretch, of a law that depends on more */
   double excess = (energy0 - step->energy0[i]) / step->h;
   state->power[STRUT_POWER_DRIVE] += excess;

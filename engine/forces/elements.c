@@ -113,7 +113,8 @@ void strut_elements_visit(const strut_model *model, const double *rest, const do
   for (int32_t i = 0; i < model->elements.count; i++) {
     const strut_element *e = &model->elements.element[i];
     strut_element_evaluate(model, i, rest, q, (double)NAN, &pose);
-    bool stop = e->role == STRUT_ELEMENT_LONGEST || e->role == STRUT_ELEMENT_SHORTEST;
+    bool stop = e->role == STRUT_ELEMENT_LONGEST || e->role == STRUT_ELEMENT_SHORTEST ||
+                e->role == STRUT_ELEMENT_COLLISION;
     if (stops && stop && !pose.acts) {
       pose.acts = true;
       pose.slope = e->numbers.stiffness;
@@ -131,6 +132,7 @@ double strut_element_stiffest(const strut_model *model, int32_t element) {
   double natural = strut_element_start(model, element), stiffest = 0.0;
   double size = model->size > 0.0 ? model->size : 1.0;
   bool angle = e->strain == STRUT_STRAIN_ANGLE;
+  if (e->strain == STRUT_STRAIN_AREA) return e->numbers.stiffness * size * size;
   for (size_t k = 0; k < sizeof places / sizeof *places; k++) {
     double x = places[k] * (angle ? 1.0 : natural > 0.0 ? natural : size);
     double slope = strut_law_respond(e->law, &e->numbers, natural + x, natural, -1).slope;
@@ -205,7 +207,7 @@ static inline void add_powers(strut_state *state, const exertion *x, double rest
   }
 
 #define STRUT_ADD_CELL(LAW, law, word, needs, strain) STRUT_ADD_ELEMENT(strain, law)
-#define STRUT_ADD_ROW(NAME, name, ...) STRUT_LAWS(STRUT_ADD_CELL, name)
+#define STRUT_ADD_ROW(NAME, name, ...) STRUT_ALL_LAWS(STRUT_ADD_CELL, name)
 STRUT_STRAINS(STRUT_ADD_ROW, )
 
 STRUT_CLONES
@@ -253,7 +255,7 @@ typedef void add_block(const strut_model *model, strut_state *state,
                        double *force);
 
 #define STRUT_NAME_CELL(LAW, law, word, needs, strain) add_##strain##_##law,
-#define STRUT_NAME_ROW(NAME, name, ...) {STRUT_LAWS(STRUT_NAME_CELL, name)},
+#define STRUT_NAME_ROW(NAME, name, ...) {STRUT_ALL_LAWS(STRUT_NAME_CELL, name)},
 static add_block *const adders[STRUT_STRAIN_COUNT][STRUT_LAW_COUNT] = {
     STRUT_STRAINS(STRUT_NAME_ROW, )};
 
@@ -285,6 +287,21 @@ bool strut_hinges_have_collapsed(const strut_model *model, const double *q) {
         return true;
   }
   return false;
+}
+
+int32_t strut_cell_that_collapsed(const strut_model *model, const double *q) {
+  double b[STRUT_MOST_GRADIENT];
+  for (int32_t i = 0; i < model->elements.count && model->scene->cell_count; i++) {
+    const strut_element *e = &model->elements.element[i];
+    if (e->role != STRUT_ELEMENT_CELL) continue;
+    double area = strain_of(e, model->elements.at + e->first, q, 0.0, b);
+    if (!(area > STRUT_CELL_COLLAPSED * e->numbers.area)) return e->item;
+  }
+  return -1;
+}
+
+bool strut_shape_has_collapsed(const strut_model *model, const double *q) {
+  return strut_hinges_have_collapsed(model, q) || strut_cell_that_collapsed(model, q) >= 0;
 }
 
 bool strut_element_has_collapsed(const strut_model *model, int32_t element, double share,

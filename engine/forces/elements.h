@@ -75,7 +75,7 @@ STRUT_API double strut_member_path_length(const strut_model *model, int32_t memb
 typedef void strut_visit_element(void *context, int32_t element, const strut_element_pose *pose);
 /**
  * Calls `visit` for every element that acts at q with more than `least` in size, for one that carries
- * both signs always; with `stops` for all stops, too, those that do not act as if at their kink.
+ * both signs always; with `stops` for all stops and collisions, too, those that do not act as if at their kink.
  */
 void strut_elements_visit(const strut_model *model, const double *rest, const double *q,
                           double least, bool stops, void *context, strut_visit_element *visit);
@@ -92,6 +92,11 @@ bool strut_element_has_collapsed(const strut_model *model, int32_t element, doub
  * meaning then, and its moment pushes with forces beyond all measure.
  */
 bool strut_hinges_have_collapsed(const strut_model *model, const double *q);
+
+/** A cell with next to no area left, or turned over, or -1: it encloses nothing any more. */
+STRUT_API int32_t strut_cell_that_collapsed(const strut_model *model, const double *q);
+/** True where a hinge or a cell has collapsed. */
+bool strut_shape_has_collapsed(const strut_model *model, const double *q);
 
 /** Strain beyond the natural one, its rate, and the force as if the element acted. */
 typedef struct strut_element_motion {

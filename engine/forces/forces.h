@@ -41,6 +41,19 @@ typedef struct strut_hinge_values {
 /** By its element, see strut_element_of_hinge. */
 STRUT_API strut_hinge_values strut_hinge_measure(const strut_model *model, const strut_state *state,
                                                  int32_t element);
+/** A cell at the state: area [m^2], pressure inside [N/m]; by its element, see strut_element_of_cell. */
+typedef struct strut_cell_values {
+  double area, pressure;
+} strut_cell_values;
+STRUT_API strut_cell_values strut_cell_measure(const strut_model *model, const strut_state *state,
+                                               int32_t element);
+/** A collision at the state: least distance of the surfaces [m], sum of the forces that push [N]. */
+typedef struct strut_collision_values {
+  double gap, force;
+} strut_collision_values;
+/** By its first element, see strut_element_of_collision. */
+STRUT_API strut_collision_values strut_collision_measure(const strut_model *model,
+                                                         const strut_state *state, int32_t element);
 /** Lengths [m] and forces [N] (tension positive) of all members at the state, (count) each. */
 STRUT_API void strut_members_measure(const strut_model *model, const strut_state *state,
                                      double *length, double *force);

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lengths and forces of members and hinges for observers (recording, measuring). The step's own loop:
+/* Lengths and forces of members, hinges and cells for observers (recording, measuring). The step's own loop:
    members_kernel.h. */
 #include "engine/forces/actuate.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/forces.h"
+
+#include <math.h>
 #include "engine/forces/rigid.h"
 #include "engine/model/pose.h"
 
@@ -47,6 +49,25 @@ strut_hinge_values strut_hinge_measure(const strut_model *model, const strut_sta
   moment += strut_actuator_moment_on_hinge(model, state, model->elements.element[element].item);
   return (strut_hinge_values){pose.strain, strut_element_rate(model, element, &pose, state->v),
                               moment};
+}
+
+strut_cell_values strut_cell_measure(const strut_model *model, const strut_state *state,
+                                     int32_t element) {
+  strut_element_pose pose;
+  double force = strut_element_measure(model, state, element, &pose);
+  return (strut_cell_values){pose.strain, model->elements.element[element].numbers.outside - force};
+}
+
+strut_collision_values strut_collision_measure(const strut_model *model, const strut_state *state,
+                                               int32_t element) {
+  strut_collision_values values = {HUGE_VAL, 0.0};
+  int32_t end = strut_element_end(&model->elements, element);
+  strut_element_pose pose;
+  for (int32_t i = element; i < end; i++) {
+    values.force -= strut_element_measure(model, state, i, &pose);
+    values.gap = fmin(values.gap, pose.strain - pose.natural);
+  }
+  return values;
 }
 
 void strut_members_measure(const strut_model *model, const strut_state *state, double *length,

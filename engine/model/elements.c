@@ -31,7 +31,7 @@ static size_t count_memories(const strut_scene *scene) {
 }
 
 size_t strut_element_slots(const strut_scene *scene) {
-  return scene->hinge_count + count_memories(scene);
+  return scene->hinge_count + scene->cell_count + count_memories(scene);
 }
 
 /* The slots stand behind those of the members. */
@@ -40,9 +40,15 @@ static int32_t hinge_slot(const strut_model *model, int32_t hinge) {
   return members + hinge;
 }
 
+static int32_t cell_slot(const strut_model *model, int32_t cell) {
+  return hinge_slot(model, (int32_t)model->scene->hinge_count + cell);
+}
+
 int32_t strut_actuator_slot(const strut_model *model, size_t i) {
   const strut_actuator *a = &model->scene->actuators[i];
-  return a->member >= 0 ? a->member : hinge_slot(model, a->hinge);
+  return a->member >= 0  ? a->member
+         : a->hinge >= 0 ? hinge_slot(model, a->hinge)
+                         : cell_slot(model, a->cell);
 }
 
 double strut_element_start(const strut_model *model, int32_t element) {
@@ -50,9 +56,15 @@ double strut_element_start(const strut_model *model, int32_t element) {
   return e->slot >= 0 ? model->members.rest[e->slot] : e->natural;
 }
 
+/* A collision of two members is that of each of their four ends with the other member. */
+enum { MOST_PAIRS = 4 };
+
 static void count_elements(const strut_scene *scene, size_t *elements, size_t *nodes) {
-  *elements = scene->hinge_count;
+  *elements = scene->hinge_count + scene->cell_count;
   *nodes = 3 * scene->hinge_count;
+  for (size_t i = 0; i < scene->cell_count; i++) *nodes += scene->cells[i].node_count;
+  *elements += MOST_PAIRS * scene->collision_count;
+  *nodes += 3 * MOST_PAIRS * scene->collision_count;
   for (size_t j = 0; j < scene->member_count; j++) {
     size_t own = elements_of_member(&scene->members[j]);
     *elements += own;
@@ -182,7 +194,8 @@ static void remember(compilation *c, strut_element *e) {
   e->remembers = true;
   e->base = e->slot;
   e->memory = model->elements.memory_count++;
-  e->slot = hinge_slot(model, (int32_t)model->scene->hinge_count + e->memory);
+  e->slot = hinge_slot(model,
+                       (int32_t)(model->scene->hinge_count + model->scene->cell_count) + e->memory);
   double *rest = (double *)model->members.rest;
   rest[e->slot] = e->base >= 0 ? rest[e->base] : e->natural;
 }
@@ -250,6 +263,62 @@ static int kind_of(const strut_element *e) {
   return 2 * ((int)e->strain * STRUT_LAW_COUNT + (int)e->law) + e->remembers;
 }
 
+/* Its nodes run counter-clockwise, so that its area is positive. */
+static void add_cell(compilation *c, size_t i) {
+  strut_model *model = c->model;
+  const strut_cell *cell = &model->scene->cells[i];
+  double area = strut_cell_drawn(model->scene, i);
+  int32_t slot = cell_slot(model, (int32_t)i);
+  double stiffness = strut_law_respond(cell->law,
+                                       &(strut_law_numbers){.area = fabs(area),
+                                                            .exponent = cell->exponent,
+                                                            .outside = cell->outside},
+                                       fabs(area), cell->pressure, -1)
+                         .slope;
+  strut_element *e = add_element(c, (strut_element){.strain = STRUT_STRAIN_AREA,
+                                                    .law = cell->law,
+                                                    .role = STRUT_ELEMENT_CELL,
+                                                    .item = (int32_t)i,
+                                                    .slot = slot,
+                                                    .numbers = {.stiffness = stiffness,
+                                                                .area = fabs(area),
+                                                                .exponent = cell->exponent,
+                                                                .outside = cell->outside}});
+  for (size_t k = 0; k < cell->node_count; k++)
+    add_node(c, e, cell->node[area < 0.0 ? cell->node_count - 1 - k : k]);
+  ((double *)model->members.rest)[slot] = cell->pressure;
+}
+
+/* Of a node with the segment from a to b, or with the node a where b is -1. */
+static void add_pair(compilation *c, size_t i, int32_t node, int32_t a, int32_t b) {
+  const strut_collision *s = &c->model->scene->collisions[i];
+  strut_element *e =
+      add_element(c, (strut_element){.strain = b < 0 ? STRUT_STRAIN_LENGTH : STRUT_STRAIN_REACH,
+                                     .law = STRUT_LAW_LINEAR,
+                                     .role = STRUT_ELEMENT_COLLISION,
+                                     .item = (int32_t)i,
+                                     .slot = -1,
+                                     .carries = -1,
+                                     .natural = s->thickness,
+                                     .damping = s->damping,
+                                     .numbers = {.stiffness = s->stiffness}});
+  add_node(c, e, node);
+  add_node(c, e, a);
+  if (b >= 0) add_node(c, e, b);
+}
+
+static void add_collision(compilation *c, size_t i) {
+  const strut_scene *scene = c->model->scene;
+  const strut_collision *s = &scene->collisions[i];
+  const strut_member *m[2] = {NULL, NULL};
+  for (int k = 0; k < 2; k++)
+    if (s->member[k] >= 0) m[k] = &scene->members[s->member[k]];
+  if (!m[0]) add_pair(c, i, s->node[0], s->node[1], -1);
+  if (m[0] && !m[1]) add_pair(c, i, s->node[0], m[0]->node[0], m[0]->node[1]);
+  for (int k = 0; k < MOST_PAIRS && m[0] && m[1]; k++)
+    add_pair(c, i, m[k / 2]->node[k % 2], m[1 - k / 2]->node[0], m[1 - k / 2]->node[1]);
+}
+
 /* Blocks of one strain and one law, in the tables' order; in a block the scene's order. */
 static bool sort_elements(compilation *c, strut_element_table *t) {
   strut_arena *arena = &c->model->arena;
@@ -309,7 +378,7 @@ static bool link_members(strut_model *model) {
   for (int own = 0; own < 2; own++)
     for (int32_t i = 0; i < t->count; i++) {
       strut_element *e = &element[i];
-      if (e->role == STRUT_ELEMENT_HINGE || (e->role == STRUT_ELEMENT_MEMBER) != own) continue;
+      if (!strut_element_is_of_member(e) || (e->role == STRUT_ELEMENT_MEMBER) != own) continue;
       e->sibling = of_member[e->item];
       of_member[e->item] = i;
     }
@@ -375,7 +444,9 @@ bool strut_elements_compile(strut_model *model) {
   for (size_t j = 0; j < scene->member_count; j++)
     if (elements_of_member(&scene->members[j])) add_member(&c, j);
   for (size_t i = 0; i < scene->hinge_count; i++) add_hinge(&c, i);
-  assert(c.count == (int32_t)elements && c.nodes <= (int32_t)nodes);
+  for (size_t i = 0; i < scene->cell_count; i++) add_cell(&c, i);
+  for (size_t i = 0; i < scene->collision_count; i++) add_collision(&c, i);
+  assert(c.count <= (int32_t)elements && c.nodes <= (int32_t)nodes);
   model->elements.at = c.at;
   model->plan |= STRUT_TERM_ELEMENTS;
   return !c.failed && sort_elements(&c, &model->elements) && lay_out(model, c.nodes) &&

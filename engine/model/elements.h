@@ -5,7 +5,7 @@
  * A strain is one number e made of the positions of a few nodes (engine/forces/strains); a law is the
  * force that works on it (engine/scene/laws). A plain member, `length` with the linear law, is stepped
  * by the vector kernel from the member table instead. All other pairs are elements: members that run
- * over guides, with other laws or with stops, and hinges.
+ * over guides, with other laws or with stops, hinges, cells, and collisions.
  */
 #ifndef STRUT_ENGINE_MODEL_ELEMENTS_H
 #define STRUT_ENGINE_MODEL_ELEMENTS_H
@@ -35,14 +35,16 @@ typedef enum strut_element_role {
   STRUT_ELEMENT_MEMBER,   /* the force of a member */
   STRUT_ELEMENT_LONGEST,  /* a stop of a member, which pulls beyond its longest length */
   STRUT_ELEMENT_SHORTEST, /* a stop of a member, which pushes below its shortest length */
-  STRUT_ELEMENT_HINGE     /* the moment of a hinge */
+  STRUT_ELEMENT_HINGE,    /* the moment of a hinge */
+  STRUT_ELEMENT_CELL,     /* the pressure in a cell */
+  STRUT_ELEMENT_COLLISION /* what two bodies exert on each other; of two members it has four elements */
 } strut_element_role;
 
 typedef struct strut_element {
   strut_strain_kind strain;
   strut_law_kind law;
   strut_element_role role;
-  int32_t item;         /* member or hinge of the scene */
+  int32_t item;         /* member, hinge, ... of the scene */
   int32_t first, nodes; /* its nodes: `nodes` entries of the table's `at`, from `first` on */
   int32_t slot;         /* where its natural strain stands in arrays of rest lengths; -1: fixed */
   double natural;       /* natural strain where there is no slot */
@@ -97,12 +99,55 @@ static inline const strut_element *strut_element_of_member(const strut_element_t
   return t->of_member && t->of_member[j] >= 0 ? &t->element[t->of_member[j]] : NULL;
 }
 
-/** The element of hinge i. Found by a search, so not for the step. */
-static inline int32_t strut_element_of_hinge(const strut_element_table *t, int32_t i) {
+/** The first element of that role and item, or -1. Found by a search, so not for the step. */
+static inline int32_t strut_element_find(const strut_element_table *t, strut_element_role role,
+                                         int32_t item) {
   int32_t k = 0;
-  while (k < t->count && (t->element[k].role != STRUT_ELEMENT_HINGE || t->element[k].item != i))
-    k++;
+  while (k < t->count && (t->element[k].role != role || t->element[k].item != item)) k++;
   return k < t->count ? k : -1;
+}
+static inline int32_t strut_element_of_hinge(const strut_element_table *t, int32_t i) {
+  return strut_element_find(t, STRUT_ELEMENT_HINGE, i);
+}
+static inline int32_t strut_element_of_cell(const strut_element_table *t, int32_t i) {
+  return strut_element_find(t, STRUT_ELEMENT_CELL, i);
+}
+
+static inline int32_t strut_element_of_collision(const strut_element_table *t, int32_t i) {
+  return strut_element_find(t, STRUT_ELEMENT_COLLISION, i);
+}
+
+/** The element behind the last one of the same item; elements of a collision follow each other. */
+static inline int32_t strut_element_end(const strut_element_table *t, int32_t first) {
+  int32_t k = first;
+  while (k < t->count && t->element[k].role == t->element[first].role &&
+         t->element[k].item == t->element[first].item)
+    k++;
+  return k;
+}
+
+/** Is it the force or a stop of a member? */
+static inline bool strut_element_is_of_member(const strut_element *e) {
+  return e->role == STRUT_ELEMENT_MEMBER || e->role == STRUT_ELEMENT_LONGEST ||
+         e->role == STRUT_ELEMENT_SHORTEST;
+}
+
+/** The name of the thing that the element belongs to. */
+static inline const char *strut_element_name(const strut_scene *scene, const strut_element *e) {
+  switch (e->role) {
+    case STRUT_ELEMENT_HINGE: return scene->hinges[e->item].name;
+    case STRUT_ELEMENT_CELL: return scene->cells[e->item].name;
+    case STRUT_ELEMENT_COLLISION: return scene->collisions[e->item].name;
+    case STRUT_ELEMENT_MEMBER:
+    case STRUT_ELEMENT_LONGEST:
+    case STRUT_ELEMENT_SHORTEST: break;
+  }
+  return scene->members[e->item].name;
+}
+
+/** The natural strain in the unit of the strain: the law of a cell has a pressure there instead. */
+static inline double strut_element_origin(const strut_element *e, double natural) {
+  return e->strain == STRUT_STRAIN_AREA ? 0.0 : natural;
 }
 
 /** Does an element take the place of the plain member j? */

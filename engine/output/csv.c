@@ -7,7 +7,7 @@
 #include "engine/base/number_text.h"
 #include "engine/output/file.h"
 
-enum { BUFFER = 1 << 16, FILE_COUNT = 5 };
+enum { BUFFER = 1 << 16, FILE_COUNT = 6 };
 
 /* The channels of each file; a file without channels is not written. */
 static const struct {
@@ -17,6 +17,7 @@ static const struct {
     {"nodes.csv", STRUT_CHANNEL_POSITION | STRUT_CHANNEL_VELOCITY},
     {"members.csv", STRUT_CHANNEL_LENGTH | STRUT_CHANNEL_FORCE},
     {"hinges.csv", STRUT_CHANNEL_ANGLE | STRUT_CHANNEL_MOMENT},
+    {"cells.csv", STRUT_CHANNEL_AREA | STRUT_CHANNEL_PRESSURE},
     {"contacts.csv", STRUT_CHANNEL_CONTACT},
     {"energy.csv", STRUT_CHANNEL_ENERGY},
 };

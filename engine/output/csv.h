@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Trajectories as CSV: nodes.csv, members.csv, hinges.csv, contacts.csv, energy.csv, whichever has channels.
+ * Trajectories as CSV: nodes.csv, members.csv, hinges.csv, cells.csv, contacts.csv, energy.csv, whichever has channels.
  */
 #ifndef STRUT_ENGINE_OUTPUT_CSV_H
 #define STRUT_ENGINE_OUTPUT_CSV_H

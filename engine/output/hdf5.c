@@ -42,6 +42,8 @@ static const char *item_scale(strut_channel id) {
     case STRUT_CHANNEL_FORCE: return "member";
     case STRUT_CHANNEL_ANGLE:
     case STRUT_CHANNEL_MOMENT: return "hinge";
+    case STRUT_CHANNEL_AREA:
+    case STRUT_CHANNEL_PRESSURE: return "cell";
     case STRUT_CHANNEL_CONTACT: return "contact_node";
     case STRUT_CHANNEL_ENERGY: break;
   }
@@ -57,7 +59,9 @@ static const char *component_scale(strut_channel id) {
     case STRUT_CHANNEL_LENGTH:
     case STRUT_CHANNEL_FORCE:
     case STRUT_CHANNEL_ANGLE:
-    case STRUT_CHANNEL_MOMENT: break;
+    case STRUT_CHANNEL_MOMENT:
+    case STRUT_CHANNEL_AREA:
+    case STRUT_CHANNEL_PRESSURE: break;
   }
   return "axis";
 }

@@ -126,6 +126,16 @@ static void add_hinges(strut_json *json, cJSON *to, const strut_summary *s) {
   }
 }
 
+/* Likewise of cells. */
+static void add_cells(strut_json *json, cJSON *to, const strut_summary *s) {
+  cJSON *cells = s->cell_count ? strut_json_object(json, to, "cells") : NULL;
+  for (size_t i = 0; i < s->cell_count; i++) {
+    cJSON *cell = strut_json_object(json, cells, s->cells[i].cell);
+    strut_json_number(json, cell, "area", s->cells[i].area);
+    strut_json_number(json, cell, "pressure", s->cells[i].pressure);
+  }
+}
+
 /* The key exists only if something broke or was released. */
 static void add_breaks(strut_json *json, cJSON *to, const strut_summary *s) {
   cJSON *broken = s->break_count ? strut_json_object(json, to, "broken") : NULL;
@@ -189,6 +199,7 @@ char *strut_summary_json(const strut_summary *summary, const strut_scene *scene,
   add_parameters(&json, json.root, scene);
   add_nodes(&json, json.root, summary);
   add_hinges(&json, json.root, summary);
+  add_cells(&json, json.root, summary);
   add_breaks(&json, json.root, summary);
   add_contacts(&json, json.root, summary);
   add_energy(&json, json.root, summary);

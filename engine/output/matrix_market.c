@@ -86,7 +86,7 @@ static void write_guides(FILE *stream, const strut_scene *scene, const strut_mem
 static bool has_inner_nodes(const strut_scene *scene) {
   for (size_t j = 0; j < scene->member_count; j++)
     if (scene->members[j].guide_count) return true;
-  return scene->hinge_count > 0;
+  return scene->hinge_count + scene->cell_count > 0;
 }
 
 static void write_member_column(FILE *stream, const strut_scene *scene, size_t j, bool inner) {
@@ -113,13 +113,29 @@ static void write_hinge_column(FILE *stream, const strut_scene *scene, size_t i)
   }
 }
 
-/* A column `over` of the nodes in between where there are running cables or hinges. */
+static void write_cell_column(FILE *stream, const strut_scene *scene, size_t i) {
+  const strut_cell *cell = &scene->cells[i];
+  size_t last = cell->node_count - 1;
+  fprintf(stream, "%zu,", scene->member_count + scene->hinge_count + i + 1);
+  write_text(stream, cell->name);
+  fputs(",cell,", stream);
+  write_text(stream, scene->nodes[cell->node[0]].name);
+  fputc(',', stream);
+  write_text(stream, scene->nodes[cell->node[last]].name);
+  fputc(',', stream);
+  for (size_t k = 1; k < last; k++)
+    fprintf(stream, "%s%s", k > 1 ? " " : "", scene->nodes[cell->node[k]].name);
+  fputc('\n', stream);
+}
+
+/* A column `over` of the nodes in between where there are running cables, hinges or cells. */
 static void write_columns(FILE *stream, const source *from) {
   const strut_scene *scene = from->model->scene;
   bool inner = has_inner_nodes(scene);
   fprintf(stream, "column,member,kind,from,to%s\n", inner ? ",over" : "");
   for (size_t j = 0; j < scene->member_count; j++) write_member_column(stream, scene, j, inner);
   for (size_t i = 0; i < scene->hinge_count; i++) write_hinge_column(stream, scene, i);
+  for (size_t i = 0; i < scene->cell_count; i++) write_cell_column(stream, scene, i);
 }
 
 static void write_banner(FILE *stream, const source *from, const char *kind, const char *what) {

@@ -12,9 +12,9 @@
 #include "engine/output/file.h"
 #include "engine/output/ownership.h"
 
-static const char *const run_names[] = {"summary.json", "scene.yaml",    "nodes.csv",
-                                        "members.csv",  "hinges.csv",    "contacts.csv",
-                                        "energy.csv",   "trajectory.h5", NULL};
+static const char *const run_names[] = {
+    "summary.json", "scene.yaml",   "nodes.csv",  "members.csv",   "hinges.csv",
+    "cells.csv",    "contacts.csv", "energy.csv", "trajectory.h5", NULL};
 
 const char *strut_results_name(int i) { return run_names[i]; }
 

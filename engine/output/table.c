@@ -155,6 +155,14 @@ static void add_hinges(strut_buffer *table, const strut_summary *s) {
   add_more(table, s->hinge_count);
 }
 
+static void add_cells(strut_buffer *table, const strut_summary *s) {
+  if (s->cell_count) strut_buffer_add(table, "\n  %-16s %14s %14s\n", "cell", "area", "pressure");
+  for (size_t i = 0; i < s->cell_count && i < MOST_ROWS; i++)
+    strut_buffer_add(table, "  %-16s %10.4g m^2 %14s\n", s->cells[i].cell, s->cells[i].area,
+                     in(s->cells[i].pressure, "N/m").text);
+  add_more(table, s->cell_count);
+}
+
 static void add_breaks(strut_buffer *table, const strut_summary *s) {
   if (s->break_count) strut_buffer_add(table, "\n  %-16s %14s\n", "carries nothing", "from");
   for (size_t i = 0; i < s->break_count && i < MOST_ROWS; i++)
@@ -214,6 +222,7 @@ char *strut_summary_table(const strut_summary *summary, const strut_scene *scene
   add_measured(&table, summary);
   add_positions(&table, summary);
   add_hinges(&table, summary);
+  add_cells(&table, summary);
   add_breaks(&table, summary);
   add_contacts(&table, summary);
   add_energy(&table, &summary->energy);

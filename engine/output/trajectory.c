@@ -44,6 +44,8 @@ static double **trajectory_array_of(strut_trajectory *t, strut_channel id) {
     case STRUT_CHANNEL_CONTACT: return &t->contact;
     case STRUT_CHANNEL_ANGLE: return &t->angle;
     case STRUT_CHANNEL_MOMENT: return &t->moment;
+    case STRUT_CHANNEL_AREA: return &t->area;
+    case STRUT_CHANNEL_PRESSURE: return &t->pressure;
     case STRUT_CHANNEL_ENERGY: break;
   }
   return &t->energy;
@@ -117,7 +119,8 @@ static strut_status begin(void *context, const strut_record_layout *layout, stru
   *t = (strut_trajectory){.every = 1,
                           .node_count = k->scene->node_count,
                           .member_count = k->scene->member_count,
-                          .hinge_count = k->scene->hinge_count};
+                          .hinge_count = k->scene->hinge_count,
+                          .cell_count = k->scene->cell_count};
   k->width = layout->width;
   k->arrays[0] = (trajectory_array){.values = &t->time, .size = 1};
   k->array_count = k->frame_size = 1;
@@ -198,6 +201,7 @@ static const struct {
     {STRUT_CHANNEL_LENGTH, "length", 1},     {STRUT_CHANNEL_FORCE, "force", 1},
     {STRUT_CHANNEL_CONTACT, "contact", 2},   {STRUT_CHANNEL_ENERGY, "energy", STRUT_ENERGIES},
     {STRUT_CHANNEL_ANGLE, "angle", 1},       {STRUT_CHANNEL_MOMENT, "moment", 1},
+    {STRUT_CHANNEL_AREA, "area", 1},         {STRUT_CHANNEL_PRESSURE, "pressure", 1},
 };
 enum { CHANNELS = sizeof channels / sizeof *channels };
 
@@ -222,6 +226,7 @@ static size_t items_of(const reader *r, strut_channel id) {
   if (id == STRUT_CHANNEL_POSITION || id == STRUT_CHANNEL_VELOCITY) return r->scene->node_count;
   if (id == STRUT_CHANNEL_LENGTH || id == STRUT_CHANNEL_FORCE) return r->scene->member_count;
   if (id == STRUT_CHANNEL_ANGLE || id == STRUT_CHANNEL_MOMENT) return r->scene->hinge_count;
+  if (id == STRUT_CHANNEL_AREA || id == STRUT_CHANNEL_PRESSURE) return r->scene->cell_count;
   return id == STRUT_CHANNEL_CONTACT ? r->scene->contact_count : 1;
 }
 
@@ -286,6 +291,7 @@ static const char *member_name(const strut_scene *scene, size_t i) {
   return scene->members[i].name;
 }
 static const char *hinge_name(const strut_scene *scene, size_t i) { return scene->hinges[i].name; }
+static const char *cell_name(const strut_scene *scene, size_t i) { return scene->cells[i].name; }
 static const char *contact_name(const strut_scene *scene, size_t i) {
   return scene->nodes[scene->contacts[i].node].name;
 }
@@ -353,9 +359,11 @@ static strut_status read_file(reader *r, size_t room) {
   t->node_count = r->scene->node_count;
   t->member_count = r->scene->member_count;
   t->hinge_count = r->scene->hinge_count;
+  t->cell_count = r->scene->cell_count;
   if (!same_names(r, "node", t->node_count, node_name) ||
       !same_names(r, "member", t->member_count, member_name) ||
       !same_names(r, "hinge", t->hinge_count, hinge_name) ||
+      !same_names(r, "cell", t->cell_count, cell_name) ||
       !same_names(r, "contact_node", r->scene->contact_count, contact_name))
     return trouble(r, "it belongs to another structure than the scene beside it");
   if (!trajectory_contacts(t, r->scene)) return report_no_memory(r);

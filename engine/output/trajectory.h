@@ -25,6 +25,9 @@ typedef struct strut_trajectory {
   double *energy;        /* (frames, STRUT_ENERGIES) in the recorder's order */
   strut_status status;   /* of the run: STRUT_OK, STRUT_DIVERGED or STRUT_INTERRUPTED */
   strut_arena arena;
+  size_t cell_count;
+  double *area;     /* (frames, cells) */
+  double *pressure; /* (frames, cells) */
 } strut_trajectory;
 #define STRUT_ENERGY_ONE(name, kind, label) +1
 enum { STRUT_ENERGIES = STRUT_ENERGY_TABLE(STRUT_ENERGY_ONE) };

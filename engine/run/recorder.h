@@ -19,7 +19,8 @@ typedef struct strut_record_channel {
   const char *name; /* "position", "velocity", "length", "force", "contact", "angle", ... */
   const char *unit; /* "m", "m/s", "m", "N", "N", "rad", ... */
   size_t items, components, offset;
-  const char *const *item_names; /* (items) of nodes, members or hinges; {"total"} for energy */
+  const char *const
+      *item_names; /* (items) of nodes, members, hinges or cells; {"total"} for energy */
   const char *const *component_names; /* (components) {"x", "y"}; {""} for a single one;
                                          contact: {"normal", "friction"}; energy: {"kinetic", ...} */
 } strut_record_channel;

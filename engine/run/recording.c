@@ -31,6 +31,8 @@ static const struct {
     {STRUT_CHANNEL_CONTACT, "contact", "N", 2, reactions},
     {STRUT_CHANNEL_ANGLE, "angle", "rad", 1, single},
     {STRUT_CHANNEL_MOMENT, "moment", "N m", 1, single},
+    {STRUT_CHANNEL_AREA, "area", "m^2", 1, single},
+    {STRUT_CHANNEL_PRESSURE, "pressure", "N/m", 1, single},
     {STRUT_CHANNEL_ENERGY, "energy", "J", sizeof energies / sizeof energies[0], energies},
 };
 
@@ -41,17 +43,20 @@ static const char *const *item_names(const strut_model *model, strut_channel id,
   bool of_nodes = id == STRUT_CHANNEL_POSITION || id == STRUT_CHANNEL_VELOCITY;
   bool of_contacts = id == STRUT_CHANNEL_CONTACT;
   bool of_hinges = id == STRUT_CHANNEL_ANGLE || id == STRUT_CHANNEL_MOMENT;
+  bool of_cells = id == STRUT_CHANNEL_AREA || id == STRUT_CHANNEL_PRESSURE;
   *count = 1;
   if (id == STRUT_CHANNEL_ENERGY) return total;
   *count = of_nodes      ? scene->node_count
            : of_contacts ? (size_t)model->contacts.count
            : of_hinges   ? scene->hinge_count
+           : of_cells    ? scene->cell_count
                          : scene->member_count;
   const char **names = strut_arena_allocate(arena, *count, sizeof *names);
   for (size_t i = 0; names && i < *count; i++)
     names[i] = of_nodes      ? scene->nodes[i].name
                : of_contacts ? scene->nodes[model->contacts.entry[i].node].name
                : of_hinges   ? scene->hinges[i].name
+               : of_cells    ? scene->cells[i].name
                              : scene->members[i].name;
   return names;
 }
@@ -109,18 +114,25 @@ static bool create_parts(const strut_experiment *experiment, strut_recording *r)
   return r->parts && (all_whole || r->picked);
 }
 
-/* Space for what is measured of members and hinges. */
+/* Space for what is measured of members, hinges and cells. */
 static bool create_scratch(const strut_model *model, strut_recording *r) {
   size_t members = model->scene->member_count, hinges = model->scene->hinge_count;
+  size_t cells = model->scene->cell_count;
   r->length = strut_arena_allocate(&r->arena, members, sizeof(double));
   r->force = strut_arena_allocate(&r->arena, members, sizeof(double));
   r->angle = strut_arena_allocate(&r->arena, hinges, sizeof(double));
   r->moment = strut_arena_allocate(&r->arena, hinges, sizeof(double));
   r->hinge = strut_arena_allocate(&r->arena, hinges, sizeof *r->hinge);
-  if (!r->length || !r->force || !r->angle || !r->moment || !r->hinge) return false;
+  r->area = strut_arena_allocate(&r->arena, cells, sizeof(double));
+  r->pressure = strut_arena_allocate(&r->arena, cells, sizeof(double));
+  r->cell = strut_arena_allocate(&r->arena, cells, sizeof *r->cell);
+  if (!r->length || !r->force || !r->angle || !r->moment || !r->hinge || !r->area || !r->pressure ||
+      !r->cell)
+    return false;
   for (int32_t i = 0; i < model->elements.count; i++) {
     const strut_element *e = &model->elements.element[i];
     if (e->role == STRUT_ELEMENT_HINGE) r->hinge[e->item] = i;
+    if (e->role == STRUT_ELEMENT_CELL) r->cell[e->item] = i;
   }
   return true;
 }
@@ -182,6 +194,8 @@ static void fill_channel(const strut_model *model, strut_state *state, const str
     case STRUT_CHANNEL_FORCE: memcpy(out, r->force, c->items * sizeof *out); break;
     case STRUT_CHANNEL_ANGLE: memcpy(out, r->angle, c->items * sizeof *out); break;
     case STRUT_CHANNEL_MOMENT: memcpy(out, r->moment, c->items * sizeof *out); break;
+    case STRUT_CHANNEL_AREA: memcpy(out, r->area, c->items * sizeof *out); break;
+    case STRUT_CHANNEL_PRESSURE: memcpy(out, r->pressure, c->items * sizeof *out); break;
     case STRUT_CHANNEL_CONTACT:
       for (size_t i = 0; i < c->items; i++) {
         out[2 * i] = state->normal[i];
@@ -209,6 +223,14 @@ static void measure_hinges(const strut_model *model, const strut_state *state, s
     strut_hinge_values values = strut_hinge_measure(model, state, r->hinge[i]);
     r->angle[i] = values.angle;
     r->moment[i] = values.moment;
+  }
+}
+
+static void measure_cells(const strut_model *model, const strut_state *state, strut_recording *r) {
+  for (size_t i = 0; i < model->scene->cell_count; i++) {
+    strut_cell_values values = strut_cell_measure(model, state, r->cell[i]);
+    r->area[i] = values.area;
+    r->pressure[i] = values.pressure;
   }
 }
 
@@ -248,6 +270,7 @@ strut_status strut_recording_sample(const strut_model *model, strut_state *state
   strut_forces_observe(model, state, t);
   strut_members_measure(model, state, r->length, r->force);
   measure_hinges(model, state, r);
+  measure_cells(model, state, r);
   row[0] = strut_time_grid_real(&r->grid, state->step);
   for (size_t k = 0; k < r->layout.channel_count; k++)
     fill_channel(model, state, r, &r->channel[k], row + r->channel[k].offset);

@@ -29,11 +29,13 @@ typedef struct strut_recording {
   double *picked; /* (capacity, width) rows of one sink; NULL where every sink takes all channels */
   size_t row_count, capacity;
   strut_time_grid grid;
-  double start, every;    /* first sample, interval [s] */
-  int64_t sampled, last;  /* samples so far; step of the latest, -1 before the first */
-  double *length, *force; /* (members) scratch */
-  double *angle, *moment; /* (hinges) scratch */
-  int32_t *hinge;         /* (hinges) their elements */
+  double start, every;     /* first sample, interval [s] */
+  int64_t sampled, last;   /* samples so far; step of the latest, -1 before the first */
+  double *length, *force;  /* (members) scratch */
+  double *angle, *moment;  /* (hinges) scratch */
+  int32_t *hinge;          /* (hinges) their elements */
+  double *area, *pressure; /* (cells) scratch */
+  int32_t *cell;           /* (cells) their elements */
   strut_arena arena;
 } strut_recording;
 

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/forces/elements.h"
 #include "engine/run/simulate_parts.h"
 
 /* A run beyond this multiple of the scene's size counts as diverged. */
@@ -38,6 +39,58 @@ strut_status strut_run_fail_lost_node(const strut_run *r, int32_t node) {
                     "node '%s' left all bounds at t = %.9g s with dt = %g s (largest stable step "
                     "at the start: %.4g s); %s",
                     r->summary->node_names[node], strut_run_time(r), r->dt, least, remedy);
+}
+
+/* Bodies this near to each other beside their thickness may soon have passed through each other. */
+static const double DEEP = 0.5;
+
+static double speed_of(const strut_run *r, uint32_t at) {
+  return hypot(r->state->v[at], r->state->v[at + 1]);
+}
+
+void strut_run_watch_collisions(strut_run *r) {
+  const strut_element_table *t = &r->model->elements;
+  for (int32_t i = 0; i < t->count && !r->tunnel; i++) {
+    const strut_element *e = &t->element[i];
+    const uint32_t *at = t->at + e->first;
+    if (e->role != STRUT_ELEMENT_COLLISION) continue;
+    double other = speed_of(r, at[1]);
+    if (e->nodes > 2) other = fmax(other, speed_of(r, at[2]));
+    double speed = speed_of(r, at[0]) + other;
+    bool fast = speed * r->dt > e->natural;
+    strut_element_pose pose;
+    strut_element_evaluate(r->model, i, r->state->rest, r->state->q, (double)NAN, &pose);
+    if (!fast && !(pose.strain < DEEP * e->natural)) continue;
+    r->tunnel = i + 1;
+    r->tunnel_speed = fast ? speed : 0.0;
+  }
+}
+
+static void warn_of_tunnelling(const strut_run *r) {
+  if (!r->tunnel) return;
+  const strut_element *e = &r->model->elements.element[r->tunnel - 1];
+  const strut_collision *c = &r->model->scene->collisions[e->item];
+  if (r->tunnel_speed == 0.0) {
+    strut_summary_warn(
+        r->summary, "tunnelling",
+        "the sides of collision '%s' were pressed into each other by more than half "
+        "its thickness of %.3g m, and may have passed through; use a larger stiffness",
+        c->name, c->thickness);
+    return;
+  }
+  strut_summary_warn(r->summary, "tunnelling",
+                     "the sides of collision '%s' moved at up to %.3g m/s, which is more than its "
+                     "thickness of %.3g m in a step of %g s: they may have passed through each "
+                     "other; use a smaller step",
+                     c->name, r->tunnel_speed, c->thickness, r->dt);
+}
+
+strut_status strut_run_fail_flat_cell(const strut_run *r, int32_t cell) {
+  return strut_fail(
+      r->error, STRUT_DIVERGED,
+      "the area of cell '%s' reached zero at t = %.9g s, so that it encloses nothing; "
+      "keep its nodes apart, or use a smaller step if they should not meet",
+      r->model->scene->cells[cell].name, strut_run_time(r));
 }
 
 strut_status strut_run_fail_method(const strut_run *r) {
@@ -143,10 +196,24 @@ static void warn_of_limit(const strut_run *r) {
 static const double JUMP = 1e-3;
 
 typedef struct jump {
-  const char *name; /* of a member or a hinge */
-  bool hinge;
-  double change, time; /* [m] or [rad], [s] */
+  const char *name;               /* of what is driven */
+  const char *kind, *what, *unit; /* "member", "length", "m" */
+  double change, time;            /* in that unit, [s] */
 } jump;
+
+/* What actuator i drives, and a value beside which its changes are large or small. */
+static jump describe_drive(const strut_model *model, const strut_actuator *a, double *scale) {
+  const strut_scene *scene = model->scene;
+  if (a->member >= 0) {
+    *scale = model->members.rest[a->member];
+    return (jump){scene->members[a->member].name, "member", "length", "m", 0.0, 0.0};
+  }
+  *scale = 1.0;
+  if (a->hinge >= 0) return (jump){scene->hinges[a->hinge].name, "hinge", "angle", "rad", 0.0, 0.0};
+  *scale = fmax(fabs(scene->cells[a->cell].pressure), fabs(scene->signals[a->signal].amplitude));
+  *scale = fmax(*scale, DBL_MIN);
+  return (jump){scene->cells[a->cell].name, "cell", "pressure", "N/m", 0.0, 0.0};
+}
 
 /* Finds the largest jump of a drive between two times, relative to its member. */
 static jump find_jump(const strut_run *r, double from, double to) {
@@ -155,14 +222,14 @@ static jump find_jump(const strut_run *r, double from, double to) {
   double worst = JUMP;
   for (size_t i = 0; i < scene->actuator_count; i++) {
     const strut_actuator *a = &scene->actuators[i];
-    bool hinge = a->member < 0;
     if (a->force) continue;
-    double when = 0.0, length = hinge ? 1.0 : r->model->members.rest[a->member];
+    double when = 0.0, length;
+    jump drive = describe_drive(r->model, a, &length);
     double change = strut_signal_jump(scene->signals, a->signal, r->dt, from, to, &when);
     if (!(change > worst * length)) continue;
     worst = change / length;
-    const char *name = hinge ? scene->hinges[a->hinge].name : scene->members[a->member].name;
-    found = (jump){name, hinge, change, when};
+    found = drive;
+    found.change = change, found.time = when;
   }
   return found;
 }
@@ -214,8 +281,7 @@ static void explain_balance(const strut_run *r, char *text, size_t size) {
     snprintf(text, size,
              "; likely because the drive of %s '%s' changes its %s by %.3g %s within one step at "
              "t = %.6g s; spread the change over many steps, use a smaller step, or --accuracy 1%%",
-             j.hinge ? "hinge" : "member", j.name, j.hinge ? "angle" : "length", j.change,
-             j.hinge ? "rad" : "m", j.time);
+             j.kind, j.name, j.what, j.change, j.unit, j.time);
   else if (over)
     snprintf(text, size,
              "; likely because fixed steps pass over %s; use rk4-events, a smaller step, or "
@@ -273,4 +339,5 @@ void strut_run_warn(const strut_run *r) {
   warn_of_narrow_bands(r);
   warn_of_creep(r);
   warn_of_limit(r);
+  warn_of_tunnelling(r);
 }

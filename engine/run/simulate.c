@@ -53,14 +53,16 @@ static strut_status allocate_summary(strut_run *r) {
   s->positions = strut_allocate(2 * scene->node_count, sizeof *s->positions);
   s->contacts = strut_allocate(contacts, sizeof *s->contacts);
   s->hinges = strut_allocate(scene->hinge_count, sizeof *s->hinges);
+  s->cells = strut_allocate(scene->cell_count, sizeof *s->cells);
   s->breaks = strut_allocate((size_t)r->model->elements.breakable_count, sizeof *s->breaks);
   if (e->quantity_count) s->measured = strut_allocate(e->quantity_count, sizeof *s->measured);
-  if (!s->node_names || !s->positions || !s->contacts || !s->hinges || !s->breaks ||
+  if (!s->node_names || !s->positions || !s->contacts || !s->hinges || !s->cells || !s->breaks ||
       (e->quantity_count && !s->measured))
     return strut_memory_fail_model(r->model->scene, r->error);
   s->node_count = scene->node_count;
   s->contact_count = contacts;
   s->hinge_count = scene->hinge_count;
+  s->cell_count = scene->cell_count;
   s->measured_count = e->quantity_count;
   if (e->measure_node >= 0) s->measured_node = scene->nodes[e->measure_node].name;
   for (size_t i = 0; i < s->measured_count; i++)
@@ -73,6 +75,8 @@ static strut_status allocate_summary(strut_run *r) {
   for (size_t i = 0; i < s->node_count; i++) s->node_names[i] = scene->nodes[i].name;
   for (size_t i = 0; i < s->hinge_count; i++)
     s->hinges[i] = (strut_hinge_summary){scene->hinges[i].name, (double)NAN, (double)NAN};
+  for (size_t i = 0; i < s->cell_count; i++)
+    s->cells[i] = (strut_cell_summary){scene->cells[i].name, (double)NAN, (double)NAN};
   for (size_t i = 0; i < contacts; i++)
     s->contacts[i].node = scene->nodes[r->model->contacts.entry[i].node].name;
   return STRUT_OK;
@@ -378,6 +382,9 @@ strut_status strut_run_sample(strut_run *r, int64_t *stop) {
   *stop = n;
   if (limit_status) return limit_status;
   if (lost >= 0) return strut_run_fail_lost_node(r, lost);
+  if (r->model->scene->collision_count) strut_run_watch_collisions(r);
+  int32_t flat = strut_cell_that_collapsed(r->model, r->state->q);
+  if (flat >= 0) return strut_run_fail_flat_cell(r, flat);
   if (n >= r->balance.next) sample_balance(r);
   strut_status steady_status = r->detect_steady ? detect_steady_motion(r) : STRUT_OK;
   if (steady_status) return steady_status;
@@ -424,17 +431,22 @@ static void fill_contacts(strut_run *r) {
     r->summary->contacts[i].band_needed = strut_stick_band_missed(r->model, &r->band, i);
 }
 
-/* Angles and moments of the hinges at the end. */
-static void measure_hinges(strut_run *r) {
+/* Angles and moments of the hinges at the end, areas and pressures of the cells. */
+static void measure_elements(strut_run *r) {
   const strut_scene *scene = r->model->scene;
-  if (!scene->hinge_count) return;
+  if (!scene->hinge_count && !scene->cell_count) return;
   strut_drive_apply(r->model, r->state, strut_time_grid_at(&r->grid, r->state->step));
   for (int32_t i = 0; i < r->model->elements.count; i++) {
     const strut_element *e = &r->model->elements.element[i];
-    if (e->role != STRUT_ELEMENT_HINGE) continue;
-    strut_hinge_values values = strut_hinge_measure(r->model, r->state, i);
-    r->summary->hinges[e->item].angle = values.angle;
-    r->summary->hinges[e->item].moment = values.moment;
+    if (e->role == STRUT_ELEMENT_HINGE) {
+      strut_hinge_values values = strut_hinge_measure(r->model, r->state, i);
+      r->summary->hinges[e->item].angle = values.angle;
+      r->summary->hinges[e->item].moment = values.moment;
+    } else if (e->role == STRUT_ELEMENT_CELL) {
+      strut_cell_values values = strut_cell_measure(r->model, r->state, i);
+      r->summary->cells[e->item].area = values.area;
+      r->summary->cells[e->item].pressure = values.pressure;
+    }
   }
 }
 
@@ -473,7 +485,7 @@ static void fill_summary(strut_run *r, strut_status status) {
   if (r->detect_steady) strut_steady_detector_finish(&r->steady, s);
   s->velocity_zero = strut_measure_is_zero(&r->measure, s->velocity);
   for (size_t i = 0; i < 2 * s->node_count; i++) s->positions[i] = r->state->q[i];
-  measure_hinges(r);
+  measure_elements(r);
   list_breaks(r);
   if (r->state->ledger) {
     sample_balance(r);
@@ -494,6 +506,8 @@ strut_status strut_run_begin(const strut_model *model, const strut_experiment *e
                    .limits = limits,
                    .summary = summary,
                    .error = error};
+  if (model->scene->cell_count || model->scene->collision_count)
+    chunk = 1; /* cells that collapse and bodies that pass through each other are noticed at once */
   r->chunk = chunk < 1 ? 1 : chunk > LONGEST_CHUNK ? LONGEST_CHUNK : chunk;
   strut_status status = prepare_run(r);
   r->ready = !status;

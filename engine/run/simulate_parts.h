@@ -42,6 +42,9 @@ typedef struct strut_run {
   double start_time,
       progress_time; /* wall clock at the first step and at the latest progress report [s] */
   bool ready;        /* preparation succeeded: the first step may be made */
+  int32_t tunnel;    /* the element of a collision that may have been passed through, + 1; or 0 */
+  double
+      tunnel_speed; /* at which its two sides moved [m/s]; 0: they were pressed together instead */
 } strut_run;
 
 /**
@@ -74,6 +77,10 @@ strut_status strut_run_check_step_limit(strut_run *r);
 int32_t strut_run_find_lost_node(const strut_model *model, const strut_state *state);
 /** Reports a lost node: STRUT_DIVERGED. */
 strut_status strut_run_fail_lost_node(const strut_run *r, int32_t node);
+/** Notes collisions whose sides move by more than their thickness in a step, or are deeper than half. */
+void strut_run_watch_collisions(strut_run *run);
+/** The error of a run in which a cell has collapsed. */
+strut_status strut_run_fail_flat_cell(const strut_run *run, int32_t cell);
 /** Reports a method that failed: STRUT_DIVERGED. */
 strut_status strut_run_fail_method(const strut_run *r);
 

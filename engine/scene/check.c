@@ -92,13 +92,17 @@ static void check_name(strut_checker *checker, strut_name_map *map, strut_subjec
 void strut_check_names(strut_checker *checker) {
   const strut_scene *s = checker->scene;
   strut_name_map nodes = {0}, members = {0}, actuators = {0}, loads = {0}, signals = {0},
-                 configurations = {0}, hinges = {0};
+                 configurations = {0}, hinges = {0}, cells = {0}, collisions = {0};
   for (size_t i = 0; i < s->node_count; i++)
     check_name(checker, &nodes, STRUT_ON_NODE, "node", s->nodes[i].name, i);
   for (size_t i = 0; i < s->member_count; i++)
     check_name(checker, &members, STRUT_ON_MEMBER, "member", s->members[i].name, i);
   for (size_t i = 0; i < s->hinge_count; i++)
     check_name(checker, &hinges, STRUT_ON_HINGE, "hinge", s->hinges[i].name, i);
+  for (size_t i = 0; i < s->cell_count; i++)
+    check_name(checker, &cells, STRUT_ON_CELL, "cell", s->cells[i].name, i);
+  for (size_t i = 0; i < s->collision_count; i++)
+    check_name(checker, &collisions, STRUT_ON_COLLISION, "collision", s->collisions[i].name, i);
   for (size_t i = 0; i < s->actuator_count; i++)
     check_name(checker, &actuators, STRUT_ON_ACTUATOR, "actuator", s->actuators[i].name, i);
   for (size_t i = 0; i < s->load_count; i++)
@@ -114,6 +118,8 @@ void strut_check_names(strut_checker *checker) {
   strut_name_map_free(&actuators);
   strut_name_map_free(&loads);
   strut_name_map_free(&hinges);
+  strut_name_map_free(&cells);
+  strut_name_map_free(&collisions);
   strut_name_map_free(&signals);
   strut_name_map_free(&configurations);
 }
@@ -305,6 +311,16 @@ void strut_check_use(strut_checker *checker) {
       int32_t n = scene->hinges[i].node[k];
       if (n >= 0 && (size_t)n < scene->node_count) state[n] |= USED;
     }
+  for (size_t i = 0; i < scene->cell_count; i++)
+    for (size_t k = 0; k < scene->cells[i].node_count; k++) {
+      int32_t n = scene->cells[i].node[k];
+      if (n >= 0 && (size_t)n < scene->node_count) state[n] |= USED;
+    }
+  for (size_t i = 0; i < scene->collision_count; i++)
+    for (int k = 0; k < 2; k++) {
+      int32_t n = scene->collisions[i].node[k];
+      if (n >= 0 && (size_t)n < scene->node_count) state[n] |= USED;
+    }
   for (size_t i = 0; i < scene->load_count; i++)
     if (scene->loads[i].node >= 0 && (size_t)scene->loads[i].node < scene->node_count)
       state[scene->loads[i].node] |= USED;
@@ -329,9 +345,9 @@ void strut_check_use(strut_checker *checker) {
 strut_status strut_setup_check(const strut_setup *setup, strut_purpose purpose,
                                strut_findings *findings) {
   static void (*const rules[])(strut_checker *) = {
-      strut_check_names,  strut_check_nodes,     strut_check_members, strut_check_hinges,
-      strut_check_use,    strut_check_signals,   strut_check_ground,  strut_check_drives,
-      strut_check_shapes, strut_check_experiment};
+      strut_check_names,  strut_check_nodes,      strut_check_members, strut_check_hinges,
+      strut_check_cells,  strut_check_collisions, strut_check_use,     strut_check_signals,
+      strut_check_ground, strut_check_drives,     strut_check_shapes,  strut_check_experiment};
   const strut_scene *scene = &setup->scene;
   const strut_experiment *e = &setup->experiment;
   bool runs = e->step != 0.0 || e->duration != 0.0 || e->periods != 0.0;

@@ -282,10 +282,19 @@ void strut_check_drives(strut_checker *checker) {
     const strut_actuator *a = &scene->actuators[i];
     strut_format_name(owner, "actuator", a->name, i);
     bool hinge = a->member < 0 && exists(a->hinge, scene->hinge_count);
-    if (!hinge && !exists(a->member, scene->member_count))
+    bool cell = a->member < 0 && a->hinge < 0 && exists(a->cell, scene->cell_count);
+    if (cell && scene->cells[a->cell].law != STRUT_LAW_PRESSURE)
+      strut_report_finding(checker, STRUT_ON_ACTUATOR, i, "cell",
+                           "%s drives the pressure of cell '%s', but the pressure of a gas follows "
+                           "from its area; give the cell a pressure instead of a gas",
+                           owner, scene->cells[a->cell].name);
+    else if (cell && a->force)
+      strut_report_finding(checker, STRUT_ON_ACTUATOR, i, "cell",
+                           "%s gives a force to a cell, whose pressure a signal drives", owner);
+    else if (!hinge && !cell && !exists(a->member, scene->member_count))
       strut_report_finding(checker, STRUT_ON_ACTUATOR, i, "member",
                            "%s drives a member that does not exist", owner);
-    else if (!hinge && scene->bar_model == STRUT_BARS_RIGID &&
+    else if (!hinge && !cell && scene->bar_model == STRUT_BARS_RIGID &&
              scene->members[a->member].kind == STRUT_BAR)
       strut_report_finding(
           checker, STRUT_ON_ACTUATOR, i, "member",

@@ -41,6 +41,11 @@ void strut_check_nodes(strut_checker *checker);
 /** check_elements.c: a valid law of member `index`? Findings name its key. */
 bool strut_check_member_law(strut_checker *checker, size_t index, const char *owner);
 void strut_check_hinges(strut_checker *checker);
+/** check_cells.c */
+void strut_check_cells(strut_checker *checker);
+/** check_collisions.c */
+void strut_check_collisions(strut_checker *checker);
+void strut_warn_of_overlaps(strut_checker *checker);
 void strut_check_members(strut_checker *checker);
 void strut_check_use(strut_checker *checker);
 void strut_check_ground(strut_checker *checker);

@@ -38,7 +38,9 @@ typedef enum strut_channel {
   STRUT_CHANNEL_CONTACT = 16,
   STRUT_CHANNEL_ENERGY = 32,
   STRUT_CHANNEL_ANGLE = 64, /* of hinges */
-  STRUT_CHANNEL_MOMENT = 128
+  STRUT_CHANNEL_MOMENT = 128,
+  STRUT_CHANNEL_AREA = 256, /* of cells */
+  STRUT_CHANNEL_PRESSURE = 512
 } strut_channel;
 
 enum { STRUT_MOST_STARTS = 1000000000 };

@@ -4,13 +4,15 @@
  *
  * A law is a row of STRUT_LAWS and a header of engine/scene/laws with two functions. It knows material
  * only: e is any strain (a length [m], an angle [rad], an area [m^2]), e0 its natural value, x = e - e0,
- * and the force is the one that does work on e. Reader, checks, forces, energies, stiffness, statics and
- * located events loop over this table, so that a law is added only here; see docs/recipes.md.
+ * and the force is the one that does work on e. Laws of cells are in laws/cell_laws.h.
+ * Reader, checks, forces, energies, stiffness, statics and located events loop over this table, so that a
+ * law is added only here; see docs/recipes.md.
  */
 #ifndef STRUT_ENGINE_SCENE_LAW_H
 #define STRUT_ENGINE_SCENE_LAW_H
 
 #include "engine/scene/laws/bilinear.h"
+#include "engine/scene/laws/cell_laws.h"
 #include "engine/scene/laws/elastic_plastic.h"
 #include "engine/scene/laws/exponential.h"
 #include "engine/scene/laws/linear.h"
@@ -37,10 +39,12 @@
 
 typedef enum strut_law_kind {
 #define STRUT_LAW_ROW(NAME, ...) STRUT_LAW_##NAME,
-  STRUT_LAWS(STRUT_LAW_ROW, )
+  STRUT_ALL_LAWS(STRUT_LAW_ROW, )
 #undef STRUT_LAW_ROW
       STRUT_LAW_COUNT
 } strut_law_kind;
+/** Laws of members and hinges. */
+enum { STRUT_MEMBER_LAW_COUNT = STRUT_LAW_PRESSURE };
 
 enum {
 #define STRUT_LAW_ROW(NAME, ...) STRUT_LAW_PARAMETER_##NAME,
@@ -94,11 +98,14 @@ static inline const strut_law_row *strut_law_at(strut_law_kind kind) {
   static const strut_law_row rows[] = {
 #define STRUT_LAW_ROW(NAME, name, word, needs, context)                                            \
   {word, (needs)&LOW, ((needs)&OWN) != 0, (needs) >> MAY},
-      STRUT_LAWS(STRUT_LAW_ROW, )
+      STRUT_ALL_LAWS(STRUT_LAW_ROW, )
 #undef STRUT_LAW_ROW
   };
   return &rows[kind];
 }
+
+/** Is it a law of STRUT_CELL_LAWS? */
+static inline bool strut_law_is_of_cells(strut_law_kind kind) { return kind >= STRUT_LAW_PRESSURE; }
 
 static inline bool strut_law_needs(strut_law_kind kind, int parameter) {
   return strut_law_at(kind)->needs >> parameter & 1u;
@@ -162,7 +169,7 @@ static inline strut_law_response strut_law_respond(strut_law_kind kind, const st
   switch (kind) {
 #define STRUT_LAW_ROW(NAME, name, ...)                                                             \
   case STRUT_LAW_##NAME: return strut_law_##name(n, e, e0, piece);
-    STRUT_LAWS(STRUT_LAW_ROW, )
+    STRUT_ALL_LAWS(STRUT_LAW_ROW, )
 #undef STRUT_LAW_ROW
     case STRUT_LAW_COUNT: break;
   }
@@ -174,7 +181,7 @@ static inline int strut_law_kinks(strut_law_kind kind, const strut_law_numbers *
   switch (kind) {
 #define STRUT_LAW_ROW(NAME, name, ...)                                                             \
   case STRUT_LAW_##NAME: return strut_law_##name##_kinks(n);
-    STRUT_LAWS(STRUT_LAW_ROW, )
+    STRUT_ALL_LAWS(STRUT_LAW_ROW, )
 #undef STRUT_LAW_ROW
     case STRUT_LAW_COUNT: break;
   }
@@ -186,7 +193,7 @@ static inline double strut_law_kink(strut_law_kind kind, const strut_law_numbers
   switch (kind) {
 #define STRUT_LAW_ROW(NAME, name, ...)                                                             \
   case STRUT_LAW_##NAME: return strut_law_##name##_kink(n, k);
-    STRUT_LAWS(STRUT_LAW_ROW, )
+    STRUT_ALL_LAWS(STRUT_LAW_ROW, )
 #undef STRUT_LAW_ROW
     case STRUT_LAW_COUNT: break;
   }

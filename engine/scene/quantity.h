@@ -15,16 +15,18 @@
 
 /** Owner of a column: how the column is written, and what its items index. */
 typedef enum strut_column_owner {
-  STRUT_COLUMN_OF_RUN,     /* the word alone: time */
-  STRUT_COLUMN_OF_NODE,    /* NODE.y */
-  STRUT_COLUMN_OF_CONTACT, /* NODE.normal, of a node that may touch the ground */
-  STRUT_COLUMN_OF_MEMBER,  /* MEMBER.force */
-  STRUT_COLUMN_OF_HINGE,   /* HINGE.moment */
-  STRUT_COLUMN_OF_PAIR,    /* angle(NODE, NODE) */
-  STRUT_COLUMN_OF_CENTRE,  /* com.vx */
-  STRUT_COLUMN_OF_ENERGY,  /* energy.kinetic */
-  STRUT_COLUMN_OF_WORK,    /* work.drives */
-  STRUT_COLUMN_OF_LOSSES   /* losses.friction */
+  STRUT_COLUMN_OF_RUN,      /* the word alone: time */
+  STRUT_COLUMN_OF_NODE,     /* NODE.y */
+  STRUT_COLUMN_OF_CONTACT,  /* NODE.normal, of a node that may touch the ground */
+  STRUT_COLUMN_OF_MEMBER,   /* MEMBER.force */
+  STRUT_COLUMN_OF_HINGE,    /* HINGE.moment */
+  STRUT_COLUMN_OF_PAIR,     /* angle(NODE, NODE) */
+  STRUT_COLUMN_OF_CENTRE,   /* com.vx */
+  STRUT_COLUMN_OF_ENERGY,   /* energy.kinetic */
+  STRUT_COLUMN_OF_WORK,     /* work.drives */
+  STRUT_COLUMN_OF_LOSSES,   /* losses.friction */
+  STRUT_COLUMN_OF_CELL,     /* CELL.area */
+  STRUT_COLUMN_OF_COLLISION /* COLLISION.gap */
 } strut_column_owner;
 
 /** X(id, owner, word, powers of kg, m, s, angle) */
@@ -65,7 +67,11 @@ typedef enum strut_column_owner {
   X(LOST_MEMBERS, LOSSES, "members", 1, 2, -2, 0)                                                  \
   X(LOST_CONTACT, LOSSES, "contact", 1, 2, -2, 0)                                                  \
   X(LOST_FRICTION, LOSSES, "friction", 1, 2, -2, 0)                                                \
-  X(LOST, LOSSES, "total", 1, 2, -2, 0)
+  X(LOST, LOSSES, "total", 1, 2, -2, 0)                                                            \
+  X(CELL_AREA, CELL, "area", 0, 2, 0, 0)                                                           \
+  X(PRESSURE, CELL, "pressure", 1, 0, -2, 0)                                                       \
+  X(COLLISION_GAP, COLLISION, "gap", 0, 1, 0, 0)                                                   \
+  X(COLLISION_FORCE, COLLISION, "force", 1, 1, -2, 0)
 
 typedef enum strut_column_kind {
 #define STRUT_COLUMN_ENUM(id, ...) STRUT_COLUMN_##id,
@@ -77,7 +83,7 @@ typedef enum strut_column_kind {
 /** A column of the motion: a number at every step. */
 typedef struct strut_column {
   strut_column_kind kind;
-  int32_t item, other; /* node, contact, member or hinge; the second node of a pair; else -1 */
+  int32_t item, other; /* node, contact, member, hinge, ...; the second node of a pair; else -1 */
 } strut_column;
 
 /** How a result changes with its operands; see quantity_program.c. */

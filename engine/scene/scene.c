@@ -30,6 +30,14 @@ strut_hinge strut_hinge_default(void) {
 
 strut_contact strut_contact_default(void) { return (strut_contact){.node = -1}; }
 
+strut_cell strut_cell_default(void) {
+  return (strut_cell){.name = "", .law = STRUT_LAW_PRESSURE, .exponent = 1.4};
+}
+
+strut_collision strut_collision_default(void) {
+  return (strut_collision){.name = "", .node = {-1, -1}, .member = {-1, -1}};
+}
+
 void strut_scene_free(strut_scene *scene) {
   strut_arena_free(&scene->arena);
   memset(scene, 0, sizeof *scene);
@@ -68,6 +76,18 @@ double strut_hinge_drawn(const strut_scene *scene, size_t index) {
 double strut_hinge_rest(const strut_scene *scene, size_t index) {
   double rest = scene->hinges[index].rest_angle;
   return isnan(rest) ? strut_hinge_drawn(scene, index) : rest;
+}
+
+double strut_cell_drawn(const strut_scene *scene, size_t index) {
+  const strut_cell *cell = &scene->cells[index];
+  const double *o = scene->nodes[cell->node[0]].position;
+  double twice = 0.0;
+  for (size_t k = 1; k + 1 < cell->node_count; k++) {
+    strut_vec2 u = strut_vec2_between(o, scene->nodes[cell->node[k]].position);
+    strut_vec2 v = strut_vec2_between(o, scene->nodes[cell->node[k + 1]].position);
+    twice += u.x * v.y - u.y * v.x;
+  }
+  return 0.5 * twice;
 }
 
 /* Rest length that gives `force` in the drawn shape; NAN if none does. */

@@ -81,6 +81,29 @@ typedef struct strut_hinge {
   double released_at; /* time from which on it has none [s]; 0: never */
 } strut_hinge;
 
+/** A polygon of nodes, in either sense, under a given pressure or filled with a closed gas. */
+typedef struct strut_cell {
+  const char *name;
+  int32_t *node; /* (node_count) */
+  size_t node_count;
+  strut_law_kind law; /* one of STRUT_CELL_LAWS */
+  double pressure;    /* [N/m], pushing outwards; of a gas as drawn, absolute */
+  double exponent;    /* of an isentropic gas, > 1 */
+  double outside;     /* pressure outside a gas [N/m] */
+} strut_cell;
+
+/**
+ * Two bodies that may touch: two of nodes and members, each as thick as half of `thickness`. A node is a
+ * disc, a member a straight rod with round ends. They push each other apart and never pull.
+ */
+typedef struct strut_collision {
+  const char *name;
+  int32_t node[2], member[2]; /* two of these, node[0] and member[0] first; the others -1 */
+  double thickness;           /* distance of their axes at which they touch [m], > 0 */
+  double stiffness;           /* [N/m], > 0 */
+  double damping;             /* [N s/m] while they push */
+} strut_collision;
+
 /** Damping law of the ground; d is the depth, d' its rate. */
 typedef enum strut_ground_damping {
   STRUT_DAMPING_APPROACH,     /* (8): c_g d + k_g max(d', 0), which jumps at touchdown */
@@ -106,14 +129,15 @@ typedef struct strut_contact {
 } strut_contact;
 
 /**
- * Drives the rest length of a member, or the rest angle of a hinge: rest + signal(t). Or adds a force
- * along the member, tension positive, or a moment that closes the hinge where positive.
+ * Drives the rest length of a member, the rest angle of a hinge, or the pressure of a cell: it + signal(t).
+ * Or adds a force along the member, tension positive, or a moment that closes the hinge where positive.
  */
 typedef struct strut_actuator {
   const char *name;
   int32_t member, signal;
   int32_t hinge; /* where member is -1 */
   bool force; /* the signal is a force [N] or a moment [N m] added to the member's or hinge's own */
+  int32_t cell; /* where both are -1 */
 } strut_actuator;
 
 /** A supported coordinate of a node that moves in a run: where it starts, plus signal(t). */
@@ -178,11 +202,15 @@ typedef struct strut_scene {
   strut_configuration *configurations;
   int32_t start_equilibrium; /* configuration at whose equilibrium a run starts, or -1. A run wants
                                 it resolved into positions: strut_resolve_start_equilibrium */
-  strut_arena arena;         /* owns every text and array above */
+  strut_arena arena;         /* owns every text and array of the scene */
   double rayleigh_mass;      /* damping by mass, alpha M v [1/s] */
   double rayleigh_stiffness; /* damping by stiffness, beta c in every member and hinge [s] */
   size_t support_motion_count;
   strut_support_motion *support_motions; /* in the order of nodes, x before y */
+  size_t cell_count;
+  strut_cell *cells;
+  size_t collision_count;
+  strut_collision *collisions;
 } strut_scene;
 
 /** Default structs: zero except where stated above, names empty, indices -1. */
@@ -191,6 +219,8 @@ STRUT_API strut_node strut_node_default(void);
 STRUT_API strut_member strut_member_default(void);
 STRUT_API strut_hinge strut_hinge_default(void);
 STRUT_API strut_contact strut_contact_default(void);
+STRUT_API strut_cell strut_cell_default(void);
+STRUT_API strut_collision strut_collision_default(void);
 /** Frees the contents of the scene and zeroes it. */
 STRUT_API void strut_scene_free(strut_scene *scene);
 
@@ -248,5 +278,8 @@ STRUT_API void strut_scene_hold_supports(strut_scene *scene, bool shapes);
 STRUT_API double strut_hinge_drawn(const strut_scene *scene, size_t hinge);
 /** Rest angle of a hinge [rad]. */
 STRUT_API double strut_hinge_rest(const strut_scene *scene, size_t hinge);
+
+/** Area of a cell as drawn, positive where its nodes run counter-clockwise [m^2]. */
+STRUT_API double strut_cell_drawn(const strut_scene *scene, size_t cell);
 
 #endif

@@ -198,6 +198,11 @@ static void warn_of_loose_masses(strut_checker *checker) {
       used[strut_member_node(&scene->members[i], k)] = true;
   for (size_t i = 0; i < scene->hinge_count; i++)
     for (int k = 0; k < 3; k++) used[scene->hinges[i].node[k]] = true;
+  for (size_t i = 0; i < scene->cell_count; i++)
+    for (size_t k = 0; k < scene->cells[i].node_count; k++) used[scene->cells[i].node[k]] = true;
+  for (size_t i = 0; i < scene->collision_count; i++)
+    for (int k = 0; k < 2; k++)
+      if (scene->collisions[i].node[k] >= 0) used[scene->collisions[i].node[k]] = true;
   for (size_t i = 0; i < scene->node_count && scene->member_count; i++) {
     const strut_node *node = &scene->nodes[i];
     if (!used[i] && node->mass > 0.0 && !(node->fixed[0] && node->fixed[1]))
@@ -220,6 +225,7 @@ strut_status strut_setup_warn(const strut_setup *setup, strut_findings *warnings
   if (scene->ground.present) warn_of_depths(&checker);
   warn_of_pairs(&checker);
   warn_of_loose_masses(&checker);
+  strut_warn_of_overlaps(&checker);
   strut_c_locale_leave(locale);
   return checker.out_of_memory ? STRUT_NO_MEMORY : STRUT_OK;
 }

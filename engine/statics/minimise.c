@@ -288,7 +288,7 @@ strut_descent strut_minimise(strut_minimiser *m, double *q, double tolerance) {
   }
   if (end.end != STRUT_DESCENT_REACHED) return end;
   polish_point(m, q, tolerance, 1e-3 * m->size, &end);
-  if (end.step > 1e-5 * m->size || strut_hinges_have_collapsed(m->potential->model, q))
+  if (end.step > 1e-5 * m->size || strut_shape_has_collapsed(m->potential->model, q))
     end.end = STRUT_DESCENT_EXHAUSTED;
   return end;
 }

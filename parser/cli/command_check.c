@@ -49,6 +49,8 @@ static void print_counts(const strut_plan *plan) {
     printf("  of them            running cables %zu, with a law %zu, stops %zu\n",
            plan->running_cables, plan->laws, plan->stops);
   if (plan->hinges) printf("  hinges             %zu\n", plan->hinges);
+  if (plan->cells) printf("  cells              %zu\n", plan->cells);
+  if (plan->collisions) printf("  collisions         %zu\n", plan->collisions);
   printf("  contacts           %zu\n  actuators          %zu\n  loads              %zu\n",
          plan->contacts, plan->actuators, plan->loads);
   printf("  memory             %s\n", in((double)plan->bytes, "B").text);
@@ -271,6 +273,51 @@ static void print_hinges(const strut_model *model, const double *q) {
     printf("  ... and %zu more; --json lists all\n", scene->hinge_count - MOST_MEMBERS);
 }
 
+static const char *cell_content(const strut_cell *cell) {
+  return cell->law == STRUT_LAW_PRESSURE     ? "given pressure"
+         : cell->law == STRUT_LAW_ISOTHERMAL ? "isothermal gas"
+                                             : "isentropic gas";
+}
+
+static void print_cells(const strut_scene *scene) {
+  for (size_t i = 0; i < scene->cell_count && i < MOST_MEMBERS; i++) {
+    const strut_cell *cell = &scene->cells[i];
+    if (!i) printf("\n  %-12s %12s %12s %12s  content\n", "cell", "drawn", "pressure", "outside");
+    printf("  %-12s %8.4g m^2 %12s %12s  %s\n", cell->name, fabs(strut_cell_drawn(scene, i)),
+           in(cell->pressure, "N/m").text, in(cell->outside, "N/m").text, cell_content(cell));
+  }
+  if (scene->cell_count > MOST_MEMBERS)
+    printf("  ... and %zu more; --json lists all\n", scene->cell_count - MOST_MEMBERS);
+}
+
+/* The least distance of the surfaces of a collision in the drawn shape. */
+static double drawn_gap(const strut_model *model, const double *q, size_t i) {
+  int32_t first = strut_element_of_collision(&model->elements, (int32_t)i);
+  int32_t end = strut_element_end(&model->elements, first);
+  double gap = HUGE_VAL;
+  strut_element_pose pose;
+  for (int32_t k = first; k < end; k++) {
+    strut_element_evaluate(model, k, model->members.rest, q, (double)NAN, &pose);
+    gap = fmin(gap, pose.strain - pose.natural);
+  }
+  return gap;
+}
+
+static void print_collisions(const strut_model *model, const double *q) {
+  const strut_scene *scene = model->scene;
+  for (size_t i = 0; i < scene->collision_count && i < MOST_MEMBERS; i++) {
+    const strut_collision *c = &scene->collisions[i];
+    if (!i)
+      printf("\n  %-12s %12s %12s %12s %14s\n", "collision", "thickness", "drawn gap", "stiffness",
+             "damping");
+    printf("  %-12s %12s %12s %12s %14s\n", c->name, in(c->thickness, "m").text,
+           in(drawn_gap(model, q, i), "m").text, in(c->stiffness, "N/m").text,
+           in(c->damping, "N s/m").text);
+  }
+  if (scene->collision_count > MOST_MEMBERS)
+    printf("  ... and %zu more; --json lists all\n", scene->collision_count - MOST_MEMBERS);
+}
+
 /* Sketches the drawn shape, whatever a run starts with, since that is where typing errors show. */
 static strut_status print_sketch(const strut_model *model, const double *q) {
   int columns = strut_terminal_columns(STDOUT_FILENO, SKETCH_COLUMNS);
@@ -299,6 +346,8 @@ static strut_status print_plan(const strut_plan *plan, const strut_model *model,
   print_stops(model);
   print_ends(scene);
   print_hinges(model, q);
+  print_cells(scene);
+  print_collisions(model, q);
   strut_release(q);
   return status;
 }
@@ -382,6 +431,30 @@ static void add_hinges(strut_json *json, const strut_model *model, const double 
   }
 }
 
+static void add_cells(strut_json *json, const strut_scene *scene) {
+  struct cJSON *cells = strut_json_object(json, json->root, "cells");
+  for (size_t i = 0; i < scene->cell_count; i++) {
+    struct cJSON *row = strut_json_object(json, cells, scene->cells[i].name);
+    strut_json_number(json, row, "drawn_area", fabs(strut_cell_drawn(scene, i)));
+    strut_json_number(json, row, "pressure", scene->cells[i].pressure);
+    strut_json_number(json, row, "outside", scene->cells[i].outside);
+    strut_json_text(json, row, "content", cell_content(&scene->cells[i]));
+  }
+}
+
+static void add_collisions(strut_json *json, const strut_model *model, const double *q) {
+  const strut_scene *scene = model->scene;
+  struct cJSON *collisions = strut_json_object(json, json->root, "collisions");
+  for (size_t i = 0; i < scene->collision_count; i++) {
+    const strut_collision *c = &scene->collisions[i];
+    struct cJSON *row = strut_json_object(json, collisions, c->name);
+    strut_json_number(json, row, "thickness", c->thickness);
+    strut_json_number(json, row, "drawn_gap", drawn_gap(model, q, i));
+    strut_json_number(json, row, "stiffness", c->stiffness);
+    strut_json_number(json, row, "damping", c->damping);
+  }
+}
+
 static void add_members(strut_json *json, const strut_model *model, const double *q) {
   const strut_scene *scene = model->scene;
   struct cJSON *members = strut_json_object(json, json->root, "members");
@@ -423,6 +496,8 @@ static strut_status print_json(const strut_plan *plan, const strut_model *model,
   add_terms(&json, plan);
   add_members(&json, model, q);
   add_hinges(&json, model, q);
+  add_cells(&json, model->scene);
+  add_collisions(&json, model, q);
   strut_release(q);
   if (!add_warnings(&json, setup)) json.failed = true;
   return strut_print_block(strut_json_end(&json));

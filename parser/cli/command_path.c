@@ -186,7 +186,8 @@ static strut_status choose_followed(const strut_arguments *arguments, const stru
   wanted->over = STRUT_PATH_OVER_ACTUATOR;
   wanted->index = find_actuator(scene, name);
   if (wanted->index >= 0) {
-    if (scene->actuators[wanted->index].member < 0) *dimension = STRUT_DIM_ANGLE;
+    const strut_actuator *a = &scene->actuators[wanted->index];
+    if (a->member < 0) *dimension = a->hinge >= 0 ? STRUT_DIM_ANGLE : STRUT_DIM_STIFFNESS;
     return STRUT_OK;
   }
   wanted->over = STRUT_PATH_OVER_COORDINATE;
@@ -337,8 +338,9 @@ const strut_command strut_command_path = {
         "limit points, bifurcations, cables that become slack or taut, and nodes that touch or\n"
         "leave the ground, each with its effect on stability. Friction and drives are ignored.\n"
         "--over varies something else at constant loads: a number under 'parameters' (from its\n"
-        "value in the file), an actuator (the change of its member's rest length or its hinge's\n"
-        "rest angle), or the prescribed displacement of a node along x or y.\n",
+        "value in the file), an actuator (the change of its member's rest length, its hinge's "
+        "rest\n"
+        "angle or its cell's pressure), or the prescribed displacement of a node along x or y.\n",
     .options = options,
     .run = run_path,
     .timed = true,

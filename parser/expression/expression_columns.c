@@ -112,6 +112,7 @@ static int read_quoted(strut_expression_reader *r, const char *kind, size_t begi
                           kind, name.length > 40 ? 40 : (int)name.length, name.text,
                           kind[0] == 'n'   ? "y"
                           : kind[0] == 'h' ? "moment"
+                          : kind[1] == 'e' ? "pressure"
                                            : "force");
     return -1;
   }
@@ -131,15 +132,16 @@ static int read_pair(strut_expression_reader *r, strut_piece word, size_t begin,
   return take(r, begin, r->at, found, column, dimension, &refusal, q);
 }
 
-/* What looks like a function: node(A).x, member(A).force, hinge(A).moment, angle(A, B), distance(A, B). */
+/* What looks like a function: node(A).x, member(A).force, hinge(A).moment, cell(A).area, angle(A, B), distance(A, B). */
 static int read_call(strut_expression_reader *r, size_t begin, size_t length, strut_quantity *q) {
-  static const char *const words[] = {"node", "member", "hinge", "angle", "distance"};
+  static const char *const words[] = {"node",      "member", "hinge",   "cell",
+                                      "collision", "angle",  "distance"};
   for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
     if (strlen(words[i]) != length || memcmp(words[i], r->text + begin, length) != 0) continue;
     r->at = begin + length;
     if (strut_expression_peek(r) != '(') break;
     r->at++;
-    return i < 3 ? read_quoted(r, words[i], begin, q)
+    return i < 5 ? read_quoted(r, words[i], begin, q)
                  : read_pair(r, piece(r, begin, begin + length), begin, q);
   }
   r->at = begin;

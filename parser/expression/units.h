@@ -29,6 +29,7 @@ typedef struct strut_dimension {
 #define STRUT_DIM_MOMENT ((strut_dimension){1, 2, -2, 0})
 #define STRUT_DIM_ANGULAR_STIFFNESS ((strut_dimension){1, 2, -2, -1})
 #define STRUT_DIM_ANGULAR_DAMPING ((strut_dimension){1, 2, -1, -1})
+#define STRUT_DIM_BENDING_STIFFNESS ((strut_dimension){1, 3, -2, 0})
 #define STRUT_DIM_DISSIPATION ((strut_dimension){0, -1, 1, 0})
 
 typedef struct strut_unit {

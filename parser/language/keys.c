@@ -32,28 +32,16 @@ static const strut_key table[] = {STRUT_KEY_TABLE(STRUT_KEY_ROW)};
 
 /* First key of each section, and one more that ends the last; a test compares it with the table. */
 static const int first[] = {
-    STRUT_KEY_SCENE_VERSION,         STRUT_KEY_NODE_POSITION,    STRUT_KEY_MOVES_ALONG_X,
-    STRUT_KEY_MEMBER_GROUP,          STRUT_KEY_HINGE_NODES,      STRUT_KEY_LAW_KIND,
-    STRUT_KEY_RAYLEIGH_MASS,         STRUT_KEY_GROUND_HEIGHT,    STRUT_KEY_FRICTION_LAW,
-    STRUT_KEY_CONTACT_GROUP,         STRUT_KEY_ACTUATOR_MEMBER,  STRUT_KEY_LOAD_NODE,
-    STRUT_KEY_SIGNAL_CONSTANT,       STRUT_KEY_SINE_AMPLITUDE,   STRUT_KEY_HALF_SINE_AMPLITUDE,
-    STRUT_KEY_SQUARE_AMPLITUDE,      STRUT_KEY_RAMP_AMPLITUDE,   STRUT_KEY_CONFIGURATION_CONTACTS,
-    STRUT_KEY_INITIAL_CONFIGURATION, STRUT_KEY_SETTLE_SPEED,     STRUT_KEY_EQUILIBRIA_SUPPORTS,
-    STRUT_KEY_SOLVER_INTEGRATOR,     STRUT_KEY_RUN_DURATION,     STRUT_KEY_MEASURE_LAST,
-    STRUT_KEY_QUANTITY_OF,           STRUT_KEY_STEADY_TOLERANCE, STRUT_KEY_OUTPUT_EVERY,
-    STRUT_KEY_STUDY_VERSION,         STRUT_KEY_RANGE_FROM,       STRUT_KEY_VARIANT_SOLVER,
-    STRUT_KEY_CHECK_HALF_STEP,       STRUT_KEY_FIGURE_KIND,      STRUT_KEY_COUNT};
+#define STRUT_SECTION_ROW(NAME, name, first) STRUT_KEY_##first,
+    STRUT_SECTIONS(STRUT_SECTION_ROW)
+#undef STRUT_SECTION_ROW
+        STRUT_KEY_COUNT};
 
 static const char *const section_names[] = {
-    "scene",     "node",     "moves",   "member",        "hinge",   "law",    "rayleigh",
-    "ground",    "friction", "contact", "actuator",      "load",    "signal", "sine",
-    "half_sine", "square",   "ramp",    "configuration", "initial", "settle", "equilibria",
-    "solver",    "run",      "measure", "quantity",      "steady",  "output", "study",
-    "range",     "variant",  "check",   "figure"};
-
-_Static_assert(sizeof first / sizeof first[0] == STRUT_SECTION_COUNT + 1, "one for each section");
-_Static_assert(sizeof section_names / sizeof section_names[0] == STRUT_SECTION_COUNT,
-               "one for each section");
+#define STRUT_SECTION_ROW(NAME, name, first) name,
+    STRUT_SECTIONS(STRUT_SECTION_ROW)
+#undef STRUT_SECTION_ROW
+};
 
 const strut_key *strut_key_at(int key) {
   assert(key >= 0 && key < STRUT_KEY_COUNT);
@@ -156,6 +144,7 @@ strut_dimension strut_measure_dimension(strut_measure measure) {
     case STRUT_MEASURE_DAMPING: return STRUT_DIM_DAMPING;
     case STRUT_MEASURE_DISSIPATION: return STRUT_DIM_DISSIPATION;
     case STRUT_MEASURE_ANGULAR_STIFFNESS: return STRUT_DIM_ANGULAR_STIFFNESS;
+    case STRUT_MEASURE_BENDING_STIFFNESS: return STRUT_DIM_BENDING_STIFFNESS;
     case STRUT_MEASURE_ANGULAR_DAMPING: return STRUT_DIM_ANGULAR_DAMPING;
     case STRUT_MEASURE_MOMENT: return STRUT_DIM_MOMENT;
     case STRUT_MEASURE_NONE:
@@ -246,6 +235,8 @@ const char *strut_key_expected(int key, char *buffer, size_t size) {
     case STRUT_TYPE_TEXT: return "a text";
     case STRUT_TYPE_NAME: return "a name";
     case STRUT_TYPE_NODE_PATH: return "two nodes such as [n1, n2], or the nodes of a running cable";
+    case STRUT_TYPE_NODE_RING: return "three nodes or more such as [n1, n2, n3]";
+    case STRUT_TYPE_NAME_PAIR: return "two names such as [a, b]";
     case STRUT_TYPE_NODE_TRIPLE: return "three nodes such as [n1, n2, n3]";
     case STRUT_TYPE_NUMBERS: return "a list of numbers";
     case STRUT_TYPE_POINTS: return "a list of points such as [[0, 0], [2 mm, 3 N]]";

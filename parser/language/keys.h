@@ -15,41 +15,53 @@
 #include "parser/expression/units.h"
 #include "parser/language/keys_table.h"
 
+/** The sections: X(NAME, name, its first key). */
+/* clang-format off */
+#define STRUT_SECTIONS(X) \
+  X(SCENE, "scene", SCENE_VERSION) \
+  X(NODE, "node", NODE_POSITION) \
+  X(MOVES, "moves", MOVES_ALONG_X) \
+  X(MEMBER, "member", MEMBER_GROUP) \
+  X(HINGE, "hinge", HINGE_NODES) \
+  X(CELL, "cell", CELL_NODES) \
+  X(GAS, "gas", GAS_KIND) \
+  X(COLLISION, "collision", COLLISION_NODE) \
+  X(BEAM, "beam", BEAM_NODES) \
+  X(LAW, "law", LAW_KIND) \
+  X(RAYLEIGH, "rayleigh", RAYLEIGH_MASS) \
+  X(GROUND, "ground", GROUND_HEIGHT) \
+  X(FRICTION, "friction", FRICTION_LAW) \
+  X(CONTACT, "contact", CONTACT_GROUP) \
+  X(ACTUATOR, "actuator", ACTUATOR_MEMBER) \
+  X(LOAD, "load", LOAD_NODE) \
+  X(SIGNAL, "signal", SIGNAL_CONSTANT) \
+  X(SINE, "sine", SINE_AMPLITUDE) \
+  X(HALF_SINE, "half_sine", HALF_SINE_AMPLITUDE) \
+  X(SQUARE, "square", SQUARE_AMPLITUDE) \
+  X(RAMP, "ramp", RAMP_AMPLITUDE) \
+  X(CONFIGURATION, "configuration", CONFIGURATION_CONTACTS) \
+  X(INITIAL, "initial", INITIAL_CONFIGURATION) \
+  X(SETTLE, "settle", SETTLE_SPEED) \
+  X(EQUILIBRIA, "equilibria", EQUILIBRIA_SUPPORTS) \
+  X(SOLVER, "solver", SOLVER_INTEGRATOR) \
+  X(RUN, "run", RUN_DURATION) \
+  X(MEASURE, "measure", MEASURE_LAST) \
+  X(QUANTITY, "quantity", QUANTITY_OF) \
+  X(STEADY, "steady", STEADY_TOLERANCE) \
+  X(OUTPUT, "output", OUTPUT_EVERY) \
+  X(STUDY, "study", STUDY_VERSION) \
+  X(RANGE, "range", RANGE_FROM) \
+  X(VARIANT, "variant", VARIANT_SOLVER) \
+  X(CHECK, "check", CHECK_HALF_STEP) \
+  X(FIGURE, "figure", FIGURE_KIND)
+/* clang-format on */
+
 /** The mappings of the language. */
 typedef enum strut_section {
-  STRUT_SECTION_SCENE,
-  STRUT_SECTION_NODE,
-  STRUT_SECTION_MOVES,
-  STRUT_SECTION_MEMBER,
-  STRUT_SECTION_HINGE,
-  STRUT_SECTION_LAW,
-  STRUT_SECTION_RAYLEIGH,
-  STRUT_SECTION_GROUND,
-  STRUT_SECTION_FRICTION,
-  STRUT_SECTION_CONTACT,
-  STRUT_SECTION_ACTUATOR,
-  STRUT_SECTION_LOAD,
-  STRUT_SECTION_SIGNAL,
-  STRUT_SECTION_SINE,
-  STRUT_SECTION_HALF_SINE,
-  STRUT_SECTION_SQUARE,
-  STRUT_SECTION_RAMP,
-  STRUT_SECTION_CONFIGURATION,
-  STRUT_SECTION_INITIAL,
-  STRUT_SECTION_SETTLE,
-  STRUT_SECTION_EQUILIBRIA,
-  STRUT_SECTION_SOLVER,
-  STRUT_SECTION_RUN,
-  STRUT_SECTION_MEASURE,
-  STRUT_SECTION_QUANTITY,
-  STRUT_SECTION_STEADY,
-  STRUT_SECTION_OUTPUT,
-  STRUT_SECTION_STUDY,
-  STRUT_SECTION_RANGE,
-  STRUT_SECTION_VARIANT,
-  STRUT_SECTION_CHECK,
-  STRUT_SECTION_FIGURE,
-  STRUT_SECTION_COUNT
+#define STRUT_SECTION_ROW(NAME, name, first) STRUT_SECTION_##NAME,
+  STRUT_SECTIONS(STRUT_SECTION_ROW)
+#undef STRUT_SECTION_ROW
+      STRUT_SECTION_COUNT
 } strut_section;
 
 typedef enum strut_key_type {
@@ -79,7 +91,9 @@ typedef enum strut_key_type {
   STRUT_TYPE_AXES,          /* a list of axes of a study */
   STRUT_TYPE_TIMES,         /* a list of times */
   STRUT_TYPE_MAP,           /* the keys of the section that has the key's name */
-  STRUT_TYPE_THINGS         /* a mapping from names to things, described by `words` */
+  STRUT_TYPE_THINGS,        /* a mapping from names to things, described by `words` */
+  STRUT_TYPE_NODE_RING,     /* the names of three nodes or more */
+  STRUT_TYPE_NAME_PAIR      /* the names of two things */
 } strut_key_type;
 
 /** The dimension of a number; CONTEXT: it depends on the use of the mapping. */
@@ -99,7 +113,8 @@ typedef enum strut_measure {
   STRUT_MEASURE_DISSIPATION,
   STRUT_MEASURE_ANGULAR_STIFFNESS,
   STRUT_MEASURE_ANGULAR_DAMPING,
-  STRUT_MEASURE_MOMENT
+  STRUT_MEASURE_MOMENT,
+  STRUT_MEASURE_BENDING_STIFFNESS
 } strut_measure;
 
 typedef enum strut_key_range {
@@ -146,6 +161,21 @@ typedef struct strut_ground_section {
   strut_contact contact;
 } strut_ground_section;
 
+enum { STRUT_USUAL_PARTS = 10 };
+
+/** The object of the section `beam`, which the reader turns into nodes, members and hinges. */
+typedef struct strut_beam {
+  const char *name;
+  const struct strut_tree *key; /* its place */
+  int32_t node[2];
+  double bending_stiffness, axial_stiffness; /* EI [N m^2], EA [N] */
+  double mass, damping;                      /* [kg] of the whole; over stiffness [s] */
+  int32_t parts;
+  uint32_t clamped;                  /* bits: at its first node, at its second */
+  int32_t first_node, clamp_node[2]; /* of the nodes that it has added */
+  bool broken;
+} strut_beam;
+
 /** One row of the table. */
 typedef struct strut_key {
   strut_section section;
@@ -169,7 +199,7 @@ enum {
       STRUT_KEY_COUNT
 };
 
-enum { STRUT_MOST_KEYS = 24 }; /* of one section */
+enum { STRUT_MOST_KEYS = 40 }; /* of one section */
 
 STRUT_API const strut_key *strut_key_at(int key);
 /** First key and number of keys of a section. */

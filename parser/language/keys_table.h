@@ -24,6 +24,9 @@
   X(SCENE, NODES, "nodes", THINGS, NONE, ANY, "", REQUIRED, 0, "`[x, y]` or the keys of a node", BY_HAND, "The points of the structure.") \
   X(SCENE, MEMBERS, "members", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a member", BY_HAND, "The bars, springs and cables between the nodes.") \
   X(SCENE, HINGES, "hinges", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a hinge", BY_HAND, "Springs of the angle between two arms that meet in a node.") \
+  X(SCENE, CELLS, "cells", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a cell", BY_HAND, "Polygons of nodes under pressure.") \
+  X(SCENE, COLLISIONS, "collisions", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a collision", BY_HAND, "Pairs of nodes and members that do not pass through each other.") \
+  X(SCENE, BEAMS, "beams", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a beam", BY_HAND, "Chains of bars and hinges that bend.") \
   X(SCENE, RAYLEIGH, "rayleigh", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Damping of the whole structure by mass and by stiffness.") \
   X(SCENE, MASS_MODEL, "mass_model", WORD, NONE, ANY, "consistent", WRITTEN, 0, "consistent|lumped", FIELD(strut_scene, mass_model), "How a member's mass acts: `consistent` as that of a uniform rod (the paper's model), `lumped` as half of it at each end.") \
   X(SCENE, BARS, "bars", WORD, NONE, ANY, "elastic", OPTIONAL, 0, "elastic|rigid", FIELD(strut_scene, bar_model), "`rigid` bars keep, during a run, the length they have at its start; their stiffness and damping then count only while the structure settles.") \
@@ -71,6 +74,27 @@
   X(HINGE, LAW, "law", LAW, NONE, ANY, "linear", OPTIONAL, 0, "", BY_HAND, "Law of the moment over angle - rest angle.") \
   X(HINGE, BREAKS_AT, "breaks_at", NUMBER, MOMENT, ABOVE_ZERO, "never", OPTIONAL, 0, "", FIELD(strut_hinge, breaks_at), "Size of the moment at which the hinge breaks: from then on it has none.") \
   X(HINGE, RELEASED_AT, "released_at", NUMBER, TIME, ABOVE_ZERO, "never", OPTIONAL, 0, "", FIELD(strut_hinge, released_at), "Time from which on the hinge has no moment.") \
+  X(CELL, NODES, "nodes", NODE_RING, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "The corners `[a, b, c, ...]` in order, in either sense. They need no members between them.") \
+  X(CELL, PRESSURE, "pressure", NUMBER, STIFFNESS, ANY, "", OPTIONAL, 7, "", FIELD(strut_cell, pressure), "Given pressure, force per length of the boundary, outwards; negative: suction. An actuator may change it.") \
+  X(CELL, GAS, "gas", MAP, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "A closed gas, whose pressure follows from the area.") \
+  X(GAS, KIND, "kind", WORD, NONE, ANY, "", REQUIRED, 0, "isothermal|isentropic", BY_HAND, "With the area A, A0 as drawn: `isothermal`, p = pressure * A0 / A. `isentropic`, p = pressure * (A0 / A)^exponent.") \
+  X(GAS, PRESSURE, "pressure", NUMBER, STIFFNESS, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_cell, pressure), "Absolute pressure as drawn.") \
+  X(GAS, EXPONENT, "exponent", NUMBER, NONE, ABOVE_ZERO, "1.4", OPTIONAL, 0, "", FIELD(strut_cell, exponent), "Isentropic exponent, above 1.") \
+  X(GAS, OUTSIDE, "outside", NUMBER, STIFFNESS, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_cell, outside), "Absolute pressure outside, which pushes inwards.") \
+  X(COLLISION, NODE, "node", NAME, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "A node that may touch the `member`.") \
+  X(COLLISION, MEMBER, "member", NAME, NONE, ANY, "", OPTIONAL, 8, "", BY_HAND, "The member that the `node` may touch; a straight line between its ends, which are round.") \
+  X(COLLISION, NODES, "nodes", NAME_PAIR, NONE, ANY, "", OPTIONAL, 8, "", BY_HAND, "Two nodes that may touch each other as discs.") \
+  X(COLLISION, MEMBERS, "members", NAME_PAIR, NONE, ANY, "", OPTIONAL, 8, "", BY_HAND, "Two members that may touch each other: each end of one with the other.") \
+  X(COLLISION, THICKNESS, "thickness", NUMBER, LENGTH, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_collision, thickness), "Distance of the two axes or centres at which they touch.") \
+  X(COLLISION, STIFFNESS, "stiffness", NUMBER, STIFFNESS, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_collision, stiffness), "Force per depth.") \
+  X(COLLISION, DAMPING, "damping", NUMBER, DAMPING, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_collision, damping), "Force per speed of approach while they touch; a collision never pulls.") \
+  X(BEAM, NODES, "nodes", NAME_PAIR, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "The nodes at its ends; it is straight at rest.") \
+  X(BEAM, BENDING_STIFFNESS, "bending_stiffness", NUMBER, BENDING_STIFFNESS, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_beam, bending_stiffness), "EI; a hinge between two parts of the length h has the stiffness EI / h, one at a clamp 2 EI / h.") \
+  X(BEAM, AXIAL_STIFFNESS, "axial_stiffness", NUMBER, FORCE, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_beam, axial_stiffness), "EA of its parts.") \
+  X(BEAM, PARTS, "parts", NUMBER, NONE, WHOLE(1, 10000), "10", OPTIONAL, 0, "", FIELD(strut_beam, parts), "Number of bars.") \
+  X(BEAM, MASS, "mass", NUMBER, MASS, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_beam, mass), "Mass of the whole beam.") \
+  X(BEAM, DAMPING, "damping", NUMBER, TIME, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_beam, damping), "Damping / stiffness of the material, of bars and hinges alike (Kelvin-Voigt).") \
+  X(BEAM, CLAMPED, "clamped", WORD, NONE, ANY, "none", OPTIONAL, 0, "none|start|end|both", FIELD(strut_beam, clamped), "Ends whose direction is held, at a fixed node.") \
   X(LAW, KIND, "kind", WORD, NONE, ANY, "linear", WRITTEN, 0, STRUT_LAW_WORDS, FIELD(strut_law, kind), "With the stiffness k and x the elongation: `linear`, k x. `bilinear`, k x up to the knee on either side, then with the slope `second_stiffness`. `play`, no force within the gap on either side, beyond it k times the excess. `elastic_plastic`, k x until the force reaches the yield, then with the slope `second_stiffness`, and back along k: what has yielded stays. `polynomial`, c1 x + c2 x^2 + ... `logarithmic`, k L ln(length / L) with the rest length L. `exponential`, k s (exp(x / s) - 1) with the scale s. `table`, through points.") \
   X(LAW, CARRIES, "carries", WORD, NONE, ANY, "both", OPTIONAL, 0, "both|tension|compression", FIELD(strut_law, carries), "Forces that are carried: with `tension` the element acts beyond its rest length only, with `compression` below it.") \
   X(LAW, KNEE, "knee", NUMBER, CONTEXT, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_law, knee), "Elongation at which a bilinear law changes its slope.") \
@@ -110,7 +134,8 @@
   X(CONTACT, FRICTION, "friction", MAP, NONE, ANY, "the ground's", OPTIONAL, 0, "", BY_HAND, "Replaces single keys of the ground's friction.") \
   X(ACTUATOR, MEMBER, "member", NAME, NONE, ANY, "", OPTIONAL, 6, "", BY_HAND, "The member whose rest length it changes, or to which it adds a force.") \
   X(ACTUATOR, HINGE, "hinge", NAME, NONE, ANY, "", OPTIONAL, 6, "", BY_HAND, "The hinge whose rest angle it changes, or to which it adds a moment.") \
-  X(ACTUATOR, SIGNAL, "signal", SIGNAL, CONTEXT, ANY, "", OPTIONAL, 7, "", BY_HAND, "Added to the rest length of the member, or to the rest angle of the hinge.") \
+  X(ACTUATOR, CELL, "cell", NAME, NONE, ANY, "", OPTIONAL, 6, "", BY_HAND, "The cell whose given pressure it changes.") \
+  X(ACTUATOR, SIGNAL, "signal", SIGNAL, CONTEXT, ANY, "", OPTIONAL, 7, "", BY_HAND, "Added to the rest length of the member, to the rest angle of the hinge, or to the pressure of the cell.") \
   X(ACTUATOR, FORCE, "force", SIGNAL, FORCE, ANY, "", OPTIONAL, 7, "", BY_HAND, "Instead of `signal`: a force added to the member's own, tension positive. Statics leave it out.") \
   X(ACTUATOR, MOMENT, "moment", SIGNAL, CONTEXT, ANY, "", OPTIONAL, 7, "", BY_HAND, "Instead of `signal`: a moment added to the hinge's own, which closes its angle where positive. Statics leave it out.") \
   X(LOAD, NODE, "node", NAME, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "The node on which the force acts.") \
@@ -181,7 +206,7 @@
   X(STEADY, SHOOTING, "shooting", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_steady, shooting), "Solve for the periodic orbit by Newton's method (shooting) and report its Floquet multipliers; for structures with up to 48 degrees of freedom.") \
   X(OUTPUT, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, "a thousandth of the recorded time", OPTIONAL, 0, "", FIELD(strut_experiment, output_every), "Time between two samples.") \
   X(OUTPUT, LAST, "last", NUMBER, CONTEXT, ABOVE_ZERO, "the whole run", OPTIONAL, 0, "", FIELD(strut_experiment, output_last), "Record only the end of the run: a number of periods if the run is given in periods, otherwise a time.") \
-  X(OUTPUT, CHANNELS, "channels", WORDS, NONE, ANY, "[position, length, force]", WRITTEN, 0, "position|velocity|length|force|contact|energy|angle|moment", FIELD(strut_experiment, channels), "The channels to record: `position` and `velocity` of nodes, `length` and `force` of members, `contact` forces, `energy`, `angle` and `moment` of hinges.") \
+  X(OUTPUT, CHANNELS, "channels", WORDS, NONE, ANY, "[position, length, force]", WRITTEN, 0, "position|velocity|length|force|contact|energy|angle|moment|area|pressure", FIELD(strut_experiment, channels), "The channels to record: `position` and `velocity` of nodes, `length` and `force` of members, `contact` forces, `energy`, `angle` and `moment` of hinges, `area` and `pressure` of cells.") \
   X(STUDY, VERSION, "strut", VERSION, NONE, ANY, "", REQUIRED, 0, "1", BY_HAND, "Version of the language.") \
   X(STUDY, NAME, "study", TEXT, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_study, name), "Name of the study.") \
   X(STUDY, DESCRIPTION, "description", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study, description), "What the study is for.") \

@@ -75,11 +75,13 @@ static bool signal_place(strut_reader *reader, const strut_finding *finding, str
   return true;
 }
 
-/* Findings about nodes, members, contacts, actuators, loads and configurations. */
+/* Findings about nodes, members, hinges, cells, contacts, actuators, loads and configurations. */
 static bool many_place(strut_reader *reader, const strut_finding *finding, strut_place *place) {
   const strut_source *sources[] = {[STRUT_ON_NODE] = reader->node_source,
                                    [STRUT_ON_MEMBER] = reader->member_source,
                                    [STRUT_ON_HINGE] = reader->hinge_source,
+                                   [STRUT_ON_CELL] = reader->cell_source,
+                                   [STRUT_ON_COLLISION] = reader->collision_source,
                                    [STRUT_ON_CONTACT] = reader->contact_source,
                                    [STRUT_ON_ACTUATOR] = reader->actuator_source,
                                    [STRUT_ON_LOAD] = reader->load_source,
@@ -131,6 +133,8 @@ static bool single_place(strut_reader *reader, const strut_finding *finding, str
     case STRUT_ON_NODE:
     case STRUT_ON_MEMBER:
     case STRUT_ON_HINGE:
+    case STRUT_ON_CELL:
+    case STRUT_ON_COLLISION:
     case STRUT_ON_CONTACT:
     case STRUT_ON_ACTUATOR:
     case STRUT_ON_LOAD:
@@ -151,6 +155,7 @@ void strut_place_findings(strut_reader *reader, const strut_findings *findings) 
     bool many = finding->subject == STRUT_ON_NODE || finding->subject == STRUT_ON_MEMBER ||
                 finding->subject == STRUT_ON_HINGE || finding->subject == STRUT_ON_CONTACT ||
                 finding->subject == STRUT_ON_ACTUATOR || finding->subject == STRUT_ON_LOAD ||
+                finding->subject == STRUT_ON_CELL || finding->subject == STRUT_ON_COLLISION ||
                 finding->subject == STRUT_ON_CONFIGURATION;
     bool fresh = many                                  ? many_place(reader, finding, &place)
                  : finding->subject == STRUT_ON_SIGNAL ? signal_place(reader, finding, &place)

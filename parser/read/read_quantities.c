@@ -45,7 +45,7 @@ static bool is(strut_piece piece, const char *word) {
 /* The owners that a name may refer to, and their words in messages. */
 typedef struct found_owner {
   unsigned owners; /* bits 1 << strut_column_owner */
-  int32_t node, member, hinge;
+  int32_t node, member, hinge, cell, collision;
   const char *what; /* "node", "member", "hinge", "the energy" */
 } found_owner;
 
@@ -70,17 +70,23 @@ static const char *owner_name(const void *context, size_t i) {
   i -= scene->member_count;
   if (i < scene->hinge_count) return scene->hinges[i].name;
   i -= scene->hinge_count;
+  if (i < scene->cell_count) return scene->cells[i].name;
+  i -= scene->cell_count;
+  if (i < scene->collision_count) return scene->collisions[i].name;
+  i -= scene->collision_count;
   return i < GROUP_COUNT ? groups[i].word : NULL;
 }
 
 static bool all_known(strut_reader *reader) {
   return strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN &&
          strut_slot_of(&reader->top, STRUT_KEY_SCENE_MEMBERS)->state != STRUT_BROKEN &&
-         strut_slot_of(&reader->top, STRUT_KEY_SCENE_HINGES)->state != STRUT_BROKEN;
+         strut_slot_of(&reader->top, STRUT_KEY_SCENE_HINGES)->state != STRUT_BROKEN &&
+         strut_slot_of(&reader->top, STRUT_KEY_SCENE_CELLS)->state != STRUT_BROKEN &&
+         strut_slot_of(&reader->top, STRUT_KEY_SCENE_COLLISIONS)->state != STRUT_BROKEN;
 }
 
 static found_owner find_owner(strut_reader *reader, const char *kind, strut_piece name) {
-  found_owner found = {.node = -1, .member = -1, .hinge = -1};
+  found_owner found = {.node = -1, .member = -1, .hinge = -1, .cell = -1, .collision = -1};
   const char *text = text_of(reader, name);
   if (!kind || strcmp(kind, "member") == 0)
     found.member = strut_name_map_find(&reader->member_names, text);
@@ -88,6 +94,12 @@ static found_owner find_owner(strut_reader *reader, const char *kind, strut_piec
     found.node = strut_name_map_find(&reader->node_names, text);
   if (!kind || strcmp(kind, "hinge") == 0)
     found.hinge = strut_name_map_find(&reader->hinge_names, text);
+  if (!kind || strcmp(kind, "cell") == 0)
+    found.cell = strut_name_map_find(&reader->cell_names, text);
+  if (!kind || strcmp(kind, "collision") == 0)
+    found.collision = strut_name_map_find(&reader->collision_names, text);
+  if (found.collision >= 0) found.owners |= OWNER(COLLISION), found.what = "collision";
+  if (found.cell >= 0) found.owners |= OWNER(CELL), found.what = "cell";
   if (found.hinge >= 0) found.owners |= OWNER(HINGE), found.what = "hinge";
   if (found.member >= 0) found.owners |= OWNER(MEMBER), found.what = "member";
   if (found.node >= 0) found.owners |= OWNER(NODE) | OWNER(CONTACT), found.what = "node";
@@ -130,7 +142,8 @@ static int refuse_owner(strut_reader *reader, const char *kind, strut_piece owne
                         strut_refusal *refusal) {
   if (!all_known(reader)) return -1;
   size_t count = reader->scene->node_count + reader->scene->member_count +
-                 reader->scene->hinge_count + GROUP_COUNT;
+                 reader->scene->hinge_count + reader->scene->cell_count +
+                 reader->scene->collision_count + GROUP_COUNT;
   snprintf(refusal->text, sizeof refusal->text, "unknown %s '%.*s'%s",
            kind                         ? kind
            : reader->scene->hinge_count ? "node, member or hinge"
@@ -143,7 +156,8 @@ static int refuse_owner(strut_reader *reader, const char *kind, strut_piece owne
 static int refuse_field(strut_reader *reader, const found_owner *found, strut_piece owner,
                         strut_piece field, strut_refusal *refusal) {
   char list[200];
-  bool thing = found->node >= 0 || found->member >= 0 || found->hinge >= 0;
+  bool thing = found->node >= 0 || found->member >= 0 || found->hinge >= 0 || found->cell >= 0 ||
+               found->collision >= 0;
   const char *hint = strut_hint(reader, text_of(reader, field), field_name, &found->owners,
                                 field_count(found->owners));
   snprintf(refusal->text, sizeof refusal->text, "%s%s%.*s%s has no column '%.*s'%s%s%s",
@@ -229,6 +243,8 @@ static int find_column(void *context, const char *kind, strut_piece owner, strut
   strut_column_owner of = columns[column->kind].owner;
   if (of == STRUT_COLUMN_OF_MEMBER) column->item = found.member;
   if (of == STRUT_COLUMN_OF_HINGE) column->item = found.hinge;
+  if (of == STRUT_COLUMN_OF_CELL) column->item = found.cell;
+  if (of == STRUT_COLUMN_OF_COLLISION) column->item = found.collision;
   if (of != STRUT_COLUMN_OF_NODE && of != STRUT_COLUMN_OF_CONTACT) return 1;
   column->item = found.node;
   return touches(reader, column->kind, found.node, refusal) ? 1 : -1;

@@ -176,11 +176,14 @@ bool strut_read_node_pairs(strut_reader *reader, const strut_tree *map, strut_ow
 
 /* The signal of an actuator: what it adds to a rest length or angle, or a force, or a moment. */
 static bool read_drive(strut_reader *reader, const strut_tree *key, strut_fields *fields,
-                       strut_owner owner, bool hinge, bool known, strut_actuator *actuator) {
+                       strut_owner owner, bool hinge, bool cell, bool known,
+                       strut_actuator *actuator) {
   static const int keys[] = {STRUT_KEY_ACTUATOR_SIGNAL, STRUT_KEY_ACTUATOR_FORCE,
                              STRUT_KEY_ACTUATOR_MOMENT};
-  const strut_dimension dimensions[] = {hinge ? STRUT_DIM_ANGLE : STRUT_DIM_LENGTH, STRUT_DIM_FORCE,
-                                        STRUT_DIM_MOMENT};
+  const strut_dimension dimensions[] = {hinge  ? STRUT_DIM_ANGLE
+                                        : cell ? STRUT_DIM_STIFFNESS
+                                               : STRUT_DIM_LENGTH,
+                                        STRUT_DIM_FORCE, STRUT_DIM_MOMENT};
   int k = 0;
   while (k < 3 && strut_slot_of(fields, keys[k])->state == STRUT_ABSENT) k++;
   const strut_slot *slot = strut_slot_of(fields, keys[k < 3 ? k : 0]);
@@ -190,6 +193,12 @@ static bool read_drive(strut_reader *reader, const strut_tree *key, strut_fields
                        "frequency: 10 Hz}}, or a signal's name; or 'force' or 'moment' instead",
                        strut_owner_text(reader, owner));
   if (k == 3) return false;
+  if (known && k > 0 && cell) {
+    strut_report_error(reader, slot->key->place,
+                       "%s gives a '%s' to a cell, whose pressure a 'signal' drives",
+                       strut_owner_text(reader, owner), strut_key_at(keys[k])->name);
+    return false;
+  }
   if (known && k > 0 && hinge != (k == 2)) {
     strut_report_error(reader, slot->key->place,
                        hinge ? "%s gives a 'force' to a hinge, which takes a 'moment'"
@@ -212,8 +221,10 @@ static bool read_actuator(strut_reader *reader, const strut_tree *key, strut_act
   strut_require(reader, &fields, owner, key->place);
   const strut_slot *member = strut_slot_of(&fields, STRUT_KEY_ACTUATOR_MEMBER);
   const strut_slot *hinge = strut_slot_of(&fields, STRUT_KEY_ACTUATOR_HINGE);
+  const strut_slot *cell = strut_slot_of(&fields, STRUT_KEY_ACTUATOR_CELL);
   bool known = strut_slot_of(&reader->top, STRUT_KEY_SCENE_MEMBERS)->state != STRUT_BROKEN;
-  if (member->state == STRUT_ABSENT && hinge->state == STRUT_ABSENT && !fields.broken) {
+  if (member->state == STRUT_ABSENT && hinge->state == STRUT_ABSENT &&
+      cell->state == STRUT_ABSENT && !fields.broken) {
     strut_report_error(reader, key->place,
                        "%s lacks 'member', expected the name of a member, or "
                        "'hinge' with the name of a hinge",
@@ -225,14 +236,21 @@ static bool read_actuator(strut_reader *reader, const strut_tree *key, strut_act
     actuator->hinge =
         strut_read_reference(reader, hinge->value, "hinge", owner, "hinge", &reader->hinge_names,
                              strut_hinge_name, reader->scene->hinge_count);
+  if (cell->state == STRUT_GIVEN &&
+      strut_slot_of(&reader->top, STRUT_KEY_SCENE_CELLS)->state != STRUT_BROKEN)
+    actuator->cell =
+        strut_read_reference(reader, cell->value, "cell", owner, "cell", &reader->cell_names,
+                             strut_cell_name, reader->scene->cell_count);
   if (member->state == STRUT_GIVEN && known)
     actuator->member =
         strut_read_reference(reader, member->value, "member", owner, "member",
                              &reader->member_names, strut_member_name, reader->scene->member_count);
   /* of what, tells the signal's dimension */
-  bool drives = member->state != STRUT_ABSENT || hinge->state != STRUT_ABSENT;
-  fine = read_drive(reader, key, &fields, owner, hinge->key, drives, actuator) && fine;
-  return fine && !fields.broken && (actuator->member >= 0 || actuator->hinge >= 0);
+  bool drives =
+      member->state != STRUT_ABSENT || hinge->state != STRUT_ABSENT || cell->state != STRUT_ABSENT;
+  fine = read_drive(reader, key, &fields, owner, hinge->key, cell->key, drives, actuator) && fine;
+  return fine && !fields.broken &&
+         (actuator->member >= 0 || actuator->hinge >= 0 || actuator->cell >= 0);
 }
 
 static void read_actuators(strut_reader *reader) {
@@ -246,8 +264,11 @@ static void read_actuators(strut_reader *reader) {
   if (!scene->actuators || !reader->actuator_source) return;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
     size_t i = strut_next_entry(reader, &scene->actuator_count);
-    scene->actuators[i] = (strut_actuator){
-        .name = strut_keep_text(reader, key->text), .member = -1, .signal = -1, .hinge = -1};
+    scene->actuators[i] = (strut_actuator){.name = strut_keep_text(reader, key->text),
+                                           .member = -1,
+                                           .signal = -1,
+                                           .hinge = -1,
+                                           .cell = -1};
     strut_add_name(reader, &reader->actuator_names, scene->actuators[i].name, i);
     bool fine = read_actuator(reader, key, &scene->actuators[i]);
     reader->actuator_source[i] = (strut_source){key, key->next, !fine};

@@ -106,14 +106,14 @@ typedef struct strut_reader {
   strut_purpose purpose;
   strut_fields top;
   strut_name_map node_names, member_names, group_names, parameter_names, signal_names,
-      configuration_names, actuator_names, load_names, hinge_names;
+      configuration_names, actuator_names, load_names, hinge_names, cell_names, collision_names;
   strut_group *groups;
   size_t group_count;
   strut_parameter_state *parameters;
   size_t parameter_count, parameter_depth;
   strut_parameter_state *parameter_stack[STRUT_DEEPEST_PARAMETER]; /* being read */
   strut_source *node_source, *member_source, *actuator_source, *load_source, *contact_source,
-      *hinge_source;
+      *hinge_source, *cell_source, *collision_source;
   const strut_tree **velocity_source; /* (node_count) or NULL: where single velocities stand */
   strut_named_signal *named;
   size_t named_count, signal_depth, signal_capacity;
@@ -128,6 +128,8 @@ typedef struct strut_reader {
   const char *asking_set;   /* or the parameter whose setting is */
   unsigned spellings;       /* one bit for each former name that was noted */
   size_t suggestions;       /* names compared so far, to bound the effort */
+  strut_beam *beams;        /* (beam_count) those that could be read */
+  size_t beam_count;
   bool holes;          /* refused parts are missing from the tree: absent keys are not reported */
   bool ends_unknown;   /* some member or load could not be tied to its nodes */
   bool masses_unknown; /* some mass could not be read */
@@ -319,6 +321,22 @@ bool strut_read_law(strut_reader *reader, const strut_slot *slot, strut_owner ow
                     strut_dimension strain, strut_dimension force, strut_law *law);
 void strut_read_hinges(strut_reader *reader);
 void strut_read_rayleigh(strut_reader *reader);
+
+/* read_cells.c */
+
+/** Name of cell i, or NULL after the last; the context is the reader. */
+const char *strut_cell_name(const void *reader, size_t i);
+void strut_read_cells(strut_reader *reader);
+
+/* read_collisions.c */
+void strut_read_collisions(strut_reader *reader);
+
+/* read_beams.c */
+
+/** Reads the beams and adds their nodes; the others add their members and hinges, when those are read. */
+void strut_read_beams(strut_reader *reader);
+void strut_add_beam_members(strut_reader *reader);
+void strut_add_beam_hinges(strut_reader *reader);
 
 /* places.c */
 

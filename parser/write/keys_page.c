@@ -21,6 +21,20 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
     [STRUT_SECTION_HINGE] =
         "`hinges: {NAME: {...}}`. A hinge needs a stiffness, a damping, or a "
         "law that brings its own stiffness.",
+    [STRUT_SECTION_CELL] =
+        "`cells: {NAME: {...}}`: either `pressure` or `gas`. In the plane a pressure is a force "
+        "per "
+        "length.",
+    [STRUT_SECTION_GAS] = "`cells: {NAME: {gas: {...}}}`.",
+    [STRUT_SECTION_COLLISION] =
+        "`collisions: {NAME: {...}}`: `node` and `member`, or `nodes`, or `members`. Things pass "
+        "through each other unless a collision names them.",
+    [STRUT_SECTION_BEAM] =
+        "`beams: {NAME: {...}}`. A beam is short for nodes `NAME.1`, `NAME.2`, ... between its "
+        "ends, "
+        "bars `NAME.1`, ... and hinges `NAME.1`, ... at these nodes; at a clamp also the fixed "
+        "node "
+        "and the hinge `NAME.start` or `NAME.end`. `strut write` writes these.",
     [STRUT_SECTION_LAW] =
         "`law: {...}` of a member or a hinge, or only its kind, such as `law: logarithmic`; "
         "`law: tension_only` and `law: compression_only` are linear and carry one sign. For a "
@@ -48,8 +62,9 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
     [STRUT_SECTION_LOAD] = "`loads: {NAME: {...}}`.",
     [STRUT_SECTION_SIGNAL] =
         "A signal is a mapping with one of these keys, or the name of an entry of `signals`. The "
-        "unit of its values follows from its use: a length or an angle, or a force or a moment, "
-        "for an actuator, a number without unit for a load.",
+        "unit of its values follows from its use: a length, an angle or a pressure, or a force or "
+        "a "
+        "moment, for an actuator, a number without unit for a load.",
     [STRUT_SECTION_SINE] = "`{sine: {...}}`.",
     [STRUT_SECTION_HALF_SINE] = "`{half_sine: {...}}`: a single pulse.",
     [STRUT_SECTION_SQUARE] = "`{square: {...}}`.",
@@ -124,6 +139,8 @@ static void put_type(strut_writer *writer, const strut_key *key) {
       [STRUT_TYPE_NAME] = "name",
       [STRUT_TYPE_NODE_PATH] = "names of two nodes or more",
       [STRUT_TYPE_NODE_TRIPLE] = "names of three nodes",
+      [STRUT_TYPE_NAME_PAIR] = "two names",
+      [STRUT_TYPE_NODE_RING] = "names of three nodes or more",
       [STRUT_TYPE_NUMBERS] = "list of numbers",
       [STRUT_TYPE_POINTS] = "list of `[x, force]`",
       [STRUT_TYPE_LAW] = "[law](#law), or the kind of one",

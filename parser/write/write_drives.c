@@ -104,9 +104,10 @@ static void put_actuators(strut_writer *writer) {
     strut_put(writer, "  ");
     strut_put_name(writer, scene->actuators[i].name);
     const strut_actuator *a = &scene->actuators[i];
-    strut_put(writer, a->member >= 0 ? ": {member: " : ": {hinge: ");
-    strut_put_name(writer,
-                   a->member >= 0 ? scene->members[a->member].name : scene->hinges[a->hinge].name);
+    strut_put(writer, a->member >= 0 ? ": {member: " : a->hinge >= 0 ? ": {hinge: " : ": {cell: ");
+    strut_put_name(writer, a->member >= 0  ? scene->members[a->member].name
+                           : a->hinge >= 0 ? scene->hinges[a->hinge].name
+                                           : scene->cells[a->cell].name);
     strut_put(writer, !a->force ? ", signal: " : a->member >= 0 ? ", force: " : ", moment: ");
     strut_put_signal_reference(writer, scene->actuators[i].signal);
     strut_put(writer, "}\n");

@@ -67,6 +67,10 @@ static void put_column(strut_writer *writer, strut_column column) {
     put_owner(writer, "member", scene->members[column.item].name);
   else if (owner == STRUT_COLUMN_OF_HINGE)
     put_owner(writer, "hinge", scene->hinges[column.item].name);
+  else if (owner == STRUT_COLUMN_OF_CELL)
+    put_owner(writer, "cell", scene->cells[column.item].name);
+  else if (owner == STRUT_COLUMN_OF_COLLISION)
+    put_owner(writer, "collision", scene->collisions[column.item].name);
   else if (owner == STRUT_COLUMN_OF_NODE || owner == STRUT_COLUMN_OF_CONTACT)
     put_owner(writer, "node", scene->nodes[column.item].name);
   else if (owner != STRUT_COLUMN_OF_RUN)

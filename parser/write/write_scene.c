@@ -328,6 +328,8 @@ char *strut_setup_write(const strut_setup *setup) {
   put_nodes(&writer);
   put_members(&writer);
   put_hinges(&writer);
+  strut_put_cells(&writer);
+  strut_put_collisions(&writer);
   put_rayleigh(&writer);
   put_ground(&writer);
   strut_put_drives(&writer);

@@ -47,6 +47,9 @@ strut_law random_law(strut_scene *scene, strut_law_kind kind, double size, doubl
     case STRUT_LAW_TABLE: make_table(scene, &law, size, force, r); break;
     case STRUT_LAW_LINEAR:
     case STRUT_LAW_LOGARITHMIC:
+    case STRUT_LAW_PRESSURE:
+    case STRUT_LAW_ISOTHERMAL:
+    case STRUT_LAW_ISENTROPIC:
     case STRUT_LAW_COUNT: break;
   }
   return law;
@@ -54,7 +57,7 @@ strut_law random_law(strut_scene *scene, strut_law_kind kind, double size, doubl
 
 /* A law without memory, which statics and every method know. */
 static strut_law_kind random_kind(uint64_t *r) {
-  strut_law_kind kind = (strut_law_kind)random_below(r, STRUT_LAW_COUNT - 1);
+  strut_law_kind kind = (strut_law_kind)random_below(r, STRUT_MEMBER_LAW_COUNT - 1);
   return kind < STRUT_LAW_ELASTIC_PLASTIC ? kind : (strut_law_kind)(kind + 1);
 }
 

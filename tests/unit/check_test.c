@@ -443,8 +443,49 @@ static void no_memory(void **state) {
   assert_int_equal(status, STRUT_BAD_SCENE);
 }
 
+/* A valid cell and a valid collision, each spoilt in turn. */
+static void cells_and_collisions(void **state) {
+  (void)state;
+  sample s;
+  int32_t corners[3], *node = corners;
+  strut_cell cell;
+  strut_collision collision;
+#define SPOILT(change, subject, key, word)                                                         \
+  do {                                                                                             \
+    fill(&s);                                                                                      \
+    corners[0] = 0, corners[1] = 1, corners[2] = 2;                                                \
+    cell = strut_cell_default(), collision = strut_collision_default();                            \
+    cell.name = "bag", cell.node = node, cell.node_count = 3, cell.pressure = 1;                   \
+    collision.name = "hit", collision.node[0] = 0, collision.node[1] = 2;                          \
+    collision.thickness = 0.1, collision.stiffness = 1;                                            \
+    s.nodes[2].position[1] += 0.5, s.nodes[2].start[1] += 0.5;                                     \
+    s.setup.scene.cells = &cell, s.setup.scene.cell_count = 1;                                     \
+    s.setup.scene.collisions = &collision, s.setup.scene.collision_count = 1;                      \
+    change;                                                                                        \
+    expect(&s, subject, 0, key, word);                                                             \
+  } while (0)
+  SPOILT(cell.node_count = 2, STRUT_ON_CELL, "nodes", "3 to 32");
+  SPOILT(node[1] = 7, STRUT_ON_CELL, "nodes", "does not exist");
+  SPOILT(node[1] = node[0], STRUT_ON_CELL, "nodes", "twice");
+  SPOILT(cell.pressure = (double)NAN, STRUT_ON_CELL, "pressure", "finite");
+  SPOILT(cell.law = STRUT_LAW_LINEAR, STRUT_ON_CELL, "gas", "not for cells");
+  SPOILT((cell.law = STRUT_LAW_ISOTHERMAL, cell.pressure = 0), STRUT_ON_CELL, "pressure", "above");
+  SPOILT((cell.law = STRUT_LAW_ISENTROPIC, cell.exponent = 1), STRUT_ON_CELL, "exponent",
+         "above 1");
+  SPOILT((cell.law = STRUT_LAW_ISENTROPIC, cell.outside = -1), STRUT_ON_CELL, "outside",
+         "negative");
+  SPOILT(collision.thickness = 0, STRUT_ON_COLLISION, "thickness", "above zero");
+  SPOILT(collision.damping = -1, STRUT_ON_COLLISION, "damping", "negative");
+  SPOILT(collision.node[1] = 9, STRUT_ON_COLLISION, NULL, "does not exist");
+  SPOILT(collision.node[1] = -1, STRUT_ON_COLLISION, NULL, "two nodes, of two members");
+  SPOILT(collision.node[1] = 0, STRUT_ON_COLLISION, "nodes", "twice");
+  SPOILT(s.members[0].law.kind = STRUT_LAW_ISOTHERMAL, STRUT_ON_MEMBER, "law", "cells only");
+#undef SPOILT
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(cells_and_collisions),
       cmocka_unit_test(a_valid_scene_has_no_findings),
       cmocka_unit_test(nodes),
       cmocka_unit_test(members),

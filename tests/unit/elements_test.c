@@ -260,7 +260,7 @@ static void check_law(strut_law_kind kind, uint64_t *r) {
 static void test_force_is_the_slope_of_the_energy(void **unused) {
   (void)unused;
   uint64_t r = 21;
-  for (int kind = 0; kind < STRUT_LAW_COUNT; kind++)
+  for (int kind = 0; kind < STRUT_MEMBER_LAW_COUNT; kind++)
     for (int pass = 0; pass < 20; pass++) check_law((strut_law_kind)kind, &r);
 }
 

@@ -68,6 +68,7 @@ static const struct exception {
     {STRUT_SECTION_SQUARE, "phase", "an angle, kept in turns"},
     {STRUT_SECTION_RAMP, "amplitude", "its unit is that of the signal's use"},
     {STRUT_SECTION_INITIAL, "velocity", "of every free node"},
+    {STRUT_SECTION_GAS, "kind", "one of the laws of cells"},
     {STRUT_SECTION_LAW, "knee", "of the strain, a length or an angle"},
     {STRUT_SECTION_LAW, "second_stiffness", "of force per strain"},
     {STRUT_SECTION_LAW, "gap", "of the strain, a length or an angle"},

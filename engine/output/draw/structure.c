@@ -537,6 +537,56 @@ static void draw_stop(strut_canvas *canvas, const drawing *d, size_t member, str
                      middle[1] - half * x, pen);
 }
 
+/* Cells: filled polygons below all else. */
+static void draw_cells(strut_canvas *canvas, const drawing *d) {
+  const strut_scene *scene = d->model->scene;
+  bool one = d->style->colouring == STRUT_COLOUR_ONE;
+  strut_colour colour = one ? d->style->colour : strut_palette_thing(2);
+  const strut_fill fill = {.colour = strut_faded(colour, 0.15 * d->opacity)};
+  const strut_pen pen = {.colour = strut_faded(colour, 0.5 * d->opacity), .width = 0.5 * d->thin};
+  double corner[STRUT_MOST_ELEMENT_NODES][2];
+  for (size_t i = 0; i < scene->cell_count; i++) {
+    const strut_cell *cell = &scene->cells[i];
+    bool finite = true;
+    for (size_t k = 0; k < cell->node_count; k++) {
+      strut_window_point(d->window, d->q + 2 * cell->node[k], corner[k]);
+      finite = finite && isfinite(corner[k][0]) && isfinite(corner[k][1]);
+    }
+    if (finite)
+      strut_draw_polygon(canvas, (const double(*)[2])corner, cell->node_count, &fill, &pen);
+  }
+}
+
+/* A body that may collide: a disc or a rod with round ends, as thick as it is. */
+static void draw_body(strut_canvas *canvas, const drawing *d, int32_t node, int32_t member,
+                      double width, strut_colour colour) {
+  double ends[2][2];
+  const strut_fill fill = {.colour = colour};
+  const strut_pen pen = {.colour = colour, .width = width};
+  if (member >= 0) {
+    strut_window_segment(d->window, d->model, d->q, (size_t)member, 0, ends);
+    strut_draw_segment(canvas, ends[0][0], ends[0][1], ends[1][0], ends[1][1], pen);
+    return;
+  }
+  strut_window_point(d->window, d->q + 2 * node, ends[0]);
+  strut_draw_circle(canvas, ends[0][0], ends[0][1], 0.5 * width, &fill, NULL);
+}
+
+static void draw_collisions(strut_canvas *canvas, const drawing *d) {
+  const strut_scene *scene = d->model->scene;
+  bool one = d->style->colouring == STRUT_COLOUR_ONE;
+  strut_colour colour =
+      strut_faded(one ? d->style->colour : strut_palette_thing(2), 0.15 * d->opacity);
+  for (size_t i = 0; i < scene->collision_count; i++) {
+    const strut_collision *c = &scene->collisions[i];
+    double width = c->thickness * d->window->scale;
+    for (int k = 0; k < 2; k++) {
+      if (c->node[k] >= 0) draw_body(canvas, d, c->node[k], -1, width, colour);
+      if (c->member[k] >= 0) draw_body(canvas, d, -1, c->member[k], width, colour);
+    }
+  }
+}
+
 static void draw_elements(strut_canvas *canvas, const drawing *d) {
   bool one = d->style->colouring == STRUT_COLOUR_ONE;
   strut_pen pen = {.colour =
@@ -545,7 +595,9 @@ static void draw_elements(strut_canvas *canvas, const drawing *d) {
   if (d->thin < 0.3) return; /* too small to be drawn */
   for (int32_t i = 0; i < d->model->elements.count; i++) {
     const strut_element *e = &d->model->elements.element[i];
-    if (e->role == STRUT_ELEMENT_MEMBER) continue;
+    if (e->role == STRUT_ELEMENT_MEMBER || e->role == STRUT_ELEMENT_CELL ||
+        e->role == STRUT_ELEMENT_COLLISION)
+      continue;
     strut_element_evaluate(d->model, i, d->model->members.rest, d->q, (double)NAN, &pose);
     pen.width = (e->role == STRUT_ELEMENT_HINGE ? 1.0 : 1.6) * d->thin / (1 + d->style->thinness);
     if (e->role == STRUT_ELEMENT_HINGE)
@@ -577,6 +629,8 @@ void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
                      .thin = thinning(window, model, q),
                      .opacity = style->opacity > 0 ? style->opacity : 1.0};
   if (!style->no_supports) draw_supports(canvas, window, model, q, fmax(d.thin, 0.3), d.opacity);
+  draw_cells(canvas, &d);
+  draw_collisions(canvas, &d);
   draw_members(canvas, &d);
   draw_elements(canvas, &d);
   if (!style->no_nodes) draw_nodes(canvas, &d);

@@ -57,7 +57,7 @@ typedef struct strut_structure_style {
 } strut_structure_style;
 
 /**
- * Members, nodes, supports, hinges (an arc from arm to arm) and stops that act (a bar across their
+ * Members, nodes, supports, cells (filled), hinges (an arc from arm to arm) and stops that act (a bar across their
  * member) of the shape q (model->length). Widths adapt to how many there are.
  */
 STRUT_API void strut_draw_structure(strut_canvas *canvas, const strut_window *window,

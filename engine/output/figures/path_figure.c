@@ -437,8 +437,7 @@ static void describe_event(const path_picture *p, const strut_path_event *event,
     name = scene->nodes[event->index].name;
   if (event->kind >= STRUT_PATH_ENGAGE) {
     const strut_element *e = &p->model->elements.element[event->index];
-    bool hinge = e->role == STRUT_ELEMENT_HINGE;
-    name = hinge ? scene->hinges[e->item].name : scene->members[e->item].name;
+    name = strut_element_name(scene, e);
   }
   int length = strut_text_bytes(name, NAME);
   if (used + NAME + 60 > STOP_TEXT) return; /* no room: the rest of the events here is not named */

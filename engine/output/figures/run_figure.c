@@ -25,7 +25,8 @@ static const struct {
                              STRUT_CHANNEL_FORCE | STRUT_CHANNEL_CONTACT},
     [STRUT_RUN_CURVES] = {strut_run_curves_height, strut_run_curves,
                           STRUT_CHANNEL_FORCE | STRUT_CHANNEL_CONTACT | STRUT_CHANNEL_ENERGY |
-                              STRUT_CHANNEL_ANGLE | STRUT_CHANNEL_MOMENT},
+                              STRUT_CHANNEL_ANGLE | STRUT_CHANNEL_MOMENT | STRUT_CHANNEL_AREA |
+                              STRUT_CHANNEL_PRESSURE},
 };
 
 unsigned strut_run_figure_channels(strut_run_view view) {

@@ -73,6 +73,12 @@
     if (motion.moment)
       kinds.push({ name: "moment", unit: "N m", curves: data.hinges.map((h, i) => ({
         name: h.name, at: column(motion.moment, data.hinges.length, i) })) });
+    if (motion.pressure)
+      kinds.push({ name: "pressure", unit: "N/m", curves: data.cells.map((c, i) => ({
+        name: c.name, at: column(motion.pressure, data.cells.length, i) })) });
+    if (motion.area)
+      kinds.push({ name: "area", unit: "m^2", curves: data.cells.map((c, i) => ({
+        name: c.name, at: column(motion.area, data.cells.length, i) })) });
     if (data.ground && data.contacts.length) {
       const slope = Math.tan(data.ground.slope), cosine = Math.cos(data.ground.slope);
       kinds.push({ name: "height above the ground", unit: "m", curves: data.contacts.map((n) => ({
@@ -186,7 +192,8 @@
     function add(kind) {
       const box = document.createElement("div"), title = document.createElement("div");
       const plot = document.createElement("div"), cursor = document.createElement("div");
-      const holder = document.createElement("div"), prefix = prefixOf(kind.curves, motion.frames);
+      const holder = document.createElement("div"), prefix = kind.unit === "m^2"
+        ? { text: "", factor: 1 } : prefixOf(kind.curves, motion.frames);
       const chart = { kind, box, plot, cursor };
       chart.scaled = kind.curves.map((c) => ({ at: (f) => c.at(f) / prefix.factor }));
       title.className = "chart-title";

@@ -223,6 +223,34 @@ static void add_hinges(strut_json *json, const strut_scene *scene) {
   }
 }
 
+static void add_cells(strut_json *json, const strut_scene *scene) {
+  struct cJSON *cells = strut_json_array(json, json->root, "cells");
+  for (size_t i = 0; i < scene->cell_count; i++) {
+    const strut_cell *cell = &scene->cells[i];
+    struct cJSON *to = strut_json_object(json, cells, NULL);
+    strut_json_text(json, to, "name", cell->name);
+    struct cJSON *nodes = strut_json_array(json, to, "nodes");
+    for (size_t k = 0; k < cell->node_count; k++)
+      strut_json_integer(json, nodes, NULL, cell->node[k]);
+  }
+}
+
+static void add_collisions(strut_json *json, const strut_scene *scene) {
+  struct cJSON *collisions = strut_json_array(json, json->root, "collisions");
+  for (size_t i = 0; i < scene->collision_count; i++) {
+    const strut_collision *c = &scene->collisions[i];
+    struct cJSON *to = strut_json_object(json, collisions, NULL);
+    strut_json_text(json, to, "name", c->name);
+    strut_json_number(json, to, "thickness", c->thickness);
+    struct cJSON *nodes = strut_json_array(json, to, "nodes");
+    struct cJSON *members = strut_json_array(json, to, "members");
+    for (int k = 0; k < 2; k++) {
+      if (c->node[k] >= 0) strut_json_integer(json, nodes, NULL, c->node[k]);
+      if (c->member[k] >= 0) strut_json_integer(json, members, NULL, c->member[k]);
+    }
+  }
+}
+
 static void add_ground(strut_json *json, const strut_scene *scene) {
   struct cJSON *contacts = strut_json_array(json, json->root, "contacts");
   for (size_t i = 0; i < scene->contact_count; i++)
@@ -284,6 +312,8 @@ static char *still_data(const strut_page *page) {
   add_nodes(&json, scene);
   add_members(&json, scene);
   add_hinges(&json, scene);
+  add_cells(&json, scene);
+  add_collisions(&json, scene);
   add_ground(&json, scene);
   strut_json_numbers(&json, json.root, "start", model->start, 2 * (size_t)model->node_count);
   strut_json_number(&json, json.root, "size", model->size);

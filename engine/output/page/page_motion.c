@@ -169,9 +169,9 @@ static const double POSITION_QUANTUM = 1e-6, VALUE_QUANTUM = 1e-5, COLUMN_QUANTU
 /* A diverged run is shown up to this distance from its start, in sizes. */
 static const double DIVERGED_REACH = 1e3;
 
-enum { TIME, POSITION, FORCE, CONTACT, ENERGY, ANGLE, MOMENT, BLOCKS };
-static const char *const keys[BLOCKS] = {"time",   "position", "force", "contact",
-                                         "energy", "angle",    "moment"};
+enum { TIME, POSITION, FORCE, CONTACT, ENERGY, ANGLE, MOMENT, AREA, PRESSURE, BLOCKS };
+static const char *const keys[BLOCKS] = {"time",  "position", "force", "contact", "energy",
+                                         "angle", "moment",   "area",  "pressure"};
 static const char *const energy_names[STRUT_ENERGIES] = {STRUT_ENERGY_NAMES};
 
 typedef struct motion {
@@ -219,6 +219,8 @@ static void find_rows(motion *m) {
   m->rows[ENERGY] = (strut_rows){t->energy, t->frames, STRUT_ENERGIES, 1};
   m->rows[ANGLE] = (strut_rows){t->angle, t->frames, t->hinge_count, 1};
   m->rows[MOMENT] = (strut_rows){t->moment, t->frames, t->hinge_count, 1};
+  m->rows[AREA] = (strut_rows){t->area, t->frames, t->cell_count, 1};
+  m->rows[PRESSURE] = (strut_rows){t->pressure, t->frames, t->cell_count, 1};
   m->frames = count_frames(m);
   for (int b = 0; b < BLOCKS; b++) m->rows[b].frames = m->frames;
 }

@@ -44,7 +44,7 @@ window.strutPage = {};
     if (!motion) return null;
     const decoded = { frames: motion.frames };
     for (const name of ["time", "position", "length", "force", "contact", "energy", "angle",
-      "moment"])
+      "moment", "area", "pressure"])
       decoded[name] = await page.decodeBlock(motion[name], motion.frames);
     return decoded;
   };

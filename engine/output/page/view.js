@@ -129,6 +129,40 @@
     }
   }
 
+  /* Cells: filled polygons below the members. */
+  function drawCells(c, data, px, py, options) {
+    c.fillStyle = options.theme.accent;
+    c.globalAlpha = 0.15;
+    for (const cell of data.cells) {
+      c.beginPath();
+      for (const n of cell.nodes) c.lineTo(px[n], py[n]);
+      c.fill();
+    }
+    c.globalAlpha = 1;
+  }
+
+  /* Bodies that may collide, as thick as they are. */
+  function drawCollisions(c, s, px, py, scale, options) {
+    c.strokeStyle = c.fillStyle = options.theme.accent;
+    c.globalAlpha = 0.15;
+    c.lineCap = "round";
+    for (const collision of s.data.collisions) {
+      c.lineWidth = collision.thickness * scale;
+      for (const n of collision.nodes) {
+        c.beginPath();
+        c.arc(px[n], py[n], 0.5 * c.lineWidth, 0, 2 * Math.PI);
+        c.fill();
+      }
+      for (const m of collision.members) {
+        c.beginPath();
+        c.moveTo(px[s.from[m]], py[s.from[m]]);
+        c.lineTo(px[s.to[m]], py[s.to[m]]);
+        c.stroke();
+      }
+    }
+    c.globalAlpha = 1;
+  }
+
   function drawMembers(c, s, shape, options, px, py, thin) {
     const theme = options.theme, coloured = options.colour && shape.force;
     const plain = [theme.bar, theme.spring, theme.cable], slack = s.buckets - 1;
@@ -353,6 +387,8 @@
         c.stroke();
       }
     }
+    drawCells(c, data, px, py, options);
+    drawCollisions(c, s, px, py, camera.scale, options);
     drawMembers(c, s, shape, options, px, py,
       thinness(s, shape.position, camera) * (options.small ? 0.6 : 1));
     if (data.hinges.length <= 400) drawHinges(c, data, px, py, options);

@@ -26,15 +26,17 @@ static const double ROUNDING = 1e-12; /* of the largest force */
 /* One line of a path, a point or an event. */
 typedef struct state {
   double factor, arc;
-  const double *q, *force, *moment, *reaction, *contact;
+  const double *q, *force, *moment, *reaction, *contact, *pressure;
 } state;
 
 static state state_of_point(const strut_path_point *p) {
-  return (state){p->factor, p->arc, p->q, p->force, p->moment, p->reaction, p->contact};
+  return (state){p->factor, p->arc,      p->q,       p->force,
+                 p->moment, p->reaction, p->contact, p->pressure};
 }
 
 static state state_of_event(const strut_path_event *e) {
-  return (state){e->factor, e->arc, e->q, e->force, e->moment, e->reaction, e->contact};
+  return (state){e->factor, e->arc,      e->q,       e->force,
+                 e->moment, e->reaction, e->contact, e->pressure};
 }
 
 /* The largest member force there [N]. */
@@ -50,6 +52,15 @@ static double largest_moment(const strut_path *path, const strut_scene *scene) {
   for (size_t k = 0; k < path->point_count; k++)
     for (size_t i = 0; i < scene->hinge_count; i++)
       most = fmax(most, fabs(path->points[k].moment[i]));
+  return most;
+}
+
+/* The largest pressure of a cell anywhere on the path [N/m]. */
+static double largest_pressure(const strut_path *path, const strut_scene *scene) {
+  double most = 0;
+  for (size_t k = 0; k < path->point_count; k++)
+    for (size_t i = 0; i < scene->cell_count; i++)
+      most = fmax(most, fabs(path->points[k].pressure[i]));
   return most;
 }
 
@@ -80,6 +91,9 @@ static void add_forces(strut_json *json, struct cJSON *to, const strut_path *pat
     for (size_t i = 0; i < scene->hinge_count; i++)
       strut_json_number(json, moments, scene->hinges[i].name, at->moment[i]);
   }
+  struct cJSON *pressures = scene->cell_count ? strut_json_object(json, to, "pressures") : NULL;
+  for (size_t i = 0; i < scene->cell_count; i++)
+    strut_json_number(json, pressures, scene->cells[i].name, at->pressure[i]);
   struct cJSON *reactions = strut_json_object(json, to, "reactions");
   for (size_t i = 0; i < scene->node_count; i++)
     if (is_held(path, scene, i, 0) || is_held(path, scene, i, 1))
@@ -290,6 +304,12 @@ static void add_force_table(strut_buffer *table, const strut_path *path, const s
     if (rows++ < MOST_FORCES)
       add_force_row(table, scene->hinges[i].name, " moment", "N m", count, values, moments);
   }
+  for (size_t k = 0; k < count; k++) moments[k] = largest_pressure(path, scene);
+  for (size_t i = 0; i < scene->cell_count; i++) {
+    for (size_t k = 0; k < count; k++) values[k] = stops[k].pressure[i];
+    if (rows++ < MOST_FORCES)
+      add_force_row(table, scene->cells[i].name, " pressure", "N/m", count, values, moments);
+  }
   for (size_t i = 0; i < 2 * scene->node_count; i++) {
     if (!is_held(path, scene, i / 2, i % 2)) continue;
     for (size_t k = 0; k < count; k++) values[k] = stops[k].reaction[i];
@@ -362,6 +382,8 @@ static void add_header(strut_buffer *csv, const strut_path *path, const strut_sc
     add_cell(csv, scene->members[j].name, "force [N]");
   for (size_t i = 0; i < scene->hinge_count; i++)
     add_cell(csv, scene->hinges[i].name, "moment [N m]");
+  for (size_t i = 0; i < scene->cell_count; i++)
+    add_cell(csv, scene->cells[i].name, "pressure [N/m]");
   for (size_t i = 0; i < 2 * scene->node_count; i++)
     if (is_held(path, scene, i / 2, i % 2))
       add_cell(csv, scene->nodes[i / 2].name, reactions[i % 2]);
@@ -382,6 +404,7 @@ static void add_numbers(strut_buffer *csv, const strut_path *path, const strut_s
   for (size_t i = 0; i < 2 * scene->node_count; i++) add_number(csv, at->q[i]);
   for (size_t j = 0; j < scene->member_count; j++) add_number(csv, at->force[j]);
   for (size_t i = 0; i < scene->hinge_count; i++) add_number(csv, at->moment[i]);
+  for (size_t i = 0; i < scene->cell_count; i++) add_number(csv, at->pressure[i]);
   for (size_t i = 0; i < 2 * scene->node_count; i++)
     if (is_held(path, scene, i / 2, i % 2)) add_number(csv, at->reaction[i]);
   for (size_t i = 0; i < scene->contact_count; i++) add_number(csv, at->contact[i]);

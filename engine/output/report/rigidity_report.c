@@ -74,8 +74,8 @@ static const char *super_stability_words(const strut_rigidity *r,
   if (r->states.count == 0)
     snprintf(words, STRUT_RIGIDITY_WORDS, "no: %s", source);
   else if (r->stress.by_elements)
-    snprintf(words, STRUT_RIGIDITY_WORDS, "not judged: elements (hinges, running cables) carry %s",
-             source);
+    snprintf(words, STRUT_RIGIDITY_WORDS,
+             "not judged: elements (hinges, cells, running cables) carry %s", source);
   else if (!r->stress.tested)
     snprintf(words, STRUT_RIGIDITY_WORDS, "not tested: the structure is too large");
   else if (r->stress.super_stable)
@@ -108,6 +108,16 @@ static void put_moments(strut_json *json, struct cJSON *to, const char *key,
                       force[scene->member_count + i] * r->matrix.size);
 }
 
+/* Pressures of cells that go with forces of members: [N/m] for forces in [N]. */
+static void put_pressures(strut_json *json, struct cJSON *to, const char *key,
+                          const strut_rigidity *r, const strut_scene *scene, const double *force) {
+  if (scene->cell_count == 0) return;
+  struct cJSON *map = strut_json_object(json, to, key);
+  for (size_t i = 0; i < scene->cell_count; i++)
+    strut_json_number(json, map, scene->cells[i].name,
+                      -force[scene->member_count + scene->hinge_count + i] / r->matrix.size);
+}
+
 static void put_head(strut_json *json, const strut_rigidity *r, const strut_model *model,
                      const char *at) {
   const strut_scene *scene = model->scene;
@@ -118,6 +128,7 @@ static void put_head(strut_json *json, const strut_rigidity *r, const strut_mode
   strut_json_integer(json, root, "nodes", (int64_t)scene->node_count);
   strut_json_integer(json, root, "members", (int64_t)scene->member_count);
   if (scene->hinge_count) strut_json_integer(json, root, "hinges", (int64_t)scene->hinge_count);
+  if (scene->cell_count) strut_json_integer(json, root, "cells", (int64_t)scene->cell_count);
   strut_json_integer(json, root, "free_coordinates", r->matrix.rows);
   strut_json_integer(json, root, "supports", 2 * model->node_count - r->matrix.rows);
   strut_json_text(json, root, "method", r->spaces.dense ? "svd" : "qr");
@@ -145,12 +156,14 @@ static void put_self_stress(strut_json *json, const strut_rigidity *r, const str
     put_map(json, state, "forces", scene, force, NULL);
     put_map(json, state, "force_densities", scene, force, r->matrix.length);
     put_moments(json, state, "moments", r, scene, force);
+    put_pressures(json, state, "pressures", r, scene, force);
     strut_json_bool(json, state, "feasible", r->states.cables_pull[i]);
   }
   if (r->states.count == 0) return;
   if (r->feasible) {
     put_map(json, stress, "feasible", scene, r->feasible, NULL);
     put_moments(json, stress, "feasible_moments", r, scene, r->feasible);
+    put_pressures(json, stress, "feasible_pressures", r, scene, r->feasible);
   } else {
     strut_json_text(json, stress, "feasible", NULL);
   }
@@ -204,6 +217,7 @@ static void put_mechanisms(strut_json *json, const strut_rigidity *r, const stru
   if (!m->stiffener) return;
   put_map(json, to, "stiffened_by", scene, m->stiffener, NULL);
   put_moments(json, to, "stiffened_by_moments", r, scene, m->stiffener);
+  put_pressures(json, to, "stiffened_by_pressures", r, scene, m->stiffener);
 }
 
 static void put_verdicts(strut_json *json, const strut_rigidity *r) {
@@ -257,6 +271,13 @@ static void put_members(strut_json *json, const strut_rigidity *r, const strut_s
     strut_json_number(json, row, "force_density",
                       r->matrix.length[j] > 0 ? r->density[j] : (double)NAN);
   }
+  struct cJSON *cells = scene->cell_count ? strut_json_object(json, json->root, "cells_at") : NULL;
+  for (size_t i = 0; i < scene->cell_count; i++) {
+    struct cJSON *row = strut_json_object(json, cells, scene->cells[i].name);
+    size_t j = scene->member_count + scene->hinge_count + i;
+    strut_json_number(json, row, "area", r->matrix.length[j] * r->matrix.size);
+    strut_json_number(json, row, "pressure", -r->force[j] / r->matrix.size + 0.0);
+  }
   if (scene->hinge_count == 0) return;
   struct cJSON *hinges = strut_json_object(json, json->root, "hinges_at");
   for (size_t i = 0; i < scene->hinge_count; i++) {
@@ -304,7 +325,11 @@ static void add_rank(strut_buffer *table, const strut_rigidity *r) {
         s->weak);
 }
 
-static void add_counts(strut_buffer *table, const strut_rigidity *r) {
+static void add_counts(strut_buffer *table, const strut_rigidity *r, const strut_scene *scene) {
+  const char *others = scene->hinge_count && scene->cell_count ? ", hinges and cells"
+                       : scene->hinge_count                    ? " and hinges"
+                       : scene->cell_count                     ? " and cells"
+                                                               : "";
   const strut_mechanisms *m = &r->mechanisms;
   strut_buffer_add(table, "  self-stress        s = %d\n", r->states.count);
   strut_buffer_add(table, "  mechanisms         f = %d", m->count);
@@ -318,8 +343,7 @@ static void add_counts(strut_buffer *table, const strut_rigidity *r) {
   }
   strut_buffer_add(table,
                    "\n  Maxwell-Calladine  %d members%s - %d free coordinates = %d = s - f\n",
-                   r->matrix.columns, r->matrix.columns > r->matrix.members ? " and hinges" : "",
-                   r->matrix.rows, r->matrix.columns - r->matrix.rows);
+                   r->matrix.columns, others, r->matrix.rows, r->matrix.columns - r->matrix.rows);
 }
 
 static void add_verdicts(strut_buffer *table, const strut_rigidity *r) {
@@ -368,6 +392,26 @@ static void add_hinges(strut_buffer *table, const strut_rigidity *r, const strut
                      scene->hinge_count - MOST_ROWS);
 }
 
+/* Pressures of the states go with forces of 1 N. */
+static void add_cells(strut_buffer *table, const strut_rigidity *r, const strut_scene *scene,
+                      int32_t states) {
+  size_t columns = (size_t)r->matrix.columns, first = scene->member_count + scene->hinge_count;
+  double size = r->matrix.size;
+  if (scene->cell_count)
+    strut_buffer_add(table, "  %-12s %-6s %12s %12s\n", "cell", "", "area", "pressure");
+  for (size_t i = 0; i < scene->cell_count && i < MOST_ROWS; i++) {
+    size_t j = first + i;
+    strut_buffer_add(table, "  %-12s %-6s %8.6g m^2 %12s %13s", scene->cells[i].name, "",
+                     r->matrix.length[j] * size, in(-r->force[j] / size + 0.0, "N/m").text, "");
+    for (int32_t k = 0; k < states; k++)
+      strut_buffer_add(table, " %10.6g", -r->states.force[(size_t)k * columns + j] / size + 0.0);
+    strut_buffer_add(table, "\n");
+  }
+  if (scene->cell_count > MOST_ROWS)
+    strut_buffer_add(table, "  ... and %zu more; --json lists all\n",
+                     scene->cell_count - MOST_ROWS);
+}
+
 static void add_members(strut_buffer *table, const strut_rigidity *r, const strut_scene *scene) {
   size_t members = scene->member_count, columns = (size_t)r->matrix.columns;
   int32_t states = r->states.force ? r->states.count : 0;
@@ -387,6 +431,7 @@ static void add_members(strut_buffer *table, const strut_rigidity *r, const stru
   if (members > MOST_ROWS)
     strut_buffer_add(table, "  ... and %zu more; --json lists all\n", members - MOST_ROWS);
   add_hinges(table, r, scene, states);
+  add_cells(table, r, scene, states);
   if (r->states.count > states)
     strut_buffer_add(table, "  %d more self-stress states%s\n", r->states.count - states,
                      r->states.force ? "; --json lists all" : ": too many to list");
@@ -413,7 +458,7 @@ char *strut_rigidity_table(const strut_rigidity *r, const strut_model *model, co
   const char *name = model->scene->name;
   strut_buffer_add(&table, "%s%srigidity at: %s\n", name, *name ? ": " : "", at);
   add_rank(&table, r);
-  add_counts(&table, r);
+  add_counts(&table, r, model->scene);
   add_verdicts(&table, r);
   add_members(&table, r, model->scene);
   add_modes(&table, &r->mechanisms);

@@ -438,6 +438,20 @@ static void draw_members(const view *v, sketch_grid *grid) {
   }
 }
 
+/* The sides of a cell, dotted. */
+static void draw_cells(const view *v, sketch_grid *grid) {
+  const strut_scene *scene = v->model->scene;
+  for (size_t i = 0; i < scene->cell_count; i++) {
+    const strut_cell *cell = &scene->cells[i];
+    double from[2], to[2];
+    for (size_t k = 0; k < cell->node_count; k++) {
+      place(v, v->q + 2 * cell->node[k], from);
+      place(v, v->q + 2 * cell->node[(k + 1) % cell->node_count], to);
+      sketch_line(grid, from, to, 1, 3);
+    }
+  }
+}
+
 static uint32_t mark_of(const strut_node *node) {
   if (node->fixed[0] && node->fixed[1]) return STRUT_SKETCH_HELD;
   if (node->fixed[1]) return STRUT_SKETCH_HELD_IN_Y;
@@ -540,6 +554,7 @@ char *strut_sketch(const strut_model *model, const double *q, int columns, int r
   int32_t *there = strut_allocate((size_t)v.columns * (size_t)v.rows, sizeof *there);
   if (taken && there) {
     bool ground = draw_ground(&v, &grid);
+    draw_cells(&v, &grid);
     draw_members(&v, &grid);
     count_nodes(&v, &grid, there);
     draw_nodes(&v, &grid, there);

@@ -73,6 +73,10 @@ size_t strut_columns_add(strut_columns *c, strut_column column) {
     column.item = find_contact(c->model, column.item);
   if (is_of_hinge(column.kind))
     column.item = strut_element_of_hinge(&c->model->elements, column.item);
+  if (rows[column.kind].owner == STRUT_COLUMN_OF_CELL)
+    column.item = strut_element_of_cell(&c->model->elements, column.item);
+  if (rows[column.kind].owner == STRUT_COLUMN_OF_COLLISION)
+    column.item = strut_element_of_collision(&c->model->elements, column.item);
   for (size_t i = 0; i < c->count; i++) {
     const strut_column *other = &c->column[i];
     if (other->kind == column.kind && other->item == column.item && other->other == column.other)
@@ -176,6 +180,12 @@ static double evaluate_column(const strut_columns *c, const strut_state *state, 
     case STRUT_COLUMN_LOST_FRICTION: return w[STRUT_POWER_FRICTION];
     case STRUT_COLUMN_LOST:
       return w[STRUT_POWER_MEMBERS] + w[STRUT_POWER_CONTACT] + w[STRUT_POWER_FRICTION];
+    case STRUT_COLUMN_CELL_AREA: return strut_cell_measure(c->model, state, column.item).area;
+    case STRUT_COLUMN_PRESSURE: return strut_cell_measure(c->model, state, column.item).pressure;
+    case STRUT_COLUMN_COLLISION_GAP:
+      return strut_collision_measure(c->model, state, column.item).gap;
+    case STRUT_COLUMN_COLLISION_FORCE:
+      return strut_collision_measure(c->model, state, column.item).force;
     case STRUT_COLUMN_COUNT: break;
   }
   return 0.0;
@@ -246,6 +256,11 @@ double strut_columns_noise(const strut_columns *c, size_t index) {
   if (column.kind == STRUT_COLUMN_HINGE_RATE) return SUM_ROUNDING * c->fastest / c->model->size;
   if (column.kind == STRUT_COLUMN_MOMENT)
     return POSITION_ROUNDING * c->model->elements.element[column.item].numbers.stiffness;
+  if (column.kind == STRUT_COLUMN_COLLISION_FORCE)
+    return length * c->model->elements.element[column.item].numbers.stiffness;
+  if (column.kind == STRUT_COLUMN_CELL_AREA) return length * c->model->size;
+  if (column.kind == STRUT_COLUMN_PRESSURE)
+    return length * c->model->size * c->model->elements.element[column.item].numbers.stiffness;
   if (column.kind == STRUT_COLUMN_NORMAL && column.item >= 0)
     return length * c->model->contacts.entry[column.item].stiffness;
   return 0.0;

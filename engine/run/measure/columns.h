@@ -15,7 +15,7 @@ typedef struct strut_columns {
   double normal[2]; /* of the ground */
   size_t count;
   strut_column *column;  /* (count) `item` of CONTACT indexes the model's contacts, -1: no contact;
-                           that of HINGE indexes its elements */
+                           those of HINGE, CELL, COLLISION index elements */
   double *value;         /* (count) now, SI */
   double *before;        /* (count) one step before */
   double *least, *most;  /* (count) over the window */

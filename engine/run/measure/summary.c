@@ -32,6 +32,7 @@ void strut_summary_free(strut_summary *summary) {
   strut_release(summary->positions);
   strut_release(summary->contacts);
   strut_release(summary->hinges);
+  strut_release(summary->cells);
   strut_release(summary->breaks);
   summary->breaks = NULL;
   summary->break_count = 0;
@@ -40,8 +41,9 @@ void strut_summary_free(strut_summary *summary) {
   summary->positions = NULL;
   summary->contacts = NULL;
   summary->hinges = NULL;
+  summary->cells = NULL;
   summary->measured = NULL;
-  summary->node_count = summary->contact_count = summary->hinge_count = 0;
+  summary->node_count = summary->contact_count = summary->hinge_count = summary->cell_count = 0;
   summary->measured_count = 0;
 }
 

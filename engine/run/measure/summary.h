@@ -60,6 +60,12 @@ typedef struct strut_hinge_summary {
   double angle, moment; /* [rad], [N m] */
 } strut_hinge_summary;
 
+/** A cell at the end. */
+typedef struct strut_cell_summary {
+  const char *cell;      /* its name, owned by the scene */
+  double area, pressure; /* [m^2], [N/m] */
+} strut_cell_summary;
+
 /** A member or a hinge that broke or was released. */
 typedef struct strut_break_summary {
   const char *name; /* owned by the scene */
@@ -174,6 +180,8 @@ typedef struct strut_summary {
   char caveat[400]; /* why the error of the result is not known, and how to learn it; else empty */
   size_t warning_count;
   strut_warning warnings[STRUT_MOST_WARNINGS];
+  size_t cell_count;
+  strut_cell_summary *cells; /* (cell_count) */
   size_t break_count;
   strut_break_summary *breaks; /* (break_count) in the scene's order, members first */
 } strut_summary;

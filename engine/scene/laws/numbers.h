@@ -31,6 +31,8 @@ typedef struct strut_law_numbers {
   const strut_law_curve *curve; /* of a table */
   size_t count;                 /* of a polynomial */
   const double *coefficient;    /* (count) of x, x^2, ... */
+  double area;                  /* of a cell as drawn [m^2] */
+  double exponent, outside;     /* of a gas: its isentropic exponent, the pressure outside [N/m] */
 } strut_law_numbers;
 
 /** What a law gives at a strain: force, energy from the natural strain on, and slope d force / d e. */

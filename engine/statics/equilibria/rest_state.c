@@ -15,15 +15,15 @@ static const double NEAR = 0.01;
 /* The residual of a drawn shape that counts as at rest, in weights. */
 static const double AT_REST = 1e-8;
 
-/* A hinge pushes on its nodes with its moment over the arms. */
-typedef struct hinge_sum {
+/* A hinge pushes on its nodes with its moment over the arms, a cell with its pressure times lengths. */
+typedef struct element_sum {
   const strut_model *model;
   double sum;
-} hinge_sum;
+} element_sum;
 
-static void add_hinge_force(void *context, int32_t element, const strut_element_pose *pose) {
-  hinge_sum *s = context;
-  if (s->model->elements.element[element].role == STRUT_ELEMENT_HINGE)
+static void add_element_force(void *context, int32_t element, const strut_element_pose *pose) {
+  element_sum *s = context;
+  if (!strut_element_is_of_member(&s->model->elements.element[element]))
     s->sum += fabs(pose->force) * hypot(pose->b[0], pose->b[1]);
 }
 
@@ -32,9 +32,9 @@ static double sum_member_forces(const strut_model *model, const double *q) {
   double sum = 0.0;
   for (int32_t j = 0; j < t->count; j++)
     sum += fabs(strut_member_elastic_tension(model, t->rest, j, q));
-  hinge_sum hinges = {model, 0.0};
-  strut_elements_visit(model, t->rest, q, -HUGE_VAL, false, &hinges, add_hinge_force);
-  return sum + hinges.sum;
+  element_sum others = {model, 0.0};
+  strut_elements_visit(model, t->rest, q, -HUGE_VAL, false, &others, add_element_force);
+  return sum + others.sum;
 }
 
 static bool find_closed(const strut_model *model, strut_arena *arena, strut_rest_state *rest) {

@@ -472,6 +472,16 @@ static strut_status refuse_elements(const strut_scene *scene, strut_form_source 
                       strut_form_source_name(from), m->name,
                       m->guide_count ? "runs over guides" : "has another law");
   }
+  if (scene->collision_count)
+    return strut_fail(
+        error, STRUT_BAD_SCENE,
+        "form finding by %s knows straight members with a linear law only: %s is a collision",
+        strut_form_source_name(from), scene->collisions[0].name);
+  if (scene->cell_count)
+    return strut_fail(
+        error, STRUT_BAD_SCENE,
+        "form finding by %s knows straight members with a linear law only: %s is a cell",
+        strut_form_source_name(from), scene->cells[0].name);
   if (scene->hinge_count == 0) return STRUT_OK;
   return strut_fail(
       error, STRUT_BAD_SCENE,

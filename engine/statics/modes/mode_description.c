@@ -194,21 +194,50 @@ static double stretch_energy(const strut_vibration *v, int32_t j, const double *
   return v->model->members.stiffness[j] * e * e;
 }
 
-/* Energies (members, then hinges) of a motion; a member's with those of its elements. */
+/* Members, hinges, cells, collisions. */
+static int32_t count_items(const strut_model *model) {
+  const strut_scene *scene = model->scene;
+  return model->members.count +
+         (int32_t)(scene->hinge_count + scene->cell_count + scene->collision_count);
+}
+
+static int32_t item_of(const strut_model *model, const strut_element *e) {
+  const strut_scene *scene = model->scene;
+  size_t before = scene->member_count;
+  switch (e->role) {
+    case STRUT_ELEMENT_MEMBER:
+    case STRUT_ELEMENT_LONGEST:
+    case STRUT_ELEMENT_SHORTEST: return e->item;
+    case STRUT_ELEMENT_HINGE: break;
+    case STRUT_ELEMENT_CELL: before += scene->hinge_count; break;
+    case STRUT_ELEMENT_COLLISION: before += scene->hinge_count + scene->cell_count; break;
+  }
+  return (int32_t)before + e->item;
+}
+
+static const char *name_of_item(const strut_scene *scene, size_t j) {
+  if (j < scene->member_count) return scene->members[j].name;
+  j -= scene->member_count;
+  if (j < scene->hinge_count) return scene->hinges[j].name;
+  j -= scene->hinge_count;
+  return j < scene->cell_count ? scene->cells[j].name
+                               : scene->collisions[j - scene->cell_count].name;
+}
+
+/* Energies of the items in a motion; a member's with those of its elements. */
 static void fill_energies(const strut_vibration *v, const double *x, double *energy) {
   const strut_element_table *t = &v->model->elements;
   int32_t members = v->model->members.count;
   for (int32_t j = 0; j < members; j++) energy[j] = stretch_energy(v, j, x);
   for (int32_t i = 0; i < t->count; i++) {
-    bool hinge = t->element[i].role == STRUT_ELEMENT_HINGE;
-    energy[hinge ? members + t->element[i].item : t->element[i].item] += element_energy(v, i, x);
+    energy[item_of(v->model, &t->element[i])] += element_energy(v, i, x);
   }
 }
 
 static energies energies_of(const strut_vibration *v, const double *x, const double *energy) {
   energies e = {0};
   const strut_contact_table *c = &v->model->contacts;
-  int32_t items = v->model->members.count + (int32_t)v->model->scene->hinge_count;
+  int32_t items = count_items(v->model);
   for (int32_t j = 0; j < items; j++) e.members += energy[j];
   for (int32_t i = 0; i < c->count; i++) {
     double d[2];
@@ -224,20 +253,19 @@ static energies energies_of(const strut_vibration *v, const double *x, const dou
 static void describe_members(const strut_vibration *v, const double *energy, const energies *e,
                              strut_mode *mode) {
   const strut_scene *scene = v->model->scene;
-  int32_t named[MOST_MEMBERS], members = v->model->members.count;
+  int32_t named[MOST_MEMBERS], items = count_items(v->model);
   int count = 0;
   for (; count < MOST_MEMBERS; count++) {
     double most = COUNTS * e->all;
     named[count] = -1;
-    for (int32_t j = 0; j < members + (int32_t)scene->hinge_count; j++) {
+    for (int32_t j = 0; j < items; j++) {
       bool known = false;
       for (int k = 0; k < count; k++) known = known || named[k] == j;
       if (!known && energy[j] > most) most = energy[j] * (1 + 1e-9), named[count] = j;
     }
     int32_t j = named[count];
     if (j < 0) break;
-    append_text(mode, "%s%s %.0f %%", count ? ", " : "; ",
-                j < members ? scene->members[j].name : scene->hinges[j - members].name,
+    append_text(mode, "%s%s %.0f %%", count ? ", " : "; ", name_of_item(scene, (size_t)j),
                 100.0 * energy[j] / e->all);
   }
   if (e->ground > 0.05 * e->all)
@@ -272,7 +300,7 @@ void strut_modes_describe(const strut_modes_work *work, const double *x, strut_m
     append_text(mode, "; no stiffness resists");
     return;
   }
-  size_t items = (size_t)v->model->members.count + v->model->scene->hinge_count;
+  size_t items = (size_t)count_items(v->model);
   double *energy = strut_allocate(items + 1, sizeof *energy);
   if (!energy) return; /* the mode stays, with fewer words */
   fill_energies(v, x, energy);

@@ -268,8 +268,7 @@ static strut_path_event_kind describe_element(const strut_path_system *s, int32_
   const strut_scene *scene = s->model->scene;
   const strut_path_element_switch *w = &s->elements.switches[which];
   const strut_element *e = &s->model->elements.element[w->element];
-  bool hinge = e->role == STRUT_ELEMENT_HINGE;
-  const char *name = hinge ? scene->hinges[e->item].name : scene->members[e->item].name;
+  const char *name = strut_element_name(scene, e);
   strut_path_event_kind kind = on ? STRUT_PATH_ENGAGE : STRUT_PATH_RELEASE;
   const char *what = on ? "begins to act" : "ceases to act";
   if (w->kink >= 0) kind = STRUT_PATH_LAW, what = "passes a kink of its law";
@@ -277,6 +276,7 @@ static strut_path_event_kind describe_element(const strut_path_system *s, int32_
     what = on ? "reaches its longest length" : "leaves its longest length";
   if (e->role == STRUT_ELEMENT_SHORTEST)
     what = on ? "reaches its shortest length" : "leaves its shortest length";
+  if (e->role == STRUT_ELEMENT_COLLISION) what = on ? "touches" : "separates";
   if (w->kink < 0 && e->role == STRUT_ELEMENT_MEMBER) {
     bool cable = scene->members[e->item].kind == STRUT_CABLE;
     if (cable) kind = on ? STRUT_PATH_TAUT : STRUT_PATH_SLACK;

@@ -230,7 +230,8 @@ static bool are_laws_different(const strut_element_table *a, const strut_element
   for (int32_t i = 0; i < a->count; i++) {
     const strut_element *s = &a->element[i], *t = &b->element[i];
     const strut_law_numbers *m = &s->numbers, *n = &t->numbers;
-    bool numbers = m->stiffness != n->stiffness || m->count != n->count;
+    bool numbers = m->stiffness != n->stiffness || m->count != n->count || m->area != n->area ||
+                   m->exponent != n->exponent || m->outside != n->outside;
 #define STRUT_LAW_ROW(NAME, field, ...) numbers = numbers || m->field != n->field;
     STRUT_LAW_PARAMETERS(STRUT_LAW_ROW)
 #undef STRUT_LAW_ROW

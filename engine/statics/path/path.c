@@ -124,11 +124,25 @@ static strut_status turn_hinge(path_start *b, strut_error *error) {
   return STRUT_OK;
 }
 
+/* The driven cell with the pressure that the path begins with. */
+static strut_status fill_cell(path_start *b, strut_error *error) {
+  const strut_scene *drawn = b->drawn->scene;
+  int32_t slot = strut_actuator_slot(b->drawn, (size_t)b->options->index);
+  strut_cell *cells = strut_arena_allocate(&b->arena, drawn->cell_count, sizeof *cells);
+  if (!cells) return strut_no_memory(error, "");
+  memcpy(cells, drawn->cells, drawn->cell_count * sizeof *cells);
+  b->setup.scene.cells = cells;
+  cells[drawn->actuators[b->options->index].cell].pressure =
+      b->drawn->members.rest[slot] + b->options->from;
+  return STRUT_OK;
+}
+
 /* The driven member with the rest length that the path begins with. */
 static strut_status lengthen_member(path_start *b, strut_error *error) {
   const strut_scene *drawn = b->drawn->scene;
   int32_t driven = drawn->actuators[b->options->index].member;
   strut_rest rest;
+  if (driven < 0 && drawn->actuators[b->options->index].hinge < 0) return fill_cell(b, error);
   if (driven < 0) return turn_hinge(b, error);
   strut_member *members = strut_arena_allocate(&b->arena, drawn->member_count, sizeof *members);
   if (!members) return strut_no_memory(error, "");
@@ -281,8 +295,9 @@ static strut_status walk_from(path_start *b, double until, int32_t steps, strut_
   return status;
 }
 
-static bool is_hinge_driven(const strut_model *model, const strut_path_options *o) {
-  return o->over == STRUT_PATH_OVER_ACTUATOR && model->scene->actuators[o->index].member < 0;
+/* Unit of what the actuator drives. */
+static const char *unit_of_drive(const strut_actuator *a) {
+  return a->member >= 0 ? "m" : a->hinge >= 0 ? "rad" : "N/m";
 }
 
 /* Names the path's parameter for messages. */
@@ -292,10 +307,10 @@ static strut_status name_parameter(const strut_model *model, const strut_path_op
   path->over = o->over;
   path->load = o->load;
   path->coordinate = o->over == STRUT_PATH_OVER_COORDINATE ? o->index : -1;
-  path->unit = o->over == STRUT_PATH_OVER_LOAD    ? ""
-               : o->over == STRUT_PATH_OVER_SCENE ? o->unit
-               : is_hinge_driven(model, o)        ? "rad"
-                                                  : "m";
+  path->unit = o->over == STRUT_PATH_OVER_LOAD       ? ""
+               : o->over == STRUT_PATH_OVER_SCENE    ? o->unit
+               : o->over == STRUT_PATH_OVER_ACTUATOR ? unit_of_drive(&scene->actuators[o->index])
+                                                     : "m";
   if (o->over == STRUT_PATH_OVER_LOAD) path->name = o->load ? o->load : "all loads";
   if (o->over == STRUT_PATH_OVER_ACTUATOR) path->name = scene->actuators[o->index].name;
   if (o->over == STRUT_PATH_OVER_SCENE) path->name = o->name;

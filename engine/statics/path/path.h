@@ -50,6 +50,7 @@ typedef struct strut_path_point {
   double *moment;   /* (hinges) [N m] */
   double *reaction; /* (length) force of supports on held coordinates, else 0 [N] */
   double *contact;  /* (contacts) normal force of the ground [N] */
+  double *pressure; /* (cells) inside [N/m] */
 } strut_path_point;
 
 typedef struct strut_path_event {
@@ -60,7 +61,7 @@ typedef struct strut_path_event {
                          kink */
   int32_t before, after; /* eigenvalues of the stiffness below zero on its two sides */
   const char *detail;    /* in words */
-  double *q, *force, *moment, *reaction, *contact; /* as of a point */
+  double *q, *force, *moment, *reaction, *contact, *pressure; /* as of a point */
 } strut_path_event;
 
 typedef enum strut_path_end {

@@ -156,6 +156,14 @@ void strut_path_moments(const strut_path_system *s, double *moment) {
       moment[t->element[i].item] = s->elements.element[i].pose.force + 0.0; /* no -0 */
 }
 
+void strut_path_pressures(const strut_path_system *s, double *pressure) {
+  const strut_element_table *t = &s->model->elements, *now = &s->terms.laws->elements;
+  for (int32_t i = 0; i < t->count; i++)
+    if (t->element[i].role == STRUT_ELEMENT_CELL)
+      pressure[t->element[i].item] =
+          now->element[i].numbers.outside - s->elements.element[i].pose.force;
+}
+
 /*
  * One that carries one sign acts where both its strain beyond the natural one and its force have
  * it: the nearer of the two to zero decides. Angles are turned into lengths by the size.

@@ -49,6 +49,8 @@ void strut_path_keep_turns(struct strut_path_system *system);
 double strut_path_element_tension(const struct strut_path_system *system, int32_t member);
 /** Moments of the hinges [N m] (hinges). */
 void strut_path_moments(const struct strut_path_system *system, double *moment);
+/** Pressures in the cells [N/m] (cells). */
+void strut_path_pressures(const struct strut_path_system *system, double *pressure);
 
 /** As strut_path_switch_value, for an element's switch at the terms and positions of the system. */
 double strut_path_element_switch_value(const struct strut_path_system *system, int32_t which);

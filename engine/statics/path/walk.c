@@ -35,10 +35,12 @@ static bool keep_state(strut_path_walk *w, const double *y, strut_path_point *po
   point->q = strut_arena_allocate(&w->path->arena, length, sizeof(double));
   point->force = strut_arena_allocate(&w->path->arena, members, sizeof(double));
   point->moment = strut_arena_allocate(&w->path->arena, model->scene->hinge_count, sizeof(double));
+  point->pressure = strut_arena_allocate(&w->path->arena, model->scene->cell_count, sizeof(double));
   point->reaction = strut_arena_allocate(&w->path->arena, length, sizeof(double));
   point->contact =
       strut_arena_allocate(&w->path->arena, (size_t)model->contacts.count, sizeof(double));
-  if (!point->q || !point->force || !point->moment || !point->reaction || !point->contact) {
+  if (!point->q || !point->force || !point->moment || !point->reaction || !point->contact ||
+      !point->pressure) {
     w->failed = true;
     return false;
   }
@@ -51,6 +53,7 @@ static bool keep_state(strut_path_walk *w, const double *y, strut_path_point *po
       point->force[j] += strut_path_element_tension(s, (int32_t)j);
   }
   strut_path_moments(s, point->moment);
+  strut_path_pressures(s, point->pressure);
   strut_path_reactions(s, point->reaction, point->contact);
   return true;
 }
@@ -90,7 +93,8 @@ void strut_path_add_event(strut_path_walk *w, strut_path_event_kind kind, const 
                             .force = state.force,
                             .moment = state.moment,
                             .reaction = state.reaction,
-                            .contact = state.contact};
+                            .contact = state.contact,
+                            .pressure = state.pressure};
   size_t at = p->event_count++; /* in the order of the path */
   for (; at > 0 && p->events[at - 1].arc > event.arc; at--) p->events[at] = p->events[at - 1];
   p->events[at] = event;

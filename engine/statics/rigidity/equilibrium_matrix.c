@@ -60,13 +60,14 @@ static bool add_bend(const strut_model *model, const strut_element *e, const dou
   return true;
 }
 
-/* The column of a hinge after the last. */
-static bool add_hinge(const strut_model *model, const strut_element *e, const double *q,
-                      strut_arena *arena, strut_equilibrium_matrix *a) {
+/* The column of a hinge or a cell after the last. */
+static bool add_curved(const strut_model *model, const strut_element *e, const double *q,
+                       strut_arena *arena, strut_equilibrium_matrix *a) {
   int32_t j = a->columns++;
+  double scale = e->role == STRUT_ELEMENT_CELL ? 1.0 / a->size : a->size;
   a->start[j + 1] = a->start[j];
-  add_gradient(model, e, q, a->size, a);
-  return add_bend(model, e, q, a->size, arena, a);
+  add_gradient(model, e, q, scale, a);
+  return add_bend(model, e, q, scale, arena, a);
 }
 
 /* The column after the last; rows of the node that comes first in the model come first. */
@@ -95,17 +96,20 @@ static bool add_column(const strut_model *model, const double *q, strut_arena *a
   return true;
 }
 
-/* Hinges in the scene's order. */
-static bool add_hinges(const strut_model *model, const double *q, strut_arena *arena,
-                       strut_equilibrium_matrix *a) {
+/* Hinges in the scene's order, then cells. */
+static bool add_elements(const strut_model *model, const double *q, strut_arena *arena,
+                         strut_equilibrium_matrix *a) {
   const strut_element_table *t = &model->elements;
-  size_t hinges = model->scene->hinge_count;
-  const strut_element **element = strut_arena_allocate(arena, hinges + 1, sizeof *element);
+  size_t hinges = model->scene->hinge_count, all = hinges + model->scene->cell_count;
+  const strut_element **element = strut_arena_allocate(arena, all + 1, sizeof *element);
   if (!element) return false;
-  for (int32_t i = 0; i < t->count; i++)
-    if (t->element[i].role == STRUT_ELEMENT_HINGE) element[t->element[i].item] = &t->element[i];
-  for (size_t i = 0; i < hinges; i++)
-    if (!add_hinge(model, element[i], q, arena, a)) return false;
+  for (int32_t i = 0; i < t->count; i++) {
+    const strut_element *e = &t->element[i];
+    if (e->role == STRUT_ELEMENT_HINGE) element[e->item] = e;
+    if (e->role == STRUT_ELEMENT_CELL) element[hinges + (size_t)e->item] = e;
+  }
+  for (size_t i = 0; i < all; i++)
+    if (!add_curved(model, element[i], q, arena, a)) return false;
   return true;
 }
 
@@ -134,7 +138,7 @@ strut_status strut_equilibrium_matrix_build(const strut_model *model, const doub
   a->rows = strut_number_free(model, NULL, a->row_of, a->coordinate);
   for (int32_t j = 0; j < model->members.count; j++)
     if (!add_column(model, q, arena, a)) return STRUT_NO_MEMORY;
-  return add_hinges(model, q, arena, a) ? STRUT_OK : STRUT_NO_MEMORY;
+  return add_elements(model, q, arena, a) ? STRUT_OK : STRUT_NO_MEMORY;
 }
 
 void strut_equilibrium_multiply(const strut_equilibrium_matrix *a, const double *t, double *y) {

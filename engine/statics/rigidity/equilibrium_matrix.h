@@ -7,7 +7,8 @@
  * from its first node to its second, negative at the first, positive at the second, so that A knows
  * no lengths. Members between held coordinates, or without length, have a column of zeros. A running
  * cable's column is the gradient of its whole length. Behind the members stands a column for each
- * hinge: the gradient of its angle times the model's size, so that its force is moment / size [N].
+ * hinge: the gradient of its angle times the model's size, so that its force is moment / size [N]. Then
+ * one for each cell: the gradient of its area over the size, so that its force is -pressure times size.
  */
 #ifndef STRUT_ENGINE_STATICS_RIGIDITY_EQUILIBRIUM_MATRIX_H
 #define STRUT_ENGINE_STATICS_RIGIDITY_EQUILIBRIUM_MATRIX_H
@@ -16,14 +17,15 @@
 
 typedef struct strut_equilibrium_matrix {
   int32_t rows;    /* free coordinates */
-  int32_t columns; /* members, then hinges */
+  int32_t columns; /* members, then hinges, then cells */
   int32_t members;
   double size;         /* of the model, by which hinges' moments are divided [m] */
   int32_t *coordinate; /* (rows) index into coordinate arrays */
   int32_t *row_of;     /* (length) row of a coordinate, -1 where fixed */
-  double *length;      /* (columns) of the members in the shape; of hinges angle times size [m] */
+  double *
+      length; /* (columns) of the members in the shape; of hinges angle * size, of cells area / size [m] */
   double (*direction)[2]; /* (columns) unit vector from first node to second; 0, 0 without length */
-  int32_t *curved;   /* (columns) element of a running cable or a hinge; -1: a straight member */
+  int32_t *curved; /* (columns) element of a running cable, hinge or cell; -1: a straight member */
   double *curvature; /* (columns) largest second derivative of such an element [1/m] */
   double **bend;     /* (columns) its second derivatives / curvature (2 nodes, 2 nodes), or NULL */
   int32_t *start;    /* (columns + 1) A by columns */
@@ -33,7 +35,7 @@ typedef struct strut_equilibrium_matrix {
 
 /** Columns of the equilibrium matrix of a model. */
 static inline int32_t strut_equilibrium_columns(const strut_model *model) {
-  return model->members.count + (int32_t)model->scene->hinge_count;
+  return model->members.count + (int32_t)(model->scene->hinge_count + model->scene->cell_count);
 }
 
 /** Is column j a cable? */

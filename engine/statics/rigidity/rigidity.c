@@ -130,12 +130,14 @@ static strut_status judge_tensegrity(const strut_model *model, const double *q, 
   return STRUT_OK;
 }
 
-static void measure_hinges(const strut_model *model, const double *q, strut_rigidity *r) {
+static void measure_elements(const strut_model *model, const double *q, strut_rigidity *r) {
   const strut_equilibrium_matrix *a = &r->matrix;
   strut_element_pose pose;
   for (int32_t j = a->members; j < a->columns; j++) {
     strut_element_evaluate(model, a->curved[j], model->members.rest, q, (double)NAN, &pose);
-    double force = r->force[j] = pose.force / a->size + 0.0; /* + 0.0: no -0 */
+    bool cell = model->elements.element[a->curved[j]].role == STRUT_ELEMENT_CELL;
+    double scale = cell ? 1.0 / a->size : a->size;
+    double force = r->force[j] = pose.force / scale + 0.0; /* + 0.0: no -0 */
     for (int32_t k = a->start[j]; k < a->start[j + 1]; k++)
       r->largest_force = fmax(r->largest_force, fabs(force * a->value[k]));
   }
@@ -156,7 +158,7 @@ static bool measure_forces(const strut_model *model, const double *q, strut_rigi
     r->largest_force = fmax(r->largest_force, fabs(r->force[j]));
     if (model->scene->members[j].kind == STRUT_CABLE) r->has_cables = true;
   }
-  measure_hinges(model, q, r);
+  measure_elements(model, q, r);
   return true;
 }
 
@@ -167,6 +169,15 @@ static void add_outer_forces(const strut_model *model, const double *q, double *
   for (int32_t at = 0; at < 2 * model->node_count && model->constant_force; at++) {
     net[at] += model->constant_force[at];
     *scale = fmax(*scale, fabs(model->constant_force[at]));
+  }
+  for (int32_t i = 0; i < model->elements.count; i++) {
+    const strut_element *e = &model->elements.element[i];
+    const uint32_t *at = model->elements.at + e->first;
+    strut_element_pose pose;
+    if (e->role != STRUT_ELEMENT_COLLISION) continue;
+    strut_element_evaluate(model, i, model->members.rest, q, (double)NAN, &pose);
+    for (int32_t k = 0; k < 2 * e->nodes; k++)
+      net[at[k / 2] + (uint32_t)(k % 2)] -= pose.force * pose.b[k];
   }
   for (int32_t i = 0; i < c->count; i++) {
     double gap = strut_contact_gap(c, i, q);

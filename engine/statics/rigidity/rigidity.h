@@ -38,7 +38,7 @@ typedef struct strut_rigidity {
   strut_null_spaces spaces;
   strut_self_stress states;
   strut_mechanisms mechanisms;
-  double *force;        /* (members, then hinges) in the shape, tension positive; of a hinge
+  double *force;        /* (members, hinges, cells) in the shape, tension positive; of a hinge
                            moment / size of the model [N] */
   double *density;      /* (members) force / length [N/m]; 0 without length */
   bool prestressed;     /* some member carries a force */
@@ -49,11 +49,11 @@ typedef struct strut_rigidity {
   bool self_equilibrium; /* the members balance alone: the forces are a state of self-stress */
   bool has_cables;
   bool cables_can_pull;   /* some self-stress pulls every cable that any state loads: `feasible` */
-  double *feasible;       /* (members, hinges) that one, largest force 1; NULL: none found */
+  double *feasible;       /* (columns) that one, largest force 1; NULL: none found */
   int32_t bars_at_node;   /* class k: the most bars that meet; 0 without bars */
   int32_t without_length; /* members of no length in this shape: they have no direction */
   strut_stress_source source; /* what `stress` and the tensegrity's features are about */
-  const double *judged;       /* (members, hinges) those forces; NULL without */
+  const double *judged;       /* (columns) those forces; NULL without */
   strut_stress_matrix stress;
   strut_tensegrity tensegrity;
   strut_arena arena;

@@ -225,7 +225,7 @@ static bool has_collapsed(const strut_climber *c, const double *q) {
   }
   for (int32_t i = 0; i < c->potential->model->elements.count; i++)
     if (strut_element_has_collapsed(c->potential->model, i, 1e-7, q)) return true;
-  return strut_hinges_have_collapsed(c->potential->model, q);
+  return strut_shape_has_collapsed(c->potential->model, q);
 }
 
 /* True if the climb has no end: bars that only stretch, bodies that only rise. */

@@ -108,6 +108,20 @@ static void add_forces(structure *s, const strut_scene *scene) {
     add_all(s, values, sizeof values / sizeof values[0]);
     add_law(s, &h->law);
   }
+  add(s, (double)scene->cell_count);
+  for (size_t i = 0; i < scene->cell_count; i++) {
+    const strut_cell *c = &scene->cells[i];
+    const double values[] = {c->law, c->pressure, c->exponent, c->outside, (double)c->node_count};
+    add_all(s, values, sizeof values / sizeof values[0]);
+    for (size_t k = 0; k < c->node_count; k++) add(s, c->node[k]);
+  }
+  add(s, (double)scene->collision_count);
+  for (size_t i = 0; i < scene->collision_count; i++) {
+    const strut_collision *c = &scene->collisions[i];
+    const double values[] = {c->node[0],   c->node[1],   c->member[0], c->member[1],
+                             c->thickness, c->stiffness, c->damping};
+    add_all(s, values, sizeof values / sizeof values[0]);
+  }
   add(s, (double)scene->contact_count);
   for (size_t i = 0; i < scene->contact_count; i++) {
     const strut_contact *c = &scene->contacts[i];

@@ -1,0 +1,250 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Beams: each becomes nodes, bars and hinges of the scene, as if the file had listed them. See reader.h.
+ *
+ * With parts of the length h, a hinge between two parts has the stiffness EI / h, and one between a part
+ * and a clamp 2 EI / h: half a part bends. The deflection of a cantilever then converges with the square
+ * of the number of parts.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/base/vec.h"
+#include "parser/read/reader.h"
+
+/* Parts of all beams. */
+enum { MOST_PARTS = 2000000 };
+
+enum { CLAMPED_START = 1, CLAMPED_END = 2 }; /* the words of the key, as bits */
+
+static size_t count_clamps(const strut_beam *b) {
+  return (size_t)(b->clamped & 1u) + (size_t)(b->clamped >> 1);
+}
+
+static double part_length(const strut_reader *reader, const strut_beam *b) {
+  const strut_node *nodes = reader->scene->nodes;
+  return strut_distance(nodes[b->node[0]].position, nodes[b->node[1]].position) / (double)b->parts;
+}
+
+/* "rod.3" */
+static const char *part_name(strut_reader *reader, const strut_beam *b, size_t part) {
+  const char *name = strut_arena_format(&reader->scene->arena, "%s.%zu", b->name, part);
+  if (!name) reader->out_of_memory = true;
+  return name ? name : "";
+}
+
+static const char *clamp_name(strut_reader *reader, const strut_beam *b, bool end) {
+  const char *name =
+      strut_arena_format(&reader->scene->arena, "%s.%s", b->name, end ? "end" : "start");
+  if (!name) reader->out_of_memory = true;
+  return name ? name : "";
+}
+
+/* Is the name free? If not, that is reported once for the beam. */
+static bool claim_name(strut_reader *reader, strut_beam *b, const char *kind, strut_name_map *map,
+                       const char *name, size_t index) {
+  if (strut_name_map_find(map, name) < 0) {
+    strut_add_name(reader, map, name, index);
+    return true;
+  }
+  if (!b->broken)
+    strut_report_error(reader, b->key->place,
+                       "beam '%s' makes a %s '%s', but there is another one; rename one of them",
+                       b->name, kind, name);
+  b->broken = reader->ends_unknown = true;
+  return false;
+}
+
+/* An array with place for `more` things at its end; NULL: out of memory. */
+static void *lengthen(strut_reader *reader, strut_arena *arena, const void *old, size_t count,
+                      size_t more, size_t size) {
+  void *array = strut_reader_allocate(reader, arena, count + more, size);
+  if (array && count) memcpy(array, old, count * size);
+  return array;
+}
+
+/* Ends that are known and apart, and held where they are clamped. */
+static bool check_ends(strut_reader *reader, const strut_tree *key, const strut_slot *clamped,
+                       const strut_beam *b) {
+  const strut_node *nodes = reader->scene->nodes;
+  for (int k = 0; k < 2; k++) {
+    const strut_node *end = &nodes[b->node[k]];
+    if (!(b->clamped >> k & 1u) || (end->fixed[0] && end->fixed[1])) continue;
+    strut_report_error(reader, clamped->value->place,
+                       "beam '%s' is clamped at node '%s', which is not fixed; write fixed: both "
+                       "for it, or join the beam to another by a hinge",
+                       b->name, end->name);
+    return false;
+  }
+  double length = part_length(reader, b);
+  if (length > 0.0) return true;
+  if (!isnan(length))
+    strut_report_error(reader, key->place,
+                       "nodes '%s' and '%s' are drawn in one place, so beam '%s' has no direction",
+                       nodes[b->node[0]].name, nodes[b->node[1]].name, b->name);
+  return false;
+}
+
+static bool read_beam(strut_reader *reader, const strut_tree *key, strut_beam *b) {
+  strut_owner owner = {"beam", key->text};
+  bool fine = strut_read_name(reader, key, "beam");
+  strut_fields fields;
+  *b = (strut_beam){.name = strut_keep_text(reader, key->text),
+                    .key = key,
+                    .node = {-1, -1},
+                    .parts = STRUT_USUAL_PARTS};
+  strut_read_fields(reader, STRUT_SECTION_BEAM, key->next, owner, &fields);
+  strut_require(reader, &fields, owner, key->place);
+  strut_store_fields(reader, &fields, &reader->scratch, b, sizeof *b);
+  const strut_slot *nodes = strut_slot_of(&fields, STRUT_KEY_BEAM_NODES);
+  const strut_slot *clamped = strut_slot_of(&fields, STRUT_KEY_BEAM_CLAMPED);
+  if (nodes->state != STRUT_GIVEN) return false;
+  const strut_tree *item = nodes->value->first;
+  for (int k = 0; k < 2; k++, item = item->next) {
+    b->node[k] = strut_read_node(reader, item, owner);
+    fine = fine && b->node[k] >= 0;
+  }
+  return fine && !fields.broken && check_ends(reader, key, clamped, b);
+}
+
+/* A node of the beam, at the share s of its length. */
+static void add_node(strut_reader *reader, strut_beam *b, const char *name, double s, bool fixed) {
+  strut_scene *scene = reader->scene;
+  const double *from = scene->nodes[b->node[0]].position, *to = scene->nodes[b->node[1]].position;
+  size_t i = scene->node_count;
+  if (!claim_name(reader, b, "node", &reader->node_names, name, i)) return;
+  strut_node *node = &scene->nodes[i];
+  *node = strut_node_default();
+  node->name = name;
+  node->fixed[0] = node->fixed[1] = fixed;
+  for (int d = 0; d < 2; d++) node->position[d] = node->start[d] = from[d] + s * (to[d] - from[d]);
+  reader->node_source[i] = (strut_source){b->key, b->key->next, false};
+  scene->node_count++;
+}
+
+static void add_nodes(strut_reader *reader, strut_beam *b) {
+  double parts = (double)b->parts;
+  b->first_node = (int32_t)reader->scene->node_count;
+  for (int32_t k = 1; k < b->parts && !b->broken; k++)
+    add_node(reader, b, part_name(reader, b, (size_t)k), k / parts, false);
+  b->clamp_node[0] = (int32_t)reader->scene->node_count;
+  if (b->clamped & CLAMPED_START && !b->broken)
+    add_node(reader, b, clamp_name(reader, b, false), -1.0 / parts, true);
+  b->clamp_node[1] = (int32_t)reader->scene->node_count;
+  if (b->clamped & CLAMPED_END && !b->broken)
+    add_node(reader, b, clamp_name(reader, b, true), 1.0 + 1.0 / parts, true);
+}
+
+void strut_read_beams(strut_reader *reader) {
+  strut_scene *scene = reader->scene;
+  const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_BEAMS);
+  size_t parts = 0, clamps = 0;
+  if (!map || !scene->nodes) return;
+  reader->beams =
+      strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->beams);
+  for (const strut_tree *key = map->first; key && reader->beams; key = key->next->next) {
+    strut_beam *b = &reader->beams[reader->beam_count];
+    if (!read_beam(reader, key, b)) {
+      reader->ends_unknown = true;
+      continue;
+    }
+    parts += (size_t)b->parts, clamps += count_clamps(b);
+    reader->beam_count++;
+  }
+  if (parts > MOST_PARTS) {
+    strut_report_error(reader, map->place, "the beams have %zu parts, at most %d are possible",
+                       parts, (int)MOST_PARTS);
+    reader->beam_count = 0;
+  }
+  if (!reader->beam_count || strut_diagnostics_full(reader->diagnostics)) return;
+  scene->nodes = lengthen(reader, &scene->arena, scene->nodes, scene->node_count, parts + clamps,
+                          sizeof *scene->nodes);
+  reader->node_source = lengthen(reader, &reader->scratch, reader->node_source, scene->node_count,
+                                 parts + clamps, sizeof *reader->node_source);
+  for (size_t i = 0; i < reader->beam_count && scene->nodes && reader->node_source; i++)
+    add_nodes(reader, &reader->beams[i]);
+}
+
+/* Node k of the beam, from 0 to its number of parts. */
+static int32_t beam_node(const strut_beam *b, int32_t k) {
+  return k == 0 ? b->node[0] : k == b->parts ? b->node[1] : b->first_node + k - 1;
+}
+
+static size_t count_parts(const strut_reader *reader) {
+  size_t parts = 0;
+  for (size_t i = 0; i < reader->beam_count; i++) parts += (size_t)reader->beams[i].parts;
+  return parts;
+}
+
+static void add_part(strut_reader *reader, strut_beam *b, int32_t k) {
+  strut_scene *scene = reader->scene;
+  size_t i = scene->member_count;
+  const char *name = part_name(reader, b, (size_t)k);
+  if (!claim_name(reader, b, "member", &reader->member_names, name, i)) return;
+  strut_member *m = &scene->members[i];
+  *m = strut_member_default();
+  m->name = name;
+  m->node[0] = beam_node(b, k - 1), m->node[1] = beam_node(b, k);
+  m->axial_stiffness = b->axial_stiffness;
+  m->damping = b->damping * b->axial_stiffness / part_length(reader, b);
+  m->mass = b->mass / (double)b->parts;
+  reader->member_source[i] = (strut_source){b->key, b->key->next, false};
+  scene->member_count++;
+}
+
+void strut_add_beam_members(strut_reader *reader) {
+  strut_scene *scene = reader->scene;
+  size_t parts = count_parts(reader);
+  if (!parts) return;
+  scene->members = lengthen(reader, &scene->arena, scene->members, scene->member_count, parts,
+                            sizeof *scene->members);
+  reader->member_source = lengthen(reader, &reader->scratch, reader->member_source,
+                                   scene->member_count, parts, sizeof *reader->member_source);
+  for (size_t i = 0; i < reader->beam_count && scene->members && reader->member_source; i++) {
+    strut_beam *b = &reader->beams[i];
+    for (int32_t k = 1; k <= b->parts && !b->broken; k++) add_part(reader, b, k);
+  }
+}
+
+/* A hinge at `node`, straight at rest; `parts`: of those that meet there, as many as bend. */
+static void add_hinge(strut_reader *reader, strut_beam *b, const char *name, const int32_t node[3],
+                      double parts) {
+  strut_scene *scene = reader->scene;
+  size_t i = scene->hinge_count;
+  if (!claim_name(reader, b, "hinge", &reader->hinge_names, name, i)) return;
+  strut_hinge *h = &scene->hinges[i];
+  *h = strut_hinge_default();
+  h->name = name;
+  for (int k = 0; k < 3; k++) h->node[k] = node[k];
+  h->stiffness = b->bending_stiffness / (parts * part_length(reader, b));
+  h->damping = b->damping * h->stiffness;
+  h->rest_angle = STRUT_PI;
+  reader->hinge_source[i] = (strut_source){b->key, b->key->next, false};
+  scene->hinge_count++;
+}
+
+static void add_hinges(strut_reader *reader, strut_beam *b) {
+  for (int32_t k = 1; k < b->parts && !b->broken; k++) {
+    const int32_t node[3] = {beam_node(b, k - 1), beam_node(b, k), beam_node(b, k + 1)};
+    add_hinge(reader, b, part_name(reader, b, (size_t)k), node, 1.0);
+  }
+  const int32_t start[3] = {b->clamp_node[0], b->node[0], beam_node(b, 1)};
+  const int32_t end[3] = {beam_node(b, b->parts - 1), b->node[1], b->clamp_node[1]};
+  if (b->clamped & CLAMPED_START && !b->broken)
+    add_hinge(reader, b, clamp_name(reader, b, false), start, 0.5);
+  if (b->clamped & CLAMPED_END && !b->broken)
+    add_hinge(reader, b, clamp_name(reader, b, true), end, 0.5);
+}
+
+void strut_add_beam_hinges(strut_reader *reader) {
+  strut_scene *scene = reader->scene;
+  size_t most = count_parts(reader) + 2 * reader->beam_count;
+  if (!reader->beam_count) return;
+  scene->hinges = lengthen(reader, &scene->arena, scene->hinges, scene->hinge_count, most,
+                           sizeof *scene->hinges);
+  reader->hinge_source = lengthen(reader, &reader->scratch, reader->hinge_source,
+                                  scene->hinge_count, most, sizeof *reader->hinge_source);
+  for (size_t i = 0; i < reader->beam_count && scene->hinges && reader->hinge_source; i++)
+    add_hinges(reader, &reader->beams[i]);
+}

@@ -1,0 +1,157 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Cells under pressure and filled with gas, through the program, against closed forms.
+. "$(dirname "$0")/lib.sh"
+
+# near FILTER EXPECTED TOLERANCE: the JSON in out through jq, and a number that jq computes.
+near() {
+  jq -e "($1) as \$got | ($2) as \$want | (\$got - \$want | fabs) <= $3" out >jq.out 2>&1 ||
+    fail "$1 is $(jq -c "$1" out 2>&1), expected $(jq -n "$2") within $3"
+}
+
+# ring N CELL: a regular polygon of N stiff bars with circumradius 1 m.
+ring() {
+  jq -nr --argjson n "$1" --arg cell "$2" '6.283185307179586 as $turn
+    | "strut: 1", "groups: {rod: {kind: bar, stiffness: 1e9}}", "nodes:",
+      (range($n) | "  n\(.): {position: [\(. / $n * $turn | cos), \(. / $n * $turn | sin)], mass: 1\(
+        if . == 0 then ", fixed: both" else "" end)}"),
+      "members:", (range($n) | "  m\(.): {group: rod, nodes: [n\(.), n\((. + 1) % $n)]}"),
+      "cells: {c: {nodes: [\([range($n) | "n\(.)"] | join(", "))], \($cell)}}"'
+}
+
+# A ring carries T = p R cos(pi / n), whichever way round the cell is written.
+for n in 3 6 12; do
+  ring $n "pressure: 100 N/m" >ring.yaml
+  expect 0 rigidity ring.yaml --json
+  near '.self_stress.count' 1 0
+  near '.self_stress.states[0] | .pressures.c / .forces.m0' "1 / (3.141592653589793 / $n | cos)" 1e-9
+  near '.cells_at.c.area' "$n / 2 * (6.283185307179586 / $n | sin)" 1e-9
+  near '.cells_at.c.pressure' 100 1e-9
+done
+ring 6 "pressure: 100 N/m" | sed 's/\[n0, n1, n2, n3, n4, n5\]/[n5, n4, n3, n2, n1, n0]/' >back.yaml
+ring 6 "pressure: 100 N/m" >ring.yaml
+for file in ring back; do
+  expect 0 equilibria $file.yaml --json
+  near '[.equilibria[] | select(.label == "stable" or .label == "neutral")] | length' 1 0
+  for m in m0 m2 m5; do
+    near ".equilibria[0].forces.$m" '100 * (3.141592653589793 / 6 | cos)' 1e-4
+  done
+done
+
+# A cylinder with a lid of mass 2 kg and width 1 m, 2 m high: work of the gas, and its frequency
+# omega^2 = exponent p w^2 / (A m).
+piston() {
+  cat <<END
+strut: 1
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0], fixed: both}
+  c: {position: [1, 2], mass: 1, fixed: x}
+  d: {position: [0, 2], mass: 1, fixed: x}
+members:
+  lid: {kind: bar, nodes: [d, c], stiffness: 1e4}
+cells: {air: {nodes: [a, d, c, b], $1}}
+initial: {velocities: {c: [0, $2], d: [0, $2]}}
+solver: {integrator: $3, step: $4}
+run:
+  duration: 1 s
+  measure:
+    quantities:
+      area: {of: air.area, take: final}
+      pressure: {of: cell(air).pressure, take: final}
+      total: {of: energy.total, take: range}
+output: {channels: [position, area, pressure, energy]}
+END
+}
+piston "gas: {kind: isentropic, pressure: 50 N/m, outside: 50 N/m}" 1 rk4 "1 ms" >piston.yaml
+expect 0 modes piston.yaml --json
+near '.modes[-1].angular_frequency' '1.4 * 50 / (2 * 2) | sqrt' 1e-6
+out_has "air 100"
+piston "gas: {kind: isothermal, pressure: 50 N/m, outside: 50 N/m}" 1 rk4 "1 ms" >isothermal.yaml
+expect 0 modes isothermal.yaml --json
+near '.modes[-1].angular_frequency' '50 / (2 * 2) | sqrt' 1e-6
+
+# In every method, with p A^exponent constant and the balance closed.
+for method in rk4 euler verlet rk4-events verlet-events euler-events adaptive midpoint; do
+  piston "gas: {kind: isentropic, pressure: 50 N/m, outside: 50 N/m}" 1 $method "0.2 ms" >gas.yaml
+  expect 0 run gas.yaml -o gas --quiet --json
+  cp gas/summary.json out
+  near '.measured | .pressure.value * ((.area.value | log * 1.4) | exp)' \
+    '50 * (2 | log * 1.4 | exp)' 1e-8
+  near '.measured.area.value' 1.822351 1e-4
+  near '.energy.residual / .energy.exchanged' 0 1e-3
+  # the energy of the gas, with the work against the outside
+  near '.energy.elastic' ".cells.air.area as \$a | 50 * 2 / 0.4 * ((2 / \$a | log * 0.4 | exp) - 1)
+    + 50 * (\$a - 2)" 1e-9
+done
+head -n 1 gas/cells.csv >out
+out_has "time [s],air.area [m^2],air.pressure [N/m]"
+piston "gas: {kind: isothermal, pressure: 50 N/m, outside: 50 N/m}" 1 rk4 "1 ms" >gas.yaml
+expect 0 run gas.yaml -o gas --quiet
+cp gas/summary.json out
+near '.energy.elastic' '.cells.air.area as $a | 50 * 2 * (2 / $a | log) + 50 * ($a - 2)' 1e-9
+near '.measured.total.value' 0 1e-9
+
+# A pressure that a signal drives: the work of the drive closes the balance.
+piston "pressure: 10 N/m" 0 rk4 "1 ms" >driven.yaml
+cat >>driven.yaml <<'END'
+actuators: {pump: {cell: air, signal: {sine: {amplitude: 5 N/m, frequency: 1 Hz}}}}
+loads: {weight: {node: c, force: [0, -10 N]}}
+END
+for method in rk4 midpoint adaptive rk4-events; do
+  sed "s/integrator: rk4/integrator: $method/" driven.yaml >run.yaml
+  expect 0 run run.yaml -o gas --quiet
+  cp gas/summary.json out
+  near '.energy.residual / .energy.exchanged' 0 1e-5
+  near '.measured.pressure.value' 10 1e-9
+  # acceleration 5 sin(w t) / 2: the lid's mean height after one period is 5 / 2 / w
+  near '.measured.area.value' '2 + 2.5 / 6.283185307179586' 2e-3
+done
+
+# A path over the pressure: two links that a cell pushes up against springs keep equilibrium.
+cat >bulge.yaml <<'END'
+strut: 1
+parameters: {p: 5 N/m}
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0.1]}
+  c: {position: [2, 0], fixed: both}
+members:
+  ab: {kind: spring, nodes: [a, b], stiffness: 100}
+  bc: {kind: spring, nodes: [b, c], stiffness: 100}
+cells: {bag: {nodes: [a, b, c], pressure: p}}
+END
+cat bulge.yaml >pump.yaml
+echo 'actuators: {pump: {cell: bag, signal: {constant: 0}}}' >>pump.yaml
+expect 0 path bulge.yaml --over p --until 30 --json
+# at b: 2 T sin = p * span / 2, with the area's gradient 1 m
+near '.points[-1] | .nodes.b[1] as $y | 2 * .forces.ab * $y / (1 + $y * $y | sqrt)' 30 1e-6
+near '.points[-1].pressures.bag' 30 1e-9
+cp out bulge.json
+expect 0 path pump.yaml --over pump --until 25 --json
+near '.points[-1].nodes.b[1]' "$(jq '.points[-1].nodes.b[1]' bulge.json)" 1e-9
+
+# A cell that is pressed flat stops the run with its name and the time.
+piston "gas: {kind: isothermal, pressure: 50 N/m}" -1000 rk4 "1 ms" >flat.yaml
+expect 3 run flat.yaml
+err_has "the area of cell 'air' reached zero at t = 0.002 s"
+
+# Everything else knows cells.
+expect 0 check piston.yaml
+out_has "isentropic gas"
+expect 0 check piston.yaml --json
+near '.cells.air.drawn_area' 2 1e-12
+expect 0 write piston.yaml
+cp out written.yaml
+expect 0 write written.yaml
+cp out again.yaml
+same written.yaml again.yaml
+expect 0 run piston.yaml -o pictures --quiet --plot piston.svg
+expect 0 view pictures -o page.html
+grep -q "\"name\":\"air\",\"nodes\":\[0, 3, 2, 1\]" page.html || fail "no cell on the page"
+expect 0 export piston.yaml --matrices matrices
+grep -q 'air,cell,a,b,d c' matrices/columns.csv || fail "no column of the cell"
+expect 2 form bulge.yaml
+err_has "bag is a cell"
+
+done_testing

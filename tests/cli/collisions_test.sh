@@ -1,0 +1,193 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Collisions of nodes and members through the program, against closed forms and conserved sums.
+. "$(dirname "$0")/lib.sh"
+
+# near FILTER EXPECTED TOLERANCE: the JSON in out through jq, and a number that jq computes.
+near() {
+  jq -e "($1) as \$got | ($2) as \$want | (\$got - \$want | fabs) <= $3" out >jq.out 2>&1 ||
+    fail "$1 is $(jq -c "$1" out 2>&1), expected $(jq -n "$2") within $3"
+}
+
+# run FILE: its summary in out.
+run() {
+  expect 0 run "$1" -o results --quiet
+  cp results/summary.json out
+}
+
+# A ball against a fixed one with a damper that never pulls: with beta = c / 2m and omega it leaves at
+# exp(-beta t) of its speed, omega t = pi - atan2(2 beta omega, omega^2 - beta^2).
+ball() {
+  cat <<END
+strut: 1
+nodes:
+  wall: {position: [0, 0], fixed: both}
+  ball: {position: [0.5, 0], mass: 1}
+collisions:
+  hit: {nodes: [wall, ball], thickness: 0.4, stiffness: 10000, damping: $1}
+initial: {velocities: {ball: [-1, 0]}}
+solver: {integrator: $2, step: $3}
+run:
+  duration: 0.3
+  measure:
+    quantities:
+      speed: {of: ball.vx, take: final}
+      force: {of: hit.force, take: max}
+      pull: {of: hit.force, take: min}
+      gap: {of: collision(hit).gap, take: final}
+END
+}
+for damping in 0 10 40 100; do
+  exit="($damping / 2) as \$b | (10000 - \$b * \$b | sqrt) as \$w
+    | (3.141592653589793 - ([2 * \$b * \$w, \$w * \$w - \$b * \$b] | atan2(.[0]; .[1]))) / \$w
+    | (-\$b * . | exp)"
+  ball $damping rk4-events "0.2 ms" >ball.yaml
+  run ball.yaml
+  near .measured.speed.value "$exit" 1e-4
+  near .measured.pull.value 0 0
+  near '.energy.residual / .energy.exchanged' 0 1e-4
+  [ $damping -ne 0 ] || near .measured.force.value 100 0.05
+  for method in rk4 verlet euler verlet-events euler-events adaptive midpoint; do
+    ball $damping $method "20 us" >ball.yaml
+    run ball.yaml
+    near .measured.speed.value "$exit" 0.02
+    near .measured.pull.value 0 0
+  done
+done
+
+# Newton's cradle: of three equal discs with gaps between them only the last one goes on.
+cat >cradle.yaml <<'END'
+strut: 1
+nodes:
+  a: {position: [0, 0], mass: 0.2}
+  b: {position: [1, 0], mass: 0.2}
+  c: {position: [1.5, 0], mass: 0.2}
+collisions:
+  ab: {nodes: [a, b], thickness: 0.4, stiffness: 1e5}
+  bc: {nodes: [b, c], thickness: 0.4, stiffness: 1e5}
+initial: {velocities: {a: [2, 0]}}
+solver: {integrator: rk4-events, step: 50 us}
+run: {duration: 1, measure: {quantities: {a: {of: a.vx, take: final}, b: {of: b.vx, take: final}, c: {of: c.vx, take: final}}}}
+END
+run cradle.yaml
+near .measured.a.value 0 1e-6
+near .measured.b.value 0 1e-6
+near .measured.c.value 2 1e-6
+
+# Two free rods: momentum and angular momentum about the origin are kept, and energy without damping.
+cat >rods.yaml <<'END'
+strut: 1
+mass_model: lumped
+nodes:
+  a: {position: [0, 0], mass: 1}
+  b: {position: [1, 0], mass: 2}
+  c: {position: [0.3, 0.5], mass: 0.5}
+  d: {position: [0.6, 1.4], mass: 1.5}
+members:
+  ab: {kind: bar, nodes: [a, b], stiffness: 1e5}
+  cd: {kind: bar, nodes: [c, d], stiffness: 1e5}
+collisions:
+  hit: {members: [ab, cd], thickness: 40 mm, stiffness: 1e5}
+initial: {velocities: {c: [0.2, -3], d: [0.2, -3], a: [0, 0.5]}}
+solver: {integrator: rk4-events, step: 0.1 ms}
+run:
+  duration: 0.4
+  measure:
+    quantities:
+      px: {of: "a.vx + 2*b.vx + 0.5*c.vx + 1.5*d.vx", take: range}
+      py: {of: "a.vy + 2*b.vy + 0.5*c.vy + 1.5*d.vy", take: range}
+      spin: {of: "a.x*a.vy - a.y*a.vx + 2*(b.x*b.vy - b.y*b.vx) + 0.5*(c.x*c.vy - c.y*c.vx) + 1.5*(d.x*d.vy - d.y*d.vx)", take: range}
+      hit: {of: hit.force, take: max}
+END
+run rods.yaml
+near .measured.px.value 0 1e-10
+near .measured.py.value 0 1e-10
+near .measured.spin.value 0 1e-9
+jq -e '.measured.hit.value > 10' out >/dev/null || fail "the rods did not meet"
+near '.energy.residual / .energy.exchanged' 0 1e-5
+
+# A ball on a hinged bar: angular momentum about the hinge, and a closed balance with damping.
+cat >hinged.yaml <<'END'
+strut: 1
+nodes:
+  hinge: {position: [0, 0], fixed: both}
+  tip: {position: [1, 0], mass: 1}
+  ball: {position: [0.6, 0.3], mass: 0.5}
+members:
+  bar: {kind: bar, nodes: [hinge, tip], stiffness: 1e5, mass: 0.6}
+collisions:
+  hit: {node: ball, member: bar, thickness: 50 mm, stiffness: 1e4, damping: 5}
+initial: {velocities: {ball: [0, -2]}}
+solver: {integrator: rk4-events, step: 0.1 ms}
+run:
+  duration: 0.5
+  measure:
+    quantities:
+      spin: {of: "1.2*(tip.x*tip.vy - tip.y*tip.vx) + 0.5*(ball.x*ball.vy - ball.y*ball.vx)", take: range}
+      turned: {of: tip.vy, take: final}
+      hit: {of: hit.force, take: max}
+END
+run hinged.yaml
+near .measured.spin.value 0 1e-9
+jq -e '.measured.hit.value > 10 and .measured.turned.value < -0.3' out >/dev/null || fail "no hit"
+near '.energy.residual / .energy.exchanged' 0 1e-4
+jq -e '.energy.dissipated_members > 0.01' out >/dev/null || fail "nothing was lost"
+
+# The search finds the bar at rest on a peg, k d r cos = W, and hanging down.
+cat >peg.yaml <<'END'
+strut: 1
+nodes:
+  hinge: {position: [0, 0], fixed: both}
+  tip: {position: [1, 0.1], mass: 1}
+  peg: {position: [0.5, -0.1], fixed: both}
+members:
+  bar: {kind: bar, nodes: [hinge, tip], stiffness: 1e6}
+collisions:
+  rest: {node: peg, member: bar, thickness: 50 mm, stiffness: 1e5}
+gravity: [0, -10]
+END
+expect 0 equilibria peg.yaml --json
+near '[.equilibria[] | select(.label == "stable")] | length' 2 0
+near '[.equilibria[] | select(.label == "stable")] | map(.nodes.tip[1]) | min' '-(1.01 | sqrt)' 1e-4
+# on the peg: the moment of the weight is that of the force of 20 N at half the length
+near '[.equilibria[] | select(.label == "stable")] | map(.nodes.tip[0]) | max' \
+  '(0.2 | atan) as $down | (0.05 / (0.26 | sqrt) | asin) as $up | (1.01 | sqrt) * ($down - $up | cos)' 1e-4
+
+# By path, a growing load presses a lever onto the peg: it touches there.
+sed 's/^gravity.*/loads: {down: {node: tip, force: [0, -10 N]}}/' peg.yaml |
+  sed '/^members/a\  up: {kind: spring, nodes: [tip, roof], stiffness: 20, rest_length_ratio: 1}' |
+  sed '/^nodes/a\  roof: {position: [1, 2], fixed: both}' >lever.yaml
+expect 0 path lever.yaml --load down --until 2 --json
+jq -e '[.events[].detail] | map(select(startswith("rest touches"))) | length == 1' out >/dev/null ||
+  fail "the path has no touch"
+
+# Overlap at the start, and steps that may pass over the thickness.
+sed 's/\[0.6, 0.3\]/[0.6, 0.02]/' hinged.yaml >overlap.yaml
+expect 0 check overlap.yaml
+err_has "collision 'hit' starts with an overlap of 0.03 m"
+sed 's/\[0, -2\]/[0, -800]/; s/duration: 0.5/duration: 2 ms/' hinged.yaml >fast.yaml
+expect 0 run fast.yaml --quiet
+err_has "the sides of collision 'hit' moved at up to 800 m/s"
+
+sed 's/stiffness: 1e5}/stiffness: 1e3}/' rods.yaml >soft.yaml
+expect 0 run soft.yaml --quiet
+err_has "the sides of collision 'hit' were pressed into each other by more than half"
+
+# Everything else knows collisions.
+expect 0 check hinged.yaml
+out_has "drawn gap"
+out_has "for a collision"
+for file in cradle rods hinged; do
+  expect 0 write $file.yaml
+  cp out written.yaml
+  expect 0 write written.yaml
+  same out written.yaml
+done
+expect 0 modes peg.yaml --at equilibrium-2
+out_has "rest"
+expect 0 rigidity peg.yaml
+expect 0 run hinged.yaml -o pictures --quiet --plot hinged.svg
+expect 0 view pictures -o page.html
+grep -q '"name":"hit","thickness":0.05,"nodes":\[2\],"members":\[0\]' page.html || fail "no collision on the page"
+
+done_testing
