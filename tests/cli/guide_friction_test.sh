@@ -122,7 +122,7 @@ near '.energy.residual / .energy.exchanged' 0 1e-6
 sed 's/integrator: rk4-events/integrator: midpoint/' slack.yaml >other.yaml
 expect 1 run other.yaml
 err_has 'midpoint cannot step'
-sed 's/guide_friction: 0.2}/guide_friction: 0.2, damping: 2, breaks_at: 60 N}/' slack.yaml >other.yaml
+sed 's/guide_friction: 0.2}/guide_friction: 0.2, damping: 2, breaks_at: 31 N}/' slack.yaml >other.yaml
 expect 0 run other.yaml --json
 near '.broken.rope.time | if . then 1 else 0 end' 1 0
 near '.energy.residual / .energy.exchanged' 0 1e-4
