@@ -89,6 +89,9 @@ typedef struct strut_element_table {
   const int32_t *memory;             /* (memory_count) the elements with memory */
   int32_t memory_slot, memory_slots; /* the first of their slots, and how many there are */
   const strut_breakable *breakable;  /* (breakable_count) members, then hinges */
+  /* (count) what vector loops read of elements, side by side; `at` is in the order of elements, too */
+  const double *stiffness, *damping;
+  const int32_t *slot;
 } strut_element_table;
 
 /** The first element of member j, or NULL for a plain member without stops. */
