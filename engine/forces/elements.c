@@ -4,6 +4,7 @@
 #include <assert.h>
 #include <string.h>
 
+#include "engine/forces/capstan.h"
 #include "engine/forces/elements_kernel.h"
 #include "engine/forces/memory.h"
 #include "engine/forces/strains/angle.h"
@@ -65,6 +66,8 @@ void strut_element_evaluate(const strut_model *model, int32_t element, const dou
   pose->force = pose->acts ? r.force : 0.0;
   pose->energy = beyond ? r.energy : 0.0;
   if (e->remembers) pose->energy += strut_memory_locked_energy(e, rest);
+  if (strut_capstan_remembers(e, rest))
+    pose->energy = strut_capstan_energy(model, element, rest, q);
   pose->slope = pose->acts ? r.slope : 0.0;
 }
 
@@ -335,6 +338,8 @@ double strut_element_measure(const strut_model *model, const strut_state *state,
   const strut_element *e = &model->elements.element[element];
   strut_element_evaluate(model, element, state->rest, state->q, state->element_turn[element], pose);
   if (strut_element_is_gone(pose->natural)) return 0.0;
+  if (strut_capstan_remembers(e, state->rest))
+    return strut_capstan_tensions(model, state, element, state->q, state->v).first;
   int32_t slot = e->remembers ? e->base : e->slot;
   double rest_rate = slot >= 0 ? state->rest_rate[slot] : 0.0;
   strut_law_response r = strut_law_respond(e->law, &e->numbers, pose->strain, pose->natural, -1);

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/forces/capstan.h"
 #include "engine/forces/drive.h"
 
 /* An element's e0 as its member or hinge has it, before anything has yielded. */
@@ -137,6 +138,10 @@ static void add_element(const strut_model *model, strut_state *state, int32_t i,
   const strut_element *e = &model->elements.element[i];
   const uint32_t *at = model->elements.at + e->first;
   double b[STRUT_MOST_GRADIENT], rate = -base_rate_of(e, state);
+  if (strut_capstan_remembers(e, state->rest) && !strut_element_is_gone(state->rest[e->slot])) {
+    strut_capstan_add_forces(model, state, i, q, v, force);
+    return;
+  }
   double strain = strut_element_strain(model, i, q, state->element_turn[i], b);
   state->element_turn[i] = strain;
   double natural = strut_memory_natural(model, state, i, strain), x = strain - natural;
@@ -183,21 +188,19 @@ void strut_memory_follow(const strut_model *model, strut_state *state) {
 }
 
 void strut_memory_store(const strut_model *model, const strut_state *state, double *memory) {
-  size_t count = (size_t)model->elements.memory_count;
-  size_t more = (size_t)model->elements.breakable_count;
-  memcpy(memory, state->plastic, count * sizeof(double));
-  memcpy(memory + count, state->broken_at, more * sizeof(double));
+  const strut_element_table *t = &model->elements;
+  size_t slots = (size_t)t->memory_slots, count = (size_t)t->memory_count;
+  memcpy(memory, state->rest + t->memory_slot, slots * sizeof(double));
+  memcpy(memory + slots, state->plastic, count * sizeof(double));
+  memcpy(memory + slots + count, state->broken_at, (size_t)t->breakable_count * sizeof(double));
 }
 
 void strut_memory_load(const strut_model *model, strut_state *state, const double *memory) {
   const strut_element_table *t = &model->elements;
-  size_t count = (size_t)t->memory_count, more = (size_t)t->breakable_count;
-  memcpy(state->plastic, memory, count * sizeof(double));
-  memcpy(state->broken_at, memory + count, more * sizeof(double));
-  for (int32_t m = 0; m < t->memory_count; m++) state->rest[t->element[t->memory[m]].slot] = 0.0;
-  for (int32_t b = 0; b < t->breakable_count; b++)
-    for (int32_t i = t->breakable[b].first; i >= 0; i = t->element[i].sibling)
-      if (state->broken_at[b] < HUGE_VAL) state->rest[t->element[i].slot] = HUGE_VAL;
+  size_t slots = (size_t)t->memory_slots, count = (size_t)t->memory_count;
+  memcpy(state->rest + t->memory_slot, memory, slots * sizeof(double));
+  memcpy(state->plastic, memory + slots, count * sizeof(double));
+  memcpy(state->broken_at, memory + slots + count, (size_t)t->breakable_count * sizeof(double));
   strut_memory_follow(model, state);
 }
 
@@ -209,6 +212,10 @@ double strut_breakable_load(const strut_model *model, const strut_state *state, 
   const strut_breakable *b = &t->breakable[breakable];
   double sum = 0.0;
   for (int32_t i = b->first; i >= 0; i = t->element[i].sibling) {
+    if (strut_capstan_remembers(&t->element[i], state->rest)) {
+      sum += strut_capstan_tensions(model, state, i, q, v).most;
+      continue;
+    }
     strut_element_motion m = strut_element_move(model, state, i, q, v);
     if (element_acts(&t->element[i], state, i, m.stretch, m.force)) sum += m.force;
   }
@@ -252,6 +259,11 @@ static bool renew(const strut_model *model, strut_state *state, double t, bool j
   if (model->plan & STRUT_TERM_DRIVE && t != state->drive_time) strut_drive_apply(model, state, t);
   for (int32_t m = 0; m < table->memory_count; m++) {
     int32_t i = table->memory[m];
+    if (strut_has_capstan(&table->element[i]) &&
+        !strut_element_is_gone(state->rest[table->element[i].slot])) {
+      strut_capstan_begin(model, state, i, state->q);
+      strut_capstan_renew(model, state, i, state->q);
+    }
     if (yields(&table->element[i]) && !strut_element_is_gone(state->rest[table->element[i].slot]))
       strut_slider_return(model, state, i, state->q, jumped);
   }
@@ -273,6 +285,14 @@ void strut_memory_begin(const strut_model *model, strut_state *state, double t) 
   state->ledger = false;
   renew(model, state, t, true);
   state->ledger = ledger;
+}
+
+double strut_element_last_force(const strut_model *model, const strut_state *state, int32_t i) {
+  strut_element_pose pose;
+  const strut_element *e = &model->elements.element[i];
+  if (strut_capstan_remembers(e, state->rest) && !strut_element_is_gone(state->rest[e->slot]))
+    return strut_capstan_tensions(model, state, i, state->q, state->v).last;
+  return strut_element_measure(model, state, i, &pose);
 }
 
 double strut_element_plastic(const strut_model *model, const strut_state *state, int32_t element) {

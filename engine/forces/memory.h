@@ -59,7 +59,8 @@ void strut_memory_follow(const strut_model *model, strut_state *state);
 
 /** Size of what the elements of a model remember. */
 static inline size_t strut_memory_count(const strut_model *model) {
-  return (size_t)(model->elements.memory_count + model->elements.breakable_count);
+  const strut_element_table *t = &model->elements;
+  return (size_t)(t->memory_slots + t->memory_count + t->breakable_count);
 }
 /** Copies it from a state, and back. */
 STRUT_API void strut_memory_store(const strut_model *model, const strut_state *state,
@@ -90,6 +91,8 @@ typedef struct strut_overload {
 STRUT_API bool strut_memory_overload(const strut_model *model, const double *q,
                                      strut_overload *worst);
 
+/** Tension at the last node of element i: of a cable with guide friction another than at its first. */
+double strut_element_last_force(const strut_model *model, const strut_state *state, int32_t i);
 /** Plastic strain of an element; 0 of one that cannot yield. */
 double strut_element_plastic(const strut_model *model, const strut_state *state, int32_t element);
 

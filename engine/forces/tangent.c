@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/forces/tangent.h"
 
+#include "engine/forces/capstan.h"
+
 #include <assert.h>
 
 #include "engine/forces/mass_damping.h"
@@ -131,6 +133,7 @@ typedef struct assembly {
   strut_triplets stiffness, damping;
   double weight; /* on each contact [N] */
   bool undamped;
+  bool stiffest; /* whatever may hold does */
 } assembly;
 
 static void add_member(void *context, int32_t j, const strut_member_tangent *m) {
@@ -150,6 +153,10 @@ static void add_element(void *context, int32_t i, const strut_element_pose *pose
   double k[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
   int32_t n = 2 * e->nodes;
   strut_element_stiffness(a->model, i, pose, a->q, k);
+  if (a->stiffest && strut_has_capstan(e)) { /* a cable that sticks at its guides */
+    strut_capstan_stiffness(a->model, i, a->q, k);
+    strut_element_bend(a->model, i, a->q, pose->force, k);
+  }
   strut_element_add(a->model, i, k, a->row_of, &a->stiffness);
   if (!(e->damping > 0.0)) return;
   for (int32_t r = 0; r < n; r++)
@@ -185,6 +192,7 @@ strut_status strut_tangent_assemble(const strut_model *model, const double *q, c
   int32_t *row_of = strut_arena_allocate(&scratch, both, sizeof *row_of);
   assembly a = {
       .model = model, .q = q, .row_of = row_of, .undamped = closed == STRUT_CLOSED_UNDAMPED};
+  a.stiffest = closed == STRUT_CLOSED_ALL || closed == STRUT_CLOSED_UNDAMPED;
   if (resting && (model->plan & STRUT_TERM_LAWS)) a.weight = resting_force(model);
   tangent->coordinate = strut_arena_allocate(arena, both, sizeof *tangent->coordinate);
   tangent->rigid = NULL;

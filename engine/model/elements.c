@@ -18,12 +18,18 @@ static size_t elements_of_member(const strut_member *m) {
 
 static bool yields(const strut_law *law) { return law->kind == STRUT_LAW_ELASTIC_PLASTIC; }
 
-/* Elements with memory: all of a member that breaks or is released, otherwise those that yield. */
-static size_t count_memories(const strut_scene *scene) {
+static bool rubs(const strut_member *m) { return m->guide_friction > 0.0; }
+
+/*
+ * Slots of elements with memory: all of a member that breaks or is released, otherwise those that yield
+ * or rub at guides; these have one more for each segment.
+ */
+static size_t count_memory_slots(const strut_scene *scene) {
   size_t count = 0;
   for (size_t j = 0; j < scene->member_count; j++) {
     const strut_member *m = &scene->members[j];
-    count += strut_member_ends(m) ? elements_of_member(m) : (size_t)yields(&m->law);
+    count += strut_member_ends(m) ? elements_of_member(m) : (size_t)(yields(&m->law) || rubs(m));
+    if (rubs(m)) count += m->guide_count + 1;
   }
   for (size_t i = 0; i < scene->hinge_count; i++)
     count += strut_hinge_ends(&scene->hinges[i]) || yields(&scene->hinges[i].law);
@@ -31,7 +37,7 @@ static size_t count_memories(const strut_scene *scene) {
 }
 
 size_t strut_element_slots(const strut_scene *scene) {
-  return scene->hinge_count + scene->cell_count + count_memories(scene);
+  return scene->hinge_count + scene->cell_count + count_memory_slots(scene);
 }
 
 /* The slots stand behind those of the members. */
@@ -194,10 +200,14 @@ static void remember(compilation *c, strut_element *e) {
   e->remembers = true;
   e->base = e->slot;
   e->memory = model->elements.memory_count++;
-  e->slot = hinge_slot(model,
-                       (int32_t)(model->scene->hinge_count + model->scene->cell_count) + e->memory);
+  strut_element_table *t = &model->elements;
+  t->memory_slot =
+      hinge_slot(model, (int32_t)(model->scene->hinge_count + model->scene->cell_count));
+  e->slot = t->memory_slot + t->memory_slots++;
   double *rest = (double *)model->members.rest;
   rest[e->slot] = e->base >= 0 ? rest[e->base] : e->natural;
+  for (int32_t k = 0; k + 1 < e->nodes && e->guide_friction > 0.0; k++)
+    rest[t->memory_slot + t->memory_slots++] = -1.0; /* nothing is remembered yet */
 }
 
 static void add_stop(compilation *c, size_t j, strut_element_role role, double at,
@@ -233,7 +243,8 @@ static void add_member(compilation *c, size_t j) {
     add_way(c, e, m);
     if (!set_numbers(c->model, &m->law, stiffness, &e->numbers)) c->failed = true;
     stiffness = e->numbers.stiffness;
-    if (strut_member_ends(m) || yields(&m->law)) remember(c, e);
+    e->guide_friction = m->guide_friction;
+    if (strut_member_ends(m) || yields(&m->law) || rubs(m)) remember(c, e);
     take_over(c, j);
   }
   double stop = m->stop_stiffness > 0.0 ? m->stop_stiffness : USUAL_STOP * stiffness;

@@ -58,6 +58,8 @@ typedef struct strut_element {
   int32_t
       base; /* the slot that it follows; -1: its natural strain is `natural` before it has yielded */
   int32_t memory; /* place among the elements with memory */
+  double
+      guide_friction; /* of a running cable whose materials stand behind its slot, see capstan.h */
 } strut_element;
 
 /** Elements begin .. end - 1, of one strain with one law. */
@@ -86,8 +88,9 @@ typedef struct strut_element_table {
   const uint32_t *at;               /* where the nodes' x stand in coordinate arrays: 2 * node */
   const int32_t *of_member;         /* (members) first element of a member, or -1; NULL: none */
   int32_t memory_count, breakable_count;
-  const int32_t *memory;            /* (memory_count) the elements with memory */
-  const strut_breakable *breakable; /* (breakable_count) members, then hinges */
+  const int32_t *memory;             /* (memory_count) the elements with memory */
+  int32_t memory_slot, memory_slots; /* the first of their slots, and how many there are */
+  const strut_breakable *breakable;  /* (breakable_count) members, then hinges */
   /* (count) what vector loops read of elements, side by side; `at` is in the order of elements, too */
   const double *stiffness, *damping;
   const int32_t *slot;

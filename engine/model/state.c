@@ -28,9 +28,15 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
       strut_arena_allocate(arena, (size_t)model->elements.memory_count, sizeof(double));
   state->broken_at =
       strut_arena_allocate(arena, (size_t)model->elements.breakable_count, sizeof(double));
-  state->memory_kept = strut_arena_allocate(
-      arena, (size_t)(model->elements.memory_count + model->elements.breakable_count),
-      sizeof(double));
+  state->memory_kept =
+      strut_arena_allocate(arena,
+                           (size_t)(model->elements.memory_slots + model->elements.memory_count +
+                                    model->elements.breakable_count),
+                           sizeof(double));
+  size_t slots_of_memory = (size_t)model->elements.memory_slots;
+  state->guide_mode = strut_arena_allocate(arena, slots_of_memory, sizeof *state->guide_mode);
+  state->guide_side = strut_arena_allocate(arena, slots_of_memory, sizeof *state->guide_side);
+  state->guide_drop = strut_arena_allocate(arena, slots_of_memory, sizeof *state->guide_drop);
   state->force = strut_arena_allocate(arena, both, sizeof(double));
   state->normal = strut_arena_allocate(arena, contacts, sizeof(double));
   state->friction = strut_arena_allocate(arena, contacts, sizeof(double));
@@ -44,8 +50,9 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
   if (!state->q || !state->v || !state->rest || !state->element_acts || !state->element_piece ||
       !state->element_turn || !state->slack_length_threshold || !state->slack_force_threshold ||
       !state->rest_rate || !state->plastic || !state->broken_at || !state->memory_kept ||
-      !state->force || !state->normal || !state->friction || !state->scratch ||
-      !state->actuator_force || !state->support_rates || !state->support_answer) {
+      !state->guide_mode || !state->guide_drop || !state->guide_side || !state->force ||
+      !state->normal || !state->friction || !state->scratch || !state->actuator_force ||
+      !state->support_rates || !state->support_answer) {
     strut_state_free(state);
     *result = NULL;
     return strut_memory_fail_model(model->scene, error);
@@ -77,6 +84,9 @@ void strut_state_reset(const strut_model *model, strut_state *state) {
     state->element_turn[i] = strut_element_start(model, i);
   }
   for (int32_t i = 0; i < model->elements.memory_count; i++) state->plastic[i] = 0.0;
+  for (int32_t i = 0; i < model->elements.memory_slots; i++)
+    state->guide_mode[i] = 2, state->guide_side[i] = 1,
+    state->guide_drop[i] = 0.0; /* STRUT_GUIDE_FREE */
   for (int32_t i = 0; i < model->elements.breakable_count; i++) state->broken_at[i] = HUGE_VAL;
   memset(state->work, 0, sizeof state->work);
   memset(state->power, 0, sizeof state->power);

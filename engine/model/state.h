@@ -84,7 +84,10 @@ typedef struct strut_state {
   double *plastic; /* (memory_count) plastic strain */
   double
       *broken_at; /* (breakable_count) since when it carries nothing [s]; INFINITY: it does not */
-  double *memory_kept;    /* both of the above as they were at an earlier time */
+  int8_t *guide_mode; /* (memory_slots) at the slots of cables with guide friction: see capstan.h */
+  int8_t *guide_side; /* (memory_slots) the sign of the turning angles, frozen with the modes */
+  double *guide_drop; /* (memory_slots) what a length of cable loses as it slips [N] */
+  double *memory_kept;    /* what strut_memory_store stores, as it was at an earlier time */
   bool forgetful;         /* nothing yields or breaks: while settling; strut_state_reset keeps it */
   double *actuator_force; /* (actuator forces) when last evaluated [N], [N m] */
   double *support_rates;  /* (moved coordinates) scratch */

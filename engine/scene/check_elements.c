@@ -103,6 +103,23 @@ static bool check_end_of_member(strut_checker *checker, size_t index, const char
   return false;
 }
 
+static bool check_guide_friction(strut_checker *checker, size_t index, const char *owner,
+                                 double length) {
+  const strut_member *m = &checker->scene->members[index];
+  if (!strut_check_range(checker, STRUT_ON_MEMBER, index, "guide_friction", owner,
+                         m->guide_friction, STRUT_NOT_NEGATIVE))
+    return false;
+  const char *fault = m->guide_friction == 0.0 ? NULL
+                      : !m->guide_count        ? "has guide_friction, but runs over no guides"
+                      : m->law.kind != STRUT_LAW_LINEAR
+                          ? "has guide_friction and a law; only linear cables may rub"
+                      : !(length > 0.0) ? "has guide_friction, which needs a rest length above zero"
+                                        : NULL;
+  if (fault)
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, "guide_friction", "%s %s", owner, fault);
+  return !fault;
+}
+
 static bool check_stops(strut_checker *checker, size_t index, const char *owner) {
   const strut_member *m = &checker->scene->members[index];
   bool valid = true;
@@ -150,6 +167,7 @@ bool strut_check_member_law(strut_checker *checker, size_t index, const char *ow
   strut_rest rest;
   bool known = !checker->loose[index] && strut_member_rest(checker->scene, index, &rest);
   double slope = known ? rest.stiffness : HUGE_VAL;
+  if (!check_guide_friction(checker, index, owner, known ? rest.length : 1.0)) return false;
   return check_hardening(checker, STRUT_ON_MEMBER, index, owner, &m->law, slope) &&
          check_end_of_member(checker, index, owner) && check_stops(checker, index, owner);
 }

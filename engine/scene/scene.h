@@ -66,6 +66,7 @@ typedef struct strut_member {
   double stop_damping;      /* [N s/m] of a stop while it acts */
   double breaks_at;         /* tension from which on the member carries nothing [N]; 0: never */
   double released_at;       /* time from which on it carries nothing [s]; 0: never */
+  double guide_friction;    /* of a running cable at its guides [1] */
   double damping_ratio;     /* instead of damping, or 0: of the critical one, see theory.md */
 } strut_member;
 

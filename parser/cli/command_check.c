@@ -406,6 +406,7 @@ static void add_extras(strut_json *json, struct cJSON *row, const strut_model *m
     strut_json_text(json, row, "law", strut_law_at(m->law.kind)->word);
     strut_json_text(json, row, "carries", carries_name(m));
   }
+  if (m->guide_friction > 0.0) strut_json_number(json, row, "guide_friction", m->guide_friction);
   if (m->breaks_at > 0.0) strut_json_number(json, row, "breaks_at", m->breaks_at);
   if (m->released_at > 0.0) strut_json_number(json, row, "released_at", m->released_at);
   if (m->shortest > 0.0) strut_json_number(json, row, "shortest", m->shortest);

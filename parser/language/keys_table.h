@@ -49,7 +49,7 @@
   X(MOVES, ALONG_X, "x", SIGNAL, LENGTH, ANY, "", OPTIONAL, 0, "", BY_HAND, "Added to the x of the node's position.") \
   X(MOVES, ALONG_Y, "y", SIGNAL, LENGTH, ANY, "", OPTIONAL, 0, "", BY_HAND, "Added to the y of the node's position.") \
   X(MEMBER, GROUP, "group", GROUPS, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Groups that provide defaults; later groups take precedence.") \
-  X(MEMBER, NODES, "nodes", NODE_PATH, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "The two nodes that the member joins. A cable may run over further nodes, its guides, without friction: `[a, p, q, b]`; it then has one tension along its whole length, and its mass is lumped.") \
+  X(MEMBER, NODES, "nodes", NODE_PATH, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "The two nodes that the member joins. A cable may run over further nodes, its guides, without friction unless `guide_friction` is given: `[a, p, q, b]`; it then has one tension along its whole length, and its mass is lumped.") \
   X(MEMBER, KIND, "kind", WORD, NONE, ANY, "", REQUIRED, 0, "bar|spring|cable", FIELD(strut_member, kind), "Bars and springs carry tension and compression; a cable carries tension only and no force while slack. `strut` is another word for `bar`, `string` for `cable`.") \
   X(MEMBER, STIFFNESS, "stiffness", NUMBER, STIFFNESS, NOT_NEGATIVE, "0", OPTIONAL, 1, "", FIELD(strut_member, stiffness), "Force per elongation.") \
   X(MEMBER, AXIAL_STIFFNESS, "axial_stiffness", NUMBER, FORCE, NOT_NEGATIVE, "", OPTIONAL, 1, "", FIELD(strut_member, axial_stiffness), "EA; the stiffness is EA / rest length.") \
@@ -67,6 +67,7 @@
   X(MEMBER, STOP_DAMPING, "stop_damping", NUMBER, DAMPING, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_member, stop_damping), "Damping of a stop while it acts; a stop never holds its member back.") \
   X(MEMBER, BREAKS_AT, "breaks_at", NUMBER, FORCE, ABOVE_ZERO, "never", OPTIONAL, 0, "", FIELD(strut_member, breaks_at), "Tension at which the member breaks: from then on it carries nothing for the rest of the run. What it stored is lost. Statics and settling take it as whole.") \
   X(MEMBER, RELEASED_AT, "released_at", NUMBER, TIME, ABOVE_ZERO, "never", OPTIONAL, 0, "", FIELD(strut_member, released_at), "Time from which on the member carries nothing, as a latch that is released.") \
+  X(MEMBER, GUIDE_FRICTION, "guide_friction", NUMBER, NONE, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_member, guide_friction), "Friction coefficient mu of a running cable at its guides: over a guide at which it turns by theta, the tensions differ by the factor exp(mu theta) at most. Statics and settling take the guides without friction.") \
   X(HINGE, NODES, "nodes", NODE_TRIPLE, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "Three nodes `[a, b, c]`: the hinge is at b, and its angle is that from the arm b-a to the arm b-c, counter-clockwise.") \
   X(HINGE, STIFFNESS, "stiffness", NUMBER, ANGULAR_STIFFNESS, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_hinge, stiffness), "Moment per angle.") \
   X(HINGE, DAMPING, "damping", NUMBER, ANGULAR_DAMPING, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_hinge, damping), "Moment per angular velocity.") \

@@ -258,7 +258,10 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_event
       break;
     }
     case STRUT_EVENT_DAMPER: l->damper[i] = (int8_t)-l->damper[i]; break;
-    case STRUT_EVENT_ACTS: set_acting(state, l, i, !l->acting[i]); break;
+    case STRUT_EVENT_ACTS:
+      set_acting(state, l, i, !l->acting[i]);
+      if (l->laws[i].whole) strut_memory_apply(model, state, l, i, t);
+      break;
     case STRUT_EVENT_KINK: pass_kink(model, state, l, i); break;
     case STRUT_EVENT_SLIDER:
     case STRUT_EVENT_BREAK: strut_memory_apply(model, state, l, i, t); break;

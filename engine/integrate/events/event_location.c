@@ -172,7 +172,7 @@ static void measure_element(const strut_model *model, const strut_state *state,
 static void measure_laws(const strut_model *model, const strut_state *state,
                          const strut_event_stepper *l, const strut_step_end *end) {
   for (int32_t k = 0; k < l->law_count; k++)
-    if (l->laws[k].slider || (l->laws[k].member < 0 && l->laws[k].element < 0))
+    if (l->laws[k].slider || l->laws[k].whole || (l->laws[k].member < 0 && l->laws[k].element < 0))
       strut_memory_measure(model, state, l, end, k);
     else if (l->laws[k].member >= 0)
       measure_cable(model, state, l->laws[k].member, end, k);

@@ -71,7 +71,8 @@ static bool list_laws(const strut_model *model, strut_state *state, strut_event_
                                   .abrupt = abrupt,
                                   .stiffness = e->numbers.stiffness,
                                   .damping = e->damping};
-    if (e->carries) l->laws[l->law_count++] = own;
+    bool rubs = e->guide_friction > 0.0 && !state->forgetful;
+    if (e->carries && !rubs) l->laws[l->law_count++] = own;
     if (!strut_law_kinks(e->law, &e->numbers)) continue;
     l->laws[l->law_count] = own;
     l->laws[l->law_count++].kinks = true;

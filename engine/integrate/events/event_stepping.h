@@ -77,7 +77,10 @@ typedef struct strut_law_switch {
       abrupt; /* its force has a jump or no slope where it begins to act: the stretch ends it, too */
   double stiffness; /* force per strain, by which stretch and force are compared */
   double damping;
-  bool slider;       /* whether a slider holds; `element` is it */
+  bool slider;       /* whether a slider or a guide holds; `element` has it */
+  int32_t guide;     /* 1 + the guide; 0: the slider */
+  bool straight;     /* whether the cable passes straight over it */
+  bool whole;        /* whether a cable with guide friction is taut */
   int32_t breakable; /* what may break, where neither member nor element is one; else unused */
 } strut_law_switch;
 
@@ -150,7 +153,7 @@ struct strut_event_stepper {
 static inline size_t strut_most_law_switches(const strut_model *model) {
   bool slack = model->plan & STRUT_TERM_SLACK;
   return (slack ? (size_t)model->members.count : 0) + 2 * (size_t)model->elements.count +
-         (size_t)(model->elements.memory_count + model->elements.breakable_count);
+         (size_t)(2 * model->elements.memory_slots + model->elements.breakable_count);
 }
 
 /** Workspace for a method with `stepper`; NULL: out of memory. */
@@ -200,7 +203,7 @@ typedef enum strut_event_kind {
   STRUT_EVENT_DAMPER,            /* the ground damper's sign changes */
   STRUT_EVENT_ACTS,   /* a cable or an element that carries one sign begins or ceases to act */
   STRUT_EVENT_KINK,   /* an element's strain passes a kink of its law */
-  STRUT_EVENT_SLIDER, /* a slider gives way, or holds again */
+  STRUT_EVENT_SLIDER, /* a slider or a cable at a guide gives way, or holds again */
   STRUT_EVENT_BREAK   /* a member or a hinge breaks */
 } strut_event_kind;
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Modes of elements with memory: sliders that hold or give way, and what breaks. See event_stepping.h. */
+#include "engine/forces/capstan.h"
 #include "engine/forces/drive.h"
 #include "engine/forces/memory.h"
 
@@ -9,11 +10,27 @@
 
 /* A slider whose force is this close to its yield is at it; one that holds is not beyond it by rounding. */
 static const double AT_YIELD = 1e-9, ROUNDING = 1e-12;
+/* Tensions of a cable that becomes taut are compared after this part of a step. */
+static const double SOON = 1e-6;
 
 void strut_memory_list(const strut_model *model, const strut_state *state, strut_event_stepper *l) {
   const strut_element_table *t = &model->elements;
   for (int32_t m = 0; m < t->memory_count && !state->forgetful; m++) {
     const strut_element *e = &t->element[t->memory[m]];
+    for (int32_t k = 0; strut_has_capstan(e) && k + 2 < e->nodes; k++) {
+      strut_law_switch slips = {
+          .member = -1, .element = t->memory[m], .slider = true, .guide = k + 1, .breakable = -1};
+      l->laws[l->law_count++] = slips;
+      slips.straight = true;
+      l->laws[l->law_count++] = slips;
+    }
+    if (strut_has_capstan(e))
+      l->laws[l->law_count++] = (strut_law_switch){.member = -1,
+                                                   .element = t->memory[m],
+                                                   .abrupt = true,
+                                                   .stiffness = e->numbers.stiffness,
+                                                   .whole = true,
+                                                   .breakable = -1};
     if (e->law != STRUT_LAW_ELASTIC_PLASTIC) continue;
     l->laws[l->law_count++] =
         (strut_law_switch){.member = -1, .element = t->memory[m], .slider = true, .breakable = -1};
@@ -51,8 +68,22 @@ void strut_memory_measure(const strut_model *model, const strut_state *state,
   const strut_law_switch *law = &l->laws[k];
   end->stretch[k] = 1.0;
   end->stretch_rate[k] = 0.0;
+  if (law->whole) {
+    bool gone = is_gone(model, state, law->element);
+    strut_capstan_stretch s = {-1.0, 0.0};
+    if (!gone) s = strut_capstan_stretch_of(model, state, law->element, end->q, end->v);
+    end->stretch[k] = s.stretch, end->stretch_rate[k] = s.rate;
+    end->tension[k] = law->stiffness * s.stretch;
+    return;
+  }
   if (law->slider) {
-    end->tension[k] = slider_margin(model, state, l, end, law->element);
+    bool guide = law->guide && !is_gone(model, state, law->element);
+    if (guide && law->straight)
+      end->tension[k] = strut_capstan_bend(model, state, law->element, law->guide - 1, end->q);
+    else
+      end->tension[k] = guide ? strut_capstan_margin(model, state, law->element, law->guide - 1,
+                                                     end->q, end->v, l->wanted_step)
+                              : slider_margin(model, state, l, end, law->element);
     return;
   }
   bool broken = state->broken_at[law->breakable] < HUGE_VAL;
@@ -65,9 +96,14 @@ void strut_memory_thaw(const strut_model *model, strut_state *state, strut_event
   for (int32_t k = 0; k < l->law_count; k++) {
     int32_t i = l->laws[k].element;
     if (!l->laws[k].slider || is_gone(model, state, i)) continue;
+    l->fresh = false;
+    if (l->laws[k].guide) {
+      strut_capstan_begin(model, state, i, l->now->q);
+      strut_capstan_thaw(model, state, i);
+      continue;
+    }
     strut_slider_set(model, state, i, -1, l->now->q);
     strut_slider_return(model, state, i, l->now->q, true);
-    l->fresh = false;
   }
 }
 
@@ -75,12 +111,17 @@ void strut_memory_start(const strut_model *model, strut_state *state, strut_even
                         int32_t k) {
   int32_t i = l->laws[k].element;
   if (!l->laws[k].slider || is_gone(model, state, i)) return;
+  l->fresh = false;
+  if (l->laws[k].guide) {
+    if (l->laws[k].guide == 1 && !l->laws[k].straight)
+      strut_capstan_freeze(model, state, i, l->now->q, l->now->v);
+    return;
+  }
   strut_slider s = strut_slider_at(model, state, i, l->now->q, l->now->v);
   int side = s.force < 0.0 ? -1 : 1;
   bool gives = s.acts && fabs(s.force) >= s.yield * (1.0 - AT_YIELD) && side * s.rate > 0.0;
   strut_slider_set(model, state, i, gives ? STRUT_SLIDER_HOLDS + side : STRUT_SLIDER_HOLDS,
                    l->now->q);
-  l->fresh = false;
 }
 
 void strut_memory_drop_gone(const strut_model *model, strut_state *state, strut_event_stepper *l) {
@@ -98,9 +139,22 @@ void strut_memory_apply(const strut_model *model, strut_state *state, strut_even
   const strut_law_switch *law = &l->laws[k];
   l->fresh = false;
   strut_drive_apply(model, state, t); /* a rejected step has been further */
+  if (law->whole) {
+    double soon = SOON * l->wanted_step;
+    if (l->acting[k]) strut_capstan_tauten(model, state, law->element, l->now->q, l->now->v, soon);
+    return;
+  }
   if (!law->slider) {
     strut_breakable_break(model, state, law->breakable, t + state->time_offset);
     strut_memory_drop_gone(model, state, l);
+    return;
+  }
+  if (law->straight) {
+    strut_capstan_pass_straight(model, state, law->element, law->guide - 1);
+    return;
+  }
+  if (law->guide) {
+    strut_capstan_switch(model, state, law->element, law->guide - 1, l->now->q);
     return;
   }
   int mode = STRUT_SLIDER_HOLDS;

@@ -111,6 +111,13 @@ static double plastic_of_member(const strut_model *model, const strut_state *sta
   return e ? strut_element_plastic(model, state, (int32_t)(e - model->elements.element)) : 0.0;
 }
 
+static double last_force_of_member(const strut_model *model, const strut_state *state,
+                                   int32_t member) {
+  const strut_element *e = strut_element_of_member(&model->elements, member);
+  if (!e || !(e->guide_friction > 0.0)) return strut_member_measure(model, state, member).force;
+  return strut_element_last_force(model, state, (int32_t)(e - model->elements.element));
+}
+
 static double evaluate_hinge(const strut_columns *c, const strut_state *state,
                              strut_column column) {
   strut_hinge_values h = strut_hinge_measure(c->model, state, column.item);
@@ -155,6 +162,7 @@ static double evaluate_column(const strut_columns *c, const strut_state *state, 
     case STRUT_COLUMN_RATE: return strut_member_measure(c->model, state, column.item).rate;
     case STRUT_COLUMN_FORCE: return strut_member_measure(c->model, state, column.item).force;
     case STRUT_COLUMN_PLASTIC: return plastic_of_member(c->model, state, column.item);
+    case STRUT_COLUMN_LAST_FORCE: return last_force_of_member(c->model, state, column.item);
     case STRUT_COLUMN_HINGE_PLASTIC: return strut_element_plastic(c->model, state, column.item);
     case STRUT_COLUMN_HINGE_ANGLE:
     case STRUT_COLUMN_HINGE_RATE:
@@ -252,7 +260,8 @@ double strut_columns_noise(const strut_columns *c, size_t index) {
   if (is_length(column.kind)) return length;
   if (is_angle(column.kind)) return POSITION_ROUNDING;
   if (is_speed(column.kind)) return SUM_ROUNDING * c->fastest;
-  if (column.kind == STRUT_COLUMN_FORCE) return length * member_stiffness(c->model, column.item);
+  if (column.kind == STRUT_COLUMN_FORCE || column.kind == STRUT_COLUMN_LAST_FORCE)
+    return length * member_stiffness(c->model, column.item);
   if (column.kind == STRUT_COLUMN_HINGE_RATE) return SUM_ROUNDING * c->fastest / c->model->size;
   if (column.kind == STRUT_COLUMN_MOMENT)
     return POSITION_ROUNDING * c->model->elements.element[column.item].numbers.stiffness;

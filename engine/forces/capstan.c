@@ -1,0 +1,469 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/forces/capstan.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { MOST = STRUT_MOST_ELEMENT_NODES };
+
+/* Tensions this close to a bound, relatively, are at it; those that stick are not beyond it by rounding. */
+static const double AT_BOUND = 1e-9, ROUNDING = 1e-12;
+/* Rounding of lengths and materials, as part of E. */
+static const double LAST_BITS = 2e-14;
+/* A turn by less is straight, whatever its sign [rad]. */
+static const double STRAIGHT = 1e-13;
+
+/* A cable at some positions: its segments, and the guides between segments k and k + 1. */
+typedef struct cable {
+  int n;                     /* segments */
+  double ea, whole, winding; /* E [N], rest length [m] and its rate [m/s] */
+  double friction;
+  double length[MOST], x[MOST], y[MOST]; /* and direction */
+  double turn[MOST], bend[MOST];         /* of the guide, with its sign and without */
+  int side[MOST];                        /* that sign */
+  double material[MOST], tension[MOST];
+  double length_rate[MOST], turn_rate[MOST];
+  double flow[MOST]; /* of material through the guide, towards the first node [m/s] */
+  int mode[MOST];
+} cable;
+
+static void turn_at(cable *c, int k) {
+  c->turn[k] = atan2(c->x[k] * c->y[k + 1] - c->y[k] * c->x[k + 1],
+                     c->x[k] * c->x[k + 1] + c->y[k] * c->y[k + 1]);
+  c->side[k] = c->turn[k] < 0.0 ? -1 : 1;
+  c->bend[k] = fabs(c->turn[k]);
+}
+
+/* The angle as it goes on through straight, from the side that is kept; at half a turn it turns back. */
+static double bend_on_side(const cable *c, int k, int side) {
+  double bend = side * c->turn[k];
+  return bend < -1.5 ? c->bend[k] : bend;
+}
+
+static void measure(const strut_model *model, const double *rest, int32_t i, const double *q,
+                    cable *c) {
+  const strut_element *e = &model->elements.element[i];
+  const uint32_t *at = model->elements.at + e->first;
+  double others = 0.0;
+  c->n = e->nodes - 1;
+  c->whole = rest[e->base];
+  c->ea = e->numbers.stiffness * c->whole;
+  c->friction = e->guide_friction;
+  for (int k = 0; k < c->n; k++) {
+    double x = q[at[k + 1]] - q[at[k]], y = q[at[k + 1] + 1] - q[at[k] + 1];
+    double length = sqrt(x * x + y * y), inverse = length > 0.0 ? 1.0 / length : 0.0;
+    c->length[k] = length, c->x[k] = x * inverse, c->y[k] = y * inverse;
+    c->material[k] = rest[e->slot + 1 + k];
+    if (k) others += c->material[k];
+  }
+  for (int k = 0; k + 1 < c->n; k++) turn_at(c, k);
+  if (c->material[0] < 0.0) return;
+  c->material[0] = fmax(c->whole - others, 1e-12 * c->whole);
+}
+
+/* Equal tensions, where nothing is remembered. */
+static void share_evenly(cable *c) {
+  double sum = 0.0;
+  for (int k = 0; k < c->n; k++) sum += c->length[k];
+  for (int k = 0; k < c->n; k++)
+    c->material[k] = sum > 0.0 ? c->whole * c->length[k] / sum : c->whole / c->n;
+}
+
+/* Ratio of the tension of segment k + 1 to that of k where guide k slips. */
+static double ratio_at(const cable *c, int k) {
+  return exp(-c->mode[k] * c->friction * c->bend[k]);
+}
+
+/* Tensions and materials of segments a .. b, all guides between which slip. */
+static void solve_group(cable *c, int a, int b) {
+  double ratio[MOST], sum = 0.0, material = 0.0, strain = 0.0;
+  ratio[a] = 1.0;
+  for (int k = a; k <= b; k++) {
+    if (k > a) ratio[k] = ratio[k - 1] * ratio_at(c, k - 1);
+    sum += c->length[k], material += c->material[k];
+  }
+  if (!(sum > material)) {
+    for (int k = a; k <= b; k++) {
+      if (b > a && sum > 0.0) c->material[k] = material * c->length[k] / sum;
+      c->tension[k] = 0.0;
+    }
+    return;
+  }
+  /* the material that a strain of the first segment leaves is convex: Newton's method climbs */
+  for (int turn = 0; turn < 60; turn++) {
+    double value = -material, slope = 0.0;
+    for (int k = a; k <= b; k++) {
+      double inverse = 1.0 / (1.0 + ratio[k] * strain), part = c->length[k] * inverse;
+      value += part, slope += part * ratio[k] * inverse;
+    }
+    double step = value / slope;
+    strain += step;
+    if (!(fabs(step) > 1e-16 * strain)) break;
+  }
+  for (int k = a; k <= b; k++) {
+    c->tension[k] = c->ea * (ratio[k] * strain);
+    if (b > a) c->material[k] = c->length[k] / (1.0 + ratio[k] * strain);
+  }
+}
+
+static int group_end(const cable *c, int a) {
+  while (a + 1 < c->n && c->mode[a] != STRUT_GUIDE_STICKS) a++;
+  return a;
+}
+
+/* Tensions differ by finite factors, so that they end all at once: where the whole cable is slack. */
+static bool is_slack(const cable *c) {
+  double sum = 0.0;
+  for (int k = 0; k < c->n; k++) sum += c->length[k];
+  return !(sum > c->whole);
+}
+
+static void solve(cable *c) {
+  if (is_slack(c)) {
+    share_evenly(c);
+    for (int k = 0; k < c->n; k++) c->tension[k] = 0.0;
+    return;
+  }
+  for (int a = 0; a < c->n; a++) {
+    int b = group_end(c, a);
+    solve_group(c, a, b);
+    a = b;
+  }
+}
+
+/* How far the tensions at guide k are within their bounds, which are relaxed by `more`, on the worse side. */
+static double room_at(const cable *c, int k, double more) {
+  double bound = exp(c->friction * c->bend[k]) * (1.0 + more);
+  double left = c->tension[k], right = c->tension[k + 1];
+  double bits = more < 0.0 ? -LAST_BITS * c->ea : LAST_BITS * c->ea;
+  return fmin(right * bound - left, left * bound - right) + bits;
+}
+
+/*
+ * Modes, tensions and materials that follow from the materials as they are: guides that hold too much
+ * slip, and those that would slip back stick, until all agree.
+ */
+static void settle(cable *c) {
+  double before[MOST];
+  memcpy(before, c->material, sizeof before);
+  for (int k = 0; k < c->n; k++) c->mode[k] = STRUT_GUIDE_STICKS;
+  if (is_slack(c)) {
+    solve(c);
+    return;
+  }
+  for (int turn = 0; turn < 8 * MOST; turn++) {
+    double moved = 0.0;
+    bool back = false, beyond = false;
+    memcpy(c->material, before, sizeof before);
+    solve(c);
+    for (int k = 0; k + 1 < c->n; k++) {
+      moved += c->material[k] - before[k];
+      if (!(c->mode[k] * moved < -1e-15 * c->whole)) continue;
+      c->mode[k] = STRUT_GUIDE_STICKS;
+      back = true;
+    }
+    for (int k = 0; k + 1 < c->n && !back; k++) {
+      if (c->mode[k] != STRUT_GUIDE_STICKS || !(room_at(c, k, ROUNDING) < 0.0)) continue;
+      c->mode[k] = c->tension[k] > c->tension[k + 1] ? STRUT_GUIDE_TO_FIRST : STRUT_GUIDE_TO_LAST;
+      beyond = true;
+    }
+    if (!back && !beyond) return;
+  }
+}
+
+/* Rates of lengths and turning angles, and what flows through slipping guides. */
+static void find_rates(const strut_model *model, const strut_state *state, int32_t i,
+                       const double *v, cable *c) {
+  const strut_element *e = &model->elements.element[i];
+  const uint32_t *at = model->elements.at + e->first;
+  double spin[MOST];
+  c->winding = state->rest_rate[e->base];
+  for (int k = 0; k < c->n; k++) {
+    double x = v[at[k + 1]] - v[at[k]], y = v[at[k + 1] + 1] - v[at[k] + 1];
+    c->length_rate[k] = c->x[k] * x + c->y[k] * y;
+    spin[k] = c->length[k] > 0.0 ? (c->x[k] * y - c->y[k] * x) / c->length[k] : 0.0;
+  }
+  for (int k = 0; k + 1 < c->n; k++) c->turn_rate[k] = c->side[k] * (spin[k + 1] - spin[k]);
+}
+
+/* The flows in the group of segments a .. b. */
+static void find_group_flows(cable *c, int a, int b) {
+  double ratio = 1.0, ratio_rate = 0.0, strain = c->tension[a] / c->ea;
+  double loose[MOST], stiff[MOST], sum = 0.0, weight = 0.0, passed;
+  for (int k = a; k <= b; k++) { /* rate of material: loose - stiff * rate of the first strain */
+    double inverse = 1.0 / (1.0 + ratio * strain), part = c->length[k] * inverse * inverse;
+    loose[k] = c->length_rate[k] * inverse - part * ratio_rate * strain;
+    stiff[k] = part * ratio;
+    sum += loose[k], weight += stiff[k];
+    if (k == b) break;
+    double next = ratio_at(c, k);
+    ratio_rate = next * (ratio_rate - ratio * c->mode[k] * c->friction * c->turn_rate[k]);
+    ratio *= next;
+  }
+  passed = a == 0 ? -c->winding : 0.0;
+  double strain_rate = (sum + passed) / weight;
+  for (int k = a; k < b; k++) {
+    passed += loose[k] - stiff[k] * strain_rate;
+    c->flow[k] = strain > 0.0 ? passed : 0.0;
+  }
+}
+
+static void find_flows(cable *c) {
+  for (int a = 0; a < c->n; a++) {
+    int b = group_end(c, a);
+    if (b > a) find_group_flows(c, a, b);
+    if (b + 1 < c->n) c->flow[b] = 0.0;
+    a = b;
+  }
+}
+
+/* d energy / d material, with its sign turned: what a length of cable takes with it. */
+static double carried(const cable *c, int k) {
+  return c->tension[k] + 0.5 * c->tension[k] * c->tension[k] / c->ea;
+}
+
+static double energy_of(const cable *c) {
+  double sum = 0.0;
+  for (int k = 0; k < c->n; k++) {
+    double stretch = c->length[k] - c->material[k];
+    if (stretch > 0.0 && c->material[k] > 0.0)
+      sum += 0.5 * c->ea * stretch * stretch / c->material[k];
+  }
+  return sum;
+}
+
+static int8_t *modes_of(const strut_model *model, const strut_state *state, int32_t i) {
+  const strut_element_table *t = &model->elements;
+  return state->guide_mode + (t->element[i].slot + 1 - t->memory_slot);
+}
+
+static int8_t *sides_of(const strut_model *model, const strut_state *state, int32_t i) {
+  const strut_element_table *t = &model->elements;
+  return state->guide_side + (t->element[i].slot + 1 - t->memory_slot);
+}
+
+static double *drops_of(const strut_model *model, const strut_state *state, int32_t i) {
+  const strut_element_table *t = &model->elements;
+  return state->guide_drop + (t->element[i].slot + 1 - t->memory_slot);
+}
+
+/* The cable at q in its modes; true where these are frozen. */
+static bool stand(const strut_model *model, const strut_state *state, int32_t i, const double *q,
+                  cable *c) {
+  const int8_t *mode = modes_of(model, state, i);
+  measure(model, state->rest, i, q, c);
+  if (c->material[0] < 0.0) share_evenly(c);
+  if (mode[0] == STRUT_GUIDE_FREE) {
+    settle(c);
+    return false;
+  }
+  const int8_t *side = sides_of(model, state, i);
+  for (int k = 0; k < c->n; k++) c->mode[k] = k + 1 < c->n ? mode[k] : STRUT_GUIDE_STICKS;
+  for (int k = 0; k + 1 < c->n; k++) {
+    double bend = bend_on_side(c, k, side[k]);
+    if (bend == side[k] * c->turn[k]) c->side[k] = side[k];
+    c->bend[k] = bend;
+  }
+  solve(c);
+  return true;
+}
+
+static void keep_materials(const strut_model *model, strut_state *state, int32_t i,
+                           const cable *c) {
+  double *material = state->rest + model->elements.element[i].slot + 1;
+  memcpy(material, c->material, (size_t)c->n * sizeof *material);
+}
+
+/* Its damper works along the whole cable while that is taut, and does not push. */
+static double damper_force(const strut_element *e, const cable *c) {
+  double rate = -c->winding, least = HUGE_VAL;
+  for (int k = 0; k < c->n; k++) {
+    rate += c->length_rate[k];
+    least = fmin(least, c->tension[k]);
+  }
+  return least > 0.0 ? fmax(e->damping * rate, -least) : 0.0;
+}
+
+static void add_powers(strut_state *state, const cable *c, double damper, bool frozen) {
+  double rate = -c->winding, lost = 0.0;
+  for (int k = 0; k < c->n; k++) rate += c->length_rate[k];
+  double drive = (energy_of(c) / c->whole - carried(c, 0) - damper) * c->winding;
+  for (int k = 0; k + 1 < c->n && frozen; k++)
+    lost += (carried(c, k) - carried(c, k + 1)) * c->flow[k];
+  lost += damper * rate;
+  state->power[STRUT_POWER_DRIVE] += drive;
+  state->power[STRUT_POWER_MEMBERS] += lost;
+  state->power[STRUT_POWER_EXCHANGED] += fabs(drive) + fabs(lost);
+}
+
+void strut_capstan_add_forces(const strut_model *model, strut_state *state, int32_t i,
+                              const double *q, const double *v, double *force) {
+  const strut_element *e = &model->elements.element[i];
+  const uint32_t *at = model->elements.at + e->first;
+  cable c;
+  bool frozen = stand(model, state, i, q, &c);
+  if (frozen) keep_materials(model, state, i, &c);
+  find_rates(model, state, i, v, &c);
+  double damper = e->damping > 0.0 ? damper_force(e, &c) : 0.0;
+  for (int k = 0; k < c.n; k++) {
+    double x = (c.tension[k] + damper) * c.x[k], y = (c.tension[k] + damper) * c.y[k];
+    force[at[k]] += x, force[at[k] + 1] += y;
+    force[at[k + 1]] -= x, force[at[k + 1] + 1] -= y;
+  }
+  if (!state->ledger) return;
+  if (frozen) find_flows(&c);
+  add_powers(state, &c, damper, frozen);
+}
+
+void strut_capstan_begin(const strut_model *model, strut_state *state, int32_t i, const double *q) {
+  const strut_element *e = &model->elements.element[i];
+  cable c;
+  if (strut_capstan_remembers(e, state->rest)) return;
+  measure(model, state->rest, i, q, &c);
+  share_evenly(&c);
+  keep_materials(model, state, i, &c);
+  strut_capstan_thaw(model, state, i);
+  memset(drops_of(model, state, i), 0, (size_t)c.n * sizeof(double));
+}
+
+void strut_capstan_renew(const strut_model *model, strut_state *state, int32_t i, const double *q) {
+  cable c;
+  double before[MOST], moved = 0.0, *drop = drops_of(model, state, i);
+  measure(model, state->rest, i, q, &c);
+  memcpy(before, c.material, sizeof before);
+  settle(&c);
+  for (int k = 0; k + 1 < c.n; k++) {
+    double now = carried(&c, k) - carried(&c, k + 1);
+    moved += c.material[k] - before[k];
+    if (state->ledger && moved != 0.0) {
+      double lost = fmax(0.0, 0.5 * (drop[k] + now) * moved);
+      state->work[STRUT_POWER_MEMBERS] += lost;
+      state->work[STRUT_POWER_EXCHANGED] += lost;
+    }
+    drop[k] = now;
+  }
+  keep_materials(model, state, i, &c);
+}
+
+void strut_capstan_thaw(const strut_model *model, strut_state *state, int32_t i) {
+  int8_t *mode = modes_of(model, state, i);
+  for (int k = 0; k + 1 < model->elements.element[i].nodes; k++) mode[k] = STRUT_GUIDE_FREE;
+}
+
+void strut_capstan_freeze(const strut_model *model, strut_state *state, int32_t i, const double *q,
+                          const double *v) {
+  int8_t *mode = modes_of(model, state, i);
+  cable c;
+  strut_capstan_renew(model, state, i, q);
+  measure(model, state->rest, i, q, &c);
+  for (int k = 0; k < c.n; k++) c.mode[k] = STRUT_GUIDE_STICKS;
+  solve(&c);
+  for (int k = 0; k + 1 < c.n; k++) {
+    bool taut = c.tension[k] > 0.0 && c.tension[k + 1] > 0.0;
+    bool at_bound = taut && room_at(&c, k, -AT_BOUND) < 0.0;
+    if (at_bound)
+      c.mode[k] = c.tension[k] > c.tension[k + 1] ? STRUT_GUIDE_TO_FIRST : STRUT_GUIDE_TO_LAST;
+  }
+  find_rates(model, state, i, v, &c);
+  find_flows(&c);
+  for (int k = 0; k + 1 < c.n; k++)
+    mode[k] = (int8_t)(c.mode[k] * c.flow[k] > 0.0 ? c.mode[k] : STRUT_GUIDE_STICKS);
+  int8_t *side = sides_of(model, state, i);
+  for (int k = 0; k + 1 < c.n; k++) side[k] = (int8_t)c.side[k];
+}
+
+double strut_capstan_bend(const strut_model *model, const strut_state *state, int32_t i, int k,
+                          const double *q) {
+  cable c;
+  measure(model, state->rest, i, q, &c);
+  return bend_on_side(&c, k, sides_of(model, state, i)[k]) + STRAIGHT;
+}
+
+void strut_capstan_pass_straight(const strut_model *model, strut_state *state, int32_t i, int k) {
+  int8_t *side = sides_of(model, state, i);
+  side[k] = (int8_t)-side[k];
+}
+
+double strut_capstan_margin(const strut_model *model, const strut_state *state, int32_t i, int k,
+                            const double *q, const double *v, double h) {
+  cable c;
+  if (!stand(model, state, i, q, &c)) return 1.0;
+  if (is_slack(&c)) return 1.0;
+  if (c.mode[k] == STRUT_GUIDE_STICKS) return room_at(&c, k, ROUNDING);
+  find_rates(model, state, i, v, &c);
+  find_flows(&c);
+  return c.mode[k] * c.flow[k] * h * c.ea / c.whole;
+}
+
+strut_capstan_stretch strut_capstan_stretch_of(const strut_model *model, const strut_state *state,
+                                               int32_t i, const double *q, const double *v) {
+  cable c;
+  measure(model, state->rest, i, q, &c);
+  find_rates(model, state, i, v, &c);
+  strut_capstan_stretch found = {-c.whole, -c.winding};
+  for (int k = 0; k < c.n; k++) found.stretch += c.length[k], found.rate += c.length_rate[k];
+  return found;
+}
+
+void strut_capstan_tauten(const strut_model *model, strut_state *state, int32_t i, const double *q,
+                          const double *v, double soon) {
+  int8_t *mode = modes_of(model, state, i);
+  cable c;
+  measure(model, state->rest, i, q, &c);
+  share_evenly(&c);
+  keep_materials(model, state, i, &c);
+  find_rates(model, state, i, v, &c);
+  c.whole += soon * c.winding, c.material[0] += soon * c.winding;
+  for (int k = 0; k < c.n; k++) c.length[k] += soon * c.length_rate[k];
+  settle(&c);
+  for (int k = 0; k + 1 < c.n; k++) mode[k] = (int8_t)c.mode[k];
+}
+
+void strut_capstan_switch(const strut_model *model, strut_state *state, int32_t i, int k,
+                          const double *q) {
+  int8_t *mode = modes_of(model, state, i);
+  cable c;
+  stand(model, state, i, q, &c);
+  keep_materials(model, state, i, &c);
+  if (mode[k] != STRUT_GUIDE_STICKS)
+    mode[k] = STRUT_GUIDE_STICKS;
+  else
+    mode[k] = c.tension[k] > c.tension[k + 1] ? STRUT_GUIDE_TO_FIRST : STRUT_GUIDE_TO_LAST;
+}
+
+strut_capstan_ends strut_capstan_tensions(const strut_model *model, const strut_state *state,
+                                          int32_t i, const double *q, const double *v) {
+  const strut_element *e = &model->elements.element[i];
+  strut_capstan_ends ends = {0.0, 0.0, 0.0};
+  cable c;
+  stand(model, state, i, q, &c);
+  find_rates(model, state, i, v, &c);
+  double damper = e->damping > 0.0 ? damper_force(e, &c) : 0.0;
+  for (int k = 0; k < c.n; k++) ends.most = fmax(ends.most, c.tension[k] + damper);
+  ends.first = c.tension[0] + damper, ends.last = c.tension[c.n - 1] + damper;
+  return ends;
+}
+
+double strut_capstan_energy(const strut_model *model, int32_t i, const double *rest,
+                            const double *q) {
+  cable c;
+  measure(model, rest, i, q, &c);
+  return energy_of(&c);
+}
+
+void strut_capstan_stiffness(const strut_model *model, int32_t i, const double *q, double *k) {
+  const strut_element *e = &model->elements.element[i];
+  int32_t rows = 2 * e->nodes;
+  double whole = 0.0;
+  cable c;
+  measure(model, model->members.rest, i, q, &c);
+  for (int s = 0; s < c.n; s++) whole += c.length[s];
+  memset(k, 0, (size_t)rows * (size_t)rows * sizeof *k);
+  for (int s = 0; s < c.n; s++) {
+    if (!(c.length[s] > 0.0)) continue;
+    double stiffness = e->numbers.stiffness * whole / c.length[s];
+    const double b[4] = {-c.x[s], -c.y[s], c.x[s], c.y[s]};
+    for (int r = 0; r < 4; r++)
+      for (int j = 0; j < 4; j++) k[(2 * s + r) * rows + 2 * s + j] += stiffness * b[r] * b[j];
+  }
+}

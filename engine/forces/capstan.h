@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Running cables with friction at their guides.
+ *
+ * Segment k of length l has the material s (rest length) between its two nodes, and the tension
+ * T = E (l/s - 1), E = stiffness times rest length, or none where it is slack. The material of all
+ * segments is the rest length, which is driven at the first node. At a guide with the turning angle theta
+ * the tensions differ by the factor exp(mu theta) at most (capstan): up to there the cable sticks, beyond
+ * it slips. Segments joined by slipping guides share their material such that the tensions are at these
+ * bounds: an equation for one tension, which has one root.
+ *
+ * The materials stand behind the element's own slot among the natural strains, below 0 where none are
+ * remembered: the cable then slips freely, as statics and settling take it. Methods with events freeze
+ * which guides slip, and where to; with others that follows from the tensions, and the materials are
+ * renewed at the end of each step.
+ */
+#ifndef STRUT_ENGINE_FORCES_CAPSTAN_H
+#define STRUT_ENGINE_FORCES_CAPSTAN_H
+
+#include "engine/forces/elements.h"
+
+/** Modes of a guide, as state->guide_mode holds them: material slips to the first or the last node. */
+enum { STRUT_GUIDE_TO_LAST = -1, STRUT_GUIDE_STICKS, STRUT_GUIDE_TO_FIRST, STRUT_GUIDE_FREE };
+
+static inline bool strut_has_capstan(const strut_element *e) { return e->guide_friction > 0.0; }
+
+/** Does the element remember its materials? `rest`: the state's slots. */
+static inline bool strut_capstan_remembers(const strut_element *e, const double *rest) {
+  return strut_has_capstan(e) && rest[e->slot + 1] >= 0.0;
+}
+
+/** Adds its forces at q and v, and its powers. */
+void strut_capstan_add_forces(const strut_model *model, strut_state *state, int32_t i,
+                              const double *q, const double *v, double *force);
+/** Materials from q where none are remembered: equal tensions. */
+void strut_capstan_begin(const strut_model *model, strut_state *state, int32_t i, const double *q);
+/** Materials after a step, by the tensions at q; what slipping loses goes to the losses. */
+void strut_capstan_renew(const strut_model *model, strut_state *state, int32_t i, const double *q);
+/** Modes by the tensions and the flows at q and v, of which those of the tensions are renewed. */
+void strut_capstan_freeze(const strut_model *model, strut_state *state, int32_t i, const double *q,
+                          const double *v);
+/** How far guide k (0: the first) is from the end of its mode at q and v, as a force; `h`: a step [s]. */
+double strut_capstan_margin(const strut_model *model, const strut_state *state, int32_t i, int k,
+                            const double *q, const double *v, double h);
+/** Turning angle of guide k, as it goes on through straight from the side on which modes were frozen. */
+double strut_capstan_bend(const strut_model *model, const strut_state *state, int32_t i, int k,
+                          const double *q);
+/** It has passed straight. */
+void strut_capstan_pass_straight(const strut_model *model, strut_state *state, int32_t i, int k);
+/** How much longer than its material the whole cable is, and the rate: it is slack below 0. */
+typedef struct strut_capstan_stretch {
+  double stretch, rate;
+} strut_capstan_stretch;
+strut_capstan_stretch strut_capstan_stretch_of(const strut_model *model, const strut_state *state,
+                                               int32_t i, const double *q, const double *v);
+/** The modes in which it becomes taut at q and v, by the tensions a short time later. */
+void strut_capstan_tauten(const strut_model *model, strut_state *state, int32_t i, const double *q,
+                          const double *v, double soon);
+/** Ends the mode of guide k at q. */
+void strut_capstan_switch(const strut_model *model, strut_state *state, int32_t i, int k,
+                          const double *q);
+/** Lets all its guides follow the tensions. */
+void strut_capstan_thaw(const strut_model *model, strut_state *state, int32_t i);
+
+/** Tensions of the first and the last segment, and the largest of all, at q [N]. */
+typedef struct strut_capstan_ends {
+  double first, last, most;
+} strut_capstan_ends;
+strut_capstan_ends strut_capstan_tensions(const strut_model *model, const strut_state *state,
+                                          int32_t i, const double *q, const double *v);
+/** Elastic energy at q with the materials in `rest` [J]. */
+double strut_capstan_energy(const strut_model *model, int32_t i, const double *rest,
+                            const double *q);
+/** k (2 nodes, 2 nodes): the stiffness along the segments while the cable sticks at all guides. */
+void strut_capstan_stiffness(const strut_model *model, int32_t i, const double *q, double *k);
+
+#endif

@@ -1,0 +1,143 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Running cables with friction at their guides, against closed forms.
+. "$(dirname "$0")/lib.sh"
+
+# near FILTER EXPECTED TOLERANCE: the JSON in out through jq, and a number that jq computes.
+near() {
+  jq -e "($1) as \$got | ($2) as \$want | (\$got - \$want | fabs) <= $3" out >jq.out 2>&1 ||
+    fail "$1 is $(jq -c "$1" out 2>&1), expected $(jq -n "$2") within $3"
+}
+pi=3.141592653589793
+
+# Atwood's machine over a fixed guide, theta = pi. While it slips the tensions are exactly e^(mu pi) apart; on
+# average, but for the rope's own oscillation, a = g (m2 - m1 e^(mu pi)) / (m2 + m1 e^(mu pi)).
+cat >atwood.yaml <<'YAML'
+strut: 1
+parameters: {mu: 0.1, m2: 2, h: 1 ms, c: 1e5}
+gravity: [0, -9.81]
+nodes:
+  a: {position: [0, -1], mass: 1}
+  g: {position: [0, 0], fixed: both}
+  b: {position: [0, -0.5], mass: m2}
+members:
+  rope: {kind: cable, nodes: [a, g, b], stiffness: c, pretension: 9.81 N, guide_friction: mu}
+solver: {integrator: rk4-events, step: h}
+run:
+  duration: 0.3
+  measure:
+    quantities:
+      down: {of: b.y, take: change}
+      ratio: {of: rope.last_force / rope.force, take: final}
+YAML
+bound="(0.1 * $pi | exp)"
+for method in rk4-events adaptive verlet-events euler-events rk4 verlet euler; do
+  sed "s/rk4-events/$method/" atwood.yaml >other.yaml
+  expect 0 run other.yaml --json
+  near .measured.ratio.value "$bound" 2e-10
+  near '.energy.residual / .energy.exchanged' 0 2e-3
+done
+expect 0 run atwood.yaml --set h='0.1 ms' --set c=1e7 --json
+near .measured.down.value "-0.5 * 9.81 * (2 - $bound) / (2 + $bound) * 0.09" 8e-5
+near '.energy.dissipated_members / -.measured.down.value' "9.81 * (1 + (2 - $bound) / (2 + $bound)) * ($bound - 1)" 0.02
+# The order of the method is kept, and the balance closes at it.
+drop() {
+  expect 0 run atwood.yaml --set h="$1" --json
+  jq .measured.down.value out
+}
+best=$(drop '0.125 ms') whole=$(drop '2 ms') half=$(drop '1 ms')
+jq -ne "($whole - $best | fabs) / ($half - $best | fabs) > 14" >/dev/null || fail "order: $whole $half $best"
+expect 0 run atwood.yaml --json
+near .energy.residual 0 1e-6
+# Within the bound it sticks: both masses hang on springs of their own.
+expect 0 run atwood.yaml --set m2=1.15 --set h='0.2 ms' --json
+near .energy.dissipated_members 0 0
+near .measured.down.value 0 2e-5
+
+# Without friction to speak of it is the running cable without.
+for method in rk4-events rk4; do
+  sed "s/rk4-events/$method/" atwood.yaml >other.yaml
+  expect 0 run other.yaml --set mu=0 --json
+  free=$(jq .measured.down.value out)
+  expect 0 run other.yaml --set mu=1e-15 --json
+  near .measured.down.value "$free" 1e-12
+done
+
+# A winch pulls in the rope at its first node, over two fixed posts that turn it by 90 deg each, against a
+# spring: the tension that arrives is e^(-mu pi) of that at the winch while it pulls, and the inverse as it
+# pays out far enough.
+cat >winch.yaml <<'YAML'
+strut: 1
+parameters: {mu: 0.3}
+nodes:
+  w: {position: [0, 0], fixed: both}
+  p: {position: [0, 1], fixed: both}
+  q: {position: [1, 1], fixed: both}
+  m: {position: [1, 0.5], mass: 0.1, fixed: x}
+  e: {position: [1, -1], fixed: both}
+members:
+  rope: {kind: cable, nodes: [w, p, q, m], stiffness: 5 kN/m, pretension: 10 N, guide_friction: mu}
+  load: {kind: spring, nodes: [m, e], stiffness: 200 N/m, damping: 4 N s/m, pretension: 10 N}
+actuators: {winch: {member: rope, signal: {sine: {amplitude: -50 mm, frequency: 0.25 Hz}}}}
+solver: {integrator: rk4-events, step: 1 ms}
+run:
+  duration: 0.9
+  measure: {quantities: {ratio: {of: rope.force / rope.last_force, take: final}}}
+YAML
+expect 0 run winch.yaml --json
+near .measured.ratio.value "(0.3 * $pi | exp)" 1e-9
+near '.energy.residual / .energy.exchanged' 0 1e-8
+sed 's/duration: 0.9/duration: 2.5/' winch.yaml >other.yaml
+expect 0 run other.yaml --json
+near .measured.ratio.value "(-0.3 * $pi | exp)" 1e-9
+sed 's/rk4-events/rk4/' winch.yaml >other.yaml
+expect 0 run other.yaml --json
+near .measured.ratio.value "(0.3 * $pi | exp)" 1e-9
+near '.energy.residual / .energy.exchanged' 0 1e-4
+
+# A swinging net of it goes slack and taut, over a free guide that passes straight: the balance closes.
+cat >slack.yaml <<'YAML'
+strut: 1
+gravity: [0, -9.81]
+nodes:
+  a: {position: [-1, 0], fixed: both}
+  g1: {position: [0, 0.3], fixed: both}
+  g2: {position: [1, 0.2], fixed: both}
+  g3: {position: [1.5, 0.4], mass: 0.1, fixed: x}
+  b: {position: [2, -0.2], mass: 0.1}
+  c: {position: [3, 0], fixed: both}
+members:
+  rope: {kind: cable, nodes: [a, g1, g2, g3, b, c], stiffness: 2000, pretension: 30 N, guide_friction: 0.2}
+  hold: {kind: spring, nodes: [g2, g3], stiffness: 300, damping: 2}
+actuators: {w: {member: rope, signal: {sine: {amplitude: -15 mm, frequency: 2 Hz}}}}
+solver: {integrator: rk4-events, step: 0.5 ms}
+run: {duration: 1, measure: {quantities: {low: {of: rope.force, take: min}}}}
+YAML
+expect 0 run slack.yaml --json
+near .measured.low.value 0 0
+near '.energy.residual / .energy.exchanged' 0 1e-6
+sed 's/rk4-events/adaptive/' slack.yaml >other.yaml
+expect 0 run other.yaml --json
+near '.energy.residual / .energy.exchanged' 0 1e-6
+sed 's/integrator: rk4-events/integrator: midpoint/' slack.yaml >other.yaml
+expect 1 run other.yaml
+err_has 'midpoint cannot step'
+sed 's/guide_friction: 0.2}/guide_friction: 0.2, damping: 2, breaks_at: 31 N}/' slack.yaml >other.yaml
+expect 0 run other.yaml --json
+near '.broken.rope.time | if . then 1 else 0 end' 1 0
+near '.energy.residual / .energy.exchanged' 0 1e-4
+
+# Statics take the guides without friction; everything else shows and writes it.
+expect 0 modes slack.yaml
+expect 0 rigidity slack.yaml
+expect 0 equilibria slack.yaml
+expect 0 path slack.yaml --over b.y --until 10mm
+expect 0 check slack.yaml
+expect 0 write slack.yaml
+out_has 'guide_friction: 0.2'
+cp out written.yaml
+expect 0 run written.yaml --quiet --plot slack.svg -o slack
+expect 0 view slack -o slack.html
+expect 0 run slack.yaml --accuracy 1% --json
+
+done_testing
