@@ -140,6 +140,12 @@ typedef struct strut_actuator {
   int32_t cell; /* where both are -1 */
 } strut_actuator;
 
+/** A supported coordinate of a node that moves in a run: where it starts, plus signal(t). */
+typedef struct strut_support_motion {
+  int32_t node, axis; /* axis: 0 x, 1 y; the node is fixed there */
+  int32_t signal;     /* [m] */
+} strut_support_motion;
+
 /** A force on a node: force, times signal(t) if there is one. */
 typedef struct strut_load {
   const char *name;
@@ -203,6 +209,8 @@ typedef struct strut_scene {
   strut_cell *cells;
   size_t collision_count;
   strut_collision *collisions;
+  size_t support_motion_count;
+  strut_support_motion *support_motions; /* in the order of nodes, x before y */
 } strut_scene;
 
 /** Default structs: zero except where stated above, names empty, indices -1. */
@@ -259,6 +267,12 @@ static inline bool strut_member_is_special(const strut_member *member) {
   return member->guide_count || member->law.kind != STRUT_LAW_LINEAR || one_sided ||
          strut_member_ends(member);
 }
+
+/**
+ * Puts supports that move where they are at t = 0 and takes their motion away; with `shapes` as drawn
+ * and in configurations, too, where rest lengths must be resolved. The arrays must be the scene's own.
+ */
+STRUT_API void strut_scene_hold_supports(strut_scene *scene, bool shapes);
 
 /** Angle of a hinge as drawn, in (-pi, pi] [rad]. */
 STRUT_API double strut_hinge_drawn(const strut_scene *scene, size_t hinge);

@@ -63,6 +63,8 @@ bool strut_fields_differ(strut_section section, const void *object, const void *
 void strut_put_cells(strut_writer *writer);
 /** write_collisions.c */
 void strut_put_collisions(strut_writer *writer);
+/** A signal's name, or the signal itself where it has none. */
+void strut_put_signal_reference(strut_writer *writer, int32_t index);
 /** write_drives.c: signals, actuators, loads, run, solver, output. */
 void strut_put_drives(strut_writer *writer);
 void strut_put_experiment(strut_writer *writer);
