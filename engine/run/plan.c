@@ -6,7 +6,7 @@
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/model/mass.h"
 
-static const strut_plan_term terms[STRUT_PLAN_TERMS] = {
+static const strut_plan_term terms[] = {
     {STRUT_TERM_MEMBERS, "member springs", "a member", false},
     {STRUT_TERM_DAMPING, "member dampers", "a member with damping", false},
     {STRUT_TERM_SLACK, "slack test", "a cable", false},
@@ -28,6 +28,7 @@ static const strut_plan_term terms[STRUT_PLAN_TERMS] = {
     {STRUT_TERM_MASS_DAMPING, "damping by mass", "rayleigh with mass", false},
     {STRUT_TERM_SUPPORT_MOTION, "moving supports", "a node that moves", false},
 };
+_Static_assert(sizeof terms / sizeof terms[0] == STRUT_PLAN_TERMS, "one for each term");
 
 static void count_elements(const strut_model *model, strut_plan *plan) {
   const strut_scene *scene = model->scene;

@@ -108,8 +108,9 @@ static bool read_beam(strut_reader *reader, const strut_tree *key, strut_beam *b
   return fine && !fields.broken && check_ends(reader, key, clamped, b);
 }
 
-/* A node of the beam, at the share s of its length. */
-static void add_node(strut_reader *reader, strut_beam *b, const char *name, double s, bool fixed) {
+/* A node of the beam, at the share s of its length; held: the end that it is the clamp of, or -1. */
+static void add_node(strut_reader *reader, strut_beam *b, const char *name, double s,
+                     int32_t held) {
   strut_scene *scene = reader->scene;
   const double *from = scene->nodes[b->node[0]].position, *to = scene->nodes[b->node[1]].position;
   size_t i = scene->node_count;
@@ -117,7 +118,8 @@ static void add_node(strut_reader *reader, strut_beam *b, const char *name, doub
   strut_node *node = &scene->nodes[i];
   *node = strut_node_default();
   node->name = name;
-  node->fixed[0] = node->fixed[1] = fixed;
+  node->fixed[0] = node->fixed[1] = held >= 0;
+  if (held >= 0) reader->node_moves[i] = reader->node_moves[held]; /* a clamp moves with its end */
   for (int d = 0; d < 2; d++) node->position[d] = node->start[d] = from[d] + s * (to[d] - from[d]);
   reader->node_source[i] = (strut_source){b->key, b->key->next, false};
   scene->node_count++;
@@ -127,13 +129,13 @@ static void add_nodes(strut_reader *reader, strut_beam *b) {
   double parts = (double)b->parts;
   b->first_node = (int32_t)reader->scene->node_count;
   for (int32_t k = 1; k < b->parts && !b->broken; k++)
-    add_node(reader, b, part_name(reader, b, (size_t)k), k / parts, false);
+    add_node(reader, b, part_name(reader, b, (size_t)k), k / parts, -1);
   b->clamp_node[0] = (int32_t)reader->scene->node_count;
   if (b->clamped & CLAMPED_START && !b->broken)
-    add_node(reader, b, clamp_name(reader, b, false), -1.0 / parts, true);
+    add_node(reader, b, clamp_name(reader, b, false), -1.0 / parts, b->node[0]);
   b->clamp_node[1] = (int32_t)reader->scene->node_count;
   if (b->clamped & CLAMPED_END && !b->broken)
-    add_node(reader, b, clamp_name(reader, b, true), 1.0 + 1.0 / parts, true);
+    add_node(reader, b, clamp_name(reader, b, true), 1.0 + 1.0 / parts, b->node[1]);
 }
 
 void strut_read_beams(strut_reader *reader) {
@@ -162,8 +164,10 @@ void strut_read_beams(strut_reader *reader) {
                           sizeof *scene->nodes);
   reader->node_source = lengthen(reader, &reader->scratch, reader->node_source, scene->node_count,
                                  parts + clamps, sizeof *reader->node_source);
-  for (size_t i = 0; i < reader->beam_count && scene->nodes && reader->node_source; i++)
-    add_nodes(reader, &reader->beams[i]);
+  reader->node_moves = lengthen(reader, &reader->scratch, reader->node_moves, scene->node_count,
+                                parts + clamps, sizeof *reader->node_moves);
+  if (!scene->nodes || !reader->node_source || !reader->node_moves) return;
+  for (size_t i = 0; i < reader->beam_count; i++) add_nodes(reader, &reader->beams[i]);
 }
 
 /* Node k of the beam, from 0 to its number of parts. */
