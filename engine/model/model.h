@@ -42,7 +42,8 @@ typedef enum strut_term {
   STRUT_TERM_DIRECTION = 1 << 13,       /* friction that differs by direction; with LAWS */
   STRUT_TERM_ACTUATOR_FORCES = 1 << 14, /* actuators that give a force or a moment */
   STRUT_TERM_MASS_DAMPING = 1 << 15,    /* Rayleigh's damping by mass */
-  STRUT_TERM_SUPPORT_MOTION = 1 << 16   /* supports that move */
+  STRUT_TERM_SUPPORT_MOTION = 1 << 16,  /* supports that move */
+  STRUT_TERM_UNBALANCE = 1 << 17        /* rotating masses */
 } strut_term;
 
 /**
@@ -113,6 +114,7 @@ typedef struct strut_model {
   strut_actuator_force_table actuator_forces;
   double mass_damping; /* alpha of Rayleigh's damping [1/s] */
   strut_support_motion_table support_motion;
+  bool unbalance_corners; /* some rotating mass has an angle whose rate jumps */
 } strut_model;
 
 /**
