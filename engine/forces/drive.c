@@ -4,6 +4,8 @@
 
 #include <math.h>
 
+#include "engine/forces/memory.h"
+
 void strut_drive_apply(const strut_model *model, strut_state *state, double t) {
   const strut_drive_table *d = &model->drives;
   const strut_signal *signals = model->scene->signals;
@@ -17,6 +19,7 @@ void strut_drive_apply(const strut_model *model, strut_state *state, double t) {
     rest[member] = (d->first[i] ? model->members.rest[member] : rest[member]) + value;
     rest_rate[member] = d->first[i] ? rate : rest_rate[member] + rate;
   }
+  if (model->plan & STRUT_TERM_MEMORY) strut_memory_follow(model, state);
 }
 
 void strut_loads_apply(const strut_model *model, strut_state *state, double t,
@@ -49,6 +52,9 @@ double strut_drive_next_break(const strut_model *model, double t) {
   for (size_t i = 0; i < model->scene->unbalance_count; i++)
     if (model->scene->unbalances[i].signal >= 0)
       first = fmin(first, strut_signal_next_break(signals, model->scene->unbalances[i].signal, t));
+  for (int32_t i = 0; i < model->elements.breakable_count; i++)
+    if (model->elements.breakable[i].time > t)
+      first = fmin(first, model->elements.breakable[i].time);
   for (int32_t i = 0; i < model->actuator_forces.count; i++)
     first = fmin(first, strut_signal_next_break(signals, model->actuator_forces.item[i].signal, t));
   return first;

@@ -11,7 +11,10 @@ void strut_drive_apply(const strut_model *model, strut_state *state, double t);
 void strut_loads_apply(const strut_model *model, strut_state *state, double t,
                        const double *restrict v);
 
-/** The first time after t [s] at which a drive, a load or its rate jumps; INFINITY if none does. */
+/**
+ * The first time after t [s] at which a drive, a load or its rate jumps, or something is released;
+ * INFINITY if none does.
+ */
 double strut_drive_next_break(const strut_model *model, double t);
 
 #endif

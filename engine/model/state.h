@@ -80,9 +80,15 @@ typedef struct strut_state {
   bool ledger;               /* keep the ledger? It costs some arithmetic per evaluation */
   double *scratch;           /* (length) for the mass solve */
   strut_arena arena;
-  double *actuator_force;     /* (actuator forces) when last evaluated [N], [N m] */
-  double *support_rates;      /* (moved coordinates) scratch */
-  double *support_answer;     /* (length) scratch, 0 between uses; only where supports move */
+  /* memory of elements, see forces/memory.h; the slots of `rest` that belong to them follow from it */
+  double *plastic; /* (memory_count) plastic strain */
+  double
+      *broken_at; /* (breakable_count) since when it carries nothing [s]; INFINITY: it does not */
+  double *memory_kept;    /* both of the above as they were at an earlier time */
+  bool forgetful;         /* nothing yields or breaks: while settling; strut_state_reset keeps it */
+  double *actuator_force; /* (actuator forces) when last evaluated [N], [N m] */
+  double *support_rates;  /* (moved coordinates) scratch */
+  double *support_answer; /* (length) scratch, 0 between uses; only where supports move */
   double support_work_origin; /* strut_support_motion_reset_work: where it counts from [J] */
 } strut_state;
 

@@ -64,6 +64,8 @@ typedef struct strut_member {
   double shortest, longest; /* lengths at which stops act [m]; 0: none */
   double stop_stiffness;    /* [N/m]; 0: 100 times the member's */
   double stop_damping;      /* [N s/m] of a stop while it acts */
+  double breaks_at;         /* tension from which on the member carries nothing [N]; 0: never */
+  double released_at;       /* time from which on it carries nothing [s]; 0: never */
   double damping_ratio;     /* instead of damping, or 0: of the critical one, see theory.md */
 } strut_member;
 
@@ -71,10 +73,12 @@ typedef struct strut_member {
 typedef struct strut_hinge {
   const char *name;
   int32_t node[3];
-  double stiffness;  /* [N m/rad] */
-  double damping;    /* [N m s/rad] */
-  double rest_angle; /* [rad]; NAN: as drawn, within half a turn */
-  strut_law law;     /* of the angle and the moment */
+  double stiffness;   /* [N m/rad] */
+  double damping;     /* [N m s/rad] */
+  double rest_angle;  /* [rad]; NAN: as drawn, within half a turn */
+  strut_law law;      /* of the angle and the moment */
+  double breaks_at;   /* size of the moment from which on the hinge has none [N m]; 0: never */
+  double released_at; /* time from which on it has none [s]; 0: never */
 } strut_hinge;
 
 /** Damping law of the ground; d is the depth, d' its rate. */
@@ -227,10 +231,21 @@ static inline int32_t strut_member_node(const strut_member *member, size_t k) {
                                    : member->guides[k - 1];
 }
 
+/** True for a member that carries nothing from some force or time on. */
+static inline bool strut_member_ends(const strut_member *member) {
+  return member->breaks_at > 0.0 || member->released_at > 0.0;
+}
+
+/** The same of a hinge. */
+static inline bool strut_hinge_ends(const strut_hinge *hinge) {
+  return hinge->breaks_at > 0.0 || hinge->released_at > 0.0;
+}
+
 /** True for a member whose force is not that of a plain spring or cable between two nodes. */
 static inline bool strut_member_is_special(const strut_member *member) {
   bool one_sided = member->law.carries != STRUT_CARRIES_BOTH && member->kind != STRUT_CABLE;
-  return member->guide_count || member->law.kind != STRUT_LAW_LINEAR || one_sided;
+  return member->guide_count || member->law.kind != STRUT_LAW_LINEAR || one_sided ||
+         strut_member_ends(member);
 }
 
 /**

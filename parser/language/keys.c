@@ -179,6 +179,7 @@ strut_dimension strut_measure_dimension(strut_measure measure) {
     case STRUT_MEASURE_DISSIPATION: return STRUT_DIM_DISSIPATION;
     case STRUT_MEASURE_ANGULAR_STIFFNESS: return STRUT_DIM_ANGULAR_STIFFNESS;
     case STRUT_MEASURE_ANGULAR_DAMPING: return STRUT_DIM_ANGULAR_DAMPING;
+    case STRUT_MEASURE_MOMENT: return STRUT_DIM_MOMENT;
     case STRUT_MEASURE_NONE:
     case STRUT_MEASURE_CONTEXT: break;
   }

@@ -327,7 +327,10 @@ static bool read_unbalance(strut_reader *reader, const strut_tree *key, strut_un
   const strut_slot *node = strut_slot_of(&fields, STRUT_KEY_UNBALANCE_NODE);
   const strut_slot *speed = strut_slot_of(&fields, STRUT_KEY_UNBALANCE_SPEED);
   const strut_slot *signal = strut_slot_of(&fields, STRUT_KEY_UNBALANCE_SIGNAL);
-  if (node->state == STRUT_GIVEN) u->node = strut_read_node(reader, node->value, owner);
+  bool known = strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN;
+  if (node->state == STRUT_GIVEN && known)
+    u->node = strut_read_reference(reader, node->value, "node", owner, "node", &reader->node_names,
+                                   strut_node_name, reader->scene->node_count);
   if (u->node < 0) reader->ends_unknown = true;
   strut_store_fields(reader, &fields, &reader->scene->arena, u, sizeof *u);
   if (speed->state == STRUT_GIVEN)

@@ -111,7 +111,7 @@ static void put_law_by_hand(strut_writer *writer, strut_mapping *mapping, int ke
   while (parameter < STRUT_LAW_PARAMETER_COUNT &&
          strcmp(strut_law_key(parameter), strut_key_at(key)->name) != 0)
     parameter++;
-  if (parameter == STRUT_LAW_PARAMETER_COUNT || !strut_law_needs(law->kind, parameter)) return;
+  if (parameter == STRUT_LAW_PARAMETER_COUNT || !strut_law_allows(law->kind, parameter)) return;
   strut_put_key_name(writer, mapping, key);
   if (parameter < STRUT_LAW_NUMBER_COUNT) {
     strut_put_number(writer, strut_law_value(law, parameter));

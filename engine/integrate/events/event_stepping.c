@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "engine/forces/energy.h"
+#include "engine/forces/memory.h"
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/model/element_compile.h"
 
@@ -58,19 +59,24 @@ static bool list_laws(const strut_model *model, strut_state *state, strut_event_
   if (!l->laws || !l->acting) return false;
   for (int32_t j = 0; j < t->count; j++)
     if (t->slack[j] == 0.0)
-      l->laws[l->law_count++] =
-          (strut_law_switch){j, -1, false, false, t->stiffness[j], t->damping[j]};
+      l->laws[l->law_count++] = (strut_law_switch){
+          .member = j, .element = -1, .stiffness = t->stiffness[j], .damping = t->damping[j]};
   for (int32_t i = 0; i < model->elements.count; i++) {
     const strut_element *e = &model->elements.element[i];
     double natural = strut_element_start(model, i);
     strut_law_response rest = strut_law_respond(e->law, &e->numbers, natural, natural, -1);
     bool abrupt = e->carries * rest.force > 0.0 || (rest.force == 0.0 && !(rest.slope > 0.0));
-    const strut_law_switch own = {-1, i, false, abrupt, e->numbers.stiffness, e->damping};
+    const strut_law_switch own = {.member = -1,
+                                  .element = i,
+                                  .abrupt = abrupt,
+                                  .stiffness = e->numbers.stiffness,
+                                  .damping = e->damping};
     if (e->carries) l->laws[l->law_count++] = own;
     if (!strut_law_kinks(e->law, &e->numbers)) continue;
     l->laws[l->law_count] = own;
     l->laws[l->law_count++].kinks = true;
   }
+  strut_memory_list(model, state, l);
   return true;
 }
 
@@ -147,6 +153,8 @@ static void pass_break(const strut_model *model, strut_state *state, strut_event
     state->work[STRUT_POWER_DRIVE] += gained;
     state->work[STRUT_POWER_EXCHANGED] += fabs(gained);
   }
+  if (model->plan & STRUT_TERM_MEMORY)
+    strut_memory_release(model, state, t + moment + state->time_offset + STRUT_AT_BREAK * dt);
   if (!(model->plan & (STRUT_TERM_SUPPORT_MOTION | STRUT_TERM_UNBALANCE))) {
     strut_modes_after_jump(model, state, l, t + moment);
     return;
@@ -309,10 +317,12 @@ static bool given_up(const strut_model *model, strut_state *state, strut_event_s
     memcpy(kept[0], state->q, bytes);
     memcpy(kept[1], state->v, bytes);
     memcpy(l->work, state->work, sizeof l->work);
+    if (model->plan & STRUT_TERM_MEMORY) strut_memory_store(model, state, state->memory_kept);
   } else if (wanted) {
     memcpy(state->q, kept[0], bytes);
     memcpy(state->v, kept[1], bytes);
     memcpy(state->work, l->work, sizeof l->work);
+    if (model->plan & STRUT_TERM_MEMORY) strut_memory_load(model, state, state->memory_kept);
   }
   if (wanted) state->trouble = spent ? STRUT_FAILURE_WORK : STRUT_FAILURE_INTERRUPT;
   return wanted;
