@@ -128,7 +128,9 @@ static void put_law_by_hand(strut_writer *writer, strut_mapping *mapping, int ke
 }
 
 static void put_law(strut_writer *writer, strut_mapping *mapping, int key, const strut_law *law) {
-  const strut_law usual = {.kind = STRUT_LAW_LINEAR};
+  strut_law usual = {.kind = STRUT_LAW_LINEAR};
+  for (int i = 0; i < STRUT_LAW_NUMBER_COUNT; i++) /* what a law needs is written, zero or not */
+    if (strut_law_needs(law->kind, i)) *strut_law_number(&usual, i) = (double)NAN;
   strut_mapping inner = STRUT_MAPPING_INLINE;
   if (law->kind == STRUT_LAW_LINEAR && law->carries == STRUT_CARRIES_BOTH) return;
   strut_put_key_name(writer, mapping, key);
