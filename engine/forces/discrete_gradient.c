@@ -8,6 +8,7 @@
 #include "engine/forces/drive.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/mass_damping.h"
+#include "engine/forces/unbalance.h"
 #include "engine/model/pose.h"
 
 bool strut_discrete_gradient_create(const strut_model *model, strut_state *state,
@@ -217,6 +218,8 @@ void strut_discrete_gradient_forces(const strut_model *model, strut_state *state
   if (model->plan & STRUT_TERM_LOADS)
     strut_loads_apply(model, state, step->begin + 0.5 * step->h, u);
   add_members(model, state, step, state->q, q1);
+  if (model->plan & STRUT_TERM_UNBALANCE)
+    strut_unbalance_apply_mean(model, state, step->begin, step->h, u);
   if (model->plan & STRUT_TERM_MASS_DAMPING) strut_mass_damping_apply(model, state, u);
   if (!(model->plan & (STRUT_TERM_ELEMENTS | STRUT_TERM_ACTUATOR_FORCES))) return;
   for (int32_t i = 0; i < model->length; i++) step->middle[i] = 0.5 * (state->q[i] + q1[i]);

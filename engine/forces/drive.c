@@ -47,11 +47,14 @@ double strut_drive_next_break(const strut_model *model, double t) {
     first = fmin(first, strut_signal_next_break(signals, model->drives.signal[i], t));
   for (int32_t i = 0; i < model->loads.count; i++)
     first = fmin(first, strut_signal_next_break(signals, model->loads.signal[i], t));
+  for (int32_t i = 0; i < model->support_motion.count; i++)
+    first = fmin(first, strut_signal_next_break(signals, model->support_motion.item[i].signal, t));
+  for (size_t i = 0; i < model->scene->unbalance_count; i++)
+    if (model->scene->unbalances[i].signal >= 0)
+      first = fmin(first, strut_signal_next_break(signals, model->scene->unbalances[i].signal, t));
   for (int32_t i = 0; i < model->elements.breakable_count; i++)
     if (model->elements.breakable[i].time > t)
       first = fmin(first, model->elements.breakable[i].time);
-  for (int32_t i = 0; i < model->support_motion.count; i++)
-    first = fmin(first, strut_signal_next_break(signals, model->support_motion.item[i].signal, t));
   for (int32_t i = 0; i < model->actuator_forces.count; i++)
     first = fmin(first, strut_signal_next_break(signals, model->actuator_forces.item[i].signal, t));
   return first;

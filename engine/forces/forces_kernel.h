@@ -16,6 +16,7 @@
 #include "engine/forces/mass_damping.h"
 #include "engine/forces/members_kernel.h"
 #include "engine/forces/support_motion.h"
+#include "engine/forces/unbalance.h"
 #include "engine/model/mass_kernel.h"
 
 STRUT_INLINE void forces_start(const strut_model *model, double *restrict force) {
@@ -60,6 +61,7 @@ STRUT_INLINE void forces_of_structure(const strut_model *model, strut_state *sta
   if (plan & STRUT_TERM_MEMBERS) forces_of_members(model, state, q, v, force, ledger);
   if (plan & STRUT_TERM_ELEMENTS) strut_elements_add_forces(model, state, q, v, force);
   if (plan & STRUT_TERM_ACTUATOR_FORCES) strut_actuator_forces_apply(model, state, t, q, v);
+  if (plan & STRUT_TERM_UNBALANCE) strut_unbalance_apply(model, state, t, v);
   if (plan & STRUT_TERM_MASS_DAMPING) strut_mass_damping_apply(model, state, v);
   if (plan & STRUT_TERM_SUPPORT_MOTION) strut_support_motion_apply(model, state, t, v);
 }

@@ -17,7 +17,7 @@ static void *euler_create(const strut_model *model, strut_state *state,
 STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, double *restrict a,
                             double dt, int64_t count, bool ledger) {
   double *restrict q = state->q, *restrict v = state->v;
-  bool moves = model->plan & STRUT_TERM_SUPPORT_MOTION;
+  bool moves = model->plan & STRUT_TERMS_AT_STEP_END;
   for (int64_t end = state->step + count; state->step < end; state->step++) {
     forces_kernel(model, state, (double)state->step * dt, q, v, a, ledger);
     for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) state->work[p] += dt * state->power[p];

@@ -60,7 +60,7 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, rk4_wo
   const double *const at[4] = {q, w->q, w->q, w->q};
   const double *const speed[4] = {v, w->v[1], w->v[2], w->v[3]};
   int32_t n = model->length;
-  bool moves = model->plan & STRUT_TERM_SUPPORT_MOTION;
+  bool moves = model->plan & STRUT_TERMS_AT_STEP_END;
   for (int64_t end = state->step + count; state->step < end; state->step++) {
     for (int k = 0; k < 4; k++) {
       double t = ((double)state->step + ahead[k]) * dt;

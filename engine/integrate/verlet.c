@@ -39,7 +39,7 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, verlet
   double *restrict q = state->q, *restrict v = state->v, *restrict predicted = w->predicted;
   double half = 0.5 * dt;
   int32_t n = model->length;
-  bool moves = model->plan & STRUT_TERM_SUPPORT_MOTION;
+  bool moves = model->plan & STRUT_TERMS_AT_STEP_END;
   for (int64_t end = state->step + count; state->step < end; state->step++) {
     double *a = w->a, *next = w->next;
     for (int32_t i = 0; i < n; i += STRUT_LANES) {

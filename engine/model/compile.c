@@ -34,10 +34,12 @@ static void compile_nodes(strut_model *model, bool *failed) {
     *failed = true;
     return;
   }
+  for (size_t i = 0; i < scene->unbalance_count; i++)
+    mass[scene->unbalances[i].node] += scene->unbalances[i].mass;
   double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
   for (size_t i = 0; i < scene->node_count; i++) {
     const strut_node *node = &scene->nodes[i];
-    mass[i] = node->mass;
+    mass[i] += node->mass;
     for (size_t c = 0; c < 2; c++) {
       start[2 * i + c] = node->start[c];
       velocity[2 * i + c] = node->fixed[c] ? 0.0 : node->velocity[c];
@@ -148,6 +150,17 @@ static void compile_support_motion(strut_model *model, bool *failed) {
   if (!strut_support_motion_compile(model)) *failed = true;
 }
 
+static void compile_unbalances(strut_model *model, bool *failed) {
+  const strut_scene *scene = model->scene;
+  (void)failed;
+  for (size_t i = 0; i < scene->unbalance_count; i++) {
+    int32_t signal = scene->unbalances[i].signal;
+    model->plan |= STRUT_TERM_UNBALANCE;
+    if (signal >= 0 && strut_signal_next_break(scene->signals, signal, 0.0) < HUGE_VAL)
+      model->unbalance_corners = true;
+  }
+}
+
 static void compile_damping(strut_model *model, bool *failed) {
   (void)failed;
   strut_damping_compile(model);
@@ -226,9 +239,9 @@ strut_status strut_model_compile(const strut_scene *scene, strut_model **result,
   model->scene = scene;
   bool failed = false;
   void (*const passes[])(strut_model *, bool *) = {
-      compile_nodes,   compile_members,       compile_elements, compile_drives,
-      compile_weights, compile_loads,         compile_contacts, compile_actuator_forces,
-      compile_damping, compile_support_motion};
+      compile_nodes,   compile_members,        compile_elements,  compile_drives,
+      compile_weights, compile_loads,          compile_contacts,  compile_actuator_forces,
+      compile_damping, compile_support_motion, compile_unbalances};
   for (size_t i = 0; i < sizeof passes / sizeof passes[0] && !failed; i++)
     passes[i](model, &failed);
   strut_status status = failed ? strut_memory_fail_model(scene, error)

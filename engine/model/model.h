@@ -43,6 +43,7 @@ typedef enum strut_term {
   STRUT_TERM_ACTUATOR_FORCES = 1 << 14, /* actuators that give a force or a moment */
   STRUT_TERM_MASS_DAMPING = 1 << 15,    /* Rayleigh's damping by mass */
   STRUT_TERM_SUPPORT_MOTION = 1 << 16,  /* supports that move */
+  STRUT_TERM_UNBALANCE = 1 << 17,       /* rotating masses */
   STRUT_TERM_MEMORY = 1 << 20           /* elements that break, are released, yield or rub */
 } strut_term;
 
@@ -114,6 +115,7 @@ typedef struct strut_model {
   strut_actuator_force_table actuator_forces;
   double mass_damping; /* alpha of Rayleigh's damping [1/s] */
   strut_support_motion_table support_motion;
+  bool unbalance_corners; /* some rotating mass has an angle whose rate jumps */
 } strut_model;
 
 /**

@@ -43,7 +43,7 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
   state->scratch = strut_arena_allocate(arena, both, sizeof(double));
   state->actuator_force =
       strut_arena_allocate(arena, (size_t)model->actuator_forces.count, sizeof(double));
-  bool moves = model->support_motion.count > 0;
+  bool moves = model->plan & (STRUT_TERM_SUPPORT_MOTION | STRUT_TERM_UNBALANCE);
   state->support_rates =
       strut_arena_allocate(arena, (size_t)model->support_motion.count, sizeof(double));
   state->support_answer = strut_arena_allocate(arena, moves ? both : 0, sizeof(double));

@@ -27,6 +27,7 @@ static const strut_plan_term terms[] = {
     {STRUT_TERM_ACTUATOR_FORCES, "actuator forces", "an actuator with a force or moment", false},
     {STRUT_TERM_MASS_DAMPING, "damping by mass", "rayleigh with mass", false},
     {STRUT_TERM_SUPPORT_MOTION, "moving supports", "a node that moves", false},
+    {STRUT_TERM_UNBALANCE, "unbalances", "a rotating mass", false},
 };
 _Static_assert(sizeof terms / sizeof terms[0] == STRUT_PLAN_TERMS, "one for each term");
 

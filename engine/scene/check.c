@@ -92,7 +92,8 @@ static void check_name(strut_checker *checker, strut_name_map *map, strut_subjec
 void strut_check_names(strut_checker *checker) {
   const strut_scene *s = checker->scene;
   strut_name_map nodes = {0}, members = {0}, actuators = {0}, loads = {0}, signals = {0},
-                 configurations = {0}, hinges = {0}, cells = {0}, collisions = {0};
+                 configurations = {0}, hinges = {0}, cells = {0}, collisions = {0},
+                 unbalances = {0};
   for (size_t i = 0; i < s->node_count; i++)
     check_name(checker, &nodes, STRUT_ON_NODE, "node", s->nodes[i].name, i);
   for (size_t i = 0; i < s->member_count; i++)
@@ -107,6 +108,8 @@ void strut_check_names(strut_checker *checker) {
     check_name(checker, &actuators, STRUT_ON_ACTUATOR, "actuator", s->actuators[i].name, i);
   for (size_t i = 0; i < s->load_count; i++)
     check_name(checker, &loads, STRUT_ON_LOAD, "load", s->loads[i].name, i);
+  for (size_t i = 0; i < s->unbalance_count; i++)
+    check_name(checker, &unbalances, STRUT_ON_UNBALANCE, "unbalance", s->unbalances[i].name, i);
   for (size_t i = 0; i < s->signal_count; i++)
     if (s->signals[i].name)
       check_name(checker, &signals, STRUT_ON_SIGNAL, "signal", s->signals[i].name, i);
@@ -117,6 +120,7 @@ void strut_check_names(strut_checker *checker) {
   strut_name_map_free(&members);
   strut_name_map_free(&actuators);
   strut_name_map_free(&loads);
+  strut_name_map_free(&unbalances);
   strut_name_map_free(&hinges);
   strut_name_map_free(&cells);
   strut_name_map_free(&collisions);
@@ -321,6 +325,11 @@ void strut_check_use(strut_checker *checker) {
       int32_t n = scene->collisions[i].node[k];
       if (n >= 0 && (size_t)n < scene->node_count) state[n] |= USED;
     }
+  for (size_t i = 0; i < scene->unbalance_count; i++) {
+    int32_t n = scene->unbalances[i].node;
+    if (n >= 0 && (size_t)n < scene->node_count)
+      state[n] = (unsigned char)(state[n] | USED | (scene->unbalances[i].mass > 0.0 ? HEAVY : 0));
+  }
   for (size_t i = 0; i < scene->load_count; i++)
     if (scene->loads[i].node >= 0 && (size_t)scene->loads[i].node < scene->node_count)
       state[scene->loads[i].node] |= USED;

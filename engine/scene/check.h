@@ -27,7 +27,8 @@ typedef enum strut_subject {
   STRUT_ON_RUN,
   STRUT_ON_OUTPUT,
   STRUT_ON_CELL,
-  STRUT_ON_COLLISION
+  STRUT_ON_COLLISION,
+  STRUT_ON_UNBALANCE
 } strut_subject;
 
 typedef struct strut_finding {

@@ -274,8 +274,38 @@ static void check_motions(strut_checker *checker) {
   }
 }
 
+static void check_unbalances(strut_checker *checker) {
+  const strut_scene *scene = checker->scene;
+  char owner[200];
+  double when;
+  for (size_t i = 0; i < scene->unbalance_count; i++) {
+    const strut_unbalance *u = &scene->unbalances[i];
+    strut_format_name(owner, "unbalance", u->name, i);
+    strut_check_range(checker, STRUT_ON_UNBALANCE, i, "mass", owner, u->mass, STRUT_ABOVE_ZERO);
+    strut_check_range(checker, STRUT_ON_UNBALANCE, i, "radius", owner, u->radius,
+                      STRUT_NOT_NEGATIVE);
+    strut_check_range(checker, STRUT_ON_UNBALANCE, i, "speed", owner, u->speed, STRUT_ANY_NUMBER);
+    strut_check_range(checker, STRUT_ON_UNBALANCE, i, "phase", owner, u->phase, STRUT_ANY_NUMBER);
+    if (!exists(u->node, scene->node_count))
+      strut_report_finding(checker, STRUT_ON_UNBALANCE, i, "node",
+                           "%s rotates about a node that does not exist", owner);
+    if (u->signal == -1) continue;
+    if (!exists(u->signal, scene->signal_count))
+      strut_report_finding(checker, STRUT_ON_UNBALANCE, i, "angle",
+                           "%s has a signal that does not exist", owner);
+    else if (!checker->wild[u->signal] &&
+             strut_signal_value_jumps(scene->signals, u->signal, HUGE_VAL, &when))
+      strut_report_finding(
+          checker, STRUT_ON_UNBALANCE, i, "angle",
+          "the angle of %s jumps at t = %g s, but a rotating mass cannot jump; use "
+          "a ramp or a table",
+          owner, when);
+  }
+}
+
 void strut_check_drives(strut_checker *checker) {
   check_motions(checker);
+  check_unbalances(checker);
   const strut_scene *scene = checker->scene;
   char owner[200];
   for (size_t i = 0; i < scene->actuator_count; i++) {

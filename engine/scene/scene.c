@@ -57,6 +57,12 @@ void strut_scene_hold_supports(strut_scene *scene, bool shapes) {
   scene->support_motion_count = 0;
 }
 
+void strut_scene_stop_unbalances(strut_scene *scene) {
+  for (size_t i = 0; i < scene->unbalance_count; i++)
+    scene->nodes[scene->unbalances[i].node].mass += scene->unbalances[i].mass;
+  scene->unbalance_count = 0;
+}
+
 static double drawn_length(const strut_scene *scene, const strut_member *member) {
   double sum = 0.0;
   for (size_t k = 0; k <= member->guide_count; k++)

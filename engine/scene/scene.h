@@ -147,6 +147,14 @@ typedef struct strut_support_motion {
   int32_t signal;     /* [m] */
 } strut_support_motion;
 
+/** A mass that rotates about a node: at `phase`, plus speed t or signal(t), from +x [rad]. */
+typedef struct strut_unbalance {
+  const char *name;
+  int32_t node, signal; /* signal: of the angle [rad], or -1 */
+  double mass, radius;  /* [kg], [m] */
+  double speed, phase;  /* [rad/s], 0 with a signal; [rad] */
+} strut_unbalance;
+
 /** A force on a node: force, times signal(t) if there is one. */
 typedef struct strut_load {
   const char *name;
@@ -212,6 +220,8 @@ typedef struct strut_scene {
   strut_cell *cells;
   size_t collision_count;
   strut_collision *collisions;
+  size_t unbalance_count;
+  strut_unbalance *unbalances;
 } strut_scene;
 
 /** Default structs: zero except where stated above, names empty, indices -1. */
@@ -274,6 +284,9 @@ static inline bool strut_member_is_special(const strut_member *member) {
  * and in configurations, too, where rest lengths must be resolved. The arrays must be the scene's own.
  */
 STRUT_API void strut_scene_hold_supports(strut_scene *scene, bool shapes);
+
+/** Stops rotating masses: each becomes part of its node's mass. The nodes must be the scene's own. */
+STRUT_API void strut_scene_stop_unbalances(strut_scene *scene);
 
 /** Angle of a hinge as drawn, in (-pi, pi] [rad]. */
 STRUT_API double strut_hinge_drawn(const strut_scene *scene, size_t hinge);

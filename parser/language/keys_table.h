@@ -34,6 +34,7 @@
   X(SCENE, GROUND, "ground", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "The line that nodes may touch; without it there is no ground.") \
   X(SCENE, ACTUATORS, "actuators", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of an actuator", BY_HAND, "Members whose rest length a signal changes, or to which it adds a force. Several actuators on one member add up.") \
   X(SCENE, LOADS, "loads", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a load", BY_HAND, "Forces on nodes.") \
+  X(SCENE, UNBALANCES, "unbalances", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of an unbalance", BY_HAND, "Masses that rotate about nodes.") \
   X(SCENE, SIGNALS, "signals", THINGS, NONE, ANY, "", OPTIONAL, 0, "a signal", BY_HAND, "Named signals, for use in several places.") \
   X(SCENE, CONFIGURATIONS, "configurations", THINGS, NONE, ANY, "", OPTIONAL, 0, "`{NODE: [x, y], ...}` or the keys of a [configuration](#configuration)", BY_HAND, "Named shapes: to start from, and to name equilibria. Nodes that are not listed stay as drawn.") \
   X(SCENE, INITIAL, "initial", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "The state at t = 0; by default the drawn shape at rest.") \
@@ -142,6 +143,12 @@
   X(LOAD, NODE, "node", NAME, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "The node on which the force acts.") \
   X(LOAD, FORCE, "force", PAIR, FORCE, ANY, "", REQUIRED, 0, "", FIELD(strut_load, force), "The force; with a signal, the force while the signal is 1.") \
   X(LOAD, SIGNAL, "signal", SIGNAL, NONE, ANY, "constant 1", OPTIONAL, 0, "", BY_HAND, "Factor on the force.") \
+  X(UNBALANCE, NODE, "node", NAME, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "The node about which it rotates.") \
+  X(UNBALANCE, MASS, "mass", NUMBER, MASS, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_unbalance, mass), "The rotating mass, which counts to the node's mass.") \
+  X(UNBALANCE, RADIUS, "radius", NUMBER, LENGTH, NOT_NEGATIVE, "", REQUIRED, 0, "", FIELD(strut_unbalance, radius), "Its distance from the node.") \
+  X(UNBALANCE, SPEED, "speed", NUMBER, CONTEXT, ANY, "", OPTIONAL, 9, "", BY_HAND, "Its constant speed, counter-clockwise: turns per second such as 30 Hz, or 188 rad/s; a plain number is in rad/s.") \
+  X(UNBALANCE, SIGNAL, "angle", SIGNAL, ANGLE, ANY, "", OPTIONAL, 9, "", BY_HAND, "Its angle instead, as a signal that must not jump.") \
+  X(UNBALANCE, PHASE, "phase", NUMBER, ANGLE, ANY, "0", OPTIONAL, 0, "", FIELD(strut_unbalance, phase), "Added to the angle, which counts from +x.") \
   X(SIGNAL, CONSTANT, "constant", NUMBER, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "A constant, for t >= 0.") \
   X(SIGNAL, SINE, "sine", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "amplitude * sin(2 pi frequency (t - start) + phase).") \
   X(SIGNAL, HALF_SINE, "half_sine", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "One half-wave of a sine, then 0.") \

@@ -85,6 +85,7 @@ static bool many_place(strut_reader *reader, const strut_finding *finding, strut
                                    [STRUT_ON_CONTACT] = reader->contact_source,
                                    [STRUT_ON_ACTUATOR] = reader->actuator_source,
                                    [STRUT_ON_LOAD] = reader->load_source,
+                                   [STRUT_ON_UNBALANCE] = reader->unbalance_source,
                                    [STRUT_ON_CONFIGURATION] = reader->configuration_source};
   const strut_source *source = &sources[finding->subject][finding->index];
   if (source->broken) return false;
@@ -138,6 +139,7 @@ static bool single_place(strut_reader *reader, const strut_finding *finding, str
     case STRUT_ON_CONTACT:
     case STRUT_ON_ACTUATOR:
     case STRUT_ON_LOAD:
+    case STRUT_ON_UNBALANCE:
     case STRUT_ON_SIGNAL:
     case STRUT_ON_CONFIGURATION:
       broken =
@@ -156,6 +158,7 @@ void strut_place_findings(strut_reader *reader, const strut_findings *findings) 
                 finding->subject == STRUT_ON_HINGE || finding->subject == STRUT_ON_CONTACT ||
                 finding->subject == STRUT_ON_ACTUATOR || finding->subject == STRUT_ON_LOAD ||
                 finding->subject == STRUT_ON_CELL || finding->subject == STRUT_ON_COLLISION ||
+                finding->subject == STRUT_ON_UNBALANCE ||
                 finding->subject == STRUT_ON_CONFIGURATION;
     bool fresh = many                                  ? many_place(reader, finding, &place)
                  : finding->subject == STRUT_ON_SIGNAL ? signal_place(reader, finding, &place)

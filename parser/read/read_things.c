@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "parser/read/reader.h"
 
 const char *strut_node_name(const void *context, size_t i) {
@@ -318,6 +319,78 @@ static void read_loads(strut_reader *reader) {
   }
 }
 
+/* Turns per second or an angular velocity; a plain number is in rad/s. */
+static bool read_speed(strut_reader *reader, const strut_tree *value, strut_owner owner,
+                       double *speed) {
+  const strut_dimension angular = {0, 0, -1, 1};
+  strut_quantity q;
+  char found[80];
+  if (!strut_read_scalar(reader, value, "speed", owner, "a number") ||
+      !strut_read_quantity(reader, value, "speed", owner, &q))
+    return false;
+  bool turns = !q.bare && strut_dimension_equal(q.dimension, STRUT_DIM_FREQUENCY);
+  *speed = turns ? STRUT_TAU * q.value : q.value;
+  if (turns || q.bare || strut_dimension_equal(q.dimension, angular)) return true;
+  strut_report_error(reader, value->place,
+                     "expected a speed such as '30 Hz' or '188 rad/s' for 'speed' of %s, found %s",
+                     strut_owner_text(reader, owner),
+                     strut_dimension_name(q.dimension, found, sizeof found));
+  return false;
+}
+
+static bool read_unbalance(strut_reader *reader, const strut_tree *key, strut_unbalance *u) {
+  strut_owner owner = {"unbalance", u->name};
+  const strut_dimension angle = STRUT_DIM_ANGLE;
+  bool fine = strut_read_name(reader, key, "unbalance");
+  strut_fields fields;
+  strut_read_fields(reader, STRUT_SECTION_UNBALANCE, key->next, owner, &fields);
+  strut_require(reader, &fields, owner, key->place);
+  const strut_slot *node = strut_slot_of(&fields, STRUT_KEY_UNBALANCE_NODE);
+  const strut_slot *speed = strut_slot_of(&fields, STRUT_KEY_UNBALANCE_SPEED);
+  const strut_slot *signal = strut_slot_of(&fields, STRUT_KEY_UNBALANCE_SIGNAL);
+  bool known = strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN;
+  if (node->state == STRUT_GIVEN && known)
+    u->node = strut_read_reference(reader, node->value, "node", owner, "node", &reader->node_names,
+                                   strut_node_name, reader->scene->node_count);
+  if (u->node < 0) reader->ends_unknown = true;
+  strut_store_fields(reader, &fields, &reader->scene->arena, u, sizeof *u);
+  if (speed->state == STRUT_GIVEN)
+    fine = read_speed(reader, speed->value, owner, &u->speed) && fine;
+  if (signal->state == STRUT_GIVEN) {
+    u->signal = strut_read_signal(reader, signal->value, "angle", owner, &angle);
+    fine = u->signal >= 0 && fine;
+  }
+  if (speed->state == STRUT_ABSENT && signal->state == STRUT_ABSENT && !fields.broken) {
+    strut_report_error(reader, key->place,
+                       "%s lacks 'speed', expected one such as '30 Hz', or 'angle' with a signal",
+                       strut_owner_text(reader, owner));
+    fine = false;
+  }
+  if (!fine || fields.broken) reader->masses_unknown = true;
+  return fine && !fields.broken && u->node >= 0;
+}
+
+static void read_unbalances(strut_reader *reader) {
+  strut_scene *scene = reader->scene;
+  const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_UNBALANCES);
+  if (strut_slot_of(&reader->top, STRUT_KEY_SCENE_UNBALANCES)->state == STRUT_BROKEN)
+    reader->ends_unknown = reader->masses_unknown = true;
+  if (!map) return;
+  scene->unbalances =
+      strut_reader_allocate(reader, &scene->arena, map->count, sizeof *scene->unbalances);
+  reader->unbalance_source =
+      strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->unbalance_source);
+  if (!scene->unbalances || !reader->unbalance_source) return;
+  for (const strut_tree *key = map->first; key; key = key->next->next) {
+    size_t i = strut_next_entry(reader, &scene->unbalance_count);
+    scene->unbalances[i] =
+        (strut_unbalance){.name = strut_keep_text(reader, key->text), .node = -1, .signal = -1};
+    strut_add_name(reader, &reader->unbalance_names, scene->unbalances[i].name, i);
+    bool fine = read_unbalance(reader, key, &scene->unbalances[i]);
+    reader->unbalance_source[i] = (strut_source){key, key->next, !fine};
+  }
+}
+
 static void read_moves_of(strut_reader *reader, size_t node) {
   strut_scene *scene = reader->scene;
   strut_owner owner = {"node", scene->nodes[node].name};
@@ -351,6 +424,7 @@ static void read_moves(strut_reader *reader) {
 
 void strut_read_drives(strut_reader *reader) {
   read_moves(reader);
+  read_unbalances(reader);
   read_actuators(reader);
   read_loads(reader);
 }

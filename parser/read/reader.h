@@ -106,7 +106,8 @@ typedef struct strut_reader {
   strut_purpose purpose;
   strut_fields top;
   strut_name_map node_names, member_names, group_names, parameter_names, signal_names,
-      configuration_names, actuator_names, load_names, hinge_names, cell_names, collision_names;
+      configuration_names, actuator_names, load_names, hinge_names, cell_names, collision_names,
+      unbalance_names;
   strut_group *groups;
   size_t group_count;
   strut_parameter_state *parameters;
@@ -118,7 +119,8 @@ typedef struct strut_reader {
   strut_named_signal *named;
   size_t named_count, signal_depth, signal_capacity;
   strut_named_signal *signal_stack[STRUT_DEEPEST_SIGNAL]; /* being read */
-  strut_signal *signals;         /* strut_allocate; moves to the scene at the end */
+  strut_signal *signals; /* strut_allocate; moves to the scene at the end */
+  strut_source *unbalance_source;
   const strut_tree **node_moves; /* (node_count) the keys of moves of a node, or NULL */
   strut_signal_state *signal_state;
   size_t signal_count;

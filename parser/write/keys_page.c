@@ -60,6 +60,9 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
         "`actuators: {NAME: {...}}`, with a `signal`, a `force` of a member or a `moment` of a "
         "hinge.",
     [STRUT_SECTION_LOAD] = "`loads: {NAME: {...}}`.",
+    [STRUT_SECTION_UNBALANCE] =
+        "`unbalances: {NAME: {...}}`, each with a `speed` or an `angle`. Statics and settling have "
+        "its mass at the node.",
     [STRUT_SECTION_SIGNAL] =
         "A signal is a mapping with one of these keys, or the name of an entry of `signals`. The "
         "unit of its values follows from its use: a length, an angle or a pressure, or a force or "

@@ -126,11 +126,42 @@ static void put_load_by_hand(strut_writer *writer, strut_mapping *mapping, int k
   }
 }
 
+static void put_unbalance_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
+                                  const void *object) {
+  const strut_unbalance *u = object;
+  if (key == STRUT_KEY_UNBALANCE_NODE) {
+    strut_put_key_name(writer, mapping, key);
+    strut_put_name(writer, writer->scene->nodes[u->node].name);
+  } else if (key == STRUT_KEY_UNBALANCE_SIGNAL && u->signal >= 0) {
+    strut_put_key_name(writer, mapping, key);
+    strut_put_signal_reference(writer, u->signal);
+  } else if (key == STRUT_KEY_UNBALANCE_SPEED && u->signal < 0) {
+    strut_put_key_name(writer, mapping, key);
+    strut_put_number(writer, u->speed);
+  }
+}
+
+static void put_unbalances(strut_writer *writer) {
+  const strut_scene *scene = writer->scene;
+  const strut_unbalance usual = {0};
+  if (scene->unbalance_count) strut_put(writer, "unbalances:\n");
+  for (size_t i = 0; i < scene->unbalance_count; i++) {
+    strut_mapping mapping = STRUT_MAPPING_INLINE;
+    strut_put(writer, "  ");
+    strut_put_name(writer, scene->unbalances[i].name);
+    strut_put(writer, ": {");
+    strut_put_fields(writer, &mapping, STRUT_SECTION_UNBALANCE, &scene->unbalances[i], &usual,
+                     put_unbalance_by_hand);
+    strut_put(writer, "}\n");
+  }
+}
+
 void strut_put_drives(strut_writer *writer) {
   const strut_scene *scene = writer->scene;
   const strut_load usual = {0};
   put_named_signals(writer);
   put_actuators(writer);
+  put_unbalances(writer);
   if (scene->load_count) strut_put(writer, "loads:\n");
   for (size_t i = 0; i < scene->load_count; i++) {
     strut_mapping mapping = STRUT_MAPPING_INLINE;

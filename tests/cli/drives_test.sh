@@ -300,4 +300,51 @@ cp out again.yaml
 expect 0 write again.yaml
 tail -n +3 out >one && tail -n +3 again.yaml >two && same one two
 
+# An unbalance on a spring and a damper: the amplitude is m r w^2 / sqrt((k - M w^2)^2 + (c w)^2).
+cat >unbalance.yaml <<'END'
+strut: 1
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0], fixed: y, mass: 1.9}
+members:
+  m: {kind: spring, nodes: [a, b], stiffness: 200, damping: 8}
+unbalances:
+  u: {node: b, mass: 100 g, radius: 20 mm, speed: 2 Hz, phase: 30 deg}
+signals:
+  turn: {sine: {amplitude: 1, frequency: 2 Hz}}
+solver: {integrator: rk4, step: 0.5 ms}
+run:
+  periods: 26
+  of: turn
+  measure: {last: 1, quantities: {rms: {of: b.x - 1 m, take: rms}}}
+END
+expect 0 run unbalance.yaml --json
+near "$(value rms) * (2 | sqrt)" '(12.566370614359172 as $w | (200 - 2 * $w * $w) as $a | 8 * $w | . as $b |
+  0.1 * 0.02 * $w * $w / ($a * $a + $b * $b | sqrt))' 1e-11
+closes 1e-8
+expect 0 write unbalance.yaml
+out_has 'u: {node: b, mass: 0.1, radius: 0.02, speed: 12.566370614359172, phase: 0.5235987755982988'
+
+# A free node with a mass that is spun up from rest, with a corner of the angle: the centre of mass of both
+# stays where it was, as the mass moves to the other side; with weight both fall.
+for method in $methods; do
+  cat >spun.yaml <<END
+strut: 1
+gravity: [0, -1]
+nodes:
+  a: {position: [0, 0], mass: 1.5}
+unbalances:
+  u: {node: a, mass: 0.5, radius: 0.1, angle: {ramp: {amplitude: 5 rad, start: 0.2003 s, stop: 1.2 s}}}
+solver: {integrator: $method, step: 1 ms, tolerance: 1e-11}
+run:
+  duration: 1 s
+  measure: {quantities: {x: {of: a.x, take: final}, y: {of: a.y, take: final}}}
+END
+  expect 0 run spun.yaml --json
+  case $method in rk4-events | adaptive) error=1e-10 ;; verlet-events) error=1e-6 ;; *) error=1e-3 ;; esac
+  near "$(value x)" '0.025 * (1 - (5 * 0.7997 / 0.9997 | cos))' $error
+  near "$(value y)" '-0.025 * (5 * 0.7997 / 0.9997 | sin) - 0.5' $error
+  case $method in rk4-events | adaptive | midpoint) closes 1e-9 ;; *) closes 5e-2 ;; esac
+done
+
 done_testing

@@ -156,11 +156,12 @@ static void pass_break(const strut_model *model, strut_state *state, strut_event
   }
   if (model->plan & STRUT_TERM_MEMORY)
     strut_memory_release(model, state, t + moment + state->time_offset + STRUT_AT_BREAK * dt);
-  if (!(model->plan & STRUT_TERM_SUPPORT_MOTION)) {
+  if (!(model->plan & (STRUT_TERM_SUPPORT_MOTION | STRUT_TERM_UNBALANCE))) {
     strut_modes_after_jump(model, state, l, t + moment);
     return;
   }
   bool kicked = strut_support_motion_kick(model, state, t - 2.0 * moment, t + 0.5 * moment);
+  kicked = strut_unbalance_kick(model, state, t - 2.0 * moment, t + 0.5 * moment) || kicked;
   strut_support_motion_place(model, state, t + moment, state->q, state->v);
   if (kicked)
     strut_modes_start(model, state, l, t + moment);

@@ -77,6 +77,7 @@ static void remove_motion(strut_scene *s) {
   size_t kept = 0;
   s->actuator_count = 0;
   strut_scene_hold_supports(s, true);
+  strut_scene_stop_unbalances(s);
   s->ground.belt_speed = 0.0;
   for (size_t i = 0; i < s->load_count; i++)
     if (s->loads[i].signal < 0) s->loads[kept++] = s->loads[i];

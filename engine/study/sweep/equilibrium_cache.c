@@ -170,6 +170,10 @@ static void add_rest(structure *s, const strut_setup *setup) {
     const double motion[] = {m->node, m->axis, value};
     add_all(s, motion, sizeof motion / sizeof motion[0]);
   }
+  for (size_t i = 0; i < scene->unbalance_count; i++) {
+    add(s, scene->unbalances[i].node);
+    add(s, scene->unbalances[i].mass);
+  }
 }
 
 static void free_structure(structure *s) {

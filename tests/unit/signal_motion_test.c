@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Accelerations of signals against differences of their rates, and where their values jump. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "engine/scene/check.h"
+#include "engine/scene/signal_motion.h"
+
+static double rate_of(const strut_signal *signals, int32_t index, double t) {
+  double value, rate;
+  strut_signal_evaluate(signals, index, t, &value, &rate);
+  return rate;
+}
+
+static strut_signal wave(strut_signal_kind kind, double amplitude, double frequency) {
+  strut_signal s = strut_signal_default(kind);
+  s.amplitude = amplitude, s.frequency = frequency;
+  return s;
+}
+
+static void accelerations_are_derivatives(void **state) {
+  (void)state;
+  static const int32_t terms[] = {0, 1, 2};
+  strut_signal s[4] = {wave(STRUT_SINE, 2, 1.5), wave(STRUT_HALF_SINE, 3, 0.25),
+                       wave(STRUT_RAMP, 4, 0), strut_signal_default(STRUT_SUM)};
+  s[0].phase = 0.3, s[0].start = -1;
+  s[2].start = 0.1, s[2].stop = 5;
+  s[3].terms = terms, s[3].term_count = 3, s[3].start = -10;
+  for (int32_t i = 0; i < 4; i++)
+    for (double t = 0.2; t < 1.9; t += 0.17) {
+      double h = 1e-4, a = strut_signal_acceleration(s, i, t);
+      double d = (rate_of(s, i, t + h) - rate_of(s, i, t - h)) / (2 * h);
+      if (!(fabs(a - d) <= 1e-6 * (1 + fabs(a)))) fail_msg("signal %d at %g: %g, %g", i, t, a, d);
+    }
+}
+
+static void jumps_of_values_are_found(void **state) {
+  (void)state;
+  double when = 0;
+  strut_signal s = wave(STRUT_SINE, 1, 2);
+  assert_false(strut_signal_value_jumps(&s, 0, HUGE_VAL, &when));
+  s.stop = 0.75; /* one and a half periods */
+  assert_false(strut_signal_value_jumps(&s, 0, HUGE_VAL, &when));
+  s.stop = 0.8;
+  assert_true(strut_signal_value_jumps(&s, 0, HUGE_VAL, &when) && when == 0.8);
+  assert_false(strut_signal_value_jumps(&s, 0, 0.5, &when));
+  s = wave(STRUT_SINE, 1, 2);
+  s.phase = 0.25; /* it begins with a jump at its start, unless that is t = 0 */
+  assert_false(strut_signal_value_jumps(&s, 0, HUGE_VAL, &when));
+  s.start = 0.1;
+  assert_true(strut_signal_value_jumps(&s, 0, HUGE_VAL, &when) && when == 0.1);
+  s = wave(STRUT_SQUARE, 1, 2);
+  assert_true(strut_signal_value_jumps(&s, 0, HUGE_VAL, &when) && when == 0.25);
+  s = wave(STRUT_HALF_SINE, 1, 2);
+  s.start = 0.1;
+  assert_false(strut_signal_value_jumps(&s, 0, HUGE_VAL, &when));
+  s.stop = 0.2;
+  assert_true(strut_signal_value_jumps(&s, 0, HUGE_VAL, &when) && when == 0.2);
+  s = wave(STRUT_RAMP, 1, 0);
+  s.start = 1, s.stop = 2;
+  assert_false(strut_signal_value_jumps(&s, 0, HUGE_VAL, &when));
+  assert_true(strut_signal_has_corners(&s, 0));
+}
+
+/* A scene made without the language is checked alike. */
+static void motions_are_checked(void **state) {
+  (void)state;
+  strut_node nodes[2] = {strut_node_default(), strut_node_default()};
+  strut_member member = strut_member_default();
+  strut_signal signal = wave(STRUT_SINE, 1e-3, 1);
+  strut_support_motion motions[2] = {{0, 0, 0}, {0, 1, 0}};
+  strut_setup setup;
+  strut_setup_init(&setup);
+  nodes[0].name = "a", nodes[1].name = "b", member.name = "m";
+  nodes[0].fixed[0] = nodes[0].fixed[1] = true;
+  nodes[1].position[0] = nodes[1].start[0] = 1, nodes[1].mass = 1;
+  member.node[0] = 0, member.node[1] = 1, member.stiffness = 1;
+  setup.scene.node_count = 2, setup.scene.nodes = nodes;
+  setup.scene.member_count = 1, setup.scene.members = &member;
+  setup.scene.signal_count = 1, setup.scene.signals = &signal;
+  setup.scene.support_motion_count = 2, setup.scene.support_motions = motions;
+  static const struct {
+    strut_support_motion second;
+    const char *words;
+  } cases[] = {{{0, 1, 0}, NULL},        {{0, 0, 0}, "out of order"},
+               {{1, 0, 0}, "not fixed"}, {{7, 0, 0}, "does not exist"},
+               {{0, 2, 0}, "axis"},      {{0, 1, 3}, "a signal that does not exist"}};
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    strut_findings findings = {0};
+    motions[1] = cases[i].second;
+    strut_status status = strut_setup_check(&setup, STRUT_FOR_STATICS, &findings);
+    assert_int_equal(status, cases[i].words ? STRUT_BAD_SCENE : STRUT_OK);
+    assert_int_equal(findings.count, cases[i].words != NULL);
+    if (cases[i].words) assert_non_null(strstr(findings.items[0].message, cases[i].words));
+    strut_findings_free(&findings);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(accelerations_are_derivatives),
+      cmocka_unit_test(jumps_of_values_are_found),
+      cmocka_unit_test(motions_are_checked),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
