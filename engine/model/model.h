@@ -17,6 +17,7 @@
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
 #include "engine/model/elements.h"
+#include "engine/model/surfaces.h"
 #include "engine/scene/scene.h"
 
 /** Members are stepped in groups of this many, so tables are padded to a multiple of it. */
@@ -35,9 +36,12 @@ typedef enum strut_term {
   STRUT_TERM_SLOPE = 1 << 8,    /* the ground is inclined */
   STRUT_TERM_SOLVE = 1 << 9,    /* the mass matrix is not diagonal */
   STRUT_TERM_LAWS = 1 << 10, /* some contact has another law of damping or friction than (8), (9) */
-  STRUT_TERM_RIGID = 1 << 11,    /* bars keep their lengths */
-  STRUT_TERM_ELEMENTS = 1 << 12, /* elements other than plain members */
-  STRUT_TERM_DIRECTION = 1 << 13 /* friction that differs by direction; with LAWS */
+  STRUT_TERM_RIGID = 1 << 11,     /* bars keep their lengths */
+  STRUT_TERM_ELEMENTS = 1 << 12,  /* elements other than plain members */
+  STRUT_TERM_DIRECTION = 1 << 13, /* friction that differs by direction; with LAWS */
+  STRUT_TERM_SURFACES =
+      1 << 20 /* contacts with several surfaces, or other than one straight line at rest;
+                                   instead of CONTACT */
 } strut_term;
 
 /**
@@ -57,7 +61,7 @@ typedef struct strut_member_table {
   const uint16_t *block_terms; /* (blocks) DAMPING, SLACK, DRIVE: what some member of it needs */
 } strut_member_table;
 
-/** One node that may touch: a record, because most of them are only asked whether they do. */
+/** A contact, a node with a surface: a record, because most of them are only asked whether they do. */
 typedef struct strut_contact_entry {
   int32_t node;
   double stiffness, damping; /* c_g [N/m], k_g [N s/m] */
@@ -72,6 +76,14 @@ typedef struct strut_contact_table {
   double tangent[2], normal[2];     /* unit vectors along and out of the ground */
   double height;                    /* at x = 0 [m] */
   double belt_speed;                /* [m/s] */
+  /* with STRUT_TERM_SURFACES; the vectors above are then those of parallel lines, or of level ground */
+  const strut_surface *surface; /* (surfaces); NULL: one straight line at rest */
+  const int32_t *surface_of;    /* (count) */
+  int32_t surfaces;
+  bool moves; /* some surface is shaken */
+  bool
+      parallel; /* all of them are lines along `tangent`: then a displacement along it changes nothing */
+  strut_contact_axes axes; /* tangent and normal once more */
 } strut_contact_table;
 
 /** Signals that act on the structure. */

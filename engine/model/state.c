@@ -7,6 +7,18 @@
 #include "engine/model/element_compile.h"
 #include "engine/model/memory_estimate.h"
 
+/* What contacts need that are not with one straight line at rest. */
+static bool make_surfaces(const strut_model *model, strut_state *state) {
+  const strut_contact_table *c = &model->contacts;
+  size_t contacts = (size_t)c->count, grounds = model->scene->ground_count;
+  if (!c->surface) return true;
+  state->pose = strut_arena_allocate(&state->arena, contacts, sizeof *state->pose);
+  if (c->moves)
+    state->ground_motion =
+        strut_arena_allocate(&state->arena, grounds, sizeof *state->ground_motion);
+  return state->pose && (state->ground_motion || !c->moves);
+}
+
 strut_status strut_state_create(const strut_model *model, strut_state **result,
                                 strut_error *error) {
   strut_state *state = strut_allocate(1, sizeof *state);
@@ -28,9 +40,11 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
   state->normal = strut_arena_allocate(arena, contacts, sizeof(double));
   state->friction = strut_arena_allocate(arena, contacts, sizeof(double));
   state->scratch = strut_arena_allocate(arena, both, sizeof(double));
+  bool surfaces = make_surfaces(model, state);
   if (!state->q || !state->v || !state->rest || !state->element_acts || !state->element_piece ||
       !state->element_turn || !state->slack_length_threshold || !state->slack_force_threshold ||
-      !state->rest_rate || !state->force || !state->normal || !state->friction || !state->scratch) {
+      !state->rest_rate || !state->force || !state->normal || !state->friction || !state->scratch ||
+      !surfaces) {
     strut_state_free(state);
     *result = NULL;
     return strut_memory_fail_model(model->scene, error);

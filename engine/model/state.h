@@ -79,6 +79,10 @@ typedef struct strut_state {
   bool ledger;               /* keep the ledger? It costs some arithmetic per evaluation */
   double *scratch;           /* (length) for the mass solve */
   strut_arena arena;
+  /* with STRUT_TERM_SURFACES: poses of the contacts at the latest evaluation; and of grounds that are shaken
+     the motion at drive_time, (grounds), NULL where none is */
+  strut_contact_pose *pose;
+  strut_ground_motion *ground_motion;
 } strut_state;
 
 /** All memory a run needs; an integrator adds its own to the arena. STRUT_OK or STRUT_NO_MEMORY. */

@@ -20,6 +20,8 @@ static const strut_plan_term terms[STRUT_PLAN_TERMS] = {
     {STRUT_TERM_CONTACT, "ground contact", "a ground that nodes may touch", false},
     {STRUT_TERM_FRICTION, "friction", "a ground with friction", false},
     {STRUT_TERM_SLOPE, "inclined ground", "a ground with a slope", false},
+    {STRUT_TERM_SURFACES, "ground surfaces", "several grounds, or one that is no line at rest",
+     false},
     {STRUT_TERM_SOLVE, "mass solve", "consistent masses of members", false},
 };
 
@@ -53,7 +55,8 @@ static bool has_element(const strut_plan *plan, const char *name) {
   } kinds[] = {{"running cables", plan->running_cables},
                {"member laws", plan->laws},
                {"stops", plan->stops},
-               {"hinges", plan->hinges}};
+               {"hinges", plan->hinges},
+               {"driven rest lengths", plan->actuators}};
   for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++)
     if (strcmp(kinds[i].name, name) == 0) return kinds[i].count > 0;
   return true;

@@ -69,8 +69,7 @@ static strut_status allocate_summary(strut_run *r) {
   for (size_t i = 0; i < s->node_count; i++) s->node_names[i] = scene->nodes[i].name;
   for (size_t i = 0; i < s->hinge_count; i++)
     s->hinges[i] = (strut_hinge_summary){scene->hinges[i].name, (double)NAN, (double)NAN};
-  for (size_t i = 0; i < contacts; i++)
-    s->contacts[i].node = scene->nodes[r->model->contacts.entry[i].node].name;
+  for (size_t i = 0; i < contacts; i++) s->contacts[i].node = strut_contact_name(scene, i);
   return STRUT_OK;
 }
 
