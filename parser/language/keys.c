@@ -31,44 +31,25 @@ static const strut_key table[] = {STRUT_KEY_TABLE(STRUT_KEY_ROW)};
 /* clang-format on */
 
 /* First key of each section, and one more that ends the last; a test compares it with the table. */
-static const int first[] = {STRUT_KEY_SCENE_VERSION,
-                            STRUT_KEY_NODE_POSITION,
-                            STRUT_KEY_MEMBER_GROUP,
-                            STRUT_KEY_HINGE_NODES,
-                            STRUT_KEY_LAW_KIND,
-                            STRUT_KEY_GROUND_HEIGHT,
-                            STRUT_KEY_FRICTION_LAW,
-                            STRUT_KEY_CONTACT_GROUP,
-                            STRUT_KEY_ACTUATOR_MEMBER,
-                            STRUT_KEY_LOAD_NODE,
-                            STRUT_KEY_SIGNAL_CONSTANT,
-                            STRUT_KEY_SINE_AMPLITUDE,
-                            STRUT_KEY_HALF_SINE_AMPLITUDE,
-                            STRUT_KEY_SQUARE_AMPLITUDE,
-                            STRUT_KEY_RAMP_AMPLITUDE,
-                            STRUT_KEY_CONFIGURATION_CONTACTS,
-                            STRUT_KEY_INITIAL_CONFIGURATION,
-                            STRUT_KEY_SETTLE_SPEED,
-                            STRUT_KEY_EQUILIBRIA_SUPPORTS,
-                            STRUT_KEY_SOLVER_INTEGRATOR,
-                            STRUT_KEY_RUN_DURATION,
-                            STRUT_KEY_MEASURE_LAST,
-                            STRUT_KEY_QUANTITY_OF,
-                            STRUT_KEY_STEADY_TOLERANCE,
-                            STRUT_KEY_OUTPUT_EVERY,
-                            STRUT_KEY_STUDY_VERSION,
-                            STRUT_KEY_RANGE_FROM,
-                            STRUT_KEY_VARIANT_SOLVER,
-                            STRUT_KEY_CHECK_HALF_STEP,
-                            STRUT_KEY_FIGURE_KIND,
-                            STRUT_KEY_COUNT};
+static const int first[] = {
+    STRUT_KEY_SCENE_VERSION,         STRUT_KEY_NODE_POSITION,    STRUT_KEY_MEMBER_GROUP,
+    STRUT_KEY_HINGE_NODES,           STRUT_KEY_LAW_KIND,         STRUT_KEY_GROUND_HEIGHT,
+    STRUT_KEY_CIRCLE_CENTRE,         STRUT_KEY_MOTION_IN_X,      STRUT_KEY_FRICTION_LAW,
+    STRUT_KEY_CONTACT_GROUP,         STRUT_KEY_ACTUATOR_MEMBER,  STRUT_KEY_LOAD_NODE,
+    STRUT_KEY_SIGNAL_CONSTANT,       STRUT_KEY_SINE_AMPLITUDE,   STRUT_KEY_HALF_SINE_AMPLITUDE,
+    STRUT_KEY_SQUARE_AMPLITUDE,      STRUT_KEY_RAMP_AMPLITUDE,   STRUT_KEY_CONFIGURATION_CONTACTS,
+    STRUT_KEY_INITIAL_CONFIGURATION, STRUT_KEY_SETTLE_SPEED,     STRUT_KEY_EQUILIBRIA_SUPPORTS,
+    STRUT_KEY_SOLVER_INTEGRATOR,     STRUT_KEY_RUN_DURATION,     STRUT_KEY_MEASURE_LAST,
+    STRUT_KEY_QUANTITY_OF,           STRUT_KEY_STEADY_TOLERANCE, STRUT_KEY_OUTPUT_EVERY,
+    STRUT_KEY_STUDY_VERSION,         STRUT_KEY_RANGE_FROM,       STRUT_KEY_VARIANT_SOLVER,
+    STRUT_KEY_CHECK_HALF_STEP,       STRUT_KEY_FIGURE_KIND,      STRUT_KEY_COUNT};
 
 static const char *const section_names[] = {
-    "scene",      "node",    "member",   "hinge",         "law",      "ground",
-    "friction",   "contact", "actuator", "load",          "signal",   "sine",
-    "half_sine",  "square",  "ramp",     "configuration", "initial",  "settle",
-    "equilibria", "solver",  "run",      "measure",       "quantity", "steady",
-    "output",     "study",   "range",    "variant",       "check",    "figure"};
+    "scene",     "node",     "member",  "hinge",         "law",     "ground", "circle",
+    "motion",    "friction", "contact", "actuator",      "load",    "signal", "sine",
+    "half_sine", "square",   "ramp",    "configuration", "initial", "settle", "equilibria",
+    "solver",    "run",      "measure", "quantity",      "steady",  "output", "study",
+    "range",     "variant",  "check",   "figure"};
 
 _Static_assert(sizeof first / sizeof first[0] == STRUT_SECTION_COUNT + 1, "one for each section");
 _Static_assert(sizeof section_names / sizeof section_names[0] == STRUT_SECTION_COUNT,
@@ -267,6 +248,7 @@ const char *strut_key_expected(int key, char *buffer, size_t size) {
     case STRUT_TYPE_NODE_TRIPLE: return "three nodes such as [n1, n2, n3]";
     case STRUT_TYPE_NUMBERS: return "a list of numbers";
     case STRUT_TYPE_POINTS: return "a list of points such as [[0, 0], [2 mm, 3 N]]";
+    case STRUT_TYPE_PROFILE: return "a list of points such as [[0, 0], [10 mm, 0], [20 mm, 5 mm]]";
     case STRUT_TYPE_LAW:
       return "a law such as {kind: bilinear, knee: 2 mm, second_stiffness: 5 N/m}";
     case STRUT_TYPE_CONTACT_NODES: return "all, or a list of nodes such as [n1, n2]";

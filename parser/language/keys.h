@@ -23,6 +23,8 @@ typedef enum strut_section {
   STRUT_SECTION_HINGE,
   STRUT_SECTION_LAW,
   STRUT_SECTION_GROUND,
+  STRUT_SECTION_CIRCLE,
+  STRUT_SECTION_MOTION,
   STRUT_SECTION_FRICTION,
   STRUT_SECTION_CONTACT,
   STRUT_SECTION_ACTUATOR,
@@ -77,6 +79,7 @@ typedef enum strut_key_type {
   STRUT_TYPE_AXES,          /* a list of axes of a study */
   STRUT_TYPE_TIMES,         /* a list of times */
   STRUT_TYPE_MAP,           /* the keys of the section that has the key's name */
+  STRUT_TYPE_PROFILE,       /* a list of [x, y], lengths */
   STRUT_TYPE_THINGS         /* a mapping from names to things, described by `words` */
 } strut_key_type;
 

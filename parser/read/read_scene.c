@@ -101,10 +101,11 @@ static void read_tree(strut_reader *reader, const strut_setting *settings, size_
 }
 
 static void free_reader(strut_reader *reader) {
-  strut_name_map *const maps[] = {
-      &reader->node_names,      &reader->member_names, &reader->group_names,
-      &reader->parameter_names, &reader->signal_names, &reader->configuration_names,
-      &reader->actuator_names,  &reader->load_names,   &reader->hinge_names};
+  strut_name_map *const maps[] = {&reader->node_names,     &reader->member_names,
+                                  &reader->group_names,    &reader->parameter_names,
+                                  &reader->signal_names,   &reader->configuration_names,
+                                  &reader->actuator_names, &reader->load_names,
+                                  &reader->hinge_names,    &reader->ground_names};
   for (size_t i = 0; i < sizeof maps / sizeof maps[0]; i++) strut_name_map_free(maps[i]);
   strut_release(reader->signals);
   strut_release(reader->signal_state);

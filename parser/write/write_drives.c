@@ -44,6 +44,8 @@ static void put_phase(strut_writer *writer, strut_mapping *mapping, int key, con
   strut_put_number(writer, radians(signal->phase));
 }
 
+void strut_put_signal(strut_writer *writer, int32_t index) { put_reference(writer, index); }
+
 static void put_wave(strut_writer *writer, const strut_signal *signal) {
   strut_mapping mapping = STRUT_MAPPING_INLINE;
   const strut_signal usual = strut_signal_default(signal->kind);

@@ -19,6 +19,7 @@ typedef struct strut_writer {
   bool failed;           /* memory was out; all later writing is ignored */
   int32_t period_signal; /* a signal that has no name but needs one; else -1 */
   strut_setup usual;     /* the defaults */
+  int32_t ground;        /* the one that is being written */
 } strut_writer;
 
 void strut_put(strut_writer *writer, const char *text);
@@ -59,6 +60,8 @@ void strut_put_fields(strut_writer *writer, strut_mapping *mapping, strut_sectio
 /** True where some field of the section differs between two objects. */
 bool strut_fields_differ(strut_section section, const void *object, const void *usual);
 
+/** Appends a signal, by its name if it has one. */
+void strut_put_signal(strut_writer *writer, int32_t index);
 /** write_drives.c: signals, actuators, loads, run, solver, output. */
 void strut_put_drives(strut_writer *writer);
 void strut_put_experiment(strut_writer *writer);
