@@ -4,8 +4,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/forces/actuate.h"
 #include "engine/forces/drive.h"
 #include "engine/forces/elements.h"
+#include "engine/forces/mass_damping.h"
 #include "engine/model/pose.h"
 
 bool strut_discrete_gradient_create(const strut_model *model, strut_state *state,
@@ -192,8 +194,6 @@ static void add_element(const strut_model *model, strut_state *state, strut_disc
 static void add_elements(const strut_model *model, strut_state *state,
                          strut_discrete_gradient *step, const double *restrict q0,
                          const double *restrict q1) {
-  if (!model->elements.count) return;
-  for (int32_t i = 0; i < model->length; i++) step->middle[i] = 0.5 * (q0[i] + q1[i]);
   for (int32_t i = 0; i < model->elements.count; i++) add_element(model, state, step, i, q0, q1);
 }
 
@@ -210,7 +210,11 @@ void strut_discrete_gradient_forces(const strut_model *model, strut_state *state
   if (model->plan & STRUT_TERM_LOADS)
     strut_loads_apply(model, state, step->begin + 0.5 * step->h, u);
   add_members(model, state, step, state->q, q1);
+  if (model->plan & STRUT_TERM_MASS_DAMPING) strut_mass_damping_apply(model, state, u);
+  if (!(model->plan & (STRUT_TERM_ELEMENTS | STRUT_TERM_ACTUATOR_FORCES))) return;
+  for (int32_t i = 0; i < model->length; i++) step->middle[i] = 0.5 * (state->q[i] + q1[i]);
   add_elements(model, state, step, state->q, q1);
+  strut_actuator_forces_apply(model, state, step->begin + 0.5 * step->h, step->middle, u);
 }
 
 void strut_discrete_gradient_tensions(const strut_model *model, const strut_state *state,

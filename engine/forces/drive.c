@@ -4,6 +4,8 @@
 
 #include <math.h>
 
+#include "engine/forces/memory.h"
+
 void strut_drive_apply(const strut_model *model, strut_state *state, double t) {
   const strut_drive_table *d = &model->drives;
   const strut_signal *signals = model->scene->signals;
@@ -18,6 +20,7 @@ void strut_drive_apply(const strut_model *model, strut_state *state, double t) {
     rest[member] = (d->first[i] ? model->members.rest[member] : rest[member]) + value;
     rest_rate[member] = d->first[i] ? rate : rest_rate[member] + rate;
   }
+  if (model->plan & STRUT_TERM_MEMORY) strut_memory_follow(model, state);
 }
 
 void strut_grounds_move(const strut_model *model, double t, strut_ground_motion *motion) {
@@ -63,5 +66,10 @@ double strut_drive_next_break(const strut_model *model, double t) {
       if (model->scene->grounds[g].moves[c])
         first =
             fmin(first, strut_signal_next_break(signals, model->scene->grounds[g].motion[c], t));
+  for (int32_t i = 0; i < model->elements.breakable_count; i++)
+    if (model->elements.breakable[i].time > t)
+      first = fmin(first, model->elements.breakable[i].time);
+  for (int32_t i = 0; i < model->actuator_forces.count; i++)
+    first = fmin(first, strut_signal_next_break(signals, model->actuator_forces.item[i].signal, t));
   return first;
 }

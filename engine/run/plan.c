@@ -14,6 +14,7 @@ static const strut_plan_term terms[STRUT_PLAN_TERMS] = {
     {STRUT_TERM_ELEMENTS, "member laws", "a member with another law than the linear one", false},
     {STRUT_TERM_ELEMENTS, "stops", "a member with a shortest or longest length", false},
     {STRUT_TERM_ELEMENTS, "hinges", "a hinge", false},
+    {STRUT_TERM_MEMORY, "breaks and releases", "something with breaks_at or released_at", false},
     {STRUT_TERM_DRIVE, "driven rest lengths", "an actuator", false},
     {STRUT_TERM_CONSTANT, "constant forces", "gravity, or a load without a signal", false},
     {STRUT_TERM_LOADS, "driven loads", "a load with a signal", false},
@@ -23,6 +24,8 @@ static const strut_plan_term terms[STRUT_PLAN_TERMS] = {
     {STRUT_TERM_SURFACES, "ground surfaces", "several grounds, or one that is no line at rest",
      false},
     {STRUT_TERM_SOLVE, "mass solve", "consistent masses of members", false},
+    {STRUT_TERM_ACTUATOR_FORCES, "actuator forces", "an actuator with a force or moment", false},
+    {STRUT_TERM_MASS_DAMPING, "damping by mass", "rayleigh with mass", false},
 };
 
 static void count_elements(const strut_model *model, strut_plan *plan) {
@@ -41,6 +44,7 @@ static void count_elements(const strut_model *model, strut_plan *plan) {
     plan->stops += (size_t)(m->shortest > 0.0) + (size_t)(m->longest > 0.0);
   }
   plan->hinges = scene->hinge_count;
+  plan->breakables = (size_t)model->elements.breakable_count;
   plan->contacts = (size_t)model->contacts.count;
   plan->actuators = scene->actuator_count;
   plan->loads = scene->load_count;
@@ -56,7 +60,9 @@ static bool has_element(const strut_plan *plan, const char *name) {
                {"member laws", plan->laws},
                {"stops", plan->stops},
                {"hinges", plan->hinges},
-               {"driven rest lengths", plan->actuators}};
+               {"driven rest lengths", plan->actuators},
+
+               {"breaks and releases", plan->breakables}};
   for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++)
     if (strcmp(kinds[i].name, name) == 0) return kinds[i].count > 0;
   return true;

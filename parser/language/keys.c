@@ -31,25 +31,47 @@ static const strut_key table[] = {STRUT_KEY_TABLE(STRUT_KEY_ROW)};
 /* clang-format on */
 
 /* First key of each section, and one more that ends the last; a test compares it with the table. */
-static const int first[] = {
-    STRUT_KEY_SCENE_VERSION,         STRUT_KEY_NODE_POSITION,    STRUT_KEY_MEMBER_GROUP,
-    STRUT_KEY_HINGE_NODES,           STRUT_KEY_LAW_KIND,         STRUT_KEY_GROUND_HEIGHT,
-    STRUT_KEY_CIRCLE_CENTRE,         STRUT_KEY_MOTION_IN_X,      STRUT_KEY_FRICTION_LAW,
-    STRUT_KEY_CONTACT_GROUP,         STRUT_KEY_ACTUATOR_MEMBER,  STRUT_KEY_LOAD_NODE,
-    STRUT_KEY_SIGNAL_CONSTANT,       STRUT_KEY_SINE_AMPLITUDE,   STRUT_KEY_HALF_SINE_AMPLITUDE,
-    STRUT_KEY_SQUARE_AMPLITUDE,      STRUT_KEY_RAMP_AMPLITUDE,   STRUT_KEY_CONFIGURATION_CONTACTS,
-    STRUT_KEY_INITIAL_CONFIGURATION, STRUT_KEY_SETTLE_SPEED,     STRUT_KEY_EQUILIBRIA_SUPPORTS,
-    STRUT_KEY_SOLVER_INTEGRATOR,     STRUT_KEY_RUN_DURATION,     STRUT_KEY_MEASURE_LAST,
-    STRUT_KEY_QUANTITY_OF,           STRUT_KEY_STEADY_TOLERANCE, STRUT_KEY_OUTPUT_EVERY,
-    STRUT_KEY_STUDY_VERSION,         STRUT_KEY_RANGE_FROM,       STRUT_KEY_VARIANT_SOLVER,
-    STRUT_KEY_CHECK_HALF_STEP,       STRUT_KEY_FIGURE_KIND,      STRUT_KEY_COUNT};
+static const int first[] = {STRUT_KEY_SCENE_VERSION,
+                            STRUT_KEY_NODE_POSITION,
+                            STRUT_KEY_MEMBER_GROUP,
+                            STRUT_KEY_HINGE_NODES,
+                            STRUT_KEY_LAW_KIND,
+                            STRUT_KEY_RAYLEIGH_MASS,
+                            STRUT_KEY_GROUND_HEIGHT,
+                            STRUT_KEY_CIRCLE_CENTRE,
+                            STRUT_KEY_MOTION_IN_X,
+                            STRUT_KEY_FRICTION_LAW,
+                            STRUT_KEY_CONTACT_GROUP,
+                            STRUT_KEY_ACTUATOR_MEMBER,
+                            STRUT_KEY_LOAD_NODE,
+                            STRUT_KEY_SIGNAL_CONSTANT,
+                            STRUT_KEY_SINE_AMPLITUDE,
+                            STRUT_KEY_HALF_SINE_AMPLITUDE,
+                            STRUT_KEY_SQUARE_AMPLITUDE,
+                            STRUT_KEY_RAMP_AMPLITUDE,
+                            STRUT_KEY_CONFIGURATION_CONTACTS,
+                            STRUT_KEY_INITIAL_CONFIGURATION,
+                            STRUT_KEY_SETTLE_SPEED,
+                            STRUT_KEY_EQUILIBRIA_SUPPORTS,
+                            STRUT_KEY_SOLVER_INTEGRATOR,
+                            STRUT_KEY_RUN_DURATION,
+                            STRUT_KEY_MEASURE_LAST,
+                            STRUT_KEY_QUANTITY_OF,
+                            STRUT_KEY_STEADY_TOLERANCE,
+                            STRUT_KEY_OUTPUT_EVERY,
+                            STRUT_KEY_STUDY_VERSION,
+                            STRUT_KEY_RANGE_FROM,
+                            STRUT_KEY_VARIANT_SOLVER,
+                            STRUT_KEY_CHECK_HALF_STEP,
+                            STRUT_KEY_FIGURE_KIND,
+                            STRUT_KEY_COUNT};
 
 static const char *const section_names[] = {
-    "scene",     "node",     "member",  "hinge",         "law",     "ground", "circle",
-    "motion",    "friction", "contact", "actuator",      "load",    "signal", "sine",
-    "half_sine", "square",   "ramp",    "configuration", "initial", "settle", "equilibria",
-    "solver",    "run",      "measure", "quantity",      "steady",  "output", "study",
-    "range",     "variant",  "check",   "figure"};
+    "scene",      "node",      "member",   "hinge",   "law",           "rayleigh", "ground",
+    "circle",     "motion",    "friction", "contact", "actuator",      "load",     "signal",
+    "sine",       "half_sine", "square",   "ramp",    "configuration", "initial",  "settle",
+    "equilibria", "solver",    "run",      "measure", "quantity",      "steady",   "output",
+    "study",      "range",     "variant",  "check",   "figure"};
 
 _Static_assert(sizeof first / sizeof first[0] == STRUT_SECTION_COUNT + 1, "one for each section");
 _Static_assert(sizeof section_names / sizeof section_names[0] == STRUT_SECTION_COUNT,
@@ -157,6 +179,7 @@ strut_dimension strut_measure_dimension(strut_measure measure) {
     case STRUT_MEASURE_DISSIPATION: return STRUT_DIM_DISSIPATION;
     case STRUT_MEASURE_ANGULAR_STIFFNESS: return STRUT_DIM_ANGULAR_STIFFNESS;
     case STRUT_MEASURE_ANGULAR_DAMPING: return STRUT_DIM_ANGULAR_DAMPING;
+    case STRUT_MEASURE_MOMENT: return STRUT_DIM_MOMENT;
     case STRUT_MEASURE_NONE:
     case STRUT_MEASURE_CONTEXT: break;
   }
