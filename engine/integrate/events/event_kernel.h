@@ -62,6 +62,14 @@ STRUT_INLINE double friction_in_mode(const strut_contact_entry *e, uint8_t mode,
   return 0.0;
 }
 
+/* Kinematics of contact i of a single straight ground at q, v. */
+STRUT_INLINE void measure_on_line(const strut_contact_table *c, int32_t i, const double *restrict q,
+                                  const double *restrict v, strut_touch *touch) {
+  touch->gap = strut_ground_gap(c, q + c->at[i]);
+  touch->into = strut_contact_along_normal(c, i, v);
+  touch->slip = strut_contact_slip(c, i, v);
+}
+
 /* Kinematics of contact i at q, v, and with grounds that move so. */
 STRUT_INLINE void measure_contact(const strut_contact_table *c, const strut_event_stepper *l,
                                   const strut_ground_motion *motion, int32_t i,
@@ -71,9 +79,7 @@ STRUT_INLINE void measure_contact(const strut_contact_table *c, const strut_even
     strut_surface_measure(c, l, motion, i, q, v, touch);
     return;
   }
-  touch->gap = strut_contact_gap(c, i, q);
-  touch->into = strut_contact_along_normal(c, i, v);
-  touch->slip = strut_contact_slip(c, i, v);
+  measure_on_line(c, i, q, v, touch);
 }
 
 /* Kinematics of contact i at an end of a step. */
@@ -96,7 +102,7 @@ STRUT_INLINE void add_contact_forces(const strut_model *model, const strut_event
     int32_t i = l->closed[k];
     uint32_t at = c->at[i];
     strut_touch *o = &touch[i];
-    measure_contact(c, l, motion, i, q, v, o);
+    measure_on_line(c, i, q, v, o);
     o->applied = strut_contact_along_ground(c, i, force);
     o->normal = contact_normal_force(&c->entry[i], l->damper[i], o->gap, o->into, damped);
     o->friction =
@@ -110,12 +116,10 @@ STRUT_INLINE void add_contact_forces(const strut_model *model, const strut_event
 STRUT_INLINE void measure_contact_rates(const strut_model *model, const strut_event_stepper *l,
                                         const double *restrict a, strut_touch *restrict touch) {
   const strut_contact_table *c = &model->contacts;
-  for (int32_t k = 0; k < l->closed_count; k++) {
+  for (int32_t k = 0; k < l->closed_count && c->surface; k++)
+    strut_surface_measure_rates(c, l->closed[k], a, &touch[l->closed[k]]);
+  for (int32_t k = 0; k < l->closed_count && !c->surface; k++) {
     int32_t i = l->closed[k];
-    if (c->surface) {
-      strut_surface_measure_rates(c, i, a, &touch[i]);
-      continue;
-    }
     touch[i].into_rate = strut_contact_along_normal(c, i, a);
     touch[i].slip_rate = strut_contact_along_ground(c, i, a);
   }

@@ -18,8 +18,8 @@ static double way_out(const strut_event_stepper *l, const strut_touch *o, int32_
 }
 
 /* The gap of a contact at an end of a step; of a closed contact over its facet. */
-static double gap_at_end(const strut_contact_table *c, const strut_event_stepper *l, int32_t i,
-                         const strut_step_end *end) {
+STRUT_INLINE double gap_at_end(const strut_contact_table *c, const strut_event_stepper *l,
+                               int32_t i, const strut_step_end *end) {
   if (!c->surface) return strut_contact_gap(c, i, end->q);
   int32_t facet = l->mode[i] == STRUT_MODE_OPEN ? -1 : l->facet[i];
   return strut_contact_pose_at(c, i, end->q, end->motion, facet).gap;
