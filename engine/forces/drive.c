@@ -11,6 +11,7 @@ void strut_drive_apply(const strut_model *model, strut_state *state, double t) {
   const strut_signal *signals = model->scene->signals;
   double *restrict rest = state->rest, *restrict rest_rate = state->rest_rate;
   state->drive_time = t;
+  if (state->ground_motion) strut_grounds_move(model, t + state->time_offset, state->ground_motion);
   for (int32_t i = 0; i < d->count; i++) {
     double value, rate;
     int32_t member = d->member[i];
@@ -20,6 +21,19 @@ void strut_drive_apply(const strut_model *model, strut_state *state, double t) {
     rest_rate[member] = d->first[i] ? rate : rest_rate[member] + rate;
   }
   if (model->plan & STRUT_TERM_MEMORY) strut_memory_follow(model, state);
+}
+
+void strut_grounds_move(const strut_model *model, double t, strut_ground_motion *motion) {
+  const strut_scene *scene = model->scene;
+  for (size_t g = 0; g < scene->ground_count; g++)
+    for (int c = 0; c < 2; c++) {
+      strut_ground_motion *m = &motion[g];
+      const strut_ground *ground = &scene->grounds[g];
+      m->place[c] = m->rate[c] = m->bend[c] = 0.0;
+      if (!ground->moves[c]) continue;
+      strut_signal_evaluate(scene->signals, ground->motion[c], t, &m->place[c], &m->rate[c]);
+      m->bend[c] = strut_signal_bend(scene->signals, ground->motion[c], t);
+    }
 }
 
 void strut_loads_apply(const strut_model *model, strut_state *state, double t,
@@ -52,6 +66,11 @@ double strut_drive_next_break(const strut_model *model, double t) {
   for (size_t i = 0; i < model->scene->unbalance_count; i++)
     if (model->scene->unbalances[i].signal >= 0)
       first = fmin(first, strut_signal_next_break(signals, model->scene->unbalances[i].signal, t));
+  for (size_t g = 0; g < model->scene->ground_count && model->contacts.moves; g++)
+    for (int c = 0; c < 2; c++)
+      if (model->scene->grounds[g].moves[c])
+        first =
+            fmin(first, strut_signal_next_break(signals, model->scene->grounds[g].motion[c], t));
   for (int32_t i = 0; i < model->elements.breakable_count; i++)
     if (model->elements.breakable[i].time > t)
       first = fmin(first, model->elements.breakable[i].time);

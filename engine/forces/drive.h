@@ -11,6 +11,9 @@ void strut_drive_apply(const strut_model *model, strut_state *state, double t);
 void strut_loads_apply(const strut_model *model, strut_state *state, double t,
                        const double *restrict v);
 
+/** Motion of every ground (grounds) at time t of the signals: 0 of those at rest. */
+void strut_grounds_move(const strut_model *model, double t, strut_ground_motion *motion);
+
 /**
  * The first time after t [s] at which a drive, a load or its rate jumps, or something is released;
  * INFINITY if none does.

@@ -46,11 +46,12 @@ static double gravity(const strut_model *model, const double *q) {
   return sum;
 }
 
-static double contact(const strut_model *model, const double *q) {
+static double contact(const strut_model *model, const strut_state *state) {
+  const double *q = state->q;
   const strut_contact_table *c = &model->contacts;
   double sum = 0.0;
   for (int32_t i = 0; i < c->count; i++) {
-    double gap = strut_contact_gap(c, i, q);
+    double gap = strut_contact_gap_at(c, i, q, state->ground_motion);
     if (gap < 0.0) sum += 0.5 * c->entry[i].stiffness * gap * gap;
   }
   return sum;
@@ -59,7 +60,7 @@ static double contact(const strut_model *model, const double *q) {
 strut_energies strut_energy_evaluate(const strut_model *model, strut_state *state, double t) {
   strut_drive_apply(model, state, t);
   return (strut_energies){strut_energy_kinetic(model, state->v), elastic(model, state),
-                          gravity(model, state->q), contact(model, state->q)};
+                          gravity(model, state->q), contact(model, state)};
 }
 
 double strut_energy_load_potential(const strut_model *model, const strut_state *state) {

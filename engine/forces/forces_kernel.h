@@ -16,6 +16,7 @@
 #include "engine/forces/mass_damping.h"
 #include "engine/forces/members_kernel.h"
 #include "engine/forces/support_motion.h"
+#include "engine/forces/surfaces.h"
 #include "engine/forces/unbalance.h"
 #include "engine/model/mass_kernel.h"
 
@@ -70,6 +71,7 @@ STRUT_INLINE void forces_sum(const strut_model *model, strut_state *state, doubl
                              const double *restrict q, const double *restrict v, bool ledger) {
   forces_of_structure(model, state, t, q, v, ledger);
   if (model->plan & STRUT_TERM_CONTACT) ground_kernel(model, state, q, v, state->force, ledger);
+  if (model->plan & STRUT_TERM_SURFACES) strut_surfaces_add_forces(model, state, q, v);
 }
 
 /* See strut_forces_acceleration. */

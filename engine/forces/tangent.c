@@ -122,6 +122,7 @@ static double resting_force(const strut_model *model) {
   const strut_contact_table *c = &model->contacts;
   const double *g = model->scene->gravity;
   double mass = 0.0, down = -(g[0] * c->normal[0] + g[1] * c->normal[1]);
+  if (c->surface) down = hypot(g[0], g[1]);
   for (int32_t i = 0; i < model->node_count; i++) mass += model->weight[i];
   return down > 0.0 ? mass * down / (c->count > 1 ? 2.0 : 1.0) : 0.0;
 }
@@ -171,8 +172,9 @@ static void add_contact(void *context, int32_t i, const strut_closed_contact *co
   const int32_t *row = a->row_of + c->at[i];
   double damper = a->undamped ? 0.0 : e->damping + a->weight * e->dissipation;
   double slide = strut_friction_slope(&e->friction, a->weight);
-  const double *n = c->normal, *t = c->tangent;
-  strut_stiffness_block stiffness = strut_block_of_contact(contact->stiffness, n), damping;
+  const double *n = contact->axes.normal, *t = contact->axes.tangent;
+  strut_stiffness_block damping,
+      stiffness = strut_block_of_pose(contact->stiffness, contact->across, &contact->axes);
   for (int k = 0; k < STRUT_CONTACT_ENTRIES; k++) {
     const strut_block_entry *at = &strut_block_entries[k];
     damping.part[k] = damper * (n[at->row] * n[at->column]) + slide * t[at->row] * t[at->column];

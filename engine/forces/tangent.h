@@ -45,6 +45,16 @@ STRUT_INLINE strut_stiffness_block strut_block_of_contact(double stiffness, cons
       {stiffness * n[0] * n[0], stiffness * n[0] * n[1], stiffness * n[1] * n[1]}};
 }
 
+/** The same with the tangent's part. */
+STRUT_INLINE strut_stiffness_block strut_block_of_pose(double along, double across,
+                                                       const strut_contact_axes *axes) {
+  strut_stiffness_block block = strut_block_of_contact(along, axes->normal);
+  if (across == 0.0) return block;
+  strut_stiffness_block more = strut_block_of_contact(across, axes->tangent);
+  for (int k = 0; k < 3; k++) block.part[k] += more.part[k];
+  return block;
+}
+
 /** Adds B, -B, B to values at a member's `place` (STRUT_MEMBER_ENTRIES); -1: supported. */
 STRUT_INLINE void strut_block_scatter(const strut_stiffness_block *b, int count,
                                       const int32_t *place, double *value) {
@@ -114,9 +124,12 @@ typedef struct strut_member_tangent {
   double along, across;
 } strut_member_tangent;
 
-/** A contact that is closed, its spring [N/m] and its gap [m]. */
+/** A contact that is closed, its spring [N/m] and its gap [m]; its axes, and the stiffness along the tangent
+    that a curved surface adds, for contacts that touch [N/m]. */
 typedef struct strut_closed_contact {
   double gap, stiffness;
+  strut_contact_axes axes;
+  double across;
 } strut_closed_contact;
 
 typedef void strut_visit_member(void *context, int32_t member, const strut_member_tangent *tangent);
@@ -147,7 +160,10 @@ STRUT_INLINE void strut_tangent_visit(const strut_model *model, const double *q,
                          closed == STRUT_CLOSED_ALL || closed == STRUT_CLOSED_UNDAMPED, context,
                          element);
   for (int32_t i = 0; i < c->count && closed != STRUT_CLOSED_NONE; i++) {
-    strut_closed_contact n = {strut_contact_gap(c, i, q), c->entry[i].stiffness};
+    strut_contact_pose pose = strut_contact_pose_at(c, i, q, NULL, -1);
+    strut_closed_contact n = {pose.gap, c->entry[i].stiffness, pose.axes, 0.0};
+    if (pose.gap < 0.0 && pose.curvature != 0.0) n.across = n.stiffness * pose.gap * pose.curvature;
+    if (c->surface && closed != STRUT_CLOSED_TOUCHING && !strut_contact_is_near(c, i, q)) continue;
     if (closed == STRUT_CLOSED_TOUCHING && (!(n.gap < 0.0) || -n.stiffness * n.gap <= least))
       continue;
     contact(context, i, &n);

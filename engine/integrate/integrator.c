@@ -71,6 +71,10 @@ strut_status strut_integrator_check(const strut_model *model, const strut_experi
                       "solver.integrator rk4-events, verlet-events or adaptive",
                       name);
   if (!(model->plan & STRUT_TERM_RIGID)) return STRUT_OK;
+  if (model->plan & STRUT_TERM_SURFACES)
+    return strut_fail(
+        error, STRUT_USAGE,
+        "rigid bars need a ground that is one straight line at rest; use bars: elastic");
   if (!method->rigid)
     return strut_fail(error, STRUT_USAGE,
                       "%s does not keep the lengths of rigid bars; use solver.integrator rk4, or "

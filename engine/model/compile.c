@@ -196,6 +196,10 @@ static void compile_loads(strut_model *model, bool *failed) {
   model->plan |= (any ? STRUT_TERM_CONSTANT : 0u) | (count ? STRUT_TERM_LOADS : 0u);
 }
 
+static const strut_ground *ground_of(const strut_scene *scene, const strut_contact *contact) {
+  return scene->ground_count ? &scene->grounds[contact->ground] : &scene->ground;
+}
+
 static void compile_contacts(strut_model *model, bool *failed) {
   const strut_scene *scene = model->scene;
   size_t count = scene->contact_count;
@@ -203,13 +207,13 @@ static void compile_contacts(strut_model *model, bool *failed) {
   uint32_t *at = strut_arena_allocate(&model->arena, count, sizeof *at);
   strut_contact_entry *entry = strut_arena_allocate(&model->arena, count, sizeof *entry);
   if (!at || !entry) *failed = true;
-  if (*failed || !scene->ground.present || !count) return;
+  if (*failed || !strut_scene_has_ground(scene) || !count) return;
   for (size_t i = 0; i < count; i++) {
     const strut_contact *contact = &scene->contacts[i];
     at[i] = 2 * (uint32_t)contact->node;
     entry[i] = (strut_contact_entry){
         .node = contact->node, .stiffness = contact->stiffness, .damping = contact->damping};
-    if (scene->ground.damping_law == STRUT_DAMPING_HUNT_CROSSLEY) {
+    if (ground_of(scene, contact)->damping_law == STRUT_DAMPING_HUNT_CROSSLEY) {
       entry[i].damping = 0.0;
       entry[i].dissipation = contact->dissipation;
       model->plan |= STRUT_TERM_LAWS;
@@ -220,12 +224,22 @@ static void compile_contacts(strut_model *model, bool *failed) {
     if (contact->friction.law != STRUT_FRICTION_KARNOPP) model->plan |= STRUT_TERM_LAWS;
     if (contact->friction.directional) model->plan |= STRUT_TERM_LAWS | STRUT_TERM_DIRECTION;
   }
-  *t = (strut_contact_table){
-      (int32_t)count, at, entry, {1, 0}, {0, 1}, scene->ground.height, scene->ground.belt_speed};
+  *t = (strut_contact_table){.count = (int32_t)count,
+                             .at = at,
+                             .entry = entry,
+                             .tangent = {1, 0},
+                             .normal = {0, 1},
+                             .axes = {{1, 0}, {0, 1}}};
+  if (scene->ground_count) {
+    if (!strut_surfaces_compile(model)) *failed = true;
+    return;
+  }
+  t->height = scene->ground.height, t->belt_speed = scene->ground.belt_speed;
   model->plan |= STRUT_TERM_CONTACT;
   if (scene->ground.slope == 0.0) return;
   double c = cos(scene->ground.slope), s = sin(scene->ground.slope);
   t->tangent[0] = c, t->tangent[1] = s, t->normal[0] = -s, t->normal[1] = c;
+  t->axes = (strut_contact_axes){{c, s}, {-s, c}};
   model->plan |= STRUT_TERM_SLOPE;
 }
 

@@ -15,7 +15,7 @@ enum { WORDS = 160 };
 
 double strut_memory_needed(const strut_scene *scene) {
   return PER_NODE * (double)scene->node_count + PER_MEMBER * (double)scene->member_count +
-         PER_CONTACT * (double)(scene->ground.present ? scene->node_count : 0) +
+         PER_CONTACT * (double)(strut_scene_has_ground(scene) ? scene->contact_count : 0) +
          (double)scene->arena.bytes;
 }
 

@@ -19,6 +19,7 @@
 #include "engine/model/actuator_forces.h"
 #include "engine/model/elements.h"
 #include "engine/model/support_motion.h"
+#include "engine/model/surfaces.h"
 #include "engine/scene/scene.h"
 
 /** Members are stepped in groups of this many, so tables are padded to a multiple of it. */
@@ -44,7 +45,9 @@ typedef enum strut_term {
   STRUT_TERM_MASS_DAMPING = 1 << 15,    /* Rayleigh's damping by mass */
   STRUT_TERM_SUPPORT_MOTION = 1 << 16,  /* supports that move */
   STRUT_TERM_UNBALANCE = 1 << 17,       /* rotating masses */
-  STRUT_TERM_MEMORY = 1 << 20           /* elements that break, are released, yield or rub */
+  STRUT_TERM_MEMORY = 1 << 20,          /* elements that break, are released, yield or rub */
+  STRUT_TERM_SURFACES = 1 << 21 /* contacts with surfaces other than one straight line at rest;
+                                   instead of CONTACT */
 } strut_term;
 
 /**
@@ -64,7 +67,7 @@ typedef struct strut_member_table {
   const uint16_t *block_terms; /* (blocks) DAMPING, SLACK, DRIVE: what some member of it needs */
 } strut_member_table;
 
-/** One node that may touch: a record, because most of them are only asked whether they do. */
+/** A contact, a node with a surface: a record, because most of them are only asked whether they do. */
 typedef struct strut_contact_entry {
   int32_t node;
   double stiffness, damping; /* c_g [N/m], k_g [N s/m] */
@@ -79,6 +82,14 @@ typedef struct strut_contact_table {
   double tangent[2], normal[2];     /* unit vectors along and out of the ground */
   double height;                    /* at x = 0 [m] */
   double belt_speed;                /* [m/s] */
+  /* with STRUT_TERM_SURFACES; the vectors above are then those of parallel lines, or of level ground */
+  const strut_surface *surface; /* (surfaces); NULL: one straight line at rest */
+  const int32_t *surface_of;    /* (count) */
+  int32_t surfaces;
+  bool moves; /* some surface is shaken */
+  bool
+      parallel; /* all of them are lines along `tangent`: then a displacement along it changes nothing */
+  strut_contact_axes axes; /* tangent and normal once more */
 } strut_contact_table;
 
 /** Signals that act on the structure. */

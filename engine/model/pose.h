@@ -85,12 +85,80 @@ static inline double strut_ground_gap(const strut_contact_table *c, const double
   return point[0] * c->normal[0] + (point[1] - c->height) * c->normal[1];
 }
 
-static inline double strut_contact_gap(const strut_contact_table *c, int32_t i, const double *q) {
+/**
+ * Contact i in q: against the nearest facet of its surface, or against `facet` alone where that is not
+ * negative. motion: of the grounds, or NULL where they are as drawn.
+ */
+static inline strut_contact_pose strut_contact_pose_at(const strut_contact_table *c, int32_t i,
+                                                       const double *q,
+                                                       const strut_ground_motion *motion,
+                                                       int32_t facet) {
   assert(i >= 0 && i < c->count);
-  return strut_ground_gap(c, q + c->at[i]);
+  strut_contact_pose pose = {.axes = c->axes};
+  const double *at = q + c->at[i];
+  if (!c->surface) {
+    pose.gap = strut_ground_gap(c, at);
+    return pose;
+  }
+  const strut_surface *s = &c->surface[c->surface_of[i]];
+  const double *place = s->moves && motion ? motion[s->ground].place : NULL;
+  const double point[2] = {at[0] - (place ? place[0] : 0.0), at[1] - (place ? place[1] : 0.0)};
+  strut_surface_find(s, point, facet, &pose);
+  return pose;
 }
 
-/** Component out of the ground of what x (length) holds at contact i. */
+/** The gap alone. */
+static inline double strut_contact_gap_at(const strut_contact_table *c, int32_t i, const double *q,
+                                          const strut_ground_motion *motion) {
+  assert(i >= 0 && i < c->count);
+  if (!c->surface) return strut_ground_gap(c, q + c->at[i]);
+  return strut_contact_pose_at(c, i, q, motion, -1).gap;
+}
+
+/** The same where the grounds are as drawn. */
+static inline double strut_contact_gap(const strut_contact_table *c, int32_t i, const double *q) {
+  return strut_contact_gap_at(c, i, q, NULL);
+}
+
+/** Is the piece of contact i one of the two of its ground that are nearest to its node? A node hardly touches
+    more of them at once. */
+static inline bool strut_contact_is_near(const strut_contact_table *c, int32_t i, const double *q) {
+  int32_t nearer = 0, first = i, ground = c->surface[c->surface_of[i]].ground;
+  while (first > 0 && c->at[first - 1] == c->at[i]) first--;
+  double own = fabs(strut_contact_gap_at(c, i, q, NULL));
+  for (int32_t k = first; k < c->count && c->at[k] == c->at[i]; k++) {
+    if (k == i || c->surface[c->surface_of[k]].ground != ground) continue;
+    double gap = fabs(strut_contact_gap_at(c, k, q, NULL));
+    nearer += gap < own || (gap == own && k < i);
+  }
+  return nearer < 2;
+}
+
+/** Is a displacement of the whole structure along x no change to any contact? */
+static inline bool strut_contacts_are_level(const strut_contact_table *c) {
+  return c->normal[0] == 0.0 && (!c->surface || c->parallel);
+}
+
+/** Is there a direction, `tangent`, along which the whole structure may travel over the ground? */
+static inline bool strut_contacts_allow_travel(const strut_contact_table *c) {
+  return c->count > 0 && (!c->surface || c->parallel);
+}
+
+/** Speed of the belt of contact i [m/s]. */
+static inline double strut_contact_belt(const strut_contact_table *c, int32_t i) {
+  return c->surface ? c->surface[c->surface_of[i]].belt_speed : c->belt_speed;
+}
+
+/** Motion of the ground of contact i, or NULL where it is at rest. */
+static inline const strut_ground_motion *strut_contact_motion(const strut_contact_table *c,
+                                                              int32_t i,
+                                                              const strut_ground_motion *motion) {
+  if (!c->surface || !motion) return NULL;
+  const strut_surface *s = &c->surface[c->surface_of[i]];
+  return s->moves ? &motion[s->ground] : NULL;
+}
+
+/** Component out of a single straight ground of what x (length) holds at contact i. */
 static inline double strut_contact_along_normal(const strut_contact_table *c, int32_t i,
                                                 const double *x) {
   assert(i >= 0 && i < c->count);
@@ -98,7 +166,7 @@ static inline double strut_contact_along_normal(const strut_contact_table *c, in
   return at[0] * c->normal[0] + at[1] * c->normal[1];
 }
 
-/** Component along the ground of what x (length) holds at contact i. */
+/** Component along a single straight ground of what x (length) holds at contact i. */
 static inline double strut_contact_along_ground(const strut_contact_table *c, int32_t i,
                                                 const double *x) {
   assert(i >= 0 && i < c->count);
@@ -106,7 +174,7 @@ static inline double strut_contact_along_ground(const strut_contact_table *c, in
   return at[0] * c->tangent[0] + at[1] * c->tangent[1];
 }
 
-/** Sliding speed of contact i against the ground's belt at velocities v [m/s]. */
+/** Sliding speed of contact i against the belt of a single straight ground at velocities v [m/s]. */
 static inline double strut_contact_slip(const strut_contact_table *c, int32_t i, const double *v) {
   return strut_contact_along_ground(c, i, v) - c->belt_speed;
 }

@@ -7,6 +7,18 @@
 #include "engine/model/element_compile.h"
 #include "engine/model/memory_estimate.h"
 
+/* What contacts need that are not with one straight line at rest. */
+static bool make_surfaces(const strut_model *model, strut_state *state) {
+  const strut_contact_table *c = &model->contacts;
+  size_t contacts = (size_t)c->count, grounds = model->scene->ground_count;
+  if (!c->surface) return true;
+  state->pose = strut_arena_allocate(&state->arena, contacts, sizeof *state->pose);
+  if (c->moves)
+    state->ground_motion =
+        strut_arena_allocate(&state->arena, grounds, sizeof *state->ground_motion);
+  return state->pose && (state->ground_motion || !c->moves);
+}
+
 strut_status strut_state_create(const strut_model *model, strut_state **result,
                                 strut_error *error) {
   strut_state *state = strut_allocate(1, sizeof *state);
@@ -41,6 +53,7 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
   state->normal = strut_arena_allocate(arena, contacts, sizeof(double));
   state->friction = strut_arena_allocate(arena, contacts, sizeof(double));
   state->scratch = strut_arena_allocate(arena, both, sizeof(double));
+  bool surfaces = make_surfaces(model, state);
   state->actuator_force =
       strut_arena_allocate(arena, (size_t)model->actuator_forces.count, sizeof(double));
   bool moves = model->plan & (STRUT_TERM_SUPPORT_MOTION | STRUT_TERM_UNBALANCE);
@@ -52,7 +65,7 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
       !state->rest_rate || !state->plastic || !state->broken_at || !state->memory_kept ||
       !state->guide_mode || !state->guide_drop || !state->guide_side || !state->force ||
       !state->normal || !state->friction || !state->scratch || !state->actuator_force ||
-      !state->support_rates || !state->support_answer) {
+      !state->support_rates || !state->support_answer || !surfaces) {
     strut_state_free(state);
     *result = NULL;
     return strut_memory_fail_model(model->scene, error);

@@ -93,6 +93,10 @@ typedef struct strut_state {
   double *support_rates;  /* (moved coordinates) scratch */
   double *support_answer; /* (length) scratch, 0 between uses; only where supports move */
   double support_work_origin; /* strut_support_motion_reset_work: where it counts from [J] */
+  /* with STRUT_TERM_SURFACES: poses of the contacts at the latest evaluation; and of grounds that are shaken
+     the motion at drive_time, (grounds), NULL where none is */
+  strut_contact_pose *pose;
+  strut_ground_motion *ground_motion;
 } strut_state;
 
 /** All memory a run needs; an integrator adds its own to the arena. STRUT_OK or STRUT_NO_MEMORY. */

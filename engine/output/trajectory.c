@@ -293,7 +293,7 @@ static const char *member_name(const strut_scene *scene, size_t i) {
 static const char *hinge_name(const strut_scene *scene, size_t i) { return scene->hinges[i].name; }
 static const char *cell_name(const strut_scene *scene, size_t i) { return scene->cells[i].name; }
 static const char *contact_name(const strut_scene *scene, size_t i) {
-  return scene->nodes[scene->contacts[i].node].name;
+  return strut_contact_name(scene, i);
 }
 
 static strut_status read_channel(reader *r, int i) {

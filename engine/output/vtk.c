@@ -15,6 +15,7 @@
 #include "engine/output/file.h"
 #include "engine/output/results.h"
 #include "engine/output/trajectory.h"
+#include "engine/scene/outline.h"
 
 /* Data shared by all frames of a motion, and their buffers. */
 typedef struct vtk_frame {
@@ -125,6 +126,19 @@ static void spread(vtk_frame *frame, const double *plane, const double *origin) 
   }
 }
 
+/* Of a node at `at` in frame i, to where its ground has moved by then. */
+static strut_contact_axes surface_axes(const strut_model *model, int32_t index, const double *at,
+                                       const strut_trajectory *motion, size_t i) {
+  const strut_surface *surface = &model->contacts.surface[index];
+  double place[2] = {0.0, 0.0};
+  if (motion->time)
+    strut_ground_place(model->scene, (size_t)surface->ground, motion->time[i], place);
+  const double point[2] = {at[0] - place[0], at[1] - place[1]};
+  strut_contact_pose pose;
+  strut_surface_find(surface, point, -1, &pose);
+  return pose.axes;
+}
+
 static void gather_contact(vtk_frame *frame, size_t i) {
   const strut_trajectory *motion = frame->motion;
   const strut_contact_table *table = &frame->model->contacts;
@@ -132,8 +146,12 @@ static void gather_contact(vtk_frame *frame, size_t i) {
   memset(frame->points, 0, 3 * frame->model->scene->node_count * sizeof *frame->points);
   for (size_t k = 0; k < motion->contact_count; k++) {
     double *to = frame->points + 3 * motion->contact_node[k];
+    const double *at =
+        motion->position + 2 * (i * motion->node_count + (size_t)motion->contact_node[k]);
+    strut_contact_axes axes = table->axes;
+    if (table->surface) axes = surface_axes(frame->model, table->surface_of[k], at, motion, i);
     for (int axis = 0; axis < 2; axis++)
-      to[axis] = force[2 * k] * table->normal[axis] + force[2 * k + 1] * table->tangent[axis];
+      to[axis] += force[2 * k] * axes.normal[axis] + force[2 * k + 1] * axes.tangent[axis];
   }
 }
 
@@ -254,6 +272,41 @@ static void vtk_ground_write(const strut_model *model, double low, double high,
   strut_buffer_add(buffer, "</Lines>\n%s", tail);
 }
 
+/* The outlines of all grounds, as drawn, around `middle`. */
+static bool vtk_surfaces_write(const strut_model *model, const double middle[2], double far,
+                               strut_buffer *buffer) {
+  const strut_scene *scene = model->scene;
+  strut_arena arena = {0};
+  size_t most = 0, used = 0;
+  for (size_t g = 0; g < scene->ground_count; g++) most += strut_outline_most(&scene->grounds[g]);
+  double(*plane)[2] = strut_arena_allocate(&arena, most, sizeof *plane);
+  double *points = strut_arena_allocate(&arena, 3 * most, sizeof *points);
+  int32_t *index = strut_arena_allocate(&arena, most, sizeof *index);
+  int32_t *offset = strut_arena_allocate(&arena, scene->ground_count, sizeof *offset);
+  bool good = plane && points && index && offset;
+  for (size_t g = 0; g < scene->ground_count && good; g++) {
+    used += strut_outline_of(&scene->grounds[g], NULL, middle, far, plane + used);
+    offset[g] = (int32_t)used;
+  }
+  for (size_t k = 0; k < used; k++) {
+    points[3 * k] = plane[k][0], points[3 * k + 1] = plane[k][1];
+    index[k] = (int32_t)k;
+  }
+  if (good) {
+    strut_buffer_add(buffer,
+                     "%s<Piece NumberOfPoints=\"%zu\" NumberOfVerts=\"0\" NumberOfLines=\"%zu\" "
+                     "NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n<Points>\n",
+                     head, used, scene->ground_count);
+    add_array(buffer, "Float64", "Points", 3, points, 3 * used);
+    strut_buffer_add(buffer, "</Points>\n<Lines>\n");
+    add_array(buffer, "Int32", "connectivity", 1, index, used);
+    add_array(buffer, "Int32", "offsets", 1, offset, scene->ground_count);
+    strut_buffer_add(buffer, "</Lines>\n%s", tail);
+  }
+  strut_arena_free(&arena);
+  return good;
+}
+
 /* ---- files ---- */
 
 enum { FRAME_NAME = 24, OTHERS = 2 };
@@ -349,7 +402,7 @@ static strut_status write_list(const char *stage, const strut_model *model,
     strut_number_text(motion->time ? motion->time[i * written->every] : 0, time);
     strut_buffer_add(buffer, "<DataSet timestep=\"%s\" part=\"0\" file=\"%s\"/>\n", time,
                      frame_name(i, name));
-    if (model->scene->ground.present)
+    if (strut_scene_has_ground(model->scene))
       strut_buffer_add(buffer, "<DataSet timestep=\"%s\" part=\"1\" file=\"%s\"/>\n", time,
                        ground_name);
   }
@@ -363,7 +416,7 @@ static strut_status write_ground(const char *stage, const strut_model *model,
                                  strut_error *error) {
   size_t count = motion->frames * motion->node_count;
   double low = (double)INFINITY, high = -(double)INFINITY;
-  if (!model->scene->ground.present) return STRUT_OK;
+  if (!strut_scene_has_ground(model->scene)) return STRUT_OK;
   for (size_t i = 0; i < count; i++) {
     double x = motion->position[2 * i];
     if (!isfinite(x)) continue;
@@ -371,7 +424,13 @@ static strut_status write_ground(const char *stage, const strut_model *model,
     high = fmax(high, x);
   }
   if (!(low <= high)) low = high = 0;
-  vtk_ground_write(model, low - model->size, high + model->size, buffer);
+  if (!model->scene->ground_count) {
+    vtk_ground_write(model, low - model->size, high + model->size, buffer);
+  } else {
+    const double middle[2] = {0.5 * (low + high), model->start[1]};
+    if (!vtk_surfaces_write(model, middle, high - low + 2.0 * model->size, buffer))
+      return strut_no_memory(error, "while writing files");
+  }
   return write_text(stage, ground_name, buffer, error);
 }
 

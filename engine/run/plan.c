@@ -23,6 +23,8 @@ static const strut_plan_term terms[] = {
     {STRUT_TERM_CONTACT, "ground contact", "a ground that nodes may touch", false},
     {STRUT_TERM_FRICTION, "friction", "a ground with friction", false},
     {STRUT_TERM_SLOPE, "inclined ground", "a ground with a slope", false},
+    {STRUT_TERM_SURFACES, "ground surfaces", "several grounds, or one that is no line at rest",
+     false},
     {STRUT_TERM_SOLVE, "mass solve", "consistent masses of members", false},
     {STRUT_TERM_ACTUATOR_FORCES, "actuator forces", "an actuator with a force or moment", false},
     {STRUT_TERM_MASS_DAMPING, "damping by mass", "rayleigh with mass", false},
@@ -67,6 +69,7 @@ static bool has_element(const strut_plan *plan, const char *name) {
                {"hinges", plan->hinges},
                {"cells", plan->cells},
                {"collisions", plan->collisions},
+               {"driven rest lengths", plan->actuators},
                {"breaks and releases", plan->breakables}};
   for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++)
     if (strcmp(kinds[i].name, name) == 0) return kinds[i].count > 0;

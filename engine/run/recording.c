@@ -54,7 +54,7 @@ static const char *const *item_names(const strut_model *model, strut_channel id,
   const char **names = strut_arena_allocate(arena, *count, sizeof *names);
   for (size_t i = 0; names && i < *count; i++)
     names[i] = of_nodes      ? scene->nodes[i].name
-               : of_contacts ? scene->nodes[model->contacts.entry[i].node].name
+               : of_contacts ? strut_contact_name(scene, i)
                : of_hinges   ? scene->hinges[i].name
                : of_cells    ? scene->cells[i].name
                              : scene->members[i].name;

@@ -32,7 +32,8 @@ static strut_status copy_passive_scene(const strut_scene *scene, bool friction,
   passive->bar_model = STRUT_BARS_ELASTIC; /* they become rigid in the settled, loaded shape */
   passive->loads = strut_arena_allocate(arena, scene->load_count, sizeof *passive->loads);
   passive->contacts = strut_arena_allocate(arena, scene->contact_count, sizeof *passive->contacts);
-  if (!passive->loads || !passive->contacts) return STRUT_NO_MEMORY;
+  if (!passive->loads || !passive->contacts || !strut_scene_stop_grounds(passive, arena))
+    return STRUT_NO_MEMORY;
   passive->load_count = 0;
   for (size_t i = 0; i < scene->load_count; i++)
     if (scene->loads[i].signal < 0) passive->loads[passive->load_count++] = scene->loads[i];

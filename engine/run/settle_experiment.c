@@ -7,6 +7,7 @@
 #include "engine/forces/tangent.h"
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/limit/step_limit.h"
+#include "engine/model/pose.h"
 #include "engine/run/settle.h"
 
 /* Part of the largest stiffness that rounding may give a motion without stiffness. */
@@ -99,8 +100,9 @@ static void add_stick_stiffness(const strut_model *model, const double *q, strut
   const strut_contact_table *c = &model->contacts;
   for (int32_t i = 0; i < c->count; i++) {
     const strut_contact_entry *e = &c->entry[i];
-    const double *t = c->tangent;
-    bool touches = strut_contact_gap(c, i, q) < 0.0;
+    const strut_contact_pose pose = strut_contact_pose_at(c, i, q, NULL, -1);
+    const double *t = pose.axes.tangent;
+    bool touches = pose.gap < 0.0;
     if (!touches || e->friction.law == STRUT_FRICTION_NONE ||
         !(e->friction.mu_static > 0.0 || e->friction.mu_static_backward > 0.0))
       continue;

@@ -77,8 +77,7 @@ static strut_status allocate_summary(strut_run *r) {
     s->hinges[i] = (strut_hinge_summary){scene->hinges[i].name, (double)NAN, (double)NAN};
   for (size_t i = 0; i < s->cell_count; i++)
     s->cells[i] = (strut_cell_summary){scene->cells[i].name, (double)NAN, (double)NAN};
-  for (size_t i = 0; i < contacts; i++)
-    s->contacts[i].node = scene->nodes[r->model->contacts.entry[i].node].name;
+  for (size_t i = 0; i < contacts; i++) s->contacts[i].node = strut_contact_name(scene, i);
   return STRUT_OK;
 }
 

@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "engine/scene/check_rules.h"
+#include "engine/scene/profile.h"
 #include "engine/scene/signal_motion.h"
 
 enum { MOST_TERMS = 10000, DEEPEST_SUM = 64 };
@@ -179,6 +180,125 @@ static void check_friction(strut_checker *checker, size_t index, const char *own
                     f->mu_static_backward, STRUT_NOT_NEGATIVE);
 }
 
+static void check_line(strut_checker *checker, size_t index, const char *owner) {
+  const strut_ground *g = &checker->scene->grounds[index];
+  strut_check_range(checker, STRUT_ON_GROUND, index, "height", owner, g->height, STRUT_ANY_NUMBER);
+  strut_check_range(checker, STRUT_ON_GROUND, index, "slope", owner, g->slope, STRUT_ANY_NUMBER);
+  strut_check_range(checker, STRUT_ON_GROUND, index, "through", owner, g->through[0],
+                    STRUT_ANY_NUMBER);
+  strut_check_range(checker, STRUT_ON_GROUND, index, "through", owner, g->through[1],
+                    STRUT_ANY_NUMBER);
+  if (!g->placed && fabs(cos(g->slope)) < 1e-12)
+    strut_report_finding(checker, STRUT_ON_GROUND, index, "slope",
+                         "%s is upright, so that it has no height at x = 0; give a point of it, "
+                         "through: [x, y]",
+                         owner);
+}
+
+static void check_profile(strut_checker *checker, size_t index, const char *owner) {
+  size_t segment, other;
+  strut_profile_fault fault =
+      strut_profile_check(&checker->scene->grounds[index], &segment, &other);
+  switch (fault) {
+    case STRUT_PROFILE_FINE: break;
+    case STRUT_PROFILE_SHORT:
+      strut_report_finding(checker, STRUT_ON_GROUND, index, "profile",
+                           "the profile of %s needs at least two points", owner);
+      break;
+    case STRUT_PROFILE_POINT:
+      strut_report_finding(checker, STRUT_ON_GROUND, index, "profile",
+                           "point %zu of the profile of %s is not finite", segment + 1, owner);
+      break;
+    case STRUT_PROFILE_ZERO:
+      strut_report_finding(checker, STRUT_ON_GROUND, index, "profile",
+                           "points %zu and %zu of the profile of %s are one point", segment + 1,
+                           segment + 2, owner);
+      break;
+    case STRUT_PROFILE_BACK:
+      strut_report_finding(checker, STRUT_ON_GROUND, index, "profile",
+                           "the profile of %s turns back onto itself at point %zu", owner,
+                           segment + 1);
+      break;
+    case STRUT_PROFILE_CROSSES:
+      strut_report_finding(checker, STRUT_ON_GROUND, index, "profile",
+                           "the profile of %s crosses itself: its segments %zu and %zu meet; its "
+                           "ends continue straight",
+                           owner, other + 1, segment + 1);
+      break;
+  }
+}
+
+/* A displacement that jumps would take the ground through nodes. */
+static void check_motion(strut_checker *checker, size_t index, const char *owner) {
+  const strut_scene *scene = checker->scene;
+  const strut_ground *g = &scene->grounds[index];
+  for (int c = 0; c < 2; c++) {
+    const char *axis = c ? "y" : "x";
+    if (!g->moves[c]) continue;
+    int32_t signal = g->motion[c];
+    if (signal < 0 || (size_t)signal >= scene->signal_count)
+      strut_report_finding(checker, STRUT_ON_GROUND, index, "motion",
+                           "the motion of %s in %s has no signal", owner, axis);
+    else if (!checker->wild[signal] && strut_signal_jumps(scene->signals, signal))
+      strut_report_finding(checker, STRUT_ON_GROUND, index, "motion",
+                           "the motion of %s in %s jumps; use a ramp, a table, or waves that begin "
+                           "and stop at zero",
+                           owner, axis);
+  }
+}
+
+static void check_grounds(strut_checker *checker) {
+  const strut_scene *scene = checker->scene;
+  if (scene->ground.present)
+    strut_report_finding(checker, STRUT_ON_GROUND, 0, NULL, "there are both a ground and grounds");
+  for (size_t i = 0; i < scene->ground_count; i++) {
+    const strut_ground *g = &scene->grounds[i];
+    bool single = scene->ground_count == 1 && !(g->name && *g->name), used = false;
+    char owner[200];
+    if (single)
+      snprintf(owner, sizeof owner, "the ground");
+    else
+      strut_format_name(owner, "ground", g->name, i);
+    strut_check_range(checker, STRUT_ON_GROUND, i, "belt_speed", owner, g->belt_speed,
+                      STRUT_ANY_NUMBER);
+    if ((unsigned)g->damping_law > STRUT_DAMPING_HUNT_CROSSLEY)
+      strut_report_finding(checker, STRUT_ON_GROUND, i, "damping_law",
+                           "the damping law of %s is unknown", owner);
+    switch (g->shape) {
+      case STRUT_GROUND_LINE: check_line(checker, i, owner); break;
+      case STRUT_GROUND_PROFILE: check_profile(checker, i, owner); break;
+      case STRUT_GROUND_CIRCLE:
+        for (int c = 0; c < 2; c++)
+          strut_check_range(checker, STRUT_ON_GROUND, i, "circle", owner, g->centre[c],
+                            STRUT_ANY_NUMBER);
+        strut_check_range(checker, STRUT_ON_GROUND, i, "circle", owner, g->radius,
+                          STRUT_ABOVE_ZERO);
+        break;
+    }
+    check_motion(checker, i, owner);
+    for (size_t k = 0; k < scene->contact_count; k++)
+      used = used || scene->contacts[k].ground == (int32_t)i;
+    if (!used)
+      strut_report_finding(checker, STRUT_ON_GROUND, i, "nodes", "no node may touch %s", owner);
+  }
+}
+
+/* Contacts follow their nodes, then grounds, then pieces, one of each. */
+static bool follows(const strut_contact *before, const strut_contact *c) {
+  if (c->node != before->node) return c->node > before->node;
+  if (c->ground != before->ground) return c->ground > before->ground;
+  return c->piece > before->piece;
+}
+
+static bool has_surface(const strut_scene *scene, const strut_contact *c) {
+  if (!scene->ground_count) return c->ground == 0 && c->piece == 0;
+  size_t segment, other;
+  if (c->ground < 0 || (size_t)c->ground >= scene->ground_count || c->piece < 0) return false;
+  const strut_ground *g = &scene->grounds[c->ground];
+  if (g->shape == STRUT_GROUND_PROFILE && strut_profile_check(g, &segment, &other)) return true;
+  return (size_t)c->piece < strut_ground_pieces(g);
+}
+
 void strut_check_ground(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   const strut_ground *g = &scene->ground;
@@ -196,7 +316,8 @@ void strut_check_ground(strut_checker *checker) {
                          "the ground's damping law is unknown");
   if (g->present && !scene->contact_count)
     strut_report_finding(checker, STRUT_ON_GROUND, 0, "nodes", "no node may touch the ground");
-  if (!g->present && scene->contact_count)
+  if (scene->ground_count) check_grounds(checker);
+  if (!strut_scene_has_ground(scene) && scene->contact_count)
     strut_report_finding(checker, STRUT_ON_GROUND, 0, NULL, "there are contacts but no ground");
   for (size_t i = 0; i < scene->contact_count; i++) {
     const strut_contact *c = &scene->contacts[i];
@@ -207,10 +328,13 @@ void strut_check_ground(strut_checker *checker) {
     }
     char owner[200];
     strut_format_name(owner, "the contact of node", scene->nodes[c->node].name, (size_t)c->node);
-    if (i && c->node <= scene->contacts[i - 1].node)
+    if (i && !follows(&scene->contacts[i - 1], c))
       strut_report_finding(checker, STRUT_ON_CONTACT, i, NULL,
                            "%s is out of order: contacts follow their nodes, one for each at most",
                            owner);
+    if (!has_surface(scene, c))
+      strut_report_finding(checker, STRUT_ON_CONTACT, i, NULL,
+                           "%s is with a ground, or a piece of one, that does not exist", owner);
     strut_check_range(checker, STRUT_ON_CONTACT, i, "stiffness", owner, c->stiffness,
                       STRUT_ABOVE_ZERO);
     strut_check_range(checker, STRUT_ON_CONTACT, i, "damping", owner, c->damping,

@@ -47,7 +47,15 @@ static bool check_set(sets_check *check, const strut_node_set *set, strut_subjec
 
 static void check_sets(sets_check *check, const strut_node_set *sets, size_t count,
                        strut_subject subject, size_t index, const char *key, const char *owner) {
-  if (count && !check->checker->scene->ground.present) {
+  const strut_scene *scene = check->checker->scene;
+  if (count && scene->ground_count && subject == STRUT_ON_EQUILIBRIA) {
+    strut_report_finding(check->checker, subject, index, key,
+                         "the %s of %s take the place of one straight line at rest, and the scene "
+                         "has other grounds; leave them out",
+                         key, owner);
+    return;
+  }
+  if (count && !strut_scene_has_ground(scene)) {
     strut_report_finding(check->checker, subject, index, key,
                          "the %s of %s need a ground to rest on, and the scene has none", key,
                          owner);

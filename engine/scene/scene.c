@@ -177,3 +177,34 @@ strut_span strut_experiment_span(const strut_experiment *e, const strut_scene *s
       e->output_every > 0.0 ? e->output_every : (span.duration - span.record_start) / 1000.0;
   return span;
 }
+
+/* Moves the shape of a ground. */
+static bool shift_ground(strut_ground *g, const double place[2], strut_arena *arena) {
+  if (!g->placed) g->through[0] = 0.0, g->through[1] = g->height;
+  g->placed = g->placed || g->shape == STRUT_GROUND_LINE;
+  for (int c = 0; c < 2; c++) g->through[c] += place[c], g->centre[c] += place[c];
+  if (g->shape != STRUT_GROUND_PROFILE) return true;
+  double(*points)[2] = strut_arena_allocate(arena, g->point_count, sizeof *points);
+  for (size_t k = 0; points && k < g->point_count; k++)
+    for (int c = 0; c < 2; c++) points[k][c] = g->points[k][c] + place[c];
+  g->points = points;
+  return points;
+}
+
+bool strut_scene_stop_grounds(strut_scene *scene, strut_arena *arena) {
+  if (!scene->ground_count) return true;
+  strut_ground *grounds = strut_arena_allocate(arena, scene->ground_count, sizeof *grounds);
+  bool good = grounds;
+  for (size_t i = 0; i < scene->ground_count && good; i++) {
+    strut_ground *g = &grounds[i];
+    double place[2] = {0.0, 0.0}, rate;
+    *g = scene->grounds[i];
+    for (int c = 0; c < 2; c++)
+      if (g->moves[c]) strut_signal_evaluate(scene->signals, g->motion[c], 0.0, &place[c], &rate);
+    g->belt_speed = 0.0;
+    g->moves[0] = g->moves[1] = false;
+    if (place[0] != 0.0 || place[1] != 0.0) good = shift_ground(g, place, arena);
+  }
+  scene->grounds = grounds;
+  return good;
+}

@@ -111,13 +111,33 @@ typedef enum strut_ground_damping {
   STRUT_DAMPING_HUNT_CROSSLEY /* c_g d (1 + chi d'), never pulling: continuous */
 } strut_ground_damping;
 
-/** The ground line y = height + x tan(slope); its surface moves along itself at belt_speed. */
+/** Shape of a ground's surface. */
+typedef enum strut_ground_shape {
+  STRUT_GROUND_LINE,
+  STRUT_GROUND_PROFILE, /* a polyline, solid to the right of its direction, its ends continued straight */
+  STRUT_GROUND_CIRCLE /* solid inside, or outside */
+} strut_ground_shape;
+
+/**
+ * The ground line y = height + x tan(slope); its surface moves along itself at belt_speed. The fields
+ * after damping_law are those of scene->grounds only.
+ */
 typedef struct strut_ground {
   bool present;
   double height;                    /* [m] */
-  double slope;                     /* [rad], within +-pi/2 */
+  double slope;                     /* [rad], within +-pi/2; of grounds, any */
   double belt_speed;                /* [m/s], along the slope, positive towards +x */
   strut_ground_damping damping_law; /* of all contacts */
+  const char *name;                 /* "" of `ground:` */
+  strut_ground_shape shape;
+  bool placed;              /* the line goes through `through`, otherwise through (0, height) */
+  double through[2];        /* [m] */
+  size_t point_count;       /* of a profile */
+  double (*points)[2];      /* (point_count) [m] */
+  double centre[2], radius; /* of a circle [m] */
+  bool inside;              /* the free space of a circle is inside */
+  bool moves[2];            /* the surface is shaken in x, in y: */
+  int32_t motion[2];        /* signals of its displacement, where it moves [m] */
 } strut_ground;
 
 /** One node that may touch the ground. */
@@ -127,6 +147,9 @@ typedef struct strut_contact {
   double damping;     /* k_g [N s/m], >= 0; acts while the node moves into the ground, (8) */
   double dissipation; /* chi [s/m], >= 0; instead of k_g with the Hunt-Crossley law */
   strut_friction friction;
+  int32_t ground;   /* index into scene->grounds; 0 of scene->ground */
+  int32_t piece;    /* convex piece of a profile (profile.h); 0 otherwise */
+  const char *name; /* NULL: that of its node */
 } strut_contact;
 
 /**
@@ -202,8 +225,8 @@ typedef struct strut_scene {
   strut_node *nodes;
   strut_member *members;
   strut_hinge *hinges;
-  strut_ground ground;
-  strut_contact *contacts; /* in the order of their nodes, one per node at most */
+  strut_ground ground;     /* one straight line at rest; otherwise not present, and in `grounds` */
+  strut_contact *contacts; /* in the order of nodes, grounds and pieces, one of each at most */
   strut_actuator *actuators;
   strut_load *loads;
   strut_signal *signals;
@@ -222,6 +245,8 @@ typedef struct strut_scene {
   strut_collision *collisions;
   size_t unbalance_count;
   strut_unbalance *unbalances;
+  size_t ground_count;   /* 0 without a ground, and with `ground` */
+  strut_ground *grounds; /* in the arena, too */
 } strut_scene;
 
 /** Default structs: zero except where stated above, names empty, indices -1. */
@@ -287,6 +312,22 @@ STRUT_API void strut_scene_hold_supports(strut_scene *scene, bool shapes);
 
 /** Stops rotating masses: each becomes part of its node's mass. The nodes must be the scene's own. */
 STRUT_API void strut_scene_stop_unbalances(strut_scene *scene);
+/** Some node may touch something. */
+static inline bool strut_scene_has_ground(const strut_scene *scene) {
+  return scene->ground.present || scene->ground_count > 0;
+}
+
+/**
+ * Replaces the grounds of a copy of a scene by grounds at rest where they are at t = 0, without belts;
+ * false: out of memory of the arena.
+ */
+STRUT_API bool strut_scene_stop_grounds(strut_scene *scene, strut_arena *arena);
+
+/** What outputs call a contact: the name of its node, with that of the ground where there are several. */
+static inline const char *strut_contact_name(const strut_scene *scene, size_t contact) {
+  const strut_contact *c = &scene->contacts[contact];
+  return c->name ? c->name : scene->nodes[c->node].name;
+}
 
 /** Angle of a hinge as drawn, in (-pi, pi] [rad]. */
 STRUT_API double strut_hinge_drawn(const strut_scene *scene, size_t hinge);

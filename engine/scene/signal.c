@@ -82,6 +82,47 @@ void strut_signal_evaluate(const strut_signal *signals, int32_t index, double t,
     evaluate_other(signals, index, t, turns, value, rate);
 }
 
+double strut_signal_bend(const strut_signal *signals, int32_t index, double t) {
+  const strut_signal *s = &signals[index];
+  double value, rate, sum = 0.0;
+  if (s->kind == STRUT_SINE || s->kind == STRUT_HALF_SINE) {
+    strut_signal_evaluate(signals, index, t, &value, &rate);
+    return -STRUT_TAU * STRUT_TAU * s->frequency * s->frequency * value;
+  }
+  bool acts = s->kind == STRUT_SUM && t >= s->start && t < s->stop;
+  for (size_t i = 0; acts && i < s->term_count; i++)
+    sum += strut_signal_bend(signals, s->terms[i], t);
+  return sum;
+}
+
+/* Is a wave away from zero where it stops? There it has rounded turns. */
+static bool stops_away_from_zero(const strut_signal *s) {
+  double turns = s->frequency * (s->stop - s->start) + s->phase;
+  return isfinite(s->stop) && fabs(2.0 * turns - floor(2.0 * turns + 0.5)) > 1e-9;
+}
+
+static bool begins_away_from_zero(const strut_signal *s) {
+  return fabs(2.0 * s->phase - floor(2.0 * s->phase + 0.5)) > 1e-9;
+}
+
+bool strut_signal_jumps(const strut_signal *signals, int32_t index) {
+  const strut_signal *s = &signals[index];
+  if (s->amplitude == 0.0 && s->kind != STRUT_TABLE && s->kind != STRUT_SUM) return false;
+  switch (s->kind) {
+    case STRUT_CONSTANT: return s->start > 0.0 || isfinite(s->stop);
+    case STRUT_SINE: return stops_away_from_zero(s) || (s->start > 0.0 && begins_away_from_zero(s));
+    case STRUT_HALF_SINE: return s->stop < s->start + 0.5 / s->frequency;
+    case STRUT_SQUARE: return true;
+    case STRUT_RAMP:
+    case STRUT_TABLE: return false;
+    case STRUT_SUM:
+      for (size_t i = 0; i < s->term_count; i++)
+        if (strut_signal_jumps(signals, s->terms[i])) return true;
+      return s->start > 0.0 || isfinite(s->stop);
+  }
+  return true;
+}
+
 /* The first multiple of half a period after t, counted from where the phase is 0. */
 static double next_half_period(const strut_signal *s, double t) {
   double halves = 2.0 * (s->frequency * (t - s->start) + s->phase);

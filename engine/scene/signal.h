@@ -8,6 +8,7 @@
 #ifndef STRUT_ENGINE_SCENE_SIGNAL_H
 #define STRUT_ENGINE_SCENE_SIGNAL_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -50,6 +51,12 @@ STRUT_API strut_signal strut_signal_default(strut_signal_kind kind);
  */
 STRUT_API void strut_signal_evaluate(const strut_signal *signals, int32_t index, double t,
                                      double *value, double *rate);
+
+/** Second time derivative of a signal at time t, where it has one; 0 at corners and jumps. */
+STRUT_API double strut_signal_bend(const strut_signal *signals, int32_t index, double t);
+
+/** Does the value of a signal ever jump? */
+STRUT_API bool strut_signal_jumps(const strut_signal *signals, int32_t index);
 
 /**
  * First time after t [s] at which signal `index` or its rate jumps; INFINITY where it stays smooth.

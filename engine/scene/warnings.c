@@ -10,6 +10,7 @@
 
 #include "engine/base/c_locale.h"
 #include "engine/scene/check_rules.h"
+#include "engine/scene/profile.h"
 
 enum { NAMED = 3, SAMPLES = 1000, MOST_TIMES = 256 };
 
@@ -110,6 +111,7 @@ static void warn_of_depths(strut_checker *checker) {
   double s = sin(g->slope), c = cos(g->slope), weight = 0.0, low[2], high[2];
   named below = {0};
   double depth_of_first = 0.0;
+  int32_t last = -1;
   for (size_t i = 0; i < scene->node_count; i++) {
     weight += scene->nodes[i].mass;
     for (int d = 0; d < 2; d++) {
@@ -118,23 +120,32 @@ static void warn_of_depths(strut_checker *checker) {
     }
   }
   for (size_t i = 0; i < scene->member_count; i++) weight += scene->members[i].mass;
+  double whole = weight * hypot(scene->gravity[0], scene->gravity[1]);
   weight *= fmax(0.0, s * scene->gravity[0] - c * scene->gravity[1]);
   double size = scene->node_count ? hypot(high[0] - low[0], high[1] - low[1]) : 0.0;
   for (size_t i = 0; i < scene->contact_count; i++) {
     const strut_contact *contact = &scene->contacts[i];
     const strut_node *node = &scene->nodes[contact->node];
-    double depth = s * node->start[0] - c * (node->start[1] - g->height);
+    double depth = s * node->start[0] - c * (node->start[1] - g->height), size_of_load = weight;
+    if (scene->ground_count) {
+      depth = strut_ground_depth(&scene->grounds[contact->ground], node->start);
+      size_of_load = whole;
+    }
     if (node->fixed[0] && node->fixed[1]) continue;
-    if (!(depth > DEEPER * weight / contact->stiffness && depth > DEEP * size)) continue;
+    if (!(depth > DEEPER * size_of_load / contact->stiffness && depth > DEEP * size)) continue;
+    if (contact->piece || contact->node == last) continue;
+    last = contact->node;
     if (!below.count) depth_of_first = depth;
     add_name(&below, (size_t)contact->node, node->name);
   }
   if (below.count)
     strut_report_finding(checker, STRUT_ON_NODE, below.first, "inside_ground",
                          "node%s %s start%s inside the ground, '%s' %.3g m deep, and will be "
-                         "ejected; raise the structure, or lower ground.height",
+                         "ejected; %s",
                          below.count > 1 ? "s" : "", list_names(&below), below.count > 1 ? "" : "s",
-                         scene->nodes[below.first].name, depth_of_first);
+                         scene->nodes[below.first].name, depth_of_first,
+                         scene->ground_count ? "move the structure, or the ground"
+                                             : "raise the structure, or lower ground.height");
 }
 
 typedef struct pair {
@@ -222,7 +233,7 @@ strut_status strut_setup_warn(const strut_setup *setup, strut_findings *warnings
   strut_c_locale locale = strut_c_locale_enter();
   if (strut_experiment_span(&setup->experiment, scene).duration > 0.0)
     warn_of_rest_lengths(&checker);
-  if (scene->ground.present) warn_of_depths(&checker);
+  if (strut_scene_has_ground(scene)) warn_of_depths(&checker);
   warn_of_pairs(&checker);
   warn_of_loose_masses(&checker);
   strut_warn_of_overlaps(&checker);

@@ -127,10 +127,11 @@ void strut_potential_force(const strut_potential *p, const double *q, double *fo
   element_sum elements = {p, force, false};
   strut_elements_visit(p->model, t->rest, q, -HUGE_VAL, false, &elements, add_element_force);
   for (int32_t i = 0; i < c->count && p->ground; i++) {
-    double gap = strut_contact_gap(c, i, q), *f = force + c->at[i];
-    if (!(gap < 0.0)) continue;
-    double push = -c->entry[i].stiffness * gap;
-    f[0] += push * c->normal[0], f[1] += push * c->normal[1];
+    strut_contact_pose pose = strut_contact_pose_at(c, i, q, NULL, -1);
+    double *f = force + c->at[i];
+    if (!(pose.gap < 0.0)) continue;
+    double push = -c->entry[i].stiffness * pose.gap;
+    f[0] += push * pose.axes.normal[0], f[1] += push * pose.axes.normal[1];
   }
 }
 
@@ -153,12 +154,12 @@ void strut_potential_gradient(const strut_potential *p, const double *q, double 
   element_sum elements = {p, g, true};
   strut_elements_visit(p->model, t->rest, q, -HUGE_VAL, false, &elements, add_element_force);
   for (int32_t i = 0; i < c->count && p->ground; i++) {
-    double gap = strut_contact_gap(c, i, q);
+    strut_contact_pose pose = strut_contact_pose_at(c, i, q, NULL, -1);
     const int32_t *a = row + c->at[i];
-    if (!(gap < 0.0)) continue;
-    double push = -c->entry[i].stiffness * gap;
-    if (a[0] >= 0) g[a[0]] -= push * c->normal[0];
-    if (a[1] >= 0) g[a[1]] -= push * c->normal[1];
+    if (!(pose.gap < 0.0)) continue;
+    double push = -c->entry[i].stiffness * pose.gap;
+    if (a[0] >= 0) g[a[0]] -= push * pose.axes.normal[0];
+    if (a[1] >= 0) g[a[1]] -= push * pose.axes.normal[1];
   }
 }
 
@@ -257,7 +258,7 @@ static void add_contact(void *context, int32_t i, const strut_closed_contact *co
   const hessian_sum *sum = context;
   const strut_model *model = sum->potential->model;
   const strut_stiffness_block block =
-      strut_block_of_contact(contact->stiffness, model->contacts.normal);
+      strut_block_of_pose(contact->stiffness, contact->across, &contact->axes);
   const int32_t *place = sum->potential->place + strut_places_of_contacts(model);
   strut_block_scatter(&block, STRUT_CONTACT_ENTRIES, place + STRUT_CONTACT_ENTRIES * i, sum->value);
 }

@@ -202,11 +202,12 @@ static void add_contact(void *context, int32_t i, const strut_closed_contact *co
   const strut_contact_table *c = &room->potential->model->contacts;
   for (int32_t k = 0; k < sum->count; k++) {
     const double *mode = room->vector + (size_t)k * (size_t)room->potential->n;
-    room->along[k] =
-        moved(room, mode, c->at[i]) * c->normal[0] + moved(room, mode, c->at[i] + 1) * c->normal[1];
-    room->across[k] = 0.0;
+    const double *n = contact->axes.normal, *t = contact->axes.tangent;
+    double x = moved(room, mode, c->at[i]), y = moved(room, mode, c->at[i] + 1);
+    room->along[k] = x * n[0] + y * n[1];
+    room->across[k] = contact->across != 0.0 ? x * t[0] + y * t[1] : 0.0;
   }
-  add_form(room, sum->count, contact->stiffness, 0.0, 0.0);
+  add_form(room, sum->count, contact->stiffness, contact->across, 0.0);
 }
 
 /* Replaces the first `count` eigenpairs by those of the form summed member by member. */

@@ -56,7 +56,7 @@ static strut_status set_friction(strut_scene *scene, strut_friction_law law) {
 
 static strut_status set_damping(strut_scene *scene, strut_ground_damping law) {
   bool damped = false, other = false;
-  if (!scene->ground.present) return refuse("damping-law", "needs a ground in the model");
+  if (!strut_scene_has_ground(scene)) return refuse("damping-law", "needs a ground in the model");
   for (size_t i = 0; i < scene->contact_count; i++) {
     bool crossley = law == STRUT_DAMPING_HUNT_CROSSLEY;
     damped = damped || (crossley ? scene->contacts[i].dissipation : scene->contacts[i].damping) > 0;
@@ -67,6 +67,7 @@ static strut_status set_damping(strut_scene *scene, strut_ground_damping law) {
                                      ? "hunt_crossley needs ground.dissipation in the model"
                                      : "approach_only needs ground.damping in the model");
   scene->ground.damping_law = law;
+  for (size_t g = 0; g < scene->ground_count; g++) scene->grounds[g].damping_law = law;
   return STRUT_OK;
 }
 

@@ -240,6 +240,7 @@ const char *strut_key_expected(int key, char *buffer, size_t size) {
     case STRUT_TYPE_NODE_TRIPLE: return "three nodes such as [n1, n2, n3]";
     case STRUT_TYPE_NUMBERS: return "a list of numbers";
     case STRUT_TYPE_POINTS: return "a list of points such as [[0, 0], [2 mm, 3 N]]";
+    case STRUT_TYPE_PROFILE: return "a list of points such as [[0, 0], [10 mm, 0], [20 mm, 5 mm]]";
     case STRUT_TYPE_LAW:
       return "a law such as {kind: bilinear, knee: 2 mm, second_stiffness: 5 N/m}";
     case STRUT_TYPE_CONTACT_NODES: return "all, or a list of nodes such as [n1, n2]";

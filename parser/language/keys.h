@@ -30,6 +30,8 @@
   X(LAW, "law", LAW_KIND) \
   X(RAYLEIGH, "rayleigh", RAYLEIGH_MASS) \
   X(GROUND, "ground", GROUND_HEIGHT) \
+  X(CIRCLE, "circle", CIRCLE_CENTRE) \
+  X(MOTION, "motion", MOTION_IN_X) \
   X(FRICTION, "friction", FRICTION_LAW) \
   X(CONTACT, "contact", CONTACT_GROUP) \
   X(ACTUATOR, "actuator", ACTUATOR_MEMBER) \
@@ -78,6 +80,7 @@ typedef enum strut_key_type {
   STRUT_TYPE_NODE_TRIPLE,   /* the names of three nodes */
   STRUT_TYPE_NUMBERS,       /* a list of numbers */
   STRUT_TYPE_POINTS,        /* a list of [x, y] */
+  STRUT_TYPE_PROFILE,       /* a list of [x, y], lengths */
   STRUT_TYPE_LAW,           /* the name of a law, or the keys of law */
   STRUT_TYPE_CONTACT_NODES, /* all, or a list of nodes */
   STRUT_TYPE_NODE_SETS,     /* a list of nodes, or a list of such lists */

@@ -31,7 +31,7 @@
   X(SCENE, MASS_MODEL, "mass_model", WORD, NONE, ANY, "consistent", WRITTEN, 0, "consistent|lumped", FIELD(strut_scene, mass_model), "How a member's mass acts: `consistent` as that of a uniform rod (the paper's model), `lumped` as half of it at each end.") \
   X(SCENE, BARS, "bars", WORD, NONE, ANY, "elastic", OPTIONAL, 0, "elastic|rigid", FIELD(strut_scene, bar_model), "`rigid` bars keep, during a run, the length they have at its start; their stiffness and damping then count only while the structure settles.") \
   X(SCENE, GRAVITY, "gravity", PAIR, ACCELERATION, ANY, "[0, 0]", WRITTEN, 0, "", FIELD(strut_scene, gravity), "Gravitational acceleration.") \
-  X(SCENE, GROUND, "ground", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "The line that nodes may touch; without it there is no ground.") \
+  X(SCENE, GROUND, "ground", MAP, NONE, ANY, "", OPTIONAL, 1, "", BY_HAND, "The line that nodes may touch; without it there is no ground.") \
   X(SCENE, ACTUATORS, "actuators", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of an actuator", BY_HAND, "Members whose rest length a signal changes, or to which it adds a force. Several actuators on one member add up.") \
   X(SCENE, LOADS, "loads", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a load", BY_HAND, "Forces on nodes.") \
   X(SCENE, UNBALANCES, "unbalances", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of an unbalance", BY_HAND, "Masses that rotate about nodes.") \
@@ -42,6 +42,7 @@
   X(SCENE, SOLVER, "solver", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Method, time step and accuracy. Required for a run.") \
   X(SCENE, RUN, "run", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Duration and measurement. Required for a run.") \
   X(SCENE, OUTPUT, "output", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "What is recorded.") \
+  X(SCENE, GROUNDS, "grounds", THINGS, NONE, ANY, "", OPTIONAL, 1, "the keys of [ground](#ground)", BY_HAND, "Several grounds, instead of `ground`: walls, profiles, circles. Nodes touch all of them.") \
   X(NODE, POSITION, "position", PAIR, LENGTH, ANY, "", REQUIRED, 0, "", FIELD(strut_node, position), "Position in the drawn shape.") \
   X(NODE, GROUP, "group", GROUPS, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Groups that provide defaults; later groups take precedence.") \
   X(NODE, MASS, "mass", NUMBER, MASS, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_node, mass), "Point mass, in addition to the masses of the members.") \
@@ -109,8 +110,8 @@
   X(LAW, SMOOTH, "smooth", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_law, smooth), "A table by a monotone spline through its points (Steffen) instead of straight lines.") \
   X(RAYLEIGH, MASS, "mass", NUMBER, FREQUENCY, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_scene, rayleigh_mass), "alpha: the force -alpha M v on the nodes, with the mass matrix M of the run.") \
   X(RAYLEIGH, STIFFNESS, "stiffness", NUMBER, TIME, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_scene, rayleigh_stiffness), "beta: adds beta times the stiffness at the rest length to the damping of every member and hinge.") \
-  X(GROUND, HEIGHT, "height", NUMBER, LENGTH, ANY, "0", OPTIONAL, 0, "", FIELD(strut_ground_section, ground.height), "Height of the line at x = 0.") \
-  X(GROUND, SLOPE, "slope", NUMBER, ANGLE, ANY, "0", OPTIONAL, 0, "", FIELD(strut_ground_section, ground.slope), "Angle of the line, between -90 deg and 90 deg; positive where it rises towards +x.") \
+  X(GROUND, HEIGHT, "height", NUMBER, LENGTH, ANY, "0", OPTIONAL, 1, "", FIELD(strut_ground_section, ground.height), "Height of the line at x = 0.") \
+  X(GROUND, SLOPE, "slope", NUMBER, ANGLE, ANY, "0", OPTIONAL, 2, "", FIELD(strut_ground_section, ground.slope), "Angle of the line, between -90 deg and 90 deg; positive where it rises towards +x. With `through` any angle: the solid is to the right of the direction in which the angle points, so that 90 deg is a wall whose free side is at -x.") \
   X(GROUND, BELT_SPEED, "belt_speed", NUMBER, VELOCITY, ANY, "0", OPTIONAL, 0, "", FIELD(strut_ground_section, ground.belt_speed), "Speed of the surface along itself, positive towards +x.") \
   X(GROUND, STIFFNESS, "stiffness", NUMBER, STIFFNESS, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_ground_section, contact.stiffness), "Normal force per penetration depth.") \
   X(GROUND, DAMPING, "damping", NUMBER, DAMPING, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_ground_section, contact.damping), "Normal force per speed of a node that moves into the ground.") \
@@ -119,6 +120,16 @@
   X(GROUND, FRICTION, "friction", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Friction of every contact; without it the ground is frictionless.") \
   X(GROUND, NODES, "nodes", CONTACT_NODES, NONE, ANY, "all", OPTIONAL, 0, "", BY_HAND, "The nodes that may touch the ground.") \
   X(GROUND, CONTACTS, "contacts", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a contact", BY_HAND, "Settings of single contacts, by the name of the node.") \
+  X(GROUND, THROUGH, "through", PAIR, LENGTH, ANY, "", OPTIONAL, 1, "", BY_HAND, "A point of the line, instead of `height`.") \
+  X(GROUND, NORMAL, "normal", PAIR, NONE, ANY, "", OPTIONAL, 2, "", BY_HAND, "A vector out of the solid, of any length, instead of `slope`.") \
+  X(GROUND, PROFILE, "profile", PROFILE, NONE, ANY, "", OPTIONAL, 3, "", BY_HAND, "Points of a polyline, instead of a line: the solid is to the right of its direction, and its ends continue straight. In a concave corner a node touches both sides.") \
+  X(GROUND, CIRCLE, "circle", MAP, NONE, ANY, "", OPTIONAL, 3, "", BY_HAND, "A circle, instead of a line.") \
+  X(GROUND, MOTION, "motion", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Shakes the ground: displacements by signals.") \
+  X(CIRCLE, CENTRE, "centre", PAIR, LENGTH, ANY, "", REQUIRED, 0, "", FIELD(strut_ground, centre), "Its centre.") \
+  X(CIRCLE, RADIUS, "radius", NUMBER, LENGTH, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_ground, radius), "Its radius.") \
+  X(CIRCLE, INSIDE, "inside", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_ground, inside), "Nodes are inside of it, as in a pipe or a hoop; otherwise it is solid.") \
+  X(MOTION, IN_X, "x", SIGNAL, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Displacement in x.") \
+  X(MOTION, IN_Y, "y", SIGNAL, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Displacement in y.") \
   X(FRICTION, LAW, "law", WORD, NONE, ANY, "karnopp", WRITTEN, 0, STRUT_FRICTION_WORDS, FIELD(strut_friction, law), "`karnopp`: Coulomb friction with a stick band (the paper's law). `coulomb`: exact sticking; needs a method with events. `smooth`: the regularised law -mu_kinetic N u / sqrt(u^2 + width^2), under which contacts creep.") \
   X(FRICTION, MU, "mu", NUMBER, NONE, NOT_NEGATIVE, "", OPTIONAL, 0, "", BY_HAND, "Both friction coefficients.") \
   X(FRICTION, MU_STATIC, "mu_static", NUMBER, NONE, NOT_NEGATIVE, "", WRITTEN, 0, "", FIELD(strut_friction, mu_static), "Coefficient of static friction.") \

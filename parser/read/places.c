@@ -53,10 +53,20 @@ static bool node_place(strut_reader *reader, const strut_finding *finding, strut
   return true;
 }
 
+/* The value of a ground's own key, else its name. */
+static strut_place ground_place(strut_reader *reader, size_t ground, const char *key) {
+  if (!reader->ground_source)
+    return field_place(reader, &reader->ground, key, STRUT_KEY_SCENE_GROUND);
+  int found = key ? strut_key_find(STRUT_SECTION_GROUND, key) : -1;
+  const strut_slot *slot = found < 0 ? NULL : strut_slot_of(&reader->grounds[ground], found);
+  return slot && slot->value ? slot->value->place : reader->ground_source[ground].key->place;
+}
+
 /* The contact's own key, its group's, the ground's, or the name of the contact. */
 static bool contact_place(strut_reader *reader, const strut_finding *finding, strut_place *place) {
   const strut_source *source = &reader->contact_source[finding->index];
-  *place = field_place(reader, &reader->ground, finding->key, STRUT_KEY_SCENE_GROUND);
+  int32_t g = reader->scene->contacts[finding->index].ground;
+  *place = ground_place(reader, (size_t)g, finding->key);
   if (!source->key) return true;
   strut_place before = *place, mine;
   bool fresh = thing_place(reader, source, finding->key, &mine);
@@ -103,6 +113,10 @@ static bool single_place(strut_reader *reader, const strut_finding *finding, str
   bool broken = false;
   switch (finding->subject) {
     case STRUT_ON_GROUND:
+      if (reader->ground_source) {
+        *place = ground_place(reader, finding->index, key);
+        return !reader->grounds[finding->index].broken;
+      }
       fields = &reader->ground, section = STRUT_KEY_SCENE_GROUND;
       broken = key && strcmp(key, "slope") == 0 /* does not depend on other keys */
                    ? strut_slot_of(fields, STRUT_KEY_GROUND_SLOPE)->state != STRUT_GIVEN

@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The ground, its contacts and their friction. See reader.h. */
+#include <math.h>
+#include <stdio.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
+#include "engine/scene/profile.h"
 #include "parser/read/reader.h"
 
 /* The friction of one contact while the layers (ground, groups, contact) are laid over each other. */
@@ -148,24 +152,24 @@ static void read_contact(strut_reader *reader, const strut_tree *key, ground_def
   *source = (strut_source){key, key ? key->next : NULL, !fine};
 }
 
-/* Marks the nodes that may touch the ground. */
-static bool mark_nodes(strut_reader *reader, unsigned char *touches) {
-  const strut_slot *slot = strut_slot_of(&reader->ground, STRUT_KEY_GROUND_NODES);
+/* Marks the nodes that may touch a ground. */
+static bool mark_nodes(strut_reader *reader, strut_fields *fields, strut_owner owner,
+                       unsigned char *touches) {
+  const strut_slot *slot = strut_slot_of(fields, STRUT_KEY_GROUND_NODES);
   size_t count = reader->scene->node_count;
   if (slot->state != STRUT_GIVEN || slot->value->kind == STRUT_TREE_SCALAR) {
     memset(touches, 1, count);
     return slot->state != STRUT_BROKEN;
   }
   bool fine = true;
-  strut_owner owner = {"the ground", NULL};
   for (const strut_tree *item = slot->value->first; item; item = item->next) {
     int32_t node = strut_read_reference(reader, item, "nodes", owner, "node", &reader->node_names,
                                         strut_node_name, count);
     if (node < 0) {
       fine = false;
     } else if (touches[node]) {
-      strut_report_error(reader, item->place, "node '%s' appears twice in 'nodes' of the ground",
-                         item->text);
+      strut_report_error(reader, item->place, "node '%s' appears twice in 'nodes' of %s",
+                         item->text, strut_owner_text(reader, owner));
       fine = false;
     } else {
       touches[node] = 1;
@@ -175,67 +179,302 @@ static bool mark_nodes(strut_reader *reader, unsigned char *touches) {
 }
 
 /* The entry in `contacts` of each node that has one. */
-static bool find_entries(strut_reader *reader, const unsigned char *touches, bool complete,
-                         const strut_tree **entry) {
-  const strut_slot *slot = strut_slot_of(&reader->ground, STRUT_KEY_GROUND_CONTACTS);
+static bool find_entries(strut_reader *reader, strut_fields *fields, strut_owner owner,
+                         const unsigned char *touches, bool complete, const strut_tree **entry) {
+  const strut_slot *slot = strut_slot_of(fields, STRUT_KEY_GROUND_CONTACTS);
   bool fine = slot->state != STRUT_BROKEN;
   if (slot->state != STRUT_GIVEN) return fine;
   for (const strut_tree *key = slot->value->first; key; key = key->next->next) {
-    int32_t node =
-        strut_read_reference(reader, key, "contacts", (strut_owner){"the ground", NULL}, "node",
-                             &reader->node_names, strut_node_name, reader->scene->node_count);
+    int32_t node = strut_read_reference(reader, key, "contacts", owner, "node", &reader->node_names,
+                                        strut_node_name, reader->scene->node_count);
     if (node >= 0 && touches[node]) {
       entry[node] = key;
       continue;
     }
     fine = false;
     if (node >= 0 && complete)
-      strut_report_error(reader, key->place,
-                         "node '%s' has a contact, but 'nodes' of the ground lacks it", key->text);
+      strut_report_error(reader, key->place, "node '%s' has a contact, but 'nodes' of %s lacks it",
+                         key->text, strut_owner_text(reader, owner));
   }
   return fine;
 }
 
-static void read_contacts(strut_reader *reader, ground_defaults *defaults) {
+/* Contacts of one ground, in the order of their nodes. */
+typedef struct contact_list {
+  strut_contact *contact;
+  strut_source *source;
+  size_t count;
+} contact_list;
+
+/* The contacts of a ground with its nodes; of each node one for each convex piece. */
+static void read_contacts(strut_reader *reader, strut_fields *fields, strut_owner owner,
+                          ground_defaults *defaults, size_t pieces, contact_list *list) {
   strut_scene *scene = reader->scene;
   size_t count = scene->node_count;
   unsigned char *touches = strut_reader_allocate(reader, &reader->scratch, count, 1);
   const strut_tree **entry = strut_reader_allocate(reader, &reader->scratch, count, sizeof *entry);
-  scene->contacts = strut_reader_allocate(reader, &scene->arena, count, sizeof *scene->contacts);
-  reader->contact_source =
-      strut_reader_allocate(reader, &reader->scratch, count, sizeof *reader->contact_source);
-  if (!touches || !entry || !scene->contacts || !reader->contact_source) return;
-  bool complete = mark_nodes(reader, touches);
-  if (!find_entries(reader, touches, complete, entry) || !complete) reader->ground.broken = true;
+  list->contact =
+      strut_reader_allocate(reader, &scene->arena, count * pieces, sizeof *list->contact);
+  list->source =
+      strut_reader_allocate(reader, &reader->scratch, count * pieces, sizeof *list->source);
+  if (!touches || !entry || !list->contact || !list->source) return;
+  bool complete = mark_nodes(reader, fields, owner, touches);
+  if (!find_entries(reader, fields, owner, touches, complete, entry) || !complete)
+    fields->broken = true;
   for (size_t i = 0; i < count; i++) {
     if (!touches[i]) continue;
-    size_t c = scene->contact_count++;
-    scene->contacts[c] = defaults->contact;
-    scene->contacts[c].node = (int32_t)i;
-    read_contact(reader, entry[i], defaults, &scene->contacts[c], &reader->contact_source[c]);
+    size_t c = list->count++;
+    list->contact[c] = defaults->contact;
+    list->contact[c].node = (int32_t)i;
+    read_contact(reader, entry[i], defaults, &list->contact[c], &list->source[c]);
+    for (size_t piece = 1; piece < pieces; piece++) {
+      size_t more = list->count++;
+      list->contact[more] = list->contact[c];
+      list->contact[more].piece = (int32_t)piece;
+      list->source[more] = list->source[c];
+    }
   }
 }
 
-void strut_read_ground(strut_reader *reader) {
-  strut_fields *fields = &reader->ground;
-  strut_owner owner = {"the ground", NULL};
-  if (!strut_read_section(reader, STRUT_KEY_SCENE_GROUND, STRUT_SECTION_GROUND, owner.kind, fields))
-    return;
-  strut_require(reader, fields, owner,
-                strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND)->key->place);
-  strut_ground_section section = {.ground = {.present = true}, .contact = strut_contact_default()};
-  strut_store_fields(reader, fields, &reader->scene->arena, &section, sizeof section);
-  reader->scene->ground = section.ground;
-  ground_defaults defaults = {.contact = section.contact, .broken = fields->broken};
+/* What all contacts of a ground begin with. */
+static ground_defaults read_defaults(strut_reader *reader, strut_fields *fields,
+                                     const strut_contact *contact, strut_owner owner) {
+  ground_defaults defaults = {.contact = *contact, .broken = fields->broken};
   const strut_slot *friction = strut_slot_of(fields, STRUT_KEY_GROUND_FRICTION);
-  if (friction->state == STRUT_GIVEN) {
-    strut_fields nested;
-    strut_owner mine = {"the friction of the ground", NULL};
-    strut_read_fields(reader, STRUT_SECTION_FRICTION, friction->value, mine, &nested);
-    add_layer(reader, &defaults.friction, &nested, mine);
+  if (friction->state != STRUT_GIVEN) return defaults;
+  strut_fields nested;
+  char text[200];
+  snprintf(text, sizeof text, "the friction of %.150s", strut_owner_text(reader, owner));
+  strut_owner mine = {strut_keep_text(reader, text), NULL};
+  strut_read_fields(reader, STRUT_SECTION_FRICTION, friction->value, mine, &nested);
+  add_layer(reader, &defaults.friction, &nested, mine);
+  return defaults;
+}
+
+/* ---- shape and motion ---- */
+
+static bool read_profile(strut_reader *reader, const strut_tree *list, strut_owner owner,
+                         strut_ground *ground) {
+  ground->shape = STRUT_GROUND_PROFILE;
+  ground->points =
+      strut_reader_allocate(reader, &reader->scene->arena, list->count, sizeof *ground->points);
+  bool fine = ground->points;
+  for (const strut_tree *point = fine ? list->first : NULL; point; point = point->next)
+    fine = strut_read_pair(reader, point, "profile", owner, STRUT_DIM_LENGTH,
+                           ground->points[ground->point_count++]) &&
+           fine;
+  return fine;
+}
+
+static bool read_circle(strut_reader *reader, const strut_slot *slot, strut_owner owner,
+                        strut_ground *ground) {
+  strut_fields fields;
+  char text[200];
+  snprintf(text, sizeof text, "the circle of %.150s", strut_owner_text(reader, owner));
+  strut_owner mine = {text, NULL};
+  ground->shape = STRUT_GROUND_CIRCLE;
+  strut_read_fields(reader, STRUT_SECTION_CIRCLE, slot->value, mine, &fields);
+  strut_require(reader, &fields, mine, slot->key->place);
+  strut_store_fields(reader, &fields, &reader->scene->arena, ground, sizeof *ground);
+  return !fields.broken;
+}
+
+static bool read_motion(strut_reader *reader, const strut_slot *slot, strut_owner owner,
+                        strut_ground *ground) {
+  strut_fields fields;
+  char text[200];
+  snprintf(text, sizeof text, "the motion of %.150s", strut_owner_text(reader, owner));
+  strut_owner mine = {text, NULL};
+  strut_read_fields(reader, STRUT_SECTION_MOTION, slot->value, mine, &fields);
+  bool fine = !fields.broken;
+  for (int c = 0; c < 2; c++) {
+    int key = c ? STRUT_KEY_MOTION_IN_Y : STRUT_KEY_MOTION_IN_X;
+    const strut_slot *signal = strut_slot_of(&fields, key);
+    const strut_dimension length = STRUT_DIM_LENGTH;
+    if (signal->state != STRUT_GIVEN) continue;
+    ground->motion[c] =
+        strut_read_signal(reader, signal->value, strut_key_at(key)->name, mine, &length);
+    ground->moves[c] = ground->motion[c] >= 0;
+    fine = fine && ground->moves[c];
   }
-  if (strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN)
-    read_contacts(reader, &defaults);
+  return fine;
+}
+
+/* Keys of a line beside those of another shape. */
+static bool shape_is_alone(strut_reader *reader, strut_fields *fields, strut_owner owner) {
+  static const int of_lines[] = {STRUT_KEY_GROUND_HEIGHT, STRUT_KEY_GROUND_SLOPE,
+                                 STRUT_KEY_GROUND_THROUGH, STRUT_KEY_GROUND_NORMAL};
+  const strut_slot *profile = strut_slot_of(fields, STRUT_KEY_GROUND_PROFILE);
+  const strut_slot *shape = profile->key ? profile : strut_slot_of(fields, STRUT_KEY_GROUND_CIRCLE);
+  for (size_t i = 0; shape->key && i < sizeof of_lines / sizeof of_lines[0]; i++) {
+    const strut_slot *slot = strut_slot_of(fields, of_lines[i]);
+    if (!slot->key) continue;
+    strut_report_error(reader, slot->key->place, "%s is a %s, so it has no '%s'",
+                       strut_owner_text(reader, owner), shape->key->text, slot->key->text);
+    return false;
+  }
+  return true;
+}
+
+/* A line by a point and a normal vector. */
+static bool read_line(strut_reader *reader, strut_fields *fields, strut_owner owner,
+                      strut_ground *ground) {
+  const strut_slot *through = strut_slot_of(fields, STRUT_KEY_GROUND_THROUGH);
+  const strut_slot *normal = strut_slot_of(fields, STRUT_KEY_GROUND_NORMAL);
+  if (through->state == STRUT_GIVEN) {
+    ground->placed = true;
+    ground->through[0] = through->number[0], ground->through[1] = through->number[1];
+  }
+  if (normal->state != STRUT_GIVEN) return true;
+  const double *n = normal->number;
+  if (n[0] == 0.0 && n[1] == 0.0) {
+    strut_report_error(reader, normal->value->place, "the normal of %s has no direction",
+                       strut_owner_text(reader, owner));
+    return false;
+  }
+  ground->slope = n[0] == 0.0 ? (n[1] > 0.0 ? 0.0 : STRUT_PI) : atan2(-n[0], n[1]);
+  return true;
+}
+
+/* Reads what one ground is, and marks its fields as broken where that fails. */
+static void read_shape(strut_reader *reader, strut_fields *fields, strut_owner owner,
+                       strut_ground *ground) {
+  const strut_slot *profile = strut_slot_of(fields, STRUT_KEY_GROUND_PROFILE);
+  const strut_slot *circle = strut_slot_of(fields, STRUT_KEY_GROUND_CIRCLE);
+  const strut_slot *motion = strut_slot_of(fields, STRUT_KEY_GROUND_MOTION);
+  bool fine = shape_is_alone(reader, fields, owner) && read_line(reader, fields, owner, ground);
+  if (profile->state == STRUT_GIVEN)
+    fine = read_profile(reader, profile->value, owner, ground) && fine;
+  if (circle->state == STRUT_GIVEN) fine = read_circle(reader, circle, owner, ground) && fine;
+  if (motion->state == STRUT_GIVEN) fine = read_motion(reader, motion, owner, ground) && fine;
+  if (!fine) fields->broken = true;
+}
+
+/* Is it the straight line at rest that `ground` was at first? A point of the line gives its height. */
+static bool is_plain(strut_ground *ground) {
+  if (ground->shape != STRUT_GROUND_LINE || ground->moves[0] || ground->moves[1]) return false;
+  if (!ground->placed) return true;
+  if (!(fabs(ground->slope) < 0.25 * STRUT_TAU)) return false;
+  ground->height = ground->through[1];
+  if (ground->slope != 0.0) ground->height -= ground->through[0] * tan(ground->slope);
+  ground->placed = false;
+  ground->through[0] = ground->through[1] = 0.0;
+  return true;
+}
+
+static size_t pieces_of(const strut_ground *ground) {
+  size_t segment, other;
+  if (ground->shape != STRUT_GROUND_PROFILE) return 1;
+  return strut_profile_check(ground, &segment, &other) ? 1 : strut_ground_pieces(ground);
+}
+
+static bool nodes_are_known(strut_reader *reader) {
+  return strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN;
+}
+
+/* Names of contacts where a node may have several: NODE, NODE.GROUND, NODE.PIECE or NODE.GROUND.PIECE. */
+static void name_contacts(strut_reader *reader) {
+  strut_scene *scene = reader->scene;
+  size_t surfaces = 0;
+  for (size_t g = 0; g < scene->ground_count; g++) surfaces += pieces_of(&scene->grounds[g]);
+  for (size_t i = 0; surfaces > 1 && i < scene->contact_count; i++) {
+    strut_contact *c = &scene->contacts[i];
+    const char *node = scene->nodes[c->node].name, *ground = scene->grounds[c->ground].name;
+    size_t size = strlen(node) + strlen(ground) + 16, used;
+    char *name = strut_reader_allocate(reader, &scene->arena, size, 1);
+    if (!name) return;
+    used = (size_t)snprintf(name, size, "%s%s%s", node, *ground ? "." : "", ground);
+    if (pieces_of(&scene->grounds[c->ground]) > 1)
+      snprintf(name + used, size - used, ".%d", (int)c->piece + 1);
+    c->name = name;
+  }
+}
+
+/* All contacts in the order of their nodes; those of one node in the order of the grounds. */
+static void merge_contacts(strut_reader *reader, const contact_list *lists) {
+  strut_scene *scene = reader->scene;
+  size_t grounds = scene->ground_count, total = 0;
+  size_t *next = strut_reader_allocate(reader, &reader->scratch, grounds, sizeof *next);
+  for (size_t g = 0; g < grounds; g++) total += lists[g].count;
+  scene->contacts = strut_reader_allocate(reader, &scene->arena, total, sizeof *scene->contacts);
+  reader->contact_source =
+      strut_reader_allocate(reader, &reader->scratch, total, sizeof *reader->contact_source);
+  if (!next || !scene->contacts || !reader->contact_source) return;
+  for (int32_t node = 0; (size_t)node < scene->node_count; node++)
+    for (size_t g = 0; g < grounds; g++)
+      for (; next[g] < lists[g].count && lists[g].contact[next[g]].node == node; next[g]++) {
+        size_t c = scene->contact_count++;
+        scene->contacts[c] = lists[g].contact[next[g]];
+        scene->contacts[c].ground = (int32_t)g;
+        reader->contact_source[c] = lists[g].source[next[g]];
+      }
+  name_contacts(reader);
+}
+
+/* One ground of the scene: its fields, itself and its contacts. */
+static void read_one(strut_reader *reader, strut_fields *fields, strut_owner owner,
+                     strut_place place, strut_ground *ground, contact_list *list) {
+  strut_require(reader, fields, owner, place);
+  strut_ground_section section = {.ground = *ground, .contact = strut_contact_default()};
+  strut_store_fields(reader, fields, &reader->scene->arena, &section, sizeof section);
+  *ground = section.ground;
+  read_shape(reader, fields, owner, ground);
+  ground_defaults defaults = read_defaults(reader, fields, &section.contact, owner);
+  if (nodes_are_known(reader))
+    read_contacts(reader, fields, owner, &defaults, pieces_of(ground), list);
   else
     fields->broken = true;
+}
+
+static void read_single(strut_reader *reader) {
+  strut_scene *scene = reader->scene;
+  strut_fields *fields = &reader->ground;
+  strut_owner owner = {"the ground", NULL};
+  strut_ground ground = {.present = true, .name = ""};
+  contact_list list = {0};
+  if (!strut_read_section(reader, STRUT_KEY_SCENE_GROUND, STRUT_SECTION_GROUND, owner.kind, fields))
+    return;
+  read_one(reader, fields, owner, strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND)->key->place,
+           &ground, &list);
+  if (is_plain(&ground)) {
+    scene->ground = ground;
+    scene->contacts = list.contact, scene->contact_count = list.count;
+    reader->contact_source = list.source;
+    return;
+  }
+  scene->grounds = strut_reader_allocate(reader, &scene->arena, 1, sizeof *scene->grounds);
+  if (!scene->grounds) return;
+  ground.present = false;
+  scene->grounds[scene->ground_count++] = ground;
+  reader->grounds = fields;
+  merge_contacts(reader, &list);
+}
+
+void strut_read_ground(strut_reader *reader) {
+  strut_scene *scene = reader->scene;
+  read_single(reader);
+  const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_GROUNDS);
+  if (!map || strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND)->key) return;
+  contact_list *lists = strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *lists);
+  scene->grounds = strut_reader_allocate(reader, &scene->arena, map->count, sizeof *scene->grounds);
+  reader->grounds =
+      strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->grounds);
+  reader->ground_source =
+      strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->ground_source);
+  if (!lists || !scene->grounds || !reader->grounds || !reader->ground_source) return;
+  for (const strut_tree *key = map->first; key; key = key->next->next) {
+    size_t g = strut_next_entry(reader, &scene->ground_count);
+    strut_owner owner = {"ground", strut_keep_text(reader, key->text)};
+    scene->grounds[g] = (strut_ground){.name = owner.name};
+    lists[g] = (contact_list){0};
+    strut_add_name(reader, &reader->ground_names, owner.name, g);
+    bool fine = strut_read_name(reader, key, "ground");
+    strut_read_fields(reader, STRUT_SECTION_GROUND, key->next, owner, &reader->grounds[g]);
+    read_one(reader, &reader->grounds[g], owner, key->place, &scene->grounds[g], &lists[g]);
+    if (!fine) reader->grounds[g].broken = true;
+    if (reader->grounds[g].broken)
+      reader->ground.broken = true; /* so that what depends on it is not reported */
+    reader->ground_source[g] = (strut_source){key, key->next, reader->grounds[g].broken};
+  }
+  merge_contacts(reader, lists);
 }

@@ -180,8 +180,10 @@ static bool touches(strut_reader *reader, strut_column_kind kind, int32_t node,
   bool of_contact = columns[kind].owner == STRUT_COLUMN_OF_CONTACT;
   if (!of_contact && kind != STRUT_COLUMN_HEIGHT) return true;
   const strut_slot *ground = strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND);
-  if (ground->state == STRUT_BROKEN || reader->ground.broken) return false; /* reported */
-  if (ground->state == STRUT_ABSENT)
+  const strut_slot *grounds = strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUNDS);
+  if (ground->state == STRUT_BROKEN || grounds->state == STRUT_BROKEN || reader->ground.broken)
+    return false; /* reported */
+  if (ground->state == STRUT_ABSENT && grounds->state == STRUT_ABSENT)
     snprintf(refusal->text, sizeof refusal->text,
              "there is no ground, so node '%s' has no '%s'; add 'ground' to the scene",
              scene->nodes[node].name, columns[kind].word);

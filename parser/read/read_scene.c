@@ -106,7 +106,8 @@ static void free_reader(strut_reader *reader) {
       &reader->node_names,      &reader->member_names,    &reader->group_names,
       &reader->parameter_names, &reader->signal_names,    &reader->configuration_names,
       &reader->actuator_names,  &reader->load_names,      &reader->hinge_names,
-      &reader->cell_names,      &reader->collision_names, &reader->unbalance_names};
+      &reader->cell_names,      &reader->collision_names, &reader->unbalance_names,
+      &reader->ground_names};
   for (size_t i = 0; i < sizeof maps / sizeof maps[0]; i++) strut_name_map_free(maps[i]);
   strut_release(reader->signals);
   strut_release(reader->signal_state);

@@ -137,6 +137,9 @@ typedef struct strut_reader {
   bool masses_unknown; /* some mass could not be read */
   bool groups_unknown; /* the groups of some thing could not be read */
   bool failed, out_of_memory;
+  strut_fields *grounds;       /* of each of the scene's grounds; of `ground` the one above */
+  strut_source *ground_source; /* of `grounds`, or NULL */
+  strut_name_map ground_names;
 } strut_reader;
 
 /** Is this the tree of a study? As a model it would be wrong in every line. */

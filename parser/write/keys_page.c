@@ -48,7 +48,13 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
     [STRUT_SECTION_RAYLEIGH] =
         "`rayleigh: {...}`: a mode of angular frequency w gets the damping ratio alpha / (2 w) + "
         "beta w / 2, beside what members' own dampers give.",
-    [STRUT_SECTION_GROUND] = "`ground: {...}`: the line that nodes may touch.",
+    [STRUT_SECTION_GROUND] =
+        "`ground: {...}`: the line, profile or circle that nodes may touch; or several of them, "
+        "`grounds: {NAME: {...}}`.",
+    [STRUT_SECTION_CIRCLE] = "`circle: {...}` of a ground.",
+    [STRUT_SECTION_MOTION] =
+        "`motion: {x: SIGNAL, y: SIGNAL}` of a ground: its displacement, in lengths. Its work on "
+        "the structure is in the energy balance. A displacement must not jump.",
     [STRUT_SECTION_FRICTION] =
         "`friction: {...}` of the ground, of a group, or of a contact; keys of a contact take "
         "precedence over those of its groups, and these over those of the ground. Karnopp's law "
@@ -66,8 +72,8 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
     [STRUT_SECTION_SIGNAL] =
         "A signal is a mapping with one of these keys, or the name of an entry of `signals`. The "
         "unit of its values follows from its use: a length, an angle or a pressure, or a force or "
-        "a "
-        "moment, for an actuator, a number without unit for a load.",
+        "a moment, for an actuator, a length for the motion of a ground, a number without unit for "
+        "a load.",
     [STRUT_SECTION_SINE] = "`{sine: {...}}`.",
     [STRUT_SECTION_HALF_SINE] = "`{half_sine: {...}}`: a single pulse.",
     [STRUT_SECTION_SQUARE] = "`{square: {...}}`.",
@@ -146,6 +152,7 @@ static void put_type(strut_writer *writer, const strut_key *key) {
       [STRUT_TYPE_NODE_RING] = "names of three nodes or more",
       [STRUT_TYPE_NUMBERS] = "list of numbers",
       [STRUT_TYPE_POINTS] = "list of `[x, force]`",
+      [STRUT_TYPE_PROFILE] = "list of `[x, y]` [m]",
       [STRUT_TYPE_LAW] = "[law](#law), or the kind of one",
       [STRUT_TYPE_CONTACT_NODES] = "`all`, or list of nodes",
       [STRUT_TYPE_NODE_SETS] = "list of nodes, or list of such lists",

@@ -239,10 +239,26 @@ static void put_friction(strut_writer *writer, const strut_friction *f) {
   strut_put(writer, "}");
 }
 
+/* Contacts of the ground that is being written; those of further pieces are like that of the first. */
+static bool is_written(const strut_writer *writer, const strut_contact *c) {
+  return c->ground == writer->ground && c->piece == 0;
+}
+
+/* The first contact of the ground that is being written, or NULL. */
+static const strut_contact *first_contact(const strut_writer *writer) {
+  for (size_t i = 0; i < writer->scene->contact_count; i++)
+    if (is_written(writer, &writer->scene->contacts[i])) return &writer->scene->contacts[i];
+  return NULL;
+}
+
 /* Friction is written once for all contacts where they share it, else for each contact that has it. */
-static bool friction_is_shared(const strut_scene *scene) {
-  for (size_t i = 1; i < scene->contact_count; i++)
-    if (frictions_differ(&scene->contacts[i].friction, &scene->contacts[0].friction)) return false;
+static bool friction_is_shared(const strut_writer *writer) {
+  const strut_scene *scene = writer->scene;
+  const strut_contact *first = first_contact(writer);
+  for (size_t i = 0; i < scene->contact_count; i++)
+    if (is_written(writer, &scene->contacts[i]) &&
+        frictions_differ(&scene->contacts[i].friction, &first->friction))
+      return false;
   return true;
 }
 
@@ -251,7 +267,7 @@ static void put_contact(strut_writer *writer, const strut_contact *contact, bool
   strut_mapping mapping = STRUT_MAPPING_INLINE;
   strut_put_name(writer, writer->scene->nodes[contact->node].name);
   strut_put(writer, ": {");
-  strut_put_fields(writer, &mapping, STRUT_SECTION_CONTACT, contact, writer->scene->contacts, NULL);
+  strut_put_fields(writer, &mapping, STRUT_SECTION_CONTACT, contact, first_contact(writer), NULL);
   if (friction) {
     strut_put_key_name(writer, &mapping, STRUT_KEY_CONTACT_FRICTION);
     put_friction(writer, &contact->friction);
@@ -261,50 +277,132 @@ static void put_contact(strut_writer *writer, const strut_contact *contact, bool
 
 static void put_contacts(strut_writer *writer, strut_mapping *mapping) {
   const strut_scene *scene = writer->scene;
-  bool shared = friction_is_shared(scene), begun = false;
+  const strut_contact *first = first_contact(writer);
+  bool shared = friction_is_shared(writer), begun = false;
   for (size_t i = 0; i < scene->contact_count; i++) {
     const strut_contact *contact = &scene->contacts[i];
+    if (!is_written(writer, contact)) continue;
     bool friction = !shared && has_friction(&contact->friction);
-    if (!friction && !strut_fields_differ(STRUT_SECTION_CONTACT, contact, scene->contacts))
-      continue;
+    if (!friction && !strut_fields_differ(STRUT_SECTION_CONTACT, contact, first)) continue;
     if (!begun) strut_put(writer, mapping->separator);
-    strut_put(writer, begun ? "\n    " : "contacts:\n    ");
+    if (!begun) strut_put(writer, "contacts:");
+    strut_put(writer, mapping->next);
+    strut_put(writer, "  ");
     begun = true;
     put_contact(writer, contact, friction);
   }
 }
 
+static void put_ground_nodes(strut_writer *writer) {
+  const strut_scene *scene = writer->scene;
+  size_t count = 0;
+  for (size_t i = 0; i < scene->contact_count; i++)
+    count += is_written(writer, &scene->contacts[i]);
+  bool every = count == scene->node_count, begun = false;
+  strut_put(writer, every ? "all" : "[");
+  for (size_t i = 0; i < scene->contact_count && !every; i++) {
+    if (!is_written(writer, &scene->contacts[i])) continue;
+    if (begun) strut_put(writer, ", ");
+    begun = true;
+    strut_put_name(writer, scene->nodes[scene->contacts[i].node].name);
+  }
+  if (!every) strut_put(writer, "]");
+}
+
+static void put_profile(strut_writer *writer, const strut_ground *g) {
+  for (size_t k = 0; k < g->point_count; k++) {
+    strut_put(writer, k ? ", " : "[");
+    strut_put_pair(writer, g->points[k]);
+  }
+  strut_put(writer, "]");
+}
+
+static void put_motion(strut_writer *writer, const strut_ground *g) {
+  strut_mapping mapping = STRUT_MAPPING_INLINE;
+  strut_put(writer, "{");
+  for (int c = 0; c < 2; c++) {
+    if (!g->moves[c]) continue;
+    strut_put_key_name(writer, &mapping, c ? STRUT_KEY_MOTION_IN_Y : STRUT_KEY_MOTION_IN_X);
+    strut_put_signal_reference(writer, g->motion[c]);
+  }
+  strut_put(writer, "}");
+}
+
+/* Keys of a ground's shape and motion; true if `key` is one of them. */
+static bool put_ground_shape(strut_writer *writer, strut_mapping *mapping, int key,
+                             const strut_ground *g) {
+  strut_mapping inner = STRUT_MAPPING_INLINE;
+  const strut_ground usual = {.radius = 0.0};
+  switch (key) {
+    case STRUT_KEY_GROUND_NORMAL: return true; /* as the slope */
+    case STRUT_KEY_GROUND_THROUGH:
+      if (!g->placed) return true;
+      strut_put_key_name(writer, mapping, key);
+      strut_put_pair(writer, g->through);
+      return true;
+    case STRUT_KEY_GROUND_PROFILE:
+      if (g->shape != STRUT_GROUND_PROFILE) return true;
+      strut_put_key_name(writer, mapping, key);
+      put_profile(writer, g);
+      return true;
+    case STRUT_KEY_GROUND_CIRCLE:
+      if (g->shape != STRUT_GROUND_CIRCLE) return true;
+      strut_put_key_name(writer, mapping, key);
+      strut_put(writer, "{");
+      strut_put_fields(writer, &inner, STRUT_SECTION_CIRCLE, g, &usual, NULL);
+      strut_put(writer, "}");
+      return true;
+    case STRUT_KEY_GROUND_MOTION:
+      if (!g->moves[0] && !g->moves[1]) return true;
+      strut_put_key_name(writer, mapping, key);
+      put_motion(writer, g);
+      return true;
+    default: return false;
+  }
+}
+
 static void put_ground_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
                                const void *object) {
-  const strut_scene *scene = writer->scene;
-  const strut_contact *all = scene->contacts;
-  (void)object;
+  const strut_ground_section *section = object;
+  if (put_ground_shape(writer, mapping, key, &section->ground)) return;
   if (key == STRUT_KEY_GROUND_FRICTION) {
-    if (!friction_is_shared(scene) || !has_friction(&all->friction)) return;
+    const strut_friction *friction = &section->contact.friction;
+    if (!friction_is_shared(writer) || !has_friction(friction)) return;
     strut_put_key_name(writer, mapping, key);
-    put_friction(writer, &all->friction);
+    put_friction(writer, friction);
   } else if (key == STRUT_KEY_GROUND_CONTACTS) {
     put_contacts(writer, mapping);
   } else {
-    bool every = scene->contact_count == scene->node_count;
     strut_put_key_name(writer, mapping, key);
-    strut_put(writer, every ? "all" : "[");
-    for (size_t i = 0; i < scene->contact_count && !every; i++) {
-      if (i) strut_put(writer, ", ");
-      strut_put_name(writer, scene->nodes[all[i].node].name);
-    }
-    if (!every) strut_put(writer, "]");
+    put_ground_nodes(writer);
   }
+}
+
+/* The keys of one ground, on lines that begin with `indent`, a line break before it. */
+static void put_one_ground(strut_writer *writer, const strut_ground *ground, const char *indent) {
+  const strut_ground_section usual = {.contact = strut_contact_default()};
+  strut_mapping mapping = {indent, indent};
+  const strut_contact *first = first_contact(writer);
+  if (!first) return;
+  strut_ground_section section = {*ground, *first};
+  strut_put_fields(writer, &mapping, STRUT_SECTION_GROUND, &section, &usual, put_ground_by_hand);
 }
 
 static void put_ground(strut_writer *writer) {
   const strut_scene *scene = writer->scene;
-  const strut_ground_section usual = {.contact = strut_contact_default()};
-  strut_mapping mapping = STRUT_MAPPING_LINES("  ");
-  if (!scene->ground.present || !scene->contact_count) return;
-  strut_ground_section section = {scene->ground, scene->contacts[0]};
-  strut_put(writer, "ground:");
-  strut_put_fields(writer, &mapping, STRUT_SECTION_GROUND, &section, &usual, put_ground_by_hand);
+  bool single = scene->ground_count == 1 && !*scene->grounds[0].name;
+  if (!strut_scene_has_ground(scene) || !scene->contact_count) return;
+  strut_put(writer, single || scene->ground.present ? "ground:" : "grounds:");
+  if (scene->ground.present) put_one_ground(writer, &scene->ground, "\n  ");
+  for (size_t g = 0; g < scene->ground_count; g++) {
+    writer->ground = (int32_t)g;
+    if (!single) {
+      strut_put(writer, "\n  ");
+      strut_put_name(writer, scene->grounds[g].name);
+      strut_put(writer, ":");
+    }
+    put_one_ground(writer, &scene->grounds[g], single ? "\n  " : "\n    ");
+  }
   strut_put(writer, "\n");
 }
 
@@ -315,6 +413,9 @@ static int32_t nameless_period(const strut_scene *scene, const strut_experiment 
     if (scene->actuators[i].signal == e->period_signal) return -1;
   for (size_t i = 0; i < scene->load_count; i++)
     if (scene->loads[i].signal == e->period_signal) return -1;
+  for (size_t i = 0; i < scene->ground_count; i++)
+    for (int c = 0; c < 2; c++)
+      if (scene->grounds[i].moves[c] && scene->grounds[i].motion[c] == e->period_signal) return -1;
   return e->period_signal;
 }
 

@@ -19,6 +19,7 @@ typedef struct strut_writer {
   bool failed;           /* memory was out; all later writing is ignored */
   int32_t period_signal; /* a signal that has no name but needs one; else -1 */
   strut_setup usual;     /* the defaults */
+  int32_t ground;        /* the one that is being written */
 } strut_writer;
 
 void strut_put(strut_writer *writer, const char *text);

@@ -164,8 +164,8 @@ static double earliest_dip(const strut_model *model, const strut_event_stepper *
   double faint[2] = {0.01 * part * model->size, part * l->fastest}; /* of a gap, of a slip */
   for (int32_t i = 0; i < c->count; i++) {
     strut_touch from, to;
-    measure_contact(c, i, l->now->q, l->now->v, &from);
-    measure_contact(c, i, l->next->q, l->next->v, &to);
+    measure_at_end(c, l, l->now, i, &from);
+    measure_at_end(c, l, l->next, i, &to);
     bool open = l->mode[i] == STRUT_MODE_OPEN;
     double side = open ? 1.0 : -1.0;
     double at = 0.0;

@@ -40,8 +40,10 @@ static strut_status make_response(const strut_model *model, strut_state *state, 
     xy[2 * r->count++ + 1] = y[k + 1];
   }
   r->at = place, r->xy = xy;
+  r->own[0] = x[at], r->own[1] = y[at + 1];
   r->normal = x[at] * c->normal[0] * c->normal[0] + y[at + 1] * c->normal[1] * c->normal[1];
   r->tangent = x[at] * c->tangent[0] * c->tangent[0] + y[at + 1] * c->tangent[1] * c->tangent[1];
+  if (c->surface) r->normal = r->tangent = fmax(x[at], y[at + 1]);
   return STRUT_OK;
 }
 
@@ -103,7 +105,7 @@ strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *
   l->refine = e->refine > 0.0 ? e->refine : fmin(fmax(1.0, wanted), MOST_REFINED);
   l->refine_time = e->refine_time;
   l->refine_memory = e->refine_memory;
-  l->passes = c->normal[0] != 0.0 && !model->mass->shared ? 8 : 1;
+  l->passes = c->surface || (c->normal[0] != 0.0 && !model->mass->shared) ? 8 : 1;
   l->stuck_room = c->count < LARGEST_FACTOR ? c->count : LARGEST_FACTOR;
   size_t room = (size_t)l->stuck_room;
   l->stuck_factor = strut_arena_allocate(&state->arena, room * room, sizeof(double));
@@ -114,12 +116,12 @@ strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *
   return find_bodies(model, l);
 }
 
-void strut_apply_contact_impulse(const strut_model *model, const strut_event_stepper *l, int32_t i,
-                                 double normal, double tangential, double *a) {
-  const strut_contact_table *c = &model->contacts;
+void strut_apply_contact_impulse(const strut_event_stepper *l, int32_t i,
+                                 const strut_contact_axes *axes, double normal, double tangential,
+                                 double *a) {
   const strut_contact_compliance *r = &l->response[i];
-  double fx = tangential * c->tangent[0] + normal * c->normal[0];
-  double fy = tangential * c->tangent[1] + normal * c->normal[1];
+  double fx = tangential * axes->tangent[0] + normal * axes->normal[0];
+  double fy = tangential * axes->tangent[1] + normal * axes->normal[1];
   for (int32_t k = 0; k < r->count; k++) {
     a[r->at[k]] += r->xy[2 * k] * fx;
     a[r->at[k] + 1] += r->xy[2 * k + 1] * fy;
@@ -139,19 +141,21 @@ static bool factor(int32_t n, double *a) {
 }
 
 /* T' M^-1 T of the stuck contacts, column by column through the scatter array. */
-static void factor_stuck(const strut_model *model, strut_event_stepper *l) {
+static void factor_stuck(const strut_model *model, strut_event_stepper *l,
+                         const strut_touch *touch) {
   const strut_contact_table *c = &model->contacts;
   int32_t n = l->stuck_count;
-  const double *t = c->tangent;
   for (int32_t j = 0; j < n; j++) {
     const strut_contact_compliance *r = &l->response[l->stuck[j]];
+    const double *t = strut_touch_axes(c, &touch[l->stuck[j]])->tangent;
     for (int32_t k = 0; k < r->count; k++) {
       l->scatter[r->at[k]] = r->xy[2 * k] * t[0];
       l->scatter[r->at[k] + 1] = r->xy[2 * k + 1] * t[1];
     }
     for (int32_t i = j; i < n; i++) {
       uint32_t at = c->at[l->stuck[i]];
-      l->stuck_factor[i * n + j] = l->scatter[at] * t[0] + l->scatter[at + 1] * t[1];
+      const double *s = strut_touch_axes(c, &touch[l->stuck[i]])->tangent;
+      l->stuck_factor[i * n + j] = l->scatter[at] * s[0] + l->scatter[at + 1] * s[1];
     }
     for (int32_t k = 0; k < r->count; k++) l->scatter[r->at[k]] = l->scatter[r->at[k] + 1] = 0.0;
   }
@@ -190,7 +194,7 @@ static void list_sliding_contacts(const strut_model *model, strut_event_stepper 
 
 void strut_update_active_set(const strut_model *model, strut_event_stepper *l) {
   l->closed_count = l->stuck_count = 0;
-  l->contacts_decoupled = model->contacts.normal[0] == 0.0;
+  l->contacts_decoupled = model->contacts.normal[0] == 0.0 && !model->contacts.surface;
   for (int32_t i = 0; i < model->contacts.count; i++) l->body_seen[i] = false;
   for (int32_t i = 0; i < model->contacts.count; i++) {
     l->outward[i] = l->mode[i] == STRUT_MODE_OPEN ? 1.0 : -1.0;
@@ -204,32 +208,43 @@ void strut_update_active_set(const strut_model *model, strut_event_stepper *l) {
   list_sliding_contacts(model, l);
   if (l->stuck_count > l->stuck_room)
     l->stuck_count = -l->stuck_count;
-  else if (l->stuck_count > 1)
-    factor_stuck(model, l);
+  else if (l->stuck_count > 1 && !model->contacts.surface)
+    factor_stuck(model, l, l->now->touch);
 }
 
-static double along(const strut_contact_table *c, int32_t i, const double *x) {
-  return x[c->at[i]] * c->tangent[0] + x[c->at[i] + 1] * c->tangent[1];
+/* Rate of the sliding speed of a contact under the accelerations x. */
+static double along(const strut_contact_table *c, int32_t i, const double *x,
+                    const strut_touch *touch) {
+  const double *t = strut_touch_axes(c, &touch[i])->tangent;
+  double rate = x[c->at[i]] * t[0] + x[c->at[i] + 1] * t[1];
+  return c->surface ? rate + touch[i].slip_drift : rate;
 }
 
 /* What rounding leaves of the accelerations of held nodes: nothing, so that they do not creep. */
-static void still(const strut_contact_table *c, int32_t i, double *a) {
-  double rest = along(c, i, a);
-  a[c->at[i]] -= rest * c->tangent[0];
-  a[c->at[i] + 1] -= rest * c->tangent[1];
+static void still(const strut_contact_table *c, int32_t i, double *a, const strut_touch *touch) {
+  const double *t = strut_touch_axes(c, &touch[i])->tangent;
+  double rest = along(c, i, a, touch);
+  a[c->at[i]] -= rest * t[0];
+  a[c->at[i] + 1] -= rest * t[1];
+}
+
+static double tangent_compliance(const strut_contact_table *c, const strut_event_stepper *l,
+                                 int32_t i, const strut_touch *touch) {
+  if (!c->surface) return l->response[i].tangent;
+  return strut_compliance_along(&l->response[i], touch[i].axes.tangent);
 }
 
 /* One after the other until none needs more: for sets too large for a matrix. */
 static void hold_by_sweeps(const strut_model *model, const strut_event_stepper *l, double *a,
                            strut_step_end *end) {
   const strut_contact_table *c = &model->contacts;
-  int32_t n = -l->stuck_count;
+  int32_t n = l->stuck_count < 0 ? -l->stuck_count : l->stuck_count;
   for (int sweep = 0; sweep < 200; sweep++) {
     double largest = 0.0, changed = 0.0;
     for (int32_t k = 0; k < n; k++) {
       int32_t i = l->stuck[k];
-      double more = -along(c, i, a) / l->response[i].tangent;
-      strut_apply_contact_impulse(model, l, i, 0.0, more, a);
+      double more = -along(c, i, a, end->touch) / tangent_compliance(c, l, i, end->touch);
+      strut_apply_contact_impulse(l, i, strut_touch_axes(c, &end->touch[i]), 0.0, more, a);
       end->touch[i].friction += more;
       changed = fmax(changed, fabs(more));
       largest = fmax(largest, fabs(end->touch[i].friction));
@@ -243,13 +258,22 @@ void strut_solve_stick_constraints(const strut_model *model, strut_event_stepper
   const strut_contact_table *c = &model->contacts;
   int32_t n = l->stuck_count;
   double *x = l->stuck_work;
+  if (c->surface && n > 1) { /* their axes turn, or have not been known until now */
+    factor_stuck(model, l, end->touch);
+    bool singular = l->stuck_count < 0;
+    l->stuck_count = n;
+    if (singular) {
+      hold_by_sweeps(model, l, a, end);
+      return;
+    }
+  }
   if (n < 0) {
     hold_by_sweeps(model, l, a, end);
     return;
   }
-  for (int32_t k = 0; k < n; k++) x[k] = -along(c, l->stuck[k], a);
+  for (int32_t k = 0; k < n; k++) x[k] = -along(c, l->stuck[k], a, end->touch);
   if (n == 1) {
-    x[0] /= l->response[l->stuck[0]].tangent;
+    x[0] /= tangent_compliance(c, l, l->stuck[0], end->touch);
   } else {
     const double *f = l->stuck_factor;
     for (int32_t i = 0; i < n; i++) {
@@ -263,9 +287,9 @@ void strut_solve_stick_constraints(const strut_model *model, strut_event_stepper
   }
   for (int32_t k = 0; k < n; k++) {
     int32_t i = l->stuck[k];
-    strut_apply_contact_impulse(model, l, i, 0.0, x[k], a);
+    strut_apply_contact_impulse(l, i, strut_touch_axes(c, &end->touch[i]), 0.0, x[k], a);
     end->touch[i].friction += x[k];
-    still(c, i, a);
+    still(c, i, a, end->touch);
   }
-  for (int32_t k = 0; k < n; k++) still(c, l->stuck[k], a);
+  for (int32_t k = 0; k < n; k++) still(c, l->stuck[k], a, end->touch);
 }

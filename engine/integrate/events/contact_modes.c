@@ -33,15 +33,16 @@ void strut_evaluate_acceleration(const strut_model *model, strut_state *state,
 static void snap(const strut_model *model, strut_event_stepper *l, int32_t i, double slip) {
   const strut_contact_table *c = &model->contacts;
   strut_touch place;
-  measure_contact(c, i, l->now->q, l->now->v, &place);
+  measure_at_end(c, l, l->now, i, &place);
   double more = slip - place.slip;
   double *v = l->now->v + c->at[i];
-  if (c->normal[0] == 0.0) {
+  if (c->normal[0] == 0.0 && !c->surface) {
     v[0] = slip + c->belt_speed;
     return;
   }
-  v[0] += more * c->tangent[0];
-  v[1] += more * c->tangent[1];
+  const strut_contact_axes *axes = strut_touch_axes(c, &place);
+  v[0] += more * axes->tangent[0];
+  v[1] += more * axes->tangent[1];
 }
 
 static void set_acting(strut_state *state, strut_event_stepper *l, int32_t k, bool pulls) {
@@ -56,16 +57,28 @@ static void set_acting(strut_state *state, strut_event_stepper *l, int32_t k, bo
   state->slack_force_threshold[j] = pulls ? -HUGE_VAL : HUGE_VAL;
 }
 
-/* Mode of a contact that touches, from its speeds. */
-static void close_contact(const strut_model *model, strut_event_stepper *l, int32_t i) {
+/* May the node of a contact move along it? Otherwise a support holds it. */
+static bool is_free_along(const strut_model *model, const strut_event_stepper *l, int32_t i,
+                          const strut_touch *o) {
+  const strut_contact_compliance *r = &l->response[i];
+  if (!model->contacts.surface) return r->tangent > 0.0;
+  return strut_compliance_along(r, o->axes.tangent) > 1e-12 * r->tangent;
+}
+
+/* Mode of a contact that touches, from its speeds; with surfaces on `facet`, or -1: the nearest. */
+static void close_contact(const strut_model *model, strut_event_stepper *l, int32_t i,
+                          int32_t facet) {
   const strut_contact_entry *e = &model->contacts.entry[i];
   strut_touch o;
-  measure_contact(&model->contacts, i, l->now->q, l->now->v, &o);
+  l->mode[i] = STRUT_MODE_SLIDE;
+  if (l->facet && facet < 0)
+    facet = strut_contact_pose_at(&model->contacts, i, l->now->q, l->now->motion, -1).facet;
+  if (l->facet) l->facet[i] = facet;
+  measure_at_end(&model->contacts, l, l->now, i, &o);
   l->damper[i] = 0;
   if (l->stepper->exact && e->damping > 0.0) l->damper[i] = o.into < 0.0 ? 1 : -1;
   l->side[i] = o.slip < 0.0 ? -1 : 1;
-  l->mode[i] = STRUT_MODE_SLIDE;
-  if (!(l->response[i].tangent > 0.0)) return; /* a support holds it along the ground */
+  if (!is_free_along(model, l, i, &o)) return;
   switch (strut_friction_states(e->friction.law)) {
     case STRUT_FRICTION_ABSENT:
     case STRUT_FRICTION_CONTINUOUS: break;
@@ -173,11 +186,12 @@ void strut_modes_after_jump(const strut_model *model, strut_state *state, strut_
 void strut_modes_start(const strut_model *model, strut_state *state, strut_event_stepper *l,
                        double t) {
   l->fresh = false;
+  strut_surface_move(model, state, l->now, t);
   for (int32_t i = 0; i < model->contacts.count; i++) {
     strut_touch o;
-    measure_contact(&model->contacts, i, l->now->q, l->now->v, &o);
     l->mode[i] = STRUT_MODE_OPEN;
-    if (o.gap < 0.0 || (o.gap == 0.0 && o.into <= 0.0)) close_contact(model, l, i);
+    measure_at_end(&model->contacts, l, l->now, i, &o);
+    if (o.gap < 0.0 || (o.gap == 0.0 && o.into <= 0.0)) close_contact(model, l, i, -1);
   }
   start_laws(model, state, l, t);
 }
@@ -218,7 +232,7 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_event
   int32_t i = event.index;
   switch (event.kind) {
     case STRUT_EVENT_TOUCH:
-      close_contact(model, l, i);
+      close_contact(model, l, i, -1);
       begin_refinement(l, i, t, &state->refined_until);
       break;
     case STRUT_EVENT_OPEN: l->mode[i] = STRUT_MODE_OPEN; break;
@@ -263,6 +277,12 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_event
       if (l->laws[i].whole) strut_memory_apply(model, state, l, i, t);
       break;
     case STRUT_EVENT_KINK: pass_kink(model, state, l, i); break;
+    case STRUT_EVENT_FACET: {
+      int32_t nearest;
+      strut_surface_facet_margin(&model->contacts, l, l->now, i, &nearest);
+      close_contact(model, l, i, nearest);
+      break;
+    }
     case STRUT_EVENT_SLIDER:
     case STRUT_EVENT_BREAK: strut_memory_apply(model, state, l, i, t); break;
     case STRUT_EVENT_NONE: break;

@@ -10,6 +10,7 @@
 
 #include "engine/forces/forces_kernel.h"
 #include "engine/integrate/events/event_stepping.h"
+#include "engine/integrate/events/surface_contacts.h"
 #include "engine/model/pose.h"
 
 /* Normal force of the spring and, where `damped`, the damper, of a contact that touches. */
@@ -61,25 +62,47 @@ STRUT_INLINE double friction_in_mode(const strut_contact_entry *e, uint8_t mode,
   return 0.0;
 }
 
-/* Kinematics of contact i at q, v. */
-STRUT_INLINE void measure_contact(const strut_contact_table *c, int32_t i, const double *restrict q,
+/* Kinematics of contact i of a single straight ground at q, v. */
+STRUT_INLINE void measure_on_line(const strut_contact_table *c, int32_t i, const double *restrict q,
                                   const double *restrict v, strut_touch *touch) {
-  touch->gap = strut_contact_gap(c, i, q);
+  touch->gap = strut_ground_gap(c, q + c->at[i]);
   touch->into = strut_contact_along_normal(c, i, v);
   touch->slip = strut_contact_slip(c, i, v);
 }
 
+/* Kinematics of contact i at q, v, and with grounds that move so. */
+STRUT_INLINE void measure_contact(const strut_contact_table *c, const strut_event_stepper *l,
+                                  const strut_ground_motion *motion, int32_t i,
+                                  const double *restrict q, const double *restrict v,
+                                  strut_touch *touch) {
+  if (c->surface) {
+    strut_surface_measure(c, l, motion, i, q, v, touch);
+    return;
+  }
+  measure_on_line(c, i, q, v, touch);
+}
+
+/* Kinematics of contact i at an end of a step. */
+STRUT_INLINE void measure_at_end(const strut_contact_table *c, const strut_event_stepper *l,
+                                 const strut_step_end *end, int32_t i, strut_touch *touch) {
+  measure_contact(c, l, end->motion, i, end->q, end->v, touch);
+}
+
 /* Adds the forces of the closed contacts to `force` and notes them. */
 STRUT_INLINE void add_contact_forces(const strut_model *model, const strut_event_stepper *l,
-                                     const double *restrict q, const double *restrict v,
-                                     double *restrict force, bool damped,
+                                     const strut_ground_motion *motion, const double *restrict q,
+                                     const double *restrict v, double *restrict force, bool damped,
                                      strut_touch *restrict touch) {
   const strut_contact_table *c = &model->contacts;
+  if (c->surface) {
+    strut_surface_add_forces(model, l, motion, q, v, force, damped, touch);
+    return;
+  }
   for (int32_t k = 0; k < l->closed_count; k++) {
     int32_t i = l->closed[k];
     uint32_t at = c->at[i];
     strut_touch *o = &touch[i];
-    measure_contact(c, i, q, v, o);
+    measure_on_line(c, i, q, v, o);
     o->applied = strut_contact_along_ground(c, i, force);
     o->normal = contact_normal_force(&c->entry[i], l->damper[i], o->gap, o->into, damped);
     o->friction =
@@ -93,7 +116,9 @@ STRUT_INLINE void add_contact_forces(const strut_model *model, const strut_event
 STRUT_INLINE void measure_contact_rates(const strut_model *model, const strut_event_stepper *l,
                                         const double *restrict a, strut_touch *restrict touch) {
   const strut_contact_table *c = &model->contacts;
-  for (int32_t k = 0; k < l->closed_count; k++) {
+  for (int32_t k = 0; k < l->closed_count && c->surface; k++)
+    strut_surface_measure_rates(c, l->closed[k], a, &touch[l->closed[k]]);
+  for (int32_t k = 0; k < l->closed_count && !c->surface; k++) {
     int32_t i = l->closed[k];
     touch[i].into_rate = strut_contact_along_normal(c, i, a);
     touch[i].slip_rate = strut_contact_along_ground(c, i, a);
@@ -110,6 +135,8 @@ STRUT_INLINE void add_contact_powers(const strut_model *model, strut_state *stat
     double damper = o->normal + c->entry[l->closed[k]].stiffness * o->gap;
     double damped = -damper * o->into, rubbed = -o->friction * o->slip;
     double belt = o->friction * c->belt_speed;
+    if (c->surface)
+      belt = o->friction * strut_contact_belt(c, l->closed[k]) + strut_surface_moving_power(o);
     state->power[STRUT_POWER_CONTACT] += damped;
     state->power[STRUT_POWER_FRICTION] += rubbed;
     state->power[STRUT_POWER_BELT] += belt;
@@ -126,12 +153,20 @@ STRUT_INLINE void keep_structure_forces(const strut_model *model, const strut_st
     strut_lanes_store(end->structure_power + p, strut_lanes_load(state->power + p));
 }
 
+/* Notes the motion of the grounds for which forces have just been evaluated. */
+STRUT_INLINE void keep_ground_motion(const strut_model *model, const strut_state *state,
+                                     strut_step_end *end) {
+  if (!end->motion) return;
+  for (size_t g = 0; g < model->scene->ground_count; g++) end->motion[g] = state->ground_motion[g];
+}
+
 /* From the forces of the structure in state->force to the acceleration. */
 STRUT_INLINE void accelerate_closed(const strut_model *model, strut_state *state,
                                     strut_event_stepper *l, const double *restrict q,
                                     const double *restrict v, double *restrict a,
                                     strut_step_end *end, bool ledger) {
-  if (l->closed_count) add_contact_forces(model, l, q, v, state->force, true, end->touch);
+  if (l->closed_count)
+    add_contact_forces(model, l, end->motion, q, v, state->force, true, end->touch);
   mass_kernel(model, state->force, a, state->scratch);
   if (l->stuck_count) strut_solve_stick_constraints(model, l, a, end);
   if (ledger && l->closed_count) add_contact_powers(model, state, l, end->touch);
@@ -143,6 +178,7 @@ STRUT_INLINE void accelerate_in_modes(const strut_model *model, strut_state *sta
                                       const double *restrict v, double *restrict a,
                                       strut_step_end *end, bool ledger) {
   forces_of_structure(model, state, t, q, v, ledger);
+  keep_ground_motion(model, state, end);
   accelerate_closed(model, state, l, q, v, a, end, ledger);
 }
 
@@ -172,6 +208,7 @@ STRUT_INLINE void evaluate_step_end(const strut_model *model, strut_state *state
                                     bool ledger) {
   forces_of_structure(model, state, t, end->q, end->v, ledger);
   keep_structure_forces(model, state, end, ledger);
+  keep_ground_motion(model, state, end);
   accelerate_closed(model, state, l, end->q, end->v, end->a, end, ledger);
   measure_contact_rates(model, l, end->a, end->touch);
   if (end == l->next && !l->all_sliding) settle_band_ties(model, l);

@@ -17,6 +17,14 @@ static double way_out(const strut_event_stepper *l, const strut_touch *o, int32_
   return slip < 0.0 ? -1.0 : 1.0;
 }
 
+/* The gap of a contact at an end of a step; of a closed contact over its facet. */
+STRUT_INLINE double gap_at_end(const strut_contact_table *c, const strut_event_stepper *l,
+                               int32_t i, const strut_step_end *end) {
+  if (!c->surface) return strut_contact_gap(c, i, end->q);
+  int32_t facet = l->mode[i] == STRUT_MODE_OPEN ? -1 : l->facet[i];
+  return strut_contact_pose_at(c, i, end->q, end->motion, facet).gap;
+}
+
 double strut_event_value(const strut_model *model, const strut_event_stepper *l,
                          const strut_step_end *end, strut_event_kind kind, int32_t i) {
   if (kind == STRUT_EVENT_KINK || kind == STRUT_EVENT_SLIDER || kind == STRUT_EVENT_BREAK)
@@ -33,8 +41,12 @@ double strut_event_value(const strut_model *model, const strut_event_stepper *l,
   const strut_touch *o = &end->touch[i];
   double s = l->side[i];
   switch (kind) {
-    case STRUT_EVENT_TOUCH: return strut_contact_gap(&model->contacts, i, end->q);
-    case STRUT_EVENT_OPEN: return -strut_contact_gap(&model->contacts, i, end->q);
+    case STRUT_EVENT_TOUCH: return gap_at_end(&model->contacts, l, i, end);
+    case STRUT_EVENT_OPEN: return -gap_at_end(&model->contacts, l, i, end);
+    case STRUT_EVENT_FACET: {
+      int32_t nearest;
+      return strut_surface_facet_margin(&model->contacts, l, end, i, &nearest);
+    }
     case STRUT_EVENT_SLIP_ENDS: return s * o->slip - stick_band_edge(e);
     case STRUT_EVENT_LEAVES_STICK_BAND: return stick_band_edge(e) - way_out(l, o, i) * o->slip;
     case STRUT_EVENT_STICK_BREAKS:
@@ -76,6 +88,7 @@ bool strut_event_rate(const strut_event_stepper *l, const strut_step_end *end,
     case STRUT_EVENT_YIELDED:
     case STRUT_EVENT_ACTS:
     case STRUT_EVENT_KINK:
+    case STRUT_EVENT_FACET:
     case STRUT_EVENT_SLIDER:
     case STRUT_EVENT_BREAK: break;
   }
@@ -124,8 +137,8 @@ static double fraction_of(const strut_model *model, const strut_event_stepper *l
   if (kind == STRUT_EVENT_TOUCH) {
     const strut_contact_table *c = &model->contacts;
     strut_touch a, b;
-    measure_contact(c, i, l->now->q, l->now->v, &a);
-    measure_contact(c, i, l->next->q, l->next->v, &b);
+    measure_at_end(c, l, l->now, i, &a);
+    measure_at_end(c, l, l->next, i, &b);
     return cubic_root(g0, h * a.into, g1, h * b.into);
   }
   if (strut_event_rate(l, l->now, kind, i, &d0) && strut_event_rate(l, l->next, kind, i, &d1))
@@ -189,8 +202,8 @@ void strut_event_measure(const strut_model *model, const strut_state *state,
    opened may stand below 0 by rounding, on its way up. */
 static bool closes(const strut_contact_table *c, int32_t i, const strut_event_stepper *l) {
   strut_touch to;
-  if (strut_contact_gap(c, i, l->now->q) > 0.0) return true;
-  measure_contact(c, i, l->next->q, l->next->v, &to);
+  if (gap_at_end(c, l, i, l->now) > 0.0) return true;
+  measure_at_end(c, l, l->next, i, &to);
   return to.into < 0.0;
 }
 
@@ -205,13 +218,16 @@ strut_event strut_event_first(const strut_model *model, const strut_state *state
       strut_event_kind kind = contradicting_event(&c->entry[i], o, l->mode[i], l->side[i]);
       if (kind) keep_first(model, l, kind, i, h, &first);
       k++;
+      int32_t nearest;
+      if (l->facet && strut_surface_facet_margin(c, l, l->next, i, &nearest) < 0.0)
+        keep_first(model, l, STRUT_EVENT_FACET, i, h, &first);
       if (!l->stepper->exact) continue;
       /* a gap that rounding left above 0 at touchdown is closing: only one that grows has opened */
       if (o->gap > 0.0 && o->into > 0.0) keep_first(model, l, STRUT_EVENT_OPEN, i, h, &first);
       if (l->damper[i] && (l->damper[i] > 0 ? o->into > 0.0 : o->into < 0.0) &&
           c->entry[i].damping * fabs(o->into) > FAINT * fabs(o->normal))
         keep_first(model, l, STRUT_EVENT_DAMPER, i, h, &first);
-    } else if (strut_contact_gap(c, i, l->next->q) < 0.0 && closes(c, i, l)) {
+    } else if (gap_at_end(c, l, i, l->next) < 0.0 && closes(c, i, l)) {
       keep_first(model, l, STRUT_EVENT_TOUCH, i, h, &first);
     }
   }
@@ -237,6 +253,12 @@ static double parabola_root(double gap, double speed, double bend) {
 static double crossing(const strut_model *model, const strut_state *state,
                        const strut_event_stepper *l, int32_t i, double sign, double h) {
   const strut_contact_table *c = &model->contacts;
+  if (c->surface) {
+    strut_touch o;
+    measure_at_end(c, l, l->now, i, &o);
+    strut_surface_measure_rates(c, i, l->now->a, &o);
+    return parabola_root(sign * o.gap, sign * h * o.into, sign * 0.5 * h * h * o.into_rate);
+  }
   double gap = strut_contact_gap(c, i, state->q),
          speed = h * strut_contact_along_normal(c, i, state->v);
   double bend = 0.5 * h * h * strut_contact_along_normal(c, i, l->now->a);
@@ -249,7 +271,7 @@ strut_event strut_event_predict(const strut_model *model, const strut_state *sta
   strut_event first = {STRUT_EVENT_NONE, 0, 1.0};
   for (int32_t i = 0; i < c->count; i++) {
     bool closed = l->mode[i] != STRUT_MODE_OPEN;
-    double gap = strut_contact_gap(c, i, l->next->q);
+    double gap = gap_at_end(c, l, i, l->next);
     if (closed ? gap <= 0.0 : gap >= 0.0) continue;
     double fraction = crossing(model, state, l, i, closed ? -1.0 : 1.0, h);
     if (fraction <= 1.0 && (!first.kind || fraction < first.fraction))

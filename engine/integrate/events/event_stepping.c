@@ -24,8 +24,10 @@ static bool make_end(const strut_model *model, strut_arena *arena, strut_step_en
   end->tension = strut_arena_allocate(arena, switches, sizeof(double));
   end->stretch = strut_arena_allocate(arena, switches, sizeof(double));
   end->stretch_rate = strut_arena_allocate(arena, switches, sizeof(double));
+  if (model->contacts.moves)
+    end->motion = strut_arena_allocate(arena, model->scene->ground_count, sizeof *end->motion);
   return end->q && end->v && end->a && end->structure && end->touch && end->tension &&
-         end->stretch && end->stretch_rate;
+         end->stretch && end->stretch_rate && (end->motion || !model->contacts.moves);
 }
 
 static bool make_arrays(const strut_model *model, strut_state *state, strut_event_stepper *l) {
@@ -43,8 +45,10 @@ static bool make_arrays(const strut_model *model, strut_state *state, strut_even
   l->settling_time = strut_arena_allocate(arena, contacts, sizeof(double));
   l->scatter = strut_arena_allocate(arena, length, sizeof(double));
   l->stage = strut_arena_allocate(arena, (size_t)l->stepper->stages + 1, sizeof *l->stage);
-  bool ready = l->mode && l->side && l->damper && l->outward && l->body && l->closed && l->stuck &&
-               l->damped && l->response && l->settling_time && l->scatter && l->stage;
+  if (model->contacts.surface) l->facet = strut_arena_allocate(arena, contacts, sizeof *l->facet);
+  bool ready = (l->facet || !model->contacts.surface) && l->mode && l->side && l->damper &&
+               l->outward && l->body && l->closed && l->stuck && l->damped && l->response &&
+               l->settling_time && l->scatter && l->stage;
   for (int k = 0; k < l->stepper->stages && ready; k++)
     ready = (l->stage[k] = strut_arena_allocate(arena, length, sizeof(double)));
   return ready;
@@ -156,13 +160,12 @@ static void pass_break(const strut_model *model, strut_state *state, strut_event
   }
   if (model->plan & STRUT_TERM_MEMORY)
     strut_memory_release(model, state, t + moment + state->time_offset + STRUT_AT_BREAK * dt);
-  if (!(model->plan & (STRUT_TERM_SUPPORT_MOTION | STRUT_TERM_UNBALANCE))) {
-    strut_modes_after_jump(model, state, l, t + moment);
-    return;
+  bool kicked = model->contacts.moves; /* a ground may have changed its speed at once */
+  if (model->plan & (STRUT_TERM_SUPPORT_MOTION | STRUT_TERM_UNBALANCE)) {
+    kicked = strut_support_motion_kick(model, state, t - 2.0 * moment, t + 0.5 * moment) || kicked;
+    kicked = strut_unbalance_kick(model, state, t - 2.0 * moment, t + 0.5 * moment) || kicked;
+    strut_support_motion_place(model, state, t + moment, state->q, state->v);
   }
-  bool kicked = strut_support_motion_kick(model, state, t - 2.0 * moment, t + 0.5 * moment);
-  kicked = strut_unbalance_kick(model, state, t - 2.0 * moment, t + 0.5 * moment) || kicked;
-  strut_support_motion_place(model, state, t + moment, state->q, state->v);
   if (kicked)
     strut_modes_start(model, state, l, t + moment);
   else
@@ -270,6 +273,7 @@ static double step(const strut_model *model, strut_state *state, strut_event_ste
   bool force = l->at_once >= MOST_AT_ONCE || l->switches >= MOST_SWITCHES;
   if (l->stepper->predict && !l->tried) {
     l->stepper->predict(model, l, h);
+    strut_surface_move(model, state, l->next, t + h);
     if (!force) event = strut_event_predict(model, state, l, h);
     if (event.kind) l->stepper->predict(model, l, h *= event.fraction);
   }
@@ -342,7 +346,7 @@ void strut_event_stepper_advance(const strut_model *model, strut_state *state, v
   strut_event_stepper *l = workspace;
   if (!l->started) strut_event_stepper_restart(model, state, workspace, dt);
   for (int64_t end = state->step + count; state->step < end && !state->trouble;) {
-    if (l->stepper->advance_until_event && l->at_once == 0)
+    if (l->stepper->advance_until_event && l->at_once == 0 && !model->contacts.surface)
       l->stepper->advance_until_event(model, state, l, dt, end);
     if (state->step == end || (l->stepper->adaptive && given_up(model, state, l))) break;
     strut_event_stepper_step(model, state, l, dt);

@@ -33,7 +33,9 @@ typedef struct strut_contact_compliance {
   int32_t count;
   const uint32_t *at;     /* (count) 2 * node */
   const double *xy;       /* (count, 2) x per unit force in x, y per unit in y [1/kg] */
-  double normal, tangent; /* of the node itself, along the ground's normal and tangent [1/kg] */
+  double normal, tangent; /* of the node itself, along the ground's normal and tangent [1/kg]; with
+                             surfaces the larger of x and y */
+  double own[2];          /* of the node itself, in x and in y [1/kg] */
 } strut_contact_compliance;
 
 /** A contact at one end of a step. */
@@ -42,6 +44,11 @@ typedef struct strut_touch {
   double into_rate, slip_rate; /* their time derivatives [m/s^2] */
   double normal, friction;     /* on the node [N] */
   double applied;              /* F_res: other forces along the ground [N] */
+  /* with STRUT_TERM_SURFACES: */
+  strut_contact_axes axes;
+  double into_drift, slip_drift; /* rates of the speeds without acceleration of the node [m/s^2] */
+  double ground_into, ground_along; /* speed of a shaken ground along the axes [m/s] */
+  double alone; /* of the applied force, without other contacts of the node [N] */
 } strut_touch;
 
 /** One end of a step: positions, velocities, accelerations (length) and contacts. */
@@ -54,6 +61,7 @@ typedef struct strut_step_end {
   double power[STRUT_POWER_ROOM]; /* [W]; only with the ledger */
   /* all forces but the ground's, and their powers: a change of modes needs no others anew */
   double *structure, structure_power[STRUT_POWER_ROOM];
+  strut_ground_motion *motion; /* (grounds) NULL where none is shaken */
 } strut_step_end;
 
 /** A closed contact that slips or has no friction, alone on its body, on level ground: all that a
@@ -147,6 +155,7 @@ struct strut_event_stepper {
   double pushed_at; /* when that was [s] */
   int switches;     /* since the latest grid point */
   bool tried;       /* next is the end of the step that is due */
+  int32_t *facet; /* (contacts) of closed contacts of surfaces; NULL without STRUT_TERM_SURFACES */
 };
 
 /** Most laws that switch: each cable, each element by its sign, by its kinks and by its memory. */
@@ -181,9 +190,10 @@ void strut_update_active_set(const strut_model *model, strut_event_stepper *l);
 /** Multipliers that hold the stuck contacts: adds to a, writes end->touch[].friction. */
 void strut_solve_stick_constraints(const strut_model *model, strut_event_stepper *l, double *a,
                                    strut_step_end *end);
-/** a += response of contact i to the force (normal, tangential) on its node. */
-void strut_apply_contact_impulse(const strut_model *model, const strut_event_stepper *l, int32_t i,
-                                 double normal, double tangential, double *a);
+/** a += response of contact i to the force (normal, tangential) on its node, along these axes. */
+void strut_apply_contact_impulse(const strut_event_stepper *l, int32_t i,
+                                 const strut_contact_axes *axes, double normal, double tangential,
+                                 double *a);
 /** Acceleration, contact forces and powers of l->now at time t, in the present modes. */
 void strut_evaluate_acceleration(const strut_model *model, strut_state *state,
                                  strut_event_stepper *l, double t);
@@ -204,7 +214,8 @@ typedef enum strut_event_kind {
   STRUT_EVENT_ACTS,   /* a cable or an element that carries one sign begins or ceases to act */
   STRUT_EVENT_KINK,   /* an element's strain passes a kink of its law */
   STRUT_EVENT_SLIDER, /* a slider or a cable at a guide gives way, or holds again */
-  STRUT_EVENT_BREAK   /* a member or a hinge breaks */
+  STRUT_EVENT_BREAK,  /* a member or a hinge breaks */
+  STRUT_EVENT_FACET   /* another facet of the surface comes nearer to a closed contact */
 } strut_event_kind;
 
 typedef struct strut_event {

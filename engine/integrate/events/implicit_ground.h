@@ -24,19 +24,24 @@ STRUT_INLINE double implicit_damper(const strut_contact_entry *e, double spring,
 
 /* Speed into the ground at the end of the step, given the accelerations so far. */
 STRUT_INLINE double final_speed(const strut_contact_table *c, const strut_event_stepper *l,
-                                int32_t i, double h, const double *a1) {
+                                int32_t i, double h, const double *a1, const strut_touch *o) {
   uint32_t at = c->at[i];
   const double *v = l->now->v + at, *a0 = l->now->a + at, *a = a1 + at;
-  return (v[0] + 0.5 * h * (a0[0] + a[0])) * c->normal[0] +
-         (v[1] + 0.5 * h * (a0[1] + a[1])) * c->normal[1];
+  const double *normal = strut_touch_axes(c, o)->normal;
+  double into =
+      (v[0] + 0.5 * h * (a0[0] + a[0])) * normal[0] + (v[1] + 0.5 * h * (a0[1] + a[1])) * normal[1];
+  return c->surface ? into - o->ground_into : into;
 }
 
 /* The damper of contact i among others of its body; returns the change of its force. */
 STRUT_INLINE double solve_damper(const strut_model *model, strut_event_stepper *l, int32_t i,
                                  double h, const double *a1, const strut_touch *o) {
-  const strut_contact_entry *e = &model->contacts.entry[i];
-  double half = 0.5 * h * l->response[i].normal, now = l->damped[i];
-  double free = final_speed(&model->contacts, l, i, h, a1) - half * now;
+  const strut_contact_table *c = &model->contacts;
+  const strut_contact_entry *e = &c->entry[i];
+  double answer =
+      c->surface ? strut_compliance_along(&l->response[i], o->axes.normal) : l->response[i].normal;
+  double half = 0.5 * h * answer, now = l->damped[i];
+  double free = final_speed(c, l, i, h, a1, o) - half * now;
   l->damped[i] = implicit_damper(e, -e->stiffness * o->gap, free, half);
   return l->damped[i] - now;
 }
@@ -48,7 +53,8 @@ STRUT_INLINE void solve_dampers(const strut_model *model, strut_event_stepper *l
     for (int32_t k = 0; k < l->closed_count; k++) {
       int32_t i = l->closed[k];
       double more = solve_damper(model, l, i, h, a1, &touch[i]);
-      if (more != 0.0) strut_apply_contact_impulse(model, l, i, more, 0.0, a1);
+      const strut_contact_axes *axes = strut_touch_axes(&model->contacts, &touch[i]);
+      if (more != 0.0) strut_apply_contact_impulse(l, i, axes, more, 0.0, a1);
       if (fabs(more) > changed) changed = fabs(more);
       if (fabs(touch[i].normal) > largest) largest = fabs(touch[i].normal);
     }
@@ -63,11 +69,13 @@ STRUT_INLINE void solve_friction(const strut_model *model, strut_event_stepper *
     int32_t i = l->closed[k];
     strut_touch *o = &touch[i];
     o->normal = -model->contacts.entry[i].stiffness * o->gap + l->damped[i];
+    if (model->contacts.surface) o->applied = strut_surface_applied(model, l, k, touch);
     double friction = friction_in_mode(&model->contacts.entry[i], l->mode[i], l->side[i], o->normal,
                                        o->slip, o->applied);
     bool held = l->mode[i] == STRUT_MODE_STICK || l->mode[i] == STRUT_MODE_CREEP;
     if (held || friction == o->friction) continue;
-    strut_apply_contact_impulse(model, l, i, 0.0, friction - o->friction, a1);
+    strut_apply_contact_impulse(l, i, strut_touch_axes(&model->contacts, o), 0.0,
+                                friction - o->friction, a1);
     o->friction = friction;
   }
   if (l->stuck_count) strut_solve_stick_constraints(model, l, a1, l->next);
@@ -88,8 +96,7 @@ STRUT_INLINE void implicit_ground_together(const strut_model *model, strut_event
 STRUT_INLINE void implicit_ground_finish(const strut_model *model, strut_state *state,
                                          strut_event_stepper *l, bool ledger) {
   for (int32_t k = 0; k < l->closed_count; k++)
-    measure_contact(&model->contacts, l->closed[k], l->next->q, l->next->v,
-                    &l->next->touch[l->closed[k]]);
+    measure_at_end(&model->contacts, l, l->next, l->closed[k], &l->next->touch[l->closed[k]]);
   measure_contact_rates(model, l, l->next->a, l->next->touch);
   if (ledger) add_contact_powers(model, state, l, l->next->touch);
 }

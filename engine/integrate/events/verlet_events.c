@@ -34,6 +34,7 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
   if (moves) strut_support_motion_place(model, state, t + h, l->next->q, predicted);
   forces_of_structure(model, state, t + h, l->next->q, predicted, ledger);
   keep_structure_forces(model, state, l->next, ledger);
+  keep_ground_motion(model, state, l->next);
   if (!l->closed_count) {
     mass_kernel(model, state->force, a1, state->scratch);
   } else if (l->all_sliding) {
@@ -43,7 +44,8 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
     mass_kernel(model, state->force, a1, state->scratch);
     implicit_ground_decoupled(model, l, h, predicted, state->force, a1);
   } else {
-    add_contact_forces(model, l, l->next->q, predicted, state->force, false, l->next->touch);
+    add_contact_forces(model, l, l->next->motion, l->next->q, predicted, state->force, false,
+                       l->next->touch);
     mass_kernel(model, state->force, a1, state->scratch);
     implicit_ground_together(model, l, h, a1, l->next->touch);
   }

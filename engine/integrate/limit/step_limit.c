@@ -311,6 +311,14 @@ static void digest_model(const strut_model *m, uint64_t key[2]) {
   }
   const double ground[] = {c->normal[0], c->normal[1], c->height, c->belt_speed, m->mass_damping};
   digest(key, ground, sizeof ground);
+  for (int32_t k = 0; k < c->surfaces; k++) {
+    const strut_surface *s = &c->surface[k];
+    const double surface[] = {s->facets,    s->before, s->beyond, s->centre[0],
+                              s->centre[1], s->radius, s->inside, s->belt_speed};
+    digest(key, surface, sizeof surface);
+    digest(key, s->facet, (size_t)s->facets * sizeof *s->facet);
+  }
+  for (int32_t i = 0; i < c->count && c->surface; i++) digest_number(key, c->surface_of[i]);
 }
 
 strut_status strut_step_limit_cached(const strut_model *model, const strut_integrator *method,

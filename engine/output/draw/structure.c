@@ -8,6 +8,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/forces/elements.h"
+#include "engine/model/pose.h"
 #include "engine/output/draw/axes.h"
 #include "engine/output/draw/legend.h"
 #include "engine/output/draw/palette.h"
@@ -138,7 +139,13 @@ static void find_ground_line(const strut_window *w, const strut_model *model, do
 }
 
 void strut_draw_ground(strut_canvas *canvas, const strut_window *w, const strut_model *model) {
+  strut_draw_ground_at(canvas, w, model, (double)NAN);
+}
+
+void strut_draw_ground_at(strut_canvas *canvas, const strut_window *w, const strut_model *model,
+                          double time) {
   const strut_ground *ground = &model->scene->ground;
+  strut_draw_surfaces(canvas, w, model->scene, time);
   if (!ground->present) return;
   double ends[4][2];
   find_ground_line(w, model, ends);
@@ -172,13 +179,13 @@ void strut_draw_contact_forces(strut_canvas *canvas, const strut_window *w,
   const strut_pen pen = {.colour = strut_palette_thing(1), .width = 1.1};
   for (int32_t i = 0; i < contacts->count && limit > 0; i++) {
     double at[2], normal = force[i][0] / limit * longest, along = force[i][1] / limit * longest;
+    const strut_contact_pose pose = strut_contact_pose_at(contacts, i, q, NULL, -1);
+    const double *n = pose.axes.normal, *t = pose.axes.tangent;
     strut_window_point(w, q + contacts->at[i], at);
     if (fabs(normal) > 0.3) /* the arrow's tip is at the node */
-      strut_draw_arrow(canvas, at[0] - normal * contacts->normal[0],
-                       at[1] + normal * contacts->normal[1], at[0], at[1], 5, pen);
+      strut_draw_arrow(canvas, at[0] - normal * n[0], at[1] + normal * n[1], at[0], at[1], 5, pen);
     if (fabs(along) > 0.3)
-      strut_draw_arrow(canvas, at[0], at[1], at[0] + along * contacts->tangent[0],
-                       at[1] - along * contacts->tangent[1], 5, pen);
+      strut_draw_arrow(canvas, at[0], at[1], at[0] + along * t[0], at[1] - along * t[1], 5, pen);
   }
 }
 

@@ -74,6 +74,12 @@ STRUT_API void strut_draw_names(strut_canvas *canvas, const strut_window *window
 /** The ground's line and body across the window; nothing where the scene has none. */
 STRUT_API void strut_draw_ground(strut_canvas *canvas, const strut_window *window,
                                  const strut_model *model);
+/** The same at a time [s], to which grounds that are shaken have moved. */
+STRUT_API void strut_draw_ground_at(strut_canvas *canvas, const strut_window *window,
+                                    const strut_model *model, double time);
+/** Of strut_draw_ground: the surfaces of a scene with `grounds`; time NAN: as drawn. */
+STRUT_API void strut_draw_surfaces(strut_canvas *canvas, const strut_window *window,
+                                   const strut_scene *scene, double time);
 /**
  * Forces of the ground on its contacts as arrows: (contacts, 2) normal and friction [N];
  * `longest` is the length [pt] of an arrow of `limit` [N].

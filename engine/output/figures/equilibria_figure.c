@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "engine/model/pose.h"
 #include "engine/output/draw/axes.h"
 #include "engine/output/draw/legend.h"
 #include "engine/output/draw/palette.h"
@@ -277,8 +278,9 @@ static bool draw_names(plan *p, strut_canvas *canvas, const strut_window *window
     double length = force[c][0] / p->contact_limit * ARROW, *tip = ends[2 * arrows];
     if (!(fabs(length) > 0.3)) continue;
     strut_window_point(window, q + contacts->at[c], tip);
-    ends[2 * arrows + 1][0] = tip[0] - length * contacts->normal[0];
-    ends[2 * arrows + 1][1] = tip[1] + length * contacts->normal[1];
+    const strut_contact_pose pose = strut_contact_pose_at(contacts, c, q, NULL, -1);
+    ends[2 * arrows + 1][0] = tip[0] - length * pose.axes.normal[0];
+    ends[2 * arrows + 1][1] = tip[1] + length * pose.axes.normal[1];
     arrows++;
   }
   strut_draw_names(canvas, window, p->model, q, true, false, (const double(*)[2])ends, arrows);

@@ -89,7 +89,7 @@ static const char *label_of(const strut_run_scene *run, int kind, size_t item) {
     case STRUT_RUN_ANGLES:
     case STRUT_RUN_MOMENTS: return scene->hinges[item].name;
     case STRUT_RUN_ENERGIES: return energies[item];
-    default: return scene->nodes[run->motion->contact_node[item]].name;
+    default: return strut_contact_name(scene, (size_t)item);
   }
 }
 

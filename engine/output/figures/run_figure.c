@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/model/pose.h"
 #include "engine/output/draw/palette.h"
 #include "engine/output/figures/run_parts.h"
 
@@ -212,7 +213,7 @@ bool strut_run_draw_frame(strut_run_scene *run, strut_canvas *canvas, const stru
     style.values = style.slack_forces = m->force + frame * m->member_count;
     style.limit = run->force_limit;
   }
-  strut_draw_ground(canvas, window, run->model);
+  strut_draw_ground_at(canvas, window, run->model, m->time ? m->time[frame] : (double)NAN);
   strut_draw_structure(canvas, window, run->model, q, &style);
   return true;
 }
@@ -239,12 +240,12 @@ void strut_run_draw_reactions(strut_run_scene *run, strut_canvas *canvas,
   for (int32_t i = 0; i < contacts->count; i++) {
     double at[2], length = force[2 * i] / run->contact_limit * run->arrow;
     strut_window_point(window, q + contacts->at[i], at);
-    const double foot[2] = {at[0] - length * contacts->normal[0],
-                            at[1] + length * contacts->normal[1]};
+    const strut_contact_pose pose = strut_contact_pose_at(contacts, i, q, NULL, -1);
+    const double *n = pose.axes.normal, *t = pose.axes.tangent;
+    const double foot[2] = {at[0] - length * n[0], at[1] + length * n[1]};
     if (length > 1) add_obstacle(run, foot, at);
     length = force[2 * i + 1] / run->contact_limit * run->arrow;
-    const double tip[2] = {at[0] + length * contacts->tangent[0],
-                           at[1] - length * contacts->tangent[1]};
+    const double tip[2] = {at[0] + length * t[0], at[1] - length * t[1]};
     if (fabs(length) > 1) add_obstacle(run, at, tip);
   }
 }

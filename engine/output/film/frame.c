@@ -327,7 +327,7 @@ void strut_view_frame_draw(const strut_view_frame *s, strut_canvas *canvas, size
   strut_canvas_clear(canvas, strut_grey(1));
   strut_canvas_clip(canvas, window.box);
   if (!ground && (s->camera->follows[0] || s->camera->follows[1])) draw_lattice(s, canvas, &window);
-  strut_draw_ground(canvas, &window, s->model);
+  strut_draw_ground_at(canvas, &window, s->model, moment->time);
   if (ground) draw_marks(s, canvas, &window, moment->time);
   strut_draw_structure(canvas, &window, s->model, moment->q, &style);
   if (moment->contact)

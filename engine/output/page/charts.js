@@ -63,7 +63,8 @@
     kinds.push({ name: "displacement", unit: "m", curves: displacements(data, motion, track) });
     if (motion.contact)
       kinds.push({ name: "contact force", unit: "N", curves: data.contacts.map((n, i) => ({
-        name: data.nodes[n].name, at: column(motion.contact, 2 * data.contacts.length, 2 * i) })) });
+        name: data.contact_names ? data.contact_names[i] : data.nodes[n].name,
+        at: column(motion.contact, 2 * data.contacts.length, 2 * i) })) });
     if (motion.force)
       kinds.push({ name: "member force", unit: "N", curves: data.members.map((m, j) => ({
         name: m.name, at: column(motion.force, data.members.length, j) })) });

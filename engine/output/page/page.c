@@ -12,6 +12,7 @@
 #include "engine/output/quantity_text.h"
 #include "engine/output/report/equilibria_report.h"
 #include "engine/output/summary_rows.h"
+#include "engine/scene/outline.h"
 
 /* The cards of the page: the choice of equilibria and their data. */
 
@@ -19,6 +20,9 @@ struct cJSON;
 
 /* Most cards, saddles among them, and numbers in all cards. */
 enum { MOST_CARDS = 40, MOST_SADDLES = 12, MOST_NUMBERS = 60000 };
+
+/* How far lines are drawn, in sizes of the structure at the start, which count as this at least [m]. */
+static const double FAR = 100.0, LEAST_SIZE = 0.1;
 
 /* Digits of positions and forces: more than a screen shows. */
 static const int DIGITS = 9;
@@ -251,10 +255,42 @@ static void add_collisions(strut_json *json, const strut_scene *scene) {
   }
 }
 
+/* Outlines of several grounds, the solid to the right of their direction, and which one a contact is with. */
+static void add_surfaces(strut_json *json, const strut_scene *scene) {
+  struct cJSON *names = strut_json_array(json, json->root, "contact_names");
+  struct cJSON *of = strut_json_array(json, json->root, "contact_surfaces");
+  struct cJSON *surfaces = strut_json_array(json, json->root, "surfaces");
+  double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+  for (size_t i = 0; i < scene->contact_count; i++) {
+    strut_json_text(json, names, NULL, strut_contact_name(scene, i));
+    strut_json_integer(json, of, NULL, scene->contacts[i].ground);
+  }
+  for (size_t i = 0; i < 2 * scene->node_count; i++) {
+    double x = scene->nodes[i / 2].start[i % 2];
+    low[i % 2] = fmin(low[i % 2], x), high[i % 2] = fmax(high[i % 2], x);
+  }
+  const double middle[2] = {0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])};
+  double far = FAR * fmax(fmax(high[0] - low[0], high[1] - low[1]), LEAST_SIZE);
+  for (size_t g = 0; g < scene->ground_count; g++) {
+    strut_arena arena = {0};
+    double(*points)[2] =
+        strut_arena_allocate(&arena, strut_outline_most(&scene->grounds[g]), sizeof *points);
+    size_t count = points ? strut_outline_of(&scene->grounds[g], NULL, middle, far, points) : 0;
+    struct cJSON *to = strut_json_array(json, surfaces, NULL);
+    for (size_t k = 0; k < count; k++) {
+      struct cJSON *point = strut_json_array(json, to, NULL);
+      strut_json_number(json, point, NULL, rounded(points[k][0]));
+      strut_json_number(json, point, NULL, rounded(points[k][1]));
+    }
+    strut_arena_free(&arena);
+  }
+}
+
 static void add_ground(strut_json *json, const strut_scene *scene) {
   struct cJSON *contacts = strut_json_array(json, json->root, "contacts");
   for (size_t i = 0; i < scene->contact_count; i++)
     strut_json_integer(json, contacts, NULL, scene->contacts[i].node);
+  if (scene->ground_count) add_surfaces(json, scene);
   if (!scene->ground.present) {
     strut_json_text(json, json->root, "ground", NULL);
     return;

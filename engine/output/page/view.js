@@ -330,6 +330,44 @@
     }
   }
 
+  /* Outlines of several grounds and the solid beside them. */
+  function drawSurfaces(c, surfaces, place, theme) {
+    for (const points of surfaces || []) {
+      c.strokeStyle = theme.line;
+      c.globalAlpha = 0.5;
+      c.lineWidth = 7;
+      c.lineCap = "butt";
+      c.beginPath();
+      for (let k = 0; k + 1 < points.length; k++) {
+        const [ax, ay] = place(...points[k]), [bx, by] = place(...points[k + 1]);
+        const length = Math.hypot(bx - ax, by - ay) || 1;
+        const ox = -(by - ay) / length * 4, oy = (bx - ax) / length * 4;
+        c.moveTo(ax + ox, ay + oy);
+        c.lineTo(bx + ox, by + oy);
+      }
+      c.stroke();
+      c.globalAlpha = 1;
+      c.strokeStyle = theme.soft;
+      c.lineWidth = 1.2;
+      c.beginPath();
+      points.forEach((p, k) => c[k ? "lineTo" : "moveTo"](...place(...p)));
+      c.stroke();
+    }
+  }
+
+  /* Direction of the segment of an outline that is nearest to a point. */
+  function tangentNear(points, x, y) {
+    let best = Infinity, tangent = [1, 0];
+    for (let k = 0; k + 1 < points.length; k++) {
+      const [ax, ay] = points[k], dx = points[k + 1][0] - ax, dy = points[k + 1][1] - ay;
+      const length = Math.hypot(dx, dy);
+      const t = Math.max(0, Math.min(1, ((x - ax) * dx + (y - ay) * dy) / (length * length)));
+      const away = Math.hypot(x - ax - t * dx, y - ay - t * dy);
+      if (away < best) best = away, tangent = [dx / length, dy / length];
+    }
+    return tangent;
+  }
+
   function drawArrow(c, x1, y1, x2, y2) {
     const length = Math.hypot(x2 - x1, y2 - y1);
     if (length < 2) return;
@@ -349,10 +387,12 @@
   function drawForces(c, data, shape, options, px, py) {
     if (!shape.contact || !options.arrows || !(options.contactLimit > 0)) return;
     const slope = data.ground ? data.ground.slope : 0, longest = options.small ? 16 : 46;
-    const tangent = [Math.cos(slope), Math.sin(slope)];
+    const level = [Math.cos(slope), Math.sin(slope)];
     c.strokeStyle = c.fillStyle = options.theme.warm;
     c.lineWidth = 2;
     data.contacts.forEach((node, i) => {
+      const tangent = data.surfaces ? tangentNear(data.surfaces[data.contact_surfaces[i]],
+        shape.position[2 * node], shape.position[2 * node + 1]) : level;
       const normal = Math.min(1.6, shape.contact[2 * i] / options.contactLimit) * longest;
       const along = Math.max(-1.6, Math.min(1.6, shape.contact[2 * i + 1] / options.contactLimit)) *
         longest;
@@ -373,6 +413,7 @@
       py[i] = height / 2 - (shape.position[2 * i + 1] - camera.y) * camera.scale;
     }
     drawGround(c, data.ground, camera, width, height, options);
+    drawSurfaces(c, data.surfaces, place, options.theme);
     if (!options.small || count <= 60) drawSupports(c, data, px, py, options.theme);
     for (const trail of shape.trails || []) {
       c.lineWidth = 1.6;

@@ -13,6 +13,7 @@
 #include "engine/base/memory.h"
 #include "engine/output/buffer.h"
 #include "engine/output/quantity_text.h"
+#include "engine/scene/outline.h"
 
 /* Code points of marks, in ascending order; ASCII output substitutes others. */
 enum {
@@ -400,9 +401,54 @@ static void cell_of(const view *v, int32_t node, int *column, int *row) {
   *row = (int)lround(dot[1]) / 4;
 }
 
+/* The part of a segment between dots a and b that the grid may show; false: none. */
+static bool clip_to_grid(const view *v, double a[2], double b[2]) {
+  double low = 0.0, high = 1.0;
+  const double most[2] = {2.0 * v->columns, 4.0 * v->rows};
+  for (int k = 0; k < 2; k++) {
+    double d = b[k] - a[k];
+    if (d == 0.0) {
+      if (!(a[k] >= 0.0 && a[k] < most[k])) return false;
+      continue;
+    }
+    double p = -a[k] / d, q = (most[k] - 1.0 - a[k]) / d;
+    low = fmax(low, fmin(p, q)), high = fmin(high, fmax(p, q));
+  }
+  if (!(low < high)) return false;
+  double x = a[0], y = a[1], dx = b[0] - a[0], dy = b[1] - a[1];
+  a[0] = x + low * dx, a[1] = y + low * dy;
+  b[0] = x + high * dx, b[1] = y + high * dy;
+  return true;
+}
+
+/* Outlines of several grounds, dashed; is one of them visible? */
+static bool draw_surfaces(const view *v, sketch_grid *grid) {
+  const strut_scene *scene = v->model->scene;
+  const double middle[2] = {0.5 * (v->low[0] + v->high[0]), 0.5 * (v->low[1] + v->high[1])};
+  double far = v->scale > 0 ? 4.0 * (v->columns + v->rows) / v->scale : 1.0;
+  bool seen = false;
+  for (size_t g = 0; g < scene->ground_count && v->scale > 0; g++) {
+    strut_arena arena = {0};
+    double(*points)[2] =
+        strut_arena_allocate(&arena, strut_outline_most(&scene->grounds[g]), sizeof *points);
+    size_t count = points ? strut_outline_of(&scene->grounds[g], NULL, middle, far, points) : 0;
+    for (size_t k = 0; k + 1 < count; k++) {
+      double a[2], b[2];
+      place(v, points[k], a);
+      place(v, points[k + 1], b);
+      if (!clip_to_grid(v, a, b)) continue;
+      sketch_line(grid, a, b, 2, 2);
+      seen = true;
+    }
+    strut_arena_free(&arena);
+  }
+  return seen;
+}
+
 /* Is the ground visible? */
 static bool draw_ground(const view *v, sketch_grid *grid) {
   const strut_ground *ground = &v->model->scene->ground;
+  if (v->model->scene->ground_count) return draw_surfaces(v, grid);
   if (!ground->present) return false;
   if (ground->slope == 0) {
     double at[2] = {v->low[0], ground->height}, dot[2];
@@ -531,7 +577,7 @@ static void write_extent(const view *v, bool ground_seen, bool unicode, strut_bu
   if (held[3]) write_mark(buffer, STRUT_SKETCH_HELD, "held", unicode);
   if (held[2]) write_mark(buffer, STRUT_SKETCH_HELD_IN_Y, "held in y", unicode);
   if (held[1]) write_mark(buffer, STRUT_SKETCH_HELD_IN_X, "held in x", unicode);
-  if (scene->ground.present && !ground_seen && v->scale > 0)
+  if (strut_scene_has_ground(scene) && !ground_seen && v->scale > 0)
     strut_buffer_add(buffer, ",  the ground is far away");
   strut_buffer_add(buffer, "\n");
 }

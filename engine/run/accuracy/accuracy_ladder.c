@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "engine/integrate/integrator.h"
+#include "engine/model/pose.h"
 #include "engine/run/accuracy/accuracy.h"
 #include "engine/run/recorder.h"
 
@@ -68,7 +69,7 @@ static double mean_along_ground(const track *t, size_t k) {
   const strut_model *model = t->model;
   const double *q = t->position + 2 * k * (size_t)model->node_count;
   double sum = 0.0;
-  if (!model->contacts.count) return 0.0;
+  if (!strut_contacts_allow_travel(&model->contacts)) return 0.0;
   for (int32_t i = 0; i < model->node_count; i++) {
     if (model->fixed[2 * i] || model->fixed[2 * i + 1]) return 0.0;
     sum += q[2 * i] * model->contacts.tangent[0] + q[2 * i + 1] * model->contacts.tangent[1];
@@ -95,7 +96,8 @@ static double measure_track_distance(const track *a, const track *b, double peri
     if (period > 0.0) later = remainder(later, period);
     if (fabs(later) > SAME_MOMENT * apart) return HUGE_VAL;
     for (size_t i = 0; i < both; i++) {
-      double t = model->contacts.count ? model->contacts.tangent[i % 2] : 0.0;
+      double t =
+          strut_contacts_allow_travel(&model->contacts) ? model->contacts.tangent[i % 2] : 0.0;
       double x = a->position[k * both + i] - here * t, y = b->position[k * both + i] - there * t;
       double x0 = a->position[i] - first * t;
       away = fmax(away, fabs(x - y));

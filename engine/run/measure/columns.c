@@ -9,6 +9,7 @@
 #include "engine/forces/forces.h"
 #include "engine/forces/memory.h"
 #include "engine/forces/support_motion.h"
+#include "engine/model/pose.h"
 
 /* Rounding of positions, relative to the structure's size; and of sums over many steps. */
 static const double POSITION_ROUNDING = 1e-12, SUM_ROUNDING = 1e-10;
@@ -49,7 +50,7 @@ bool strut_columns_create(const strut_model *model, double step, size_t most, st
   return c->column && c->value && c->before && c->least && c->most && c->largest;
 }
 
-/* Finds the contact of a node: the scene refers to contacts by nodes. */
+/* Finds the first contact of a node: the scene refers to contacts by nodes. */
 static int32_t find_contact(const strut_model *model, int32_t node) {
   for (int32_t i = 0; i < model->contacts.count; i++)
     if (model->contacts.entry[i].node == node) return i;
@@ -100,8 +101,34 @@ static double mean_by_mass(const strut_model *model, const double *from, double 
   return sum / mass;
 }
 
+/* Sum of a force over all contacts of the node of one of them, the first. */
+static double sum_of_node(const strut_columns *c, int32_t first, const double *force) {
+  const strut_contact_table *t = &c->model->contacts;
+  double sum = force[first];
+  for (int32_t i = first + 1; i < t->count && t->at[i] == t->at[first]; i++) sum += force[i];
+  return sum;
+}
+
+/* Distance from the nearest of several surfaces. */
+static double height_above_surfaces(const strut_contact_table *t, const double q[2],
+                                    const strut_ground_motion *motion) {
+  double least = HUGE_VAL;
+  for (int32_t k = 0; k < t->surfaces; k++) {
+    const strut_surface *s = &t->surface[k];
+    const double *place = s->moves && motion ? motion[s->ground].place : NULL;
+    double point[2] = {q[0] - (place ? place[0] : 0.0), q[1] - (place ? place[1] : 0.0)};
+    strut_contact_pose pose;
+    strut_surface_find(s, point, -1, &pose);
+    least = fmin(least, pose.gap);
+  }
+  return least;
+}
+
 /* Height above the ground, along its normal. */
-static double height_above_ground(const strut_columns *c, const double q[2]) {
+static double height_above_ground(const strut_columns *c, const strut_state *state,
+                                  const double q[2]) {
+  if (c->model->contacts.surface)
+    return height_above_surfaces(&c->model->contacts, q, state->ground_motion);
   return q[0] * c->normal[0] + (q[1] - c->model->scene->ground.height) * c->normal[1];
 }
 
@@ -153,9 +180,11 @@ static double evaluate_column(const strut_columns *c, const strut_state *state, 
     case STRUT_COLUMN_NODE_Y: return state->q[at + 1];
     case STRUT_COLUMN_NODE_VX: return state->v[at];
     case STRUT_COLUMN_NODE_VY: return state->v[at + 1];
-    case STRUT_COLUMN_HEIGHT: return height_above_ground(c, state->q + at);
-    case STRUT_COLUMN_NORMAL: return column.item < 0 ? 0.0 : state->normal[column.item];
-    case STRUT_COLUMN_FRICTION: return column.item < 0 ? 0.0 : state->friction[column.item];
+    case STRUT_COLUMN_HEIGHT: return height_above_ground(c, state, state->q + at);
+    case STRUT_COLUMN_NORMAL:
+      return column.item < 0 ? 0.0 : sum_of_node(c, column.item, state->normal);
+    case STRUT_COLUMN_FRICTION:
+      return column.item < 0 ? 0.0 : sum_of_node(c, column.item, state->friction);
     case STRUT_COLUMN_LENGTH: return strut_member_measure(c->model, state, column.item).length;
     case STRUT_COLUMN_STRETCH:
       return strut_member_measure(c->model, state, column.item).length - state->rest[column.item];

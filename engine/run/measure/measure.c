@@ -106,7 +106,7 @@ static void count_contacts(const strut_model *model, const strut_state *state,
   const strut_contact_table *c = &model->contacts;
   m->window_steps++;
   for (int32_t i = 0; i < c->count; i++) {
-    double gap = strut_contact_gap(c, i, state->q);
+    double gap = strut_contact_gap_at(c, i, state->q, state->ground_motion);
     if (gap < 0.0) m->contact_steps[i]++;
     if (gap > m->max_height[i]) m->max_height[i] = gap;
   }

@@ -53,10 +53,15 @@ static void apply_element(void *context, int32_t i, const strut_element_pose *po
 static void apply_contact(void *context, int32_t i, const strut_closed_contact *contact) {
   const product *p = context;
   const strut_contact_table *c = &p->model->contacts;
+  const double *n = contact->axes.normal, *t = contact->axes.tangent, *at = p->motion + c->at[i];
   double push = (p->stiff * contact->stiffness + p->damp * c->entry[i].damping) *
-                strut_contact_along_normal(c, i, p->motion);
-  p->image[c->at[i]] += push * c->normal[0];
-  p->image[c->at[i] + 1] += push * c->normal[1];
+                (at[0] * n[0] + at[1] * n[1]);
+  p->image[c->at[i]] += push * n[0];
+  p->image[c->at[i] + 1] += push * n[1];
+  if (contact->across == 0.0) return;
+  push = p->stiff * contact->across * (at[0] * t[0] + at[1] * t[1]);
+  p->image[c->at[i]] += push * t[0];
+  p->image[c->at[i] + 1] += push * t[1];
 }
 
 /* Adds noise to a motion, so that no eigenvector is missed for ever. */

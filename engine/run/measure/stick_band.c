@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "engine/forces/surfaces.h"
 #include "engine/model/mass.h"
 #include "engine/model/pose.h"
 
@@ -60,7 +61,8 @@ static int32_t list_ties(const strut_model *model, strut_band_tie *ties) {
 static bool is_stuck(const strut_model *model, const strut_state *state, int32_t i,
                      double *normal) {
   const strut_contact_table *c = &model->contacts;
-  double gap = strut_contact_gap(c, i, state->q), slip = strut_contact_slip(c, i, state->v);
+  double gap, slip;
+  strut_contact_observe(c, i, state, &gap, &slip);
   *normal = -gap * c->entry[i].stiffness;
   return gap < 0.0 && fabs(slip) < c->entry[i].friction.stick_velocity;
 }
@@ -98,6 +100,7 @@ double strut_stick_band_needed(const strut_model *model, const strut_integrator 
   const double *g = model->scene->gravity;
   if (method->events || !has_band(e) || !(strut_friction_largest(&e->friction) > 0.0)) return 0.0;
   double down = -(g[0] * c->normal[0] + g[1] * c->normal[1]);
+  if (c->surface) down = hypot(g[0], g[1]);
   return down > 0.0 && step > 0.0 ? strut_friction_largest(&e->friction) * down * step : 0.0;
 }
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
+#include "engine/model/pose.h"
 
 /* Members and nodes times steps between two checks of the interrupt flag. */
 static const int64_t CHUNK_WORK = 200000;
@@ -29,7 +30,7 @@ strut_status strut_period_map_create(const strut_model *model, const strut_exper
     strut_period_map_free(map);
     return status;
   }
-  map->travels = map->model->contacts.count > 0;
+  map->travels = strut_contacts_allow_travel(&map->model->contacts);
   for (int32_t i = 0; i < 2 * map->model->node_count; i++)
     map->travels = map->travels && !map->model->fixed[i];
   return STRUT_OK;

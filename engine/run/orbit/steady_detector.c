@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
+#include "engine/model/pose.h"
 
 /* Repetitions that are tested, in drive periods; the first that holds is reported. */
 static const int32_t repeats[STRUT_REPEATS] = {1, 2, 3, 4, 6, 8};
@@ -67,7 +68,7 @@ strut_status strut_steady_detector_create(const strut_model *model, const strut_
   if (w->successive < 2) w->successive = 2;
   if (w->successive > STRUT_RING / 2) w->successive = STRUT_RING / 2;
   if (!(w->floor > 0.0)) w->floor = STANDSTILL * model->size / period * w->tolerance;
-  w->travels = model->contacts.count > 0;
+  w->travels = strut_contacts_allow_travel(&model->contacts);
   for (int32_t i = 0; i < 2 * model->node_count; i++) w->travels = w->travels && !model->fixed[i];
   bool ready = (w->middle = strut_arena_allocate(&w->arena, both, sizeof(double)));
   for (int k = 0; k < STRUT_RING && ready; k++)

@@ -235,6 +235,7 @@ static strut_status report_equilibria(strut_equilibrium_search *h) {
 /* True if a force acts across the ground or a support holds a node across it. */
 static bool is_pressed(const strut_equilibrium_search *h) {
   double scale = 1e-12 * h->potential->force_scale, sum = 0.0;
+  if (h->model->contacts.surface) return true; /* they may face any direction */
   for (int32_t i = 0; i < h->model->node_count; i++) {
     if (h->model->fixed[2 * i + 1]) return true;
     sum += h->potential->force[2 * i + 1];

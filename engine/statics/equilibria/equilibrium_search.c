@@ -120,6 +120,11 @@ strut_status strut_equilibrium_search_contacts(strut_equilibrium_search *h, cons
   for (size_t i = 0; i < most; i++) {
     double normal = -c->entry[i].stiffness * strut_contact_gap(c, (int32_t)i, q);
     if (!(normal > PULL * h->potential->force_scale)) continue;
+    bool again = e->contact_count && e->contacts[e->contact_count - 1] == c->entry[i].node;
+    if (again) { /* of a node with several contacts the sum */
+      e->normal[e->contact_count - 1] += normal;
+      continue;
+    }
     e->contacts[e->contact_count] = c->entry[i].node;
     e->normal[e->contact_count++] = normal;
   }

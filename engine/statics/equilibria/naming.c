@@ -10,6 +10,7 @@
 #include "engine/base/vec.h"
 #include "engine/forces/elements.h"
 #include "engine/model/element_compile.h"
+#include "engine/model/pose.h"
 #include "engine/statics/search/critical.h"
 
 enum { MOST_LISTED = 4 };
@@ -56,7 +57,7 @@ static bool mirror_axis(const strut_model *model, const uint8_t *held, const dou
     any = true;
   }
   if (!any) *x = sum / model->node_count;
-  return model->contacts.count == 0 || model->contacts.normal[0] == 0.0;
+  return model->contacts.count == 0 || strut_contacts_are_level(&model->contacts);
 }
 
 /* Distance to the nearest configuration if that is near enough to lend its name, else HUGE_VAL. */

@@ -148,6 +148,12 @@ static strut_instability_cause instability_of(const strut_equilibrium_search *h,
   bool across = !p->held[1] && fabs(p->force[1]) > scale;
   bool along = !p->held[0] && fabs(p->force[0]) > scale;
   if (!p->touches) return across || along ? STRUT_INSTABILITY_FALLS : STRUT_INSTABILITY_NONE;
+  const strut_contact_table *c = &h->model->contacts;
+  if (c->surface) { /* only along parallel lines is it known beforehand that nothing holds it */
+    double pull = p->force[0] * c->tangent[0] + p->force[1] * c->tangent[1];
+    bool free = c->parallel && !p->held[0] && !p->held[1] && fabs(pull) > scale;
+    return free ? STRUT_INSTABILITY_SLIDES : STRUT_INSTABILITY_NONE;
+  }
   if (across && p->force[1] > 0) return STRUT_INSTABILITY_LIFTED;
   return along ? STRUT_INSTABILITY_SLIDES : STRUT_INSTABILITY_NONE;
 }

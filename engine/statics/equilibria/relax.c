@@ -10,6 +10,7 @@
 #include "engine/forces/forces.h"
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/limit/step_limit.h"
+#include "engine/model/pose.h"
 #include "engine/statics/search/critical.h"
 
 /* Simulated steps between two checks of the energy; they grow while nothing is decided. */
@@ -105,6 +106,7 @@ strut_descent strut_relaxer_quench(strut_relaxer *r, double *q) {
 }
 
 static bool free_along_x(const strut_model *model) {
+  if (model->contacts.count && !strut_contacts_are_level(&model->contacts)) return false;
   for (int32_t i = 0; i < model->node_count; i++)
     if (model->fixed[2 * i]) return false;
   return true;

@@ -45,6 +45,10 @@ static bool find_closed(const strut_model *model, strut_arena *arena, strut_rest
   for (int32_t i = 0; i < c->count; i++) {
     double gap = strut_contact_gap(c, i, rest->q);
     if (!(gap < 0)) continue;
+    if (rest->closed_count && rest->closed[rest->closed_count - 1] == c->entry[i].node) {
+      rest->normal[rest->closed_count - 1] -= c->entry[i].stiffness * gap;
+      continue;
+    }
     rest->closed[rest->closed_count] = c->entry[i].node;
     rest->normal[rest->closed_count++] = -c->entry[i].stiffness * gap;
   }

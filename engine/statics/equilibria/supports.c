@@ -109,7 +109,7 @@ strut_status strut_level_frame_create(const strut_scene *original, strut_level_f
   *level = (strut_level_frame){
       .scene = *original, .cosine = 1.0, .oblique_node = find_oblique_node(original)};
   level->scene.arena = (strut_arena){0};
-  if (!copy_arrays(level)) {
+  if (!copy_arrays(level) || !strut_scene_stop_grounds(&level->scene, &level->arena)) {
     strut_level_frame_free(level);
     return strut_no_memory(error, "");
   }

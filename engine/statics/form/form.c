@@ -500,6 +500,10 @@ strut_status strut_form_find(strut_setup *setup, const strut_form_options *optio
   double *drawn = strut_arena_allocate(&f.arena, 2 * scene->node_count, sizeof *drawn);
   strut_status status =
       drawn ? strut_model_compile(scene, &model, error) : strut_no_memory(error, "");
+  if (status == STRUT_OK && model->contacts.surface)
+    status = strut_fail(error, STRUT_USAGE,
+                        "form finding needs a ground that is one straight line at rest; give "
+                        "'ground' with height and slope, or none");
   if (status == STRUT_OK) status = strut_potential_create(model, NULL, true, &potential, error);
   if (status == STRUT_OK) {
     for (size_t i = 0; i < 2 * scene->node_count; i++)

@@ -39,8 +39,10 @@ static void add_constraints(const strut_vibration *v, const pivot *c, gsl_matrix
   for (int32_t at = 0; at < 2 * model->node_count; at++)
     if (v->shape->row_of[at] < 0) add_constraint(v, c, at & ~1, at % 2 == 0, at % 2 != 0, g);
   for (int32_t i = 0; i < contacts->count; i++)
-    if (v->closed[i])
-      add_constraint(v, c, (int32_t)contacts->at[i], contacts->normal[0], contacts->normal[1], g);
+    if (v->closed[i]) {
+      const strut_contact_pose pose = strut_vibration_contact(v, i);
+      add_constraint(v, c, (int32_t)contacts->at[i], pose.axes.normal[0], pose.axes.normal[1], g);
+    }
 }
 
 static void fill_motion(const strut_vibration *v, const pivot *c, const double motion[3],
@@ -243,7 +245,8 @@ static energies energies_of(const strut_vibration *v, const double *x, const dou
     double d[2];
     if (!v->closed[i]) continue;
     motion_of(v, x, c->entry[i].node, d);
-    double depth = d[0] * c->normal[0] + d[1] * c->normal[1];
+    const strut_contact_pose pose = strut_vibration_contact(v, i);
+    double depth = d[0] * pose.axes.normal[0] + d[1] * pose.axes.normal[1];
     e.ground += c->entry[i].stiffness * depth * depth;
   }
   e.all = e.members + e.ground;

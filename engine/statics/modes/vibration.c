@@ -144,16 +144,29 @@ static void add_elements(strut_vibration *v) {
                        add_element);
 }
 
+strut_contact_pose strut_vibration_contact(const strut_vibration *v, int32_t i) {
+  const strut_contact_table *c = &v->model->contacts;
+  double q[2] = {dd_double(v->q[c->at[i]]), dd_double(v->q[c->at[i] + 1])};
+  strut_contact_pose pose = {.axes = c->axes};
+  if (c->surface) strut_surface_find(&c->surface[c->surface_of[i]], q, -1, &pose);
+  return pose;
+}
+
 static void add_contact(strut_vibration *v, int32_t i) {
   const strut_contact_table *c = &v->model->contacts;
   if (!v->closed[i]) return;
+  const strut_contact_pose pose = strut_vibration_contact(v, i);
+  const double *n = pose.axes.normal, *t = pose.axes.tangent;
+  double across = c->entry[i].stiffness * pose.gap * pose.curvature;
   const int32_t *place =
       v->shape->place + strut_places_of_contacts(v->model) + STRUT_CONTACT_ENTRIES * i;
   for (int a = 0; a < 2; a++)
     for (int b = 0; b <= a; b++, place++) {
       if (*place < 0) continue;
-      strut_dd nn = dd_product(c->normal[a], c->normal[b]);
+      strut_dd nn = dd_product(n[a], n[b]);
       v->k[*place] = dd_add(v->k[*place], dd_scale(nn, c->entry[i].stiffness));
+      if (pose.curvature != 0.0)
+        v->k[*place] = dd_add(v->k[*place], dd_scale(dd_product(t[a], t[b]), across));
       v->d[*place] += c->entry[i].damping * nn.hi;
     }
 }
@@ -246,7 +259,8 @@ strut_status strut_vibration_create(const strut_model *model, const double *q,
   for (int32_t i = 0; i < model->length; i++) v->q[i] = dd_of(q[i]);
   for (int32_t i = 0; i < model->contacts.count; i++)
     for (int32_t k = 0; k < closed_count; k++)
-      if (model->contacts.entry[i].node == closed[k]) v->closed[i] = 1;
+      if (model->contacts.entry[i].node == closed[k])
+        v->closed[i] = !model->contacts.surface || strut_contact_gap(&model->contacts, i, q) < 0.0;
   add_masses(v);
   strut_vibration_update(v);
   return STRUT_OK;
@@ -284,11 +298,14 @@ void strut_vibration_force(const strut_vibration *v, strut_dd *force) {
   for (int32_t i = 0; i < c->count; i++) {
     if (!v->closed[i]) continue;
     uint32_t at = c->at[i];
-    strut_dd gap = dd_add(dd_scale(v->q[at], c->normal[0]),
-                          dd_scale(dd_sub(v->q[at + 1], dd_of(c->height)), c->normal[1]));
+    const strut_contact_pose pose = strut_vibration_contact(v, i);
+    const double *n = pose.axes.normal;
+    strut_dd gap =
+        dd_add(dd_scale(v->q[at], n[0]), dd_scale(dd_sub(v->q[at + 1], dd_of(c->height)), n[1]));
+    if (c->surface) gap = dd_of(pose.gap);
     strut_dd push = dd_scale(gap, -c->entry[i].stiffness);
-    add_to(force, row_of[at], dd_scale(push, c->normal[0]));
-    add_to(force, row_of[at + 1], dd_scale(push, c->normal[1]));
+    add_to(force, row_of[at], dd_scale(push, n[0]));
+    add_to(force, row_of[at + 1], dd_scale(push, n[1]));
   }
 }
 

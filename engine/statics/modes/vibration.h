@@ -48,6 +48,9 @@ strut_status strut_vibration_create(const strut_model *model, const double *q,
                                     strut_error *error);
 void strut_vibration_free(strut_vibration *vibration);
 
+/** Pose of contact i. */
+strut_contact_pose strut_vibration_contact(const strut_vibration *vibration, int32_t i);
+
 /** Computes members and K anew after a change of q. */
 void strut_vibration_update(strut_vibration *vibration);
 

@@ -200,7 +200,8 @@ static void add_element(void *context, int32_t i, const strut_element_pose *pose
 static void add_contact(void *context, int32_t i, const strut_closed_contact *contact) {
   sums *s = context;
   const strut_contact_table *c = &s->model->contacts;
-  const strut_stiffness_block block = strut_block_of_contact(contact->stiffness, c->normal);
+  const strut_stiffness_block block =
+      strut_block_of_pose(contact->stiffness, contact->across, &contact->axes);
   strut_block_add(&block, STRUT_CONTACT_ENTRIES, s->row_of + c->at[i], &s->contact);
   s->touching++;
 }

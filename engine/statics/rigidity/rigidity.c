@@ -180,10 +180,10 @@ static void add_outer_forces(const strut_model *model, const double *q, double *
       net[at[k / 2] + (uint32_t)(k % 2)] -= pose.force * pose.b[k];
   }
   for (int32_t i = 0; i < c->count; i++) {
-    double gap = strut_contact_gap(c, i, q);
-    if (!(gap < 0)) continue;
+    strut_contact_pose pose = strut_contact_pose_at(c, i, q, NULL, -1);
+    if (!(pose.gap < 0)) continue;
     for (int k = 0; k < 2; k++)
-      net[c->at[i] + (uint32_t)k] -= c->entry[i].stiffness * gap * c->normal[k];
+      net[c->at[i] + (uint32_t)k] -= c->entry[i].stiffness * pose.gap * pose.axes.normal[k];
   }
 }
 

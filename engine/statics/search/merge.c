@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/model/pose.h"
 #include "engine/statics/search/critical.h"
 
 /* Largest factor by which a soft direction may enlarge the distance within which points are one. */
@@ -31,7 +32,8 @@ static void find_free_motions(strut_stationary_set *g) {
   double net[2] = {0.0, 0.0};
   for (int32_t at = 0; at < 2 * model->node_count; at++) net[at % 2] += p->force[at];
   g->congruent = fixed[0] + fixed[1] <= 3;
-  g->shifts[0] = fixed[0] == 0 && net[0] == 0 && !(grounded && model->contacts.normal[0] != 0);
+  g->shifts[0] =
+      fixed[0] == 0 && net[0] == 0 && !(grounded && !strut_contacts_are_level(&model->contacts));
   g->shifts[1] = fixed[1] == 0 && net[1] == 0 && !grounded;
   g->turns = at_one_node && !loaded && !grounded;
 }

@@ -8,6 +8,7 @@
 #include <omp.h>
 #endif
 
+#include "engine/model/pose.h"
 #include "engine/statics/curvature.h"
 #include "engine/statics/search/saddle.h"
 #include "engine/statics/search/starts.h"
@@ -89,7 +90,8 @@ static double slide_onto(const strut_potential *p, const double *a, const double
     if (p->row_of[2 * i] < 0 || p->force[2 * i] != 0.0) return 0.0;
     sum += a[2 * i] - b[2 * i];
   }
-  if (p->ground && p->model->contacts.count && p->model->contacts.normal[0] != 0.0) return 0.0;
+  if (p->ground && p->model->contacts.count && !strut_contacts_are_level(&p->model->contacts))
+    return 0.0;
   return nodes ? sum / nodes : 0.0;
 }
 

@@ -113,7 +113,9 @@ static const char *start_name(const strut_compare_work *work, const strut_model 
     double shift = p[0] - q[0], apart = 0.0; /* along the ground it may lie anywhere */
     if (e->outcome != STRUT_OUTCOME_STANDS) continue;
     for (int32_t k = 0; k < 2 * model->node_count; k++)
-      apart = fmax(apart, fabs(p[k] - q[k] - (k % 2 || !model->contacts.count ? 0.0 : shift)));
+      apart = fmax(apart,
+                   fabs(p[k] - q[k] -
+                        (k % 2 || !strut_contacts_allow_travel(&model->contacts) ? 0.0 : shift)));
     if (apart <= 1e-3 * model->size) return e->name;
   }
   return NULL;
@@ -222,12 +224,14 @@ static void hold_contacts(stiff *s, const strut_model *model, const double *q,
   const strut_contact_table *c = &model->contacts;
   for (int32_t i = 0; i < c->count; i++) {
     uint32_t at = c->at[i];
-    if (!(strut_contact_gap(c, i, q) < 0)) continue;
+    const strut_contact_pose pose = strut_contact_pose_at(c, i, q, NULL, -1);
+    const double *t = pose.axes.tangent;
+    if (!(pose.gap < 0)) continue;
     for (uint32_t a = 0; a < 2; a++)
       for (uint32_t b = 0; b < 2; b++)
         if (row_of[at + a] >= 0 && row_of[at + b] >= 0)
           s->k[(size_t)row_of[at + a] * s->n + (size_t)row_of[at + b]] +=
-              c->entry[i].stiffness * c->tangent[a] * c->tangent[b];
+              c->entry[i].stiffness * t[a] * t[b];
   }
 }
 

@@ -127,6 +127,15 @@ static void add_forces(structure *s, const strut_scene *scene) {
     const strut_contact *c = &scene->contacts[i];
     const double values[] = {c->node, c->stiffness, c->damping, c->dissipation};
     add_all(s, values, sizeof values / sizeof values[0]);
+    if (scene->ground_count) add(s, c->ground), add(s, c->piece);
+  }
+  for (size_t i = 0; i < scene->ground_count; i++) {
+    const strut_ground *g = &scene->grounds[i];
+    const double values[] = {g->shape,      g->height,     g->slope,      g->placed,
+                             g->through[0], g->through[1], g->centre[0],  g->centre[1],
+                             g->radius,     g->inside,     g->belt_speed, g->damping_law};
+    add_all(s, values, sizeof values / sizeof values[0]);
+    for (size_t k = 0; k < g->point_count; k++) add_all(s, g->points[k], 2);
   }
   for (size_t i = 0; i < scene->load_count; i++) {
     const strut_load *l = &scene->loads[i];

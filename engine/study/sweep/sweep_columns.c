@@ -79,7 +79,7 @@ static bool add_column(strut_sweep_plan *plan, const char *prefix, const char *n
 static bool add_things(strut_sweep_plan *plan, const strut_scene *scene) {
   bool fine = true;
   for (size_t i = 0; i < scene->contact_count && keeps(plan, STRUT_KEEP_CONTACTS); i++) {
-    const char *node = scene->nodes[scene->contacts[i].node].name;
+    const char *node = strut_contact_name(scene, i);
     fine = fine && add_column(plan, "duty_", node, "1", false) &&
            add_column(plan, "height_", node, "m", false);
   }

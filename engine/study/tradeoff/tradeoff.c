@@ -164,11 +164,12 @@ static bool makes_sense(const strut_scene *scene, kind what) {
   switch (what) {
     case OWN: return true;
     case MASS: return has_member_mass(scene);
-    case RIGID: return has_still_bars(scene);
+    case RIGID: return has_still_bars(scene) && !scene->ground_count;
     case KARNOPP: return has_any_friction(scene) && !has_friction(scene, STRUT_FRICTION_KARNOPP);
     case COULOMB: return has_any_friction(scene) && !has_friction(scene, STRUT_FRICTION_COULOMB);
     case SMOOTH: return has_any_friction(scene) && !has_friction(scene, STRUT_FRICTION_SMOOTH);
-    case GROUND: return scene->contact_count > 0 && has_damped_ground(scene);
+    case GROUND:
+      return scene->contact_count > 0 && !scene->ground_count && has_damped_ground(scene);
     case KINDS: break;
   }
   return false;

@@ -1,0 +1,111 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/forces/surfaces.h"
+
+#include "engine/forces/ground_kernel.h"
+
+/* Contacts first .. end - 1 are of one node. */
+static int32_t end_of_node(const strut_contact_table *c, int32_t first) {
+  int32_t end = first + 1;
+  while (end < c->count && c->at[end] == c->at[first]) end++;
+  return end;
+}
+
+/* Normal forces of the contacts that touch; how many do. *last: one of them. */
+static int32_t push(const strut_model *model, strut_state *state, const double *q, const double *v,
+                    int32_t first, int32_t end, int32_t *last) {
+  const strut_contact_table *c = &model->contacts;
+  int32_t touching = 0;
+  for (int32_t i = first; i < end; i++) {
+    strut_contact_pose *pose = &state->pose[i];
+    *pose = strut_contact_pose_at(c, i, q, state->ground_motion, -1);
+    if (!(pose->gap < 0.0)) continue;
+    const strut_contact_entry *e = &c->entry[i];
+    strut_vec2 u = strut_contact_velocity(c, i, v, state->ground_motion);
+    double into = strut_component(pose->axes.normal, u.x, u.y), spring = -e->stiffness * pose->gap;
+    double normal = spring + ground_damper(e, spring, into);
+    double *f = state->force + c->at[i];
+    f[0] += normal * pose->axes.normal[0], f[1] += normal * pose->axes.normal[1];
+    state->normal[i] = normal;
+    state->friction[i] = 0.0;
+    *last = i;
+    touching++;
+  }
+  return touching;
+}
+
+/* Friction of contact i under the other forces on its node; returns its change. */
+static double rub(const strut_model *model, strut_state *state, const double *v, int32_t i) {
+  const strut_contact_table *c = &model->contacts;
+  const strut_contact_entry *e = &c->entry[i];
+  const double *t = state->pose[i].axes.tangent;
+  double *f = state->force + c->at[i], before = state->friction[i];
+  if (e->friction.law == STRUT_FRICTION_NONE) return 0.0;
+  strut_vec2 u = strut_contact_velocity(c, i, v, state->ground_motion);
+  double slip = strut_component(t, u.x, u.y) - strut_contact_belt(c, i);
+  double applied = strut_component(t, f[0], f[1]) - before;
+  double friction = ground_friction(e, state->normal[i], slip, applied, state->rigid);
+  f[0] += (friction - before) * t[0], f[1] += (friction - before) * t[1];
+  state->friction[i] = friction;
+  return friction - before;
+}
+
+/* Friction of all contacts of a node, until they agree. */
+static void rub_all(const strut_model *model, strut_state *state, const double *v, int32_t first,
+                    int32_t end) {
+  enum { MOST_SWEEPS = 60 };
+  for (int sweep = 0; sweep < MOST_SWEEPS; sweep++) {
+    double changed = 0.0, largest = 0.0;
+    for (int32_t i = first; i < end; i++) {
+      if (!(state->pose[i].gap < 0.0)) continue;
+      changed = fmax(changed, fabs(rub(model, state, v, i)));
+      largest = fmax(largest, fabs(state->friction[i]));
+    }
+    if (changed <= 1e-15 * largest) return;
+  }
+}
+
+/* Damper, friction, and what the ground's own motion and belt give to the structure. */
+static void book(const strut_model *model, strut_state *state, const double *v, int32_t i) {
+  const strut_contact_table *c = &model->contacts;
+  const strut_contact_pose *pose = &state->pose[i];
+  const strut_ground_motion *own = strut_contact_motion(c, i, state->ground_motion);
+  strut_vec2 u = strut_contact_velocity(c, i, v, state->ground_motion);
+  double normal = state->normal[i], friction = state->friction[i];
+  double into = strut_component(pose->axes.normal, u.x, u.y);
+  double belt = strut_contact_belt(c, i),
+         slip = strut_component(pose->axes.tangent, u.x, u.y) - belt;
+  double moved = friction * belt;
+  if (own)
+    moved += normal * strut_component(pose->axes.normal, own->rate[0], own->rate[1]) +
+             friction * strut_component(pose->axes.tangent, own->rate[0], own->rate[1]);
+  double damped = -(normal + c->entry[i].stiffness * pose->gap) * into, rubbed = -friction * slip;
+  state->power[STRUT_POWER_CONTACT] += damped;
+  state->power[STRUT_POWER_FRICTION] += rubbed;
+  state->power[STRUT_POWER_BELT] += moved;
+  state->power[STRUT_POWER_EXCHANGED] += fabs(damped) + fabs(rubbed) + fabs(moved);
+}
+
+void strut_surfaces_add_forces(const strut_model *model, strut_state *state,
+                               const double *restrict q, const double *restrict v) {
+  const strut_contact_table *c = &model->contacts;
+  for (int32_t first = 0, end; first < c->count; first = end) {
+    int32_t one = first;
+    end = end_of_node(c, first);
+    int32_t touching = push(model, state, q, v, first, end, &one);
+    if (!touching) continue;
+    if (touching == 1)
+      rub(model, state, v, one);
+    else
+      rub_all(model, state, v, first, end);
+    for (int32_t i = first; i < end && state->ledger; i++)
+      if (state->pose[i].gap < 0.0) book(model, state, v, i);
+  }
+}
+
+void strut_contact_observe(const strut_contact_table *c, int32_t i, const strut_state *state,
+                           double *gap, double *slip) {
+  const strut_contact_pose pose = strut_contact_pose_at(c, i, state->q, state->ground_motion, -1);
+  strut_vec2 u = strut_contact_velocity(c, i, state->v, state->ground_motion);
+  *gap = pose.gap;
+  *slip = strut_component(pose.axes.tangent, u.x, u.y) - strut_contact_belt(c, i);
+}

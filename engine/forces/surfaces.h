@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Reactions of surfaces (engine/model/surfaces.h): the laws of ground_kernel.h, each contact with its own
+ * tangent and normal, and several contacts of one node at once.
+ */
+#ifndef STRUT_ENGINE_FORCES_SURFACES_H
+#define STRUT_ENGINE_FORCES_SURFACES_H
+
+#include "engine/model/pose.h"
+#include "engine/model/state.h"
+
+/**
+ * Adds the reactions to state->force; with the ledger their powers. Friction comes last, and where several
+ * contacts of a node stick within Karnopp's band it is found for all of them together.
+ */
+void strut_surfaces_add_forces(const strut_model *model, strut_state *state,
+                               const double *restrict q, const double *restrict v);
+
+/** Velocity of a node against the surface of contact i: what the ground itself moves by is taken off. */
+static inline strut_vec2 strut_contact_velocity(const strut_contact_table *c, int32_t i,
+                                                const double *v,
+                                                const strut_ground_motion *motion) {
+  const double *at = v + c->at[i];
+  const strut_ground_motion *own = strut_contact_motion(c, i, motion);
+  return own ? (strut_vec2){at[0] - own->rate[0], at[1] - own->rate[1]}
+             : (strut_vec2){at[0], at[1]};
+}
+
+/** Component of (x, y) along a unit vector. */
+static inline double strut_component(const double unit[2], double x, double y) {
+  return x * unit[0] + y * unit[1];
+}
+
+/** Gap and sliding speed of a contact as a state stands. */
+void strut_contact_observe(const strut_contact_table *c, int32_t i, const strut_state *state,
+                           double *gap, double *slip);
+
+#endif

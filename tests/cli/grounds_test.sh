@@ -1,0 +1,294 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Several grounds, profiles, circles and shaken ground, against closed forms.
+. "$(dirname "$0")/lib.sh"
+
+# near ACTUAL EXPECTED TOLERANCE WHAT
+near() {
+  awk -v a="$1" -v b="$2" -v t="$3" 'BEGIN { d = a - b; exit !(d <= t && -d <= t) }' ||
+    fail "$4: $1, expected $2 within $3"
+}
+# last FILE COLUMN: of the last row of a table of the latest run.
+last() {
+  awk -F, -v want="$2" 'NR == 1 { for (i = 1; i <= NF; i++) if (index($i, want " ") == 1) c = i }
+    END { if (!c) exit 1; print $c }' "run/$1.csv" || fail "no column $2 in $1.csv"
+}
+# go SCENE METHOD [OPTION...]: runs it into run/.
+go() {
+  scene=$1 method=$2
+  shift 2
+  rm -rf run
+  expect 0 run "$scene" --integrator "$method" "$@" --quiet -o run
+}
+# closes TOLERANCE WHAT: the energy balance of the latest run.
+closes() { near "$(jq -r .energy.residual run/summary.json)" 0 "$1" "energy of $2"; }
+plain="rk4 euler verlet"
+located="rk4-events verlet-events euler-events adaptive"
+
+# ---- a ball in a V of slopes 40 and 60 degrees: N_left sin 40 = N_right sin 60, no sideways force ----
+cat >v.yaml <<'END'
+strut: 1
+gravity: [0, -10]
+nodes: {ball: {position: [0, 1 mm], mass: 2}}
+grounds:
+  left: {slope: -40 deg, through: [0, 0], stiffness: 1e4, damping: 60}
+  right: {normal: [-1.7320508075688772, 1], through: [0, 0], stiffness: 1e4, damping: 60}
+solver: {integrator: rk4, step: 0.2 ms}
+run: {duration: 2 s}
+output: {channels: [position, velocity, contact, energy]}
+END
+for method in $plain $located; do
+  go v.yaml "$method"
+  near "$(last contacts ball.left.normal)" 17.587704831436334 1e-4 "left side of the V by $method"
+  near "$(last contacts ball.right.normal)" 13.054072893322784 1e-4 "right side of the V by $method"
+done
+closes 1e-12 "the V"
+expect 0 equilibria v.yaml --json
+near "$(jq -r '.equilibria | length' "$work/out")" 1 0 "equilibria in the V"
+expect 0 modes v.yaml --json
+near "$(jq -r '[.modes[].eigenvalue] | add' "$work/out")" 10000 1e-6 "trace of the stiffness in the V"
+# A profile with the same corner is the same ground in two pieces.
+sed -e '/left:/d' -e '/right:/d' -e 's/^grounds:/ground: {profile: [[-1, 0.8390996311772800], [0, 0], [1, 1.7320508075688772]], stiffness: 1e4, damping: 60}/' v.yaml >corner.yaml
+go corner.yaml rk4-events
+near "$(last contacts ball.1.normal)" 17.587704831436334 1e-4 "left side of the corner"
+near "$(last contacts ball.2.normal)" 13.054072893322784 1e-4 "right side of the corner"
+# Friction holds it: the forces of both contacts balance the weight.
+sed 's/damping: 60}/damping: 60, friction: {mu: 0.5, stick_velocity: 1 mm\/s}}/' v.yaml >rough.yaml
+for method in rk4 rk4-events verlet-events; do
+  go rough.yaml "$method"
+  near "$(last nodes ball.vy)" 0 1e-3 "rest in the rough V by $method"
+  awk -v a="$(last contacts ball.left.normal)" -v f="$(last contacts ball.left.friction)" \
+    -v b="$(last contacts ball.right.normal)" -v g="$(last contacts ball.right.friction)" 'BEGIN {
+    p = atan2(0, -1) / 180; x = a * sin(40 * p) + f * cos(40 * p) - b * sin(60 * p) + g * cos(60 * p)
+    y = a * cos(40 * p) - f * sin(40 * p) + b * cos(60 * p) + g * sin(60 * p) - 20
+    exit !(x * x + y * y < 1e-10) }' || fail "balance in the rough V by $method"
+done
+
+# ---- a wall at 45 degrees turns horizontal motion into vertical motion ----
+cat >wall.yaml <<'END'
+strut: 1
+nodes: {ball: {position: [0, 0.2], mass: 1}}
+grounds:
+  floor: {stiffness: 1e4}
+  wall: {normal: [-1, 1], through: [1, 0.2], stiffness: 1e6}
+initial: {velocity: [3, 0]}
+solver: {integrator: rk4, step: 0.05 ms}
+run: {duration: 1 s}
+output: {channels: [position, velocity, contact, energy]}
+END
+for method in $plain $located; do
+  go wall.yaml "$method"
+  near "$(last nodes ball.vx)" 0 2e-3 "sideways speed behind the wall by $method"
+  near "$(last nodes ball.vy)" 3 2e-3 "upward speed behind the wall by $method"
+done
+near "$(last nodes ball.vy)" 3 1e-9 "upward speed by adaptive"
+# It meets the wall after 1/3 s and is pressed into it for half a period, pi ms, sideways by pi / 2 * 3 mm.
+near "$(last nodes ball.x)" 1.00471238898 1e-9 "place behind the wall by adaptive"
+near "$(last nodes ball.y)" 2.19528761102 1e-9 "height behind the wall by adaptive"
+
+# ---- a mass slides off a step: at rest at depth d = m g / k; the corner pushes it on by k d^2 / m ----
+cat >step.yaml <<'END'
+strut: 1
+gravity: [0, -9.81]
+nodes: {m: {position: [-0.5, -9.81e-6], mass: 1}}
+ground: {profile: [[-1, 0], [0, 0], [0, -1], [1, -1]], stiffness: 1e6, damping: 2000}
+initial: {velocity: [1, 0]}
+solver: {integrator: rk4-events, step: 0.2 ms}
+run: {duration: 1.5 s}
+output: {channels: [position, velocity, contact, energy]}
+END
+for method in rk4-events verlet-events adaptive; do
+  go step.yaml "$method"
+  near "$(last nodes m.vx)" 1.0000481168925 1e-7 "speed behind the corner by $method"
+  near "$(last nodes m.y)" -1.00000981 1e-7 "rest below the step by $method"
+  near "$(last contacts m.2.normal)" 9.81 1e-4 "weight below the step by $method"
+done
+go step.yaml adaptive --tolerance 1e-9
+closes 1e-7 "the step"
+
+# ---- without friction in a circular pipe: a pendulum, by elliptic functions ----
+cat >pipe.yaml <<'END'
+strut: 1
+gravity: [0, -9.81]
+nodes: {m: {position: [0.5, -0.8660254037844386], mass: 1}}
+ground: {circle: {centre: [0, 0], radius: 1, inside: yes}, stiffness: 1e9}
+solver: {integrator: rk4, step: 10 us}
+run: {duration: 2 s}
+output: {channels: [position, velocity, contact, energy]}
+END
+for method in rk4 verlet verlet-events rk4-events; do
+  go pipe.yaml "$method"
+  near "$(last nodes m.x)" 0.49643145900515577649 3e-6 "pendulum in a pipe by $method"
+  closes 1e-4 "the pipe by $method"
+done
+near "$(last nodes m.x)" 0.49643145900515577649 1e-7 "pendulum in a pipe by rk4-events"
+expect 0 modes pipe.yaml --json
+near "$(jq -r '.modes[0].eigenvalue' "$work/out")" 9.81 1e-6 "small swings in a pipe"
+
+# ---- on a turning drum: held until g sin(theta) = mu (g cos(theta) - v^2 / R) ----
+cat >drum.yaml <<'END'
+strut: 1
+parameters: {speed: 0.5 m/s}
+gravity: [0, -9.81]
+nodes: {m: {position: [0, 0.99999999], mass: 1}}
+ground:
+  circle: {centre: [0, 0], radius: 1}
+  belt_speed: speed
+  stiffness: 1e7
+  damping: 5000
+  friction: {law: coulomb, mu: 0.5}
+initial: {velocity: [speed, 0]}
+solver: {integrator: rk4-events, step: 50 us}
+run: {duration: 0.8 s}
+output: {channels: [position, velocity, contact, energy]}
+END
+for method in rk4-events verlet-events adaptive; do
+  go drum.yaml "$method"
+  near "$(last nodes m.x)" 0.389418342 2e-6 "carried by a drum, sin 0.4, by $method"
+  near "$(last contacts m.friction)" -3.8202 1e-3 "held by a drum, m g sin 0.4, by $method"
+  closes 1e-6 "the drum by $method"
+done
+# Faster, it flies at once: v^2 > g R.
+go drum.yaml adaptive --set speed=4
+near "$(last contacts m.normal)" 0 0 "a drum that turns faster than sqrt(g R) throws off"
+
+# ---- a shaken table: held by friction, or bouncing once a period beyond pi (1 - e) / (1 + e) ----
+cat >held.yaml <<'END'
+strut: 1
+gravity: [0, -9.81]
+nodes: {m: {position: [0, -9.81e-6], mass: 1}}
+ground:
+  motion: {x: {sine: {amplitude: 2 mm, frequency: 5 Hz}}}
+  stiffness: 1e6
+  damping: 500
+  friction: {law: coulomb, mu: 0.5}
+solver: {integrator: rk4-events, step: 0.1 ms}
+run: {duration: 1.05 s}
+output: {channels: [position, velocity, contact, energy]}
+END
+for method in rk4-events verlet-events adaptive; do
+  go held.yaml "$method"
+  near "$(last nodes m.vx)" 0 1e-5 "speed of a table at its turn by $method"
+  near "$(last contacts m.friction)" -1.97392088 1e-4 "A w^2 m of a table by $method"
+  near "$(last nodes m.x)" 0.002 5e-4 "place on a table, but for the first slip, by $method"
+  closes 1e-6 "the held mass by $method"
+done
+[ "$(jq -r '.energy.belt_work > 0' run/summary.json)" = true ] || fail "the table's work"
+# e = exp(-zeta acos(zeta) / sqrt(1 - zeta^2)) = 0.45, so that the threshold is 1.1916.
+cat >bounce.yaml <<'END'
+strut: 1
+parameters: {shake: 1.3, phase: 23.56 deg, start: 1.2912 mm}
+gravity: [0, -9.81]
+nodes: {m: {position: [0, start], mass: 1}}
+ground:
+  motion: {y: {sine: {amplitude: shake * 9.81 / (2*pi*10)^2 * 1 m, frequency: 10 Hz, phase: phase}}}
+  stiffness: 1e8
+  damping: 14468.8
+initial: {velocity: [0, 0.4905]}
+solver: {integrator: rk4-events, step: 50 us}
+run: {duration: 3 s, measure: {last: 1 s}}
+output: {channels: [position, velocity, contact, energy]}
+END
+# bounce GAMMA PHASE START: share of time in contact within the last second
+bounce() {
+  go bounce.yaml adaptive --set "shake=$1" --set "phase=$2" --set "start=$3"
+  jq -r .contacts.m.duty run/summary.json
+}
+duty=$(bounce 1.21 0.1748 0.523e-3)
+awk -v d="$duty" 'BEGIN { exit !(d < 0.02) }' || fail "bounces above the threshold: $duty in contact"
+duty=$(bounce 1.17 0 0)
+awk -v d="$duty" 'BEGIN { exit !(d > 0.3) }' || fail "rests below the threshold: $duty in contact"
+
+# ---- a block on an incline that is given by its normal: g (sin - mu cos), or held ----
+cat >incline.yaml <<'END'
+strut: 1
+parameters: {mu: 0.5}
+gravity: [0, -10]
+nodes: {m: {position: [0, 0], mass: 1}}
+ground: {normal: [-3, 4], through: [4, 3], stiffness: 1e6, damping: 500, friction: {law: coulomb, mu: mu}}
+solver: {integrator: rk4-events, step: 0.1 ms}
+run: {duration: 1 s}
+output: {channels: [position, velocity, contact]}
+END
+go incline.yaml rk4-events
+near "$(last nodes m.vx)" -1.6 1e-3 "(6 - 4) m/s^2 down the incline"
+go incline.yaml rk4-events --set mu=0.8
+near "$(last nodes m.vx)" 0 1e-6 "held on the incline"
+expect 0 write incline.yaml
+out_has "slope: 0.6435011087932844"
+sed 's/^ground: {\(.*\)}$/grounds: {incline: {\1}}/' incline.yaml >named.yaml
+go named.yaml rk4-events
+near "$(last nodes m.vx)" -1.6 1e-3 "the same as one of several grounds"
+head -n 1 run/contacts.csv | grep -qF 'm.normal [N]' || fail "one surface, so contacts are named by nodes"
+
+# ---- a wheel of bars rolls over a bump; its mirror image does so the other way ----
+cat >wheel.yaml <<'END'
+strut: 1
+parameters: {way: 1}
+gravity: [0, -9.81]
+groups:
+  rim: {kind: bar, stiffness: 2e4, damping: 4}
+nodes:
+  hub: {position: [0, 0.1], mass: 0.2}
+  n0: {position: [way * 0.1, 0.1], mass: 0.05}
+  n1: {position: [way * 0.05, 0.18660254], mass: 0.05}
+  n2: {position: [way * -0.05, 0.18660254], mass: 0.05}
+  n3: {position: [way * -0.1, 0.1], mass: 0.05}
+  n4: {position: [way * -0.05, 0.01339746], mass: 0.05}
+  n5: {position: [way * 0.05, 0.01339746], mass: 0.05}
+members:
+  r0: {group: rim, nodes: [n0, n1]}
+  r1: {group: rim, nodes: [n1, n2]}
+  r2: {group: rim, nodes: [n2, n3]}
+  r3: {group: rim, nodes: [n3, n4]}
+  r4: {group: rim, nodes: [n4, n5]}
+  r5: {group: rim, nodes: [n5, n0]}
+  s0: {group: rim, nodes: [hub, n0]}
+  s1: {group: rim, nodes: [hub, n1]}
+  s2: {group: rim, nodes: [hub, n2]}
+  s3: {group: rim, nodes: [hub, n3]}
+  s4: {group: rim, nodes: [hub, n4]}
+  s5: {group: rim, nodes: [hub, n5]}
+grounds:
+  floor: {profile: PROFILE, stiffness: 1e5, damping: 30, friction: {law: coulomb, mu: 0.6}}
+  stone: {circle: {centre: [way * 0.9, 0], radius: 20 mm}, stiffness: 1e5, damping: 30, friction: {law: coulomb, mu: 0.6}}
+initial: {velocity: [way * 2.5, 0]}
+solver: {integrator: adaptive, step: 0.5 ms, tolerance: 1e-8}
+run: {duration: 0.5 s}
+output: {channels: [position, velocity, contact, energy]}
+END
+sed 's/PROFILE/[[-0.5, 0], [0.2, 0], [0.3, 0.03], [0.4, 0], [2, 0]]/' wheel.yaml >right.yaml
+sed -e 's/PROFILE/[[-2, 0], [-0.4, 0], [-0.3, 0.03], [-0.2, 0], [0.5, 0]]/' -e 's/way: 1/way: -1/' wheel.yaml >left.yaml
+go right.yaml adaptive
+closes 1e-6 "the wheel"
+x=$(last nodes hub.x)
+awk -v x="$x" 'BEGIN { exit !(x > 0.35) }' || fail "the wheel got to $x only"
+go left.yaml adaptive
+near "$(last nodes hub.x)" "-$x" 1e-6 "mirror image of the wheel"
+
+# ---- what is drawn and written ----
+mkdir seen
+expect 0 run right.yaml --step '1 ms' --quiet -o seen/run --plot seen/run.svg
+expect 0 view seen/run -o seen/run.html
+expect 0 export --format vtk -o seen/vtk seen/run
+grep -q 'NumberOfLines="2"' seen/vtk/ground.vtp || fail "outlines for ParaView"
+grep -q surfaces seen/run.html || fail "outlines on the page"
+expect 0 check right.yaml
+out_has "ground surfaces"
+out_has "several grounds, or one that is no line at rest"
+expect 0 write right.yaml
+cp "$work/out" again.yaml
+expect 0 write again.yaml
+same "$work/out" again.yaml
+expect 1 path v.yaml --until 2
+err_has "paths need a ground that is one straight line at rest"
+expect 1 form v.yaml
+err_has "form finding needs a ground that is one straight line at rest"
+sed -e 's/^gravity/bars: rigid\ngravity/' -e 's/, friction: [^}]*}//' right.yaml >rigid.yaml
+expect 1 run rigid.yaml --integrator rk4
+err_has "rigid bars need a ground that is one straight line at rest"
+sed 's/0.01339746\], mass: 0.05}/-0.05], mass: 0.05}/' right.yaml >deep.yaml
+expect 0 check deep.yaml
+err_has "nodes n4, n5 start inside the ground"
+
+done_testing
