@@ -5,8 +5,16 @@
 
 #include "engine/model/state.h"
 
-/** Driven rest lengths and their rates (6): state->rest, rest_rate. */
+/**
+ * Driven rest lengths and their rates (6): state->rest, rest_rate. Drives that follow sensors do so at
+ * the state's positions and velocities.
+ */
 void strut_drive_apply(const strut_model *model, strut_state *state, double t);
+/** The same with the sensors as they were evaluated last: the second half of strut_feedback_apply. */
+void strut_drive_apply_sensed(const strut_model *model, strut_state *state, double t);
+/** A signal at time t [s], with the sensors as they were evaluated last. */
+double strut_drive_signal(const strut_model *model, const strut_state *state, int32_t signal,
+                          double t);
 /** Adds the loads that change with time at velocities v (for their power). */
 void strut_loads_apply(const strut_model *model, strut_state *state, double t,
                        const double *restrict v);

@@ -10,6 +10,7 @@
 
 #include "engine/forces/drive.h"
 #include "engine/forces/elements.h"
+#include "engine/forces/feedback.h"
 #include "engine/forces/forces.h"
 #include "engine/forces/ground_kernel.h"
 #include "engine/forces/members_kernel.h"
@@ -52,6 +53,7 @@ STRUT_INLINE void forces_of_structure(const strut_model *model, strut_state *sta
   state->evaluations++;
   for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) state->power[p] = 0.0;
   forces_start(model, force);
+  if (plan & STRUT_TERM_FEEDBACK) strut_feedback_apply(model, state, t, q, v);
   if (plan & STRUT_TERM_LOADS) strut_loads_apply(model, state, t, v);
   if ((plan & STRUT_TERM_DRIVE) && t != state->drive_time) strut_drive_apply(model, state, t);
   if (plan & STRUT_TERM_MEMBERS) forces_of_members(model, state, q, v, force, ledger);

@@ -20,7 +20,8 @@ static bool laws_are_printed(const strut_model *model) {
 
 bool strut_lanes_possible(const strut_model *model) {
   const strut_mass *mass = model->mass;
-  if (!mass || (model->plan & (STRUT_TERM_RIGID | STRUT_TERM_ELEMENTS))) return false;
+  if (!mass || (model->plan & (STRUT_TERM_RIGID | STRUT_TERM_ELEMENTS | STRUT_TERM_FEEDBACK)))
+    return false;
   bool directional = model->plan & STRUT_TERM_DIRECTION;
   if ((model->plan & STRUT_TERM_LAWS) && !(directional && laws_are_printed(model))) return false;
   return !mass->coordinate[0].factor && !mass->coordinate[1].factor;

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "engine/model/element_compile.h"
+#include "engine/model/feedback_compile.h"
 #include "engine/model/mass.h"
 #include "engine/model/memory_estimate.h"
 #include "engine/model/model.h"
@@ -125,6 +126,10 @@ static void compile_drives(strut_model *model, bool *failed) {
   model->drives = (strut_drive_table){(int32_t)count, member, signal, first};
 }
 
+static void compile_feedback(strut_model *model, bool *failed) {
+  if (!strut_feedback_compile(model)) *failed = true;
+}
+
 /* Half of each member's mass at each of its ends (7), and the point masses. */
 static void compile_weights(strut_model *model, bool *failed) {
   const strut_member_table *t = &model->members;
@@ -212,7 +217,7 @@ strut_status strut_model_compile(const strut_scene *scene, strut_model **result,
   bool failed = false;
   void (*const passes[])(strut_model *, bool *) = {
       compile_nodes,   compile_members, compile_elements, compile_drives,
-      compile_weights, compile_loads,   compile_contacts};
+      compile_weights, compile_loads,   compile_contacts, compile_feedback};
   for (size_t i = 0; i < sizeof passes / sizeof passes[0] && !failed; i++)
     passes[i](model, &failed);
   strut_status status = failed ? strut_memory_fail_model(scene, error)

@@ -17,6 +17,7 @@
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
 #include "engine/model/elements.h"
+#include "engine/model/feedback.h"
 #include "engine/scene/scene.h"
 
 /** Members are stepped in groups of this many, so tables are padded to a multiple of it. */
@@ -35,9 +36,10 @@ typedef enum strut_term {
   STRUT_TERM_SLOPE = 1 << 8,    /* the ground is inclined */
   STRUT_TERM_SOLVE = 1 << 9,    /* the mass matrix is not diagonal */
   STRUT_TERM_LAWS = 1 << 10, /* some contact has another law of damping or friction than (8), (9) */
-  STRUT_TERM_RIGID = 1 << 11,    /* bars keep their lengths */
-  STRUT_TERM_ELEMENTS = 1 << 12, /* elements other than plain members */
-  STRUT_TERM_DIRECTION = 1 << 13 /* friction that differs by direction; with LAWS */
+  STRUT_TERM_RIGID = 1 << 11,     /* bars keep their lengths */
+  STRUT_TERM_ELEMENTS = 1 << 12,  /* elements other than plain members */
+  STRUT_TERM_DIRECTION = 1 << 13, /* friction that differs by direction; with LAWS */
+  STRUT_TERM_FEEDBACK = 1 << 14   /* sensors, and signals that follow them */
 } strut_term;
 
 /**
@@ -104,6 +106,7 @@ typedef struct strut_model {
   strut_drive_table drives;
   strut_load_table loads;
   struct strut_mass *mass; /* mass.h; NULL where some free coordinate has no mass: statics only */
+  strut_feedback_table feedback;
   strut_arena arena;
 } strut_model;
 

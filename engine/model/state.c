@@ -28,9 +28,13 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
   state->normal = strut_arena_allocate(arena, contacts, sizeof(double));
   state->friction = strut_arena_allocate(arena, contacts, sizeof(double));
   state->scratch = strut_arena_allocate(arena, both, sizeof(double));
+  size_t sensors = (size_t)model->feedback.count;
+  state->sensor = strut_arena_allocate(arena, sensors, sizeof(double));
+  state->sensor_rate = strut_arena_allocate(arena, sensors, sizeof(double));
   if (!state->q || !state->v || !state->rest || !state->element_acts || !state->element_piece ||
       !state->element_turn || !state->slack_length_threshold || !state->slack_force_threshold ||
-      !state->rest_rate || !state->force || !state->normal || !state->friction || !state->scratch) {
+      !state->rest_rate || !state->force || !state->normal || !state->friction || !state->scratch ||
+      !state->sensor || !state->sensor_rate) {
     strut_state_free(state);
     *result = NULL;
     return strut_memory_fail_model(model->scene, error);

@@ -75,9 +75,10 @@ typedef struct strut_state {
   /* (contacts) contact forces as a method with events has them [N]; NULL with others, where the
      forces follow from q, v and t alone */
   const double *held_normal, *held_friction;
-  struct strut_rigid *rigid; /* forces of rigid bars, see rigid.h; NULL where bars are elastic */
-  bool ledger;               /* keep the ledger? It costs some arithmetic per evaluation */
-  double *scratch;           /* (length) for the mass solve */
+  struct strut_rigid *rigid;    /* forces of rigid bars, see rigid.h; NULL where bars are elastic */
+  double *sensor, *sensor_rate; /* (sensors) when last evaluated, in SI units */
+  bool ledger;                  /* keep the ledger? It costs some arithmetic per evaluation */
+  double *scratch;              /* (length) for the mass solve */
   strut_arena arena;
 } strut_state;
 

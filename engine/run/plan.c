@@ -14,6 +14,7 @@ static const strut_plan_term terms[STRUT_PLAN_TERMS] = {
     {STRUT_TERM_ELEMENTS, "member laws", "a member with another law than the linear one", false},
     {STRUT_TERM_ELEMENTS, "stops", "a member with a shortest or longest length", false},
     {STRUT_TERM_ELEMENTS, "hinges", "a hinge", false},
+    {STRUT_TERM_FEEDBACK, "sensors", "a sensor", false},
     {STRUT_TERM_DRIVE, "driven rest lengths", "an actuator", false},
     {STRUT_TERM_CONSTANT, "constant forces", "gravity, or a load without a signal", false},
     {STRUT_TERM_LOADS, "driven loads", "a load with a signal", false},

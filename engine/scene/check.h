@@ -25,7 +25,8 @@ typedef enum strut_subject {
   STRUT_ON_INITIAL,
   STRUT_ON_SOLVER,
   STRUT_ON_RUN,
-  STRUT_ON_OUTPUT
+  STRUT_ON_OUTPUT,
+  STRUT_ON_SENSOR
 } strut_subject;
 
 typedef struct strut_finding {

@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "engine/scene/check_rules.h"
+#include "engine/scene/signal_program.h"
 
 enum { MOST_TERMS = 10000, DEEPEST_SUM = 64 };
 
@@ -32,18 +33,32 @@ static bool check_table(strut_checker *checker, size_t index, const char *owner)
   return true;
 }
 
-/* Counts terms and depth of a sum, whose terms have been checked before. */
+/* Signal that part i of a sum or an expression refers to; -1: it refers to none. */
+static int32_t part_of(const strut_signal *s, size_t i) {
+  if (s->kind == STRUT_SUM) return s->terms[i];
+  const strut_instruction *p = &s->program.instruction[i];
+  bool refers = p->operation == STRUT_OPERATION_COLUMN && p->column.kind == STRUT_COLUMN_SIGNAL;
+  return refers ? p->column.item : -1;
+}
+
+static size_t part_count(const strut_signal *s) {
+  return s->kind == STRUT_SUM ? s->term_count : s->kind == STRUT_EXPRESSION ? s->program.length : 0;
+}
+
+/* Counts parts and depth of a sum or an expression, whose signals have been checked before. */
 static bool check_sum(strut_checker *checker, size_t index, const char *owner, uint32_t *size,
                       uint32_t *depth) {
   const strut_signal *s = &checker->scene->signals[index];
   uint64_t terms = 1;
-  if (!s->term_count) {
+  if (s->kind == STRUT_EXPRESSION && !strut_check_program(checker, index, owner)) return false;
+  if (s->kind == STRUT_SUM && !s->term_count) {
     strut_report_finding(checker, STRUT_ON_SIGNAL, index, "sum", "the sum of %s has no terms",
                          owner);
     return false;
   }
-  for (size_t i = 0; i < s->term_count; i++) {
-    int32_t term = s->terms[i];
+  for (size_t i = 0; i < part_count(s); i++) {
+    int32_t term = part_of(s, i);
+    if (term < 0 && s->kind == STRUT_EXPRESSION) continue;
     if (term < 0 || (size_t)term >= index) {
       strut_report_finding(checker, STRUT_ON_SIGNAL, index, "sum",
                            "term %zu of %s is not a signal that comes before it", i + 1, owner);
@@ -55,7 +70,7 @@ static bool check_sum(strut_checker *checker, size_t index, const char *owner, u
   }
   size[index] = terms > MOST_TERMS ? MOST_TERMS + 1 : (uint32_t)terms;
   if (terms <= MOST_TERMS && depth[index] <= DEEPEST_SUM) return true;
-  strut_report_finding(checker, STRUT_ON_SIGNAL, index, "sum",
+  strut_report_finding(checker, STRUT_ON_SIGNAL, index, NULL,
                        "%s has more than %d terms, or sums within sums more than %d deep", owner,
                        MOST_TERMS, DEEPEST_SUM);
   return false;
@@ -110,9 +125,8 @@ static void find_users(const strut_scene *scene, size_t *user) {
     if (scene->actuators[i].signal >= 0 && (size_t)scene->actuators[i].signal < scene->signal_count)
       user[scene->actuators[i].signal] = 1 + i;
   for (size_t i = scene->signal_count; i-- > 0;) /* terms precede their sum */
-    for (size_t t = 0; scene->signals[i].kind == STRUT_SUM && t < scene->signals[i].term_count;
-         t++) {
-      int32_t term = scene->signals[i].terms[t];
+    for (size_t t = 0; t < part_count(&scene->signals[i]); t++) {
+      int32_t term = part_of(&scene->signals[i], t);
       if (term >= 0 && (size_t)term < i && !user[term]) user[term] = user[i];
     }
 }
@@ -129,14 +143,15 @@ void strut_check_signals(strut_checker *checker) {
     char owner[200];
     call_signal(owner, scene, user, i);
     size[i] = depth[i] = 1;
-    if ((unsigned)s->kind > STRUT_SUM) {
+    if ((unsigned)s->kind >= STRUT_SIGNAL_KINDS) {
       strut_report_finding(checker, STRUT_ON_SIGNAL, i, NULL, "%s is of an unknown kind", owner);
       checker->wild[i] = true;
       continue;
     }
     checker->wild[i] = s->kind == STRUT_TABLE ? !check_table(checker, i, owner)
-                       : s->kind == STRUT_SUM ? !check_sum(checker, i, owner, size, depth)
-                                              : !check_wave(checker, i, owner);
+                       : s->kind == STRUT_SUM || s->kind == STRUT_EXPRESSION
+                           ? !check_sum(checker, i, owner, size, depth)
+                           : !check_wave(checker, i, owner);
   }
   strut_release(size);
   strut_release(depth);
@@ -223,6 +238,8 @@ void strut_check_drives(strut_checker *checker) {
           "%s drives a bar, but bars are rigid; make the member a spring, or bars: elastic", owner);
     if (!exists(a->signal, scene->signal_count))
       strut_report_finding(checker, STRUT_ON_ACTUATOR, i, "signal", "%s has no signal", owner);
+    else if (!checker->wild[a->signal])
+      strut_check_driven_rate(checker, i, owner);
   }
   for (size_t i = 0; i < scene->load_count; i++) {
     const strut_load *l = &scene->loads[i];

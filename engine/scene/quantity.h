@@ -24,7 +24,8 @@ typedef enum strut_column_owner {
   STRUT_COLUMN_OF_CENTRE,  /* com.vx */
   STRUT_COLUMN_OF_ENERGY,  /* energy.kinetic */
   STRUT_COLUMN_OF_WORK,    /* work.drives */
-  STRUT_COLUMN_OF_LOSSES   /* losses.friction */
+  STRUT_COLUMN_OF_LOSSES,  /* losses.friction */
+  STRUT_COLUMN_OF_FEEDBACK /* the name of a sensor or a signal alone */
 } strut_column_owner;
 
 /** X(id, owner, word, powers of kg, m, s, angle) */
@@ -62,7 +63,9 @@ typedef enum strut_column_owner {
   X(LOST_MEMBERS, LOSSES, "members", 1, 2, -2, 0)                                                  \
   X(LOST_CONTACT, LOSSES, "contact", 1, 2, -2, 0)                                                  \
   X(LOST_FRICTION, LOSSES, "friction", 1, 2, -2, 0)                                                \
-  X(LOST, LOSSES, "total", 1, 2, -2, 0)
+  X(LOST, LOSSES, "total", 1, 2, -2, 0)                                                            \
+  X(SENSOR, FEEDBACK, "sensor", 0, 0, 0, 0) /* in SI units, of whatever dimension */               \
+  X(SIGNAL, FEEDBACK, "signal", 0, 0, 0, 0)
 
 typedef enum strut_column_kind {
 #define STRUT_COLUMN_ENUM(id, ...) STRUT_COLUMN_##id,
@@ -74,7 +77,8 @@ typedef enum strut_column_kind {
 /** A column of the motion: a number at every step. */
 typedef struct strut_column {
   strut_column_kind kind;
-  int32_t item, other; /* node, contact, member or hinge; the second node of a pair; else -1 */
+  int32_t item,
+      other; /* node, contact, member, hinge, sensor or signal; the second node of a pair; else -1 */
 } strut_column;
 
 /** How a result changes with its operands; see quantity_program.c. */

@@ -19,6 +19,7 @@
 #include "engine/scene/friction.h"
 #include "engine/scene/law.h"
 #include "engine/scene/signal.h"
+#include "engine/scene/signal_program.h"
 
 enum { STRUT_LANGUAGE_VERSION = 1 };
 
@@ -163,7 +164,9 @@ typedef struct strut_scene {
   strut_configuration *configurations;
   int32_t start_equilibrium; /* configuration at whose equilibrium a run starts, or -1. A run wants
                                 it resolved into positions: strut_resolve_start_equilibrium */
-  strut_arena arena;         /* owns every text and array above */
+  size_t sensor_count;
+  strut_sensor *sensors;
+  strut_arena arena; /* owns every text and array above */
 } strut_scene;
 
 /** Default structs: zero except where stated above, names empty, indices -1. */

@@ -7,6 +7,7 @@
 
 #include "engine/base/trig.h"
 #include "engine/base/vec.h"
+#include "engine/scene/signal_program.h"
 
 strut_signal strut_signal_default(strut_signal_kind kind) {
   return (strut_signal){.kind = kind, .stop = (double)INFINITY};
@@ -47,11 +48,12 @@ static void evaluate_table(const strut_signal *s, double t, double *value, doubl
 }
 
 /* Evaluates all kinds but the sine, which strut_signal_evaluate handles first. */
-static void evaluate_other(const strut_signal *signals, int32_t index, double t, double turns,
-                           double *value, double *rate) {
+static void evaluate_other(const strut_signal *signals, const strut_signal_inputs *in,
+                           int32_t index, double t, double turns, double *value, double *rate) {
   const strut_signal *s = &signals[index];
   *value = *rate = 0.0;
-  bool holds = s->kind == STRUT_RAMP || s->kind == STRUT_TABLE; /* a value outside its time */
+  /* a value outside its time */
+  bool holds = s->kind == STRUT_RAMP || s->kind == STRUT_TABLE || s->kind == STRUT_EXPRESSION;
   if (!holds && (t < s->start || t >= s->stop)) return;
   switch (s->kind) {
     case STRUT_SINE: break;
@@ -65,10 +67,13 @@ static void evaluate_other(const strut_signal *signals, int32_t index, double t,
     case STRUT_SUM:
       for (size_t i = 0; i < s->term_count; i++) {
         double part, part_rate;
-        strut_signal_evaluate(signals, s->terms[i], t, &part, &part_rate);
+        strut_signal_follow(signals, in, s->terms[i], t, &part, &part_rate);
         *value += part;
         *rate += part_rate;
       }
+      break;
+    case STRUT_EXPRESSION: strut_program_evaluate(&s->program, signals, in, t, value, rate); break;
+    case STRUT_SIGNAL_KINDS: break;
   }
 }
 
@@ -79,7 +84,17 @@ void strut_signal_evaluate(const strut_signal *signals, int32_t index, double t,
   if (s->kind == STRUT_SINE && t >= s->start && t < s->stop)
     evaluate_wave(s, turns, value, rate);
   else
-    evaluate_other(signals, index, t, turns, value, rate);
+    evaluate_other(signals, NULL, index, t, turns, value, rate);
+}
+
+void strut_signal_follow(const strut_signal *signals, const strut_signal_inputs *in, int32_t index,
+                         double t, double *value, double *rate) {
+  const strut_signal *s = &signals[index];
+  double turns = s->frequency * (t - s->start) + s->phase;
+  if (s->kind == STRUT_SINE && t >= s->start && t < s->stop)
+    evaluate_wave(s, turns, value, rate);
+  else
+    evaluate_other(signals, in, index, t, turns, value, rate);
 }
 
 /* The first multiple of half a period after t, counted from where the phase is 0. */
@@ -89,6 +104,11 @@ static double next_half_period(const strut_signal *s, double t) {
   double at = s->start + (0.5 * next - s->phase) / s->frequency;
   if (!(at > t)) at = s->start + (0.5 * (next + 1.0) - s->phase) / s->frequency;
   return at;
+}
+
+/* Does the instruction read a signal? */
+static bool is_signal(const strut_instruction *p) {
+  return p->operation == STRUT_OPERATION_COLUMN && p->column.kind == STRUT_COLUMN_SIGNAL;
 }
 
 static double next_break_inside(const strut_signal *signals, const strut_signal *s, double t) {
@@ -103,16 +123,24 @@ static double next_break_inside(const strut_signal *signals, const strut_signal 
       for (size_t i = 0; i < s->term_count; i++)
         first = fmin(first, strut_signal_next_break(signals, s->terms[i], t));
       return first;
+    case STRUT_EXPRESSION:
+      for (size_t i = 0; i < s->program.length; i++)
+        if (is_signal(&s->program.instruction[i]))
+          first = fmin(first,
+                       strut_signal_next_break(signals, s->program.instruction[i].column.item, t));
+      return first;
     case STRUT_CONSTANT:
     case STRUT_SINE:
-    case STRUT_RAMP: break;
+    case STRUT_RAMP:
+    case STRUT_SIGNAL_KINDS: break;
   }
   return first;
 }
 
 double strut_signal_next_break(const strut_signal *signals, int32_t index, double t) {
   const strut_signal *s = &signals[index];
-  if (s->kind == STRUT_TABLE) return next_break_inside(signals, s, t);
+  if (s->kind == STRUT_TABLE || s->kind == STRUT_EXPRESSION)
+    return next_break_inside(signals, s, t);
   if (t < s->start) return s->start;
   double first = next_break_inside(signals, s, t);
   if (!(first > t)) first = (double)INFINITY;

@@ -12,33 +12,43 @@
 #include <stdint.h>
 
 #include "engine/base/export.h"
+#include "engine/scene/quantity.h"
 
 typedef enum strut_signal_kind {
-  STRUT_CONSTANT,  /* amplitude */
-  STRUT_SINE,      /* amplitude * sin(2 pi (frequency * tau + phase)) */
-  STRUT_HALF_SINE, /* one half-wave: the sine for 0 <= tau <= 1 / (2 frequency), then 0 */
-  STRUT_SQUARE,    /* +amplitude in the first half of a period, -amplitude in the second */
-  STRUT_RAMP,      /* from 0 at start to amplitude at stop, linearly; holds amplitude after */
-  STRUT_TABLE,     /* linear between the points; holds the first and the last value outside */
-  STRUT_SUM        /* the sum of other signals */
+  STRUT_CONSTANT,   /* amplitude */
+  STRUT_SINE,       /* amplitude * sin(2 pi (frequency * tau + phase)) */
+  STRUT_HALF_SINE,  /* one half-wave: the sine for 0 <= tau <= 1 / (2 frequency), then 0 */
+  STRUT_SQUARE,     /* +amplitude in the first half of a period, -amplitude in the second */
+  STRUT_RAMP,       /* from 0 at start to amplitude at stop, linearly; holds amplitude after */
+  STRUT_TABLE,      /* linear between the points; holds the first and the last value outside */
+  STRUT_SUM,        /* the sum of other signals */
+  STRUT_EXPRESSION, /* a program of the time, sensors and other signals */
+  STRUT_SIGNAL_KINDS
 } strut_signal_kind;
 
+/** A program of a stack machine, see signal_program.h. */
+typedef struct strut_program {
+  size_t length, depth;                 /* instructions; the most numbers on the stack */
+  const strut_instruction *instruction; /* (length) */
+} strut_program;
+
 /**
- * One waveform; tau = t - start. Except for ramp and table a signal is 0 before start and after
+ * One waveform; tau = t - start. Except for ramp, table and expression a signal is 0 before start and after
  * stop.
  */
 typedef struct strut_signal {
   const char *name; /* as the file calls it, or NULL */
   strut_signal_kind kind;
-  double amplitude;     /* [m], [N] or [1] */
-  double frequency;     /* [Hz], > 0 for sine, half-sine, square */
-  double phase;         /* [turns]; sine and square */
-  double start, stop;   /* [s]; default 0 and INFINITY */
-  size_t point_count;   /* table: number of points, >= 1 */
-  const double *time;   /* (point_count) [s], strictly increasing */
-  const double *value;  /* (point_count) */
-  size_t term_count;    /* sum: number of terms */
-  const int32_t *terms; /* (term_count) indices of signals, each below this signal's own */
+  double amplitude;      /* [m], [N] or [1] */
+  double frequency;      /* [Hz], > 0 for sine, half-sine, square */
+  double phase;          /* [turns]; sine and square */
+  double start, stop;    /* [s]; default 0 and INFINITY */
+  size_t point_count;    /* table: number of points, >= 1 */
+  const double *time;    /* (point_count) [s], strictly increasing */
+  const double *value;   /* (point_count) */
+  size_t term_count;     /* sum: number of terms */
+  const int32_t *terms;  /* (term_count) indices of signals, each below this signal's own */
+  strut_program program; /* expression: signals in it are below this signal's own */
 } strut_signal;
 
 /** A signal of the given kind with the defaults above. */
@@ -46,7 +56,7 @@ STRUT_API strut_signal strut_signal_default(strut_signal_kind kind);
 
 /**
  * Value and time derivative (from the right where they jump; the jump itself is not a rate) of
- * signal `index` of `signals` at time t [s].
+ * signal `index` of `signals` at time t [s]; NAN where it follows a sensor.
  */
 STRUT_API void strut_signal_evaluate(const strut_signal *signals, int32_t index, double t,
                                      double *value, double *rate);

@@ -89,6 +89,8 @@ typedef struct strut_compiler {
   void *context;
   strut_compiled *program; /* at least one for each byte of the text */
   size_t length, depth;    /* instructions so far; numbers on the stack at most */
+  /** Is a unit's word behind * or / a name here? 1: it is; -1: it may be both; 0: no. NULL: never. */
+  int (*claims)(void *context, strut_piece word);
 } strut_compiler;
 
 /** As strut_expression_evaluate; an expression with columns is compiled instead of evaluated. */

@@ -61,14 +61,15 @@ static const int first[] = {STRUT_KEY_SCENE_VERSION,
                             STRUT_KEY_VARIANT_SOLVER,
                             STRUT_KEY_CHECK_HALF_STEP,
                             STRUT_KEY_FIGURE_KIND,
+                            STRUT_KEY_SENSOR_LENGTH,
                             STRUT_KEY_COUNT};
 
 static const char *const section_names[] = {
-    "scene",      "node",    "member",   "hinge",         "law",      "ground",
-    "friction",   "contact", "actuator", "load",          "signal",   "sine",
-    "half_sine",  "square",  "ramp",     "configuration", "initial",  "settle",
-    "equilibria", "solver",  "run",      "measure",       "quantity", "steady",
-    "output",     "study",   "range",    "variant",       "check",    "figure"};
+    "scene",   "node",          "member",  "hinge",  "law",        "ground",    "friction",
+    "contact", "actuator",      "load",    "signal", "sine",       "half_sine", "square",
+    "ramp",    "configuration", "initial", "settle", "equilibria", "solver",    "run",
+    "measure", "quantity",      "steady",  "output", "study",      "range",     "variant",
+    "check",   "figure",        "sensor"};
 
 _Static_assert(sizeof first / sizeof first[0] == STRUT_SECTION_COUNT + 1, "one for each section");
 _Static_assert(sizeof section_names / sizeof section_names[0] == STRUT_SECTION_COUNT,
@@ -278,7 +279,10 @@ const char *strut_key_expected(int key, char *buffer, size_t size) {
     case STRUT_TYPE_TABLE: return "a list of points such as [[0 s, 0], [1 s, 2]]";
     case STRUT_TYPE_SETTLE: return "true, or a mapping such as {limit: 100 s}";
     case STRUT_TYPE_STEADY: return "true, or a mapping such as {tolerance: 0.5 %}";
-    case STRUT_TYPE_EXPRESSION: return "an expression such as com.vy, n1.y - n2.y or m1.force";
+    case STRUT_TYPE_EXPRESSION:
+      if (k->measure == STRUT_MEASURE_CONTEXT)
+        return "an expression of t and sensors such as '2 mm * sin(2*pi*10 Hz*t)'";
+      return "an expression such as com.vy, n1.y - n2.y or m1.force";
     case STRUT_TYPE_AXES: return "a list of axes such as [{friction: [0.1, 0.2]}]";
     case STRUT_TYPE_TIMES: return "a list of times such as [0 s, 20 ms]";
     case STRUT_TYPE_MAP: return "a mapping {key: value, ...}";

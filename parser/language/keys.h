@@ -47,6 +47,7 @@ typedef enum strut_section {
   STRUT_SECTION_VARIANT,
   STRUT_SECTION_CHECK,
   STRUT_SECTION_FIGURE,
+  STRUT_SECTION_SENSOR,
   STRUT_SECTION_COUNT
 } strut_section;
 
@@ -72,7 +73,7 @@ typedef enum strut_key_type {
   STRUT_TYPE_TABLE,         /* a list of [t, value] */
   STRUT_TYPE_SETTLE,        /* true, false or the keys of settle */
   STRUT_TYPE_STEADY,        /* true, false or the keys of steady */
-  STRUT_TYPE_EXPRESSION,    /* an expression of columns of the motion */
+  STRUT_TYPE_EXPRESSION,    /* an expression of columns of the motion; CONTEXT: of sensors */
   STRUT_TYPE_KEEP,          /* a list of the key's words and of quantities */
   STRUT_TYPE_AXES,          /* a list of axes of a study */
   STRUT_TYPE_TIMES,         /* a list of times */
@@ -166,7 +167,7 @@ enum {
       STRUT_KEY_COUNT
 };
 
-enum { STRUT_MOST_KEYS = 24 }; /* of one section */
+enum { STRUT_MOST_KEYS = 32 }; /* of one section */
 
 STRUT_API const strut_key *strut_key_at(int key);
 /** First key and number of keys of a section. */

@@ -37,6 +37,7 @@
   X(SCENE, SOLVER, "solver", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Method, time step and accuracy. Required for a run.") \
   X(SCENE, RUN, "run", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Duration and measurement. Required for a run.") \
   X(SCENE, OUTPUT, "output", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "What is recorded.") \
+  X(SCENE, SENSORS, "sensors", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a sensor", BY_HAND, "Numbers of the motion that the expressions of signals may use.") \
   X(NODE, POSITION, "position", PAIR, LENGTH, ANY, "", REQUIRED, 0, "", FIELD(strut_node, position), "Position in the drawn shape.") \
   X(NODE, GROUP, "group", GROUPS, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Groups that provide defaults; later groups take precedence.") \
   X(NODE, MASS, "mass", NUMBER, MASS, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_node, mass), "Point mass, in addition to the masses of the members.") \
@@ -109,6 +110,7 @@
   X(SIGNAL, RAMP, "ramp", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Rises linearly from 0 at `start` to amplitude at `stop` and stays there.") \
   X(SIGNAL, TABLE, "table", TABLE, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "Points `[[t, value], ...]`, interpolated linearly; constant before the first and after the last.") \
   X(SIGNAL, SUM, "sum", SIGNALS, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "The sum of the listed signals.") \
+  X(SIGNAL, EXPRESSION, "expression", EXPRESSION, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "An expression of the time `t`, parameters, [sensors](#sensor) and other signals by their names, evaluated whenever forces are.") \
   X(SINE, AMPLITUDE, "amplitude", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_signal, amplitude), "Largest value.") \
   X(SINE, FREQUENCY, "frequency", NUMBER, FREQUENCY, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_signal, frequency), "Periods per second.") \
   X(SINE, PHASE, "phase", NUMBER, ANGLE, ANY, "0", OPTIONAL, 0, "", BY_HAND, "Phase angle at `start`.") \
@@ -213,7 +215,16 @@
   X(FIGURE, Y_LABEL, "y_label", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, y_label), "Likewise of the y axis.") \
   X(FIGURE, X_LIMITS, "x_limits", PAIR, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, x_limits), "Lines, map and motion: ends of the x axis in the column's SI unit, ascending.") \
   X(FIGURE, Y_LIMITS, "y_limits", PAIR, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, y_limits), "Likewise of the y axis.") \
-  X(FIGURE, COLORS, "colors", WORD, NONE, ANY, "auto", OPTIONAL, 0, "auto|sequential|diverging|grey", FIELD(strut_study_figure, colours), "Map: the colour scale of numbers.")
+  X(FIGURE, COLORS, "colors", WORD, NONE, ANY, "auto", OPTIONAL, 0, "auto|sequential|diverging|grey", FIELD(strut_study_figure, colours), "Map: the colour scale of numbers.") \
+  X(SENSOR, LENGTH, "length", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The member whose length it senses [m].") \
+  X(SENSOR, FORCE, "force", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The member whose force it senses [N], tension positive, damper included.") \
+  X(SENSOR, ANGLE, "angle", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The hinge whose angle it senses [rad].") \
+  X(SENSOR, CONTACT, "contact", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The node whose touch it senses: 1 while the node is in the ground, else 0.") \
+  X(SENSOR, POSITION, "position", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The node whose position it senses [m], `along` x or y.") \
+  X(SENSOR, VELOCITY, "velocity", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The node whose velocity it senses [m/s], `along` x or y.") \
+  X(SENSOR, ENERGY, "energy", WORD, NONE, ANY, "", OPTIONAL, 7, "kinetic|elastic|total", FIELD(strut_sensor, energy), "The energy of the structure that it senses [J].") \
+  X(SENSOR, ALONG, "along", WORD, NONE, ANY, "", OPTIONAL, 0, "x|y", FIELD(strut_sensor, along), "Direction of a position or a velocity.")
+
 /* clang-format on */
 
 #endif

@@ -125,11 +125,29 @@ static bool read_sum(strut_reader *reader, const strut_tree *list, strut_owner o
   return fine;
 }
 
+static bool read_expression(strut_reader *reader, const strut_tree *value, strut_owner owner,
+                            meaning *m, strut_signal *signal) {
+  char wanted[200], found[80];
+  strut_quantity q;
+  if (!strut_read_signal_program(reader, value, "expression", owner, &signal->program, &q))
+    return false;
+  m->bare = q.bare;
+  m->dimension = q.dimension;
+  if (!m->expected || q.bare || strut_dimension_equal(q.dimension, *m->expected)) return true;
+  strut_report_error(reader, value->place, "expected %s for 'expression' of %s, found %s",
+                     strut_expected_number(*m->expected, wanted, sizeof wanted),
+                     strut_owner_text(reader, owner),
+                     strut_dimension_name(q.dimension, found, sizeof found));
+  return false;
+}
+
 /* A signal written out: a mapping with one key. */
 static int32_t read_literal(strut_reader *reader, const strut_tree *map, strut_owner owner,
                             const strut_dimension *expected) {
   meaning m = {expected, STRUT_DIM_NONE, true};
   strut_fields fields;
+  const strut_tree *expression = strut_tree_find(map, "expression", NULL);
+  if (strut_ends_at_comma(reader, expression, "expression", owner)) return -1;
   strut_read_fields(reader, STRUT_SECTION_SIGNAL, map, owner, &fields);
   if (map->count != 1 && !fields.broken)
     strut_report_error(reader, map->place, "expected one kind of signal for %s, found %u",
@@ -144,6 +162,8 @@ static int32_t read_literal(strut_reader *reader, const strut_tree *map, strut_o
     fine = read_value(reader, value, "constant", owner, &m, &signal.amplitude);
   else if (signal.kind == STRUT_TABLE)
     fine = read_table(reader, value, owner, &m, &signal);
+  else if (signal.kind == STRUT_EXPRESSION)
+    fine = read_expression(reader, value, owner, &m, &signal);
   else if (signal.kind == STRUT_SUM)
     fine = read_sum(reader, value, owner, &m, &signal);
   else
@@ -228,6 +248,16 @@ static int32_t read_signal(strut_reader *reader, const strut_tree *value, const 
   return index >= 0 && claim(reader, index, value, expected) ? index : -1;
 }
 
+int32_t strut_use_signal(strut_reader *reader, const char *name, strut_dimension *dimension) {
+  int32_t i = strut_name_map_find(&reader->signal_names, name);
+  int32_t index = i < 0 ? -1 : read_named(reader, &reader->named[i]);
+  if (index < 0) return -1;
+  strut_signal_state *state = &reader->signal_state[index];
+  if (state->bare) state->bare = false, state->dimension = STRUT_DIM_NONE;
+  *dimension = state->dimension;
+  return index;
+}
+
 int32_t strut_read_signal(strut_reader *reader, const strut_tree *value, const char *key,
                           strut_owner owner, const strut_dimension *expected) {
   char text[200];
@@ -236,7 +266,7 @@ int32_t strut_read_signal(strut_reader *reader, const strut_tree *value, const c
   return read_signal(reader, value, key, within, expected);
 }
 
-void strut_read_signals(strut_reader *reader) {
+void strut_list_signals(strut_reader *reader) {
   const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_SIGNALS);
   if (!map) return;
   reader->named =
@@ -246,6 +276,9 @@ void strut_read_signals(strut_reader *reader) {
     *named = (strut_named_signal){key->text, key, STRUT_SIGNAL_UNREAD, -1};
     strut_add_name(reader, &reader->signal_names, key->text, reader->named_count++);
   }
+}
+
+void strut_read_signals(strut_reader *reader) {
   for (size_t i = 0; i < reader->named_count; i++) read_named(reader, &reader->named[i]);
 }
 

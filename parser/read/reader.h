@@ -106,14 +106,14 @@ typedef struct strut_reader {
   strut_purpose purpose;
   strut_fields top;
   strut_name_map node_names, member_names, group_names, parameter_names, signal_names,
-      configuration_names, actuator_names, load_names, hinge_names;
+      configuration_names, actuator_names, load_names, hinge_names, sensor_names;
   strut_group *groups;
   size_t group_count;
   strut_parameter_state *parameters;
   size_t parameter_count, parameter_depth;
   strut_parameter_state *parameter_stack[STRUT_DEEPEST_PARAMETER]; /* being read */
   strut_source *node_source, *member_source, *actuator_source, *load_source, *contact_source,
-      *hinge_source;
+      *hinge_source, *sensor_source;
   const strut_tree **velocity_source; /* (node_count) or NULL: where single velocities stand */
   strut_named_signal *named;
   size_t named_count, signal_depth, signal_capacity;
@@ -272,6 +272,8 @@ const char *strut_parameter_name(const void *reader, size_t i);
 void strut_read_nodes(strut_reader *reader);
 void strut_read_members(strut_reader *reader);
 void strut_read_ground(strut_reader *reader);
+/** Enters the names of signals, so that anything may refer to them. */
+void strut_list_signals(strut_reader *reader);
 void strut_read_signals(strut_reader *reader);
 void strut_read_drives(strut_reader *reader);
 /** Moves the signals into the scene. */
@@ -317,6 +319,27 @@ const char *strut_hinge_name(const void *reader, size_t i);
 bool strut_read_law(strut_reader *reader, const strut_slot *slot, strut_owner owner,
                     strut_dimension strain, strut_dimension force, strut_law *law);
 void strut_read_hinges(strut_reader *reader);
+
+/* read_feedback.c */
+
+void strut_read_sensors(strut_reader *reader);
+strut_dimension strut_sensor_dimension(strut_sensor_kind kind);
+/** Finds a sensor as a column and its dimension. */
+bool strut_find_sensed(strut_reader *reader, const char *name, strut_column *column,
+                       strut_dimension *dimension);
+/** An expression of the time, sensors and signals; in the scene's memory. */
+bool strut_read_signal_program(strut_reader *reader, const strut_tree *value, const char *key,
+                               strut_owner owner, strut_program *program, strut_quantity *q);
+/** Index of a named signal that an expression reads, and its dimension; -1: it was reported. */
+int32_t strut_use_signal(strut_reader *reader, const char *name, strut_dimension *dimension);
+/** The instructions in the scene's own memory; NULL: there is none left. */
+strut_instruction *strut_keep_program(strut_reader *reader, const strut_compiler *compiler);
+/**
+ * Within {...} a comma ends an unquoted text: angle(a, b) becomes "angle(a". True where that has
+ * happened, which is reported.
+ */
+bool strut_ends_at_comma(strut_reader *reader, const strut_tree *of, const char *key,
+                         strut_owner owner);
 
 /* places.c */
 

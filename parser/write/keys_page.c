@@ -68,7 +68,10 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
         "`axes: [{NAME: {...}}]`: values of a parameter; either `step` or `count`.",
     [STRUT_SECTION_VARIANT] = "`variants: {NAME: {...}}` of a study.",
     [STRUT_SECTION_CHECK] = "`check: {...}` of a study.",
-    [STRUT_SECTION_FIGURE] = "`figures: {NAME: {...}}` of a study."};
+    [STRUT_SECTION_FIGURE] = "`figures: {NAME: {...}}` of a study.",
+    [STRUT_SECTION_SENSOR] =
+        "`sensors: {NAME: {...}}` with one thing to sense. Expressions of signals, and measured "
+        "quantities, use the name."};
 
 /* "none, x, y or both", each in code style. */
 static void put_words(strut_writer *writer, const char *words) {
@@ -107,6 +110,11 @@ static void put_limits(strut_writer *writer, strut_key_limits limits) {
   }
 }
 
+static void put_expression_type(strut_writer *writer, const strut_key *key) {
+  bool signal = key->measure == STRUT_MEASURE_CONTEXT;
+  strut_put(writer, signal ? "expression of `t` and sensors" : "expression of columns");
+}
+
 static void put_type(strut_writer *writer, const strut_key *key) {
   static const char *const types[] = {
       [STRUT_TYPE_TEXT] = "text",
@@ -125,7 +133,6 @@ static void put_type(strut_writer *writer, const strut_key *key) {
       [STRUT_TYPE_SIGNAL] = "[signal](#signal), or the name of one",
       [STRUT_TYPE_SIGNALS] = "list of signals",
       [STRUT_TYPE_TABLE] = "list of `[t, value]`",
-      [STRUT_TYPE_EXPRESSION] = "expression of columns",
       [STRUT_TYPE_KEEP] = "list of quantities, or of ",
       [STRUT_TYPE_AXES] = "list of axes",
       [STRUT_TYPE_TIMES] = "list of times [s]",
@@ -138,6 +145,7 @@ static void put_type(strut_writer *writer, const strut_key *key) {
     strut_put(writer, ")");
     return;
   }
+  if (key->type == STRUT_TYPE_EXPRESSION) put_expression_type(writer, key);
   if (key->limits.range == STRUT_RANGE_WHOLE) strut_put(writer, "whole ");
   if (types[key->type]) strut_put(writer, types[key->type]);
   if (key->type == STRUT_TYPE_THINGS) {

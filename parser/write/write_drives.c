@@ -70,6 +70,8 @@ static void put_signal(strut_writer *writer, int32_t index) {
     strut_put_number(writer, s->amplitude);
   } else if (s->kind == STRUT_TABLE) {
     put_table(writer, s);
+  } else if (s->kind == STRUT_EXPRESSION) {
+    strut_put_program(writer, s->program.instruction, s->program.length);
   } else if (s->kind == STRUT_SUM) {
     strut_put(writer, "[");
     for (size_t i = 0; i < s->term_count; i++) {
@@ -81,6 +83,36 @@ static void put_signal(strut_writer *writer, int32_t index) {
     put_wave(writer, s);
   }
   strut_put(writer, "}");
+}
+
+static void put_sensor_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
+                               const void *object) {
+  const strut_scene *scene = writer->scene;
+  const strut_sensor *sensor = object;
+  if (key != STRUT_KEY_SENSOR_LENGTH + (int)sensor->kind) return;
+  bool member = sensor->kind == STRUT_SENSOR_LENGTH || sensor->kind == STRUT_SENSOR_FORCE;
+  strut_put_key_name(writer, mapping, key);
+  strut_put_name(writer, member                               ? scene->members[sensor->item].name
+                         : sensor->kind == STRUT_SENSOR_ANGLE ? scene->hinges[sensor->item].name
+                                                              : scene->nodes[sensor->item].name);
+}
+
+static void put_sensors(strut_writer *writer) {
+  const strut_scene *scene = writer->scene;
+  if (scene->sensor_count) strut_put(writer, "sensors:\n");
+  for (size_t i = 0; i < scene->sensor_count; i++) {
+    const strut_sensor *sensor = &scene->sensors[i];
+    strut_mapping mapping = STRUT_MAPPING_INLINE;
+    strut_sensor usual = {.energy = UINT32_MAX, .along = UINT32_MAX};
+    if (sensor->kind != STRUT_SENSOR_ENERGY) usual.energy = sensor->energy;
+    if (sensor->kind != STRUT_SENSOR_POSITION && sensor->kind != STRUT_SENSOR_VELOCITY)
+      usual.along = sensor->along;
+    strut_put(writer, "  ");
+    strut_put_name(writer, sensor->name);
+    strut_put(writer, ": {");
+    strut_put_fields(writer, &mapping, STRUT_SECTION_SENSOR, sensor, &usual, put_sensor_by_hand);
+    strut_put(writer, "}\n");
+  }
 }
 
 static void put_named_signals(strut_writer *writer) {
@@ -128,6 +160,7 @@ static void put_load_by_hand(strut_writer *writer, strut_mapping *mapping, int k
 void strut_put_drives(strut_writer *writer) {
   const strut_scene *scene = writer->scene;
   const strut_load usual = {0};
+  put_sensors(writer);
   put_named_signals(writer);
   put_actuators(writer);
   if (scene->load_count) strut_put(writer, "loads:\n");

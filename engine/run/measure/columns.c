@@ -120,6 +120,10 @@ static double total_energy(const strut_energies *s, double *size) {
   return s->kinetic + s->elastic + s->gravity + s->contact;
 }
 
+static double column_time(const strut_columns *c, const strut_state *state) {
+  return (double)state->step * c->step + c->shorter + state->time_offset;
+}
+
 /* Evaluates a column; *size: magnitude of the terms that it sums, where that is not the value. */
 static double evaluate_column(const strut_columns *c, const strut_state *state, strut_column column,
                               double *size) {
@@ -127,7 +131,7 @@ static double evaluate_column(const strut_columns *c, const strut_state *state, 
   const double *w = state->work;
   double d[2];
   switch (column.kind) {
-    case STRUT_COLUMN_TIME: return (double)state->step * c->step + c->shorter + state->time_offset;
+    case STRUT_COLUMN_TIME: return column_time(c, state);
     case STRUT_COLUMN_NODE_X: return state->q[at];
     case STRUT_COLUMN_NODE_Y: return state->q[at + 1];
     case STRUT_COLUMN_NODE_VX: return state->v[at];
@@ -163,6 +167,9 @@ static double evaluate_column(const strut_columns *c, const strut_state *state, 
     case STRUT_COLUMN_LOST_FRICTION: return w[STRUT_POWER_FRICTION];
     case STRUT_COLUMN_LOST:
       return w[STRUT_POWER_MEMBERS] + w[STRUT_POWER_CONTACT] + w[STRUT_POWER_FRICTION];
+    case STRUT_COLUMN_SENSOR: return state->sensor[column.item];
+    case STRUT_COLUMN_SIGNAL:
+      return strut_drive_signal(c->model, state, column.item, column_time(c, state));
     case STRUT_COLUMN_COUNT: break;
   }
   return 0.0;
