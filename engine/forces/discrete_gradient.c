@@ -203,8 +203,8 @@ static void add_elements(const strut_model *model, strut_state *state,
   for (int32_t i = 0; i < model->elements.count; i++) add_element(model, state, step, i, q0, q1);
 }
 
-/* Drives that follow the motion: their rates half-way, with the loads there, and their values at the
-   end. */
+/* Drives that follow the motion: their rates half-way, with the loads and the rates of internal states
+   there, and their values at the end. */
 static void follow(const strut_model *model, strut_state *state, strut_discrete_gradient *step,
                    const double *q1, const double *u) {
   for (int32_t i = 0; i < model->length; i++) {
@@ -214,6 +214,7 @@ static void follow(const strut_model *model, strut_state *state, strut_discrete_
   double middle = step->begin + 0.5 * step->h;
   strut_feedback_apply(model, state, middle, step->middle, u);
   memcpy(step->rest_rate, state->rest_rate, (size_t)model->members.slots * sizeof(double));
+  strut_feedback_add_rates(model, state, middle, u, state->force);
   if (model->plan & STRUT_TERM_LOADS) strut_loads_apply(model, state, middle, u);
   strut_feedback_apply(model, state, step->begin + step->h, q1, step->end_velocity);
 }

@@ -6,22 +6,32 @@
 
 #include "engine/forces/feedback.h"
 
+strut_signal_inputs strut_drive_inputs(const strut_model *model, const strut_state *state,
+                                       const double *v) {
+  return (strut_signal_inputs){.sensor = state->sensor,
+                               .sensor_rate = state->sensor_rate,
+                               .state = v + model->feedback.base,
+                               .states = model->scene->states,
+                               .lag_of = model->feedback.lag_of,
+                               .held = state->held};
+}
+
 /* The signal of a drive or a load now. */
-static void evaluate(const strut_model *model, const strut_state *state, int32_t signal, double t,
-                     double *value, double *rate) {
+static void evaluate(const strut_model *model, const strut_state *state, const double *v,
+                     int32_t signal, double t, double *value, double *rate) {
   const strut_signal *signals = model->scene->signals;
   if (!(model->plan & STRUT_TERM_FEEDBACK)) {
     strut_signal_evaluate(signals, signal, t, value, rate);
     return;
   }
-  const strut_signal_inputs in = {.sensor = state->sensor, .sensor_rate = state->sensor_rate};
+  const strut_signal_inputs in = strut_drive_inputs(model, state, v);
   strut_signal_follow(signals, &in, signal, t, value, rate);
 }
 
 double strut_drive_signal(const strut_model *model, const strut_state *state, int32_t signal,
                           double t) {
   double value, rate;
-  evaluate(model, state, signal, t, &value, &rate);
+  evaluate(model, state, state->v, signal, t, &value, &rate);
   return value;
 }
 
@@ -29,17 +39,18 @@ void strut_drive_apply(const strut_model *model, strut_state *state, double t) {
   if (model->plan & STRUT_TERM_FEEDBACK)
     strut_feedback_apply(model, state, t, state->q, state->v);
   else
-    strut_drive_apply_sensed(model, state, t);
+    strut_drive_apply_sensed(model, state, t, state->v);
 }
 
-void strut_drive_apply_sensed(const strut_model *model, strut_state *state, double t) {
+void strut_drive_apply_sensed(const strut_model *model, strut_state *state, double t,
+                              const double *v) {
   const strut_drive_table *d = &model->drives;
   double *restrict rest = state->rest, *restrict rest_rate = state->rest_rate;
   state->drive_time = t;
   for (int32_t i = 0; i < d->count; i++) {
     double value, rate;
     int32_t member = d->member[i];
-    evaluate(model, state, d->signal[i], t + state->time_offset, &value, &rate);
+    evaluate(model, state, v, d->signal[i], t + state->time_offset, &value, &rate);
     /* the first actuator of a member starts from its own rest length, further ones add */
     rest[member] = (d->first[i] ? model->members.rest[member] : rest[member]) + value;
     rest_rate[member] = d->first[i] ? rate : rest_rate[member] + rate;
@@ -51,7 +62,7 @@ void strut_loads_apply(const strut_model *model, strut_state *state, double t,
   const strut_load_table *loads = &model->loads;
   for (int32_t i = 0; i < loads->count; i++) {
     double factor, rate;
-    evaluate(model, state, loads->signal[i], t + state->time_offset, &factor, &rate);
+    evaluate(model, state, v, loads->signal[i], t + state->time_offset, &factor, &rate);
     int32_t at = 2 * loads->node[i];
     double px = factor * loads->x[i], py = factor * loads->y[i];
     state->force[at] += px;
@@ -70,5 +81,5 @@ double strut_drive_next_break(const strut_model *model, double t) {
     first = fmin(first, strut_signal_next_break(signals, model->drives.signal[i], t));
   for (int32_t i = 0; i < model->loads.count; i++)
     first = fmin(first, strut_signal_next_break(signals, model->loads.signal[i], t));
-  return first;
+  return fmin(first, strut_feedback_next_sample(model, t));
 }

@@ -11,7 +11,11 @@
  */
 void strut_drive_apply(const strut_model *model, strut_state *state, double t);
 /** The same with the sensors as they were evaluated last: the second half of strut_feedback_apply. */
-void strut_drive_apply_sensed(const strut_model *model, strut_state *state, double t);
+void strut_drive_apply_sensed(const strut_model *model, strut_state *state, double t,
+                              const double *v);
+/** Inputs of signals: the sensors as they were evaluated last, and the states at velocities v. */
+strut_signal_inputs strut_drive_inputs(const strut_model *model, const strut_state *state,
+                                       const double *v);
 /** A signal at time t [s], with the sensors as they were evaluated last. */
 double strut_drive_signal(const strut_model *model, const strut_state *state, int32_t signal,
                           double t);

@@ -2,6 +2,8 @@
 /* Hot where a scene has sensors. See feedback.h. */
 #include "engine/forces/feedback.h"
 
+#include <math.h>
+
 #include "engine/forces/drive.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/energy.h"
@@ -59,9 +61,79 @@ static void sense_all(const strut_model *model, strut_state *state, bool driven,
       sense(model, state, f->sensor[i], q, v, &state->sensor[i], &state->sensor_rate[i]);
 }
 
+static void apply_drives(const strut_model *model, strut_state *state, double t, const double *q,
+                         const double *v) {
+  const strut_feedback_table *f = &model->feedback;
+  sense_all(model, state, false, q, v);
+  strut_drive_apply_sensed(model, state, t, v);
+  if (!f->needs_drives) return;
+  sense_all(model, state, true, q, v);
+  /* rates of states may follow these sensors, and rates of rest lengths those */
+  if (f->state_count) strut_drive_apply_sensed(model, state, t, v);
+}
+
+/* Samples the signals that are due at time t, and all of them before the first; v: for the states. */
+static bool take_samples(const strut_model *model, strut_state *state, double t, const double *v,
+                         double tolerance) {
+  const strut_feedback_table *f = &model->feedback;
+  const strut_signal_inputs in = strut_drive_inputs(model, state, v);
+  bool any = false;
+  for (int32_t i = 0; i < f->sampled_count; i++) {
+    int32_t signal = f->sampled[i];
+    double every = model->scene->signals[signal].every, rate;
+    bool first = isnan(state->held[signal]);
+    if (!first && !(fabs(t - every * round(t / every)) <= tolerance)) continue;
+    strut_signal_follow_unsampled(model->scene->signals, &in, signal, t, &state->held[signal],
+                                  &rate);
+    any = true;
+  }
+  return any;
+}
+
 void strut_feedback_apply(const strut_model *model, strut_state *state, double t, const double *q,
                           const double *v) {
-  sense_all(model, state, false, q, v);
-  strut_drive_apply_sensed(model, state, t);
-  if (model->feedback.needs_drives) sense_all(model, state, true, q, v);
+  const strut_feedback_table *f = &model->feedback;
+  if (f->sampled_count && isnan(state->held[f->sampled[0]])) {
+    /* the first samples, at rest lengths without drives */
+    sense_all(model, state, false, q, v);
+    sense_all(model, state, true, q, v);
+    take_samples(model, state, t + state->time_offset, v, 0.0);
+  }
+  apply_drives(model, state, t, q, v);
+}
+
+void strut_feedback_add_rates(const strut_model *model, strut_state *state, double t,
+                              const double *v, double *force) {
+  const strut_feedback_table *f = &model->feedback;
+  const strut_scene *scene = model->scene;
+  strut_signal_inputs in = strut_drive_inputs(model, state, v);
+  double now = t + state->time_offset, value, unused;
+  in.values_only = true;
+  for (int32_t i = 0; i < f->state_count - f->lag_count; i++) {
+    strut_program_evaluate(&scene->states[i].rate, scene->signals, &in, now, &value, &unused);
+    force[f->base + i] = value;
+  }
+  for (int32_t k = 0; k < f->lag_count; k++) {
+    int32_t signal = f->lagged[k], index = f->lag_of[signal];
+    strut_signal_follow_unlagged(scene->signals, &in, signal, now, &value, &unused);
+    force[f->base + index] = (value - in.state[index]) / scene->signals[signal].lag;
+  }
+}
+
+double strut_feedback_next_sample(const strut_model *model, double t) {
+  const strut_feedback_table *f = &model->feedback;
+  double first = (double)INFINITY;
+  for (int32_t i = 0; i < f->sampled_count; i++) {
+    double every = model->scene->signals[f->sampled[i]].every;
+    double next = every * (floor(t / every) + 1.0);
+    first = fmin(first, next > t ? next : next + every);
+  }
+  return first;
+}
+
+bool strut_feedback_sample(const strut_model *model, strut_state *state, double t,
+                           double tolerance) {
+  if (!model->feedback.sampled_count) return false;
+  strut_feedback_apply(model, state, t, state->q, state->v);
+  return take_samples(model, state, t + state->time_offset, state->v, tolerance);
 }

@@ -12,4 +12,17 @@
 void strut_feedback_apply(const strut_model *model, strut_state *state, double t, const double *q,
                           const double *v);
 
+/** Rates of the internal states at velocities v into `force`, after strut_feedback_apply. */
+void strut_feedback_add_rates(const strut_model *model, strut_state *state, double t,
+                              const double *v, double *force);
+
+/** The first sample after t [s]; INFINITY: there is none. */
+double strut_feedback_next_sample(const strut_model *model, double t);
+/**
+ * Samples the signals that are due at time t [s] of the steps, within the tolerance [s], at the state's
+ * positions and velocities. True if there was one.
+ */
+bool strut_feedback_sample(const strut_model *model, strut_state *state, double t,
+                           double tolerance);
+
 #endif

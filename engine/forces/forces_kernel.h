@@ -53,7 +53,10 @@ STRUT_INLINE void forces_of_structure(const strut_model *model, strut_state *sta
   state->evaluations++;
   for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) state->power[p] = 0.0;
   forces_start(model, force);
-  if (plan & STRUT_TERM_FEEDBACK) strut_feedback_apply(model, state, t, q, v);
+  if (plan & STRUT_TERM_FEEDBACK) {
+    strut_feedback_apply(model, state, t, q, v);
+    strut_feedback_add_rates(model, state, t, v, force);
+  }
   if (plan & STRUT_TERM_LOADS) strut_loads_apply(model, state, t, v);
   if ((plan & STRUT_TERM_DRIVE) && t != state->drive_time) strut_drive_apply(model, state, t);
   if (plan & STRUT_TERM_MEMBERS) forces_of_members(model, state, q, v, force, ledger);

@@ -25,7 +25,8 @@ static int32_t *indices(strut_model *model, size_t count, bool *failed) {
 static void compile_nodes(strut_model *model, bool *failed) {
   const strut_scene *scene = model->scene;
   size_t count = scene->node_count;
-  size_t length = (2 * count + 2 + STRUT_LANES - 1) / STRUT_LANES * STRUT_LANES;
+  size_t needed = 2 * count + 2 + strut_feedback_states(scene);
+  size_t length = (needed + STRUT_LANES - 1) / STRUT_LANES * STRUT_LANES;
   model->node_count = (int32_t)scene->node_count;
   model->length = (int32_t)length;
   double *start = doubles(model, length, failed), *velocity = doubles(model, length, failed);

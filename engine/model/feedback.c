@@ -22,7 +22,13 @@ static strut_sensor_entry compile_sensor(const strut_model *model, const strut_s
   return entry;
 }
 
-bool strut_feedback_compile(strut_model *model) {
+size_t strut_feedback_states(const strut_scene *scene) {
+  size_t count = scene->state_count;
+  for (size_t i = 0; i < scene->signal_count; i++) count += scene->signals[i].lag > 0.0;
+  return count;
+}
+
+static bool compile_sensors(strut_model *model) {
   const strut_scene *scene = model->scene;
   strut_feedback_table *f = &model->feedback;
   strut_sensor_entry *sensor =
@@ -34,6 +40,30 @@ bool strut_feedback_compile(strut_model *model) {
   }
   f->count = (int32_t)scene->sensor_count;
   f->sensor = sensor;
-  if (f->count) model->plan |= STRUT_TERM_FEEDBACK;
+  return true;
+}
+
+bool strut_feedback_compile(strut_model *model) {
+  const strut_scene *scene = model->scene;
+  strut_feedback_table *f = &model->feedback;
+  size_t signals = scene->signal_count;
+  int32_t *lagged = strut_arena_allocate(&model->arena, signals, sizeof *lagged);
+  int32_t *lag_of = strut_arena_allocate(&model->arena, signals, sizeof *lag_of);
+  int32_t *sampled = strut_arena_allocate(&model->arena, signals, sizeof *sampled);
+  if (!lagged || !lag_of || !sampled || !compile_sensors(model)) return false;
+  for (size_t i = 0; i < signals; i++) {
+    const strut_signal *s = &scene->signals[i];
+    lag_of[i] = s->lag > 0.0 ? (int32_t)scene->state_count + f->lag_count : -1;
+    if (s->lag > 0.0) lagged[f->lag_count++] = (int32_t)i;
+    if (s->every > 0.0) sampled[f->sampled_count++] = (int32_t)i;
+  }
+  f->lagged = lagged, f->lag_of = lag_of, f->sampled = sampled;
+  f->state_count = (int32_t)strut_feedback_states(scene);
+  f->base = 2 * model->node_count + 2;
+  double *velocity = (double *)model->velocity;
+  for (size_t i = 0; i < scene->state_count; i++)
+    velocity[(size_t)f->base + i] = scene->states[i].start;
+  for (int32_t i = 0; i < f->state_count; i++) ((uint8_t *)model->fixed)[f->base + i] = 1;
+  if (f->count || f->state_count || f->sampled_count) model->plan |= STRUT_TERM_FEEDBACK;
   return true;
 }

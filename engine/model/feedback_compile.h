@@ -5,6 +5,8 @@
 
 #include "engine/model/model.h"
 
+/** Coordinates that internal states need. */
+size_t strut_feedback_states(const strut_scene *scene);
 /** Fills model->feedback, after elements and contacts. False: out of memory. */
 bool strut_feedback_compile(strut_model *model);
 

@@ -31,10 +31,11 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
   size_t sensors = (size_t)model->feedback.count;
   state->sensor = strut_arena_allocate(arena, sensors, sizeof(double));
   state->sensor_rate = strut_arena_allocate(arena, sensors, sizeof(double));
+  state->held = strut_arena_allocate(arena, model->scene->signal_count, sizeof(double));
   if (!state->q || !state->v || !state->rest || !state->element_acts || !state->element_piece ||
       !state->element_turn || !state->slack_length_threshold || !state->slack_force_threshold ||
       !state->rest_rate || !state->force || !state->normal || !state->friction || !state->scratch ||
-      !state->sensor || !state->sensor_rate) {
+      !state->sensor || !state->sensor_rate || !state->held) {
     strut_state_free(state);
     *result = NULL;
     return strut_memory_fail_model(model->scene, error);
@@ -65,6 +66,7 @@ void strut_state_reset(const strut_model *model, strut_state *state) {
     state->element_piece[i] = -1;
     state->element_turn[i] = strut_element_start(model, i);
   }
+  for (size_t i = 0; i < model->scene->signal_count; i++) state->held[i] = (double)NAN;
   memset(state->work, 0, sizeof state->work);
   memset(state->power, 0, sizeof state->power);
 }

@@ -77,8 +77,9 @@ typedef struct strut_state {
   const double *held_normal, *held_friction;
   struct strut_rigid *rigid;    /* forces of rigid bars, see rigid.h; NULL where bars are elastic */
   double *sensor, *sensor_rate; /* (sensors) when last evaluated, in SI units */
-  bool ledger;                  /* keep the ledger? It costs some arithmetic per evaluation */
-  double *scratch;              /* (length) for the mass solve */
+  double *held; /* (signals) of sampled ones the value at the latest sample; NAN before the first */
+  bool ledger;  /* keep the ledger? It costs some arithmetic per evaluation */
+  double *scratch; /* (length) for the mass solve */
   strut_arena arena;
 } strut_state;
 

@@ -108,7 +108,7 @@ static strut_status place_state(strut_run *r) {
     return STRUT_OK;
   }
   if (!r->experiment->settle.wanted) return STRUT_OK;
-  memset(r->state->v, 0, bytes);
+  memset(r->state->v, 0, 2 * (size_t)r->model->node_count * sizeof(double));
   return strut_settle_experiment(r->model, r->experiment, r->limits, r->options->interrupt,
                                  r->state->q, &r->summary->settle_time, &r->summary->settle,
                                  r->error);
@@ -130,6 +130,8 @@ static strut_status prepare_run(strut_run *r) {
                       "positions first with strut_resolve_start_equilibrium",
                       scene->configurations[scene->start_equilibrium].name);
   if (!r->model->mass) return strut_fail(r->error, STRUT_SINGULAR, "a free node has no mass");
+  if ((status = strut_integrator_check_samples(r->method, r->model, r->dt, r->error)))
+    return status;
   double *limit = &r->summary->step_limit;
   bool bound = false;
   status = r->limits ? strut_step_limit_cached(r->model, r->method, r->limits, limit, r->error)
@@ -271,7 +273,7 @@ static int64_t find_next_stop(const strut_run *r, int64_t chunk) {
 
 static void step_with_quantities(strut_run *r, int64_t stop) {
   while (r->state->step < stop) {
-    r->method->advance(r->model, r->state, r->workspace, r->dt, 1);
+    strut_integrator_advance(r->method, r->model, r->state, r->workspace, r->dt, 1);
     strut_measure_step_quantities(r->model, r->state, &r->measure);
   }
 }
@@ -279,7 +281,7 @@ static void step_with_quantities(strut_run *r, int64_t stop) {
 static void step_to(strut_run *r, int64_t stop) {
   int64_t n = r->state->step;
   if (n < strut_measure_first_step(&r->measure)) {
-    r->method->advance(r->model, r->state, r->workspace, r->dt, stop - n);
+    strut_integrator_advance(r->method, r->model, r->state, r->workspace, r->dt, stop - n);
     return;
   }
   if (r->measure.quantities) {
@@ -287,7 +289,7 @@ static void step_to(strut_run *r, int64_t stop) {
     return;
   }
   for (; n < stop; n++) {
-    r->method->advance(r->model, r->state, r->workspace, r->dt, 1);
+    strut_integrator_advance(r->method, r->model, r->state, r->workspace, r->dt, 1);
     strut_measure_step(r->model, r->state, &r->measure);
   }
 }
@@ -309,7 +311,7 @@ static void step_short(strut_run *r) {
   state->time_offset += later;
   state->refined_until -= later;
   state->drive_time = (double)NAN;
-  r->method->advance(r->model, state, r->workspace, length, 1);
+  strut_integrator_advance(r->method, r->model, state, r->workspace, length, 1);
   state->time_offset = before;
   state->refined_until += later;
   state->drive_time = (double)NAN;

@@ -92,7 +92,7 @@ static void check_name(strut_checker *checker, strut_name_map *map, strut_subjec
 void strut_check_names(strut_checker *checker) {
   const strut_scene *s = checker->scene;
   strut_name_map nodes = {0}, members = {0}, actuators = {0}, loads = {0}, signals = {0},
-                 configurations = {0}, hinges = {0}, sensors = {0};
+                 configurations = {0}, hinges = {0}, sensors = {0}, states = {0};
   for (size_t i = 0; i < s->node_count; i++)
     check_name(checker, &nodes, STRUT_ON_NODE, "node", s->nodes[i].name, i);
   for (size_t i = 0; i < s->member_count; i++)
@@ -108,6 +108,8 @@ void strut_check_names(strut_checker *checker) {
       check_name(checker, &signals, STRUT_ON_SIGNAL, "signal", s->signals[i].name, i);
   for (size_t i = 0; i < s->sensor_count; i++)
     check_name(checker, &sensors, STRUT_ON_SENSOR, "sensor", s->sensors[i].name, i);
+  for (size_t i = 0; i < s->state_count; i++)
+    check_name(checker, &states, STRUT_ON_STATE, "state", s->states[i].name, i);
   for (size_t i = 0; i < s->configuration_count; i++)
     check_name(checker, &configurations, STRUT_ON_CONFIGURATION, "configuration",
                s->configurations[i].name, i);
@@ -119,6 +121,7 @@ void strut_check_names(strut_checker *checker) {
   strut_name_map_free(&signals);
   strut_name_map_free(&configurations);
   strut_name_map_free(&sensors);
+  strut_name_map_free(&states);
 }
 
 void strut_check_nodes(strut_checker *checker) {
@@ -320,9 +323,9 @@ void strut_check_use(strut_checker *checker) {
 strut_status strut_setup_check(const strut_setup *setup, strut_purpose purpose,
                                strut_findings *findings) {
   static void (*const rules[])(strut_checker *) = {
-      strut_check_names,  strut_check_nodes,   strut_check_members,   strut_check_hinges,
-      strut_check_use,    strut_check_sensors, strut_check_signals,   strut_check_ground,
-      strut_check_drives, strut_check_shapes,  strut_check_experiment};
+      strut_check_names,  strut_check_nodes,   strut_check_members, strut_check_hinges,
+      strut_check_use,    strut_check_sensors, strut_check_states,  strut_check_signals,
+      strut_check_ground, strut_check_drives,  strut_check_shapes,  strut_check_experiment};
   const strut_scene *scene = &setup->scene;
   const strut_experiment *e = &setup->experiment;
   bool runs = e->step != 0.0 || e->duration != 0.0 || e->periods != 0.0;

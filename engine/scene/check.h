@@ -26,7 +26,8 @@ typedef enum strut_subject {
   STRUT_ON_SOLVER,
   STRUT_ON_RUN,
   STRUT_ON_OUTPUT,
-  STRUT_ON_SENSOR
+  STRUT_ON_SENSOR,
+  STRUT_ON_STATE
 } strut_subject;
 
 typedef struct strut_finding {

@@ -148,10 +148,11 @@ void strut_check_signals(strut_checker *checker) {
       checker->wild[i] = true;
       continue;
     }
-    checker->wild[i] = s->kind == STRUT_TABLE ? !check_table(checker, i, owner)
-                       : s->kind == STRUT_SUM || s->kind == STRUT_EXPRESSION
-                           ? !check_sum(checker, i, owner, size, depth)
-                           : !check_wave(checker, i, owner);
+    bool modified = strut_check_modifiers(checker, i, owner);
+    checker->wild[i] = !modified || (s->kind == STRUT_TABLE ? !check_table(checker, i, owner)
+                                     : s->kind == STRUT_SUM || s->kind == STRUT_EXPRESSION
+                                         ? !check_sum(checker, i, owner, size, depth)
+                                         : !check_wave(checker, i, owner));
   }
   strut_release(size);
   strut_release(depth);

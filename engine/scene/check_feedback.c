@@ -55,22 +55,26 @@ void strut_check_sensors(strut_checker *checker) {
   for (size_t i = 0; i < checker->scene->sensor_count; i++) check_sensor(checker, i);
 }
 
-/* Is the instruction one that a signal may have? */
-static bool is_known(const strut_scene *scene, const strut_instruction *p, size_t signal) {
+/* Is the instruction one that a signal may have? `signals`: of those before it. */
+static bool is_known(const strut_scene *scene, const strut_instruction *p, size_t signals) {
   if (p->operation == STRUT_OPERATION_NUMBER) return isfinite(p->number);
   if (p->operation != STRUT_OPERATION_COLUMN) return (unsigned)p->operation < STRUT_OPERATION_COUNT;
+  int32_t item = p->column.item;
   if (p->column.kind == STRUT_COLUMN_TIME) return true;
-  if (p->column.kind == STRUT_COLUMN_SENSOR) return exists(p->column.item, scene->sensor_count);
-  return p->column.kind == STRUT_COLUMN_SIGNAL && exists(p->column.item, signal);
+  if (p->column.kind == STRUT_COLUMN_SENSOR) return exists(item, scene->sensor_count);
+  if (p->column.kind == STRUT_COLUMN_SENSOR_RATE)
+    return exists(item, scene->sensor_count) && strut_sensor_has_rate(scene->sensors[item].kind);
+  if (p->column.kind == STRUT_COLUMN_STATE) return exists(item, scene->state_count);
+  return p->column.kind == STRUT_COLUMN_SIGNAL && exists(item, signals);
 }
 
-bool strut_check_program(strut_checker *checker, size_t index, const char *owner) {
-  const strut_program *program = &checker->scene->signals[index].program;
+static bool check_program(strut_checker *checker, const strut_program *program, size_t signals,
+                          strut_subject subject, size_t index, const char *key, const char *owner) {
   size_t top = 0, most = 0;
   bool valid = program->length > 0;
   for (size_t i = 0; i < program->length && valid; i++) {
     const strut_instruction *p = &program->instruction[i];
-    valid = is_known(checker->scene, p, index);
+    valid = is_known(checker->scene, p, signals);
     if (!valid) break;
     size_t operands = (size_t)strut_operation_operands(p->operation);
     valid = top >= operands;
@@ -78,10 +82,9 @@ bool strut_check_program(strut_checker *checker, size_t index, const char *owner
     if (valid && top > most) most = top;
   }
   if (!valid || top != 1)
-    strut_report_finding(checker, STRUT_ON_SIGNAL, index, "expression",
-                         "the program of %s is not valid", owner);
+    strut_report_finding(checker, subject, index, key, "the program of %s is not valid", owner);
   else if (most > STRUT_MOST_PROGRAM_DEPTH)
-    strut_report_finding(checker, STRUT_ON_SIGNAL, index, "expression",
+    strut_report_finding(checker, subject, index, key,
                          "the expression of %s needs more than %d intermediate numbers", owner,
                          STRUT_MOST_PROGRAM_DEPTH);
   else
@@ -89,14 +92,58 @@ bool strut_check_program(strut_checker *checker, size_t index, const char *owner
   return false;
 }
 
+bool strut_check_program(strut_checker *checker, size_t index, const char *owner) {
+  return check_program(checker, &checker->scene->signals[index].program, index, STRUT_ON_SIGNAL,
+                       index, "expression", owner);
+}
+
+void strut_check_states(strut_checker *checker) {
+  const strut_scene *scene = checker->scene;
+  for (size_t i = 0; i < scene->state_count; i++) {
+    char owner[200];
+    strut_format_name(owner, "state", scene->states[i].name, i);
+    if (!isfinite(scene->states[i].start))
+      strut_report_finding(checker, STRUT_ON_STATE, i, "start", "the start of %s is not finite",
+                           owner);
+    check_program(checker, &scene->states[i].rate, scene->signal_count, STRUT_ON_STATE, i, "rate",
+                  owner);
+  }
+}
+
+bool strut_check_modifiers(strut_checker *checker, size_t index, const char *owner) {
+  const strut_signal *s = &checker->scene->signals[index];
+  bool lag =
+      strut_check_range(checker, STRUT_ON_SIGNAL, index, "lag", owner, s->lag, STRUT_NOT_NEGATIVE);
+  return strut_check_range(checker, STRUT_ON_SIGNAL, index, "every", owner, s->every,
+                           STRUT_NOT_NEGATIVE) &&
+         lag;
+}
+
+/* Do all programs that a signal may follow make sense? Others have been reported. */
+static bool may_describe(const strut_checker *checker) {
+  for (size_t i = 0; i < checker->findings->count; i++)
+    if (checker->findings->items[i].subject == STRUT_ON_STATE ||
+        checker->findings->items[i].subject == STRUT_ON_SENSOR)
+      return false;
+  return checker->findings->unstored == 0;
+}
+
 void strut_check_driven_rate(strut_checker *checker, size_t actuator, const char *owner) {
   const strut_scene *scene = checker->scene;
   const strut_actuator *a = &scene->actuators[actuator];
-  strut_signal_traits traits = strut_signal_describe(scene->signals, scene->sensors, a->signal);
-  if (traits.sensor < 0) return;
-  strut_report_finding(checker, STRUT_ON_ACTUATOR, actuator, "signal",
-                       "%s drives a rest %s by sensor '%s', whose rate is not known; a rest %s may "
-                       "follow lengths, angles and positions, and a load any sensor",
-                       owner, a->member >= 0 ? "length" : "angle",
-                       scene->sensors[traits.sensor].name, a->member >= 0 ? "length" : "angle");
+  if (!may_describe(checker)) return;
+  strut_signal_traits traits = strut_signal_describe(scene, a->signal);
+  const char *what = a->member >= 0 ? "length" : "angle";
+  if (traits.sensor >= 0)
+    strut_report_finding(checker, STRUT_ON_ACTUATOR, actuator, "signal",
+                         "%s drives a rest %s by sensor '%s', whose rate is not known; sample the "
+                         "signal ('every'), let it lag ('lag'), or drive a load",
+                         owner, what, scene->sensors[traits.sensor].name);
+  else if (traits.damped >= 0)
+    strut_report_finding(
+        checker, STRUT_ON_ACTUATOR, actuator, "signal",
+        "the rate of the rest %s that %s drives follows sensor '%s', the force of a "
+        "member with a damper, which follows such rates; sample the signal "
+        "('every')",
+        what, owner, scene->sensors[traits.damped].name);
 }

@@ -25,7 +25,7 @@ typedef enum strut_column_owner {
   STRUT_COLUMN_OF_ENERGY,  /* energy.kinetic */
   STRUT_COLUMN_OF_WORK,    /* work.drives */
   STRUT_COLUMN_OF_LOSSES,  /* losses.friction */
-  STRUT_COLUMN_OF_FEEDBACK /* the name of a sensor or a signal alone */
+  STRUT_COLUMN_OF_FEEDBACK /* the name of a sensor, a signal or a state alone; rate(SENSOR) */
 } strut_column_owner;
 
 /** X(id, owner, word, powers of kg, m, s, angle) */
@@ -65,7 +65,9 @@ typedef enum strut_column_owner {
   X(LOST_FRICTION, LOSSES, "friction", 1, 2, -2, 0)                                                \
   X(LOST, LOSSES, "total", 1, 2, -2, 0)                                                            \
   X(SENSOR, FEEDBACK, "sensor", 0, 0, 0, 0) /* in SI units, of whatever dimension */               \
-  X(SIGNAL, FEEDBACK, "signal", 0, 0, 0, 0)
+  X(SIGNAL, FEEDBACK, "signal", 0, 0, 0, 0)                                                        \
+  X(SENSOR_RATE, FEEDBACK, "rate", 0, 0, 0, 0)                                                     \
+  X(STATE, FEEDBACK, "state", 0, 0, 0, 0)
 
 typedef enum strut_column_kind {
 #define STRUT_COLUMN_ENUM(id, ...) STRUT_COLUMN_##id,
@@ -78,7 +80,7 @@ typedef enum strut_column_kind {
 typedef struct strut_column {
   strut_column_kind kind;
   int32_t item,
-      other; /* node, contact, member, hinge, sensor or signal; the second node of a pair; else -1 */
+      other; /* node, contact, member, hinge, sensor, signal or state; the second node of a pair; else -1 */
 } strut_column;
 
 /** How a result changes with its operands; see quantity_program.c. */

@@ -164,8 +164,9 @@ typedef struct strut_scene {
   strut_configuration *configurations;
   int32_t start_equilibrium; /* configuration at whose equilibrium a run starts, or -1. A run wants
                                 it resolved into positions: strut_resolve_start_equilibrium */
-  size_t sensor_count;
+  size_t sensor_count, state_count;
   strut_sensor *sensors;
+  strut_internal_state *states;
   strut_arena arena; /* owns every text and array above */
 } strut_scene;
 

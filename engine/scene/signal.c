@@ -87,14 +87,41 @@ void strut_signal_evaluate(const strut_signal *signals, int32_t index, double t,
     evaluate_other(signals, NULL, index, t, turns, value, rate);
 }
 
-void strut_signal_follow(const strut_signal *signals, const strut_signal_inputs *in, int32_t index,
-                         double t, double *value, double *rate) {
+void strut_signal_follow_unlagged(const strut_signal *signals, const strut_signal_inputs *in,
+                                  int32_t index, double t, double *value, double *rate) {
   const strut_signal *s = &signals[index];
   double turns = s->frequency * (t - s->start) + s->phase;
   if (s->kind == STRUT_SINE && t >= s->start && t < s->stop)
     evaluate_wave(s, turns, value, rate);
   else
     evaluate_other(signals, in, index, t, turns, value, rate);
+}
+
+void strut_signal_follow_unsampled(const strut_signal *signals, const strut_signal_inputs *in,
+                                   int32_t index, double t, double *value, double *rate) {
+  const strut_signal *s = &signals[index];
+  if (!(s->lag > 0.0)) {
+    strut_signal_follow_unlagged(signals, in, index, t, value, rate);
+    return;
+  }
+  *value = in ? in->state[in->lag_of[index]] : (double)NAN;
+  *rate = in ? 0.0 : (double)NAN;
+  if (!in || in->values_only) return;
+  strut_signal_inputs values = *in;
+  double wanted, unused;
+  values.values_only = true;
+  strut_signal_follow_unlagged(signals, &values, index, t, &wanted, &unused);
+  *rate = (wanted - *value) / s->lag;
+}
+
+void strut_signal_follow(const strut_signal *signals, const strut_signal_inputs *in, int32_t index,
+                         double t, double *value, double *rate) {
+  if (!(signals[index].every > 0.0)) {
+    strut_signal_follow_unsampled(signals, in, index, t, value, rate);
+    return;
+  }
+  *value = in ? in->held[index] : (double)NAN;
+  *rate = 0.0;
 }
 
 /* The first multiple of half a period after t, counted from where the phase is 0. */

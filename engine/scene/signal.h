@@ -49,6 +49,8 @@ typedef struct strut_signal {
   size_t term_count;     /* sum: number of terms */
   const int32_t *terms;  /* (term_count) indices of signals, each below this signal's own */
   strut_program program; /* expression: signals in it are below this signal's own */
+  double lag;            /* [s] time constant of a first-order lag; 0: none */
+  double every;          /* [s] between samples, after the lag; 0: the signal is continuous */
 } strut_signal;
 
 /** A signal of the given kind with the defaults above. */

@@ -5,6 +5,8 @@
 #include <assert.h>
 #include <math.h>
 
+#include "engine/scene/scene.h"
+
 /* A number and its time derivative. */
 typedef struct dual {
   double value, rate;
@@ -105,6 +107,18 @@ static dual apply(strut_operation operation, dual a) {
   return (dual){(double)NAN, (double)NAN};
 }
 
+/* An internal state and its rate, which takes the values of others only. */
+static dual read_state(int32_t index, const strut_signal *signals, const strut_signal_inputs *in,
+                       double t) {
+  dual x = {in->state[index], 0.0};
+  if (in->values_only) return x;
+  strut_signal_inputs values = *in;
+  double unused;
+  values.values_only = true;
+  strut_program_evaluate(&in->states[index].rate, signals, &values, t, &x.rate, &unused);
+  return x;
+}
+
 static dual read_column(strut_column column, const strut_signal *signals,
                         const strut_signal_inputs *in, double t) {
   dual x = {(double)NAN, (double)NAN};
@@ -114,6 +128,10 @@ static dual read_column(strut_column column, const strut_signal *signals,
     strut_signal_follow(signals, in, column.item, t, &x.value, &x.rate);
   else if (column.kind == STRUT_COLUMN_SENSOR && in)
     x = (dual){in->sensor[column.item], in->sensor_rate[column.item]};
+  else if (column.kind == STRUT_COLUMN_SENSOR_RATE && in)
+    x = (dual){in->sensor_rate[column.item], 0.0};
+  else if (column.kind == STRUT_COLUMN_STATE && in)
+    x = read_state(column.item, signals, in, t);
   return x;
 }
 
@@ -140,25 +158,52 @@ void strut_program_evaluate(const strut_program *program, const strut_signal *si
   *value = stack[0].value, *rate = stack[0].rate;
 }
 
-/* Adds what signal `index` depends on. */
-static void describe(const strut_signal *signals, const strut_sensor *sensors, int32_t index,
-                     strut_signal_traits *traits) {
-  const strut_signal *s = &signals[index];
-  for (size_t i = 0; s->kind == STRUT_SUM && i < s->term_count; i++)
-    describe(signals, sensors, s->terms[i], traits);
-  for (size_t i = 0; s->kind == STRUT_EXPRESSION && i < s->program.length; i++) {
-    const strut_instruction *p = &s->program.instruction[i];
-    if (p->operation != STRUT_OPERATION_COLUMN) continue;
-    if (p->column.kind == STRUT_COLUMN_SIGNAL) describe(signals, sensors, p->column.item, traits);
-    if (p->column.kind != STRUT_COLUMN_SENSOR) continue;
-    traits->follows = true;
-    if (!strut_sensor_has_rate(sensors[p->column.item].kind)) traits->sensor = p->column.item;
+/* How a dependence reaches a signal: at once, or through an integral, whose rate it is. */
+typedef enum passage { DIRECT, INTEGRATED } passage;
+
+static void describe_signal(const strut_scene *scene, int32_t index, passage through,
+                            strut_signal_traits *traits);
+
+static void describe_sensor(const strut_scene *scene, int32_t index, bool rate, passage through,
+                            strut_signal_traits *traits) {
+  const strut_sensor *s = &scene->sensors[index];
+  traits->follows = true;
+  if (through == DIRECT) {
+    if (rate || !strut_sensor_has_rate(s->kind)) traits->sensor = index;
+  } else if (s->kind == STRUT_SENSOR_FORCE && scene->members[s->item].damping > 0.0) {
+    traits->damped = index;
   }
 }
 
-strut_signal_traits strut_signal_describe(const strut_signal *signals, const strut_sensor *sensors,
-                                          int32_t index) {
-  strut_signal_traits traits = {.sensor = -1};
-  describe(signals, sensors, index, &traits);
+static void describe_program(const strut_scene *scene, const strut_program *program,
+                             passage through, strut_signal_traits *traits) {
+  for (size_t i = 0; i < program->length; i++) {
+    const strut_instruction *p = &program->instruction[i];
+    if (p->operation != STRUT_OPERATION_COLUMN) continue;
+    strut_column_kind kind = p->column.kind;
+    if (kind == STRUT_COLUMN_SIGNAL) describe_signal(scene, p->column.item, through, traits);
+    if (kind == STRUT_COLUMN_SENSOR || kind == STRUT_COLUMN_SENSOR_RATE)
+      describe_sensor(scene, p->column.item, kind == STRUT_COLUMN_SENSOR_RATE, through, traits);
+    if (kind != STRUT_COLUMN_STATE) continue;
+    traits->follows = true;
+    if (through == DIRECT)
+      describe_program(scene, &scene->states[p->column.item].rate, INTEGRATED, traits);
+  }
+}
+
+static void describe_signal(const strut_scene *scene, int32_t index, passage through,
+                            strut_signal_traits *traits) {
+  const strut_signal *s = &scene->signals[index];
+  if (s->every > 0.0 || s->lag > 0.0) traits->follows = true;
+  if (s->every > 0.0 || (s->lag > 0.0 && through == INTEGRATED)) return;
+  if (s->lag > 0.0) through = INTEGRATED;
+  for (size_t i = 0; s->kind == STRUT_SUM && i < s->term_count; i++)
+    describe_signal(scene, s->terms[i], through, traits);
+  if (s->kind == STRUT_EXPRESSION) describe_program(scene, &s->program, through, traits);
+}
+
+strut_signal_traits strut_signal_describe(const strut_scene *scene, int32_t index) {
+  strut_signal_traits traits = {.sensor = -1, .damped = -1};
+  describe_signal(scene, index, DIRECT, &traits);
   return traits;
 }

@@ -3,8 +3,8 @@
  * Feedback: sensors, and programs that compute signals from the time, sensors and other signals.
  *
  * A program is in postfix order for a stack of numbers, as that of a measured quantity (quantity.h).
- * The parser compiles it, with names resolved and dimensions checked. Its columns are TIME, SENSOR
- * and SIGNAL; each number has a value and a rate, so that the rate of the result is
+ * The parser compiles it, with names resolved and dimensions checked. Its columns are TIME, SENSOR,
+ * SENSOR_RATE, SIGNAL and STATE; each number has a value and a rate, so that the rate of the result is
  * known exactly.
  */
 #ifndef STRUT_ENGINE_SCENE_SIGNAL_PROGRAM_H
@@ -44,9 +44,22 @@ typedef struct strut_sensor {
   uint32_t energy; /* of ENERGY: strut_sensed_energy */
 } strut_sensor;
 
+/** A number that the run integrates beside the motion: z(0) = start, dz/dt = rate. */
+typedef struct strut_internal_state {
+  const char *name;
+  double start;
+  const char *unit; /* of start, such as "rad"; NULL: none */
+  strut_program rate;
+} strut_internal_state;
+
 /** What signals are computed from, beside the time. */
 typedef struct strut_signal_inputs {
   const double *sensor, *sensor_rate; /* (sensors) values in SI units, and their rates */
+  const double *state;                /* internal states, then those of signals with a lag */
+  const strut_internal_state *states;
+  const int32_t *lag_of; /* (signals) the state that is the signal's lagged value, or -1 */
+  const double *held;    /* (signals) values of sampled signals since the latest sample */
+  bool values_only;      /* rates are not wanted */
 } strut_signal_inputs;
 
 /** True where the rate of a sensor follows from positions and velocities alone. */
@@ -69,6 +82,14 @@ STRUT_API int strut_operation_operands(strut_operation operation);
 STRUT_API void strut_signal_follow(const strut_signal *signals, const strut_signal_inputs *in,
                                    int32_t index, double t, double *value, double *rate);
 
+/** The same before it is sampled, and before its lag. */
+STRUT_API void strut_signal_follow_unsampled(const strut_signal *signals,
+                                             const strut_signal_inputs *in, int32_t index, double t,
+                                             double *value, double *rate);
+STRUT_API void strut_signal_follow_unlagged(const strut_signal *signals,
+                                            const strut_signal_inputs *in, int32_t index, double t,
+                                            double *value, double *rate);
+
 /** Value and rate of a program whose signals are among `signals`. */
 STRUT_API void strut_program_evaluate(const strut_program *program, const strut_signal *signals,
                                       const strut_signal_inputs *in, double t, double *value,
@@ -76,11 +97,13 @@ STRUT_API void strut_program_evaluate(const strut_program *program, const strut_
 
 /** What a signal depends on. */
 typedef struct strut_signal_traits {
-  bool follows;   /* some sensor */
+  bool follows;   /* sensors, internal states or its own history */
   int32_t sensor; /* one whose rate is not known, and with it that of the signal; or -1 */
+  int32_t
+      damped; /* one of the force of a member with a damper, which the signal's rate follows; or -1 */
 } strut_signal_traits;
+struct strut_scene;
 /** Of signal `index` of a valid scene. */
-STRUT_API strut_signal_traits strut_signal_describe(const strut_signal *signals,
-                                                    const strut_sensor *sensors, int32_t index);
+STRUT_API strut_signal_traits strut_signal_describe(const struct strut_scene *scene, int32_t index);
 
 #endif

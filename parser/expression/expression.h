@@ -66,7 +66,7 @@ typedef struct strut_refusal {
 /**
  * Finds the column OWNER.FIELD; with an empty owner FIELD is a word alone. `kind`: "node", "member" or "hinge"
  * where the text says which, else NULL. Returns 1 and fills column and dimension; 0: nothing has that
- * name; -1: refused.
+ * name; -1: refused. A dimension of NAN: a bare column, which fits any.
  */
 typedef int strut_find_column(void *context, const char *kind, strut_piece owner, strut_piece field,
                               strut_column *column, strut_dimension *dimension,

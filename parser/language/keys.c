@@ -62,6 +62,9 @@ static const int first[] = {STRUT_KEY_SCENE_VERSION,
                             STRUT_KEY_CHECK_HALF_STEP,
                             STRUT_KEY_FIGURE_KIND,
                             STRUT_KEY_SENSOR_LENGTH,
+                            STRUT_KEY_STATE_RATE,
+                            STRUT_KEY_OSCILLATOR_FREQUENCY,
+                            STRUT_KEY_CONTROLLER_SENSOR,
                             STRUT_KEY_COUNT};
 
 static const char *const section_names[] = {
@@ -69,7 +72,7 @@ static const char *const section_names[] = {
     "contact", "actuator",      "load",    "signal", "sine",       "half_sine", "square",
     "ramp",    "configuration", "initial", "settle", "equilibria", "solver",    "run",
     "measure", "quantity",      "steady",  "output", "study",      "range",     "variant",
-    "check",   "figure",        "sensor"};
+    "check",   "figure",        "sensor",  "state",  "oscillator", "controller"};
 
 _Static_assert(sizeof first / sizeof first[0] == STRUT_SECTION_COUNT + 1, "one for each section");
 _Static_assert(sizeof section_names / sizeof section_names[0] == STRUT_SECTION_COUNT,

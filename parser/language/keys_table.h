@@ -38,6 +38,9 @@
   X(SCENE, RUN, "run", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Duration and measurement. Required for a run.") \
   X(SCENE, OUTPUT, "output", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "What is recorded.") \
   X(SCENE, SENSORS, "sensors", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a sensor", BY_HAND, "Numbers of the motion that the expressions of signals may use.") \
+  X(SCENE, STATES, "states", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a state", BY_HAND, "Numbers that a run integrates beside the motion.") \
+  X(SCENE, OSCILLATORS, "oscillators", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of an oscillator", BY_HAND, "Phase oscillators, each an internal state with the same name.") \
+  X(SCENE, CONTROLLERS, "controllers", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a controller", BY_HAND, "PID controllers of sensors, each a signal with the same name.") \
   X(NODE, POSITION, "position", PAIR, LENGTH, ANY, "", REQUIRED, 0, "", FIELD(strut_node, position), "Position in the drawn shape.") \
   X(NODE, GROUP, "group", GROUPS, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Groups that provide defaults; later groups take precedence.") \
   X(NODE, MASS, "mass", NUMBER, MASS, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_node, mass), "Point mass, in addition to the masses of the members.") \
@@ -111,6 +114,8 @@
   X(SIGNAL, TABLE, "table", TABLE, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "Points `[[t, value], ...]`, interpolated linearly; constant before the first and after the last.") \
   X(SIGNAL, SUM, "sum", SIGNALS, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "The sum of the listed signals.") \
   X(SIGNAL, EXPRESSION, "expression", EXPRESSION, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "An expression of the time `t`, parameters, [sensors](#sensor) and other signals by their names, evaluated whenever forces are.") \
+  X(SIGNAL, LAG, "lag", NUMBER, TIME, ABOVE_ZERO, "0", OPTIONAL, 0, "", FIELD(strut_signal, lag), "Beside one of the keys above: time constant of a first-order lag, which begins at 0. It comes before sampling.") \
+  X(SIGNAL, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, "0", OPTIONAL, 0, "", FIELD(strut_signal, every), "Beside one of the keys above: the signal is sampled at the multiples of this time, and held in between.") \
   X(SINE, AMPLITUDE, "amplitude", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_signal, amplitude), "Largest value.") \
   X(SINE, FREQUENCY, "frequency", NUMBER, FREQUENCY, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_signal, frequency), "Periods per second.") \
   X(SINE, PHASE, "phase", NUMBER, ANGLE, ANY, "0", OPTIONAL, 0, "", BY_HAND, "Phase angle at `start`.") \
@@ -223,7 +228,22 @@
   X(SENSOR, POSITION, "position", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The node whose position it senses [m], `along` x or y.") \
   X(SENSOR, VELOCITY, "velocity", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The node whose velocity it senses [m/s], `along` x or y.") \
   X(SENSOR, ENERGY, "energy", WORD, NONE, ANY, "", OPTIONAL, 7, "kinetic|elastic|total", FIELD(strut_sensor, energy), "The energy of the structure that it senses [J].") \
-  X(SENSOR, ALONG, "along", WORD, NONE, ANY, "", OPTIONAL, 0, "x|y", FIELD(strut_sensor, along), "Direction of a position or a velocity.")
+  X(SENSOR, ALONG, "along", WORD, NONE, ANY, "", OPTIONAL, 0, "x|y", FIELD(strut_sensor, along), "Direction of a position or a velocity.") \
+  X(STATE, RATE, "rate", EXPRESSION, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "Its rate: an expression as that of a signal, which may also use states.") \
+  X(STATE, START, "start", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "Its value at t = 0, with its unit.") \
+  X(OSCILLATOR, FREQUENCY, "frequency", NUMBER, FREQUENCY, ANY, "", REQUIRED, 0, "", BY_HAND, "Its own frequency.") \
+  X(OSCILLATOR, PHASE, "phase", NUMBER, ANGLE, ANY, "0", OPTIONAL, 0, "", BY_HAND, "Phase at t = 0.") \
+  X(OSCILLATOR, COUPLING, "coupling", THINGS, NONE, ANY, "", OPTIONAL, 0, "the strength K of the coupling to that oscillator [1/s]", BY_HAND, "Adds K sin(phase of the other - own phase - bias) to the rate of the phase.") \
+  X(OSCILLATOR, BIAS, "bias", NUMBER, ANGLE, ANY, "0", OPTIONAL, 0, "", BY_HAND, "Phase by which the others are to be ahead.") \
+  X(OSCILLATOR, FEEDBACK, "feedback", EXPRESSION, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "Added to the rate of the phase: an expression as that of a signal.") \
+  X(CONTROLLER, SENSOR, "sensor", NAME, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "The sensor s that it controls.") \
+  X(CONTROLLER, TARGET, "target", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "Wanted value of the sensor. The error is e = target - s.") \
+  X(CONTROLLER, GAIN, "gain", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "The signal is gain e + integral times the integral of e - derivative ds/dt.") \
+  X(CONTROLLER, INTEGRAL, "integral", NUMBER, CONTEXT, ANY, "0", OPTIONAL, 0, "", BY_HAND, "In the unit of the gain per second.") \
+  X(CONTROLLER, DERIVATIVE, "derivative", NUMBER, CONTEXT, ANY, "0", OPTIONAL, 0, "", BY_HAND, "In the unit of the gain times a second. A rest length needs `every` with it.") \
+  X(CONTROLLER, LEAST, "least", NUMBER, CONTEXT, ANY, "none", OPTIONAL, 0, "", BY_HAND, "Least value of the signal.") \
+  X(CONTROLLER, MOST, "most", NUMBER, CONTEXT, ANY, "none", OPTIONAL, 0, "", BY_HAND, "Largest value. Between limits the integral follows what the limits leave (no windup).") \
+  X(CONTROLLER, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, "0", OPTIONAL, 0, "", BY_HAND, "Time between samples; 0: the controller is continuous.")
 
 /* clang-format on */
 

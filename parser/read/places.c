@@ -84,7 +84,8 @@ static bool many_place(strut_reader *reader, const strut_finding *finding, strut
                                    [STRUT_ON_ACTUATOR] = reader->actuator_source,
                                    [STRUT_ON_LOAD] = reader->load_source,
                                    [STRUT_ON_CONFIGURATION] = reader->configuration_source,
-                                   [STRUT_ON_SENSOR] = reader->sensor_source};
+                                   [STRUT_ON_SENSOR] = reader->sensor_source,
+                                   [STRUT_ON_STATE] = reader->state_source};
   const strut_source *source = &sources[finding->subject][finding->index];
   if (source->broken) return false;
   bool of_ground =
@@ -140,6 +141,7 @@ static bool single_place(strut_reader *reader, const strut_finding *finding, str
     case STRUT_ON_SIGNAL:
     case STRUT_ON_CONFIGURATION:
     case STRUT_ON_SENSOR:
+    case STRUT_ON_STATE:
       broken =
           key && strut_key_find(STRUT_SECTION_SCENE, key) >= 0 &&
           strut_slot_of(fields, strut_key_find(STRUT_SECTION_SCENE, key))->state == STRUT_BROKEN;
@@ -155,7 +157,8 @@ void strut_place_findings(strut_reader *reader, const strut_findings *findings) 
     bool many = finding->subject == STRUT_ON_NODE || finding->subject == STRUT_ON_MEMBER ||
                 finding->subject == STRUT_ON_HINGE || finding->subject == STRUT_ON_CONTACT ||
                 finding->subject == STRUT_ON_ACTUATOR || finding->subject == STRUT_ON_LOAD ||
-                finding->subject == STRUT_ON_CONFIGURATION || finding->subject == STRUT_ON_SENSOR;
+                finding->subject == STRUT_ON_CONFIGURATION || finding->subject == STRUT_ON_SENSOR ||
+                finding->subject == STRUT_ON_STATE;
     bool fresh = many                                  ? many_place(reader, finding, &place)
                  : finding->subject == STRUT_ON_SIGNAL ? signal_place(reader, finding, &place)
                                                        : single_place(reader, finding, &place);

@@ -209,6 +209,8 @@ static int find_word(strut_reader *reader, strut_piece word, strut_column *colum
 static int find_column(void *context, const char *kind, strut_piece owner, strut_piece field,
                        strut_column *column, strut_dimension *dimension, strut_refusal *refusal) {
   strut_reader *reader = context;
+  if (kind && strcmp(kind, "rate") == 0)
+    return strut_find_sensor_rate(reader, owner, column, dimension, refusal);
   if (!owner.length && !kind) return find_word(reader, field, column, dimension, refusal);
   found_owner found = find_owner(reader, kind, owner);
   if (!found.owners) return refuse_owner(reader, kind, owner, refusal);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Signals, and what they drive: actuators and loads. See reader.h. */
 #include <assert.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -149,14 +150,17 @@ static int32_t read_literal(strut_reader *reader, const strut_tree *map, strut_o
   const strut_tree *expression = strut_tree_find(map, "expression", NULL);
   if (strut_ends_at_comma(reader, expression, "expression", owner)) return -1;
   strut_read_fields(reader, STRUT_SECTION_SIGNAL, map, owner, &fields);
-  if (map->count != 1 && !fields.broken)
-    strut_report_error(reader, map->place, "expected one kind of signal for %s, found %u",
-                       strut_owner_text(reader, owner), (unsigned)map->count);
-  if (map->count != 1 || fields.broken) return -1;
   int chosen = 0;
-  while (fields.slot[chosen].state != STRUT_GIVEN) chosen++;
+  unsigned kinds = 0;
+  for (int kind = STRUT_SIGNAL_KINDS - 1; kind >= 0; kind--)
+    if (fields.slot[kind].state == STRUT_GIVEN) chosen = kind, kinds++;
+  if (kinds != 1 && !fields.broken)
+    strut_report_error(reader, map->place, "expected one kind of signal for %s, found %u",
+                       strut_owner_text(reader, owner), kinds);
+  if (kinds != 1 || fields.broken) return -1;
   const strut_tree *value = fields.slot[chosen].value;
   strut_signal signal = strut_signal_default((strut_signal_kind)chosen);
+  strut_store_fields(reader, &fields, &reader->scene->arena, &signal, sizeof signal);
   bool fine;
   if (signal.kind == STRUT_CONSTANT)
     fine = read_value(reader, value, "constant", owner, &m, &signal.amplitude);
@@ -253,8 +257,8 @@ int32_t strut_use_signal(strut_reader *reader, const char *name, strut_dimension
   int32_t index = i < 0 ? -1 : read_named(reader, &reader->named[i]);
   if (index < 0) return -1;
   strut_signal_state *state = &reader->signal_state[index];
-  if (state->bare) state->bare = false, state->dimension = STRUT_DIM_NONE;
   *dimension = state->dimension;
+  if (state->bare) dimension->kg = (float)NAN;
   return index;
 }
 
@@ -268,14 +272,28 @@ int32_t strut_read_signal(strut_reader *reader, const strut_tree *value, const c
 
 void strut_list_signals(strut_reader *reader) {
   const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_SIGNALS);
-  if (!map) return;
-  reader->named =
-      strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->named);
-  for (const strut_tree *key = map->first; key && reader->named; key = key->next->next) {
+  const strut_slot *controllers = strut_slot_of(&reader->top, STRUT_KEY_SCENE_CONTROLLERS);
+  size_t count = map ? map->count : 0;
+  if (controllers->state == STRUT_GIVEN) count += controllers->value->count;
+  if (!count) return;
+  reader->named = strut_reader_allocate(reader, &reader->scratch, count, sizeof *reader->named);
+  for (const strut_tree *key = map ? map->first : NULL; key && reader->named;
+       key = key->next->next) {
     strut_named_signal *named = &reader->named[reader->named_count];
     *named = (strut_named_signal){key->text, key, STRUT_SIGNAL_UNREAD, -1};
     strut_add_name(reader, &reader->signal_names, key->text, reader->named_count++);
   }
+}
+
+void strut_add_named_signal(strut_reader *reader, const strut_tree *key, const char *name,
+                            const strut_signal *signal, strut_dimension dimension) {
+  int32_t i = strut_name_map_find(&reader->signal_names, name);
+  const meaning m = {NULL, dimension, false};
+  int32_t index = add_signal(reader, signal, &m, key->next);
+  if (i < 0) return;
+  reader->named[i].state = STRUT_SIGNAL_READ;
+  reader->named[i].index = index;
+  if (index >= 0) reader->signals[index].name = strut_keep_text(reader, name);
 }
 
 void strut_read_signals(strut_reader *reader) {

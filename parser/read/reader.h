@@ -106,14 +106,15 @@ typedef struct strut_reader {
   strut_purpose purpose;
   strut_fields top;
   strut_name_map node_names, member_names, group_names, parameter_names, signal_names,
-      configuration_names, actuator_names, load_names, hinge_names, sensor_names;
+      configuration_names, actuator_names, load_names, hinge_names, sensor_names, state_names;
   strut_group *groups;
   size_t group_count;
   strut_parameter_state *parameters;
   size_t parameter_count, parameter_depth;
   strut_parameter_state *parameter_stack[STRUT_DEEPEST_PARAMETER]; /* being read */
   strut_source *node_source, *member_source, *actuator_source, *load_source, *contact_source,
-      *hinge_source, *sensor_source;
+      *hinge_source, *sensor_source, *state_source;
+  strut_dimension *state_dimension;   /* (states) */
   const strut_tree **velocity_source; /* (node_count) or NULL: where single velocities stand */
   strut_named_signal *named;
   size_t named_count, signal_depth, signal_capacity;
@@ -132,6 +133,7 @@ typedef struct strut_reader {
   bool masses_unknown; /* some mass could not be read */
   bool groups_unknown; /* the groups of some thing could not be read */
   bool failed, out_of_memory;
+  bool *controller_broken; /* (controllers) in the order of the file */
 } strut_reader;
 
 /** Is this the tree of a study? As a model it would be wrong in every line. */
@@ -327,10 +329,31 @@ strut_dimension strut_sensor_dimension(strut_sensor_kind kind);
 /** Finds a sensor as a column and its dimension. */
 bool strut_find_sensed(strut_reader *reader, const char *name, strut_column *column,
                        strut_dimension *dimension);
+/** The rate of a sensor as a column, as strut_find_column. */
+int strut_find_sensor_rate(strut_reader *reader, strut_piece name, strut_column *column,
+                           strut_dimension *dimension, strut_refusal *refusal);
+/** Names and values at t = 0 of internal states, oscillators and controllers; their rates. */
+void strut_list_states(strut_reader *reader);
+void strut_read_states(strut_reader *reader);
+/** read_controllers.c: signals and rates of controllers, and rates of oscillators. */
+void strut_list_controllers(strut_reader *reader);
+void strut_read_controllers(strut_reader *reader);
+bool strut_read_oscillator(strut_reader *reader, const strut_tree *key, int32_t state);
+/** May an expression read the name of a `kind`, and mean nothing else by it? If not, that is reported. */
+bool strut_check_variable_name(strut_reader *reader, const strut_tree *key, const char *kind);
+/** Appends an internal state; -1: out of memory, or too many errors. */
+int32_t strut_add_state(strut_reader *reader, const strut_tree *key, const char *name,
+                        strut_dimension dimension, double start);
+/** Appends a signal with a name. */
+void strut_add_named_signal(strut_reader *reader, const strut_tree *key, const char *name,
+                            const strut_signal *signal, strut_dimension dimension);
 /** An expression of the time, sensors and signals; in the scene's memory. */
 bool strut_read_signal_program(strut_reader *reader, const strut_tree *value, const char *key,
                                strut_owner owner, strut_program *program, strut_quantity *q);
-/** Index of a named signal that an expression reads, and its dimension; -1: it was reported. */
+/**
+ * Index of a named signal that an expression reads, and its dimension, NAN of one made of plain numbers;
+ * -1: it was reported.
+ */
 int32_t strut_use_signal(strut_reader *reader, const char *name, strut_dimension *dimension);
 /** The instructions in the scene's own memory; NULL: there is none left. */
 strut_instruction *strut_keep_program(strut_reader *reader, const strut_compiler *compiler);

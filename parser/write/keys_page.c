@@ -71,7 +71,16 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
     [STRUT_SECTION_FIGURE] = "`figures: {NAME: {...}}` of a study.",
     [STRUT_SECTION_SENSOR] =
         "`sensors: {NAME: {...}}` with one thing to sense. Expressions of signals, and measured "
-        "quantities, use the name."};
+        "quantities, use the name. In an expression `rate(NAME)` is the rate of a length, an angle "
+        "or "
+        "a position.",
+    [STRUT_SECTION_STATE] = "`states: {NAME: {...}}`.",
+    [STRUT_SECTION_OSCILLATOR] =
+        "`oscillators: {NAME: {...}}`. The name is the phase, an angle, in expressions: `2 mm * "
+        "sin(NAME)`. `strut write` shows oscillators as states.",
+    [STRUT_SECTION_CONTROLLER] =
+        "`controllers: {NAME: {...}}`. The integral is the state `NAME_integral`. `strut write` "
+        "shows controllers as signals and states."};
 
 /* "none, x, y or both", each in code style. */
 static void put_words(strut_writer *writer, const char *words) {

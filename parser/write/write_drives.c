@@ -61,6 +61,12 @@ static void put_table(strut_writer *writer, const strut_signal *s) {
   strut_put(writer, "]");
 }
 
+static void put_modifier(strut_writer *writer, strut_mapping *mapping, int key, double time) {
+  if (time == 0.0) return;
+  strut_put_key_name(writer, mapping, key);
+  strut_put_number(writer, time);
+}
+
 static void put_signal(strut_writer *writer, int32_t index) {
   const strut_signal *s = &writer->scene->signals[index];
   strut_mapping mapping = STRUT_MAPPING_INLINE;
@@ -82,6 +88,8 @@ static void put_signal(strut_writer *writer, int32_t index) {
   } else {
     put_wave(writer, s);
   }
+  put_modifier(writer, &mapping, STRUT_KEY_SIGNAL_LAG, s->lag);
+  put_modifier(writer, &mapping, STRUT_KEY_SIGNAL_EVERY, s->every);
   strut_put(writer, "}");
 }
 
@@ -112,6 +120,23 @@ static void put_sensors(strut_writer *writer) {
     strut_put(writer, ": {");
     strut_put_fields(writer, &mapping, STRUT_SECTION_SENSOR, sensor, &usual, put_sensor_by_hand);
     strut_put(writer, "}\n");
+  }
+}
+
+static void put_states(strut_writer *writer) {
+  const strut_scene *scene = writer->scene;
+  if (scene->state_count) strut_put(writer, "states:\n");
+  for (size_t i = 0; i < scene->state_count; i++) {
+    const strut_internal_state *state = &scene->states[i];
+    strut_put(writer, "  ");
+    strut_put_name(writer, state->name);
+    strut_put(writer, ": {rate: ");
+    strut_put_program(writer, state->rate.instruction, state->rate.length);
+    strut_put(writer, state->unit ? ", start: \"" : ", start: ");
+    strut_put_number(writer, state->start);
+    strut_put(writer, state->unit ? " " : "");
+    strut_put(writer, state->unit ? state->unit : "");
+    strut_put(writer, state->unit ? "\"}\n" : "}\n");
   }
 }
 
@@ -161,6 +186,7 @@ void strut_put_drives(strut_writer *writer) {
   const strut_scene *scene = writer->scene;
   const strut_load usual = {0};
   put_sensors(writer);
+  put_states(writer);
   put_named_signals(writer);
   put_actuators(writer);
   if (scene->load_count) strut_put(writer, "loads:\n");

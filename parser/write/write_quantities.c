@@ -55,8 +55,13 @@ static void put_column(strut_writer *writer, strut_column column) {
   const char *word = strut_column_word(column.kind);
   strut_column_owner owner = strut_column_owner_of(column.kind);
   if (owner == STRUT_COLUMN_OF_FEEDBACK) {
-    strut_put(writer, column.kind == STRUT_COLUMN_SENSOR ? scene->sensors[column.item].name
-                                                         : scene->signals[column.item].name);
+    bool rate = column.kind == STRUT_COLUMN_SENSOR_RATE;
+    bool sensor = rate || column.kind == STRUT_COLUMN_SENSOR;
+    strut_put(writer, rate ? "rate(" : "");
+    strut_put(writer, sensor                              ? scene->sensors[column.item].name
+                      : column.kind == STRUT_COLUMN_STATE ? scene->states[column.item].name
+                                                          : scene->signals[column.item].name);
+    strut_put(writer, rate ? ")" : "");
     return;
   }
   if (owner == STRUT_COLUMN_OF_PAIR) {

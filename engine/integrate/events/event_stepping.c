@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "engine/forces/energy.h"
+#include "engine/forces/feedback.h"
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/model/element_compile.h"
 
@@ -148,6 +149,7 @@ static void pass_break(const strut_model *model, strut_state *state, strut_event
   double moment = moment_before(t, dt), before = 0.0;
   if (state->ledger) before = strut_energy_evaluate(model, state, t - moment).elastic;
   l->next_break = strut_drive_next_break(model, t + state->time_offset + STRUT_AT_BREAK * dt);
+  strut_feedback_sample(model, state, t, STRUT_AT_BREAK * dt);
   if (state->ledger) {
     double gained = strut_energy_evaluate(model, state, t + moment).elastic - before;
     state->work[STRUT_POWER_DRIVE] += gained;

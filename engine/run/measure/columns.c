@@ -168,6 +168,8 @@ static double evaluate_column(const strut_columns *c, const strut_state *state, 
     case STRUT_COLUMN_LOST:
       return w[STRUT_POWER_MEMBERS] + w[STRUT_POWER_CONTACT] + w[STRUT_POWER_FRICTION];
     case STRUT_COLUMN_SENSOR: return state->sensor[column.item];
+    case STRUT_COLUMN_SENSOR_RATE: return state->sensor_rate[column.item];
+    case STRUT_COLUMN_STATE: return state->v[c->model->feedback.base + column.item];
     case STRUT_COLUMN_SIGNAL:
       return strut_drive_signal(c->model, state, column.item, column_time(c, state));
     case STRUT_COLUMN_COUNT: break;
