@@ -4,9 +4,11 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/forces/actuate.h"
 #include "engine/forces/drive.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/feedback.h"
+#include "engine/forces/mass_damping.h"
 #include "engine/model/pose.h"
 
 bool strut_discrete_gradient_create(const strut_model *model, strut_state *state,
@@ -198,8 +200,6 @@ static void add_element(const strut_model *model, strut_state *state, strut_disc
 static void add_elements(const strut_model *model, strut_state *state,
                          strut_discrete_gradient *step, const double *restrict q0,
                          const double *restrict q1) {
-  if (!model->elements.count) return;
-  for (int32_t i = 0; i < model->length; i++) step->middle[i] = 0.5 * (q0[i] + q1[i]);
   for (int32_t i = 0; i < model->elements.count; i++) add_element(model, state, step, i, q0, q1);
 }
 
@@ -216,6 +216,7 @@ static void follow(const strut_model *model, strut_state *state, strut_discrete_
   memcpy(step->rest_rate, state->rest_rate, (size_t)model->members.slots * sizeof(double));
   strut_feedback_add_rates(model, state, middle, u, state->force);
   if (model->plan & STRUT_TERM_LOADS) strut_loads_apply(model, state, middle, u);
+  strut_actuator_forces_apply(model, state, middle, step->middle, u);
   strut_feedback_apply(model, state, step->begin + step->h, q1, step->end_velocity);
 }
 
@@ -234,7 +235,12 @@ void strut_discrete_gradient_forces(const strut_model *model, strut_state *state
   else if (model->plan & STRUT_TERM_LOADS)
     strut_loads_apply(model, state, step->begin + 0.5 * step->h, u);
   add_members(model, state, step, state->q, q1);
+  if (model->plan & STRUT_TERM_MASS_DAMPING) strut_mass_damping_apply(model, state, u);
+  if (!(model->plan & (STRUT_TERM_ELEMENTS | STRUT_TERM_ACTUATOR_FORCES))) return;
+  for (int32_t i = 0; i < model->length; i++) step->middle[i] = 0.5 * (state->q[i] + q1[i]);
   add_elements(model, state, step, state->q, q1);
+  if (!(model->plan & STRUT_TERM_FEEDBACK))
+    strut_actuator_forces_apply(model, state, step->begin + 0.5 * step->h, step->middle, u);
 }
 
 void strut_discrete_gradient_tensions(const strut_model *model, const strut_state *state,

@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "engine/forces/feedback.h"
+#include "engine/forces/memory.h"
 
 strut_signal_inputs strut_drive_inputs(const strut_model *model, const strut_state *state,
                                        const double *v) {
@@ -28,10 +29,10 @@ static void evaluate(const strut_model *model, const strut_state *state, const d
   strut_signal_follow(signals, &in, signal, t, value, rate);
 }
 
-double strut_drive_signal(const strut_model *model, const strut_state *state, int32_t signal,
-                          double t) {
+double strut_drive_signal(const strut_model *model, const strut_state *state, const double *v,
+                          int32_t signal, double t) {
   double value, rate;
-  evaluate(model, state, state->v, signal, t, &value, &rate);
+  evaluate(model, state, v, signal, t, &value, &rate);
   return value;
 }
 
@@ -55,6 +56,7 @@ void strut_drive_apply_sensed(const strut_model *model, strut_state *state, doub
     rest[member] = (d->first[i] ? model->members.rest[member] : rest[member]) + value;
     rest_rate[member] = d->first[i] ? rate : rest_rate[member] + rate;
   }
+  if (model->plan & STRUT_TERM_MEMORY) strut_memory_follow(model, state);
 }
 
 void strut_loads_apply(const strut_model *model, strut_state *state, double t,
@@ -81,5 +83,10 @@ double strut_drive_next_break(const strut_model *model, double t) {
     first = fmin(first, strut_signal_next_break(signals, model->drives.signal[i], t));
   for (int32_t i = 0; i < model->loads.count; i++)
     first = fmin(first, strut_signal_next_break(signals, model->loads.signal[i], t));
+  for (int32_t i = 0; i < model->elements.breakable_count; i++)
+    if (model->elements.breakable[i].time > t)
+      first = fmin(first, model->elements.breakable[i].time);
+  for (int32_t i = 0; i < model->actuator_forces.count; i++)
+    first = fmin(first, strut_signal_next_break(signals, model->actuator_forces.item[i].signal, t));
   return fmin(first, strut_feedback_next_sample(model, t));
 }

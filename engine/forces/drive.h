@@ -16,14 +16,17 @@ void strut_drive_apply_sensed(const strut_model *model, strut_state *state, doub
 /** Inputs of signals: the sensors as they were evaluated last, and the states at velocities v. */
 strut_signal_inputs strut_drive_inputs(const strut_model *model, const strut_state *state,
                                        const double *v);
-/** A signal at time t [s], with the sensors as they were evaluated last. */
-double strut_drive_signal(const strut_model *model, const strut_state *state, int32_t signal,
-                          double t);
+/** A signal at time t [s], with the sensors as they were evaluated last, and states at velocities v. */
+double strut_drive_signal(const strut_model *model, const strut_state *state, const double *v,
+                          int32_t signal, double t);
 /** Adds the loads that change with time at velocities v (for their power). */
 void strut_loads_apply(const strut_model *model, strut_state *state, double t,
                        const double *restrict v);
 
-/** The first time after t [s] at which a drive, a load or its rate jumps; INFINITY if none does. */
+/**
+ * The first time after t [s] at which a drive, a load or its rate jumps, or something is released;
+ * INFINITY if none does.
+ */
 double strut_drive_next_break(const strut_model *model, double t);
 
 #endif

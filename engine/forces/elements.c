@@ -4,6 +4,7 @@
 #include <assert.h>
 #include <string.h>
 
+#include "engine/forces/memory.h"
 #include "engine/forces/strains/angle.h"
 #include "engine/forces/strains/area.h"
 #include "engine/forces/strains/length.h"
@@ -25,6 +26,12 @@ static double strain_of(const strut_element *e, const uint32_t *at, const double
   return 0.0;
 }
 
+double strut_element_strain(const strut_model *model, int32_t element, const double *q, double turn,
+                            double *b) {
+  const strut_element *e = &model->elements.element[element];
+  return strain_of(e, model->elements.at + e->first, q, turn, b);
+}
+
 void strut_element_bend(const strut_model *model, int32_t element, const double *q, double t,
                         double *h) {
   const strut_element *e = &model->elements.element[element];
@@ -43,14 +50,20 @@ void strut_element_evaluate(const strut_model *model, int32_t element, const dou
   assert(element >= 0 && element < model->elements.count);
   const strut_element *e = &model->elements.element[element];
   pose->natural = strut_element_natural(e, rest);
-  pose->strain =
-      strain_of(e, model->elements.at + e->first, q, isnan(turn) ? pose->natural : turn, pose->b);
+  double near = strut_element_is_gone(pose->natural) ? 0.0 : pose->natural;
+  pose->strain = strain_of(e, model->elements.at + e->first, q, isnan(turn) ? near : turn, pose->b);
+  if (strut_element_is_gone(pose->natural)) {
+    pose->acts = false;
+    pose->force = pose->energy = pose->slope = 0.0;
+    return;
+  }
   strut_law_response r = strut_law_respond(e->law, &e->numbers, pose->strain, pose->natural, -1);
   double x = pose->strain - pose->natural;
   bool beyond = !e->carries || e->carries * x > 0.0;
   pose->acts = beyond && (!e->carries || e->carries * r.force > 0.0);
   pose->force = pose->acts ? r.force : 0.0;
   pose->energy = beyond ? r.energy : 0.0;
+  if (e->remembers) pose->energy += strut_memory_locked_energy(e, rest);
   pose->slope = pose->acts ? r.slope : 0.0;
 }
 
@@ -281,7 +294,9 @@ void strut_elements_add_forces(const strut_model *model, strut_state *state, con
   for (int32_t b = 0; b < model->elements.block_count; b++) {
     const strut_element_block *block = &model->elements.block[b];
     bool hinges = block->strain == STRUT_STRAIN_ANGLE && block->law == STRUT_LAW_LINEAR;
-    if (hinges && block->both_signs)
+    if (block->remembers)
+      strut_memory_add_forces(model, state, block, q, v, force);
+    else if (hinges && block->both_signs)
       add_hinges(model, state, block, q, v, force);
     else
       adders[block->strain][block->law](model, state, block, q, v, force);
@@ -314,10 +329,14 @@ strut_element_motion strut_element_move(const strut_model *model, const strut_st
                                         int32_t element, const double *q, const double *v) {
   const strut_element *e = &model->elements.element[element];
   const uint32_t *at = model->elements.at + e->first;
-  double b[STRUT_MOST_GRADIENT], rate = 0.0, natural = strut_element_natural(e, state->rest);
+  double b[STRUT_MOST_GRADIENT], rate = 0.0;
   double strain = strain_of(e, at, q, state->element_turn[element], b);
+  double natural = e->remembers ? strut_memory_natural(model, state, element, strain)
+                                : strut_element_natural(e, state->rest);
+  if (strut_element_is_gone(natural)) return (strut_element_motion){-e->carries, 0.0, -e->carries};
   for (int32_t k = 0; k < e->nodes; k++) rate += b[2 * k] * v[at[k]] + b[2 * k + 1] * v[at[k] + 1];
-  if (e->slot >= 0) rate -= state->rest_rate[e->slot];
+  int32_t slot = e->remembers ? e->base : e->slot;
+  if (slot >= 0) rate -= state->rest_rate[slot];
   strut_law_response r =
       strut_law_respond(e->law, &e->numbers, strain, natural, state->element_piece[element]);
   return (strut_element_motion){strain - natural, rate, r.force + e->damping * rate};
@@ -332,7 +351,9 @@ double strut_element_measure_at(const strut_model *model, const strut_state *sta
                                 const double *q, const double *v, strut_element_pose *pose) {
   const strut_element *e = &model->elements.element[element];
   strut_element_evaluate(model, element, state->rest, q, state->element_turn[element], pose);
-  double rest_rate = e->slot >= 0 ? state->rest_rate[e->slot] : 0.0;
+  if (strut_element_is_gone(pose->natural)) return 0.0;
+  int32_t slot = e->remembers ? e->base : e->slot;
+  double rest_rate = slot >= 0 ? state->rest_rate[slot] : 0.0;
   strut_law_response r = strut_law_respond(e->law, &e->numbers, pose->strain, pose->natural, -1);
   double own = strut_element_rate(model, element, pose, v) - rest_rate;
   return exert(e, state, element, &r, pose->strain - pose->natural, own).force;

@@ -35,6 +35,9 @@ static inline double strut_element_natural(const strut_element *e, const double 
  */
 STRUT_API void strut_element_evaluate(const strut_model *model, int32_t element, const double *rest,
                                       const double *q, double turn, strut_element_pose *pose);
+/** Strain at q, near `turn` where it is an angle, and its gradient b. */
+double strut_element_strain(const strut_model *model, int32_t element, const double *q, double turn,
+                            double *b);
 /** de/dt at velocities v, for a pose of the same element. */
 double strut_element_rate(const strut_model *model, int32_t element, const strut_element_pose *pose,
                           const double *v);

@@ -18,10 +18,24 @@ static bool laws_are_printed(const strut_model *model) {
   return true;
 }
 
+/* Are all elements of strains that lane_elements.h has? */
+static bool strains_are_known(const strut_element_table *t) {
+  for (int32_t b = 0; b < t->block_count; b++) switch (t->block[b].strain) {
+      case STRUT_STRAIN_LENGTH:
+      case STRUT_STRAIN_PATH:
+      case STRUT_STRAIN_ANGLE: break;
+      case STRUT_STRAIN_AREA:
+      case STRUT_STRAIN_REACH:
+      case STRUT_STRAIN_COUNT: return false;
+    }
+  return true;
+}
+
 bool strut_lanes_possible(const strut_model *model) {
   const strut_mass *mass = model->mass;
-  if (!mass || (model->plan & (STRUT_TERM_RIGID | STRUT_TERM_ELEMENTS | STRUT_TERM_FEEDBACK)))
-    return false;
+  const unsigned one_by_one = STRUT_TERM_RIGID | STRUT_TERM_ACTUATOR_FORCES |
+                              STRUT_TERM_MASS_DAMPING | STRUT_TERM_MEMORY | STRUT_TERM_FEEDBACK;
+  if (!mass || (model->plan & one_by_one) || !strains_are_known(&model->elements)) return false;
   bool directional = model->plan & STRUT_TERM_DIRECTION;
   if ((model->plan & STRUT_TERM_LAWS) && !(directional && laws_are_printed(model))) return false;
   return !mass->coordinate[0].factor && !mass->coordinate[1].factor;
@@ -56,6 +70,20 @@ static bool masses_alike(const strut_mass *a, const strut_mass *b) {
   return true;
 }
 
+static bool elements_alike(const strut_element_table *a, const strut_element_table *b) {
+  if (a->count != b->count) return false;
+  for (int32_t i = 0; i < a->count; i++) {
+    const strut_element *x = &a->element[i], *y = &b->element[i];
+    bool damped = (x->damping > 0.0) == (y->damping > 0.0);
+    bool kinked = !strut_law_kinks(x->law, &x->numbers) == !strut_law_kinks(y->law, &y->numbers);
+    if (x->strain != y->strain || x->law != y->law || x->nodes != y->nodes || x->slot != y->slot ||
+        x->carries != y->carries || !damped || !kinked ||
+        !same(a->at + x->first, b->at + y->first, x->nodes, sizeof *a->at))
+      return false;
+  }
+  return true;
+}
+
 bool strut_lanes_alike(const strut_model *a, const strut_model *b) {
   const strut_member_table *s = &a->members, *t = &b->members;
   if (a->plan != b->plan || a->length != b->length || a->node_count != b->node_count ||
@@ -70,7 +98,7 @@ bool strut_lanes_alike(const strut_model *a, const strut_model *b) {
          same(a->drives.member, b->drives.member, a->drives.count, sizeof *a->drives.member) &&
          same(a->drives.first, b->drives.first, a->drives.count, sizeof *a->drives.first) &&
          same(a->loads.node, b->loads.node, a->loads.count, sizeof *a->loads.node) &&
-         masses_alike(a->mass, b->mass);
+         masses_alike(a->mass, b->mass) && elements_alike(&a->elements, &b->elements);
 }
 
 /* A table of (rows, width). */
@@ -79,11 +107,12 @@ typedef struct table {
   int32_t rows;
 } table;
 
-enum { TABLES = 19 };
+enum { TABLES = 25 };
 
 static void list_tables(strut_lane_tables *t, table *list) {
   const strut_model *m = t->first;
   int32_t slots = m->members.slots, length = m->length, loads = m->loads.count;
+  int32_t elements = m->elements.count;
   const strut_mass *mass = m->mass;
   int32_t blocks[2];
   for (int c = 0; c < 2; c++) blocks[c] = mass->diagonal ? 0 : entries_of(&mass->coordinate[c]);
@@ -105,7 +134,13 @@ static void list_tables(strut_lane_tables *t, table *list) {
                              {&t->block_inverse[0], blocks[0]},
                              {&t->block_inverse[1], blocks[1]},
                              {&t->force, length},
-                             {&t->power, STRUT_POWER_COUNT}};
+                             {&t->power, STRUT_POWER_COUNT},
+                             {&t->element_stiffness, elements},
+                             {&t->element_damping, elements},
+                             {&t->element_natural, elements},
+                             {&t->element_turn, elements},
+                             {&t->element_acts, elements},
+                             {&t->element_piece, elements}};
   memcpy(list, all, sizeof all);
 }
 
@@ -178,6 +213,29 @@ static void fill_ground(strut_lane_tables *t, int32_t lane, const strut_contact_
   spread(t->ground, t->width, lane, ground, STRUT_LANE_GROUND_ROWS);
 }
 
+static void fill_elements(strut_lane_tables *t, int32_t lane, const strut_element_table *e) {
+  for (int32_t i = 0; i < e->count; i++) {
+    int32_t at = i * t->width + lane;
+    t->element_stiffness[at] = e->element[i].numbers.stiffness;
+    t->element_damping[at] = e->element[i].damping;
+    t->element_natural[at] = e->element[i].natural;
+  }
+}
+
+void strut_lane_tables_put_elements(strut_lane_tables *t, int32_t lane, const strut_state *state) {
+  for (int32_t i = 0; i < t->first->elements.count; i++) {
+    int32_t at = i * t->width + lane;
+    t->element_turn[at] = state->element_turn[i];
+    t->element_acts[at] = state->element_acts[i];
+    t->element_piece[at] = state->element_piece[i];
+  }
+}
+
+void strut_lane_tables_get_elements(const strut_lane_tables *t, int32_t lane, strut_state *state) {
+  for (int32_t i = 0; i < t->first->elements.count; i++)
+    state->element_turn[i] = t->element_turn[i * t->width + lane];
+}
+
 void strut_lane_tables_fill(strut_lane_tables *t, int32_t lane, const strut_model *m) {
   const strut_member_table *s = &m->members;
   int32_t width = t->width;
@@ -197,6 +255,7 @@ void strut_lane_tables_fill(strut_lane_tables *t, int32_t lane, const strut_mode
     const strut_mass_operator *op = &m->mass->coordinate[c];
     spread(t->block_inverse[c], width, lane, op->block_inverse, entries_of(op));
   }
+  fill_elements(t, lane, &m->elements);
   fill_ground(t, lane, &m->contacts);
   fill_signals(t, lane, m);
 }

@@ -64,10 +64,13 @@ typedef struct strut_lane_tables {
   double *inverse;          /* (length, width) of masses that none couples */
   double *block_inverse[2]; /* as strut_mass_operator, times width */
   double *force;            /* (length, width) */
-  double *power;            /* (STRUT_POWER_COUNT, width) */
+  /* (elements, width): numbers; what a state has of each; modes as numbers */
+  double *element_stiffness, *element_damping, *element_natural;
+  double *element_turn, *element_acts, *element_piece;
+  double *power; /* (STRUT_POWER_COUNT, width) */
 } strut_lane_tables;
 
-/** Is there a kernel for what the model needs: no rigid bars, no factor, the printed laws only? */
+/** Is there a kernel for what the model needs: no rigid bars, no factor, the printed friction only? */
 STRUT_API bool strut_lanes_possible(const strut_model *model);
 /** Can both be lanes of one batch: same members, contacts, supports, drives, plan? */
 STRUT_API bool strut_lanes_alike(const strut_model *a, const strut_model *b);
@@ -77,6 +80,11 @@ bool strut_lane_tables_create(const strut_model *first, int32_t width, strut_are
                               strut_lane_tables *tables);
 /** Lane `lane` becomes the model, which must be like the first one. */
 void strut_lane_tables_fill(strut_lane_tables *tables, int32_t lane, const strut_model *model);
+/** What a state has of each element becomes lane `lane`'s, or the other way round. */
+void strut_lane_tables_put_elements(strut_lane_tables *tables, int32_t lane,
+                                    const strut_state *state);
+void strut_lane_tables_get_elements(const strut_lane_tables *tables, int32_t lane,
+                                    strut_state *state);
 /** Lane `to` becomes a copy of lane `from`. */
 void strut_lane_tables_copy(strut_lane_tables *tables, int32_t to, int32_t from);
 

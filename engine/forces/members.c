@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Lengths and forces of members and hinges for observers (recording, measuring). The step's own loop:
    members_kernel.h. */
+#include "engine/forces/actuate.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/forces.h"
 #include "engine/forces/rigid.h"
@@ -36,6 +37,7 @@ strut_member_values strut_member_measure(const strut_model *model, const strut_s
                                          int32_t member) {
   strut_member_values values = strut_member_measure_at(model, state, member, state->q, state->v);
   if (state->rigid) values.force += strut_rigid_tension(state->rigid, member);
+  values.force += strut_actuator_force_on_member(model, state, member);
   return values;
 }
 
@@ -43,6 +45,7 @@ strut_hinge_values strut_hinge_measure(const strut_model *model, const strut_sta
                                        int32_t element) {
   strut_element_pose pose;
   double moment = strut_element_measure(model, state, element, &pose);
+  moment += strut_actuator_moment_on_hinge(model, state, model->elements.element[element].item);
   return (strut_hinge_values){pose.strain, strut_element_rate(model, element, &pose, state->v),
                               moment};
 }
@@ -55,4 +58,5 @@ void strut_members_measure(const strut_model *model, const strut_state *state, d
     force[j] = values.force;
   }
   if (state->rigid) strut_rigid_add_tensions(state->rigid, force);
+  strut_actuator_forces_add_tensions(model, state, force);
 }

@@ -3,6 +3,8 @@
 
 #include <assert.h>
 
+#include "engine/forces/mass_damping.h"
+
 void strut_block_add(const strut_stiffness_block *b, int count, const int32_t *row,
                      strut_triplets *sum) {
   for (int k = 0; k < count; k++) {
@@ -179,7 +181,7 @@ strut_status strut_tangent_assemble(const strut_model *model, const double *q, c
   strut_arena scratch = {0};
   bool resting = closed == STRUT_CLOSED_ALL || closed == STRUT_CLOSED_UNDAMPED;
   size_t both = (size_t)model->length;
-  size_t most = strut_tangent_entries(model, true);
+  size_t most = strut_tangent_entries(model, true) + strut_mass_damping_entries(model);
   int32_t *row_of = strut_arena_allocate(&scratch, both, sizeof *row_of);
   assembly a = {
       .model = model, .q = q, .row_of = row_of, .undamped = closed == STRUT_CLOSED_UNDAMPED};
@@ -192,6 +194,7 @@ strut_status strut_tangent_assemble(const strut_model *model, const double *q, c
     tangent->n = strut_number_free(model, NULL, row_of, tangent->coordinate);
     strut_tangent_visit(model, q, rest, -HUGE_VAL, closed, &a, add_member, add_element,
                         add_contact);
+    strut_mass_damping_add(model, row_of, &a.damping);
     tangent->stiffness = strut_sparse_build(tangent->n, &a.stiffness, arena);
     tangent->damping = strut_sparse_build(tangent->n, &a.damping, arena);
     if (tangent->stiffness && tangent->damping) status = STRUT_OK;

@@ -158,7 +158,7 @@ typedef struct strut_tangent {
   int32_t n;                 /* free coordinates */
   int32_t *coordinate;       /* (n) index into coordinate arrays */
   strut_sparse *stiffness;   /* K = sum c u u' + (t/L)(1 - u u') + ground [N/m] */
-  strut_sparse *damping;     /* D = sum k u u' + ground [N s/m] */
+  strut_sparse *damping;     /* D = sum k u u' + alpha M + ground [N s/m] */
   struct strut_rigid *rigid; /* NULL, or rigid bars, which leave fewer motions; see rigid.h */
 } strut_tangent;
 

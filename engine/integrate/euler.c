@@ -3,6 +3,7 @@
  * Semi-implicit (symplectic) Euler with a fixed step: v += h a(q, v), q += h v. Of first order, and
  * the cheapest step there is.
  */
+#include "engine/forces/memory.h"
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/plain_steps.h"
 
@@ -24,6 +25,8 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, double
       strut_lanes_store(v + i, next);
       strut_lanes_store(q + i, strut_lanes_load(q + i) + dt * next);
     }
+    if (model->plan & STRUT_TERM_MEMORY)
+      strut_memory_renew(model, state, ((double)state->step + 1.0) * dt);
   }
 }
 

@@ -68,6 +68,11 @@ strut_status strut_integrator_check(const strut_model *model, const strut_experi
                       "%s cannot step over contacts, and node '%s' may touch the ground; use "
                       "solver.integrator verlet-events, rk4-events or adaptive",
                       name, scene->nodes[model->contacts.entry[0].node].name);
+  if (method->no_memory && model->plan & STRUT_TERM_MEMORY)
+    return strut_fail(error, STRUT_USAGE,
+                      "%s cannot step over what breaks, is released or yields; use "
+                      "solver.integrator rk4-events, verlet-events or adaptive",
+                      name);
   if (!(model->plan & STRUT_TERM_RIGID)) return STRUT_OK;
   if (!method->rigid)
     return strut_fail(error, STRUT_USAGE,

@@ -287,6 +287,7 @@ const strut_integrator strut_integrator_midpoint = {
     .region = STRUT_REGION_ALL,
     .role = STRUT_ROLE_STIFF,
     .no_ground = true,
+    .no_memory = true,
     .create = midpoint_create,
     .restart = midpoint_restart,
     .advance = midpoint_advance,

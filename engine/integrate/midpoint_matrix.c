@@ -111,7 +111,8 @@ bool strut_midpoint_matrix_update(const strut_model *model, const strut_discrete
                                   const double *rest, const double *q, const double *tension,
                                   bool stiff, strut_midpoint_matrix *m) {
   for (bool clip = stiff;; clip = true) {
-    memcpy(m->matrix->value, m->mass, (size_t)m->matrix->start[m->n] * sizeof *m->mass);
+    double whole = 1.0 + 0.5 * step->h * model->mass_damping;
+    for (int32_t k = 0; k < m->matrix->start[m->n]; k++) m->matrix->value[k] = whole * m->mass[k];
     for (int32_t j = 0; j < model->members.count; j++)
       add_member(step, j, clip ? fmax(tension[j], 0.0) : tension[j], m);
     for (int32_t i = 0; i < model->elements.count; i++)

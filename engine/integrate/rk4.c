@@ -3,6 +3,7 @@
  * The classical Runge-Kutta method of fourth order with a fixed step, as the paper uses it: the
  * force law, contact and friction included, is evaluated at every stage.
  */
+#include "engine/forces/memory.h"
 #include "engine/forces/rigid.h"
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/plain_steps.h"
@@ -71,6 +72,8 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, rk4_wo
     combine(n, dt, q, v, w->v[1], w->v[2], w->v[3]);
     combine(n, dt, v, w->a[0], w->a[1], w->a[2], w->a[3]);
     if (rigid) strut_rigid_project(model, state, q, v);
+    if (model->plan & STRUT_TERM_MEMORY)
+      strut_memory_renew(model, state, ((double)state->step + 1.0) * dt);
   }
 }
 

@@ -3,6 +3,7 @@
  * Velocity Verlet with a fixed step and one evaluation of the forces per step. Forces that depend on
  * velocities see the predicted v + h a, which keeps the second order.
  */
+#include "engine/forces/memory.h"
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/plain_steps.h"
 
@@ -54,6 +55,11 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, verlet
       w->power[p] = state->power[p];
     }
     w->a = next, w->next = a;
+    double t = ((double)state->step + 1.0) * dt;
+    if (model->plan & STRUT_TERM_MEMORY && strut_memory_renew(model, state, t)) {
+      forces_kernel(model, state, t, q, v, w->a, ledger);
+      for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) w->power[p] = state->power[p];
+    }
   }
 }
 

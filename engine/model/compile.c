@@ -103,11 +103,15 @@ static void compile_elements(strut_model *model, bool *failed) {
   if (!strut_elements_compile(model)) *failed = true;
 }
 
+static void compile_actuator_forces(strut_model *model, bool *failed) {
+  if (!strut_actuator_forces_compile(model)) *failed = true;
+}
+
 static void compile_drives(strut_model *model, bool *failed) {
   const strut_scene *scene = model->scene;
-  size_t count = scene->actuator_count;
-  int32_t *member = indices(model, count, failed), *signal = indices(model, count, failed);
-  uint8_t *first = strut_arena_allocate(&model->arena, count, sizeof *first);
+  size_t most = scene->actuator_count, count = 0;
+  int32_t *member = indices(model, most, failed), *signal = indices(model, most, failed);
+  uint8_t *first = strut_arena_allocate(&model->arena, most, sizeof *first);
   uint8_t *driven = strut_allocate((size_t)model->members.slots, sizeof *driven);
   if (!first || !driven) *failed = true;
   if (*failed) {
@@ -115,12 +119,14 @@ static void compile_drives(strut_model *model, bool *failed) {
     return;
   }
   uint16_t *terms = (uint16_t *)model->members.block_terms;
-  for (size_t i = 0; i < count; i++) {
-    member[i] = strut_actuator_slot(model, i);
-    signal[i] = scene->actuators[i].signal;
-    first[i] = !driven[member[i]];
-    driven[member[i]] = 1;
-    if (member[i] < model->members.count) terms[member[i] / STRUT_BLOCK] |= STRUT_TERM_DRIVE;
+  for (size_t i = 0; i < most; i++) {
+    if (scene->actuators[i].force) continue;
+    int32_t slot = strut_actuator_slot(model, i);
+    member[count] = slot;
+    signal[count] = scene->actuators[i].signal;
+    first[count++] = !driven[slot];
+    driven[slot] = 1;
+    if (slot < model->members.count) terms[slot / STRUT_BLOCK] |= STRUT_TERM_DRIVE;
     model->plan |= STRUT_TERM_DRIVE;
   }
   strut_release(driven);
@@ -142,6 +148,11 @@ static void compile_weights(strut_model *model, bool *failed) {
     weight[t->to[j] / 2] += 0.5 * t->mass[j];
   }
   model->weight = weight;
+}
+
+static void compile_damping(strut_model *model, bool *failed) {
+  (void)failed;
+  strut_damping_compile(model);
 }
 
 static void compile_loads(strut_model *model, bool *failed) {
@@ -217,8 +228,8 @@ strut_status strut_model_compile(const strut_scene *scene, strut_model **result,
   model->scene = scene;
   bool failed = false;
   void (*const passes[])(strut_model *, bool *) = {
-      compile_nodes,   compile_members, compile_elements, compile_drives,
-      compile_weights, compile_loads,   compile_contacts, compile_feedback};
+      compile_nodes, compile_members,  compile_elements,        compile_drives,  compile_weights,
+      compile_loads, compile_contacts, compile_actuator_forces, compile_damping, compile_feedback};
   for (size_t i = 0; i < sizeof passes / sizeof passes[0] && !failed; i++)
     passes[i](model, &failed);
   strut_status status = failed ? strut_memory_fail_model(scene, error)

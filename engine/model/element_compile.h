@@ -14,6 +14,12 @@ size_t strut_element_slots(const strut_scene *scene);
  */
 bool strut_elements_compile(strut_model *model);
 
+/** Fills model->actuator_forces from the scene. False: out of memory. */
+bool strut_actuator_forces_compile(strut_model *model);
+
+/** Adds the damping that ratios and Rayleigh's numbers give; after the weights of nodes are known. */
+void strut_damping_compile(strut_model *model);
+
 /** Value near which an element's strain is taken at the start: its natural strain. */
 double strut_element_start(const strut_model *model, int32_t element);
 /** Slot of the natural strain that actuator i of the scene drives. */

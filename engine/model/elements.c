@@ -11,7 +11,28 @@
 /* A stop is this many times stiffer than its member where the scene does not say. */
 static const double USUAL_STOP = 100.0;
 
-size_t strut_element_slots(const strut_scene *scene) { return scene->hinge_count; }
+static size_t elements_of_member(const strut_member *m) {
+  return (size_t)strut_member_is_special(m) + (size_t)(m->longest > 0.0) +
+         (size_t)(m->shortest > 0.0);
+}
+
+static bool yields(const strut_law *law) { return law->kind == STRUT_LAW_ELASTIC_PLASTIC; }
+
+/* Elements with memory: all of a member that breaks or is released, otherwise those that yield. */
+static size_t count_memories(const strut_scene *scene) {
+  size_t count = 0;
+  for (size_t j = 0; j < scene->member_count; j++) {
+    const strut_member *m = &scene->members[j];
+    count += strut_member_ends(m) ? elements_of_member(m) : (size_t)yields(&m->law);
+  }
+  for (size_t i = 0; i < scene->hinge_count; i++)
+    count += strut_hinge_ends(&scene->hinges[i]) || yields(&scene->hinges[i].law);
+  return count;
+}
+
+size_t strut_element_slots(const strut_scene *scene) {
+  return scene->hinge_count + count_memories(scene);
+}
 
 /* The slots stand behind those of the members. */
 static int32_t hinge_slot(const strut_model *model, int32_t hinge) {
@@ -27,11 +48,6 @@ int32_t strut_actuator_slot(const strut_model *model, size_t i) {
 double strut_element_start(const strut_model *model, int32_t element) {
   const strut_element *e = &model->elements.element[element];
   return e->slot >= 0 ? model->members.rest[e->slot] : e->natural;
-}
-
-static size_t elements_of_member(const strut_member *m) {
-  return (size_t)strut_member_is_special(m) + (size_t)(m->longest > 0.0) +
-         (size_t)(m->shortest > 0.0);
 }
 
 static void count_elements(const strut_scene *scene, size_t *elements, size_t *nodes) {
@@ -160,6 +176,17 @@ static void take_over(compilation *c, size_t j) {
     }
 }
 
+/* Gives an element a slot of its own, in which what it remembers shifts its natural strain. */
+static void remember(compilation *c, strut_element *e) {
+  strut_model *model = c->model;
+  e->remembers = true;
+  e->base = e->slot;
+  e->memory = model->elements.memory_count++;
+  e->slot = hinge_slot(model, (int32_t)model->scene->hinge_count + e->memory);
+  double *rest = (double *)model->members.rest;
+  rest[e->slot] = e->base >= 0 ? rest[e->base] : e->natural;
+}
+
 static void add_stop(compilation *c, size_t j, strut_element_role role, double at,
                      double stiffness) {
   const strut_member *m = &c->model->scene->members[j];
@@ -174,6 +201,7 @@ static void add_stop(compilation *c, size_t j, strut_element_role role, double a
                          .damping = m->stop_damping,
                          .numbers = {.stiffness = stiffness}});
   add_way(c, e, m);
+  if (strut_member_ends(m)) remember(c, e);
 }
 
 static void add_member(compilation *c, size_t j) {
@@ -192,6 +220,7 @@ static void add_member(compilation *c, size_t j) {
     add_way(c, e, m);
     if (!set_numbers(c->model, &m->law, stiffness, &e->numbers)) c->failed = true;
     stiffness = e->numbers.stiffness;
+    if (strut_member_ends(m) || yields(&m->law)) remember(c, e);
     take_over(c, j);
   }
   double stop = m->stop_stiffness > 0.0 ? m->stop_stiffness : USUAL_STOP * stiffness;
@@ -213,6 +242,12 @@ static void add_hinge(compilation *c, size_t i) {
   for (int k = 0; k < 3; k++) add_node(c, e, h->node[k]);
   ((double *)model->members.rest)[slot] = strut_hinge_rest(model->scene, i);
   if (!set_numbers(model, &h->law, h->stiffness, &e->numbers)) c->failed = true;
+  if (strut_hinge_ends(h) || yields(&h->law)) remember(c, e);
+}
+
+/* The block of an element: by strain, law and memory. */
+static int kind_of(const strut_element *e) {
+  return 2 * ((int)e->strain * STRUT_LAW_COUNT + (int)e->law) + e->remembers;
 }
 
 /* Blocks of one strain and one law, in the tables' order; in a block the scene's order. */
@@ -220,21 +255,19 @@ static bool sort_elements(compilation *c, strut_element_table *t) {
   strut_arena *arena = &c->model->arena;
   strut_element *sorted = strut_arena_allocate(arena, (size_t)c->count, sizeof *sorted);
   strut_element_block *block =
-      strut_arena_allocate(arena, (size_t)STRUT_STRAIN_COUNT * STRUT_LAW_COUNT, sizeof *block);
+      strut_arena_allocate(arena, 2 * (size_t)STRUT_STRAIN_COUNT * STRUT_LAW_COUNT, sizeof *block);
   if (!sorted || !block) return false;
-  for (int strain = 0; strain < STRUT_STRAIN_COUNT; strain++)
-    for (int law = 0; law < STRUT_LAW_COUNT; law++) {
-      int32_t begin = t->count;
-      for (int32_t i = 0; i < c->count; i++) {
-        const strut_element *e = &c->element[i];
-        if ((int)e->strain == strain && (int)e->law == law) sorted[t->count++] = *e;
-      }
-      if (t->count == begin) continue;
-      bool both = true;
-      for (int32_t i = begin; i < t->count; i++) both = both && !sorted[i].carries;
-      block[t->block_count++] = (strut_element_block){(strut_strain_kind)strain,
-                                                      (strut_law_kind)law, begin, t->count, both};
-    }
+  for (int kind = 0; kind < 2 * STRUT_STRAIN_COUNT * STRUT_LAW_COUNT; kind++) {
+    int32_t begin = t->count;
+    for (int32_t i = 0; i < c->count; i++)
+      if (kind_of(&c->element[i]) == kind) sorted[t->count++] = c->element[i];
+    if (t->count == begin) continue;
+    bool both = true;
+    for (int32_t i = begin; i < t->count; i++) both = both && !sorted[i].carries;
+    const strut_element *e = &sorted[begin];
+    block[t->block_count++] =
+        (strut_element_block){e->strain, e->law, begin, t->count, both, e->remembers};
+  }
   for (int32_t i = 0; i < t->count; i++) {
     int32_t rows = 2 * sorted[i].nodes;
     sorted[i].place = t->entries;
@@ -264,6 +297,52 @@ static bool link_members(strut_model *model) {
   return true;
 }
 
+/* What breaks or is released at a force or a time; 0 means never. */
+static strut_breakable breakable(strut_element_role role, size_t item, int32_t first, double force,
+                                 double time) {
+  return (strut_breakable){.role = role,
+                           .item = (int32_t)item,
+                           .first = first,
+                           .force = force > 0.0 ? force : HUGE_VAL,
+                           .time = time > 0.0 ? time : HUGE_VAL};
+}
+
+static bool list_breakables(strut_model *model) {
+  const strut_scene *scene = model->scene;
+  strut_element_table *t = &model->elements;
+  strut_breakable *list =
+      strut_arena_allocate(&model->arena, (size_t)t->memory_count, sizeof *list);
+  if (!list) return false;
+  for (size_t j = 0; j < scene->member_count; j++) {
+    const strut_member *m = &scene->members[j];
+    if (!strut_member_ends(m)) continue;
+    list[t->breakable_count++] =
+        breakable(STRUT_ELEMENT_MEMBER, j, t->of_member[j], m->breaks_at, m->released_at);
+  }
+  for (size_t i = 0; i < scene->hinge_count; i++) {
+    const strut_hinge *h = &scene->hinges[i];
+    if (!strut_hinge_ends(h)) continue;
+    int32_t first = strut_element_of_hinge(t, (int32_t)i);
+    list[t->breakable_count++] =
+        breakable(STRUT_ELEMENT_HINGE, i, first, h->breaks_at, h->released_at);
+  }
+  t->breakable = list;
+  return true;
+}
+
+/* After the elements have been sorted. */
+static bool list_memories(strut_model *model) {
+  strut_element_table *t = &model->elements;
+  if (!t->memory_count) return true;
+  int32_t *memory = strut_arena_allocate(&model->arena, (size_t)t->memory_count, sizeof *memory);
+  if (!memory) return false;
+  for (int32_t i = 0; i < t->count; i++)
+    if (t->element[i].remembers) memory[t->element[i].memory] = i;
+  t->memory = memory;
+  model->plan |= STRUT_TERM_MEMORY;
+  return list_breakables(model);
+}
+
 bool strut_elements_compile(strut_model *model) {
   const strut_scene *scene = model->scene;
   size_t elements, nodes;
@@ -279,5 +358,6 @@ bool strut_elements_compile(strut_model *model) {
   assert(c.count == (int32_t)elements && c.nodes <= (int32_t)nodes);
   model->elements.at = c.at;
   model->plan |= STRUT_TERM_ELEMENTS;
-  return !c.failed && sort_elements(&c, &model->elements) && link_members(model);
+  return !c.failed && sort_elements(&c, &model->elements) && link_members(model) &&
+         list_memories(model);
 }

@@ -51,6 +51,11 @@ typedef struct strut_element {
   int8_t carries;       /* 1 tension only, -1 compression only, 0 both; only beyond e0 */
   double damping;       /* force per rate of e */
   strut_law_numbers numbers;
+  /* an element with memory has a slot of its own, which follows that of its member or hinge */
+  bool remembers;
+  int32_t
+      base; /* the slot that it follows; -1: its natural strain is `natural` before it has yielded */
+  int32_t memory; /* place among the elements with memory */
 } strut_element;
 
 /** Elements begin .. end - 1, of one strain with one law. */
@@ -59,7 +64,16 @@ typedef struct strut_element_block {
   strut_law_kind law;
   int32_t begin, end;
   bool both_signs; /* all of them carry both */
+  bool remembers;  /* all of them have memory; otherwise none */
 } strut_element_block;
+
+/** Elements of one member or hinge that from some force or time on carry nothing. */
+typedef struct strut_breakable {
+  strut_element_role role; /* MEMBER or HINGE */
+  int32_t item;            /* member or hinge of the scene */
+  int32_t first;           /* its elements, chained by `sibling` */
+  double force, time;      /* [N] or [N m], [s]; INFINITY: never */
+} strut_breakable;
 
 typedef struct strut_element_table {
   int32_t count, block_count;
@@ -69,6 +83,9 @@ typedef struct strut_element_table {
   const strut_element_block *block; /* (block_count) */
   const uint32_t *at;               /* where the nodes' x stand in coordinate arrays: 2 * node */
   const int32_t *of_member;         /* (members) first element of a member, or -1; NULL: none */
+  int32_t memory_count, breakable_count;
+  const int32_t *memory;            /* (memory_count) the elements with memory */
+  const strut_breakable *breakable; /* (breakable_count) members, then hinges */
 } strut_element_table;
 
 /** The first element of member j, or NULL for a plain member without stops. */

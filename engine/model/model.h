@@ -16,6 +16,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
+#include "engine/model/actuator_forces.h"
 #include "engine/model/elements.h"
 #include "engine/model/feedback.h"
 #include "engine/scene/scene.h"
@@ -36,10 +37,13 @@ typedef enum strut_term {
   STRUT_TERM_SLOPE = 1 << 8,    /* the ground is inclined */
   STRUT_TERM_SOLVE = 1 << 9,    /* the mass matrix is not diagonal */
   STRUT_TERM_LAWS = 1 << 10, /* some contact has another law of damping or friction than (8), (9) */
-  STRUT_TERM_RIGID = 1 << 11,     /* bars keep their lengths */
-  STRUT_TERM_ELEMENTS = 1 << 12,  /* elements other than plain members */
-  STRUT_TERM_DIRECTION = 1 << 13, /* friction that differs by direction; with LAWS */
-  STRUT_TERM_FEEDBACK = 1 << 14   /* sensors, and signals that follow them */
+  STRUT_TERM_RIGID = 1 << 11,           /* bars keep their lengths */
+  STRUT_TERM_ELEMENTS = 1 << 12,        /* elements other than plain members */
+  STRUT_TERM_DIRECTION = 1 << 13,       /* friction that differs by direction; with LAWS */
+  STRUT_TERM_ACTUATOR_FORCES = 1 << 14, /* actuators that give a force or a moment */
+  STRUT_TERM_MASS_DAMPING = 1 << 15,    /* Rayleigh's damping by mass */
+  STRUT_TERM_FEEDBACK = 1 << 16,        /* sensors, internal states, and signals that follow them */
+  STRUT_TERM_MEMORY = 1 << 20           /* elements that break, are released, yield or rub */
 } strut_term;
 
 /**
@@ -108,6 +112,8 @@ typedef struct strut_model {
   struct strut_mass *mass; /* mass.h; NULL where some free coordinate has no mass: statics only */
   strut_feedback_table feedback;
   strut_arena arena;
+  strut_actuator_force_table actuator_forces;
+  double mass_damping; /* alpha of Rayleigh's damping [1/s] */
 } strut_model;
 
 /**

@@ -24,6 +24,13 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
   state->element_acts = strut_arena_allocate(arena, elements, sizeof *state->element_acts);
   state->element_piece = strut_arena_allocate(arena, elements, sizeof *state->element_piece);
   state->element_turn = strut_arena_allocate(arena, elements, sizeof *state->element_turn);
+  state->plastic =
+      strut_arena_allocate(arena, (size_t)model->elements.memory_count, sizeof(double));
+  state->broken_at =
+      strut_arena_allocate(arena, (size_t)model->elements.breakable_count, sizeof(double));
+  state->memory_kept = strut_arena_allocate(
+      arena, (size_t)(model->elements.memory_count + model->elements.breakable_count),
+      sizeof(double));
   state->force = strut_arena_allocate(arena, both, sizeof(double));
   state->normal = strut_arena_allocate(arena, contacts, sizeof(double));
   state->friction = strut_arena_allocate(arena, contacts, sizeof(double));
@@ -32,10 +39,13 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
   state->sensor = strut_arena_allocate(arena, sensors, sizeof(double));
   state->sensor_rate = strut_arena_allocate(arena, sensors, sizeof(double));
   state->held = strut_arena_allocate(arena, model->scene->signal_count, sizeof(double));
+  state->actuator_force =
+      strut_arena_allocate(arena, (size_t)model->actuator_forces.count, sizeof(double));
   if (!state->q || !state->v || !state->rest || !state->element_acts || !state->element_piece ||
       !state->element_turn || !state->slack_length_threshold || !state->slack_force_threshold ||
-      !state->rest_rate || !state->force || !state->normal || !state->friction || !state->scratch ||
-      !state->sensor || !state->sensor_rate || !state->held) {
+      !state->rest_rate || !state->plastic || !state->broken_at || !state->memory_kept ||
+      !state->force || !state->normal || !state->friction || !state->scratch ||
+      !state->actuator_force || !state->sensor || !state->sensor_rate || !state->held) {
     strut_state_free(state);
     *result = NULL;
     return strut_memory_fail_model(model->scene, error);
@@ -67,6 +77,8 @@ void strut_state_reset(const strut_model *model, strut_state *state) {
     state->element_turn[i] = strut_element_start(model, i);
   }
   for (size_t i = 0; i < model->scene->signal_count; i++) state->held[i] = (double)NAN;
+  for (int32_t i = 0; i < model->elements.memory_count; i++) state->plastic[i] = 0.0;
+  for (int32_t i = 0; i < model->elements.breakable_count; i++) state->broken_at[i] = HUGE_VAL;
   memset(state->work, 0, sizeof state->work);
   memset(state->power, 0, sizeof state->power);
 }

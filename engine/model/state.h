@@ -81,6 +81,13 @@ typedef struct strut_state {
   bool ledger;  /* keep the ledger? It costs some arithmetic per evaluation */
   double *scratch; /* (length) for the mass solve */
   strut_arena arena;
+  /* memory of elements, see forces/memory.h; the slots of `rest` that belong to them follow from it */
+  double *plastic; /* (memory_count) plastic strain */
+  double
+      *broken_at; /* (breakable_count) since when it carries nothing [s]; INFINITY: it does not */
+  double *memory_kept;    /* both of the above as they were at an earlier time */
+  bool forgetful;         /* nothing yields or breaks: while settling; strut_state_reset keeps it */
+  double *actuator_force; /* (actuator forces) when last evaluated [N], [N m] */
 } strut_state;
 
 /** All memory a run needs; an integrator adds its own to the arena. STRUT_OK or STRUT_NO_MEMORY. */

@@ -126,6 +126,16 @@ static void add_hinges(strut_json *json, cJSON *to, const strut_summary *s) {
   }
 }
 
+/* The key exists only if something broke or was released. */
+static void add_breaks(strut_json *json, cJSON *to, const strut_summary *s) {
+  cJSON *broken = s->break_count ? strut_json_object(json, to, "broken") : NULL;
+  for (size_t i = 0; i < s->break_count; i++) {
+    cJSON *one = strut_json_object(json, broken, s->breaks[i].name);
+    strut_json_number(json, one, "time", s->breaks[i].time);
+    strut_json_bool(json, one, "released", s->breaks[i].released);
+  }
+}
+
 static void add_contacts(strut_json *json, cJSON *to, const strut_summary *s) {
   cJSON *contacts = strut_json_object(json, to, "contacts");
   for (size_t i = 0; i < s->contact_count; i++) {
@@ -179,6 +189,7 @@ char *strut_summary_json(const strut_summary *summary, const strut_scene *scene,
   add_parameters(&json, json.root, scene);
   add_nodes(&json, json.root, summary);
   add_hinges(&json, json.root, summary);
+  add_breaks(&json, json.root, summary);
   add_contacts(&json, json.root, summary);
   add_energy(&json, json.root, summary);
   return strut_json_end(&json);

@@ -155,6 +155,14 @@ static void add_hinges(strut_buffer *table, const strut_summary *s) {
   add_more(table, s->hinge_count);
 }
 
+static void add_breaks(strut_buffer *table, const strut_summary *s) {
+  if (s->break_count) strut_buffer_add(table, "\n  %-16s %14s\n", "carries nothing", "from");
+  for (size_t i = 0; i < s->break_count && i < MOST_ROWS; i++)
+    strut_buffer_add(table, "  %-16s %14s   %s\n", s->breaks[i].name,
+                     in(s->breaks[i].time, "s").text, s->breaks[i].released ? "released" : "broke");
+  add_more(table, s->break_count);
+}
+
 static void add_contacts(strut_buffer *table, const strut_summary *s) {
   if (s->contact_count) {
     strut_buffer_add(table, "\n  %-16s %14s %14s\n", "contact", "contact time", "max. height");
@@ -206,6 +214,7 @@ char *strut_summary_table(const strut_summary *summary, const strut_scene *scene
   add_measured(&table, summary);
   add_positions(&table, summary);
   add_hinges(&table, summary);
+  add_breaks(&table, summary);
   add_contacts(&table, summary);
   add_energy(&table, &summary->energy);
   add_balance(&table, summary);

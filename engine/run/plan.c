@@ -15,6 +15,7 @@ static const strut_plan_term terms[STRUT_PLAN_TERMS] = {
     {STRUT_TERM_ELEMENTS, "stops", "a member with a shortest or longest length", false},
     {STRUT_TERM_ELEMENTS, "hinges", "a hinge", false},
     {STRUT_TERM_FEEDBACK, "sensors", "a sensor", false},
+    {STRUT_TERM_MEMORY, "breaks and releases", "something with breaks_at or released_at", false},
     {STRUT_TERM_DRIVE, "driven rest lengths", "an actuator", false},
     {STRUT_TERM_CONSTANT, "constant forces", "gravity, or a load without a signal", false},
     {STRUT_TERM_LOADS, "driven loads", "a load with a signal", false},
@@ -22,6 +23,8 @@ static const strut_plan_term terms[STRUT_PLAN_TERMS] = {
     {STRUT_TERM_FRICTION, "friction", "a ground with friction", false},
     {STRUT_TERM_SLOPE, "inclined ground", "a ground with a slope", false},
     {STRUT_TERM_SOLVE, "mass solve", "consistent masses of members", false},
+    {STRUT_TERM_ACTUATOR_FORCES, "actuator forces", "an actuator with a force or moment", false},
+    {STRUT_TERM_MASS_DAMPING, "damping by mass", "rayleigh with mass", false},
 };
 
 static void count_elements(const strut_model *model, strut_plan *plan) {
@@ -40,6 +43,7 @@ static void count_elements(const strut_model *model, strut_plan *plan) {
     plan->stops += (size_t)(m->shortest > 0.0) + (size_t)(m->longest > 0.0);
   }
   plan->hinges = scene->hinge_count;
+  plan->breakables = (size_t)model->elements.breakable_count;
   plan->contacts = (size_t)model->contacts.count;
   plan->actuators = scene->actuator_count;
   plan->loads = scene->load_count;
@@ -54,7 +58,8 @@ static bool has_element(const strut_plan *plan, const char *name) {
   } kinds[] = {{"running cables", plan->running_cables},
                {"member laws", plan->laws},
                {"stops", plan->stops},
-               {"hinges", plan->hinges}};
+               {"hinges", plan->hinges},
+               {"breaks and releases", plan->breakables}};
   for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++)
     if (strcmp(kinds[i].name, name) == 0) return kinds[i].count > 0;
   return true;

@@ -13,7 +13,7 @@ typedef struct strut_plan_term {
   bool in;
 } strut_plan_term;
 
-enum { STRUT_PLAN_TERMS = 15 };
+enum { STRUT_PLAN_TERMS = 18 };
 
 typedef struct strut_plan {
   size_t nodes, degrees_of_freedom, bars, springs, cables, contacts, actuators, loads;
@@ -28,6 +28,7 @@ typedef struct strut_plan {
   strut_step_limit limits;  /* of every method: strut_step_limit_of_method */
   bool step_limit_exact;    /* from all eigenvalues; else within 1 %, or limits.bound */
   strut_plan_term terms[STRUT_PLAN_TERMS];
+  size_t breakables; /* members and hinges that may break or are released */
 } strut_plan;
 
 /** Fills the plan of a compiled model. */

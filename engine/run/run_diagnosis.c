@@ -156,6 +156,7 @@ static jump find_jump(const strut_run *r, double from, double to) {
   for (size_t i = 0; i < scene->actuator_count; i++) {
     const strut_actuator *a = &scene->actuators[i];
     bool hinge = a->member < 0;
+    if (a->force) continue;
     double when = 0.0, length = hinge ? 1.0 : r->model->members.rest[a->member];
     double change = strut_signal_jump(scene->signals, a->signal, r->dt, from, to, &when);
     if (!(change > worst * length)) continue;
@@ -189,6 +190,7 @@ static const char *describe_missed_events(const strut_run *r) {
   if (bounces) return "touchdowns";
   if (friction) return "changes between sticking and slipping";
   if (cables) return "cables that become taut";
+  if (r->model->plan & STRUT_TERM_MEMORY) return "what breaks, is released or yields";
   return has_switches(r->model) ? "stops, cables or kinks of laws" : NULL;
 }
 

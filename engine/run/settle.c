@@ -174,6 +174,7 @@ strut_status strut_relaxation_create(const strut_model *model, const strut_exper
   status = strut_model_compile(&r->scene, &r->model, error);
   if (!status) status = strut_state_create(r->model, &r->state, error);
   if (status) return status;
+  r->state->forgetful = true;
   r->method = strut_integrator_for_settling(r->model);
   const strut_integrator_settings settings = strut_integrator_settings_of(experiment);
   r->workspace = r->method->create(r->model, r->state, &settings);

@@ -3,12 +3,14 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 #include <time.h>
 
 #include "engine/base/subnormals.h"
 #include "engine/forces/drive.h"
 #include "engine/forces/forces.h"
+#include "engine/forces/memory.h"
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/model/memory_estimate.h"
 #include "engine/run/orbit/shooting.h"
@@ -50,8 +52,9 @@ static strut_status allocate_summary(strut_run *r) {
   s->positions = strut_allocate(2 * scene->node_count, sizeof *s->positions);
   s->contacts = strut_allocate(contacts, sizeof *s->contacts);
   s->hinges = strut_allocate(scene->hinge_count, sizeof *s->hinges);
+  s->breaks = strut_allocate((size_t)r->model->elements.breakable_count, sizeof *s->breaks);
   if (e->quantity_count) s->measured = strut_allocate(e->quantity_count, sizeof *s->measured);
-  if (!s->node_names || !s->positions || !s->contacts || !s->hinges ||
+  if (!s->node_names || !s->positions || !s->contacts || !s->hinges || !s->breaks ||
       (e->quantity_count && !s->measured))
     return strut_memory_fail_model(r->model->scene, r->error);
   s->node_count = scene->node_count;
@@ -114,6 +117,23 @@ static strut_status place_state(strut_run *r) {
                                  r->error);
 }
 
+/* What breaks or yields at the start already, which statics and settling take as whole, is warned of. */
+static void begin_memory(strut_run *r, double begin) {
+  const strut_snapshot *from = r->options->from;
+  strut_overload worst;
+  if (from && from->memory) {
+    strut_memory_load(r->model, r->state, from->memory);
+  } else if (!from && strut_memory_overload(r->model, r->state->q, &worst)) {
+    strut_summary_warn(r->summary, "overloaded_start",
+                       "%s '%s' carries %.4g %s at the start, above the %.4g %s at which it %s; it "
+                       "does so at once",
+                       worst.hinge ? "hinge" : "member", worst.name, worst.force,
+                       worst.hinge ? "N m" : "N", worst.limit, worst.hinge ? "N m" : "N",
+                       worst.breaks ? "breaks" : "yields");
+  }
+  strut_memory_begin(r->model, r->state, begin);
+}
+
 static strut_status prepare_run(strut_run *r) {
   const strut_scene *scene = r->model->scene;
   strut_span span = strut_experiment_span(r->experiment, scene);
@@ -153,6 +173,7 @@ static strut_status prepare_run(strut_run *r) {
     return strut_memory_fail_model(r->model->scene, r->error);
   if ((status = place_state(r))) return status;
   r->state->time_offset = r->grid.offset;
+  if (r->model->plan & STRUT_TERM_MEMORY) begin_memory(r, begin);
   r->state->ledger = !r->options->without_ledger || strut_quantities_need_ledger(r->experiment);
   r->state->interrupt = r->options->interrupt;
   r->state->most_evaluations = r->options->most_evaluations;
@@ -237,7 +258,11 @@ static strut_status detect_steady_motion(strut_run *r) {
   bool before = r->steady.known;
   strut_measure_tracked_point(r->model, r->state, &r->measure, &x, &v);
   if (!strut_steady_detector_period(r->state, x, &r->steady) || before) return STRUT_OK;
-  strut_status status = r->experiment->steady.shooting ? shoot_orbit(r) : STRUT_OK;
+  bool memory = r->model->plan & STRUT_TERM_MEMORY;
+  if (memory && r->experiment->steady.shooting)
+    snprintf(r->steady.result.reason, sizeof r->steady.result.reason,
+             "what breaks, is released or yields has a memory that shooting does not correct");
+  strut_status status = r->experiment->steady.shooting && !memory ? shoot_orbit(r) : STRUT_OK;
   if (status) return status;
   double now = (double)n * r->dt, period = r->steady.period;
   int64_t periods = r->recorded_periods, repeats = r->steady.result.repeats;
@@ -386,6 +411,7 @@ static void store_end_state(const strut_run *r) {
   size_t bytes = (size_t)r->model->length * sizeof(double);
   memcpy(to->q, r->state->q, bytes);
   memcpy(to->v, r->state->v, bytes);
+  if (to->memory) strut_memory_store(r->model, r->state, to->memory);
   to->time = strut_run_time(r);
   to->refined = fmax(0.0, r->state->refined_until - (to->time - r->grid.offset));
 }
@@ -409,6 +435,23 @@ static void measure_hinges(strut_run *r) {
   }
 }
 
+static void list_breaks(const strut_run *r) {
+  const strut_scene *scene = r->model->scene;
+  strut_summary *s = r->summary;
+  s->break_count = 0;
+  for (int32_t b = 0; b < r->model->elements.breakable_count; b++) {
+    const strut_breakable *what = &r->model->elements.breakable[b];
+    double time = r->state->broken_at[b];
+    bool hinge = what->role == STRUT_ELEMENT_HINGE;
+    if (!(time < HUGE_VAL)) continue;
+    s->breaks[s->break_count++] = (strut_break_summary){
+        .name = hinge ? scene->hinges[what->item].name : scene->members[what->item].name,
+        .hinge = hinge,
+        .released = time == what->time,
+        .time = time};
+  }
+}
+
 static void fill_summary(strut_run *r, strut_status status) {
   strut_summary *s = r->summary;
   fill_contacts(r);
@@ -428,6 +471,7 @@ static void fill_summary(strut_run *r, strut_status status) {
   s->velocity_zero = strut_measure_is_zero(&r->measure, s->velocity);
   for (size_t i = 0; i < 2 * s->node_count; i++) s->positions[i] = r->state->q[i];
   measure_hinges(r);
+  list_breaks(r);
   if (r->state->ledger) {
     sample_balance(r);
     s->balance = strut_balance_judge(&s->energy, s->steps);

@@ -18,6 +18,7 @@ typedef struct strut_snapshot {
   double *q, *v;  /* [m], [m/s] */
   double time;    /* time of drives and loads [s] */
   double refined; /* refinement after a touchdown lasts this much longer [s] */
+  double *memory; /* (strut_memory_count of the model) what elements remember; NULL: nothing */
 } strut_snapshot;
 
 /** Options of a run. Zero: obey the step limit, no callbacks, no recording. */

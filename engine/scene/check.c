@@ -186,6 +186,7 @@ static bool check_numbers(strut_checker *checker, size_t index, const char *owne
   } numbers[] = {{"stiffness", m->stiffness},
                  {"axial_stiffness", m->axial_stiffness},
                  {"damping", m->damping},
+                 {"damping_ratio", m->damping_ratio},
                  {"mass", m->mass}};
   bool valid = true;
   for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
@@ -214,7 +215,13 @@ static bool check_law(strut_checker *checker, size_t index, const char *owner) {
   if (m->stiffness > 0.0 && m->axial_stiffness > 0.0)
     strut_report_finding(checker, STRUT_ON_MEMBER, index, "axial_stiffness",
                          "%s has both a stiffness and an axial_stiffness; give one", owner);
-  else if (!elastic && m->damping == 0.0)
+  else if (m->damping > 0.0 && m->damping_ratio > 0.0)
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, "damping_ratio",
+                         "%s has both a damping and a damping_ratio; give one", owner);
+  else if (!elastic && m->damping_ratio > 0.0)
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, "damping_ratio",
+                         "the damping_ratio of %s needs a stiffness", owner);
+  else if (!elastic && m->damping == 0.0 && !strut_is_pulled(checker->scene, (int32_t)index, -1))
     strut_report_finding(checker, STRUT_ON_MEMBER, index, NULL,
                          "%s has neither stiffness nor damping, so it does nothing", owner);
   else if (force && !linear)
@@ -270,6 +277,11 @@ static void check_shape(strut_checker *checker, size_t index, const char *owner)
 }
 
 void strut_check_members(strut_checker *checker) {
+  const double rayleigh[] = {checker->scene->rayleigh_mass, checker->scene->rayleigh_stiffness};
+  for (int k = 0; k < 2; k++)
+    strut_check_range(checker, STRUT_ON_SCENE, 0, "rayleigh",
+                      k ? "stiffness of rayleigh in the scene" : "mass of rayleigh in the scene",
+                      rayleigh[k], STRUT_NOT_NEGATIVE);
   for (size_t i = 0; i < checker->scene->member_count; i++) {
     char owner[200];
     strut_format_name(owner, "member", checker->scene->members[i].name, i);

@@ -222,6 +222,15 @@ void strut_check_ground(strut_checker *checker) {
 
 static bool exists(int32_t index, size_t count) { return index >= 0 && (size_t)index < count; }
 
+bool strut_is_pulled(const strut_scene *scene, int32_t member, int32_t hinge) {
+  for (size_t i = 0; i < scene->actuator_count; i++) {
+    const strut_actuator *a = &scene->actuators[i];
+    if (a->force && (a->member >= 0 ? a->member == member : a->hinge >= 0 && a->hinge == hinge))
+      return true;
+  }
+  return false;
+}
+
 void strut_check_drives(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   char owner[200];

@@ -61,6 +61,47 @@ static bool check_law(strut_checker *checker, strut_subject subject, size_t inde
   return false;
 }
 
+/* Does the second slope of an elastic-plastic law lie between 0 and the first? `stiffness`: the first. */
+static bool check_hardening(strut_checker *checker, strut_subject subject, size_t index,
+                            const char *owner, const strut_law *law, double stiffness) {
+  if (law->kind != STRUT_LAW_ELASTIC_PLASTIC) return true;
+  if (law->second_stiffness >= 0.0 && law->second_stiffness < stiffness) return true;
+  strut_report_finding(checker, subject, index, "law",
+                       "the second_stiffness of %s must be at least 0 and below its stiffness, "
+                       "found %g beside %g",
+                       owner, law->second_stiffness, stiffness);
+  return false;
+}
+
+/* Force and time from which on something carries nothing. */
+static bool check_end(strut_checker *checker, strut_subject subject, size_t index,
+                      const char *owner, double force, double time) {
+  bool valid =
+      strut_check_range(checker, subject, index, "breaks_at", owner, force, STRUT_NOT_NEGATIVE);
+  return strut_check_range(checker, subject, index, "released_at", owner, time,
+                           STRUT_NOT_NEGATIVE) &&
+         valid;
+}
+
+static bool check_end_of_member(strut_checker *checker, size_t index, const char *owner) {
+  const strut_member *m = &checker->scene->members[index];
+  if (!check_end(checker, STRUT_ON_MEMBER, index, owner, m->breaks_at, m->released_at))
+    return false;
+  bool rigid = m->kind == STRUT_BAR && checker->scene->bar_model == STRUT_BARS_RIGID;
+  const char *key = m->breaks_at > 0.0 ? "breaks_at" : "released_at";
+  if (strut_member_ends(m) && rigid)
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, key,
+                         "%s is a rigid bar, which cannot break or be released; make the member a "
+                         "spring, or bars: elastic",
+                         owner);
+  else if (m->breaks_at > 0.0 && m->law.carries == STRUT_CARRIES_COMPRESSION)
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, key,
+                         "%s carries compression only, so that no tension breaks it", owner);
+  else
+    return true;
+  return false;
+}
+
 static bool check_stops(strut_checker *checker, size_t index, const char *owner) {
   const strut_member *m = &checker->scene->members[index];
   bool valid = true;
@@ -105,7 +146,11 @@ bool strut_check_member_law(strut_checker *checker, size_t index, const char *ow
                          "the law logarithmic of %s needs a rest length above zero", owner);
     return false;
   }
-  return check_stops(checker, index, owner);
+  strut_rest rest;
+  bool known = !checker->loose[index] && strut_member_rest(checker->scene, index, &rest);
+  double slope = known ? rest.stiffness : HUGE_VAL;
+  return check_hardening(checker, STRUT_ON_MEMBER, index, owner, &m->law, slope) &&
+         check_end_of_member(checker, index, owner) && check_stops(checker, index, owner);
 }
 
 /* Do the nodes of a hinge exist, are they three, and do both arms have a direction? */
@@ -150,11 +195,14 @@ void strut_check_hinges(strut_checker *checker) {
     if (isinf(h->rest_angle))
       strut_report_finding(checker, STRUT_ON_HINGE, i, "rest_angle",
                            "the rest_angle of %s is not a finite number", owner);
-    valid = valid && check_law(checker, STRUT_ON_HINGE, i, owner, &h->law, h->stiffness > 0.0);
+    valid = valid && check_law(checker, STRUT_ON_HINGE, i, owner, &h->law, h->stiffness > 0.0) &&
+            check_hardening(checker, STRUT_ON_HINGE, i, owner, &h->law, h->stiffness) &&
+            check_end(checker, STRUT_ON_HINGE, i, owner, h->breaks_at, h->released_at);
     if (valid && h->law.kind == STRUT_LAW_LOGARITHMIC)
       strut_report_finding(checker, STRUT_ON_HINGE, i, "law",
                            "the law logarithmic is for members, not for %s", owner);
-    else if (valid && h->stiffness == 0.0 && h->damping == 0.0 && !strut_law_at(h->law.kind)->own)
+    else if (valid && h->stiffness == 0.0 && h->damping == 0.0 && !strut_law_at(h->law.kind)->own &&
+             !strut_is_pulled(scene, -1, (int32_t)i))
       strut_report_finding(checker, STRUT_ON_HINGE, i, NULL,
                            "%s has neither stiffness nor damping, so it does nothing", owner);
     check_arms(checker, i, owner);

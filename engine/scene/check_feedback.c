@@ -131,7 +131,7 @@ static bool may_describe(const strut_checker *checker) {
 void strut_check_driven_rate(strut_checker *checker, size_t actuator, const char *owner) {
   const strut_scene *scene = checker->scene;
   const strut_actuator *a = &scene->actuators[actuator];
-  if (!may_describe(checker)) return;
+  if (a->force || !may_describe(checker)) return;
   strut_signal_traits traits = strut_signal_describe(scene, a->signal);
   const char *what = a->member >= 0 ? "length" : "angle";
   if (traits.sensor >= 0)

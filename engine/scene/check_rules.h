@@ -32,6 +32,9 @@ typedef enum strut_range { STRUT_ANY_NUMBER, STRUT_NOT_NEGATIVE, STRUT_ABOVE_ZER
 bool strut_check_range(strut_checker *checker, strut_subject subject, size_t index, const char *key,
                        const char *owner, double value, strut_range range);
 
+/** Does an actuator add a force to that member, a moment to that hinge? -1: none. */
+bool strut_is_pulled(const strut_scene *scene, int32_t member, int32_t hinge);
+
 /** The rules, one function for each kind of thing. */
 void strut_check_names(strut_checker *checker);
 void strut_check_nodes(strut_checker *checker);

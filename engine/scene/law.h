@@ -11,6 +11,7 @@
 #define STRUT_ENGINE_SCENE_LAW_H
 
 #include "engine/scene/laws/bilinear.h"
+#include "engine/scene/laws/elastic_plastic.h"
 #include "engine/scene/laws/exponential.h"
 #include "engine/scene/laws/linear.h"
 #include "engine/scene/laws/logarithmic.h"
@@ -20,12 +21,15 @@
 
 /**
  * The laws: X(NAME, name, word, needs, context); context is passed on. needs: bits of the parameters
- * (laws/parameters.h) that the law needs; OWN: it has a stiffness of its own, so that the element must not give one.
+ * (laws/parameters.h) that the law needs, NAME_MAY that it may have, 0 if not given; OWN: it has a stiffness of its
+ * own, so that the element must not give one.
  */
 #define STRUT_LAWS(X, context)                                                                     \
   X(LINEAR, linear, "linear", 0, context)                                                          \
   X(BILINEAR, bilinear, "bilinear", KNEE_BIT | SECOND_STIFFNESS_BIT, context)                      \
   X(PLAY, play, "play", GAP_BIT, context)                                                          \
+  X(ELASTIC_PLASTIC, elastic_plastic, "elastic_plastic", YIELD_BIT | SECOND_STIFFNESS_MAY,         \
+    context)                                                                                       \
   X(POLYNOMIAL, polynomial, "polynomial", COEFFICIENTS_BIT | OWN, context)                         \
   X(LOGARITHMIC, logarithmic, "logarithmic", 0, context)                                           \
   X(EXPONENTIAL, exponential, "exponential", SCALE_BIT, context)                                   \
@@ -69,6 +73,7 @@ typedef struct strut_law_row {
   const char *word;
   unsigned needs; /* bit p: parameter p */
   bool own;       /* the stiffness is part of its numbers */
+  unsigned may;   /* bit p: parameter p may be given */
 } strut_law_row;
 
 /** The words of the laws as the key table lists them: "linear|bilinear|...". */
@@ -78,14 +83,17 @@ typedef struct strut_law_row {
 /** The row of a valid law. */
 static inline const strut_law_row *strut_law_at(strut_law_kind kind) {
   enum {
-#define STRUT_LAW_ROW(NAME, ...) NAME##_BIT = 1 << STRUT_LAW_PARAMETER_##NAME,
+    MAY = 16, /* bits from here on: what may be given */
+    LOW = (1 << STRUT_LAW_PARAMETER_COUNT) - 1,
+#define STRUT_LAW_ROW(NAME, ...)                                                                   \
+  NAME##_BIT = 1 << STRUT_LAW_PARAMETER_##NAME, NAME##_MAY = NAME##_BIT << MAY,
     STRUT_LAW_PARAMETERS(STRUT_LAW_ROW) STRUT_LAW_LISTS(STRUT_LAW_ROW)
 #undef STRUT_LAW_ROW
         OWN = 1 << STRUT_LAW_PARAMETER_COUNT
   };
   static const strut_law_row rows[] = {
 #define STRUT_LAW_ROW(NAME, name, word, needs, context)                                            \
-  {word, (needs) & ~(unsigned)OWN, ((needs)&OWN) != 0},
+  {word, (needs)&LOW, ((needs)&OWN) != 0, (needs) >> MAY},
       STRUT_LAWS(STRUT_LAW_ROW, )
 #undef STRUT_LAW_ROW
   };
@@ -94,6 +102,11 @@ static inline const strut_law_row *strut_law_at(strut_law_kind kind) {
 
 static inline bool strut_law_needs(strut_law_kind kind, int parameter) {
   return strut_law_at(kind)->needs >> parameter & 1u;
+}
+
+/** May the parameter be given, needed or not? */
+static inline bool strut_law_allows(strut_law_kind kind, int parameter) {
+  return strut_law_needs(kind, parameter) || strut_law_at(kind)->may >> parameter & 1u;
 }
 
 /** Key of a parameter. */
@@ -117,15 +130,15 @@ static inline bool strut_law_above_zero(int p) {
   return above[p];
 }
 
-/** Is number p a slope, force per strain? Otherwise it is a strain. */
-static inline bool strut_law_is_slope(int p) {
-  enum { STRAIN, SLOPE };
-  static const bool slope[] = {
-#define STRUT_LAW_ROW(NAME, field, range, measure) measure == SLOPE,
+/** Number p is a force over this power of a strain: 1 for a slope, 0 for a force; -1: it is a strain. */
+static inline int strut_law_power(int p) {
+  enum { STRAIN = -1, FORCE, SLOPE };
+  static const int power[] = {
+#define STRUT_LAW_ROW(NAME, field, range, measure) measure,
       STRUT_LAW_PARAMETERS(STRUT_LAW_ROW)
 #undef STRUT_LAW_ROW
   };
-  return slope[p];
+  return power[p];
 }
 
 /** The law's number p, p < STRUT_LAW_NUMBER_COUNT. */

@@ -65,16 +65,21 @@ typedef struct strut_member {
   double shortest, longest; /* lengths at which stops act [m]; 0: none */
   double stop_stiffness;    /* [N/m]; 0: 100 times the member's */
   double stop_damping;      /* [N s/m] of a stop while it acts */
+  double breaks_at;         /* tension from which on the member carries nothing [N]; 0: never */
+  double released_at;       /* time from which on it carries nothing [s]; 0: never */
+  double damping_ratio;     /* instead of damping, or 0: of the critical one, see theory.md */
 } strut_member;
 
 /** A spring of the angle at the second of three nodes, from the first to the third. */
 typedef struct strut_hinge {
   const char *name;
   int32_t node[3];
-  double stiffness;  /* [N m/rad] */
-  double damping;    /* [N m s/rad] */
-  double rest_angle; /* [rad]; NAN: as drawn, within half a turn */
-  strut_law law;     /* of the angle and the moment */
+  double stiffness;   /* [N m/rad] */
+  double damping;     /* [N m s/rad] */
+  double rest_angle;  /* [rad]; NAN: as drawn, within half a turn */
+  strut_law law;      /* of the angle and the moment */
+  double breaks_at;   /* size of the moment from which on the hinge has none [N m]; 0: never */
+  double released_at; /* time from which on it has none [s]; 0: never */
 } strut_hinge;
 
 /** Damping law of the ground; d is the depth, d' its rate. */
@@ -101,11 +106,15 @@ typedef struct strut_contact {
   strut_friction friction;
 } strut_contact;
 
-/** Drives the rest length of a member, or the rest angle of a hinge: rest + signal(t). */
+/**
+ * Drives the rest length of a member, or the rest angle of a hinge: rest + signal(t). Or adds a force
+ * along the member, tension positive, or a moment that closes the hinge where positive.
+ */
 typedef struct strut_actuator {
   const char *name;
   int32_t member, signal;
   int32_t hinge; /* where member is -1 */
+  bool force; /* the signal is a force [N] or a moment [N m] added to the member's or hinge's own */
 } strut_actuator;
 
 /** A force on a node: force, times signal(t) if there is one. */
@@ -164,10 +173,12 @@ typedef struct strut_scene {
   strut_configuration *configurations;
   int32_t start_equilibrium; /* configuration at whose equilibrium a run starts, or -1. A run wants
                                 it resolved into positions: strut_resolve_start_equilibrium */
+  strut_arena arena;         /* owns every text and array above */
+  double rayleigh_mass;      /* damping by mass, alpha M v [1/s] */
+  double rayleigh_stiffness; /* damping by stiffness, beta c in every member and hinge [s] */
   size_t sensor_count, state_count;
   strut_sensor *sensors;
   strut_internal_state *states;
-  strut_arena arena; /* owns every text and array above */
 } strut_scene;
 
 /** Default structs: zero except where stated above, names empty, indices -1. */
@@ -206,10 +217,21 @@ static inline int32_t strut_member_node(const strut_member *member, size_t k) {
                                    : member->guides[k - 1];
 }
 
+/** True for a member that carries nothing from some force or time on. */
+static inline bool strut_member_ends(const strut_member *member) {
+  return member->breaks_at > 0.0 || member->released_at > 0.0;
+}
+
+/** The same of a hinge. */
+static inline bool strut_hinge_ends(const strut_hinge *hinge) {
+  return hinge->breaks_at > 0.0 || hinge->released_at > 0.0;
+}
+
 /** True for a member whose force is not that of a plain spring or cable between two nodes. */
 static inline bool strut_member_is_special(const strut_member *member) {
   bool one_sided = member->law.carries != STRUT_CARRIES_BOTH && member->kind != STRUT_CABLE;
-  return member->guide_count || member->law.kind != STRUT_LAW_LINEAR || one_sided;
+  return member->guide_count || member->law.kind != STRUT_LAW_LINEAR || one_sided ||
+         strut_member_ends(member);
 }
 
 /** Angle of a hinge as drawn, in (-pi, pi] [rad]. */

@@ -42,11 +42,15 @@ static const char *list_names(named *all) {
   return all->names;
 }
 
+static bool drives_length_of(const strut_actuator *a, size_t member) {
+  return !a->force && a->member >= 0 && (size_t)a->member == member;
+}
+
 /* Rest length of a member at time t, drives included. */
 static double rest_length_at(const strut_scene *scene, size_t member, double rest, double t) {
   for (size_t i = 0; i < scene->actuator_count; i++) {
     double value, rate;
-    if ((size_t)scene->actuators[i].member != member) continue;
+    if (!drives_length_of(&scene->actuators[i], member)) continue;
     strut_signal_evaluate(scene->signals, scene->actuators[i].signal, t, &value, &rate);
     rest += value;
   }
@@ -62,7 +66,7 @@ static double find_shortest_rest_length(const strut_scene *scene, double last, s
     if (length < least) least = length, *when = t;
   }
   for (size_t i = 0; i < scene->actuator_count; i++) {
-    if ((size_t)scene->actuators[i].member != member) continue;
+    if (!drives_length_of(&scene->actuators[i], member)) continue;
     size_t count =
         strut_signal_times(scene->signals, scene->actuators[i].signal, 0.0, last, time, MOST_TIMES);
     for (size_t k = 0; k < count; k++) {
@@ -80,8 +84,8 @@ static void warn_of_rest_lengths(strut_checker *checker) {
   double last = strut_experiment_span(checker->experiment, scene).duration;
   for (size_t i = 0; i < scene->actuator_count; i++) {
     size_t member = (size_t)scene->actuators[i].member, earlier = 0;
-    if (scene->actuators[i].member < 0) continue;
-    while ((size_t)scene->actuators[earlier].member != member) earlier++;
+    if (scene->actuators[i].member < 0 || scene->actuators[i].force) continue;
+    while (!drives_length_of(&scene->actuators[earlier], member)) earlier++;
     strut_rest rest;
     double t = 0.0;
     if (earlier < i || !strut_member_rest(scene, member, &rest)) continue;

@@ -226,6 +226,26 @@ static void print_stops(const strut_model *model) {
   }
 }
 
+static void print_end(const char *name, double force, double time, const char *unit,
+                      size_t *printed) {
+  if (!(force > 0.0) && !(time > 0.0)) return;
+  if (!(*printed)++) printf("\n  %-12s %12s %12s\n", "end of", "breaks_at", "released_at");
+  printf("  %-12s %12s %12s\n", name, force > 0.0 ? in(force, unit).text : "-",
+         time > 0.0 ? in(time, "s").text : "-");
+}
+
+static void print_ends(const strut_scene *scene) {
+  size_t printed = 0;
+  for (size_t i = 0; i < scene->member_count && printed < MOST_MEMBERS; i++) {
+    const strut_member *m = &scene->members[i];
+    print_end(m->name, m->breaks_at, m->released_at, "N", &printed);
+  }
+  for (size_t i = 0; i < scene->hinge_count && printed < MOST_MEMBERS; i++) {
+    const strut_hinge *h = &scene->hinges[i];
+    print_end(h->name, h->breaks_at, h->released_at, "N m", &printed);
+  }
+}
+
 /* A hinge as drawn. */
 static strut_element_pose describe_hinge(const strut_model *model, const double *q, size_t i,
                                          double *stiffness) {
@@ -277,6 +297,7 @@ static strut_status print_plan(const strut_plan *plan, const strut_model *model,
   print_running_cables(scene);
   print_laws(scene);
   print_stops(model);
+  print_ends(scene);
   print_hinges(model, q);
   strut_release(q);
   return status;
@@ -336,6 +357,8 @@ static void add_extras(strut_json *json, struct cJSON *row, const strut_model *m
     strut_json_text(json, row, "law", strut_law_at(m->law.kind)->word);
     strut_json_text(json, row, "carries", carries_name(m));
   }
+  if (m->breaks_at > 0.0) strut_json_number(json, row, "breaks_at", m->breaks_at);
+  if (m->released_at > 0.0) strut_json_number(json, row, "released_at", m->released_at);
   if (m->shortest > 0.0) strut_json_number(json, row, "shortest", m->shortest);
   if (m->longest > 0.0) strut_json_number(json, row, "longest", m->longest);
   if (m->shortest > 0.0 || m->longest > 0.0)
@@ -353,6 +376,9 @@ static void add_hinges(strut_json *json, const strut_model *model, const double 
     strut_json_number(json, row, "rest_angle", pose.natural);
     strut_json_number(json, row, "moment", pose.force);
     strut_json_number(json, row, "stiffness", stiffness);
+    const strut_hinge *h = &scene->hinges[i];
+    if (h->breaks_at > 0.0) strut_json_number(json, row, "breaks_at", h->breaks_at);
+    if (h->released_at > 0.0) strut_json_number(json, row, "released_at", h->released_at);
   }
 }
 

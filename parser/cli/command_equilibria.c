@@ -83,6 +83,17 @@ static strut_status read_options(const strut_arguments *arguments, strut_setup *
   return status;
 }
 
+/* Stable shapes in which something would break or yield. */
+static void warn_of_overloads(const strut_model *model, const strut_equilibria *all) {
+  for (size_t i = 0; i < all->count; i++) {
+    const strut_equilibrium *e = &all->list[i];
+    char where[200];
+    if (e->point.label != STRUT_STABLE) continue;
+    snprintf(where, sizeof where, "in %.180s", e->name);
+    strut_warn_of_overload(model, e->point.q, where);
+  }
+}
+
 static strut_status analyse_equilibria(strut_analysis *a, strut_error *error) {
   strut_equilibria_options wanted;
   strut_equilibria all = {0};
@@ -92,6 +103,7 @@ static strut_status analyse_equilibria(strut_analysis *a, strut_error *error) {
   if (!status)
     status = strut_report(a->arguments, a->names, strut_equilibria_json(&all, a->model), NULL,
                           strut_equilibria_table(&all, a->model, a->arguments->all), error);
+  if (!status) warn_of_overloads(a->model, &all);
   if (!status && a->plot.path && all.count > 0)
     status = strut_equilibria_figure(&a->plot, a->model, &all, error);
   if (!status && all.count == 0) status = strut_fail(error, STRUT_NOT_SETTLED, "%s", all.remark);

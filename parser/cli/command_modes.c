@@ -34,6 +34,7 @@ static strut_status analyse_modes(strut_analysis *a, strut_error *error) {
   if (status == STRUT_OK)
     status = strut_report(a->arguments, a->names, strut_modes_json(a->model, &modes),
                           strut_modes_csv(&modes), strut_modes_table(a->model, &modes), error);
+  if (status == STRUT_OK) strut_warn_of_overload(a->model, modes.q, "in this shape");
   if (status == STRUT_OK && a->plot.path)
     status = strut_modes_figure(&a->plot, a->model, &modes, (size_t)count, error);
   strut_modes_free(&modes);

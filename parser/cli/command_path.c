@@ -245,6 +245,35 @@ static const strut_option options[] = {
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
+/* Does something carry more than it can? What that is. */
+static const char *overloaded_at(const strut_scene *scene, const strut_path_point *at) {
+  for (size_t j = 0; j < scene->member_count; j++) {
+    const strut_member *m = &scene->members[j];
+    bool yields = m->law.kind == STRUT_LAW_ELASTIC_PLASTIC && fabs(at->force[j]) > m->law.yield;
+    if (yields || (m->breaks_at > 0.0 && at->force[j] > m->breaks_at)) return m->name;
+  }
+  for (size_t i = 0; i < scene->hinge_count; i++) {
+    const strut_hinge *h = &scene->hinges[i];
+    double moment = fabs(at->moment[i]);
+    bool yields = h->law.kind == STRUT_LAW_ELASTIC_PLASTIC && moment > h->law.yield;
+    if (yields || (h->breaks_at > 0.0 && moment > h->breaks_at)) return h->name;
+  }
+  return NULL;
+}
+
+static void warn_of_overload(const strut_scene *scene, const strut_path *path) {
+  for (size_t i = 0; i < path->point_count; i++) {
+    const char *name = overloaded_at(scene, &path->points[i]);
+    if (!name) continue;
+    fprintf(
+        stderr,
+        "strut: warning: from the factor %.4g on '%s' carries more than it can; paths take what "
+        "breaks as whole and what yields as elastic\n",
+        path->points[i].factor, name);
+    return;
+  }
+}
+
 /* Writes, prints and draws the path; reports what fails on stderr. */
 static strut_status report_path(const strut_arguments *arguments, const strut_plot *plot,
                                 const strut_model *model, const strut_path *path) {
@@ -252,6 +281,7 @@ static strut_status report_path(const strut_arguments *arguments, const strut_pl
   strut_status status = strut_report(arguments, file_names, strut_path_json(path, model->scene),
                                      strut_path_csv(path, model->scene),
                                      strut_path_table(path, model->scene), &error);
+  if (status == STRUT_OK) warn_of_overload(model->scene, path);
   if (status == STRUT_OK && plot->path) status = strut_path_figure(plot, model, path, &error);
   if (status != STRUT_OK && error.message[0]) strut_print_error(&error);
   return status;

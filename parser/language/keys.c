@@ -36,6 +36,7 @@ static const int first[] = {STRUT_KEY_SCENE_VERSION,
                             STRUT_KEY_MEMBER_GROUP,
                             STRUT_KEY_HINGE_NODES,
                             STRUT_KEY_LAW_KIND,
+                            STRUT_KEY_RAYLEIGH_MASS,
                             STRUT_KEY_GROUND_HEIGHT,
                             STRUT_KEY_FRICTION_LAW,
                             STRUT_KEY_CONTACT_GROUP,
@@ -68,11 +69,11 @@ static const int first[] = {STRUT_KEY_SCENE_VERSION,
                             STRUT_KEY_COUNT};
 
 static const char *const section_names[] = {
-    "scene",   "node",          "member",  "hinge",  "law",        "ground",    "friction",
-    "contact", "actuator",      "load",    "signal", "sine",       "half_sine", "square",
-    "ramp",    "configuration", "initial", "settle", "equilibria", "solver",    "run",
-    "measure", "quantity",      "steady",  "output", "study",      "range",     "variant",
-    "check",   "figure",        "sensor",  "state",  "oscillator", "controller"};
+    "scene",    "node",    "member",        "hinge",   "law",    "rayleigh",   "ground",
+    "friction", "contact", "actuator",      "load",    "signal", "sine",       "half_sine",
+    "square",   "ramp",    "configuration", "initial", "settle", "equilibria", "solver",
+    "run",      "measure", "quantity",      "steady",  "output", "study",      "range",
+    "variant",  "check",   "figure",        "sensor",  "state",  "oscillator", "controller"};
 
 _Static_assert(sizeof first / sizeof first[0] == STRUT_SECTION_COUNT + 1, "one for each section");
 _Static_assert(sizeof section_names / sizeof section_names[0] == STRUT_SECTION_COUNT,
@@ -180,6 +181,7 @@ strut_dimension strut_measure_dimension(strut_measure measure) {
     case STRUT_MEASURE_DISSIPATION: return STRUT_DIM_DISSIPATION;
     case STRUT_MEASURE_ANGULAR_STIFFNESS: return STRUT_DIM_ANGULAR_STIFFNESS;
     case STRUT_MEASURE_ANGULAR_DAMPING: return STRUT_DIM_ANGULAR_DAMPING;
+    case STRUT_MEASURE_MOMENT: return STRUT_DIM_MOMENT;
     case STRUT_MEASURE_NONE:
     case STRUT_MEASURE_CONTEXT: break;
   }

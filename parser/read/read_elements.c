@@ -23,7 +23,8 @@ static bool read_numbers(strut_reader *reader, const strut_fields *fields, strut
   for (int p = 0; p < STRUT_LAW_NUMBER_COUNT; p++) {
     int key = strut_key_find(STRUT_SECTION_LAW, strut_law_key(p));
     const strut_slot *slot = strut_slot_of((strut_fields *)fields, key);
-    strut_dimension dimension = strut_law_is_slope(p) ? per_strain(force, strain, 1) : strain;
+    int power = strut_law_power(p);
+    strut_dimension dimension = power < 0 ? strain : per_strain(force, strain, power);
     if (slot->state != STRUT_GIVEN) continue;
     fine = strut_read_number(reader, slot->value, strut_law_key(p), owner, dimension,
                              strut_key_at(key)->limits.range, strut_law_number(law, p)) &&
@@ -84,7 +85,7 @@ static bool check_needs(strut_reader *reader, strut_fields *fields, strut_owner 
     int key = strut_key_find(STRUT_SECTION_LAW, strut_law_key(p));
     const strut_slot *slot = strut_slot_of(fields, key);
     bool needed = strut_law_needs(law->kind, p);
-    if (needed == (slot->state != STRUT_ABSENT)) continue;
+    if (slot->state == STRUT_ABSENT ? !needed : strut_law_allows(law->kind, p)) continue;
     fine = false;
     if (needed)
       strut_report_error(reader, fields->map->place, "%s lacks '%s', which the kind %s needs",
@@ -163,6 +164,14 @@ static bool read_hinge(strut_reader *reader, const strut_tree *key, strut_hinge 
     fine = false;
   if (!fine || fields.broken) reader->ends_unknown = true;
   return fine && !fields.broken;
+}
+
+void strut_read_rayleigh(strut_reader *reader) {
+  strut_fields fields;
+  if (strut_read_section(reader, STRUT_KEY_SCENE_RAYLEIGH, STRUT_SECTION_RAYLEIGH, "rayleigh",
+                         &fields))
+    strut_store_fields(reader, &fields, &reader->scene->arena, reader->scene,
+                       sizeof *reader->scene);
 }
 
 void strut_read_hinges(strut_reader *reader) {

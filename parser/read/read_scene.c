@@ -28,11 +28,11 @@ static void read_head(strut_reader *reader) {
 /* Stops behind the section in which the diagnostics became full. */
 static void read_sections(strut_reader *reader, const strut_setting *settings, size_t count) {
   static void (*const sections[])(strut_reader *) = {
-      read_head,          strut_read_groups,      strut_read_nodes,          strut_read_members,
-      strut_read_hinges,  strut_list_signals,     strut_list_controllers,    strut_list_states,
-      strut_read_sensors, strut_read_controllers, strut_read_signals,        strut_read_states,
-      strut_read_drives,  strut_read_ground,      strut_read_configurations, strut_read_search,
-      strut_read_initial, strut_read_experiment};
+      read_head,         strut_read_groups,   strut_read_nodes,       strut_read_members,
+      strut_read_hinges, strut_read_rayleigh, strut_list_signals,     strut_list_controllers,
+      strut_list_states, strut_read_sensors,  strut_read_controllers, strut_read_signals,
+      strut_read_states, strut_read_drives,   strut_read_ground,      strut_read_configurations,
+      strut_read_search, strut_read_initial,  strut_read_experiment};
   strut_read_parameters(reader, settings, count);
   for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++) {
     if (strut_diagnostics_full(reader->diagnostics)) return;

@@ -162,6 +162,36 @@ bool strut_read_node_pairs(strut_reader *reader, const strut_tree *map, strut_ow
   return fine;
 }
 
+/* The signal of an actuator: what it adds to a rest length or angle, or a force, or a moment. */
+static bool read_drive(strut_reader *reader, const strut_tree *key, strut_fields *fields,
+                       strut_owner owner, bool hinge, bool known, strut_actuator *actuator) {
+  static const int keys[] = {STRUT_KEY_ACTUATOR_SIGNAL, STRUT_KEY_ACTUATOR_FORCE,
+                             STRUT_KEY_ACTUATOR_MOMENT};
+  const strut_dimension dimensions[] = {hinge ? STRUT_DIM_ANGLE : STRUT_DIM_LENGTH, STRUT_DIM_FORCE,
+                                        STRUT_DIM_MOMENT};
+  int k = 0;
+  while (k < 3 && strut_slot_of(fields, keys[k])->state == STRUT_ABSENT) k++;
+  const strut_slot *slot = strut_slot_of(fields, keys[k < 3 ? k : 0]);
+  if (k == 3 && !fields->broken)
+    strut_report_error(reader, key->place,
+                       "%s lacks 'signal', expected a signal such as {sine: {amplitude: 1 mm, "
+                       "frequency: 10 Hz}}, or a signal's name; or 'force' or 'moment' instead",
+                       strut_owner_text(reader, owner));
+  if (k == 3) return false;
+  if (known && k > 0 && hinge != (k == 2)) {
+    strut_report_error(reader, slot->key->place,
+                       hinge ? "%s gives a 'force' to a hinge, which takes a 'moment'"
+                             : "%s gives a 'moment' to a member, which takes a 'force'",
+                       strut_owner_text(reader, owner));
+    return false;
+  }
+  actuator->force = k > 0;
+  if (slot->state == STRUT_GIVEN)
+    actuator->signal = strut_read_signal(reader, slot->value, strut_key_at(keys[k])->name, owner,
+                                         known || k > 0 ? &dimensions[k] : NULL);
+  return actuator->signal >= 0;
+}
+
 static bool read_actuator(strut_reader *reader, const strut_tree *key, strut_actuator *actuator) {
   strut_owner owner = {"actuator", actuator->name};
   bool fine = strut_read_name(reader, key, "actuator");
@@ -169,9 +199,7 @@ static bool read_actuator(strut_reader *reader, const strut_tree *key, strut_act
   strut_read_fields(reader, STRUT_SECTION_ACTUATOR, key->next, owner, &fields);
   strut_require(reader, &fields, owner, key->place);
   const strut_slot *member = strut_slot_of(&fields, STRUT_KEY_ACTUATOR_MEMBER);
-  const strut_slot *signal = strut_slot_of(&fields, STRUT_KEY_ACTUATOR_SIGNAL);
   const strut_slot *hinge = strut_slot_of(&fields, STRUT_KEY_ACTUATOR_HINGE);
-  strut_dimension driven = hinge->key ? STRUT_DIM_ANGLE : STRUT_DIM_LENGTH;
   bool known = strut_slot_of(&reader->top, STRUT_KEY_SCENE_MEMBERS)->state != STRUT_BROKEN;
   if (member->state == STRUT_ABSENT && hinge->state == STRUT_ABSENT && !fields.broken) {
     strut_report_error(reader, key->place,
@@ -189,12 +217,10 @@ static bool read_actuator(strut_reader *reader, const strut_tree *key, strut_act
     actuator->member =
         strut_read_reference(reader, member->value, "member", owner, "member",
                              &reader->member_names, strut_member_name, reader->scene->member_count);
+  /* of what, tells the signal's dimension */
   bool drives = member->state != STRUT_ABSENT || hinge->state != STRUT_ABSENT;
-  if (signal->state == STRUT_GIVEN) /* of what, tells its dimension */
-    actuator->signal =
-        strut_read_signal(reader, signal->value, "signal", owner, drives ? &driven : NULL);
-  return fine && !fields.broken && (actuator->member >= 0 || actuator->hinge >= 0) &&
-         actuator->signal >= 0;
+  fine = read_drive(reader, key, &fields, owner, hinge->key, drives, actuator) && fine;
+  return fine && !fields.broken && (actuator->member >= 0 || actuator->hinge >= 0);
 }
 
 static void read_actuators(strut_reader *reader) {
@@ -208,7 +234,8 @@ static void read_actuators(strut_reader *reader) {
   if (!scene->actuators || !reader->actuator_source) return;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
     size_t i = strut_next_entry(reader, &scene->actuator_count);
-    scene->actuators[i] = (strut_actuator){strut_keep_text(reader, key->text), -1, -1, -1};
+    scene->actuators[i] = (strut_actuator){
+        .name = strut_keep_text(reader, key->text), .member = -1, .signal = -1, .hinge = -1};
     strut_add_name(reader, &reader->actuator_names, scene->actuators[i].name, i);
     bool fine = read_actuator(reader, key, &scene->actuators[i]);
     reader->actuator_source[i] = (strut_source){key, key->next, !fine};

@@ -321,6 +321,7 @@ const char *strut_hinge_name(const void *reader, size_t i);
 bool strut_read_law(strut_reader *reader, const strut_slot *slot, strut_owner owner,
                     strut_dimension strain, strut_dimension force, strut_law *law);
 void strut_read_hinges(strut_reader *reader);
+void strut_read_rayleigh(strut_reader *reader);
 
 /* read_feedback.c */
 

@@ -27,6 +27,9 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
         "hinge "
         "read angle for length and moment for force. `polynomial` and `table` bring their own "
         "stiffness, so that the member must not give one.",
+    [STRUT_SECTION_RAYLEIGH] =
+        "`rayleigh: {...}`: a mode of angular frequency w gets the damping ratio alpha / (2 w) + "
+        "beta w / 2, beside what members' own dampers give.",
     [STRUT_SECTION_GROUND] = "`ground: {...}`: the line that nodes may touch.",
     [STRUT_SECTION_FRICTION] =
         "`friction: {...}` of the ground, of a group, or of a contact; keys of a contact take "
@@ -35,13 +38,14 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
         "`stick_velocity`. The smooth law needs `mu` or `mu_kinetic`, and `width`. Where friction "
         "depends on the direction, `mu_forward` and `mu_backward` replace `mu`, in every law.",
     [STRUT_SECTION_CONTACT] = "`ground: {contacts: {NODE: {...}}}`: settings of a single contact.",
-    [STRUT_SECTION_ACTUATOR] = "`actuators: {NAME: {...}}`.",
+    [STRUT_SECTION_ACTUATOR] =
+        "`actuators: {NAME: {...}}`, with a `signal`, a `force` of a member or a `moment` of a "
+        "hinge.",
     [STRUT_SECTION_LOAD] = "`loads: {NAME: {...}}`.",
     [STRUT_SECTION_SIGNAL] =
         "A signal is a mapping with one of these keys, or the name of an entry of `signals`. The "
-        "unit of its values follows from its use: a length or an angle for an actuator, a number "
-        "without unit "
-        "for a load.",
+        "unit of its values follows from its use: a length or an angle, or a force or a moment, "
+        "for an actuator, a number without unit for a load.",
     [STRUT_SECTION_SINE] = "`{sine: {...}}`.",
     [STRUT_SECTION_HALF_SINE] = "`{half_sine: {...}}`: a single pulse.",
     [STRUT_SECTION_SQUARE] = "`{square: {...}}`.",

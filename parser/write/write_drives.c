@@ -164,7 +164,7 @@ static void put_actuators(strut_writer *writer) {
     strut_put(writer, a->member >= 0 ? ": {member: " : ": {hinge: ");
     strut_put_name(writer,
                    a->member >= 0 ? scene->members[a->member].name : scene->hinges[a->hinge].name);
-    strut_put(writer, ", signal: ");
+    strut_put(writer, !a->force ? ", signal: " : a->member >= 0 ? ", force: " : ", moment: ");
     put_reference(writer, scene->actuators[i].signal);
     strut_put(writer, "}\n");
   }

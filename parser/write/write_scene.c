@@ -78,7 +78,7 @@ static void put_law_by_hand(strut_writer *writer, strut_mapping *mapping, int ke
   while (parameter < STRUT_LAW_PARAMETER_COUNT &&
          strcmp(strut_law_key(parameter), strut_key_at(key)->name) != 0)
     parameter++;
-  if (parameter == STRUT_LAW_PARAMETER_COUNT || !strut_law_needs(law->kind, parameter)) return;
+  if (parameter == STRUT_LAW_PARAMETER_COUNT || !strut_law_allows(law->kind, parameter)) return;
   strut_put_key_name(writer, mapping, key);
   if (parameter < STRUT_LAW_NUMBER_COUNT) {
     strut_put_number(writer, strut_law_value(law, parameter));
@@ -167,6 +167,15 @@ static void put_hinges(strut_writer *writer) {
                      put_hinge_by_hand);
     strut_put(writer, "}\n");
   }
+}
+
+static void put_rayleigh(strut_writer *writer) {
+  strut_mapping mapping = STRUT_MAPPING_INLINE;
+  if (!strut_fields_differ(STRUT_SECTION_RAYLEIGH, writer->scene, &writer->usual.scene)) return;
+  strut_put(writer, "rayleigh: {");
+  strut_put_fields(writer, &mapping, STRUT_SECTION_RAYLEIGH, writer->scene, &writer->usual.scene,
+                   NULL);
+  strut_put(writer, "}\n");
 }
 
 static const strut_friction no_friction;
@@ -284,6 +293,7 @@ char *strut_setup_write(const strut_setup *setup) {
   put_nodes(&writer);
   put_members(&writer);
   put_hinges(&writer);
+  put_rayleigh(&writer);
   put_ground(&writer);
   strut_put_drives(&writer);
   strut_put_shapes(&writer);

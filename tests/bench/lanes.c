@@ -43,12 +43,30 @@ static int ascending(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
+/* Two hinges, and stops on the four soft springs. */
+static bool add_elements(strut_scene *scene) {
+  enum { HINGES = 2 };
+  static const int32_t nodes[HINGES][3] = {{2, 4, 3}, {0, 4, 1}};
+  scene->hinges = strut_arena_allocate(&scene->arena, HINGES, sizeof *scene->hinges);
+  for (int i = 0; i < HINGES && scene->hinges; i++) {
+    scene->hinges[i] = strut_hinge_default();
+    for (int k = 0; k < 3; k++) scene->hinges[i].node[k] = nodes[i][k];
+    scene->hinges[i].stiffness = 0.01, scene->hinges[i].damping = 1e-5;
+  }
+  scene->hinge_count = scene->hinges ? HINGES : 0;
+  for (int j = 3; j < 7; j++) scene->members[j].longest = 0.062;
+  return scene->hinges != NULL;
+}
+
+static bool elements; /* the crawler with hinges and stops */
+
 static bool lane_make(lane *it, int i, const strut_integrator *method, double step, bool ledger) {
   *it = (lane){0};
   strut_experiment experiment = strut_experiment_default();
   experiment.step = step;
   const strut_integrator_settings settings = strut_integrator_settings_of(&experiment);
   if (bench_crawler_scene(&it->setup, 10.0 + 0.1 * i, 1e-4, 0.1) != STRUT_OK ||
+      (elements && !add_elements(&it->setup.scene)) ||
       strut_model_compile(&it->setup.scene, &it->model, NULL) != STRUT_OK ||
       strut_state_create(it->model, &it->state, NULL) != STRUT_OK ||
       !(it->workspace = method->create(it->model, it->state, &settings)))
@@ -186,12 +204,19 @@ static void compare_points(int m, bool ledger, int repeats) {
   for (int i = 0; i < POINTS; i++) lane_free(&all.at[i]);
 }
 
-void bench_lanes(int repeats) {
-  printf("\nlanes: the crawler, 0.1 and 0.08 ms\n  %-14s %-8s %-12s %10s %10s\n", "", "", "lanes",
-         "ns/step", "times");
+static void compare_all(int repeats) {
+  printf("\nlanes: the crawler%s, 0.1 and 0.08 ms\n  %-14s %-8s %-12s %10s %10s\n",
+         elements ? " with hinges and stops" : "", "", "", "lanes", "ns/step", "times");
   for (int m = 0; m < METHODS; m++)
     for (int ledger = 0; ledger < 2; ledger++) compare(m, ledger, repeats);
   printf("  whole runs of 1 s%23s\n", "points/s");
   for (int m = 0; m < METHODS; m++)
     for (int ledger = 0; ledger < 2; ledger++) compare_points(m, ledger, repeats > 5 ? 5 : repeats);
+}
+
+void bench_lanes(int repeats) {
+  for (int with = 0; with < 2; with++) {
+    elements = with;
+    compare_all(repeats);
+  }
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "engine/integrate/lanes/batch.h"
+#include "tests/physics/random_elements.h"
 #include "tests/physics/random_scene.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"
@@ -34,6 +35,10 @@ static void vary(strut_setup *setup, uint64_t *r) {
     setup->scene.members[j].stiffness *= random_between(r, 0.8, 1.2);
     setup->scene.members[j].damping *= random_between(r, 0.8, 1.2);
     setup->scene.members[j].mass *= random_between(r, 0.8, 1.2);
+  }
+  for (size_t i = 0; i < setup->scene.hinge_count; i++) {
+    setup->scene.hinges[i].stiffness *= random_between(r, 0.8, 1.2);
+    setup->scene.hinges[i].damping *= random_between(r, 0.8, 1.2);
   }
   for (size_t i = 0; i < setup->scene.signal_count; i++) {
     setup->scene.signals[i].amplitude *= random_between(r, 0.5, 1.5);
@@ -85,8 +90,8 @@ static void check_point(point *p, bool ledger) {
     return;
   }
   check_array(a->force, b->force, 2 * m->node_count);
-  check_array(a->rest, b->rest, m->members.count);
-  check_array(a->rest_rate, b->rest_rate, m->members.count);
+  check_array(a->rest, b->rest, m->members.slots);
+  check_array(a->rest_rate, b->rest_rate, m->members.slots);
   if (ledger) check_array(a->power, b->power, STRUT_POWER_COUNT);
 }
 
@@ -131,15 +136,21 @@ static void run_in_lanes(point *points, int count, way how, bool ledger) {
   strut_batch_free(b);
 }
 
-/* What lanes with events do not take. */
-static void simplify(strut_setup *setup) {
-  setup->scene.ground.slope = 0.0;
-  for (size_t j = 0; j < setup->scene.member_count; j++)
-    if (setup->scene.members[j].kind == STRUT_CABLE) setup->scene.members[j].kind = STRUT_SPRING;
+/* Running cables, hinges, laws and stops, with hinges enough for groups of them; some are driven. */
+static void make_elements(strut_scene *scene, uint64_t seed) {
+  uint64_t r = seed;
+  random_elements(scene, seed, 1.0);
+  for (int32_t k = 0, n = (int32_t)scene->node_count; k < (int32_t)(seed % 4) * 2; k++)
+    build_hinge(scene, k % n, (k + 1) % n, (k + 2) % n, random_between(&r, 5, 20), 0.3);
+  int32_t sine = build_sine(scene, 0.05, 2);
+  build_actuator(scene, random_below(&r, (int32_t)scene->member_count), sine);
+  build_actuator(scene, (int32_t)scene->member_count - 1, sine);
+  build_actuator(scene, -1, sine);
+  scene->actuators[scene->actuator_count - 1].hinge = 0;
 }
 
-static void compare_random(uint64_t seed, const char *method, way how, bool ledger, int *done,
-                           int64_t *events) {
+static void compare_random(uint64_t seed, void make(strut_scene *, uint64_t), const char *method,
+                           way how, bool ledger, int *done, int64_t *events) {
   enum { POINTS = 11 };
   static point points[POINTS];
   uint64_t r = seed;
@@ -147,11 +158,12 @@ static void compare_random(uint64_t seed, const char *method, way how, bool ledg
   bool possible = true;
   for (; count < POINTS && possible; count++) {
     strut_setup_init(&points[count].setup);
-    random_scene(&points[count].setup.scene, seed);
+    make(&points[count].setup.scene, seed);
     if (count) vary(&points[count].setup, &r);
-    if (strcmp(method, "rk4") != 0) simplify(&points[count].setup);
-    begin_point(&points[count], method, random_scale(&r, 1e-4, 1e-3), 3 + random_below(&r, 200),
-                ledger);
+    if (strcmp(method, "rk4") != 0) points[count].setup.scene.ground.slope = 0.0;
+    double slow = points[count].setup.scene.hinge_count ? 8.0 : 1.0;
+    begin_point(&points[count], method, slow * random_scale(&r, 1e-4, 1e-3),
+                3 + random_below(&r, 200), ledger);
     possible = strut_batch_possible(points[0].lane.model, points[0].lane.method) &&
                strut_lanes_alike(points[0].lane.model, points[count].lane.model);
   }
@@ -167,7 +179,7 @@ static void test_random_structures(void **unused) {
   int64_t events = 0;
   for (int seed = 1; seed <= seeds; seed++)
     for (size_t w = 0; w < way_count(); w++)
-      compare_random((uint64_t)seed, "rk4", ways[w], seed % 2, &done, &events);
+      compare_random((uint64_t)seed, random_scene, "rk4", ways[w], seed % 2, &done, &events);
   assert_true(done > seeds / 2 * (int)way_count()); /* those with a sparse factor have no lanes */
 }
 
@@ -176,10 +188,23 @@ static void test_random_events(void **unused) {
   int done = 0, seeds = 300;
   int64_t events = 0;
   for (int seed = 1; seed <= seeds; seed++)
-    compare_random((uint64_t)seed, "verlet-events", ways[(size_t)seed / 2 % way_count()], seed % 2,
-                   &done, &events);
+    compare_random((uint64_t)seed, random_scene, "verlet-events",
+                   ways[(size_t)seed / 2 % way_count()], seed % 2, &done, &events);
   print_message("%d of %d structures in lanes, %lld events\n", done, seeds, (long long)events);
   assert_true(done > seeds / 5 && events > 10 * done);
+}
+
+static void test_random_elements(void **unused) {
+  (void)unused;
+  int done = 0, seeds = 80;
+  int64_t events = 0;
+  for (int seed = 1; seed <= seeds; seed++) {
+    way how = ways[(size_t)seed / 2 % way_count()];
+    compare_random((uint64_t)seed, make_elements, "rk4", how, seed % 2, &done, &events);
+    compare_random((uint64_t)seed, make_elements, "verlet-events", how, seed % 2, &done, &events);
+  }
+  print_message("%d of %d structures in lanes, %lld events\n", done, 2 * seeds, (long long)events);
+  assert_true(done > seeds && events > 10 * seeds);
 }
 
 static void run_crawlers(const char *method, way how, bool ledger) {
@@ -207,6 +232,30 @@ static void test_crawler(void **unused) {
       run_crawlers("rk4", ways[w], ledger);
       run_crawlers("verlet-events", ways[w], ledger);
     }
+}
+
+/* A lane that may take any number of steps does not end the others' before they are done. */
+static void test_endless_lane(void **unused) {
+  (void)unused;
+  static point points[2];
+  const int64_t left[STRUT_MOST_LANES] = {10, INT64_MAX};
+  for (int i = 0; i < 2; i++) {
+    strut_setup_init(&points[i].setup);
+    structure_crawler(&points[i].setup.scene, 10, 1e-4, 0.1, i);
+    begin_point(&points[i], "verlet-events", 8e-5, 10, true);
+  }
+  strut_batch *b = strut_batch_create(points[0].lane.model, points[0].lane.method, 2, true);
+  assert_non_null(b);
+  for (int i = 0; i < 2; i++) {
+    strut_batch_fill(b, i, points[i].lane.model, points[i].lane.step);
+    strut_batch_put(b, i, points[i].lane.state, points[i].lane.workspace);
+  }
+  for (int turn = 1; turn <= 2; turn++) { /* the second begins behind step 0 */
+    strut_batch_advance(b, left);
+    assert_int_equal(points[0].lane.state->step, 10 * turn);
+  }
+  strut_batch_free(b);
+  for (int i = 0; i < 2; i++) end_point(&points[i]);
 }
 
 /* Blocks exactly at the edge of Karnopp's band, and pushed by exactly what holds: as alone. */
@@ -310,7 +359,9 @@ static void test_no_memory(void **unused) {
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_random_structures),
                                      cmocka_unit_test(test_random_events),
+                                     cmocka_unit_test(test_random_elements),
                                      cmocka_unit_test(test_crawler),
+                                     cmocka_unit_test(test_endless_lane),
                                      cmocka_unit_test(test_edges_of_friction),
                                      cmocka_unit_test(test_refusals),
                                      cmocka_unit_test(test_only_one_topology_shares_a_batch),

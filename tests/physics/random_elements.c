@@ -34,6 +34,7 @@ strut_law random_law(strut_scene *scene, strut_law_kind kind, double size, doubl
       law.second_stiffness = random_between(r, 0.1, 3.0) * stiffness;
       break;
     case STRUT_LAW_PLAY: law.gap = random_between(r, 0.1, 0.8) * size; break;
+    case STRUT_LAW_ELASTIC_PLASTIC: law.yield = 1e6 * force; break; /* never */
     case STRUT_LAW_EXPONENTIAL: law.scale = random_between(r, 0.5, 2.0) * size; break;
     case STRUT_LAW_POLYNOMIAL: {
       const double c[] = {random_between(r, 0.1, 1.0) * stiffness,
@@ -51,11 +52,17 @@ strut_law random_law(strut_scene *scene, strut_law_kind kind, double size, doubl
   return law;
 }
 
+/* A law without memory, which statics and every method know. */
+static strut_law_kind random_kind(uint64_t *r) {
+  strut_law_kind kind = (strut_law_kind)random_below(r, STRUT_LAW_COUNT - 1);
+  return kind < STRUT_LAW_ELASTIC_PLASTIC ? kind : (strut_law_kind)(kind + 1);
+}
+
 /* A member from node to node with a random law, and stops now and then. */
 static void add_member(strut_scene *scene, int32_t a, int32_t b, double damping, uint64_t *r) {
   const double *from = scene->nodes[a].position, *to = scene->nodes[b].position;
   double drawn = strut_distance(from, to), stiffness = random_between(r, 50, 200);
-  strut_law_kind kind = (strut_law_kind)random_below(r, STRUT_LAW_COUNT);
+  strut_law_kind kind = random_kind(r);
   int32_t j =
       build_sized(scene, random_once_in(r, 3) ? STRUT_CABLE : STRUT_SPRING, a, b, stiffness,
                   damping * random_between(r, 0.1, 1.0), 0, drawn * random_between(r, 0.8, 1.1));
@@ -72,7 +79,7 @@ static void add_member(strut_scene *scene, int32_t a, int32_t b, double damping,
 static void add_hinge(strut_scene *scene, int32_t a, int32_t b, int32_t c, double damping,
                       uint64_t *r) {
   double stiffness = random_between(r, 5, 20);
-  strut_law_kind kind = (strut_law_kind)random_below(r, STRUT_LAW_COUNT);
+  strut_law_kind kind = random_kind(r);
   if (kind == STRUT_LAW_LOGARITHMIC) kind = STRUT_LAW_LINEAR;
   int32_t i = build_hinge(scene, a, b, c, stiffness, 0.1 * damping * random_between(r, 0.1, 1.0));
   strut_hinge *h = &scene->hinges[i];

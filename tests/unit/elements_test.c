@@ -567,6 +567,7 @@ static void scale_law(strut_scene *scene, strut_law *law, double length, double 
       (double *)build_numbers(scene, law->force ? law->force : &force, law->force ? law->count : 1);
   law->knee *= length, law->gap *= length, law->scale *= length;
   law->second_stiffness *= force / length;
+  law->yield *= force;
   for (size_t i = 0; i < law->count; i++)
     if (law->kind == STRUT_LAW_TABLE)
       x[i] *= length, y[i] *= force;

@@ -72,6 +72,7 @@ static const struct exception {
     {STRUT_SECTION_LAW, "second_stiffness", "of force per strain"},
     {STRUT_SECTION_LAW, "gap", "of the strain, a length or an angle"},
     {STRUT_SECTION_LAW, "scale", "of the strain, a length or an angle"},
+    {STRUT_SECTION_LAW, "yield", "a force or a moment"},
     {STRUT_SECTION_FRICTION, "mu_forward", "sets both coefficients of a direction"},
     {STRUT_SECTION_FRICTION, "mu_forward_static", "another name for mu_static"},
     {STRUT_SECTION_FRICTION, "mu_backward", "makes the friction directional"},

@@ -12,47 +12,50 @@
 #include "engine/base/vec.h"
 #include "engine/model/hot.h"
 
-/* atan t / t - 1 for |t| <= tan(pi/16), from its series, whose next term is below 1e-18. */
-STRUT_INLINE strut_lanes strut_angle_series(strut_lanes z) {
-  strut_lanes z2 = z * z, z4 = z2 * z2, z8 = z4 * z4;
-  strut_lanes a = (-1.0 / 3.0 + z * (1.0 / 5.0)) + z2 * (-1.0 / 7.0 + z * (1.0 / 9.0));
-  strut_lanes b = (-1.0 / 11.0 + z * (1.0 / 13.0)) + z2 * (-1.0 / 15.0 + z * (1.0 / 17.0));
-  strut_lanes c = (-1.0 / 19.0 + z * (1.0 / 21.0)) + z2 * (-1.0 / 23.0 + z * (1.0 / 25.0));
-  return z * (a + z4 * b + z8 * c);
-}
-
 /**
- * The directions of the vectors (x, y) [rad], in [-pi, pi]: atan2 with the same bits on every machine,
- * within 4 DBL_EPSILON of the angle (tests/unit/elements_test.c). Within an octant the vector is turned back by 0, 1 or 2 times pi/8.
+ * Defines, for numbers of a vector type: PREFIX_angle_of, the directions of the vectors (x, y) [rad], in
+ * [-pi, pi]: atan2 with the same bits on every machine, within 4 DBL_EPSILON of the angle
+ * (tests/unit/elements_test.c), where within an octant the vector is turned back by 0, 1 or 2 times pi/8;
+ * and PREFIX_angle_near, the angle that differs from `angle` by whole turns and is nearest to `reference`.
+ * The series is that of atan t / t - 1 for |t| <= tan(pi/16), whose next term is below 1e-18.
  */
-STRUT_INLINE strut_lanes strut_angle_of(strut_lanes x, strut_lanes y) {
-  const strut_lanes zero = {0}, one = zero + 1.0;
-  strut_lanes ax = strut_lanes_magnitude(x), ay = strut_lanes_magnitude(y);
-  strut_lane_mask steep = ay > ax;
-  strut_lanes big = strut_lanes_choose(steep, ay, ax), small = strut_lanes_choose(steep, ax, ay);
-  strut_lane_mask once = small > 0.198912367379658 * big,
-                  twice = small > 0.6681786379192989 * big; /* tan pi/16, tan 3 pi/16 */
-  strut_lanes c = strut_lanes_choose(twice, zero + 0.7071067811865476,
-                                     strut_lanes_choose(once, zero + 0.9238795325112867, one));
-  strut_lanes s = strut_lanes_choose(twice, zero + 0.7071067811865476,
-                                     strut_lanes_choose(once, zero + 0.3826834323650898, zero));
-  strut_lanes base = strut_lanes_choose(twice, zero + 0.25 * STRUT_PI,
-                                        strut_lanes_choose(once, zero + 0.125 * STRUT_PI, zero));
-  strut_lanes across = small * c - big * s, along = big * c + small * s;
-  strut_lanes t = across / strut_lanes_choose(along > zero, along, one);
-  strut_lanes angle = base + (t + t * strut_angle_series(t * t));
-  angle = strut_lanes_choose(steep, 0.5 * STRUT_PI - angle, angle);
-  angle = strut_lanes_choose(x < zero, STRUT_PI - angle, angle);
-  return strut_lanes_choose(y < zero, -angle, angle);
-}
+#define STRUT_DEFINE_ANGLE(inlined, number, mask, PREFIX, choose, magnitude)                       \
+  inlined number PREFIX##_angle_series(number z) {                                                 \
+    number z2 = z * z, z4 = z2 * z2, z8 = z4 * z4;                                                 \
+    number a = (-1.0 / 3.0 + z * (1.0 / 5.0)) + z2 * (-1.0 / 7.0 + z * (1.0 / 9.0));               \
+    number b = (-1.0 / 11.0 + z * (1.0 / 13.0)) + z2 * (-1.0 / 15.0 + z * (1.0 / 17.0));           \
+    number c = (-1.0 / 19.0 + z * (1.0 / 21.0)) + z2 * (-1.0 / 23.0 + z * (1.0 / 25.0));           \
+    return z * (a + z4 * b + z8 * c);                                                              \
+  }                                                                                                \
+  inlined number PREFIX##_angle_of(number x, number y) {                                           \
+    const number zero = {0}, one = zero + 1.0;                                                     \
+    number ax = magnitude(x), ay = magnitude(y);                                                   \
+    mask steep = ay > ax;                                                                          \
+    number big = choose(steep, ay, ax), small = choose(steep, ax, ay);                             \
+    mask once = small > 0.198912367379658 * big,                                                   \
+         twice = small > 0.6681786379192989 * big; /* tan pi/16, tan 3 pi/16 */                    \
+    number c =                                                                                     \
+        choose(twice, zero + 0.7071067811865476, choose(once, zero + 0.9238795325112867, one));    \
+    number s =                                                                                     \
+        choose(twice, zero + 0.7071067811865476, choose(once, zero + 0.3826834323650898, zero));   \
+    number base =                                                                                  \
+        choose(twice, zero + 0.25 * STRUT_PI, choose(once, zero + 0.125 * STRUT_PI, zero));        \
+    number across = small * c - big * s, along = big * c + small * s;                              \
+    number t = across / choose(along > zero, along, one);                                          \
+    number angle = base + (t + t * PREFIX##_angle_series(t * t));                                  \
+    angle = choose(steep, 0.5 * STRUT_PI - angle, angle);                                          \
+    angle = choose(x < zero, STRUT_PI - angle, angle);                                             \
+    return choose(y < zero, -angle, angle);                                                        \
+  }                                                                                                \
+  inlined number PREFIX##_angle_near(number angle, number reference) {                             \
+    const double rounder =                                                                         \
+        6755399441055744.0; /* of numbers of this size units are the last bits */                  \
+    number turns = (reference - angle) * (1.0 / STRUT_TAU);                                        \
+    return angle + STRUT_TAU * ((turns + rounder) - rounder);                                      \
+  }
 
-/* The angle that differs from `angle` by whole turns and is nearest to `reference`. */
-STRUT_INLINE strut_lanes strut_angle_near(strut_lanes angle, strut_lanes reference) {
-  const double rounder =
-      6755399441055744.0; /* numbers of a size at which units are the last bits */
-  strut_lanes turns = (reference - angle) * (1.0 / STRUT_TAU);
-  return angle + STRUT_TAU * ((turns + rounder) - rounder);
-}
+STRUT_DEFINE_ANGLE(STRUT_INLINE, strut_lanes, strut_lane_mask, strut, strut_lanes_choose,
+                   strut_lanes_magnitude)
 
 static inline double strut_strain_angle(const uint32_t *at, int n, const double *q,
                                         double reference, double *b) {

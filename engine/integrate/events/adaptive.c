@@ -147,7 +147,7 @@ static double earliest_slack_dip(const strut_model *model, strut_state *state,
   strut_event_measure(model, state, l, l->next);
   for (int32_t k = 0; k < l->law_count; k++) {
     double side = l->acting[k] ? 1.0 : -1.0;
-    if (l->laws[k].kinks) continue;
+    if (strut_switch_event(&l->laws[k]) != STRUT_EVENT_ACTS) continue;
     double from = side * l->now->stretch[k], to = side * l->next->stretch[k];
     if (!(from > 0.0 && to > 0.0)) continue;
     double at = dip(from, side * h * l->now->stretch_rate[k], to,

@@ -140,16 +140,22 @@ static void pass_kink(const strut_model *model, strut_state *state, strut_event_
 /* Which laws act, and on which piece, as positions, velocities and drives are. */
 static void start_laws(const strut_model *model, strut_state *state, strut_event_stepper *l,
                        double t) {
-  bool changed = false;
+  bool changed = false, memory = model->plan & STRUT_TERM_MEMORY;
+  if (memory) strut_drive_apply(model, state, t);
+  if (memory) strut_memory_thaw(model, state, l);
   for (int32_t k = 0; k < l->law_count; k++)
     if (l->laws[k].kinks)
       set_piece(state, l, k, -1);
-    else
+    else if (strut_switch_event(&l->laws[k]) == STRUT_EVENT_ACTS)
       set_acting(state, l, k, true);
+  if (memory) strut_memory_drop_gone(model, state, l);
   derive_consistently(model, state, l, t);
   for (int32_t k = 0; k < l->law_count; k++)
     if (l->laws[k].kinks) {
       find_piece(model, state, l, k);
+      changed = true;
+    } else if (strut_switch_event(&l->laws[k]) != STRUT_EVENT_ACTS) {
+      strut_memory_start(model, state, l, k);
       changed = true;
     } else if (!(l->now->stretch[k] > 0.0 && l->now->tension[k] > 0.0)) {
       set_acting(state, l, k, false);
@@ -254,6 +260,8 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_event
     case STRUT_EVENT_DAMPER: l->damper[i] = (int8_t)-l->damper[i]; break;
     case STRUT_EVENT_ACTS: set_acting(state, l, i, !l->acting[i]); break;
     case STRUT_EVENT_KINK: pass_kink(model, state, l, i); break;
+    case STRUT_EVENT_SLIDER:
+    case STRUT_EVENT_BREAK: strut_memory_apply(model, state, l, i, t); break;
     case STRUT_EVENT_NONE: break;
   }
   derive_consistently(model, state, l, t);

@@ -19,7 +19,8 @@ static double way_out(const strut_event_stepper *l, const strut_touch *o, int32_
 
 double strut_event_value(const strut_model *model, const strut_event_stepper *l,
                          const strut_step_end *end, strut_event_kind kind, int32_t i) {
-  if (kind == STRUT_EVENT_KINK) return end->tension[i];
+  if (kind == STRUT_EVENT_KINK || kind == STRUT_EVENT_SLIDER || kind == STRUT_EVENT_BREAK)
+    return end->tension[i];
   if (kind == STRUT_EVENT_ACTS) {
     /* It acts where stretch and force are positive; the lesser decides, both in newtons. */
     double k = l->laws[i].stiffness, d = l->laws[i].damping;
@@ -50,14 +51,16 @@ double strut_event_value(const strut_model *model, const strut_event_stepper *l,
     case STRUT_EVENT_DAMPER: return l->damper[i] > 0 ? -o->into : o->into;
     case STRUT_EVENT_NONE:
     case STRUT_EVENT_ACTS:
-    case STRUT_EVENT_KINK: break;
+    case STRUT_EVENT_KINK:
+    case STRUT_EVENT_SLIDER:
+    case STRUT_EVENT_BREAK: break;
   }
   return 1.0;
 }
 
 bool strut_event_rate(const strut_event_stepper *l, const strut_step_end *end,
                       strut_event_kind kind, int32_t i, double *rate) {
-  if (kind == STRUT_EVENT_ACTS || kind == STRUT_EVENT_KINK) return false; /* i is no contact */
+  if (kind >= STRUT_EVENT_ACTS) return false; /* i is no contact */
   const strut_touch *o = &end->touch[i];
   switch (kind) {
     case STRUT_EVENT_OPEN: *rate = -o->into; return true;
@@ -72,7 +75,9 @@ bool strut_event_rate(const strut_event_stepper *l, const strut_step_end *end,
     case STRUT_EVENT_PUSH:
     case STRUT_EVENT_YIELDED:
     case STRUT_EVENT_ACTS:
-    case STRUT_EVENT_KINK: break;
+    case STRUT_EVENT_KINK:
+    case STRUT_EVENT_SLIDER:
+    case STRUT_EVENT_BREAK: break;
   }
   return false;
 }
@@ -167,7 +172,9 @@ static void measure_element(const strut_model *model, const strut_state *state,
 static void measure_laws(const strut_model *model, const strut_state *state,
                          const strut_event_stepper *l, const strut_step_end *end) {
   for (int32_t k = 0; k < l->law_count; k++)
-    if (l->laws[k].member >= 0)
+    if (l->laws[k].slider || (l->laws[k].member < 0 && l->laws[k].element < 0))
+      strut_memory_measure(model, state, l, end, k);
+    else if (l->laws[k].member >= 0)
       measure_cable(model, state, l->laws[k].member, end, k);
     else
       measure_element(model, state, &l->laws[k], end, k);
@@ -210,7 +217,7 @@ strut_event strut_event_first(const strut_model *model, const strut_state *state
   }
   strut_event_measure(model, state, l, l->next);
   for (int32_t j = 0; j < l->law_count; j++) {
-    strut_event_kind kind = l->laws[j].kinks ? STRUT_EVENT_KINK : STRUT_EVENT_ACTS;
+    strut_event_kind kind = strut_switch_event(&l->laws[j]);
     if (strut_event_value(model, l, l->next, kind, j) < 0.0)
       keep_first(model, l, kind, j, h, &first);
   }

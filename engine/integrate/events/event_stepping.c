@@ -5,6 +5,7 @@
 
 #include "engine/forces/energy.h"
 #include "engine/forces/feedback.h"
+#include "engine/forces/memory.h"
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/model/element_compile.h"
 
@@ -14,14 +15,8 @@ static const double AT_ONCE = 1e-9;
    modes say: switches may follow each other faster and faster without end (Zeno). */
 enum { MOST_AT_ONCE = 8, MOST_SWITCHES = 2000, MOST_TRIALS = 60 };
 
-/* Most laws that switch: each cable, each element by its sign and by its kinks. */
-static size_t most_switches(const strut_model *model) {
-  bool slack = model->plan & STRUT_TERM_SLACK;
-  return (slack ? (size_t)model->members.count : 0) + 2 * (size_t)model->elements.count;
-}
-
 static bool make_end(const strut_model *model, strut_arena *arena, strut_step_end *end, bool own) {
-  size_t length = (size_t)model->length, switches = most_switches(model) + 1;
+  size_t length = (size_t)model->length, switches = strut_most_law_switches(model) + 1;
   if (!own) end->q = strut_arena_allocate(arena, length, sizeof(double));
   if (!own) end->v = strut_arena_allocate(arena, length, sizeof(double));
   end->a = strut_arena_allocate(arena, length, sizeof(double));
@@ -58,26 +53,31 @@ static bool make_arrays(const strut_model *model, strut_state *state, strut_even
 
 static bool list_laws(const strut_model *model, strut_state *state, strut_event_stepper *l) {
   const strut_member_table *t = &model->members;
-  size_t most = most_switches(model);
+  size_t most = strut_most_law_switches(model);
   if (!most) return true;
   l->laws = strut_arena_allocate(&state->arena, most, sizeof *l->laws);
   l->acting = strut_arena_allocate(&state->arena, most, 1);
   if (!l->laws || !l->acting) return false;
   for (int32_t j = 0; j < t->count; j++)
     if (t->slack[j] == 0.0)
-      l->laws[l->law_count++] =
-          (strut_law_switch){j, -1, false, false, t->stiffness[j], t->damping[j]};
+      l->laws[l->law_count++] = (strut_law_switch){
+          .member = j, .element = -1, .stiffness = t->stiffness[j], .damping = t->damping[j]};
   for (int32_t i = 0; i < model->elements.count; i++) {
     const strut_element *e = &model->elements.element[i];
     double natural = strut_element_start(model, i);
     strut_law_response rest = strut_law_respond(e->law, &e->numbers, natural, natural, -1);
     bool abrupt = e->carries * rest.force > 0.0 || (rest.force == 0.0 && !(rest.slope > 0.0));
-    const strut_law_switch own = {-1, i, false, abrupt, e->numbers.stiffness, e->damping};
+    const strut_law_switch own = {.member = -1,
+                                  .element = i,
+                                  .abrupt = abrupt,
+                                  .stiffness = e->numbers.stiffness,
+                                  .damping = e->damping};
     if (e->carries) l->laws[l->law_count++] = own;
     if (!strut_law_kinks(e->law, &e->numbers)) continue;
     l->laws[l->law_count] = own;
     l->laws[l->law_count++].kinks = true;
   }
+  strut_memory_list(model, state, l);
   return true;
 }
 
@@ -155,6 +155,8 @@ static void pass_break(const strut_model *model, strut_state *state, strut_event
     state->work[STRUT_POWER_DRIVE] += gained;
     state->work[STRUT_POWER_EXCHANGED] += fabs(gained);
   }
+  if (model->plan & STRUT_TERM_MEMORY)
+    strut_memory_release(model, state, t + moment + state->time_offset + STRUT_AT_BREAK * dt);
   strut_modes_after_jump(model, state, l, t + moment);
 }
 
@@ -307,10 +309,12 @@ static bool given_up(const strut_model *model, strut_state *state, strut_event_s
     memcpy(kept[0], state->q, bytes);
     memcpy(kept[1], state->v, bytes);
     memcpy(l->work, state->work, sizeof l->work);
+    if (model->plan & STRUT_TERM_MEMORY) strut_memory_store(model, state, state->memory_kept);
   } else if (wanted) {
     memcpy(state->q, kept[0], bytes);
     memcpy(state->v, kept[1], bytes);
     memcpy(state->work, l->work, sizeof l->work);
+    if (model->plan & STRUT_TERM_MEMORY) strut_memory_load(model, state, state->memory_kept);
   }
   if (wanted) state->trouble = spent ? STRUT_FAILURE_WORK : STRUT_FAILURE_INTERRUPT;
   return wanted;

@@ -77,6 +77,8 @@ typedef struct strut_law_switch {
       abrupt; /* its force has a jump or no slope where it begins to act: the stretch ends it, too */
   double stiffness; /* force per strain, by which stretch and force are compared */
   double damping;
+  bool slider;       /* whether a slider holds; `element` is it */
+  int32_t breakable; /* what may break, where neither member nor element is one; else unused */
 } strut_law_switch;
 
 typedef struct strut_event_stepper strut_event_stepper;
@@ -144,6 +146,13 @@ struct strut_event_stepper {
   bool tried;       /* next is the end of the step that is due */
 };
 
+/** Most laws that switch: each cable, each element by its sign, by its kinks and by its memory. */
+static inline size_t strut_most_law_switches(const strut_model *model) {
+  bool slack = model->plan & STRUT_TERM_SLACK;
+  return (slack ? (size_t)model->members.count : 0) + 2 * (size_t)model->elements.count +
+         (size_t)(model->elements.memory_count + model->elements.breakable_count);
+}
+
 /** Workspace for a method with `stepper`; NULL: out of memory. */
 void *strut_event_stepper_create(const strut_model *model, strut_state *state,
                                  const strut_step_formula *stepper,
@@ -189,8 +198,10 @@ typedef enum strut_event_kind {
   STRUT_EVENT_PUSH,              /* |F_res| passes mu_0 N inside the band, either way */
   STRUT_EVENT_YIELDED,           /* F_res leaves the layer about mu_0 N */
   STRUT_EVENT_DAMPER,            /* the ground damper's sign changes */
-  STRUT_EVENT_ACTS, /* a cable or an element that carries one sign begins or ceases to act */
-  STRUT_EVENT_KINK  /* an element's strain passes a kink of its law */
+  STRUT_EVENT_ACTS,   /* a cable or an element that carries one sign begins or ceases to act */
+  STRUT_EVENT_KINK,   /* an element's strain passes a kink of its law */
+  STRUT_EVENT_SLIDER, /* a slider gives way, or holds again */
+  STRUT_EVENT_BREAK   /* a member or a hinge breaks */
 } strut_event_kind;
 
 typedef struct strut_event {
@@ -220,6 +231,26 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_event
 /** Modes from q and v alone. */
 void strut_modes_start(const strut_model *model, strut_state *state, strut_event_stepper *l,
                        double t);
+/* ---- memory_modes.c: sliders, and what breaks ---- */
+
+/** Lists their switches in l->laws, for which there is space. */
+void strut_memory_list(const strut_model *model, const strut_state *state, strut_event_stepper *l);
+/** The event that ends the mode of switch k. */
+strut_event_kind strut_switch_event(const strut_law_switch *law);
+/** Of a slider or what breaks, at an end: its margin into end->tension. */
+void strut_memory_measure(const strut_model *model, const strut_state *state,
+                          const strut_event_stepper *l, const strut_step_end *end, int32_t k);
+/** Lets all sliders follow their forces at now, and back to their yields. */
+void strut_memory_thaw(const strut_model *model, strut_state *state, strut_event_stepper *l);
+/** Freezes the mode of switch k at now, whose forces have been evaluated. */
+void strut_memory_start(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                        int32_t k);
+/** Changes the mode at the event of switch k, at time t. */
+void strut_memory_apply(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                        int32_t k, double t);
+/** Of what has broken, no switch acts. */
+void strut_memory_drop_gone(const strut_model *model, strut_state *state, strut_event_stepper *l);
+
 /** After a drive has jumped: laws anew; contacts keep their modes, since nothing has moved. */
 void strut_modes_after_jump(const strut_model *model, strut_state *state, strut_event_stepper *l,
                             double t);

@@ -20,8 +20,8 @@ bool strut_batch_knows(const strut_integrator *method) { return method->lanes !=
 
 bool strut_batch_possible(const strut_model *model, const strut_integrator *method) {
   if (!strut_batch_knows(method) || !strut_lanes_possible(model)) return false;
-  /* slopes couple what a contact does to its node, and cables would need modes in the lanes */
-  return !method->events || !(model->plan & (STRUT_TERM_SLACK | STRUT_TERM_SLOPE));
+  /* slopes couple what a contact does to its node */
+  return !method->events || !(model->plan & STRUT_TERM_SLOPE);
 }
 
 static void choose_kernels(strut_batch *b, bool halves) {
@@ -118,6 +118,7 @@ void strut_batch_put(strut_batch *b, int32_t lane, strut_state *state, void *wor
     b->v[i * width + lane] = state->v[i];
   }
   for (int32_t p = 0; p < STRUT_POWER_COUNT; p++) b->work[p * width + lane] = state->work[p];
+  strut_lane_tables_put_elements(&b->tables, lane, state);
   b->step[lane] = (double)state->step;
   b->driven = false;
 }
@@ -152,8 +153,9 @@ void strut_batch_get(strut_batch *b, int32_t lane, strut_state *state) {
   strut_batch_sample(b, lane, state);
   for (int32_t i = 0; i < 2 * t->first->node_count; i++)
     state->force[i] = t->force[i * width + lane];
+  strut_lane_tables_get_elements(t, lane, state);
   state->drive_time = b->driven ? b->step[lane] * b->dt[lane] : (double)NAN;
-  for (int32_t j = 0; j < t->first->members.count && b->driven; j++) {
+  for (int32_t j = 0; j < t->first->members.slots && b->driven; j++) {
     state->rest[j] = t->rest[j * width + lane];
     state->rest_rate[j] = t->rest_rate[j * width + lane];
   }

@@ -69,6 +69,9 @@ typedef struct strut_batch_events {
   double *time, *h, *crossed, *accepted; /* (width) [s], [s]; the last two 0 or 1 */
   strut_state *state[STRUT_MOST_LANES];  /* of filled lanes, with its workspace */
   struct strut_event_stepper *stepper[STRUT_MOST_LANES];
+  const struct strut_law_switch *laws; /* (law_count) of all lanes alike */
+  int32_t law_count;
+  double *stretch, *stretch_rate, *tension; /* (laws, width) at next; see strut_step_end */
   bool joined[STRUT_MOST_LANES]; /* in step with others; else its state says where it is */
   bool jumped[STRUT_MOST_LANES]; /* something happens in the step that is due */
   /* from now over h to next, without the ground; velocities; works of accepted steps */

@@ -41,7 +41,10 @@ bool strut_batch_events_create(strut_batch *b) {
   e->predicted = strut_arena_allocate(&b->arena, (size_t)m->length * width, sizeof(double));
   e->outward = strut_arena_allocate(&b->arena, (size_t)m->contacts.count * width, sizeof(double));
   double **const rows[] = {&e->time, &e->h, &e->crossed};
+  double **const laws[] = {&e->stretch, &e->stretch_rate, &e->tension};
   bool good = e->predicted && e->outward && create_end(b, e->now) && create_end(b, e->next);
+  for (size_t i = 0, most = strut_most_law_switches(m) * width; i < 3 && good; i++)
+    good = (*laws[i] = strut_arena_allocate(&b->arena, most, sizeof(double))) != NULL;
   for (size_t i = 0; i < sizeof rows / sizeof rows[0] && good; i++)
     good = (*rows[i] = strut_arena_allocate(&b->arena, width, sizeof(double))) != NULL;
   return good;
@@ -51,6 +54,18 @@ bool strut_batch_events_create(strut_batch *b) {
 static bool can_join(const strut_event_stepper *l) {
   return l->at_once == 0 && !(l->next_break < HUGE_VAL) &&
          (!l->closed_count || l->contacts_decoupled);
+}
+
+/* Which laws act in a lane that joins. */
+static void put_modes(strut_batch *b, int32_t lane) {
+  strut_lane_tables *t = &b->tables;
+  const strut_state *state = b->events->state[lane];
+  if (!b->events->law_count && !t->first->elements.count) return;
+  put_column(t->slack_length_threshold, t->first->members.count, t->width, lane,
+             state->slack_length_threshold);
+  put_column(t->slack_force_threshold, t->first->members.count, t->width, lane,
+             state->slack_force_threshold);
+  strut_lane_tables_put_elements(t, lane, state);
 }
 
 static void join(strut_batch *b, int32_t lane) {
@@ -65,6 +80,7 @@ static void join(strut_batch *b, int32_t lane) {
   put_column(e->now->power, STRUT_POWER_COUNT, width, lane, now->power);
   put_column(e->now->structure_power, STRUT_POWER_COUNT, width, lane, now->structure_power);
   put_column(e->outward, b->tables.first->contacts.count, width, lane, l->outward);
+  put_modes(b, lane);
   e->joined[lane] = true;
 }
 
@@ -80,8 +96,9 @@ static void fetch(const strut_batch *b, int32_t lane) {
   get_column(e->now->a, rows, width, lane, now->a);
   get_column(e->now->structure, rows, width, lane, now->structure);
   get_column(e->now->structure, rows, width, lane, state->force);
-  get_column(t->rest, t->first->members.count, width, lane, state->rest);
-  get_column(t->rest_rate, t->first->members.count, width, lane, state->rest_rate);
+  get_column(t->rest, t->first->members.slots, width, lane, state->rest);
+  get_column(t->rest_rate, t->first->members.slots, width, lane, state->rest_rate);
+  strut_lane_tables_get_elements(t, lane, state);
   state->drive_time = (double)NAN; /* what they are for may be the step that is due */
   if (!b->ledger) return;
   get_column(e->now->power, STRUT_POWER_COUNT, width, lane, now->power);
@@ -93,6 +110,8 @@ void strut_batch_events_put(strut_batch *b, int32_t lane, strut_state *state, vo
   strut_batch_events *e = b->events;
   e->state[lane] = state;
   e->stepper[lane] = workspace;
+  e->laws = e->stepper[lane]->laws;
+  e->law_count = e->stepper[lane]->law_count;
   e->joined[lane] = e->jumped[lane] = false;
   if (!e->stepper[lane]->started)
     strut_event_stepper_restart(b->tables.model[lane], state, workspace, b->dt[lane]);
@@ -210,7 +229,22 @@ static void leave_ground(const column *c, bool ledger) {
   c->power[STRUT_POWER_EXCHANGED * c->width] += exchanged;
 }
 
-/* Does the end of the step contradict a mode? */
+/* Do strains and forces at the end of the step contradict which laws act? See strut_event_first. */
+static bool laws_switch(const strut_batch *b, int32_t lane) {
+  const strut_batch_events *e = b->events;
+  const strut_event_stepper *l = e->stepper[lane];
+  int32_t width = b->tables.width;
+  get_column(e->stretch, e->law_count, width, lane, l->next->stretch);
+  get_column(e->stretch_rate, e->law_count, width, lane, l->next->stretch_rate);
+  get_column(e->tension, e->law_count, width, lane, l->next->tension);
+  for (int32_t k = 0; k < e->law_count; k++) {
+    strut_event_kind kind = e->laws[k].kinks ? STRUT_EVENT_KINK : STRUT_EVENT_ACTS;
+    if (strut_event_value(b->tables.model[lane], l, l->next, kind, k) < 0.0) return true;
+  }
+  return false;
+}
+
+/* Does the end of the step contradict a mode of a contact? */
 static bool contradicts(const column *c) {
   const strut_event_stepper *l = c->l;
   if (l->all_sliding) {
@@ -239,6 +273,11 @@ static void add_works(const strut_batch *b, int32_t lane) {
   }
 }
 
+static void swap(double **a, double **b) {
+  double *kept = *a;
+  *a = *b, *b = kept;
+}
+
 /* The step has been taken, as accept_step has it. */
 static void accept(const strut_batch *b, int32_t lane) {
   strut_event_stepper *l = b->events->stepper[lane];
@@ -246,6 +285,9 @@ static void accept(const strut_batch *b, int32_t lane) {
   strut_touch *touches = l->now->touch;
   l->now->touch = l->next->touch;
   l->next->touch = touches;
+  swap(&l->now->stretch, &l->next->stretch);
+  swap(&l->now->stretch_rate, &l->next->stretch_rate);
+  swap(&l->now->tension, &l->next->tension);
   l->fresh = true;
   state->evaluations++;
   if (b->ledger) add_works(b, lane);
@@ -272,7 +314,7 @@ static void step_together(strut_batch *b) {
       column c = column_of(b, l);
       leave_ground(&c, b->ledger);
       if (!c.l->all_sliding) settle_band_ties(c.model, c.l);
-      goes[l] = !contradicts(&c);
+      goes[l] = !contradicts(&c) && !laws_switch(b, l);
     }
     if (goes[l]) {
       accept(b, l);
@@ -310,7 +352,10 @@ void strut_batch_events_advance(strut_batch *b, const int64_t *left) {
   int32_t width = b->tables.width;
   bool done = false;
   for (int32_t l = 0; l < width; l++) {
-    if (b->filled[l]) end[l] = e->state[l]->step + left[l];
+    if (b->filled[l]) {
+      int64_t step = e->state[l]->step;
+      end[l] = left[l] < INT64_MAX - step ? step + left[l] : INT64_MAX;
+    }
     if (!b->filled[l]) e->joined[l] = false;
   }
   while (!done) {

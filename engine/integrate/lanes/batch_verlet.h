@@ -7,6 +7,7 @@
 #define STRUT_ENGINE_INTEGRATE_LANES_BATCH_VERLET_H
 
 #include "engine/forces/lane_kernel.h"
+#include "engine/integrate/events/event_stepping.h"
 #include "engine/integrate/lanes/batch.h"
 
 STRUT_LANE_INLINE void verlet_predict_row(strut_batch *b, size_t i, int p, lane_real h) {
@@ -51,12 +52,24 @@ STRUT_LANE_INLINE void verlet_correct_row(const strut_batch_events *e, size_t i,
   lane_put(e->next->v, i, p, lane_row(e->now->v, i, p) + half * sum);
 }
 
+STRUT_LANE_INLINE void verlet_measure(const strut_batch_events *e, const strut_lane_tables *t,
+                                      int32_t k, int p) {
+  const strut_law_switch *law = &e->laws[k];
+  const double *q = e->next->q, *v = e->next->v;
+  lane_switch s = law->member >= 0 ? lane_measure_cable(t, (size_t)law->member, p, q, v)
+                                   : lane_measure_element(t, law->element, law->kinks, p, q, v);
+  lane_put(e->stretch, (size_t)k, p, s.stretch);
+  lane_put(e->stretch_rate, (size_t)k, p, s.rate);
+  lane_put(e->tension, (size_t)k, p, s.tension);
+}
+
 STRUT_LANE_INLINE void verlet_correct(strut_batch *b) {
   const strut_batch_events *e = b->events;
   size_t n = 2 * (size_t)b->tables.first->node_count;
   lane_real half[LANE_PARTS];
   LANE_EACH((half[p] = 0.5 * lane_row(e->h, 0, p)));
   for (size_t i = 0; i < n; i++) LANE_EACH(verlet_correct_row(e, i, p, half[p]));
+  for (int32_t k = 0; k < e->law_count; k++) LANE_EACH(verlet_measure(e, &b->tables, k, p));
 }
 
 STRUT_LANE_TARGET

@@ -309,7 +309,7 @@ static void digest_model(const strut_model *m, uint64_t key[2]) {
                             strut_friction_slope(&e->friction, 1.0)};
     digest(key, entry, sizeof entry);
   }
-  const double ground[] = {c->normal[0], c->normal[1], c->height, c->belt_speed};
+  const double ground[] = {c->normal[0], c->normal[1], c->height, c->belt_speed, m->mass_damping};
   digest(key, ground, sizeof ground);
 }
 

@@ -7,6 +7,7 @@
 #include "engine/forces/drive.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/forces.h"
+#include "engine/forces/memory.h"
 
 /* Rounding of positions, relative to the structure's size; and of sums over many steps. */
 static const double POSITION_ROUNDING = 1e-12, SUM_ROUNDING = 1e-10;
@@ -22,7 +23,9 @@ static const struct column_row {
 #undef STRUT_COLUMN_ROW
 };
 
-static bool is_angle(strut_column_kind kind) { return rows[kind].angle == 1 && rows[kind].s == 0; }
+static bool is_angle(strut_column_kind kind) {
+  return rows[kind].angle == 1 && rows[kind].s == 0 && kind != STRUT_COLUMN_HINGE_PLASTIC;
+}
 
 static bool is_speed(strut_column_kind kind) {
   return rows[kind].kg == 0 && rows[kind].m == 1 && rows[kind].s == -1;
@@ -97,6 +100,12 @@ static double height_above_ground(const strut_columns *c, const double q[2]) {
   return q[0] * c->normal[0] + (q[1] - c->model->scene->ground.height) * c->normal[1];
 }
 
+static double plastic_of_member(const strut_model *model, const strut_state *state,
+                                int32_t member) {
+  const strut_element *e = strut_element_of_member(&model->elements, member);
+  return e ? strut_element_plastic(model, state, (int32_t)(e - model->elements.element)) : 0.0;
+}
+
 static double evaluate_hinge(const strut_columns *c, const strut_state *state,
                              strut_column column) {
   strut_hinge_values h = strut_hinge_measure(c->model, state, column.item);
@@ -144,6 +153,8 @@ static double evaluate_column(const strut_columns *c, const strut_state *state, 
       return strut_member_measure(c->model, state, column.item).length - state->rest[column.item];
     case STRUT_COLUMN_RATE: return strut_member_measure(c->model, state, column.item).rate;
     case STRUT_COLUMN_FORCE: return strut_member_measure(c->model, state, column.item).force;
+    case STRUT_COLUMN_PLASTIC: return plastic_of_member(c->model, state, column.item);
+    case STRUT_COLUMN_HINGE_PLASTIC: return strut_element_plastic(c->model, state, column.item);
     case STRUT_COLUMN_HINGE_ANGLE:
     case STRUT_COLUMN_HINGE_RATE:
     case STRUT_COLUMN_MOMENT: return evaluate_hinge(c, state, column);
@@ -171,7 +182,7 @@ static double evaluate_column(const strut_columns *c, const strut_state *state, 
     case STRUT_COLUMN_SENSOR_RATE: return state->sensor_rate[column.item];
     case STRUT_COLUMN_STATE: return state->v[c->model->feedback.base + column.item];
     case STRUT_COLUMN_SIGNAL:
-      return strut_drive_signal(c->model, state, column.item, column_time(c, state));
+      return strut_drive_signal(c->model, state, state->v, column.item, column_time(c, state));
     case STRUT_COLUMN_COUNT: break;
   }
   return 0.0;

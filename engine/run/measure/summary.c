@@ -32,6 +32,9 @@ void strut_summary_free(strut_summary *summary) {
   strut_release(summary->positions);
   strut_release(summary->contacts);
   strut_release(summary->hinges);
+  strut_release(summary->breaks);
+  summary->breaks = NULL;
+  summary->break_count = 0;
   strut_release(summary->measured);
   summary->node_names = NULL;
   summary->positions = NULL;

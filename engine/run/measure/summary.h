@@ -59,6 +59,14 @@ typedef struct strut_hinge_summary {
   double angle, moment; /* [rad], [N m] */
 } strut_hinge_summary;
 
+/** A member or a hinge that broke or was released. */
+typedef struct strut_break_summary {
+  const char *name; /* owned by the scene */
+  bool hinge;
+  bool released; /* at its time; otherwise it broke */
+  double time;   /* [s] */
+} strut_break_summary;
+
 /** A quantity of `measure` in the scene, over the window. */
 typedef struct strut_measured {
   const char *name, *unit; /* owned by the scene */
@@ -165,6 +173,8 @@ typedef struct strut_summary {
   char caveat[400]; /* why the error of the result is not known, and how to learn it; else empty */
   size_t warning_count;
   strut_warning warnings[STRUT_MOST_WARNINGS];
+  size_t break_count;
+  strut_break_summary *breaks; /* (break_count) in the scene's order, members first */
 } strut_summary;
 
 /** Adds a warning with a printf-style text; replaces one with the same code. */

@@ -41,6 +41,7 @@ struct strut_relaxer {
 };
 
 static bool loses_energy(const strut_model *model) {
+  if (model->mass_damping > 0) return true;
   for (int32_t j = 0; j < model->members.count; j++)
     if (model->members.damping[j] > 0) return true;
   for (int32_t i = 0; i < model->elements.count; i++)

@@ -38,6 +38,7 @@ static bool fill_damping(const strut_modes_work *work, gsl_matrix *damping) {
     for (size_t i = 0; i < count; i++) {
       double sum = 0.0;
       for (size_t k = 0; k < n; k++) sum += set->vector[i * n + k] * product[k];
+      if (i == j) sum += work->v->model->mass_damping; /* vectors have x' M x = 1 */
       gsl_matrix_set(damping, i, j, sum);
       any = any || sum != 0;
     }
@@ -130,7 +131,7 @@ static void apply_modal_quotients(const strut_modes_work *work, strut_mode *list
     double sum = 0.0;
     strut_vibration_multiply(work->v, work->v->d, x, product);
     for (size_t k = 0; k < n; k++) sum += x[k] * product[k];
-    apply_modal_quotient(work, j, sum, &list[j]);
+    apply_modal_quotient(work, j, sum + work->v->model->mass_damping, &list[j]);
   }
 }
 

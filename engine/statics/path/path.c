@@ -308,6 +308,11 @@ static strut_status name_parameter(const strut_model *model, const strut_path_op
 strut_status strut_path_follow(const strut_model *model, const strut_experiment *experiment,
                                const strut_path_options *options, strut_path *path,
                                strut_error *error) {
+  if (options->over == STRUT_PATH_OVER_ACTUATOR && model->scene->actuators[options->index].force)
+    return strut_fail(error, STRUT_USAGE,
+                      "actuator '%s' gives a force, which statics leaves out; follow a load, or an "
+                      "actuator with a signal",
+                      model->scene->actuators[options->index].name);
   size_t length = (size_t)model->length;
   bool over_load = options->over == STRUT_PATH_OVER_LOAD;
   bool unsaid = over_load && options->until == 0 && options->from == 0;

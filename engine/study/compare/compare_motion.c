@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/forces/memory.h"
 #include "engine/run/accuracy/accuracy.h"
 #include "engine/study/compare/compare_parts.h"
 #include "engine/study/tradeoff/tradeoff_parts.h"
@@ -147,8 +148,9 @@ strut_status strut_compare_motion(strut_compare_work *work, const strut_model *m
   strut_summary summary = {0};
   strut_snapshot end = {
       .q = strut_arena_allocate(work->arena, (size_t)model->length, sizeof *end.q),
-      .v = strut_arena_allocate(work->arena, (size_t)model->length, sizeof *end.v)};
-  if (!end.q || !end.v) return STRUT_NO_MEMORY;
+      .v = strut_arena_allocate(work->arena, (size_t)model->length, sizeof *end.v),
+      .memory = strut_arena_allocate(work->arena, strut_memory_count(model), sizeof *end.memory)};
+  if (!end.q || !end.v || !end.memory) return STRUT_NO_MEMORY;
   e->accuracy = work->options->accuracy;
   e->steady.wanted = e->periods > 0.0;
   const strut_run_options wanted = {.interrupt = work->options->interrupt, .to = &end};

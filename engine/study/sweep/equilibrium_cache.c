@@ -93,7 +93,8 @@ static void add_forces(structure *s, const strut_scene *scene) {
     const double values[] = {m->node[0], m->node[1], m->kind,      m->stiffness, m->axial_stiffness,
                              m->damping, m->mass,    m->rest_kind, m->rest_value};
     add_all(s, values, sizeof values / sizeof values[0]);
-    const double more[] = {m->shortest, m->longest, m->stop_stiffness, m->stop_damping};
+    const double more[] = {m->shortest, m->longest, m->stop_stiffness, m->stop_damping,
+                           m->damping_ratio};
     add_all(s, more, sizeof more / sizeof more[0]);
     add(s, (double)m->guide_count);
     for (size_t k = 0; k < m->guide_count; k++) add(s, m->guides[k]);
@@ -143,7 +144,9 @@ static void add_rest(structure *s, const strut_setup *setup) {
                            settle->step,
                            settle->perturb,
                            (double)search->starts,
-                           (double)search->seed};
+                           (double)search->seed,
+                           scene->rayleigh_mass,
+                           scene->rayleigh_stiffness};
   add_all(s, values, sizeof values / sizeof values[0]);
   for (size_t i = 0; i < search->support_count; i++) add_set(s, &search->supports[i]);
 }

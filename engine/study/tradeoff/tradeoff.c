@@ -125,7 +125,7 @@ static bool has_still_bars(const strut_scene *scene) {
   bool any = false;
   for (size_t i = 0; i < scene->member_count; i++) any = any || scene->members[i].kind == STRUT_BAR;
   for (size_t i = 0; i < scene->actuator_count; i++)
-    any = any && (scene->actuators[i].member < 0 ||
+    any = any && (scene->actuators[i].member < 0 || scene->actuators[i].force ||
                   scene->members[scene->actuators[i].member].kind != STRUT_BAR);
   return any;
 }

@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Modes of elements with memory: sliders that hold or give way, and what breaks. See event_stepping.h. */
+#include "engine/forces/drive.h"
+#include "engine/forces/memory.h"
+
+#include <math.h>
+
+#include "engine/integrate/events/event_stepping.h"
+
+/* A slider whose force is this close to its yield is at it; one that holds is not beyond it by rounding. */
+static const double AT_YIELD = 1e-9, ROUNDING = 1e-12;
+
+void strut_memory_list(const strut_model *model, const strut_state *state, strut_event_stepper *l) {
+  const strut_element_table *t = &model->elements;
+  for (int32_t m = 0; m < t->memory_count && !state->forgetful; m++) {
+    const strut_element *e = &t->element[t->memory[m]];
+    if (e->law != STRUT_LAW_ELASTIC_PLASTIC) continue;
+    l->laws[l->law_count++] =
+        (strut_law_switch){.member = -1, .element = t->memory[m], .slider = true, .breakable = -1};
+  }
+  for (int32_t b = 0; b < t->breakable_count && !state->forgetful; b++)
+    if (t->breakable[b].force < HUGE_VAL)
+      l->laws[l->law_count++] = (strut_law_switch){.member = -1, .element = -1, .breakable = b};
+}
+
+strut_event_kind strut_switch_event(const strut_law_switch *law) {
+  if (law->slider) return STRUT_EVENT_SLIDER;
+  if (law->member < 0 && law->element < 0) return STRUT_EVENT_BREAK;
+  return law->kinks ? STRUT_EVENT_KINK : STRUT_EVENT_ACTS;
+}
+
+static bool is_gone(const strut_model *model, const strut_state *state, int32_t element) {
+  const strut_element *e = &model->elements.element[element];
+  return e->remembers && strut_element_is_gone(state->rest[e->slot]);
+}
+
+/* Force that is left to the yield while it holds; the rate, as a force, while it gives way. */
+static double slider_margin(const strut_model *model, const strut_state *state,
+                            const strut_event_stepper *l, const strut_step_end *end, int32_t i) {
+  if (is_gone(model, state, i)) return 1.0;
+  strut_slider s = strut_slider_at(model, state, i, end->q, end->v);
+  int mode = state->element_piece[i];
+  if (mode != STRUT_SLIDER_HOLDS)
+    return (mode - STRUT_SLIDER_HOLDS) * s.rate * model->elements.element[i].numbers.stiffness *
+           l->wanted_step;
+  return s.acts ? s.yield * (1.0 + ROUNDING) - fabs(s.force) : s.yield;
+}
+
+void strut_memory_measure(const strut_model *model, const strut_state *state,
+                          const strut_event_stepper *l, const strut_step_end *end, int32_t k) {
+  const strut_law_switch *law = &l->laws[k];
+  end->stretch[k] = 1.0;
+  end->stretch_rate[k] = 0.0;
+  if (law->slider) {
+    end->tension[k] = slider_margin(model, state, l, end, law->element);
+    return;
+  }
+  bool broken = state->broken_at[law->breakable] < HUGE_VAL;
+  end->tension[k] = broken ? 1.0
+                           : model->elements.breakable[law->breakable].force -
+                                 strut_breakable_load(model, state, law->breakable, end->q, end->v);
+}
+
+void strut_memory_thaw(const strut_model *model, strut_state *state, strut_event_stepper *l) {
+  for (int32_t k = 0; k < l->law_count; k++) {
+    int32_t i = l->laws[k].element;
+    if (!l->laws[k].slider || is_gone(model, state, i)) continue;
+    strut_slider_set(model, state, i, -1, l->now->q);
+    strut_slider_return(model, state, i, l->now->q, true);
+    l->fresh = false;
+  }
+}
+
+void strut_memory_start(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                        int32_t k) {
+  int32_t i = l->laws[k].element;
+  if (!l->laws[k].slider || is_gone(model, state, i)) return;
+  strut_slider s = strut_slider_at(model, state, i, l->now->q, l->now->v);
+  int side = s.force < 0.0 ? -1 : 1;
+  bool gives = s.acts && fabs(s.force) >= s.yield * (1.0 - AT_YIELD) && side * s.rate > 0.0;
+  strut_slider_set(model, state, i, gives ? STRUT_SLIDER_HOLDS + side : STRUT_SLIDER_HOLDS,
+                   l->now->q);
+  l->fresh = false;
+}
+
+void strut_memory_drop_gone(const strut_model *model, strut_state *state, strut_event_stepper *l) {
+  for (int32_t k = 0; k < l->law_count; k++) {
+    const strut_law_switch *law = &l->laws[k];
+    if (law->element < 0 || law->kinks || law->slider) continue;
+    if (!is_gone(model, state, law->element)) continue;
+    state->element_acts[law->element] = -1;
+    l->acting[k] = false;
+  }
+}
+
+void strut_memory_apply(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                        int32_t k, double t) {
+  const strut_law_switch *law = &l->laws[k];
+  l->fresh = false;
+  strut_drive_apply(model, state, t); /* a rejected step has been further */
+  if (!law->slider) {
+    strut_breakable_break(model, state, law->breakable, t + state->time_offset);
+    strut_memory_drop_gone(model, state, l);
+    return;
+  }
+  int mode = STRUT_SLIDER_HOLDS;
+  if (state->element_piece[law->element] == STRUT_SLIDER_HOLDS) {
+    strut_slider s = strut_slider_at(model, state, law->element, l->now->q, l->now->v);
+    mode = s.force < 0.0 ? STRUT_SLIDER_BACK : STRUT_SLIDER_FORTH;
+  }
+  strut_slider_set(model, state, law->element, mode, l->now->q);
+}

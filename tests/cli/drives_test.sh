@@ -1,0 +1,200 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Drives and damping other than driven rest lengths, by strut run with every method, against closed forms.
+. "$(dirname "$0")/lib.sh"
+
+# near FILTER EXPECTED TOLERANCE: the JSON in out through jq, and a number that jq computes.
+near() {
+  jq -e "($1) as \$got | ($2) as \$want | (\$got - \$want | fabs) <= $3" out >jq.out 2>&1 ||
+    fail "$1 is $(jq -c "$1" out 2>&1), expected $(jq -n "$2") within $3"
+}
+value() { echo ".measured.$1.value"; }
+# closes PART: the energy balance, beside the energy exchanged.
+closes() { near '.energy | .residual / .exchanged' 0 "$1"; }
+
+methods="rk4 verlet euler rk4-events verlet-events euler-events adaptive midpoint"
+first_order() { case $1 in euler*) true ;; *) false ;; esac; }
+
+# A constant force along a member without stiffness: x = 1 + F t^2 / (2 m), all of its work kinetic.
+for method in $methods; do
+  cat >push.yaml <<END
+strut: 1
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0], fixed: y, mass: 2}
+members:
+  m: {kind: spring, nodes: [a, b], stiffness: 0}
+actuators:
+  push: {member: m, force: {constant: -3 N}}
+solver: {integrator: $method, step: 1 ms}
+run:
+  duration: 1 s
+  measure:
+    quantities:
+      x: {of: b.x, take: final}
+      done: {of: work.drives, take: final}
+      force: {of: m.force, take: final}
+END
+  expect 0 run push.yaml --json
+  first_order "$method" && error=1e-3 || error=1e-12
+  near "$(value x)" 1.75 $error
+  near "$(value done)" 2.25 "3 * $error"
+  near "$(value force)" -3 0
+  first_order "$method" || closes 1e-12
+done
+
+# A sine force beside a spring, from rest: x - 1 = F / (m (w0^2 - w^2)) (sin w t - (w / w0) sin w0 t).
+forced() {
+  cat <<END
+strut: 1
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0], fixed: y, mass: 2}
+members:
+  m: {kind: spring, nodes: [a, b], stiffness: 200}
+actuators:
+  shake: {member: m, force: {sine: {amplitude: -3 N, frequency: 1 Hz}}}
+solver: {integrator: $1, step: $2}
+run:
+  duration: 1.3 s
+  measure: {quantities: {x: {of: b.x, take: final}}}
+END
+}
+motion='(6.283185307179586 as $w | 1.3 as $t |
+  1 + 3 / (2 * (100 - $w * $w)) * (($w * $t | sin) - $w / 10 * (10 * $t | sin)))'
+for method in $methods; do
+  forced "$method" "1 ms" >forced.yaml
+  expect 0 run forced.yaml --json
+  case $method in euler*) error=1e-3 ;; rk4* | adaptive) error=1e-7 ;; *) error=1e-5 ;; esac
+  near "$(value x)" "$motion" $error
+done
+forced rk4 "0.2 ms" >forced.yaml
+expect 0 run forced.yaml --json
+near "$(value x)" "$motion" 1e-12
+
+# A moment closes a hinge where it is positive: a free arm turns by M t^2 / (2 m l^2), and the moment is
+# recorded beside the hinge's own, which has neither stiffness nor damping here.
+cat >turn.yaml <<'END'
+strut: 1
+bars: rigid
+nodes:
+  top: {position: [0, 1], fixed: both}
+  pivot: {position: [0, 0], fixed: both}
+  bob: {position: [0.5, 0], mass: 2}
+members:
+  rod: {kind: bar, nodes: [pivot, bob], stiffness: 1e6}
+hinges:
+  h: {nodes: [top, pivot, bob]}
+actuators:
+  motor: {hinge: h, moment: {constant: 0.5 N m}}
+solver: {integrator: rk4, step: 1 ms}
+run:
+  duration: 1 s
+  measure:
+    quantities:
+      turned: {of: h.angle, take: change}
+      moment: {of: h.moment, take: final}
+      done: {of: work.drives, take: final}
+END
+expect 0 run turn.yaml --json
+near "$(value turned)" "-0.5" 1e-9
+near "$(value moment)" 0.5 0
+near "$(value done)" "0.25" 1e-9
+closes 1e-9
+
+# A force along a running cable acts on all of its way; statics leave it out, and a path says so.
+cat >run_over.yaml <<'END'
+strut: 1
+nodes:
+  a: {position: [-1, 0], fixed: both}
+  p: {position: [0, 0], fixed: both}
+  b: {position: [0, -1], fixed: x, mass: 4}
+members:
+  rope: {kind: cable, nodes: [a, p, b], stiffness: 0}
+actuators:
+  winch: {member: rope, force: {ramp: {amplitude: 8 N, stop: 1 s}}}
+solver: {integrator: adaptive, step: 10 ms, tolerance: 1e-9}
+run: {duration: 1 s, measure: {quantities: {v: {of: b.vy, take: final}}}}
+END
+expect 0 run run_over.yaml --json
+near "$(value v)" 1 1e-9
+expect 1 path run_over.yaml --over winch --until 1
+err_has "actuator 'winch' gives a force, which statics leaves out"
+expect 0 check run_over.yaml
+out_has "actuator forces"
+
+# A damping ratio: the free oscillation decays by exp(-zeta w t), of one mass and of two that are free,
+# with the reduced mass; a bar's own mass counts half at each end.
+cat >ratio.yaml <<'END'
+strut: 1
+mass_model: lumped
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0], mass: 1.5}
+  c: {position: [0, 2], mass: 1.5}
+  d: {position: [1, 3], mass: 5.5}
+members:
+  one: {kind: spring, nodes: [a, b], stiffness: 200, mass: 1, damping_ratio: 0.05}
+  two: {kind: spring, nodes: [c, d], stiffness: 300, mass: 1, damping_ratio: 0.1}
+initial:
+  velocities: {b: [1, 0], c: [-0.53033008588991065, -0.53033008588991065], d: [0.17677669529663688, 0.17677669529663688]}
+solver: {integrator: rk4, step: 1 ms}
+run:
+  duration: 1 s
+  measure: {quantities: {one: {of: one.stretch, take: final}, two: {of: two.stretch, take: final}}}
+END
+expect 0 run ratio.yaml --json
+# decayed W ZETA: the stretch after 1 s of an oscillation that begins with 1 m/s
+decayed() { echo "(($1) as \$w | $2 as \$z | (\$w * (1 - \$z * \$z | sqrt)) as \$d |
+  (-\$z * \$w | exp) * (\$d | sin) / \$d)"; }
+near "$(value one)" "$(decayed 10 0.05)" 1e-8
+near "$(value two)" "$(decayed '300 / 1.5 | sqrt' 0.1)" 1e-8
+closes 1e-9
+expect 0 modes ratio.yaml --json
+near '[.modes[].damping_ratio | select(. > 0.01)] | min' 0.05 1e-9
+near '[.modes[].damping_ratio | select(. > 0.01)] | max' 0.1 1e-9
+
+# Rayleigh's damping of two masses between three springs that have mass: both modes decay by
+# zeta = alpha / (2 w) + beta w / 2, by every method, and the ledger has what is lost.
+rayleigh() {
+  cat <<END
+strut: 1
+rayleigh: {mass: 0.8 s^-1, stiffness: 4 ms}
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0], fixed: y, mass: 1}
+  c: {position: [2, 0], fixed: y, mass: 1}
+  d: {position: [3, 0], fixed: both}
+members:
+  ab: {kind: spring, nodes: [a, b], stiffness: 100, mass: 0.6}
+  bc: {kind: spring, nodes: [b, c], stiffness: 100, mass: 0.6}
+  cd: {kind: spring, nodes: [c, d], stiffness: 100, mass: 0.6}
+initial: {velocities: {b: [1, 0], c: [$1, 0]}}
+solver: {integrator: $2, step: $3}
+run:
+  duration: 1 s
+  measure: {quantities: {x: {of: ab.stretch, take: final}}}
+END
+}
+slow='(100 / 1.5 | sqrt)' fast='(300 / 1.3 | sqrt)'
+rate() { echo "(0.4 / $1 + 0.002 * $1)"; }
+for method in $methods; do
+  case $method in euler*) error=5e-3 ;; rk4* | adaptive) error=1e-8 ;; *) error=1e-5 ;; esac
+  step="1 ms"
+  [ "$method" != adaptive ] || step="1 ms, tolerance: 1e-10"
+  rayleigh 1 "$method" "$step" >rayleigh.yaml
+  expect 0 run rayleigh.yaml --json
+  near "$(value x)" "$(decayed "$slow" "$(rate "$slow")")" $error
+  first_order "$method" || closes 1e-4
+  rayleigh -1 "$method" "$step" >rayleigh.yaml
+  expect 0 run rayleigh.yaml --json
+  near "$(value x)" "$(decayed "$fast" "$(rate "$fast")")" $error
+  first_order "$method" || closes 1e-4
+done
+expect 0 modes rayleigh.yaml --json
+near '.modes[0].damping_ratio' "$(rate "$slow")" 1e-9
+near '.modes[1].damping_ratio' "$(rate "$fast")" 1e-9
+expect 0 check rayleigh.yaml
+out_has "damping by mass"
+
+done_testing

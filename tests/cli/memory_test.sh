@@ -1,0 +1,240 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# What breaks, is released or yields, against closed forms.
+. "$(dirname "$0")/lib.sh"
+
+# near FILTER EXPECTED TOLERANCE: the JSON in out through jq, and a number that jq computes.
+near() {
+  jq -e "($1) as \$got | ($2) as \$want | (\$got - \$want | fabs) <= $3" out >jq.out 2>&1 ||
+    fail "$1 is $(jq -c "$1" out 2>&1), expected $(jq -n "$2") within $3"
+}
+
+# A latch K holds a spring k pressed by d. Released, the spring's energy goes into the mass, v = d sqrt(k/m);
+# that of the latch, F^2 / 2K, is lost.
+cat >latch.yaml <<'YAML'
+strut: 1
+parameters: {at: 103.7 ms}
+nodes:
+  wall: {position: [0, 0], fixed: both}
+  m: {position: [0.9, 0], mass: 2, fixed: y}
+members:
+  push: {kind: spring, nodes: [wall, m], stiffness: 800, rest_length: 1, law: compression_only}
+  latch: {kind: cable, nodes: [wall, m], stiffness: 1e5, pretension: 80, released_at: at}
+solver: {integrator: rk4-events, step: 1 ms}
+run:
+  duration: 0.5
+  measure: {quantities: {v: {of: m.vx, take: final}, f: {of: latch.force, take: max}}}
+YAML
+expect 0 run latch.yaml --json
+near .measured.v.value 2 1e-9
+near .energy.dissipated_members 0.032 1e-12
+near .broken.latch.time 0.1037 1e-15
+near '.broken.latch.released | if . then 1 else 0 end' 1 0
+near .energy.residual 0 1e-8
+for method in adaptive verlet-events; do
+  sed "s/rk4-events/$method/" latch.yaml >other.yaml
+  expect 0 run other.yaml --json
+  near .measured.v.value 2 2e-4
+done
+for method in rk4 verlet euler; do # at the end of the step, at rest until then
+  sed "s/rk4-events/$method/" latch.yaml >other.yaml
+  expect 0 run other.yaml --set at='104 ms' --json
+  near .measured.v.value 2 1e-3
+  near .broken.latch.time 0.104 1e-15
+  near .energy.dissipated_members 0.032 1e-12
+done
+expect 0 run latch.yaml
+out_has 'latch                  103.7 ms   released'
+expect 0 run latch.yaml --set at='10 s' --json # not within the run
+near '.broken | if . then 1 else 0 end' 0 0
+sed 's/rk4-events/midpoint/' latch.yaml >other.yaml
+expect 1 run other.yaml
+err_has 'midpoint cannot step over what breaks, is released or yields; use solver.integrator rk4-events'
+
+# A mass at the end of a string at speed u: it breaks at the force F, F^2 / 2k is lost.
+cat >string.yaml <<'YAML'
+strut: 1
+nodes:
+  top: {position: [0, 0], fixed: both}
+  m: {position: [0, -1], mass: 1}
+members:
+  string: {kind: cable, nodes: [top, m], stiffness: 100, rest_length: 1, breaks_at: 5 N, longest: 1.5}
+initial: {velocities: {m: [0, -1]}}
+solver: {integrator: rk4-events, step: 2 ms}
+run:
+  duration: 0.7
+  measure: {quantities: {v: {of: m.vy, take: final}, most: {of: string.force, take: max}}}
+YAML
+expect 0 run string.yaml --json
+near .measured.v.value '-(0.75 | sqrt)' 1e-9
+near .broken.string.time '0.5 | asin / 10' 1e-9
+near .energy.dissipated_members 0.125 1e-9
+near .energy.elastic 0 0
+for method in adaptive verlet-events euler-events rk4 verlet euler; do
+  sed "s/rk4-events/$method/" string.yaml >other.yaml
+  expect 0 run other.yaml --json
+  near .measured.v.value '-(0.75 | sqrt)' 0.02
+  near .broken.string.time '0.5 | asin / 10' 2.1e-3
+  near '.energy.residual / .energy.exchanged' 0 0.03
+done
+expect 0 run string.yaml --quiet --plot string.svg -o out-string
+expect 0 view out-string -o string.html
+expect 0 write string.yaml
+cp out written.yaml
+out_has 'breaks_at: 5'
+expect 0 run written.yaml --json
+near .measured.v.value '-(0.75 | sqrt)' 1e-9
+expect 0 check string.yaml
+out_has 'breaks and releases'
+out_has 'string                5 N            -'
+
+# A hinge breaks by its moment, on either side: the arm flies on with what is left of its speed.
+cat >hinge.yaml <<'YAML'
+strut: 1
+nodes:
+  a: {position: [-1, 0], fixed: both}
+  b: {position: [0, 0], fixed: both}
+  c: {position: [1, 0], mass: 1}
+members: {bc: {kind: bar, nodes: [b, c], stiffness: 1e5}}
+hinges: {h: {nodes: [a, b, c], stiffness: 4, rest_angle: 180 deg, breaks_at: 1 N m}}
+initial: {velocities: {c: [0, -1]}}
+solver: {integrator: rk4-events, step: 1 ms}
+run: {duration: 1 s, measure: {quantities: {v: {of: c.vx, take: mean}}}}
+YAML
+expect 0 run hinge.yaml --json
+near .broken.h.time '0.5 | asin / 2' 1e-4
+near .energy.dissipated_members 0.125 1e-9
+near .hinges.h.moment 0 0
+
+# Elastic-plastic, driven by its rest length: each cycle of amplitude D loses 4 Fy (D - Fy/k).
+cat >loop.yaml <<'YAML'
+strut: 1
+parameters: {h: 1 ms}
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0], fixed: both}
+  c: {position: [0, 1], mass: 1}
+  d: {position: [1, 1], fixed: both}
+members:
+  e: {kind: spring, nodes: [a, b], stiffness: 1000, rest_length: 1, law: {kind: elastic_plastic, yield: 5 N}}
+  f: {kind: spring, nodes: [c, d], stiffness: 10}
+actuators:
+  x: {member: e, signal: {sine: {amplitude: 20 mm, frequency: 1 Hz}}}
+solver: {integrator: rk4-events, step: h}
+run:
+  duration: 3.25
+  measure: {quantities: {f: {of: e.force, take: final}, p: {of: e.plastic, take: final}}}
+YAML
+expect 0 run loop.yaml --json
+near .energy.dissipated_members '3 * 4 * 5 * (0.02 - 0.005) + 5 * (0.02 - 0.005)' 1e-9
+near .measured.f.value -5 1e-9
+near .measured.p.value '-(0.02 - 0.005)' 1e-9
+near .energy.residual 0 1e-9
+for method in adaptive verlet-events rk4 verlet euler; do
+  sed "s/rk4-events/$method/" loop.yaml >other.yaml
+  expect 0 run other.yaml --json
+  near .energy.dissipated_members 0.975 2e-3
+  near .measured.f.value -5 1e-6
+done
+
+# A mass that is caught: force, permanent set and losses of a bilinear hysteresis. Until it turns the work
+# of the spring takes all the energy: k y^2/2 + F (x - y) + k2 (x - y)^2/2 with y = F/k.
+cat >catch.yaml <<'YAML'
+strut: 1
+parameters: {h: 2 ms}
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0], fixed: y, mass: 1}
+members:
+  e: {kind: spring, nodes: [a, b], stiffness: 1000, rest_length: 1,
+      law: {kind: elastic_plastic, yield: 10 N, second_stiffness: 100}}
+initial: {velocities: {b: [1, 0]}}
+solver: {integrator: rk4-events, step: h}
+run:
+  duration: 0.5
+  measure: {quantities: {far: {of: b.x - 1, take: max}, x: {of: b.x, take: final}, p: {of: e.plastic, take: max}}}
+YAML
+far='0.01 + (-10 + (100 + 4 * 50 * (0.5 - 0.05) | sqrt)) / 100'
+expect 0 run catch.yaml --set h='10 us' --json
+near .measured.far.value "$far" 1e-7
+# p at the turn: x minus what is left in the slider's spring, F1 / k1 = yield / k
+near .measured.p.value "$far - 0.01" 1e-7
+x_of() {
+  sed "s/rk4-events/$1/" catch.yaml >other.yaml
+  expect 0 run other.yaml --set h="$2" --json
+  jq '.measured.x.value' out
+}
+best=$(x_of rk4-events '0.1 ms')
+order() { # METHOD STEP HALF GAIN: halving the step divides the error by GAIN at least
+  one=$(x_of "$1" "$2") half=$(x_of "$1" "$3")
+  jq -ne "($one - $best | fabs) / ($half - $best | fabs) >= $4" >/dev/null ||
+    fail "$1: errors $(jq -nc "[$one - $best, $half - $best]")"
+}
+order rk4-events '4 ms' '2 ms' 12
+order verlet-events '1 ms' '0.5 ms' 3
+order rk4 '2 ms' '0.5 ms' 4 # of second order on average, but not from step to step
+order verlet '2 ms' '0.5 ms' 4
+order euler '2 ms' '0.5 ms' 4
+expect 0 run catch.yaml --json
+near .energy.residual 0 1e-6
+expect 0 run catch.yaml --set h='2 ms' --accuracy 0.1% --json
+near .measured.far.value "$far" 1e-4
+near .measured.x.value "$best" 1e-3
+
+# A cable that yields is longer afterwards; it is slack then, and pulls again only beyond its set.
+sed 's/kind: spring/kind: cable/; s/second_stiffness: 100/second_stiffness: 0/' catch.yaml >cable.yaml
+expect 0 run cable.yaml --json
+near .energy.dissipated_members '0.5 - 0.05' 1e-8 # it flies back with what the spring gave, 10^2 / 2k
+near .energy.kinetic 0.05 1e-8
+near .measured.p.value 0.045 1e-8
+
+# A hinge likewise.
+cat >bend.yaml <<'YAML'
+strut: 1
+nodes:
+  a: {position: [-1, 0], fixed: both}
+  b: {position: [0, 0], fixed: both}
+  c: {position: [1, 0], mass: 1}
+members: {bc: {kind: bar, nodes: [b, c], stiffness: 1e6}}
+hinges: {h: {nodes: [a, b, c], stiffness: 100, rest_angle: 180 deg, law: {kind: elastic_plastic, yield: 1 N m}}}
+initial: {velocities: {c: [0, 0.5]}}
+solver: {integrator: rk4-events, step: 0.2 ms}
+run:
+  duration: 0.8
+  measure: {quantities: {p: {of: h.plastic, take: final}}}
+YAML
+expect 0 run bend.yaml --json
+near .measured.p.value '0.125 - 0.005' 1e-4
+near .energy.dissipated_members '0.125 - 0.005' 1e-4
+
+# Statics take it as whole and elastic, and warn.
+cat >rest.yaml <<'YAML'
+strut: 1
+gravity: [0, -10]
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [0, -1], mass: 1}
+members:
+  e: {kind: spring, nodes: [a, b], stiffness: 1000, rest_length: 1, breaks_at: 8 N, damping: 5}
+initial: {settle: yes}
+solver: {integrator: rk4-events, step: 1 ms}
+run: {duration: 0.1}
+YAML
+for command in equilibria modes; do
+  expect 0 $command rest.yaml
+  err_has "member 'e' carries 10 N, above the 8 N at which it breaks; statics take it as whole"
+done
+expect 0 path rest.yaml --over b.x --until 10mm
+err_has "'e' carries more than it can"
+expect 0 rigidity rest.yaml
+expect 0 run rest.yaml --json
+err_has "member 'e' carries 10 N at the start, above the 8 N at which it breaks; it does so at once"
+near .broken.e.time 0 0
+near .energy.residual 0 1e-9
+sed 's/breaks_at: 8 N/law: {kind: elastic_plastic, yield: 8}/' rest.yaml >yields.yaml
+expect 0 modes yields.yaml
+err_has "above the 8 N at which it yields; statics take it as elastic"
+expect 0 run yields.yaml --json
+err_has 'above the 8 N at which it yields; it does so at once'
+
+done_testing
