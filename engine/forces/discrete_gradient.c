@@ -9,6 +9,7 @@
 #include "engine/forces/elements.h"
 #include "engine/forces/feedback.h"
 #include "engine/forces/mass_damping.h"
+#include "engine/forces/maxwell.h"
 #include "engine/model/pose.h"
 
 bool strut_discrete_gradient_create(const strut_model *model, strut_state *state,
@@ -217,6 +218,7 @@ static void follow(const strut_model *model, strut_state *state, strut_discrete_
   strut_feedback_add_rates(model, state, middle, u, state->force);
   if (model->plan & STRUT_TERM_LOADS) strut_loads_apply(model, state, middle, u);
   strut_actuator_forces_apply(model, state, middle, step->middle, u);
+  strut_maxwell_apply(model, state, step->middle, u, state->force);
   strut_feedback_apply(model, state, step->begin + step->h, q1, step->end_velocity);
 }
 

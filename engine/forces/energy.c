@@ -3,6 +3,7 @@
 
 #include "engine/forces/drive.h"
 #include "engine/forces/elements.h"
+#include "engine/forces/maxwell.h"
 #include "engine/model/pose.h"
 
 double strut_energy_kinetic(const strut_model *model, const double *v) {
@@ -62,7 +63,8 @@ strut_energies strut_energy_evaluate(const strut_model *model, strut_state *stat
 
 strut_energies strut_energy_evaluate_at(const strut_model *model, const strut_state *state,
                                         const double *q, const double *v) {
-  return (strut_energies){strut_energy_kinetic(model, v), elastic(model, state, q),
+  return (strut_energies){strut_energy_kinetic(model, v),
+                          elastic(model, state, q) + strut_maxwell_energy(model, v),
                           gravity(model, q), contact(model, q)};
 }
 

@@ -109,7 +109,7 @@ void strut_feedback_add_rates(const strut_model *model, strut_state *state, doub
   strut_signal_inputs in = strut_drive_inputs(model, state, v);
   double now = t + state->time_offset, value, unused;
   in.values_only = true;
-  for (int32_t i = 0; i < f->state_count - f->lag_count; i++) {
+  for (int32_t i = 0; i < f->state_count - f->lag_count - f->maxwell_count; i++) {
     strut_program_evaluate(&scene->states[i].rate, scene->signals, &in, now, &value, &unused);
     force[f->base + i] = value;
   }

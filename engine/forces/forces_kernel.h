@@ -15,6 +15,7 @@
 #include "engine/forces/forces.h"
 #include "engine/forces/ground_kernel.h"
 #include "engine/forces/mass_damping.h"
+#include "engine/forces/maxwell.h"
 #include "engine/forces/members_kernel.h"
 #include "engine/model/mass_kernel.h"
 
@@ -63,6 +64,7 @@ STRUT_INLINE void forces_of_structure(const strut_model *model, strut_state *sta
   if ((plan & STRUT_TERM_DRIVE) && t != state->drive_time) strut_drive_apply(model, state, t);
   if (plan & STRUT_TERM_MEMBERS) forces_of_members(model, state, q, v, force, ledger);
   if (plan & STRUT_TERM_ELEMENTS) strut_elements_add_forces(model, state, q, v, force);
+  if (plan & STRUT_TERM_FEEDBACK) strut_maxwell_apply(model, state, q, v, force);
   if (plan & STRUT_TERM_ACTUATOR_FORCES) strut_actuator_forces_apply(model, state, t, q, v);
   if (plan & STRUT_TERM_MASS_DAMPING) strut_mass_damping_apply(model, state, v);
 }

@@ -4,6 +4,7 @@
 #include "engine/forces/actuate.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/forces.h"
+#include "engine/forces/maxwell.h"
 #include "engine/forces/rigid.h"
 #include "engine/model/pose.h"
 
@@ -30,6 +31,7 @@ strut_member_values strut_member_measure_at(const strut_model *model, const stru
   strut_member_values values = {pose.length, rate, pulls ? force : t->slack[j]};
   const strut_element *element = strut_element_of_member(&model->elements, j);
   if (element) measure_elements(model, state, element, q, v, &values);
+  if (model->feedback.maxwell_count) values.force += strut_maxwell_force(model, v, j);
   return values;
 }
 

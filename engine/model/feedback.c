@@ -25,7 +25,29 @@ static strut_sensor_entry compile_sensor(const strut_model *model, const strut_s
 size_t strut_feedback_states(const strut_scene *scene) {
   size_t count = scene->state_count;
   for (size_t i = 0; i < scene->signal_count; i++) count += scene->signals[i].lag > 0.0;
+  for (size_t i = 0; i < scene->member_count; i++)
+    count += scene->members[i].maxwell.stiffness > 0.0;
   return count;
+}
+
+static bool compile_maxwell(strut_model *model) {
+  const strut_scene *scene = model->scene;
+  strut_feedback_table *f = &model->feedback;
+  size_t count = 0;
+  for (size_t i = 0; i < scene->member_count; i++)
+    count += scene->members[i].maxwell.stiffness > 0.0;
+  strut_maxwell_entry *entry = strut_arena_allocate(&model->arena, count, sizeof *entry);
+  if (!entry) return false;
+  for (size_t i = 0; i < scene->member_count; i++) {
+    const strut_maxwell *m = &scene->members[i].maxwell;
+    if (!(m->stiffness > 0.0)) continue;
+    int32_t state = (int32_t)scene->state_count + f->lag_count + f->maxwell_count;
+    double damping = m->time > 0.0 ? m->stiffness * m->time : m->damping;
+    entry[f->maxwell_count++] = (strut_maxwell_entry){(int32_t)i, state, m->stiffness, damping};
+    ((double *)model->velocity)[f->base + state] = m->force;
+  }
+  f->maxwell = entry;
+  return true;
 }
 
 static bool compile_sensors(strut_model *model) {
@@ -60,6 +82,7 @@ bool strut_feedback_compile(strut_model *model) {
   f->lagged = lagged, f->lag_of = lag_of, f->sampled = sampled;
   f->state_count = (int32_t)strut_feedback_states(scene);
   f->base = 2 * model->node_count + 2;
+  if (!compile_maxwell(model)) return false;
   double *velocity = (double *)model->velocity;
   for (size_t i = 0; i < scene->state_count; i++)
     velocity[(size_t)f->base + i] = scene->states[i].start;

@@ -19,6 +19,12 @@ typedef struct strut_sensor_entry {
       at; /* member, element of a hinge, contact (-1: none), coordinate, or strut_sensed_energy */
 } strut_sensor_entry;
 
+/** The Maxwell branch of a member, whose force is an internal state. */
+typedef struct strut_maxwell_entry {
+  int32_t member, state;
+  double stiffness, damping;
+} strut_maxwell_entry;
+
 typedef struct strut_feedback_table {
   int32_t count;
   const strut_sensor_entry *sensor; /* (count) */
@@ -28,6 +34,8 @@ typedef struct strut_feedback_table {
   const int32_t
       *lagged; /* (lag_count) signals with a lag; their states follow those of the scene */
   const int32_t *lag_of; /* (signals) state of a signal's lag, or -1 */
+  int32_t maxwell_count;
+  const strut_maxwell_entry *maxwell; /* (maxwell_count); their states are the last */
   int32_t sampled_count;
   const int32_t *sampled; /* (sampled_count) signals that are sampled, terms before their sums */
 } strut_feedback_table;

@@ -212,6 +212,7 @@ static bool check_law(strut_checker *checker, size_t index, const char *owner) {
   bool given = m->stiffness > 0.0 || m->axial_stiffness > 0.0;
   bool elastic = given || strut_law_at(m->law.kind)->own, linear = m->law.kind == STRUT_LAW_LINEAR;
   if (!strut_check_member_law(checker, index, owner)) return false;
+  strut_check_maxwell(checker, index, owner);
   if (m->stiffness > 0.0 && m->axial_stiffness > 0.0)
     strut_report_finding(checker, STRUT_ON_MEMBER, index, "axial_stiffness",
                          "%s has both a stiffness and an axial_stiffness; give one", owner);
@@ -221,7 +222,8 @@ static bool check_law(strut_checker *checker, size_t index, const char *owner) {
   else if (!elastic && m->damping_ratio > 0.0)
     strut_report_finding(checker, STRUT_ON_MEMBER, index, "damping_ratio",
                          "the damping_ratio of %s needs a stiffness", owner);
-  else if (!elastic && m->damping == 0.0 && !strut_is_pulled(checker->scene, (int32_t)index, -1))
+  else if (!elastic && m->damping == 0.0 && m->maxwell.stiffness == 0.0 &&
+           !strut_is_pulled(checker->scene, (int32_t)index, -1))
     strut_report_finding(checker, STRUT_ON_MEMBER, index, NULL,
                          "%s has neither stiffness nor damping, so it does nothing", owner);
   else if (force && !linear)

@@ -9,6 +9,35 @@
 
 static bool exists(int32_t index, size_t count) { return index >= 0 && (size_t)index < count; }
 
+void strut_check_maxwell(strut_checker *checker, size_t index, const char *owner) {
+  const strut_scene *scene = checker->scene;
+  const strut_member *member = &scene->members[index];
+  const strut_maxwell *m = &member->maxwell;
+  bool valid = strut_check_range(checker, STRUT_ON_MEMBER, index, "maxwell", owner, m->stiffness,
+                                 STRUT_NOT_NEGATIVE) &&
+               strut_check_range(checker, STRUT_ON_MEMBER, index, "maxwell", owner, m->damping,
+                                 STRUT_NOT_NEGATIVE) &&
+               strut_check_range(checker, STRUT_ON_MEMBER, index, "maxwell", owner, m->time,
+                                 STRUT_NOT_NEGATIVE) &&
+               strut_check_range(checker, STRUT_ON_MEMBER, index, "maxwell", owner, m->force,
+                                 STRUT_ANY_NUMBER);
+  if (!valid || m->stiffness == 0.0) return;
+  if ((m->damping > 0.0) == (m->time > 0.0))
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, "maxwell",
+                         "the Maxwell branch of %s needs either a damping or a time", owner);
+  else if (member->kind == STRUT_CABLE || member->law.carries != STRUT_CARRIES_BOTH)
+    strut_report_finding(
+        checker, STRUT_ON_MEMBER, index, "maxwell",
+        "%s carries one sign only, but its Maxwell branch both; put a spring or a bar "
+        "with the branch beside it",
+        owner);
+  else if (member->kind == STRUT_BAR && scene->bar_model == STRUT_BARS_RIGID)
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, "maxwell",
+                         "%s has a Maxwell branch, but bars are rigid; make it a spring, or bars: "
+                         "elastic",
+                         owner);
+}
+
 static bool touches(const strut_scene *scene, int32_t node) {
   for (size_t i = 0; i < scene->contact_count; i++)
     if (scene->contacts[i].node == node) return true;

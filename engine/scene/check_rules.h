@@ -46,6 +46,8 @@ void strut_check_use(strut_checker *checker);
 void strut_check_ground(strut_checker *checker);
 /** check_feedback.c */
 void strut_check_sensors(strut_checker *checker);
+/** Is the Maxwell branch of member `index` valid? */
+void strut_check_maxwell(strut_checker *checker, size_t index, const char *owner);
 void strut_check_states(strut_checker *checker);
 /** Are the lag and the sampling of signal `index` valid? */
 bool strut_check_modifiers(strut_checker *checker, size_t index, const char *owner);

@@ -84,7 +84,11 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
         "sin(NAME)`. `strut write` shows oscillators as states.",
     [STRUT_SECTION_CONTROLLER] =
         "`controllers: {NAME: {...}}`. The integral is the state `NAME_integral`. `strut write` "
-        "shows controllers as signals and states."};
+        "shows controllers as signals and states.",
+    [STRUT_SECTION_MAXWELL] =
+        "`members: {NAME: {maxwell: {...}}}`: the force of the branch follows F' = k (u' - F/c), "
+        "with the "
+        "rate u' of the elongation. In statics it has relaxed to 0."};
 
 /* "none, x, y or both", each in code style. */
 static void put_words(strut_writer *writer, const char *words) {
