@@ -258,10 +258,14 @@ static strut_status detect_steady_motion(strut_run *r) {
   bool before = r->steady.known;
   strut_measure_tracked_point(r->model, r->state, &r->measure, &x, &v);
   if (!strut_steady_detector_period(r->state, x, &r->steady) || before) return STRUT_OK;
-  bool memory = r->model->plan & STRUT_TERM_MEMORY;
+  const strut_feedback_table *feedback = &r->model->feedback;
+  bool internal = feedback->state_count || feedback->sampled_count;
+  bool memory = internal || (r->model->plan & STRUT_TERM_MEMORY);
   if (memory && r->experiment->steady.shooting)
     snprintf(r->steady.result.reason, sizeof r->steady.result.reason,
-             "what breaks, is released or yields has a memory that shooting does not correct");
+             internal ? "internal states and samples are a memory that shooting does not correct"
+                      : "what breaks, is released or yields has a memory that shooting does not "
+                        "correct");
   strut_status status = r->experiment->steady.shooting && !memory ? shoot_orbit(r) : STRUT_OK;
   if (status) return status;
   double now = (double)n * r->dt, period = r->steady.period;
@@ -374,6 +378,8 @@ strut_status strut_run_sample(strut_run *r, int64_t *stop) {
   assert(r->ready && n >= r->first);
   *stop = n;
   if (limit_status) return limit_status;
+  strut_status states_status = strut_run_check_states(r);
+  if (states_status) return states_status;
   if (lost >= 0) return strut_run_fail_lost_node(r, lost);
   if (n >= r->balance.next) sample_balance(r);
   strut_status steady_status = r->detect_steady ? detect_steady_motion(r) : STRUT_OK;

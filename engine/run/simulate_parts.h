@@ -74,6 +74,8 @@ strut_status strut_run_check_step_limit(strut_run *r);
 int32_t strut_run_find_lost_node(const strut_model *model, const strut_state *state);
 /** Reports a lost node: STRUT_DIVERGED. */
 strut_status strut_run_fail_lost_node(const strut_run *r, int32_t node);
+/** STRUT_DIVERGED with the name of an internal state that is no longer a finite number. */
+strut_status strut_run_check_states(const strut_run *r);
 /** Reports a method that failed: STRUT_DIVERGED. */
 strut_status strut_run_fail_method(const strut_run *r);
 

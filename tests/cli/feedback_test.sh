@@ -453,6 +453,21 @@ for method in midpoint rk4-events adaptive verlet; do
   near '.energy.residual' 0 1e-5
 done
 
+# Loops that are unstable, and states that run away, are stopped with name and time.
+sed 's/-0.3\*/-10*/; s/duration: 2.05 s/duration: 60 s/' held.yaml >run.yaml
+expect 3 run run.yaml
+err_has "node 'b' left all bounds at t = "
+err_has 'look for a loop of sensors and drives that is unstable'
+sed 's/{rate: w, start/{rate: "z^2\/(1 m s)", start/; s/z\/(1 s^2)/w*0\/(1 s)/; s/0.05\*z/0.05*w*0*1 s/; s/1e-3\*f/0*f/' free.yaml >run.yaml
+expect 3 run run.yaml
+err_has "state 'z' is no longer a finite number at t = "
+
+# Shooting knows nothing of internal states, and says so.
+sed 's/duration: 100 s/periods: 400\n  of: beat/; s/measure:/measure:\n    steady: {shooting: yes}/
+  s/^actuators:/signals: {beat: {sine: {amplitude: 1 mm, frequency: 1 Hz}}}\nactuators:/
+  s/d: {member.*/d: {member: m, signal: {sum: [beat, {expression: 10 mm*sin(o1)}]}}/' oscillators.yaml >run.yaml
+expect 0 run run.yaml --set 'df=0 Hz'
+
 # What is written reads back to the same run; statics, figures, sweeps and pages know such scenes.
 for scene in pd length force all lag oscillators sampled held pi free maxwell shaken; do
   expect 0 run $scene.yaml --json
