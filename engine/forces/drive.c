@@ -14,7 +14,8 @@ strut_signal_inputs strut_drive_inputs(const strut_model *model, const strut_sta
                                .state = v + model->feedback.base,
                                .states = model->scene->states,
                                .lag_of = model->feedback.lag_of,
-                               .held = state->held};
+                               .held = state->held,
+                               .started = state->started};
 }
 
 /* The signal of a drive or a load now. */
@@ -76,17 +77,20 @@ void strut_loads_apply(const strut_model *model, strut_state *state, double t,
   }
 }
 
-double strut_drive_next_break(const strut_model *model, double t) {
+double strut_drive_next_break(const strut_model *model, const strut_state *state, double t) {
   const strut_signal *signals = model->scene->signals;
   double first = (double)INFINITY;
   for (int32_t i = 0; i < model->drives.count; i++)
-    first = fmin(first, strut_signal_next_break(signals, model->drives.signal[i], t));
+    first = fmin(
+        first, strut_signal_next_break_since(signals, state->started, model->drives.signal[i], t));
   for (int32_t i = 0; i < model->loads.count; i++)
-    first = fmin(first, strut_signal_next_break(signals, model->loads.signal[i], t));
+    first = fmin(first,
+                 strut_signal_next_break_since(signals, state->started, model->loads.signal[i], t));
   for (int32_t i = 0; i < model->elements.breakable_count; i++)
     if (model->elements.breakable[i].time > t)
       first = fmin(first, model->elements.breakable[i].time);
   for (int32_t i = 0; i < model->actuator_forces.count; i++)
-    first = fmin(first, strut_signal_next_break(signals, model->actuator_forces.item[i].signal, t));
+    first = fmin(first, strut_signal_next_break_since(signals, state->started,
+                                                      model->actuator_forces.item[i].signal, t));
   return fmin(first, strut_feedback_next_sample(model, t));
 }

@@ -27,6 +27,6 @@ void strut_loads_apply(const strut_model *model, strut_state *state, double t,
  * The first time after t [s] at which a drive, a load or its rate jumps, or something is released;
  * INFINITY if none does.
  */
-double strut_drive_next_break(const strut_model *model, double t);
+double strut_drive_next_break(const strut_model *model, const strut_state *state, double t);
 
 #endif

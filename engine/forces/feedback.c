@@ -137,3 +137,48 @@ bool strut_feedback_sample(const strut_model *model, strut_state *state, double 
   strut_feedback_apply(model, state, t, state->q, state->v);
   return take_samples(model, state, t + state->time_offset, state->v, tolerance);
 }
+
+static bool start_signal(const strut_model *model, strut_state *state, int32_t signal, double t) {
+  const strut_trigger *trigger = &model->scene->signals[signal].trigger;
+  if (state->started[signal] < (double)INFINITY && !trigger->each) return false;
+  state->started[signal] = t + state->time_offset;
+  return true;
+}
+
+bool strut_feedback_touch(const strut_model *model, strut_state *state, int32_t contact, double t) {
+  const strut_feedback_table *f = &model->feedback;
+  bool any = false;
+  for (int32_t i = 0; i < f->trigger_count; i++) {
+    const strut_trigger *trigger = &model->scene->signals[f->triggered[i]].trigger;
+    bool mine = trigger->kind == STRUT_TRIGGER_CONTACT &&
+                trigger->item == model->contacts.entry[contact].node;
+    if (mine && start_signal(model, state, f->triggered[i], t)) any = true;
+  }
+  return any;
+}
+
+/* Does the condition of a trigger hold at the state? */
+static bool condition_holds(const strut_model *model, const strut_state *state,
+                            const strut_trigger *trigger) {
+  for (int32_t i = 0; i < model->contacts.count && trigger->kind == STRUT_TRIGGER_CONTACT; i++)
+    if (model->contacts.entry[i].node == trigger->item)
+      return strut_contact_gap(&model->contacts, i, state->q) < 0.0;
+  if (trigger->kind == STRUT_TRIGGER_ABOVE) return state->sensor[trigger->item] > trigger->level;
+  return trigger->kind == STRUT_TRIGGER_BELOW && state->sensor[trigger->item] < trigger->level;
+}
+
+bool strut_feedback_watch(const strut_model *model, strut_state *state, double t, bool contacts) {
+  const strut_feedback_table *f = &model->feedback;
+  bool any = false;
+  strut_feedback_apply(model, state, t, state->q, state->v);
+  for (int32_t i = 0; i < f->trigger_count; i++) {
+    int32_t signal = f->triggered[i];
+    const strut_trigger *trigger = &model->scene->signals[signal].trigger;
+    if (trigger->kind == STRUT_TRIGGER_CONTACT && !contacts) continue;
+    bool holds = condition_holds(model, state, trigger);
+    if (holds && state->trigger_was[signal] == 0 && start_signal(model, state, signal, t))
+      any = true;
+    state->trigger_was[signal] = holds;
+  }
+  return any;
+}

@@ -25,4 +25,15 @@ double strut_feedback_next_sample(const strut_model *model, double t);
 bool strut_feedback_sample(const strut_model *model, strut_state *state, double t,
                            double tolerance);
 
+/**
+ * Starts the signals that wait for the touchdown of a contact, at time t [s] of the steps. True if there
+ * was one.
+ */
+bool strut_feedback_touch(const strut_model *model, strut_state *state, int32_t contact, double t);
+/**
+ * Looks at triggers at the state's positions and velocities, and starts signals whose condition holds now
+ * and did not before; those of contacts only where `contacts` is true. True if one has started.
+ */
+bool strut_feedback_watch(const strut_model *model, strut_state *state, double t, bool contacts);
+
 #endif

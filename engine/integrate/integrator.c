@@ -85,12 +85,18 @@ strut_status strut_integrator_check(const strut_model *model, const strut_experi
 /* Samples this close to a grid point, in steps, are on it. */
 static const double ON_GRID = 1e-6;
 
-/* Samples at the present grid point, and books what they do to the elastic energy. */
-static void sample_on_grid(const strut_integrator *method, const strut_model *model,
+/*
+ * Samples and starts signals at the present grid point, and books what that does to the elastic energy.
+ * Methods with events take samples and touchdowns where they are.
+ */
+static void update_on_grid(const strut_integrator *method, const strut_model *model,
                            strut_state *state, void *workspace, double dt) {
   double t = (double)state->step * dt, before = 0.0;
   if (state->ledger) before = strut_energy_evaluate(model, state, t).elastic;
-  if (!strut_feedback_sample(model, state, t, ON_GRID * dt)) return;
+  bool changed = !method->events && strut_feedback_sample(model, state, t, ON_GRID * dt);
+  if (model->feedback.trigger_count && strut_feedback_watch(model, state, t, !method->events))
+    changed = true;
+  if (!changed) return;
   if (state->ledger) {
     double gained = strut_energy_evaluate(model, state, t).elastic - before;
     state->work[STRUT_POWER_DRIVE] += gained;
@@ -101,16 +107,18 @@ static void sample_on_grid(const strut_integrator *method, const strut_model *mo
 
 void strut_integrator_advance(const strut_integrator *method, const strut_model *model,
                               strut_state *state, void *workspace, double dt, int64_t count) {
-  if (!model->feedback.sampled_count || method->events) {
+  const strut_feedback_table *f = &model->feedback;
+  bool watched = f->watches || (f->trigger_count && !method->events);
+  if (!watched && (!f->sampled_count || method->events)) {
     method->advance(model, state, workspace, dt, count);
     return;
   }
   for (int64_t end = state->step + count; state->step < end && !state->trouble;) {
     double t = (double)state->step * dt + state->time_offset;
-    sample_on_grid(method, model, state, workspace, dt);
+    update_on_grid(method, model, state, workspace, dt);
     double next = strut_feedback_next_sample(model, t + ON_GRID * dt);
     int64_t steps = (int64_t)fmin((next - t) / dt + 0.5, (double)(end - state->step));
-    method->advance(model, state, workspace, dt, steps < 1 ? 1 : steps);
+    method->advance(model, state, workspace, dt, steps < 1 || watched ? 1 : steps);
   }
 }
 

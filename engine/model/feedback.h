@@ -37,6 +37,9 @@ typedef struct strut_feedback_table {
   int32_t maxwell_count;
   const strut_maxwell_entry *maxwell; /* (maxwell_count); their states are the last */
   int32_t sampled_count;
+  int32_t trigger_count;
+  const int32_t *triggered; /* (trigger_count) signals with a trigger */
+  bool watches;           /* some trigger is a sensor: it is watched on the grid by every method */
   const int32_t *sampled; /* (sampled_count) signals that are sampled, terms before their sums */
 } strut_feedback_table;
 

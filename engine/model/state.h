@@ -77,6 +77,8 @@ typedef struct strut_state {
   const double *held_normal, *held_friction;
   struct strut_rigid *rigid;    /* forces of rigid bars, see rigid.h; NULL where bars are elastic */
   double *sensor, *sensor_rate; /* (sensors) when last evaluated, in SI units */
+  double *started;     /* (signals) when those with a trigger started [s]; INFINITY: not yet */
+  int8_t *trigger_was; /* (signals) did its condition hold when last looked at? -1: not looked at */
   double *held; /* (signals) of sampled ones the value at the latest sample; NAN before the first */
   bool ledger;  /* keep the ledger? It costs some arithmetic per evaluation */
   double *scratch; /* (length) for the mass solve */

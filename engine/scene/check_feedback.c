@@ -139,10 +139,29 @@ void strut_check_states(strut_checker *checker) {
   }
 }
 
+static bool check_trigger(strut_checker *checker, size_t index, const char *owner) {
+  const strut_scene *scene = checker->scene;
+  const strut_trigger *trigger = &scene->signals[index].trigger;
+  if (trigger->kind == STRUT_TRIGGER_NONE) return true;
+  bool contact = trigger->kind == STRUT_TRIGGER_CONTACT;
+  if (!exists(trigger->item, contact ? scene->node_count : scene->sensor_count) ||
+      (unsigned)trigger->kind > STRUT_TRIGGER_BELOW || !isfinite(trigger->level))
+    strut_report_finding(checker, STRUT_ON_SIGNAL, index, "starts", "what starts %s does not exist",
+                         owner);
+  else if (contact && (!scene->ground.present || !touches(scene, trigger->item)))
+    strut_report_finding(checker, STRUT_ON_SIGNAL, index, "starts",
+                         "%s starts with the touchdown of node '%s', which cannot touch the ground",
+                         owner, scene->nodes[trigger->item].name);
+  else
+    return true;
+  return false;
+}
+
 bool strut_check_modifiers(strut_checker *checker, size_t index, const char *owner) {
   const strut_signal *s = &checker->scene->signals[index];
-  bool lag =
-      strut_check_range(checker, STRUT_ON_SIGNAL, index, "lag", owner, s->lag, STRUT_NOT_NEGATIVE);
+  bool trigger = check_trigger(checker, index, owner);
+  bool lag = trigger && strut_check_range(checker, STRUT_ON_SIGNAL, index, "lag", owner, s->lag,
+                                          STRUT_NOT_NEGATIVE);
   return strut_check_range(checker, STRUT_ON_SIGNAL, index, "every", owner, s->every,
                            STRUT_NOT_NEGATIVE) &&
          lag;

@@ -90,6 +90,12 @@ void strut_signal_evaluate(const strut_signal *signals, int32_t index, double t,
 void strut_signal_follow_unlagged(const strut_signal *signals, const strut_signal_inputs *in,
                                   int32_t index, double t, double *value, double *rate) {
   const strut_signal *s = &signals[index];
+  if (s->trigger.kind != STRUT_TRIGGER_NONE) {
+    double since = in ? in->started[index] : (double)NAN;
+    *value = *rate = in ? 0.0 : (double)NAN;
+    if (!(t >= since)) return;
+    t -= since;
+  }
   double turns = s->frequency * (t - s->start) + s->phase;
   if (s->kind == STRUT_SINE && t >= s->start && t < s->stop)
     evaluate_wave(s, turns, value, rate);
@@ -138,7 +144,8 @@ static bool is_signal(const strut_instruction *p) {
   return p->operation == STRUT_OPERATION_COLUMN && p->column.kind == STRUT_COLUMN_SIGNAL;
 }
 
-static double next_break_inside(const strut_signal *signals, const strut_signal *s, double t) {
+static double next_break_inside(const strut_signal *signals, const double *started,
+                                const strut_signal *s, double t) {
   double first = (double)INFINITY;
   switch (s->kind) {
     case STRUT_SQUARE: return next_half_period(s, t);
@@ -148,13 +155,13 @@ static double next_break_inside(const strut_signal *signals, const strut_signal 
       return first;
     case STRUT_SUM:
       for (size_t i = 0; i < s->term_count; i++)
-        first = fmin(first, strut_signal_next_break(signals, s->terms[i], t));
+        first = fmin(first, strut_signal_next_break_since(signals, started, s->terms[i], t));
       return first;
     case STRUT_EXPRESSION:
       for (size_t i = 0; i < s->program.length; i++)
         if (is_signal(&s->program.instruction[i]))
-          first = fmin(first,
-                       strut_signal_next_break(signals, s->program.instruction[i].column.item, t));
+          first = fmin(first, strut_signal_next_break_since(
+                                  signals, started, s->program.instruction[i].column.item, t));
       return first;
     case STRUT_CONSTANT:
     case STRUT_SINE:
@@ -164,14 +171,32 @@ static double next_break_inside(const strut_signal *signals, const strut_signal 
   return first;
 }
 
-double strut_signal_next_break(const strut_signal *signals, int32_t index, double t) {
+/* Of a signal in its own time. */
+static double next_break_of(const strut_signal *signals, const double *started, int32_t index,
+                            double t) {
   const strut_signal *s = &signals[index];
   if (s->kind == STRUT_TABLE || s->kind == STRUT_EXPRESSION)
-    return next_break_inside(signals, s, t);
+    return next_break_inside(signals, started, s, t);
   if (t < s->start) return s->start;
-  double first = next_break_inside(signals, s, t);
+  double first = next_break_inside(signals, started, s, t);
   if (!(first > t)) first = (double)INFINITY;
   return t < s->stop ? fmin(first, s->stop) : (double)INFINITY;
+}
+
+double strut_signal_next_break_since(const strut_signal *signals, const double *started,
+                                     int32_t index, double t) {
+  const strut_signal *s = &signals[index];
+  if (s->trigger.kind != STRUT_TRIGGER_NONE && started) {
+    double since = started[index];
+    if (!(since < (double)INFINITY)) return (double)INFINITY;
+    if (t < since) return since;
+    return since + next_break_of(signals, started, index, t - since);
+  }
+  return next_break_of(signals, started, index, t);
+}
+
+double strut_signal_next_break(const strut_signal *signals, int32_t index, double t) {
+  return strut_signal_next_break_since(signals, NULL, index, t);
 }
 
 /* Longest period among a signal's repeating parts, or among its pulses; 0 without any. */

@@ -8,6 +8,7 @@
 #ifndef STRUT_ENGINE_SCENE_SIGNAL_H
 #define STRUT_ENGINE_SCENE_SIGNAL_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -32,6 +33,21 @@ typedef struct strut_program {
   const strut_instruction *instruction; /* (length) */
 } strut_program;
 
+/** What starts a signal's own time. */
+typedef enum strut_trigger_kind {
+  STRUT_TRIGGER_NONE,    /* the time of the run is the signal's */
+  STRUT_TRIGGER_CONTACT, /* a node touches down */
+  STRUT_TRIGGER_ABOVE,   /* a sensor rises above a level */
+  STRUT_TRIGGER_BELOW    /* it falls below one */
+} strut_trigger_kind;
+
+typedef struct strut_trigger {
+  strut_trigger_kind kind;
+  int32_t item; /* node or sensor */
+  double level; /* of the sensor, in its unit */
+  bool each;    /* start again each time, not only once */
+} strut_trigger;
+
 /**
  * One waveform; tau = t - start. Except for ramp, table and expression a signal is 0 before start and after
  * stop.
@@ -49,6 +65,7 @@ typedef struct strut_signal {
   size_t term_count;     /* sum: number of terms */
   const int32_t *terms;  /* (term_count) indices of signals, each below this signal's own */
   strut_program program; /* expression: signals in it are below this signal's own */
+  strut_trigger trigger; /* before it starts the signal is 0; then its time counts from there */
   double lag;            /* [s] time constant of a first-order lag; 0: none */
   double every;          /* [s] between samples, after the lag; 0: the signal is continuous */
 } strut_signal;
@@ -67,6 +84,9 @@ STRUT_API void strut_signal_evaluate(const strut_signal *signals, int32_t index,
  * First time after t [s] at which signal `index` or its rate jumps; INFINITY where it stays smooth.
  */
 STRUT_API double strut_signal_next_break(const strut_signal *signals, int32_t index, double t);
+/** The same of signals that started at the times `started` (signals); NULL: no signal has a trigger. */
+STRUT_API double strut_signal_next_break_since(const strut_signal *signals, const double *started,
+                                               int32_t index, double t);
 
 /**
  * Period of a signal [s]: 1 / frequency; of a sum, the longest period of its terms if every other

@@ -194,7 +194,8 @@ static void describe_program(const strut_scene *scene, const strut_program *prog
 static void describe_signal(const strut_scene *scene, int32_t index, passage through,
                             strut_signal_traits *traits) {
   const strut_signal *s = &scene->signals[index];
-  if (s->every > 0.0 || s->lag > 0.0) traits->follows = true;
+  if (s->every > 0.0 || s->lag > 0.0 || s->trigger.kind != STRUT_TRIGGER_NONE)
+    traits->follows = true;
   if (s->every > 0.0 || (s->lag > 0.0 && through == INTEGRATED)) return;
   if (s->lag > 0.0) through = INTEGRATED;
   for (size_t i = 0; s->kind == STRUT_SUM && i < s->term_count; i++)

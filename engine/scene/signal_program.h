@@ -59,6 +59,7 @@ typedef struct strut_signal_inputs {
   const strut_internal_state *states;
   const int32_t *lag_of; /* (signals) the state that is the signal's lagged value, or -1 */
   const double *held;    /* (signals) values of sampled signals since the latest sample */
+  const double *started; /* (signals) when those with a trigger started [s]; INFINITY: not yet */
   bool values_only;      /* rates are not wanted */
 } strut_signal_inputs;
 

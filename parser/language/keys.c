@@ -67,15 +67,16 @@ static const int first[] = {STRUT_KEY_SCENE_VERSION,
                             STRUT_KEY_OSCILLATOR_FREQUENCY,
                             STRUT_KEY_CONTROLLER_SENSOR,
                             STRUT_KEY_MAXWELL_STIFFNESS,
+                            STRUT_KEY_STARTS_CONTACT,
                             STRUT_KEY_COUNT};
 
 static const char *const section_names[] = {
-    "scene",  "node",       "member",  "hinge",      "law",           "rayleigh",
-    "ground", "friction",   "contact", "actuator",   "load",          "signal",
-    "sine",   "half_sine",  "square",  "ramp",       "configuration", "initial",
-    "settle", "equilibria", "solver",  "run",        "measure",       "quantity",
-    "steady", "output",     "study",   "range",      "variant",       "check",
-    "figure", "sensor",     "state",   "oscillator", "controller",    "maxwell"};
+    "scene",    "node",    "member",        "hinge",   "law",    "rayleigh",   "ground",
+    "friction", "contact", "actuator",      "load",    "signal", "sine",       "half_sine",
+    "square",   "ramp",    "configuration", "initial", "settle", "equilibria", "solver",
+    "run",      "measure", "quantity",      "steady",  "output", "study",      "range",
+    "variant",  "check",   "figure",        "sensor",  "state",  "oscillator", "controller",
+    "maxwell",  "starts"};
 
 _Static_assert(sizeof first / sizeof first[0] == STRUT_SECTION_COUNT + 1, "one for each section");
 _Static_assert(sizeof section_names / sizeof section_names[0] == STRUT_SECTION_COUNT,

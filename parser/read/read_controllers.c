@@ -169,11 +169,6 @@ void strut_list_controllers(strut_reader *reader) {
   }
 }
 
-static const char *sensor_name(const void *context, size_t i) {
-  const strut_reader *reader = context;
-  return i < reader->scene->sensor_count ? reader->scene->sensors[i].name : NULL;
-}
-
 /* A number of the controller; absent ones stay as they are. */
 static bool read_part(strut_reader *reader, strut_fields *fields, int key, strut_owner owner,
                       strut_dimension dimension, double *number) {
@@ -300,8 +295,9 @@ static bool read_controller(strut_reader *reader, const strut_tree *key) {
   const strut_slot *sensor = strut_slot_of(&fields, STRUT_KEY_CONTROLLER_SENSOR);
   const strut_slot *gain = strut_slot_of(&fields, STRUT_KEY_CONTROLLER_GAIN);
   if (fields.broken || sensor->state != STRUT_GIVEN || gain->state != STRUT_GIVEN) return false;
-  c.sensor = strut_read_reference(reader, sensor->value, "sensor", owner, "sensor",
-                                  &reader->sensor_names, sensor_name, reader->scene->sensor_count);
+  c.sensor =
+      strut_read_reference(reader, sensor->value, "sensor", owner, "sensor", &reader->sensor_names,
+                           strut_sensor_name, reader->scene->sensor_count);
   if (c.sensor < 0) return false;
   strut_sensor_kind kind = reader->scene->sensors[c.sensor].kind;
   c.sensed = strut_sensor_dimension(kind);

@@ -5,7 +5,7 @@
 
 #include "parser/read/reader.h"
 
-static const char *sensor_name(const void *context, size_t i) {
+const char *strut_sensor_name(const void *context, size_t i) {
   const strut_reader *reader = context;
   return i < reader->scene->sensor_count ? reader->scene->sensors[i].name : NULL;
 }
@@ -150,10 +150,10 @@ int strut_find_sensor_rate(strut_reader *reader, strut_piece piece, strut_column
              "the rate of sensor '%s' is not known, only those of lengths, angles and positions",
              name);
   else
-    snprintf(
-        refusal->text, sizeof refusal->text, "unknown sensor '%.*s'%s",
-        piece.length > 40 ? 40 : (int)piece.length, piece.text,
-        name ? strut_hint(reader, name, sensor_name, reader, reader->scene->sensor_count) : "");
+    snprintf(refusal->text, sizeof refusal->text, "unknown sensor '%.*s'%s",
+             piece.length > 40 ? 40 : (int)piece.length, piece.text,
+             name ? strut_hint(reader, name, strut_sensor_name, reader, reader->scene->sensor_count)
+                  : "");
   return -1;
 }
 
@@ -175,7 +175,7 @@ static int find_word(strut_reader *reader, strut_piece word, strut_column *colum
     return column->item >= 0 ? 1 : -1;
   }
   size_t count = reader->scene->sensor_count;
-  const char *hint = strut_hint(reader, name, sensor_name, reader, count);
+  const char *hint = strut_hint(reader, name, strut_sensor_name, reader, count);
   if (strut_slot_of(&reader->top, STRUT_KEY_SCENE_SENSORS)->state == STRUT_BROKEN) return -1;
   if (!*hint) return 0;
   snprintf(refusal->text, sizeof refusal->text, "unknown sensor '%.*s'%s", (int)word.length,

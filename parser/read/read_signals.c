@@ -142,6 +142,52 @@ static bool read_expression(strut_reader *reader, const strut_tree *value, strut
   return false;
 }
 
+/* The event with which the signal's time begins. */
+static bool read_trigger(strut_reader *reader, const strut_slot *slot, strut_owner owner,
+                         strut_trigger *trigger) {
+  char text[200];
+  strut_fields fields;
+  if (slot->state != STRUT_GIVEN) return slot->state == STRUT_ABSENT;
+  snprintf(text, sizeof text, "the start of %.150s", strut_owner_text(reader, owner));
+  strut_owner within = {text, NULL};
+  strut_read_fields(reader, STRUT_SECTION_STARTS, slot->value, within, &fields);
+  if (fields.broken) return false;
+  strut_store_fields(reader, &fields, &reader->scene->arena, trigger, sizeof *trigger);
+  const strut_slot *contact = strut_slot_of(&fields, STRUT_KEY_STARTS_CONTACT);
+  const strut_slot *sensor = strut_slot_of(&fields, STRUT_KEY_STARTS_SENSOR);
+  const strut_slot *above = strut_slot_of(&fields, STRUT_KEY_STARTS_ABOVE);
+  const strut_slot *below = strut_slot_of(&fields, STRUT_KEY_STARTS_BELOW);
+  const strut_slot *level = above->state == STRUT_GIVEN ? above : below;
+  if (contact->state != STRUT_GIVEN && sensor->state != STRUT_GIVEN) {
+    strut_report_error(reader, slot->value->place,
+                       "%s names no event; write {contact: NODE}, or {sensor: NAME, above: LEVEL}",
+                       text);
+    return false;
+  }
+  if ((sensor->state == STRUT_GIVEN) != (level->state == STRUT_GIVEN)) {
+    strut_report_error(reader, slot->value->place,
+                       sensor->state == STRUT_GIVEN
+                           ? "%s needs a level, 'above' or 'below', of its sensor"
+                           : "%s gives a level, which only a sensor passes",
+                       text);
+    return false;
+  }
+  trigger->kind = sensor->state != STRUT_GIVEN  ? STRUT_TRIGGER_CONTACT
+                  : above->state == STRUT_GIVEN ? STRUT_TRIGGER_ABOVE
+                                                : STRUT_TRIGGER_BELOW;
+  if (trigger->kind == STRUT_TRIGGER_CONTACT) {
+    trigger->item = strut_read_node(reader, contact->value, within);
+    return trigger->item >= 0;
+  }
+  trigger->item =
+      strut_read_reference(reader, sensor->value, "sensor", within, "sensor", &reader->sensor_names,
+                           strut_sensor_name, reader->scene->sensor_count);
+  if (trigger->item < 0) return false;
+  strut_dimension sensed = strut_sensor_dimension(reader->scene->sensors[trigger->item].kind);
+  return strut_read_number(reader, level->value, level == above ? "above" : "below", within, sensed,
+                           STRUT_RANGE_ANY, &trigger->level);
+}
+
 /* A signal written out: a mapping with one key. */
 static int32_t read_literal(strut_reader *reader, const strut_tree *map, strut_owner owner,
                             const strut_dimension *expected) {
@@ -172,6 +218,9 @@ static int32_t read_literal(strut_reader *reader, const strut_tree *map, strut_o
     fine = read_sum(reader, value, owner, &m, &signal);
   else
     fine = read_wave(reader, strut_wave_section(signal.kind), value, owner, &m, &signal);
+  if (!read_trigger(reader, strut_slot_of(&fields, STRUT_KEY_SIGNAL_STARTS), owner,
+                    &signal.trigger))
+    fine = false;
   if (m.expected) m.bare = false, m.dimension = *m.expected;
   return fine ? add_signal(reader, &signal, &m, value) : -1;
 }

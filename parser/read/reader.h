@@ -326,6 +326,8 @@ void strut_read_rayleigh(strut_reader *reader);
 /* read_feedback.c */
 
 void strut_read_sensors(strut_reader *reader);
+/** Name of sensor i, or NULL after the last; the context is the reader. */
+const char *strut_sensor_name(const void *reader, size_t i);
 strut_dimension strut_sensor_dimension(strut_sensor_kind kind);
 /** Finds a sensor as a column and its dimension. */
 bool strut_find_sensed(strut_reader *reader, const char *name, strut_column *column,

@@ -85,6 +85,10 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
     [STRUT_SECTION_CONTROLLER] =
         "`controllers: {NAME: {...}}`. The integral is the state `NAME_integral`. `strut write` "
         "shows controllers as signals and states.",
+    [STRUT_SECTION_STARTS] =
+        "`{sine: {...}, starts: {...}}` of any signal: the touchdown of a node, or a sensor that "
+        "passes a "
+        "level.",
     [STRUT_SECTION_MAXWELL] =
         "`members: {NAME: {maxwell: {...}}}`: the force of the branch follows F' = k (u' - F/c), "
         "with the "

@@ -61,6 +61,30 @@ static void put_table(strut_writer *writer, const strut_signal *s) {
   strut_put(writer, "]");
 }
 
+static void put_trigger(strut_writer *writer, strut_mapping *mapping,
+                        const strut_trigger *trigger) {
+  const strut_scene *scene = writer->scene;
+  bool contact = trigger->kind == STRUT_TRIGGER_CONTACT;
+  strut_mapping inner = STRUT_MAPPING_INLINE;
+  if (trigger->kind == STRUT_TRIGGER_NONE) return;
+  strut_put_key_name(writer, mapping, STRUT_KEY_SIGNAL_STARTS);
+  strut_put(writer, "{");
+  strut_put_key_name(writer, &inner, contact ? STRUT_KEY_STARTS_CONTACT : STRUT_KEY_STARTS_SENSOR);
+  strut_put_name(writer,
+                 contact ? scene->nodes[trigger->item].name : scene->sensors[trigger->item].name);
+  if (!contact) {
+    strut_put_key_name(
+        writer, &inner,
+        trigger->kind == STRUT_TRIGGER_ABOVE ? STRUT_KEY_STARTS_ABOVE : STRUT_KEY_STARTS_BELOW);
+    strut_put_number(writer, trigger->level);
+  }
+  if (trigger->each) {
+    strut_put_key_name(writer, &inner, STRUT_KEY_STARTS_EACH);
+    strut_put(writer, "yes");
+  }
+  strut_put(writer, "}");
+}
+
 static void put_modifier(strut_writer *writer, strut_mapping *mapping, int key, double time) {
   if (time == 0.0) return;
   strut_put_key_name(writer, mapping, key);
@@ -88,6 +112,7 @@ static void put_signal(strut_writer *writer, int32_t index) {
   } else {
     put_wave(writer, s);
   }
+  put_trigger(writer, &mapping, &s->trigger);
   put_modifier(writer, &mapping, STRUT_KEY_SIGNAL_LAG, s->lag);
   put_modifier(writer, &mapping, STRUT_KEY_SIGNAL_EVERY, s->every);
   strut_put(writer, "}");

@@ -453,6 +453,45 @@ for method in midpoint rk4-events adaptive verlet; do
   near '.energy.residual' 0 1e-5
 done
 
+# A signal that a touchdown starts plays from that moment on, sqrt(2 h / g), exactly with events; one that
+# a sensor starts begins at the end of the step in which it passes its level.
+cat >starts.yaml <<'END'
+strut: 1
+gravity: [0, -9.81]
+nodes:
+  a: {position: [0, 1], mass: 1}
+  c: {position: [3, 0], fixed: both}
+  d: {position: [4, 0], fixed: both, mass: 1}
+members:
+  m: {nodes: [c, d], kind: spring, stiffness: 40, damping: 1}
+ground: {stiffness: 1e5, nodes: [a]}
+sensors: {y: {position: a, along: y}}
+signals:
+  kick: {sine: {amplitude: 10 mm, frequency: 1 Hz}, starts: {contact: a}}
+  late: {ramp: {amplitude: 5 mm, stop: 1 s}, starts: {sensor: y, below: 0.5 m}}
+actuators: {d: {member: m, signal: {sum: [kick, late]}}}
+solver: {integrator: rk4-events, step: 1 ms}
+run: {duration: 0.6 s, measure: {quantities: {kick: {of: kick, take: final}, late: {of: late, take: final}}}}
+END
+for method in rk4-events verlet-events adaptive; do
+  sed "s/integrator: rk4-events/integrator: $method/" starts.yaml >run.yaml
+  expect 0 run run.yaml --json
+  near '.measured.kick.value' '0.01 * (6.283185307179586 * (0.6 - (2 / 9.81 | sqrt)) | sin)' 1e-12
+  near '.measured.late.value' '0.005 * (0.6 - (1 / 9.81 | sqrt))' 5.1e-6
+done
+sed "s/integrator: rk4-events/integrator: rk4/" starts.yaml >run.yaml
+expect 0 run run.yaml --json
+near '.measured.kick.value' '0.01 * (6.283185307179586 * (0.6 - (2 / 9.81 | sqrt)) | sin)' 4e-5
+# With `each` it starts again at every touchdown; the energy of the jumps is work of the drive.
+sed 's/starts: {contact: a}/starts: {contact: a, each: yes}/; s/duration: 0.6 s/duration: 1.6 s/
+  s/integrator: rk4-events/integrator: adaptive/; s/sine: {amplitude: 10 mm, frequency: 1 Hz}/constant: 10 mm/' starts.yaml >run.yaml
+expect 0 run run.yaml --json
+near '.energy.residual' 0 1e-4
+sed 's/starts: {contact: a}/starts: {contact: a, each: yes}/; s/duration: 0.6 s/duration: 1.6 s/
+  s/integrator: rk4-events/integrator: adaptive/' starts.yaml >run.yaml
+expect 0 run run.yaml --json
+near '.measured.kick.value' '0.01 * (6.283185307179586 * (1.6 - 3 * (2 / 9.81 | sqrt)) | sin)' 1e-3
+
 # Loops that are unstable, and states that run away, are stopped with name and time.
 sed 's/-0.3\*/-10*/; s/duration: 2.05 s/duration: 60 s/' held.yaml >run.yaml
 expect 3 run run.yaml
@@ -469,7 +508,7 @@ sed 's/duration: 100 s/periods: 400\n  of: beat/; s/measure:/measure:\n    stead
 expect 0 run run.yaml --set 'df=0 Hz'
 
 # What is written reads back to the same run; statics, figures, sweeps and pages know such scenes.
-for scene in pd length force all lag oscillators sampled held pi free maxwell shaken; do
+for scene in pd length force all lag oscillators sampled held pi free maxwell shaken starts; do
   expect 0 run $scene.yaml --json
   jq 'del(.wall_time, .scene, .source)' out >first
   expect 0 write $scene.yaml
