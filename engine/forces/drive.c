@@ -89,6 +89,8 @@ double strut_drive_next_break(const strut_model *model, const strut_state *state
   for (int32_t i = 0; i < model->elements.breakable_count; i++)
     if (model->elements.breakable[i].time > t)
       first = fmin(first, model->elements.breakable[i].time);
+  for (int32_t i = 0; i < model->support_motion.count; i++)
+    first = fmin(first, strut_signal_next_break(signals, model->support_motion.item[i].signal, t));
   for (int32_t i = 0; i < model->actuator_forces.count; i++)
     first = fmin(first, strut_signal_next_break_since(signals, state->started,
                                                       model->actuator_forces.item[i].signal, t));

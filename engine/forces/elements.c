@@ -4,6 +4,7 @@
 #include <assert.h>
 #include <string.h>
 
+#include "engine/forces/elements_kernel.h"
 #include "engine/forces/memory.h"
 #include "engine/forces/strains/angle.h"
 #include "engine/forces/strains/area.h"
@@ -207,77 +208,44 @@ static inline void add_powers(strut_state *state, const exertion *x, double rest
 #define STRUT_ADD_ROW(NAME, name, ...) STRUT_LAWS(STRUT_ADD_CELL, name)
 STRUT_STRAINS(STRUT_ADD_ROW, )
 
-/* Coordinate k of node `node` of four hinges, whose nodes stand at `at`. */
-STRUT_INLINE strut_lanes gather(const double *p, const uint32_t *const at[STRUT_LANES], int node,
-                                uint32_t k) {
-  return (strut_lanes){p[at[0][node] + k], p[at[1][node] + k], p[at[2][node] + k],
-                       p[at[3][node] + k]};
-}
-
-STRUT_INLINE void pull_node(double *f, double x, double y) {
-  strut_pair_store(f, strut_pair_load(f) - (strut_pair){x, y});
-}
-
-/* Sums of what drives and dampers of hinges do [W]. */
-typedef struct hinge_powers {
-  strut_lanes drive, lost, exchanged;
-} hinge_powers;
-
-/*
- * Four linear hinges that carry both signs, from element i on: what add_angle_linear does, in vectors.
- */
-STRUT_INLINE void add_four_hinges(const strut_element_table *t, strut_state *state, int32_t i,
-                                  const double *q, const double *v, double *force,
-                                  hinge_powers *powers) {
-  const strut_element *e = &t->element[i];
-  const uint32_t *const at[STRUT_LANES] = {t->at + e[0].first, t->at + e[1].first,
-                                           t->at + e[2].first, t->at + e[3].first};
-  const strut_lanes zero = {0};
-  strut_lanes ox = gather(q, at, 1, 0), oy = gather(q, at, 1, 1);
-  strut_lanes ux = gather(q, at, 0, 0) - ox, uy = gather(q, at, 0, 1) - oy;
-  strut_lanes vx = gather(q, at, 2, 0) - ox, vy = gather(q, at, 2, 1) - oy;
-  strut_lanes u2 = ux * ux + uy * uy, v2 = vx * vx + vy * vy;
-  strut_lanes iu = strut_lanes_choose(u2 > zero, 1.0 / u2, zero);
-  strut_lanes iv = strut_lanes_choose(v2 > zero, 1.0 / v2, zero);
-  strut_lanes strain = strut_angle_near(strut_angle_of(ux * vx + uy * vy, ux * vy - uy * vx),
-                                        strut_lanes_load(state->element_turn + i));
-  strut_lanes_store(state->element_turn + i, strain);
-  strut_lanes ax = iu * uy, ay = -iu * ux, cx = -iv * vy, cy = iv * vx, bx = -ax - cx,
-              by = -ay - cy;
-  strut_lanes natural, rest_rate, stiffness, damping;
-  for (int l = 0; l < STRUT_LANES; l++) {
-    natural[l] = state->rest[e[l].slot], rest_rate[l] = state->rest_rate[e[l].slot];
-    stiffness[l] = e[l].numbers.stiffness, damping[l] = e[l].damping;
-  }
-  strut_lanes own = (ax * gather(v, at, 0, 0) + ay * gather(v, at, 0, 1)) +
-                    (bx * gather(v, at, 1, 0) + by * gather(v, at, 1, 1)) +
-                    (cx * gather(v, at, 2, 0) + cy * gather(v, at, 2, 1)) - rest_rate;
-  strut_lanes elastic = stiffness * (strain - natural), moment = elastic + damping * own;
-  ax *= moment, ay *= moment, bx *= moment, by *= moment, cx *= moment, cy *= moment;
-  for (int l = 0; l < STRUT_LANES; l++) { /* hinge by hinge, so that sums keep their order */
-    pull_node(force + at[l][0], ax[l], ay[l]);
-    pull_node(force + at[l][1], bx[l], by[l]);
-    pull_node(force + at[l][2], cx[l], cy[l]);
-  }
-  strut_lanes drive = -moment * rest_rate, lost = (moment - elastic) * own;
-  powers->drive += drive, powers->lost += lost;
-  powers->exchanged += strut_lanes_magnitude(drive) + lost;
-}
-
 STRUT_CLONES
 static void add_hinges(const strut_model *model, strut_state *state,
                        const strut_element_block *block, const double *q, const double *v,
                        double *force) {
   strut_element_block rest = *block;
   hinge_powers powers = {{0}, {0}, {0}};
-  for (; rest.end - rest.begin >= STRUT_LANES; rest.begin += STRUT_LANES)
-    add_four_hinges(&model->elements, state, rest.begin, q, v, force, &powers);
+  const strut_element_table t = model->elements;
+  const uint32_t *at = t.at + t.element[rest.begin].first;
+  for (; rest.end - rest.begin >= STRUT_LANES; rest.begin += STRUT_LANES, at += 3 * STRUT_LANES)
+    add_four_hinges(&t, state, rest.begin, at, q, v, force, &powers);
   for (int l = 0; l < STRUT_LANES && state->ledger; l++) {
     state->power[STRUT_POWER_DRIVE] += powers.drive[l];
     state->power[STRUT_POWER_MEMBERS] += powers.lost[l];
     state->power[STRUT_POWER_EXCHANGED] += powers.exchanged[l];
   }
   add_angle_linear(model, state, &rest, q, v, force);
+}
+
+/* What add_path_linear does, with the segments in vectors. */
+STRUT_CLONES
+static void add_running_cables(const strut_model *model, strut_state *state,
+                               const strut_element_block *block, const double *q, const double *v,
+                               double *force) {
+  const strut_element_table *t = &model->elements;
+  for (int32_t i = block->begin; i < block->end; i++) {
+    const strut_element *e = &t->element[i];
+    const uint32_t *at = t->at + e->first;
+    strut_pair b[STRUT_MOST_GRADIENT / 2 + 1];
+    double strain = measure_path(at, e->nodes, q, b),
+           natural = strut_element_natural(e, state->rest);
+    double rest_rate = e->slot >= 0 ? state->rest_rate[e->slot] : 0.0, rate = 0.0;
+    state->element_turn[i] = strain;
+    if (e->damping > 0.0 || state->ledger) rate = path_rate(at, e->nodes, v, b);
+    strut_law_response r = strut_law_linear(&e->numbers, strain, natural, -1);
+    exertion x = exert(e, state, i, &r, strain - natural, rate - rest_rate);
+    pull_path(at, e->nodes, force, b, x.force);
+    if (state->ledger) add_powers(state, &x, rest_rate);
+  }
 }
 
 typedef void add_block(const strut_model *model, strut_state *state,
@@ -294,10 +262,13 @@ void strut_elements_add_forces(const strut_model *model, strut_state *state, con
   for (int32_t b = 0; b < model->elements.block_count; b++) {
     const strut_element_block *block = &model->elements.block[b];
     bool hinges = block->strain == STRUT_STRAIN_ANGLE && block->law == STRUT_LAW_LINEAR;
+    bool cables = block->strain == STRUT_STRAIN_PATH && block->law == STRUT_LAW_LINEAR;
     if (block->remembers)
       strut_memory_add_forces(model, state, block, q, v, force);
     else if (hinges && block->both_signs)
       add_hinges(model, state, block, q, v, force);
+    else if (cables)
+      add_running_cables(model, state, block, q, v, force);
     else
       adders[block->strain][block->law](model, state, block, q, v, force);
   }

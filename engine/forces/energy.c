@@ -4,6 +4,7 @@
 #include "engine/forces/drive.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/maxwell.h"
+#include "engine/forces/support_motion.h"
 #include "engine/model/pose.h"
 
 double strut_energy_kinetic(const strut_model *model, const double *v) {
@@ -88,4 +89,5 @@ double strut_energy_load_work(const strut_model *model, const strut_state *state
 
 void strut_energy_reset_load_work(const strut_model *model, strut_state *state) {
   state->load_work_origin = strut_energy_load_potential(model, state);
+  strut_support_motion_reset_work(model, state);
 }

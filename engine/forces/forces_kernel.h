@@ -17,6 +17,7 @@
 #include "engine/forces/mass_damping.h"
 #include "engine/forces/maxwell.h"
 #include "engine/forces/members_kernel.h"
+#include "engine/forces/support_motion.h"
 #include "engine/model/mass_kernel.h"
 
 STRUT_INLINE void forces_start(const strut_model *model, double *restrict force) {
@@ -67,6 +68,7 @@ STRUT_INLINE void forces_of_structure(const strut_model *model, strut_state *sta
   if (plan & STRUT_TERM_FEEDBACK) strut_maxwell_apply(model, state, q, v, force);
   if (plan & STRUT_TERM_ACTUATOR_FORCES) strut_actuator_forces_apply(model, state, t, q, v);
   if (plan & STRUT_TERM_MASS_DAMPING) strut_mass_damping_apply(model, state, v);
+  if (plan & STRUT_TERM_SUPPORT_MOTION) strut_support_motion_apply(model, state, t, v);
 }
 
 STRUT_INLINE void forces_sum(const strut_model *model, strut_state *state, double t,

@@ -17,6 +17,7 @@ static void *euler_create(const strut_model *model, strut_state *state,
 STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, double *restrict a,
                             double dt, int64_t count, bool ledger) {
   double *restrict q = state->q, *restrict v = state->v;
+  bool moves = model->plan & STRUT_TERM_SUPPORT_MOTION;
   for (int64_t end = state->step + count; state->step < end; state->step++) {
     forces_kernel(model, state, (double)state->step * dt, q, v, a, ledger);
     for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) state->work[p] += dt * state->power[p];
@@ -25,6 +26,7 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, double
       strut_lanes_store(v + i, next);
       strut_lanes_store(q + i, strut_lanes_load(q + i) + dt * next);
     }
+    if (moves) end_moving_step(model, state, dt);
     if (model->plan & STRUT_TERM_MEMORY)
       strut_memory_renew(model, state, ((double)state->step + 1.0) * dt);
   }

@@ -13,6 +13,7 @@
 
 #include "engine/forces/drive.h"
 #include "engine/forces/elements.h"
+#include "engine/forces/support_motion.h"
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/midpoint_matrix.h"
 
@@ -33,6 +34,7 @@ typedef struct midpoint_workspace {
   double *held;         /* (members) tension in the step before [N] */
   double *x, *residual; /* (n) correction, and what it is to undo */
   double stiffest;      /* about the largest squared frequency [1/s^2] */
+  double *moved[3];     /* (moved coordinates) velocities at both ends of a step, and on average */
   double factor_step;   /* the step that the factor is for [s]; 0: none; below: never restarted */
   bool states_settled;  /* the latest correction changed no internal state by more than rounding */
 } midpoint_workspace;
@@ -77,6 +79,11 @@ static void *midpoint_create(const strut_model *model, strut_state *state,
     if (!(*all[i] = strut_arena_allocate(arena, both, sizeof(double)))) return NULL;
   w->held = strut_arena_allocate(arena, (size_t)model->members.count, sizeof *w->held);
   if (!w->held) return NULL;
+  for (int k = 0; k < 3; k++) {
+    size_t count = (size_t)model->support_motion.count;
+    w->moved[k] = strut_arena_allocate(arena, count, sizeof(double));
+    if (!w->moved[k]) return NULL;
+  }
   w->stiffest = stiffest_of(model);
   w->factor_step = -1.0;
   return w;
@@ -91,11 +98,35 @@ static void midpoint_restart(const strut_model *model, strut_state *state, void 
   w->factor_step = 0.0;
 }
 
+/* Velocities of supports at both ends of the step and on average; they may jump within it. */
+static void move_supports(const strut_model *model, const strut_state *state,
+                          midpoint_workspace *w) {
+  double t = w->step.begin + w->step.h;
+  for (int32_t i = 0; i < model->support_motion.count; i++) {
+    const strut_moved_coordinate *m = &model->support_motion.item[i];
+    double value;
+    strut_signal_evaluate(model->scene->signals, m->signal, t + state->time_offset, &value,
+                          &w->moved[1][i]);
+    w->moved[0][i] = state->v[m->at];
+    w->moved[2][i] = (m->base + value - state->q[m->at]) / w->step.h;
+  }
+}
+
 /* The mean velocity goes on as it did, or else as the velocity is. */
 static void guess(const strut_model *model, const strut_state *state, midpoint_workspace *w,
                   bool plain) {
   for (int32_t i = 0; i < model->length; i++)
     w->u[i] = w->known < 2 || plain ? state->v[i] : 2.0 * w->before[0][i] - w->before[1][i];
+  for (int32_t i = 0; i < model->support_motion.count; i++)
+    w->u[model->support_motion.item[i].at] = w->moved[2][i];
+}
+
+/* Forces over the step that ends at q1 with velocity u on average. */
+static void evaluate(const strut_model *model, strut_state *state, midpoint_workspace *w) {
+  for (int32_t i = 0; i < model->length; i++) w->q1[i] = state->q[i] + w->step.h * w->u[i];
+  strut_discrete_gradient_forces(model, state, &w->step, w->q1, w->u);
+  if (model->plan & STRUT_TERM_SUPPORT_MOTION)
+    strut_support_motion_apply_mean(model, state, w->step.h, w->moved[0], w->moved[1], w->u);
 }
 
 /* Mean values of the internal states, by their rates half-way: a fixed point of the iteration. */
@@ -119,8 +150,7 @@ static bool correct(const strut_model *model, strut_state *state, midpoint_works
                     double *x) {
   const strut_midpoint_matrix *m = &w->matrix;
   double h = w->step.h;
-  for (int32_t i = 0; i < model->length; i++) w->q1[i] = state->q[i] + h * w->u[i];
-  strut_discrete_gradient_forces(model, state, &w->step, w->q1, w->u);
+  evaluate(model, state, w);
   for (int32_t i = 0; i < model->length; i++) w->u[i] -= state->v[i];
   strut_midpoint_matrix_mass(m, w->u, x);
   for (int32_t i = 0; i < model->length; i++) w->u[i] += state->v[i];
@@ -208,9 +238,8 @@ static int32_t worst_node(const midpoint_workspace *w) {
 static bool solve(const strut_model *model, strut_state *state, midpoint_workspace *w) {
   if (w->matrix.n == 0) {
     guess(model, state, w, true);
-    memcpy(w->q1, state->q, (size_t)model->length * sizeof *w->q1);
     for (int turn = 0; turn < MOST_TURNS; turn++) {
-      strut_discrete_gradient_forces(model, state, &w->step, w->q1, w->u);
+      evaluate(model, state, w);
       if (!correct_states(model, state, w)) return false;
       if (w->states_settled) return true;
     }
@@ -236,6 +265,8 @@ static void finish(const strut_model *model, strut_state *state, midpoint_worksp
     state->q[at] += h * w->u[at];
     state->v[at] = 2.0 * w->u[at] - state->v[at];
   }
+  if (model->plan & STRUT_TERM_SUPPORT_MOTION)
+    strut_support_motion_place(model, state, w->step.begin + h, state->q, state->v);
   for (int p = 0; p < STRUT_POWER_COUNT && state->ledger; p++)
     state->work[p] += h * state->power[p];
   memcpy(w->held, w->step.tension, (size_t)model->members.count * sizeof *w->held);
@@ -250,6 +281,7 @@ static void finish(const strut_model *model, strut_state *state, midpoint_worksp
 static bool take(const strut_model *model, strut_state *state, midpoint_workspace *w, double begin,
                  double h, int halvings) {
   strut_discrete_gradient_begin(model, state, state->q, begin, h, &w->step);
+  move_supports(model, state, w);
   if (solve(model, state, w)) {
     finish(model, state, w);
     return true;

@@ -8,6 +8,13 @@
 
 #include "engine/forces/forces_kernel.h"
 
+/** At the end of the step of dt [s] from state->step on: supports that move, and their impulses. */
+static inline void end_moving_step(const strut_model *model, strut_state *state, double dt) {
+  double t = ((double)state->step + 1.0) * dt;
+  strut_support_motion_kick(model, state, t - dt, t);
+  strut_support_motion_place(model, state, t, state->q, state->v);
+}
+
 /**
  * Defines NAME_plain(model, state, work, dt, count), which runs
  * `steps(model, state, work, dt, count, ledger)`, an inlined function, as the state's ledger asks.

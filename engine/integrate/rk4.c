@@ -60,6 +60,7 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, rk4_wo
   const double *const at[4] = {q, w->q, w->q, w->q};
   const double *const speed[4] = {v, w->v[1], w->v[2], w->v[3]};
   int32_t n = model->length;
+  bool moves = model->plan & STRUT_TERM_SUPPORT_MOTION;
   for (int64_t end = state->step + count; state->step < end; state->step++) {
     for (int k = 0; k < 4; k++) {
       double t = ((double)state->step + ahead[k]) * dt;
@@ -67,10 +68,15 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, rk4_wo
       if (rigid) strut_rigid_accelerate(model, state, at[k], speed[k], w->a[k]);
       for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++)
         state->work[p] += weight[k] * (dt / 6.0) * state->power[p];
-      if (k < 3) stage(n, ahead[k + 1] * dt, q, v, speed[k], w->a[k], w->q, w->v[k + 1]);
+      if (k == 3) break;
+      stage(n, ahead[k + 1] * dt, q, v, speed[k], w->a[k], w->q, w->v[k + 1]);
+      if (moves)
+        strut_support_motion_place(model, state, ((double)state->step + ahead[k + 1]) * dt, w->q,
+                                   w->v[k + 1]);
     }
     combine(n, dt, q, v, w->v[1], w->v[2], w->v[3]);
     combine(n, dt, v, w->a[0], w->a[1], w->a[2], w->a[3]);
+    if (moves) end_moving_step(model, state, dt);
     if (rigid) strut_rigid_project(model, state, q, v);
     if (model->plan & STRUT_TERM_MEMORY)
       strut_memory_renew(model, state, ((double)state->step + 1.0) * dt);

@@ -39,6 +39,7 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, verlet
   double *restrict q = state->q, *restrict v = state->v, *restrict predicted = w->predicted;
   double half = 0.5 * dt;
   int32_t n = model->length;
+  bool moves = model->plan & STRUT_TERM_SUPPORT_MOTION;
   for (int64_t end = state->step + count; state->step < end; state->step++) {
     double *a = w->a, *next = w->next;
     for (int32_t i = 0; i < n; i += STRUT_LANES) {
@@ -46,16 +47,18 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, verlet
       strut_lanes_store(q + i, strut_lanes_load(q + i) + dt * (rate + half * bend));
       strut_lanes_store(predicted + i, rate + dt * bend);
     }
-    forces_kernel(model, state, ((double)state->step + 1.0) * dt, q, predicted, next, ledger);
+    double t = ((double)state->step + 1.0) * dt;
+    if (moves) strut_support_motion_place(model, state, t, q, predicted);
+    forces_kernel(model, state, t, q, predicted, next, ledger);
     for (int32_t i = 0; i < n; i += STRUT_LANES)
       strut_lanes_store(v + i, strut_lanes_load(v + i) + half * (strut_lanes_load(a + i) +
                                                                  strut_lanes_load_pairs(next + i)));
+    if (moves) end_moving_step(model, state, dt);
     for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) {
       state->work[p] += half * (w->power[p] + state->power[p]);
       w->power[p] = state->power[p];
     }
     w->a = next, w->next = a;
-    double t = ((double)state->step + 1.0) * dt;
     if (model->plan & STRUT_TERM_MEMORY && strut_memory_renew(model, state, t)) {
       forces_kernel(model, state, t, q, v, w->a, ledger);
       for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) w->power[p] = state->power[p];

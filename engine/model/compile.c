@@ -150,6 +150,10 @@ static void compile_weights(strut_model *model, bool *failed) {
   model->weight = weight;
 }
 
+static void compile_support_motion(strut_model *model, bool *failed) {
+  if (!strut_support_motion_compile(model)) *failed = true;
+}
+
 static void compile_damping(strut_model *model, bool *failed) {
   (void)failed;
   strut_damping_compile(model);
@@ -228,8 +232,9 @@ strut_status strut_model_compile(const strut_scene *scene, strut_model **result,
   model->scene = scene;
   bool failed = false;
   void (*const passes[])(strut_model *, bool *) = {
-      compile_nodes, compile_members,  compile_elements,        compile_drives,  compile_weights,
-      compile_loads, compile_contacts, compile_actuator_forces, compile_damping, compile_feedback};
+      compile_nodes,   compile_members,        compile_elements, compile_drives,
+      compile_weights, compile_loads,          compile_contacts, compile_actuator_forces,
+      compile_damping, compile_support_motion, compile_feedback};
   for (size_t i = 0; i < sizeof passes / sizeof passes[0] && !failed; i++)
     passes[i](model, &failed);
   strut_status status = failed ? strut_memory_fail_model(scene, error)

@@ -17,6 +17,8 @@ bool strut_elements_compile(strut_model *model);
 /** Fills model->actuator_forces from the scene. False: out of memory. */
 bool strut_actuator_forces_compile(strut_model *model);
 
+/** Fills model->support_motion, and start and velocity of moved coordinates. False: out of memory. */
+bool strut_support_motion_compile(strut_model *model);
 /** Adds the damping that ratios and Rayleigh's numbers give; after the weights of nodes are known. */
 void strut_damping_compile(strut_model *model);
 

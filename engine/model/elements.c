@@ -278,6 +278,26 @@ static bool sort_elements(compilation *c, strut_element_table *t) {
   return true;
 }
 
+/* Node lists in the elements' order, and numbers side by side, so that vector loops read on. */
+static bool lay_out(strut_model *model, int32_t nodes) {
+  strut_element_table *t = &model->elements;
+  size_t count = (size_t)t->count;
+  uint32_t *at = strut_arena_allocate(&model->arena, (size_t)nodes, sizeof *at);
+  double *stiffness = strut_arena_allocate(&model->arena, count, sizeof *stiffness);
+  double *damping = strut_arena_allocate(&model->arena, count, sizeof *damping);
+  int32_t *slot = strut_arena_allocate(&model->arena, count, sizeof *slot), next = 0;
+  if (!at || !stiffness || !damping || !slot) return false;
+  for (int32_t i = 0; i < t->count; i++) {
+    strut_element *e = (strut_element *)&t->element[i];
+    for (int32_t k = 0; k < e->nodes; k++) at[next + k] = t->at[e->first + k];
+    e->first = next;
+    next += e->nodes;
+    stiffness[i] = e->numbers.stiffness, damping[i] = e->damping, slot[i] = e->slot;
+  }
+  t->at = at, t->stiffness = stiffness, t->damping = damping, t->slot = slot;
+  return true;
+}
+
 /* Chains the elements of each member, its own force first. */
 static bool link_members(strut_model *model) {
   strut_element_table *t = &model->elements;
@@ -358,6 +378,6 @@ bool strut_elements_compile(strut_model *model) {
   assert(c.count == (int32_t)elements && c.nodes <= (int32_t)nodes);
   model->elements.at = c.at;
   model->plan |= STRUT_TERM_ELEMENTS;
-  return !c.failed && sort_elements(&c, &model->elements) && link_members(model) &&
-         list_memories(model);
+  return !c.failed && sort_elements(&c, &model->elements) && lay_out(model, c.nodes) &&
+         link_members(model) && list_memories(model);
 }

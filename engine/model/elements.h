@@ -86,6 +86,9 @@ typedef struct strut_element_table {
   int32_t memory_count, breakable_count;
   const int32_t *memory;            /* (memory_count) the elements with memory */
   const strut_breakable *breakable; /* (breakable_count) members, then hinges */
+  /* (count) what vector loops read of elements, side by side; `at` is in the order of elements, too */
+  const double *stiffness, *damping;
+  const int32_t *slot;
 } strut_element_table;
 
 /** The first element of member j, or NULL for a plain member without stops. */

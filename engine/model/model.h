@@ -19,6 +19,7 @@
 #include "engine/model/actuator_forces.h"
 #include "engine/model/elements.h"
 #include "engine/model/feedback.h"
+#include "engine/model/support_motion.h"
 #include "engine/scene/scene.h"
 
 /** Members are stepped in groups of this many, so tables are padded to a multiple of it. */
@@ -42,7 +43,8 @@ typedef enum strut_term {
   STRUT_TERM_DIRECTION = 1 << 13,       /* friction that differs by direction; with LAWS */
   STRUT_TERM_ACTUATOR_FORCES = 1 << 14, /* actuators that give a force or a moment */
   STRUT_TERM_MASS_DAMPING = 1 << 15,    /* Rayleigh's damping by mass */
-  STRUT_TERM_FEEDBACK = 1 << 16,        /* sensors, internal states, and signals that follow them */
+  STRUT_TERM_SUPPORT_MOTION = 1 << 16,  /* supports that move */
+  STRUT_TERM_FEEDBACK = 1 << 17,        /* sensors, internal states, and signals that follow them */
   STRUT_TERM_MEMORY = 1 << 20           /* elements that break, are released, yield or rub */
 } strut_term;
 
@@ -114,6 +116,7 @@ typedef struct strut_model {
   strut_arena arena;
   strut_actuator_force_table actuator_forces;
   double mass_damping; /* alpha of Rayleigh's damping [1/s] */
+  strut_support_motion_table support_motion;
 } strut_model;
 
 /**

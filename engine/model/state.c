@@ -43,12 +43,16 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
   state->held = strut_arena_allocate(arena, model->scene->signal_count, sizeof(double));
   state->actuator_force =
       strut_arena_allocate(arena, (size_t)model->actuator_forces.count, sizeof(double));
+  bool moves = model->support_motion.count > 0;
+  state->support_rates =
+      strut_arena_allocate(arena, (size_t)model->support_motion.count, sizeof(double));
+  state->support_answer = strut_arena_allocate(arena, moves ? both : 0, sizeof(double));
   if (!state->q || !state->v || !state->rest || !state->element_acts || !state->element_piece ||
       !state->element_turn || !state->slack_length_threshold || !state->slack_force_threshold ||
       !state->rest_rate || !state->plastic || !state->broken_at || !state->memory_kept ||
       !state->force || !state->normal || !state->friction || !state->scratch ||
       !state->actuator_force || !state->sensor || !state->sensor_rate || !state->held ||
-      !state->started || !state->trigger_was) {
+      !state->started || !state->trigger_was || !state->support_rates || !state->support_answer) {
     strut_state_free(state);
     *result = NULL;
     return strut_memory_fail_model(model->scene, error);

@@ -20,7 +20,8 @@ typedef enum strut_power {
   STRUT_POWER_MEMBERS,   /* lost in member dampers, > 0 */
   STRUT_POWER_CONTACT,   /* lost in ground dampers, > 0 */
   STRUT_POWER_FRICTION,  /* lost in friction, > 0 */
-  STRUT_POWER_EXCHANGED, /* sum of the absolute values of the above */
+  STRUT_POWER_EXCHANGED, /* sum of the absolute values of all others */
+  STRUT_POWER_SUPPORT,   /* supports that move, without a part that support_motion.h tells */
   STRUT_POWER_COUNT,
   STRUT_POWER_ROOM = 8 /* arrays of powers have this size: whole vectors; the rest is 0 */
 } strut_power;
@@ -90,6 +91,9 @@ typedef struct strut_state {
   double *memory_kept;    /* both of the above as they were at an earlier time */
   bool forgetful;         /* nothing yields or breaks: while settling; strut_state_reset keeps it */
   double *actuator_force; /* (actuator forces) when last evaluated [N], [N m] */
+  double *support_rates;  /* (moved coordinates) scratch */
+  double *support_answer; /* (length) scratch, 0 between uses; only where supports move */
+  double support_work_origin; /* strut_support_motion_reset_work: where it counts from [J] */
 } strut_state;
 
 /** All memory a run needs; an integrator adds its own to the arena. STRUT_OK or STRUT_NO_MEMORY. */

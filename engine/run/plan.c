@@ -25,6 +25,7 @@ static const strut_plan_term terms[STRUT_PLAN_TERMS] = {
     {STRUT_TERM_SOLVE, "mass solve", "consistent masses of members", false},
     {STRUT_TERM_ACTUATOR_FORCES, "actuator forces", "an actuator with a force or moment", false},
     {STRUT_TERM_MASS_DAMPING, "damping by mass", "rayleigh with mass", false},
+    {STRUT_TERM_SUPPORT_MOTION, "moving supports", "a node that moves", false},
 };
 
 static void count_elements(const strut_model *model, strut_plan *plan) {

@@ -9,6 +9,7 @@
 #include "engine/base/memory_limit.h"
 #include "engine/forces/energy.h"
 #include "engine/forces/forces.h"
+#include "engine/forces/support_motion.h"
 #include "engine/run/measure/summary.h"
 
 static const char *const xy[] = {"x", "y"};
@@ -195,8 +196,9 @@ static void fill_channel(const strut_model *model, strut_state *state, const str
           stored.kinetic,         stored.elastic,
           stored.gravity,         stored.contact,
           w[STRUT_POWER_DRIVE],   w[STRUT_POWER_LOAD] + strut_energy_load_work(model, state),
-          w[STRUT_POWER_BELT],    w[STRUT_POWER_MEMBERS],
-          w[STRUT_POWER_CONTACT], w[STRUT_POWER_FRICTION]};
+          w[STRUT_POWER_BELT],    strut_support_motion_work(model, state),
+          w[STRUT_POWER_MEMBERS], w[STRUT_POWER_CONTACT],
+          w[STRUT_POWER_FRICTION]};
       memcpy(out, values, sizeof values);
     }
   }

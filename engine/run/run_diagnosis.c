@@ -260,7 +260,7 @@ static void warn_of_balance(const strut_run *r) {
 
 /* The residual of the energy balance over the net work done on the structure, in words. */
 static void describe_residual(const strut_energy *e, char *text, size_t size) {
-  double work = fabs(e->drive_work + e->load_work + e->belt_work);
+  double work = fabs(e->drive_work + e->load_work + e->belt_work + e->support_work);
   double part = fabs(e->residual) / work;
   if (!(work > 0.0) || !isfinite(part)) return;
   const char *verdict = part < 1e-3 ? "small" : part < 1e-2 ? "moderate" : "large";

@@ -23,6 +23,10 @@ static strut_status copy_passive_scene(const strut_scene *scene, bool friction,
                                        strut_scene *passive, strut_arena *arena) {
   *passive = *scene;
   passive->actuator_count = 0;
+  passive->nodes = strut_arena_allocate(arena, scene->node_count, sizeof *passive->nodes);
+  if (!passive->nodes) return STRUT_NO_MEMORY;
+  memcpy(passive->nodes, scene->nodes, scene->node_count * sizeof *passive->nodes);
+  strut_scene_hold_supports(passive, false);
   passive->ground.belt_speed = 0.0;
   passive->bar_model = STRUT_BARS_ELASTIC; /* they become rigid in the settled, loaded shape */
   passive->loads = strut_arena_allocate(arena, scene->load_count, sizeof *passive->loads);

@@ -294,7 +294,7 @@ static strut_status move_start(const strut_scene *scene, const double *q,
   memcpy(settled->nodes, scene->nodes, scene->node_count * sizeof *settled->nodes);
   for (size_t i = 0; i < scene->node_count; i++)
     for (size_t c = 0; c < 2; c++) {
-      settled->nodes[i].start[c] = q[2 * i + c];
+      if (!scene->nodes[i].fixed[c]) settled->nodes[i].start[c] = q[2 * i + c];
       settled->nodes[i].velocity[c] = 0.0;
     }
   return STRUT_OK;

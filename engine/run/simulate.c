@@ -11,6 +11,7 @@
 #include "engine/forces/drive.h"
 #include "engine/forces/forces.h"
 #include "engine/forces/memory.h"
+#include "engine/forces/support_motion.h"
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/model/memory_estimate.h"
 #include "engine/run/orbit/shooting.h"
@@ -104,6 +105,7 @@ static strut_status place_state(strut_run *r) {
   const strut_snapshot *from = r->options->from;
   size_t bytes = (size_t)r->model->length * sizeof(double);
   r->state->step = r->first;
+  r->state->time_offset = r->grid.offset;
   if (from) {
     memcpy(r->state->q, from->q, bytes);
     memcpy(r->state->v, from->v, bytes);
@@ -173,6 +175,8 @@ static strut_status prepare_run(strut_run *r) {
     return strut_memory_fail_model(r->model->scene, r->error);
   if ((status = place_state(r))) return status;
   r->state->time_offset = r->grid.offset;
+  if (r->model->plan & STRUT_TERM_SUPPORT_MOTION)
+    strut_support_motion_place(r->model, r->state, begin, r->state->q, r->state->v);
   if (r->model->plan & STRUT_TERM_MEMORY) begin_memory(r, begin);
   r->state->ledger = !r->options->without_ledger || strut_quantities_need_ledger(r->experiment);
   r->state->interrupt = r->options->interrupt;
@@ -201,11 +205,13 @@ static void jump_to_orbit(strut_run *r, const double *y) {
   size_t bytes = (size_t)r->model->length * sizeof(double);
   double t = (double)r->state->step * r->dt;
   strut_energies before = strut_energy_evaluate(r->model, r->state, t);
+  double work = strut_support_motion_work(r->model, r->state);
   memcpy(r->state->q, y, bytes);
   memcpy(r->state->v, y + r->model->length, bytes);
   r->state->refined_until = t + y[2 * r->model->length];
   if (r->method->restart) r->method->restart(r->model, r->state, r->workspace, r->dt);
   strut_energies after = strut_energy_evaluate(r->model, r->state, t);
+  r->state->support_work_origin += strut_support_motion_work(r->model, r->state) - work;
   r->initial.kinetic += after.kinetic - before.kinetic;
   r->initial.elastic += after.elastic - before.elastic;
   r->initial.gravity += after.gravity - before.gravity;

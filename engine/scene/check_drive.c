@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "engine/scene/check_rules.h"
+#include "engine/scene/signal_motion.h"
 #include "engine/scene/signal_program.h"
 
 enum { MOST_TERMS = 10000, DEEPEST_SUM = 64 };
@@ -109,6 +110,13 @@ static void call_signal(char owner[200], const strut_scene *scene, const size_t 
     strut_format_name(owner, "signal", scene->signals[i].name, i);
     return;
   }
+  size_t drives = scene->actuator_count + scene->load_count;
+  if (u > drives) {
+    int32_t node = scene->support_motions[u - 1 - drives].node;
+    strut_format_name(thing, "node", scene->nodes[node].name, (size_t)node);
+    snprintf(owner, 200, "the signal of %.180s", thing);
+    return;
+  }
   bool actuator = u <= scene->actuator_count;
   size_t index = actuator ? u - 1 : u - 1 - scene->actuator_count;
   strut_format_name(thing, actuator ? "actuator" : "load",
@@ -116,8 +124,17 @@ static void call_signal(char owner[200], const strut_scene *scene, const size_t 
   snprintf(owner, 200, "the signal of %.180s", thing);
 }
 
-/* Finds for each signal 1 + the number of the actuator that uses it, loads counted on; 0: none. */
+/*
+ * Finds for each signal 1 + the number of the actuator that uses it, loads and moving supports counted
+ * on; 0: none.
+ */
 static void find_users(const strut_scene *scene, size_t *user) {
+  for (size_t i = scene->support_motion_count; i-- > 0;) {
+    const strut_support_motion *m = &scene->support_motions[i];
+    if (m->signal >= 0 && (size_t)m->signal < scene->signal_count && m->node >= 0 &&
+        (size_t)m->node < scene->node_count)
+      user[m->signal] = 1 + scene->actuator_count + scene->load_count + i;
+  }
   for (size_t i = scene->load_count; i-- > 0;)
     if (scene->loads[i].signal >= 0 && (size_t)scene->loads[i].signal < scene->signal_count)
       user[scene->loads[i].signal] = 1 + scene->actuator_count + i;
@@ -231,7 +248,56 @@ bool strut_is_pulled(const strut_scene *scene, int32_t member, int32_t hinge) {
   return false;
 }
 
+/* What is wrong with where a support moves, or NULL. */
+static const char *fault_of_motion(const strut_scene *scene, size_t i) {
+  const strut_support_motion *m = &scene->support_motions[i], *last = i ? m - 1 : NULL;
+  if (m->axis < 0 || m->axis > 1) return "moves along an axis other than x and y";
+  if (!scene->nodes[m->node].fixed[m->axis]) return "moves in a direction in which it is not fixed";
+  if (last && (m->node < last->node || (m->node == last->node && m->axis <= last->axis)))
+    return "moves out of order: motions follow nodes, x before y, each once";
+  if (scene->bar_model == STRUT_BARS_RIGID)
+    return "moves, but bars are rigid; make them elastic, bars: elastic";
+  for (size_t k = 0; k < scene->contact_count; k++)
+    if (scene->contacts[k].node == m->node)
+      return "moves and may touch the ground; leave it out of the ground's nodes";
+  return NULL;
+}
+
+static void check_motions(strut_checker *checker) {
+  const strut_scene *scene = checker->scene;
+  double when;
+  char owner[200];
+  for (size_t i = 0; i < scene->support_motion_count; i++) {
+    const strut_support_motion *m = &scene->support_motions[i];
+    if (!exists(m->node, scene->node_count)) {
+      strut_report_finding(checker, STRUT_ON_SCENE, 0, "nodes",
+                           "motion number %zu is of a node that does not exist", i + 1);
+      continue;
+    }
+    strut_format_name(owner, "node", scene->nodes[m->node].name, (size_t)m->node);
+    const char *fault = fault_of_motion(scene, i);
+    if (fault)
+      strut_report_finding(checker, STRUT_ON_NODE, (size_t)m->node, "moves", "%s %s", owner, fault);
+    else if (!exists(m->signal, scene->signal_count))
+      strut_report_finding(checker, STRUT_ON_NODE, (size_t)m->node, "moves",
+                           "%s moves by a signal that does not exist", owner);
+    else if (!checker->wild[m->signal] && !strut_signal_is_wave(scene->signals, m->signal))
+      strut_report_finding(
+          checker, STRUT_ON_NODE, (size_t)m->node, "moves",
+          "%s moves by an expression, a lag, samples or a start, whose acceleration is "
+          "not known; use waves, ramps, tables and sums of them",
+          owner);
+    else if (!checker->wild[m->signal] &&
+             strut_signal_value_jumps(scene->signals, m->signal, HUGE_VAL, &when))
+      strut_report_finding(checker, STRUT_ON_NODE, (size_t)m->node, "moves",
+                           "the signal that moves %s in %c jumps at t = %g s, but a support cannot "
+                           "jump; use a ramp or a table",
+                           owner, "xy"[m->axis], when);
+  }
+}
+
 void strut_check_drives(strut_checker *checker) {
+  check_motions(checker);
   const strut_scene *scene = checker->scene;
   char owner[200];
   for (size_t i = 0; i < scene->actuator_count; i++) {

@@ -62,6 +62,7 @@ typedef enum strut_column_owner {
   X(DRIVES, WORK, "drives", 1, 2, -2, 0)                                                           \
   X(LOADS, WORK, "loads", 1, 2, -2, 0)                                                             \
   X(BELT, WORK, "belt", 1, 2, -2, 0)                                                               \
+  X(SUPPORTS, WORK, "supports", 1, 2, -2, 0)                                                       \
   X(LOST_MEMBERS, LOSSES, "members", 1, 2, -2, 0)                                                  \
   X(LOST_CONTACT, LOSSES, "contact", 1, 2, -2, 0)                                                  \
   X(LOST_FRICTION, LOSSES, "friction", 1, 2, -2, 0)                                                \

@@ -35,6 +35,20 @@ void strut_scene_free(strut_scene *scene) {
   memset(scene, 0, sizeof *scene);
 }
 
+void strut_scene_hold_supports(strut_scene *scene, bool shapes) {
+  for (size_t i = 0; i < scene->support_motion_count; i++) {
+    const strut_support_motion *m = &scene->support_motions[i];
+    double value, rate;
+    strut_signal_evaluate(scene->signals, m->signal, 0.0, &value, &rate);
+    scene->nodes[m->node].start[m->axis] += value;
+    if (shapes) scene->nodes[m->node].position[m->axis] += value;
+    for (size_t k = 0; k < scene->configuration_count && shapes; k++)
+      if (scene->configurations[k].position)
+        scene->configurations[k].position[m->node][m->axis] += value;
+  }
+  scene->support_motion_count = 0;
+}
+
 static double drawn_length(const strut_scene *scene, const strut_member *member) {
   double sum = 0.0;
   for (size_t k = 0; k <= member->guide_count; k++)

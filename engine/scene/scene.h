@@ -126,6 +126,12 @@ typedef struct strut_actuator {
   bool force; /* the signal is a force [N] or a moment [N m] added to the member's or hinge's own */
 } strut_actuator;
 
+/** A supported coordinate of a node that moves in a run: where it starts, plus signal(t). */
+typedef struct strut_support_motion {
+  int32_t node, axis; /* axis: 0 x, 1 y; the node is fixed there */
+  int32_t signal;     /* [m] */
+} strut_support_motion;
+
 /** A force on a node: force, times signal(t) if there is one. */
 typedef struct strut_load {
   const char *name;
@@ -185,6 +191,8 @@ typedef struct strut_scene {
   strut_arena arena;         /* owns every text and array above */
   double rayleigh_mass;      /* damping by mass, alpha M v [1/s] */
   double rayleigh_stiffness; /* damping by stiffness, beta c in every member and hinge [s] */
+  size_t support_motion_count;
+  strut_support_motion *support_motions; /* in the order of nodes, x before y */
   size_t sensor_count, state_count;
   strut_sensor *sensors;
   strut_internal_state *states;
@@ -242,6 +250,12 @@ static inline bool strut_member_is_special(const strut_member *member) {
   return member->guide_count || member->law.kind != STRUT_LAW_LINEAR || one_sided ||
          strut_member_ends(member);
 }
+
+/**
+ * Puts supports that move where they are at t = 0 and takes their motion away; with `shapes` as drawn
+ * and in configurations, too, where rest lengths must be resolved. The arrays must be the scene's own.
+ */
+STRUT_API void strut_scene_hold_supports(strut_scene *scene, bool shapes);
 
 /** Angle of a hinge as drawn, in (-pi, pi] [rad]. */
 STRUT_API double strut_hinge_drawn(const strut_scene *scene, size_t hinge);

@@ -33,6 +33,7 @@ static const strut_key table[] = {STRUT_KEY_TABLE(STRUT_KEY_ROW)};
 /* First key of each section, and one more that ends the last; a test compares it with the table. */
 static const int first[] = {STRUT_KEY_SCENE_VERSION,
                             STRUT_KEY_NODE_POSITION,
+                            STRUT_KEY_MOVES_ALONG_X,
                             STRUT_KEY_MEMBER_GROUP,
                             STRUT_KEY_HINGE_NODES,
                             STRUT_KEY_LAW_KIND,
@@ -71,12 +72,12 @@ static const int first[] = {STRUT_KEY_SCENE_VERSION,
                             STRUT_KEY_COUNT};
 
 static const char *const section_names[] = {
-    "scene",    "node",    "member",        "hinge",   "law",    "rayleigh",   "ground",
-    "friction", "contact", "actuator",      "load",    "signal", "sine",       "half_sine",
-    "square",   "ramp",    "configuration", "initial", "settle", "equilibria", "solver",
-    "run",      "measure", "quantity",      "steady",  "output", "study",      "range",
-    "variant",  "check",   "figure",        "sensor",  "state",  "oscillator", "controller",
-    "maxwell",  "starts"};
+    "scene",      "node",     "moves",   "member",        "hinge",   "law",    "rayleigh",
+    "ground",     "friction", "contact", "actuator",      "load",    "signal", "sine",
+    "half_sine",  "square",   "ramp",    "configuration", "initial", "settle", "equilibria",
+    "solver",     "run",      "measure", "quantity",      "steady",  "output", "study",
+    "range",      "variant",  "check",   "figure",        "sensor",  "state",  "oscillator",
+    "controller", "maxwell",  "starts"};
 
 _Static_assert(sizeof first / sizeof first[0] == STRUT_SECTION_COUNT + 1, "one for each section");
 _Static_assert(sizeof section_names / sizeof section_names[0] == STRUT_SECTION_COUNT,

@@ -46,6 +46,9 @@
   X(NODE, GROUP, "group", GROUPS, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Groups that provide defaults; later groups take precedence.") \
   X(NODE, MASS, "mass", NUMBER, MASS, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_node, mass), "Point mass, in addition to the masses of the members.") \
   X(NODE, FIXED, "fixed", FIXED, NONE, ANY, "none", OPTIONAL, 0, "none|x|y|both", FIELD(strut_node, fixed), "Supported directions; also as a list, `[x, y]`.") \
+  X(NODE, MOVES, "moves", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Directions in which a signal moves the node, which is then supported there.") \
+  X(MOVES, ALONG_X, "x", SIGNAL, LENGTH, ANY, "", OPTIONAL, 0, "", BY_HAND, "Added to the x of the node's position.") \
+  X(MOVES, ALONG_Y, "y", SIGNAL, LENGTH, ANY, "", OPTIONAL, 0, "", BY_HAND, "Added to the y of the node's position.") \
   X(MEMBER, GROUP, "group", GROUPS, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Groups that provide defaults; later groups take precedence.") \
   X(MEMBER, NODES, "nodes", NODE_PATH, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "The two nodes that the member joins. A cable may run over further nodes, its guides, without friction: `[a, p, q, b]`; it then has one tension along its whole length, and its mass is lumped.") \
   X(MEMBER, KIND, "kind", WORD, NONE, ANY, "", REQUIRED, 0, "bar|spring|cable", FIELD(strut_member, kind), "Bars and springs carry tension and compression; a cable carries tension only and no force while slack. `strut` is another word for `bar`, `string` for `cable`.") \

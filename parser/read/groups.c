@@ -62,8 +62,7 @@ static void read_item(strut_reader *reader, strut_group *group, const strut_tree
                        strut_owner_text(reader, owner), other->text, key->text);
     item.slot.state = STRUT_BROKEN;
   }
-  if (item.slot.state == STRUT_GIVEN && strut_key_at(found)->type == STRUT_TYPE_MAP &&
-      found != STRUT_KEY_MEMBER_MAXWELL) {
+  if (item.slot.state == STRUT_GIVEN && strcmp(strut_key_at(found)->name, "friction") == 0) {
     item.nested = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *item.nested);
     if (!item.nested) return;
     strut_read_fields(reader, STRUT_SECTION_FRICTION, key->next,

@@ -16,6 +16,15 @@ const char *strut_member_name(const void *context, size_t i) {
   return i < reader->scene->member_count ? reader->scene->members[i].name : NULL;
 }
 
+/* Notes how a node moves, for when signals are known; it is supported in those directions. */
+static void note_moves(strut_reader *reader, const strut_slot *slot, strut_node *node) {
+  size_t i = (size_t)(node - reader->scene->nodes);
+  if (slot->state != STRUT_GIVEN) return;
+  reader->node_moves[i] = slot->value;
+  for (int c = 0; c < 2; c++)
+    if (strut_tree_find(slot->value, c ? "y" : "x", NULL)) node->fixed[c] = true;
+}
+
 /* Reads one node; returns false where something about it could not be read. */
 static bool read_node(strut_reader *reader, const strut_tree *key, strut_node *node) {
   const strut_tree *value = key->next;
@@ -36,6 +45,7 @@ static bool read_node(strut_reader *reader, const strut_tree *key, strut_node *n
   strut_apply_groups(reader, &fields, STRUT_KEY_NODE_GROUP, owner);
   strut_require(reader, &fields, owner, key->place);
   strut_store_fields(reader, &fields, &reader->scene->arena, node, sizeof *node);
+  note_moves(reader, strut_slot_of(&fields, STRUT_KEY_NODE_MOVES), node);
   return fine && !fields.broken;
 }
 
@@ -46,7 +56,9 @@ void strut_read_nodes(strut_reader *reader) {
   scene->nodes = strut_reader_allocate(reader, &scene->arena, map->count, sizeof *scene->nodes);
   reader->node_source =
       strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->node_source);
-  if (!scene->nodes || !reader->node_source) return;
+  reader->node_moves =
+      strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->node_moves);
+  if (!scene->nodes || !reader->node_source || !reader->node_moves) return;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
     size_t i = strut_next_entry(reader, &scene->node_count);
     scene->nodes[i] = strut_node_default();
@@ -302,7 +314,39 @@ static void read_loads(strut_reader *reader) {
   }
 }
 
+static void read_moves_of(strut_reader *reader, size_t node) {
+  strut_scene *scene = reader->scene;
+  strut_owner owner = {"node", scene->nodes[node].name};
+  const strut_dimension length = STRUT_DIM_LENGTH;
+  strut_fields fields;
+  strut_read_fields(reader, STRUT_SECTION_MOVES, reader->node_moves[node], owner, &fields);
+  if (fields.broken) reader->node_source[node].broken = true;
+  for (int c = 0; c < 2; c++) {
+    const strut_slot *slot = strut_slot_of(&fields, STRUT_KEY_MOVES_ALONG_X + c);
+    if (slot->state != STRUT_GIVEN) continue;
+    int32_t signal = strut_read_signal(reader, slot->value, c ? "y" : "x", owner, &length);
+    if (signal < 0)
+      reader->node_source[node].broken = true;
+    else
+      scene->support_motions[scene->support_motion_count++] =
+          (strut_support_motion){(int32_t)node, c, signal};
+  }
+}
+
+static void read_moves(strut_reader *reader) {
+  strut_scene *scene = reader->scene;
+  size_t most = 0;
+  for (size_t i = 0; i < scene->node_count && reader->node_moves; i++)
+    most += reader->node_moves[i] ? 2 : 0;
+  if (!most) return;
+  scene->support_motions =
+      strut_reader_allocate(reader, &scene->arena, most, sizeof *scene->support_motions);
+  for (size_t i = 0; i < scene->node_count && scene->support_motions; i++)
+    if (reader->node_moves[i]) read_moves_of(reader, i);
+}
+
 void strut_read_drives(strut_reader *reader) {
+  read_moves(reader);
   read_actuators(reader);
   read_loads(reader);
 }

@@ -119,7 +119,8 @@ typedef struct strut_reader {
   strut_named_signal *named;
   size_t named_count, signal_depth, signal_capacity;
   strut_named_signal *signal_stack[STRUT_DEEPEST_SIGNAL]; /* being read */
-  strut_signal *signals; /* strut_allocate; moves to the scene at the end */
+  strut_signal *signals;         /* strut_allocate; moves to the scene at the end */
+  const strut_tree **node_moves; /* (node_count) the keys of moves of a node, or NULL */
   strut_signal_state *signal_state;
   size_t signal_count;
   strut_source *configuration_source;

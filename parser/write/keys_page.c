@@ -27,6 +27,10 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
         "hinge "
         "read angle for length and moment for force. `polynomial` and `table` bring their own "
         "stiffness, so that the member must not give one.",
+    [STRUT_SECTION_MOVES] =
+        "`nodes: {NAME: {moves: {...}}}`: from its position, plus the signal at t = 0, the node "
+        "moves "
+        "by the signal, whose value must not jump. Statics keep it where it is at t = 0.",
     [STRUT_SECTION_RAYLEIGH] =
         "`rayleigh: {...}`: a mode of angular frequency w gets the damping ratio alpha / (2 w) + "
         "beta w / 2, beside what members' own dampers give.",

@@ -28,7 +28,7 @@ static double radians(double turns) {
 
 static void put_signal(strut_writer *writer, int32_t index);
 
-static void put_reference(strut_writer *writer, int32_t index) {
+void strut_put_signal_reference(strut_writer *writer, int32_t index) {
   const char *name = signal_name(writer, index);
   if (name)
     strut_put_name(writer, name);
@@ -106,7 +106,7 @@ static void put_signal(strut_writer *writer, int32_t index) {
     strut_put(writer, "[");
     for (size_t i = 0; i < s->term_count; i++) {
       if (i) strut_put(writer, ", ");
-      put_reference(writer, s->terms[i]);
+      strut_put_signal_reference(writer, s->terms[i]);
     }
     strut_put(writer, "]");
   } else {
@@ -190,7 +190,7 @@ static void put_actuators(strut_writer *writer) {
     strut_put_name(writer,
                    a->member >= 0 ? scene->members[a->member].name : scene->hinges[a->hinge].name);
     strut_put(writer, !a->force ? ", signal: " : a->member >= 0 ? ", force: " : ", moment: ");
-    put_reference(writer, scene->actuators[i].signal);
+    strut_put_signal_reference(writer, scene->actuators[i].signal);
     strut_put(writer, "}\n");
   }
 }
@@ -203,7 +203,7 @@ static void put_load_by_hand(strut_writer *writer, strut_mapping *mapping, int k
     strut_put_name(writer, writer->scene->nodes[load->node].name);
   } else if (load->signal >= 0) {
     strut_put_key_name(writer, mapping, key);
-    put_reference(writer, load->signal);
+    strut_put_signal_reference(writer, load->signal);
   }
 }
 

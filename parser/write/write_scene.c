@@ -52,21 +52,54 @@ static void put_head(strut_writer *writer) {
   strut_put(writer, "\n");
 }
 
+/* The node is a copy; its name is the scene's. */
+static void put_node_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
+                             const void *object) {
+  const strut_scene *scene = writer->scene;
+  const char *name = ((const strut_node *)object)->name;
+  bool any = false;
+  if (key != STRUT_KEY_NODE_MOVES) return;
+  for (size_t i = 0; i < scene->support_motion_count; i++) {
+    const strut_support_motion *m = &scene->support_motions[i];
+    if (scene->nodes[m->node].name != name) continue;
+    if (!any) strut_put_key_name(writer, mapping, key);
+    strut_put(writer, any ? ", " : "{");
+    strut_put(writer, m->axis ? "y: " : "x: ");
+    strut_put_signal_reference(writer, m->signal);
+    any = true;
+  }
+  if (any) strut_put(writer, "}");
+}
+
+/* The node with what its motion says already left out. True if it moves. */
+static bool leave_out_moves(const strut_scene *scene, size_t i, strut_node *node) {
+  bool moves = false;
+  for (size_t k = 0; k < scene->support_motion_count; k++) {
+    const strut_support_motion *m = &scene->support_motions[k];
+    if ((size_t)m->node != i) continue;
+    node->fixed[m->axis] = false;
+    moves = true;
+  }
+  return moves;
+}
+
 static void put_nodes(strut_writer *writer) {
   strut_put(writer, "nodes:\n");
   for (size_t i = 0; i < writer->scene->node_count; i++) {
-    const strut_node *node = &writer->scene->nodes[i];
+    strut_node copy = writer->scene->nodes[i];
+    const strut_node *node = &copy;
     strut_mapping mapping = STRUT_MAPPING_INLINE;
+    bool moves = leave_out_moves(writer->scene, i, &copy);
     strut_node drawn = strut_node_default(); /* nothing but a position */
     memcpy(drawn.position, node->position, sizeof drawn.position);
-    bool bare = !strut_fields_differ(STRUT_SECTION_NODE, node, &drawn);
+    bool bare = !moves && !strut_fields_differ(STRUT_SECTION_NODE, node, &drawn);
     strut_put(writer, "  ");
     strut_put_name(writer, node->name);
     strut_put(writer, bare ? ": " : ": {");
     if (bare)
       strut_put_pair(writer, node->position);
     else
-      strut_put_fields(writer, &mapping, STRUT_SECTION_NODE, node, &drawn, NULL);
+      strut_put_fields(writer, &mapping, STRUT_SECTION_NODE, node, &drawn, put_node_by_hand);
     strut_put(writer, bare ? "\n" : "}\n");
   }
 }
@@ -95,7 +128,9 @@ static void put_law_by_hand(strut_writer *writer, strut_mapping *mapping, int ke
 }
 
 static void put_law(strut_writer *writer, strut_mapping *mapping, int key, const strut_law *law) {
-  const strut_law usual = {.kind = STRUT_LAW_LINEAR};
+  strut_law usual = {.kind = STRUT_LAW_LINEAR};
+  for (int i = 0; i < STRUT_LAW_NUMBER_COUNT; i++) /* what a law needs is written, zero or not */
+    if (strut_law_needs(law->kind, i)) *strut_law_number(&usual, i) = (double)NAN;
   strut_mapping inner = STRUT_MAPPING_INLINE;
   if (law->kind == STRUT_LAW_LINEAR && law->carries == STRUT_CARRIES_BOTH) return;
   strut_put_key_name(writer, mapping, key);

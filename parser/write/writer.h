@@ -59,6 +59,8 @@ void strut_put_fields(strut_writer *writer, strut_mapping *mapping, strut_sectio
 /** True where some field of the section differs between two objects. */
 bool strut_fields_differ(strut_section section, const void *object, const void *usual);
 
+/** A signal's name, or the signal itself where it has none. */
+void strut_put_signal_reference(strut_writer *writer, int32_t index);
 /** write_drives.c: signals, actuators, loads, run, solver, output. */
 void strut_put_drives(strut_writer *writer);
 void strut_put_experiment(strut_writer *writer);

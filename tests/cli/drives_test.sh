@@ -197,4 +197,107 @@ near '.modes[1].damping_ratio' "$(rate "$fast")" 1e-9
 expect 0 check rayleigh.yaml
 out_has "damping by mass"
 
+# A support that shakes a mass through a spring and a damper: in the steady state
+# |X/Y|^2 = (1 + (2 zeta r)^2) / ((1 - r^2)^2 + (2 zeta r)^2), and with the member's consistent mass m
+# ((k + m w^2 / 6)^2 + (c w)^2) / ((k - M w^2)^2 + (c w)^2) where M includes m / 3.
+shaken() { # METHOD STEP MASS RUN
+  cat <<END
+strut: 1
+nodes:
+  a: {position: [0, 0], fixed: y, moves: {x: shake}}
+  b: {position: [1, 0], fixed: y, mass: 2}
+members:
+  m: {kind: spring, nodes: [a, b], stiffness: 200, damping: 8, mass: $3}
+signals:
+  shake: {sine: {amplitude: 10 mm, frequency: 1 Hz}}
+solver: {integrator: $1, step: $2}
+run:
+  $4
+END
+}
+rms='measure: {last: 1, quantities: {rms: {of: b.x - 1 m, take: rms}, x: {of: b.x, take: final}}}'
+gain() { jq -nr "6.283185307179586 as \$w | 200 as \$k | (8 * \$w) as \$c | $1 as \$m |
+  (2 + \$m / 3) as \$M | ((\$k + \$m / 6 * \$w * \$w) | . * .) as \$up |
+  ((\$k - \$M * \$w * \$w) | . * .) as \$down |
+  ((\$up + \$c * \$c) / (\$down + \$c * \$c)) | sqrt"; }
+for mass in 0 1.2; do
+  shaken rk4 "1 ms" $mass "periods: 14
+  of: shake
+  $rms" >shaken.yaml
+  expect 0 run shaken.yaml --json
+  near "$(value rms) / 0.01 * (2 | sqrt)" "$(gain $mass)" 1e-8
+  closes 1e-8
+done
+
+# The order of every method beside the consistent mass, from rest; the support is where its signal is,
+# and its work closes the balance.
+quantities='duration: 1.3 s
+  measure: {quantities: {x: {of: b.x, take: final}, at: {of: a.x, take: final}}}'
+shaken adaptive "10 ms, tolerance: 1e-13" 1.2 "$quantities" >shaken.yaml
+expect 0 run shaken.yaml --json
+exact=$(jq "$(value x)" out)
+near "$(value at)" '0.01 * (2.6 * 3.141592653589793 | sin)' 1e-15
+closes 1e-9
+for method in rk4 verlet euler rk4-events verlet-events euler-events midpoint; do
+  case $method in rk4*) power=4 ;; euler*) power=1 ;; *) power=2 ;; esac
+  for step in 10 5; do
+    shaken $method "$step ms" 1.2 "$quantities" >shaken.yaml
+    expect 0 run shaken.yaml --json
+    near "$(value at)" '0.01 * (2.6 * 3.141592653589793 | sin)' 1e-15
+    jq "$(value x) - $exact | fabs" out >error_$step
+    [ $power -eq 1 ] && closes 2e-2 || closes 2e-3
+  done
+  jq -en "($(cat error_10)) / ($(cat error_5)) > 0.8 * pow(2; $power)" >/dev/null ||
+    fail "$method: errors $(cat error_10) and $(cat error_5) of order $power"
+done
+
+# A ramp's corners are impulses on what the consistent mass couples: with the total mass M and the
+# coupling m / 6, z'' M + k z = k s - m/6 s'' has z = V (t - (1 + m / (6 M)) sin(w t) / w) after a corner.
+cornered() {
+  shaken "$1" "$2" 1.2 "duration: 1.3 s
+  measure: {quantities: {x: {of: b.x, take: final}, at: {of: a.vx, take: max}}}" |
+    sed 's/damping: 8, //; s/{sine:.*/{ramp: {amplitude: 0.1, start: 0.1003, stop: 0.5}}/'
+}
+ramp='(0.1 / 0.3997) as $V | (200 / 2.4 | sqrt) as $w | def z(t): t - (1 + 1.2 / 6 / 2.4) * ($w * t | sin) / $w;
+  1 + $V * (z(1.1997) - z(0.8))'
+for method in $methods; do
+  step="1 ms"
+  [ "$method" != adaptive ] || step="5 ms, tolerance: 1e-11"
+  cornered "$method" "$step" >cornered.yaml
+  expect 0 run cornered.yaml --json
+  case $method in rk4-events | adaptive) error=1e-9 ;; verlet-events | midpoint) error=1e-5 ;; *) error=1e-4 ;; esac
+  near "$(value x)" "$ramp" $error
+  case $method in rk4-events | adaptive | midpoint) closes 1e-9 ;; *) closes 2e-3 ;; esac
+done
+
+# Statics and settling see the support where it is at t = 0, position + signal(0); the run goes on there.
+cat >lifted.yaml <<'END'
+strut: 1
+gravity: [0, -10]
+nodes:
+  a: {position: [0, 1], fixed: x, moves: {y: {sine: {amplitude: 0.2, frequency: 1 Hz, phase: 90 deg}}}}
+  b: {position: [0, 0], fixed: x, mass: 1}
+members:
+  m: {kind: spring, nodes: [a, b], stiffness: 100, damping: 1, rest_length: 1}
+initial: {settle: true}
+solver: {integrator: rk4-events, step: 1 ms}
+run:
+  duration: 0.25 s
+  measure: {quantities: {from: {of: b.y, take: max}, at: {of: a.y, take: final}}}
+END
+expect 0 equilibria lifted.yaml --json
+near '.equilibria[0].nodes.a[1]' 1.2 1e-12
+near '.equilibria[0].nodes.b[1]' 0.1 1e-9
+expect 0 run lifted.yaml --json
+near "$(value from)" 0.1 1e-6
+near "$(value at)" 1 1e-12
+closes 1e-6
+expect 0 modes lifted.yaml --json
+near '.modes[0].angular_frequency' 10 1e-9
+expect 0 write lifted.yaml
+out_has 'a: {position: [0, 1], fixed: x, moves: {y: {sine: {amplitude: 0.2, frequency: 1, phase: '
+cp out again.yaml
+expect 0 write again.yaml
+tail -n +3 out >one && tail -n +3 again.yaml >two && same one two
+
 done_testing

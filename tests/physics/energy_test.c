@@ -26,7 +26,7 @@ static double relative_residual(void (*make)(strut_scene *), double step, double
   strut_energy e = balance(make, step, duration);
   double now = e.kinetic + e.elastic + e.gravity + e.contact;
   double lost = e.dissipated_members + e.dissipated_contact + e.dissipated_friction;
-  double done = e.drive_work + e.load_work + e.belt_work;
+  double done = e.drive_work + e.load_work + e.belt_work + e.support_work;
   /* the residual is what its own figures say */
   assert_near(e.residual, now - e.initial - done + lost, 1e-13 * (fabs(now) + e.moved));
   assert_true(e.moved > 0 && e.moved >= 0.99 * (fabs(done) - 1e-9));

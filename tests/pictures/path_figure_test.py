@@ -139,6 +139,17 @@ check("models/gallery/von-mises.yaml", ["--set", "load=0.01", "--over", "load", 
                                        "0.1 N"],
       "apex.y [m]", -1, 1, height="value [N]", upright=True, shapes=False)
 
+# What moves by rounding alone is not enlarged, and no second row of the key says so.
+with tempfile.TemporaryDirectory() as here:
+    heights = []
+    for model, over, until in (("mast-with-guys", "tension", "8 N"), ("clustered-square-pulled", "pull", "0.5 m")):
+        file = os.path.join(here, "a.svg")
+        subprocess.run([strut, "path", f"models/gallery/{model}.yaml", "--over", over, "--until", until, "--quiet",
+                        "--plot", file], check=True)
+        heights.append(read(file)[1])
+    if abs(heights[0] - heights[1]) > 0.01:
+        fail(f"a mast that does not move: the picture is {heights[0]} high, not {heights[1]}")
+
 # A slider that snaps from one cable to the other: dashes from kink to kink, and nowhere else.
 TOGGLE = """strut: 1
 nodes:

@@ -51,7 +51,7 @@ static strut_summary make_summary(void) {
                          .node_names = names,
                          .positions = positions,
                          .contacts = contacts,
-                         .energy = {1.0 / 7.0, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, -1e-17, 13},
+                         .energy = {1.0 / 7.0, 2, 3, 4, 5, 6, 7, 7.5, 8, 9, 10, 11, -1e-17, 13},
                          .balance = STRUT_BALANCE_OPEN};
 }
 
@@ -83,6 +83,7 @@ static void assert_energy(const cJSON *energy, const strut_energy *e) {
       {"drive_work", e->drive_work},
       {"load_work", e->load_work},
       {"belt_work", e->belt_work},
+      {"support_work", e->support_work},
       {"dissipated_members", e->dissipated_members},
       {"dissipated_contact", e->dissipated_contact},
       {"dissipated_friction", e->dissipated_friction},

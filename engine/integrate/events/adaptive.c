@@ -203,6 +203,8 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
   for (int k = 1; k < PAIR; k++) {
     double *q = k == PAIR - 1 ? l->next->q : l->stage[0];
     stage_of(n, h, l->now, v, a, k, q);
+    if (model->plan & STRUT_TERM_SUPPORT_MOTION)
+      strut_support_motion_place(model, state, t + ahead[k] * h, q, v[k]);
     if (k == PAIR - 1) break;
     accelerate_in_modes(model, state, l, t + ahead[k] * h, q, v[k], a[k], l->next, ledger);
     if (l->closed_count && broken == 0.0 && any_contradicts_at_stage(model, l)) broken = ahead[k];

@@ -10,6 +10,8 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
     strut_lanes_store(l->next->v + i, v);
     strut_lanes_store(l->next->q + i, strut_lanes_load(l->now->q + i) + h * v);
   }
+  if (model->plan & STRUT_TERM_SUPPORT_MOTION)
+    strut_support_motion_place(model, state, t + h, l->next->q, l->next->v);
   evaluate_step_end(model, state, l, t + h, l->next, ledger);
   for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++)
     l->gained[p] = 0.5 * h * (l->now->power[p] + l->next->power[p]);

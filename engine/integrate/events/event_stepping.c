@@ -159,7 +159,16 @@ static void pass_break(const strut_model *model, strut_state *state, strut_event
   }
   if (model->plan & STRUT_TERM_MEMORY)
     strut_memory_release(model, state, t + moment + state->time_offset + STRUT_AT_BREAK * dt);
-  strut_modes_after_jump(model, state, l, t + moment);
+  if (!(model->plan & STRUT_TERM_SUPPORT_MOTION)) {
+    strut_modes_after_jump(model, state, l, t + moment);
+    return;
+  }
+  bool kicked = strut_support_motion_kick(model, state, t - 2.0 * moment, t + 0.5 * moment);
+  strut_support_motion_place(model, state, t + moment, state->q, state->v);
+  if (kicked)
+    strut_modes_start(model, state, l, t + moment);
+  else
+    strut_modes_after_jump(model, state, l, t + moment);
 }
 
 /* Where a value passes 0: between low and high, and the latest two points of the search. */

@@ -30,6 +30,8 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
                        double t, double h, bool ledger) {
   int32_t n = model->length;
   double *predicted = l->stage[PREDICTED], *a1 = l->next->a;
+  bool moves = model->plan & STRUT_TERM_SUPPORT_MOTION;
+  if (moves) strut_support_motion_place(model, state, t + h, l->next->q, predicted);
   forces_of_structure(model, state, t + h, l->next->q, predicted, ledger);
   keep_structure_forces(model, state, l->next, ledger);
   if (!l->closed_count) {
@@ -46,6 +48,7 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
     implicit_ground_together(model, l, h, a1, l->next->touch);
   }
   correct(n, h, l->now->v, l->now->a, a1, l->next->v);
+  if (moves) strut_support_motion_place(model, state, t + h, l->next->q, l->next->v);
   if (l->closed_count && l->contacts_decoupled)
     implicit_ground_leave(model, state, l, ledger);
   else if (l->closed_count)

@@ -363,6 +363,7 @@ static void draw_shapes(path_picture *p, strut_box box) {
 static const double EDGE = 4.0, BETWEEN = 12.0, WIDE = 330.0, HEADING = 16.0; /* [pt] */
 static const double CURVE_SHAPE = 0.72;        /* height over width of the curve's box */
 static const double SEEN = 0.05, LARGE = 0.12; /* motion over the structure's size */
+static const double NO_MOTION = 1e-10;         /* likewise: rounding, which is not enlarged */
 static const char MINUS[] = "\xE2\x88\x92";
 enum { NAME = 28 };              /* bytes of a name in the key */
 static const double SAME = 1e-7; /* of the whole arc: events so close are one */
@@ -502,7 +503,9 @@ static void choose_enlargement(path_picture *p) {
     most = fmax(most, fabs(largest_motion(p->path, i)));
   p->larger = 1.0;
   /* Beside a ground nothing is enlarged: contact would look wrong. */
-  if (!(most > 0) || most >= SEEN * p->model->size || p->model->scene->ground.present) return;
+  if (!(most > NO_MOTION * p->model->size) || most >= SEEN * p->model->size ||
+      p->model->scene->ground.present)
+    return;
   double wanted = LARGE * p->model->size / most, power = pow(10.0, floor(log10(wanted)));
   for (int i = 0; i < 3; i++)
     if (steps[i] * power <= wanted) p->larger = fmax(1.0, steps[i] * power);

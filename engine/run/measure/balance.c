@@ -4,6 +4,8 @@
 #include <float.h>
 #include <math.h>
 
+#include "engine/forces/support_motion.h"
+
 /* Force evaluations between two samples, which make the cost of a sample negligible. */
 enum { EVALUATIONS_PER_SAMPLE = 256 };
 /* Part of the exchanged energy; rounding errors of this many units in the last place per step. */
@@ -21,13 +23,14 @@ void strut_balance_fill(const strut_model *model, strut_state *state, const stru
   e->drive_work = w[STRUT_POWER_DRIVE];
   e->load_work = w[STRUT_POWER_LOAD] + loads;
   e->belt_work = w[STRUT_POWER_BELT];
+  e->support_work = strut_support_motion_work(model, state);
   e->dissipated_members = w[STRUT_POWER_MEMBERS];
   e->dissipated_contact = w[STRUT_POWER_CONTACT];
   e->dissipated_friction = w[STRUT_POWER_FRICTION];
   e->initial = begin->kinetic + begin->elastic + begin->gravity + begin->contact;
   e->residual = end.kinetic + end.elastic + end.gravity + end.contact - e->initial - e->drive_work -
-                e->load_work - e->belt_work + e->dissipated_members + e->dissipated_contact +
-                e->dissipated_friction;
+                e->load_work - e->belt_work - e->support_work + e->dissipated_members +
+                e->dissipated_contact + e->dissipated_friction;
   e->moved = absolute_change(end.kinetic, begin->kinetic) +
              absolute_change(end.elastic, begin->elastic) +
              absolute_change(end.gravity, begin->gravity) +

@@ -8,6 +8,7 @@
 #include "engine/forces/elements.h"
 #include "engine/forces/forces.h"
 #include "engine/forces/memory.h"
+#include "engine/forces/support_motion.h"
 
 /* Rounding of positions, relative to the structure's size; and of sums over many steps. */
 static const double POSITION_ROUNDING = 1e-12, SUM_ROUNDING = 1e-10;
@@ -173,6 +174,7 @@ static double evaluate_column(const strut_columns *c, const strut_state *state, 
     case STRUT_COLUMN_DRIVES: return w[STRUT_POWER_DRIVE];
     case STRUT_COLUMN_LOADS: return w[STRUT_POWER_LOAD] + strut_energy_load_work(c->model, state);
     case STRUT_COLUMN_BELT: return w[STRUT_POWER_BELT];
+    case STRUT_COLUMN_SUPPORTS: return strut_support_motion_work(c->model, state);
     case STRUT_COLUMN_LOST_MEMBERS: return w[STRUT_POWER_MEMBERS];
     case STRUT_COLUMN_LOST_CONTACT: return w[STRUT_POWER_CONTACT];
     case STRUT_COLUMN_LOST_FRICTION: return w[STRUT_POWER_FRICTION];

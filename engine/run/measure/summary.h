@@ -21,6 +21,7 @@
   X(drive_work, WORK, "drive work")                /* done on the structure by the actuators */    \
   X(load_work, WORK, "load work")                  /* by loads */                                  \
   X(belt_work, WORK, "belt work")                  /* by the moving ground */                      \
+  X(support_work, WORK, "support work")            /* by supports that move */                     \
   X(dissipated_members, LOSSES, "lost in members") /* positive: lost */                            \
   X(dissipated_contact, LOSSES, "lost in contact")                                                 \
   X(dissipated_friction, LOSSES, "lost to friction")

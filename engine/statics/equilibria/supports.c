@@ -76,6 +76,7 @@ static void keep_rest_lengths(const strut_scene *original, strut_scene *s) {
 static void remove_motion(strut_scene *s) {
   size_t kept = 0;
   s->actuator_count = 0;
+  strut_scene_hold_supports(s, true);
   s->ground.belt_speed = 0.0;
   for (size_t i = 0; i < s->load_count; i++)
     if (s->loads[i].signal < 0) s->loads[kept++] = s->loads[i];

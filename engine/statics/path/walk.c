@@ -98,9 +98,10 @@ void strut_path_add_event(strut_path_walk *w, strut_path_event_kind kind, const 
 
 /* Predictor, corrector, and the events between them. */
 
-enum { SLOW = 8, ROUNDS = 4 };
+enum { SLOW = 8, ROUNDS = 4, SUBSTEPS = 16 };
 
 static const double LONGEST = 0.05, SHORTEST = 1e-9; /* steps [units of y] */
+static const double SHORTEST_CHECKED = 1e-5;         /* likewise, for jumps between branches */
 static const double LONGEST_HELD =
     0.02;                           /* where the curve is a reaction, which bends as it likes */
 static const double BEND = 0.97;    /* cosine that tangents of neighbouring points keep */
@@ -225,6 +226,52 @@ static bool find_next(strut_path_walk *w) {
   return false;
 }
 
+/* Does the path bend away from the point found, when it is followed in shorter steps? */
+static bool bends_away(strut_path_walk *w, double *y, double *tangent) {
+  strut_path_system *s = &w->system;
+  size_t tangent_bytes = ((size_t)s->n + 1) * sizeof *tangent;
+  memcpy(y, w->y, bytes_of(w));
+  memcpy(tangent, w->tangent, tangent_bytes);
+  for (int k = 0; k < SUBSTEPS; k++) {
+    double here = dot_product(w, tangent, y), step = w->step / SUBSTEPS;
+    for (int32_t i = 0; i <= s->n; i++) y[i] += step * tangent[i];
+    if (strut_path_correct(s, tangent, here + step, y) < 0) return true;
+    if (!strut_path_tangent(s, y, tangent, w->next_tangent)) return true;
+    if (dot_product(w, tangent, w->next_tangent) < BEND) return true;
+    memcpy(tangent, w->next_tangent, tangent_bytes);
+  }
+  return !strut_path_tangent(s, w->next, w->tangent, w->next_tangent) ||
+         dot_product(w, tangent, w->next_tangent) < BEND;
+}
+
+/*
+ * The next point, on the branch of this one: where the number of negative eigenvalues changes without
+ * a turn, a step may have jumped over a sharp bend onto another branch, as beside an imperfect fork.
+ */
+static bool find_next_on_branch(strut_path_walk *w) {
+  strut_path_system *s = &w->system;
+  double *y = NULL, *tangent = NULL;
+  bool found = find_next(w), jumped = found && w->negative >= 0;
+  while (jumped) {
+    jumped = w->step > SHORTEST_CHECKED && w->tangent[s->n] * w->next_tangent[s->n] > 0 &&
+             strut_path_spectrum(s, w->next, STRUT_PATH_SIGNS) && s->negative != w->negative;
+    if (!jumped) break;
+    if (!y) y = strut_allocate(1, bytes_of(w)), tangent = strut_allocate(1, bytes_of(w));
+    w->failed = w->failed || !y || !tangent;
+    jumped = !w->failed && bends_away(w, y, tangent);
+    if (!jumped) break;
+    double whole = w->step;
+    w->step /= SUBSTEPS;
+    jumped = find_next(w);
+    if (jumped) continue;
+    w->step = whole; /* no shorter step succeeds: so be it */
+    found = find_next(w);
+  }
+  strut_release(y);
+  strut_release(tangent);
+  return found && !w->failed;
+}
+
 /* Ends the path exactly at the requested value if this piece passes it. */
 static bool land_on_end(strut_path_walk *w) {
   strut_path_system *s = &w->system;
@@ -307,7 +354,7 @@ static bool end_at_switch(strut_path_walk *w, strut_path_piece *piece, int32_t w
 bool strut_path_walk_step(strut_path_walk *w) {
   strut_path_piece piece = {w->y, w->tangent, w->next, 0};
   int32_t which;
-  if (!find_next(w)) return end_path(w, find_reason(w));
+  if (!find_next_on_branch(w)) return end_path(w, find_reason(w));
   piece.length = dot_product(w, w->tangent, w->next) - dot_product(w, w->tangent, w->y);
   bool landed = land_on_end(w);
   if (landed) piece.length = dot_product(w, w->tangent, w->next) - dot_product(w, w->tangent, w->y);

@@ -149,6 +149,13 @@ static void add_rest(structure *s, const strut_setup *setup) {
                            scene->rayleigh_stiffness};
   add_all(s, values, sizeof values / sizeof values[0]);
   for (size_t i = 0; i < search->support_count; i++) add_set(s, &search->supports[i]);
+  for (size_t i = 0; i < scene->support_motion_count; i++) {
+    const strut_support_motion *m = &scene->support_motions[i];
+    double value, rate;
+    strut_signal_evaluate(scene->signals, m->signal, 0.0, &value, &rate);
+    const double motion[] = {m->node, m->axis, value};
+    add_all(s, motion, sizeof motion / sizeof motion[0]);
+  }
 }
 
 static void free_structure(structure *s) {
