@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "engine/forces/drive.h"
 #include "engine/forces/strains/angle.h"
 #include "engine/forces/strains/path.h"
 
@@ -21,8 +22,8 @@ void strut_actuator_forces_apply(const strut_model *model, strut_state *state, d
   for (int32_t i = 0; i < table->count; i++) {
     const strut_actuator_force *a = &table->item[i];
     const uint32_t *at = table->at + a->first;
-    double b[2 * STRUT_MOST_ELEMENT_NODES], size, rate, speed = 0.0;
-    strut_signal_evaluate(model->scene->signals, a->signal, t + state->time_offset, &size, &rate);
+    double b[2 * STRUT_MOST_ELEMENT_NODES], size, speed = 0.0;
+    size = strut_drive_signal(model, state, v, a->signal, t + state->time_offset);
     gradient_of(a, at, q, b);
     state->actuator_force[i] = size;
     for (int32_t k = 0; k < a->nodes; k++) {

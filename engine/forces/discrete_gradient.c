@@ -7,7 +7,9 @@
 #include "engine/forces/actuate.h"
 #include "engine/forces/drive.h"
 #include "engine/forces/elements.h"
+#include "engine/forces/feedback.h"
 #include "engine/forces/mass_damping.h"
+#include "engine/forces/maxwell.h"
 #include "engine/forces/unbalance.h"
 #include "engine/model/pose.h"
 
@@ -21,17 +23,22 @@ bool strut_discrete_gradient_create(const strut_model *model, strut_state *state
   memcpy(step->rest0, model->members.rest, slots * sizeof(double));
   size_t elements = (size_t)model->elements.count;
   step->middle = strut_arena_allocate(&state->arena, (size_t)model->length, sizeof(double));
+  step->end_velocity = strut_arena_allocate(&state->arena, (size_t)model->length, sizeof(double));
   step->strain0 = strut_arena_allocate(&state->arena, elements, sizeof(double));
   step->energy0 = strut_arena_allocate(&state->arena, elements, sizeof(double));
   step->element_slope = strut_arena_allocate(&state->arena, elements, sizeof(double));
-  return step->middle && step->strain0 && step->energy0 && step->element_slope;
+  return step->middle && step->end_velocity && step->strain0 && step->energy0 &&
+         step->element_slope;
 }
 
 void strut_discrete_gradient_begin(const strut_model *model, strut_state *state, const double *q,
                                    double begin, double h, strut_discrete_gradient *step) {
   const strut_member_table *t = &model->members;
   step->begin = begin, step->h = h;
-  if (model->plan & STRUT_TERM_DRIVE) {
+  if (model->plan & STRUT_TERM_FEEDBACK) {
+    strut_feedback_apply(model, state, begin, q, state->v);
+    memcpy(step->rest0, state->rest, (size_t)t->slots * sizeof(double));
+  } else if (model->plan & STRUT_TERM_DRIVE) {
     if (begin != state->drive_time) strut_drive_apply(model, state, begin);
     memcpy(step->rest0, state->rest, (size_t)t->slots * sizeof(double));
     strut_drive_apply(model, state, begin + 0.5 * h);
@@ -205,6 +212,24 @@ static void add_elements(const strut_model *model, strut_state *state,
   for (int32_t i = 0; i < model->elements.count; i++) add_element(model, state, step, i, q0, q1);
 }
 
+/* Drives that follow the motion: their rates half-way, with the loads and the rates of internal states
+   there, and their values at the end. */
+static void follow(const strut_model *model, strut_state *state, strut_discrete_gradient *step,
+                   const double *q1, const double *u) {
+  for (int32_t i = 0; i < model->length; i++) {
+    step->middle[i] = 0.5 * (state->q[i] + q1[i]);
+    step->end_velocity[i] = 2.0 * u[i] - state->v[i];
+  }
+  double middle = step->begin + 0.5 * step->h;
+  strut_feedback_apply(model, state, middle, step->middle, u);
+  memcpy(step->rest_rate, state->rest_rate, (size_t)model->members.slots * sizeof(double));
+  strut_feedback_add_rates(model, state, middle, u, state->force);
+  if (model->plan & STRUT_TERM_LOADS) strut_loads_apply(model, state, middle, u);
+  strut_actuator_forces_apply(model, state, middle, step->middle, u);
+  strut_maxwell_apply(model, state, step->middle, u, state->force);
+  strut_feedback_apply(model, state, step->begin + step->h, q1, step->end_velocity);
+}
+
 void strut_discrete_gradient_forces(const strut_model *model, strut_state *state,
                                     strut_discrete_gradient *step, const double *q1,
                                     const double *u) {
@@ -215,7 +240,9 @@ void strut_discrete_gradient_forces(const strut_model *model, strut_state *state
     memcpy(state->force, model->constant_force, bytes);
   else
     memset(state->force, 0, bytes);
-  if (model->plan & STRUT_TERM_LOADS)
+  if (model->plan & STRUT_TERM_FEEDBACK)
+    follow(model, state, step, q1, u);
+  else if (model->plan & STRUT_TERM_LOADS)
     strut_loads_apply(model, state, step->begin + 0.5 * step->h, u);
   add_members(model, state, step, state->q, q1);
   if (model->plan & STRUT_TERM_UNBALANCE)
@@ -224,7 +251,8 @@ void strut_discrete_gradient_forces(const strut_model *model, strut_state *state
   if (!(model->plan & (STRUT_TERM_ELEMENTS | STRUT_TERM_ACTUATOR_FORCES))) return;
   for (int32_t i = 0; i < model->length; i++) step->middle[i] = 0.5 * (state->q[i] + q1[i]);
   add_elements(model, state, step, state->q, q1);
-  strut_actuator_forces_apply(model, state, step->begin + 0.5 * step->h, step->middle, u);
+  if (!(model->plan & STRUT_TERM_FEEDBACK))
+    strut_actuator_forces_apply(model, state, step->begin + 0.5 * step->h, step->middle, u);
 }
 
 void strut_discrete_gradient_tensions(const strut_model *model, const strut_state *state,

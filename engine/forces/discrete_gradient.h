@@ -29,6 +29,7 @@ typedef struct strut_discrete_gradient {
   double *middle; /* (length) positions half-way, where the gradients of elements are taken [m] */
   double *strain0, *energy0; /* (elements) strains and energies [J] at the begin */
   double *element_slope;     /* (elements) d force / d strain at the end, not below 0 */
+  double *end_velocity;      /* (length) with feedback: 2 u - v0 [m/s] */
 } strut_discrete_gradient;
 
 /** Arrays in the state's arena. False: out of memory. */

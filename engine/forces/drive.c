@@ -4,18 +4,57 @@
 
 #include <math.h>
 
+#include "engine/forces/feedback.h"
 #include "engine/forces/memory.h"
+#include "engine/scene/signal_motion.h"
+
+strut_signal_inputs strut_drive_inputs(const strut_model *model, const strut_state *state,
+                                       const double *v) {
+  return (strut_signal_inputs){.sensor = state->sensor,
+                               .sensor_rate = state->sensor_rate,
+                               .state = v + model->feedback.base,
+                               .states = model->scene->states,
+                               .lag_of = model->feedback.lag_of,
+                               .held = state->held,
+                               .started = state->started};
+}
+
+/* The signal of a drive or a load now. */
+static void evaluate(const strut_model *model, const strut_state *state, const double *v,
+                     int32_t signal, double t, double *value, double *rate) {
+  const strut_signal *signals = model->scene->signals;
+  if (!(model->plan & STRUT_TERM_FEEDBACK)) {
+    strut_signal_evaluate(signals, signal, t, value, rate);
+    return;
+  }
+  const strut_signal_inputs in = strut_drive_inputs(model, state, v);
+  strut_signal_follow(signals, &in, signal, t, value, rate);
+}
+
+double strut_drive_signal(const strut_model *model, const strut_state *state, const double *v,
+                          int32_t signal, double t) {
+  double value, rate;
+  evaluate(model, state, v, signal, t, &value, &rate);
+  return value;
+}
 
 void strut_drive_apply(const strut_model *model, strut_state *state, double t) {
+  if (model->plan & STRUT_TERM_FEEDBACK)
+    strut_feedback_apply(model, state, t, state->q, state->v);
+  else
+    strut_drive_apply_sensed(model, state, t, state->v);
+}
+
+void strut_drive_apply_sensed(const strut_model *model, strut_state *state, double t,
+                              const double *v) {
   const strut_drive_table *d = &model->drives;
-  const strut_signal *signals = model->scene->signals;
   double *restrict rest = state->rest, *restrict rest_rate = state->rest_rate;
   state->drive_time = t;
   if (state->ground_motion) strut_grounds_move(model, t + state->time_offset, state->ground_motion);
   for (int32_t i = 0; i < d->count; i++) {
     double value, rate;
     int32_t member = d->member[i];
-    strut_signal_evaluate(signals, d->signal[i], t + state->time_offset, &value, &rate);
+    evaluate(model, state, v, d->signal[i], t + state->time_offset, &value, &rate);
     /* the first actuator of a member starts from its own rest length, further ones add */
     rest[member] = (d->first[i] ? model->members.rest[member] : rest[member]) + value;
     rest_rate[member] = d->first[i] ? rate : rest_rate[member] + rate;
@@ -32,7 +71,7 @@ void strut_grounds_move(const strut_model *model, double t, strut_ground_motion 
       m->place[c] = m->rate[c] = m->bend[c] = 0.0;
       if (!ground->moves[c]) continue;
       strut_signal_evaluate(scene->signals, ground->motion[c], t, &m->place[c], &m->rate[c]);
-      m->bend[c] = strut_signal_bend(scene->signals, ground->motion[c], t);
+      m->bend[c] = strut_signal_acceleration(scene->signals, ground->motion[c], t);
     }
 }
 
@@ -41,8 +80,7 @@ void strut_loads_apply(const strut_model *model, strut_state *state, double t,
   const strut_load_table *loads = &model->loads;
   for (int32_t i = 0; i < loads->count; i++) {
     double factor, rate;
-    strut_signal_evaluate(model->scene->signals, loads->signal[i], t + state->time_offset, &factor,
-                          &rate);
+    evaluate(model, state, v, loads->signal[i], t + state->time_offset, &factor, &rate);
     int32_t at = 2 * loads->node[i];
     double px = factor * loads->x[i], py = factor * loads->y[i];
     state->force[at] += px;
@@ -54,13 +92,15 @@ void strut_loads_apply(const strut_model *model, strut_state *state, double t,
   }
 }
 
-double strut_drive_next_break(const strut_model *model, double t) {
+double strut_drive_next_break(const strut_model *model, const strut_state *state, double t) {
   const strut_signal *signals = model->scene->signals;
   double first = (double)INFINITY;
   for (int32_t i = 0; i < model->drives.count; i++)
-    first = fmin(first, strut_signal_next_break(signals, model->drives.signal[i], t));
+    first = fmin(
+        first, strut_signal_next_break_since(signals, state->started, model->drives.signal[i], t));
   for (int32_t i = 0; i < model->loads.count; i++)
-    first = fmin(first, strut_signal_next_break(signals, model->loads.signal[i], t));
+    first = fmin(first,
+                 strut_signal_next_break_since(signals, state->started, model->loads.signal[i], t));
   for (int32_t i = 0; i < model->support_motion.count; i++)
     first = fmin(first, strut_signal_next_break(signals, model->support_motion.item[i].signal, t));
   for (size_t i = 0; i < model->scene->unbalance_count; i++)
@@ -75,6 +115,7 @@ double strut_drive_next_break(const strut_model *model, double t) {
     if (model->elements.breakable[i].time > t)
       first = fmin(first, model->elements.breakable[i].time);
   for (int32_t i = 0; i < model->actuator_forces.count; i++)
-    first = fmin(first, strut_signal_next_break(signals, model->actuator_forces.item[i].signal, t));
-  return first;
+    first = fmin(first, strut_signal_next_break_since(signals, state->started,
+                                                      model->actuator_forces.item[i].signal, t));
+  return fmin(first, strut_feedback_next_sample(model, t));
 }

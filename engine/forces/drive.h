@@ -5,8 +5,20 @@
 
 #include "engine/model/state.h"
 
-/** Driven rest lengths and their rates (6): state->rest, rest_rate. */
+/**
+ * Driven rest lengths and their rates (6): state->rest, rest_rate. Drives that follow sensors do so at
+ * the state's positions and velocities.
+ */
 void strut_drive_apply(const strut_model *model, strut_state *state, double t);
+/** The same with the sensors as they were evaluated last: the second half of strut_feedback_apply. */
+void strut_drive_apply_sensed(const strut_model *model, strut_state *state, double t,
+                              const double *v);
+/** Inputs of signals: the sensors as they were evaluated last, and the states at velocities v. */
+strut_signal_inputs strut_drive_inputs(const strut_model *model, const strut_state *state,
+                                       const double *v);
+/** A signal at time t [s], with the sensors as they were evaluated last, and states at velocities v. */
+double strut_drive_signal(const strut_model *model, const strut_state *state, const double *v,
+                          int32_t signal, double t);
 /** Adds the loads that change with time at velocities v (for their power). */
 void strut_loads_apply(const strut_model *model, strut_state *state, double t,
                        const double *restrict v);
@@ -18,6 +30,6 @@ void strut_grounds_move(const strut_model *model, double t, strut_ground_motion 
  * The first time after t [s] at which a drive, a load or its rate jumps, or something is released;
  * INFINITY if none does.
  */
-double strut_drive_next_break(const strut_model *model, double t);
+double strut_drive_next_break(const strut_model *model, const strut_state *state, double t);
 
 #endif

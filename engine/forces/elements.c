@@ -335,14 +335,19 @@ strut_element_motion strut_element_move(const strut_model *model, const strut_st
 
 double strut_element_measure(const strut_model *model, const strut_state *state, int32_t element,
                              strut_element_pose *pose) {
+  return strut_element_measure_at(model, state, element, state->q, state->v, pose);
+}
+
+double strut_element_measure_at(const strut_model *model, const strut_state *state, int32_t element,
+                                const double *q, const double *v, strut_element_pose *pose) {
   const strut_element *e = &model->elements.element[element];
-  strut_element_evaluate(model, element, state->rest, state->q, state->element_turn[element], pose);
+  strut_element_evaluate(model, element, state->rest, q, state->element_turn[element], pose);
   if (strut_element_is_gone(pose->natural)) return 0.0;
   if (strut_capstan_remembers(e, state->rest))
     return strut_capstan_tensions(model, state, element, state->q, state->v).first;
   int32_t slot = e->remembers ? e->base : e->slot;
   double rest_rate = slot >= 0 ? state->rest_rate[slot] : 0.0;
   strut_law_response r = strut_law_respond(e->law, &e->numbers, pose->strain, pose->natural, -1);
-  double own = strut_element_rate(model, element, pose, state->v) - rest_rate;
+  double own = strut_element_rate(model, element, pose, v) - rest_rate;
   return exert(e, state, element, &r, pose->strain - pose->natural, own).force;
 }

@@ -3,6 +3,7 @@
 
 #include "engine/forces/drive.h"
 #include "engine/forces/elements.h"
+#include "engine/forces/maxwell.h"
 #include "engine/forces/support_motion.h"
 #include "engine/model/pose.h"
 
@@ -22,18 +23,18 @@ double strut_energy_kinetic(const strut_model *model, const double *v) {
   return sum;
 }
 
-static double elastic(const strut_model *model, const strut_state *state) {
+static double elastic(const strut_model *model, const strut_state *state, const double *q) {
   const strut_member_table *t = &model->members;
   const strut_member *member = model->scene->members;
   bool rigid = model->plan & STRUT_TERM_RIGID; /* rigid bars store nothing */
   double sum = 0.0;
   for (int32_t j = 0; j < t->count; j++) {
     if (rigid && member[j].kind == STRUT_BAR) continue;
-    strut_member_pose pose = strut_member_pose_at(t, state->rest, j, state->q);
+    strut_member_pose pose = strut_member_pose_at(t, state->rest, j, q);
     sum += strut_member_elastic_energy(t, j, &pose);
   }
   if (model->elements.count)
-    sum += strut_elements_energy(model, state->rest, state->element_turn, state->q);
+    sum += strut_elements_energy(model, state->rest, state->element_turn, q);
   return sum;
 }
 
@@ -46,8 +47,7 @@ static double gravity(const strut_model *model, const double *q) {
   return sum;
 }
 
-static double contact(const strut_model *model, const strut_state *state) {
-  const double *q = state->q;
+static double contact(const strut_model *model, const strut_state *state, const double *q) {
   const strut_contact_table *c = &model->contacts;
   double sum = 0.0;
   for (int32_t i = 0; i < c->count; i++) {
@@ -59,8 +59,14 @@ static double contact(const strut_model *model, const strut_state *state) {
 
 strut_energies strut_energy_evaluate(const strut_model *model, strut_state *state, double t) {
   strut_drive_apply(model, state, t);
-  return (strut_energies){strut_energy_kinetic(model, state->v), elastic(model, state),
-                          gravity(model, state->q), contact(model, state)};
+  return strut_energy_evaluate_at(model, state, state->q, state->v);
+}
+
+strut_energies strut_energy_evaluate_at(const strut_model *model, const strut_state *state,
+                                        const double *q, const double *v) {
+  return (strut_energies){strut_energy_kinetic(model, v),
+                          elastic(model, state, q) + strut_maxwell_energy(model, v),
+                          gravity(model, q), contact(model, state, q)};
 }
 
 double strut_energy_load_potential(const strut_model *model, const strut_state *state) {

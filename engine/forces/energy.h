@@ -19,6 +19,11 @@ typedef struct strut_energies {
 STRUT_API strut_energies strut_energy_evaluate(const strut_model *model, strut_state *state,
                                                double t);
 
+/** The same at positions q and velocities v, with the state's rest lengths as they are. */
+STRUT_API strut_energies strut_energy_evaluate_at(const strut_model *model,
+                                                  const strut_state *state, const double *q,
+                                                  const double *v);
+
 /** The first of them alone, at velocities v (length) [J]. */
 STRUT_API double strut_energy_kinetic(const strut_model *model, const double *v);
 

@@ -34,6 +34,11 @@ typedef struct strut_member_values {
 } strut_member_values;
 STRUT_API strut_member_values strut_member_measure(const strut_model *model,
                                                    const strut_state *state, int32_t member);
+/** The same at positions q and velocities v, with the state's rest lengths; without the forces that hold
+    rigid bars. */
+STRUT_API strut_member_values strut_member_measure_at(const strut_model *model,
+                                                      const strut_state *state, int32_t member,
+                                                      const double *q, const double *v);
 /** A hinge at the state: angle [rad], its rate [rad/s], moment [N m] that closes it where positive. */
 typedef struct strut_hinge_values {
   double angle, rate, moment;

@@ -11,9 +11,11 @@
 #include "engine/forces/actuate.h"
 #include "engine/forces/drive.h"
 #include "engine/forces/elements.h"
+#include "engine/forces/feedback.h"
 #include "engine/forces/forces.h"
 #include "engine/forces/ground_kernel.h"
 #include "engine/forces/mass_damping.h"
+#include "engine/forces/maxwell.h"
 #include "engine/forces/members_kernel.h"
 #include "engine/forces/support_motion.h"
 #include "engine/forces/surfaces.h"
@@ -57,10 +59,15 @@ STRUT_INLINE void forces_of_structure(const strut_model *model, strut_state *sta
   state->evaluations++;
   for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) state->power[p] = 0.0;
   forces_start(model, force);
+  if (plan & STRUT_TERM_FEEDBACK) {
+    strut_feedback_apply(model, state, t, q, v);
+    strut_feedback_add_rates(model, state, t, v, force);
+  }
   if (plan & STRUT_TERM_LOADS) strut_loads_apply(model, state, t, v);
   if ((plan & STRUT_TERM_DRIVE) && t != state->drive_time) strut_drive_apply(model, state, t);
   if (plan & STRUT_TERM_MEMBERS) forces_of_members(model, state, q, v, force, ledger);
   if (plan & STRUT_TERM_ELEMENTS) strut_elements_add_forces(model, state, q, v, force);
+  if (plan & STRUT_TERM_FEEDBACK) strut_maxwell_apply(model, state, q, v, force);
   if (plan & STRUT_TERM_ACTUATOR_FORCES) strut_actuator_forces_apply(model, state, t, q, v);
   if (plan & STRUT_TERM_UNBALANCE) strut_unbalance_apply(model, state, t, v);
   if (plan & STRUT_TERM_MASS_DAMPING) strut_mass_damping_apply(model, state, v);

@@ -4,6 +4,7 @@
 #include "engine/forces/actuate.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/forces.h"
+#include "engine/forces/maxwell.h"
 
 #include <math.h>
 #include "engine/forces/rigid.h"
@@ -11,32 +12,34 @@
 
 /* Adds the forces of a member's elements; a running cable's length is theirs, too. */
 static void measure_elements(const strut_model *model, const strut_state *state,
-                             const strut_element *e, strut_member_values *values) {
+                             const strut_element *e, const double *q, const double *v,
+                             strut_member_values *values) {
   strut_element_pose pose;
   for (; e; e = e->sibling >= 0 ? &model->elements.element[e->sibling] : NULL) {
     int32_t i = (int32_t)(e - model->elements.element);
-    values->force += strut_element_measure(model, state, i, &pose);
+    values->force += strut_element_measure_at(model, state, i, q, v, &pose);
     values->length = pose.strain;
-    values->rate = strut_element_rate(model, i, &pose, state->v);
+    values->rate = strut_element_rate(model, i, &pose, v);
   }
 }
 
-/* Without what the multiplier of a rigid bar adds. */
-static strut_member_values measure(const strut_model *model, const strut_state *state, int32_t j) {
+strut_member_values strut_member_measure_at(const strut_model *model, const strut_state *state,
+                                            int32_t j, const double *q, const double *v) {
   const strut_member_table *t = &model->members;
-  strut_member_pose pose = strut_member_pose_at(t, state->rest, j, state->q);
-  double rate = strut_member_rate(t, j, &pose, state->v);
+  strut_member_pose pose = strut_member_pose_at(t, state->rest, j, q);
+  double rate = strut_member_rate(t, j, &pose, v);
   double force = t->stiffness[j] * pose.stretch + t->damping[j] * (rate - state->rest_rate[j]);
   bool pulls = pose.taut && force > t->slack[j];
   strut_member_values values = {pose.length, rate, pulls ? force : t->slack[j]};
   const strut_element *element = strut_element_of_member(&model->elements, j);
-  if (element) measure_elements(model, state, element, &values);
+  if (element) measure_elements(model, state, element, q, v, &values);
+  if (model->feedback.maxwell_count) values.force += strut_maxwell_force(model, v, j);
   return values;
 }
 
 strut_member_values strut_member_measure(const strut_model *model, const strut_state *state,
                                          int32_t member) {
-  strut_member_values values = measure(model, state, member);
+  strut_member_values values = strut_member_measure_at(model, state, member, state->q, state->v);
   if (state->rigid) values.force += strut_rigid_tension(state->rigid, member);
   values.force += strut_actuator_force_on_member(model, state, member);
   return values;
@@ -73,7 +76,7 @@ strut_collision_values strut_collision_measure(const strut_model *model, const s
 void strut_members_measure(const strut_model *model, const strut_state *state, double *length,
                            double *force) {
   for (int32_t j = 0; j < model->members.count; j++) {
-    strut_member_values values = measure(model, state, j);
+    strut_member_values values = strut_member_measure_at(model, state, j, state->q, state->v);
     length[j] = values.length;
     force[j] = values.force;
   }

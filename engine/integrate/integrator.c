@@ -2,8 +2,11 @@
 #include "engine/integrate/integrator.h"
 
 #include <assert.h>
+#include <math.h>
 #include <string.h>
 
+#include "engine/forces/energy.h"
+#include "engine/forces/feedback.h"
 #include "engine/forces/rigid.h"
 
 /* The rows, each defined in its method's own file. */
@@ -81,4 +84,61 @@ strut_status strut_integrator_check(const strut_model *model, const strut_experi
                       "bars: elastic",
                       name);
   return model->mass ? strut_rigid_check(model, error) : STRUT_OK;
+}
+
+/* Samples this close to a grid point, in steps, are on it. */
+static const double ON_GRID = 1e-6;
+
+/*
+ * Samples and starts signals at the present grid point, and books what that does to the elastic energy.
+ * Methods with events take samples and touchdowns where they are.
+ */
+static void update_on_grid(const strut_integrator *method, const strut_model *model,
+                           strut_state *state, void *workspace, double dt) {
+  double t = (double)state->step * dt, before = 0.0;
+  if (state->ledger) before = strut_energy_evaluate(model, state, t).elastic;
+  bool changed = !method->events && strut_feedback_sample(model, state, t, ON_GRID * dt);
+  if (model->feedback.trigger_count && strut_feedback_watch(model, state, t, !method->events))
+    changed = true;
+  if (!changed) return;
+  if (state->ledger) {
+    double gained = strut_energy_evaluate(model, state, t).elastic - before;
+    state->work[STRUT_POWER_DRIVE] += gained;
+    state->work[STRUT_POWER_EXCHANGED] += fabs(gained);
+  }
+  if (method->restart) method->restart(model, state, workspace, dt);
+}
+
+void strut_integrator_advance(const strut_integrator *method, const strut_model *model,
+                              strut_state *state, void *workspace, double dt, int64_t count) {
+  const strut_feedback_table *f = &model->feedback;
+  bool watched = f->watches || (f->trigger_count && !method->events);
+  if (!watched && (!f->sampled_count || method->events)) {
+    method->advance(model, state, workspace, dt, count);
+    return;
+  }
+  for (int64_t end = state->step + count; state->step < end && !state->trouble;) {
+    double t = (double)state->step * dt + state->time_offset;
+    update_on_grid(method, model, state, workspace, dt);
+    double next = strut_feedback_next_sample(model, t + ON_GRID * dt);
+    int64_t steps = (int64_t)fmin((next - t) / dt + 0.5, (double)(end - state->step));
+    method->advance(model, state, workspace, dt, steps < 1 || watched ? 1 : steps);
+  }
+}
+
+strut_status strut_integrator_check_samples(const strut_integrator *method,
+                                            const strut_model *model, double dt,
+                                            strut_error *error) {
+  for (int32_t i = 0; i < model->feedback.sampled_count && !method->events; i++) {
+    const strut_signal *s = &model->scene->signals[model->feedback.sampled[i]];
+    double steps = s->every / dt, whole = round(steps);
+    if (whole >= 1.0 && fabs(steps - whole) <= 1e-9 * whole) continue;
+    return strut_fail(
+        error, STRUT_USAGE,
+        "%s%s%s is sampled every %g s, which is no multiple of the step of %.9g s that %s "
+        "takes; choose a step of %.9g s, or a method with events, such as rk4-events",
+        s->name ? "signal '" : "a signal", s->name ? s->name : "", s->name ? "'" : "", s->every, dt,
+        method->name, s->every / fmax(1.0, ceil(steps - 1e-9)));
+  }
+  return STRUT_OK;
 }

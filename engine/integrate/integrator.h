@@ -78,6 +78,21 @@ STRUT_API const strut_integrator *strut_integrator_for(strut_integrator_role rol
 STRUT_API const strut_integrator *strut_integrator_for_settling(const strut_model *model);
 /** Index of the first contact whose friction law sticks exactly, or -1. */
 STRUT_API int32_t strut_first_exact_contact(const strut_model *model);
+/**
+ * Advances the state by `count` steps of dt as the method does, with the samples of sampled signals: those
+ * of methods without events are taken on the grid. What a sample does to the elastic energy is work of the
+ * drive. All stepping goes through here.
+ */
+STRUT_API void strut_integrator_advance(const strut_integrator *method, const strut_model *model,
+                                        strut_state *state, void *workspace, double dt,
+                                        int64_t count);
+/**
+ * Do the samples of all sampled signals fall on the grid of a method without events? STRUT_USAGE where
+ * not, with a step for which they do.
+ */
+STRUT_API strut_status strut_integrator_check_samples(const strut_integrator *method,
+                                                      const strut_model *model, double dt,
+                                                      strut_error *error);
 /** The settings of an experiment's method. */
 static inline strut_integrator_settings strut_integrator_settings_of(const strut_experiment *e) {
   return (strut_integrator_settings){.step = e->step,

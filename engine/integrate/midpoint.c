@@ -36,6 +36,7 @@ typedef struct midpoint_workspace {
   double stiffest;      /* about the largest squared frequency [1/s^2] */
   double *moved[3];     /* (moved coordinates) velocities at both ends of a step, and on average */
   double factor_step;   /* the step that the factor is for [s]; 0: none; below: never restarted */
+  bool states_settled;  /* the latest correction changed no internal state by more than rounding */
 } midpoint_workspace;
 
 /* Stiffness over mass at the worst node. */
@@ -128,6 +129,22 @@ static void evaluate(const strut_model *model, strut_state *state, midpoint_work
     strut_support_motion_apply_mean(model, state, w->step.h, w->moved[0], w->moved[1], w->u);
 }
 
+/* Mean values of the internal states, by their rates half-way: a fixed point of the iteration. */
+static bool correct_states(const strut_model *model, const strut_state *state,
+                           midpoint_workspace *w) {
+  const strut_feedback_table *f = &model->feedback;
+  bool finite = true;
+  w->states_settled = true;
+  for (int32_t i = f->base; i < f->base + f->state_count; i++) {
+    double next = state->v[i] + 0.5 * w->step.h * state->force[i];
+    double close = CLOSE * ROUNDING * (fabs(next) + fabs(state->v[i]));
+    if (!(fabs(next - w->u[i]) <= close)) w->states_settled = false;
+    finite = finite && isfinite(next);
+    w->u[i] = next;
+  }
+  return finite;
+}
+
 /* Correction at u into x. False where there are no numbers. */
 static bool correct(const strut_model *model, strut_state *state, midpoint_workspace *w,
                     double *x) {
@@ -137,7 +154,7 @@ static bool correct(const strut_model *model, strut_state *state, midpoint_works
   for (int32_t i = 0; i < model->length; i++) w->u[i] -= state->v[i];
   strut_midpoint_matrix_mass(m, w->u, x);
   for (int32_t i = 0; i < model->length; i++) w->u[i] += state->v[i];
-  bool finite = true;
+  bool finite = correct_states(model, state, w);
   for (int32_t i = 0; i < m->n; i++) {
     x[i] = 0.5 * h * state->force[m->coordinate[i]] - x[i];
     finite = finite && isfinite(x[i]);
@@ -160,7 +177,7 @@ static void move(midpoint_workspace *w, const double *x, double factor) {
 static double rounding_of(const strut_model *model, const strut_state *state,
                           const midpoint_workspace *w) {
   double speed = 0.0, reach = 0.0, h = w->step.h;
-  for (int32_t i = 0; i < model->length; i++) {
+  for (int32_t i = 0; i < 2 * model->node_count; i++) {
     speed = fmax(speed, fabs(w->u[i]));
     reach = fmax(reach, fabs(state->q[i]));
   }
@@ -192,7 +209,7 @@ static bool iterate(const strut_model *model, strut_state *state, midpoint_works
     strut_refactor_solve(w->matrix.factor, w->x);
     double size = size_of(&w->matrix, w->x), close = rounding_of(model, state, w);
     if (turn > 0 && size > SLOW * before && size > CLOSE * close) {
-      if (size <= STALLED * close && size > 0.5 * before) return true;
+      if (size <= STALLED * close && size > 0.5 * before && w->states_settled) return true;
       if (!fresh && !renew(model, state, w, stiff)) return false;
       memcpy(w->x, w->residual, bytes);
       strut_refactor_solve(w->matrix.factor, w->x);
@@ -203,7 +220,7 @@ static bool iterate(const strut_model *model, strut_state *state, midpoint_works
     }
     if (!isfinite(size)) return false;
     move(w, w->x, part);
-    if (size <= CLOSE * close) return true;
+    if (size <= CLOSE * close && w->states_settled) return true;
     before = size;
   }
   return false;
@@ -221,8 +238,12 @@ static int32_t worst_node(const midpoint_workspace *w) {
 static bool solve(const strut_model *model, strut_state *state, midpoint_workspace *w) {
   if (w->matrix.n == 0) {
     guess(model, state, w, true);
-    evaluate(model, state, w);
-    return true;
+    for (int turn = 0; turn < MOST_TURNS; turn++) {
+      evaluate(model, state, w);
+      if (!correct_states(model, state, w)) return false;
+      if (w->states_settled) return true;
+    }
+    return false;
   }
   for (int attempt = 0; attempt < 2; attempt++) {
     guess(model, state, w, attempt > 0);
@@ -236,6 +257,11 @@ static void finish(const strut_model *model, strut_state *state, midpoint_worksp
   double h = w->step.h, *oldest = w->before[1];
   for (int32_t i = 0; i < w->matrix.n; i++) {
     int32_t at = w->matrix.coordinate[i];
+    state->q[at] += h * w->u[at];
+    state->v[at] = 2.0 * w->u[at] - state->v[at];
+  }
+  const strut_feedback_table *f = &model->feedback;
+  for (int32_t at = f->base; at < f->base + f->state_count; at++) {
     state->q[at] += h * w->u[at];
     state->v[at] = 2.0 * w->u[at] - state->v[at];
   }

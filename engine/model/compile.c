@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "engine/model/element_compile.h"
+#include "engine/model/feedback_compile.h"
 #include "engine/model/mass.h"
 #include "engine/model/memory_estimate.h"
 #include "engine/model/model.h"
@@ -24,7 +25,8 @@ static int32_t *indices(strut_model *model, size_t count, bool *failed) {
 static void compile_nodes(strut_model *model, bool *failed) {
   const strut_scene *scene = model->scene;
   size_t count = scene->node_count;
-  size_t length = (2 * count + 2 + STRUT_LANES - 1) / STRUT_LANES * STRUT_LANES;
+  size_t needed = 2 * count + 2 + strut_feedback_states(scene);
+  size_t length = (needed + STRUT_LANES - 1) / STRUT_LANES * STRUT_LANES;
   model->node_count = (int32_t)scene->node_count;
   model->length = (int32_t)length;
   double *start = doubles(model, length, failed), *velocity = doubles(model, length, failed);
@@ -131,6 +133,10 @@ static void compile_drives(strut_model *model, bool *failed) {
   }
   strut_release(driven);
   model->drives = (strut_drive_table){(int32_t)count, member, signal, first};
+}
+
+static void compile_feedback(strut_model *model, bool *failed) {
+  if (!strut_feedback_compile(model)) *failed = true;
 }
 
 /* Half of each member's mass at each of its ends (7), and the point masses. */
@@ -253,9 +259,9 @@ strut_status strut_model_compile(const strut_scene *scene, strut_model **result,
   model->scene = scene;
   bool failed = false;
   void (*const passes[])(strut_model *, bool *) = {
-      compile_nodes,   compile_members,        compile_elements,  compile_drives,
-      compile_weights, compile_loads,          compile_contacts,  compile_actuator_forces,
-      compile_damping, compile_support_motion, compile_unbalances};
+      compile_nodes,   compile_members,        compile_elements,   compile_drives,
+      compile_weights, compile_loads,          compile_contacts,   compile_actuator_forces,
+      compile_damping, compile_support_motion, compile_unbalances, compile_feedback};
   for (size_t i = 0; i < sizeof passes / sizeof passes[0] && !failed; i++)
     passes[i](model, &failed);
   strut_status status = failed ? strut_memory_fail_model(scene, error)

@@ -217,6 +217,10 @@ strut_status strut_mass_create(strut_model *model, strut_mass **result, strut_er
   }
   const strut_mass_operator *op = mass->coordinate;
   mass->inverse = op[0].inverse;
+  for (int32_t i = 0; i < model->feedback.state_count; i++) { /* the rate of a state is its force */
+    ((double *)op[0].inverse)[model->feedback.base + i] = 1.0;
+    mass->any_single = true;
+  }
   mass->diagonal = !op[0].block_count && !op[0].factor && !op[1].block_count && !op[1].factor;
   *result = mass;
   return STRUT_OK;

@@ -18,6 +18,7 @@
 #include "engine/base/status.h"
 #include "engine/model/actuator_forces.h"
 #include "engine/model/elements.h"
+#include "engine/model/feedback.h"
 #include "engine/model/support_motion.h"
 #include "engine/model/surfaces.h"
 #include "engine/scene/scene.h"
@@ -46,6 +47,7 @@ typedef enum strut_term {
   STRUT_TERM_SUPPORT_MOTION = 1 << 16,  /* supports that move */
   STRUT_TERM_UNBALANCE = 1 << 17,       /* rotating masses */
   STRUT_TERM_MEMORY = 1 << 20,          /* elements that break, are released, yield or rub */
+  STRUT_TERM_FEEDBACK = 1 << 22,        /* sensors, internal states, and signals that follow them */
   STRUT_TERM_SURFACES = 1 << 21 /* contacts with surfaces other than one straight line at rest;
                                    instead of CONTACT */
 } strut_term;
@@ -122,6 +124,7 @@ typedef struct strut_model {
   strut_drive_table drives;
   strut_load_table loads;
   struct strut_mass *mass; /* mass.h; NULL where some free coordinate has no mass: statics only */
+  strut_feedback_table feedback;
   strut_arena arena;
   strut_actuator_force_table actuator_forces;
   double mass_damping; /* alpha of Rayleigh's damping [1/s] */

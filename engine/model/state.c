@@ -54,6 +54,12 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
   state->friction = strut_arena_allocate(arena, contacts, sizeof(double));
   state->scratch = strut_arena_allocate(arena, both, sizeof(double));
   bool surfaces = make_surfaces(model, state);
+  size_t sensors = (size_t)model->feedback.count;
+  state->sensor = strut_arena_allocate(arena, sensors, sizeof(double));
+  state->sensor_rate = strut_arena_allocate(arena, sensors, sizeof(double));
+  state->started = strut_arena_allocate(arena, model->scene->signal_count, sizeof(double));
+  state->trigger_was = strut_arena_allocate(arena, model->scene->signal_count, 1);
+  state->held = strut_arena_allocate(arena, model->scene->signal_count, sizeof(double));
   state->actuator_force =
       strut_arena_allocate(arena, (size_t)model->actuator_forces.count, sizeof(double));
   bool moves = model->plan & (STRUT_TERM_SUPPORT_MOTION | STRUT_TERM_UNBALANCE);
@@ -65,7 +71,8 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
       !state->rest_rate || !state->plastic || !state->broken_at || !state->memory_kept ||
       !state->guide_mode || !state->guide_drop || !state->guide_side || !state->force ||
       !state->normal || !state->friction || !state->scratch || !state->actuator_force ||
-      !state->support_rates || !state->support_answer || !surfaces) {
+      !state->support_rates || !state->support_answer || !surfaces || !state->sensor ||
+      !state->sensor_rate || !state->held || !state->started || !state->trigger_was) {
     strut_state_free(state);
     *result = NULL;
     return strut_memory_fail_model(model->scene, error);
@@ -95,6 +102,11 @@ void strut_state_reset(const strut_model *model, strut_state *state) {
     state->element_acts[i] = 0;
     state->element_piece[i] = -1;
     state->element_turn[i] = strut_element_start(model, i);
+  }
+  for (size_t i = 0; i < model->scene->signal_count; i++) {
+    state->held[i] = (double)NAN;
+    state->started[i] = (double)INFINITY;
+    state->trigger_was[i] = -1;
   }
   for (int32_t i = 0; i < model->elements.memory_count; i++) state->plastic[i] = 0.0;
   for (int32_t i = 0; i < model->elements.memory_slots; i++)

@@ -76,9 +76,13 @@ typedef struct strut_state {
   /* (contacts) contact forces as a method with events has them [N]; NULL with others, where the
      forces follow from q, v and t alone */
   const double *held_normal, *held_friction;
-  struct strut_rigid *rigid; /* forces of rigid bars, see rigid.h; NULL where bars are elastic */
-  bool ledger;               /* keep the ledger? It costs some arithmetic per evaluation */
-  double *scratch;           /* (length) for the mass solve */
+  struct strut_rigid *rigid;    /* forces of rigid bars, see rigid.h; NULL where bars are elastic */
+  double *sensor, *sensor_rate; /* (sensors) when last evaluated, in SI units */
+  double *started;     /* (signals) when those with a trigger started [s]; INFINITY: not yet */
+  int8_t *trigger_was; /* (signals) did its condition hold when last looked at? -1: not looked at */
+  double *held; /* (signals) of sampled ones the value at the latest sample; NAN before the first */
+  bool ledger;  /* keep the ledger? It costs some arithmetic per evaluation */
+  double *scratch; /* (length) for the mass solve */
   strut_arena arena;
   /* memory of elements, see forces/memory.h; the slots of `rest` that belong to them follow from it */
   double *plastic; /* (memory_count) plastic strain */

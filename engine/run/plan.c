@@ -16,6 +16,7 @@ static const strut_plan_term terms[] = {
     {STRUT_TERM_ELEMENTS, "hinges", "a hinge", false},
     {STRUT_TERM_ELEMENTS, "cells", "a cell", false},
     {STRUT_TERM_ELEMENTS, "collisions", "a collision", false},
+    {STRUT_TERM_FEEDBACK, "sensors", "a sensor", false},
     {STRUT_TERM_MEMORY, "breaks and releases", "something with breaks_at or released_at", false},
     {STRUT_TERM_DRIVE, "driven rest lengths", "an actuator", false},
     {STRUT_TERM_CONSTANT, "constant forces", "gravity, or a load without a signal", false},

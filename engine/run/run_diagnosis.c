@@ -23,8 +23,10 @@ strut_status strut_run_fail_lost_node(const strut_run *r, int32_t node) {
   double limit = strut_step_limit_monitor_last_limit(r->model, &r->step_monitor),
          least = r->summary->step_limit;
   double seen = (double)r->step_monitor.last * r->dt;
-  const char *remedy = r->dt > 0.5 * fmin(limit, least)
-                           ? "use a smaller step"
+  const char *remedy = r->dt > 0.5 * fmin(limit, least) ? "use a smaller step"
+                       : (r->model->plan & STRUT_TERM_FEEDBACK)
+                           ? "look for a loop of sensors and drives that is unstable, of which the "
+                             "largest step knows nothing; a smaller step may also help"
                            : "look for a member or contact that is far too stiff, or a load that "
                              "grows without bound; a smaller step may also help";
   if (r->step_monitor.lowest > 0.0 && !r->options->force)
@@ -91,6 +93,22 @@ strut_status strut_run_fail_flat_cell(const strut_run *r, int32_t cell) {
       "the area of cell '%s' reached zero at t = %.9g s, so that it encloses nothing; "
       "keep its nodes apart, or use a smaller step if they should not meet",
       r->model->scene->cells[cell].name, strut_run_time(r));
+}
+
+strut_status strut_run_check_states(const strut_run *r) {
+  const strut_feedback_table *f = &r->model->feedback;
+  const strut_scene *scene = r->model->scene;
+  for (int32_t i = 0; i < f->state_count; i++) {
+    if (isfinite(r->state->v[f->base + i])) continue;
+    bool own = (size_t)i < scene->state_count;
+    return strut_fail(
+        r->error, STRUT_DIVERGED,
+        "%s%s%s is no longer a finite number at t = %.9g s with dt = %g s; look at its "
+        "rate, or use a smaller step",
+        own ? "state '" : "the lag of a signal or the force of a Maxwell branch",
+        own ? scene->states[i].name : "", own ? "'" : "", strut_run_time(r), r->dt);
+  }
+  return STRUT_OK;
 }
 
 strut_status strut_run_fail_method(const strut_run *r) {

@@ -11,12 +11,13 @@
 #include "engine/forces/forces.h"
 #include "engine/integrate/integrator.h"
 #include "engine/model/pose.h"
+#include "engine/scene/passive.h"
 
 /* Force evaluations after which accelerations explained by rounding count as rest. */
 static const int64_t ROUNDING_EVALUATIONS = 1000000;
 
 /*
- * Copies the scene without drives, driven loads, belt and, unless kept, friction. Shares texts and
+ * Copies the scene without drives, driven loads, feedback, belt and, unless kept, friction. Shares texts and
  * arrays.
  */
 static strut_status copy_passive_scene(const strut_scene *scene, bool friction,
@@ -41,6 +42,7 @@ static strut_status copy_passive_scene(const strut_scene *scene, bool friction,
     passive->contacts[i] = scene->contacts[i];
     if (!friction) passive->contacts[i].friction.law = STRUT_FRICTION_NONE;
   }
+  if (!strut_scene_remove_feedback(passive, arena)) return STRUT_NO_MEMORY;
   return STRUT_OK;
 }
 

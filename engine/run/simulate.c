@@ -116,7 +116,7 @@ static strut_status place_state(strut_run *r) {
     return STRUT_OK;
   }
   if (!r->experiment->settle.wanted) return STRUT_OK;
-  memset(r->state->v, 0, bytes);
+  memset(r->state->v, 0, 2 * (size_t)r->model->node_count * sizeof(double));
   return strut_settle_experiment(r->model, r->experiment, r->limits, r->options->interrupt,
                                  r->state->q, &r->summary->settle_time, &r->summary->settle,
                                  r->error);
@@ -155,6 +155,8 @@ static strut_status prepare_run(strut_run *r) {
                       "positions first with strut_resolve_start_equilibrium",
                       scene->configurations[scene->start_equilibrium].name);
   if (!r->model->mass) return strut_fail(r->error, STRUT_SINGULAR, "a free node has no mass");
+  if ((status = strut_integrator_check_samples(r->method, r->model, r->dt, r->error)))
+    return status;
   double *limit = &r->summary->step_limit;
   bool bound = false;
   status = r->limits ? strut_step_limit_cached(r->model, r->method, r->limits, limit, r->error)
@@ -264,10 +266,14 @@ static strut_status detect_steady_motion(strut_run *r) {
   bool before = r->steady.known;
   strut_measure_tracked_point(r->model, r->state, &r->measure, &x, &v);
   if (!strut_steady_detector_period(r->state, x, &r->steady) || before) return STRUT_OK;
-  bool memory = r->model->plan & STRUT_TERM_MEMORY;
+  const strut_feedback_table *feedback = &r->model->feedback;
+  bool internal = feedback->state_count || feedback->sampled_count;
+  bool memory = internal || (r->model->plan & STRUT_TERM_MEMORY);
   if (memory && r->experiment->steady.shooting)
     snprintf(r->steady.result.reason, sizeof r->steady.result.reason,
-             "what breaks, is released or yields has a memory that shooting does not correct");
+             internal ? "internal states and samples are a memory that shooting does not correct"
+                      : "what breaks, is released or yields has a memory that shooting does not "
+                        "correct");
   strut_status status = r->experiment->steady.shooting && !memory ? shoot_orbit(r) : STRUT_OK;
   if (status) return status;
   double now = (double)n * r->dt, period = r->steady.period;
@@ -304,7 +310,7 @@ static int64_t find_next_stop(const strut_run *r, int64_t chunk) {
 
 static void step_with_quantities(strut_run *r, int64_t stop) {
   while (r->state->step < stop) {
-    r->method->advance(r->model, r->state, r->workspace, r->dt, 1);
+    strut_integrator_advance(r->method, r->model, r->state, r->workspace, r->dt, 1);
     strut_measure_step_quantities(r->model, r->state, &r->measure);
   }
 }
@@ -312,7 +318,7 @@ static void step_with_quantities(strut_run *r, int64_t stop) {
 static void step_to(strut_run *r, int64_t stop) {
   int64_t n = r->state->step;
   if (n < strut_measure_first_step(&r->measure)) {
-    r->method->advance(r->model, r->state, r->workspace, r->dt, stop - n);
+    strut_integrator_advance(r->method, r->model, r->state, r->workspace, r->dt, stop - n);
     return;
   }
   if (r->measure.quantities) {
@@ -320,7 +326,7 @@ static void step_to(strut_run *r, int64_t stop) {
     return;
   }
   for (; n < stop; n++) {
-    r->method->advance(r->model, r->state, r->workspace, r->dt, 1);
+    strut_integrator_advance(r->method, r->model, r->state, r->workspace, r->dt, 1);
     strut_measure_step(r->model, r->state, &r->measure);
   }
 }
@@ -342,7 +348,7 @@ static void step_short(strut_run *r) {
   state->time_offset += later;
   state->refined_until -= later;
   state->drive_time = (double)NAN;
-  r->method->advance(r->model, state, r->workspace, length, 1);
+  strut_integrator_advance(r->method, r->model, state, r->workspace, length, 1);
   state->time_offset = before;
   state->refined_until += later;
   state->drive_time = (double)NAN;
@@ -380,6 +386,8 @@ strut_status strut_run_sample(strut_run *r, int64_t *stop) {
   assert(r->ready && n >= r->first);
   *stop = n;
   if (limit_status) return limit_status;
+  strut_status states_status = strut_run_check_states(r);
+  if (states_status) return states_status;
   if (lost >= 0) return strut_run_fail_lost_node(r, lost);
   if (r->model->scene->collision_count) strut_run_watch_collisions(r);
   int32_t flat = strut_cell_that_collapsed(r->model, r->state->q);

@@ -93,7 +93,7 @@ void strut_check_names(strut_checker *checker) {
   const strut_scene *s = checker->scene;
   strut_name_map nodes = {0}, members = {0}, actuators = {0}, loads = {0}, signals = {0},
                  configurations = {0}, hinges = {0}, cells = {0}, collisions = {0},
-                 unbalances = {0};
+                 unbalances = {0}, sensors = {0}, states = {0};
   for (size_t i = 0; i < s->node_count; i++)
     check_name(checker, &nodes, STRUT_ON_NODE, "node", s->nodes[i].name, i);
   for (size_t i = 0; i < s->member_count; i++)
@@ -113,6 +113,10 @@ void strut_check_names(strut_checker *checker) {
   for (size_t i = 0; i < s->signal_count; i++)
     if (s->signals[i].name)
       check_name(checker, &signals, STRUT_ON_SIGNAL, "signal", s->signals[i].name, i);
+  for (size_t i = 0; i < s->sensor_count; i++)
+    check_name(checker, &sensors, STRUT_ON_SENSOR, "sensor", s->sensors[i].name, i);
+  for (size_t i = 0; i < s->state_count; i++)
+    check_name(checker, &states, STRUT_ON_STATE, "state", s->states[i].name, i);
   for (size_t i = 0; i < s->configuration_count; i++)
     check_name(checker, &configurations, STRUT_ON_CONFIGURATION, "configuration",
                s->configurations[i].name, i);
@@ -126,6 +130,8 @@ void strut_check_names(strut_checker *checker) {
   strut_name_map_free(&collisions);
   strut_name_map_free(&signals);
   strut_name_map_free(&configurations);
+  strut_name_map_free(&sensors);
+  strut_name_map_free(&states);
 }
 
 void strut_check_nodes(strut_checker *checker) {
@@ -216,6 +222,7 @@ static bool check_law(strut_checker *checker, size_t index, const char *owner) {
   bool given = m->stiffness > 0.0 || m->axial_stiffness > 0.0;
   bool elastic = given || strut_law_at(m->law.kind)->own, linear = m->law.kind == STRUT_LAW_LINEAR;
   if (!strut_check_member_law(checker, index, owner)) return false;
+  strut_check_maxwell(checker, index, owner);
   if (m->stiffness > 0.0 && m->axial_stiffness > 0.0)
     strut_report_finding(checker, STRUT_ON_MEMBER, index, "axial_stiffness",
                          "%s has both a stiffness and an axial_stiffness; give one", owner);
@@ -225,7 +232,8 @@ static bool check_law(strut_checker *checker, size_t index, const char *owner) {
   else if (!elastic && m->damping_ratio > 0.0)
     strut_report_finding(checker, STRUT_ON_MEMBER, index, "damping_ratio",
                          "the damping_ratio of %s needs a stiffness", owner);
-  else if (!elastic && m->damping == 0.0 && !strut_is_pulled(checker->scene, (int32_t)index, -1))
+  else if (!elastic && m->damping == 0.0 && m->maxwell.stiffness == 0.0 &&
+           !strut_is_pulled(checker->scene, (int32_t)index, -1))
     strut_report_finding(checker, STRUT_ON_MEMBER, index, NULL,
                          "%s has neither stiffness nor damping, so it does nothing", owner);
   else if (force && !linear)
@@ -355,8 +363,9 @@ strut_status strut_setup_check(const strut_setup *setup, strut_purpose purpose,
                                strut_findings *findings) {
   static void (*const rules[])(strut_checker *) = {
       strut_check_names,  strut_check_nodes,      strut_check_members, strut_check_hinges,
-      strut_check_cells,  strut_check_collisions, strut_check_use,     strut_check_signals,
-      strut_check_ground, strut_check_drives,     strut_check_shapes,  strut_check_experiment};
+      strut_check_cells,  strut_check_collisions, strut_check_use,     strut_check_sensors,
+      strut_check_states, strut_check_signals,    strut_check_ground,  strut_check_drives,
+      strut_check_shapes, strut_check_experiment};
   const strut_scene *scene = &setup->scene;
   const strut_experiment *e = &setup->experiment;
   bool runs = e->step != 0.0 || e->duration != 0.0 || e->periods != 0.0;

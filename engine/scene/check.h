@@ -28,7 +28,9 @@ typedef enum strut_subject {
   STRUT_ON_OUTPUT,
   STRUT_ON_CELL,
   STRUT_ON_COLLISION,
-  STRUT_ON_UNBALANCE
+  STRUT_ON_UNBALANCE,
+  STRUT_ON_SENSOR,
+  STRUT_ON_STATE
 } strut_subject;
 
 typedef struct strut_finding {

@@ -6,6 +6,7 @@
 #include "engine/scene/check_rules.h"
 #include "engine/scene/profile.h"
 #include "engine/scene/signal_motion.h"
+#include "engine/scene/signal_program.h"
 
 enum { MOST_TERMS = 10000, DEEPEST_SUM = 64 };
 
@@ -34,18 +35,32 @@ static bool check_table(strut_checker *checker, size_t index, const char *owner)
   return true;
 }
 
-/* Counts terms and depth of a sum, whose terms have been checked before. */
+/* Signal that part i of a sum or an expression refers to; -1: it refers to none. */
+static int32_t part_of(const strut_signal *s, size_t i) {
+  if (s->kind == STRUT_SUM) return s->terms[i];
+  const strut_instruction *p = &s->program.instruction[i];
+  bool refers = p->operation == STRUT_OPERATION_COLUMN && p->column.kind == STRUT_COLUMN_SIGNAL;
+  return refers ? p->column.item : -1;
+}
+
+static size_t part_count(const strut_signal *s) {
+  return s->kind == STRUT_SUM ? s->term_count : s->kind == STRUT_EXPRESSION ? s->program.length : 0;
+}
+
+/* Counts parts and depth of a sum or an expression, whose signals have been checked before. */
 static bool check_sum(strut_checker *checker, size_t index, const char *owner, uint32_t *size,
                       uint32_t *depth) {
   const strut_signal *s = &checker->scene->signals[index];
   uint64_t terms = 1;
-  if (!s->term_count) {
+  if (s->kind == STRUT_EXPRESSION && !strut_check_program(checker, index, owner)) return false;
+  if (s->kind == STRUT_SUM && !s->term_count) {
     strut_report_finding(checker, STRUT_ON_SIGNAL, index, "sum", "the sum of %s has no terms",
                          owner);
     return false;
   }
-  for (size_t i = 0; i < s->term_count; i++) {
-    int32_t term = s->terms[i];
+  for (size_t i = 0; i < part_count(s); i++) {
+    int32_t term = part_of(s, i);
+    if (term < 0 && s->kind == STRUT_EXPRESSION) continue;
     if (term < 0 || (size_t)term >= index) {
       strut_report_finding(checker, STRUT_ON_SIGNAL, index, "sum",
                            "term %zu of %s is not a signal that comes before it", i + 1, owner);
@@ -57,7 +72,7 @@ static bool check_sum(strut_checker *checker, size_t index, const char *owner, u
   }
   size[index] = terms > MOST_TERMS ? MOST_TERMS + 1 : (uint32_t)terms;
   if (terms <= MOST_TERMS && depth[index] <= DEEPEST_SUM) return true;
-  strut_report_finding(checker, STRUT_ON_SIGNAL, index, "sum",
+  strut_report_finding(checker, STRUT_ON_SIGNAL, index, NULL,
                        "%s has more than %d terms, or sums within sums more than %d deep", owner,
                        MOST_TERMS, DEEPEST_SUM);
   return false;
@@ -128,9 +143,8 @@ static void find_users(const strut_scene *scene, size_t *user) {
     if (scene->actuators[i].signal >= 0 && (size_t)scene->actuators[i].signal < scene->signal_count)
       user[scene->actuators[i].signal] = 1 + i;
   for (size_t i = scene->signal_count; i-- > 0;) /* terms precede their sum */
-    for (size_t t = 0; scene->signals[i].kind == STRUT_SUM && t < scene->signals[i].term_count;
-         t++) {
-      int32_t term = scene->signals[i].terms[t];
+    for (size_t t = 0; t < part_count(&scene->signals[i]); t++) {
+      int32_t term = part_of(&scene->signals[i], t);
       if (term >= 0 && (size_t)term < i && !user[term]) user[term] = user[i];
     }
 }
@@ -147,14 +161,16 @@ void strut_check_signals(strut_checker *checker) {
     char owner[200];
     call_signal(owner, scene, user, i);
     size[i] = depth[i] = 1;
-    if ((unsigned)s->kind > STRUT_SUM) {
+    if ((unsigned)s->kind >= STRUT_SIGNAL_KINDS) {
       strut_report_finding(checker, STRUT_ON_SIGNAL, i, NULL, "%s is of an unknown kind", owner);
       checker->wild[i] = true;
       continue;
     }
-    checker->wild[i] = s->kind == STRUT_TABLE ? !check_table(checker, i, owner)
-                       : s->kind == STRUT_SUM ? !check_sum(checker, i, owner, size, depth)
-                                              : !check_wave(checker, i, owner);
+    bool modified = strut_check_modifiers(checker, i, owner);
+    checker->wild[i] = !modified || (s->kind == STRUT_TABLE ? !check_table(checker, i, owner)
+                                     : s->kind == STRUT_SUM || s->kind == STRUT_EXPRESSION
+                                         ? !check_sum(checker, i, owner, size, depth)
+                                         : !check_wave(checker, i, owner));
   }
   strut_release(size);
   strut_release(depth);
@@ -232,6 +248,7 @@ static void check_profile(strut_checker *checker, size_t index, const char *owne
 static void check_motion(strut_checker *checker, size_t index, const char *owner) {
   const strut_scene *scene = checker->scene;
   const strut_ground *g = &scene->grounds[index];
+  double when;
   for (int c = 0; c < 2; c++) {
     const char *axis = c ? "y" : "x";
     if (!g->moves[c]) continue;
@@ -239,7 +256,14 @@ static void check_motion(strut_checker *checker, size_t index, const char *owner
     if (signal < 0 || (size_t)signal >= scene->signal_count)
       strut_report_finding(checker, STRUT_ON_GROUND, index, "motion",
                            "the motion of %s in %s has no signal", owner, axis);
-    else if (!checker->wild[signal] && strut_signal_jumps(scene->signals, signal))
+    else if (!checker->wild[signal] && !strut_signal_is_wave(scene->signals, signal))
+      strut_report_finding(
+          checker, STRUT_ON_GROUND, index, "motion",
+          "the motion of %s in %s is an expression, a lag, samples or a start, whose "
+          "acceleration is not known; use waves, ramps, tables and sums of them",
+          owner, axis);
+    else if (!checker->wild[signal] &&
+             strut_signal_value_jumps(scene->signals, signal, HUGE_VAL, &when))
       strut_report_finding(checker, STRUT_ON_GROUND, index, "motion",
                            "the motion of %s in %s jumps; use a ramp, a table, or waves that begin "
                            "and stop at zero",
@@ -389,6 +413,12 @@ static void check_motions(strut_checker *checker) {
     else if (!exists(m->signal, scene->signal_count))
       strut_report_finding(checker, STRUT_ON_NODE, (size_t)m->node, "moves",
                            "%s moves by a signal that does not exist", owner);
+    else if (!checker->wild[m->signal] && !strut_signal_is_wave(scene->signals, m->signal))
+      strut_report_finding(
+          checker, STRUT_ON_NODE, (size_t)m->node, "moves",
+          "%s moves by an expression, a lag, samples or a start, whose acceleration is "
+          "not known; use waves, ramps, tables and sums of them",
+          owner);
     else if (!checker->wild[m->signal] &&
              strut_signal_value_jumps(scene->signals, m->signal, HUGE_VAL, &when))
       strut_report_finding(checker, STRUT_ON_NODE, (size_t)m->node, "moves",
@@ -417,6 +447,11 @@ static void check_unbalances(strut_checker *checker) {
     if (!exists(u->signal, scene->signal_count))
       strut_report_finding(checker, STRUT_ON_UNBALANCE, i, "angle",
                            "%s has a signal that does not exist", owner);
+    else if (!checker->wild[u->signal] && !strut_signal_is_wave(scene->signals, u->signal))
+      strut_report_finding(checker, STRUT_ON_UNBALANCE, i, "angle",
+                           "the angle of %s is an expression, a lag, samples or a start, whose "
+                           "acceleration is not known; use waves, ramps, tables and sums of them",
+                           owner);
     else if (!checker->wild[u->signal] &&
              strut_signal_value_jumps(scene->signals, u->signal, HUGE_VAL, &when))
       strut_report_finding(
@@ -455,6 +490,8 @@ void strut_check_drives(strut_checker *checker) {
           "%s drives a bar, but bars are rigid; make the member a spring, or bars: elastic", owner);
     if (!exists(a->signal, scene->signal_count))
       strut_report_finding(checker, STRUT_ON_ACTUATOR, i, "signal", "%s has no signal", owner);
+    else if (!checker->wild[a->signal])
+      strut_check_driven_rate(checker, i, owner);
   }
   for (size_t i = 0; i < scene->load_count; i++) {
     const strut_load *l = &scene->loads[i];

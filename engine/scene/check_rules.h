@@ -49,6 +49,17 @@ void strut_warn_of_overlaps(strut_checker *checker);
 void strut_check_members(strut_checker *checker);
 void strut_check_use(strut_checker *checker);
 void strut_check_ground(strut_checker *checker);
+/** check_feedback.c */
+void strut_check_sensors(strut_checker *checker);
+/** Is the Maxwell branch of member `index` valid? */
+void strut_check_maxwell(strut_checker *checker, size_t index, const char *owner);
+void strut_check_states(strut_checker *checker);
+/** Are the lag and the sampling of signal `index` valid? */
+bool strut_check_modifiers(strut_checker *checker, size_t index, const char *owner);
+/** Is the program of signal `index` valid? */
+bool strut_check_program(strut_checker *checker, size_t index, const char *owner);
+/** Is the rate of an actuator's signal, which is valid, known? */
+void strut_check_driven_rate(strut_checker *checker, size_t actuator, const char *owner);
 void strut_check_signals(strut_checker *checker);
 void strut_check_drives(strut_checker *checker);
 void strut_check_shapes(strut_checker *checker);

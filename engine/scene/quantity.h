@@ -15,18 +15,19 @@
 
 /** Owner of a column: how the column is written, and what its items index. */
 typedef enum strut_column_owner {
-  STRUT_COLUMN_OF_RUN,      /* the word alone: time */
-  STRUT_COLUMN_OF_NODE,     /* NODE.y */
-  STRUT_COLUMN_OF_CONTACT,  /* NODE.normal, of a node that may touch the ground */
-  STRUT_COLUMN_OF_MEMBER,   /* MEMBER.force */
-  STRUT_COLUMN_OF_HINGE,    /* HINGE.moment */
-  STRUT_COLUMN_OF_PAIR,     /* angle(NODE, NODE) */
-  STRUT_COLUMN_OF_CENTRE,   /* com.vx */
-  STRUT_COLUMN_OF_ENERGY,   /* energy.kinetic */
-  STRUT_COLUMN_OF_WORK,     /* work.drives */
-  STRUT_COLUMN_OF_LOSSES,   /* losses.friction */
-  STRUT_COLUMN_OF_CELL,     /* CELL.area */
-  STRUT_COLUMN_OF_COLLISION /* COLLISION.gap */
+  STRUT_COLUMN_OF_RUN,       /* the word alone: time */
+  STRUT_COLUMN_OF_NODE,      /* NODE.y */
+  STRUT_COLUMN_OF_CONTACT,   /* NODE.normal, of a node that may touch the ground */
+  STRUT_COLUMN_OF_MEMBER,    /* MEMBER.force */
+  STRUT_COLUMN_OF_HINGE,     /* HINGE.moment */
+  STRUT_COLUMN_OF_PAIR,      /* angle(NODE, NODE) */
+  STRUT_COLUMN_OF_CENTRE,    /* com.vx */
+  STRUT_COLUMN_OF_ENERGY,    /* energy.kinetic */
+  STRUT_COLUMN_OF_WORK,      /* work.drives */
+  STRUT_COLUMN_OF_LOSSES,    /* losses.friction */
+  STRUT_COLUMN_OF_CELL,      /* CELL.area */
+  STRUT_COLUMN_OF_COLLISION, /* COLLISION.gap */
+  STRUT_COLUMN_OF_FEEDBACK   /* the name of a sensor, a signal or a state alone; rate(SENSOR) */
 } strut_column_owner;
 
 /** X(id, owner, word, powers of kg, m, s, angle) */
@@ -72,7 +73,11 @@ typedef enum strut_column_owner {
   X(CELL_AREA, CELL, "area", 0, 2, 0, 0)                                                           \
   X(PRESSURE, CELL, "pressure", 1, 0, -2, 0)                                                       \
   X(COLLISION_GAP, COLLISION, "gap", 0, 1, 0, 0)                                                   \
-  X(COLLISION_FORCE, COLLISION, "force", 1, 1, -2, 0)
+  X(COLLISION_FORCE, COLLISION, "force", 1, 1, -2, 0)                                              \
+  X(SENSOR, FEEDBACK, "sensor", 0, 0, 0, 0) /* in SI units, of whatever dimension */               \
+  X(SIGNAL, FEEDBACK, "signal", 0, 0, 0, 0)                                                        \
+  X(SENSOR_RATE, FEEDBACK, "rate", 0, 0, 0, 0)                                                     \
+  X(STATE, FEEDBACK, "state", 0, 0, 0, 0)
 
 typedef enum strut_column_kind {
 #define STRUT_COLUMN_ENUM(id, ...) STRUT_COLUMN_##id,

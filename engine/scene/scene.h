@@ -19,6 +19,7 @@
 #include "engine/scene/friction.h"
 #include "engine/scene/law.h"
 #include "engine/scene/signal.h"
+#include "engine/scene/signal_program.h"
 
 enum { STRUT_LANGUAGE_VERSION = 1 };
 
@@ -48,6 +49,14 @@ typedef enum strut_rest_kind {
 /** Most nodes of a running cable or of a cell. */
 enum { STRUT_MOST_ELEMENT_NODES = 32 };
 
+/** A spring and a dashpot in a row, beside a member: F' = stiffness (u' - F / damping). */
+typedef struct strut_maxwell {
+  double stiffness; /* [N/m]; 0: there is none */
+  double damping;   /* [N s/m]; 0 when the time is given */
+  double time;      /* damping / stiffness [s] */
+  double force;     /* at t = 0 [N] */
+} strut_maxwell;
+
 typedef struct strut_member {
   const char *name;
   int32_t node[2]; /* i1, i2 of the paper; of a running cable its ends */
@@ -68,6 +77,7 @@ typedef struct strut_member {
   double released_at;       /* time from which on it carries nothing [s]; 0: never */
   double guide_friction;    /* of a running cable at its guides [1] */
   double damping_ratio;     /* instead of damping, or 0: of the critical one, see theory.md */
+  strut_maxwell maxwell;
 } strut_member;
 
 /** A spring of the angle at the second of three nodes, from the first to the third. */
@@ -247,6 +257,9 @@ typedef struct strut_scene {
   strut_unbalance *unbalances;
   size_t ground_count;   /* 0 without a ground, and with `ground` */
   strut_ground *grounds; /* in the arena, too */
+  size_t sensor_count, state_count;
+  strut_sensor *sensors;
+  strut_internal_state *states;
 } strut_scene;
 
 /** Default structs: zero except where stated above, names empty, indices -1. */

@@ -7,6 +7,7 @@
 
 #include "engine/base/trig.h"
 #include "engine/base/vec.h"
+#include "engine/scene/signal_program.h"
 
 strut_signal strut_signal_default(strut_signal_kind kind) {
   return (strut_signal){.kind = kind, .stop = (double)INFINITY};
@@ -47,11 +48,12 @@ static void evaluate_table(const strut_signal *s, double t, double *value, doubl
 }
 
 /* Evaluates all kinds but the sine, which strut_signal_evaluate handles first. */
-static void evaluate_other(const strut_signal *signals, int32_t index, double t, double turns,
-                           double *value, double *rate) {
+static void evaluate_other(const strut_signal *signals, const strut_signal_inputs *in,
+                           int32_t index, double t, double turns, double *value, double *rate) {
   const strut_signal *s = &signals[index];
   *value = *rate = 0.0;
-  bool holds = s->kind == STRUT_RAMP || s->kind == STRUT_TABLE; /* a value outside its time */
+  /* a value outside its time */
+  bool holds = s->kind == STRUT_RAMP || s->kind == STRUT_TABLE || s->kind == STRUT_EXPRESSION;
   if (!holds && (t < s->start || t >= s->stop)) return;
   switch (s->kind) {
     case STRUT_SINE: break;
@@ -65,10 +67,13 @@ static void evaluate_other(const strut_signal *signals, int32_t index, double t,
     case STRUT_SUM:
       for (size_t i = 0; i < s->term_count; i++) {
         double part, part_rate;
-        strut_signal_evaluate(signals, s->terms[i], t, &part, &part_rate);
+        strut_signal_follow(signals, in, s->terms[i], t, &part, &part_rate);
         *value += part;
         *rate += part_rate;
       }
+      break;
+    case STRUT_EXPRESSION: strut_program_evaluate(&s->program, signals, in, t, value, rate); break;
+    case STRUT_SIGNAL_KINDS: break;
   }
 }
 
@@ -79,48 +84,50 @@ void strut_signal_evaluate(const strut_signal *signals, int32_t index, double t,
   if (s->kind == STRUT_SINE && t >= s->start && t < s->stop)
     evaluate_wave(s, turns, value, rate);
   else
-    evaluate_other(signals, index, t, turns, value, rate);
+    evaluate_other(signals, NULL, index, t, turns, value, rate);
 }
 
-double strut_signal_bend(const strut_signal *signals, int32_t index, double t) {
+void strut_signal_follow_unlagged(const strut_signal *signals, const strut_signal_inputs *in,
+                                  int32_t index, double t, double *value, double *rate) {
   const strut_signal *s = &signals[index];
-  double value, rate, sum = 0.0;
-  if (s->kind == STRUT_SINE || s->kind == STRUT_HALF_SINE) {
-    strut_signal_evaluate(signals, index, t, &value, &rate);
-    return -STRUT_TAU * STRUT_TAU * s->frequency * s->frequency * value;
+  if (s->trigger.kind != STRUT_TRIGGER_NONE) {
+    double since = in ? in->started[index] : (double)NAN;
+    *value = *rate = in ? 0.0 : (double)NAN;
+    if (!(t >= since)) return;
+    t -= since;
   }
-  bool acts = s->kind == STRUT_SUM && t >= s->start && t < s->stop;
-  for (size_t i = 0; acts && i < s->term_count; i++)
-    sum += strut_signal_bend(signals, s->terms[i], t);
-  return sum;
+  double turns = s->frequency * (t - s->start) + s->phase;
+  if (s->kind == STRUT_SINE && t >= s->start && t < s->stop)
+    evaluate_wave(s, turns, value, rate);
+  else
+    evaluate_other(signals, in, index, t, turns, value, rate);
 }
 
-/* Is a wave away from zero where it stops? There it has rounded turns. */
-static bool stops_away_from_zero(const strut_signal *s) {
-  double turns = s->frequency * (s->stop - s->start) + s->phase;
-  return isfinite(s->stop) && fabs(2.0 * turns - floor(2.0 * turns + 0.5)) > 1e-9;
-}
-
-static bool begins_away_from_zero(const strut_signal *s) {
-  return fabs(2.0 * s->phase - floor(2.0 * s->phase + 0.5)) > 1e-9;
-}
-
-bool strut_signal_jumps(const strut_signal *signals, int32_t index) {
+void strut_signal_follow_unsampled(const strut_signal *signals, const strut_signal_inputs *in,
+                                   int32_t index, double t, double *value, double *rate) {
   const strut_signal *s = &signals[index];
-  if (s->amplitude == 0.0 && s->kind != STRUT_TABLE && s->kind != STRUT_SUM) return false;
-  switch (s->kind) {
-    case STRUT_CONSTANT: return s->start > 0.0 || isfinite(s->stop);
-    case STRUT_SINE: return stops_away_from_zero(s) || (s->start > 0.0 && begins_away_from_zero(s));
-    case STRUT_HALF_SINE: return s->stop < s->start + 0.5 / s->frequency;
-    case STRUT_SQUARE: return true;
-    case STRUT_RAMP:
-    case STRUT_TABLE: return false;
-    case STRUT_SUM:
-      for (size_t i = 0; i < s->term_count; i++)
-        if (strut_signal_jumps(signals, s->terms[i])) return true;
-      return s->start > 0.0 || isfinite(s->stop);
+  if (!(s->lag > 0.0)) {
+    strut_signal_follow_unlagged(signals, in, index, t, value, rate);
+    return;
   }
-  return true;
+  *value = in ? in->state[in->lag_of[index]] : (double)NAN;
+  *rate = in ? 0.0 : (double)NAN;
+  if (!in || in->values_only) return;
+  strut_signal_inputs values = *in;
+  double wanted, unused;
+  values.values_only = true;
+  strut_signal_follow_unlagged(signals, &values, index, t, &wanted, &unused);
+  *rate = (wanted - *value) / s->lag;
+}
+
+void strut_signal_follow(const strut_signal *signals, const strut_signal_inputs *in, int32_t index,
+                         double t, double *value, double *rate) {
+  if (!(signals[index].every > 0.0)) {
+    strut_signal_follow_unsampled(signals, in, index, t, value, rate);
+    return;
+  }
+  *value = in ? in->held[index] : (double)NAN;
+  *rate = 0.0;
 }
 
 /* The first multiple of half a period after t, counted from where the phase is 0. */
@@ -132,7 +139,13 @@ static double next_half_period(const strut_signal *s, double t) {
   return at;
 }
 
-static double next_break_inside(const strut_signal *signals, const strut_signal *s, double t) {
+/* Does the instruction read a signal? */
+static bool is_signal(const strut_instruction *p) {
+  return p->operation == STRUT_OPERATION_COLUMN && p->column.kind == STRUT_COLUMN_SIGNAL;
+}
+
+static double next_break_inside(const strut_signal *signals, const double *started,
+                                const strut_signal *s, double t) {
   double first = (double)INFINITY;
   switch (s->kind) {
     case STRUT_SQUARE: return next_half_period(s, t);
@@ -142,22 +155,48 @@ static double next_break_inside(const strut_signal *signals, const strut_signal 
       return first;
     case STRUT_SUM:
       for (size_t i = 0; i < s->term_count; i++)
-        first = fmin(first, strut_signal_next_break(signals, s->terms[i], t));
+        first = fmin(first, strut_signal_next_break_since(signals, started, s->terms[i], t));
+      return first;
+    case STRUT_EXPRESSION:
+      for (size_t i = 0; i < s->program.length; i++)
+        if (is_signal(&s->program.instruction[i]))
+          first = fmin(first, strut_signal_next_break_since(
+                                  signals, started, s->program.instruction[i].column.item, t));
       return first;
     case STRUT_CONSTANT:
     case STRUT_SINE:
-    case STRUT_RAMP: break;
+    case STRUT_RAMP:
+    case STRUT_SIGNAL_KINDS: break;
   }
   return first;
 }
 
-double strut_signal_next_break(const strut_signal *signals, int32_t index, double t) {
+/* Of a signal in its own time. */
+static double next_break_of(const strut_signal *signals, const double *started, int32_t index,
+                            double t) {
   const strut_signal *s = &signals[index];
-  if (s->kind == STRUT_TABLE) return next_break_inside(signals, s, t);
+  if (s->kind == STRUT_TABLE || s->kind == STRUT_EXPRESSION)
+    return next_break_inside(signals, started, s, t);
   if (t < s->start) return s->start;
-  double first = next_break_inside(signals, s, t);
+  double first = next_break_inside(signals, started, s, t);
   if (!(first > t)) first = (double)INFINITY;
   return t < s->stop ? fmin(first, s->stop) : (double)INFINITY;
+}
+
+double strut_signal_next_break_since(const strut_signal *signals, const double *started,
+                                     int32_t index, double t) {
+  const strut_signal *s = &signals[index];
+  if (s->trigger.kind != STRUT_TRIGGER_NONE && started) {
+    double since = started[index];
+    if (!(since < (double)INFINITY)) return (double)INFINITY;
+    if (t < since) return since;
+    return since + next_break_of(signals, started, index, t - since);
+  }
+  return next_break_of(signals, started, index, t);
+}
+
+double strut_signal_next_break(const strut_signal *signals, int32_t index, double t) {
+  return strut_signal_next_break_since(signals, NULL, index, t);
 }
 
 /* Longest period among a signal's repeating parts, or among its pulses; 0 without any. */

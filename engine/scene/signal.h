@@ -13,33 +13,61 @@
 #include <stdint.h>
 
 #include "engine/base/export.h"
+#include "engine/scene/quantity.h"
 
 typedef enum strut_signal_kind {
-  STRUT_CONSTANT,  /* amplitude */
-  STRUT_SINE,      /* amplitude * sin(2 pi (frequency * tau + phase)) */
-  STRUT_HALF_SINE, /* one half-wave: the sine for 0 <= tau <= 1 / (2 frequency), then 0 */
-  STRUT_SQUARE,    /* +amplitude in the first half of a period, -amplitude in the second */
-  STRUT_RAMP,      /* from 0 at start to amplitude at stop, linearly; holds amplitude after */
-  STRUT_TABLE,     /* linear between the points; holds the first and the last value outside */
-  STRUT_SUM        /* the sum of other signals */
+  STRUT_CONSTANT,   /* amplitude */
+  STRUT_SINE,       /* amplitude * sin(2 pi (frequency * tau + phase)) */
+  STRUT_HALF_SINE,  /* one half-wave: the sine for 0 <= tau <= 1 / (2 frequency), then 0 */
+  STRUT_SQUARE,     /* +amplitude in the first half of a period, -amplitude in the second */
+  STRUT_RAMP,       /* from 0 at start to amplitude at stop, linearly; holds amplitude after */
+  STRUT_TABLE,      /* linear between the points; holds the first and the last value outside */
+  STRUT_SUM,        /* the sum of other signals */
+  STRUT_EXPRESSION, /* a program of the time, sensors and other signals */
+  STRUT_SIGNAL_KINDS
 } strut_signal_kind;
 
+/** A program of a stack machine, see signal_program.h. */
+typedef struct strut_program {
+  size_t length, depth;                 /* instructions; the most numbers on the stack */
+  const strut_instruction *instruction; /* (length) */
+} strut_program;
+
+/** What starts a signal's own time. */
+typedef enum strut_trigger_kind {
+  STRUT_TRIGGER_NONE,    /* the time of the run is the signal's */
+  STRUT_TRIGGER_CONTACT, /* a node touches down */
+  STRUT_TRIGGER_ABOVE,   /* a sensor rises above a level */
+  STRUT_TRIGGER_BELOW    /* it falls below one */
+} strut_trigger_kind;
+
+typedef struct strut_trigger {
+  strut_trigger_kind kind;
+  int32_t item; /* node or sensor */
+  double level; /* of the sensor, in its unit */
+  bool each;    /* start again each time, not only once */
+} strut_trigger;
+
 /**
- * One waveform; tau = t - start. Except for ramp and table a signal is 0 before start and after
+ * One waveform; tau = t - start. Except for ramp, table and expression a signal is 0 before start and after
  * stop.
  */
 typedef struct strut_signal {
   const char *name; /* as the file calls it, or NULL */
   strut_signal_kind kind;
-  double amplitude;     /* [m], [N] or [1] */
-  double frequency;     /* [Hz], > 0 for sine, half-sine, square */
-  double phase;         /* [turns]; sine and square */
-  double start, stop;   /* [s]; default 0 and INFINITY */
-  size_t point_count;   /* table: number of points, >= 1 */
-  const double *time;   /* (point_count) [s], strictly increasing */
-  const double *value;  /* (point_count) */
-  size_t term_count;    /* sum: number of terms */
-  const int32_t *terms; /* (term_count) indices of signals, each below this signal's own */
+  double amplitude;      /* [m], [N] or [1] */
+  double frequency;      /* [Hz], > 0 for sine, half-sine, square */
+  double phase;          /* [turns]; sine and square */
+  double start, stop;    /* [s]; default 0 and INFINITY */
+  size_t point_count;    /* table: number of points, >= 1 */
+  const double *time;    /* (point_count) [s], strictly increasing */
+  const double *value;   /* (point_count) */
+  size_t term_count;     /* sum: number of terms */
+  const int32_t *terms;  /* (term_count) indices of signals, each below this signal's own */
+  strut_program program; /* expression: signals in it are below this signal's own */
+  strut_trigger trigger; /* before it starts the signal is 0; then its time counts from there */
+  double lag;            /* [s] time constant of a first-order lag; 0: none */
+  double every;          /* [s] between samples, after the lag; 0: the signal is continuous */
 } strut_signal;
 
 /** A signal of the given kind with the defaults above. */
@@ -47,21 +75,18 @@ STRUT_API strut_signal strut_signal_default(strut_signal_kind kind);
 
 /**
  * Value and time derivative (from the right where they jump; the jump itself is not a rate) of
- * signal `index` of `signals` at time t [s].
+ * signal `index` of `signals` at time t [s]; NAN where it follows a sensor.
  */
 STRUT_API void strut_signal_evaluate(const strut_signal *signals, int32_t index, double t,
                                      double *value, double *rate);
-
-/** Second time derivative of a signal at time t, where it has one; 0 at corners and jumps. */
-STRUT_API double strut_signal_bend(const strut_signal *signals, int32_t index, double t);
-
-/** Does the value of a signal ever jump? */
-STRUT_API bool strut_signal_jumps(const strut_signal *signals, int32_t index);
 
 /**
  * First time after t [s] at which signal `index` or its rate jumps; INFINITY where it stays smooth.
  */
 STRUT_API double strut_signal_next_break(const strut_signal *signals, int32_t index, double t);
+/** The same of signals that started at the times `started` (signals); NULL: no signal has a trigger. */
+STRUT_API double strut_signal_next_break_since(const strut_signal *signals, const double *started,
+                                               int32_t index, double t);
 
 /**
  * Period of a signal [s]: 1 / frequency; of a sum, the longest period of its terms if every other

@@ -20,4 +20,8 @@ STRUT_API bool strut_signal_value_jumps(const strut_signal *signals, int32_t ind
 /** Does the rate jump after t = 0 somewhere? */
 STRUT_API bool strut_signal_has_corners(const strut_signal *signals, int32_t index);
 
+/** Is the signal a function of the time alone, whose acceleration is known: no expression, nothing that
+    lags, is sampled or started? */
+STRUT_API bool strut_signal_is_wave(const strut_signal *signals, int32_t index);
+
 #endif

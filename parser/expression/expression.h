@@ -66,7 +66,7 @@ typedef struct strut_refusal {
 /**
  * Finds the column OWNER.FIELD; with an empty owner FIELD is a word alone. `kind`: "node", "member" or "hinge"
  * where the text says which, else NULL. Returns 1 and fills column and dimension; 0: nothing has that
- * name; -1: refused.
+ * name; -1: refused. A dimension of NAN: a bare column, which fits any.
  */
 typedef int strut_find_column(void *context, const char *kind, strut_piece owner, strut_piece field,
                               strut_column *column, strut_dimension *dimension,
@@ -89,6 +89,8 @@ typedef struct strut_compiler {
   void *context;
   strut_compiled *program; /* at least one for each byte of the text */
   size_t length, depth;    /* instructions so far; numbers on the stack at most */
+  /** Is a unit's word behind * or / a name here? 1: it is; -1: it may be both; 0: no. NULL: never. */
+  int (*claims)(void *context, strut_piece word);
 } strut_compiler;
 
 /** As strut_expression_evaluate; an expression with columns is compiled instead of evaluated. */

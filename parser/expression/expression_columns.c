@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Columns of the motion in expressions, and the program that is made of them. */
 #include <assert.h>
+#include <math.h>
 #include <string.h>
 
 #include "parser/expression/expression_parts.h"
@@ -65,7 +66,9 @@ static int take(strut_expression_reader *r, size_t begin, size_t end, int found,
   *push(r) =
       (strut_compiled){.instruction = {.operation = STRUT_OPERATION_COLUMN, .column = column}};
   note_depth(r->compiler);
-  *q = (strut_quantity){.value = 1, .dimension = dimension, .varies = true};
+  bool bare = isnan(dimension.kg);
+  *q = (strut_quantity){
+      .value = 1, .dimension = bare ? STRUT_DIM_NONE : dimension, .bare = bare, .varies = true};
   r->at = end;
   return 1;
 }
@@ -132,15 +135,23 @@ static int read_pair(strut_expression_reader *r, strut_piece word, size_t begin,
   return take(r, begin, r->at, found, column, dimension, &refusal, q);
 }
 
+/* rate(SENSOR) */
+static int read_rate(strut_expression_reader *r, size_t begin, strut_quantity *q) {
+  strut_piece name;
+  if (!read_raw_name(r, ')', &name)) return -1;
+  return look_up(r, "rate", begin, name, r->at, r->at, q);
+}
+
 /* What looks like a function: node(A).x, member(A).force, hinge(A).moment, cell(A).area, angle(A, B), distance(A, B). */
 static int read_call(strut_expression_reader *r, size_t begin, size_t length, strut_quantity *q) {
-  static const char *const words[] = {"node",      "member", "hinge",   "cell",
-                                      "collision", "angle",  "distance"};
+  static const char *const words[] = {"node",      "member", "hinge",    "cell",
+                                      "collision", "angle",  "distance", "rate"};
   for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
     if (strlen(words[i]) != length || memcmp(words[i], r->text + begin, length) != 0) continue;
     r->at = begin + length;
     if (strut_expression_peek(r) != '(') break;
     r->at++;
+    if (i == 7) return read_rate(r, begin, q);
     return i < 5 ? read_quoted(r, words[i], begin, q)
                  : read_pair(r, piece(r, begin, begin + length), begin, q);
   }

@@ -186,6 +186,20 @@ static int read_joint(strut_expression_reader *r, size_t *length) {
     return 0;
   }
   strut_quantity ignored;
+  bool asks = operation && r->compiler && r->compiler->claims;
+  strut_piece word = {r->text + r->at, *length};
+  int claimed = asks ? r->compiler->claims(r->compiler->context, word) : 0;
+  if (claimed > 0) {
+    r->at = resume;
+    return 0;
+  }
+  if (claimed < 0) {
+    strut_expression_fail(r, r->at, r->at + *length,
+                          "'%.*s' is a unit and a sensor; rename the sensor, or write '%c (%.*s)' "
+                          "for it",
+                          (int)*length, r->text + r->at, c, (int)*length, r->text + r->at);
+    return 2;
+  }
   if (operation && strut_expression_lookup(r, r->text + r->at, *length, &ignored) != 0) {
     strut_expression_fail(r, r->at, r->at + *length,
                           "'%.*s' is a unit and a parameter; rename the parameter, or write "

@@ -252,7 +252,10 @@ const char *strut_key_expected(int key, char *buffer, size_t size) {
     case STRUT_TYPE_TABLE: return "a list of points such as [[0 s, 0], [1 s, 2]]";
     case STRUT_TYPE_SETTLE: return "true, or a mapping such as {limit: 100 s}";
     case STRUT_TYPE_STEADY: return "true, or a mapping such as {tolerance: 0.5 %}";
-    case STRUT_TYPE_EXPRESSION: return "an expression such as com.vy, n1.y - n2.y or m1.force";
+    case STRUT_TYPE_EXPRESSION:
+      if (k->measure == STRUT_MEASURE_CONTEXT)
+        return "an expression of t and sensors such as '2 mm * sin(2*pi*10 Hz*t)'";
+      return "an expression such as com.vy, n1.y - n2.y or m1.force";
     case STRUT_TYPE_AXES: return "a list of axes such as [{friction: [0.1, 0.2]}]";
     case STRUT_TYPE_TIMES: return "a list of times such as [0 s, 20 ms]";
     case STRUT_TYPE_MAP: return "a mapping {key: value, ...}";

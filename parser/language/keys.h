@@ -56,7 +56,13 @@
   X(RANGE, "range", RANGE_FROM) \
   X(VARIANT, "variant", VARIANT_SOLVER) \
   X(CHECK, "check", CHECK_HALF_STEP) \
-  X(FIGURE, "figure", FIGURE_KIND)
+  X(FIGURE, "figure", FIGURE_KIND) \
+  X(SENSOR, "sensor", SENSOR_LENGTH) \
+  X(STATE, "state", STATE_RATE) \
+  X(OSCILLATOR, "oscillator", OSCILLATOR_FREQUENCY) \
+  X(CONTROLLER, "controller", CONTROLLER_SENSOR) \
+  X(MAXWELL, "maxwell", MAXWELL_STIFFNESS) \
+  X(STARTS, "starts", STARTS_CONTACT)
 /* clang-format on */
 
 /** The mappings of the language. */
@@ -90,7 +96,7 @@ typedef enum strut_key_type {
   STRUT_TYPE_TABLE,         /* a list of [t, value] */
   STRUT_TYPE_SETTLE,        /* true, false or the keys of settle */
   STRUT_TYPE_STEADY,        /* true, false or the keys of steady */
-  STRUT_TYPE_EXPRESSION,    /* an expression of columns of the motion */
+  STRUT_TYPE_EXPRESSION,    /* an expression of columns of the motion; CONTEXT: of sensors */
   STRUT_TYPE_KEEP,          /* a list of the key's words and of quantities */
   STRUT_TYPE_AXES,          /* a list of axes of a study */
   STRUT_TYPE_TIMES,         /* a list of times */
@@ -203,7 +209,7 @@ enum {
       STRUT_KEY_COUNT
 };
 
-enum { STRUT_MOST_KEYS = 40 }; /* of one section */
+enum { STRUT_MOST_KEYS = 48 }; /* of one section */
 
 STRUT_API const strut_key *strut_key_at(int key);
 /** First key and number of keys of a section. */

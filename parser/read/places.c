@@ -96,10 +96,14 @@ static bool many_place(strut_reader *reader, const strut_finding *finding, strut
                                    [STRUT_ON_ACTUATOR] = reader->actuator_source,
                                    [STRUT_ON_LOAD] = reader->load_source,
                                    [STRUT_ON_UNBALANCE] = reader->unbalance_source,
-                                   [STRUT_ON_CONFIGURATION] = reader->configuration_source};
+                                   [STRUT_ON_CONFIGURATION] = reader->configuration_source,
+                                   [STRUT_ON_SENSOR] = reader->sensor_source,
+                                   [STRUT_ON_STATE] = reader->state_source};
   const strut_source *source = &sources[finding->subject][finding->index];
   if (source->broken) return false;
-  if (finding->subject == STRUT_ON_CONFIGURATION && reader->ground.broken) return false;
+  bool of_ground =
+      finding->subject == STRUT_ON_CONFIGURATION || finding->subject == STRUT_ON_SENSOR;
+  if (of_ground && reader->ground.broken) return false;
   if (finding->subject == STRUT_ON_NODE) return node_place(reader, finding, place);
   if (finding->subject == STRUT_ON_CONTACT) return contact_place(reader, finding, place);
   return thing_place(reader, source, finding->key, place);
@@ -156,6 +160,8 @@ static bool single_place(strut_reader *reader, const strut_finding *finding, str
     case STRUT_ON_UNBALANCE:
     case STRUT_ON_SIGNAL:
     case STRUT_ON_CONFIGURATION:
+    case STRUT_ON_SENSOR:
+    case STRUT_ON_STATE:
       broken =
           key && strut_key_find(STRUT_SECTION_SCENE, key) >= 0 &&
           strut_slot_of(fields, strut_key_find(STRUT_SECTION_SCENE, key))->state == STRUT_BROKEN;
@@ -173,7 +179,8 @@ void strut_place_findings(strut_reader *reader, const strut_findings *findings) 
                 finding->subject == STRUT_ON_ACTUATOR || finding->subject == STRUT_ON_LOAD ||
                 finding->subject == STRUT_ON_CELL || finding->subject == STRUT_ON_COLLISION ||
                 finding->subject == STRUT_ON_UNBALANCE ||
-                finding->subject == STRUT_ON_CONFIGURATION;
+                finding->subject == STRUT_ON_CONFIGURATION || finding->subject == STRUT_ON_SENSOR ||
+                finding->subject == STRUT_ON_STATE;
     bool fresh = many                                  ? many_place(reader, finding, &place)
                  : finding->subject == STRUT_ON_SIGNAL ? signal_place(reader, finding, &place)
                                                        : single_place(reader, finding, &place);

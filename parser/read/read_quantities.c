@@ -207,6 +207,13 @@ static int find_word(strut_reader *reader, strut_piece word, strut_column *colum
       *dimension = columns[k].dimension;
       return 1;
     }
+  const char *name = text_of(reader, word);
+  if (strut_find_sensed(reader, name, column, dimension)) return 1;
+  if (strut_name_map_find(&reader->signal_names, name) >= 0) {
+    column->kind = STRUT_COLUMN_SIGNAL;
+    column->item = strut_use_signal(reader, name, dimension);
+    return column->item >= 0 ? 1 : -1;
+  }
   found_owner found = find_owner(reader, NULL, word);
   if (!found.owners) return 0;
   snprintf(refusal->text, sizeof refusal->text,
@@ -218,6 +225,8 @@ static int find_word(strut_reader *reader, strut_piece word, strut_column *colum
 static int find_column(void *context, const char *kind, strut_piece owner, strut_piece field,
                        strut_column *column, strut_dimension *dimension, strut_refusal *refusal) {
   strut_reader *reader = context;
+  if (kind && strcmp(kind, "rate") == 0)
+    return strut_find_sensor_rate(reader, owner, column, dimension, refusal);
   if (!owner.length && !kind) return find_word(reader, field, column, dimension, refusal);
   found_owner found = find_owner(reader, kind, owner);
   if (!found.owners) return refuse_owner(reader, kind, owner, refusal);
@@ -281,22 +290,19 @@ static int find_pair(void *context, strut_piece word, strut_piece first, strut_p
   return 1;
 }
 
-/* The program in the scene's own memory. */
-static void keep_program(strut_reader *reader, const strut_compiler *c,
-                         strut_quantity_definition *d) {
+strut_instruction *strut_keep_program(strut_reader *reader, const strut_compiler *c) {
   strut_scene *scene = reader->scene;
   char unit[STRUT_SUFFIX_TEXT];
-  d->program = strut_reader_allocate(reader, &scene->arena, c->length, sizeof *d->program);
-  if (!d->program) return;
-  d->length = c->length;
-  d->depth = c->depth;
-  for (size_t i = 0; i < c->length; i++) {
+  strut_instruction *program =
+      strut_reader_allocate(reader, &scene->arena, c->length, sizeof *program);
+  for (size_t i = 0; i < c->length && program; i++) {
     const strut_compiled *from = &c->program[i];
-    d->program[i] = from->instruction;
+    program[i] = from->instruction;
     if (from->instruction.operation != STRUT_OPERATION_NUMBER) continue;
     strut_dimension_suffix(from->dimension, unit, sizeof unit);
-    if (*unit) d->program[i].unit = strut_keep_text(reader, unit);
+    if (*unit) program[i].unit = strut_keep_text(reader, unit);
   }
+  return program;
 }
 
 /* The expression; *dimension is that of its values. */
@@ -320,7 +326,10 @@ static bool read_expression(strut_reader *reader, const strut_tree *value, strut
         strut_owner_text(reader, owner));
     return false;
   }
-  keep_program(reader, &compiler, d);
+  d->program = strut_keep_program(reader, &compiler);
+  if (!d->program) return false;
+  d->length = compiler.length;
+  d->depth = compiler.depth;
   *dimension = q.bare ? STRUT_DIM_NONE : q.dimension;
   return true;
 }
@@ -350,17 +359,17 @@ static void read_accuracy(strut_reader *reader, const strut_slot *slot, strut_ow
     *(relative ? &d->accuracy : &d->accuracy_absolute) = q.value;
 }
 
-/* Within {...} a comma ends an unquoted text: angle(a, b) becomes "angle(a". */
-static bool ends_at_comma(strut_reader *reader, const strut_tree *of, strut_owner owner) {
+bool strut_ends_at_comma(strut_reader *reader, const strut_tree *of, const char *key,
+                         strut_owner owner) {
   int open = 0;
   if (!of || of->kind != STRUT_TREE_SCALAR || of->quoted) return false;
   for (const char *c = of->text; *c; c++) open += *c == '(' ? 1 : *c == ')' ? -1 : 0;
   if (open <= 0 || !of->next) return false;
   strut_report_error(
       reader, of->place,
-      "in 'of' of %s: the text ends here, since a comma ends it within '{...}'; put the whole "
+      "in '%s' of %s: the text ends here, since a comma ends it within '{...}'; put the whole "
       "expression in quotes",
-      strut_owner_text(reader, owner));
+      key, strut_owner_text(reader, owner));
   return true;
 }
 
@@ -378,7 +387,7 @@ static void read_quantity(strut_reader *reader, const strut_tree *key,
   strut_fields fields = {.section = STRUT_SECTION_QUANTITY};
   const strut_tree *of = key->next;
   bool map = of->kind == STRUT_TREE_MAP;
-  if (ends_at_comma(reader, map ? strut_tree_find(of, "of", NULL) : of, owner)) return;
+  if (strut_ends_at_comma(reader, map ? strut_tree_find(of, "of", NULL) : of, "of", owner)) return;
   if (map) {
     strut_read_fields(reader, STRUT_SECTION_QUANTITY, of, owner, &fields);
     strut_require(reader, &fields, owner, key->place);

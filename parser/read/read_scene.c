@@ -27,12 +27,30 @@ static void read_head(strut_reader *reader) {
 
 /* Stops behind the section in which the diagnostics became full. */
 static void read_sections(strut_reader *reader, const strut_setting *settings, size_t count) {
-  static void (*const sections[])(strut_reader *) = {
-      read_head,          strut_read_groups,      strut_read_nodes,          strut_read_beams,
-      strut_read_members, strut_add_beam_members, strut_read_hinges,         strut_add_beam_hinges,
-      strut_read_cells,   strut_read_collisions,  strut_read_rayleigh,       strut_read_signals,
-      strut_read_drives,  strut_read_ground,      strut_read_configurations, strut_read_search,
-      strut_read_initial, strut_read_experiment};
+  static void (*const sections[])(strut_reader *) = {read_head,
+                                                     strut_read_groups,
+                                                     strut_read_nodes,
+                                                     strut_read_beams,
+                                                     strut_read_members,
+                                                     strut_add_beam_members,
+                                                     strut_read_hinges,
+                                                     strut_add_beam_hinges,
+                                                     strut_read_cells,
+                                                     strut_read_collisions,
+                                                     strut_read_rayleigh,
+                                                     strut_list_signals,
+                                                     strut_list_controllers,
+                                                     strut_list_states,
+                                                     strut_read_sensors,
+                                                     strut_read_controllers,
+                                                     strut_read_signals,
+                                                     strut_read_states,
+                                                     strut_read_drives,
+                                                     strut_read_ground,
+                                                     strut_read_configurations,
+                                                     strut_read_search,
+                                                     strut_read_initial,
+                                                     strut_read_experiment};
   strut_read_parameters(reader, settings, count);
   for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++) {
     if (strut_diagnostics_full(reader->diagnostics)) return;
@@ -107,7 +125,7 @@ static void free_reader(strut_reader *reader) {
       &reader->parameter_names, &reader->signal_names,    &reader->configuration_names,
       &reader->actuator_names,  &reader->load_names,      &reader->hinge_names,
       &reader->cell_names,      &reader->collision_names, &reader->unbalance_names,
-      &reader->ground_names};
+      &reader->ground_names,    &reader->sensor_names,    &reader->state_names};
   for (size_t i = 0; i < sizeof maps / sizeof maps[0]; i++) strut_name_map_free(maps[i]);
   strut_release(reader->signals);
   strut_release(reader->signal_state);

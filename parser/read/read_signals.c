@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Signals, and what they drive: actuators and loads. See reader.h. */
 #include <assert.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -125,29 +126,101 @@ static bool read_sum(strut_reader *reader, const strut_tree *list, strut_owner o
   return fine;
 }
 
+static bool read_expression(strut_reader *reader, const strut_tree *value, strut_owner owner,
+                            meaning *m, strut_signal *signal) {
+  char wanted[200], found[80];
+  strut_quantity q;
+  if (!strut_read_signal_program(reader, value, "expression", owner, &signal->program, &q))
+    return false;
+  m->bare = q.bare;
+  m->dimension = q.dimension;
+  if (!m->expected || q.bare || strut_dimension_equal(q.dimension, *m->expected)) return true;
+  strut_report_error(reader, value->place, "expected %s for 'expression' of %s, found %s",
+                     strut_expected_number(*m->expected, wanted, sizeof wanted),
+                     strut_owner_text(reader, owner),
+                     strut_dimension_name(q.dimension, found, sizeof found));
+  return false;
+}
+
+/* The event with which the signal's time begins. */
+static bool read_trigger(strut_reader *reader, const strut_slot *slot, strut_owner owner,
+                         strut_trigger *trigger) {
+  char text[200];
+  strut_fields fields;
+  if (slot->state != STRUT_GIVEN) return slot->state == STRUT_ABSENT;
+  snprintf(text, sizeof text, "the start of %.150s", strut_owner_text(reader, owner));
+  strut_owner within = {text, NULL};
+  strut_read_fields(reader, STRUT_SECTION_STARTS, slot->value, within, &fields);
+  if (fields.broken) return false;
+  strut_store_fields(reader, &fields, &reader->scene->arena, trigger, sizeof *trigger);
+  const strut_slot *contact = strut_slot_of(&fields, STRUT_KEY_STARTS_CONTACT);
+  const strut_slot *sensor = strut_slot_of(&fields, STRUT_KEY_STARTS_SENSOR);
+  const strut_slot *above = strut_slot_of(&fields, STRUT_KEY_STARTS_ABOVE);
+  const strut_slot *below = strut_slot_of(&fields, STRUT_KEY_STARTS_BELOW);
+  const strut_slot *level = above->state == STRUT_GIVEN ? above : below;
+  if (contact->state != STRUT_GIVEN && sensor->state != STRUT_GIVEN) {
+    strut_report_error(reader, slot->value->place,
+                       "%s names no event; write {contact: NODE}, or {sensor: NAME, above: LEVEL}",
+                       text);
+    return false;
+  }
+  if ((sensor->state == STRUT_GIVEN) != (level->state == STRUT_GIVEN)) {
+    strut_report_error(reader, slot->value->place,
+                       sensor->state == STRUT_GIVEN
+                           ? "%s needs a level, 'above' or 'below', of its sensor"
+                           : "%s gives a level, which only a sensor passes",
+                       text);
+    return false;
+  }
+  trigger->kind = sensor->state != STRUT_GIVEN  ? STRUT_TRIGGER_CONTACT
+                  : above->state == STRUT_GIVEN ? STRUT_TRIGGER_ABOVE
+                                                : STRUT_TRIGGER_BELOW;
+  if (trigger->kind == STRUT_TRIGGER_CONTACT) {
+    trigger->item = strut_read_node(reader, contact->value, within);
+    return trigger->item >= 0;
+  }
+  trigger->item =
+      strut_read_reference(reader, sensor->value, "sensor", within, "sensor", &reader->sensor_names,
+                           strut_sensor_name, reader->scene->sensor_count);
+  if (trigger->item < 0) return false;
+  strut_dimension sensed = strut_sensor_dimension(reader->scene->sensors[trigger->item].kind);
+  return strut_read_number(reader, level->value, level == above ? "above" : "below", within, sensed,
+                           STRUT_RANGE_ANY, &trigger->level);
+}
+
 /* A signal written out: a mapping with one key. */
 static int32_t read_literal(strut_reader *reader, const strut_tree *map, strut_owner owner,
                             const strut_dimension *expected) {
   meaning m = {expected, STRUT_DIM_NONE, true};
   strut_fields fields;
+  const strut_tree *expression = strut_tree_find(map, "expression", NULL);
+  if (strut_ends_at_comma(reader, expression, "expression", owner)) return -1;
   strut_read_fields(reader, STRUT_SECTION_SIGNAL, map, owner, &fields);
-  if (map->count != 1 && !fields.broken)
-    strut_report_error(reader, map->place, "expected one kind of signal for %s, found %u",
-                       strut_owner_text(reader, owner), (unsigned)map->count);
-  if (map->count != 1 || fields.broken) return -1;
   int chosen = 0;
-  while (fields.slot[chosen].state != STRUT_GIVEN) chosen++;
+  unsigned kinds = 0;
+  for (int kind = STRUT_SIGNAL_KINDS - 1; kind >= 0; kind--)
+    if (fields.slot[kind].state == STRUT_GIVEN) chosen = kind, kinds++;
+  if (kinds != 1 && !fields.broken)
+    strut_report_error(reader, map->place, "expected one kind of signal for %s, found %u",
+                       strut_owner_text(reader, owner), kinds);
+  if (kinds != 1 || fields.broken) return -1;
   const strut_tree *value = fields.slot[chosen].value;
   strut_signal signal = strut_signal_default((strut_signal_kind)chosen);
+  strut_store_fields(reader, &fields, &reader->scene->arena, &signal, sizeof signal);
   bool fine;
   if (signal.kind == STRUT_CONSTANT)
     fine = read_value(reader, value, "constant", owner, &m, &signal.amplitude);
   else if (signal.kind == STRUT_TABLE)
     fine = read_table(reader, value, owner, &m, &signal);
+  else if (signal.kind == STRUT_EXPRESSION)
+    fine = read_expression(reader, value, owner, &m, &signal);
   else if (signal.kind == STRUT_SUM)
     fine = read_sum(reader, value, owner, &m, &signal);
   else
     fine = read_wave(reader, strut_wave_section(signal.kind), value, owner, &m, &signal);
+  if (!read_trigger(reader, strut_slot_of(&fields, STRUT_KEY_SIGNAL_STARTS), owner,
+                    &signal.trigger))
+    fine = false;
   if (m.expected) m.bare = false, m.dimension = *m.expected;
   return fine ? add_signal(reader, &signal, &m, value) : -1;
 }
@@ -228,6 +301,16 @@ static int32_t read_signal(strut_reader *reader, const strut_tree *value, const 
   return index >= 0 && claim(reader, index, value, expected) ? index : -1;
 }
 
+int32_t strut_use_signal(strut_reader *reader, const char *name, strut_dimension *dimension) {
+  int32_t i = strut_name_map_find(&reader->signal_names, name);
+  int32_t index = i < 0 ? -1 : read_named(reader, &reader->named[i]);
+  if (index < 0) return -1;
+  strut_signal_state *state = &reader->signal_state[index];
+  *dimension = state->dimension;
+  if (state->bare) dimension->kg = (float)NAN;
+  return index;
+}
+
 int32_t strut_read_signal(strut_reader *reader, const strut_tree *value, const char *key,
                           strut_owner owner, const strut_dimension *expected) {
   char text[200];
@@ -236,16 +319,33 @@ int32_t strut_read_signal(strut_reader *reader, const strut_tree *value, const c
   return read_signal(reader, value, key, within, expected);
 }
 
-void strut_read_signals(strut_reader *reader) {
+void strut_list_signals(strut_reader *reader) {
   const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_SIGNALS);
-  if (!map) return;
-  reader->named =
-      strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->named);
-  for (const strut_tree *key = map->first; key && reader->named; key = key->next->next) {
+  const strut_slot *controllers = strut_slot_of(&reader->top, STRUT_KEY_SCENE_CONTROLLERS);
+  size_t count = map ? map->count : 0;
+  if (controllers->state == STRUT_GIVEN) count += controllers->value->count;
+  if (!count) return;
+  reader->named = strut_reader_allocate(reader, &reader->scratch, count, sizeof *reader->named);
+  for (const strut_tree *key = map ? map->first : NULL; key && reader->named;
+       key = key->next->next) {
     strut_named_signal *named = &reader->named[reader->named_count];
     *named = (strut_named_signal){key->text, key, STRUT_SIGNAL_UNREAD, -1};
     strut_add_name(reader, &reader->signal_names, key->text, reader->named_count++);
   }
+}
+
+void strut_add_named_signal(strut_reader *reader, const strut_tree *key, const char *name,
+                            const strut_signal *signal, strut_dimension dimension) {
+  int32_t i = strut_name_map_find(&reader->signal_names, name);
+  const meaning m = {NULL, dimension, false};
+  int32_t index = add_signal(reader, signal, &m, key->next);
+  if (i < 0) return;
+  reader->named[i].state = STRUT_SIGNAL_READ;
+  reader->named[i].index = index;
+  if (index >= 0) reader->signals[index].name = strut_keep_text(reader, name);
+}
+
+void strut_read_signals(strut_reader *reader) {
   for (size_t i = 0; i < reader->named_count; i++) read_named(reader, &reader->named[i]);
 }
 

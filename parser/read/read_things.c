@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Nodes and members, and what drives them: actuators and loads. See reader.h. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "engine/base/vec.h"
@@ -114,6 +115,19 @@ static void store_rest_length(strut_fields *fields, strut_member *member) {
   }
 }
 
+static bool read_maxwell(strut_reader *reader, const strut_slot *slot, strut_owner owner,
+                         strut_maxwell *maxwell) {
+  char text[200];
+  strut_fields fields;
+  if (slot->state != STRUT_GIVEN) return slot->state == STRUT_ABSENT;
+  snprintf(text, sizeof text, "the Maxwell branch of %.150s", strut_owner_text(reader, owner));
+  strut_owner within = {text, NULL};
+  strut_read_fields(reader, STRUT_SECTION_MAXWELL, slot->value, within, &fields);
+  strut_require(reader, &fields, within, slot->value->place);
+  strut_store_fields(reader, &fields, &reader->scene->arena, maxwell, sizeof *maxwell);
+  return !fields.broken;
+}
+
 static bool read_member(strut_reader *reader, const strut_tree *key, strut_member *member) {
   strut_owner owner = {"member", member->name};
   bool fine = strut_read_name(reader, key, "member");
@@ -131,6 +145,9 @@ static bool read_member(strut_reader *reader, const strut_tree *key, strut_membe
   store_rest_length(&fields, member);
   if (!strut_read_law(reader, strut_slot_of(&fields, STRUT_KEY_MEMBER_LAW), owner, STRUT_DIM_LENGTH,
                       STRUT_DIM_FORCE, &member->law))
+    fine = false;
+  if (!read_maxwell(reader, strut_slot_of(&fields, STRUT_KEY_MEMBER_MAXWELL), owner,
+                    &member->maxwell))
     fine = false;
   return fine && !fields.broken;
 }

@@ -107,14 +107,15 @@ typedef struct strut_reader {
   strut_fields top;
   strut_name_map node_names, member_names, group_names, parameter_names, signal_names,
       configuration_names, actuator_names, load_names, hinge_names, cell_names, collision_names,
-      unbalance_names;
+      unbalance_names, sensor_names, state_names;
   strut_group *groups;
   size_t group_count;
   strut_parameter_state *parameters;
   size_t parameter_count, parameter_depth;
   strut_parameter_state *parameter_stack[STRUT_DEEPEST_PARAMETER]; /* being read */
   strut_source *node_source, *member_source, *actuator_source, *load_source, *contact_source,
-      *hinge_source, *cell_source, *collision_source;
+      *hinge_source, *cell_source, *collision_source, *sensor_source, *state_source;
+  strut_dimension *state_dimension;   /* (states) */
   const strut_tree **velocity_source; /* (node_count) or NULL: where single velocities stand */
   strut_named_signal *named;
   size_t named_count, signal_depth, signal_capacity;
@@ -140,6 +141,7 @@ typedef struct strut_reader {
   strut_fields *grounds;       /* of each of the scene's grounds; of `ground` the one above */
   strut_source *ground_source; /* of `grounds`, or NULL */
   strut_name_map ground_names;
+  bool *controller_broken; /* (controllers) in the order of the file */
 } strut_reader;
 
 /** Is this the tree of a study? As a model it would be wrong in every line. */
@@ -280,6 +282,8 @@ const char *strut_parameter_name(const void *reader, size_t i);
 void strut_read_nodes(strut_reader *reader);
 void strut_read_members(strut_reader *reader);
 void strut_read_ground(strut_reader *reader);
+/** Enters the names of signals, so that anything may refer to them. */
+void strut_list_signals(strut_reader *reader);
 void strut_read_signals(strut_reader *reader);
 void strut_read_drives(strut_reader *reader);
 /** Moves the signals into the scene. */
@@ -342,6 +346,49 @@ void strut_read_collisions(strut_reader *reader);
 void strut_read_beams(strut_reader *reader);
 void strut_add_beam_members(strut_reader *reader);
 void strut_add_beam_hinges(strut_reader *reader);
+/* read_feedback.c */
+
+void strut_read_sensors(strut_reader *reader);
+/** Name of sensor i, or NULL after the last; the context is the reader. */
+const char *strut_sensor_name(const void *reader, size_t i);
+strut_dimension strut_sensor_dimension(strut_sensor_kind kind);
+/** Finds a sensor as a column and its dimension. */
+bool strut_find_sensed(strut_reader *reader, const char *name, strut_column *column,
+                       strut_dimension *dimension);
+/** The rate of a sensor as a column, as strut_find_column. */
+int strut_find_sensor_rate(strut_reader *reader, strut_piece name, strut_column *column,
+                           strut_dimension *dimension, strut_refusal *refusal);
+/** Names and values at t = 0 of internal states, oscillators and controllers; their rates. */
+void strut_list_states(strut_reader *reader);
+void strut_read_states(strut_reader *reader);
+/** read_controllers.c: signals and rates of controllers, and rates of oscillators. */
+void strut_list_controllers(strut_reader *reader);
+void strut_read_controllers(strut_reader *reader);
+bool strut_read_oscillator(strut_reader *reader, const strut_tree *key, int32_t state);
+/** May an expression read the name of a `kind`, and mean nothing else by it? If not, that is reported. */
+bool strut_check_variable_name(strut_reader *reader, const strut_tree *key, const char *kind);
+/** Appends an internal state; -1: out of memory, or too many errors. */
+int32_t strut_add_state(strut_reader *reader, const strut_tree *key, const char *name,
+                        strut_dimension dimension, double start);
+/** Appends a signal with a name. */
+void strut_add_named_signal(strut_reader *reader, const strut_tree *key, const char *name,
+                            const strut_signal *signal, strut_dimension dimension);
+/** An expression of the time, sensors and signals; in the scene's memory. */
+bool strut_read_signal_program(strut_reader *reader, const strut_tree *value, const char *key,
+                               strut_owner owner, strut_program *program, strut_quantity *q);
+/**
+ * Index of a named signal that an expression reads, and its dimension, NAN of one made of plain numbers;
+ * -1: it was reported.
+ */
+int32_t strut_use_signal(strut_reader *reader, const char *name, strut_dimension *dimension);
+/** The instructions in the scene's own memory; NULL: there is none left. */
+strut_instruction *strut_keep_program(strut_reader *reader, const strut_compiler *compiler);
+/**
+ * Within {...} a comma ends an unquoted text: angle(a, b) becomes "angle(a". True where that has
+ * happened, which is reported.
+ */
+bool strut_ends_at_comma(strut_reader *reader, const strut_tree *of, const char *key,
+                         strut_owner owner);
 
 /* places.c */
 

@@ -100,7 +100,27 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
         "`axes: [{NAME: {...}}]`: values of a parameter; either `step` or `count`.",
     [STRUT_SECTION_VARIANT] = "`variants: {NAME: {...}}` of a study.",
     [STRUT_SECTION_CHECK] = "`check: {...}` of a study.",
-    [STRUT_SECTION_FIGURE] = "`figures: {NAME: {...}}` of a study."};
+    [STRUT_SECTION_FIGURE] = "`figures: {NAME: {...}}` of a study.",
+    [STRUT_SECTION_SENSOR] =
+        "`sensors: {NAME: {...}}` with one thing to sense. Expressions of signals, and measured "
+        "quantities, use the name. In an expression `rate(NAME)` is the rate of a length, an angle "
+        "or "
+        "a position.",
+    [STRUT_SECTION_STATE] = "`states: {NAME: {...}}`.",
+    [STRUT_SECTION_OSCILLATOR] =
+        "`oscillators: {NAME: {...}}`. The name is the phase, an angle, in expressions: `2 mm * "
+        "sin(NAME)`. `strut write` shows oscillators as states.",
+    [STRUT_SECTION_CONTROLLER] =
+        "`controllers: {NAME: {...}}`. The integral is the state `NAME_integral`. `strut write` "
+        "shows controllers as signals and states.",
+    [STRUT_SECTION_STARTS] =
+        "`{sine: {...}, starts: {...}}` of any signal: the touchdown of a node, or a sensor that "
+        "passes a "
+        "level.",
+    [STRUT_SECTION_MAXWELL] =
+        "`members: {NAME: {maxwell: {...}}}`: the force of the branch follows F' = k (u' - F/c), "
+        "with the "
+        "rate u' of the elongation. In statics it has relaxed to 0."};
 
 /* "none, x, y or both", each in code style. */
 static void put_words(strut_writer *writer, const char *words) {
@@ -139,6 +159,11 @@ static void put_limits(strut_writer *writer, strut_key_limits limits) {
   }
 }
 
+static void put_expression_type(strut_writer *writer, const strut_key *key) {
+  bool signal = key->measure == STRUT_MEASURE_CONTEXT;
+  strut_put(writer, signal ? "expression of `t` and sensors" : "expression of columns");
+}
+
 static void put_type(strut_writer *writer, const strut_key *key) {
   static const char *const types[] = {
       [STRUT_TYPE_TEXT] = "text",
@@ -160,7 +185,6 @@ static void put_type(strut_writer *writer, const strut_key *key) {
       [STRUT_TYPE_SIGNAL] = "[signal](#signal), or the name of one",
       [STRUT_TYPE_SIGNALS] = "list of signals",
       [STRUT_TYPE_TABLE] = "list of `[t, value]`",
-      [STRUT_TYPE_EXPRESSION] = "expression of columns",
       [STRUT_TYPE_KEEP] = "list of quantities, or of ",
       [STRUT_TYPE_AXES] = "list of axes",
       [STRUT_TYPE_TIMES] = "list of times [s]",
@@ -173,6 +197,7 @@ static void put_type(strut_writer *writer, const strut_key *key) {
     strut_put(writer, ")");
     return;
   }
+  if (key->type == STRUT_TYPE_EXPRESSION) put_expression_type(writer, key);
   if (key->limits.range == STRUT_RANGE_WHOLE) strut_put(writer, "whole ");
   if (types[key->type]) strut_put(writer, types[key->type]);
   if (key->type == STRUT_TYPE_THINGS) {

@@ -61,6 +61,36 @@ static void put_table(strut_writer *writer, const strut_signal *s) {
   strut_put(writer, "]");
 }
 
+static void put_trigger(strut_writer *writer, strut_mapping *mapping,
+                        const strut_trigger *trigger) {
+  const strut_scene *scene = writer->scene;
+  bool contact = trigger->kind == STRUT_TRIGGER_CONTACT;
+  strut_mapping inner = STRUT_MAPPING_INLINE;
+  if (trigger->kind == STRUT_TRIGGER_NONE) return;
+  strut_put_key_name(writer, mapping, STRUT_KEY_SIGNAL_STARTS);
+  strut_put(writer, "{");
+  strut_put_key_name(writer, &inner, contact ? STRUT_KEY_STARTS_CONTACT : STRUT_KEY_STARTS_SENSOR);
+  strut_put_name(writer,
+                 contact ? scene->nodes[trigger->item].name : scene->sensors[trigger->item].name);
+  if (!contact) {
+    strut_put_key_name(
+        writer, &inner,
+        trigger->kind == STRUT_TRIGGER_ABOVE ? STRUT_KEY_STARTS_ABOVE : STRUT_KEY_STARTS_BELOW);
+    strut_put_number(writer, trigger->level);
+  }
+  if (trigger->each) {
+    strut_put_key_name(writer, &inner, STRUT_KEY_STARTS_EACH);
+    strut_put(writer, "yes");
+  }
+  strut_put(writer, "}");
+}
+
+static void put_modifier(strut_writer *writer, strut_mapping *mapping, int key, double time) {
+  if (time == 0.0) return;
+  strut_put_key_name(writer, mapping, key);
+  strut_put_number(writer, time);
+}
+
 static void put_signal(strut_writer *writer, int32_t index) {
   const strut_signal *s = &writer->scene->signals[index];
   strut_mapping mapping = STRUT_MAPPING_INLINE;
@@ -70,6 +100,8 @@ static void put_signal(strut_writer *writer, int32_t index) {
     strut_put_number(writer, s->amplitude);
   } else if (s->kind == STRUT_TABLE) {
     put_table(writer, s);
+  } else if (s->kind == STRUT_EXPRESSION) {
+    strut_put_program(writer, s->program.instruction, s->program.length);
   } else if (s->kind == STRUT_SUM) {
     strut_put(writer, "[");
     for (size_t i = 0; i < s->term_count; i++) {
@@ -80,7 +112,57 @@ static void put_signal(strut_writer *writer, int32_t index) {
   } else {
     put_wave(writer, s);
   }
+  put_trigger(writer, &mapping, &s->trigger);
+  put_modifier(writer, &mapping, STRUT_KEY_SIGNAL_LAG, s->lag);
+  put_modifier(writer, &mapping, STRUT_KEY_SIGNAL_EVERY, s->every);
   strut_put(writer, "}");
+}
+
+static void put_sensor_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
+                               const void *object) {
+  const strut_scene *scene = writer->scene;
+  const strut_sensor *sensor = object;
+  if (key != STRUT_KEY_SENSOR_LENGTH + (int)sensor->kind) return;
+  bool member = sensor->kind == STRUT_SENSOR_LENGTH || sensor->kind == STRUT_SENSOR_FORCE;
+  strut_put_key_name(writer, mapping, key);
+  strut_put_name(writer, member                               ? scene->members[sensor->item].name
+                         : sensor->kind == STRUT_SENSOR_ANGLE ? scene->hinges[sensor->item].name
+                                                              : scene->nodes[sensor->item].name);
+}
+
+static void put_sensors(strut_writer *writer) {
+  const strut_scene *scene = writer->scene;
+  if (scene->sensor_count) strut_put(writer, "sensors:\n");
+  for (size_t i = 0; i < scene->sensor_count; i++) {
+    const strut_sensor *sensor = &scene->sensors[i];
+    strut_mapping mapping = STRUT_MAPPING_INLINE;
+    strut_sensor usual = {.energy = UINT32_MAX, .along = UINT32_MAX};
+    if (sensor->kind != STRUT_SENSOR_ENERGY) usual.energy = sensor->energy;
+    if (sensor->kind != STRUT_SENSOR_POSITION && sensor->kind != STRUT_SENSOR_VELOCITY)
+      usual.along = sensor->along;
+    strut_put(writer, "  ");
+    strut_put_name(writer, sensor->name);
+    strut_put(writer, ": {");
+    strut_put_fields(writer, &mapping, STRUT_SECTION_SENSOR, sensor, &usual, put_sensor_by_hand);
+    strut_put(writer, "}\n");
+  }
+}
+
+static void put_states(strut_writer *writer) {
+  const strut_scene *scene = writer->scene;
+  if (scene->state_count) strut_put(writer, "states:\n");
+  for (size_t i = 0; i < scene->state_count; i++) {
+    const strut_internal_state *state = &scene->states[i];
+    strut_put(writer, "  ");
+    strut_put_name(writer, state->name);
+    strut_put(writer, ": {rate: ");
+    strut_put_program(writer, state->rate.instruction, state->rate.length);
+    strut_put(writer, state->unit ? ", start: \"" : ", start: ");
+    strut_put_number(writer, state->start);
+    strut_put(writer, state->unit ? " " : "");
+    strut_put(writer, state->unit ? state->unit : "");
+    strut_put(writer, state->unit ? "\"}\n" : "}\n");
+  }
 }
 
 static void put_named_signals(strut_writer *writer) {
@@ -159,6 +241,8 @@ static void put_unbalances(strut_writer *writer) {
 void strut_put_drives(strut_writer *writer) {
   const strut_scene *scene = writer->scene;
   const strut_load usual = {0};
+  put_sensors(writer);
+  put_states(writer);
   put_named_signals(writer);
   put_actuators(writer);
   put_unbalances(writer);

@@ -54,6 +54,16 @@ static void put_column(strut_writer *writer, strut_column column) {
   const strut_scene *scene = writer->scene;
   const char *word = strut_column_word(column.kind);
   strut_column_owner owner = strut_column_owner_of(column.kind);
+  if (owner == STRUT_COLUMN_OF_FEEDBACK) {
+    bool rate = column.kind == STRUT_COLUMN_SENSOR_RATE;
+    bool sensor = rate || column.kind == STRUT_COLUMN_SENSOR;
+    strut_put(writer, rate ? "rate(" : "");
+    strut_put(writer, sensor                              ? scene->sensors[column.item].name
+                      : column.kind == STRUT_COLUMN_STATE ? scene->states[column.item].name
+                                                          : scene->signals[column.item].name);
+    strut_put(writer, rate ? ")" : "");
+    return;
+  }
   if (owner == STRUT_COLUMN_OF_PAIR) {
     strut_put(writer, word);
     strut_put(writer, "(");
@@ -132,10 +142,9 @@ static void put_operand(strut_writer *writer, const strut_instruction *program, 
   if (enclosed) strut_put(writer, ")");
 }
 
-/* The expression as a text of its own, in quotes. */
-static void put_expression(strut_writer *writer, const strut_quantity_definition *d) {
+void strut_put_program(strut_writer *writer, const strut_instruction *program, size_t length) {
   strut_writer part = {.scene = writer->scene};
-  put_operand(&part, d->program, d->length, OF_SUM);
+  put_operand(&part, program, length, OF_SUM);
   if (part.failed || !part.text)
     writer->failed = true;
   else
@@ -150,7 +159,7 @@ static void put_quantity_by_hand(strut_writer *writer, strut_mapping *mapping, i
   bool absolute = d->accuracy_absolute > 0.0;
   if (key == STRUT_KEY_QUANTITY_OF) {
     strut_put_key_name(writer, mapping, key);
-    put_expression(writer, d);
+    strut_put_program(writer, d->program, d->length);
   } else if (absolute || d->accuracy > 0.0) {
     strut_put_key_name(writer, mapping, key);
     strut_put(writer, absolute ? "\"" : "");

@@ -153,6 +153,14 @@ static void put_member_by_hand(strut_writer *writer, strut_mapping *mapping, int
     strut_put(writer, "]");
   } else if (key == STRUT_KEY_MEMBER_LAW) {
     put_law(writer, mapping, key, &m->law);
+  } else if (key == STRUT_KEY_MEMBER_MAXWELL) {
+    const strut_maxwell none = {0};
+    strut_mapping inner = STRUT_MAPPING_INLINE;
+    if (m->maxwell.stiffness == 0.0) return;
+    strut_put_key_name(writer, mapping, key);
+    strut_put(writer, "{");
+    strut_put_fields(writer, &inner, STRUT_SECTION_MAXWELL, &m->maxwell, &none, NULL);
+    strut_put(writer, "}");
   } else if (key == strut_rest_key(m->rest_kind)) {
     strut_put_key_name(writer, mapping, key);
     strut_put_number(writer, m->rest_value);

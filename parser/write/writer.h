@@ -69,6 +69,8 @@ void strut_put_collisions(strut_writer *writer);
 /** write_drives.c: signals, actuators, loads, run, solver, output. */
 void strut_put_drives(strut_writer *writer);
 void strut_put_experiment(strut_writer *writer);
+/** write_quantities.c: a program as an expression in quotes. */
+void strut_put_program(strut_writer *writer, const strut_instruction *program, size_t length);
 /** write_quantities.c: `quantities` of the measurement, if there are any. */
 void strut_put_quantities(strut_writer *writer, strut_mapping *mapping);
 /** write_shapes.c: configurations, the search for equilibria, the initial state. */

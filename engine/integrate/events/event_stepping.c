@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "engine/forces/energy.h"
+#include "engine/forces/feedback.h"
 #include "engine/forces/memory.h"
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/model/element_compile.h"
@@ -135,7 +136,8 @@ void strut_event_stepper_restart(const strut_model *model, strut_state *state, v
   l->at_once = l->switches = 0;
   l->pushed = -1;
   l->tried = false;
-  l->next_break = strut_drive_next_break(model, t + state->time_offset + STRUT_AT_BREAK * dt);
+  l->next_break =
+      strut_drive_next_break(model, state, t + state->time_offset + STRUT_AT_BREAK * dt);
   if (l->next_break < HUGE_VAL) t += moment_before(t, dt);
   strut_modes_start(model, state, l, t);
   show_contacts(model, state, l);
@@ -152,7 +154,9 @@ static void pass_break(const strut_model *model, strut_state *state, strut_event
   if (t + state->time_offset < l->next_break - STRUT_AT_BREAK * dt) return;
   double moment = moment_before(t, dt), before = 0.0;
   if (state->ledger) before = strut_energy_evaluate(model, state, t - moment).elastic;
-  l->next_break = strut_drive_next_break(model, t + state->time_offset + STRUT_AT_BREAK * dt);
+  l->next_break =
+      strut_drive_next_break(model, state, t + state->time_offset + STRUT_AT_BREAK * dt);
+  strut_feedback_sample(model, state, t, STRUT_AT_BREAK * dt);
   if (state->ledger) {
     double gained = strut_energy_evaluate(model, state, t + moment).elastic - before;
     state->work[STRUT_POWER_DRIVE] += gained;
@@ -266,6 +270,21 @@ static bool try_step(const strut_model *model, strut_state *state, strut_event_s
   return false;
 }
 
+/* A touchdown at time t may start signals: the drives jump as in pass_break. */
+static void start_signals(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                          int32_t contact, double t, double dt) {
+  double before = state->ledger ? strut_energy_evaluate(model, state, t).elastic : 0.0;
+  if (!strut_feedback_touch(model, state, contact, t)) return;
+  l->next_break =
+      strut_drive_next_break(model, state, t + state->time_offset + STRUT_AT_BREAK * dt);
+  if (state->ledger) {
+    double gained = strut_energy_evaluate(model, state, t).elastic - before;
+    state->work[STRUT_POWER_DRIVE] += gained;
+    state->work[STRUT_POWER_EXCHANGED] += fabs(gained);
+  }
+  strut_modes_after_jump(model, state, l, t);
+}
+
 /* One trial over at most h; handles rejection and events. Returns the time gone, 0 if none. */
 static double step(const strut_model *model, strut_state *state, strut_event_stepper *l, double t,
                    double h, double dt) {
@@ -299,6 +318,8 @@ static double step(const strut_model *model, strut_state *state, strut_event_ste
   }
   if (event.kind) {
     strut_event_apply(model, state, l, event, t + h);
+    if (event.kind == STRUT_EVENT_TOUCH && model->feedback.trigger_count)
+      start_signals(model, state, l, event.index, t + h, dt);
     state->events++;
     l->switches++;
   } else if (force) {

@@ -29,12 +29,18 @@ typedef struct panel {
   const char *labels[MOST_CURVES];
 } panel;
 
-/* Drives of members; a driven hinge shows in its angle. */
-static size_t count_driven(const strut_run_scene *run) {
+/* A drive of a member whose change follows from the time alone; a driven hinge shows in its angle. */
+static bool is_shown(const strut_run_scene *run, int32_t drive) {
   const strut_drive_table *drives = &run->model->drives;
+  double value, rate;
+  if (drives->member[drive] >= run->model->members.count) return false;
+  strut_signal_evaluate(run->model->scene->signals, drives->signal[drive], 0.0, &value, &rate);
+  return !isnan(value);
+}
+
+static size_t count_driven(const strut_run_scene *run) {
   size_t count = 0;
-  for (int32_t i = 0; i < drives->count; i++)
-    count += drives->member[i] < run->model->members.count;
+  for (int32_t i = 0; i < run->model->drives.count; i++) count += is_shown(run, i);
   return count;
 }
 
@@ -196,7 +202,7 @@ static bool fill_drive(strut_run_scene *run, size_t first, panel *p) {
   size_t frames = run->frames - first;
   for (int32_t i = 0; i < drives->count && p->count < 2 * MOST_DRIVEN; i++) {
     int32_t member = drives->member[i];
-    if (!drives->first[i] || member >= run->model->members.count) continue;
+    if (!drives->first[i] || !is_shown(run, i)) continue;
     const char *name = run->model->scene->members[member].name;
     for (int k = 0; k < 2; k++) {
       double *values = strut_arena_allocate(&run->arena, frames, sizeof *values);

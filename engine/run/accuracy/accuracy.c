@@ -117,7 +117,9 @@ strut_status strut_simulate_accurately(const strut_model *model, const strut_exp
   if (!status) status = choose_coarse_method(&a);
   bool velocity =
       experiment->quantity_count == 0; /* the only quantity that these two strategies check */
-  if (model->plan & STRUT_TERM_MEMORY) velocity = false; /* a state that they know nothing of */
+  /* states that they know nothing of */
+  if (model->plan & STRUT_TERM_MEMORY) velocity = false;
+  if (model->feedback.state_count || model->feedback.sampled_count) velocity = false;
   if (!status && velocity) status = strut_accuracy_try_midpoint(&a, &done);
   if (!status && !done && velocity && experiment->periods > 0.0 && !a.single_method)
     status = strut_accuracy_try_orbit(&a, &done);

@@ -168,6 +168,10 @@ static double total_energy(const strut_energies *s, double *size) {
   return s->kinetic + s->elastic + s->gravity + s->contact;
 }
 
+static double column_time(const strut_columns *c, const strut_state *state) {
+  return (double)state->step * c->step + c->shorter + state->time_offset;
+}
+
 /* Evaluates a column; *size: magnitude of the terms that it sums, where that is not the value. */
 static double evaluate_column(const strut_columns *c, const strut_state *state, strut_column column,
                               double *size) {
@@ -175,7 +179,7 @@ static double evaluate_column(const strut_columns *c, const strut_state *state, 
   const double *w = state->work;
   double d[2];
   switch (column.kind) {
-    case STRUT_COLUMN_TIME: return (double)state->step * c->step + c->shorter + state->time_offset;
+    case STRUT_COLUMN_TIME: return column_time(c, state);
     case STRUT_COLUMN_NODE_X: return state->q[at];
     case STRUT_COLUMN_NODE_Y: return state->q[at + 1];
     case STRUT_COLUMN_NODE_VX: return state->v[at];
@@ -223,6 +227,11 @@ static double evaluate_column(const strut_columns *c, const strut_state *state, 
       return strut_collision_measure(c->model, state, column.item).gap;
     case STRUT_COLUMN_COLLISION_FORCE:
       return strut_collision_measure(c->model, state, column.item).force;
+    case STRUT_COLUMN_SENSOR: return state->sensor[column.item];
+    case STRUT_COLUMN_SENSOR_RATE: return state->sensor_rate[column.item];
+    case STRUT_COLUMN_STATE: return state->v[c->model->feedback.base + column.item];
+    case STRUT_COLUMN_SIGNAL:
+      return strut_drive_signal(c->model, state, state->v, column.item, column_time(c, state));
     case STRUT_COLUMN_COUNT: break;
   }
   return 0.0;

@@ -115,8 +115,8 @@ bool strut_quantities_need_ledger(const strut_experiment *e) {
   for (size_t i = 0; i < e->quantity_count; i++)
     for (size_t k = 0; k < e->quantities[i].length; k++) {
       const strut_instruction *p = &e->quantities[i].program[k];
-      if (p->operation == STRUT_OPERATION_COLUMN && p->column.kind >= STRUT_COLUMN_DRIVES)
-        return true;
+      bool ledger = p->column.kind >= STRUT_COLUMN_DRIVES && p->column.kind <= STRUT_COLUMN_LOST;
+      if (p->operation == STRUT_OPERATION_COLUMN && ledger) return true;
     }
   return false;
 }

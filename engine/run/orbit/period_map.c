@@ -72,7 +72,7 @@ static void advance_application(strut_period_map *map) {
         map->most_evaluations > map->evaluations ? map->most_evaluations - map->evaluations : 1;
   while (left > 0 && !state->trouble && !strut_period_map_interrupted(map) && !is_spent_now(map)) {
     int64_t count = left < most ? left : most;
-    map->method->advance(model, state, map->workspace, map->dt, count);
+    strut_integrator_advance(map->method, model, state, map->workspace, map->dt, count);
     left -= count;
   }
 }

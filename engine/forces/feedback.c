@@ -1,0 +1,184 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Hot where a scene has sensors. See feedback.h. */
+#include "engine/forces/feedback.h"
+
+#include <math.h>
+
+#include "engine/forces/drive.h"
+#include "engine/forces/elements.h"
+#include "engine/forces/energy.h"
+#include "engine/forces/forces.h"
+#include "engine/model/pose.h"
+
+/* Length of a member and its rate. */
+static void sense_length(const strut_model *model, const strut_state *state, int32_t member,
+                         const double *q, const double *v, double *value, double *rate) {
+  strut_member_values values = strut_member_measure_at(model, state, member, q, v);
+  *value = values.length, *rate = values.rate;
+}
+
+static void sense_angle(const strut_model *model, const strut_state *state, int32_t element,
+                        const double *q, const double *v, double *value, double *rate) {
+  strut_element_pose pose;
+  strut_element_evaluate(model, element, state->rest, q, state->element_turn[element], &pose);
+  *value = pose.strain;
+  *rate = strut_element_rate(model, element, &pose, v);
+}
+
+static double sense_energy(const strut_model *model, const strut_state *state, int32_t which,
+                           const double *q, const double *v) {
+  strut_energies e = strut_energy_evaluate_at(model, state, q, v);
+  return which == STRUT_SENSED_KINETIC   ? e.kinetic
+         : which == STRUT_SENSED_ELASTIC ? e.elastic
+                                         : e.kinetic + e.elastic + e.gravity + e.contact;
+}
+
+static void sense(const strut_model *model, const strut_state *state, strut_sensor_entry sensor,
+                  const double *q, const double *v, double *value, double *rate) {
+  *rate = 0.0;
+  switch (sensor.kind) {
+    case STRUT_SENSOR_LENGTH: sense_length(model, state, sensor.at, q, v, value, rate); break;
+    case STRUT_SENSOR_ANGLE: sense_angle(model, state, sensor.at, q, v, value, rate); break;
+    case STRUT_SENSOR_CONTACT:
+      *value =
+          sensor.at >= 0 && strut_contact_gap(&model->contacts, sensor.at, q) < 0.0 ? 1.0 : 0.0;
+      break;
+    case STRUT_SENSOR_POSITION: *value = q[sensor.at], *rate = v[sensor.at]; break;
+    case STRUT_SENSOR_VELOCITY: *value = v[sensor.at]; break;
+    case STRUT_SENSOR_FORCE:
+      *value = strut_member_measure_at(model, state, sensor.at, q, v).force;
+      break;
+    case STRUT_SENSOR_ENERGY: *value = sense_energy(model, state, sensor.at, q, v); break;
+    case STRUT_SENSOR_KINDS: break;
+  }
+}
+
+static void sense_all(const strut_model *model, strut_state *state, bool driven, const double *q,
+                      const double *v) {
+  const strut_feedback_table *f = &model->feedback;
+  for (int32_t i = 0; i < f->count; i++)
+    if (strut_sensor_needs_drives(f->sensor[i].kind) == driven)
+      sense(model, state, f->sensor[i], q, v, &state->sensor[i], &state->sensor_rate[i]);
+}
+
+static void apply_drives(const strut_model *model, strut_state *state, double t, const double *q,
+                         const double *v) {
+  const strut_feedback_table *f = &model->feedback;
+  sense_all(model, state, false, q, v);
+  strut_drive_apply_sensed(model, state, t, v);
+  if (!f->needs_drives) return;
+  sense_all(model, state, true, q, v);
+  /* rates of states may follow these sensors, and rates of rest lengths those */
+  if (f->state_count) strut_drive_apply_sensed(model, state, t, v);
+}
+
+/* Samples the signals that are due at time t, and all of them before the first; v: for the states. */
+static bool take_samples(const strut_model *model, strut_state *state, double t, const double *v,
+                         double tolerance) {
+  const strut_feedback_table *f = &model->feedback;
+  const strut_signal_inputs in = strut_drive_inputs(model, state, v);
+  bool any = false;
+  for (int32_t i = 0; i < f->sampled_count; i++) {
+    int32_t signal = f->sampled[i];
+    double every = model->scene->signals[signal].every, rate;
+    bool first = isnan(state->held[signal]);
+    if (!first && !(fabs(t - every * round(t / every)) <= tolerance)) continue;
+    strut_signal_follow_unsampled(model->scene->signals, &in, signal, t, &state->held[signal],
+                                  &rate);
+    any = true;
+  }
+  return any;
+}
+
+void strut_feedback_apply(const strut_model *model, strut_state *state, double t, const double *q,
+                          const double *v) {
+  const strut_feedback_table *f = &model->feedback;
+  if (f->sampled_count && isnan(state->held[f->sampled[0]])) {
+    /* the first samples, at rest lengths without drives */
+    sense_all(model, state, false, q, v);
+    sense_all(model, state, true, q, v);
+    take_samples(model, state, t + state->time_offset, v, 0.0);
+  }
+  apply_drives(model, state, t, q, v);
+}
+
+void strut_feedback_add_rates(const strut_model *model, strut_state *state, double t,
+                              const double *v, double *force) {
+  const strut_feedback_table *f = &model->feedback;
+  const strut_scene *scene = model->scene;
+  strut_signal_inputs in = strut_drive_inputs(model, state, v);
+  double now = t + state->time_offset, value, unused;
+  in.values_only = true;
+  for (int32_t i = 0; i < f->state_count - f->lag_count - f->maxwell_count; i++) {
+    strut_program_evaluate(&scene->states[i].rate, scene->signals, &in, now, &value, &unused);
+    force[f->base + i] = value;
+  }
+  for (int32_t k = 0; k < f->lag_count; k++) {
+    int32_t signal = f->lagged[k], index = f->lag_of[signal];
+    strut_signal_follow_unlagged(scene->signals, &in, signal, now, &value, &unused);
+    force[f->base + index] = (value - in.state[index]) / scene->signals[signal].lag;
+  }
+}
+
+double strut_feedback_next_sample(const strut_model *model, double t) {
+  const strut_feedback_table *f = &model->feedback;
+  double first = (double)INFINITY;
+  for (int32_t i = 0; i < f->sampled_count; i++) {
+    double every = model->scene->signals[f->sampled[i]].every;
+    double next = every * (floor(t / every) + 1.0);
+    first = fmin(first, next > t ? next : next + every);
+  }
+  return first;
+}
+
+bool strut_feedback_sample(const strut_model *model, strut_state *state, double t,
+                           double tolerance) {
+  if (!model->feedback.sampled_count) return false;
+  strut_feedback_apply(model, state, t, state->q, state->v);
+  return take_samples(model, state, t + state->time_offset, state->v, tolerance);
+}
+
+static bool start_signal(const strut_model *model, strut_state *state, int32_t signal, double t) {
+  const strut_trigger *trigger = &model->scene->signals[signal].trigger;
+  if (state->started[signal] < (double)INFINITY && !trigger->each) return false;
+  state->started[signal] = t + state->time_offset;
+  return true;
+}
+
+bool strut_feedback_touch(const strut_model *model, strut_state *state, int32_t contact, double t) {
+  const strut_feedback_table *f = &model->feedback;
+  bool any = false;
+  for (int32_t i = 0; i < f->trigger_count; i++) {
+    const strut_trigger *trigger = &model->scene->signals[f->triggered[i]].trigger;
+    bool mine = trigger->kind == STRUT_TRIGGER_CONTACT &&
+                trigger->item == model->contacts.entry[contact].node;
+    if (mine && start_signal(model, state, f->triggered[i], t)) any = true;
+  }
+  return any;
+}
+
+/* Does the condition of a trigger hold at the state? */
+static bool condition_holds(const strut_model *model, const strut_state *state,
+                            const strut_trigger *trigger) {
+  for (int32_t i = 0; i < model->contacts.count && trigger->kind == STRUT_TRIGGER_CONTACT; i++)
+    if (model->contacts.entry[i].node == trigger->item)
+      return strut_contact_gap(&model->contacts, i, state->q) < 0.0;
+  if (trigger->kind == STRUT_TRIGGER_ABOVE) return state->sensor[trigger->item] > trigger->level;
+  return trigger->kind == STRUT_TRIGGER_BELOW && state->sensor[trigger->item] < trigger->level;
+}
+
+bool strut_feedback_watch(const strut_model *model, strut_state *state, double t, bool contacts) {
+  const strut_feedback_table *f = &model->feedback;
+  bool any = false;
+  strut_feedback_apply(model, state, t, state->q, state->v);
+  for (int32_t i = 0; i < f->trigger_count; i++) {
+    int32_t signal = f->triggered[i];
+    const strut_trigger *trigger = &model->scene->signals[signal].trigger;
+    if (trigger->kind == STRUT_TRIGGER_CONTACT && !contacts) continue;
+    bool holds = condition_holds(model, state, trigger);
+    if (holds && state->trigger_was[signal] == 0 && start_signal(model, state, signal, t))
+      any = true;
+    state->trigger_was[signal] = holds;
+  }
+  return any;
+}

@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Compiled feedback: where sensors find their values, and internal states. A model without them has none
+ * of it.
+ *
+ * Internal states are integrated beside the motion as auxiliary coordinates of unit mass, which stand
+ * behind those of the nodes and that of padding in coordinate arrays: the state is the velocity there,
+ * its rate the force. Every method so integrates them at its own order. They count as fixed, so that
+ * nobody else takes them for positions.
+ */
+#ifndef STRUT_ENGINE_MODEL_FEEDBACK_H
+#define STRUT_ENGINE_MODEL_FEEDBACK_H
+
+#include "engine/scene/scene.h"
+
+typedef struct strut_sensor_entry {
+  strut_sensor_kind kind;
+  int32_t
+      at; /* member, element of a hinge, contact (-1: none), coordinate, or strut_sensed_energy */
+} strut_sensor_entry;
+
+/** The Maxwell branch of a member, whose force is an internal state. */
+typedef struct strut_maxwell_entry {
+  int32_t member, state;
+  double stiffness, damping;
+} strut_maxwell_entry;
+
+typedef struct strut_feedback_table {
+  int32_t count;
+  const strut_sensor_entry *sensor; /* (count) */
+  bool needs_drives;                /* some sensor's value follows from the driven rest lengths */
+  int32_t base, state_count; /* states stand at base .. base + state_count - 1 of velocities */
+  int32_t lag_count;
+  const int32_t
+      *lagged; /* (lag_count) signals with a lag; their states follow those of the scene */
+  const int32_t *lag_of; /* (signals) state of a signal's lag, or -1 */
+  int32_t maxwell_count;
+  const strut_maxwell_entry *maxwell; /* (maxwell_count); their states are the last */
+  int32_t sampled_count;
+  int32_t trigger_count;
+  const int32_t *triggered; /* (trigger_count) signals with a trigger */
+  bool watches;           /* some trigger is a sensor: it is watched on the grid by every method */
+  const int32_t *sampled; /* (sampled_count) signals that are sampled, terms before their sums */
+} strut_feedback_table;
+
+#endif

@@ -1,0 +1,210 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Programs of signals: value and rate of each operation, side by side. See signal_program.h. */
+#include "engine/scene/signal_program.h"
+
+#include <assert.h>
+#include <math.h>
+
+#include "engine/scene/scene.h"
+
+/* A number and its time derivative. */
+typedef struct dual {
+  double value, rate;
+} dual;
+
+int strut_operation_operands(strut_operation operation) {
+  static const int operands[] = {
+#define STRUT_OPERANDS(id, count, ...) count,
+      STRUT_OPERATION_TABLE(STRUT_OPERANDS)
+#undef STRUT_OPERANDS
+  };
+  assert((unsigned)operation < STRUT_OPERATION_COUNT);
+  return operands[operation];
+}
+
+/* slope * rate, where a rate of 0 stays 0 whatever the slope is. */
+static dual chain(double value, double slope, double rate) {
+  return (dual){value, rate == 0.0 ? 0.0 : slope * rate};
+}
+
+static dual raise_to_power(dual a, dual b) {
+  dual result = chain(pow(a.value, b.value), b.value * pow(a.value, b.value - 1.0), a.rate);
+  if (b.rate != 0.0) result.rate += result.value * log(a.value) * b.rate;
+  return result;
+}
+
+/* Of two arguments a and b. */
+static dual combine(strut_operation operation, dual a, dual b) {
+  double square = a.value * a.value + b.value * b.value, root = hypot(a.value, b.value);
+  switch (operation) {
+    case STRUT_OPERATION_ADD: return (dual){a.value + b.value, a.rate + b.rate};
+    case STRUT_OPERATION_SUBTRACT: return (dual){a.value - b.value, a.rate - b.rate};
+    case STRUT_OPERATION_MULTIPLY:
+      return (dual){a.value * b.value, a.rate * b.value + a.value * b.rate};
+    case STRUT_OPERATION_DIVIDE:
+      return (dual){a.value / b.value, (a.rate - a.value / b.value * b.rate) / b.value};
+    case STRUT_OPERATION_POWER: return raise_to_power(a, b);
+    case STRUT_OPERATION_MIN: return b.value < a.value ? b : a;
+    case STRUT_OPERATION_MAX: return b.value > a.value ? b : a;
+    case STRUT_OPERATION_ATAN2:
+      return chain(atan2(a.value, b.value), 1.0 / square, b.value * a.rate - a.value * b.rate);
+    case STRUT_OPERATION_HYPOT: return chain(root, 1.0 / root, a.value * a.rate + b.value * b.rate);
+    case STRUT_OPERATION_NEGATE:
+    case STRUT_OPERATION_SIN:
+    case STRUT_OPERATION_COS:
+    case STRUT_OPERATION_TAN:
+    case STRUT_OPERATION_ASIN:
+    case STRUT_OPERATION_ACOS:
+    case STRUT_OPERATION_ATAN:
+    case STRUT_OPERATION_SQRT:
+    case STRUT_OPERATION_EXP:
+    case STRUT_OPERATION_LOG:
+    case STRUT_OPERATION_LOG10:
+    case STRUT_OPERATION_ABS:
+    case STRUT_OPERATION_FLOOR:
+    case STRUT_OPERATION_CEIL:
+    case STRUT_OPERATION_ROUND:
+    case STRUT_OPERATION_NUMBER:
+    case STRUT_OPERATION_COLUMN:
+    case STRUT_OPERATION_COUNT: break;
+  }
+  return (dual){(double)NAN, (double)NAN};
+}
+
+/* Of one argument. */
+static dual apply(strut_operation operation, dual a) {
+  const double ten = 2.30258509299404568402; /* log 10 */
+  double x = a.value, y;
+  switch (operation) {
+    case STRUT_OPERATION_NEGATE: return (dual){-x, -a.rate};
+    case STRUT_OPERATION_SIN: return chain(sin(x), cos(x), a.rate);
+    case STRUT_OPERATION_COS: return chain(cos(x), -sin(x), a.rate);
+    case STRUT_OPERATION_TAN: y = tan(x); return chain(y, 1.0 + y * y, a.rate);
+    case STRUT_OPERATION_ASIN: return chain(asin(x), 1.0 / sqrt(1.0 - x * x), a.rate);
+    case STRUT_OPERATION_ACOS: return chain(acos(x), -1.0 / sqrt(1.0 - x * x), a.rate);
+    case STRUT_OPERATION_ATAN: return chain(atan(x), 1.0 / (1.0 + x * x), a.rate);
+    case STRUT_OPERATION_SQRT: y = sqrt(x); return chain(y, 0.5 / y, a.rate);
+    case STRUT_OPERATION_EXP: y = exp(x); return chain(y, y, a.rate);
+    case STRUT_OPERATION_LOG: return chain(log(x), 1.0 / x, a.rate);
+    case STRUT_OPERATION_LOG10: return chain(log10(x), 1.0 / (ten * x), a.rate);
+    case STRUT_OPERATION_ABS: return (dual){fabs(x), x < 0.0 ? -a.rate : a.rate};
+    case STRUT_OPERATION_FLOOR: return (dual){floor(x), 0.0};
+    case STRUT_OPERATION_CEIL: return (dual){ceil(x), 0.0};
+    case STRUT_OPERATION_ROUND: return (dual){round(x), 0.0};
+    case STRUT_OPERATION_ADD:
+    case STRUT_OPERATION_SUBTRACT:
+    case STRUT_OPERATION_MULTIPLY:
+    case STRUT_OPERATION_DIVIDE:
+    case STRUT_OPERATION_POWER:
+    case STRUT_OPERATION_MIN:
+    case STRUT_OPERATION_MAX:
+    case STRUT_OPERATION_ATAN2:
+    case STRUT_OPERATION_HYPOT:
+    case STRUT_OPERATION_NUMBER:
+    case STRUT_OPERATION_COLUMN:
+    case STRUT_OPERATION_COUNT: break;
+  }
+  return (dual){(double)NAN, (double)NAN};
+}
+
+/* An internal state and its rate, which takes the values of others only. */
+static dual read_state(int32_t index, const strut_signal *signals, const strut_signal_inputs *in,
+                       double t) {
+  dual x = {in->state[index], 0.0};
+  if (in->values_only) return x;
+  strut_signal_inputs values = *in;
+  double unused;
+  values.values_only = true;
+  strut_program_evaluate(&in->states[index].rate, signals, &values, t, &x.rate, &unused);
+  return x;
+}
+
+static dual read_column(strut_column column, const strut_signal *signals,
+                        const strut_signal_inputs *in, double t) {
+  dual x = {(double)NAN, (double)NAN};
+  if (column.kind == STRUT_COLUMN_TIME)
+    x = (dual){t, 1.0};
+  else if (column.kind == STRUT_COLUMN_SIGNAL)
+    strut_signal_follow(signals, in, column.item, t, &x.value, &x.rate);
+  else if (column.kind == STRUT_COLUMN_SENSOR && in)
+    x = (dual){in->sensor[column.item], in->sensor_rate[column.item]};
+  else if (column.kind == STRUT_COLUMN_SENSOR_RATE && in)
+    x = (dual){in->sensor_rate[column.item], 0.0};
+  else if (column.kind == STRUT_COLUMN_STATE && in)
+    x = read_state(column.item, signals, in, t);
+  return x;
+}
+
+void strut_program_evaluate(const strut_program *program, const strut_signal *signals,
+                            const strut_signal_inputs *in, double t, double *value, double *rate) {
+  dual stack[STRUT_MOST_PROGRAM_DEPTH];
+  size_t top = 0;
+  for (size_t i = 0; i < program->length; i++) {
+    const strut_instruction *p = &program->instruction[i];
+    int operands = strut_operation_operands(p->operation);
+    assert(top >= (size_t)operands && top < STRUT_MOST_PROGRAM_DEPTH + (size_t)operands);
+    if (p->operation == STRUT_OPERATION_NUMBER) {
+      stack[top++] = (dual){p->number, 0.0};
+    } else if (operands == 0) {
+      stack[top++] = read_column(p->column, signals, in, t);
+    } else if (operands == 1) {
+      stack[top - 1] = apply(p->operation, stack[top - 1]);
+    } else {
+      top--;
+      stack[top - 1] = combine(p->operation, stack[top - 1], stack[top]);
+    }
+  }
+  assert(top == 1);
+  *value = stack[0].value, *rate = stack[0].rate;
+}
+
+/* How a dependence reaches a signal: at once, or through an integral, whose rate it is. */
+typedef enum passage { DIRECT, INTEGRATED } passage;
+
+static void describe_signal(const strut_scene *scene, int32_t index, passage through,
+                            strut_signal_traits *traits);
+
+static void describe_sensor(const strut_scene *scene, int32_t index, bool rate, passage through,
+                            strut_signal_traits *traits) {
+  const strut_sensor *s = &scene->sensors[index];
+  traits->follows = true;
+  if (through == DIRECT) {
+    if (rate || !strut_sensor_has_rate(s->kind)) traits->sensor = index;
+  } else if (s->kind == STRUT_SENSOR_FORCE && scene->members[s->item].damping > 0.0) {
+    traits->damped = index;
+  }
+}
+
+static void describe_program(const strut_scene *scene, const strut_program *program,
+                             passage through, strut_signal_traits *traits) {
+  for (size_t i = 0; i < program->length; i++) {
+    const strut_instruction *p = &program->instruction[i];
+    if (p->operation != STRUT_OPERATION_COLUMN) continue;
+    strut_column_kind kind = p->column.kind;
+    if (kind == STRUT_COLUMN_SIGNAL) describe_signal(scene, p->column.item, through, traits);
+    if (kind == STRUT_COLUMN_SENSOR || kind == STRUT_COLUMN_SENSOR_RATE)
+      describe_sensor(scene, p->column.item, kind == STRUT_COLUMN_SENSOR_RATE, through, traits);
+    if (kind != STRUT_COLUMN_STATE) continue;
+    traits->follows = true;
+    if (through == DIRECT)
+      describe_program(scene, &scene->states[p->column.item].rate, INTEGRATED, traits);
+  }
+}
+
+static void describe_signal(const strut_scene *scene, int32_t index, passage through,
+                            strut_signal_traits *traits) {
+  const strut_signal *s = &scene->signals[index];
+  if (s->every > 0.0 || s->lag > 0.0 || s->trigger.kind != STRUT_TRIGGER_NONE)
+    traits->follows = true;
+  if (s->every > 0.0 || (s->lag > 0.0 && through == INTEGRATED)) return;
+  if (s->lag > 0.0) through = INTEGRATED;
+  for (size_t i = 0; s->kind == STRUT_SUM && i < s->term_count; i++)
+    describe_signal(scene, s->terms[i], through, traits);
+  if (s->kind == STRUT_EXPRESSION) describe_program(scene, &s->program, through, traits);
+}
+
+strut_signal_traits strut_signal_describe(const strut_scene *scene, int32_t index) {
+  strut_signal_traits traits = {.sensor = -1, .damped = -1};
+  describe_signal(scene, index, DIRECT, &traits);
+  return traits;
+}

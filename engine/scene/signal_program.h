@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Feedback: sensors, and programs that compute signals from the time, sensors and other signals.
+ *
+ * A program is in postfix order for a stack of numbers, as that of a measured quantity (quantity.h).
+ * The parser compiles it, with names resolved and dimensions checked. Its columns are TIME, SENSOR,
+ * SENSOR_RATE, SIGNAL and STATE; each number has a value and a rate, so that the rate of the result is
+ * known exactly.
+ */
+#ifndef STRUT_ENGINE_SCENE_SIGNAL_PROGRAM_H
+#define STRUT_ENGINE_SCENE_SIGNAL_PROGRAM_H
+
+#include <stdbool.h>
+
+#include "engine/scene/quantity.h"
+#include "engine/scene/signal.h"
+
+/** Most numbers on the stack of a program. */
+enum { STRUT_MOST_PROGRAM_DEPTH = 64 };
+
+typedef enum strut_sensor_kind {
+  STRUT_SENSOR_LENGTH,   /* of a member [m] */
+  STRUT_SENSOR_FORCE,    /* of a member, tension positive [N] */
+  STRUT_SENSOR_ANGLE,    /* of a hinge [rad] */
+  STRUT_SENSOR_CONTACT,  /* 1 while a node touches the ground, else 0 */
+  STRUT_SENSOR_POSITION, /* of a node, along x or y [m] */
+  STRUT_SENSOR_VELOCITY, /* likewise [m/s] */
+  STRUT_SENSOR_ENERGY,   /* of the structure [J] */
+  STRUT_SENSOR_KINDS
+} strut_sensor_kind;
+
+typedef enum strut_sensed_energy {
+  STRUT_SENSED_KINETIC,
+  STRUT_SENSED_ELASTIC,
+  STRUT_SENSED_TOTAL
+} strut_sensed_energy;
+
+/** A number that signals may follow. */
+typedef struct strut_sensor {
+  const char *name;
+  strut_sensor_kind kind;
+  int32_t item;    /* member, hinge or node */
+  uint32_t along;  /* of POSITION and VELOCITY: 0 x, 1 y */
+  uint32_t energy; /* of ENERGY: strut_sensed_energy */
+} strut_sensor;
+
+/** A number that the run integrates beside the motion: z(0) = start, dz/dt = rate. */
+typedef struct strut_internal_state {
+  const char *name;
+  double start;
+  const char *unit; /* of start, such as "rad"; NULL: none */
+  strut_program rate;
+} strut_internal_state;
+
+/** What signals are computed from, beside the time. */
+typedef struct strut_signal_inputs {
+  const double *sensor, *sensor_rate; /* (sensors) values in SI units, and their rates */
+  const double *state;                /* internal states, then those of signals with a lag */
+  const strut_internal_state *states;
+  const int32_t *lag_of; /* (signals) the state that is the signal's lagged value, or -1 */
+  const double *held;    /* (signals) values of sampled signals since the latest sample */
+  const double *started; /* (signals) when those with a trigger started [s]; INFINITY: not yet */
+  bool values_only;      /* rates are not wanted */
+} strut_signal_inputs;
+
+/** True where the rate of a sensor follows from positions and velocities alone. */
+static inline bool strut_sensor_has_rate(strut_sensor_kind kind) {
+  return kind == STRUT_SENSOR_LENGTH || kind == STRUT_SENSOR_ANGLE || kind == STRUT_SENSOR_POSITION;
+}
+
+/** True where a sensor needs the driven rest lengths. */
+static inline bool strut_sensor_needs_drives(strut_sensor_kind kind) {
+  return kind == STRUT_SENSOR_FORCE || kind == STRUT_SENSOR_ENERGY;
+}
+
+/** Operands of an operation. */
+STRUT_API int strut_operation_operands(strut_operation operation);
+
+/**
+ * Value and rate of signal `index` at time t [s], as strut_signal_evaluate; `in` (NULL: there are
+ * none, and what follows a sensor is NAN) are the inputs of signals that follow the motion.
+ */
+STRUT_API void strut_signal_follow(const strut_signal *signals, const strut_signal_inputs *in,
+                                   int32_t index, double t, double *value, double *rate);
+
+/** The same before it is sampled, and before its lag. */
+STRUT_API void strut_signal_follow_unsampled(const strut_signal *signals,
+                                             const strut_signal_inputs *in, int32_t index, double t,
+                                             double *value, double *rate);
+STRUT_API void strut_signal_follow_unlagged(const strut_signal *signals,
+                                            const strut_signal_inputs *in, int32_t index, double t,
+                                            double *value, double *rate);
+
+/** Value and rate of a program whose signals are among `signals`. */
+STRUT_API void strut_program_evaluate(const strut_program *program, const strut_signal *signals,
+                                      const strut_signal_inputs *in, double t, double *value,
+                                      double *rate);
+
+/** What a signal depends on. */
+typedef struct strut_signal_traits {
+  bool follows;   /* sensors, internal states or its own history */
+  int32_t sensor; /* one whose rate is not known, and with it that of the signal; or -1 */
+  int32_t
+      damped; /* one of the force of a member with a damper, which the signal's rate follows; or -1 */
+} strut_signal_traits;
+struct strut_scene;
+/** Of signal `index` of a valid scene. */
+STRUT_API strut_signal_traits strut_signal_describe(const struct strut_scene *scene, int32_t index);
+
+#endif

@@ -1,0 +1,343 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sensors, and signals as expressions of the time, sensors and other signals. See reader.h. */
+#include <stdio.h>
+#include <string.h>
+
+#include "parser/read/reader.h"
+
+const char *strut_sensor_name(const void *context, size_t i) {
+  const strut_reader *reader = context;
+  return i < reader->scene->sensor_count ? reader->scene->sensors[i].name : NULL;
+}
+
+strut_dimension strut_sensor_dimension(strut_sensor_kind kind) {
+  switch (kind) {
+    case STRUT_SENSOR_LENGTH:
+    case STRUT_SENSOR_POSITION: return STRUT_DIM_LENGTH;
+    case STRUT_SENSOR_FORCE: return STRUT_DIM_FORCE;
+    case STRUT_SENSOR_ANGLE: return STRUT_DIM_ANGLE;
+    case STRUT_SENSOR_VELOCITY: return STRUT_DIM_VELOCITY;
+    case STRUT_SENSOR_ENERGY: return STRUT_DIM_MOMENT; /* N m */
+    case STRUT_SENSOR_CONTACT:
+    case STRUT_SENSOR_KINDS: break;
+  }
+  return STRUT_DIM_NONE;
+}
+
+bool strut_check_variable_name(strut_reader *reader, const strut_tree *key, const char *kind) {
+  const char *name = key->text;
+  size_t length = strlen(name), word = 0;
+  if (!strut_read_name(reader, key, kind)) return false;
+  while (name[word] == '_' || (name[word] >= 'a' && name[word] <= 'z') ||
+         (name[word] >= 'A' && name[word] <= 'Z') ||
+         (word && name[word] >= '0' && name[word] <= '9'))
+    word++;
+  bool sensor = strcmp(kind, "sensor") == 0, signal = strcmp(kind, "controller") == 0;
+  const char *other = strcmp(name, "t") == 0 || strcmp(name, "time") == 0 ? "the time"
+                      : strut_expression_reserved(name, length) ? "a function or a constant"
+                      : strut_parameter_find(reader, name)      ? "a parameter"
+                      : !signal && strut_name_map_find(&reader->signal_names, name) >= 0
+                          ? "a signal"
+                      : sensor && strut_name_map_find(&reader->state_names, name) >= 0 ? "a state"
+                                                                                       : NULL;
+  if (word != length)
+    strut_report_error(reader, key->place,
+                       "'%s' cannot be the name of a %s, since expressions could not read it; "
+                       "use letters, digits and '_', and begin with a letter",
+                       strut_sanitised_text(reader, name), kind);
+  else if (other)
+    strut_report_error(reader, key->place,
+                       "%s %s cannot be called '%s', which means %s in expressions",
+                       strcmp(kind, "oscillator") == 0 ? "an" : "a", kind, name, other);
+  else
+    return true;
+  return false;
+}
+
+static int32_t read_item(strut_reader *reader, const strut_slot *slot, int key, strut_owner owner) {
+  const char *name = strut_key_at(key)->name;
+  const strut_scene *scene = reader->scene;
+  if (key == STRUT_KEY_SENSOR_LENGTH || key == STRUT_KEY_SENSOR_FORCE)
+    return strut_read_reference(reader, slot->value, name, owner, "member", &reader->member_names,
+                                strut_member_name, scene->member_count);
+  if (key == STRUT_KEY_SENSOR_ANGLE)
+    return strut_read_reference(reader, slot->value, name, owner, "hinge", &reader->hinge_names,
+                                strut_hinge_name, scene->hinge_count);
+  return strut_read_reference(reader, slot->value, name, owner, "node", &reader->node_names,
+                              strut_node_name, scene->node_count);
+}
+
+static bool read_sensor(strut_reader *reader, const strut_tree *key, strut_sensor *sensor) {
+  strut_owner owner = {"sensor", key->text};
+  bool fine = strut_check_variable_name(reader, key, "sensor"), known = false;
+  strut_fields fields;
+  strut_read_fields(reader, STRUT_SECTION_SENSOR, key->next, owner, &fields);
+  if (fields.broken || !fields.map) return false;
+  strut_store_fields(reader, &fields, &reader->scene->arena, sensor, sizeof *sensor);
+  for (int k = 0; k < STRUT_SENSOR_KINDS; k++) {
+    const strut_slot *slot = strut_slot_of(&fields, STRUT_KEY_SENSOR_LENGTH + k);
+    if (slot->state != STRUT_GIVEN) continue;
+    known = true;
+    sensor->kind = (strut_sensor_kind)k;
+    if (k == STRUT_SENSOR_ENERGY) continue;
+    sensor->item = read_item(reader, slot, STRUT_KEY_SENSOR_LENGTH + k, owner);
+    if (sensor->item < 0) fine = false;
+  }
+  const strut_slot *along = strut_slot_of(&fields, STRUT_KEY_SENSOR_ALONG);
+  bool directed = sensor->kind == STRUT_SENSOR_POSITION || sensor->kind == STRUT_SENSOR_VELOCITY;
+  if (!known)
+    strut_report_error(reader, key->place,
+                       "sensor '%s' senses nothing; write one of length, force, angle, contact, "
+                       "position, velocity and energy, such as {length: MEMBER}",
+                       key->text);
+  else if (directed && along->state == STRUT_ABSENT)
+    strut_report_error(reader, key->place, "sensor '%s' needs 'along': x or y", key->text);
+  else if (!directed && along->state != STRUT_ABSENT)
+    strut_report_error(reader, along->key->place,
+                       "sensor '%s' has 'along', which belongs to a position or a velocity",
+                       key->text);
+  else
+    return fine;
+  return false;
+}
+
+void strut_read_sensors(strut_reader *reader) {
+  strut_scene *scene = reader->scene;
+  const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_SENSORS);
+  if (!map) return;
+  scene->sensors = strut_reader_allocate(reader, &scene->arena, map->count, sizeof *scene->sensors);
+  reader->sensor_source =
+      strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->sensor_source);
+  if (!scene->sensors || !reader->sensor_source) return;
+  for (const strut_tree *key = map->first; key; key = key->next->next) {
+    size_t i = strut_next_entry(reader, &scene->sensor_count);
+    scene->sensors[i] = (strut_sensor){.name = strut_keep_text(reader, key->text), .item = -1};
+    strut_add_name(reader, &reader->sensor_names, scene->sensors[i].name, i);
+    bool fine = read_sensor(reader, key, &scene->sensors[i]);
+    reader->sensor_source[i] = (strut_source){key, key->next, !fine};
+  }
+}
+
+/* ---- expressions ---- */
+
+bool strut_find_sensed(strut_reader *reader, const char *name, strut_column *column,
+                       strut_dimension *dimension) {
+  int32_t sensor = strut_name_map_find(&reader->sensor_names, name);
+  int32_t state = strut_name_map_find(&reader->state_names, name);
+  if (state >= 0) {
+    column->kind = STRUT_COLUMN_STATE, column->item = state;
+    *dimension = reader->state_dimension[state];
+    return true;
+  }
+  if (sensor < 0) return false;
+  column->kind = STRUT_COLUMN_SENSOR, column->item = sensor;
+  *dimension = strut_sensor_dimension(reader->scene->sensors[sensor].kind);
+  return true;
+}
+
+int strut_find_sensor_rate(strut_reader *reader, strut_piece piece, strut_column *column,
+                           strut_dimension *dimension, strut_refusal *refusal) {
+  const char *name = strut_arena_text(&reader->scratch, piece.text, piece.length);
+  int32_t i = name ? strut_name_map_find(&reader->sensor_names, name) : -1;
+  if (i >= 0 && strut_sensor_has_rate(reader->scene->sensors[i].kind)) {
+    column->kind = STRUT_COLUMN_SENSOR_RATE, column->item = i;
+    *dimension = strut_sensor_dimension(reader->scene->sensors[i].kind);
+    dimension->s -= 1.0f;
+    return 1;
+  }
+  if (i >= 0)
+    snprintf(refusal->text, sizeof refusal->text,
+             "the rate of sensor '%s' is not known, only those of lengths, angles and positions",
+             name);
+  else
+    snprintf(refusal->text, sizeof refusal->text, "unknown sensor '%.*s'%s",
+             piece.length > 40 ? 40 : (int)piece.length, piece.text,
+             name ? strut_hint(reader, name, strut_sensor_name, reader, reader->scene->sensor_count)
+                  : "");
+  return -1;
+}
+
+/* A word of an expression that is no parameter. */
+static int find_word(strut_reader *reader, strut_piece word, strut_column *column,
+                     strut_dimension *dimension, strut_refusal *refusal) {
+  const char *name = strut_arena_text(&reader->scratch, word.text, word.length);
+  if (!name) reader->out_of_memory = true;
+  if (!name) return -1;
+  if (strcmp(name, "t") == 0 || strcmp(name, "time") == 0) {
+    column->kind = STRUT_COLUMN_TIME;
+    *dimension = STRUT_DIM_TIME;
+    return 1;
+  }
+  if (strut_find_sensed(reader, name, column, dimension)) return 1;
+  if (strut_name_map_find(&reader->signal_names, name) >= 0) {
+    column->kind = STRUT_COLUMN_SIGNAL;
+    column->item = strut_use_signal(reader, name, dimension);
+    return column->item >= 0 ? 1 : -1;
+  }
+  size_t count = reader->scene->sensor_count;
+  const char *hint = strut_hint(reader, name, strut_sensor_name, reader, count);
+  if (strut_slot_of(&reader->top, STRUT_KEY_SCENE_SENSORS)->state == STRUT_BROKEN) return -1;
+  if (!*hint) return 0;
+  snprintf(refusal->text, sizeof refusal->text, "unknown sensor '%.*s'%s", (int)word.length,
+           word.text, hint);
+  return -1;
+}
+
+static int find_column(void *context, const char *kind, strut_piece owner, strut_piece field,
+                       strut_column *column, strut_dimension *dimension, strut_refusal *refusal) {
+  if (!owner.length && !kind) return find_word(context, field, column, dimension, refusal);
+  if (kind && strcmp(kind, "rate") == 0)
+    return strut_find_sensor_rate(context, owner, column, dimension, refusal);
+  snprintf(
+      refusal->text, sizeof refusal->text,
+      "a signal reads the motion by sensors: write sensors: {NAME: {length: MEMBER}}, and NAME "
+      "here");
+  return -1;
+}
+
+static int find_pair(void *context, strut_piece word, strut_piece first, strut_piece second,
+                     strut_column *column, strut_dimension *dimension, strut_refusal *refusal) {
+  (void)word, (void)first, (void)second;
+  return find_column(context, "node", word, first, column, dimension, refusal);
+}
+
+/* Behind a number, t is the time rather than a tonne: 10 Hz*t. */
+static int claims_word(void *context, strut_piece word) {
+  strut_reader *reader = context;
+  if (word.length == 1 && *word.text == 't') return 1;
+  const char *name = strut_arena_text(&reader->scratch, word.text, word.length);
+  if (!name) reader->out_of_memory = true;
+  return name && strut_name_map_find(&reader->sensor_names, name) >= 0 ? -1 : 0;
+}
+
+bool strut_read_signal_program(strut_reader *reader, const strut_tree *value, const char *key,
+                               strut_owner owner, strut_program *program, strut_quantity *q) {
+  strut_compiler compiler = {
+      .column = find_column, .pair = find_pair, .context = reader, .claims = claims_word};
+  if (strut_ends_at_comma(reader, value, key, owner)) return false;
+  compiler.program = strut_reader_allocate(reader, &reader->scratch, strlen(value->text) + 1,
+                                           sizeof *compiler.program);
+  if (!compiler.program) return false;
+  if (!strut_read_program(reader, value, key, owner, &compiler, q)) {
+    reader->failed = true;
+    return false;
+  }
+  program->instruction = strut_keep_program(reader, &compiler);
+  program->length = compiler.length;
+  program->depth = compiler.depth;
+  return program->instruction != NULL;
+}
+
+/* ---- internal states ---- */
+
+int32_t strut_add_state(strut_reader *reader, const strut_tree *key, const char *name,
+                        strut_dimension dimension, double start) {
+  strut_scene *scene = reader->scene;
+  char unit[STRUT_SUFFIX_TEXT];
+  size_t i = strut_next_entry(reader, &scene->state_count);
+  strut_dimension_suffix(dimension, unit, sizeof unit);
+  scene->states[i] = (strut_internal_state){.name = strut_keep_text(reader, name),
+                                            .start = start,
+                                            .unit = *unit ? strut_keep_text(reader, unit) : NULL};
+  strut_add_name(reader, &reader->state_names, scene->states[i].name, i);
+  reader->state_dimension[i] = dimension;
+  reader->state_source[i] = (strut_source){key, key->next, false};
+  return (int32_t)i;
+}
+
+static size_t entries_of(strut_reader *reader, int key) {
+  const strut_slot *slot = strut_slot_of(&reader->top, key);
+  return slot->state == STRUT_GIVEN ? slot->value->count : 0;
+}
+
+/* The value at t = 0, whose unit is that of the state. */
+static void list_state(strut_reader *reader, const strut_tree *key) {
+  strut_owner owner = {"state", key->text};
+  strut_fields fields;
+  strut_quantity q = {.bare = true};
+  bool fine = strut_check_variable_name(reader, key, "state");
+  strut_read_fields(reader, STRUT_SECTION_STATE, key->next, owner, &fields);
+  strut_require(reader, &fields, owner, key->place);
+  const strut_slot *start = strut_slot_of(&fields, STRUT_KEY_STATE_START);
+  if (fields.broken || start->state != STRUT_GIVEN)
+    fine = false;
+  else if (!strut_read_scalar(reader, start->value, "start", owner, "a number such as '0 rad'") ||
+           !strut_read_quantity(reader, start->value, "start", owner, &q))
+    fine = false;
+  int32_t i =
+      strut_add_state(reader, key, key->text, q.bare ? STRUT_DIM_NONE : q.dimension, q.value);
+  reader->state_source[i].broken = !fine;
+}
+
+/* An oscillator's phase at t = 0. */
+static void list_oscillator(strut_reader *reader, const strut_tree *key) {
+  strut_owner owner = {"oscillator", key->text};
+  strut_fields fields;
+  double phase = 0.0;
+  bool fine = strut_check_variable_name(reader, key, "oscillator");
+  strut_read_fields(reader, STRUT_SECTION_OSCILLATOR, key->next, owner, &fields);
+  strut_require(reader, &fields, owner, key->place);
+  const strut_slot *slot = strut_slot_of(&fields, STRUT_KEY_OSCILLATOR_PHASE);
+  if (fields.broken) fine = false;
+  if (slot->state == STRUT_GIVEN && !fields.broken) phase = slot->number[0];
+  int32_t i = strut_add_state(reader, key, key->text, STRUT_DIM_ANGLE, phase);
+  reader->state_source[i].broken = !fine;
+}
+
+void strut_list_states(strut_reader *reader) {
+  strut_scene *scene = reader->scene;
+  const strut_tree *states = strut_entries(reader, STRUT_KEY_SCENE_STATES);
+  const strut_tree *oscillators = strut_entries(reader, STRUT_KEY_SCENE_OSCILLATORS);
+  size_t most = entries_of(reader, STRUT_KEY_SCENE_STATES) +
+                entries_of(reader, STRUT_KEY_SCENE_OSCILLATORS) +
+                entries_of(reader, STRUT_KEY_SCENE_CONTROLLERS) + 1;
+  strut_arena *scratch = &reader->scratch;
+  scene->states = strut_reader_allocate(reader, &scene->arena, most, sizeof *scene->states);
+  reader->state_source = strut_reader_allocate(reader, scratch, most, sizeof *reader->state_source);
+  reader->state_dimension =
+      strut_reader_allocate(reader, scratch, most, sizeof *reader->state_dimension);
+  if (!scene->states || !reader->state_source || !reader->state_dimension) return;
+  for (const strut_tree *key = states ? states->first : NULL; key; key = key->next->next)
+    list_state(reader, key);
+  for (const strut_tree *key = oscillators ? oscillators->first : NULL; key; key = key->next->next)
+    list_oscillator(reader, key);
+}
+
+/* The rate of a state must have its unit per second; of an angle, an angle may be left out. */
+static bool check_rate(strut_reader *reader, const strut_tree *value, strut_owner owner,
+                       const char *key, strut_dimension wanted, const strut_quantity *q) {
+  char expected[80], found[80];
+  wanted.s -= 1.0f;
+  strut_dimension plain = wanted;
+  plain.angle -= 1.0f;
+  bool angle = wanted.angle != 0.0f && strut_dimension_equal(q->dimension, plain);
+  if (q->bare || angle || strut_dimension_equal(q->dimension, wanted)) return true;
+  strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s",
+                     strut_dimension_name(wanted, expected, sizeof expected), key,
+                     strut_owner_text(reader, owner),
+                     strut_dimension_name(q->dimension, found, sizeof found));
+  return false;
+}
+
+void strut_read_states(strut_reader *reader) {
+  const strut_tree *states = strut_entries(reader, STRUT_KEY_SCENE_STATES);
+  const strut_tree *oscillators = strut_entries(reader, STRUT_KEY_SCENE_OSCILLATORS);
+  strut_quantity q;
+  for (const strut_tree *key = states ? states->first : NULL; key; key = key->next->next) {
+    strut_owner owner = {"state", key->text};
+    int32_t i = strut_name_map_find(&reader->state_names, key->text);
+    const strut_tree *rate =
+        key->next->kind == STRUT_TREE_MAP ? strut_tree_find(key->next, "rate", NULL) : NULL;
+    if (i < 0 || reader->state_source[i].broken || !rate) continue;
+    bool fine = strut_read_signal_program(reader, rate, "rate", owner,
+                                          &reader->scene->states[i].rate, &q) &&
+                check_rate(reader, rate, owner, "rate", reader->state_dimension[i], &q);
+    reader->state_source[i].broken = !fine;
+  }
+  for (const strut_tree *key = oscillators ? oscillators->first : NULL; key;
+       key = key->next->next) {
+    int32_t i = strut_name_map_find(&reader->state_names, key->text);
+    if (i < 0 || reader->state_source[i].broken) continue;
+    reader->state_source[i].broken = !strut_read_oscillator(reader, key, i);
+  }
+}

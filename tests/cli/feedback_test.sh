@@ -1,0 +1,538 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Sensors and signals that follow them, against closed forms.
+. "$(dirname "$0")/lib.sh"
+
+# near FILTER EXPECTED TOLERANCE: the JSON in out through jq, and a number that jq computes.
+near() {
+  jq -e "($1) as \$got | ($2) as \$want | (\$got - \$want | fabs) <= $3" out >jq.out 2>&1 ||
+    fail "$1 is $(jq -c "$1" out 2>&1), expected $(jq -n "$2") within $3"
+}
+
+# A mass under PD control, -k (x - 1 m) - c v by a load: the damped oscillator with the poles
+# -c/2m +- i sqrt(k/m - (c/2m)^2), by every method at its order.
+cat >pd.yaml <<'END'
+strut: 1
+parameters: {k: 40 N/m, c: 0.8 N s/m}
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0], fixed: y, mass: 2 kg}
+members:
+  m: {nodes: [a, b], kind: spring, stiffness: 1e-12}
+sensors:
+  x: {position: b, along: x}
+  v: {velocity: b, along: x}
+loads:
+  pd: {node: b, force: [1 N, 0], signal: {expression: "-(k*(x - 1 m) + c*v)/(1 N)"}}
+initial: {velocities: {b: [1, 0]}}
+solver: {integrator: rk4, step: 1 ms}
+run: {duration: 2 s, measure: {quantities: {x: {of: x - 1 m, take: final}, v: {of: v, take: final}}}}
+END
+poles='(0.2) as $a | (20 - 0.04 | sqrt) as $w | '
+while read -r method tolerance; do
+  sed "s/integrator: rk4/integrator: $method/" pd.yaml >run.yaml
+  expect 0 run run.yaml --json
+  near '.measured.x.value' "$poles"'(-2*$a | exp) * (2*$w | sin) / $w' "$tolerance"
+  near '.measured.v.value' "$poles"'(-2*$a | exp) * ((2*$w | cos) - $a/$w * (2*$w | sin))' "$tolerance"
+  near '.energy.residual' 0 "$tolerance"
+done <<'END'
+rk4 1e-11
+rk4-events 1e-11
+adaptive 1e-8
+verlet 1e-5
+verlet-events 1e-5
+midpoint 2e-5
+euler 2e-2
+euler-events 2e-2
+END
+
+# A rest length that follows its own member's length: k (1 + g) and c (1 + g), since the damper feels
+# the rate that is derived from the expression. The energy balance closes with the drive's work.
+cat >length.yaml <<'END'
+strut: 1
+parameters: {k: 40 N/m, c: 0.8 N s/m, g: 0.75}
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0], fixed: y, mass: 2 kg}
+members:
+  m: {nodes: [a, b], kind: spring, stiffness: k, damping: c}
+sensors:
+  l: {length: m}
+signals:
+  error: {expression: "1 m - l"}
+actuators:
+  pd: {member: m, signal: {expression: g*error}}
+initial: {velocities: {b: [1, 0]}}
+solver: {integrator: rk4, step: 1 ms}
+run:
+  duration: 2 s
+  measure:
+    quantities: {x: {of: l - 1 m, take: final}, e: {of: error, take: final}}
+END
+poles='(0.35) as $a | (35 - 0.1225 | sqrt) as $w | '
+while read -r method tolerance; do
+  sed "s/integrator: rk4/integrator: $method/" length.yaml >run.yaml
+  expect 0 run run.yaml --json
+  near '.measured.x.value' "$poles"'(-2*$a | exp) * (2*$w | sin) / $w' "$tolerance"
+  near '.measured.e.value' "$poles"'-(-2*$a | exp) * (2*$w | sin) / $w' "$tolerance"
+  near '.energy.residual' 0 "$tolerance"
+done <<'END'
+rk4 1e-10
+rk4-events 1e-10
+adaptive 1e-8
+verlet 4e-5
+verlet-events 4e-5
+midpoint 4e-5
+euler 2e-2
+euler-events 2e-2
+END
+
+# The same poles from an actuator that gives a force, by the length and its rate.
+cat >force.yaml <<'END'
+strut: 1
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0], fixed: y, mass: 2 kg}
+members:
+  m: {nodes: [a, b], kind: spring, stiffness: 1e-12}
+sensors:
+  l: {length: m}
+actuators:
+  pd: {member: m, force: {expression: "70 N/m*(l - 1 m) + 1.4 N s/m*rate(l)"}}
+initial: {velocities: {b: [1, 0]}}
+solver: {integrator: rk4, step: 1 ms}
+run: {duration: 2 s, measure: {quantities: {x: {of: l - 1 m, take: final}}}}
+END
+while read -r method tolerance; do
+  sed "s/integrator: rk4/integrator: $method/" force.yaml >run.yaml
+  expect 0 run run.yaml --json
+  near '.measured.x.value' "$poles"'(-2*$a | exp) * (2*$w | sin) / $w' "$tolerance"
+  near '.energy.residual' 0 "$tolerance"
+done <<'END'
+rk4 1e-10
+rk4-events 1e-10
+adaptive 1e-8
+verlet 4e-5
+midpoint 4e-5
+euler 2e-2
+END
+
+# Every function in an expression has its derivative: a driven length whose value is that of a sine
+# moves its mass as the sine does, through the damper alone.
+cat >functions.yaml <<'END'
+strut: 1
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0], fixed: y, mass: 2 kg}
+members:
+  m: {nodes: [a, b], kind: spring, damping: 3}
+actuators:
+  d:
+    member: m
+    signal: {sine: {amplitude: 0.3 m, frequency: 1 Hz}}
+solver: {integrator: rk4, step: 2 ms}
+run: {duration: 0.7 s, measure: {quantities: {x: {of: b.x, take: final}}}}
+END
+expect 0 run functions.yaml --json
+want=$(jq .measured.x.value out)
+while read -r expression; do
+  sed "s|signal: .*|signal: {expression: \"$expression\"}|" functions.yaml >run.yaml
+  expect 0 run run.yaml --json
+  near '.measured.x.value' "$want" 1e-8
+done <<'END'
+0.3 m*sin(2*pi*1 Hz*t)
+0.3 m*cos(360 deg*1 Hz*t - 90 deg)
+-(0.3 m)*(-sin(360 deg*t/(1 s)))
+0.15*(3 m - 1 m)*sin(2*pi*1 Hz*t)^1
+0.3 m*tan(2*pi*1 Hz*t)*cos(2*pi*1 Hz*t)
+0.3 m*exp(log(5 + sin(2*pi*1 Hz*t))) - 1.5 m
+0.3 m*10^(log10(5 + sin(2*pi*1 Hz*t))) - 1.5 m
+0.3 m*sqrt((2 + sin(2*pi*1 Hz*t))^2) - 0.6 m
+0.3 m*hypot(sin(2*pi*1 Hz*t) + 2, 0) - 0.6 m
+0.3 m*asin(0.5*sin(2*pi*1 Hz*t))/(1 rad)*0 + 0.3 m*sin(asin(0.5*sin(2*pi*1 Hz*t)))*2
+0.3 m*cos(acos(0.5*sin(2*pi*1 Hz*t)))*2
+0.3 m*tan(atan(sin(2*pi*1 Hz*t)))
+0.3 m*tan(atan2(sin(2*pi*1 Hz*t), 1))
+max(0.3 m*sin(2*pi*1 Hz*t), -1 m) + min(0 m, abs(1 m)) + floor(0.5)*1 m
+END
+
+# Sensors of a hinge and a contact, and energies as drives of loads: all methods say the same.
+cat >all.yaml <<'END'
+strut: 1
+gravity: [0, -9.81]
+nodes:
+  a: {position: [0, 0.5], fixed: both}
+  b: {position: [0.3, 0.5], mass: 0.2}
+  c: {position: [0.6, 0.4], mass: 0.2}
+members:
+  ab: {nodes: [a, b], kind: spring, stiffness: 900, damping: 2}
+  bc: {nodes: [b, c], kind: spring, stiffness: 900, damping: 2}
+hinges:
+  h: {nodes: [a, b, c], stiffness: 1, damping: 0.01}
+ground: {stiffness: 1e4, damping: 5, nodes: [c]}
+sensors:
+  touch: {contact: c}
+  angle: {angle: h}
+  tension: {force: ab}
+  kinetic: {energy: kinetic}
+  elastic: {energy: elastic}
+  total: {energy: total}
+actuators:
+  bend: {hinge: h, signal: {expression: "0.2*(angle - 180 deg)"}}
+loads:
+  lift: {node: c, force: [0, 1 N], signal: {expression: 2*touch + tension/(10 N)}}
+  push: {node: b, force: [1 N, 0], signal: {expression: (kinetic + elastic - total)/(1 J)}}
+solver: {integrator: rk4-events, step: 0.25 ms}
+run: {duration: 0.5 s, measure: {quantities: {y: {of: b.y, take: final}}}}
+END
+expect 0 run all.yaml --json
+want=$(jq .measured.y.value out)
+near '.energy.residual' 0 1e-6
+for method in adaptive verlet-events rk4; do
+  sed "s/integrator: rk4-events/integrator: $method/" all.yaml >run.yaml
+  expect 0 run run.yaml --json
+  near '.measured.y.value' "$want" 2e-4
+done
+
+# A lag of a constant that begins at 0: 1 - e^{-t/tau}, by every method at its order.
+cat >lag.yaml <<'END'
+strut: 1
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0], fixed: both, mass: 2 kg}
+members:
+  m: {nodes: [a, b], kind: spring, stiffness: 40, damping: 0.3}
+signals: {slow: {constant: 10 mm, lag: 0.5 s}}
+actuators: {d: {member: m, signal: slow}}
+solver: {integrator: rk4, step: 10 ms}
+run: {duration: 1 s, measure: {quantities: {z: {of: slow, take: final}, f: {of: m.force, take: final}}}}
+END
+while read -r method tolerance; do
+  sed "s/integrator: rk4/integrator: $method/" lag.yaml >run.yaml
+  expect 0 run run.yaml --json
+  near '.measured.z.value' '0.01 * (1 - (-2 | exp))' "$tolerance"
+  near '.measured.f.value' '-40 * 0.01 * (1 - (-2 | exp)) - 0.3 * 0.02 * (-2 | exp)' \
+    "(40 * $tolerance)"
+  near '.energy.residual' 0 "$tolerance"
+done <<'END'
+rk4 1e-10
+rk4-events 1e-10
+adaptive 1e-10
+verlet 1e-6
+verlet-events 1e-6
+midpoint 1e-6
+euler 1e-4
+euler-events 1e-4
+END
+
+# Two oscillators lock where their frequencies differ by less than twice the coupling, with the phase
+# difference arcsin(dw / 2K); else they drift apart at sqrt(dw^2 - 4 K^2) on average.
+cat >oscillators.yaml <<'END'
+strut: 1
+parameters: {df: 0.4 Hz}
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0], fixed: y, mass: 2 kg}
+members:
+  m: {nodes: [a, b], kind: spring, stiffness: 40, damping: 0.3}
+oscillators:
+  o1: {frequency: 1 Hz, coupling: {o2: 2 rad/s}}
+  o2: {frequency: 1 Hz + df, phase: 20 deg, coupling: {o1: 2 rad/s}}
+actuators:
+  d: {member: m, signal: {expression: 10 mm*sin(o1)}}
+solver: {integrator: rk4, step: 5 ms}
+run:
+  duration: 100 s
+  measure:
+    quantities: {lag: {of: o2 - o1, take: final}, drift: {of: o2 - o1, take: rate}, x: {of: b.x - 1 m, take: final}}
+END
+for method in rk4 verlet euler midpoint rk4-events adaptive; do
+  sed "s/integrator: rk4/integrator: $method/" oscillators.yaml >run.yaml
+  expect 0 run run.yaml --json
+  near '.measured.lag.value' '0.4 * 6.283185307179586 / 4 | asin' 1e-8
+done
+expect 0 run oscillators.yaml --set 'df=1 Hz' --json
+near '.measured.drift.value' '6.283185307179586 * 6.283185307179586 - 16 | sqrt' 0.05
+sed 's/coupling: {o2: 2 rad\/s}/coupling: {o2: 2 rad\/s}, bias: 90 deg/; s/coupling: {o1: 2 rad\/s}/coupling: {o1: 2 rad\/s}, bias: -90 deg/' \
+  oscillators.yaml >run.yaml
+expect 0 run run.yaml --set 'df=0 Hz' --json
+near '.measured.lag.value' '1.5707963267948966' 1e-8
+sed 's/coupling: {o2: 2 rad\/s}/feedback: 0.5 rad\/s/; s/coupling: {o1: 2 rad\/s}/feedback: -0.5 rad\/s/' \
+  oscillators.yaml >run.yaml
+expect 0 run run.yaml --json
+near '.measured.drift.value' '0.4 * 6.283185307179586 - 1' 1e-8
+
+# Sampled P control of a damped mass by a load, x'' = -x' + u, u = -K x at the samples: with e = e^{-T}
+# stable below K = (1 - e) / (1 - e - T e), 4.362 for T = 0.5 s; each sample is that of the exact map.
+cat >sampled.yaml <<'END'
+strut: 1
+parameters: {K: 4.3}
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0], fixed: y, mass: 1 kg}
+members:
+  m: {nodes: [a, b], kind: spring, damping: 1}
+sensors: {x: {position: b, along: x}}
+loads:
+  p: {node: b, force: [1 N, 0], signal: {expression: -K*(x - 1 m)/(1 m), every: 500 ms}}
+initial: {velocities: {b: [1, 0]}}
+solver: {integrator: rk4, step: 10 ms}
+run:
+  duration: 100 s
+  measure:
+    last: 10 s
+    quantities: {x: {of: x - 1 m, take: final}, most: {of: abs(x - 1 m), take: max}}
+END
+map='(-0.5 | exp) as $e | reduce range(200) as $n ([0, 1];
+  (-$K * .[0]) as $u | [.[0] + (1 - $e) * .[1] + (0.5 - 1 + $e) * $u, $e * .[1] + (1 - $e) * $u]) | .[0]'
+for method in rk4 rk4-events adaptive; do
+  sed "s/integrator: rk4/integrator: $method/" sampled.yaml >run.yaml
+  for gain in 4.2 4.5; do
+    expect 0 run run.yaml --set "K=$gain" --json
+    near '.measured.x.value' "$gain as \$K | $map" 1e-5
+  done
+done
+for gain in 4.2 4.5; do
+  expect 0 run sampled.yaml --set "K=$gain" --json
+  jq -e ".measured.most.value | if $gain < 4.362 then . < 0.3 else . > 1.2 end" out >jq.out ||
+    fail "sampled control with a gain of $gain: $(jq -c .measured.most.value out)"
+done
+# Samples that a fixed step would miss are refused; a method with events stops at them.
+sed 's/every: 500 ms/every: 125 ms/' sampled.yaml >run.yaml
+expect 1 run run.yaml
+err_has 'is sampled every 0.125 s, which is no multiple of the step of 0.01 s that rk4 takes; choose a step of 0.00961538462 s, or a method with events'
+sed 's/integrator: rk4/integrator: rk4-events/' run.yaml >events.yaml
+expect 0 run events.yaml --set K=1 --json
+want=$(jq .measured.x.value out)
+sed 's/step: 10 ms/step: 12.5 ms/' run.yaml >fine.yaml
+expect 0 run fine.yaml --set K=1 --json
+near '.measured.x.value' "$want" 1e-9
+
+# A held rest length jumps at each sample; what that does to the elastic energy is work of the drive.
+cat >held.yaml <<'END'
+strut: 1
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0], fixed: y, mass: 1 kg}
+members:
+  m: {nodes: [a, b], kind: spring, stiffness: 40, damping: 1}
+sensors: {x: {position: b, along: x}}
+actuators:
+  d: {member: m, signal: {expression: -0.3*(x - 1 m), every: 100 ms}}
+initial: {velocities: {b: [1, 0]}}
+solver: {integrator: rk4, step: 1 ms}
+run: {duration: 2.05 s, measure: {quantities: {x: {of: x, take: final}}}}
+END
+expect 0 run held.yaml --json
+want=$(jq .measured.x.value out)
+while read -r method tolerance; do
+  sed "s/integrator: rk4/integrator: $method/" held.yaml >run.yaml
+  expect 0 run run.yaml --json
+  near '.energy.residual' 0 "$tolerance"
+  near '.measured.x.value' "$want" "$tolerance"
+done <<'END'
+rk4 1e-9
+rk4-events 1e-9
+adaptive 1e-9
+verlet 2e-5
+verlet-events 2e-5
+midpoint 2e-5
+euler 1e-2
+euler-events 1e-2
+END
+
+# A PI controller of a length against the poles of the loop: m x'' + c x' + k x = k u with
+# u = g e + i I, I' = e: in rest e = 0. And with limits it does not wind up.
+cat >pi.yaml <<'END'
+strut: 1
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0], fixed: y, mass: 2 kg}
+members:
+  m: {nodes: [a, b], kind: spring, stiffness: 40, damping: 4}
+sensors: {l: {length: m}}
+controllers:
+  c: {sensor: l, target: 1.1 m, gain: 0.5, integral: 1 Hz, most: 0.3 m, least: -0.3 m}
+actuators: {d: {member: m, signal: c}}
+solver: {integrator: rk4, step: 5 ms}
+run:
+  duration: 40 s
+  measure: {quantities: {x: {of: l, take: final}, i: {of: c_integral, take: final}, s: {of: c, take: max}}}
+END
+for method in rk4 midpoint rk4-events; do
+  sed "s/integrator: rk4/integrator: $method/" pi.yaml >run.yaml
+  expect 0 run run.yaml --json
+  near '.measured.x.value' 1.1 1e-9
+  near '.measured.i.value' 0.1 1e-9
+done
+expect 0 run pi.yaml --json
+near '.energy.residual' 0 1e-7
+sed 's/target: 1.1 m/target: 1.6 m/' pi.yaml >run.yaml
+expect 0 run run.yaml --json
+near '.measured.s.value' 0.3 1e-12
+near '.measured.x.value' 1.3 1e-6
+sed 's/most: 0.3 m, least: -0.3 m/every: 50 ms, derivative: 0.01 s/' pi.yaml >run.yaml
+expect 0 run run.yaml --json
+near '.measured.x.value' 1.1 1e-6
+
+# A state of one's own: van der Pol's oscillator, by all methods of high order alike.
+cat >state.yaml <<'END'
+strut: 1
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0], fixed: y, mass: 2 kg}
+members:
+  m: {nodes: [a, b], kind: spring, stiffness: 40, damping: 0.3}
+sensors: {f: {force: m}}
+states:
+  z: {rate: w, start: 1 m}
+  w: {rate: "(1 - (z/(1 m))^2)*w/(1 s) - z/(1 s^2) + 1e-3*f/(1 kg)", start: 0 m/s}
+actuators: {d: {member: m, signal: {expression: 0.05*z}}}
+solver: {integrator: rk4-events, step: 5 ms}
+run: {duration: 10 s, measure: {quantities: {z: {of: z, take: final}}}}
+END
+sed 's/0.05\*z/0.05*w*1 s/' state.yaml >damped.yaml
+expect 2 check damped.yaml
+err_has "the rate of the rest length that actuator 'd' drives follows sensor 'f', the force of a member with a damper"
+sed 's/, damping: 0.3//' damped.yaml >free.yaml
+for scene in state free; do
+  expect 0 run $scene.yaml --json
+  near '.energy.residual' 0 1e-8
+  want=$(jq .measured.z.value out)
+  for method in rk4 adaptive; do
+    sed "s/integrator: rk4-events/integrator: $method/" $scene.yaml >run.yaml
+    expect 0 run run.yaml --json
+    near '.measured.z.value' "$want" 1e-7
+  done
+done
+
+# A Maxwell branch between held nodes relaxes as e^{-t k/c}; what it has stored is lost in the dashpot.
+cat >maxwell.yaml <<'END'
+strut: 1
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0], fixed: both, mass: 1 kg}
+members:
+  m: {nodes: [a, b], kind: spring, stiffness: 10, maxwell: {stiffness: 50 N/m, damping: 25 N s/m, force: 2 N}}
+solver: {integrator: rk4, step: 10 ms}
+run: {duration: 1 s, measure: {quantities: {f: {of: m.force, take: final}, e: {of: energy.elastic, take: final}, l: {of: losses.members, take: final}}}}
+END
+while read -r method tolerance; do
+  sed "s/integrator: rk4/integrator: $method/" maxwell.yaml >run.yaml
+  expect 0 run run.yaml --json
+  near '.measured.f.value' '2 * (-2 | exp)' "$tolerance"
+  near '.measured.e.value' '4 * (-4 | exp) / 100' "$tolerance"
+  near '.measured.l.value' '0.04 * (1 - (-4 | exp))' "$tolerance"
+done <<'END'
+rk4 1e-8
+rk4-events 1e-8
+adaptive 1e-8
+verlet 1e-4
+verlet-events 1e-4
+midpoint 1e-4
+euler 1e-2
+euler-events 1e-2
+END
+# Shaken by its rest length with amplitude A at w it loses pi A^2 k w T / (1 + w^2 T^2) in a cycle, which
+# the drive does; and a free mass on it keeps the balance.
+sed 's/, force: 2 N//; s/damping: 25 N s\/m/time: 0.5 s/; s/duration: 1 s/duration: 10 s/
+  s/^solver:/actuators: {d: {member: m, signal: {sine: {amplitude: 10 mm, frequency: 1 Hz}}}}\n&/
+  s/quantities: {/last: 1 s, quantities: {cycle: {of: losses.members, take: change}, /' maxwell.yaml >shaken.yaml
+expect 0 run shaken.yaml --json
+near '.measured.cycle.value' \
+  '(3.141592653589793 * 1e-4 * 50) as $a | 3.141592653589793 as $wt | $a * $wt / (1 + $wt * $wt)' 1e-8
+near '.energy.residual' 0 1e-7
+sed 's/b: {position: \[1, 0\], fixed: both/b: {position: [1, 0], fixed: y/' shaken.yaml >loose.yaml
+expect 0 run loose.yaml --json
+near '.energy.residual' 0 1e-6
+want=$(jq .measured.cycle.value out)
+for method in midpoint rk4-events adaptive verlet; do
+  sed "s/integrator: rk4/integrator: $method/; s/step: 10 ms/step: 1 ms/" loose.yaml >run.yaml
+  expect 0 run run.yaml --json
+  near '.measured.cycle.value' "$want" 4e-6
+  near '.energy.residual' 0 1e-5
+done
+
+# A signal that a touchdown starts plays from that moment on, sqrt(2 h / g), exactly with events; one that
+# a sensor starts begins at the end of the step in which it passes its level.
+cat >starts.yaml <<'END'
+strut: 1
+gravity: [0, -9.81]
+nodes:
+  a: {position: [0, 1], mass: 1}
+  c: {position: [3, 0], fixed: both}
+  d: {position: [4, 0], fixed: both, mass: 1}
+members:
+  m: {nodes: [c, d], kind: spring, stiffness: 40, damping: 1}
+ground: {stiffness: 1e5, nodes: [a]}
+sensors: {y: {position: a, along: y}}
+signals:
+  kick: {sine: {amplitude: 10 mm, frequency: 1 Hz}, starts: {contact: a}}
+  late: {ramp: {amplitude: 5 mm, stop: 1 s}, starts: {sensor: y, below: 0.5 m}}
+actuators: {d: {member: m, signal: {sum: [kick, late]}}}
+solver: {integrator: rk4-events, step: 1 ms}
+run: {duration: 0.6 s, measure: {quantities: {kick: {of: kick, take: final}, late: {of: late, take: final}}}}
+END
+for method in rk4-events verlet-events adaptive; do
+  sed "s/integrator: rk4-events/integrator: $method/" starts.yaml >run.yaml
+  expect 0 run run.yaml --json
+  near '.measured.kick.value' '0.01 * (6.283185307179586 * (0.6 - (2 / 9.81 | sqrt)) | sin)' 1e-12
+  near '.measured.late.value' '0.005 * (0.6 - (1 / 9.81 | sqrt))' 5.1e-6
+done
+sed "s/integrator: rk4-events/integrator: rk4/" starts.yaml >run.yaml
+expect 0 run run.yaml --json
+near '.measured.kick.value' '0.01 * (6.283185307179586 * (0.6 - (2 / 9.81 | sqrt)) | sin)' 4e-5
+# With `each` it starts again at every touchdown; the energy of the jumps is work of the drive.
+sed 's/starts: {contact: a}/starts: {contact: a, each: yes}/; s/duration: 0.6 s/duration: 1.6 s/
+  s/integrator: rk4-events/integrator: adaptive/; s/sine: {amplitude: 10 mm, frequency: 1 Hz}/constant: 10 mm/' starts.yaml >run.yaml
+expect 0 run run.yaml --json
+near '.energy.residual' 0 1e-4
+sed 's/starts: {contact: a}/starts: {contact: a, each: yes}/; s/duration: 0.6 s/duration: 1.6 s/
+  s/integrator: rk4-events/integrator: adaptive/' starts.yaml >run.yaml
+expect 0 run run.yaml --json
+near '.measured.kick.value' '0.01 * (6.283185307179586 * (1.6 - 3 * (2 / 9.81 | sqrt)) | sin)' 1e-3
+
+# Settling knows nothing of signals and states, whose time begins with the run; a Maxwell branch has
+# relaxed there, and begins with its own force.
+sed 's/^solver:/initial: {settle: true}\n&/; s/fixed: y/fixed: y, mass: 1 kg/; s/, mass: 1 kg, mass: 2 kg/, mass: 2 kg/' pi.yaml >run.yaml
+expect 0 run run.yaml --json
+near '.measured.x.value' 1.1 1e-9
+sed 's/^solver:/initial: {settle: {limit: 1000 s}}\n&/' oscillators.yaml >run.yaml
+expect 0 run run.yaml --json
+near '.measured.lag.value' '0.4 * 6.283185307179586 / 4 | asin' 1e-8
+sed 's/^solver:/initial: {settle: true}\n&/' maxwell.yaml >run.yaml
+expect 0 run run.yaml --json
+near '.measured.f.value' '2 * (-2 | exp)' 1e-8
+
+# Loops that are unstable, and states that run away, are stopped with name and time.
+sed 's/-0.3\*/-10*/; s/duration: 2.05 s/duration: 60 s/' held.yaml >run.yaml
+expect 3 run run.yaml
+err_has "node 'b' left all bounds at t = "
+err_has 'look for a loop of sensors and drives that is unstable'
+sed 's/{rate: w, start/{rate: "z^2\/(1 m s)", start/; s/z\/(1 s^2)/w*0\/(1 s)/; s/0.05\*z/0.05*w*0*1 s/; s/1e-3\*f/0*f/' free.yaml >run.yaml
+expect 3 run run.yaml
+err_has "state 'z' is no longer a finite number at t = "
+
+# Shooting knows nothing of internal states, and says so.
+sed 's/duration: 100 s/periods: 400\n  of: beat/; s/measure:/measure:\n    steady: {shooting: yes}/
+  s/^actuators:/signals: {beat: {sine: {amplitude: 1 mm, frequency: 1 Hz}}}\nactuators:/
+  s/d: {member.*/d: {member: m, signal: {sum: [beat, {expression: 10 mm*sin(o1)}]}}/' oscillators.yaml >run.yaml
+expect 0 run run.yaml --set 'df=0 Hz'
+
+# What is written reads back to the same run; statics, figures, sweeps and pages know such scenes.
+for scene in pd length force all lag oscillators sampled held pi free maxwell shaken starts; do
+  expect 0 run $scene.yaml --json
+  jq 'del(.wall_time, .scene, .source)' out >first
+  expect 0 write $scene.yaml
+  cp out written.yaml
+  expect 0 write written.yaml
+  sed 1d out >twice
+  sed 1d written.yaml | cmp -s - twice || fail "$scene written twice differs"
+  expect 0 check $scene.yaml
+done
+expect 0 run length.yaml -o results --plot run.svg
+expect 0 view results -o page.html
+expect 0 equilibria length.yaml
+expect 0 modes length.yaml
+
+[ $failures -eq 0 ] || exit 1
