@@ -42,6 +42,12 @@
   X(HALF_SINE, "half_sine", HALF_SINE_AMPLITUDE) \
   X(SQUARE, "square", SQUARE_AMPLITUDE) \
   X(RAMP, "ramp", RAMP_AMPLITUDE) \
+  X(SENSOR, "sensor", SENSOR_LENGTH) \
+  X(STATE, "state", STATE_RATE) \
+  X(OSCILLATOR, "oscillator", OSCILLATOR_FREQUENCY) \
+  X(CONTROLLER, "controller", CONTROLLER_SENSOR) \
+  X(MAXWELL, "maxwell", MAXWELL_STIFFNESS) \
+  X(STARTS, "starts", STARTS_CONTACT) \
   X(CONFIGURATION, "configuration", CONFIGURATION_CONTACTS) \
   X(INITIAL, "initial", INITIAL_CONFIGURATION) \
   X(SETTLE, "settle", SETTLE_SPEED) \
@@ -56,13 +62,7 @@
   X(RANGE, "range", RANGE_FROM) \
   X(VARIANT, "variant", VARIANT_SOLVER) \
   X(CHECK, "check", CHECK_HALF_STEP) \
-  X(FIGURE, "figure", FIGURE_KIND) \
-  X(SENSOR, "sensor", SENSOR_LENGTH) \
-  X(STATE, "state", STATE_RATE) \
-  X(OSCILLATOR, "oscillator", OSCILLATOR_FREQUENCY) \
-  X(CONTROLLER, "controller", CONTROLLER_SENSOR) \
-  X(MAXWELL, "maxwell", MAXWELL_STIFFNESS) \
-  X(STARTS, "starts", STARTS_CONTACT)
+  X(FIGURE, "figure", FIGURE_KIND)
 /* clang-format on */
 
 /** The mappings of the language. */

@@ -192,6 +192,38 @@
   X(RAMP, AMPLITUDE, "amplitude", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_signal, amplitude), "Value from `stop` on.") \
   X(RAMP, START, "start", NUMBER, TIME, ANY, "0", OPTIONAL, 0, "", FIELD(strut_signal, start), "Time at which the signal leaves 0.") \
   X(RAMP, STOP, "stop", NUMBER, TIME, ANY, "", REQUIRED, 0, "", FIELD(strut_signal, stop), "Time at which it reaches the amplitude.") \
+  X(SENSOR, LENGTH, "length", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The member whose length it senses [m].") \
+  X(SENSOR, FORCE, "force", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The member whose force it senses [N], tension positive, damper included.") \
+  X(SENSOR, ANGLE, "angle", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The hinge whose angle it senses [rad].") \
+  X(SENSOR, CONTACT, "contact", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The node whose touch it senses: 1 while the node is in the ground, else 0.") \
+  X(SENSOR, POSITION, "position", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The node whose position it senses [m], `along` x or y.") \
+  X(SENSOR, VELOCITY, "velocity", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The node whose velocity it senses [m/s], `along` x or y.") \
+  X(SENSOR, ENERGY, "energy", WORD, NONE, ANY, "", OPTIONAL, 7, "kinetic|elastic|total", FIELD(strut_sensor, energy), "The energy of the structure that it senses [J].") \
+  X(SENSOR, ALONG, "along", WORD, NONE, ANY, "", OPTIONAL, 0, "x|y", FIELD(strut_sensor, along), "Direction of a position or a velocity.") \
+  X(STATE, RATE, "rate", EXPRESSION, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "Its rate: an expression as that of a signal, which may also use states.") \
+  X(STATE, START, "start", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "Its value at t = 0, with its unit.") \
+  X(OSCILLATOR, FREQUENCY, "frequency", NUMBER, FREQUENCY, ANY, "", REQUIRED, 0, "", BY_HAND, "Its own frequency.") \
+  X(OSCILLATOR, PHASE, "phase", NUMBER, ANGLE, ANY, "0", OPTIONAL, 0, "", BY_HAND, "Phase at t = 0.") \
+  X(OSCILLATOR, COUPLING, "coupling", THINGS, NONE, ANY, "", OPTIONAL, 0, "the strength K of the coupling to that oscillator [1/s]", BY_HAND, "Adds K sin(phase of the other - own phase - bias) to the rate of the phase.") \
+  X(OSCILLATOR, BIAS, "bias", NUMBER, ANGLE, ANY, "0", OPTIONAL, 0, "", BY_HAND, "Phase by which the others are to be ahead.") \
+  X(OSCILLATOR, FEEDBACK, "feedback", EXPRESSION, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "Added to the rate of the phase: an expression as that of a signal.") \
+  X(CONTROLLER, SENSOR, "sensor", NAME, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "The sensor s that it controls.") \
+  X(CONTROLLER, TARGET, "target", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "Wanted value of the sensor. The error is e = target - s.") \
+  X(CONTROLLER, GAIN, "gain", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "The signal is gain e + integral times the integral of e - derivative ds/dt.") \
+  X(CONTROLLER, INTEGRAL, "integral", NUMBER, CONTEXT, ANY, "0", OPTIONAL, 0, "", BY_HAND, "In the unit of the gain per second.") \
+  X(CONTROLLER, DERIVATIVE, "derivative", NUMBER, CONTEXT, ANY, "0", OPTIONAL, 0, "", BY_HAND, "In the unit of the gain times a second. A rest length needs `every` with it.") \
+  X(CONTROLLER, LEAST, "least", NUMBER, CONTEXT, ANY, "none", OPTIONAL, 0, "", BY_HAND, "Least value of the signal.") \
+  X(CONTROLLER, MOST, "most", NUMBER, CONTEXT, ANY, "none", OPTIONAL, 0, "", BY_HAND, "Largest value. Between limits the integral follows what the limits leave (no windup).") \
+  X(CONTROLLER, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, "0", OPTIONAL, 0, "", BY_HAND, "Time between samples; 0: the controller is continuous.") \
+  X(MAXWELL, STIFFNESS, "stiffness", NUMBER, STIFFNESS, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_maxwell, stiffness), "Stiffness k of the spring.") \
+  X(MAXWELL, DAMPING, "damping", NUMBER, DAMPING, ABOVE_ZERO, "", OPTIONAL, 7, "", FIELD(strut_maxwell, damping), "Damping c of the dashpot.") \
+  X(MAXWELL, TIME, "time", NUMBER, TIME, ABOVE_ZERO, "", OPTIONAL, 7, "", FIELD(strut_maxwell, time), "Instead of the damping: the time c/k in which the force relaxes.") \
+  X(MAXWELL, FORCE, "force", NUMBER, FORCE, ANY, "0", OPTIONAL, 0, "", FIELD(strut_maxwell, force), "Force of the branch at t = 0; tension is positive.") \
+  X(STARTS, CONTACT, "contact", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The node whose touchdown starts the signal.") \
+  X(STARTS, SENSOR, "sensor", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The sensor that starts it, at the end of the step in which it passes a level.") \
+  X(STARTS, ABOVE, "above", NUMBER, CONTEXT, ANY, "", OPTIONAL, 8, "", BY_HAND, "Level above which the sensor rises.") \
+  X(STARTS, BELOW, "below", NUMBER, CONTEXT, ANY, "", OPTIONAL, 8, "", BY_HAND, "Level below which it falls.") \
+  X(STARTS, EACH, "each", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_trigger, each), "Start again each time, not only the first.") \
   X(CONFIGURATION, CONTACTS, "contacts", NODE_SETS, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "The nodes that touch the ground in this shape; several lists are alternatives.") \
   X(CONFIGURATION, SHAPE, "shape", THINGS, NONE, ANY, "", OPTIONAL, 0, "`[x, y]`", BY_HAND, "Approximate positions; nodes that are not listed stay as drawn. Without `shape` the contacts alone identify the configuration.") \
   X(INITIAL, CONFIGURATION, "configuration", NAME, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "A configuration, or a text parameter that names one.") \
@@ -280,39 +312,7 @@
   X(FIGURE, Y_LABEL, "y_label", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, y_label), "Likewise of the y axis.") \
   X(FIGURE, X_LIMITS, "x_limits", PAIR, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, x_limits), "Lines, map and motion: ends of the x axis in the column's SI unit, ascending.") \
   X(FIGURE, Y_LIMITS, "y_limits", PAIR, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, y_limits), "Likewise of the y axis.") \
-  X(FIGURE, COLORS, "colors", WORD, NONE, ANY, "auto", OPTIONAL, 0, "auto|sequential|diverging|grey", FIELD(strut_study_figure, colours), "Map: the colour scale of numbers.") \
-  X(SENSOR, LENGTH, "length", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The member whose length it senses [m].") \
-  X(SENSOR, FORCE, "force", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The member whose force it senses [N], tension positive, damper included.") \
-  X(SENSOR, ANGLE, "angle", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The hinge whose angle it senses [rad].") \
-  X(SENSOR, CONTACT, "contact", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The node whose touch it senses: 1 while the node is in the ground, else 0.") \
-  X(SENSOR, POSITION, "position", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The node whose position it senses [m], `along` x or y.") \
-  X(SENSOR, VELOCITY, "velocity", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The node whose velocity it senses [m/s], `along` x or y.") \
-  X(SENSOR, ENERGY, "energy", WORD, NONE, ANY, "", OPTIONAL, 7, "kinetic|elastic|total", FIELD(strut_sensor, energy), "The energy of the structure that it senses [J].") \
-  X(SENSOR, ALONG, "along", WORD, NONE, ANY, "", OPTIONAL, 0, "x|y", FIELD(strut_sensor, along), "Direction of a position or a velocity.") \
-  X(STATE, RATE, "rate", EXPRESSION, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "Its rate: an expression as that of a signal, which may also use states.") \
-  X(STATE, START, "start", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "Its value at t = 0, with its unit.") \
-  X(OSCILLATOR, FREQUENCY, "frequency", NUMBER, FREQUENCY, ANY, "", REQUIRED, 0, "", BY_HAND, "Its own frequency.") \
-  X(OSCILLATOR, PHASE, "phase", NUMBER, ANGLE, ANY, "0", OPTIONAL, 0, "", BY_HAND, "Phase at t = 0.") \
-  X(OSCILLATOR, COUPLING, "coupling", THINGS, NONE, ANY, "", OPTIONAL, 0, "the strength K of the coupling to that oscillator [1/s]", BY_HAND, "Adds K sin(phase of the other - own phase - bias) to the rate of the phase.") \
-  X(OSCILLATOR, BIAS, "bias", NUMBER, ANGLE, ANY, "0", OPTIONAL, 0, "", BY_HAND, "Phase by which the others are to be ahead.") \
-  X(OSCILLATOR, FEEDBACK, "feedback", EXPRESSION, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "Added to the rate of the phase: an expression as that of a signal.") \
-  X(CONTROLLER, SENSOR, "sensor", NAME, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "The sensor s that it controls.") \
-  X(CONTROLLER, TARGET, "target", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "Wanted value of the sensor. The error is e = target - s.") \
-  X(CONTROLLER, GAIN, "gain", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "The signal is gain e + integral times the integral of e - derivative ds/dt.") \
-  X(CONTROLLER, INTEGRAL, "integral", NUMBER, CONTEXT, ANY, "0", OPTIONAL, 0, "", BY_HAND, "In the unit of the gain per second.") \
-  X(CONTROLLER, DERIVATIVE, "derivative", NUMBER, CONTEXT, ANY, "0", OPTIONAL, 0, "", BY_HAND, "In the unit of the gain times a second. A rest length needs `every` with it.") \
-  X(CONTROLLER, LEAST, "least", NUMBER, CONTEXT, ANY, "none", OPTIONAL, 0, "", BY_HAND, "Least value of the signal.") \
-  X(CONTROLLER, MOST, "most", NUMBER, CONTEXT, ANY, "none", OPTIONAL, 0, "", BY_HAND, "Largest value. Between limits the integral follows what the limits leave (no windup).") \
-  X(CONTROLLER, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, "0", OPTIONAL, 0, "", BY_HAND, "Time between samples; 0: the controller is continuous.") \
-  X(MAXWELL, STIFFNESS, "stiffness", NUMBER, STIFFNESS, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_maxwell, stiffness), "Stiffness k of the spring.") \
-  X(MAXWELL, DAMPING, "damping", NUMBER, DAMPING, ABOVE_ZERO, "", OPTIONAL, 7, "", FIELD(strut_maxwell, damping), "Damping c of the dashpot.") \
-  X(MAXWELL, TIME, "time", NUMBER, TIME, ABOVE_ZERO, "", OPTIONAL, 7, "", FIELD(strut_maxwell, time), "Instead of the damping: the time c/k in which the force relaxes.") \
-  X(MAXWELL, FORCE, "force", NUMBER, FORCE, ANY, "0", OPTIONAL, 0, "", FIELD(strut_maxwell, force), "Force of the branch at t = 0; tension is positive.") \
-  X(STARTS, CONTACT, "contact", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The node whose touchdown starts the signal.") \
-  X(STARTS, SENSOR, "sensor", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The sensor that starts it, at the end of the step in which it passes a level.") \
-  X(STARTS, ABOVE, "above", NUMBER, CONTEXT, ANY, "", OPTIONAL, 8, "", BY_HAND, "Level above which the sensor rises.") \
-  X(STARTS, BELOW, "below", NUMBER, CONTEXT, ANY, "", OPTIONAL, 8, "", BY_HAND, "Level below which it falls.") \
-  X(STARTS, EACH, "each", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_trigger, each), "Start again each time, not only the first.")
+  X(FIGURE, COLORS, "colors", WORD, NONE, ANY, "auto", OPTIONAL, 0, "auto|sequential|diverging|grey", FIELD(strut_study_figure, colours), "Map: the colour scale of numbers.")
 
 /* clang-format on */
 

@@ -36,7 +36,7 @@ mkdir beside
 cp -r swing beside/swing
 cp swing.yaml beside/model.yaml
 expect 0 view beside/swing/
-sed 's/beside.//' beside/swing.html | cmp -s - swing.html || fail "another page without -o"
+sed 's#beside/##' beside/swing.html | cmp -s - swing.html || fail "another page without -o"
 expect 0 view beside/swing -q
 expect 0 view beside/model.yaml -q
 [ -s beside/model.html ] || fail "no page of the model"

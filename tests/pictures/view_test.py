@@ -185,12 +185,12 @@ def short_run():
     run("run", "short.yaml", "-o", "short", "-q")
     run("view", "short", "-o", "short.html")
     motion = Page("short.html").data["motion"]
-    check(len(motion["energy_names"]) == 10 == motion["energy"]["columns"], "energies")
+    check(len(motion["energy_names"]) == 11 == motion["energy"]["columns"], "energies")
     head = open("short/energy.csv", encoding="utf-8").readline()
     places = [head.find(name) for name in motion["energy_names"]]
     check(places == sorted(places) and places[0] > 0, "energies have other names")
     energy = table("short/energy.csv")
-    same(motion["energy"], motion["frames"], energy[1:11], "energies")
+    same(motion["energy"], motion["frames"], energy[1:12], "energies")
     check(max(energy[1]) > 100 * motion["energy"]["quantum"], "the kinetic energy is lost")
 
 

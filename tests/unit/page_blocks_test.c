@@ -262,7 +262,7 @@ static void frames_are_left_out_until_they_fit(void **state) {
   for (size_t most = 16000; most >= 250; most /= 2) {
     char *html = page_of(&motion, most, &frames), head[80];
     assert_true(frames.shown <= previous && frames.shown >= 2);
-    assert_true(frames.shown == 2 || strlen(html) < bare + most + 400);
+    assert_true(frames.shown == 2 || strlen(html) < bare + most + 450);
     const char *at = strstr(html, "\"every\":");
     assert_non_null(at);
     size_t every = strtoull(at + 8, NULL, 10); /* a power of two; and the last frame */
