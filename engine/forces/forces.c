@@ -4,7 +4,21 @@
 
 #include <assert.h>
 
+#include "engine/forces/actuate.h"
+#include "engine/forces/mass_damping.h"
+#include "engine/forces/maxwell.h"
 #include "engine/forces/rigid.h"
+#include "engine/forces/unbalance.h"
+
+void strut_forces_add_rare(const strut_model *model, strut_state *state, double t, const double *q,
+                           const double *v) {
+  unsigned plan = model->plan;
+  if (plan & STRUT_TERM_FEEDBACK) strut_maxwell_apply(model, state, q, v, state->force);
+  if (plan & STRUT_TERM_ACTUATOR_FORCES) strut_actuator_forces_apply(model, state, t, q, v);
+  if (plan & STRUT_TERM_UNBALANCE) strut_unbalance_apply(model, state, t, v);
+  if (plan & STRUT_TERM_MASS_DAMPING) strut_mass_damping_apply(model, state, v);
+  if (plan & STRUT_TERM_SUPPORT_MOTION) strut_support_motion_apply(model, state, t, v);
+}
 
 void strut_forces_evaluate(const strut_model *model, strut_state *state, double t,
                            const double *restrict q, const double *restrict v) {

@@ -8,18 +8,14 @@
 #ifndef STRUT_ENGINE_FORCES_FORCES_KERNEL_H
 #define STRUT_ENGINE_FORCES_FORCES_KERNEL_H
 
-#include "engine/forces/actuate.h"
 #include "engine/forces/drive.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/feedback.h"
 #include "engine/forces/forces.h"
 #include "engine/forces/ground_kernel.h"
-#include "engine/forces/mass_damping.h"
-#include "engine/forces/maxwell.h"
 #include "engine/forces/members_kernel.h"
 #include "engine/forces/support_motion.h"
 #include "engine/forces/surfaces.h"
-#include "engine/forces/unbalance.h"
 #include "engine/model/mass_kernel.h"
 
 STRUT_INLINE void forces_start(const strut_model *model, double *restrict force) {
@@ -50,6 +46,10 @@ STRUT_INLINE void forces_of_members(const strut_model *model, strut_state *state
   strut_lanes_store(power + STRUT_POWER_CONTACT, (strut_lanes){0.0, 0.0, exchanged, 0.0});
 }
 
+/* In forces.c, not inlined: what the terms of STRUT_TERMS_RARE add to the state's force. */
+void strut_forces_add_rare(const strut_model *model, strut_state *state, double t, const double *q,
+                           const double *v);
+
 /* All forces but the ground's. */
 STRUT_INLINE void forces_of_structure(const strut_model *model, strut_state *state, double t,
                                       const double *restrict q, const double *restrict v,
@@ -67,18 +67,16 @@ STRUT_INLINE void forces_of_structure(const strut_model *model, strut_state *sta
   if ((plan & STRUT_TERM_DRIVE) && t != state->drive_time) strut_drive_apply(model, state, t);
   if (plan & STRUT_TERM_MEMBERS) forces_of_members(model, state, q, v, force, ledger);
   if (plan & STRUT_TERM_ELEMENTS) strut_elements_add_forces(model, state, q, v, force);
-  if (plan & STRUT_TERM_FEEDBACK) strut_maxwell_apply(model, state, q, v, force);
-  if (plan & STRUT_TERM_ACTUATOR_FORCES) strut_actuator_forces_apply(model, state, t, q, v);
-  if (plan & STRUT_TERM_UNBALANCE) strut_unbalance_apply(model, state, t, v);
-  if (plan & STRUT_TERM_MASS_DAMPING) strut_mass_damping_apply(model, state, v);
-  if (plan & STRUT_TERM_SUPPORT_MOTION) strut_support_motion_apply(model, state, t, v);
+  if (plan & STRUT_TERMS_RARE) strut_forces_add_rare(model, state, t, q, v);
 }
 
 STRUT_INLINE void forces_sum(const strut_model *model, strut_state *state, double t,
                              const double *restrict q, const double *restrict v, bool ledger) {
   forces_of_structure(model, state, t, q, v, ledger);
-  if (model->plan & STRUT_TERM_CONTACT) ground_kernel(model, state, q, v, state->force, ledger);
-  if (model->plan & STRUT_TERM_SURFACES) strut_surfaces_add_forces(model, state, q, v);
+  if (model->plan & STRUT_TERM_CONTACT)
+    ground_kernel(model, state, q, v, state->force, ledger);
+  else if (model->plan & STRUT_TERM_SURFACES)
+    strut_surfaces_add_forces(model, state, q, v);
 }
 
 /* See strut_forces_acceleration. */

@@ -7,6 +7,7 @@
 #define STRUT_ENGINE_INTEGRATE_PLAIN_STEPS_H
 
 #include "engine/forces/forces_kernel.h"
+#include "engine/forces/unbalance.h"
 
 /** Terms whose impulses and positions plain methods apply at the end of a step. */
 enum { STRUT_TERMS_AT_STEP_END = STRUT_TERM_SUPPORT_MOTION | STRUT_TERM_UNBALANCE };

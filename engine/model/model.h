@@ -52,6 +52,11 @@ typedef enum strut_term {
                                    instead of CONTACT */
 } strut_term;
 
+/** Terms that few scenes need: a step asks once for all of them. */
+#define STRUT_TERMS_RARE                                                                           \
+  (STRUT_TERM_FEEDBACK | STRUT_TERM_ACTUATOR_FORCES | STRUT_TERM_UNBALANCE |                       \
+   STRUT_TERM_MASS_DAMPING | STRUT_TERM_SUPPORT_MOTION)
+
 /**
  * Member tables in scene order; (slots) entries each. Padding slots have no length, and pull with no
  * force on the node of padding that every coordinate array ends with. A member whose force is that of

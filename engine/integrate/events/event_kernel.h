@@ -116,9 +116,12 @@ STRUT_INLINE void add_contact_forces(const strut_model *model, const strut_event
 STRUT_INLINE void measure_contact_rates(const strut_model *model, const strut_event_stepper *l,
                                         const double *restrict a, strut_touch *restrict touch) {
   const strut_contact_table *c = &model->contacts;
-  for (int32_t k = 0; k < l->closed_count && c->surface; k++)
-    strut_surface_measure_rates(c, l->closed[k], a, &touch[l->closed[k]]);
-  for (int32_t k = 0; k < l->closed_count && !c->surface; k++) {
+  if (c->surface) {
+    for (int32_t k = 0; k < l->closed_count; k++)
+      strut_surface_measure_rates(c, l->closed[k], a, &touch[l->closed[k]]);
+    return;
+  }
+  for (int32_t k = 0; k < l->closed_count; k++) {
     int32_t i = l->closed[k];
     touch[i].into_rate = strut_contact_along_normal(c, i, a);
     touch[i].slip_rate = strut_contact_along_ground(c, i, a);

@@ -6,6 +6,7 @@
 #include "engine/forces/energy.h"
 #include "engine/forces/feedback.h"
 #include "engine/forces/memory.h"
+#include "engine/forces/unbalance.h"
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/model/element_compile.h"
 
