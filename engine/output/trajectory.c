@@ -185,6 +185,8 @@ void strut_trajectory_free(strut_trajectory *t) {
   strut_release(t->contact);
   strut_release(t->angle);
   strut_release(t->moment);
+  strut_release(t->area);
+  strut_release(t->pressure);
   strut_release(t->energy);
   strut_arena_free(&t->arena);
   *t = (strut_trajectory){0};
