@@ -33,16 +33,22 @@ static double sense_energy(const strut_model *model, const strut_state *state, i
                                          : e.kinetic + e.elastic + e.gravity + e.contact;
 }
 
+/* Does the node of contact `first`, or -1, touch any of its grounds? A node's contacts are side by side. */
+static bool touches(const strut_model *model, const strut_state *state, int32_t first,
+                    const double *q) {
+  const strut_contact_table *c = &model->contacts;
+  for (int32_t i = first; i >= 0 && i < c->count && c->at[i] == c->at[first]; i++)
+    if (strut_contact_gap_at(c, i, q, state->ground_motion) < 0.0) return true;
+  return false;
+}
+
 static void sense(const strut_model *model, const strut_state *state, strut_sensor_entry sensor,
                   const double *q, const double *v, double *value, double *rate) {
   *rate = 0.0;
   switch (sensor.kind) {
     case STRUT_SENSOR_LENGTH: sense_length(model, state, sensor.at, q, v, value, rate); break;
     case STRUT_SENSOR_ANGLE: sense_angle(model, state, sensor.at, q, v, value, rate); break;
-    case STRUT_SENSOR_CONTACT:
-      *value =
-          sensor.at >= 0 && strut_contact_gap(&model->contacts, sensor.at, q) < 0.0 ? 1.0 : 0.0;
-      break;
+    case STRUT_SENSOR_CONTACT: *value = touches(model, state, sensor.at, q); break;
     case STRUT_SENSOR_POSITION: *value = q[sensor.at], *rate = v[sensor.at]; break;
     case STRUT_SENSOR_VELOCITY: *value = v[sensor.at]; break;
     case STRUT_SENSOR_FORCE:
@@ -161,8 +167,7 @@ bool strut_feedback_touch(const strut_model *model, strut_state *state, int32_t 
 static bool condition_holds(const strut_model *model, const strut_state *state,
                             const strut_trigger *trigger) {
   for (int32_t i = 0; i < model->contacts.count && trigger->kind == STRUT_TRIGGER_CONTACT; i++)
-    if (model->contacts.entry[i].node == trigger->item)
-      return strut_contact_gap(&model->contacts, i, state->q) < 0.0;
+    if (model->contacts.entry[i].node == trigger->item) return touches(model, state, i, state->q);
   if (trigger->kind == STRUT_TRIGGER_ABOVE) return state->sensor[trigger->item] > trigger->level;
   return trigger->kind == STRUT_TRIGGER_BELOW && state->sensor[trigger->item] < trigger->level;
 }

@@ -63,7 +63,7 @@ static void check_sensor(strut_checker *checker, size_t index) {
   if (!known)
     strut_report_finding(checker, STRUT_ON_SENSOR, index, NULL,
                          "%s is of a thing that does not exist", owner);
-  else if (s->kind == STRUT_SENSOR_CONTACT && !scene->ground.present)
+  else if (s->kind == STRUT_SENSOR_CONTACT && !strut_scene_has_ground(scene))
     strut_report_finding(checker, STRUT_ON_SENSOR, index, "contact",
                          "%s is of a contact, but there is no ground; add 'ground' to the scene",
                          owner);
@@ -148,7 +148,7 @@ static bool check_trigger(strut_checker *checker, size_t index, const char *owne
       (unsigned)trigger->kind > STRUT_TRIGGER_BELOW || !isfinite(trigger->level))
     strut_report_finding(checker, STRUT_ON_SIGNAL, index, "starts", "what starts %s does not exist",
                          owner);
-  else if (contact && (!scene->ground.present || !touches(scene, trigger->item)))
+  else if (contact && (!strut_scene_has_ground(scene) || !touches(scene, trigger->item)))
     strut_report_finding(checker, STRUT_ON_SIGNAL, index, "starts",
                          "%s starts with the touchdown of node '%s', which cannot touch the ground",
                          owner, scene->nodes[trigger->item].name);

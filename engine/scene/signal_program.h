@@ -68,9 +68,9 @@ static inline bool strut_sensor_has_rate(strut_sensor_kind kind) {
   return kind == STRUT_SENSOR_LENGTH || kind == STRUT_SENSOR_ANGLE || kind == STRUT_SENSOR_POSITION;
 }
 
-/** True where a sensor needs the driven rest lengths. */
+/** True where a sensor needs the driven rest lengths, or where shaken grounds are. */
 static inline bool strut_sensor_needs_drives(strut_sensor_kind kind) {
-  return kind == STRUT_SENSOR_FORCE || kind == STRUT_SENSOR_ENERGY;
+  return kind == STRUT_SENSOR_FORCE || kind == STRUT_SENSOR_ENERGY || kind == STRUT_SENSOR_CONTACT;
 }
 
 /** Operands of an operation. */
