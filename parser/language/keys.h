@@ -62,7 +62,9 @@
   X(RANGE, "range", RANGE_FROM) \
   X(VARIANT, "variant", VARIANT_SOLVER) \
   X(CHECK, "check", CHECK_HALF_STEP) \
-  X(FIGURE, "figure", FIGURE_KIND)
+  X(FIGURE, "figure", FIGURE_KIND) \
+  X(PATH, "path", PATH_LOAD) \
+  X(FORM, "form", FORM_FROM)
 /* clang-format on */
 
 /** The mappings of the language. */

@@ -102,6 +102,26 @@ static void put_axis(strut_writer *w, const strut_study_axis *axis) {
   }
 }
 
+/* What is computed where it is no run. */
+static void put_computed(strut_writer *w, const strut_study *study) {
+  if (study->compute == STRUT_COMPUTE_RUN) return;
+  put_number(w, (double)study->compute);
+  put_number(w, (double)study->lowest);
+  put_word(w, study->at ? study->at : "");
+  put_word(w, study->path_load ? study->path_load : "");
+  put_word(w, study->path_over ? study->path_over : "");
+  put_number(w, study->path_from);
+  put_number(w, study->path_until);
+  put_word(w, study->path_from_unit ? study->path_from_unit : "");
+  put_word(w, study->path_until_unit ? study->path_until_unit : "");
+  put_number(w, study->path_from_given + 2 * study->path_until_given);
+  put_number(w, (double)study->path_steps);
+  put_number(w, (double)study->form_from);
+  put_number(w, (double)study->form_objective);
+  put_number(w, study->form_least_tension);
+  put_number(w, study->form_least_density);
+}
+
 char *strut_study_identity(const strut_study_file *file) {
   strut_writer w = {.text = NULL};
   const strut_study *study = &file->study;
@@ -112,11 +132,13 @@ char *strut_study_identity(const strut_study_file *file) {
     put_word(&w, file->settings[i].text);
   }
   for (size_t i = 0; i < study->axis_count; i++) put_axis(&w, &study->axes[i]);
-  put_number(&w, (double)study->keep);
+  put_number(&w, (double)(study->keep >> 32));
+  put_number(&w, (double)(study->keep & UINT32_MAX));
   for (size_t i = 0; i < study->quantity_count; i++) put_word(&w, study->quantities[i]);
   put_number(&w, study->trajectories);
   put_number(&w, study->half_step);
   put_number(&w, study->check_accuracy);
+  put_computed(&w, study);
   if (!w.failed) return w.text;
   strut_release(w.text);
   return NULL;

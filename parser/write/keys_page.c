@@ -101,6 +101,10 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
     [STRUT_SECTION_VARIANT] = "`variants: {NAME: {...}}` of a study.",
     [STRUT_SECTION_CHECK] = "`check: {...}` of a study.",
     [STRUT_SECTION_FIGURE] = "`figures: {NAME: {...}}` of a study.",
+    [STRUT_SECTION_PATH] =
+        "`path: {...}` of a study with `compute: path`, as the options of `strut path`.",
+    [STRUT_SECTION_FORM] =
+        "`form: {...}` of a study with `compute: form`, as the options of `strut form`.",
     [STRUT_SECTION_SENSOR] =
         "`sensors: {NAME: {...}}` with one thing to sense. Expressions of signals, and measured "
         "quantities, use the name. In an expression `rate(NAME)` is the rate of a length, an angle "

@@ -99,6 +99,8 @@ static const struct exception {
     {STRUT_SECTION_CONTROLLER, "every", "of the signal that the controller is"},
     {STRUT_SECTION_STARTS, "above", "in the unit of the sensor"},
     {STRUT_SECTION_STARTS, "below", "in the unit of the sensor"},
+    {STRUT_SECTION_PATH, "from", "in the unit of what the path follows"},
+    {STRUT_SECTION_PATH, "until", "in the unit of what the path follows"},
     {STRUT_SECTION_RANGE, "from", "in the unit of the axis' parameter"},
     {STRUT_SECTION_RANGE, "to", "in the unit of the axis' parameter"},
     {STRUT_SECTION_RANGE, "step", "in the unit of the axis' parameter"},
