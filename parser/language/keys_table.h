@@ -272,7 +272,7 @@
   X(STUDY, DESCRIPTION, "description", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study, description), "What the study is for.") \
   X(STUDY, MODEL, "model", TEXT, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "File of the model, relative to the folder of the study.") \
   X(STUDY, SET, "set", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression or a text", BY_HAND, "Values of the model's parameters at all points; `--set` takes precedence.") \
-  X(STUDY, AXES, "axes", AXES, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "Each axis gives one parameter its values, `{NAME: [...]}` or `{NAME: {...}}` with the keys of a [range](#range), or several parameters together, `{zip: {NAME: ..., NAME: ...}}`. The points are all combinations of the axes; the last axis varies fastest.") \
+  X(STUDY, AXES, "axes", AXES, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "Each axis gives one parameter its values, `{NAME: [...]}` or `{NAME: {...}}` with the keys of a [range](#range), or several parameters together, `{zip: {NAME: ..., NAME: ...}}`. Several parameters go together in `{points: FILE}`, with a row for each value, or the keys of [points](#points), and in `{sample: {...}}`, with the keys of a [sample](#sample). The points are all combinations of the axes; the last axis varies fastest.") \
   X(STUDY, DERIVE, "derive", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression", BY_HAND, "Parameters computed from others at each point, such as `{step: 1/(1000*frequency)}`.") \
   X(STUDY, VARIANTS, "variants", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a [variant](#variant)", BY_HAND, "Variants of the model, for example with other numerics; they form the first axis, the column `variant`.") \
   X(STUDY, SOLVER, "solver", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Keys that replace those of the model.") \
@@ -326,7 +326,18 @@
   X(FORM, FROM, "from", WORD, NONE, ANY, "scene", OPTIONAL, 0, "scene|densities|lengths|prestress", FIELD(strut_study, form_from), "What gives the shape; `scene`: as the model's keys say.") \
   X(FORM, LEAST_TENSION, "least_tension", NUMBER, FORCE, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_study, form_least_tension), "Lower bound on the tension of every cable.") \
   X(FORM, LEAST_DENSITY, "least_density", NUMBER, STIFFNESS, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_study, form_least_density), "Lower bound on the force density of every cable.") \
-  X(FORM, OBJECTIVE, "objective", WORD, NONE, ANY, "largest", OPTIONAL, 0, "largest|sum|squares", FIELD(strut_study, form_objective), "Which prestress: that whose minimum this is.")
+  X(FORM, OBJECTIVE, "objective", WORD, NONE, ANY, "largest", OPTIONAL, 0, "largest|sum|squares", FIELD(strut_study, form_objective), "Which prestress: that whose minimum this is.") \
+  X(POINTS, FILE, "file", TEXT, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "A CSV file with a header, below the folder of the study. `NAME [UNIT]` heads the values of a parameter; without a unit they are in SI.") \
+  X(POINTS, COLUMNS, "columns", NAMES, NONE, ANY, "all but `point`, `status` and `message`", OPTIONAL, 0, "", BY_HAND, "The columns to use; others are skipped.") \
+  X(SAMPLE, COUNT, "count", NUMBER, NONE, WHOLE(1, 1000000), "", REQUIRED, 0, "", BY_HAND, "Number of points.") \
+  X(SAMPLE, SEED, "seed", NUMBER, NONE, WHOLE(1, 4294967295), "1", OPTIONAL, 0, "", BY_HAND, "Another seed gives other points, the same seed the same.") \
+  X(SAMPLE, SCHEME, "scheme", WORD, NONE, ANY, "sobol", OPTIONAL, 0, "sobol|lhs|random", BY_HAND, "`sobol`: Sobol's sequence, shifted by the seed; `lhs`: Latin hypercube; `random`: independent points.") \
+  X(SAMPLE, OVER, "over", THINGS, NONE, ANY, "", REQUIRED, 0, "a [distribution](#distribution)", BY_HAND, "The parameters, up to 40, and their distributions.") \
+  X(DISTRIBUTION, UNIFORM, "uniform", NUMBERS, CONTEXT, ANY, "", OPTIONAL, 10, "", BY_HAND, "`[LEAST, MOST]`.") \
+  X(DISTRIBUTION, LOG_UNIFORM, "log_uniform", NUMBERS, CONTEXT, ANY, "", OPTIONAL, 10, "", BY_HAND, "`[LEAST, MOST]`, on one side of 0; the logarithm is uniform.") \
+  X(DISTRIBUTION, NORMAL, "normal", NUMBERS, CONTEXT, ANY, "", OPTIONAL, 10, "", BY_HAND, "`[MEAN, DEVIATION]`.") \
+  X(DISTRIBUTION, LOGNORMAL, "lognormal", NUMBERS, CONTEXT, ANY, "", OPTIONAL, 10, "", BY_HAND, "`[MEDIAN, DEVIATION]`, the deviation that of the natural logarithm, without unit.") \
+  X(DISTRIBUTION, TRIANGULAR, "triangular", NUMBERS, CONTEXT, ANY, "", OPTIONAL, 10, "", BY_HAND, "`[LEAST, MODE, MOST]`.")
 
 /* clang-format on */
 

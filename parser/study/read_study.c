@@ -12,27 +12,31 @@
 
 static const strut_owner study_owner = {"the study", NULL};
 
-static const char *declared_name(const void *context, size_t i) {
+const char *strut_study_declared_name(const void *context, size_t i) {
   const strut_study_reader *r = context;
   return i < r->declared_count ? r->declared[i].name : NULL;
 }
 
+const strut_declared *strut_study_declared(const strut_study_reader *r, const char *name) {
+  for (size_t i = 0; i < r->declared_count; i++)
+    if (strcmp(r->declared[i].name, name) == 0) return &r->declared[i];
+  return NULL;
+}
+
 const strut_declared *strut_study_parameter(strut_study_reader *r, const strut_tree *key) {
-  const strut_declared *found = NULL;
-  size_t at = 0;
-  for (; at < r->declared_count && !found; at++)
-    if (strcmp(r->declared[at].name, key->text) == 0) found = &r->declared[at];
+  const strut_declared *found = strut_study_declared(r, key->text);
   if (!found) {
-    strut_report_error(r->reader, key->place, "the model has no parameter '%s'%s",
-                       strut_sanitised_text(r->reader, key->text),
-                       strut_hint(r->reader, key->text, declared_name, r, r->declared_count));
+    strut_report_error(
+        r->reader, key->place, "the model has no parameter '%s'%s",
+        strut_sanitised_text(r->reader, key->text),
+        strut_hint(r->reader, key->text, strut_study_declared_name, r, r->declared_count));
     return NULL;
   }
   if (strut_name_map_find(&r->given, found->name) >= 0) {
     strut_report_error(r->reader, key->place, "parameter '%s' is given twice", found->name);
     return NULL;
   }
-  strut_add_name(r->reader, &r->given, found->name, at);
+  strut_add_name(r->reader, &r->given, found->name, (size_t)(found - r->declared));
   return found;
 }
 
@@ -399,10 +403,15 @@ strut_status strut_study_open(const char *path, const strut_override *overrides,
 }
 
 const char *strut_study_messages(strut_study_file *file, size_t most) {
-  const char *own = strut_diagnostics_render(&file->diagnostics, most);
+  const char *text = strut_diagnostics_render(&file->diagnostics, most);
+  for (size_t i = 0; i < file->table_count && text; i++) {
+    strut_diagnostics *own = &file->tables[i].diagnostics;
+    const char *more = own->count ? strut_diagnostics_render(own, most) : "";
+    text = more ? strut_arena_format(&file->arena, "%s%s", text, more) : NULL;
+  }
   const char *model =
       file->model_diagnostics.file ? strut_diagnostics_render(&file->model_diagnostics, most) : "";
-  return own && model ? strut_arena_format(&file->arena, "%s%s", own, model) : NULL;
+  return text && model ? strut_arena_format(&file->arena, "%s%s", text, model) : NULL;
 }
 
 const char *strut_study_notes(strut_study_file *file) {
@@ -494,6 +503,10 @@ strut_status strut_study_try(strut_study_file *file, const strut_study_value *va
 
 void strut_study_close(strut_study_file *file) {
   for (size_t i = 0; i < file->source_count; i++) strut_scene_source_free(file->sources[i]);
+  for (size_t i = 0; i < file->table_count; i++) {
+    strut_diagnostics_free(&file->tables[i].diagnostics);
+    strut_safe_text_free(&file->tables[i].file);
+  }
   strut_diagnostics_free(&file->diagnostics);
   strut_diagnostics_free(&file->model_diagnostics);
   strut_document_free(&file->document);
