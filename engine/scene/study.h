@@ -206,6 +206,8 @@ typedef struct strut_study {
   uint32_t form_from;                            /* strut_form_source */
   uint32_t form_objective;                       /* strut_form_objective */
   double form_least_tension, form_least_density; /* [N], [N/m] */
+  int64_t limit_evaluations; /* of the forces, in each run of a point; 0: any number */
+  double limit_time;         /* of a point [s], by the clock; 0: any */
 } strut_study;
 
 #endif

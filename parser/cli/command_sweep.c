@@ -33,7 +33,9 @@ static const strut_option options[] = {
 };
 
 enum { MOST_THREADS = 4096, MOST_LANES = 8 };
-static const char table_name[] = "table.csv";
+static const char table_name[] = "table.csv", partial_name[] = "table-partial.csv";
+/* The table of a sweep that is running is written anew after these times, ever less often [s]. */
+static const double FIRST_PARTIAL = 2.0, RAREST_PARTIAL = 60.0;
 
 /* Concurrency; 0: automatic. */
 typedef struct concurrency {
@@ -86,23 +88,60 @@ static strut_status show_status(const strut_arguments *arguments, strut_sweep_st
   return status;
 }
 
+/* What a running sweep shows: progress, and now and then the rows that there are. */
+typedef struct display {
+  strut_sweep_progress progress;
+  strut_slots *slots;
+  const char *directory; /* NULL: no partial table, of a shard */
+  double next, interval; /* [s] since the sweep began */
+} display;
+
+static void show(void *context, const strut_sweep_state *state) {
+  display *d = context;
+  strut_sweep_progress_show(&d->progress, state);
+  if (!d->directory || state->seconds < d->next) return;
+  strut_slots *const sources[] = {d->slots};
+  strut_study_table_write_partial(d->directory, partial_name, sources, 1, NULL, NULL);
+  if (d->interval < RAREST_PARTIAL) d->interval *= 2.0;
+  d->next = state->seconds + d->interval;
+}
+
+/* The rows of a sweep that has ended before its last point. */
+static void write_partial(const char *directory, strut_slots *slots) {
+  int64_t rows = 0;
+  strut_error error = {0};
+  strut_slots *const sources[] = {slots};
+  strut_status status =
+      strut_study_table_write_partial(directory, partial_name, sources, 1, &rows, &error);
+  if (status)
+    strut_print_error(&error);
+  else
+    fprintf(stderr, "strut: %s/%s has the %lld rows that are done\n", directory, partial_name,
+            (long long)rows);
+}
+
 static strut_status run_points(const strut_arguments *arguments, strut_sweep_study *study,
-                               concurrency at_a_time, strut_slots *slots, strut_sweep_state *state,
-                               strut_error *error) {
-  strut_sweep_progress progress = strut_sweep_progress_begin(&study->plan, arguments->quiet);
+                               concurrency at_a_time, bool partial, strut_slots *slots,
+                               strut_sweep_state *state, strut_error *error) {
+  display shown = {.progress = strut_sweep_progress_begin(&study->plan, arguments->quiet),
+                   .slots = slots,
+                   .directory = partial ? arguments->output : NULL,
+                   .next = FIRST_PARTIAL,
+                   .interval = FIRST_PARTIAL};
   const strut_sweep_options how = {.threads = (int)at_a_time.threads,
                                    .lanes = (int)at_a_time.lanes,
                                    .interrupt = strut_interrupt_watch(),
                                    .directory = arguments->output,
-                                   .progress = strut_sweep_progress_show,
-                                   .progress_context = &progress};
+                                   .progress = show,
+                                   .progress_context = &shown};
   strut_status status = strut_sweep_texts_write(arguments, study, error);
   if (!status) status = strut_sweep_run(&study->plan, slots, &how, state, error);
-  strut_sweep_progress_end(&progress);
+  strut_sweep_progress_end(&shown.progress);
   strut_sweep_print_warnings(state);
   strut_error late = {0};
   strut_status synced = strut_slots_sync(slots, &late);
   if (!status && synced) status = strut_fail(error, synced, "%s", late.message);
+  if (status && partial && state->done > 0) write_partial(arguments->output, slots);
   if (status == STRUT_INTERRUPTED)
     strut_fail(error, status, "interrupted after %lld of %lld points; the same command resumes",
                (long long)state->done, (long long)state->points);
@@ -122,6 +161,7 @@ static strut_status complete_sweep(const strut_arguments *arguments, strut_sweep
       shard.count ? STRUT_OK
                   : strut_study_table_write(arguments->output, table_name, sources, 1, &error);
   if (status) return strut_print_failure(status, &error);
+  if (!shard.count) strut_file_remove(arguments->output, partial_name);
   if (!shard.count) status = strut_sweep_figures_draw(&study->plan, arguments->output, table);
   if (status) return status;
   if (!arguments->quiet || arguments->json)
@@ -152,7 +192,8 @@ static strut_status compute_points(const strut_arguments *arguments, strut_sweep
   if (!status && arguments->retry) status = strut_slots_retry(slots, &error);
   if (!status && !shard.count && strut_slots_missing(slots) > 0)
     strut_file_remove(arguments->output, table_name); /* outdated */
-  if (!status) status = run_points(arguments, study, at_a_time, slots, &state, &error);
+  if (!status)
+    status = run_points(arguments, study, at_a_time, !shard.count, slots, &state, &error);
   strut_print_failure(status, &error);
   if (!status) status = complete_sweep(arguments, study, shard, slots, &state);
   strut_slots_close(slots);
@@ -201,6 +242,7 @@ const strut_command strut_command_sweep = {
         "stores every result as soon as its point is finished. After any interruption the same\n"
         "command resumes; the final table is the same byte for byte, whatever the number of\n"
         "threads. Remove points.slots to start afresh.\n"
+        "An interrupted sweep leaves table-partial.csv, the rows that are done.\n"
         "A failed point is a row that gives the reason; the exit code is then 3, and only --retry\n"
         "recomputes it. Ctrl-C stops after a moment.\n",
     .options = options,

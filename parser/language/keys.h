@@ -67,7 +67,8 @@
   X(FORM, "form", FORM_FROM) \
   X(POINTS, "points", POINTS_FILE) \
   X(SAMPLE, "sample", SAMPLE_COUNT) \
-  X(DISTRIBUTION, "distribution", DISTRIBUTION_UNIFORM)
+  X(DISTRIBUTION, "distribution", DISTRIBUTION_UNIFORM) \
+  X(LIMIT, "limit", LIMIT_EVALUATIONS)
 /* clang-format on */
 
 /** The mappings of the language. */

@@ -287,6 +287,7 @@
   X(STUDY, LOWEST, "lowest", NUMBER, NONE, WHOLE(1, 20), "3", OPTIONAL, 0, "", FIELD(strut_study, lowest), "How many `energies`, `states`, `barriers`, `frequencies` and `damping_ratios` a row lists, the lowest first.") \
   X(STUDY, AT, "at", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study, at), "The equilibrium of modes, rigidity and path, as `--at` of these commands.") \
   X(STUDY, PATH, "path", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "What `compute: path` follows.") \
+  X(STUDY, LIMIT, "limit", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "What a point may cost. One that needs more fails, and its row says so.") \
   X(STUDY, FORM, "form", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "How `compute: form` finds the form.") \
   X(RANGE, FROM, "from", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "First value.") \
   X(RANGE, TO, "to", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "Last value, if the steps meet it.") \
@@ -337,7 +338,9 @@
   X(DISTRIBUTION, LOG_UNIFORM, "log_uniform", NUMBERS, CONTEXT, ANY, "", OPTIONAL, 10, "", BY_HAND, "`[LEAST, MOST]`, on one side of 0; the logarithm is uniform.") \
   X(DISTRIBUTION, NORMAL, "normal", NUMBERS, CONTEXT, ANY, "", OPTIONAL, 10, "", BY_HAND, "`[MEAN, DEVIATION]`.") \
   X(DISTRIBUTION, LOGNORMAL, "lognormal", NUMBERS, CONTEXT, ANY, "", OPTIONAL, 10, "", BY_HAND, "`[MEDIAN, DEVIATION]`, the deviation that of the natural logarithm, without unit.") \
-  X(DISTRIBUTION, TRIANGULAR, "triangular", NUMBERS, CONTEXT, ANY, "", OPTIONAL, 10, "", BY_HAND, "`[LEAST, MODE, MOST]`.")
+  X(DISTRIBUTION, TRIANGULAR, "triangular", NUMBERS, CONTEXT, ANY, "", OPTIONAL, 10, "", BY_HAND, "`[LEAST, MODE, MOST]`.") \
+  X(LIMIT, EVALUATIONS, "evaluations", NUMBER, NONE, WHOLE(1, 1000000000000000), "none", OPTIONAL, 0, "", FIELD(strut_study, limit_evaluations), "Force evaluations of each run, the check's too. The same points fail on every machine.") \
+  X(LIMIT, TIME, "time", NUMBER, TIME, ABOVE_ZERO, "none", OPTIONAL, 0, "", FIELD(strut_study, limit_time), "Time of a point by the clock. Which points fail depends on the machine and its load; `--retry` computes them again.")
 
 /* clang-format on */
 

@@ -286,11 +286,12 @@ strut_status strut_sweep_run(const strut_sweep_plan *plan, strut_slots *slots,
   int threads = options->threads > 0 ? options->threads : strut_sweep_threads();
   strut_arena arena = {0};
   strut_error own = {0};
-  sweep s = {.worker = {plan, options, strut_equilibrium_cache_create()},
-             .slots = slots,
-             .state = state,
-             .began = strut_run_clock(),
-             .error = error ? error : &own};
+  sweep s = {
+      .worker = {.plan = plan, .options = options, .standing = strut_equilibrium_cache_create()},
+      .slots = slots,
+      .state = state,
+      .began = strut_run_clock(),
+      .error = error ? error : &own};
   int32_t lanes = lanes_for(options->lanes, threads, strut_slots_missing(slots));
   strut_sweep_job *jobs = make_jobs(plan, &arena, (size_t)threads * (size_t)lanes);
   int64_t count = strut_slots_plan_of(slots)->count;
@@ -299,12 +300,17 @@ strut_status strut_sweep_run(const strut_sweep_plan *plan, strut_slots *slots,
                                .failed = strut_slots_failed(slots),
                                .last = -1};
   if (options->directory) strut_sweep_records_clear(options->directory);
-  if (jobs && s.worker.standing)
+  double seconds = plan->study->limit_time;
+  if (jobs && seconds > 0.0)
+    s.worker.watch = strut_sweep_watch_create(seconds, jobs, (size_t)threads * (size_t)lanes,
+                                              options->interrupt);
+  if (jobs && s.worker.standing && (s.worker.watch || seconds <= 0.0))
     run_threads(&s, threads, lanes, jobs);
   else
     s.status = strut_fail(s.error, STRUT_NO_MEMORY, "out of memory");
   if (!s.status && options->interrupt && *options->interrupt && state->done < count)
     s.status = strut_fail(s.error, STRUT_INTERRUPTED, "interrupted");
+  strut_sweep_watch_free(s.worker.watch);
   state->seconds = strut_run_clock() - s.began;
   state->row = NULL;
   strut_equilibrium_cache_free(s.worker.standing);
