@@ -68,7 +68,8 @@
   X(POINTS, "points", POINTS_FILE) \
   X(SAMPLE, "sample", SAMPLE_COUNT) \
   X(DISTRIBUTION, "distribution", DISTRIBUTION_UNIFORM) \
-  X(LIMIT, "limit", LIMIT_EVALUATIONS)
+  X(LIMIT, "limit", LIMIT_EVALUATIONS) \
+  X(REFINE, "refine", REFINE_WHERE)
 /* clang-format on */
 
 /** The mappings of the language. */

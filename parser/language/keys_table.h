@@ -287,6 +287,7 @@
   X(STUDY, LOWEST, "lowest", NUMBER, NONE, WHOLE(1, 20), "3", OPTIONAL, 0, "", FIELD(strut_study, lowest), "How many `energies`, `states`, `barriers`, `frequencies` and `damping_ratios` a row lists, the lowest first.") \
   X(STUDY, AT, "at", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study, at), "The equilibrium of modes, rigidity and path, as `--at` of these commands.") \
   X(STUDY, PATH, "path", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "What `compute: path` follows.") \
+  X(STUDY, REFINE, "refine", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Divide the cells of a map where a column changes, instead of computing all points of a fine grid.") \
   X(STUDY, LIMIT, "limit", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "What a point may cost. One that needs more fails, and its row says so.") \
   X(STUDY, FORM, "form", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "How `compute: form` finds the form.") \
   X(RANGE, FROM, "from", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "First value.") \
@@ -340,7 +341,11 @@
   X(DISTRIBUTION, LOGNORMAL, "lognormal", NUMBERS, CONTEXT, ANY, "", OPTIONAL, 10, "", BY_HAND, "`[MEDIAN, DEVIATION]`, the deviation that of the natural logarithm, without unit.") \
   X(DISTRIBUTION, TRIANGULAR, "triangular", NUMBERS, CONTEXT, ANY, "", OPTIONAL, 10, "", BY_HAND, "`[LEAST, MODE, MOST]`.") \
   X(LIMIT, EVALUATIONS, "evaluations", NUMBER, NONE, WHOLE(1, 1000000000000000), "none", OPTIONAL, 0, "", FIELD(strut_study, limit_evaluations), "Force evaluations of each run, the check's too. The same points fail on every machine.") \
-  X(LIMIT, TIME, "time", NUMBER, TIME, ABOVE_ZERO, "none", OPTIONAL, 0, "", FIELD(strut_study, limit_time), "Time of a point by the clock. Which points fail depends on the machine and its load; `--retry` computes them again.")
+  X(LIMIT, TIME, "time", NUMBER, TIME, ABOVE_ZERO, "none", OPTIONAL, 0, "", FIELD(strut_study, limit_time), "Time of a point by the clock. Which points fail depends on the machine and its load; `--retry` computes them again.") \
+  X(REFINE, WHERE, "where", NAME, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_study, refine_where), "A column of the table, such as `outcome`. Cells whose points differ in it are divided; a point that failed differs from others.") \
+  X(REFINE, DEPTH, "depth", NUMBER, NONE, WHOLE(1, 10), "", REQUIRED, 0, "", BY_HAND, "How often: the finest cells have 2^depth of the width of those of the axes.") \
+  X(REFINE, BY, "by", NUMBER, NONE, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_study, refine_by), "Numbers must differ by more than this, in the SI unit of the column.") \
+  X(REFINE, AXES, "axes", NAMES, NONE, ANY, "the axes with ranges", OPTIONAL, 0, "", BY_HAND, "The parameters of the two axes to divide.")
 
 /* clang-format on */
 

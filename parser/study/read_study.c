@@ -363,6 +363,7 @@ static void read_points(strut_study_reader *r, strut_fields *top, const strut_ov
   read_settings(r, set, count, true);
   read_settings(r, derive, count, false);
   if (axes->state == STRUT_GIVEN) strut_study_read_axes(r, axes->value);
+  strut_study_read_refine(r, strut_slot_of(top, STRUT_KEY_STUDY_REFINE));
   check_overrides(r, count);
 }
 

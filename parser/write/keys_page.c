@@ -108,6 +108,7 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
     [STRUT_SECTION_POINTS] =
         "`axes: [{points: {...}}]` of a study; `{points: FILE}` is short for it.",
     [STRUT_SECTION_SAMPLE] = "`axes: [{sample: {...}}]` of a study: parameters from distributions.",
+    [STRUT_SECTION_REFINE] = "`refine: {...}` of a study.",
     [STRUT_SECTION_LIMIT] = "`limit: {...}` of a study.",
     [STRUT_SECTION_DISTRIBUTION] = "`over: {NAME: {...}}` of a sample, with one of these keys.",
     [STRUT_SECTION_SENSOR] =

@@ -99,6 +99,7 @@ static const struct exception {
     {STRUT_SECTION_CONTROLLER, "every", "of the signal that the controller is"},
     {STRUT_SECTION_STARTS, "above", "in the unit of the sensor"},
     {STRUT_SECTION_STARTS, "below", "in the unit of the sensor"},
+    {STRUT_SECTION_REFINE, "depth", "changes the axes too"},
     {STRUT_SECTION_POINTS, "file", "a path, from the study's folder"},
     {STRUT_SECTION_SAMPLE, "count", "of values that are made at once"},
     {STRUT_SECTION_SAMPLE, "seed", "of values that are made at once"},
