@@ -49,7 +49,7 @@ static void keep(reader *r, const char *cell) {
 
 /* A cell in quotes, which are doubled inside. */
 static void read_quoted(reader *r) {
-  strut_place begin = {r->line, r->column, 1};
+  strut_place begin = strut_place_at(r->line, r->column, 1);
   step(r);
   const char *from = r->at;
   char *copy = NULL;
@@ -88,7 +88,7 @@ static void read_quoted(reader *r) {
     break;
   }
   if (r->at < r->end && *r->at != ',' && *r->at != '\n' && *r->at != '\r')
-    strut_diagnose(&r->diagnostics, (strut_place){r->line, r->column, 1},
+    strut_diagnose(&r->diagnostics, strut_place_at(r->line, r->column, 1),
                    "expected a comma or the end of the line after a quoted cell");
   while (r->at < r->end && *r->at != ',' && *r->at != '\n') step(r);
 }
@@ -120,7 +120,7 @@ static size_t read_line(reader *r) {
 static void read_lines(reader *r) {
   size_t columns = read_line(r);
   if (columns > MOST_COLUMNS)
-    strut_diagnose(&r->diagnostics, (strut_place){1, 1, 1}, "more than %d columns", MOST_COLUMNS);
+    strut_diagnose(&r->diagnostics, strut_place_at(1, 1, 1), "more than %d columns", MOST_COLUMNS);
   r->table->column_count = columns;
   while (r->at < r->end && !r->failed) {
     uint32_t line = r->line;
@@ -130,7 +130,7 @@ static void read_lines(reader *r) {
       continue;
     }
     if (count != columns && !r->failed)
-      strut_diagnose(&r->diagnostics, (strut_place){line, 1, 1},
+      strut_diagnose(&r->diagnostics, strut_place_at(line, 1, 1),
                      "%zu cells, expected %zu as in the header", count, columns);
     r->table->row_count++;
   }
@@ -198,12 +198,12 @@ static strut_status read_text(reader *r) {
   if (r->end - r->at >= 3 && memcmp(r->at, "\xEF\xBB\xBF", 3) == 0)
     r->at += 3; /* a byte order mark */
   if (r->at == r->end) {
-    strut_diagnose(&r->diagnostics, (strut_place){0, 0, 0}, "the file is empty, expected a table");
+    strut_diagnose(&r->diagnostics, (strut_place){0}, "the file is empty, expected a table");
   } else {
     read_lines(r);
   }
   if (!r->failed && !r->diagnostics.count && !r->table->row_count)
-    strut_diagnose(&r->diagnostics, (strut_place){0, 0, 0}, "the table has a header but no rows");
+    strut_diagnose(&r->diagnostics, (strut_place){0}, "the table has a header but no rows");
   if (!r->failed && !r->diagnostics.count && !make_columns(r)) r->failed = true;
   if (r->failed) return strut_print_out_of_memory();
   if (!r->diagnostics.count) return STRUT_OK;

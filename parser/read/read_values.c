@@ -87,7 +87,8 @@ const char *strut_hint(strut_reader *reader, const char *word, strut_names *name
 
 strut_place strut_root_place(const strut_reader *reader) {
   strut_place place = reader->document.root->place;
-  return (strut_place){place.line, place.column, 1};
+  place.length = 1;
+  return place;
 }
 
 const char *strut_format_cycle(strut_reader *reader, const char *(*name)(strut_reader *, size_t),
@@ -153,7 +154,7 @@ static strut_place place_within(const strut_tree *value, const strut_expression_
   size_t quotes = place.length > points ? place.length - points : 0;
   if (quotes != (value->quoted ? 2u : 0u)) return place;
   place.column += (uint32_t)(error->offset + quotes / 2);
-  place.length = error->length ? (uint32_t)error->length : 1;
+  place.length = error->length ? (uint32_t)error->length & STRUT_PLACE_LENGTH_MOST : 1;
   return place;
 }
 
