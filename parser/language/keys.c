@@ -258,6 +258,7 @@ const char *strut_key_expected(int key, char *buffer, size_t size) {
       return "an expression such as com.vy, n1.y - n2.y or m1.force";
     case STRUT_TYPE_AXES: return "a list of axes such as [{friction: [0.1, 0.2]}]";
     case STRUT_TYPE_TIMES: return "a list of times such as [0 s, 20 ms]";
+    case STRUT_TYPE_FREE: return k->words;
     case STRUT_TYPE_MAP: return "a mapping {key: value, ...}";
     case STRUT_TYPE_THINGS: return "a mapping {name: ..., ...}";
   }

@@ -19,6 +19,10 @@
 /* clang-format off */
 #define STRUT_SECTIONS(X) \
   X(SCENE, "scene", SCENE_VERSION) \
+  X(PART, "part", PART_USE) \
+  X(PLACE, "place", PLACE_PART) \
+  X(REPEAT, "repeat", REPEAT_COUNT) \
+  X(NEXT, "next", NEXT_MERGE) \
   X(NODE, "node", NODE_POSITION) \
   X(MOVES, "moves", MOVES_ALONG_X) \
   X(MEMBER, "member", MEMBER_GROUP) \
@@ -103,7 +107,8 @@ typedef enum strut_key_type {
   STRUT_TYPE_MAP,           /* the keys of the section that has the key's name */
   STRUT_TYPE_THINGS,        /* a mapping from names to things, described by `words` */
   STRUT_TYPE_NODE_RING,     /* the names of three nodes or more */
-  STRUT_TYPE_NAME_PAIR      /* the names of two things */
+  STRUT_TYPE_NAME_PAIR,     /* the names of two things */
+  STRUT_TYPE_FREE           /* several forms, described by `words` */
 } strut_key_type;
 
 /** The dimension of a number; CONTEXT: it depends on the use of the mapping. */

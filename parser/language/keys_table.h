@@ -21,7 +21,7 @@
   X(SCENE, SOURCE, "source", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_scene, source), "Where its numbers come from.") \
   X(SCENE, PARAMETERS, "parameters", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression or a quoted text", BY_HAND, "Named values that expressions may use and `--set` may change.") \
   X(SCENE, GROUPS, "groups", THINGS, NONE, ANY, "", OPTIONAL, 0, "keys of a member, a node or a contact", BY_HAND, "Keys that several members, nodes or contacts share. A thing's own keys take precedence.") \
-  X(SCENE, NODES, "nodes", THINGS, NONE, ANY, "", REQUIRED, 0, "`[x, y]` or the keys of a node", BY_HAND, "The points of the structure.") \
+  X(SCENE, NODES, "nodes", THINGS, NONE, ANY, "", OPTIONAL, 0, "`[x, y]` or the keys of a node", BY_HAND, "The points of the structure. Required unless parts are placed; the name of a placed thing changes or adds its keys, and `*` in it stands for any part of a name between dots.") \
   X(SCENE, MEMBERS, "members", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a member", BY_HAND, "The bars, springs and cables between the nodes.") \
   X(SCENE, HINGES, "hinges", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a hinge", BY_HAND, "Springs of the angle between two arms that meet in a node.") \
   X(SCENE, CELLS, "cells", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a cell", BY_HAND, "Polygons of nodes under pressure.") \
@@ -47,6 +47,54 @@
   X(SCENE, STATES, "states", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a state", BY_HAND, "Numbers that a run integrates beside the motion.") \
   X(SCENE, OSCILLATORS, "oscillators", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of an oscillator", BY_HAND, "Phase oscillators, each an internal state with the same name.") \
   X(SCENE, CONTROLLERS, "controllers", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a controller", BY_HAND, "PID controllers of sensors, each a signal with the same name.") \
+  X(SCENE, PARTS, "parts", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a part", BY_HAND, "Structures to be placed, once or many times.") \
+  X(SCENE, PLACE, "place", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a [place](#place)", BY_HAND, "Copies of parts. What is in a copy is called `NAME.THING`, or `NAME.0.THING` and so on where it is repeated.") \
+  X(SCENE, MERGE, "merge", FREE, NONE, ANY, "", OPTIONAL, 0, "touching, or {node: other node, ...}", BY_HAND, "Nodes that become one: those named, or with `touching` all that lie in one place.") \
+  X(PART, USE, "use", TEXT, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "A file whose structure is the part, relative to this one; its own keys lie over it.") \
+  X(PART, PARAMETERS, "parameters", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression", BY_HAND, "Values that `set` of a placement may change.") \
+  X(PART, GROUPS, "groups", THINGS, NONE, ANY, "", OPTIONAL, 0, "keys of a member, a node or a contact", BY_HAND, "As in a scene; those of the scene are known too.") \
+  X(PART, NODES, "nodes", THINGS, NONE, ANY, "", OPTIONAL, 0, "`[x, y]` or the keys of a node", BY_HAND, "As in a scene, in the part's own coordinates.") \
+  X(PART, MEMBERS, "members", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a member", BY_HAND, "As in a scene.") \
+  X(PART, HINGES, "hinges", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a hinge", BY_HAND, "As in a scene.") \
+  X(PART, CELLS, "cells", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a cell", BY_HAND, "As in a scene.") \
+  X(PART, COLLISIONS, "collisions", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a collision", BY_HAND, "As in a scene.") \
+  X(PART, BEAMS, "beams", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a beam", BY_HAND, "As in a scene.") \
+  X(PART, ACTUATORS, "actuators", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of an actuator", BY_HAND, "As in a scene.") \
+  X(PART, LOADS, "loads", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a load", BY_HAND, "As in a scene; forces turn with the part.") \
+  X(PART, UNBALANCES, "unbalances", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of an unbalance", BY_HAND, "As in a scene.") \
+  X(PART, SIGNALS, "signals", THINGS, NONE, ANY, "", OPTIONAL, 0, "a signal", BY_HAND, "As in a scene; those of the scene are known too.") \
+  X(PART, CONFIGURATIONS, "configurations", THINGS, NONE, ANY, "", OPTIONAL, 0, "`{NODE: [x, y], ...}` or the keys of a [configuration](#configuration)", BY_HAND, "Shapes of the part; what is not in the copy stays as drawn.") \
+  X(PART, SENSORS, "sensors", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a sensor", BY_HAND, "As in a scene.") \
+  X(PART, STATES, "states", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a state", BY_HAND, "As in a scene.") \
+  X(PART, OSCILLATORS, "oscillators", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of an oscillator", BY_HAND, "As in a scene.") \
+  X(PART, CONTROLLERS, "controllers", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a controller", BY_HAND, "As in a scene.") \
+  X(PART, CONTACTS, "contacts", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a contact", BY_HAND, "Nodes that may touch the ground, by name, and settings of their contacts; `{}` for none.") \
+  X(PART, PARTS, "parts", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a part", BY_HAND, "Parts that only this one knows.") \
+  X(PART, PLACE, "place", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a [place](#place)", BY_HAND, "Copies of other parts within this one.") \
+  X(PART, MERGE, "merge", FREE, NONE, ANY, "", OPTIONAL, 0, "touching, or {node: other node, ...}", BY_HAND, "As in a scene, among the nodes of the part.") \
+  X(PART, PORTS, "ports", THINGS, NONE, ANY, "all nodes", OPTIONAL, 0, "the name of a node", BY_HAND, "Names by which nodes are seen from outside; then no other nodes are.") \
+  X(PLACE, PART, "part", NAME, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "The part to copy.") \
+  X(PLACE, FLIP, "flip", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|x|y|both", BY_HAND, "Changes the sign of coordinates. The order is always: flip, scale, turn, move.") \
+  X(PLACE, SCALE, "scale", FREE, NONE, ANY, "1", OPTIONAL, 0, "a number above zero, or fit", BY_HAND, "Multiplies all lengths of the copy; masses, forces and stiffnesses stay. `fit`: what `onto` needs.") \
+  X(PLACE, TURN, "turn", NUMBER, ANGLE, ANY, "0", OPTIONAL, 1, "", BY_HAND, "Turns the copy about its origin, counter-clockwise.") \
+  X(PLACE, AT, "at", PAIR, LENGTH, ANY, "[0, 0]", OPTIONAL, 2, "", BY_HAND, "Where its origin comes to lie.") \
+  X(PLACE, ONTO, "onto", THINGS, NONE, ANY, "", OPTIONAL, 2, "the name of a node outside", BY_HAND, "Instead of `at`: nodes of the copy and those on which they come to lie, which are merged. Two pairs turn it too.") \
+  X(PLACE, SET, "set", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression", BY_HAND, "Parameters of the part; `i` and `j` are the numbers of the copy.") \
+  X(PLACE, REPEAT, "repeat", FREE, NONE, ANY, "once", OPTIONAL, 0, "a number of copies, or the keys of repeat", BY_HAND, "Several copies.") \
+  X(REPEAT, COUNT, "count", FREE, NONE, ANY, "", REQUIRED, 0, "a whole number, or [n, m] for a lattice", BY_HAND, "How many; numbered from 0.") \
+  X(REPEAT, STEP, "step", FREE, NONE, ANY, "[0, 0]", OPTIONAL, 0, "a displacement such as [1 m, 0], or two of a lattice", BY_HAND, "From each copy to the next, in the copy's own frame.") \
+  X(REPEAT, TURN, "turn", NUMBER, ANGLE, ANY, "0", OPTIONAL, 0, "", BY_HAND, "Turns each copy against the one before.") \
+  X(REPEAT, SCALE, "scale", NUMBER, NONE, ABOVE_ZERO, "1", OPTIONAL, 0, "", BY_HAND, "Size of each copy over that of the one before.") \
+  X(REPEAT, ABOUT, "about", PAIR, LENGTH, ANY, "[0, 0]", OPTIONAL, 0, "", BY_HAND, "The point about which it is turned and scaled.") \
+  X(REPEAT, NEXT, "next", FREE, NONE, ANY, "", OPTIONAL, 0, "the keys of next, or two such mappings for a lattice", BY_HAND, "What ties a copy to the next one.") \
+  X(REPEAT, CLOSED, "closed", FREE, NONE, ANY, "no", OPTIONAL, 0, "yes, no, or {node: node of the first copy, ...}", BY_HAND, "The first copy is the next of the last one; a mapping says under which other names, as in a ring with a twist.") \
+  X(NEXT, MERGE, "merge", THINGS, NONE, ANY, "", OPTIONAL, 0, "the name of a node of the next copy", BY_HAND, "Nodes of a copy that are nodes of the next one: `{b: a}`.") \
+  X(NEXT, MEMBERS, "members", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a member", BY_HAND, "Members between them; `next.NAME` is a node of the next copy.") \
+  X(NEXT, HINGES, "hinges", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a hinge", BY_HAND, "Likewise.") \
+  X(NEXT, CELLS, "cells", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a cell", BY_HAND, "Likewise.") \
+  X(NEXT, COLLISIONS, "collisions", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a collision", BY_HAND, "Likewise.") \
+  X(NEXT, BEAMS, "beams", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a beam", BY_HAND, "Likewise.") \
+  X(NEXT, ACTUATORS, "actuators", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of an actuator", BY_HAND, "Likewise.") \
   X(NODE, POSITION, "position", PAIR, LENGTH, ANY, "", REQUIRED, 0, "", FIELD(strut_node, position), "Position in the drawn shape.") \
   X(NODE, GROUP, "group", GROUPS, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Groups that provide defaults; later groups take precedence.") \
   X(NODE, MASS, "mass", NUMBER, MASS, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_node, mass), "Point mass, in addition to the masses of the members.") \

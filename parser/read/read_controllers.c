@@ -74,7 +74,7 @@ static bool read_strength(strut_reader *reader, const strut_tree *key, strut_own
 static bool put_coupling(builder *b, const strut_tree *key, strut_owner owner, int32_t own,
                          double bias, strut_dimension rate) {
   strut_reader *reader = b->reader;
-  int32_t other = strut_name_map_find(&reader->state_names, key->text);
+  int32_t other = strut_find_named(reader, &reader->state_names, NULL, key->text);
   double strength;
   bool phase = other >= 0 && strut_dimension_equal(reader->state_dimension[other], STRUT_DIM_ANGLE);
   if (!phase || other == own)
@@ -154,8 +154,8 @@ void strut_list_controllers(strut_reader *reader) {
   if (!map || !reader->named) return;
   reader->controller_broken =
       strut_reader_allocate(reader, &reader->scratch, map->count + 1, sizeof(bool));
-  for (const strut_tree *key = map->first; key && reader->controller_broken;
-       key = key->next->next, i++) {
+  for (const strut_tree *key = strut_first_entry(reader, map); key && reader->controller_broken;
+       key = strut_following_entry(reader, key), i++) {
     bool fine = strut_check_variable_name(reader, key, "controller");
     if (fine && strut_name_map_find(&reader->signal_names, key->text) >= 0) {
       strut_report_error(reader, key->place, "there is a signal '%s' already", key->text);
@@ -328,7 +328,7 @@ static bool read_controller(strut_reader *reader, const strut_tree *key) {
 void strut_read_controllers(strut_reader *reader) {
   const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_CONTROLLERS);
   size_t i = 0;
-  for (const strut_tree *key = map ? map->first : NULL; key && reader->controller_broken;
-       key = key->next->next, i++)
+  for (const strut_tree *key = strut_first_entry(reader, map); key && reader->controller_broken;
+       key = strut_following_entry(reader, key), i++)
     if (!reader->controller_broken[i] && !read_controller(reader, key)) reader->failed = true;
 }

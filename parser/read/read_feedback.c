@@ -67,6 +67,21 @@ static int32_t read_item(strut_reader *reader, const strut_slot *slot, int key, 
                               strut_node_name, scene->node_count);
 }
 
+/* A direction turns with the copy; the scene's sensors know those of the axes only. */
+static bool turn_sensor(strut_reader *reader, const strut_slot *along, strut_sensor *sensor) {
+  bool reversed;
+  int axis = strut_scope_axis(reader, (int)sensor->along, &reversed);
+  sensor->along = axis < 0 ? sensor->along : (uint32_t)axis;
+  if (axis >= 0 && !reversed) return true;
+  strut_report_error(
+      reader, along->value->place,
+      "sensor '%s' looks along %s, which in this copy points %s; sense a length or an "
+      "angle, or sense it outside of the part",
+      strut_local_name(reader, sensor->name), along->value->text,
+      axis < 0 ? "along neither axis" : "the other way");
+  return false;
+}
+
 static bool read_sensor(strut_reader *reader, const strut_tree *key, strut_sensor *sensor) {
   strut_owner owner = {"sensor", key->text};
   bool fine = strut_check_variable_name(reader, key, "sensor"), known = false;
@@ -97,7 +112,7 @@ static bool read_sensor(strut_reader *reader, const strut_tree *key, strut_senso
                        "sensor '%s' has 'along', which belongs to a position or a velocity",
                        key->text);
   else
-    return fine;
+    return fine && (!directed || turn_sensor(reader, along, sensor));
   return false;
 }
 
@@ -109,7 +124,8 @@ void strut_read_sensors(strut_reader *reader) {
   reader->sensor_source =
       strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->sensor_source);
   if (!scene->sensors || !reader->sensor_source) return;
-  for (const strut_tree *key = map->first; key; key = key->next->next) {
+  for (const strut_tree *key = strut_first_entry(reader, map); key;
+       key = strut_following_entry(reader, key)) {
     size_t i = strut_next_entry(reader, &scene->sensor_count);
     scene->sensors[i] = (strut_sensor){.name = strut_keep_text(reader, key->text), .item = -1};
     strut_add_name(reader, &reader->sensor_names, scene->sensors[i].name, i);
@@ -122,8 +138,8 @@ void strut_read_sensors(strut_reader *reader) {
 
 bool strut_find_sensed(strut_reader *reader, const char *name, strut_column *column,
                        strut_dimension *dimension) {
-  int32_t sensor = strut_name_map_find(&reader->sensor_names, name);
-  int32_t state = strut_name_map_find(&reader->state_names, name);
+  int32_t sensor = strut_find_named(reader, &reader->sensor_names, NULL, name);
+  int32_t state = strut_find_named(reader, &reader->state_names, NULL, name);
   if (state >= 0) {
     column->kind = STRUT_COLUMN_STATE, column->item = state;
     *dimension = reader->state_dimension[state];
@@ -138,7 +154,7 @@ bool strut_find_sensed(strut_reader *reader, const char *name, strut_column *col
 int strut_find_sensor_rate(strut_reader *reader, strut_piece piece, strut_column *column,
                            strut_dimension *dimension, strut_refusal *refusal) {
   const char *name = strut_arena_text(&reader->scratch, piece.text, piece.length);
-  int32_t i = name ? strut_name_map_find(&reader->sensor_names, name) : -1;
+  int32_t i = name ? strut_find_named(reader, &reader->sensor_names, NULL, name) : -1;
   if (i >= 0 && strut_sensor_has_rate(reader->scene->sensors[i].kind)) {
     column->kind = STRUT_COLUMN_SENSOR_RATE, column->item = i;
     *dimension = strut_sensor_dimension(reader->scene->sensors[i].kind);
@@ -169,7 +185,7 @@ static int find_word(strut_reader *reader, strut_piece word, strut_column *colum
     return 1;
   }
   if (strut_find_sensed(reader, name, column, dimension)) return 1;
-  if (strut_name_map_find(&reader->signal_names, name) >= 0) {
+  if (strut_find_named(reader, &reader->signal_names, NULL, name) >= 0) {
     column->kind = STRUT_COLUMN_SIGNAL;
     column->item = strut_use_signal(reader, name, dimension);
     return column->item >= 0 ? 1 : -1;
@@ -207,7 +223,7 @@ static int claims_word(void *context, strut_piece word) {
   if (word.length == 1 && *word.text == 't') return 1;
   const char *name = strut_arena_text(&reader->scratch, word.text, word.length);
   if (!name) reader->out_of_memory = true;
-  return name && strut_name_map_find(&reader->sensor_names, name) >= 0 ? -1 : 0;
+  return name && strut_find_named(reader, &reader->sensor_names, NULL, name) >= 0 ? -1 : 0;
 }
 
 bool strut_read_signal_program(strut_reader *reader, const strut_tree *value, const char *key,
@@ -297,9 +313,11 @@ void strut_list_states(strut_reader *reader) {
   reader->state_dimension =
       strut_reader_allocate(reader, scratch, most, sizeof *reader->state_dimension);
   if (!scene->states || !reader->state_source || !reader->state_dimension) return;
-  for (const strut_tree *key = states ? states->first : NULL; key; key = key->next->next)
+  for (const strut_tree *key = strut_first_entry(reader, states); key;
+       key = strut_following_entry(reader, key))
     list_state(reader, key);
-  for (const strut_tree *key = oscillators ? oscillators->first : NULL; key; key = key->next->next)
+  for (const strut_tree *key = strut_first_entry(reader, oscillators); key;
+       key = strut_following_entry(reader, key))
     list_oscillator(reader, key);
 }
 
@@ -323,7 +341,8 @@ void strut_read_states(strut_reader *reader) {
   const strut_tree *states = strut_entries(reader, STRUT_KEY_SCENE_STATES);
   const strut_tree *oscillators = strut_entries(reader, STRUT_KEY_SCENE_OSCILLATORS);
   strut_quantity q;
-  for (const strut_tree *key = states ? states->first : NULL; key; key = key->next->next) {
+  for (const strut_tree *key = strut_first_entry(reader, states); key;
+       key = strut_following_entry(reader, key)) {
     strut_owner owner = {"state", key->text};
     int32_t i = strut_name_map_find(&reader->state_names, key->text);
     const strut_tree *rate =
@@ -334,8 +353,8 @@ void strut_read_states(strut_reader *reader) {
                 check_rate(reader, rate, owner, "rate", reader->state_dimension[i], &q);
     reader->state_source[i].broken = !fine;
   }
-  for (const strut_tree *key = oscillators ? oscillators->first : NULL; key;
-       key = key->next->next) {
+  for (const strut_tree *key = strut_first_entry(reader, oscillators); key;
+       key = strut_following_entry(reader, key)) {
     int32_t i = strut_name_map_find(&reader->state_names, key->text);
     if (i < 0 || reader->state_source[i].broken) continue;
     reader->state_source[i].broken = !strut_read_oscillator(reader, key, i);

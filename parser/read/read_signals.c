@@ -247,6 +247,7 @@ static int32_t read_named(strut_reader *reader, strut_named_signal *named) {
   }
   named->state = STRUT_SIGNAL_READING;
   reader->signal_stack[reader->signal_depth++] = named;
+  strut_copy *scope = strut_enter_scope(reader, named->key);
   const strut_tree *value = named->key->next;
   bool fine = strut_read_name(reader, named->key, "signal");
   int32_t index = read_signal(reader, value, named->name, owner, NULL);
@@ -260,6 +261,7 @@ static int32_t read_named(strut_reader *reader, strut_named_signal *named) {
     sum.term_count = 1;
     index = term ? add_signal(reader, &sum, &m, value) : -1;
   }
+  reader->scope = scope;
   reader->signal_depth--;
   named->state = STRUT_SIGNAL_READ;
   named->index = fine ? index : -1;
@@ -302,7 +304,7 @@ static int32_t read_signal(strut_reader *reader, const strut_tree *value, const 
 }
 
 int32_t strut_use_signal(strut_reader *reader, const char *name, strut_dimension *dimension) {
-  int32_t i = strut_name_map_find(&reader->signal_names, name);
+  int32_t i = strut_find_named(reader, &reader->signal_names, NULL, name);
   int32_t index = i < 0 ? -1 : read_named(reader, &reader->named[i]);
   if (index < 0) return -1;
   strut_signal_state *state = &reader->signal_state[index];

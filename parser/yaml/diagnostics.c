@@ -87,8 +87,8 @@ void strut_diagnose_note(strut_diagnostics *diagnostics, size_t item, strut_plac
 unsigned strut_diagnostics_use(strut_diagnostics *diagnostics, const char *file, const char *text,
                                size_t length) {
   if (!diagnostics->used)
-    diagnostics->used = strut_arena_allocate(&diagnostics->arena, STRUT_USED_FILES_MOST,
-                                             sizeof *diagnostics->used);
+    diagnostics->used =
+        strut_arena_allocate(&diagnostics->arena, STRUT_USED_FILES_MOST, sizeof *diagnostics->used);
   if (!diagnostics->used || diagnostics->used_count == STRUT_USED_FILES_MOST) return 0;
   diagnostics->used[diagnostics->used_count] = (strut_used_file){file, text, length};
   return (unsigned)++diagnostics->used_count;
@@ -98,8 +98,7 @@ static bool has_note(const strut_diagnostics *diagnostics, strut_place place, co
   for (size_t i = 0; i < diagnostics->note_count; i++) {
     const strut_diagnostic *note = &diagnostics->notes[i];
     if (note->place.file == place.file && note->place.line == place.line &&
-        note->place.column == place.column &&
-        strcmp(note->message, message) == 0)
+        note->place.column == place.column && strcmp(note->message, message) == 0)
       return true;
   }
   return false;
@@ -259,8 +258,7 @@ static int compare(const void *a, const void *b) {
 
 /* The text that a place is in. */
 static strut_used_file text_of(const strut_diagnostics *diagnostics, strut_place place) {
-  if (place.file && place.file <= diagnostics->used_count)
-    return diagnostics->used[place.file - 1];
+  if (place.file && place.file <= diagnostics->used_count) return diagnostics->used[place.file - 1];
   return (strut_used_file){diagnostics->file ? diagnostics->file : "<text>", diagnostics->text,
                            diagnostics->length};
 }

@@ -25,9 +25,10 @@ enum { STRUT_USED_FILES_MOST = 255, STRUT_PLACE_LENGTH_MOST = 0xFFFFFF };
 
 /** A place in the text under examination. */
 static inline strut_place strut_place_at(uint32_t line, uint32_t column, uint32_t length) {
-  return (strut_place){.line = line,
-                       .column = column,
-                       .length = (length < STRUT_PLACE_LENGTH_MOST ? length : 0xFFFFFFu) & 0xFFFFFFu};
+  return (strut_place){
+      .line = line,
+      .column = column,
+      .length = (length < STRUT_PLACE_LENGTH_MOST ? length : 0xFFFFFFu) & 0xFFFFFFu};
 }
 
 /** A file that the text under examination uses. */

@@ -97,9 +97,8 @@ bool strut_document_scan(strut_diagnostics *diagnostics) {
   const char *text = diagnostics->text;
   size_t length = diagnostics->length;
   if (length > STRUT_TEXT_MOST) {
-    strut_diagnose(diagnostics, (strut_place){0},
-                   "the text has %zu MiB, at most %zu are read", length >> 20,
-                   STRUT_TEXT_MOST >> 20);
+    strut_diagnose(diagnostics, (strut_place){0}, "the text has %zu MiB, at most %zu are read",
+                   length >> 20, STRUT_TEXT_MOST >> 20);
     return false;
   }
   if (length >= 2 && (memcmp(text, "\xFF\xFE", 2) == 0 || memcmp(text, "\xFE\xFF", 2) == 0)) {
