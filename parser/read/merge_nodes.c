@@ -51,6 +51,7 @@ static void report_apart(merging *m, const strut_merger *merger, int32_t a, int3
   const strut_node *nodes = reader->scene->nodes;
   const strut_tree *at = merger->a ? merger->a : merger->place;
   size_t before = reader->diagnostics->count;
+  reader->ends_unknown = true;
   if (merger->a)
     strut_report_error(reader, at->place, "'%s' and '%s' cannot be one node: they are %.3g m apart",
                        nodes[a].name, nodes[b].name, apart);
