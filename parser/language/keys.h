@@ -66,7 +66,12 @@
   X(RANGE, "range", RANGE_FROM) \
   X(VARIANT, "variant", VARIANT_SOLVER) \
   X(CHECK, "check", CHECK_HALF_STEP) \
-  X(FIGURE, "figure", FIGURE_KIND)
+  X(FIGURE, "figure", FIGURE_KIND) \
+  X(PATH, "path", PATH_LOAD) \
+  X(FORM, "form", FORM_FROM) \
+  X(POINTS, "points", POINTS_FILE) \
+  X(SAMPLE, "sample", SAMPLE_COUNT) \
+  X(DISTRIBUTION, "distribution", DISTRIBUTION_UNIFORM)
 /* clang-format on */
 
 /** The mappings of the language. */
@@ -108,7 +113,8 @@ typedef enum strut_key_type {
   STRUT_TYPE_THINGS,        /* a mapping from names to things, described by `words` */
   STRUT_TYPE_NODE_RING,     /* the names of three nodes or more */
   STRUT_TYPE_NAME_PAIR,     /* the names of two things */
-  STRUT_TYPE_FREE           /* several forms, described by `words` */
+  STRUT_TYPE_FREE,          /* several forms, described by `words` */
+  STRUT_TYPE_NAMES          /* a list of names */
 } strut_key_type;
 
 /** The dimension of a number; CONTEXT: it depends on the use of the mapping. */
