@@ -46,6 +46,7 @@
   X(STATE, "state", STATE_RATE) \
   X(OSCILLATOR, "oscillator", OSCILLATOR_FREQUENCY) \
   X(CONTROLLER, "controller", CONTROLLER_SENSOR) \
+  X(RELAY, "relay", RELAY_KIND) \
   X(MAXWELL, "maxwell", MAXWELL_STIFFNESS) \
   X(STARTS, "starts", STARTS_CONTACT) \
   X(CONFIGURATION, "configuration", CONFIGURATION_CONTACTS) \

@@ -46,7 +46,7 @@
   X(SCENE, SENSORS, "sensors", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a sensor", BY_HAND, "Numbers of the motion that the expressions of signals may use.") \
   X(SCENE, STATES, "states", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a state", BY_HAND, "Numbers that a run integrates beside the motion.") \
   X(SCENE, OSCILLATORS, "oscillators", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of an oscillator", BY_HAND, "Phase oscillators, each an internal state with the same name.") \
-  X(SCENE, CONTROLLERS, "controllers", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a controller", BY_HAND, "PID controllers of sensors, each a signal with the same name.") \
+  X(SCENE, CONTROLLERS, "controllers", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a controller", BY_HAND, "PID controllers and relays, each a signal with the same name.") \
   X(NODE, POSITION, "position", PAIR, LENGTH, ANY, "", REQUIRED, 0, "", FIELD(strut_node, position), "Position in the drawn shape.") \
   X(NODE, GROUP, "group", GROUPS, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Groups that provide defaults; later groups take precedence.") \
   X(NODE, MASS, "mass", NUMBER, MASS, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_node, mass), "Point mass, in addition to the masses of the members.") \
@@ -215,6 +215,17 @@
   X(CONTROLLER, LEAST, "least", NUMBER, CONTEXT, ANY, "none", OPTIONAL, 0, "", BY_HAND, "Least value of the signal.") \
   X(CONTROLLER, MOST, "most", NUMBER, CONTEXT, ANY, "none", OPTIONAL, 0, "", BY_HAND, "Largest value. Between limits the integral follows what the limits leave (no windup).") \
   X(CONTROLLER, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, "0", OPTIONAL, 0, "", BY_HAND, "Time between samples; 0: the controller is continuous.") \
+  X(CONTROLLER, KIND, "kind", WORD, NONE, ANY, "pid", OPTIONAL, 0, "pid|relay", BY_HAND, "`relay`: the controller has the keys of a [relay](#relay) instead.") \
+  X(RELAY, KIND, "kind", WORD, NONE, ANY, "", REQUIRED, 0, "relay", BY_HAND, "Which controller it is.") \
+  X(RELAY, OF, "of", EXPRESSION, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "Its input: a sensor, or an expression as that of a signal.") \
+  X(RELAY, ON_ABOVE, "on_above", NUMBER, CONTEXT, ANY, "", OPTIONAL, 7, "", BY_HAND, "It goes on when the input rises above this, and stays so until it goes off.") \
+  X(RELAY, OFF_BELOW, "off_below", NUMBER, CONTEXT, ANY, "", OPTIONAL, 8, "", BY_HAND, "With `on_above`: it goes off when the input falls below this.") \
+  X(RELAY, ON_BELOW, "on_below", NUMBER, CONTEXT, ANY, "", OPTIONAL, 7, "", BY_HAND, "Instead, as a thermostat: it goes on when the input falls below this.") \
+  X(RELAY, OFF_ABOVE, "off_above", NUMBER, CONTEXT, ANY, "", OPTIONAL, 8, "", BY_HAND, "With `on_below`: it goes off when the input rises above this.") \
+  X(RELAY, ON_VALUE, "on_value", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "The signal while it is on.") \
+  X(RELAY, OFF_VALUE, "off_value", NUMBER, CONTEXT, ANY, "0", OPTIONAL, 0, "", BY_HAND, "The signal while it is off.") \
+  X(RELAY, ON_AT_START, "on_at_start", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_relay, on_at_start), "Whether it is on at t = 0 where the input is between the thresholds.") \
+  X(RELAY, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, "0", OPTIONAL, 0, "", BY_HAND, "Time between samples; 0: it switches when the input passes a threshold, which methods with events locate.") \
   X(MAXWELL, STIFFNESS, "stiffness", NUMBER, STIFFNESS, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_maxwell, stiffness), "Stiffness k of the spring.") \
   X(MAXWELL, DAMPING, "damping", NUMBER, DAMPING, ABOVE_ZERO, "", OPTIONAL, 7, "", FIELD(strut_maxwell, damping), "Damping c of the dashpot.") \
   X(MAXWELL, TIME, "time", NUMBER, TIME, ABOVE_ZERO, "", OPTIONAL, 7, "", FIELD(strut_maxwell, time), "Instead of the damping: the time c/k in which the force relaxes.") \

@@ -112,7 +112,11 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
         "sin(NAME)`. `strut write` shows oscillators as states.",
     [STRUT_SECTION_CONTROLLER] =
         "`controllers: {NAME: {...}}`. The integral is the state `NAME_integral`. `strut write` "
-        "shows controllers as signals and states.",
+        "shows PID controllers as signals and states.",
+    [STRUT_SECTION_RELAY] =
+        "`controllers: {NAME: {kind: relay, ...}}`: a signal with two values. Either `on_above` "
+        "and "
+        "`off_below`, or `on_below` and `off_above`.",
     [STRUT_SECTION_STARTS] =
         "`{sine: {...}, starts: {...}}` of any signal: the touchdown of a node, or a sensor that "
         "passes a "
