@@ -103,6 +103,9 @@
   X(BEAM, MASS, "mass", NUMBER, MASS, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_beam, mass), "Mass of the whole beam.") \
   X(BEAM, DAMPING, "damping", NUMBER, TIME, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_beam, damping), "Damping / stiffness of the material, of bars and hinges alike (Kelvin-Voigt).") \
   X(BEAM, CLAMPED, "clamped", WORD, NONE, ANY, "none", OPTIONAL, 0, "none|start|end|both", FIELD(strut_beam, clamped), "Ends whose direction is held, at a fixed node.") \
+  X(BEAM, CLAMPED_TO, "clamped_to", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Members and other beams whose direction its ends follow.") \
+  X(CLAMPED_TO, START, "start", NAME, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "A bar, a spring or a beam that ends at the first node.") \
+  X(CLAMPED_TO, END, "end", NAME, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "The same at the second node.") \
   X(LAW, KIND, "kind", WORD, NONE, ANY, "linear", WRITTEN, 0, STRUT_LAW_WORDS, FIELD(strut_law, kind), "With the stiffness k and x the elongation: `linear`, k x. `bilinear`, k x up to the knee on either side, then with the slope `second_stiffness`. `play`, no force within the gap on either side, beyond it k times the excess. `elastic_plastic`, k x until the force reaches the yield, then with the slope `second_stiffness`, and back along k: what has yielded stays. `polynomial`, c1 x + c2 x^2 + ... `logarithmic`, k L ln(length / L) with the rest length L. `exponential`, k s (exp(x / s) - 1) with the scale s. `table`, through points.") \
   X(LAW, CARRIES, "carries", WORD, NONE, ANY, "both", OPTIONAL, 0, "both|tension|compression", FIELD(strut_law, carries), "Forces that are carried: with `tension` the element acts beyond its rest length only, with `compression` below it.") \
   X(LAW, KNEE, "knee", NUMBER, CONTEXT, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_law, knee), "Elongation at which a bilinear law changes its slope.") \
