@@ -31,6 +31,7 @@
   X(GAS, "gas", GAS_KIND) \
   X(COLLISION, "collision", COLLISION_NODE) \
   X(BEAM, "beam", BEAM_NODES) \
+  X(CLAMPED_TO, "clamped_to", CLAMPED_TO_START) \
   X(LAW, "law", LAW_KIND) \
   X(RAYLEIGH, "rayleigh", RAYLEIGH_MASS) \
   X(GROUND, "ground", GROUND_HEIGHT) \
@@ -50,6 +51,7 @@
   X(STATE, "state", STATE_RATE) \
   X(OSCILLATOR, "oscillator", OSCILLATOR_FREQUENCY) \
   X(CONTROLLER, "controller", CONTROLLER_SENSOR) \
+  X(RELAY, "relay", RELAY_KIND) \
   X(MAXWELL, "maxwell", MAXWELL_STIFFNESS) \
   X(STARTS, "starts", STARTS_CONTACT) \
   X(CONFIGURATION, "configuration", CONFIGURATION_CONTACTS) \
@@ -195,6 +197,7 @@ typedef struct strut_beam {
   uint32_t clamped;                  /* bits: at its first node, at its second */
   int32_t first_node, clamp_node[2]; /* of the nodes that it has added */
   bool broken;
+  const struct strut_tree *clamped_to[2]; /* what its ends are clamped to, or NULL */
 } strut_beam;
 
 /** One row of the table. */

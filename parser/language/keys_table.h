@@ -46,7 +46,7 @@
   X(SCENE, SENSORS, "sensors", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a sensor", BY_HAND, "Numbers of the motion that the expressions of signals may use.") \
   X(SCENE, STATES, "states", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a state", BY_HAND, "Numbers that a run integrates beside the motion.") \
   X(SCENE, OSCILLATORS, "oscillators", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of an oscillator", BY_HAND, "Phase oscillators, each an internal state with the same name.") \
-  X(SCENE, CONTROLLERS, "controllers", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a controller", BY_HAND, "PID controllers of sensors, each a signal with the same name.") \
+  X(SCENE, CONTROLLERS, "controllers", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a controller", BY_HAND, "PID controllers and relays, each a signal with the same name.") \
   X(SCENE, PARTS, "parts", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a part", BY_HAND, "Structures to be placed, once or many times.") \
   X(SCENE, PLACE, "place", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a [place](#place)", BY_HAND, "Copies of parts. What is in a copy is called `NAME.THING`, or `NAME.0.THING` and so on where it is repeated.") \
   X(SCENE, MERGE, "merge", FREE, NONE, ANY, "", OPTIONAL, 0, "touching, or {node: other node, ...}", BY_HAND, "Nodes that become one: those named, or with `touching` all that lie in one place.") \
@@ -151,6 +151,9 @@
   X(BEAM, MASS, "mass", NUMBER, MASS, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_beam, mass), "Mass of the whole beam.") \
   X(BEAM, DAMPING, "damping", NUMBER, TIME, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_beam, damping), "Damping / stiffness of the material, of bars and hinges alike (Kelvin-Voigt).") \
   X(BEAM, CLAMPED, "clamped", WORD, NONE, ANY, "none", OPTIONAL, 0, "none|start|end|both", FIELD(strut_beam, clamped), "Ends whose direction is held, at a fixed node.") \
+  X(BEAM, CLAMPED_TO, "clamped_to", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Members and other beams whose direction its ends follow.") \
+  X(CLAMPED_TO, START, "start", NAME, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "A bar, a spring or a beam that ends at the first node.") \
+  X(CLAMPED_TO, END, "end", NAME, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "The same at the second node.") \
   X(LAW, KIND, "kind", WORD, NONE, ANY, "linear", WRITTEN, 0, STRUT_LAW_WORDS, FIELD(strut_law, kind), "With the stiffness k and x the elongation: `linear`, k x. `bilinear`, k x up to the knee on either side, then with the slope `second_stiffness`. `play`, no force within the gap on either side, beyond it k times the excess. `elastic_plastic`, k x until the force reaches the yield, then with the slope `second_stiffness`, and back along k: what has yielded stays. `polynomial`, c1 x + c2 x^2 + ... `logarithmic`, k L ln(length / L) with the rest length L. `exponential`, k s (exp(x / s) - 1) with the scale s. `table`, through points.") \
   X(LAW, CARRIES, "carries", WORD, NONE, ANY, "both", OPTIONAL, 0, "both|tension|compression", FIELD(strut_law, carries), "Forces that are carried: with `tension` the element acts beyond its rest length only, with `compression` below it.") \
   X(LAW, KNEE, "knee", NUMBER, CONTEXT, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_law, knee), "Elongation at which a bilinear law changes its slope.") \
@@ -263,6 +266,17 @@
   X(CONTROLLER, LEAST, "least", NUMBER, CONTEXT, ANY, "none", OPTIONAL, 0, "", BY_HAND, "Least value of the signal.") \
   X(CONTROLLER, MOST, "most", NUMBER, CONTEXT, ANY, "none", OPTIONAL, 0, "", BY_HAND, "Largest value. Between limits the integral follows what the limits leave (no windup).") \
   X(CONTROLLER, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, "0", OPTIONAL, 0, "", BY_HAND, "Time between samples; 0: the controller is continuous.") \
+  X(CONTROLLER, KIND, "kind", WORD, NONE, ANY, "pid", OPTIONAL, 0, "pid|relay", BY_HAND, "`relay`: the controller has the keys of a [relay](#relay) instead.") \
+  X(RELAY, KIND, "kind", WORD, NONE, ANY, "", REQUIRED, 0, "relay", BY_HAND, "Which controller it is.") \
+  X(RELAY, OF, "of", EXPRESSION, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "Its input: a sensor, or an expression as that of a signal.") \
+  X(RELAY, ON_ABOVE, "on_above", NUMBER, CONTEXT, ANY, "", OPTIONAL, 7, "", BY_HAND, "It goes on when the input rises above this, and stays so until it goes off.") \
+  X(RELAY, OFF_BELOW, "off_below", NUMBER, CONTEXT, ANY, "", OPTIONAL, 8, "", BY_HAND, "With `on_above`: it goes off when the input falls below this.") \
+  X(RELAY, ON_BELOW, "on_below", NUMBER, CONTEXT, ANY, "", OPTIONAL, 7, "", BY_HAND, "Instead, as a thermostat: it goes on when the input falls below this.") \
+  X(RELAY, OFF_ABOVE, "off_above", NUMBER, CONTEXT, ANY, "", OPTIONAL, 8, "", BY_HAND, "With `on_below`: it goes off when the input rises above this.") \
+  X(RELAY, ON_VALUE, "on_value", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "The signal while it is on.") \
+  X(RELAY, OFF_VALUE, "off_value", NUMBER, CONTEXT, ANY, "0", OPTIONAL, 0, "", BY_HAND, "The signal while it is off.") \
+  X(RELAY, ON_AT_START, "on_at_start", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_relay, on_at_start), "Whether it is on at t = 0 where the input is between the thresholds.") \
+  X(RELAY, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, "0", OPTIONAL, 0, "", BY_HAND, "Time between samples; 0: it switches when the input passes a threshold, which methods with events locate.") \
   X(MAXWELL, STIFFNESS, "stiffness", NUMBER, STIFFNESS, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_maxwell, stiffness), "Stiffness k of the spring.") \
   X(MAXWELL, DAMPING, "damping", NUMBER, DAMPING, ABOVE_ZERO, "", OPTIONAL, 7, "", FIELD(strut_maxwell, damping), "Damping c of the dashpot.") \
   X(MAXWELL, TIME, "time", NUMBER, TIME, ABOVE_ZERO, "", OPTIONAL, 7, "", FIELD(strut_maxwell, time), "Instead of the damping: the time c/k in which the force relaxes.") \
