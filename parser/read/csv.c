@@ -101,7 +101,7 @@ static void read_plain(reader *r) {
   while (r->at < r->end && *r->at != ',' && *r->at != '\n') step(r);
   size_t length = (size_t)(r->at - from);
   if (length && from[length - 1] == '\r') length--;
-  place.length = length > 0 ? (uint32_t)length : 1;
+  place.length = strut_place_at(0, 0, length ? (uint32_t)length : 1).length;
   keep(r, strut_arena_text(&r->csv->arena, from, length), place);
 }
 
