@@ -10,12 +10,13 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/memory_limit.h"
 #include "engine/base/trig.h"
 #include "parser/read/copies.h"
 
 enum { DEEPEST = 16 };
 /* Entries of all copies, and copies of one placement. */
-static const double MOST_THINGS = 4e6, MOST_COPIES = 2e6;
+static const double MOST_THINGS = 1e7, MOST_COPIES = 2e6;
 
 /* The keys of a part, or of `next`, whose entries are copied, and the scene's keys where they go. */
 static int scene_key(int key) {
@@ -898,6 +899,18 @@ static void report_unplaced(strut_reader *reader) {
                  parts->part[i].name);
 }
 
+/* Least memory of an entry while it is read, and as a thing of the scene [B]. */
+static const double ENTRY_NEEDS = 700.0;
+
+static bool check_memory(expansion *e, const strut_slot *place) {
+  strut_error error = {0};
+  double needs = ENTRY_NEEDS * (double)e->copies->things;
+  if (needs < 1e8 || strut_memory_check(needs, "the copies of parts", &error) == STRUT_OK)
+    return true;
+  strut_report_error(e->reader, place->key->place, "%s", error.message);
+  return false;
+}
+
 /* Counts first, then copies. */
 static void expand_scene(expansion *e) {
   strut_reader *reader = e->reader;
@@ -905,7 +918,7 @@ static void expand_scene(expansion *e) {
   const strut_slot *nodes = strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES);
   e->weighing = true;
   expand_places(e, place, NULL);
-  if (e->stopped || reader->failed) {
+  if (e->stopped || reader->failed || !check_memory(e, place)) {
     e->copies->incomplete = true;
     return;
   }
