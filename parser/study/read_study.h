@@ -28,6 +28,7 @@ typedef struct strut_study_file {
   strut_document document; /* the study's tree */
   strut_diagnostics diagnostics, model_diagnostics;
   strut_arena arena;
+  char *model_copy; /* a model that uses files, in one text; NULL: model_text is that */
 } strut_study_file;
 
 /**
