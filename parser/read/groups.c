@@ -196,6 +196,7 @@ void strut_report_unused_groups(strut_reader *reader) {
   for (size_t i = 0; i < reader->group_count; i++) {
     const strut_group *group = &reader->groups[i];
     if (group->used || group->broken || group->key->placed) continue;
+    if (group->key->place.file) continue; /* of a base */
     strut_report_error(reader, group->key->place, "nothing uses group '%s'", group->name);
   }
 }

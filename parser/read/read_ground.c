@@ -242,6 +242,20 @@ static bool find_entries(strut_reader *reader, strut_fields *fields, strut_owner
   return fine;
 }
 
+/* The contact of a node that a copy brings with it. */
+static bool add_contact(strut_reader *reader, const strut_tree *key, int32_t node,
+                        unsigned char *touches, const strut_tree **entry) {
+  if (node < 0) return false;
+  if (entry[node] && entry[node]->next->first != key->next->first) {
+    strut_report_error(reader, key->place,
+                       "node '%s' has two different contacts, of the parts that share it",
+                       reader->scene->nodes[node].name);
+    return false;
+  }
+  touches[node] = 1, entry[node] = key;
+  return true;
+}
+
 /* The contacts that copies of parts bring with them. */
 static bool add_copied(strut_reader *reader, unsigned char *touches, const strut_tree **entry) {
   bool fine = true;
@@ -249,22 +263,18 @@ static bool add_copied(strut_reader *reader, unsigned char *touches, const strut
   for (const strut_tree *key = strut_first_entry(reader, map); key;
        key = strut_following_entry(reader, key)) {
     strut_owner owner = {"a contact", NULL};
+    if (strut_is_pattern(key)) {
+      for (int32_t node = -1; (node = strut_next_match(reader, key, node)) >= 0;)
+        fine = add_contact(reader, key, node, touches, entry) && fine;
+      continue;
+    }
     strut_tree name = *key;
     name.text = strut_local_name(reader, key->text);
     name.placed = false;
     int32_t node =
         strut_read_reference(reader, &name, "contacts", owner, "node", &reader->node_names,
                              strut_node_name, reader->scene->node_count);
-    if (node < 0) {
-      fine = false;
-    } else if (entry[node] && entry[node]->next->first != key->next->first) {
-      strut_report_error(reader, key->place,
-                         "node '%s' has two different contacts, of the parts that share it",
-                         reader->scene->nodes[node].name);
-      fine = false;
-    } else {
-      touches[node] = 1, entry[node] = key;
-    }
+    fine = add_contact(reader, key, node, touches, entry) && fine;
   }
   return fine;
 }

@@ -62,7 +62,10 @@ static void read_part_list(strut_reader *reader, const strut_slot *slot, strut_c
     strut_owner owner = {"part", key->text};
     bool fine = strut_read_name(reader, key, "part");
     strut_read_fields(reader, STRUT_SECTION_PART, key->next, owner, &part->fields);
-    part->broken = !fine || part->fields.broken;
+    const strut_slot *use = strut_slot_of(&part->fields, STRUT_KEY_PART_USE);
+    const strut_slot *isolated = strut_slot_of(&part->fields, STRUT_KEY_PART_ISOLATED);
+    part->closed = isolated->state == STRUT_GIVEN && isolated->word == 1;
+    part->broken = !fine || part->fields.broken || use->key; /* a file that could not be read */
   }
 }
 

@@ -55,6 +55,9 @@ static const struct exception {
   strut_section section;
   const char *name, *reason;
 } exceptions[] = {
+    {STRUT_SECTION_SCENE, "base", "a path, from the folder of the file"},
+    {STRUT_SECTION_PART, "use", "a path, from the folder of the file"},
+    {STRUT_SECTION_PART, "isolated", "decides which names the reader finds"},
     {STRUT_SECTION_MEMBER, "rest_length", "one of four keys that share a field"},
     {STRUT_SECTION_MEMBER, "rest_length_ratio", "one of four keys that share a field"},
     {STRUT_SECTION_MEMBER, "pretension", "one of four keys that share a field"},
