@@ -246,7 +246,7 @@
   X(RAMP, START, "start", NUMBER, TIME, ANY, "0", OPTIONAL, 0, "", FIELD(strut_signal, start), "Time at which the signal leaves 0.") \
   X(RAMP, STOP, "stop", NUMBER, TIME, ANY, "", REQUIRED, 0, "", FIELD(strut_signal, stop), "Time at which it reaches the amplitude.") \
   X(SENSOR, LENGTH, "length", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The member whose length it senses [m].") \
-  X(SENSOR, FORCE, "force", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The member whose force it senses [N], tension positive, damper included.") \
+  X(SENSOR, FORCE, "force", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The member whose force it senses [N], tension positive: with damper and stops, without what an actuator's `force` adds.") \
   X(SENSOR, ANGLE, "angle", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The hinge whose angle it senses [rad].") \
   X(SENSOR, CONTACT, "contact", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The node whose touch it senses: 1 while the node is in the ground, else 0.") \
   X(SENSOR, POSITION, "position", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The node whose position it senses [m], `along` x or y.") \
