@@ -3,11 +3,6 @@
 # Drives and damping other than driven rest lengths, by strut run with every method, against closed forms.
 . "$(dirname "$0")/lib.sh"
 
-# near FILTER EXPECTED TOLERANCE: the JSON in out through jq, and a number that jq computes.
-near() {
-  jq -e "($1) as \$got | ($2) as \$want | (\$got - \$want | fabs) <= $3" out >jq.out 2>&1 ||
-    fail "$1 is $(jq -c "$1" out 2>&1), expected $(jq -n "$2") within $3"
-}
 value() { echo ".measured.$1.value"; }
 # closes PART: the energy balance, beside the energy exchanged.
 closes() { near '.energy | .residual / .exchanged' 0 "$1"; }
