@@ -125,6 +125,7 @@ typedef struct strut_reader {
   strut_source *unbalance_source;
   const strut_tree **node_moves; /* (node_count) the keys of moves of a node, or NULL */
   strut_signal_state *signal_state;
+  const char *signal_quantity; /* what the signal that is being read gives, for messages, or NULL */
   size_t signal_count;
   strut_source *configuration_source;
   strut_fields ground, initial, settle, search, solver, run, measure, steady, output;
