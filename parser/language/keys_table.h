@@ -20,7 +20,7 @@
   X(SCENE, DESCRIPTION, "description", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_scene, description), "What the scene shows.") \
   X(SCENE, SOURCE, "source", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_scene, source), "Where its numbers come from.") \
   X(SCENE, PARAMETERS, "parameters", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression or a quoted text", BY_HAND, "Named values that expressions may use and `--set` may change.") \
-  X(SCENE, GROUPS, "groups", THINGS, NONE, ANY, "", OPTIONAL, 0, "keys of a member, a node or a contact", BY_HAND, "Keys that several members, nodes or contacts share. A thing's own keys take precedence.") \
+  X(SCENE, GROUPS, "groups", THINGS, NONE, ANY, "", OPTIONAL, 0, "keys of a member, a node, a contact or a hinge", BY_HAND, "Keys that several members, nodes, contacts or hinges share. A thing's own keys take precedence.") \
   X(SCENE, NODES, "nodes", THINGS, NONE, ANY, "", REQUIRED, 0, "`[x, y]` or the keys of a node", BY_HAND, "The points of the structure.") \
   X(SCENE, MEMBERS, "members", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a member", BY_HAND, "The bars, springs and cables between the nodes.") \
   X(SCENE, HINGES, "hinges", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a hinge", BY_HAND, "Springs of the angle between two arms that meet in a node.") \
@@ -82,6 +82,7 @@
   X(HINGE, LAW, "law", LAW, NONE, ANY, "linear", OPTIONAL, 0, "", BY_HAND, "Law of the moment over angle - rest angle.") \
   X(HINGE, BREAKS_AT, "breaks_at", NUMBER, MOMENT, ABOVE_ZERO, "never", OPTIONAL, 0, "", FIELD(strut_hinge, breaks_at), "Size of the moment at which the hinge breaks: from then on it has none.") \
   X(HINGE, RELEASED_AT, "released_at", NUMBER, TIME, ABOVE_ZERO, "never", OPTIONAL, 0, "", FIELD(strut_hinge, released_at), "Time from which on the hinge has no moment.") \
+  X(HINGE, GROUP, "group", GROUPS, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Groups that provide defaults; later groups take precedence.") \
   X(CELL, NODES, "nodes", NODE_RING, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "The corners `[a, b, c, ...]` in order, in either sense. They need no members between them.") \
   X(CELL, PRESSURE, "pressure", NUMBER, STIFFNESS, ANY, "", OPTIONAL, 7, "", FIELD(strut_cell, pressure), "Given pressure, force per length of the boundary, outwards; negative: suction. An actuator may change it.") \
   X(CELL, GAS, "gas", MAP, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "A closed gas, whose pressure follows from the area.") \
