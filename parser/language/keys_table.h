@@ -20,7 +20,7 @@
   X(SCENE, DESCRIPTION, "description", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_scene, description), "What the scene shows.") \
   X(SCENE, SOURCE, "source", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_scene, source), "Where its numbers come from.") \
   X(SCENE, PARAMETERS, "parameters", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression or a quoted text", BY_HAND, "Named values that expressions may use and `--set` may change.") \
-  X(SCENE, GROUPS, "groups", THINGS, NONE, ANY, "", OPTIONAL, 0, "keys of a member, a node or a contact", BY_HAND, "Keys that several members, nodes or contacts share. A thing's own keys take precedence.") \
+  X(SCENE, GROUPS, "groups", THINGS, NONE, ANY, "", OPTIONAL, 0, "keys of a member, a node, a contact or a hinge", BY_HAND, "Keys that several members, nodes, contacts or hinges share. A thing's own keys take precedence.") \
   X(SCENE, NODES, "nodes", THINGS, NONE, ANY, "", OPTIONAL, 0, "`[x, y]` or the keys of a node", BY_HAND, "The points of the structure. Required unless parts are placed; the name of a placed thing changes or adds its keys, and `*` in it stands for any part of a name between dots.") \
   X(SCENE, MEMBERS, "members", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a member", BY_HAND, "The bars, springs and cables between the nodes.") \
   X(SCENE, HINGES, "hinges", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a hinge", BY_HAND, "Springs of the angle between two arms that meet in a node.") \
@@ -132,6 +132,7 @@
   X(HINGE, LAW, "law", LAW, NONE, ANY, "linear", OPTIONAL, 0, "", BY_HAND, "Law of the moment over angle - rest angle.") \
   X(HINGE, BREAKS_AT, "breaks_at", NUMBER, MOMENT, ABOVE_ZERO, "never", OPTIONAL, 0, "", FIELD(strut_hinge, breaks_at), "Size of the moment at which the hinge breaks: from then on it has none.") \
   X(HINGE, RELEASED_AT, "released_at", NUMBER, TIME, ABOVE_ZERO, "never", OPTIONAL, 0, "", FIELD(strut_hinge, released_at), "Time from which on the hinge has no moment.") \
+  X(HINGE, GROUP, "group", GROUPS, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Groups that provide defaults; later groups take precedence.") \
   X(CELL, NODES, "nodes", NODE_RING, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "The corners `[a, b, c, ...]` in order, in either sense. They need no members between them.") \
   X(CELL, PRESSURE, "pressure", NUMBER, STIFFNESS, ANY, "", OPTIONAL, 7, "", FIELD(strut_cell, pressure), "Given pressure, force per length of the boundary, outwards; negative: suction. An actuator may change it.") \
   X(CELL, GAS, "gas", MAP, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "A closed gas, whose pressure follows from the area.") \
@@ -176,7 +177,7 @@
   X(GROUND, DAMPING_LAW, "damping_law", WORD, NONE, ANY, "approach_only", OPTIONAL, 0, "approach_only|hunt_crossley", FIELD(strut_ground_section, ground.damping_law), "Damping at contacts. `approach_only`: stiffness * depth + damping * speed inwards, without damping while the node moves out (the paper's law, with a jump at touchdown). `hunt_crossley`: stiffness * depth * (1 + dissipation * speed inwards), never tensile, without a jump.") \
   X(GROUND, DISSIPATION, "dissipation", NUMBER, DISSIPATION, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_ground_section, contact.dissipation), "Dissipation of the Hunt-Crossley law, which uses it instead of `damping`.") \
   X(GROUND, FRICTION, "friction", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Friction of every contact; without it the ground is frictionless.") \
-  X(GROUND, NODES, "nodes", CONTACT_NODES, NONE, ANY, "all", OPTIONAL, 0, "", BY_HAND, "The nodes that may touch the ground.") \
+  X(GROUND, NODES, "nodes", CONTACT_NODES, NONE, ANY, "all", OPTIONAL, 0, "", BY_HAND, "The nodes that may touch the ground; `all` are those that nothing moves.") \
   X(GROUND, CONTACTS, "contacts", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a contact", BY_HAND, "Settings of single contacts, by the name of the node.") \
   X(GROUND, THROUGH, "through", PAIR, LENGTH, ANY, "", OPTIONAL, 1, "", BY_HAND, "A point of the line, instead of `height`.") \
   X(GROUND, NORMAL, "normal", PAIR, NONE, ANY, "", OPTIONAL, 2, "", BY_HAND, "A vector out of the solid, of any length, instead of `slope`.") \

@@ -186,13 +186,18 @@ static bool mark_matches(strut_reader *reader, const strut_tree *item, strut_own
   return any;
 }
 
+/* A node that is moved cannot touch, and is none of `all`. */
+static bool moves(const strut_reader *reader, int32_t node) {
+  return reader->node_moves && reader->node_moves[node];
+}
+
 /* Marks the nodes that may touch a ground. */
 static bool mark_nodes(strut_reader *reader, strut_fields *fields, strut_owner owner,
                        unsigned char *touches) {
   const strut_slot *slot = strut_slot_of(fields, STRUT_KEY_GROUND_NODES);
   size_t count = reader->scene->node_count;
   if (slot->state != STRUT_GIVEN || slot->value->kind == STRUT_TREE_SCALAR) {
-    memset(touches, 1, count);
+    for (size_t i = 0; i < count; i++) touches[i] = !moves(reader, (int32_t)i);
     return slot->state != STRUT_BROKEN;
   }
   bool fine = true;
@@ -235,7 +240,11 @@ static bool find_entries(strut_reader *reader, strut_fields *fields, strut_owner
       continue;
     }
     fine = false;
-    if (node >= 0 && complete)
+    if (node >= 0 && moves(reader, node))
+      strut_report_error(reader, key->place,
+                         "node '%s' has a contact with %s, but it moves, so that it cannot touch",
+                         key->text, strut_owner_text(reader, owner));
+    else if (node >= 0 && complete)
       strut_report_error(reader, key->place, "node '%s' has a contact, but 'nodes' of %s lacks it",
                          key->text, strut_owner_text(reader, owner));
   }

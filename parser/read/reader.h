@@ -43,13 +43,16 @@ typedef struct strut_fields {
   strut_slot slot[STRUT_MOST_KEYS];
 } strut_fields;
 
+enum { STRUT_GROUP_SECTIONS = 4 }; /* member, node, contact, hinge */
+
 /** One key of a group, and its number in each section that may use the group. */
 typedef struct strut_group_item {
   strut_slot slot;
-  int key[3];           /* in member, node, contact; -1: not there */
-  bool refused[3];      /* it has been reported that the section has no such key */
-  bool found;           /* a finding has been reported here */
-  strut_fields *nested; /* of a mapping: friction */
+  int key[STRUT_GROUP_SECTIONS];      /* -1: not there */
+  bool refused[STRUT_GROUP_SECTIONS]; /* it has been reported that the section has no such key */
+  bool found;                         /* a finding has been reported here */
+  strut_fields *nested;               /* of a mapping: friction */
+  strut_slot of_hinge;                /* where hinges measure it by another unit; else as `slot` */
 } strut_group_item;
 
 typedef struct strut_group {
@@ -58,6 +61,7 @@ typedef struct strut_group {
   size_t count;
   strut_group_item *items;
   bool used, broken;
+  bool of_hinges, of_others; /* hinges name it; members, nodes or contacts do, or nothing does */
 } strut_group;
 
 /** A copy of a part as the scope of what is read, see copies.h. */
@@ -131,6 +135,7 @@ typedef struct strut_reader {
   strut_source *unbalance_source;
   const strut_tree **node_moves; /* (node_count) the keys of moves of a node, or NULL */
   strut_signal_state *signal_state;
+  const char *signal_quantity; /* what the signal that is being read gives, for messages, or NULL */
   size_t signal_count;
   strut_source *configuration_source;
   strut_fields ground, initial, settle, search, solver, run, measure, steady, output;

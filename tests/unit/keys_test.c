@@ -31,7 +31,7 @@ static void sections_divide_the_table(void **state) {
   assert_int_equal(strut_key_find(STRUT_SECTION_MEMBER, "positions"), -1);
 }
 
-/* A group's key is read once for all sections that have it: it must mean the same in each. */
+/* A group's key is read once for members, nodes and contacts: it must mean the same in each. */
 static void shared_keys_of_groups_agree(void **state) {
   (void)state;
   static const strut_section sections[] = {STRUT_SECTION_MEMBER, STRUT_SECTION_NODE,
