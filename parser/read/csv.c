@@ -51,7 +51,7 @@ static void keep(reader *r, const char *cell, strut_place place) {
 
 /* A cell in quotes, which are doubled inside. */
 static void read_quoted(reader *r) {
-  strut_place begin = {r->line, r->column, 1};
+  strut_place begin = strut_place_at(r->line, r->column, 1);
   step(r);
   const char *from = r->at;
   char *copy = NULL;
@@ -90,18 +90,18 @@ static void read_quoted(reader *r) {
     break;
   }
   if (r->at < r->end && *r->at != ',' && *r->at != '\n' && *r->at != '\r')
-    strut_diagnose(r->diagnostics, (strut_place){r->line, r->column, 1},
+    strut_diagnose(r->diagnostics, strut_place_at(r->line, r->column, 1),
                    "expected a comma or the end of the line after a quoted cell");
   while (r->at < r->end && *r->at != ',' && *r->at != '\n') step(r);
 }
 
 static void read_plain(reader *r) {
   const char *from = r->at;
-  strut_place place = {r->line, r->column, 0};
+  strut_place place = strut_place_at(r->line, r->column, 0);
   while (r->at < r->end && *r->at != ',' && *r->at != '\n') step(r);
   size_t length = (size_t)(r->at - from);
   if (length && from[length - 1] == '\r') length--;
-  place.length = length > 0 ? (uint32_t)length : 1;
+  place.length = strut_place_at(0, 0, length ? (uint32_t)length : 1).length;
   keep(r, strut_arena_text(&r->csv->arena, from, length), place);
 }
 
@@ -124,7 +124,7 @@ static size_t read_line(reader *r) {
 static void read_lines(reader *r) {
   size_t columns = read_line(r);
   if (columns > MOST_COLUMNS)
-    strut_diagnose(r->diagnostics, (strut_place){1, 1, 1}, "more than %d columns", MOST_COLUMNS);
+    strut_diagnose(r->diagnostics, strut_place_at(1, 1, 1), "more than %d columns", MOST_COLUMNS);
   r->csv->column_count = columns;
   while (r->at < r->end && !r->failed) {
     uint32_t line = r->line;
@@ -134,7 +134,7 @@ static void read_lines(reader *r) {
       continue;
     }
     if (count != columns && !r->failed)
-      strut_diagnose(r->diagnostics, (strut_place){line, 1, 1},
+      strut_diagnose(r->diagnostics, strut_place_at(line, 1, 1),
                      "%zu cells, expected %zu as in the header", count, columns);
     r->csv->row_count++;
   }
@@ -198,11 +198,11 @@ strut_status strut_csv_read(const char *text, size_t length, strut_diagnostics *
   *csv = (strut_csv){0};
   if (length >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0) r.at += 3; /* a byte order mark */
   if (r.at == r.end)
-    strut_diagnose(diagnostics, (strut_place){0, 0, 0}, "the file is empty, expected a table");
+    strut_diagnose(diagnostics, (strut_place){0}, "the file is empty, expected a table");
   else
     read_lines(&r);
   if (!r.failed && !diagnostics->count && !csv->row_count)
-    strut_diagnose(diagnostics, (strut_place){0, 0, 0}, "the table has a header but no rows");
+    strut_diagnose(diagnostics, (strut_place){0}, "the table has a header but no rows");
   if (!r.failed && !diagnostics->count && !finish(&r)) r.failed = true;
   strut_release(r.cell);
   strut_release(r.place);

@@ -205,6 +205,7 @@ static bool shape_fits(strut_key_type type, const strut_tree *value) {
     case STRUT_TYPE_EXPRESSION: return scalar;
     case STRUT_TYPE_NUMBER:
     case STRUT_TYPE_PAIR:
+    case STRUT_TYPE_FREE:
     case STRUT_TYPE_WORD: break; /* their readers report it */
   }
   return true;

@@ -483,7 +483,9 @@ strut_status strut_study_setup(const strut_study_file *file, const strut_study_v
     for (size_t i = 1; i < diagnostics.count; i++)
       if (diagnostics.items[i].place.line < first->place.line) first = &diagnostics.items[i];
     bool own = first->place.line & STRUT_OVERLAY_LINE;
-    strut_fail(error, status, "%s:%u: %s", own ? file->path : file->model_path,
+    unsigned used = first->place.file;
+    const char *model = used ? diagnostics.used[used - 1].file : file->model_path;
+    strut_fail(error, status, "%s:%u: %s", own ? file->path : model,
                first->place.line & ~STRUT_OVERLAY_LINE, first->message);
   } else if (status != STRUT_OK) {
     strut_fail(error, status, "out of memory");
@@ -535,5 +537,6 @@ void strut_study_close(strut_study_file *file) {
   strut_release(file->text);
   strut_release(file->model_path);
   strut_release(file->model_text);
+  strut_release(file->model_copy);
   *file = (strut_study_file){0};
 }

@@ -35,6 +35,12 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
         "bars `NAME.1`, ... and hinges `NAME.1`, ... at these nodes; at a clamp also the fixed "
         "node "
         "and the hinge `NAME.start` or `NAME.end`. `strut write` writes these.",
+    [STRUT_SECTION_CLAMPED_TO] =
+        "`clamped_to: {start: NAME, end: NAME}` of a beam: the end keeps its drawn angle to a "
+        "member "
+        "or to another beam that has the node, too, by the hinge `NAME.start` or `NAME.end`. "
+        "Several "
+        "beams at one node also get hinges between each other, such as `NAME.start.OTHER`.",
     [STRUT_SECTION_LAW] =
         "`law: {...}` of a member or a hinge, or only its kind, such as `law: logarithmic`; "
         "`law: tension_only` and `law: compression_only` are linear and carry one sign. For a "
@@ -122,7 +128,11 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
         "sin(NAME)`. `strut write` shows oscillators as states.",
     [STRUT_SECTION_CONTROLLER] =
         "`controllers: {NAME: {...}}`. The integral is the state `NAME_integral`. `strut write` "
-        "shows controllers as signals and states.",
+        "shows PID controllers as signals and states.",
+    [STRUT_SECTION_RELAY] =
+        "`controllers: {NAME: {kind: relay, ...}}`: a signal with two values. Either `on_above` "
+        "and "
+        "`off_below`, or `on_below` and `off_above`.",
     [STRUT_SECTION_STARTS] =
         "`{sine: {...}, starts: {...}}` of any signal: the touchdown of a node, or a sensor that "
         "passes a "
