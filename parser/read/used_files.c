@@ -191,7 +191,11 @@ static file *load(loader *l, const strut_tree *name, const char *key, bool whole
   file *f = find_file(l, name);
   if (!f || f->failed || !enter(l, f, name)) return NULL;
   bool fine = f->scene || (is_scene(l, f, name) && lay_over_base(l, f));
-  if (fine && whole && !f->whole) fine = (f->whole = with_files(l, f->scene)) != NULL;
+  if (fine && whole && !f->whole) {
+    f->whole = with_files(l, f->scene);
+    fine = f->whole != NULL;
+    if (!fine) l->out_of_memory = true;
+  }
   leave(l, f);
   f->failed = !fine;
   return fine ? f : NULL;
@@ -385,9 +389,10 @@ static strut_status load_all(loader *l, strut_tree *root) {
     top->device = (uint64_t)found.st_dev;
     top->inode = (uint64_t)found.st_ino;
   }
-  bool fine = lay_over_base(l, top) && (top->whole = with_files(l, top->scene)) != NULL;
-  l->document->root = fine ? top->whole : NULL;
-  if (!fine && !l->diagnostics->count) l->out_of_memory = true;
+  bool fine = lay_over_base(l, top);
+  if (fine) top->whole = with_files(l, top->scene);
+  if (fine && !top->whole) l->out_of_memory = true;
+  l->document->root = top->whole;
   if (l->out_of_memory) return STRUT_NO_MEMORY;
   return fine && !l->failed ? STRUT_OK : STRUT_BAD_SCENE;
 }

@@ -321,6 +321,9 @@ cat spine.yaml - >runs.yaml <<'END'
 solver: {step: 1e-4 s}
 run: {duration: 1e-3 s, measure: {}}
 END
+expect 0 run runs.yaml -o run --quiet
+"$strut" write runs.yaml >flat
+same flat run/scene.yaml
 expect 0 sweep study.yaml -o results --quiet
 grep -q 'use:' results/model.yaml && fail "the copy of the model uses files"
 "$strut" write results/model.yaml >copied
