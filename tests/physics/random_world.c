@@ -118,10 +118,10 @@ static void put_structure(random_world *w) {
     put_damping(w, MEMBERS);
     put(w, MEMBERS, ", rest_length_ratio: %.17g}\n", between(w, 0.9, 1.1));
   }
-  put(w, MEMBERS, "  rope: {kind: %s, nodes: [n0, n2, n4, n3], stiffness: 80, mass: 0.3",
-      has(w, WORLD_SMOOTH) ? "spring" : "cable");
+  bool slack = !has(w, WORLD_SMOOTH); /* it may get slack */
+  put(w, MEMBERS, "  rope: {kind: cable, nodes: [n0, n2, n4, n3], stiffness: 80, mass: 0.3");
   put_damping(w, MEMBERS);
-  put(w, MEMBERS, ", rest_length_ratio: %.17g}\n", between(w, 0.8, 1.05));
+  put(w, MEMBERS, ", rest_length_ratio: %.17g}\n", slack ? between(w, 0.8, 1.05) : 0.6);
   for (int k = 0; k < 3; k++) {
     int a = below(w, w->ring);
     put(w, MEMBERS, "  tie%d: {kind: spring, nodes: [n%d, n%d], %s", k, a, across(w, a, 2),
