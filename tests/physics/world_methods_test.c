@@ -37,7 +37,6 @@ static outcome run(uint64_t seed, unsigned parts, const char *method, double ste
   run.setup.experiment.tolerance = tolerance;
   strut_model *model = motion_compile(&run.setup.scene);
   strut_status status = strut_simulate(model, &run.setup.experiment, &options, &s, &error);
-  if (getenv("ORACLE") && status) print_message("%d %s: %s\n", (int)seed, method, error.message);
   o.stopped = status != STRUT_OK;
   o.n = 2 * run.setup.scene.node_count;
   if (!o.stopped) {
@@ -67,7 +66,7 @@ static double logarithm_of_gain(double whole, double half) {
   return log(fmax(whole, 1e-13) / fmax(half, 1e-13));
 }
 
-static void check_promise(const promise *by) {
+static bool keeps_promise(const promise *by) {
   double worst = 0, far = 0, gain = 0;
   int count = 0, events = 0;
   for (uint64_t seed = 1; seed <= scenes; seed++) {
@@ -88,31 +87,35 @@ static void check_promise(const promise *by) {
       "%s, parts %u: residual %.2g, error %.2g, half a step %.2f times better; %d runs, "
       "%d events\n",
       by->name, by->parts, worst, far, exp(gain / count), count, events);
-  assert_true(count > (int)scenes / 2);
-  assert_true(worst < by->residual && far < by->error && exp(gain / count) > by->gain);
+  return count > (int)scenes / 2 && worst < by->residual && far < by->error &&
+         exp(gain / count) > by->gain;
 }
 
 static void test_methods_keep_their_promises(void **unused) {
   (void)unused;
   static const unsigned kinds[] = {WORLD_BODIES,
-                                   WORLD_GROUNDS,
+                                   WORLD_GROUNDS | WORLD_LIGHT,
                                    WORLD_DRIVES,
-                                   WORLD_FEEDBACK,
-                                   WORLD_FEEDBACK | WORLD_SAMPLES,
+                                   WORLD_FEEDBACK | WORLD_GROUNDS | WORLD_LIGHT,
+                                   WORLD_FEEDBACK | WORLD_GROUNDS | WORLD_SAMPLES | WORLD_LIGHT,
                                    WORLD_MEMORY,
-                                   WORLD_SMOOTH | WORLD_BODIES | WORLD_DRIVES | WORLD_FEEDBACK};
-  static const promise methods[] = {{"rk4-events", 1e-3, 1e-5, 1e-5, 5, 0},
-                                    {"verlet-events", 1e-3, 1e-3, 1e-3, 2.5, 0},
-                                    {"euler-events", 1e-3, 1e-1, 1e-2, 1.5, 0},
-                                    {"adaptive", 1e-2, 1e-5, 1e-5, 0, 0},
-                                    {"rk4", 1e-3, 1e-1, 1e-2, 0, 0},
-                                    {"midpoint", 1e-3, 1e-1, 1e-2, 0, 0}};
+                                   WORLD_SMOOTH | WORLD_BODIES | WORLD_DRIVES};
+  static const promise methods[] = {
+      {"rk4-events", 1e-3, 2e-4, 5e-4, 10, 0},    {"verlet-events", 1e-3, 1e-2, 2e-2, 3, 0},
+      {"euler-events", 1e-3, 5e-2, 7e-2, 1.7, 0}, {"adaptive", 1e-2, 2e-5, 1e-6, 0, 0},
+      {"rk4", 1e-3, 5e-3, 5e-3, 1.3, 0},          {"midpoint", 1e-3, 1e-11, 1e-3, 2, 0}};
+  bool fine = true;
   for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++)
     for (size_t m = 0; m < sizeof methods / sizeof methods[0]; m++) {
       promise by = methods[m];
       by.parts = kinds[k];
-      check_promise(&by);
+      /* it refuses shaken grounds and memory; and kinks of expressions are not located */
+      bool refused = !strcmp(by.name, "midpoint") && kinds[k] & (WORLD_GROUNDS | WORLD_MEMORY);
+      if (refused) continue;
+      if (kinds[k] & WORLD_SAMPLES) by.gain = fmin(by.gain, 2);
+      fine = keeps_promise(&by) && fine;
     }
+  assert_true(fine);
 }
 
 int main(int count, char **words) {
