@@ -19,6 +19,10 @@
 /* clang-format off */
 #define STRUT_SECTIONS(X) \
   X(SCENE, "scene", SCENE_VERSION) \
+  X(PART, "part", PART_USE) \
+  X(PLACE, "place", PLACE_PART) \
+  X(REPEAT, "repeat", REPEAT_COUNT) \
+  X(NEXT, "next", NEXT_MERGE) \
   X(NODE, "node", NODE_POSITION) \
   X(MOVES, "moves", MOVES_ALONG_X) \
   X(MEMBER, "member", MEMBER_GROUP) \
@@ -64,7 +68,12 @@
   X(RANGE, "range", RANGE_FROM) \
   X(VARIANT, "variant", VARIANT_SOLVER) \
   X(CHECK, "check", CHECK_HALF_STEP) \
-  X(FIGURE, "figure", FIGURE_KIND)
+  X(FIGURE, "figure", FIGURE_KIND) \
+  X(PATH, "path", PATH_LOAD) \
+  X(FORM, "form", FORM_FROM) \
+  X(POINTS, "points", POINTS_FILE) \
+  X(SAMPLE, "sample", SAMPLE_COUNT) \
+  X(DISTRIBUTION, "distribution", DISTRIBUTION_UNIFORM)
 /* clang-format on */
 
 /** The mappings of the language. */
@@ -105,7 +114,9 @@ typedef enum strut_key_type {
   STRUT_TYPE_MAP,           /* the keys of the section that has the key's name */
   STRUT_TYPE_THINGS,        /* a mapping from names to things, described by `words` */
   STRUT_TYPE_NODE_RING,     /* the names of three nodes or more */
-  STRUT_TYPE_NAME_PAIR      /* the names of two things */
+  STRUT_TYPE_NAME_PAIR,     /* the names of two things */
+  STRUT_TYPE_FREE,          /* several forms, described by `words` */
+  STRUT_TYPE_NAMES          /* a list of names */
 } strut_key_type;
 
 /** The dimension of a number; CONTEXT: it depends on the use of the mapping. */

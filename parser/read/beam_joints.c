@@ -41,7 +41,8 @@ bool strut_read_clamped_to(strut_reader *reader, const strut_slot *slot, strut_b
 
 static strut_beam *find_beam(const strut_reader *reader, const char *name) {
   for (size_t i = 0; i < reader->beam_count; i++)
-    if (strcmp(reader->beams[i].name, name) == 0) return &reader->beams[i];
+    if (strcmp(strut_local_name(reader, reader->beams[i].name), name) == 0)
+      return &reader->beams[i];
   return NULL;
 }
 
@@ -57,8 +58,8 @@ static bool find_target(strut_reader *reader, const strut_beam *b, int end, join
   const strut_tree *value = b->clamped_to[end];
   const char *name = value->text, *which = end ? "ends" : "starts";
   const strut_node *node = &reader->scene->nodes[b->node[end]];
-  *target =
-      (joint_target){strut_name_map_find(&reader->member_names, name), find_beam(reader, name), 0};
+  *target = (joint_target){strut_find_named(reader, &reader->member_names, NULL, name),
+                           find_beam(reader, name), 0};
   const strut_member *m = target->member >= 0 ? &reader->scene->members[target->member] : NULL;
   const int32_t *ends = m ? m->node : target->beam ? target->beam->node : NULL;
   if (!ends) {
@@ -148,7 +149,10 @@ static void join_all(const joints *j) {
     strut_beam *b = beam_of(j, e);
     joint_target to;
     if (b->broken || !b->clamped_to[e % 2]) continue;
-    if (!find_target(reader, b, e % 2, &to)) {
+    strut_enter_scope(reader, b->key);
+    bool found = find_target(reader, b, e % 2, &to);
+    reader->scope = NULL;
+    if (!found) {
       b->broken = reader->ends_unknown = true;
       continue;
     }

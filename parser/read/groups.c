@@ -106,52 +106,59 @@ size_t strut_groups_named(strut_reader *reader, const strut_tree *value, strut_g
   const strut_tree *item = value->kind == STRUT_TREE_LIST ? value->first : value;
   for (; item && count < STRUT_MOST_GROUPS; item = value == item ? NULL : item->next) {
     int32_t index = item->kind == STRUT_TREE_SCALAR
-                        ? strut_name_map_find(&reader->group_names, item->text)
+                        ? strut_find_named(reader, &reader->group_names, item, item->text)
                         : -1;
     if (index >= 0) groups[count++] = &reader->groups[index];
   }
   return count;
 }
 
-/* Marks the groups that things within the tree name. */
-static void mark_users(strut_reader *reader, const strut_tree *tree, bool hinges) {
+/* Marks the groups that the things of a mapping name. */
+static void mark_users(strut_reader *reader, const strut_tree *map, bool hinges) {
   strut_group *groups[STRUT_MOST_GROUPS];
-  for (const strut_tree *key = tree->kind == STRUT_TREE_MAP ? tree->first : NULL; key;
-       key = key->next->next) {
-    if (strcmp(key->text, "group") != 0) {
-      mark_users(reader, key->next, hinges);
-      continue;
-    }
-    size_t count = strut_groups_named(reader, key->next, groups);
+  if (!map || map->kind != STRUT_TREE_MAP) return;
+  for (const strut_tree *key = strut_first_entry(reader, map); key;
+       key = strut_following_entry(reader, key)) {
+    const strut_tree *named =
+        key->next->kind == STRUT_TREE_MAP ? strut_tree_find(key->next, "group", NULL) : NULL;
+    size_t count = named ? strut_groups_named(reader, named, groups) : 0;
     while (count-- > 0) *(hinges ? &groups[count]->of_hinges : &groups[count]->of_others) = true;
   }
 }
 
+static void mark_contacts(strut_reader *reader, const strut_tree *ground) {
+  if (ground && ground->kind == STRUT_TREE_MAP)
+    mark_users(reader, strut_tree_find(ground, "contacts", NULL), false);
+}
+
 static void find_users(strut_reader *reader) {
-  static const int others[] = {STRUT_KEY_SCENE_MEMBERS, STRUT_KEY_SCENE_NODES,
-                               STRUT_KEY_SCENE_GROUND, STRUT_KEY_SCENE_GROUNDS};
-  const strut_slot *hinges = strut_slot_of(&reader->top, STRUT_KEY_SCENE_HINGES);
-  if (hinges->value) mark_users(reader, hinges->value, true);
-  for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
-    const strut_slot *slot = strut_slot_of(&reader->top, others[i]);
-    if (slot->value) mark_users(reader, slot->value, false);
-  }
+  mark_users(reader, strut_slot_of(&reader->top, STRUT_KEY_SCENE_HINGES)->value, true);
+  mark_users(reader, strut_slot_of(&reader->top, STRUT_KEY_SCENE_MEMBERS)->value, false);
+  mark_users(reader, strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->value, false);
+  mark_contacts(reader, strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND)->value);
+  const strut_tree *grounds = strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUNDS)->value;
+  if (grounds && grounds->kind == STRUT_TREE_MAP)
+    for (const strut_tree *key = grounds->first; key; key = key->next->next)
+      mark_contacts(reader, key->next);
   for (size_t i = 0; i < reader->group_count; i++)
     if (!reader->groups[i].of_hinges) reader->groups[i].of_others = true;
 }
 
 void strut_read_groups(strut_reader *reader) {
   const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_GROUPS);
+  size_t i = 0;
   if (!map) return;
   reader->groups =
       strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->groups);
-  for (const strut_tree *key = map->first; key && reader->groups; key = key->next->next) {
+  for (const strut_tree *key = strut_first_entry(reader, map); key && reader->groups;
+       key = strut_following_entry(reader, key)) {
     reader->groups[reader->group_count] = (strut_group){.name = key->text, .key = key};
     strut_add_name(reader, &reader->group_names, key->text, reader->group_count++);
   }
   find_users(reader);
-  for (size_t i = 0; i < reader->group_count; i++)
-    read_group(reader, reader->groups[i].key, &reader->groups[i]);
+  for (const strut_tree *key = strut_first_entry(reader, map); key && reader->groups;
+       key = strut_following_entry(reader, key))
+    read_group(reader, key, &reader->groups[i++]);
 }
 
 /* Does every name in `group:` name a group? Unknown ones are reported. */
@@ -181,6 +188,13 @@ static bool taken(strut_fields *fields, int key) {
   return false;
 }
 
+/* Lengths of a group outside of a scaled copy are scaled with the thing that uses it. */
+static double scale_to(const strut_reader *reader, const strut_group *group) {
+  double own = strut_scope_scale(reader, group->key);
+  return group->key->placed ? strut_scope_scale(reader, NULL) / own
+                            : strut_scope_scale(reader, NULL);
+}
+
 static void apply_group(strut_reader *reader, strut_fields *fields, strut_group *group,
                         strut_owner owner) {
   size_t section = section_index(fields->section);
@@ -193,6 +207,8 @@ static void apply_group(strut_reader *reader, strut_fields *fields, strut_group 
       const strut_slot *slot = section == HINGE ? &item->of_hinge : &item->slot;
       *strut_slot_of(fields, key) = *slot;
       strut_slot_of(fields, key)->from = item;
+      if (strut_key_at(key)->measure == STRUT_MEASURE_LENGTH)
+        strut_slot_of(fields, key)->number[0] *= scale_to(reader, group);
       if (slot->state == STRUT_BROKEN || (item->nested && item->nested->broken))
         fields->broken = true;
     } else if (!item->refused[section]) {
@@ -229,7 +245,7 @@ void strut_report_unused_groups(strut_reader *reader) {
   if (reader->groups_unknown || reader->top.broken) return;
   for (size_t i = 0; i < reader->group_count; i++) {
     const strut_group *group = &reader->groups[i];
-    if (group->used || group->broken) continue;
+    if (group->used || group->broken || group->key->placed) continue;
     strut_report_error(reader, group->key->place, "nothing uses group '%s'", group->name);
   }
 }

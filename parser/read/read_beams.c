@@ -146,7 +146,8 @@ void strut_read_beams(strut_reader *reader) {
   if (!map || !scene->nodes) return;
   reader->beams =
       strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->beams);
-  for (const strut_tree *key = map->first; key && reader->beams; key = key->next->next) {
+  for (const strut_tree *key = strut_first_entry(reader, map); key && reader->beams;
+       key = strut_following_entry(reader, key)) {
     strut_beam *b = &reader->beams[reader->beam_count];
     if (!read_beam(reader, key, b)) {
       reader->ends_unknown = true;

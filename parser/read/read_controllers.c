@@ -74,7 +74,7 @@ static bool read_strength(strut_reader *reader, const strut_tree *key, strut_own
 static bool put_coupling(builder *b, const strut_tree *key, strut_owner owner, int32_t own,
                          double bias, strut_dimension rate) {
   strut_reader *reader = b->reader;
-  int32_t other = strut_name_map_find(&reader->state_names, key->text);
+  int32_t other = strut_find_named(reader, &reader->state_names, NULL, key->text);
   double strength;
   bool phase = other >= 0 && strut_dimension_equal(reader->state_dimension[other], STRUT_DIM_ANGLE);
   if (!phase || other == own)
@@ -151,7 +151,8 @@ typedef struct controller {
 void strut_list_controllers(strut_reader *reader) {
   const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_CONTROLLERS);
   if (!map || !reader->named) return;
-  for (const strut_tree *key = map->first; key; key = key->next->next) {
+  for (const strut_tree *key = strut_first_entry(reader, map); key;
+       key = strut_following_entry(reader, key)) {
     bool fine = strut_check_variable_name(reader, key, "controller");
     if (fine && strut_name_map_find(&reader->signal_names, key->text) >= 0) {
       strut_report_error(reader, key->place, "there is a signal '%s' already", key->text);

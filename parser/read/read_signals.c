@@ -52,6 +52,8 @@ static bool read_value(strut_reader *reader, const strut_tree *value, const char
       !strut_read_quantity(reader, value, key, owner, &quantity))
     return false;
   *number = quantity.value;
+  if (strut_dimension_equal(quantity.dimension, STRUT_DIM_LENGTH) && !quantity.bare)
+    *number *= strut_scope_scale(reader, value);
   m->bare = quantity.bare;
   m->dimension = quantity.dimension;
   return true;
@@ -134,6 +136,13 @@ static bool read_expression(strut_reader *reader, const strut_tree *value, strut
     return false;
   m->bare = q.bare;
   m->dimension = q.dimension;
+  bool scaled = strut_scope_scale(reader, value) != 1.0;
+  if (scaled) {
+    strut_report_error(reader, value->place,
+                       "the lengths in an expression are not scaled, but this copy is; make the "
+                       "size a parameter of the part and 'set' it");
+    return false;
+  }
   if (!m->expected || q.bare || strut_dimension_equal(q.dimension, *m->expected)) return true;
   strut_report_error(
       reader, value->place, "expected %s for 'expression' of %s, found %s",
@@ -248,6 +257,7 @@ static int32_t read_named(strut_reader *reader, strut_named_signal *named) {
   }
   named->state = STRUT_SIGNAL_READING;
   reader->signal_stack[reader->signal_depth++] = named;
+  strut_copy *scope = strut_enter_scope(reader, named->key);
   const strut_tree *value = named->key->next;
   bool fine = named->controller || strut_read_name(reader, named->key, "signal");
   int32_t index = named->controller ? strut_read_controller(reader, named->key)
@@ -262,6 +272,7 @@ static int32_t read_named(strut_reader *reader, strut_named_signal *named) {
     sum.term_count = 1;
     index = term ? add_signal(reader, &sum, &m, value) : -1;
   }
+  reader->scope = scope;
   reader->signal_depth--;
   named->state = STRUT_SIGNAL_READ;
   named->index = fine ? index : -1;
@@ -305,7 +316,7 @@ static int32_t read_signal(strut_reader *reader, const strut_tree *value, const 
 }
 
 int32_t strut_use_signal(strut_reader *reader, const char *name, strut_dimension *dimension) {
-  int32_t i = strut_name_map_find(&reader->signal_names, name);
+  int32_t i = strut_find_named(reader, &reader->signal_names, NULL, name);
   int32_t index = i < 0 ? -1 : read_named(reader, &reader->named[i]);
   if (index < 0) return -1;
   strut_signal_state *state = &reader->signal_state[index];

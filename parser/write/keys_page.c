@@ -107,6 +107,14 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
     [STRUT_SECTION_VARIANT] = "`variants: {NAME: {...}}` of a study.",
     [STRUT_SECTION_CHECK] = "`check: {...}` of a study.",
     [STRUT_SECTION_FIGURE] = "`figures: {NAME: {...}}` of a study.",
+    [STRUT_SECTION_PATH] =
+        "`path: {...}` of a study with `compute: path`, as the options of `strut path`.",
+    [STRUT_SECTION_FORM] =
+        "`form: {...}` of a study with `compute: form`, as the options of `strut form`.",
+    [STRUT_SECTION_POINTS] =
+        "`axes: [{points: {...}}]` of a study; `{points: FILE}` is short for it.",
+    [STRUT_SECTION_SAMPLE] = "`axes: [{sample: {...}}]` of a study: parameters from distributions.",
+    [STRUT_SECTION_DISTRIBUTION] = "`over: {NAME: {...}}` of a sample, with one of these keys.",
     [STRUT_SECTION_SENSOR] =
         "`sensors: {NAME: {...}}` with one thing to sense. Expressions of signals, and measured "
         "quantities, use the name. In an expression `rate(NAME)` is the rate of a length, an angle "
@@ -186,6 +194,7 @@ static void put_type(strut_writer *writer, const strut_key *key) {
       [STRUT_TYPE_NAME_PAIR] = "two names",
       [STRUT_TYPE_NODE_RING] = "names of three nodes or more",
       [STRUT_TYPE_NUMBERS] = "list of numbers",
+      [STRUT_TYPE_NAMES] = "list of names",
       [STRUT_TYPE_POINTS] = "list of `[x, force]`",
       [STRUT_TYPE_PROFILE] = "list of `[x, y]` [m]",
       [STRUT_TYPE_LAW] = "[law](#law), or the kind of one",
