@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <string.h>
 
+#include "parser/read/copies.h"
 #include "parser/read/reader.h"
 
 static const strut_section sections[STRUT_GROUP_SECTIONS] = {
