@@ -192,7 +192,7 @@ static int32_t find_resolved(const strut_reader *reader, const strut_name_map *m
 }
 
 /* Does the name lead past the ports of a copy that is not around the scope? */
-static bool is_hidden(const strut_reader *reader, const strut_copy *scope, const char *name) {
+bool strut_name_is_hidden(const strut_reader *reader, const strut_copy *scope, const char *name) {
   const struct strut_copies *copies = reader->copies;
   strut_full_name prefix;
   const char *around = !scope                            ? ""
@@ -220,7 +220,8 @@ static int32_t find_seen(const strut_reader *reader, const strut_name_map *map,
   strut_full_name full;
   if (index < 0 || map != &reader->node_names || !reader->copies || !reader->copies->ported_count)
     return index;
-  return strut_name_resolve_last(reader, name, &full) && is_hidden(reader, scope, full.text)
+  return strut_name_resolve_last(reader, name, &full) &&
+                 strut_name_is_hidden(reader, scope, full.text)
              ? -1
              : index;
 }
@@ -235,6 +236,23 @@ int32_t strut_find_named(const strut_reader *reader, const strut_name_map *map,
     if (scope->kind == STRUT_SCOPE_COPY && stays_within(reader, map)) return -1;
   }
   return find_seen(reader, map, NULL, text);
+}
+
+const char *strut_hiding_part(const strut_reader *reader, const strut_tree *value) {
+  strut_full_name full, resolved;
+  const strut_copy *scope = strut_scope_of(reader, value);
+  if (!reader->copies || !reader->copies->ported_count) return NULL;
+  if (scope ? !own_name(scope, value->text, &full) : !join_name("", value->text, &full))
+    return NULL;
+  if (!strut_name_resolve_last(reader, full.text, &resolved) ||
+      find_resolved(reader, &reader->node_names, resolved.text) < 0)
+    return NULL;
+  for (size_t i = 0; i < reader->copies->ported_count; i++) {
+    const strut_copy *copy = reader->copies->ported_copies[i];
+    if (strncmp(resolved.text, copy->prefix, copy->prefix_length) == 0)
+      return copy->placement->part->name;
+  }
+  return NULL;
 }
 
 const char *strut_local_name(const strut_reader *reader, const char *name) {

@@ -92,6 +92,10 @@ typedef struct strut_full_name {
 
 /** The placement of that full name, or NULL. */
 const strut_placement *strut_placement_find(const strut_reader *reader, const char *name);
+/** Does a full name lead past the ports of a copy that is not around the scope? */
+bool strut_name_is_hidden(const strut_reader *reader, const strut_copy *scope, const char *name);
+/** The part whose ports hide the node that a value names, or NULL. */
+const char *strut_hiding_part(const strut_reader *reader, const strut_tree *value);
 /** `last` in place of a number becomes that number. False: the name is too long. */
 bool strut_name_resolve_last(const strut_reader *reader, const char *name, strut_full_name *full);
 /** Does `name` fit a pattern in which * stands for one part between dots? */
@@ -133,6 +137,7 @@ void strut_copies_free(strut_reader *reader);
 typedef struct strut_port {
   strut_copy *scope;
   const strut_tree *key; /* and behind it the name within */
+  int32_t node;          /* once it is known, else -1 */
   struct strut_port *next;
 } strut_port;
 
@@ -151,7 +156,7 @@ struct strut_copies {
   const char *chain[17];             /* their names */
   const strut_tree *contacts;        /* the entries of the copies' contacts, or NULL */
   struct strut_copied_error *errors; /* see copies.c */
-  strut_port *ports;
+  strut_port *ports, **ports_end;    /* of inner copies before those around them */
   strut_name_map ported; /* copies whose part has ports, by their prefix without the dot */
   size_t ported_count, ported_capacity;
   const strut_copy **ported_copies;

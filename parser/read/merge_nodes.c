@@ -211,6 +211,28 @@ static void merge_touching(merging *m, const strut_merger *merger) {
 
 /* ---- the nodes that stay ---- */
 
+/* The name of a port means the node behind it. */
+static void name_port(strut_reader *reader, const strut_port *port) {
+  const char *name =
+      strut_arena_format(&reader->scratch, "%s%s", port->scope->prefix, port->key->text);
+  if (!name) reader->out_of_memory = true;
+  if (port->node >= 0 && name)
+    strut_add_name(reader, &reader->node_names, name, (size_t)port->node);
+}
+
+/* A port may show one of a copy within, which comes before it. */
+static void find_ports(strut_reader *reader) {
+  for (strut_port *port = reader->copies->ports; port; port = port->next) {
+    strut_owner owner = {"part", port->scope->placement->part->name};
+    reader->scope = port->scope;
+    port->node =
+        strut_read_reference(reader, port->key->next, "ports", owner, "node", &reader->node_names,
+                             strut_node_name, reader->scene->node_count);
+    reader->scope = NULL;
+    name_port(reader, port);
+  }
+}
+
 /* Moves the nodes that stay together, and lets all names mean them. */
 static void compact(merging *m) {
   strut_reader *reader = m->reader;
@@ -236,28 +258,16 @@ static void compact(merging *m) {
   strut_name_map_free(&reader->node_names);
   for (size_t i = 0; i < m->count; i++)
     strut_add_name(reader, &reader->node_names, name[i], (size_t)index[i]);
-}
-
-/* Names by which ports are known. */
-static void add_ports(strut_reader *reader) {
-  struct strut_copies *copies = reader->copies;
-  for (const strut_port *port = copies->ports; port; port = port->next) {
-    reader->scope = port->scope;
-    int32_t node = strut_read_reference(
-        reader, port->key->next, "ports", (strut_owner){"part", port->scope->placement->part->name},
-        "node", &reader->node_names, strut_node_name, reader->scene->node_count);
-    reader->scope = NULL;
-    const char *name =
-        strut_arena_format(&reader->scratch, "%s%s", port->scope->prefix, port->key->text);
-    if (!name) reader->out_of_memory = true;
-    if (node >= 0 && name) strut_add_name(reader, &reader->node_names, name, (size_t)node);
+  for (strut_port *port = reader->copies->ports; port; port = port->next) {
+    if (port->node >= 0) port->node = index[port->node];
+    name_port(reader, port);
   }
 }
 
 void strut_merge_nodes(strut_reader *reader) {
   const strut_merger *first = reader->copies ? reader->copies->mergers : NULL;
   merging m = {.reader = reader, .count = reader->scene->node_count};
-  if (reader->copies && m.count) add_ports(reader);
+  if (reader->copies && m.count) find_ports(reader);
   if (!first || !m.count || strut_diagnostics_full(reader->diagnostics)) return;
   m.root = strut_reader_allocate(reader, &reader->scratch, m.count, sizeof *m.root);
   if (!m.root) return;

@@ -25,13 +25,14 @@ strut_dimension strut_sensor_dimension(strut_sensor_kind kind) {
 }
 
 bool strut_check_variable_name(strut_reader *reader, const strut_tree *key, const char *kind) {
-  const char *name = key->text;
+  const char *name = strut_local_name(reader, key->text);
   size_t length = strlen(name), word = 0;
   if (!strut_read_name(reader, key, kind)) return false;
   while (name[word] == '_' || (name[word] >= 'a' && name[word] <= 'z') ||
          (name[word] >= 'A' && name[word] <= 'Z') ||
-         (word && name[word] >= '0' && name[word] <= '9'))
+         (word && ((name[word] >= '0' && name[word] <= '9') || name[word] == '.')))
     word++;
+  if (word && name[word - 1] == '.') word = 0;
   bool sensor = strcmp(kind, "sensor") == 0, signal = strcmp(kind, "controller") == 0;
   const char *other = strcmp(name, "t") == 0 || strcmp(name, "time") == 0 ? "the time"
                       : strut_expression_reserved(name, length) ? "a function or a constant"
@@ -173,6 +174,22 @@ int strut_find_sensor_rate(strut_reader *reader, strut_piece piece, strut_column
   return -1;
 }
 
+bool strut_find_variable(strut_reader *reader, strut_piece piece, strut_column *column,
+                         strut_dimension *dimension) {
+  const char *name = strut_arena_text(&reader->scratch, piece.text, piece.length);
+  if (!name) reader->out_of_memory = true;
+  if (!name) return false;
+  if (strut_find_sensed(reader, name, column, dimension)) return true;
+  if (strut_find_named(reader, &reader->signal_names, NULL, name) < 0) return false;
+  column->kind = STRUT_COLUMN_SIGNAL;
+  column->item = strut_use_signal(reader, name, dimension);
+  return true;
+}
+
+strut_piece strut_whole_name(strut_piece owner, strut_piece field) {
+  return (strut_piece){owner.text, (size_t)(field.text - owner.text) + field.length};
+}
+
 /* A word of an expression that is no parameter. */
 static int find_word(strut_reader *reader, strut_piece word, strut_column *column,
                      strut_dimension *dimension, strut_refusal *refusal) {
@@ -184,12 +201,7 @@ static int find_word(strut_reader *reader, strut_piece word, strut_column *colum
     *dimension = STRUT_DIM_TIME;
     return 1;
   }
-  if (strut_find_sensed(reader, name, column, dimension)) return 1;
-  if (strut_find_named(reader, &reader->signal_names, NULL, name) >= 0) {
-    column->kind = STRUT_COLUMN_SIGNAL;
-    column->item = strut_use_signal(reader, name, dimension);
-    return column->item >= 0 ? 1 : -1;
-  }
+  if (strut_find_variable(reader, word, column, dimension)) return column->item >= 0 ? 1 : -1;
   size_t count = reader->scene->sensor_count;
   const char *hint = strut_hint(reader, name, strut_sensor_name, reader, count);
   if (strut_slot_of(&reader->top, STRUT_KEY_SCENE_SENSORS)->state == STRUT_BROKEN) return -1;
@@ -204,6 +216,8 @@ static int find_column(void *context, const char *kind, strut_piece owner, strut
   if (!owner.length && !kind) return find_word(context, field, column, dimension, refusal);
   if (kind && strcmp(kind, "rate") == 0)
     return strut_find_sensor_rate(context, owner, column, dimension, refusal);
+  if (!kind && strut_find_variable(context, strut_whole_name(owner, field), column, dimension))
+    return column->item >= 0 ? 1 : -1;
   snprintf(
       refusal->text, sizeof refusal->text,
       "a signal reads the motion by sensors: write sensors: {NAME: {length: MEMBER}}, and NAME "

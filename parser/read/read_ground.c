@@ -167,9 +167,9 @@ static void read_contact(strut_reader *reader, const strut_tree *key, ground_def
     strut_store_fields(reader, &fields, &reader->scene->arena, contact, sizeof *contact);
     own_friction(reader, &fields, owner, &layers);
     fine = turn_friction(reader, key, &layers.friction) && fine && !fields.broken;
-    reader->scope = NULL;
   }
   if (!complete_friction(reader, &layers, &defaults->reported)) fine = false;
+  reader->scope = NULL;
   contact->friction = layers.friction;
   *source = (strut_source){key, key ? key->next : NULL, !fine};
 }

@@ -455,7 +455,7 @@ static bool find_outside(expansion *e, strut_copy *outer, const strut_tree *name
   int32_t i = strut_name_resolve_last(reader, full.text, &resolved)
                   ? strut_name_map_find(&e->copies->node_entries, resolved.text)
                   : -1;
-  if (i < 0) {
+  if (i < 0 || strut_name_is_hidden(reader, outer, resolved.text)) {
     strut_report_error(reader, name->place,
                        "unknown node '%s' in 'onto'; it names a node of what is placed before",
                        strut_sanitised_text(reader, name->text));
@@ -593,7 +593,7 @@ static bool read_frame(expansion *e, placing *p, strut_copy *copy, strut_frame *
                                    : "two pairs in 'onto' turn the copy; leave 'turn' out");
     return false;
   }
-  return onto->state != STRUT_GIVEN || lay_onto(e, copy, onto, fit, frame);
+  return e->weighing || onto->state != STRUT_GIVEN || lay_onto(e, copy, onto, fit, frame);
 }
 
 static void expand_places(expansion *e, const strut_slot *place, strut_copy *outer);
@@ -633,6 +633,19 @@ static strut_copy *make_copy(expansion *e, placing *p, const int64_t number[2], 
   return copy;
 }
 
+/* Lets `onto` find the node of a port. */
+static void enter_port(expansion *e, const strut_port *port) {
+  strut_reader *reader = e->reader;
+  const strut_tree *inner = port->key->next;
+  if (inner->kind != STRUT_TREE_SCALAR) return;
+  const char *own = strut_arena_format(&reader->scratch, "%s%s", port->scope->prefix, inner->text);
+  const char *seen =
+      strut_arena_format(&reader->scratch, "%s%s", port->scope->prefix, port->key->text);
+  if (!own || !seen) reader->out_of_memory = true;
+  int32_t node = own && seen ? strut_name_map_find(&e->copies->node_entries, own) : -1;
+  if (node >= 0) strut_add_name(reader, &e->copies->node_entries, seen, (size_t)node);
+}
+
 /* The names by which the copy is seen from outside. */
 static void add_ports(expansion *e, strut_copy *copy) {
   struct strut_copies *c = e->copies;
@@ -653,8 +666,11 @@ static void add_ports(expansion *e, strut_copy *copy) {
   for (const strut_tree *key = slot->value->first; key; key = key->next->next) {
     strut_port *port = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *port);
     if (!port) return;
-    *port = (strut_port){.scope = copy, .key = key, .next = c->ports};
-    c->ports = port;
+    *port = (strut_port){.scope = copy, .key = key, .node = -1};
+    if (!c->ports_end) c->ports_end = &c->ports;
+    *c->ports_end = port;
+    c->ports_end = &port->next;
+    enter_port(e, port);
   }
 }
 
@@ -663,9 +679,9 @@ static void fill_copy(expansion *e, strut_copy *copy) {
   strut_part *part = copy->placement->part;
   e->reader->scope = NULL;
   if (!e->weighing) copy_things(e, &part->fields, copy);
-  if (!e->weighing) add_ports(e, copy);
   read_merge(e, strut_slot_of(&part->fields, STRUT_KEY_PART_MERGE), copy, STRUT_KEY_PART_MERGE);
   expand_places(e, strut_slot_of(&part->fields, STRUT_KEY_PART_PLACE), copy);
+  if (!e->weighing) add_ports(e, copy);
 }
 
 /* What ties a copy to the next one. */
@@ -742,7 +758,10 @@ static void make_copies(expansion *e, placing *p) {
   for (int64_t n = 0; n < all && !e->stopped; n++) {
     const int64_t number[2] = {n / r->count[1], n % r->count[1]};
     copies[n] = make_copy(e, p, number, &base, &places[n]);
-    if (copies[n]) fill_copy(e, copies[n]);
+    if (copies[n])
+      fill_copy(e, copies[n]);
+    else
+      e->copies->incomplete = true;
     if (n == 0 && !check_size(e, p, 1.0, 0.0)) return;
     if (strut_diagnostics_full(reader->diagnostics)) e->stopped = true;
   }

@@ -207,13 +207,7 @@ static int find_word(strut_reader *reader, strut_piece word, strut_column *colum
       *dimension = columns[k].dimension;
       return 1;
     }
-  const char *name = text_of(reader, word);
-  if (strut_find_sensed(reader, name, column, dimension)) return 1;
-  if (strut_find_named(reader, &reader->signal_names, NULL, name) >= 0) {
-    column->kind = STRUT_COLUMN_SIGNAL;
-    column->item = strut_use_signal(reader, name, dimension);
-    return column->item >= 0 ? 1 : -1;
-  }
+  if (strut_find_variable(reader, word, column, dimension)) return column->item >= 0 ? 1 : -1;
   found_owner found = find_owner(reader, NULL, word);
   if (!found.owners) return 0;
   snprintf(refusal->text, sizeof refusal->text,
@@ -229,6 +223,9 @@ static int find_column(void *context, const char *kind, strut_piece owner, strut
     return strut_find_sensor_rate(reader, owner, column, dimension, refusal);
   if (!owner.length && !kind) return find_word(reader, field, column, dimension, refusal);
   found_owner found = find_owner(reader, kind, owner);
+  if (!found.owners && !kind &&
+      strut_find_variable(reader, strut_whole_name(owner, field), column, dimension))
+    return column->item >= 0 ? 1 : -1;
   if (!found.owners) return refuse_owner(reader, kind, owner, refusal);
   int count = 0;
   for (size_t k = 0; k < STRUT_COLUMN_COUNT; k++) {

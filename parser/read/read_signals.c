@@ -52,6 +52,8 @@ static bool read_value(strut_reader *reader, const strut_tree *value, const char
       !strut_read_quantity(reader, value, key, owner, &quantity))
     return false;
   *number = quantity.value;
+  if (strut_dimension_equal(quantity.dimension, STRUT_DIM_LENGTH) && !quantity.bare)
+    *number *= strut_scope_scale(reader, value);
   m->bare = quantity.bare;
   m->dimension = quantity.dimension;
   return true;
@@ -134,6 +136,13 @@ static bool read_expression(strut_reader *reader, const strut_tree *value, strut
     return false;
   m->bare = q.bare;
   m->dimension = q.dimension;
+  bool scaled = strut_scope_scale(reader, value) != 1.0;
+  if (scaled) {
+    strut_report_error(reader, value->place,
+                       "the lengths in an expression are not scaled, but this copy is; make the "
+                       "size a parameter of the part and 'set' it");
+    return false;
+  }
   if (!m->expected || q.bare || strut_dimension_equal(q.dimension, *m->expected)) return true;
   strut_report_error(reader, value->place, "expected %s for 'expression' of %s, found %s",
                      strut_expected_number(*m->expected, wanted, sizeof wanted),

@@ -305,7 +305,15 @@ int32_t strut_read_reference(strut_reader *reader, const strut_tree *value, cons
   snprintf(expected, sizeof expected, "the name of a %s", kind);
   if (!strut_read_scalar(reader, value, key, owner, expected)) return -1;
   int32_t index = strut_find_named(reader, map, value, value->text);
-  if (index < 0)
+  const char *hiding =
+      index < 0 && map == &reader->node_names ? strut_hiding_part(reader, value) : NULL;
+  if (hiding)
+    strut_report_error(reader, value->place,
+                       "node '%s' in '%s' of %s is not among the ports of part '%s', which shows "
+                       "these only",
+                       strut_sanitised_text(reader, value->text), key,
+                       strut_owner_text(reader, owner), hiding);
+  else if (index < 0)
     strut_report_error(reader, value->place, "unknown %s '%s' in '%s' of %s%s", kind,
                        strut_sanitised_text(reader, value->text), key,
                        strut_owner_text(reader, owner),

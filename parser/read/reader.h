@@ -147,8 +147,8 @@ typedef struct strut_reader {
   strut_fields *grounds;       /* of each of the scene's grounds; of `ground` the one above */
   strut_source *ground_source; /* of `grounds`, or NULL */
   strut_name_map ground_names;
-  bool *controller_broken; /* (controllers) in the order of the file */
-  strut_copy *scope;       /* the copy of which a thing is being read; NULL: the scene's own */
+  bool *controller_broken;     /* (controllers) in the order of the file */
+  strut_copy *scope;           /* the copy of which a thing is being read; NULL: the scene's own */
   struct strut_copies *copies; /* NULL: the scene has no parts */
 } strut_reader;
 
@@ -402,6 +402,14 @@ strut_dimension strut_sensor_dimension(strut_sensor_kind kind);
 /** Finds a sensor as a column and its dimension. */
 bool strut_find_sensed(strut_reader *reader, const char *name, strut_column *column,
                        strut_dimension *dimension);
+/**
+ * Is it the name of a sensor, a state or a signal? Then the column is filled, with item -1 where it is
+ * broken.
+ */
+bool strut_find_variable(strut_reader *reader, strut_piece name, strut_column *column,
+                         strut_dimension *dimension);
+/** OWNER.FIELD as it stands in the text: a name with dots. */
+strut_piece strut_whole_name(strut_piece owner, strut_piece field);
 /** The rate of a sensor as a column, as strut_find_column. */
 int strut_find_sensor_rate(strut_reader *reader, strut_piece name, strut_column *column,
                            strut_dimension *dimension, strut_refusal *refusal);
