@@ -146,12 +146,21 @@ static bool index_placed(strut_reader *reader, strut_tree *first, size_t count, 
   return all->key && all->removed;
 }
 
+/* The placed entry of that full name, which may be that of a port; -1: there is none. */
+static int32_t find_placed(const strut_reader *reader, const placed_index *all, const char *name,
+                           int key) {
+  int32_t entry = strut_name_map_find(&all->names, name);
+  if (entry >= 0 || key != STRUT_KEY_SCENE_NODES) return entry;
+  int32_t node = strut_name_map_find(&reader->copies->node_entries, name);
+  return node < 0 ? -1 : strut_name_map_find(&all->names, reader->copies->nodes[node]->text);
+}
+
 /* Applies one entry of the scene to those of the copies. False: it names none of them. */
 static bool apply(strut_reader *reader, const strut_tree *own, placed_index *all, int key) {
   strut_full_name full;
   bool pattern = strut_is_pattern(own), found = false, fine = true;
   if (!strut_name_resolve_last(reader, own->text, &full)) return false;
-  int32_t single = pattern ? -1 : strut_name_map_find(&all->names, full.text);
+  int32_t single = pattern ? -1 : find_placed(reader, all, full.text, key);
   for (size_t i = pattern ? 0 : (size_t)(single < 0 ? (int32_t)all->count : single); i < all->count;
        i++) {
     if (pattern && !strut_name_matches(full.text, all->key[i]->text)) continue;
