@@ -912,7 +912,9 @@ static void expand_scene(expansion *e) {
   e->weighing = false;
   e->copies->things = 0;
   const strut_tree *own = nodes->state == STRUT_GIVEN ? nodes->value->first : NULL;
-  for (; own; own = own->next->next) remember_node(e, own);
+  for (; own; own = own->next->next)
+    if (own->next->kind == STRUT_TREE_LIST || strut_tree_find(own->next, "position", NULL))
+      remember_node(e, own); /* others are laid over copies */
   expand_places(e, place, NULL);
   if (e->stopped) e->copies->incomplete = true;
 }
