@@ -155,6 +155,27 @@ static int32_t find_placed(const strut_reader *reader, const placed_index *all, 
   return node < 0 ? -1 : strut_name_map_find(&all->names, reader->copies->nodes[node]->text);
 }
 
+/* Does a full name begin with that of a placement? */
+static bool is_of_placement(const strut_reader *reader, const char *name) {
+  strut_full_name full;
+  strcpy(full.text, name);
+  for (char *dot = strchr(full.text, '.'); dot; dot = strchr(dot + 1, '.')) {
+    *dot = '\0';
+    if (strut_placement_find(reader, full.text)) return true;
+    *dot = '.';
+  }
+  return false;
+}
+
+/* Does the entry lack what one that stands by itself needs? Then a placed thing was meant. */
+static bool lacks_body(const strut_tree *own, int key) {
+  const strut_tree *value = own->next;
+  if (is_removal(value)) return true;
+  if (value->kind != STRUT_TREE_MAP) return false;
+  if (key == STRUT_KEY_SCENE_NODES) return !strut_tree_find(value, "position", NULL);
+  return key == STRUT_KEY_SCENE_MEMBERS && !strut_tree_find(value, "nodes", NULL);
+}
+
 /* Applies one entry of the scene to those of the copies. False: it names none of them. */
 static bool apply(strut_reader *reader, const strut_tree *own, placed_index *all, int key) {
   strut_full_name full;
@@ -166,16 +187,23 @@ static bool apply(strut_reader *reader, const strut_tree *own, placed_index *all
     if (pattern && !strut_name_matches(full.text, all->key[i]->text)) continue;
     if (!found) fine = check_value(reader, own, key);
     found = true;
-    if (fine && is_removal(own->next))
+    if (fine && is_removal(own->next)) {
       all->removed[i] = true;
-    else if (fine)
+      strut_add_name(reader, &reader->copies->removed, all->key[i]->text, i);
+    } else if (fine) {
       lay_over(reader, all->key[i]->next, own->next, strut_section_of_things(key));
+    }
     if (!pattern) break;
   }
   if (!found && pattern)
     strut_report_error(reader, own->place, "nothing that is placed fits '%s'",
                        strut_sanitised_text(reader, own->text));
-  return found || pattern;
+  bool lost = !found && !pattern && is_of_placement(reader, full.text) && lacks_body(own, key);
+  if (lost)
+    strut_report_error(reader, own->place, "nothing that is placed is called '%s'%s",
+                       strut_sanitised_text(reader, own->text),
+                       strut_copy_hint_of(reader, full.text));
+  return found || pattern || lost;
 }
 
 /* Takes the removed entries out of the chain. */

@@ -55,6 +55,13 @@ static const struct exception {
   strut_section section;
   const char *name, *reason;
 } exceptions[] = {
+    {STRUT_SECTION_PART, "use", "a file, which the reader opens"},
+    {STRUT_SECTION_PLACE, "flip", "part of the frame of a copy"},
+    {STRUT_SECTION_PLACE, "turn", "part of the frame of a copy"},
+    {STRUT_SECTION_PLACE, "at", "part of the frame of a copy"},
+    {STRUT_SECTION_REPEAT, "turn", "part of the frames of copies"},
+    {STRUT_SECTION_REPEAT, "scale", "part of the frames of copies"},
+    {STRUT_SECTION_REPEAT, "about", "part of the frames of copies"},
     {STRUT_SECTION_MEMBER, "rest_length", "one of four keys that share a field"},
     {STRUT_SECTION_MEMBER, "rest_length_ratio", "one of four keys that share a field"},
     {STRUT_SECTION_MEMBER, "pretension", "one of four keys that share a field"},
