@@ -246,11 +246,31 @@ void strut_apply_groups(strut_reader *reader, strut_fields *fields, int group_ke
   strut_suppress_missing(fields);
 }
 
+/* Does some `group` of a tree name the group? Then copies that are not made would use it. */
+static bool is_mentioned(const strut_tree *tree, const char *name) {
+  if (!tree || tree->kind == STRUT_TREE_SCALAR) return false;
+  for (const strut_tree *k = tree->first; k; k = k->next) {
+    bool group = tree->kind == STRUT_TREE_MAP && strcmp(k->text, "group") == 0;
+    if (tree->kind == STRUT_TREE_MAP) k = k->next;
+    if (group && k->kind == STRUT_TREE_SCALAR && strcmp(k->text, name) == 0) return true;
+    for (const strut_tree *item = group ? k->first : NULL; item; item = item->next)
+      if (item->kind == STRUT_TREE_SCALAR && strcmp(item->text, name) == 0) return true;
+    if (!group && is_mentioned(k, name)) return true;
+  }
+  return false;
+}
+
+static bool parts_mention(strut_reader *reader, const char *name) {
+  return is_mentioned(strut_slot_of(&reader->top, STRUT_KEY_SCENE_PARTS)->value, name) ||
+         is_mentioned(strut_slot_of(&reader->top, STRUT_KEY_SCENE_PLACE)->value, name);
+}
+
 void strut_report_unused_groups(strut_reader *reader) {
   if (reader->groups_unknown || reader->top.broken) return;
   for (size_t i = 0; i < reader->group_count; i++) {
     const strut_group *group = &reader->groups[i];
     if (group->used || group->broken || group->key->placed) continue;
+    if (parts_mention(reader, group->name)) continue;
     strut_report_error(reader, group->key->place, "nothing uses group '%s'", group->name);
   }
 }
