@@ -139,7 +139,11 @@ static void compile_feedback(strut_model *model, bool *failed) {
   if (!strut_feedback_compile(model)) *failed = true;
 }
 
-/* Half of each member's mass at each of its ends (7), and the point masses. */
+static void compile_sliding_masses(strut_model *model, bool *failed) {
+  if (!strut_sliding_masses_compile(model)) *failed = true;
+}
+
+/* Half of each member's mass at each of its ends (7), the point masses, and the sliding ones. */
 static void compile_weights(strut_model *model, bool *failed) {
   const strut_member_table *t = &model->members;
   double *weight = doubles(model, (size_t)model->node_count, failed);
@@ -148,6 +152,14 @@ static void compile_weights(strut_model *model, bool *failed) {
   for (int32_t j = 0; j < t->count; j++) {
     weight[t->from[j] / 2] += 0.5 * t->mass[j];
     weight[t->to[j] / 2] += 0.5 * t->mass[j];
+  }
+  for (int32_t i = 0; i < model->node_count && model->sliding.count; i++)
+    if (!(weight[i] > 0) && !(model->fixed[2 * i] && model->fixed[2 * i + 1]))
+      model->sliding.massless_node = true;
+  for (int32_t i = 0; i < model->sliding.count; i++) {
+    const strut_sliding_item *s = &model->sliding.item[i];
+    weight[s->at[0] / 2] += (1.0 - s->start) * s->mass;
+    weight[s->at[1] / 2] += s->start * s->mass;
   }
   model->weight = weight;
 }
@@ -260,12 +272,14 @@ strut_status strut_model_compile(const strut_scene *scene, strut_model **result,
   bool failed = false;
   void (*const passes[])(strut_model *, bool *) = {
       compile_nodes,   compile_members,        compile_elements,   compile_drives,
-      compile_weights, compile_loads,          compile_contacts,   compile_actuator_forces,
+      compile_sliding_masses, compile_weights, compile_loads,          compile_contacts,   compile_actuator_forces,
       compile_damping, compile_support_motion, compile_unbalances, compile_feedback};
   for (size_t i = 0; i < sizeof passes / sizeof passes[0] && !failed; i++)
     passes[i](model, &failed);
   strut_status status = failed ? strut_memory_fail_model(scene, error)
                                : strut_mass_create(model, &model->mass, error);
+  if (!status && strut_sliding_masses_solve(model))
+    status = strut_memory_fail_model(scene, error);
   if (status) {
     strut_model_free(model);
     return status;

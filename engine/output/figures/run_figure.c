@@ -144,6 +144,7 @@ double strut_run_measured(const strut_run_scene *run, size_t frame, int axis) {
     sum += run->model->weight[i] * q[2 * i + axis];
     mass += run->model->weight[i];
   }
+  sum += strut_sliding_moment(run->model, run->motion->time[frame], axis, q);
   return mass > 0 ? sum / mass : q[axis];
 }
 

@@ -133,6 +133,7 @@ double strut_moment_travel(const strut_moment *moment, const strut_model *model,
     sum += model->weight[i] * moment->q[2 * i];
     weight += model->weight[i];
   }
+  sum += strut_sliding_moment(model, moment->time, 0, moment->q);
   return weight > 0 ? sum / weight : moment->q[0];
 }
 

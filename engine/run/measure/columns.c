@@ -8,6 +8,7 @@
 #include "engine/forces/elements.h"
 #include "engine/forces/forces.h"
 #include "engine/forces/memory.h"
+#include "engine/forces/sliding_masses.h"
 #include "engine/forces/support_motion.h"
 #include "engine/model/pose.h"
 
@@ -99,6 +100,21 @@ static double mean_by_mass(const strut_model *model, const double *from, double 
   }
   *size /= mass;
   return sum / mass;
+}
+
+/* Position or velocity of the centre of mass along x or y. */
+static double evaluate_centre(const strut_columns *c, const strut_state *state,
+                              strut_column_kind kind, double *size) {
+  int axis = kind == STRUT_COLUMN_CENTRE_Y || kind == STRUT_COLUMN_CENTRE_VY;
+  bool rate = kind == STRUT_COLUMN_CENTRE_VX || kind == STRUT_COLUMN_CENTRE_VY;
+  double mean = mean_by_mass(c->model, (rate ? state->v : state->q) + axis, size);
+  if (!(c->model->plan & STRUT_TERM_SLIDING_MASS)) return mean;
+  double more = rate ? strut_sliding_masses_momentum(c->model, state, axis, state->q, state->v)
+                     : strut_sliding_masses_moment(c->model, state, axis, state->q);
+  double mass = 0.0;
+  for (int32_t i = 0; i < c->model->node_count; i++) mass += c->model->weight[i];
+  *size += fabs(more) / mass;
+  return mean + more / mass;
 }
 
 /* Sum of a force over all contacts of the node of one of them, the first. */
@@ -203,10 +219,10 @@ static double evaluate_column(const strut_columns *c, const strut_state *state, 
     case STRUT_COLUMN_TILT:
     case STRUT_COLUMN_ANGLE: node_difference(c, state, column, d); return atan2(d[1], d[0]);
     case STRUT_COLUMN_DISTANCE: node_difference(c, state, column, d); return hypot(d[0], d[1]);
-    case STRUT_COLUMN_CENTRE_X: return mean_by_mass(c->model, state->q, size);
-    case STRUT_COLUMN_CENTRE_Y: return mean_by_mass(c->model, state->q + 1, size);
-    case STRUT_COLUMN_CENTRE_VX: return mean_by_mass(c->model, state->v, size);
-    case STRUT_COLUMN_CENTRE_VY: return mean_by_mass(c->model, state->v + 1, size);
+    case STRUT_COLUMN_CENTRE_X:
+    case STRUT_COLUMN_CENTRE_Y:
+    case STRUT_COLUMN_CENTRE_VX:
+    case STRUT_COLUMN_CENTRE_VY: return evaluate_centre(c, state, column.kind, size);
     case STRUT_COLUMN_KINETIC: return c->stored.kinetic;
     case STRUT_COLUMN_ELASTIC: return c->stored.elastic;
     case STRUT_COLUMN_GRAVITY: return c->stored.gravity;
