@@ -317,7 +317,7 @@ static void draw_progress(const strut_view_frame *s, strut_canvas *canvas, size_
 void strut_view_frame_draw(const strut_view_frame *s, strut_canvas *canvas, size_t i,
                            const strut_moment *moment) {
   strut_window window = window_at(s, i);
-  strut_structure_style style = {.colouring = STRUT_COLOUR_KIND};
+  strut_structure_style style = {.colouring = STRUT_COLOUR_KIND, .time = moment->time};
   if (s->most_force > 0) {
     style.colouring = STRUT_COLOUR_FORCE;
     style.values = moment->force;
