@@ -47,7 +47,9 @@ static bool is_cut(const strut_signal *s, double at) {
 }
 
 /* A start or stop of the signal after 0 and up to `last`. */
-static bool switches_within(double time, double last) { return time > 0.0 && time <= last; }
+static bool switches_within(double time, double last) {
+  return time > 0.0 && time <= last && time < HUGE_VAL;
+}
 
 bool strut_signal_value_jumps(const strut_signal *signals, int32_t index, double last,
                               double *when) {

@@ -84,6 +84,33 @@ static strut_status make_response(const strut_model *model, strut_state *state, 
   return STRUT_OK;
 }
 
+/* The compliance of contact i with sliding masses as they have been placed. */
+static void refresh_compliance(const strut_model *model, const strut_state *state,
+                               strut_event_stepper *l, int32_t i) {
+  strut_contact_compliance *r = &l->response[i];
+  double *xy = (double *)r->xy, *column = l->scatter;
+  uint32_t at = model->contacts.at[i];
+  for (int32_t k = 0; k < r->count; k++)
+    for (uint32_t c = 0; c < 2; c++) column[r->at[k] + c] = r->constant[2 * (uint32_t)k + c];
+  strut_sliding_masses_correct(model, state, column);
+  find_own(&model->contacts, column[at], column[at + 1], r);
+  for (int32_t k = 0; k < r->count; k++)
+    for (uint32_t c = 0; c < 2; c++) {
+      xy[2 * (uint32_t)k + c] = column[r->at[k] + c];
+      column[r->at[k] + c] = 0.0;
+    }
+  for (int32_t m = 0; m < model->sliding.moving_count; m++) { /* what is cut from compliances */
+    const strut_sliding_answer *answer = &model->sliding.answer[m];
+    for (int32_t k = 0; k < answer->count; k++)
+      column[answer->at[k]] = column[answer->at[k] + 1] = 0.0;
+  }
+}
+
+void strut_refresh_compliances(const strut_model *model, const strut_state *state,
+                               strut_event_stepper *l) {
+  for (int32_t k = 0; k < l->closed_count; k++) refresh_compliance(model, state, l, l->closed[k]);
+}
+
 /*
  * How long a closed contact remembers a touchdown: the slower root of m s^2 + k s + c, or, where
  * nothing damps it, three of its periods.
@@ -133,9 +160,11 @@ strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *
   uint8_t *answers =
       strut_arena_allocate(&state->arena, (size_t)model->node_count, sizeof *answers);
   if (!answers) return STRUT_NO_MEMORY;
+  if (model->plan & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_place(model, state, 0.0);
   for (int32_t i = 0; i < c->count; i++) {
     strut_status status = make_response(model, state, i, x, y, answers, &l->response[i]);
     if (status) return status;
+    if (model->plan & STRUT_TERM_SLIDING_MASS) refresh_compliance(model, state, l, i);
     l->settling_time[i] = settling_time(&c->entry[i], l->response[i].normal);
     fastest = fmax(fastest, c->entry[i].damping * l->response[i].normal);
     fastest = fmax(fastest, sqrt(c->entry[i].stiffness * l->response[i].normal));
@@ -154,30 +183,6 @@ strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *
   l->sliding = strut_arena_allocate(&state->arena, (size_t)c->count, sizeof *l->sliding);
   if (!l->stuck_factor || !l->stuck_work || !l->body_seen || !l->sliding) return STRUT_NO_MEMORY;
   return find_bodies(model, l);
-}
-
-void strut_refresh_compliances(const strut_model *model, const strut_state *state,
-                               strut_event_stepper *l) {
-  const strut_contact_table *c = &model->contacts;
-  for (int32_t k = 0; k < l->closed_count; k++) {
-    strut_contact_compliance *r = &l->response[l->closed[k]];
-    double *xy = (double *)r->xy, *column = l->scatter;
-    uint32_t at = c->at[l->closed[k]];
-    for (int32_t i = 0; i < r->count; i++)
-      for (uint32_t e = 0; e < 2; e++) column[r->at[i] + e] = r->constant[2 * (uint32_t)i + e];
-    strut_sliding_masses_correct(model, state, column);
-    find_own(c, column[at], column[at + 1], r);
-    for (int32_t i = 0; i < r->count; i++)
-      for (uint32_t e = 0; e < 2; e++) {
-        xy[2 * (uint32_t)i + e] = column[r->at[i] + e];
-        column[r->at[i] + e] = 0.0;
-      }
-    for (int32_t m = 0; m < model->sliding.moving_count; m++) { /* what is cut from compliances */
-      const strut_sliding_answer *answer = &model->sliding.answer[m];
-      for (int32_t i = 0; i < answer->count; i++)
-        column[answer->at[i]] = column[answer->at[i] + 1] = 0.0;
-    }
-  }
 }
 
 void strut_apply_contact_impulse(const strut_event_stepper *l, int32_t i,
