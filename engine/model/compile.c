@@ -8,6 +8,7 @@
 #include "engine/model/mass.h"
 #include "engine/model/memory_estimate.h"
 #include "engine/model/model.h"
+#include "engine/model/sliding_compile.h"
 
 /* Zeroed doubles in the model's arena; *failed remembers a refusal so that passes stay short. */
 static double *doubles(strut_model *model, size_t count, bool *failed) {
@@ -271,15 +272,15 @@ strut_status strut_model_compile(const strut_scene *scene, strut_model **result,
   model->scene = scene;
   bool failed = false;
   void (*const passes[])(strut_model *, bool *) = {
-      compile_nodes,   compile_members,        compile_elements,   compile_drives,
-      compile_sliding_masses, compile_weights, compile_loads,          compile_contacts,   compile_actuator_forces,
-      compile_damping, compile_support_motion, compile_unbalances, compile_feedback};
+      compile_nodes,           compile_members, compile_elements,       compile_drives,
+      compile_sliding_masses,  compile_weights, compile_loads,          compile_contacts,
+      compile_actuator_forces, compile_damping, compile_support_motion, compile_unbalances,
+      compile_feedback};
   for (size_t i = 0; i < sizeof passes / sizeof passes[0] && !failed; i++)
     passes[i](model, &failed);
   strut_status status = failed ? strut_memory_fail_model(scene, error)
                                : strut_mass_create(model, &model->mass, error);
-  if (!status && strut_sliding_masses_solve(model))
-    status = strut_memory_fail_model(scene, error);
+  if (!status && strut_sliding_masses_solve(model)) status = strut_memory_fail_model(scene, error);
   if (status) {
     strut_model_free(model);
     return status;

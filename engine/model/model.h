@@ -122,9 +122,10 @@ typedef struct strut_model {
   const double *start;          /* (length) positions at t = 0 */
   const double *velocity;       /* (length) velocities at t = 0 */
   const double *constant_force; /* (length) gravity and constant loads; NULL when all zero */
-  const double *weight; /* (node_count) mass half of each member at each node, point masses, and shares of
+  const double
+      *weight; /* (node_count) mass half of each member at each node, point masses, and shares of
                            sliding masses where they are at t = 0 */
-  const uint8_t *fixed; /* (length) 1 where supported */
+  const uint8_t *fixed;     /* (length) 1 where supported */
   const double *point_mass; /* (node_count) [kg] */
   strut_member_table members;
   strut_element_table elements;

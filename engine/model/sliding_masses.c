@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/model/sliding_masses.h"
+#include "engine/model/sliding_compile.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "engine/model/mass.h"
-#include "engine/model/model.h"
 #include "engine/scene/signal_motion.h"
 
 /* Entries of an answer below this part of its largest one change no bit that matters. */
@@ -51,8 +50,7 @@ static void solve_column(const strut_model *model, uint32_t at, double *column, 
 static bool keep_answer(strut_model *model, double *const *column, strut_sliding_answer *answer) {
   double most = 0.0;
   int32_t end = 2 * model->node_count, count = 0;
-  for (int32_t k = 0; k < end; k++)
-    most = fmax(most, fmax(fabs(column[0][k]), fabs(column[1][k])));
+  for (int32_t k = 0; k < end; k++) most = fmax(most, fmax(fabs(column[0][k]), fabs(column[1][k])));
   uint32_t *at = strut_arena_allocate(&model->arena, (size_t)model->node_count, sizeof *at);
   if (!at) return false;
   for (int32_t k = 0; k < end; k += 2) {

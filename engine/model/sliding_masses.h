@@ -13,7 +13,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "engine/base/status.h"
+#include "engine/base/export.h"
 
 struct strut_model;
 
@@ -51,12 +51,8 @@ typedef struct strut_sliding_table {
   bool massless_node; /* some free node has no mass but that of sliding masses */
 } strut_sliding_table;
 
-/** Fills the table but for the answers; before the weights. False: out of memory. */
-bool strut_sliding_masses_compile(struct strut_model *model);
-/** Finds the answers; after the mass matrix. STRUT_OK or STRUT_NO_MEMORY. */
-strut_status strut_sliding_masses_solve(struct strut_model *model);
-
 /** Mass moment beyond that of the weights at time t [s], sum of m x, of one coordinate at positions q [kg m]. */
-double strut_sliding_moment(const struct strut_model *model, double t, int axis, const double *q);
+STRUT_API double strut_sliding_moment(const struct strut_model *model, double t, int axis,
+                                      const double *q);
 
 #endif

@@ -115,8 +115,8 @@ void strut_state_reset(const strut_model *model, strut_state *state) {
     state->trigger_was[i] = -1;
   }
   for (int32_t k = 0; k < model->sliding.moving_count; k++)
-    state->sliding[k] = (strut_sliding_motion){
-        .share = model->sliding.item[model->sliding.moving[k]].start};
+    state->sliding[k] =
+        (strut_sliding_motion){.share = model->sliding.item[model->sliding.moving[k]].start};
   for (int32_t i = 0; i < model->elements.memory_count; i++) state->plastic[i] = 0.0;
   for (int32_t i = 0; i < model->elements.memory_slots; i++)
     state->guide_mode[i] = 2, state->guide_side[i] = 1,

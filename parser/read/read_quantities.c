@@ -89,8 +89,8 @@ static bool all_known(strut_reader *reader) {
 }
 
 static found_owner find_owner(strut_reader *reader, const char *kind, strut_piece name) {
-  found_owner found = {.node = -1, .member = -1, .hinge = -1, .cell = -1, .collision = -1,
-                       .slider = -1};
+  found_owner found = {
+      .node = -1, .member = -1, .hinge = -1, .cell = -1, .collision = -1, .slider = -1};
   const char *text = text_of(reader, name);
   if (!kind || strcmp(kind, "member") == 0)
     found.member = strut_name_map_find(&reader->member_names, text);

@@ -40,10 +40,10 @@ static bool read_position(strut_reader *reader, const strut_tree *value, strut_o
     if (length > 0.0) s->share /= length;
     return length > 0.0;
   }
-  strut_report_error(reader, value->place,
-                     "expected a share such as '50 %%', or a length, for 'position' of %s, found %s",
-                     strut_owner_text(reader, owner),
-                     strut_dimension_name(q.dimension, found, sizeof found));
+  strut_report_error(
+      reader, value->place,
+      "expected a share such as '50 %%', or a length, for 'position' of %s, found %s",
+      strut_owner_text(reader, owner), strut_dimension_name(q.dimension, found, sizeof found));
   return false;
 }
 
@@ -69,9 +69,9 @@ static bool read_slider(strut_reader *reader, const strut_tree *key, strut_slidi
   bool known = strut_slot_of(&reader->top, STRUT_KEY_SCENE_MEMBERS)->state == STRUT_GIVEN ||
                reader->beam_count > 0;
   if (member->state == STRUT_GIVEN && known && !is_beam(reader, member->value, owner))
-    s->member = strut_read_reference(reader, member->value, "member", owner, "member",
-                                     &reader->member_names, strut_member_name,
-                                     reader->scene->member_count);
+    s->member =
+        strut_read_reference(reader, member->value, "member", owner, "member",
+                             &reader->member_names, strut_member_name, reader->scene->member_count);
   strut_store_fields(reader, &fields, &reader->scene->arena, s, sizeof *s);
   if (position->state == STRUT_GIVEN)
     fine = read_position(reader, position->value, owner, s) && fine;

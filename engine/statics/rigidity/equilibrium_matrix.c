@@ -238,7 +238,8 @@ static void add_sliding_masses(const strut_model *model, sums *s) {
 static bool reserve(const strut_model *model, sums *s, strut_arena *scratch) {
   size_t members = (size_t)model->members.count, contacts = (size_t)model->contacts.count;
   size_t most = strut_tangent_entries(model, false), sliding = (size_t)model->sliding.count;
-  return strut_triplets_reserve(&s->mass, (size_t)model->length + 6 * (members + sliding), scratch) &&
+  return strut_triplets_reserve(&s->mass, (size_t)model->length + 6 * (members + sliding),
+                                scratch) &&
          strut_triplets_reserve(&s->elastic, most + 1, scratch) &&
          strut_triplets_reserve(&s->geometric, most + 1, scratch) &&
          strut_triplets_reserve(&s->contact, STRUT_CONTACT_ENTRIES * contacts + 1, scratch);
