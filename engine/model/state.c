@@ -60,6 +60,7 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
   state->started = strut_arena_allocate(arena, model->scene->signal_count, sizeof(double));
   state->trigger_was = strut_arena_allocate(arena, model->scene->signal_count, 1);
   state->held = strut_arena_allocate(arena, model->scene->signal_count, sizeof(double));
+  state->relay_side = strut_arena_allocate(arena, model->scene->signal_count, 1);
   state->actuator_force =
       strut_arena_allocate(arena, (size_t)model->actuator_forces.count, sizeof(double));
   bool moves =
@@ -78,7 +79,7 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
       !state->normal || !state->friction || !state->scratch || !state->actuator_force ||
       !state->support_rates || !state->support_answer || !surfaces || !state->sensor ||
       !state->sensor_rate || !state->sliding || !state->sliding_factor || !state->sliding_push ||
-      !state->held || !state->started || !state->trigger_was) {
+      !state->held || !state->started || !state->trigger_was || !state->relay_side) {
     strut_state_free(state);
     *result = NULL;
     return strut_memory_fail_model(model->scene, error);
@@ -113,6 +114,7 @@ void strut_state_reset(const strut_model *model, strut_state *state) {
     state->held[i] = (double)NAN;
     state->started[i] = (double)INFINITY;
     state->trigger_was[i] = -1;
+    state->relay_side[i] = 0;
   }
   for (int32_t k = 0; k < model->sliding.moving_count; k++)
     state->sliding[k] =

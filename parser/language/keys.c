@@ -237,6 +237,7 @@ const char *strut_key_expected(int key, char *buffer, size_t size) {
     case STRUT_TYPE_NODE_PATH: return "two nodes such as [n1, n2], or the nodes of a running cable";
     case STRUT_TYPE_NODE_RING: return "three nodes or more such as [n1, n2, n3]";
     case STRUT_TYPE_NAME_PAIR: return "two names such as [a, b]";
+    case STRUT_TYPE_NAMES: return "a list of names such as [a, b]";
     case STRUT_TYPE_NODE_TRIPLE: return "three nodes such as [n1, n2, n3]";
     case STRUT_TYPE_NUMBERS: return "a list of numbers";
     case STRUT_TYPE_POINTS: return "a list of points such as [[0, 0], [2 mm, 3 N]]";
@@ -258,6 +259,7 @@ const char *strut_key_expected(int key, char *buffer, size_t size) {
       return "an expression such as com.vy, n1.y - n2.y or m1.force";
     case STRUT_TYPE_AXES: return "a list of axes such as [{friction: [0.1, 0.2]}]";
     case STRUT_TYPE_TIMES: return "a list of times such as [0 s, 20 ms]";
+    case STRUT_TYPE_FREE: return k->words;
     case STRUT_TYPE_MAP: return "a mapping {key: value, ...}";
     case STRUT_TYPE_THINGS: return "a mapping {name: ..., ...}";
   }

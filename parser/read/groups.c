@@ -93,7 +93,8 @@ void strut_read_groups(strut_reader *reader) {
   if (!map) return;
   reader->groups =
       strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->groups);
-  for (const strut_tree *key = map->first; key && reader->groups; key = key->next->next) {
+  for (const strut_tree *key = strut_first_entry(reader, map); key && reader->groups;
+       key = strut_following_entry(reader, key)) {
     read_group(reader, key, &reader->groups[reader->group_count]);
     strut_add_name(reader, &reader->group_names, key->text, reader->group_count++);
   }
@@ -104,7 +105,7 @@ size_t strut_groups_named(strut_reader *reader, const strut_tree *value, strut_g
   const strut_tree *item = value->kind == STRUT_TREE_LIST ? value->first : value;
   for (; item && count < STRUT_MOST_GROUPS; item = value == item ? NULL : item->next) {
     int32_t index = item->kind == STRUT_TREE_SCALAR
-                        ? strut_name_map_find(&reader->group_names, item->text)
+                        ? strut_find_named(reader, &reader->group_names, item, item->text)
                         : -1;
     if (index >= 0) groups[count++] = &reader->groups[index];
   }
@@ -138,6 +139,13 @@ static bool taken(strut_fields *fields, int key) {
   return false;
 }
 
+/* Lengths of a group outside of a scaled copy are scaled with the thing that uses it. */
+static double scale_to(const strut_reader *reader, const strut_group *group) {
+  double own = strut_scope_scale(reader, group->key);
+  return group->key->placed ? strut_scope_scale(reader, NULL) / own
+                            : strut_scope_scale(reader, NULL);
+}
+
 static void apply_group(strut_reader *reader, strut_fields *fields, strut_group *group,
                         strut_owner owner) {
   size_t section = section_index(fields->section);
@@ -149,6 +157,8 @@ static void apply_group(strut_reader *reader, strut_fields *fields, strut_group 
       if (taken(fields, key)) continue;
       *strut_slot_of(fields, key) = item->slot;
       strut_slot_of(fields, key)->from = item;
+      if (strut_key_at(key)->measure == STRUT_MEASURE_LENGTH)
+        strut_slot_of(fields, key)->number[0] *= scale_to(reader, group);
       if (item->slot.state == STRUT_BROKEN || (item->nested && item->nested->broken))
         fields->broken = true;
     } else if (!item->refused[section]) {
@@ -185,7 +195,7 @@ void strut_report_unused_groups(strut_reader *reader) {
   if (reader->groups_unknown || reader->top.broken) return;
   for (size_t i = 0; i < reader->group_count; i++) {
     const strut_group *group = &reader->groups[i];
-    if (group->used || group->broken) continue;
+    if (group->used || group->broken || group->key->placed) continue;
     strut_report_error(reader, group->key->place, "nothing uses group '%s'", group->name);
   }
 }

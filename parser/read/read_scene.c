@@ -7,8 +7,30 @@
 #include <string.h>
 
 #include "engine/base/c_locale.h"
+#include "parser/read/copies.h"
 #include "parser/read/reader.h"
 #include "parser/yaml/document.h"
+
+void strut_require_nodes(strut_reader *reader) {
+  char expected[100];
+  strut_slot *slot = strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES);
+  if (slot->state != STRUT_ABSENT) return;
+  if (!reader->holes)
+    strut_report_error(reader, strut_root_place(reader), "the scene lacks 'nodes', expected %s",
+                       strut_key_expected(STRUT_KEY_SCENE_NODES, expected, sizeof expected));
+  slot->state = STRUT_BROKEN;
+  reader->top.broken = true;
+}
+
+void strut_mark_incomplete(strut_reader *reader) {
+  for (int k = 0; k < strut_section_size(STRUT_SECTION_SCENE); k++) {
+    int key = strut_section_first(STRUT_SECTION_SCENE) + k;
+    bool things = key == STRUT_KEY_SCENE_GROUPS || key == STRUT_KEY_SCENE_CONFIGURATIONS ||
+                  strut_section_of_things(key) != STRUT_SECTION_COUNT;
+    if (things) reader->top.slot[k].state = STRUT_BROKEN;
+  }
+  reader->top.broken = reader->failed = reader->ends_unknown = reader->groups_unknown = true;
+}
 
 /* The scene's own numbers may use parameters: they are read here, when these are known. */
 static void read_head(strut_reader *reader) {
@@ -30,6 +52,7 @@ static void read_sections(strut_reader *reader, const strut_setting *settings, s
   static void (*const sections[])(strut_reader *) = {read_head,
                                                      strut_read_groups,
                                                      strut_read_nodes,
+                                                     strut_merge_nodes,
                                                      strut_read_beams,
                                                      strut_read_members,
                                                      strut_add_beam_members,
@@ -53,10 +76,13 @@ static void read_sections(strut_reader *reader, const strut_setting *settings, s
                                                      strut_read_initial,
                                                      strut_read_experiment};
   strut_read_parameters(reader, settings, count);
+  strut_read_parts(reader);
   for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++) {
     if (strut_diagnostics_full(reader->diagnostics)) return;
+    reader->scope = NULL;
     sections[i](reader);
   }
+  reader->scope = NULL;
   if (strut_diagnostics_full(reader->diagnostics)) return;
   strut_keep_signals(reader);
   strut_keep_parameters(reader);
@@ -129,6 +155,7 @@ static void free_reader(strut_reader *reader) {
       &reader->ground_names,    &reader->sensor_names,    &reader->state_names,
       &reader->slider_names};
   for (size_t i = 0; i < sizeof maps / sizeof maps[0]; i++) strut_name_map_free(maps[i]);
+  strut_copies_free(reader);
   strut_release(reader->signals);
   strut_release(reader->signal_state);
   strut_arena_free(&reader->scratch);
@@ -157,6 +184,7 @@ static strut_status read_from(const strut_document *document, const strut_settin
     status = strut_document_read(&reader->document, diagnostics);
   reader->holes = status == STRUT_BAD_SCENE;
   if (status != STRUT_NO_MEMORY && reader->document.root) read_tree(reader, settings, count);
+  strut_note_copies(reader);
   strut_c_locale_leave(locale);
   if (!status && reader->failed) status = STRUT_BAD_SCENE;
   if (reader->out_of_memory) status = STRUT_NO_MEMORY;

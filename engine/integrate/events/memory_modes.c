@@ -41,6 +41,7 @@ void strut_memory_list(const strut_model *model, const strut_state *state, strut
 }
 
 strut_event_kind strut_switch_event(const strut_law_switch *law) {
+  if (law->relay) return STRUT_EVENT_RELAY;
   if (law->slider) return STRUT_EVENT_SLIDER;
   if (law->member < 0 && law->element < 0) return STRUT_EVENT_BREAK;
   return law->kinks ? STRUT_EVENT_KINK : STRUT_EVENT_ACTS;
