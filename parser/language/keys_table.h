@@ -63,6 +63,7 @@
   X(PART, ACTUATORS, "actuators", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of an actuator", BY_HAND, "As in a scene.") \
   X(PART, LOADS, "loads", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a load", BY_HAND, "As in a scene; forces turn with the part.") \
   X(PART, UNBALANCES, "unbalances", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of an unbalance", BY_HAND, "As in a scene.") \
+  X(PART, SLIDERS, "sliders", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a slider", BY_HAND, "As in a scene.") \
   X(PART, SIGNALS, "signals", THINGS, NONE, ANY, "", OPTIONAL, 0, "a signal", BY_HAND, "As in a scene; those of the scene are known too.") \
   X(PART, CONFIGURATIONS, "configurations", THINGS, NONE, ANY, "", OPTIONAL, 0, "`{NODE: [x, y], ...}` or the keys of a [configuration](#configuration)", BY_HAND, "Shapes of the part; what is not in the copy stays as drawn.") \
   X(PART, SENSORS, "sensors", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a sensor", BY_HAND, "As in a scene.") \

@@ -37,7 +37,7 @@ static bool read_position(strut_reader *reader, const strut_tree *value, strut_o
   if (q.bare || strut_dimension_equal(q.dimension, STRUT_DIM_NONE)) return true;
   if (strut_dimension_equal(q.dimension, STRUT_DIM_LENGTH)) {
     double length = s->member >= 0 ? drawn_length(reader->scene, s->member) : 0.0;
-    if (length > 0.0) s->share /= length;
+    if (length > 0.0) s->share *= strut_scope_scale(reader, value) / length;
     return length > 0.0;
   }
   strut_report_error(
@@ -89,7 +89,8 @@ void strut_read_sliders(strut_reader *reader) {
   reader->slider_source =
       strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->slider_source);
   if (!scene->sliding_masses || !reader->slider_source) return;
-  for (const strut_tree *key = map->first; key; key = key->next->next) {
+  for (const strut_tree *key = strut_first_entry(reader, map); key;
+       key = strut_following_entry(reader, key)) {
     size_t i = strut_next_entry(reader, &scene->sliding_count);
     scene->sliding_masses[i] = strut_sliding_mass_default();
     scene->sliding_masses[i].name = strut_keep_text(reader, key->text);
