@@ -81,6 +81,8 @@ typedef enum strut_column_owner {
   X(STATE, FEEDBACK, "state", 0, 0, 0, 0)                                                          \
   X(SLIDER_X, SLIDER, "x", 0, 1, 0, 0)                                                             \
   X(SLIDER_Y, SLIDER, "y", 0, 1, 0, 0)                                                             \
+  X(SLIDER_VX, SLIDER, "vx", 0, 1, -1, 0)                                                          \
+  X(SLIDER_VY, SLIDER, "vy", 0, 1, -1, 0)                                                          \
   X(SLIDER_SHARE, SLIDER, "share", 0, 0, 0, 0) /* of its member, from the first node */
 
 typedef enum strut_column_kind {

@@ -340,8 +340,11 @@ STRUT_API void strut_scene_hold_supports(strut_scene *scene, bool shapes);
 
 /** Stops rotating masses: each becomes part of its node's mass. The nodes must be the scene's own. */
 STRUT_API void strut_scene_stop_unbalances(strut_scene *scene);
-/** Share of its member at which a sliding mass is at time t [s], and the share per unit of its signal. */
+/** Share of its member at which a sliding mass is at time t [s]. */
 STRUT_API double strut_sliding_mass_share(const strut_scene *scene, size_t index, double t);
+/** The rate of that share [1/s]. */
+STRUT_API double strut_sliding_mass_rate(const strut_scene *scene, size_t index, double t);
+/** The share per unit of its signal. */
 STRUT_API double strut_sliding_mass_scale(const strut_scene *scene, size_t index);
 /** Leaves sliding masses where they are at t = 0. False: out of memory of the arena. */
 STRUT_API bool strut_scene_hold_sliding_masses(strut_scene *scene, strut_arena *arena);

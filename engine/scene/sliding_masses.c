@@ -26,6 +26,14 @@ double strut_sliding_mass_share(const strut_scene *scene, size_t index, double t
   return s->share + strut_sliding_mass_scale(scene, index) * value;
 }
 
+double strut_sliding_mass_rate(const strut_scene *scene, size_t index, double t) {
+  const strut_sliding_mass *s = &scene->sliding_masses[index];
+  double value, rate;
+  if (s->signal < 0) return 0.0;
+  strut_signal_evaluate(scene->signals, s->signal, t, &value, &rate);
+  return strut_sliding_mass_scale(scene, index) * rate;
+}
+
 bool strut_scene_hold_sliding_masses(strut_scene *scene, strut_arena *arena) {
   size_t count = scene->sliding_count;
   strut_sliding_mass *held = strut_arena_allocate(arena, count, sizeof *held);

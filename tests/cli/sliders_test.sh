@@ -54,6 +54,32 @@ END
   done
 done
 
+# Nothing turns it: the moment of momentum stays, while the mass goes along and comes back.
+cat >turning.yaml <<'END'
+strut: 1
+mass_model: lumped
+nodes:
+  a: {position: [0.5, 0.2], mass: 1}
+  b: {position: [1.5, 0], mass: 1.5}
+members:
+  bar: {kind: bar, nodes: [a, b], stiffness: 100 kN/m, damping: 10 N s/m}
+sliders:
+  s: {member: bar, mass: 0.5, position: 50 %, moves: {sine: {amplitude: 0.45, frequency: 1 Hz}}}
+initial: {velocities: {b: [0, 3]}}
+solver: {step: 0.2 ms}
+run:
+  duration: 2.3 s
+  measure:
+    quantities:
+      spin:
+        of: a.x*a.vy - a.y*a.vx + 1.5*(b.x*b.vy - b.y*b.vx) + 0.5*(s.x*s.vy - s.y*s.vx)
+        take: range
+      turned: {of: bar.angle, take: change}
+END
+expect 0 run turning.yaml --json
+near "$(value spin)" 0 1e-9
+near "$(value turned) > 3 | if . then 1 else 0 end" 1 0
+
 # Corners are impulses: a mass that sets off and stops. While it moves by u the bar goes back by m u / (all).
 for method in $methods; do
   cat >ramp.yaml <<END

@@ -188,13 +188,18 @@ static double column_time(const strut_columns *c, const strut_state *state) {
   return (double)state->step * c->step + c->shorter + state->time_offset;
 }
 
-/* x or y of a mass on a member. */
-static double slider_place(const strut_columns *c, const strut_state *state, int32_t slider,
-                           int axis) {
+/* Place or velocity of a mass on a member, along x or y. */
+static double evaluate_slider(const strut_columns *c, const strut_state *state,
+                              strut_column column) {
+  size_t slider = (size_t)column.item;
   const strut_sliding_item *s = &c->model->sliding.item[slider];
-  double share = strut_sliding_mass_share(c->model->scene, (size_t)slider, column_time(c, state));
-  return (1.0 - share) * state->q[s->at[0] + (uint32_t)axis] +
-         share * state->q[s->at[1] + (uint32_t)axis];
+  double t = column_time(c, state), far = strut_sliding_mass_share(c->model->scene, slider, t);
+  uint32_t axis = column.kind == STRUT_COLUMN_SLIDER_Y || column.kind == STRUT_COLUMN_SLIDER_VY;
+  bool rate = column.kind == STRUT_COLUMN_SLIDER_VX || column.kind == STRUT_COLUMN_SLIDER_VY;
+  const double *z = rate ? state->v : state->q, *q = state->q;
+  uint32_t a = s->at[0] + axis, b = s->at[1] + axis;
+  double place = (1.0 - far) * z[a] + far * z[b];
+  return rate ? place + strut_sliding_mass_rate(c->model->scene, slider, t) * (q[b] - q[a]) : place;
 }
 
 /* Evaluates a column; *size: magnitude of the terms that it sums, where that is not the value. */
@@ -257,8 +262,10 @@ static double evaluate_column(const strut_columns *c, const strut_state *state, 
     case STRUT_COLUMN_STATE: return state->v[c->model->feedback.base + column.item];
     case STRUT_COLUMN_SIGNAL:
       return strut_drive_signal(c->model, state, state->v, column.item, column_time(c, state));
-    case STRUT_COLUMN_SLIDER_X: return slider_place(c, state, column.item, 0);
-    case STRUT_COLUMN_SLIDER_Y: return slider_place(c, state, column.item, 1);
+    case STRUT_COLUMN_SLIDER_X:
+    case STRUT_COLUMN_SLIDER_Y:
+    case STRUT_COLUMN_SLIDER_VX:
+    case STRUT_COLUMN_SLIDER_VY: return evaluate_slider(c, state, column);
     case STRUT_COLUMN_SLIDER_SHARE:
       return strut_sliding_mass_share(c->model->scene, (size_t)column.item, column_time(c, state));
     case STRUT_COLUMN_COUNT: break;
