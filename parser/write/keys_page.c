@@ -87,6 +87,8 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
     [STRUT_SECTION_UNBALANCE] =
         "`unbalances: {NAME: {...}}`, each with a `speed` or an `angle`. Statics and settling have "
         "its mass at the node.",
+    [STRUT_SECTION_SLIDER] =
+        "`sliders: {NAME: {...}}`. Statics and settling have them where they are at t = 0.",
     [STRUT_SECTION_SIGNAL] =
         "A signal is a mapping with one of these keys, or the name of an entry of `signals`. The "
         "unit of its values follows from its use: a length, an angle or a pressure, or a force or "

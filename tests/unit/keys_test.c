@@ -88,6 +88,7 @@ static const struct exception {
     {STRUT_SECTION_FRICTION, "mu_backward", "makes the friction directional"},
     {STRUT_SECTION_FRICTION, "mu_backward_static", "belongs to a directional friction"},
     {STRUT_SECTION_UNBALANCE, "speed", "turns per second or an angular velocity"},
+    {STRUT_SECTION_SLIDER, "position", "a share or a length"},
     {STRUT_SECTION_GROUND, "through", "replaces the height, also where it is the origin"},
     {STRUT_SECTION_GROUND, "normal", "gives the slope"},
     {STRUT_SECTION_SETTLE, "step", "depends on the step of the run"},

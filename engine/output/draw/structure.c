@@ -616,6 +616,26 @@ static void draw_elements(strut_canvas *canvas, const drawing *d) {
   }
 }
 
+/* Masses that slide along members: filled circles on them. */
+static void draw_sliding_masses(strut_canvas *canvas, const drawing *d) {
+  const strut_scene *scene = d->model->scene;
+  double thin = d->thin / (1.0 + d->style->thinness), point[2], at[2];
+  bool one = d->style->colouring == STRUT_COLOUR_ONE;
+  strut_colour colour = one ? d->style->colour : strut_palette_thing(2);
+  const strut_fill fill = {.colour = strut_faded(colour, d->opacity)};
+  const strut_pen pen = {.colour = strut_faded(strut_grey(1), d->opacity), .width = 0.5 * thin};
+  if (d->thin < 0.3) return; /* too small to be drawn */
+  for (size_t i = 0; i < scene->sliding_count; i++) {
+    const int32_t *node = scene->members[scene->sliding_masses[i].member].node;
+    double far = strut_sliding_mass_share(scene, i, d->style->time);
+    for (int c = 0; c < 2; c++)
+      at[c] = (1.0 - far) * d->q[2 * node[0] + c] + far * d->q[2 * node[1] + c];
+    strut_window_point(d->window, at, point);
+    if (isfinite(point[0]) && isfinite(point[1]))
+      strut_draw_circle(canvas, point[0], point[1], 3.2 * thin, &fill, &pen);
+  }
+}
+
 static void draw_nodes(strut_canvas *canvas, const drawing *d) {
   double thin = d->thin / (1.0 + d->style->thinness), point[2];
   const strut_fill white = {.colour = strut_faded(strut_grey(1), d->opacity)};
@@ -643,6 +663,7 @@ void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
   draw_members(canvas, &d);
   draw_elements(canvas, &d);
   if (!style->no_nodes) draw_nodes(canvas, &d);
+  draw_sliding_masses(canvas, &d);
   if (style->node_names || style->member_names)
     strut_draw_names(canvas, window, model, q, style->node_names, style->member_names, NULL, 0);
 }
