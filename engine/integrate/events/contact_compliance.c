@@ -213,24 +213,24 @@ void strut_update_active_set(const strut_model *model, strut_event_stepper *l) {
 }
 
 /* Rate of the sliding speed of a contact under the accelerations x. */
-static double along(const strut_contact_table *c, int32_t i, const double *x,
-                    const strut_contact_frame *frame) {
+STRUT_INLINE double along(const strut_contact_table *c, int32_t i, const double *x,
+                          const strut_contact_frame *frame) {
   const double *t = strut_axes_of_contact(c, frame, i)->tangent;
   double rate = x[c->at[i]] * t[0] + x[c->at[i] + 1] * t[1];
   return frame ? rate + frame[i].slip_drift : rate;
 }
 
 /* What rounding leaves of the accelerations of held nodes: nothing, so that they do not creep. */
-static void still(const strut_contact_table *c, int32_t i, double *a,
-                  const strut_contact_frame *frame) {
+STRUT_INLINE void still(const strut_contact_table *c, int32_t i, double *a,
+                        const strut_contact_frame *frame) {
   const double *t = strut_axes_of_contact(c, frame, i)->tangent;
   double rest = along(c, i, a, frame);
   a[c->at[i]] -= rest * t[0];
   a[c->at[i] + 1] -= rest * t[1];
 }
 
-static double tangent_compliance(const strut_event_stepper *l, int32_t i,
-                                 const strut_contact_frame *frame) {
+STRUT_INLINE double tangent_compliance(const strut_event_stepper *l, int32_t i,
+                                       const strut_contact_frame *frame) {
   if (!frame) return l->response[i].tangent;
   return strut_compliance_along(&l->response[i], frame[i].axes.tangent);
 }
@@ -254,13 +254,14 @@ static void hold_by_sweeps(const strut_model *model, const strut_event_stepper *
   }
 }
 
-void strut_solve_stick_constraints(const strut_model *model, strut_event_stepper *l, double *a,
-                                   strut_step_end *end) {
+STRUT_INLINE void hold_stuck(const strut_model *model, strut_event_stepper *l, double *a,
+                             strut_step_end *end, unsigned terms) {
+  const strut_contact_frame *frame = frames_of(end, terms);
   const strut_contact_table *c = &model->contacts;
   int32_t n = l->stuck_count;
   double *x = l->stuck_work;
-  if (end->frame && n > 1) { /* their axes turn, or have not been known until now */
-    factor_stuck(model, l, end->frame);
+  if (frame && n > 1) { /* their axes turn, or have not been known until now */
+    factor_stuck(model, l, frame);
     bool singular = l->stuck_count < 0;
     l->stuck_count = n;
     if (singular) {
@@ -272,9 +273,9 @@ void strut_solve_stick_constraints(const strut_model *model, strut_event_stepper
     hold_by_sweeps(model, l, a, end);
     return;
   }
-  for (int32_t k = 0; k < n; k++) x[k] = -along(c, l->stuck[k], a, end->frame);
+  for (int32_t k = 0; k < n; k++) x[k] = -along(c, l->stuck[k], a, frame);
   if (n == 1) {
-    x[0] /= tangent_compliance(l, l->stuck[0], end->frame);
+    x[0] /= tangent_compliance(l, l->stuck[0], frame);
   } else {
     const double *f = l->stuck_factor;
     for (int32_t i = 0; i < n; i++) {
@@ -288,9 +289,17 @@ void strut_solve_stick_constraints(const strut_model *model, strut_event_stepper
   }
   for (int32_t k = 0; k < n; k++) {
     int32_t i = l->stuck[k];
-    strut_apply_contact_impulse(l, i, strut_axes_of_contact(c, end->frame, i), 0.0, x[k], a);
+    strut_apply_contact_impulse(l, i, strut_axes_of_contact(c, frame, i), 0.0, x[k], a);
     end->touch[i].friction += x[k];
-    still(c, i, a, end->frame);
+    still(c, i, a, frame);
   }
-  for (int32_t k = 0; k < n; k++) still(c, l->stuck[k], a, end->frame);
+  for (int32_t k = 0; k < n; k++) still(c, l->stuck[k], a, frame);
+}
+
+void strut_solve_stick_constraints(const strut_model *model, strut_event_stepper *l, double *a,
+                                   strut_step_end *end) {
+  if (end->frame)
+    hold_stuck(model, l, a, end, STRUT_TERMS_ALL);
+  else
+    hold_stuck(model, l, a, end, STRUT_TERMS_COMMON);
 }

@@ -19,8 +19,8 @@ static double way_out(const strut_event_stepper *l, const strut_touch *o, int32_
 
 /* The gap of a contact at an end of a step; of a closed contact over its facet. */
 STRUT_INLINE double gap_at_end(const strut_contact_table *c, const strut_event_stepper *l,
-                               int32_t i, const strut_step_end *end) {
-  if (!end->frame) return strut_ground_gap(c, end->q + c->at[i]);
+                               int32_t i, const strut_step_end *end, unsigned terms) {
+  if (!frames_of(end, terms)) return strut_ground_gap(c, end->q + c->at[i]);
   int32_t facet = l->mode[i] == STRUT_MODE_OPEN ? -1 : l->facet[i];
   return strut_contact_pose_at(c, i, end->q, end->motion, facet).gap;
 }
@@ -50,8 +50,8 @@ double strut_event_value(const strut_model *model, const strut_event_stepper *l,
   const strut_touch *o = &end->touch[i];
   double s = l->side[i];
   switch (kind) {
-    case STRUT_EVENT_TOUCH: return gap_at_end(&model->contacts, l, i, end);
-    case STRUT_EVENT_OPEN: return -gap_at_end(&model->contacts, l, i, end);
+    case STRUT_EVENT_TOUCH: return gap_at_end(&model->contacts, l, i, end, STRUT_TERMS_ALL);
+    case STRUT_EVENT_OPEN: return -gap_at_end(&model->contacts, l, i, end, STRUT_TERMS_ALL);
     case STRUT_EVENT_FACET: {
       int32_t nearest;
       return strut_surface_facet_margin(&model->contacts, l, end, i, &nearest);
@@ -211,13 +211,13 @@ void strut_event_measure(const strut_model *model, const strut_state *state,
    opened may stand below 0 by rounding, on its way up. */
 static bool closes(const strut_contact_table *c, int32_t i, const strut_event_stepper *l) {
   strut_touch to;
-  if (gap_at_end(c, l, i, l->now) > 0.0) return true;
+  if (gap_at_end(c, l, i, l->now, STRUT_TERMS_ALL) > 0.0) return true;
   measure_at_end(c, l, l->next, i, STRUT_TERMS_ALL, &to);
   return to.into < 0.0;
 }
 
-strut_event strut_event_first(const strut_model *model, const strut_state *state,
-                              const strut_event_stepper *l, double h) {
+STRUT_INLINE strut_event first_event(const strut_model *model, const strut_state *state,
+                                     const strut_event_stepper *l, double h, unsigned terms) {
   const strut_contact_table *c = &model->contacts;
   strut_event first = {STRUT_EVENT_NONE, 0, 1.0};
   int32_t k = 0;
@@ -228,7 +228,7 @@ strut_event strut_event_first(const strut_model *model, const strut_state *state
       if (kind) keep_first(model, l, kind, i, h, &first);
       k++;
       int32_t nearest;
-      if (l->facet && strut_surface_facet_margin(c, l, l->next, i, &nearest) < 0.0)
+      if (frames_of(l->next, terms) && strut_surface_facet_margin(c, l, l->next, i, &nearest) < 0.0)
         keep_first(model, l, STRUT_EVENT_FACET, i, h, &first);
       if (!l->stepper->exact) continue;
       /* a gap that rounding left above 0 at touchdown is closing: only one that grows has opened */
@@ -236,7 +236,7 @@ strut_event strut_event_first(const strut_model *model, const strut_state *state
       if (l->damper[i] && (l->damper[i] > 0 ? o->into > 0.0 : o->into < 0.0) &&
           c->entry[i].damping * fabs(o->into) > FAINT * fabs(o->normal))
         keep_first(model, l, STRUT_EVENT_DAMPER, i, h, &first);
-    } else if (gap_at_end(c, l, i, l->next) < 0.0 && closes(c, i, l)) {
+    } else if (gap_at_end(c, l, i, l->next, terms) < 0.0 && closes(c, i, l)) {
       keep_first(model, l, STRUT_EVENT_TOUCH, i, h, &first);
     }
   }
@@ -244,6 +244,12 @@ strut_event strut_event_first(const strut_model *model, const strut_state *state
   for (int32_t j = 0; j < l->law_count; j++)
     if (law_value(l, l->next, j) < 0.0) keep_first(model, l, l->laws[j].event, j, h, &first);
   return first;
+}
+
+strut_event strut_event_first(const strut_model *model, const strut_state *state,
+                              const strut_event_stepper *l, double h) {
+  return l->now->frame ? first_event(model, state, l, h, STRUT_TERMS_ALL)
+                       : first_event(model, state, l, h, STRUT_TERMS_COMMON);
 }
 
 /* First fraction in [0, 1] where gap + speed x + bend x^2 falls below 0; 2 if it does not. */
@@ -279,7 +285,7 @@ strut_event strut_event_predict(const strut_model *model, const strut_state *sta
   strut_event first = {STRUT_EVENT_NONE, 0, 1.0};
   for (int32_t i = 0; i < c->count; i++) {
     bool closed = l->mode[i] != STRUT_MODE_OPEN;
-    double gap = gap_at_end(c, l, i, l->next);
+    double gap = gap_at_end(c, l, i, l->next, STRUT_TERMS_ALL);
     if (closed ? gap <= 0.0 : gap >= 0.0) continue;
     double fraction = crossing(model, state, l, i, closed ? -1.0 : 1.0, h);
     if (fraction <= 1.0 && (!first.kind || fraction < first.fraction))
