@@ -266,12 +266,12 @@ static strut_status detect_steady_motion(strut_run *r) {
   bool before = r->steady.known;
   strut_measure_tracked_point(r->model, r->state, &r->measure, &x, &v);
   if (!strut_steady_detector_period(r->state, x, &r->steady) || before) return STRUT_OK;
-  const strut_feedback_table *feedback = &r->model->feedback;
-  bool internal = feedback->state_count || feedback->sampled_count;
+  bool internal = strut_feedback_remembers(&r->model->feedback);
   bool memory = internal || (r->model->plan & STRUT_TERM_MEMORY);
   if (memory && r->experiment->steady.shooting)
     snprintf(r->steady.result.reason, sizeof r->steady.result.reason,
-             internal ? "internal states and samples are a memory that shooting does not correct"
+             internal ? "internal states, samples and relays are a memory that shooting does not "
+                        "correct"
                       : "what breaks, is released or yields has a memory that shooting does not "
                         "correct");
   strut_status status = r->experiment->steady.shooting && !memory ? shoot_orbit(r) : STRUT_OK;

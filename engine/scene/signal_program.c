@@ -196,7 +196,8 @@ static void describe_signal(const strut_scene *scene, int32_t index, passage thr
   const strut_signal *s = &scene->signals[index];
   if (s->every > 0.0 || s->lag > 0.0 || s->trigger.kind != STRUT_TRIGGER_NONE)
     traits->follows = true;
-  if (s->every > 0.0 || (s->lag > 0.0 && through == INTEGRATED)) return;
+  if (s->kind == STRUT_RELAY) traits->follows = true;
+  if (s->kind == STRUT_RELAY || s->every > 0.0 || (s->lag > 0.0 && through == INTEGRATED)) return;
   if (s->lag > 0.0) through = INTEGRATED;
   for (size_t i = 0; s->kind == STRUT_SUM && i < s->term_count; i++)
     describe_signal(scene, s->terms[i], through, traits);

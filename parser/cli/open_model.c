@@ -11,6 +11,7 @@
 #include "engine/statics/equilibria/rest_state.h"
 #include "parser/cli/streams.h"
 #include "parser/read/read_scene.h"
+#include "parser/write/write_short.h"
 #include "parser/yaml/memory_estimate.h"
 
 enum { MOST_MESSAGES = 50 };
@@ -100,6 +101,26 @@ strut_status strut_open_model_text(const strut_arguments *arguments, char **text
   *text = from.text;
   *length = from.length;
   return status;
+}
+
+strut_status strut_write_short(const strut_arguments *arguments, const char *text, size_t length,
+                               const char *before, const strut_setup *setup, char **result) {
+  strut_diagnostics unused = {0};
+  strut_scene_source *tree = NULL;
+  const char *name = strcmp(arguments->model, "-") == 0 ? "<stdin>" : arguments->model;
+  *result = NULL;
+  strut_status status = strut_scene_source_open(name, text, length, &unused, &tree);
+  strut_diagnostics_free(&unused);
+  if (status == STRUT_OK)
+    status = strut_short_write(tree, arguments->overrides, arguments->override_count, before, setup,
+                               result);
+  strut_scene_source_free(tree);
+  if (status == STRUT_NO_MEMORY) return strut_print_out_of_memory();
+  if (!*result)
+    fprintf(stderr,
+            "strut: the scene is written out in full: with its parameters and parts it would not "
+            "be the same\n");
+  return STRUT_OK;
 }
 
 strut_status strut_check_output_writable(const strut_arguments *arguments,

@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Groups: keys of a member, a node or a contact that many things share. See reader.h. */
+/* Groups: keys of a member, a node, a contact or a hinge that many things share. See reader.h. */
 #include <assert.h>
 #include <string.h>
 
+#include "parser/read/copies.h"
 #include "parser/read/reader.h"
 
-static const strut_section sections[] = {STRUT_SECTION_MEMBER, STRUT_SECTION_NODE,
-                                         STRUT_SECTION_CONTACT};
+static const strut_section sections[STRUT_GROUP_SECTIONS] = {
+    STRUT_SECTION_MEMBER, STRUT_SECTION_NODE, STRUT_SECTION_CONTACT, STRUT_SECTION_HINGE};
 
-enum { SECTIONS = 3 };
+enum { SECTIONS = STRUT_GROUP_SECTIONS, HINGE = 3 };
 
 static const char *group_name(const void *context, size_t i) {
   const strut_reader *reader = context;
@@ -31,9 +32,23 @@ static const strut_tree *rival(const strut_group *group, int key) {
   return NULL;
 }
 
+/* The value, by the unit of each section that uses the group: a stiffness of hinges is no force per length. */
+static void read_value(strut_reader *reader, const strut_group *group, const strut_tree *key,
+                       strut_owner owner, int found, strut_group_item *item) {
+  int hinge = item->key[HINGE];
+  bool apart = hinge >= 0 && strut_key_at(hinge)->measure != strut_key_at(found)->measure;
+  if (group->of_others || !apart)
+    strut_read_slot(reader, found, key, key->next, owner, &item->slot);
+  if (group->of_hinges && apart)
+    strut_read_slot(reader, hinge, key, key->next, owner, &item->of_hinge);
+  else
+    item->of_hinge = item->slot;
+  if (!group->of_others && apart) item->slot = item->of_hinge;
+}
+
 static void read_item(strut_reader *reader, strut_group *group, const strut_tree *key,
                       strut_owner owner) {
-  strut_group_item item = {.key = {-1, -1, -1}};
+  strut_group_item item = {.key = {-1, -1, -1, -1}};
   int found = -1;
   for (size_t r = 0; r < SECTIONS; r++) {
     item.key[r] = strut_key_named(reader, sections[r], key);
@@ -55,7 +70,7 @@ static void read_item(strut_reader *reader, strut_group *group, const strut_tree
     group->items[group->count++] = item;
     return;
   }
-  strut_read_slot(reader, found, key, key->next, owner, &item.slot);
+  read_value(reader, group, key, owner, found, &item);
   const strut_tree *other = rival(group, found);
   if (other) {
     strut_report_error(reader, key->place, "%s gives both '%s' and '%s', expected one of them",
@@ -74,11 +89,10 @@ static void read_item(strut_reader *reader, strut_group *group, const strut_tree
 static void read_group(strut_reader *reader, const strut_tree *key, strut_group *group) {
   const strut_tree *map = key->next;
   strut_owner owner = {"group", key->text};
-  *group = (strut_group){.name = key->text, .key = key};
   if (!strut_read_name(reader, key, "group")) group->broken = true;
   if (map->kind != STRUT_TREE_MAP) {
     strut_report_error(reader, map->place,
-                       "expected keys of a member, a node or a contact for %s, found %s",
+                       "expected keys of a member, a node, a contact or a hinge for %s, found %s",
                        strut_owner_text(reader, owner), strut_found(reader, map));
     group->broken = true;
     return;
@@ -88,27 +102,70 @@ static void read_group(strut_reader *reader, const strut_tree *key, strut_group 
     read_item(reader, group, k, owner);
 }
 
-void strut_read_groups(strut_reader *reader) {
-  const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_GROUPS);
-  if (!map) return;
-  reader->groups =
-      strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->groups);
-  for (const strut_tree *key = map->first; key && reader->groups; key = key->next->next) {
-    read_group(reader, key, &reader->groups[reader->group_count]);
-    strut_add_name(reader, &reader->group_names, key->text, reader->group_count++);
-  }
-}
-
 size_t strut_groups_named(strut_reader *reader, const strut_tree *value, strut_group **groups) {
   size_t count = 0;
   const strut_tree *item = value->kind == STRUT_TREE_LIST ? value->first : value;
   for (; item && count < STRUT_MOST_GROUPS; item = value == item ? NULL : item->next) {
     int32_t index = item->kind == STRUT_TREE_SCALAR
-                        ? strut_name_map_find(&reader->group_names, item->text)
+                        ? strut_find_named(reader, &reader->group_names, item, item->text)
                         : -1;
     if (index >= 0) groups[count++] = &reader->groups[index];
   }
   return count;
+}
+
+/* Marks the groups that things within the tree name. */
+static void mark_users(strut_reader *reader, const strut_tree *tree, bool hinges) {
+  strut_group *groups[STRUT_MOST_GROUPS];
+  for (const strut_tree *key = tree->kind == STRUT_TREE_MAP ? tree->first : NULL; key;
+       key = key->next->next) {
+    if (strcmp(key->text, "group") != 0) {
+      mark_users(reader, key->next, hinges);
+      continue;
+    }
+    size_t count = strut_groups_named(reader, key->next, groups);
+    while (count-- > 0) *(hinges ? &groups[count]->of_hinges : &groups[count]->of_others) = true;
+  }
+}
+
+/* Of all things of a mapping, each in its scope. */
+static void mark_all_users(strut_reader *reader, const strut_tree *map, bool hinges) {
+  if (map->kind != STRUT_TREE_MAP) return;
+  for (const strut_tree *key = strut_first_entry(reader, map); key;
+       key = strut_following_entry(reader, key))
+    mark_users(reader, key->next, hinges);
+}
+
+static void find_users(strut_reader *reader) {
+  static const int others[] = {STRUT_KEY_SCENE_MEMBERS, STRUT_KEY_SCENE_NODES,
+                               STRUT_KEY_SCENE_GROUND, STRUT_KEY_SCENE_GROUNDS};
+  const strut_slot *hinges = strut_slot_of(&reader->top, STRUT_KEY_SCENE_HINGES);
+  if (hinges->value) mark_all_users(reader, hinges->value, true);
+  for (size_t i = 0; i < sizeof others / sizeof others[0] && hinges->value; i++) {
+    const strut_slot *slot = strut_slot_of(&reader->top, others[i]);
+    if (slot->value) mark_all_users(reader, slot->value, false);
+  }
+  if (reader->copies && reader->copies->contacts)
+    mark_all_users(reader, reader->copies->contacts, false);
+  for (size_t i = 0; i < reader->group_count; i++)
+    if (!reader->groups[i].of_hinges) reader->groups[i].of_others = true;
+}
+
+void strut_read_groups(strut_reader *reader) {
+  const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_GROUPS);
+  if (!map) return;
+  reader->groups =
+      strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->groups);
+  for (const strut_tree *key = strut_first_entry(reader, map); key && reader->groups;
+       key = strut_following_entry(reader, key)) {
+    reader->groups[reader->group_count] = (strut_group){.name = key->text, .key = key};
+    strut_add_name(reader, &reader->group_names, key->text, reader->group_count++);
+  }
+  find_users(reader);
+  for (size_t i = 0; i < reader->group_count; i++) {
+    strut_enter_scope(reader, reader->groups[i].key);
+    read_group(reader, reader->groups[i].key, &reader->groups[i]);
+  }
 }
 
 /* Does every name in `group:` name a group? Unknown ones are reported. */
@@ -138,6 +195,13 @@ static bool taken(strut_fields *fields, int key) {
   return false;
 }
 
+/* Lengths of a group outside of a scaled copy are scaled with the thing that uses it. */
+static double scale_to(const strut_reader *reader, const strut_group *group) {
+  double own = strut_scope_scale(reader, group->key);
+  return group->key->placed ? strut_scope_scale(reader, NULL) / own
+                            : strut_scope_scale(reader, NULL);
+}
+
 static void apply_group(strut_reader *reader, strut_fields *fields, strut_group *group,
                         strut_owner owner) {
   size_t section = section_index(fields->section);
@@ -147,9 +211,12 @@ static void apply_group(strut_reader *reader, strut_fields *fields, strut_group 
     int key = item->key[section];
     if (key >= 0) {
       if (taken(fields, key)) continue;
-      *strut_slot_of(fields, key) = item->slot;
+      const strut_slot *slot = section == HINGE ? &item->of_hinge : &item->slot;
+      *strut_slot_of(fields, key) = *slot;
       strut_slot_of(fields, key)->from = item;
-      if (item->slot.state == STRUT_BROKEN || (item->nested && item->nested->broken))
+      if (strut_key_at(key)->measure == STRUT_MEASURE_LENGTH)
+        strut_slot_of(fields, key)->number[0] *= scale_to(reader, group);
+      if (slot->state == STRUT_BROKEN || (item->nested && item->nested->broken))
         fields->broken = true;
     } else if (!item->refused[section]) {
       item->refused[section] = true;
@@ -185,7 +252,8 @@ void strut_report_unused_groups(strut_reader *reader) {
   if (reader->groups_unknown || reader->top.broken) return;
   for (size_t i = 0; i < reader->group_count; i++) {
     const strut_group *group = &reader->groups[i];
-    if (group->used || group->broken) continue;
+    if (group->used || group->broken || group->key->placed) continue;
+    if (group->key->place.file) continue; /* of a base */
     strut_report_error(reader, group->key->place, "nothing uses group '%s'", group->name);
   }
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "parser/expression/expression_parts.h"
+#include "parser/read/copies.h"
 #include "parser/read/reader.h"
 
 const char *strut_parameter_name(const void *context, size_t i) {
@@ -123,6 +124,51 @@ static bool adopt_dimension(strut_reader *reader, strut_parameter_state *p,
   return false;
 }
 
+strut_parameter_state *strut_parameter_in_scope(strut_reader *reader, const char *name) {
+  for (const strut_copy *scope = reader->scope; scope; scope = scope->home) {
+    for (size_t i = 0; i < scope->parameter_count; i++)
+      if (strcmp(scope->parameters[i].name, name) == 0) return &scope->parameters[i];
+    if (scope->closed) return NULL;
+  }
+  return strut_parameter_find(reader, name);
+}
+
+/* The number i or j of a copy, within the keys of its placement. */
+static bool copy_number(const strut_reader *reader, const char *name, strut_quantity *quantity) {
+  int which = strcmp(name, "i") == 0 ? 0 : strcmp(name, "j") == 0 ? 1 : 2;
+  for (const strut_copy *scope = reader->scope; scope && which < 2; scope = scope->home) {
+    if (which < scope->numbers) {
+      *quantity = (strut_quantity){.value = (double)scope->number[which], .bare = true};
+      return true;
+    }
+    if (scope->closed) break;
+  }
+  return false;
+}
+
+/* A value in `set` of a placement has the dimension that the part declares. */
+static bool read_given(strut_reader *reader, strut_parameter_state *p,
+                       const strut_quantity *declared) {
+  char expected[200], found[80];
+  strut_copy *before = reader->scope;
+  reader->scope = p->given_scope;
+  bool fine =
+      strut_read_quantity(reader, p->given, p->name, (strut_owner){"'set'", NULL}, &p->quantity);
+  if (fine && !declared->bare && p->quantity.bare) {
+    p->quantity.bare = false;
+    p->quantity.dimension = declared->dimension;
+  }
+  if (fine && !declared->bare &&
+      !strut_dimension_equal(p->quantity.dimension, declared->dimension)) {
+    strut_report_error(reader, p->given->place, "expected %s for '%s' in 'set', found %s",
+                       strut_expected_number(declared->dimension, expected, sizeof expected),
+                       p->name, strut_dimension_name(p->quantity.dimension, found, sizeof found));
+    fine = false;
+  }
+  reader->scope = before;
+  return fine;
+}
+
 static void resolve_parameter(strut_reader *reader, strut_parameter_state *p) {
   if (p->state != STRUT_UNREAD) return;
   if (reader->parameter_depth >= STRUT_DEEPEST_PARAMETER) {
@@ -135,8 +181,13 @@ static void resolve_parameter(strut_reader *reader, strut_parameter_state *p) {
   assert(reader->parameter_depth <= STRUT_DEEPEST_PARAMETER);
   p->state = STRUT_READING;
   strut_quantity declared;
+  strut_copy *before = reader->scope;
+  reader->scope = p->scope;
   bool fine = evaluate(reader, p, &declared);
-  if (p->set) {
+  reader->scope = before;
+  if (p->given) {
+    fine = fine && read_given(reader, p, &declared);
+  } else if (p->set) {
     fine = evaluate_set(reader, p) && fine;
     fine = fine && adopt_dimension(reader, p, &declared);
   } else if (fine) {
@@ -146,15 +197,19 @@ static void resolve_parameter(strut_reader *reader, strut_parameter_state *p) {
   reader->parameter_depth--;
 }
 
+void strut_resolve_parameter(strut_reader *reader, strut_parameter_state *p) {
+  resolve_parameter(reader, p);
+}
+
 static int look_up_parameter(void *context, const char *name, size_t length,
                              strut_quantity *quantity) {
   strut_reader *reader = context;
-  char text[65];
+  char text[STRUT_LONGEST_NAME + 1];
   if (length >= sizeof text) return 0;
   memcpy(text, name, length);
   text[length] = '\0';
-  strut_parameter_state *p = strut_parameter_find(reader, text);
-  if (!p) return 0;
+  strut_parameter_state *p = strut_parameter_in_scope(reader, text);
+  if (!p) return copy_number(reader, text, quantity);
   p->used = true;
   if (p->text) {
     strut_report_error(reader, asking_place(reader),
@@ -199,8 +254,8 @@ static bool check_parameter_name(strut_reader *reader, const strut_tree *key) {
   return true;
 }
 
-static void declare_parameter(strut_reader *reader, const strut_tree *key,
-                              strut_parameter_state *p) {
+void strut_declare_parameter(strut_reader *reader, const strut_tree *key,
+                             strut_parameter_state *p) {
   const strut_tree *value = key->next;
   *p = (strut_parameter_state){.name = key->text, .key = key, .value = value};
   bool fine = check_parameter_name(reader, key);
@@ -236,7 +291,7 @@ void strut_read_parameters(strut_reader *reader, const strut_setting *settings, 
                                              sizeof *reader->parameters);
   if (!reader->parameters) return;
   for (const strut_tree *key = map ? map->first : NULL; key; key = key->next->next) {
-    declare_parameter(reader, key, &reader->parameters[reader->parameter_count]);
+    strut_declare_parameter(reader, key, &reader->parameters[reader->parameter_count]);
     strut_add_name(reader, &reader->parameter_names, key->text, reader->parameter_count++);
   }
   for (size_t i = 0; known && i < count; i++) apply_setting(reader, &settings[i]);

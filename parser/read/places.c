@@ -22,6 +22,7 @@ static strut_group_item *group_item(strut_reader *reader, const strut_tree *map,
 static bool thing_place(strut_reader *reader, const strut_source *source, const char *key,
                         strut_place *place) {
   bool map = source->value->kind == STRUT_TREE_MAP;
+  strut_enter_scope(reader, source->key);
   const strut_tree *own = key && map ? strut_tree_find(source->value, key, NULL) : NULL;
   strut_group_item *item = key && map && !own ? group_item(reader, source->value, key) : NULL;
   *place = own ? own->place : item ? item->slot.value->place : source->key->place;
@@ -185,5 +186,6 @@ void strut_place_findings(strut_reader *reader, const strut_findings *findings) 
                  : finding->subject == STRUT_ON_SIGNAL ? signal_place(reader, finding, &place)
                                                        : single_place(reader, finding, &place);
     if (fresh) strut_report_error(reader, place, "%s", finding->message);
+    reader->scope = NULL;
   }
 }

@@ -82,7 +82,8 @@ void strut_read_cells(strut_reader *reader) {
   reader->cell_source =
       strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->cell_source);
   if (!scene->cells || !reader->cell_source) return;
-  for (const strut_tree *key = map->first; key; key = key->next->next) {
+  for (const strut_tree *key = strut_first_entry(reader, map); key;
+       key = strut_following_entry(reader, key)) {
     size_t i = strut_next_entry(reader, &scene->cell_count);
     scene->cells[i] = strut_cell_default();
     scene->cells[i].name = strut_keep_text(reader, key->text);

@@ -76,7 +76,8 @@ void strut_read_collisions(strut_reader *reader) {
   reader->collision_source =
       strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->collision_source);
   if (!scene->collisions || !reader->collision_source) return;
-  for (const strut_tree *key = map->first; key; key = key->next->next) {
+  for (const strut_tree *key = strut_first_entry(reader, map); key;
+       key = strut_following_entry(reader, key)) {
     size_t i = strut_next_entry(reader, &scene->collision_count);
     scene->collisions[i] = strut_collision_default();
     scene->collisions[i].name = strut_keep_text(reader, key->text);

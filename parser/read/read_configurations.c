@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "parser/read/copies.h"
 #include "parser/read/reader.h"
 
 /* Most positions that all configurations may have together, to bound the memory. */
@@ -28,9 +29,18 @@ static void take_position(strut_reader *reader, int32_t node, const double pair[
 static bool read_set(strut_reader *reader, const strut_tree *list, const char *key,
                      strut_owner owner, strut_node_set *set) {
   bool fine = true;
-  set->node = strut_reader_allocate(reader, &reader->scene->arena, list->count, sizeof *set->node);
+  size_t most = list->count;
+  for (const strut_tree *item = list->first; item; item = item->next)
+    for (int32_t n = -1; strut_is_pattern(item) && (n = strut_next_match(reader, item, n)) >= 0;)
+      most++;
+  set->node = strut_reader_allocate(reader, &reader->scene->arena, most, sizeof *set->node);
   if (!set->node) return false;
   for (const strut_tree *item = list->first; item; item = item->next) {
+    if (strut_is_pattern(item) && strut_next_match(reader, item, -1) >= 0) {
+      for (int32_t n = -1; (n = strut_next_match(reader, item, n)) >= 0;)
+        set->node[set->count++] = n;
+      continue;
+    }
     int32_t node = strut_read_reference(reader, item, key, owner, "node", &reader->node_names,
                                         strut_node_name, reader->scene->node_count);
     if (node >= 0)
@@ -76,7 +86,7 @@ static bool read_sets(strut_reader *reader, const strut_slot *slot, strut_owner 
 static bool is_key(strut_reader *reader, const strut_tree *key) {
   const strut_tree *value = key->next;
   if (strut_key_find(STRUT_SECTION_CONFIGURATION, key->text) < 0) return false;
-  if (strut_name_map_find(&reader->node_names, key->text) < 0) return true;
+  if (strut_find_named(reader, &reader->node_names, NULL, key->text) < 0) return true;
   if (strcmp(key->text, strut_key_at(STRUT_KEY_CONFIGURATION_SHAPE)->name) == 0)
     return value->kind == STRUT_TREE_MAP;
   return value->kind == STRUT_TREE_LIST && value->count &&
@@ -88,7 +98,8 @@ static bool is_key(strut_reader *reader, const strut_tree *key) {
 static bool keys_only(strut_reader *reader, const strut_tree *map, strut_owner owner) {
   bool fine = true;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
-    if (is_key(reader, key) || strut_name_map_find(&reader->node_names, key->text) < 0) continue;
+    if (is_key(reader, key) || strut_find_named(reader, &reader->node_names, NULL, key->text) < 0)
+      continue;
     strut_report_error(
         reader, key->place,
         "node '%s' of %s belongs in its 'shape', as in {contacts: [...], shape: {%s: ...}}",
@@ -150,7 +161,8 @@ void strut_read_configurations(strut_reader *reader) {
   reader->configuration_source = strut_reader_allocate(reader, &reader->scratch, map->count,
                                                        sizeof *reader->configuration_source);
   if (!scene->configurations || !reader->configuration_source) return;
-  for (const strut_tree *key = map->first; key; key = key->next->next) {
+  for (const strut_tree *key = strut_first_entry(reader, map); key;
+       key = strut_following_entry(reader, key)) {
     strut_configuration *configuration = &scene->configurations[scene->configuration_count];
     configuration->name = strut_keep_text(reader, key->text);
     if (!configuration->position)
@@ -178,7 +190,7 @@ int32_t strut_find_configuration(strut_reader *reader, int key) {
   if (slot->state != STRUT_GIVEN) return -1;
   if (strut_slot_of(&reader->top, STRUT_KEY_SCENE_CONFIGURATIONS)->state == STRUT_BROKEN) return -1;
   strut_parameter_state *p = strut_parameter_find(reader, slot->value->text);
-  int32_t direct = strut_name_map_find(&reader->configuration_names, slot->value->text);
+  int32_t direct = strut_find_named(reader, &reader->configuration_names, NULL, slot->value->text);
   if (!p || !p->text)
     return strut_read_reference(reader, slot->value, slot->key->text, owner, "configuration",
                                 &reader->configuration_names, configuration_name, count);
@@ -190,7 +202,7 @@ int32_t strut_find_configuration(strut_reader *reader, int key) {
   }
   p->used = true;
   const char *text = p->set ? p->set->text : p->value->text;
-  int32_t index = strut_name_map_find(&reader->configuration_names, text);
+  int32_t index = strut_find_named(reader, &reader->configuration_names, NULL, text);
   strut_place place = !p->set              ? p->value->place
                       : p->set->place.line ? p->set->place
                                            : p->key->place;

@@ -151,12 +151,17 @@ static bool read_hinge(strut_reader *reader, const strut_tree *key, strut_hinge 
   bool fine = strut_read_name(reader, key, "hinge");
   strut_fields fields;
   strut_read_fields(reader, STRUT_SECTION_HINGE, key->next, owner, &fields);
+  strut_apply_groups(reader, &fields, STRUT_KEY_HINGE_GROUP, owner);
   strut_require(reader, &fields, owner, key->place);
   const strut_slot *nodes = strut_slot_of(&fields, STRUT_KEY_HINGE_NODES);
   const strut_tree *item = nodes->state == STRUT_GIVEN ? nodes->value->first : NULL;
   for (int k = 0; k < 3 && item; k++, item = item->next) {
     hinge->node[k] = strut_read_node(reader, item, owner);
     if (hinge->node[k] < 0) fine = false;
+  }
+  if (strut_scope_flips(reader)) { /* counter-clockwise is the other way round */
+    int32_t first = hinge->node[0];
+    hinge->node[0] = hinge->node[2], hinge->node[2] = first;
   }
   strut_store_fields(reader, &fields, &reader->scene->arena, hinge, sizeof *hinge);
   if (!strut_read_law(reader, strut_slot_of(&fields, STRUT_KEY_HINGE_LAW), owner, STRUT_DIM_ANGLE,
@@ -182,7 +187,8 @@ void strut_read_hinges(strut_reader *reader) {
   reader->hinge_source =
       strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->hinge_source);
   if (!scene->hinges || !reader->hinge_source) return;
-  for (const strut_tree *key = map->first; key; key = key->next->next) {
+  for (const strut_tree *key = strut_first_entry(reader, map); key;
+       key = strut_following_entry(reader, key)) {
     size_t i = strut_next_entry(reader, &scene->hinge_count);
     scene->hinges[i] = strut_hinge_default();
     scene->hinges[i].name = strut_keep_text(reader, key->text);

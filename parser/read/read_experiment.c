@@ -108,9 +108,9 @@ static const char *driver_name(const void *context, size_t i) {
 /* The signal of the actuator or load that `of` names, or the signal of that name. */
 static int32_t find_signal_of(strut_reader *reader, const strut_tree *value, bool *broken) {
   const strut_scene *scene = reader->scene;
-  int32_t a = strut_name_map_find(&reader->actuator_names, value->text);
-  int32_t l = strut_name_map_find(&reader->load_names, value->text);
-  int32_t s = strut_name_map_find(&reader->signal_names, value->text);
+  int32_t a = strut_find_named(reader, &reader->actuator_names, NULL, value->text);
+  int32_t l = strut_find_named(reader, &reader->load_names, NULL, value->text);
+  int32_t s = strut_find_named(reader, &reader->signal_names, NULL, value->text);
   int32_t found[3], count = 0;
   if (a >= 0) found[count++] = scene->actuators[a].signal;
   if (l >= 0 && (scene->loads[l].signal >= 0 || reader->load_source[l].broken || a < 0))

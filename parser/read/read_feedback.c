@@ -25,13 +25,14 @@ strut_dimension strut_sensor_dimension(strut_sensor_kind kind) {
 }
 
 bool strut_check_variable_name(strut_reader *reader, const strut_tree *key, const char *kind) {
-  const char *name = key->text;
+  const char *name = strut_local_name(reader, key->text);
   size_t length = strlen(name), word = 0;
   if (!strut_read_name(reader, key, kind)) return false;
   while (name[word] == '_' || (name[word] >= 'a' && name[word] <= 'z') ||
          (name[word] >= 'A' && name[word] <= 'Z') ||
-         (word && name[word] >= '0' && name[word] <= '9'))
+         (word && ((name[word] >= '0' && name[word] <= '9') || name[word] == '.')))
     word++;
+  if (word && name[word - 1] == '.') word = 0;
   bool sensor = strcmp(kind, "sensor") == 0, signal = strcmp(kind, "controller") == 0;
   const char *other = strcmp(name, "t") == 0 || strcmp(name, "time") == 0 ? "the time"
                       : strut_expression_reserved(name, length) ? "a function or a constant"
@@ -67,6 +68,21 @@ static int32_t read_item(strut_reader *reader, const strut_slot *slot, int key, 
                               strut_node_name, scene->node_count);
 }
 
+/* A direction turns with the copy; the scene's sensors know those of the axes only. */
+static bool turn_sensor(strut_reader *reader, const strut_slot *along, strut_sensor *sensor) {
+  bool reversed;
+  int axis = strut_scope_axis(reader, (int)sensor->along, &reversed);
+  sensor->along = axis < 0 ? sensor->along : (uint32_t)axis;
+  if (axis >= 0 && !reversed) return true;
+  strut_report_error(
+      reader, along->value->place,
+      "sensor '%s' looks along %s, which in this copy points %s; sense a length or an "
+      "angle, or sense it outside of the part",
+      strut_local_name(reader, sensor->name), along->value->text,
+      axis < 0 ? "along neither axis" : "the other way");
+  return false;
+}
+
 static bool read_sensor(strut_reader *reader, const strut_tree *key, strut_sensor *sensor) {
   strut_owner owner = {"sensor", key->text};
   bool fine = strut_check_variable_name(reader, key, "sensor"), known = false;
@@ -97,7 +113,7 @@ static bool read_sensor(strut_reader *reader, const strut_tree *key, strut_senso
                        "sensor '%s' has 'along', which belongs to a position or a velocity",
                        key->text);
   else
-    return fine;
+    return fine && (!directed || turn_sensor(reader, along, sensor));
   return false;
 }
 
@@ -109,7 +125,8 @@ void strut_read_sensors(strut_reader *reader) {
   reader->sensor_source =
       strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->sensor_source);
   if (!scene->sensors || !reader->sensor_source) return;
-  for (const strut_tree *key = map->first; key; key = key->next->next) {
+  for (const strut_tree *key = strut_first_entry(reader, map); key;
+       key = strut_following_entry(reader, key)) {
     size_t i = strut_next_entry(reader, &scene->sensor_count);
     scene->sensors[i] = (strut_sensor){.name = strut_keep_text(reader, key->text), .item = -1};
     strut_add_name(reader, &reader->sensor_names, scene->sensors[i].name, i);
@@ -122,8 +139,8 @@ void strut_read_sensors(strut_reader *reader) {
 
 bool strut_find_sensed(strut_reader *reader, const char *name, strut_column *column,
                        strut_dimension *dimension) {
-  int32_t sensor = strut_name_map_find(&reader->sensor_names, name);
-  int32_t state = strut_name_map_find(&reader->state_names, name);
+  int32_t sensor = strut_find_named(reader, &reader->sensor_names, NULL, name);
+  int32_t state = strut_find_named(reader, &reader->state_names, NULL, name);
   if (state >= 0) {
     column->kind = STRUT_COLUMN_STATE, column->item = state;
     *dimension = reader->state_dimension[state];
@@ -138,7 +155,7 @@ bool strut_find_sensed(strut_reader *reader, const char *name, strut_column *col
 int strut_find_sensor_rate(strut_reader *reader, strut_piece piece, strut_column *column,
                            strut_dimension *dimension, strut_refusal *refusal) {
   const char *name = strut_arena_text(&reader->scratch, piece.text, piece.length);
-  int32_t i = name ? strut_name_map_find(&reader->sensor_names, name) : -1;
+  int32_t i = name ? strut_find_named(reader, &reader->sensor_names, NULL, name) : -1;
   if (i >= 0 && strut_sensor_has_rate(reader->scene->sensors[i].kind)) {
     column->kind = STRUT_COLUMN_SENSOR_RATE, column->item = i;
     *dimension = strut_sensor_dimension(reader->scene->sensors[i].kind);
@@ -157,6 +174,22 @@ int strut_find_sensor_rate(strut_reader *reader, strut_piece piece, strut_column
   return -1;
 }
 
+bool strut_find_variable(strut_reader *reader, strut_piece piece, strut_column *column,
+                         strut_dimension *dimension) {
+  const char *name = strut_arena_text(&reader->scratch, piece.text, piece.length);
+  if (!name) reader->out_of_memory = true;
+  if (!name) return false;
+  if (strut_find_sensed(reader, name, column, dimension)) return true;
+  if (strut_find_named(reader, &reader->signal_names, NULL, name) < 0) return false;
+  column->kind = STRUT_COLUMN_SIGNAL;
+  column->item = strut_use_signal(reader, name, dimension);
+  return true;
+}
+
+strut_piece strut_whole_name(strut_piece owner, strut_piece field) {
+  return (strut_piece){owner.text, (size_t)(field.text - owner.text) + field.length};
+}
+
 /* A word of an expression that is no parameter. */
 static int find_word(strut_reader *reader, strut_piece word, strut_column *column,
                      strut_dimension *dimension, strut_refusal *refusal) {
@@ -168,12 +201,7 @@ static int find_word(strut_reader *reader, strut_piece word, strut_column *colum
     *dimension = STRUT_DIM_TIME;
     return 1;
   }
-  if (strut_find_sensed(reader, name, column, dimension)) return 1;
-  if (strut_name_map_find(&reader->signal_names, name) >= 0) {
-    column->kind = STRUT_COLUMN_SIGNAL;
-    column->item = strut_use_signal(reader, name, dimension);
-    return column->item >= 0 ? 1 : -1;
-  }
+  if (strut_find_variable(reader, word, column, dimension)) return column->item >= 0 ? 1 : -1;
   size_t count = reader->scene->sensor_count;
   const char *hint = strut_hint(reader, name, strut_sensor_name, reader, count);
   if (strut_slot_of(&reader->top, STRUT_KEY_SCENE_SENSORS)->state == STRUT_BROKEN) return -1;
@@ -188,6 +216,8 @@ static int find_column(void *context, const char *kind, strut_piece owner, strut
   if (!owner.length && !kind) return find_word(context, field, column, dimension, refusal);
   if (kind && strcmp(kind, "rate") == 0)
     return strut_find_sensor_rate(context, owner, column, dimension, refusal);
+  if (!kind && strut_find_variable(context, strut_whole_name(owner, field), column, dimension))
+    return column->item >= 0 ? 1 : -1;
   snprintf(
       refusal->text, sizeof refusal->text,
       "a signal reads the motion by sensors: write sensors: {NAME: {length: MEMBER}}, and NAME "
@@ -207,7 +237,7 @@ static int claims_word(void *context, strut_piece word) {
   if (word.length == 1 && *word.text == 't') return 1;
   const char *name = strut_arena_text(&reader->scratch, word.text, word.length);
   if (!name) reader->out_of_memory = true;
-  return name && strut_name_map_find(&reader->sensor_names, name) >= 0 ? -1 : 0;
+  return name && strut_find_named(reader, &reader->sensor_names, NULL, name) >= 0 ? -1 : 0;
 }
 
 bool strut_read_signal_program(strut_reader *reader, const strut_tree *value, const char *key,
@@ -297,9 +327,11 @@ void strut_list_states(strut_reader *reader) {
   reader->state_dimension =
       strut_reader_allocate(reader, scratch, most, sizeof *reader->state_dimension);
   if (!scene->states || !reader->state_source || !reader->state_dimension) return;
-  for (const strut_tree *key = states ? states->first : NULL; key; key = key->next->next)
+  for (const strut_tree *key = strut_first_entry(reader, states); key;
+       key = strut_following_entry(reader, key))
     list_state(reader, key);
-  for (const strut_tree *key = oscillators ? oscillators->first : NULL; key; key = key->next->next)
+  for (const strut_tree *key = strut_first_entry(reader, oscillators); key;
+       key = strut_following_entry(reader, key))
     list_oscillator(reader, key);
 }
 
@@ -323,7 +355,8 @@ void strut_read_states(strut_reader *reader) {
   const strut_tree *states = strut_entries(reader, STRUT_KEY_SCENE_STATES);
   const strut_tree *oscillators = strut_entries(reader, STRUT_KEY_SCENE_OSCILLATORS);
   strut_quantity q;
-  for (const strut_tree *key = states ? states->first : NULL; key; key = key->next->next) {
+  for (const strut_tree *key = strut_first_entry(reader, states); key;
+       key = strut_following_entry(reader, key)) {
     strut_owner owner = {"state", key->text};
     int32_t i = strut_name_map_find(&reader->state_names, key->text);
     const strut_tree *rate =
@@ -334,8 +367,8 @@ void strut_read_states(strut_reader *reader) {
                 check_rate(reader, rate, owner, "rate", reader->state_dimension[i], &q);
     reader->state_source[i].broken = !fine;
   }
-  for (const strut_tree *key = oscillators ? oscillators->first : NULL; key;
-       key = key->next->next) {
+  for (const strut_tree *key = strut_first_entry(reader, oscillators); key;
+       key = strut_following_entry(reader, key)) {
     int32_t i = strut_name_map_find(&reader->state_names, key->text);
     if (i < 0 || reader->state_source[i].broken) continue;
     reader->state_source[i].broken = !strut_read_oscillator(reader, key, i);

@@ -6,6 +6,7 @@
 
 #include "engine/base/vec.h"
 #include "engine/scene/profile.h"
+#include "parser/read/copies.h"
 #include "parser/read/reader.h"
 
 /* The friction of one contact while the layers (ground, groups, contact) are laid over each other. */
@@ -134,6 +135,25 @@ static void own_friction(strut_reader *reader, strut_fields *fields, strut_owner
   add_layer(reader, layers, &nested, mine);
 }
 
+/* Forward is where the part's own x points. */
+static bool turn_friction(strut_reader *reader, const strut_tree *key, strut_friction *f) {
+  double ahead[2] = {1.0, 0.0};
+  if (!reader->scope || !f->directional) return true;
+  strut_place_vector(reader, NULL, ahead);
+  if (fabs(ahead[0]) < 1e-9) {
+    strut_report_error(reader, key->place,
+                       "contact '%s' has a friction with a direction, but its copy stands upright "
+                       "on its side; give its contact where it is placed",
+                       strut_local_name(reader, key->text));
+    return false;
+  }
+  if (ahead[0] > 0.0) return true;
+  double statics = f->mu_static, kinetics = f->mu_kinetic;
+  f->mu_static = f->mu_static_backward, f->mu_kinetic = f->mu_kinetic_backward;
+  f->mu_static_backward = statics, f->mu_kinetic_backward = kinetics;
+  return true;
+}
+
 static void read_contact(strut_reader *reader, const strut_tree *key, ground_defaults *defaults,
                          strut_contact *contact, strut_source *source) {
   friction_layers layers = defaults->friction;
@@ -141,15 +161,34 @@ static void read_contact(strut_reader *reader, const strut_tree *key, ground_def
   bool fine = !defaults->broken;
   if (key) {
     strut_fields fields;
+    strut_enter_scope(reader, key);
     strut_read_fields(reader, STRUT_SECTION_CONTACT, key->next, owner, &fields);
     strut_apply_groups(reader, &fields, STRUT_KEY_CONTACT_GROUP, owner);
     strut_store_fields(reader, &fields, &reader->scene->arena, contact, sizeof *contact);
     own_friction(reader, &fields, owner, &layers);
-    if (fields.broken) fine = false;
+    fine = turn_friction(reader, key, &layers.friction) && fine && !fields.broken;
   }
   if (!complete_friction(reader, &layers, &defaults->reported)) fine = false;
+  reader->scope = NULL;
   contact->friction = layers.friction;
   *source = (strut_source){key, key ? key->next : NULL, !fine};
+}
+
+/* Marks the nodes whose names fit a pattern. */
+static bool mark_matches(strut_reader *reader, const strut_tree *item, strut_owner owner,
+                         unsigned char *touches) {
+  bool any = false;
+  for (int32_t node = -1; (node = strut_next_match(reader, item, node)) >= 0; any = true)
+    touches[node] = 1;
+  if (!any)
+    strut_report_error(reader, item->place, "no node fits '%s' in 'nodes' of %s",
+                       strut_sanitised_text(reader, item->text), strut_owner_text(reader, owner));
+  return any;
+}
+
+/* A node that is moved cannot touch, and is none of `all`. */
+static bool moves(const strut_reader *reader, int32_t node) {
+  return reader->node_moves && reader->node_moves[node];
 }
 
 /* Marks the nodes that may touch a ground. */
@@ -158,11 +197,15 @@ static bool mark_nodes(strut_reader *reader, strut_fields *fields, strut_owner o
   const strut_slot *slot = strut_slot_of(fields, STRUT_KEY_GROUND_NODES);
   size_t count = reader->scene->node_count;
   if (slot->state != STRUT_GIVEN || slot->value->kind == STRUT_TREE_SCALAR) {
-    memset(touches, 1, count);
+    for (size_t i = 0; i < count; i++) touches[i] = !moves(reader, (int32_t)i);
     return slot->state != STRUT_BROKEN;
   }
   bool fine = true;
   for (const strut_tree *item = slot->value->first; item; item = item->next) {
+    if (strut_is_pattern(item)) {
+      fine = mark_matches(reader, item, owner, touches) && fine;
+      continue;
+    }
     int32_t node = strut_read_reference(reader, item, "nodes", owner, "node", &reader->node_names,
                                         strut_node_name, count);
     if (node < 0) {
@@ -185,6 +228,11 @@ static bool find_entries(strut_reader *reader, strut_fields *fields, strut_owner
   bool fine = slot->state != STRUT_BROKEN;
   if (slot->state != STRUT_GIVEN) return fine;
   for (const strut_tree *key = slot->value->first; key; key = key->next->next) {
+    if (strut_is_pattern(key)) {
+      for (int32_t node = -1; (node = strut_next_match(reader, key, node)) >= 0;)
+        if (touches[node]) entry[node] = key;
+      continue;
+    }
     int32_t node = strut_read_reference(reader, key, "contacts", owner, "node", &reader->node_names,
                                         strut_node_name, reader->scene->node_count);
     if (node >= 0 && touches[node]) {
@@ -192,9 +240,50 @@ static bool find_entries(strut_reader *reader, strut_fields *fields, strut_owner
       continue;
     }
     fine = false;
-    if (node >= 0 && complete)
+    if (node >= 0 && moves(reader, node))
+      strut_report_error(reader, key->place,
+                         "node '%s' has a contact with %s, but it moves, so that it cannot touch",
+                         key->text, strut_owner_text(reader, owner));
+    else if (node >= 0 && complete)
       strut_report_error(reader, key->place, "node '%s' has a contact, but 'nodes' of %s lacks it",
                          key->text, strut_owner_text(reader, owner));
+  }
+  return fine;
+}
+
+/* The contact of a node that a copy brings with it. */
+static bool add_contact(strut_reader *reader, const strut_tree *key, int32_t node,
+                        unsigned char *touches, const strut_tree **entry) {
+  if (node < 0) return false;
+  if (entry[node] && entry[node]->next->first != key->next->first) {
+    strut_report_error(reader, key->place,
+                       "node '%s' has two different contacts, of the parts that share it",
+                       reader->scene->nodes[node].name);
+    return false;
+  }
+  touches[node] = 1, entry[node] = key;
+  return true;
+}
+
+/* The contacts that copies of parts bring with them. */
+static bool add_copied(strut_reader *reader, unsigned char *touches, const strut_tree **entry) {
+  bool fine = true;
+  const strut_tree *map = reader->copies ? reader->copies->contacts : NULL;
+  for (const strut_tree *key = strut_first_entry(reader, map); key;
+       key = strut_following_entry(reader, key)) {
+    strut_owner owner = {"a contact", NULL};
+    if (strut_is_pattern(key)) {
+      for (int32_t node = -1; (node = strut_next_match(reader, key, node)) >= 0;)
+        fine = add_contact(reader, key, node, touches, entry) && fine;
+      continue;
+    }
+    strut_tree name = *key;
+    name.text = strut_local_name(reader, key->text);
+    name.placed = false;
+    int32_t node =
+        strut_read_reference(reader, &name, "contacts", owner, "node", &reader->node_names,
+                             strut_node_name, reader->scene->node_count);
+    fine = add_contact(reader, key, node, touches, entry) && fine;
   }
   return fine;
 }
@@ -219,6 +308,7 @@ static void read_contacts(strut_reader *reader, strut_fields *fields, strut_owne
       strut_reader_allocate(reader, &reader->scratch, count * pieces, sizeof *list->source);
   if (!touches || !entry || !list->contact || !list->source) return;
   bool complete = mark_nodes(reader, fields, owner, touches);
+  complete = add_copied(reader, touches, entry) && complete;
   if (!find_entries(reader, fields, owner, touches, complete, entry) || !complete)
     fields->broken = true;
   for (size_t i = 0; i < count; i++) {

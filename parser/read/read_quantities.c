@@ -89,15 +89,15 @@ static found_owner find_owner(strut_reader *reader, const char *kind, strut_piec
   found_owner found = {.node = -1, .member = -1, .hinge = -1, .cell = -1, .collision = -1};
   const char *text = text_of(reader, name);
   if (!kind || strcmp(kind, "member") == 0)
-    found.member = strut_name_map_find(&reader->member_names, text);
+    found.member = strut_find_named(reader, &reader->member_names, NULL, text);
   if (!kind || strcmp(kind, "node") == 0)
-    found.node = strut_name_map_find(&reader->node_names, text);
+    found.node = strut_find_named(reader, &reader->node_names, NULL, text);
   if (!kind || strcmp(kind, "hinge") == 0)
-    found.hinge = strut_name_map_find(&reader->hinge_names, text);
+    found.hinge = strut_find_named(reader, &reader->hinge_names, NULL, text);
   if (!kind || strcmp(kind, "cell") == 0)
-    found.cell = strut_name_map_find(&reader->cell_names, text);
+    found.cell = strut_find_named(reader, &reader->cell_names, NULL, text);
   if (!kind || strcmp(kind, "collision") == 0)
-    found.collision = strut_name_map_find(&reader->collision_names, text);
+    found.collision = strut_find_named(reader, &reader->collision_names, NULL, text);
   if (found.collision >= 0) found.owners |= OWNER(COLLISION), found.what = "collision";
   if (found.cell >= 0) found.owners |= OWNER(CELL), found.what = "cell";
   if (found.hinge >= 0) found.owners |= OWNER(HINGE), found.what = "hinge";
@@ -207,13 +207,7 @@ static int find_word(strut_reader *reader, strut_piece word, strut_column *colum
       *dimension = columns[k].dimension;
       return 1;
     }
-  const char *name = text_of(reader, word);
-  if (strut_find_sensed(reader, name, column, dimension)) return 1;
-  if (strut_name_map_find(&reader->signal_names, name) >= 0) {
-    column->kind = STRUT_COLUMN_SIGNAL;
-    column->item = strut_use_signal(reader, name, dimension);
-    return column->item >= 0 ? 1 : -1;
-  }
+  if (strut_find_variable(reader, word, column, dimension)) return column->item >= 0 ? 1 : -1;
   found_owner found = find_owner(reader, NULL, word);
   if (!found.owners) return 0;
   snprintf(refusal->text, sizeof refusal->text,
@@ -229,6 +223,9 @@ static int find_column(void *context, const char *kind, strut_piece owner, strut
     return strut_find_sensor_rate(reader, owner, column, dimension, refusal);
   if (!owner.length && !kind) return find_word(reader, field, column, dimension, refusal);
   found_owner found = find_owner(reader, kind, owner);
+  if (!found.owners && !kind &&
+      strut_find_variable(reader, strut_whole_name(owner, field), column, dimension))
+    return column->item >= 0 ? 1 : -1;
   if (!found.owners) return refuse_owner(reader, kind, owner, refusal);
   int count = 0;
   for (size_t k = 0; k < STRUT_COLUMN_COUNT; k++) {
@@ -273,7 +270,7 @@ static int find_pair(void *context, strut_piece word, strut_piece first, strut_p
     }
   for (int k = 0; k < 2; k++) {
     const char *name = text_of(reader, names[k]);
-    node[k] = strut_name_map_find(&reader->node_names, name);
+    node[k] = strut_find_named(reader, &reader->node_names, NULL, name);
     if (node[k] >= 0) continue;
     if (all_known(reader))
       snprintf(refusal->text, sizeof refusal->text, "unknown node '%.*s'%s", shown(names[k].length),

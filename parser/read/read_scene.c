@@ -7,8 +7,31 @@
 #include <string.h>
 
 #include "engine/base/c_locale.h"
+#include "parser/read/copies.h"
 #include "parser/read/reader.h"
+#include "parser/read/used_files.h"
 #include "parser/yaml/document.h"
+
+void strut_require_nodes(strut_reader *reader) {
+  char expected[100];
+  strut_slot *slot = strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES);
+  if (slot->state != STRUT_ABSENT) return;
+  if (!reader->holes)
+    strut_report_error(reader, strut_root_place(reader), "the scene lacks 'nodes', expected %s",
+                       strut_key_expected(STRUT_KEY_SCENE_NODES, expected, sizeof expected));
+  slot->state = STRUT_BROKEN;
+  reader->top.broken = true;
+}
+
+void strut_mark_incomplete(strut_reader *reader) {
+  for (int k = 0; k < strut_section_size(STRUT_SECTION_SCENE); k++) {
+    int key = strut_section_first(STRUT_SECTION_SCENE) + k;
+    bool things = key == STRUT_KEY_SCENE_GROUPS || key == STRUT_KEY_SCENE_CONFIGURATIONS ||
+                  strut_section_of_things(key) != STRUT_SECTION_COUNT;
+    if (things) reader->top.slot[k].state = STRUT_BROKEN;
+  }
+  reader->top.broken = reader->failed = reader->ends_unknown = reader->groups_unknown = true;
+}
 
 /* The scene's own numbers may use parameters: they are read here, when these are known. */
 static void read_head(strut_reader *reader) {
@@ -30,6 +53,7 @@ static void read_sections(strut_reader *reader, const strut_setting *settings, s
   static void (*const sections[])(strut_reader *) = {read_head,
                                                      strut_read_groups,
                                                      strut_read_nodes,
+                                                     strut_merge_nodes,
                                                      strut_read_beams,
                                                      strut_read_members,
                                                      strut_add_beam_members,
@@ -52,10 +76,13 @@ static void read_sections(strut_reader *reader, const strut_setting *settings, s
                                                      strut_read_initial,
                                                      strut_read_experiment};
   strut_read_parameters(reader, settings, count);
+  strut_read_parts(reader);
   for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++) {
     if (strut_diagnostics_full(reader->diagnostics)) return;
+    reader->scope = NULL;
     sections[i](reader);
   }
+  reader->scope = NULL;
   if (strut_diagnostics_full(reader->diagnostics)) return;
   strut_keep_signals(reader);
   strut_keep_parameters(reader);
@@ -127,10 +154,19 @@ static void free_reader(strut_reader *reader) {
       &reader->cell_names,      &reader->collision_names, &reader->unbalance_names,
       &reader->ground_names,    &reader->sensor_names,    &reader->state_names};
   for (size_t i = 0; i < sizeof maps / sizeof maps[0]; i++) strut_name_map_free(maps[i]);
+  strut_copies_free(reader);
   strut_release(reader->signals);
   strut_release(reader->signal_state);
   strut_arena_free(&reader->scratch);
   strut_document_free(&reader->document);
+}
+
+/* The tree of the text and of all files that it names. */
+static strut_status read_document(strut_document *document, strut_diagnostics *diagnostics) {
+  strut_status status = strut_document_read(document, diagnostics);
+  if (status == STRUT_NO_MEMORY) return status;
+  strut_status files = strut_read_used_files(document, diagnostics);
+  return files ? files : status;
 }
 
 /* Reads the scene from a tree that the caller owns, or from the text if `document` is NULL. */
@@ -152,9 +188,10 @@ static strut_status read_from(const strut_document *document, const strut_settin
   if (document)
     reader->document.root = document->root;
   else
-    status = strut_document_read(&reader->document, diagnostics);
+    status = read_document(&reader->document, diagnostics);
   reader->holes = status == STRUT_BAD_SCENE;
   if (status != STRUT_NO_MEMORY && reader->document.root) read_tree(reader, settings, count);
+  strut_note_copies(reader);
   strut_c_locale_leave(locale);
   if (!status && reader->failed) status = STRUT_BAD_SCENE;
   if (reader->out_of_memory) status = STRUT_NO_MEMORY;
@@ -184,7 +221,35 @@ struct strut_scene_source {
   const char *file, *text;
   size_t length, count;
   strut_declared *declared; /* (count) */
+  size_t used_count;
+  strut_used_file *used; /* (used_count) files that the text names; owned */
 };
+
+/* Takes over the texts of used files. */
+static strut_status keep_used(strut_scene_source *source, strut_diagnostics *from) {
+  if (!from->used_count) return STRUT_OK;
+  source->used = strut_arena_allocate(&source->arena, from->used_count, sizeof *source->used);
+  if (!source->used) return STRUT_NO_MEMORY;
+  for (size_t i = 0; i < from->used_count; i++) {
+    strut_used_file *to = &source->used[i];
+    const char *name = from->used[i].file;
+    *to = from->used[i];
+    to->file = strut_arena_text(&source->arena, name, strlen(name));
+    if (!to->file) return STRUT_NO_MEMORY;
+    from->used[i].owned = NULL;
+    source->used_count++;
+  }
+  return STRUT_OK;
+}
+
+/* Names them, so that places in them can be shown. */
+static void enter_used(const strut_scene_source *source, strut_diagnostics *diagnostics) {
+  if (diagnostics->used_count) return; /* of an earlier scene of this source */
+  for (size_t i = 0; i < source->used_count; i++) {
+    const strut_used_file *used = &source->used[i];
+    strut_diagnostics_use(diagnostics, used->file, used->text, used->length);
+  }
+}
 
 static strut_status keep_declared(strut_reader *reader, strut_scene_source *source) {
   source->count = reader->parameter_count;
@@ -231,8 +296,9 @@ strut_status strut_scene_source_open(const char *file, const char *text, size_t 
   if (!source) return STRUT_NO_MEMORY;
   source->file = file, source->text = text, source->length = length;
   strut_c_locale locale = strut_c_locale_enter();
-  strut_status status = strut_document_read(&source->document, &unused);
+  strut_status status = read_document(&source->document, &unused);
   if (status == STRUT_OK) status = declare_parameters(source, &unused);
+  if (status == STRUT_OK) status = keep_used(source, &unused);
   strut_c_locale_leave(locale);
   strut_diagnostics_free(&unused);
   if (status == STRUT_OK) return status;
@@ -248,6 +314,7 @@ strut_status strut_scene_source_open(const char *file, const char *text, size_t 
 void strut_scene_source_free(strut_scene_source *source) {
   if (!source) return;
   strut_document_free(&source->document);
+  for (size_t i = 0; i < source->used_count; i++) strut_release(source->used[i].owned);
   strut_arena_free(&source->arena);
   strut_release(source);
 }
@@ -256,6 +323,10 @@ const strut_declared *strut_scene_source_parameters(const strut_scene_source *so
                                                     size_t *count) {
   *count = source->count;
   return source->declared;
+}
+
+bool strut_scene_source_uses_files(const strut_scene_source *source) {
+  return source->used_count > 0;
 }
 
 strut_document *strut_scene_source_document(strut_scene_source *source) {
@@ -267,6 +338,7 @@ strut_status strut_scene_source_read(const strut_scene_source *source,
                                      strut_purpose purpose, strut_diagnostics *diagnostics,
                                      strut_setup *setup) {
   strut_diagnostics_source(diagnostics, source->file, source->text, source->length);
+  enter_used(source, diagnostics);
   return read_from(&source->document, settings, setting_count, purpose, diagnostics, setup);
 }
 

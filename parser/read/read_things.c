@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
+#include "parser/read/copies.h"
 #include "parser/read/reader.h"
 
 const char *strut_node_name(const void *context, size_t i) {
@@ -22,8 +23,38 @@ static void note_moves(strut_reader *reader, const strut_slot *slot, strut_node 
   size_t i = (size_t)(node - reader->scene->nodes);
   if (slot->state != STRUT_GIVEN) return;
   reader->node_moves[i] = slot->value;
-  for (int c = 0; c < 2; c++)
-    if (strut_tree_find(slot->value, c ? "y" : "x", NULL)) node->fixed[c] = true;
+  for (int c = 0; c < 2; c++) {
+    bool reversed;
+    int axis = strut_scope_axis(reader, c, &reversed);
+    if (axis >= 0 && strut_tree_find(slot->value, c ? "y" : "x", NULL)) node->fixed[axis] = true;
+  }
+}
+
+/* The axis of the scene that lies along one of the node's part; -1: none does, which is reported. */
+static int turned_axis(strut_reader *reader, const strut_tree *at, strut_owner owner, int axis,
+                       const char *what, bool backwards) {
+  bool reversed;
+  int turned = strut_scope_axis(reader, axis, &reversed);
+  if (turned >= 0 && (backwards || !reversed)) return turned;
+  strut_report_error(reader, at->place,
+                     "%s %s along %c, which in this copy points %s; do it where it is placed",
+                     strut_owner_text(reader, owner), what, axis ? 'y' : 'x',
+                     turned >= 0 ? "the other way" : "along neither axis");
+  return -1;
+}
+
+/* A support of a copy turns with it. */
+static bool turn_support(strut_reader *reader, const strut_slot *slot, strut_node *node) {
+  strut_owner owner = {"node", node->name};
+  bool turned[2] = {node->fixed[0], node->fixed[1]};
+  bool one = node->fixed[0] != node->fixed[1];
+  if (!one || slot->state != STRUT_GIVEN || strut_scope_of(reader, slot->value) != reader->scope)
+    return true;
+  int axis = turned_axis(reader, slot->value, owner, node->fixed[1], "is fixed", true);
+  if (axis < 0) return false;
+  turned[axis] = true, turned[1 - axis] = false;
+  memcpy(node->fixed, turned, sizeof turned);
+  return true;
 }
 
 /* Reads one node; returns false where something about it could not be read. */
@@ -32,9 +63,12 @@ static bool read_node(strut_reader *reader, const strut_tree *key, strut_node *n
   strut_owner owner = {"node", node->name};
   bool fine = strut_read_name(reader, key, "node");
   node->position[0] = node->position[1] = (double)NAN;
-  if (value->kind == STRUT_TREE_LIST)
-    return strut_read_pair(reader, value, "position", owner, STRUT_DIM_LENGTH, node->position) &&
-           fine;
+  if (value->kind == STRUT_TREE_LIST) {
+    fine =
+        strut_read_pair(reader, value, "position", owner, STRUT_DIM_LENGTH, node->position) && fine;
+    strut_place_point(reader, value, node->position);
+    return fine;
+  }
   if (value->kind == STRUT_TREE_SCALAR) {
     strut_report_error(reader, value->place,
                        "expected a position such as [10 mm, 0], or a mapping, for %s, found %s",
@@ -47,7 +81,9 @@ static bool read_node(strut_reader *reader, const strut_tree *key, strut_node *n
   strut_require(reader, &fields, owner, key->place);
   strut_store_fields(reader, &fields, &reader->scene->arena, node, sizeof *node);
   note_moves(reader, strut_slot_of(&fields, STRUT_KEY_NODE_MOVES), node);
-  return fine && !fields.broken;
+  strut_place_point(reader, strut_slot_of(&fields, STRUT_KEY_NODE_POSITION)->value, node->position);
+  return turn_support(reader, strut_slot_of(&fields, STRUT_KEY_NODE_FIXED), node) && fine &&
+         !fields.broken;
 }
 
 void strut_read_nodes(strut_reader *reader) {
@@ -60,7 +96,8 @@ void strut_read_nodes(strut_reader *reader) {
   reader->node_moves =
       strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->node_moves);
   if (!scene->nodes || !reader->node_source || !reader->node_moves) return;
-  for (const strut_tree *key = map->first; key; key = key->next->next) {
+  for (const strut_tree *key = strut_first_entry(reader, map); key;
+       key = strut_following_entry(reader, key)) {
     size_t i = strut_next_entry(reader, &scene->node_count);
     scene->nodes[i] = strut_node_default();
     scene->nodes[i].name = strut_keep_text(reader, key->text);
@@ -162,7 +199,8 @@ void strut_read_members(strut_reader *reader) {
   reader->member_source =
       strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->member_source);
   if (!scene->members || !reader->member_source) return;
-  for (const strut_tree *key = map->first; key; key = key->next->next) {
+  for (const strut_tree *key = strut_first_entry(reader, map); key;
+       key = strut_following_entry(reader, key)) {
     size_t i = strut_next_entry(reader, &scene->member_count);
     scene->members[i] = strut_member_default();
     scene->members[i].name = strut_keep_text(reader, key->text);
@@ -178,7 +216,7 @@ bool strut_read_node_pairs(strut_reader *reader, const strut_tree *map, strut_ow
   bool known = strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN;
   for (const strut_tree *k = map->first; k; k = k->next->next) {
     double pair[2];
-    int32_t node = strut_name_map_find(&reader->node_names, k->text);
+    int32_t node = strut_find_named(reader, &reader->node_names, k, k->text);
     if (node < 0 && known)
       strut_report_error(
           reader, k->place, "unknown node '%s' in %s%s", strut_sanitised_text(reader, k->text),
@@ -186,8 +224,11 @@ bool strut_read_node_pairs(strut_reader *reader, const strut_tree *map, strut_ow
           strut_hint(reader, k->text, strut_node_name, reader, reader->scene->node_count));
     if (!strut_read_pair(reader, k->next, k->text, owner, dimension, pair) || node < 0)
       fine = false;
-    else if (take)
+    else if (take) {
+      if (strut_dimension_equal(dimension, STRUT_DIM_LENGTH))
+        strut_place_point(reader, k->next, pair);
       take(reader, node, pair, k->next);
+    }
   }
   return fine;
 }
@@ -225,9 +266,11 @@ static bool read_drive(strut_reader *reader, const strut_tree *key, strut_fields
     return false;
   }
   actuator->force = k > 0;
+  reader->signal_quantity = k == 2 ? "moment" : known && cell ? "pressure" : NULL;
   if (slot->state == STRUT_GIVEN)
     actuator->signal = strut_read_signal(reader, slot->value, strut_key_at(keys[k])->name, owner,
                                          known || k > 0 ? &dimensions[k] : NULL);
+  reader->signal_quantity = NULL;
   return actuator->signal >= 0;
 }
 
@@ -280,7 +323,8 @@ static void read_actuators(strut_reader *reader) {
   reader->actuator_source =
       strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->actuator_source);
   if (!scene->actuators || !reader->actuator_source) return;
-  for (const strut_tree *key = map->first; key; key = key->next->next) {
+  for (const strut_tree *key = strut_first_entry(reader, map); key;
+       key = strut_following_entry(reader, key)) {
     size_t i = strut_next_entry(reader, &scene->actuator_count);
     scene->actuators[i] = (strut_actuator){.name = strut_keep_text(reader, key->text),
                                            .member = -1,
@@ -309,6 +353,7 @@ static bool read_load(strut_reader *reader, const strut_tree *key, strut_load *l
                              strut_node_name, reader->scene->node_count);
   if (load->node < 0) reader->ends_unknown = true;
   strut_store_fields(reader, &fields, &reader->scene->arena, load, sizeof *load);
+  strut_place_vector(reader, strut_slot_of(&fields, STRUT_KEY_LOAD_FORCE)->value, load->force);
   if (signal->state == STRUT_GIVEN) {
     load->signal = strut_read_signal(reader, signal->value, "signal", owner, &factor);
     if (load->signal < 0) fine = false;
@@ -326,7 +371,8 @@ static void read_loads(strut_reader *reader) {
   reader->load_source =
       strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->load_source);
   if (!scene->loads || !reader->load_source) return;
-  for (const strut_tree *key = map->first; key; key = key->next->next) {
+  for (const strut_tree *key = strut_first_entry(reader, map); key;
+       key = strut_following_entry(reader, key)) {
     size_t i = strut_next_entry(reader, &scene->load_count);
     scene->loads[i] =
         (strut_load){.name = strut_keep_text(reader, key->text), .node = -1, .signal = -1};
@@ -353,6 +399,22 @@ static bool read_speed(strut_reader *reader, const strut_tree *value, strut_owne
                      strut_owner_text(reader, owner),
                      strut_dimension_name(q.dimension, found, sizeof found));
   return false;
+}
+
+/* The angle counts from the copy's own x, and in a mirrored one clockwise. */
+static void turn_unbalance(strut_reader *reader, const strut_slot *signal, strut_unbalance *u) {
+  double ahead[2] = {1.0, 0.0};
+  if (!reader->scope) return;
+  strut_place_vector(reader, NULL, ahead);
+  double turn = atan2(ahead[1], ahead[0]);
+  bool flips = strut_scope_flips(reader);
+  if (flips && signal->state == STRUT_GIVEN)
+    strut_report_error(reader, signal->key->place,
+                       "the angle of unbalance '%s' is a signal, which cannot turn the other way "
+                       "round in a mirrored copy; give a 'speed'",
+                       strut_local_name(reader, u->name));
+  if (flips) u->speed = -u->speed;
+  u->phase = flips ? turn - u->phase : turn + u->phase;
 }
 
 static bool read_unbalance(strut_reader *reader, const strut_tree *key, strut_unbalance *u) {
@@ -384,6 +446,7 @@ static bool read_unbalance(strut_reader *reader, const strut_tree *key, strut_un
     fine = false;
   }
   if (!fine || fields.broken) reader->masses_unknown = true;
+  turn_unbalance(reader, signal, u);
   return fine && !fields.broken && u->node >= 0;
 }
 
@@ -398,7 +461,8 @@ static void read_unbalances(strut_reader *reader) {
   reader->unbalance_source =
       strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->unbalance_source);
   if (!scene->unbalances || !reader->unbalance_source) return;
-  for (const strut_tree *key = map->first; key; key = key->next->next) {
+  for (const strut_tree *key = strut_first_entry(reader, map); key;
+       key = strut_following_entry(reader, key)) {
     size_t i = strut_next_entry(reader, &scene->unbalance_count);
     scene->unbalances[i] =
         (strut_unbalance){.name = strut_keep_text(reader, key->text), .node = -1, .signal = -1};
@@ -413,17 +477,19 @@ static void read_moves_of(strut_reader *reader, size_t node) {
   strut_owner owner = {"node", scene->nodes[node].name};
   const strut_dimension length = STRUT_DIM_LENGTH;
   strut_fields fields;
+  strut_enter_scope(reader, reader->node_source[node].key);
   strut_read_fields(reader, STRUT_SECTION_MOVES, reader->node_moves[node], owner, &fields);
   if (fields.broken) reader->node_source[node].broken = true;
   for (int c = 0; c < 2; c++) {
     const strut_slot *slot = strut_slot_of(&fields, STRUT_KEY_MOVES_ALONG_X + c);
     if (slot->state != STRUT_GIVEN) continue;
     int32_t signal = strut_read_signal(reader, slot->value, c ? "y" : "x", owner, &length);
-    if (signal < 0)
+    int axis = turned_axis(reader, slot->key, owner, c, "moves", false);
+    if (signal < 0 || axis < 0)
       reader->node_source[node].broken = true;
     else
       scene->support_motions[scene->support_motion_count++] =
-          (strut_support_motion){(int32_t)node, c, signal};
+          (strut_support_motion){(int32_t)node, axis, signal};
   }
 }
 
@@ -437,6 +503,7 @@ static void read_moves(strut_reader *reader) {
       strut_reader_allocate(reader, &scene->arena, most, sizeof *scene->support_motions);
   for (size_t i = 0; i < scene->node_count && scene->support_motions; i++)
     if (reader->node_moves[i]) read_moves_of(reader, i);
+  reader->scope = NULL;
 }
 
 void strut_read_drives(strut_reader *reader) {

@@ -6,20 +6,23 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "parser/read/copies.h"
 #include "parser/read/reader.h"
 #include "parser/yaml/text.h"
 
 /* Longest text from the file in a message, and most names compared for suggestions. */
-enum { SHOWN = 60, MOST_SUGGESTIONS = 200000, LONGEST_NAME = 64 };
+enum { SHOWN = 60, MOST_SUGGESTIONS = 200000, LONGEST_NAME = 255 };
 
 void strut_report_error(strut_reader *reader, strut_place place, const char *format, ...) {
   char text[1200] = "";
   va_list arguments;
+  reader->failed = true;
+  if (strut_error_is_repeated(reader, place, format)) return;
   va_start(arguments, format);
   if (!strut_diagnostics_full(reader->diagnostics)) vsnprintf(text, sizeof text, format, arguments);
   va_end(arguments);
-  reader->failed = true;
   strut_diagnose(reader->diagnostics, place, "%s", text);
+  strut_error_remember(reader, place, format);
 }
 
 void *strut_reader_allocate(strut_reader *reader, strut_arena *arena, size_t count, size_t size) {
@@ -68,8 +71,9 @@ const char *strut_sanitised_text(strut_reader *reader, const char *text) {
 
 const char *strut_owner_text(strut_reader *reader, strut_owner owner) {
   if (!owner.name || strut_diagnostics_full(reader->diagnostics)) return owner.kind;
-  return kept(reader, strut_arena_format(&reader->scratch, "%s '%s'", owner.kind,
-                                         strut_sanitised_text(reader, owner.name)));
+  return kept(reader, strut_arena_format(
+                          &reader->scratch, "%s '%s'", owner.kind,
+                          strut_sanitised_text(reader, strut_local_name(reader, owner.name))));
 }
 
 bool strut_hints_left(const strut_reader *reader) {
@@ -87,7 +91,8 @@ const char *strut_hint(strut_reader *reader, const char *word, strut_names *name
 
 strut_place strut_root_place(const strut_reader *reader) {
   strut_place place = reader->document.root->place;
-  return (strut_place){place.line, place.column, 1};
+  place.length = 1;
+  return place;
 }
 
 const char *strut_format_cycle(strut_reader *reader, const char *(*name)(strut_reader *, size_t),
@@ -153,7 +158,7 @@ static strut_place place_within(const strut_tree *value, const strut_expression_
   size_t quotes = place.length > points ? place.length - points : 0;
   if (quotes != (value->quoted ? 2u : 0u)) return place;
   place.column += (uint32_t)(error->offset + quotes / 2);
-  place.length = error->length ? (uint32_t)error->length : 1;
+  place.length = error->length ? (uint32_t)error->length & STRUT_PLACE_LENGTH_MOST : 1;
   return place;
 }
 
@@ -166,7 +171,7 @@ bool strut_read_quantity(strut_reader *reader, const strut_tree *value, const ch
 static bool is_reported(strut_reader *reader, strut_piece name) {
   char text[LONGEST_NAME + 1];
   snprintf(text, sizeof text, "%.*s", (int)name.length, name.text);
-  strut_parameter_state *parameter = strut_parameter_find(reader, text);
+  strut_parameter_state *parameter = strut_parameter_in_scope(reader, text);
   if (!parameter || parameter->ambiguous) return parameter != NULL;
   parameter->ambiguous = true;
   return false;
@@ -182,7 +187,10 @@ bool strut_read_program(strut_reader *reader, const strut_tree *value, const cha
   const char *set_before = reader->asking_set;
   reader->asking = value;
   reader->asking_set = NULL;
+  strut_copy *scope_before = reader->scope;
+  reader->scope = strut_scope_of(reader, value);
   bool fine = strut_expression_compile(value->text, &scope, compiler, quantity, &error);
+  reader->scope = scope_before;
   reader->asking = asked_before;
   reader->asking_set = set_before;
   if (!fine && scope.names) reader->suggestions += reader->parameter_count;
@@ -223,25 +231,34 @@ bool strut_check_whole(strut_reader *reader, const strut_tree *value, const stru
   return false;
 }
 
+/* Lengths of a scaled copy are longer, areas more so; other numbers stay. */
+static double scale_of(const strut_reader *reader, const strut_tree *value,
+                       strut_dimension dimension) {
+  double scale = strut_scope_scale(reader, value);
+  bool length = dimension.kg == 0.0f && dimension.s == 0.0f && dimension.angle == 0.0f;
+  return scale == 1.0 || !length || dimension.m == 0.0f ? 1.0 : pow(scale, (double)dimension.m);
+}
+
 bool strut_read_number(strut_reader *reader, const strut_tree *value, const char *key,
                        strut_owner owner, strut_dimension dimension, strut_key_range range,
                        double *number) {
   char expected[200], found[80];
   strut_quantity quantity;
-  if (value->kind != STRUT_TREE_SCALAR || strut_is_null(value)) {
-    strut_expected_number(dimension, expected, sizeof expected);
+  const char *what = reader->signal_quantity ? reader->signal_quantity : key;
+  strut_expected_quantity(what, dimension, expected, sizeof expected);
+  if (value->kind != STRUT_TREE_SCALAR || strut_is_null(value))
     return strut_read_scalar(reader, value, key, owner, expected);
-  }
   if (!strut_read_quantity(reader, value, key, owner, &quantity)) return false;
   if (!quantity.bare && !strut_dimension_equal(quantity.dimension, dimension)) {
-    strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s",
-                       strut_expected_number(dimension, expected, sizeof expected), key,
+    strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s", expected, key,
                        strut_owner_text(reader, owner),
                        strut_dimension_name(quantity.dimension, found, sizeof found));
     return false;
   }
   *number = quantity.value;
-  return in_range(reader, value, key, owner, range, quantity.value);
+  if (!in_range(reader, value, key, owner, range, quantity.value)) return false;
+  if (reader->scope) *number *= scale_of(reader, value, dimension);
+  return true;
 }
 
 bool strut_read_pair(strut_reader *reader, const strut_tree *value, const char *key,
@@ -260,18 +277,46 @@ bool strut_read_pair(strut_reader *reader, const strut_tree *value, const char *
   return false;
 }
 
+/* Names as they are called within a copy; those of other things are "". */
+typedef struct local_names {
+  const strut_reader *reader;
+  strut_names *names;
+} local_names;
+
+static const char *local_name(const void *context, size_t i) {
+  const local_names *all = context;
+  const char *name = all->names(all->reader, i);
+  const char *local = name ? strut_local_name(all->reader, name) : NULL;
+  return local == name && name ? "" : local;
+}
+
+static const char *hint_of_names(strut_reader *reader, const char *word, strut_names *names,
+                                 size_t count) {
+  const local_names within = {reader, names};
+  const char *hint = reader->scope ? strut_hint(reader, word, local_name, &within, count) : "";
+  return *hint ? hint : strut_hint(reader, word, names, reader, count);
+}
+
 int32_t strut_read_reference(strut_reader *reader, const strut_tree *value, const char *key,
                              strut_owner owner, const char *kind, const strut_name_map *map,
                              strut_names *names, size_t count) {
   char expected[80];
   snprintf(expected, sizeof expected, "the name of a %s", kind);
   if (!strut_read_scalar(reader, value, key, owner, expected)) return -1;
-  int32_t index = strut_name_map_find(map, value->text);
-  if (index < 0)
+  int32_t index = strut_find_named(reader, map, value, value->text);
+  const char *hiding =
+      index < 0 && map == &reader->node_names ? strut_hiding_part(reader, value) : NULL;
+  if (hiding)
+    strut_report_error(reader, value->place,
+                       "node '%s' in '%s' of %s is not among the ports of part '%s', which shows "
+                       "these only",
+                       strut_sanitised_text(reader, value->text), key,
+                       strut_owner_text(reader, owner), hiding);
+  else if (index < 0)
     strut_report_error(reader, value->place, "unknown %s '%s' in '%s' of %s%s", kind,
                        strut_sanitised_text(reader, value->text), key,
                        strut_owner_text(reader, owner),
-                       strut_hint(reader, value->text, names, reader, count));
+                       hint_of_names(reader, value->text, names, count));
   return index;
 }
 

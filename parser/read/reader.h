@@ -43,13 +43,16 @@ typedef struct strut_fields {
   strut_slot slot[STRUT_MOST_KEYS];
 } strut_fields;
 
+enum { STRUT_GROUP_SECTIONS = 4 }; /* member, node, contact, hinge */
+
 /** One key of a group, and its number in each section that may use the group. */
 typedef struct strut_group_item {
   strut_slot slot;
-  int key[3];           /* in member, node, contact; -1: not there */
-  bool refused[3];      /* it has been reported that the section has no such key */
-  bool found;           /* a finding has been reported here */
-  strut_fields *nested; /* of a mapping: friction */
+  int key[STRUT_GROUP_SECTIONS];      /* -1: not there */
+  bool refused[STRUT_GROUP_SECTIONS]; /* it has been reported that the section has no such key */
+  bool found;                         /* a finding has been reported here */
+  strut_fields *nested;               /* of a mapping: friction */
+  strut_slot of_hinge;                /* where hinges measure it by another unit; else as `slot` */
 } strut_group_item;
 
 typedef struct strut_group {
@@ -58,7 +61,11 @@ typedef struct strut_group {
   size_t count;
   strut_group_item *items;
   bool used, broken;
+  bool of_hinges, of_others; /* hinges name it; members, nodes or contacts do, or nothing does */
 } strut_group;
+
+/** A copy of a part as the scope of what is read, see copies.h. */
+typedef struct strut_copy strut_copy;
 
 /** A parameter while parameters are being evaluated. */
 typedef struct strut_parameter_state {
@@ -70,6 +77,9 @@ typedef struct strut_parameter_state {
   bool used;      /* something refers to it */
   bool ambiguous; /* it has been reported that a unit has its name */
   strut_quantity quantity;
+  strut_copy *scope;       /* of a part's: where its value is read; NULL: the scene */
+  const strut_tree *given; /* its value in `set` of the placement, or NULL; read in the scope: */
+  strut_copy *given_scope;
 } strut_parameter_state;
 
 /** A named thing: its place, and whether it was read completely, so that findings about it make sense. */
@@ -90,7 +100,8 @@ typedef struct strut_named_signal {
   const char *name;
   const strut_tree *key;
   enum { STRUT_SIGNAL_UNREAD, STRUT_SIGNAL_READING, STRUT_SIGNAL_READ } state;
-  int32_t index; /* into the signals; -1: it could not be read */
+  int32_t index;   /* into the signals; -1: it could not be read */
+  bool controller; /* it stands under `controllers` */
 } strut_named_signal;
 
 /** Longest chains of parameters and of signals that refer to each other. */
@@ -124,6 +135,7 @@ typedef struct strut_reader {
   strut_source *unbalance_source;
   const strut_tree **node_moves; /* (node_count) the keys of moves of a node, or NULL */
   strut_signal_state *signal_state;
+  const char *signal_quantity; /* what the signal that is being read gives, for messages, or NULL */
   size_t signal_count;
   strut_source *configuration_source;
   strut_fields ground, initial, settle, search, solver, run, measure, steady, output;
@@ -141,9 +153,14 @@ typedef struct strut_reader {
   strut_fields *grounds;       /* of each of the scene's grounds; of `ground` the one above */
   strut_source *ground_source; /* of `grounds`, or NULL */
   strut_name_map ground_names;
-  bool *controller_broken; /* (controllers) in the order of the file */
+  strut_copy *scope;           /* the copy of which a thing is being read; NULL: the scene's own */
+  struct strut_copies *copies; /* NULL: the scene has no parts */
 } strut_reader;
 
+/** Reports a scene without nodes. */
+void strut_require_nodes(strut_reader *reader);
+/** Some things of the scene are missing: what refers to them is not reported. */
+void strut_mark_incomplete(strut_reader *reader);
 /** Is this the tree of a study? As a model it would be wrong in every line. */
 bool strut_tree_is_study(const strut_tree *root);
 
@@ -218,6 +235,34 @@ void strut_reader_target(strut_reader *reader, strut_setup *setup);
 /** A copy in the scene's arena; "" if memory is out. */
 const char *strut_keep_text(strut_reader *reader, const char *text);
 
+/* copies.c: the scope in which a thing is read; without parts all of this does nothing */
+
+/** The first entry of a mapping of names to things (NULL: none), and the one after; enter its scope. */
+const strut_tree *strut_first_entry(strut_reader *reader, const strut_tree *map);
+const strut_tree *strut_following_entry(strut_reader *reader, const strut_tree *key);
+/** Enters the scope of an entry; returns the one before. */
+strut_copy *strut_enter_scope(strut_reader *reader, const strut_tree *key);
+/** The index of what `text` names in the scope of `value` (NULL: of the reader), or -1. */
+int32_t strut_find_named(const strut_reader *reader, const strut_name_map *map,
+                         const strut_tree *value, const char *text);
+/** The name within the reader's scope of one of its things. */
+const char *strut_local_name(const strut_reader *reader, const char *name);
+/** Lengths that stand in the scope of `value` are multiplied by this. */
+double strut_scope_scale(const strut_reader *reader, const strut_tree *value);
+/** From the scope of `value` to the scene: a point [m] scaled already, and the direction of a vector. */
+void strut_place_point(const strut_reader *reader, const strut_tree *value, double point[2]);
+void strut_place_vector(const strut_reader *reader, const strut_tree *value, double vector[2]);
+/** Is the reader's scope mirrored? */
+bool strut_scope_flips(const strut_reader *reader);
+/** The scene's axis (0: x) along which one of the scope's lies, or -1; *reversed: against it. */
+int strut_scope_axis(const strut_reader *reader, int axis, bool *reversed);
+/** Was this said about another copy? Then it is counted, and not to be reported again. */
+bool strut_error_is_repeated(strut_reader *reader, strut_place place, const char *format);
+/** Remembers that it was reported as the latest message. */
+void strut_error_remember(strut_reader *reader, strut_place place, const char *format);
+/** Adds to a message where the copy was placed, and in how many copies it is so. */
+void strut_note_copy(strut_reader *reader, size_t item, const strut_copy *copy, int64_t copies);
+
 /* read_fields.c: mappings */
 
 /** Reads a mapping by the table. A value that is not a mapping is reported. */
@@ -272,7 +317,14 @@ void strut_keep_parameters(strut_reader *reader);
 /** Reports settings of parameters that nothing uses. */
 void strut_report_idle_settings(strut_reader *reader);
 strut_scope strut_parameter_scope(strut_reader *reader);
-/** The parameter of that name, or NULL. */
+/** The parameter that the name means in the reader's scope, or NULL. */
+strut_parameter_state *strut_parameter_in_scope(strut_reader *reader, const char *name);
+/** Evaluates the parameters of a copy. */
+void strut_resolve_parameter(strut_reader *reader, strut_parameter_state *parameter);
+/** Declares an entry of `parameters`. */
+void strut_declare_parameter(strut_reader *reader, const strut_tree *key,
+                             strut_parameter_state *parameter);
+/** The scene's parameter of that name, or NULL. */
 strut_parameter_state *strut_parameter_find(strut_reader *reader, const char *name);
 /** The name with that number, for suggestions. */
 const char *strut_parameter_name(const void *reader, size_t i);
@@ -355,6 +407,14 @@ strut_dimension strut_sensor_dimension(strut_sensor_kind kind);
 /** Finds a sensor as a column and its dimension. */
 bool strut_find_sensed(strut_reader *reader, const char *name, strut_column *column,
                        strut_dimension *dimension);
+/**
+ * Is it the name of a sensor, a state or a signal? Then the column is filled, with item -1 where it is
+ * broken.
+ */
+bool strut_find_variable(strut_reader *reader, strut_piece name, strut_column *column,
+                         strut_dimension *dimension);
+/** OWNER.FIELD as it stands in the text: a name with dots. */
+strut_piece strut_whole_name(strut_piece owner, strut_piece field);
 /** The rate of a sensor as a column, as strut_find_column. */
 int strut_find_sensor_rate(strut_reader *reader, strut_piece name, strut_column *column,
                            strut_dimension *dimension, strut_refusal *refusal);
@@ -370,9 +430,16 @@ bool strut_check_variable_name(strut_reader *reader, const strut_tree *key, cons
 /** Appends an internal state; -1: out of memory, or too many errors. */
 int32_t strut_add_state(strut_reader *reader, const strut_tree *key, const char *name,
                         strut_dimension dimension, double start);
-/** Appends a signal with a name. */
-void strut_add_named_signal(strut_reader *reader, const strut_tree *key, const char *name,
-                            const strut_signal *signal, strut_dimension dimension);
+/** Appends the signal that a controller is; -1: out of memory. */
+int32_t strut_add_controller_signal(strut_reader *reader, const strut_tree *key,
+                                    const strut_signal *signal, strut_dimension dimension,
+                                    bool bare);
+/** The signal that the controller behind the key stands for; -1: it was reported. */
+int32_t strut_read_controller(strut_reader *reader, const strut_tree *key);
+/** Is the controller a relay? */
+bool strut_is_relay(const strut_tree *map);
+/** read_relay.c: the same of a relay. */
+int32_t strut_read_relay(strut_reader *reader, const strut_tree *key);
 /** An expression of the time, sensors and signals; in the scene's memory. */
 bool strut_read_signal_program(strut_reader *reader, const strut_tree *value, const char *key,
                                strut_owner owner, strut_program *program, strut_quantity *q);

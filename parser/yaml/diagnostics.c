@@ -70,11 +70,42 @@ void strut_diagnose(strut_diagnostics *diagnostics, strut_place place, const cha
       (strut_diagnostic){.place = place, .order = order, .message = copy};
 }
 
+void strut_diagnose_note(strut_diagnostics *diagnostics, size_t item, strut_place place,
+                         const char *format, ...) {
+  size_t k = 0;
+  if (item >= diagnostics->count) return;
+  strut_diagnostic *of = &diagnostics->items[item];
+  while (k < STRUT_MESSAGE_NOTES && of->note[k]) k++;
+  if (k == STRUT_MESSAGE_NOTES) return;
+  va_list arguments;
+  va_start(arguments, format);
+  of->note[k] = compose(diagnostics, format, arguments);
+  of->note_place[k] = place;
+  va_end(arguments);
+}
+
+unsigned strut_diagnostics_use(strut_diagnostics *diagnostics, const char *file, const char *text,
+                               size_t length) {
+  if (!diagnostics->used)
+    diagnostics->used =
+        strut_arena_allocate(&diagnostics->arena, STRUT_USED_FILES_MOST, sizeof *diagnostics->used);
+  if (!diagnostics->used || diagnostics->used_count == STRUT_USED_FILES_MOST) return 0;
+  diagnostics->used[diagnostics->used_count] = (strut_used_file){file, text, length, NULL};
+  return (unsigned)++diagnostics->used_count;
+}
+
+void strut_diagnostics_own(strut_diagnostics *diagnostics, unsigned number, char *text) {
+  strut_used_file *used = &diagnostics->used[number - 1];
+  const char *name = strut_arena_text(&diagnostics->arena, used->file, strlen(used->file));
+  used->owned = text;
+  used->file = name ? name : "<file>";
+}
+
 static bool has_note(const strut_diagnostics *diagnostics, strut_place place, const char *message) {
   for (size_t i = 0; i < diagnostics->note_count; i++) {
     const strut_diagnostic *note = &diagnostics->notes[i];
-    if (note->place.line == place.line && note->place.column == place.column &&
-        strcmp(note->message, message) == 0)
+    if (note->place.file == place.file && note->place.line == place.line &&
+        note->place.column == place.column && strcmp(note->message, message) == 0)
       return true;
   }
   return false;
@@ -226,33 +257,59 @@ static void append_source_line(text_builder *out, strut_cursor *cursor, strut_pl
 
 static int compare(const void *a, const void *b) {
   const strut_diagnostic *x = a, *y = b;
+  if (x->place.file != y->place.file) return x->place.file < y->place.file ? -1 : 1;
   if (x->place.line != y->place.line) return x->place.line < y->place.line ? -1 : 1;
   if (x->place.column != y->place.column) return x->place.column < y->place.column ? -1 : 1;
   return x->order < y->order ? -1 : x->order > y->order;
 }
 
-static void render_one(text_builder *out, const strut_diagnostics *diagnostics, const char *kind,
-                       const strut_diagnostic *item, strut_cursor *cursor) {
-  const char *file = diagnostics->file ? diagnostics->file : "<text>";
-  if (item->place.line == 0) {
-    append_text(out, "%s: %s: %s\n", file, kind, item->message);
+/* The text that a place is in. */
+static strut_used_file text_of(const strut_diagnostics *diagnostics, strut_place place) {
+  if (place.file && place.file <= diagnostics->used_count) return diagnostics->used[place.file - 1];
+  return (strut_used_file){diagnostics->file ? diagnostics->file : "<text>", diagnostics->text,
+                           diagnostics->length, NULL};
+}
+
+static strut_cursor cursor_in(strut_used_file in) {
+  const strut_cursor nothing = {.text = "", .line = 1, .column = 1};
+  return in.text ? strut_cursor_begin(in.text, in.length) : nothing;
+}
+
+/* `cursor` is in the text of the place, and not behind its line. */
+static void render_line(text_builder *out, const char *file, const char *kind, strut_place place,
+                        const char *message, strut_cursor *cursor) {
+  if (place.line == 0) {
+    append_text(out, "%s: %s: %s\n", file, kind, message);
     return;
   }
-  append_text(out, "%s:%u:%u: %s: %s\n", file, item->place.line, item->place.column, kind,
-              item->message);
-  strut_cursor_to_line(cursor, item->place.line);
-  if (cursor->line == item->place.line) append_source_line(out, cursor, item->place);
+  append_text(out, "%s:%u:%u: %s: %s\n", file, place.line, place.column, kind, message);
+  strut_cursor_to_line(cursor, place.line);
+  if (cursor->line == place.line) append_source_line(out, cursor, place);
+}
+
+static void render_one(text_builder *out, const strut_diagnostics *diagnostics, const char *kind,
+                       const strut_diagnostic *item, strut_cursor *cursor) {
+  render_line(out, text_of(diagnostics, item->place).file, kind, item->place, item->message,
+              cursor);
+  for (size_t k = 0; k < STRUT_MESSAGE_NOTES && item->note[k]; k++) {
+    strut_used_file in = text_of(diagnostics, item->note_place[k]);
+    strut_cursor own = cursor_in(in);
+    render_line(out, in.file, "note", item->note_place[k], item->note[k], &own);
+  }
 }
 
 const char *strut_diagnostics_render(strut_diagnostics *diagnostics, size_t most) {
   text_builder out = {0};
-  strut_cursor cursor = {.text = "", .line = 1, .column = 1};
-  if (diagnostics->text) cursor = strut_cursor_begin(diagnostics->text, diagnostics->length);
+  strut_cursor cursor = {0};
   if (diagnostics->count)
     qsort(diagnostics->items, diagnostics->count, sizeof *diagnostics->items, compare);
   size_t shown = diagnostics->count < most ? diagnostics->count : most;
-  for (size_t i = 0; i < shown; i++)
-    render_one(&out, diagnostics, "error", &diagnostics->items[i], &cursor);
+  for (size_t i = 0; i < shown; i++) {
+    const strut_diagnostic *item = &diagnostics->items[i];
+    if (!i || item->place.file != item[-1].place.file)
+      cursor = cursor_in(text_of(diagnostics, item->place));
+    render_one(&out, diagnostics, "error", item, &cursor);
+  }
   size_t left = diagnostics->count - shown + diagnostics->unstored;
   if (left) append_text(&out, "... and %zu more\n", left);
   const char *text =
@@ -265,7 +322,7 @@ const char *strut_diagnostics_render(strut_diagnostics *diagnostics, size_t most
 const char *strut_diagnostics_render_notes(strut_diagnostics *diagnostics) {
   text_builder out = {0};
   for (size_t i = 0; i < diagnostics->note_count; i++) {
-    strut_cursor cursor = strut_cursor_begin(diagnostics->text, diagnostics->length);
+    strut_cursor cursor = cursor_in(text_of(diagnostics, diagnostics->notes[i].place));
     render_one(&out, diagnostics, "note", &diagnostics->notes[i], &cursor);
   }
   const char *text =
@@ -278,6 +335,7 @@ const char *strut_diagnostics_render_notes(strut_diagnostics *diagnostics) {
 void strut_diagnostics_free(strut_diagnostics *diagnostics) {
   strut_release(diagnostics->items);
   strut_release(diagnostics->notes);
+  for (size_t i = 0; i < diagnostics->used_count; i++) strut_release(diagnostics->used[i].owned);
   strut_arena_free(&diagnostics->arena);
   *diagnostics = (strut_diagnostics){0};
 }

@@ -12,15 +12,42 @@
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
 
-/** A stretch of one line, counted from 1; columns are code points. Line 0: the file as a whole. */
+/**
+ * A stretch of one line, counted from 1; columns are code points. Line 0: the file as a whole. `file`: 0
+ * is the text under examination, others are those that it uses.
+ */
 typedef struct strut_place {
-  uint32_t line, column, length;
+  uint32_t line, column, length : 24, file : 8;
 } strut_place;
+
+/** Most files that a text may use. */
+enum { STRUT_USED_FILES_MOST = 255, STRUT_PLACE_LENGTH_MOST = 0xFFFFFF };
+
+/** A place in the text under examination. */
+static inline strut_place strut_place_at(uint32_t line, uint32_t column, uint32_t length) {
+  return (strut_place){
+      .line = line,
+      .column = column,
+      .length = (length < STRUT_PLACE_LENGTH_MOST ? length : 0xFFFFFFu) & 0xFFFFFFu,
+      .file = 0};
+}
+
+/** A file that the text under examination uses. */
+typedef struct strut_used_file {
+  const char *file, *text;
+  size_t length;
+  char *owned; /* NULL, or the block that holds the text */
+} strut_used_file;
+
+/** Most notes of one message. */
+enum { STRUT_MESSAGE_NOTES = 2 };
 
 typedef struct strut_diagnostic {
   strut_place place;
   uint32_t order;      /* of arrival */
   const char *message; /* one sentence without a full stop */
+  strut_place note_place[STRUT_MESSAGE_NOTES];
+  const char *note[STRUT_MESSAGE_NOTES]; /* what else there is to say, elsewhere; NULL: nothing */
 } strut_diagnostic;
 
 /** Most messages that are stored; later ones are only counted. */
@@ -38,6 +65,8 @@ typedef struct strut_diagnostics {
   size_t unstored;    /* messages beyond STRUT_DIAGNOSTICS_MOST, or lost because memory was out */
   bool out_of_memory; /* a message was lost */
   strut_arena arena;  /* owns the messages */
+  size_t used_count;
+  strut_used_file *used; /* (used_count) file i + 1 of places; their texts are not owned */
 } strut_diagnostics;
 
 /** True once further messages are only counted, so that their texts need not be formatted. */
@@ -53,6 +82,17 @@ STRUT_API void strut_diagnostics_source(strut_diagnostics *diagnostics, const ch
  */
 STRUT_API void strut_diagnose(strut_diagnostics *diagnostics, strut_place place, const char *format,
                               ...) __attribute__((format(printf, 3, 4)));
+/**
+ * Adds a note to the message that was stored as number `item` (count - 1 is the latest), which shows it
+ * with its line. More than STRUT_MESSAGE_NOTES are left out.
+ */
+STRUT_API void strut_diagnose_note(strut_diagnostics *diagnostics, size_t item, strut_place place,
+                                   const char *format, ...) __attribute__((format(printf, 4, 5)));
+/** Enters a used file, whose texts must outlive this; its number for places, or 0: there are too many. */
+STRUT_API unsigned strut_diagnostics_use(strut_diagnostics *diagnostics, const char *file,
+                                         const char *text, size_t length);
+/** Lets the used file of that number own its text, a block of strut_allocate, and copies its name. */
+STRUT_API void strut_diagnostics_own(strut_diagnostics *diagnostics, unsigned number, char *text);
 /** Adds a note (not an error) unless the place already has it. Lost if memory is out. */
 STRUT_API void strut_note(strut_diagnostics *diagnostics, strut_place place, const char *format,
                           ...) __attribute__((format(printf, 3, 4)));

@@ -175,8 +175,8 @@ typedef struct reader {
 
 static strut_place place_of(const yaml_event_t *event) {
   size_t length = event->end_mark.index - event->start_mark.index;
-  return (strut_place){(uint32_t)event->start_mark.line + 1, (uint32_t)event->start_mark.column + 1,
-                       (uint32_t)length};
+  return strut_place_at((uint32_t)event->start_mark.line + 1,
+                        (uint32_t)event->start_mark.column + 1, (uint32_t)length);
 }
 
 /* Functions below return false if reading must stop. */
@@ -205,7 +205,7 @@ static void skip_anchor(reader *r, const yaml_event_t *event, strut_place *place
   size_t end = event->end_mark.index;
   place->line = at->line;
   place->column = at->column;
-  place->length = end > at->index ? (uint32_t)(end - at->index) : 0;
+  place->length = strut_place_at(0, 0, end > at->index ? (uint32_t)(end - at->index) : 0).length;
 }
 
 static bool over_limit(reader *r, strut_place place, const char *what, uint64_t most) {
@@ -378,7 +378,7 @@ static bool close_collection(reader *r, const yaml_event_t *event) {
   size_t line = event->end_mark.line + 1, column = event->end_mark.column + 1;
   if (event->end_mark.index > event->start_mark.index && line == node->place.line &&
       column > node->place.column)
-    node->place.length = (uint32_t)column - node->place.column;
+    node->place.length = strut_place_at(0, 0, (uint32_t)column - node->place.column).length;
   if (node->kind == STRUT_TREE_MAP && !check_keys(node, &r->keys, r->diagnostics))
     return out_of_memory(r);
   if (closed.anchor) {
@@ -412,7 +412,7 @@ static bool check_rest(reader *r, const yaml_event_t *event) {
   }
   if (at->offset >= at->length) return true;
   bool next = at->length - at->offset >= 3 && memcmp(at->text + at->offset, "---", 3) == 0;
-  strut_place place = {at->line, at->column, next ? 3 : 1};
+  strut_place place = strut_place_at(at->line, at->column, next ? 3 : 1);
   strut_diagnose(
       r->diagnostics, place,
       next ? "a second document; a file holds one" : "text after the end of the document");
@@ -424,7 +424,7 @@ static bool read_end(reader *r, const yaml_event_t *event) {
   r->ended = true;
   if (root && (root->kind != STRUT_TREE_SCALAR || root->quoted || root->text[0] != '\0'))
     return event->type != YAML_DOCUMENT_END_EVENT || check_rest(r, event);
-  strut_diagnose(r->diagnostics, (strut_place){0, 0, 0}, "the file is empty");
+  strut_diagnose(r->diagnostics, (strut_place){0}, "the file is empty");
   return false;
 }
 

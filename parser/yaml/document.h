@@ -25,9 +25,10 @@ typedef enum strut_tree_kind { STRUT_TREE_SCALAR, STRUT_TREE_LIST, STRUT_TREE_MA
 /** One value: 40 bytes. A map's children alternate key, value; keys are scalars. */
 typedef struct strut_tree {
   strut_place place;               /* of its first character (an alias: of the alias), its length */
-  uint32_t count : 29;             /* list: items; map: pairs */
+  uint32_t count : 28;             /* list: items; map: pairs */
   uint32_t kind : 2;               /* a strut_tree_kind */
   bool quoted : 1;                 /* scalar: written in quotes or as a block */
+  bool placed : 1;                 /* it belongs to a copy of a part, see parser/read/copies.h */
   const char *text;                /* scalar: NUL-terminated, no NUL inside, "" for nothing */
   struct strut_tree *first, *next; /* first child; next sibling */
 } strut_tree;

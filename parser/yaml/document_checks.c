@@ -9,7 +9,7 @@
 enum { REPORT_MOST = 10 };
 
 static strut_place place_of(const strut_cursor *cursor) {
-  return (strut_place){cursor->line, cursor->column, 1};
+  return strut_place_at(cursor->line, cursor->column, 1);
 }
 
 /* Byte offset of the first character at or after `at` that is not allowed, or the length. */
@@ -97,13 +97,12 @@ bool strut_document_scan(strut_diagnostics *diagnostics) {
   const char *text = diagnostics->text;
   size_t length = diagnostics->length;
   if (length > STRUT_TEXT_MOST) {
-    strut_diagnose(diagnostics, (strut_place){0, 0, 0},
-                   "the text has %zu MiB, at most %zu are read", length >> 20,
-                   STRUT_TEXT_MOST >> 20);
+    strut_diagnose(diagnostics, (strut_place){0}, "the text has %zu MiB, at most %zu are read",
+                   length >> 20, STRUT_TEXT_MOST >> 20);
     return false;
   }
   if (length >= 2 && (memcmp(text, "\xFF\xFE", 2) == 0 || memcmp(text, "\xFE\xFF", 2) == 0)) {
-    strut_diagnose(diagnostics, (strut_place){0, 0, 0}, "the file is UTF-16; save it as UTF-8");
+    strut_diagnose(diagnostics, (strut_place){0}, "the file is UTF-16; save it as UTF-8");
     return false;
   }
   return scan_characters(diagnostics) && scan_directives(diagnostics);
@@ -180,7 +179,7 @@ static strut_place place_at(const strut_diagnostics *diagnostics, yaml_mark_t ma
   strut_cursor cursor = strut_cursor_begin(diagnostics->text, diagnostics->length);
   strut_cursor_to_index(&cursor, mark.index);
   *here = cursor.offset < cursor.length ? cursor.text[cursor.offset] : '\0';
-  return (strut_place){(uint32_t)mark.line + 1, (uint32_t)mark.column + 1, 1};
+  return strut_place_at((uint32_t)mark.line + 1, (uint32_t)mark.column + 1, 1);
 }
 
 /* "found character that cannot start any token" */

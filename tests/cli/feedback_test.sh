@@ -3,12 +3,6 @@
 # Sensors and signals that follow them, against closed forms.
 . "$(dirname "$0")/lib.sh"
 
-# near FILTER EXPECTED TOLERANCE: the JSON in out through jq, and a number that jq computes.
-near() {
-  jq -e "($1) as \$got | ($2) as \$want | (\$got - \$want | fabs) <= $3" out >jq.out 2>&1 ||
-    fail "$1 is $(jq -c "$1" out 2>&1), expected $(jq -n "$2") within $3"
-}
-
 # A mass under PD control, -k (x - 1 m) - c v by a load: the damped oscillator with the poles
 # -c/2m +- i sqrt(k/m - (c/2m)^2), by every method at its order.
 cat >pd.yaml <<'END'

@@ -14,7 +14,7 @@
 #include "parser/yaml/diagnostics.h"
 
 static strut_place at(uint32_t line, uint32_t column, uint32_t length) {
-  return (strut_place){line, column, length};
+  return strut_place_at(line, column, length);
 }
 
 static strut_diagnostics about(const char *text) {

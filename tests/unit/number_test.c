@@ -227,7 +227,7 @@ static void locale_does_not_matter(void **state) {
     comma = strut_number_read("1,5", 3, &got);
     quantity = strut_expression_evaluate("1234567.891011121314151617 mm", NULL, &q, &error) &&
                q.value == 1234.567891011121314151617;
-    strut_diagnose(&diagnostics, (strut_place){0, 0, 0}, "%.1f", 0.5);
+    strut_diagnose(&diagnostics, (strut_place){0}, "%.1f", 0.5);
     shown = strcmp(diagnostics.items[0].message, "0.5") == 0;
     strut_diagnostics_free(&diagnostics);
   }

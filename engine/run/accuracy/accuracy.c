@@ -119,7 +119,7 @@ strut_status strut_simulate_accurately(const strut_model *model, const strut_exp
       experiment->quantity_count == 0; /* the only quantity that these two strategies check */
   /* states that they know nothing of */
   if (model->plan & STRUT_TERM_MEMORY) velocity = false;
-  if (model->feedback.state_count || model->feedback.sampled_count) velocity = false;
+  if (strut_feedback_remembers(&model->feedback)) velocity = false;
   if (!status && velocity) status = strut_accuracy_try_midpoint(&a, &done);
   if (!status && !done && velocity && experiment->periods > 0.0 && !a.single_method)
     status = strut_accuracy_try_orbit(&a, &done);

@@ -27,7 +27,7 @@ typedef struct strut_sweep_plan {
   const strut_study *study;
   strut_sweep_scenes scenes;
   int64_t points;
-  unsigned keep; /* bits 1 << strut_keep */
+  uint64_t keep; /* bits 1 << strut_keep */
   size_t quantity_count;
   const char **quantities; /* (quantity_count) names of the measured quantities that are kept */
   bool check, flips;       /* each point is run twice; and outcomes are compared */
@@ -36,6 +36,9 @@ typedef struct strut_sweep_plan {
   size_t column_count, column_capacity;
   strut_slot_column *columns; /* of the axes, of what is kept, of the check */
   strut_arena arena;
+  /* names in the first point's scene; other points may have others, and leave these cells empty */
+  size_t contact_count, node_count, member_count;
+  const char **contacts, **nodes, **members;
 } strut_sweep_plan;
 
 /**

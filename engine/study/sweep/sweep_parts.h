@@ -24,8 +24,22 @@ typedef struct strut_row_buffer {
 /** Appends the kept values of a run; summary NULL: all missing. outcome may be "". */
 void strut_sweep_fill(const strut_sweep_plan *plan, const strut_setup *setup,
                       const strut_summary *summary, const char *outcome, strut_row_buffer *cells);
+/** Appends the counts of a point's structure and its mass. */
+void strut_sweep_fill_counts(const strut_sweep_plan *plan, const strut_model *model,
+                             strut_row_buffer *cells);
 void strut_sweep_number(strut_row_buffer *cells, double value);
 void strut_sweep_word(strut_row_buffer *cells, const char *word);
+
+/** Adds a column to a plan; one with the name of an axis gets the prefix "run_". False: no memory. */
+bool strut_sweep_add_column(strut_sweep_plan *plan, const char *prefix, const char *name,
+                            const char *unit, bool word);
+/** Appends the positions (2 node_count) of the nodes that the columns name; NULL: missing. */
+void strut_sweep_fill_positions(const strut_sweep_plan *plan, const strut_scene *scene,
+                                const double *positions, strut_row_buffer *cells);
+/** Index in the scene of what was the i-th of `count` names; -1: there is none of that name. */
+int64_t strut_sweep_named(const char *name, size_t i, size_t count,
+                          const char *(*name_at)(const strut_scene *scene, size_t i),
+                          const strut_scene *scene);
 
 /* sweep_point.c */
 
@@ -69,6 +83,20 @@ bool strut_sweep_job_take(const strut_sweep_worker *worker, strut_sweep_job *job
 strut_status strut_sweep_job_compile(strut_sweep_job *job);
 /** All runs that a waiting job wants, one after the other. */
 void strut_sweep_job_finish(const strut_sweep_worker *worker, strut_sweep_job *job);
+
+/* statics_point.c */
+
+/** Most columns that strut_statics_columns adds, apart from those of nodes and members. */
+enum { STRUT_STATICS_COLUMNS = 16 + 3 * STRUT_STUDY_MOST_LOWEST };
+/** What is usual to keep of a computation that is no run. */
+uint64_t strut_statics_usual(strut_compute compute);
+/** Adds the columns of what is computed at rest. False: no memory. */
+bool strut_statics_columns(strut_sweep_plan *plan, const strut_scene *scene);
+/** STRUT_BAD_SCENE where the study asks for what the scene does not have. */
+strut_status strut_statics_check(const strut_study *study, const strut_scene *scene,
+                                 strut_error *error);
+/** Computes what the study wants of a point at rest and appends its cells. */
+strut_status strut_statics_point(const strut_sweep_worker *worker, strut_sweep_job *job);
 
 /* sweep_lanes.c */
 

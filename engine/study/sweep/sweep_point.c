@@ -83,6 +83,8 @@ bool strut_sweep_job_begin(const strut_sweep_worker *w, int64_t point, strut_swe
   strut_status status =
       plan->scenes.setup(plan->scenes.context, cells->values, &job->setup, &job->error);
   if (status) return finish_point(w, job, status);
+  if (plan->study->compute != STRUT_COMPUTE_RUN)
+    return finish_with_scene(w, job, strut_statics_point(w, job));
   status = strut_equilibrium_cache_resolve(w->standing, &job->setup, &job->error);
   if (!status) status = begin_record(w, job);
   if (status) return finish_with_scene(w, job, status);
@@ -95,7 +97,7 @@ static strut_status name_outcome(const strut_sweep_worker *w, strut_sweep_job *j
                                  const strut_summary *summary, char *name) {
   const strut_scene *scene = &job->setup.scene;
   int32_t index = -1;
-  if (!(w->plan->keep >> STRUT_KEEP_OUTCOME & 1u) || !scene->configuration_count) return STRUT_OK;
+  if (!(w->plan->keep >> STRUT_KEEP_OUTCOME & 1) || !scene->configuration_count) return STRUT_OK;
   strut_status status = strut_equilibrium_cache_nearest(w->standing, &job->setup,
                                                         summary->positions, &index, &job->error);
   snprintf(name, STRUT_SLOT_WORD, "%s", index >= 0 ? scene->configurations[index].name : "other");
@@ -162,6 +164,7 @@ static bool finish_second_run(const strut_sweep_worker *w, strut_sweep_job *job,
 bool strut_sweep_job_take(const strut_sweep_worker *w, strut_sweep_job *job, strut_status status,
                           strut_summary *summary, const strut_error *error) {
   if (error != &job->error) job->error = *error;
+  if (!job->second) strut_sweep_fill_counts(w->plan, job->model, &job->cells);
   strut_model_free(job->model);
   job->model = NULL;
   bool more = job->second ? finish_second_run(w, job, status, summary)

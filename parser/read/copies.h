@@ -1,0 +1,166 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Copies of parts: where they lie, which names and parameters they see. Internal to parser/.
+ *
+ * A placed part becomes entries of the scene's own mappings: `cell.3.foot` among the nodes, and so on. An
+ * entry shares its text with the part, so that every message finds it there, and knows its copy. While a
+ * thing of a copy is read, the copy is the reader's *scope*: names are looked up in it, parameters too,
+ * and what has a direction or a length is turned and scaled with it.
+ */
+#ifndef STRUT_PARSER_READ_COPIES_H
+#define STRUT_PARSER_READ_COPIES_H
+
+#include "parser/read/reader.h"
+
+/** From a copy's coordinates to the scene's: x' = at + scale * axes x. */
+typedef struct strut_frame {
+  double axes[2][2]; /* a rotation, or one with a flip; its columns are the images of x and y */
+  double scale, at[2];
+} strut_frame;
+
+STRUT_API extern const strut_frame strut_frame_of_scene;
+/** The frame within another one. */
+strut_frame strut_frame_within(const strut_frame *outer, const strut_frame *inner);
+void strut_frame_point(const strut_frame *frame,
+                       double point[2]); /* of lengths that are scaled already */
+void strut_frame_vector(const strut_frame *frame, double vector[2]);
+bool strut_frame_flips(const strut_frame *frame);
+
+/** A part as the file describes it. */
+typedef struct strut_part {
+  const char *name;
+  const strut_tree *key;
+  strut_copy *home;          /* the copy within whose part it is described; NULL: the scene */
+  strut_fields fields;       /* of the section part */
+  bool closed;               /* from another file: it sees no names of the scene */
+  bool broken, placed, open; /* open: it is being copied */
+} strut_part;
+
+/** The parts that a scope describes. */
+typedef struct strut_part_list {
+  size_t count;
+  strut_part *part;
+} strut_part_list;
+
+/** An entry of `place`. */
+typedef struct strut_placement {
+  const strut_tree *key;
+  const char *name; /* in full: "a.2.wedge" */
+  strut_part *part;
+  int numbers; /* of a copy: 0, 1 or 2 */
+  int64_t count[2];
+} strut_placement;
+
+typedef enum strut_scope_kind {
+  STRUT_SCOPE_COPY,  /* what stands in a part */
+  STRUT_SCOPE_PLACE, /* the keys of a placement, where i and j are the copy's numbers */
+  STRUT_SCOPE_LINK /* what stands in `next`, with names of the copy and, as next.NAME, of the next one */
+} strut_scope_kind;
+
+struct strut_copy {
+  strut_scope_kind kind;
+  const strut_placement *placement;
+  strut_copy *outer;  /* the scope in which the placement stands; NULL: the scene */
+  strut_copy *home;   /* where other names are looked up; NULL: the scene */
+  bool closed;        /* they are not */
+  const char *prefix; /* "cell.3." */
+  size_t prefix_length;
+  int64_t number[2];
+  int numbers; /* PLACE: how many of them are known */
+  size_t parameter_count;
+  strut_parameter_state *parameters;
+  strut_part_list parts;
+  strut_frame frame;
+  const strut_copy *next;  /* LINK */
+  const strut_tree *twist; /* LINK that closes: {own: other}, or NULL */
+};
+
+/** An entry, or a value, that belongs to a scope of its own. */
+typedef struct strut_placed_tree {
+  strut_tree tree; /* `placed` is set */
+  strut_copy *scope;
+} strut_placed_tree;
+
+/** The scope of a placed tree; else the reader's. */
+strut_copy *strut_scope_of(const strut_reader *reader, const strut_tree *tree);
+
+/** The name in the scene of what `text` means in a scope; NULL: there is no such name. */
+enum { STRUT_LONGEST_NAME = 255 };
+typedef struct strut_full_name {
+  char text[2 * STRUT_LONGEST_NAME + 2];
+} strut_full_name;
+
+/** The placement of that full name, or NULL. */
+const strut_placement *strut_placement_find(const strut_reader *reader, const char *name);
+/** Does a full name lead past the ports of a copy that is not around the scope? */
+bool strut_name_is_hidden(const strut_reader *reader, const strut_copy *scope, const char *name);
+/** The part whose ports hide the node that a value names, or NULL. */
+const char *strut_hiding_part(const strut_reader *reader, const strut_tree *value);
+/** `last` in place of a number becomes that number. False: the name is too long. */
+bool strut_name_resolve_last(const strut_reader *reader, const char *name, strut_full_name *full);
+/** Does `name` fit a pattern in which * stands for one part between dots? */
+bool strut_name_matches(const char *pattern, const char *name);
+
+/** Does the scalar hold a *? */
+bool strut_is_pattern(const strut_tree *name);
+/** The node after `node` (-1: the first) whose name fits the pattern, or -1. */
+int32_t strut_next_match(const strut_reader *reader, const strut_tree *pattern, int32_t node);
+
+/** The notes of messages about copies, once all copies are read. */
+void strut_note_copies(strut_reader *reader);
+
+/** Reads `place` and makes the entries of all copies, in place of the scene's own ones. */
+void strut_read_parts(strut_reader *reader);
+/** Unites the nodes that `merge` names, once their positions are read. */
+void strut_merge_nodes(strut_reader *reader);
+
+/** Nodes that become one: by name in a scope, or all that touch within one. */
+typedef struct strut_merger {
+  strut_copy *scope;
+  const strut_tree *a, *b; /* names; NULL: all that touch */
+  const strut_tree *place; /* of touching */
+  struct strut_merger *next;
+} strut_merger;
+
+/**
+ * The scene's own entries of a key without those that name entries of copies, which are laid over these.
+ * A new chain; *count: their number, and *placed_count: that of the copies' entries that stay.
+ */
+strut_tree *strut_lay_over_copies(strut_reader *reader, const strut_tree *own, strut_tree **placed,
+                                  size_t *placed_count, uint32_t *count, int key);
+/** The section of the things in a mapping of the scene, or STRUT_SECTION_COUNT. */
+strut_section strut_section_of_things(int scene_key);
+
+void strut_copies_free(strut_reader *reader);
+
+/** A name by which a node of a copy is seen from outside. */
+typedef struct strut_port {
+  strut_copy *scope;
+  const strut_tree *key; /* and behind it the name within */
+  int32_t node;          /* once it is known, else -1 */
+  struct strut_port *next;
+} strut_port;
+
+/** Things of the reader that only scenes with parts have. */
+struct strut_copies {
+  strut_name_map placement_names;
+  size_t placement_count, placement_capacity;
+  strut_placement **placements;
+  strut_part_list parts; /* of the scene */
+  strut_merger *mergers, **mergers_end;
+  strut_name_map node_entries; /* names of nodes, for onto */
+  size_t node_count, node_capacity;
+  const strut_tree **nodes;
+  size_t things;                     /* entries so far */
+  int depth;                         /* parts within parts */
+  const char *chain[17];             /* their names */
+  const strut_tree *contacts;        /* the entries of the copies' contacts, or NULL */
+  struct strut_copied_error *errors; /* see copies.c */
+  strut_port *ports, **ports_end;    /* of inner copies before those around them */
+  strut_name_map ported; /* copies whose part has ports, by their prefix without the dot */
+  size_t ported_count, ported_capacity;
+  const strut_copy **ported_copies;
+  bool incomplete; /* some copies could not be made */
+};
+
+#endif

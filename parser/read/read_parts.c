@@ -1,0 +1,974 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Parts and their placement: every copy becomes entries of the scene's own mappings. See copies.h.
+ *
+ * An entry of a copy has a name and a head of its own and shares all below with the part, so that a copy
+ * costs little. Sizes are known before anything is copied: the copies of the first copy are counted all
+ * the way down, and counts that are too large are refused at their number.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/base/memory_limit.h"
+#include "engine/base/trig.h"
+#include "parser/read/copies.h"
+
+enum { DEEPEST = 16 };
+/* Entries of all copies, and copies of one placement. */
+static const double MOST_THINGS = 1e7, MOST_COPIES = 2e6;
+
+/* The keys of a part, or of `next`, whose entries are copied, and the scene's keys where they go. */
+static int scene_key(int key) {
+  const strut_key *k = strut_key_at(key);
+  if (k->type != STRUT_TYPE_THINGS) return -1;
+  int of_scene = strut_key_find(STRUT_SECTION_SCENE, k->name);
+  bool own = of_scene == STRUT_KEY_SCENE_PARAMETERS || of_scene == STRUT_KEY_SCENE_PARTS ||
+             of_scene == STRUT_KEY_SCENE_PLACE;
+  return own ? -1 : of_scene;
+}
+
+/* Entries of the copies for one key of the scene. */
+typedef struct entry_list {
+  strut_tree *first, *last; /* the last value */
+  size_t count;
+} entry_list;
+
+typedef struct expansion {
+  strut_reader *reader;
+  struct strut_copies *copies;
+  entry_list list[STRUT_MOST_KEYS]; /* of the keys of the scene */
+  entry_list contacts;
+  bool weighing; /* nothing is copied yet */
+  bool stopped;
+} expansion;
+
+/* ---- parts ---- */
+
+static const char *part_name(const void *context, size_t i) {
+  const strut_part_list *list = context;
+  return i < list->count ? list->part[i].name : NULL;
+}
+
+static void read_part_list(strut_reader *reader, const strut_slot *slot, strut_copy *home,
+                           strut_part_list *list) {
+  const strut_tree *map = slot->state == STRUT_GIVEN ? slot->value : NULL;
+  *list = (strut_part_list){0};
+  if (!map) return;
+  list->part = strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *list->part);
+  for (const strut_tree *key = map->first; key && list->part; key = key->next->next) {
+    strut_part *part = &list->part[list->count++];
+    *part = (strut_part){.name = key->text, .key = key, .home = home};
+    strut_owner owner = {"part", key->text};
+    bool fine = strut_read_name(reader, key, "part");
+    strut_read_fields(reader, STRUT_SECTION_PART, key->next, owner, &part->fields);
+    const strut_slot *use = strut_slot_of(&part->fields, STRUT_KEY_PART_USE);
+    const strut_slot *isolated = strut_slot_of(&part->fields, STRUT_KEY_PART_ISOLATED);
+    part->closed = isolated->state == STRUT_GIVEN && isolated->word == 1;
+    part->broken = !fine || part->fields.broken || use->key; /* a file that could not be read */
+  }
+}
+
+/* The part of that name which a scope sees. */
+static strut_part *find_part(strut_reader *reader, const strut_copy *scope, const char *name,
+                             const strut_part_list **nearest) {
+  for (;; scope = scope->home) {
+    const strut_part_list *list = scope ? &scope->parts : &reader->copies->parts;
+    for (size_t i = 0; i < list->count; i++)
+      if (strcmp(list->part[i].name, name) == 0) return &list->part[i];
+    if (list->count || !scope) *nearest = list;
+    if (!scope || scope->closed) return NULL;
+  }
+}
+
+static strut_part *read_part_name(strut_reader *reader, const strut_copy *scope,
+                                  const strut_slot *slot, strut_owner owner) {
+  const strut_part_list *nearest = &reader->copies->parts;
+  if (slot->state != STRUT_GIVEN) return NULL;
+  strut_part *part = find_part(reader, scope, slot->value->text, &nearest);
+  if (part) return part;
+  strut_report_error(reader, slot->value->place, "unknown part '%s' in 'part' of %s%s",
+                     strut_sanitised_text(reader, slot->value->text),
+                     strut_owner_text(reader, owner),
+                     strut_hint(reader, slot->value->text, part_name, nearest, nearest->count));
+  return NULL;
+}
+
+/* ---- placements ---- */
+
+/* What `repeat` says. */
+typedef struct repetition {
+  int numbers; /* 0: no repetition */
+  int64_t count[2];
+  double step[2][2], turn, scale, about[2];
+  const strut_tree *next[2], *twist;
+  bool closed;
+} repetition;
+
+static bool read_count(strut_reader *reader, const strut_tree *value, strut_owner owner,
+                       int64_t *count) {
+  double number;
+  if (!strut_read_number(reader, value, "count", owner, STRUT_DIM_NONE, STRUT_RANGE_ANY, &number))
+    return false;
+  if (number >= 1.0 && number <= MOST_COPIES && number == floor(number)) {
+    *count = (int64_t)number;
+    return true;
+  }
+  strut_report_error(
+      reader, value->place,
+      "the number of copies of %s must be a whole number from 1 to %.0f, found %.15g",
+      strut_owner_text(reader, owner), MOST_COPIES, number);
+  return false;
+}
+
+static bool refuse_form(strut_reader *reader, int key, const strut_tree *value, strut_owner owner) {
+  char expected[200];
+  strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s",
+                     strut_key_expected(key, expected, sizeof expected), strut_key_at(key)->name,
+                     strut_owner_text(reader, owner), strut_found(reader, value));
+  return false;
+}
+
+/* A number, or [n, m]. */
+static bool read_counts(strut_reader *reader, const strut_tree *value, strut_owner owner,
+                        repetition *r) {
+  r->numbers = 1;
+  r->count[1] = 1;
+  if (value->kind == STRUT_TREE_SCALAR) return read_count(reader, value, owner, &r->count[0]);
+  if (value->kind != STRUT_TREE_LIST || value->count != 2)
+    return refuse_form(reader, STRUT_KEY_REPEAT_COUNT, value, owner);
+  r->numbers = 2;
+  bool fine = read_count(reader, value->first, owner, &r->count[0]);
+  return read_count(reader, value->first->next, owner, &r->count[1]) && fine;
+}
+
+static bool read_steps(strut_reader *reader, const strut_slot *slot, strut_owner owner,
+                       repetition *r) {
+  const strut_tree *value = slot->value;
+  if (slot->state != STRUT_GIVEN) return slot->state == STRUT_ABSENT;
+  bool lists =
+      value->kind == STRUT_TREE_LIST && value->count == 2 && value->first->kind == STRUT_TREE_LIST;
+  if (lists != (r->numbers == 2)) {
+    strut_report_error(reader, value->place,
+                       r->numbers == 2
+                           ? "a lattice has two steps, as in [[1 m, 0], [0, 1 m]], found %s"
+                           : "one count has one step, as in [1 m, 0], found %s",
+                       strut_found(reader, value));
+    return false;
+  }
+  const strut_tree *item = lists ? value->first : value;
+  bool fine = true;
+  for (int k = 0; k < r->numbers; k++, item = item->next)
+    fine = strut_read_pair(reader, item, "step", owner, STRUT_DIM_LENGTH, r->step[k]) && fine;
+  return fine;
+}
+
+static bool read_next(strut_reader *reader, const strut_slot *slot, strut_owner owner,
+                      repetition *r) {
+  const strut_tree *value = slot->value;
+  if (slot->state != STRUT_GIVEN) return slot->state == STRUT_ABSENT;
+  bool list = value->kind == STRUT_TREE_LIST && value->count == 2;
+  if (list != (r->numbers == 2) || (!list && value->kind != STRUT_TREE_MAP))
+    return refuse_form(reader, STRUT_KEY_REPEAT_NEXT, value, owner);
+  r->next[0] = list ? value->first : value;
+  r->next[1] = list ? value->first->next : NULL;
+  return true;
+}
+
+static bool read_closed(strut_reader *reader, const strut_slot *slot, strut_owner owner,
+                        repetition *r) {
+  const strut_tree *value = slot->value;
+  if (slot->state != STRUT_GIVEN) return slot->state == STRUT_ABSENT;
+  int word = value->kind == STRUT_TREE_SCALAR ? strut_switch_find(value->text) : 1;
+  r->closed = word == 1;
+  r->twist = value->kind == STRUT_TREE_MAP ? value : NULL;
+  if (word < 0 || value->kind == STRUT_TREE_LIST)
+    return refuse_form(reader, STRUT_KEY_REPEAT_CLOSED, value, owner);
+  if (!r->closed || (r->numbers == 1 && r->next[0])) return true;
+  strut_report_error(reader, slot->key->place,
+                     r->numbers > 1 ? "a lattice cannot be closed; close a ring and repeat the ring"
+                                    : "'closed' needs 'next', which says what ties a copy to the "
+                                      "next one");
+  return false;
+}
+
+static bool read_repeat(strut_reader *reader, const strut_slot *slot, const char *name,
+                        repetition *r) {
+  char text[STRUT_LONGEST_NAME + 40];
+  *r = (repetition){.scale = 1.0, .count = {1, 1}};
+  if (slot->state != STRUT_GIVEN) return slot->state == STRUT_ABSENT;
+  snprintf(text, sizeof text, "'repeat' of '%s'", name);
+  strut_owner owner = {text, NULL};
+  const strut_tree *value = slot->value;
+  if (value->kind != STRUT_TREE_MAP) return read_counts(reader, value, owner, r);
+  strut_fields fields;
+  strut_read_fields(reader, STRUT_SECTION_REPEAT, value, owner, &fields);
+  strut_require(reader, &fields, owner, slot->key->place);
+  const strut_slot *count = strut_slot_of(&fields, STRUT_KEY_REPEAT_COUNT);
+  const strut_slot *turn = strut_slot_of(&fields, STRUT_KEY_REPEAT_TURN);
+  const strut_slot *scale = strut_slot_of(&fields, STRUT_KEY_REPEAT_SCALE);
+  const strut_slot *about = strut_slot_of(&fields, STRUT_KEY_REPEAT_ABOUT);
+  if (fields.broken || count->state != STRUT_GIVEN) return false;
+  if (!read_counts(reader, count->value, owner, r)) return false;
+  bool fine = read_steps(reader, strut_slot_of(&fields, STRUT_KEY_REPEAT_STEP), owner, r);
+  fine = read_next(reader, strut_slot_of(&fields, STRUT_KEY_REPEAT_NEXT), owner, r) && fine;
+  fine = read_closed(reader, strut_slot_of(&fields, STRUT_KEY_REPEAT_CLOSED), owner, r) && fine;
+  if (turn->state == STRUT_GIVEN) r->turn = turn->number[0];
+  if (scale->state == STRUT_GIVEN) r->scale = scale->number[0];
+  if (about->state == STRUT_GIVEN) memcpy(r->about, about->number, sizeof r->about);
+  const strut_slot *odd = turn->key ? turn : scale->key ? scale : about;
+  if (r->numbers < 2 || !odd->key) return fine;
+  strut_report_error(
+      reader, odd->key->place,
+      "a lattice has steps only, no '%s'; place a row that turns, and repeat the row",
+      odd->key->text);
+  return false;
+}
+
+static void set_turn(strut_frame *f, double angle) {
+  double s, c;
+  strut_sincos_turns(angle / STRUT_TAU, &s, &c);
+  f->axes[0][0] = c, f->axes[0][1] = -s;
+  f->axes[1][0] = s, f->axes[1][1] = c;
+}
+
+/* S^k, or i times one step and j times the other. */
+static strut_frame repeated_frame(const repetition *r, const int64_t number[2]) {
+  strut_frame f = strut_frame_of_scene, once = strut_frame_of_scene;
+  double k = (double)number[0];
+  if (r->numbers == 2 || (r->turn == 0.0 && r->scale == 1.0)) {
+    for (int c = 0; c < 2; c++)
+      f.at[c] = k * r->step[0][c] + (r->numbers == 2 ? (double)number[1] * r->step[1][c] : 0.0);
+    return f;
+  }
+  /* One application moves the fixed point of x -> about + step + s R (x - about) nowhere. */
+  double s = 1.0;
+  for (int64_t n = 0; n < number[0]; n++) s *= r->scale;
+  set_turn(&once, r->turn);
+  set_turn(&f, k * r->turn);
+  double a = 1.0 - r->scale * once.axes[0][0], b = r->scale * once.axes[1][0];
+  double det = a * a + b * b; /* of 1 - s R */
+  double fixed[2] = {r->about[0] + (a * r->step[0][0] - b * r->step[0][1]) / det,
+                     r->about[1] + (b * r->step[0][0] + a * r->step[0][1]) / det};
+  double away[2] = {s * fixed[0], s * fixed[1]};
+  f.scale = s;
+  strut_frame_vector(&f, away);
+  for (int c = 0; c < 2; c++) f.at[c] = fixed[c] - away[c];
+  return f;
+}
+
+/* ---- scopes of copies ---- */
+
+static strut_copy *new_scope(expansion *e, strut_scope_kind kind, const strut_placement *p,
+                             strut_copy *outer) {
+  strut_copy *copy = strut_reader_allocate(e->reader, &e->reader->scratch, 1, sizeof *copy);
+  if (!copy) {
+    e->stopped = true;
+    return NULL;
+  }
+  *copy = (strut_copy){.kind = kind,
+                       .placement = p,
+                       .outer = outer,
+                       .home = outer,
+                       .prefix = "",
+                       .frame = strut_frame_of_scene};
+  return copy;
+}
+
+/* "cell.3." */
+static const char *make_prefix(expansion *e, const strut_placement *p, const int64_t number[2]) {
+  strut_arena *arena = &e->reader->scratch;
+  const char *text =
+      p->numbers == 2   ? strut_arena_format(arena, "%s.%lld.%lld.", p->name, (long long)number[0],
+                                             (long long)number[1])
+      : p->numbers == 1 ? strut_arena_format(arena, "%s.%lld.", p->name, (long long)number[0])
+                        : strut_arena_format(arena, "%s.", p->name);
+  if (text) return text;
+  e->reader->out_of_memory = e->stopped = true;
+  return "";
+}
+
+/* The parameters of a copy: those of the part, with the values of `set`. */
+static bool read_copy_parameters(strut_reader *reader, strut_copy *copy, strut_copy *place,
+                                 const strut_slot *set) {
+  const strut_slot *slot = strut_slot_of(&copy->placement->part->fields, STRUT_KEY_PART_PARAMETERS);
+  const strut_tree *map = slot->state == STRUT_GIVEN ? slot->value : NULL;
+  const strut_tree *given = set->state == STRUT_GIVEN ? set->value->first : NULL;
+  bool fine = true;
+  copy->parameters = strut_reader_allocate(reader, &reader->scratch, map ? map->count : 0,
+                                           sizeof *copy->parameters);
+  if (!copy->parameters) return false;
+  for (const strut_tree *key = map ? map->first : NULL; key; key = key->next->next) {
+    strut_parameter_state *p = &copy->parameters[copy->parameter_count++];
+    strut_declare_parameter(reader, key, p);
+    p->scope = copy;
+    if (!copy->closed && strut_parameter_find(reader, key->text)) {
+      strut_report_error(reader, key->place,
+                         "the scene has a parameter '%s' already, which the part sees; give this "
+                         "one another name",
+                         key->text);
+      fine = false;
+    }
+  }
+  for (; given; given = given->next->next) {
+    size_t i = 0;
+    while (i < copy->parameter_count && strcmp(copy->parameters[i].name, given->text) != 0) i++;
+    if (i < copy->parameter_count) {
+      copy->parameters[i].given = given->next;
+      copy->parameters[i].given_scope = place;
+      continue;
+    }
+    strut_report_error(reader, given->place, "part '%s' has no parameter '%s'",
+                       copy->placement->part->name, strut_sanitised_text(reader, given->text));
+    fine = false;
+  }
+  for (size_t i = 0; i < copy->parameter_count; i++) {
+    strut_parameter_state *p = &copy->parameters[i];
+    if (p->given && (p->given->kind != STRUT_TREE_SCALAR || strut_is_null(p->given))) {
+      strut_report_error(reader, p->given->place,
+                         "expected an expression for '%s' in 'set', found %s", p->name,
+                         strut_found(reader, p->given));
+      p->state = STRUT_FAILED;
+    }
+    strut_resolve_parameter(reader, p);
+    fine = fine && p->state == STRUT_READ;
+  }
+  return fine;
+}
+
+/* ---- entries ---- */
+
+static void append(entry_list *list, strut_tree *key) {
+  if (list->last)
+    list->last->next = key;
+  else
+    list->first = key;
+  list->last = key->next;
+  list->count++;
+}
+
+static void remember_node(expansion *e, const strut_tree *key) {
+  struct strut_copies *c = e->copies;
+  strut_reader *reader = e->reader;
+  if (c->node_count == c->node_capacity) {
+    size_t capacity = c->node_capacity ? 2 * c->node_capacity : 256;
+    const strut_tree **nodes = strut_reallocate(c->nodes, capacity, sizeof *nodes);
+    if (!nodes) {
+      reader->out_of_memory = e->stopped = true;
+      return;
+    }
+    c->nodes = nodes, c->node_capacity = capacity;
+  }
+  c->nodes[c->node_count] = key;
+  strut_add_name(reader, &c->node_entries, key->text, c->node_count++);
+}
+
+/* Copies the entries of a mapping: a name and a head of its own for each. */
+static void copy_entries(expansion *e, const strut_tree *map, strut_copy *scope, int key) {
+  strut_reader *reader = e->reader;
+  bool contacts = key < 0, nodes = key == STRUT_KEY_SCENE_NODES;
+  entry_list *list =
+      contacts ? &e->contacts : &e->list[key - strut_section_first(STRUT_SECTION_SCENE)];
+  struct pair {
+    strut_placed_tree key;
+    strut_tree value;
+  } *pairs = strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *pairs);
+  if (!pairs) e->stopped = true;
+  for (const strut_tree *from = map->first; from && !e->stopped; from = from->next->next) {
+    struct pair *pair = pairs++;
+    const char *name = strut_arena_format(&reader->scratch, "%s%s", scope->prefix, from->text);
+    if (!name) reader->out_of_memory = e->stopped = true;
+    pair->key = (strut_placed_tree){*from, scope};
+    pair->key.tree.placed = true;
+    pair->key.tree.text = name;
+    pair->value = *from->next;
+    pair->key.tree.next = &pair->value;
+    pair->value.next = NULL;
+    if (e->stopped) return;
+    append(list, &pair->key.tree);
+    if (nodes) remember_node(e, &pair->key.tree);
+  }
+  e->copies->things += map->count;
+}
+
+/* All that a part, or `next`, holds. */
+static void copy_things(expansion *e, strut_fields *fields, strut_copy *scope) {
+  int first = strut_section_first(fields->section);
+  for (int k = 0; k < strut_section_size(fields->section) && !e->stopped; k++) {
+    const strut_slot *slot = &fields->slot[k];
+    int key = scene_key(first + k);
+    bool contacts = first + k == STRUT_KEY_PART_CONTACTS;
+    bool taken = key >= 0 || contacts;
+    if (taken && slot->state == STRUT_GIVEN)
+      copy_entries(e, slot->value, scope, contacts ? -1 : key);
+  }
+}
+
+static size_t count_things(strut_fields *fields) {
+  size_t count = 0;
+  for (int k = 0; k < strut_section_size(fields->section); k++)
+    if (fields->slot[k].state == STRUT_GIVEN &&
+        scene_key(strut_section_first(fields->section) + k) >= 0)
+      count += fields->slot[k].value->count;
+  return count;
+}
+
+static void add_merger(expansion *e, strut_copy *scope, const strut_tree *a, const strut_tree *b,
+                       const strut_tree *place) {
+  strut_merger *m = strut_reader_allocate(e->reader, &e->reader->scratch, 1, sizeof *m);
+  if (!m) return;
+  *m = (strut_merger){.scope = scope, .a = a, .b = b, .place = place};
+  if (!e->copies->mergers_end) e->copies->mergers_end = &e->copies->mergers;
+  *e->copies->mergers_end = m;
+  e->copies->mergers_end = &m->next;
+}
+
+/* `touching`, or a mapping of names. */
+static void read_merge(expansion *e, const strut_slot *slot, strut_copy *scope, int key) {
+  const strut_tree *value = slot->value;
+  if (slot->state != STRUT_GIVEN || e->weighing) return;
+  if (value->kind == STRUT_TREE_SCALAR && strcmp(value->text, "touching") == 0)
+    add_merger(e, scope, NULL, NULL, value);
+  else if (value->kind != STRUT_TREE_MAP)
+    refuse_form(
+        e->reader, key, value,
+        (strut_owner){scope ? "part" : "the scene", scope ? scope->placement->part->name : NULL});
+  for (const strut_tree *k = value->kind == STRUT_TREE_MAP ? value->first : NULL; k;
+       k = k->next->next)
+    if (strut_read_scalar(e->reader, k->next, k->text, (strut_owner){"'merge'", NULL},
+                          "the name of a node"))
+      add_merger(e, scope, k, k->next, value);
+}
+
+/* ---- onto ---- */
+
+/* The position of an entry of nodes, in the coordinates of the scope that it stands in. */
+static bool read_position(strut_reader *reader, const strut_tree *value, double position[2]) {
+  const strut_tree *at =
+      value->kind == STRUT_TREE_MAP ? strut_tree_find(value, "position", NULL) : value;
+  return at && strut_read_pair(reader, at, "position", (strut_owner){"a node", NULL},
+                               STRUT_DIM_LENGTH, position);
+}
+
+/* Where a node of the placement's scope lies, in the coordinates of that scope. */
+static bool find_outside(expansion *e, strut_copy *outer, const strut_tree *name,
+                         double position[2]) {
+  strut_reader *reader = e->reader;
+  strut_full_name full, resolved;
+  snprintf(full.text, sizeof full.text, "%s%s", outer ? outer->prefix : "", name->text);
+  int32_t i = strut_name_resolve_last(reader, full.text, &resolved)
+                  ? strut_name_map_find(&e->copies->node_entries, resolved.text)
+                  : -1;
+  if (i < 0 || strut_name_is_hidden(reader, outer, resolved.text)) {
+    strut_report_error(reader, name->place,
+                       "unknown node '%s' in 'onto'; it names a node of what is placed before",
+                       strut_sanitised_text(reader, name->text));
+    return false;
+  }
+  const strut_tree *key = e->copies->nodes[i];
+  strut_copy *before = strut_enter_scope(reader, key);
+  bool fine = read_position(reader, key->next, position);
+  strut_place_point(reader, key->next, position);
+  reader->scope = before;
+  if (!fine || !outer) return fine;
+  /* back into the frame of the scope */
+  const strut_frame *f = &outer->frame;
+  double d[2] = {position[0] - f->at[0], position[1] - f->at[1]};
+  for (int c = 0; c < 2; c++)
+    position[c] = (f->axes[0][c] * d[0] + f->axes[1][c] * d[1]) / f->scale;
+  return true;
+}
+
+/* The position of a node of the copy itself. */
+static bool find_inside(expansion *e, strut_copy *copy, const strut_tree *name,
+                        double position[2]) {
+  strut_reader *reader = e->reader;
+  const strut_slot *nodes = strut_slot_of(&copy->placement->part->fields, STRUT_KEY_PART_NODES);
+  const strut_slot *ports = strut_slot_of(&copy->placement->part->fields, STRUT_KEY_PART_PORTS);
+  const strut_tree *port =
+      ports->state == STRUT_GIVEN ? strut_tree_find(ports->value, name->text, NULL) : NULL;
+  const char *own = port && port->kind == STRUT_TREE_SCALAR ? port->text : name->text;
+  const strut_tree *value =
+      nodes->state == STRUT_GIVEN ? strut_tree_find(nodes->value, own, NULL) : NULL;
+  if (!value) {
+    strut_report_error(reader, name->place, "part '%s' has no node '%s' of its own",
+                       copy->placement->part->name, strut_sanitised_text(reader, name->text));
+    return false;
+  }
+  strut_copy *before = reader->scope;
+  reader->scope = copy;
+  bool fine = read_position(reader, value, position);
+  reader->scope = before;
+  return fine;
+}
+
+/* Shifts, and with two pairs turns, the frame so that nodes of the copy lie on others. */
+static bool lay_onto(expansion *e, strut_copy *copy, const strut_slot *onto, bool fit,
+                     strut_frame *frame) {
+  strut_reader *reader = e->reader;
+  double own[2][2], there[2][2];
+  const strut_tree *map = onto->value, *k = map->first;
+  if (map->count < 1 || map->count > 2) {
+    strut_report_error(reader, map->place,
+                       "expected one or two pairs {own: there} for 'onto', found %u",
+                       (unsigned)map->count);
+    return false;
+  }
+  for (unsigned n = 0; n < map->count; n++, k = k->next->next) {
+    if (!strut_read_scalar(reader, k->next, "onto", (strut_owner){"a placement", NULL},
+                           "the name of a node") ||
+        !find_inside(e, copy, k, own[n]) || !find_outside(e, copy->outer, k->next, there[n]))
+      return false;
+    own[n][0] *= frame->scale, own[n][1] *= frame->scale;
+    strut_frame_vector(frame, own[n]);
+  }
+  if (map->count == 2) {
+    double a[2] = {own[1][0] - own[0][0], own[1][1] - own[0][1]};
+    double b[2] = {there[1][0] - there[0][0], there[1][1] - there[0][1]};
+    double la = hypot(a[0], a[1]), lb = hypot(b[0], b[1]);
+    if (la == 0.0 || lb == 0.0 || (!fit && fabs(la / lb - 1.0) > 1e-9)) {
+      strut_report_error(reader, map->place,
+                         "the two nodes of the copy are %.6g m apart, those outside %.6g m%s", la,
+                         lb, la > 0.0 && lb > 0.0 ? "; say 'scale: fit', or change one" : "");
+      return false;
+    }
+    strut_frame turn = strut_frame_of_scene;
+    double c = (a[0] * b[0] + a[1] * b[1]) / (la * lb), s = (a[0] * b[1] - a[1] * b[0]) / (la * lb);
+    turn.axes[0][0] = turn.axes[1][1] = c, turn.axes[0][1] = -s, turn.axes[1][0] = s;
+    turn.scale = fit ? lb / la : 1.0;
+    *frame = strut_frame_within(&turn, frame);
+    strut_frame_vector(&turn, own[0]);
+    own[0][0] *= turn.scale, own[0][1] *= turn.scale;
+  }
+  for (int c = 0; c < 2; c++) frame->at[c] = there[0][c] - own[0][c];
+  return true;
+}
+
+/* ---- one placement ---- */
+
+typedef struct placing {
+  strut_placement *placement;
+  strut_copy *outer;
+  strut_fields fields;
+  repetition repeat;
+  bool varies; /* some key mentions the copy's number */
+} placing;
+
+/* Does an expression of the mapping mention i or j? */
+static bool mentions_number(const strut_tree *tree) {
+  if (tree->kind != STRUT_TREE_SCALAR) {
+    for (const strut_tree *k = tree->first; k; k = k->next)
+      if (mentions_number(k)) return true;
+    return false;
+  }
+  for (const char *c = tree->text; *c; c++) {
+    size_t word = strspn(c, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789");
+    if (word == 1 && (*c == 'i' || *c == 'j')) return true;
+    if (word) c += word - 1;
+  }
+  return false;
+}
+
+/* The frame of the first copy by the placement's own keys. */
+static bool read_frame(expansion *e, placing *p, strut_copy *copy, strut_frame *frame) {
+  strut_reader *reader = e->reader;
+  strut_owner owner = {"place", p->placement->key->text};
+  const strut_slot *flip = strut_slot_of(&p->fields, STRUT_KEY_PLACE_FLIP);
+  const strut_slot *turn = strut_slot_of(&p->fields, STRUT_KEY_PLACE_TURN);
+  const strut_slot *at = strut_slot_of(&p->fields, STRUT_KEY_PLACE_AT);
+  const strut_slot *scale = strut_slot_of(&p->fields, STRUT_KEY_PLACE_SCALE);
+  const strut_slot *onto = strut_slot_of(&p->fields, STRUT_KEY_PLACE_ONTO);
+  bool fit = scale->state == STRUT_GIVEN && scale->value->kind == STRUT_TREE_SCALAR &&
+             strcmp(scale->value->text, "fit") == 0;
+  *frame = strut_frame_of_scene;
+  if (turn->state == STRUT_GIVEN) set_turn(frame, turn->number[0]);
+  if (at->state == STRUT_GIVEN) memcpy(frame->at, at->number, sizeof frame->at);
+  int flipped = flip->state == STRUT_GIVEN ? flip->word : 0; /* bits: x, y */
+  for (int c = 0; c < 2; c++)
+    for (int row = 0; row < 2 && flipped >> c & 1; row++) frame->axes[row][c] *= -1.0;
+  if (scale->state == STRUT_GIVEN && !fit &&
+      !strut_read_number(reader, scale->value, "scale", owner, STRUT_DIM_NONE,
+                         STRUT_RANGE_ABOVE_ZERO, &frame->scale))
+    return false;
+  bool two = onto->state == STRUT_GIVEN && onto->value->count == 2;
+  if ((fit && !two) || (two && turn->key)) {
+    strut_report_error(reader, fit && !two ? scale->value->place : turn->key->place,
+                       fit && !two ? "'scale: fit' needs two pairs in 'onto'"
+                                   : "two pairs in 'onto' turn the copy; leave 'turn' out");
+    return false;
+  }
+  return e->weighing || onto->state != STRUT_GIVEN || lay_onto(e, copy, onto, fit, frame);
+}
+
+static void expand_places(expansion *e, const strut_slot *place, strut_copy *outer);
+
+/* The scopes of one copy, and what it holds. NULL: it could not be made. */
+static strut_copy *make_copy(expansion *e, placing *p, const int64_t number[2], strut_frame *base,
+                             strut_copy **place_scope) {
+  strut_reader *reader = e->reader;
+  strut_part *part = p->placement->part;
+  strut_copy *place = new_scope(e, STRUT_SCOPE_PLACE, p->placement, p->outer);
+  strut_copy *copy = place ? new_scope(e, STRUT_SCOPE_COPY, p->placement, p->outer) : NULL;
+  if (!copy) return NULL;
+  *place_scope = place;
+  memcpy(place->number, number, sizeof place->number);
+  memcpy(copy->number, number, sizeof copy->number);
+  place->numbers = p->placement->numbers;
+  place->prefix = copy->prefix = make_prefix(e, p->placement, number);
+  place->prefix_length = copy->prefix_length = strlen(copy->prefix);
+  copy->home = part->home;
+  copy->closed = part->closed;
+  bool first = number[0] == 0 && number[1] == 0;
+  reader->scope = place;
+  if (!first && p->varies) {
+    strut_owner owner = {"place", p->placement->key->text};
+    strut_read_fields(reader, STRUT_SECTION_PLACE, p->placement->key->next, owner, &p->fields);
+  }
+  bool fine =
+      read_copy_parameters(reader, copy, place, strut_slot_of(&p->fields, STRUT_KEY_PLACE_SET));
+  fine = fine && !p->fields.broken;
+  if (fine && (first || p->varies)) fine = read_frame(e, p, copy, base);
+  if (!fine) return NULL;
+  strut_frame repeated = repeated_frame(&p->repeat, number);
+  copy->frame = strut_frame_within(base, &repeated);
+  if (p->outer) copy->frame = strut_frame_within(&p->outer->frame, &copy->frame);
+  reader->scope = NULL;
+  read_part_list(reader, strut_slot_of(&part->fields, STRUT_KEY_PART_PARTS), copy, &copy->parts);
+  return copy;
+}
+
+/* Lets `onto` find the node of a port. */
+static void enter_port(expansion *e, const strut_port *port) {
+  strut_reader *reader = e->reader;
+  const strut_tree *inner = port->key->next;
+  if (inner->kind != STRUT_TREE_SCALAR) return;
+  const char *own = strut_arena_format(&reader->scratch, "%s%s", port->scope->prefix, inner->text);
+  const char *seen =
+      strut_arena_format(&reader->scratch, "%s%s", port->scope->prefix, port->key->text);
+  if (!own || !seen) reader->out_of_memory = true;
+  int32_t node = own && seen ? strut_name_map_find(&e->copies->node_entries, own) : -1;
+  if (node >= 0) strut_add_name(reader, &e->copies->node_entries, seen, (size_t)node);
+}
+
+/* The names by which the copy is seen from outside. */
+static void add_ports(expansion *e, strut_copy *copy) {
+  struct strut_copies *c = e->copies;
+  strut_reader *reader = e->reader;
+  const strut_slot *slot = strut_slot_of(&copy->placement->part->fields, STRUT_KEY_PART_PORTS);
+  if (slot->state != STRUT_GIVEN) return;
+  if (c->ported_count == c->ported_capacity) {
+    size_t capacity = c->ported_capacity ? 2 * c->ported_capacity : 16;
+    const strut_copy **more = strut_reallocate(c->ported_copies, capacity, sizeof *more);
+    if (!more) reader->out_of_memory = e->stopped = true;
+    if (!more) return;
+    c->ported_copies = more, c->ported_capacity = capacity;
+  }
+  const char *name = strut_arena_text(&reader->scratch, copy->prefix, copy->prefix_length - 1);
+  if (!name) return;
+  c->ported_copies[c->ported_count] = copy;
+  strut_add_name(reader, &c->ported, name, c->ported_count++);
+  for (const strut_tree *key = slot->value->first; key; key = key->next->next) {
+    strut_port *port = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *port);
+    if (!port) return;
+    *port = (strut_port){.scope = copy, .key = key, .node = -1};
+    if (!c->ports_end) c->ports_end = &c->ports;
+    *c->ports_end = port;
+    c->ports_end = &port->next;
+    enter_port(e, port);
+  }
+}
+
+/* The entries of a copy, and of the parts that it places. */
+static void fill_copy(expansion *e, strut_copy *copy) {
+  strut_part *part = copy->placement->part;
+  e->reader->scope = NULL;
+  if (!e->weighing) copy_things(e, &part->fields, copy);
+  read_merge(e, strut_slot_of(&part->fields, STRUT_KEY_PART_MERGE), copy, STRUT_KEY_PART_MERGE);
+  expand_places(e, strut_slot_of(&part->fields, STRUT_KEY_PART_PLACE), copy);
+  if (!e->weighing) add_ports(e, copy);
+}
+
+/* What ties a copy to the next one. */
+static void link_copies(expansion *e, const strut_tree *next, strut_copy *place, strut_copy *copy,
+                        const strut_copy *other, const strut_tree *twist) {
+  strut_reader *reader = e->reader;
+  strut_fields fields;
+  strut_copy *link = new_scope(e, STRUT_SCOPE_LINK, copy->placement, copy->outer);
+  if (!link) return;
+  link->home = place;
+  link->prefix = copy->prefix, link->prefix_length = copy->prefix_length;
+  memcpy(link->number, copy->number, sizeof link->number);
+  link->frame = copy->frame;
+  link->next = other, link->twist = twist;
+  reader->scope = link;
+  strut_read_fields(reader, STRUT_SECTION_NEXT, next, (strut_owner){"'next'", NULL}, &fields);
+  reader->scope = NULL;
+  if (fields.broken) return;
+  copy_things(e, &fields, link);
+  read_merge(e, strut_slot_of(&fields, STRUT_KEY_NEXT_MERGE), link, STRUT_KEY_NEXT_MERGE);
+}
+
+static void link_all(expansion *e, placing *p, strut_copy **copies, strut_copy **places) {
+  const repetition *r = &p->repeat;
+  int64_t all = r->count[0] * r->count[1];
+  for (int64_t n = 0; n < all && !e->stopped; n++) {
+    int64_t i = n / r->count[1], j = n % r->count[1];
+    if (!copies[n]) continue;
+    bool wraps = r->closed && i == r->count[0] - 1;
+    if (r->next[0] && (i + 1 < r->count[0] || wraps)) {
+      strut_copy *other = copies[wraps ? 0 : n + r->count[1]];
+      if (other) link_copies(e, r->next[0], places[n], copies[n], other, wraps ? r->twist : NULL);
+    }
+    if (r->next[1] && j + 1 < r->count[1] && copies[n + 1])
+      link_copies(e, r->next[1], places[n], copies[n], copies[n + 1], NULL);
+  }
+}
+
+/* Refuses what would become too large, before it is copied. */
+static bool check_size(expansion *e, const placing *p, double copies, double each) {
+  const strut_slot *repeat = strut_slot_of((strut_fields *)&p->fields, STRUT_KEY_PLACE_REPEAT);
+  double all = copies * each;
+  if ((double)e->copies->things + all <= MOST_THINGS) return true;
+  strut_report_error(e->reader, repeat->value ? repeat->value->place : p->placement->key->place,
+                     "the copies would have %.3g nodes, members and other things, at most %.0f are "
+                     "possible",
+                     (double)e->copies->things + all, MOST_THINGS);
+  e->stopped = true;
+  return false;
+}
+
+/* All copies; while weighing, the first one only, counted as many times. */
+static void make_copies(expansion *e, placing *p) {
+  strut_reader *reader = e->reader;
+  const repetition *r = &p->repeat;
+  int64_t all = r->count[0] * r->count[1];
+  strut_frame base = strut_frame_of_scene;
+  if (e->weighing) {
+    const int64_t number[2] = {0, 0};
+    strut_copy *place, *copy = make_copy(e, p, number, &base, &place);
+    size_t before = e->copies->things, own = count_things(&p->placement->part->fields) + 1;
+    if (copy) fill_copy(e, copy);
+    if (e->stopped) return;
+    double each = (double)(e->copies->things - before + own);
+    e->copies->things = before;
+    if (check_size(e, p, (double)all, each)) e->copies->things += (size_t)all * (size_t)each;
+    return;
+  }
+  strut_copy **copies =
+      strut_reader_allocate(reader, &reader->scratch, (size_t)all, sizeof *copies);
+  strut_copy **places =
+      strut_reader_allocate(reader, &reader->scratch, (size_t)all, sizeof *places);
+  if (!copies || !places) return;
+  for (int64_t n = 0; n < all && !e->stopped; n++) {
+    const int64_t number[2] = {n / r->count[1], n % r->count[1]};
+    copies[n] = make_copy(e, p, number, &base, &places[n]);
+    if (copies[n])
+      fill_copy(e, copies[n]);
+    else
+      e->copies->incomplete = true;
+    if (n == 0 && !check_size(e, p, 1.0, 0.0)) return;
+    if (strut_diagnostics_full(reader->diagnostics)) e->stopped = true;
+  }
+  link_all(e, p, copies, places);
+  const strut_slot *onto = strut_slot_of(&p->fields, STRUT_KEY_PLACE_ONTO);
+  const strut_tree *k = onto->state == STRUT_GIVEN ? onto->value->first : NULL;
+  for (; k && copies[0]; k = k->next->next) {
+    /* own names are the copy's, the others those of the scope around it */
+    strut_copy *link = new_scope(e, STRUT_SCOPE_LINK, p->placement, p->outer);
+    strut_copy *around = new_scope(e, STRUT_SCOPE_COPY, p->placement, p->outer);
+    if (!link || !around) return;
+    around->prefix = p->outer ? p->outer->prefix : "";
+    link->prefix = copies[0]->prefix, link->prefix_length = copies[0]->prefix_length;
+    link->next = around;
+    strut_placed_tree *other = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *other);
+    if (!other) return;
+    *other = (strut_placed_tree){*k->next, link};
+    other->tree.placed = true;
+    other->tree.text = strut_arena_format(&reader->scratch, "next.%s", k->next->text);
+    if (!other->tree.text) return;
+    add_merger(e, link, k, &other->tree, onto->key);
+  }
+}
+
+/* Reports a part that contains itself. */
+static bool enter_part(expansion *e, const strut_part *part, const strut_slot *slot) {
+  struct strut_copies *c = e->copies;
+  char chain[600] = "";
+  size_t used = 0;
+  if (!part->open && c->depth < DEEPEST) {
+    c->chain[c->depth++] = part->name;
+    return true;
+  }
+  for (int i = 0; i < c->depth && used < sizeof chain - 80; i++)
+    used += (size_t)snprintf(chain + used, sizeof chain - used, "%.60s -> ", c->chain[i]);
+  strut_report_error(e->reader, slot->value->place,
+                     part->open ? "part '%s' contains itself: %s%s"
+                                : "parts are placed within parts more than 16 deep: '%s' in %s%s",
+                     part->name, chain, part->name);
+  e->stopped = true;
+  return false;
+}
+
+static void expand_place(expansion *e, const strut_tree *key, strut_copy *outer) {
+  strut_reader *reader = e->reader;
+  struct strut_copies *c = e->copies;
+  strut_owner owner = {"place", key->text};
+  placing p = {.outer = outer};
+  strut_placement *placement =
+      strut_reader_allocate(reader, &reader->scratch, 1, sizeof *placement);
+  strut_copy *scope = new_scope(e, STRUT_SCOPE_PLACE, placement, outer);
+  if (!placement || !scope) return;
+  *placement = (strut_placement){.key = key, .count = {1, 1}};
+  placement->name =
+      strut_arena_format(&reader->scratch, "%s%s", outer ? outer->prefix : "", key->text);
+  if (!placement->name) return;
+  p.placement = placement;
+  scope->numbers = 2; /* as in the first copy */
+  reader->scope = scope;
+  bool fine = strut_read_name(reader, key, "placement");
+  strut_read_fields(reader, STRUT_SECTION_PLACE, key->next, owner, &p.fields);
+  strut_require(reader, &p.fields, owner, key->place);
+  scope->numbers = 0;
+  placement->part =
+      read_part_name(reader, outer, strut_slot_of(&p.fields, STRUT_KEY_PLACE_PART), owner);
+  fine =
+      read_repeat(reader, strut_slot_of(&p.fields, STRUT_KEY_PLACE_REPEAT), key->text, &p.repeat) &&
+      fine;
+  reader->scope = NULL;
+  if (!placement->part || !fine || p.fields.broken || placement->part->broken) {
+    reader->failed = true;
+    reader->copies->incomplete = true;
+    return;
+  }
+  strut_part *part = placement->part;
+  memcpy(placement->count, p.repeat.count, sizeof placement->count);
+  placement->numbers = p.repeat.numbers;
+  p.varies = p.repeat.numbers && mentions_number(key->next);
+  if (!enter_part(e, part, strut_slot_of(&p.fields, STRUT_KEY_PLACE_PART))) return;
+  if (!e->weighing) {
+    if (c->placement_count == c->placement_capacity) {
+      size_t capacity = c->placement_capacity ? 2 * c->placement_capacity : 16;
+      strut_placement **more = strut_reallocate(c->placements, capacity, sizeof *more);
+      if (!more) reader->out_of_memory = e->stopped = true;
+      if (!more) return;
+      c->placements = more, c->placement_capacity = capacity;
+    }
+    c->placements[c->placement_count] = placement;
+    strut_add_name(reader, &c->placement_names, placement->name, c->placement_count++);
+  }
+  part->open = part->placed = true;
+  make_copies(e, &p);
+  part->open = false;
+  c->depth--;
+}
+
+static void expand_places(expansion *e, const strut_slot *place, strut_copy *outer) {
+  const strut_tree *map = place->state == STRUT_GIVEN ? place->value : NULL;
+  for (const strut_tree *key = map ? map->first : NULL; key && !e->stopped; key = key->next->next)
+    expand_place(e, key, outer);
+}
+
+/* ---- the scene ---- */
+
+/* The scene's own entries of a key, then those of the copies. */
+static void join_entries(expansion *e, int key) {
+  strut_reader *reader = e->reader;
+  strut_slot *slot = strut_slot_of(&reader->top, key);
+  entry_list *list = &e->list[key - strut_section_first(STRUT_SECTION_SCENE)];
+  if (!list->count || slot->state == STRUT_BROKEN) return;
+  strut_tree *map = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *map);
+  const strut_slot *place = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PLACE);
+  if (!map) return;
+  *map = slot->state == STRUT_GIVEN ? *slot->value : *place->value;
+  uint32_t count = 0;
+  strut_tree *first = NULL;
+  if (slot->state == STRUT_GIVEN)
+    first = strut_lay_over_copies(reader, slot->value, &list->first, &list->count, &count, key);
+  map->count = (count + (uint32_t)list->count) & 0xFFFFFFFu;
+  map->first = first ? first : list->first;
+  strut_tree *last = first;
+  while (last && last->next->next) last = last->next->next;
+  if (last) last->next->next = list->first;
+  if (!slot->key) slot->key = place->key;
+  slot->value = map;
+  slot->state = STRUT_GIVEN;
+}
+
+static void report_unplaced(strut_reader *reader) {
+  const strut_part_list *parts = &reader->copies->parts;
+  for (size_t i = 0; i < parts->count; i++)
+    if (!parts->part[i].placed && !parts->part[i].broken)
+      strut_note(reader->diagnostics, parts->part[i].key->place, "part '%s' is placed nowhere",
+                 parts->part[i].name);
+}
+
+/* Least memory of an entry while it is read, and as a thing of the scene [B]. */
+static const double ENTRY_NEEDS = 700.0;
+
+static bool check_memory(expansion *e, const strut_slot *place) {
+  strut_error error = {0};
+  double needs = ENTRY_NEEDS * (double)e->copies->things;
+  if (needs < 1e8 || strut_memory_check(needs, "the copies of parts", &error) == STRUT_OK)
+    return true;
+  strut_report_error(e->reader, place->key->place, "%s", error.message);
+  return false;
+}
+
+/* Counts first, then copies. */
+static void expand_scene(expansion *e) {
+  strut_reader *reader = e->reader;
+  const strut_slot *place = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PLACE);
+  const strut_slot *nodes = strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES);
+  e->weighing = true;
+  expand_places(e, place, NULL);
+  if (e->stopped || reader->failed || !check_memory(e, place)) {
+    e->copies->incomplete = true;
+    return;
+  }
+  e->weighing = false;
+  e->copies->things = 0;
+  const strut_tree *own = nodes->state == STRUT_GIVEN ? nodes->value->first : NULL;
+  for (; own; own = own->next->next) remember_node(e, own);
+  expand_places(e, place, NULL);
+  if (e->stopped) e->copies->incomplete = true;
+}
+
+void strut_read_parts(strut_reader *reader) {
+  const strut_slot *parts = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PARTS);
+  const strut_slot *place = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PLACE);
+  const strut_slot *merge = strut_slot_of(&reader->top, STRUT_KEY_SCENE_MERGE);
+  if (!parts->key && !place->key && !merge->key) {
+    strut_require_nodes(reader);
+    return;
+  }
+  expansion e = {.reader = reader};
+  reader->copies = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *reader->copies);
+  e.copies = reader->copies;
+  if (!e.copies) return;
+  read_part_list(reader, parts, NULL, &e.copies->parts);
+  expand_scene(&e);
+  read_merge(&e, merge, NULL, STRUT_KEY_SCENE_MERGE);
+  int first = strut_section_first(STRUT_SECTION_SCENE);
+  for (int k = 0; k < strut_section_size(STRUT_SECTION_SCENE); k++) join_entries(&e, first + k);
+  if (e.contacts.count) {
+    strut_tree *map = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *map);
+    if (map) *map = (strut_tree){.kind = STRUT_TREE_MAP, .first = e.contacts.first};
+    e.copies->contacts = map;
+  }
+  if (e.copies->incomplete)
+    strut_mark_incomplete(reader);
+  else
+    strut_require_nodes(reader);
+  report_unplaced(reader);
+}
+
+void strut_copies_free(strut_reader *reader) {
+  struct strut_copies *copies = reader->copies;
+  if (!copies) return;
+  strut_name_map_free(&copies->placement_names);
+  strut_name_map_free(&copies->node_entries);
+  strut_name_map_free(&copies->ported);
+  strut_release(copies->ported_copies);
+  strut_release(copies->placements);
+  strut_release(copies->nodes);
+}
