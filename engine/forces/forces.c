@@ -26,9 +26,9 @@ void strut_forces_evaluate(const strut_model *model, strut_state *state, double 
   for (int32_t i = 0; i < model->contacts.count; i++)
     state->normal[i] = state->friction[i] = 0.0; /* the sum fills those that touch, and only them */
   if (state->ledger)
-    forces_sum(model, state, t, q, v, true);
+    forces_sum(model, state, t, q, v, STRUT_TERMS_ALL, true);
   else
-    forces_sum(model, state, t, q, v, false);
+    forces_sum(model, state, t, q, v, STRUT_TERMS_ALL, false);
   if (state->rigid) strut_rigid_constrain(model, state, q, v);
 }
 
@@ -47,7 +47,7 @@ void strut_forces_acceleration(const strut_model *model, strut_state *state, dou
                                double *restrict a) {
   assert(model->mass && "a model without mass is for statics only");
   strut_forces_evaluate(model, state, t, q, v);
-  divide_by_mass(model, state, a);
+  divide_by_mass(model, state, a, STRUT_TERMS_ALL);
   if (state->ledger && model->plan & STRUT_TERM_SLIDING_MASS)
     strut_sliding_masses_add_power(model, state, q, v, a);
 }

@@ -136,7 +136,7 @@ static void list_tables(strut_lane_tables *t, table *list) {
                              {&t->block_inverse[0], blocks[0]},
                              {&t->block_inverse[1], blocks[1]},
                              {&t->force, length},
-                             {&t->power, STRUT_POWER_COUNT},
+                             {&t->power, STRUT_LANE_POWERS},
                              {&t->element_stiffness, elements},
                              {&t->element_damping, elements},
                              {&t->element_natural, elements},

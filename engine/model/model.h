@@ -54,10 +54,16 @@ typedef enum strut_term {
                                    instead of CONTACT */
 } strut_term;
 
-/** Terms that few scenes need: a step asks once for all of them. */
+/**
+ * Terms that few scenes need. Step loops exist twice, and a model is stepped by the copy without these where
+ * it can be: the terms that a copy knows are a constant in it, so that it asks for no others.
+ */
 #define STRUT_TERMS_RARE                                                                           \
-  (STRUT_TERM_FEEDBACK | STRUT_TERM_ACTUATOR_FORCES | STRUT_TERM_UNBALANCE |                       \
-   STRUT_TERM_MASS_DAMPING | STRUT_TERM_SUPPORT_MOTION | STRUT_TERM_SLIDING_MASS)
+  ((unsigned)(STRUT_TERM_FEEDBACK | STRUT_TERM_ACTUATOR_FORCES | STRUT_TERM_UNBALANCE |            \
+              STRUT_TERM_MASS_DAMPING | STRUT_TERM_SUPPORT_MOTION | STRUT_TERM_MEMORY |            \
+              STRUT_TERM_SURFACES | STRUT_TERM_SLIDING_MASS))
+#define STRUT_TERMS_COMMON (~STRUT_TERMS_RARE)
+#define STRUT_TERMS_ALL (~0u)
 
 /**
  * Member tables in scene order; (slots) entries each. Padding slots have no length, and pull with no

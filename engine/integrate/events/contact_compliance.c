@@ -20,9 +20,14 @@ static void solve_column(const strut_model *model, strut_state *state, uint32_t 
   strut_mass_solve(model, state->force, column, state->scratch);
 }
 
-/* Where the mass matrix changes with time so do compliances, and with surfaces directions do. */
+/* Then the mass matrix changes with time, and with it the compliances. */
+static bool has_moving_masses(const strut_model *model) {
+  return model->plan & STRUT_TERM_SLIDING_MASS;
+}
+
+/* Where neither axes nor compliances of contacts stay. */
 static bool has_moving_axes(const strut_model *model) {
-  return model->contacts.surface || model->plan & STRUT_TERM_SLIDING_MASS;
+  return model->contacts.surface || has_moving_masses(model);
 }
 
 /* The compliances of the node itself, from the column of M^-1. */
@@ -211,19 +216,19 @@ static bool factor(int32_t n, double *a) {
 
 /* T' M^-1 T of the stuck contacts, column by column through the scatter array. */
 static void factor_stuck(const strut_model *model, strut_event_stepper *l,
-                         const strut_touch *touch) {
+                         const strut_contact_frame *frame) {
   const strut_contact_table *c = &model->contacts;
   int32_t n = l->stuck_count;
   for (int32_t j = 0; j < n; j++) {
     const strut_contact_compliance *r = &l->response[l->stuck[j]];
-    const double *t = strut_touch_axes(c, &touch[l->stuck[j]])->tangent;
+    const double *t = strut_axes_of_contact(c, frame, l->stuck[j])->tangent;
     for (int32_t k = 0; k < r->count; k++) {
       l->scatter[r->at[k]] = r->xy[2 * k] * t[0];
       l->scatter[r->at[k] + 1] = r->xy[2 * k + 1] * t[1];
     }
     for (int32_t i = j; i < n; i++) {
       uint32_t at = c->at[l->stuck[i]];
-      const double *s = strut_touch_axes(c, &touch[l->stuck[i]])->tangent;
+      const double *s = strut_axes_of_contact(c, frame, l->stuck[i])->tangent;
       l->stuck_factor[i * n + j] = l->scatter[at] * s[0] + l->scatter[at + 1] * s[1];
     }
     for (int32_t k = 0; k < r->count; k++) l->scatter[r->at[k]] = l->scatter[r->at[k] + 1] = 0.0;
@@ -277,30 +282,31 @@ void strut_update_active_set(const strut_model *model, strut_event_stepper *l) {
   list_sliding_contacts(model, l);
   if (l->stuck_count > l->stuck_room)
     l->stuck_count = -l->stuck_count;
-  else if (l->stuck_count > 1 && !has_moving_axes(model))
-    factor_stuck(model, l, l->now->touch);
+  else if (l->stuck_count > 1 && !l->now->frame && !has_moving_masses(model))
+    factor_stuck(model, l, NULL);
 }
 
 /* Rate of the sliding speed of a contact under the accelerations x. */
-static double along(const strut_contact_table *c, int32_t i, const double *x,
-                    const strut_touch *touch) {
-  const double *t = strut_touch_axes(c, &touch[i])->tangent;
+STRUT_INLINE double along(const strut_contact_table *c, int32_t i, const double *x,
+                          const strut_contact_frame *frame) {
+  const double *t = strut_axes_of_contact(c, frame, i)->tangent;
   double rate = x[c->at[i]] * t[0] + x[c->at[i] + 1] * t[1];
-  return c->surface ? rate + touch[i].slip_drift : rate;
+  return frame ? rate + frame[i].slip_drift : rate;
 }
 
 /* What rounding leaves of the accelerations of held nodes: nothing, so that they do not creep. */
-static void still(const strut_contact_table *c, int32_t i, double *a, const strut_touch *touch) {
-  const double *t = strut_touch_axes(c, &touch[i])->tangent;
-  double rest = along(c, i, a, touch);
+STRUT_INLINE void still(const strut_contact_table *c, int32_t i, double *a,
+                        const strut_contact_frame *frame) {
+  const double *t = strut_axes_of_contact(c, frame, i)->tangent;
+  double rest = along(c, i, a, frame);
   a[c->at[i]] -= rest * t[0];
   a[c->at[i] + 1] -= rest * t[1];
 }
 
-static double tangent_compliance(const strut_contact_table *c, const strut_event_stepper *l,
-                                 int32_t i, const strut_touch *touch) {
-  if (!c->surface) return l->response[i].tangent;
-  return strut_compliance_along(&l->response[i], touch[i].axes.tangent);
+STRUT_INLINE double tangent_compliance(const strut_event_stepper *l, int32_t i,
+                                       const strut_contact_frame *frame) {
+  if (!frame) return l->response[i].tangent;
+  return strut_compliance_along(&l->response[i], frame[i].axes.tangent);
 }
 
 /* One after the other until none needs more: for sets too large for a matrix. */
@@ -312,8 +318,8 @@ static void hold_by_sweeps(const strut_model *model, const strut_event_stepper *
     double largest = 0.0, changed = 0.0;
     for (int32_t k = 0; k < n; k++) {
       int32_t i = l->stuck[k];
-      double more = -along(c, i, a, end->touch) / tangent_compliance(c, l, i, end->touch);
-      strut_apply_contact_impulse(l, i, strut_touch_axes(c, &end->touch[i]), 0.0, more, a);
+      double more = -along(c, i, a, end->frame) / tangent_compliance(l, i, end->frame);
+      strut_apply_contact_impulse(l, i, strut_axes_of_contact(c, end->frame, i), 0.0, more, a);
       end->touch[i].friction += more;
       changed = fmax(changed, fabs(more));
       largest = fmax(largest, fabs(end->touch[i].friction));
@@ -322,13 +328,15 @@ static void hold_by_sweeps(const strut_model *model, const strut_event_stepper *
   }
 }
 
-void strut_solve_stick_constraints(const strut_model *model, strut_event_stepper *l, double *a,
-                                   strut_step_end *end) {
+STRUT_INLINE void hold_stuck(const strut_model *model, strut_event_stepper *l, double *a,
+                             strut_step_end *end, unsigned terms) {
+  const strut_contact_frame *frame = frames_of(end, terms);
   const strut_contact_table *c = &model->contacts;
   int32_t n = l->stuck_count;
   double *x = l->stuck_work;
-  if (has_moving_axes(model) && n > 1) { /* they have not been known until now */
-    factor_stuck(model, l, end->touch);
+  if ((frame || has_moving_masses(model)) &&
+      n > 1) { /* their axes turn, or have not been known until now */
+    factor_stuck(model, l, frame);
     bool singular = l->stuck_count < 0;
     l->stuck_count = n;
     if (singular) {
@@ -340,9 +348,9 @@ void strut_solve_stick_constraints(const strut_model *model, strut_event_stepper
     hold_by_sweeps(model, l, a, end);
     return;
   }
-  for (int32_t k = 0; k < n; k++) x[k] = -along(c, l->stuck[k], a, end->touch);
+  for (int32_t k = 0; k < n; k++) x[k] = -along(c, l->stuck[k], a, frame);
   if (n == 1) {
-    x[0] /= tangent_compliance(c, l, l->stuck[0], end->touch);
+    x[0] /= tangent_compliance(l, l->stuck[0], frame);
   } else {
     const double *f = l->stuck_factor;
     for (int32_t i = 0; i < n; i++) {
@@ -356,9 +364,17 @@ void strut_solve_stick_constraints(const strut_model *model, strut_event_stepper
   }
   for (int32_t k = 0; k < n; k++) {
     int32_t i = l->stuck[k];
-    strut_apply_contact_impulse(l, i, strut_touch_axes(c, &end->touch[i]), 0.0, x[k], a);
+    strut_apply_contact_impulse(l, i, strut_axes_of_contact(c, frame, i), 0.0, x[k], a);
     end->touch[i].friction += x[k];
-    still(c, i, a, end->touch);
+    still(c, i, a, frame);
   }
-  for (int32_t k = 0; k < n; k++) still(c, l->stuck[k], a, end->touch);
+  for (int32_t k = 0; k < n; k++) still(c, l->stuck[k], a, frame);
+}
+
+void strut_solve_stick_constraints(const strut_model *model, strut_event_stepper *l, double *a,
+                                   strut_step_end *end) {
+  if (end->frame)
+    hold_stuck(model, l, a, end, STRUT_TERMS_ALL);
+  else
+    hold_stuck(model, l, a, end, STRUT_TERMS_COMMON);
 }
