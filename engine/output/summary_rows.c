@@ -151,7 +151,10 @@ static void add_energy(rows *r) {
   if (!isfinite(residual)) return;
   if (moved > 0)
     snprintf(value, sizeof value, "%s, %.1e of the energy exchanged%s", in(residual, "J").text,
-             fabs(residual) / moved, open ? ": the balance does not close" : "");
+             fabs(residual) / moved,
+             open                            ? ": the balance does not close"
+             : fabs(residual) > 0.01 * moved ? ", which is rounding of the stored energy"
+                                             : "");
   else
     snprintf(value, sizeof value, "%s", in(residual, "J").text);
   add_row(r, "energy residual", value);

@@ -187,15 +187,22 @@ static void add_contacts(strut_buffer *table, const strut_summary *s) {
   add_more(table, s->contact_count);
 }
 
+/* The residual of the balance and what it means, in one statement. */
 static void add_balance(strut_buffer *table, const strut_summary *s) {
   const strut_energy *e = &s->energy;
-  if (s->balance == STRUT_BALANCE_NOT_KEPT || !(e->moved > 0.0)) return;
+  strut_rounded_quantity residual = in(e->residual, "J");
+  if (s->balance == STRUT_BALANCE_NOT_KEPT || !(e->moved > 0.0)) {
+    if (e->residual != 0.0) strut_buffer_add(table, "  %-16s %14s\n", "residual", residual.text);
+    return;
+  }
+  double part = fabs(e->residual) / e->moved;
   if (s->balance == STRUT_BALANCE_OPEN)
-    strut_buffer_add(table, "  %-16s %14s   NOT closed: %.2g %% of the energy exchanged\n",
-                     "balance", "", 100.0 * fabs(e->residual) / e->moved);
+    strut_buffer_add(table, "  %-16s %14s   balance NOT closed: %.2g %% of the energy exchanged\n",
+                     "residual", residual.text, 100.0 * part);
   else
-    strut_buffer_add(table, "  %-16s %14s   within 1 %% of the energy exchanged\n", "balance",
-                     "closed");
+    strut_buffer_add(table, "  %-16s %14s   balance closed%s\n", "residual", residual.text,
+                     part <= 0.01 ? " within 1 % of the energy exchanged"
+                                  : " up to the rounding of the stored energy");
 }
 
 static void add_energy(strut_buffer *table, const strut_energy *e) {
@@ -206,7 +213,6 @@ static void add_energy(strut_buffer *table, const strut_energy *e) {
 #define ENERGY_ROW(name, kind, label) {label, e->name},
       STRUT_ENERGY_TABLE(ENERGY_ROW)
 #undef ENERGY_ROW
-          {"residual", e->residual},
   };
   strut_buffer_add(table, "\n  energy\n");
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {

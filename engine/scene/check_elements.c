@@ -18,6 +18,9 @@ static const char *fault_of_lists(const strut_law *law) {
   if (strut_law_needs(law->kind, STRUT_LAW_PARAMETER_COEFFICIENTS) && !law->count)
     return "needs at least one coefficient";
   if (points && law->count < 2) return "needs at least two points";
+  bool zero = law->count > 0;
+  for (size_t i = 0; i < law->count; i++) zero = zero && law->force[i] == 0.0;
+  if (zero) return "gives no force anywhere; leave it out, or give it a number that is not 0";
   for (size_t i = 1; i < law->count && points; i++)
     if (!(law->x[i] > law->x[i - 1])) return "needs points with increasing x";
   return NULL;

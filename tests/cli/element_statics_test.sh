@@ -253,4 +253,21 @@ err_has "m has another law"
 expect 0 form ring.yaml --json
 near_number "$(value .residual)" 0 1e-9 "residual of a form with a running cable"
 
+# A ring that is pulled to the end of its cable: the path ends there, and says which segment is gone.
+cat >shrink.yaml <<'END'
+strut: 1
+nodes:
+  left: {position: [0, 0], fixed: both}
+  ring: {position: [0.4, 0], fixed: y}
+  right: {position: [0.8, 0], fixed: both}
+members:
+  string: {kind: cable, nodes: [left, ring, right], stiffness: 1 kN/m, rest_length: 0.7 m}
+  hold: {kind: spring, nodes: [left, ring], stiffness: 10 N/m}
+loads:
+  pull: {node: ring, force: [1 N, 0]}
+END
+expect 0 path shrink.yaml --load pull --until 20 --json
+near_number "$(value '.points[-1].factor')" 4 1e-6 "load that pulls the ring to the end"
+holds '.end == "lost" and (.remark | endswith("no equilibrium was found nearby beyond it; a segment of cable '"'string'"' has shrunk to nothing there, between nodes '"'ring' and 'right'"'"))'
+
 done_testing

@@ -146,4 +146,18 @@ for model in "$models"/*/*.yaml; do
   "$strut" check "$model" --json >out 2>err || continue
   out_has '"warnings":	[]'
 done
+# The residual of the balance and what it means are one statement: a residual beyond 1 % of what little was
+# exchanged may be rounding of what is stored.
+cat >stored.yaml <<'END'
+strut: 1
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: y, mass: 1}, c: {position: [3, 0], fixed: both}}
+members: {m: {nodes: [a, b], kind: spring, stiffness: 1e9, rest_length: 0.7}, n: {nodes: [c, b], kind: spring, stiffness: 1e9, rest_length: 1.7}}
+initial: {velocities: {b: [3e-4, 0]}}
+solver: {integrator: rk4, step: 1 us}
+run: {duration: 1 ms}
+END
+expect 0 run stored.yaml
+out_has 'nJ   balance closed up to the rounding of the stored energy'
+out_has_not 'within 1 %'
+
 done_testing

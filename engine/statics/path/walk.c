@@ -319,7 +319,32 @@ static strut_path_end find_reason(strut_path_walk *w) {
   return STRUT_PATH_INVALID;
 }
 
+/* A segment that is shorter than this part of the structure has lost its direction. */
+static const double VANISHED = 1e-6;
+
+/* Says which member, or which segment of a running cable, has shrunk to nothing where no step succeeds. */
+static void name_vanished(strut_path_walk *w, char *text, size_t room) {
+  const strut_scene *scene = w->system.model->scene;
+  *text = '\0';
+  if (!strut_path_evaluate(&w->system, w->y)) return;
+  const double *q = w->system.q;
+  for (size_t i = 0; i < scene->member_count; i++) {
+    const strut_member *m = &scene->members[i];
+    for (size_t k = 0; k < m->guide_count + 1; k++) {
+      int32_t a = strut_member_node(m, k), b = strut_member_node(m, k + 1);
+      double length = hypot(q[2 * b] - q[2 * a], q[2 * b + 1] - q[2 * a + 1]);
+      if (!(length < VANISHED * w->system.size)) continue;
+      snprintf(text, room, "; %s '%s' has shrunk to nothing there, between nodes '%s' and '%s'",
+               m->guide_count ? "a segment of cable" : "member", m->name, scene->nodes[a].name,
+               scene->nodes[b].name);
+      return;
+    }
+  }
+}
+
 static bool end_path(strut_path_walk *w, strut_path_end end) {
+  char cause[400] = "";
+  if (end == STRUT_PATH_LOST) name_vanished(w, cause, sizeof cause);
   const strut_path_parameter *p = &w->system.parameter;
   size_t room = sizeof w->path->remark;
   double value = strut_path_value(&w->system, w->y);
@@ -327,8 +352,8 @@ static bool end_path(strut_path_walk *w, strut_path_end end) {
   w->path->end = end;
   if (end == STRUT_PATH_LOST)
     snprintf(w->path->remark, room,
-             "the path ends at %s %.6g%s%s: no equilibrium was found nearby beyond it",
-             strut_path_subject(w), value, gap, unit);
+             "the path ends at %s %.6g%s%s: no equilibrium was found nearby beyond it%s",
+             strut_path_subject(w), value, gap, unit, cause);
   if (end == STRUT_PATH_AWAY)
     snprintf(w->path->remark, room,
              "followed to %s %.6g%s%s: beyond, the structure moves away without end",
