@@ -21,7 +21,7 @@ static strut_status write_parts(const strut_arguments *arguments) {
   if (status != STRUT_OK) return status;
   char *flat = strut_setup_write(&setup);
   if (!flat) status = strut_print_out_of_memory();
-  if (flat) status = strut_write_short(arguments, text, length, flat, &setup, &result);
+  if (flat) status = strut_write_short(arguments, text, length, flat, &setup, true, &result);
   if (status == STRUT_OK) status = strut_print(result ? result : flat);
   strut_release(result);
   strut_release(flat);

@@ -42,6 +42,7 @@
   X(ACTUATOR, "actuator", ACTUATOR_MEMBER) \
   X(LOAD, "load", LOAD_NODE) \
   X(UNBALANCE, "unbalance", UNBALANCE_NODE) \
+  X(SLIDER, "slider", SLIDER_MEMBER) \
   X(SIGNAL, "signal", SIGNAL_CONSTANT) \
   X(SINE, "sine", SINE_AMPLITUDE) \
   X(HALF_SINE, "half_sine", HALF_SINE_AMPLITUDE) \

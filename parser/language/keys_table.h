@@ -43,6 +43,7 @@
   X(SCENE, RUN, "run", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Duration and measurement. Required for a run.") \
   X(SCENE, OUTPUT, "output", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "What is recorded.") \
   X(SCENE, GROUNDS, "grounds", THINGS, NONE, ANY, "", OPTIONAL, 1, "the keys of [ground](#ground)", BY_HAND, "Several grounds, instead of `ground`: walls, profiles, circles. Nodes touch all of them.") \
+  X(SCENE, SLIDERS, "sliders", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a slider", BY_HAND, "Masses on members, along which they may slide.") \
   X(SCENE, SENSORS, "sensors", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a sensor", BY_HAND, "Numbers of the motion that the expressions of signals may use.") \
   X(SCENE, STATES, "states", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a state", BY_HAND, "Numbers that a run integrates beside the motion.") \
   X(SCENE, OSCILLATORS, "oscillators", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of an oscillator", BY_HAND, "Phase oscillators, each an internal state with the same name.") \
@@ -63,6 +64,7 @@
   X(PART, ACTUATORS, "actuators", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of an actuator", BY_HAND, "As in a scene.") \
   X(PART, LOADS, "loads", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a load", BY_HAND, "As in a scene; forces turn with the part.") \
   X(PART, UNBALANCES, "unbalances", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of an unbalance", BY_HAND, "As in a scene.") \
+  X(PART, SLIDERS, "sliders", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a slider", BY_HAND, "As in a scene.") \
   X(PART, SIGNALS, "signals", THINGS, NONE, ANY, "", OPTIONAL, 0, "a signal", BY_HAND, "As in a scene; those of the scene are known too.") \
   X(PART, CONFIGURATIONS, "configurations", THINGS, NONE, ANY, "", OPTIONAL, 0, "`{NODE: [x, y], ...}` or the keys of a [configuration](#configuration)", BY_HAND, "Shapes of the part; what is not in the copy stays as drawn.") \
   X(PART, SENSORS, "sensors", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a sensor", BY_HAND, "As in a scene.") \
@@ -219,6 +221,11 @@
   X(UNBALANCE, SPEED, "speed", NUMBER, CONTEXT, ANY, "", OPTIONAL, 9, "", BY_HAND, "Its constant speed, counter-clockwise: turns per second such as 30 Hz, or 188 rad/s; a plain number is in rad/s.") \
   X(UNBALANCE, SIGNAL, "angle", SIGNAL, ANGLE, ANY, "", OPTIONAL, 9, "", BY_HAND, "Its angle instead, as a signal that must not jump.") \
   X(UNBALANCE, PHASE, "phase", NUMBER, ANGLE, ANY, "0", OPTIONAL, 0, "", FIELD(strut_unbalance, phase), "Added to the angle, which counts from +x.") \
+  X(SLIDER, MEMBER, "member", NAME, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "The member on whose straight line between its two nodes it is.") \
+  X(SLIDER, MASS, "mass", NUMBER, MASS, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_sliding_mass, mass), "The mass, a point.") \
+  X(SLIDER, POSITION, "position", NUMBER, CONTEXT, ANY, "0", OPTIONAL, 0, "", BY_HAND, "Where it is: a share of the member, such as 50 %, or a length as drawn, from its first node.") \
+  X(SLIDER, MOVES, "moves", SIGNAL, NONE, ANY, "", OPTIONAL, 1, "", BY_HAND, "Added to the position, as a share of the member: a signal that must not jump.") \
+  X(SLIDER, TRAVEL, "travel", SIGNAL, LENGTH, ANY, "", OPTIONAL, 1, "", BY_HAND, "The same as a length along the member as drawn, which stretches with it.") \
   X(SIGNAL, CONSTANT, "constant", NUMBER, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "A constant, for t >= 0.") \
   X(SIGNAL, SINE, "sine", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "amplitude * sin(2 pi frequency (t - start) + phase).") \
   X(SIGNAL, HALF_SINE, "half_sine", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "One half-wave of a sine, then 0.") \

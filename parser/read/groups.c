@@ -114,45 +114,44 @@ size_t strut_groups_named(strut_reader *reader, const strut_tree *value, strut_g
   return count;
 }
 
-/* Marks the groups that things within the tree name. */
-static void mark_users(strut_reader *reader, const strut_tree *tree, bool hinges) {
+/* Marks the groups that the things of a mapping name. */
+static void mark_users(strut_reader *reader, const strut_tree *map, bool hinges) {
   strut_group *groups[STRUT_MOST_GROUPS];
-  for (const strut_tree *key = tree->kind == STRUT_TREE_MAP ? tree->first : NULL; key;
-       key = key->next->next) {
-    if (strcmp(key->text, "group") != 0) {
-      mark_users(reader, key->next, hinges);
-      continue;
-    }
-    size_t count = strut_groups_named(reader, key->next, groups);
+  if (!map || map->kind != STRUT_TREE_MAP) return;
+  for (const strut_tree *key = strut_first_entry(reader, map); key;
+       key = strut_following_entry(reader, key)) {
+    const strut_tree *named =
+        key->next->kind == STRUT_TREE_MAP ? strut_tree_find(key->next, "group", NULL) : NULL;
+    size_t count = named ? strut_groups_named(reader, named, groups) : 0;
     while (count-- > 0) *(hinges ? &groups[count]->of_hinges : &groups[count]->of_others) = true;
   }
 }
 
-/* Of all things of a mapping, each in its scope. */
-static void mark_all_users(strut_reader *reader, const strut_tree *map, bool hinges) {
-  if (map->kind != STRUT_TREE_MAP) return;
-  for (const strut_tree *key = strut_first_entry(reader, map); key;
-       key = strut_following_entry(reader, key))
-    mark_users(reader, key->next, hinges);
+static void mark_contacts(strut_reader *reader, const strut_tree *ground) {
+  if (ground && ground->kind == STRUT_TREE_MAP)
+    mark_users(reader, strut_tree_find(ground, "contacts", NULL), false);
 }
 
 static void find_users(strut_reader *reader) {
-  static const int others[] = {STRUT_KEY_SCENE_MEMBERS, STRUT_KEY_SCENE_NODES,
-                               STRUT_KEY_SCENE_GROUND, STRUT_KEY_SCENE_GROUNDS};
-  const strut_slot *hinges = strut_slot_of(&reader->top, STRUT_KEY_SCENE_HINGES);
-  if (hinges->value) mark_all_users(reader, hinges->value, true);
-  for (size_t i = 0; i < sizeof others / sizeof others[0] && hinges->value; i++) {
-    const strut_slot *slot = strut_slot_of(&reader->top, others[i]);
-    if (slot->value) mark_all_users(reader, slot->value, false);
-  }
-  if (reader->copies && reader->copies->contacts)
-    mark_all_users(reader, reader->copies->contacts, false);
+  const strut_tree *hinges = strut_slot_of(&reader->top, STRUT_KEY_SCENE_HINGES)->value;
+  for (size_t i = 0; i < reader->group_count && !hinges; i++) reader->groups[i].of_others = true;
+  if (!hinges) return;
+  mark_users(reader, hinges, true);
+  mark_users(reader, strut_slot_of(&reader->top, STRUT_KEY_SCENE_MEMBERS)->value, false);
+  mark_users(reader, strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->value, false);
+  mark_contacts(reader, strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND)->value);
+  const strut_tree *grounds = strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUNDS)->value;
+  if (grounds && grounds->kind == STRUT_TREE_MAP)
+    for (const strut_tree *key = grounds->first; key; key = key->next->next)
+      mark_contacts(reader, key->next);
+  if (reader->copies) mark_users(reader, reader->copies->contacts, false);
   for (size_t i = 0; i < reader->group_count; i++)
     if (!reader->groups[i].of_hinges) reader->groups[i].of_others = true;
 }
 
 void strut_read_groups(strut_reader *reader) {
   const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_GROUPS);
+  size_t i = 0;
   if (!map) return;
   reader->groups =
       strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->groups);
@@ -162,10 +161,9 @@ void strut_read_groups(strut_reader *reader) {
     strut_add_name(reader, &reader->group_names, key->text, reader->group_count++);
   }
   find_users(reader);
-  for (size_t i = 0; i < reader->group_count; i++) {
-    strut_enter_scope(reader, reader->groups[i].key);
-    read_group(reader, reader->groups[i].key, &reader->groups[i]);
-  }
+  for (const strut_tree *key = strut_first_entry(reader, map); key && reader->groups;
+       key = strut_following_entry(reader, key))
+    read_group(reader, key, &reader->groups[i++]);
 }
 
 /* Does every name in `group:` name a group? Unknown ones are reported. */
@@ -248,12 +246,31 @@ void strut_apply_groups(strut_reader *reader, strut_fields *fields, int group_ke
   strut_suppress_missing(fields);
 }
 
+/* Does some `group` of a tree name the group? Then copies that are not made would use it. */
+static bool is_mentioned(const strut_tree *tree, const char *name) {
+  if (!tree || tree->kind == STRUT_TREE_SCALAR) return false;
+  for (const strut_tree *k = tree->first; k; k = k->next) {
+    bool group = tree->kind == STRUT_TREE_MAP && strcmp(k->text, "group") == 0;
+    if (tree->kind == STRUT_TREE_MAP) k = k->next;
+    if (group && k->kind == STRUT_TREE_SCALAR && strcmp(k->text, name) == 0) return true;
+    for (const strut_tree *item = group ? k->first : NULL; item; item = item->next)
+      if (item->kind == STRUT_TREE_SCALAR && strcmp(item->text, name) == 0) return true;
+    if (!group && is_mentioned(k, name)) return true;
+  }
+  return false;
+}
+
+static bool parts_mention(strut_reader *reader, const char *name) {
+  return is_mentioned(strut_slot_of(&reader->top, STRUT_KEY_SCENE_PARTS)->value, name) ||
+         is_mentioned(strut_slot_of(&reader->top, STRUT_KEY_SCENE_PLACE)->value, name);
+}
+
 void strut_report_unused_groups(strut_reader *reader) {
   if (reader->groups_unknown || reader->top.broken) return;
   for (size_t i = 0; i < reader->group_count; i++) {
     const strut_group *group = &reader->groups[i];
     if (group->used || group->broken || group->key->placed) continue;
-    if (group->key->place.file) continue; /* of a base */
+    if (parts_mention(reader, group->name)) continue;
     strut_report_error(reader, group->key->place, "nothing uses group '%s'", group->name);
   }
 }

@@ -119,6 +119,15 @@ static bool is_replaced(const key_index *over, const strut_tree *key) {
   return strut_key_at(found)->set && over->sets >> strut_key_at(found)->set & 1;
 }
 
+bool strut_says_otherwise(strut_mapping_kind kind, const strut_tree *map, const char *key) {
+  int k = find_key(kind, key), set = k < 0 ? 0 : strut_key_at(k)->set;
+  for (const strut_tree *other = map->first; other && set; other = other->next->next) {
+    int o = find_key(kind, other->text);
+    if (o >= 0 && o != k && strut_key_at(o)->set == set) return true;
+  }
+  return false;
+}
+
 /* ---- trees ---- */
 
 /* A copy of the node that shares its children; NULL: memory is out. */

@@ -22,6 +22,10 @@ typedef struct strut_mapping_kind {
 /** The mapping that is the value of a key. */
 STRUT_API strut_mapping_kind strut_kind_below(strut_mapping_kind kind, const char *key);
 
+/** Does some key of the mapping say the same as this one, of another name, in another way? */
+STRUT_API bool strut_says_otherwise(strut_mapping_kind kind, const strut_tree *map,
+                                    const char *key);
+
 typedef struct strut_overlay {
   strut_arena *arena;             /* of the result, which shares what did not change */
   uint32_t mark;                  /* is set in the line of every place of what is laid over */

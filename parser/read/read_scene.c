@@ -70,6 +70,7 @@ static void read_sections(strut_reader *reader, const strut_setting *settings, s
                                                      strut_read_signals,
                                                      strut_read_states,
                                                      strut_read_drives,
+                                                     strut_read_sliders,
                                                      strut_read_ground,
                                                      strut_read_configurations,
                                                      strut_read_search,
@@ -152,7 +153,8 @@ static void free_reader(strut_reader *reader) {
       &reader->parameter_names, &reader->signal_names,    &reader->configuration_names,
       &reader->actuator_names,  &reader->load_names,      &reader->hinge_names,
       &reader->cell_names,      &reader->collision_names, &reader->unbalance_names,
-      &reader->ground_names,    &reader->sensor_names,    &reader->state_names};
+      &reader->ground_names,    &reader->sensor_names,    &reader->state_names,
+      &reader->slider_names};
   for (size_t i = 0; i < sizeof maps / sizeof maps[0]; i++) strut_name_map_free(maps[i]);
   strut_copies_free(reader);
   strut_release(reader->signals);

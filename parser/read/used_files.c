@@ -9,6 +9,9 @@
 #include "parser/read/overlay.h"
 #include "parser/read/safe_path.h"
 
+/* Values that files which are used several times may repeat, as those of aliases. */
+enum { MOST_REPEATED = 1000000 };
+
 /* A file that was read, or is being read. */
 typedef struct file {
   const char *path;
@@ -21,6 +24,7 @@ typedef struct file {
   strut_tree *scene;       /* laid over its base; NULL: not yet */
   strut_tree *whole;       /* and with the files of its parts */
   strut_tree *part;        /* what a part takes of that */
+  size_t values, uses;     /* in all of it; how many parts have it */
 } file;
 
 typedef struct loader {
@@ -28,6 +32,7 @@ typedef struct loader {
   strut_diagnostics *diagnostics;
   const char *folder; /* below which all files lie */
   size_t bytes;       /* of all texts */
+  size_t repeated;    /* values of files that are used again */
   size_t count;
   file *files; /* (STRUT_USED_FILES_MOST + 1) by their numbers; the first is the scene itself */
   unsigned depth;
@@ -46,10 +51,14 @@ static void format_chain(const loader *l, const file *first, char *text, size_t 
     used += (size_t)snprintf(text + used, size - used, "%.80s -> ", l->stack[i]->path);
 }
 
-static void set_file(strut_tree *tree, unsigned number) {
-  if (tree->place.file == number) return; /* shared by aliases */
+/* Marks the places; returns the number of values. */
+static size_t set_file(strut_tree *tree, unsigned number) {
+  size_t count = 1;
+  if (tree->place.file == number) return 0; /* shared by aliases */
   tree->place.file = number & 0xFFu;
-  for (strut_tree *child = tree->first; child; child = child->next) set_file(child, number);
+  for (strut_tree *child = tree->first; child; child = child->next)
+    count += set_file(child, number);
+  return count;
 }
 
 /* The messages about a file, told about the scene; the first says where the file is used. */
@@ -67,7 +76,7 @@ static void take_messages(loader *l, const strut_diagnostics *own, const file *f
 }
 
 /* The tree of the file's text, in the document's memory. NULL: it was reported. */
-static strut_tree *read_tree(loader *l, const file *f, const strut_tree *name) {
+static strut_tree *read_tree(loader *l, file *f, const strut_tree *name) {
   const strut_used_file *used = &l->diagnostics->used[f->number - 1];
   strut_diagnostics own = {0};
   strut_diagnostics_source(&own, used->file, used->text, used->length);
@@ -79,7 +88,7 @@ static strut_tree *read_tree(loader *l, const file *f, const strut_tree *name) {
   take_messages(l, &own, f, name);
   strut_diagnostics_free(&own);
   if (status != STRUT_OK) return NULL;
-  set_file(root, f->number);
+  f->values = set_file(root, f->number);
   return root;
 }
 
@@ -182,7 +191,11 @@ static file *load(loader *l, const strut_tree *name, const char *key, bool whole
   file *f = find_file(l, name);
   if (!f || f->failed || !enter(l, f, name)) return NULL;
   bool fine = f->scene || (is_scene(l, f, name) && lay_over_base(l, f));
-  if (fine && whole && !f->whole) fine = (f->whole = with_files(l, f->scene)) != NULL;
+  if (fine && whole && !f->whole) {
+    f->whole = with_files(l, f->scene);
+    fine = f->whole != NULL;
+    if (!fine) l->out_of_memory = true;
+  }
   leave(l, f);
   f->failed = !fine;
   return fine ? f : NULL;
@@ -286,16 +299,28 @@ static bool isolate(loader *l, strut_tree *part, const strut_tree *name) {
   return add(part, &end, key, value);
 }
 
+/* Files that each use another twice would make a tree that is too large to be written or compared. */
+static bool may_repeat(loader *l, file *used, const strut_tree *name) {
+  l->stack[l->depth - 1]->values += used->values;
+  bool before = l->repeated <= MOST_REPEATED;
+  if (used->uses++) l->repeated += used->values;
+  if (l->repeated <= MOST_REPEATED) return true;
+  if (before)
+    strut_diagnose(l->diagnostics, name->place, "more than %d values are repeated by used files",
+                   MOST_REPEATED);
+  return false;
+}
+
 /* The part's keys laid over what it takes of its file; the part itself where that was reported. */
 static strut_tree *use_file(loader *l, strut_tree *part) {
   strut_tree *name = strut_tree_find(part, "use", NULL);
   if (!name || name->count) return part;
-  name->count = 1; /* it has been tried, which copies of it tell too */
   file *used = load(l, name, "use", true);
   if (used && !used->part) used->part = make_part(l, used->whole);
-  if (!used || !used->part) {
+  if (used && !used->part) l->out_of_memory = true;
+  if (!used || !used->part || !may_repeat(l, used, name)) {
     l->failed = true;
-    if (used) l->out_of_memory = true;
+    name->count = 1; /* it has been reported */
     return part;
   }
   const strut_overlay overlay = {.arena = &l->document->arena, .diagnostics = l->diagnostics};
@@ -318,7 +343,9 @@ static strut_tree *with_files(loader *l, strut_tree *map) {
   inner->count = 0;
   for (const strut_tree *k = parts->first; k; k = k->next->next) {
     strut_tree *part = copied(l, k->next);
-    if (part && part->kind == STRUT_TREE_MAP) part = with_files(l, use_file(l, part));
+    bool keys = part && part->kind == STRUT_TREE_MAP;
+    if (keys) part = with_files(l, part); /* before those of its file come in */
+    if (keys && part) part = use_file(l, part);
     if (l->out_of_memory || !add(inner, &end, copied(l, k), part)) return NULL;
   }
   end = &result->first;
@@ -362,9 +389,10 @@ static strut_status load_all(loader *l, strut_tree *root) {
     top->device = (uint64_t)found.st_dev;
     top->inode = (uint64_t)found.st_ino;
   }
-  bool fine = lay_over_base(l, top) && (top->whole = with_files(l, top->scene)) != NULL;
-  l->document->root = fine ? top->whole : NULL;
-  if (!fine && !l->diagnostics->count) l->out_of_memory = true;
+  bool fine = lay_over_base(l, top);
+  if (fine) top->whole = with_files(l, top->scene);
+  if (fine && !top->whole) l->out_of_memory = true;
+  l->document->root = top->whole;
   if (l->out_of_memory) return STRUT_NO_MEMORY;
   return fine && !l->failed ? STRUT_OK : STRUT_BAD_SCENE;
 }

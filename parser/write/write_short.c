@@ -10,8 +10,8 @@
 #include "parser/write/write_scene.h"
 #include "parser/write/write_tree.h"
 
-static const char comment[] =
-    "The scene as short as it was given; files that it uses are written out.";
+static const char comment[] = "A scene with its parameters, groups and parts.";
+static const strut_mapping_kind scene_kind = {STRUT_SECTION_SCENE, false};
 
 /* What the functions below need; they return NULL where memory is out. */
 typedef struct short_writer {
@@ -116,7 +116,8 @@ static const strut_tree *find_from(const strut_tree *map, const strut_tree **at,
 }
 
 /* The keys of `after` that `before` has not, or with another value, and removals of those that are gone. */
-static strut_tree *difference(short_writer *w, const strut_tree *before, const strut_tree *after) {
+static strut_tree *difference(short_writer *w, strut_mapping_kind kind, const strut_tree *before,
+                              const strut_tree *after) {
   strut_tree *map = new_map(w, after), **end = map ? &map->first : NULL;
   const strut_tree *at = before->first;
   if (!map) return NULL;
@@ -125,14 +126,15 @@ static strut_tree *difference(short_writer *w, const strut_tree *before, const s
     if (was && same_tree(was->next, k->next)) continue;
     bool maps = was && was->next->kind == STRUT_TREE_MAP && k->next->kind == STRUT_TREE_MAP;
     strut_tree *key = copied(w, k);
-    strut_tree *value = maps ? difference(w, was->next, k->next) : copied(w, k->next);
+    strut_mapping_kind below = strut_kind_below(kind, k->text);
+    strut_tree *value = maps ? difference(w, below, was->next, k->next) : copied(w, k->next);
     if (!key || !value) return NULL;
     *end = key, key->next = value, end = &value->next;
     map->count++;
   }
   at = after->first;
   for (const strut_tree *k = before->first; k; k = k->next->next) {
-    if (find_from(after, &at, k->text)) continue;
+    if (find_from(after, &at, k->text) || strut_says_otherwise(kind, map, k->text)) continue;
     strut_tree *key = copied(w, k), *value = new_scalar(w, k, "remove");
     if (!key || !value) return NULL;
     *end = key, key->next = value, end = &value->next;
@@ -216,8 +218,7 @@ static bool drop_unused_groups(short_writer *w, strut_tree *root) {
 static strut_tree *lay_over(short_writer *w, const strut_tree *root, const strut_tree *over) {
   strut_diagnostics unsaid = {0};
   const strut_overlay overlay = {.arena = &w->document.arena, .diagnostics = &unsaid};
-  strut_tree *result =
-      strut_lay_over(&overlay, (strut_mapping_kind){STRUT_SECTION_SCENE, false}, root, over);
+  strut_tree *result = strut_lay_over(&overlay, scene_kind, root, over);
   strut_diagnostics_free(&unsaid);
   return result;
 }
@@ -226,7 +227,7 @@ static strut_tree *whole_tree(short_writer *w, const strut_override *overrides, 
                               const char *before, const char *after) {
   const strut_tree *root = strut_scene_source_document((strut_scene_source *)w->source)->root;
   const strut_tree *old = read_flat(w, before), *now = old ? read_flat(w, after) : NULL;
-  const strut_tree *over = now ? difference(w, old, now) : NULL;
+  const strut_tree *over = now ? difference(w, scene_kind, old, now) : NULL;
   if (count) {
     const strut_tree *set = settings_tree(w, root, overrides, count);
     root = set ? lay_over(w, root, set) : NULL;

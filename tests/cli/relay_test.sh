@@ -131,7 +131,7 @@ solver: {integrator: rk4-events, step: 1 ms}
 run: {periods: 40, of: beat, measure: {steady: {shooting: yes}, last: 1, node: b}}
 END
 expect 0 run steady.yaml
-out_has 'internal states, samples and relays are a memory that shooting does not correct'
+out_has 'internal states, samples, starts and relays are a memory that shooting does not correct'
 
 # What a relay drives may take its own input past the other threshold at once: that is refused where it
 # happens, unless the relay is sampled.

@@ -118,10 +118,10 @@ static void put_structure(random_world *w) {
     put_damping(w, MEMBERS);
     put(w, MEMBERS, ", rest_length_ratio: %.17g}\n", between(w, 0.9, 1.1));
   }
-  put(w, MEMBERS, "  rope: {kind: %s, nodes: [n0, n2, n4, n3], stiffness: 80, mass: 0.3",
-      has(w, WORLD_SMOOTH) ? "spring" : "cable");
+  bool slack = !has(w, WORLD_SMOOTH); /* it may get slack */
+  put(w, MEMBERS, "  rope: {kind: cable, nodes: [n0, n2, n4, n3], stiffness: 80, mass: 0.3");
   put_damping(w, MEMBERS);
-  put(w, MEMBERS, ", rest_length_ratio: %.17g}\n", between(w, 0.8, 1.05));
+  put(w, MEMBERS, ", rest_length_ratio: %.17g}\n", slack ? between(w, 0.8, 1.05) : 0.6);
   for (int k = 0; k < 3; k++) {
     int a = below(w, w->ring);
     put(w, MEMBERS, "  tie%d: {kind: spring, nodes: [n%d, n%d], %s", k, a, across(w, a, 2),
@@ -189,7 +189,8 @@ static void put_friction(random_world *w) {
 }
 
 static void put_ground(random_world *w, int first, int last) {
-  put(w, GROUNDS, ", stiffness: %.17g", between(w, 100, 400));
+  bool light = has(w, WORLD_LIGHT);
+  put(w, GROUNDS, ", stiffness: %.17g", light ? between(w, 2e3, 5e3) : between(w, 100, 400));
   if (once_in(w, 2))
     put(w, GROUNDS, ", damping: %.17g", between(w, 0, 5));
   else
@@ -203,24 +204,25 @@ static void put_ground(random_world *w, int first, int last) {
 
 static void put_grounds(random_world *w) {
   int last = w->nodes - 1;
-  put(w, GROUNDS, "  floor: {height: %.17g, slope: %.17g", between(w, -0.9, -0.5),
+  double low = has(w, WORLD_LIGHT) ? 0.3 : 0; /* how much further away they are */
+  put(w, GROUNDS, "  floor: {height: %.17g, slope: %.17g", between(w, -0.9, -0.5) - 2 * low,
       between(w, -0.3, 0.3));
   put_ground(w, 2, last);
-  put(w, GROUNDS, "  wall: {through: [%.17g, %.17g], %s", between(w, -1, -0.7), between(w, -1, 1),
-      once_in(w, 2) ? "slope: -95 deg" : "normal: [3, 0.4]");
+  put(w, GROUNDS, "  wall: {through: [%.17g, %.17g], %s", between(w, -1, -0.7) - low,
+      between(w, -1, 1), once_in(w, 2) ? "slope: -95 deg" : "normal: [3, 0.4]");
   put_ground(w, 3, last);
   put(w, GROUNDS, "  stone: {circle: {centre: [%.17g, %.17g], radius: %.17g}", between(w, -1, 1),
-      between(w, -1.2, -0.6), between(w, 0.2, 0.6));
+      between(w, -1.2, -0.6) - 1.5 * low, between(w, 0.2, 0.6) - low / 2);
   put_ground(w, 4, last);
   put(w, GROUNDS,
       "  hoop: {circle: {centre: [%.17g, %.17g], radius: %.17g, inside: yes}, "
       "motion: {x: sway, y: breathe}",
-      between(w, -0.1, 0.1), between(w, -0.1, 0.1), between(w, 0.85, 1.2));
+      between(w, -0.1, 0.1), between(w, -0.1, 0.1), between(w, 0.85, 1.2) + low);
   put_ground(w, 2, w->ring - 1);
   put(w, GROUNDS, "  stairs: {profile: [");
   for (int k = 0; k < 7; k++)
     put(w, GROUNDS, "%s[%.17g, %.17g]", k ? ", " : "", 0.5 * (k - 3) + between(w, -0.15, 0.15),
-        between(w, -0.9, -0.5));
+        between(w, -0.9, -0.5) - 1.8 * low);
   put(w, GROUNDS, "], motion: {y: breathe}");
   put_ground(w, 2, last);
   put(w, SIGNALS, "  sway: {sine: {amplitude: %.17g, frequency: 2}}\n", between(w, 0.01, 0.1));

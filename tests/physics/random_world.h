@@ -17,6 +17,7 @@ typedef enum world_part {
   WORLD_MEMORY = 32,  /* elements that yield, break, are released or rub */
   WORLD_SMOOTH = 64,  /* without what no method without events integrates at its order: one-sided
                           elements, contacts, stops, collisions */
+  WORLD_LIGHT = 128,  /* grounds are hard, and touched from above only, as in life */
   WORLD_ALL = 63
 } world_part;
 
