@@ -271,6 +271,17 @@ static strut_status compute_points(const strut_arguments *arguments, strut_sweep
   return status;
 }
 
+/* Prints the script for a cluster. */
+static strut_status emit_script(const strut_arguments *arguments, const strut_study *study) {
+  strut_status status = strut_sweep_emit(arguments, study->name);
+  if (!status && study->refine_depth)
+    fputs(
+        "strut: a refined study needs its shards in rounds: submit the script again until no shard "
+        "asks for another\n",
+        stderr);
+  return status;
+}
+
 static strut_status run_sweep(const strut_arguments *arguments) {
   strut_sweep_study study = {0};
   concurrency at_a_time = {0};
@@ -293,7 +304,7 @@ static strut_status run_sweep(const strut_arguments *arguments) {
   if (!status && arguments->count_points)
     status = strut_sweep_print_count(&study.plan, arguments->json);
   else if (!status && strut_option_text(arguments, STRUT_OPTION_EMIT))
-    status = strut_sweep_emit(arguments, study.plan.study->name);
+    status = emit_script(arguments, study.plan.study);
   else if (!status && arguments->status)
     status = show_status(arguments, &study);
   else if (!status)

@@ -129,6 +129,11 @@ def same_bytes():
     check(read("parts/table.csv") == table, "shards: another table")
 
 
+def emitted():
+    done = run("sweep", "fine.yaml", "-o", "fine", "--emit", "parallel", "--shards", "3")
+    check("in rounds" in done.stderr, done.stderr)
+
+
 def killed():
     table = read("fine/table.csv")
     for n in range(8):
@@ -180,6 +185,7 @@ axes: [{{height: {COARSE[0]}}}, {{load: {COARSE[1]}}}, {{stiffness: [1, 2]}}]
 try:
     the_edge_is_found()
     same_bytes()
+    emitted()
     killed()
     numbers_and_failures()
     refused("refine: {where: outcome, depth: 2}\n", "no column 'outcome'")
