@@ -166,6 +166,11 @@ static strut_status for_each(const strut_arguments *arguments, const strut_sweep
   strut_status status = text ? STRUT_OK : strut_no_memory(error, "");
   for (int i = 0; i < COPIES && status == STRUT_OK; i++)
     status = what(arguments->output, &copies[i], &arena, error);
+  for (size_t i = 0; i < file->table_count && status == STRUT_OK; i++) {
+    const strut_study_points *points = &file->tables[i];
+    const copy table = {points->copy, points->file.path, points->file.text, study_path, model_path};
+    status = what(arguments->output, &table, &arena, error);
+  }
   strut_release(text);
   strut_arena_free(&arena);
   return status;

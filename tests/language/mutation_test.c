@@ -18,12 +18,14 @@
 
 /* What saying nothing means too: dropping such a key changes nothing, and must not. */
 static const char *const said_anyway[] = {
-    "settle: false",        "nodes: all",      "law: none",
-    "law: karnopp",         "fixed: none",     "mass: 0",
-    "damping: 0",           "height: 0",       "contacts: {}",
-    "friction: {law: none", "integrator: rk4", "mass_model: consistent",
-    "configuration: start", /* which is as drawn, in the crawler */
-    "apex1: [0, height],",  /* a shape that says of one node what is drawn */
+    "settle: false",       "nodes: all",
+    "law: none",           "law: karnopp",
+    "fixed: none",         "mass: 0",
+    "damping: 0",          "height: 0",
+    "contacts: {}",        "friction: {law: none",
+    "integrator: rk4",     "mass_model: consistent",
+    "kind: pid",           "configuration: start", /* which is as drawn, in the crawler */
+    "apex1: [0, height],",                         /* a shape that says of one node what is drawn */
 };
 
 typedef struct mutation {

@@ -232,6 +232,7 @@ static const double GAP = 3.6, NAME_SIZE = 7.5, MOST_WIDTH = 90;
 static const double SUPPORT = 5.0; /* half the width of a support [pt] */
 static const double HATCHED = 2.0, FREE = 1.0,
                     FAR = 6.0; /* cost, enough freedom, second try [pt] */
+static const double COVERED = -20.0; /* clearance where a name begins to cover another one [pt] */
 
 /* What names must not cover: segments, the first of which are the members' longest. */
 typedef struct obstacles {
@@ -278,7 +279,7 @@ static double clearance(const obstacles *o, strut_box box) {
     double dx = fmax(other->x - box.x - box.width, box.x - other->x - other->width);
     double dy = fmax(other->y - box.y - box.height, box.y - other->y - other->height);
     double apart = fmax(dx, dy);
-    least = fmin(least, apart < 0 ? apart - 20 : apart);
+    least = fmin(least, apart < 0 ? apart + COVERED : apart);
   }
   double out = fmax(fmax(o->inside.x - box.x, o->inside.y - box.y),
                     fmax(box.x + box.width - o->inside.x - o->inside.width,
@@ -318,6 +319,7 @@ static void draw_name(strut_canvas *canvas, obstacles *o, const double at[2], do
       chosen = box;
     }
   }
+  if (best <= COVERED) return; /* one of many: those that can be read say more */
   o->labels[o->label_count++] = chosen;
   strut_draw_text(canvas, chosen.x, chosen.y, name, name_font());
 }
