@@ -530,12 +530,14 @@ static void read_single(strut_reader *reader) {
   merge_contacts(reader, &list);
 }
 
-/* Contacts of parts wait for a ground. */
+/* Contacts of parts wait for a ground; those of a used file come along with one that was not taken. */
 static void note_contacts_without_ground(strut_reader *reader) {
   const strut_tree *map = reader->copies ? reader->copies->contacts : NULL;
   if (!map || !map->first || strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND)->key ||
       strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUNDS)->key)
     return;
+  for (const strut_copy *s = strut_scope_of(reader, map->first); s; s = s->outer)
+    if (s->closed) return;
   strut_note(reader->diagnostics, map->first->place,
              "the scene has no ground that the contacts of the part could touch");
 }
