@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The summary of a run as a table that fits a screen. */
+#include <float.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -205,6 +206,9 @@ static void add_balance(strut_buffer *table, const strut_summary *s) {
                                   : " up to the rounding of the stored energy");
 }
 
+/* Energies below this part of all of them are rounding. */
+static const double ENERGY_ROUNDING = 4.0 * DBL_EPSILON;
+
 static void add_energy(strut_buffer *table, const strut_energy *e) {
   const struct {
     const char *name;
@@ -214,9 +218,11 @@ static void add_energy(strut_buffer *table, const strut_energy *e) {
       STRUT_ENERGY_TABLE(ENERGY_ROW)
 #undef ENERGY_ROW
   };
+  double most = e->moved + fabs(e->initial);
+  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) most = fmax(most, fabs(rows[i].value));
   strut_buffer_add(table, "\n  energy\n");
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-    if (rows[i].value == 0.0) continue; /* not in this scene */
+    if (!(fabs(rows[i].value) > ENERGY_ROUNDING * most)) continue; /* not in this scene */
     strut_buffer_add(table, "  %-16s %14s\n", rows[i].name, in(rows[i].value, "J").text);
   }
 }

@@ -270,4 +270,33 @@ expect 0 path shrink.yaml --load pull --until 20 --json
 near_number "$(value '.points[-1].factor')" 4 1e-6 "load that pulls the ring to the end"
 holds '.end == "lost" and (.remark | endswith("no equilibrium was found nearby beyond it; a segment of cable '"'string'"' has shrunk to nothing there, between nodes '"'ring' and 'right'"'"))'
 
+# What is rounding is 0 in reports: forces of a cable that went slack, and of a structure without any, whose
+# balance is not judged by them.
+cat >slack.yaml <<'END'
+strut: 1
+nodes:
+  left: {position: [0, 0], fixed: both}
+  ring: {position: [0.4, -0.3]}
+  right: {position: [0.8, 0], fixed: both}
+members:
+  string: {kind: cable, nodes: [left, ring, right], stiffness: 1 kN/m, rest_length: 0.9 m}
+  hold: {kind: spring, nodes: [ring, right], stiffness: 1 N/m}
+loads: {pull: {node: ring, force: [0, -10 N]}}
+END
+expect 0 path slack.yaml --over ring.y --until 0.31
+out_has '  right support x            9.20054 N             0 N             0 N'
+cat >chain.yaml <<'END'
+strut: 1
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: [1, 0.3]
+  c: {position: [2, 0], fixed: both}
+members:
+  one: {kind: bar, nodes: [a, b], stiffness: 1 N/m, rest_length: sqrt(1.09)*1 m*(1 + 2.3e-16)}
+  two: {kind: bar, nodes: [b, c], stiffness: 1 N/m, rest_length: sqrt(1.09)*1 m*(1 + 2.3e-16)}
+END
+expect 0 rigidity chain.yaml
+out_has '  equilibrium        yes: net force on a free coordinate up to 0 N'
+out_has_not 'fN'
+
 done_testing

@@ -39,10 +39,12 @@ static state state_of_event(const strut_path_event *e) {
                  e->moment, e->reaction, e->contact, e->pressure};
 }
 
-/* The largest member force there [N]. */
-static double largest_force(const state *at, const strut_scene *scene) {
+/* The largest member force anywhere on the path [N]. */
+static double largest_force(const strut_path *path, const strut_scene *scene) {
   double most = 0;
-  for (size_t j = 0; j < scene->member_count; j++) most = fmax(most, fabs(at->force[j]));
+  for (size_t k = 0; k < path->point_count; k++)
+    for (size_t j = 0; j < scene->member_count; j++)
+      most = fmax(most, fabs(path->points[k].force[j]));
   return most;
 }
 
@@ -196,10 +198,9 @@ static double force_of(const strut_path *path, const state *at) {
   return path->coordinate >= 0 ? at->reaction[path->coordinate] : at->factor * path->reference;
 }
 
-static void add_row(strut_buffer *table, const strut_path *path, const strut_scene *scene,
-                    const state *at, size_t node, const char *what) {
+static void add_row(strut_buffer *table, const strut_path *path, const state *at, size_t node,
+                    const char *what, double largest) {
   const double *q = at->q + 2 * node, *from = path->points[0].q + 2 * node;
-  double largest = path->coordinate >= 0 ? largest_force(at, scene) : 0;
   double own = shown_force(force_of(path, at), largest);
   char value[STRUT_QUANTITY_TEXT], force[STRUT_QUANTITY_TEXT];
   char x[STRUT_QUANTITY_TEXT], y[STRUT_QUANTITY_TEXT];
@@ -281,7 +282,7 @@ static void add_force_table(strut_buffer *table, const strut_path *path, const s
   double values[MOST_STOPS], largest[MOST_STOPS];
   char text[STRUT_QUANTITY_TEXT];
   size_t count = choose_stops(path, stops, heads), rows = 0, left = 0;
-  for (size_t k = 0; k < count; k++) largest[k] = largest_force(&stops[k], scene);
+  for (size_t k = 0; k < count; k++) largest[k] = largest_force(path, scene);
   strut_buffer_add(table, "\n  %-*s", LABEL, "forces at");
   for (size_t k = 0; k < count; k++) {
     strut_buffer_add(table, "  ");
@@ -331,6 +332,7 @@ char *strut_path_table(const strut_path *path, const strut_scene *scene) {
   strut_buffer table = {0};
   size_t node = farthest_node(path, scene), at = 0;
   size_t every = (path->point_count + MOST_ROWS - 1) / MOST_ROWS;
+  double largest = path->coordinate >= 0 ? largest_force(path, scene) : 0;
   strut_c_locale locale = strut_c_locale_enter();
   strut_buffer_add(&table, "%s%spath %s %s, %zu points\n\n", scene->name, *scene->name ? ": " : "",
                    path->over == STRUT_PATH_OVER_LOAD ? "of" : "over", path->name,
@@ -344,10 +346,10 @@ char *strut_path_table(const strut_path *path, const strut_scene *scene) {
       state there = state_of_event(&path->events[at]);
       snprintf(what, sizeof what, "%s: %s", strut_path_event_name(path->events[at].kind),
                path->events[at].detail);
-      add_row(&table, path, scene, &there, node, what);
+      add_row(&table, path, &there, node, what, largest);
     }
     if (k % every == 0 || k + 1 == path->point_count)
-      add_row(&table, path, scene, &here, node, point->negative ? "unstable" : "stable");
+      add_row(&table, path, &here, node, point->negative ? "unstable" : "stable", largest);
   }
   add_force_table(&table, path, scene);
   if (path->remark[0]) strut_buffer_add(&table, "\n%s\n", path->remark);

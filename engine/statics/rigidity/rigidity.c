@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/rigidity/rigidity.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -130,6 +131,12 @@ static strut_status judge_tensegrity(const strut_model *model, const double *q, 
   return STRUT_OK;
 }
 
+/* A force or a moment; 0 where it is rounding of the lengths or angles of such a size. */
+static double resolved(double force, double stiffness, double size) {
+  double least = 8.0 * DBL_EPSILON * stiffness * size;
+  return fabs(force) > least ? force : 0.0;
+}
+
 static void measure_elements(const strut_model *model, const double *q, strut_rigidity *r) {
   const strut_equilibrium_matrix *a = &r->matrix;
   strut_element_pose pose;
@@ -137,6 +144,9 @@ static void measure_elements(const strut_model *model, const double *q, strut_ri
     strut_element_evaluate(model, a->curved[j], model->members.rest, q, (double)NAN, &pose);
     bool cell = model->elements.element[a->curved[j]].role == STRUT_ELEMENT_CELL;
     double scale = cell ? 1.0 / a->size : a->size;
+    double least = cell ? 0.0 : fabs(pose.strain);
+    pose.force =
+        resolved(pose.force, model->elements.element[a->curved[j]].numbers.stiffness, least);
     double force = r->force[j] = pose.force / scale + 0.0; /* + 0.0: no -0 */
     for (int32_t k = a->start[j]; k < a->start[j + 1]; k++)
       r->largest_force = fmax(r->largest_force, fabs(force * a->value[k]));
@@ -150,7 +160,9 @@ static bool measure_forces(const strut_model *model, const double *q, strut_rigi
   if (!r->force || !r->density) return false;
   for (int32_t j = 0; j < t->count; j++) {
     double length = r->matrix.length[j];
-    r->force[j] = strut_member_elastic_tension(model, t->rest, j, q) + 0.0; /* + 0.0: no -0 */
+    r->force[j] = resolved(strut_member_elastic_tension(model, t->rest, j, q), t->stiffness[j],
+                           length + t->rest[j]) +
+                  0.0; /* no -0 */
     if (length > 0)
       r->density[j] = r->force[j] / length;
     else
