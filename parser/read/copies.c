@@ -12,7 +12,7 @@ const strut_frame strut_frame_of_scene = {.axes = {{1.0, 0.0}, {0.0, 1.0}}, .sca
 
 void strut_frame_vector(const strut_frame *f, double vector[2]) {
   double x = vector[0], y = vector[1];
-  bool plain = f->axes[0][0] == 1.0 && f->axes[1][1] == 1.0;
+  bool plain = f->axes[0][0] == 1.0 && f->axes[1][1] == 1.0 && f->axes[1][0] == 0.0;
   if (plain) return;
   vector[0] = f->axes[0][0] * x + f->axes[0][1] * y;
   vector[1] = f->axes[1][0] * x + f->axes[1][1] * y;
