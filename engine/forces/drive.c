@@ -16,7 +16,8 @@ strut_signal_inputs strut_drive_inputs(const strut_model *model, const strut_sta
                                .states = model->scene->states,
                                .lag_of = model->feedback.lag_of,
                                .held = state->held,
-                               .started = state->started};
+                               .started = state->started,
+                               .relay_side = state->relay_side};
 }
 
 /* The signal of a drive or a load now. */

@@ -8,6 +8,7 @@
 #include "engine/forces/elements.h"
 #include "engine/forces/energy.h"
 #include "engine/forces/forces.h"
+#include "engine/forces/relay.h"
 #include "engine/model/pose.h"
 
 /* Length of a member and its rate. */
@@ -78,7 +79,7 @@ static void apply_drives(const strut_model *model, strut_state *state, double t,
   if (f->state_count) strut_drive_apply_sensed(model, state, t, v);
 }
 
-/* Samples the signals that are due at time t, and all of them before the first; v: for the states. */
+/* Samples the signals that are due at time t; v: for the states. */
 static bool take_samples(const strut_model *model, strut_state *state, double t, const double *v,
                          double tolerance) {
   const strut_feedback_table *f = &model->feedback;
@@ -87,8 +88,9 @@ static bool take_samples(const strut_model *model, strut_state *state, double t,
   for (int32_t i = 0; i < f->sampled_count; i++) {
     int32_t signal = f->sampled[i];
     double every = model->scene->signals[signal].every, rate;
-    bool first = isnan(state->held[signal]);
-    if (!first && !(fabs(t - every * round(t / every)) <= tolerance)) continue;
+    if (!(fabs(t - every * round(t / every)) <= tolerance)) continue;
+    if (model->scene->signals[signal].kind == STRUT_RELAY)
+      strut_relay_sample(model, state, signal, t, v);
     strut_signal_follow_unsampled(model->scene->signals, &in, signal, t, &state->held[signal],
                                   &rate);
     any = true;
@@ -96,15 +98,31 @@ static bool take_samples(const strut_model *model, strut_state *state, double t,
   return any;
 }
 
+/* Are there sampled signals or relays that have no value yet? */
+static bool lacks_memory(const strut_model *model, const strut_state *state) {
+  const strut_feedback_table *f = &model->feedback;
+  return (f->sampled_count && isnan(state->held[f->sampled[0]])) ||
+         (f->relay_count && state->relay_side[f->relay[0]] == 0);
+}
+
+/* The first samples and the sides of relays, at rest lengths without drives; parts before their users. */
+static void begin_memory(const strut_model *model, strut_state *state, double t, const double *q,
+                         const double *v) {
+  const strut_signal *signals = model->scene->signals;
+  const strut_signal_inputs in = strut_drive_inputs(model, state, v);
+  double rate;
+  sense_all(model, state, false, q, v);
+  sense_all(model, state, true, q, v);
+  for (int32_t i = 0; i < (int32_t)model->scene->signal_count; i++) {
+    if (signals[i].kind == STRUT_RELAY) strut_relay_start(model, state, i, t, v);
+    if (signals[i].every > 0.0)
+      strut_signal_follow_unsampled(signals, &in, i, t, &state->held[i], &rate);
+  }
+}
+
 void strut_feedback_apply(const strut_model *model, strut_state *state, double t, const double *q,
                           const double *v) {
-  const strut_feedback_table *f = &model->feedback;
-  if (f->sampled_count && isnan(state->held[f->sampled[0]])) {
-    /* the first samples, at rest lengths without drives */
-    sense_all(model, state, false, q, v);
-    sense_all(model, state, true, q, v);
-    take_samples(model, state, t + state->time_offset, v, 0.0);
-  }
+  if (lacks_memory(model, state)) begin_memory(model, state, t + state->time_offset, q, v);
   apply_drives(model, state, t, q, v);
 }
 

@@ -7,6 +7,7 @@
 
 #include "engine/forces/energy.h"
 #include "engine/forces/feedback.h"
+#include "engine/forces/relay.h"
 #include "engine/forces/rigid.h"
 
 /* The rows, each defined in its method's own file. */
@@ -90,8 +91,8 @@ strut_status strut_integrator_check(const strut_model *model, const strut_experi
 static const double ON_GRID = 1e-6;
 
 /*
- * Samples and starts signals at the present grid point, and books what that does to the elastic energy.
- * Methods with events take samples and touchdowns where they are.
+ * Samples, starts and switches signals at the present grid point, and books what that does to the elastic
+ * energy. Methods with events take samples, touchdowns and relays where they are.
  */
 static void update_on_grid(const strut_integrator *method, const strut_model *model,
                            strut_state *state, void *workspace, double dt) {
@@ -99,6 +100,8 @@ static void update_on_grid(const strut_integrator *method, const strut_model *mo
   if (state->ledger) before = strut_energy_evaluate(model, state, t).elastic;
   bool changed = !method->events && strut_feedback_sample(model, state, t, ON_GRID * dt);
   if (model->feedback.trigger_count && strut_feedback_watch(model, state, t, !method->events))
+    changed = true;
+  if (model->feedback.relay_count && !method->events && strut_relays_follow(model, state, t))
     changed = true;
   if (!changed) return;
   if (state->ledger) {
@@ -112,7 +115,7 @@ static void update_on_grid(const strut_integrator *method, const strut_model *mo
 void strut_integrator_advance(const strut_integrator *method, const strut_model *model,
                               strut_state *state, void *workspace, double dt, int64_t count) {
   const strut_feedback_table *f = &model->feedback;
-  bool watched = f->watches || (f->trigger_count && !method->events);
+  bool watched = f->watches || ((f->trigger_count || f->relay_count) && !method->events);
   if (!watched && (!f->sampled_count || method->events)) {
     method->advance(model, state, workspace, dt, count);
     return;
@@ -120,6 +123,7 @@ void strut_integrator_advance(const strut_integrator *method, const strut_model 
   for (int64_t end = state->step + count; state->step < end && !state->trouble;) {
     double t = (double)state->step * dt + state->time_offset;
     update_on_grid(method, model, state, workspace, dt);
+    if (state->trouble) break;
     double next = strut_feedback_next_sample(model, t + ON_GRID * dt);
     int64_t steps = (int64_t)fmin((next - t) / dt + 0.5, (double)(end - state->step));
     method->advance(model, state, workspace, dt, steps < 1 || watched ? 1 : steps);

@@ -73,16 +73,22 @@ bool strut_feedback_compile(strut_model *model) {
   int32_t *lag_of = strut_arena_allocate(&model->arena, signals, sizeof *lag_of);
   int32_t *sampled = strut_arena_allocate(&model->arena, signals, sizeof *sampled);
   int32_t *triggered = strut_arena_allocate(&model->arena, signals, sizeof *triggered);
-  if (!lagged || !lag_of || !sampled || !triggered || !compile_sensors(model)) return false;
+  int32_t *relay = strut_arena_allocate(&model->arena, signals, sizeof *relay);
+  if (!lagged || !lag_of || !sampled || !triggered || !relay || !compile_sensors(model))
+    return false;
   for (size_t i = 0; i < signals; i++) {
     const strut_signal *s = &scene->signals[i];
     lag_of[i] = s->lag > 0.0 ? (int32_t)scene->state_count + f->lag_count : -1;
     if (s->lag > 0.0) lagged[f->lag_count++] = (int32_t)i;
     if (s->trigger.kind != STRUT_TRIGGER_NONE) triggered[f->trigger_count++] = (int32_t)i;
     if (s->trigger.kind > STRUT_TRIGGER_CONTACT) f->watches = true;
-    if (s->every > 0.0) sampled[f->sampled_count++] = (int32_t)i;
+    if (s->every > 0.0)
+      sampled[f->sampled_count++] = (int32_t)i;
+    else if (s->kind == STRUT_RELAY)
+      relay[f->relay_count++] = (int32_t)i;
   }
   f->lagged = lagged, f->lag_of = lag_of, f->sampled = sampled, f->triggered = triggered;
+  f->relay = relay;
   f->state_count = (int32_t)strut_feedback_states(scene);
   f->base = 2 * model->node_count + 2;
   if (!compile_maxwell(model)) return false;
@@ -90,7 +96,7 @@ bool strut_feedback_compile(strut_model *model) {
   for (size_t i = 0; i < scene->state_count; i++)
     velocity[(size_t)f->base + i] = scene->states[i].start;
   for (int32_t i = 0; i < f->state_count; i++) ((uint8_t *)model->fixed)[f->base + i] = 1;
-  if (f->count || f->state_count || f->sampled_count || f->trigger_count)
+  if (f->count || f->state_count || f->sampled_count || f->trigger_count || f->relay_count)
     model->plan |= STRUT_TERM_FEEDBACK;
   return true;
 }

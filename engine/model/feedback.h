@@ -41,6 +41,13 @@ typedef struct strut_feedback_table {
   const int32_t *triggered; /* (trigger_count) signals with a trigger */
   bool watches;           /* some trigger is a sensor: it is watched on the grid by every method */
   const int32_t *sampled; /* (sampled_count) signals that are sampled, terms before their sums */
+  int32_t relay_count;
+  const int32_t *relay; /* (relay_count) relays that are not sampled: they switch at any time */
 } strut_feedback_table;
+
+/** Does the motion depend on more of the past than positions and velocities hold? */
+static inline bool strut_feedback_remembers(const strut_feedback_table *f) {
+  return f->state_count || f->sampled_count || f->trigger_count || f->relay_count;
+}
 
 #endif

@@ -60,6 +60,7 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
   state->started = strut_arena_allocate(arena, model->scene->signal_count, sizeof(double));
   state->trigger_was = strut_arena_allocate(arena, model->scene->signal_count, 1);
   state->held = strut_arena_allocate(arena, model->scene->signal_count, sizeof(double));
+  state->relay_side = strut_arena_allocate(arena, model->scene->signal_count, 1);
   state->actuator_force =
       strut_arena_allocate(arena, (size_t)model->actuator_forces.count, sizeof(double));
   bool moves = model->plan & (STRUT_TERM_SUPPORT_MOTION | STRUT_TERM_UNBALANCE);
@@ -72,7 +73,8 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
       !state->guide_mode || !state->guide_drop || !state->guide_side || !state->force ||
       !state->normal || !state->friction || !state->scratch || !state->actuator_force ||
       !state->support_rates || !state->support_answer || !surfaces || !state->sensor ||
-      !state->sensor_rate || !state->held || !state->started || !state->trigger_was) {
+      !state->sensor_rate || !state->held || !state->started || !state->trigger_was ||
+      !state->relay_side) {
     strut_state_free(state);
     *result = NULL;
     return strut_memory_fail_model(model->scene, error);
@@ -107,6 +109,7 @@ void strut_state_reset(const strut_model *model, strut_state *state) {
     state->held[i] = (double)NAN;
     state->started[i] = (double)INFINITY;
     state->trigger_was[i] = -1;
+    state->relay_side[i] = 0;
   }
   for (int32_t i = 0; i < model->elements.memory_count; i++) state->plastic[i] = 0.0;
   for (int32_t i = 0; i < model->elements.memory_slots; i++)

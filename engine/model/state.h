@@ -33,7 +33,8 @@ typedef enum strut_failure {
   STRUT_FAILURE_RIGID,     /* rigid bars cannot keep their lengths */
   STRUT_FAILURE_INTERRUPT, /* *interrupt was set */
   STRUT_FAILURE_WORK,      /* most_evaluations were made */
-  STRUT_FAILURE_IMPLICIT   /* an implicit step of the whole structure has no solution nearby */
+  STRUT_FAILURE_IMPLICIT,  /* an implicit step of the whole structure has no solution nearby */
+  STRUT_FAILURE_RELAY      /* a relay that switches takes its own input past the other threshold */
 } strut_failure;
 
 typedef struct strut_state {
@@ -51,7 +52,7 @@ typedef struct strut_state {
   int64_t most_evaluations; /* of the forces: it gives up soon after so many too; 0: any
                                      number, as after the reset */
   strut_failure trouble;    /* why a method could not go on; it stays on the latest grid point */
-  int32_t trouble_node;     /* where, with STRUT_FAILURE_IMPLICIT */
+  int32_t trouble_node;     /* where, with STRUT_FAILURE_IMPLICIT; the signal, with _RELAY */
 
   /* time dependent: strut_drive_apply, strut_loads_apply */
   double *rest;      /* (slots) rest lengths now [m]; equal to the model's where not driven */
@@ -101,6 +102,7 @@ typedef struct strut_state {
      the motion at drive_time, (grounds), NULL where none is */
   strut_contact_pose *pose;
   strut_ground_motion *ground_motion;
+  int8_t *relay_side; /* (signals) of relays: 1 last above, -1 last below; 0: not yet known */
 } strut_state;
 
 /** All memory a run needs; an integrator adds its own to the arena. STRUT_OK or STRUT_NO_MEMORY. */

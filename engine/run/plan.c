@@ -5,6 +5,7 @@
 
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/model/mass.h"
+#include "engine/scene/signal_program.h"
 
 static const strut_plan_term terms[] = {
     {STRUT_TERM_MEMBERS, "member springs", "a member", false},
@@ -86,6 +87,7 @@ strut_status strut_plan_describe(const strut_model *model, strut_plan *plan, str
   }
   if (!model->mass) return STRUT_OK;
   plan->runnable = true;
+  plan->feedback = strut_scene_has_feedback(model->scene);
   plan->mass_nonzeros = model->mass->matrix_nonzeros;
   plan->factor_nonzeros = model->mass->factor_nonzeros;
   plan->dense_entries = model->mass->dense_entries;

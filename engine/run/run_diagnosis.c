@@ -128,6 +128,13 @@ strut_status strut_run_fail_method(const strut_run *r) {
         "%s found no solution of its step at t = %.9g s, near node '%s', with dt = %g s; use a "
         "smaller step, or look there for a member whose length passes through zero",
         r->method->name, strut_run_time(r), r->summary->node_names[r->state->trouble_node], r->dt);
+  if (r->state->trouble == STRUT_FAILURE_RELAY)
+    return strut_fail(
+        r->error, STRUT_DIVERGED,
+        "relay '%s' switches at t = %.9g s, and what it drives takes its own input past the other "
+        "threshold at once, so that it would switch back without end; set the thresholds further "
+        "apart, or sample it ('every')",
+        r->model->scene->signals[r->state->trouble_node].name, strut_run_time(r));
   return strut_fail(r->error, STRUT_DIVERGED, "%s failed at t = %.9g s: %s", r->method->name,
                     strut_run_time(r), why[r->state->trouble]);
 }

@@ -44,7 +44,8 @@ static int32_t part_of(const strut_signal *s, size_t i) {
 }
 
 static size_t part_count(const strut_signal *s) {
-  return s->kind == STRUT_SUM ? s->term_count : s->kind == STRUT_EXPRESSION ? s->program.length : 0;
+  if (s->kind == STRUT_SUM) return s->term_count;
+  return strut_signal_has_program(s) ? s->program.length : 0;
 }
 
 /* Counts parts and depth of a sum or an expression, whose signals have been checked before. */
@@ -52,7 +53,8 @@ static bool check_sum(strut_checker *checker, size_t index, const char *owner, u
                       uint32_t *depth) {
   const strut_signal *s = &checker->scene->signals[index];
   uint64_t terms = 1;
-  if (s->kind == STRUT_EXPRESSION && !strut_check_program(checker, index, owner)) return false;
+  if (strut_signal_has_program(s) && !strut_check_program(checker, index, owner)) return false;
+  if (s->kind == STRUT_RELAY && !strut_check_relay(checker, index, owner)) return false;
   if (s->kind == STRUT_SUM && !s->term_count) {
     strut_report_finding(checker, STRUT_ON_SIGNAL, index, "sum", "the sum of %s has no terms",
                          owner);
@@ -60,7 +62,7 @@ static bool check_sum(strut_checker *checker, size_t index, const char *owner, u
   }
   for (size_t i = 0; i < part_count(s); i++) {
     int32_t term = part_of(s, i);
-    if (term < 0 && s->kind == STRUT_EXPRESSION) continue;
+    if (term < 0 && strut_signal_has_program(s)) continue;
     if (term < 0 || (size_t)term >= index) {
       strut_report_finding(checker, STRUT_ON_SIGNAL, index, "sum",
                            "term %zu of %s is not a signal that comes before it", i + 1, owner);
@@ -168,7 +170,7 @@ void strut_check_signals(strut_checker *checker) {
     }
     bool modified = strut_check_modifiers(checker, i, owner);
     checker->wild[i] = !modified || (s->kind == STRUT_TABLE ? !check_table(checker, i, owner)
-                                     : s->kind == STRUT_SUM || s->kind == STRUT_EXPRESSION
+                                     : s->kind == STRUT_SUM || strut_signal_has_program(s)
                                          ? !check_sum(checker, i, owner, size, depth)
                                          : !check_wave(checker, i, owner));
   }
@@ -387,6 +389,7 @@ static const char *fault_of_motion(const strut_scene *scene, size_t i) {
   if (!scene->nodes[m->node].fixed[m->axis]) return "moves in a direction in which it is not fixed";
   if (last && (m->node < last->node || (m->node == last->node && m->axis <= last->axis)))
     return "moves out of order: motions follow nodes, x before y, each once";
+  if (last && m->node == last->node) return NULL; /* the rest is said of its x */
   if (scene->bar_model == STRUT_BARS_RIGID)
     return "moves, but bars are rigid; make them elastic, bars: elastic";
   for (size_t k = 0; k < scene->contact_count; k++)

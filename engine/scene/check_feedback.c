@@ -126,6 +126,37 @@ bool strut_check_program(strut_checker *checker, size_t index, const char *owner
                        index, "expression", owner);
 }
 
+bool strut_check_relay(strut_checker *checker, size_t index, const char *owner) {
+  const strut_signal *s = &checker->scene->signals[index];
+  const strut_relay *r = &s->relay;
+  if (!isfinite(r->upper) || !isfinite(r->lower) || !isfinite(r->on) || !isfinite(r->off))
+    strut_report_finding(checker, STRUT_ON_SIGNAL, index, NULL,
+                         "the numbers of relay %s are not finite", owner);
+  else if (!s->name)
+    strut_report_finding(checker, STRUT_ON_SIGNAL, index, NULL, "the relay of %s needs a name",
+                         owner);
+  else if (s->lag > 0.0 || s->trigger.kind != STRUT_TRIGGER_NONE)
+    strut_report_finding(checker, STRUT_ON_SIGNAL, index, NULL,
+                         "relay %s has a lag or a trigger; give it to a signal that uses the relay",
+                         owner);
+  else if (r->lower > r->upper)
+    strut_report_finding(
+        checker, STRUT_ON_SIGNAL, index, r->on_above ? "off_below" : "off_above",
+        r->on_above ? "%s is on above %g and off below %g, so that both hold in between; "
+                      "let it be off below a lesser value"
+                    : "%s is on below %g and off above %g, so that both hold in between; "
+                      "let it be off above a greater value",
+        owner, r->on_above ? r->upper : r->lower, r->on_above ? r->lower : r->upper);
+  else if (r->lower == r->upper && !(s->every > 0.0))
+    strut_report_finding(checker, STRUT_ON_SIGNAL, index, r->on_above ? "off_below" : "off_above",
+                         "the thresholds of %s are equal, so that it would switch without end; set "
+                         "them apart, or sample it ('every')",
+                         owner);
+  else
+    return true;
+  return false;
+}
+
 void strut_check_states(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   for (size_t i = 0; i < scene->state_count; i++) {

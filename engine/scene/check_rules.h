@@ -58,6 +58,8 @@ void strut_check_states(strut_checker *checker);
 bool strut_check_modifiers(strut_checker *checker, size_t index, const char *owner);
 /** Is the program of signal `index` valid? */
 bool strut_check_program(strut_checker *checker, size_t index, const char *owner);
+/** Thresholds, values and name of a relay. */
+bool strut_check_relay(strut_checker *checker, size_t index, const char *owner);
 /** Is the rate of an actuator's signal, which is valid, known? */
 void strut_check_driven_rate(strut_checker *checker, size_t actuator, const char *owner);
 void strut_check_signals(strut_checker *checker);

@@ -53,7 +53,7 @@ static void evaluate_other(const strut_signal *signals, const strut_signal_input
   const strut_signal *s = &signals[index];
   *value = *rate = 0.0;
   /* a value outside its time */
-  bool holds = s->kind == STRUT_RAMP || s->kind == STRUT_TABLE || s->kind == STRUT_EXPRESSION;
+  bool holds = s->kind == STRUT_RAMP || s->kind == STRUT_TABLE || strut_signal_has_program(s);
   if (!holds && (t < s->start || t >= s->stop)) return;
   switch (s->kind) {
     case STRUT_SINE: break;
@@ -73,6 +73,9 @@ static void evaluate_other(const strut_signal *signals, const strut_signal_input
       }
       break;
     case STRUT_EXPRESSION: strut_program_evaluate(&s->program, signals, in, t, value, rate); break;
+    case STRUT_RELAY:
+      *value = in ? strut_relay_value(s, in->relay_side[index]) : (double)NAN;
+      break;
     case STRUT_SIGNAL_KINDS: break;
   }
 }
@@ -158,6 +161,7 @@ static double next_break_inside(const strut_signal *signals, const double *start
         first = fmin(first, strut_signal_next_break_since(signals, started, s->terms[i], t));
       return first;
     case STRUT_EXPRESSION:
+    case STRUT_RELAY: /* its input's: there it may switch */
       for (size_t i = 0; i < s->program.length; i++)
         if (is_signal(&s->program.instruction[i]))
           first = fmin(first, strut_signal_next_break_since(
@@ -175,7 +179,7 @@ static double next_break_inside(const strut_signal *signals, const double *start
 static double next_break_of(const strut_signal *signals, const double *started, int32_t index,
                             double t) {
   const strut_signal *s = &signals[index];
-  if (s->kind == STRUT_TABLE || s->kind == STRUT_EXPRESSION)
+  if (s->kind == STRUT_TABLE || strut_signal_has_program(s))
     return next_break_inside(signals, started, s, t);
   if (t < s->start) return s->start;
   double first = next_break_inside(signals, started, s, t);

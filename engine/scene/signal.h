@@ -24,6 +24,7 @@ typedef enum strut_signal_kind {
   STRUT_TABLE,      /* linear between the points; holds the first and the last value outside */
   STRUT_SUM,        /* the sum of other signals */
   STRUT_EXPRESSION, /* a program of the time, sensors and other signals */
+  STRUT_RELAY,      /* one of two values, which a program switches with hysteresis */
   STRUT_SIGNAL_KINDS
 } strut_signal_kind;
 
@@ -48,27 +49,42 @@ typedef struct strut_trigger {
   bool each;    /* start again each time, not only once */
 } strut_trigger;
 
+/** A two-position relay with hysteresis. It has a memory: on which side its input has been last. */
+typedef struct strut_relay {
+  double upper, lower; /* thresholds of the input */
+  double on, off;      /* the two values */
+  bool on_above;       /* on since the input passed the upper threshold; else since the lower one */
+  bool on_at_start;    /* where the input is between the thresholds at t = 0 */
+} strut_relay;
+
 /**
- * One waveform; tau = t - start. Except for ramp, table and expression a signal is 0 before start and after
- * stop.
+ * One waveform; tau = t - start. Except for ramp, table, expression and relay a signal is 0 before start
+ * and after stop.
  */
 typedef struct strut_signal {
   const char *name; /* as the file calls it, or NULL */
   strut_signal_kind kind;
-  double amplitude;      /* [m], [N] or [1] */
-  double frequency;      /* [Hz], > 0 for sine, half-sine, square */
-  double phase;          /* [turns]; sine and square */
-  double start, stop;    /* [s]; default 0 and INFINITY */
-  size_t point_count;    /* table: number of points, >= 1 */
-  const double *time;    /* (point_count) [s], strictly increasing */
-  const double *value;   /* (point_count) */
-  size_t term_count;     /* sum: number of terms */
-  const int32_t *terms;  /* (term_count) indices of signals, each below this signal's own */
-  strut_program program; /* expression: signals in it are below this signal's own */
+  double amplitude;     /* [m], [N] or [1] */
+  double frequency;     /* [Hz], > 0 for sine, half-sine, square */
+  double phase;         /* [turns]; sine and square */
+  double start, stop;   /* [s]; default 0 and INFINITY */
+  size_t point_count;   /* table: number of points, >= 1 */
+  const double *time;   /* (point_count) [s], strictly increasing */
+  const double *value;  /* (point_count) */
+  size_t term_count;    /* sum: number of terms */
+  const int32_t *terms; /* (term_count) indices of signals, each below this signal's own */
+  strut_program
+      program; /* expression, input of a relay: signals in it are below this signal's own */
   strut_trigger trigger; /* before it starts the signal is 0; then its time counts from there */
   double lag;            /* [s] time constant of a first-order lag; 0: none */
   double every;          /* [s] between samples, after the lag; 0: the signal is continuous */
+  strut_relay relay;
 } strut_signal;
+
+/** Is the signal computed by its program? */
+static inline bool strut_signal_has_program(const strut_signal *signal) {
+  return signal->kind == STRUT_EXPRESSION || signal->kind == STRUT_RELAY;
+}
 
 /** A signal of the given kind with the defaults above. */
 STRUT_API strut_signal strut_signal_default(strut_signal_kind kind);

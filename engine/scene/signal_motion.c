@@ -31,6 +31,7 @@ double strut_signal_acceleration(const strut_signal *signals, int32_t index, dou
     case STRUT_RAMP:
     case STRUT_TABLE:
     case STRUT_EXPRESSION:
+    case STRUT_RELAY:
     case STRUT_SIGNAL_KINDS: break;
   }
   return 0.0;
@@ -46,8 +47,10 @@ static bool is_cut(const strut_signal *s, double at) {
   return s->amplitude != 0.0 && fabs(sine) > ROUNDING * (1.0 + fabs(turns));
 }
 
-/* A start or stop of the signal after 0 and up to `last`. */
-static bool switches_within(double time, double last) { return time > 0.0 && time <= last; }
+/* A start or stop of the signal after 0 and up to `last`, if there is one. */
+static bool switches_within(double time, double last) {
+  return time > 0.0 && time <= last && time < HUGE_VAL;
+}
 
 bool strut_signal_value_jumps(const strut_signal *signals, int32_t index, double last,
                               double *when) {
@@ -67,6 +70,7 @@ bool strut_signal_value_jumps(const strut_signal *signals, int32_t index, double
     case STRUT_SINE:
     case STRUT_HALF_SINE:
     case STRUT_EXPRESSION:
+    case STRUT_RELAY:
     case STRUT_SIGNAL_KINDS: break;
   }
   if (switches_within(*when = s->start, last) && is_cut(s, s->start)) return true;
@@ -75,7 +79,7 @@ bool strut_signal_value_jumps(const strut_signal *signals, int32_t index, double
 
 bool strut_signal_is_wave(const strut_signal *signals, int32_t index) {
   const strut_signal *s = &signals[index];
-  if (s->kind == STRUT_EXPRESSION || s->lag > 0.0 || s->every > 0.0) return false;
+  if (strut_signal_has_program(s) || s->lag > 0.0 || s->every > 0.0) return false;
   if (s->trigger.kind != STRUT_TRIGGER_NONE) return false;
   for (size_t i = 0; s->kind == STRUT_SUM && i < s->term_count; i++)
     if (!strut_signal_is_wave(signals, s->terms[i])) return false;

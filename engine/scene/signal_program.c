@@ -196,7 +196,8 @@ static void describe_signal(const strut_scene *scene, int32_t index, passage thr
   const strut_signal *s = &scene->signals[index];
   if (s->every > 0.0 || s->lag > 0.0 || s->trigger.kind != STRUT_TRIGGER_NONE)
     traits->follows = true;
-  if (s->every > 0.0 || (s->lag > 0.0 && through == INTEGRATED)) return;
+  if (s->kind == STRUT_RELAY) traits->follows = true;
+  if (s->kind == STRUT_RELAY || s->every > 0.0 || (s->lag > 0.0 && through == INTEGRATED)) return;
   if (s->lag > 0.0) through = INTEGRATED;
   for (size_t i = 0; s->kind == STRUT_SUM && i < s->term_count; i++)
     describe_signal(scene, s->terms[i], through, traits);
@@ -207,4 +208,23 @@ strut_signal_traits strut_signal_describe(const strut_scene *scene, int32_t inde
   strut_signal_traits traits = {.sensor = -1, .damped = -1};
   describe_signal(scene, index, DIRECT, &traits);
   return traits;
+}
+
+static bool reads_sensor(const strut_program *program) {
+  for (size_t i = 0; i < program->length; i++) {
+    const strut_instruction *p = &program->instruction[i];
+    if (p->operation == STRUT_OPERATION_COLUMN &&
+        (p->column.kind == STRUT_COLUMN_SENSOR || p->column.kind == STRUT_COLUMN_SENSOR_RATE))
+      return true;
+  }
+  return false;
+}
+
+bool strut_scene_has_feedback(const strut_scene *scene) {
+  for (size_t i = 0; i < scene->signal_count; i++)
+    if (strut_signal_has_program(&scene->signals[i]) && reads_sensor(&scene->signals[i].program))
+      return true;
+  for (size_t i = 0; i < scene->state_count; i++)
+    if (reads_sensor(&scene->states[i].rate)) return true;
+  return false;
 }

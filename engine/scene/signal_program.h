@@ -57,11 +57,17 @@ typedef struct strut_signal_inputs {
   const double *sensor, *sensor_rate; /* (sensors) values in SI units, and their rates */
   const double *state;                /* internal states, then those of signals with a lag */
   const strut_internal_state *states;
-  const int32_t *lag_of; /* (signals) the state that is the signal's lagged value, or -1 */
-  const double *held;    /* (signals) values of sampled signals since the latest sample */
-  const double *started; /* (signals) when those with a trigger started [s]; INFINITY: not yet */
-  bool values_only;      /* rates are not wanted */
+  const int32_t *lag_of;    /* (signals) the state that is the signal's lagged value, or -1 */
+  const double *held;       /* (signals) values of sampled signals since the latest sample */
+  const double *started;    /* (signals) when those with a trigger started [s]; INFINITY: not yet */
+  bool values_only;         /* rates are not wanted */
+  const int8_t *relay_side; /* (signals) of relays: 1 above, -1 below, see strut_relay_value */
 } strut_signal_inputs;
+
+/** Value of a relay whose input was last above its upper threshold (side 1) or below its lower (-1). */
+static inline double strut_relay_value(const strut_signal *relay, int8_t side) {
+  return (side > 0) == relay->relay.on_above ? relay->relay.on : relay->relay.off;
+}
 
 /** True where the rate of a sensor follows from positions and velocities alone. */
 static inline bool strut_sensor_has_rate(strut_sensor_kind kind) {
@@ -106,5 +112,7 @@ typedef struct strut_signal_traits {
 struct strut_scene;
 /** Of signal `index` of a valid scene. */
 STRUT_API strut_signal_traits strut_signal_describe(const struct strut_scene *scene, int32_t index);
+/** Does some signal or internal state follow a sensor? Modes and step limits know nothing of that. */
+STRUT_API bool strut_scene_has_feedback(const struct strut_scene *scene);
 
 #endif

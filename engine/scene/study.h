@@ -19,6 +19,9 @@
 /** Most points of a study, and most values of one list. */
 #define STRUT_STUDY_MOST_POINTS ((int64_t)1000000000)
 
+/** Most points of the finest grid of a refined study. */
+#define STRUT_STUDY_MOST_REFINED ((int64_t)20000000)
+
 /** Form of the values of an axis. */
 typedef enum strut_range_kind {
   STRUT_RANGE_LIST, /* number, or word where the parameter is a text */
@@ -49,39 +52,97 @@ typedef struct strut_study_axis {
   strut_study_column *columns; /* (column_count) they go together */
 } strut_study_axis;
 
+/** What is computed at each point: X(NAME, word of the language), as the command of that name does. */
+#define STRUT_COMPUTE_TABLE(X)                                                                     \
+  X(RUN, "run")                                                                                    \
+  X(EQUILIBRIA, "equilibria")                                                                      \
+  X(MODES, "modes")                                                                                \
+  X(RIGIDITY, "rigidity")                                                                          \
+  X(PATH, "path")                                                                                  \
+  X(FORM, "form")
+
+typedef enum strut_compute {
+#define STRUT_COMPUTE_ENUM(name, word) STRUT_COMPUTE_##name,
+  STRUT_COMPUTE_TABLE(STRUT_COMPUTE_ENUM)
+#undef STRUT_COMPUTE_ENUM
+      STRUT_COMPUTE_COUNT
+} strut_compute;
+
+/** Sets of these. */
+enum {
+#define STRUT_OF_ENUM(name, word) STRUT_OF_##name = 1 << STRUT_COMPUTE_##name,
+  STRUT_COMPUTE_TABLE(STRUT_OF_ENUM)
+#undef STRUT_OF_ENUM
+      STRUT_OF_ALL = (1 << STRUT_COMPUTE_COUNT) - 1
+};
+
 /**
- * Values kept of the summary of a run: X(NAME, word of the language), in the order of the table.
+ * Values kept of a point: X(NAME, word of the language, the set of what has it), in the order of the
+ * table.
  */
 #define STRUT_KEEP_TABLE(X)                                                                        \
-  X(VELOCITY, "velocity")                                                                          \
-  X(SPREAD, "velocity_spread")                                                                     \
-  X(INTERVAL, "velocity_interval")                                                                 \
-  X(MOTION, "motion")                                                                              \
-  X(REPEATS, "repeats")                                                                            \
-  X(PERIODS, "periods")                                                                            \
-  X(DISTANCE, "distance")                                                                          \
-  X(DURATION, "duration")                                                                          \
-  X(SETTLE_TIME, "settle_time")                                                                    \
-  X(STEPS, "steps")                                                                                \
-  X(EVALUATIONS, "force_evaluations")                                                              \
-  X(CHECKS, "check_evaluations")                                                                   \
-  X(EVENTS, "events")                                                                              \
-  X(METHOD, "method")                                                                              \
-  X(STEP, "step")                                                                                  \
-  X(STEP_LIMIT, "step_limit")                                                                      \
-  X(EXPECTED, "expected_error")                                                                    \
-  X(ENERGY, "energy")                                                                              \
-  X(WORK, "work")                                                                                  \
-  X(LOSSES, "losses")                                                                              \
-  X(RESIDUAL, "residual")                                                                          \
-  X(CONTACTS, "contacts")                                                                          \
-  X(POSITIONS, "positions")                                                                        \
-  X(OUTCOME, "outcome")                                                                            \
-  X(QUANTITIES, "quantities")                                                                      \
-  X(KEPT, "accuracy_kept")
+  X(VELOCITY, "velocity", STRUT_OF_RUN)                                                            \
+  X(SPREAD, "velocity_spread", STRUT_OF_RUN)                                                       \
+  X(INTERVAL, "velocity_interval", STRUT_OF_RUN)                                                   \
+  X(MOTION, "motion", STRUT_OF_RUN)                                                                \
+  X(REPEATS, "repeats", STRUT_OF_RUN)                                                              \
+  X(PERIODS, "periods", STRUT_OF_RUN)                                                              \
+  X(DISTANCE, "distance", STRUT_OF_RUN)                                                            \
+  X(DURATION, "duration", STRUT_OF_RUN)                                                            \
+  X(SETTLE_TIME, "settle_time", STRUT_OF_RUN)                                                      \
+  X(STEPS, "steps", STRUT_OF_RUN)                                                                  \
+  X(EVALUATIONS, "force_evaluations", STRUT_OF_RUN)                                                \
+  X(CHECKS, "check_evaluations", STRUT_OF_RUN)                                                     \
+  X(EVENTS, "events", STRUT_OF_RUN)                                                                \
+  X(METHOD, "method", STRUT_OF_RUN)                                                                \
+  X(STEP, "step", STRUT_OF_RUN)                                                                    \
+  X(STEP_LIMIT, "step_limit", STRUT_OF_RUN)                                                        \
+  X(EXPECTED, "expected_error", STRUT_OF_RUN)                                                      \
+  X(ENERGY, "energy", STRUT_OF_RUN)                                                                \
+  X(WORK, "work", STRUT_OF_RUN)                                                                    \
+  X(LOSSES, "losses", STRUT_OF_RUN)                                                                \
+  X(RESIDUAL, "residual", STRUT_OF_RUN | STRUT_OF_RIGIDITY | STRUT_OF_FORM)                        \
+  X(CONTACTS, "contacts", STRUT_OF_RUN)                                                            \
+  X(POSITIONS, "positions", STRUT_OF_RUN | STRUT_OF_FORM)                                          \
+  X(OUTCOME, "outcome", STRUT_OF_RUN)                                                              \
+  X(QUANTITIES, "quantities", STRUT_OF_RUN)                                                        \
+  X(KEPT, "accuracy_kept", STRUT_OF_RUN)                                                           \
+  X(NODES, "node_count", STRUT_OF_ALL)                                                             \
+  X(MEMBERS, "member_count", STRUT_OF_ALL)                                                         \
+  X(FREEDOMS, "degrees_of_freedom", STRUT_OF_ALL)                                                  \
+  X(TOTAL_MASS, "total_mass", STRUT_OF_ALL)                                                        \
+  X(STABLE, "stable_count", STRUT_OF_EQUILIBRIA)                                                   \
+  X(FOUND, "equilibrium_count", STRUT_OF_EQUILIBRIA)                                               \
+  X(STATES, "states", STRUT_OF_EQUILIBRIA)                                                         \
+  X(ENERGIES, "energies", STRUT_OF_EQUILIBRIA)                                                     \
+  X(BARRIERS, "barriers", STRUT_OF_EQUILIBRIA)                                                     \
+  X(STARTS, "starts", STRUT_OF_EQUILIBRIA)                                                         \
+  X(MISSED, "missed_probability", STRUT_OF_EQUILIBRIA)                                             \
+  X(AT, "at", STRUT_OF_MODES)                                                                      \
+  X(FREQUENCIES, "frequencies", STRUT_OF_MODES)                                                    \
+  X(DAMPING_RATIOS, "damping_ratios", STRUT_OF_MODES)                                              \
+  X(MODE_COUNTS, "mode_counts", STRUT_OF_MODES)                                                    \
+  X(CONDITION, "condition", STRUT_OF_MODES)                                                        \
+  X(RANK, "rank", STRUT_OF_RIGIDITY)                                                               \
+  X(SELF_STRESS, "self_stress_count", STRUT_OF_RIGIDITY)                                           \
+  X(MECHANISMS, "mechanism_count", STRUT_OF_RIGIDITY)                                              \
+  X(MECHANISM_KINDS, "mechanism_kinds", STRUT_OF_RIGIDITY)                                         \
+  X(SUPER_STABLE, "super_stable", STRUT_OF_RIGIDITY)                                               \
+  X(LABEL, "label", STRUT_OF_RIGIDITY)                                                             \
+  X(LIMIT, "limit_factor", STRUT_OF_PATH)                                                          \
+  X(BIFURCATION, "bifurcation_factor", STRUT_OF_PATH)                                              \
+  X(CRITICAL, "critical_factor", STRUT_OF_PATH)                                                    \
+  X(LAST_FACTOR, "last_factor", STRUT_OF_PATH)                                                     \
+  X(PATH_EVENTS, "event_count", STRUT_OF_PATH)                                                     \
+  X(END, "end", STRUT_OF_PATH)                                                                     \
+  X(MOVED, "moved", STRUT_OF_FORM)                                                                 \
+  X(DENSITY_CHANGE, "density_change", STRUT_OF_FORM)                                               \
+  X(LEAST_TENSION, "least_tension", STRUT_OF_FORM)                                                 \
+  X(LARGEST_FORCE, "largest_force", STRUT_OF_FORM)                                                 \
+  X(LENGTHS, "lengths", STRUT_OF_FORM)
 
 typedef enum strut_keep {
-#define STRUT_KEEP_ENUM(name, word) STRUT_KEEP_##name,
+#define STRUT_KEEP_ENUM(name, word, of) STRUT_KEEP_##name,
   STRUT_KEEP_TABLE(STRUT_KEEP_ENUM)
 #undef STRUT_KEEP_ENUM
       STRUT_KEEP_COUNT
@@ -121,17 +182,40 @@ typedef struct strut_study_figure {
   const double *times;             /* (time_count) [s] */
 } strut_study_figure;
 
+/** How many energies, barriers and frequencies a row lists, unless the study says. */
+enum { STRUT_STUDY_LOWEST = 3, STRUT_STUDY_MOST_LOWEST = 20 };
+
 typedef struct strut_study {
   const char *name, *description, *model; /* model: its file, from the study's folder */
   size_t axis_count, figure_count;
   strut_study_axis *axes;
-  unsigned keep; /* bits 1 << strut_keep; 0: what is usual, if no quantity is kept either */
+  uint64_t keep; /* bits 1 << strut_keep; 0: what is usual, if no quantity is kept either */
   size_t quantity_count;
   const char **quantities; /* (quantity_count) measured quantities that are kept by name */
   bool trajectories;       /* a directory of results for each run */
   bool half_step;          /* run each point again with half the step */
   double check_accuracy;   /* or with this accuracy; 0: not */
   strut_study_figure *figures;
+  uint32_t compute; /* strut_compute */
+  int32_t lowest;   /* energies, barriers, frequencies in a row; 0: STRUT_STUDY_LOWEST */
+  const char *at; /* equilibrium of modes, rigidity and path, as their commands know it; or NULL */
+  /* of PATH, as the command's options; NULL, 0: not given */
+  const char *path_load, *path_over;
+  double path_from, path_until;                 /* in SI, or a load factor */
+  const char *path_from_unit, *path_until_unit; /* NULL: a number without unit */
+  bool path_from_given, path_until_given;
+  int32_t path_steps;
+  /* of FORM, likewise */
+  uint32_t form_from;                            /* strut_form_source */
+  uint32_t form_objective;                       /* strut_form_objective */
+  double form_least_tension, form_least_density; /* [N], [N/m] */
+  int64_t limit_evaluations; /* of the forces, in each run of a point; 0: any number */
+  double limit_time;         /* of a point [s], by the clock; 0: any */
+  /* Refinement of a map: the two axes then have the values of the finest grid. */
+  int32_t refine_depth;     /* halvings of the axes' steps; 0: no refinement */
+  const char *refine_where; /* column whose value decides which cells are divided */
+  double refine_by;         /* by how much its numbers must differ, in SI */
+  size_t refine_axes[2];    /* the axes, in their order */
 } strut_study;
 
 #endif

@@ -31,6 +31,7 @@
   X(GAS, "gas", GAS_KIND) \
   X(COLLISION, "collision", COLLISION_NODE) \
   X(BEAM, "beam", BEAM_NODES) \
+  X(CLAMPED_TO, "clamped_to", CLAMPED_TO_START) \
   X(LAW, "law", LAW_KIND) \
   X(RAYLEIGH, "rayleigh", RAYLEIGH_MASS) \
   X(GROUND, "ground", GROUND_HEIGHT) \
@@ -50,6 +51,7 @@
   X(STATE, "state", STATE_RATE) \
   X(OSCILLATOR, "oscillator", OSCILLATOR_FREQUENCY) \
   X(CONTROLLER, "controller", CONTROLLER_SENSOR) \
+  X(RELAY, "relay", RELAY_KIND) \
   X(MAXWELL, "maxwell", MAXWELL_STIFFNESS) \
   X(STARTS, "starts", STARTS_CONTACT) \
   X(CONFIGURATION, "configuration", CONFIGURATION_CONTACTS) \
@@ -66,7 +68,14 @@
   X(RANGE, "range", RANGE_FROM) \
   X(VARIANT, "variant", VARIANT_SOLVER) \
   X(CHECK, "check", CHECK_HALF_STEP) \
-  X(FIGURE, "figure", FIGURE_KIND)
+  X(FIGURE, "figure", FIGURE_KIND) \
+  X(PATH, "path", PATH_LOAD) \
+  X(FORM, "form", FORM_FROM) \
+  X(POINTS, "points", POINTS_FILE) \
+  X(SAMPLE, "sample", SAMPLE_COUNT) \
+  X(DISTRIBUTION, "distribution", DISTRIBUTION_UNIFORM) \
+  X(LIMIT, "limit", LIMIT_EVALUATIONS) \
+  X(REFINE, "refine", REFINE_WHERE)
 /* clang-format on */
 
 /** The mappings of the language. */
@@ -108,7 +117,8 @@ typedef enum strut_key_type {
   STRUT_TYPE_THINGS,        /* a mapping from names to things, described by `words` */
   STRUT_TYPE_NODE_RING,     /* the names of three nodes or more */
   STRUT_TYPE_NAME_PAIR,     /* the names of two things */
-  STRUT_TYPE_FREE           /* several forms, described by `words` */
+  STRUT_TYPE_FREE,          /* several forms, described by `words` */
+  STRUT_TYPE_NAMES          /* a list of names */
 } strut_key_type;
 
 /** The dimension of a number; CONTEXT: it depends on the use of the mapping. */
@@ -189,6 +199,7 @@ typedef struct strut_beam {
   uint32_t clamped;                  /* bits: at its first node, at its second */
   int32_t first_node, clamp_node[2]; /* of the nodes that it has added */
   bool broken;
+  const struct strut_tree *clamped_to[2]; /* what its ends are clamped to, or NULL */
 } strut_beam;
 
 /** One row of the table. */
@@ -258,6 +269,9 @@ STRUT_API bool strut_key_is_bound(const strut_key *key);
 STRUT_API strut_dimension strut_measure_dimension(strut_measure measure);
 /** "a length such as '10 mm'"; written into buffer. */
 STRUT_API const char *strut_expected_number(strut_dimension dimension, char *buffer, size_t size);
+/** The same of a key or a quantity whose dimension may be better known as another: moments are no energies. */
+STRUT_API const char *strut_expected_quantity(const char *quantity, strut_dimension dimension,
+                                              char *buffer, size_t size);
 /** Describes the values of a key for messages, such as "bar, spring or cable", in buffer. */
 STRUT_API const char *strut_key_expected(int key, char *buffer, size_t size);
 /** "bar, spring or cable" from "bar|spring|cable". */

@@ -20,7 +20,7 @@
   X(SCENE, DESCRIPTION, "description", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_scene, description), "What the scene shows.") \
   X(SCENE, SOURCE, "source", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_scene, source), "Where its numbers come from.") \
   X(SCENE, PARAMETERS, "parameters", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression or a quoted text", BY_HAND, "Named values that expressions may use and `--set` may change.") \
-  X(SCENE, GROUPS, "groups", THINGS, NONE, ANY, "", OPTIONAL, 0, "keys of a member, a node or a contact", BY_HAND, "Keys that several members, nodes or contacts share. A thing's own keys take precedence.") \
+  X(SCENE, GROUPS, "groups", THINGS, NONE, ANY, "", OPTIONAL, 0, "keys of a member, a node, a contact or a hinge", BY_HAND, "Keys that several members, nodes, contacts or hinges share. A thing's own keys take precedence.") \
   X(SCENE, NODES, "nodes", THINGS, NONE, ANY, "", OPTIONAL, 0, "`[x, y]` or the keys of a node", BY_HAND, "The points of the structure. Required unless parts are placed; the name of a placed thing changes or adds its keys, and `*` in it stands for any part of a name between dots.") \
   X(SCENE, MEMBERS, "members", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a member", BY_HAND, "The bars, springs and cables between the nodes.") \
   X(SCENE, HINGES, "hinges", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a hinge", BY_HAND, "Springs of the angle between two arms that meet in a node.") \
@@ -46,10 +46,11 @@
   X(SCENE, SENSORS, "sensors", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a sensor", BY_HAND, "Numbers of the motion that the expressions of signals may use.") \
   X(SCENE, STATES, "states", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a state", BY_HAND, "Numbers that a run integrates beside the motion.") \
   X(SCENE, OSCILLATORS, "oscillators", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of an oscillator", BY_HAND, "Phase oscillators, each an internal state with the same name.") \
-  X(SCENE, CONTROLLERS, "controllers", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a controller", BY_HAND, "PID controllers of sensors, each a signal with the same name.") \
+  X(SCENE, CONTROLLERS, "controllers", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a controller", BY_HAND, "PID controllers and relays, each a signal with the same name.") \
   X(SCENE, PARTS, "parts", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a part", BY_HAND, "Structures to be placed, once or many times.") \
   X(SCENE, PLACE, "place", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a [place](#place)", BY_HAND, "Copies of parts. What is in a copy is called `NAME.THING`, or `NAME.0.THING` and so on where it is repeated.") \
   X(SCENE, MERGE, "merge", FREE, NONE, ANY, "", OPTIONAL, 0, "touching, or {node: other node, ...}", BY_HAND, "Nodes that become one: those named, or with `touching` all that lie in one place.") \
+  X(SCENE, BASE, "base", TEXT, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Another scene's file, relative to this one: the scene is that one with the keys here laid over it, and `NAME: remove` takes things away.") \
   X(PART, USE, "use", TEXT, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "A file whose structure is the part, relative to this one; its own keys lie over it.") \
   X(PART, PARAMETERS, "parameters", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression", BY_HAND, "Values that `set` of a placement may change.") \
   X(PART, GROUPS, "groups", THINGS, NONE, ANY, "", OPTIONAL, 0, "keys of a member, a node or a contact", BY_HAND, "As in a scene; those of the scene are known too.") \
@@ -73,6 +74,7 @@
   X(PART, PLACE, "place", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a [place](#place)", BY_HAND, "Copies of other parts within this one.") \
   X(PART, MERGE, "merge", FREE, NONE, ANY, "", OPTIONAL, 0, "touching, or {node: other node, ...}", BY_HAND, "As in a scene, among the nodes of the part.") \
   X(PART, PORTS, "ports", THINGS, NONE, ANY, "all nodes", OPTIONAL, 0, "the name of a node", BY_HAND, "Names by which nodes are seen from outside; then no other nodes are.") \
+  X(PART, ISOLATED, "isolated", WORD, NONE, ANY, "no, `yes` with `use`", OPTIONAL, 0, "no|yes", BY_HAND, "Whether the part sees only its own parameters, groups, signals and parts, and none of those around it.") \
   X(PLACE, PART, "part", NAME, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "The part to copy.") \
   X(PLACE, FLIP, "flip", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|x|y|both", BY_HAND, "Changes the sign of coordinates. The order is always: flip, scale, turn, move.") \
   X(PLACE, SCALE, "scale", FREE, NONE, ANY, "1", OPTIONAL, 0, "a number above zero, or fit", BY_HAND, "Multiplies all lengths of the copy; masses, forces and stiffnesses stay. `fit`: what `onto` needs.") \
@@ -130,6 +132,7 @@
   X(HINGE, LAW, "law", LAW, NONE, ANY, "linear", OPTIONAL, 0, "", BY_HAND, "Law of the moment over angle - rest angle.") \
   X(HINGE, BREAKS_AT, "breaks_at", NUMBER, MOMENT, ABOVE_ZERO, "never", OPTIONAL, 0, "", FIELD(strut_hinge, breaks_at), "Size of the moment at which the hinge breaks: from then on it has none.") \
   X(HINGE, RELEASED_AT, "released_at", NUMBER, TIME, ABOVE_ZERO, "never", OPTIONAL, 0, "", FIELD(strut_hinge, released_at), "Time from which on the hinge has no moment.") \
+  X(HINGE, GROUP, "group", GROUPS, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Groups that provide defaults; later groups take precedence.") \
   X(CELL, NODES, "nodes", NODE_RING, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "The corners `[a, b, c, ...]` in order, in either sense. They need no members between them.") \
   X(CELL, PRESSURE, "pressure", NUMBER, STIFFNESS, ANY, "", OPTIONAL, 7, "", FIELD(strut_cell, pressure), "Given pressure, force per length of the boundary, outwards; negative: suction. An actuator may change it.") \
   X(CELL, GAS, "gas", MAP, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "A closed gas, whose pressure follows from the area.") \
@@ -151,6 +154,9 @@
   X(BEAM, MASS, "mass", NUMBER, MASS, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_beam, mass), "Mass of the whole beam.") \
   X(BEAM, DAMPING, "damping", NUMBER, TIME, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_beam, damping), "Damping / stiffness of the material, of bars and hinges alike (Kelvin-Voigt).") \
   X(BEAM, CLAMPED, "clamped", WORD, NONE, ANY, "none", OPTIONAL, 0, "none|start|end|both", FIELD(strut_beam, clamped), "Ends whose direction is held, at a fixed node.") \
+  X(BEAM, CLAMPED_TO, "clamped_to", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Members and other beams whose direction its ends follow.") \
+  X(CLAMPED_TO, START, "start", NAME, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "A bar, a spring or a beam that ends at the first node.") \
+  X(CLAMPED_TO, END, "end", NAME, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "The same at the second node.") \
   X(LAW, KIND, "kind", WORD, NONE, ANY, "linear", WRITTEN, 0, STRUT_LAW_WORDS, FIELD(strut_law, kind), "With the stiffness k and x the elongation: `linear`, k x. `bilinear`, k x up to the knee on either side, then with the slope `second_stiffness`. `play`, no force within the gap on either side, beyond it k times the excess. `elastic_plastic`, k x until the force reaches the yield, then with the slope `second_stiffness`, and back along k: what has yielded stays. `polynomial`, c1 x + c2 x^2 + ... `logarithmic`, k L ln(length / L) with the rest length L. `exponential`, k s (exp(x / s) - 1) with the scale s. `table`, through points.") \
   X(LAW, CARRIES, "carries", WORD, NONE, ANY, "both", OPTIONAL, 0, "both|tension|compression", FIELD(strut_law, carries), "Forces that are carried: with `tension` the element acts beyond its rest length only, with `compression` below it.") \
   X(LAW, KNEE, "knee", NUMBER, CONTEXT, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_law, knee), "Elongation at which a bilinear law changes its slope.") \
@@ -171,7 +177,7 @@
   X(GROUND, DAMPING_LAW, "damping_law", WORD, NONE, ANY, "approach_only", OPTIONAL, 0, "approach_only|hunt_crossley", FIELD(strut_ground_section, ground.damping_law), "Damping at contacts. `approach_only`: stiffness * depth + damping * speed inwards, without damping while the node moves out (the paper's law, with a jump at touchdown). `hunt_crossley`: stiffness * depth * (1 + dissipation * speed inwards), never tensile, without a jump.") \
   X(GROUND, DISSIPATION, "dissipation", NUMBER, DISSIPATION, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_ground_section, contact.dissipation), "Dissipation of the Hunt-Crossley law, which uses it instead of `damping`.") \
   X(GROUND, FRICTION, "friction", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Friction of every contact; without it the ground is frictionless.") \
-  X(GROUND, NODES, "nodes", CONTACT_NODES, NONE, ANY, "all", OPTIONAL, 0, "", BY_HAND, "The nodes that may touch the ground.") \
+  X(GROUND, NODES, "nodes", CONTACT_NODES, NONE, ANY, "all", OPTIONAL, 0, "", BY_HAND, "The nodes that may touch the ground; `all` are those that nothing moves.") \
   X(GROUND, CONTACTS, "contacts", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a contact", BY_HAND, "Settings of single contacts, by the name of the node.") \
   X(GROUND, THROUGH, "through", PAIR, LENGTH, ANY, "", OPTIONAL, 1, "", BY_HAND, "A point of the line, instead of `height`.") \
   X(GROUND, NORMAL, "normal", PAIR, NONE, ANY, "", OPTIONAL, 2, "", BY_HAND, "A vector out of the solid, of any length, instead of `slope`.") \
@@ -241,7 +247,7 @@
   X(RAMP, START, "start", NUMBER, TIME, ANY, "0", OPTIONAL, 0, "", FIELD(strut_signal, start), "Time at which the signal leaves 0.") \
   X(RAMP, STOP, "stop", NUMBER, TIME, ANY, "", REQUIRED, 0, "", FIELD(strut_signal, stop), "Time at which it reaches the amplitude.") \
   X(SENSOR, LENGTH, "length", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The member whose length it senses [m].") \
-  X(SENSOR, FORCE, "force", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The member whose force it senses [N], tension positive, damper included.") \
+  X(SENSOR, FORCE, "force", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The member whose force it senses [N], tension positive: with damper and stops, without what an actuator's `force` adds.") \
   X(SENSOR, ANGLE, "angle", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The hinge whose angle it senses [rad].") \
   X(SENSOR, CONTACT, "contact", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The node whose touch it senses: 1 while the node is in the ground, else 0.") \
   X(SENSOR, POSITION, "position", NAME, NONE, ANY, "", OPTIONAL, 7, "", BY_HAND, "The node whose position it senses [m], `along` x or y.") \
@@ -263,6 +269,17 @@
   X(CONTROLLER, LEAST, "least", NUMBER, CONTEXT, ANY, "none", OPTIONAL, 0, "", BY_HAND, "Least value of the signal.") \
   X(CONTROLLER, MOST, "most", NUMBER, CONTEXT, ANY, "none", OPTIONAL, 0, "", BY_HAND, "Largest value. Between limits the integral follows what the limits leave (no windup).") \
   X(CONTROLLER, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, "0", OPTIONAL, 0, "", BY_HAND, "Time between samples; 0: the controller is continuous.") \
+  X(CONTROLLER, KIND, "kind", WORD, NONE, ANY, "pid", OPTIONAL, 0, "pid|relay", BY_HAND, "`relay`: the controller has the keys of a [relay](#relay) instead.") \
+  X(RELAY, KIND, "kind", WORD, NONE, ANY, "", REQUIRED, 0, "relay", BY_HAND, "Which controller it is.") \
+  X(RELAY, OF, "of", EXPRESSION, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "Its input: a sensor, or an expression as that of a signal.") \
+  X(RELAY, ON_ABOVE, "on_above", NUMBER, CONTEXT, ANY, "", OPTIONAL, 7, "", BY_HAND, "It goes on when the input rises above this, and stays so until it goes off.") \
+  X(RELAY, OFF_BELOW, "off_below", NUMBER, CONTEXT, ANY, "", OPTIONAL, 8, "", BY_HAND, "With `on_above`: it goes off when the input falls below this.") \
+  X(RELAY, ON_BELOW, "on_below", NUMBER, CONTEXT, ANY, "", OPTIONAL, 7, "", BY_HAND, "Instead, as a thermostat: it goes on when the input falls below this.") \
+  X(RELAY, OFF_ABOVE, "off_above", NUMBER, CONTEXT, ANY, "", OPTIONAL, 8, "", BY_HAND, "With `on_below`: it goes off when the input rises above this.") \
+  X(RELAY, ON_VALUE, "on_value", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "The signal while it is on.") \
+  X(RELAY, OFF_VALUE, "off_value", NUMBER, CONTEXT, ANY, "0", OPTIONAL, 0, "", BY_HAND, "The signal while it is off.") \
+  X(RELAY, ON_AT_START, "on_at_start", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_relay, on_at_start), "Whether it is on at t = 0 where the input is between the thresholds.") \
+  X(RELAY, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, "0", OPTIONAL, 0, "", BY_HAND, "Time between samples; 0: it switches when the input passes a threshold, which methods with events locate.") \
   X(MAXWELL, STIFFNESS, "stiffness", NUMBER, STIFFNESS, ABOVE_ZERO, "", REQUIRED, 0, "", FIELD(strut_maxwell, stiffness), "Stiffness k of the spring.") \
   X(MAXWELL, DAMPING, "damping", NUMBER, DAMPING, ABOVE_ZERO, "", OPTIONAL, 7, "", FIELD(strut_maxwell, damping), "Damping c of the dashpot.") \
   X(MAXWELL, TIME, "time", NUMBER, TIME, ABOVE_ZERO, "", OPTIONAL, 7, "", FIELD(strut_maxwell, time), "Instead of the damping: the time c/k in which the force relaxes.") \
@@ -320,17 +337,24 @@
   X(STUDY, DESCRIPTION, "description", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study, description), "What the study is for.") \
   X(STUDY, MODEL, "model", TEXT, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "File of the model, relative to the folder of the study.") \
   X(STUDY, SET, "set", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression or a text", BY_HAND, "Values of the model's parameters at all points; `--set` takes precedence.") \
-  X(STUDY, AXES, "axes", AXES, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "Each axis gives one parameter its values, `{NAME: [...]}` or `{NAME: {...}}` with the keys of a [range](#range), or several parameters together, `{zip: {NAME: ..., NAME: ...}}`. The points are all combinations of the axes; the last axis varies fastest.") \
+  X(STUDY, AXES, "axes", AXES, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "Each axis gives one parameter its values, `{NAME: [...]}` or `{NAME: {...}}` with the keys of a [range](#range), or several parameters together, `{zip: {NAME: ..., NAME: ...}}`. Several parameters go together in `{points: FILE}`, with a row for each value, or the keys of [points](#points), and in `{sample: {...}}`, with the keys of a [sample](#sample). The points are all combinations of the axes; the last axis varies fastest.") \
   X(STUDY, DERIVE, "derive", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression", BY_HAND, "Parameters computed from others at each point, such as `{step: 1/(1000*frequency)}`.") \
   X(STUDY, VARIANTS, "variants", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a [variant](#variant)", BY_HAND, "Variants of the model, for example with other numerics; they form the first axis, the column `variant`.") \
   X(STUDY, SOLVER, "solver", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Keys that replace those of the model.") \
   X(STUDY, RUN, "run", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Keys that replace those of the model.") \
   X(STUDY, INITIAL, "initial", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Keys that replace those of the model.") \
   X(STUDY, OUTPUT, "output", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Keys that replace those of the model.") \
-  X(STUDY, KEEP, "keep", KEEP, NONE, ANY, "[velocity, velocity_spread, motion, periods, force_evaluations, outcome, quantities]", OPTIONAL, 0, "velocity|velocity_spread|velocity_interval|motion|repeats|periods|distance|duration|settle_time|steps|force_evaluations|check_evaluations|events|method|step|step_limit|expected_error|energy|work|losses|residual|contacts|positions|outcome|quantities|accuracy_kept", BY_HAND, "Columns of the table: `velocity` [m/s] and its spread over the window; `velocity_interval`, `motion` (periodic, irregular, transient), `repeats` and `periods` of runs that stop when steady; `distance` travelled per drive period; `energy` (at the end), `work` (of drives, loads, belt), `losses` and `residual` of the energy balance; `contacts` (duty factor and height of each), `positions` (of each node at the end); `accuracy_kept` (1 if the wanted accuracy was reached, otherwise 0); `outcome` (the nearest configuration); `quantities` (all that the model measures), or single ones by name; and further entries of the summary.") \
+  X(STUDY, KEEP, "keep", KEEP, NONE, ANY, "[velocity, velocity_spread, motion, periods, force_evaluations, outcome, quantities]", OPTIONAL, 0, "velocity|velocity_spread|velocity_interval|motion|repeats|periods|distance|duration|settle_time|steps|force_evaluations|check_evaluations|events|method|step|step_limit|expected_error|energy|work|losses|residual|contacts|positions|outcome|quantities|accuracy_kept|node_count|member_count|degrees_of_freedom|total_mass|stable_count|equilibrium_count|states|energies|barriers|starts|missed_probability|at|frequencies|damping_ratios|mode_counts|condition|rank|self_stress_count|mechanism_count|mechanism_kinds|super_stable|label|limit_factor|bifurcation_factor|critical_factor|last_factor|event_count|end|moved|density_change|least_tension|largest_force|lengths", BY_HAND, "Columns of the table: `velocity` [m/s] and its spread over the window; `velocity_interval`, `motion` (periodic, irregular, transient), `repeats` and `periods` of runs that stop when steady; `distance` travelled per drive period; `energy` (at the end), `work` (of drives, loads, belt), `losses` and `residual` of the energy balance; `contacts` (duty factor and height of each), `positions` (of each node at the end); `accuracy_kept` (1 if the wanted accuracy was reached, otherwise 0); `outcome` (the nearest configuration); `quantities` (all that the model measures), or single ones by name; and further entries of the summary. Of every `compute`: `node_count`, `member_count`, `degrees_of_freedom`, `total_mass`. Of equilibria: `stable_count`, `equilibrium_count` (all that were found, saddles too), and of the stable states that are lowest in energy, `states` (names), `energies`, `barriers` (the lowest way out of each); `starts`, `missed_probability`. Of modes: `at`, `frequencies` and `damping_ratios` of the lowest elastic modes, `mode_counts` (rigid-body, mechanisms, unstable), `condition`. Of rigidity: `rank`, `self_stress_count`, `mechanism_count`, `mechanism_kinds`, `super_stable`, `label`, `residual`. Of a path: `limit_factor` (the first limit point), `bifurcation_factor`, `critical_factor` (where stability is lost first), `last_factor`, `event_count`, `end`. Of a form: `moved`, `residual`, `density_change`, `least_tension`, `largest_force`, `lengths` (of members), `positions`. By default, of what is at rest: all but the first four, `lengths` and `positions`.") \
   X(STUDY, TRAJECTORIES, "trajectories", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_study, trajectories), "Write the results of each run to a folder `runs/POINT`, as `strut run -o` does.") \
   X(STUDY, CHECK, "check", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Repeat each point more accurately and mark the points whose outcome changes.") \
   X(STUDY, FIGURES, "figures", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a [figure](#figure)", BY_HAND, "Figures of the table or of the recorded motions, each written to NAME.svg.") \
+  X(STUDY, COMPUTE, "compute", WORD, NONE, ANY, "run", OPTIONAL, 0, "run|equilibria|modes|rigidity|path|form", FIELD(strut_study, compute), "What is computed at each point: a run, or what the command of that name finds at rest.") \
+  X(STUDY, LOWEST, "lowest", NUMBER, NONE, WHOLE(1, 20), "3", OPTIONAL, 0, "", FIELD(strut_study, lowest), "How many `energies`, `states`, `barriers`, `frequencies` and `damping_ratios` a row lists, the lowest first.") \
+  X(STUDY, AT, "at", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study, at), "The equilibrium of modes, rigidity and path, as `--at` of these commands.") \
+  X(STUDY, PATH, "path", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "What `compute: path` follows.") \
+  X(STUDY, REFINE, "refine", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Divide the cells of a map where a column changes, instead of computing all points of a fine grid.") \
+  X(STUDY, LIMIT, "limit", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "What a point may cost. One that needs more fails, and its row says so.") \
+  X(STUDY, FORM, "form", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "How `compute: form` finds the form.") \
   X(RANGE, FROM, "from", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "First value.") \
   X(RANGE, TO, "to", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "Last value, if the steps meet it.") \
   X(RANGE, STEP, "step", NUMBER, CONTEXT, ANY, "", OPTIONAL, 4, "", BY_HAND, "Difference between successive values.") \
@@ -360,7 +384,33 @@
   X(FIGURE, Y_LABEL, "y_label", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, y_label), "Likewise of the y axis.") \
   X(FIGURE, X_LIMITS, "x_limits", PAIR, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, x_limits), "Lines, map and motion: ends of the x axis in the column's SI unit, ascending.") \
   X(FIGURE, Y_LIMITS, "y_limits", PAIR, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, y_limits), "Likewise of the y axis.") \
-  X(FIGURE, COLORS, "colors", WORD, NONE, ANY, "auto", OPTIONAL, 0, "auto|sequential|diverging|grey", FIELD(strut_study_figure, colours), "Map: the colour scale of numbers.")
+  X(FIGURE, COLORS, "colors", WORD, NONE, ANY, "auto", OPTIONAL, 0, "auto|sequential|diverging|grey", FIELD(strut_study_figure, colours), "Map: the colour scale of numbers.") \
+  X(PATH, LOAD, "load", TEXT, NONE, ANY, "all without a signal", OPTIONAL, 6, "", FIELD(strut_study, path_load), "The load to scale.") \
+  X(PATH, OVER, "over", TEXT, NONE, ANY, "", OPTIONAL, 6, "", FIELD(strut_study, path_over), "Instead of loads, an actuator, or a displacement `NODE.x` or `NODE.y`.") \
+  X(PATH, FROM, "from", NUMBER, CONTEXT, ANY, "0", OPTIONAL, 0, "", BY_HAND, "Start value: a load factor, or in the unit of `over`.") \
+  X(PATH, UNTIL, "until", NUMBER, CONTEXT, ANY, "load factor 1", OPTIONAL, 0, "", BY_HAND, "End value, likewise; required with `over`.") \
+  X(PATH, STEPS, "steps", NUMBER, NONE, WHOLE(1, 1000000), "400", OPTIONAL, 0, "", FIELD(strut_study, path_steps), "Maximum number of steps.") \
+  X(FORM, FROM, "from", WORD, NONE, ANY, "scene", OPTIONAL, 0, "scene|densities|lengths|prestress", FIELD(strut_study, form_from), "What gives the shape; `scene`: as the model's keys say.") \
+  X(FORM, LEAST_TENSION, "least_tension", NUMBER, FORCE, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_study, form_least_tension), "Lower bound on the tension of every cable.") \
+  X(FORM, LEAST_DENSITY, "least_density", NUMBER, STIFFNESS, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_study, form_least_density), "Lower bound on the force density of every cable.") \
+  X(FORM, OBJECTIVE, "objective", WORD, NONE, ANY, "largest", OPTIONAL, 0, "largest|sum|squares", FIELD(strut_study, form_objective), "Which prestress: that whose minimum this is.") \
+  X(POINTS, FILE, "file", TEXT, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "A CSV file with a header, below the folder of the study. `NAME [UNIT]` heads the values of a parameter; without a unit they are in SI.") \
+  X(POINTS, COLUMNS, "columns", NAMES, NONE, ANY, "all but `point`, `status` and `message`", OPTIONAL, 0, "", BY_HAND, "The columns to use; others are skipped.") \
+  X(SAMPLE, COUNT, "count", NUMBER, NONE, WHOLE(1, 1000000), "", REQUIRED, 0, "", BY_HAND, "Number of points.") \
+  X(SAMPLE, SEED, "seed", NUMBER, NONE, WHOLE(1, 4294967295), "1", OPTIONAL, 0, "", BY_HAND, "Another seed gives other points, the same seed the same.") \
+  X(SAMPLE, SCHEME, "scheme", WORD, NONE, ANY, "sobol", OPTIONAL, 0, "sobol|lhs|random", BY_HAND, "`sobol`: Sobol's sequence, shifted by the seed; `lhs`: Latin hypercube; `random`: independent points.") \
+  X(SAMPLE, OVER, "over", THINGS, NONE, ANY, "", REQUIRED, 0, "a [distribution](#distribution)", BY_HAND, "The parameters, up to 40, and their distributions.") \
+  X(DISTRIBUTION, UNIFORM, "uniform", NUMBERS, CONTEXT, ANY, "", OPTIONAL, 10, "", BY_HAND, "`[LEAST, MOST]`.") \
+  X(DISTRIBUTION, LOG_UNIFORM, "log_uniform", NUMBERS, CONTEXT, ANY, "", OPTIONAL, 10, "", BY_HAND, "`[LEAST, MOST]`, on one side of 0; the logarithm is uniform.") \
+  X(DISTRIBUTION, NORMAL, "normal", NUMBERS, CONTEXT, ANY, "", OPTIONAL, 10, "", BY_HAND, "`[MEAN, DEVIATION]`.") \
+  X(DISTRIBUTION, LOGNORMAL, "lognormal", NUMBERS, CONTEXT, ANY, "", OPTIONAL, 10, "", BY_HAND, "`[MEDIAN, DEVIATION]`, the deviation that of the natural logarithm, without unit.") \
+  X(DISTRIBUTION, TRIANGULAR, "triangular", NUMBERS, CONTEXT, ANY, "", OPTIONAL, 10, "", BY_HAND, "`[LEAST, MODE, MOST]`.") \
+  X(LIMIT, EVALUATIONS, "evaluations", NUMBER, NONE, WHOLE(1, 1000000000000000), "none", OPTIONAL, 0, "", FIELD(strut_study, limit_evaluations), "Force evaluations of each run, the check's too. The same points fail on every machine.") \
+  X(LIMIT, TIME, "time", NUMBER, TIME, ABOVE_ZERO, "none", OPTIONAL, 0, "", FIELD(strut_study, limit_time), "Time of a point by the clock. Which points fail depends on the machine and its load; `--retry` computes them again.") \
+  X(REFINE, WHERE, "where", NAME, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_study, refine_where), "A column of the table, such as `outcome`. Cells whose points differ in it are divided; a point that failed differs from others.") \
+  X(REFINE, DEPTH, "depth", NUMBER, NONE, WHOLE(1, 10), "", REQUIRED, 0, "", BY_HAND, "How often: the finest cells have 2^depth of the width of those of the axes.") \
+  X(REFINE, BY, "by", NUMBER, NONE, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_study, refine_by), "Numbers must differ by more than this, in the SI unit of the column.") \
+  X(REFINE, AXES, "axes", NAMES, NONE, ANY, "the axes with ranges", OPTIONAL, 0, "", BY_HAND, "The parameters of the two axes to divide.")
 
 /* clang-format on */
 

@@ -11,7 +11,7 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
-#include "parser/read/reader.h"
+#include "parser/read/beams.h"
 
 /* Parts of all beams. */
 enum { MOST_PARTS = 2000000 };
@@ -22,7 +22,7 @@ static size_t count_clamps(const strut_beam *b) {
   return (size_t)(b->clamped & 1u) + (size_t)(b->clamped >> 1);
 }
 
-static double part_length(const strut_reader *reader, const strut_beam *b) {
+double strut_beam_part_length(const strut_reader *reader, const strut_beam *b) {
   const strut_node *nodes = reader->scene->nodes;
   return strut_distance(nodes[b->node[0]].position, nodes[b->node[1]].position) / (double)b->parts;
 }
@@ -56,9 +56,8 @@ static bool claim_name(strut_reader *reader, strut_beam *b, const char *kind, st
   return false;
 }
 
-/* An array with place for `more` things at its end; NULL: out of memory. */
-static void *lengthen(strut_reader *reader, strut_arena *arena, const void *old, size_t count,
-                      size_t more, size_t size) {
+void *strut_lengthen(strut_reader *reader, strut_arena *arena, const void *old, size_t count,
+                     size_t more, size_t size) {
   void *array = strut_reader_allocate(reader, arena, count + more, size);
   if (array && count) memcpy(array, old, count * size);
   return array;
@@ -77,7 +76,7 @@ static bool check_ends(strut_reader *reader, const strut_tree *key, const strut_
                        b->name, end->name);
     return false;
   }
-  double length = part_length(reader, b);
+  double length = strut_beam_part_length(reader, b);
   if (length > 0.0) return true;
   if (!isnan(length))
     strut_report_error(reader, key->place,
@@ -105,6 +104,8 @@ static bool read_beam(strut_reader *reader, const strut_tree *key, strut_beam *b
     b->node[k] = strut_read_node(reader, item, owner);
     fine = fine && b->node[k] >= 0;
   }
+  fine =
+      strut_read_clamped_to(reader, strut_slot_of(&fields, STRUT_KEY_BEAM_CLAMPED_TO), b) && fine;
   return fine && !fields.broken && check_ends(reader, key, clamped, b);
 }
 
@@ -161,19 +162,16 @@ void strut_read_beams(strut_reader *reader) {
     reader->beam_count = 0;
   }
   if (!reader->beam_count || strut_diagnostics_full(reader->diagnostics)) return;
-  scene->nodes = lengthen(reader, &scene->arena, scene->nodes, scene->node_count, parts + clamps,
-                          sizeof *scene->nodes);
-  reader->node_source = lengthen(reader, &reader->scratch, reader->node_source, scene->node_count,
-                                 parts + clamps, sizeof *reader->node_source);
-  reader->node_moves = lengthen(reader, &reader->scratch, reader->node_moves, scene->node_count,
-                                parts + clamps, sizeof *reader->node_moves);
+  scene->nodes = strut_lengthen(reader, &scene->arena, scene->nodes, scene->node_count,
+                                parts + clamps, sizeof *scene->nodes);
+  reader->node_source =
+      strut_lengthen(reader, &reader->scratch, reader->node_source, scene->node_count,
+                     parts + clamps, sizeof *reader->node_source);
+  reader->node_moves =
+      strut_lengthen(reader, &reader->scratch, reader->node_moves, scene->node_count,
+                     parts + clamps, sizeof *reader->node_moves);
   if (!scene->nodes || !reader->node_source || !reader->node_moves) return;
   for (size_t i = 0; i < reader->beam_count; i++) add_nodes(reader, &reader->beams[i]);
-}
-
-/* Node k of the beam, from 0 to its number of parts. */
-static int32_t beam_node(const strut_beam *b, int32_t k) {
-  return k == 0 ? b->node[0] : k == b->parts ? b->node[1] : b->first_node + k - 1;
 }
 
 static size_t count_parts(const strut_reader *reader) {
@@ -190,9 +188,9 @@ static void add_part(strut_reader *reader, strut_beam *b, int32_t k) {
   strut_member *m = &scene->members[i];
   *m = strut_member_default();
   m->name = name;
-  m->node[0] = beam_node(b, k - 1), m->node[1] = beam_node(b, k);
+  m->node[0] = strut_beam_node(b, k - 1), m->node[1] = strut_beam_node(b, k);
   m->axial_stiffness = b->axial_stiffness;
-  m->damping = b->damping * b->axial_stiffness / part_length(reader, b);
+  m->damping = b->damping * b->axial_stiffness / strut_beam_part_length(reader, b);
   m->mass = b->mass / (double)b->parts;
   reader->member_source[i] = (strut_source){b->key, b->key->next, false};
   scene->member_count++;
@@ -202,19 +200,19 @@ void strut_add_beam_members(strut_reader *reader) {
   strut_scene *scene = reader->scene;
   size_t parts = count_parts(reader);
   if (!parts) return;
-  scene->members = lengthen(reader, &scene->arena, scene->members, scene->member_count, parts,
-                            sizeof *scene->members);
-  reader->member_source = lengthen(reader, &reader->scratch, reader->member_source,
-                                   scene->member_count, parts, sizeof *reader->member_source);
+  scene->members = strut_lengthen(reader, &scene->arena, scene->members, scene->member_count, parts,
+                                  sizeof *scene->members);
+  reader->member_source = strut_lengthen(reader, &reader->scratch, reader->member_source,
+                                         scene->member_count, parts, sizeof *reader->member_source);
   for (size_t i = 0; i < reader->beam_count && scene->members && reader->member_source; i++) {
     strut_beam *b = &reader->beams[i];
     for (int32_t k = 1; k <= b->parts && !b->broken; k++) add_part(reader, b, k);
   }
 }
 
-/* A hinge at `node`, straight at rest; `parts`: of those that meet there, as many as bend. */
-static void add_hinge(strut_reader *reader, strut_beam *b, const char *name, const int32_t node[3],
-                      double parts) {
+void strut_add_beam_hinge(strut_reader *reader, strut_beam *b, const char *name,
+                          const int32_t node[3], double stiffness, double damping,
+                          double rest_angle) {
   strut_scene *scene = reader->scene;
   size_t i = scene->hinge_count;
   if (!claim_name(reader, b, "hinge", &reader->hinge_names, name, i)) return;
@@ -222,20 +220,28 @@ static void add_hinge(strut_reader *reader, strut_beam *b, const char *name, con
   *h = strut_hinge_default();
   h->name = name;
   for (int k = 0; k < 3; k++) h->node[k] = node[k];
-  h->stiffness = b->bending_stiffness / (parts * part_length(reader, b));
-  h->damping = b->damping * h->stiffness;
-  h->rest_angle = STRUT_PI;
+  h->stiffness = stiffness;
+  h->damping = damping;
+  h->rest_angle = rest_angle;
   reader->hinge_source[i] = (strut_source){b->key, b->key->next, false};
   scene->hinge_count++;
 }
 
+/* A hinge that is straight at rest; `parts`: of those that meet there, as many as bend. */
+static void add_hinge(strut_reader *reader, strut_beam *b, const char *name, const int32_t node[3],
+                      double parts) {
+  double stiffness = b->bending_stiffness / (parts * strut_beam_part_length(reader, b));
+  strut_add_beam_hinge(reader, b, name, node, stiffness, b->damping * stiffness, STRUT_PI);
+}
+
 static void add_hinges(strut_reader *reader, strut_beam *b) {
   for (int32_t k = 1; k < b->parts && !b->broken; k++) {
-    const int32_t node[3] = {beam_node(b, k - 1), beam_node(b, k), beam_node(b, k + 1)};
+    const int32_t node[3] = {strut_beam_node(b, k - 1), strut_beam_node(b, k),
+                             strut_beam_node(b, k + 1)};
     add_hinge(reader, b, part_name(reader, b, (size_t)k), node, 1.0);
   }
-  const int32_t start[3] = {b->clamp_node[0], b->node[0], beam_node(b, 1)};
-  const int32_t end[3] = {beam_node(b, b->parts - 1), b->node[1], b->clamp_node[1]};
+  const int32_t start[3] = {b->clamp_node[0], b->node[0], strut_beam_node(b, 1)};
+  const int32_t end[3] = {strut_beam_node(b, b->parts - 1), b->node[1], b->clamp_node[1]};
   if (b->clamped & CLAMPED_START && !b->broken)
     add_hinge(reader, b, clamp_name(reader, b, false), start, 0.5);
   if (b->clamped & CLAMPED_END && !b->broken)
@@ -246,10 +252,11 @@ void strut_add_beam_hinges(strut_reader *reader) {
   strut_scene *scene = reader->scene;
   size_t most = count_parts(reader) + 2 * reader->beam_count;
   if (!reader->beam_count) return;
-  scene->hinges = lengthen(reader, &scene->arena, scene->hinges, scene->hinge_count, most,
-                           sizeof *scene->hinges);
-  reader->hinge_source = lengthen(reader, &reader->scratch, reader->hinge_source,
-                                  scene->hinge_count, most, sizeof *reader->hinge_source);
+  scene->hinges = strut_lengthen(reader, &scene->arena, scene->hinges, scene->hinge_count, most,
+                                 sizeof *scene->hinges);
+  reader->hinge_source = strut_lengthen(reader, &reader->scratch, reader->hinge_source,
+                                        scene->hinge_count, most, sizeof *reader->hinge_source);
   for (size_t i = 0; i < reader->beam_count && scene->hinges && reader->hinge_source; i++)
     add_hinges(reader, &reader->beams[i]);
+  strut_add_joint_hinges(reader);
 }

@@ -150,21 +150,17 @@ typedef struct controller {
 
 void strut_list_controllers(strut_reader *reader) {
   const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_CONTROLLERS);
-  size_t i = 0;
   if (!map || !reader->named) return;
-  reader->controller_broken =
-      strut_reader_allocate(reader, &reader->scratch, map->count + 1, sizeof(bool));
-  for (const strut_tree *key = strut_first_entry(reader, map); key && reader->controller_broken;
-       key = strut_following_entry(reader, key), i++) {
+  for (const strut_tree *key = strut_first_entry(reader, map); key;
+       key = strut_following_entry(reader, key)) {
     bool fine = strut_check_variable_name(reader, key, "controller");
     if (fine && strut_name_map_find(&reader->signal_names, key->text) >= 0) {
       strut_report_error(reader, key->place, "there is a signal '%s' already", key->text);
       fine = false;
     }
-    reader->controller_broken[i] = !fine;
     if (!fine) continue;
     reader->named[reader->named_count] =
-        (strut_named_signal){key->text, key, STRUT_SIGNAL_READ, -1};
+        (strut_named_signal){key->text, key, STRUT_SIGNAL_UNREAD, -1, true};
     strut_add_name(reader, &reader->signal_names, key->text, reader->named_count++);
   }
 }
@@ -285,50 +281,52 @@ static bool add_integral(strut_reader *reader, const strut_tree *key, controller
   return make_integral(reader, c);
 }
 
-static bool read_controller(strut_reader *reader, const strut_tree *key) {
+static int32_t read_pid(strut_reader *reader, const strut_tree *key) {
   strut_owner owner = {"controller", key->text};
   strut_fields fields;
   controller c = {.state = -1};
   builder b;
   strut_read_fields(reader, STRUT_SECTION_CONTROLLER, key->next, owner, &fields);
+  if (strut_slot_of(&fields, STRUT_KEY_CONTROLLER_KIND)->state == STRUT_BROKEN) return -1;
   strut_require(reader, &fields, owner, key->place);
   const strut_slot *sensor = strut_slot_of(&fields, STRUT_KEY_CONTROLLER_SENSOR);
   const strut_slot *gain = strut_slot_of(&fields, STRUT_KEY_CONTROLLER_GAIN);
-  if (fields.broken || sensor->state != STRUT_GIVEN || gain->state != STRUT_GIVEN) return false;
+  if (fields.broken || sensor->state != STRUT_GIVEN || gain->state != STRUT_GIVEN) return -1;
   c.sensor =
       strut_read_reference(reader, sensor->value, "sensor", owner, "sensor", &reader->sensor_names,
                            strut_sensor_name, reader->scene->sensor_count);
-  if (c.sensor < 0) return false;
+  if (c.sensor < 0) return -1;
   strut_sensor_kind kind = reader->scene->sensors[c.sensor].kind;
   c.sensed = strut_sensor_dimension(kind);
-  if (!read_numbers(reader, &fields, owner, &c)) return false;
+  if (!read_numbers(reader, &fields, owner, &c)) return -1;
   if (c.derivative != 0.0 && !strut_sensor_has_rate(kind)) {
     strut_report_error(
         reader, key->place,
         "controller '%s' takes the derivative of sensor '%s', whose rate is not known", key->text,
         reader->scene->sensors[c.sensor].name);
-    return false;
+    return -1;
   }
   if (c.limited[0] && c.limited[1] && c.limit[0] > c.limit[1]) {
     strut_report_error(reader, key->place,
                        "'least' of controller '%s' must not be above 'most', found %g and %g",
                        key->text, c.limit[0], c.limit[1]);
-    return false;
+    return -1;
   }
-  if (c.integral != 0.0 && !add_integral(reader, key, &c)) return false;
-  if (!begin_program(reader, MOST_INSTRUCTIONS, &b)) return false;
+  if (c.integral != 0.0 && !add_integral(reader, key, &c)) return -1;
+  if (!begin_program(reader, MOST_INSTRUCTIONS, &b)) return -1;
   put_control(&b, &c, true);
   strut_signal signal = strut_signal_default(STRUT_EXPRESSION);
   signal.program = end_program(&b);
   signal.every = c.every;
-  strut_add_named_signal(reader, key, key->text, &signal, c.signal);
-  return true;
+  return strut_add_controller_signal(reader, key, &signal, c.signal, false);
 }
 
-void strut_read_controllers(strut_reader *reader) {
-  const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_CONTROLLERS);
-  size_t i = 0;
-  for (const strut_tree *key = strut_first_entry(reader, map); key && reader->controller_broken;
-       key = strut_following_entry(reader, key), i++)
-    if (!reader->controller_broken[i] && !read_controller(reader, key)) reader->failed = true;
+bool strut_is_relay(const strut_tree *map) {
+  const strut_tree *kind = map->kind == STRUT_TREE_MAP ? strut_tree_find(map, "kind", NULL) : NULL;
+  return kind && kind->kind == STRUT_TREE_SCALAR && strcmp(kind->text, "relay") == 0;
+}
+
+/* Without `kind`, or with one that is none, it is a PID controller, whose keys say so. */
+int32_t strut_read_controller(strut_reader *reader, const strut_tree *key) {
+  return strut_is_relay(key->next) ? strut_read_relay(reader, key) : read_pid(reader, key);
 }

@@ -186,6 +186,7 @@ static bool shape_fits(strut_key_type type, const strut_tree *value) {
     case STRUT_TYPE_NAME_PAIR: return value->kind == STRUT_TREE_LIST && value->count == 2;
     case STRUT_TYPE_NODE_TRIPLE: return value->kind == STRUT_TREE_LIST && value->count == 3;
     case STRUT_TYPE_NUMBERS:
+    case STRUT_TYPE_NAMES:
     case STRUT_TYPE_PROFILE:
     case STRUT_TYPE_POINTS: return value->kind == STRUT_TREE_LIST;
     case STRUT_TYPE_MAP:

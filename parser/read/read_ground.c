@@ -177,6 +177,11 @@ static void read_contact(strut_reader *reader, const strut_tree *key, ground_def
   *source = (strut_source){key, key ? key->next : NULL, !fine};
 }
 
+/* A node that is moved cannot touch, and is none of `all`. */
+static bool moves(const strut_reader *reader, int32_t node) {
+  return reader->node_moves && reader->node_moves[node];
+}
+
 /* Marks the nodes whose names fit a pattern. */
 static bool mark_matches(strut_reader *reader, const strut_tree *item, strut_owner owner,
                          unsigned char *touches) {
@@ -195,7 +200,7 @@ static bool mark_nodes(strut_reader *reader, strut_fields *fields, strut_owner o
   const strut_slot *slot = strut_slot_of(fields, STRUT_KEY_GROUND_NODES);
   size_t count = reader->scene->node_count;
   if (slot->state != STRUT_GIVEN || slot->value->kind == STRUT_TREE_SCALAR) {
-    memset(touches, 1, count);
+    for (size_t i = 0; i < count; i++) touches[i] = !moves(reader, (int32_t)i);
     return slot->state != STRUT_BROKEN;
   }
   bool fine = true;
@@ -238,7 +243,11 @@ static bool find_entries(strut_reader *reader, strut_fields *fields, strut_owner
       continue;
     }
     fine = false;
-    if (node >= 0 && complete)
+    if (node >= 0 && moves(reader, node))
+      strut_report_error(reader, key->place,
+                         "node '%s' has a contact with %s, but it moves, so that it cannot touch",
+                         key->text, strut_owner_text(reader, owner));
+    else if (node >= 0 && complete)
       strut_report_error(reader, key->place, "node '%s' has a contact, but 'nodes' of %s lacks it",
                          key->text, strut_owner_text(reader, owner));
   }

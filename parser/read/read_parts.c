@@ -10,12 +10,13 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/memory_limit.h"
 #include "engine/base/trig.h"
 #include "parser/read/copies.h"
 
 enum { DEEPEST = 16 };
 /* Entries of all copies, and copies of one placement. */
-static const double MOST_THINGS = 4e6, MOST_COPIES = 2e6;
+static const double MOST_THINGS = 1e7, MOST_COPIES = 2e6;
 
 /* The keys of a part, or of `next`, whose entries are copied, and the scene's keys where they go. */
 static int scene_key(int key) {
@@ -61,7 +62,10 @@ static void read_part_list(strut_reader *reader, const strut_slot *slot, strut_c
     strut_owner owner = {"part", key->text};
     bool fine = strut_read_name(reader, key, "part");
     strut_read_fields(reader, STRUT_SECTION_PART, key->next, owner, &part->fields);
-    part->broken = !fine || part->fields.broken;
+    const strut_slot *use = strut_slot_of(&part->fields, STRUT_KEY_PART_USE);
+    const strut_slot *isolated = strut_slot_of(&part->fields, STRUT_KEY_PART_ISOLATED);
+    part->closed = isolated->state == STRUT_GIVEN && isolated->word == 1;
+    part->broken = !fine || part->fields.broken || use->key; /* a file that could not be read */
   }
 }
 
@@ -962,6 +966,18 @@ static void report_unplaced(strut_reader *reader) {
                  parts->part[i].name);
 }
 
+/* Least memory of an entry while it is read, and as a thing of the scene [B]. */
+static const double ENTRY_NEEDS = 700.0;
+
+static bool check_memory(expansion *e, const strut_slot *place) {
+  strut_error error = {0};
+  double needs = ENTRY_NEEDS * (double)e->copies->things;
+  if (needs < 1e8 || strut_memory_check(needs, "the copies of parts", &error) == STRUT_OK)
+    return true;
+  strut_report_error(e->reader, place->key->place, "%s", error.message);
+  return false;
+}
+
 /* Counts first, then copies. */
 static void expand_scene(expansion *e) {
   strut_reader *reader = e->reader;
@@ -969,7 +985,7 @@ static void expand_scene(expansion *e) {
   const strut_slot *nodes = strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES);
   e->weighing = true;
   expand_places(e, place, NULL);
-  if (e->stopped || reader->failed) {
+  if (e->stopped || reader->failed || !check_memory(e, place)) {
     e->copies->incomplete = true;
     return;
   }

@@ -144,10 +144,10 @@ static bool read_expression(strut_reader *reader, const strut_tree *value, strut
     return false;
   }
   if (!m->expected || q.bare || strut_dimension_equal(q.dimension, *m->expected)) return true;
-  strut_report_error(reader, value->place, "expected %s for 'expression' of %s, found %s",
-                     strut_expected_number(*m->expected, wanted, sizeof wanted),
-                     strut_owner_text(reader, owner),
-                     strut_dimension_name(q.dimension, found, sizeof found));
+  strut_report_error(
+      reader, value->place, "expected %s for 'expression' of %s, found %s",
+      strut_expected_quantity(reader->signal_quantity, *m->expected, wanted, sizeof wanted),
+      strut_owner_text(reader, owner), strut_dimension_name(q.dimension, found, sizeof found));
   return false;
 }
 
@@ -207,7 +207,7 @@ static int32_t read_literal(strut_reader *reader, const strut_tree *map, strut_o
   strut_read_fields(reader, STRUT_SECTION_SIGNAL, map, owner, &fields);
   int chosen = 0;
   unsigned kinds = 0;
-  for (int kind = STRUT_SIGNAL_KINDS - 1; kind >= 0; kind--)
+  for (int kind = STRUT_EXPRESSION; kind >= 0; kind--) /* a relay is a controller */
     if (fields.slot[kind].state == STRUT_GIVEN) chosen = kind, kinds++;
   if (kinds != 1 && !fields.broken)
     strut_report_error(reader, map->place, "expected one kind of signal for %s, found %u",
@@ -245,7 +245,8 @@ static int32_t read_named(strut_reader *reader, strut_named_signal *named) {
   if (named->state == STRUT_SIGNAL_READING) {
     size_t first = 0;
     while (reader->signal_stack[first] != named) first++;
-    strut_report_error(reader, named->key->place, "signal '%s' contains itself: %s", named->name,
+    strut_report_error(reader, named->key->place, "%s '%s' contains itself: %s",
+                       named->controller ? "controller" : "signal", named->name,
                        strut_format_cycle(reader, stacked_name, first, reader->signal_depth));
     return -1;
   }
@@ -258,9 +259,10 @@ static int32_t read_named(strut_reader *reader, strut_named_signal *named) {
   reader->signal_stack[reader->signal_depth++] = named;
   strut_copy *scope = strut_enter_scope(reader, named->key);
   const strut_tree *value = named->key->next;
-  bool fine = strut_read_name(reader, named->key, "signal");
-  int32_t index = read_signal(reader, value, named->name, owner, NULL);
-  if (index >= 0 && value->kind == STRUT_TREE_SCALAR) {
+  bool fine = named->controller || strut_read_name(reader, named->key, "signal");
+  int32_t index = named->controller ? strut_read_controller(reader, named->key)
+                                    : read_signal(reader, value, named->name, owner, NULL);
+  if (index >= 0 && !named->controller && value->kind == STRUT_TREE_SCALAR) {
     /* Another name for a signal: a sum of one term. */
     int32_t *term = strut_reader_allocate(reader, &reader->scene->arena, 1, sizeof *term);
     strut_signal sum = strut_signal_default(STRUT_SUM);
@@ -294,9 +296,10 @@ static bool claim(strut_reader *reader, int32_t index, const strut_tree *value,
     state->dimension = *expected;
   }
   if (strut_dimension_equal(state->dimension, *expected)) return true;
-  strut_report_error(reader, value->place, "expected %s here, but signal '%s' is %s",
-                     strut_expected_number(*expected, wanted, sizeof wanted), value->text,
-                     strut_dimension_name(state->dimension, found, sizeof found));
+  strut_report_error(
+      reader, value->place, "expected %s here, but signal '%s' is %s",
+      strut_expected_quantity(reader->signal_quantity, *expected, wanted, sizeof wanted),
+      value->text, strut_dimension_name(state->dimension, found, sizeof found));
   return false;
 }
 
@@ -340,20 +343,26 @@ void strut_list_signals(strut_reader *reader) {
   for (const strut_tree *key = map ? map->first : NULL; key && reader->named;
        key = key->next->next) {
     strut_named_signal *named = &reader->named[reader->named_count];
-    *named = (strut_named_signal){key->text, key, STRUT_SIGNAL_UNREAD, -1};
+    *named = (strut_named_signal){key->text, key, STRUT_SIGNAL_UNREAD, -1, false};
     strut_add_name(reader, &reader->signal_names, key->text, reader->named_count++);
   }
 }
 
-void strut_add_named_signal(strut_reader *reader, const strut_tree *key, const char *name,
-                            const strut_signal *signal, strut_dimension dimension) {
-  int32_t i = strut_name_map_find(&reader->signal_names, name);
-  const meaning m = {NULL, dimension, false};
-  int32_t index = add_signal(reader, signal, &m, key->next);
-  if (i < 0) return;
-  reader->named[i].state = STRUT_SIGNAL_READ;
-  reader->named[i].index = index;
-  if (index >= 0) reader->signals[index].name = strut_keep_text(reader, name);
+int32_t strut_add_controller_signal(strut_reader *reader, const strut_tree *key,
+                                    const strut_signal *signal, strut_dimension dimension,
+                                    bool bare) {
+  const meaning m = {NULL, dimension, bare};
+  return add_signal(reader, signal, &m, key->next);
+}
+
+/* Relays come first, since what is written has no other controllers. */
+void strut_read_controllers(strut_reader *reader) {
+  for (size_t i = 0; i < 2 * reader->named_count; i++) {
+    strut_named_signal *named = &reader->named[i % reader->named_count];
+    if (!named->controller || (i < reader->named_count && !strut_is_relay(named->key->next)))
+      continue;
+    if (read_named(reader, named) < 0) reader->failed = true;
+  }
 }
 
 void strut_read_signals(strut_reader *reader) {

@@ -244,14 +244,13 @@ bool strut_read_number(strut_reader *reader, const strut_tree *value, const char
                        double *number) {
   char expected[200], found[80];
   strut_quantity quantity;
-  if (value->kind != STRUT_TREE_SCALAR || strut_is_null(value)) {
-    strut_expected_number(dimension, expected, sizeof expected);
+  const char *what = reader->signal_quantity ? reader->signal_quantity : key;
+  strut_expected_quantity(what, dimension, expected, sizeof expected);
+  if (value->kind != STRUT_TREE_SCALAR || strut_is_null(value))
     return strut_read_scalar(reader, value, key, owner, expected);
-  }
   if (!strut_read_quantity(reader, value, key, owner, &quantity)) return false;
   if (!quantity.bare && !strut_dimension_equal(quantity.dimension, dimension)) {
-    strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s",
-                       strut_expected_number(dimension, expected, sizeof expected), key,
+    strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s", expected, key,
                        strut_owner_text(reader, owner),
                        strut_dimension_name(quantity.dimension, found, sizeof found));
     return false;

@@ -43,13 +43,16 @@ typedef struct strut_fields {
   strut_slot slot[STRUT_MOST_KEYS];
 } strut_fields;
 
+enum { STRUT_GROUP_SECTIONS = 4 }; /* member, node, contact, hinge */
+
 /** One key of a group, and its number in each section that may use the group. */
 typedef struct strut_group_item {
   strut_slot slot;
-  int key[3];           /* in member, node, contact; -1: not there */
-  bool refused[3];      /* it has been reported that the section has no such key */
-  bool found;           /* a finding has been reported here */
-  strut_fields *nested; /* of a mapping: friction */
+  int key[STRUT_GROUP_SECTIONS];      /* -1: not there */
+  bool refused[STRUT_GROUP_SECTIONS]; /* it has been reported that the section has no such key */
+  bool found;                         /* a finding has been reported here */
+  strut_fields *nested;               /* of a mapping: friction */
+  strut_slot of_hinge;                /* where hinges measure it by another unit; else as `slot` */
 } strut_group_item;
 
 typedef struct strut_group {
@@ -58,6 +61,7 @@ typedef struct strut_group {
   size_t count;
   strut_group_item *items;
   bool used, broken;
+  bool of_hinges, of_others; /* hinges name it; members, nodes or contacts do, or nothing does */
 } strut_group;
 
 /** A copy of a part as the scope of what is read, see copies.h. */
@@ -96,7 +100,8 @@ typedef struct strut_named_signal {
   const char *name;
   const strut_tree *key;
   enum { STRUT_SIGNAL_UNREAD, STRUT_SIGNAL_READING, STRUT_SIGNAL_READ } state;
-  int32_t index; /* into the signals; -1: it could not be read */
+  int32_t index;   /* into the signals; -1: it could not be read */
+  bool controller; /* it stands under `controllers` */
 } strut_named_signal;
 
 /** Longest chains of parameters and of signals that refer to each other. */
@@ -130,6 +135,7 @@ typedef struct strut_reader {
   strut_source *unbalance_source;
   const strut_tree **node_moves; /* (node_count) the keys of moves of a node, or NULL */
   strut_signal_state *signal_state;
+  const char *signal_quantity; /* what the signal that is being read gives, for messages, or NULL */
   size_t signal_count;
   strut_source *configuration_source;
   strut_fields ground, initial, settle, search, solver, run, measure, steady, output;
@@ -147,7 +153,6 @@ typedef struct strut_reader {
   strut_fields *grounds;       /* of each of the scene's grounds; of `ground` the one above */
   strut_source *ground_source; /* of `grounds`, or NULL */
   strut_name_map ground_names;
-  bool *controller_broken;     /* (controllers) in the order of the file */
   strut_copy *scope;           /* the copy of which a thing is being read; NULL: the scene's own */
   struct strut_copies *copies; /* NULL: the scene has no parts */
 } strut_reader;
@@ -425,9 +430,16 @@ bool strut_check_variable_name(strut_reader *reader, const strut_tree *key, cons
 /** Appends an internal state; -1: out of memory, or too many errors. */
 int32_t strut_add_state(strut_reader *reader, const strut_tree *key, const char *name,
                         strut_dimension dimension, double start);
-/** Appends a signal with a name. */
-void strut_add_named_signal(strut_reader *reader, const strut_tree *key, const char *name,
-                            const strut_signal *signal, strut_dimension dimension);
+/** Appends the signal that a controller is; -1: out of memory. */
+int32_t strut_add_controller_signal(strut_reader *reader, const strut_tree *key,
+                                    const strut_signal *signal, strut_dimension dimension,
+                                    bool bare);
+/** The signal that the controller behind the key stands for; -1: it was reported. */
+int32_t strut_read_controller(strut_reader *reader, const strut_tree *key);
+/** Is the controller a relay? */
+bool strut_is_relay(const strut_tree *map);
+/** read_relay.c: the same of a relay. */
+int32_t strut_read_relay(strut_reader *reader, const strut_tree *key);
 /** An expression of the time, sensors and signals; in the scene's memory. */
 bool strut_read_signal_program(strut_reader *reader, const strut_tree *value, const char *key,
                                strut_owner owner, strut_program *program, strut_quantity *q);

@@ -12,27 +12,31 @@
 
 static const strut_owner study_owner = {"the study", NULL};
 
-static const char *declared_name(const void *context, size_t i) {
+const char *strut_study_declared_name(const void *context, size_t i) {
   const strut_study_reader *r = context;
   return i < r->declared_count ? r->declared[i].name : NULL;
 }
 
+const strut_declared *strut_study_declared(const strut_study_reader *r, const char *name) {
+  for (size_t i = 0; i < r->declared_count; i++)
+    if (strcmp(r->declared[i].name, name) == 0) return &r->declared[i];
+  return NULL;
+}
+
 const strut_declared *strut_study_parameter(strut_study_reader *r, const strut_tree *key) {
-  const strut_declared *found = NULL;
-  size_t at = 0;
-  for (; at < r->declared_count && !found; at++)
-    if (strcmp(r->declared[at].name, key->text) == 0) found = &r->declared[at];
+  const strut_declared *found = strut_study_declared(r, key->text);
   if (!found) {
-    strut_report_error(r->reader, key->place, "the model has no parameter '%s'%s",
-                       strut_sanitised_text(r->reader, key->text),
-                       strut_hint(r->reader, key->text, declared_name, r, r->declared_count));
+    strut_report_error(
+        r->reader, key->place, "the model has no parameter '%s'%s",
+        strut_sanitised_text(r->reader, key->text),
+        strut_hint(r->reader, key->text, strut_study_declared_name, r, r->declared_count));
     return NULL;
   }
   if (strut_name_map_find(&r->given, found->name) >= 0) {
     strut_report_error(r->reader, key->place, "parameter '%s' is given twice", found->name);
     return NULL;
   }
-  strut_add_name(r->reader, &r->given, found->name, at);
+  strut_add_name(r->reader, &r->given, found->name, (size_t)(found - r->declared));
   return found;
 }
 
@@ -85,9 +89,19 @@ static const strut_tree *quantities_of(strut_scene_source *source) {
   return tree && tree->kind == STRUT_TREE_MAP ? tree : NULL;
 }
 
-/* The names that `keep` may contain: words of the table of keys, then the model's quantities. */
+/* The words of `keep`, in its order, and what has them. */
+static const struct {
+  const char *word;
+  unsigned of;
+} kept_words[] = {
+#define KEPT_WORD(name, word, of) {word, of},
+    STRUT_KEEP_TABLE(KEPT_WORD)
+#undef KEPT_WORD
+};
+
+/* The names that `keep` may contain: words, then the model's quantities. */
 typedef struct kept_names {
-  char word[32][24];
+  const char *word[STRUT_KEEP_COUNT];
   size_t word_count;
   const strut_tree *quantities;
 } kept_names;
@@ -101,22 +115,34 @@ static const char *kept_name(const void *context, size_t i) {
   return key ? key->text : NULL;
 }
 
-static void refuse_kept(strut_study_reader *r, const strut_tree *item, const char *words,
+/* The words that the study may keep, as "velocity, motion or steps". */
+static const char *list_kept(const strut_study *study, kept_names *names, char *text, size_t size) {
+  size_t used = 0;
+  *text = '\0';
+  for (int i = 0; i < STRUT_KEEP_COUNT; i++)
+    if (kept_words[i].of >> study->compute & 1u)
+      names->word[names->word_count++] = kept_words[i].word;
+  for (size_t i = 0; i < names->word_count && used < size; i++) {
+    const char *before = i == 0 ? "" : i + 1 < names->word_count ? ", " : " or ";
+    int n = snprintf(text + used, size - used, "%s%s", before, names->word[i]);
+    used += n > 0 ? (size_t)n : 0;
+  }
+  return text;
+}
+
+static void refuse_kept(strut_study_reader *r, const strut_tree *item,
                         const strut_tree *quantities) {
-  char expected[500];
-  kept_names names = {.quantities = quantities};
-  while (names.word_count < 32 && strut_word_at(words, (int)names.word_count,
-                                                names.word[names.word_count], sizeof names.word[0]))
-    names.word_count++;
-  strut_words_text(words, expected, sizeof expected);
+  char expected[700];
+  const strut_study *study = &r->file->study;
+  bool run = study->compute == STRUT_COMPUTE_RUN;
+  kept_names names = {.quantities = run ? quantities : NULL};
+  list_kept(study, &names, expected, sizeof expected);
   if (!strut_read_scalar(r->reader, item, "keep", study_owner, expected)) return;
-  size_t count = names.word_count + (quantities ? quantities->count : 0);
-  strut_report_error(
-      r->reader, item->place,
-      "expected %s, or a quantity that the model measures, for 'keep' of the study, found "
-      "'%s'%s",
-      expected, strut_sanitised_text(r->reader, item->text),
-      strut_hint(r->reader, item->text, kept_name, &names, count));
+  size_t count = names.word_count + (names.quantities ? names.quantities->count : 0);
+  strut_report_error(r->reader, item->place, "expected %s%s for 'keep' of the study, found '%s'%s",
+                     expected, run ? ", or a quantity that the model measures," : "",
+                     strut_sanitised_text(r->reader, item->text),
+                     strut_hint(r->reader, item->text, kept_name, &names, count));
 }
 
 static bool is_twice(const strut_tree *list, const strut_tree *item) {
@@ -130,7 +156,9 @@ static void read_keep(strut_study_reader *r, const strut_slot *slot) {
   strut_study *study = &r->file->study;
   const char *words = strut_key_at(STRUT_KEY_STUDY_KEEP)->words;
   if (slot->state != STRUT_GIVEN) return;
-  const strut_tree *quantities = r->file->source_count ? quantities_of(r->file->sources[0]) : NULL;
+  bool run = study->compute == STRUT_COMPUTE_RUN;
+  const strut_tree *quantities =
+      run && r->file->source_count ? quantities_of(r->file->sources[0]) : NULL;
   study->quantities = strut_reader_allocate(r->reader, &r->file->arena, slot->value->count + 1,
                                             sizeof *study->quantities);
   if (!study->quantities) return;
@@ -140,12 +168,12 @@ static void read_keep(strut_study_reader *r, const strut_slot *slot) {
     if (scalar && is_twice(slot->value, item))
       strut_report_error(r->reader, item->place, "'%s' appears twice in 'keep' of the study",
                          item->text);
-    else if (word >= 0)
-      study->keep |= 1u << word;
+    else if (word >= 0 && kept_words[word].of >> study->compute & 1u)
+      study->keep |= (uint64_t)1 << word;
     else if (scalar && quantities && strut_tree_find(quantities, item->text, NULL))
       study->quantities[study->quantity_count++] = item->text;
     else
-      refuse_kept(r, item, words, quantities);
+      refuse_kept(r, item, quantities);
   }
 }
 
@@ -210,6 +238,93 @@ static void read_figures(strut_study_reader *r, const strut_slot *slot) {
     read_figure(r, key, &study->figures[study->figure_count++]);
 }
 
+/* A number of any dimension, which the model decides. */
+static void read_path_value(strut_study_reader *r, const strut_slot *slot, double *value,
+                            const char **unit, bool *given) {
+  strut_quantity q;
+  const strut_owner owner = {"the path", NULL};
+  if (slot->state != STRUT_GIVEN) return;
+  if (!strut_read_scalar(r->reader, slot->value, slot->key->text, owner, "a number") ||
+      !strut_read_quantity(r->reader, slot->value, slot->key->text, owner, &q))
+    return;
+  *value = q.value;
+  *unit = q.bare ? NULL : strut_dimension_unit(q.dimension);
+  *given = true;
+}
+
+static void read_path(strut_study_reader *r, const strut_slot *slot) {
+  strut_study *study = &r->file->study;
+  strut_fields fields;
+  if (slot->state != STRUT_GIVEN) return;
+  strut_read_fields(r->reader, STRUT_SECTION_PATH, slot->value, (strut_owner){"the path", NULL},
+                    &fields);
+  strut_store_fields(r->reader, &fields, &r->file->arena, study, sizeof *study);
+  read_path_value(r, strut_slot_of(&fields, STRUT_KEY_PATH_FROM), &study->path_from,
+                  &study->path_from_unit, &study->path_from_given);
+  read_path_value(r, strut_slot_of(&fields, STRUT_KEY_PATH_UNTIL), &study->path_until,
+                  &study->path_until_unit, &study->path_until_given);
+  if (fields.broken) return;
+  if (study->path_over && !study->path_until_given)
+    strut_report_error(r->reader, slot->value->place,
+                       "the path lacks 'until', the end value of '%s'",
+                       strut_sanitised_text(r->reader, study->path_over));
+  if (study->path_from_given && study->path_until_given && study->path_from == study->path_until)
+    strut_report_error(r->reader, slot->value->place, "'from' and 'until' of the path are equal");
+}
+
+static void read_form(strut_study_reader *r, const strut_slot *slot) {
+  strut_fields fields;
+  if (slot->state != STRUT_GIVEN) return;
+  strut_read_fields(r->reader, STRUT_SECTION_FORM, slot->value, (strut_owner){"the form", NULL},
+                    &fields);
+  strut_store_fields(r->reader, &fields, &r->file->arena, &r->file->study, sizeof(strut_study));
+}
+
+/* Wall time ends only what can be interrupted. */
+static void read_limit(strut_study_reader *r, const strut_slot *slot) {
+  strut_study *study = &r->file->study;
+  strut_fields fields;
+  if (slot->state != STRUT_GIVEN) return;
+  strut_read_fields(r->reader, STRUT_SECTION_LIMIT, slot->value, (strut_owner){"the limit", NULL},
+                    &fields);
+  strut_store_fields(r->reader, &fields, &r->file->arena, study, sizeof *study);
+  const strut_slot *evaluations = strut_slot_of(&fields, STRUT_KEY_LIMIT_EVALUATIONS);
+  const strut_slot *time = strut_slot_of(&fields, STRUT_KEY_LIMIT_TIME);
+  bool run = study->compute == STRUT_COMPUTE_RUN;
+  if (!run && evaluations->state == STRUT_GIVEN)
+    strut_report_error(r->reader, evaluations->key->place,
+                       "'evaluations' limits runs only, which 'compute: run' has");
+  if (!run && study->compute != STRUT_COMPUTE_EQUILIBRIA && time->state == STRUT_GIVEN)
+    strut_report_error(r->reader, time->key->place,
+                       "'time' limits runs and the search for equilibria only");
+}
+
+/* Keys that only some computations know: what has them. */
+static void check_computed(strut_study_reader *r, strut_fields *top) {
+  static const struct {
+    int key;
+    unsigned of;
+  } keys[] = {
+      {STRUT_KEY_STUDY_LOWEST, STRUT_OF_EQUILIBRIA | STRUT_OF_MODES},
+      {STRUT_KEY_STUDY_AT, STRUT_OF_MODES | STRUT_OF_RIGIDITY | STRUT_OF_PATH},
+      {STRUT_KEY_STUDY_PATH, STRUT_OF_PATH},
+      {STRUT_KEY_STUDY_FORM, STRUT_OF_FORM},
+      {STRUT_KEY_STUDY_CHECK, STRUT_OF_RUN},
+      {STRUT_KEY_STUDY_TRAJECTORIES, STRUT_OF_RUN},
+  };
+  const strut_study *study = &r->file->study;
+  const char *words = strut_key_at(STRUT_KEY_STUDY_COMPUTE)->words;
+  char word[24];
+  if (strut_slot_of(top, STRUT_KEY_STUDY_COMPUTE)->state == STRUT_BROKEN) return;
+  strut_word_at(words, (int)study->compute, word, sizeof word);
+  for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
+    const strut_slot *slot = strut_slot_of(top, keys[i].key);
+    if (slot->state == STRUT_ABSENT || keys[i].of >> study->compute & 1u) continue;
+    strut_report_error(r->reader, slot->key->place, "'%s' has no meaning with 'compute: %s'",
+                       slot->key->text, word);
+  }
+}
+
 static void read_rest(strut_study_reader *r, strut_fields *top) {
   strut_study *study = &r->file->study;
   const strut_slot *check = strut_slot_of(top, STRUT_KEY_STUDY_CHECK);
@@ -221,6 +336,10 @@ static void read_rest(strut_study_reader *r, strut_fields *top) {
                       (strut_owner){"the check", NULL}, &fields);
     strut_store_fields(r->reader, &fields, &r->file->arena, study, sizeof *study);
   }
+  read_path(r, strut_slot_of(top, STRUT_KEY_STUDY_PATH));
+  read_form(r, strut_slot_of(top, STRUT_KEY_STUDY_FORM));
+  read_limit(r, strut_slot_of(top, STRUT_KEY_STUDY_LIMIT));
+  check_computed(r, top);
   read_figures(r, strut_slot_of(top, STRUT_KEY_STUDY_FIGURES));
 }
 
@@ -244,6 +363,7 @@ static void read_points(strut_study_reader *r, strut_fields *top, const strut_ov
   read_settings(r, set, count, true);
   read_settings(r, derive, count, false);
   if (axes->state == STRUT_GIVEN) strut_study_read_axes(r, axes->value);
+  strut_study_read_refine(r, strut_slot_of(top, STRUT_KEY_STUDY_REFINE));
   check_overrides(r, count);
 }
 
@@ -304,10 +424,15 @@ strut_status strut_study_open(const char *path, const strut_override *overrides,
 }
 
 const char *strut_study_messages(strut_study_file *file, size_t most) {
-  const char *own = strut_diagnostics_render(&file->diagnostics, most);
+  const char *text = strut_diagnostics_render(&file->diagnostics, most);
+  for (size_t i = 0; i < file->table_count && text; i++) {
+    strut_diagnostics *own = &file->tables[i].diagnostics;
+    const char *more = own->count ? strut_diagnostics_render(own, most) : "";
+    text = more ? strut_arena_format(&file->arena, "%s%s", text, more) : NULL;
+  }
   const char *model =
       file->model_diagnostics.file ? strut_diagnostics_render(&file->model_diagnostics, most) : "";
-  return own && model ? strut_arena_format(&file->arena, "%s%s", own, model) : NULL;
+  return text && model ? strut_arena_format(&file->arena, "%s%s", text, model) : NULL;
 }
 
 const char *strut_study_notes(strut_study_file *file) {
@@ -342,8 +467,9 @@ static strut_status read_point(const strut_study_file *file, const strut_study_v
     s->text = values[i].word ? values[i].word : texts[i - first];
     if (!values[i].word) strut_number_text(values[i].number, texts[i - first]);
   }
-  strut_status status = strut_scene_source_read(source_of(file, values), settings, count,
-                                                STRUT_FOR_RUN, diagnostics, setup);
+  strut_purpose purpose = file->study.compute == STRUT_COMPUTE_RUN ? STRUT_FOR_RUN : STRUT_FOR_ANY;
+  strut_status status = strut_scene_source_read(source_of(file, values), settings, count, purpose,
+                                                diagnostics, setup);
   strut_release(settings);
   return status;
 }
@@ -357,7 +483,9 @@ strut_status strut_study_setup(const strut_study_file *file, const strut_study_v
     for (size_t i = 1; i < diagnostics.count; i++)
       if (diagnostics.items[i].place.line < first->place.line) first = &diagnostics.items[i];
     bool own = first->place.line & STRUT_OVERLAY_LINE;
-    strut_fail(error, status, "%s:%u: %s", own ? file->path : file->model_path,
+    unsigned used = first->place.file;
+    const char *model = used ? diagnostics.used[used - 1].file : file->model_path;
+    strut_fail(error, status, "%s:%u: %s", own ? file->path : model,
                first->place.line & ~STRUT_OVERLAY_LINE, first->message);
   } else if (status != STRUT_OK) {
     strut_fail(error, status, "out of memory");
@@ -398,6 +526,10 @@ strut_status strut_study_try(strut_study_file *file, const strut_study_value *va
 
 void strut_study_close(strut_study_file *file) {
   for (size_t i = 0; i < file->source_count; i++) strut_scene_source_free(file->sources[i]);
+  for (size_t i = 0; i < file->table_count; i++) {
+    strut_diagnostics_free(&file->tables[i].diagnostics);
+    strut_safe_text_free(&file->tables[i].file);
+  }
   strut_diagnostics_free(&file->diagnostics);
   strut_diagnostics_free(&file->model_diagnostics);
   strut_document_free(&file->document);
@@ -405,5 +537,6 @@ void strut_study_close(strut_study_file *file) {
   strut_release(file->text);
   strut_release(file->model_path);
   strut_release(file->model_text);
+  strut_release(file->model_copy);
   *file = (strut_study_file){0};
 }

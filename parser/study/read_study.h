@@ -10,6 +10,15 @@
 
 #include "engine/scene/study.h"
 #include "parser/read/read_scene.h"
+#include "parser/read/safe_path.h"
+
+/** A file of points that the study names. */
+typedef struct strut_study_points {
+  const struct strut_tree *node; /* its name in the study */
+  const char *copy;              /* the name of its copy beside results */
+  strut_safe_text file;
+  strut_diagnostics diagnostics; /* about it */
+} strut_study_points;
 
 /** A study as read. Zero-initialise; strut_study_close releases it. Constant once it is open. */
 typedef struct strut_study_file {
@@ -28,6 +37,9 @@ typedef struct strut_study_file {
   strut_document document; /* the study's tree */
   strut_diagnostics diagnostics, model_diagnostics;
   strut_arena arena;
+  size_t table_count;
+  strut_study_points *tables; /* (table_count) files of points */
+  char *model_copy;           /* a model that uses files, in one text; NULL: model_text is that */
 } strut_study_file;
 
 /**
@@ -56,8 +68,8 @@ STRUT_API strut_status strut_study_try(strut_study_file *file, const strut_study
  */
 STRUT_API char *strut_study_identity(const strut_study_file *file);
 /**
- * The study's text as it was written, but naming `model` as its model, so that it may stand beside a
- * copy of that; comments at its end say what the model was, and what --set gave. A block of
+ * The study's text as it was written, but naming `model` as its model and files of points by the names
+ * of their copies, so that it may stand beside copies of them; comments at its end say what the model was, and what --set gave. A block of
  * strut_allocate, or NULL.
  */
 STRUT_API char *strut_study_copy(const strut_study_file *file, const char *model,

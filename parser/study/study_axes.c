@@ -5,20 +5,12 @@
 
 #include "parser/study/study_reader.h"
 
-/* One parameter along its axis, while it is read. */
-typedef struct along {
-  const strut_declared *parameter;
-  const strut_tree *key, *value;
-  strut_study_column *column;
-  strut_setting *setting;
-  int64_t count;
-} along;
+typedef strut_study_along along;
 
 static strut_owner owner_of(const along *a) { return (strut_owner){"axis", a->parameter->name}; }
 
-/* A number in the parameter's dimension; where that has none the first value decides. */
-static bool read_value(strut_study_reader *r, along *a, const strut_tree *value, const char *key,
-                       bool first, double *number) {
+bool strut_study_read_value(strut_study_reader *r, along *a, const strut_tree *value,
+                            const char *key, bool first, double *number) {
   strut_quantity q;
   char expected[200], found[80];
   strut_reader *reader = r->reader;
@@ -53,7 +45,7 @@ static bool read_list(strut_study_reader *r, along *a) {
   }
   for (const strut_tree *item = a->value->first; item && fine; item = item->next, i++) {
     if (!a->parameter->text) {
-      fine = read_value(r, a, item, a->parameter->name, i == 0, &numbers[i]) && fine;
+      fine = strut_study_read_value(r, a, item, a->parameter->name, i == 0, &numbers[i]) && fine;
     } else if (strut_read_scalar(r->reader, item, a->parameter->name, owner_of(a), "a text")) {
       words[i] = item->text;
       if (strlen(item->text) < 24) continue;
@@ -118,12 +110,13 @@ static bool read_range(strut_study_reader *r, along *a) {
   const strut_slot *count = strut_slot_of(&fields, STRUT_KEY_RANGE_COUNT);
   const strut_slot *scale = strut_slot_of(&fields, STRUT_KEY_RANGE_SCALE);
   bool logarithmic = scale->state == STRUT_GIVEN && scale->word == 1;
-  bool fine = read_value(r, a, strut_slot_of(&fields, STRUT_KEY_RANGE_FROM)->value, "from", true,
-                         &a->column->from);
-  fine = read_value(r, a, strut_slot_of(&fields, STRUT_KEY_RANGE_TO)->value, "to", false,
-                    &a->column->to) &&
+  bool fine = strut_study_read_value(r, a, strut_slot_of(&fields, STRUT_KEY_RANGE_FROM)->value,
+                                     "from", true, &a->column->from);
+  fine = strut_study_read_value(r, a, strut_slot_of(&fields, STRUT_KEY_RANGE_TO)->value, "to",
+                                false, &a->column->to) &&
          fine;
-  if (by->state == STRUT_GIVEN) fine = read_value(r, a, by->value, "step", false, &step) && fine;
+  if (by->state == STRUT_GIVEN)
+    fine = strut_study_read_value(r, a, by->value, "step", false, &step) && fine;
   if (by->state != STRUT_GIVEN && count->state != STRUT_GIVEN)
     return refuse_range(r, a, "lacks 'step' or 'count'");
   if (!fine) return false;
@@ -144,22 +137,28 @@ static bool is_reserved(const strut_study_reader *r, const char *name) {
   return found;
 }
 
+bool strut_study_begin_along(strut_study_reader *r, along *a, strut_place place) {
+  const strut_declared *parameter = a->parameter;
+  *a->column = (strut_study_column){.name = parameter->name, .word = parameter->text};
+  *a->setting = (strut_setting){.name = parameter->name,
+                                .text = "",
+                                .known = !parameter->text,
+                                .bare = parameter->bare,
+                                .dimension = parameter->dimension,
+                                .place = place};
+  if (!is_reserved(r, parameter->name)) return true;
+  strut_report_error(
+      r->reader, place,
+      "the table has a column '%s' of its own: give the model's parameter another name",
+      parameter->name);
+  return false;
+}
+
 /* A parameter with its values. */
 static bool read_along(strut_study_reader *r, along *a) {
   a->parameter = strut_study_parameter(r, a->key);
   if (!a->parameter) return false;
-  if (is_reserved(r, a->parameter->name))
-    strut_report_error(
-        r->reader, a->key->place,
-        "the table has a column '%s' of its own: give the model's parameter another name",
-        a->parameter->name);
-  *a->column = (strut_study_column){.name = a->parameter->name, .word = a->parameter->text};
-  *a->setting = (strut_setting){.name = a->parameter->name,
-                                .text = "",
-                                .known = !a->parameter->text,
-                                .bare = a->parameter->bare,
-                                .dimension = a->parameter->dimension,
-                                .place = a->key->place};
+  strut_study_begin_along(r, a, a->key->place);
   bool fine = false;
   if (a->value->kind == STRUT_TREE_LIST)
     fine = read_list(r, a);
@@ -202,6 +201,14 @@ static const strut_tree *parameters_of(strut_study_reader *r, const strut_tree *
 }
 
 static void read_axis(strut_study_reader *r, const strut_tree *item, strut_study_axis *axis) {
+  if (strut_study_is_points(r, item)) {
+    strut_study_read_points(r, item->first->next, axis);
+    return;
+  }
+  if (strut_study_is_sample(r, item)) {
+    strut_study_read_sample(r, item->first->next, axis);
+    return;
+  }
   const strut_tree *map = parameters_of(r, item);
   if (!map) return;
   strut_study_column *columns = axis->columns =
@@ -251,9 +258,12 @@ void strut_study_read_axes(strut_study_reader *r, const strut_tree *list) {
   strut_study *study = &r->file->study;
   study->axes =
       strut_reader_allocate(r->reader, &r->file->arena, list->count + 1, sizeof *study->axes);
-  r->file->columns = strut_reader_allocate(r->reader, &r->file->arena, count_columns(list) + 1,
-                                           sizeof *r->file->columns);
-  if (!study->axes || !r->file->columns) return;
+  r->file->columns =
+      strut_reader_allocate(r->reader, &r->file->arena, count_columns(list) + r->declared_count + 1,
+                            sizeof *r->file->columns);
+  r->file->tables =
+      strut_reader_allocate(r->reader, &r->file->arena, list->count + 1, sizeof *r->file->tables);
+  if (!study->axes || !r->file->columns || !r->file->tables) return;
   if (r->variant_count > 0) add_variants(r);
   for (const strut_tree *item = list->first; item; item = item->next)
     read_axis(r, item, &study->axes[study->axis_count++]);

@@ -28,6 +28,43 @@ strut_status strut_study_open_sources(strut_study_reader *r, strut_fields *top, 
 /** Reads the axes into the study, and their columns. */
 void strut_study_read_axes(strut_study_reader *r, const strut_tree *list);
 
+/** One parameter along its axis, while it is read. */
+typedef struct strut_study_along {
+  const strut_declared *parameter;
+  const strut_tree *key, *value;
+  strut_study_column *column;
+  strut_setting *setting;
+  int64_t count;
+} strut_study_along;
+
+/** The parameter of that name, or NULL; nothing is reported. */
+const strut_declared *strut_study_declared(const strut_study_reader *r, const char *name);
+/** The i-th name of a parameter, for suggestions; `context` is the reader. */
+const char *strut_study_declared_name(const void *context, size_t i);
+/**
+ * Starts the column of a->parameter and its setting at `place`. False: the table has a column of that
+ * name, and `reserved` says so.
+ */
+bool strut_study_begin_along(strut_study_reader *r, strut_study_along *a, strut_place place);
+/** A number in the parameter's dimension; where that has none the first value decides. */
+bool strut_study_read_value(strut_study_reader *r, strut_study_along *a, const strut_tree *value,
+                            const char *key, bool first, double *number);
+
+/* study_refine.c */
+
+/** Reads what is refined, after the axes, and gives the two axes the values of the finest grid. */
+void strut_study_read_refine(strut_study_reader *r, const strut_slot *slot);
+
+/* study_points.c */
+
+/** Is the item of `axes` a file of points, or a sample, and no parameter of such a name? */
+bool strut_study_is_points(const strut_study_reader *r, const strut_tree *item);
+bool strut_study_is_sample(const strut_study_reader *r, const strut_tree *item);
+void strut_study_read_points(strut_study_reader *r, const strut_tree *value,
+                             strut_study_axis *axis);
+void strut_study_read_sample(strut_study_reader *r, const strut_tree *value,
+                             strut_study_axis *axis);
+
 /** Set in the line of every place of the study's text within the tree of the model. */
 #define STRUT_OVERLAY_LINE ((uint32_t)1 << 30)
 

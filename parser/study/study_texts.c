@@ -38,18 +38,45 @@ static void put_note(strut_writer *w, const char *what, const char *text, const 
   strut_put(w, "\n");
 }
 
+/* A part of the study's text that its copy replaces. */
+typedef struct replacement {
+  size_t from, to;
+  const char *text;
+} replacement;
+
+static void replace_node(const strut_study_file *file, const strut_tree *node, const char *text,
+                         replacement *list, size_t *count) {
+  replacement new = {.text = text};
+  if (!node || strcmp(node->text, text) == 0) return;
+  find_span(file, node->place, &new.from, &new.to);
+  size_t at = (*count)++;
+  for (; at > 0 && list[at - 1].from > new.from; at--) list[at] = list[at - 1];
+  list[at] = new;
+}
+
 char *strut_study_copy(const strut_study_file *file, const char *model,
                        const strut_override *overrides, size_t override_count) {
   strut_writer w = {.text = NULL};
   const strut_tree *node = strut_tree_find(file->document.root, "model", NULL);
-  bool elsewhere = node && strcmp(node->text, model) != 0;
-  size_t from = 0, to = 0;
-  if (elsewhere) find_span(file, node->place, &from, &to);
-  strut_put_part(&w, file->text, from);
-  if (elsewhere) strut_put(&w, model);
-  strut_put_part(&w, file->text + to, file->length - to);
-  if (elsewhere || override_count) strut_put(&w, "\n");
-  if (elsewhere) put_note(&w, "A copy; its model was ", node->text, NULL);
+  replacement *list = strut_allocate(file->table_count + 1, sizeof *list);
+  size_t count = 0, done = 0;
+  if (!list) return NULL;
+  replace_node(file, node, model, list, &count);
+  for (size_t i = 0; i < file->table_count; i++)
+    replace_node(file, file->tables[i].node, file->tables[i].copy, list, &count);
+  for (size_t i = 0; i < count; i++) {
+    strut_put_part(&w, file->text + done, list[i].from - done);
+    strut_put(&w, list[i].text);
+    done = list[i].to;
+  }
+  strut_put_part(&w, file->text + done, file->length - done);
+  strut_release(list);
+  if (count || override_count) strut_put(&w, "\n");
+  if (node && strcmp(node->text, model) != 0)
+    put_note(&w, "A copy; its model was ", node->text, NULL);
+  for (size_t i = 0; i < file->table_count; i++)
+    if (strcmp(file->tables[i].node->text, file->tables[i].copy) != 0)
+      put_note(&w, "A copy; a file of points was ", file->tables[i].node->text, NULL);
   for (size_t i = 0; i < override_count; i++)
     put_note(&w, "It was run with --set ", overrides[i].name, overrides[i].value);
   if (!w.failed) return w.text;
@@ -102,6 +129,26 @@ static void put_axis(strut_writer *w, const strut_study_axis *axis) {
   }
 }
 
+/* What is computed where it is no run. */
+static void put_computed(strut_writer *w, const strut_study *study) {
+  if (study->compute == STRUT_COMPUTE_RUN) return;
+  put_number(w, (double)study->compute);
+  put_number(w, (double)study->lowest);
+  put_word(w, study->at ? study->at : "");
+  put_word(w, study->path_load ? study->path_load : "");
+  put_word(w, study->path_over ? study->path_over : "");
+  put_number(w, study->path_from);
+  put_number(w, study->path_until);
+  put_word(w, study->path_from_unit ? study->path_from_unit : "");
+  put_word(w, study->path_until_unit ? study->path_until_unit : "");
+  put_number(w, study->path_from_given + 2 * study->path_until_given);
+  put_number(w, (double)study->path_steps);
+  put_number(w, (double)study->form_from);
+  put_number(w, (double)study->form_objective);
+  put_number(w, study->form_least_tension);
+  put_number(w, study->form_least_density);
+}
+
 char *strut_study_identity(const strut_study_file *file) {
   strut_writer w = {.text = NULL};
   const strut_study *study = &file->study;
@@ -112,11 +159,19 @@ char *strut_study_identity(const strut_study_file *file) {
     put_word(&w, file->settings[i].text);
   }
   for (size_t i = 0; i < study->axis_count; i++) put_axis(&w, &study->axes[i]);
-  put_number(&w, (double)study->keep);
+  put_number(&w, (double)(study->keep >> 32));
+  put_number(&w, (double)(study->keep & UINT32_MAX));
   for (size_t i = 0; i < study->quantity_count; i++) put_word(&w, study->quantities[i]);
   put_number(&w, study->trajectories);
   put_number(&w, study->half_step);
   put_number(&w, study->check_accuracy);
+  put_computed(&w, study);
+  if (study->refine_depth) {
+    put_number(&w, (double)study->refine_depth);
+    put_number(&w, study->refine_by);
+    put_word(&w, study->refine_where);
+  }
+  if (study->limit_evaluations) put_number(&w, (double)study->limit_evaluations);
   if (!w.failed) return w.text;
   strut_release(w.text);
   return NULL;

@@ -47,6 +47,12 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
         "bars `NAME.1`, ... and hinges `NAME.1`, ... at these nodes; at a clamp also the fixed "
         "node "
         "and the hinge `NAME.start` or `NAME.end`. `strut write` writes these.",
+    [STRUT_SECTION_CLAMPED_TO] =
+        "`clamped_to: {start: NAME, end: NAME}` of a beam: the end keeps its drawn angle to a "
+        "member "
+        "or to another beam that has the node, too, by the hinge `NAME.start` or `NAME.end`. "
+        "Several "
+        "beams at one node also get hinges between each other, such as `NAME.start.OTHER`.",
     [STRUT_SECTION_LAW] =
         "`law: {...}` of a member or a hinge, or only its kind, such as `law: logarithmic`; "
         "`law: tension_only` and `law: compression_only` are linear and carry one sign. For a "
@@ -113,6 +119,16 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
     [STRUT_SECTION_VARIANT] = "`variants: {NAME: {...}}` of a study.",
     [STRUT_SECTION_CHECK] = "`check: {...}` of a study.",
     [STRUT_SECTION_FIGURE] = "`figures: {NAME: {...}}` of a study.",
+    [STRUT_SECTION_PATH] =
+        "`path: {...}` of a study with `compute: path`, as the options of `strut path`.",
+    [STRUT_SECTION_FORM] =
+        "`form: {...}` of a study with `compute: form`, as the options of `strut form`.",
+    [STRUT_SECTION_POINTS] =
+        "`axes: [{points: {...}}]` of a study; `{points: FILE}` is short for it.",
+    [STRUT_SECTION_SAMPLE] = "`axes: [{sample: {...}}]` of a study: parameters from distributions.",
+    [STRUT_SECTION_REFINE] = "`refine: {...}` of a study.",
+    [STRUT_SECTION_LIMIT] = "`limit: {...}` of a study.",
+    [STRUT_SECTION_DISTRIBUTION] = "`over: {NAME: {...}}` of a sample, with one of these keys.",
     [STRUT_SECTION_SENSOR] =
         "`sensors: {NAME: {...}}` with one thing to sense. Expressions of signals, and measured "
         "quantities, use the name. In an expression `rate(NAME)` is the rate of a length, an angle "
@@ -124,7 +140,11 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
         "sin(NAME)`. `strut write` shows oscillators as states.",
     [STRUT_SECTION_CONTROLLER] =
         "`controllers: {NAME: {...}}`. The integral is the state `NAME_integral`. `strut write` "
-        "shows controllers as signals and states.",
+        "shows PID controllers as signals and states.",
+    [STRUT_SECTION_RELAY] =
+        "`controllers: {NAME: {kind: relay, ...}}`: a signal with two values. Either `on_above` "
+        "and "
+        "`off_below`, or `on_below` and `off_above`.",
     [STRUT_SECTION_STARTS] =
         "`{sine: {...}, starts: {...}}` of any signal: the touchdown of a node, or a sensor that "
         "passes a "
@@ -188,6 +208,7 @@ static void put_type(strut_writer *writer, const strut_key *key) {
       [STRUT_TYPE_NAME_PAIR] = "two names",
       [STRUT_TYPE_NODE_RING] = "names of three nodes or more",
       [STRUT_TYPE_NUMBERS] = "list of numbers",
+      [STRUT_TYPE_NAMES] = "list of names",
       [STRUT_TYPE_POINTS] = "list of `[x, force]`",
       [STRUT_TYPE_PROFILE] = "list of `[x, y]` [m]",
       [STRUT_TYPE_LAW] = "[law](#law), or the kind of one",
@@ -202,7 +223,8 @@ static void put_type(strut_writer *writer, const strut_key *key) {
       [STRUT_TYPE_TIMES] = "list of times [s]",
       [STRUT_TYPE_SETTLE] = "`true`, `false`, or [mapping](#settle)",
       [STRUT_TYPE_STEADY] = "`true`, `false`, or [mapping](#steady)",
-      [STRUT_TYPE_THINGS] = "names, each with "};
+      [STRUT_TYPE_THINGS] = "names, each with ",
+      [STRUT_TYPE_FREE] = ""};
   if (key->type == STRUT_TYPE_MAP) {
     strut_put(writer, "[mapping](#");
     strut_put(writer, key->name);
@@ -212,7 +234,7 @@ static void put_type(strut_writer *writer, const strut_key *key) {
   if (key->type == STRUT_TYPE_EXPRESSION) put_expression_type(writer, key);
   if (key->limits.range == STRUT_RANGE_WHOLE) strut_put(writer, "whole ");
   if (types[key->type]) strut_put(writer, types[key->type]);
-  if (key->type == STRUT_TYPE_THINGS) {
+  if (key->type == STRUT_TYPE_THINGS || key->type == STRUT_TYPE_FREE) {
     strut_put(writer, key->words);
   } else if (*key->words) {
     put_words(writer, key->words);

@@ -169,13 +169,51 @@ static void put_named_signals(strut_writer *writer) {
   bool any = false;
   for (size_t i = 0; i < writer->scene->signal_count; i++) {
     const char *name = signal_name(writer, (int32_t)i);
-    if (!name) continue;
+    if (!name || writer->scene->signals[i].kind == STRUT_RELAY) continue;
     strut_put(writer, any ? "  " : "signals:\n  ");
     any = true;
     strut_put_name(writer, name);
     strut_put(writer, ": ");
     put_signal(writer, (int32_t)i);
     strut_put(writer, "\n");
+  }
+}
+
+static void put_relay_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
+                              const void *object) {
+  const strut_relay *r = object;
+  const double upper = r->upper, lower = r->lower;
+  if (key == STRUT_KEY_RELAY_ON_VALUE || key == STRUT_KEY_RELAY_OFF_VALUE) {
+    strut_put_key_name(writer, mapping, key);
+    strut_put_number(writer, key == STRUT_KEY_RELAY_ON_VALUE ? r->on : r->off);
+  } else if (key == (r->on_above ? STRUT_KEY_RELAY_ON_ABOVE : STRUT_KEY_RELAY_OFF_ABOVE)) {
+    strut_put_key_name(writer, mapping, key);
+    strut_put_number(writer, upper);
+  } else if (key == (r->on_above ? STRUT_KEY_RELAY_OFF_BELOW : STRUT_KEY_RELAY_ON_BELOW)) {
+    strut_put_key_name(writer, mapping, key);
+    strut_put_number(writer, lower);
+  }
+}
+
+/* PID controllers have become signals and states. */
+static void put_relays(strut_writer *writer) {
+  bool any = false;
+  for (size_t i = 0; i < writer->scene->signal_count; i++) {
+    const strut_signal *s = &writer->scene->signals[i];
+    const strut_relay usual = {0};
+    strut_mapping mapping = STRUT_MAPPING_INLINE;
+    if (s->kind != STRUT_RELAY) continue;
+    strut_put(writer, any ? "  " : "controllers:\n  ");
+    any = true;
+    strut_put_name(writer, s->name);
+    strut_put(writer, ": {");
+    strut_put_key_name(writer, &mapping, STRUT_KEY_RELAY_KIND);
+    strut_put(writer, "relay");
+    strut_put_key_name(writer, &mapping, STRUT_KEY_RELAY_OF);
+    strut_put_program(writer, s->program.instruction, s->program.length);
+    strut_put_fields(writer, &mapping, STRUT_SECTION_RELAY, &s->relay, &usual, put_relay_by_hand);
+    put_modifier(writer, &mapping, STRUT_KEY_RELAY_EVERY, s->every);
+    strut_put(writer, "}\n");
   }
 }
 
@@ -244,6 +282,7 @@ void strut_put_drives(strut_writer *writer) {
   put_sensors(writer);
   put_states(writer);
   put_named_signals(writer);
+  put_relays(writer);
   put_actuators(writer);
   put_unbalances(writer);
   if (scene->load_count) strut_put(writer, "loads:\n");

@@ -31,7 +31,7 @@ static void sections_divide_the_table(void **state) {
   assert_int_equal(strut_key_find(STRUT_SECTION_MEMBER, "positions"), -1);
 }
 
-/* A group's key is read once for all sections that have it: it must mean the same in each. */
+/* A group's key is read once for members, nodes and contacts: it must mean the same in each. */
 static void shared_keys_of_groups_agree(void **state) {
   (void)state;
   static const strut_section sections[] = {STRUT_SECTION_MEMBER, STRUT_SECTION_NODE,
@@ -55,7 +55,9 @@ static const struct exception {
   strut_section section;
   const char *name, *reason;
 } exceptions[] = {
-    {STRUT_SECTION_PART, "use", "a file, which the reader opens"},
+    {STRUT_SECTION_SCENE, "base", "a path, from the folder of the file"},
+    {STRUT_SECTION_PART, "use", "a path, from the folder of the file"},
+    {STRUT_SECTION_PART, "isolated", "decides which names the reader finds"},
     {STRUT_SECTION_PLACE, "flip", "part of the frame of a copy"},
     {STRUT_SECTION_PLACE, "turn", "part of the frame of a copy"},
     {STRUT_SECTION_PLACE, "at", "part of the frame of a copy"},
@@ -104,8 +106,24 @@ static const struct exception {
     {STRUT_SECTION_CONTROLLER, "least", "in the unit of the signal"},
     {STRUT_SECTION_CONTROLLER, "most", "in the unit of the signal"},
     {STRUT_SECTION_CONTROLLER, "every", "of the signal that the controller is"},
+    {STRUT_SECTION_CONTROLLER, "kind", "chooses between two sections"},
+    {STRUT_SECTION_RELAY, "kind", "chooses between two sections"},
+    {STRUT_SECTION_RELAY, "on_above", "in the unit of the input"},
+    {STRUT_SECTION_RELAY, "off_below", "in the unit of the input"},
+    {STRUT_SECTION_RELAY, "on_below", "in the unit of the input"},
+    {STRUT_SECTION_RELAY, "off_above", "in the unit of the input"},
+    {STRUT_SECTION_RELAY, "on_value", "its unit is that of the signal's use"},
+    {STRUT_SECTION_RELAY, "off_value", "its unit is that of the signal's use"},
+    {STRUT_SECTION_RELAY, "every", "of the signal that the relay is"},
     {STRUT_SECTION_STARTS, "above", "in the unit of the sensor"},
     {STRUT_SECTION_STARTS, "below", "in the unit of the sensor"},
+    {STRUT_SECTION_REFINE, "depth", "changes the axes too"},
+    {STRUT_SECTION_POINTS, "file", "a path, from the study's folder"},
+    {STRUT_SECTION_SAMPLE, "count", "of values that are made at once"},
+    {STRUT_SECTION_SAMPLE, "seed", "of values that are made at once"},
+    {STRUT_SECTION_SAMPLE, "scheme", "of values that are made at once"},
+    {STRUT_SECTION_PATH, "from", "in the unit of what the path follows"},
+    {STRUT_SECTION_PATH, "until", "in the unit of what the path follows"},
     {STRUT_SECTION_RANGE, "from", "in the unit of the axis' parameter"},
     {STRUT_SECTION_RANGE, "to", "in the unit of the axis' parameter"},
     {STRUT_SECTION_RANGE, "step", "in the unit of the axis' parameter"},

@@ -2,6 +2,7 @@
 /* Which mode follows: at the start, at an event, and when several contacts hold at once. */
 #include <math.h>
 
+#include "engine/forces/drive.h"
 #include "engine/integrate/events/event_kernel.h"
 
 /* At rest on the ground is what is slower than this part of size times the contact's frequency. */
@@ -25,7 +26,10 @@ static void evaluate_now(const strut_model *model, strut_state *state, strut_eve
 
 void strut_evaluate_acceleration(const strut_model *model, strut_state *state,
                                  strut_event_stepper *l, double t) {
+  bool fresh = l->fresh;
   evaluate_now(model, state, l, t);
+  /* a rejected step has taken the sensors further */
+  if (fresh && model->feedback.relay_count) strut_drive_apply(model, state, t);
   strut_event_measure(model, state, l, l->now);
 }
 
@@ -167,6 +171,8 @@ static void start_laws(const strut_model *model, strut_state *state, strut_event
     if (l->laws[k].kinks) {
       find_piece(model, state, l, k);
       changed = true;
+    } else if (l->laws[k].relay) {
+      continue;
     } else if (strut_switch_event(&l->laws[k]) != STRUT_EVENT_ACTS) {
       strut_memory_start(model, state, l, k);
       changed = true;
@@ -285,6 +291,7 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_event
     }
     case STRUT_EVENT_SLIDER:
     case STRUT_EVENT_BREAK: strut_memory_apply(model, state, l, i, t); break;
+    case STRUT_EVENT_RELAY: /* by the stepper */
     case STRUT_EVENT_NONE: break;
   }
   derive_consistently(model, state, l, t);

@@ -2,6 +2,7 @@
 /* Finding what ends a mode within a step. See event_stepping.h. */
 #include <math.h>
 
+#include "engine/forces/relay.h"
 #include "engine/integrate/events/event_kernel.h"
 
 /* A ground damper this much weaker than the whole reaction is rounding, whatever its sign. */
@@ -27,7 +28,8 @@ STRUT_INLINE double gap_at_end(const strut_contact_table *c, const strut_event_s
 
 double strut_event_value(const strut_model *model, const strut_event_stepper *l,
                          const strut_step_end *end, strut_event_kind kind, int32_t i) {
-  if (kind == STRUT_EVENT_KINK || kind == STRUT_EVENT_SLIDER || kind == STRUT_EVENT_BREAK)
+  if (kind == STRUT_EVENT_KINK || kind == STRUT_EVENT_SLIDER || kind == STRUT_EVENT_BREAK ||
+      kind == STRUT_EVENT_RELAY)
     return end->tension[i];
   if (kind == STRUT_EVENT_ACTS) {
     /* It acts where stretch and force are positive; the lesser decides, both in newtons. */
@@ -65,6 +67,7 @@ double strut_event_value(const strut_model *model, const strut_event_stepper *l,
     case STRUT_EVENT_ACTS:
     case STRUT_EVENT_KINK:
     case STRUT_EVENT_SLIDER:
+    case STRUT_EVENT_RELAY:
     case STRUT_EVENT_BREAK: break;
   }
   return 1.0;
@@ -90,6 +93,7 @@ bool strut_event_rate(const strut_event_stepper *l, const strut_step_end *end,
     case STRUT_EVENT_KINK:
     case STRUT_EVENT_FACET:
     case STRUT_EVENT_SLIDER:
+    case STRUT_EVENT_RELAY:
     case STRUT_EVENT_BREAK: break;
   }
   return false;
@@ -181,11 +185,23 @@ static void measure_element(const strut_model *model, const strut_state *state,
   end->tension[k] = fmin(low, high);
 }
 
+/* The sensors are those of the end. */
+static void measure_relay(const strut_model *model, const strut_state *state,
+                          const strut_law_switch *law, const strut_step_end *end, int32_t k) {
+  double now = state->drive_time + state->time_offset;
+  end->stretch[k] = 1.0;
+  end->stretch_rate[k] = 0.0;
+  end->tension[k] = strut_relay_margin(model, state, law->relay - 1, now, end->v);
+}
+
 /* The rest lengths are those of the end. */
 static void measure_laws(const strut_model *model, const strut_state *state,
                          const strut_event_stepper *l, const strut_step_end *end) {
   for (int32_t k = 0; k < l->law_count; k++)
-    if (l->laws[k].slider || l->laws[k].whole || (l->laws[k].member < 0 && l->laws[k].element < 0))
+    if (l->laws[k].relay)
+      measure_relay(model, state, &l->laws[k], end, k);
+    else if (l->laws[k].slider || l->laws[k].whole ||
+             (l->laws[k].member < 0 && l->laws[k].element < 0))
       strut_memory_measure(model, state, l, end, k);
     else if (l->laws[k].member >= 0)
       measure_cable(model, state, l->laws[k].member, end, k);

@@ -6,6 +6,7 @@
 #include "engine/forces/energy.h"
 #include "engine/forces/feedback.h"
 #include "engine/forces/memory.h"
+#include "engine/forces/relay.h"
 #include "engine/forces/unbalance.h"
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/model/element_compile.h"
@@ -84,6 +85,9 @@ static bool list_laws(const strut_model *model, strut_state *state, strut_event_
     l->laws[l->law_count++].kinks = true;
   }
   strut_memory_list(model, state, l);
+  for (int32_t i = 0; i < model->feedback.relay_count; i++)
+    l->laws[l->law_count++] =
+        (strut_law_switch){.member = -1, .element = -1, .relay = 1 + model->feedback.relay[i]};
   return true;
 }
 
@@ -145,6 +149,14 @@ void strut_event_stepper_restart(const strut_model *model, strut_state *state, v
   l->started = true;
 }
 
+/* What a jump of rest lengths at time t has done to the elastic energy is work of the drive. */
+static void book_jump(const strut_model *model, strut_state *state, double t, double before) {
+  if (!state->ledger) return;
+  double gained = strut_energy_evaluate(model, state, t).elastic - before;
+  state->work[STRUT_POWER_DRIVE] += gained;
+  state->work[STRUT_POWER_EXCHANGED] += fabs(gained);
+}
+
 /*
  * Where a drive or load jumps the right-hand side does: modes and accelerations are made anew. What
  * the jump of a rest length does to the elastic energy is work of the drive.
@@ -158,11 +170,7 @@ static void pass_break(const strut_model *model, strut_state *state, strut_event
   l->next_break =
       strut_drive_next_break(model, state, t + state->time_offset + STRUT_AT_BREAK * dt);
   strut_feedback_sample(model, state, t, STRUT_AT_BREAK * dt);
-  if (state->ledger) {
-    double gained = strut_energy_evaluate(model, state, t + moment).elastic - before;
-    state->work[STRUT_POWER_DRIVE] += gained;
-    state->work[STRUT_POWER_EXCHANGED] += fabs(gained);
-  }
+  book_jump(model, state, t + moment, before);
   if (model->plan & STRUT_TERM_MEMORY)
     strut_memory_release(model, state, t + moment + state->time_offset + STRUT_AT_BREAK * dt);
   bool kicked = model->contacts.moves; /* a ground may have changed its speed at once */
@@ -278,11 +286,16 @@ static void start_signals(const strut_model *model, strut_state *state, strut_ev
   if (!strut_feedback_touch(model, state, contact, t)) return;
   l->next_break =
       strut_drive_next_break(model, state, t + state->time_offset + STRUT_AT_BREAK * dt);
-  if (state->ledger) {
-    double gained = strut_energy_evaluate(model, state, t).elastic - before;
-    state->work[STRUT_POWER_DRIVE] += gained;
-    state->work[STRUT_POWER_EXCHANGED] += fabs(gained);
-  }
+  book_jump(model, state, t, before);
+  strut_modes_after_jump(model, state, l, t);
+}
+
+/* A relay whose input is at its threshold at time t: the drives jump likewise. */
+static void switch_relay(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                         int32_t signal, double t) {
+  double before = state->ledger ? strut_energy_evaluate(model, state, t).elastic : 0.0;
+  strut_relay_switch(model, state, signal, t);
+  book_jump(model, state, t, before);
   strut_modes_after_jump(model, state, l, t);
 }
 
@@ -321,6 +334,8 @@ static double step(const strut_model *model, strut_state *state, strut_event_ste
     strut_event_apply(model, state, l, event, t + h);
     if (event.kind == STRUT_EVENT_TOUCH && model->feedback.trigger_count)
       start_signals(model, state, l, event.index, t + h, dt);
+    if (event.kind == STRUT_EVENT_RELAY)
+      switch_relay(model, state, l, l->laws[event.index].relay - 1, t + h);
     state->events++;
     l->switches++;
   } else if (force) {

@@ -76,7 +76,7 @@ typedef struct strut_sliding_contact {
   const double *xy;          /* (nodes, 2) */
 } strut_sliding_contact;
 
-/** Something that a law switches: a cable or an element that carries one sign, or an element's kinks. */
+/** Something that switches: a cable or an element that carries one sign, an element's kinks, a relay. */
 typedef struct strut_law_switch {
   int32_t member;  /* of a cable; -1: of an element */
   int32_t element; /* of an element; -1: of a cable */
@@ -90,6 +90,7 @@ typedef struct strut_law_switch {
   bool straight;     /* whether the cable passes straight over it */
   bool whole;        /* whether a cable with guide friction is taut */
   int32_t breakable; /* what may break, where neither member nor element is one; else unused */
+  int32_t relay;     /* 1 + the signal of a relay; 0: it is none, and one of the above */
 } strut_law_switch;
 
 typedef struct strut_event_stepper strut_event_stepper;
@@ -158,11 +159,12 @@ struct strut_event_stepper {
   int32_t *facet; /* (contacts) of closed contacts of surfaces; NULL without STRUT_TERM_SURFACES */
 };
 
-/** Most laws that switch: each cable, each element by its sign, by its kinks and by its memory. */
+/** Most laws that switch: each cable, each element by its sign, by its kinks and by its memory, relays. */
 static inline size_t strut_most_law_switches(const strut_model *model) {
   bool slack = model->plan & STRUT_TERM_SLACK;
   return (slack ? (size_t)model->members.count : 0) + 2 * (size_t)model->elements.count +
-         (size_t)(2 * model->elements.memory_slots + model->elements.breakable_count);
+         (size_t)(2 * model->elements.memory_slots + model->elements.breakable_count +
+                  model->feedback.relay_count);
 }
 
 /** Workspace for a method with `stepper`; NULL: out of memory. */
@@ -215,7 +217,8 @@ typedef enum strut_event_kind {
   STRUT_EVENT_KINK,   /* an element's strain passes a kink of its law */
   STRUT_EVENT_SLIDER, /* a slider or a cable at a guide gives way, or holds again */
   STRUT_EVENT_BREAK,  /* a member or a hinge breaks */
-  STRUT_EVENT_FACET   /* another facet of the surface comes nearer to a closed contact */
+  STRUT_EVENT_FACET,  /* another facet of the surface comes nearer to a closed contact */
+  STRUT_EVENT_RELAY   /* the input of a relay passes a threshold */
 } strut_event_kind;
 
 typedef struct strut_event {

@@ -41,6 +41,7 @@ void strut_memory_list(const strut_model *model, const strut_state *state, strut
 }
 
 strut_event_kind strut_switch_event(const strut_law_switch *law) {
+  if (law->relay) return STRUT_EVENT_RELAY;
   if (law->slider) return STRUT_EVENT_SLIDER;
   if (law->member < 0 && law->element < 0) return STRUT_EVENT_BREAK;
   return law->kinks ? STRUT_EVENT_KINK : STRUT_EVENT_ACTS;
@@ -63,6 +64,13 @@ static double slider_margin(const strut_model *model, const strut_state *state,
   return s.acts ? s.yield * (1.0 + ROUNDING) - fabs(s.force) : s.yield;
 }
 
+/* Is the cable of guide switch k taut in this mode? Its switch as a whole stands behind those of its guides. */
+static bool is_taut(const strut_event_stepper *l, int32_t k) {
+  int32_t whole = k;
+  while (!l->laws[whole].whole) whole++;
+  return l->acting[whole];
+}
+
 void strut_memory_measure(const strut_model *model, const strut_state *state,
                           const strut_event_stepper *l, const strut_step_end *end, int32_t k) {
   const strut_law_switch *law = &l->laws[k];
@@ -81,9 +89,11 @@ void strut_memory_measure(const strut_model *model, const strut_state *state,
     if (guide && law->straight)
       end->tension[k] = strut_capstan_bend(model, state, law->element, law->guide - 1, end->q);
     else
-      end->tension[k] = guide ? strut_capstan_margin(model, state, law->element, law->guide - 1,
-                                                     end->q, end->v, l->wanted_step)
-                              : slider_margin(model, state, l, end, law->element);
+      end->tension[k] = !guide ? slider_margin(model, state, l, end, law->element)
+                        : is_taut(l, k)
+                            ? strut_capstan_margin(model, state, law->element, law->guide - 1,
+                                                   end->q, end->v, l->wanted_step)
+                            : 1.0; /* which guides slip is found when it gets taut */
     return;
   }
   bool broken = state->broken_at[law->breakable] < HUGE_VAL;

@@ -77,6 +77,8 @@ static strut_status choose_coarse_method(strut_accuracy *a) {
   double least = e->budget / STRUT_USUAL_BUDGET * LEAST_WORK;
   least /= (double)(a->scene->node_count + a->scene->member_count);
   a->budget = (int64_t)fmin(fmax(e->budget * fine, least), 1e18);
+  if (a->options->most_evaluations > 0 && a->options->most_evaluations < a->budget)
+    a->budget = a->options->most_evaluations;
   a->allowed = a->budget;
   a->scale = STANDSTILL * model->size / unit;
   return status;
@@ -119,7 +121,7 @@ strut_status strut_simulate_accurately(const strut_model *model, const strut_exp
       experiment->quantity_count == 0; /* the only quantity that these two strategies check */
   /* states that they know nothing of */
   if (model->plan & STRUT_TERM_MEMORY) velocity = false;
-  if (model->feedback.state_count || model->feedback.sampled_count) velocity = false;
+  if (strut_feedback_remembers(&model->feedback)) velocity = false;
   if (!status && velocity) status = strut_accuracy_try_midpoint(&a, &done);
   if (!status && !done && velocity && experiment->periods > 0.0 && !a.single_method)
     status = strut_accuracy_try_orbit(&a, &done);

@@ -27,7 +27,7 @@ typedef struct strut_sweep_plan {
   const strut_study *study;
   strut_sweep_scenes scenes;
   int64_t points;
-  unsigned keep; /* bits 1 << strut_keep */
+  uint64_t keep; /* bits 1 << strut_keep */
   size_t quantity_count;
   const char **quantities; /* (quantity_count) names of the measured quantities that are kept */
   bool check, flips;       /* each point is run twice; and outcomes are compared */
@@ -36,6 +36,9 @@ typedef struct strut_sweep_plan {
   size_t column_count, column_capacity;
   strut_slot_column *columns; /* of the axes, of what is kept, of the check */
   strut_arena arena;
+  /* names in the first point's scene; other points may have others, and leave these cells empty */
+  size_t contact_count, node_count, member_count;
+  const char **contacts, **nodes, **members;
 } strut_sweep_plan;
 
 /**
@@ -75,6 +78,10 @@ typedef struct strut_sweep_options {
   /** A few times a second, one thread at a time; may be NULL. */
   void (*progress)(void *context, const strut_sweep_state *state);
   void *progress_context;
+  /** Points to be computed; NULL: all. Those of the file that it wants, and of these the done ones. */
+  bool (*wants)(const void *context, int64_t point);
+  const void *wants_context;
+  int64_t wanted, wanted_done;
 } strut_sweep_options;
 
 /**

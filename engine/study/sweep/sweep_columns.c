@@ -8,8 +8,8 @@
 #include "engine/study/sweep/grid.h"
 #include "engine/study/sweep/sweep_parts.h"
 
-#define BIT(name) (1u << STRUT_KEEP_##name)
-static const unsigned USUAL = BIT(VELOCITY) | BIT(SPREAD) | BIT(MOTION) | BIT(PERIODS) |
+#define BIT(name) ((uint64_t)1 << STRUT_KEEP_##name)
+static const uint64_t USUAL = BIT(VELOCITY) | BIT(SPREAD) | BIT(MOTION) | BIT(PERIODS) |
                               BIT(EVALUATIONS) | BIT(OUTCOME) | BIT(QUANTITIES);
 
 /*
@@ -55,6 +55,18 @@ static const entry entries[] = {
     ENTRY_TABLE(ENTRY)};
 enum { ENTRIES = sizeof entries / sizeof entries[0] };
 
+/* The structure of a point: word, name, unit, value of a model. */
+#define COUNT_TABLE(X)                                                                             \
+  X(NODES, "node_count", "1", (double)model->scene->node_count)                                    \
+  X(MEMBERS, "member_count", "1", (double)model->scene->member_count)                              \
+  X(FREEDOMS, "degrees_of_freedom", "1", count_freedoms(model))                                    \
+  X(TOTAL_MASS, "total_mass", "kg", total_mass(model))
+
+static const entry counts[] = {
+#define COUNT(keep, name, unit, value) {STRUT_KEEP_##keep, name, unit, false},
+    COUNT_TABLE(COUNT)};
+enum { COUNTS = sizeof counts / sizeof counts[0] };
+
 static bool keeps(const strut_sweep_plan *plan, strut_keep keep) { return plan->keep >> keep & 1u; }
 
 /* Does one of the first `count` columns have this name? An axis may share the name of a column. */
@@ -64,9 +76,8 @@ static bool is_taken(const strut_sweep_plan *plan, size_t count, const char *nam
   return found;
 }
 
-/* Adds a column; one with the name of an axis gets the prefix "run_". */
-static bool add_column(strut_sweep_plan *plan, const char *prefix, const char *name,
-                       const char *unit, bool word) {
+bool strut_sweep_add_column(strut_sweep_plan *plan, const char *prefix, const char *name,
+                            const char *unit, bool word) {
   const char *text = strut_arena_format(&plan->arena, "%s%s", prefix, name);
   while (text && plan->column_count >= plan->axis_columns &&
          is_taken(plan, plan->axis_columns, text))
@@ -76,16 +87,53 @@ static bool add_column(strut_sweep_plan *plan, const char *prefix, const char *n
   return text != NULL;
 }
 
-static bool add_things(strut_sweep_plan *plan, const strut_scene *scene) {
-  bool fine = true;
-  for (size_t i = 0; i < scene->contact_count && keeps(plan, STRUT_KEEP_CONTACTS); i++) {
-    const char *node = strut_contact_name(scene, i);
-    fine = fine && add_column(plan, "duty_", node, "1", false) &&
-           add_column(plan, "height_", node, "m", false);
+static const char *contact_name(const strut_scene *scene, size_t i) {
+  return i < scene->contact_count ? strut_contact_name(scene, i) : NULL;
+}
+
+static const char *node_name(const strut_scene *scene, size_t i) {
+  return i < scene->node_count ? scene->nodes[i].name : NULL;
+}
+
+static const char *member_name(const strut_scene *scene, size_t i) {
+  return i < scene->member_count ? scene->members[i].name : NULL;
+}
+
+/* Copies the names of a scene that outlive it. */
+static bool copy_names(strut_sweep_plan *plan, const strut_scene *scene, size_t count,
+                       const char *(*name_at)(const strut_scene *, size_t), size_t *to_count,
+                       const char ***to) {
+  *to = strut_arena_allocate(&plan->arena, count, sizeof **to);
+  for (size_t i = 0; i < count && *to; i++) {
+    const char *name = name_at(scene, i);
+    (*to)[i] = strut_arena_text(&plan->arena, name, strlen(name));
+    if (!(*to)[i]) return false;
   }
-  for (size_t i = 0; i < scene->node_count && keeps(plan, STRUT_KEEP_POSITIONS); i++)
-    fine = fine && add_column(plan, "x_", scene->nodes[i].name, "m", false) &&
-           add_column(plan, "y_", scene->nodes[i].name, "m", false);
+  *to_count = count;
+  return *to != NULL;
+}
+
+static bool keep_names(strut_sweep_plan *plan, const strut_scene *scene) {
+  bool contacts = keeps(plan, STRUT_KEEP_CONTACTS), nodes = keeps(plan, STRUT_KEEP_POSITIONS);
+  bool members = keeps(plan, STRUT_KEEP_LENGTHS);
+  return copy_names(plan, scene, contacts ? scene->contact_count : 0, contact_name,
+                    &plan->contact_count, &plan->contacts) &&
+         copy_names(plan, scene, nodes ? scene->node_count : 0, node_name, &plan->node_count,
+                    &plan->nodes) &&
+         copy_names(plan, scene, members ? scene->member_count : 0, member_name,
+                    &plan->member_count, &plan->members);
+}
+
+static bool add_things(strut_sweep_plan *plan) {
+  bool fine = true;
+  for (size_t i = 0; i < plan->contact_count; i++)
+    fine = fine && strut_sweep_add_column(plan, "duty_", plan->contacts[i], "1", false) &&
+           strut_sweep_add_column(plan, "height_", plan->contacts[i], "m", false);
+  for (size_t i = 0; i < plan->node_count; i++)
+    fine = fine && strut_sweep_add_column(plan, "x_", plan->nodes[i], "m", false) &&
+           strut_sweep_add_column(plan, "y_", plan->nodes[i], "m", false);
+  for (size_t i = 0; i < plan->member_count; i++)
+    fine = fine && strut_sweep_add_column(plan, "length_", plan->members[i], "m", false);
   return fine;
 }
 
@@ -106,36 +154,47 @@ static bool add_quantities(strut_sweep_plan *plan, const strut_experiment *e) {
     plan->quantities[plan->quantity_count++] = name;
     bool taken =
         is_taken(plan, plan->column_count, name) && !is_taken(plan, plan->axis_columns, name);
-    if (!add_column(plan, taken ? "measured_" : "", name, unit, false)) return false;
+    if (!strut_sweep_add_column(plan, taken ? "measured_" : "", name, unit, false)) return false;
   }
   return true;
 }
 
-static bool add_columns(strut_sweep_plan *plan, const strut_setup *setup) {
+/* What a run gives, apart from the structure's things. */
+static bool add_entries(strut_sweep_plan *plan) {
   bool fine = true;
-  for (size_t i = 0; i < plan->axis_columns && fine; i++) {
-    const strut_study_column *c = strut_grid_column(plan->study, i, NULL);
-    fine = add_column(plan, "", c->name, c->unit, c->word);
-  }
   for (size_t i = 0; i < ENTRIES && fine; i++)
     if (keeps(plan, entries[i].keep))
-      fine = add_column(plan, "", entries[i].name, entries[i].unit, entries[i].word);
-  fine = fine && add_things(plan, &setup->scene) && add_quantities(plan, &setup->experiment);
-  if (fine && keeps(plan, STRUT_KEEP_OUTCOME)) fine = add_column(plan, "", "outcome", "1", true);
-  if (fine && plan->start) fine = add_column(plan, "", "start_unstable", "1", false);
-  if (fine && plan->check)
-    fine = add_column(plan, "check_", "velocity", "m/s", false) &&
-           add_column(plan, "check_", plan->flips ? "outcome" : "motion", "1", true) &&
-           add_column(plan, "", "flips", "1", false);
+      fine = strut_sweep_add_column(plan, "", entries[i].name, entries[i].unit, entries[i].word);
   return fine;
 }
 
-static strut_status choose_columns(strut_sweep_plan *plan, const strut_setup *setup,
-                                   strut_error *error) {
-  const strut_scene *scene = &setup->scene;
+static bool add_columns(strut_sweep_plan *plan, const strut_setup *setup) {
+  bool fine = keep_names(plan, &setup->scene), run = plan->study->compute == STRUT_COMPUTE_RUN;
+  for (size_t i = 0; i < plan->axis_columns && fine; i++) {
+    const strut_study_column *c = strut_grid_column(plan->study, i, NULL);
+    fine = strut_sweep_add_column(plan, "", c->name, c->unit, c->word);
+  }
+  for (size_t i = 0; i < COUNTS && fine; i++)
+    if (keeps(plan, counts[i].keep))
+      fine = strut_sweep_add_column(plan, "", counts[i].name, counts[i].unit, false);
+  fine = fine && (run ? add_entries(plan) : strut_statics_columns(plan, &setup->scene)) &&
+         add_things(plan);
+  if (!fine || !run) return fine;
+  fine = add_quantities(plan, &setup->experiment);
+  if (fine && keeps(plan, STRUT_KEEP_OUTCOME))
+    fine = strut_sweep_add_column(plan, "", "outcome", "1", true);
+  if (fine && plan->start) fine = strut_sweep_add_column(plan, "", "start_unstable", "1", false);
+  if (fine && plan->check)
+    fine = strut_sweep_add_column(plan, "check_", "velocity", "m/s", false) &&
+           strut_sweep_add_column(plan, "check_", plan->flips ? "outcome" : "motion", "1", true) &&
+           strut_sweep_add_column(plan, "", "flips", "1", false);
+  return fine;
+}
+
+/* What a run keeps, and whether it is repeated. */
+static void choose_of_run(strut_sweep_plan *plan, const strut_setup *setup, bool usual) {
   const strut_study *study = plan->study;
-  bool shapes = scene->configuration_count > 0;
-  bool usual = !study->keep && !study->quantity_count;
+  bool shapes = setup->scene.configuration_count > 0;
   plan->keep = usual ? USUAL : study->keep;
   if (usual && !shapes) plan->keep &= ~BIT(OUTCOME);
   plan->start = usual && setup->experiment.settle.wanted;
@@ -143,9 +202,23 @@ static strut_status choose_columns(strut_sweep_plan *plan, const strut_setup *se
   if (plan->check && shapes) plan->keep |= BIT(OUTCOME);
   if (plan->check && !shapes) plan->keep |= BIT(MOTION);
   plan->flips = plan->check && shapes;
+}
+
+static strut_status choose_columns(strut_sweep_plan *plan, const strut_setup *setup,
+                                   strut_error *error) {
+  const strut_scene *scene = &setup->scene;
+  const strut_study *study = plan->study;
+  bool usual = !study->keep && !study->quantity_count;
+  if (study->compute == STRUT_COMPUTE_RUN) {
+    choose_of_run(plan, setup, usual);
+  } else {
+    plan->keep = usual ? strut_statics_usual((strut_compute)study->compute) : study->keep;
+    strut_status status = strut_statics_check(study, scene, error);
+    if (status) return status;
+  }
   size_t quantities = setup->experiment.quantity_count;
-  size_t most = plan->axis_columns + ENTRIES + 5 + 2 * scene->contact_count +
-                2 * scene->node_count + quantities;
+  size_t most = plan->axis_columns + ENTRIES + COUNTS + STRUT_STATICS_COLUMNS + 5 +
+                2 * scene->contact_count + 2 * scene->node_count + scene->member_count + quantities;
   plan->column_capacity = most;
   plan->columns = strut_arena_allocate(&plan->arena, most, sizeof *plan->columns);
   plan->quantities = strut_arena_allocate(&plan->arena, quantities, sizeof *plan->quantities);
@@ -203,15 +276,57 @@ static const char *word_of(const strut_summary *s, strut_keep keep) {
   return keep == STRUT_KEEP_METHOD ? s->method : strut_motion_name(s->steady.kind);
 }
 
-static void fill_things(const strut_sweep_plan *plan, const strut_scene *scene,
-                        const strut_summary *s, strut_row_buffer *cells) {
-  for (size_t i = 0; i < scene->contact_count && keeps(plan, STRUT_KEEP_CONTACTS); i++) {
-    bool known = s && i < s->contact_count;
-    strut_sweep_number(cells, known ? s->contacts[i].duty : (double)NAN);
-    strut_sweep_number(cells, known ? s->contacts[i].max_height : (double)NAN);
+static double count_freedoms(const strut_model *model) {
+  double count = 0.0;
+  for (int32_t i = 0; i < 2 * model->node_count; i++) count += !model->fixed[i];
+  return count;
+}
+
+static double total_mass(const strut_model *model) {
+  double mass = 0.0;
+  for (int32_t i = 0; i < model->node_count; i++) mass += model->weight[i];
+  return mass;
+}
+
+void strut_sweep_fill_counts(const strut_sweep_plan *plan, const strut_model *model,
+                             strut_row_buffer *cells) {
+  bool any = false;
+  for (size_t i = 0; i < COUNTS; i++) any = any || keeps(plan, counts[i].keep);
+  if (!any) return;
+  const double values[] = {
+#define COUNT_VALUE(keep, name, unit, value) model ? value : (double)NAN,
+      COUNT_TABLE(COUNT_VALUE)};
+  for (size_t i = 0; i < COUNTS; i++)
+    if (keeps(plan, counts[i].keep)) strut_sweep_number(cells, values[i]);
+}
+
+int64_t strut_sweep_named(const char *name, size_t i, size_t count,
+                          const char *(*name_at)(const strut_scene *scene, size_t i),
+                          const strut_scene *scene) {
+  if (i < count && strcmp(name_at(scene, i), name) == 0) return (int64_t)i; /* almost always */
+  for (size_t k = 0; k < count; k++)
+    if (strcmp(name_at(scene, k), name) == 0) return (int64_t)k;
+  return -1;
+}
+
+void strut_sweep_fill_positions(const strut_sweep_plan *plan, const strut_scene *scene,
+                                const double *positions, strut_row_buffer *cells) {
+  for (size_t i = 0; i < plan->node_count; i++) {
+    int64_t at = strut_sweep_named(plan->nodes[i], i, scene->node_count, node_name, scene);
+    for (int c = 0; c < 2; c++)
+      strut_sweep_number(cells, positions && at >= 0 ? positions[2 * at + c] : (double)NAN);
   }
-  for (size_t i = 0; i < 2 * scene->node_count && keeps(plan, STRUT_KEEP_POSITIONS); i++)
-    strut_sweep_number(cells, s && i < 2 * s->node_count ? s->positions[i] : (double)NAN);
+}
+
+static void fill_contacts(const strut_sweep_plan *plan, const strut_scene *scene,
+                          const strut_summary *s, strut_row_buffer *cells) {
+  for (size_t i = 0; i < plan->contact_count; i++) {
+    size_t count =
+        s->contact_count < scene->contact_count ? s->contact_count : scene->contact_count;
+    int64_t at = strut_sweep_named(plan->contacts[i], i, count, contact_name, scene);
+    strut_sweep_number(cells, at >= 0 ? s->contacts[at].duty : (double)NAN);
+    strut_sweep_number(cells, at >= 0 ? s->contacts[at].max_height : (double)NAN);
+  }
 }
 
 /* A variant may lack a quantity of the first point, which names the columns. */
@@ -230,7 +345,11 @@ void strut_sweep_fill(const strut_sweep_plan *plan, const strut_setup *setup,
     else
       strut_sweep_number(cells, summary ? number_of(summary, setup, i) : (double)NAN);
   }
-  if (summary) fill_things(plan, &setup->scene, summary, cells);
+  if (summary) {
+    bool known = summary->node_count == setup->scene.node_count;
+    fill_contacts(plan, &setup->scene, summary, cells);
+    strut_sweep_fill_positions(plan, &setup->scene, known ? summary->positions : NULL, cells);
+  }
   for (size_t i = 0; i < plan->quantity_count; i++)
     strut_sweep_number(cells, summary ? measured_value(summary, plan->quantities[i]) : (double)NAN);
   if (keeps(plan, STRUT_KEEP_OUTCOME)) strut_sweep_word(cells, outcome);

@@ -24,8 +24,22 @@ typedef struct strut_row_buffer {
 /** Appends the kept values of a run; summary NULL: all missing. outcome may be "". */
 void strut_sweep_fill(const strut_sweep_plan *plan, const strut_setup *setup,
                       const strut_summary *summary, const char *outcome, strut_row_buffer *cells);
+/** Appends the counts of a point's structure and its mass. */
+void strut_sweep_fill_counts(const strut_sweep_plan *plan, const strut_model *model,
+                             strut_row_buffer *cells);
 void strut_sweep_number(strut_row_buffer *cells, double value);
 void strut_sweep_word(strut_row_buffer *cells, const char *word);
+
+/** Adds a column to a plan; one with the name of an axis gets the prefix "run_". False: no memory. */
+bool strut_sweep_add_column(strut_sweep_plan *plan, const char *prefix, const char *name,
+                            const char *unit, bool word);
+/** Appends the positions (2 node_count) of the nodes that the columns name; NULL: missing. */
+void strut_sweep_fill_positions(const strut_sweep_plan *plan, const strut_scene *scene,
+                                const double *positions, strut_row_buffer *cells);
+/** Index in the scene of what was the i-th of `count` names; -1: there is none of that name. */
+int64_t strut_sweep_named(const char *name, size_t i, size_t count,
+                          const char *(*name_at)(const strut_scene *scene, size_t i),
+                          const strut_scene *scene);
 
 /* sweep_point.c */
 
@@ -33,7 +47,10 @@ typedef struct strut_sweep_worker {
   const strut_sweep_plan *plan;
   const strut_sweep_options *options;
   strut_equilibrium_cache *standing;
+  struct strut_sweep_watch *watch; /* NULL: points may take any time */
 } strut_sweep_worker;
+
+struct strut_sweep_watch;
 
 typedef enum strut_sweep_stage {
   STRUT_SWEEP_IDLE,    /* no point */
@@ -58,8 +75,13 @@ typedef struct strut_sweep_job {
   strut_status
       status; /* at the end: STRUT_OK, and cells.row is filled; else what stops the sweep */
   strut_error error;
+  double deadline;            /* by strut_run_clock [s]; 0: none; guarded by the watch */
+  volatile sig_atomic_t stop; /* set by the watch when it has passed, or the sweep is interrupted */
 } strut_sweep_job;
 
+/** What ends the job's computation early; may be NULL. */
+const volatile sig_atomic_t *strut_sweep_interrupt_of(const strut_sweep_worker *worker,
+                                                      const strut_sweep_job *job);
 /** Starts a point on an idle job. True: it waits for its run. False: it has ended already. */
 bool strut_sweep_job_begin(const strut_sweep_worker *worker, int64_t point, strut_sweep_job *job);
 /** Stores the result of the run and frees the summary. True: the job waits for another run. */
@@ -69,6 +91,31 @@ bool strut_sweep_job_take(const strut_sweep_worker *worker, strut_sweep_job *job
 strut_status strut_sweep_job_compile(strut_sweep_job *job);
 /** All runs that a waiting job wants, one after the other. */
 void strut_sweep_job_finish(const strut_sweep_worker *worker, strut_sweep_job *job);
+
+/* statics_point.c */
+
+/** Most columns that strut_statics_columns adds, apart from those of nodes and members. */
+enum { STRUT_STATICS_COLUMNS = 16 + 3 * STRUT_STUDY_MOST_LOWEST };
+/** What is usual to keep of a computation that is no run. */
+uint64_t strut_statics_usual(strut_compute compute);
+/** Adds the columns of what is computed at rest. False: no memory. */
+bool strut_statics_columns(strut_sweep_plan *plan, const strut_scene *scene);
+/** STRUT_BAD_SCENE where the study asks for what the scene does not have. */
+strut_status strut_statics_check(const strut_study *study, const strut_scene *scene,
+                                 strut_error *error);
+/** Computes what the study wants of a point at rest and appends its cells. */
+strut_status strut_statics_point(const strut_sweep_worker *worker, strut_sweep_job *job);
+
+/* sweep_watch.c */
+
+/** Ends jobs that take longer than the study allows. NULL: there is no memory or no thread for it. */
+struct strut_sweep_watch *strut_sweep_watch_create(double seconds, strut_sweep_job *jobs,
+                                                   size_t count,
+                                                   const volatile sig_atomic_t *interrupt);
+void strut_sweep_watch_free(struct strut_sweep_watch *watch);
+/** The job's time begins, and ends; the latter true if it had passed. A NULL watch does nothing. */
+void strut_sweep_watch_begin(struct strut_sweep_watch *watch, strut_sweep_job *job);
+bool strut_sweep_watch_end(struct strut_sweep_watch *watch, strut_sweep_job *job);
 
 /* sweep_lanes.c */
 

@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Samples of several numbers at once, from distributions, in the unit cube by a low-discrepancy
+ * sequence, by strata or at random. The same bits whenever and wherever they are made.
+ */
+#ifndef STRUT_ENGINE_SCENE_SAMPLE_H
+#define STRUT_ENGINE_SCENE_SAMPLE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "engine/base/export.h"
+
+/** Ways to fill the unit cube, in the order of the language. */
+typedef enum strut_sample_scheme {
+  STRUT_SAMPLE_SOBOL,  /* Sobol's sequence, shifted by the seed modulo 1 */
+  STRUT_SAMPLE_LHS,    /* Latin hypercube: each number once in each of `count` strata */
+  STRUT_SAMPLE_RANDOM, /* independent */
+  STRUT_SAMPLE_SCHEME_COUNT
+} strut_sample_scheme;
+
+/** Distributions, in the order of the language, and their numbers. */
+typedef enum strut_distribution_kind {
+  STRUT_DISTRIBUTION_UNIFORM,     /* least, most */
+  STRUT_DISTRIBUTION_LOG_UNIFORM, /* least, most, of one sign: the logarithm is uniform */
+  STRUT_DISTRIBUTION_NORMAL,      /* mean, standard deviation */
+  STRUT_DISTRIBUTION_LOGNORMAL,   /* median, standard deviation of the natural logarithm */
+  STRUT_DISTRIBUTION_TRIANGULAR,  /* least, most likely, most */
+  STRUT_DISTRIBUTION_COUNT
+} strut_distribution_kind;
+
+typedef struct strut_distribution {
+  strut_distribution_kind kind;
+  double number[3];
+} strut_distribution;
+
+enum { STRUT_SAMPLE_MOST_NUMBERS = 40, STRUT_SAMPLE_MOST_POINTS = 1000000 };
+
+/** Why the numbers of a distribution are wrong, as the end of a sentence; NULL: they are right. */
+STRUT_API const char *strut_distribution_flaw(const strut_distribution *distribution);
+/** The value below which the share `u` lies, 0 < u < 1. */
+STRUT_API double strut_distribution_value(const strut_distribution *distribution, double u);
+/**
+ * values[k] (count) from distribution k, k < number_count <= STRUT_SAMPLE_MOST_NUMBERS. False: memory is
+ * out.
+ */
+STRUT_API bool strut_sample_make(strut_sample_scheme scheme, uint32_t seed, int64_t count,
+                                 size_t number_count, const strut_distribution *distributions,
+                                 double *const *values);
+
+#endif

@@ -1,0 +1,490 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Points of a study that computes what is at rest: the columns, and their cells by the functions of the
+ * commands. */
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/forces/elements.h"
+#include "engine/forces/memory.h"
+#include "engine/statics/equilibria/equilibria.h"
+#include "engine/statics/equilibria/rest_state.h"
+#include "engine/statics/form/form.h"
+#include "engine/statics/modes/modes.h"
+#include "engine/statics/path/path.h"
+#include "engine/statics/rigidity/rigidity.h"
+#include "engine/study/sweep/sweep_parts.h"
+
+/* Results of one point; those of the study's computation are filled. */
+typedef struct rest_result {
+  const strut_model *model;
+  strut_equilibria equilibria;
+  size_t stable_count;
+  int32_t *stable; /* (stable_count) equilibria that stand, by energy; in the arena */
+  strut_modes modes;
+  strut_rigidity rigidity;
+  strut_path path;
+  strut_form form;
+  strut_arena arena;
+} rest_result;
+
+/* ---- single numbers ---- */
+
+static double state_energy(const rest_result *r, size_t i) {
+  return i < r->stable_count ? r->equilibria.list[r->stable[i]].energy : (double)NAN;
+}
+
+/* The lowest barrier out of a stable state. */
+static double state_barrier(const rest_result *r, size_t i) {
+  double lowest = (double)NAN;
+  for (size_t k = 0; k < r->equilibria.barrier_count && i < r->stable_count; k++) {
+    const strut_barrier *b = &r->equilibria.barriers[k];
+    if (b->from == r->stable[i]) lowest = fmin(lowest, b->height);
+  }
+  return lowest;
+}
+
+static double count_modes(const strut_modes *modes, strut_mode_kind kind) {
+  double count = 0.0;
+  for (size_t i = 0; i < modes->count; i++) count += modes->list[i].kind == kind;
+  return count;
+}
+
+/* The i-th lowest elastic mode, or NULL. */
+static const strut_mode *elastic_mode(const strut_modes *modes, size_t i) {
+  for (size_t k = 0; k < modes->count; k++)
+    if (modes->list[k].kind == STRUT_MODE_ELASTIC && i-- == 0) return &modes->list[k];
+  return NULL;
+}
+
+static double frequency_of(const strut_mode *mode) {
+  static const double turn = 6.283185307179586;
+  return mode ? mode->angular_frequency / turn : (double)NAN;
+}
+
+static bool is_limit(const strut_path_event *e) {
+  return e->kind == STRUT_PATH_LIMIT || e->kind == STRUT_PATH_KINK_LIMIT;
+}
+
+static bool is_bifurcation(const strut_path_event *e) {
+  return e->kind == STRUT_PATH_BIFURCATION || e->kind == STRUT_PATH_KINK_BIFURCATION;
+}
+
+static bool loses_stability(const strut_path_event *e) { return e->before == 0 && e->after > 0; }
+
+/* The factor of the first event of a kind. */
+static double first_factor(const strut_path *path, bool (*matches)(const strut_path_event *)) {
+  for (size_t i = 0; i < path->event_count; i++)
+    if (matches(&path->events[i])) return path->events[i].factor;
+  return (double)NAN;
+}
+
+static double last_factor(const strut_path *path) {
+  return path->point_count ? path->points[path->point_count - 1].factor : (double)NAN;
+}
+
+/* 0 or 1; missing where another combination of several states might be super stable. */
+static double super_stability(const strut_rigidity *r) {
+  bool known = r->states.count == 0 ||
+               (r->stress.tested && (r->states.count == 1 || r->stress.super_stable));
+  return known ? (double)r->stress.super_stable : (double)NAN;
+}
+
+static const char *end_word(strut_path_end end) {
+  switch (end) {
+    case STRUT_PATH_UNTIL: return "until";
+    case STRUT_PATH_STEPS: return "steps";
+    case STRUT_PATH_AWAY: return "away";
+    case STRUT_PATH_LOST: return "lost";
+    case STRUT_PATH_INVALID: return "invalid";
+  }
+  return "";
+}
+
+/* ---- the columns ---- */
+
+typedef enum column_shape {
+  NUMBER,
+  WORD,
+  NUMBERS, /* NAME_1, NAME_2, ...: the lowest */
+  WORDS
+} column_shape;
+
+/* Columns of each computation: word, name, unit, shape, value of a number (the i-th). */
+#define EQUILIBRIA_COLUMNS(X)                                                                      \
+  X(STABLE, "stable_count", "1", NUMBER, (double)r->stable_count)                                  \
+  X(FOUND, "equilibrium_count", "1", NUMBER, (double)r->equilibria.count)                          \
+  X(STATES, "state", "1", WORDS, (double)NAN)                                                      \
+  X(ENERGIES, "energy", "J", NUMBERS, state_energy(r, i))                                          \
+  X(BARRIERS, "barrier", "J", NUMBERS, state_barrier(r, i))                                        \
+  X(STARTS, "starts", "1", NUMBER, (double)r->equilibria.starts)                                   \
+  X(MISSED, "missed_probability", "1", NUMBER, r->equilibria.missed)
+#define MODES_COLUMNS(X)                                                                           \
+  X(AT, "at", "1", WORD, (double)NAN)                                                              \
+  X(FREQUENCIES, "frequency", "Hz", NUMBERS, frequency_of(elastic_mode(&r->modes, i)))             \
+  X(DAMPING_RATIOS, "damping_ratio", "1", NUMBERS,                                                 \
+    elastic_mode(&r->modes, i) ? elastic_mode(&r->modes, i)->damping_ratio : (double)NAN)          \
+  X(MODE_COUNTS, "rigid_body_modes", "1", NUMBER, count_modes(&r->modes, STRUT_MODE_RIGID))        \
+  X(MODE_COUNTS, "mechanism_modes", "1", NUMBER, count_modes(&r->modes, STRUT_MODE_MECHANISM))     \
+  X(MODE_COUNTS, "unstable_modes", "1", NUMBER, count_modes(&r->modes, STRUT_MODE_UNSTABLE))       \
+  X(CONDITION, "condition", "1", NUMBER, r->modes.condition)
+#define RIGIDITY_COLUMNS(X)                                                                        \
+  X(RANK, "rank", "1", NUMBER, (double)r->rigidity.spaces.rank)                                    \
+  X(SELF_STRESS, "self_stress_count", "1", NUMBER, (double)r->rigidity.states.count)               \
+  X(MECHANISMS, "mechanism_count", "1", NUMBER, (double)r->rigidity.mechanisms.count)              \
+  X(MECHANISM_KINDS, "rigid_body", "1", NUMBER, (double)r->rigidity.mechanisms.rigid_body)         \
+  X(MECHANISM_KINDS, "infinitesimal", "1", NUMBER, (double)r->rigidity.mechanisms.infinitesimal)   \
+  X(MECHANISM_KINDS, "finite", "1", NUMBER, (double)r->rigidity.mechanisms.finite)                 \
+  X(MECHANISM_KINDS, "undecided", "1", NUMBER, (double)r->rigidity.mechanisms.undecided)           \
+  X(SUPER_STABLE, "super_stable", "1", NUMBER, super_stability(&r->rigidity))                      \
+  X(LABEL, "label", "1", WORD, (double)NAN)                                                        \
+  X(RESIDUAL, "residual", "N", NUMBER, r->rigidity.residual)
+#define PATH_COLUMNS(X)                                                                            \
+  X(LIMIT, "limit_factor", NULL, NUMBER, first_factor(&r->path, is_limit))                         \
+  X(BIFURCATION, "bifurcation_factor", NULL, NUMBER, first_factor(&r->path, is_bifurcation))       \
+  X(CRITICAL, "critical_factor", NULL, NUMBER, first_factor(&r->path, loses_stability))            \
+  X(LAST_FACTOR, "last_factor", NULL, NUMBER, last_factor(&r->path))                               \
+  X(PATH_EVENTS, "event_count", "1", NUMBER, (double)r->path.event_count)                          \
+  X(END, "end", "1", WORD, (double)NAN)
+#define FORM_COLUMNS(X)                                                                            \
+  X(MOVED, "moved", "m", NUMBER, r->form.moved)                                                    \
+  X(RESIDUAL, "residual", "N", NUMBER, r->form.residual)                                           \
+  X(DENSITY_CHANGE, "density_change", "1", NUMBER, r->form.density_change)                         \
+  X(LEAST_TENSION, "least_tension", "N", NUMBER, r->form.least_tension)                            \
+  X(LARGEST_FORCE, "largest_force", "N", NUMBER, r->form.largest_force)
+
+typedef struct column {
+  strut_compute compute;
+  strut_keep keep;
+  const char *name, *unit; /* unit NULL: that of a path's parameter */
+  column_shape shape;
+} column;
+
+#define IN_EQUILIBRIA(keep, name, unit, shape, value)                                              \
+  {STRUT_COMPUTE_EQUILIBRIA, STRUT_KEEP_##keep, name, unit, shape},
+#define IN_MODES(keep, name, unit, shape, value)                                                   \
+  {STRUT_COMPUTE_MODES, STRUT_KEEP_##keep, name, unit, shape},
+#define IN_RIGIDITY(keep, name, unit, shape, value)                                                \
+  {STRUT_COMPUTE_RIGIDITY, STRUT_KEEP_##keep, name, unit, shape},
+#define IN_PATH(keep, name, unit, shape, value)                                                    \
+  {STRUT_COMPUTE_PATH, STRUT_KEEP_##keep, name, unit, shape},
+#define IN_FORM(keep, name, unit, shape, value)                                                    \
+  {STRUT_COMPUTE_FORM, STRUT_KEEP_##keep, name, unit, shape},
+
+static const column columns[] = {EQUILIBRIA_COLUMNS(IN_EQUILIBRIA) MODES_COLUMNS(
+    IN_MODES) RIGIDITY_COLUMNS(IN_RIGIDITY) PATH_COLUMNS(IN_PATH) FORM_COLUMNS(IN_FORM)};
+enum { COLUMNS = sizeof columns / sizeof columns[0], MOST_OF_ONE = 16 };
+
+/* The i-th value of the k-th column of the computation. */
+static double value_of(const rest_result *r, strut_compute compute, size_t k, size_t i) {
+  double values[MOST_OF_ONE] = {0};
+  size_t n = 0;
+#define STORE(keep, name, unit, shape, value) values[n++] = value;
+  switch (compute) {
+    case STRUT_COMPUTE_RUN:
+    case STRUT_COMPUTE_COUNT: break;
+    case STRUT_COMPUTE_EQUILIBRIA: EQUILIBRIA_COLUMNS(STORE) break;
+    case STRUT_COMPUTE_MODES: MODES_COLUMNS(STORE) break;
+    case STRUT_COMPUTE_RIGIDITY: RIGIDITY_COLUMNS(STORE) break;
+    case STRUT_COMPUTE_PATH: PATH_COLUMNS(STORE) break;
+    case STRUT_COMPUTE_FORM: FORM_COLUMNS(STORE) break;
+  }
+  assert(k < n);
+  return values[k];
+}
+
+/* "class 1" of "structure with tensegrity features of class 1"; reasons are left out. */
+static const char *short_label(const char *label, char word[STRUT_SLOT_WORD]) {
+  const char *class = strstr(label, "class ");
+  if (!class) class = label;
+  snprintf(word, STRUT_SLOT_WORD, "%.*s", (int)strcspn(class, ":"), class);
+  return word;
+}
+
+/* The i-th word of a column. */
+static const char *word_of(const rest_result *r, strut_keep keep, size_t i,
+                           char word[STRUT_SLOT_WORD]) {
+  if (keep == STRUT_KEEP_STATES)
+    return i < r->stable_count ? r->equilibria.list[r->stable[i]].name : "";
+  if (keep == STRUT_KEEP_AT) return r->modes.at;
+  if (keep == STRUT_KEEP_LABEL) return short_label(r->rigidity.tensegrity.label, word);
+  return end_word(r->path.end);
+}
+
+uint64_t strut_statics_usual(strut_compute compute) {
+  uint64_t usual = 0;
+  for (size_t i = 0; i < COLUMNS; i++)
+    if (columns[i].compute == compute) usual |= (uint64_t)1 << columns[i].keep;
+  return usual;
+}
+
+static size_t lowest_of(const strut_study *study) {
+  return study->lowest > 0 ? (size_t)study->lowest : STRUT_STUDY_LOWEST;
+}
+
+static bool is_kept(const strut_sweep_plan *plan, const column *c) {
+  return c->compute == (strut_compute)plan->study->compute && (plan->keep >> c->keep & 1);
+}
+
+/* ---- what a path follows ---- */
+
+static int32_t find_actuator(const strut_scene *scene, const char *name) {
+  for (size_t i = 0; i < scene->actuator_count; i++)
+    if (strcmp(scene->actuators[i].name, name) == 0) return (int32_t)i;
+  return -1;
+}
+
+/* "node.x" as 2 node, "node.y" as 2 node + 1; -1: no such node. */
+static int32_t find_coordinate(const strut_scene *scene, const char *name) {
+  const char *dot = strrchr(name, '.');
+  if (!dot || (strcmp(dot, ".x") != 0 && strcmp(dot, ".y") != 0)) return -1;
+  size_t length = (size_t)(dot - name);
+  for (size_t i = 0; i < scene->node_count; i++)
+    if (strlen(scene->nodes[i].name) == length && strncmp(scene->nodes[i].name, name, length) == 0)
+      return (int32_t)(2 * i) + (dot[1] == 'y');
+  return -1;
+}
+
+static const char *unit_of_actuator(const strut_actuator *a) {
+  return a->member >= 0 ? "m" : a->hinge >= 0 ? "rad" : "N/m";
+}
+
+/* The path's options, and the unit of its parameter ("1": none). */
+static strut_status choose_path(const strut_study *study, const strut_scene *scene,
+                                strut_path_options *to, const char **unit, strut_error *error) {
+  *to = (strut_path_options){.over = STRUT_PATH_OVER_LOAD,
+                             .load = study->path_load,
+                             .at = study->at,
+                             .from = study->path_from,
+                             .until = study->path_until_given ? study->path_until : 1.0,
+                             .steps = study->path_steps};
+  *unit = "1";
+  if (study->path_over) {
+    to->over = STRUT_PATH_OVER_ACTUATOR;
+    to->index = find_actuator(scene, study->path_over);
+    if (to->index >= 0) *unit = unit_of_actuator(&scene->actuators[to->index]);
+    if (to->index < 0) {
+      to->over = STRUT_PATH_OVER_COORDINATE;
+      to->index = find_coordinate(scene, study->path_over);
+      *unit = "m";
+    }
+    if (to->index < 0)
+      return strut_fail(error, STRUT_BAD_SCENE,
+                        "path: 'over' expects an actuator or a coordinate of a node, such as "
+                        "'%.60s.x', not '%.60s'; parameters are axes of the study",
+                        scene->node_count ? scene->nodes[0].name : "node", study->path_over);
+  }
+  const char *given[] = {study->path_from_unit, study->path_until_unit};
+  for (int i = 0; i < 2; i++)
+    if (given[i] && strcmp(given[i], *unit) != 0)
+      return strut_fail(error, STRUT_BAD_SCENE, "path: '%s' is in %s, expected %s%s",
+                        i == 0 ? "from" : "until", given[i],
+                        strcmp(*unit, "1") == 0 ? "a load factor without unit" : "",
+                        strcmp(*unit, "1") == 0 ? "" : *unit);
+  return STRUT_OK;
+}
+
+strut_status strut_statics_check(const strut_study *study, const strut_scene *scene,
+                                 strut_error *error) {
+  strut_path_options options;
+  const char *unit;
+  if (study->compute != STRUT_COMPUTE_PATH) return STRUT_OK;
+  return choose_path(study, scene, &options, &unit, error);
+}
+
+bool strut_statics_columns(strut_sweep_plan *plan, const strut_scene *scene) {
+  strut_path_options options;
+  strut_error error = {0};
+  const char *factor = "1";
+  bool fine = true;
+  if (plan->study->compute == STRUT_COMPUTE_PATH)
+    choose_path(plan->study, scene, &options, &factor, &error);
+  for (size_t k = 0; k < COLUMNS && fine; k++) {
+    const column *c = &columns[k];
+    bool word = c->shape == WORD || c->shape == WORDS;
+    bool several = c->shape == NUMBERS || c->shape == WORDS;
+    const char *unit = c->unit ? c->unit : factor;
+    if (!is_kept(plan, c)) continue;
+    if (!several) fine = strut_sweep_add_column(plan, "", c->name, unit, word);
+    for (size_t i = 0; several && i < lowest_of(plan->study) && fine; i++) {
+      const char *name = strut_arena_format(&plan->arena, "%s_%zu", c->name, i + 1);
+      fine = name && strut_sweep_add_column(plan, "", name, unit, word);
+    }
+  }
+  return fine;
+}
+
+/* ---- computing ---- */
+
+/* An equilibrium by energy; equal ones in the order of the list. */
+typedef struct ranked {
+  double energy;
+  int32_t index;
+} ranked;
+
+static int by_energy(const void *a, const void *b) {
+  const ranked *first = a, *second = b;
+  if (first->energy != second->energy) return first->energy < second->energy ? -1 : 1;
+  return (first->index > second->index) - (first->index < second->index);
+}
+
+static bool rank_states(rest_result *r) {
+  const strut_equilibria *all = &r->equilibria;
+  ranked *list = strut_arena_allocate(&r->arena, all->count, sizeof *list);
+  r->stable = strut_arena_allocate(&r->arena, all->count, sizeof *r->stable);
+  if (!list || !r->stable) return false;
+  for (size_t i = 0; i < all->count; i++)
+    if (all->list[i].outcome == STRUT_OUTCOME_STANDS)
+      list[r->stable_count++] = (ranked){all->list[i].energy, (int32_t)i};
+  if (r->stable_count) qsort(list, r->stable_count, sizeof *list, by_energy);
+  for (size_t i = 0; i < r->stable_count; i++) r->stable[i] = list[i].index;
+  return true;
+}
+
+/* Warns where something carries more than it can, as the commands do. */
+static void warn_of_overload(strut_sweep_job *job, const strut_model *model, const double *q,
+                             const char *where) {
+  strut_overload worst;
+  if (job->warning_count > 0 || !strut_memory_overload(model, q, &worst)) return;
+  strut_warning *warning = &job->warnings[job->warning_count++];
+  warning->code = "overload";
+  snprintf(warning->text, sizeof warning->text,
+           "in %.60s %s '%.60s' carries %.4g %s, above the %.4g at which it %s; statics take it as "
+           "%s",
+           where, worst.hinge ? "hinge" : "member", worst.name, worst.force,
+           worst.hinge ? "N m" : "N", worst.limit, worst.breaks ? "breaks" : "yields",
+           worst.breaks ? "whole" : "elastic");
+}
+
+static strut_status find_equilibria(const strut_sweep_worker *w, strut_sweep_job *job,
+                                    rest_result *r) {
+  const strut_equilibria_options options = {.interrupt = strut_sweep_interrupt_of(w, job)};
+  strut_equilibria *all = &r->equilibria;
+  strut_status status =
+      strut_equilibria_find(r->model, &job->setup.experiment, &options, all, &job->error);
+  if (status) return status;
+  if (!rank_states(r)) return strut_fail(&job->error, STRUT_NO_MEMORY, "out of memory");
+  for (size_t i = 0; i < r->stable_count; i++)
+    warn_of_overload(job, r->model, all->list[r->stable[i]].point.q, all->list[r->stable[i]].name);
+  if (!all->count) /* that there is none is a result, and this is why */
+    snprintf(job->cells.message, sizeof job->cells.message, "%.*s",
+             (int)sizeof job->cells.message - 1, all->remark);
+  return STRUT_OK;
+}
+
+static strut_status find_modes(const strut_study *study, strut_sweep_job *job, rest_result *r) {
+  int32_t wanted = (int32_t)lowest_of(study) + 3; /* motions of the whole come first */
+  strut_modes_options options = {.at = study->at, .count = 0};
+  int32_t free_coordinates = 0;
+  for (int32_t i = 0; i < 2 * r->model->node_count; i++) free_coordinates += !r->model->fixed[i];
+  if (free_coordinates > STRUT_DENSE_MODES && wanted > STRUT_SPARSE_MODES) options.count = wanted;
+  strut_status status =
+      strut_modes_find(r->model, &job->setup.experiment, &options, &r->modes, &job->error);
+  if (!status) warn_of_overload(job, r->model, r->modes.q, r->modes.at);
+  return status;
+}
+
+static strut_status find_rigidity(const strut_study *study, strut_sweep_job *job, rest_result *r) {
+  strut_rest_state shape;
+  strut_status status =
+      strut_rest_state_find(r->model, &job->setup.experiment, study->at ? study->at : "drawn",
+                            &r->arena, &shape, &job->error);
+  if (!status) status = strut_rigidity_find(r->model, shape.q, &r->rigidity, &job->error);
+  return status;
+}
+
+static strut_status follow_path(const strut_study *study, strut_sweep_job *job, rest_result *r) {
+  strut_path_options options;
+  const char *unit;
+  strut_status status = choose_path(study, &job->setup.scene, &options, &unit, &job->error);
+  if (!status)
+    status = strut_path_follow(r->model, &job->setup.experiment, &options, &r->path, &job->error);
+  if (!status && r->path.remark[0]) /* why it ended early */
+    snprintf(job->cells.message, sizeof job->cells.message, "%.*s",
+             (int)sizeof job->cells.message - 1, r->path.remark);
+  return status;
+}
+
+static strut_status find_form(const strut_study *study, strut_sweep_job *job, rest_result *r) {
+  const strut_form_options options = {.from = (strut_form_source)study->form_from,
+                                      .objective = (strut_form_objective)study->form_objective,
+                                      .least_tension = study->form_least_tension,
+                                      .least_density = study->form_least_density};
+  return strut_form_find(&job->setup, &options, &r->form, &job->error);
+}
+
+static strut_status compute(const strut_sweep_worker *w, strut_sweep_job *job, rest_result *r) {
+  const strut_study *study = w->plan->study;
+  switch ((strut_compute)study->compute) {
+    case STRUT_COMPUTE_EQUILIBRIA: return find_equilibria(w, job, r);
+    case STRUT_COMPUTE_MODES: return find_modes(study, job, r);
+    case STRUT_COMPUTE_RIGIDITY: return find_rigidity(study, job, r);
+    case STRUT_COMPUTE_PATH: return follow_path(study, job, r);
+    case STRUT_COMPUTE_FORM: return find_form(study, job, r);
+    case STRUT_COMPUTE_RUN:
+    case STRUT_COMPUTE_COUNT: break;
+  }
+  return STRUT_OK;
+}
+
+static void fill_columns(const strut_sweep_plan *plan, const rest_result *r,
+                         strut_row_buffer *cells) {
+  strut_compute computed = (strut_compute)plan->study->compute;
+  size_t first = 0;
+  while (first < COLUMNS && columns[first].compute != computed) first++;
+  for (size_t k = first; k < COLUMNS; k++) {
+    const column *c = &columns[k];
+    size_t count = c->shape == NUMBERS || c->shape == WORDS ? lowest_of(plan->study) : 1;
+    char word[STRUT_SLOT_WORD];
+    for (size_t i = 0; i < count && is_kept(plan, c); i++) {
+      if (c->shape == WORD || c->shape == WORDS)
+        strut_sweep_word(cells, word_of(r, c->keep, i, word));
+      else
+        strut_sweep_number(cells, value_of(r, computed, k - first, i));
+    }
+  }
+}
+
+static const char *member_name(const strut_scene *scene, size_t i) {
+  return scene->members[i].name;
+}
+
+/* Positions and lengths of a form: its start, which a new model has. */
+static strut_status fill_form(const strut_sweep_plan *plan, strut_sweep_job *job) {
+  strut_model *model = NULL;
+  const strut_scene *scene = &job->setup.scene;
+  if (!plan->node_count && !plan->member_count) return STRUT_OK;
+  strut_status status = strut_model_compile(scene, &model, &job->error);
+  if (status) return status;
+  strut_sweep_fill_positions(plan, scene, model->start, &job->cells);
+  for (size_t i = 0; i < plan->member_count; i++) {
+    int64_t at = strut_sweep_named(plan->members[i], i, scene->member_count, member_name, scene);
+    strut_sweep_number(&job->cells, at >= 0
+                                        ? strut_member_path_length(model, (int32_t)at, model->start)
+                                        : (double)NAN);
+  }
+  strut_model_free(model);
+  return STRUT_OK;
+}
+
+strut_status strut_statics_point(const strut_sweep_worker *w, strut_sweep_job *job) {
+  strut_model *model = NULL;
+  rest_result *r = strut_allocate(1, sizeof *r);
+  if (!r) return strut_fail(&job->error, STRUT_NO_MEMORY, "out of memory");
+  strut_status status = strut_model_compile(&job->setup.scene, &model, &job->error);
+  r->model = model;
+  strut_sweep_fill_counts(w->plan, model, &job->cells);
+  if (!status) status = compute(w, job, r);
+  if (!status) fill_columns(w->plan, r, &job->cells);
+  if (!status && w->plan->study->compute == STRUT_COMPUTE_FORM) status = fill_form(w->plan, job);
+  strut_equilibria_free(&r->equilibria);
+  strut_modes_free(&r->modes);
+  strut_rigidity_free(&r->rigidity);
+  strut_path_free(&r->path);
+  strut_arena_free(&r->arena);
+  strut_model_free(model);
+  strut_release(r);
+  return status;
+}

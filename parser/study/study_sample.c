@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* An axis of parameters from distributions. See study_reader.h; the numbers are made by scene/sample. */
+#include <string.h>
+
+#include "engine/scene/sample.h"
+#include "parser/study/study_reader.h"
+
+static const strut_owner sample_owner = {"the sample", NULL};
+
+bool strut_study_is_sample(const strut_study_reader *r, const strut_tree *item) {
+  if (item->kind != STRUT_TREE_MAP || item->count != 1) return false;
+  const strut_tree *value = item->first->next;
+  if (strcmp(item->first->text, "sample") != 0) return false;
+  return (value->kind == STRUT_TREE_MAP && strut_tree_find(value, "over", NULL)) ||
+         !strut_study_declared(r, "sample");
+}
+
+/* Numbers of a distribution; the last one of a lognormal one has no unit. */
+static bool read_numbers(strut_study_reader *r, strut_study_along *a, const strut_slot *slot,
+                         strut_distribution *d) {
+  size_t wanted = d->kind == STRUT_DISTRIBUTION_TRIANGULAR ? 3 : 2, i = 0;
+  const char *name = slot->key->text;
+  const strut_owner owner = {"parameter", a->parameter->name};
+  bool fine = true;
+  if (slot->value->count != wanted) {
+    strut_report_error(r->reader, slot->value->place,
+                       "expected %zu numbers for '%s' of %s, found %s", wanted, name,
+                       strut_owner_text(r->reader, owner), strut_found(r->reader, slot->value));
+    return false;
+  }
+  for (const strut_tree *item = slot->value->first; item; item = item->next, i++) {
+    bool bare = d->kind == STRUT_DISTRIBUTION_LOGNORMAL && i == 1;
+    bool read = bare ? strut_read_number(r->reader, item, name, owner, STRUT_DIM_NONE,
+                                         STRUT_RANGE_ANY, &d->number[i])
+                     : strut_study_read_value(r, a, item, name, i == 0, &d->number[i]);
+    fine = fine && read;
+  }
+  const char *flaw = fine ? strut_distribution_flaw(d) : NULL;
+  if (flaw)
+    strut_report_error(r->reader, slot->value->place, "'%s' of %s %s", name,
+                       strut_owner_text(r->reader, owner), flaw);
+  return fine && !flaw;
+}
+
+/* One parameter and its distribution. */
+static bool read_parameter(strut_study_reader *r, strut_study_along *a, strut_distribution *d) {
+  strut_fields fields;
+  int kinds = 0;
+  a->parameter = strut_study_parameter(r, a->key);
+  if (!a->parameter) return false;
+  const strut_owner owner = {"parameter", a->parameter->name};
+  bool fine = strut_study_begin_along(r, a, a->key->place);
+  a->column->unit = "1";
+  if (a->parameter->text) {
+    strut_report_error(r->reader, a->key->place,
+                       "parameter '%s' is a text, which has no distribution", a->parameter->name);
+    return false;
+  }
+  strut_read_fields(r->reader, STRUT_SECTION_DISTRIBUTION, a->value, owner, &fields);
+  if (fields.broken) return false;
+  for (int k = 0; k < STRUT_DISTRIBUTION_COUNT; k++) {
+    const strut_slot *slot = &fields.slot[k];
+    if (slot->state != STRUT_GIVEN) continue;
+    kinds++;
+    d->kind = (strut_distribution_kind)k;
+    fine = read_numbers(r, a, slot, d) && fine;
+  }
+  if (kinds == 0)
+    strut_report_error(r->reader, a->value->place,
+                       "expected a distribution such as {uniform: [1, 2]} for parameter '%s'",
+                       a->parameter->name);
+  a->column->kind = STRUT_RANGE_LIST;
+  a->column->unit = a->setting->bare ? "1" : strut_dimension_unit(a->setting->dimension);
+  return fine && kinds > 0;
+}
+
+/* Makes the values of all columns. */
+static void make_values(strut_study_reader *r, const strut_fields *fields, strut_study_axis *axis,
+                        const strut_distribution *distributions) {
+  const strut_slot *seed = &fields->slot[STRUT_KEY_SAMPLE_SEED - STRUT_KEY_SAMPLE_COUNT];
+  const strut_slot *scheme = &fields->slot[STRUT_KEY_SAMPLE_SCHEME - STRUT_KEY_SAMPLE_COUNT];
+  double *values[STRUT_SAMPLE_MOST_NUMBERS];
+  for (size_t i = 0; i < axis->column_count; i++) {
+    values[i] =
+        strut_reader_allocate(r->reader, &r->file->arena, (size_t)axis->count, sizeof *values[i]);
+    if (!values[i]) return;
+    axis->columns[i].number = values[i];
+  }
+  strut_sample_scheme how =
+      scheme->state == STRUT_GIVEN ? (strut_sample_scheme)scheme->word : STRUT_SAMPLE_SOBOL;
+  uint32_t number = seed->state == STRUT_GIVEN ? (uint32_t)seed->number[0] : 1;
+  if (!strut_sample_make(how, number, axis->count, axis->column_count, distributions, values))
+    r->reader->out_of_memory = true;
+}
+
+void strut_study_read_sample(strut_study_reader *r, const strut_tree *value,
+                             strut_study_axis *axis) {
+  strut_fields fields;
+  strut_distribution distributions[STRUT_SAMPLE_MOST_NUMBERS] = {0};
+  bool fine = true;
+  strut_read_fields(r->reader, STRUT_SECTION_SAMPLE, value, sample_owner, &fields);
+  if (!fields.broken) strut_require(r->reader, &fields, sample_owner, value->place);
+  const strut_slot *over = strut_slot_of(&fields, STRUT_KEY_SAMPLE_OVER);
+  const strut_slot *count = strut_slot_of(&fields, STRUT_KEY_SAMPLE_COUNT);
+  if (over->state != STRUT_GIVEN) return;
+  if (over->value->count == 0 || over->value->count > STRUT_SAMPLE_MOST_NUMBERS) {
+    strut_report_error(r->reader, over->value->place,
+                       "expected 1 to %d parameters for 'over' of the sample, found %zu",
+                       STRUT_SAMPLE_MOST_NUMBERS, (size_t)over->value->count);
+    return;
+  }
+  axis->count = count->state == STRUT_GIVEN ? (int64_t)count->number[0] : 1;
+  axis->columns =
+      strut_reader_allocate(r->reader, &r->file->arena, over->value->count, sizeof *axis->columns);
+  if (!axis->columns) return;
+  for (const strut_tree *key = over->value->first; key; key = key->next->next) {
+    strut_study_along a = {.key = key, .value = key->next};
+    if (!strut_study_declared(r, key->text) ||
+        strut_name_map_find(&r->given, key->text) >= 0) { /* no slot for it */
+      strut_study_parameter(r, key);
+      fine = false;
+      continue;
+    }
+    a.column = &axis->columns[axis->column_count];
+    a.setting = &r->file->columns[r->file->column_count++];
+    fine = read_parameter(r, &a, &distributions[axis->column_count++]) && fine;
+  }
+  if (fine && !fields.broken) make_values(r, &fields, axis, distributions);
+}

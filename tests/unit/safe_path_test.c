@@ -1,0 +1,169 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Files that other files name: what is below the folder is read, all else refused and never opened. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "parser/read/safe_path.h"
+
+static char folder[] = "/tmp/strut-safe-XXXXXX";
+
+static const char *at(const char *name) {
+  static char path[200];
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  return path;
+}
+
+static void write_text(const char *name, const char *text) {
+  FILE *file = fopen(at(name), "wb");
+  assert_non_null(file);
+  fputs(text, file);
+  fclose(file);
+}
+
+/*
+ * top/study.yaml, top/points.csv, top/in/part.yaml; beside: secret.csv. Links: top/fine leads to
+ * points.csv, top/out and top/outside out, top/deep to in. top/pipe is a FIFO.
+ */
+static int make_files(void **state) {
+  (void)state;
+  char path[200];
+  assert_non_null(mkdtemp(folder));
+  mkdir(at("top"), 0700);
+  mkdir(at("top/in"), 0700);
+  mkdir(at("topless"), 0700);
+  write_text("secret.csv", "secret");
+  write_text("topless/points.csv", "other");
+  write_text("top/points.csv", "a,b\n1,2\n");
+  write_text("top/in/part.yaml", "nodes: {}\n");
+  write_text("top/empty", "");
+  assert_int_equal(symlink("points.csv", at("top/fine")), 0);
+  assert_int_equal(symlink("../secret.csv", at("top/out")), 0);
+  assert_int_equal(symlink("..", at("top/outside")), 0);
+  assert_int_equal(symlink("in", at("top/deep")), 0);
+  assert_int_equal(symlink("circle", at("top/circle")), 0);
+  assert_int_equal(symlink("/dev/zero", at("top/zero")), 0);
+  assert_int_equal(mkfifo(at("top/pipe"), 0600), 0);
+  snprintf(path, sizeof path, "%s", at("top"));
+  assert_int_equal(symlink(path, at("link")), 0);
+  return 0;
+}
+
+static int remove_files(void **state) {
+  (void)state;
+  static const char *const files[] = {
+      "link",           "top/fine",   "top/out",           "top/outside",      "top/deep",
+      "top/circle",     "top/zero",   "top/pipe",          "top/in/part.yaml", "top/empty",
+      "top/points.csv", "secret.csv", "topless/points.csv"};
+  for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) unlink(at(files[i]));
+  rmdir(at("top/in"));
+  rmdir(at("top"));
+  rmdir(at("topless"));
+  return rmdir(folder);
+}
+
+static strut_status read_from(const char *root, const char *from, const char *name, size_t most,
+                              strut_safe_text *file, strut_error *error) {
+  char top[200], source[200];
+  snprintf(top, sizeof top, "%s", at(root));
+  snprintf(source, sizeof source, "%s", at(from));
+  return strut_safe_read(top, source, name, most, file, error);
+}
+
+static void files_below_the_folder_are_read(void **state) {
+  (void)state;
+  strut_safe_text file, same;
+  strut_error error = {0};
+  assert_int_equal(read_from("top", "top/study.yaml", "points.csv", 8, &file, &error), STRUT_OK);
+  assert_string_equal(file.text, "a,b\n1,2\n");
+  assert_int_equal(file.length, 8);
+  assert_string_equal(file.path, at("top/points.csv"));
+  assert_int_equal(read_from("link", "link/study.yaml", "./fine", 8, &same, &error), STRUT_OK);
+  assert_true(same.inode == file.inode && same.device == file.device);
+  strut_safe_text_free(&file);
+  strut_safe_text_free(&same);
+  assert_int_equal(read_from("top", "top/study.yaml", "deep/part.yaml", 99, &file, &error),
+                   STRUT_OK);
+  strut_safe_text_free(&file);
+  assert_int_equal(read_from("top", "top/in/x.yaml", "part.yaml", 99, &file, &error), STRUT_OK);
+  assert_string_equal(file.text, "nodes: {}\n");
+  strut_safe_text_free(&file);
+  assert_int_equal(read_from("top", "top/study.yaml", "empty", 0, &file, &error), STRUT_OK);
+  assert_true(file.length == 0 && *file.text == '\0');
+  strut_safe_text_free(&file);
+}
+
+static void all_else_is_refused(void **state) {
+  (void)state;
+  static const struct {
+    const char *root, *from, *name;
+    strut_status status;
+    const char *says;
+  } bad[] = {
+      {"top", "top/a.yaml", "", STRUT_BAD_SCENE, "expected the path of a file"},
+      {"top", "top/a.yaml", "/etc/passwd", STRUT_BAD_SCENE, "is an absolute path"},
+      {"top", "top/a.yaml", "../secret.csv", STRUT_BAD_SCENE, "has a '..'"},
+      {"top", "top/a.yaml", "in/../../secret.csv", STRUT_BAD_SCENE, "has a '..'"},
+      {"top", "top/a.yaml", "in/..", STRUT_BAD_SCENE, "has a '..'"},
+      {"top", "top/a.yaml", "out", STRUT_BAD_SCENE, "leads out of the folder"},
+      {"top", "top/a.yaml", "outside/secret.csv", STRUT_BAD_SCENE, "leads out of the folder"},
+      {"top", "topless/a.yaml", "points.csv", STRUT_BAD_SCENE, "leads out of the folder"},
+      {"top", "top/a.yaml", "zero", STRUT_BAD_SCENE, "leads out of the folder"},
+      {"top", "top/a.yaml", "pipe", STRUT_BAD_SCENE, "is not a regular file"},
+      {"top", "top/a.yaml", "in", STRUT_BAD_SCENE, "is not a regular file"},
+      {"top", "top/a.yaml", ".", STRUT_BAD_SCENE, "is not a regular file"},
+      {"top", "top/a.yaml", "none.csv", STRUT_FILE_TROUBLE, "No such file"},
+      {"top", "top/a.yaml", "circle", STRUT_FILE_TROUBLE, "cannot read"},
+      {"none", "none/a.yaml", "none.csv", STRUT_FILE_TROUBLE, "cannot read"},
+  };
+  for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+    strut_safe_text file;
+    strut_error error = {0};
+    strut_status status = read_from(bad[i].root, bad[i].from, bad[i].name, 1000, &file, &error);
+    if (status != bad[i].status || !strstr(error.message, bad[i].says))
+      fail_msg("'%s': status %d, %s", bad[i].name, status, error.message);
+    assert_true(!file.text && !file.path);
+  }
+  strut_safe_text file;
+  strut_error error = {0};
+  assert_int_equal(strut_safe_read("/dev", "/dev/x", "zero", 1000, &file, &error), STRUT_BAD_SCENE);
+  assert_int_equal(read_from("top", "top/a.yaml", "points.csv", 7, &file, &error), STRUT_BAD_SCENE);
+  assert_non_null(strstr(error.message, "has 8 bytes, expected at most 7"));
+}
+
+static void every_failed_allocation_is_said(void **state) {
+  (void)state;
+  for (int n = 0;; n++) {
+    strut_safe_text file;
+    strut_error error = {0};
+    strut_fail_allocation_after(n);
+    strut_status status = read_from("top", "top/study.yaml", "points.csv", 8, &file, &error);
+    strut_fail_allocation_after(-1);
+    assert_true(status == STRUT_OK || (status == STRUT_NO_MEMORY && !file.text && !file.path));
+    strut_safe_text_free(&file);
+    if (status == STRUT_OK) break;
+  }
+  strut_arena arena = {0};
+  assert_string_equal(strut_folder_of("a/b/c.yaml", &arena), "a/b");
+  assert_string_equal(strut_folder_of("c.yaml", &arena), ".");
+  assert_string_equal(strut_folder_of("-", &arena), ".");
+  assert_string_equal(strut_folder_of("/c.yaml", &arena), "/");
+  strut_arena_free(&arena);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(files_below_the_folder_are_read),
+      cmocka_unit_test(all_else_is_refused),
+      cmocka_unit_test(every_failed_allocation_is_said),
+  };
+  return cmocka_run_group_tests(tests, make_files, remove_files);
+}
