@@ -265,8 +265,7 @@ const char *strut_hiding_part(const strut_reader *reader, const strut_tree *valu
 /* "; 'cell' has the copies 0 to 2" for `number` beyond them. */
 static const char *count_hint(strut_reader *reader, const strut_placement *p, const char *name,
                               size_t length, int which) {
-  if (p->numbers == 0)
-    return "; what is placed once has no numbers";
+  if (p->numbers == 0) return "; what is placed once has no numbers";
   char *end;
   long long number = strtoll(name, &end, 10);
   bool counted = length && end == name + length && number >= p->count[which];

@@ -130,12 +130,13 @@ static void merge_named(merging *m, const strut_merger *merger) {
     strncat(full.text, merger->b->text, sizeof full.text - 6);
     b = strut_find_named(reader, &reader->node_names, NULL, full.text);
     if (b < 0)
-      strut_report_error(reader, merger->b->place,
-                         strncmp(merger->b->text, "next.", 5) == 0
-                             ? "unknown node '%s' of the next copy in 'merge': its names stand here "
-                               "without 'next.'"
-                             : "unknown node '%s' of the next copy in 'merge'",
-                         strut_sanitised_text(reader, merger->b->text));
+      strut_report_error(
+          reader, merger->b->place,
+          strncmp(merger->b->text, "next.", 5) == 0
+              ? "unknown node '%s' of the next copy in 'merge': its names stand here "
+                "without 'next.'"
+              : "unknown node '%s' of the next copy in 'merge'",
+          strut_sanitised_text(reader, merger->b->text));
   } else {
     b = strut_read_reference(reader, b_name, "merge", owner, "node", &reader->node_names,
                              strut_node_name, count);
@@ -187,8 +188,7 @@ static int compare_names(const void *a, const void *b) {
 
 static bool sort_names(merging *m) {
   if (m->by_name) return true;
-  m->by_name =
-      strut_reader_allocate(m->reader, &m->reader->scratch, m->count, sizeof *m->by_name);
+  m->by_name = strut_reader_allocate(m->reader, &m->reader->scratch, m->count, sizeof *m->by_name);
   for (size_t i = 0; m->by_name && i < m->count; i++)
     m->by_name[i] = (named_node){m->reader->scene->nodes[i].name, (int32_t)i};
   if (m->by_name) qsort(m->by_name, m->count, sizeof *m->by_name, compare_names);
