@@ -12,7 +12,7 @@ const strut_frame strut_frame_of_scene = {.axes = {{1.0, 0.0}, {0.0, 1.0}}, .sca
 
 void strut_frame_vector(const strut_frame *f, double vector[2]) {
   double x = vector[0], y = vector[1];
-  bool plain = f->axes[0][0] == 1.0 && f->axes[1][1] == 1.0;
+  bool plain = f->axes[0][0] == 1.0 && f->axes[1][1] == 1.0 && f->axes[1][0] == 0.0;
   if (plain) return;
   vector[0] = f->axes[0][0] * x + f->axes[0][1] * y;
   vector[1] = f->axes[1][0] * x + f->axes[1][1] * y;
@@ -265,8 +265,7 @@ const char *strut_hiding_part(const strut_reader *reader, const strut_tree *valu
 /* "; 'cell' has the copies 0 to 2" for `number` beyond them. */
 static const char *count_hint(strut_reader *reader, const strut_placement *p, const char *name,
                               size_t length, int which) {
-  if (p->numbers == 0)
-    return "; what is placed once has no numbers";
+  if (p->numbers == 0) return "; what is placed once has no numbers";
   char *end;
   long long number = strtoll(name, &end, 10);
   bool counted = length && end == name + length && number >= p->count[which];

@@ -167,7 +167,7 @@ struct strut_copies {
   strut_name_map ported; /* copies whose part has ports, by their prefix without the dot */
   size_t ported_count, ported_capacity;
   const strut_copy **ported_copies;
-  bool incomplete; /* some copies could not be made */
+  bool incomplete;        /* some copies could not be made */
   strut_name_map removed; /* names of things that the scene takes away */
 };
 

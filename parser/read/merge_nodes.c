@@ -14,7 +14,14 @@
 #include "engine/base/vec.h"
 #include "parser/read/copies.h"
 
-static const double SAME = 1e-9, NEAR = 1e-4; /* over the size of the structure */
+/* Over the size of the structure; NEAR also less than PART_OF_SPACING of the nodes' spacing in a row. */
+static const double SAME = 1e-9, NEAR = 1e-4, PART_OF_SPACING = 0.01;
+
+/* A node by its name, of which those of one copy stand together. */
+typedef struct named_node {
+  const char *name;
+  int32_t node;
+} named_node;
 
 typedef struct merging {
   strut_reader *reader;
@@ -23,6 +30,7 @@ typedef struct merging {
   size_t count;
   int32_t *root; /* (count) an earlier node of its set, or itself */
   double size;
+  struct named_node *by_name; /* (count) sorted, once a part merges what touches */
 } merging;
 
 static int32_t find_root(merging *m, int32_t i) {
@@ -122,12 +130,13 @@ static void merge_named(merging *m, const strut_merger *merger) {
     strncat(full.text, merger->b->text, sizeof full.text - 6);
     b = strut_find_named(reader, &reader->node_names, NULL, full.text);
     if (b < 0)
-      strut_report_error(reader, merger->b->place,
-                         strncmp(merger->b->text, "next.", 5) == 0
-                             ? "unknown node '%s' of the next copy in 'merge': its names stand here "
-                               "without 'next.'"
-                             : "unknown node '%s' of the next copy in 'merge'",
-                         strut_sanitised_text(reader, merger->b->text));
+      strut_report_error(
+          reader, merger->b->place,
+          strncmp(merger->b->text, "next.", 5) == 0
+              ? "unknown node '%s' of the next copy in 'merge': its names stand here "
+                "without 'next.'"
+              : "unknown node '%s' of the next copy in 'merge'",
+          strut_sanitised_text(reader, merger->b->text));
   } else {
     b = strut_read_reference(reader, b_name, "merge", owner, "node", &reader->node_names,
                              strut_node_name, count);
@@ -173,10 +182,37 @@ static size_t lower_bound(const grid_node *grid, size_t count, int64_t x, int64_
   return low;
 }
 
-static bool within(const merging *m, const strut_merger *merger, int32_t node) {
-  const strut_copy *scope = merger->scope;
-  return !scope ||
-         strncmp(m->reader->scene->nodes[node].name, scope->prefix, scope->prefix_length) == 0;
+static int compare_names(const void *a, const void *b) {
+  return strcmp(((const named_node *)a)->name, ((const named_node *)b)->name);
+}
+
+static bool sort_names(merging *m) {
+  if (m->by_name) return true;
+  m->by_name = strut_reader_allocate(m->reader, &m->reader->scratch, m->count, sizeof *m->by_name);
+  for (size_t i = 0; m->by_name && i < m->count; i++)
+    m->by_name[i] = (named_node){m->reader->scene->nodes[i].name, (int32_t)i};
+  if (m->by_name) qsort(m->by_name, m->count, sizeof *m->by_name, compare_names);
+  return m->by_name != NULL;
+}
+
+/* The nodes of a copy among the sorted names; of the scene, all. */
+static size_t find_own_nodes(const merging *m, const strut_copy *scope, size_t *first) {
+  size_t low = 0, high = m->count, size = scope->prefix_length;
+  while (low < high) {
+    size_t middle = low + (high - low) / 2;
+    if (strncmp(m->by_name[middle].name, scope->prefix, size) < 0)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  *first = low;
+  while (high < m->count && strncmp(m->by_name[high].name, scope->prefix, size) == 0) high++;
+  return high - low;
+}
+
+static double near_distance(const merging *m) {
+  double near = fmin(NEAR, PART_OF_SPACING / (double)m->count);
+  return fmax(near, SAME) * m->size;
 }
 
 /* Compares a node with those of one square; true where it has become another one. */
@@ -192,7 +228,7 @@ static bool meet_square(merging *m, const strut_merger *merger, const grid_node 
       unite(m, merger, other, own->node);
       return true;
     }
-    if (apart > NEAR * m->size || m->near_count++) continue;
+    if (apart > near_distance(m) || m->near_count++) continue;
     m->near[0] = other, m->near[1] = own->node;
   }
   return false;
@@ -200,19 +236,22 @@ static bool meet_square(merging *m, const strut_merger *merger, const grid_node 
 
 static void merge_touching(merging *m, const strut_merger *merger) {
   strut_reader *reader = m->reader;
-  double width = NEAR * m->size;
+  double width = near_distance(m);
   m->near_count = 0;
   size_t count = 0;
-  grid_node *grid = strut_allocate(m->count, sizeof *grid);
+  size_t first = 0, all = m->count;
+  if (merger->scope && !sort_names(m)) return;
+  if (merger->scope) all = find_own_nodes(m, merger->scope, &first);
+  grid_node *grid = strut_allocate(all, sizeof *grid);
   if (!grid) {
     reader->out_of_memory = true;
     return;
   }
-  for (size_t i = 0; i < m->count && width > 0.0; i++) {
+  for (size_t k = 0; k < all && width > 0.0; k++) {
+    int32_t i = merger->scope ? m->by_name[first + k].node : (int32_t)k;
     const double *at = reader->scene->nodes[i].position;
-    if (!isfinite(at[0] + at[1]) || !within(m, merger, (int32_t)i)) continue;
-    grid[count++] =
-        (grid_node){(int64_t)floor(at[0] / width), (int64_t)floor(at[1] / width), (int32_t)i};
+    if (!isfinite(at[0] + at[1])) continue;
+    grid[count++] = (grid_node){(int64_t)floor(at[0] / width), (int64_t)floor(at[1] / width), i};
   }
   qsort(grid, count, sizeof *grid, compare);
   for (size_t k = 0; k < count; k++) {

@@ -114,6 +114,7 @@ typedef struct ground_defaults {
   friction_layers friction;
   bool broken;
   const strut_tree *reported; /* the layer of friction whose lacks were reported last */
+  double along[2];            /* the direction of a line, along which forward is; else that of x */
 } ground_defaults;
 
 /* Lays the friction of the contact's groups, then its own, over the ground's. */
@@ -135,19 +136,21 @@ static void own_friction(strut_reader *reader, strut_fields *fields, strut_owner
   add_layer(reader, layers, &nested, mine);
 }
 
-/* Forward is where the part's own x points. */
-static bool turn_friction(strut_reader *reader, const strut_tree *key, strut_friction *f) {
+/* Forward is where the part's own x points, along the ground. */
+static bool turn_friction(strut_reader *reader, const strut_tree *key, const double along[2],
+                          strut_friction *f) {
   double ahead[2] = {1.0, 0.0};
   if (!reader->scope || !f->directional) return true;
   strut_place_vector(reader, NULL, ahead);
-  if (fabs(ahead[0]) < 1e-9) {
+  double forward = strut_dot(ahead, along, 2);
+  if (fabs(forward) < 1e-9) {
     strut_report_error(reader, key->place,
                        "contact '%s' has a friction with a direction, but its copy stands upright "
-                       "on its side; give its contact where it is placed",
+                       "on the ground; give its contact where it is placed",
                        strut_local_name(reader, key->text));
     return false;
   }
-  if (ahead[0] > 0.0) return true;
+  if (forward > 0.0) return true;
   double statics = f->mu_static, kinetics = f->mu_kinetic;
   f->mu_static = f->mu_static_backward, f->mu_kinetic = f->mu_kinetic_backward;
   f->mu_static_backward = statics, f->mu_kinetic_backward = kinetics;
@@ -166,7 +169,7 @@ static void read_contact(strut_reader *reader, const strut_tree *key, ground_def
     strut_apply_groups(reader, &fields, STRUT_KEY_CONTACT_GROUP, owner);
     strut_store_fields(reader, &fields, &reader->scene->arena, contact, sizeof *contact);
     own_friction(reader, &fields, owner, &layers);
-    fine = turn_friction(reader, key, &layers.friction) && fine && !fields.broken;
+    fine = turn_friction(reader, key, defaults->along, &layers.friction) && fine && !fields.broken;
   }
   if (!complete_friction(reader, &layers, &defaults->reported)) fine = false;
   reader->scope = NULL;
@@ -500,6 +503,9 @@ static void read_one(strut_reader *reader, strut_fields *fields, strut_owner own
   *ground = section.ground;
   read_shape(reader, fields, owner, ground);
   ground_defaults defaults = read_defaults(reader, fields, &section.contact, owner);
+  bool line = ground->shape == STRUT_GROUND_LINE;
+  defaults.along[0] = line ? cos(ground->slope) : 1.0;
+  defaults.along[1] = line ? sin(ground->slope) : 0.0;
   if (nodes_are_known(reader))
     read_contacts(reader, fields, owner, &defaults, pieces_of(ground), list);
   else

@@ -13,7 +13,8 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
     [STRUT_SECTION_NODE] =
         "`nodes: {NAME: [x, y]}`, or `nodes: {NAME: {position: [x, y], ...}}` with these keys.",
     [STRUT_SECTION_PART] =
-        "`parts: {NAME: {...}}`: a piece of structure, which `place` copies. It sees the parameters, "
+        "`parts: {NAME: {...}}`: a piece of structure, which `place` copies. It sees the "
+        "parameters, "
         "groups and signals of the scene, and no nodes but its own.",
     [STRUT_SECTION_PLACE] =
         "`place: {NAME: {...}}`: a copy of a part, or several, under names such as `NAME.node` or "
@@ -22,7 +23,8 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
         "`repeat: {...}` of a placement. Copy k is moved k times against copy 0: scaled and turned "
         "about `about`, then by `step`, in its own frame.",
     [STRUT_SECTION_NEXT] =
-        "`next: {...}` of `repeat`: what a copy has in common with the next one. Names are those of "
+        "`next: {...}` of `repeat`: what a copy has in common with the next one. Names are those "
+        "of "
         "the copy; `next.NAME` is one of the next copy.",
     [STRUT_SECTION_MEMBER] =
         "`members: {NAME: {...}}`. A member needs a stiffness, a damping, or both. Of the four "

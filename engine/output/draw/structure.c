@@ -231,7 +231,7 @@ enum { DIRECTIONS = 16, MOST_NAMED = 60 };
 static const double GAP = 3.6, NAME_SIZE = 7.5, MOST_WIDTH = 90;
 static const double SUPPORT = 5.0; /* half the width of a support [pt] */
 static const double HATCHED = 2.0, FREE = 1.0,
-                    FAR = 6.0; /* cost, enough freedom, second try [pt] */
+                    FAR = 6.0;       /* cost, enough freedom, second try [pt] */
 static const double COVERED = -20.0; /* clearance where a name begins to cover another one [pt] */
 
 /* What names must not cover: segments, the first of which are the members' longest. */
