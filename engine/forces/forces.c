@@ -17,6 +17,7 @@ void strut_forces_add_rare(const strut_model *model, strut_state *state, double 
   if (plan & STRUT_TERM_ACTUATOR_FORCES) strut_actuator_forces_apply(model, state, t, q, v);
   if (plan & STRUT_TERM_UNBALANCE) strut_unbalance_apply(model, state, t, v);
   if (plan & STRUT_TERM_MASS_DAMPING) strut_mass_damping_apply(model, state, v);
+  if (plan & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_apply(model, state, t, q, v);
   if (plan & STRUT_TERM_SUPPORT_MOTION) strut_support_motion_apply(model, state, t, v);
 }
 
@@ -46,5 +47,7 @@ void strut_forces_acceleration(const strut_model *model, strut_state *state, dou
                                double *restrict a) {
   assert(model->mass && "a model without mass is for statics only");
   strut_forces_evaluate(model, state, t, q, v);
-  mass_kernel(model, state->force, a, state->scratch);
+  divide_by_mass(model, state, a);
+  if (state->ledger && model->plan & STRUT_TERM_SLIDING_MASS)
+    strut_sliding_masses_add_power(model, state, q, v, a);
 }

@@ -14,6 +14,7 @@
 #include "engine/forces/forces.h"
 #include "engine/forces/ground_kernel.h"
 #include "engine/forces/members_kernel.h"
+#include "engine/forces/sliding_masses.h"
 #include "engine/forces/support_motion.h"
 #include "engine/forces/surfaces.h"
 #include "engine/model/mass_kernel.h"
@@ -79,12 +80,20 @@ STRUT_INLINE void forces_sum(const strut_model *model, strut_state *state, doubl
     strut_surfaces_add_forces(model, state, q, v);
 }
 
+/* a = M^-1 force, M with the masses that slide. */
+STRUT_INLINE void divide_by_mass(const strut_model *model, strut_state *state, double *restrict a) {
+  mass_kernel(model, state->force, a, state->scratch);
+  if (model->plan & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_correct(model, state, a);
+}
+
 /* See strut_forces_acceleration. */
 STRUT_INLINE void forces_kernel(const strut_model *model, strut_state *state, double t,
                                 const double *restrict q, const double *restrict v,
                                 double *restrict a, bool ledger) {
   forces_sum(model, state, t, q, v, ledger);
-  mass_kernel(model, state->force, a, state->scratch);
+  divide_by_mass(model, state, a);
+  if (ledger && model->plan & STRUT_TERM_SLIDING_MASS)
+    strut_sliding_masses_add_power(model, state, q, v, a);
 }
 
 #endif

@@ -36,7 +36,7 @@ bool strut_lanes_possible(const strut_model *model) {
   const unsigned one_by_one = STRUT_TERM_RIGID | STRUT_TERM_ACTUATOR_FORCES |
                               STRUT_TERM_MASS_DAMPING | STRUT_TERM_SUPPORT_MOTION |
                               STRUT_TERM_UNBALANCE | STRUT_TERM_MEMORY | STRUT_TERM_SURFACES |
-                              STRUT_TERM_FEEDBACK;
+                              STRUT_TERM_FEEDBACK | STRUT_TERM_SLIDING_MASS;
   if (!mass || (model->plan & one_by_one) || !strains_are_known(&model->elements)) return false;
   bool directional = model->plan & STRUT_TERM_DIRECTION;
   if ((model->plan & STRUT_TERM_LAWS) && !(directional && laws_are_printed(model))) return false;

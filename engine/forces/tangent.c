@@ -184,13 +184,27 @@ static void add_contact(void *context, int32_t i, const strut_closed_contact *co
     strut_block_add(&damping, STRUT_CONTACT_ENTRIES, row, &a->damping);
 }
 
+/* Maxwell branches, as stiff as they are in fast motions. */
+static void add_maxwell(assembly *a, const double *rest) {
+  const strut_feedback_table *f = &a->model->feedback;
+  for (int32_t i = 0; i < f->maxwell_count; i++) {
+    strut_member_pose pose =
+        strut_member_pose_at(&a->model->members, rest, f->maxwell[i].member, a->q);
+    strut_stiffness_block stiffness = strut_block_of(f->maxwell[i].stiffness, 0.0, pose.unit);
+    int32_t row[4];
+    strut_member_rows(a->model, a->row_of, f->maxwell[i].member, row);
+    strut_block_add(&stiffness, STRUT_MEMBER_ENTRIES, row, &a->stiffness);
+  }
+}
+
 strut_status strut_tangent_assemble(const strut_model *model, const double *q, const double *rest,
                                     strut_closed closed, strut_arena *arena,
                                     strut_tangent *tangent) {
   strut_arena scratch = {0};
   bool resting = closed == STRUT_CLOSED_ALL || closed == STRUT_CLOSED_UNDAMPED;
   size_t both = (size_t)model->length;
-  size_t most = strut_tangent_entries(model, true) + strut_mass_damping_entries(model);
+  size_t most = strut_tangent_entries(model, true) + strut_mass_damping_entries(model) +
+                STRUT_MEMBER_ENTRIES * (size_t)model->feedback.maxwell_count;
   int32_t *row_of = strut_arena_allocate(&scratch, both, sizeof *row_of);
   assembly a = {
       .model = model, .q = q, .row_of = row_of, .undamped = closed == STRUT_CLOSED_UNDAMPED};
@@ -204,6 +218,7 @@ strut_status strut_tangent_assemble(const strut_model *model, const double *q, c
     tangent->n = strut_number_free(model, NULL, row_of, tangent->coordinate);
     strut_tangent_visit(model, q, rest, -HUGE_VAL, closed, &a, add_member, add_element,
                         add_contact);
+    if (a.stiffest) add_maxwell(&a, rest);
     strut_mass_damping_add(model, row_of, &a.damping);
     tangent->stiffness = strut_sparse_build(tangent->n, &a.stiffness, arena);
     tangent->damping = strut_sparse_build(tangent->n, &a.damping, arena);

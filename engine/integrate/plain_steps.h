@@ -7,14 +7,19 @@
 #define STRUT_ENGINE_INTEGRATE_PLAIN_STEPS_H
 
 #include "engine/forces/forces_kernel.h"
+#include "engine/forces/sliding_masses.h"
 #include "engine/forces/unbalance.h"
 
 /** Terms whose impulses and positions plain methods apply at the end of a step. */
-enum { STRUT_TERMS_AT_STEP_END = STRUT_TERM_SUPPORT_MOTION | STRUT_TERM_UNBALANCE };
+enum {
+  STRUT_TERMS_AT_STEP_END =
+      STRUT_TERM_SUPPORT_MOTION | STRUT_TERM_UNBALANCE | STRUT_TERM_SLIDING_MASS
+};
 
 /** At the end of the step of dt [s] from state->step on: supports that move, and impulses. */
 static inline void end_moving_step(const strut_model *model, strut_state *state, double dt) {
   double t = ((double)state->step + 1.0) * dt;
+  strut_sliding_masses_kick(model, state, t - dt, t);
   strut_support_motion_kick(model, state, t - dt, t);
   strut_unbalance_kick(model, state, t - dt, t);
   strut_support_motion_place(model, state, t, state->q, state->v);

@@ -47,7 +47,7 @@ typedef struct strut_feedback_table {
 
 /** Does the motion depend on more of the past than positions and velocities hold? */
 static inline bool strut_feedback_remembers(const strut_feedback_table *f) {
-  return f->state_count || f->sampled_count || f->relay_count;
+  return f->state_count || f->sampled_count || f->trigger_count || f->relay_count;
 }
 
 #endif

@@ -5,6 +5,7 @@
 
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/model/mass.h"
+#include "engine/scene/signal_program.h"
 
 static const strut_plan_term terms[] = {
     {STRUT_TERM_MEMBERS, "member springs", "a member", false},
@@ -31,6 +32,7 @@ static const strut_plan_term terms[] = {
     {STRUT_TERM_MASS_DAMPING, "damping by mass", "rayleigh with mass", false},
     {STRUT_TERM_SUPPORT_MOTION, "moving supports", "a node that moves", false},
     {STRUT_TERM_UNBALANCE, "unbalances", "a rotating mass", false},
+    {STRUT_TERM_SLIDING_MASS, "sliding masses", "a slider that moves", false},
 };
 _Static_assert(sizeof terms / sizeof terms[0] == STRUT_PLAN_TERMS, "one for each term");
 
@@ -86,6 +88,7 @@ strut_status strut_plan_describe(const strut_model *model, strut_plan *plan, str
   }
   if (!model->mass) return STRUT_OK;
   plan->runnable = true;
+  plan->feedback = strut_scene_has_feedback(model->scene);
   plan->mass_nonzeros = model->mass->matrix_nonzeros;
   plan->factor_nonzeros = model->mass->factor_nonzeros;
   plan->dense_entries = model->mass->dense_entries;

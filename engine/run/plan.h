@@ -13,7 +13,7 @@ typedef struct strut_plan_term {
   bool in;
 } strut_plan_term;
 
-enum { STRUT_PLAN_TERMS = 23 };
+enum { STRUT_PLAN_TERMS = 24 };
 
 typedef struct strut_plan {
   size_t nodes, degrees_of_freedom, bars, springs, cables, contacts, actuators, loads;
@@ -30,6 +30,7 @@ typedef struct strut_plan {
   strut_plan_term terms[STRUT_PLAN_TERMS];
   size_t cells, collisions;
   size_t breakables; /* members and hinges that may break or are released */
+  bool feedback;     /* signals follow sensors, which frequency and step limits leave out */
 } strut_plan;
 
 /** Fills the plan of a compiled model. */

@@ -17,6 +17,7 @@
 #include "engine/run/orbit/shooting.h"
 #include "engine/run/settle.h"
 #include "engine/run/simulate_parts.h"
+#include "engine/scene/signal_program.h"
 
 /* Members times steps between two checks of the state and the interrupt flag. */
 static const int64_t CHUNK_WORK = 2000, LONGEST_CHUNK = 64;
@@ -157,6 +158,7 @@ static strut_status prepare_run(strut_run *r) {
   if (!r->model->mass) return strut_fail(r->error, STRUT_SINGULAR, "a free node has no mass");
   if ((status = strut_integrator_check_samples(r->method, r->model, r->dt, r->error)))
     return status;
+  r->summary->feedback = strut_scene_has_feedback(scene);
   double *limit = &r->summary->step_limit;
   bool bound = false;
   status = r->limits ? strut_step_limit_cached(r->model, r->method, r->limits, limit, r->error)
@@ -269,11 +271,13 @@ static strut_status detect_steady_motion(strut_run *r) {
   bool internal = strut_feedback_remembers(&r->model->feedback);
   bool memory = internal || (r->model->plan & STRUT_TERM_MEMORY);
   if (memory && r->experiment->steady.shooting)
-    snprintf(r->steady.result.reason, sizeof r->steady.result.reason,
-             internal ? "internal states, samples and relays are a memory that shooting does not "
-                        "correct"
-                      : "what breaks, is released or yields has a memory that shooting does not "
-                        "correct");
+    snprintf(
+        r->steady.result.reason, sizeof r->steady.result.reason,
+        internal
+            ? "internal states, samples, starts and relays are a memory that shooting does not "
+              "correct"
+            : "what breaks, is released or yields has a memory that shooting does not "
+              "correct");
   strut_status status = r->experiment->steady.shooting && !memory ? shoot_orbit(r) : STRUT_OK;
   if (status) return status;
   double now = (double)n * r->dt, period = r->steady.period;

@@ -389,6 +389,7 @@ static const char *fault_of_motion(const strut_scene *scene, size_t i) {
   if (!scene->nodes[m->node].fixed[m->axis]) return "moves in a direction in which it is not fixed";
   if (last && (m->node < last->node || (m->node == last->node && m->axis <= last->axis)))
     return "moves out of order: motions follow nodes, x before y, each once";
+  if (last && m->node == last->node) return NULL; /* the rest is said of its x */
   if (scene->bar_model == STRUT_BARS_RIGID)
     return "moves, but bars are rigid; make them elastic, bars: elastic";
   for (size_t k = 0; k < scene->contact_count; k++)

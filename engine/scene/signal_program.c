@@ -209,3 +209,22 @@ strut_signal_traits strut_signal_describe(const strut_scene *scene, int32_t inde
   describe_signal(scene, index, DIRECT, &traits);
   return traits;
 }
+
+static bool reads_sensor(const strut_program *program) {
+  for (size_t i = 0; i < program->length; i++) {
+    const strut_instruction *p = &program->instruction[i];
+    if (p->operation == STRUT_OPERATION_COLUMN &&
+        (p->column.kind == STRUT_COLUMN_SENSOR || p->column.kind == STRUT_COLUMN_SENSOR_RATE))
+      return true;
+  }
+  return false;
+}
+
+bool strut_scene_has_feedback(const strut_scene *scene) {
+  for (size_t i = 0; i < scene->signal_count; i++)
+    if (strut_signal_has_program(&scene->signals[i]) && reads_sensor(&scene->signals[i].program))
+      return true;
+  for (size_t i = 0; i < scene->state_count; i++)
+    if (reads_sensor(&scene->states[i].rate)) return true;
+  return false;
+}

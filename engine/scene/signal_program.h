@@ -112,5 +112,7 @@ typedef struct strut_signal_traits {
 struct strut_scene;
 /** Of signal `index` of a valid scene. */
 STRUT_API strut_signal_traits strut_signal_describe(const struct strut_scene *scene, int32_t index);
+/** Does some signal or internal state follow a sensor? Modes and step limits know nothing of that. */
+STRUT_API bool strut_scene_has_feedback(const struct strut_scene *scene);
 
 #endif

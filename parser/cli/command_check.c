@@ -86,6 +86,8 @@ static void print_run(const strut_plan *plan, const strut_experiment *e) {
          : plan->step_limit_exact ? "from all eigenvalues"
                                   : "within 1 %");
   print_limits(plan);
+  if (plan->feedback)
+    printf("  feedback           not counted in this frequency and these steps\n");
   const strut_integrator *method = strut_integrator_find(e->integrator);
   double limit = method ? strut_step_limit_of_method(&plan->limits, method) : plan->step_limit;
   if (method && method->region == STRUT_REGION_ALL) printf("  limit of %-9s none\n", method->name);

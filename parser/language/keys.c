@@ -153,15 +153,41 @@ strut_dimension strut_measure_dimension(strut_measure measure) {
   return STRUT_DIM_NONE;
 }
 
-const char *strut_expected_number(strut_dimension dimension, char *buffer, size_t size) {
+/* Quantities that share their dimension with a better known one. */
+static const struct quantity_words {
+  const char *name;
+  strut_measure measure;
+  const char *expected;
+} quantities[] = {
+    {"breaks_at", STRUT_MEASURE_MOMENT, "a moment such as '2 N m'"},
+    {"yield", STRUT_MEASURE_MOMENT, "a moment such as '2 N m'"},
+    {"moment", STRUT_MEASURE_MOMENT, "a moment such as '2 N m'"},
+    {"pressure", STRUT_MEASURE_STIFFNESS,
+     "a pressure, in the plane a force per length, such as '500 N/m'"},
+    {"outside", STRUT_MEASURE_STIFFNESS,
+     "a pressure, in the plane a force per length, such as '500 N/m'"},
+};
+
+const char *strut_expected_quantity(const char *quantity, strut_dimension dimension, char *buffer,
+                                    size_t size) {
   char name[80];
   const char *example = strut_dimension_example(dimension);
+  for (size_t i = 0; quantity && i < sizeof quantities / sizeof quantities[0]; i++)
+    if (strcmp(quantities[i].name, quantity) == 0 &&
+        strut_dimension_equal(strut_measure_dimension(quantities[i].measure), dimension)) {
+      snprintf(buffer, size, "%s", quantities[i].expected);
+      return buffer;
+    }
   strut_dimension_name(dimension, name, sizeof name);
   if (example)
     snprintf(buffer, size, "%s such as '%s'", name, example);
   else
     snprintf(buffer, size, "%s", name);
   return buffer;
+}
+
+const char *strut_expected_number(strut_dimension dimension, char *buffer, size_t size) {
+  return strut_expected_quantity(NULL, dimension, buffer, size);
 }
 
 const char *strut_word_at(const char *words, int i, char *buffer, size_t size) {
@@ -213,7 +239,7 @@ const char *strut_key_expected(int key, char *buffer, size_t size) {
       if (k->measure == STRUT_MEASURE_CONTEXT)
         snprintf(buffer, size, "a number");
       else
-        strut_expected_number(strut_measure_dimension(k->measure), buffer, size);
+        strut_expected_quantity(k->name, strut_measure_dimension(k->measure), buffer, size);
       break;
     case STRUT_TYPE_PAIR:
       example = strut_dimension_example(strut_measure_dimension(k->measure));

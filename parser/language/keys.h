@@ -42,6 +42,7 @@
   X(ACTUATOR, "actuator", ACTUATOR_MEMBER) \
   X(LOAD, "load", LOAD_NODE) \
   X(UNBALANCE, "unbalance", UNBALANCE_NODE) \
+  X(SLIDER, "slider", SLIDER_MEMBER) \
   X(SIGNAL, "signal", SIGNAL_CONSTANT) \
   X(SINE, "sine", SINE_AMPLITUDE) \
   X(HALF_SINE, "half_sine", HALF_SINE_AMPLITUDE) \
@@ -73,7 +74,9 @@
   X(FORM, "form", FORM_FROM) \
   X(POINTS, "points", POINTS_FILE) \
   X(SAMPLE, "sample", SAMPLE_COUNT) \
-  X(DISTRIBUTION, "distribution", DISTRIBUTION_UNIFORM)
+  X(DISTRIBUTION, "distribution", DISTRIBUTION_UNIFORM) \
+  X(LIMIT, "limit", LIMIT_EVALUATIONS) \
+  X(REFINE, "refine", REFINE_WHERE)
 /* clang-format on */
 
 /** The mappings of the language. */
@@ -267,6 +270,9 @@ STRUT_API bool strut_key_is_bound(const strut_key *key);
 STRUT_API strut_dimension strut_measure_dimension(strut_measure measure);
 /** "a length such as '10 mm'"; written into buffer. */
 STRUT_API const char *strut_expected_number(strut_dimension dimension, char *buffer, size_t size);
+/** The same of a key or a quantity whose dimension may be better known as another: moments are no energies. */
+STRUT_API const char *strut_expected_quantity(const char *quantity, strut_dimension dimension,
+                                              char *buffer, size_t size);
 /** Describes the values of a key for messages, such as "bar, spring or cable", in buffer. */
 STRUT_API const char *strut_key_expected(int key, char *buffer, size_t size);
 /** "bar, spring or cable" from "bar|spring|cable". */

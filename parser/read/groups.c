@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Groups: keys of a member, a node or a contact that many things share. See reader.h. */
+/* Groups: keys of a member, a node, a contact or a hinge that many things share. See reader.h. */
 #include <assert.h>
 #include <string.h>
 
+#include "parser/read/copies.h"
 #include "parser/read/reader.h"
 
-static const strut_section sections[] = {STRUT_SECTION_MEMBER, STRUT_SECTION_NODE,
-                                         STRUT_SECTION_CONTACT};
+static const strut_section sections[STRUT_GROUP_SECTIONS] = {
+    STRUT_SECTION_MEMBER, STRUT_SECTION_NODE, STRUT_SECTION_CONTACT, STRUT_SECTION_HINGE};
 
-enum { SECTIONS = 3 };
+enum { SECTIONS = STRUT_GROUP_SECTIONS, HINGE = 3 };
 
 static const char *group_name(const void *context, size_t i) {
   const strut_reader *reader = context;
@@ -31,9 +32,23 @@ static const strut_tree *rival(const strut_group *group, int key) {
   return NULL;
 }
 
+/* The value, by the unit of each section that uses the group: a stiffness of hinges is no force per length. */
+static void read_value(strut_reader *reader, const strut_group *group, const strut_tree *key,
+                       strut_owner owner, int found, strut_group_item *item) {
+  int hinge = item->key[HINGE];
+  bool apart = hinge >= 0 && strut_key_at(hinge)->measure != strut_key_at(found)->measure;
+  if (group->of_others || !apart)
+    strut_read_slot(reader, found, key, key->next, owner, &item->slot);
+  if (group->of_hinges && apart)
+    strut_read_slot(reader, hinge, key, key->next, owner, &item->of_hinge);
+  else
+    item->of_hinge = item->slot;
+  if (!group->of_others && apart) item->slot = item->of_hinge;
+}
+
 static void read_item(strut_reader *reader, strut_group *group, const strut_tree *key,
                       strut_owner owner) {
-  strut_group_item item = {.key = {-1, -1, -1}};
+  strut_group_item item = {.key = {-1, -1, -1, -1}};
   int found = -1;
   for (size_t r = 0; r < SECTIONS; r++) {
     item.key[r] = strut_key_named(reader, sections[r], key);
@@ -55,7 +70,7 @@ static void read_item(strut_reader *reader, strut_group *group, const strut_tree
     group->items[group->count++] = item;
     return;
   }
-  strut_read_slot(reader, found, key, key->next, owner, &item.slot);
+  read_value(reader, group, key, owner, found, &item);
   const strut_tree *other = rival(group, found);
   if (other) {
     strut_report_error(reader, key->place, "%s gives both '%s' and '%s', expected one of them",
@@ -74,11 +89,10 @@ static void read_item(strut_reader *reader, strut_group *group, const strut_tree
 static void read_group(strut_reader *reader, const strut_tree *key, strut_group *group) {
   const strut_tree *map = key->next;
   strut_owner owner = {"group", key->text};
-  *group = (strut_group){.name = key->text, .key = key};
   if (!strut_read_name(reader, key, "group")) group->broken = true;
   if (map->kind != STRUT_TREE_MAP) {
     strut_report_error(reader, map->place,
-                       "expected keys of a member, a node or a contact for %s, found %s",
+                       "expected keys of a member, a node, a contact or a hinge for %s, found %s",
                        strut_owner_text(reader, owner), strut_found(reader, map));
     group->broken = true;
     return;
@@ -86,18 +100,6 @@ static void read_group(strut_reader *reader, const strut_tree *key, strut_group 
   group->items = strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *group->items);
   for (const strut_tree *k = map->first; k && group->items; k = k->next->next)
     read_item(reader, group, k, owner);
-}
-
-void strut_read_groups(strut_reader *reader) {
-  const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_GROUPS);
-  if (!map) return;
-  reader->groups =
-      strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->groups);
-  for (const strut_tree *key = strut_first_entry(reader, map); key && reader->groups;
-       key = strut_following_entry(reader, key)) {
-    read_group(reader, key, &reader->groups[reader->group_count]);
-    strut_add_name(reader, &reader->group_names, key->text, reader->group_count++);
-  }
 }
 
 size_t strut_groups_named(strut_reader *reader, const strut_tree *value, strut_group **groups) {
@@ -110,6 +112,58 @@ size_t strut_groups_named(strut_reader *reader, const strut_tree *value, strut_g
     if (index >= 0) groups[count++] = &reader->groups[index];
   }
   return count;
+}
+
+/* Marks the groups that the things of a mapping name. */
+static void mark_users(strut_reader *reader, const strut_tree *map, bool hinges) {
+  strut_group *groups[STRUT_MOST_GROUPS];
+  if (!map || map->kind != STRUT_TREE_MAP) return;
+  for (const strut_tree *key = strut_first_entry(reader, map); key;
+       key = strut_following_entry(reader, key)) {
+    const strut_tree *named =
+        key->next->kind == STRUT_TREE_MAP ? strut_tree_find(key->next, "group", NULL) : NULL;
+    size_t count = named ? strut_groups_named(reader, named, groups) : 0;
+    while (count-- > 0) *(hinges ? &groups[count]->of_hinges : &groups[count]->of_others) = true;
+  }
+}
+
+static void mark_contacts(strut_reader *reader, const strut_tree *ground) {
+  if (ground && ground->kind == STRUT_TREE_MAP)
+    mark_users(reader, strut_tree_find(ground, "contacts", NULL), false);
+}
+
+static void find_users(strut_reader *reader) {
+  const strut_tree *hinges = strut_slot_of(&reader->top, STRUT_KEY_SCENE_HINGES)->value;
+  for (size_t i = 0; i < reader->group_count && !hinges; i++) reader->groups[i].of_others = true;
+  if (!hinges) return;
+  mark_users(reader, hinges, true);
+  mark_users(reader, strut_slot_of(&reader->top, STRUT_KEY_SCENE_MEMBERS)->value, false);
+  mark_users(reader, strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->value, false);
+  mark_contacts(reader, strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND)->value);
+  const strut_tree *grounds = strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUNDS)->value;
+  if (grounds && grounds->kind == STRUT_TREE_MAP)
+    for (const strut_tree *key = grounds->first; key; key = key->next->next)
+      mark_contacts(reader, key->next);
+  if (reader->copies) mark_users(reader, reader->copies->contacts, false);
+  for (size_t i = 0; i < reader->group_count; i++)
+    if (!reader->groups[i].of_hinges) reader->groups[i].of_others = true;
+}
+
+void strut_read_groups(strut_reader *reader) {
+  const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_GROUPS);
+  size_t i = 0;
+  if (!map) return;
+  reader->groups =
+      strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->groups);
+  for (const strut_tree *key = strut_first_entry(reader, map); key && reader->groups;
+       key = strut_following_entry(reader, key)) {
+    reader->groups[reader->group_count] = (strut_group){.name = key->text, .key = key};
+    strut_add_name(reader, &reader->group_names, key->text, reader->group_count++);
+  }
+  find_users(reader);
+  for (const strut_tree *key = strut_first_entry(reader, map); key && reader->groups;
+       key = strut_following_entry(reader, key))
+    read_group(reader, key, &reader->groups[i++]);
 }
 
 /* Does every name in `group:` name a group? Unknown ones are reported. */
@@ -155,11 +209,12 @@ static void apply_group(strut_reader *reader, strut_fields *fields, strut_group 
     int key = item->key[section];
     if (key >= 0) {
       if (taken(fields, key)) continue;
-      *strut_slot_of(fields, key) = item->slot;
+      const strut_slot *slot = section == HINGE ? &item->of_hinge : &item->slot;
+      *strut_slot_of(fields, key) = *slot;
       strut_slot_of(fields, key)->from = item;
       if (strut_key_at(key)->measure == STRUT_MEASURE_LENGTH)
         strut_slot_of(fields, key)->number[0] *= scale_to(reader, group);
-      if (item->slot.state == STRUT_BROKEN || (item->nested && item->nested->broken))
+      if (slot->state == STRUT_BROKEN || (item->nested && item->nested->broken))
         fields->broken = true;
     } else if (!item->refused[section]) {
       item->refused[section] = true;
@@ -191,11 +246,31 @@ void strut_apply_groups(strut_reader *reader, strut_fields *fields, int group_ke
   strut_suppress_missing(fields);
 }
 
+/* Does some `group` of a tree name the group? Then copies that are not made would use it. */
+static bool is_mentioned(const strut_tree *tree, const char *name) {
+  if (!tree || tree->kind == STRUT_TREE_SCALAR) return false;
+  for (const strut_tree *k = tree->first; k; k = k->next) {
+    bool group = tree->kind == STRUT_TREE_MAP && strcmp(k->text, "group") == 0;
+    if (tree->kind == STRUT_TREE_MAP) k = k->next;
+    if (group && k->kind == STRUT_TREE_SCALAR && strcmp(k->text, name) == 0) return true;
+    for (const strut_tree *item = group ? k->first : NULL; item; item = item->next)
+      if (item->kind == STRUT_TREE_SCALAR && strcmp(item->text, name) == 0) return true;
+    if (!group && is_mentioned(k, name)) return true;
+  }
+  return false;
+}
+
+static bool parts_mention(strut_reader *reader, const char *name) {
+  return is_mentioned(strut_slot_of(&reader->top, STRUT_KEY_SCENE_PARTS)->value, name) ||
+         is_mentioned(strut_slot_of(&reader->top, STRUT_KEY_SCENE_PLACE)->value, name);
+}
+
 void strut_report_unused_groups(strut_reader *reader) {
   if (reader->groups_unknown || reader->top.broken) return;
   for (size_t i = 0; i < reader->group_count; i++) {
     const strut_group *group = &reader->groups[i];
     if (group->used || group->broken || group->key->placed) continue;
+    if (parts_mention(reader, group->name)) continue;
     strut_report_error(reader, group->key->place, "nothing uses group '%s'", group->name);
   }
 }

@@ -151,6 +151,7 @@ static bool read_hinge(strut_reader *reader, const strut_tree *key, strut_hinge 
   bool fine = strut_read_name(reader, key, "hinge");
   strut_fields fields;
   strut_read_fields(reader, STRUT_SECTION_HINGE, key->next, owner, &fields);
+  strut_apply_groups(reader, &fields, STRUT_KEY_HINGE_GROUP, owner);
   strut_require(reader, &fields, owner, key->place);
   const strut_slot *nodes = strut_slot_of(&fields, STRUT_KEY_HINGE_NODES);
   const strut_tree *item = nodes->state == STRUT_GIVEN ? nodes->value->first : NULL;

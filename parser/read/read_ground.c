@@ -174,6 +174,11 @@ static void read_contact(strut_reader *reader, const strut_tree *key, ground_def
   *source = (strut_source){key, key ? key->next : NULL, !fine};
 }
 
+/* A node that is moved cannot touch, and is none of `all`. */
+static bool moves(const strut_reader *reader, int32_t node) {
+  return reader->node_moves && reader->node_moves[node];
+}
+
 /* Marks the nodes whose names fit a pattern. */
 static bool mark_matches(strut_reader *reader, const strut_tree *item, strut_owner owner,
                          unsigned char *touches) {
@@ -192,7 +197,7 @@ static bool mark_nodes(strut_reader *reader, strut_fields *fields, strut_owner o
   const strut_slot *slot = strut_slot_of(fields, STRUT_KEY_GROUND_NODES);
   size_t count = reader->scene->node_count;
   if (slot->state != STRUT_GIVEN || slot->value->kind == STRUT_TREE_SCALAR) {
-    memset(touches, 1, count);
+    for (size_t i = 0; i < count; i++) touches[i] = !moves(reader, (int32_t)i);
     return slot->state != STRUT_BROKEN;
   }
   bool fine = true;
@@ -235,7 +240,11 @@ static bool find_entries(strut_reader *reader, strut_fields *fields, strut_owner
       continue;
     }
     fine = false;
-    if (node >= 0 && complete)
+    if (node >= 0 && moves(reader, node))
+      strut_report_error(reader, key->place,
+                         "node '%s' has a contact with %s, but it moves, so that it cannot touch",
+                         key->text, strut_owner_text(reader, owner));
+    else if (node >= 0 && complete)
       strut_report_error(reader, key->place, "node '%s' has a contact, but 'nodes' of %s lacks it",
                          key->text, strut_owner_text(reader, owner));
   }
@@ -248,7 +257,7 @@ static bool add_copied(strut_reader *reader, unsigned char *touches, const strut
   const strut_tree *map = reader->copies ? reader->copies->contacts : NULL;
   for (const strut_tree *key = strut_first_entry(reader, map); key;
        key = strut_following_entry(reader, key)) {
-    strut_owner owner = {"a contact", NULL};
+    strut_owner owner = {"part", reader->scope ? reader->scope->placement->part->name : NULL};
     strut_tree name = *key;
     name.text = strut_local_name(reader, key->text);
     name.placed = false;
@@ -521,9 +530,20 @@ static void read_single(strut_reader *reader) {
   merge_contacts(reader, &list);
 }
 
+/* Contacts of parts wait for a ground. */
+static void note_contacts_without_ground(strut_reader *reader) {
+  const strut_tree *map = reader->copies ? reader->copies->contacts : NULL;
+  if (!map || !map->first || strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND)->key ||
+      strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUNDS)->key)
+    return;
+  strut_note(reader->diagnostics, map->first->place,
+             "the scene has no ground that the contacts of the part could touch");
+}
+
 void strut_read_ground(strut_reader *reader) {
   strut_scene *scene = reader->scene;
   read_single(reader);
+  note_contacts_without_ground(reader);
   const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_GROUNDS);
   if (!map || strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND)->key) return;
   contact_list *lists = strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *lists);

@@ -144,10 +144,10 @@ static bool read_expression(strut_reader *reader, const strut_tree *value, strut
     return false;
   }
   if (!m->expected || q.bare || strut_dimension_equal(q.dimension, *m->expected)) return true;
-  strut_report_error(reader, value->place, "expected %s for 'expression' of %s, found %s",
-                     strut_expected_number(*m->expected, wanted, sizeof wanted),
-                     strut_owner_text(reader, owner),
-                     strut_dimension_name(q.dimension, found, sizeof found));
+  strut_report_error(
+      reader, value->place, "expected %s for 'expression' of %s, found %s",
+      strut_expected_quantity(reader->signal_quantity, *m->expected, wanted, sizeof wanted),
+      strut_owner_text(reader, owner), strut_dimension_name(q.dimension, found, sizeof found));
   return false;
 }
 
@@ -296,9 +296,10 @@ static bool claim(strut_reader *reader, int32_t index, const strut_tree *value,
     state->dimension = *expected;
   }
   if (strut_dimension_equal(state->dimension, *expected)) return true;
-  strut_report_error(reader, value->place, "expected %s here, but signal '%s' is %s",
-                     strut_expected_number(*expected, wanted, sizeof wanted), value->text,
-                     strut_dimension_name(state->dimension, found, sizeof found));
+  strut_report_error(
+      reader, value->place, "expected %s here, but signal '%s' is %s",
+      strut_expected_quantity(reader->signal_quantity, *expected, wanted, sizeof wanted),
+      value->text, strut_dimension_name(state->dimension, found, sizeof found));
   return false;
 }
 

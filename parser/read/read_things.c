@@ -266,9 +266,11 @@ static bool read_drive(strut_reader *reader, const strut_tree *key, strut_fields
     return false;
   }
   actuator->force = k > 0;
+  reader->signal_quantity = k == 2 ? "moment" : known && cell ? "pressure" : NULL;
   if (slot->state == STRUT_GIVEN)
     actuator->signal = strut_read_signal(reader, slot->value, strut_key_at(keys[k])->name, owner,
                                          known || k > 0 ? &dimensions[k] : NULL);
+  reader->signal_quantity = NULL;
   return actuator->signal >= 0;
 }
 

@@ -244,14 +244,13 @@ bool strut_read_number(strut_reader *reader, const strut_tree *value, const char
                        double *number) {
   char expected[200], found[80];
   strut_quantity quantity;
-  if (value->kind != STRUT_TREE_SCALAR || strut_is_null(value)) {
-    strut_expected_number(dimension, expected, sizeof expected);
+  const char *what = reader->signal_quantity ? reader->signal_quantity : key;
+  strut_expected_quantity(what, dimension, expected, sizeof expected);
+  if (value->kind != STRUT_TREE_SCALAR || strut_is_null(value))
     return strut_read_scalar(reader, value, key, owner, expected);
-  }
   if (!strut_read_quantity(reader, value, key, owner, &quantity)) return false;
   if (!quantity.bare && !strut_dimension_equal(quantity.dimension, dimension)) {
-    strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s",
-                       strut_expected_number(dimension, expected, sizeof expected), key,
+    strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s", expected, key,
                        strut_owner_text(reader, owner),
                        strut_dimension_name(quantity.dimension, found, sizeof found));
     return false;
@@ -291,11 +290,14 @@ static const char *local_name(const void *context, size_t i) {
   return local == name && name ? "" : local;
 }
 
-static const char *hint_of_names(strut_reader *reader, const char *word, strut_names *names,
-                                 size_t count) {
+static const char *hint_of_names(strut_reader *reader, const strut_tree *value,
+                                 const strut_name_map *map, strut_names *names, size_t count) {
   const local_names within = {reader, names};
-  const char *hint = reader->scope ? strut_hint(reader, word, local_name, &within, count) : "";
-  return *hint ? hint : strut_hint(reader, word, names, reader, count);
+  const char *word = value->text, *hint = strut_copy_hint(reader, value);
+  if (!*hint && reader->scope) hint = strut_hint(reader, word, local_name, &within, count);
+  if (*hint) return hint;
+  if (!strut_within_part(reader, value, map)) return strut_hint(reader, word, names, reader, count);
+  return strut_name_map_find(map, word) < 0 ? "" : "; a part knows its own only";
 }
 
 int32_t strut_read_reference(strut_reader *reader, const strut_tree *value, const char *key,
@@ -317,7 +319,7 @@ int32_t strut_read_reference(strut_reader *reader, const strut_tree *value, cons
     strut_report_error(reader, value->place, "unknown %s '%s' in '%s' of %s%s", kind,
                        strut_sanitised_text(reader, value->text), key,
                        strut_owner_text(reader, owner),
-                       hint_of_names(reader, value->text, names, count));
+                       hint_of_names(reader, value, map, names, count));
   return index;
 }
 

@@ -43,13 +43,16 @@ typedef struct strut_fields {
   strut_slot slot[STRUT_MOST_KEYS];
 } strut_fields;
 
+enum { STRUT_GROUP_SECTIONS = 4 }; /* member, node, contact, hinge */
+
 /** One key of a group, and its number in each section that may use the group. */
 typedef struct strut_group_item {
   strut_slot slot;
-  int key[3];           /* in member, node, contact; -1: not there */
-  bool refused[3];      /* it has been reported that the section has no such key */
-  bool found;           /* a finding has been reported here */
-  strut_fields *nested; /* of a mapping: friction */
+  int key[STRUT_GROUP_SECTIONS];      /* -1: not there */
+  bool refused[STRUT_GROUP_SECTIONS]; /* it has been reported that the section has no such key */
+  bool found;                         /* a finding has been reported here */
+  strut_fields *nested;               /* of a mapping: friction */
+  strut_slot of_hinge;                /* where hinges measure it by another unit; else as `slot` */
 } strut_group_item;
 
 typedef struct strut_group {
@@ -58,6 +61,7 @@ typedef struct strut_group {
   size_t count;
   strut_group_item *items;
   bool used, broken;
+  bool of_hinges, of_others; /* hinges name it; members, nodes or contacts do, or nothing does */
 } strut_group;
 
 /** A copy of a part as the scope of what is read, see copies.h. */
@@ -114,7 +118,7 @@ typedef struct strut_reader {
   strut_fields top;
   strut_name_map node_names, member_names, group_names, parameter_names, signal_names,
       configuration_names, actuator_names, load_names, hinge_names, cell_names, collision_names,
-      unbalance_names, sensor_names, state_names;
+      unbalance_names, sensor_names, state_names, slider_names;
   strut_group *groups;
   size_t group_count;
   strut_parameter_state *parameters;
@@ -128,9 +132,10 @@ typedef struct strut_reader {
   size_t named_count, signal_depth, signal_capacity;
   strut_named_signal *signal_stack[STRUT_DEEPEST_SIGNAL]; /* being read */
   strut_signal *signals; /* strut_allocate; moves to the scene at the end */
-  strut_source *unbalance_source;
+  strut_source *unbalance_source, *slider_source;
   const strut_tree **node_moves; /* (node_count) the keys of moves of a node, or NULL */
   strut_signal_state *signal_state;
+  const char *signal_quantity; /* what the signal that is being read gives, for messages, or NULL */
   size_t signal_count;
   strut_source *configuration_source;
   strut_fields ground, initial, settle, search, solver, run, measure, steady, output;
@@ -333,6 +338,8 @@ void strut_read_ground(strut_reader *reader);
 void strut_list_signals(strut_reader *reader);
 void strut_read_signals(strut_reader *reader);
 void strut_read_drives(strut_reader *reader);
+/** read_sliders.c */
+void strut_read_sliders(strut_reader *reader);
 /** Moves the signals into the scene. */
 void strut_keep_signals(strut_reader *reader);
 void strut_read_configurations(strut_reader *reader);

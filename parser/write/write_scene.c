@@ -189,6 +189,7 @@ static void put_hinge_by_hand(strut_writer *writer, strut_mapping *mapping, int 
     put_law(writer, mapping, key, &h->law);
     return;
   }
+  if (key != STRUT_KEY_HINGE_NODES) return; /* groups have been applied */
   strut_put_key_name(writer, mapping, key);
   for (int k = 0; k < 3; k++) {
     strut_put(writer, k ? ", " : "[");

@@ -3,12 +3,6 @@
 # Beams that are clamped to members and to each other, against the slope-deflection formulas.
 . "$(dirname "$0")/lib.sh"
 
-# near FILTER EXPECTED TOLERANCE: the JSON in out through jq, and a number that jq computes.
-near() {
-  jq -e "($1) as \$got | ($2) as \$want | (\$got - \$want | fabs) <= $3" out >jq.out 2>&1 ||
-    fail "$1 is $(jq -c "$1" out 2>&1), expected $(jq -n "$2") within $3"
-}
-
 # An L frame: the tip sinks by P (b^2 h / EI_1 + b^3 / 3 EI_2), of second order in the parts.
 cat >corner.yaml <<'END'
 strut: 1

@@ -3,12 +3,6 @@
 # Beams, which are chains of bars and hinges, through the program, against closed forms.
 . "$(dirname "$0")/lib.sh"
 
-# near FILTER EXPECTED TOLERANCE: the JSON in out through jq, and a number that jq computes.
-near() {
-  jq -e "($1) as \$got | ($2) as \$want | (\$got - \$want | fabs) <= $3" out >jq.out 2>&1 ||
-    fail "$1 is $(jq -c "$1" out 2>&1), expected $(jq -n "$2") within $3"
-}
-
 # Euler's load of a pinned beam of n parts, 4 n^2 sin^2(pi / 2n) EI / L^2: the lowest stiffness falls to
 # zero there, as a line of the load.
 column() {

@@ -3,12 +3,6 @@
 # Cells under pressure and filled with gas, through the program, against closed forms.
 . "$(dirname "$0")/lib.sh"
 
-# near FILTER EXPECTED TOLERANCE: the JSON in out through jq, and a number that jq computes.
-near() {
-  jq -e "($1) as \$got | ($2) as \$want | (\$got - \$want | fabs) <= $3" out >jq.out 2>&1 ||
-    fail "$1 is $(jq -c "$1" out 2>&1), expected $(jq -n "$2") within $3"
-}
-
 # ring N CELL: a regular polygon of N stiff bars with circumradius 1 m.
 ring() {
   jq -nr --argjson n "$1" --arg cell "$2" '6.283185307179586 as $turn

@@ -3,12 +3,6 @@
 # Collisions of nodes and members through the program, against closed forms and conserved sums.
 . "$(dirname "$0")/lib.sh"
 
-# near FILTER EXPECTED TOLERANCE: the JSON in out through jq, and a number that jq computes.
-near() {
-  jq -e "($1) as \$got | ($2) as \$want | (\$got - \$want | fabs) <= $3" out >jq.out 2>&1 ||
-    fail "$1 is $(jq -c "$1" out 2>&1), expected $(jq -n "$2") within $3"
-}
-
 # run FILE: its summary in out.
 run() {
   expect 0 run "$1" -o results --quiet

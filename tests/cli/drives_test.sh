@@ -3,11 +3,6 @@
 # Drives and damping other than driven rest lengths, by strut run with every method, against closed forms.
 . "$(dirname "$0")/lib.sh"
 
-# near FILTER EXPECTED TOLERANCE: the JSON in out through jq, and a number that jq computes.
-near() {
-  jq -e "($1) as \$got | ($2) as \$want | (\$got - \$want | fabs) <= $3" out >jq.out 2>&1 ||
-    fail "$1 is $(jq -c "$1" out 2>&1), expected $(jq -n "$2") within $3"
-}
 value() { echo ".measured.$1.value"; }
 # closes PART: the energy balance, beside the energy exchanged.
 closes() { near '.energy | .residual / .exchanged' 0 "$1"; }
@@ -346,5 +341,28 @@ END
   near "$(value y)" '-0.025 * (5 * 0.7997 / 0.9997 | sin) - 0.5' $error
   case $method in rk4-events | adaptive | midpoint) closes 1e-9 ;; *) closes 5e-2 ;; esac
 done
+
+# A node that moves is none of `all` that may touch a ground.
+cat >touch.yaml <<'END'
+strut: 1
+gravity: [0, -9.81]
+nodes:
+  a: {position: [0, 0.1], fixed: both, moves: {y: {sine: {amplitude: 0.2, frequency: 1 Hz}}}}
+  b: {position: [1, 0.1], mass: 1}
+members:
+  m: {kind: spring, nodes: [a, b], stiffness: 100}
+ground: {stiffness: 1e4, damping: 10, nodes: [b]}
+solver: {integrator: rk4-events, step: 1 ms}
+run: {duration: 0.5 s, measure: {quantities: {y: {of: b.y, take: final}}}}
+END
+expect 0 run touch.yaml --json
+want=$(jq .measured.y.value out)
+sed 's/, nodes: \[b\]//' touch.yaml >all.yaml
+expect 0 run all.yaml --json
+near .measured.y.value "$want" 0
+sed 's/ground: \(.*\), nodes: \[b\]}/grounds: {floor: \1}, wall: {slope: 90 deg, through: [3, 0], stiffness: 1e4, nodes: all}}/' \
+  touch.yaml >two.yaml
+expect 0 run two.yaml --json
+near .measured.y.value "$want" 1e-12
 
 done_testing

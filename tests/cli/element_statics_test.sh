@@ -3,11 +3,6 @@
 # Hinges, running cables, other laws and stops in paths, rigidity, modes, equilibria and form finding.
 . "$(dirname "$0")/lib.sh"
 
-# near ACTUAL EXPECTED TOLERANCE WHAT
-near() {
-  awk -v a="$1" -v b="$2" -v t="$3" 'BEGIN { d = a - b; exit !(d <= t && -d <= t) }' ||
-    fail "$4: $1, expected $2 within $3"
-}
 # value EXPRESSION: of the JSON just printed.
 value() { jq -r "$1" "$work/out"; }
 holds() { jq -e "$1" "$work/out" >jq.out || fail "not so: $1"; }
@@ -33,9 +28,9 @@ END
 expect 0 path links.yaml --until 8 --json
 holds '(.events | length) == 1 and .events[0].kind == "bifurcation" and
   .events[0].negative_before == 0 and .events[0].negative_after == 1'
-near "$(value '.events[0].factor')" 6 1e-8 "critical load of two links"
+near_number "$(value '.events[0].factor')" 6 1e-8 "critical load of two links"
 expect 0 path links.yaml --over kappa --from 10 --until 0.1 --json
-near "$(value '.events[0].value')" 0.5 1e-9 "critical stiffness of the hinge"
+near_number "$(value '.events[0].value')" 0.5 1e-9 "critical stiffness of the hinge"
 # The branch: b is displaced, and the load that it needs without a sideways force lies on the curve.
 expect 0 path links.yaml --over b.y --until 0.8 --json
 jq -r '.points[] | [.nodes.b[1], .reactions.b[1], .moments.h] | @tsv' "$work/out" | awk '
@@ -50,7 +45,7 @@ jq -r '.points[] | select(.factor > 6.1) | [.factor, .nodes.b[1]] | @tsv' "$work
 # A driven rest angle goes round as far as wanted; without a load the hinge follows it.
 expect 0 path links.yaml --over motor --until '100 deg' --set 'press=0 N' --json
 holds '.unit == "rad" and .end == "until"'
-near "$(value '.points[-1].nodes.b[1]')" -0.766044443118978 1e-9 "a hinge turned by 100 degrees"
+near_number "$(value '.points[-1].nodes.b[1]')" -0.766044443118978 1e-9 "a hinge turned by 100 degrees"
 expect 0 path links.yaml --over b.y --until 0.5 -o turned
 head -n 1 turned/path.csv | grep -qF 'm2.force [N],h.moment [N m],' || fail "moments in the table"
 expect 0 path links.yaml --until 8
@@ -75,8 +70,8 @@ limit=$(awk 'function p(h, l, x) { l = sqrt(1 + h * h); x = l - sqrt(1.09); retu
     if (p(c) > p(d)) b = d; else a = c } printf "%.12g\n", p(a) }')
 expect 0 path cubic.yaml --until 15 --json
 holds '(.events | length) == 2 and .events[0].kind == "limit point"'
-near "$(value '.events[0].factor')" "$limit" 1e-9 "limit load of the cubic truss"
-near "$(value '.events[1].factor')" "-$limit" 1e-9 "its mirror image"
+near_number "$(value '.events[0].factor')" "$limit" 1e-9 "limit load of the cubic truss"
+near_number "$(value '.events[1].factor')" "-$limit" 1e-9 "its mirror image"
 expect 0 path cubic.yaml --over hard --until 40000 --json
 holds '.end == "until" and .unit == ""'
 
@@ -86,8 +81,8 @@ expect 0 path stop.yaml --until 30 --json
 holds '[.events[].kind] == ["limit point", "engages", "engages", "limit point at a kink"] and
   (.events[1].detail | test("^a reaches its shortest length")) and
   .events[2].negative_after == 0 and .points[-1].stable and .end == "until"'
-near "$(value '.events[1].nodes.top[1]')" 0.155383396796441 1e-12 "height at the stop"
-near "$(value '.events[1].factor')" 9.83603031038155 1e-11 "load at the stop"
+near_number "$(value '.events[1].nodes.top[1]')" 0.155383396796441 1e-12 "height at the stop"
+near_number "$(value '.events[1].factor')" 9.83603031038155 1e-11 "load at the stop"
 holds 'all(.events[]; has("factor"))'
 
 # ---- a law with a kink: the force beyond it ----
@@ -104,9 +99,9 @@ loads:
 END
 expect 0 path kinked.yaml --until 12 --json
 holds '[.events[].kind] == ["releases", "kink of a law"] and .events[0].detail == "s ceases to push"'
-near "$(value '.events[0].factor')" 5 1e-12 "load where the spring ceases to push"
-near "$(value '.events[1].factor')" 10 1e-12 "load at the knee"
-near "$(value '.points[-1].nodes.end[0]')" 1.3 1e-12 "displacement beyond the knee"
+near_number "$(value '.events[0].factor')" 5 1e-12 "load where the spring ceases to push"
+near_number "$(value '.events[1].factor')" 10 1e-12 "load at the knee"
+near_number "$(value '.points[-1].nodes.end[0]')" 1.3 1e-12 "displacement beyond the knee"
 
 # ---- a running cable: a weight hangs on it, its rest length is driven until it is slack ----
 cat >ring.yaml <<'END'
@@ -205,7 +200,7 @@ loads:
 END
 expect 0 rigidity hanging.yaml --at start --json
 holds '.rank == 1 and .mechanisms.count == 1 and .mechanisms.infinitesimal == 1'
-near "$(value '.mechanisms.modes[0].stiffness')" 5 1e-6 "stiffness by the tension of a running cable"
+near_number "$(value '.mechanisms.modes[0].stiffness')" 5 1e-6 "stiffness by the tension of a running cable"
 expect 0 rigidity hanging.yaml --at start
 out_has "stiffened by the member forces: 5 N/m"
 
@@ -223,8 +218,8 @@ hinges:
   h: {nodes: [w, o, m], stiffness: 5 N m/rad, damping: 0.1 N m s/rad, rest_angle: 180 deg}
 END
 expect 0 modes pendulum.yaml --json
-near "$(value '.modes[0].eigenvalue')" 5.32166666666667 1e-9 "pendulum with a hinge"
-near "$(value '.modes[0].damping_ratio')" 0.00180614 1e-7 "its damping"
+near_number "$(value '.modes[0].eigenvalue')" 5.32166666666667 1e-9 "pendulum with a hinge"
+near_number "$(value '.modes[0].damping_ratio')" 0.00180614 1e-7 "its damping"
 holds '(.modes[0].description | test("h 100 % of the energy")) and .modes[0].error < 1e-10'
 expect 0 equilibria pendulum.yaml --json
 holds '[.equilibria[] | select(.label == "stable")] | length == 1'
@@ -256,6 +251,6 @@ err_has "ha is a hinge"
 expect 2 form kinked.yaml --from prestress
 err_has "m has another law"
 expect 0 form ring.yaml --json
-near "$(value .residual)" 0 1e-9 "residual of a form with a running cable"
+near_number "$(value .residual)" 0 1e-9 "residual of a form with a running cable"
 
 done_testing

@@ -3,12 +3,6 @@
 # Statics of running cables, hinges and laws by strut equilibria and strut modes, against closed forms.
 . "$(dirname "$0")/lib.sh"
 
-# near FILTER EXPECTED TOLERANCE: the JSON in out through jq, and a number that jq computes.
-near() {
-  jq -e "($1) as \$got | ($2) as \$want | (\$got - \$want | fabs) <= $3" out >jq.out 2>&1 ||
-    fail "$1 is $(jq -c "$1" out 2>&1), expected $(jq -n "$2") within $3"
-}
-
 # A weight on a frictionless ring rests at the bottom of an ellipse: both parts of the string carry
 # W / (2 sqrt(1 - (a/L)^2)).
 cat >ring.yaml <<'END'

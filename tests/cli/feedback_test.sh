@@ -3,12 +3,6 @@
 # Sensors and signals that follow them, against closed forms.
 . "$(dirname "$0")/lib.sh"
 
-# near FILTER EXPECTED TOLERANCE: the JSON in out through jq, and a number that jq computes.
-near() {
-  jq -e "($1) as \$got | ($2) as \$want | (\$got - \$want | fabs) <= $3" out >jq.out 2>&1 ||
-    fail "$1 is $(jq -c "$1" out 2>&1), expected $(jq -n "$2") within $3"
-}
-
 # A mass under PD control, -k (x - 1 m) - c v by a load: the damped oscillator with the poles
 # -c/2m +- i sqrt(k/m - (c/2m)^2), by every method at its order.
 cat >pd.yaml <<'END'
@@ -539,6 +533,55 @@ sed 's/duration: 100 s/periods: 400\n  of: beat/; s/measure:/measure:\n    stead
   s/^actuators:/signals: {beat: {sine: {amplitude: 1 mm, frequency: 1 Hz}}}\nactuators:/
   s/d: {member.*/d: {member: m, signal: {sum: [beat, {expression: 10 mm*sin(o1)}]}}/' oscillators.yaml >run.yaml
 expect 0 run run.yaml --set 'df=0 Hz'
+
+# Starts are a memory, too.
+cat >begun.yaml <<'END'
+strut: 1
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0], fixed: y, mass: 2 kg}
+members:
+  m: {nodes: [a, b], kind: spring, stiffness: 40, damping: 4}
+sensors: {l: {length: m}}
+signals:
+  beat: {sine: {amplitude: 10 mm, frequency: 1 Hz}}
+  more: {constant: 1 mm, starts: {sensor: l, above: 1.005 m}}
+actuators: {d: {member: m, signal: {sum: [beat, more]}}}
+solver: {integrator: rk4-events, step: 1 ms}
+run: {periods: 40, of: beat, measure: {steady: {shooting: yes}, last: 1, node: b}}
+END
+expect 0 run begun.yaml
+out_has 'internal states, samples, starts and relays are a memory that shooting does not correct'
+
+# The largest step counts Maxwell branches, as stiff as they are in fast motions, sqrt((k + K)/m), and
+# what relaxes by itself; it knows nothing of feedback, and so do modes, and both say so.
+cat >branch.yaml <<'END'
+strut: 1
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: y, mass: 1}}
+members: {m: {nodes: [a, b], kind: spring, stiffness: 10, maxwell: {stiffness: 10 kN/m, time: 0.5 s}}}
+initial: {velocities: {b: [0.1, 0]}}
+solver: {integrator: rk4, step: 20 ms}
+run: {duration: 1 s}
+END
+expect 0 run branch.yaml --json
+near .step_limit '8 / 10010 | sqrt' 1e-9
+sed 's/20 ms/29 ms/' branch.yaml >run.yaml
+expect 3 run run.yaml
+err_has 'is above the largest stable step of rk4, 0.02827 s'
+sed 's/time: 0.5 s/time: 5 ms/' branch.yaml >run.yaml
+expect 3 run run.yaml
+err_has 'is above the largest stable step of rk4, 0.01393 s'
+expect 0 modes branch.yaml
+out_has 'without Maxwell branches, which have relaxed'
+sed 's/constant: 10 mm, lag: 0.5 s/constant: 10 mm, lag: 2 ms/' lag.yaml >run.yaml
+expect 3 run run.yaml
+err_has 'is above the largest stable step of rk4, 0.005571 s'
+expect 0 modes pd.yaml
+out_has 'without the feedback of sensors'
+expect 0 check pd.yaml
+out_has 'feedback           not counted in this frequency and these steps'
+expect 0 run pd.yaml
+out_has 'without feedback'
 
 # What is written reads back to the same run; statics, figures, sweeps and pages know such scenes.
 for scene in pd length force all lag oscillators sampled held pi free maxwell shaken starts; do

@@ -3,11 +3,6 @@
 # Several grounds, profiles, circles and shaken ground, against closed forms.
 . "$(dirname "$0")/lib.sh"
 
-# near ACTUAL EXPECTED TOLERANCE WHAT
-near() {
-  awk -v a="$1" -v b="$2" -v t="$3" 'BEGIN { d = a - b; exit !(d <= t && -d <= t) }' ||
-    fail "$4: $1, expected $2 within $3"
-}
 # last FILE COLUMN: of the last row of a table of the latest run.
 last() {
   awk -F, -v want="$2" 'NR == 1 { for (i = 1; i <= NF; i++) if (index($i, want " ") == 1) c = i }
@@ -21,7 +16,7 @@ go() {
   expect 0 run "$scene" --integrator "$method" "$@" --quiet -o run
 }
 # closes TOLERANCE WHAT: the energy balance of the latest run.
-closes() { near "$(jq -r .energy.residual run/summary.json)" 0 "$1" "energy of $2"; }
+closes() { near_number "$(jq -r .energy.residual run/summary.json)" 0 "$1" "energy of $2"; }
 plain="rk4 euler verlet"
 located="rk4-events verlet-events euler-events adaptive"
 
@@ -39,24 +34,24 @@ output: {channels: [position, velocity, contact, energy]}
 END
 for method in $plain $located; do
   go v.yaml "$method"
-  near "$(last contacts ball.left.normal)" 17.587704831436334 1e-4 "left side of the V by $method"
-  near "$(last contacts ball.right.normal)" 13.054072893322784 1e-4 "right side of the V by $method"
+  near_number "$(last contacts ball.left.normal)" 17.587704831436334 1e-4 "left side of the V by $method"
+  near_number "$(last contacts ball.right.normal)" 13.054072893322784 1e-4 "right side of the V by $method"
 done
 closes 1e-12 "the V"
 expect 0 equilibria v.yaml --json
-near "$(jq -r '.equilibria | length' "$work/out")" 1 0 "equilibria in the V"
+near_number "$(jq -r '.equilibria | length' "$work/out")" 1 0 "equilibria in the V"
 expect 0 modes v.yaml --json
-near "$(jq -r '[.modes[].eigenvalue] | add' "$work/out")" 10000 1e-6 "trace of the stiffness in the V"
+near_number "$(jq -r '[.modes[].eigenvalue] | add' "$work/out")" 10000 1e-6 "trace of the stiffness in the V"
 # A profile with the same corner is the same ground in two pieces.
 sed -e '/left:/d' -e '/right:/d' -e 's/^grounds:/ground: {profile: [[-1, 0.8390996311772800], [0, 0], [1, 1.7320508075688772]], stiffness: 1e4, damping: 60}/' v.yaml >corner.yaml
 go corner.yaml rk4-events
-near "$(last contacts ball.1.normal)" 17.587704831436334 1e-4 "left side of the corner"
-near "$(last contacts ball.2.normal)" 13.054072893322784 1e-4 "right side of the corner"
+near_number "$(last contacts ball.1.normal)" 17.587704831436334 1e-4 "left side of the corner"
+near_number "$(last contacts ball.2.normal)" 13.054072893322784 1e-4 "right side of the corner"
 # Friction holds it: the forces of both contacts balance the weight.
 sed 's/damping: 60}/damping: 60, friction: {mu: 0.5, stick_velocity: 1 mm\/s}}/' v.yaml >rough.yaml
 for method in rk4 rk4-events verlet-events; do
   go rough.yaml "$method"
-  near "$(last nodes ball.vy)" 0 1e-3 "rest in the rough V by $method"
+  near_number "$(last nodes ball.vy)" 0 1e-3 "rest in the rough V by $method"
   awk -v a="$(last contacts ball.left.normal)" -v f="$(last contacts ball.left.friction)" \
     -v b="$(last contacts ball.right.normal)" -v g="$(last contacts ball.right.friction)" 'BEGIN {
     p = atan2(0, -1) / 180; x = a * sin(40 * p) + f * cos(40 * p) - b * sin(60 * p) + g * cos(60 * p)
@@ -78,13 +73,13 @@ output: {channels: [position, velocity, contact, energy]}
 END
 for method in $plain $located; do
   go wall.yaml "$method"
-  near "$(last nodes ball.vx)" 0 2e-3 "sideways speed behind the wall by $method"
-  near "$(last nodes ball.vy)" 3 2e-3 "upward speed behind the wall by $method"
+  near_number "$(last nodes ball.vx)" 0 2e-3 "sideways speed behind the wall by $method"
+  near_number "$(last nodes ball.vy)" 3 2e-3 "upward speed behind the wall by $method"
 done
-near "$(last nodes ball.vy)" 3 1e-9 "upward speed by adaptive"
+near_number "$(last nodes ball.vy)" 3 1e-9 "upward speed by adaptive"
 # It meets the wall after 1/3 s and is pressed into it for half a period, pi ms, sideways by pi / 2 * 3 mm.
-near "$(last nodes ball.x)" 1.00471238898 1e-9 "place behind the wall by adaptive"
-near "$(last nodes ball.y)" 2.19528761102 1e-9 "height behind the wall by adaptive"
+near_number "$(last nodes ball.x)" 1.00471238898 1e-9 "place behind the wall by adaptive"
+near_number "$(last nodes ball.y)" 2.19528761102 1e-9 "height behind the wall by adaptive"
 
 # ---- a mass slides off a step: at rest at depth d = m g / k; the corner pushes it on by k d^2 / m ----
 cat >step.yaml <<'END'
@@ -99,9 +94,9 @@ output: {channels: [position, velocity, contact, energy]}
 END
 for method in rk4-events verlet-events adaptive; do
   go step.yaml "$method"
-  near "$(last nodes m.vx)" 1.0000481168925 1e-7 "speed behind the corner by $method"
-  near "$(last nodes m.y)" -1.00000981 1e-7 "rest below the step by $method"
-  near "$(last contacts m.2.normal)" 9.81 1e-4 "weight below the step by $method"
+  near_number "$(last nodes m.vx)" 1.0000481168925 1e-7 "speed behind the corner by $method"
+  near_number "$(last nodes m.y)" -1.00000981 1e-7 "rest below the step by $method"
+  near_number "$(last contacts m.2.normal)" 9.81 1e-4 "weight below the step by $method"
 done
 go step.yaml adaptive --tolerance 1e-9
 closes 1e-7 "the step"
@@ -118,12 +113,12 @@ output: {channels: [position, velocity, contact, energy]}
 END
 for method in rk4 verlet verlet-events rk4-events; do
   go pipe.yaml "$method"
-  near "$(last nodes m.x)" 0.49643145900515577649 3e-6 "pendulum in a pipe by $method"
+  near_number "$(last nodes m.x)" 0.49643145900515577649 3e-6 "pendulum in a pipe by $method"
   closes 1e-4 "the pipe by $method"
 done
-near "$(last nodes m.x)" 0.49643145900515577649 1e-7 "pendulum in a pipe by rk4-events"
+near_number "$(last nodes m.x)" 0.49643145900515577649 1e-7 "pendulum in a pipe by rk4-events"
 expect 0 modes pipe.yaml --json
-near "$(jq -r '.modes[0].eigenvalue' "$work/out")" 9.81 1e-6 "small swings in a pipe"
+near_number "$(jq -r '.modes[0].eigenvalue' "$work/out")" 9.81 1e-6 "small swings in a pipe"
 
 # ---- on a turning drum: held until g sin(theta) = mu (g cos(theta) - v^2 / R) ----
 cat >drum.yaml <<'END'
@@ -144,13 +139,13 @@ output: {channels: [position, velocity, contact, energy]}
 END
 for method in rk4-events verlet-events adaptive; do
   go drum.yaml "$method"
-  near "$(last nodes m.x)" 0.389418342 2e-6 "carried by a drum, sin 0.4, by $method"
-  near "$(last contacts m.friction)" -3.8202 1e-3 "held by a drum, m g sin 0.4, by $method"
+  near_number "$(last nodes m.x)" 0.389418342 2e-6 "carried by a drum, sin 0.4, by $method"
+  near_number "$(last contacts m.friction)" -3.8202 1e-3 "held by a drum, m g sin 0.4, by $method"
   closes 1e-6 "the drum by $method"
 done
 # Faster, it flies at once: v^2 > g R.
 go drum.yaml adaptive --set speed=4
-near "$(last contacts m.normal)" 0 0 "a drum that turns faster than sqrt(g R) throws off"
+near_number "$(last contacts m.normal)" 0 0 "a drum that turns faster than sqrt(g R) throws off"
 
 # ---- a shaken table: held by friction, or bouncing once a period beyond pi (1 - e) / (1 + e) ----
 cat >held.yaml <<'END'
@@ -168,9 +163,9 @@ output: {channels: [position, velocity, contact, energy]}
 END
 for method in rk4-events verlet-events adaptive; do
   go held.yaml "$method"
-  near "$(last nodes m.vx)" 0 1e-5 "speed of a table at its turn by $method"
-  near "$(last contacts m.friction)" -1.97392088 1e-4 "A w^2 m of a table by $method"
-  near "$(last nodes m.x)" 0.002 5e-4 "place on a table, but for the first slip, by $method"
+  near_number "$(last nodes m.vx)" 0 1e-5 "speed of a table at its turn by $method"
+  near_number "$(last contacts m.friction)" -1.97392088 1e-4 "A w^2 m of a table by $method"
+  near_number "$(last nodes m.x)" 0.002 5e-4 "place on a table, but for the first slip, by $method"
   closes 1e-6 "the held mass by $method"
 done
 [ "$(jq -r '.energy.belt_work > 0' run/summary.json)" = true ] || fail "the table's work"
@@ -211,14 +206,14 @@ run: {duration: 1 s}
 output: {channels: [position, velocity, contact]}
 END
 go incline.yaml rk4-events
-near "$(last nodes m.vx)" -1.6 1e-3 "(6 - 4) m/s^2 down the incline"
+near_number "$(last nodes m.vx)" -1.6 1e-3 "(6 - 4) m/s^2 down the incline"
 go incline.yaml rk4-events --set mu=0.8
-near "$(last nodes m.vx)" 0 1e-6 "held on the incline"
+near_number "$(last nodes m.vx)" 0 1e-6 "held on the incline"
 expect 0 write incline.yaml
 out_has "slope: 0.6435011087932844"
 sed 's/^ground: {\(.*\)}$/grounds: {incline: {\1}}/' incline.yaml >named.yaml
 go named.yaml rk4-events
-near "$(last nodes m.vx)" -1.6 1e-3 "the same as one of several grounds"
+near_number "$(last nodes m.vx)" -1.6 1e-3 "the same as one of several grounds"
 head -n 1 run/contacts.csv | grep -qF 'm.normal [N]' || fail "one surface, so contacts are named by nodes"
 
 # ---- a wheel of bars rolls over a bump; its mirror image does so the other way ----
@@ -264,7 +259,7 @@ closes 1e-6 "the wheel"
 x=$(last nodes hub.x)
 awk -v x="$x" 'BEGIN { exit !(x > 0.35) }' || fail "the wheel got to $x only"
 go left.yaml adaptive
-near "$(last nodes hub.x)" "-$x" 1e-6 "mirror image of the wheel"
+near_number "$(last nodes hub.x)" "-$x" 1e-6 "mirror image of the wheel"
 
 # ---- what is drawn and written ----
 mkdir seen

@@ -3,11 +3,6 @@
 # Running cables with friction at their guides, against closed forms.
 . "$(dirname "$0")/lib.sh"
 
-# near FILTER EXPECTED TOLERANCE: the JSON in out through jq, and a number that jq computes.
-near() {
-  jq -e "($1) as \$got | ($2) as \$want | (\$got - \$want | fabs) <= $3" out >jq.out 2>&1 ||
-    fail "$1 is $(jq -c "$1" out 2>&1), expected $(jq -n "$2") within $3"
-}
 pi=3.141592653589793
 
 # Atwood's machine over a fixed guide, theta = pi. While it slips the tensions are exactly e^(mu pi) apart; on

@@ -27,13 +27,23 @@ fail() {
 
 # expect CODE WORD...: runs strut WORD..., keeps stdout in out and stderr in err, compares the code.
 expect() {
-  wanted=$1
+  expected_code=$1
   shift
   "$strut" "$@" >"$work/out" 2>"$work/err" </dev/null
   code=$?
-  [ "$code" -eq "$wanted" ] || fail "strut $*: exit code $code, expected $wanted"
+  [ "$code" -eq "$expected_code" ] || fail "strut $*: exit code $code, expected $expected_code"
 }
 
+# near FILTER EXPECTED TOLERANCE: the JSON in out through jq, and a number that jq computes.
+near() {
+  jq -e "($1) as \$got | ($2) as \$want | (\$got - \$want | fabs) <= $3" out >jq.out 2>&1 ||
+    fail "$1 is $(jq -c "$1" out 2>&1), expected $(jq -n "$2") within $3"
+}
+# near_number ACTUAL EXPECTED TOLERANCE WHAT
+near_number() {
+  awk -v a="$1" -v b="$2" -v t="$3" 'BEGIN { d = a - b; exit !(d <= t && -d <= t) }' ||
+    fail "$4: $1, expected $2 within $3"
+}
 out_has() { grep -qF -- "$1" "$work/out" || fail "stdout lacks '$1'"; }
 out_has_not() { ! grep -qF -- "$1" "$work/out" || fail "stdout has '$1'"; }
 err_has() { grep -qF -- "$1" "$work/err" || fail "stderr lacks '$1'"; }
@@ -47,9 +57,9 @@ absent() { [ ! -e "$1" ] || fail "$1 exists"; }
 files() {
   directory=$1
   shift
-  wanted=$(printf '%s\n' "$@" | sort)
+  expected_files=$(printf '%s\n' "$@" | sort)
   found=$(ls -A "$directory" | grep -vx .strut-files | sort)
-  [ "$found" = "$wanted" ] || fail "$directory holds: $(echo $found)"
+  [ "$found" = "$expected_files" ] || fail "$directory holds: $(echo $found)"
 }
 
 # small_disk KILOBYTES: mounts a disk of that size on $work/disk; fails where that is not allowed.

@@ -3,12 +3,6 @@
 # What breaks, is released or yields, against closed forms.
 . "$(dirname "$0")/lib.sh"
 
-# near FILTER EXPECTED TOLERANCE: the JSON in out through jq, and a number that jq computes.
-near() {
-  jq -e "($1) as \$got | ($2) as \$want | (\$got - \$want | fabs) <= $3" out >jq.out 2>&1 ||
-    fail "$1 is $(jq -c "$1" out 2>&1), expected $(jq -n "$2") within $3"
-}
-
 # A latch K holds a spring k pressed by d. Released, the spring's energy goes into the mass, v = d sqrt(k/m);
 # that of the latch, F^2 / 2K, is lost.
 cat >latch.yaml <<'YAML'

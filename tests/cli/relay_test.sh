@@ -3,12 +3,6 @@
 # Relays with hysteresis as controllers, against closed forms.
 . "$(dirname "$0")/lib.sh"
 
-# near FILTER EXPECTED TOLERANCE: the JSON in out through jq, and a number that jq computes.
-near() {
-  jq -e "($1) as \$got | ($2) as \$want | (\$got - \$want | fabs) <= $3" out >jq.out 2>&1 ||
-    fail "$1 is $(jq -c "$1" out 2>&1), expected $(jq -n "$2") within $3"
-}
-
 # A thermostat: T' = (u - T) / tau, u = U until T rises to its upper threshold, then 0 until it falls to
 # the lower one. A cycle lasts tau (ln((U - low) / (U - high)) + ln(high / low)), 0.884 s.
 cat >thermostat.yaml <<'END'
@@ -137,7 +131,7 @@ solver: {integrator: rk4-events, step: 1 ms}
 run: {periods: 40, of: beat, measure: {steady: {shooting: yes}, last: 1, node: b}}
 END
 expect 0 run steady.yaml
-out_has 'internal states, samples and relays are a memory that shooting does not correct'
+out_has 'internal states, samples, starts and relays are a memory that shooting does not correct'
 
 # What a relay drives may take its own input past the other threshold at once: that is refused where it
 # happens, unless the relay is sampled.

@@ -20,31 +20,95 @@ static void solve_column(const strut_model *model, strut_state *state, uint32_t 
   strut_mass_solve(model, state->force, column, state->scratch);
 }
 
+/* Where the mass matrix changes with time so do compliances, and with surfaces directions do. */
+static bool has_moving_axes(const strut_model *model) {
+  return model->contacts.surface || model->plan & STRUT_TERM_SLIDING_MASS;
+}
+
+/* The compliances of the node itself, from the column of M^-1. */
+static void find_own(const strut_contact_table *c, double x, double y,
+                     strut_contact_compliance *r) {
+  r->own[0] = x, r->own[1] = y;
+  r->normal = x * c->normal[0] * c->normal[0] + y * c->normal[1] * c->normal[1];
+  r->tangent = x * c->tangent[0] * c->tangent[0] + y * c->tangent[1] * c->tangent[1];
+  if (c->surface) r->normal = r->tangent = fmax(x, y);
+}
+
+/* Marks the nodes that answer to a force, directly or through masses that slide. */
+static void mark_nodes(const strut_model *model, const double *x, const double *y, double least,
+                       uint8_t *answers) {
+  const strut_sliding_table *t = &model->sliding;
+  for (int32_t i = 0; i < model->node_count; i++)
+    answers[i] = fabs(x[2 * i]) > least || fabs(y[2 * i + 1]) > least;
+  for (bool more = t->moving_count > 0; more;) {
+    more = false;
+    for (int32_t k = 0; k < t->moving_count; k++) {
+      const strut_sliding_item *s = &t->item[t->moving[k]];
+      const strut_sliding_answer *r = &t->answer[k];
+      if (!answers[s->at[0] / 2] && !answers[s->at[1] / 2]) continue;
+      for (int32_t i = 0; i < r->count; i++) {
+        more = more || !answers[r->at[i] / 2];
+        answers[r->at[i] / 2] = 1;
+      }
+    }
+  }
+}
+
 static strut_status make_response(const strut_model *model, strut_state *state, int32_t i,
-                                  double *x, double *y, strut_contact_compliance *r) {
+                                  double *x, double *y, uint8_t *answers,
+                                  strut_contact_compliance *r) {
   const strut_contact_table *c = &model->contacts;
   uint32_t at = c->at[i];
   solve_column(model, state, at, x);
   solve_column(model, state, at + 1, y);
   double least = NEGLIGIBLE * fmax(fabs(x[at]), fabs(y[at + 1]));
   size_t count = 0;
-  for (int32_t k = 0; k < 2 * model->node_count; k += 2)
-    count += fabs(x[k]) > least || fabs(y[k + 1]) > least;
+  mark_nodes(model, x, y, least, answers);
+  for (int32_t k = 0; k < model->node_count; k++) count += answers[k];
   uint32_t *place = strut_arena_allocate(&state->arena, count, sizeof *place);
   double *xy = strut_arena_allocate(&state->arena, 2 * count, sizeof *xy);
   if (!place || !xy) return STRUT_NO_MEMORY;
   for (int32_t k = 0; k < 2 * model->node_count; k += 2) {
-    if (!(fabs(x[k]) > least || fabs(y[k + 1]) > least)) continue;
+    if (!answers[k / 2]) continue;
     place[r->count] = (uint32_t)k;
     xy[2 * r->count] = x[k];
     xy[2 * r->count++ + 1] = y[k + 1];
   }
   r->at = place, r->xy = xy;
-  r->own[0] = x[at], r->own[1] = y[at + 1];
-  r->normal = x[at] * c->normal[0] * c->normal[0] + y[at + 1] * c->normal[1] * c->normal[1];
-  r->tangent = x[at] * c->tangent[0] * c->tangent[0] + y[at + 1] * c->tangent[1] * c->tangent[1];
-  if (c->surface) r->normal = r->tangent = fmax(x[at], y[at + 1]);
+  find_own(c, x[at], y[at + 1], r);
+  if (!(model->plan & STRUT_TERM_SLIDING_MASS)) return STRUT_OK;
+  double *constant = strut_arena_allocate(&state->arena, 2 * count, sizeof *constant);
+  if (!constant) return STRUT_NO_MEMORY;
+  memcpy(constant, xy, 2 * count * sizeof *constant);
+  r->constant = constant;
   return STRUT_OK;
+}
+
+/* The compliance of contact i with sliding masses as they have been placed. */
+static void refresh_compliance(const strut_model *model, const strut_state *state,
+                               strut_event_stepper *l, int32_t i) {
+  strut_contact_compliance *r = &l->response[i];
+  double *xy = (double *)r->xy, *column = l->scatter;
+  uint32_t at = model->contacts.at[i];
+  for (int32_t k = 0; k < r->count; k++)
+    for (uint32_t c = 0; c < 2; c++) column[r->at[k] + c] = r->constant[2 * (uint32_t)k + c];
+  strut_sliding_masses_correct(model, state, column);
+  find_own(&model->contacts, column[at], column[at + 1], r);
+  for (int32_t k = 0; k < r->count; k++)
+    for (uint32_t c = 0; c < 2; c++) {
+      xy[2 * (uint32_t)k + c] = column[r->at[k] + c];
+      column[r->at[k] + c] = 0.0;
+    }
+  for (int32_t m = 0; m < model->sliding.moving_count; m++) { /* what is cut from compliances */
+    const strut_sliding_answer *answer = &model->sliding.answer[m];
+    for (int32_t k = 0; k < answer->count; k++)
+      column[answer->at[k]] = column[answer->at[k] + 1] = 0.0;
+  }
+}
+
+void strut_refresh_compliances(const strut_model *model, const strut_state *state,
+                               strut_event_stepper *l) {
+  for (int32_t k = 0; k < l->closed_count; k++) refresh_compliance(model, state, l, l->closed[k]);
 }
 
 /*
@@ -93,9 +157,14 @@ strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *
   double fastest = 0.0;
   memset(x, 0, (size_t)model->length * sizeof *x);
   memset(y, 0, (size_t)model->length * sizeof *y);
+  uint8_t *answers =
+      strut_arena_allocate(&state->arena, (size_t)model->node_count, sizeof *answers);
+  if (!answers) return STRUT_NO_MEMORY;
+  if (model->plan & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_place(model, state, 0.0);
   for (int32_t i = 0; i < c->count; i++) {
-    strut_status status = make_response(model, state, i, x, y, &l->response[i]);
+    strut_status status = make_response(model, state, i, x, y, answers, &l->response[i]);
     if (status) return status;
+    if (model->plan & STRUT_TERM_SLIDING_MASS) refresh_compliance(model, state, l, i);
     l->settling_time[i] = settling_time(&c->entry[i], l->response[i].normal);
     fastest = fmax(fastest, c->entry[i].damping * l->response[i].normal);
     fastest = fmax(fastest, sqrt(c->entry[i].stiffness * l->response[i].normal));
@@ -194,7 +263,7 @@ static void list_sliding_contacts(const strut_model *model, strut_event_stepper 
 
 void strut_update_active_set(const strut_model *model, strut_event_stepper *l) {
   l->closed_count = l->stuck_count = 0;
-  l->contacts_decoupled = model->contacts.normal[0] == 0.0 && !model->contacts.surface;
+  l->contacts_decoupled = model->contacts.normal[0] == 0.0 && !has_moving_axes(model);
   for (int32_t i = 0; i < model->contacts.count; i++) l->body_seen[i] = false;
   for (int32_t i = 0; i < model->contacts.count; i++) {
     l->outward[i] = l->mode[i] == STRUT_MODE_OPEN ? 1.0 : -1.0;
@@ -208,7 +277,7 @@ void strut_update_active_set(const strut_model *model, strut_event_stepper *l) {
   list_sliding_contacts(model, l);
   if (l->stuck_count > l->stuck_room)
     l->stuck_count = -l->stuck_count;
-  else if (l->stuck_count > 1 && !model->contacts.surface)
+  else if (l->stuck_count > 1 && !has_moving_axes(model))
     factor_stuck(model, l, l->now->touch);
 }
 
@@ -258,7 +327,7 @@ void strut_solve_stick_constraints(const strut_model *model, strut_event_stepper
   const strut_contact_table *c = &model->contacts;
   int32_t n = l->stuck_count;
   double *x = l->stuck_work;
-  if (c->surface && n > 1) { /* their axes turn, or have not been known until now */
+  if (has_moving_axes(model) && n > 1) { /* they have not been known until now */
     factor_stuck(model, l, end->touch);
     bool singular = l->stuck_count < 0;
     l->stuck_count = n;

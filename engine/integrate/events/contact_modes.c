@@ -17,6 +17,7 @@ static void evaluate_now(const strut_model *model, strut_state *state, strut_eve
   } else {
     for (int32_t i = 0; i < model->length; i++) state->force[i] = now->structure[i];
     for (int p = 0; p < STRUT_POWER_COUNT; p++) state->power[p] = now->structure_power[p];
+    if (model->plan & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_place(model, state, t);
     accelerate_closed(model, state, l, now->q, now->v, now->a, now, state->ledger);
     measure_contact_rates(model, l, now->a, now->touch);
     for (int p = 0; p < STRUT_POWER_COUNT; p++) now->power[p] = state->power[p];

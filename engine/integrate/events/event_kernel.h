@@ -170,9 +170,12 @@ STRUT_INLINE void accelerate_closed(const strut_model *model, strut_state *state
                                     strut_step_end *end, bool ledger) {
   if (l->closed_count)
     add_contact_forces(model, l, end->motion, q, v, state->force, true, end->touch);
-  mass_kernel(model, state->force, a, state->scratch);
+  divide_by_mass(model, state, a);
+  if (model->plan & STRUT_TERM_SLIDING_MASS) strut_refresh_compliances(model, state, l);
   if (l->stuck_count) strut_solve_stick_constraints(model, l, a, end);
   if (ledger && l->closed_count) add_contact_powers(model, state, l, end->touch);
+  if (ledger && model->plan & STRUT_TERM_SLIDING_MASS)
+    strut_sliding_masses_add_power(model, state, q, v, a);
 }
 
 /* Acceleration with explicit contact dampers inside a step; contact forces into end->touch. */

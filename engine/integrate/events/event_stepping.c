@@ -174,6 +174,8 @@ static void pass_break(const strut_model *model, strut_state *state, strut_event
   if (model->plan & STRUT_TERM_MEMORY)
     strut_memory_release(model, state, t + moment + state->time_offset + STRUT_AT_BREAK * dt);
   bool kicked = model->contacts.moves; /* a ground may have changed its speed at once */
+  if (model->plan & STRUT_TERM_SLIDING_MASS)
+    kicked = strut_sliding_masses_kick(model, state, t - 2.0 * moment, t + 0.5 * moment) || kicked;
   if (model->plan & (STRUT_TERM_SUPPORT_MOTION | STRUT_TERM_UNBALANCE)) {
     kicked = strut_support_motion_kick(model, state, t - 2.0 * moment, t + 0.5 * moment) || kicked;
     kicked = strut_unbalance_kick(model, state, t - 2.0 * moment, t + 0.5 * moment) || kicked;

@@ -36,6 +36,7 @@ typedef struct strut_contact_compliance {
   double normal, tangent; /* of the node itself, along the ground's normal and tangent [1/kg]; with
                              surfaces the larger of x and y */
   double own[2];          /* of the node itself, in x and in y [1/kg] */
+  const double *constant; /* xy without masses that slide; NULL where none do */
 } strut_contact_compliance;
 
 /** A contact at one end of a step. */
@@ -189,6 +190,9 @@ strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *
                                          strut_event_stepper *l);
 /** Lists closed and stuck contacts after modes have changed and factors T' M^-1 T. */
 void strut_update_active_set(const strut_model *model, strut_event_stepper *l);
+/** Compliances of the closed contacts with sliding masses as they have been placed. */
+void strut_refresh_compliances(const strut_model *model, const strut_state *state,
+                               strut_event_stepper *l);
 /** Multipliers that hold the stuck contacts: adds to a, writes end->touch[].friction. */
 void strut_solve_stick_constraints(const strut_model *model, strut_event_stepper *l, double *a,
                                    strut_step_end *end);

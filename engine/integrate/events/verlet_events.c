@@ -36,7 +36,7 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
   keep_structure_forces(model, state, l->next, ledger);
   keep_ground_motion(model, state, l->next);
   if (!l->closed_count) {
-    mass_kernel(model, state->force, a1, state->scratch);
+    divide_by_mass(model, state, a1);
   } else if (l->all_sliding) {
     mass_kernel(model, state->force, a1, state->scratch);
     implicit_ground_slides(model, l, h, a1);
@@ -46,7 +46,8 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
   } else {
     add_contact_forces(model, l, l->next->motion, l->next->q, predicted, state->force, false,
                        l->next->touch);
-    mass_kernel(model, state->force, a1, state->scratch);
+    divide_by_mass(model, state, a1);
+    if (model->plan & STRUT_TERM_SLIDING_MASS) strut_refresh_compliances(model, state, l);
     implicit_ground_together(model, l, h, a1, l->next->touch);
   }
   correct(n, h, l->now->v, l->now->a, a1, l->next->v);
@@ -56,6 +57,8 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
   else if (l->closed_count)
     implicit_ground_finish(model, state, l, ledger);
   if (!l->all_sliding) settle_band_ties(model, l);
+  if (ledger && model->plan & STRUT_TERM_SLIDING_MASS)
+    strut_sliding_masses_add_power(model, state, l->next->q, l->next->v, a1);
   for (int p = 0; p < STRUT_POWER_ROOM && ledger; p += STRUT_LANES) {
     strut_lanes power = strut_lanes_load(state->power + p);
     strut_lanes_store(l->next->power + p, power);

@@ -173,6 +173,25 @@ static bool tell_bound(const strut_model *model, const strut_tangent *tangent, s
   return true;
 }
 
+/* Signals with a lag and Maxwell branches relax by themselves at these rates, at most [1/s]. */
+static double fastest_relaxation(const strut_model *model) {
+  const strut_feedback_table *f = &model->feedback;
+  double rate = 0.0;
+  for (int32_t i = 0; i < f->lag_count; i++)
+    rate = fmax(rate, 1.0 / model->scene->signals[f->lagged[i]].lag);
+  for (int32_t i = 0; i < f->maxwell_count; i++)
+    rate = fmax(rate, f->maxwell[i].stiffness / f->maxwell[i].damping);
+  return rate;
+}
+
+static void keep_to_relaxation(const strut_model *model, strut_step_limit *limit) {
+  double rate = fastest_relaxation(model);
+  if (!(rate > 0.0)) return;
+  for (strut_region region = 0; region < STRUT_REGIONS; region++)
+    limit->of[region] = fmin(limit->of[region], strut_region_limit(region, -rate, 0.0, 0.0, rate));
+  limit->limit = limit->of[STRUT_REGION_RK4];
+}
+
 /* Without ground's dampers: for methods in which they are implicit, none of which is RK4's kind. */
 static strut_status limits(const strut_model *model, const double *q, const double *rest,
                            strut_closed closed, bool rk4, strut_arena *arena,
@@ -183,6 +202,7 @@ static strut_status limits(const strut_model *model, const double *q, const doub
   for (int region = 0; region < STRUT_REGIONS; region++)
     limit->of[region] = limit->of_implicit[region] = HUGE_VAL;
   strut_status status = strut_tangent_assemble(model, q, rest, closed, arena, &tangent);
+  if (!status && tangent.n == 0) keep_to_relaxation(model, limit);
   if (status || tangent.n == 0) return status;
   if ((model->plan & STRUT_TERM_RIGID) && !(tangent.rigid = strut_rigid_standing(model, q, arena)))
     return STRUT_NO_MEMORY;
@@ -195,6 +215,7 @@ static strut_status limits(const strut_model *model, const double *q, const doub
     room = tell_bound(model, &tangent, arena, limit);
   if (!room) return STRUT_NO_MEMORY;
   limit->limit = limit->of[STRUT_REGION_RK4];
+  keep_to_relaxation(model, limit);
   return STRUT_OK;
 }
 
@@ -302,6 +323,11 @@ static void digest_model(const strut_model *m, uint64_t key[2]) {
   digest(key, m->start, both);
   digest(key, m->point_mass, (size_t)m->node_count * sizeof(double));
   for (int32_t i = 0; i < m->length; i++) digest_number(key, m->fixed[i]);
+  for (int32_t i = 0; i < m->sliding.count; i++) {
+    const strut_sliding_item *s = &m->sliding.item[i];
+    const double item[] = {s->at[0], s->at[1], s->mass, s->start, s->signal < 0};
+    digest(key, item, sizeof item);
+  }
   digest(key, m->scene->gravity, sizeof m->scene->gravity);
   for (int32_t i = 0; i < c->count; i++) {
     const strut_contact_entry *e = &c->entry[i];
@@ -311,6 +337,11 @@ static void digest_model(const strut_model *m, uint64_t key[2]) {
   }
   const double ground[] = {c->normal[0], c->normal[1], c->height, c->belt_speed, m->mass_damping};
   digest(key, ground, sizeof ground);
+  digest_number(key, fastest_relaxation(m));
+  for (int32_t i = 0; i < m->feedback.maxwell_count; i++) {
+    digest_number(key, m->feedback.maxwell[i].member);
+    digest_number(key, m->feedback.maxwell[i].stiffness);
+  }
   for (int32_t k = 0; k < c->surfaces; k++) {
     const strut_surface *s = &c->surface[k];
     const double surface[] = {s->facets,    s->before, s->beyond, s->centre[0],

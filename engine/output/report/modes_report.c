@@ -11,6 +11,7 @@
 #include "engine/output/json_settle.h"
 #include "engine/output/json_value.h"
 #include "engine/output/quantity_text.h"
+#include "engine/scene/signal_program.h"
 
 enum { MOST_ROWS = 40, DIGITS = 6 };
 
@@ -24,6 +25,15 @@ static void add_nodes(strut_json *json, struct cJSON *row, const char *key,
   struct cJSON *nodes = strut_json_object(json, row, key);
   for (int32_t i = 0; i < model->node_count; i++)
     strut_json_numbers(json, nodes, name_of(model, i), values + 2 * i, 2);
+}
+
+/* What acts in a run, but not in modes. */
+static const char *left_out(const strut_model *model) {
+  bool feedback = strut_scene_has_feedback(model->scene), maxwell = model->feedback.maxwell_count;
+  return feedback && maxwell ? "the feedback of sensors and Maxwell branches, which have relaxed"
+         : feedback          ? "the feedback of sensors"
+         : maxwell           ? "Maxwell branches, which have relaxed"
+                             : NULL;
 }
 
 static void add_mode(strut_json *json, struct cJSON *list, const strut_model *model,
@@ -58,6 +68,7 @@ char *strut_modes_json(const strut_model *model, const strut_modes *modes) {
   strut_json_settle(&json, json.root, &modes->settle);
   strut_json_text(&json, json.root, "damping",
                   modes->damped_exactly ? "quadratic eigenproblem" : "modal quotient");
+  strut_json_text(&json, json.root, "left_out", left_out(model));
   struct cJSON *list = strut_json_array(&json, json.root, "modes");
   for (size_t i = 0; i < modes->count; i++) add_mode(&json, list, model, &modes->list[i]);
   return strut_json_end(&json);
@@ -77,6 +88,7 @@ static void add_head(strut_buffer *table, const strut_model *model, const strut_
   char warning[300];
   if (strut_settle_warning(&modes->settle, warning, sizeof warning))
     strut_buffer_add(table, "  %s\n", warning);
+  if (left_out(model)) strut_buffer_add(table, "  without %s\n", left_out(model));
   if (!modes->damped_exactly)
     strut_buffer_add(table,
                      "  damping ratios by modal quotient, coupling between modes neglected\n");

@@ -184,6 +184,7 @@ typedef struct strut_summary {
   strut_cell_summary *cells; /* (cell_count) */
   size_t break_count;
   strut_break_summary *breaks; /* (break_count) in the scene's order, members first */
+  bool feedback;               /* signals follow sensors, which the step limit leaves out */
 } strut_summary;
 
 /** Adds a warning with a printf-style text; replaces one with the same code. */
