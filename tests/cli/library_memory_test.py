@@ -40,6 +40,9 @@ COMMANDS = {  # name: (words, folders and files to remove before, libraries that
     "form": (["form", PENTAGON, "-o", "out.html", "--quiet"], ABORTING),
     "check": (["check", HOPPER], ABORTING),
 }
+GOOD = os.path.abspath("tests/language/good")
+for theme in ("elements", "memory", "feedback", "grounds", "collisions", "drives"):
+    COMMANDS[theme] = (["run", f"{GOOD}/{theme}.yaml", "--quiet"], ABORTING)
 
 
 def call(words, limit=None, **environment):

@@ -49,14 +49,14 @@ static void check_point(strut_study_file *file, int64_t point) {
   size_t columns = strut_grid_columns(&file->study);
   strut_study_value *values = strut_allocate(columns + 1, sizeof *values);
   strut_error error = {0};
-  strut_scene scene;
+  strut_setup setup;
   require(values != NULL);
   strut_grid_values(&file->study, point, values);
   for (size_t k = 0; k < columns; k++)
     check_value(strut_grid_column(&file->study, k, NULL), &values[k]);
-  strut_status status = strut_study_setup(file, values, &scene, &error);
+  strut_status status = strut_study_setup(file, values, &setup, &error);
   require(status == STRUT_OK || (status == STRUT_BAD_SCENE && error.message[0]));
-  if (status == STRUT_OK) strut_scene_free(&scene);
+  if (status == STRUT_OK) strut_setup_free(&setup);
   require(strut_study_try(file, values) == status);
   require(strut_study_messages(file, 50) != NULL);
   strut_release(values);

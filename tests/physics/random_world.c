@@ -388,8 +388,9 @@ static void put_memory(random_world *w) {
       "yield: %.17g, second_stiffness: %.17g}}\n",
       between(w, 1, 6), once_in(w, 2) ? 0.0 : between(w, 5, 40));
   put(w, MEMBERS,
-      "  string: {kind: cable, nodes: [n1, n3], stiffness: 60, pretension: 1, breaks_at: %.17g}\n",
-      between(w, 2, 9));
+      "  string: {kind: cable, nodes: [n1, n3], stiffness: 60, pretension: 1, breaks_at: %.17g, "
+      "longest: %.17g, stop_stiffness: 300}\n",
+      between(w, 2, 9), between(w, 1.7, 1.9));
   put(w, MEMBERS,
       "  latch: {kind: spring, nodes: [n0, n4], stiffness: 90, pretension: 5, released_at: %.17g, "
       "longest: 2.5}\n",

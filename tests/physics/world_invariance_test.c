@@ -82,7 +82,8 @@ static int by_place(const void *a, const void *b) {
 
 static void mirror_numbers(strut_scene *scene) {
   for (size_t i = 0; i < scene->ground_count; i++) mirror_ground(scene, i);
-  qsort(scene->contacts, scene->contact_count, sizeof *scene->contacts, by_place);
+  if (scene->contact_count)
+    qsort(scene->contacts, scene->contact_count, sizeof *scene->contacts, by_place);
   for (size_t i = 0; i < scene->hinge_count; i++) {
     strut_hinge *h = &scene->hinges[i];
     double *c = strut_arena_allocate(&scene->arena, h->law.count + 1, sizeof *c);

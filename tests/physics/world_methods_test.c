@@ -118,8 +118,43 @@ static void test_methods_keep_their_promises(void **unused) {
   assert_true(fine);
 }
 
+/* A whole run with so many allocations. */
+static strut_status run_with(int64_t allocations, const strut_setup *setup) {
+  strut_model *model = NULL;
+  strut_summary s = {.node_count = 0};
+  const strut_run_options options = {0};
+  strut_fail_allocation_after(allocations);
+  strut_status status = strut_model_compile(&setup->scene, &model, NULL);
+  if (status == STRUT_OK) status = strut_simulate(model, &setup->experiment, &options, &s, NULL);
+  strut_fail_allocation_after(-1);
+  if (model) strut_summary_free(&s);
+  strut_model_free(model);
+  return status;
+}
+
+/* A refusal of memory at any place is passed on, and nothing leaks. */
+static void test_refused_memory(void **unused) {
+  (void)unused;
+  static random_world world;
+  static const char *const methods[] = {"rk4", "rk4-events", "adaptive"};
+  model_run run;
+  random_world_make(&world, 1, WORLD_ALL | WORLD_LIGHT);
+  model_read_text(&run, "random.yaml", world.text, set_none);
+  for (int m = 0; m < 3; m++) {
+    int64_t n = 0;
+    motion_experiment(&run.setup, 1e-3, 2e-3);
+    run.setup.experiment.integrator = methods[m];
+    while (run_with(n, &run.setup) == STRUT_NO_MEMORY && n < 10000) n++;
+    assert_int_equal(run_with(n, &run.setup), STRUT_OK);
+    print_message("%s: %d allocations\n", methods[m], (int)n);
+    assert_true(n >= 10);
+  }
+  model_run_free(&run);
+}
+
 int main(int count, char **words) {
   if (count > 1) scenes = strtoull(words[1], NULL, 10);
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_methods_keep_their_promises)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_methods_keep_their_promises),
+                                     cmocka_unit_test(test_refused_memory)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,6 +4,7 @@
  * random instants, and whole motions by a Runge-Kutta method of the test's own, against the engine's.
  */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "engine/forces/memory.h"
@@ -146,7 +147,8 @@ static void test_forces_by_definition(void **unused) {
       }
       end(&f);
     }
-  assert_true(seen.touching > 500 && seen.flying > 500);
+  int least = 20 * (int)scenes; /* as the scenes are made, not by accident */
+  assert_true(seen.touching > least && seen.flying > least);
 }
 
 /* The largest difference of the two, relative to the largest of their kind. */
@@ -198,8 +200,20 @@ static void test_motions(void **unused) {
       if (!(worst < MOTION_TOLERANCE)) break;
     }
     print_message("parts %u: %d steps agree to %.2g\n", parts, steps, worst);
-    assert_true(worst < MOTION_TOLERANCE && steps > (int)motions * STEPS / 2);
+    assert_true(worst < MOTION_TOLERANCE && steps > (int)motions * STEPS / 4);
   }
+}
+
+/* A mass of 1 kg in the corner of two sides, pushed along them; `rest` begins with its depth. */
+static void rest_in_corner(model_run *run, motion *m, const char *rest) {
+  char text[512];
+  snprintf(text, sizeof text,
+           "strut: 1\ngravity: [0, -9.81]\nsolver: {step: 1 ms}\nrun: {duration: 0.2}\n"
+           "nodes: {a: {mass: 1, position: [0, %s}\n",
+           rest);
+  model_read_text(run, "corner.yaml", text, set_none);
+  motion_begin(m, &run->setup.scene, STEP);
+  strut_forces_evaluate(m->model, m->state, 0, m->state->q, m->state->v);
 }
 
 /* Frictions of two sides that meet flatly: found in turns they would take hundreds of turns. */
@@ -207,20 +221,31 @@ static void test_a_node_rests_in_a_flat_corner(void **unused) {
   (void)unused;
   model_run run;
   motion m;
-  model_read_text(&run, "corner.yaml",
-                  "strut: 1\ngravity: [0, -9.81]\n"
-                  "nodes: {a: {position: [0, -4.96 mm], mass: 1}}\n"
-                  "loads: {push: {node: a, force: [1, 0]}}\n"
-                  "ground: {profile: [[-1, 0.05], [0, 0], [1, 0.05]], stiffness: 1000,"
-                  " friction: {mu: 0.5, stick_velocity: 0.1}}\n"
-                  "solver: {step: 1 ms}\nrun: {duration: 0.2}\n",
-                  set_none);
-  motion_begin(&m, &run.setup.scene, STEP);
-  strut_forces_evaluate(m.model, m.state, 0, m.state->q, m.state->v);
+  rest_in_corner(&run, &m,
+                 "-4.96 mm]}}\nloads: {push: {node: a, force: [1, 0]}}\n"
+                 "ground: {profile: [[-1, 0.05], [0, 0], [1, 0.05]], stiffness: 1000,"
+                 " friction: {mu: 0.5, stick_velocity: 0.1}");
   assert_near(m.state->force[0], 0, 1e-13);
   assert_near(m.state->force[1], 0, 1e-13);
   assert_within(m.state->friction[0], 0.3, 0.4);
   assert_within(m.state->friction[1], -1.4, -1.3);
+  motion_end(&m);
+  model_run_free(&run);
+}
+
+/* Too deep to be held by both: the first side breaks loose, and the second holds the rest. */
+static void test_one_side_of_a_flat_corner_breaks_loose(void **unused) {
+  (void)unused;
+  model_run run;
+  motion m;
+  rest_in_corner(&run, &m,
+                 "-10 mm]}}\nloads: {push: {node: a, force: [2, 0]}}\n"
+                 "ground: {profile: [[-1, 0.0159], [0, 0], [1, -0.015]], stiffness: 1000,"
+                 " friction: {mu_forward: 0.5, mu_backward: 0.2, stick_velocity: 0.1}");
+  const double *f = m.state->force, *t = m.state->pose[1].axes.tangent;
+  assert_near(m.state->friction[0], 0.2 * m.state->normal[0], 1e-13);
+  assert_near(f[0] * t[0] + f[1] * t[1], 0, 1e-13);
+  assert_within(m.state->friction[1], -4.2, -4.1);
   motion_end(&m);
   model_run_free(&run);
 }
@@ -230,6 +255,7 @@ int main(int count, char **words) {
   if (count > 2) motions = strtoull(words[2], NULL, 10);
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_forces_by_definition),
                                      cmocka_unit_test(test_motions),
-                                     cmocka_unit_test(test_a_node_rests_in_a_flat_corner)};
+                                     cmocka_unit_test(test_a_node_rests_in_a_flat_corner),
+                                     cmocka_unit_test(test_one_side_of_a_flat_corner_breaks_loose)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
