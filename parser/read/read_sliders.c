@@ -66,8 +66,7 @@ static bool read_slider(strut_reader *reader, const strut_tree *key, strut_slidi
   const strut_slot *position = strut_slot_of(&fields, STRUT_KEY_SLIDER_POSITION);
   const strut_slot *moves = strut_slot_of(&fields, STRUT_KEY_SLIDER_MOVES);
   const strut_slot *travel = strut_slot_of(&fields, STRUT_KEY_SLIDER_TRAVEL);
-  bool known = strut_slot_of(&reader->top, STRUT_KEY_SCENE_MEMBERS)->state == STRUT_GIVEN ||
-               reader->beam_count > 0;
+  bool known = strut_slot_of(&reader->top, STRUT_KEY_SCENE_MEMBERS)->state != STRUT_BROKEN;
   if (member->state == STRUT_GIVEN && known && !is_beam(reader, member->value, owner))
     s->member =
         strut_read_reference(reader, member->value, "member", owner, "member",
