@@ -319,7 +319,8 @@ static void check_computed(strut_study_reader *r, strut_fields *top) {
   strut_word_at(words, (int)study->compute, word, sizeof word);
   for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
     const strut_slot *slot = strut_slot_of(top, keys[i].key);
-    if (slot->state == STRUT_ABSENT || keys[i].of >> study->compute & 1u) continue;
+    bool given = slot->state != STRUT_ABSENT && slot->key; /* a misspelt one has no key */
+    if (!given || keys[i].of >> study->compute & 1u) continue;
     strut_report_error(r->reader, slot->key->place, "'%s' has no meaning with 'compute: %s'",
                        slot->key->text, word);
   }
