@@ -387,8 +387,7 @@ void strut_capstan_pass_straight(const strut_model *model, strut_state *state, i
 double strut_capstan_margin(const strut_model *model, const strut_state *state, int32_t i, int k,
                             const double *q, const double *v, double h) {
   cable c;
-  if (!stand(model, state, i, q, &c)) return 1.0;
-  if (is_slack(&c)) return 1.0;
+  if (!stand(model, state, i, q, &c) || is_slack(&c)) return c.ea;
   if (c.mode[k] == STRUT_GUIDE_STICKS) return room_at(&c, k, ROUNDING);
   find_rates(model, state, i, v, &c);
   find_flows(&c);

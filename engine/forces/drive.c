@@ -6,6 +6,7 @@
 
 #include "engine/forces/feedback.h"
 #include "engine/forces/memory.h"
+#include "engine/forces/sliding_masses.h"
 #include "engine/scene/signal_motion.h"
 
 strut_signal_inputs strut_drive_inputs(const strut_model *model, const strut_state *state,
@@ -51,6 +52,7 @@ void strut_drive_apply_sensed(const strut_model *model, strut_state *state, doub
   const strut_drive_table *d = &model->drives;
   double *restrict rest = state->rest, *restrict rest_rate = state->rest_rate;
   state->drive_time = t;
+  if (model->plan & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_place(model, state, t);
   if (state->ground_motion) strut_grounds_move(model, t + state->time_offset, state->ground_motion);
   for (int32_t i = 0; i < d->count; i++) {
     double value, rate;
@@ -107,6 +109,10 @@ double strut_drive_next_break(const strut_model *model, const strut_state *state
   for (size_t i = 0; i < model->scene->unbalance_count; i++)
     if (model->scene->unbalances[i].signal >= 0)
       first = fmin(first, strut_signal_next_break(signals, model->scene->unbalances[i].signal, t));
+  for (int32_t k = 0; k < model->sliding.moving_count; k++) {
+    const strut_sliding_item *s = &model->sliding.item[model->sliding.moving[k]];
+    first = fmin(first, strut_signal_next_break(signals, s->signal, t));
+  }
   for (size_t g = 0; g < model->scene->ground_count && model->contacts.moves; g++)
     for (int c = 0; c < 2; c++)
       if (model->scene->grounds[g].moves[c])

@@ -4,8 +4,23 @@
 #include "engine/forces/drive.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/maxwell.h"
+#include "engine/forces/sliding_masses.h"
 #include "engine/forces/support_motion.h"
 #include "engine/model/pose.h"
+
+/* Of masses that rest on their members. */
+static double sliding_at_rest(const strut_model *model, const double *v) {
+  double sum = 0.0;
+  for (int32_t i = 0; i < model->sliding.count; i++) {
+    const strut_sliding_item *s = &model->sliding.item[i];
+    double far = s->start, near = 1.0 - far;
+    for (int c = 0; c < 2 && s->signal < 0; c++) {
+      double u = near * v[s->at[0] + (uint32_t)c] + far * v[s->at[1] + (uint32_t)c];
+      sum += 0.5 * s->mass * u * u;
+    }
+  }
+  return sum;
+}
 
 double strut_energy_kinetic(const strut_model *model, const double *v) {
   const strut_member_table *t = &model->members;
@@ -20,7 +35,7 @@ double strut_energy_kinetic(const strut_model *model, const double *v) {
                         : t->mass[j] / 4.0 * (a * a + b * b);
     }
   }
-  return sum;
+  return sum + (model->sliding.count ? sliding_at_rest(model, v - 2) : 0.0);
 }
 
 static double elastic(const strut_model *model, const strut_state *state, const double *q) {
@@ -64,9 +79,12 @@ strut_energies strut_energy_evaluate(const strut_model *model, strut_state *stat
 
 strut_energies strut_energy_evaluate_at(const strut_model *model, const strut_state *state,
                                         const double *q, const double *v) {
-  return (strut_energies){strut_energy_kinetic(model, v),
-                          elastic(model, state, q) + strut_maxwell_energy(model, v),
-                          gravity(model, q), contact(model, state, q)};
+  strut_energies e = {strut_energy_kinetic(model, v),
+                      elastic(model, state, q) + strut_maxwell_energy(model, v), gravity(model, q),
+                      contact(model, state, q)};
+  if (model->plan & STRUT_TERM_SLIDING_MASS)
+    strut_sliding_masses_add_energies(model, state, q, v, &e.kinetic, &e.gravity);
+  return e;
 }
 
 double strut_energy_load_potential(const strut_model *model, const strut_state *state) {

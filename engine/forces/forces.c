@@ -17,6 +17,7 @@ void strut_forces_add_rare(const strut_model *model, strut_state *state, double 
   if (plan & STRUT_TERM_ACTUATOR_FORCES) strut_actuator_forces_apply(model, state, t, q, v);
   if (plan & STRUT_TERM_UNBALANCE) strut_unbalance_apply(model, state, t, v);
   if (plan & STRUT_TERM_MASS_DAMPING) strut_mass_damping_apply(model, state, v);
+  if (plan & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_apply(model, state, t, q, v);
   if (plan & STRUT_TERM_SUPPORT_MOTION) strut_support_motion_apply(model, state, t, v);
 }
 
@@ -25,9 +26,9 @@ void strut_forces_evaluate(const strut_model *model, strut_state *state, double 
   for (int32_t i = 0; i < model->contacts.count; i++)
     state->normal[i] = state->friction[i] = 0.0; /* the sum fills those that touch, and only them */
   if (state->ledger)
-    forces_sum(model, state, t, q, v, true);
+    forces_sum(model, state, t, q, v, STRUT_TERMS_ALL, true);
   else
-    forces_sum(model, state, t, q, v, false);
+    forces_sum(model, state, t, q, v, STRUT_TERMS_ALL, false);
   if (state->rigid) strut_rigid_constrain(model, state, q, v);
 }
 
@@ -46,5 +47,7 @@ void strut_forces_acceleration(const strut_model *model, strut_state *state, dou
                                double *restrict a) {
   assert(model->mass && "a model without mass is for statics only");
   strut_forces_evaluate(model, state, t, q, v);
-  mass_kernel(model, state->force, a, state->scratch);
+  divide_by_mass(model, state, a, STRUT_TERMS_ALL);
+  if (state->ledger && model->plan & STRUT_TERM_SLIDING_MASS)
+    strut_sliding_masses_add_power(model, state, q, v, a);
 }

@@ -14,6 +14,7 @@
 #include "engine/forces/forces.h"
 #include "engine/forces/ground_kernel.h"
 #include "engine/forces/members_kernel.h"
+#include "engine/forces/sliding_masses.h"
 #include "engine/forces/support_motion.h"
 #include "engine/forces/surfaces.h"
 #include "engine/model/mass_kernel.h"
@@ -46,15 +47,15 @@ STRUT_INLINE void forces_of_members(const strut_model *model, strut_state *state
   strut_lanes_store(power + STRUT_POWER_CONTACT, (strut_lanes){0.0, 0.0, exchanged, 0.0});
 }
 
-/* In forces.c, not inlined: what the terms of STRUT_TERMS_RARE add to the state's force. */
+/* In forces.c, not inlined: what the terms of STRUT_TERMS_RARE add to the state's force, but the ground's. */
 void strut_forces_add_rare(const strut_model *model, strut_state *state, double t, const double *q,
                            const double *v);
 
-/* All forces but the ground's. */
+/* All forces but the ground's. terms: which ones the plan may have, see STRUT_TERMS_RARE. */
 STRUT_INLINE void forces_of_structure(const strut_model *model, strut_state *state, double t,
                                       const double *restrict q, const double *restrict v,
-                                      bool ledger) {
-  unsigned plan = model->plan;
+                                      unsigned terms, bool ledger) {
+  unsigned plan = model->plan & terms;
   double *restrict force = state->force;
   state->evaluations++;
   for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) state->power[p] = 0.0;
@@ -71,20 +72,30 @@ STRUT_INLINE void forces_of_structure(const strut_model *model, strut_state *sta
 }
 
 STRUT_INLINE void forces_sum(const strut_model *model, strut_state *state, double t,
-                             const double *restrict q, const double *restrict v, bool ledger) {
-  forces_of_structure(model, state, t, q, v, ledger);
+                             const double *restrict q, const double *restrict v, unsigned terms,
+                             bool ledger) {
+  forces_of_structure(model, state, t, q, v, terms, ledger);
   if (model->plan & STRUT_TERM_CONTACT)
     ground_kernel(model, state, q, v, state->force, ledger);
-  else if (model->plan & STRUT_TERM_SURFACES)
+  else if (model->plan & terms & STRUT_TERM_SURFACES)
     strut_surfaces_add_forces(model, state, q, v);
+}
+
+/* a = M^-1 force, M with the masses that slide. */
+STRUT_INLINE void divide_by_mass(const strut_model *model, strut_state *state, double *restrict a,
+                                 unsigned terms) {
+  mass_kernel(model, state->force, a, state->scratch);
+  if (model->plan & terms & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_correct(model, state, a);
 }
 
 /* See strut_forces_acceleration. */
 STRUT_INLINE void forces_kernel(const strut_model *model, strut_state *state, double t,
                                 const double *restrict q, const double *restrict v,
-                                double *restrict a, bool ledger) {
-  forces_sum(model, state, t, q, v, ledger);
-  mass_kernel(model, state->force, a, state->scratch);
+                                double *restrict a, unsigned terms, bool ledger) {
+  forces_sum(model, state, t, q, v, terms, ledger);
+  divide_by_mass(model, state, a, terms);
+  if (ledger && model->plan & terms & STRUT_TERM_SLIDING_MASS)
+    strut_sliding_masses_add_power(model, state, q, v, a);
 }
 
 #endif

@@ -300,7 +300,7 @@ STRUT_LANE_INLINE void lane_structure(strut_lane_tables *t, const double *restri
                                       const double *restrict v, bool ledger) {
   const strut_model *m = t->first;
   lane_real zero = {0};
-  for (size_t k = 0; k < STRUT_POWER_COUNT && ledger; k++)
+  for (size_t k = 0; k < STRUT_LANE_POWERS && ledger; k++)
     LANE_EACH(lane_put(t->power, k, p, zero));
   for (size_t i = 0; i < 2 * (size_t)m->node_count; i++)
     LANE_EACH(lane_put(t->force, i, p,

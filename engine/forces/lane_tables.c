@@ -36,7 +36,7 @@ bool strut_lanes_possible(const strut_model *model) {
   const unsigned one_by_one = STRUT_TERM_RIGID | STRUT_TERM_ACTUATOR_FORCES |
                               STRUT_TERM_MASS_DAMPING | STRUT_TERM_SUPPORT_MOTION |
                               STRUT_TERM_UNBALANCE | STRUT_TERM_MEMORY | STRUT_TERM_SURFACES |
-                              STRUT_TERM_FEEDBACK;
+                              STRUT_TERM_FEEDBACK | STRUT_TERM_SLIDING_MASS;
   if (!mass || (model->plan & one_by_one) || !strains_are_known(&model->elements)) return false;
   bool directional = model->plan & STRUT_TERM_DIRECTION;
   if ((model->plan & STRUT_TERM_LAWS) && !(directional && laws_are_printed(model))) return false;
@@ -136,7 +136,7 @@ static void list_tables(strut_lane_tables *t, table *list) {
                              {&t->block_inverse[0], blocks[0]},
                              {&t->block_inverse[1], blocks[1]},
                              {&t->force, length},
-                             {&t->power, STRUT_POWER_COUNT},
+                             {&t->power, STRUT_LANE_POWERS},
                              {&t->element_stiffness, elements},
                              {&t->element_damping, elements},
                              {&t->element_natural, elements},

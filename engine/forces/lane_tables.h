@@ -14,6 +14,10 @@
 /** The most lanes of a batch. */
 enum { STRUT_MOST_LANES = 8 };
 
+/** Powers of runs in lanes: all but the last, that of supports, which do not move there. */
+enum { STRUT_LANE_POWERS = STRUT_POWER_SUPPORT };
+_Static_assert(STRUT_POWER_SUPPORT == STRUT_POWER_COUNT - 1, "powers of lanes come first");
+
 /** Rows of a contact, of the ground, and of a signal. */
 typedef enum strut_lane_contact_row {
   STRUT_LANE_STIFFNESS,
@@ -67,7 +71,7 @@ typedef struct strut_lane_tables {
   /* (elements, width): numbers; what a state has of each; modes as numbers */
   double *element_stiffness, *element_damping, *element_natural;
   double *element_turn, *element_acts, *element_piece;
-  double *power; /* (STRUT_POWER_COUNT, width) */
+  double *power; /* (STRUT_LANE_POWERS, width) */
 } strut_lane_tables;
 
 /** Is there a kernel for what the model needs: no rigid bars, no factor, the printed friction only? */

@@ -11,6 +11,23 @@ static mass_shares shares_of(const strut_model *model) {
   return consistent ? (mass_shares){1.0 / 3.0, 1.0 / 6.0} : (mass_shares){0.5, 0.0};
 }
 
+/* Of masses that rest on their members; returns what is lost. */
+static double damp_sliding_masses(const strut_model *model, const double *v, double *force) {
+  double lost = 0.0;
+  for (int32_t i = 0; i < model->sliding.count; i++) {
+    const strut_sliding_item *s = &model->sliding.item[i];
+    double far = s->start, near = 1.0 - far;
+    for (int c = 0; c < 2 && s->signal < 0; c++) {
+      uint32_t a = s->at[0] + (uint32_t)c, b = s->at[1] + (uint32_t)c;
+      double u = near * v[a] + far * v[b], drag = model->mass_damping * s->mass * u;
+      force[a] -= near * drag;
+      force[b] -= far * drag;
+      lost += drag * u;
+    }
+  }
+  return lost;
+}
+
 void strut_mass_damping_apply(const strut_model *model, strut_state *state, const double *v) {
   const strut_member_table *t = &model->members;
   const mass_shares share = shares_of(model);
@@ -30,6 +47,7 @@ void strut_mass_damping_apply(const strut_model *model, strut_state *state, cons
       lost += at_a * a + at_b * b;
     }
   }
+  if (model->sliding.count) lost += damp_sliding_masses(model, v - 2, force - 2);
   if (!state->ledger) return;
   state->power[STRUT_POWER_MEMBERS] += lost;
   state->power[STRUT_POWER_EXCHANGED] += lost;
@@ -50,6 +68,14 @@ void strut_mass_damping_add(const strut_model *model, const int32_t *row_of, str
       if (a >= 0) strut_triplets_add(sum, a, a, share.own * m);
       if (b >= 0) strut_triplets_add(sum, b, b, share.own * m);
       if (a >= 0 && b >= 0) strut_triplets_add(sum, a, b, share.other * m);
+    }
+    for (int32_t i = 0; i < model->sliding.count; i++) {
+      const strut_sliding_item *s = &model->sliding.item[i];
+      int32_t a = row_of[s->at[0]], b = row_of[s->at[1]];
+      double m = model->mass_damping * s->mass, far = s->start, near = 1.0 - far;
+      if (a >= 0) strut_triplets_add(sum, a, a, near * near * m);
+      if (b >= 0) strut_triplets_add(sum, b, b, far * far * m);
+      if (a >= 0 && b >= 0) strut_triplets_add(sum, a, b, near * far * m);
     }
   }
 }

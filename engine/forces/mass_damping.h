@@ -12,7 +12,9 @@ void strut_mass_damping_apply(const strut_model *model, strut_state *state, cons
 /** Contributions of strut_mass_damping_add at most. */
 static inline size_t strut_mass_damping_entries(const strut_model *model) {
   bool damped = model->plan & STRUT_TERM_MASS_DAMPING;
-  return damped ? 2 * ((size_t)model->node_count + 3 * (size_t)model->members.count) : 0;
+  return damped ? 2 * ((size_t)model->node_count + 3 * (size_t)model->members.count +
+                       3 * (size_t)model->sliding.count)
+                : 0;
 }
 /** Adds alpha M at the rows of free coordinates: row_of (length), -1 of the others. */
 void strut_mass_damping_add(const strut_model *model, const int32_t *row_of, strut_triplets *sum);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "engine/forces/energy.h"
+#include "engine/forces/sliding_masses.h"
 #include "engine/model/mass.h"
 #include "engine/scene/signal_motion.h"
 
@@ -96,6 +97,7 @@ bool strut_support_motion_kick(const strut_model *model, strut_state *state, dou
   double work = 0.0, *change = state->support_answer;
   if (!table->corners || !find_impulses(model, state, from, to)) return false;
   strut_mass_solve(model, state->force, change, state->scratch);
+  if (model->plan & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_correct(model, state, change);
   for (int32_t i = 0; i < model->length; i++) {
     work += state->force[i] * (state->v[i] + 0.5 * change[i]);
     state->v[i] += change[i];

@@ -33,6 +33,13 @@ static int32_t push(const strut_model *model, strut_state *state, const double *
   return touching;
 }
 
+static double slip_of(const strut_model *model, const strut_state *state, const double *v,
+                      int32_t i) {
+  const strut_contact_table *c = &model->contacts;
+  strut_vec2 u = strut_contact_velocity(c, i, v, state->ground_motion);
+  return strut_component(state->pose[i].axes.tangent, u.x, u.y) - strut_contact_belt(c, i);
+}
+
 /* Friction of contact i under the other forces on its node; returns its change. */
 static double rub(const strut_model *model, strut_state *state, const double *v, int32_t i) {
   const strut_contact_table *c = &model->contacts;
@@ -40,13 +47,85 @@ static double rub(const strut_model *model, strut_state *state, const double *v,
   const double *t = state->pose[i].axes.tangent;
   double *f = state->force + c->at[i], before = state->friction[i];
   if (e->friction.law == STRUT_FRICTION_NONE) return 0.0;
-  strut_vec2 u = strut_contact_velocity(c, i, v, state->ground_motion);
-  double slip = strut_component(t, u.x, u.y) - strut_contact_belt(c, i);
-  double applied = strut_component(t, f[0], f[1]) - before;
+  double applied = strut_component(t, f[0], f[1]) - before, slip = slip_of(model, state, v, i);
   double friction = ground_friction(e, state->normal[i], slip, applied, state->rigid);
   f[0] += (friction - before) * t[0], f[1] += (friction - before) * t[1];
   state->friction[i] = friction;
   return friction - before;
+}
+
+static bool can_hold(const strut_model *model, const strut_state *state, int32_t i,
+                     double friction) {
+  const strut_friction *f = &model->contacts.entry[i].friction;
+  return fabs(friction) < strut_friction_static(f, -friction) * state->normal[i];
+}
+
+/* Is contact i within its band, and does it hold against the other forces as they are now? */
+static bool sticks(const strut_model *model, const strut_state *state, const double *v, int32_t i) {
+  const strut_friction *law = &model->contacts.entry[i].friction;
+  const double *t = state->pose[i].axes.tangent, *f = state->force + model->contacts.at[i];
+  bool has_band = strut_friction_states(law->law) == STRUT_FRICTION_STICK_BAND;
+  return has_band && state->pose[i].gap < 0.0 &&
+         fabs(slip_of(model, state, v, i)) < law->stick_velocity &&
+         can_hold(model, state, i, state->friction[i] - strut_component(t, f[0], f[1]));
+}
+
+static void set_friction(const strut_model *model, strut_state *state, int32_t i, double friction) {
+  double *f = state->force + model->contacts.at[i], change = friction - state->friction[i];
+  f[0] += change * state->pose[i].axes.tangent[0], f[1] += change * state->pose[i].axes.tangent[1];
+  state->friction[i] = friction;
+}
+
+/* The share of the way to `friction` at which contact i breaks loose; above 1: it does not. */
+static double way_to_break(const strut_model *model, const strut_state *state, int32_t i,
+                           double friction) {
+  double change = friction - state->friction[i], side = change < 0.0 ? -1.0 : 1.0;
+  double bound = strut_friction_static(&model->contacts.entry[i].friction, -side);
+  double way = side * bound * state->normal[i] - state->friction[i];
+  return change != 0.0 ? way / change : HUGE_VAL;
+}
+
+/*
+ * Two contacts of a node that stick hold it together: their frictions balance the other forces in both
+ * directions, or one of them breaks loose on the way there. One after the other they would go it the more
+ * slowly the more alike their directions are.
+ */
+static void hold_together(const strut_model *model, strut_state *state, const double *v, int32_t a,
+                          int32_t b) {
+  const double *ta = state->pose[a].axes.tangent, *tb = state->pose[b].axes.tangent;
+  const double *f = state->force + model->contacts.at[a];
+  double area = ta[0] * tb[1] - ta[1] * tb[0];
+  double x = f[0] - state->friction[a] * ta[0] - state->friction[b] * tb[0];
+  double y = f[1] - state->friction[a] * ta[1] - state->friction[b] * tb[1];
+  if (fabs(area) < 1e-9) return;
+  double by_a = -(x * tb[1] - y * tb[0]) / area, by_b = (x * ta[1] - y * ta[0]) / area;
+  if (can_hold(model, state, a, by_a) && can_hold(model, state, b, by_b)) {
+    set_friction(model, state, a, by_a);
+    set_friction(model, state, b, by_b);
+    return;
+  }
+  bool first = way_to_break(model, state, a, by_a) <= way_to_break(model, state, b, by_b);
+  int32_t loose = first ? a : b;
+  double side = (first ? by_a : by_b) < state->friction[loose] ? -1.0 : 1.0;
+  double kinetic = strut_friction_kinetic(&model->contacts.entry[loose].friction, -side);
+  set_friction(model, state, loose, side * kinetic * state->normal[loose]);
+  rub(model, state, v, first ? b : a);
+}
+
+/* The same of those two of all that stick whose directions differ most. */
+static void hold_node(const strut_model *model, strut_state *state, const double *v, int32_t first,
+                      int32_t end) {
+  int32_t a = -1, b = -1;
+  double most = 0.0;
+  for (int32_t i = first; i < end; i++) {
+    if (!sticks(model, state, v, i)) continue;
+    for (int32_t j = i + 1; j < end; j++) {
+      const double *ti = state->pose[i].axes.tangent, *tj = state->pose[j].axes.tangent;
+      double area = fabs(ti[0] * tj[1] - ti[1] * tj[0]);
+      if (area > most && sticks(model, state, v, j)) most = area, a = i, b = j;
+    }
+  }
+  if (a >= 0) hold_together(model, state, v, a, b);
 }
 
 /* Friction of all contacts of a node, until they agree. */
@@ -61,6 +140,7 @@ static void rub_all(const strut_model *model, strut_state *state, const double *
       largest = fmax(largest, fabs(state->friction[i]));
     }
     if (changed <= 1e-15 * largest) return;
+    hold_node(model, state, v, first, end);
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "engine/base/trig.h"
 #include "engine/base/vec.h"
+#include "engine/forces/sliding_masses.h"
 #include "engine/model/mass.h"
 #include "engine/scene/signal_motion.h"
 
@@ -96,6 +97,7 @@ bool strut_unbalance_kick(const strut_model *model, strut_state *state, double f
           any;
   if (!any) return false;
   strut_mass_solve(model, state->force, change, state->scratch);
+  if (model->plan & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_correct(model, state, change);
   for (int32_t i = 0; i < model->length; i++) {
     work += state->force[i] * (state->v[i] + 0.5 * change[i]);
     state->v[i] += change[i];

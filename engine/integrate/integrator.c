@@ -74,6 +74,11 @@ strut_status strut_integrator_check(const strut_model *model, const strut_experi
                       "%s cannot step over what breaks, is released or yields; use "
                       "solver.integrator rk4-events, verlet-events or adaptive",
                       name);
+  if (method->no_sliding_masses && model->plan & STRUT_TERM_SLIDING_MASS)
+    return strut_fail(error, STRUT_USAGE,
+                      "%s has no varying mass matrix, and slider '%s' moves; use solver.integrator "
+                      "rk4, verlet or adaptive",
+                      name, scene->sliding_masses[model->sliding.moving[0]].name);
   if (!(model->plan & STRUT_TERM_RIGID)) return STRUT_OK;
   if (model->plan & STRUT_TERM_SURFACES)
     return strut_fail(

@@ -65,7 +65,8 @@ typedef struct strut_integrator {
    */
   void (*advance)(const strut_model *model, strut_state *state, void *workspace, double dt,
                   int64_t count);
-  bool no_memory; /* cannot step elements with memory */
+  bool no_memory;         /* cannot step elements with memory */
+  bool no_sliding_masses; /* cannot step masses that slide along members */
 } strut_integrator;
 
 /** The i-th method, or NULL after the last. */

@@ -320,6 +320,7 @@ const strut_integrator strut_integrator_midpoint = {
     .role = STRUT_ROLE_STIFF,
     .no_ground = true,
     .no_memory = true,
+    .no_sliding_masses = true,
     .create = midpoint_create,
     .restart = midpoint_restart,
     .advance = midpoint_advance,

@@ -1,20 +1,26 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
  * How a method of plain steps comes to run its loop: with the energy ledger and without it are two
- * functions, each compiled for several processors, so that who keeps no ledger does not pay for it.
+ * functions, and a third is for scenes with rare terms, each compiled for several processors, so that a
+ * scene does not pay for what it does not need.
  */
 #ifndef STRUT_ENGINE_INTEGRATE_PLAIN_STEPS_H
 #define STRUT_ENGINE_INTEGRATE_PLAIN_STEPS_H
 
 #include "engine/forces/forces_kernel.h"
+#include "engine/forces/sliding_masses.h"
 #include "engine/forces/unbalance.h"
 
 /** Terms whose impulses and positions plain methods apply at the end of a step. */
-enum { STRUT_TERMS_AT_STEP_END = STRUT_TERM_SUPPORT_MOTION | STRUT_TERM_UNBALANCE };
+enum {
+  STRUT_TERMS_AT_STEP_END =
+      STRUT_TERM_SUPPORT_MOTION | STRUT_TERM_UNBALANCE | STRUT_TERM_SLIDING_MASS
+};
 
 /** At the end of the step of dt [s] from state->step on: supports that move, and impulses. */
 static inline void end_moving_step(const strut_model *model, strut_state *state, double dt) {
   double t = ((double)state->step + 1.0) * dt;
+  strut_sliding_masses_kick(model, state, t - dt, t);
   strut_support_motion_kick(model, state, t - dt, t);
   strut_unbalance_kick(model, state, t - dt, t);
   strut_support_motion_place(model, state, t, state->q, state->v);
@@ -22,25 +28,33 @@ static inline void end_moving_step(const strut_model *model, strut_state *state,
 
 /**
  * Defines NAME_plain(model, state, work, dt, count), which runs
- * `steps(model, state, work, dt, count, ledger)`, an inlined function, as the state's ledger asks.
+ * `steps(model, state, work, dt, count, terms, ledger)`, an inlined function, as plan and ledger ask.
  * NAME must be the method's own: cloned functions of equal names do not link with clang (hot.h).
  */
 #define STRUT_PLAIN_STEPS(name, work_type, steps)                                                  \
   STRUT_CLONES                                                                                     \
   static void name##_with_ledger(const strut_model *model, strut_state *state, work_type *work,    \
                                  double dt, int64_t count) {                                       \
-    steps(model, state, work, dt, count, true);                                                    \
+    steps(model, state, work, dt, count, STRUT_TERMS_COMMON, true);                                \
   }                                                                                                \
                                                                                                    \
   STRUT_CLONES                                                                                     \
   static void name##_without_ledger(const strut_model *model, strut_state *state, work_type *work, \
                                     double dt, int64_t count) {                                    \
-    steps(model, state, work, dt, count, false);                                                   \
+    steps(model, state, work, dt, count, STRUT_TERMS_COMMON, false);                               \
+  }                                                                                                \
+                                                                                                   \
+  STRUT_CLONES                                                                                     \
+  static void name##_with_rare_terms(const strut_model *model, strut_state *state,                 \
+                                     work_type *work, double dt, int64_t count) {                  \
+    steps(model, state, work, dt, count, STRUT_TERMS_ALL, state->ledger);                          \
   }                                                                                                \
                                                                                                    \
   static void name##_plain(const strut_model *model, strut_state *state, work_type *work,          \
                            double dt, int64_t count) {                                             \
-    if (state->ledger)                                                                             \
+    if (model->plan & STRUT_TERMS_RARE)                                                            \
+      name##_with_rare_terms(model, state, work, dt, count);                                       \
+    else if (state->ledger)                                                                        \
       name##_with_ledger(model, state, work, dt, count);                                           \
     else                                                                                           \
       name##_without_ledger(model, state, work, dt, count);                                        \

@@ -54,17 +54,17 @@ STRUT_INLINE void combine(int32_t n, double h, double *restrict z, const double 
  * dt and (n + 1) dt, never sums. With the ledger the powers enter the works with the stage's weight.
  */
 STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, rk4_workspace *w,
-                            double dt, int64_t count, bool ledger, bool rigid) {
+                            double dt, int64_t count, unsigned terms, bool ledger, bool rigid) {
   static const double ahead[4] = {0.0, 0.5, 0.5, 1.0}, weight[4] = {1, 2, 2, 1};
   double *restrict q = state->q, *restrict v = state->v;
   const double *const at[4] = {q, w->q, w->q, w->q};
   const double *const speed[4] = {v, w->v[1], w->v[2], w->v[3]};
   int32_t n = model->length;
-  bool moves = model->plan & STRUT_TERMS_AT_STEP_END;
+  bool moves = model->plan & terms & STRUT_TERMS_AT_STEP_END;
   for (int64_t end = state->step + count; state->step < end; state->step++) {
     for (int k = 0; k < 4; k++) {
       double t = ((double)state->step + ahead[k]) * dt;
-      forces_kernel(model, state, t, at[k], speed[k], w->a[k], ledger);
+      forces_kernel(model, state, t, at[k], speed[k], w->a[k], terms, ledger);
       if (rigid) strut_rigid_accelerate(model, state, at[k], speed[k], w->a[k]);
       for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++)
         state->work[p] += weight[k] * (dt / 6.0) * state->power[p];
@@ -78,14 +78,14 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, rk4_wo
     combine(n, dt, v, w->a[0], w->a[1], w->a[2], w->a[3]);
     if (moves) end_moving_step(model, state, dt);
     if (rigid) strut_rigid_project(model, state, q, v);
-    if (model->plan & STRUT_TERM_MEMORY)
+    if (model->plan & terms & STRUT_TERM_MEMORY)
       strut_memory_renew(model, state, ((double)state->step + 1.0) * dt);
   }
 }
 
 STRUT_INLINE void run_elastic(const strut_model *model, strut_state *state, rk4_workspace *w,
-                              double dt, int64_t count, bool ledger) {
-  run_steps(model, state, w, dt, count, ledger, false);
+                              double dt, int64_t count, unsigned terms, bool ledger) {
+  run_steps(model, state, w, dt, count, terms, ledger, false);
 }
 
 STRUT_PLAIN_STEPS(rk4, rk4_workspace, run_elastic)
@@ -93,7 +93,7 @@ STRUT_PLAIN_STEPS(rk4, rk4_workspace, run_elastic)
 STRUT_CLONES
 static void rk4_rigid(const strut_model *model, strut_state *state, rk4_workspace *w, double dt,
                       int64_t count) {
-  run_steps(model, state, w, dt, count, state->ledger, true);
+  run_steps(model, state, w, dt, count, STRUT_TERMS_ALL, state->ledger, true);
 }
 
 static void rk4_advance(const strut_model *model, strut_state *state, void *workspace, double dt,

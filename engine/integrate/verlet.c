@@ -35,11 +35,11 @@ static void verlet_restart(const strut_model *model, strut_state *state, void *w
 }
 
 STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, verlet_workspace *w,
-                            double dt, int64_t count, bool ledger) {
+                            double dt, int64_t count, unsigned terms, bool ledger) {
   double *restrict q = state->q, *restrict v = state->v, *restrict predicted = w->predicted;
   double half = 0.5 * dt;
   int32_t n = model->length;
-  bool moves = model->plan & STRUT_TERMS_AT_STEP_END;
+  bool moves = model->plan & terms & STRUT_TERMS_AT_STEP_END;
   for (int64_t end = state->step + count; state->step < end; state->step++) {
     double *a = w->a, *next = w->next;
     for (int32_t i = 0; i < n; i += STRUT_LANES) {
@@ -49,7 +49,7 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, verlet
     }
     double t = ((double)state->step + 1.0) * dt;
     if (moves) strut_support_motion_place(model, state, t, q, predicted);
-    forces_kernel(model, state, t, q, predicted, next, ledger);
+    forces_kernel(model, state, t, q, predicted, next, terms, ledger);
     for (int32_t i = 0; i < n; i += STRUT_LANES)
       strut_lanes_store(v + i, strut_lanes_load(v + i) + half * (strut_lanes_load(a + i) +
                                                                  strut_lanes_load_pairs(next + i)));
@@ -59,8 +59,8 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, verlet
       w->power[p] = state->power[p];
     }
     w->a = next, w->next = a;
-    if (model->plan & STRUT_TERM_MEMORY && strut_memory_renew(model, state, t)) {
-      forces_kernel(model, state, t, q, v, w->a, ledger);
+    if (model->plan & terms & STRUT_TERM_MEMORY && strut_memory_renew(model, state, t)) {
+      forces_kernel(model, state, t, q, v, w->a, terms, ledger);
       for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) w->power[p] = state->power[p];
     }
   }

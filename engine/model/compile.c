@@ -8,6 +8,7 @@
 #include "engine/model/mass.h"
 #include "engine/model/memory_estimate.h"
 #include "engine/model/model.h"
+#include "engine/model/sliding_compile.h"
 
 /* Zeroed doubles in the model's arena; *failed remembers a refusal so that passes stay short. */
 static double *doubles(strut_model *model, size_t count, bool *failed) {
@@ -139,7 +140,11 @@ static void compile_feedback(strut_model *model, bool *failed) {
   if (!strut_feedback_compile(model)) *failed = true;
 }
 
-/* Half of each member's mass at each of its ends (7), and the point masses. */
+static void compile_sliding_masses(strut_model *model, bool *failed) {
+  if (!strut_sliding_masses_compile(model)) *failed = true;
+}
+
+/* Half of each member's mass at each of its ends (7), the point masses, and the sliding ones. */
 static void compile_weights(strut_model *model, bool *failed) {
   const strut_member_table *t = &model->members;
   double *weight = doubles(model, (size_t)model->node_count, failed);
@@ -148,6 +153,14 @@ static void compile_weights(strut_model *model, bool *failed) {
   for (int32_t j = 0; j < t->count; j++) {
     weight[t->from[j] / 2] += 0.5 * t->mass[j];
     weight[t->to[j] / 2] += 0.5 * t->mass[j];
+  }
+  for (int32_t i = 0; i < model->node_count && model->sliding.count; i++)
+    if (!(weight[i] > 0) && !(model->fixed[2 * i] && model->fixed[2 * i + 1]))
+      model->sliding.massless_node = true;
+  for (int32_t i = 0; i < model->sliding.count; i++) {
+    const strut_sliding_item *s = &model->sliding.item[i];
+    weight[s->at[0] / 2] += (1.0 - s->start) * s->mass;
+    weight[s->at[1] / 2] += s->start * s->mass;
   }
   model->weight = weight;
 }
@@ -259,13 +272,15 @@ strut_status strut_model_compile(const strut_scene *scene, strut_model **result,
   model->scene = scene;
   bool failed = false;
   void (*const passes[])(strut_model *, bool *) = {
-      compile_nodes,   compile_members,        compile_elements,   compile_drives,
-      compile_weights, compile_loads,          compile_contacts,   compile_actuator_forces,
-      compile_damping, compile_support_motion, compile_unbalances, compile_feedback};
+      compile_nodes,           compile_members, compile_elements,       compile_drives,
+      compile_sliding_masses,  compile_weights, compile_loads,          compile_contacts,
+      compile_actuator_forces, compile_damping, compile_support_motion, compile_unbalances,
+      compile_feedback};
   for (size_t i = 0; i < sizeof passes / sizeof passes[0] && !failed; i++)
     passes[i](model, &failed);
   strut_status status = failed ? strut_memory_fail_model(scene, error)
                                : strut_mass_create(model, &model->mass, error);
+  if (!status && strut_sliding_masses_solve(model)) status = strut_memory_fail_model(scene, error);
   if (status) {
     strut_model_free(model);
     return status;

@@ -172,6 +172,7 @@ static strut_status make_operator(strut_model *model, strut_arena *scratch, stru
 
 /* A free coordinate without mass cannot be moved: such a model is for statics only. */
 static bool has_massless_node(const strut_model *model) {
+  if (model->sliding.massless_node) return true;
   for (int32_t i = 0; i < model->node_count; i++)
     if (!(model->weight[i] > 0) && !(model->fixed[2 * i] && model->fixed[2 * i + 1])) return true;
   return false;

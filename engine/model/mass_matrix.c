@@ -16,6 +16,20 @@ static void add_members(const strut_model *model, const int32_t *row_of, strut_t
   }
 }
 
+/* Those at rest on their members. */
+static void add_sliding_masses(const strut_model *model, const int32_t *row_of,
+                               strut_triplets *sum) {
+  for (int32_t i = 0; i < model->sliding.count; i++) {
+    const strut_sliding_item *s = &model->sliding.item[i];
+    int32_t a = row_of[s->at[0] / 2], b = row_of[s->at[1] / 2];
+    double far = s->start, near = 1.0 - far;
+    if (s->signal >= 0) continue;
+    if (a >= 0) strut_triplets_add(sum, a, a, s->mass * near * near);
+    if (b >= 0) strut_triplets_add(sum, b, b, s->mass * far * far);
+    if (a >= 0 && b >= 0) strut_triplets_add(sum, a, b, s->mass * near * far);
+  }
+}
+
 strut_status strut_mass_matrix(strut_model *model, int coordinate, strut_arena *scratch,
                                strut_sparse **matrix, int32_t **node) {
   const uint8_t *fixed = model->fixed + coordinate;
@@ -24,7 +38,8 @@ strut_status strut_mass_matrix(strut_model *model, int coordinate, strut_arena *
   int32_t *row_of = strut_arena_allocate(scratch, count, sizeof *row_of);
   *node = strut_arena_allocate(&model->arena, count, sizeof **node);
   if (!row_of || !*node ||
-      !strut_triplets_reserve(&sum, count + 3 * (size_t)model->members.count, scratch))
+      !strut_triplets_reserve(
+          &sum, count + 3 * (size_t)(model->members.count + model->sliding.count), scratch))
     return STRUT_NO_MEMORY;
   int32_t n = 0;
   for (int32_t i = 0; i < model->node_count; i++) {
@@ -35,6 +50,7 @@ strut_status strut_mass_matrix(strut_model *model, int coordinate, strut_arena *
     n++;
   }
   add_members(model, row_of, &sum);
+  add_sliding_masses(model, row_of, &sum);
   *matrix = strut_sparse_build(n, &sum, &model->arena);
   return *matrix ? STRUT_OK : STRUT_NO_MEMORY;
 }

@@ -19,6 +19,7 @@
 #include "engine/model/actuator_forces.h"
 #include "engine/model/elements.h"
 #include "engine/model/feedback.h"
+#include "engine/model/sliding_masses.h"
 #include "engine/model/support_motion.h"
 #include "engine/model/surfaces.h"
 #include "engine/scene/scene.h"
@@ -48,14 +49,21 @@ typedef enum strut_term {
   STRUT_TERM_UNBALANCE = 1 << 17,       /* rotating masses */
   STRUT_TERM_MEMORY = 1 << 20,          /* elements that break, are released, yield or rub */
   STRUT_TERM_FEEDBACK = 1 << 22,        /* sensors, internal states, and signals that follow them */
+  STRUT_TERM_SLIDING_MASS = 1 << 25,    /* masses that slide along members */
   STRUT_TERM_SURFACES = 1 << 21 /* contacts with surfaces other than one straight line at rest;
                                    instead of CONTACT */
 } strut_term;
 
-/** Terms that few scenes need: a step asks once for all of them. */
+/**
+ * Terms that few scenes need. Step loops exist twice, and a model is stepped by the copy without these where
+ * it can be: the terms that a copy knows are a constant in it, so that it asks for no others.
+ */
 #define STRUT_TERMS_RARE                                                                           \
-  (STRUT_TERM_FEEDBACK | STRUT_TERM_ACTUATOR_FORCES | STRUT_TERM_UNBALANCE |                       \
-   STRUT_TERM_MASS_DAMPING | STRUT_TERM_SUPPORT_MOTION)
+  ((unsigned)(STRUT_TERM_FEEDBACK | STRUT_TERM_ACTUATOR_FORCES | STRUT_TERM_UNBALANCE |            \
+              STRUT_TERM_MASS_DAMPING | STRUT_TERM_SUPPORT_MOTION | STRUT_TERM_MEMORY |            \
+              STRUT_TERM_SURFACES | STRUT_TERM_SLIDING_MASS))
+#define STRUT_TERMS_COMMON (~STRUT_TERMS_RARE)
+#define STRUT_TERMS_ALL (~0u)
 
 /**
  * Member tables in scene order; (slots) entries each. Padding slots have no length, and pull with no
@@ -120,8 +128,10 @@ typedef struct strut_model {
   const double *start;          /* (length) positions at t = 0 */
   const double *velocity;       /* (length) velocities at t = 0 */
   const double *constant_force; /* (length) gravity and constant loads; NULL when all zero */
-  const double *weight; /* (node_count) mass half of each member at each node, and point masses */
-  const uint8_t *fixed; /* (length) 1 where supported */
+  const double
+      *weight; /* (node_count) mass half of each member at each node, point masses, and shares of
+                           sliding masses where they are at t = 0 */
+  const uint8_t *fixed;     /* (length) 1 where supported */
   const double *point_mass; /* (node_count) [kg] */
   strut_member_table members;
   strut_element_table elements;
@@ -135,6 +145,7 @@ typedef struct strut_model {
   double mass_damping; /* alpha of Rayleigh's damping [1/s] */
   strut_support_motion_table support_motion;
   bool unbalance_corners; /* some rotating mass has an angle whose rate jumps */
+  strut_sliding_table sliding;
 } strut_model;
 
 /**

@@ -63,7 +63,12 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
   state->relay_side = strut_arena_allocate(arena, model->scene->signal_count, 1);
   state->actuator_force =
       strut_arena_allocate(arena, (size_t)model->actuator_forces.count, sizeof(double));
-  bool moves = model->plan & (STRUT_TERM_SUPPORT_MOTION | STRUT_TERM_UNBALANCE);
+  bool moves =
+      model->plan & (STRUT_TERM_SUPPORT_MOTION | STRUT_TERM_UNBALANCE | STRUT_TERM_SLIDING_MASS);
+  size_t sliding = (size_t)model->sliding.moving_count;
+  state->sliding = strut_arena_allocate(arena, sliding, sizeof *state->sliding);
+  state->sliding_factor = strut_arena_allocate(arena, 2 * sliding * sliding, sizeof(double));
+  state->sliding_push = strut_arena_allocate(arena, 2 * sliding, sizeof(double));
   state->support_rates =
       strut_arena_allocate(arena, (size_t)model->support_motion.count, sizeof(double));
   state->support_answer = strut_arena_allocate(arena, moves ? both : 0, sizeof(double));
@@ -73,8 +78,8 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
       !state->guide_mode || !state->guide_drop || !state->guide_side || !state->force ||
       !state->normal || !state->friction || !state->scratch || !state->actuator_force ||
       !state->support_rates || !state->support_answer || !surfaces || !state->sensor ||
-      !state->sensor_rate || !state->held || !state->started || !state->trigger_was ||
-      !state->relay_side) {
+      !state->sensor_rate || !state->sliding || !state->sliding_factor || !state->sliding_push ||
+      !state->held || !state->started || !state->trigger_was || !state->relay_side) {
     strut_state_free(state);
     *result = NULL;
     return strut_memory_fail_model(model->scene, error);
@@ -111,6 +116,9 @@ void strut_state_reset(const strut_model *model, strut_state *state) {
     state->trigger_was[i] = -1;
     state->relay_side[i] = 0;
   }
+  for (int32_t k = 0; k < model->sliding.moving_count; k++)
+    state->sliding[k] =
+        (strut_sliding_motion){.share = model->sliding.item[model->sliding.moving[k]].start};
   for (int32_t i = 0; i < model->elements.memory_count; i++) state->plastic[i] = 0.0;
   for (int32_t i = 0; i < model->elements.memory_slots; i++)
     state->guide_mode[i] = 2, state->guide_side[i] = 1,

@@ -103,6 +103,10 @@ typedef struct strut_state {
   strut_contact_pose *pose;
   strut_ground_motion *ground_motion;
   int8_t *relay_side; /* (signals) of relays: 1 last above, -1 last below; 0: not yet known */
+  /* masses that slide, in the table's order of moving ones, as last placed: */
+  strut_sliding_motion *sliding; /* (n) */
+  double *sliding_factor;        /* (2, n, n) Cholesky factors of 1/m + N M^-1 N', of x, then y */
+  double *sliding_push;          /* (2, n) scratch */
 } strut_state;
 
 /** All memory a run needs; an integrator adds its own to the arena. STRUT_OK or STRUT_NO_MEMORY. */

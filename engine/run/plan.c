@@ -32,6 +32,7 @@ static const strut_plan_term terms[] = {
     {STRUT_TERM_MASS_DAMPING, "damping by mass", "rayleigh with mass", false},
     {STRUT_TERM_SUPPORT_MOTION, "moving supports", "a node that moves", false},
     {STRUT_TERM_UNBALANCE, "unbalances", "a rotating mass", false},
+    {STRUT_TERM_SLIDING_MASS, "sliding masses", "a slider that moves", false},
 };
 _Static_assert(sizeof terms / sizeof terms[0] == STRUT_PLAN_TERMS, "one for each term");
 

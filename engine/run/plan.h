@@ -13,7 +13,7 @@ typedef struct strut_plan_term {
   bool in;
 } strut_plan_term;
 
-enum { STRUT_PLAN_TERMS = 23 };
+enum { STRUT_PLAN_TERMS = 24 };
 
 typedef struct strut_plan {
   size_t nodes, degrees_of_freedom, bars, springs, cables, contacts, actuators, loads;

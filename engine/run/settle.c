@@ -27,6 +27,7 @@ static strut_status copy_passive_scene(const strut_scene *scene, bool friction,
   passive->nodes = strut_arena_allocate(arena, scene->node_count, sizeof *passive->nodes);
   if (!passive->nodes) return STRUT_NO_MEMORY;
   memcpy(passive->nodes, scene->nodes, scene->node_count * sizeof *passive->nodes);
+  if (!strut_scene_hold_sliding_masses(passive, arena)) return STRUT_NO_MEMORY;
   strut_scene_hold_supports(passive, false);
   strut_scene_stop_unbalances(passive);
   passive->ground.belt_speed = 0.0;

@@ -93,7 +93,7 @@ void strut_check_names(strut_checker *checker) {
   const strut_scene *s = checker->scene;
   strut_name_map nodes = {0}, members = {0}, actuators = {0}, loads = {0}, signals = {0},
                  configurations = {0}, hinges = {0}, cells = {0}, collisions = {0},
-                 unbalances = {0}, sensors = {0}, states = {0};
+                 unbalances = {0}, sensors = {0}, states = {0}, sliders = {0};
   for (size_t i = 0; i < s->node_count; i++)
     check_name(checker, &nodes, STRUT_ON_NODE, "node", s->nodes[i].name, i);
   for (size_t i = 0; i < s->member_count; i++)
@@ -110,6 +110,8 @@ void strut_check_names(strut_checker *checker) {
     check_name(checker, &loads, STRUT_ON_LOAD, "load", s->loads[i].name, i);
   for (size_t i = 0; i < s->unbalance_count; i++)
     check_name(checker, &unbalances, STRUT_ON_UNBALANCE, "unbalance", s->unbalances[i].name, i);
+  for (size_t i = 0; i < s->sliding_count; i++)
+    check_name(checker, &sliders, STRUT_ON_SLIDER, "slider", s->sliding_masses[i].name, i);
   for (size_t i = 0; i < s->signal_count; i++)
     if (s->signals[i].name)
       check_name(checker, &signals, STRUT_ON_SIGNAL, "signal", s->signals[i].name, i);
@@ -125,6 +127,7 @@ void strut_check_names(strut_checker *checker) {
   strut_name_map_free(&actuators);
   strut_name_map_free(&loads);
   strut_name_map_free(&unbalances);
+  strut_name_map_free(&sliders);
   strut_name_map_free(&hinges);
   strut_name_map_free(&cells);
   strut_name_map_free(&collisions);
@@ -361,11 +364,21 @@ void strut_check_use(strut_checker *checker) {
 
 strut_status strut_setup_check(const strut_setup *setup, strut_purpose purpose,
                                strut_findings *findings) {
-  static void (*const rules[])(strut_checker *) = {
-      strut_check_names,  strut_check_nodes,      strut_check_members, strut_check_hinges,
-      strut_check_cells,  strut_check_collisions, strut_check_use,     strut_check_sensors,
-      strut_check_states, strut_check_signals,    strut_check_ground,  strut_check_drives,
-      strut_check_shapes, strut_check_experiment};
+  static void (*const rules[])(strut_checker *) = {strut_check_names,
+                                                   strut_check_nodes,
+                                                   strut_check_members,
+                                                   strut_check_hinges,
+                                                   strut_check_cells,
+                                                   strut_check_collisions,
+                                                   strut_check_use,
+                                                   strut_check_sensors,
+                                                   strut_check_states,
+                                                   strut_check_signals,
+                                                   strut_check_ground,
+                                                   strut_check_drives,
+                                                   strut_check_sliding_masses,
+                                                   strut_check_shapes,
+                                                   strut_check_experiment};
   const strut_scene *scene = &setup->scene;
   const strut_experiment *e = &setup->experiment;
   bool runs = e->step != 0.0 || e->duration != 0.0 || e->periods != 0.0;

@@ -30,7 +30,8 @@ typedef enum strut_subject {
   STRUT_ON_COLLISION,
   STRUT_ON_UNBALANCE,
   STRUT_ON_SENSOR,
-  STRUT_ON_STATE
+  STRUT_ON_STATE,
+  STRUT_ON_SLIDER
 } strut_subject;
 
 typedef struct strut_finding {

@@ -46,6 +46,8 @@ void strut_check_cells(strut_checker *checker);
 /** check_collisions.c */
 void strut_check_collisions(strut_checker *checker);
 void strut_warn_of_overlaps(strut_checker *checker);
+/** check_sliding_masses.c; after the signals. */
+void strut_check_sliding_masses(strut_checker *checker);
 void strut_check_members(strut_checker *checker);
 void strut_check_use(strut_checker *checker);
 void strut_check_ground(strut_checker *checker);

@@ -27,6 +27,7 @@ typedef enum strut_column_owner {
   STRUT_COLUMN_OF_LOSSES,    /* losses.friction */
   STRUT_COLUMN_OF_CELL,      /* CELL.area */
   STRUT_COLUMN_OF_COLLISION, /* COLLISION.gap */
+  STRUT_COLUMN_OF_SLIDER,    /* SLIDER.share */
   STRUT_COLUMN_OF_FEEDBACK   /* the name of a sensor, a signal or a state alone; rate(SENSOR) */
 } strut_column_owner;
 
@@ -77,7 +78,12 @@ typedef enum strut_column_owner {
   X(SENSOR, FEEDBACK, "sensor", 0, 0, 0, 0) /* in SI units, of whatever dimension */               \
   X(SIGNAL, FEEDBACK, "signal", 0, 0, 0, 0)                                                        \
   X(SENSOR_RATE, FEEDBACK, "rate", 0, 0, 0, 0)                                                     \
-  X(STATE, FEEDBACK, "state", 0, 0, 0, 0)
+  X(STATE, FEEDBACK, "state", 0, 0, 0, 0)                                                          \
+  X(SLIDER_X, SLIDER, "x", 0, 1, 0, 0)                                                             \
+  X(SLIDER_Y, SLIDER, "y", 0, 1, 0, 0)                                                             \
+  X(SLIDER_VX, SLIDER, "vx", 0, 1, -1, 0)                                                          \
+  X(SLIDER_VY, SLIDER, "vy", 0, 1, -1, 0)                                                          \
+  X(SLIDER_SHARE, SLIDER, "share", 0, 0, 0, 0) /* of its member, from the first node */
 
 typedef enum strut_column_kind {
 #define STRUT_COLUMN_ENUM(id, ...) STRUT_COLUMN_##id,

@@ -188,6 +188,18 @@ typedef struct strut_unbalance {
   double speed, phase;  /* [rad/s], 0 with a signal; [rad] */
 } strut_unbalance;
 
+/**
+ * A point mass on the straight line between the two nodes of a member, at the share of that line from the
+ * first node that is `share`, plus signal(t) if there is one. It weighs, and it follows its signal exactly.
+ */
+typedef struct strut_sliding_mass {
+  const char *name;
+  int32_t member, signal; /* signal: or -1, at rest on the member */
+  double mass;            /* [kg], > 0 */
+  double share;           /* 0 at the first node, 1 at the second */
+  bool travel; /* the signal is a length [m] along the member as drawn, otherwise a share [1] */
+} strut_sliding_mass;
+
 /** A force on a node: force, times signal(t) if there is one. */
 typedef struct strut_load {
   const char *name;
@@ -260,6 +272,8 @@ typedef struct strut_scene {
   size_t sensor_count, state_count;
   strut_sensor *sensors;
   strut_internal_state *states;
+  size_t sliding_count;
+  strut_sliding_mass *sliding_masses;
 } strut_scene;
 
 /** Default structs: zero except where stated above, names empty, indices -1. */
@@ -270,6 +284,7 @@ STRUT_API strut_hinge strut_hinge_default(void);
 STRUT_API strut_contact strut_contact_default(void);
 STRUT_API strut_cell strut_cell_default(void);
 STRUT_API strut_collision strut_collision_default(void);
+STRUT_API strut_sliding_mass strut_sliding_mass_default(void);
 /** Frees the contents of the scene and zeroes it. */
 STRUT_API void strut_scene_free(strut_scene *scene);
 
@@ -325,6 +340,14 @@ STRUT_API void strut_scene_hold_supports(strut_scene *scene, bool shapes);
 
 /** Stops rotating masses: each becomes part of its node's mass. The nodes must be the scene's own. */
 STRUT_API void strut_scene_stop_unbalances(strut_scene *scene);
+/** Share of its member at which a sliding mass is at time t [s]. */
+STRUT_API double strut_sliding_mass_share(const strut_scene *scene, size_t index, double t);
+/** The rate of that share [1/s]. */
+STRUT_API double strut_sliding_mass_rate(const strut_scene *scene, size_t index, double t);
+/** The share per unit of its signal. */
+STRUT_API double strut_sliding_mass_scale(const strut_scene *scene, size_t index);
+/** Leaves sliding masses where they are at t = 0. False: out of memory of the arena. */
+STRUT_API bool strut_scene_hold_sliding_masses(strut_scene *scene, strut_arena *arena);
 /** Some node may touch something. */
 static inline bool strut_scene_has_ground(const strut_scene *scene) {
   return scene->ground.present || scene->ground_count > 0;

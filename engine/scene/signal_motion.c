@@ -47,8 +47,10 @@ static bool is_cut(const strut_signal *s, double at) {
   return s->amplitude != 0.0 && fabs(sine) > ROUNDING * (1.0 + fabs(turns));
 }
 
-/* A start or stop of the signal after 0 and up to `last`. */
-static bool switches_within(double time, double last) { return time > 0.0 && time <= last; }
+/* A start or stop of the signal after 0 and up to `last`, if there is one. */
+static bool switches_within(double time, double last) {
+  return time > 0.0 && time <= last && time < HUGE_VAL;
+}
 
 bool strut_signal_value_jumps(const strut_signal *signals, int32_t index, double last,
                               double *when) {

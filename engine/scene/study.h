@@ -19,6 +19,9 @@
 /** Most points of a study, and most values of one list. */
 #define STRUT_STUDY_MOST_POINTS ((int64_t)1000000000)
 
+/** Most points of the finest grid of a refined study. */
+#define STRUT_STUDY_MOST_REFINED ((int64_t)20000000)
+
 /** Form of the values of an axis. */
 typedef enum strut_range_kind {
   STRUT_RANGE_LIST, /* number, or word where the parameter is a text */
@@ -206,6 +209,13 @@ typedef struct strut_study {
   uint32_t form_from;                            /* strut_form_source */
   uint32_t form_objective;                       /* strut_form_objective */
   double form_least_tension, form_least_density; /* [N], [N/m] */
+  int64_t limit_evaluations; /* of the forces, in each run of a point; 0: any number */
+  double limit_time;         /* of a point [s], by the clock; 0: any */
+  /* Refinement of a map: the two axes then have the values of the finest grid. */
+  int32_t refine_depth;     /* halvings of the axes' steps; 0: no refinement */
+  const char *refine_where; /* column whose value decides which cells are divided */
+  double refine_by;         /* by how much its numbers must differ, in SI */
+  size_t refine_axes[2];    /* the axes, in their order */
 } strut_study;
 
 #endif

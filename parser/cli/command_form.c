@@ -54,26 +54,41 @@ static strut_status read_options(const strut_arguments *arguments, strut_form_op
   return status;
 }
 
-/* The text to print: a report with -o, else the model. */
-static char *text_for(const strut_arguments *arguments, const strut_setup *setup,
-                      const strut_form *form) {
-  if (arguments->json) return strut_form_json(form, &setup->scene);
-  return arguments->output ? strut_form_table(form, setup) : strut_setup_write(setup);
+/* A model before its form was found. */
+typedef struct drawn_model {
+  char *text, *flat; /* of the file; of strut_setup_write */
+  size_t length;
+  double (*position)[2]; /* (node_count) */
+} drawn_model;
+
+/* The new model, in the words of the file where that can be. NULL: it was reported. */
+static char *write_model(const strut_arguments *arguments, const drawn_model *drawn,
+                         const strut_setup *setup) {
+  char *model;
+  if (strut_write_short(arguments, drawn->text, drawn->length, drawn->flat, setup, false, &model))
+    return NULL;
+  if (!model) model = strut_setup_write(setup);
+  if (!model) strut_print_out_of_memory();
+  return model;
 }
 
-static strut_status report_form(const strut_arguments *arguments, const strut_setup *setup,
-                                const strut_form *form) {
+/* With -o the model goes there, and a report to stdout, else the model. */
+static strut_status report_form(const strut_arguments *arguments, const drawn_model *drawn,
+                                const strut_setup *setup, const strut_form *form) {
   strut_error error = {0};
   bool silent = arguments->quiet && arguments->output && !arguments->json;
-  char *model = arguments->output ? strut_setup_write(setup) : NULL;
-  char *text = silent ? NULL : text_for(arguments, setup, form);
-  strut_status status = STRUT_OK;
-  if ((arguments->output && !model) || (!silent && !text)) status = strut_print_out_of_memory();
-  if (status == STRUT_OK && model) {
+  bool wanted = arguments->output || !arguments->json;
+  char *model = wanted ? write_model(arguments, drawn, setup) : NULL, *text = NULL;
+  strut_status status = wanted && !model ? STRUT_NO_MEMORY : STRUT_OK;
+  if (status == STRUT_OK && arguments->output) {
     status = strut_file_write_path(arguments->output, model, &error);
     if (status != STRUT_OK) strut_print_error(&error);
   }
-  if (status == STRUT_OK && text) status = strut_print(text);
+  if (arguments->json || arguments->output)
+    text = arguments->json ? strut_form_json(form, &setup->scene) : strut_form_table(form, setup);
+  if (status == STRUT_OK && !text && (arguments->json || arguments->output))
+    status = strut_print_out_of_memory();
+  if (status == STRUT_OK && !silent) status = strut_print(text ? text : model);
   strut_release(model);
   strut_release(text);
   return status;
@@ -89,17 +104,19 @@ static strut_status draw_form(const strut_plot *plot, const strut_scene *scene,
   return status;
 }
 
-/* Finds the form, prints and draws it; `drawn` (node_count) receives the former positions. */
+/* Finds the form, prints and draws it. */
 static strut_status find_form(const strut_arguments *arguments, const strut_form_options *wanted,
-                              const strut_plot *plot, strut_setup *setup, double (*drawn)[2]) {
+                              const strut_plot *plot, strut_setup *setup,
+                              const drawn_model *drawn) {
   const strut_scene *scene = &setup->scene;
   strut_form form;
   strut_error error = {0};
   for (size_t i = 0; i < scene->node_count; i++)
-    memcpy(drawn[i], scene->nodes[i].position, sizeof *drawn);
+    memcpy(drawn->position[i], scene->nodes[i].position, sizeof *drawn->position);
   strut_status status = strut_form_find(setup, wanted, &form, &error);
-  if (status == STRUT_OK) status = report_form(arguments, setup, &form);
-  if (status == STRUT_OK) status = draw_form(plot, scene, (const double(*)[2])drawn, &error);
+  if (status == STRUT_OK) status = report_form(arguments, drawn, setup, &form);
+  if (status == STRUT_OK)
+    status = draw_form(plot, scene, (const double(*)[2])drawn->position, &error);
   if (error.message[0]) strut_print_error(&error);
   return status;
 }
@@ -113,11 +130,15 @@ static strut_status run_form(const strut_arguments *arguments) {
   if (status == STRUT_OK) status = strut_plot_read(&strut_command_form, arguments, 0, &plot);
   if (status == STRUT_OK) status = strut_try_file(arguments->output);
   if (status != STRUT_OK) return status;
-  status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &setup);
+  drawn_model drawn = {0};
+  status = strut_open_model_text(arguments, &drawn.text, &drawn.length, &setup);
   if (status != STRUT_OK) return status;
-  double(*drawn)[2] = strut_arena_allocate(&arena, setup.scene.node_count, sizeof *drawn);
-  status =
-      drawn ? find_form(arguments, &wanted, &plot, &setup, drawn) : strut_print_out_of_memory();
+  drawn.flat = strut_setup_write(&setup);
+  drawn.position = strut_arena_allocate(&arena, setup.scene.node_count, sizeof *drawn.position);
+  status = drawn.position && drawn.flat ? find_form(arguments, &wanted, &plot, &setup, &drawn)
+                                        : strut_print_out_of_memory();
+  strut_release(drawn.text);
+  strut_release(drawn.flat);
   strut_arena_free(&arena);
   strut_setup_free(&setup);
   return status;
@@ -135,7 +156,9 @@ const strut_command strut_command_form = {
         "and\n"
         "ground forces, every cable in tension. By default, densities if the model gives force\n"
         "densities, lengths if it gives rest lengths, otherwise prestress.\n"
-        "The new model is printed or written to FILE; it stays at rest when run without drives.\n",
+        "The new model is printed or written to FILE, with the parameters, groups and parts of "
+        "the\n"
+        "old one where these can say it; it stays at rest when run without drives.\n",
     .options = options,
     .run = run_form,
 };

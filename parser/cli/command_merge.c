@@ -6,6 +6,7 @@
 
 #include "engine/study/results/shard.h"
 #include "parser/cli/streams.h"
+#include "parser/cli/sweep.h"
 
 /* All shards are open at once, which may exceed the usual limit of open files. */
 static void allow_many_files(void) {
@@ -18,7 +19,10 @@ static void allow_many_files(void) {
 static strut_status run_merge(const strut_arguments *arguments) {
   strut_merged merged;
   strut_error error = {0};
+  bool refined = false;
   allow_many_files();
+  strut_status early = strut_sweep_refine_merge(arguments, &refined);
+  if (refined) return early;
   strut_status status = strut_merge(arguments->model, &merged, &error);
   if (status != STRUT_OK) {
     strut_print_error(&error);

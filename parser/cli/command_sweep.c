@@ -3,6 +3,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "engine/output/file.h"
 #include "engine/study/results/shard.h"
@@ -33,7 +34,9 @@ static const strut_option options[] = {
 };
 
 enum { MOST_THREADS = 4096, MOST_LANES = 8 };
-static const char table_name[] = "table.csv";
+static const char table_name[] = "table.csv", partial_name[] = "table-partial.csv";
+/* The table of a sweep that is running is written anew after these times, ever less often [s]. */
+static const double FIRST_PARTIAL = 2.0, RAREST_PARTIAL = 60.0;
 
 /* Concurrency; 0: automatic. */
 typedef struct concurrency {
@@ -81,48 +84,142 @@ static strut_status show_status(const strut_arguments *arguments, strut_sweep_st
     return strut_sweep_print_shards(arguments->output, &found, arena, arguments->json);
   status = strut_slots_read(path, &slots, &there, &error);
   if (status) return strut_print_failure(status, &error);
-  status = strut_sweep_print_status(slots, arguments->json);
+  status = study->plan.study->refine_depth
+               ? strut_sweep_refine_status(&study->plan, arguments->output, slots, arguments->json)
+               : strut_sweep_print_status(slots, arguments->json);
   strut_slots_close(slots);
   return status;
 }
 
+/* What a running sweep shows: progress, and now and then the rows that there are. */
+typedef struct display {
+  strut_sweep_progress progress;
+  strut_slots *slots;
+  const char *directory; /* NULL: no partial table, of a shard */
+  double next, interval; /* [s] since the sweep began */
+} display;
+
+static void show(void *context, const strut_sweep_state *state) {
+  display *d = context;
+  strut_sweep_progress_show(&d->progress, state);
+  if (!d->directory || state->seconds < d->next) return;
+  strut_slots *const sources[] = {d->slots};
+  strut_study_table_write_partial(d->directory, partial_name, sources, 1, NULL, NULL);
+  if (d->interval < RAREST_PARTIAL) d->interval *= 2.0;
+  d->next = state->seconds + d->interval;
+}
+
+/* The rows of a sweep that has ended before its last point. */
+static void write_partial(const char *directory, strut_slots *slots) {
+  int64_t rows = 0;
+  strut_error error = {0};
+  strut_slots *const sources[] = {slots};
+  strut_status status =
+      strut_study_table_write_partial(directory, partial_name, sources, 1, &rows, &error);
+  if (status)
+    strut_print_error(&error);
+  else
+    fprintf(stderr, "strut: %s/%s has the %lld rows that are done\n", directory, partial_name,
+            (long long)rows);
+}
+
 static strut_status run_points(const strut_arguments *arguments, strut_sweep_study *study,
-                               concurrency at_a_time, strut_slots *slots, strut_sweep_state *state,
+                               concurrency at_a_time, bool partial, strut_slots *slots,
+                               const strut_refinement *refinement, strut_sweep_state *state,
                                strut_error *error) {
-  strut_sweep_progress progress = strut_sweep_progress_begin(&study->plan, arguments->quiet);
-  const strut_sweep_options how = {.threads = (int)at_a_time.threads,
-                                   .lanes = (int)at_a_time.lanes,
-                                   .interrupt = strut_interrupt_watch(),
-                                   .directory = arguments->output,
-                                   .progress = strut_sweep_progress_show,
-                                   .progress_context = &progress};
+  display shown = {.progress = strut_sweep_progress_begin(&study->plan, arguments->quiet),
+                   .slots = slots,
+                   .directory = partial ? arguments->output : NULL,
+                   .next = FIRST_PARTIAL,
+                   .interval = FIRST_PARTIAL};
+  strut_sweep_options how = {.threads = (int)at_a_time.threads,
+                             .lanes = (int)at_a_time.lanes,
+                             .interrupt = strut_interrupt_watch(),
+                             .directory = arguments->output,
+                             .progress = show,
+                             .progress_context = &shown};
+  if (refinement) {
+    how.wants = strut_refinement_wants;
+    how.wants_context = refinement;
+    strut_refinement_count(refinement, slots, &how.wanted, &how.wanted_done);
+  }
   strut_status status = strut_sweep_texts_write(arguments, study, error);
   if (!status) status = strut_sweep_run(&study->plan, slots, &how, state, error);
-  strut_sweep_progress_end(&progress);
-  strut_sweep_print_warnings(state);
+  strut_sweep_progress_end(&shown.progress);
   strut_error late = {0};
   strut_status synced = strut_slots_sync(slots, &late);
   if (!status && synced) status = strut_fail(error, synced, "%s", late.message);
+  if (status && partial && state->done > 0) write_partial(arguments->output, slots);
   if (status == STRUT_INTERRUPTED)
     strut_fail(error, status, "interrupted after %lld of %lld points; the same command resumes",
                (long long)state->done, (long long)state->points);
   return status;
 }
 
+/* Adds the warnings of a round to those before. */
+static void add_warnings(strut_sweep_state *all, const strut_sweep_state *round) {
+  for (size_t i = 0; i < round->warning_count; i++) {
+    const strut_sweep_warning *w = &round->warnings[i];
+    size_t at = 0;
+    while (at < all->warning_count && strcmp(all->warnings[at].code, w->code) != 0) at++;
+    if (at == STRUT_SWEEP_MOST_WARNINGS) continue;
+    int64_t runs = at < all->warning_count ? all->warnings[at].runs : 0;
+    bool first = at == all->warning_count || w->point < all->warnings[at].point;
+    if (at == all->warning_count) all->warning_count++;
+    if (first) all->warnings[at] = *w;
+    all->warnings[at].runs = runs + w->runs;
+  }
+}
+
+/*
+ * Computes what is wanted until that wants nothing further. *others: points of other shards that must be
+ * known before more can be.
+ */
+static strut_status run_refined(const strut_arguments *arguments, strut_sweep_study *study,
+                                concurrency at_a_time, strut_shard shard, strut_slots *slots,
+                                strut_refinement *refinement, int64_t *others,
+                                strut_sweep_state *state, strut_error *error) {
+  int64_t wanted, done;
+  strut_sweep_state all = {0};
+  strut_status status = STRUT_OK;
+  *state = (strut_sweep_state){0};
+  while (!status) {
+    strut_sweep_refine_learn(refinement, arguments->output, shard, slots);
+    *others = strut_refinement_choose(refinement);
+    strut_refinement_count(refinement, slots, &wanted, &done);
+    if (wanted == done && state->points) break;
+    status = run_points(arguments, study, at_a_time, !shard.count, slots, refinement, state, error);
+    all.computed += state->computed;
+    all.seconds += state->seconds;
+    add_warnings(&all, state);
+  }
+  state->computed = all.computed;
+  state->seconds = all.seconds;
+  state->warning_count = all.warning_count;
+  memcpy(state->warnings, all.warnings, sizeof all.warnings);
+  return status;
+}
+
 /* Writes table and figures. Failed points do not stop a sweep, but change the exit code. */
 static strut_status complete_sweep(const strut_arguments *arguments, strut_sweep_study *study,
                                    strut_shard shard, strut_slots *slots,
+                                   const strut_refinement *refinement,
                                    const strut_sweep_state *state) {
   strut_error error = {0};
   strut_slots *const sources[] = {slots};
   const char *table = shard.count ? "one shard: 'strut merge' writes the table of all"
                                   : inside(study, arguments->output, table_name);
   if (!table) return strut_print_out_of_memory();
-  strut_status status =
-      shard.count ? STRUT_OK
-                  : strut_study_table_write(arguments->output, table_name, sources, 1, &error);
+  strut_status status = STRUT_OK;
+  if (!shard.count && refinement)
+    status =
+        strut_study_table_write_partial(arguments->output, table_name, sources, 1, NULL, &error);
+  else if (!shard.count)
+    status = strut_study_table_write(arguments->output, table_name, sources, 1, &error);
   if (status) return strut_print_failure(status, &error);
-  if (!shard.count) status = strut_sweep_figures_draw(&study->plan, arguments->output, table);
+  if (!shard.count) strut_file_remove(arguments->output, partial_name);
+  if (!shard.count)
+    status = strut_sweep_figures_draw(&study->plan, arguments->output, table, refinement);
   if (status) return status;
   if (!arguments->quiet || arguments->json)
     status = strut_sweep_print_end(state, table, arguments->json);
@@ -141,6 +238,8 @@ static strut_status compute_points(const strut_arguments *arguments, strut_sweep
   strut_error error = {0};
   strut_shard shard;
   const char *path;
+  strut_refinement *refinement = NULL;
+  int64_t others = 0;
   strut_status status = find_shard(arguments, study, &shard, &path);
   if (status) return status;
   status = strut_sweep_texts_check(arguments, study, &error);
@@ -152,9 +251,22 @@ static strut_status compute_points(const strut_arguments *arguments, strut_sweep
   if (!status && arguments->retry) status = strut_slots_retry(slots, &error);
   if (!status && !shard.count && strut_slots_missing(slots) > 0)
     strut_file_remove(arguments->output, table_name); /* outdated */
-  if (!status) status = run_points(arguments, study, at_a_time, slots, &state, &error);
+  if (!status && study->plan.study->refine_depth)
+    status = strut_refinement_create(&study->plan, &refinement, &error);
+  if (!status && refinement)
+    status =
+        run_refined(arguments, study, at_a_time, shard, slots, refinement, &others, &state, &error);
+  else if (!status)
+    status = run_points(arguments, study, at_a_time, !shard.count, slots, NULL, &state, &error);
+  strut_sweep_print_warnings(&state);
   strut_print_failure(status, &error);
-  if (!status) status = complete_sweep(arguments, study, shard, slots, &state);
+  if (!status) status = complete_sweep(arguments, study, shard, slots, refinement, &state);
+  if (others && (!status || status == STRUT_DIVERGED))
+    fprintf(stderr,
+            "strut: %lld points of other shards decide what is refined next: run this shard again "
+            "when they are done\n",
+            (long long)others);
+  strut_refinement_free(refinement);
   strut_slots_close(slots);
   return status;
 }
@@ -201,6 +313,7 @@ const strut_command strut_command_sweep = {
         "stores every result as soon as its point is finished. After any interruption the same\n"
         "command resumes; the final table is the same byte for byte, whatever the number of\n"
         "threads. Remove points.slots to start afresh.\n"
+        "An interrupted sweep leaves table-partial.csv, the rows that are done.\n"
         "A failed point is a row that gives the reason; the exit code is then 3, and only --retry\n"
         "recomputes it. Ctrl-C stops after a moment.\n",
     .options = options,

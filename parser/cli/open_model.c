@@ -11,6 +11,7 @@
 #include "engine/statics/equilibria/rest_state.h"
 #include "parser/cli/streams.h"
 #include "parser/read/read_scene.h"
+#include "parser/write/write_short.h"
 #include "parser/yaml/memory_estimate.h"
 
 enum { MOST_MESSAGES = 50 };
@@ -100,6 +101,38 @@ strut_status strut_open_model_text(const strut_arguments *arguments, char **text
   *text = from.text;
   *length = from.length;
   return status;
+}
+
+/* Does the scene say something in a way that a flat one loses? */
+static bool is_abbreviated(const strut_tree *root) {
+  static const char *const keys[] = {"parameters", "groups", "parts"};
+  for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++)
+    if (strut_tree_find(root, keys[i], NULL)) return true;
+  return false;
+}
+
+strut_status strut_write_short(const strut_arguments *arguments, const char *text, size_t length,
+                               const char *before, const strut_setup *setup, bool all,
+                               char **result) {
+  strut_diagnostics unused = {0};
+  strut_scene_source *tree = NULL;
+  const char *name = strcmp(arguments->model, "-") == 0 ? "<stdin>" : arguments->model;
+  bool wanted = true;
+  *result = NULL;
+  strut_status status = strut_scene_source_open(name, text, length, &unused, &tree);
+  strut_diagnostics_free(&unused);
+  if (status == STRUT_OK) wanted = all || is_abbreviated(strut_scene_source_document(tree)->root);
+  if (status == STRUT_OK && wanted)
+    status = strut_short_write(tree, arguments->overrides, arguments->override_count, before, setup,
+                               result);
+  strut_scene_source_free(tree);
+  if (status == STRUT_NO_MEMORY) return strut_print_out_of_memory();
+  if (!*result && wanted)
+    fputs(
+        "strut: the scene is written without parameters, groups and parts, which cannot say all of "
+        "it, such as that a node of a copy was moved\n",
+        stderr);
+  return STRUT_OK;
 }
 
 strut_status strut_check_output_writable(const strut_arguments *arguments,

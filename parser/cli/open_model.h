@@ -29,6 +29,15 @@ strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpo
 strut_status strut_open_model_text(const strut_arguments *arguments, char **text, size_t *length,
                                    strut_setup *setup);
 
+/**
+ * The scene as short as the file gave it, see strut_short_write; `text` is the file's, `before` the scene
+ * as it was read. *result is NULL, which stderr tells, where only the flat scene can be written; and
+ * where the file has no parameters, groups or parts, unless `all` are wanted.
+ */
+strut_status strut_write_short(const strut_arguments *arguments, const char *text, size_t length,
+                               const char *before, const strut_setup *setup, bool all,
+                               char **result);
+
 /** Prints the warnings of a valid scene on stderr: see strut_setup_warn. */
 strut_status strut_warn_of_scene(const strut_setup *setup);
 

@@ -6,7 +6,9 @@
 #ifndef STRUT_PARSER_CLI_SWEEP_H
 #define STRUT_PARSER_CLI_SWEEP_H
 
+#include "engine/output/table_data.h"
 #include "engine/study/results/shard.h"
+#include "engine/study/sweep/refine.h"
 #include "engine/study/sweep/sweep.h"
 #include "parser/cli/options.h"
 #include "parser/cli/progress.h"
@@ -49,7 +51,28 @@ strut_status strut_sweep_figures_check_files(const strut_sweep_plan *plan, const
  * stderr.
  */
 strut_status strut_sweep_figures_draw(const strut_sweep_plan *plan, const char *directory,
-                                      const char *path);
+                                      const char *path, const strut_refinement *refinement);
+
+/** Takes note of what all files of a directory hold: `own`, and those of other shards. */
+void strut_sweep_refine_learn(strut_refinement *refinement, const char *directory,
+                              strut_shard shard, strut_slots *own);
+/** Does the figure show the two axes that are refined? */
+bool strut_sweep_refine_shows(const strut_sweep_plan *plan, const strut_study_figure *figure);
+/**
+ * The table of all points of the finest grid, in an arena of its own: points that were not computed have
+ * the row of the known one that stands for them, `from` being the table of these.
+ */
+strut_status strut_sweep_refine_expand(const strut_sweep_plan *plan,
+                                       const strut_refinement *refinement, const strut_table *from,
+                                       strut_table *to, strut_error *error);
+/** Prints how far the refinement in a directory is. */
+strut_status strut_sweep_refine_status(const strut_sweep_plan *plan, const char *directory,
+                                       strut_slots *slots, bool json);
+/**
+ * Writes directory/table.csv of the shards of a refined study, in place of strut_merge. *merged is true if
+ * the study in the directory is a refined one; otherwise nothing is done.
+ */
+strut_status strut_sweep_refine_merge(const strut_arguments *arguments, bool *merged);
 
 /** A progress bar on a terminal, occasional lines elsewhere. */
 typedef struct strut_sweep_progress {

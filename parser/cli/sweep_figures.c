@@ -178,8 +178,20 @@ static strut_status draw_motion(const strut_sweep_plan *plan, const char *direct
   return status;
 }
 
+/* A map of the finest grid. */
+static strut_status draw_refined(const strut_sweep_plan *plan, const strut_study_figure *f,
+                                 const char *path, const strut_table *table,
+                                 const strut_refinement *refinement, strut_error *error) {
+  strut_table fine = {0};
+  strut_status status = strut_sweep_refine_expand(plan, refinement, table, &fine, error);
+  if (!status) status = draw_table(f, path, &fine, error);
+  strut_arena_free(&fine.arena);
+  return status;
+}
+
 static strut_status draw_figure(const strut_sweep_plan *plan, const char *directory,
-                                const strut_study_figure *f, strut_table *table) {
+                                const strut_study_figure *f, strut_table *table,
+                                const strut_refinement *refinement) {
   strut_error error = {0};
   const char *file = strut_arena_format(&table->arena, "%s/%s.svg", directory, f->name);
   if (!file) return strut_print_out_of_memory();
@@ -188,6 +200,8 @@ static strut_status draw_figure(const strut_sweep_plan *plan, const char *direct
     status = draw_motion(plan, directory, f, file, &error);
   else if (of_runs(f))
     status = strut_study_pictures(plan, directory, f, PAGE, &error);
+  else if (refinement && f->kind == STRUT_FIGURE_MAP && strut_sweep_refine_shows(plan, f))
+    status = draw_refined(plan, f, file, table, refinement, &error);
   else
     status = draw_table(f, file, table, &error);
   if (error.message[0]) strut_print_error(&error);
@@ -195,13 +209,13 @@ static strut_status draw_figure(const strut_sweep_plan *plan, const char *direct
 }
 
 strut_status strut_sweep_figures_draw(const strut_sweep_plan *plan, const char *directory,
-                                      const char *path) {
+                                      const char *path, const strut_refinement *refinement) {
   const strut_study *study = plan->study;
   strut_table table = {0};
   if (study->figure_count == 0) return STRUT_OK;
   strut_status status = strut_table_read(path, &table);
   for (size_t i = 0; i < study->figure_count && !status; i++)
-    status = draw_figure(plan, directory, &study->figures[i], &table);
+    status = draw_figure(plan, directory, &study->figures[i], &table, refinement);
   strut_arena_free(&table.arena);
   return status;
 }

@@ -98,8 +98,13 @@ static void add_string(strut_buffer *b, const char *text) {
 
 strut_status strut_sweep_print_count(const strut_sweep_plan *plan, bool json) {
   strut_buffer b = {0};
-  strut_buffer_add(&b, json ? "{\"points\": %lld, \"columns\": [" : "%lld points; the table has",
-                   (long long)plan->points);
+  bool refined = plan->study->refine_depth > 0;
+  int64_t points = refined ? strut_refinement_coarse(plan) : plan->points;
+  strut_buffer_add(&b, json ? "{\"points\": %lld" : "%lld points", (long long)points);
+  if (refined)
+    strut_buffer_add(&b, json ? ", \"most_points\": %lld" : ", refined to at most %lld",
+                     (long long)plan->points);
+  strut_buffer_add(&b, json ? ", \"columns\": [" : "; the table has");
   for (size_t i = 0; i < plan->column_count; i++) {
     const strut_slot_column *c = &plan->columns[i];
     bool unit = strcmp(c->unit, "1") != 0;

@@ -160,8 +160,9 @@ static strut_status for_each(const strut_arguments *arguments, const strut_sweep
   const strut_study_file *file = &study->file;
   char *text = strut_study_copy(file, model_name, arguments->overrides, arguments->override_count);
   const char *study_path = file->path, *model_path = file->model_path;
+  const char *model = file->model_copy ? file->model_copy : file->model_text;
   const copy copies[COPIES] = {{"study.yaml", study_path, text, study_path, model_path},
-                               {model_name, model_path, file->model_text, study_path, model_path}};
+                               {model_name, model_path, model, study_path, model_path}};
   strut_status status = text ? STRUT_OK : strut_no_memory(error, "");
   for (int i = 0; i < COPIES && status == STRUT_OK; i++)
     status = what(arguments->output, &copies[i], &arena, error);

@@ -144,15 +144,15 @@ static int read_rate(strut_expression_reader *r, size_t begin, strut_quantity *q
 
 /* What looks like a function: node(A).x, member(A).force, hinge(A).moment, cell(A).area, angle(A, B), distance(A, B). */
 static int read_call(strut_expression_reader *r, size_t begin, size_t length, strut_quantity *q) {
-  static const char *const words[] = {"node",      "member", "hinge",    "cell",
-                                      "collision", "angle",  "distance", "rate"};
+  static const char *const words[] = {"node",   "member", "hinge",    "cell", "collision",
+                                      "slider", "angle",  "distance", "rate"};
   for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
     if (strlen(words[i]) != length || memcmp(words[i], r->text + begin, length) != 0) continue;
     r->at = begin + length;
     if (strut_expression_peek(r) != '(') break;
     r->at++;
-    if (i == 7) return read_rate(r, begin, q);
-    return i < 5 ? read_quoted(r, words[i], begin, q)
+    if (i == 8) return read_rate(r, begin, q);
+    return i < 6 ? read_quoted(r, words[i], begin, q)
                  : read_pair(r, piece(r, begin, begin + length), begin, q);
   }
   r->at = begin;

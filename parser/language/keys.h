@@ -42,6 +42,7 @@
   X(ACTUATOR, "actuator", ACTUATOR_MEMBER) \
   X(LOAD, "load", LOAD_NODE) \
   X(UNBALANCE, "unbalance", UNBALANCE_NODE) \
+  X(SLIDER, "slider", SLIDER_MEMBER) \
   X(SIGNAL, "signal", SIGNAL_CONSTANT) \
   X(SINE, "sine", SINE_AMPLITUDE) \
   X(HALF_SINE, "half_sine", HALF_SINE_AMPLITUDE) \
@@ -73,7 +74,9 @@
   X(FORM, "form", FORM_FROM) \
   X(POINTS, "points", POINTS_FILE) \
   X(SAMPLE, "sample", SAMPLE_COUNT) \
-  X(DISTRIBUTION, "distribution", DISTRIBUTION_UNIFORM)
+  X(DISTRIBUTION, "distribution", DISTRIBUTION_UNIFORM) \
+  X(LIMIT, "limit", LIMIT_EVALUATIONS) \
+  X(REFINE, "refine", REFINE_WHERE)
 /* clang-format on */
 
 /** The mappings of the language. */

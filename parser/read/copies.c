@@ -3,6 +3,7 @@
 #include "parser/read/copies.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* ---- frames ---- */
@@ -183,6 +184,12 @@ static bool stays_within(const strut_reader *reader, const strut_name_map *map) 
          map == &reader->hinge_names || map == &reader->cell_names;
 }
 
+bool strut_within_part(const strut_reader *reader, const strut_tree *value,
+                       const strut_name_map *map) {
+  const strut_copy *scope = strut_scope_of(reader, value);
+  return scope && scope->kind == STRUT_SCOPE_COPY && stays_within(reader, map);
+}
+
 static int32_t find_resolved(const strut_reader *reader, const strut_name_map *map,
                              const char *name) {
   strut_full_name full;
@@ -253,6 +260,52 @@ const char *strut_hiding_part(const strut_reader *reader, const strut_tree *valu
       return copy->placement->part->name;
   }
   return NULL;
+}
+
+/* "; 'cell' has the copies 0 to 2" for `number` beyond them. */
+static const char *count_hint(strut_reader *reader, const strut_placement *p, const char *name,
+                              size_t length, int which) {
+  if (p->numbers == 0)
+    return "; what is placed once has no numbers";
+  char *end;
+  long long number = strtoll(name, &end, 10);
+  bool counted = length && end == name + length && number >= p->count[which];
+  if (!counted) return "";
+  return strut_arena_format(&reader->scratch, "; '%s' has the copies 0 to %lld%s", p->name,
+                            (long long)p->count[which] - 1,
+                            p->numbers == 1 ? ""
+                            : which         ? " along its second count"
+                                            : " along its first count");
+}
+
+const char *strut_copy_hint_of(strut_reader *reader, const char *name) {
+  strut_full_name full;
+  const char *hint = "";
+  if (!reader->copies || !strut_name_resolve_last(reader, name, &full)) return hint;
+  if (strut_name_map_find(&reader->copies->removed, full.text) >= 0) return "; it is removed";
+  for (char *dot = strchr(full.text, '.'); dot && !*hint; dot = strchr(dot + 1, '.')) {
+    *dot = '\0';
+    const strut_placement *p = strut_placement_find(reader, full.text);
+    *dot = '.';
+    const char *piece = dot + 1;
+    for (int k = 0; p && (k < p->numbers || k == 0) && !hint[0]; k++) {
+      size_t length = strcspn(piece, ".");
+      bool number = length && strspn(piece, "0123456789") == length;
+      if (p->numbers || number || strncmp(piece, "last.", 5) == 0)
+        hint = count_hint(reader, p, piece, length, k);
+      if (!hint) return "";
+      piece += length + (piece[length] == '.');
+    }
+  }
+  return hint;
+}
+
+const char *strut_copy_hint(strut_reader *reader, const strut_tree *value) {
+  strut_full_name full;
+  const strut_copy *scope = strut_scope_of(reader, value);
+  bool within = scope && scope->kind != STRUT_SCOPE_PLACE;
+  bool fits = within ? own_name(scope, value->text, &full) : join_name("", value->text, &full);
+  return fits ? strut_copy_hint_of(reader, full.text) : "";
 }
 
 const char *strut_local_name(const strut_reader *reader, const char *name) {

@@ -94,8 +94,15 @@ typedef struct strut_full_name {
 const strut_placement *strut_placement_find(const strut_reader *reader, const char *name);
 /** Does a full name lead past the ports of a copy that is not around the scope? */
 bool strut_name_is_hidden(const strut_reader *reader, const strut_copy *scope, const char *name);
+/** Does a value name a thing of the structure from within a part, which knows its own things only? */
+bool strut_within_part(const strut_reader *reader, const strut_tree *value,
+                       const strut_name_map *map);
 /** The part whose ports hide the node that a value names, or NULL. */
 const char *strut_hiding_part(const strut_reader *reader, const strut_tree *value);
+/** Why there is no thing of that name, as far as copies tell: "; 'cell' has the copies 0 to 2", or "". */
+const char *strut_copy_hint(strut_reader *reader, const strut_tree *value);
+/** Likewise for a full name. */
+const char *strut_copy_hint_of(strut_reader *reader, const char *name);
 /** `last` in place of a number becomes that number. False: the name is too long. */
 bool strut_name_resolve_last(const strut_reader *reader, const char *name, strut_full_name *full);
 /** Does `name` fit a pattern in which * stands for one part between dots? */
@@ -161,6 +168,7 @@ struct strut_copies {
   size_t ported_count, ported_capacity;
   const strut_copy **ported_copies;
   bool incomplete; /* some copies could not be made */
+  strut_name_map removed; /* names of things that the scene takes away */
 };
 
 #endif

@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <string.h>
 
+#include "parser/read/copies.h"
 #include "parser/read/reader.h"
 
 static const strut_section sections[STRUT_GROUP_SECTIONS] = {
@@ -132,7 +133,10 @@ static void mark_contacts(strut_reader *reader, const strut_tree *ground) {
 }
 
 static void find_users(strut_reader *reader) {
-  mark_users(reader, strut_slot_of(&reader->top, STRUT_KEY_SCENE_HINGES)->value, true);
+  const strut_tree *hinges = strut_slot_of(&reader->top, STRUT_KEY_SCENE_HINGES)->value;
+  for (size_t i = 0; i < reader->group_count && !hinges; i++) reader->groups[i].of_others = true;
+  if (!hinges) return;
+  mark_users(reader, hinges, true);
   mark_users(reader, strut_slot_of(&reader->top, STRUT_KEY_SCENE_MEMBERS)->value, false);
   mark_users(reader, strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->value, false);
   mark_contacts(reader, strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND)->value);
@@ -140,6 +144,7 @@ static void find_users(strut_reader *reader) {
   if (grounds && grounds->kind == STRUT_TREE_MAP)
     for (const strut_tree *key = grounds->first; key; key = key->next->next)
       mark_contacts(reader, key->next);
+  if (reader->copies) mark_users(reader, reader->copies->contacts, false);
   for (size_t i = 0; i < reader->group_count; i++)
     if (!reader->groups[i].of_hinges) reader->groups[i].of_others = true;
 }
@@ -241,11 +246,31 @@ void strut_apply_groups(strut_reader *reader, strut_fields *fields, int group_ke
   strut_suppress_missing(fields);
 }
 
+/* Does some `group` of a tree name the group? Then copies that are not made would use it. */
+static bool is_mentioned(const strut_tree *tree, const char *name) {
+  if (!tree || tree->kind == STRUT_TREE_SCALAR) return false;
+  for (const strut_tree *k = tree->first; k; k = k->next) {
+    bool group = tree->kind == STRUT_TREE_MAP && strcmp(k->text, "group") == 0;
+    if (tree->kind == STRUT_TREE_MAP) k = k->next;
+    if (group && k->kind == STRUT_TREE_SCALAR && strcmp(k->text, name) == 0) return true;
+    for (const strut_tree *item = group ? k->first : NULL; item; item = item->next)
+      if (item->kind == STRUT_TREE_SCALAR && strcmp(item->text, name) == 0) return true;
+    if (!group && is_mentioned(k, name)) return true;
+  }
+  return false;
+}
+
+static bool parts_mention(strut_reader *reader, const char *name) {
+  return is_mentioned(strut_slot_of(&reader->top, STRUT_KEY_SCENE_PARTS)->value, name) ||
+         is_mentioned(strut_slot_of(&reader->top, STRUT_KEY_SCENE_PLACE)->value, name);
+}
+
 void strut_report_unused_groups(strut_reader *reader) {
   if (reader->groups_unknown || reader->top.broken) return;
   for (size_t i = 0; i < reader->group_count; i++) {
     const strut_group *group = &reader->groups[i];
     if (group->used || group->broken || group->key->placed) continue;
+    if (parts_mention(reader, group->name)) continue;
     strut_report_error(reader, group->key->place, "nothing uses group '%s'", group->name);
   }
 }

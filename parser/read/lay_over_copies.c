@@ -20,6 +20,7 @@ strut_section strut_section_of_things(int scene_key) {
               {STRUT_KEY_SCENE_ACTUATORS, STRUT_SECTION_ACTUATOR},
               {STRUT_KEY_SCENE_LOADS, STRUT_SECTION_LOAD},
               {STRUT_KEY_SCENE_UNBALANCES, STRUT_SECTION_UNBALANCE},
+              {STRUT_KEY_SCENE_SLIDERS, STRUT_SECTION_SLIDER},
               {STRUT_KEY_SCENE_SIGNALS, STRUT_SECTION_SIGNAL},
               {STRUT_KEY_SCENE_SENSORS, STRUT_SECTION_SENSOR},
               {STRUT_KEY_SCENE_STATES, STRUT_SECTION_STATE},
@@ -146,27 +147,64 @@ static bool index_placed(strut_reader *reader, strut_tree *first, size_t count, 
   return all->key && all->removed;
 }
 
+/* The placed entry of that full name, which may be that of a port; -1: there is none. */
+static int32_t find_placed(const strut_reader *reader, const placed_index *all, const char *name,
+                           int key) {
+  int32_t entry = strut_name_map_find(&all->names, name);
+  if (entry >= 0 || key != STRUT_KEY_SCENE_NODES) return entry;
+  int32_t node = strut_name_map_find(&reader->copies->node_entries, name);
+  return node < 0 ? -1 : strut_name_map_find(&all->names, reader->copies->nodes[node]->text);
+}
+
+/* Does a full name begin with that of a placement? */
+static bool is_of_placement(const strut_reader *reader, const char *name) {
+  strut_full_name full;
+  strcpy(full.text, name);
+  for (char *dot = strchr(full.text, '.'); dot; dot = strchr(dot + 1, '.')) {
+    *dot = '\0';
+    if (strut_placement_find(reader, full.text)) return true;
+    *dot = '.';
+  }
+  return false;
+}
+
+/* Does the entry lack what one that stands by itself needs? Then a placed thing was meant. */
+static bool lacks_body(const strut_tree *own, int key) {
+  const strut_tree *value = own->next;
+  if (is_removal(value)) return true;
+  if (value->kind != STRUT_TREE_MAP) return false;
+  if (key == STRUT_KEY_SCENE_NODES) return !strut_tree_find(value, "position", NULL);
+  return key == STRUT_KEY_SCENE_MEMBERS && !strut_tree_find(value, "nodes", NULL);
+}
+
 /* Applies one entry of the scene to those of the copies. False: it names none of them. */
 static bool apply(strut_reader *reader, const strut_tree *own, placed_index *all, int key) {
   strut_full_name full;
   bool pattern = strut_is_pattern(own), found = false, fine = true;
   if (!strut_name_resolve_last(reader, own->text, &full)) return false;
-  int32_t single = pattern ? -1 : strut_name_map_find(&all->names, full.text);
+  int32_t single = pattern ? -1 : find_placed(reader, all, full.text, key);
   for (size_t i = pattern ? 0 : (size_t)(single < 0 ? (int32_t)all->count : single); i < all->count;
        i++) {
     if (pattern && !strut_name_matches(full.text, all->key[i]->text)) continue;
     if (!found) fine = check_value(reader, own, key);
     found = true;
-    if (fine && is_removal(own->next))
+    if (fine && is_removal(own->next)) {
       all->removed[i] = true;
-    else if (fine)
+      strut_add_name(reader, &reader->copies->removed, all->key[i]->text, i);
+    } else if (fine) {
       lay_over(reader, all->key[i]->next, own->next, strut_section_of_things(key));
+    }
     if (!pattern) break;
   }
   if (!found && pattern)
     strut_report_error(reader, own->place, "nothing that is placed fits '%s'",
                        strut_sanitised_text(reader, own->text));
-  return found || pattern;
+  bool lost = !found && !pattern && is_of_placement(reader, full.text) && lacks_body(own, key);
+  if (lost)
+    strut_report_error(reader, own->place, "nothing that is placed is called '%s'%s",
+                       strut_sanitised_text(reader, own->text),
+                       strut_copy_hint_of(reader, full.text));
+  return found || pattern || lost;
 }
 
 /* Takes the removed entries out of the chain. */

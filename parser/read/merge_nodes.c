@@ -7,6 +7,7 @@
  * touch, pairs that are a little further apart are an error, since they were probably meant.
  */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,6 +18,8 @@ static const double SAME = 1e-9, NEAR = 1e-4; /* over the size of the structure 
 
 typedef struct merging {
   strut_reader *reader;
+  int32_t near[2]; /* the first two that nearly touch */
+  size_t near_count;
   size_t count;
   int32_t *root; /* (count) an earlier node of its set, or itself */
   double size;
@@ -55,10 +58,15 @@ static void report_apart(merging *m, const strut_merger *merger, int32_t a, int3
   if (merger->a)
     strut_report_error(reader, at->place, "'%s' and '%s' cannot be one node: they are %.3g m apart",
                        nodes[a].name, nodes[b].name, apart);
-  else
+  else if (m->near_count == 1)
     strut_report_error(reader, at->place,
                        "'%s' and '%s' are %.3g m apart: merge them by name, or move them",
                        nodes[a].name, nodes[b].name, apart);
+  else
+    strut_report_error(reader, at->place,
+                       "'%s' and '%s' are %.3g m apart, and %zu more pairs nearly touch: merge "
+                       "them by name, or move them",
+                       nodes[a].name, nodes[b].name, apart, m->near_count - 1);
   if (reader->diagnostics->count == before) return;
   strut_diagnose_note(reader->diagnostics, before, drawn_place(m, a), "'%s' is drawn here",
                       nodes[a].name);
@@ -96,9 +104,12 @@ static void unite(merging *m, const strut_merger *merger, int32_t a, int32_t b) 
 
 static void merge_named(merging *m, const strut_merger *merger) {
   strut_reader *reader = m->reader;
-  strut_owner owner = {"'merge'", NULL};
-  size_t count = reader->scene->node_count;
   strut_copy *own = merger->scope;
+  strut_owner owner = {!own                            ? "the scene"
+                       : own->kind == STRUT_SCOPE_LINK ? "'next'"
+                                                       : "part",
+                       own && own->kind != STRUT_SCOPE_LINK ? own->placement->part->name : NULL};
+  size_t count = reader->scene->node_count;
   reader->scope = own;
   int32_t a = strut_read_reference(reader, merger->a, "merge", owner, "node", &reader->node_names,
                                    strut_node_name, count);
@@ -111,7 +122,11 @@ static void merge_named(merging *m, const strut_merger *merger) {
     strncat(full.text, merger->b->text, sizeof full.text - 6);
     b = strut_find_named(reader, &reader->node_names, NULL, full.text);
     if (b < 0)
-      strut_report_error(reader, merger->b->place, "unknown node '%s' of the next copy in 'merge'",
+      strut_report_error(reader, merger->b->place,
+                         strncmp(merger->b->text, "next.", 5) == 0
+                             ? "unknown node '%s' of the next copy in 'merge': its names stand here "
+                               "without 'next.'"
+                             : "unknown node '%s' of the next copy in 'merge'",
                          strut_sanitised_text(reader, merger->b->text));
   } else {
     b = strut_read_reference(reader, b_name, "merge", owner, "node", &reader->node_names,
@@ -177,8 +192,8 @@ static bool meet_square(merging *m, const strut_merger *merger, const grid_node 
       unite(m, merger, other, own->node);
       return true;
     }
-    if (apart <= NEAR * m->size) report_apart(m, merger, other, own->node, apart);
-    if (strut_diagnostics_full(m->reader->diagnostics)) return true;
+    if (apart > NEAR * m->size || m->near_count++) continue;
+    m->near[0] = other, m->near[1] = own->node;
   }
   return false;
 }
@@ -186,6 +201,7 @@ static bool meet_square(merging *m, const strut_merger *merger, const grid_node 
 static void merge_touching(merging *m, const strut_merger *merger) {
   strut_reader *reader = m->reader;
   double width = NEAR * m->size;
+  m->near_count = 0;
   size_t count = 0;
   grid_node *grid = strut_allocate(m->count, sizeof *grid);
   if (!grid) {
@@ -204,9 +220,10 @@ static void merge_touching(merging *m, const strut_merger *merger) {
     for (int square = 0; square < 9 && !met; square++)
       met = meet_square(m, merger, grid, count, &grid[k], grid[k].x + square / 3 - 1,
                         grid[k].y + square % 3 - 1);
-    if (strut_diagnostics_full(reader->diagnostics)) break;
   }
   strut_release(grid);
+  if (m->near_count)
+    report_apart(m, merger, m->near[0], m->near[1], distance(m, m->near[0], m->near[1]));
 }
 
 /* ---- the nodes that stay ---- */
@@ -220,6 +237,14 @@ static void name_port(strut_reader *reader, const strut_port *port) {
     strut_add_name(reader, &reader->node_names, name, (size_t)port->node);
 }
 
+/* Is a node other than the port's own called by its name? */
+static bool is_node_within(const strut_reader *reader, const strut_port *port) {
+  strut_full_name full;
+  snprintf(full.text, sizeof full.text, "%s%s", port->scope->prefix, port->key->text);
+  int32_t node = strut_name_map_find(&reader->node_names, full.text);
+  return node >= 0 && port->node >= 0 && node != port->node;
+}
+
 /* A port may show one of a copy within, which comes before it. */
 static void find_ports(strut_reader *reader) {
   for (strut_port *port = reader->copies->ports; port; port = port->next) {
@@ -228,6 +253,10 @@ static void find_ports(strut_reader *reader) {
     port->node =
         strut_read_reference(reader, port->key->next, "ports", owner, "node", &reader->node_names,
                              strut_node_name, reader->scene->node_count);
+    if (is_node_within(reader, port))
+      strut_report_error(reader, port->key->place,
+                         "port '%s' of part '%s' has the name of another node of the part",
+                         port->key->text, owner.name);
     reader->scope = NULL;
     name_port(reader, port);
   }

@@ -146,6 +146,12 @@ static bool copy_number(const strut_reader *reader, const char *name, strut_quan
   return false;
 }
 
+/* Is the name kept for the number of a copy? It is in a scene that places parts. */
+static bool is_copy_number(const strut_reader *reader, const char *name) {
+  const strut_slot *place = strut_slot_of((strut_fields *)&reader->top, STRUT_KEY_SCENE_PLACE);
+  return place->key && (strcmp(name, "i") == 0 || strcmp(name, "j") == 0);
+}
+
 /* A value in `set` of a placement has the dimension that the part declares. */
 static bool read_given(strut_reader *reader, strut_parameter_state *p,
                        const strut_quantity *declared) {
@@ -209,7 +215,15 @@ static int look_up_parameter(void *context, const char *name, size_t length,
   memcpy(text, name, length);
   text[length] = '\0';
   strut_parameter_state *p = strut_parameter_in_scope(reader, text);
-  if (!p) return copy_number(reader, text, quantity);
+  if (!p && copy_number(reader, text, quantity)) return 1;
+  if (!p && is_copy_number(reader, text)) {
+    strut_report_error(reader, asking_place(reader),
+                       "'%s', the number of a copy, is known in the keys of a repeated placement "
+                       "and in its 'next', but not in its 'count'; 'set' gives it to the part",
+                       text);
+    return -1;
+  }
+  if (!p) return 0;
   p->used = true;
   if (p->text) {
     strut_report_error(reader, asking_place(reader),
@@ -239,6 +253,13 @@ static bool check_parameter_name(strut_reader *reader, const strut_tree *key) {
   if (strcmp(c, "pi") == 0 || strut_function_find(c, length)) {
     strut_report_error(reader, key->place,
                        "'%s' cannot be the name of a parameter: expressions use it", c);
+    return false;
+  }
+  if (is_copy_number(reader, c)) {
+    strut_report_error(reader, key->place,
+                       "'%s' cannot be the name of a parameter in a scene that places parts: it is "
+                       "the number of a copy",
+                       c);
     return false;
   }
   for (size_t i = 0; i < length; i++) {

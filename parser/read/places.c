@@ -99,7 +99,8 @@ static bool many_place(strut_reader *reader, const strut_finding *finding, strut
                                    [STRUT_ON_UNBALANCE] = reader->unbalance_source,
                                    [STRUT_ON_CONFIGURATION] = reader->configuration_source,
                                    [STRUT_ON_SENSOR] = reader->sensor_source,
-                                   [STRUT_ON_STATE] = reader->state_source};
+                                   [STRUT_ON_STATE] = reader->state_source,
+                                   [STRUT_ON_SLIDER] = reader->slider_source};
   const strut_source *source = &sources[finding->subject][finding->index];
   if (source->broken) return false;
   bool of_ground =
@@ -163,6 +164,7 @@ static bool single_place(strut_reader *reader, const strut_finding *finding, str
     case STRUT_ON_CONFIGURATION:
     case STRUT_ON_SENSOR:
     case STRUT_ON_STATE:
+    case STRUT_ON_SLIDER:
       broken =
           key && strut_key_find(STRUT_SECTION_SCENE, key) >= 0 &&
           strut_slot_of(fields, strut_key_find(STRUT_SECTION_SCENE, key))->state == STRUT_BROKEN;
@@ -181,7 +183,7 @@ void strut_place_findings(strut_reader *reader, const strut_findings *findings) 
                 finding->subject == STRUT_ON_CELL || finding->subject == STRUT_ON_COLLISION ||
                 finding->subject == STRUT_ON_UNBALANCE ||
                 finding->subject == STRUT_ON_CONFIGURATION || finding->subject == STRUT_ON_SENSOR ||
-                finding->subject == STRUT_ON_STATE;
+                finding->subject == STRUT_ON_STATE || finding->subject == STRUT_ON_SLIDER;
     bool fresh = many                                  ? many_place(reader, finding, &place)
                  : finding->subject == STRUT_ON_SIGNAL ? signal_place(reader, finding, &place)
                                                        : single_place(reader, finding, &place);

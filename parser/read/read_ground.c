@@ -257,7 +257,7 @@ static bool add_copied(strut_reader *reader, unsigned char *touches, const strut
   const strut_tree *map = reader->copies ? reader->copies->contacts : NULL;
   for (const strut_tree *key = strut_first_entry(reader, map); key;
        key = strut_following_entry(reader, key)) {
-    strut_owner owner = {"a contact", NULL};
+    strut_owner owner = {"part", reader->scope ? reader->scope->placement->part->name : NULL};
     strut_tree name = *key;
     name.text = strut_local_name(reader, key->text);
     name.placed = false;
@@ -530,9 +530,20 @@ static void read_single(strut_reader *reader) {
   merge_contacts(reader, &list);
 }
 
+/* Contacts of parts wait for a ground. */
+static void note_contacts_without_ground(strut_reader *reader) {
+  const strut_tree *map = reader->copies ? reader->copies->contacts : NULL;
+  if (!map || !map->first || strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND)->key ||
+      strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUNDS)->key)
+    return;
+  strut_note(reader->diagnostics, map->first->place,
+             "the scene has no ground that the contacts of the part could touch");
+}
+
 void strut_read_ground(strut_reader *reader) {
   strut_scene *scene = reader->scene;
   read_single(reader);
+  note_contacts_without_ground(reader);
   const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_GROUNDS);
   if (!map || strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND)->key) return;
   contact_list *lists = strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *lists);

@@ -62,7 +62,10 @@ static void read_part_list(strut_reader *reader, const strut_slot *slot, strut_c
     strut_owner owner = {"part", key->text};
     bool fine = strut_read_name(reader, key, "part");
     strut_read_fields(reader, STRUT_SECTION_PART, key->next, owner, &part->fields);
-    part->broken = !fine || part->fields.broken;
+    const strut_slot *use = strut_slot_of(&part->fields, STRUT_KEY_PART_USE);
+    const strut_slot *isolated = strut_slot_of(&part->fields, STRUT_KEY_PART_ISOLATED);
+    part->closed = isolated->state == STRUT_GIVEN && isolated->word == 1;
+    part->broken = !fine || part->fields.broken || use->key; /* a file that could not be read */
   }
 }
 
@@ -83,7 +86,8 @@ static strut_part *read_part_name(strut_reader *reader, const strut_copy *scope,
   const strut_part_list *nearest = &reader->copies->parts;
   if (slot->state != STRUT_GIVEN) return NULL;
   strut_part *part = find_part(reader, scope, slot->value->text, &nearest);
-  if (part) return part;
+  if (part || strut_slot_of(&reader->top, STRUT_KEY_SCENE_PARTS)->state == STRUT_BROKEN)
+    return part;
   strut_report_error(reader, slot->value->place, "unknown part '%s' in 'part' of %s%s",
                      strut_sanitised_text(reader, slot->value->text),
                      strut_owner_text(reader, owner),
@@ -229,6 +233,18 @@ static void set_turn(strut_frame *f, double angle) {
   f->axes[1][0] = s, f->axes[1][1] = c;
 }
 
+static double power(double base, int64_t exponent) {
+  double result = 1.0;
+  for (; exponent; exponent >>= 1, base *= base)
+    if (exponent & 1) result *= base;
+  return result;
+}
+
+static void move_point(const strut_frame *f, double point[2]) {
+  point[0] *= f->scale, point[1] *= f->scale;
+  strut_frame_point(f, point);
+}
+
 /* S^k, or i times one step and j times the other. */
 static strut_frame repeated_frame(const repetition *r, const int64_t number[2]) {
   strut_frame f = strut_frame_of_scene, once = strut_frame_of_scene;
@@ -238,19 +254,30 @@ static strut_frame repeated_frame(const repetition *r, const int64_t number[2]) 
       f.at[c] = k * r->step[0][c] + (r->numbers == 2 ? (double)number[1] * r->step[1][c] : 0.0);
     return f;
   }
-  /* One application moves the fixed point of x -> about + step + s R (x - about) nowhere. */
-  double s = 1.0;
-  for (int64_t n = 0; n < number[0]; n++) s *= r->scale;
-  set_turn(&once, r->turn);
+  double s = power(r->scale, number[0]), origin[2] = {0.0, 0.0};
   set_turn(&f, k * r->turn);
-  double a = 1.0 - r->scale * once.axes[0][0], b = r->scale * once.axes[1][0];
-  double det = a * a + b * b; /* of 1 - s R */
-  double fixed[2] = {r->about[0] + (a * r->step[0][0] - b * r->step[0][1]) / det,
-                     r->about[1] + (b * r->step[0][0] + a * r->step[0][1]) / det};
-  double away[2] = {s * fixed[0], s * fixed[1]};
   f.scale = s;
-  strut_frame_vector(&f, away);
-  for (int c = 0; c < 2; c++) f.at[c] = fixed[c] - away[c];
+  if (r->step[0][0] == 0.0 && r->step[0][1] == 0.0) { /* `about` stays where it is */
+    double away[2] = {s * r->about[0], s * r->about[1]};
+    strut_frame_vector(&f, away);
+    for (int c = 0; c < 2; c++) f.at[c] = r->about[c] - away[c];
+    return f;
+  }
+  /* The images of the origin under S, S^2, S^4, ..., those of the bits of k. */
+  double once_away[2] = {r->scale * r->about[0], r->scale * r->about[1]};
+  set_turn(&once, r->turn);
+  once.scale = r->scale;
+  strut_frame_vector(&once, once_away);
+  for (int c = 0; c < 2; c++) once.at[c] = r->about[c] + r->step[0][c] - once_away[c];
+  for (int64_t bits = number[0], n = 1; bits; bits >>= 1, n *= 2) {
+    if (bits & 1) move_point(&once, origin);
+    double squared[2] = {once.at[0], once.at[1]};
+    move_point(&once, squared);
+    set_turn(&once, (double)(2 * n) * r->turn);
+    once.scale *= once.scale;
+    memcpy(once.at, squared, sizeof squared);
+  }
+  memcpy(f.at, origin, sizeof origin);
   return f;
 }
 
@@ -285,6 +312,11 @@ static const char *make_prefix(expansion *e, const strut_placement *p, const int
   return "";
 }
 
+static const char *copy_parameter_name(const void *context, size_t i) {
+  const strut_copy *copy = context;
+  return i < copy->parameter_count ? copy->parameters[i].name : NULL;
+}
+
 /* The parameters of a copy: those of the part, with the values of `set`. */
 static bool read_copy_parameters(strut_reader *reader, strut_copy *copy, strut_copy *place,
                                  const strut_slot *set) {
@@ -315,8 +347,10 @@ static bool read_copy_parameters(strut_reader *reader, strut_copy *copy, strut_c
       copy->parameters[i].given_scope = place;
       continue;
     }
-    strut_report_error(reader, given->place, "part '%s' has no parameter '%s'",
-                       copy->placement->part->name, strut_sanitised_text(reader, given->text));
+    strut_report_error(
+        reader, given->place, "part '%s' has no parameter '%s'%s", copy->placement->part->name,
+        strut_sanitised_text(reader, given->text),
+        strut_hint(reader, given->text, copy_parameter_name, copy, copy->parameter_count));
     fine = false;
   }
   for (size_t i = 0; i < copy->parameter_count; i++) {
@@ -424,6 +458,7 @@ static void add_merger(expansion *e, strut_copy *scope, const strut_tree *a, con
 static void read_merge(expansion *e, const strut_slot *slot, strut_copy *scope, int key) {
   const strut_tree *value = slot->value;
   if (slot->state != STRUT_GIVEN || e->weighing) return;
+  e->reader->scope = scope; /* one message for all copies */
   if (value->kind == STRUT_TREE_SCALAR && strcmp(value->text, "touching") == 0)
     add_merger(e, scope, NULL, NULL, value);
   else if (value->kind != STRUT_TREE_MAP)
@@ -435,6 +470,7 @@ static void read_merge(expansion *e, const strut_slot *slot, strut_copy *scope, 
     if (strut_read_scalar(e->reader, k->next, k->text, (strut_owner){"'merge'", NULL},
                           "the name of a node"))
       add_merger(e, scope, k, k->next, value);
+  e->reader->scope = NULL;
 }
 
 /* ---- onto ---- */
@@ -705,9 +741,31 @@ static void link_copies(expansion *e, const strut_tree *next, strut_copy *place,
   read_merge(e, strut_slot_of(&fields, STRUT_KEY_NEXT_MERGE), link, STRUT_KEY_NEXT_MERGE);
 }
 
+/* The names of a twist must be those of nodes. */
+static void check_twist(expansion *e, const strut_tree *twist, const strut_copy *copy) {
+  strut_reader *reader = e->reader;
+  const strut_placement *p = copy->placement;
+  for (const strut_tree *k = twist ? twist->first : NULL; k; k = k->next->next) {
+    const strut_tree *const names[] = {k, k->next};
+    for (int n = 0; n < 2; n++) {
+      strut_full_name full;
+      if (!strut_read_scalar(reader, names[n], "closed", (strut_owner){"place", p->key->text},
+                             "the name of a node"))
+        continue;
+      int length = snprintf(full.text, sizeof full.text, "%s%s", copy->prefix, names[n]->text);
+      if (length > 0 && (size_t)length < sizeof full.text &&
+          strut_name_map_find(&e->copies->node_entries, full.text) >= 0)
+        continue;
+      strut_report_error(reader, names[n]->place, "unknown node '%s' of '%s' in 'closed'",
+                         strut_sanitised_text(reader, names[n]->text), p->key->text);
+    }
+  }
+}
+
 static void link_all(expansion *e, placing *p, strut_copy **copies, strut_copy **places) {
   const repetition *r = &p->repeat;
   int64_t all = r->count[0] * r->count[1];
+  if (copies[0]) check_twist(e, r->twist, copies[0]);
   for (int64_t n = 0; n < all && !e->stopped; n++) {
     int64_t i = n / r->count[1], j = n % r->count[1];
     if (!copies[n]) continue;
@@ -806,6 +864,15 @@ static bool enter_part(expansion *e, const strut_part *part, const strut_slot *s
   return false;
 }
 
+/* How many numbers a copy has, as far as the form of `repeat` says. */
+static int count_numbers(const strut_tree *place) {
+  const strut_tree *repeat = strut_tree_find(place, "repeat", NULL);
+  const strut_tree *count = repeat ? strut_tree_find(repeat, "count", NULL) : NULL;
+  if (!repeat) return 0;
+  if (!count) count = repeat;
+  return count->kind == STRUT_TREE_LIST ? 2 : 1;
+}
+
 static void expand_place(expansion *e, const strut_tree *key, strut_copy *outer) {
   strut_reader *reader = e->reader;
   struct strut_copies *c = e->copies;
@@ -820,7 +887,7 @@ static void expand_place(expansion *e, const strut_tree *key, strut_copy *outer)
       strut_arena_format(&reader->scratch, "%s%s", outer ? outer->prefix : "", key->text);
   if (!placement->name) return;
   p.placement = placement;
-  scope->numbers = 2; /* as in the first copy */
+  scope->numbers = count_numbers(key->next); /* as in the first copy */
   reader->scope = scope;
   bool fine = strut_read_name(reader, key, "placement");
   strut_read_fields(reader, STRUT_SECTION_PLACE, key->next, owner, &p.fields);
@@ -925,7 +992,9 @@ static void expand_scene(expansion *e) {
   e->weighing = false;
   e->copies->things = 0;
   const strut_tree *own = nodes->state == STRUT_GIVEN ? nodes->value->first : NULL;
-  for (; own; own = own->next->next) remember_node(e, own);
+  for (; own; own = own->next->next)
+    if (own->next->kind == STRUT_TREE_LIST || strut_tree_find(own->next, "position", NULL))
+      remember_node(e, own); /* others are laid over copies */
   expand_places(e, place, NULL);
   if (e->stopped) e->copies->incomplete = true;
 }
@@ -965,6 +1034,7 @@ void strut_copies_free(strut_reader *reader) {
   strut_name_map_free(&copies->placement_names);
   strut_name_map_free(&copies->node_entries);
   strut_name_map_free(&copies->ported);
+  strut_name_map_free(&copies->removed);
   strut_release(copies->ported_copies);
   strut_release(copies->placements);
   strut_release(copies->nodes);

@@ -45,7 +45,7 @@ static bool is(strut_piece piece, const char *word) {
 /* The owners that a name may refer to, and their words in messages. */
 typedef struct found_owner {
   unsigned owners; /* bits 1 << strut_column_owner */
-  int32_t node, member, hinge, cell, collision;
+  int32_t node, member, hinge, cell, collision, slider;
   const char *what; /* "node", "member", "hinge", "the energy" */
 } found_owner;
 
@@ -74,6 +74,8 @@ static const char *owner_name(const void *context, size_t i) {
   i -= scene->cell_count;
   if (i < scene->collision_count) return scene->collisions[i].name;
   i -= scene->collision_count;
+  if (i < scene->sliding_count) return scene->sliding_masses[i].name;
+  i -= scene->sliding_count;
   return i < GROUP_COUNT ? groups[i].word : NULL;
 }
 
@@ -82,11 +84,13 @@ static bool all_known(strut_reader *reader) {
          strut_slot_of(&reader->top, STRUT_KEY_SCENE_MEMBERS)->state != STRUT_BROKEN &&
          strut_slot_of(&reader->top, STRUT_KEY_SCENE_HINGES)->state != STRUT_BROKEN &&
          strut_slot_of(&reader->top, STRUT_KEY_SCENE_CELLS)->state != STRUT_BROKEN &&
-         strut_slot_of(&reader->top, STRUT_KEY_SCENE_COLLISIONS)->state != STRUT_BROKEN;
+         strut_slot_of(&reader->top, STRUT_KEY_SCENE_COLLISIONS)->state != STRUT_BROKEN &&
+         strut_slot_of(&reader->top, STRUT_KEY_SCENE_SLIDERS)->state != STRUT_BROKEN;
 }
 
 static found_owner find_owner(strut_reader *reader, const char *kind, strut_piece name) {
-  found_owner found = {.node = -1, .member = -1, .hinge = -1, .cell = -1, .collision = -1};
+  found_owner found = {
+      .node = -1, .member = -1, .hinge = -1, .cell = -1, .collision = -1, .slider = -1};
   const char *text = text_of(reader, name);
   if (!kind || strcmp(kind, "member") == 0)
     found.member = strut_find_named(reader, &reader->member_names, NULL, text);
@@ -99,6 +103,9 @@ static found_owner find_owner(strut_reader *reader, const char *kind, strut_piec
   if (!kind || strcmp(kind, "collision") == 0)
     found.collision = strut_find_named(reader, &reader->collision_names, NULL, text);
   if (found.collision >= 0) found.owners |= OWNER(COLLISION), found.what = "collision";
+  if (!kind || strcmp(kind, "slider") == 0)
+    found.slider = strut_name_map_find(&reader->slider_names, text);
+  if (found.slider >= 0) found.owners |= OWNER(SLIDER), found.what = "slider";
   if (found.cell >= 0) found.owners |= OWNER(CELL), found.what = "cell";
   if (found.hinge >= 0) found.owners |= OWNER(HINGE), found.what = "hinge";
   if (found.member >= 0) found.owners |= OWNER(MEMBER), found.what = "member";
@@ -143,7 +150,7 @@ static int refuse_owner(strut_reader *reader, const char *kind, strut_piece owne
   if (!all_known(reader)) return -1;
   size_t count = reader->scene->node_count + reader->scene->member_count +
                  reader->scene->hinge_count + reader->scene->cell_count +
-                 reader->scene->collision_count + GROUP_COUNT;
+                 reader->scene->collision_count + reader->scene->sliding_count + GROUP_COUNT;
   snprintf(refusal->text, sizeof refusal->text, "unknown %s '%.*s'%s",
            kind                         ? kind
            : reader->scene->hinge_count ? "node, member or hinge"
@@ -157,7 +164,7 @@ static int refuse_field(strut_reader *reader, const found_owner *found, strut_pi
                         strut_piece field, strut_refusal *refusal) {
   char list[200];
   bool thing = found->node >= 0 || found->member >= 0 || found->hinge >= 0 || found->cell >= 0 ||
-               found->collision >= 0;
+               found->collision >= 0 || found->slider >= 0;
   const char *hint = strut_hint(reader, text_of(reader, field), field_name, &found->owners,
                                 field_count(found->owners));
   snprintf(refusal->text, sizeof refusal->text, "%s%s%.*s%s has no column '%.*s'%s%s%s",
@@ -253,6 +260,7 @@ static int find_column(void *context, const char *kind, strut_piece owner, strut
   if (of == STRUT_COLUMN_OF_HINGE) column->item = found.hinge;
   if (of == STRUT_COLUMN_OF_CELL) column->item = found.cell;
   if (of == STRUT_COLUMN_OF_COLLISION) column->item = found.collision;
+  if (of == STRUT_COLUMN_OF_SLIDER) column->item = found.slider;
   if (of != STRUT_COLUMN_OF_NODE && of != STRUT_COLUMN_OF_CONTACT) return 1;
   column->item = found.node;
   return touches(reader, column->kind, found.node, refusal) ? 1 : -1;

@@ -9,6 +9,7 @@
 #include "engine/base/c_locale.h"
 #include "parser/read/copies.h"
 #include "parser/read/reader.h"
+#include "parser/read/used_files.h"
 #include "parser/yaml/document.h"
 
 void strut_require_nodes(strut_reader *reader) {
@@ -69,6 +70,7 @@ static void read_sections(strut_reader *reader, const strut_setting *settings, s
                                                      strut_read_signals,
                                                      strut_read_states,
                                                      strut_read_drives,
+                                                     strut_read_sliders,
                                                      strut_read_ground,
                                                      strut_read_configurations,
                                                      strut_read_search,
@@ -151,13 +153,22 @@ static void free_reader(strut_reader *reader) {
       &reader->parameter_names, &reader->signal_names,    &reader->configuration_names,
       &reader->actuator_names,  &reader->load_names,      &reader->hinge_names,
       &reader->cell_names,      &reader->collision_names, &reader->unbalance_names,
-      &reader->ground_names,    &reader->sensor_names,    &reader->state_names};
+      &reader->ground_names,    &reader->sensor_names,    &reader->state_names,
+      &reader->slider_names};
   for (size_t i = 0; i < sizeof maps / sizeof maps[0]; i++) strut_name_map_free(maps[i]);
   strut_copies_free(reader);
   strut_release(reader->signals);
   strut_release(reader->signal_state);
   strut_arena_free(&reader->scratch);
   strut_document_free(&reader->document);
+}
+
+/* The tree of the text and of all files that it names. */
+static strut_status read_document(strut_document *document, strut_diagnostics *diagnostics) {
+  strut_status status = strut_document_read(document, diagnostics);
+  if (status == STRUT_NO_MEMORY) return status;
+  strut_status files = strut_read_used_files(document, diagnostics);
+  return files ? files : status;
 }
 
 /* Reads the scene from a tree that the caller owns, or from the text if `document` is NULL. */
@@ -179,7 +190,7 @@ static strut_status read_from(const strut_document *document, const strut_settin
   if (document)
     reader->document.root = document->root;
   else
-    status = strut_document_read(&reader->document, diagnostics);
+    status = read_document(&reader->document, diagnostics);
   reader->holes = status == STRUT_BAD_SCENE;
   if (status != STRUT_NO_MEMORY && reader->document.root) read_tree(reader, settings, count);
   strut_note_copies(reader);
@@ -212,7 +223,35 @@ struct strut_scene_source {
   const char *file, *text;
   size_t length, count;
   strut_declared *declared; /* (count) */
+  size_t used_count;
+  strut_used_file *used; /* (used_count) files that the text names; owned */
 };
+
+/* Takes over the texts of used files. */
+static strut_status keep_used(strut_scene_source *source, strut_diagnostics *from) {
+  if (!from->used_count) return STRUT_OK;
+  source->used = strut_arena_allocate(&source->arena, from->used_count, sizeof *source->used);
+  if (!source->used) return STRUT_NO_MEMORY;
+  for (size_t i = 0; i < from->used_count; i++) {
+    strut_used_file *to = &source->used[i];
+    const char *name = from->used[i].file;
+    *to = from->used[i];
+    to->file = strut_arena_text(&source->arena, name, strlen(name));
+    if (!to->file) return STRUT_NO_MEMORY;
+    from->used[i].owned = NULL;
+    source->used_count++;
+  }
+  return STRUT_OK;
+}
+
+/* Names them, so that places in them can be shown. */
+static void enter_used(const strut_scene_source *source, strut_diagnostics *diagnostics) {
+  if (diagnostics->used_count) return; /* of an earlier scene of this source */
+  for (size_t i = 0; i < source->used_count; i++) {
+    const strut_used_file *used = &source->used[i];
+    strut_diagnostics_use(diagnostics, used->file, used->text, used->length);
+  }
+}
 
 static strut_status keep_declared(strut_reader *reader, strut_scene_source *source) {
   source->count = reader->parameter_count;
@@ -259,8 +298,9 @@ strut_status strut_scene_source_open(const char *file, const char *text, size_t 
   if (!source) return STRUT_NO_MEMORY;
   source->file = file, source->text = text, source->length = length;
   strut_c_locale locale = strut_c_locale_enter();
-  strut_status status = strut_document_read(&source->document, &unused);
+  strut_status status = read_document(&source->document, &unused);
   if (status == STRUT_OK) status = declare_parameters(source, &unused);
+  if (status == STRUT_OK) status = keep_used(source, &unused);
   strut_c_locale_leave(locale);
   strut_diagnostics_free(&unused);
   if (status == STRUT_OK) return status;
@@ -276,6 +316,7 @@ strut_status strut_scene_source_open(const char *file, const char *text, size_t 
 void strut_scene_source_free(strut_scene_source *source) {
   if (!source) return;
   strut_document_free(&source->document);
+  for (size_t i = 0; i < source->used_count; i++) strut_release(source->used[i].owned);
   strut_arena_free(&source->arena);
   strut_release(source);
 }
@@ -284,6 +325,10 @@ const strut_declared *strut_scene_source_parameters(const strut_scene_source *so
                                                     size_t *count) {
   *count = source->count;
   return source->declared;
+}
+
+bool strut_scene_source_uses_files(const strut_scene_source *source) {
+  return source->used_count > 0;
 }
 
 strut_document *strut_scene_source_document(strut_scene_source *source) {
@@ -295,6 +340,7 @@ strut_status strut_scene_source_read(const strut_scene_source *source,
                                      strut_purpose purpose, strut_diagnostics *diagnostics,
                                      strut_setup *setup) {
   strut_diagnostics_source(diagnostics, source->file, source->text, source->length);
+  enter_used(source, diagnostics);
   return read_from(&source->document, settings, setting_count, purpose, diagnostics, setup);
 }
 

@@ -57,6 +57,8 @@ STRUT_API void strut_scene_source_free(strut_scene_source *source); /* NULL is a
 /** The *count parameters, in the text's order. */
 STRUT_API const strut_declared *strut_scene_source_parameters(const strut_scene_source *source,
                                                               size_t *count);
+/** Does the text name files, which the tree has taken in? */
+STRUT_API bool strut_scene_source_uses_files(const strut_scene_source *source);
 /** The tree, which may be changed until the first scene is made. */
 STRUT_API strut_document *strut_scene_source_document(strut_scene_source *source);
 /** As strut_setup_read, from the tree, with settings in place of overrides. */

@@ -290,11 +290,14 @@ static const char *local_name(const void *context, size_t i) {
   return local == name && name ? "" : local;
 }
 
-static const char *hint_of_names(strut_reader *reader, const char *word, strut_names *names,
-                                 size_t count) {
+static const char *hint_of_names(strut_reader *reader, const strut_tree *value,
+                                 const strut_name_map *map, strut_names *names, size_t count) {
   const local_names within = {reader, names};
-  const char *hint = reader->scope ? strut_hint(reader, word, local_name, &within, count) : "";
-  return *hint ? hint : strut_hint(reader, word, names, reader, count);
+  const char *word = value->text, *hint = strut_copy_hint(reader, value);
+  if (!*hint && reader->scope) hint = strut_hint(reader, word, local_name, &within, count);
+  if (*hint) return hint;
+  if (!strut_within_part(reader, value, map)) return strut_hint(reader, word, names, reader, count);
+  return strut_name_map_find(map, word) < 0 ? "" : "; a part knows its own only";
 }
 
 int32_t strut_read_reference(strut_reader *reader, const strut_tree *value, const char *key,
@@ -316,7 +319,7 @@ int32_t strut_read_reference(strut_reader *reader, const strut_tree *value, cons
     strut_report_error(reader, value->place, "unknown %s '%s' in '%s' of %s%s", kind,
                        strut_sanitised_text(reader, value->text), key,
                        strut_owner_text(reader, owner),
-                       hint_of_names(reader, value->text, names, count));
+                       hint_of_names(reader, value, map, names, count));
   return index;
 }
 

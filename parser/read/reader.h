@@ -118,7 +118,7 @@ typedef struct strut_reader {
   strut_fields top;
   strut_name_map node_names, member_names, group_names, parameter_names, signal_names,
       configuration_names, actuator_names, load_names, hinge_names, cell_names, collision_names,
-      unbalance_names, sensor_names, state_names;
+      unbalance_names, sensor_names, state_names, slider_names;
   strut_group *groups;
   size_t group_count;
   strut_parameter_state *parameters;
@@ -132,7 +132,7 @@ typedef struct strut_reader {
   size_t named_count, signal_depth, signal_capacity;
   strut_named_signal *signal_stack[STRUT_DEEPEST_SIGNAL]; /* being read */
   strut_signal *signals; /* strut_allocate; moves to the scene at the end */
-  strut_source *unbalance_source;
+  strut_source *unbalance_source, *slider_source;
   const strut_tree **node_moves; /* (node_count) the keys of moves of a node, or NULL */
   strut_signal_state *signal_state;
   const char *signal_quantity; /* what the signal that is being read gives, for messages, or NULL */
@@ -338,6 +338,8 @@ void strut_read_ground(strut_reader *reader);
 void strut_list_signals(strut_reader *reader);
 void strut_read_signals(strut_reader *reader);
 void strut_read_drives(strut_reader *reader);
+/** read_sliders.c */
+void strut_read_sliders(strut_reader *reader);
 /** Moves the signals into the scene. */
 void strut_keep_signals(strut_reader *reader);
 void strut_read_configurations(strut_reader *reader);

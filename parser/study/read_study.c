@@ -280,6 +280,25 @@ static void read_form(strut_study_reader *r, const strut_slot *slot) {
   strut_store_fields(r->reader, &fields, &r->file->arena, &r->file->study, sizeof(strut_study));
 }
 
+/* Wall time ends only what can be interrupted. */
+static void read_limit(strut_study_reader *r, const strut_slot *slot) {
+  strut_study *study = &r->file->study;
+  strut_fields fields;
+  if (slot->state != STRUT_GIVEN) return;
+  strut_read_fields(r->reader, STRUT_SECTION_LIMIT, slot->value, (strut_owner){"the limit", NULL},
+                    &fields);
+  strut_store_fields(r->reader, &fields, &r->file->arena, study, sizeof *study);
+  const strut_slot *evaluations = strut_slot_of(&fields, STRUT_KEY_LIMIT_EVALUATIONS);
+  const strut_slot *time = strut_slot_of(&fields, STRUT_KEY_LIMIT_TIME);
+  bool run = study->compute == STRUT_COMPUTE_RUN;
+  if (!run && evaluations->state == STRUT_GIVEN)
+    strut_report_error(r->reader, evaluations->key->place,
+                       "'evaluations' limits runs only, which 'compute: run' has");
+  if (!run && study->compute != STRUT_COMPUTE_EQUILIBRIA && time->state == STRUT_GIVEN)
+    strut_report_error(r->reader, time->key->place,
+                       "'time' limits runs and the search for equilibria only");
+}
+
 /* Keys that only some computations know: what has them. */
 static void check_computed(strut_study_reader *r, strut_fields *top) {
   static const struct {
@@ -319,6 +338,7 @@ static void read_rest(strut_study_reader *r, strut_fields *top) {
   }
   read_path(r, strut_slot_of(top, STRUT_KEY_STUDY_PATH));
   read_form(r, strut_slot_of(top, STRUT_KEY_STUDY_FORM));
+  read_limit(r, strut_slot_of(top, STRUT_KEY_STUDY_LIMIT));
   check_computed(r, top);
   read_figures(r, strut_slot_of(top, STRUT_KEY_STUDY_FIGURES));
 }
@@ -343,6 +363,7 @@ static void read_points(strut_study_reader *r, strut_fields *top, const strut_ov
   read_settings(r, set, count, true);
   read_settings(r, derive, count, false);
   if (axes->state == STRUT_GIVEN) strut_study_read_axes(r, axes->value);
+  strut_study_read_refine(r, strut_slot_of(top, STRUT_KEY_STUDY_REFINE));
   check_overrides(r, count);
 }
 
@@ -462,7 +483,9 @@ strut_status strut_study_setup(const strut_study_file *file, const strut_study_v
     for (size_t i = 1; i < diagnostics.count; i++)
       if (diagnostics.items[i].place.line < first->place.line) first = &diagnostics.items[i];
     bool own = first->place.line & STRUT_OVERLAY_LINE;
-    strut_fail(error, status, "%s:%u: %s", own ? file->path : file->model_path,
+    unsigned used = first->place.file;
+    const char *model = used ? diagnostics.used[used - 1].file : file->model_path;
+    strut_fail(error, status, "%s:%u: %s", own ? file->path : model,
                first->place.line & ~STRUT_OVERLAY_LINE, first->message);
   } else if (status != STRUT_OK) {
     strut_fail(error, status, "out of memory");
@@ -514,5 +537,6 @@ void strut_study_close(strut_study_file *file) {
   strut_release(file->text);
   strut_release(file->model_path);
   strut_release(file->model_text);
+  strut_release(file->model_copy);
   *file = (strut_study_file){0};
 }

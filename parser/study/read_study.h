@@ -39,6 +39,7 @@ typedef struct strut_study_file {
   strut_arena arena;
   size_t table_count;
   strut_study_points *tables; /* (table_count) files of points */
+  char *model_copy;           /* a model that uses files, in one text; NULL: model_text is that */
 } strut_study_file;
 
 /**

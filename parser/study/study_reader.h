@@ -50,6 +50,11 @@ bool strut_study_begin_along(strut_study_reader *r, strut_study_along *a, strut_
 bool strut_study_read_value(strut_study_reader *r, strut_study_along *a, const strut_tree *value,
                             const char *key, bool first, double *number);
 
+/* study_refine.c */
+
+/** Reads what is refined, after the axes, and gives the two axes the values of the finest grid. */
+void strut_study_read_refine(strut_study_reader *r, const strut_slot *slot);
+
 /* study_points.c */
 
 /** Is the item of `axes` a file of points, or a sample, and no parameter of such a name? */

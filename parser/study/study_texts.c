@@ -166,6 +166,12 @@ char *strut_study_identity(const strut_study_file *file) {
   put_number(&w, study->half_step);
   put_number(&w, study->check_accuracy);
   put_computed(&w, study);
+  if (study->refine_depth) {
+    put_number(&w, (double)study->refine_depth);
+    put_number(&w, study->refine_by);
+    put_word(&w, study->refine_where);
+  }
+  if (study->limit_evaluations) put_number(&w, (double)study->limit_evaluations);
   if (!w.failed) return w.text;
   strut_release(w.text);
   return NULL;

@@ -2,124 +2,35 @@
 /* The model of a study, once for each variant, with their keys laid over its own. See study_reader.h. */
 #include <string.h>
 
-#include "parser/language/keys.h"
+#include "parser/read/overlay.h"
 #include "parser/study/study_reader.h"
-
-/* Pairs of keys of which the first, laid over, also replaces the second. */
-static const char *const rivals[][2] = {
-    {"duration", "periods"},      {"duration", "of"},         {"periods", "duration"},
-    {"step", "accuracy"},         {"integrator", "accuracy"}, {"equilibrium", "configuration"},
-    {"equilibrium", "positions"}, {"equilibrium", "settle"},  {"configuration", "equilibrium"},
-    {"positions", "equilibrium"}, {"settle", "equilibrium"}};
+#include "parser/write/write_tree.h"
 
 strut_place strut_overlay_place(strut_place place) {
   place.line |= STRUT_OVERLAY_LINE;
   return place;
 }
 
-/* A copy of the node that shares its children; NULL: memory is out. */
-static strut_tree *copied(strut_arena *arena, const strut_tree *node) {
-  strut_tree *copy = strut_arena_allocate(arena, 1, sizeof *copy);
-  if (!copy) return NULL;
-  *copy = *node;
-  copy->next = NULL;
-  return copy;
-}
-
-/* A copy of the whole tree with marked places. Documents have at most 64 levels. */
-static strut_tree *marked(strut_arena *arena, const strut_tree *node) {
-  strut_tree *copy = copied(arena, node);
-  if (!copy) return NULL;
-  copy->place = strut_overlay_place(copy->place);
-  copy->text = strut_arena_text(arena, node->text, strlen(node->text));
-  strut_tree **end = &copy->first;
-  for (const strut_tree *child = node->first; child && copy->text; child = child->next) {
-    *end = marked(arena, child);
-    if (!*end) return NULL;
-    end = &(*end)->next;
-  }
-  return copy->text ? copy : NULL;
-}
-
-/* Does a key laid over replace this one? Either may have its former name. */
-static bool replaced(strut_section section, const strut_tree *over, const char *key) {
-  const char *current = strut_key_current(section, key);
-  for (const strut_tree *k = over->first; k; k = k->next->next) {
-    if (strcmp(strut_key_current(section, k->text), current) == 0) return true;
-    for (size_t i = 0; i < sizeof rivals / sizeof rivals[0]; i++)
-      if (strcmp(k->text, rivals[i][0]) == 0 && strcmp(key, rivals[i][1]) == 0) return true;
-  }
-  return false;
-}
-
-static strut_tree *merged(strut_arena *arena, strut_section section, const strut_tree *base,
-                          const strut_tree *over);
-
-/* The value of a key laid over: two mappings become one. */
-static strut_tree *joined(strut_arena *arena, const strut_tree *base, const strut_tree *key) {
-  const strut_tree *below = strut_tree_find(base, key->text, NULL), *value = key->next;
-  if (below && below->kind == STRUT_TREE_MAP && value->kind == STRUT_TREE_MAP)
-    return merged(arena, strut_section_find(key->text), below, value);
-  return marked(arena, value);
-}
-
-/* A mapping with the keys of `base` that stay, then those of `over`. NULL: memory is out. */
-static strut_tree *merged(strut_arena *arena, strut_section section, const strut_tree *base,
-                          const strut_tree *over) {
-  strut_tree *map = copied(arena, base);
-  if (!map) return NULL;
-  strut_tree **end = &map->first;
-  map->count = 0;
-  map->first = NULL;
-  for (const strut_tree *k = base->first; k; k = k->next->next) {
-    if (replaced(section, over, k->text)) continue;
-    strut_tree *key = copied(arena, k), *value = copied(arena, k->next);
-    if (!key || !value) return NULL;
-    *end = key, key->next = value, end = &value->next;
-    map->count++;
-  }
-  for (const strut_tree *k = over->first; k; k = k->next->next) {
-    strut_tree bare = *k;
-    bare.first = NULL;
-    strut_tree *key = marked(arena, &bare), *value = joined(arena, base, k);
-    if (!key || !value) return NULL;
-    *end = key, key->next = value, end = &value->next;
-    map->count++;
-  }
-  return map;
-}
-
-/* A new key of the document with what is laid over as its value. */
-static bool append(strut_document *document, const char *section, const strut_tree *value) {
-  strut_tree *root = document->root, *last = root->first;
-  const strut_tree named = {.kind = STRUT_TREE_SCALAR, .place = value->place, .text = section};
-  strut_tree *key = marked(&document->arena, &named), *copy = marked(&document->arena, value);
-  if (!key || !copy) return false;
-  key->next = copy;
-  while (last && last->next) last = last->next;
-  if (last)
-    last->next = key;
-  else
-    root->first = key;
-  root->count++;
-  return true;
-}
-
 /*
  * Lays the mapping `value` over the section of that name: its keys replace those of the section, within
- * nested mappings too, and keys that say the same in another way (`rivals`). False: memory is out.
+ * nested mappings too, and keys that say the same in another way. False: memory is out.
  */
 static bool lay_map_over(strut_document *document, const char *section, const strut_tree *value) {
   strut_tree *root = document->root;
   if (root->kind != STRUT_TREE_MAP || value->kind != STRUT_TREE_MAP) return true;
-  strut_tree *below = strut_tree_find(root, section, NULL);
-  if (!below) return append(document, section, value);
-  if (below->kind != STRUT_TREE_MAP) return true; /* the reader reports it */
-  strut_tree *map = merged(&document->arena, strut_section_find(section), below, value);
-  if (!map) return false;
-  below->first = map->first;
-  below->count = map->count;
-  return true;
+  const strut_tree *below = strut_tree_find(root, section, NULL);
+  if (below && below->kind != STRUT_TREE_MAP) return true; /* the reader reports it */
+  const strut_overlay overlay = {.arena = &document->arena, .mark = STRUT_OVERLAY_LINE};
+  strut_tree inner = *value;
+  strut_tree key = {.kind = STRUT_TREE_SCALAR, .place = value->place, .text = section};
+  const strut_tree over = {
+      .kind = STRUT_TREE_MAP, .place = value->place, .count = 1, .first = &key};
+  key.next = &inner;
+  inner.next = NULL;
+  strut_tree *whole =
+      strut_lay_over(&overlay, (strut_mapping_kind){STRUT_SECTION_SCENE, false}, root, &over);
+  if (whole) document->root = whole;
+  return whole != NULL;
 }
 
 static void split_notes(strut_diagnostics *from, strut_diagnostics *over) {
@@ -188,6 +99,14 @@ static bool is_study(const strut_study_file *file) {
   return found;
 }
 
+/* A model whose files are elsewhere could not stand beside the results. False: memory is out. */
+static bool keep_copy(strut_study_file *file, strut_scene_source *source) {
+  if (file->model_copy || !strut_scene_source_uses_files(source)) return true;
+  file->model_copy = strut_tree_write(strut_scene_source_document(source)->root,
+                                      "The model and the files that it uses.");
+  return file->model_copy != NULL;
+}
+
 /* The text of the model as a tree, with the study's keys over it and those of a variant, or NULL. */
 static strut_status open_source(strut_study_reader *r, strut_fields *top, strut_fields *variant) {
   strut_study_file *file = r->file;
@@ -203,6 +122,7 @@ static strut_status open_source(strut_study_reader *r, strut_fields *top, strut_
   if (status != STRUT_OK) return status;
   file->source_count++;
   strut_document *document = strut_scene_source_document(*source);
+  if (!keep_copy(file, *source)) return STRUT_NO_MEMORY;
   for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++) {
     const char *section = sections[i].section;
     if (!lay_over(document, section, strut_slot_of(top, sections[i].study)) ||

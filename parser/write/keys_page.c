@@ -12,6 +12,18 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
     [STRUT_SECTION_SCENE] = "The keys at the top level of a model.",
     [STRUT_SECTION_NODE] =
         "`nodes: {NAME: [x, y]}`, or `nodes: {NAME: {position: [x, y], ...}}` with these keys.",
+    [STRUT_SECTION_PART] =
+        "`parts: {NAME: {...}}`: a piece of structure, which `place` copies. It sees the parameters, "
+        "groups and signals of the scene, and no nodes but its own.",
+    [STRUT_SECTION_PLACE] =
+        "`place: {NAME: {...}}`: a copy of a part, or several, under names such as `NAME.node` or "
+        "`NAME.3.node`.",
+    [STRUT_SECTION_REPEAT] =
+        "`repeat: {...}` of a placement. Copy k is moved k times against copy 0: scaled and turned "
+        "about `about`, then by `step`, in its own frame.",
+    [STRUT_SECTION_NEXT] =
+        "`next: {...}` of `repeat`: what a copy has in common with the next one. Names are those of "
+        "the copy; `next.NAME` is one of the next copy.",
     [STRUT_SECTION_MEMBER] =
         "`members: {NAME: {...}}`. A member needs a stiffness, a damping, or both. Of the four "
         "keys "
@@ -75,6 +87,8 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
     [STRUT_SECTION_UNBALANCE] =
         "`unbalances: {NAME: {...}}`, each with a `speed` or an `angle`. Statics and settling have "
         "its mass at the node.",
+    [STRUT_SECTION_SLIDER] =
+        "`sliders: {NAME: {...}}`. Statics and settling have them where they are at t = 0.",
     [STRUT_SECTION_SIGNAL] =
         "A signal is a mapping with one of these keys, or the name of an entry of `signals`. The "
         "unit of its values follows from its use: a length, an angle or a pressure, or a force or "
@@ -114,6 +128,8 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
     [STRUT_SECTION_POINTS] =
         "`axes: [{points: {...}}]` of a study; `{points: FILE}` is short for it.",
     [STRUT_SECTION_SAMPLE] = "`axes: [{sample: {...}}]` of a study: parameters from distributions.",
+    [STRUT_SECTION_REFINE] = "`refine: {...}` of a study.",
+    [STRUT_SECTION_LIMIT] = "`limit: {...}` of a study.",
     [STRUT_SECTION_DISTRIBUTION] = "`over: {NAME: {...}}` of a sample, with one of these keys.",
     [STRUT_SECTION_SENSOR] =
         "`sensors: {NAME: {...}}` with one thing to sense. Expressions of signals, and measured "
@@ -209,7 +225,8 @@ static void put_type(strut_writer *writer, const strut_key *key) {
       [STRUT_TYPE_TIMES] = "list of times [s]",
       [STRUT_TYPE_SETTLE] = "`true`, `false`, or [mapping](#settle)",
       [STRUT_TYPE_STEADY] = "`true`, `false`, or [mapping](#steady)",
-      [STRUT_TYPE_THINGS] = "names, each with "};
+      [STRUT_TYPE_THINGS] = "names, each with ",
+      [STRUT_TYPE_FREE] = ""};
   if (key->type == STRUT_TYPE_MAP) {
     strut_put(writer, "[mapping](#");
     strut_put(writer, key->name);
@@ -219,7 +236,7 @@ static void put_type(strut_writer *writer, const strut_key *key) {
   if (key->type == STRUT_TYPE_EXPRESSION) put_expression_type(writer, key);
   if (key->limits.range == STRUT_RANGE_WHOLE) strut_put(writer, "whole ");
   if (types[key->type]) strut_put(writer, types[key->type]);
-  if (key->type == STRUT_TYPE_THINGS) {
+  if (key->type == STRUT_TYPE_THINGS || key->type == STRUT_TYPE_FREE) {
     strut_put(writer, key->words);
   } else if (*key->words) {
     put_words(writer, key->words);

@@ -276,6 +276,37 @@ static void put_unbalances(strut_writer *writer) {
   }
 }
 
+static void put_slider_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
+                               const void *object) {
+  const strut_sliding_mass *s = object;
+  int motion = s->travel ? STRUT_KEY_SLIDER_TRAVEL : STRUT_KEY_SLIDER_MOVES;
+  if (key == STRUT_KEY_SLIDER_MEMBER) {
+    strut_put_key_name(writer, mapping, key);
+    strut_put_name(writer, writer->scene->members[s->member].name);
+  } else if (key == STRUT_KEY_SLIDER_POSITION) {
+    strut_put_key_name(writer, mapping, key);
+    strut_put_number(writer, s->share);
+  } else if (key == motion && s->signal >= 0) {
+    strut_put_key_name(writer, mapping, key);
+    strut_put_signal_reference(writer, s->signal);
+  }
+}
+
+static void put_sliders(strut_writer *writer) {
+  const strut_scene *scene = writer->scene;
+  const strut_sliding_mass usual = {0};
+  if (scene->sliding_count) strut_put(writer, "sliders:\n");
+  for (size_t i = 0; i < scene->sliding_count; i++) {
+    strut_mapping mapping = STRUT_MAPPING_INLINE;
+    strut_put(writer, "  ");
+    strut_put_name(writer, scene->sliding_masses[i].name);
+    strut_put(writer, ": {");
+    strut_put_fields(writer, &mapping, STRUT_SECTION_SLIDER, &scene->sliding_masses[i], &usual,
+                     put_slider_by_hand);
+    strut_put(writer, "}\n");
+  }
+}
+
 void strut_put_drives(strut_writer *writer) {
   const strut_scene *scene = writer->scene;
   const strut_load usual = {0};
@@ -285,6 +316,7 @@ void strut_put_drives(strut_writer *writer) {
   put_relays(writer);
   put_actuators(writer);
   put_unbalances(writer);
+  put_sliders(writer);
   if (scene->load_count) strut_put(writer, "loads:\n");
   for (size_t i = 0; i < scene->load_count; i++) {
     strut_mapping mapping = STRUT_MAPPING_INLINE;

@@ -79,6 +79,8 @@ static void put_column(strut_writer *writer, strut_column column) {
     put_owner(writer, "hinge", scene->hinges[column.item].name);
   else if (owner == STRUT_COLUMN_OF_CELL)
     put_owner(writer, "cell", scene->cells[column.item].name);
+  else if (owner == STRUT_COLUMN_OF_SLIDER)
+    put_owner(writer, "slider", scene->sliding_masses[column.item].name);
   else if (owner == STRUT_COLUMN_OF_COLLISION)
     put_owner(writer, "collision", scene->collisions[column.item].name);
   else if (owner == STRUT_COLUMN_OF_NODE || owner == STRUT_COLUMN_OF_CONTACT)

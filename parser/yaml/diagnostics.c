@@ -90,8 +90,15 @@ unsigned strut_diagnostics_use(strut_diagnostics *diagnostics, const char *file,
     diagnostics->used =
         strut_arena_allocate(&diagnostics->arena, STRUT_USED_FILES_MOST, sizeof *diagnostics->used);
   if (!diagnostics->used || diagnostics->used_count == STRUT_USED_FILES_MOST) return 0;
-  diagnostics->used[diagnostics->used_count] = (strut_used_file){file, text, length};
+  diagnostics->used[diagnostics->used_count] = (strut_used_file){file, text, length, NULL};
   return (unsigned)++diagnostics->used_count;
+}
+
+void strut_diagnostics_own(strut_diagnostics *diagnostics, unsigned number, char *text) {
+  strut_used_file *used = &diagnostics->used[number - 1];
+  const char *name = strut_arena_text(&diagnostics->arena, used->file, strlen(used->file));
+  used->owned = text;
+  used->file = name ? name : "<file>";
 }
 
 static bool has_note(const strut_diagnostics *diagnostics, strut_place place, const char *message) {
@@ -260,7 +267,7 @@ static int compare(const void *a, const void *b) {
 static strut_used_file text_of(const strut_diagnostics *diagnostics, strut_place place) {
   if (place.file && place.file <= diagnostics->used_count) return diagnostics->used[place.file - 1];
   return (strut_used_file){diagnostics->file ? diagnostics->file : "<text>", diagnostics->text,
-                           diagnostics->length};
+                           diagnostics->length, NULL};
 }
 
 static strut_cursor cursor_in(strut_used_file in) {
@@ -328,6 +335,7 @@ const char *strut_diagnostics_render_notes(strut_diagnostics *diagnostics) {
 void strut_diagnostics_free(strut_diagnostics *diagnostics) {
   strut_release(diagnostics->items);
   strut_release(diagnostics->notes);
+  for (size_t i = 0; i < diagnostics->used_count; i++) strut_release(diagnostics->used[i].owned);
   strut_arena_free(&diagnostics->arena);
   *diagnostics = (strut_diagnostics){0};
 }

@@ -28,13 +28,15 @@ static inline strut_place strut_place_at(uint32_t line, uint32_t column, uint32_
   return (strut_place){
       .line = line,
       .column = column,
-      .length = (length < STRUT_PLACE_LENGTH_MOST ? length : 0xFFFFFFu) & 0xFFFFFFu};
+      .length = (length < STRUT_PLACE_LENGTH_MOST ? length : 0xFFFFFFu) & 0xFFFFFFu,
+      .file = 0};
 }
 
 /** A file that the text under examination uses. */
 typedef struct strut_used_file {
   const char *file, *text;
   size_t length;
+  char *owned; /* NULL, or the block that holds the text */
 } strut_used_file;
 
 /** Most notes of one message. */
@@ -89,6 +91,8 @@ STRUT_API void strut_diagnose_note(strut_diagnostics *diagnostics, size_t item, 
 /** Enters a used file, whose texts must outlive this; its number for places, or 0: there are too many. */
 STRUT_API unsigned strut_diagnostics_use(strut_diagnostics *diagnostics, const char *file,
                                          const char *text, size_t length);
+/** Lets the used file of that number own its text, a block of strut_allocate, and copies its name. */
+STRUT_API void strut_diagnostics_own(strut_diagnostics *diagnostics, unsigned number, char *text);
 /** Adds a note (not an error) unless the place already has it. Lost if memory is out. */
 STRUT_API void strut_note(strut_diagnostics *diagnostics, strut_place place, const char *format,
                           ...) __attribute__((format(printf, 3, 4)));

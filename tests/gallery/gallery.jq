@@ -47,6 +47,10 @@ def at_factor($factor): [.points[] | select(((.factor - $factor) | fabs) < 1e-12
 
 # For expected numbers: root(2) instead of (2 | sqrt), since | divides the fields of a line.
 def root(f): f | sqrt;
+def squared(f): f | . * .;
+# Sine and cosine of degrees.
+def sine(f): f * (1 | atan) / 45 | sin;
+def cosine(f): f * (1 | atan) / 45 | cos;
 
 # Of a mapping from nodes to places: the angle [deg] of the line from a to b; of the middle of two
 # seen from the origin; and, from the downward direction [rad], of two rods that hang on each other.

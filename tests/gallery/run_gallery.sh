@@ -1,10 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Every known answer about the structures of models/gallery, asked of the program with --json.
+# Every known answer about the structures of models/gallery and models/parts, asked of the program with
+# --json.
 #
 #   sh tests/gallery/run_gallery.sh ROOT STRUT [NAME...]     NAMEs: only these models
 #
-# tests/gallery/NAME.answers belongs to models/gallery/NAME.yaml. Its lines:
+# tests/gallery/NAME.answers belongs to the NAME.yaml of one of the two. Its lines:
 #
 #   # a comment
 #   COMMAND [OPTIONS...] [%VARIANT] | FILTER | EXPECTED | TOLERANCE
@@ -153,17 +154,19 @@ for number in 1 2 3 4 5 6 7 8 9 10; do
 done
 
 : >"$scratch/asked"
-for file in "$here"/*.answers "$root"/models/gallery/*.yaml; do
+for file in "$here"/*.answers "$root"/models/gallery/*.yaml "$root"/models/parts/*.yaml; do
   name=${file##*/}
   name=${name%.*}
   case " ${*:-$name} " in *" $name "*) ;; *) continue ;; esac
-  if [ ! -e "$here/$name.answers" ] || [ ! -e "$root/models/gallery/$name.yaml" ]; then
-    echo "$name: has only one of models/gallery/$name.yaml, tests/gallery/$name.answers"
+  model=$root/models/gallery/$name.yaml
+  [ -e "$model" ] || model=$root/models/parts/$name.yaml
+  if [ ! -e "$here/$name.answers" ] || [ ! -e "$model" ]; then
+    echo "$name: has only one of models/gallery or parts/$name.yaml, tests/gallery/$name.answers"
     failures=$((failures + 1))
     continue
   fi
   [ "$file" = "$here/$name.answers" ] || continue
-  answers "$file" "$root/models/gallery/$name.yaml" >"$scratch/wrong"
+  answers "$file" "$model" >"$scratch/wrong"
   cat "$scratch/wrong"
   failures=$((failures + $(wc -l <"$scratch/wrong")))
 done

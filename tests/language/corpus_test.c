@@ -17,7 +17,8 @@
 
 enum { MOST_FILES = 1000, MOST_LINES = 40, MOST_SETS = 8 };
 
-/* What a file announces: "# expect: LINE:COLUMN: message", "# set: name=value", "# purpose: ...". */
+/* What a file announces: "# expect: LINE:COLUMN: message", "# note: LINE:COLUMN: text" of a note to one of
+   them, "# set: name=value", "# purpose: ...". */
 typedef struct announcement {
   size_t count, sets;
   char *expected[MOST_LINES];
@@ -36,10 +37,14 @@ static char *read_text(const char *path, size_t *length) {
 }
 
 static void take_line(announcement *a, char *line) {
-  static const char expect[] = "# expect: ", set[] = "# set: ", statics[] = "# purpose: statics";
+  static const char expect[] = "# expect: ", note[] = "# note: ", set[] = "# set: ",
+                    statics[] = "# purpose: statics";
   if (strncmp(line, expect, strlen(expect)) == 0) {
     assert_true(a->count < MOST_LINES);
     a->expected[a->count++] = line + strlen(expect);
+  } else if (strncmp(line, note, strlen(note)) == 0) {
+    assert_true(a->count < MOST_LINES);
+    a->expected[a->count++] = line + strlen("# ");
   } else if (strncmp(line, set, strlen(set)) == 0) {
     char *name = line + strlen(set), *equals = strchr(name, '=');
     assert_non_null(equals);
@@ -74,28 +79,35 @@ static int by_text(const void *a, const void *b) {
   return strcmp(*(char *const *)a, *(char *const *)b);
 }
 
+static char *line_of(const char *kind, strut_place place, const char *message) {
+  size_t size = strlen(message) + 50;
+  char *line = malloc(size);
+  snprintf(line, size, "%s%u:%u: %s", kind, place.line, place.column, message);
+  return line;
+}
+
 /* Compares as sets of lines; says what is missing and what is too much. Returns the differences. */
 static size_t compare(const char *name, char **expected, size_t count,
                       const strut_diagnostics *found) {
-  char **lines = calloc(found->count + 1, sizeof *lines);
-  size_t e = 0, f = 0, differences = 0;
+  char **lines = calloc(found->count * (1 + STRUT_MESSAGE_NOTES) + 1, sizeof *lines);
+  size_t e = 0, f = 0, all = 0, differences = 0;
   for (size_t i = 0; i < found->count; i++) {
     const strut_diagnostic *d = &found->items[i];
-    size_t size = strlen(d->message) + 40;
-    lines[i] = malloc(size);
-    snprintf(lines[i], size, "%u:%u: %s", d->place.line, d->place.column, d->message);
+    lines[all++] = line_of("", d->place, d->message);
+    for (int k = 0; k < STRUT_MESSAGE_NOTES; k++)
+      if (d->note[k]) lines[all++] = line_of("note: ", d->note_place[k], d->note[k]);
   }
-  qsort(lines, found->count, sizeof *lines, by_text);
+  qsort(lines, all, sizeof *lines, by_text);
   qsort(expected, count, sizeof *expected, by_text);
-  while (e < count || f < found->count) {
-    int order = e == count ? 1 : f == found->count ? -1 : strcmp(expected[e], lines[f]);
+  while (e < count || f < all) {
+    int order = e == count ? 1 : f == all ? -1 : strcmp(expected[e], lines[f]);
     if (order) differences++;
     if (order < 0) print_error("%s: not found: %s\n", name, expected[e]);
     if (order > 0) print_error("%s: not expected: %s\n", name, lines[f]);
     if (order <= 0) e++;
     if (order >= 0) f++;
   }
-  for (size_t i = 0; i < found->count; i++) free(lines[i]);
+  for (size_t i = 0; i < all; i++) free(lines[i]);
   free(lines);
   return differences;
 }

@@ -53,7 +53,7 @@ static void try_mutant(mutation *m, size_t at, size_t cut, const char *insert, c
   memcpy(m->mutant, f->text, at);
   memcpy(m->mutant + at, insert, length);
   memcpy(m->mutant + at + length, f->text + at + cut, f->length - at - cut + 1);
-  char *written = read_and_write(m->mutant, f->length - cut + length);
+  char *written = read_and_write(f->path, m->mutant, f->length - cut + length);
   m->tried++;
   if (written && strcmp(written, m->written) == 0) {
     print_error("%s: %s '%s' at byte %zu changes nothing\n", f->path, what, key, at);
@@ -116,7 +116,7 @@ static void no_value_is_lost(void **state) {
     strut_document document = {0};
     strut_diagnostics_source(&diagnostics, files[i].path, files[i].text, files[i].length);
     assert_int_equal(strut_document_read(&document, &diagnostics), STRUT_OK);
-    char *written = read_and_write(files[i].text, files[i].length);
+    char *written = read_and_write(files[i].path, files[i].text, files[i].length);
     assert_non_null(written);
     mutation m = {.file = &files[i], .written = written, .mutant = room};
     mutate(&m, document.root);

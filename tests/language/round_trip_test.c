@@ -186,7 +186,7 @@ static void written_scenes_read_back_to_the_same_bits(void **state) {
   size_t count = scene_files(&files);
   for (size_t i = 0; i < count; i++) {
     strut_setup first, second;
-    if (read_quietly(files[i].text, files[i].length, &first) != STRUT_OK)
+    if (read_quietly_as(files[i].path, files[i].text, files[i].length, &first) != STRUT_OK)
       fail_msg("%s is refused", files[i].path);
     char *written = strut_setup_write(&first);
     assert_non_null(written);

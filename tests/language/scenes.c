@@ -67,17 +67,22 @@ void free_scene_files(scene_file *files, size_t count) {
   free(files);
 }
 
-strut_status read_quietly(const char *text, size_t length, strut_setup *setup) {
+strut_status read_quietly_as(const char *path, const char *text, size_t length,
+                             strut_setup *setup) {
   strut_diagnostics diagnostics = {0};
   strut_status status =
-      strut_setup_read(setup, "scene", text, length, NULL, 0, STRUT_FOR_ANY, &diagnostics);
+      strut_setup_read(setup, path, text, length, NULL, 0, STRUT_FOR_ANY, &diagnostics);
   strut_diagnostics_free(&diagnostics);
   return status;
 }
 
-char *read_and_write(const char *text, size_t length) {
+strut_status read_quietly(const char *text, size_t length, strut_setup *setup) {
+  return read_quietly_as("scene", text, length, setup);
+}
+
+char *read_and_write(const char *path, const char *text, size_t length) {
   strut_setup setup;
-  if (read_quietly(text, length, &setup) != STRUT_OK) return NULL;
+  if (read_quietly_as(path, text, length, &setup) != STRUT_OK) return NULL;
   char *written = strut_setup_write(&setup);
   assert_non_null(written);
   strut_setup_free(&setup);

@@ -21,7 +21,9 @@ void free_scene_files(scene_file *files, size_t count);
 
 /** Reads text as a scene for a run, quietly. The caller frees the scene. */
 strut_status read_quietly(const char *text, size_t length, strut_setup *setup);
-/** The scene in the text, written back; NULL where it is refused. strut_release it. */
-char *read_and_write(const char *text, size_t length);
+/** The same of a text whose path is given, so that the files which it names are found. */
+strut_status read_quietly_as(const char *path, const char *text, size_t length, strut_setup *setup);
+/** The scene in the text of that path, written back; NULL where it is refused. strut_release it. */
+char *read_and_write(const char *path, const char *text, size_t length);
 
 #endif

@@ -6,12 +6,12 @@
  * strains by their definition, gradients by differences of them, laws by the words of the language. Then
  * turned, mirrored and larger scenes must move as the turned, mirrored and larger scene.
  */
-#include <gsl/gsl_spline.h>
 #include <math.h>
 #include <stdlib.h>
 
 #include "engine/forces/forces.h"
 #include "tests/physics/random_elements.h"
+#include "tests/physics/slow_elements.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"
 #include "tests/support/motion.h"
@@ -20,99 +20,19 @@
 /* Widening is the point here; clang counts it as promotion. */
 #pragma GCC diagnostic ignored "-Wdouble-promotion"
 
-enum { SCENES = 60, MOST = 32 };
+enum { SCENES = 60, MOST = SLOW_MOST };
 static const double TOLERANCE = 1e-11;
 
 /* ---- the slow way ---- */
 
-/* A strain: the length of the way over `count` nodes, or the angle at the second of three. */
-typedef struct strain {
-  bool angle;
-  size_t count;
-  int32_t node[MOST];
-  long double near; /* the value near which an angle is taken */
-} strain;
-
-static long double value_of(const strain *s, const long double *q) {
-  long double sum = 0;
-  if (s->angle) {
-    const long double *a = q + 2 * s->node[0], *o = q + 2 * s->node[1], *c = q + 2 * s->node[2];
-    long double turn = atan2l(c[1] - o[1], c[0] - o[0]) - atan2l(a[1] - o[1], a[0] - o[0]);
-    return turn - 2 * acosl(-1) * roundl((turn - s->near) / (2 * acosl(-1)));
-  }
-  for (size_t k = 0; k + 1 < s->count; k++) {
-    const long double *a = q + 2 * s->node[k], *b = q + 2 * s->node[k + 1];
-    sum += hypotl(b[0] - a[0], b[1] - a[1]);
-  }
-  return sum;
-}
-
-/* Derivative of the strain along coordinate i, by differences of fourth order. */
-static long double slope_of(const strain *s, long double *q, size_t i) {
-  const long double h = 1e-4L;
-  long double at = q[i], f[4];
-  for (int k = 0; k < 4; k++) {
-    q[i] = at + h * (k < 2 ? k - 2 : k - 1);
-    f[k] = value_of(s, q);
-  }
-  q[i] = at;
-  return (f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * h);
-}
-
-static long double force_of_table(const strut_law *law, long double x) {
-  size_t n = law->count, i = 0;
-  gsl_spline *spline = gsl_spline_alloc(law->smooth ? gsl_interp_steffen : gsl_interp_linear, n);
-  assert_non_null(spline);
-  gsl_spline_init(spline, law->x, law->force, n);
-  double inside = fmin(fmax((double)x, law->x[0]), law->x[n - 1]);
-  long double force = gsl_spline_eval(spline, inside, NULL);
-  bool below = x < law->x[0];
-  if (below || x > law->x[n - 1]) {
-    i = below ? 0 : n - 1;
-    long double slope =
-        law->smooth ? (long double)gsl_spline_eval_deriv(spline, law->x[i], NULL)
-                    : ((long double)law->force[below ? 1 : n - 1] - law->force[below ? 0 : n - 2]) /
-                          ((long double)law->x[below ? 1 : n - 1] - law->x[below ? 0 : n - 2]);
-    force = law->force[i] + slope * (x - law->x[i]);
-  }
-  gsl_spline_free(spline);
-  return force;
-}
-
-/* A law by its words in the language; k: the element's stiffness. */
-static long double force_of_law(const strut_law *law, long double k, long double e,
-                                long double e0) {
-  long double x = e - e0, size = fabsl(x), sign = x < 0 ? -1 : 1, sum = 0;
-  switch (law->kind) {
-    case STRUT_LAW_BILINEAR:
-      if (size <= law->knee) return k * x;
-      return sign * (k * law->knee + law->second_stiffness * (size - law->knee));
-    case STRUT_LAW_PLAY: return size <= law->gap ? 0 : sign * k * (size - law->gap);
-    case STRUT_LAW_POLYNOMIAL:
-      for (size_t i = law->count; i-- > 0;) sum = (sum + law->force[i]) * x;
-      return sum;
-    case STRUT_LAW_LOGARITHMIC: return k * e0 * logl(e / e0);
-    case STRUT_LAW_EXPONENTIAL: return k * law->scale * (expl(x / law->scale) - 1);
-    case STRUT_LAW_TABLE: return force_of_table(law, x);
-    case STRUT_LAW_LINEAR: return k * x;
-    default: fail_msg("no such law is made here");
-  }
-  return 0;
-}
-
 /* Adds what an element does; carries: 1 tension only, -1 compression only. */
-static void add_element(long double *force, const strain *s, long double *q, const double *v,
+static void add_element(long double *force, const slow_strain *s, long double *q, const double *v,
                         const strut_law *law, double stiffness, double damping, double natural,
                         int carries) {
-  long double b[2 * MOST], rate = 0, e = value_of(s, q);
-  for (size_t k = 0; k < 2 * s->count; k++) {
-    size_t i = 2 * (size_t)s->node[k / 2] + k % 2;
-    bool again = false; /* a node that stands twice in the way has its whole slope already */
-    for (size_t j = 0; j < k / 2; j++) again = again || s->node[j] == s->node[k / 2];
-    b[k] = again ? 0 : slope_of(s, q, i);
-    rate += b[k] * v[i];
-  }
-  long double t = force_of_law(law, stiffness, e, natural) + damping * rate;
+  long double b[2 * MOST], rate = 0, e = slow_strain_value(s, q);
+  slow_strain_gradient(s, q, b);
+  for (size_t k = 0; k < 2 * s->count; k++) rate += b[k] * v[2 * (size_t)s->node[k / 2] + k % 2];
+  long double t = slow_law_force(law, stiffness, e, natural) + damping * rate;
   if (carries && !(carries * (e - natural) > 0 && carries * t > 0)) return;
   for (size_t k = 0; k < 2 * s->count; k++) force[2 * (size_t)s->node[k / 2] + k % 2] -= t * b[k];
 }
@@ -125,9 +45,8 @@ static void add_member(long double *force, const strut_scene *scene, size_t j, l
                        const double *v) {
   static const strut_law linear = {.kind = STRUT_LAW_LINEAR};
   const strut_member *m = &scene->members[j];
-  strain s = {.count = m->guide_count + 2};
+  slow_strain s = slow_path_of(m);
   strut_rest rest;
-  for (size_t k = 0; k < s.count; k++) s.node[k] = strut_member_node(m, k);
   assert_true(strut_member_rest(scene, j, &rest));
   double stop = m->stop_stiffness > 0 ? m->stop_stiffness : 100 * rest.stiffness;
   int carries = m->kind == STRUT_CABLE ? 1 : sign_of(m->law.carries);
@@ -140,7 +59,7 @@ static void add_member(long double *force, const strut_scene *scene, size_t j, l
 static void add_hinge(long double *force, const strut_scene *scene, size_t i, long double *q,
                       const double *v) {
   const strut_hinge *h = &scene->hinges[i];
-  strain s = {.angle = true, .count = 3, .near = strut_hinge_rest(scene, i)};
+  slow_strain s = {.kind = SLOW_ANGLE, .count = 3, .near = strut_hinge_rest(scene, i)};
   for (int k = 0; k < 3; k++) s.node[k] = h->node[k];
   add_element(force, &s, q, v, &h->law, h->stiffness, h->damping, strut_hinge_rest(scene, i),
               sign_of(h->law.carries));

@@ -33,7 +33,7 @@ static void waveform(const strut_signal *s, long double tau, long double *value,
   }
 }
 
-void slow_signal(const strut_scene *scene, int32_t signal, double t, long double *value,
+void slow_signal(const strut_scene *scene, int32_t signal, long double t, long double *value,
                  long double *rate) {
   const strut_signal *s = &scene->signals[signal];
   bool on = t >= s->start && t < s->stop;
@@ -49,7 +49,7 @@ void slow_signal(const strut_scene *scene, int32_t signal, double t, long double
       if (t < s->time[i] || t >= s->time[i + 1]) continue;
       *rate =
           ((long double)s->value[i + 1] - s->value[i]) / ((long double)s->time[i + 1] - s->time[i]);
-      *value = s->value[i] + *rate * ((long double)t - s->time[i]);
+      *value = s->value[i] + *rate * (t - s->time[i]);
     }
   } else if (s->kind == STRUT_SUM) {
     for (size_t i = 0; i < s->term_count && on; i++) {
@@ -58,15 +58,18 @@ void slow_signal(const strut_scene *scene, int32_t signal, double t, long double
       *value += part, *rate += part_rate;
     }
   } else if (on) {
-    waveform(s, (long double)t - s->start, value, rate);
+    waveform(s, t - s->start, value, rate);
   }
 }
 
-/* lambda_0 and c of a member, from the shape as drawn. */
-static void resolve(const strut_scene *scene, const strut_member *m, long double *rest,
-                    long double *stiffness) {
-  const double *a = scene->nodes[m->node[0]].position, *b = scene->nodes[m->node[1]].position;
-  long double drawn = hypotl((long double)b[0] - a[0], (long double)b[1] - a[1]);
+void slow_member_rest(const strut_scene *scene, const strut_member *m, long double *rest,
+                      long double *stiffness) {
+  long double drawn = 0;
+  for (size_t k = 0; k <= m->guide_count; k++) {
+    const double *a = scene->nodes[k ? m->guides[k - 1] : m->node[0]].position;
+    const double *b = scene->nodes[k < m->guide_count ? m->guides[k] : m->node[1]].position;
+    drawn += hypotl((long double)b[0] - a[0], (long double)b[1] - a[1]);
+  }
   long double force = m->rest_value, ea = m->axial_stiffness;
   if (m->rest_kind == STRUT_REST_FORCE_DENSITY) force *= drawn;
   if (m->rest_kind == STRUT_REST_LENGTH)
@@ -89,7 +92,7 @@ static void add_member(slow_model *slow, const strut_scene *scene, size_t j, dou
   long double vx = (long double)v[b] - v[a], vy = (long double)v[b + 1] - v[a + 1];
   long double length = hypotl(x, y), rate = (vx * x + vy * y) / length;
   long double rest, stiffness, s = 0, s_rate = 0;
-  resolve(scene, m, &rest, &stiffness);
+  slow_member_rest(scene, m, &rest, &stiffness);
   for (size_t i = 0; i < scene->actuator_count; i++) {
     if (scene->actuators[i].member != (int32_t)j) continue;
     long double value, value_rate;
@@ -172,18 +175,9 @@ static void assemble_mass(slow_model *slow, const strut_scene *scene) {
   }
 }
 
-/* M a = F of the free coordinates, by Gauss elimination with row exchanges. */
-static void solve(slow_model *slow, const strut_scene *scene) {
-  size_t n = slow->n, width = n + 1;
-  long double *a = zeros(n * width);
-  for (size_t i = 0; i < n; i++) {
-    bool fixed_row = scene->nodes[i / 2].fixed[i % 2];
-    for (size_t j = 0; j < n; j++) {
-      bool fixed = fixed_row || scene->nodes[j / 2].fixed[j % 2];
-      a[i * width + j] = fixed ? i == j : slow->mass[i * n + j];
-    }
-    a[i * width + n] = fixed_row ? 0 : slow->force[i];
-  }
+/* By Gauss elimination with row exchanges. */
+void slow_solve(long double *a, size_t n, long double *x) {
+  size_t width = n + 1;
   for (size_t p = 0; p < n; p++) {
     size_t best = p;
     for (size_t i = p + 1; i < n; i++)
@@ -198,7 +192,22 @@ static void solve(slow_model *slow, const strut_scene *scene) {
       for (size_t j = p; j < width; j++) a[i * width + j] -= factor * a[p * width + j];
     }
   }
-  for (size_t i = 0; i < n; i++) slow->acceleration[i] = a[i * width + n] / a[i * width + i];
+  for (size_t i = 0; i < n; i++) x[i] = a[i * width + n] / a[i * width + i];
+}
+
+/* M a = F of the free coordinates. */
+static void solve(slow_model *slow, const strut_scene *scene) {
+  size_t n = slow->n, width = n + 1;
+  long double *a = zeros(n * width);
+  for (size_t i = 0; i < n; i++) {
+    bool fixed_row = scene->nodes[i / 2].fixed[i % 2];
+    for (size_t j = 0; j < n; j++) {
+      bool fixed = fixed_row || scene->nodes[j / 2].fixed[j % 2];
+      a[i * width + j] = fixed ? i == j : slow->mass[i * n + j];
+    }
+    a[i * width + n] = fixed_row ? 0 : slow->force[i];
+  }
+  slow_solve(a, n, slow->acceleration);
   free(a);
 }
 

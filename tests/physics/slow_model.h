@@ -26,7 +26,12 @@ void slow_evaluate(slow_model *slow, const strut_scene *scene, double t, const d
 void slow_free(slow_model *slow);
 
 /** Value and rate of a signal, by its definition. */
-void slow_signal(const strut_scene *scene, int32_t signal, double t, long double *value,
+void slow_signal(const strut_scene *scene, int32_t signal, long double t, long double *value,
                  long double *rate);
+/** lambda_0 and c of a member, over its guides, from the shape as drawn. */
+void slow_member_rest(const strut_scene *scene, const strut_member *m, long double *rest,
+                      long double *stiffness);
+/** x[n] of a (n, n + 1) row by row, whose last column is the right-hand side; a is destroyed. */
+void slow_solve(long double *a, size_t n, long double *x);
 
 #endif

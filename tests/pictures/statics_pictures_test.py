@@ -142,9 +142,9 @@ check_shape("form", list(said["nodes"].values()), centres)
 check_members("form", members, centres, paths, said["forces"])
 
 # More states and mechanisms than there is room for: the rest is counted.
-run("rigidity", os.path.join(root, "models/gallery/michell-wheel.yaml"), "--plot", "m.svg", "--width",
+run("rigidity", os.path.join(root, "models/parts/michell-wheel.yaml"), "--plot", "m.svg", "--width",
     "column")
-run("rigidity", os.path.join(root, "models/gallery/michell-wheel.yaml"), "--plot", "m.svg")
+run("rigidity", os.path.join(root, "models/parts/michell-wheel.yaml"), "--plot", "m.svg")
 
 # Names of other scripts and a title that looks like markup: nothing of it becomes part of the file.
 SCRIPTS = ["ש" * 31, "م" * 31, "n" * 60, "結構"]

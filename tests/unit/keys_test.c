@@ -55,6 +55,15 @@ static const struct exception {
   strut_section section;
   const char *name, *reason;
 } exceptions[] = {
+    {STRUT_SECTION_SCENE, "base", "a path, from the folder of the file"},
+    {STRUT_SECTION_PART, "use", "a path, from the folder of the file"},
+    {STRUT_SECTION_PART, "isolated", "decides which names the reader finds"},
+    {STRUT_SECTION_PLACE, "flip", "part of the frame of a copy"},
+    {STRUT_SECTION_PLACE, "turn", "part of the frame of a copy"},
+    {STRUT_SECTION_PLACE, "at", "part of the frame of a copy"},
+    {STRUT_SECTION_REPEAT, "turn", "part of the frames of copies"},
+    {STRUT_SECTION_REPEAT, "scale", "part of the frames of copies"},
+    {STRUT_SECTION_REPEAT, "about", "part of the frames of copies"},
     {STRUT_SECTION_MEMBER, "rest_length", "one of four keys that share a field"},
     {STRUT_SECTION_MEMBER, "rest_length_ratio", "one of four keys that share a field"},
     {STRUT_SECTION_MEMBER, "pretension", "one of four keys that share a field"},
@@ -79,6 +88,7 @@ static const struct exception {
     {STRUT_SECTION_FRICTION, "mu_backward", "makes the friction directional"},
     {STRUT_SECTION_FRICTION, "mu_backward_static", "belongs to a directional friction"},
     {STRUT_SECTION_UNBALANCE, "speed", "turns per second or an angular velocity"},
+    {STRUT_SECTION_SLIDER, "position", "a share or a length"},
     {STRUT_SECTION_GROUND, "through", "replaces the height, also where it is the origin"},
     {STRUT_SECTION_GROUND, "normal", "gives the slope"},
     {STRUT_SECTION_SETTLE, "step", "depends on the step of the run"},
@@ -108,6 +118,7 @@ static const struct exception {
     {STRUT_SECTION_RELAY, "every", "of the signal that the relay is"},
     {STRUT_SECTION_STARTS, "above", "in the unit of the sensor"},
     {STRUT_SECTION_STARTS, "below", "in the unit of the sensor"},
+    {STRUT_SECTION_REFINE, "depth", "changes the axes too"},
     {STRUT_SECTION_POINTS, "file", "a path, from the study's folder"},
     {STRUT_SECTION_SAMPLE, "count", "of values that are made at once"},
     {STRUT_SECTION_SAMPLE, "seed", "of values that are made at once"},

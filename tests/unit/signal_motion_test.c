@@ -55,6 +55,8 @@ static void jumps_of_values_are_found(void **state) {
   assert_false(strut_signal_value_jumps(&s, 0, HUGE_VAL, &when));
   s.start = 0.1;
   assert_true(strut_signal_value_jumps(&s, 0, HUGE_VAL, &when) && when == 0.1);
+  s = wave(STRUT_CONSTANT, 1, 0);
+  assert_false(strut_signal_value_jumps(&s, 0, HUGE_VAL, &when));
   s = wave(STRUT_SQUARE, 1, 2);
   assert_true(strut_signal_value_jumps(&s, 0, HUGE_VAL, &when) && when == 0.25);
   s = wave(STRUT_HALF_SINE, 1, 2);

@@ -147,7 +147,7 @@ static double earliest_slack_dip(const strut_model *model, strut_state *state,
   strut_event_measure(model, state, l, l->next);
   for (int32_t k = 0; k < l->law_count; k++) {
     double side = l->acting[k] ? 1.0 : -1.0;
-    if (strut_switch_event(&l->laws[k]) != STRUT_EVENT_ACTS) continue;
+    if (l->laws[k].event != STRUT_EVENT_ACTS) continue;
     double from = side * l->now->stretch[k], to = side * l->next->stretch[k];
     if (!(from > 0.0 && to > 0.0)) continue;
     double at = dip(from, side * h * l->now->stretch_rate[k], to,
@@ -158,14 +158,15 @@ static double earliest_slack_dip(const strut_model *model, strut_state *state,
 }
 
 /* Earliest lowest point, within the step, of a gap or slip that passes its edge twice; 0: none. */
-static double earliest_dip(const strut_model *model, const strut_event_stepper *l, double h) {
+STRUT_INLINE double earliest_dip(const strut_model *model, const strut_event_stepper *l, double h,
+                                 unsigned terms) {
   const strut_contact_table *c = &model->contacts;
   double first = 0.0, part = fmax(0.1 * l->tolerance, 1e-12);
   double faint[2] = {0.01 * part * model->size, part * l->fastest}; /* of a gap, of a slip */
   for (int32_t i = 0; i < c->count; i++) {
     strut_touch from, to;
-    measure_at_end(c, l, l->now, i, &from);
-    measure_at_end(c, l, l->next, i, &to);
+    measure_at_end(c, l, l->now, i, terms, &from);
+    measure_at_end(c, l, l->next, i, terms, &to);
     bool open = l->mode[i] == STRUT_MODE_OPEN;
     double side = open ? 1.0 : -1.0;
     double at = 0.0;
@@ -191,7 +192,7 @@ static const double LEAST_SPLIT = 1e-4;
 static double error_to_reach(double part) { return fmax(1.01, pow(0.9 / part, 5.0)); }
 
 STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                       double t, double h, bool ledger) {
+                       double t, double h, unsigned terms, bool ledger) {
   double *v[PAIR], *a[PAIR];
   for (int k = 0; k < PAIR; k++) v[k] = l->stage[V + k], a[k] = l->stage[A + k];
   v[0] = l->now->v, a[0] = l->now->a;
@@ -203,18 +204,18 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
   for (int k = 1; k < PAIR; k++) {
     double *q = k == PAIR - 1 ? l->next->q : l->stage[0];
     stage_of(n, h, l->now, v, a, k, q);
-    if (model->plan & STRUT_TERM_SUPPORT_MOTION)
+    if (model->plan & terms & STRUT_TERM_SUPPORT_MOTION)
       strut_support_motion_place(model, state, t + ahead[k] * h, q, v[k]);
     if (k == PAIR - 1) break;
-    accelerate_in_modes(model, state, l, t + ahead[k] * h, q, v[k], a[k], l->next, ledger);
+    accelerate_in_modes(model, state, l, t + ahead[k] * h, q, v[k], a[k], l->next, terms, ledger);
     if (l->closed_count && broken == 0.0 && any_contradicts_at_stage(model, l)) broken = ahead[k];
     for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++)
       l->gained[p] += table[PAIR - 1][k] * h * state->power[p];
   }
-  evaluate_step_end(model, state, l, t + h, l->next, ledger);
+  evaluate_step_end(model, state, l, t + h, l->next, terms, ledger);
   l->error = error_of(model, l, h, v, a);
   if (!(l->error <= 1.0)) return;
-  double part = model->contacts.count ? earliest_dip(model, l, h) : 0.0;
+  double part = model->contacts.count ? earliest_dip(model, l, h, terms) : 0.0;
   double slack = l->law_count ? earliest_slack_dip(model, state, l, h) : 0.0;
   if (slack > 0.0 && (part == 0.0 || slack < part)) part = slack;
   if (broken > 0.0 && (part == 0.0 || broken < part) && h > LEAST_SPLIT * l->longest &&
@@ -223,14 +224,7 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
   if (part > 0.0) l->error = error_to_reach(part);
 }
 
-STRUT_CLONES
-static void adaptive_trial(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                           double t, double h) {
-  if (state->ledger)
-    take(model, state, l, t, h, true);
-  else
-    take(model, state, l, t, h, false);
-}
+STRUT_EVENT_TRIAL(adaptive, take)
 
 static const strut_step_formula stepper = {
     .trial = adaptive_trial, .stages = STAGES, .exact = true, .adaptive = true};

@@ -20,31 +20,100 @@ static void solve_column(const strut_model *model, strut_state *state, uint32_t 
   strut_mass_solve(model, state->force, column, state->scratch);
 }
 
+/* Then the mass matrix changes with time, and with it the compliances. */
+static bool has_moving_masses(const strut_model *model) {
+  return model->plan & STRUT_TERM_SLIDING_MASS;
+}
+
+/* Where neither axes nor compliances of contacts stay. */
+static bool has_moving_axes(const strut_model *model) {
+  return model->contacts.surface || has_moving_masses(model);
+}
+
+/* The compliances of the node itself, from the column of M^-1. */
+static void find_own(const strut_contact_table *c, double x, double y,
+                     strut_contact_compliance *r) {
+  r->own[0] = x, r->own[1] = y;
+  r->normal = x * c->normal[0] * c->normal[0] + y * c->normal[1] * c->normal[1];
+  r->tangent = x * c->tangent[0] * c->tangent[0] + y * c->tangent[1] * c->tangent[1];
+  if (c->surface) r->normal = r->tangent = fmax(x, y);
+}
+
+/* Marks the nodes that answer to a force, directly or through masses that slide. */
+static void mark_nodes(const strut_model *model, const double *x, const double *y, double least,
+                       uint8_t *answers) {
+  const strut_sliding_table *t = &model->sliding;
+  for (int32_t i = 0; i < model->node_count; i++)
+    answers[i] = fabs(x[2 * i]) > least || fabs(y[2 * i + 1]) > least;
+  for (bool more = t->moving_count > 0; more;) {
+    more = false;
+    for (int32_t k = 0; k < t->moving_count; k++) {
+      const strut_sliding_item *s = &t->item[t->moving[k]];
+      const strut_sliding_answer *r = &t->answer[k];
+      if (!answers[s->at[0] / 2] && !answers[s->at[1] / 2]) continue;
+      for (int32_t i = 0; i < r->count; i++) {
+        more = more || !answers[r->at[i] / 2];
+        answers[r->at[i] / 2] = 1;
+      }
+    }
+  }
+}
+
 static strut_status make_response(const strut_model *model, strut_state *state, int32_t i,
-                                  double *x, double *y, strut_contact_compliance *r) {
+                                  double *x, double *y, uint8_t *answers,
+                                  strut_contact_compliance *r) {
   const strut_contact_table *c = &model->contacts;
   uint32_t at = c->at[i];
   solve_column(model, state, at, x);
   solve_column(model, state, at + 1, y);
   double least = NEGLIGIBLE * fmax(fabs(x[at]), fabs(y[at + 1]));
   size_t count = 0;
-  for (int32_t k = 0; k < 2 * model->node_count; k += 2)
-    count += fabs(x[k]) > least || fabs(y[k + 1]) > least;
+  mark_nodes(model, x, y, least, answers);
+  for (int32_t k = 0; k < model->node_count; k++) count += answers[k];
   uint32_t *place = strut_arena_allocate(&state->arena, count, sizeof *place);
   double *xy = strut_arena_allocate(&state->arena, 2 * count, sizeof *xy);
   if (!place || !xy) return STRUT_NO_MEMORY;
   for (int32_t k = 0; k < 2 * model->node_count; k += 2) {
-    if (!(fabs(x[k]) > least || fabs(y[k + 1]) > least)) continue;
+    if (!answers[k / 2]) continue;
     place[r->count] = (uint32_t)k;
     xy[2 * r->count] = x[k];
     xy[2 * r->count++ + 1] = y[k + 1];
   }
   r->at = place, r->xy = xy;
-  r->own[0] = x[at], r->own[1] = y[at + 1];
-  r->normal = x[at] * c->normal[0] * c->normal[0] + y[at + 1] * c->normal[1] * c->normal[1];
-  r->tangent = x[at] * c->tangent[0] * c->tangent[0] + y[at + 1] * c->tangent[1] * c->tangent[1];
-  if (c->surface) r->normal = r->tangent = fmax(x[at], y[at + 1]);
+  find_own(c, x[at], y[at + 1], r);
+  if (!(model->plan & STRUT_TERM_SLIDING_MASS)) return STRUT_OK;
+  double *constant = strut_arena_allocate(&state->arena, 2 * count, sizeof *constant);
+  if (!constant) return STRUT_NO_MEMORY;
+  memcpy(constant, xy, 2 * count * sizeof *constant);
+  r->constant = constant;
   return STRUT_OK;
+}
+
+/* The compliance of contact i with sliding masses as they have been placed. */
+static void refresh_compliance(const strut_model *model, const strut_state *state,
+                               strut_event_stepper *l, int32_t i) {
+  strut_contact_compliance *r = &l->response[i];
+  double *xy = (double *)r->xy, *column = l->scatter;
+  uint32_t at = model->contacts.at[i];
+  for (int32_t k = 0; k < r->count; k++)
+    for (uint32_t c = 0; c < 2; c++) column[r->at[k] + c] = r->constant[2 * (uint32_t)k + c];
+  strut_sliding_masses_correct(model, state, column);
+  find_own(&model->contacts, column[at], column[at + 1], r);
+  for (int32_t k = 0; k < r->count; k++)
+    for (uint32_t c = 0; c < 2; c++) {
+      xy[2 * (uint32_t)k + c] = column[r->at[k] + c];
+      column[r->at[k] + c] = 0.0;
+    }
+  for (int32_t m = 0; m < model->sliding.moving_count; m++) { /* what is cut from compliances */
+    const strut_sliding_answer *answer = &model->sliding.answer[m];
+    for (int32_t k = 0; k < answer->count; k++)
+      column[answer->at[k]] = column[answer->at[k] + 1] = 0.0;
+  }
+}
+
+void strut_refresh_compliances(const strut_model *model, const strut_state *state,
+                               strut_event_stepper *l) {
+  for (int32_t k = 0; k < l->closed_count; k++) refresh_compliance(model, state, l, l->closed[k]);
 }
 
 /*
@@ -93,9 +162,14 @@ strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *
   double fastest = 0.0;
   memset(x, 0, (size_t)model->length * sizeof *x);
   memset(y, 0, (size_t)model->length * sizeof *y);
+  uint8_t *answers =
+      strut_arena_allocate(&state->arena, (size_t)model->node_count, sizeof *answers);
+  if (!answers) return STRUT_NO_MEMORY;
+  if (model->plan & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_place(model, state, 0.0);
   for (int32_t i = 0; i < c->count; i++) {
-    strut_status status = make_response(model, state, i, x, y, &l->response[i]);
+    strut_status status = make_response(model, state, i, x, y, answers, &l->response[i]);
     if (status) return status;
+    if (model->plan & STRUT_TERM_SLIDING_MASS) refresh_compliance(model, state, l, i);
     l->settling_time[i] = settling_time(&c->entry[i], l->response[i].normal);
     fastest = fmax(fastest, c->entry[i].damping * l->response[i].normal);
     fastest = fmax(fastest, sqrt(c->entry[i].stiffness * l->response[i].normal));
@@ -142,19 +216,19 @@ static bool factor(int32_t n, double *a) {
 
 /* T' M^-1 T of the stuck contacts, column by column through the scatter array. */
 static void factor_stuck(const strut_model *model, strut_event_stepper *l,
-                         const strut_touch *touch) {
+                         const strut_contact_frame *frame) {
   const strut_contact_table *c = &model->contacts;
   int32_t n = l->stuck_count;
   for (int32_t j = 0; j < n; j++) {
     const strut_contact_compliance *r = &l->response[l->stuck[j]];
-    const double *t = strut_touch_axes(c, &touch[l->stuck[j]])->tangent;
+    const double *t = strut_axes_of_contact(c, frame, l->stuck[j])->tangent;
     for (int32_t k = 0; k < r->count; k++) {
       l->scatter[r->at[k]] = r->xy[2 * k] * t[0];
       l->scatter[r->at[k] + 1] = r->xy[2 * k + 1] * t[1];
     }
     for (int32_t i = j; i < n; i++) {
       uint32_t at = c->at[l->stuck[i]];
-      const double *s = strut_touch_axes(c, &touch[l->stuck[i]])->tangent;
+      const double *s = strut_axes_of_contact(c, frame, l->stuck[i])->tangent;
       l->stuck_factor[i * n + j] = l->scatter[at] * s[0] + l->scatter[at + 1] * s[1];
     }
     for (int32_t k = 0; k < r->count; k++) l->scatter[r->at[k]] = l->scatter[r->at[k] + 1] = 0.0;
@@ -194,7 +268,7 @@ static void list_sliding_contacts(const strut_model *model, strut_event_stepper 
 
 void strut_update_active_set(const strut_model *model, strut_event_stepper *l) {
   l->closed_count = l->stuck_count = 0;
-  l->contacts_decoupled = model->contacts.normal[0] == 0.0 && !model->contacts.surface;
+  l->contacts_decoupled = model->contacts.normal[0] == 0.0 && !has_moving_axes(model);
   for (int32_t i = 0; i < model->contacts.count; i++) l->body_seen[i] = false;
   for (int32_t i = 0; i < model->contacts.count; i++) {
     l->outward[i] = l->mode[i] == STRUT_MODE_OPEN ? 1.0 : -1.0;
@@ -208,30 +282,31 @@ void strut_update_active_set(const strut_model *model, strut_event_stepper *l) {
   list_sliding_contacts(model, l);
   if (l->stuck_count > l->stuck_room)
     l->stuck_count = -l->stuck_count;
-  else if (l->stuck_count > 1 && !model->contacts.surface)
-    factor_stuck(model, l, l->now->touch);
+  else if (l->stuck_count > 1 && !l->now->frame && !has_moving_masses(model))
+    factor_stuck(model, l, NULL);
 }
 
 /* Rate of the sliding speed of a contact under the accelerations x. */
-static double along(const strut_contact_table *c, int32_t i, const double *x,
-                    const strut_touch *touch) {
-  const double *t = strut_touch_axes(c, &touch[i])->tangent;
+STRUT_INLINE double along(const strut_contact_table *c, int32_t i, const double *x,
+                          const strut_contact_frame *frame) {
+  const double *t = strut_axes_of_contact(c, frame, i)->tangent;
   double rate = x[c->at[i]] * t[0] + x[c->at[i] + 1] * t[1];
-  return c->surface ? rate + touch[i].slip_drift : rate;
+  return frame ? rate + frame[i].slip_drift : rate;
 }
 
 /* What rounding leaves of the accelerations of held nodes: nothing, so that they do not creep. */
-static void still(const strut_contact_table *c, int32_t i, double *a, const strut_touch *touch) {
-  const double *t = strut_touch_axes(c, &touch[i])->tangent;
-  double rest = along(c, i, a, touch);
+STRUT_INLINE void still(const strut_contact_table *c, int32_t i, double *a,
+                        const strut_contact_frame *frame) {
+  const double *t = strut_axes_of_contact(c, frame, i)->tangent;
+  double rest = along(c, i, a, frame);
   a[c->at[i]] -= rest * t[0];
   a[c->at[i] + 1] -= rest * t[1];
 }
 
-static double tangent_compliance(const strut_contact_table *c, const strut_event_stepper *l,
-                                 int32_t i, const strut_touch *touch) {
-  if (!c->surface) return l->response[i].tangent;
-  return strut_compliance_along(&l->response[i], touch[i].axes.tangent);
+STRUT_INLINE double tangent_compliance(const strut_event_stepper *l, int32_t i,
+                                       const strut_contact_frame *frame) {
+  if (!frame) return l->response[i].tangent;
+  return strut_compliance_along(&l->response[i], frame[i].axes.tangent);
 }
 
 /* One after the other until none needs more: for sets too large for a matrix. */
@@ -243,8 +318,8 @@ static void hold_by_sweeps(const strut_model *model, const strut_event_stepper *
     double largest = 0.0, changed = 0.0;
     for (int32_t k = 0; k < n; k++) {
       int32_t i = l->stuck[k];
-      double more = -along(c, i, a, end->touch) / tangent_compliance(c, l, i, end->touch);
-      strut_apply_contact_impulse(l, i, strut_touch_axes(c, &end->touch[i]), 0.0, more, a);
+      double more = -along(c, i, a, end->frame) / tangent_compliance(l, i, end->frame);
+      strut_apply_contact_impulse(l, i, strut_axes_of_contact(c, end->frame, i), 0.0, more, a);
       end->touch[i].friction += more;
       changed = fmax(changed, fabs(more));
       largest = fmax(largest, fabs(end->touch[i].friction));
@@ -253,13 +328,15 @@ static void hold_by_sweeps(const strut_model *model, const strut_event_stepper *
   }
 }
 
-void strut_solve_stick_constraints(const strut_model *model, strut_event_stepper *l, double *a,
-                                   strut_step_end *end) {
+STRUT_INLINE void hold_stuck(const strut_model *model, strut_event_stepper *l, double *a,
+                             strut_step_end *end, unsigned terms) {
+  const strut_contact_frame *frame = frames_of(end, terms);
   const strut_contact_table *c = &model->contacts;
   int32_t n = l->stuck_count;
   double *x = l->stuck_work;
-  if (c->surface && n > 1) { /* their axes turn, or have not been known until now */
-    factor_stuck(model, l, end->touch);
+  if ((frame || has_moving_masses(model)) &&
+      n > 1) { /* their axes turn, or have not been known until now */
+    factor_stuck(model, l, frame);
     bool singular = l->stuck_count < 0;
     l->stuck_count = n;
     if (singular) {
@@ -271,9 +348,9 @@ void strut_solve_stick_constraints(const strut_model *model, strut_event_stepper
     hold_by_sweeps(model, l, a, end);
     return;
   }
-  for (int32_t k = 0; k < n; k++) x[k] = -along(c, l->stuck[k], a, end->touch);
+  for (int32_t k = 0; k < n; k++) x[k] = -along(c, l->stuck[k], a, frame);
   if (n == 1) {
-    x[0] /= tangent_compliance(c, l, l->stuck[0], end->touch);
+    x[0] /= tangent_compliance(l, l->stuck[0], frame);
   } else {
     const double *f = l->stuck_factor;
     for (int32_t i = 0; i < n; i++) {
@@ -287,9 +364,17 @@ void strut_solve_stick_constraints(const strut_model *model, strut_event_stepper
   }
   for (int32_t k = 0; k < n; k++) {
     int32_t i = l->stuck[k];
-    strut_apply_contact_impulse(l, i, strut_touch_axes(c, &end->touch[i]), 0.0, x[k], a);
+    strut_apply_contact_impulse(l, i, strut_axes_of_contact(c, frame, i), 0.0, x[k], a);
     end->touch[i].friction += x[k];
-    still(c, i, a, end->touch);
+    still(c, i, a, frame);
   }
-  for (int32_t k = 0; k < n; k++) still(c, l->stuck[k], a, end->touch);
+  for (int32_t k = 0; k < n; k++) still(c, l->stuck[k], a, frame);
+}
+
+void strut_solve_stick_constraints(const strut_model *model, strut_event_stepper *l, double *a,
+                                   strut_step_end *end) {
+  if (end->frame)
+    hold_stuck(model, l, a, end, STRUT_TERMS_ALL);
+  else
+    hold_stuck(model, l, a, end, STRUT_TERMS_COMMON);
 }

@@ -13,12 +13,13 @@ static void evaluate_now(const strut_model *model, strut_state *state, strut_eve
                          double t) {
   strut_step_end *now = l->now;
   if (!l->fresh) {
-    evaluate_step_end(model, state, l, t, now, state->ledger);
+    evaluate_step_end(model, state, l, t, now, STRUT_TERMS_ALL, state->ledger);
   } else {
     for (int32_t i = 0; i < model->length; i++) state->force[i] = now->structure[i];
     for (int p = 0; p < STRUT_POWER_COUNT; p++) state->power[p] = now->structure_power[p];
-    accelerate_closed(model, state, l, now->q, now->v, now->a, now, state->ledger);
-    measure_contact_rates(model, l, now->a, now->touch);
+    if (model->plan & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_place(model, state, t);
+    accelerate_closed(model, state, l, now->q, now->v, now->a, now, STRUT_TERMS_ALL, state->ledger);
+    measure_contact_rates(model, l, now, STRUT_TERMS_ALL);
     for (int p = 0; p < STRUT_POWER_COUNT; p++) now->power[p] = state->power[p];
   }
   l->fresh = true;
@@ -33,20 +34,27 @@ void strut_evaluate_acceleration(const strut_model *model, strut_state *state,
   strut_event_measure(model, state, l, l->now);
 }
 
+/* Along and out of the ground where the node of closed contact i is. */
+static strut_contact_axes axes_now(const strut_contact_table *c, const strut_event_stepper *l,
+                                   int32_t i) {
+  int32_t facet = l->facet ? l->facet[i] : -1;
+  return strut_contact_pose_at(c, i, l->now->q, l->now->motion, facet).axes;
+}
+
 /* Sets the speed along the ground exactly. */
 static void snap(const strut_model *model, strut_event_stepper *l, int32_t i, double slip) {
   const strut_contact_table *c = &model->contacts;
-  strut_touch place;
-  measure_at_end(c, l, l->now, i, &place);
-  double more = slip - place.slip;
   double *v = l->now->v + c->at[i];
-  if (c->normal[0] == 0.0 && !c->surface) {
+  if (c->normal[0] == 0.0 && !l->now->frame) {
     v[0] = slip + c->belt_speed;
     return;
   }
-  const strut_contact_axes *axes = strut_touch_axes(c, &place);
-  v[0] += more * axes->tangent[0];
-  v[1] += more * axes->tangent[1];
+  strut_touch place;
+  measure_at_end(c, l, l->now, i, STRUT_TERMS_ALL, &place);
+  double more = slip - place.slip;
+  strut_contact_axes axes = axes_now(c, l, i);
+  v[0] += more * axes.tangent[0];
+  v[1] += more * axes.tangent[1];
 }
 
 static void set_acting(strut_state *state, strut_event_stepper *l, int32_t k, bool pulls) {
@@ -62,11 +70,11 @@ static void set_acting(strut_state *state, strut_event_stepper *l, int32_t k, bo
 }
 
 /* May the node of a contact move along it? Otherwise a support holds it. */
-static bool is_free_along(const strut_model *model, const strut_event_stepper *l, int32_t i,
-                          const strut_touch *o) {
+static bool is_free_along(const strut_model *model, const strut_event_stepper *l, int32_t i) {
   const strut_contact_compliance *r = &l->response[i];
-  if (!model->contacts.surface) return r->tangent > 0.0;
-  return strut_compliance_along(r, o->axes.tangent) > 1e-12 * r->tangent;
+  if (!l->now->frame) return r->tangent > 0.0;
+  strut_contact_axes axes = axes_now(&model->contacts, l, i);
+  return strut_compliance_along(r, axes.tangent) > 1e-12 * r->tangent;
 }
 
 /* Mode of a contact that touches, from its speeds; with surfaces on `facet`, or -1: the nearest. */
@@ -78,11 +86,11 @@ static void close_contact(const strut_model *model, strut_event_stepper *l, int3
   if (l->facet && facet < 0)
     facet = strut_contact_pose_at(&model->contacts, i, l->now->q, l->now->motion, -1).facet;
   if (l->facet) l->facet[i] = facet;
-  measure_at_end(&model->contacts, l, l->now, i, &o);
+  measure_at_end(&model->contacts, l, l->now, i, STRUT_TERMS_ALL, &o);
   l->damper[i] = 0;
   if (l->stepper->exact && e->damping > 0.0) l->damper[i] = o.into < 0.0 ? 1 : -1;
   l->side[i] = o.slip < 0.0 ? -1 : 1;
-  if (!is_free_along(model, l, i, &o)) return;
+  if (!is_free_along(model, l, i)) return;
   switch (strut_friction_states(e->friction.law)) {
     case STRUT_FRICTION_ABSENT:
     case STRUT_FRICTION_CONTINUOUS: break;
@@ -161,19 +169,19 @@ static void start_laws(const strut_model *model, strut_state *state, strut_event
   if (memory) strut_drive_apply(model, state, t);
   if (memory) strut_memory_thaw(model, state, l);
   for (int32_t k = 0; k < l->law_count; k++)
-    if (l->laws[k].kinks)
+    if (l->laws[k].event == STRUT_EVENT_KINK)
       set_piece(state, l, k, -1);
-    else if (strut_switch_event(&l->laws[k]) == STRUT_EVENT_ACTS)
+    else if (l->laws[k].event == STRUT_EVENT_ACTS)
       set_acting(state, l, k, true);
   if (memory) strut_memory_drop_gone(model, state, l);
   derive_consistently(model, state, l, t);
   for (int32_t k = 0; k < l->law_count; k++)
-    if (l->laws[k].kinks) {
+    if (l->laws[k].event == STRUT_EVENT_KINK) {
       find_piece(model, state, l, k);
       changed = true;
-    } else if (l->laws[k].relay) {
+    } else if (l->laws[k].event == STRUT_EVENT_RELAY) {
       continue;
-    } else if (strut_switch_event(&l->laws[k]) != STRUT_EVENT_ACTS) {
+    } else if (l->laws[k].event != STRUT_EVENT_ACTS) {
       strut_memory_start(model, state, l, k);
       changed = true;
     } else if (!(l->now->stretch[k] > 0.0 && l->now->tension[k] > 0.0)) {
@@ -196,7 +204,7 @@ void strut_modes_start(const strut_model *model, strut_state *state, strut_event
   for (int32_t i = 0; i < model->contacts.count; i++) {
     strut_touch o;
     l->mode[i] = STRUT_MODE_OPEN;
-    measure_at_end(&model->contacts, l, l->now, i, &o);
+    measure_at_end(&model->contacts, l, l->now, i, STRUT_TERMS_ALL, &o);
     if (o.gap < 0.0 || (o.gap == 0.0 && o.into <= 0.0)) close_contact(model, l, i, -1);
   }
   start_laws(model, state, l, t);

@@ -4,27 +4,20 @@
 #include "engine/integrate/integrator.h"
 
 STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                       double t, double h, bool ledger) {
+                       double t, double h, unsigned terms, bool ledger) {
   for (int32_t i = 0; i < model->length; i += STRUT_LANES) {
     strut_lanes v = strut_lanes_load(l->now->v + i) + h * strut_lanes_load_pairs(l->now->a + i);
     strut_lanes_store(l->next->v + i, v);
     strut_lanes_store(l->next->q + i, strut_lanes_load(l->now->q + i) + h * v);
   }
-  if (model->plan & STRUT_TERM_SUPPORT_MOTION)
+  if (model->plan & terms & STRUT_TERM_SUPPORT_MOTION)
     strut_support_motion_place(model, state, t + h, l->next->q, l->next->v);
-  evaluate_step_end(model, state, l, t + h, l->next, ledger);
+  evaluate_step_end(model, state, l, t + h, l->next, terms, ledger);
   for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++)
     l->gained[p] = 0.5 * h * (l->now->power[p] + l->next->power[p]);
 }
 
-STRUT_CLONES
-static void euler_events_trial(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                               double t, double h) {
-  if (state->ledger)
-    take(model, state, l, t, h, true);
-  else
-    take(model, state, l, t, h, false);
-}
+STRUT_EVENT_TRIAL(euler_events, take)
 
 static const strut_step_formula stepper = {.trial = euler_events_trial};
 

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
  * Hot: forces and accelerations with the contacts' modes frozen. See event_stepping.h.
+ *
+ * `terms` are those that a copy knows, see STRUT_TERMS_RARE in model.h.
  */
 #ifndef STRUT_ENGINE_INTEGRATE_EVENTS_EVENT_KERNEL_H
 #define STRUT_ENGINE_INTEGRATE_EVENTS_EVENT_KERNEL_H
@@ -70,32 +72,34 @@ STRUT_INLINE void measure_on_line(const strut_contact_table *c, int32_t i, const
   touch->slip = strut_contact_slip(c, i, v);
 }
 
-/* Kinematics of contact i at q, v, and with grounds that move so. */
-STRUT_INLINE void measure_contact(const strut_contact_table *c, const strut_event_stepper *l,
-                                  const strut_ground_motion *motion, int32_t i,
-                                  const double *restrict q, const double *restrict v,
-                                  strut_touch *touch) {
-  if (c->surface) {
-    strut_surface_measure(c, l, motion, i, q, v, touch);
-    return;
-  }
-  measure_on_line(c, i, q, v, touch);
+/*
+ * The frames of the contacts at an end, where these are of surfaces; NULL of a single straight ground, as a
+ * copy without STRUT_TERM_SURFACES knows beforehand.
+ */
+STRUT_INLINE strut_contact_frame *frames_of(const strut_step_end *end, unsigned terms) {
+  return terms & STRUT_TERM_SURFACES ? end->frame : NULL;
 }
 
 /* Kinematics of contact i at an end of a step. */
 STRUT_INLINE void measure_at_end(const strut_contact_table *c, const strut_event_stepper *l,
-                                 const strut_step_end *end, int32_t i, strut_touch *touch) {
-  measure_contact(c, l, end->motion, i, end->q, end->v, touch);
+                                 const strut_step_end *end, int32_t i, unsigned terms,
+                                 strut_touch *touch) {
+  strut_contact_frame frame;
+  if (frames_of(end, terms))
+    strut_surface_measure(c, l, end->motion, i, end->q, end->v, touch, &frame);
+  else
+    measure_on_line(c, i, end->q, end->v, touch);
 }
 
-/* Adds the forces of the closed contacts to `force` and notes them. */
+/* Adds the forces of the closed contacts at q, v to `force` and notes them at an end. */
 STRUT_INLINE void add_contact_forces(const strut_model *model, const strut_event_stepper *l,
-                                     const strut_ground_motion *motion, const double *restrict q,
-                                     const double *restrict v, double *restrict force, bool damped,
-                                     strut_touch *restrict touch) {
+                                     const double *restrict q, const double *restrict v,
+                                     double *restrict force, bool damped, strut_step_end *end,
+                                     unsigned terms) {
   const strut_contact_table *c = &model->contacts;
-  if (c->surface) {
-    strut_surface_add_forces(model, l, motion, q, v, force, damped, touch);
+  strut_touch *restrict touch = end->touch;
+  if (frames_of(end, terms)) {
+    strut_surface_add_forces(model, l, q, v, force, damped, end);
     return;
   }
   for (int32_t k = 0; k < l->closed_count; k++) {
@@ -114,32 +118,35 @@ STRUT_INLINE void add_contact_forces(const strut_model *model, const strut_event
 
 /* Rates of speed of the closed contacts from the acceleration. */
 STRUT_INLINE void measure_contact_rates(const strut_model *model, const strut_event_stepper *l,
-                                        const double *restrict a, strut_touch *restrict touch) {
+                                        const strut_step_end *end, unsigned terms) {
   const strut_contact_table *c = &model->contacts;
-  if (c->surface) {
-    for (int32_t k = 0; k < l->closed_count; k++)
-      strut_surface_measure_rates(c, l->closed[k], a, &touch[l->closed[k]]);
-    return;
-  }
-  for (int32_t k = 0; k < l->closed_count; k++) {
+  const double *restrict a = end->a;
+  strut_touch *restrict touch = end->touch;
+  const strut_contact_frame *frame = frames_of(end, terms);
+  for (int32_t k = 0; k < l->closed_count && frame; k++)
+    strut_surface_measure_rates(c, l->closed[k], a, &touch[l->closed[k]], &frame[l->closed[k]]);
+  for (int32_t k = 0; k < l->closed_count && !frame; k++) {
     int32_t i = l->closed[k];
     touch[i].into_rate = strut_contact_along_normal(c, i, a);
     touch[i].slip_rate = strut_contact_along_ground(c, i, a);
   }
 }
 
-/* The ground's powers, from forces and speeds noted in `touch`; the others are in state->power. */
+/* The ground's powers, from forces and speeds noted at an end; the others are in state->power. */
 STRUT_INLINE void add_contact_powers(const strut_model *model, strut_state *state,
-                                     const strut_event_stepper *l,
-                                     const strut_touch *restrict touch) {
+                                     const strut_event_stepper *l, const strut_step_end *end,
+                                     unsigned terms) {
   const strut_contact_table *c = &model->contacts;
+  const strut_touch *restrict touch = end->touch;
+  const strut_contact_frame *frame = frames_of(end, terms);
   for (int32_t k = 0; k < l->closed_count; k++) {
     const strut_touch *o = &touch[l->closed[k]];
     double damper = o->normal + c->entry[l->closed[k]].stiffness * o->gap;
     double damped = -damper * o->into, rubbed = -o->friction * o->slip;
     double belt = o->friction * c->belt_speed;
-    if (c->surface)
-      belt = o->friction * strut_contact_belt(c, l->closed[k]) + strut_surface_moving_power(o);
+    if (frame)
+      belt = o->friction * strut_contact_belt(c, l->closed[k]) +
+             strut_surface_moving_power(o, &frame[l->closed[k]]);
     state->power[STRUT_POWER_CONTACT] += damped;
     state->power[STRUT_POWER_FRICTION] += rubbed;
     state->power[STRUT_POWER_BELT] += belt;
@@ -158,8 +165,8 @@ STRUT_INLINE void keep_structure_forces(const strut_model *model, const strut_st
 
 /* Notes the motion of the grounds for which forces have just been evaluated. */
 STRUT_INLINE void keep_ground_motion(const strut_model *model, const strut_state *state,
-                                     strut_step_end *end) {
-  if (!end->motion) return;
+                                     strut_step_end *end, unsigned terms) {
+  if (!(terms & STRUT_TERM_SURFACES) || !end->motion) return;
   for (size_t g = 0; g < model->scene->ground_count; g++) end->motion[g] = state->ground_motion[g];
 }
 
@@ -167,22 +174,24 @@ STRUT_INLINE void keep_ground_motion(const strut_model *model, const strut_state
 STRUT_INLINE void accelerate_closed(const strut_model *model, strut_state *state,
                                     strut_event_stepper *l, const double *restrict q,
                                     const double *restrict v, double *restrict a,
-                                    strut_step_end *end, bool ledger) {
-  if (l->closed_count)
-    add_contact_forces(model, l, end->motion, q, v, state->force, true, end->touch);
-  mass_kernel(model, state->force, a, state->scratch);
+                                    strut_step_end *end, unsigned terms, bool ledger) {
+  bool sliding = model->plan & terms & STRUT_TERM_SLIDING_MASS;
+  if (l->closed_count) add_contact_forces(model, l, q, v, state->force, true, end, terms);
+  divide_by_mass(model, state, a, terms);
+  if (sliding) strut_refresh_compliances(model, state, l);
   if (l->stuck_count) strut_solve_stick_constraints(model, l, a, end);
-  if (ledger && l->closed_count) add_contact_powers(model, state, l, end->touch);
+  if (ledger && l->closed_count) add_contact_powers(model, state, l, end, terms);
+  if (ledger && sliding) strut_sliding_masses_add_power(model, state, q, v, a);
 }
 
 /* Acceleration with explicit contact dampers inside a step; contact forces into end->touch. */
 STRUT_INLINE void accelerate_in_modes(const strut_model *model, strut_state *state,
                                       strut_event_stepper *l, double t, const double *restrict q,
                                       const double *restrict v, double *restrict a,
-                                      strut_step_end *end, bool ledger) {
-  forces_of_structure(model, state, t, q, v, ledger);
-  keep_ground_motion(model, state, end);
-  accelerate_closed(model, state, l, q, v, a, end, ledger);
+                                      strut_step_end *end, unsigned terms, bool ledger) {
+  forces_of_structure(model, state, t, q, v, terms, ledger);
+  keep_ground_motion(model, state, end, terms);
+  accelerate_closed(model, state, l, q, v, a, end, terms, ledger);
 }
 
 /* Forces and speeds that agree to this part are taken to be equal at the edge of a band. */
@@ -208,12 +217,12 @@ STRUT_INLINE void settle_band_ties(const strut_model *model, const strut_event_s
 /* The same at the end of a step, with all that belongs to that end. */
 STRUT_INLINE void evaluate_step_end(const strut_model *model, strut_state *state,
                                     strut_event_stepper *l, double t, strut_step_end *end,
-                                    bool ledger) {
-  forces_of_structure(model, state, t, end->q, end->v, ledger);
+                                    unsigned terms, bool ledger) {
+  forces_of_structure(model, state, t, end->q, end->v, terms, ledger);
   keep_structure_forces(model, state, end, ledger);
-  keep_ground_motion(model, state, end);
-  accelerate_closed(model, state, l, end->q, end->v, end->a, end, ledger);
-  measure_contact_rates(model, l, end->a, end->touch);
+  keep_ground_motion(model, state, end, terms);
+  accelerate_closed(model, state, l, end->q, end->v, end->a, end, terms, ledger);
+  measure_contact_rates(model, l, end, terms);
   if (end == l->next && !l->all_sliding) settle_band_ties(model, l);
   for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) end->power[p] = state->power[p];
 }
@@ -331,5 +340,38 @@ STRUT_INLINE void advance_within_grid(strut_state *state, strut_event_stepper *l
   l->switches = 0;
   state->step++;
 }
+
+/**
+ * Defines NAME_trial, the trial of a strut_step_formula, which runs
+ * `take(model, state, l, t, h, terms, ledger)`, an inlined function, in copies as those of plain_steps.h.
+ */
+#define STRUT_EVENT_TRIAL(name, take)                                                              \
+  STRUT_CLONES                                                                                     \
+  static void name##_with_ledger(const strut_model *model, strut_state *state,                     \
+                                 strut_event_stepper *l, double t, double h) {                     \
+    take(model, state, l, t, h, STRUT_TERMS_COMMON, true);                                         \
+  }                                                                                                \
+                                                                                                   \
+  STRUT_CLONES                                                                                     \
+  static void name##_without_ledger(const strut_model *model, strut_state *state,                  \
+                                    strut_event_stepper *l, double t, double h) {                  \
+    take(model, state, l, t, h, STRUT_TERMS_COMMON, false);                                        \
+  }                                                                                                \
+                                                                                                   \
+  STRUT_CLONES                                                                                     \
+  static void name##_with_rare_terms(const strut_model *model, strut_state *state,                 \
+                                     strut_event_stepper *l, double t, double h) {                 \
+    take(model, state, l, t, h, STRUT_TERMS_ALL, state->ledger);                                   \
+  }                                                                                                \
+                                                                                                   \
+  static void name##_trial(const strut_model *model, strut_state *state, strut_event_stepper *l,   \
+                           double t, double h) {                                                   \
+    if (model->plan & STRUT_TERMS_RARE)                                                            \
+      name##_with_rare_terms(model, state, l, t, h);                                               \
+    else if (state->ledger)                                                                        \
+      name##_with_ledger(model, state, l, t, h);                                                   \
+    else                                                                                           \
+      name##_without_ledger(model, state, l, t, h);                                                \
+  }
 
 #endif

@@ -20,31 +20,39 @@ static double way_out(const strut_event_stepper *l, const strut_touch *o, int32_
 
 /* The gap of a contact at an end of a step; of a closed contact over its facet. */
 STRUT_INLINE double gap_at_end(const strut_contact_table *c, const strut_event_stepper *l,
-                               int32_t i, const strut_step_end *end) {
-  if (!c->surface) return strut_contact_gap(c, i, end->q);
+                               int32_t i, const strut_step_end *end, unsigned terms) {
+  if (!frames_of(end, terms)) return strut_ground_gap(c, end->q + c->at[i]);
   int32_t facet = l->mode[i] == STRUT_MODE_OPEN ? -1 : l->facet[i];
   return strut_contact_pose_at(c, i, end->q, end->motion, facet).gap;
 }
 
+/* Does the event end the mode of a law, not of a contact? */
+static bool is_of_law(strut_event_kind kind) {
+  return kind == STRUT_EVENT_ACTS || kind == STRUT_EVENT_KINK || kind == STRUT_EVENT_SLIDER ||
+         kind == STRUT_EVENT_BREAK || kind == STRUT_EVENT_RELAY;
+}
+
+/* strut_event_value of a law that switches. */
+STRUT_INLINE double law_value(const strut_event_stepper *l, const strut_step_end *end, int32_t i) {
+  const strut_law_switch *law = &l->laws[i];
+  if (law->event != STRUT_EVENT_ACTS) return end->tension[i];
+  /* It acts where stretch and force are positive; the lesser decides, both in newtons. */
+  double k = law->stiffness, d = law->damping;
+  double elastic = (k > 0.0 ? k : d > 0.0 ? d / l->wanted_step : 1.0) * end->stretch[i];
+  if (l->acting[i] && !law->abrupt) return end->tension[i];
+  double lesser = elastic < end->tension[i] ? elastic : end->tension[i];
+  return l->acting[i] ? lesser : -lesser;
+}
+
 double strut_event_value(const strut_model *model, const strut_event_stepper *l,
                          const strut_step_end *end, strut_event_kind kind, int32_t i) {
-  if (kind == STRUT_EVENT_KINK || kind == STRUT_EVENT_SLIDER || kind == STRUT_EVENT_BREAK ||
-      kind == STRUT_EVENT_RELAY)
-    return end->tension[i];
-  if (kind == STRUT_EVENT_ACTS) {
-    /* It acts where stretch and force are positive; the lesser decides, both in newtons. */
-    double k = l->laws[i].stiffness, d = l->laws[i].damping;
-    double elastic = (k > 0.0 ? k : d > 0.0 ? d / l->wanted_step : 1.0) * end->stretch[i];
-    if (l->acting[i] && !l->laws[i].abrupt) return end->tension[i];
-    double lesser = elastic < end->tension[i] ? elastic : end->tension[i];
-    return l->acting[i] ? lesser : -lesser;
-  }
+  if (is_of_law(kind)) return law_value(l, end, i);
   const strut_contact_entry *e = &model->contacts.entry[i];
   const strut_touch *o = &end->touch[i];
   double s = l->side[i];
   switch (kind) {
-    case STRUT_EVENT_TOUCH: return gap_at_end(&model->contacts, l, i, end);
-    case STRUT_EVENT_OPEN: return -gap_at_end(&model->contacts, l, i, end);
+    case STRUT_EVENT_TOUCH: return gap_at_end(&model->contacts, l, i, end, STRUT_TERMS_ALL);
+    case STRUT_EVENT_OPEN: return -gap_at_end(&model->contacts, l, i, end, STRUT_TERMS_ALL);
     case STRUT_EVENT_FACET: {
       int32_t nearest;
       return strut_surface_facet_margin(&model->contacts, l, end, i, &nearest);
@@ -75,7 +83,7 @@ double strut_event_value(const strut_model *model, const strut_event_stepper *l,
 
 bool strut_event_rate(const strut_event_stepper *l, const strut_step_end *end,
                       strut_event_kind kind, int32_t i, double *rate) {
-  if (kind >= STRUT_EVENT_ACTS) return false; /* i is no contact */
+  if (is_of_law(kind)) return false;
   const strut_touch *o = &end->touch[i];
   switch (kind) {
     case STRUT_EVENT_OPEN: *rate = -o->into; return true;
@@ -141,8 +149,8 @@ static double fraction_of(const strut_model *model, const strut_event_stepper *l
   if (kind == STRUT_EVENT_TOUCH) {
     const strut_contact_table *c = &model->contacts;
     strut_touch a, b;
-    measure_at_end(c, l, l->now, i, &a);
-    measure_at_end(c, l, l->next, i, &b);
+    measure_at_end(c, l, l->now, i, STRUT_TERMS_ALL, &a);
+    measure_at_end(c, l, l->next, i, STRUT_TERMS_ALL, &b);
     return cubic_root(g0, h * a.into, g1, h * b.into);
   }
   if (strut_event_rate(l, l->now, kind, i, &d0) && strut_event_rate(l, l->next, kind, i, &d1))
@@ -171,7 +179,7 @@ static void measure_element(const strut_model *model, const strut_state *state,
                             const strut_law_switch *law, const strut_step_end *end, int32_t k) {
   const strut_element *e = &model->elements.element[law->element];
   strut_element_motion m = strut_element_move(model, state, law->element, end->q, end->v);
-  if (!law->kinks) {
+  if (law->event == STRUT_EVENT_ACTS) {
     end->stretch[k] = e->carries * m.stretch;
     end->stretch_rate[k] = e->carries * m.rate;
     end->tension[k] = e->carries * m.force;
@@ -198,13 +206,12 @@ static void measure_relay(const strut_model *model, const strut_state *state,
 static void measure_laws(const strut_model *model, const strut_state *state,
                          const strut_event_stepper *l, const strut_step_end *end) {
   for (int32_t k = 0; k < l->law_count; k++)
-    if (l->laws[k].relay)
-      measure_relay(model, state, &l->laws[k], end, k);
-    else if (l->laws[k].slider || l->laws[k].whole ||
-             (l->laws[k].member < 0 && l->laws[k].element < 0))
-      strut_memory_measure(model, state, l, end, k);
-    else if (l->laws[k].member >= 0)
+    if (l->laws[k].member >= 0)
       measure_cable(model, state, l->laws[k].member, end, k);
+    else if (l->laws[k].event == STRUT_EVENT_RELAY)
+      measure_relay(model, state, &l->laws[k], end, k);
+    else if (l->laws[k].event >= STRUT_EVENT_SLIDER || l->laws[k].whole)
+      strut_memory_measure(model, state, l, end, k);
     else
       measure_element(model, state, &l->laws[k], end, k);
 }
@@ -218,13 +225,13 @@ void strut_event_measure(const strut_model *model, const strut_state *state,
    opened may stand below 0 by rounding, on its way up. */
 static bool closes(const strut_contact_table *c, int32_t i, const strut_event_stepper *l) {
   strut_touch to;
-  if (gap_at_end(c, l, i, l->now) > 0.0) return true;
-  measure_at_end(c, l, l->next, i, &to);
+  if (gap_at_end(c, l, i, l->now, STRUT_TERMS_ALL) > 0.0) return true;
+  measure_at_end(c, l, l->next, i, STRUT_TERMS_ALL, &to);
   return to.into < 0.0;
 }
 
-strut_event strut_event_first(const strut_model *model, const strut_state *state,
-                              const strut_event_stepper *l, double h) {
+STRUT_INLINE strut_event first_event(const strut_model *model, const strut_state *state,
+                                     const strut_event_stepper *l, double h, unsigned terms) {
   const strut_contact_table *c = &model->contacts;
   strut_event first = {STRUT_EVENT_NONE, 0, 1.0};
   int32_t k = 0;
@@ -235,7 +242,7 @@ strut_event strut_event_first(const strut_model *model, const strut_state *state
       if (kind) keep_first(model, l, kind, i, h, &first);
       k++;
       int32_t nearest;
-      if (l->facet && strut_surface_facet_margin(c, l, l->next, i, &nearest) < 0.0)
+      if (frames_of(l->next, terms) && strut_surface_facet_margin(c, l, l->next, i, &nearest) < 0.0)
         keep_first(model, l, STRUT_EVENT_FACET, i, h, &first);
       if (!l->stepper->exact) continue;
       /* a gap that rounding left above 0 at touchdown is closing: only one that grows has opened */
@@ -243,17 +250,20 @@ strut_event strut_event_first(const strut_model *model, const strut_state *state
       if (l->damper[i] && (l->damper[i] > 0 ? o->into > 0.0 : o->into < 0.0) &&
           c->entry[i].damping * fabs(o->into) > FAINT * fabs(o->normal))
         keep_first(model, l, STRUT_EVENT_DAMPER, i, h, &first);
-    } else if (gap_at_end(c, l, i, l->next) < 0.0 && closes(c, i, l)) {
+    } else if (gap_at_end(c, l, i, l->next, terms) < 0.0 && closes(c, i, l)) {
       keep_first(model, l, STRUT_EVENT_TOUCH, i, h, &first);
     }
   }
   strut_event_measure(model, state, l, l->next);
-  for (int32_t j = 0; j < l->law_count; j++) {
-    strut_event_kind kind = strut_switch_event(&l->laws[j]);
-    if (strut_event_value(model, l, l->next, kind, j) < 0.0)
-      keep_first(model, l, kind, j, h, &first);
-  }
+  for (int32_t j = 0; j < l->law_count; j++)
+    if (law_value(l, l->next, j) < 0.0) keep_first(model, l, l->laws[j].event, j, h, &first);
   return first;
+}
+
+strut_event strut_event_first(const strut_model *model, const strut_state *state,
+                              const strut_event_stepper *l, double h) {
+  return l->now->frame ? first_event(model, state, l, h, STRUT_TERMS_ALL)
+                       : first_event(model, state, l, h, STRUT_TERMS_COMMON);
 }
 
 /* First fraction in [0, 1] where gap + speed x + bend x^2 falls below 0; 2 if it does not. */
@@ -269,10 +279,12 @@ static double parabola_root(double gap, double speed, double bend) {
 static double crossing(const strut_model *model, const strut_state *state,
                        const strut_event_stepper *l, int32_t i, double sign, double h) {
   const strut_contact_table *c = &model->contacts;
-  if (c->surface) {
+  const strut_step_end *now = l->now;
+  if (now->frame) {
     strut_touch o;
-    measure_at_end(c, l, l->now, i, &o);
-    strut_surface_measure_rates(c, i, l->now->a, &o);
+    strut_contact_frame frame;
+    strut_surface_measure(c, l, now->motion, i, now->q, now->v, &o, &frame);
+    strut_surface_measure_rates(c, i, now->a, &o, &frame);
     return parabola_root(sign * o.gap, sign * h * o.into, sign * 0.5 * h * h * o.into_rate);
   }
   double gap = strut_contact_gap(c, i, state->q),
@@ -287,7 +299,7 @@ strut_event strut_event_predict(const strut_model *model, const strut_state *sta
   strut_event first = {STRUT_EVENT_NONE, 0, 1.0};
   for (int32_t i = 0; i < c->count; i++) {
     bool closed = l->mode[i] != STRUT_MODE_OPEN;
-    double gap = gap_at_end(c, l, i, l->next);
+    double gap = gap_at_end(c, l, i, l->next, STRUT_TERMS_ALL);
     if (closed ? gap <= 0.0 : gap >= 0.0) continue;
     double fraction = crossing(model, state, l, i, closed ? -1.0 : 1.0, h);
     if (fraction <= 1.0 && (!first.kind || fraction < first.fraction))

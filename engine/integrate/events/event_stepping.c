@@ -17,6 +17,16 @@ static const double AT_ONCE = 1e-9;
    modes say: switches may follow each other faster and faster without end (Zeno). */
 enum { MOST_AT_ONCE = 8, MOST_SWITCHES = 2000, MOST_TRIALS = 60 };
 
+/* What contacts of surfaces need beside the others. */
+static bool make_frames(const strut_model *model, strut_arena *arena, strut_step_end *end) {
+  const strut_contact_table *c = &model->contacts;
+  if (!c->surface) return true;
+  end->frame = strut_arena_allocate(arena, (size_t)c->count, sizeof *end->frame);
+  if (c->moves)
+    end->motion = strut_arena_allocate(arena, model->scene->ground_count, sizeof *end->motion);
+  return end->frame && (end->motion || !c->moves);
+}
+
 static bool make_end(const strut_model *model, strut_arena *arena, strut_step_end *end, bool own) {
   size_t length = (size_t)model->length, switches = strut_most_law_switches(model) + 1;
   if (!own) end->q = strut_arena_allocate(arena, length, sizeof(double));
@@ -27,10 +37,8 @@ static bool make_end(const strut_model *model, strut_arena *arena, strut_step_en
   end->tension = strut_arena_allocate(arena, switches, sizeof(double));
   end->stretch = strut_arena_allocate(arena, switches, sizeof(double));
   end->stretch_rate = strut_arena_allocate(arena, switches, sizeof(double));
-  if (model->contacts.moves)
-    end->motion = strut_arena_allocate(arena, model->scene->ground_count, sizeof *end->motion);
   return end->q && end->v && end->a && end->structure && end->touch && end->tension &&
-         end->stretch && end->stretch_rate && (end->motion || !model->contacts.moves);
+         end->stretch && end->stretch_rate && make_frames(model, arena, end);
 }
 
 static bool make_arrays(const strut_model *model, strut_state *state, strut_event_stepper *l) {
@@ -66,14 +74,18 @@ static bool list_laws(const strut_model *model, strut_state *state, strut_event_
   if (!l->laws || !l->acting) return false;
   for (int32_t j = 0; j < t->count; j++)
     if (t->slack[j] == 0.0)
-      l->laws[l->law_count++] = (strut_law_switch){
-          .member = j, .element = -1, .stiffness = t->stiffness[j], .damping = t->damping[j]};
+      l->laws[l->law_count++] = (strut_law_switch){.event = STRUT_EVENT_ACTS,
+                                                   .member = j,
+                                                   .element = -1,
+                                                   .stiffness = t->stiffness[j],
+                                                   .damping = t->damping[j]};
   for (int32_t i = 0; i < model->elements.count; i++) {
     const strut_element *e = &model->elements.element[i];
     double natural = strut_element_start(model, i);
     strut_law_response rest = strut_law_respond(e->law, &e->numbers, natural, natural, -1);
     bool abrupt = e->carries * rest.force > 0.0 || (rest.force == 0.0 && !(rest.slope > 0.0));
-    const strut_law_switch own = {.member = -1,
+    const strut_law_switch own = {.event = STRUT_EVENT_ACTS,
+                                  .member = -1,
                                   .element = i,
                                   .abrupt = abrupt,
                                   .stiffness = e->numbers.stiffness,
@@ -82,12 +94,14 @@ static bool list_laws(const strut_model *model, strut_state *state, strut_event_
     if (e->carries && !rubs) l->laws[l->law_count++] = own;
     if (!strut_law_kinks(e->law, &e->numbers)) continue;
     l->laws[l->law_count] = own;
-    l->laws[l->law_count++].kinks = true;
+    l->laws[l->law_count++].event = STRUT_EVENT_KINK;
   }
   strut_memory_list(model, state, l);
   for (int32_t i = 0; i < model->feedback.relay_count; i++)
-    l->laws[l->law_count++] =
-        (strut_law_switch){.member = -1, .element = -1, .relay = 1 + model->feedback.relay[i]};
+    l->laws[l->law_count++] = (strut_law_switch){.event = STRUT_EVENT_RELAY,
+                                                 .member = -1,
+                                                 .element = -1,
+                                                 .relay = 1 + model->feedback.relay[i]};
   return true;
 }
 
@@ -174,6 +188,8 @@ static void pass_break(const strut_model *model, strut_state *state, strut_event
   if (model->plan & STRUT_TERM_MEMORY)
     strut_memory_release(model, state, t + moment + state->time_offset + STRUT_AT_BREAK * dt);
   bool kicked = model->contacts.moves; /* a ground may have changed its speed at once */
+  if (model->plan & STRUT_TERM_SLIDING_MASS)
+    kicked = strut_sliding_masses_kick(model, state, t - 2.0 * moment, t + 0.5 * moment) || kicked;
   if (model->plan & (STRUT_TERM_SUPPORT_MOTION | STRUT_TERM_UNBALANCE)) {
     kicked = strut_support_motion_kick(model, state, t - 2.0 * moment, t + 0.5 * moment) || kicked;
     kicked = strut_unbalance_kick(model, state, t - 2.0 * moment, t + 0.5 * moment) || kicked;

@@ -36,6 +36,7 @@ typedef struct strut_contact_compliance {
   double normal, tangent; /* of the node itself, along the ground's normal and tangent [1/kg]; with
                              surfaces the larger of x and y */
   double own[2];          /* of the node itself, in x and in y [1/kg] */
+  const double *constant; /* xy without masses that slide; NULL where none do */
 } strut_contact_compliance;
 
 /** A contact at one end of a step. */
@@ -44,12 +45,15 @@ typedef struct strut_touch {
   double into_rate, slip_rate; /* their time derivatives [m/s^2] */
   double normal, friction;     /* on the node [N] */
   double applied;              /* F_res: other forces along the ground [N] */
-  /* with STRUT_TERM_SURFACES: */
+} strut_touch;
+
+/** What a contact of a surface has beside that: its axes turn, and the ground may move. */
+typedef struct strut_contact_frame {
   strut_contact_axes axes;
   double into_drift, slip_drift; /* rates of the speeds without acceleration of the node [m/s^2] */
   double ground_into, ground_along; /* speed of a shaken ground along the axes [m/s] */
   double alone; /* of the applied force, without other contacts of the node [N] */
-} strut_touch;
+} strut_contact_frame;
 
 /** One end of a step: positions, velocities, accelerations (length) and contacts. */
 typedef struct strut_step_end {
@@ -62,6 +66,7 @@ typedef struct strut_step_end {
   /* all forces but the ground's, and their powers: a change of modes needs no others anew */
   double *structure, structure_power[STRUT_POWER_ROOM];
   strut_ground_motion *motion; /* (grounds) NULL where none is shaken */
+  strut_contact_frame *frame;  /* (contacts) beside `touch`; NULL without STRUT_TERM_SURFACES */
 } strut_step_end;
 
 /** A closed contact that slips or has no friction, alone on its body, on level ground: all that a
@@ -76,21 +81,41 @@ typedef struct strut_sliding_contact {
   const double *xy;          /* (nodes, 2) */
 } strut_sliding_contact;
 
+/** Something that ends a mode. */
+typedef enum strut_event_kind {
+  STRUT_EVENT_NONE,
+  STRUT_EVENT_TOUCH,             /* an open contact closes */
+  STRUT_EVENT_OPEN,              /* a closed one opens */
+  STRUT_EVENT_SLIP_ENDS,         /* slip ends: u reaches 0, or the band */
+  STRUT_EVENT_LEAVES_STICK_BAND, /* |u| reaches the edge of the band from inside */
+  STRUT_EVENT_STICK_BREAKS,      /* a stuck node's multiplier leaves mu_0 N */
+  STRUT_EVENT_CREEP_OUT,         /* creep's multiplier reaches mu N: slip */
+  STRUT_EVENT_CREEP_IN,          /* it reaches the band's force: band */
+  STRUT_EVENT_PUSH,              /* |F_res| passes mu_0 N inside the band, either way */
+  STRUT_EVENT_YIELDED,           /* F_res leaves the layer about mu_0 N */
+  STRUT_EVENT_DAMPER,            /* the ground damper's sign changes */
+  STRUT_EVENT_ACTS,   /* a cable or an element that carries one sign begins or ceases to act */
+  STRUT_EVENT_KINK,   /* an element's strain passes a kink of its law */
+  STRUT_EVENT_SLIDER, /* a slider or a cable at a guide gives way, or holds again */
+  STRUT_EVENT_BREAK,  /* a member or a hinge breaks */
+  STRUT_EVENT_FACET,  /* another facet of the surface comes nearer to a closed contact */
+  STRUT_EVENT_RELAY   /* the input of a relay passes a threshold */
+} strut_event_kind;
+
 /** Something that switches: a cable or an element that carries one sign, an element's kinks, a relay. */
 typedef struct strut_law_switch {
-  int32_t member;  /* of a cable; -1: of an element */
-  int32_t element; /* of an element; -1: of a cable */
-  bool kinks;      /* the law's kinks, where its pieces meet */
+  int32_t member;         /* of a cable; -1: of an element */
+  int32_t element;        /* of an element; -1: of a cable */
+  strut_event_kind event; /* what ends its mode: ACTS, KINK, SLIDER, BREAK or RELAY */
   bool
       abrupt; /* its force has a jump or no slope where it begins to act: the stretch ends it, too */
   double stiffness; /* force per strain, by which stretch and force are compared */
   double damping;
-  bool slider;       /* whether a slider or a guide holds; `element` has it */
-  int32_t guide;     /* 1 + the guide; 0: the slider */
+  int32_t guide;     /* with SLIDER 1 + the guide; 0: the slider of `element` itself */
   bool straight;     /* whether the cable passes straight over it */
   bool whole;        /* whether a cable with guide friction is taut */
   int32_t breakable; /* what may break, where neither member nor element is one; else unused */
-  int32_t relay;     /* 1 + the signal of a relay; 0: it is none, and one of the above */
+  int32_t relay;     /* with RELAY 1 + its signal */
 } strut_law_switch;
 
 typedef struct strut_event_stepper strut_event_stepper;
@@ -189,6 +214,9 @@ strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *
                                          strut_event_stepper *l);
 /** Lists closed and stuck contacts after modes have changed and factors T' M^-1 T. */
 void strut_update_active_set(const strut_model *model, strut_event_stepper *l);
+/** Compliances of the closed contacts with sliding masses as they have been placed. */
+void strut_refresh_compliances(const strut_model *model, const strut_state *state,
+                               strut_event_stepper *l);
 /** Multipliers that hold the stuck contacts: adds to a, writes end->touch[].friction. */
 void strut_solve_stick_constraints(const strut_model *model, strut_event_stepper *l, double *a,
                                    strut_step_end *end);
@@ -199,27 +227,6 @@ void strut_apply_contact_impulse(const strut_event_stepper *l, int32_t i,
 /** Acceleration, contact forces and powers of l->now at time t, in the present modes. */
 void strut_evaluate_acceleration(const strut_model *model, strut_state *state,
                                  strut_event_stepper *l, double t);
-
-/** Something that ends a mode. */
-typedef enum strut_event_kind {
-  STRUT_EVENT_NONE,
-  STRUT_EVENT_TOUCH,             /* an open contact closes */
-  STRUT_EVENT_OPEN,              /* a closed one opens */
-  STRUT_EVENT_SLIP_ENDS,         /* slip ends: u reaches 0, or the band */
-  STRUT_EVENT_LEAVES_STICK_BAND, /* |u| reaches the edge of the band from inside */
-  STRUT_EVENT_STICK_BREAKS,      /* a stuck node's multiplier leaves mu_0 N */
-  STRUT_EVENT_CREEP_OUT,         /* creep's multiplier reaches mu N: slip */
-  STRUT_EVENT_CREEP_IN,          /* it reaches the band's force: band */
-  STRUT_EVENT_PUSH,              /* |F_res| passes mu_0 N inside the band, either way */
-  STRUT_EVENT_YIELDED,           /* F_res leaves the layer about mu_0 N */
-  STRUT_EVENT_DAMPER,            /* the ground damper's sign changes */
-  STRUT_EVENT_ACTS,   /* a cable or an element that carries one sign begins or ceases to act */
-  STRUT_EVENT_KINK,   /* an element's strain passes a kink of its law */
-  STRUT_EVENT_SLIDER, /* a slider or a cable at a guide gives way, or holds again */
-  STRUT_EVENT_BREAK,  /* a member or a hinge breaks */
-  STRUT_EVENT_FACET,  /* another facet of the surface comes nearer to a closed contact */
-  STRUT_EVENT_RELAY   /* the input of a relay passes a threshold */
-} strut_event_kind;
 
 typedef struct strut_event {
   strut_event_kind kind;
@@ -252,8 +259,6 @@ void strut_modes_start(const strut_model *model, strut_state *state, strut_event
 
 /** Lists their switches in l->laws, for which there is space. */
 void strut_memory_list(const strut_model *model, const strut_state *state, strut_event_stepper *l);
-/** The event that ends the mode of switch k. */
-strut_event_kind strut_switch_event(const strut_law_switch *law);
 /** Of a slider or what breaks, at an end: its margin into end->tension. */
 void strut_memory_measure(const strut_model *model, const strut_state *state,
                           const strut_event_stepper *l, const strut_step_end *end, int32_t k);

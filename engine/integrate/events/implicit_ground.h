@@ -24,36 +24,39 @@ STRUT_INLINE double implicit_damper(const strut_contact_entry *e, double spring,
 
 /* Speed into the ground at the end of the step, given the accelerations so far. */
 STRUT_INLINE double final_speed(const strut_contact_table *c, const strut_event_stepper *l,
-                                int32_t i, double h, const double *a1, const strut_touch *o) {
+                                int32_t i, double h, const double *a1,
+                                const strut_contact_frame *frame) {
   uint32_t at = c->at[i];
   const double *v = l->now->v + at, *a0 = l->now->a + at, *a = a1 + at;
-  const double *normal = strut_touch_axes(c, o)->normal;
+  const double *normal = strut_axes_of_contact(c, frame, i)->normal;
   double into =
       (v[0] + 0.5 * h * (a0[0] + a[0])) * normal[0] + (v[1] + 0.5 * h * (a0[1] + a[1])) * normal[1];
-  return c->surface ? into - o->ground_into : into;
+  return frame ? into - frame[i].ground_into : into;
 }
 
 /* The damper of contact i among others of its body; returns the change of its force. */
 STRUT_INLINE double solve_damper(const strut_model *model, strut_event_stepper *l, int32_t i,
-                                 double h, const double *a1, const strut_touch *o) {
+                                 double h, const double *a1, double gap,
+                                 const strut_contact_frame *frame) {
   const strut_contact_table *c = &model->contacts;
   const strut_contact_entry *e = &c->entry[i];
   double answer =
-      c->surface ? strut_compliance_along(&l->response[i], o->axes.normal) : l->response[i].normal;
+      frame ? strut_compliance_along(&l->response[i], frame[i].axes.normal) : l->response[i].normal;
   double half = 0.5 * h * answer, now = l->damped[i];
-  double free = final_speed(c, l, i, h, a1, o) - half * now;
-  l->damped[i] = implicit_damper(e, -e->stiffness * o->gap, free, half);
+  double free = final_speed(c, l, i, h, a1, frame) - half * now;
+  l->damped[i] = implicit_damper(e, -e->stiffness * gap, free, half);
   return l->damped[i] - now;
 }
 
 STRUT_INLINE void solve_dampers(const strut_model *model, strut_event_stepper *l, double h,
-                                double *a1, strut_touch *restrict touch) {
+                                double *a1, const strut_touch *restrict touch,
+                                const strut_contact_frame *frame) {
   for (int sweep = 0; sweep < 40; sweep++) {
     double changed = 0.0, largest = 0.0;
     for (int32_t k = 0; k < l->closed_count; k++) {
       int32_t i = l->closed[k];
-      double more = solve_damper(model, l, i, h, a1, &touch[i]);
-      const strut_contact_axes *axes = strut_touch_axes(&model->contacts, &touch[i]);
+      double more = solve_damper(model, l, i, h, a1, touch[i].gap, frame);
+      const strut_contact_axes *axes = strut_axes_of_contact(&model->contacts, frame, i);
       if (more != 0.0) strut_apply_contact_impulse(l, i, axes, more, 0.0, a1);
       if (fabs(more) > changed) changed = fabs(more);
       if (fabs(touch[i].normal) > largest) largest = fabs(touch[i].normal);
@@ -64,17 +67,17 @@ STRUT_INLINE void solve_dampers(const strut_model *model, strut_event_stepper *l
 
 /* Friction again with the whole normal force, then what holds stuck nodes. */
 STRUT_INLINE void solve_friction(const strut_model *model, strut_event_stepper *l, double *a1,
-                                 strut_touch *restrict touch) {
+                                 strut_touch *restrict touch, const strut_contact_frame *frame) {
   for (int32_t k = 0; k < l->closed_count; k++) {
     int32_t i = l->closed[k];
     strut_touch *o = &touch[i];
     o->normal = -model->contacts.entry[i].stiffness * o->gap + l->damped[i];
-    if (model->contacts.surface) o->applied = strut_surface_applied(model, l, k, touch);
+    if (frame) o->applied = strut_surface_applied(model, l, k, l->next);
     double friction = friction_in_mode(&model->contacts.entry[i], l->mode[i], l->side[i], o->normal,
                                        o->slip, o->applied);
     bool held = l->mode[i] == STRUT_MODE_STICK || l->mode[i] == STRUT_MODE_CREEP;
     if (held || friction == o->friction) continue;
-    strut_apply_contact_impulse(l, i, strut_touch_axes(&model->contacts, o), 0.0,
+    strut_apply_contact_impulse(l, i, strut_axes_of_contact(&model->contacts, frame, i), 0.0,
                                 friction - o->friction, a1);
     o->friction = friction;
   }
@@ -83,22 +86,31 @@ STRUT_INLINE void solve_friction(const strut_model *model, strut_event_stepper *
 
 /* Coupled contacts: their dampers, then friction with the whole normal force; `a1`: in and out. */
 STRUT_INLINE void implicit_ground_together(const strut_model *model, strut_event_stepper *l,
-                                           double h, double *restrict a1,
-                                           strut_touch *restrict touch) {
+                                           double h, double *restrict a1, unsigned terms) {
+  strut_touch *restrict touch = l->next->touch;
+  const strut_contact_frame *frame = frames_of(l->next, terms);
   for (int32_t k = 0; k < l->closed_count; k++) l->damped[l->closed[k]] = 0.0;
   for (int pass = 0; pass < l->passes; pass++) {
-    solve_dampers(model, l, h, a1, touch);
-    solve_friction(model, l, a1, touch);
+    solve_dampers(model, l, h, a1, touch, frame);
+    solve_friction(model, l, a1, touch, frame);
   }
 }
 
 /* Gaps, speeds and their rates at the end of the step; with the ledger the ground's powers. */
 STRUT_INLINE void implicit_ground_finish(const strut_model *model, strut_state *state,
-                                         strut_event_stepper *l, bool ledger) {
-  for (int32_t k = 0; k < l->closed_count; k++)
-    measure_at_end(&model->contacts, l, l->next, l->closed[k], &l->next->touch[l->closed[k]]);
-  measure_contact_rates(model, l, l->next->a, l->next->touch);
-  if (ledger) add_contact_powers(model, state, l, l->next->touch);
+                                         strut_event_stepper *l, unsigned terms, bool ledger) {
+  const strut_contact_table *c = &model->contacts;
+  strut_step_end *next = l->next;
+  strut_contact_frame *frame = frames_of(next, terms);
+  for (int32_t k = 0; k < l->closed_count; k++) {
+    int32_t i = l->closed[k];
+    if (frame)
+      strut_surface_measure(c, l, next->motion, i, next->q, next->v, &next->touch[i], &frame[i]);
+    else
+      measure_on_line(c, i, next->q, next->v, &next->touch[i]);
+  }
+  measure_contact_rates(model, l, next, terms);
+  if (ledger) add_contact_powers(model, state, l, next, terms);
 }
 
 /* The force of one level contact, bodies apart; x, y: its node's acceleration without the ground. */

@@ -18,33 +18,31 @@ void strut_memory_list(const strut_model *model, const strut_state *state, strut
   for (int32_t m = 0; m < t->memory_count && !state->forgetful; m++) {
     const strut_element *e = &t->element[t->memory[m]];
     for (int32_t k = 0; strut_has_capstan(e) && k + 2 < e->nodes; k++) {
-      strut_law_switch slips = {
-          .member = -1, .element = t->memory[m], .slider = true, .guide = k + 1, .breakable = -1};
+      strut_law_switch slips = {.event = STRUT_EVENT_SLIDER,
+                                .member = -1,
+                                .element = t->memory[m],
+                                .guide = k + 1,
+                                .breakable = -1};
       l->laws[l->law_count++] = slips;
       slips.straight = true;
       l->laws[l->law_count++] = slips;
     }
     if (strut_has_capstan(e))
-      l->laws[l->law_count++] = (strut_law_switch){.member = -1,
+      l->laws[l->law_count++] = (strut_law_switch){.event = STRUT_EVENT_ACTS,
+                                                   .member = -1,
                                                    .element = t->memory[m],
                                                    .abrupt = true,
                                                    .stiffness = e->numbers.stiffness,
                                                    .whole = true,
                                                    .breakable = -1};
     if (e->law != STRUT_LAW_ELASTIC_PLASTIC) continue;
-    l->laws[l->law_count++] =
-        (strut_law_switch){.member = -1, .element = t->memory[m], .slider = true, .breakable = -1};
+    l->laws[l->law_count++] = (strut_law_switch){
+        .event = STRUT_EVENT_SLIDER, .member = -1, .element = t->memory[m], .breakable = -1};
   }
   for (int32_t b = 0; b < t->breakable_count && !state->forgetful; b++)
     if (t->breakable[b].force < HUGE_VAL)
-      l->laws[l->law_count++] = (strut_law_switch){.member = -1, .element = -1, .breakable = b};
-}
-
-strut_event_kind strut_switch_event(const strut_law_switch *law) {
-  if (law->relay) return STRUT_EVENT_RELAY;
-  if (law->slider) return STRUT_EVENT_SLIDER;
-  if (law->member < 0 && law->element < 0) return STRUT_EVENT_BREAK;
-  return law->kinks ? STRUT_EVENT_KINK : STRUT_EVENT_ACTS;
+      l->laws[l->law_count++] = (strut_law_switch){
+          .event = STRUT_EVENT_BREAK, .member = -1, .element = -1, .breakable = b};
 }
 
 static bool is_gone(const strut_model *model, const strut_state *state, int32_t element) {
@@ -64,6 +62,13 @@ static double slider_margin(const strut_model *model, const strut_state *state,
   return s.acts ? s.yield * (1.0 + ROUNDING) - fabs(s.force) : s.yield;
 }
 
+/* Is the cable of guide switch k taut in this mode? Its switch as a whole stands behind those of its guides. */
+static bool is_taut(const strut_event_stepper *l, int32_t k) {
+  int32_t whole = k;
+  while (!l->laws[whole].whole) whole++;
+  return l->acting[whole];
+}
+
 void strut_memory_measure(const strut_model *model, const strut_state *state,
                           const strut_event_stepper *l, const strut_step_end *end, int32_t k) {
   const strut_law_switch *law = &l->laws[k];
@@ -77,14 +82,16 @@ void strut_memory_measure(const strut_model *model, const strut_state *state,
     end->tension[k] = law->stiffness * s.stretch;
     return;
   }
-  if (law->slider) {
+  if (law->event == STRUT_EVENT_SLIDER) {
     bool guide = law->guide && !is_gone(model, state, law->element);
     if (guide && law->straight)
       end->tension[k] = strut_capstan_bend(model, state, law->element, law->guide - 1, end->q);
     else
-      end->tension[k] = guide ? strut_capstan_margin(model, state, law->element, law->guide - 1,
-                                                     end->q, end->v, l->wanted_step)
-                              : slider_margin(model, state, l, end, law->element);
+      end->tension[k] = !guide ? slider_margin(model, state, l, end, law->element)
+                        : is_taut(l, k)
+                            ? strut_capstan_margin(model, state, law->element, law->guide - 1,
+                                                   end->q, end->v, l->wanted_step)
+                            : 1.0; /* which guides slip is found when it gets taut */
     return;
   }
   bool broken = state->broken_at[law->breakable] < HUGE_VAL;
@@ -96,7 +103,7 @@ void strut_memory_measure(const strut_model *model, const strut_state *state,
 void strut_memory_thaw(const strut_model *model, strut_state *state, strut_event_stepper *l) {
   for (int32_t k = 0; k < l->law_count; k++) {
     int32_t i = l->laws[k].element;
-    if (!l->laws[k].slider || is_gone(model, state, i)) continue;
+    if (l->laws[k].event != STRUT_EVENT_SLIDER || is_gone(model, state, i)) continue;
     l->fresh = false;
     if (l->laws[k].guide) {
       strut_capstan_begin(model, state, i, l->now->q);
@@ -111,7 +118,7 @@ void strut_memory_thaw(const strut_model *model, strut_state *state, strut_event
 void strut_memory_start(const strut_model *model, strut_state *state, strut_event_stepper *l,
                         int32_t k) {
   int32_t i = l->laws[k].element;
-  if (!l->laws[k].slider || is_gone(model, state, i)) return;
+  if (l->laws[k].event != STRUT_EVENT_SLIDER || is_gone(model, state, i)) return;
   l->fresh = false;
   if (l->laws[k].guide) {
     if (l->laws[k].guide == 1 && !l->laws[k].straight)
@@ -128,7 +135,7 @@ void strut_memory_start(const strut_model *model, strut_state *state, strut_even
 void strut_memory_drop_gone(const strut_model *model, strut_state *state, strut_event_stepper *l) {
   for (int32_t k = 0; k < l->law_count; k++) {
     const strut_law_switch *law = &l->laws[k];
-    if (law->element < 0 || law->kinks || law->slider) continue;
+    if (law->element < 0 || law->event != STRUT_EVENT_ACTS) continue;
     if (!is_gone(model, state, law->element)) continue;
     state->element_acts[law->element] = -1;
     l->acting[k] = false;
@@ -145,7 +152,7 @@ void strut_memory_apply(const strut_model *model, strut_state *state, strut_even
     if (l->acting[k]) strut_capstan_tauten(model, state, law->element, l->now->q, l->now->v, soon);
     return;
   }
-  if (!law->slider) {
+  if (law->event == STRUT_EVENT_BREAK) {
     strut_breakable_break(model, state, law->breakable, t + state->time_offset);
     strut_memory_drop_gone(model, state, l);
     return;

@@ -34,34 +34,28 @@ STRUT_INLINE void gain(const strut_state *state, strut_event_stepper *l, double 
 }
 
 STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                       double t, double h, bool ledger) {
+                       double t, double h, unsigned terms, bool ledger) {
   static const double ahead[4] = {0.0, 0.5, 0.5, 1.0}, weight[4] = {1, 2, 2, 1};
   double **w = l->stage;
   const double *const v[4] = {l->now->v, w[V], w[V + 1], w[V + 2]};
   double *const a[4] = {l->now->a, w[A], w[A + 1], w[A + 2]};
   int32_t n = model->length;
-  bool moves = model->plan & STRUT_TERM_SUPPORT_MOTION;
+  bool moves = model->plan & terms & STRUT_TERM_SUPPORT_MOTION;
   for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) l->gained[p] = h / 6.0 * l->now->power[p];
   for (int k = 1; k < 4; k++) {
     stage(n, ahead[k] * h, l->now->q, l->now->v, v[k - 1], a[k - 1], w[Q], w[V + k - 1]);
     if (moves) strut_support_motion_place(model, state, t + ahead[k] * h, w[Q], w[V + k - 1]);
-    accelerate_in_modes(model, state, l, t + ahead[k] * h, w[Q], v[k], a[k], l->next, ledger);
+    accelerate_in_modes(model, state, l, t + ahead[k] * h, w[Q], v[k], a[k], l->next, terms,
+                        ledger);
     if (ledger) gain(state, l, weight[k] * h / 6.0);
   }
   combine(n, h, l->now->q, v[0], v[1], v[2], v[3], l->next->q);
   combine(n, h, l->now->v, a[0], a[1], a[2], a[3], l->next->v);
   if (moves) strut_support_motion_place(model, state, t + h, l->next->q, l->next->v);
-  evaluate_step_end(model, state, l, t + h, l->next, ledger);
+  evaluate_step_end(model, state, l, t + h, l->next, terms, ledger);
 }
 
-STRUT_CLONES
-static void rk4_events_trial(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                             double t, double h) {
-  if (state->ledger)
-    take(model, state, l, t, h, true);
-  else
-    take(model, state, l, t, h, false);
-}
+STRUT_EVENT_TRIAL(rk4_events, take)
 
 static const strut_step_formula stepper = {
     .trial = rk4_events_trial, .stages = STAGES, .exact = true};

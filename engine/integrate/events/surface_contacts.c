@@ -7,38 +7,39 @@
 
 void strut_surface_measure(const strut_contact_table *c, const strut_event_stepper *l,
                            const strut_ground_motion *motion, int32_t i, const double *q,
-                           const double *v, strut_touch *o) {
+                           const double *v, strut_touch *o, strut_contact_frame *frame) {
   int32_t facet = l->mode[i] == STRUT_MODE_OPEN ? -1 : l->facet[i];
   const strut_contact_pose pose = strut_contact_pose_at(c, i, q, motion, facet);
   const strut_ground_motion *own = strut_contact_motion(c, i, motion);
   const double *n = pose.axes.normal, *t = pose.axes.tangent;
   strut_vec2 u = strut_contact_velocity(c, i, v, motion);
   double into = strut_component(n, u.x, u.y), along = strut_component(t, u.x, u.y);
-  o->axes = pose.axes;
+  frame->axes = pose.axes;
   o->gap = pose.gap;
   o->into = into;
   o->slip = along - strut_contact_belt(c, i);
-  o->into_drift = pose.curvature * along * along;
-  o->slip_drift = -pose.curvature * along * into;
-  o->ground_into = o->ground_along = 0.0;
+  frame->into_drift = pose.curvature * along * along;
+  frame->slip_drift = -pose.curvature * along * into;
+  frame->ground_into = frame->ground_along = frame->alone = 0.0;
   if (!own) return;
-  o->ground_into = strut_component(n, own->rate[0], own->rate[1]);
-  o->ground_along = strut_component(t, own->rate[0], own->rate[1]);
-  o->into_drift -= strut_component(n, own->bend[0], own->bend[1]);
-  o->slip_drift -= strut_component(t, own->bend[0], own->bend[1]);
+  frame->ground_into = strut_component(n, own->rate[0], own->rate[1]);
+  frame->ground_along = strut_component(t, own->rate[0], own->rate[1]);
+  frame->into_drift -= strut_component(n, own->bend[0], own->bend[1]);
+  frame->slip_drift -= strut_component(t, own->bend[0], own->bend[1]);
 }
 
 double strut_surface_applied(const strut_model *model, const strut_event_stepper *l, int32_t k,
-                             const strut_touch *touch) {
+                             const strut_step_end *end) {
   const strut_contact_table *c = &model->contacts;
+  const strut_touch *touch = end->touch;
   int32_t i = l->closed[k];
-  const double *t = touch[i].axes.tangent;
-  double sum = touch[i].alone;
+  const double *t = end->frame[i].axes.tangent;
+  double sum = end->frame[i].alone;
   for (int32_t step = -1; step <= 1; step += 2)
     for (int32_t m = k + step; m >= 0 && m < l->closed_count; m += step) {
       int32_t j = l->closed[m];
       if (c->at[j] != c->at[i]) break;
-      const strut_contact_axes *axes = &touch[j].axes;
+      const strut_contact_axes *axes = &end->frame[j].axes;
       sum += touch[j].normal * strut_component(t, axes->normal[0], axes->normal[1]) +
              touch[j].friction * strut_component(t, axes->tangent[0], axes->tangent[1]);
     }
@@ -53,16 +54,16 @@ static bool shares_node(const strut_contact_table *c, const strut_event_stepper 
 
 /* Friction of all closed contacts, until those of one node agree. */
 static void find_friction(const strut_model *model, const strut_event_stepper *l,
-                          strut_touch *touch) {
+                          const strut_step_end *end) {
   enum { MOST_SWEEPS = 60 };
   const strut_contact_table *c = &model->contacts;
   for (int sweep = 0; sweep < MOST_SWEEPS; sweep++) {
     double changed = 0.0, largest = 0.0;
     for (int32_t k = 0; k < l->closed_count; k++) {
       int32_t i = l->closed[k];
-      strut_touch *o = &touch[i];
+      strut_touch *o = &end->touch[i];
       double before = o->friction;
-      o->applied = strut_surface_applied(model, l, k, touch);
+      o->applied = strut_surface_applied(model, l, k, end);
       o->friction =
           friction_in_mode(&c->entry[i], l->mode[i], l->side[i], o->normal, o->slip, o->applied);
       if (!shares_node(c, l, k)) continue;
@@ -74,35 +75,37 @@ static void find_friction(const strut_model *model, const strut_event_stepper *l
 }
 
 void strut_surface_add_forces(const strut_model *model, const strut_event_stepper *l,
-                              const strut_ground_motion *motion, const double *q, const double *v,
-                              double *force, bool damped, strut_touch *touch) {
+                              const double *q, const double *v, double *force, bool damped,
+                              const strut_step_end *end) {
   const strut_contact_table *c = &model->contacts;
   for (int32_t k = 0; k < l->closed_count; k++) {
     int32_t i = l->closed[k];
-    strut_touch *o = &touch[i];
-    strut_surface_measure(c, l, motion, i, q, v, o);
-    o->alone = strut_component(o->axes.tangent, force[c->at[i]], force[c->at[i] + 1]);
+    strut_touch *o = &end->touch[i];
+    strut_contact_frame *frame = &end->frame[i];
+    strut_surface_measure(c, l, end->motion, i, q, v, o, frame);
+    frame->alone = strut_component(frame->axes.tangent, force[c->at[i]], force[c->at[i] + 1]);
     o->normal = contact_normal_force(&c->entry[i], l->damper[i], o->gap, o->into, damped);
     o->friction = 0.0;
   }
-  find_friction(model, l, touch);
+  find_friction(model, l, end);
   for (int32_t k = 0; k < l->closed_count; k++) {
-    const strut_touch *o = &touch[l->closed[k]];
+    const strut_touch *o = &end->touch[l->closed[k]];
+    const strut_contact_axes *axes = &end->frame[l->closed[k]].axes;
     double *f = force + c->at[l->closed[k]];
-    f[0] += o->friction * o->axes.tangent[0] + o->normal * o->axes.normal[0];
-    f[1] += o->friction * o->axes.tangent[1] + o->normal * o->axes.normal[1];
+    f[0] += o->friction * axes->tangent[0] + o->normal * axes->normal[0];
+    f[1] += o->friction * axes->tangent[1] + o->normal * axes->normal[1];
   }
 }
 
 void strut_surface_measure_rates(const strut_contact_table *c, int32_t i, const double *a,
-                                 strut_touch *o) {
+                                 strut_touch *o, const strut_contact_frame *frame) {
   const double *at = a + c->at[i];
-  o->into_rate = strut_component(o->axes.normal, at[0], at[1]) + o->into_drift;
-  o->slip_rate = strut_component(o->axes.tangent, at[0], at[1]) + o->slip_drift;
+  o->into_rate = strut_component(frame->axes.normal, at[0], at[1]) + frame->into_drift;
+  o->slip_rate = strut_component(frame->axes.tangent, at[0], at[1]) + frame->slip_drift;
 }
 
-double strut_surface_moving_power(const strut_touch *o) {
-  return o->normal * o->ground_into + o->friction * o->ground_along;
+double strut_surface_moving_power(const strut_touch *o, const strut_contact_frame *frame) {
+  return o->normal * frame->ground_into + o->friction * frame->ground_along;
 }
 
 double strut_surface_facet_margin(const strut_contact_table *c, const strut_event_stepper *l,

@@ -10,22 +10,22 @@
 
 #include "engine/integrate/events/event_stepping.h"
 
-/** Fills *touch with the kinematics of contact i at q, v and the motion of the grounds then. */
+/** Fills *touch and *frame with the kinematics of contact i at q, v and the motion of the grounds then. */
 void strut_surface_measure(const strut_contact_table *c, const strut_event_stepper *l,
                            const strut_ground_motion *motion, int32_t i, const double *q,
-                           const double *v, strut_touch *touch);
+                           const double *v, strut_touch *touch, strut_contact_frame *frame);
 /** As add_contact_forces, for surfaces. */
 void strut_surface_add_forces(const strut_model *model, const strut_event_stepper *l,
-                              const strut_ground_motion *motion, const double *q, const double *v,
-                              double *force, bool damped, strut_touch *touch);
+                              const double *q, const double *v, double *force, bool damped,
+                              const strut_step_end *end);
 /** Force along the surface of closed contact closed[k] by all else on its node, other contacts included. */
 double strut_surface_applied(const strut_model *model, const strut_event_stepper *l, int32_t k,
-                             const strut_touch *touch);
+                             const strut_step_end *end);
 /** As the same of event_kernel.h, for one closed contact. */
 void strut_surface_measure_rates(const strut_contact_table *c, int32_t i, const double *a,
-                                 strut_touch *touch);
+                                 strut_touch *touch, const strut_contact_frame *frame);
 /** Power that the ground's own motion gives to the structure through contact i [W]. */
-double strut_surface_moving_power(const strut_touch *touch);
+double strut_surface_moving_power(const strut_touch *touch, const strut_contact_frame *frame);
 /** By how much the facet of closed contact i is nearer than every other one at an end [m]. */
 double strut_surface_facet_margin(const strut_contact_table *c, const strut_event_stepper *l,
                                   const strut_step_end *end, int32_t i, int32_t *nearest);
@@ -39,10 +39,11 @@ static inline double strut_compliance_along(const strut_contact_compliance *r,
   return r->own[0] * unit[0] * unit[0] + r->own[1] * unit[1] * unit[1];
 }
 
-/** Axes of a contact: those of the ground, or of a surface where the contact was measured. */
-static inline const strut_contact_axes *strut_touch_axes(const strut_contact_table *c,
-                                                         const strut_touch *touch) {
-  return c->surface ? &touch->axes : &c->axes;
+/** Axes of contact i: those of the ground, or, with frames, of its surface where it was measured. */
+static inline const strut_contact_axes *strut_axes_of_contact(const strut_contact_table *c,
+                                                              const strut_contact_frame *frame,
+                                                              int32_t i) {
+  return frame ? &frame[i].axes : &c->axes;
 }
 
 #endif

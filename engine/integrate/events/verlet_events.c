@@ -27,16 +27,17 @@ STRUT_INLINE void correct(int32_t n, double h, const double *restrict v, const d
 }
 
 STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                       double t, double h, bool ledger) {
+                       double t, double h, unsigned terms, bool ledger) {
   int32_t n = model->length;
   double *predicted = l->stage[PREDICTED], *a1 = l->next->a;
-  bool moves = model->plan & STRUT_TERM_SUPPORT_MOTION;
+  bool moves = model->plan & terms & STRUT_TERM_SUPPORT_MOTION;
+  bool sliding = model->plan & terms & STRUT_TERM_SLIDING_MASS;
   if (moves) strut_support_motion_place(model, state, t + h, l->next->q, predicted);
-  forces_of_structure(model, state, t + h, l->next->q, predicted, ledger);
+  forces_of_structure(model, state, t + h, l->next->q, predicted, terms, ledger);
   keep_structure_forces(model, state, l->next, ledger);
-  keep_ground_motion(model, state, l->next);
+  keep_ground_motion(model, state, l->next, terms);
   if (!l->closed_count) {
-    mass_kernel(model, state->force, a1, state->scratch);
+    divide_by_mass(model, state, a1, terms);
   } else if (l->all_sliding) {
     mass_kernel(model, state->force, a1, state->scratch);
     implicit_ground_slides(model, l, h, a1);
@@ -44,18 +45,19 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
     mass_kernel(model, state->force, a1, state->scratch);
     implicit_ground_decoupled(model, l, h, predicted, state->force, a1);
   } else {
-    add_contact_forces(model, l, l->next->motion, l->next->q, predicted, state->force, false,
-                       l->next->touch);
-    mass_kernel(model, state->force, a1, state->scratch);
-    implicit_ground_together(model, l, h, a1, l->next->touch);
+    add_contact_forces(model, l, l->next->q, predicted, state->force, false, l->next, terms);
+    divide_by_mass(model, state, a1, terms);
+    if (sliding) strut_refresh_compliances(model, state, l);
+    implicit_ground_together(model, l, h, a1, terms);
   }
   correct(n, h, l->now->v, l->now->a, a1, l->next->v);
   if (moves) strut_support_motion_place(model, state, t + h, l->next->q, l->next->v);
   if (l->closed_count && l->contacts_decoupled)
     implicit_ground_leave(model, state, l, ledger);
   else if (l->closed_count)
-    implicit_ground_finish(model, state, l, ledger);
+    implicit_ground_finish(model, state, l, terms, ledger);
   if (!l->all_sliding) settle_band_ties(model, l);
+  if (ledger && sliding) strut_sliding_masses_add_power(model, state, l->next->q, l->next->v, a1);
   for (int p = 0; p < STRUT_POWER_ROOM && ledger; p += STRUT_LANES) {
     strut_lanes power = strut_lanes_load(state->power + p);
     strut_lanes_store(l->next->power + p, power);
@@ -63,14 +65,7 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
   }
 }
 
-STRUT_CLONES
-static void verlet_events_trial(const strut_model *model, strut_state *state,
-                                strut_event_stepper *l, double t, double h) {
-  if (state->ledger)
-    take(model, state, l, t, h, true);
-  else
-    take(model, state, l, t, h, false);
-}
+STRUT_EVENT_TRIAL(verlet_events, take)
 
 /* Does a contact open or close within the step that has been predicted? */
 STRUT_INLINE bool crosses(const strut_contact_table *c, const strut_event_stepper *l,
@@ -110,14 +105,15 @@ STRUT_INLINE bool contradicts(const strut_model *model, const strut_state *state
 }
 
 STRUT_INLINE void advance_predicted(const strut_model *model, strut_state *state,
-                                    strut_event_stepper *l, double dt, int64_t end, bool ledger) {
+                                    strut_event_stepper *l, double dt, int64_t end, unsigned terms,
+                                    bool ledger) {
   while (state->step < end) {
     double t = (double)state->step * dt + l->done, h = next_step_size(state, l, dt);
     if (t + h + state->time_offset > l->next_break - STRUT_AT_BREAK * dt) return;
     t = evaluation_time(l, t, dt);
     predict(model, l, h);
     if (crosses(&model->contacts, l, l->next->q)) return;
-    take(model, state, l, t, h, ledger);
+    take(model, state, l, t, h, terms, ledger);
     l->tried = contradicts(model, state, l, h);
     if (l->tried) return;
     accept_step(model, state, l, ledger);
@@ -126,12 +122,31 @@ STRUT_INLINE void advance_predicted(const strut_model *model, strut_state *state
 }
 
 STRUT_CLONES
+static void verlet_advance_with_ledger(const strut_model *model, strut_state *state,
+                                       strut_event_stepper *l, double dt, int64_t end) {
+  advance_predicted(model, state, l, dt, end, STRUT_TERMS_COMMON, true);
+}
+
+STRUT_CLONES
+static void verlet_advance_without_ledger(const strut_model *model, strut_state *state,
+                                          strut_event_stepper *l, double dt, int64_t end) {
+  advance_predicted(model, state, l, dt, end, STRUT_TERMS_COMMON, false);
+}
+
+STRUT_CLONES
+static void verlet_advance_with_rare_terms(const strut_model *model, strut_state *state,
+                                           strut_event_stepper *l, double dt, int64_t end) {
+  advance_predicted(model, state, l, dt, end, STRUT_TERMS_ALL, state->ledger);
+}
+
 static void verlet_advance_until_event(const strut_model *model, strut_state *state,
                                        strut_event_stepper *l, double dt, int64_t end) {
-  if (state->ledger)
-    advance_predicted(model, state, l, dt, end, true);
+  if (model->plan & STRUT_TERMS_RARE)
+    verlet_advance_with_rare_terms(model, state, l, dt, end);
+  else if (state->ledger)
+    verlet_advance_with_ledger(model, state, l, dt, end);
   else
-    advance_predicted(model, state, l, dt, end, false);
+    verlet_advance_without_ledger(model, state, l, dt, end);
 }
 
 static const strut_step_formula stepper = {.trial = verlet_events_trial,

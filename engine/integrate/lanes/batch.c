@@ -26,17 +26,15 @@ bool strut_batch_possible(const strut_model *model, const strut_integrator *meth
 
 static void choose_kernels(strut_batch *b, bool halves) {
   int32_t width = b->tables.width;
-  const strut_batch_kernels *verlet = width == 4   ? &strut_batch_verlet_4
-                                      : width == 2 ? &strut_batch_verlet_2
-                                      : halves     ? &strut_batch_verlet_8_halves
-                                                   : &strut_batch_verlet_8;
   b->run = width == 4   ? strut_batch_rk4_4
            : width == 2 ? strut_batch_rk4_2
            : halves     ? strut_batch_rk4_8_halves
                         : strut_batch_rk4_8;
   if (!b->events) return;
-  b->events->predict = verlet->predict;
-  b->events->correct = verlet->correct;
+  b->events->kernels = width == 4   ? &strut_batch_verlet_4
+                       : width == 2 ? &strut_batch_verlet_2
+                       : halves     ? &strut_batch_verlet_8_halves
+                                    : &strut_batch_verlet_8;
 }
 
 /* What rk4 needs. */
@@ -47,7 +45,7 @@ static bool create_stages(strut_batch *b) {
   bool good = true;
   for (size_t i = 0; i < sizeof all / sizeof all[0] && good; i++)
     good = (*all[i] = strut_arena_allocate(&b->arena, both, sizeof(double))) != NULL;
-  b->work = strut_arena_allocate(&b->arena, STRUT_POWER_COUNT * width, sizeof(double));
+  b->work = strut_arena_allocate(&b->arena, STRUT_LANE_POWERS * width, sizeof(double));
   return good && b->work;
 }
 
@@ -88,7 +86,7 @@ static void imitate(strut_batch *b, int32_t to, int32_t from) {
   if (b->events) return;
   copy_rows(b->q, length, width, to, from);
   copy_rows(b->v, length, width, to, from);
-  copy_rows(b->work, STRUT_POWER_COUNT, width, to, from);
+  copy_rows(b->work, STRUT_LANE_POWERS, width, to, from);
   b->dt[to] = b->dt[from];
   b->step[to] = b->step[from];
   b->driven = false;
@@ -117,7 +115,7 @@ void strut_batch_put(strut_batch *b, int32_t lane, strut_state *state, void *wor
     b->q[i * width + lane] = state->q[i];
     b->v[i * width + lane] = state->v[i];
   }
-  for (int32_t p = 0; p < STRUT_POWER_COUNT; p++) b->work[p * width + lane] = state->work[p];
+  for (int32_t p = 0; p < STRUT_LANE_POWERS; p++) b->work[p * width + lane] = state->work[p];
   strut_lane_tables_put_elements(&b->tables, lane, state);
   b->step[lane] = (double)state->step;
   b->driven = false;
@@ -159,7 +157,7 @@ void strut_batch_get(strut_batch *b, int32_t lane, strut_state *state) {
     state->rest[j] = t->rest[j * width + lane];
     state->rest_rate[j] = t->rest_rate[j * width + lane];
   }
-  for (int32_t p = 0; p < STRUT_POWER_COUNT && b->ledger; p++) {
+  for (int32_t p = 0; p < STRUT_LANE_POWERS && b->ledger; p++) {
     state->work[p] = b->work[p * width + lane];
     state->power[p] = t->power[p * width + lane];
   }

@@ -55,7 +55,16 @@ STRUT_API void strut_batch_advance(strut_batch *batch, const int64_t *left);
 
 /* Shared by batch.c and the kernels of each width. */
 
-/** One end of the lanes' steps; arrays are (length, width), powers (STRUT_POWER_COUNT, width). */
+/** What a method with events does with all lanes at once; of a width, in halves or not. */
+typedef struct strut_batch_kernels {
+  void (*predict)(strut_batch *batch); /* from now over h to next, without the ground */
+  void (*correct)(strut_batch *batch); /* velocities at next */
+  void (*measure)(strut_batch *batch); /* the laws that switch, at next */
+} strut_batch_kernels;
+extern const strut_batch_kernels strut_batch_verlet_2, strut_batch_verlet_4, strut_batch_verlet_8,
+    strut_batch_verlet_8_halves;
+
+/** One end of the lanes' steps; arrays are (length, width), powers (STRUT_LANE_POWERS, width). */
 typedef struct strut_batch_end {
   double *q, *v, *a, *structure; /* structure: all forces but the ground's */
   double *power, *structure_power;
@@ -74,9 +83,7 @@ typedef struct strut_batch_events {
   double *stretch, *stretch_rate, *tension; /* (laws, width) at next; see strut_step_end */
   bool joined[STRUT_MOST_LANES]; /* in step with others; else its state says where it is */
   bool jumped[STRUT_MOST_LANES]; /* something happens in the step that is due */
-  /* from now over h to next, without the ground; velocities; works of accepted steps */
-  void (*predict)(strut_batch *batch);
-  void (*correct)(strut_batch *batch);
+  const strut_batch_kernels *kernels;
 } strut_batch_events;
 
 /** Arrays are (length, width) where not said otherwise. */
@@ -87,7 +94,7 @@ struct strut_batch {
   bool filled[STRUT_MOST_LANES];
   double *dt, *step; /* (width) */
   double *q, *v, *stage_q, *stage_v[4], *a[4];
-  double *work; /* (STRUT_POWER_COUNT, width) */
+  double *work; /* (STRUT_LANE_POWERS, width) */
   void (*run)(strut_batch *batch, int64_t count);
   strut_batch_events *events; /* NULL with methods that locate none */
   strut_arena arena;
@@ -97,13 +104,6 @@ void strut_batch_rk4_2(strut_batch *batch, int64_t count);
 void strut_batch_rk4_4(strut_batch *batch, int64_t count);
 void strut_batch_rk4_8(strut_batch *batch, int64_t count);
 void strut_batch_rk4_8_halves(strut_batch *batch, int64_t count);
-/** The kernels of a width in halves or not, for methods with events. */
-typedef struct strut_batch_kernels {
-  void (*predict)(strut_batch *batch);
-  void (*correct)(strut_batch *batch);
-} strut_batch_kernels;
-extern const strut_batch_kernels strut_batch_verlet_2, strut_batch_verlet_4, strut_batch_verlet_8,
-    strut_batch_verlet_8_halves;
 
 /* batch_events.c */
 

@@ -9,4 +9,5 @@
 
 void strut_batch_rk4_8(strut_batch *batch, int64_t count) { batch_rk4(batch, count); }
 
-const strut_batch_kernels strut_batch_verlet_8 = {verlet_predict_any, verlet_correct_any};
+const strut_batch_kernels strut_batch_verlet_8 = {verlet_predict_any, verlet_correct_any,
+                                                  verlet_measure_any};

@@ -10,4 +10,5 @@
 
 void strut_batch_rk4_8_halves(strut_batch *batch, int64_t count) { batch_rk4(batch, count); }
 
-const strut_batch_kernels strut_batch_verlet_8_halves = {verlet_predict_any, verlet_correct_any};
+const strut_batch_kernels strut_batch_verlet_8_halves = {verlet_predict_any, verlet_correct_any,
+                                                         verlet_measure_any};

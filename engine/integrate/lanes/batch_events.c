@@ -27,7 +27,7 @@ static bool create_end(strut_batch *b, strut_batch_end *end) {
     good = (*arrays[i] = strut_arena_allocate(&b->arena, both, sizeof(double))) != NULL;
   for (size_t i = 0; i < sizeof powers / sizeof powers[0] && good; i++)
     good = (*powers[i] =
-                strut_arena_allocate(&b->arena, STRUT_POWER_COUNT * width, sizeof(double))) != NULL;
+                strut_arena_allocate(&b->arena, STRUT_LANE_POWERS * width, sizeof(double))) != NULL;
   return good;
 }
 
@@ -77,8 +77,8 @@ static void join(strut_batch *b, int32_t lane) {
   put_column(e->now->v, rows, width, lane, now->v);
   put_column(e->now->a, rows, width, lane, now->a);
   put_column(e->now->structure, rows, width, lane, now->structure);
-  put_column(e->now->power, STRUT_POWER_COUNT, width, lane, now->power);
-  put_column(e->now->structure_power, STRUT_POWER_COUNT, width, lane, now->structure_power);
+  put_column(e->now->power, STRUT_LANE_POWERS, width, lane, now->power);
+  put_column(e->now->structure_power, STRUT_LANE_POWERS, width, lane, now->structure_power);
   put_column(e->outward, b->tables.first->contacts.count, width, lane, l->outward);
   put_modes(b, lane);
   e->joined[lane] = true;
@@ -101,9 +101,9 @@ static void fetch(const strut_batch *b, int32_t lane) {
   strut_lane_tables_get_elements(t, lane, state);
   state->drive_time = (double)NAN; /* what they are for may be the step that is due */
   if (!b->ledger) return;
-  get_column(e->now->power, STRUT_POWER_COUNT, width, lane, now->power);
-  get_column(e->now->power, STRUT_POWER_COUNT, width, lane, state->power);
-  get_column(e->now->structure_power, STRUT_POWER_COUNT, width, lane, now->structure_power);
+  get_column(e->now->power, STRUT_LANE_POWERS, width, lane, now->power);
+  get_column(e->now->power, STRUT_LANE_POWERS, width, lane, state->power);
+  get_column(e->now->structure_power, STRUT_LANE_POWERS, width, lane, now->structure_power);
 }
 
 void strut_batch_events_put(strut_batch *b, int32_t lane, strut_state *state, void *workspace) {
@@ -238,10 +238,15 @@ static bool laws_switch(const strut_batch *b, int32_t lane) {
   get_column(e->stretch_rate, e->law_count, width, lane, l->next->stretch_rate);
   get_column(e->tension, e->law_count, width, lane, l->next->tension);
   for (int32_t k = 0; k < e->law_count; k++) {
-    strut_event_kind kind = e->laws[k].kinks ? STRUT_EVENT_KINK : STRUT_EVENT_ACTS;
-    if (strut_event_value(b->tables.model[lane], l, l->next, kind, k) < 0.0) return true;
+    if (strut_event_value(b->tables.model[lane], l, l->next, e->laws[k].event, k) < 0.0)
+      return true;
   }
   return false;
+}
+
+static void stop_where_laws_switch(strut_batch *b, bool *goes) {
+  b->events->kernels->measure(b);
+  for (int32_t l = 0; l < b->tables.width; l++) goes[l] = goes[l] && !laws_switch(b, l);
 }
 
 /* Does the end of the step contradict a mode of a contact? */
@@ -267,7 +272,7 @@ static void add_works(const strut_batch *b, int32_t lane) {
   const strut_batch_events *e = b->events;
   size_t width = (size_t)b->tables.width;
   double *work = e->state[lane]->work, half = 0.5 * e->h[lane];
-  for (size_t p = 0; p < STRUT_POWER_COUNT; p++) {
+  for (size_t p = 0; p < STRUT_LANE_POWERS; p++) {
     size_t at = p * width + (size_t)lane;
     work[p] += half * (e->now->power[at] + e->next->power[at]);
   }
@@ -278,6 +283,17 @@ static void swap(double **a, double **b) {
   *a = *b, *b = kept;
 }
 
+/* In lanes that have taken the step, what is known of the laws at next is that of now from here on. */
+static void swap_laws(const strut_batch *b, const bool *goes) {
+  for (int32_t lane = 0; lane < b->tables.width; lane++) {
+    strut_event_stepper *l = b->events->stepper[lane];
+    if (!goes[lane]) continue;
+    swap(&l->now->stretch, &l->next->stretch);
+    swap(&l->now->stretch_rate, &l->next->stretch_rate);
+    swap(&l->now->tension, &l->next->tension);
+  }
+}
+
 /* The step has been taken, as accept_step has it. */
 static void accept(const strut_batch *b, int32_t lane) {
   strut_event_stepper *l = b->events->stepper[lane];
@@ -285,9 +301,6 @@ static void accept(const strut_batch *b, int32_t lane) {
   strut_touch *touches = l->now->touch;
   l->now->touch = l->next->touch;
   l->next->touch = touches;
-  swap(&l->now->stretch, &l->next->stretch);
-  swap(&l->now->stretch_rate, &l->next->stretch_rate);
-  swap(&l->now->tension, &l->next->tension);
   l->fresh = true;
   state->evaluations++;
   if (b->ledger) add_works(b, lane);
@@ -298,7 +311,7 @@ static void accept(const strut_batch *b, int32_t lane) {
 static void step_together(strut_batch *b) {
   strut_batch_events *e = b->events;
   bool goes[STRUT_MOST_LANES] = {false};
-  e->predict(b);
+  e->kernels->predict(b);
   for (int32_t l = 0; l < b->tables.width; l++) {
     if (!e->joined[l]) continue;
     goes[l] = e->crossed[l] == 0.0;
@@ -308,13 +321,14 @@ static void step_together(strut_batch *b) {
     else if (goes[l])
       touch(&c);
   }
-  e->correct(b);
+  e->kernels->correct(b);
+  if (e->law_count) stop_where_laws_switch(b, goes);
   for (int32_t l = 0; l < b->tables.width; l++) {
     if (goes[l]) {
       column c = column_of(b, l);
       leave_ground(&c, b->ledger);
       if (!c.l->all_sliding) settle_band_ties(c.model, c.l);
-      goes[l] = !contradicts(&c) && !laws_switch(b, l);
+      goes[l] = !contradicts(&c);
     }
     if (goes[l]) {
       accept(b, l);
@@ -324,6 +338,7 @@ static void step_together(strut_batch *b) {
       e->jumped[l] = true;
     }
   }
+  if (e->law_count) swap_laws(b, goes);
   strut_batch_end *now = e->now;
   e->now = e->next;
   e->next = now;

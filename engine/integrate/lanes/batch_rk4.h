@@ -37,7 +37,7 @@ STRUT_LANE_INLINE void batch_combine(size_t n, const lane_real *sixth, double *r
 /* Powers enter the works with the stage's weight. */
 STRUT_LANE_INLINE void batch_work(const strut_batch *b, const double *power, double weight,
                                   const lane_real *sixth) {
-  for (size_t k = 0; k < STRUT_POWER_COUNT; k++)
+  for (size_t k = 0; k < STRUT_LANE_POWERS; k++)
     LANE_EACH(lane_put(b->work, k, p,
                        lane_row(b->work, k, p) + weight * sixth[p] * lane_row(power, k, p)));
 }

@@ -42,7 +42,7 @@ STRUT_LANE_INLINE void verlet_predict(strut_batch *b, bool ledger) {
   LANE_EACH(lane_drive_part(&tables, p, time[p]));
   lane_structure(&tables, e->next->q, e->predicted, ledger);
   lane_mass(&tables, e->next->a);
-  for (size_t k = 0; k < STRUT_POWER_COUNT && ledger; k++)
+  for (size_t k = 0; k < STRUT_LANE_POWERS && ledger; k++)
     LANE_EACH(lane_put(e->next->power, k, p, lane_row(tables.power, k, p)));
 }
 
@@ -52,12 +52,13 @@ STRUT_LANE_INLINE void verlet_correct_row(const strut_batch_events *e, size_t i,
   lane_put(e->next->v, i, p, lane_row(e->now->v, i, p) + half * sum);
 }
 
-STRUT_LANE_INLINE void verlet_measure(const strut_batch_events *e, const strut_lane_tables *t,
-                                      int32_t k, int p) {
+STRUT_LANE_INLINE void verlet_measure_law(const strut_batch_events *e, const strut_lane_tables *t,
+                                          int32_t k, int p) {
   const strut_law_switch *law = &e->laws[k];
   const double *q = e->next->q, *v = e->next->v;
   lane_switch s = law->member >= 0 ? lane_measure_cable(t, (size_t)law->member, p, q, v)
-                                   : lane_measure_element(t, law->element, law->kinks, p, q, v);
+                                   : lane_measure_element(t, law->element,
+                                                          law->event == STRUT_EVENT_KINK, p, q, v);
   lane_put(e->stretch, (size_t)k, p, s.stretch);
   lane_put(e->stretch_rate, (size_t)k, p, s.rate);
   lane_put(e->tension, (size_t)k, p, s.tension);
@@ -69,7 +70,6 @@ STRUT_LANE_INLINE void verlet_correct(strut_batch *b) {
   lane_real half[LANE_PARTS];
   LANE_EACH((half[p] = 0.5 * lane_row(e->h, 0, p)));
   for (size_t i = 0; i < n; i++) LANE_EACH(verlet_correct_row(e, i, p, half[p]));
-  for (int32_t k = 0; k < e->law_count; k++) LANE_EACH(verlet_measure(e, &b->tables, k, p));
 }
 
 STRUT_LANE_TARGET
@@ -87,5 +87,11 @@ static void verlet_predict_any(strut_batch *b) {
 
 STRUT_LANE_TARGET
 static void verlet_correct_any(strut_batch *b) { verlet_correct(b); }
+
+STRUT_LANE_TARGET
+static void verlet_measure_any(strut_batch *b) {
+  const strut_batch_events *e = b->events;
+  for (int32_t k = 0; k < e->law_count; k++) LANE_EACH(verlet_measure_law(e, &b->tables, k, p));
+}
 
 #endif

@@ -323,6 +323,11 @@ static void digest_model(const strut_model *m, uint64_t key[2]) {
   digest(key, m->start, both);
   digest(key, m->point_mass, (size_t)m->node_count * sizeof(double));
   for (int32_t i = 0; i < m->length; i++) digest_number(key, m->fixed[i]);
+  for (int32_t i = 0; i < m->sliding.count; i++) {
+    const strut_sliding_item *s = &m->sliding.item[i];
+    const double item[] = {s->at[0], s->at[1], s->mass, s->start, s->signal < 0};
+    digest(key, item, sizeof item);
+  }
   digest(key, m->scene->gravity, sizeof m->scene->gravity);
   for (int32_t i = 0; i < c->count; i++) {
     const strut_contact_entry *e = &c->entry[i];

@@ -17,6 +17,19 @@ typedef struct bounding {
   double *mass, *weight, *stiff, *damp; /* (n) */
 } bounding;
 
+/* Those in M, which is no smaller with them than without, and not always diagonally dominant. */
+static void leave_out_sliding_masses(const strut_model *model, double *full) {
+  for (int32_t i = 0; i < model->sliding.count; i++) {
+    const strut_sliding_item *s = &model->sliding.item[i];
+    double part[2] = {1.0 - s->start, s->start};
+    for (uint32_t c = 0; c < 2 && s->signal < 0; c++) {
+      bool both = !model->fixed[s->at[0] + c] && !model->fixed[s->at[1] + c];
+      for (int e = 0; e < 2; e++)
+        full[s->at[e] + c] -= s->mass * part[e] * (part[e] - (both ? part[1 - e] : 0.0));
+    }
+  }
+}
+
 /*
  * What is left of each row of M when the sizes of the others are taken off its diagonal: then M less
  * this diagonal is diagonally dominant. Of a consistent rod it is a sixth at each end.
@@ -37,6 +50,7 @@ static bool least_masses(const strut_model *model, strut_arena *arena, bounding 
       }
     }
   }
+  leave_out_sliding_masses(model, full);
   for (int32_t i = 0; i < b->tangent->n; i++)
     b->mass[i] = fmax(full[b->tangent->coordinate[i]], LEAST);
   return true;

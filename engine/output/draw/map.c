@@ -94,12 +94,24 @@ static strut_box cell_box(const mapper *m, size_t row, size_t column) {
   return (strut_box){a[0], b[1], b[0] - a[0], a[1] - b[1]};
 }
 
+/* Cells of a map from which on neighbours in a row that look alike are drawn as one. */
+enum { MANY_CELLS = 10000 };
+
+static bool look_alike(const strut_map *map, size_t a, size_t b) {
+  if (!has_result(map, a) || !has_result(map, b)) return !has_result(map, a) && !has_result(map, b);
+  return map->category ? map->category[a] == map->category[b] : map->value[a] == map->value[b];
+}
+
 static void draw_cells(const mapper *m) {
   const strut_map *map = m->map;
+  bool join = map->columns * map->rows >= MANY_CELLS;
   for (size_t row = 0; row < map->rows; row++)
     for (size_t column = 0; column < map->columns; column++) {
-      strut_fill fill = cell_fill(m, row * map->columns + column);
+      size_t k = row * map->columns + column;
+      strut_fill fill = cell_fill(m, k);
       strut_box box = cell_box(m, row, column);
+      for (; join && column + 1 < map->columns && look_alike(map, k, k + 1); k++, column++)
+        box.width = cell_box(m, row, column + 1).x + cell_box(m, row, column + 1).width - box.x;
       box.width += 0.4;
       box.y -= 0.4;
       box.height += 0.4;

@@ -232,6 +232,7 @@ static const double GAP = 3.6, NAME_SIZE = 7.5, MOST_WIDTH = 90;
 static const double SUPPORT = 5.0; /* half the width of a support [pt] */
 static const double HATCHED = 2.0, FREE = 1.0,
                     FAR = 6.0; /* cost, enough freedom, second try [pt] */
+static const double COVERED = -20.0; /* clearance where a name begins to cover another one [pt] */
 
 /* What names must not cover: segments, the first of which are the members' longest. */
 typedef struct obstacles {
@@ -278,7 +279,7 @@ static double clearance(const obstacles *o, strut_box box) {
     double dx = fmax(other->x - box.x - box.width, box.x - other->x - other->width);
     double dy = fmax(other->y - box.y - box.height, box.y - other->y - other->height);
     double apart = fmax(dx, dy);
-    least = fmin(least, apart < 0 ? apart - 20 : apart);
+    least = fmin(least, apart < 0 ? apart + COVERED : apart);
   }
   double out = fmax(fmax(o->inside.x - box.x, o->inside.y - box.y),
                     fmax(box.x + box.width - o->inside.x - o->inside.width,
@@ -318,6 +319,7 @@ static void draw_name(strut_canvas *canvas, obstacles *o, const double at[2], do
       chosen = box;
     }
   }
+  if (best <= COVERED) return; /* one of many: those that can be read say more */
   o->labels[o->label_count++] = chosen;
   strut_draw_text(canvas, chosen.x, chosen.y, name, name_font());
 }
@@ -614,6 +616,26 @@ static void draw_elements(strut_canvas *canvas, const drawing *d) {
   }
 }
 
+/* Masses that slide along members: filled circles on them. */
+static void draw_sliding_masses(strut_canvas *canvas, const drawing *d) {
+  const strut_scene *scene = d->model->scene;
+  double thin = d->thin / (1.0 + d->style->thinness), point[2], at[2];
+  bool one = d->style->colouring == STRUT_COLOUR_ONE;
+  strut_colour colour = one ? d->style->colour : strut_palette_thing(2);
+  const strut_fill fill = {.colour = strut_faded(colour, d->opacity)};
+  const strut_pen pen = {.colour = strut_faded(strut_grey(1), d->opacity), .width = 0.5 * thin};
+  if (d->thin < 0.3) return; /* too small to be drawn */
+  for (size_t i = 0; i < scene->sliding_count; i++) {
+    const int32_t *node = scene->members[scene->sliding_masses[i].member].node;
+    double far = strut_sliding_mass_share(scene, i, d->style->time);
+    for (int c = 0; c < 2; c++)
+      at[c] = (1.0 - far) * d->q[2 * node[0] + c] + far * d->q[2 * node[1] + c];
+    strut_window_point(d->window, at, point);
+    if (isfinite(point[0]) && isfinite(point[1]))
+      strut_draw_circle(canvas, point[0], point[1], 3.2 * thin, &fill, &pen);
+  }
+}
+
 static void draw_nodes(strut_canvas *canvas, const drawing *d) {
   double thin = d->thin / (1.0 + d->style->thinness), point[2];
   const strut_fill white = {.colour = strut_faded(strut_grey(1), d->opacity)};
@@ -641,6 +663,7 @@ void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
   draw_members(canvas, &d);
   draw_elements(canvas, &d);
   if (!style->no_nodes) draw_nodes(canvas, &d);
+  draw_sliding_masses(canvas, &d);
   if (style->node_names || style->member_names)
     strut_draw_names(canvas, window, model, q, style->node_names, style->member_names, NULL, 0);
 }

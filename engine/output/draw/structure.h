@@ -54,11 +54,12 @@ typedef struct strut_structure_style {
   double opacity;      /* 0: 1 */
   double thinness;     /* widths are divided by 1 + thinness */
   bool node_names, member_names, no_nodes, no_supports;
+  double time; /* at which masses that slide stand where they are drawn [s] */
 } strut_structure_style;
 
 /**
- * Members, nodes, supports, cells (filled), hinges (an arc from arm to arm) and stops that act (a bar across their
- * member) of the shape q (model->length). Widths adapt to how many there are.
+ * Members, nodes, supports, cells (filled), hinges (an arc from arm to arm), stops that act (a bar across their
+ * member) and masses on members (filled circles) of the shape q (model->length). Widths adapt to how many there are.
  */
 STRUT_API void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
                                     const strut_model *model, const double *q,

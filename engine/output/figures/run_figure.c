@@ -144,6 +144,7 @@ double strut_run_measured(const strut_run_scene *run, size_t frame, int axis) {
     sum += run->model->weight[i] * q[2 * i + axis];
     mass += run->model->weight[i];
   }
+  sum += strut_sliding_moment(run->model, run->motion->time[frame], axis, q);
   return mass > 0 ? sum / mass : q[axis];
 }
 
@@ -207,7 +208,8 @@ bool strut_run_draw_frame(strut_run_scene *run, strut_canvas *canvas, const stru
   const strut_trajectory *m = run->motion;
   double *q = strut_run_shape(run, frame);
   if (!q) return false;
-  strut_structure_style style = {.colouring = STRUT_COLOUR_KIND};
+  strut_structure_style style = {.colouring = STRUT_COLOUR_KIND,
+                                 .time = m->time ? m->time[frame] : 0.0};
   if (m->force) {
     style.colouring = STRUT_COLOUR_FORCE;
     style.values = style.slack_forces = m->force + frame * m->member_count;

@@ -133,6 +133,7 @@ double strut_moment_travel(const strut_moment *moment, const strut_model *model,
     sum += model->weight[i] * moment->q[2 * i];
     weight += model->weight[i];
   }
+  sum += strut_sliding_moment(model, moment->time, 0, moment->q);
   return weight > 0 ? sum / weight : moment->q[0];
 }
 
@@ -316,7 +317,7 @@ static void draw_progress(const strut_view_frame *s, strut_canvas *canvas, size_
 void strut_view_frame_draw(const strut_view_frame *s, strut_canvas *canvas, size_t i,
                            const strut_moment *moment) {
   strut_window window = window_at(s, i);
-  strut_structure_style style = {.colouring = STRUT_COLOUR_KIND};
+  strut_structure_style style = {.colouring = STRUT_COLOUR_KIND, .time = moment->time};
   if (s->most_force > 0) {
     style.colouring = STRUT_COLOUR_FORCE;
     style.values = moment->force;

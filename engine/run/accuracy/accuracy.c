@@ -77,6 +77,8 @@ static strut_status choose_coarse_method(strut_accuracy *a) {
   double least = e->budget / STRUT_USUAL_BUDGET * LEAST_WORK;
   least /= (double)(a->scene->node_count + a->scene->member_count);
   a->budget = (int64_t)fmin(fmax(e->budget * fine, least), 1e18);
+  if (a->options->most_evaluations > 0 && a->options->most_evaluations < a->budget)
+    a->budget = a->options->most_evaluations;
   a->allowed = a->budget;
   a->scale = STANDSTILL * model->size / unit;
   return status;

@@ -8,6 +8,7 @@
 #include "engine/forces/elements.h"
 #include "engine/forces/forces.h"
 #include "engine/forces/memory.h"
+#include "engine/forces/sliding_masses.h"
 #include "engine/forces/support_motion.h"
 #include "engine/model/pose.h"
 
@@ -101,6 +102,21 @@ static double mean_by_mass(const strut_model *model, const double *from, double 
   return sum / mass;
 }
 
+/* Position or velocity of the centre of mass along x or y. */
+static double evaluate_centre(const strut_columns *c, const strut_state *state,
+                              strut_column_kind kind, double *size) {
+  int axis = kind == STRUT_COLUMN_CENTRE_Y || kind == STRUT_COLUMN_CENTRE_VY;
+  bool rate = kind == STRUT_COLUMN_CENTRE_VX || kind == STRUT_COLUMN_CENTRE_VY;
+  double mean = mean_by_mass(c->model, (rate ? state->v : state->q) + axis, size);
+  if (!(c->model->plan & STRUT_TERM_SLIDING_MASS)) return mean;
+  double more = rate ? strut_sliding_masses_momentum(c->model, state, axis, state->q, state->v)
+                     : strut_sliding_masses_moment(c->model, state, axis, state->q);
+  double mass = 0.0;
+  for (int32_t i = 0; i < c->model->node_count; i++) mass += c->model->weight[i];
+  *size += fabs(more) / mass;
+  return mean + more / mass;
+}
+
 /* Sum of a force over all contacts of the node of one of them, the first. */
 static double sum_of_node(const strut_columns *c, int32_t first, const double *force) {
   const strut_contact_table *t = &c->model->contacts;
@@ -172,6 +188,20 @@ static double column_time(const strut_columns *c, const strut_state *state) {
   return (double)state->step * c->step + c->shorter + state->time_offset;
 }
 
+/* Place or velocity of a mass on a member, along x or y. */
+static double evaluate_slider(const strut_columns *c, const strut_state *state,
+                              strut_column column) {
+  size_t slider = (size_t)column.item;
+  const strut_sliding_item *s = &c->model->sliding.item[slider];
+  double t = column_time(c, state), far = strut_sliding_mass_share(c->model->scene, slider, t);
+  uint32_t axis = column.kind == STRUT_COLUMN_SLIDER_Y || column.kind == STRUT_COLUMN_SLIDER_VY;
+  bool rate = column.kind == STRUT_COLUMN_SLIDER_VX || column.kind == STRUT_COLUMN_SLIDER_VY;
+  const double *z = rate ? state->v : state->q, *q = state->q;
+  uint32_t a = s->at[0] + axis, b = s->at[1] + axis;
+  double place = (1.0 - far) * z[a] + far * z[b];
+  return rate ? place + strut_sliding_mass_rate(c->model->scene, slider, t) * (q[b] - q[a]) : place;
+}
+
 /* Evaluates a column; *size: magnitude of the terms that it sums, where that is not the value. */
 static double evaluate_column(const strut_columns *c, const strut_state *state, strut_column column,
                               double *size) {
@@ -203,10 +233,10 @@ static double evaluate_column(const strut_columns *c, const strut_state *state, 
     case STRUT_COLUMN_TILT:
     case STRUT_COLUMN_ANGLE: node_difference(c, state, column, d); return atan2(d[1], d[0]);
     case STRUT_COLUMN_DISTANCE: node_difference(c, state, column, d); return hypot(d[0], d[1]);
-    case STRUT_COLUMN_CENTRE_X: return mean_by_mass(c->model, state->q, size);
-    case STRUT_COLUMN_CENTRE_Y: return mean_by_mass(c->model, state->q + 1, size);
-    case STRUT_COLUMN_CENTRE_VX: return mean_by_mass(c->model, state->v, size);
-    case STRUT_COLUMN_CENTRE_VY: return mean_by_mass(c->model, state->v + 1, size);
+    case STRUT_COLUMN_CENTRE_X:
+    case STRUT_COLUMN_CENTRE_Y:
+    case STRUT_COLUMN_CENTRE_VX:
+    case STRUT_COLUMN_CENTRE_VY: return evaluate_centre(c, state, column.kind, size);
     case STRUT_COLUMN_KINETIC: return c->stored.kinetic;
     case STRUT_COLUMN_ELASTIC: return c->stored.elastic;
     case STRUT_COLUMN_GRAVITY: return c->stored.gravity;
@@ -232,6 +262,12 @@ static double evaluate_column(const strut_columns *c, const strut_state *state, 
     case STRUT_COLUMN_STATE: return state->v[c->model->feedback.base + column.item];
     case STRUT_COLUMN_SIGNAL:
       return strut_drive_signal(c->model, state, state->v, column.item, column_time(c, state));
+    case STRUT_COLUMN_SLIDER_X:
+    case STRUT_COLUMN_SLIDER_Y:
+    case STRUT_COLUMN_SLIDER_VX:
+    case STRUT_COLUMN_SLIDER_VY: return evaluate_slider(c, state, column);
+    case STRUT_COLUMN_SLIDER_SHARE:
+      return strut_sliding_mass_share(c->model->scene, (size_t)column.item, column_time(c, state));
     case STRUT_COLUMN_COUNT: break;
   }
   return 0.0;

@@ -4,6 +4,7 @@
 #include <assert.h>
 #include <math.h>
 
+#include "engine/forces/sliding_masses.h"
 #include "engine/model/pose.h"
 
 /* A mark this close to the end of a step, in steps, counts as being there. */
@@ -23,6 +24,10 @@ void strut_measure_tracked_point(const strut_model *model, const strut_state *st
   for (int32_t i = 0; i < model->node_count; i++) {
     sum += model->weight[i] * state->q[2 * i];
     rate += model->weight[i] * state->v[2 * i];
+  }
+  if (model->plan & STRUT_TERM_SLIDING_MASS) {
+    sum += strut_sliding_masses_moment(model, state, 0, state->q);
+    rate += strut_sliding_masses_momentum(model, state, 0, state->q, state->v);
   }
   *x = sum / m->total_mass;
   *v = rate / m->total_mass;

@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "engine/forces/sliding_masses.h"
 #include "engine/forces/surfaces.h"
 #include "engine/model/mass.h"
 #include "engine/model/pose.h"
@@ -131,6 +132,8 @@ void strut_stick_band_sample(const strut_model *model, const strut_state *state,
   band->last = state->step;
   bool with_acceleration = band->samples++ % ACCELERATION_INTERVAL == 0 && state->evaluations > 0;
   if (with_acceleration) strut_mass_solve(model, state->force, band->a, band->scratch);
+  if (with_acceleration && model->plan & STRUT_TERM_SLIDING_MASS)
+    strut_sliding_masses_correct(model, state, band->a);
   for (int32_t i = 0; i < c->count; i++) {
     strut_stick_band_monitor *w = &band->contacts[i];
     if (!(strut_contact_gap(c, i, state->q) < 0.0)) continue;

@@ -73,8 +73,9 @@ static void keep_rest_lengths(const strut_scene *original, strut_scene *s) {
     s->hinges[i].rest_angle = strut_hinge_rest(original, i);
 }
 
-static void remove_motion(strut_scene *s) {
+static bool remove_motion(strut_scene *s, strut_arena *arena) {
   size_t kept = 0;
+  if (!strut_scene_hold_sliding_masses(s, arena)) return false;
   s->actuator_count = 0;
   strut_scene_hold_supports(s, true);
   strut_scene_stop_unbalances(s);
@@ -85,6 +86,7 @@ static void remove_motion(strut_scene *s) {
   for (size_t i = 0; i < s->contact_count; i++) s->contacts[i].friction.law = STRUT_FRICTION_NONE;
   for (size_t i = 0; i < s->node_count; i++)
     s->nodes[i].velocity[0] = s->nodes[i].velocity[1] = 0.0;
+  return true;
 }
 
 static void make_level(strut_level_frame *level) {
@@ -118,7 +120,10 @@ strut_status strut_level_frame_create(const strut_scene *original, strut_level_f
     level->sine = sin(original->ground.slope);
   }
   keep_rest_lengths(original, &level->scene);
-  remove_motion(&level->scene);
+  if (!remove_motion(&level->scene, &level->arena)) {
+    strut_level_frame_free(level);
+    return strut_no_memory(error, "");
+  }
   make_level(level);
   return STRUT_OK;
 }

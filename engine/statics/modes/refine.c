@@ -242,7 +242,7 @@ static strut_dd exact_dot(const strut_dd *x, const strut_dd *y, int32_t n) {
 
 /*
  * The quotient of x and its distance to an eigenvalue: at most |r|, and |r|^2 / gap, with the
- * norm of M^-1, which is at most twice that of its diagonal. Rows without mass store energy
+ * norm of M^-1, which is at most twice that of its diagonal without sliding masses. Rows without mass store energy
  * |r|^2 / k.
  */
 static void measure(const strut_vibration *v, double gap, pair *p) {
@@ -254,7 +254,7 @@ static void measure(const strut_vibration *v, double gap, pair *p) {
   double rest = 0.0, idle = 0.0, size = 0.0, r2 = 0.0, kx2 = 0.0, mx2 = 0.0;
   for (int32_t i = 0; i < v->n; i++) {
     strut_dd inertia = dd_mul(value, p->mx[i]);
-    double r = dd_double(dd_sub(p->kx[i], inertia)), m = v->m[a->start[i]];
+    double r = dd_double(dd_sub(p->kx[i], inertia)), m = v->own_mass[i];
     r2 += r * r, kx2 += p->kx[i].hi * p->kx[i].hi, mx2 += inertia.hi * inertia.hi;
     if (v->mass[i] > 0)
       rest += 2.0 * r * r / m;

@@ -171,6 +171,20 @@ static void add_contact(strut_vibration *v, int32_t i) {
     }
 }
 
+/* Where they are at t = 0. */
+static void add_sliding_masses(strut_vibration *v) {
+  for (int32_t i = 0; i < v->model->sliding.count; i++) {
+    const strut_sliding_item *s = &v->model->sliding.item[i];
+    const int32_t *place = v->shape->place + STRUT_MEMBER_ENTRIES * s->member;
+    const double part[2] = {1.0 - s->start, s->start};
+    for (int k = 0; k < STRUT_MEMBER_ENTRIES; k++) {
+      const strut_block_entry *e = &strut_block_entries[k];
+      if (place[k] < 0 || e->part == 1) continue;
+      v->m[place[k]] += s->mass * part[e->row / 2] * part[e->column / 2];
+    }
+  }
+}
+
 static void add_masses(strut_vibration *v) {
   const strut_model *model = v->model;
   const strut_member_table *t = &model->members;
@@ -186,8 +200,11 @@ static void add_masses(strut_vibration *v) {
         v->m[*place] += t->mass[j] / 6.0;
     }
   const strut_sparse *a = v->shape->pattern;
-  for (int32_t i = 0; i < v->n; i++)
+  for (int32_t i = 0; i < v->n; i++) {
     v->m[a->start[i]] += model->point_mass[v->shape->coordinate[i] / 2];
+    v->own_mass[i] = v->m[a->start[i]];
+  }
+  add_sliding_masses(v);
   for (int32_t j = 0; j < v->n; j++)
     for (int32_t at = a->start[j]; at < a->start[j + 1]; at++) {
       v->mass[j] += v->m[at];
@@ -196,7 +213,8 @@ static void add_masses(strut_vibration *v) {
   for (int32_t i = 0; i < v->n; i++) v->massive += v->mass[i] > 0;
 }
 
-/* x'Kx over x'Mx is at most that of the worst member or node: M >= half of its diagonal. */
+/* x'Kx over x'Mx is at most that of the worst member or node: M >= half of its diagonal without sliding
+   masses. */
 static void bound_spectrum(strut_vibration *v) {
   const strut_sparse *a = v->shape->pattern;
   double *sum = (double *)v->work;
@@ -208,7 +226,7 @@ static void bound_spectrum(strut_vibration *v) {
     }
   v->largest = 0.0;
   for (int32_t i = 0; i < v->n; i++) {
-    double bound = v->mass[i] > 0 ? 2.0 * sum[i] / v->m[a->start[i]] : 0.0;
+    double bound = v->mass[i] > 0 ? 2.0 * sum[i] / v->own_mass[i] : 0.0;
     if (!(bound <= v->largest)) v->largest = bound; /* what is no number shows */
   }
 }
@@ -237,8 +255,10 @@ static bool allocate(strut_vibration *v) {
   v->d = strut_arena_allocate(&v->arena, entries, sizeof *v->d);
   v->rounded = strut_arena_allocate(&v->arena, (size_t)model->length, sizeof *v->rounded);
   v->mass = strut_arena_allocate(&v->arena, n, sizeof *v->mass);
+  v->own_mass = strut_arena_allocate(&v->arena, n, sizeof *v->own_mass);
   v->work = strut_arena_allocate(&v->arena, n, sizeof *v->work);
-  return v->rounded && v->q && v->member && v->closed && v->k && v->m && v->d && v->mass && v->work;
+  return v->rounded && v->q && v->member && v->closed && v->k && v->m && v->d && v->mass &&
+         v->own_mass && v->work;
 }
 
 strut_status strut_vibration_create(const strut_model *model, const double *q,

@@ -36,6 +36,7 @@ typedef struct strut_vibration {
   double largest;                 /* an upper bound of the eigenvalues of K x = z M x [1/s^2] */
   strut_dd *work;                 /* (n) */
   strut_arena arena;
+  double *own_mass; /* (n) diagonal of M without sliding masses */
 } strut_vibration;
 
 /**

@@ -223,10 +223,23 @@ static void add_mass(const strut_model *model, sums *s) {
     }
 }
 
+static void add_sliding_masses(const strut_model *model, sums *s) {
+  for (int32_t i = 0; i < model->sliding.count; i++)
+    for (uint32_t k = 0; k < 2; k++) {
+      const strut_sliding_item *item = &model->sliding.item[i];
+      int32_t a = s->row_of[item->at[0] + k], b = s->row_of[item->at[1] + k];
+      double far = item->start, near = 1.0 - far;
+      if (a >= 0) strut_triplets_add(&s->mass, a, a, item->mass * near * near);
+      if (b >= 0) strut_triplets_add(&s->mass, b, b, item->mass * far * far);
+      if (a >= 0 && b >= 0) strut_triplets_add(&s->mass, a, b, item->mass * near * far);
+    }
+}
+
 static bool reserve(const strut_model *model, sums *s, strut_arena *scratch) {
   size_t members = (size_t)model->members.count, contacts = (size_t)model->contacts.count;
-  size_t most = strut_tangent_entries(model, false);
-  return strut_triplets_reserve(&s->mass, (size_t)model->length + 6 * members, scratch) &&
+  size_t most = strut_tangent_entries(model, false), sliding = (size_t)model->sliding.count;
+  return strut_triplets_reserve(&s->mass, (size_t)model->length + 6 * (members + sliding),
+                                scratch) &&
          strut_triplets_reserve(&s->elastic, most + 1, scratch) &&
          strut_triplets_reserve(&s->geometric, most + 1, scratch) &&
          strut_triplets_reserve(&s->contact, STRUT_CONTACT_ENTRIES * contacts + 1, scratch);
@@ -244,6 +257,7 @@ strut_status strut_linear_matrices_build(const strut_model *model, const double 
   if (s.row_of && coordinate && reserve(model, &s, &scratch)) {
     int32_t n = matrices->n = strut_number_free(model, NULL, s.row_of, coordinate);
     add_mass(model, &s);
+    add_sliding_masses(model, &s);
     strut_tangent_visit(model, q, model->members.rest, -HUGE_VAL, STRUT_CLOSED_TOUCHING, &s,
                         add_member, add_element, add_contact);
     matrices->mass = strut_sparse_build(n, &s.mass, arena);

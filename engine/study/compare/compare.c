@@ -15,6 +15,7 @@ static double total_mass(const strut_scene *scene) {
   double mass = 0.0;
   for (size_t i = 0; i < scene->node_count; i++) mass += scene->nodes[i].mass;
   for (size_t j = 0; j < scene->member_count; j++) mass += scene->members[j].mass;
+  for (size_t i = 0; i < scene->sliding_count; i++) mass += scene->sliding_masses[i].mass;
   return mass;
 }
 

@@ -30,6 +30,9 @@ struct strut_slots {
   char (*words)[STRUT_SLOT_WORD];
   char message[STRUT_SLOT_MESSAGE];
   strut_arena arena;
+  bool retried;              /* rows of points that failed may be written again */
+  _Atomic int64_t rewritten; /* rows written since then */
+  int64_t block_rewritten;   /* when the block was read */
 };
 
 /* The first bytes of a slot. */
@@ -82,6 +85,7 @@ static void mark(strut_slots *s, int64_t i, uint32_t status) {
 static strut_status load(strut_slots *s, int64_t i, strut_error *error) {
   int64_t count = s->plan.count - i < s->block_slots ? s->plan.count - i : s->block_slots;
   s->block_count = 0;
+  s->block_rewritten = atomic_load(&s->rewritten);
   int64_t got = strut_slots_pread(s->descriptor, s->block, (size_t)count * s->layout.slot_bytes,
                                   offset_of(s, i));
   if (got < 0) return strut_slots_trouble(error, "read", s->path, errno);
@@ -287,6 +291,7 @@ strut_status strut_slots_put(strut_slots *slots, int64_t point, const strut_resu
   if (!strut_slots_pwrite(slots->descriptor, slot, slots->layout.slot_bytes, offset_of(slots, i)))
     return strut_slots_trouble(error, "write", slots->path, errno);
   atomic_store_explicit(&slots->unsynced, true, memory_order_relaxed);
+  if (slots->retried) atomic_fetch_add(&slots->rewritten, 1);
   mark(slots, i, (uint32_t)row->status);
   return STRUT_OK;
 }
@@ -301,7 +306,8 @@ strut_status strut_slots_sync(strut_slots *slots, strut_error *error) {
 static const unsigned char *find(strut_slots *s, int64_t i) {
   for (int pass = 0; pass < 2; pass++) { /* it may have been written since the block was read */
     int64_t at = i - s->block_first;
-    if (at >= 0 && at < s->block_count) {
+    bool fresh = s->block_rewritten == atomic_load(&s->rewritten);
+    if (at >= 0 && at < s->block_count && (fresh || pass)) {
       const unsigned char *slot = s->block + (size_t)at * s->layout.slot_bytes;
       if (is_whole(s, i, slot)) return slot;
     }
@@ -329,6 +335,7 @@ bool strut_slots_get(strut_slots *slots, int64_t point, strut_result_slot *row) 
 }
 
 strut_status strut_slots_retry(strut_slots *slots, strut_error *error) {
+  slots->retried = true;
   for (int64_t i = 0; i < slots->plan.count && strut_slots_failed(slots) > 0; i++) {
     strut_result_slot row;
     if (!is_done(slots, i)) continue;

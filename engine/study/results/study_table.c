@@ -128,22 +128,42 @@ static void put_row(writer *w, const strut_slots_plan *plan, int64_t point,
   put_text(w, row->message, STRUT_SLOT_MESSAGE, '\n');
 }
 
-strut_status strut_study_table_write(const char *directory, const char *name,
-                                     strut_slots *const *sources, size_t count,
-                                     strut_error *error) {
+/* The table of all rows, or of those that there are. */
+static strut_status write_table(const char *directory, const char *name,
+                                strut_slots *const *sources, size_t count, bool partial,
+                                int64_t *rows, strut_error *error) {
   writer w = {.used = 0};
   const strut_slots_plan *plan = strut_slots_plan_of(sources[0]);
   strut_status status = strut_file_open(&w.file, directory, name, error);
   if (status != STRUT_OK) return status;
   put_header(&w, plan);
+  *rows = 0;
   for (int64_t point = 0; point < plan->points && !w.failed; point++) {
     strut_result_slot row;
-    if (!strut_slots_get(sources[(size_t)point % count], point, &row)) {
+    strut_slots *source = sources[(size_t)point % count];
+    if (partial && !strut_slots_done(source, point)) continue;
+    if (strut_slots_get(source, point, &row)) {
+      put_row(&w, plan, point, &row);
+      ++*rows;
+    } else if (!partial) {
       strut_file_abandon(&w.file);
       return strut_fail(error, STRUT_USAGE, "no table yet: point %lld is missing",
                         (long long)point);
     }
-    put_row(&w, plan, point, &row);
   }
   return finish(&w, error);
+}
+
+strut_status strut_study_table_write(const char *directory, const char *name,
+                                     strut_slots *const *sources, size_t count,
+                                     strut_error *error) {
+  int64_t rows;
+  return write_table(directory, name, sources, count, false, &rows, error);
+}
+
+strut_status strut_study_table_write_partial(const char *directory, const char *name,
+                                             strut_slots *const *sources, size_t count,
+                                             int64_t *rows, strut_error *error) {
+  int64_t unread;
+  return write_table(directory, name, sources, count, true, rows ? rows : &unread, error);
 }

@@ -20,4 +20,12 @@ STRUT_API strut_status strut_study_table_write(const char *directory, const char
                                                strut_slots *const *sources, size_t count,
                                                strut_error *error);
 
+/**
+ * The same of the rows that there are, in their order; *rows (may be NULL) receives their number. Others
+ * may write the sources meanwhile.
+ */
+STRUT_API strut_status strut_study_table_write_partial(const char *directory, const char *name,
+                                                       strut_slots *const *sources, size_t count,
+                                                       int64_t *rows, strut_error *error);
+
 #endif

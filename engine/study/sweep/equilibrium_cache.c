@@ -183,6 +183,11 @@ static void add_rest(structure *s, const strut_setup *setup) {
     add(s, scene->unbalances[i].node);
     add(s, scene->unbalances[i].mass);
   }
+  for (size_t i = 0; i < scene->sliding_count; i++) {
+    const strut_sliding_mass *m = &scene->sliding_masses[i];
+    const double at_rest[] = {m->member, m->mass, strut_sliding_mass_share(scene, i, 0.0)};
+    add_all(s, at_rest, sizeof at_rest / sizeof at_rest[0]);
+  }
 }
 
 static void free_structure(structure *s) {

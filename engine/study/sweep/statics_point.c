@@ -360,7 +360,7 @@ static void warn_of_overload(strut_sweep_job *job, const strut_model *model, con
 
 static strut_status find_equilibria(const strut_sweep_worker *w, strut_sweep_job *job,
                                     rest_result *r) {
-  const strut_equilibria_options options = {.interrupt = w->options->interrupt};
+  const strut_equilibria_options options = {.interrupt = strut_sweep_interrupt_of(w, job)};
   strut_equilibria *all = &r->equilibria;
   strut_status status =
       strut_equilibria_find(r->model, &job->setup.experiment, &options, all, &job->error);

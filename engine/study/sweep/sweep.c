@@ -240,6 +240,8 @@ static bool next_point(void *context, int64_t *point) {
     i = s->next++;
     if (i >= count) return false;
     *point = strut_slots_point(s->slots, i);
+    const strut_sweep_options *options = s->worker.options;
+    if (options->wants && !options->wants(options->wants_context, *point)) continue;
     if (!strut_slots_done(s->slots, *point)) return true;
   }
   return false;
@@ -262,7 +264,12 @@ static void run_threads(sweep *s, int threads, int32_t lanes, strut_sweep_job *j
 #ifdef _OPENMP
 #pragma omp parallel for schedule(static, 1) num_threads(threads)
 #endif
-  for (int i = 0; i < threads; i++) strut_sweep_work(&s->worker, &queue, jobs + i * lanes, lanes);
+  for (int i = 0; i < threads; i++) {
+#ifdef _OPENMP
+    omp_set_num_threads(1); /* of searches within a point: the points are what goes side by side */
+#endif
+    strut_sweep_work(&s->worker, &queue, jobs + i * lanes, lanes);
+  }
 }
 
 /* No more lanes on each processor than there are points for it. */
@@ -286,25 +293,37 @@ strut_status strut_sweep_run(const strut_sweep_plan *plan, strut_slots *slots,
   int threads = options->threads > 0 ? options->threads : strut_sweep_threads();
   strut_arena arena = {0};
   strut_error own = {0};
-  sweep s = {.worker = {plan, options, strut_equilibrium_cache_create()},
-             .slots = slots,
-             .state = state,
-             .began = strut_run_clock(),
-             .error = error ? error : &own};
-  int32_t lanes = lanes_for(options->lanes, threads, strut_slots_missing(slots));
+  sweep s = {
+      .worker = {.plan = plan, .options = options, .standing = strut_equilibrium_cache_create()},
+      .slots = slots,
+      .state = state,
+      .began = strut_run_clock(),
+      .error = error ? error : &own};
+  int64_t missing =
+      options->wants ? options->wanted - options->wanted_done : strut_slots_missing(slots);
+  int32_t lanes = lanes_for(options->lanes, threads, missing);
   strut_sweep_job *jobs = make_jobs(plan, &arena, (size_t)threads * (size_t)lanes);
   int64_t count = strut_slots_plan_of(slots)->count;
   *state = (strut_sweep_state){.points = count,
                                .done = count - strut_slots_missing(slots),
                                .failed = strut_slots_failed(slots),
                                .last = -1};
+  if (options->wants) {
+    count = state->points = options->wanted;
+    state->done = options->wanted_done;
+  }
   if (options->directory) strut_sweep_records_clear(options->directory);
-  if (jobs && s.worker.standing)
+  double seconds = plan->study->limit_time;
+  if (jobs && seconds > 0.0)
+    s.worker.watch = strut_sweep_watch_create(seconds, jobs, (size_t)threads * (size_t)lanes,
+                                              options->interrupt);
+  if (jobs && s.worker.standing && (s.worker.watch || seconds <= 0.0))
     run_threads(&s, threads, lanes, jobs);
   else
     s.status = strut_fail(s.error, STRUT_NO_MEMORY, "out of memory");
   if (!s.status && options->interrupt && *options->interrupt && state->done < count)
     s.status = strut_fail(s.error, STRUT_INTERRUPTED, "interrupted");
+  strut_sweep_watch_free(s.worker.watch);
   state->seconds = strut_run_clock() - s.began;
   state->row = NULL;
   strut_equilibrium_cache_free(s.worker.standing);

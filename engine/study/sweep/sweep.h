@@ -78,6 +78,10 @@ typedef struct strut_sweep_options {
   /** A few times a second, one thread at a time; may be NULL. */
   void (*progress)(void *context, const strut_sweep_state *state);
   void *progress_context;
+  /** Points to be computed; NULL: all. Those of the file that it wants, and of these the done ones. */
+  bool (*wants)(const void *context, int64_t point);
+  const void *wants_context;
+  int64_t wanted, wanted_done;
 } strut_sweep_options;
 
 /**

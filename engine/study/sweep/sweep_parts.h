@@ -47,7 +47,10 @@ typedef struct strut_sweep_worker {
   const strut_sweep_plan *plan;
   const strut_sweep_options *options;
   strut_equilibrium_cache *standing;
+  struct strut_sweep_watch *watch; /* NULL: points may take any time */
 } strut_sweep_worker;
+
+struct strut_sweep_watch;
 
 typedef enum strut_sweep_stage {
   STRUT_SWEEP_IDLE,    /* no point */
@@ -72,8 +75,13 @@ typedef struct strut_sweep_job {
   strut_status
       status; /* at the end: STRUT_OK, and cells.row is filled; else what stops the sweep */
   strut_error error;
+  double deadline;            /* by strut_run_clock [s]; 0: none; guarded by the watch */
+  volatile sig_atomic_t stop; /* set by the watch when it has passed, or the sweep is interrupted */
 } strut_sweep_job;
 
+/** What ends the job's computation early; may be NULL. */
+const volatile sig_atomic_t *strut_sweep_interrupt_of(const strut_sweep_worker *worker,
+                                                      const strut_sweep_job *job);
 /** Starts a point on an idle job. True: it waits for its run. False: it has ended already. */
 bool strut_sweep_job_begin(const strut_sweep_worker *worker, int64_t point, strut_sweep_job *job);
 /** Stores the result of the run and frees the summary. True: the job waits for another run. */
@@ -97,6 +105,17 @@ strut_status strut_statics_check(const strut_study *study, const strut_scene *sc
                                  strut_error *error);
 /** Computes what the study wants of a point at rest and appends its cells. */
 strut_status strut_statics_point(const strut_sweep_worker *worker, strut_sweep_job *job);
+
+/* sweep_watch.c */
+
+/** Ends jobs that take longer than the study allows. NULL: there is no memory or no thread for it. */
+struct strut_sweep_watch *strut_sweep_watch_create(double seconds, strut_sweep_job *jobs,
+                                                   size_t count,
+                                                   const volatile sig_atomic_t *interrupt);
+void strut_sweep_watch_free(struct strut_sweep_watch *watch);
+/** The job's time begins, and ends; the latter true if it had passed. A NULL watch does nothing. */
+void strut_sweep_watch_begin(struct strut_sweep_watch *watch, strut_sweep_job *job);
+bool strut_sweep_watch_end(struct strut_sweep_watch *watch, strut_sweep_job *job);
 
 /* sweep_lanes.c */
 

@@ -22,9 +22,26 @@ static void pad_cells(const strut_sweep_plan *plan, strut_row_buffer *cells) {
   while (cells->number_count < plan->column_count - words) strut_sweep_number(cells, (double)NAN);
 }
 
+const volatile sig_atomic_t *strut_sweep_interrupt_of(const strut_sweep_worker *w,
+                                                      const strut_sweep_job *job) {
+  return w->watch ? &job->stop : w->options->interrupt;
+}
+
+/* What an interrupted computation means: its own time has passed, or the sweep is interrupted. */
+static strut_status explain_interrupt(const strut_sweep_worker *w, strut_sweep_job *job,
+                                      strut_status status) {
+  bool passed = strut_sweep_watch_end(w->watch, job);
+  if (status != STRUT_INTERRUPTED || !passed) return status;
+  return strut_fail(&job->error, STRUT_WORK_LIMIT,
+                    "stopped after %.4g s by the clock, the study's limit: another machine may get "
+                    "further",
+                    w->plan->study->limit_time);
+}
+
 /* Ends the point with its row, or with an error that stops the sweep. */
 static bool finish_point(const strut_sweep_worker *w, strut_sweep_job *job, strut_status status) {
   strut_row_buffer *cells = &job->cells;
+  status = explain_interrupt(w, job, status);
   job->stage = STRUT_SWEEP_IDLE;
   job->status = stops(status) ? status : STRUT_OK;
   if (job->status) return false;
@@ -47,9 +64,14 @@ static bool finish_with_scene(const strut_sweep_worker *w, strut_sweep_job *job,
   return finish_point(w, job, status);
 }
 
+static void set_options(const strut_sweep_worker *w, strut_sweep_job *job) {
+  job->options = (strut_run_options){.interrupt = strut_sweep_interrupt_of(w, job),
+                                     .most_evaluations = w->plan->study->limit_evaluations};
+}
+
 /* Records the run into its own folder, as `strut run -o` does, if the study keeps trajectories. */
 static strut_status begin_record(const strut_sweep_worker *w, strut_sweep_job *job) {
-  job->options = (strut_run_options){.interrupt = w->options->interrupt};
+  set_options(w, job);
   job->files = NULL;
   if (!w->plan->study->trajectories || !w->options->directory) return STRUT_OK;
   char *text = w->plan->scenes.text(&job->setup);
@@ -73,6 +95,7 @@ bool strut_sweep_job_begin(const strut_sweep_worker *w, int64_t point, strut_swe
   job->second = false;
   job->warning_count = 0;
   job->error = (strut_error){0};
+  strut_sweep_watch_begin(w->watch, job);
   strut_grid_values(plan->study, point, cells->values);
   for (size_t i = 0; i < plan->axis_columns; i++) {
     if (plan->columns[i].word)
@@ -139,7 +162,7 @@ static bool finish_first_run(const strut_sweep_worker *w, strut_sweep_job *job, 
   if (!w->plan->check) return finish_with_scene(w, job, STRUT_OK);
   snprintf(job->first, sizeof job->first, "%s", outcome_word(w, summary, outcome));
   refine_experiment(w->plan->study, &job->setup.experiment);
-  job->options = (strut_run_options){.interrupt = w->options->interrupt};
+  set_options(w, job);
   job->second = true;
   job->error = (strut_error){0};
   job->stage = STRUT_SWEEP_WAITING;
@@ -151,6 +174,7 @@ static bool finish_second_run(const strut_sweep_worker *w, strut_sweep_job *job,
                               strut_status status, const strut_summary *summary) {
   char outcome[STRUT_SLOT_WORD] = "";
   strut_row_buffer *cells = &job->cells;
+  status = explain_interrupt(w, job, status);
   if (!status) status = name_outcome(w, job, summary, outcome);
   const char *word = status ? "failed" : outcome_word(w, summary, outcome);
   bool same = !status && strcmp(job->first, word) == 0;

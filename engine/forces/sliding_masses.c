@@ -1,0 +1,261 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/forces/sliding_masses.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "engine/base/vec.h"
+#include "engine/model/mass.h"
+#include "engine/scene/signal_motion.h"
+
+/* A moving mass at one instant: its item, its place, and what the motion of its member's nodes is. */
+typedef struct slide {
+  const strut_sliding_item *item;
+  const strut_sliding_motion *at;
+  double near;                /* 1 - share */
+  strut_vec2 span, span_rate; /* from the first node to the second */
+} slide;
+
+static slide slide_at(const strut_model *model, const strut_state *state, int32_t k,
+                      const double *q, const double *v) {
+  const strut_sliding_item *s = &model->sliding.item[model->sliding.moving[k]];
+  const strut_sliding_motion *at = &state->sliding[k];
+  return (slide){.item = s,
+                 .at = at,
+                 .near = 1.0 - at->share,
+                 .span = strut_vec2_between(q + s->at[0], q + s->at[1]),
+                 .span_rate = strut_vec2_between(v + s->at[0], v + s->at[1])};
+}
+
+/* N z at a mass, for x and y. */
+static strut_vec2 interpolate(const slide *s, const double *z) {
+  const double *a = z + s->item->at[0], *b = z + s->item->at[1];
+  return (strut_vec2){s->near * a[0] + s->at->share * b[0], s->near * a[1] + s->at->share * b[1]};
+}
+
+static strut_vec2 velocity(const slide *s, const double *v) {
+  strut_vec2 u = interpolate(s, v);
+  return (strut_vec2){u.x + s->at->rate * s->span.x, u.y + s->at->rate * s->span.y};
+}
+
+/* Acceleration of the mass but for that of the nodes. */
+static strut_vec2 drift(const slide *s) {
+  double twice = 2.0 * s->at->rate, bend = s->at->bend;
+  return (strut_vec2){twice * s->span_rate.x + bend * s->span.x,
+                      twice * s->span_rate.y + bend * s->span.y};
+}
+
+/* Adds N' (x, y) to a coordinate array. */
+static void spread(const slide *s, double x, double y, double *z) {
+  double *a = z + s->item->at[0], *b = z + s->item->at[1];
+  a[0] += s->near * x;
+  a[1] += s->near * y;
+  b[0] += s->at->share * x;
+  b[1] += s->at->share * y;
+}
+
+/* 1/m + N M^-1 N' of all moving masses, lower triangle, for one coordinate. */
+static void fill(const strut_sliding_table *t, const strut_sliding_motion *at,
+                 const double *between, double *matrix) {
+  int32_t n = t->moving_count;
+  for (int32_t i = 0; i < n; i++)
+    for (int32_t j = 0; j <= i; j++) {
+      const double *row = between + 4 * i * n + 2 * j;
+      double by_first = (1.0 - at[j].share) * row[0] + at[j].share * row[1];
+      double by_second = (1.0 - at[j].share) * row[2 * n] + at[j].share * row[2 * n + 1];
+      matrix[i * n + j] = (1.0 - at[i].share) * by_first + at[i].share * by_second;
+      if (i == j) matrix[i * n + j] += 1.0 / t->item[t->moving[i]].mass;
+    }
+}
+
+/* Cholesky's factor in place. */
+static void factor(int32_t n, double *a) {
+  for (int32_t i = 0; i < n; i++)
+    for (int32_t j = 0; j <= i; j++) {
+      double sum = a[i * n + j];
+      for (int32_t k = 0; k < j; k++) sum -= a[i * n + k] * a[j * n + k];
+      a[i * n + j] = i == j ? sqrt(sum) : sum / a[j * n + j];
+    }
+}
+
+static void solve(int32_t n, const double *a, double *x) {
+  for (int32_t i = 0; i < n; i++) {
+    for (int32_t j = 0; j < i; j++) x[i] -= a[i * n + j] * x[j];
+    x[i] /= a[i * n + i];
+  }
+  for (int32_t i = n - 1; i >= 0; i--) {
+    for (int32_t j = i + 1; j < n; j++) x[i] -= a[j * n + i] * x[j];
+    x[i] /= a[i * n + i];
+  }
+}
+
+void strut_sliding_masses_place(const strut_model *model, strut_state *state, double t) {
+  const strut_sliding_table *table = &model->sliding;
+  const strut_signal *signals = model->scene->signals;
+  int32_t n = table->moving_count;
+  double when = t + state->time_offset;
+  for (int32_t k = 0; k < n; k++) {
+    const strut_sliding_item *s = &table->item[table->moving[k]];
+    strut_sliding_motion *at = &state->sliding[k];
+    double value, rate;
+    strut_signal_evaluate(signals, s->signal, when, &value, &rate);
+    at->share = s->base + s->scale * value;
+    at->rate = s->scale * rate;
+    at->bend = s->scale * strut_signal_acceleration(signals, s->signal, when);
+  }
+  for (int c = 0; c < 2 && table->between; c++) {
+    double *matrix = state->sliding_factor + c * n * n;
+    fill(table, state->sliding, table->between + 4 * c * n * n, matrix);
+    factor(n, matrix);
+  }
+}
+
+void strut_sliding_masses_correct(const strut_model *model, const strut_state *state, double *a) {
+  const strut_sliding_table *table = &model->sliding;
+  int32_t n = table->moving_count;
+  double *push[2] = {state->sliding_push, state->sliding_push + n};
+  for (int32_t k = 0; k < n; k++) {
+    const strut_sliding_item *s = &table->item[table->moving[k]];
+    double far = state->sliding[k].share, near = 1.0 - far;
+    for (uint32_t c = 0; c < 2; c++) push[c][k] = near * a[s->at[0] + c] + far * a[s->at[1] + c];
+  }
+  for (int c = 0; c < 2; c++) solve(n, state->sliding_factor + c * n * n, push[c]);
+  for (int32_t k = 0; k < n; k++) {
+    const strut_sliding_answer *r = &table->answer[k];
+    double far = state->sliding[k].share, near = 1.0 - far;
+    for (int32_t i = 0; i < r->count; i++) {
+      const double *xy = r->xy + 4 * i;
+      a[r->at[i]] -= push[0][k] * (near * xy[0] + far * xy[2]);
+      a[r->at[i] + 1] -= push[1][k] * (near * xy[1] + far * xy[3]);
+    }
+  }
+}
+
+void strut_sliding_masses_apply(const strut_model *model, strut_state *state, double t,
+                                const double *q, const double *v) {
+  const double *g = model->scene->gravity, alpha = model->mass_damping;
+  strut_sliding_masses_place(model, state, t);
+  for (int32_t k = 0; k < model->sliding.moving_count; k++) {
+    slide s = slide_at(model, state, k, q, v);
+    const strut_sliding_item *item = s.item;
+    double m = item->mass, moved = s.at->share - item->start;
+    strut_vec2 d = drift(&s), u = velocity(&s, v);
+    spread(&s, -m * (d.x + alpha * u.x), -m * (d.y + alpha * u.y), state->force);
+    for (uint32_t c = 0; c < 2; c++) { /* the weights have its own where it started */
+      state->force[item->at[0] + c] -= m * moved * g[c];
+      state->force[item->at[1] + c] += m * moved * g[c];
+    }
+    if (!state->ledger || alpha == 0.0) continue;
+    double lost = alpha * m * (u.x * u.x + u.y * u.y);
+    state->power[STRUT_POWER_MEMBERS] += lost;
+    state->power[STRUT_POWER_EXCHANGED] += lost;
+  }
+}
+
+void strut_sliding_masses_add_power(const strut_model *model, strut_state *state, const double *q,
+                                    const double *v, const double *a) {
+  const double *g = model->scene->gravity, alpha = model->mass_damping;
+  for (int32_t k = 0; k < model->sliding.moving_count; k++) {
+    slide s = slide_at(model, state, k, q, v);
+    strut_vec2 d = drift(&s), u = velocity(&s, v), bend = interpolate(&s, a);
+    double x = bend.x + d.x + alpha * u.x - g[0], y = bend.y + d.y + alpha * u.y - g[1];
+    double power = s.item->mass * s.at->rate * (x * s.span.x + y * s.span.y);
+    state->power[STRUT_POWER_DRIVE] += power;
+    state->power[STRUT_POWER_EXCHANGED] += fabs(power);
+  }
+}
+
+void strut_sliding_masses_add_energies(const strut_model *model, const strut_state *state,
+                                       const double *q, const double *v, double *kinetic,
+                                       double *gravity) {
+  const double *g = model->scene->gravity;
+  for (int32_t k = 0; k < model->sliding.moving_count; k++) {
+    slide s = slide_at(model, state, k, q, v);
+    strut_vec2 u = velocity(&s, v);
+    double moved = s.at->share - s.item->start;
+    *kinetic += 0.5 * s.item->mass * (u.x * u.x + u.y * u.y);
+    *gravity -= s.item->mass * moved * (g[0] * s.span.x + g[1] * s.span.y);
+  }
+}
+
+/* Sum of the jumps of the rate of a mass's share after `from` and up to `to`. */
+static double jump_of_rate(const strut_model *model, const strut_sliding_item *s, double from,
+                           double to) {
+  const strut_signal *signals = model->scene->signals;
+  double sum = 0.0, at = strut_signal_next_break(signals, s->signal, from);
+  for (; at <= to; at = strut_signal_next_break(signals, s->signal, at)) {
+    double value, before, after, moment = 8.0 * DBL_EPSILON * fmax(fabs(at), to - from);
+    strut_signal_evaluate(signals, s->signal, at - moment, &value, &before);
+    strut_signal_evaluate(signals, s->signal, at + moment, &value, &after);
+    sum += after - before;
+  }
+  return sum * s->scale;
+}
+
+/* Impulses of the jumps into state->force, the jumps into their motions. True if there are any. */
+static bool find_impulses(const strut_model *model, strut_state *state, double from, double to) {
+  bool any = false;
+  memset(state->force, 0, (size_t)model->length * sizeof *state->force);
+  for (int32_t k = 0; k < model->sliding.moving_count; k++) {
+    slide s = slide_at(model, state, k, state->q, state->v);
+    double jump = jump_of_rate(model, s.item, from + state->time_offset, to + state->time_offset);
+    double push = -s.item->mass * jump;
+    state->sliding[k].jump = jump;
+    any = any || jump != 0.0;
+    spread(&s, push * s.span.x, push * s.span.y, state->force);
+  }
+  return any;
+}
+
+/* Impulse along the member times the mean of the speeds along it, before and after. */
+static double work_of_jumps(const strut_model *model, const strut_state *state,
+                            const double *change) {
+  double work = 0.0;
+  for (int32_t k = 0; k < model->sliding.moving_count; k++) {
+    slide s = slide_at(model, state, k, state->q, state->v);
+    double jump = s.at->jump, mean = s.at->rate - 0.5 * jump;
+    strut_vec2 more = interpolate(&s, change);
+    work += s.item->mass * mean *
+            ((more.x + jump * s.span.x) * s.span.x + (more.y + jump * s.span.y) * s.span.y);
+  }
+  return work;
+}
+
+bool strut_sliding_masses_kick(const strut_model *model, strut_state *state, double from,
+                               double to) {
+  double *change = state->support_answer;
+  if (!(model->plan & STRUT_TERM_SLIDING_MASS)) return false;
+  strut_sliding_masses_place(model, state, to);
+  if (!model->sliding.corners || !find_impulses(model, state, from, to)) return false;
+  strut_mass_solve(model, state->force, change, state->scratch);
+  strut_sliding_masses_correct(model, state, change);
+  double work = work_of_jumps(model, state, change);
+  for (int32_t i = 0; i < model->length; i++) state->v[i] += change[i];
+  if (!state->ledger) return true;
+  state->work[STRUT_POWER_DRIVE] += work;
+  state->work[STRUT_POWER_EXCHANGED] += fabs(work);
+  return true;
+}
+
+double strut_sliding_masses_moment(const strut_model *model, const strut_state *state, int axis,
+                                   const double *q) {
+  double sum = 0.0;
+  for (int32_t k = 0; k < model->sliding.moving_count; k++) {
+    const strut_sliding_item *s = &model->sliding.item[model->sliding.moving[k]];
+    double span = q[s->at[1] + (uint32_t)axis] - q[s->at[0] + (uint32_t)axis];
+    sum += s->mass * (state->sliding[k].share - s->start) * span;
+  }
+  return sum;
+}
+
+double strut_sliding_masses_momentum(const strut_model *model, const strut_state *state, int axis,
+                                     const double *q, const double *v) {
+  double sum = strut_sliding_masses_moment(model, state, axis, v);
+  for (int32_t k = 0; k < model->sliding.moving_count; k++) {
+    const strut_sliding_item *s = &model->sliding.item[model->sliding.moving[k]];
+    sum += s->mass * state->sliding[k].rate *
+           (q[s->at[1] + (uint32_t)axis] - q[s->at[0] + (uint32_t)axis]);
+  }
+  return sum;
+}

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Masses that slide along members as their signals say; see engine/model/sliding_masses.h.
+ *
+ * A mass m at x = N q, N = (1 - s, s), adds m N'N to the mass matrix and the force
+ * N'm (g - 2 s' (v_b - v_a) - s'' (q_b - q_a)). With the constant matrix M factored, a = M^-1 f becomes
+ * a - M^-1 N' (1/m + N M^-1 N')^-1 N a, for several of them with a small dense matrix. The drive gives
+ * m (x'' - g) along the member, times s' (q_b - q_a).
+ */
+#ifndef STRUT_ENGINE_FORCES_SLIDING_MASSES_H
+#define STRUT_ENGINE_FORCES_SLIDING_MASSES_H
+
+#include "engine/model/state.h"
+
+/** Puts the moving masses where they are at time t [s], and factors what the acceleration needs. */
+void strut_sliding_masses_place(const strut_model *model, strut_state *state, double t);
+/** Does that, and adds their forces at positions q and velocities v to state->force. */
+void strut_sliding_masses_apply(const strut_model *model, strut_state *state, double t,
+                                const double *q, const double *v);
+/** From a = M^-1 f (length) to the acceleration with the moving masses, as they have been placed. */
+void strut_sliding_masses_correct(const strut_model *model, const strut_state *state, double *a);
+/** Adds the power of what drives them along their members, with the acceleration a. */
+void strut_sliding_masses_add_power(const strut_model *model, strut_state *state, const double *q,
+                                    const double *v, const double *a);
+/** Adds what kinetic and gravity energies of the moving masses are more than at their start. */
+void strut_sliding_masses_add_energies(const strut_model *model, const strut_state *state,
+                                       const double *q, const double *v, double *kinetic,
+                                       double *gravity);
+/**
+ * The impulse of velocities along members that jump after the time `from` and up to `to` [s], on state->v.
+ * True if there was one. Places the masses at the time `to`.
+ */
+bool strut_sliding_masses_kick(const strut_model *model, strut_state *state, double from,
+                               double to);
+
+/** Mass moment beyond that of the weights of the nodes, sum of m x, of one coordinate [kg m]; for the centre
+    of mass. */
+double strut_sliding_masses_moment(const strut_model *model, const strut_state *state, int axis,
+                                   const double *q);
+/** Its rate [kg m/s]. */
+double strut_sliding_masses_momentum(const strut_model *model, const strut_state *state, int axis,
+                                     const double *q, const double *v);
+
+#endif

@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * One mapping of the language laid over another: a scene over its `base`, a part over the file that it
+ * uses, a study's keys over those of its model.
+ *
+ * Mappings are laid over key by key, all the way down; lists, texts and numbers are replaced. A key takes
+ * the place of others that say the same in another way, and `NAME: remove` takes the key away. A node's
+ * `[x, y]` counts as {position: [x, y]}. A part that uses a file replaces the one of its name as a whole.
+ */
+#ifndef STRUT_PARSER_READ_OVERLAY_H
+#define STRUT_PARSER_READ_OVERLAY_H
+
+#include "parser/language/keys.h"
+#include "parser/yaml/document.h"
+
+/** What a mapping is: the keys of a section, or (`things`) names of things that have these keys. */
+typedef struct strut_mapping_kind {
+  strut_section section; /* STRUT_SECTION_COUNT: none */
+  bool things;
+} strut_mapping_kind;
+
+/** The mapping that is the value of a key. */
+STRUT_API strut_mapping_kind strut_kind_below(strut_mapping_kind kind, const char *key);
+
+/** Does some key of the mapping say the same as this one, of another name, in another way? */
+STRUT_API bool strut_says_otherwise(strut_mapping_kind kind, const strut_tree *map,
+                                    const char *key);
+
+typedef struct strut_overlay {
+  strut_arena *arena;             /* of the result, which shares what did not change */
+  uint32_t mark;                  /* is set in the line of every place of what is laid over */
+  strut_diagnostics *diagnostics; /* receives removals of what is not there; NULL: they stay */
+} strut_overlay;
+
+/** `base` with the keys of `over`, both mappings of a kind; the base's order. NULL: memory is out. */
+STRUT_API strut_tree *strut_lay_over(const strut_overlay *overlay, strut_mapping_kind kind,
+                                     const strut_tree *base, const strut_tree *over);
+/** A copy of the whole tree with marked places. NULL: memory is out. */
+STRUT_API strut_tree *strut_mark_tree(const strut_overlay *overlay, const strut_tree *tree);
+
+#endif

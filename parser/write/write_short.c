@@ -1,0 +1,275 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/write/write_short.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "engine/base/name_map.h"
+#include "engine/base/number_text.h"
+#include "parser/read/overlay.h"
+#include "parser/write/write_scene.h"
+#include "parser/write/write_tree.h"
+
+static const char comment[] = "A scene with its parameters, groups and parts.";
+static const strut_mapping_kind scene_kind = {STRUT_SECTION_SCENE, false};
+
+/* What the functions below need; they return NULL where memory is out. */
+typedef struct short_writer {
+  strut_document document; /* owns what is made */
+  const strut_scene_source *source;
+  const strut_setup *setup;
+} short_writer;
+
+static strut_tree *new_scalar(short_writer *w, const strut_tree *like, const char *text) {
+  strut_tree *node = strut_arena_allocate(&w->document.arena, 1, sizeof *node);
+  if (!node || !text) return NULL;
+  *node = (strut_tree){.kind = STRUT_TREE_SCALAR, .place = like->place, .text = text};
+  return node;
+}
+
+static strut_tree *new_map(short_writer *w, const strut_tree *like) {
+  strut_tree *map = new_scalar(w, like, "");
+  if (map) map->kind = STRUT_TREE_MAP;
+  return map;
+}
+
+static strut_tree *copied(short_writer *w, const strut_tree *from) {
+  strut_tree *copy = new_scalar(w, from, "");
+  if (!copy) return NULL;
+  *copy = *from;
+  copy->next = NULL;
+  return copy;
+}
+
+static bool append(strut_tree *map, strut_tree *key, strut_tree *value) {
+  strut_tree **end = &map->first;
+  if (!key || !value) return false;
+  while (*end) end = &(*end)->next;
+  *end = key;
+  key->next = value;
+  map->count++;
+  return true;
+}
+
+/* ---- parameters as they were set ---- */
+
+static const strut_declared *find_declared(const strut_scene_source *source, const char *name) {
+  size_t count;
+  const strut_declared *declared = strut_scene_source_parameters(source, &count);
+  for (size_t i = 0; i < count; i++)
+    if (strcmp(declared[i].name, name) == 0) return &declared[i];
+  return NULL;
+}
+
+static double value_of(const strut_scene *scene, const char *name) {
+  for (size_t i = 0; i < scene->parameter_count; i++)
+    if (strcmp(scene->parameters[i].name, name) == 0) return scene->parameters[i].value;
+  return (double)NAN;
+}
+
+/* What --set gave, in the words of the file: a plain number has the unit that was declared. */
+static strut_tree *set_value(short_writer *w, const strut_tree *like, const strut_override *set) {
+  const strut_declared *declared = find_declared(w->source, set->name);
+  char number[STRUT_NUMBER_TEXT];
+  if (!declared || declared->text || declared->bare) {
+    strut_tree *text = new_scalar(w, like, set->value);
+    if (text) text->quoted = declared && declared->text;
+    return text;
+  }
+  strut_number_text(value_of(&w->setup->scene, set->name), number);
+  const char *unit = strut_dimension_unit(declared->dimension);
+  if (strcmp(unit, "SI") == 0) return new_scalar(w, like, set->value); /* it has none */
+  bool plain = strcmp(unit, "1") == 0;
+  return new_scalar(w, like,
+                    strut_arena_format(&w->document.arena, "%s%s%s", number, plain ? "" : " ",
+                                       plain ? "" : unit));
+}
+
+/* {parameters: {NAME: VALUE, ...}} */
+static strut_tree *settings_tree(short_writer *w, const strut_tree *root,
+                                 const strut_override *overrides, size_t count) {
+  strut_tree *map = new_map(w, root), *inner = new_map(w, root);
+  for (size_t i = 0; i < count && inner; i++)
+    if (!append(inner, new_scalar(w, root, overrides[i].name), set_value(w, root, &overrides[i])))
+      return NULL;
+  return map && append(map, new_scalar(w, root, "parameters"), inner) ? map : NULL;
+}
+
+/* ---- what has changed ---- */
+
+static bool same_tree(const strut_tree *a, const strut_tree *b) {
+  if (a->kind != b->kind || a->quoted != b->quoted || a->count != b->count) return false;
+  if (a->kind == STRUT_TREE_SCALAR) return strcmp(a->text, b->text) == 0;
+  const strut_tree *x = a->first, *y = b->first;
+  for (; x && y; x = x->next, y = y->next)
+    if (!same_tree(x, y)) return false;
+  return !x && !y;
+}
+
+/* Both texts have their keys in one order, so that a key is looked for where the last one was found. */
+static const strut_tree *find_from(const strut_tree *map, const strut_tree **at, const char *name) {
+  for (const strut_tree *k = *at; k; k = k->next->next)
+    if (strcmp(k->text, name) == 0) return *at = k->next->next, k;
+  for (const strut_tree *k = map->first; k && k != *at; k = k->next->next)
+    if (strcmp(k->text, name) == 0) return *at = k->next->next, k;
+  return NULL;
+}
+
+/* The keys of `after` that `before` has not, or with another value, and removals of those that are gone. */
+static strut_tree *difference(short_writer *w, strut_mapping_kind kind, const strut_tree *before,
+                              const strut_tree *after) {
+  strut_tree *map = new_map(w, after), **end = map ? &map->first : NULL;
+  const strut_tree *at = before->first;
+  if (!map) return NULL;
+  for (const strut_tree *k = after->first; k; k = k->next->next) {
+    const strut_tree *was = find_from(before, &at, k->text);
+    if (was && same_tree(was->next, k->next)) continue;
+    bool maps = was && was->next->kind == STRUT_TREE_MAP && k->next->kind == STRUT_TREE_MAP;
+    strut_tree *key = copied(w, k);
+    strut_mapping_kind below = strut_kind_below(kind, k->text);
+    strut_tree *value = maps ? difference(w, below, was->next, k->next) : copied(w, k->next);
+    if (!key || !value) return NULL;
+    *end = key, key->next = value, end = &value->next;
+    map->count++;
+  }
+  at = after->first;
+  for (const strut_tree *k = before->first; k; k = k->next->next) {
+    if (find_from(after, &at, k->text) || strut_says_otherwise(kind, map, k->text)) continue;
+    strut_tree *key = copied(w, k), *value = new_scalar(w, k, "remove");
+    if (!key || !value) return NULL;
+    *end = key, key->next = value, end = &value->next;
+    map->count++;
+  }
+  return map;
+}
+
+/* Cuts out the record of parameters, whose values stand in the numbers. */
+static void drop_parameters(char *text) {
+  char *from = text ? strstr(text, "\nparameters:") : NULL, *to = from;
+  if (!from) return;
+  do to = strchr(to + 1, '\n');
+  while (to && to[1] == ' ');
+  memmove(from, to ? to : "", to ? strlen(to) + 1 : 1);
+}
+
+static char *write_flat(const strut_setup *setup) {
+  char *text = strut_setup_write(setup);
+  drop_parameters(text);
+  return text;
+}
+
+/* Reads a text of strut_setup_write. */
+static strut_tree *read_flat(short_writer *w, const char *text) {
+  strut_diagnostics diagnostics = {0};
+  strut_diagnostics_source(&diagnostics, "scene", text, strlen(text));
+  strut_document_read(&w->document, &diagnostics);
+  strut_diagnostics_free(&diagnostics);
+  return w->document.root;
+}
+
+/* ---- groups of a base that nothing uses any more ---- */
+
+static bool collect_groups(const strut_tree *tree, strut_name_map *names) {
+  bool map = tree->kind == STRUT_TREE_MAP, fine = true;
+  const strut_tree *isolated = map ? strut_tree_find(tree, "isolated", NULL) : NULL;
+  if (tree->kind == STRUT_TREE_SCALAR || (isolated && strcmp(isolated->text, "yes") == 0))
+    return true;
+  for (const strut_tree *k = tree->first; k && fine; k = k->next) {
+    const strut_tree *value = map ? k->next : k;
+    fine = collect_groups(value, names);
+    const strut_tree *item = value->kind == STRUT_TREE_LIST ? value->first : value;
+    for (; map && strcmp(k->text, "group") == 0 && item; item = item == value ? NULL : item->next)
+      if (item->kind == STRUT_TREE_SCALAR) fine = strut_name_map_add(names, item->text, 0) != -2;
+    k = value;
+  }
+  return fine;
+}
+
+/* In a file of its own an unused group would be an error. Changes the root, whose entries are not shared. */
+static bool drop_unused_groups(short_writer *w, strut_tree *root) {
+  strut_tree *key = NULL, *groups = strut_tree_find(root, "groups", &key);
+  strut_name_map names = {0};
+  if (!groups || groups->kind != STRUT_TREE_MAP) return true;
+  strut_tree *kept = new_map(w, groups), **end = kept ? &kept->first : NULL;
+  bool fine = kept && collect_groups(root, &names);
+  for (const strut_tree *k = groups->first; k && fine; k = k->next->next) {
+    if (k->place.file && strut_name_map_find(&names, k->text) < 0) continue;
+    strut_tree *name = copied(w, k), *value = copied(w, k->next);
+    fine = name && value;
+    if (!fine) break;
+    *end = name, name->next = value, end = &value->next;
+    kept->count++;
+  }
+  strut_name_map_free(&names);
+  if (!fine) return false;
+  kept->next = groups->next;
+  if (kept->count) key->next = kept;
+  if (kept->count) return true;
+  strut_tree **link = &root->first;
+  while (*link != key) link = &(*link)->next->next;
+  *link = groups->next;
+  root->count--;
+  return true;
+}
+
+/* ---- the whole ---- */
+
+/* The root with the mapping laid over it; what it removes may be there in another way. */
+static strut_tree *lay_over(short_writer *w, const strut_tree *root, const strut_tree *over) {
+  strut_diagnostics unsaid = {0};
+  const strut_overlay overlay = {.arena = &w->document.arena, .diagnostics = &unsaid};
+  strut_tree *result = strut_lay_over(&overlay, scene_kind, root, over);
+  strut_diagnostics_free(&unsaid);
+  return result;
+}
+
+static strut_tree *whole_tree(short_writer *w, const strut_override *overrides, size_t count,
+                              const char *before, const char *after) {
+  const strut_tree *root = strut_scene_source_document((strut_scene_source *)w->source)->root;
+  const strut_tree *old = read_flat(w, before), *now = old ? read_flat(w, after) : NULL;
+  const strut_tree *over = now ? difference(w, scene_kind, old, now) : NULL;
+  if (count) {
+    const strut_tree *set = settings_tree(w, root, overrides, count);
+    root = set ? lay_over(w, root, set) : NULL;
+  }
+  strut_tree *whole = root && over ? lay_over(w, root, over) : NULL;
+  return whole && drop_unused_groups(w, whole) ? whole : NULL;
+}
+
+/* Does the text read as this flat one? */
+static strut_status reads_as(const char *text, const char *flat, bool *same) {
+  strut_setup setup;
+  strut_diagnostics diagnostics = {0};
+  strut_status status =
+      strut_setup_read(&setup, "scene", text, strlen(text), NULL, 0, STRUT_FOR_ANY, &diagnostics);
+  strut_diagnostics_free(&diagnostics);
+  *same = false;
+  if (status) return status == STRUT_NO_MEMORY ? status : STRUT_OK;
+  char *again = write_flat(&setup);
+  strut_setup_free(&setup);
+  if (!again) return STRUT_NO_MEMORY;
+  *same = strcmp(again, flat) == 0;
+  strut_release(again);
+  return STRUT_OK;
+}
+
+strut_status strut_short_write(strut_scene_source *source, const strut_override *overrides,
+                               size_t override_count, const char *before, const strut_setup *setup,
+                               char **text) {
+  short_writer w = {.source = source, .setup = setup};
+  bool same = false;
+  char *after = write_flat(setup);
+  char *first = strut_arena_text(&w.document.arena, before, strlen(before));
+  drop_parameters(first);
+  const strut_tree *root =
+      after && first ? whole_tree(&w, overrides, override_count, first, after) : NULL;
+  *text = root ? strut_tree_write(root, comment) : NULL;
+  strut_status status = *text ? reads_as(*text, after, &same) : STRUT_NO_MEMORY;
+  if (!same) {
+    strut_release(*text);
+    *text = NULL;
+  }
+  strut_release(after);
+  strut_document_free(&w.document);
+  return status;
+}

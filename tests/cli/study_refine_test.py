@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Refined maps: the same answer as all points of the finest grid where the edge has a formula, with a
+# part of the points; the same bytes whatever the threads, shards, kills; the map drawn is that of the
+# finest grid.
+#
+#   python3 study_refine_test.py STRUT
+import csv
+import json
+import math
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
+from findings import check, finish  # noqa: E402
+
+strut = os.path.realpath(sys.argv[1])
+work = tempfile.mkdtemp()
+
+
+def run(*words, code=0):
+    done = subprocess.run([strut, *words], capture_output=True, text=True, cwd=work, timeout=120)
+    check(done.returncode == code,
+          f"strut {' '.join(words)}: exit code {done.returncode}, expected {code}: {done.stderr}")
+    return done
+
+
+def path(name):
+    return os.path.join(work, name)
+
+
+def write(name, text):
+    with open(path(name), "w", encoding="utf-8") as file:
+        file.write(text)
+
+
+def read(name):
+    with open(path(name), "rb") as file:
+        return file.read()
+
+
+def rows(name):
+    with open(path(name), newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+write("truss.yaml", """strut: 1
+parameters: {height: 0.3 m, load: 0 N, stiffness: 1000 N/m}
+nodes:
+  left: {position: [-1, 0], fixed: both}
+  right: {position: [1, 0], fixed: both}
+  apex: {position: [0, height], mass: 1 kg}
+members:
+  a: {kind: bar, nodes: [apex, left], stiffness: stiffness}
+  b: {kind: bar, nodes: [apex, right], stiffness: stiffness}
+loads: {weight: {node: apex, force: [0, -load]}}
+""")
+
+
+def limit(height):
+    """Load at which the arch snaps through: L^3 = L0 there."""
+    rest = math.hypot(1, height)
+    length = rest ** (1 / 3)
+    return 2000 * math.sqrt(length ** 2 - 1) * (rest / length - 1)
+
+
+def study(name, heights, loads, more="", keep="stable_count"):
+    write(name + ".yaml", f"""strut: 1
+study: map
+model: truss.yaml
+compute: equilibria
+axes: [{{stiffness: [1000 N/m, 2000 N/m]}}, {{height: {heights}}}, {{load: {loads}}}]
+keep: [{keep}]
+figures: {{map: {{kind: map, x: height, y: load, color: stable_count, panels: stiffness}}}}
+{more}""")
+
+
+COARSE = ("{from: 0.2 m, to: 0.52 m, count: 5}", "{from: 0 N, to: 90 N, step: 15 N}")
+FULL = ("{from: 0.2 m, to: 0.52 m, count: 17}", "{from: 0 N, to: 90 N, step: 3.75 N}")
+REFINE = "refine: {where: stable_count, depth: 2}\n"
+
+
+def the_edge_is_found():
+    study("full", *FULL)
+    study("fine", *COARSE, REFINE)
+    count = json.loads(run("sweep", "fine.yaml", "--count", "--json").stdout)
+    check(count["points"] == 2 * 5 * 7 and count["most_points"] == 2 * 17 * 25, f"{count}")
+    run("sweep", "full.yaml", "-o", "full", "--quiet")
+    run("sweep", "fine.yaml", "-o", "fine", "--quiet")
+    full, fine = rows("full/table.csv"), rows("fine/table.csv")
+    print(f"    {len(fine)} points of {len(full)}")
+    check(len(fine) < 0.45 * len(full), f"{len(fine)} points of {len(full)}")
+    for row in full:
+        top = limit(float(row["height [m]"])) * float(row["stiffness [N/m]"]) / 1000
+        states = 2 if float(row["load [N]"]) < top else 1
+        check(int(row["stable_count"]) == states, f"not as by the formula: {row}, limit {top}")
+    check([full[int(row["point"])] for row in fine] == fine, "rows with the same bits and numbers")
+    check(read("full/map.svg") == read("fine/map.svg"), "the map is that of all points")
+    status = json.loads(run("sweep", "fine.yaml", "-o", "fine", "--status", "--json").stdout)
+    check(status["points"] == status["done"] == len(fine), f"{status}")
+    again = json.loads(run("sweep", "fine.yaml", "-o", "fine", "--json").stdout)
+    check(again["computed"] == 0, f"{again}")
+
+
+def same_bytes():
+    table = read("fine/table.csv")
+    for words in (["--threads", "1"], ["--threads", "3"]):
+        run("sweep", "fine.yaml", "-o", "other", "--quiet", *words)
+        check(read("other/table.csv") == table, f"{words}: another table")
+        shutil.rmtree(path("other"))
+    # Shards in rounds, in any order, until no one waits for another.
+    rounds = random.Random(1)
+    for _ in range(12):
+        order = [0, 1, 2]
+        rounds.shuffle(order)
+        waits = [run("sweep", "fine.yaml", "-o", "parts", "--quiet", "--shard", f"{k}/3").stderr
+                 for k in order]
+        if not any("run this shard again" in text for text in waits):
+            break
+        if os.path.exists(path("parts/shards")) and len(os.listdir(path("parts/shards"))) == 3 and \
+                waits[-1]:
+            check("run all shards again" in run("merge", "parts", code=4).stderr, "an early merge")
+    run("merge", "parts", "--quiet")
+    check(read("parts/table.csv") == table, "shards: another table")
+
+
+def killed():
+    table = read("fine/table.csv")
+    for n in range(8):
+        child = subprocess.Popen([strut, "sweep", "fine.yaml", "-o", "killed", "--quiet"], cwd=work,
+                                 stderr=subprocess.DEVNULL)
+        time.sleep(random.Random(n).uniform(0.01, 0.25))
+        child.send_signal(signal.SIGKILL if n % 2 else signal.SIGINT)
+        child.wait()
+    run("sweep", "fine.yaml", "-o", "killed", "--quiet")
+    check(read("killed/table.csv") == table, "kills: another table")
+
+
+def numbers_and_failures():
+    """Numbers that differ by more than asked; a failed point is an edge, too."""
+    study("flat", *COARSE, "refine: {where: energy_1, depth: 3, by: 1000}\n", "energies")
+    run("sweep", "flat.yaml", "-o", "flat", "--quiet", code=2)  # the figure's column is not kept
+    study("flat", *COARSE, "refine: {where: energy_1, depth: 3, by: 1000}\n", "energies, stable_count")
+    run("sweep", "flat.yaml", "-o", "flat", "--quiet")
+    check(len(rows("flat/table.csv")) == 2 * 5 * 7, "nothing differs by so much")
+    study("steep", *COARSE, "refine: {where: energy_1, depth: 1, by: 0}\n", "energies, stable_count")
+    run("sweep", "steep.yaml", "-o", "steep", "--quiet")
+    check(len(rows("steep/table.csv")) == 2 * 9 * 13, "everything differs")
+    write("fails.yaml", """strut: 1
+study: fails
+model: truss.yaml
+compute: path
+axes: [{height: {from: 0.2 m, to: 0.52 m, count: 3}}, {load: {from: 0 N, to: 90 N, count: 3}}]
+refine: {where: end, depth: 1}
+keep: [end]
+path: {until: 0.1}
+""")
+    run("sweep", "fails.yaml", "-o", "fails", "--quiet", code=3)  # no load at all
+    table = rows("fails/table.csv")
+    check(9 < len(table) < 25 and any(r["status"] != "completed" for r in table), f"{len(table)}")
+
+
+def refused(more, said):
+    write("bad.yaml", f"""strut: 1
+study: bad
+model: truss.yaml
+compute: equilibria
+keep: [stable_count]
+axes: [{{height: {COARSE[0]}}}, {{load: {COARSE[1]}}}, {{stiffness: [1, 2]}}]
+{more}""")
+    text = run("sweep", "bad.yaml", "-o", "bad", code=2).stderr
+    check(said in text, f"lacks '{said}': {text}")
+
+
+try:
+    the_edge_is_found()
+    same_bytes()
+    killed()
+    numbers_and_failures()
+    refused("refine: {where: outcome, depth: 2}\n", "no column 'outcome'")
+    refused("refine: {where: stable_count, depth: 2, axes: [height, stiffness]}\n", "cannot be refined")
+finally:
+    shutil.rmtree(work)
+finish()
