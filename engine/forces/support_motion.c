@@ -6,8 +6,7 @@
 #include <string.h>
 
 #include "engine/forces/energy.h"
-#include "engine/forces/sliding_masses.h"
-#include "engine/model/mass.h"
+#include "engine/forces/impulse.h"
 #include "engine/scene/signal_motion.h"
 
 void strut_support_motion_place(const strut_model *model, const strut_state *state, double t,
@@ -94,17 +93,8 @@ static bool find_impulses(const strut_model *model, strut_state *state, double f
 bool strut_support_motion_kick(const strut_model *model, strut_state *state, double from,
                                double to) {
   const strut_support_motion_table *table = &model->support_motion;
-  double work = 0.0, *change = state->support_answer;
   if (!table->corners || !find_impulses(model, state, from, to)) return false;
-  strut_mass_solve(model, state->force, change, state->scratch);
-  if (model->plan & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_correct(model, state, change);
-  for (int32_t i = 0; i < model->length; i++) {
-    work += state->force[i] * (state->v[i] + 0.5 * change[i]);
-    state->v[i] += change[i];
-  }
-  if (!state->ledger) return true;
-  state->work[STRUT_POWER_SUPPORT] += work;
-  state->work[STRUT_POWER_EXCHANGED] += fabs(work);
+  strut_impulse_apply(model, state, STRUT_POWER_SUPPORT);
   return true;
 }
 

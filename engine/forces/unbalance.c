@@ -7,8 +7,7 @@
 
 #include "engine/base/trig.h"
 #include "engine/base/vec.h"
-#include "engine/forces/sliding_masses.h"
-#include "engine/model/mass.h"
+#include "engine/forces/impulse.h"
 #include "engine/scene/signal_motion.h"
 
 /* Direction of the mass, and the first and second derivatives of its angle. */
@@ -87,7 +86,6 @@ static bool add_impulses(const strut_model *model, strut_state *state, const str
 
 bool strut_unbalance_kick(const strut_model *model, strut_state *state, double from, double to) {
   const strut_scene *scene = model->scene;
-  double work = 0.0, *change = state->support_answer;
   bool any = false;
   if (!model->unbalance_corners) return false;
   memset(state->force, 0, (size_t)model->length * sizeof *state->force);
@@ -96,14 +94,6 @@ bool strut_unbalance_kick(const strut_model *model, strut_state *state, double f
                        to + state->time_offset) ||
           any;
   if (!any) return false;
-  strut_mass_solve(model, state->force, change, state->scratch);
-  if (model->plan & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_correct(model, state, change);
-  for (int32_t i = 0; i < model->length; i++) {
-    work += state->force[i] * (state->v[i] + 0.5 * change[i]);
-    state->v[i] += change[i];
-  }
-  if (!state->ledger) return true;
-  state->work[STRUT_POWER_DRIVE] += work;
-  state->work[STRUT_POWER_EXCHANGED] += fabs(work);
+  strut_impulse_apply(model, state, STRUT_POWER_DRIVE);
   return true;
 }
