@@ -4,6 +4,7 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "parser/read/difference_copies.h"
 #include "parser/yaml/document.h"
 
 /* The two scenes under comparison. */
@@ -115,6 +116,8 @@ strut_status strut_text_differences(const char *first, const char *second, strut
   if (status == STRUT_OK) {
     compare(&c, "", a.root, b.root);
     if (c.failed) status = STRUT_NO_MEMORY;
+    if (status == STRUT_OK && c.count)
+      status = strut_differences_join_copies(a.root, b.root, arena, c.list, &c.count);
   }
   if (status == STRUT_OK) {
     *list = c.list;

@@ -15,7 +15,7 @@
 /**
  * Compares two texts of strut_setup_write (or any YAML) key by key in the order of the first, then lists
  * what only the second has. A list counts as one value, and so does a node or member that only one
- * has. The scenes' name, description and source are left out. The results belong to the arena.
+ * has; a copy of a part that only one has is one difference, too. The scenes' name, description and source are left out. The results belong to the arena.
  * STRUT_OK, STRUT_BAD_SCENE if a text is not YAML, or STRUT_NO_MEMORY.
  */
 STRUT_API strut_status strut_text_differences(const char *first, const char *second,

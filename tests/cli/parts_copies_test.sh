@@ -191,4 +191,17 @@ place: {d: {part: dot, repeat: {count: 20000, step: [1 mm, 0], turn: 1e-5 deg, s
 END
 expect 0 check long.yaml
 
+# Chains of 3 and 4 cells, and of 4 and 7, differ by whole cells, and by the mass at the seam.
+for cells in 3 4 7; do
+  sed "s/count: 3/count: $cells/" next.yaml >chain-$cells.yaml
+done
+expect 0 compare chain-3.yaml chain-4.yaml --no-states --json
+jq -e '[.models[1].differences[] | [.where, .was, .is]] ==
+  [["nodes.cell.2.b.mass", "2", "3"], ["cell.3", null, "2 nodes, 4 members, 1 load"]]' out >/dev/null ||
+  fail "one cell more: $(jq -c '.models[1].differences' out)"
+expect 0 compare chain-7.yaml chain-4.yaml --no-states --json
+jq -e '[.models[1].differences[] | [.where, .was, .is]] ==
+  [["nodes.cell.3.b.mass", "3", "2"], ["cell.4 to cell.6", "each 2 nodes, 4 members, 1 load", null]]' out >/dev/null ||
+  fail "three cells fewer: $(jq -c '.models[1].differences' out)"
+
 [ $failures -eq 0 ] || exit 1
