@@ -40,28 +40,42 @@ double strut_drive_signal(const strut_model *model, const strut_state *state, co
   return value;
 }
 
-void strut_drive_apply(const strut_model *model, strut_state *state, double t) {
-  if (model->plan & STRUT_TERM_FEEDBACK)
-    strut_feedback_apply(model, state, t, state->q, state->v);
-  else
-    strut_drive_apply_sensed(model, state, t, state->v);
-}
-
-void strut_drive_apply_sensed(const strut_model *model, strut_state *state, double t,
-                              const double *v) {
+/* Rest lengths as the signals ask; `sensed`: they may read sensors. */
+static inline void drive_rest_lengths(const strut_model *model, strut_state *state, double t,
+                                      const double *v, bool sensed) {
   const strut_drive_table *d = &model->drives;
+  const strut_signal *signals = model->scene->signals;
   double *restrict rest = state->rest, *restrict rest_rate = state->rest_rate;
-  state->drive_time = t;
-  if (model->plan & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_place(model, state, t);
-  if (state->ground_motion) strut_grounds_move(model, t + state->time_offset, state->ground_motion);
   for (int32_t i = 0; i < d->count; i++) {
     double value, rate;
     int32_t member = d->member[i];
-    evaluate(model, state, v, d->signal[i], t + state->time_offset, &value, &rate);
+    if (sensed)
+      evaluate(model, state, v, d->signal[i], t + state->time_offset, &value, &rate);
+    else
+      strut_signal_evaluate(signals, d->signal[i], t + state->time_offset, &value, &rate);
     /* the first actuator of a member starts from its own rest length, further ones add */
     rest[member] = (d->first[i] ? model->members.rest[member] : rest[member]) + value;
     rest_rate[member] = d->first[i] ? rate : rest_rate[member] + rate;
   }
+}
+
+void strut_drive_apply(const strut_model *model, strut_state *state, double t) {
+  if (!(model->plan & STRUT_TERMS_RARE)) {
+    state->drive_time = t;
+    drive_rest_lengths(model, state, t, NULL, false);
+  } else if (model->plan & STRUT_TERM_FEEDBACK) {
+    strut_feedback_apply(model, state, t, state->q, state->v);
+  } else {
+    strut_drive_apply_sensed(model, state, t, state->v);
+  }
+}
+
+void strut_drive_apply_sensed(const strut_model *model, strut_state *state, double t,
+                              const double *v) {
+  state->drive_time = t;
+  if (model->plan & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_place(model, state, t);
+  if (state->ground_motion) strut_grounds_move(model, t + state->time_offset, state->ground_motion);
+  drive_rest_lengths(model, state, t, v, true);
   if (model->plan & STRUT_TERM_MEMORY) strut_memory_follow(model, state);
 }
 

@@ -157,16 +157,16 @@ static bool read_given(strut_reader *reader, strut_parameter_state *p,
                        const strut_quantity *declared) {
   char expected[200], found[80];
   strut_copy *before = reader->scope;
-  reader->scope = p->given_scope;
-  bool fine =
-      strut_read_quantity(reader, p->given, p->name, (strut_owner){"'set'", NULL}, &p->quantity);
+  reader->scope = p->of_part->given_scope;
+  bool fine = strut_read_quantity(reader, p->of_part->given, p->name, (strut_owner){"'set'", NULL},
+                                  &p->quantity);
   if (fine && !declared->bare && p->quantity.bare) {
     p->quantity.bare = false;
     p->quantity.dimension = declared->dimension;
   }
   if (fine && !declared->bare &&
       !strut_dimension_equal(p->quantity.dimension, declared->dimension)) {
-    strut_report_error(reader, p->given->place, "expected %s for '%s' in 'set', found %s",
+    strut_report_error(reader, p->of_part->given->place, "expected %s for '%s' in 'set', found %s",
                        strut_expected_number(declared->dimension, expected, sizeof expected),
                        p->name, strut_dimension_name(p->quantity.dimension, found, sizeof found));
     fine = false;
@@ -188,10 +188,10 @@ static void resolve_parameter(strut_reader *reader, strut_parameter_state *p) {
   p->state = STRUT_READING;
   strut_quantity declared;
   strut_copy *before = reader->scope;
-  reader->scope = p->scope;
+  reader->scope = p->of_part ? p->of_part->scope : NULL;
   bool fine = evaluate(reader, p, &declared);
   reader->scope = before;
-  if (p->given) {
+  if (p->of_part && p->of_part->given) {
     fine = fine && read_given(reader, p, &declared);
   } else if (p->set) {
     fine = evaluate_set(reader, p) && fine;

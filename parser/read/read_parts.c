@@ -326,11 +326,14 @@ static bool read_copy_parameters(strut_reader *reader, strut_copy *copy, strut_c
   bool fine = true;
   copy->parameters = strut_reader_allocate(reader, &reader->scratch, map ? map->count : 0,
                                            sizeof *copy->parameters);
-  if (!copy->parameters) return false;
+  strut_part_value *values =
+      strut_reader_allocate(reader, &reader->scratch, map ? map->count : 0, sizeof *values);
+  if (!copy->parameters || !values) return false;
   for (const strut_tree *key = map ? map->first : NULL; key; key = key->next->next) {
     strut_parameter_state *p = &copy->parameters[copy->parameter_count++];
     strut_declare_parameter(reader, key, p);
-    p->scope = copy;
+    p->of_part = values++;
+    p->of_part->scope = copy;
     if (!copy->closed && strut_parameter_find(reader, key->text)) {
       strut_report_error(reader, key->place,
                          "the scene has a parameter '%s' already, which the part sees; give this "
@@ -343,8 +346,8 @@ static bool read_copy_parameters(strut_reader *reader, strut_copy *copy, strut_c
     size_t i = 0;
     while (i < copy->parameter_count && strcmp(copy->parameters[i].name, given->text) != 0) i++;
     if (i < copy->parameter_count) {
-      copy->parameters[i].given = given->next;
-      copy->parameters[i].given_scope = place;
+      copy->parameters[i].of_part->given = given->next;
+      copy->parameters[i].of_part->given_scope = place;
       continue;
     }
     strut_report_error(
@@ -355,10 +358,10 @@ static bool read_copy_parameters(strut_reader *reader, strut_copy *copy, strut_c
   }
   for (size_t i = 0; i < copy->parameter_count; i++) {
     strut_parameter_state *p = &copy->parameters[i];
-    if (p->given && (p->given->kind != STRUT_TREE_SCALAR || strut_is_null(p->given))) {
-      strut_report_error(reader, p->given->place,
-                         "expected an expression for '%s' in 'set', found %s", p->name,
-                         strut_found(reader, p->given));
+    const strut_tree *value = p->of_part->given;
+    if (value && (value->kind != STRUT_TREE_SCALAR || strut_is_null(value))) {
+      strut_report_error(reader, value->place, "expected an expression for '%s' in 'set', found %s",
+                         p->name, strut_found(reader, value));
       p->state = STRUT_FAILED;
     }
     strut_resolve_parameter(reader, p);

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/scene/study.h"
 #include "parser/read/reader.h"
 
 /* Most characters of a name that a message repeats. */
@@ -412,10 +413,25 @@ static void read_quantity(strut_reader *reader, const strut_tree *key,
   d->unit = is_moment(d) ? "N m" : *unit ? strut_keep_text(reader, unit) : "1";
 }
 
+/* Does `keep` of a study that runs its points mean something else by the word? */
+static bool is_kept_word(const char *name) {
+  static const struct {
+    const char *word;
+    unsigned of;
+  } words[] = {
+#define KEPT_WORD(id, word, of) {word, of},
+      STRUT_KEEP_TABLE(KEPT_WORD)
+#undef KEPT_WORD
+  };
+  for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
+    if (words[i].of & STRUT_OF_RUN && strcmp(words[i].word, name) == 0) return true;
+  return false;
+}
+
 /* The name becomes a column of a study's table and a word of `keep`. */
 static bool may_be_called(strut_reader *reader, const strut_tree *key) {
   if (!strut_read_name(reader, key, "quantity")) return false;
-  if (strut_word_find(strut_key_at(STRUT_KEY_STUDY_KEEP)->words, key->text) < 0) return true;
+  if (!is_kept_word(key->text)) return true;
   strut_report_error(
       reader, key->place,
       "a quantity cannot be called '%s', since 'keep' of a study means something else by it",

@@ -67,6 +67,13 @@ typedef struct strut_group {
 /** A copy of a part as the scope of what is read, see copies.h. */
 typedef struct strut_copy strut_copy;
 
+/** Where the value of a part's parameter is read. */
+typedef struct strut_part_value {
+  strut_copy *scope;
+  const strut_tree *given; /* in `set` of the placement, or NULL; read in the scope: */
+  strut_copy *given_scope;
+} strut_part_value;
+
 /** A parameter while parameters are being evaluated. */
 typedef struct strut_parameter_state {
   const char *name;
@@ -77,9 +84,7 @@ typedef struct strut_parameter_state {
   bool used;      /* something refers to it */
   bool ambiguous; /* it has been reported that a unit has its name */
   strut_quantity quantity;
-  strut_copy *scope;       /* of a part's: where its value is read; NULL: the scene */
-  const strut_tree *given; /* its value in `set` of the placement, or NULL; read in the scope: */
-  strut_copy *given_scope;
+  strut_part_value *of_part; /* NULL: it is the scene's */
 } strut_parameter_state;
 
 /** A named thing: its place, and whether it was read completely, so that findings about it make sense. */

@@ -102,7 +102,7 @@ SHAPES = {
     "one name": (lambda: chain(MODEL, each(3600, "k" * 1000), ": 1\n"), "expected ':'", 1),
     "long names":
         (lambda: chain(MODEL, "parameters:\n", each(4000, "  " + "p" * 900 + "{i}: 1\n")),
-         "may have at most 64 bytes", 4000),
+         "may have at most 255 bytes", 4000),
     "anchors": (lambda: chain("x:\n", each(250000, "  - &a{i} 1\n")), "more than 1000 anchors", 1),
     "aliases of aliases":
         (lambda: chain("a0: &a0 [1, 1, 1, 1, 1, 1, 1, 1, 1]\n",

@@ -18,14 +18,39 @@
 
 /* What saying nothing means too: dropping such a key changes nothing, and must not. */
 static const char *const said_anyway[] = {
-    "settle: false",       "nodes: all",
-    "law: none",           "law: karnopp",
-    "fixed: none",         "mass: 0",
-    "damping: 0",          "height: 0",
-    "contacts: {}",        "friction: {law: none",
-    "integrator: rk4",     "mass_model: consistent",
-    "kind: pid",           "configuration: start", /* which is as drawn, in the crawler */
-    "apex1: [0, height],",                         /* a shape that says of one node what is drawn */
+    "settle: false",
+    "nodes: all",
+    "law: none",
+    "law: karnopp",
+    "fixed: none",
+    "mass: 0",
+    "damping: 0",
+    "height: 0",
+    "contacts: {}",
+    "friction: {law: none",
+    "integrator: rk4",
+    "mass_model: consistent",
+    "kind: pid",
+    "configuration: start", /* which is as drawn, in the crawler */
+    "apex1: [0, height],",  /* a shape that says of one node what is drawn */
+    "isolated: yes",
+    "flip: no",
+    "turn: turn",
+    "set: {long: 200 mm + 0 mm*i}", /* where these are 0, or as declared */
+    "normal: [-fy*si",
+    "mu: 0.3, width: 10 mm/s}, nodes: [k.a]", /* level; a contact has its own */
+};
+
+/* Names of what is merged into another node, which keeps its own. */
+static const char *const names_anyway[] = {"n: {position: [0, 0], mass: 1 g}", "end: {part: dot"};
+
+/* Numbers that say what a dimension is, or that nothing asks for. */
+static const char *const numbers_anyway[] = {
+    "0.3 m}\n    nodes:\n      left", /* parameters of a part that each placement sets */
+    "0 mm} # of its place in the row",
+    "1, axial_stiffness: 100, parts: 1",  /* a beam of one part does not bend */
+    "1 m + si*fy*1 mm, 2 m",              /* of a point on level ground */
+    "0.3, width: 10 mm/s}, nodes: [k.a]", /* that contact has its own */
 };
 
 typedef struct mutation {
@@ -62,10 +87,14 @@ static void try_mutant(mutation *m, size_t at, size_t cut, const char *insert, c
   strut_release(written);
 }
 
-static bool needs_not_be_said(const char *pair) {
-  for (size_t i = 0; i < sizeof said_anyway / sizeof said_anyway[0]; i++)
-    if (strncmp(pair, said_anyway[i], strlen(said_anyway[i])) == 0) return true;
+static bool begins_with_one(const char *text, const char *const *beginnings, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    if (strncmp(text, beginnings[i], strlen(beginnings[i])) == 0) return true;
   return false;
+}
+
+static bool needs_not_be_said(const char *pair) {
+  return begins_with_one(pair, said_anyway, sizeof said_anyway / sizeof said_anyway[0]);
 }
 
 static void mutate_key(mutation *m, const strut_tree *map, const strut_tree *key) {
@@ -76,7 +105,9 @@ static void mutate_key(mutation *m, const strut_tree *map, const strut_tree *key
   char insert[400], indent[100] = "";
   length = strcspn(text + at, ":");
   snprintf(insert, sizeof insert, "x%.*s", key->quoted ? 0 : (int)length, text + at);
-  if (!key->quoted) try_mutant(m, at, length, insert, "renaming", key->text);
+  if (!key->quoted &&
+      !begins_with_one(text + at, names_anyway, sizeof names_anyway / sizeof names_anyway[0]))
+    try_mutant(m, at, length, insert, "renaming", key->text);
   if (following && !needs_not_be_said(text + at))
     try_mutant(m, at, offset_of(text, following->place) - at, "", "dropping", key->text);
   snprintf(indent, sizeof indent, "\n%*s", (int)(key->place.column - 1), "");
@@ -91,6 +122,8 @@ static void mutate_number(mutation *m, const strut_tree *value) {
   bool number = strchr("-.(0123456789", value->text[0]) != NULL;
   if (value->quoted || !number || !value->text[0] || length > 300) return;
   if (strncmp(text + at, value->text, length) != 0) return; /* folded, or an alias */
+  if (begins_with_one(text + at, numbers_anyway, sizeof numbers_anyway / sizeof numbers_anyway[0]))
+    return;
   snprintf(insert, sizeof insert, "(%s)*1.5+0.125", value->text);
   try_mutant(m, at, length, insert, "changing", value->text);
 }
