@@ -11,37 +11,11 @@
 #include <string.h>
 
 #include "engine/base/memory_limit.h"
-#include "engine/base/trig.h"
-#include "parser/read/copies.h"
+#include "parser/read/expansion.h"
 
 enum { DEEPEST = 16 };
-/* Entries of all copies, and copies of one placement. */
-static const double MOST_THINGS = 1e7, MOST_COPIES = 2e6;
-
-/* The keys of a part, or of `next`, whose entries are copied, and the scene's keys where they go. */
-static int scene_key(int key) {
-  const strut_key *k = strut_key_at(key);
-  if (k->type != STRUT_TYPE_THINGS) return -1;
-  int of_scene = strut_key_find(STRUT_SECTION_SCENE, k->name);
-  bool own = of_scene == STRUT_KEY_SCENE_PARAMETERS || of_scene == STRUT_KEY_SCENE_PARTS ||
-             of_scene == STRUT_KEY_SCENE_PLACE;
-  return own ? -1 : of_scene;
-}
-
-/* Entries of the copies for one key of the scene. */
-typedef struct entry_list {
-  strut_tree *first, *last; /* the last value */
-  size_t count;
-} entry_list;
-
-typedef struct expansion {
-  strut_reader *reader;
-  struct strut_copies *copies;
-  entry_list list[STRUT_MOST_KEYS]; /* of the keys of the scene */
-  entry_list contacts;
-  bool weighing; /* nothing is copied yet */
-  bool stopped;
-} expansion;
+/* Entries of all copies. */
+static const double MOST_THINGS = 1e7;
 
 /* ---- parts ---- */
 
@@ -94,196 +68,9 @@ static strut_part *read_part_name(strut_reader *reader, const strut_copy *scope,
                      strut_hint(reader, slot->value->text, part_name, nearest, nearest->count));
   return NULL;
 }
-
-/* ---- placements ---- */
-
-/* What `repeat` says. */
-typedef struct repetition {
-  int numbers; /* 0: no repetition */
-  int64_t count[2];
-  double step[2][2], turn, scale, about[2];
-  const strut_tree *next[2], *twist;
-  bool closed;
-} repetition;
-
-static bool read_count(strut_reader *reader, const strut_tree *value, strut_owner owner,
-                       int64_t *count) {
-  double number;
-  if (!strut_read_number(reader, value, "count", owner, STRUT_DIM_NONE, STRUT_RANGE_ANY, &number))
-    return false;
-  if (number >= 1.0 && number <= MOST_COPIES && number == floor(number)) {
-    *count = (int64_t)number;
-    return true;
-  }
-  strut_report_error(
-      reader, value->place,
-      "the number of copies of %s must be a whole number from 1 to %.0f, found %.15g",
-      strut_owner_text(reader, owner), MOST_COPIES, number);
-  return false;
-}
-
-static bool refuse_form(strut_reader *reader, int key, const strut_tree *value, strut_owner owner) {
-  char expected[200];
-  strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s",
-                     strut_key_expected(key, expected, sizeof expected), strut_key_at(key)->name,
-                     strut_owner_text(reader, owner), strut_found(reader, value));
-  return false;
-}
-
-/* A number, or [n, m]. */
-static bool read_counts(strut_reader *reader, const strut_tree *value, strut_owner owner,
-                        repetition *r) {
-  r->numbers = 1;
-  r->count[1] = 1;
-  if (value->kind == STRUT_TREE_SCALAR) return read_count(reader, value, owner, &r->count[0]);
-  if (value->kind != STRUT_TREE_LIST || value->count != 2)
-    return refuse_form(reader, STRUT_KEY_REPEAT_COUNT, value, owner);
-  r->numbers = 2;
-  bool fine = read_count(reader, value->first, owner, &r->count[0]);
-  return read_count(reader, value->first->next, owner, &r->count[1]) && fine;
-}
-
-static bool read_steps(strut_reader *reader, const strut_slot *slot, strut_owner owner,
-                       repetition *r) {
-  const strut_tree *value = slot->value;
-  if (slot->state != STRUT_GIVEN) return slot->state == STRUT_ABSENT;
-  bool lists =
-      value->kind == STRUT_TREE_LIST && value->count == 2 && value->first->kind == STRUT_TREE_LIST;
-  if (lists != (r->numbers == 2)) {
-    strut_report_error(reader, value->place,
-                       r->numbers == 2
-                           ? "a lattice has two steps, as in [[1 m, 0], [0, 1 m]], found %s"
-                           : "one count has one step, as in [1 m, 0], found %s",
-                       strut_found(reader, value));
-    return false;
-  }
-  const strut_tree *item = lists ? value->first : value;
-  bool fine = true;
-  for (int k = 0; k < r->numbers; k++, item = item->next)
-    fine = strut_read_pair(reader, item, "step", owner, STRUT_DIM_LENGTH, r->step[k]) && fine;
-  return fine;
-}
-
-static bool read_next(strut_reader *reader, const strut_slot *slot, strut_owner owner,
-                      repetition *r) {
-  const strut_tree *value = slot->value;
-  if (slot->state != STRUT_GIVEN) return slot->state == STRUT_ABSENT;
-  bool list = value->kind == STRUT_TREE_LIST && value->count == 2;
-  if (list != (r->numbers == 2) || (!list && value->kind != STRUT_TREE_MAP))
-    return refuse_form(reader, STRUT_KEY_REPEAT_NEXT, value, owner);
-  r->next[0] = list ? value->first : value;
-  r->next[1] = list ? value->first->next : NULL;
-  return true;
-}
-
-static bool read_closed(strut_reader *reader, const strut_slot *slot, strut_owner owner,
-                        repetition *r) {
-  const strut_tree *value = slot->value;
-  if (slot->state != STRUT_GIVEN) return slot->state == STRUT_ABSENT;
-  int word = value->kind == STRUT_TREE_SCALAR ? strut_switch_find(value->text) : 1;
-  r->closed = word == 1;
-  r->twist = value->kind == STRUT_TREE_MAP ? value : NULL;
-  if (word < 0 || value->kind == STRUT_TREE_LIST)
-    return refuse_form(reader, STRUT_KEY_REPEAT_CLOSED, value, owner);
-  if (!r->closed || (r->numbers == 1 && r->next[0])) return true;
-  strut_report_error(reader, slot->key->place,
-                     r->numbers > 1 ? "a lattice cannot be closed; close a ring and repeat the ring"
-                                    : "'closed' needs 'next', which says what ties a copy to the "
-                                      "next one");
-  return false;
-}
-
-static bool read_repeat(strut_reader *reader, const strut_slot *slot, const char *name,
-                        repetition *r) {
-  char text[STRUT_LONGEST_NAME + 40];
-  *r = (repetition){.scale = 1.0, .count = {1, 1}};
-  if (slot->state != STRUT_GIVEN) return slot->state == STRUT_ABSENT;
-  snprintf(text, sizeof text, "'repeat' of '%s'", name);
-  strut_owner owner = {text, NULL};
-  const strut_tree *value = slot->value;
-  if (value->kind != STRUT_TREE_MAP) return read_counts(reader, value, owner, r);
-  strut_fields fields;
-  strut_read_fields(reader, STRUT_SECTION_REPEAT, value, owner, &fields);
-  strut_require(reader, &fields, owner, slot->key->place);
-  const strut_slot *count = strut_slot_of(&fields, STRUT_KEY_REPEAT_COUNT);
-  const strut_slot *turn = strut_slot_of(&fields, STRUT_KEY_REPEAT_TURN);
-  const strut_slot *scale = strut_slot_of(&fields, STRUT_KEY_REPEAT_SCALE);
-  const strut_slot *about = strut_slot_of(&fields, STRUT_KEY_REPEAT_ABOUT);
-  if (fields.broken || count->state != STRUT_GIVEN) return false;
-  if (!read_counts(reader, count->value, owner, r)) return false;
-  bool fine = read_steps(reader, strut_slot_of(&fields, STRUT_KEY_REPEAT_STEP), owner, r);
-  fine = read_next(reader, strut_slot_of(&fields, STRUT_KEY_REPEAT_NEXT), owner, r) && fine;
-  fine = read_closed(reader, strut_slot_of(&fields, STRUT_KEY_REPEAT_CLOSED), owner, r) && fine;
-  if (turn->state == STRUT_GIVEN) r->turn = turn->number[0];
-  if (scale->state == STRUT_GIVEN) r->scale = scale->number[0];
-  if (about->state == STRUT_GIVEN) memcpy(r->about, about->number, sizeof r->about);
-  const strut_slot *odd = turn->key ? turn : scale->key ? scale : about;
-  if (r->numbers < 2 || !odd->key) return fine;
-  strut_report_error(
-      reader, odd->key->place,
-      "a lattice has steps only, no '%s'; place a row that turns, and repeat the row",
-      odd->key->text);
-  return false;
-}
-
-static void set_turn(strut_frame *f, double angle) {
-  double s, c;
-  strut_sincos_turns(angle / STRUT_TAU, &s, &c);
-  f->axes[0][0] = c, f->axes[0][1] = -s;
-  f->axes[1][0] = s, f->axes[1][1] = c;
-}
-
-static double power(double base, int64_t exponent) {
-  double result = 1.0;
-  for (; exponent; exponent >>= 1, base *= base)
-    if (exponent & 1) result *= base;
-  return result;
-}
-
-static void move_point(const strut_frame *f, double point[2]) {
-  point[0] *= f->scale, point[1] *= f->scale;
-  strut_frame_point(f, point);
-}
-
-/* S^k, or i times one step and j times the other. */
-static strut_frame repeated_frame(const repetition *r, const int64_t number[2]) {
-  strut_frame f = strut_frame_of_scene, once = strut_frame_of_scene;
-  double k = (double)number[0];
-  if (r->numbers == 2 || (r->turn == 0.0 && r->scale == 1.0)) {
-    for (int c = 0; c < 2; c++)
-      f.at[c] = k * r->step[0][c] + (r->numbers == 2 ? (double)number[1] * r->step[1][c] : 0.0);
-    return f;
-  }
-  double s = power(r->scale, number[0]), origin[2] = {0.0, 0.0};
-  set_turn(&f, k * r->turn);
-  f.scale = s;
-  if (r->step[0][0] == 0.0 && r->step[0][1] == 0.0) { /* `about` stays where it is */
-    double away[2] = {s * r->about[0], s * r->about[1]};
-    strut_frame_vector(&f, away);
-    for (int c = 0; c < 2; c++) f.at[c] = r->about[c] - away[c];
-    return f;
-  }
-  /* The images of the origin under S, S^2, S^4, ..., those of the bits of k. */
-  double once_away[2] = {r->scale * r->about[0], r->scale * r->about[1]};
-  set_turn(&once, r->turn);
-  once.scale = r->scale;
-  strut_frame_vector(&once, once_away);
-  for (int c = 0; c < 2; c++) once.at[c] = r->about[c] + r->step[0][c] - once_away[c];
-  for (int64_t bits = number[0], n = 1; bits; bits >>= 1, n *= 2) {
-    if (bits & 1) move_point(&once, origin);
-    double squared[2] = {once.at[0], once.at[1]};
-    move_point(&once, squared);
-    set_turn(&once, (double)(2 * n) * r->turn);
-    once.scale *= once.scale;
-    memcpy(once.at, squared, sizeof squared);
-  }
-  memcpy(f.at, origin, sizeof origin);
-  return f;
-}
-
 /* ---- scopes of copies ---- */
 
-static strut_copy *new_scope(expansion *e, strut_scope_kind kind, const strut_placement *p,
+static strut_copy *new_scope(strut_expansion *e, strut_scope_kind kind, const strut_placement *p,
                              strut_copy *outer) {
   strut_copy *copy = strut_reader_allocate(e->reader, &e->reader->scratch, 1, sizeof *copy);
   if (!copy) {
@@ -300,7 +87,8 @@ static strut_copy *new_scope(expansion *e, strut_scope_kind kind, const strut_pl
 }
 
 /* "cell.3." */
-static const char *make_prefix(expansion *e, const strut_placement *p, const int64_t number[2]) {
+static const char *make_prefix(strut_expansion *e, const strut_placement *p,
+                               const int64_t number[2]) {
   strut_arena *arena = &e->reader->scratch;
   const char *text =
       p->numbers == 2   ? strut_arena_format(arena, "%s.%lld.%lld.", p->name, (long long)number[0],
@@ -370,225 +158,7 @@ static bool read_copy_parameters(strut_reader *reader, strut_copy *copy, strut_c
   return fine;
 }
 
-/* ---- entries ---- */
-
-static void append(entry_list *list, strut_tree *key) {
-  if (list->last)
-    list->last->next = key;
-  else
-    list->first = key;
-  list->last = key->next;
-  list->count++;
-}
-
-static void remember_node(expansion *e, const strut_tree *key) {
-  struct strut_copies *c = e->copies;
-  strut_reader *reader = e->reader;
-  if (c->node_count == c->node_capacity) {
-    size_t capacity = c->node_capacity ? 2 * c->node_capacity : 256;
-    const strut_tree **nodes = strut_reallocate(c->nodes, capacity, sizeof *nodes);
-    if (!nodes) {
-      reader->out_of_memory = e->stopped = true;
-      return;
-    }
-    c->nodes = nodes, c->node_capacity = capacity;
-  }
-  c->nodes[c->node_count] = key;
-  strut_add_name(reader, &c->node_entries, key->text, c->node_count++);
-}
-
-/* Copies the entries of a mapping: a name and a head of its own for each. */
-static void copy_entries(expansion *e, const strut_tree *map, strut_copy *scope, int key) {
-  strut_reader *reader = e->reader;
-  bool contacts = key < 0, nodes = key == STRUT_KEY_SCENE_NODES;
-  entry_list *list =
-      contacts ? &e->contacts : &e->list[key - strut_section_first(STRUT_SECTION_SCENE)];
-  struct pair {
-    strut_placed_tree key;
-    strut_tree value;
-  } *pairs = strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *pairs);
-  if (!pairs) e->stopped = true;
-  for (const strut_tree *from = map->first; from && !e->stopped; from = from->next->next) {
-    struct pair *pair = pairs++;
-    const char *name = strut_arena_format(&reader->scratch, "%s%s", scope->prefix, from->text);
-    if (!name) reader->out_of_memory = e->stopped = true;
-    pair->key = (strut_placed_tree){*from, scope};
-    pair->key.tree.placed = true;
-    pair->key.tree.text = name;
-    pair->value = *from->next;
-    pair->key.tree.next = &pair->value;
-    pair->value.next = NULL;
-    if (e->stopped) return;
-    append(list, &pair->key.tree);
-    if (nodes) remember_node(e, &pair->key.tree);
-  }
-  e->copies->things += map->count;
-}
-
-/* All that a part, or `next`, holds. */
-static void copy_things(expansion *e, strut_fields *fields, strut_copy *scope) {
-  int first = strut_section_first(fields->section);
-  for (int k = 0; k < strut_section_size(fields->section) && !e->stopped; k++) {
-    const strut_slot *slot = &fields->slot[k];
-    int key = scene_key(first + k);
-    bool contacts = first + k == STRUT_KEY_PART_CONTACTS;
-    bool taken = key >= 0 || contacts;
-    if (taken && slot->state == STRUT_GIVEN)
-      copy_entries(e, slot->value, scope, contacts ? -1 : key);
-  }
-}
-
-static size_t count_things(strut_fields *fields) {
-  size_t count = 0;
-  for (int k = 0; k < strut_section_size(fields->section); k++)
-    if (fields->slot[k].state == STRUT_GIVEN &&
-        scene_key(strut_section_first(fields->section) + k) >= 0)
-      count += fields->slot[k].value->count;
-  return count;
-}
-
-static void add_merger(expansion *e, strut_copy *scope, const strut_tree *a, const strut_tree *b,
-                       const strut_tree *place) {
-  strut_merger *m = strut_reader_allocate(e->reader, &e->reader->scratch, 1, sizeof *m);
-  if (!m) return;
-  *m = (strut_merger){.scope = scope, .a = a, .b = b, .place = place};
-  if (!e->copies->mergers_end) e->copies->mergers_end = &e->copies->mergers;
-  *e->copies->mergers_end = m;
-  e->copies->mergers_end = &m->next;
-}
-
-/* `touching`, or a mapping of names. */
-static void read_merge(expansion *e, const strut_slot *slot, strut_copy *scope, int key) {
-  const strut_tree *value = slot->value;
-  if (slot->state != STRUT_GIVEN || e->weighing) return;
-  e->reader->scope = scope; /* one message for all copies */
-  if (value->kind == STRUT_TREE_SCALAR && strcmp(value->text, "touching") == 0)
-    add_merger(e, scope, NULL, NULL, value);
-  else if (value->kind != STRUT_TREE_MAP)
-    refuse_form(
-        e->reader, key, value,
-        (strut_owner){scope ? "part" : "the scene", scope ? scope->placement->part->name : NULL});
-  for (const strut_tree *k = value->kind == STRUT_TREE_MAP ? value->first : NULL; k;
-       k = k->next->next)
-    if (strut_read_scalar(e->reader, k->next, k->text, (strut_owner){"'merge'", NULL},
-                          "the name of a node"))
-      add_merger(e, scope, k, k->next, value);
-  e->reader->scope = NULL;
-}
-
-/* ---- onto ---- */
-
-/* The position of an entry of nodes, in the coordinates of the scope that it stands in. */
-static bool read_position(strut_reader *reader, const strut_tree *value, double position[2]) {
-  const strut_tree *at =
-      value->kind == STRUT_TREE_MAP ? strut_tree_find(value, "position", NULL) : value;
-  return at && strut_read_pair(reader, at, "position", (strut_owner){"a node", NULL},
-                               STRUT_DIM_LENGTH, position);
-}
-
-/* Where a node of the placement's scope lies, in the coordinates of that scope. */
-static bool find_outside(expansion *e, strut_copy *outer, const strut_tree *name,
-                         double position[2]) {
-  strut_reader *reader = e->reader;
-  strut_full_name full, resolved;
-  snprintf(full.text, sizeof full.text, "%s%s", outer ? outer->prefix : "", name->text);
-  int32_t i = strut_name_resolve_last(reader, full.text, &resolved)
-                  ? strut_name_map_find(&e->copies->node_entries, resolved.text)
-                  : -1;
-  if (i < 0 || strut_name_is_hidden(reader, outer, resolved.text)) {
-    strut_report_error(reader, name->place,
-                       "unknown node '%s' in 'onto'; it names a node of what is placed before",
-                       strut_sanitised_text(reader, name->text));
-    return false;
-  }
-  const strut_tree *key = e->copies->nodes[i];
-  strut_copy *before = strut_enter_scope(reader, key);
-  bool fine = read_position(reader, key->next, position);
-  strut_place_point(reader, key->next, position);
-  reader->scope = before;
-  if (!fine || !outer) return fine;
-  /* back into the frame of the scope */
-  const strut_frame *f = &outer->frame;
-  double d[2] = {position[0] - f->at[0], position[1] - f->at[1]};
-  for (int c = 0; c < 2; c++)
-    position[c] = (f->axes[0][c] * d[0] + f->axes[1][c] * d[1]) / f->scale;
-  return true;
-}
-
-/* The position of a node of the copy itself. */
-static bool find_inside(expansion *e, strut_copy *copy, const strut_tree *name,
-                        double position[2]) {
-  strut_reader *reader = e->reader;
-  const strut_slot *nodes = strut_slot_of(&copy->placement->part->fields, STRUT_KEY_PART_NODES);
-  const strut_slot *ports = strut_slot_of(&copy->placement->part->fields, STRUT_KEY_PART_PORTS);
-  const strut_tree *port =
-      ports->state == STRUT_GIVEN ? strut_tree_find(ports->value, name->text, NULL) : NULL;
-  const char *own = port && port->kind == STRUT_TREE_SCALAR ? port->text : name->text;
-  const strut_tree *value =
-      nodes->state == STRUT_GIVEN ? strut_tree_find(nodes->value, own, NULL) : NULL;
-  if (!value) {
-    strut_report_error(reader, name->place, "part '%s' has no node '%s' of its own",
-                       copy->placement->part->name, strut_sanitised_text(reader, name->text));
-    return false;
-  }
-  strut_copy *before = reader->scope;
-  reader->scope = copy;
-  bool fine = read_position(reader, value, position);
-  reader->scope = before;
-  return fine;
-}
-
-/* Shifts, and with two pairs turns, the frame so that nodes of the copy lie on others. */
-static bool lay_onto(expansion *e, strut_copy *copy, const strut_slot *onto, bool fit,
-                     strut_frame *frame) {
-  strut_reader *reader = e->reader;
-  double own[2][2], there[2][2];
-  const strut_tree *map = onto->value, *k = map->first;
-  if (map->count < 1 || map->count > 2) {
-    strut_report_error(reader, map->place,
-                       "expected one or two pairs {own: there} for 'onto', found %u",
-                       (unsigned)map->count);
-    return false;
-  }
-  for (unsigned n = 0; n < map->count; n++, k = k->next->next) {
-    if (!strut_read_scalar(reader, k->next, "onto", (strut_owner){"a placement", NULL},
-                           "the name of a node") ||
-        !find_inside(e, copy, k, own[n]) || !find_outside(e, copy->outer, k->next, there[n]))
-      return false;
-    own[n][0] *= frame->scale, own[n][1] *= frame->scale;
-    strut_frame_vector(frame, own[n]);
-  }
-  if (map->count == 2) {
-    double a[2] = {own[1][0] - own[0][0], own[1][1] - own[0][1]};
-    double b[2] = {there[1][0] - there[0][0], there[1][1] - there[0][1]};
-    double la = hypot(a[0], a[1]), lb = hypot(b[0], b[1]);
-    if (la == 0.0 || lb == 0.0 || (!fit && fabs(la / lb - 1.0) > 1e-9)) {
-      strut_report_error(reader, map->place,
-                         "the two nodes of the copy are %.6g m apart, those outside %.6g m%s", la,
-                         lb, la > 0.0 && lb > 0.0 ? "; say 'scale: fit', or change one" : "");
-      return false;
-    }
-    strut_frame turn = strut_frame_of_scene;
-    double c = (a[0] * b[0] + a[1] * b[1]) / (la * lb), s = (a[0] * b[1] - a[1] * b[0]) / (la * lb);
-    turn.axes[0][0] = turn.axes[1][1] = c, turn.axes[0][1] = -s, turn.axes[1][0] = s;
-    turn.scale = fit ? lb / la : 1.0;
-    *frame = strut_frame_within(&turn, frame);
-    strut_frame_vector(&turn, own[0]);
-    own[0][0] *= turn.scale, own[0][1] *= turn.scale;
-  }
-  for (int c = 0; c < 2; c++) frame->at[c] = there[0][c] - own[0][c];
-  return true;
-}
-
 /* ---- one placement ---- */
-
-typedef struct placing {
-  strut_placement *placement;
-  strut_copy *outer;
-  strut_fields fields;
-  repetition repeat;
-  bool varies; /* some key mentions the copy's number */
-} placing;
 
 /* Does an expression of the mapping mention i or j? */
 static bool mentions_number(const strut_tree *tree) {
@@ -605,42 +175,11 @@ static bool mentions_number(const strut_tree *tree) {
   return false;
 }
 
-/* The frame of the first copy by the placement's own keys. */
-static bool read_frame(expansion *e, placing *p, strut_copy *copy, strut_frame *frame) {
-  strut_reader *reader = e->reader;
-  strut_owner owner = {"place", p->placement->key->text};
-  const strut_slot *flip = strut_slot_of(&p->fields, STRUT_KEY_PLACE_FLIP);
-  const strut_slot *turn = strut_slot_of(&p->fields, STRUT_KEY_PLACE_TURN);
-  const strut_slot *at = strut_slot_of(&p->fields, STRUT_KEY_PLACE_AT);
-  const strut_slot *scale = strut_slot_of(&p->fields, STRUT_KEY_PLACE_SCALE);
-  const strut_slot *onto = strut_slot_of(&p->fields, STRUT_KEY_PLACE_ONTO);
-  bool fit = scale->state == STRUT_GIVEN && scale->value->kind == STRUT_TREE_SCALAR &&
-             strcmp(scale->value->text, "fit") == 0;
-  *frame = strut_frame_of_scene;
-  if (turn->state == STRUT_GIVEN) set_turn(frame, turn->number[0]);
-  if (at->state == STRUT_GIVEN) memcpy(frame->at, at->number, sizeof frame->at);
-  int flipped = flip->state == STRUT_GIVEN ? flip->word : 0; /* bits: x, y */
-  for (int c = 0; c < 2; c++)
-    for (int row = 0; row < 2 && flipped >> c & 1; row++) frame->axes[row][c] *= -1.0;
-  if (scale->state == STRUT_GIVEN && !fit &&
-      !strut_read_number(reader, scale->value, "scale", owner, STRUT_DIM_NONE,
-                         STRUT_RANGE_ABOVE_ZERO, &frame->scale))
-    return false;
-  bool two = onto->state == STRUT_GIVEN && onto->value->count == 2;
-  if ((fit && !two) || (two && turn->key)) {
-    strut_report_error(reader, fit && !two ? scale->value->place : turn->key->place,
-                       fit && !two ? "'scale: fit' needs two pairs in 'onto'"
-                                   : "two pairs in 'onto' turn the copy; leave 'turn' out");
-    return false;
-  }
-  return e->weighing || onto->state != STRUT_GIVEN || lay_onto(e, copy, onto, fit, frame);
-}
-
-static void expand_places(expansion *e, const strut_slot *place, strut_copy *outer);
+static void expand_places(strut_expansion *e, const strut_slot *place, strut_copy *outer);
 
 /* The scopes of one copy, and what it holds. NULL: it could not be made. */
-static strut_copy *make_copy(expansion *e, placing *p, const int64_t number[2], strut_frame *base,
-                             strut_copy **place_scope) {
+static strut_copy *make_copy(strut_expansion *e, strut_placing *p, const int64_t number[2],
+                             strut_frame *base, strut_copy **place_scope) {
   strut_reader *reader = e->reader;
   strut_part *part = p->placement->part;
   strut_copy *place = new_scope(e, STRUT_SCOPE_PLACE, p->placement, p->outer);
@@ -663,9 +202,9 @@ static strut_copy *make_copy(expansion *e, placing *p, const int64_t number[2], 
   bool fine =
       read_copy_parameters(reader, copy, place, strut_slot_of(&p->fields, STRUT_KEY_PLACE_SET));
   fine = fine && !p->fields.broken;
-  if (fine && (first || p->varies)) fine = read_frame(e, p, copy, base);
+  if (fine && (first || p->varies)) fine = strut_read_frame(e, p, copy, base);
   if (!fine) return NULL;
-  strut_frame repeated = repeated_frame(&p->repeat, number);
+  strut_frame repeated = strut_repeated_frame(&p->repeat, number);
   copy->frame = strut_frame_within(base, &repeated);
   if (p->outer) copy->frame = strut_frame_within(&p->outer->frame, &copy->frame);
   reader->scope = NULL;
@@ -674,7 +213,7 @@ static strut_copy *make_copy(expansion *e, placing *p, const int64_t number[2], 
 }
 
 /* Lets `onto` find the node of a port. */
-static void enter_port(expansion *e, const strut_port *port) {
+static void enter_port(strut_expansion *e, const strut_port *port) {
   strut_reader *reader = e->reader;
   const strut_tree *inner = port->key->next;
   if (inner->kind != STRUT_TREE_SCALAR) return;
@@ -687,7 +226,7 @@ static void enter_port(expansion *e, const strut_port *port) {
 }
 
 /* The names by which the copy is seen from outside. */
-static void add_ports(expansion *e, strut_copy *copy) {
+static void add_ports(strut_expansion *e, strut_copy *copy) {
   struct strut_copies *c = e->copies;
   strut_reader *reader = e->reader;
   const strut_slot *slot = strut_slot_of(&copy->placement->part->fields, STRUT_KEY_PART_PORTS);
@@ -715,18 +254,19 @@ static void add_ports(expansion *e, strut_copy *copy) {
 }
 
 /* The entries of a copy, and of the parts that it places. */
-static void fill_copy(expansion *e, strut_copy *copy) {
+static void fill_copy(strut_expansion *e, strut_copy *copy) {
   strut_part *part = copy->placement->part;
   e->reader->scope = NULL;
-  if (!e->weighing) copy_things(e, &part->fields, copy);
-  read_merge(e, strut_slot_of(&part->fields, STRUT_KEY_PART_MERGE), copy, STRUT_KEY_PART_MERGE);
+  if (!e->weighing) strut_copy_things(e, &part->fields, copy);
+  strut_read_merge(e, strut_slot_of(&part->fields, STRUT_KEY_PART_MERGE), copy,
+                   STRUT_KEY_PART_MERGE);
   expand_places(e, strut_slot_of(&part->fields, STRUT_KEY_PART_PLACE), copy);
   if (!e->weighing) add_ports(e, copy);
 }
 
 /* What ties a copy to the next one. */
-static void link_copies(expansion *e, const strut_tree *next, strut_copy *place, strut_copy *copy,
-                        const strut_copy *other, const strut_tree *twist) {
+static void link_copies(strut_expansion *e, const strut_tree *next, strut_copy *place,
+                        strut_copy *copy, const strut_copy *other, const strut_tree *twist) {
   strut_reader *reader = e->reader;
   strut_fields fields;
   strut_copy *link = new_scope(e, STRUT_SCOPE_LINK, copy->placement, copy->outer);
@@ -740,12 +280,12 @@ static void link_copies(expansion *e, const strut_tree *next, strut_copy *place,
   strut_read_fields(reader, STRUT_SECTION_NEXT, next, (strut_owner){"'next'", NULL}, &fields);
   reader->scope = NULL;
   if (fields.broken) return;
-  copy_things(e, &fields, link);
-  read_merge(e, strut_slot_of(&fields, STRUT_KEY_NEXT_MERGE), link, STRUT_KEY_NEXT_MERGE);
+  strut_copy_things(e, &fields, link);
+  strut_read_merge(e, strut_slot_of(&fields, STRUT_KEY_NEXT_MERGE), link, STRUT_KEY_NEXT_MERGE);
 }
 
 /* The names of a twist must be those of nodes. */
-static void check_twist(expansion *e, const strut_tree *twist, const strut_copy *copy) {
+static void check_twist(strut_expansion *e, const strut_tree *twist, const strut_copy *copy) {
   strut_reader *reader = e->reader;
   const strut_placement *p = copy->placement;
   for (const strut_tree *k = twist ? twist->first : NULL; k; k = k->next->next) {
@@ -765,8 +305,9 @@ static void check_twist(expansion *e, const strut_tree *twist, const strut_copy 
   }
 }
 
-static void link_all(expansion *e, placing *p, strut_copy **copies, strut_copy **places) {
-  const repetition *r = &p->repeat;
+static void link_all(strut_expansion *e, strut_placing *p, strut_copy **copies,
+                     strut_copy **places) {
+  const strut_repetition *r = &p->repeat;
   int64_t all = r->count[0] * r->count[1];
   if (copies[0]) check_twist(e, r->twist, copies[0]);
   for (int64_t n = 0; n < all && !e->stopped; n++) {
@@ -783,7 +324,7 @@ static void link_all(expansion *e, placing *p, strut_copy **copies, strut_copy *
 }
 
 /* Refuses what would become too large, before it is copied. */
-static bool check_size(expansion *e, const placing *p, double copies, double each) {
+static bool check_size(strut_expansion *e, const strut_placing *p, double copies, double each) {
   const strut_slot *repeat = strut_slot_of((strut_fields *)&p->fields, STRUT_KEY_PLACE_REPEAT);
   double all = copies * each;
   if ((double)e->copies->things + all <= MOST_THINGS) return true;
@@ -796,15 +337,15 @@ static bool check_size(expansion *e, const placing *p, double copies, double eac
 }
 
 /* All copies; while weighing, the first one only, counted as many times. */
-static void make_copies(expansion *e, placing *p) {
+static void make_copies(strut_expansion *e, strut_placing *p) {
   strut_reader *reader = e->reader;
-  const repetition *r = &p->repeat;
+  const strut_repetition *r = &p->repeat;
   int64_t all = r->count[0] * r->count[1];
   strut_frame base = strut_frame_of_scene;
   if (e->weighing) {
     const int64_t number[2] = {0, 0};
     strut_copy *place, *copy = make_copy(e, p, number, &base, &place);
-    size_t before = e->copies->things, own = count_things(&p->placement->part->fields) + 1;
+    size_t before = e->copies->things, own = strut_count_things(&p->placement->part->fields) + 1;
     if (copy) fill_copy(e, copy);
     if (e->stopped) return;
     double each = (double)(e->copies->things - before + own);
@@ -844,12 +385,12 @@ static void make_copies(expansion *e, placing *p) {
     other->tree.placed = true;
     other->tree.text = strut_arena_format(&reader->scratch, "next.%s", k->next->text);
     if (!other->tree.text) return;
-    add_merger(e, link, k, &other->tree, onto->key);
+    strut_add_merger(e, link, k, &other->tree, onto->key);
   }
 }
 
 /* Reports a part that contains itself. */
-static bool enter_part(expansion *e, const strut_part *part, const strut_slot *slot) {
+static bool enter_part(strut_expansion *e, const strut_part *part, const strut_slot *slot) {
   struct strut_copies *c = e->copies;
   char chain[600] = "";
   size_t used = 0;
@@ -876,11 +417,11 @@ static int count_numbers(const strut_tree *place) {
   return count->kind == STRUT_TREE_LIST ? 2 : 1;
 }
 
-static void expand_place(expansion *e, const strut_tree *key, strut_copy *outer) {
+static void expand_place(strut_expansion *e, const strut_tree *key, strut_copy *outer) {
   strut_reader *reader = e->reader;
   struct strut_copies *c = e->copies;
   strut_owner owner = {"place", key->text};
-  placing p = {.outer = outer};
+  strut_placing p = {.outer = outer};
   strut_placement *placement =
       strut_reader_allocate(reader, &reader->scratch, 1, sizeof *placement);
   strut_copy *scope = new_scope(e, STRUT_SCOPE_PLACE, placement, outer);
@@ -898,9 +439,9 @@ static void expand_place(expansion *e, const strut_tree *key, strut_copy *outer)
   scope->numbers = 0;
   placement->part =
       read_part_name(reader, outer, strut_slot_of(&p.fields, STRUT_KEY_PLACE_PART), owner);
-  fine =
-      read_repeat(reader, strut_slot_of(&p.fields, STRUT_KEY_PLACE_REPEAT), key->text, &p.repeat) &&
-      fine;
+  fine = strut_read_repeat(reader, strut_slot_of(&p.fields, STRUT_KEY_PLACE_REPEAT), key->text,
+                           &p.repeat) &&
+         fine;
   reader->scope = NULL;
   if (!placement->part || !fine || p.fields.broken || placement->part->broken) {
     reader->failed = true;
@@ -929,37 +470,13 @@ static void expand_place(expansion *e, const strut_tree *key, strut_copy *outer)
   c->depth--;
 }
 
-static void expand_places(expansion *e, const strut_slot *place, strut_copy *outer) {
+static void expand_places(strut_expansion *e, const strut_slot *place, strut_copy *outer) {
   const strut_tree *map = place->state == STRUT_GIVEN ? place->value : NULL;
   for (const strut_tree *key = map ? map->first : NULL; key && !e->stopped; key = key->next->next)
     expand_place(e, key, outer);
 }
 
 /* ---- the scene ---- */
-
-/* The scene's own entries of a key, then those of the copies. */
-static void join_entries(expansion *e, int key) {
-  strut_reader *reader = e->reader;
-  strut_slot *slot = strut_slot_of(&reader->top, key);
-  entry_list *list = &e->list[key - strut_section_first(STRUT_SECTION_SCENE)];
-  if (!list->count || slot->state == STRUT_BROKEN) return;
-  strut_tree *map = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *map);
-  const strut_slot *place = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PLACE);
-  if (!map) return;
-  *map = slot->state == STRUT_GIVEN ? *slot->value : *place->value;
-  uint32_t count = 0;
-  strut_tree *first = NULL;
-  if (slot->state == STRUT_GIVEN)
-    first = strut_lay_over_copies(reader, slot->value, &list->first, &list->count, &count, key);
-  map->count = (count + (uint32_t)list->count) & 0xFFFFFFFu;
-  map->first = first ? first : list->first;
-  strut_tree *last = first;
-  while (last && last->next->next) last = last->next->next;
-  if (last) last->next->next = list->first;
-  if (!slot->key) slot->key = place->key;
-  slot->value = map;
-  slot->state = STRUT_GIVEN;
-}
 
 static void report_unplaced(strut_reader *reader) {
   const strut_part_list *parts = &reader->copies->parts;
@@ -972,7 +489,7 @@ static void report_unplaced(strut_reader *reader) {
 /* Least memory of an entry while it is read, and as a thing of the scene [B]. */
 static const double ENTRY_NEEDS = 700.0;
 
-static bool check_memory(expansion *e, const strut_slot *place) {
+static bool check_memory(strut_expansion *e, const strut_slot *place) {
   strut_error error = {0};
   double needs = ENTRY_NEEDS * (double)e->copies->things;
   if (needs < 1e8 || strut_memory_check(needs, "the copies of parts", &error) == STRUT_OK)
@@ -982,7 +499,7 @@ static bool check_memory(expansion *e, const strut_slot *place) {
 }
 
 /* Counts first, then copies. */
-static void expand_scene(expansion *e) {
+static void expand_scene(strut_expansion *e) {
   strut_reader *reader = e->reader;
   const strut_slot *place = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PLACE);
   const strut_slot *nodes = strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES);
@@ -997,7 +514,7 @@ static void expand_scene(expansion *e) {
   const strut_tree *own = nodes->state == STRUT_GIVEN ? nodes->value->first : NULL;
   for (; own; own = own->next->next)
     if (own->next->kind == STRUT_TREE_LIST || strut_tree_find(own->next, "position", NULL))
-      remember_node(e, own); /* others are laid over copies */
+      strut_remember_node(e, own); /* others are laid over copies */
   expand_places(e, place, NULL);
   if (e->stopped) e->copies->incomplete = true;
 }
@@ -1010,15 +527,16 @@ void strut_read_parts(strut_reader *reader) {
     strut_require_nodes(reader);
     return;
   }
-  expansion e = {.reader = reader};
+  strut_expansion e = {.reader = reader};
   reader->copies = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *reader->copies);
   e.copies = reader->copies;
   if (!e.copies) return;
   read_part_list(reader, parts, NULL, &e.copies->parts);
   expand_scene(&e);
-  read_merge(&e, merge, NULL, STRUT_KEY_SCENE_MERGE);
+  strut_read_merge(&e, merge, NULL, STRUT_KEY_SCENE_MERGE);
   int first = strut_section_first(STRUT_SECTION_SCENE);
-  for (int k = 0; k < strut_section_size(STRUT_SECTION_SCENE); k++) join_entries(&e, first + k);
+  for (int k = 0; k < strut_section_size(STRUT_SECTION_SCENE); k++)
+    strut_join_entries(&e, first + k);
   if (e.contacts.count) {
     strut_tree *map = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *map);
     if (map) *map = (strut_tree){.kind = STRUT_TREE_MAP, .first = e.contacts.first};

@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Where the first copy of a placement lies: flip, scale, turn, move, or `onto` nodes outside. See expansion.h. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "parser/read/expansion.h"
+
+/* The position of an entry of nodes, in the coordinates of the scope that it stands in. */
+static bool read_position(strut_reader *reader, const strut_tree *value, double position[2]) {
+  const strut_tree *at =
+      value->kind == STRUT_TREE_MAP ? strut_tree_find(value, "position", NULL) : value;
+  return at && strut_read_pair(reader, at, "position", (strut_owner){"a node", NULL},
+                               STRUT_DIM_LENGTH, position);
+}
+
+/* Where a node of the placement's scope lies, in the coordinates of that scope. */
+static bool find_outside(strut_expansion *e, strut_copy *outer, const strut_tree *name,
+                         double position[2]) {
+  strut_reader *reader = e->reader;
+  strut_full_name full, resolved;
+  snprintf(full.text, sizeof full.text, "%s%s", outer ? outer->prefix : "", name->text);
+  int32_t i = strut_name_resolve_last(reader, full.text, &resolved)
+                  ? strut_name_map_find(&e->copies->node_entries, resolved.text)
+                  : -1;
+  if (i < 0 || strut_name_is_hidden(reader, outer, resolved.text)) {
+    strut_report_error(reader, name->place,
+                       "unknown node '%s' in 'onto'; it names a node of what is placed before",
+                       strut_sanitised_text(reader, name->text));
+    return false;
+  }
+  const strut_tree *key = e->copies->nodes[i];
+  strut_copy *before = strut_enter_scope(reader, key);
+  bool fine = read_position(reader, key->next, position);
+  strut_place_point(reader, key->next, position);
+  reader->scope = before;
+  if (!fine || !outer) return fine;
+  /* back into the frame of the scope */
+  const strut_frame *f = &outer->frame;
+  double d[2] = {position[0] - f->at[0], position[1] - f->at[1]};
+  for (int c = 0; c < 2; c++)
+    position[c] = (f->axes[0][c] * d[0] + f->axes[1][c] * d[1]) / f->scale;
+  return true;
+}
+
+/* The position of a node of the copy itself. */
+static bool find_inside(strut_expansion *e, strut_copy *copy, const strut_tree *name,
+                        double position[2]) {
+  strut_reader *reader = e->reader;
+  const strut_slot *nodes = strut_slot_of(&copy->placement->part->fields, STRUT_KEY_PART_NODES);
+  const strut_slot *ports = strut_slot_of(&copy->placement->part->fields, STRUT_KEY_PART_PORTS);
+  const strut_tree *port =
+      ports->state == STRUT_GIVEN ? strut_tree_find(ports->value, name->text, NULL) : NULL;
+  const char *own = port && port->kind == STRUT_TREE_SCALAR ? port->text : name->text;
+  const strut_tree *value =
+      nodes->state == STRUT_GIVEN ? strut_tree_find(nodes->value, own, NULL) : NULL;
+  if (!value) {
+    strut_report_error(reader, name->place, "part '%s' has no node '%s' of its own",
+                       copy->placement->part->name, strut_sanitised_text(reader, name->text));
+    return false;
+  }
+  strut_copy *before = reader->scope;
+  reader->scope = copy;
+  bool fine = read_position(reader, value, position);
+  reader->scope = before;
+  return fine;
+}
+
+/* Shifts, and with two pairs turns, the frame so that nodes of the copy lie on others. */
+static bool lay_onto(strut_expansion *e, strut_copy *copy, const strut_slot *onto, bool fit,
+                     strut_frame *frame) {
+  strut_reader *reader = e->reader;
+  double own[2][2], there[2][2];
+  const strut_tree *map = onto->value, *k = map->first;
+  if (map->count < 1 || map->count > 2) {
+    strut_report_error(reader, map->place,
+                       "expected one or two pairs {own: there} for 'onto', found %u",
+                       (unsigned)map->count);
+    return false;
+  }
+  for (unsigned n = 0; n < map->count; n++, k = k->next->next) {
+    if (!strut_read_scalar(reader, k->next, "onto", (strut_owner){"a placement", NULL},
+                           "the name of a node") ||
+        !find_inside(e, copy, k, own[n]) || !find_outside(e, copy->outer, k->next, there[n]))
+      return false;
+    own[n][0] *= frame->scale, own[n][1] *= frame->scale;
+    strut_frame_vector(frame, own[n]);
+  }
+  if (map->count == 2) {
+    double a[2] = {own[1][0] - own[0][0], own[1][1] - own[0][1]};
+    double b[2] = {there[1][0] - there[0][0], there[1][1] - there[0][1]};
+    double la = hypot(a[0], a[1]), lb = hypot(b[0], b[1]);
+    if (la == 0.0 || lb == 0.0 || (!fit && fabs(la / lb - 1.0) > 1e-9)) {
+      strut_report_error(reader, map->place,
+                         "the two nodes of the copy are %.6g m apart, those outside %.6g m%s", la,
+                         lb, la > 0.0 && lb > 0.0 ? "; say 'scale: fit', or change one" : "");
+      return false;
+    }
+    strut_frame turn = strut_frame_of_scene;
+    double c = (a[0] * b[0] + a[1] * b[1]) / (la * lb), s = (a[0] * b[1] - a[1] * b[0]) / (la * lb);
+    turn.axes[0][0] = turn.axes[1][1] = c, turn.axes[0][1] = -s, turn.axes[1][0] = s;
+    turn.scale = fit ? lb / la : 1.0;
+    *frame = strut_frame_within(&turn, frame);
+    strut_frame_vector(&turn, own[0]);
+    own[0][0] *= turn.scale, own[0][1] *= turn.scale;
+  }
+  for (int c = 0; c < 2; c++) frame->at[c] = there[0][c] - own[0][c];
+  return true;
+}
+
+/* The frame of the first copy by the placement's own keys. */
+bool strut_read_frame(strut_expansion *e, strut_placing *p, strut_copy *copy, strut_frame *frame) {
+  strut_reader *reader = e->reader;
+  strut_owner owner = {"place", p->placement->key->text};
+  const strut_slot *flip = strut_slot_of(&p->fields, STRUT_KEY_PLACE_FLIP);
+  const strut_slot *turn = strut_slot_of(&p->fields, STRUT_KEY_PLACE_TURN);
+  const strut_slot *at = strut_slot_of(&p->fields, STRUT_KEY_PLACE_AT);
+  const strut_slot *scale = strut_slot_of(&p->fields, STRUT_KEY_PLACE_SCALE);
+  const strut_slot *onto = strut_slot_of(&p->fields, STRUT_KEY_PLACE_ONTO);
+  bool fit = scale->state == STRUT_GIVEN && scale->value->kind == STRUT_TREE_SCALAR &&
+             strcmp(scale->value->text, "fit") == 0;
+  *frame = strut_frame_of_scene;
+  if (turn->state == STRUT_GIVEN) strut_frame_turn(frame, turn->number[0]);
+  if (at->state == STRUT_GIVEN) memcpy(frame->at, at->number, sizeof frame->at);
+  int flipped = flip->state == STRUT_GIVEN ? flip->word : 0; /* bits: x, y */
+  for (int c = 0; c < 2; c++)
+    for (int row = 0; row < 2 && flipped >> c & 1; row++) frame->axes[row][c] *= -1.0;
+  if (scale->state == STRUT_GIVEN && !fit &&
+      !strut_read_number(reader, scale->value, "scale", owner, STRUT_DIM_NONE,
+                         STRUT_RANGE_ABOVE_ZERO, &frame->scale))
+    return false;
+  bool two = onto->state == STRUT_GIVEN && onto->value->count == 2;
+  if ((fit && !two) || (two && turn->key)) {
+    strut_report_error(reader, fit && !two ? scale->value->place : turn->key->place,
+                       fit && !two ? "'scale: fit' needs two pairs in 'onto'"
+                                   : "two pairs in 'onto' turn the copy; leave 'turn' out");
+    return false;
+  }
+  return e->weighing || onto->state != STRUT_GIVEN || lay_onto(e, copy, onto, fit, frame);
+}
