@@ -122,6 +122,24 @@ expect 0 equilibria hexagon.yaml
 out_has "nodes n2, n4 and n6 meet no stiffness to second order"
 out_has_not "one of many shapes"
 
+# What rounding leaves of an energy is 0.
+cat >four-bars.yaml <<'END'
+strut: 1
+nodes:
+  a: {position: [0.269, 1.695], fixed: both}
+  b: {position: [1.528, 0.51], fixed: both}
+  c: {position: [0.991, 0.899], mass: 1}
+  d: {position: [1.303, 1.577], mass: 1}
+members:
+  p: {kind: bar, nodes: [a, c], stiffness: 3 kN/m}
+  q: {kind: bar, nodes: [b, c], stiffness: 7 kN/m}
+  r: {kind: bar, nodes: [b, d], stiffness: 7 kN/m}
+  s: {kind: bar, nodes: [c, d], stiffness: 7 kN/m}
+END
+expect 0 equilibria four-bars.yaml --all
+out_has "stable              0 J"
+out_has_not "fJ"
+
 # Large ones end soon, and say so.
 {
   printf 'strut: 1\ngravity: [0, -9.8 m/s^2]\ngroups:\n  bar: {kind: bar, stiffness: 1e6 N/m}\n'

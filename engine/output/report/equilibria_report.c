@@ -3,6 +3,7 @@
 #include "engine/output/report/equilibria_report.h"
 
 #include <assert.h>
+#include <float.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -244,15 +245,28 @@ static void add_end(strut_buffer *table, const strut_equilibria *all, const stru
     strut_buffer_add(table, "  %s", e->verdict);
 }
 
+/* The largest energy of all equilibria [J]. */
+static double largest_energy(const strut_equilibria *all) {
+  double most = 0.0;
+  for (size_t i = 0; i < all->count; i++) most = fmax(most, fabs(all->list[i].energy));
+  return most;
+}
+
+/* An energy; 0 where it is rounding beside those of the others. */
+static double shown_energy(double energy, double largest) {
+  return fabs(energy) > 4.0 * DBL_EPSILON * largest ? energy : 0.0;
+}
+
 static void add_row(strut_buffer *table, const strut_equilibria *all, const strut_model *model,
-                    const strut_equilibrium *e) {
+                    const strut_equilibrium *e, double largest) {
   char names[NAMES], flaws[NAMES];
   list_names(model->scene, e, names);
   describe_flaws(strut_find_shape_flaws(model, e->point.q), flaws);
   int32_t first = e->point.label == STRUT_STABLE ? e->point.zero : 0; /* free motions apart */
   double lowest = first < e->point.eigenvalue_count ? e->point.eigenvalues[first] : (double)NAN;
   strut_buffer_add(table, "  %-18s %-12s %-8s %14s %13s %7" PRId64 "  %-*s", e->name, names,
-                   strut_stability_name(e->point.label), strut_quantity_of(e->energy, 8, "J").text,
+                   strut_stability_name(e->point.label),
+                   strut_quantity_of(shown_energy(e->energy, largest), 8, "J").text,
                    strut_quantity_of(lowest, 5, "N/m").text, e->point.found,
                    e->outcome == STRUT_OUTCOME_STANDS ? 0 : FLAWS, flaws);
   add_end(table, all, e);
@@ -262,6 +276,7 @@ static void add_row(strut_buffer *table, const strut_equilibria *all, const stru
 static void add_section(strut_buffer *table, const strut_equilibria *all, const strut_model *model,
                         section wanted, const char *title, size_t most) {
   size_t count = 0;
+  double largest = largest_energy(all);
   for (size_t i = 0; i < all->count; i++) {
     const strut_equilibrium *e = &all->list[i];
     if (section_of(e) != wanted || count++ >= most) continue;
@@ -270,7 +285,7 @@ static void add_section(strut_buffer *table, const strut_equilibria *all, const 
                        wanted == HELD ? "held" : "touching", "label", "energy", "stiffness",
                        "found", wanted == STANDING ? 0 : FLAWS, "shape",
                        wanted == STANDING ? "" : "  outcome");
-    add_row(table, all, model, e);
+    add_row(table, all, model, e, largest);
   }
   if (count > most)
     strut_buffer_add(table, "  ... and %zu more; --all lists every row\n", count - most);
