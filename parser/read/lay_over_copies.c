@@ -6,30 +6,12 @@
 #include <string.h>
 
 #include "parser/read/copies.h"
+#include "parser/read/overlay.h"
 
 strut_section strut_section_of_things(int scene_key) {
-  static const struct {
-    int key;
-    strut_section section;
-  } rows[] = {{STRUT_KEY_SCENE_NODES, STRUT_SECTION_NODE},
-              {STRUT_KEY_SCENE_MEMBERS, STRUT_SECTION_MEMBER},
-              {STRUT_KEY_SCENE_HINGES, STRUT_SECTION_HINGE},
-              {STRUT_KEY_SCENE_CELLS, STRUT_SECTION_CELL},
-              {STRUT_KEY_SCENE_COLLISIONS, STRUT_SECTION_COLLISION},
-              {STRUT_KEY_SCENE_BEAMS, STRUT_SECTION_BEAM},
-              {STRUT_KEY_SCENE_ACTUATORS, STRUT_SECTION_ACTUATOR},
-              {STRUT_KEY_SCENE_LOADS, STRUT_SECTION_LOAD},
-              {STRUT_KEY_SCENE_UNBALANCES, STRUT_SECTION_UNBALANCE},
-              {STRUT_KEY_SCENE_SLIDERS, STRUT_SECTION_SLIDER},
-              {STRUT_KEY_SCENE_SIGNALS, STRUT_SECTION_SIGNAL},
-              {STRUT_KEY_SCENE_SENSORS, STRUT_SECTION_SENSOR},
-              {STRUT_KEY_SCENE_STATES, STRUT_SECTION_STATE},
-              {STRUT_KEY_SCENE_OSCILLATORS, STRUT_SECTION_OSCILLATOR},
-              {STRUT_KEY_SCENE_CONTROLLERS, STRUT_SECTION_CONTROLLER},
-              {STRUT_KEY_SCENE_GROUNDS, STRUT_SECTION_GROUND}};
-  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
-    if (rows[i].key == scene_key) return rows[i].section;
-  return STRUT_SECTION_COUNT;
+  const strut_mapping_kind scene = {STRUT_SECTION_SCENE, false};
+  strut_mapping_kind kind = strut_kind_below(scene, strut_key_at(scene_key)->name);
+  return kind.things ? kind.section : STRUT_SECTION_COUNT;
 }
 
 static void *allocate(strut_reader *reader, size_t size) {

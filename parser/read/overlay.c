@@ -22,6 +22,7 @@ static strut_section section_of_things(const char *name) {
               {"actuators", STRUT_SECTION_ACTUATOR},
               {"loads", STRUT_SECTION_LOAD},
               {"unbalances", STRUT_SECTION_UNBALANCE},
+              {"sliders", STRUT_SECTION_SLIDER},
               {"signals", STRUT_SECTION_SIGNAL},
               {"configurations", STRUT_SECTION_CONFIGURATION},
               {"grounds", STRUT_SECTION_GROUND},

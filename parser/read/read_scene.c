@@ -27,7 +27,8 @@ void strut_mark_incomplete(strut_reader *reader) {
   for (int k = 0; k < strut_section_size(STRUT_SECTION_SCENE); k++) {
     int key = strut_section_first(STRUT_SECTION_SCENE) + k;
     bool things = key == STRUT_KEY_SCENE_GROUPS || key == STRUT_KEY_SCENE_CONFIGURATIONS ||
-                  strut_section_of_things(key) != STRUT_SECTION_COUNT;
+                  (strut_section_of_things(key) != STRUT_SECTION_COUNT &&
+                   key != STRUT_KEY_SCENE_PARTS && key != STRUT_KEY_SCENE_PLACE);
     if (things) reader->top.slot[k].state = STRUT_BROKEN;
   }
   reader->top.broken = reader->failed = reader->ends_unknown = reader->groups_unknown = true;
