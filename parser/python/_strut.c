@@ -1,0 +1,338 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/python/module.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+strut_py_types *strut_py_types_of(PyObject *module) { return PyModule_GetState(module); }
+
+void *strut_py_new(PyTypeObject *type, PyObject *module) {
+  PyObject *object = PyType_GenericAlloc(type, 0);
+  if (object != NULL) {
+    ((strut_py_result *)object)->module = Py_NewRef(module);
+  }
+  return object;
+}
+
+void strut_py_delete(PyObject *object) {
+  PyTypeObject *type = Py_TYPE(object);
+  Py_XDECREF(((strut_py_result *)object)->module);
+  freefunc release = (freefunc)PyType_GetSlot(type, Py_tp_free);
+  release(object);
+  Py_DECREF(type);
+}
+
+/* ---- texts ---- */
+
+PyObject *strut_py_text(const char *text) {
+  if (text == NULL) {
+    Py_RETURN_NONE;
+  }
+  return PyUnicode_DecodeUTF8(text, (Py_ssize_t)strlen(text), "surrogateescape");
+}
+
+PyObject *strut_py_own_text(char *text, strutlib_error *error) {
+  if (text == NULL) {
+    return strut_py_raise(error);
+  }
+  PyObject *copy = strut_py_text(text);
+  strutlib_release(text);
+  return copy;
+}
+
+/* One text of a tuple into *text: 0 or -1. */
+static int read_text(PyObject *item, const char **text) {
+  if (item == Py_None) {
+    *text = NULL;
+    return 0;
+  }
+  Py_ssize_t length = 0;
+  *text = PyUnicode_AsUTF8AndSize(item, &length);
+  if (*text == NULL) {
+    return -1;
+  }
+  if (strlen(*text) != (size_t)length) {
+    PyErr_SetString(PyExc_ValueError, "a text holds the character NUL");
+    return -1;
+  }
+  return 0;
+}
+
+int strut_py_texts_read(PyObject *tuple, strut_py_texts *texts) {
+  *texts = (strut_py_texts){0};
+  Py_ssize_t count = PyTuple_Size(tuple);
+  if (count < 0) {
+    return -1;
+  }
+  texts->text = malloc(((size_t)count + 1) * sizeof *texts->text);
+  if (texts->text == NULL) {
+    PyErr_NoMemory();
+    return -1;
+  }
+  for (Py_ssize_t i = 0; i < count; i++) {
+    if (read_text(PyTuple_GetItem(tuple, i), &texts->text[i]) != 0) {
+      strut_py_texts_free(texts);
+      return -1;
+    }
+  }
+  texts->count = (size_t)count;
+  return 0;
+}
+
+void strut_py_texts_free(strut_py_texts *texts) {
+  free(texts->text);
+  *texts = (strut_py_texts){0};
+}
+
+int strut_py_pairs_read(PyObject *names, PyObject *values, strut_py_texts pair[2]) {
+  if (strut_py_texts_read(names, &pair[0]) != 0) {
+    return -1;
+  }
+  if (strut_py_texts_read(values, &pair[1]) != 0) {
+    strut_py_texts_free(&pair[0]);
+    return -1;
+  }
+  if (pair[0].count != pair[1].count) {
+    strut_py_texts_free(&pair[0]);
+    strut_py_texts_free(&pair[1]);
+    PyErr_SetString(PyExc_ValueError, "as many values as names are needed");
+    return -1;
+  }
+  return 0;
+}
+
+/* ---- errors ---- */
+
+/* (file, line, column, length, text, source, hint, key) of each located message. */
+static PyObject *located_messages(const strutlib_error *error) {
+  size_t count = strutlib_error_count(error);
+  PyObject *list = PyList_New(0);
+  for (size_t i = 0; i < count && list != NULL; i++) {
+    PyObject *message = Py_BuildValue(
+        "(NnnnNNNN)", strut_py_text(strutlib_error_file(error, i)),
+        (Py_ssize_t)strutlib_error_line(error, i), (Py_ssize_t)strutlib_error_column(error, i),
+        (Py_ssize_t)strutlib_error_length(error, i), strut_py_text(strutlib_error_text(error, i)),
+        strut_py_text(strutlib_error_source(error, i)),
+        strut_py_text(strutlib_error_hint(error, i)), strut_py_text(strutlib_error_key(error, i)));
+    if (message == NULL || PyList_Append(list, message) != 0) {
+      Py_CLEAR(list);
+    }
+    Py_XDECREF(message);
+  }
+  return list;
+}
+
+/* The exception that strut._errors.make makes of an error. */
+static PyObject *exception_of(const strutlib_error *error) {
+  PyObject *module = PyImport_ImportModule("strut._errors");
+  if (module == NULL) {
+    return NULL;
+  }
+  int status = strutlib_error_status(error);
+  PyObject *messages = located_messages(error);
+  PyObject *exception = NULL;
+  if (messages != NULL) {
+    exception = PyObject_CallMethod(module, "make", "sNNO", strutlib_status_name(status),
+                                    strut_py_text(strutlib_error_message(error)),
+                                    strut_py_text(strutlib_error_report(error)), messages);
+  }
+  Py_XDECREF(messages);
+  Py_DECREF(module);
+  return exception;
+}
+
+PyObject *strut_py_raise(strutlib_error *error) {
+  if (error == NULL) { /* the library could not even say why */
+    return PyErr_NoMemory();
+  }
+  PyObject *exception = exception_of(error);
+  strutlib_error_free(error);
+  if (exception != NULL) {
+    PyErr_SetObject((PyObject *)Py_TYPE(exception), exception);
+    Py_DECREF(exception);
+  }
+  return NULL;
+}
+
+/* ---- functions ---- */
+
+static PyObject *scene_of(PyObject *module, strutlib_scene *scene, strutlib_error *error) {
+  if (scene == NULL) {
+    return strut_py_raise(error);
+  }
+  strut_py_scene *object = strut_py_new(strut_py_types_of(module)->scene, module);
+  if (object == NULL) {
+    strutlib_close(scene);
+    return NULL;
+  }
+  object->scene = scene;
+  return (PyObject *)object;
+}
+
+static PyObject *open_file(PyObject *module, PyObject *arguments) {
+  PyObject *path = NULL, *names, *values;
+  strut_py_texts pair[2];
+  if (!PyArg_ParseTuple(arguments, "O&OO:open", PyUnicode_FSConverter, &path, &names, &values)) {
+    return NULL;
+  }
+  if (strut_py_pairs_read(names, values, pair) != 0) {
+    Py_DECREF(path);
+    return NULL;
+  }
+  strutlib_error *error = NULL;
+  strutlib_scene *scene = NULL;
+  const char *name = PyBytes_AsString(path);
+  Py_BEGIN_ALLOW_THREADS /**/
+      scene = strutlib_open(name, pair[0].count, pair[0].text, pair[1].text, &error);
+  Py_END_ALLOW_THREADS /**/
+      strut_py_texts_free(&pair[0]);
+  strut_py_texts_free(&pair[1]);
+  Py_DECREF(path);
+  return scene_of(module, scene, error);
+}
+
+static PyObject *open_text(PyObject *module, PyObject *arguments) {
+  const char *name, *text;
+  Py_ssize_t length;
+  PyObject *names, *values;
+  strut_py_texts pair[2];
+  if (!PyArg_ParseTuple(arguments, "ss#OO:open_text", &name, &text, &length, &names, &values) ||
+      strut_py_pairs_read(names, values, pair) != 0) {
+    return NULL;
+  }
+  strutlib_error *error = NULL;
+  strutlib_scene *scene = NULL;
+  Py_BEGIN_ALLOW_THREADS /**/
+      scene = strutlib_open_text(name, text, (size_t)length, pair[0].count, pair[0].text,
+                                 pair[1].text, &error);
+  Py_END_ALLOW_THREADS /**/
+      strut_py_texts_free(&pair[0]);
+  strut_py_texts_free(&pair[1]);
+  return scene_of(module, scene, error);
+}
+
+static PyObject *scene_with(PyObject *module, PyObject *arguments) {
+  PyObject *from, *names, *values;
+  strut_py_texts pair[2];
+  if (!PyArg_ParseTuple(arguments, "O!OO:with_", strut_py_types_of(module)->scene, &from, &names,
+                        &values) ||
+      strut_py_pairs_read(names, values, pair) != 0) {
+    return NULL;
+  }
+  strutlib_error *error = NULL;
+  strutlib_scene *scene = NULL;
+  Py_BEGIN_ALLOW_THREADS /**/
+      scene = strutlib_scene_with(((strut_py_scene *)from)->scene, pair[0].count, pair[0].text,
+                                  pair[1].text, &error);
+  Py_END_ALLOW_THREADS /**/
+      strut_py_texts_free(&pair[0]);
+  strut_py_texts_free(&pair[1]);
+  return scene_of(module, scene, error);
+}
+
+static PyObject *options(PyObject *module, PyObject *argument) {
+  (void)module;
+  const char *command = NULL;
+  if (read_text(argument, &command) != 0) {
+    return NULL;
+  }
+  PyObject *list = PyList_New(0);
+  const char *name;
+  for (size_t i = 0; list != NULL && (name = strutlib_option_name(command, i)) != NULL; i++) {
+    PyObject *option =
+        Py_BuildValue("(NN)", strut_py_text(name), strut_py_text(strutlib_option_help(command, i)));
+    if (option == NULL || PyList_Append(list, option) != 0) {
+      Py_CLEAR(list);
+    }
+    Py_XDECREF(option);
+  }
+  return list;
+}
+
+static PyObject *status_name(PyObject *module, PyObject *argument) {
+  (void)module;
+  int status = (int)PyLong_AsLong(argument);
+  return status == -1 && PyErr_Occurred() ? NULL : strut_py_text(strutlib_status_name(status));
+}
+
+static PyObject *status_text(PyObject *module, PyObject *argument) {
+  (void)module;
+  int status = (int)PyLong_AsLong(argument);
+  return status == -1 && PyErr_Occurred() ? NULL : strut_py_text(strutlib_status_text(status));
+}
+
+static PyObject *new_result(PyObject *module, PyObject *none) {
+  (void)none;
+  return strut_py_new(strut_py_types_of(module)->result, module);
+}
+
+static PyMethodDef functions[] = {
+    {"result", new_result, METH_NOARGS, "result(): an empty Result, for a scene's call."},
+    {"open", open_file, METH_VARARGS, "open(path, names, values): a scene's file."},
+    {"open_text", open_text, METH_VARARGS, "open_text(name, text, names, values): a scene's text."},
+    {"with_", scene_with, METH_VARARGS, "with_(scene, names, values): further settings."},
+    {"options", options, METH_O, "options(command): its options and what they mean."},
+    {"status_name", status_name, METH_O, "status_name(number): a status as a word."},
+    {"status_text", status_text, METH_O, "status_text(number): a status as a few words."},
+    {NULL, NULL, 0, NULL}};
+
+/* ---- the module ---- */
+
+static int add_type(PyObject *module, PyType_Spec *spec, PyTypeObject **type) {
+  *type = (PyTypeObject *)PyType_FromModuleAndSpec(module, spec, NULL);
+  return *type == NULL ? -1 : PyModule_AddType(module, *type);
+}
+
+static int execute(PyObject *module) {
+  strut_py_types *types = strut_py_types_of(module);
+  if (add_type(module, &strut_py_scene_spec, &types->scene) != 0 ||
+      add_type(module, &strut_py_result_spec, &types->result) != 0 ||
+      add_type(module, &strut_py_simulation_spec, &types->simulation) != 0 ||
+      add_type(module, &strut_py_snapshot_spec, &types->snapshot) != 0 ||
+      add_type(module, &strut_py_array_spec, &types->array) != 0) {
+    return -1;
+  }
+  if (strutlib_abi_version() < STRUTLIB_ABI_VERSION) {
+    PyErr_Format(PyExc_ImportError, "libstrut.so.0 is older than this module: interface %d, not %d",
+                 strutlib_abi_version(), STRUTLIB_ABI_VERSION);
+    return -1;
+  }
+  PyObject *version = strut_py_text(strutlib_version());
+  int added = version == NULL ? -1 : PyModule_AddObjectRef(module, "version", version);
+  Py_XDECREF(version);
+  return added;
+}
+
+static int traverse(PyObject *module, visitproc visit, void *arg) {
+  strut_py_types *types = strut_py_types_of(module);
+  Py_VISIT(types->scene);
+  Py_VISIT(types->result);
+  Py_VISIT(types->simulation);
+  Py_VISIT(types->snapshot);
+  Py_VISIT(types->array);
+  return 0;
+}
+
+static int clear(PyObject *module) {
+  strut_py_types *types = strut_py_types_of(module);
+  Py_CLEAR(types->scene);
+  Py_CLEAR(types->result);
+  Py_CLEAR(types->simulation);
+  Py_CLEAR(types->snapshot);
+  Py_CLEAR(types->array);
+  return 0;
+}
+
+static PyModuleDef_Slot slots[] = {{Py_mod_exec, (void *)execute}, {0, NULL}};
+
+static PyModuleDef definition = {.m_base = PyModuleDef_HEAD_INIT,
+                                 .m_name = "strut._strut",
+                                 .m_doc = "Handles of libstrut.so.0; use the package strut.",
+                                 .m_size = sizeof(strut_py_types),
+                                 .m_methods = functions,
+                                 .m_slots = slots,
+                                 .m_traverse = traverse,
+                                 .m_clear = clear};
+
+PyMODINIT_FUNC PyInit__strut(void);
+PyMODINIT_FUNC PyInit__strut(void) { return PyModuleDef_Init(&definition); }

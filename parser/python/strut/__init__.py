@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Planar tensegrity structures and robots: multistable statics, contact dynamics, sweeps.
+
+    import strut
+    crawler = strut.load("crawler.yaml", start="II")
+    run = crawler.run(accuracy="0.5 %")
+    run.velocity, run["position.n1.x"]
+
+Names are those of the scene's file and of the program's JSON, numbers are in SI units, texts may have units.
+docs/python.md has more.
+"""
+
+from ._errors import Error, FileError, MemoryError, Message, RunError, SceneError, UsageError
+from ._results import (
+    Equilibria,
+    Equilibrium,
+    Form,
+    Matrices,
+    Modes,
+    Path,
+    Result,
+    Rigidity,
+    Run,
+)
+from ._scene import Scene, load, loads
+from ._simulation import Simulation
+from ._strut import options, version as __version__
+from ._sweep import Table
+from ._values import Named
+
+__all__ = [
+    "Equilibria",
+    "Equilibrium",
+    "Error",
+    "FileError",
+    "Form",
+    "Matrices",
+    "MemoryError",
+    "Message",
+    "Modes",
+    "Named",
+    "Path",
+    "Result",
+    "Rigidity",
+    "Run",
+    "RunError",
+    "Scene",
+    "SceneError",
+    "Simulation",
+    "Table",
+    "UsageError",
+    "load",
+    "loads",
+    "options",
+]

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Simulations: a run that Python advances."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Callable
+
+from . import _strut
+from ._values import Named, numpy, unknown
+
+if TYPE_CHECKING:
+    from ._scene import Scene
+
+_LIVE = {
+    "position": "nodes",
+    "velocity": "nodes",
+    "length": "members",
+    "force": "members",
+    "contact": "contacts",
+    "angle": "hinges",
+    "moment": "hinges",
+    "area": "cells",
+    "pressure": "cells",
+    "energy": "",
+}
+_INPUTS = {"rest": "members", "actuators": "actuators", "load": "nodes"}
+
+
+class Simulation:
+    """A run that is advanced from outside, by one thread at a time.
+
+    Arrays are live: they follow every advance; copy() what shall stay. position and velocity (nodes, 2), length
+    and force (members), contact (contacts, 2), angle and moment (hinges), area and pressure (cells),
+    energy. Inputs are written at any time, and hold from the next advance on: rest (members) [m],
+    actuators (in their unit; NAN: as the scene says), load (nodes, 2) [N]:
+
+        sim.rest["m8"] = sim.rest0["m8"] + 0.3e-3
+        sim.advance(10)
+        print(sim.time, sim.velocity["n1"][0])
+    """
+
+    advance: Callable[[int], None]  #: advance(steps): bits do not depend on how steps are divided
+    snapshot: Callable[[], _strut.Snapshot]  #: all of the state, inputs too
+    restore: Callable[[_strut.Snapshot], None]  #: back to a snapshot; what follows has the same bits
+
+    if TYPE_CHECKING:
+        position: Named
+        velocity: Named
+        length: Named
+        force: Named
+        contact: Named
+        angle: Named
+        moment: Named
+        area: Named
+        pressure: Named
+        energy: Any
+        rest: Named
+        rest0: Named
+        actuators: Named
+        load: Named
+
+    def __init__(self, raw: _strut.Simulation, scene: Scene) -> None:
+        self._raw = raw
+        self._scene = scene
+        self.advance = raw.advance
+        self.snapshot = raw.snapshot
+        self.restore = raw.restore
+        rest = raw.input("rest")
+        self._rest0 = None if rest is None else bytes(memoryview(rest))
+
+    @property
+    def time(self) -> float:
+        """Time reached [s]."""
+        return self._raw.time
+
+    @property
+    def step(self) -> float:
+        """The step [s]; of a method with error control the time between two stops."""
+        return self._raw.step
+
+    @property
+    def input_work(self) -> float:
+        """Work that changes of inputs have done [J]."""
+        return self._raw.input_work
+
+    def __getattr__(self, name: str) -> Any:
+        # Only for arrays that nobody has asked for yet: they become attributes.
+        if name in _LIVE:
+            array, kind = self._raw.array(name), _LIVE[name]
+        elif name in _INPUTS:
+            array, kind = self._raw.input(name), _INPUTS[name]
+        elif name == "rest0":
+            array, kind = self._rest0, "members"
+            if array is not None:
+                array = numpy().frombuffer(array)
+        else:
+            raise AttributeError(unknown(name, [*_LIVE, *_INPUTS, "rest0", "advance"]))
+        if array is None:
+            raise AttributeError(f"this simulation has no {name}")
+        array = numpy().asarray(array)
+        live = Named(array, self._scene.names(kind)) if kind else array
+        self.__dict__[name] = live
+        return live
+
+    def __repr__(self) -> str:
+        return f"<strut.Simulation of '{self._scene.name}' at {self.time:.6g} s>"

@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sweeps: arrays in, a table out."""
+
+from __future__ import annotations
+
+import itertools
+from array import array
+from typing import TYPE_CHECKING, Any, Iterable, Iterator, Mapping, NamedTuple, Sequence
+
+from . import _strut
+from ._results import _Raw, _Stored
+from ._values import numpy, unknown
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from ._scene import Scene
+
+    Array = np.ndarray[Any, np.dtype[np.float64]]
+
+
+class Plan(NamedTuple):
+    """The points of a sweep as the library takes them."""
+
+    names: tuple[str, ...]
+    shape: tuple[int, ...]  #: lengths of the axes, or the number of points
+    count: int
+    numbers: Any  #: count * len(names) doubles
+    words: tuple[str | None, ...] | None  #: values of parameters that are texts
+
+
+def plan(
+    scene: Scene,
+    axes: Mapping[str, Iterable[object]],
+    points: Any,
+    names: Sequence[str] | None,
+) -> Plan:
+    """Points of axes, every combination, or of whole rows."""
+    if points is not None:
+        if axes or names is None:
+            raise TypeError("points need names=[...] of their columns, and no axes besides")
+        return _rows(scene, points, tuple(names))
+    if names is not None:
+        raise TypeError("names are those of the columns of points=")
+    columns = [_values(scene, name, values) for name, values in axes.items()]
+    shape = tuple(len(column) for column in columns)
+    return _planned(tuple(axes), shape, list(itertools.product(*columns)))
+
+
+def _planned(names: tuple[str, ...], shape: tuple[int, ...], rows: list[Any]) -> Plan:
+    flat = [value for row in rows for value in row]
+    numbers = array("d", (0.0 if isinstance(value, str) else value for value in flat))
+    if not any(isinstance(value, str) for value in flat):
+        return Plan(names, shape, len(rows), numbers, None)
+    words = tuple(value if isinstance(value, str) else None for value in flat)
+    return Plan(names, shape, len(rows), numbers, words)
+
+
+def _rows(scene: Scene, points: Any, names: tuple[str, ...]) -> Plan:
+    if hasattr(points, "__array__") or hasattr(points, "__array_interface__"):
+        rows = numpy().ascontiguousarray(points, dtype=float)
+        if rows.ndim != 2 or rows.shape[1] != len(names):
+            raise ValueError(f"points have the shape {rows.shape}, not (..., {len(names)})")
+        return Plan(names, (len(rows),), len(rows), rows, None)
+    listed = [list(row) for row in points]
+    if any(len(row) != len(names) for row in listed):
+        raise ValueError(f"every point needs {len(names)} values, one for each name")
+    columns = [_values(scene, name, (row[i] for row in listed)) for i, name in enumerate(names)]
+    return _planned(names, (len(listed),), [list(row) for row in zip(*columns)])
+
+
+def _values(scene: Scene, name: str, values: Iterable[object]) -> list[Any]:
+    """Numbers in SI; words of a parameter that is a text."""
+    if isinstance(values, str) or not hasattr(values, "__iter__"):
+        values = [values]
+    is_word = isinstance(scene[f"parameters.{name}"], str)
+    return [_value(scene, name, value, is_word) for value in values]
+
+
+def _value(scene: Scene, name: str, value: Any, is_word: bool) -> Any:
+    if is_word:
+        return str(value)
+    if isinstance(value, str):  # "8 Hz": the language says how much that is
+        return scene.with_({name: value})[f"parameters.{name}"]
+    return float(value)
+
+
+class Table:
+    """A sweep's results: a row per point, columns by name. table["velocity"] is an array, a column of
+    words such as table["status"] a list; table.grid("velocity") has the shape of the axes."""
+
+    def __init__(self, raw: _Raw, work: Plan) -> None:
+        self._raw = raw
+        self.axes = work.names
+        self.shape = work.shape  #: lengths of the axes
+        self._count = work.count
+
+    @property
+    def columns(self) -> list[str]:
+        """Names of the columns, axes first."""
+        return self._raw.columns()
+
+    def __len__(self) -> int:
+        return self._count
+
+    @property
+    def csv(self) -> str:
+        """table.csv of the program."""
+        return self._raw.table()
+
+    def __getitem__(self, column: str) -> Any:
+        if column not in self.columns:
+            raise KeyError(unknown(column, self.columns, "column"))
+        if column == "status":
+            return self.status
+        found = self._raw.array(column)
+        if found is not None:
+            return numpy().asarray(found)
+        return self._raw.words(column, self._count)
+
+    @property
+    def status(self) -> list[str]:
+        """Of each point "ok", or why it failed."""
+        names: dict[float, str] = {}
+        found = self._raw.array("status")
+        return [
+            names.setdefault(code, _strut.status_name(int(code))) for code in memoryview(found)
+        ]
+
+    def grid(self, column: str) -> Array:
+        """A column of numbers in the shape of the axes."""
+        return self[column].reshape(self.shape)  # type: ignore[no-any-return]
+
+    def array(self, *columns: str) -> Array:
+        """Columns of numbers side by side, (points, columns); without names all of them."""
+        names = columns or [
+            name for name in self.columns if name != "status" and self._raw.array(name) is not None
+        ]
+        return numpy().column_stack([self[name] for name in names])  # type: ignore[no-any-return]
+
+    def __iter__(self) -> Iterator[dict[str, Any]]:
+        """The rows as dictionaries."""
+        columns = {name: self[name] for name in self.columns}
+        return ({name: column[i] for name, column in columns.items()} for i in range(len(self)))
+
+    def to_pandas(self) -> Any:
+        """The same as a DataFrame."""
+        import pandas
+
+        return pandas.DataFrame({name: self[name] for name in self.columns})
+
+    def __repr__(self) -> str:
+        failed = sum(word != "ok" for word in self.status)
+        shown = f", {failed} failed" if failed else ""
+        return f"<strut.Table: {len(self)} points{shown}; {', '.join(self.columns)}>"
+
+    def _repr_html_(self) -> str | None:
+        try:
+            return self.to_pandas()._repr_html_()  # type: ignore[no-any-return]
+        except ImportError:
+            return None
+
+    def __getstate__(self) -> dict[str, Any]:
+        raw = self._raw if isinstance(self._raw, _Stored) else _Stored(self._raw)
+        return {**self.__dict__, "_raw": raw}

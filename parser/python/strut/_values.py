@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Values: Python's to texts of the language, texts to numbers, arrays with names."""
+
+from __future__ import annotations
+
+import operator
+import os
+from typing import TYPE_CHECKING, Any, Callable, Iterable, Iterator, Mapping, Sequence
+
+if TYPE_CHECKING:
+    import numpy as np
+
+Pairs = tuple[tuple[str, ...], tuple[str, ...]]
+
+
+def text(value: object) -> str:
+    """A setting or an option as the program takes it: numbers in SI, texts as they are."""
+    if isinstance(value, str):
+        return value
+    if isinstance(value, bool) or type(value).__name__ == "bool_":  # numpy's, too
+        return "yes" if value else "no"
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    try:
+        return str(operator.index(value))  # type: ignore[arg-type]
+    except TypeError:
+        pass
+    if hasattr(value, "__float__"):
+        return repr(float(value))
+    if isinstance(value, Iterable):
+        return ",".join(text(item) for item in value)
+    raise TypeError(f"a number or a text is needed, not {type(value).__name__}")
+
+
+def settings(mapping: Mapping[str, object] | None, more: Mapping[str, object]) -> Pairs:
+    """Settings of parameters as names and texts."""
+    merged = {**(mapping or {}), **more}
+    return tuple(merged), tuple(text(value) for value in merged.values())
+
+
+def options(given: Mapping[str, object]) -> Pairs:
+    """Options as names and texts: mass_model is the program's --mass-model; None is not given."""
+    there = {name.replace("_", "-"): value for name, value in given.items() if value is not None}
+    return tuple(there), tuple(text(value) for value in there.values())
+
+
+def numpy() -> Any:
+    """numpy, which only arrays need."""
+    try:
+        import numpy
+    except ImportError as error:
+        raise ImportError("arrays need numpy (Debian: python3-numpy)") from error
+    return numpy
+
+
+class Words(dict[str, Any]):
+    """A mapping whose items are attributes, too: run.energy.residual."""
+
+    __slots__ = ()
+
+    def __getattr__(self, name: str) -> Any:
+        try:
+            return self[name]
+        except KeyError:
+            raise AttributeError(unknown(name, self)) from None
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self]
+
+
+def unknown(name: str, known: Iterable[str], what: str = "name") -> str:
+    """A sentence for a name that is not there, with those that may have been meant."""
+    import difflib
+
+    names = list(known)
+    close = difflib.get_close_matches(name, names, 3)
+    if close:
+        return f"no {what} '{name}'; did you mean {' or '.join(map(repr, close))}?"
+    listed = ", ".join(names[:12]) + (", ..." if len(names) > 12 else "")
+    return f"no {what} '{name}'" + (f"; there are {listed}" if names else "")
+
+
+class Named:
+    """A numpy array one axis of which has names: force["m8"], force[0], force.max().
+
+    Whatever numpy's arrays can do it can, too; `array` is the array itself.
+    """
+
+    __slots__ = ("array", "names", "_axis", "_index", "_parts")
+
+    array: np.ndarray[Any, Any]
+    names: tuple[str, ...]
+
+    def __init__(self, array: Any, names: Sequence[str], axis: int = 0) -> None:
+        self.array = array
+        self.names = tuple(names)
+        self._axis = axis
+        self._index = {name: i for i, name in enumerate(self.names)}
+        self._parts: dict[str, Any] = {}  # views, so that a name costs one look-up
+
+    def _part(self, name: str) -> Any:
+        """The view behind a name."""
+        try:
+            i = self._index[name]
+        except KeyError:
+            raise KeyError(unknown(name, self.names)) from None
+        part = self.array[(slice(None),) * self._axis + (i,)]
+        if part.ndim:  # a lone number would be a copy
+            self._parts[name] = part
+        return part
+
+    def __getitem__(self, key: Any) -> Any:
+        if type(key) is str:
+            part = self._parts.get(key)
+            return self._part(key) if part is None else part
+        return self.array[key]
+
+    def __setitem__(self, key: Any, value: Any) -> None:
+        if type(key) is str:
+            try:
+                key = (slice(None),) * self._axis + (self._index[key],)
+            except KeyError:
+                raise KeyError(unknown(key, self.names)) from None
+        self.array[key] = value
+
+    def items(self) -> Iterator[tuple[str, Any]]:
+        """Names and their parts."""
+        return ((name, self._part(name)) for name in self.names)
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> Any:
+        array = self.array if dtype is None else self.array.astype(dtype, copy=False)
+        return array.copy() if copy else array
+
+    def __len__(self) -> int:
+        return len(self.array)
+
+    def __iter__(self) -> Iterator[Any]:
+        return iter(self.array)
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__") or name in Named.__slots__:
+            raise AttributeError(name)
+        return getattr(self.array, name)
+
+    def __repr__(self) -> str:
+        shown = ", ".join(self.names[:4]) + (", ..." if len(self.names) > 4 else "")
+        return f"<strut array {self.array.shape} of {shown}>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Named, (self.array.copy(), self.names, self._axis)
+
+
+def _forward(name: str) -> Callable[..., Any]:
+    def method(self: Named, *others: Any) -> Any:
+        plain = [other.array if isinstance(other, Named) else other for other in others]
+        return getattr(self.array, name)(*plain)
+
+    method.__name__ = name
+    return method
+
+
+for _operator in "add sub mul truediv floordiv mod pow matmul".split():
+    setattr(Named, f"__{_operator}__", _forward(f"__{_operator}__"))
+    setattr(Named, f"__r{_operator}__", _forward(f"__r{_operator}__"))
+for _operator in "neg pos abs lt le gt ge eq ne".split():
+    setattr(Named, f"__{_operator}__", _forward(f"__{_operator}__"))
+Named.__hash__ = None  # type: ignore[assignment]  # as of arrays
+
+
+def from_words(value: Any, path: Sequence[str]) -> Any:
+    """The array behind a dotted name of a JSON: lists on the way are dimensions, gaps are NAN.
+
+    The library has the same (strutlib_result_array); this is for results that came out of a pickle.
+    """
+
+    def walk(at: Any, rest: Sequence[str]) -> Any:
+        if isinstance(at, list):
+            return [walk(item, rest) for item in at]
+        if rest and isinstance(at, Mapping):
+            for i in range(len(rest), 0, -1):  # names may have dots
+                word = ".".join(rest[:i])
+                if word in at:
+                    return walk(at[word], rest[i:])
+            return None
+        if rest:
+            return None
+        if isinstance(at, Mapping):
+            return [walk(item, rest) for item in at.values()]
+        return None if isinstance(at, (str, bool)) else at
+
+    def shape(at: Any) -> tuple[int, ...]:
+        if not isinstance(at, list):
+            return ()
+        inner: list[int] = []
+        for item in at:
+            for i, n in enumerate(shape(item)):
+                if i == len(inner):
+                    inner.append(n)
+                inner[i] = max(inner[i], n)
+        return (len(at), *inner)
+
+    def fill(array: Any, at: Any) -> None:
+        for i, item in enumerate(at):
+            if isinstance(item, list):
+                fill(array[i], item)
+            elif item is not None:
+                array[i] = item
+
+    nested = walk(value, path)
+    if not isinstance(nested, list):
+        return None
+    array = numpy().full(shape(nested), float("nan"))
+    fill(array, nested)
+    return array
