@@ -97,6 +97,12 @@ typedef enum strut_option_id {
   STRUT_OPTION_TIME,
   STRUT_OPTION_MEMORY,
   STRUT_OPTION_SHARD,
+  STRUT_OPTION_CHANNELS, /* of the library's run, and whether it records */
+  STRUT_OPTION_RECORD,
+  STRUT_OPTION_COMPUTE, /* of the library's sweep, as a study's keys */
+  STRUT_OPTION_LOWEST,
+  STRUT_OPTION_LIMIT_EVALUATIONS,
+  STRUT_OPTION_LIMIT_TIME,
   STRUT_OPTION_TEXTS_END
 } strut_option_id;
 
