@@ -175,7 +175,7 @@ STRUTLIB_API void strutlib_close(strutlib_scene *scene);
  * Names of the things of a kind, which is a key of the scene: "parameters", "nodes", "members",
  * "hinges", "cells", "contacts", "collisions", "actuators", "loads", "sensors", "states",
  * "configurations", "quantities", "grounds", "unbalances" or "sliders"; or "channels": those
- * that the scene records; "kinds": all these words. How many there are; 0 for any other word.
+ * that the scene records; "energies": the components of the channel "energy"; "kinds": all these words. How many there are; 0 for any other word.
  */
 STRUTLIB_API size_t strutlib_name_count(const strutlib_scene *scene, const char *kind);
 /** The i-th of these names, NULL beyond the last. The order is that of every array over the kind. */

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/run/measure/summary.h"
 #include "engine/statics/equilibria/rest_state.h"
 #include "parser/abi/handles.h"
 #include "parser/write/write_scene.h"
@@ -50,8 +51,11 @@ static const char *const kinds[] = {
     "contacts",
     "quantities",
     "channels",
+    "energies",
     "kinds",
     NULL};
+
+static const char *const energies[] = {STRUT_ENERGY_NAMES};
 
 static const char *name_at(const strut_setup *setup, const char *kind, size_t i) {
   const strut_scene *scene = &setup->scene;
@@ -66,6 +70,7 @@ static const char *name_at(const strut_setup *setup, const char *kind, size_t i)
   if (strcmp(kind, "quantities") == 0)
     return i < setup->experiment.quantity_count ? setup->experiment.quantities[i].name : NULL;
   if (strcmp(kind, "channels") == 0) return channel_at(setup->experiment.channels, i);
+  if (strcmp(kind, "energies") == 0) return i < STRUT_ENERGIES ? energies[i] : NULL;
   if (strcmp(kind, "kinds") == 0) return i < sizeof kinds / sizeof kinds[0] ? kinds[i] : NULL;
   return NULL;
 }
