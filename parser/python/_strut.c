@@ -60,10 +60,11 @@ static int read_text(PyObject *item, const char **text) {
 
 int strut_py_texts_read(PyObject *tuple, strut_py_texts *texts) {
   *texts = (strut_py_texts){0};
-  Py_ssize_t count = PyTuple_Size(tuple);
-  if (count < 0) {
+  if (!PyTuple_Check(tuple)) {
+    PyErr_SetString(PyExc_TypeError, "a tuple of texts is needed");
     return -1;
   }
+  Py_ssize_t count = PyTuple_Size(tuple);
   texts->text = malloc(((size_t)count + 1) * sizeof *texts->text);
   if (texts->text == NULL) {
     PyErr_NoMemory();

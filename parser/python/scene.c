@@ -260,8 +260,9 @@ static PyObject *sweep(PyObject *self, PyObject *arguments) {
     return NULL;
   }
   PyObject *answer = NULL;
-  Py_ssize_t axis_count = PyTuple_Size(axes);
+  Py_ssize_t axis_count = PyTuple_Check(axes) ? PyTuple_Size(axes) : -1;
   if (axis_count < 0) {
+    PyErr_SetString(PyExc_TypeError, "a tuple of names is needed");
   } else if (buffer.format == NULL || strcmp(buffer.format, "d") != 0 || count < 0 ||
              buffer.len / (Py_ssize_t)sizeof(double) != count * axis_count) {
     PyErr_SetString(PyExc_ValueError, "a double is needed for each point and axis");

@@ -53,3 +53,7 @@ __all__ = [
     "loads",
     "options",
 ]
+
+for _name in __all__:  # messages say strut.SceneError, whichever file it is in
+    globals()[_name].__module__ = "strut"
+del _name

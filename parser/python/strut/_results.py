@@ -8,7 +8,7 @@ import json
 from typing import TYPE_CHECKING, Any, ClassVar, Iterator, Protocol
 
 from . import _strut
-from ._values import Named, Words, from_words, numpy, options, unknown
+from ._values import Named, UnknownName, Words, from_words, numpy, options, unknown
 
 if TYPE_CHECKING:
     import numpy as np
@@ -154,7 +154,7 @@ class Result:
         """An array by its dotted name, such as "position.n1.x" or "equilibria.energy"."""
         found = self._raw.array(name)
         if found is None:
-            raise KeyError(unknown(name, self._raw.array_names(), "array"))
+            raise UnknownName(unknown(name, self._raw.array_names(), "array"))
         return numpy().asarray(found)  # type: ignore[no-any-return]
 
     def svg(self, **more: object) -> str:
@@ -209,7 +209,8 @@ _COMPONENTS = {
     "velocity": ("x", "y"),
     "contact": ("normal", "friction"),
 }
-_KINDS = {
+#: channels and the things that their columns are
+KINDS = {
     "position": "nodes",
     "velocity": "nodes",
     "length": "members",
@@ -219,6 +220,7 @@ _KINDS = {
     "moment": "hinges",
     "area": "cells",
     "pressure": "cells",
+    "energy": "energies",
 }
 
 
@@ -274,7 +276,8 @@ class Run(Result):
     @property
     def time(self) -> Array:
         """The instants at which was recorded [s]."""
-        return self.array("time")
+        found = self._raw.array("time")
+        return numpy().asarray(found if found is not None else ())  # type: ignore[no-any-return]
 
     @property
     def channels(self) -> list[str]:
@@ -287,7 +290,7 @@ class Run(Result):
             parts = name.split(".", 1)
             if len(parts) == 2 and parts[0] in self.channels:  # out of a pickle
                 return self._component(*parts)
-            raise KeyError(unknown(name, ["time", *self.channels], "array"))
+            raise UnknownName(unknown(name, ["time", *self.channels], "array"))
         array = numpy().asarray(array)
         names = self._names(name)
         return array if names is None else Named(array, names, 1)
@@ -299,33 +302,29 @@ class Run(Result):
         thing, _, component = rest.rpartition(".")
         components = _COMPONENTS.get(channel, ())
         if thing not in named.names or component not in components:
-            raise KeyError(unknown(rest, named.names))
+            raise UnknownName(unknown(rest, named.names))
         return named[thing][:, components.index(component)]
 
     def _names(self, channel: str) -> tuple[str, ...] | None:
-        """Names of a channel's things, as its arrays' names have them."""
+        """Names of a channel's things, in the order of its columns."""
         if channel not in self.channels:
             return None
-        names = [name.split(".", 1)[1] for name in self.array_names if name.startswith(channel + ".")]
-        tails = tuple("." + component for component in _COMPONENTS.get(channel, ()))
-        if tails:
-            names = [name[: -len(tail)] for name in names for tail in tails if name.endswith(tail)]
-        names = [*dict.fromkeys(names)]
-        if not names and channel in _KINDS and self._scene is not None:
-            names = [*self._scene.names(_KINDS[channel])]
-        return tuple(names)
+        assert self._scene is not None
+        return self._scene.names(KINDS[channel])
 
     @property
     def nodes(self) -> Words:
         """Each node: x, y, vx, vy over time as recorded, and the summary's `position` at the end."""
         there = self.summary.get("nodes", {})
-        names = there or dict.fromkeys(self["position"].names)
+        assert self._scene is not None
+        names = self._scene.names("nodes")
         return Words({n: _Trajectories(self, n, there.get(n, Words()), _NODE) for n in names})
 
     @property
     def members(self) -> Words:
         """Each member: length and force over time as recorded."""
-        names = self._scene.names("members") if self._scene is not None else self["force"].names
+        assert self._scene is not None
+        names = self._scene.names("members")
         return Words({n: _Trajectories(self, n, Words(), _MEMBER) for n in names})
 
     def to_yaml(self) -> str:
@@ -409,7 +408,7 @@ class Equilibria(_List):
         for words in self._things:
             if words["name"] == key:
                 return _equilibrium(self._scene, words)
-        raise KeyError(unknown(key, self.names, "equilibrium"))
+        raise UnknownName(unknown(key, self.names, "equilibrium"))
 
     @property
     def names(self) -> list[str]:
@@ -502,7 +501,7 @@ class Matrices(Result):
     def coordinates(self, name: str) -> tuple[Array, Array, Array, tuple[int, int]]:
         """Rows, columns and values of the entries, and the size: what every sparse library takes."""
         if self._raw.array(f"{name}.value") is None:
-            raise KeyError(unknown(name, [n for n in self.names if n != name], "matrix"))
+            raise UnknownName(unknown(name, [n for n in self.names if n != name], "matrix"))
         rows, columns = (self.array(f"{name}.{word}").astype(int) for word in ("row", "column"))
         size = self.array(f"{name}.size")
         return rows, columns, self.array(f"{name}.value"), (int(size[0]), int(size[1]))

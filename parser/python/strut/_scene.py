@@ -11,7 +11,7 @@ from . import _strut
 from ._results import Equilibria, Form, Matrices, Modes, Path, Result, Rigidity, Run
 from ._simulation import Simulation
 from ._sweep import Table, plan
-from ._values import Words, numpy, options, settings, unknown
+from ._values import UnknownName, Words, numpy, options, settings, unknown
 
 if TYPE_CHECKING:
     import numpy as np
@@ -76,7 +76,7 @@ class Scene:
         """An array of the drawn structure, such as "nodes.position" or "members.stiffness"."""
         found = self._raw.array(name)
         if found is None:
-            raise KeyError(f"a scene has no array '{name}'")
+            raise UnknownName(f"a scene has no array '{name}'")
         return numpy().asarray(found)  # type: ignore[no-any-return]
 
     def to_dict(self) -> dict[str, Any]:

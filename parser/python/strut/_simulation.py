@@ -6,23 +6,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Callable
 
 from . import _strut
+from ._results import KINDS
 from ._values import Named, numpy, unknown
 
 if TYPE_CHECKING:
     from ._scene import Scene
 
-_LIVE = {
-    "position": "nodes",
-    "velocity": "nodes",
-    "length": "members",
-    "force": "members",
-    "contact": "contacts",
-    "angle": "hinges",
-    "moment": "hinges",
-    "area": "cells",
-    "pressure": "cells",
-    "energy": "",
-}
 _INPUTS = {"rest": "members", "actuators": "actuators", "load": "nodes"}
 
 
@@ -53,7 +42,7 @@ class Simulation:
         moment: Named
         area: Named
         pressure: Named
-        energy: Any
+        energy: Named
         rest: Named
         rest0: Named
         actuators: Named
@@ -85,8 +74,8 @@ class Simulation:
 
     def __getattr__(self, name: str) -> Any:
         # Only for arrays that nobody has asked for yet: they become attributes.
-        if name in _LIVE:
-            array, kind = self._raw.array(name), _LIVE[name]
+        if name in KINDS:
+            array, kind = self._raw.array(name), KINDS[name]
         elif name in _INPUTS:
             array, kind = self._raw.input(name), _INPUTS[name]
         elif name == "rest0":
@@ -94,11 +83,11 @@ class Simulation:
             if array is not None:
                 array = numpy().frombuffer(array)
         else:
-            raise AttributeError(unknown(name, [*_LIVE, *_INPUTS, "rest0", "advance"]))
+            raise AttributeError(unknown(name, [*KINDS, *_INPUTS, "rest0", "advance"]))
         if array is None:
             raise AttributeError(f"this simulation has no {name}")
         array = numpy().asarray(array)
-        live = Named(array, self._scene.names(kind)) if kind else array
+        live = Named(array, self._scene.names(kind))
         self.__dict__[name] = live
         return live
 

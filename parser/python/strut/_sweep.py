@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Iterable, Iterator, Mapping, NamedTuple, 
 
 from . import _strut
 from ._results import _Raw, _Stored
-from ._values import numpy, unknown
+from ._values import UnknownName, numpy, unknown
 
 if TYPE_CHECKING:
     import numpy as np
@@ -110,7 +110,7 @@ class Table:
 
     def __getitem__(self, column: str) -> Any:
         if column not in self.columns:
-            raise KeyError(unknown(column, self.columns, "column"))
+            raise UnknownName(unknown(column, self.columns, "column"))
         if column == "status":
             return self.status
         found = self._raw.array(column)

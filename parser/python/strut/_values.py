@@ -53,6 +53,12 @@ def numpy() -> Any:
     return numpy
 
 
+class UnknownName(KeyError):
+    """A KeyError whose text is a sentence, shown without quotes."""
+
+    __str__ = Exception.__str__
+
+
 class Words(dict[str, Any]):
     """A mapping whose items are attributes, too: run.energy.residual."""
 
@@ -103,7 +109,7 @@ class Named:
         try:
             i = self._index[name]
         except KeyError:
-            raise KeyError(unknown(name, self.names)) from None
+            raise UnknownName(unknown(name, self.names)) from None
         part = self.array[(slice(None),) * self._axis + (i,)]
         if part.ndim:  # a lone number would be a copy
             self._parts[name] = part
@@ -120,7 +126,7 @@ class Named:
             try:
                 key = (slice(None),) * self._axis + (self._index[key],)
             except KeyError:
-                raise KeyError(unknown(key, self.names)) from None
+                raise UnknownName(unknown(key, self.names)) from None
         self.array[key] = value
 
     def items(self) -> Iterator[tuple[str, Any]]:

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""For the tests of the Python package: the program besides it, and where models are.
+
+    PYTHONPATH=BUILD/python python3 -X dev -W error tests/python/NAME_test.py PROGRAM
+"""
+
+import os
+import pathlib
+import subprocess
+import sys
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+MODELS = ROOT / "models"
+PROGRAM = sys.argv[1] if len(sys.argv) > 1 else ""
+
+
+def program(*words: object, code: int = 0) -> str:
+    """What the program prints; it must return `code`."""
+    done = subprocess.run(
+        [PROGRAM, *map(os.fspath, map(str, words))], capture_output=True, text=True, check=False
+    )
+    if done.returncode != code:
+        raise AssertionError(f"strut {words}: {done.returncode}, expected {code}: {done.stderr}")
+    return done.stdout
+
+
+def skip_without(*modules: str) -> None:
+    """Ends the test as skipped where a module is not installed."""
+    import importlib.util
+
+    missing = [name for name in modules if importlib.util.find_spec(name) is None]
+    if missing:
+        print("not installed:", *missing)
+        sys.exit(77)
+
+
+def main() -> None:
+    unittest.main(argv=sys.argv[:1], verbosity=1)
