@@ -70,7 +70,8 @@ static strut_status search_held(strut_equilibrium_search *h, const strut_potenti
                                   .seed = h->out->seed,
                                   .searches = (int32_t)h->supports.count + 1,
                                   .saddles = !o->standing_only,
-                                  .extra = extra};
+                                  .extra = extra,
+                                  .interrupt = o->interrupt};
   for (size_t s = 0; s < shapes; s++)
     if (h->level.scene.configurations[s].shaped) extra[effort.extra_count++] = shape + s * length;
   strut_critical_set found = {0};

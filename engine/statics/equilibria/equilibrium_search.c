@@ -190,7 +190,8 @@ static strut_status explore_landscape(strut_equilibrium_search *h) {
                                   .extra_count = extras,
                                   .extra = extra,
                                   .hint_count = hints,
-                                  .hint = hint};
+                                  .hint = hint,
+                                  .interrupt = o->interrupt};
   if (h->explored) strut_landscape_free(&h->landscape);
   h->explored = true;
   if (!status) status = strut_landscape_create(h->potential, &effort, &h->landscape, h->error);

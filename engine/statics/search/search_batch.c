@@ -171,12 +171,14 @@ static void run_task(strut_search_tasks *b, const strut_task *task, strut_task_r
 }
 
 const strut_task_result *strut_search_tasks_run(strut_search_tasks *batch, const strut_task *task,
-                                                size_t count) {
+                                                size_t count,
+                                                const volatile sig_atomic_t *interrupt) {
   assert(count <= STRUT_BATCH);
   int tasks = (int)count;
 #ifdef _OPENMP
 #pragma omp parallel for schedule(dynamic) num_threads(batch->worker_count)
 #endif
-  for (int i = 0; i < tasks; i++) run_task(batch, &task[i], &batch->result[i]);
+  for (int i = 0; i < tasks; i++)
+    if (!interrupt || !*interrupt) run_task(batch, &task[i], &batch->result[i]);
   return batch->result;
 }

@@ -7,6 +7,8 @@
 #ifndef STRUT_ENGINE_STATICS_SEARCH_SEARCH_BATCH_H
 #define STRUT_ENGINE_STATICS_SEARCH_SEARCH_BATCH_H
 
+#include <signal.h>
+
 #include "engine/statics/minimise.h"
 
 /** Tasks run, and their results are read, in groups of this size. */
@@ -45,8 +47,12 @@ strut_status strut_search_tasks_create(const strut_potential *potential, uint64_
                                        strut_search_tasks **batch, strut_error *error);
 void strut_search_tasks_free(strut_search_tasks *batch);
 
-/** Runs up to STRUT_BATCH tasks; the results are valid until the next call. */
+/**
+ * Runs up to STRUT_BATCH tasks; the results are valid until the next call. Tasks that begin once
+ * *interrupt is not 0 are left out, and then no result means anything; `interrupt` may be NULL.
+ */
 const strut_task_result *strut_search_tasks_run(strut_search_tasks *batch, const strut_task *task,
-                                                size_t count);
+                                                size_t count,
+                                                const volatile sig_atomic_t *interrupt);
 
 #endif
