@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import builtins
 from typing import Any, NamedTuple
 
 __all__ = ["Error", "FileError", "MemoryError", "Message", "RunError", "SceneError", "UsageError"]
@@ -82,7 +83,7 @@ class FileError(Error, OSError):
     """A file could not be read or written."""
 
 
-class MemoryError(Error, MemoryError):  # type: ignore[misc]  # noqa: A001
+class MemoryError(Error, builtins.MemoryError):
     """Memory is out."""
 
 

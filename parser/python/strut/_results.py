@@ -333,7 +333,7 @@ class Run(Result):
 
     def to_pandas(self) -> Any:
         """What was recorded as a table over time, with columns such as "position.n1.x"."""
-        import pandas
+        import pandas  # type: ignore[import]
 
         columns = {}
         for channel in self.channels:
@@ -366,6 +366,7 @@ class Equilibrium(Words):
     """One shape at rest, with the words of the JSON: energy, nodes, forces, verdict, ..."""
 
     __slots__ = ("_scene",)
+    _scene: Any
 
     def modes(self, **more: object) -> Modes:
         """Vibration about it."""
@@ -517,7 +518,7 @@ class Matrices(Result):
         """scipy's csr_array, or a dense array where scipy is not installed."""
         rows, columns, values, size = self.coordinates(name)
         try:
-            from scipy.sparse import csr_array
+            from scipy.sparse import csr_array  # type: ignore[import]
         except ImportError:
             return self.dense(name)
         return csr_array((values, (rows, columns)), shape=size)

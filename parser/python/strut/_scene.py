@@ -121,7 +121,9 @@ class Scene:
 
     # ---- what is computed of it ----
 
-    def _call(self, kind: type[Any], progress: Progress | None = None, **given: object) -> Any:
+    def _call(
+        self, kind: type[Any], given: Mapping[str, object], progress: Progress | None = None
+    ) -> Any:
         """Calls the library; what an interrupted or failed call returned becomes error.result."""
         raw = _strut.result()
         try:
@@ -149,24 +151,23 @@ class Scene:
         `progress(fraction)` is called now and then; what it raises ends the run. A run that fails
         raises RunError, whose `result` is the run up to there; so has KeyboardInterrupt.
         """
-        run: Run = self._call(
-            Run, progress, accuracy=accuracy, channels=channels, record=record, **more
-        )
+        given: dict[str, object] = {"accuracy": accuracy, "channels": channels, "record": record}
+        run: Run = self._call(Run, {**given, **more}, progress)
         return run
 
     def equilibria(self, **more: object) -> Equilibria:
         """All shapes in which it can rest, and the barriers between: equilibria()["II"].energy."""
-        found: Equilibria = self._call(Equilibria, **more)
+        found: Equilibria = self._call(Equilibria, more)
         return found
 
     def modes(self, *, at: str | None = None, **more: object) -> Modes:
         """Natural frequencies and mode shapes about an equilibrium."""
-        found: Modes = self._call(Modes, at=at, **more)
+        found: Modes = self._call(Modes, {"at": at, **more})
         return found
 
     def rigidity(self, *, at: str | None = None, **more: object) -> Rigidity:
         """States of self-stress and mechanisms."""
-        found: Rigidity = self._call(Rigidity, at=at, **more)
+        found: Rigidity = self._call(Rigidity, {"at": at, **more})
         return found
 
     def form(self, **more: object) -> Form:
@@ -174,17 +175,17 @@ class Scene:
 
         The program's --from is written from_: form(from_="densities").
         """
-        found: Form = self._call(Form, **_from(more))
+        found: Form = self._call(Form, _from(more))
         return found
 
     def path(self, **more: object) -> Path:
         """Follows an equilibrium as a load, an actuator or a parameter changes: path(load="push")."""
-        found: Path = self._call(Path, **_from(more))
+        found: Path = self._call(Path, _from(more))
         return found
 
     def matrices(self, *, at: str | None = None) -> Matrices:
         """Mass, stiffness, equilibrium matrix and others, as sparse matrices of scipy where it is installed."""
-        found: Matrices = self._call(Matrices, at=at)
+        found: Matrices = self._call(Matrices, {"at": at})
         return found
 
     def simulation(self, **more: object) -> Simulation:
@@ -232,7 +233,7 @@ class Scene:
         pairs = (given[0] + there[0], given[1] + there[1])
         try:
             self._raw.sweep(
-                raw, work.names, work.count, work.numbers, work.words, kept, *pairs, progress
+                raw, work.names, work.rows, work.numbers, work.words, kept, *pairs, progress
             )
         except BaseException as error:
             if raw:

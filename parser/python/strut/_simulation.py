@@ -79,9 +79,8 @@ class Simulation:
         elif name in _INPUTS:
             array, kind = self._raw.input(name), _INPUTS[name]
         elif name == "rest0":
-            array, kind = self._rest0, "members"
-            if array is not None:
-                array = numpy().frombuffer(array)
+            kind = "members"
+            array = None if self._rest0 is None else numpy().frombuffer(self._rest0)
         else:
             raise AttributeError(unknown(name, [*KINDS, *_INPUTS, "rest0", "advance"]))
         if array is None:

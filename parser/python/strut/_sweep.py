@@ -24,8 +24,8 @@ class Plan(NamedTuple):
 
     names: tuple[str, ...]
     shape: tuple[int, ...]  #: lengths of the axes, or the number of points
-    count: int
-    numbers: Any  #: count * len(names) doubles
+    rows: int
+    numbers: Any  #: rows * len(names) doubles
     words: tuple[str | None, ...] | None  #: values of parameters that are texts
 
 
@@ -93,7 +93,7 @@ class Table:
         self._raw = raw
         self.axes = work.names
         self.shape = work.shape  #: lengths of the axes
-        self._count = work.count
+        self._count = work.rows
 
     @property
     def columns(self) -> list[str]:
@@ -145,7 +145,7 @@ class Table:
 
     def to_pandas(self) -> Any:
         """The same as a DataFrame."""
-        import pandas
+        import pandas  # type: ignore[import]
 
         return pandas.DataFrame({name: self[name] for name in self.columns})
 

@@ -20,7 +20,7 @@ def text(value: object) -> str:
     if isinstance(value, bool) or type(value).__name__ == "bool_":  # numpy's, too
         return "yes" if value else "no"
     if isinstance(value, os.PathLike):
-        return os.fspath(value)
+        return str(os.fspath(value))
     try:
         return str(operator.index(value))  # type: ignore[arg-type]
     except TypeError:

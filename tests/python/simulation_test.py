@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A simulation that Python advances: a run's bits, live arrays, inputs, snapshots, interrupts, cost."""
+
+import os
+import signal
+import threading
+import time
+import unittest
+
+from support import MODELS, main, skip_without
+
+skip_without("numpy")
+
+import numpy as np  # noqa: E402
+
+import strut  # noqa: E402
+
+CRAWLER = MODELS / "crawler/crawler.yaml"
+
+
+class Simulations(unittest.TestCase):
+    def setUp(self) -> None:
+        self.scene = strut.load(CRAWLER)
+        self.sim = self.scene.simulation(step="0.1 ms")
+
+    def test_its_steps_are_those_of_a_run(self):
+        for name in ("basics/oscillator", "basics/bouncing-node", "basics/x-frame"):
+            scene = strut.load(MODELS / f"{name}.yaml")
+            run = scene.run(channels="position,velocity")
+            sim = scene.simulation()
+            for part in np.diff(np.linspace(0, run.summary["steps"], 7).astype(int)):
+                sim.advance(int(part))
+            np.testing.assert_array_equal(sim.position.array, run["position"][-1], name)
+            np.testing.assert_array_equal(sim.velocity.array, run["velocity"][-1], name)
+
+    def test_division_into_calls_changes_no_bit(self):
+        self.sim.advance(1000)
+        other = self.scene.simulation(step="0.1 ms")
+        for _ in range(100):
+            other.advance(10)
+        np.testing.assert_array_equal(self.sim.position.array, other.position.array)
+        self.assertEqual(self.sim.time, other.time)
+        self.assertAlmostEqual(self.sim.time, 0.1, places=12)
+        self.assertEqual(self.sim.step, 1e-4)
+
+    def test_arrays_are_live_and_have_names(self):
+        x = self.sim.position["n1"]
+        before = x.copy()
+        self.sim.advance(500)
+        self.assertFalse(np.array_equal(before, x))
+        np.testing.assert_array_equal(self.sim.position.array[0], x)
+        self.assertEqual(self.sim.force.shape, (9,))
+        self.assertEqual(self.sim.force["m8"], self.sim.force[7])
+        self.assertIs(self.sim.force, self.sim.force)
+        self.assertEqual(self.sim.contact.names, self.scene.names("contacts"))
+        self.assertAlmostEqual(self.sim.energy["elastic"], 22.69, places=1)
+        with self.assertRaises(ValueError):
+            x[0] = 0  # the state is the engine's
+        with self.assertRaisesRegex(KeyError, "there are n1, n2"):
+            self.sim.position["n9"]
+        with self.assertRaisesRegex(AttributeError, "no angle"):
+            self.sim.angle
+        with self.assertRaises(AttributeError):
+            self.sim.postion
+        np.testing.assert_array_equal(self.sim.position - self.sim.position, np.zeros((5, 2)))
+        sim = self.sim
+        del self.sim
+        force = sim.force.array
+        del sim  # what somebody looks at stays
+        self.assertEqual(len(force.tolist()), 9)
+
+    def test_inputs_hold_until_they_are_written_again(self):
+        free = self.scene.simulation(step="0.1 ms")
+        self.sim.rest["m8"] = self.sim.rest0["m8"] + 0.3e-3
+        self.sim.advance(100)
+        free.advance(100)
+        self.assertFalse(np.array_equal(self.sim.position, free.position))
+        self.assertEqual(self.sim.rest["m8"], self.sim.rest0["m8"] + 0.3e-3)
+        self.assertNotEqual(self.sim.input_work, 0)
+        with self.assertRaises(ValueError):
+            self.sim.rest0["m8"] = 3
+        self.sim.load["n2"] = (1, -2)
+        self.sim.advance(1)
+        np.testing.assert_array_equal(self.sim.load["n2"], [1, -2])
+
+    def test_inputs_that_mean_nothing_are_refused(self):
+        before = self.sim.position.copy()
+        for wrong in (float("nan"), -1.0, float("inf")):
+            self.sim.rest["m8"] = wrong
+            with self.assertRaises(strut.UsageError):
+                self.sim.advance(1)
+        np.testing.assert_array_equal(self.sim.position, before)
+        self.sim.rest["m8"] = self.sim.rest0["m8"]
+        self.sim.advance(1)
+        with self.assertRaises(ValueError):
+            self.sim.advance(-1)
+        with self.assertRaises(TypeError):
+            self.sim.advance(1.5)
+        with self.assertRaises(OverflowError):
+            self.sim.advance(10**30)
+        with self.assertRaises(TypeError):
+            self.sim.restore(3)
+        with self.assertRaises(strut.UsageError):
+            self.sim.restore(self.scene.simulation().snapshot())
+        with self.assertRaisesRegex(strut.UsageError, "did you mean"):
+            self.scene.simulation(stepp="1 ms")
+
+    def test_a_snapshot_brings_everything_back(self):
+        self.sim.advance(300)
+        kept = self.sim.snapshot()
+        ends = []
+        for _ in range(2):
+            self.sim.rest["m8"] = self.sim.rest0["m8"] + 1e-4
+            self.sim.advance(200)
+            ends.append((self.sim.time, self.sim.position.copy().tobytes()))
+            self.sim.restore(kept)
+            self.assertEqual(self.sim.rest["m8"], self.sim.rest0["m8"])
+        self.assertEqual(ends[0], ends[1])
+
+    def test_one_thread_at_a_time(self):
+        self.sim.advance(100)
+        thread = threading.Thread(target=lambda: self.sim.advance(3_000_000))
+        thread.start()
+        refused = 0
+        while thread.is_alive():
+            try:
+                self.sim.time
+            except RuntimeError:
+                refused += 1
+                break
+        thread.join()
+        self.assertGreater(refused, 0)
+        self.assertGreater(self.sim.time, 300)
+
+    def test_ctrl_c_ends_many_steps(self):
+        sent = []
+
+        def press() -> None:
+            sent.append(time.monotonic())
+            os.kill(os.getpid(), signal.SIGINT)
+
+        threading.Timer(0.2, press).start()
+        with self.assertRaises(KeyboardInterrupt):
+            self.sim.advance(10**12)
+        took = time.monotonic() - sent[0]
+        print(f"simulation: {took:.3f} s")
+        self.assertLess(took, 1.0)
+        before = self.sim.time
+        self.sim.advance(10)
+        self.assertGreater(self.sim.time, before)
+
+    def test_cost_of_a_call(self):
+        """Prints what a call costs beside a step; the limit is generous, for machines are busy."""
+        sim, clock = self.sim, time.perf_counter
+        sim.advance(20000)
+
+        def cost(calls: int, steps: int) -> float:
+            best = 1.0
+            for _ in range(7):
+                begin = clock()
+                for _ in range(calls):
+                    sim.advance(steps)
+                best = min(best, (clock() - begin) / (calls * steps))
+            return best * 1e6
+
+        by_one, by_ten, at_once = cost(5000, 1), cost(1000, 10), cost(1, 20000)
+        begin = clock()
+        run = self.scene.run(step="0.1 ms", record=False)
+        program = (clock() - begin) / run.summary["steps"] * 1e6
+        print(
+            f"us per step: {by_one:.3f} by one, {by_ten:.3f} by ten, {at_once:.3f} at once,"
+            f" {program:.3f} in a run"
+        )
+        self.assertLess(by_ten, 3 * at_once)
+
+
+main()
