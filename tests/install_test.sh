@@ -87,4 +87,8 @@ cmp table-by-cmake.csv table.csv
 cmp table-by-cmake.csv by-program/table.csv
 
 "$prefix/bin/strut" --version
+"$prefix/bin/strut" schema >schema
+cmp schema "$prefix/share/strut/strut-1.schema.json"
+"$prefix/bin/strut" schema --study >schema
+cmp schema "$prefix/share/strut/strut-1.study.schema.json"
 "$prefix/bin/strut" check "$source/models/crawler/crawler.yaml" >/dev/null

@@ -148,6 +148,17 @@ expect 0 check "$hopper" -q
 out_empty
 
 # The other commands.
+expect 0 schema
+out_has '"rest_length_ratio"'
+err_empty
+cp out scene.json
+expect 0 schema --study
+out_has '"variants"'
+cmp -s out scene.json && fail "both schemas are the same"
+expect 1 schema --studi
+err_has "did you mean '--study'?"
+expect 1 schema scene
+err_has "unexpected argument 'scene'"
 expect 0 keys
 out_has rest_length_ratio
 err_empty

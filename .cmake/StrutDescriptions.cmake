@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# What the program tells about itself, made by running it after it was built, and installed: the schema of
+# the language for editors. A cross-compiled program that nothing here can run goes without.
+if(CMAKE_CROSSCOMPILING AND NOT CMAKE_CROSSCOMPILING_EMULATOR)
+  return()
+endif()
+
+set(strut_described "") # the files
+
+# strut_describe(FILE WORD...): FILE is what "strut WORD..." prints.
+function(strut_describe file)
+  set(path "${PROJECT_BINARY_DIR}/descriptions/${file}")
+  get_filename_component(folder "${path}" DIRECTORY)
+  file(MAKE_DIRECTORY "${folder}")
+  add_custom_command(OUTPUT "${path}" COMMAND strut ${ARGN} > "${path}" DEPENDS strut VERBATIM
+                     COMMENT "")
+  set(strut_described ${strut_described} "${path}" PARENT_SCOPE)
+endfunction()
+
+strut_describe(strut-1.schema.json schema)
+strut_describe(strut-1.study.schema.json schema --study)
+install(FILES ${strut_described} DESTINATION "${CMAKE_INSTALL_DATADIR}/strut")
+
+add_custom_target(strut_descriptions ALL DEPENDS ${strut_described})
