@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What the program tells about itself, made by running it after it was built, and installed: the schema of
-# the language for editors. A cross-compiled program that nothing here can run goes without.
+# the language for editors, the completion scripts of shells. A cross-compiled program that nothing here can run goes without.
 if(CMAKE_CROSSCOMPILING AND NOT CMAKE_CROSSCOMPILING_EMULATOR)
   return()
 endif()
@@ -17,8 +17,18 @@ function(strut_describe file)
   set(strut_described ${strut_described} "${path}" PARENT_SCOPE)
 endfunction()
 
-strut_describe(strut-1.schema.json schema)
-strut_describe(strut-1.study.schema.json schema --study)
-install(FILES ${strut_described} DESTINATION "${CMAKE_INSTALL_DATADIR}/strut")
+# strut_describe_and_install(FOLDER FILE WORD...): the same, installed below share/FOLDER.
+macro(strut_describe_and_install folder file)
+  strut_describe(${file} ${ARGN})
+  install(FILES "${PROJECT_BINARY_DIR}/descriptions/${file}"
+          DESTINATION "${CMAKE_INSTALL_DATADIR}/${folder}")
+endmacro()
+
+strut_describe_and_install(strut strut-1.schema.json schema)
+strut_describe_and_install(strut strut-1.study.schema.json schema --study)
+# Where bash-completion looks, and Debian's zsh and fish.
+strut_describe_and_install(bash-completion/completions strut completion bash)
+strut_describe_and_install(zsh/vendor-completions _strut completion zsh)
+strut_describe_and_install(fish/vendor_completions.d strut.fish completion fish)
 
 add_custom_target(strut_descriptions ALL DEPENDS ${strut_described})

@@ -91,4 +91,9 @@ cmp table-by-cmake.csv by-program/table.csv
 cmp schema "$prefix/share/strut/strut-1.schema.json"
 "$prefix/bin/strut" schema --study >schema
 cmp schema "$prefix/share/strut/strut-1.study.schema.json"
+for script in bash:bash-completion/completions/strut zsh:zsh/vendor-completions/_strut \
+  fish:fish/vendor_completions.d/strut.fish; do
+  "$prefix/bin/strut" completion "${script%%:*}" >script
+  cmp script "$prefix/share/${script#*:}"
+done
 "$prefix/bin/strut" check "$source/models/crawler/crawler.yaml" >/dev/null

@@ -35,9 +35,14 @@ static const strut_command *const commands[] = {
     &strut_command_write,
     &strut_command_keys,
     &strut_command_schema,
+    &strut_command_completion,
     &help_command,
     NULL,
 };
+
+const strut_command *strut_command_at(size_t i) {
+  return i < sizeof commands / sizeof commands[0] ? commands[i] : NULL;
+}
 
 static const char *command_name_at(const void *context, size_t i) {
   (void)context;

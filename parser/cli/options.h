@@ -148,6 +148,9 @@ void strut_arguments_free(strut_arguments *arguments);
 /** The value given for an option that is kept as text, or NULL. */
 const char *strut_option_text(const strut_arguments *arguments, strut_option_id id);
 
+/** The i-th option of a command, those of every command last; NULL after them. */
+const strut_option *strut_option_at(const strut_command *command, size_t i);
+
 /** Prints the help of a command on stdout. */
 void strut_command_help(const strut_command *command);
 
