@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What the program tells about itself, made by running it after it was built, and installed: the schema of
-# the language for editors, the completion scripts of shells. A cross-compiled program that nothing here can run goes without.
+# the language for editors, the completion scripts of shells, the manual. A cross-compiled program that nothing here can run goes without.
 if(CMAKE_CROSSCOMPILING AND NOT CMAKE_CROSSCOMPILING_EMULATOR)
   return()
 endif()
@@ -30,5 +30,15 @@ strut_describe_and_install(strut strut-1.study.schema.json schema --study)
 strut_describe_and_install(bash-completion/completions strut completion bash)
 strut_describe_and_install(zsh/vendor-completions _strut completion zsh)
 strut_describe_and_install(fish/vendor_completions.d strut.fish completion fish)
+
+# Manual pages: of the program, of each command (cli/command_NAME.c), of the language.
+strut_describe_and_install(man/man1 strut.1 help --man)
+strut_describe_and_install(man/man5 strut-model.5 help --man model)
+get_target_property(sources strut SOURCES)
+foreach(source IN LISTS sources)
+  if(source MATCHES "cli/command_(.*)[.]c$")
+    strut_describe_and_install(man/man1 strut-${CMAKE_MATCH_1}.1 help --man ${CMAKE_MATCH_1})
+  endif()
+endforeach()
 
 add_custom_target(strut_descriptions ALL DEPENDS ${strut_described})

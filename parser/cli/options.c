@@ -122,6 +122,7 @@ static strut_status store_option(const strut_command *command, int id, strut_arg
     case STRUT_OPTION_RETRY: to->retry = true; break;
     case STRUT_OPTION_PARTS: to->parts = true; break;
     case STRUT_OPTION_STUDY: to->study = true; break;
+    case STRUT_OPTION_MAN: to->man = true; break;
     case STRUT_OPTION_HELP: to->help = true; break;
     default: break;
   }
@@ -221,6 +222,7 @@ void strut_command_help(const strut_command *command) {
   printf("usage: strut %s", command->name);
   printf(" [OPTION]...");
   if (command->model) printf(command->model_optional ? " [%s]" : " %s", command->model);
+  if (command->model_optional && command->many) printf("...");
   printf("\n\nstrut %s: %s.\n", command->name, command->summary);
   if (command->details) printf("%s", command->details);
   printf("\nOptions:\n");

@@ -35,6 +35,7 @@ typedef enum strut_option_id {
   STRUT_OPTION_RETRY,
   STRUT_OPTION_PARTS, /* of write: the short scene */
   STRUT_OPTION_STUDY, /* of schema: that of a study */
+  STRUT_OPTION_MAN,   /* of help: the manual page */
   /* kept as text: strut_option_text, and option_values.h for numbers */
   STRUT_OPTION_TEXTS,
   STRUT_OPTION_AT = STRUT_OPTION_TEXTS,
@@ -125,7 +126,7 @@ typedef struct strut_arguments {
   size_t override_count;
   strut_override *varied; /* (varied_count) of --vary */
   size_t varied_count;
-  bool parts, study;
+  bool parts, study, man;
 } strut_arguments;
 
 /** A command: how it is called, explained and run. */
