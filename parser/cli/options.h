@@ -34,6 +34,8 @@ typedef enum strut_option_id {
   STRUT_OPTION_STATUS,
   STRUT_OPTION_RETRY,
   STRUT_OPTION_PARTS, /* of write: the short scene */
+  STRUT_OPTION_STUDY, /* of schema: that of a study */
+  STRUT_OPTION_MAN,   /* of help: the manual page */
   /* kept as text: strut_option_text, and option_values.h for numbers */
   STRUT_OPTION_TEXTS,
   STRUT_OPTION_AT = STRUT_OPTION_TEXTS,
@@ -124,7 +126,7 @@ typedef struct strut_arguments {
   size_t override_count;
   strut_override *varied; /* (varied_count) of --vary */
   size_t varied_count;
-  bool parts;
+  bool parts, study, man;
 } strut_arguments;
 
 /** A command: how it is called, explained and run. */
@@ -146,6 +148,9 @@ void strut_arguments_free(strut_arguments *arguments);
 
 /** The value given for an option that is kept as text, or NULL. */
 const char *strut_option_text(const strut_arguments *arguments, strut_option_id id);
+
+/** The i-th option of a command, those of every command last; NULL after them. */
+const strut_option *strut_option_at(const strut_command *command, size_t i);
 
 /** Prints the help of a command on stdout. */
 void strut_command_help(const strut_command *command);
