@@ -122,6 +122,7 @@ static strut_status store_option(const strut_command *command, int id, strut_arg
     case STRUT_OPTION_STATUS: to->status = true; break;
     case STRUT_OPTION_RETRY: to->retry = true; break;
     case STRUT_OPTION_PARTS: to->parts = true; break;
+    case STRUT_OPTION_DAKOTA: to->dakota = true; break;
     case STRUT_OPTION_HELP: to->help = true; break;
     default: break;
   }
