@@ -45,6 +45,7 @@ static const strut_command *const commands[] = {
     &strut_command_keys,
     &strut_command_schema,
     &strut_command_completion,
+    &strut_command_evaluate,
     &help_command,
     NULL,
 };

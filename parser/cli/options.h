@@ -36,6 +36,7 @@ typedef enum strut_option_id {
   STRUT_OPTION_PARTS, /* of write: the short scene */
   STRUT_OPTION_STUDY, /* of schema: that of a study */
   STRUT_OPTION_MAN,   /* of help: the manual page */
+  STRUT_OPTION_DAKOTA, /* of evaluate: the files of DAKOTA */
   /* kept as text: strut_option_text, and option_values.h for numbers */
   STRUT_OPTION_TEXTS,
   STRUT_OPTION_AT = STRUT_OPTION_TEXTS,
@@ -101,6 +102,11 @@ typedef enum strut_option_id {
   STRUT_OPTION_TIME,
   STRUT_OPTION_MEMORY,
   STRUT_OPTION_SHARD,
+  STRUT_OPTION_COMPUTE, /* of evaluate: what, and which results */
+  STRUT_OPTION_KEEP,
+  STRUT_OPTION_IN,
+  STRUT_OPTION_OUT,
+  STRUT_OPTION_ALLOWANCE, /* of export: for the ends of cables */
   STRUT_OPTION_TEXTS_END
 } strut_option_id;
 
@@ -126,7 +132,7 @@ typedef struct strut_arguments {
   size_t override_count;
   strut_override *varied; /* (varied_count) of --vary */
   size_t varied_count;
-  bool parts, study, man;
+  bool parts, study, man, dakota;
 } strut_arguments;
 
 /** A command: how it is called, explained and run. */
