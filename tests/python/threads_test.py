@@ -107,11 +107,9 @@ def round_of_everything() -> None:
 
 class Memory(unittest.TestCase):
     def test_rounds_of_everything_leave_nothing(self):
-        for _ in range(20):
-            round_of_everything()
-        gc.collect()
         tracemalloc.start(1)
-        round_of_everything()
+        for _ in range(150):  # until what Python keeps for later use has its size
+            round_of_everything()
         gc.collect()
         before = tracemalloc.get_traced_memory()[0]
         resident = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss

@@ -49,7 +49,9 @@ class _Stored:
         self._units = {name: raw.unit(name) for name in self._names}
         rows = max((len(array) for array in self._arrays.values() if array.ndim), default=0)
         self._words = {
-            name: raw.words(name, rows) for name in self._columns if name not in self._arrays
+            name: raw.words(name, rows)
+            for name in [*self._columns, "message"]
+            if name not in self._arrays
         }
         try:
             self._yaml: str | None = raw.yaml()

@@ -194,43 +194,33 @@ class Scene:
 
     def sweep(
         self,
-        axes: Mapping[str, Iterable[object]] | None = None,
+        axes: Mapping[str, Iterable[object] | object] | None = None,
         /,
         *,
         points: Any = None,
         names: Sequence[str] | None = None,
         keep: str | Sequence[str] = (),
-        compute: str | None = None,
-        threads: int | None = None,
-        lanes: int | None = None,
-        at: str | None = None,
-        lowest: int | None = None,
-        limit_evaluations: int | None = None,
-        limit_time: float | str | None = None,
         progress: Progress | None = None,
-        **more: Iterable[object],
+        **more: Iterable[object] | object,
     ) -> Table:
         """Computes many points on all processors: sweep(frequency=[8, 9, 10], friction=[0.1, 0.5]).
 
         Keywords are parameters with their values, of which every combination is a point; the last one
         changes fastest. Or `points` are rows, whose columns are the parameters `names`. `keep` are
-        columns as of a study. A point that fails is a row with its status and message.
+        columns as of a study. Other keywords are options, as strut.options("sweep") lists them. A point
+        that fails is a row with its status and message.
         """
-        given = options(
-            {
-                "compute": compute,
-                "threads": threads,
-                "lanes": lanes,
-                "at": at,
-                "lowest": lowest,
-            }
-        )
-        limits = {"limit_evaluations": limit_evaluations, "limit_time": limit_time}
-        there = settings({name: value for name, value in limits.items() if value is not None}, {})
-        work = plan(self, {**(axes or {}), **more}, points, names)
+        known = {name for name, _ in _strut.options("sweep")} - set(self.names("parameters"))
+        given = {
+            name: value
+            for name, value in more.items()
+            if name in known or name.replace("_", "-") in known
+        }
+        varied = {**(axes or {}), **{n: v for n, v in more.items() if n not in given}}
+        pairs = options(given, known)
+        work = plan(self, varied, points, names)
         kept = (keep,) if isinstance(keep, str) else tuple(keep)
         raw = _strut.result()
-        pairs = (given[0] + there[0], given[1] + there[1])
         try:
             self._raw.sweep(
                 raw, work.names, work.rows, work.numbers, work.words, kept, *pairs, progress

@@ -31,7 +31,7 @@ class Plan(NamedTuple):
 
 def plan(
     scene: Scene,
-    axes: Mapping[str, Iterable[object]],
+    axes: Mapping[str, Iterable[object] | object],
     points: Any,
     names: Sequence[str] | None,
 ) -> Plan:
@@ -69,9 +69,9 @@ def _rows(scene: Scene, points: Any, names: tuple[str, ...]) -> Plan:
     return _planned(names, (len(listed),), [list(row) for row in zip(*columns)])
 
 
-def _values(scene: Scene, name: str, values: Iterable[object]) -> list[Any]:
+def _values(scene: Scene, name: str, values: Iterable[object] | object) -> list[Any]:
     """Numbers in SI; words of a parameter that is a text."""
-    if isinstance(values, str) or not hasattr(values, "__iter__"):
+    if isinstance(values, str) or not isinstance(values, Iterable):
         values = [values]
     is_word = isinstance(scene[f"parameters.{name}"], str)
     return [_value(scene, name, value, is_word) for value in values]
@@ -97,8 +97,8 @@ class Table:
 
     @property
     def columns(self) -> list[str]:
-        """Names of the columns, axes first."""
-        return self._raw.columns()
+        """Names of the columns: axes, what was kept, "status" and "message"."""
+        return [*self._raw.columns(), "status", "message"]
 
     def __len__(self) -> int:
         return self._count

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import operator
 import os
-from typing import TYPE_CHECKING, Any, Callable, Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Callable, Container, Iterable, Iterator, Mapping, Sequence
 
 if TYPE_CHECKING:
     import numpy as np
@@ -38,9 +38,13 @@ def settings(mapping: Mapping[str, object] | None, more: Mapping[str, object]) -
     return tuple(merged), tuple(text(value) for value in merged.values())
 
 
-def options(given: Mapping[str, object]) -> Pairs:
+def options(given: Mapping[str, object], spelled: Container[str] = ()) -> Pairs:
     """Options as names and texts: mass_model is the program's --mass-model; None is not given."""
-    there = {name.replace("_", "-"): value for name, value in given.items() if value is not None}
+    there = {
+        name if name in spelled else name.replace("_", "-"): value
+        for name, value in given.items()
+        if value is not None
+    }
     return tuple(there), tuple(text(value) for value in there.values())
 
 
