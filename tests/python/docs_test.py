@@ -7,7 +7,7 @@ import tempfile
 
 from support import ROOT, skip_without
 
-skip_without("numpy", "pandas", "scipy")
+skip_without("numpy", "pandas")
 
 text = (ROOT / "docs/python.md").read_text()
 names: dict = {}
@@ -21,5 +21,5 @@ with tempfile.TemporaryDirectory() as folder:
         exec(compile(code, "docs/python.md", "exec"), names)
         count += 1
     os.chdir("/")
-assert count > 5, count
+assert count >= 5, count
 print(count, "blocks")

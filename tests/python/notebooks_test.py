@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The programs of docs/python run and draw; those whose libraries are not installed are left out."""
+
+import importlib.util
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+from support import ROOT, main, skip_without
+
+skip_without("numpy", "matplotlib")
+
+NEEDS = {"controller": "matplotlib", "gait": "scipy", "sensitivity": "openturns"}
+
+
+class Notebooks(unittest.TestCase):
+    def test_every_one_runs_and_draws(self):
+        files = {path.stem: path for path in (ROOT / "docs/python").glob("*.py")}
+        self.assertEqual(set(files), set(NEEDS))
+        for name, path in files.items():
+            if importlib.util.find_spec(NEEDS[name]) is None:
+                print(f"{name}: {NEEDS[name]} is not installed", flush=True)
+                continue
+            with self.subTest(name), tempfile.TemporaryDirectory() as folder:
+                picture = pathlib.Path(folder, "picture.png")
+                done = subprocess.run(
+                    [sys.executable, path, picture],
+                    capture_output=True,
+                    text=True,
+                    env={**os.environ, "MPLCONFIGDIR": folder},
+                )
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertGreater(picture.stat().st_size, 10000)
+                print(done.stdout, flush=True)
+
+
+main()
