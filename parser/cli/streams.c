@@ -87,7 +87,7 @@ strut_status strut_print_out_of_memory(void) {
   return STRUT_NO_MEMORY;
 }
 
-static void print_message(void *context, strut_message_kind kind, const char *command,
+static void show_message(void *context, strut_message_kind kind, const char *command,
                           const char *text) {
   (void)context;
   switch (kind) {
@@ -100,7 +100,7 @@ static void print_message(void *context, strut_message_kind kind, const char *co
 }
 
 const strut_listener *strut_stderr_listener(void) {
-  static const strut_listener listener = {NULL, print_message};
+  static const strut_listener listener = {NULL, show_message};
   return &listener;
 }
 
