@@ -13,6 +13,21 @@ install(
   ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}"
   LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")
 
+# The library with the stable interface stands alone: its header, its file, find_package(strut-abi) and
+# pkg-config strut-abi.
+install(
+  TARGETS strut_abi
+  EXPORT strut-abi
+  LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+install(FILES "${PROJECT_SOURCE_DIR}/parser/abi/abi.h"
+        DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/strut")
+install(EXPORT strut-abi NAMESPACE strut:: FILE strut-abiConfig.cmake
+        DESTINATION "${CMAKE_INSTALL_LIBDIR}/cmake/strut-abi")
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/strut-abiConfigVersion.cmake"
+                                 COMPATIBILITY SameMajorVersion)
+install(FILES "${PROJECT_BINARY_DIR}/strut-abiConfigVersion.cmake"
+        DESTINATION "${CMAKE_INSTALL_LIBDIR}/cmake/strut-abi")
+
 # strut.h and what it includes, all the way; nothing else is meant for others.
 function(strut_public_headers result)
   set(seen)
@@ -73,7 +88,10 @@ file(RELATIVE_PATH strut_pc_prefix "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
 configure_file("${PROJECT_SOURCE_DIR}/.cmake/strut.pc.in" "${PROJECT_BINARY_DIR}/strut.pc" @ONLY)
 configure_file("${PROJECT_SOURCE_DIR}/.cmake/strut-pictures.pc.in"
                "${PROJECT_BINARY_DIR}/strut-pictures.pc" @ONLY)
-install(FILES "${PROJECT_BINARY_DIR}/strut.pc" "${PROJECT_BINARY_DIR}/strut-pictures.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+configure_file("${PROJECT_SOURCE_DIR}/.cmake/strut-abi.pc.in" "${PROJECT_BINARY_DIR}/strut-abi.pc" @ONLY)
+install(FILES "${PROJECT_BINARY_DIR}/strut.pc" "${PROJECT_BINARY_DIR}/strut-pictures.pc"
+              "${PROJECT_BINARY_DIR}/strut-abi.pc"
+        DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
 
 install(FILES "${PROJECT_SOURCE_DIR}/README.md" "${PROJECT_SOURCE_DIR}/LICENSE"
         DESTINATION "${CMAKE_INSTALL_DOCDIR}")
