@@ -35,6 +35,7 @@ static const strut_command *const commands[] = {
     &strut_command_write,
     &strut_command_keys,
     &strut_command_evaluate,
+    &strut_command_import,
     &help_command,
     NULL,
 };
