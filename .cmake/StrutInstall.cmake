@@ -75,5 +75,8 @@ configure_file("${PROJECT_SOURCE_DIR}/.cmake/strut-pictures.pc.in"
                "${PROJECT_BINARY_DIR}/strut-pictures.pc" @ONLY)
 install(FILES "${PROJECT_BINARY_DIR}/strut.pc" "${PROJECT_BINARY_DIR}/strut-pictures.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
 
+# The models, which `strut examples` copies.
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/models" DESTINATION "${CMAKE_INSTALL_DATADIR}/strut")
+
 install(FILES "${PROJECT_SOURCE_DIR}/README.md" "${PROJECT_SOURCE_DIR}/LICENSE"
         DESTINATION "${CMAKE_INSTALL_DOCDIR}")
