@@ -93,5 +93,8 @@ install(FILES "${PROJECT_BINARY_DIR}/strut.pc" "${PROJECT_BINARY_DIR}/strut-pict
               "${PROJECT_BINARY_DIR}/strut-abi.pc"
         DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
 
+# The models, which `strut examples` copies.
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/models" DESTINATION "${CMAKE_INSTALL_DATADIR}/strut")
+
 install(FILES "${PROJECT_SOURCE_DIR}/README.md" "${PROJECT_SOURCE_DIR}/LICENSE"
         DESTINATION "${CMAKE_INSTALL_DOCDIR}")
