@@ -83,8 +83,8 @@ foreach(name strut strut-pictures strut-abi)
           DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig" COMPONENT development)
 endforeach()
 
-# The pages as the tree they are in the repository, so that their links hold, and the models, which the
-# program lists, beside a link to them.
+# The pages as the tree they are in the repository. The models are data of the program, which does without
+# pages where these are not wanted; links between the two folders keep those of the texts alive.
 install(FILES "${PROJECT_SOURCE_DIR}/README.md" "${PROJECT_SOURCE_DIR}/CITATION.cff"
         DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT documentation)
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE"
@@ -92,10 +92,17 @@ install(FILES "${PROJECT_SOURCE_DIR}/LICENSE"
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/docs" DESTINATION "${CMAKE_INSTALL_DOCDIR}"
         COMPONENT documentation
         PATTERN "*.sh" EXCLUDE PATTERN "*.awk" EXCLUDE PATTERN "*.def" EXCLUDE)
-set(strut_models_dir "${CMAKE_INSTALL_DATADIR}/strut/models")
-install(DIRECTORY "${PROJECT_SOURCE_DIR}/models/" DESTINATION "${strut_models_dir}"
+set(strut_data_dir "${CMAKE_INSTALL_DATADIR}/strut")
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/models" DESTINATION "${strut_data_dir}"
         COMPONENT documentation)
-file(RELATIVE_PATH strut_models_link "/${CMAKE_INSTALL_DOCDIR}" "/${strut_models_dir}")
-file(CREATE_LINK "${strut_models_link}" "${PROJECT_BINARY_DIR}/models" SYMBOLIC)
-install(FILES "${PROJECT_BINARY_DIR}/models" DESTINATION "${CMAKE_INSTALL_DOCDIR}"
-        COMPONENT documentation)
+
+# strut_install_link(FOLDER NAME TARGET): FOLDER/NAME leads to TARGET, however the tree is moved.
+function(strut_install_link folder name target)
+  file(RELATIVE_PATH path "/${folder}" "/${target}")
+  file(MAKE_DIRECTORY "${PROJECT_BINARY_DIR}/links")
+  file(CREATE_LINK "${path}" "${PROJECT_BINARY_DIR}/links/${name}" SYMBOLIC)
+  install(FILES "${PROJECT_BINARY_DIR}/links/${name}" DESTINATION "${folder}"
+          COMPONENT documentation)
+endfunction()
+strut_install_link("${CMAKE_INSTALL_DOCDIR}" models "${strut_data_dir}/models")
+strut_install_link("${strut_data_dir}" docs "${CMAKE_INSTALL_DOCDIR}/docs")
