@@ -6,7 +6,7 @@ set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 fail() { echo "$*" >&2; exit 1; }
 apt() { apt-get -qq -o Dpkg::Use-Pty=0 "$@" >/root/apt.log 2>&1 || { cat /root/apt.log; exit 1; }; }
-has() { [ -n "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null | grep '^installed$')" ]; }
+has() { dpkg-query -W -f '${db:Status-Status}\n' "$1" 2>/dev/null | grep -q '^installed$'; }
 work=$(mktemp -d)
 cd "$work"
 find /usr /etc -xdev | sort >before
@@ -29,7 +29,7 @@ cd /usr/share/doc/strut
 links=0
 for page in README.md docs/*.md docs/*/*.md models/*/*.md; do
   [ -e "$page" ] || fail "there is no $page"
-  for link in $(awk '/^ *```/ { inside = !inside } !inside' "$page" | grep -o '](\([^) ]*\))' |
+  for link in $(awk '/^ *```/ { inside = !inside } !inside' "$page" | grep -o ']([^) ]*)' |
     sed 's/^](//; s/)$//; s/#.*//' | grep -v '^[a-z]*:' | sort -u); do
     links=$((links + 1))
     [ -e "$(dirname "$page")/$link" ] || fail "$page: no file for the link $link"
