@@ -335,7 +335,8 @@ void strut_check_ground(strut_checker *checker) {
   if (!(fabs(g->slope) < QUARTER_TURN))
     strut_report_finding(
         checker, STRUT_ON_GROUND, 0, "slope",
-        "the slope of the ground must lie between -90 deg and 90 deg, found %g deg",
+        "the slope of the ground must lie between -90 deg and 90 deg, found %g deg; a line at any "
+        "angle needs a point, through: [x, y]",
         g->slope / QUARTER_TURN * 90.0);
   if ((unsigned)g->damping_law > STRUT_DAMPING_HUNT_CROSSLEY)
     strut_report_finding(checker, STRUT_ON_GROUND, 0, "damping_law",

@@ -9,8 +9,8 @@ static int scene_key(int key) {
   const strut_key *k = strut_key_at(key);
   if (k->type != STRUT_TYPE_THINGS) return -1;
   int of_scene = strut_key_find(STRUT_SECTION_SCENE, k->name);
-  bool own = of_scene == STRUT_KEY_SCENE_PARAMETERS || of_scene == STRUT_KEY_SCENE_PARTS ||
-             of_scene == STRUT_KEY_SCENE_PLACE;
+  bool own = of_scene == STRUT_KEY_SCENE_MERGE || of_scene == STRUT_KEY_SCENE_PARAMETERS ||
+             of_scene == STRUT_KEY_SCENE_PARTS || of_scene == STRUT_KEY_SCENE_PLACE;
   return own ? -1 : of_scene;
 }
 

@@ -40,7 +40,8 @@ typedef struct strut_placing {
   strut_copy *outer;
   strut_fields fields;
   strut_repetition repeat;
-  bool varies; /* some key mentions the copy's number */
+  strut_fields next[2]; /* of `repeat`, in each direction that it gives */
+  bool varies;          /* some key mentions the copy's number */
 } strut_placing;
 
 /* repeat.c */

@@ -124,9 +124,10 @@ static bool single_place(strut_reader *reader, const strut_finding *finding, str
         return !reader->grounds[finding->index].broken;
       }
       fields = &reader->ground, section = STRUT_KEY_SCENE_GROUND;
-      broken = key && strcmp(key, "slope") == 0 /* does not depend on other keys */
-                   ? strut_slot_of(fields, STRUT_KEY_GROUND_SLOPE)->state != STRUT_GIVEN
-                   : fields->broken;
+      broken = fields->broken;
+      if (key && strcmp(key, "slope") == 0 && /* does not depend on other keys */
+          strut_slot_of(fields, STRUT_KEY_GROUND_SLOPE)->state == STRUT_GIVEN)
+        broken = false;
       break;
     case STRUT_ON_INITIAL:
       fields = &reader->settle, section = STRUT_KEY_SCENE_INITIAL;
@@ -190,4 +191,7 @@ void strut_place_findings(strut_reader *reader, const strut_findings *findings) 
     if (fresh) strut_report_error(reader, place, "%s", finding->message);
     reader->scope = NULL;
   }
+  /* A finding is left out where its cause was reported; never is a scene with one accepted. */
+  if (findings->count && !reader->diagnostics->count)
+    strut_report_error(reader, strut_root_place(reader), "%s", findings->items[0].message);
 }

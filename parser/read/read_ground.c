@@ -416,6 +416,11 @@ static bool read_line(strut_reader *reader, strut_fields *fields, strut_owner ow
     return false;
   }
   ground->slope = n[0] == 0.0 ? (n[1] > 0.0 ? 0.0 : STRUT_PI) : atan2(-n[0], n[1]);
+  if (!ground->placed && n[1] < 0.0) { /* steeper than a ground without a point may be */
+    ground->placed = true;
+    ground->through[1] = ground->height;
+    ground->height = 0.0;
+  }
   return true;
 }
 

@@ -265,10 +265,8 @@ static void fill_copy(strut_expansion *e, strut_copy *copy) {
 }
 
 /* What ties a copy to the next one. */
-static void link_copies(strut_expansion *e, const strut_tree *next, strut_copy *place,
-                        strut_copy *copy, const strut_copy *other, const strut_tree *twist) {
-  strut_reader *reader = e->reader;
-  strut_fields fields;
+static void link_copies(strut_expansion *e, strut_fields *next, strut_copy *place, strut_copy *copy,
+                        const strut_copy *other, const strut_tree *twist) {
   strut_copy *link = new_scope(e, STRUT_SCOPE_LINK, copy->placement, copy->outer);
   if (!link) return;
   link->home = place;
@@ -276,12 +274,23 @@ static void link_copies(strut_expansion *e, const strut_tree *next, strut_copy *
   memcpy(link->number, copy->number, sizeof link->number);
   link->frame = copy->frame;
   link->next = other, link->twist = twist;
-  reader->scope = link;
-  strut_read_fields(reader, STRUT_SECTION_NEXT, next, (strut_owner){"'next'", NULL}, &fields);
-  reader->scope = NULL;
-  if (fields.broken) return;
-  strut_copy_things(e, &fields, link);
-  strut_read_merge(e, strut_slot_of(&fields, STRUT_KEY_NEXT_MERGE), link, STRUT_KEY_NEXT_MERGE);
+  strut_copy_things(e, next, link);
+  strut_read_merge(e, strut_slot_of(next, STRUT_KEY_NEXT_MERGE), link, STRUT_KEY_NEXT_MERGE);
+}
+
+/* The keys of `next` in each direction, read once for all copies. False: one is broken. */
+static bool read_links(strut_expansion *e, strut_placing *p) {
+  bool fine = true;
+  e->reader->scope = p->outer;
+  for (int d = 0; d < 2; d++) {
+    if (!p->repeat.next[d]) continue;
+    strut_read_fields(e->reader, STRUT_SECTION_NEXT, p->repeat.next[d],
+                      (strut_owner){"'next'", NULL}, &p->next[d]);
+    fine = fine && !p->next[d].broken;
+  }
+  e->reader->scope = NULL;
+  if (!fine) e->copies->incomplete = true;
+  return fine;
 }
 
 /* The names of a twist must be those of nodes. */
@@ -316,10 +325,10 @@ static void link_all(strut_expansion *e, strut_placing *p, strut_copy **copies,
     bool wraps = r->closed && i == r->count[0] - 1;
     if (r->next[0] && (i + 1 < r->count[0] || wraps)) {
       strut_copy *other = copies[wraps ? 0 : n + r->count[1]];
-      if (other) link_copies(e, r->next[0], places[n], copies[n], other, wraps ? r->twist : NULL);
+      if (other) link_copies(e, &p->next[0], places[n], copies[n], other, wraps ? r->twist : NULL);
     }
     if (r->next[1] && j + 1 < r->count[1] && copies[n + 1])
-      link_copies(e, r->next[1], places[n], copies[n], copies[n + 1], NULL);
+      link_copies(e, &p->next[1], places[n], copies[n], copies[n + 1], NULL);
   }
 }
 
@@ -342,6 +351,7 @@ static void make_copies(strut_expansion *e, strut_placing *p) {
   const strut_repetition *r = &p->repeat;
   int64_t all = r->count[0] * r->count[1];
   strut_frame base = strut_frame_of_scene;
+  if (!read_links(e, p)) return;
   if (e->weighing) {
     const int64_t number[2] = {0, 0};
     strut_copy *place, *copy = make_copy(e, p, number, &base, &place);
@@ -349,6 +359,8 @@ static void make_copies(strut_expansion *e, strut_placing *p) {
     if (copy) fill_copy(e, copy);
     if (e->stopped) return;
     double each = (double)(e->copies->things - before + own);
+    for (int d = 0; d < r->numbers; d++)
+      if (r->next[d]) each += (double)strut_count_things(&p->next[d]);
     e->copies->things = before;
     if (check_size(e, p, (double)all, each)) e->copies->things += (size_t)all * (size_t)each;
     return;
