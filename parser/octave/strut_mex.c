@@ -73,6 +73,7 @@ static strutlib_scene *find_scene(const mxArray *handle) {
 
 /* Raises strut:STATUS with the whole report, as the program shows it; does not return. */
 static void raise_error(strutlib_error *error) {
+  if (!error) mexErrMsgIdAndTxt("strut:no_memory", "memory is out");
   char identifier[80];
   snprintf(identifier, sizeof identifier, "strut:%s",
            strutlib_status_name(strutlib_error_status(error)));
@@ -189,7 +190,8 @@ static mxArray *new_array(const double *data, int dimensions, const size_t *shap
   mwSize size[STRUTLIB_DIMENSIONS] = {1, 1, 1, 1};
   size_t index[STRUTLIB_DIMENSIONS] = {0}, count = 1;
   for (int d = 0; d < dimensions; d++) count *= shape[d], size[d] = (mwSize)shape[d];
-  mxArray *array = mxCreateNumericArray(dimensions < 2 ? 2 : dimensions, size, mxDOUBLE_CLASS, mxREAL);
+  mxArray *array =
+      mxCreateNumericArray(dimensions < 2 ? 2 : dimensions, size, mxDOUBLE_CLASS, mxREAL);
   double *to = mxGetPr(array);
   for (size_t n = 0; n < count; n++) {
     size_t at = 0;
@@ -216,31 +218,24 @@ static const char *join(const char *name, const char *key) {
   return text;
 }
 
-static bool same_fields(const mxArray *a, const mxArray *b) {
-  int count = mxGetNumberOfFields(a);
-  if (!mxIsStruct(a) || !mxIsStruct(b) || count != mxGetNumberOfFields(b)) return false;
-  for (int i = 0; i < count; i++)
-    if (strcmp(mxGetFieldNameByNumber(a, i), mxGetFieldNameByNumber(b, i)) != 0) return false;
-  return true;
-}
-
-/* A list of structs with the same fields is a struct array, any other list a cell array. */
+/* A list of structs is a struct array with the fields of all, [] where one has none; any other a cell array. */
 static mxArray *join_items(mxArray **items, size_t count) {
-  bool same = count > 0 && mxIsStruct(items[0]);
-  for (size_t i = 1; same && i < count; i++) same = same_fields(items[0], items[i]);
-  if (!same) {
+  bool structs = count > 0;
+  for (size_t i = 0; i < count; i++) structs = structs && mxIsStruct(items[i]);
+  if (!structs) {
     mxArray *cells = mxCreateCellMatrix((mwSize)count, 1);
     for (size_t i = 0; i < count; i++) mxSetCell(cells, (mwIndex)i, items[i]);
     return cells;
   }
-  int fields = mxGetNumberOfFields(items[0]);
   mxArray *all = mxCreateStructMatrix((mwSize)count, 1, 0, NULL);
-  for (int f = 0; f < fields; f++) {
-    mxAddField(all, mxGetFieldNameByNumber(items[0], f));
-    for (size_t i = 0; i < count; i++)
-      mxSetFieldByNumber(all, (mwIndex)i, f,
+  for (size_t i = 0; i < count; i++)
+    for (int f = 0; f < mxGetNumberOfFields(items[i]); f++) {
+      const char *name = mxGetFieldNameByNumber(items[i], f);
+      int number = mxGetFieldNumber(all, name);
+      if (number < 0) number = mxAddField(all, name);
+      mxSetFieldByNumber(all, (mwIndex)i, number,
                          mxDuplicateArray(mxGetFieldByNumber(items[i], 0, f)));
-  }
+    }
   return all;
 }
 
@@ -349,7 +344,8 @@ static void add_thing(mxArray *things, const char *name, const char *field, cons
   char own[80];
   size_t samples = mxGetM(matrix);
   mxArray *values = mxCreateDoubleMatrix((mwSize)samples, 1, mxREAL);
-  if (samples) memcpy(mxGetPr(values), mxGetPr(matrix) + column * samples, samples * sizeof(double));
+  if (samples)
+    memcpy(mxGetPr(values), mxGetPr(matrix) + column * samples, samples * sizeof(double));
   field_name(name, own, 60);
   if (!mxGetField(things, 0, own)) add_field(things, name, new_struct());
   add_field(mxGetField(things, 0, own), field, values);
@@ -446,20 +442,17 @@ static mxArray *sparse(const strutlib_result *r, const char *name) {
   memcpy(next, jc, (columns + 1) * sizeof *next);
   for (size_t e = 0; e < entries; e++) { /* insertion keeps the rows of a column in order */
     mwIndex begin = jc[(size_t)column[e]], at = next[(size_t)column[e]]++;
-    for (; at > begin && ir[at - 1] > (mwIndex)row[e]; at--) ir[at] = ir[at - 1], pr[at] = pr[at - 1];
+    for (; at > begin && ir[at - 1] > (mwIndex)row[e]; at--)
+      ir[at] = ir[at - 1], pr[at] = pr[at - 1];
     ir[at] = (mwIndex)row[e], pr[at] = value[e];
   }
   return matrix;
 }
 
 static mxArray *matrices(const strutlib_scene *scene, int count, const mxArray *const *values) {
-  static const char *const names[] = {"mass",
-                                      "connectivity",
-                                      "equilibrium",
-                                      "stiffness_elastic",
-                                      "stiffness_geometric",
-                                      "damping",
-                                      "stiffness_contact"};
+  static const char *const names[] = {
+      "mass",    "connectivity",     "equilibrium", "stiffness_elastic", "stiffness_geometric",
+      "damping", "stiffness_contact"};
   strutlib_result *r = call(strutlib_matrices, scene, count, values);
   mxArray *all = new_struct();
   for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
@@ -512,10 +505,9 @@ static mxArray *sweep(const strutlib_scene *scene, int count, const mxArray *con
     }
   pairs options = read_pairs(count - 4, values + 4);
   strutlib_control *c = begin_call();
-  strutlib_result *r = strutlib_sweep(scene, axis_count, axes, points, by_row,
-                                      word_count ? words_by_row : NULL, keep_count, keep,
-                                      options.count, options.names, options.values, NULL, NULL, c,
-                                      &error);
+  strutlib_result *r = strutlib_sweep(
+      scene, axis_count, axes, points, by_row, word_count ? words_by_row : NULL, keep_count, keep,
+      options.count, options.names, options.values, NULL, NULL, c, &error);
   end_call();
   if (!r) raise_error(error);
   strutlib_error_free(error);
@@ -575,8 +567,10 @@ static void load(int outputs, mxArray **output, int count, const mxArray *const 
 static const struct {
   const char *name;
   compute what;
-} computes[] = {{"equilibria", strutlib_equilibria}, {"modes", strutlib_modes},
-                {"rigidity", strutlib_rigidity},     {"form", strutlib_form},
+} computes[] = {{"equilibria", strutlib_equilibria},
+                {"modes", strutlib_modes},
+                {"rigidity", strutlib_rigidity},
+                {"form", strutlib_form},
                 {"path", strutlib_path}};
 
 static void at_exit(void) {
