@@ -14,6 +14,9 @@ strut_status strut_arguments_read(const strut_command *command, int argc, char *
                                   strut_arguments *arguments);
 void strut_arguments_free(strut_arguments *arguments);
 
+/** The i-th option of a command, those of every command last; NULL after them. */
+const strut_option *strut_option_at(const strut_command *command, size_t i);
+
 /** Prints the help of a command on stdout. */
 void strut_command_help(const strut_command *command);
 

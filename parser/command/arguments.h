@@ -31,7 +31,10 @@ typedef enum strut_option_id {
   STRUT_OPTION_COUNT_POINTS,
   STRUT_OPTION_STATUS,
   STRUT_OPTION_RETRY,
-  STRUT_OPTION_PARTS, /* of write: the short scene */
+  STRUT_OPTION_PARTS,  /* of write: the short scene */
+  STRUT_OPTION_STUDY,  /* of schema: that of a study */
+  STRUT_OPTION_MAN,    /* of help: the manual page */
+  STRUT_OPTION_DAKOTA, /* of evaluate: the files of DAKOTA */
   /* kept as text: strut_option_text, and option_values.h for numbers */
   STRUT_OPTION_TEXTS,
   STRUT_OPTION_AT = STRUT_OPTION_TEXTS,
@@ -99,7 +102,11 @@ typedef enum strut_option_id {
   STRUT_OPTION_SHARD,
   STRUT_OPTION_CHANNELS, /* of the library's run, and whether it records */
   STRUT_OPTION_RECORD,
-  STRUT_OPTION_COMPUTE, /* of the library's sweep, as a study's keys */
+  STRUT_OPTION_COMPUTE, /* of evaluate and the library's sweep: what, and which results */
+  STRUT_OPTION_KEEP,
+  STRUT_OPTION_IN,
+  STRUT_OPTION_OUT,
+  STRUT_OPTION_ALLOWANCE, /* of export: for the ends of cables */
   STRUT_OPTION_LOWEST,
   STRUT_OPTION_LIMIT_EVALUATIONS,
   STRUT_OPTION_LIMIT_TIME,
@@ -128,7 +135,7 @@ typedef struct strut_arguments {
   size_t override_count;
   strut_override *varied; /* (varied_count) of --vary */
   size_t varied_count;
-  bool parts;
+  bool parts, study, man, dakota;
   const strut_listener *listener; /* hears what is wrong with an option, warnings and notes */
 } strut_arguments;
 

@@ -18,11 +18,12 @@ static const char *name_of(const strut_command *command, strut_option_id id) {
 
 strut_status strut_option_number(const strut_command *command, const strut_arguments *arguments,
                                  strut_option_id id, strut_dimension dimension, double *value) {
-  const char *text = strut_option_text(arguments, id), *name = name_of(command, id);
+  const char *text = strut_option_text(arguments, id);
   strut_expression_error error = {0};
   strut_quantity quantity;
   char kind[64];
-  if (!text) return STRUT_OK;
+  if (!text) return STRUT_OK; /* the command may not even have the option */
+  const char *name = name_of(command, id);
   if (!strut_expression_evaluate(text, NULL, &quantity, &error)) {
     return strut_usage_error(command, arguments, "--%s '%s': %s", name, text, error.message);
   }

@@ -9,6 +9,8 @@
 
 /** Most copies of one placement. */
 #define STRUT_MOST_COPIES 2e6
+/** Most parts within parts. */
+enum { STRUT_DEEPEST_PARTS = 16 };
 
 /** Entries of the copies for one key of the scene. */
 typedef struct strut_entry_list {
@@ -44,6 +46,18 @@ typedef struct strut_placing {
   bool varies;          /* some key mentions the copy's number */
 } strut_placing;
 
+/* read_parts.c */
+
+/** The keys of a placement. False: it cannot be copied, which was reported. */
+bool strut_read_placement(strut_expansion *e, const strut_tree *key, strut_copy *outer,
+                          strut_placing *p);
+/**
+ * The scopes of one copy, and what it holds. *base is the frame of the first copy, which is made before
+ * others; *place_scope that of the placement's keys. NULL: it could not be made.
+ */
+strut_copy *strut_make_copy(strut_expansion *e, strut_placing *p, const int64_t number[2],
+                            strut_frame *base, strut_copy **place_scope);
+
 /* repeat.c */
 
 /** Reports a value of another form than the key has; returns false. */
@@ -73,6 +87,11 @@ void strut_join_entries(strut_expansion *e, int key);
 
 /* place_frame.c */
 
+/**
+ * Where the node of a copy lies that `name` means, one of a part placed within it too, in the coordinates
+ * that the copy's frame leads to. False: there is none, or a part on the way is laid onto others.
+ */
+bool strut_find_in_copy(strut_expansion *e, strut_copy *copy, const char *name, double position[2]);
 /** The frame of the first copy by the placement's own keys; false: it was reported. */
 bool strut_read_frame(strut_expansion *e, strut_placing *p, strut_copy *copy, strut_frame *frame);
 

@@ -43,27 +43,78 @@ static bool find_outside(strut_expansion *e, strut_copy *outer, const strut_tree
   return true;
 }
 
-/* The position of a node of the copy itself. */
+/* The position of an entry of nodes in the part of a copy, moved by its frame. */
+static bool node_position(strut_expansion *e, strut_copy *copy, const strut_tree *value,
+                          double position[2]) {
+  strut_copy *before = e->reader->scope;
+  e->reader->scope = copy;
+  bool fine = read_position(e->reader, value, position);
+  e->reader->scope = before;
+  strut_frame_point(&copy->frame, position);
+  return fine;
+}
+
+/* The numbers behind a placement's name in "r.3.a" or "r.last.a", and what follows; NULL: none such. */
+static const char *read_copy_numbers(const strut_repetition *r, const char *text,
+                                     int64_t number[2]) {
+  for (int n = 0; n < r->numbers; n++) {
+    size_t length = strspn(text, "0123456789");
+    bool last = !length && strncmp(text, "last.", 5) == 0;
+    if (last) length = 4;
+    if (length < 1 || length > 9 || text[length] != '.') return NULL;
+    number[n] = last ? r->count[n] - 1 : 0;
+    for (size_t c = 0; !last && c < length; c++) number[n] = 10 * number[n] + (text[c] - '0');
+    if (number[n] >= r->count[n]) return NULL;
+    text += length + 1;
+  }
+  return text;
+}
+
+bool strut_find_in_copy(strut_expansion *e, strut_copy *copy, const char *name,
+                        double position[2]) {
+  strut_fields *fields = &copy->placement->part->fields;
+  const strut_slot *nodes = strut_slot_of(fields, STRUT_KEY_PART_NODES);
+  const strut_slot *ports = strut_slot_of(fields, STRUT_KEY_PART_PORTS);
+  const strut_slot *place = strut_slot_of(fields, STRUT_KEY_PART_PLACE);
+  const strut_tree *port =
+      ports->state == STRUT_GIVEN ? strut_tree_find(ports->value, name, NULL) : NULL;
+  if (port && port->kind == STRUT_TREE_SCALAR) name = port->text;
+  const strut_tree *value =
+      nodes->state == STRUT_GIVEN ? strut_tree_find(nodes->value, name, NULL) : NULL;
+  if (value) return node_position(e, copy, value, position);
+  const strut_tree *k = place->state == STRUT_GIVEN ? place->value->first : NULL;
+  for (; k; k = k->next->next) {
+    size_t length = strlen(k->text);
+    int64_t number[2] = {0, 0}, first[2] = {0, 0};
+    strut_placing p;
+    strut_frame base = strut_frame_of_scene;
+    if (strncmp(k->text, name, length) != 0 || name[length] != '.') continue;
+    if (e->copies->depth >= STRUT_DEEPEST_PARTS || !strut_read_placement(e, k, copy, &p))
+      return false;
+    const char *rest = read_copy_numbers(&p.repeat, name + length + 1, number);
+    if (!rest || strut_slot_of(&p.fields, STRUT_KEY_PLACE_ONTO)->key) return false;
+    strut_copy *scope, *inner = strut_make_copy(e, &p, first, &base, &scope);
+    if (inner && (number[0] || number[1])) inner = strut_make_copy(e, &p, number, &base, &scope);
+    if (!inner) return false;
+    e->copies->depth++;
+    bool found = strut_find_in_copy(e, inner, rest, position);
+    e->copies->depth--;
+    return found;
+  }
+  return false;
+}
+
+/* The position of a node of the copy itself; its frame is that of the scene as yet. */
 static bool find_inside(strut_expansion *e, strut_copy *copy, const strut_tree *name,
                         double position[2]) {
-  strut_reader *reader = e->reader;
-  const strut_slot *nodes = strut_slot_of(&copy->placement->part->fields, STRUT_KEY_PART_NODES);
-  const strut_slot *ports = strut_slot_of(&copy->placement->part->fields, STRUT_KEY_PART_PORTS);
-  const strut_tree *port =
-      ports->state == STRUT_GIVEN ? strut_tree_find(ports->value, name->text, NULL) : NULL;
-  const char *own = port && port->kind == STRUT_TREE_SCALAR ? port->text : name->text;
-  const strut_tree *value =
-      nodes->state == STRUT_GIVEN ? strut_tree_find(nodes->value, own, NULL) : NULL;
-  if (!value) {
-    strut_report_error(reader, name->place, "part '%s' has no node '%s' of its own",
-                       copy->placement->part->name, strut_sanitised_text(reader, name->text));
-    return false;
-  }
-  strut_copy *before = reader->scope;
-  reader->scope = copy;
-  bool fine = read_position(reader, value, position);
-  reader->scope = before;
-  return fine;
+  strut_copy *before = e->reader->scope;
+  bool failed = e->reader->failed, found = strut_find_in_copy(e, copy, name->text, position);
+  e->reader->scope = before;
+  if (!found && e->reader->failed == failed)
+    strut_report_error(e->reader, name->place,
+                       "part '%s' has no node '%s' that can be laid onto others",
+                       copy->placement->part->name, strut_sanitised_text(e->reader, name->text));
+  return found;
 }
 
 /* Shifts, and with two pairs turns, the frame so that nodes of the copy lie on others. */

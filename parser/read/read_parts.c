@@ -13,7 +13,6 @@
 #include "engine/base/memory_limit.h"
 #include "parser/read/expansion.h"
 
-enum { DEEPEST = 16 };
 /* Entries of all copies. */
 static const double MOST_THINGS = 1e7;
 
@@ -177,9 +176,8 @@ static bool mentions_number(const strut_tree *tree) {
 
 static void expand_places(strut_expansion *e, const strut_slot *place, strut_copy *outer);
 
-/* The scopes of one copy, and what it holds. NULL: it could not be made. */
-static strut_copy *make_copy(strut_expansion *e, strut_placing *p, const int64_t number[2],
-                             strut_frame *base, strut_copy **place_scope) {
+strut_copy *strut_make_copy(strut_expansion *e, strut_placing *p, const int64_t number[2],
+                            strut_frame *base, strut_copy **place_scope) {
   strut_reader *reader = e->reader;
   strut_part *part = p->placement->part;
   strut_copy *place = new_scope(e, STRUT_SCOPE_PLACE, p->placement, p->outer);
@@ -193,6 +191,7 @@ static strut_copy *make_copy(strut_expansion *e, strut_placing *p, const int64_t
   place->prefix_length = copy->prefix_length = strlen(copy->prefix);
   copy->home = part->home;
   copy->closed = part->closed;
+  read_part_list(reader, strut_slot_of(&part->fields, STRUT_KEY_PART_PARTS), copy, &copy->parts);
   bool first = number[0] == 0 && number[1] == 0;
   reader->scope = place;
   if (!first && p->varies) {
@@ -208,7 +207,6 @@ static strut_copy *make_copy(strut_expansion *e, strut_placing *p, const int64_t
   copy->frame = strut_frame_within(base, &repeated);
   if (p->outer) copy->frame = strut_frame_within(&p->outer->frame, &copy->frame);
   reader->scope = NULL;
-  read_part_list(reader, strut_slot_of(&part->fields, STRUT_KEY_PART_PARTS), copy, &copy->parts);
   return copy;
 }
 
@@ -354,7 +352,7 @@ static void make_copies(strut_expansion *e, strut_placing *p) {
   if (!read_links(e, p)) return;
   if (e->weighing) {
     const int64_t number[2] = {0, 0};
-    strut_copy *place, *copy = make_copy(e, p, number, &base, &place);
+    strut_copy *place, *copy = strut_make_copy(e, p, number, &base, &place);
     size_t before = e->copies->things, own = strut_count_things(&p->placement->part->fields) + 1;
     if (copy) fill_copy(e, copy);
     if (e->stopped) return;
@@ -372,7 +370,7 @@ static void make_copies(strut_expansion *e, strut_placing *p) {
   if (!copies || !places) return;
   for (int64_t n = 0; n < all && !e->stopped; n++) {
     const int64_t number[2] = {n / r->count[1], n % r->count[1]};
-    copies[n] = make_copy(e, p, number, &base, &places[n]);
+    copies[n] = strut_make_copy(e, p, number, &base, &places[n]);
     if (copies[n])
       fill_copy(e, copies[n]);
     else
@@ -406,7 +404,7 @@ static bool enter_part(strut_expansion *e, const strut_part *part, const strut_s
   struct strut_copies *c = e->copies;
   char chain[600] = "";
   size_t used = 0;
-  if (!part->open && c->depth < DEEPEST) {
+  if (!part->open && c->depth < STRUT_DEEPEST_PARTS) {
     c->chain[c->depth++] = part->name;
     return true;
   }
@@ -429,41 +427,49 @@ static int count_numbers(const strut_tree *place) {
   return count->kind == STRUT_TREE_LIST ? 2 : 1;
 }
 
-static void expand_place(strut_expansion *e, const strut_tree *key, strut_copy *outer) {
+bool strut_read_placement(strut_expansion *e, const strut_tree *key, strut_copy *outer,
+                          strut_placing *p) {
   strut_reader *reader = e->reader;
-  struct strut_copies *c = e->copies;
   strut_owner owner = {"place", key->text};
-  strut_placing p = {.outer = outer};
   strut_placement *placement =
       strut_reader_allocate(reader, &reader->scratch, 1, sizeof *placement);
   strut_copy *scope = new_scope(e, STRUT_SCOPE_PLACE, placement, outer);
-  if (!placement || !scope) return;
+  *p = (strut_placing){.placement = placement, .outer = outer};
+  if (!placement || !scope) return false;
   *placement = (strut_placement){.key = key, .count = {1, 1}};
   placement->name =
       strut_arena_format(&reader->scratch, "%s%s", outer ? outer->prefix : "", key->text);
-  if (!placement->name) return;
-  p.placement = placement;
+  if (!placement->name) return false;
   scope->numbers = count_numbers(key->next); /* as in the first copy */
   reader->scope = scope;
   bool fine = strut_read_name(reader, key, "placement");
-  strut_read_fields(reader, STRUT_SECTION_PLACE, key->next, owner, &p.fields);
-  strut_require(reader, &p.fields, owner, key->place);
+  strut_read_fields(reader, STRUT_SECTION_PLACE, key->next, owner, &p->fields);
+  strut_require(reader, &p->fields, owner, key->place);
   scope->numbers = 0;
   placement->part =
-      read_part_name(reader, outer, strut_slot_of(&p.fields, STRUT_KEY_PLACE_PART), owner);
-  fine = strut_read_repeat(reader, strut_slot_of(&p.fields, STRUT_KEY_PLACE_REPEAT), key->text,
-                           &p.repeat) &&
+      read_part_name(reader, outer, strut_slot_of(&p->fields, STRUT_KEY_PLACE_PART), owner);
+  fine = strut_read_repeat(reader, strut_slot_of(&p->fields, STRUT_KEY_PLACE_REPEAT), key->text,
+                           &p->repeat) &&
          fine;
   reader->scope = NULL;
-  if (!placement->part || !fine || p.fields.broken || placement->part->broken) {
+  if (!placement->part || !fine || p->fields.broken || placement->part->broken) {
     reader->failed = true;
     reader->copies->incomplete = true;
-    return;
+    return false;
   }
+  memcpy(placement->count, p->repeat.count, sizeof placement->count);
+  placement->numbers = p->repeat.numbers;
+  p->varies = p->repeat.numbers && mentions_number(key->next);
+  return true;
+}
+
+static void expand_place(strut_expansion *e, const strut_tree *key, strut_copy *outer) {
+  strut_reader *reader = e->reader;
+  struct strut_copies *c = e->copies;
+  strut_placing p;
+  if (!strut_read_placement(e, key, outer, &p)) return;
+  strut_placement *placement = p.placement;
   strut_part *part = placement->part;
-  memcpy(placement->count, p.repeat.count, sizeof placement->count);
-  placement->numbers = p.repeat.numbers;
-  p.varies = p.repeat.numbers && mentions_number(key->next);
   if (!enter_part(e, part, strut_slot_of(&p.fields, STRUT_KEY_PLACE_PART))) return;
   if (!e->weighing) {
     if (c->placement_count == c->placement_capacity) {

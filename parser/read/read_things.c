@@ -252,13 +252,13 @@ static bool read_drive(strut_reader *reader, const strut_tree *key, strut_fields
                        "frequency: 10 Hz}}, or a signal's name; or 'force' or 'moment' instead",
                        strut_owner_text(reader, owner));
   if (k == 3) return false;
-  if (known && k > 0 && cell) {
+  if (known && slot->key && k > 0 && cell) {
     strut_report_error(reader, slot->key->place,
                        "%s gives a '%s' to a cell, whose pressure a 'signal' drives",
                        strut_owner_text(reader, owner), strut_key_at(keys[k])->name);
     return false;
   }
-  if (known && k > 0 && hinge != (k == 2)) {
+  if (known && slot->key && k > 0 && hinge != (k == 2)) {
     strut_report_error(reader, slot->key->place,
                        hinge ? "%s gives a 'force' to a hinge, which takes a 'moment'"
                              : "%s gives a 'moment' to a member, which takes a 'force'",

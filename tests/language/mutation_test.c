@@ -165,7 +165,40 @@ static void no_value_is_lost(void **state) {
   assert_true(tried > 1000);
 }
 
+/* Renames each key below `value` in turn: a second fault beside the one that the file has. */
+static void misspell(mutation *m, const strut_tree *value) {
+  for (const strut_tree *k = value->first; k; k = k->next) {
+    if (value->kind == STRUT_TREE_MAP) {
+      size_t at = offset_of(m->file->text, k->place);
+      if (!k->quoted) try_mutant(m, at, 0, "x", "renaming", k->text);
+      k = k->next;
+    }
+    misspell(m, k);
+  }
+}
+
+static void a_second_fault_is_survived(void **state) {
+  (void)state;
+  scene_file *files;
+  size_t count = refused_files(&files), tried = 0;
+  char *room = malloc(1 << 20);
+  for (size_t i = 0; i < count; i++) {
+    strut_diagnostics diagnostics = {0};
+    strut_document document = {0};
+    strut_diagnostics_source(&diagnostics, files[i].path, files[i].text, files[i].length);
+    mutation m = {.file = &files[i], .written = "", .mutant = room};
+    if (strut_document_read(&document, &diagnostics) == STRUT_OK) misspell(&m, document.root);
+    tried += m.tried;
+    strut_document_free(&document);
+    strut_diagnostics_free(&diagnostics);
+  }
+  free(room);
+  free_scene_files(files, count);
+  assert_true(tried > 1000);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(no_value_is_lost)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(no_value_is_lost),
+                                     cmocka_unit_test(a_second_fault_is_survived)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

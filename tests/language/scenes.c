@@ -52,14 +52,25 @@ static int by_path(const void *a, const void *b) {
   return strcmp(((const scene_file *)a)->path, ((const scene_file *)b)->path);
 }
 
+static size_t sorted_files(collection *all, scene_file **files) {
+  assert_true(all->count > 0);
+  qsort(all->files, all->count, sizeof *all->files, by_path);
+  *files = all->files;
+  return all->count;
+}
+
 size_t scene_files(scene_file **files) {
   collection all = {NULL, 0};
   walk(&all, STRUT_TESTS_DIR "/language/good");
   assert_true(all.count > 0);
   walk(&all, STRUT_SOURCE_DIR "/models");
-  qsort(all.files, all.count, sizeof *all.files, by_path);
-  *files = all.files;
-  return all.count;
+  return sorted_files(&all, files);
+}
+
+size_t refused_files(scene_file **files) {
+  collection all = {NULL, 0};
+  walk(&all, STRUT_TESTS_DIR "/language/bad");
+  return sorted_files(&all, files);
 }
 
 void free_scene_files(scene_file *files, size_t count) {
