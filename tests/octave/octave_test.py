@@ -6,6 +6,7 @@ usage: octave_test.py STRUT FOLDER-OF-THE-FUNCTIONS SOURCE
 import csv
 import json
 import os
+import re
 import shutil
 import struct
 import subprocess
@@ -115,7 +116,7 @@ def compare_run(model):
 
 print(run_octave(f"source ('{here}/octave_test.m')"), end="")
 count = 0
-runs = ["crawler/crawler.yaml", "gallery/t-bar.yaml", "gallery/d-bar.yaml", "gallery/arm.yaml",
+runs = ["crawler/crawler.yaml", "gallery/t-bar.yaml", "gallery/d-bar.yaml", "gallery/sliding-mass-crawler.yaml",
         "gallery/double-pendulum.yaml"]
 rest = [("modes", "gallery/t-bar.yaml"), ("modes", "gallery/arm.yaml"), ("rigidity", "gallery/t-bar.yaml"),
         ("rigidity", "gallery/x-with-ring.yaml"), ("rigidity", "crawler/crawler.yaml"),
@@ -125,4 +126,7 @@ for model in runs:
 for command, model in rest:
     path = os.path.join(models, model)
     count += compare_json(command, path, run_octave(f"show ('{command}', '{path}')"), [])
-print(f"{count} values as the program has them")
+blocks = re.findall(r"```matlab\n(.*?)```", open(os.path.join(source, "docs", "octave.md")).read(), re.S)
+run_octave("graphics_toolkit('gnuplot'); set (0, 'DefaultFigureVisible', 'off');\n" + "\n".join(blocks)
+           if shutil.which("gnuplot") else re.sub(r"plot\(.*?\);", "", "\n".join(blocks)))
+print(f"{count} values as the program has them, and {len(blocks)} pieces of docs/octave.md")
