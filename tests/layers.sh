@@ -34,12 +34,11 @@ breaches() {
         for (k = 1; k <= n; k++) floor[side[k]] = i
       }
       count = split("parser/yaml|parser/expression|parser/language|parser/read|parser/write|" \
-        "parser/study|parser", line, "|")
+        "parser/import|parser/study|parser", line, "|")
       for (i = 1; i <= count; i++) parser_floor[line[i]] = i
       # Foreign libraries live in one folder each; those of linear algebra even in one room.
       home["yaml.h"] = "parser/yaml"; home["hdf5.h"] = "engine/output"; home["hdf5_hl.h"] = "engine/output"
       home["cJSON.h"] = home["cjson/cJSON.h"] = "engine/output"
-      home["Python.h"] = "parser/python"
       home["zlib.h"] = "engine/output/page"; home["cairo.h"] = home["cairo-pdf.h"] = "engine/output/draw"
       home["cairo-svg.h"] = home["pango/pangocairo.h"] = "engine/output/draw"
       room_of["cholmod.h"] = "engine/model/linear_solver"
@@ -58,7 +57,7 @@ breaches() {
       if (!ours) {
         base = name; sub("^suitesparse/", "", base)
         if (quoted) breach("not spelled from the repository root")
-        else if (base in home && from != home[base] && (from !~ "^parser/(cli|command|abi)$" || base == "Python.h")) breach("belongs to " home[base])
+        else if (base in home && from != home[base] && from !~ "^parser/(cli|command|abi)$") breach("belongs to " home[base])
         else if (base in room_of && index(file, room_of[base] ".") != 1)
           breach("belongs to " room_of[base])
         next
@@ -72,8 +71,6 @@ breaches() {
         if (to == "parser/cli" || to == "parser/abi") breach("runs up")
         next
       }
-      # The Python module is a program of others: it sees the shared library alone.
-      if (from == "parser/python") { if (name != "parser/abi/abi.h") breach("not of the shared library"); next }
       if (from == "parser/command") { if (to == "parser/cli" || to == "parser/abi") breach("runs up"); next }
       # The front door of the libraries names them all, but never the program.
       if (file == "parser/strut.h") { if (to ~ "^parser/(cli|command|abi)$") breach("runs up"); next }
@@ -127,9 +124,6 @@ expect 0 parser/abi/b.c '#include "parser/command/a.h"'
 expect 1 parser/command/b.c '#include "parser/cli/a.h"'
 expect 1 parser/abi/b.c '#include "parser/cli/a.h"'
 expect 1 parser/read/b.c '#include "parser/command/a.h"'
-expect 0 parser/python/b.c '#include <Python.h>'
-expect 1 parser/python/b.c '#include "engine/base/a.h"'
-expect 1 parser/abi/b.c '#include <Python.h>'
 expect 0 parser/strut.h '#include "engine/output/a.h"'
 expect 0 parser/yaml/b.c '#include <yaml.h>'
 expect 1 parser/read/b.c '#include <yaml.h>'

@@ -323,7 +323,7 @@ static bool copy_row(strutlib_result *result, sweep_detail *d, const strut_resul
     d->words[c][point] = strut_arena_text(&result->arena, text, strlen(text));
     if (!d->words[c][point]) return false;
   }
-  if (!row->message) return true;
+  if (!row->message || !row->message[0]) return true;
   d->messages[point] = strut_arena_text(&result->arena, row->message, strlen(row->message));
   return d->messages[point] != NULL;
 }

@@ -13,7 +13,7 @@
 #define PY_SSIZE_T_CLEAN
 #include <Python.h>
 
-#include "parser/abi/abi.h"
+#include "strut/abi.h"
 
 typedef struct {
   PyTypeObject *scene, *result, *simulation, *snapshot, *array;

@@ -35,7 +35,7 @@ typedef struct strut_critical_effort {
   const double *const *extra; /* (extra_count) each (length) */
   size_t hint_count;          /* shapes close to a saddle with one negative eigenvalue */
   const double *const *hint;  /* (hint_count) each (length) */
-  const volatile sig_atomic_t *interrupt; /* may be NULL; STRUT_INTERRUPTED once it is not 0 */
+  const volatile sig_atomic_t *interrupt; /* ends the search with STRUT_INTERRUPTED; may be NULL */
 } strut_critical_effort;
 
 /**
