@@ -103,6 +103,7 @@ cmake --build build >build.log 2>&1 || { cat build.log; exit 1; }
 ./build/example "$source/models/crawler/crawler.yaml" >by-cmake
 grep -q 'velocity 0.01003 m/s, motion periodic' by-cmake || { cat by-cmake; exit 1; }
 # The command that docs/api.md gives, with the compiler of this build as cc.
+# shellcheck disable=SC2016  # backticks of the document
 command=$(sed -n 's/^Built by `\(cc .*\)`, or in CMake by$/\1/p' "$source/docs/api.md")
 printf '#!/bin/sh\nexec "%s" %s "$@"\n' "$compiler" "$sanitizers" >cc
 chmod +x cc
@@ -118,6 +119,11 @@ cd "$scratch/user"
 cmp schema "$prefix/share/strut/strut-1.schema.json"
 "$prefix/bin/strut" schema --study >schema
 cmp schema "$prefix/share/strut/strut-1.study.schema.json"
+"$prefix/bin/strut" examples crawler
+cmp crawler.yaml "$source/models/crawler/crawler.yaml"
+"$prefix/bin/strut" new robot
+"$prefix/bin/strut" check robot.yaml >/dev/null
+grep -q "schema=.*/share/strut/strut-1.schema.json" robot.yaml
 for page in man1/strut.1 man1/strut-run.1 man1/strut-completion.1 man5/strut-model.5; do
   test -s "$prefix/share/man/$page"
 done

@@ -87,8 +87,8 @@ strut_status strut_print_out_of_memory(void) {
   return STRUT_NO_MEMORY;
 }
 
-static void print_message(void *context, strut_message_kind kind, const char *command,
-                          const char *text) {
+static void show_message(void *context, strut_message_kind kind, const char *command,
+                         const char *text) {
   (void)context;
   switch (kind) {
     case STRUT_MESSAGE_USAGE: fprintf(stderr, "strut %s: %s\n", command, text); break;
@@ -100,7 +100,7 @@ static void print_message(void *context, strut_message_kind kind, const char *co
 }
 
 const strut_listener *strut_stderr_listener(void) {
-  static const strut_listener listener = {NULL, print_message};
+  static const strut_listener listener = {NULL, show_message};
   return &listener;
 }
 

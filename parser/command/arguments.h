@@ -107,6 +107,7 @@ typedef enum strut_option_id {
   STRUT_OPTION_IN,
   STRUT_OPTION_OUT,
   STRUT_OPTION_ALLOWANCE, /* of export: for the ends of cables */
+  STRUT_OPTION_UNIT,      /* of import */
   STRUT_OPTION_LOWEST,
   STRUT_OPTION_LIMIT_EVALUATIONS,
   STRUT_OPTION_LIMIT_TIME,
