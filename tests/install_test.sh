@@ -134,3 +134,12 @@ for script in bash:bash-completion/completions/strut zsh:zsh/vendor-completions/
   cmp script "$prefix/share/${script#*:}"
 done
 "$prefix/bin/strut" check "$source/models/crawler/crawler.yaml" >/dev/null
+
+# The Python package finds the library beside it, wherever both are.
+package=$(dirname "$(find "$prefix" -name _strut.abi3.so)")
+if [ -e "$package/__init__.py" ]; then
+  (cd / && env -u LD_LIBRARY_PATH PYTHONPATH="${package%/*}" PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 -c '
+import strut, sys
+assert strut.__file__.startswith(sys.argv[1])
+print(strut.load(sys.argv[2]).run(accuracy="1 %", record=False))' "$prefix" "$source/models/crawler/crawler.yaml")
+fi
