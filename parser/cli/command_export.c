@@ -11,6 +11,7 @@
 #include "engine/output/vtk.h"
 #include "parser/cli/option_values.h"
 #include "parser/cli/streams.h"
+#include "parser/command/statics_options.h"
 
 /* ---- a motion or a shape for ParaView ---- */
 

@@ -5,15 +5,24 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "parser/cli/manual.h"
 #include "parser/yaml/diagnostics.h"
 
 static strut_status print_help(const strut_arguments *arguments);
+
+static const strut_option help_options[] = {
+    {STRUT_OPTION_MAN, "man", NULL, "print the source of the manual page, for man -l"},
+    {STRUT_OPTION_END, NULL, NULL, NULL},
+};
 
 static const strut_command help_command = {
     .name = "help",
     .model = "COMMAND",
     .model_optional = true,
     .summary = "explains the program, or one of its commands",
+    .details =
+        "\nWith --man, COMMAND may also be 'model', for the page strut-model(5) of the language.\n",
+    .options = help_options,
     .run = print_help,
 };
 
@@ -34,11 +43,17 @@ static const strut_command *const commands[] = {
     &strut_command_plot,
     &strut_command_write,
     &strut_command_keys,
+    &strut_command_schema,
+    &strut_command_completion,
     &strut_command_evaluate,
     &strut_command_import,
     &help_command,
     NULL,
 };
+
+const strut_command *strut_command_at(size_t i) {
+  return i < sizeof commands / sizeof commands[0] ? commands[i] : NULL;
+}
 
 static const char *command_name_at(const void *context, size_t i) {
   (void)context;
@@ -76,9 +91,17 @@ void strut_program_help(void) {
 }
 
 static strut_status print_help(const strut_arguments *arguments) {
+  if (arguments->man && arguments->model && strcmp(arguments->model, "model") == 0) {
+    strut_manual_of_language();
+    return STRUT_OK;
+  }
   const strut_command *command = arguments->model ? strut_command_find(arguments->model) : NULL;
   if (arguments->model && !command) return STRUT_USAGE;
-  if (command)
+  if (arguments->man && command)
+    strut_manual_of_command(command);
+  else if (arguments->man)
+    strut_manual_of_program();
+  else if (command)
     strut_command_help(command);
   else
     strut_program_help();

@@ -25,7 +25,11 @@ extern const strut_command strut_command_sweep;
 extern const strut_command strut_command_tradeoff;
 extern const strut_command strut_command_view;
 extern const strut_command strut_command_write;
+extern const strut_command strut_command_schema;
+extern const strut_command strut_command_completion;
 
+/** The i-th command, or NULL after the last. */
+const strut_command *strut_command_at(size_t i);
 /** The command of that name, or NULL with the reason and a suggestion on stderr. */
 const strut_command *strut_command_find(const char *name);
 

@@ -99,6 +99,8 @@
   X(NEXT, COLLISIONS, "collisions", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a collision", BY_HAND, "Likewise.") \
   X(NEXT, BEAMS, "beams", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a beam", BY_HAND, "Likewise.") \
   X(NEXT, ACTUATORS, "actuators", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of an actuator", BY_HAND, "Likewise.") \
+  X(NEXT, SLIDERS, "sliders", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a slider", BY_HAND, "Likewise.") \
+  X(NEXT, SENSORS, "sensors", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a sensor", BY_HAND, "Likewise.") \
   X(NODE, POSITION, "position", PAIR, LENGTH, ANY, "", REQUIRED, 0, "", FIELD(strut_node, position), "Position in the drawn shape.") \
   X(NODE, GROUP, "group", GROUPS, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Groups that provide defaults; later groups take precedence.") \
   X(NODE, MASS, "mass", NUMBER, MASS, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_node, mass), "Point mass, in addition to the masses of the members.") \
