@@ -112,6 +112,25 @@ def kept_and_measured():
           f"'id' is a parameter here: {got[1]}")
 
 
+def studies_and_their_variants():
+    write("ways.yaml", """strut: 1
+study: ways
+model: block.yaml
+axes: [{stiffness: [1 N/m]}]
+set: {seconds: 20 ms}
+derive: {id: 2}
+variants: {coarse: {solver: {step: 2 ms}}, fine: {solver: {step: 0.5 ms}}}
+limit: {evaluations: 100}
+keep: [steps]
+""")
+    lines = ['{"set": {}}', '{"set": {}, "variant": "fine"}', '{"seconds": 0.04}', '{"seconds": 1}',
+             '{"set": {}, "variant": "finer"}']
+    got = answers("ways.yaml", code=2, lines=lines)
+    check([a["code"] for a in got] == [0, 0, 0, 3, 2], f"{got}")
+    check([a["results"]["steps"] for a in got[:3]] == [10, 40, 20], f"{got}")
+    check("coarse" in got[4]["message"] and "100 force" in got[3]["message"], f"{got}")
+
+
 def failures_go_on():
     deep = '{"a": ' * 40
     lines = [
@@ -262,6 +281,7 @@ def dakota_files():
 results_are_those_of_a_sweep()
 every_computation()
 kept_and_measured()
+studies_and_their_variants()
 failures_go_on()
 wrong_use()
 files()
