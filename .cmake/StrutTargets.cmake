@@ -17,11 +17,12 @@ function(strut_compile_options target)
     PROPERTIES C_STANDARD 17
                C_STANDARD_REQUIRED ON
                C_EXTENSIONS OFF
-               C_VISIBILITY_PRESET hidden)
+               C_VISIBILITY_PRESET hidden
+               POSITION_INDEPENDENT_CODE ON) # static libraries are parts of libstrut.so.0, too
   target_compile_definitions(${target} PRIVATE _POSIX_C_SOURCE=200809L
                                                STRUT_VERSION="${PROJECT_VERSION}")
   target_compile_options(${target} PRIVATE ${STRUT_WARNINGS} -ffp-contract=off -fno-math-errno
-                                           -Wno-psabi)
+                                           -fno-semantic-interposition -Wno-psabi)
   if(STRUT_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
   endif()

@@ -16,11 +16,11 @@
 #include "engine/run/plan.h"
 #include "parser/cli/check_messages.h"
 #include "parser/cli/check_study.h"
-#include "parser/cli/fidelity_settings.h"
 #include "parser/cli/open_model.h"
 #include "parser/cli/progress.h"
-#include "parser/cli/run_settings.h"
 #include "parser/cli/streams.h"
+#include "parser/command/fidelity_settings.h"
+#include "parser/command/run_settings.h"
 
 enum { MOST_MEMBERS = 40, DIGITS = 5, SKETCH_COLUMNS = 72, SKETCH_ROWS = 16 };
 

@@ -47,6 +47,7 @@ static const strut_command *const commands[] = {
     &strut_command_completion,
     &strut_command_new,
     &strut_command_examples,
+    &strut_command_evaluate,
     &help_command,
     NULL,
 };

@@ -10,6 +10,7 @@
 extern const strut_command strut_command_check;
 extern const strut_command strut_command_compare;
 extern const strut_command strut_command_equilibria;
+extern const strut_command strut_command_evaluate;
 extern const strut_command strut_command_export;
 extern const strut_command strut_command_form;
 extern const strut_command strut_command_keys;

@@ -22,6 +22,10 @@ typedef struct source {
   size_t length;
 } source;
 
+const char *strut_model_name(const strut_arguments *arguments) {
+  return strcmp(arguments->model, "-") == 0 ? "<stdin>" : arguments->model;
+}
+
 /* Prints what was found; on failure nothing is left of the setup. */
 static strut_status print_found(strut_diagnostics *diagnostics, strut_status status,
                                 strut_setup *setup) {
@@ -65,7 +69,7 @@ static strut_status read_source(const strut_arguments *arguments, const source *
 static strut_status open_text(const strut_arguments *arguments, strut_purpose purpose, source *from,
                               strut_setup *setup, strut_diagnostics *report) {
   strut_error error = {0};
-  *from = (source){.name = strcmp(arguments->model, "-") == 0 ? "<stdin>" : arguments->model};
+  *from = (source){.name = strut_model_name(arguments)};
   strut_status status = strut_file_read(arguments->model, &from->text, &from->length, &error);
   if (status != STRUT_OK) return strut_print_failure(status, &error);
   status = read_source(arguments, from, purpose, setup, report);
@@ -147,7 +151,7 @@ strut_status strut_write_short(const strut_arguments *arguments, const char *tex
                                char **result) {
   strut_diagnostics unused = {0};
   strut_scene_source *tree = NULL;
-  const char *name = strcmp(arguments->model, "-") == 0 ? "<stdin>" : arguments->model;
+  const char *name = strut_model_name(arguments);
   bool wanted = true;
   *result = NULL;
   strut_status status = strut_scene_source_open(name, text, length, &unused, &tree);
@@ -185,20 +189,6 @@ strut_status strut_try_file(const char *path) {
   if (status != STRUT_OK) strut_print_error(&error);
   strut_file_abandon(&file);
   return status;
-}
-
-/* ---- the shape that --at names ---- */
-
-strut_status strut_named_shape_find(const strut_arguments *arguments, const strut_model *model,
-                                    const strut_experiment *experiment, strut_arena *arena,
-                                    strut_named_shape *shape, strut_error *error) {
-  const char *name = strut_option_text(arguments, STRUT_OPTION_AT);
-  strut_rest_state stand = {0};
-  strut_status status =
-      strut_rest_state_find(model, experiment, name ? name : "drawn", arena, &stand, error);
-  if (status != STRUT_OK) return status;
-  *shape = (strut_named_shape){.name = stand.name, .q = stand.q};
-  return STRUT_OK;
 }
 
 /* ---- runs ---- */

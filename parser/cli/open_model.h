@@ -52,6 +52,9 @@ strut_status strut_write_short(const strut_arguments *arguments, const char *tex
                                const char *before, const strut_setup *setup, bool all,
                                char **result);
 
+/** The model's name in messages. */
+const char *strut_model_name(const strut_arguments *arguments);
+
 /** Prints the warnings of a valid scene on stderr: see strut_setup_warn. */
 strut_status strut_warn_of_scene(const strut_setup *setup);
 
@@ -63,16 +66,6 @@ strut_status strut_check_output_writable(const strut_arguments *arguments,
                                          const char *const *names);
 /** As above for one file; does nothing for NULL. */
 strut_status strut_try_file(const char *path);
-
-typedef struct strut_named_shape {
-  const char *name; /* "drawn", or the value of --at */
-  const double *q;  /* (length) positions [m], in the arena */
-} strut_named_shape;
-
-/** Finds the shape that --at names, by default the drawn one; errors as strut_rest_state_find. */
-strut_status strut_named_shape_find(const strut_arguments *arguments, const strut_model *model,
-                                    const strut_experiment *experiment, strut_arena *arena,
-                                    strut_named_shape *shape, strut_error *error);
 
 /** Must not move in memory: the model refers to the scene. Zero-initialise. */
 typedef struct strut_opened {

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
+#include "parser/cli/streams.h"
 #include "parser/yaml/diagnostics.h"
 
 enum { MOST_OPTIONS = 48, FIRST_WITHOUT_LETTER = 256, POSITIONAL = 1, COLUMN = 24 };
@@ -123,6 +124,7 @@ static strut_status store_option(const strut_command *command, int id, strut_arg
     case STRUT_OPTION_PARTS: to->parts = true; break;
     case STRUT_OPTION_STUDY: to->study = true; break;
     case STRUT_OPTION_MAN: to->man = true; break;
+    case STRUT_OPTION_DAKOTA: to->dakota = true; break;
     case STRUT_OPTION_HELP: to->help = true; break;
     default: break;
   }
@@ -160,7 +162,7 @@ strut_status strut_arguments_read(const strut_command *command, int argc, char *
   char letters[2 * MOST_OPTIONS + 3];
   struct option rows[MOST_OPTIONS + 1] = {{0}};
   fill_getopt(command, letters, rows);
-  *arguments = (strut_arguments){0};
+  *arguments = (strut_arguments){.listener = strut_stderr_listener()};
   arguments->overrides = strut_allocate((size_t)argc, sizeof *arguments->overrides);
   arguments->override_model = strut_allocate((size_t)argc, sizeof *arguments->override_model);
   arguments->varied = strut_allocate((size_t)argc, sizeof *arguments->varied);
@@ -193,11 +195,6 @@ strut_status strut_arguments_read(const strut_command *command, int argc, char *
     status = usage_error(command);
   }
   return status;
-}
-
-const char *strut_option_text(const strut_arguments *arguments, strut_option_id id) {
-  assert(id >= STRUT_OPTION_TEXTS && id < STRUT_OPTION_TEXTS_END);
-  return arguments->texts[(int)id - (int)STRUT_OPTION_TEXTS];
 }
 
 void strut_arguments_free(strut_arguments *arguments) {
