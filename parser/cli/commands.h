@@ -13,6 +13,7 @@ extern const strut_command strut_command_equilibria;
 extern const strut_command strut_command_evaluate;
 extern const strut_command strut_command_export;
 extern const strut_command strut_command_form;
+extern const strut_command strut_command_import;
 extern const strut_command strut_command_keys;
 extern const strut_command strut_command_merge;
 extern const strut_command strut_command_modes;

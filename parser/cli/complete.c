@@ -59,7 +59,8 @@ static const struct word_option {
                     {NULL, STRUT_OPTION_DRAW, "overview|period|snapshots|curves"},
                     {NULL, STRUT_OPTION_EQUILIBRIA, "all|none"},
                     {NULL, STRUT_OPTION_EMIT, "slurm|parallel|htcondor"},
-                    {NULL, STRUT_OPTION_FORMAT, "vtk|build|mjcf"},
+                    {"export", STRUT_OPTION_FORMAT, "vtk|build|mjcf"},
+                    {"import", STRUT_OPTION_FORMAT, "ntrt|tensegritysim|springable|tables"},
                     {NULL, STRUT_OPTION_WIDTH, "page|column"}};
 
 /* Options that take the words of a key. */
@@ -170,7 +171,7 @@ static const char *complete_argument(const strut_command *command, const strut_c
   if (strcmp(model, "EXAMPLE") == 0) strut_offer_examples(c);
   if (strcmp(model, "DIR") == 0) return ":folders";
   if (strcmp(model, "TABLE") == 0) return ":files csv";
-  if (strstr(model, "RUN")) return ":files";
+  if (strstr(model, "RUN") || strncmp(model, "FILE", 4) == 0) return ":files";
   bool scene = strncmp(model, "MODEL", 5) == 0 || strcmp(model, "STUDY") == 0;
   return scene ? ":files yaml yml" : ":";
 }
