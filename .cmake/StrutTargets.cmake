@@ -22,7 +22,7 @@ function(strut_compile_options target)
   target_compile_definitions(${target} PRIVATE _POSIX_C_SOURCE=200809L
                                                STRUT_VERSION="${PROJECT_VERSION}")
   target_compile_options(${target} PRIVATE ${STRUT_WARNINGS} -ffp-contract=off -fno-math-errno
-                                           -Wno-psabi)
+                                           -fno-semantic-interposition -Wno-psabi)
   if(STRUT_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
   endif()

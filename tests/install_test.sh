@@ -87,4 +87,17 @@ cmp table-by-cmake.csv table.csv
 cmp table-by-cmake.csv by-program/table.csv
 
 "$prefix/bin/strut" --version
+"$prefix/bin/strut" schema >schema
+cmp schema "$prefix/share/strut/strut-1.schema.json"
+"$prefix/bin/strut" schema --study >schema
+cmp schema "$prefix/share/strut/strut-1.study.schema.json"
+for page in man1/strut.1 man1/strut-run.1 man1/strut-completion.1 man5/strut-model.5; do
+  test -s "$prefix/share/man/$page"
+done
+[ "$(find "$prefix/share/man" -name 'strut*' | wc -l)" -ge 19 ]
+for script in bash:bash-completion/completions/strut zsh:zsh/vendor-completions/_strut \
+  fish:fish/vendor_completions.d/strut.fish; do
+  "$prefix/bin/strut" completion "${script%%:*}" >script
+  cmp script "$prefix/share/${script#*:}"
+done
 "$prefix/bin/strut" check "$source/models/crawler/crawler.yaml" >/dev/null

@@ -57,7 +57,7 @@ breaches() {
       if (!ours) {
         base = name; sub("^suitesparse/", "", base)
         if (quoted) breach("not spelled from the repository root")
-        else if (base in home && from != home[base] && from != "parser/cli") breach("belongs to " home[base])
+        else if (base in home && from != home[base] && from !~ "^parser/(cli|command|abi)$") breach("belongs to " home[base])
         else if (base in room_of && index(file, room_of[base] ".") != 1)
           breach("belongs to " room_of[base])
         next
@@ -65,9 +65,15 @@ breaches() {
       if (!quoted) { breach("a header of ours in angle brackets"); next }
       if (system("test -f \"" root "/" name "\"") != 0) { breach("no such header"); next }
       if (to ~ "^tests") { breach("the product includes a test"); next }
-      if (from == "parser/cli" || from == to) next
+      if (from == to) next
+      # On top of everything: the program and the shared library, and below both their options.
+      if (from == "parser/cli" || from == "parser/abi") {
+        if (to == "parser/cli" || to == "parser/abi") breach("runs up")
+        next
+      }
+      if (from == "parser/command") { if (to == "parser/cli" || to == "parser/abi") breach("runs up"); next }
       # The front door of the libraries names them all, but never the program.
-      if (file == "parser/strut.h") { if (to == "parser/cli") breach("runs up"); next }
+      if (file == "parser/strut.h") { if (to ~ "^parser/(cli|command|abi)$") breach("runs up"); next }
       if (from ~ "^parser") {
         if (to == "engine/base" || to == "engine/scene") next
         if (!(from in parser_floor)) breach("a folder without a floor")
@@ -91,7 +97,8 @@ expect() {
   for header in engine/base/a.h engine/scene/a.h engine/model/a.h engine/forces/a.h \
     engine/integrate/a.h engine/run/a.h engine/statics/a.h engine/statics/search/a.h \
     engine/statics/modes/a.h engine/output/a.h engine/study/sweep/a.h engine/run/orbit/a.h \
-    engine/odd/a.h parser/a.h parser/yaml/a.h parser/read/a.h parser/cli/a.h tests/a.h "$2"; do
+    engine/odd/a.h parser/a.h parser/yaml/a.h parser/read/a.h parser/cli/a.h parser/command/a.h \
+    parser/abi/a.h tests/a.h "$2"; do
     mkdir -p "$scratch/tree/${header%/*}"
     : >"$scratch/tree/$header"
   done
@@ -112,6 +119,11 @@ expect 0 parser/read/b.c '#include "parser/yaml/a.h"'
 expect 1 parser/yaml/b.c '#include "parser/read/a.h"'
 expect 0 parser/b.c '#include "engine/scene/a.h"'
 expect 0 parser/cli/b.c '#include "engine/study/sweep/a.h"'
+expect 0 parser/cli/b.c '#include "parser/command/a.h"'
+expect 0 parser/abi/b.c '#include "parser/command/a.h"'
+expect 1 parser/command/b.c '#include "parser/cli/a.h"'
+expect 1 parser/abi/b.c '#include "parser/cli/a.h"'
+expect 1 parser/read/b.c '#include "parser/command/a.h"'
 expect 0 parser/strut.h '#include "engine/output/a.h"'
 expect 0 parser/yaml/b.c '#include <yaml.h>'
 expect 1 parser/read/b.c '#include <yaml.h>'

@@ -12,6 +12,7 @@
 # or no debootstrap. Bare systems are kept in STRUT_ROOTS for the next time.
 set -eu
 source=$(cd "$(dirname "$0")/.." && pwd)
+commit=$(git -C "$source" rev-parse HEAD)
 output=${1:-}
 [ $# -eq 0 ] || shift
 [ $# -gt 0 ] || set -- bookworm trixie
@@ -90,9 +91,10 @@ build() {
   box=$1 folder=$2 mask=$3
   shift 3
   git clone -q "$source" "$scratch/$box/root/$folder"
+  git -C "$scratch/$box/root/$folder" checkout -q "$commit"
   within "$box" "umask $mask; cd $folder; git config --global --add safe.directory $folder
-    cmake --workflow --preset packages" "$@" >"$scratch/log" 2>&1 || { tail -n 40 "$scratch/log"; exit 1; }
-  ! grep -i 'warning' "$scratch/log" || { echo "a build with warnings"; exit 1; }
+    cmake --workflow --preset packages" CMAKE_BUILD_PARALLEL_LEVEL="$(nproc)" "$@" >"$scratch/log" 2>&1 || { tail -n 40 "$scratch/log"; exit 1; }
+  ! grep -E '[Ww]arning(:| at)' "$scratch/log" || { echo "a build with warnings"; exit 1; }
 }
 
 for suite; do

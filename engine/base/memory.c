@@ -101,6 +101,49 @@ char *strut_arena_format(strut_arena *arena, const char *format, ...) {
   return text;
 }
 
+/* ---- contents ---- */
+
+/* Before the contents: how many chunks there are, and how much of each is used, the newest first. */
+static size_t chunk_count(const strut_arena *arena) {
+  size_t count = 0;
+  for (const struct strut_arena_chunk *c = arena->chunk; c; c = c->previous) count++;
+  return count;
+}
+
+size_t strut_arena_stored_size(const strut_arena *arena) {
+  size_t bytes = sizeof(size_t);
+  for (const struct strut_arena_chunk *c = arena->chunk; c; c = c->previous)
+    bytes += sizeof(size_t) + c->used;
+  return bytes;
+}
+
+void strut_arena_store(const strut_arena *arena, void *to) {
+  char *at = to;
+  size_t count = chunk_count(arena);
+  memcpy(at, &count, sizeof count);
+  at += sizeof count;
+  for (const struct strut_arena_chunk *c = arena->chunk; c; c = c->previous) {
+    memcpy(at, &c->used, sizeof c->used);
+    memcpy(at + sizeof c->used, c->base, c->used);
+    at += sizeof c->used + c->used;
+  }
+}
+
+void strut_arena_restore(strut_arena *arena, const void *from) {
+  const char *at = from;
+  size_t count, now = chunk_count(arena);
+  struct strut_arena_chunk *c = arena->chunk;
+  memcpy(&count, at, sizeof count);
+  at += sizeof count;
+  for (; now > count; now--) c = c->previous; /* chunks that came since */
+  for (; c; c = c->previous) {
+    size_t used;
+    memcpy(&used, at, sizeof used);
+    memcpy(c->base, at + sizeof used, used);
+    at += sizeof used + used;
+  }
+}
+
 void strut_arena_free(strut_arena *arena) {
   struct strut_arena_chunk *chunk = arena->chunk;
   while (chunk) {

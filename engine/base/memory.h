@@ -38,6 +38,15 @@ STRUT_API char *strut_arena_text(strut_arena *arena, const char *text, size_t le
 /** printf into the arena; NULL when memory is out. */
 STRUT_API char *strut_arena_format(strut_arena *arena, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
+/** Bytes that strut_arena_store writes. */
+STRUT_API size_t strut_arena_stored_size(const strut_arena *arena);
+/** Copies the contents of all blocks that were given out to `to`. */
+STRUT_API void strut_arena_store(const strut_arena *arena, void *to);
+/**
+ * Puts the contents back into the blocks, which stand where they stood: pointers between them stay good.
+ * Blocks that were given out since keep what they hold.
+ */
+STRUT_API void strut_arena_restore(strut_arena *arena, const void *from);
 /** Frees all blocks; the arena may be used again. */
 STRUT_API void strut_arena_free(strut_arena *arena);
 

@@ -46,6 +46,10 @@ void strut_json_integer(strut_json *json, cJSON *to, const char *key, int64_t va
   add(json, to, key, cJSON_CreateRaw(text));
 }
 
+void strut_json_raw(strut_json *json, cJSON *to, const char *key, const char *text) {
+  add(json, to, key, cJSON_CreateRaw(text));
+}
+
 void strut_json_bool(strut_json *json, cJSON *to, const char *key, bool value) {
   add(json, to, key, cJSON_CreateBool(value));
 }
@@ -64,8 +68,8 @@ cJSON *strut_json_array(strut_json *json, cJSON *to, const char *key) {
   return add(json, to, key, cJSON_CreateArray());
 }
 
-char *strut_json_end(strut_json *json) {
-  char *printed = json->failed ? NULL : cJSON_Print(json->root), *text = NULL;
+static char *end(strut_json *json, char *(*print)(const cJSON *)) {
+  char *printed = json->failed ? NULL : print(json->root), *text = NULL;
   if (printed) {
     size_t length = strlen(printed);
     text = strut_allocate(length + 2, 1);
@@ -79,3 +83,7 @@ char *strut_json_end(strut_json *json) {
   *json = (strut_json){NULL, true};
   return text;
 }
+
+char *strut_json_end(strut_json *json) { return end(json, cJSON_Print); }
+
+char *strut_json_end_line(strut_json *json) { return end(json, cJSON_PrintUnformatted); }

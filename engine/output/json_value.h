@@ -29,6 +29,9 @@ STRUT_API void strut_json_number(strut_json *json, struct cJSON *to, const char 
 STRUT_API void strut_json_integer(strut_json *json, struct cJSON *to, const char *key,
                                   int64_t value);
 STRUT_API void strut_json_bool(strut_json *json, struct cJSON *to, const char *key, bool value);
+/** A number, true or false as JSON writes it. */
+STRUT_API void strut_json_raw(strut_json *json, struct cJSON *to, const char *key,
+                              const char *text);
 /** An array of numbers. */
 STRUT_API void strut_json_numbers(strut_json *json, struct cJSON *to, const char *key,
                                   const double *values, size_t count);
@@ -37,5 +40,7 @@ STRUT_API struct cJSON *strut_json_object(strut_json *json, struct cJSON *to, co
 STRUT_API struct cJSON *strut_json_array(strut_json *json, struct cJSON *to, const char *key);
 /** Frees the tree; its text with a final newline in a block of strut_allocate, or NULL. */
 STRUT_API char *strut_json_end(strut_json *json);
+/** The same on one line. */
+STRUT_API char *strut_json_end_line(strut_json *json);
 
 #endif

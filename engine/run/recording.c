@@ -36,6 +36,8 @@ static const struct {
     {STRUT_CHANNEL_ENERGY, "energy", "J", sizeof energies / sizeof energies[0], energies},
 };
 
+static const unsigned ALL_CHANNELS = ~0u;
+
 /* The *count names of the items of a channel, in the arena. */
 static const char *const *item_names(const strut_model *model, strut_channel id, strut_arena *arena,
                                      size_t *count) {
@@ -262,21 +264,41 @@ static strut_status flush_rows(strut_recording *r, strut_error *error) {
   return STRUT_OK;
 }
 
+static void fill_row(const strut_model *model, strut_state *state, strut_recording *r,
+                     unsigned wanted, double *row) {
+  double t = strut_time_grid_at(&r->grid, state->step);
+  if (wanted & ~(unsigned)(STRUT_CHANNEL_POSITION | STRUT_CHANNEL_VELOCITY)) {
+    strut_forces_observe(model, state, t);
+    strut_members_measure(model, state, r->length, r->force);
+    measure_hinges(model, state, r);
+    measure_cells(model, state, r);
+  }
+  row[0] = strut_time_grid_real(&r->grid, state->step);
+  for (size_t k = 0; k < r->layout.channel_count; k++)
+    if (wanted & (unsigned)r->channel[k].id)
+      fill_channel(model, state, r, &r->channel[k], row + r->channel[k].offset);
+}
+
 strut_status strut_recording_sample(const strut_model *model, strut_state *state,
                                     strut_recording *r, strut_error *error) {
   assert(r->sink_count && r->row_count < r->capacity && state->step > r->last);
-  double t = strut_time_grid_at(&r->grid, state->step);
-  double *row = r->rows + r->row_count++ * r->layout.width;
-  strut_forces_observe(model, state, t);
-  strut_members_measure(model, state, r->length, r->force);
-  measure_hinges(model, state, r);
-  measure_cells(model, state, r);
-  row[0] = strut_time_grid_real(&r->grid, state->step);
-  for (size_t k = 0; k < r->layout.channel_count; k++)
-    fill_channel(model, state, r, &r->channel[k], row + r->channel[k].offset);
+  fill_row(model, state, r, ALL_CHANNELS, r->rows + r->row_count++ * r->layout.width);
   r->last = state->step;
   r->sampled++;
   return r->row_count == r->capacity ? flush_rows(r, error) : STRUT_OK;
+}
+
+strut_status strut_recording_create_alone(const strut_model *model, const strut_time_grid *grid,
+                                          strut_recording *r, strut_error *error) {
+  *r = (strut_recording){.grid = *grid, .last = -1};
+  bool good = create_scratch(model, r) && create_layout(model, ALL_CHANNELS, r);
+  if (good) r->rows = strut_arena_allocate(&r->arena, r->layout.width, sizeof *r->rows);
+  return r->rows ? STRUT_OK : strut_no_memory(error, "");
+}
+
+void strut_recording_observe(const strut_model *model, strut_state *state, strut_recording *r,
+                             unsigned wanted) {
+  if (wanted) fill_row(model, state, r, wanted, r->rows);
 }
 
 strut_status strut_recording_finish(strut_recording *r, strut_status run_status,

@@ -60,6 +60,15 @@ strut_status strut_recording_sample(const strut_model *model, strut_state *state
  */
 strut_status strut_recording_finish(strut_recording *recording, strut_status run_status,
                                     strut_error *error);
+/**
+ * A recording of all channels that no sink hears, for strut_recording_observe: its row is `rows`.
+ * STRUT_NO_MEMORY.
+ */
+strut_status strut_recording_create_alone(const strut_model *model, const strut_time_grid *grid,
+                                          strut_recording *recording, strut_error *error);
+/** Fills the channels of `wanted` (strut_channel bits) into its row. */
+void strut_recording_observe(const strut_model *model, strut_state *state,
+                             strut_recording *recording, unsigned wanted);
 /** Frees the recording; ends sinks that are still open with STRUT_FILE_TROUBLE. */
 void strut_recording_free(strut_recording *recording);
 

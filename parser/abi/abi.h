@@ -174,7 +174,7 @@ STRUTLIB_API void strutlib_close(strutlib_scene *scene);
 /**
  * Names of the things of a kind, which is a key of the scene: "parameters", "nodes", "members",
  * "hinges", "cells", "contacts", "collisions", "actuators", "loads", "sensors", "states",
- * "configurations", "quantities", "grounds", "rotating_masses" or "sliding_masses"; or "channels": those
+ * "configurations", "quantities", "grounds", "unbalances" or "sliders"; or "channels": those
  * that the scene records; "kinds": all these words. How many there are; 0 for any other word.
  */
 STRUTLIB_API size_t strutlib_name_count(const strutlib_scene *scene, const char *kind);
@@ -267,7 +267,7 @@ STRUTLIB_API strutlib_result *strutlib_rigidity(const strutlib_scene *scene, siz
 STRUTLIB_API strutlib_result *strutlib_form(const strutlib_scene *scene, size_t count,
                                             const char *const *names, const char *const *values,
                                             strutlib_control *control, strutlib_error **error);
-/** `strut path`. Arrays such as "points.factor" (points), "points.nodes" (points, nodes, 2). */
+/** `strut path`. Arrays such as "points.factor" (points; "points.value" with "over"), "points.nodes" (points, nodes, 2). */
 STRUTLIB_API strutlib_result *strutlib_path(const strutlib_scene *scene, size_t count,
                                             const char *const *names, const char *const *values,
                                             strutlib_control *control, strutlib_error **error);
@@ -275,7 +275,7 @@ STRUTLIB_API strutlib_result *strutlib_path(const strutlib_scene *scene, size_t 
  * The matrices of `strut export --matrices`, in the shape that the option "at" names. Arrays of each:
  * "mass.row", "mass.column", "mass.value" (entries; indices from 0; symmetric ones in full), "mass.size" (2: rows, columns);
  * likewise "connectivity", "equilibrium", "stiffness_elastic", "stiffness_geometric", "damping" and
- * "stiffness_contact".
+ * "stiffness_contact"; and "coordinates" (rows): of each row of all but connectivity 2 times its node, + 1 for y.
  */
 STRUTLIB_API strutlib_result *strutlib_matrices(const strutlib_scene *scene, size_t count,
                                                 const char *const *names, const char *const *values,

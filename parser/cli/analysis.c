@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "parser/cli/analysis.h"
 
-#include <stdio.h>
-
 #include "engine/base/memory.h"
-#include "engine/forces/memory.h"
 #include "engine/output/file.h"
 #include "parser/cli/streams.h"
 
@@ -44,16 +41,4 @@ strut_status strut_report(const strut_arguments *arguments, const char *const *n
   if (status == STRUT_OK) return strut_print_report(arguments, shown);
   strut_release(shown);
   return status;
-}
-
-void strut_warn_of_overload(const strut_model *model, const double *q, const char *where) {
-  strut_overload worst;
-  if (!strut_memory_overload(model, q, &worst)) return;
-  const char *unit = worst.hinge ? "N m" : "N";
-  fprintf(
-      stderr,
-      "strut: warning: %s %s '%s' carries %.4g %s, above the %.4g %s at which it %s; statics take "
-      "it as %s\n",
-      where, worst.hinge ? "hinge" : "member", worst.name, worst.force, unit, worst.limit, unit,
-      worst.breaks ? "breaks" : "yields", worst.breaks ? "whole" : "elastic");
 }

@@ -33,7 +33,4 @@ strut_status strut_analysis_run(const strut_command *command, const strut_argume
 strut_status strut_report(const strut_arguments *arguments, const char *const *names, char *json,
                           char *csv, char *table, strut_error *error);
 
-/** Warns on stderr if something carries more at q (length), at `where`, than it can: see forces/memory.h. */
-void strut_warn_of_overload(const strut_model *model, const double *q, const char *where);
-
 #endif

@@ -14,11 +14,13 @@
 #include "engine/output/report/sketch.h"
 #include "engine/run/measure/stick_band.h"
 #include "engine/run/plan.h"
-#include "parser/cli/fidelity_settings.h"
+#include "parser/cli/check_messages.h"
+#include "parser/cli/check_study.h"
 #include "parser/cli/open_model.h"
 #include "parser/cli/progress.h"
-#include "parser/cli/run_settings.h"
 #include "parser/cli/streams.h"
+#include "parser/command/fidelity_settings.h"
+#include "parser/command/run_settings.h"
 
 enum { MOST_MEMBERS = 40, DIGITS = 5, SKETCH_COLUMNS = 72, SKETCH_ROWS = 16 };
 
@@ -477,7 +479,7 @@ static void add_members(strut_json *json, const strut_model *model, const double
   }
 }
 
-static bool add_warnings(strut_json *json, const strut_setup *setup) {
+static bool add_warnings(strut_json *json, const strut_setup *setup, strut_open_report *report) {
   strut_findings found = {0};
   strut_status status = strut_setup_warn(setup, &found);
   struct cJSON *warnings = strut_json_array(json, json->root, "warnings");
@@ -486,15 +488,19 @@ static bool add_warnings(strut_json *json, const strut_setup *setup) {
     strut_json_text(json, warning, "code", found.items[i].key);
     strut_json_text(json, warning, "text", found.items[i].message);
   }
+  struct cJSON *messages = strut_json_array(json, json->root, "messages");
+  strut_add_diagnostics(json, messages, &report->diagnostics);
+  strut_add_warnings(json, messages, &found, &setup->scene, &report->diagnostics);
   strut_findings_free(&found);
   return status == STRUT_OK;
 }
 
 static strut_status print_json(const strut_plan *plan, const strut_model *model,
-                               const strut_setup *setup) {
+                               const strut_setup *setup, strut_open_report *report) {
   double *q = drawn_shape(model);
   if (!q) return strut_print_out_of_memory();
   strut_json json = strut_json_begin();
+  strut_json_bool(&json, json.root, "valid", true);
   add_plan(&json, plan, setup);
   add_terms(&json, plan);
   add_members(&json, model, q);
@@ -502,7 +508,7 @@ static strut_status print_json(const strut_plan *plan, const strut_model *model,
   add_cells(&json, model->scene);
   add_collisions(&json, model, q);
   strut_release(q);
-  if (!add_warnings(&json, setup)) json.failed = true;
+  if (!add_warnings(&json, setup, report)) json.failed = true;
   return strut_print_block(strut_json_end(&json));
 }
 
@@ -512,12 +518,35 @@ static bool has_fixed_method(const strut_experiment *e) {
   return by_hand && (e->step != 0.0 || e->duration != 0.0 || e->periods != 0.0);
 }
 
-static strut_status run_check(const strut_arguments *arguments) {
+/* What is wrong, as JSON; returns `status`. */
+static strut_status print_wrong(strut_status status, const strut_error *error,
+                                strut_open_report *report) {
+  strut_json json = strut_json_begin();
+  strut_json_bool(&json, json.root, "valid", false);
+  struct cJSON *messages = strut_json_array(&json, json.root, "messages");
+  strut_add_diagnostics(&json, messages, &report->diagnostics);
+  if (error->message[0])
+    strut_add_message(&json, messages, report->diagnostics.file, "error", error->message);
+  strut_json_integer(&json, json.root, "unlisted", (int64_t)report->diagnostics.unstored);
+  strut_status printed = strut_print_block(strut_json_end(&json));
+  return printed != STRUT_OK ? printed : status;
+}
+
+static strut_status open_checked(const strut_arguments *arguments, strut_setup *setup,
+                                 strut_open_report *report) {
+  if (!arguments->json) return strut_open_model(arguments, STRUT_OPEN_AS_RUN, setup);
+  strut_status status = strut_open_model_reported(arguments, STRUT_OPEN_AS_RUN, setup, report);
+  bool located = status == STRUT_BAD_SCENE && report->diagnostics.count;
+  if (located || report->error.message[0]) return print_wrong(status, &report->error, report);
+  return status; /* what is not about the scene was printed */
+}
+
+static strut_status check_model(const strut_arguments *arguments, strut_open_report *report) {
   strut_setup setup;
   strut_plan plan;
   strut_model *model = NULL;
   strut_error error = {0};
-  strut_status status = strut_open_model(arguments, STRUT_OPEN_AS_RUN, &setup);
+  strut_status status = open_checked(arguments, &setup, report);
   if (status != STRUT_OK) return status;
   status = strut_run_settings_apply(&strut_command_check, arguments, &setup.experiment);
   if (status == STRUT_OK)
@@ -534,14 +563,25 @@ static strut_status run_check(const strut_arguments *arguments) {
   if (status == STRUT_OK && (status = strut_warn_of_scene(&setup))) {
     /* reported already */
   } else if (status != STRUT_OK) {
-    strut_print_error(&error);
+    if (arguments->json && error.message[0])
+      status = print_wrong(status, &error, report);
+    else
+      strut_print_error(&error);
   } else if (arguments->json) {
-    status = print_json(&plan, model, &setup);
+    status = print_json(&plan, model, &setup, report);
   } else if (!arguments->quiet) {
     status = print_plan(&plan, model, &setup.experiment);
   }
   strut_model_free(model);
   strut_setup_free(&setup);
+  return status;
+}
+
+static strut_status run_check(const strut_arguments *arguments) {
+  strut_open_report report = {.text = NULL};
+  if (strut_is_study(arguments->model)) return strut_check_study(&strut_command_check, arguments);
+  strut_status status = check_model(arguments, &report);
+  strut_open_report_free(&report);
   return status;
 }
 
@@ -555,7 +595,8 @@ const strut_command strut_command_check = {
         "equations that a step evaluates and those it omits, the largest stable step, and for "
         "each\n"
         "member its rest length in each of the four forms that the language accepts. Running\n"
-        "cables, laws, stops and hinges have tables of their own.\n",
+        "cables, laws, stops and hinges have tables of their own.\n"
+        "--json lists all messages with their places, for editors; a study is checked, too.\n",
     .options = options,
     .run = run_check,
 };

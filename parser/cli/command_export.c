@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "parser/cli/analysis.h"
 #include "parser/cli/commands.h"
+#include "parser/cli/export_formats.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -8,8 +9,9 @@
 #include "engine/forces/elements.h"
 #include "engine/output/matrix_market.h"
 #include "engine/output/vtk.h"
-#include "parser/cli/options.h"
+#include "parser/cli/option_values.h"
 #include "parser/cli/streams.h"
+#include "parser/command/statics_options.h"
 
 /* ---- a motion or a shape for ParaView ---- */
 
@@ -78,8 +80,11 @@ static strut_status export_vtk(const strut_command *command, const strut_argumen
 
 static const strut_option options[] = {
     {STRUT_OPTION_MATRICES, "matrices", "DIR", "write the matrices into DIR"},
-    {STRUT_OPTION_FORMAT, "format", "FORMAT", "vtk: the motion of a run or a shape, for ParaView"},
-    {STRUT_OPTION_OUTPUT, "output", "DIR", "directory for the files of --format"},
+    {STRUT_OPTION_FORMAT, "format", "FORMAT",
+     "vtk: a motion or a shape, for ParaView; build: lengths to cut; mjcf: for MuJoCo"},
+    {STRUT_OPTION_OUTPUT, "output", "DIR", "where --format writes: a directory, for mjcf a file"},
+    {STRUT_OPTION_ALLOWANCE, "allowance", "LENGTH",
+     "build: what a cable needs at each end, such as 20 mm"},
     {STRUT_OPTION_AT, "at", "NAME", "the shape: drawn (default), start, or an equilibrium"},
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
     {STRUT_OPTION_END, NULL, NULL, NULL},
@@ -98,16 +103,20 @@ static strut_status write_matrices(strut_analysis *a, strut_error *error) {
 }
 
 static strut_status export_format(const strut_arguments *arguments, const char *matrices) {
-  static const char *const formats[] = {"vtk", NULL};
+  static const char *const formats[] = {"vtk", "build", "mjcf", NULL};
+  const strut_command *command = &strut_command_export;
   int format = 0;
   strut_status status =
-      strut_option_word(&strut_command_export, arguments, STRUT_OPTION_FORMAT, formats, &format);
+      strut_option_word(command, arguments, STRUT_OPTION_FORMAT, formats, &format);
   if (status != STRUT_OK) return status;
-  if (arguments->output && *arguments->output && !matrices)
-    return export_vtk(&strut_command_export, arguments);
-  fprintf(stderr, "strut export: %s\n",
-          matrices ? "give either --matrices or --format, not both" : "missing -o DIR");
-  return STRUT_USAGE;
+  if (matrices)
+    return strut_print_usage_error(command, "give either --matrices or --format, not both");
+  if (format != 1 && strut_option_text(arguments, STRUT_OPTION_ALLOWANCE))
+    return strut_print_usage_error(command, "--allowance is for --format build");
+  if (!arguments->output || !*arguments->output)
+    return strut_print_usage_error(command, "missing -o %s", format == 2 ? "FILE.xml" : "DIR");
+  if (format == 0) return export_vtk(command, arguments);
+  return format == 1 ? strut_export_build(arguments) : strut_export_mjcf(arguments);
 }
 
 static strut_status run_export(const strut_arguments *arguments) {
@@ -115,8 +124,8 @@ static strut_status run_export(const strut_arguments *arguments) {
   if (strut_option_text(arguments, STRUT_OPTION_FORMAT)) return export_format(arguments, directory);
   if (!directory || !*directory || arguments->output) {
     fprintf(stderr, "strut export: %s\n",
-            arguments->output ? "-o DIR needs --format vtk"
-                              : "missing --matrices DIR, or --format vtk -o DIR");
+            arguments->output ? "-o DIR needs --format"
+                              : "missing --matrices DIR, or --format vtk, build or mjcf with -o");
     return STRUT_USAGE;
   }
   return strut_analysis_run(&strut_command_export, arguments, NULL, write_matrices);
@@ -125,7 +134,7 @@ static strut_status run_export(const strut_arguments *arguments) {
 const strut_command strut_command_export = {
     .name = "export",
     .model = "RUN|MODEL",
-    .summary = "writes the matrices of a model, or a motion for ParaView",
+    .summary = "writes matrices, a motion for ParaView, lengths to cut, or MuJoCo's format",
     .details =
         "\nWith --matrices, for MATLAB, Octave or Python: Matrix Market files:\n"
         "connectivity, equilibrium, mass, stiffness_elastic,\n"
@@ -134,6 +143,10 @@ const strut_command strut_command_export = {
         "and columns. The tangent stiffness is the sum of the three.\n"
         "With --format vtk, for ParaView: structure.pvd, a .vtp file for every frame of RUN (a\n"
         "directory that 'strut run -o' made) or one for the shape of MODEL, and ground.vtp.\n"
+        "With --format build, to build it: members.csv and nodes.csv, with lengths to cut and "
+        "holes,\n"
+        "and drawing.svg and drawing.dxf at true scale.\n"
+        "With --format mjcf, FILE.xml for MuJoCo; what it cannot say is refused or listed.\n"
         "Either all files are written or none.\n",
     .options = options,
     .run = run_export,

@@ -11,48 +11,17 @@
 #include "parser/cli/open_model.h"
 #include "parser/cli/option_values.h"
 #include "parser/cli/streams.h"
+#include "parser/command/statics_options.h"
 #include "parser/write/write_scene.h"
 
 static const strut_option options[] = {
-    {STRUT_OPTION_FROM, "from", "WHAT",
-     "densities, lengths or prestress (default: by what the model gives)"},
-    {STRUT_OPTION_LEAST_TENSION, "least-tension", "FORCE",
-     "lower bound on the tension of every cable"},
-    {STRUT_OPTION_LEAST_DENSITY, "least-density", "DENSITY",
-     "lower bound on the force density of every cable"},
-    {STRUT_OPTION_OBJECTIVE, "objective", "WHAT",
-     "which prestress: minimal largest (default), sum or squares"},
+    STRUT_FORM_OPTIONS,
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
     {STRUT_OPTION_OUTPUT, "output", "FILE", "write the new model to FILE and print a report"},
     {STRUT_OPTION_JSON, "json", NULL, "print the report as one JSON object instead of the model"},
     STRUT_PLOT_OPTIONS,
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
-
-static strut_status read_options(const strut_arguments *arguments, strut_form_options *wanted) {
-  static const char *const sources[] = {"densities", "lengths", "prestress", NULL};
-  static const char *const objectives[] = {"largest", "sum", "squares", NULL};
-  const strut_command *command = &strut_command_form;
-  int source = -1, objective = 0;
-  strut_status status = strut_option_word(command, arguments, STRUT_OPTION_FROM, sources, &source);
-  if (status == STRUT_OK)
-    status = strut_option_word(command, arguments, STRUT_OPTION_OBJECTIVE, objectives, &objective);
-  if (status == STRUT_OK)
-    status = strut_option_number(command, arguments, STRUT_OPTION_LEAST_TENSION, STRUT_DIM_FORCE,
-                                 &wanted->least_tension);
-  if (status == STRUT_OK)
-    status = strut_option_number(command, arguments, STRUT_OPTION_LEAST_DENSITY,
-                                 STRUT_DIM_STIFFNESS, &wanted->least_density);
-  if (status == STRUT_OK && (wanted->least_tension < 0 || wanted->least_density < 0)) {
-    fprintf(
-        stderr,
-        "strut form: --least-tension and --least-density must not be negative: cables only pull\n");
-    status = STRUT_USAGE;
-  }
-  wanted->from = (strut_form_source)(source + 1);
-  wanted->objective = (strut_form_objective)objective;
-  return status;
-}
 
 /* A model before its form was found. */
 typedef struct drawn_model {
@@ -126,7 +95,7 @@ static strut_status run_form(const strut_arguments *arguments) {
   strut_form_options wanted = {0};
   strut_plot plot;
   strut_arena arena = {0};
-  strut_status status = read_options(arguments, &wanted);
+  strut_status status = strut_form_options_read(&strut_command_form, arguments, &wanted);
   if (status == STRUT_OK) status = strut_plot_read(&strut_command_form, arguments, 0, &plot);
   if (status == STRUT_OK) status = strut_try_file(arguments->output);
   if (status != STRUT_OK) return status;

@@ -4,11 +4,12 @@
 
 #include "engine/output/figures/statics_figures.h"
 #include "engine/output/report/rigidity_report.h"
+#include "parser/command/statics_options.h"
 
 static const char *const file_names[] = {"rigidity.json", NULL};
 
 static const strut_option options[] = {
-    {STRUT_OPTION_AT, "at", "NAME", "the shape: drawn (default), start, or an equilibrium"},
+    STRUT_SHAPE_OPTIONS,
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
     {STRUT_OPTION_OUTPUT, "output", "DIR", "write rigidity.json into DIR"},
     {STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object"},

@@ -19,13 +19,15 @@ static const strut_option options[] = {
      "points per thread in lockstep: 1, 2, 4 or 8 (default automatic)"},
     {STRUT_OPTION_RETRY, "retry", NULL, "recompute points that failed"},
     {STRUT_OPTION_SHARD, "shard", "K/N",
-     "only points K, K+N, K+2N, ... with K from 0 to N-1; or slurm/N"},
+     "only points K, K+N, K+2N, ... with K from 0 to N-1; or slurm/N, pbs/N, torque/N, lsf/N, "
+     "sge/N, kubernetes/N, env:VARIABLE/N"},
     {STRUT_OPTION_EMIT, "emit", "KIND",
-     "only print a cluster script: slurm or parallel (GNU parallel)"},
+     "only print a cluster script: slurm, parallel (GNU parallel) or htcondor"},
     {STRUT_OPTION_SHARDS, "shards", "N", "with --emit: number of shards"},
     {STRUT_OPTION_CPUS, "cpus", "N", "with --emit: processors per task (default 1)"},
     {STRUT_OPTION_TIME, "time", "TIME", "with --emit slurm: time limit per task, such as 12:00:00"},
-    {STRUT_OPTION_MEMORY, "memory", "SIZE", "with --emit slurm: memory per task, such as 2G"},
+    {STRUT_OPTION_MEMORY, "memory", "SIZE",
+     "with --emit slurm or htcondor: memory per task, such as 2G"},
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
     {STRUT_OPTION_COUNT_POINTS, "count", NULL, "only print the number of points and the columns"},
     {STRUT_OPTION_STATUS, "status", NULL, "only print what is done, missing and failed in DIR"},
@@ -57,6 +59,7 @@ static strut_status find_shard(const strut_arguments *arguments, strut_sweep_stu
       .max = getenv("SLURM_ARRAY_TASK_MAX"),
       .step = getenv("SLURM_ARRAY_TASK_STEP"),
       .count = getenv("SLURM_ARRAY_TASK_COUNT"),
+      .variable = getenv,
   };
   const char *text = strut_option_text(arguments, STRUT_OPTION_SHARD);
   strut_error error = {0};

@@ -5,26 +5,54 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "parser/cli/manual.h"
 #include "parser/yaml/diagnostics.h"
 
 static strut_status print_help(const strut_arguments *arguments);
+
+static const strut_option help_options[] = {
+    {STRUT_OPTION_MAN, "man", NULL, "print the source of the manual page, for man -l"},
+    {STRUT_OPTION_END, NULL, NULL, NULL},
+};
 
 static const strut_command help_command = {
     .name = "help",
     .model = "COMMAND",
     .model_optional = true,
     .summary = "explains the program, or one of its commands",
+    .details =
+        "\nWith --man, COMMAND may also be 'model', for the page strut-model(5) of the language.\n",
+    .options = help_options,
     .run = print_help,
 };
 
 static const strut_command *const commands[] = {
-    &strut_command_run,      &strut_command_check,    &strut_command_equilibria,
-    &strut_command_modes,    &strut_command_form,     &strut_command_path,
-    &strut_command_rigidity, &strut_command_compare,  &strut_command_merge,
-    &strut_command_sweep,    &strut_command_tradeoff, &strut_command_view,
-    &strut_command_export,   &strut_command_plot,     &strut_command_write,
-    &strut_command_keys,     &help_command,           NULL,
+    &strut_command_run,
+    &strut_command_check,
+    &strut_command_equilibria,
+    &strut_command_modes,
+    &strut_command_form,
+    &strut_command_path,
+    &strut_command_rigidity,
+    &strut_command_compare,
+    &strut_command_merge,
+    &strut_command_sweep,
+    &strut_command_tradeoff,
+    &strut_command_view,
+    &strut_command_export,
+    &strut_command_plot,
+    &strut_command_write,
+    &strut_command_keys,
+    &strut_command_schema,
+    &strut_command_completion,
+    &strut_command_evaluate,
+    &help_command,
+    NULL,
 };
+
+const strut_command *strut_command_at(size_t i) {
+  return i < sizeof commands / sizeof commands[0] ? commands[i] : NULL;
+}
 
 static const char *command_name_at(const void *context, size_t i) {
   (void)context;
@@ -62,9 +90,17 @@ void strut_program_help(void) {
 }
 
 static strut_status print_help(const strut_arguments *arguments) {
+  if (arguments->man && arguments->model && strcmp(arguments->model, "model") == 0) {
+    strut_manual_of_language();
+    return STRUT_OK;
+  }
   const strut_command *command = arguments->model ? strut_command_find(arguments->model) : NULL;
   if (arguments->model && !command) return STRUT_USAGE;
-  if (command)
+  if (arguments->man && command)
+    strut_manual_of_command(command);
+  else if (arguments->man)
+    strut_manual_of_program();
+  else if (command)
     strut_command_help(command);
   else
     strut_program_help();

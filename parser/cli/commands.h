@@ -10,6 +10,7 @@
 extern const strut_command strut_command_check;
 extern const strut_command strut_command_compare;
 extern const strut_command strut_command_equilibria;
+extern const strut_command strut_command_evaluate;
 extern const strut_command strut_command_export;
 extern const strut_command strut_command_form;
 extern const strut_command strut_command_keys;
@@ -23,7 +24,11 @@ extern const strut_command strut_command_sweep;
 extern const strut_command strut_command_tradeoff;
 extern const strut_command strut_command_view;
 extern const strut_command strut_command_write;
+extern const strut_command strut_command_schema;
+extern const strut_command strut_command_completion;
 
+/** The i-th command, or NULL after the last. */
+const strut_command *strut_command_at(size_t i);
 /** The command of that name, or NULL with the reason and a suggestion on stderr. */
 const strut_command *strut_command_find(const char *name);
 

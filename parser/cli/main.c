@@ -8,6 +8,7 @@
 #include "engine/output/hdf5.h"
 #include "engine/output/quantity_text.h"
 #include "parser/cli/commands.h"
+#include "parser/cli/complete.h"
 #include "parser/cli/streams.h"
 
 static double now(void) {
@@ -46,6 +47,7 @@ static strut_status run_program(int argc, char **argv) {
     printf("strut %s\n", STRUT_VERSION);
     return STRUT_OK;
   }
+  if (strcmp(first, "complete") == 0) return strut_complete(argc - 2, argv + 2);
   if (strcmp(first, "--help") == 0 || strcmp(first, "-h") == 0) first = "help";
   const strut_command *command = strut_command_find(first);
   return command ? run_command(command, argc - 1, argv + 1) : STRUT_USAGE;

@@ -22,9 +22,32 @@ typedef struct source {
   size_t length;
 } source;
 
+const char *strut_model_name(const strut_arguments *arguments) {
+  return strcmp(arguments->model, "-") == 0 ? "<stdin>" : arguments->model;
+}
+
+/* Prints what was found; on failure nothing is left of the setup. */
+static strut_status print_found(strut_diagnostics *diagnostics, strut_status status,
+                                strut_setup *setup) {
+  if (status == STRUT_BAD_SCENE) {
+    const char *messages = strut_diagnostics_render(diagnostics, MOST_MESSAGES);
+    if (messages) fputs(messages, stderr);
+    if (!messages) status = STRUT_NO_MEMORY;
+  }
+  if (status == STRUT_OK && diagnostics->note_count) {
+    const char *notes = strut_diagnostics_render_notes(diagnostics);
+    if (notes) fputs(notes, stderr);
+    if (!notes) strut_setup_free(setup);
+    if (!notes) status = STRUT_NO_MEMORY;
+  }
+  return status;
+}
+
+/* `report` NULL: messages are printed. */
 static strut_status read_source(const strut_arguments *arguments, const source *from,
-                                strut_purpose purpose, strut_setup *setup) {
-  strut_diagnostics diagnostics = {0};
+                                strut_purpose purpose, strut_setup *setup,
+                                strut_diagnostics *report) {
+  strut_diagnostics own = {0}, *diagnostics = report ? report : &own;
   strut_error error = {0};
   strut_status status = strut_memory_check_document(from->name, from->text, from->length, &error);
   if (status == STRUT_NO_MEMORY) {
@@ -32,49 +55,61 @@ static strut_status read_source(const strut_arguments *arguments, const source *
     return status;
   }
   status = strut_setup_read(setup, from->name, from->text, from->length, arguments->overrides,
-                            arguments->override_count, purpose, &diagnostics);
-  if (status == STRUT_BAD_SCENE) {
-    const char *messages = strut_diagnostics_render(&diagnostics, MOST_MESSAGES);
-    if (messages) fputs(messages, stderr);
-    if (!messages) status = STRUT_NO_MEMORY;
-  }
-  if (status == STRUT_OK && diagnostics.note_count) {
-    const char *notes = strut_diagnostics_render_notes(&diagnostics);
-    if (notes) fputs(notes, stderr);
-    if (!notes) strut_setup_free(setup);
-    if (!notes) status = STRUT_NO_MEMORY;
-  }
+                            arguments->override_count, purpose, diagnostics);
+  if (!report) status = print_found(diagnostics, status, setup);
   if (status == STRUT_NO_MEMORY) {
     strut_memory_fail_document(from->name, from->text, from->length, &error);
     strut_print_error(&error);
   }
-  strut_diagnostics_free(&diagnostics);
+  strut_diagnostics_free(&own);
   return status;
 }
 
 /* Reads the scene and keeps its text, which is NULL after a failure. */
 static strut_status open_text(const strut_arguments *arguments, strut_purpose purpose, source *from,
-                              strut_setup *setup) {
+                              strut_setup *setup, strut_diagnostics *report) {
   strut_error error = {0};
-  *from = (source){.name = strcmp(arguments->model, "-") == 0 ? "<stdin>" : arguments->model};
+  *from = (source){.name = strut_model_name(arguments)};
   strut_status status = strut_file_read(arguments->model, &from->text, &from->length, &error);
   if (status != STRUT_OK) return strut_print_failure(status, &error);
-  status = read_source(arguments, from, purpose, setup);
-  if (status == STRUT_OK) return STRUT_OK;
+  status = read_source(arguments, from, purpose, setup, report);
+  if (status == STRUT_OK || report) return status;
   strut_release(from->text);
   from->text = NULL;
   return status;
+}
+
+static strut_purpose scene_purpose(const strut_arguments *arguments, strut_open_purpose purpose) {
+  bool later = strut_option_text(arguments, STRUT_OPTION_ACCURACY) ||
+               strut_option_text(arguments, STRUT_OPTION_STEP);
+  if (purpose != STRUT_OPEN_FOR_RUN) return STRUT_FOR_ANY;
+  return later ? STRUT_FOR_RUN_STEP_LATER : STRUT_FOR_RUN;
+}
+
+strut_status strut_open_model_reported(const strut_arguments *arguments, strut_open_purpose purpose,
+                                       strut_setup *setup, strut_open_report *report) {
+  source from;
+  strut_status status =
+      open_text(arguments, scene_purpose(arguments, purpose), &from, setup, &report->diagnostics);
+  report->text = from.text;
+  report->length = from.length;
+  if (status != STRUT_OK || purpose == STRUT_OPEN_FOR_ANY) return status;
+  status = strut_resolve_start_equilibrium(setup, &report->error);
+  if (status != STRUT_OK) strut_setup_free(setup);
+  return status;
+}
+
+void strut_open_report_free(strut_open_report *report) {
+  strut_diagnostics_free(&report->diagnostics);
+  strut_release(report->text);
+  *report = (strut_open_report){.text = NULL};
 }
 
 strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpose purpose,
                               strut_setup *setup) {
   source from;
   strut_error error = {0};
-  bool told = strut_option_text(arguments, STRUT_OPTION_ACCURACY) ||
-              strut_option_text(arguments, STRUT_OPTION_STEP);
-  strut_purpose run = told ? STRUT_FOR_RUN_STEP_LATER : STRUT_FOR_RUN;
-  strut_status status =
-      open_text(arguments, purpose == STRUT_OPEN_FOR_RUN ? run : STRUT_FOR_ANY, &from, setup);
+  strut_status status = open_text(arguments, scene_purpose(arguments, purpose), &from, setup, NULL);
   strut_release(from.text);
   if (status != STRUT_OK || purpose == STRUT_OPEN_FOR_ANY) return status;
   status = strut_resolve_start_equilibrium(setup, &error);
@@ -97,7 +132,7 @@ strut_status strut_warn_of_scene(const strut_setup *setup) {
 strut_status strut_open_model_text(const strut_arguments *arguments, char **text, size_t *length,
                                    strut_setup *setup) {
   source from;
-  strut_status status = open_text(arguments, STRUT_FOR_ANY, &from, setup);
+  strut_status status = open_text(arguments, STRUT_FOR_ANY, &from, setup, NULL);
   *text = from.text;
   *length = from.length;
   return status;
@@ -116,7 +151,7 @@ strut_status strut_write_short(const strut_arguments *arguments, const char *tex
                                char **result) {
   strut_diagnostics unused = {0};
   strut_scene_source *tree = NULL;
-  const char *name = strcmp(arguments->model, "-") == 0 ? "<stdin>" : arguments->model;
+  const char *name = strut_model_name(arguments);
   bool wanted = true;
   *result = NULL;
   strut_status status = strut_scene_source_open(name, text, length, &unused, &tree);
@@ -154,20 +189,6 @@ strut_status strut_try_file(const char *path) {
   if (status != STRUT_OK) strut_print_error(&error);
   strut_file_abandon(&file);
   return status;
-}
-
-/* ---- the shape that --at names ---- */
-
-strut_status strut_named_shape_find(const strut_arguments *arguments, const strut_model *model,
-                                    const strut_experiment *experiment, strut_arena *arena,
-                                    strut_named_shape *shape, strut_error *error) {
-  const char *name = strut_option_text(arguments, STRUT_OPTION_AT);
-  strut_rest_state stand = {0};
-  strut_status status =
-      strut_rest_state_find(model, experiment, name ? name : "drawn", arena, &stand, error);
-  if (status != STRUT_OK) return status;
-  *shape = (strut_named_shape){.name = stand.name, .q = stand.q};
-  return STRUT_OK;
 }
 
 /* ---- runs ---- */

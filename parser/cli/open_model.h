@@ -10,6 +10,7 @@
 #include "engine/scene/check.h"
 #include "engine/scene/experiment.h"
 #include "parser/cli/options.h"
+#include "parser/yaml/diagnostics.h"
 
 /** Purpose of opening a scene. */
 typedef enum strut_open_purpose {
@@ -17,6 +18,19 @@ typedef enum strut_open_purpose {
   STRUT_OPEN_AS_RUN,  /* as above if the file describes a run, else for statics */
   STRUT_OPEN_FOR_ANY  /* as STRUT_OPEN_AS_RUN, but a start equilibrium stays unresolved */
 } strut_open_purpose;
+
+/** What was found while a scene was opened. Zero-initialise; strut_open_report_free releases it. */
+typedef struct strut_open_report {
+  strut_diagnostics diagnostics; /* of the text below */
+  char *text;
+  size_t length;
+  strut_error error; /* what has no place; empty message: nothing */
+} strut_open_report;
+
+/** As strut_open_model, but what is wrong with the scene goes to the report, and nothing is printed. */
+strut_status strut_open_model_reported(const strut_arguments *arguments, strut_open_purpose purpose,
+                                       strut_setup *setup, strut_open_report *report);
+void strut_open_report_free(strut_open_report *report);
 
 /** Reads the model that the arguments name; messages go to stderr. strut_setup_free frees it. */
 strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpose purpose,
@@ -38,6 +52,9 @@ strut_status strut_write_short(const strut_arguments *arguments, const char *tex
                                const char *before, const strut_setup *setup, bool all,
                                char **result);
 
+/** The model's name in messages. */
+const char *strut_model_name(const strut_arguments *arguments);
+
 /** Prints the warnings of a valid scene on stderr: see strut_setup_warn. */
 strut_status strut_warn_of_scene(const strut_setup *setup);
 
@@ -49,16 +66,6 @@ strut_status strut_check_output_writable(const strut_arguments *arguments,
                                          const char *const *names);
 /** As above for one file; does nothing for NULL. */
 strut_status strut_try_file(const char *path);
-
-typedef struct strut_named_shape {
-  const char *name; /* "drawn", or the value of --at */
-  const double *q;  /* (length) positions [m], in the arena */
-} strut_named_shape;
-
-/** Finds the shape that --at names, by default the drawn one; errors as strut_rest_state_find. */
-strut_status strut_named_shape_find(const strut_arguments *arguments, const strut_model *model,
-                                    const strut_experiment *experiment, strut_arena *arena,
-                                    strut_named_shape *shape, strut_error *error);
 
 /** Must not move in memory: the model refers to the scene. Zero-initialise. */
 typedef struct strut_opened {

@@ -1,134 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "parser/cli/option_values.h"
 
-#include <assert.h>
-#include <inttypes.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "engine/output/draw/canvas.h"
 #include "engine/output/file.h"
 #include "parser/cli/streams.h"
-#include "parser/expression/expression.h"
-#include "parser/yaml/diagnostics.h"
-
-static const char *name_of(const strut_command *command, strut_option_id id) {
-  const strut_option *option = command->options;
-  while (option->id != STRUT_OPTION_END && option->id != id) option++;
-  assert(option->id == id);
-  return option->name;
-}
-
-strut_status strut_option_number(const strut_command *command, const strut_arguments *arguments,
-                                 strut_option_id id, strut_dimension dimension, double *value) {
-  const char *text = strut_option_text(arguments, id), *name = name_of(command, id);
-  strut_expression_error error = {0};
-  strut_quantity quantity;
-  char kind[64];
-  if (!text) return STRUT_OK;
-  if (!strut_expression_evaluate(text, NULL, &quantity, &error)) {
-    fprintf(stderr, "strut %s: --%s '%s': %s\n", command->name, name, text, error.message);
-    return STRUT_USAGE;
-  }
-  if (!quantity.bare && !strut_dimension_equal(quantity.dimension, dimension)) {
-    const char *example = strut_dimension_example(dimension);
-    fprintf(stderr, "strut %s: --%s expects %s%s%s, not '%s'\n", command->name, name,
-            strut_dimension_name(dimension, kind, sizeof kind), example ? ", such as " : "",
-            example ? example : "", text);
-    return STRUT_USAGE;
-  }
-  *value = quantity.value;
-  return STRUT_OK;
-}
-
-size_t strut_option_numbers(const char *text, strut_dimension dimension, double *values,
-                            size_t most) {
-  char part[100];
-  size_t count = 0;
-  for (const char *rest = text; rest; count++) {
-    size_t length = strcspn(rest, ",");
-    strut_expression_error error = {0};
-    strut_quantity quantity;
-    if (length >= sizeof part || count == most) return 0;
-    memcpy(part, rest, length);
-    part[length] = '\0';
-    if (!strut_expression_evaluate(part, NULL, &quantity, &error)) return 0;
-    if (!quantity.bare && !strut_dimension_equal(quantity.dimension, dimension)) return 0;
-    values[count] = quantity.value;
-    rest = rest[length] ? rest + length + 1 : NULL;
-  }
-  return count;
-}
-
-strut_status strut_option_integer(const strut_command *command, const strut_arguments *arguments,
-                                  strut_option_id id, int64_t low, int64_t high, int64_t *value) {
-  const char *text = strut_option_text(arguments, id);
-  uint64_t sum = 0, most = high < 0 ? 0 : (uint64_t)high;
-  bool good = text && *text;
-  for (const char *c = text; good && *c; c++) {
-    good = *c >= '0' && *c <= '9' && sum <= most / 10;
-    sum = 10 * sum + (uint64_t)(*c - '0');
-    good = good && sum <= most;
-  }
-  if (!text) return STRUT_OK;
-  if (!good || (int64_t)sum < low) {
-    fprintf(stderr,
-            "strut %s: --%s expects a whole number from %" PRId64 " to %" PRId64 ", not '%s'\n",
-            command->name, name_of(command, id), low, high, text);
-    return STRUT_USAGE;
-  }
-  *value = (int64_t)sum;
-  return STRUT_OK;
-}
-
-static const char *word_at(const void *context, size_t i) {
-  return ((const char *const *)context)[i];
-}
-
-strut_status strut_option_word(const strut_command *command, const strut_arguments *arguments,
-                               strut_option_id id, const char *const *words, int *value) {
-  const char *text = strut_option_text(arguments, id);
-  if (!text) return STRUT_OK;
-  for (int i = 0; words[i]; i++) {
-    if (strcmp(words[i], text) != 0) continue;
-    *value = i;
-    return STRUT_OK;
-  }
-  const char *near = strut_did_you_mean(text, word_at, words);
-  fprintf(stderr, "strut %s: --%s expects ", command->name, name_of(command, id));
-  for (int i = 0; words[i]; i++)
-    fprintf(stderr, "%s%s", i == 0 ? "" : words[i + 1] ? ", " : " or ", words[i]);
-  fprintf(stderr, ", not '%s'", text);
-  if (near) fprintf(stderr, "; did you mean '%s'?", near);
-  fputc('\n', stderr);
-  return STRUT_USAGE;
-}
-
-/* ---- options of figures ---- */
-
-static const double POINTS = 72.0 / 0.0254;                                      /* in a metre */
-static const double PAGE = 0.18, COLUMN = 0.088, NARROWEST = 0.04, WIDEST = 1.0; /* [m] */
-
-static strut_status read_width(const strut_command *command, const strut_arguments *arguments,
-                               strut_plot *plot) {
-  const char *text = strut_option_text(arguments, STRUT_OPTION_WIDTH);
-  double width = PAGE;
-  if (!text) return STRUT_OK;
-  if (strcmp(text, "column") == 0) {
-    width = COLUMN;
-  } else if (strcmp(text, "page") != 0) {
-    strut_status status =
-        strut_option_number(command, arguments, STRUT_OPTION_WIDTH, STRUT_DIM_LENGTH, &width);
-    if (status != STRUT_OK) return status;
-  }
-  if (!(width >= NARROWEST && width <= WIDEST)) {
-    fprintf(stderr, "strut %s: --width %s: expected a width between 40 mm and 1 m\n", command->name,
-            text);
-    return STRUT_USAGE;
-  }
-  plot->width = width * POINTS;
-  return STRUT_OK;
-}
 
 /* Checks that the file can be created. */
 static strut_status try_path(const char *path) {
@@ -159,41 +36,8 @@ static strut_status refuse_without_plot(const strut_command *command,
 
 strut_status strut_plot_read(const strut_command *command, const strut_arguments *arguments,
                              double usual, strut_plot *plot) {
-  *plot = (strut_plot){.path = strut_option_text(arguments, STRUT_OPTION_PLOT),
-                       .width = usual > 0 ? usual : PAGE * POINTS,
-                       .title = strut_option_text(arguments, STRUT_OPTION_TITLE)};
+  *plot = (strut_plot){.path = strut_option_text(arguments, STRUT_OPTION_PLOT)};
   if (!plot->path) return refuse_without_plot(command, arguments);
-  strut_status status = read_width(command, arguments, plot);
-  if (status == STRUT_OK)
-    status = strut_axes_read(command, arguments, false, false, &plot->x, &plot->y);
+  strut_status status = strut_plot_settings_read(command, arguments, usual, plot);
   return status == STRUT_OK ? try_path(plot->path) : status;
-}
-
-/* --x-label and --x-limits, or those of y. */
-static strut_status read_axis(const strut_command *command, const strut_arguments *arguments,
-                              char letter, bool logarithmic, strut_axis_choice *axis) {
-  bool x = letter == 'x';
-  const char *text =
-      strut_option_text(arguments, x ? STRUT_OPTION_X_LIMITS : STRUT_OPTION_Y_LIMITS);
-  double range[2];
-  *axis = (strut_axis_choice){
-      .label = strut_option_text(arguments, x ? STRUT_OPTION_X_LABEL : STRUT_OPTION_Y_LABEL)};
-  if (!text) return STRUT_OK;
-  axis->limited = strut_option_numbers(text, STRUT_DIM_NONE, range, 2) == 2 &&
-                  range[0] < range[1] && (!logarithmic || range[0] > 0);
-  if (!axis->limited) {
-    fprintf(stderr,
-            "strut %s: --%c-limits expects two ascending numbers%s, such as 1,10; not '%s'\n",
-            command->name, letter, logarithmic ? " above 0" : "", text);
-    return STRUT_USAGE;
-  }
-  axis->low = range[0];
-  axis->high = range[1];
-  return STRUT_OK;
-}
-
-strut_status strut_axes_read(const strut_command *command, const strut_arguments *arguments,
-                             bool log_x, bool log_y, strut_axis_choice *x, strut_axis_choice *y) {
-  strut_status status = read_axis(command, arguments, 'x', log_x, x);
-  return status == STRUT_OK ? read_axis(command, arguments, 'y', log_y, y) : status;
 }

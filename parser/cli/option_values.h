@@ -1,52 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Options that are numbers, with units where they have a dimension; and options that are words.
+ * Options of figures: file, width, title, axes.
  */
 #ifndef STRUT_PARSER_CLI_OPTION_VALUES_H
 #define STRUT_PARSER_CLI_OPTION_VALUES_H
 
-#include <stdint.h>
-
 #include "engine/output/draw/plot.h"
 #include "parser/cli/options.h"
-#include "parser/expression/units.h"
-
-/**
- * Reads an option such as --least-tension "5 N" into *value [SI], which keeps what it holds where the
- * option was not given. STRUT_USAGE with the reason on stderr.
- */
-strut_status strut_option_number(const strut_command *command, const strut_arguments *arguments,
-                                 strut_option_id id, strut_dimension dimension, double *value);
-/**
- * Reads up to `most` values with commas between, such as "0 s, 80 ms", into values. Returns how many,
- * or 0 where the text is something else.
- */
-size_t strut_option_numbers(const char *text, strut_dimension dimension, double *values,
-                            size_t most);
-/** As strut_option_number, for whole numbers from low to high. */
-strut_status strut_option_integer(const strut_command *command, const strut_arguments *arguments,
-                                  strut_option_id id, int64_t low, int64_t high, int64_t *value);
-/** As strut_option_number, for one of `words` (ended by NULL): its index into *value. */
-strut_status strut_option_word(const strut_command *command, const strut_arguments *arguments,
-                               strut_option_id id, const char *const *words, int *value);
+#include "parser/command/plot_options.h"
 
 /** Rows for a command's table of options. */
 #define STRUT_PLOT_OPTIONS                                                                         \
   {STRUT_OPTION_PLOT, "plot", "FILE", "draw a figure into FILE (.svg, .pdf or .png)"},             \
-      {STRUT_OPTION_WIDTH, "width", "WIDTH",                                                       \
-       "width of the figure: page (180 mm, default), column (88 mm) or "                           \
-       "a length"},                                                                                \
-  {                                                                                                \
-    STRUT_OPTION_TITLE, "title", "TEXT", "title of the figure (default: the model's name)"         \
-  }
-
-/** Rows for figures with one pair of axes, which strut_axes_read reads. */
-#define STRUT_AXIS_OPTIONS                                                                         \
-  {STRUT_OPTION_X_LABEL, "x-label", "TEXT", "label of the x axis, without unit"},                  \
-      {STRUT_OPTION_Y_LABEL, "y-label", "TEXT", "label of the (left) y axis, without unit"},       \
-      {STRUT_OPTION_X_LIMITS, "x-limits", "LOW,HIGH", "range of the x axis, in its base unit"}, {  \
-    STRUT_OPTION_Y_LIMITS, "y-limits", "LOW,HIGH", "range of the (left) y axis, likewise"          \
-  }
+      STRUT_PLOT_SETTING_OPTIONS
 
 /**
  * Reads all before anything is computed, and checks that FILE can be written: STRUT_USAGE or
@@ -55,8 +21,4 @@ strut_status strut_option_word(const strut_command *command, const strut_argumen
  */
 strut_status strut_plot_read(const strut_command *command, const strut_arguments *arguments,
                              double usual, strut_plot *plot);
-/** Reads labels and limits; limits of a logarithmic axis must be above 0. STRUT_USAGE as above. */
-strut_status strut_axes_read(const strut_command *command, const strut_arguments *arguments,
-                             bool log_x, bool log_y, strut_axis_choice *x, strut_axis_choice *y);
-
 #endif

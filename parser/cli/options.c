@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
+#include "parser/cli/streams.h"
 #include "parser/yaml/diagnostics.h"
 
 enum { MOST_OPTIONS = 48, FIRST_WITHOUT_LETTER = 256, POSITIONAL = 1, COLUMN = 24 };
@@ -18,8 +19,7 @@ static const strut_option common_options[] = {
 };
 enum { COMMON_OPTIONS = sizeof common_options / sizeof common_options[0] };
 
-/* The i-th option of a command, the common ones last; NULL after them. */
-static const strut_option *option_at(const strut_command *command, size_t i) {
+const strut_option *strut_option_at(const strut_command *command, size_t i) {
   size_t count = 0;
   while (command->options && command->options[count].id != STRUT_OPTION_END) count++;
   if (i < count) return &command->options[i];
@@ -27,7 +27,7 @@ static const strut_option *option_at(const strut_command *command, size_t i) {
 }
 
 static const char *option_name_at(const void *context, size_t i) {
-  const strut_option *option = option_at(context, i);
+  const strut_option *option = strut_option_at(context, i);
   return option ? option->name : NULL;
 }
 
@@ -122,6 +122,9 @@ static strut_status store_option(const strut_command *command, int id, strut_arg
     case STRUT_OPTION_STATUS: to->status = true; break;
     case STRUT_OPTION_RETRY: to->retry = true; break;
     case STRUT_OPTION_PARTS: to->parts = true; break;
+    case STRUT_OPTION_STUDY: to->study = true; break;
+    case STRUT_OPTION_MAN: to->man = true; break;
+    case STRUT_OPTION_DAKOTA: to->dakota = true; break;
     case STRUT_OPTION_HELP: to->help = true; break;
     default: break;
   }
@@ -132,11 +135,11 @@ static strut_status store_option(const strut_command *command, int id, strut_arg
 static void fill_getopt(const strut_command *command, char letters[2 * MOST_OPTIONS + 3],
                         struct option rows[MOST_OPTIONS + 1]) {
   char *at = letters;
-  assert(!option_at(command, MOST_OPTIONS));
+  assert(!strut_option_at(command, MOST_OPTIONS));
   *at++ = '-';
   *at++ = ':';
-  for (size_t i = 0; i < MOST_OPTIONS && option_at(command, i); i++) {
-    const strut_option *option = option_at(command, i);
+  for (size_t i = 0; i < MOST_OPTIONS && strut_option_at(command, i); i++) {
+    const strut_option *option = strut_option_at(command, i);
     int needs = option->argument ? required_argument : no_argument;
     rows[i] = (struct option){option->name, needs, NULL, (int)option->id};
     if ((int)option->id >= FIRST_WITHOUT_LETTER) continue;
@@ -159,7 +162,7 @@ strut_status strut_arguments_read(const strut_command *command, int argc, char *
   char letters[2 * MOST_OPTIONS + 3];
   struct option rows[MOST_OPTIONS + 1] = {{0}};
   fill_getopt(command, letters, rows);
-  *arguments = (strut_arguments){0};
+  *arguments = (strut_arguments){.listener = strut_stderr_listener()};
   arguments->overrides = strut_allocate((size_t)argc, sizeof *arguments->overrides);
   arguments->override_model = strut_allocate((size_t)argc, sizeof *arguments->override_model);
   arguments->varied = strut_allocate((size_t)argc, sizeof *arguments->varied);
@@ -194,11 +197,6 @@ strut_status strut_arguments_read(const strut_command *command, int argc, char *
   return status;
 }
 
-const char *strut_option_text(const strut_arguments *arguments, strut_option_id id) {
-  assert(id >= STRUT_OPTION_TEXTS && id < STRUT_OPTION_TEXTS_END);
-  return arguments->texts[(int)id - (int)STRUT_OPTION_TEXTS];
-}
-
 void strut_arguments_free(strut_arguments *arguments) {
   strut_release(arguments->overrides);
   strut_release(arguments->override_model);
@@ -221,8 +219,9 @@ void strut_command_help(const strut_command *command) {
   printf("usage: strut %s", command->name);
   printf(" [OPTION]...");
   if (command->model) printf(command->model_optional ? " [%s]" : " %s", command->model);
+  if (command->model_optional && command->many) printf("...");
   printf("\n\nstrut %s: %s.\n", command->name, command->summary);
   if (command->details) printf("%s", command->details);
   printf("\nOptions:\n");
-  for (size_t i = 0; option_at(command, i); i++) print_option(option_at(command, i));
+  for (size_t i = 0; strut_option_at(command, i); i++) print_option(strut_option_at(command, i));
 }

@@ -1,151 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Commands and their options: one table per command defines both the parsing of the command line
- * and the help text.
+ * The command line: one table of options per command defines both its parsing and the help text.
  *
  * Abbreviated option names are rejected: accepting one today could make a new option ambiguous.
  */
 #ifndef STRUT_PARSER_CLI_OPTIONS_H
 #define STRUT_PARSER_CLI_OPTIONS_H
 
-#include <stdbool.h>
-#include <stddef.h>
-
-#include "engine/base/status.h"
-#include "parser/read/read_scene.h"
-
-/** Names an option; its value is the option's letter where it has one. */
-typedef enum strut_option_id {
-  STRUT_OPTION_END = 0,
-  STRUT_OPTION_HELP = 'h',
-  STRUT_OPTION_OUTPUT = 'o',
-  STRUT_OPTION_QUIET = 'q',
-  STRUT_OPTION_SET = 256, /* no letters from here on */
-  STRUT_OPTION_JSON,
-  STRUT_OPTION_FORCE,
-  STRUT_OPTION_STUCK,
-  STRUT_OPTION_OWN_MODEL,
-  STRUT_OPTION_ALL,
-  STRUT_OPTION_CSV,
-  STRUT_OPTION_NO_MOTION,
-  STRUT_OPTION_NO_STATES,
-  STRUT_OPTION_VARY,
-  STRUT_OPTION_COUNT_POINTS,
-  STRUT_OPTION_STATUS,
-  STRUT_OPTION_RETRY,
-  STRUT_OPTION_PARTS, /* of write: the short scene */
-  /* kept as text: strut_option_text, and option_values.h for numbers */
-  STRUT_OPTION_TEXTS,
-  STRUT_OPTION_AT = STRUT_OPTION_TEXTS,
-  STRUT_OPTION_COUNT,
-  STRUT_OPTION_SUPPORTS,
-  STRUT_OPTION_STARTS,
-  STRUT_OPTION_SEED,
-  STRUT_OPTION_MATRICES,
-  STRUT_OPTION_LOAD,
-  STRUT_OPTION_OVER, /* the parameter of a path */
-  STRUT_OPTION_UNTIL,
-  STRUT_OPTION_STEPS,
-  STRUT_OPTION_FROM,
-  STRUT_OPTION_LEAST_TENSION,
-  STRUT_OPTION_LEAST_DENSITY,
-  STRUT_OPTION_OBJECTIVE,
-  STRUT_OPTION_PLOT,    /* FILE.svg|pdf|png: see plot_options.h */
-  STRUT_OPTION_WIDTH,   /* of a figure: column, page or a length */
-  STRUT_OPTION_DRAW,    /* which figure of a run */
-  STRUT_OPTION_SCALE,   /* X,Y: how much motion is exaggerated */
-  STRUT_OPTION_TIMES,   /* of snapshots */
-  STRUT_OPTION_ANIMATE, /* FILE.mp4|gif|webm */
-  STRUT_OPTION_SPEED,
-  STRUT_OPTION_FPS,
-  STRUT_OPTION_FORMAT,
-  STRUT_OPTION_KIND, /* of a diagram from a table */
-  STRUT_OPTION_X,
-  STRUT_OPTION_Y,
-  STRUT_OPTION_BY,
-  STRUT_OPTION_PANELS,
-  STRUT_OPTION_BAND,
-  STRUT_OPTION_ONLY,
-  STRUT_OPTION_DIFFERENCE,
-  STRUT_OPTION_LABEL,
-  STRUT_OPTION_DOUBT,
-  STRUT_OPTION_TITLE,
-  STRUT_OPTION_X_LABEL,
-  STRUT_OPTION_Y_LABEL,
-  STRUT_OPTION_X_LIMITS,
-  STRUT_OPTION_Y_LIMITS,
-  STRUT_OPTION_COLORS, /* of a map */
-  STRUT_OPTION_ACCURACY,
-  STRUT_OPTION_INTEGRATOR,
-  STRUT_OPTION_STEP,
-  STRUT_OPTION_TOLERANCE,
-  STRUT_OPTION_STEADY,
-  STRUT_OPTION_BARS,
-  STRUT_OPTION_MASS_MODEL,
-  STRUT_OPTION_FRICTION_LAW,
-  STRUT_OPTION_DAMPING_LAW,
-  STRUT_OPTION_LOG,
-  STRUT_OPTION_EQUILIBRIA,
-  STRUT_OPTION_MEASURE, /* of a tradeoff */
-  STRUT_OPTION_METHODS,
-  STRUT_OPTION_PERIODS,
-  STRUT_OPTION_POINTS,
-  STRUT_OPTION_BUDGET,
-  STRUT_OPTION_THREADS,
-  STRUT_OPTION_LANES,
-  STRUT_OPTION_EMIT, /* a script for a cluster, and what it asks for: see sweep_emit.h */
-  STRUT_OPTION_SHARDS,
-  STRUT_OPTION_CPUS,
-  STRUT_OPTION_TIME,
-  STRUT_OPTION_MEMORY,
-  STRUT_OPTION_SHARD,
-  STRUT_OPTION_TEXTS_END
-} strut_option_id;
-
-/** One row of a command's option table, which ends with STRUT_OPTION_END. */
-typedef struct strut_option {
-  strut_option_id id;
-  const char *name;     /* without the two dashes */
-  const char *argument; /* placeholder in the help; NULL: takes no argument */
-  const char *help;
-} strut_option;
-
-/** A parsed command line. Texts belong to argv. Zero-initialise. */
-typedef struct strut_arguments {
-  const char *model;   /* the first positional argument, or NULL */
-  const char **models; /* (model_count) all positional arguments */
-  size_t model_count;
-  const char *output;
-  bool help, json, quiet, force, stuck, own_model, csv, no_motion, no_states;
-  bool all, count_points, status, retry;
-  const char *texts[STRUT_OPTION_TEXTS_END - STRUT_OPTION_TEXTS]; /* NULL where not given */
-  strut_override *overrides;                                      /* (override_count) of --set */
-  size_t *override_model; /* (override_count) how many models stand before each */
-  size_t override_count;
-  strut_override *varied; /* (varied_count) of --vary */
-  size_t varied_count;
-  bool parts;
-} strut_arguments;
-
-/** A command: how it is called, explained and run. */
-typedef struct strut_command {
-  const char *name;
-  const char *model;           /* its one argument, such as "MODEL", or NULL */
-  bool model_optional, many;   /* many: one or more models */
-  const char *summary;         /* half a sentence for the list of commands */
-  const char *details;         /* lines for its own help; may be NULL */
-  const strut_option *options; /* besides --quiet and --help, which every command has; or NULL */
-  strut_status (*run)(const strut_arguments *arguments);
-  bool timed; /* print the elapsed time below the report */
-} strut_command;
+#include "parser/command/arguments.h"
 
 /** Parses argv[1..] of a command. STRUT_USAGE with the reason on stderr. */
 strut_status strut_arguments_read(const strut_command *command, int argc, char **argv,
                                   strut_arguments *arguments);
 void strut_arguments_free(strut_arguments *arguments);
 
-/** The value given for an option that is kept as text, or NULL. */
-const char *strut_option_text(const strut_arguments *arguments, strut_option_id id);
+/** The i-th option of a command, those of every command last; NULL after them. */
+const strut_option *strut_option_at(const strut_command *command, size_t i);
 
 /** Prints the help of a command on stdout. */
 void strut_command_help(const strut_command *command);

@@ -95,56 +95,11 @@ strut_status strut_run_film_make(strut_film *film, const strut_model *model,
 
 /* ---- figures, and both ---- */
 
-static const char *const views[] = {"overview", "period", "snapshots", "curves", NULL};
-
-/* Refuses an option that belongs to another view. */
-static strut_status belongs(const strut_command *command, const strut_run_pictures *p,
-                            const char *text, const char *option, strut_run_view view) {
-  if (!text || (p->plot.path && p->figure.view == view)) return STRUT_OK;
-  fprintf(stderr, "strut %s: --%s goes with --plot FILE --draw %s\n", command->name, option,
-          views[view]);
-  return STRUT_USAGE;
-}
-
-static strut_status read_scale(const strut_command *command, const strut_arguments *arguments,
-                               strut_run_pictures *p) {
-  const char *text = strut_option_text(arguments, STRUT_OPTION_SCALE);
-  strut_status status = belongs(command, p, text, "scale", STRUT_RUN_PERIOD);
-  if (!text || status != STRUT_OK) return status;
-  if (strut_option_numbers(text, STRUT_DIM_NONE, p->figure.scale, 2) == 2 &&
-      p->figure.scale[0] > 0 && p->figure.scale[1] > 0)
-    return STRUT_OK;
-  fprintf(stderr, "strut %s: --scale expects two numbers above 0, such as 10,2; not '%s'\n",
-          command->name, text);
-  return STRUT_USAGE;
-}
-
-static strut_status read_times(const strut_command *command, const strut_arguments *arguments,
-                               strut_run_pictures *p) {
-  const char *text = strut_option_text(arguments, STRUT_OPTION_TIMES);
-  strut_status status = belongs(command, p, text, "times", STRUT_RUN_SNAPSHOTS);
-  if (!text || status != STRUT_OK) return status;
-  p->figure.time_count = strut_option_numbers(text, STRUT_DIM_TIME, p->times, STRUT_MOST_TIMES);
-  p->figure.times = p->times;
-  if (p->figure.time_count > 0) return STRUT_OK;
-  fprintf(stderr,
-          "strut %s: --times expects up to %d times with a comma between, such as \"0 s, 80 ms\"; "
-          "not '%s'\n",
-          command->name, STRUT_MOST_TIMES, text);
-  return STRUT_USAGE;
-}
-
 strut_status strut_run_pictures_read(const strut_command *command, const strut_arguments *arguments,
                                      strut_run_pictures *p) {
-  int view = STRUT_RUN_OVERVIEW;
   strut_status status = strut_plot_read(command, arguments, 0, &p->plot);
   if (status == STRUT_OK)
-    status = strut_option_word(command, arguments, STRUT_OPTION_DRAW, views, &view);
-  p->figure.view = (strut_run_view)view;
-  p->figure.width = p->plot.width;
-  p->figure.title = p->plot.title;
-  if (status == STRUT_OK) status = read_scale(command, arguments, p);
-  if (status == STRUT_OK) status = read_times(command, arguments, p);
+    status = strut_run_figure_read(command, arguments, &p->plot, &p->figure, p->times);
   p->quiet = arguments->quiet;
   p->silent = arguments->quiet || arguments->json;
   return status == STRUT_OK ? strut_run_film_read(command, arguments, &p->film) : status;

@@ -30,8 +30,6 @@ strut_status strut_run_film_make(strut_film *film, const strut_model *model,
                                  const strut_trajectory *motion, bool quiet, bool silent,
                                  strut_error *error);
 
-enum { STRUT_MOST_TIMES = 100 };
-
 /** Zero-initialise. */
 typedef struct strut_run_pictures {
   strut_plot plot;
@@ -45,11 +43,7 @@ typedef struct strut_run_pictures {
 
 /** Rows for the table of options. */
 #define STRUT_RUN_PICTURE_OPTIONS                                                                  \
-  STRUT_PLOT_OPTIONS,                                                                              \
-      {STRUT_OPTION_DRAW, "draw", "WHAT", "overview (default), period, snapshots or curves"},      \
-      {STRUT_OPTION_SCALE, "scale", "X,Y", "magnification of the motion in the figure period"},    \
-      {STRUT_OPTION_TIMES, "times", "TIME,...", "instants of the snapshots, such as 0 s,80 ms"},   \
-      STRUT_RUN_FILM_OPTIONS
+  STRUT_PLOT_OPTIONS, STRUT_RUN_FIGURE_OPTIONS, STRUT_RUN_FILM_OPTIONS
 
 /** Reads the options; STRUT_USAGE or STRUT_FILE_TROUBLE with the reason on stderr. */
 strut_status strut_run_pictures_read(const strut_command *command, const strut_arguments *arguments,

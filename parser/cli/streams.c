@@ -87,6 +87,23 @@ strut_status strut_print_out_of_memory(void) {
   return STRUT_NO_MEMORY;
 }
 
+static void show_message(void *context, strut_message_kind kind, const char *command,
+                          const char *text) {
+  (void)context;
+  switch (kind) {
+    case STRUT_MESSAGE_USAGE: fprintf(stderr, "strut %s: %s\n", command, text); break;
+    case STRUT_MESSAGE_ERROR: fprintf(stderr, "strut: error: %s\n", text); break;
+    case STRUT_MESSAGE_WARNING: fprintf(stderr, "strut: warning: %s\n", text); break;
+    case STRUT_MESSAGE_NOTE: fprintf(stderr, "strut %s: note: %s\n", command, text); break;
+    case STRUT_MESSAGE_REMARK: fprintf(stderr, "strut: %s\n", text); break;
+  }
+}
+
+const strut_listener *strut_stderr_listener(void) {
+  static const strut_listener listener = {NULL, show_message};
+  return &listener;
+}
+
 /* ---- interrupts ---- */
 
 /* One press may arrive twice: timeout(1), for one, signals the program and then its whole group. */

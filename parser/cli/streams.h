@@ -32,6 +32,9 @@ strut_status strut_print_out_of_memory(void);
 strut_status strut_print_usage_error(const strut_command *command, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
+/** Prints every message on stderr. */
+const strut_listener *strut_stderr_listener(void);
+
 /** From now on SIGINT and SIGTERM set the flag that is returned; a moment later they kill. */
 const volatile sig_atomic_t *strut_interrupt_watch(void);
 

@@ -26,6 +26,12 @@ typedef struct strut_sweep_study {
  * too. The first point and the ends of every axis must make a model.
  */
 strut_status strut_sweep_study_open(const strut_arguments *arguments, strut_sweep_study *study);
+/** The same without messages: those about a place are in the file's diagnostics, others in `error`. */
+strut_status strut_sweep_study_try(const strut_arguments *arguments, strut_sweep_study *study,
+                                   strut_error *error);
+/** Prints the messages of a failure; returns `status`. */
+strut_status strut_sweep_study_report(strut_sweep_study *study, strut_status status,
+                                      strut_error *error);
 void strut_sweep_study_close(strut_sweep_study *study);
 
 /**

@@ -64,13 +64,14 @@ static strut_status print_script(const strut_arguments *arguments, strut_cluster
 }
 
 /* Checks what does not depend on numbers. */
-static strut_status check_emit_options(const strut_arguments *arguments, bool slurm) {
+static strut_status check_emit_options(const strut_arguments *arguments, strut_cluster cluster) {
   const char *wrong = NULL;
   if (strcmp(arguments->model, "-") == 0)
     wrong = "--emit needs a file that the tasks can read, not standard input";
-  else if (!slurm && (strut_option_text(arguments, STRUT_OPTION_TIME) ||
-                      strut_option_text(arguments, STRUT_OPTION_MEMORY)))
-    wrong = "--time and --memory are for --emit slurm";
+  else if (cluster != STRUT_CLUSTER_SLURM && strut_option_text(arguments, STRUT_OPTION_TIME))
+    wrong = "--time is for --emit slurm";
+  else if (cluster == STRUT_CLUSTER_PARALLEL && strut_option_text(arguments, STRUT_OPTION_MEMORY))
+    wrong = "--memory is for --emit slurm and htcondor";
   else if (!strut_option_text(arguments, STRUT_OPTION_SHARDS))
     wrong = "--emit needs --shards N, the number of tasks";
   if (!wrong) return STRUT_OK;
@@ -79,7 +80,7 @@ static strut_status check_emit_options(const strut_arguments *arguments, bool sl
 }
 
 strut_status strut_sweep_emit(const strut_arguments *arguments, const char *name) {
-  static const char *const kinds[] = {"slurm", "parallel", NULL};
+  static const char *const kinds[] = {"slurm", "parallel", "htcondor", NULL};
   const strut_command *command = &strut_command_sweep;
   strut_cluster_script script = {.name = name,
                                  .study = arguments->model,
@@ -89,7 +90,7 @@ strut_status strut_sweep_emit(const strut_arguments *arguments, const char *name
                                  .cpus = 1};
   int kind = 0;
   strut_status status = strut_option_word(command, arguments, STRUT_OPTION_EMIT, kinds, &kind);
-  if (status == STRUT_OK) status = check_emit_options(arguments, kind == 0);
+  if (status == STRUT_OK) status = check_emit_options(arguments, (strut_cluster)kind);
   if (status == STRUT_OK)
     status = strut_option_integer(command, arguments, STRUT_OPTION_SHARDS, 1, STRUT_MOST_SHARDS,
                                   &script.shards);

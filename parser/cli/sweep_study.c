@@ -14,7 +14,9 @@
 
 enum { MOST_MESSAGES = 50 };
 
-static strut_status report(strut_study_file *file, strut_status status, strut_error *error) {
+strut_status strut_sweep_study_report(strut_sweep_study *study, strut_status status,
+                                      strut_error *error) {
+  strut_study_file *file = &study->file;
   if (status == STRUT_BAD_SCENE && !error->message[0]) {
     const char *messages = strut_study_messages(file, MOST_MESSAGES);
     if (!messages) return strut_print_out_of_memory();
@@ -64,21 +66,27 @@ static bool identify(const strut_study_file *file, uint8_t hash[STRUT_STUDY_HASH
   return true;
 }
 
-strut_status strut_sweep_study_open(const strut_arguments *arguments, strut_sweep_study *study) {
-  strut_error error = {0};
+strut_status strut_sweep_study_try(const strut_arguments *arguments, strut_sweep_study *study,
+                                   strut_error *error) {
   strut_study_file *file = &study->file;
   const strut_sweep_scenes scenes = {setup_of, strut_setup_write, file};
   strut_status status = strut_study_open(arguments->model, arguments->overrides,
-                                         arguments->override_count, file, &error);
+                                         arguments->override_count, file, error);
   if (!status) status = try_ends(file);
-  if (status) return report(file, status, &error);
+  if (!status) status = strut_sweep_plan_make(&file->study, &scenes, &study->plan, error);
+  if (!status) status = strut_sweep_figures_check(&study->plan, error);
+  return status;
+}
+
+strut_status strut_sweep_study_open(const strut_arguments *arguments, strut_sweep_study *study) {
+  strut_error error = {0};
+  strut_study_file *file = &study->file;
+  strut_status status = strut_sweep_study_try(arguments, study, &error);
+  if (!status && !identify(file, study->slots.hash)) status = STRUT_NO_MEMORY;
+  if (status) return strut_sweep_study_report(study, status, &error);
   const char *notes = strut_study_notes(file);
   if (!notes) return strut_print_out_of_memory();
   fputs(notes, stderr);
-  status = strut_sweep_plan_make(&file->study, &scenes, &study->plan, &error);
-  if (!status) status = strut_sweep_figures_check(&study->plan, &error);
-  if (!status && !identify(file, study->slots.hash)) status = STRUT_NO_MEMORY;
-  if (status) return report(file, status, &error);
   study->slots.version = STRUT_VERSION;
   study->slots.name = file->study.name;
   study->slots.points = study->slots.count = study->plan.points;

@@ -113,6 +113,10 @@ const strut_spelling *strut_spelling_find(strut_section section, const char *key
   return NULL;
 }
 
+const strut_spelling *strut_spelling_at(size_t i) {
+  return i < sizeof spellings / sizeof spellings[0] ? &spellings[i] : NULL;
+}
+
 int strut_spelling_index(const strut_spelling *spelling) {
   int index = (int)(spelling - spellings);
   assert(index >= 0 && (index < 32 || spelling->kind != STRUT_SPELLING_FORMER));

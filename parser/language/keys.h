@@ -251,6 +251,8 @@ typedef struct strut_spelling {
 /** The other spelling of a key (`key` NULL) or of a word, or NULL. */
 STRUT_API const strut_spelling *strut_spelling_find(strut_section section, const char *key,
                                                     const char *text);
+/** The i-th spelling, or NULL after the last. */
+STRUT_API const strut_spelling *strut_spelling_at(size_t i);
 /** The number of a spelling; below 32 for former names. */
 STRUT_API int strut_spelling_index(const strut_spelling *spelling);
 /** The current name of a key: `name` itself, unless it is a former one. */

@@ -519,7 +519,7 @@ strut_status strut_study_try(strut_study_file *file, const strut_study_value *va
   strut_status status = read_point(file, values, &file->model_diagnostics, &setup);
   if (status == STRUT_OK) strut_setup_free(&setup);
   if (!strut_overlay_split(&file->model_diagnostics, &file->diagnostics)) return STRUT_NO_MEMORY;
-  if (status != STRUT_BAD_SCENE) return status;
+  if (status != STRUT_BAD_SCENE || !file->column_count) return status;
   format_values(file, values, text, sizeof text);
   strut_diagnose(&file->diagnostics, (strut_place){0}, "the model cannot be run at %s", text);
   return status;

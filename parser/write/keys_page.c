@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "parser/language/keys.h"
-#include "parser/write/writer.h"
+#include "parser/write/key_text.h"
 
 /* The text above the table of each section. */
 static const char *const introductions[STRUT_SECTION_COUNT] = {
@@ -200,7 +200,7 @@ static void put_expression_type(strut_writer *writer, const strut_key *key) {
   strut_put(writer, signal ? "expression of `t` and sensors" : "expression of columns");
 }
 
-static void put_type(strut_writer *writer, const strut_key *key) {
+void strut_put_key_type(strut_writer *writer, const strut_key *key) {
   static const char *const types[] = {
       [STRUT_TYPE_TEXT] = "text",
       [STRUT_TYPE_NUMBER] = "number",
@@ -247,6 +247,25 @@ static void put_type(strut_writer *writer, const strut_key *key) {
   put_limits(writer, key->limits);
 }
 
+const char *strut_section_introduction(strut_section section) { return introductions[section]; }
+
+bool strut_default_is_described(const strut_key *key) {
+  return strchr(key->fallback, ' ') && !strchr(key->fallback, '[');
+}
+
+void strut_put_without_links(strut_writer *writer, const char *markdown, bool ticks) {
+  for (const char *c = markdown; *c; c++) {
+    const char *close = *c == '[' ? strchr(c, ']') : NULL;
+    const char *end = close && close[1] == '(' ? strchr(close, ')') : NULL;
+    if (end) {
+      strut_put_part(writer, c + 1, (size_t)(close - c - 1));
+      c = end;
+    } else if (ticks || *c != '`') {
+      strut_put_part(writer, c, 1);
+    }
+  }
+}
+
 static void put_section(strut_writer *writer, strut_section section) {
   strut_put(writer, "\n## ");
   strut_put(writer, strut_section_name(section));
@@ -255,11 +274,11 @@ static void put_section(strut_writer *writer, strut_section section) {
   strut_put(writer, "\n\n| key | value | default | meaning |\n|---|---|---|---|\n");
   for (int i = 0; i < strut_section_size(section); i++) {
     const strut_key *key = strut_key_at(strut_section_first(section) + i);
-    bool words = strchr(key->fallback, ' ') && !strchr(key->fallback, '[');
+    bool words = strut_default_is_described(key);
     strut_put(writer, "| `");
     strut_put(writer, key->name);
     strut_put(writer, "` | ");
-    put_type(writer, key);
+    strut_put_key_type(writer, key);
     strut_put(writer, key->need == STRUT_REQUIRED ? " | required"
                       : *key->fallback            ? words ? " | " : " | `"
                                                   : " |");

@@ -298,11 +298,19 @@ static void render_one(text_builder *out, const strut_diagnostics *diagnostics, 
   }
 }
 
+void strut_diagnostics_sort(strut_diagnostics *diagnostics) {
+  if (diagnostics->count)
+    qsort(diagnostics->items, diagnostics->count, sizeof *diagnostics->items, compare);
+}
+
+const char *strut_diagnostics_file(const strut_diagnostics *diagnostics, strut_place place) {
+  return text_of(diagnostics, place).file;
+}
+
 const char *strut_diagnostics_render(strut_diagnostics *diagnostics, size_t most) {
   text_builder out = {0};
   strut_cursor cursor = {0};
-  if (diagnostics->count)
-    qsort(diagnostics->items, diagnostics->count, sizeof *diagnostics->items, compare);
+  strut_diagnostics_sort(diagnostics);
   size_t shown = diagnostics->count < most ? diagnostics->count : most;
   for (size_t i = 0; i < shown; i++) {
     const strut_diagnostic *item = &diagnostics->items[i];

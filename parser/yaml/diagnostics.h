@@ -104,6 +104,11 @@ STRUT_API const char *strut_diagnostics_render_notes(strut_diagnostics *diagnost
  * NULL: memory is out.
  */
 STRUT_API const char *strut_diagnostics_render(strut_diagnostics *diagnostics, size_t most);
+/** Sorts the messages by place. */
+STRUT_API void strut_diagnostics_sort(strut_diagnostics *diagnostics);
+/** The name of the file that a place is in. */
+STRUT_API const char *strut_diagnostics_file(const strut_diagnostics *diagnostics,
+                                             strut_place place);
 STRUT_API void strut_diagnostics_free(strut_diagnostics *diagnostics);
 
 /**

@@ -69,6 +69,58 @@ SLURM_ARRAY_TASK_ID=3 "$strut" sweep study.yaml -o in-5 --shard slurm/5 --quiet 
   fail "a task of Slurm"
 [ -s in-5/shards/shard-0003-of-0005.slots ] || fail "not the task's shard"
 
+# Other systems: the variable of each, counted from where the system begins.
+shard=0
+for pair in pbs:PBS_ARRAY_INDEX=0 torque:PBS_ARRAYID=1 lsf:LSB_JOBINDEX=3 sge:SGE_TASK_ID=4 \
+  kubernetes:JOB_COMPLETION_INDEX=4 env:MINE:MINE=5; do
+  env "${pair##*:}" "$strut" sweep study.yaml -o in-6 --shard "${pair%:*}/6" --quiet >out 2>err ||
+    fail "a task of $pair"
+  [ -s "in-6/shards/shard-000$shard-of-0006.slots" ] || fail "$pair is not shard $shard"
+  shard=$((shard + 1))
+done
+refused() { # WORD SHARD TEXT: with that variable, this shard is refused and says so
+  env "$1" "$strut" sweep study.yaml -o in-6 --shard "$2" --quiet >out 2>err
+  code=$?
+  [ "$code" -eq 1 ] || fail "$1 --shard $2: exit code $code"
+  err_has "$3"
+}
+refused NOTHING=1 lsf/6 'lsf/6: this is not a task of an LSF job array (LSB_JOBINDEX is not set): bsub -J "NAME[1-N]"'
+refused LSB_JOBINDEX=0 lsf/6 "LSB_JOBINDEX is '0', expected a number from 1"
+refused SGE_TASK_ID=undefined sge/6 "SGE_TASK_ID is 'undefined'"
+refused SGE_TASK_ID=7 sge/6 "shards of 6 are numbered 0 to 5"
+refused PBS_ARRAY_INDEX=1 pbs "give the number of shards: pbs/N"
+refused PBS_ARRAY_INDEX=-1 pbs/6 "PBS_ARRAY_INDEX is '-1'"
+refused MINE=1 env:/6 "expected env:VARIABLE/N"
+refused MINE=1 env:OTHER/6 "OTHER is not set"
+refused MINE=1 oar/6 "kubernetes and env:VARIABLE with /N, not 'oar/6'"
+
+# HTCondor: the DAG that is submitted, and what its jobs run.
+mkdir condor-bin "a 'folder'"
+cat >condor-bin/condor_submit_dag <<'END'
+#!/bin/sh
+# The jobs of the description as HTCondor starts them: its quotes are undone, $(Process) is a number.
+echo "$@" >words
+arguments() { sed -n 's/^arguments = "\(.*\)"$/\1/p' "$1" | sed 's/""/"/g' | sed "s/''/'\\\\''/g"; }
+count=$(sed -n 's/^queue //p' shards.sub)
+[ "$(sed -n 's/^queue$/1/p' table.sub)" ] || exit 9
+for process in $(seq 0 $((count - 1))); do
+  eval "sh $(arguments shards.sub | sed "s/.(Process)/$process/")" || exit 8
+done
+eval "sh $(arguments table.sub)"
+END
+chmod +x condor-bin/condor_submit_dag
+(cd "a 'folder'" && cp ../study.yaml ../*.yaml . 2>/dev/null
+  "$strut" sweep study.yaml -o "it's here" --emit htcondor --shards 3 --cpus 2 --memory 2G >'job "1".sh' 2>../err ||
+    exit 1
+  sh -n 'job "1".sh' && PATH=$work/condor-bin:$PATH sh 'job "1".sh' -maxjobs 2 >../out 2>../err)
+code=$?
+[ "$code" -eq 0 ] || [ "$code" -eq 3 ] || fail "the script for HTCondor ends with $code"
+[ "$(cat "a 'folder'/it's here/condor/words")" = "-f -maxjobs 2 study.dag" ] || fail "words for HTCondor"
+grep -qx 'request_memory = 2G' "a 'folder'/it's here/condor/shards.sub" || fail "no memory asked for"
+[ -s "a 'folder'/it's here/table.csv" ] || fail "HTCondor's jobs leave no table"
+expect 1 sweep study.yaml -o x --emit htcondor --shards 3 --time 10
+err_has "--time is for --emit slurm"
+
 # The script: a shell can read it, and texts arrive as they were given.
 expect 0 sweep study.yaml -o "it's here" --emit slurm --shards 7 --cpus 3 --time 1-02:00:00 \
   --memory 1500M --set 'seconds=0.02'
@@ -79,7 +131,7 @@ sh -n out || fail "the script is none"
 absent "it's here"
 if command -v shellcheck >/dev/null; then
   shellcheck "$here"/../../engine/study/cluster/*.sh || fail "shellcheck objects to a template"
-  for kind in slurm parallel; do
+  for kind in slurm parallel htcondor; do
     "$strut" sweep study.yaml -o "it's here" --emit $kind --shards 7 >"$kind.sh"
     grep -q '@[a-z]*@' "$kind.sh" && fail "a placeholder is left in $kind.sh"
     shellcheck "$kind.sh" || fail "shellcheck objects to $kind.sh"

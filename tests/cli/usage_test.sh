@@ -80,7 +80,10 @@ expect 1 run "$hopper" other.yaml
 err_has "unexpected argument 'other.yaml'"
 expect 1 keys "$hopper"
 out_empty
-err_has "'strut keys --help' lists the options"
+err_has "there is no section"
+expect 1 schema "$hopper"
+out_empty
+err_has "'strut schema --help' lists the options"
 expect 1 run --
 err_has "missing MODEL"
 expect 0 run -q -- "$hopper"
@@ -146,8 +149,25 @@ for command in check modes equilibria rigidity path; do
 done
 expect 0 check "$hopper" -q
 out_empty
+for words in "run $hopper -o run" "view run -o p.html" "export run --format vtk -o vtk" \
+  "plot run/nodes.csv --plot p.svg" "compare snap.yaml snap.yaml" "form snap.yaml -o form.yaml"; do
+  expect 0 $words -q
+  out_empty
+  err_empty
+done
 
 # The other commands.
+expect 0 schema
+out_has '"rest_length_ratio"'
+err_empty
+cp out scene.json
+expect 0 schema --study
+out_has '"variants"'
+cmp -s out scene.json && fail "both schemas are the same"
+expect 1 schema --studi
+err_has "did you mean '--study'?"
+expect 1 schema scene
+err_has "unexpected argument 'scene'"
 expect 0 keys
 out_has rest_length_ratio
 err_empty

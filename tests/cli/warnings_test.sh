@@ -143,6 +143,7 @@ done
 # The models that come with strut say nothing of the kind.
 for model in "$models"/*/*.yaml; do
   grep -q '^strut:' "$model" && ! grep -q '^sweep:' "$model" || continue
+  ! grep -q "^study:" "$model" || continue
   "$strut" check "$model" --json >out 2>err || continue
   out_has '"warnings":	[]'
 done

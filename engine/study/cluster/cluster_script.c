@@ -33,8 +33,8 @@ static strut_status check(const strut_cluster_script *s, strut_error *error) {
                       "'%s' is not a time for Slurm: minutes, H:M:S or D-H:M:S, such as 12:00:00",
                       s->time);
   if (!is_plain(s->memory, "KMGT"))
-    return strut_fail(error, STRUT_USAGE,
-                      "'%s' is not an amount of memory for Slurm, such as 500M or 2G", s->memory);
+    return strut_fail(error, STRUT_USAGE, "'%s' is not an amount of memory, such as 500M or 2G",
+                      s->memory);
   return STRUT_OK;
 }
 
@@ -104,6 +104,15 @@ static char *fill(const strut_embedded *template, const placeholder *all) {
   return strut_buffer_take(&text);
 }
 
+static const strut_embedded *template_of(strut_cluster cluster) {
+  switch (cluster) {
+    case STRUT_CLUSTER_SLURM: return strut_slurm_template;
+    case STRUT_CLUSTER_PARALLEL: return strut_parallel_template;
+    case STRUT_CLUSTER_HTCONDOR: return strut_htcondor_template;
+  }
+  return NULL;
+}
+
 strut_status strut_cluster_script_write(strut_cluster cluster, const strut_cluster_script *s,
                                         char **text, strut_error *error) {
   strut_arena arena = {0};
@@ -125,9 +134,7 @@ strut_status strut_cluster_script_write(strut_cluster cluster, const strut_clust
       {NULL, NULL}};
   bool good = !s->word_count || all[8].value;
   for (size_t i = 0; i < 8; i++) good = good && all[i].value;
-  if (good)
-    *text =
-        fill(cluster == STRUT_CLUSTER_SLURM ? strut_slurm_template : strut_parallel_template, all);
+  if (good) *text = fill(template_of(cluster), all);
   strut_arena_free(&arena);
   return *text ? STRUT_OK : strut_no_memory(error, "for the script");
 }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
  * Shell scripts that run the shards of a study on a cluster and merge them: as a job array of Slurm,
- * or with GNU parallel. Their texts are slurm.sh and parallel.sh, embedded at build time.
+ * with GNU parallel, or by HTCondor. Their texts are slurm.sh, parallel.sh and htcondor.sh, embedded at
+ * build time.
  */
 #ifndef STRUT_ENGINE_STUDY_CLUSTER_CLUSTER_SCRIPT_H
 #define STRUT_ENGINE_STUDY_CLUSTER_CLUSTER_SCRIPT_H
@@ -11,11 +12,15 @@
 
 #include "engine/base/status.h"
 
-typedef enum strut_cluster { STRUT_CLUSTER_SLURM, STRUT_CLUSTER_PARALLEL } strut_cluster;
+typedef enum strut_cluster {
+  STRUT_CLUSTER_SLURM,
+  STRUT_CLUSTER_PARALLEL,
+  STRUT_CLUSTER_HTCONDOR
+} strut_cluster;
 
 /** The values of a template. Texts may hold any characters unless noted. */
 typedef struct strut_cluster_script {
-  const char *name;           /* of the study; Slurm only */
+  const char *name;           /* of the study; not for parallel */
   const char *program;        /* path of strut */
   const char *folder;         /* absolute path that the paths below are relative to */
   const char *study, *output; /* arguments of strut sweep */
@@ -24,7 +29,7 @@ typedef struct strut_cluster_script {
   int64_t shards;     /* number of shards */
   int64_t cpus;       /* threads per shard, 1 or more */
   const char *time;   /* per task in Slurm's notation, such as 1-12:00:00; NULL: its default */
-  const char *memory; /* per task, such as 2G; NULL: Slurm's default */
+  const char *memory; /* per task, such as 2G; NULL: the system's default */
 } strut_cluster_script;
 
 /**

@@ -60,17 +60,84 @@ static strut_status read_array(const char *text, const strut_array_task *task, s
   return check(text, *shard, error);
 }
 
+/* Systems that number the tasks of a job in a variable: word, variable, number of the first task. */
+static const struct system {
+  const char *word, *variable;
+  int64_t first;
+  const char *name, *how;
+} systems[] = {
+    {"pbs", "PBS_ARRAY_INDEX", 0, "a PBS job array", "qsub -J 0-LAST"},
+    {"torque", "PBS_ARRAYID", 0, "a Torque job array", "qsub -t 0-LAST"},
+    {"lsf", "LSB_JOBINDEX", 1, "an LSF job array", "bsub -J \"NAME[1-N]\""},
+    {"sge", "SGE_TASK_ID", 1, "a Grid Engine array job", "qsub -t 1-N"},
+    {"kubernetes", "JOB_COMPLETION_INDEX", 0, "an Indexed Job of Kubernetes",
+     "completionMode: Indexed"},
+};
+enum { SYSTEMS = sizeof systems / sizeof systems[0] };
+
+/* The shard of a text such as "lsf/6", whose word and count were found. */
+static strut_status read_system(const char *text, const struct system *system, const char *count,
+                                const strut_array_task *task, strut_shard *shard,
+                                strut_error *error) {
+  shard->count = *count == '/' ? integer_of(count + 1) : -1;
+  if (shard->count < 0)
+    return strut_fail(error, STRUT_USAGE, "%s: give the number of shards: %s/N", text,
+                      system->word);
+  const char *value = task->variable ? task->variable(system->variable) : NULL;
+  int64_t number = integer_of(value);
+  if (number >= system->first) {
+    shard->index = number - system->first;
+    return check(text, *shard, error);
+  }
+  if (!value)
+    return strut_fail(error, STRUT_USAGE, "%s: this is not a task of %s (%s is not set): %s", text,
+                      system->name, system->variable, system->how);
+  return strut_fail(error, STRUT_USAGE,
+                    "%s: this is not a task of %s (%s is '%.40s', expected a number from %lld): %s",
+                    text, system->name, system->variable, value, (long long)system->first,
+                    system->how);
+}
+
+/* A text such as "env:NAME/6". */
+static strut_status read_variable(const char *text, const strut_array_task *task,
+                                  strut_shard *shard, strut_error *error) {
+  char name[NAME_ROOM];
+  size_t length = strcspn(text + 4, "/");
+  snprintf(name, sizeof name, "%.*s", (int)(length < NAME_ROOM ? length : 0), text + 4);
+  if (!*name)
+    return strut_fail(error, STRUT_USAGE,
+                      "expected env:VARIABLE/N, a name of at most %d bytes, not '%.80s'",
+                      NAME_ROOM - 1, text);
+  const struct system own = {"env:VARIABLE", name, 0, "an array",
+                             "set it to the shard's number, counted from 0"};
+  return read_system(text, &own, text + 4 + length, task, shard, error);
+}
+
+/* Does the text begin with this word, and a count or nothing behind it? */
+static bool begins_with(const char *text, const char *word) {
+  size_t length = strlen(word);
+  return strncmp(text, word, length) == 0 && (!text[length] || text[length] == '/');
+}
+
 strut_status strut_shard_read(const char *text, const strut_array_task *task, strut_shard *shard,
                               strut_error *error) {
   static const char slurm[] = "slurm";
   const char *at = text;
   bool from_slurm = strncmp(text, slurm, strlen(slurm)) == 0;
+  for (size_t i = 0; i < SYSTEMS; i++)
+    if (begins_with(text, systems[i].word))
+      return read_system(text, &systems[i], text + strlen(systems[i].word), task, shard, error);
+  if (strncmp(text, "env:", 4) == 0) return read_variable(text, task, shard, error);
   if (from_slurm) at += strlen(slurm);
   if (from_slurm && !*at) return read_array(text, task, shard, error);
   shard->index = from_slurm ? integer_of(task->id) : take_integer(&at);
   shard->count = *at == '/' ? integer_of(at + 1) : -1;
   if (shard->count < 0 || (shard->index < 0 && !from_slurm))
-    return strut_fail(error, STRUT_USAGE, "expected K/N, slurm or slurm/N, not '%s'", text);
+    return strut_fail(
+        error, STRUT_USAGE,
+        "expected K/N, slurm, or one of slurm, pbs, torque, lsf, sge, kubernetes and env:VARIABLE "
+        "with /N, not '%s'",
+        text);
   if (shard->index < 0)
     return strut_fail(
         error, STRUT_USAGE,

@@ -19,14 +19,16 @@ typedef struct strut_shard {
   int64_t index, count;
 } strut_shard;
 
-/** Environment of a task of a Slurm job array: SLURM_ARRAY_TASK_ID, ... NULL if not set. */
+/** Environment of a task of a job array. Slurm's: SLURM_ARRAY_TASK_ID, ... NULL if not set. */
 typedef struct strut_array_task {
   const char *id, *min, *max, *step, *count;
+  char *(*variable)(const char *name); /* any other, as getenv; NULL: none is set */
 } strut_array_task;
 
 /**
- * Reads "k/n"; "slurm/n", where k is the task's number; or "slurm", where the array has a task for
- * each shard and numbers them without gaps. STRUT_USAGE with the reason otherwise: a part of an array
+ * Reads "k/n"; "slurm/n", where k is the task's number, and so for pbs, torque, lsf, sge and kubernetes,
+ * whose variables and first numbers are in one table, and "env:NAME/n" for any variable that counts from
+ * 0; or "slurm", where the array has a task for each shard and numbers them without gaps. STRUT_USAGE with the reason otherwise: a part of an array
  * that is sent again must not be taken for the whole.
  */
 STRUT_API strut_status strut_shard_read(const char *text, const strut_array_task *task,

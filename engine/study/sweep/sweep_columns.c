@@ -227,21 +227,28 @@ static strut_status choose_columns(strut_sweep_plan *plan, const strut_setup *se
   return STRUT_OK;
 }
 
-strut_status strut_sweep_plan_make(const strut_study *study, const strut_sweep_scenes *scenes,
-                                   strut_sweep_plan *plan, strut_error *error) {
+strut_status strut_sweep_plan_of_setup(const strut_study *study, const strut_sweep_scenes *scenes,
+                                       const strut_setup *setup, strut_sweep_plan *plan,
+                                       strut_error *error) {
   *plan = (strut_sweep_plan){.study = study, .scenes = *scenes};
   plan->points = strut_grid_points(study);
   plan->axis_columns = strut_grid_columns(study);
-  if (plan->points < 0)
-    return strut_fail(error, STRUT_USAGE, "a study may have at most 1e9 points");
+  return choose_columns(plan, setup, error);
+}
+
+strut_status strut_sweep_plan_make(const strut_study *study, const strut_sweep_scenes *scenes,
+                                   strut_sweep_plan *plan, strut_error *error) {
   strut_setup setup;
-  strut_study_value *values =
-      strut_arena_allocate(&plan->arena, plan->axis_columns + 1, sizeof *values);
+  *plan = (strut_sweep_plan){.study = study, .scenes = *scenes};
+  if (strut_grid_points(study) < 0)
+    return strut_fail(error, STRUT_USAGE, "a study may have at most 1e9 points");
+  strut_study_value *values = strut_allocate(strut_grid_columns(study) + 1, sizeof *values);
   if (!values) return strut_no_memory(error, "");
   strut_grid_values(study, 0, values);
   strut_status status = scenes->setup(scenes->context, values, &setup, error);
+  strut_release(values);
   if (status) return status;
-  status = choose_columns(plan, &setup, error);
+  status = strut_sweep_plan_of_setup(study, scenes, &setup, plan, error);
   strut_setup_free(&setup);
   return status;
 }

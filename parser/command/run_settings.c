@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/cli/run_settings.h"
-
-#include <stdio.h>
+#include "parser/command/run_settings.h"
 
 #include "engine/integrate/integrator.h"
-#include "parser/cli/option_values.h"
-#include "parser/cli/streams.h"
+#include "parser/command/option_values.h"
 
-static strut_status refuse(const char *message) {
-  strut_error error = {0};
-  strut_fail(&error, STRUT_USAGE, "%s", message);
-  strut_print_error(&error);
+static strut_status refuse(const strut_arguments *arguments, const char *message) {
+  strut_tell(arguments->listener, STRUT_MESSAGE_ERROR, NULL, "%s", message);
   return STRUT_USAGE;
 }
 
@@ -47,19 +42,21 @@ strut_status strut_run_settings_apply(const strut_command *command,
     bool given = strut_option_text(arguments, numbers[i].id);
     if (status == STRUT_OK && given && !(*numbers[i].value > 0.0))
       return refuse(
+          arguments,
           "--accuracy, --budget, --step, --tolerance and --steady must be greater than 0");
   }
   if (status != STRUT_OK) return status;
   if (strut_option_text(arguments, STRUT_OPTION_STEADY)) {
     if (!(e->periods > 0.0))
-      return refuse("--steady compares periods: the run must be given in periods");
+      return refuse(arguments, "--steady compares periods: the run must be given in periods");
     e->steady.wanted = true;
     e->steady.tolerance = steady;
   }
   if (by_hand && strut_option_text(arguments, STRUT_OPTION_ACCURACY))
     return refuse(
+        arguments,
         "--accuracy chooses method and step: give either --accuracy, or --integrator and --step");
   if (by_hand) e->accuracy = 0.0;
-  if (e->accuracy > 1.0) return refuse("--accuracy must be at most 1, that is 100%");
+  if (e->accuracy > 1.0) return refuse(arguments, "--accuracy must be at most 1, that is 100%");
   return STRUT_OK;
 }

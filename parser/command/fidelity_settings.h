@@ -2,11 +2,11 @@
 /**
  * Options that run a scene as another model of itself: rigid bars, lumped masses, other laws.
  */
-#ifndef STRUT_PARSER_CLI_FIDELITY_SETTINGS_H
-#define STRUT_PARSER_CLI_FIDELITY_SETTINGS_H
+#ifndef STRUT_PARSER_COMMAND_FIDELITY_SETTINGS_H
+#define STRUT_PARSER_COMMAND_FIDELITY_SETTINGS_H
 
 #include "engine/scene/experiment.h"
-#include "parser/cli/options.h"
+#include "parser/command/arguments.h"
 
 /** Rows of a command's table of options. */
 #define STRUT_FIDELITY_OPTIONS                                                                     \
@@ -20,7 +20,7 @@
         "of the ground: approach_only or hunt_crossley, instead of the file's"                     \
   }
 
-/** Puts the options into the experiment. STRUT_USAGE with the reason on stderr. */
+/** Puts the options into the experiment. STRUT_USAGE; the listener hears why. */
 strut_status strut_model_options_apply(const strut_command *command,
                                        const strut_arguments *arguments, strut_scene *scene);
 

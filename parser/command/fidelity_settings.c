@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/cli/fidelity_settings.h"
+#include "parser/command/fidelity_settings.h"
 
 #include <stdio.h>
 
-#include "parser/cli/option_values.h"
-#include "parser/cli/streams.h"
+#include "parser/command/option_values.h"
 #include "parser/language/keys.h"
 
 /* Reads an option whose words are those of a key: the word's index, as the reader stores it too. */
@@ -22,20 +21,20 @@ static strut_status read_word(const strut_command *command, const strut_argument
   if (!other || other->kind == STRUT_SPELLING_MISTAKE)
     return strut_option_word(command, arguments, id, words, word);
   if (other->kind == STRUT_SPELLING_FORMER)
-    fprintf(stderr, "strut %s: note: '%s' is now called '%s'\n", command->name, other->other,
-            other->current);
+    strut_tell(arguments->listener, STRUT_MESSAGE_NOTE, command->name, "'%s' is now called '%s'",
+               other->other, other->current);
   *word = strut_word_find(strut_key_at(key)->words, other->current);
   return STRUT_OK;
 }
 
-static strut_status refuse(const char *option, const char *needs) {
-  strut_error error = {0};
-  strut_fail(&error, STRUT_USAGE, "--%s %s", option, needs);
-  strut_print_error(&error);
+static strut_status refuse(const strut_arguments *arguments, const char *option,
+                           const char *needs) {
+  strut_tell(arguments->listener, STRUT_MESSAGE_ERROR, NULL, "--%s %s", option, needs);
   return STRUT_USAGE;
 }
 
-static strut_status set_friction(strut_scene *scene, strut_friction_law law) {
+static strut_status set_friction(const strut_arguments *arguments, strut_scene *scene,
+                                 strut_friction_law law) {
   bool any = false;
   for (size_t i = 0; i < scene->contact_count; i++) {
     strut_friction *f = &scene->contacts[i].friction;
@@ -47,25 +46,29 @@ static strut_status set_friction(strut_scene *scene, strut_friction_law law) {
       if (strut_friction_value(f, p) > 0.0) continue;
       snprintf(needs, sizeof needs, "%s needs ground.friction.%s in the model",
                strut_friction_law_at(law)->word, strut_friction_key(p));
-      return refuse("friction-law", needs);
+      return refuse(arguments, "friction-law", needs);
     }
     f->law = law;
   }
-  return any ? STRUT_OK : refuse("friction-law", "needs a ground with friction in the model");
+  return any ? STRUT_OK
+             : refuse(arguments, "friction-law", "needs a ground with friction in the model");
 }
 
-static strut_status set_damping(strut_scene *scene, strut_ground_damping law) {
+static strut_status set_damping(const strut_arguments *arguments, strut_scene *scene,
+                                strut_ground_damping law) {
   bool damped = false, other = false;
-  if (!strut_scene_has_ground(scene)) return refuse("damping-law", "needs a ground in the model");
+  if (!strut_scene_has_ground(scene))
+    return refuse(arguments, "damping-law", "needs a ground in the model");
   for (size_t i = 0; i < scene->contact_count; i++) {
     bool crossley = law == STRUT_DAMPING_HUNT_CROSSLEY;
     damped = damped || (crossley ? scene->contacts[i].dissipation : scene->contacts[i].damping) > 0;
     other = other || (crossley ? scene->contacts[i].damping : scene->contacts[i].dissipation) > 0;
   }
   if (other && !damped)
-    return refuse("damping-law", law == STRUT_DAMPING_HUNT_CROSSLEY
-                                     ? "hunt_crossley needs ground.dissipation in the model"
-                                     : "approach_only needs ground.damping in the model");
+    return refuse(arguments, "damping-law",
+                  law == STRUT_DAMPING_HUNT_CROSSLEY
+                      ? "hunt_crossley needs ground.dissipation in the model"
+                      : "approach_only needs ground.damping in the model");
   scene->ground.damping_law = law;
   for (size_t g = 0; g < scene->ground_count; g++) scene->grounds[g].damping_law = law;
   return STRUT_OK;
@@ -87,8 +90,8 @@ strut_status strut_model_options_apply(const strut_command *command,
   if (status != STRUT_OK) return status;
   if (bars >= 0) scene->bar_model = (strut_bar_model)bars;
   if (mass >= 0) scene->mass_model = (strut_mass_model)mass;
-  if (friction >= 0) status = set_friction(scene, (strut_friction_law)friction);
+  if (friction >= 0) status = set_friction(arguments, scene, (strut_friction_law)friction);
   if (status == STRUT_OK && damping >= 0)
-    status = set_damping(scene, (strut_ground_damping)damping);
+    status = set_damping(arguments, scene, (strut_ground_damping)damping);
   return status;
 }

@@ -2,11 +2,11 @@
 /**
  * Options that change how a scene is run without changing the file: method, step, accuracy.
  */
-#ifndef STRUT_PARSER_CLI_RUN_SETTINGS_H
-#define STRUT_PARSER_CLI_RUN_SETTINGS_H
+#ifndef STRUT_PARSER_COMMAND_RUN_SETTINGS_H
+#define STRUT_PARSER_COMMAND_RUN_SETTINGS_H
 
 #include "engine/scene/experiment.h"
-#include "parser/cli/options.h"
+#include "parser/command/arguments.h"
 
 /** Rows for a table of options. */
 #define STRUT_RUN_SETTING_OPTIONS                                                                  \
@@ -22,7 +22,7 @@
         "stop once the motion repeats within TOLERANCE, such as 0.5%"                              \
   }
 
-/** Applies the options to the scene. STRUT_USAGE with the reason on stderr. */
+/** Applies the options to the scene. STRUT_USAGE; the listener hears why. */
 strut_status strut_run_settings_apply(const strut_command *command,
                                       const strut_arguments *arguments, strut_experiment *e);
 

@@ -1,0 +1,171 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * What the handles of abi.h are, and what all calls share: errors, messages, entering and leaving.
+ */
+#ifndef STRUT_PARSER_ABI_HANDLES_H
+#define STRUT_PARSER_ABI_HANDLES_H
+
+#include <pthread.h>
+#include <signal.h>
+#include <stdatomic.h>
+
+#include "engine/model/model.h"
+#include "engine/output/trajectory.h"
+#include "parser/abi/abi.h"
+#include "parser/abi/tree.h"
+#include "parser/command/arguments.h"
+
+/* ---- control ---- */
+
+struct strutlib_control {
+  volatile sig_atomic_t interrupt;
+  strutlib_progress progress;
+  void *context;
+};
+
+/** The flag that stops a computation, or NULL. */
+static inline const volatile sig_atomic_t *abi_interrupt_of(const strutlib_control *control) {
+  return control ? &control->interrupt : NULL;
+}
+
+/* ---- errors ---- */
+
+/** Makes *error (which may be NULL) describe a failure; returns the status. */
+int abi_fail(strutlib_error **error, int status, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/** The same from the error of a library call. */
+int abi_fail_with(strutlib_error **error, strut_status status, const strut_error *what);
+/** The same from everything that was found in a text. */
+int abi_fail_located(strutlib_error **error, strut_status status, strut_diagnostics *found);
+int abi_no_memory(strutlib_error **error);
+
+/* ---- messages ---- */
+
+/** Texts that a call tells: warnings and notes are kept, an error is remembered. Zero-initialise. */
+typedef struct abi_messages {
+  strut_arena arena;
+  const char **warnings; /* (count) */
+  size_t count, capacity;
+  strut_error error;
+  bool out_of_memory;
+} abi_messages;
+
+/** A listener that keeps what it hears; both stay where they are. */
+strut_listener abi_listen(abi_messages *messages);
+void abi_add_warning(abi_messages *messages, const char *text);
+void abi_messages_free(abi_messages *messages);
+
+/* ---- scenes ---- */
+
+/** A text that was read once; scenes with different settings share it. */
+typedef struct abi_source {
+  atomic_int users;
+  char *name, *text; /* owned */
+  size_t length;
+  strut_scene_source *tree;
+} abi_source;
+
+/** A named array of a handle. */
+typedef struct abi_array {
+  const char *name, *unit;
+  const double *data;
+  int dimensions;
+  size_t shape[STRUTLIB_DIMENSIONS], stride[STRUTLIB_DIMENSIONS];
+} abi_array;
+
+enum { ABI_SCENE_ARRAYS = 9, ABI_KINDS = 18 };
+
+struct strutlib_scene {
+  abi_source *source;
+  strut_override *overrides; /* (setting_count) in the arena */
+  strut_setting *settings;   /* the same */
+  size_t setting_count;
+  strut_setup setup; /* as strut_open_model reads it for any purpose */
+  abi_messages messages;
+  abi_array arrays[ABI_SCENE_ARRAYS];
+  pthread_mutex_t lock; /* of the tree, which is made when it is first asked for */
+  abi_tree *tree;
+  strut_arena arena;
+};
+
+/** Reads the scene again for a purpose: what a call may change. Release it by strut_setup_free. */
+strut_status abi_setup(const strutlib_scene *scene, strut_purpose purpose, strut_setup *setup,
+                       strutlib_error **error);
+/** Shows an array; 1. */
+int abi_show_array(const abi_array *array, const double **data, int *dimensions, size_t *shape,
+                   size_t *stride);
+
+/* ---- calls ---- */
+
+/** A call under way. Stays where it is. */
+typedef struct abi_call {
+  strutlib_error **error;
+  strutlib_control *control;
+  strut_arguments arguments;
+  strut_listener listener;
+  abi_messages *messages;
+} abi_call;
+
+/** Clears *error. For calls that compute: the host's GSL handler sleeps until abi_leave. */
+void abi_enter(strutlib_error **error);
+void abi_leave(void);
+
+/**
+ * Begins a call: reads its options by the command's table, into messages of the result. STRUT_OK, or the
+ * status with *error filled, as with STRUT_INTERRUPTED where the control is.
+ */
+strut_status abi_call_begin(abi_call *call, const strutlib_scene *scene,
+                            const strut_command *command, size_t count, const char *const *names,
+                            const char *const *values, strutlib_control *control,
+                            strutlib_error **error, abi_messages *messages);
+/** Fills *error of a call that failed, by what its listener heard or by `what`. */
+void abi_call_fail(abi_call *call, strut_status status, const strut_error *what);
+
+/** Commands of the library with their options, for strutlib_option_name. NULL after the last. */
+const strut_command *abi_command_at(size_t i);
+extern const strut_command abi_run_command, abi_equilibria_command, abi_modes_command,
+    abi_rigidity_command, abi_form_command, abi_path_command, abi_matrices_command,
+    abi_sweep_command, abi_simulation_command;
+
+/* ---- results ---- */
+
+/** What only one kind of result has, released by its own function. */
+typedef struct abi_detail {
+  void (*release)(void *detail);
+} abi_detail;
+
+struct strutlib_result {
+  const strut_command *command;
+  int status;
+  char *json, *table, *yaml; /* of strut_allocate; yaml may be NULL */
+  abi_messages messages;
+  bool opened; /* there is a setup */
+  strut_setup setup;
+  strut_model *model;
+  abi_array *arrays; /* (array_count) that are not in the JSON, in the arena */
+  size_t array_count;
+  strut_arena arena;
+  /** Draws a figure into the file; NULL: there is none. */
+  strut_status (*draw)(const strutlib_result *result, const strut_arguments *arguments,
+                       const char *path, strut_error *error);
+  double *drawn;        /* of a form: the shape before it (nodes, 2), in the arena */
+  void *detail;         /* of the kind, begins with an abi_detail; or NULL */
+  pthread_mutex_t lock; /* of what follows, made when it is first asked for */
+  abi_tree *tree;
+  abi_array *made; /* (made_count) arrays of the JSON */
+  size_t made_count, made_capacity;
+  strut_arena made_arena;
+};
+
+/** A result without content, or NULL with the error. */
+strutlib_result *abi_result_create(const strut_command *command, strutlib_error **error);
+/** Adds an array that is not in the JSON; its name is copied. False: memory is out. */
+bool abi_result_add_array(strutlib_result *result, const char *name, const char *unit,
+                          const double *data, int dimensions, const size_t *shape);
+/** The motion that a result recorded, or NULL; and its summary. */
+const strut_trajectory *abi_result_motion(const strutlib_result *result);
+
+/** A text of strut_allocate as one that strutlib_release releases. */
+char *abi_give(char *text, strutlib_error **error);
+
+#endif

@@ -1,0 +1,228 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Figures as SVG and pages as HTML, in memory. */
+#include "parser/abi/pictures.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "engine/model/state.h"
+#include "engine/output/draw/structure.h"
+#include "engine/output/page/page.h"
+#include "parser/abi/statics.h"
+#include "parser/command/plot_options.h"
+#include "parser/write/write_scene.h"
+
+#define END                                                                                        \
+  { STRUT_OPTION_END, NULL, NULL, NULL }
+static const strut_option svg_options[] = {STRUT_PLOT_SETTING_OPTIONS, STRUT_RUN_FIGURE_OPTIONS,
+                                           STRUT_AXIS_OPTIONS, END};
+static const strut_command svg_command = {.name = "svg", .options = svg_options};
+
+strut_status abi_plot_read(const strut_arguments *arguments, const char *path, strut_plot *plot) {
+  *plot = (strut_plot){.path = path};
+  return strut_plot_settings_read(&svg_command, arguments, 0, plot);
+}
+
+strut_status abi_run_figure_read(const strut_arguments *arguments, strut_run_figure *figure,
+                                 double *times) {
+  strut_plot plot;
+  strut_status status = abi_plot_read(arguments, "", &plot);
+  if (status != STRUT_OK) return status;
+  return strut_run_figure_read(&svg_command, arguments, &plot, figure, times);
+}
+
+/* ---- a file that is a text in the end ---- */
+
+typedef struct scratch {
+  char folder[300], path[320];
+} scratch;
+
+static strut_status begin_scratch(scratch *s, strut_error *what) {
+  const char *temporary = getenv("TMPDIR");
+  bool usable = temporary && *temporary && strlen(temporary) < sizeof s->folder - 40;
+  snprintf(s->folder, sizeof s->folder, "%s/strut-XXXXXX", usable ? temporary : "/tmp");
+  if (!mkdtemp(s->folder))
+    return strut_fail(what, STRUT_FILE_TROUBLE, "cannot create a folder like '%s' for a figure",
+                      s->folder);
+  snprintf(s->path, sizeof s->path, "%s/figure.svg", s->folder);
+  return STRUT_OK;
+}
+
+static void end_scratch(const scratch *s) {
+  unlink(s->path);
+  rmdir(s->folder);
+}
+
+/* The text of the file that was drawn, or NULL with the error. */
+static char *take_text(const scratch *s, strut_status status, strut_error *what,
+                       strutlib_error **error) {
+  char *text = NULL;
+  size_t length;
+  if (status == STRUT_OK) status = strut_file_read(s->path, &text, &length, what);
+  if (status != STRUT_OK) abi_fail_with(error, status, what);
+  return text;
+}
+
+/* ---- figures ---- */
+
+static char *draw_result(const strutlib_result *result, const strut_arguments *arguments,
+                         const abi_messages *messages, strutlib_error **error) {
+  strut_error what = {0};
+  scratch s;
+  strut_status status = begin_scratch(&s, &what);
+  if (status != STRUT_OK) {
+    abi_fail_with(error, status, &what);
+    return NULL;
+  }
+  status = result->draw(result, arguments, s.path, &what);
+  bool told = status != STRUT_OK && !what.message[0] && messages->error.message[0];
+  if (told) what = messages->error;
+  char *text = take_text(&s, status, &what, error);
+  end_scratch(&s);
+  return text;
+}
+
+char *strutlib_result_svg(const strutlib_result *result, size_t count, const char *const *names,
+                          const char *const *values, strutlib_error **error) {
+  abi_messages messages = {0};
+  char *text = NULL;
+  abi_enter(error);
+  strut_listener listener = abi_listen(&messages);
+  /* There is a figure: options that belong to one are in their place. */
+  strut_arguments arguments = {.listener = &listener};
+  strut_status status = STRUT_OK;
+  for (size_t i = 0; i < count && status == STRUT_OK; i++)
+    status = strut_argument_set(&svg_command, names[i], values[i], &arguments);
+  if (status != STRUT_OK)
+    abi_fail_with(error, status, &messages.error);
+  else if (!result->draw)
+    abi_fail(error, STRUTLIB_USAGE, "there is no figure of %s", result->command->name);
+  else
+    text = draw_result(result, &arguments, &messages, error);
+  abi_messages_free(&messages);
+  abi_leave();
+  return text;
+}
+
+enum { WIDTH = 510, MARGIN = 24 }; /* [pt] of a drawing */
+
+static strut_status draw_structure(const strut_model *model, const double *q, const char *path,
+                                   strut_error *what) {
+  strut_bounds bounds = strut_bounds_none();
+  strut_bounds_add(&bounds, model, q);
+  double wide = bounds.high[0] - bounds.low[0], high = bounds.high[1] - bounds.low[1];
+  double inner = WIDTH - 2 * MARGIN, tall = wide > 0 ? inner * high / wide : inner;
+  double height = 2 * MARGIN + (tall > 1.2 * inner ? 1.2 * inner : tall < 40 ? 40 : tall);
+  strut_canvas *canvas;
+  strut_status status = strut_canvas_open(path, WIDTH, height, model->scene->name, &canvas, what);
+  if (status != STRUT_OK) return status;
+  strut_window window = strut_window_fit((strut_box){0, 0, WIDTH, height}, bounds, MARGIN);
+  strut_structure_style style = {.node_names = true, .member_names = true};
+  strut_draw_ground(canvas, &window, model);
+  strut_draw_structure(canvas, &window, model, q, &style);
+  status = strut_canvas_commit(canvas, what);
+  strut_canvas_free(canvas);
+  return status;
+}
+
+/* The positions at the start, of all coordinates of the model. */
+static strut_status draw_start(const strut_model *model, const char *path, strut_error *what) {
+  strut_state *state = NULL;
+  strut_status status = strut_state_create(model, &state, what);
+  if (status == STRUT_OK) status = draw_structure(model, state->q, path, what);
+  strut_state_free(state);
+  return status;
+}
+
+char *strutlib_scene_svg(const strutlib_scene *scene, strutlib_error **error) {
+  strut_model *model = NULL;
+  strut_error what = {0};
+  scratch s;
+  char *text = NULL;
+  abi_enter(error);
+  strut_status status = strut_model_compile(&scene->setup.scene, &model, &what);
+  if (status == STRUT_OK) status = begin_scratch(&s, &what);
+  if (status == STRUT_OK) {
+    status = draw_start(model, s.path, &what);
+    text = take_text(&s, status, &what, error);
+    end_scratch(&s);
+  } else {
+    abi_fail_with(error, status, &what);
+  }
+  strut_model_free(model);
+  abi_leave();
+  return text;
+}
+
+/* ---- pages ---- */
+
+static char *make_page(strut_page *page, const strut_setup *setup, strutlib_error **error) {
+  strut_error what = {0};
+  char *yaml = strut_setup_write(setup), *html = NULL;
+  page->yaml = yaml;
+  page->experiment = &setup->experiment;
+  if (!yaml)
+    abi_no_memory(error);
+  else if (!(html = strut_page_html(page, NULL, &what)))
+    abi_fail_with(error, what.status, &what);
+  strut_release(yaml);
+  return html;
+}
+
+char *strutlib_result_html(const strutlib_result *result, strutlib_error **error) {
+  char *html = NULL;
+  abi_enter(error);
+  strut_page page = {.model = result->model,
+                     .motion = abi_result_motion(result),
+                     .equilibria = abi_result_equilibria(result)};
+  if (page.motion) page.summary = result->json;
+  if (!page.equilibria) page.remark = "No search for equilibria was made.";
+  if (page.motion && !page.motion->position) page.motion = NULL;
+  if (page.motion || page.equilibria)
+    html = make_page(&page, &result->setup, error);
+  else
+    abi_fail(error, STRUTLIB_USAGE, "there is no page of %s without a recorded motion",
+             result->command->name);
+  abi_leave();
+  return html;
+}
+
+/* With the equilibria of the scene, or a remark where they cannot be found. */
+static char *scene_page(const strutlib_scene *scene, const strut_model *model, int wanted,
+                        const volatile sig_atomic_t *interrupt, strutlib_error **error) {
+  strut_equilibria all = {0};
+  strut_error remark = {0};
+  const strut_equilibria_options options = {.interrupt = interrupt};
+  strut_status status = STRUT_OK;
+  char *html = NULL;
+  if (wanted)
+    status = strut_equilibria_find(model, &scene->setup.experiment, &options, &all, &remark);
+  strut_page page = {.model = model};
+  if (wanted && status == STRUT_OK) page.equilibria = &all;
+  if (!page.equilibria)
+    page.remark = wanted ? remark.message : "No search for equilibria was made.";
+  if (status == STRUT_INTERRUPTED || status == STRUT_NO_MEMORY)
+    abi_fail_with(error, status, &remark);
+  else
+    html = make_page(&page, &scene->setup, error);
+  strut_equilibria_free(&all);
+  return html;
+}
+
+char *strutlib_scene_html(const strutlib_scene *scene, int equilibria, strutlib_control *control,
+                          strutlib_error **error) {
+  strut_model *model = NULL;
+  strut_error what = {0};
+  char *html = NULL;
+  abi_enter(error);
+  strut_status status = strut_model_compile(&scene->setup.scene, &model, &what);
+  if (status == STRUT_OK)
+    html = scene_page(scene, model, equilibria, abi_interrupt_of(control), error);
+  else
+    abi_fail_with(error, status, &what);
+  strut_model_free(model);
+  abi_leave();
+  return html;
+}

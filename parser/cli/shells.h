@@ -1,0 +1,10 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/** The scripts of the folder shells, embedded at build time: each followed by a row of NULL. */
+#ifndef STRUT_PARSER_CLI_SHELLS_H
+#define STRUT_PARSER_CLI_SHELLS_H
+
+#include "engine/output/page/page_assets.h"
+
+extern const strut_embedded strut_bash_script[], strut_zsh_script[], strut_fish_script[];
+
+#endif

@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/command/overload_warnings.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "engine/forces/memory.h"
+
+void strut_warn_of_overload(const strut_listener *listener, const strut_model *model,
+                            const double *q, const char *where) {
+  strut_overload worst;
+  if (!strut_memory_overload(model, q, &worst)) return;
+  const char *unit = worst.hinge ? "N m" : "N";
+  strut_tell(listener, STRUT_MESSAGE_WARNING, NULL,
+             "%s %s '%s' carries %.4g %s, above the %.4g %s at which it %s; statics take it as %s",
+             where, worst.hinge ? "hinge" : "member", worst.name, worst.force, unit, worst.limit,
+             unit, worst.breaks ? "breaks" : "yields", worst.breaks ? "whole" : "elastic");
+}
+
+void strut_warn_of_equilibria(const strut_listener *listener, const strut_model *model,
+                              const strut_equilibria *all) {
+  for (size_t i = 0; i < all->count; i++) {
+    const strut_equilibrium *e = &all->list[i];
+    char where[200];
+    if (e->point.label != STRUT_STABLE) continue;
+    snprintf(where, sizeof where, "in %.180s", e->name);
+    strut_warn_of_overload(listener, model, e->point.q, where);
+  }
+}
+
+/* Does something carry more than it can? What that is. */
+static const char *overloaded_at(const strut_scene *scene, const strut_path_point *at) {
+  for (size_t j = 0; j < scene->member_count; j++) {
+    const strut_member *m = &scene->members[j];
+    bool yields = m->law.kind == STRUT_LAW_ELASTIC_PLASTIC && fabs(at->force[j]) > m->law.yield;
+    if (yields || (m->breaks_at > 0.0 && at->force[j] > m->breaks_at)) return m->name;
+  }
+  for (size_t i = 0; i < scene->hinge_count; i++) {
+    const strut_hinge *h = &scene->hinges[i];
+    double moment = fabs(at->moment[i]);
+    bool yields = h->law.kind == STRUT_LAW_ELASTIC_PLASTIC && moment > h->law.yield;
+    if (yields || (h->breaks_at > 0.0 && moment > h->breaks_at)) return h->name;
+  }
+  return NULL;
+}
+
+void strut_warn_of_path(const strut_listener *listener, const strut_scene *scene,
+                        const strut_path *path) {
+  for (size_t i = 0; i < path->point_count; i++) {
+    const char *name = overloaded_at(scene, &path->points[i]);
+    if (!name) continue;
+    strut_tell(listener, STRUT_MESSAGE_WARNING, NULL,
+               "from the factor %.4g on '%s' carries more than it can; paths take what "
+               "breaks as whole and what yields as elastic",
+               path->points[i].factor, name);
+    return;
+  }
+}

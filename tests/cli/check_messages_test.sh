@@ -1,0 +1,127 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# check --json: messages with their places, for editors; and studies.
+bad=$(dirname "$0")/../language/bad
+bad=$(realpath "$bad")
+studies=$(realpath "$(dirname "$0")/../language/studies")
+. "$(dirname "$0")/lib.sh"
+
+cat >b.yaml <<'END'
+strut: 1
+nodes: {a: [0, 0], ä: [1 kg, 2]}
+members: {ab: {nodes: [a, c], kind: bar, stifness: 3}}
+END
+expect 2 check b.yaml --json
+err_empty
+cat >wanted <<'END'
+b.yaml:2:24:4: error: expected a length such as '10 mm' for 'position' of node 'ä', found a mass [null]
+b.yaml:3:27:1: error: unknown node 'c' in 'nodes' of member 'ab' [null]
+b.yaml:3:42:8: error: unknown key 'stifness' in member 'ab' [did you mean 'stiffness'?]
+END
+jq -r '.messages[] | "\(.file):\(.line):\(.column):\(.length): \(.severity): \(.message) [\(.hint)]"' out >got
+same wanted got
+jq -e '.valid == false and .unlisted == 0' out >/dev/null || fail "not invalid"
+"$strut" check - --json <b.yaml >out 2>err
+[ $? -eq 2 ] || fail "the exit code of a bad scene on the standard input"
+jq -e '.messages[0].file == "<stdin>" and (.messages | length) == 3' out >/dev/null || fail "no messages of stdin"
+# JSON and text say the same, in the same order.
+count=0
+for file in "$bad"/*.yaml; do
+  count=$((count + 1))
+  [ $((count % 25)) -eq 0 ] || continue
+  "$strut" check "$file" --json >out 2>err
+  code=$?
+  "$strut" check "$file" >plain 2>text
+  [ $? -eq $code ] || fail "$file: exit code $code with --json"
+  [ $code -eq 2 ] || continue
+  jq -r '.messages[] | select(.severity == "error") |
+    "\(.line):\(.column): error: \(.message)\(if .hint then "; " + .hint else "" end)"' out | head -n 50 | grep -v "^1:1:" >got
+  sed -n 's/^[^ ]*\.yaml:\([0-9]*:[0-9]*: error: \)/\1/p' text | grep -v "^1:1:" >wanted
+  same wanted got
+done
+
+# The text as vim takes it apart, with the pattern of docs/editor.md.
+if command -v vim >/dev/null; then
+  expect 2 check -q b.yaml
+  vim -es -u NONE --not-a-term -c 'set errorformat=%f:%l:%c:\ %trror:\ %m' -c 'cgetfile err' \
+    -c 'call writefile(map(filter(getqflist(), "v:val.valid"), "v:val.lnum . \":\" . v:val.col . v:val.type"), "got")' \
+    -c 'qa!' </dev/null >/dev/null 2>&1
+  printf '2:24e\n3:27e\n3:42e\n' >wanted
+  same wanted got
+else
+  echo "no vim"
+fi
+
+# Notes and other files.
+printf 'strut: 1\nparts: {rod: {use: part.yaml}}\nplace: {one: {part: rod}}\n' >used.yaml
+printf 'strut: 1\nnodes: {a: [0, 0], b: [1, 0]}\nmembers: {m: {kind: bra, nodes: [a, b], stiffness: 1}}\n' >part.yaml
+expect 2 check used.yaml --json
+jq -e '.messages[0] | (.file | endswith("part.yaml")) and .line == 3 and .column == 21' out >/dev/null ||
+  fail "the place in another file"
+
+# A valid scene: nothing else has changed, and warnings have places.
+cat >w.yaml <<'END'
+strut: 1
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0], mass: 1}
+members:
+  one: {nodes: [a, b], kind: bar, stiffness: 100}
+  two: {nodes: [a, b], kind: bar, stiffness: 100}
+END
+expect 0 check w.yaml --json
+jq -e '.valid and .nodes == 2 and .members.one.stiffness == 100' out >/dev/null || fail "what check --json had"
+jq -e '.messages | length == 1' out >/dev/null || fail "one warning"
+jq -e '.messages[0] | .severity == "warning" and (.line == 6 or .line == 7) and .column == 3 and .length == 3' \
+  out >/dev/null || fail "the place of a warning"
+jq -e '.messages[0].message == .warnings[0].text' out >/dev/null || fail "the text of a warning"
+# What has no place stands at the beginning of the file.
+cat >f.yaml <<'END'
+strut: 1
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [0, -1], mass: 1}}
+members: {m: {nodes: [a, b], kind: spring, stiffness: 100}}
+ground: {height: -2, stiffness: 1000, friction: {law: coulomb, mu: 0.1}}
+solver: {integrator: rk4, step: 1 ms}
+run: {duration: 1 s}
+END
+"$strut" check f.yaml >out 2>err
+code=$?
+[ $code -ne 0 ] || fail "Coulomb friction with a method without events"
+expect $code check f.yaml --json
+err_empty
+jq -e '.valid == false and (.messages | length == 1)' out >/dev/null || fail "no message"
+jq -e '.messages[0] | .file == "f.yaml" and .line == 1 and .column == 1 and .length == 0' out >/dev/null ||
+  fail "the place of the whole file"
+expect 4 check missing.yaml --json
+out_empty
+err_has "No such file"
+
+# Studies.
+cp -R "$studies" studies
+for study in studies/good/*.yaml; do
+  expect 0 check "$study"
+  out_has ": valid"
+  expect 0 check "$study" -q
+  out_empty
+  expect 0 check "$study" --json
+  jq -e '.valid and .points >= 1 and (.study | length > 0)' out >/dev/null || fail "$study"
+done
+for study in studies/bad/*.yaml; do
+  [ "$study" != studies/bad/study-is-model.yaml ] || continue
+  "$strut" sweep "$study" --count >out 2>text
+  code=$?
+  [ $code -ne 0 ] || continue # what sweep finds out later
+  expect $code check "$study"
+  out_empty
+  same text err
+  expect $code check "$study" --json
+  err_empty
+  jq -r '.messages[] | select(.severity == "error") |
+    "\(.line):\(.column): error: \(.message)\(if .hint then "; " + .hint else "" end)"' out | head -n 50 | grep -v "^1:1:" >got
+  sed -n 's/^[^ ]*\.[a-z]*:\([0-9]*:[0-9]*: error: \)/\1/p' text | grep -v "^1:1:" >wanted
+  [ ! -s wanted ] || same wanted got
+  jq -e ".valid == false and (.messages | length > 0)" out >/dev/null || fail "$study: nothing is wrong"
+done
+expect 1 check studies/good/path.yaml --step 1ms
+err_has "--step needs a model, not the study"
+done_testing
