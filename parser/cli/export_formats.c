@@ -10,6 +10,7 @@
 #include "parser/cli/open_model.h"
 #include "parser/cli/option_values.h"
 #include "parser/cli/streams.h"
+#include "parser/command/statics_options.h"
 
 /* A model to export, with its arguments. */
 typedef struct exported {
