@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The Debian packages, in bare systems of Debian 12 and 13: each builds them twice, in folders of different
 # names, with different umasks, languages and time zones, and both builds have the same bytes; lintian finds no
-# error; another bare system installs and uses them (packages_use.sh). Both Debians compute the same bits.
+# error; another bare system installs and uses them (packages_use.sh), and one does what docs/strut.def says. Both Debians compute the same bits.
 # Packages of one do not install on the other: GSL, CHOLMOD and HDF5 have other sonames there.
 #
 #   sh tests/packages.sh [OUTPUT [SUITE...]]
@@ -97,6 +97,12 @@ build() {
   ! grep -E '[Ww]arning(:| at)' "$scratch/log" || { echo "a build with warnings"; exit 1; }
 }
 
+# section STAGE NAME: of the Apptainer definition.
+section() {
+  awk -v stage="$1" -v name="%$2" '/^Bootstrap:/ { inside = 0 } /^Stage:/ { now = $2 }
+    /^%/ { inside = $0 == name && now == stage; next } inside' "$source/docs/strut.def"
+}
+
 for suite; do
   bare "$suite"
   builder "$suite"
@@ -112,18 +118,32 @@ for suite; do
     echo "the same bytes twice: $(basename "$package"), $(stat -c %s "$package")"
   done
   within build 'cd /root/strut/build/packages; lintian --allow-root --fail-on error *.deb'
-  open_box use "$roots/$suite"
-  mkdir "$scratch/use/root/root/packages"
-  cp "$first"/*.deb "$source"/tests/packages_use.sh "$source"/tests/install_user.c "$scratch/use/root/root/packages"
+  rm -rf "$scratch/packages"
+  mkdir "$scratch/packages"
+  cp "$first"/*.deb "$scratch/packages"
   if [ -n "$output" ]; then
     mkdir -p "$output/$suite"
     cp "$first"/*.deb "$output/$suite"
   fi
   close_box build
+  open_box use "$roots/$suite"
+  mkdir "$scratch/use/root/root/packages"
+  cp "$scratch/packages"/*.deb "$source"/tests/packages_use.sh "$source"/tests/install_user.c \
+    "$scratch/use/root/root/packages"
   echo "== $suite: installed and used"
   within use 'sh /root/packages/packages_use.sh'
   cp "$scratch/use/root/root/bits" "$scratch/bits.$suite"
   close_box use
+  if [ "$suite" = bookworm ]; then # what the definition's image begins as
+    echo "== $suite: what the Apptainer image is made of"
+    open_box image "$roots/$suite"
+    mkdir "$scratch/image/root/root/packages"
+    cp "$scratch/packages"/*.deb "$scratch/image/root/root/packages"
+    within image "$(section final post)" >"$scratch/log" 2>&1 || { tail -n 20 "$scratch/log"; exit 1; }
+    [ -n "$(section final test)" ]
+    within image "$(section final test)"
+    close_box image
+  fi
   for other in "$scratch"/bits.*; do cmp "$other" "$scratch/bits.$suite"; done
 done
 echo "packages of $*: built twice, judged, installed, used"
