@@ -11,10 +11,25 @@ set(strut_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/strut")
 
 install(TARGETS strut RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT program)
 install(
-  TARGETS strut_abi strut_engine strut_output strut_pictures strut_study strut_parser
+  TARGETS strut_engine strut_output strut_pictures strut_study strut_parser
   EXPORT strut
   ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT development
   LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT library NAMELINK_COMPONENT development)
+
+# The library with the stable interface stands alone: its header, its file, find_package(strut-abi) and
+# pkg-config strut-abi.
+install(
+  TARGETS strut_abi
+  EXPORT strut-abi
+  LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT library NAMELINK_COMPONENT development)
+install(FILES "${PROJECT_SOURCE_DIR}/parser/abi/abi.h"
+        DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/strut" COMPONENT development)
+install(EXPORT strut-abi NAMESPACE strut:: FILE strut-abiConfig.cmake
+        DESTINATION "${CMAKE_INSTALL_LIBDIR}/cmake/strut-abi" COMPONENT development)
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/strut-abiConfigVersion.cmake"
+                                 COMPATIBILITY SameMajorVersion)
+install(FILES "${PROJECT_BINARY_DIR}/strut-abiConfigVersion.cmake"
+        DESTINATION "${CMAKE_INSTALL_LIBDIR}/cmake/strut-abi" COMPONENT development)
 
 # strut.h and what it includes, all the way; nothing else is meant for others.
 function(strut_public_headers result)
@@ -45,8 +60,6 @@ foreach(header IN LISTS headers)
   install(FILES "${PROJECT_SOURCE_DIR}/${header}"
           DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/strut/${folder}" COMPONENT development)
 endforeach()
-install(FILES "${PROJECT_SOURCE_DIR}/parser/abi/abi.h"
-        DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/strut" COMPONENT development)
 
 # CMake: find_package(strut), targets strut::abi, strut::engine, strut::output, strut::pictures,
 # strut::study, strut::parser.

@@ -67,6 +67,7 @@ extern "C" {
 #include "engine/study/sweep/grid.h"
 #include "engine/study/sweep/sweep.h"
 #include "engine/study/tradeoff/tradeoff.h"
+#include "parser/import/import.h"
 #include "parser/read/read_scene.h"
 #include "parser/study/read_study.h"
 #include "parser/study/study_request.h"

@@ -45,7 +45,10 @@ static const strut_command *const commands[] = {
     &strut_command_keys,
     &strut_command_schema,
     &strut_command_completion,
+    &strut_command_new,
+    &strut_command_examples,
     &strut_command_evaluate,
+    &strut_command_import,
     &help_command,
     NULL,
 };

@@ -13,6 +13,7 @@ extern const strut_command strut_command_equilibria;
 extern const strut_command strut_command_evaluate;
 extern const strut_command strut_command_export;
 extern const strut_command strut_command_form;
+extern const strut_command strut_command_import;
 extern const strut_command strut_command_keys;
 extern const strut_command strut_command_merge;
 extern const strut_command strut_command_modes;
@@ -25,6 +26,8 @@ extern const strut_command strut_command_tradeoff;
 extern const strut_command strut_command_view;
 extern const strut_command strut_command_write;
 extern const strut_command strut_command_schema;
+extern const strut_command strut_command_new;
+extern const strut_command strut_command_examples;
 extern const strut_command strut_command_completion;
 
 /** The i-th command, or NULL after the last. */

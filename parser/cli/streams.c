@@ -88,7 +88,7 @@ strut_status strut_print_out_of_memory(void) {
 }
 
 static void show_message(void *context, strut_message_kind kind, const char *command,
-                          const char *text) {
+                         const char *text) {
   (void)context;
   switch (kind) {
     case STRUT_MESSAGE_USAGE: fprintf(stderr, "strut %s: %s\n", command, text); break;

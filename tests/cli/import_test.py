@@ -1,0 +1,301 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Foreign structures: imported, they have the results of the same structure in the gallery or of a closed
+# form; what a scene cannot say is listed by place, what cannot be read is an error by place and leaves no file.
+#
+#   python3 import_test.py STRUT MODELS
+import json
+import math
+import os
+import re
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
+from findings import check, finish  # noqa: E402
+
+strut = os.path.realpath(sys.argv[1])
+gallery = os.path.join(os.path.realpath(sys.argv[2]), "gallery")
+work = tempfile.mkdtemp()
+
+
+def run(*words, code=0, timeout=60):
+    done = subprocess.run([strut, *words], capture_output=True, cwd=work, timeout=timeout,
+                          stdin=subprocess.DEVNULL)
+    check(done.returncode == code, f"strut {' '.join(words)}: exit code {done.returncode}, expected "
+          f"{code}: {done.stderr.decode('utf-8', 'replace')}")
+    return done
+
+
+def write(name, text):
+    with open(os.path.join(work, name), "wb") as file:
+        file.write(text if isinstance(text, bytes) else text.encode())
+
+
+def exists(name):
+    return os.path.exists(os.path.join(work, name))
+
+
+def imported(name, *words):
+    """The scene of what was written as that file, and what was said."""
+    said = run("import", name, *words, "-o", "scene.yaml").stderr.decode()
+    with open(os.path.join(work, "scene.yaml"), encoding="utf-8") as file:
+        return file.read(), said
+
+
+def stable_energies(model):
+    found = json.loads(run("equilibria", model, "--json").stdout)
+    return sorted(e["energy"] for e in found["equilibria"] if e["label"] == "stable")
+
+
+def same_numbers(got, want, tolerance, what):
+    near = len(got) == len(want) and all(abs(a - b) <= tolerance * max(1e-12, abs(b))
+                                         for a, b in zip(got, want))
+    check(near, f"{what}: {got}, expected {want}")
+
+
+BOX = """# a square of cables with two bars
+nodes: {A: [0, 0], B: [1, 0], C: [1, 1], D: [0, 1], far away: [9, 9]}
+connections:
+  rope:
+    - bottom: [A, B]
+    - [B, C]
+    - [C, D]
+    - [D, A]
+  strut: [[B, D], [A, C]]
+builders:
+  rope: {stiffness: 100, type: string, initial_length_ratio: 0.95}
+  strut: {stiffness: 1000, type: bar}
+pin: {A: [True, True, False], B: [False, true, False]}
+control: [bottom]
+"""
+
+
+def tensegritysim():
+    write("box.yaml", BOX)
+    scene, said = imported("box.yaml")
+    check(scene.startswith("# Imported by strut from 'box.yaml', YAML of TensegritySim."), scene[:80])
+    check("box.yaml:14:1: note: not imported: which strings are controlled" in said, said)
+    check("node far_away, which nothing uses" in said and "bottom: {group: rope" in scene, said)
+    same_numbers(stable_energies("scene.yaml"), stable_energies(f"{gallery}/x-frame.yaml"), 1e-9,
+                 "energies of Snelson's X")
+    scene, _ = imported("box.yaml", "--unit", "10 cm")
+    check("position: [0.1, 0.1]" in scene, "another unit of length")
+    write("running.yaml", BOX.replace("- bottom: [A, B]", "- bottom: [D, A, B]").replace("    - [D, A]\n", ""))
+    check("bottom: {group: rope, nodes: [D, A, B]}" in imported("running.yaml")[0], "a string over a node")
+
+
+ARCH = """# an arch with a flexure, pressed through a spring
+PARAMETERS
+w, 8.0
+h, 3.
+side, 9.0
+press, 1.4, [1;2.5;4]
+label, 'text'
+NODES
+0, 0, 0, 1, 1
+1, w/2, h, 1, 0
+2, X0+w, Y0, 1, 1
+3, X1, h + w, 1, 0
+4, 1, 1, 1, 1
+SPRINGS
+0-1, side
+2-1, LINEAR(k=side), SQRT((w/2)**2 + h**2)
+1-3, k=press
+LONGITUDINAL FLEXELS
+4-1, BEZIER(u_i=[1]; f_i=[1;2])
+ANGULAR SPRINGS
+0-1-2, 7.5
+LOADING
+3, Y, -10, -3.0
+then
+1, X, 2
+"""
+
+
+def springable():
+    write("arch.csv", ARCH)
+    scene, said = imported("arch.csv")
+    for place in ("6:13: note: not imported: a range", "7:8: note: not imported: a parameter that is a text",
+                  "19:6: note: not imported: an element with the behaviour 'BEZIER",
+                  "13:1: note: not imported: node n4", "23:12: note: not imported: the displacement",
+                  "24:1: note: not imported: the later steps"):
+        check(f"arch.csv:{place}" in said, f"not listed: {place}: {said}")
+    check("h_value: 3" in scene, "the name of a unit")
+    check("n2: {position: [8, 0]" in scene and "n1: {position: [w/2, h_value]" in scene, scene)
+
+    def limits(model):
+        path = json.loads(run("path", model, "--load", "load1" if model == "scene.yaml" else "down",
+                              "--until", "3", "--json").stdout)
+        return [e["factor"] for e in path["events"] if "limit" in e["kind"]][:2]
+    same_numbers(limits("scene.yaml"), limits(f"{gallery}/arch-with-flexure.yaml"), 1e-6,
+                 "limit loads of the arch with a flexure")
+    # cables that are written as two pieces, a running one, an angle beyond half a turn
+    write("cables.csv", """PARAMETERS
+k, 100
+NODES
+0,0,0,1,1
+1,1,0,0,1
+2,1,1,0,0
+3,0,1,0,0
+4,2,1,1,1
+SPRINGS
+0-2, 10*k
+1-3, 10*k
+0-1, PIECEWISE(k_i=[1e-5; k]; u_i=[0.01]; us=0.005), 0.94
+1-2, PIECEWISE(k_i=[1e-5; k]; u_i=[0.01]; us=0.005), 0.94
+2-3, PIECEWISE(k_i=[1e-5;k];u_i=[0.01];us=0.005), 0.94
+3-0, PIECEWISE(k_i=[1e-5;k];u_i=[0.01];us=0.005), 0.94
+""")
+    scene, said = imported("cables.csv")
+    check("nearly slack up to a knee becomes a cable" in said and scene.count("kind: cable") == 4, said)
+    same_numbers(stable_energies("scene.yaml"), stable_energies(f"{gallery}/x-frame.yaml"), 1e-9,
+                 "energies of Snelson's X of two pieces")
+    write("path.csv", "NODES\n0,0,0,1,1\n1,1,1,0,0\n2,2,0,1,1\nPATH SPRINGS\n0-1-2, PIECEWISE(k_i=[1;5];u_i=[0.1])\n"
+          "ANGULAR SPRINGS\n0-1-2, 1, 1.5*PI\nAREA SPRINGS\n0-1-2, 3\n")
+    scene, said = imported("path.csv")
+    check("law: {kind: bilinear, knee: 0.1, second_stiffness: 5}" in scene, scene)
+    check("path.csv:10:1: note: not imported: an element on an area" in said, said)
+    check(f"rest_angle: {-0.5 * math.pi!r}" in scene, f"an angle within half a turn: {scene}")
+
+
+RODS = """nodes: {a: [-5, 0, 2], b: [5, 0, 2], c: [5, 10, 2], d: [-5, 10, 2]}
+pair_groups:
+  cross rod: [[a, c], [b, d]]
+  edge string:
+    - [a, b]
+    - [b, c]
+    - [c, d]
+    - [d, a]
+  string: [[a, c]]
+  box: [[a, b]]
+builders:
+  rod: {class: tgRodInfo, parameters: {density: 0.688, radius: 0.31, friction: 0.9}}
+  edge: {class: tgBasicActuatorInfo, parameters: {stiffness: 500, damping: 4, pretension: 100, history: 1}}
+  box: {class: tgBoxInfo}
+"""
+
+
+def ntrt():
+    write("rods.yaml", RODS)
+    scene, said = imported("rods.yaml")
+    for text in ("not imported: 'friction'", "not imported: 'history'", "pairs of the class 'tgBoxInfo'"):
+        check(text in said, f"not listed: {text}: {said}")
+    check("rods.yaml:12:" in said, said)
+    check("bars: rigid" in scene and "c: {position: [0.5, 1]}" in scene, "decimetres")
+    mass = float(re.search(r"cross_rod-1: .*mass: ([\d.e-]+) kg", scene).group(1))
+    same_numbers([mass], [0.688 * math.pi * 0.31 ** 2 * math.hypot(10, 10)], 1e-12, "the mass of a rod")
+    check("edge_string-1: {kind: cable, nodes: [a, b], stiffness: 500 N/m, damping: 4 N s/m, pretension: 10 N}"
+          in scene, "a force of decimetres")
+    check("string-1: {kind: cable, nodes: [a, c], stiffness: 1000 N/m, damping: 10 N s/m, pretension: 0 N}"
+          in scene, "the default builder")
+    run("rigidity", "scene.yaml", "--quiet")
+    write("upright.yaml", RODS.replace("-5, ", "7, ").replace("[5, 0, 2]", "[7, 0, 12]")
+          .replace("[5, 10, 2]", "[7, 10, 12]"))
+    check("c: {position: [1.2, 1]}" in imported("upright.yaml")[0], "the plane z y")
+
+
+def tables():
+    write("nodes.csv", "node,x [mm],y [m],fixed,mass [g],colour\nA,0,0,both,,red\nB,1000,0,y,1000,\n"
+          "C,1000,1,no,1000,\nD,0,1,,1000,\n")
+    write("members.csv", "member,kind,from,over,to,stiffness [N/cm],pretension [N],rest_length [m]\n"
+          "bottom,cable,A,,B,1,,0.95\nright,cable,B,,C,1,,0.95\ntop,cable,C,,D,1,5,\nleft,cable,D,,A,1,,0.95\n"
+          "f,bar,B,,D,10,,\nr,bar,A,,C,10,0,\n")
+    for files in (("nodes.csv", "members.csv"), ("members.csv", "nodes.csv")):
+        scene, said = imported(files[0], files[1])
+        check("nodes.csv:1:34: note: not imported: the column 'colour'" in said, said)
+        same_numbers(stable_energies("scene.yaml"), stable_energies(f"{gallery}/x-frame.yaml"), 1e-9,
+                     "energies of Snelson's X as tables")
+        modes = [json.loads(run("modes", m, "--at", "equilibrium-1", "--json").stdout)["modes"]
+                 for m in ("scene.yaml", f"{gallery}/x-frame.yaml")]
+        same_numbers([m["frequency"] for m in modes[0]], [m["frequency"] for m in modes[1]], 1e-9, "modes")
+    # what strut itself lists can be read again, but for the stiffness
+    run("export", f"{gallery}/x-frame.yaml", "--format", "build", "-o", "build", "--quiet")
+    with open(os.path.join(work, "build/members.csv"), encoding="utf-8") as file:
+        rows = file.read().splitlines()
+    write("listed.csv", "\n".join([rows[0] + ",stiffness [N/m]"] + [
+        row + (",1000" if ",bar," in row else ",100") for row in rows[1:]]) + "\n")
+    imported("listed.csv", "build/nodes.csv")
+    same_numbers(stable_energies("scene.yaml"), stable_energies(f"{gallery}/x-frame.yaml"), 1e-9,
+                 "energies of a build list")
+
+
+def refused(name, text, *expected, words=()):
+    write(name, text)
+    message = run("import", name, *words, "-o", "none.yaml", code=2).stderr.decode("utf-8", "replace")
+    for part in expected:
+        check(part in message, f"{name}: {part!r} is not said of {text[:60]!r}: {message}")
+    check(not exists("none.yaml"), f"{name}: a scene is written")
+
+
+def bad_input():
+    for old, new, part in (("[1, 1]", "[1, 1, 3]", "2:34: error: node 'C' is not in the plane"),
+                           ("[C, D]", "[C, E]", "7:11: error: there is no node 'E'"),
+                           ("type: bar", "type: rod", "expected 'type: bar'"),
+                           ("stiffness: 1000", "stiffness: much", "expected a number for the stiffness"),
+                           ("  rope: {", "  ropes: {", "'rope' has no builder"),
+                           ("pin:", "pins:", "found 'pins'"), ("control:", "surface:", "not planar"),
+                           ("stiffness: 100,", "stiffness: -100,", "negative"),
+                           ("A: [0, 0]", "A: [0, .nan]", "expected a number")):
+        refused("bad.yaml", BOX.replace(old, new, 1), part)
+    for old, new, part in (("[5, 0, 2]", "[5, 0, 3]", "strut is planar"), ("[d, a]", "[d, x]", "8:11: error"),
+                           ("builders:", "substructures:", "import the structures one by one"),
+                           ("class: tgRodInfo, ", "", "'class'"), ("radius: 0.31", "radius: r", "a number"),
+                           ("[-5, 10, 2]", "[-5, 10]", "three coordinates"), ("nodes:", "knots:", "'knots'")):
+        refused("bad.yaml", RODS.replace(old, new, 1), part)
+    for old, new, part in (("0-1, side", "0-1, sid", ":15:6: error: 'sid' is no expression"),
+                           ("0-1, side", "0-9, side", "there is no node 9"), ("0-1, side", "0, side", "numbers"),
+                           ("3, Y, -10", "3, Z, -10", "X or Y"), ("1, w/2, h, 1, 0", "1, w/2, h, 1", "a node"),
+                           ("1, w/2, h, 1, 0", "1, w/2, h, 1, 2", "expected 0 or 1"),
+                           ("1, w/2, h, 1, 0", "0, w/2, h, 1, 0", "given twice"),
+                           ("PARAMETERS", "", "expected a section"), ("w/2", "w/0", "no expression"),
+                           ("w, 8.0", "w, __import__('os')", "no expression"), ("w/2", "(" * 300, "expression")):
+        refused("bad.csv", ARCH.replace(old, new, 1), part, "bad.csv:")
+    refused("bad.csv", "NODES\n0,0,0,1,1\n", "no member")
+    refused("bad.csv", "NODES\n99999999999999999999,0,0,1,1\n", "expected a node")
+    good = "member,kind,from,to,stiffness [N/m]\nm,bar,a,b,1\n"
+    for text, part in (("node,x,y\na,0,0\nb,1,one\n", "bad.csv:3:5: error: expected a number for 'y'"),
+                       ("node,x [kg],y\na,0,0\nb,1,1\n", "expected a length for 'x'"),
+                       ("node,x,y\na,0,0\na,1,1\n", "given twice"), ("node,x\na,0\nb,1\n", "no column 'y'"),
+                       ("node,x,y,fixed\na,0,0,both\nb,1,1,z\n", "no, x, y or both"),
+                       ("node,x,y\na,0,0\n", "there is no node 'b'"), ("node,x,y\na,0,0\nb,1\n", "3")):
+        write("good.csv", good)
+        refused("bad.csv", text, part, words=("good.csv",))
+    write("good.csv", "node,x,y,fixed,mass\na,0,0,both,\nb,1,1,no,1\n")
+    for text, part in ((good.replace("bar", "rod"), "bad.csv:2:3: error: expected bar, spring or cable"),
+                       (good.replace(",1\n", ",1 N/m\n"), "expected a number"), (good.replace("a,b", "a,"), "lacks"),
+                       (good.replace("[N/m]", "[N]"), "stiffness"), (good.replace("kind", "sort"), "'kind'")):
+        refused("bad.csv", text, part, words=("good.csv",))
+    for text, part in (("[" * 5000, "none of the formats"), (b"\x00\xff\x00", "none of the formats"),
+                       ("a: 1\n", "none of the formats"), ("", "none of the formats")):
+        refused("odd", text, part)
+    refused("odd", "- a\n", "expected a mapping", words=("--format", "ntrt"))
+    refused("odd", b"\xff\xfe", "odd", words=("--format", "tensegritysim"))
+    refused("odd", b"NODES\n\xff,0,0,1,1\n", "odd:2:1", words=("--format", "springable"))
+
+
+def files():
+    write("box.yaml", BOX)
+    write("mine.yaml", "precious")
+    run("import", "box.yaml", "-o", "mine.yaml", code=4)
+    with open(os.path.join(work, "mine.yaml"), encoding="utf-8") as file:
+        check(file.read() == "precious", "somebody else's file")
+    printed = run("import", "box.yaml").stdout
+    run("import", "box.yaml", "-o", "scene.yaml")
+    with open(os.path.join(work, "scene.yaml"), "rb") as file:
+        check(file.read() == printed, "the same scene on standard output")
+    for words, code, text in ((("box.yaml", "box.yaml", "box.yaml"), 1, "unexpected"),
+                              (("box.yaml", "--unit", "3 kg"), 1, "unit"), (("box.yaml", "--unit", "0 m"), 1, "above 0"),
+                              (("box.yaml", "box.yaml"), 1, "one file"), (("none.yaml",), 4, "none.yaml"),
+                              (("box.yaml", "--format", "urdf"), 1, "ntrt")):
+        done = run("import", *words, code=code)
+        check(text in done.stderr.decode(), f"{words}: {done.stderr.decode()}")
+
+
+tensegritysim()
+springable()
+ntrt()
+tables()
+bad_input()
+files()
+finish()
