@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The Debian packages, in bare systems of Debian 12 and 13: each builds them twice, in folders of different
-# names, with different umasks, languages and time zones, and both builds have the same bytes; lintian finds no
+# names, in different languages and time zones, and both builds have the same bytes; lintian finds no
 # error; another bare system installs and uses them (packages_use.sh), and one does what docs/strut.def says. Both Debians compute the same bits.
 # Packages of one do not install on the other: GSL, CHOLMOD and HDF5 have other sonames there.
 #
@@ -27,7 +27,7 @@ clean() {
   for folder in dev proc ''; do
     for box in "$scratch"/*; do ! mountpoint -q "$box/root/$folder" || umount -l "$box/root/$folder"; done
   done
-  rm -rf --one-file-system "$scratch"
+  grep -q "$scratch" /proc/mounts || rm -rf --one-file-system "$scratch"
 }
 trap clean EXIT
 trap 'exit 1' HUP INT TERM
@@ -37,6 +37,9 @@ open_box() {
   mkdir -p "$scratch/$1/root" "$scratch/$1/upper" "$scratch/$1/work"
   mount -t overlay overlay -o "lowerdir=$2,upperdir=$scratch/$1/upper,workdir=$scratch/$1/work" \
     "$scratch/$1/root" 2>/dev/null || cp -a "$2/." "$scratch/$1/root"
+  open_rest "$1"
+}
+open_rest() {
   mount -t proc proc "$scratch/$1/root/proc"
   mount --bind /dev "$scratch/$1/root/dev"
   cp -L /etc/resolv.conf /etc/hosts "$scratch/$1/root/etc/"
@@ -69,30 +72,28 @@ bare() {
 
 # builder SUITE: makes $roots/SUITE-builder, with all that the packages are built and judged with.
 builder() {
-  tools="git file dpkg-dev lintian diffutils python3-dev $([ ! -d "$source/parser/octave" ] || echo octave-dev)"
+  tools="git file dpkg-dev lintian diffutils python3-dev octave-dev"
   wanted=$(sed -n '/^packages=/,/"$/p' "$source/tests/install.sh"; echo "$tools")
   [ "$(cat "$roots/$1-builder.complete" 2>/dev/null)" != "$wanted" ] || return 0
-  rm -rf --one-file-system "${roots:?}/$1-builder"
-  open_box builder "$roots/$1"
+  [ -d "$roots/$1-builder" ] || cp -a "$roots/$1" "$roots/$1-builder"
+  mkdir -p "$scratch/builder/root"
+  mount --bind "$roots/$1-builder" "$scratch/builder/root"
+  open_rest builder
   cp "$source/tests/install.sh" "$scratch/builder/root/root/"
   within builder "apt-get -qq update; sh /root/install.sh
     apt-get -qq -o Dpkg::Use-Pty=0 install -y --no-install-recommends $tools; apt-get clean" >"$roots/$1.log" 2>&1 ||
     { tail -n 20 "$roots/$1.log"; exit 1; }
-  umount -l "$scratch/builder/root/dev" "$scratch/builder/root/proc"
-  cp -a "$scratch/builder/root/." "$roots/$1-builder"
-  mount -t proc proc "$scratch/builder/root/proc"
-  mount --bind /dev "$scratch/builder/root/dev"
   close_box builder
   echo "$wanted" >"$roots/$1-builder.complete"
 }
 
-# build BOX FOLDER UMASK [NAME=VALUE...]: the packages of a clone in FOLDER of the box.
+# build BOX FOLDER [NAME=VALUE...]: the packages of a clone in FOLDER of the box.
 build() {
-  box=$1 folder=$2 mask=$3
-  shift 3
+  box=$1 folder=$2
+  shift 2
   git clone -q "$source" "$scratch/$box/root/$folder"
   git -C "$scratch/$box/root/$folder" checkout -q "$commit"
-  within "$box" "umask $mask; cd $folder; git config --global --add safe.directory $folder
+  within "$box" "cd $folder; git config --global --add safe.directory $folder
     cmake --workflow --preset packages" CMAKE_BUILD_PARALLEL_LEVEL="$(nproc)" "$@" >"$scratch/log" 2>&1 || { tail -n 40 "$scratch/log"; exit 1; }
   ! grep -E '[Ww]arning(:| at)' "$scratch/log" || { echo "a build with warnings"; exit 1; }
 }
@@ -108,9 +109,9 @@ for suite; do
   builder "$suite"
   open_box build "$roots/$suite-builder"
   echo "== $suite: the first build"
-  build build /root/strut 022
+  build build /root/strut
   echo "== $suite: the second build"
-  build build /var/tmp/else/where 077 LANG=C TZ=Pacific/Auckland HOME=/tmp
+  build build /var/tmp/else/where LANG=C TZ=Pacific/Auckland HOME=/tmp
   first=$scratch/build/root/root/strut/build/packages
   second=$scratch/build/root/var/tmp/else/where/build/packages
   for package in "$first"/*.deb; do
