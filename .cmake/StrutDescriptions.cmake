@@ -21,7 +21,7 @@ endfunction()
 macro(strut_describe_and_install folder file)
   strut_describe(${file} ${ARGN})
   install(FILES "${PROJECT_BINARY_DIR}/descriptions/${file}"
-          DESTINATION "${CMAKE_INSTALL_DATADIR}/${folder}")
+          DESTINATION "${CMAKE_INSTALL_DATADIR}/${folder}" COMPONENT program)
 endmacro()
 
 strut_describe_and_install(strut strut-1.schema.json schema)

@@ -91,6 +91,11 @@ cmp table-by-cmake.csv by-program/table.csv
 cmp schema "$prefix/share/strut/strut-1.schema.json"
 "$prefix/bin/strut" schema --study >schema
 cmp schema "$prefix/share/strut/strut-1.study.schema.json"
+"$prefix/bin/strut" examples crawler
+cmp crawler.yaml "$source/models/crawler/crawler.yaml"
+"$prefix/bin/strut" new robot
+"$prefix/bin/strut" check robot.yaml >/dev/null
+grep -q "schema=.*/share/strut/strut-1.schema.json" robot.yaml
 for page in man1/strut.1 man1/strut-run.1 man1/strut-completion.1 man5/strut-model.5; do
   test -s "$prefix/share/man/$page"
 done

@@ -2,14 +2,10 @@
 /* Figures as SVG and pages as HTML, in memory. */
 #include "parser/abi/pictures.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
-
 #include "engine/model/state.h"
 #include "engine/output/draw/structure.h"
 #include "engine/output/page/page.h"
+#include "parser/abi/scratch.h"
 #include "parser/abi/statics.h"
 #include "parser/command/plot_options.h"
 #include "parser/write/write_scene.h"
@@ -33,55 +29,33 @@ strut_status abi_run_figure_read(const strut_arguments *arguments, strut_run_fig
   return strut_run_figure_read(&svg_command, arguments, &plot, figure, times);
 }
 
-/* ---- a file that is a text in the end ---- */
+/* ---- figures ---- */
 
-typedef struct scratch {
-  char folder[300], path[320];
-} scratch;
+static const char figure_name[] = "figure.svg";
+static const char *const files[] = {figure_name, NULL};
 
-static strut_status begin_scratch(scratch *s, strut_error *what) {
-  const char *temporary = getenv("TMPDIR");
-  bool usable = temporary && *temporary && strlen(temporary) < sizeof s->folder - 40;
-  snprintf(s->folder, sizeof s->folder, "%s/strut-XXXXXX", usable ? temporary : "/tmp");
-  if (!mkdtemp(s->folder))
-    return strut_fail(what, STRUT_FILE_TROUBLE, "cannot create a folder like '%s' for a figure",
-                      s->folder);
-  snprintf(s->path, sizeof s->path, "%s/figure.svg", s->folder);
-  return STRUT_OK;
-}
-
-static void end_scratch(const scratch *s) {
-  unlink(s->path);
-  rmdir(s->folder);
-}
-
-/* The text of the file that was drawn, or NULL with the error. */
-static char *take_text(const scratch *s, strut_status status, strut_error *what,
-                       strutlib_error **error) {
-  char *text = NULL;
-  size_t length;
-  if (status == STRUT_OK) status = strut_file_read(s->path, &text, &length, what);
-  if (status != STRUT_OK) abi_fail_with(error, status, what);
+/* The figure that was drawn as a file, or NULL with the error; its folder goes. */
+static char *take_figure(const abi_scratch *s, strut_status status, strut_error *what,
+                         strutlib_error **error) {
+  char *text = status == STRUT_OK ? abi_scratch_read(s, figure_name, what) : NULL;
+  if (!text) abi_fail_with(error, what->status, what);
+  abi_scratch_end(s, files);
   return text;
 }
-
-/* ---- figures ---- */
 
 static char *draw_result(const strutlib_result *result, const strut_arguments *arguments,
                          const abi_messages *messages, strutlib_error **error) {
   strut_error what = {0};
-  scratch s;
-  strut_status status = begin_scratch(&s, &what);
+  abi_scratch s;
+  strut_status status = abi_scratch_begin(&s, figure_name, &what);
   if (status != STRUT_OK) {
     abi_fail_with(error, status, &what);
     return NULL;
   }
   status = result->draw(result, arguments, s.path, &what);
-  bool told = status != STRUT_OK && !what.message[0] && messages->error.message[0];
-  if (told) what = messages->error;
-  char *text = take_text(&s, status, &what, error);
-  end_scratch(&s);
-  return text;
+  if (status != STRUT_OK && !what.message[0]) what = messages->error;
+  if (status != STRUT_OK) what.status = status;
+  return take_figure(&s, status, &what, error);
 }
 
 char *strutlib_result_svg(const strutlib_result *result, size_t count, const char *const *names,
@@ -139,15 +113,14 @@ static strut_status draw_start(const strut_model *model, const char *path, strut
 char *strutlib_scene_svg(const strutlib_scene *scene, strutlib_error **error) {
   strut_model *model = NULL;
   strut_error what = {0};
-  scratch s;
+  abi_scratch s;
   char *text = NULL;
   abi_enter(error);
   strut_status status = strut_model_compile(&scene->setup.scene, &model, &what);
-  if (status == STRUT_OK) status = begin_scratch(&s, &what);
+  if (status == STRUT_OK) status = abi_scratch_begin(&s, figure_name, &what);
   if (status == STRUT_OK) {
     status = draw_start(model, s.path, &what);
-    text = take_text(&s, status, &what, error);
-    end_scratch(&s);
+    text = take_figure(&s, status, &what, error);
   } else {
     abi_fail_with(error, status, &what);
   }

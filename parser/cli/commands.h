@@ -26,6 +26,8 @@ extern const strut_command strut_command_tradeoff;
 extern const strut_command strut_command_view;
 extern const strut_command strut_command_write;
 extern const strut_command strut_command_schema;
+extern const strut_command strut_command_new;
+extern const strut_command strut_command_examples;
 extern const strut_command strut_command_completion;
 
 /** The i-th command, or NULL after the last. */

@@ -163,6 +163,7 @@ static const char *complete_argument(const strut_command *command, const strut_c
     strut_offer(c, strut_shells[i], "", NULL);
   for (int i = 0; i < STRUT_SECTION_COUNT && strncmp(model, "SECTION", 7) == 0; i++)
     strut_offer(c, strut_section_name((strut_section)i), "", NULL);
+  if (strcmp(model, "EXAMPLE") == 0) strut_offer_examples(c);
   if (strcmp(model, "DIR") == 0) return ":folders";
   if (strcmp(model, "TABLE") == 0) return ":files csv";
   if (strstr(model, "RUN")) return ":files";

@@ -34,6 +34,8 @@ void strut_offer_shapes(const strut_completion *c);
 void strut_offer_nodes(const strut_completion *c);
 void strut_offer_loads(const strut_completion *c);
 void strut_offer_path_parameters(const strut_completion *c);
+/** command_examples.c */
+void strut_offer_examples(const strut_completion *c);
 void strut_offer_columns(const strut_completion *c, const char *end);
 
 /** command_completion.c: the script for a shell, or NULL. */

@@ -6,5 +6,7 @@
 #include "engine/output/page/page_assets.h"
 
 extern const strut_embedded strut_bash_script[], strut_zsh_script[], strut_fish_script[];
+/** The scene of `strut new`, with @FILE@ and @NAME@ for its names. */
+extern const strut_embedded strut_new_scene[];
 
 #endif

@@ -102,11 +102,12 @@ typedef enum strut_option_id {
   STRUT_OPTION_SHARD,
   STRUT_OPTION_CHANNELS, /* of the library's run, and whether it records */
   STRUT_OPTION_RECORD,
-  STRUT_OPTION_COMPUTE, /* of evaluate, and of the library's sweep, as a study's keys */
+  STRUT_OPTION_COMPUTE, /* of evaluate and the library's sweep: what, and which results */
   STRUT_OPTION_KEEP,
   STRUT_OPTION_IN,
   STRUT_OPTION_OUT,
   STRUT_OPTION_ALLOWANCE, /* of export: for the ends of cables */
+  STRUT_OPTION_UNIT,      /* of import */
   STRUT_OPTION_LOWEST,
   STRUT_OPTION_LIMIT_EVALUATIONS,
   STRUT_OPTION_LIMIT_TIME,

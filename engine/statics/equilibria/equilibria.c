@@ -66,7 +66,8 @@ static strut_status search_held(strut_equilibrium_search *h, const strut_potenti
   size_t shapes = h->level.scene.configuration_count, length = (size_t)h->model->length;
   const double **extra = strut_arena_allocate(arena, shapes + 1, sizeof *extra);
   if (!extra) return strut_no_memory(h->error, "");
-  strut_critical_effort effort = {.starts = o->starts ? o->starts : h->experiment->search.starts,
+  strut_critical_effort effort = {.interrupt = o->interrupt,
+                                  .starts = o->starts ? o->starts : h->experiment->search.starts,
                                   .seed = h->out->seed,
                                   .searches = (int32_t)h->supports.count + 1,
                                   .saddles = !o->standing_only,

@@ -183,7 +183,8 @@ static strut_status explore_landscape(strut_equilibrium_search *h) {
     if (e->rest) extra[extras++] = e->rest;
   }
   if (status) strut_fail(h->error, status, "out of memory");
-  strut_critical_effort effort = {.starts = o->starts ? o->starts : h->experiment->search.starts,
+  strut_critical_effort effort = {.interrupt = o->interrupt,
+                                  .starts = o->starts ? o->starts : h->experiment->search.starts,
                                   .seed = h->out->seed,
                                   .searches = (int32_t)h->supports.count + 1,
                                   .saddles = !o->standing_only,

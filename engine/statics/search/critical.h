@@ -5,6 +5,8 @@
 #ifndef STRUT_ENGINE_STATICS_SEARCH_CRITICAL_H
 #define STRUT_ENGINE_STATICS_SEARCH_CRITICAL_H
 
+#include <signal.h>
+
 #include "engine/statics/minimise.h"
 #include "engine/statics/search/critical_point.h"
 
@@ -33,6 +35,7 @@ typedef struct strut_critical_effort {
   const double *const *extra; /* (extra_count) each (length) */
   size_t hint_count;          /* shapes close to a saddle with one negative eigenvalue */
   const double *const *hint;  /* (hint_count) each (length) */
+  const volatile sig_atomic_t *interrupt; /* ends the search with STRUT_INTERRUPTED; may be NULL */
 } strut_critical_effort;
 
 /**

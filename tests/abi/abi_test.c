@@ -1,0 +1,755 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * The library as a program of somebody else's sees it: every function of strut/abi.h, errors with their
+ * places, threads, interrupts, and what belongs to the host. Knows that header alone.
+ */
+#include <fenv.h>
+#include <gsl/gsl_errno.h>
+#include <locale.h>
+#include <math.h>
+#include <pthread.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strut/abi.h>
+#include <time.h>
+
+#include <cmocka.h>
+
+static const char crawler[] = "models/crawler/crawler.yaml";
+
+static strutlib_scene *open_crawler(void) {
+  strutlib_error *error;
+  strutlib_scene *scene = strutlib_open(crawler, 0, NULL, NULL, &error);
+  if (!scene) print_message("%s", strutlib_error_report(error));
+  assert_non_null(scene);
+  assert_null(error);
+  return scene;
+}
+
+/* A falling, bouncing triangle: small, with a duration of its own. */
+static const char triangle[] =
+    "strut: 1\n"
+    "name: triangle\n"
+    "parameters: {drop: 20 mm}\n"
+    "gravity: [0, -9.81]\n"
+    "nodes:\n"
+    "  a: [0, drop]\n"
+    "  b: [100 mm, drop]\n"
+    "  c: {position: [50 mm, drop + 80 mm], mass: 10 g}\n"
+    "members:\n"
+    "  ab: {nodes: [a, b], kind: bar, stiffness: 100 kN/m, damping: 1 N s/m, mass: 30 g}\n"
+    "  bc: {nodes: [b, c], kind: spring, stiffness: 1 kN/m, damping: 0.3 N s/m, mass: 10 g}\n"
+    "  ca: {nodes: [c, a], kind: spring, stiffness: 1 kN/m, damping: 0.3 N s/m, mass: 10 g}\n"
+    "ground: {stiffness: 20 kN/m, damping: 5 N s/m, nodes: all}\n"
+    "solver: {integrator: rk4-events, step: 0.1 ms}\n"
+    "run: {duration: 0.2 s}\n"
+    "output: {every: 1 ms, channels: [position, velocity, length, force, contact, energy]}\n";
+
+static strutlib_scene *open_triangle(void) {
+  strutlib_error *error;
+  strutlib_scene *scene =
+      strutlib_open_text("triangle", triangle, sizeof triangle - 1, 0, NULL, NULL, &error);
+  if (!scene) print_message("%s", strutlib_error_report(error));
+  assert_non_null(scene);
+  return scene;
+}
+
+typedef struct array {
+  const double *data;
+  int dimensions;
+  size_t shape[STRUTLIB_DIMENSIONS], stride[STRUTLIB_DIMENSIONS];
+} array;
+
+static array array_of(const strutlib_result *result, const char *name) {
+  array a = {.data = NULL};
+  if (!strutlib_result_array(result, name, &a.data, &a.dimensions, a.shape, a.stride))
+    print_message("no array '%s'\n", name);
+  assert_non_null(a.data);
+  return a;
+}
+
+static void assert_refused(strutlib_error *error, int status, const char *words) {
+  assert_non_null(error);
+  if (strutlib_error_status(error) != status || !strstr(strutlib_error_message(error), words))
+    print_message("%d: %s\n", strutlib_error_status(error), strutlib_error_message(error));
+  assert_int_equal(strutlib_error_status(error), status);
+  assert_non_null(strstr(strutlib_error_message(error), words));
+  strutlib_error_free(error);
+}
+
+/* ---- versions and codes ---- */
+
+static void versions_and_codes_are_told(void **unused) {
+  (void)unused;
+  assert_int_equal(strutlib_abi_version(), STRUTLIB_ABI_VERSION);
+  assert_non_null(strchr(strutlib_version(), '.'));
+  assert_string_equal(strutlib_status_name(STRUTLIB_OK), "ok");
+  assert_string_equal(strutlib_status_name(STRUTLIB_INTERRUPTED), "interrupted");
+  assert_string_equal(strutlib_status_name(99), "unknown");
+  assert_string_equal(strutlib_status_text(STRUTLIB_BAD_SCENE), "the scene is not valid");
+  assert_non_null(strutlib_status_text(-1));
+  assert_int_equal(strutlib_exit_code(STRUTLIB_BAD_SCENE), 2);
+  assert_int_equal(strutlib_exit_code(STRUTLIB_INTERRUPTED), 130);
+  strutlib_release(NULL);
+  strutlib_error_free(NULL);
+  strutlib_close(NULL);
+  strutlib_result_free(NULL);
+  strutlib_simulation_close(NULL);
+  strutlib_snapshot_free(NULL);
+  strutlib_control_free(NULL);
+}
+
+/* ---- scenes ---- */
+
+static void a_scene_shows_names_and_values(void **unused) {
+  (void)unused;
+  strutlib_scene *scene = open_crawler();
+  const double *data;
+  int dimensions, flag;
+  size_t shape[STRUTLIB_DIMENSIONS], stride[STRUTLIB_DIMENSIONS];
+  double value = 0.0;
+  assert_int_equal(strutlib_name_count(scene, "nodes"), 5);
+  assert_string_equal(strutlib_name(scene, "members", 7), "m8");
+  assert_null(strutlib_name(scene, "members", 9));
+  assert_int_equal(strutlib_index(scene, "members", "m8"), 7);
+  assert_int_equal(strutlib_index(scene, "members", "m"), -1);
+  assert_int_equal(strutlib_name_count(scene, "planets"), 0);
+  assert_string_equal(strutlib_name(scene, "configurations", 1), "II");
+  for (size_t i = 0; strutlib_name(scene, "kinds", i); i++) {
+    const char *kind = strutlib_name(scene, "kinds", i);
+    assert_null(strutlib_name(scene, kind, strutlib_name_count(scene, kind)));
+  }
+  assert_int_equal(strutlib_scene_number(scene, "members.m8.stiffness", &value), 1);
+  assert_true(value == 10000.0);
+  assert_int_equal(strutlib_scene_number(scene, "parameters.amplitude", &value), 1);
+  assert_true(value == 0.1e-3);
+  assert_int_equal(strutlib_scene_number(scene, "nodes.n2.1", &value), 1);
+  assert_true(value == 0.0238714);
+  assert_int_equal(strutlib_scene_number(scene, "members.m8.stifness", &value), 0);
+  assert_string_equal(strutlib_scene_text(scene, "parameters.start"), "I");
+  assert_string_equal(strutlib_scene_text(scene, "solver.integrator"), "rk4");
+  assert_null(strutlib_scene_text(scene, "solver.step"));
+  assert_int_equal(strutlib_scene_flag(scene, "solver.step", &flag), 0);
+  assert_int_equal(strutlib_scene_array(scene, "members.nodes", &data, &dimensions, shape, stride),
+                   1);
+  assert_int_equal(dimensions, 2);
+  assert_int_equal(shape[0], 9);
+  assert_int_equal(shape[1], 2);
+  assert_true(data[7 * stride[0]] == 0.0 && data[7 * stride[0] + 1] == 4.0);
+  assert_int_equal(
+      strutlib_scene_array(scene, "members.rest_length", &data, &dimensions, shape, stride), 1);
+  assert_true(dimensions == 1 && data[7] == 0.01);
+  assert_int_equal(strutlib_scene_array(scene, "members.colour", &data, &dimensions, shape, stride),
+                   0);
+  strutlib_close(scene);
+}
+
+static void a_setting_changes_a_scene(void **unused) {
+  (void)unused;
+  strutlib_error *error;
+  const char *names[] = {"frequency", "friction"}, *values[] = {"12 Hz", "0.25"};
+  const char *more_names[] = {"friction"}, *more_values[] = {"0.5"};
+  double value;
+  strutlib_scene *scene = strutlib_open(crawler, 2, names, values, &error), *other;
+  assert_non_null(scene);
+  assert_int_equal(strutlib_scene_number(scene, "parameters.frequency", &value), 1);
+  assert_true(value == 12.0);
+  other = strutlib_scene_with(scene, 1, more_names, more_values, &error);
+  assert_non_null(other);
+  strutlib_close(scene); /* the text is shared */
+  assert_int_equal(strutlib_scene_number(other, "parameters.frequency", &value), 1);
+  assert_true(value == 12.0);
+  assert_int_equal(strutlib_scene_number(other, "ground.friction.mu_static", &value), 1);
+  assert_true(value == 0.5);
+  more_names[0] = "fricton";
+  assert_null(strutlib_scene_with(other, 1, more_names, more_values, &error));
+  assert_refused(error, STRUTLIB_BAD_SCENE, "fricton");
+  strutlib_close(other);
+}
+
+static void json_is_a_scene_too(void **unused) {
+  (void)unused;
+  static const char json[] =
+      "{\"strut\": 1, \"nodes\": {\"a\": {\"position\": [0, 0], \"fixed\": \"both\"}, \"b\": [1, "
+      "0]},\n"
+      " \"members\": {\"m\": {\"nodes\": [\"a\", \"b\"], \"kind\": \"spring\",\n"
+      "  \"stiffness\": \"4 N/cm\", \"mass\": 2}}}";
+  strutlib_error *error;
+  double value;
+  strutlib_scene *scene =
+      strutlib_open_text("dictionary", json, sizeof json - 1, 0, NULL, NULL, &error);
+  if (!scene) print_message("%s", strutlib_error_report(error));
+  assert_non_null(scene);
+  assert_int_equal(strutlib_scene_number(scene, "members.m.stiffness", &value), 1);
+  assert_true(value == 400.0);
+  char *again = strutlib_scene_json(scene, &error);
+  assert_non_null(again);
+  strutlib_scene *second = strutlib_open_text("again", again, strlen(again), 0, NULL, NULL, &error);
+  if (!second) print_message("%s", strutlib_error_report(error));
+  assert_non_null(second);
+  char *yaml = strutlib_scene_yaml(scene, 0, &error),
+       *copy = strutlib_scene_yaml(second, 0, &error);
+  assert_string_equal(yaml, copy);
+  strutlib_release(again);
+  strutlib_release(yaml);
+  strutlib_release(copy);
+  strutlib_close(second);
+  strutlib_close(scene);
+}
+
+static void a_scene_is_written_short_too(void **unused) {
+  (void)unused;
+  strutlib_error *error;
+  strutlib_scene *scene = open_triangle();
+  char *flat = strutlib_scene_yaml(scene, 0, &error), *text = strutlib_scene_yaml(scene, 1, &error);
+  assert_non_null(flat);
+  assert_non_null(text);
+  assert_non_null(strstr(text, "drop + 80 mm"));
+  assert_null(strstr(flat, "drop + 80 mm"));
+  strutlib_release(flat);
+  strutlib_release(text);
+  strutlib_close(scene);
+}
+
+/* ---- errors ---- */
+
+static void an_error_knows_all_its_places(void **unused) {
+  (void)unused;
+  static const char bad[] =
+      "strut: 1\n"
+      "nodes:\n"
+      "  a: [0, 0]\n"
+      "  b: {position: [1, 0], mass: 3 s}\n"
+      "members:\n"
+      "  m: {nodes: [a, b], kind: spring, stifness: 3 N/m}\n";
+  strutlib_error *error;
+  assert_null(strutlib_open_text("bad.yaml", bad, sizeof bad - 1, 0, NULL, NULL, &error));
+  assert_int_equal(strutlib_error_status(error), STRUTLIB_BAD_SCENE);
+  assert_int_equal(strutlib_error_count(error), 2);
+  assert_non_null(strstr(strutlib_error_message(error), "bad.yaml:4:31: "));
+  assert_non_null(strstr(strutlib_error_report(error), "^~~~"));
+  assert_string_equal(strutlib_error_file(error, 0), "bad.yaml");
+  assert_int_equal(strutlib_error_line(error, 0), 4);
+  assert_int_equal(strutlib_error_column(error, 0), 31);
+  assert_int_equal(strutlib_error_length(error, 0), 3);
+  assert_string_equal(strutlib_error_source(error, 0), "  b: {position: [1, 0], mass: 3 s}");
+  assert_string_equal(strutlib_error_key(error, 0), "nodes.b.mass");
+  assert_null(strutlib_error_hint(error, 0));
+  assert_non_null(strstr(strutlib_error_text(error, 1), "unknown key 'stifness'"));
+  assert_string_equal(strutlib_error_hint(error, 1), "stiffness");
+  assert_string_equal(strutlib_error_key(error, 1), "members.m.stifness");
+  assert_null(strutlib_error_text(error, 2));
+  assert_int_equal(strutlib_error_line(error, 2), 0);
+  strutlib_error_free(error);
+  assert_null(strutlib_open_text("bad.yaml", bad, sizeof bad - 1, 0, NULL, NULL, NULL));
+  assert_null(strutlib_open("there-is-no-such-file", 0, NULL, NULL, &error));
+  assert_refused(error, STRUTLIB_FILE_TROUBLE, "there-is-no-such-file");
+  assert_null(strutlib_open("-", 0, NULL, NULL, &error));
+  assert_refused(error, STRUTLIB_FILE_TROUBLE, "no file");
+}
+
+static void options_are_checked_as_on_the_command_line(void **unused) {
+  (void)unused;
+  strutlib_error *error;
+  strutlib_scene *scene = open_crawler();
+  static const struct {
+    const char *name, *value, *words;
+  } wrong[] = {{"acuracy", "1 %", "did you mean 'accuracy'?"},
+               {"accuracy", "3 m", "expects a number without unit"},
+               {"step", "0", "must be greater than 0"},
+               {"integrator", "rk5", "did you mean 'rk4'?"},
+               {"force", "perhaps", "expects yes or no"},
+               {"channels", "position,colour", "not 'colour'"},
+               {"bars", "soft", "expects elastic or rigid"},
+               {"output", "x", "unknown option 'output'"}};
+  for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+    assert_null(strutlib_run(scene, 1, &wrong[i].name, &wrong[i].value, NULL, &error));
+    assert_refused(error, STRUTLIB_USAGE, wrong[i].words);
+  }
+  const char *names[] = {"at"}, *values[] = {"IV"};
+  assert_null(strutlib_modes(scene, 1, names, values, NULL, &error));
+  assert_refused(error, STRUTLIB_USAGE, "IV");
+  names[0] = "supports", values[0] = "n1,n9";
+  assert_null(strutlib_equilibria(scene, 1, names, values, NULL, &error));
+  assert_refused(error, STRUTLIB_USAGE, "there is no node 'n9'");
+  names[0] = "over", values[0] = "frequenz";
+  assert_null(strutlib_path(scene, 1, names, values, NULL, &error));
+  assert_refused(error, STRUTLIB_USAGE, "did you mean 'frequency'?");
+  names[0] = "least-tension", values[0] = "-1 N";
+  assert_null(strutlib_form(scene, 1, names, values, NULL, &error));
+  assert_refused(error, STRUTLIB_USAGE, "must not be negative");
+  assert_string_equal(strutlib_option_name("run", 0), "force");
+  assert_non_null(strutlib_option_help("path", 0));
+  assert_null(strutlib_option_name("run", 100));
+  assert_null(strutlib_option_name("ride", 0));
+  strutlib_close(scene);
+}
+
+/* ---- runs ---- */
+
+static void a_run_has_its_channels(void **unused) {
+  (void)unused;
+  strutlib_error *error;
+  strutlib_scene *scene = open_triangle();
+  strutlib_result *result = strutlib_run(scene, 0, NULL, NULL, NULL, &error);
+  assert_non_null(result);
+  assert_null(error);
+  strutlib_close(scene); /* a result stays */
+  assert_int_equal(strutlib_result_status(result), STRUTLIB_OK);
+  assert_string_equal(strutlib_result_command(result), "run");
+  array time = array_of(result, "time"), position = array_of(result, "position");
+  array one = array_of(result, "position.c"), y = array_of(result, "position.c.y");
+  assert_int_equal(time.shape[0], 201);
+  assert_true(time.data[200] == 0.2);
+  assert_int_equal(position.dimensions, 3);
+  assert_true(position.shape[0] == 201 && position.shape[1] == 3 && position.shape[2] == 2);
+  assert_true(one.dimensions == 2 && one.shape[0] == 201 && one.shape[1] == 2);
+  assert_int_equal(y.dimensions, 1);
+  for (size_t i = 0; i < 201; i++) {
+    double whole =
+        position.data[i * position.stride[0] + 2 * position.stride[1] + position.stride[2]];
+    assert_true(y.data[i * y.stride[0]] == whole);
+    assert_true(one.data[i * one.stride[0] + one.stride[1]] == whole);
+  }
+  assert_int_equal(array_of(result, "force.bc").shape[0], 201);
+  assert_int_equal(array_of(result, "contact.a.normal").shape[0], 201);
+  assert_int_equal(array_of(result, "energy.kinetic").shape[0], 201);
+  assert_string_equal(strutlib_result_array_name(result, 0), "time");
+  assert_string_equal(strutlib_result_array_unit(result, "velocity"), "m/s");
+  assert_string_equal(strutlib_result_array_unit(result, "velocity.a.x"), "m/s");
+  assert_null(strutlib_result_array_unit(result, "colour"));
+  double value, other;
+  assert_int_equal(strutlib_result_number(result, "nodes.c.position.1", &value), 1);
+  assert_true(value == y.data[200 * y.stride[0]]);
+  assert_int_equal(strutlib_result_number(result, "velocity", &other), 1);
+  assert_int_equal(strutlib_result_number(result, "steady", &other), 0);
+  assert_string_equal(strutlib_result_text(result, "status"), "completed");
+  assert_null(strutlib_result_text(result, "velocity"));
+  int flag;
+  assert_int_equal(strutlib_result_flag(result, "status", &flag), 0);
+  assert_int_equal(strutlib_result_count(result, "nodes"), 3);
+  assert_string_equal(strutlib_result_key(result, "nodes", 1), "b");
+  assert_string_equal(strutlib_result_key(result, "", 0), "name");
+  assert_null(strutlib_result_key(result, "nodes", 3));
+  array ends = array_of(result, "nodes");
+  assert_true(ends.dimensions == 3 && ends.shape[0] == 3);
+  assert_non_null(strstr(strutlib_result_table(result), "completed"));
+  assert_null(strutlib_result_cell(result, "outcome", 0));
+  assert_null(strutlib_result_column(result, 0));
+  strutlib_result_free(result);
+}
+
+static void a_run_records_what_is_asked_for(void **unused) {
+  (void)unused;
+  strutlib_error *error;
+  strutlib_scene *scene = open_triangle();
+  const char *names[] = {"channels"}, *values[] = {"force,energy"};
+  const double *data;
+  int dimensions;
+  size_t shape[STRUTLIB_DIMENSIONS], stride[STRUTLIB_DIMENSIONS];
+  strutlib_result *result = strutlib_run(scene, 1, names, values, NULL, &error);
+  assert_non_null(result);
+  array_of(result, "force");
+  assert_int_equal(strutlib_result_array(result, "position", &data, &dimensions, shape, stride), 0);
+  assert_null(strutlib_result_svg(result, 0, NULL, NULL, &error));
+  assert_refused(error, STRUTLIB_USAGE, "recorded");
+  strutlib_result_free(result);
+  names[0] = "record", values[0] = "no";
+  result = strutlib_run(scene, 1, names, values, NULL, &error);
+  assert_non_null(result);
+  assert_null(strutlib_result_array_name(result, 0));
+  assert_null(strutlib_result_html(result, &error));
+  assert_refused(error, STRUTLIB_USAGE, "without a recorded motion");
+  strutlib_result_free(result);
+  strutlib_close(scene);
+}
+
+static void a_run_that_diverges_is_there_up_to_then(void **unused) {
+  (void)unused;
+  strutlib_error *error;
+  strutlib_scene *scene = open_triangle();
+  const char *names[] = {"force", "step", "integrator"}, *values[] = {"yes", "5 ms", "rk4"};
+  assert_null(strutlib_run(scene, 2, names + 1, values + 1, NULL, &error));
+  assert_refused(error, STRUTLIB_STEP_TOO_LARGE, "largest stable step");
+  strutlib_result *result = strutlib_run(scene, 3, names, values, NULL, &error);
+  assert_non_null(result);
+  assert_int_equal(strutlib_result_status(result), STRUTLIB_DIVERGED);
+  assert_string_equal(strutlib_result_text(result, "status"), "diverged");
+  assert_refused(error, STRUTLIB_DIVERGED, "");
+  strutlib_result_free(result);
+  strutlib_close(scene);
+}
+
+/* ---- statics, pictures ---- */
+
+static void check_picture(const strutlib_result *result, const char *const *names,
+                          const char *const *values, size_t count) {
+  strutlib_error *error;
+  char *svg = strutlib_result_svg(result, count, names, values, &error);
+  if (!svg) print_message("%s\n", strutlib_error_message(error));
+  assert_non_null(svg);
+  assert_non_null(strstr(svg, "<svg"));
+  strutlib_release(svg);
+}
+
+static void statics_have_arrays_and_pictures(void **unused) {
+  (void)unused;
+  strutlib_error *error;
+  strutlib_scene *scene = open_crawler();
+  const char *names[] = {"title", "width"}, *values[] = {"A title", "column"};
+  strutlib_result *result = strutlib_equilibria(scene, 0, NULL, NULL, NULL, &error);
+  assert_non_null(result);
+  array energy = array_of(result, "equilibria.energy"),
+        nodes = array_of(result, "equilibria.nodes");
+  assert_int_equal(energy.shape[0], strutlib_result_count(result, "equilibria"));
+  assert_true(nodes.dimensions == 3 && nodes.shape[1] == 5 && nodes.shape[2] == 2);
+  double value;
+  assert_int_equal(strutlib_result_number(result, "equilibria.3.energy", &value), 1);
+  assert_true(value == energy.data[3]);
+  assert_non_null(strutlib_result_text(result, "equilibria.0.name"));
+  check_picture(result, names, values, 2);
+  char *page = strutlib_result_html(result, &error);
+  assert_non_null(page);
+  strutlib_release(page);
+  strutlib_result_free(result);
+
+  result = strutlib_modes(scene, 0, NULL, NULL, NULL, &error);
+  assert_non_null(result);
+  assert_int_equal(array_of(result, "modes.frequency").shape[0], 10);
+  assert_int_equal(array_of(result, "modes.shape").dimensions, 3);
+  check_picture(result, NULL, NULL, 0);
+  strutlib_result_free(result);
+
+  result = strutlib_rigidity(scene, 0, NULL, NULL, NULL, &error);
+  assert_non_null(result);
+  assert_int_equal(array_of(result, "self_stress.states.forces").shape[1], 9);
+  int flag;
+  assert_int_equal(strutlib_result_flag(result, "self_stress.states.0.feasible", &flag), 1);
+  check_picture(result, NULL, NULL, 0);
+  strutlib_result_free(result);
+
+  result = strutlib_form(scene, 0, NULL, NULL, NULL, &error);
+  assert_non_null(result);
+  assert_int_equal(array_of(result, "forces").shape[0], 9);
+  char *yaml = strutlib_result_yaml(result, &error);
+  strutlib_scene *found = strutlib_open_text("form", yaml, strlen(yaml), 0, NULL, NULL, &error);
+  assert_non_null(found);
+  strutlib_close(found);
+  strutlib_release(yaml);
+  check_picture(result, NULL, NULL, 0);
+  strutlib_result_free(result);
+
+  const char *path_names[] = {"over", "until", "steps"}, *path_values[] = {"drive", "1 mm", "9"};
+  result = strutlib_path(scene, 3, path_names, path_values, NULL, &error);
+  assert_non_null(result);
+  assert_int_equal(array_of(result, "points.value").dimensions, 1);
+  check_picture(result, NULL, NULL, 0);
+  strutlib_result_free(result);
+
+  result = strutlib_matrices(scene, 0, NULL, NULL, NULL, &error);
+  assert_non_null(result);
+  array value_of = array_of(result, "mass.value"), size = array_of(result, "mass.size");
+  double sum = 0.0; /* of a consistent mass matrix over x and y: twice the mass */
+  for (size_t i = 0; i < value_of.shape[0]; i++) sum += value_of.data[i];
+  assert_true(size.data[0] == 10 && size.data[1] == 10 && fabs(sum - 2 * 0.14) < 1e-12);
+  assert_null(strutlib_result_svg(result, 0, NULL, NULL, &error));
+  assert_refused(error, STRUTLIB_USAGE, "no figure of matrices");
+  strutlib_result_free(result);
+  strutlib_close(scene);
+}
+
+static void scenes_and_runs_are_drawn(void **unused) {
+  (void)unused;
+  strutlib_error *error;
+  strutlib_scene *scene = open_triangle();
+  char *text = strutlib_scene_svg(scene, &error);
+  assert_non_null(text);
+  strutlib_release(text);
+  text = strutlib_scene_html(scene, 0, NULL, &error);
+  assert_non_null(text);
+  assert_non_null(strstr(text, "strut-data"));
+  strutlib_release(text);
+  strutlib_result *result = strutlib_run(scene, 0, NULL, NULL, NULL, &error);
+  const char *names[] = {"draw", "times"}, *values[] = {"snapshots", "0 s, 80 ms"};
+  check_picture(result, NULL, NULL, 0);
+  check_picture(result, names, values, 2);
+  values[0] = "period";
+  assert_null(strutlib_result_svg(result, 2, names, values, &error));
+  assert_refused(error, STRUTLIB_USAGE, "times");
+  text = strutlib_result_html(result, &error);
+  assert_non_null(text);
+  strutlib_release(text);
+  text = strutlib_result_yaml(result, &error);
+  assert_non_null(strstr(text, "triangle"));
+  strutlib_release(text);
+  strutlib_result_free(result);
+  strutlib_close(scene);
+}
+
+/* ---- sweeps ---- */
+
+typedef struct rows {
+  int count;
+  char seen[16];
+} rows;
+
+static int hear_row(void *context, size_t point, int status) {
+  rows *r = context;
+  r->count++;
+  r->seen[point] = (char)(1 + status);
+  return 0;
+}
+
+static void a_sweep_is_a_table(void **unused) {
+  (void)unused;
+  strutlib_error *error;
+  strutlib_scene *scene = open_triangle();
+  const char *axes[] = {"drop"}, *keep[] = {"velocity", "steps", "method"};
+  const double points[] = {0.01, 0.02, -0.5, 0.04};
+  rows heard = {0};
+  strutlib_result *result = strutlib_sweep(scene, 1, axes, 4, points, NULL, 3, keep, 0, NULL, NULL,
+                                           hear_row, &heard, NULL, &error);
+  if (!result) print_message("%s\n", strutlib_error_message(error));
+  assert_non_null(result);
+  array drop = array_of(result, "drop"), steps = array_of(result, "steps");
+  assert_int_equal(drop.shape[0], 4);
+  assert_true(drop.data[3] == 0.04 && steps.data[1] == 2000.0);
+  assert_int_equal(heard.count, 4);
+  assert_true(heard.seen[0] == 1 && heard.seen[3] == 1);
+  assert_true(array_of(result, "status").data[1] == (double)STRUTLIB_OK);
+  assert_string_equal(strutlib_result_cell(result, "method", 0), "rk4-events");
+  assert_null(strutlib_result_cell(result, "message", 0));
+  assert_string_equal(strutlib_result_column(result, 0), "drop");
+  assert_string_equal(strutlib_result_array_unit(result, "drop"), "m");
+  assert_non_null(strstr(strutlib_result_table(result), "point,drop [m],velocity [m/s],steps"));
+  assert_string_equal(strutlib_result_json(result), "{}\n");
+  strutlib_result_free(result);
+  axes[0] = "drip";
+  assert_null(strutlib_sweep(scene, 1, axes, 4, points, NULL, 3, keep, 0, NULL, NULL, NULL, NULL,
+                             NULL, &error));
+  assert_refused(error, STRUTLIB_USAGE, "did you mean 'drop'?");
+  axes[0] = "drop", keep[0] = "velocty";
+  assert_null(strutlib_sweep(scene, 1, axes, 4, points, NULL, 3, keep, 0, NULL, NULL, NULL, NULL,
+                             NULL, &error));
+  assert_refused(error, STRUTLIB_USAGE, "did you mean 'velocity'?");
+  const char *names[] = {"compute"}, *values[] = {"rigidity"}, *kept[] = {"rank"};
+  result = strutlib_sweep(scene, 1, axes, 2, points, NULL, 1, kept, 1, names, values, NULL, NULL,
+                          NULL, &error);
+  assert_non_null(result);
+  assert_true(array_of(result, "rank").data[1] == 3.0);
+  strutlib_result_free(result);
+  strutlib_close(scene);
+}
+
+static void words_are_swept_and_failures_are_rows(void **unused) {
+  (void)unused;
+  strutlib_error *error;
+  const char *names[] = {"frequency"}, *values[] = {"10 Hz"};
+  const char *axes[] = {"amplitude", "start"}, *keep[] = {"outcome", "velocity"};
+  const double points[] = {0.1e-3, 0, 0.1e-3, 0, 0.2e-3, 0};
+  const char *words[] = {NULL, "I", NULL, "IX", NULL, "II"};
+  strutlib_scene *scene = strutlib_open(crawler, 1, names, values, &error);
+  const char *compute[] = {"compute"}, *modes[] = {"modes"}, *kept[] = {"at", "condition"};
+  strutlib_result *result = strutlib_sweep(scene, 2, axes, 3, points, words, 2, kept, 1, compute,
+                                           modes, NULL, NULL, NULL, &error);
+  if (!result) print_message("%s\n", strutlib_error_message(error));
+  assert_non_null(result);
+  assert_string_equal(strutlib_result_cell(result, "at", 0), "I");
+  assert_string_equal(strutlib_result_cell(result, "start", 2), "II");
+  assert_true(array_of(result, "status").data[1] == (double)STRUTLIB_BAD_SCENE);
+  assert_non_null(strstr(strutlib_result_cell(result, "message", 1), "IX"));
+  assert_true(isnan(array_of(result, "condition").data[1]));
+  strutlib_result_free(result);
+  words[3] = NULL;
+  assert_null(strutlib_sweep(scene, 2, axes, 3, points, words, 2, keep, 0, NULL, NULL, NULL, NULL,
+                             NULL, &error));
+  assert_refused(error, STRUTLIB_USAGE, "is a text: point 1 gives none");
+  strutlib_close(scene);
+}
+
+/* ---- what belongs to the host ---- */
+
+static void host_handler(const char *reason, const char *file, int line, int code) {
+  (void)reason, (void)file, (void)line, (void)code;
+}
+
+static void nothing_of_the_host_is_changed(void **unused) {
+  (void)unused;
+  strutlib_error *error;
+  struct sigaction before, after;
+  const char *locale = setlocale(LC_ALL, "");
+  char kept[200];
+  snprintf(kept, sizeof kept, "%s", locale ? locale : "C");
+  gsl_error_handler_t *of_test = gsl_set_error_handler(host_handler);
+  sigaction(SIGINT, NULL, &before);
+  fesetround(FE_TONEAREST);
+  fenv_t mode;
+  fegetenv(&mode);
+  strutlib_scene *scene = open_triangle();
+  strutlib_result *result = strutlib_run(scene, 0, NULL, NULL, NULL, &error);
+  strutlib_simulation *simulation = strutlib_simulation_open(scene, 0, NULL, NULL, NULL, &error);
+  strutlib_simulation_advance(simulation, 100, &error);
+  volatile double tiny = 1e-310; /* flushed to zero where the mode were left on */
+  assert_true(tiny * 1.0 != 0.0);
+  assert_int_equal(fegetround(), FE_TONEAREST);
+  sigaction(SIGINT, NULL, &after);
+  assert_true(before.sa_handler == after.sa_handler);
+  assert_ptr_equal(gsl_set_error_handler(of_test), host_handler);
+  assert_string_equal(setlocale(LC_ALL, NULL), kept);
+  setlocale(LC_ALL, "C");
+  strutlib_simulation_close(simulation);
+  strutlib_result_free(result);
+  strutlib_close(scene);
+}
+
+/* ---- threads and interrupts ---- */
+
+static void *run_once(void *scene) {
+  strutlib_error *error;
+  strutlib_result *result = strutlib_run(scene, 0, NULL, NULL, NULL, &error);
+  if (!result) return NULL;
+  char *text = malloc(strlen(strutlib_result_json(result)) + 1);
+  strcpy(text, strutlib_result_json(result));
+  double value;
+  strutlib_result_number(result, "energy.residual", &value);
+  strutlib_result_free(result);
+  return text;
+}
+
+static void eight_threads_get_the_bytes_of_one(void **unused) {
+  (void)unused;
+  enum { THREADS = 8 };
+  pthread_t thread[THREADS];
+  strutlib_scene *scene = open_triangle();
+  char *alone = run_once(scene);
+  assert_non_null(alone);
+  for (int i = 0; i < THREADS; i++)
+    assert_int_equal(pthread_create(&thread[i], NULL, run_once, scene), 0);
+  for (int i = 0; i < THREADS; i++) {
+    void *text;
+    pthread_join(thread[i], &text);
+    assert_non_null(text);
+    assert_string_equal(text, alone);
+    free(text);
+  }
+  free(alone);
+  strutlib_close(scene);
+}
+
+static double processor_time(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static double start_of_interrupt;
+
+/* Interrupts what has worked for a fifth of a second: the time after that is what counts. */
+static int interrupt_soon(void *context, double fraction) {
+  (void)fraction;
+  if (start_of_interrupt > 0.0 || processor_time() < 0.2 + *(double *)context) return 0;
+  start_of_interrupt = processor_time();
+  return 1;
+}
+
+static void an_interrupt_returns_what_there_is(void **unused) {
+  (void)unused;
+  strutlib_error *error;
+  strutlib_scene *scene = open_crawler();
+  strutlib_control *control = strutlib_control_create();
+  const char *names[] = {"step"}, *values[] = {"0.001 ms"};
+  double begin = processor_time();
+  start_of_interrupt = 0.0;
+  assert_int_equal(strutlib_control_interrupted(control), 0);
+  strutlib_control_on_progress(control, interrupt_soon, &begin);
+  strutlib_result *result = strutlib_run(scene, 1, names, values, control, &error);
+  double late = processor_time() - start_of_interrupt;
+  assert_non_null(result);
+  assert_int_equal(strutlib_result_status(result), STRUTLIB_INTERRUPTED);
+  assert_refused(error, STRUTLIB_INTERRUPTED, "interrupted at t = ");
+  assert_true(late < 0.2);
+  assert_int_equal(strutlib_control_interrupted(control), 1);
+  strutlib_result_free(result);
+  assert_null(strutlib_run(scene, 0, NULL, NULL, control, &error));
+  assert_refused(error, STRUTLIB_INTERRUPTED, "before anything");
+  strutlib_control_reset(control);
+  strutlib_control_on_progress(control, NULL, NULL);
+  strutlib_close(scene);
+  scene = open_triangle();
+  strutlib_simulation *simulation = strutlib_simulation_open(scene, 0, NULL, NULL, control, &error);
+  assert_non_null(simulation);
+  strutlib_interrupt(control);
+  assert_int_equal(strutlib_simulation_advance(simulation, 5, &error), STRUTLIB_INTERRUPTED);
+  strutlib_error_free(error);
+  strutlib_control_reset(control);
+  assert_int_equal(strutlib_simulation_advance(simulation, 5, &error), STRUTLIB_OK);
+  strutlib_simulation_close(simulation);
+  strutlib_close(scene);
+  strutlib_control_free(control);
+}
+
+static void *interrupt_later(void *control) {
+  struct timespec wait = {0, 100000000};
+  nanosleep(&wait, NULL);
+  strutlib_interrupt(control);
+  return NULL;
+}
+
+static void another_thread_interrupts_searches_and_sweeps(void **unused) {
+  (void)unused;
+  strutlib_error *error;
+  strutlib_scene *scene = open_crawler();
+  strutlib_control *control = strutlib_control_create();
+  pthread_t thread;
+  const char *names[] = {"starts"}, *values[] = {"10000000"};
+  pthread_create(&thread, NULL, interrupt_later, control);
+  assert_null(strutlib_equilibria(scene, 1, names, values, control, &error));
+  assert_refused(error, STRUTLIB_INTERRUPTED, "interrupted");
+  pthread_join(thread, NULL);
+  strutlib_control_reset(control);
+  const char *axes[] = {"frequency"}, *keep[] = {"velocity"};
+  double points[400];
+  for (int i = 0; i < 400; i++) points[i] = 8.0 + 0.01 * i;
+  pthread_create(&thread, NULL, interrupt_later, control);
+  strutlib_result *result = strutlib_sweep(scene, 1, axes, 400, points, NULL, 1, keep, 0, NULL,
+                                           NULL, NULL, NULL, control, &error);
+  pthread_join(thread, NULL);
+  assert_non_null(result);
+  assert_int_equal(strutlib_result_status(result), STRUTLIB_INTERRUPTED);
+  assert_refused(error, STRUTLIB_INTERRUPTED, "of 400 points");
+  array status = array_of(result, "status");
+  assert_true(status.data[399] == (double)STRUTLIB_INTERRUPTED);
+  strutlib_result_free(result);
+  strutlib_control_free(control);
+  strutlib_close(scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(versions_and_codes_are_told),
+      cmocka_unit_test(a_scene_shows_names_and_values),
+      cmocka_unit_test(a_setting_changes_a_scene),
+      cmocka_unit_test(json_is_a_scene_too),
+      cmocka_unit_test(a_scene_is_written_short_too),
+      cmocka_unit_test(an_error_knows_all_its_places),
+      cmocka_unit_test(options_are_checked_as_on_the_command_line),
+      cmocka_unit_test(a_run_has_its_channels),
+      cmocka_unit_test(a_run_records_what_is_asked_for),
+      cmocka_unit_test(a_run_that_diverges_is_there_up_to_then),
+      cmocka_unit_test(statics_have_arrays_and_pictures),
+      cmocka_unit_test(scenes_and_runs_are_drawn),
+      cmocka_unit_test(a_sweep_is_a_table),
+      cmocka_unit_test(words_are_swept_and_failures_are_rows),
+      cmocka_unit_test(nothing_of_the_host_is_changed),
+      cmocka_unit_test(eight_threads_get_the_bytes_of_one),
+      cmocka_unit_test(an_interrupt_returns_what_there_is),
+      cmocka_unit_test(another_thread_interrupts_searches_and_sweeps),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

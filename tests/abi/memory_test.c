@@ -1,0 +1,162 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Memory that is out is an error of every call, never an abort: the k-th allocation fails, for k from 1 on,
+ * until a call succeeds. Sees the library from inside, where tests can make allocations fail.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "engine/base/memory.h"
+#include "parser/abi/abi.h"
+
+static const char text[] =
+    "strut: 1\n"
+    "parameters: {drop: 20 mm}\n"
+    "gravity: [0, -9.81]\n"
+    "nodes:\n"
+    "  a: [0, drop]\n"
+    "  b: [100 mm, drop]\n"
+    "  c: {position: [50 mm, drop + 80 mm], mass: 10 g}\n"
+    "members:\n"
+    "  ab: {nodes: [a, b], kind: bar, stiffness: 100 kN/m, mass: 30 g}\n"
+    "  bc: {nodes: [b, c], kind: spring, stiffness: 1 kN/m, mass: 10 g}\n"
+    "  ca: {nodes: [c, a], kind: spring, stiffness: 1 kN/m, mass: 10 g}\n"
+    "ground: {stiffness: 20 kN/m, nodes: all}\n"
+    "solver: {integrator: rk4-events, step: 0.1 ms}\n"
+    "run: {duration: 5 ms}\n"
+    "output: {every: 1 ms}\n";
+
+typedef bool (*attempt)(strutlib_scene *scene, strutlib_error **error);
+
+static bool open_text(strutlib_scene *scene, strutlib_error **error) {
+  (void)scene;
+  const char *names[] = {"drop"}, *values[] = {"30 mm"};
+  strutlib_scene *own =
+      strutlib_open_text("memory", text, sizeof text - 1, 1, names, values, error);
+  strutlib_close(own);
+  return own != NULL;
+}
+
+/* A text that is wrong in two places: the error itself takes memory. */
+static bool open_wrong(strutlib_scene *scene, strutlib_error **error) {
+  static const char wrong[] = "strut: 1\nnodes: {a: [0, 0]}\nmembers: {m: {nodes: [a, q]}}\n";
+  (void)scene;
+  strutlib_scene *own = strutlib_open_text("wrong", wrong, sizeof wrong - 1, 0, NULL, NULL, error);
+  assert_null(own);
+  return *error && strutlib_error_status(*error) == STRUTLIB_BAD_SCENE &&
+         strutlib_error_count(*error) > 0;
+}
+
+static bool show_scene(strutlib_scene *scene, strutlib_error **error) {
+  const char *names[] = {"drop"}, *values[] = {"30 mm"};
+  strutlib_scene *other = strutlib_scene_with(scene, 1, names, values, error);
+  char *json = other ? strutlib_scene_json(other, error) : NULL;
+  char *yaml = json ? strutlib_scene_yaml(other, 0, error) : NULL;
+  char *parts = yaml ? strutlib_scene_yaml(other, 1, error) : NULL;
+  strutlib_release(json);
+  strutlib_release(yaml);
+  strutlib_release(parts);
+  strutlib_close(other);
+  return parts != NULL;
+}
+
+static bool run(strutlib_scene *scene, strutlib_error **error) {
+  const double *data;
+  int dimensions;
+  size_t shape[STRUTLIB_DIMENSIONS], stride[STRUTLIB_DIMENSIONS];
+  strutlib_result *result = strutlib_run(scene, 0, NULL, NULL, NULL, error);
+  bool good =
+      result && strutlib_result_array(result, "nodes", &data, &dimensions, shape, stride) == 1;
+  strutlib_result_free(result);
+  return good;
+}
+
+static bool analyse(strutlib_scene *scene, strutlib_error **error) {
+  strutlib_result *result = strutlib_rigidity(scene, 0, NULL, NULL, NULL, error);
+  if (result) {
+    strutlib_result_free(result);
+    result = strutlib_matrices(scene, 0, NULL, NULL, NULL, error);
+  }
+  strutlib_result_free(result);
+  return result != NULL;
+}
+
+static bool simulate(strutlib_scene *scene, strutlib_error **error) {
+  double *load;
+  const double *force;
+  int dimensions, status = STRUTLIB_NO_MEMORY;
+  size_t shape[STRUTLIB_DIMENSIONS], stride[STRUTLIB_DIMENSIONS];
+  strutlib_simulation *s = strutlib_simulation_open(scene, 0, NULL, NULL, NULL, error);
+  strutlib_snapshot *snapshot = s ? strutlib_simulation_snapshot(s, error) : NULL;
+  if (snapshot && strutlib_simulation_input(s, "load", &load, &dimensions, shape, stride) &&
+      strutlib_simulation_array(s, "force", &force, &dimensions, shape, stride)) {
+    load[1] = 1.0;
+    status = strutlib_simulation_advance(s, 10, error);
+    strutlib_simulation_restore(s, snapshot, NULL);
+  }
+  strutlib_snapshot_free(snapshot);
+  strutlib_simulation_close(s);
+  return status == STRUTLIB_OK;
+}
+
+static bool sweep(strutlib_scene *scene, strutlib_error **error) {
+  const char *axes[] = {"drop"}, *keep[] = {"velocity", "method"};
+  const char *names[] = {"threads"}, *values[] = {"1"};
+  const double points[] = {0.01, 0.02};
+  strutlib_result *result = strutlib_sweep(scene, 1, axes, 2, points, NULL, 2, keep, 1, names,
+                                           values, NULL, NULL, NULL, error);
+  bool good = result != NULL;
+  strutlib_result_free(result);
+  return good;
+}
+
+/* Returns how many allocations could fail. */
+static int64_t fail_each(strutlib_scene *scene, attempt call) {
+  for (int64_t k = 0;; k++) {
+    strutlib_error *error = NULL;
+    strut_fail_allocation_after(k);
+    bool good = call(scene, &error);
+    strut_fail_allocation_after(-1);
+    if (good) {
+      strutlib_error_free(error);
+      return k;
+    }
+    if (error && strutlib_error_status(error) != STRUTLIB_NO_MEMORY &&
+        strutlib_error_status(error) != STRUTLIB_BAD_SCENE)
+      print_message("allocation %lld: %s\n", (long long)k, strutlib_error_message(error));
+    assert_true(!error || strutlib_error_status(error) == STRUTLIB_NO_MEMORY ||
+                strutlib_error_status(error) == STRUTLIB_BAD_SCENE);
+    if (error) assert_non_null(strutlib_error_message(error)[0] ? error : NULL);
+    strutlib_error_free(error);
+    assert_true(k < 200000);
+  }
+}
+
+static void memory_that_is_out_is_an_error(void **unused) {
+  (void)unused;
+  static const struct {
+    const char *name;
+    attempt call;
+  } calls[] = {{"open", open_text},  {"wrong text", open_wrong}, {"show", show_scene}, {"run", run},
+               {"statics", analyse}, {"simulation", simulate},   {"sweep", sweep}};
+  strutlib_scene *scene = strutlib_open_text("memory", text, sizeof text - 1, 0, NULL, NULL, NULL);
+  assert_non_null(scene);
+  for (size_t i = 0; i < sizeof calls / sizeof calls[0]; i++) {
+    int64_t count = fail_each(scene, calls[i].call);
+    print_message("%s: %lld allocations failed in turn\n", calls[i].name, (long long)count);
+    assert_true(count > 3);
+  }
+  strutlib_close(scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(memory_that_is_out_is_an_error)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,309 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Simulations: the steps of a run however they are divided, snapshots that go on with the same bits, inputs
+ * that are events, and a ledger that closes over all of it.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strut/abi.h>
+
+#include <cmocka.h>
+
+static const char *const methods[] = {"rk4",          "euler",         "verlet",   "rk4-events",
+                                      "euler-events", "verlet-events", "adaptive", "midpoint"};
+enum { METHODS = sizeof methods / sizeof methods[0] };
+
+/* On a ground that slides; midpoint cannot step over contacts and gets the crawler without it. */
+static strutlib_scene *open_for(const char *method) {
+  strutlib_error *error;
+  bool hanging = strcmp(method, "midpoint") == 0;
+  strutlib_scene *scene =
+      strutlib_open(hanging ? "models/basics/oscillator.yaml" : "models/crawler/crawler.yaml", 0,
+                    NULL, NULL, &error);
+  if (!scene) print_message("%s", strutlib_error_report(error));
+  assert_non_null(scene);
+  return scene;
+}
+
+static strutlib_simulation *open_with(const strutlib_scene *scene, const char *method) {
+  strutlib_error *error;
+  const char *names[] = {"integrator", "step"}, *values[] = {method, "0.02 ms"};
+  strutlib_simulation *simulation = strutlib_simulation_open(scene, 2, names, values, NULL, &error);
+  if (!simulation) print_message("%s: %s\n", method, strutlib_error_message(error));
+  assert_non_null(simulation);
+  return simulation;
+}
+
+static const double *channel(strutlib_simulation *simulation, const char *name, size_t *count) {
+  const double *data;
+  int dimensions;
+  size_t shape[STRUTLIB_DIMENSIONS], stride[STRUTLIB_DIMENSIONS];
+  assert_int_equal(strutlib_simulation_array(simulation, name, &data, &dimensions, shape, stride),
+                   1);
+  *count = 1;
+  for (int d = 0; d < dimensions; d++) *count *= shape[d];
+  return data;
+}
+
+static double *input(strutlib_simulation *simulation, const char *name, size_t *count) {
+  double *data;
+  int dimensions;
+  size_t shape[STRUTLIB_DIMENSIONS], stride[STRUTLIB_DIMENSIONS];
+  assert_int_equal(strutlib_simulation_input(simulation, name, &data, &dimensions, shape, stride),
+                   1);
+  *count = 1;
+  for (int d = 0; d < dimensions; d++) *count *= shape[d];
+  return data;
+}
+
+static void advance(strutlib_simulation *simulation, long steps) {
+  strutlib_error *error;
+  if (strutlib_simulation_advance(simulation, steps, &error) == STRUTLIB_OK) return;
+  print_message("%s\n", strutlib_error_message(error));
+  fail();
+}
+
+static void steps_do_not_depend_on_their_division(void **unused) {
+  (void)unused;
+  for (int m = 0; m < METHODS; m++) {
+    size_t n, k;
+    strutlib_scene *scene = open_for(methods[m]);
+    strutlib_simulation *whole = open_with(scene, methods[m]);
+    strutlib_simulation *parts = open_with(scene, methods[m]);
+    strutlib_close(scene); /* simulations stay */
+    advance(whole, 1500);
+    for (long done = 0, i = 0; done < 1500; i++) {
+      long next = 1 + i % 7;
+      if (next > 1500 - done) next = 1500 - done;
+      advance(parts, next);
+      done += next;
+    }
+    assert_true(strutlib_simulation_time(whole) == 1500 * strutlib_simulation_step(whole));
+    const double *a = channel(whole, "position", &n), *b = channel(parts, "position", &n);
+    assert_memory_equal(a, b, n * sizeof *a);
+    a = channel(whole, "force", &k), b = channel(parts, "force", &k);
+    assert_memory_equal(a, b, k * sizeof *a);
+    strutlib_simulation_close(whole);
+    strutlib_simulation_close(parts);
+  }
+}
+
+/* The run ends at 0.1 s, where the simulation stands after 4000 steps. */
+static void steps_are_those_of_a_run(void **unused) {
+  (void)unused;
+  static const char text[] =
+      "strut: 1\nbase: models/crawler/crawler.yaml\nrun: {duration: 0.1 s, measure: {last: 0.1 "
+      "s}}\n"
+      "output: {last: 0.1 s, every: 0.1 s, channels: [position, force, contact, energy]}\n";
+  for (int m = 0; m < METHODS - 1; m++) {
+    strutlib_error *error;
+    const double *last;
+    int dimensions;
+    size_t n, shape[STRUTLIB_DIMENSIONS], stride[STRUTLIB_DIMENSIONS];
+    const char *names[] = {"integrator", "step"}, *values[] = {methods[m], "0.025 ms"};
+    strutlib_scene *scene =
+        strutlib_open_text("short.yaml", text, sizeof text - 1, 0, NULL, NULL, &error);
+    if (!scene) print_message("%s", strutlib_error_report(error));
+    assert_non_null(scene);
+    strutlib_result *run = strutlib_run(scene, 2, names, values, NULL, &error);
+    strutlib_simulation *simulation =
+        strutlib_simulation_open(scene, 2, names, values, NULL, &error);
+    assert_non_null(run);
+    assert_non_null(simulation);
+    advance(simulation, 4000);
+    for (int c = 0; c < 4; c++) {
+      const char *name = (const char *const[]){"position", "force", "contact", "energy"}[c];
+      const double *here = channel(simulation, name, &n);
+      assert_int_equal(strutlib_result_array(run, name, &last, &dimensions, shape, stride), 1);
+      assert_memory_equal(here, last + (shape[0] - 1) * stride[0], n * sizeof *here);
+    }
+    strutlib_result_free(run);
+    strutlib_simulation_close(simulation);
+    strutlib_close(scene);
+  }
+}
+
+static void a_snapshot_goes_on_with_the_same_bits(void **unused) {
+  (void)unused;
+  for (int m = 0; m < METHODS; m++) {
+    size_t n, k;
+    strutlib_error *error;
+    strutlib_scene *scene = open_for(methods[m]);
+    strutlib_simulation *a = open_with(scene, methods[m]), *b = open_with(scene, methods[m]);
+    const double *position = channel(a, "position", &n);
+    double *rest = input(a, "rest", &k), drawn = rest[k - 1];
+    advance(a, 500);
+    strutlib_snapshot *snapshot = strutlib_simulation_snapshot(a, &error);
+    assert_non_null(snapshot);
+    double *there = malloc(n * sizeof *there), *then = malloc(n * sizeof *then);
+    memcpy(there, position, n * sizeof *there);
+    advance(a, 333);
+    memcpy(then, position, n * sizeof *then);
+    rest[k - 1] = 0.9 * drawn;
+    advance(a, 200);
+    assert_memory_not_equal(position, then, n * sizeof *then);
+    assert_int_equal(strutlib_simulation_restore(a, snapshot, &error), STRUTLIB_OK);
+    assert_true(rest[k - 1] == drawn);
+    assert_memory_equal(position, there, n * sizeof *there);
+    advance(a, 333);
+    assert_memory_equal(position, then, n * sizeof *then);
+    assert_int_equal(strutlib_simulation_restore(b, snapshot, &error), STRUTLIB_USAGE);
+    strutlib_error_free(error);
+    strutlib_snapshot_free(snapshot);
+    strutlib_simulation_close(a);
+    strutlib_simulation_close(b);
+    strutlib_close(scene);
+    free(there);
+    free(then);
+  }
+}
+
+/* What is stored and lost, less what was put in. */
+static double balance(const double *energy) {
+  return energy[0] + energy[1] + energy[2] + energy[3] - energy[4] - energy[5] - energy[6] -
+         energy[7] + energy[8] + energy[9] + energy[10];
+}
+
+static double open_balance(const char *step, double *worked) {
+  strutlib_error *error;
+  size_t n, k, q, l;
+  const char *names[] = {"integrator", "step"}, *values[] = {"rk4-events", step};
+  strutlib_scene *scene = open_for("rk4-events");
+  strutlib_simulation *s = strutlib_simulation_open(scene, 2, names, values, NULL, &error);
+  assert_non_null(s);
+  const double *energy = channel(s, "energy", &n);
+  double *rest = input(s, "rest", &k), *hold = input(s, "actuators", &q),
+         *load = input(s, "load", &l);
+  double drawn = rest[k - 1], begin = balance(energy);
+  long steps = lround(0.005 / strutlib_simulation_step(s));
+  assert_true(isnan(hold[0]) && load[0] == 0.0);
+  for (int i = 0; i < 40; i++) {
+    rest[k - 1] = drawn * (i % 2 ? 1.01 : 0.99);
+    hold[0] = i % 5 ? 1e-4 * i / 40 : (double)NAN;
+    load[2] = i % 3 - 1;
+    advance(s, steps);
+  }
+  *worked = strutlib_simulation_input_work(s);
+  double gap = balance(energy) - begin;
+  strutlib_simulation_close(s);
+  strutlib_close(scene);
+  return fabs(gap);
+}
+
+static void the_ledger_counts_what_inputs_do(void **unused) {
+  (void)unused;
+  double coarse_work, fine_work;
+  double coarse = open_balance("0.05 ms", &coarse_work),
+         fine = open_balance("0.025 ms", &fine_work);
+  assert_true(fabs(fine_work) > 1e-3);
+  assert_true(coarse < 0.01 * fabs(coarse_work) && fine < coarse);
+}
+
+/* A rest length that is held changes the equilibrium as a scene with that rest length. */
+static void a_held_input_is_as_if_the_scene_had_it(void **unused) {
+  (void)unused;
+  static const char text[] =
+      "strut: 1\n"
+      "parameters: {rest: 0.9 m, pull: 0 N}\n"
+      "nodes:\n"
+      "  a: {position: [0, 0], fixed: both}\n"
+      "  b: {position: [1, 0], mass: 1 kg, fixed: y}\n"
+      "members:\n"
+      "  m: {nodes: [a, b], kind: spring, stiffness: 100 N/m, "
+      "damping: 3 N s/m, rest_length: rest}\n"
+      "loads:\n"
+      "  p: {node: b, force: [pull, 0 N]}\n"
+      "solver: {step: 1 ms}\n"
+      "run: {duration: 1 s}\n";
+  strutlib_error *error;
+  const char *names[] = {"rest", "pull"}, *values[] = {"0.8 m", "7 N"};
+  size_t n;
+  strutlib_scene *plain =
+      strutlib_open_text("spring", text, sizeof text - 1, 0, NULL, NULL, &error);
+  if (!plain) print_message("%s", strutlib_error_report(error));
+  strutlib_scene *changed =
+      strutlib_open_text("spring", text, sizeof text - 1, 2, names, values, &error);
+  strutlib_simulation *a = strutlib_simulation_open(plain, 0, NULL, NULL, NULL, &error);
+  strutlib_simulation *b = strutlib_simulation_open(changed, 0, NULL, NULL, NULL, &error);
+  assert_int_equal(strutlib_simulation_set(a, "rest", "m", 0.8, &error), STRUTLIB_OK);
+  assert_int_equal(strutlib_simulation_set(a, "load", "b.x", 7.0, &error), STRUTLIB_OK);
+  advance(a, 400);
+  advance(b, 400);
+  const double *qa = channel(a, "position", &n), *qb = channel(b, "position", &n);
+  assert_memory_equal(qa, qb, n * sizeof *qa);
+  strutlib_simulation_close(a);
+  strutlib_simulation_close(b);
+  strutlib_close(plain);
+  strutlib_close(changed);
+}
+
+static void inputs_are_checked(void **unused) {
+  (void)unused;
+  strutlib_error *error;
+  size_t k;
+  strutlib_scene *scene = open_for("rk4");
+  strutlib_simulation *s = open_with(scene, "rk4");
+  double *rest = input(s, "rest", &k), drawn = rest[0];
+  rest[0] = -1.0;
+  assert_int_equal(strutlib_simulation_advance(s, 10, &error), STRUTLIB_USAGE);
+  assert_non_null(strstr(strutlib_error_message(error), "member 'm1'"));
+  strutlib_error_free(error);
+  assert_true(strutlib_simulation_time(s) == 0.0);
+  rest[0] = drawn;
+  advance(s, 10);
+  assert_int_equal(strutlib_simulation_set(s, "rest", "m10", 1.0, &error), STRUTLIB_USAGE);
+  strutlib_error_free(error);
+  assert_int_equal(strutlib_simulation_set(s, "colour", "m1", 1.0, &error), STRUTLIB_USAGE);
+  strutlib_error_free(error);
+  assert_int_equal(strutlib_simulation_set(s, "load", "n1.z", 1.0, &error), STRUTLIB_USAGE);
+  strutlib_error_free(error);
+  assert_int_equal(strutlib_simulation_advance(s, -1, &error), STRUTLIB_USAGE);
+  strutlib_error_free(error);
+  strutlib_simulation_close(s);
+  const char *names[] = {"step"}, *values[] = {"5 ms"};
+  assert_null(strutlib_simulation_open(scene, 1, names, values, NULL, &error));
+  assert_int_equal(strutlib_error_status(error), STRUTLIB_STEP_TOO_LARGE);
+  strutlib_error_free(error);
+  strutlib_close(scene);
+}
+
+static void a_divergence_stays_until_a_restore(void **unused) {
+  (void)unused;
+  strutlib_error *error;
+  strutlib_scene *scene = open_for("rk4");
+  const char *names[] = {"step", "force", "integrator"}, *values[] = {"2 ms", "yes", "rk4"};
+  strutlib_simulation *s = strutlib_simulation_open(scene, 3, names, values, NULL, &error);
+  assert_non_null(s);
+  strutlib_snapshot *snapshot = strutlib_simulation_snapshot(s, &error);
+  assert_int_equal(strutlib_simulation_advance(s, 100000, &error), STRUTLIB_DIVERGED);
+  strutlib_error_free(error);
+  double time = strutlib_simulation_time(s);
+  assert_int_equal(strutlib_simulation_advance(s, 1, &error), STRUTLIB_DIVERGED);
+  strutlib_error_free(error);
+  assert_true(strutlib_simulation_time(s) == time);
+  assert_int_equal(strutlib_simulation_restore(s, snapshot, &error), STRUTLIB_OK);
+  advance(s, 1);
+  strutlib_snapshot_free(snapshot);
+  strutlib_simulation_close(s);
+  strutlib_close(scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(steps_do_not_depend_on_their_division),
+      cmocka_unit_test(steps_are_those_of_a_run),
+      cmocka_unit_test(a_snapshot_goes_on_with_the_same_bits),
+      cmocka_unit_test(the_ledger_counts_what_inputs_do),
+      cmocka_unit_test(a_held_input_is_as_if_the_scene_had_it),
+      cmocka_unit_test(inputs_are_checked),
+      cmocka_unit_test(a_divergence_stays_until_a_restore),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
