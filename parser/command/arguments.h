@@ -111,7 +111,6 @@ typedef enum strut_option_id {
   STRUT_OPTION_LOWEST,
   STRUT_OPTION_LIMIT_EVALUATIONS,
   STRUT_OPTION_LIMIT_TIME,
-  STRUT_OPTION_UNIT, /* of import */
   STRUT_OPTION_TEXTS_END
 } strut_option_id;
 
