@@ -91,6 +91,9 @@ def every_computation():
     check([a.get("id") for a in got[:5]] == ["equilibria", "modes", "rigidity", "path", "form"], "ids")
     for answer in got:
         check(answer["code"] == 0 and answer["results"], f"an answer: {answer}")
+    search = ['{"set": {"load": 0}, "compute": "equilibria"}']
+    check(answers(truss, "--compute", "modes", lines=search) ==
+          answers(truss, "--compute", "modes", "--threads", "2", lines=search), "two threads")
     # small vibration: 2 k sin^2 of the bars' slope, on 1 kg, with the rest lengths of the drawn shape
     level = {"id": 1.5, "set": {"load": 0, "stiffness": 500}, "keep": "frequencies"}
     got = answers(truss, "--compute", "modes", lines=[json.dumps(level)])[0]
