@@ -43,7 +43,7 @@ zcat changelog.gz | grep -q '^# Changelog' || fail "no changelog"
 cd "$work"
 
 # Everything else.
-apt install -y "$here"/*.deb gcc libc6-dev cmake make pkg-config man-db
+apt install -y --no-install-recommends "$here"/*.deb gcc libc6-dev cmake make pkg-config man-db python3-numpy
 ldconfig -p | grep -q 'libstrut\.so\.0' || fail "the loader does not know libstrut.so.0"
 
 # C, by pkg-config and by CMake, with the headers of the same release.

@@ -26,16 +26,35 @@ static const strut_command help_command = {
     .run = print_help,
 };
 
+/* clang-format off */
 static const strut_command *const commands[] = {
-    &strut_command_run,      &strut_command_check,    &strut_command_equilibria,
-    &strut_command_modes,    &strut_command_form,     &strut_command_path,
-    &strut_command_rigidity, &strut_command_compare,  &strut_command_merge,
-    &strut_command_sweep,    &strut_command_tradeoff, &strut_command_view,
-    &strut_command_export,   &strut_command_plot,     &strut_command_write,
-    &strut_command_keys,     &strut_command_schema,   &strut_command_completion,
-    &strut_command_new,      &strut_command_examples, &strut_command_evaluate,
-    &strut_command_import,   &help_command,           NULL,
+    &strut_command_run,
+    &strut_command_check,
+    &strut_command_equilibria,
+    &strut_command_modes,
+    &strut_command_form,
+    &strut_command_path,
+    &strut_command_rigidity,
+    &strut_command_compare,
+    &strut_command_merge,
+    &strut_command_sweep,
+    &strut_command_tradeoff,
+    &strut_command_view,
+    &strut_command_export,
+    &strut_command_plot,
+    &strut_command_write,
+    &strut_command_keys,
+    &strut_command_schema,
+    &strut_command_completion,
+    &strut_command_fmt,
+    &strut_command_new,
+    &strut_command_examples,
+    &strut_command_evaluate,
+    &strut_command_import,
+    &help_command,
+    NULL,
 };
+/* clang-format on */
 
 const strut_command *strut_command_at(size_t i) {
   return i < sizeof commands / sizeof commands[0] ? commands[i] : NULL;

@@ -31,6 +31,10 @@ Built by `cc -o example example.c $(pkg-config --cflags --libs strut-abi)`, or i
 TEXT
   sed 1d "$root/tests/abi/example.c"
   printf '```\n'
+  cat <<'TEXT'
+
+The same in Julia, by `ccall`: [`docs/julia/crawler.jl`](julia/crawler.jl), which no test has run (Debian has no Julia).
+TEXT
   # Of each section the declarations that stand together, behind what is said of them.
   awk '
     function flush() {
