@@ -57,6 +57,7 @@ cat >CMakeLists.txt <<'LIST'
 cmake_minimum_required(VERSION 3.25)
 project(user C)
 find_package(strut 0.1 REQUIRED)
+find_package(strut-abi 0.1 REQUIRED)
 add_executable(user user.c)
 target_link_libraries(user PRIVATE strut::parser strut::output strut::engine)
 add_executable(stable stable.c)
