@@ -89,12 +89,14 @@ if has python3-strut; then
   find /usr/lib/python3/dist-packages/strut -name '*.pyc' | grep -q . || fail "Python's files are not compiled"
   python3 -c "
 import strut
-run = strut.load('$model').run()
-print(strut.__version__, run)"
+print(strut.__version__, strut.load('$model').run())" >said
+  grep -q '^0\.1' said || { cat said; fail "Python says something else"; }
 fi
 
 if has octave-strut; then
-  octave-cli --eval "s = strut_load('$model'); r = strut_run(s); disp(r)"
+  octave-cli --eval "r = strut_run(strut_load('$model'), 'accuracy', '0.5 %');
+    printf('%.2f\n', 1000 * r.summary.velocity)" >said
+  grep -qx '10\.03' said || { cat said; fail "Octave has another velocity"; }
 fi
 
 apt purge -y '*strut*'
