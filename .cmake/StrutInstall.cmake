@@ -61,7 +61,7 @@ foreach(header IN LISTS headers)
           DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/strut/${folder}" COMPONENT development)
 endforeach()
 
-# CMake: find_package(strut), targets strut::abi, strut::engine, strut::output, strut::pictures,
+# CMake: find_package(strut), targets strut::engine, strut::output, strut::pictures,
 # strut::study, strut::parser.
 install(EXPORT strut NAMESPACE strut:: FILE strutTargets.cmake DESTINATION "${strut_package_dir}"
         COMPONENT development)

@@ -86,6 +86,34 @@ cmp table-by-cmake.csv table.csv
 "$prefix/bin/strut" sweep study.yaml -o by-program --quiet
 cmp table-by-cmake.csv by-program/table.csv
 
+# The library with the stable interface stands alone: one header, one file, both ways to find it.
+mkdir "$scratch/abi"
+cd "$scratch/abi"
+cp "$source/tests/abi/example.c" .
+cat >CMakeLists.txt <<'END'
+cmake_minimum_required(VERSION 3.25)
+project(example C)
+find_package(strut-abi 0.1 REQUIRED)
+add_executable(example example.c)
+target_link_libraries(example PRIVATE strut::abi)
+END
+cmake -S . -B build -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_C_COMPILER="$compiler" \
+  -DCMAKE_C_FLAGS="$sanitizers" >configure.log 2>&1 || { cat configure.log; exit 1; }
+cmake --build build >build.log 2>&1 || { cat build.log; exit 1; }
+./build/example "$source/models/crawler/crawler.yaml" >by-cmake
+grep -q 'velocity 0.01003 m/s, motion periodic' by-cmake || { cat by-cmake; exit 1; }
+# The command that docs/api.md gives, with the compiler of this build as cc.
+# shellcheck disable=SC2016  # backticks of the document
+command=$(sed -n 's/^Built by `\(cc .*\)`, or in CMake by$/\1/p' "$source/docs/api.md")
+printf '#!/bin/sh\nexec "%s" %s "$@"\n' "$compiler" "$sanitizers" >cc
+chmod +x cc
+(PATH=$scratch/abi:$PATH && eval "$command")
+./example "$source/models/crawler/crawler.yaml" >by-pkg-config
+cmp by-cmake by-pkg-config
+! ldd example | grep 'libstrut_' || exit 1
+ldd example | grep -q 'libstrut.so.0' || { echo "the example is not linked to libstrut.so.0"; exit 1; }
+cd "$scratch/user"
+
 "$prefix/bin/strut" --version
 "$prefix/bin/strut" schema >schema
 cmp schema "$prefix/share/strut/strut-1.schema.json"

@@ -1,31 +1,37 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * strut as a shared library with a stable binary interface: libstrut.so.0, installed as strut/abi.h.
+ * strut as a shared library with a stable binary interface: libstrut.so.0, installed as
+ * strut/abi.h.
  *
- * Every call does what the program's command of that name does, with the same names, checks, messages and
- * bits. Handles are opaque; what they show are texts, numbers by dotted name, and arrays of doubles with
- * shape and stride. Programs that were built against this header run with every later libstrut.so.0.
+ * Every call does what the program's command of that name does, with the same names, checks,
+ * messages and bits. Handles are opaque; what they show are texts, numbers by dotted name, and
+ * arrays of doubles with shape and stride. Programs that were built against this header run with
+ * every later libstrut.so.0.
  *
- * Names: of things as in the scene's file, of results as in the program's JSON, of recorded channels as
- * in the scene's `output`. Numbers are in SI units and radians. Settings and options are pairs of texts:
- * "frequency", "10 Hz", as in `--set frequency="10 Hz"`; a number without unit is in SI units.
+ * Names: of things as in the scene's file, of results as in the program's JSON, of recorded
+ * channels as in the scene's `output`. Numbers are in SI units and radians. Settings and options
+ * are pairs of texts: "frequency", "10 Hz", as in `--set frequency="10 Hz"`; a number without
+ * unit is in SI units.
  *
- * Errors: the last argument of a call that can fail is a strutlib_error **. NULL: the caller does not
- * want to know. Otherwise *error becomes NULL on success, and on failure an error to be released by
- * strutlib_error_free. Lack of memory is such an error; no call aborts, exits, prints, or sets a
- * locale, a signal handler or an error handler.
+ * Errors: the last argument of a call that can fail is `strutlib_error **error`. NULL: the caller does
+ * not want to know. Otherwise *error becomes NULL on success, and on failure an error to be
+ * released by strutlib_error_free. Lack of memory is such an error; no call aborts, exits,
+ * prints, or sets a locale, a signal handler or an error handler.
  *
- * Texts: a const char * belongs to its handle and lives as long. A char * belongs to the caller, who
- * releases it by strutlib_release. All are UTF-8, and NULL-terminated.
+ * Texts: a `const char *` belongs to its handle and lives as long. A `char *` belongs to the caller,
+ * who releases it by strutlib_release. All are UTF-8, and NULL-terminated.
  *
- * Arrays: `data` points at doubles owned by the handle; element (i, j, k) is
- * data[i * stride[0] + j * stride[1] + k * stride[2]], strides counted in doubles. `shape` and `stride`
- * have room for STRUTLIB_DIMENSIONS. A pointer is good until the handle is released. Values that do not
- * exist are NAN. Arrays of scenes and results never change; those of a simulation are live.
+ * Arrays: `data` points at doubles owned by the handle; element (i, j, k) of an array is
+ * data[i * stride[0] + j * stride[1] + k * stride[2]], strides counted in doubles. `shape` and
+ * `stride` have room for STRUTLIB_DIMENSIONS. A pointer is good until the handle is released. Values
+ * that do not exist are NAN. Arrays of scenes and results never change; those of a simulation are live.
  *
- * Threads: scenes and results are constant, and any number of threads may use one at the same time. A
- * simulation belongs to one thread at a time. strutlib_sweep and strutlib_equilibria use OpenMP inside; after fork()
- * without exec the child must not call these two.
+ * Threads: scenes and results are constant, and any number of threads may use one at the same
+ * time. A simulation belongs to one thread at a time. strutlib_sweep and strutlib_equilibria use
+ * OpenMP inside; after fork() without exec the child must not call these two. While a call
+ * computes, GSL's error handler is off; the host's is put back. Figures and sweeps use a
+ * temporary folder below TMPDIR or /tmp, which is gone when the call returns; figures are drawn
+ * by Pango and GLib, which abort where memory is out.
  */
 #ifndef STRUT_PARSER_ABI_ABI_H
 #define STRUT_PARSER_ABI_ABI_H
@@ -76,7 +82,10 @@ typedef struct strutlib_control strutlib_control;
 
 /* ---- versions, texts, codes ---- */
 
-/** Counts additions to this interface: a program that needs a function may ask whether it is there. */
+/**
+ * Counts additions to this interface: a program that needs a function may ask whether it is
+ * there.
+ */
 #define STRUTLIB_ABI_VERSION 1
 /** STRUTLIB_ABI_VERSION of the library that is loaded. */
 STRUTLIB_API int strutlib_abi_version(void);
@@ -96,13 +105,18 @@ STRUTLIB_API int strutlib_exit_code(int status);
 /** The status that is not STRUTLIB_OK. */
 STRUTLIB_API int strutlib_error_status(const strutlib_error *error);
 /**
- * One sentence: what failed, where, and what to do. Of a scene with several located messages the first,
- * with its place: "arm.yaml:12:9: ...".
+ * One sentence: what failed, where, and what to do. Of a scene with several located messages the
+ * first, with its place: "arm.yaml:12:9: ...".
  */
 STRUTLIB_API const char *strutlib_error_message(const strutlib_error *error);
-/** Everything there is to say, as the program shows it: lines with carets, all messages. Ends with a newline. */
+/**
+ * Everything there is to say, as the program shows it: lines with carets, all messages. Ends with
+ * a newline.
+ */
 STRUTLIB_API const char *strutlib_error_report(const strutlib_error *error);
-/** Number of located messages; they are sorted by place. 0 for an error without a place in a text. */
+/**
+ * Number of located messages; they are sorted by place. 0 for an error without a place in a text.
+ */
 STRUTLIB_API size_t strutlib_error_count(const strutlib_error *error);
 /** Text of located message i, without its place; NULL beyond the last. */
 STRUTLIB_API const char *strutlib_error_text(const strutlib_error *error, size_t i);
@@ -119,8 +133,8 @@ STRUTLIB_API const char *strutlib_error_source(const strutlib_error *error, size
 /** The word that was probably meant ("did you mean ..."), or NULL. */
 STRUTLIB_API const char *strutlib_error_hint(const strutlib_error *error, size_t i);
 /**
- * The scene's key at that place, dotted, such as "nodes.n3.mass"; "" where there is none. For scenes that
- * were made from dictionaries rather than written by hand.
+ * The scene's key at that place, dotted, such as "nodes.n3.mass"; "" where there is none. For
+ * scenes that were made from dictionaries rather than written by hand.
  */
 STRUTLIB_API const char *strutlib_error_key(const strutlib_error *error, size_t i);
 /** NULL is allowed. */
@@ -128,43 +142,55 @@ STRUTLIB_API void strutlib_error_free(strutlib_error *error);
 
 /* ---- control: progress and interrupts ---- */
 
-/** Called a few times a second from the thread that made the call, `fraction` from 0 to 1. Non-zero interrupts. */
+/**
+ * Called a few times a second, `fraction` from 0 to 1: by a run from the thread that made the
+ * call, by a sweep from one thread at a time. Non-zero interrupts.
+ */
 typedef int (*strutlib_progress)(void *context, double fraction);
 
-/** A control that is not interrupted. NULL: memory is out. It may serve any number of calls and threads. */
+/**
+ * A control that is not interrupted. NULL: memory is out. It may serve any number of calls and
+ * threads.
+ */
 STRUTLIB_API strutlib_control *strutlib_control_create(void);
 /** No call may be using it. NULL is allowed. */
 STRUTLIB_API void strutlib_control_free(strutlib_control *control);
 /**
- * Ends all calls with this control soon (0.2 s), and those that are made later at once, until
- * strutlib_control_reset: they return what they have, with STRUTLIB_INTERRUPTED. From any thread and from
- * signal handlers.
+ * Ends runs, sweeps, searches for equilibria and simulations with this control within 0.2 s, and
+ * calls that are made later at once, until strutlib_control_reset: they return what they have,
+ * with STRUTLIB_INTERRUPTED. Other calls end by themselves soon, or when a structure of thousands
+ * of nodes is done. From any thread and from signal handlers.
  */
 STRUTLIB_API void strutlib_interrupt(strutlib_control *control);
 /** Takes an interrupt back. */
 STRUTLIB_API void strutlib_control_reset(strutlib_control *control);
 /** Was it interrupted? */
 STRUTLIB_API int strutlib_control_interrupted(const strutlib_control *control);
-/** Sets a function for calls that tell their progress: strutlib_run, strutlib_sweep. NULL: none. */
+/**
+ * Sets a function for calls that tell their progress: strutlib_run, strutlib_sweep. NULL: none.
+ */
 STRUTLIB_API void strutlib_control_on_progress(strutlib_control *control,
                                                strutlib_progress progress, void *context);
 
 /* ---- scenes ---- */
 
 /**
- * Opens a scene's file with `count` settings of parameters, names[i] = values[i], as --set has them. NULL
- * with the error.
+ * Opens a scene's file with `count` settings of parameters, names[i] = values[i], as --set has
+ * them. NULL with the error.
  */
 STRUTLIB_API strutlib_scene *strutlib_open(const char *path, size_t count, const char *const *names,
                                            const char *const *values, strutlib_error **error);
 /**
- * The same of a text[0..length) in the scene's language or in JSON, which is a part of it. `name` stands for
- * the file in messages, and files that the text names are looked for beside it.
+ * The same of a text[0..length) in the scene's language or in JSON, which is a part of it. `name`
+ * stands for the file in messages, and files that the text names are looked for beside it.
  */
 STRUTLIB_API strutlib_scene *strutlib_open_text(const char *name, const char *text, size_t length,
                                                 size_t count, const char *const *names,
                                                 const char *const *values, strutlib_error **error);
-/** The same scene with further settings, without reading its text again: cheap. Those made before stay. */
+/**
+ * The same scene with further settings, without reading its text again: cheap. Those made before
+ * stay.
+ */
 STRUTLIB_API strutlib_scene *strutlib_scene_with(const strutlib_scene *scene, size_t count,
                                                  const char *const *names,
                                                  const char *const *values, strutlib_error **error);
@@ -174,20 +200,22 @@ STRUTLIB_API void strutlib_close(strutlib_scene *scene);
 /**
  * Names of the things of a kind, which is a key of the scene: "parameters", "nodes", "members",
  * "hinges", "cells", "contacts", "collisions", "actuators", "loads", "sensors", "states",
- * "configurations", "quantities", "grounds", "unbalances" or "sliders"; or "channels": those
- * that the scene records; "kinds": all these words. How many there are; 0 for any other word.
+ * "configurations", "quantities", "grounds", "unbalances" or "sliders"; or "channels": those that
+ * the scene records; "kinds": all these words. How many there are; 0 for any other word.
  */
 STRUTLIB_API size_t strutlib_name_count(const strutlib_scene *scene, const char *kind);
-/** The i-th of these names, NULL beyond the last. The order is that of every array over the kind. */
+/**
+ * The i-th of these names, NULL beyond the last. The order is that of every array over the kind.
+ */
 STRUTLIB_API const char *strutlib_name(const strutlib_scene *scene, const char *kind, size_t i);
 /** Its index, or -1. */
 STRUTLIB_API long strutlib_index(const strutlib_scene *scene, const char *kind, const char *name);
 
 /**
  * Values of the scene by dotted name, as strutlib_scene_yaml shows it: "run.duration",
- * "members.m8.stiffness", "nodes.n1.0" (an item of a list, counted from 0), "parameters.friction" (its
- * value in SI units). 1 where there is such a value, and *value is it; 0 where there is none, as for keys that
- * keep their default.
+ * "members.m8.stiffness", "nodes.n1.0" (an item of a list, counted from 0), "parameters.friction"
+ * (its value in SI units). 1 where there is such a value, and *value is it; 0 where there is
+ * none, as for keys that keep their default.
  */
 STRUTLIB_API int strutlib_scene_number(const strutlib_scene *scene, const char *name,
                                        double *value);
@@ -197,65 +225,78 @@ STRUTLIB_API int strutlib_scene_flag(const strutlib_scene *scene, const char *na
 STRUTLIB_API const char *strutlib_scene_text(const strutlib_scene *scene, const char *name);
 /**
  * Arrays of the drawn structure: "nodes.position" (nodes, 2) [m], "nodes.mass" (nodes) [kg],
- * "members.nodes" (members, 2) indices of nodes, "members.length" as drawn [m], "members.rest_length"
- * [m], "members.stiffness" [N/m], "members.damping" [N s/m], "members.mass" [kg], "members.pretension"
- * as drawn [N]; each (members). 1 where there is such an array, else 0.
+ * "members.nodes" (members, 2) indices of nodes, "members.length" as drawn [m],
+ * "members.rest_length" [m], "members.stiffness" [N/m], "members.damping" [N s/m], "members.mass"
+ * [kg], "members.pretension" as drawn [N]; each (members). 1 where there is such an array, else
+ * 0.
  */
 STRUTLIB_API int strutlib_scene_array(const strutlib_scene *scene, const char *name,
                                       const double **data, int *dimensions, size_t *shape,
                                       size_t *stride);
 
-/** Warnings about a scene that is valid but implausible, and notes about outdated words. NULL beyond the last. */
+/**
+ * Warnings about a scene that is valid but implausible, and notes about outdated words. NULL
+ * beyond the last.
+ */
 STRUTLIB_API const char *strutlib_scene_warning(const strutlib_scene *scene, size_t i);
 
-/** The scene with every value resolved, in SI units, as `strut write` prints it; short: with its parameters, groups and parts, as --parts. */
+/**
+ * The scene with every value resolved, in SI units, as `strut write` prints it; short: with its
+ * parameters, groups and parts, as --parts.
+ */
 STRUTLIB_API char *strutlib_scene_yaml(const strutlib_scene *scene, int parts,
                                        strutlib_error **error);
 /** The same resolved scene as one JSON object, with the same numbers. */
 STRUTLIB_API char *strutlib_scene_json(const strutlib_scene *scene, strutlib_error **error);
-/** The drawn structure as an SVG picture. */
+/** The structure at its start as an SVG picture, with names. */
 STRUTLIB_API char *strutlib_scene_svg(const strutlib_scene *scene, strutlib_error **error);
-/** The page that `strut view MODEL` writes; without equilibria none are searched. */
+/** The page that `strut view MODEL` writes; where `equilibria` is 0 none are searched. */
 STRUTLIB_API char *strutlib_scene_html(const strutlib_scene *scene, int equilibria,
                                        strutlib_control *control, strutlib_error **error);
 
 /* ---- computing ---- */
 
 /**
- * Options of a call: `count` pairs names[i], values[i], with names as the program has them without the two dashes:
- * "accuracy", "0.5 %". Options of the program without value, such as force, have "yes" or "no". The i-th
- * option that the command (the part of the function's name after strutlib_) has, and what it means; NULL
- * beyond the last.
+ * Options of a call: `count` pairs names[i], values[i], with names as the program has them
+ * without the two dashes: "accuracy", "0.5 %". Options of the program without value, such as
+ * force, have "yes" or "no". The i-th option that the command (the part of the function's name
+ * after strutlib_) has, and what it means; NULL beyond the last.
  */
 STRUTLIB_API const char *strutlib_option_name(const char *command, size_t i);
 STRUTLIB_API const char *strutlib_option_help(const char *command, size_t i);
 
 /**
- * The functions below return a result, or NULL with the error. Where something is there in spite of a failure,
- * they return it and set *error too: a run that diverged or was interrupted, up to then; its
- * strutlib_result_status says so. `control` may be NULL.
+ * The functions below return a result, or NULL with the error. Where something is there in spite
+ * of a failure, they return it and set *error too: a run that diverged or was interrupted, up to
+ * then; its strutlib_result_status says so. `control` may be NULL.
  */
 
 /**
  * `strut run`. Arrays: "time" (samples) [s], and each channel that the scene records: "position",
- * "velocity" (samples, nodes, 2), "length", "force" (samples, members), "contact" (samples, contacts,
- * 2: normal, friction), "angle", "moment" (samples, hinges), "area", "pressure" (samples, cells),
- * "energy" (samples, components). Behind a dot one thing of it, and behind another one component:
- * "position.n1" (samples, 2), "position.n1.x" (samples), "force.m8", "contact.n1.normal",
- * "energy.kinetic".
- * Option "channels" is the library's own: a list with commas of channels to record instead of those of the
- * scene; "record" likewise: yes (default) or no.
+ * "velocity" (samples, nodes, 2), "length", "force" (samples, members), "contact" (samples,
+ * contacts, 2: normal, friction), "angle", "moment" (samples, hinges), "area", "pressure"
+ * (samples, cells), "energy" (samples, components). Behind a dot one thing of it, and behind
+ * another one component: "position.n1" (samples, 2), "position.n1.x" (samples), "force.m8",
+ * "contact.n1.normal", "energy.kinetic". Recorded are the scene's channels and what figures and
+ * pages show, at the times that the scene's `output` gives.
+ * Two options are the library's own: "channels", a list with commas of channels to record
+ * instead; and "record": yes (default) or no.
  */
 STRUTLIB_API strutlib_result *strutlib_run(const strutlib_scene *scene, size_t count,
                                            const char *const *names, const char *const *values,
                                            strutlib_control *control, strutlib_error **error);
-/** `strut equilibria`. Arrays such as "equilibria.energy" (equilibria), "equilibria.nodes" (equilibria, nodes, 2), "equilibria.forces" (equilibria, members). */
+/**
+ * `strut equilibria`. Arrays such as "equilibria.energy" (equilibria), "equilibria.nodes"
+ * (equilibria, nodes, 2), "equilibria.forces" (equilibria, members).
+ */
 STRUTLIB_API strutlib_result *strutlib_equilibria(const strutlib_scene *scene, size_t count,
                                                   const char *const *names,
                                                   const char *const *values,
                                                   strutlib_control *control,
                                                   strutlib_error **error);
-/** `strut modes`. Arrays such as "modes.frequency" (modes) [Hz], "modes.shape" (modes, nodes, 2). */
+/**
+ * `strut modes`. Arrays such as "modes.frequency" (modes) [Hz], "modes.shape" (modes, nodes, 2).
+ */
 STRUTLIB_API strutlib_result *strutlib_modes(const strutlib_scene *scene, size_t count,
                                              const char *const *names, const char *const *values,
                                              strutlib_control *control, strutlib_error **error);
@@ -263,40 +304,51 @@ STRUTLIB_API strutlib_result *strutlib_modes(const strutlib_scene *scene, size_t
 STRUTLIB_API strutlib_result *strutlib_rigidity(const strutlib_scene *scene, size_t count,
                                                 const char *const *names, const char *const *values,
                                                 strutlib_control *control, strutlib_error **error);
-/** `strut form`. Arrays such as "nodes" (nodes, 2), "forces" (members); strutlib_result_yaml is the new model. */
+/**
+ * `strut form`. Arrays such as "nodes" (nodes, 2), "forces" (members); strutlib_result_yaml is
+ * the new model.
+ */
 STRUTLIB_API strutlib_result *strutlib_form(const strutlib_scene *scene, size_t count,
                                             const char *const *names, const char *const *values,
                                             strutlib_control *control, strutlib_error **error);
-/** `strut path`. Arrays such as "points.factor" (points; "points.value" with "over"), "points.nodes" (points, nodes, 2). */
+/**
+ * `strut path`. Arrays such as "points.factor" (points; "points.value" with "over"),
+ * "points.nodes" (points, nodes, 2).
+ */
 STRUTLIB_API strutlib_result *strutlib_path(const strutlib_scene *scene, size_t count,
                                             const char *const *names, const char *const *values,
                                             strutlib_control *control, strutlib_error **error);
 /**
- * The matrices of `strut export --matrices`, in the shape that the option "at" names. Arrays of each:
- * "mass.row", "mass.column", "mass.value" (entries; indices from 0; symmetric ones in full), "mass.size" (2: rows, columns);
- * likewise "connectivity", "equilibrium", "stiffness_elastic", "stiffness_geometric", "damping" and
- * "stiffness_contact"; and "coordinates" (rows): of each row of all but connectivity 2 times its node, + 1 for y.
+ * The matrices of `strut export --matrices`, in the shape that the option "at" names. Arrays of
+ * each: "mass.row", "mass.column", "mass.value" (entries; indices from 0; symmetric ones in
+ * full), "mass.size" (2: rows, columns); likewise "connectivity", "equilibrium",
+ * "stiffness_elastic", "stiffness_geometric", "damping" and "stiffness_contact"; and
+ * "coordinates" (rows): of each row of all but connectivity 2 times its node, + 1 for y.
  */
 STRUTLIB_API strutlib_result *strutlib_matrices(const strutlib_scene *scene, size_t count,
                                                 const char *const *names, const char *const *values,
                                                 strutlib_control *control, strutlib_error **error);
 
-/** A row of a sweep is done. One call at a time, from any thread. Non-zero interrupts the sweep. */
+/**
+ * A row of a sweep is done. Called once for each row, some rows at a time, from one thread at a
+ * time, which may be another than the caller's. Non-zero interrupts the sweep.
+ */
 typedef int (*strutlib_row)(void *context, size_t point, int status);
 
 /**
- * `strut sweep` over any points: `axis_count` parameters axes[k], of which points[i * axis_count + k] [SI] are the values
- * at point i < point_count. Of a parameter that is a text, words[i * axis_count + k] is the value;
- * words may be NULL where there is none, and so may be each of its texts. Without points, `axes` is the product of
- * nothing: one point.
- * keep[0..keep_count): columns to keep, words as in a study's `keep`, or names of measured quantities;
- * none: the usual ones.
- * Options: "compute" (run, equilibria, modes, rigidity, path or form), "threads", "lanes" (default automatic), and
- * "limit_evaluations", "limit_time", "at", "lowest" as in a study.
- * Arrays: each column of numbers by its name, of the axes first, (points) [SI]; "status" (points): STRUTLIB_OK or why the point
- * failed. Columns of words: strutlib_result_cell. A failed point is a row of NAN with its status and message, no
- * error. The bits of a row depend on its point alone, not on threads. Points that an interrupt left out
- * have the status STRUTLIB_INTERRUPTED.
+ * `strut sweep` over any points: axes[0..axis_count) are parameters, `points` their values [SI], row by
+ * row (point_count, axis_count). Values of parameters that are texts are in `words`, of the same shape,
+ * which may be NULL where there is none, as may each of its texts. With axis_count 0 there is one
+ * point, the scene as it is.
+ * keep[0..keep_count): columns to keep, words as in a study's `keep`, or names of measured
+ * quantities; none: the usual ones.
+ * Options: "compute" (run, equilibria, modes, rigidity, path or form), "threads", "lanes"
+ * (default automatic), and "limit_evaluations", "limit_time", "at", "lowest" as in a study.
+ * Arrays: each column of numbers by its name, of the axes first, (points) [SI]; "status"
+ * (points): STRUTLIB_OK or why the point failed. Columns of words: strutlib_result_cell. A failed
+ * point is a row of NAN with its status and message, no error. The bits of a row depend on its
+ * point alone, not on threads. Points that an interrupt left out have the status
+ * STRUTLIB_INTERRUPTED.
  */
 STRUTLIB_API strutlib_result *strutlib_sweep(
     const strutlib_scene *scene, size_t axis_count, const char *const *axes, size_t point_count,
@@ -310,15 +362,19 @@ STRUTLIB_API strutlib_result *strutlib_sweep(
 STRUTLIB_API int strutlib_result_status(const strutlib_result *result);
 /** The command that made it: "run", "equilibria", ... */
 STRUTLIB_API const char *strutlib_result_command(const strutlib_result *result);
-/** The program's --json, byte for byte; of a run without wall_time, as in summary.json; of a sweep and of matrices "{}". */
+/**
+ * The program's --json, byte for byte; of a run without wall_time, as in summary.json; of a sweep
+ * and of matrices "{}". Ends with a newline.
+ */
 STRUTLIB_API const char *strutlib_result_json(const strutlib_result *result);
 /** The table that the program prints; of a sweep table.csv. */
 STRUTLIB_API const char *strutlib_result_table(const strutlib_result *result);
 /** Warnings that the program would print, without "strut: warning: "; NULL beyond the last. */
 STRUTLIB_API const char *strutlib_result_warning(const strutlib_result *result, size_t i);
 /**
- * Values by dotted name, as in the JSON: "velocity", "energy.residual", "steady.kind", "nodes.n1.position.0",
- * "equilibria.3.name". 1 where there is such a value, 0 where there is none or it is null.
+ * Values by dotted name, as in the JSON: "velocity", "energy.residual", "steady.kind",
+ * "nodes.n1.position.0", "equilibria.3.name". 1 where there is such a value, 0 where there is
+ * none or it is null.
  */
 STRUTLIB_API int strutlib_result_number(const strutlib_result *result, const char *name,
                                         double *value);
@@ -326,33 +382,47 @@ STRUTLIB_API int strutlib_result_flag(const strutlib_result *result, const char 
 STRUTLIB_API const char *strutlib_result_text(const strutlib_result *result, const char *name);
 /** Number of items of a list or a mapping of the JSON; 0 where there is none. */
 STRUTLIB_API size_t strutlib_result_count(const strutlib_result *result, const char *name);
-/** The i-th name of a mapping of the JSON, such as "energy"; NULL beyond the last. `name` "": the whole. */
+/**
+ * The i-th name of a mapping of the JSON, such as "energy"; NULL beyond the last. `name` "": the
+ * whole.
+ */
 STRUTLIB_API const char *strutlib_result_key(const strutlib_result *result, const char *name,
                                              size_t i);
 /**
- * An array of the result. Besides those that the functions above name, all numbers of the JSON are arrays by dotted
- * name: every list on the way is a dimension, and so is what lies behind the name, lists as well as mappings
- * from names to numbers: "modes.shape" is (modes, nodes, 2). Shorter ones are filled up with NAN, null
- * is NAN. 1 where there is such an array, else 0 (also where memory is out).
+ * An array of the result. Besides those that the functions above name, all numbers of the JSON
+ * are arrays by dotted name: every list on the way is a dimension, and so is what lies behind the
+ * name, lists as well as mappings from names to numbers: "modes.shape" is (modes, nodes, 2).
+ * Shorter ones are filled up with NAN, null is NAN. 1 where there is such an array, else 0 (also
+ * where memory is out).
  */
 STRUTLIB_API int strutlib_result_array(const strutlib_result *result, const char *name,
                                        const double **data, int *dimensions, size_t *shape,
                                        size_t *stride);
-/** The i-th name of the arrays that are not in the JSON: recorded channels, columns of a sweep; NULL beyond the last. */
+/**
+ * The i-th name of the arrays that are not in the JSON: recorded channels, columns of a sweep;
+ * NULL beyond the last.
+ */
 STRUTLIB_API const char *strutlib_result_array_name(const strutlib_result *result, size_t i);
-/** The unit of such an array, such as "m/s"; "1" or "" without; NULL where there is no such array. */
+/**
+ * The unit of such an array, such as "m/s"; "1" or "" without; NULL where there is no such array.
+ */
 STRUTLIB_API const char *strutlib_result_array_unit(const strutlib_result *result,
                                                     const char *name);
-/** A word of a sweep: column "outcome", "method", "message", ... at a point; NULL where there is none. */
+/**
+ * A word of a sweep: column "outcome", "method", "message", ... at a point; NULL where there is
+ * none.
+ */
 STRUTLIB_API const char *strutlib_result_cell(const strutlib_result *result, const char *column,
                                               size_t point);
-/** The i-th column of a sweep's table, of numbers or of words, in its order; NULL beyond the last. */
+/**
+ * The i-th column of a sweep's table, of numbers or of words, in its order; NULL beyond the last.
+ */
 STRUTLIB_API const char *strutlib_result_column(const strutlib_result *result, size_t i);
 /** The scene as it was run, or the model that a form is; others: NULL with the error. */
 STRUTLIB_API char *strutlib_result_yaml(const strutlib_result *result, strutlib_error **error);
 /**
- * The figure of --plot FILE.svg as a text, with options "draw", "title", "width", "scale", "times" as there.
- * A run must have recorded what it shows.
+ * The figure of --plot FILE.svg as a text, with options "draw", "title", "width", "scale",
+ * "times" as there. A run must have recorded what it shows.
  */
 STRUTLIB_API char *strutlib_result_svg(const strutlib_result *result, size_t count,
                                        const char *const *names, const char *const *values,
@@ -365,9 +435,10 @@ STRUTLIB_API void strutlib_result_free(strutlib_result *result);
 /* ---- simulation: a run that is advanced from outside ---- */
 
 /**
- * A simulation at the start of the scene's run, settled if the scene says so. Options: "step", "integrator", "tolerance",
- * "force" and those of the model ("bars", "mass-model", "friction-law", "damping-law") as of
- * strutlib_run. The duration of the scene's run is no limit.
+ * A simulation at the start of the scene's run, settled if the scene says so. Options: "step",
+ * "integrator", "tolerance", "force" and those of the model ("bars", "mass-model",
+ * "friction-law", "damping-law") as of strutlib_run. The duration of the scene's run is no limit.
+ * `control` stays in use by every advance until the simulation is closed; it may be NULL.
  */
 STRUTLIB_API strutlib_simulation *strutlib_simulation_open(const strutlib_scene *scene,
                                                            size_t count, const char *const *names,
@@ -377,8 +448,9 @@ STRUTLIB_API strutlib_simulation *strutlib_simulation_open(const strutlib_scene 
 /** NULL is allowed. Snapshots of it stay, but can only be released. */
 STRUTLIB_API void strutlib_simulation_close(strutlib_simulation *simulation);
 /**
- * Makes `steps` steps and updates the arrays. STRUTLIB_OK, or STRUTLIB_DIVERGED, STRUTLIB_INTERRUPTED, ...: the simulation
- * then stands where it came to. The steps have the bits of a run's, however they are divided into calls.
+ * Makes `steps` steps and updates the arrays. STRUTLIB_OK, or STRUTLIB_DIVERGED,
+ * STRUTLIB_INTERRUPTED, ...: the simulation then stands where it came to. The steps have the bits
+ * of a run's, however they are divided into calls.
  */
 STRUTLIB_API int strutlib_simulation_advance(strutlib_simulation *simulation, long steps,
                                              strutlib_error **error);
@@ -387,26 +459,32 @@ STRUTLIB_API double strutlib_simulation_time(const strutlib_simulation *simulati
 /** The step [s]: of an adaptive method the time between two stops. */
 STRUTLIB_API double strutlib_simulation_step(const strutlib_simulation *simulation);
 /**
- * Live arrays, which follow every advance, set and restore: "position", "velocity" (nodes, 2), "length", "force" (members),
- * "contact" (contacts, 2), "angle", "moment" (hinges), "area", "pressure" (cells), "energy"
- * (components), as of strutlib_run. What no one asks for costs nothing. 1 where there is such an array,
- * else 0.
+ * Live arrays, which follow every advance, set and restore: "position", "velocity" (nodes, 2),
+ * "length", "force" (members), "contact" (contacts, 2), "angle", "moment" (hinges), "area",
+ * "pressure" (cells), "energy" (components), as of strutlib_run. What no one asks for costs
+ * nothing. 1 where there is such an array, else 0.
  */
 STRUTLIB_API int strutlib_simulation_array(strutlib_simulation *simulation, const char *name,
                                            const double **data, int *dimensions, size_t *shape,
                                            size_t *stride);
 /**
- * Inputs: arrays that the caller writes, at any time between two calls. They hold from the next advance on, until they are written
- * again. A change is an event: methods with events begin anew there, and the ledger counts the work it does.
+ * Inputs: arrays that the caller writes, at any time between two calls. They hold from the next
+ * advance on, until they are written again. A change is an event: methods with events begin anew
+ * there, and the ledger counts the work it does.
  *   "rest" (members): rest lengths [m], to which a driven member's signal is added;
- *   "actuators" (actuators): what the signal is, in its unit; NAN (as at the beginning): as the scene says;
+ *   "actuators" (actuators): what the signal is, in its unit; NAN (as at the beginning): as the
+ *     scene says;
  *   "load" (nodes, 2): forces on nodes besides those of the scene [N], 0 at the beginning.
- * Values that are not finite, or rest lengths below 0, make the next advance fail with STRUTLIB_USAGE, without a step.
+ * Values that are not finite, or rest lengths below 0, make the next advance fail with
+ * STRUTLIB_USAGE, without a step.
  */
 STRUTLIB_API int strutlib_simulation_input(strutlib_simulation *simulation, const char *name,
                                            double **data, int *dimensions, size_t *shape,
                                            size_t *stride);
-/** Sets one number of an input by name: "rest", "m8"; "load", "n1.x". STRUTLIB_OK or STRUTLIB_USAGE. */
+/**
+ * Sets one number of an input by name: "rest", "m8"; "load", "n1.x". STRUTLIB_OK or
+ * STRUTLIB_USAGE.
+ */
 STRUTLIB_API int strutlib_simulation_set(strutlib_simulation *simulation, const char *input,
                                          const char *name, double value, strutlib_error **error);
 /** Work that changes of inputs have done so far [J]; part of the energy's balance. */
@@ -415,8 +493,8 @@ STRUTLIB_API double strutlib_simulation_input_work(const strutlib_simulation *si
 STRUTLIB_API strutlib_snapshot *strutlib_simulation_snapshot(const strutlib_simulation *simulation,
                                                              strutlib_error **error);
 /**
- * Puts a simulation where it was at a snapshot of its own; what follows has the same bits. STRUTLIB_OK, or
- * STRUTLIB_USAGE for another simulation's snapshot.
+ * Puts a simulation where it was at a snapshot of its own; what follows has the same bits.
+ * STRUTLIB_OK, or STRUTLIB_USAGE for another simulation's snapshot.
  */
 STRUTLIB_API int strutlib_simulation_restore(strutlib_simulation *simulation,
                                              const strutlib_snapshot *snapshot,

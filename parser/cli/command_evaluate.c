@@ -6,8 +6,9 @@
 #include "parser/cli/commands.h"
 #include "parser/cli/evaluate.h"
 #include "parser/cli/streams.h"
+#include "parser/command/option_values.h"
 
-enum { MOST_MESSAGES = 50 };
+enum { MOST_MESSAGES = 50, MOST_THREADS = 4096 };
 
 static const strut_option options[] = {
     {STRUT_OPTION_COMPUTE, "compute", "WHAT",
@@ -18,6 +19,7 @@ static const strut_option options[] = {
     {STRUT_OPTION_OUT, "out", "FILE", "write answers to FILE (default: standard output)"},
     {STRUT_OPTION_DAKOTA, "dakota", NULL,
      "read DAKOTA's PARAMETERS file and write its RESULTS file"},
+    {STRUT_OPTION_THREADS, "threads", "N", "number of threads of a search (default 1)"},
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
     {STRUT_OPTION_COUNT_POINTS, "count", NULL, "only print the names and units of the results"},
     {STRUT_OPTION_JSON, "json", NULL, "with --count: print one JSON object"},
@@ -131,9 +133,13 @@ static strut_status print_columns(strut_evaluate_task *task) {
 
 static strut_status evaluate(strut_evaluate_task *task) {
   const strut_arguments *a = task->arguments;
+  int64_t threads = 1;
+  strut_status early = strut_option_integer(&strut_command_evaluate, a, STRUT_OPTION_THREADS, 1,
+                                            MOST_THREADS, &threads);
+  if (early) return early;
   if (a->count_points) return print_columns(task);
   task->interrupt = strut_interrupt_watch();
-  task->evaluator = strut_evaluator_create(task->interrupt);
+  task->evaluator = strut_evaluator_create(task->interrupt, (int)threads);
   if (!task->evaluator) return strut_print_out_of_memory();
   strut_status status = a->dakota ? strut_evaluate_dakota(task, a->models[1], a->models[2])
                                   : strut_evaluate_lines(task);

@@ -26,6 +26,7 @@ static const strut_command help_command = {
     .run = print_help,
 };
 
+/* clang-format off */
 static const strut_command *const commands[] = {
     &strut_command_run,
     &strut_command_check,
@@ -45,6 +46,7 @@ static const strut_command *const commands[] = {
     &strut_command_keys,
     &strut_command_schema,
     &strut_command_completion,
+    &strut_command_fmt,
     &strut_command_new,
     &strut_command_examples,
     &strut_command_evaluate,
@@ -52,6 +54,7 @@ static const strut_command *const commands[] = {
     &help_command,
     NULL,
 };
+/* clang-format on */
 
 const strut_command *strut_command_at(size_t i) {
   return i < sizeof commands / sizeof commands[0] ? commands[i] : NULL;

@@ -26,6 +26,7 @@ extern const strut_command strut_command_tradeoff;
 extern const strut_command strut_command_view;
 extern const strut_command strut_command_write;
 extern const strut_command strut_command_schema;
+extern const strut_command strut_command_fmt;
 extern const strut_command strut_command_new;
 extern const strut_command strut_command_examples;
 extern const strut_command strut_command_completion;

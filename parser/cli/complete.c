@@ -58,8 +58,9 @@ static const struct word_option {
                     {NULL, STRUT_OPTION_COLORS, "auto|sequential|diverging|grey"},
                     {NULL, STRUT_OPTION_DRAW, "overview|period|snapshots|curves"},
                     {NULL, STRUT_OPTION_EQUILIBRIA, "all|none"},
-                    {NULL, STRUT_OPTION_EMIT, "slurm|parallel"},
-                    {NULL, STRUT_OPTION_FORMAT, "vtk"},
+                    {NULL, STRUT_OPTION_EMIT, "slurm|parallel|htcondor"},
+                    {"export", STRUT_OPTION_FORMAT, "vtk|build|mjcf"},
+                    {"import", STRUT_OPTION_FORMAT, "ntrt|tensegritysim|springable|tables"},
                     {NULL, STRUT_OPTION_WIDTH, "page|column"}};
 
 /* Options that take the words of a key. */
@@ -69,7 +70,8 @@ static const struct key_option {
 } key_options[] = {{STRUT_OPTION_BARS, STRUT_KEY_SCENE_BARS},
                    {STRUT_OPTION_MASS_MODEL, STRUT_KEY_SCENE_MASS_MODEL},
                    {STRUT_OPTION_FRICTION_LAW, STRUT_KEY_FRICTION_LAW},
-                   {STRUT_OPTION_DAMPING_LAW, STRUT_KEY_GROUND_DAMPING_LAW}};
+                   {STRUT_OPTION_DAMPING_LAW, STRUT_KEY_GROUND_DAMPING_LAW},
+                   {STRUT_OPTION_COMPUTE, STRUT_KEY_STUDY_COMPUTE}};
 
 static const char *words_of(const strut_command *command, strut_option_id id) {
   for (size_t i = 0; i < sizeof word_options / sizeof word_options[0]; i++) {
@@ -110,6 +112,9 @@ static const char *complete_value(const strut_command *command, const strut_opti
       return ":";
     case STRUT_OPTION_AT: strut_offer_shapes(c); return ":";
     case STRUT_OPTION_INTEGRATOR: offer_methods(c); return ":";
+    case STRUT_OPTION_KEEP:
+      keep_list(c), offer_words(c, strut_key_at(STRUT_KEY_STUDY_KEEP)->words);
+      return ":";
     case STRUT_OPTION_METHODS: keep_list(c), offer_methods(c); return ":";
     case STRUT_OPTION_SUPPORTS: keep_list(c), strut_offer_nodes(c); return ":";
     case STRUT_OPTION_LOAD: strut_offer_loads(c); return ":";
@@ -166,7 +171,7 @@ static const char *complete_argument(const strut_command *command, const strut_c
   if (strcmp(model, "EXAMPLE") == 0) strut_offer_examples(c);
   if (strcmp(model, "DIR") == 0) return ":folders";
   if (strcmp(model, "TABLE") == 0) return ":files csv";
-  if (strstr(model, "RUN")) return ":files";
+  if (strstr(model, "RUN") || strncmp(model, "FILE", 4) == 0) return ":files";
   bool scene = strncmp(model, "MODEL", 5) == 0 || strcmp(model, "STUDY") == 0;
   return scene ? ":files yaml yml" : ":";
 }

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 /* folder/below/name; false where that is too long or does not exist. */
@@ -39,10 +40,9 @@ static strut_status trouble(strut_error *error, const char *path, int code) {
   return strut_fail(error, STRUT_FILE_TROUBLE, "cannot write '%s': %s", path, strerror(code));
 }
 
-strut_status strut_create_file(const char *path, const char *text, size_t length,
-                               strut_error *error) {
-  int code = 0, file = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (file < 0) return trouble(error, path, errno);
+/* Writes all and closes; an error number, or 0. */
+static int write_all(int file, const char *text, size_t length) {
+  int code = 0;
   for (size_t done = 0; done < length && !code;) {
     ssize_t written = write(file, text + done, length - done);
     if (written > 0)
@@ -52,7 +52,40 @@ strut_status strut_create_file(const char *path, const char *text, size_t length
   }
   if (!code && fsync(file) != 0 && errno != EINVAL && errno != EROFS) code = errno;
   if (close(file) != 0 && !code) code = errno;
+  return code;
+}
+
+strut_status strut_create_file(const char *path, const char *text, size_t length,
+                               strut_error *error) {
+  int file = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (file < 0) return trouble(error, path, errno);
+  int code = write_all(file, text, length);
   if (!code) return STRUT_OK;
   unlink(path);
   return trouble(error, path, code);
+}
+
+/* path.PID, beside the file. */
+static int replace(const char *path, const char *text, size_t length) {
+  char part[STRUT_LONGEST_PATH + 32];
+  struct stat found;
+  if (access(path, W_OK) != 0 || stat(path, &found) != 0) return errno;
+  snprintf(part, sizeof part, "%s.%ld", path, (long)getpid());
+  int code = 0, file = open(part, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  if (file < 0) return errno;
+  if (fchmod(file, found.st_mode & 07777) != 0) code = errno;
+  int written = write_all(file, text, length);
+  if (!code) code = written;
+  if (!code && rename(part, path) != 0) code = errno;
+  if (code) unlink(part);
+  return code;
+}
+
+strut_status strut_replace_file(const char *path, const char *text, size_t length,
+                                strut_error *error) {
+  char *real = realpath(path, NULL);
+  int code = real ? ENAMETOOLONG : errno;
+  if (real && strlen(real) < STRUT_LONGEST_PATH) code = replace(real, text, length);
+  free(real);
+  return code ? trouble(error, path, code) : STRUT_OK;
 }

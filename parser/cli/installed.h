@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
  * What is installed with the program: found from where the program is, so that all may be moved. And
- * files that are created, never replaced.
+ * files of the user's.
  */
 #ifndef STRUT_PARSER_CLI_INSTALLED_H
 #define STRUT_PARSER_CLI_INSTALLED_H
@@ -21,5 +21,12 @@ bool strut_find_installed(const char *name, const char *built, char path[STRUT_L
 /** Creates a file with this text. STRUT_FILE_TROUBLE where one of this name exists, which stays as it is. */
 strut_status strut_create_file(const char *path, const char *text, size_t length,
                                strut_error *error);
+
+/**
+ * Replaces a file by one with this text, whole or not at all: written beside it and renamed. Permissions
+ * stay; where the path is a link, the file behind it is replaced.
+ */
+strut_status strut_replace_file(const char *path, const char *text, size_t length,
+                                strut_error *error);
 
 #endif

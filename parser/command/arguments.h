@@ -34,6 +34,7 @@ typedef enum strut_option_id {
   STRUT_OPTION_PARTS,  /* of write: the short scene */
   STRUT_OPTION_STUDY,  /* of schema: that of a study */
   STRUT_OPTION_MAN,    /* of help: the manual page */
+  STRUT_OPTION_CHECK,  /* of fmt: change nothing */
   STRUT_OPTION_DAKOTA, /* of evaluate: the files of DAKOTA */
   /* kept as text: strut_option_text, and option_values.h for numbers */
   STRUT_OPTION_TEXTS,
@@ -137,6 +138,7 @@ typedef struct strut_arguments {
   strut_override *varied; /* (varied_count) of --vary */
   size_t varied_count;
   bool parts, study, man, dakota;
+  bool check;
   const strut_listener *listener; /* hears what is wrong with an option, warnings and notes */
 } strut_arguments;
 

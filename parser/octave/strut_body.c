@@ -483,8 +483,7 @@ static mxArray *table_of(const strutlib_result *r, size_t points) {
   for (size_t i = 0; (name = strutlib_result_column(r, i)) != NULL; i++)
     add_field(all, name, column_of(r, name, points));
   for (int k = 0; k < 2; k++)
-    if (mxGetFieldNumber(all, last[k]) < 0)
-      add_field(all, last[k], column_of(r, last[k], points));
+    if (mxGetFieldNumber(all, last[k]) < 0) add_field(all, last[k], column_of(r, last[k], points));
   return all;
 }
 

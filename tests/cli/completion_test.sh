@@ -99,6 +99,7 @@ run --mass-model
 run --friction-law
 run --damping-law
 run --integrator
+import --format
 END
 
 expect 1 completion tcsh

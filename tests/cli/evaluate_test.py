@@ -91,6 +91,9 @@ def every_computation():
     check([a.get("id") for a in got[:5]] == ["equilibria", "modes", "rigidity", "path", "form"], "ids")
     for answer in got:
         check(answer["code"] == 0 and answer["results"], f"an answer: {answer}")
+    search = ['{"set": {"load": 0}, "compute": "equilibria"}']
+    check(answers(truss, "--compute", "modes", lines=search) ==
+          answers(truss, "--compute", "modes", "--threads", "2", lines=search), "two threads")
     # small vibration: 2 k sin^2 of the bars' slope, on 1 kg, with the rest lengths of the drawn shape
     level = {"id": 1.5, "set": {"load": 0, "stiffness": 500}, "keep": "frequencies"}
     got = answers(truss, "--compute", "modes", lines=[json.dumps(level)])[0]
@@ -110,6 +113,25 @@ def kept_and_measured():
     still = got[1]["results"]
     check(still["duration"] == 0.2 and abs(still["reach"] - 1) < 1e-12 and "id" not in got[1],
           f"'id' is a parameter here: {got[1]}")
+
+
+def studies_and_their_variants():
+    write("ways.yaml", """strut: 1
+study: ways
+model: block.yaml
+axes: [{stiffness: [1 N/m]}]
+set: {seconds: 20 ms}
+derive: {id: 2}
+variants: {coarse: {solver: {step: 2 ms}}, fine: {solver: {step: 0.5 ms}}}
+limit: {evaluations: 100}
+keep: [steps]
+""")
+    lines = ['{"set": {}}', '{"set": {}, "variant": "fine"}', '{"seconds": 0.04}', '{"seconds": 1}',
+             '{"set": {}, "variant": "finer"}']
+    got = answers("ways.yaml", code=2, lines=lines)
+    check([a["code"] for a in got] == [0, 0, 0, 3, 2], f"{got}")
+    check([a["results"]["steps"] for a in got[:3]] == [10, 40, 20], f"{got}")
+    check("coarse" in got[4]["message"] and "100 force" in got[3]["message"], f"{got}")
 
 
 def failures_go_on():
@@ -262,6 +284,7 @@ def dakota_files():
 results_are_those_of_a_sweep()
 every_computation()
 kept_and_measured()
+studies_and_their_variants()
 failures_go_on()
 wrong_use()
 files()

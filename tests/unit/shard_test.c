@@ -41,7 +41,7 @@ static void test_texts(void **unused) {
   static const char *const bad[] = {"",       "1",      "/8",   "1/",     "-1/8",
                                     "1/8/9",  "1 /8",   "a/8",  "1.0/8",  "+1/8",
                                     "slurm/", "slurm8", "1/8 ", "slurms", "99999999999999999999/8"};
-  strut_array_task task = {"1", "0", "7", "1", "8"};
+  strut_array_task task = {"1", "0", "7", "1", "8", NULL};
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) refuse(bad[i], &task, "");
 }
 
@@ -49,16 +49,16 @@ static void test_arrays(void **unused) {
   (void)unused;
   refuse("slurm", &nowhere, "not a task of a Slurm job array");
   refuse("slurm/8", &nowhere, "not a task of a Slurm job array");
-  expect("slurm", &(strut_array_task){"3", "0", "7", "1", "8"}, 3, 8);
-  expect("slurm", &(strut_array_task){"3", "1", "8", "1", "8"}, 2, 8);
-  expect("slurm", &(strut_array_task){"4", "0", "6", "2", "4"}, 2, 4);
-  expect("slurm", &(strut_array_task){"0", "0", "0", NULL, "1"}, 0, 1);
+  expect("slurm", &(strut_array_task){"3", "0", "7", "1", "8", NULL}, 3, 8);
+  expect("slurm", &(strut_array_task){"3", "1", "8", "1", "8", NULL}, 2, 8);
+  expect("slurm", &(strut_array_task){"4", "0", "6", "2", "4", NULL}, 2, 4);
+  expect("slurm", &(strut_array_task){"0", "0", "0", NULL, "1", NULL}, 0, 1);
   /* Sent again in part: only slurm/8 knows what the whole was. */
-  refuse("slurm", &(strut_array_task){"3", "3", "3", "1", "1"}, "slurm/N");
-  refuse("slurm", &(strut_array_task){"3", "3", "7", "1", "2"}, "slurm/N");
-  refuse("slurm", &(strut_array_task){"0", "0", "7", "1", "2"}, "slurm/N");
-  expect("slurm/8", &(strut_array_task){"3", "3", "7", "1", "2"}, 3, 8);
-  refuse("slurm/8", &(strut_array_task){"8", "1", "8", "1", "8"}, "numbered 0 to 7");
+  refuse("slurm", &(strut_array_task){"3", "3", "3", "1", "1", NULL}, "slurm/N");
+  refuse("slurm", &(strut_array_task){"3", "3", "7", "1", "2", NULL}, "slurm/N");
+  refuse("slurm", &(strut_array_task){"0", "0", "7", "1", "2", NULL}, "slurm/N");
+  expect("slurm/8", &(strut_array_task){"3", "3", "7", "1", "2", NULL}, 3, 8);
+  refuse("slurm/8", &(strut_array_task){"8", "1", "8", "1", "8", NULL}, "numbered 0 to 7");
 }
 
 /* Every point once, in shards that differ by one point at most. */

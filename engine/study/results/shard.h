@@ -28,8 +28,8 @@ typedef struct strut_array_task {
 /**
  * Reads "k/n"; "slurm/n", where k is the task's number, and so for pbs, torque, lsf, sge and kubernetes,
  * whose variables and first numbers are in one table, and "env:NAME/n" for any variable that counts from
- * 0; or "slurm", where the array has a task for each shard and numbers them without gaps. STRUT_USAGE with the reason otherwise: a part of an array
- * that is sent again must not be taken for the whole.
+ * 0; or "slurm", where the array has a task for each shard and numbers them without gaps. STRUT_USAGE with
+ * the reason otherwise: a part of an array that is sent again must not be taken for the whole.
  */
 STRUT_API strut_status strut_shard_read(const char *text, const strut_array_task *task,
                                         strut_shard *shard, strut_error *error);

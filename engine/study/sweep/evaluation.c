@@ -1,22 +1,26 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/study/sweep/evaluation.h"
 
-#include <stdio.h>
-
 #include "engine/study/sweep/sweep_parts.h"
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
 
 struct strut_evaluator {
   const volatile sig_atomic_t *interrupt;
+  int threads;
   strut_equilibrium_cache *equilibria;
   strut_sweep_plan plan; /* of the latest evaluation, which owns its results */
   strut_sweep_job job;
   strut_error error;
 };
 
-strut_evaluator *strut_evaluator_create(const volatile sig_atomic_t *interrupt) {
+strut_evaluator *strut_evaluator_create(const volatile sig_atomic_t *interrupt, int threads) {
   strut_evaluator *e = strut_allocate(1, sizeof *e);
   if (!e) return NULL;
   e->interrupt = interrupt;
+  e->threads = threads;
   e->equilibria = strut_equilibrium_cache_create();
   if (e->equilibria) return e;
   strut_release(e);
@@ -57,7 +61,14 @@ static bool compute(strut_evaluator *e, const strut_study *study) {
     worker.watch = strut_sweep_watch_create(study->limit_time, &e->job, 1, e->interrupt);
     if (!worker.watch) return false;
   }
+#ifdef _OPENMP
+  int before = omp_get_max_threads();
+  omp_set_num_threads(e->threads);
+#endif
   if (strut_sweep_job_begin(&worker, 0, &e->job)) strut_sweep_job_finish(&worker, &e->job);
+#ifdef _OPENMP
+  omp_set_num_threads(before);
+#endif
   strut_sweep_watch_free(worker.watch);
   return true;
 }

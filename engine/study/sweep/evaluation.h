@@ -32,8 +32,12 @@ typedef struct strut_evaluation {
   const char *const *warnings; /* (warning_count) sentences */
 } strut_evaluation;
 
-/** `interrupt` ends a computation early; may be NULL. NULL: memory is out. */
-STRUT_API strut_evaluator *strut_evaluator_create(const volatile sig_atomic_t *interrupt);
+/**
+ * `interrupt` ends a computation early; may be NULL. `threads`, 1 or more: of searches within an
+ * evaluation, on which results do not depend. NULL: memory is out.
+ */
+STRUT_API strut_evaluator *strut_evaluator_create(const volatile sig_atomic_t *interrupt,
+                                                  int threads);
 STRUT_API void strut_evaluator_free(strut_evaluator *evaluator); /* NULL is allowed */
 
 /**

@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Opens, runs and closes again and again, for valgrind: abi_rounds COUNT. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <strut/abi.h>
+
+static const char text[] =
+    "strut: 1\n"
+    "parameters: {drop: 20 mm}\n"
+    "gravity: [0, -9.81]\n"
+    "nodes:\n"
+    "  a: [0, drop]\n"
+    "  b: [100 mm, drop]\n"
+    "  c: {position: [50 mm, drop + 80 mm], mass: 10 g}\n"
+    "members:\n"
+    "  ab: {nodes: [a, b], kind: bar, stiffness: 100 kN/m, mass: 30 g}\n"
+    "  bc: {nodes: [b, c], kind: spring, stiffness: 1 kN/m, mass: 10 g}\n"
+    "  ca: {nodes: [c, a], kind: spring, stiffness: 1 kN/m, mass: 10 g}\n"
+    "ground: {stiffness: 20 kN/m, nodes: all}\n"
+    "solver: {integrator: rk4-events, step: 0.1 ms}\n"
+    "run: {duration: 2 ms}\n"
+    "output: {every: 1 ms}\n";
+
+static int failed(strutlib_error *error) {
+  fprintf(stderr, "%s", strutlib_error_report(error));
+  strutlib_error_free(error);
+  return 1;
+}
+
+static int simulate(const strutlib_scene *scene) {
+  strutlib_error *error;
+  double *rest;
+  const double *force;
+  int dimensions, wrong = 0;
+  size_t shape[STRUTLIB_DIMENSIONS], stride[STRUTLIB_DIMENSIONS];
+  strutlib_simulation *s = strutlib_simulation_open(scene, 0, NULL, NULL, NULL, &error);
+  if (!s) return failed(error);
+  strutlib_simulation_array(s, "force", &force, &dimensions, shape, stride);
+  strutlib_simulation_input(s, "rest", &rest, &dimensions, shape, stride);
+  strutlib_snapshot *snapshot = strutlib_simulation_snapshot(s, &error);
+  rest[1] *= 1.01;
+  if (strutlib_simulation_advance(s, 10, &error) != STRUTLIB_OK) wrong = failed(error);
+  strutlib_simulation_restore(s, snapshot, NULL);
+  strutlib_snapshot_free(snapshot);
+  strutlib_simulation_close(s);
+  return wrong;
+}
+
+/* One scene with everything that is quick, and a text that is refused. */
+static int go_round(void) {
+  static const char wrong[] = "strut: 1\nnodes: {a: [0, 0], a: [1, 0]}\n";
+  const char *names[] = {"drop"}, *values[] = {"30 mm"}, *axes[] = {"drop"};
+  const double points[] = {0.01, 0.02};
+  strutlib_error *error;
+  strutlib_scene *scene =
+      strutlib_open_text("round", text, sizeof text - 1, 1, names, values, &error);
+  if (!scene) return failed(error);
+  strutlib_result *result = strutlib_run(scene, 0, NULL, NULL, NULL, &error);
+  if (!result) return failed(error);
+  double velocity;
+  strutlib_result_number(result, "velocity", &velocity);
+  strutlib_result_free(result);
+  result = strutlib_rigidity(scene, 0, NULL, NULL, NULL, &error);
+  if (!result) return failed(error);
+  strutlib_result_free(result);
+  result = strutlib_sweep(scene, 1, axes, 2, points, NULL, 0, NULL, 0, NULL, NULL, NULL, NULL, NULL,
+                          &error);
+  if (!result) return failed(error);
+  strutlib_result_free(result);
+  if (strutlib_open_text("wrong", wrong, sizeof wrong - 1, 0, NULL, NULL, &error)) return 1;
+  strutlib_error_free(error);
+  int bad = simulate(scene);
+  strutlib_close(scene);
+  return bad;
+}
+
+int main(int count, char **arguments) {
+  int rounds = count == 2 ? atoi(arguments[1]) : 1;
+  for (int i = 0; i < rounds; i++)
+    if (go_round()) return 1;
+  return 0;
+}
