@@ -15,6 +15,7 @@ find /usr /etc -xdev | sort >before
 apt update
 apt install -y --no-install-recommends "$here"/strut_*.deb "$here"/strut-doc_*.deb
 strut --version
+strut examples | grep -q '^crawler/crawler.yaml ' || fail "strut examples does not list the crawler"
 model=/usr/share/strut/models/crawler/crawler.yaml
 strut run "$model" --accuracy 0.5% >said
 grep -q '10\.03 mm/s' said || { cat said; fail "the crawler has another velocity"; }
