@@ -15,6 +15,7 @@ find /usr /etc -xdev | sort >before
 apt update
 apt install -y --no-install-recommends "$here"/strut_*.deb "$here"/strut-doc_*.deb
 strut --version
+strut examples | grep -q '^crawler/crawler.yaml ' || fail "strut examples does not list the crawler"
 model=/usr/share/strut/models/crawler/crawler.yaml
 strut run "$model" --accuracy 0.5% >said
 grep -q '10\.03 mm/s' said || { cat said; fail "the crawler has another velocity"; }
@@ -57,6 +58,7 @@ cat >CMakeLists.txt <<'LIST'
 cmake_minimum_required(VERSION 3.25)
 project(user C)
 find_package(strut 0.1 REQUIRED)
+find_package(strut-abi 0.1 REQUIRED)
 add_executable(user user.c)
 target_link_libraries(user PRIVATE strut::parser strut::output strut::engine)
 add_executable(stable stable.c)
@@ -88,12 +90,14 @@ if has python3-strut; then
   find /usr/lib/python3/dist-packages/strut -name '*.pyc' | grep -q . || fail "Python's files are not compiled"
   python3 -c "
 import strut
-run = strut.load('$model').run()
-print(strut.__version__, run)"
+print(strut.__version__, strut.load('$model').run())" >said
+  grep -q '^0\.1' said || { cat said; fail "Python says something else"; }
 fi
 
 if has octave-strut; then
-  octave-cli --eval "s = strut_load('$model'); r = strut_run(s); disp(r)"
+  octave-cli --eval "r = strut_run(strut_load('$model'), 'accuracy', '0.5 %');
+    printf('%.2f\n', 1000 * r.summary.velocity)" >said
+  grep -qx '10\.03' said || { cat said; fail "Octave has another velocity"; }
 fi
 
 apt purge -y '*strut*'

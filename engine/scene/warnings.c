@@ -108,7 +108,7 @@ static void warn_of_rest_lengths(strut_checker *checker) {
 static void warn_of_depths(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   const strut_ground *g = &scene->ground;
-  double s = sin(g->slope), c = cos(g->slope), weight = 0.0, low[2], high[2];
+  double s = sin(g->slope), c = cos(g->slope), weight = 0.0, low[2] = {0.0}, high[2] = {0.0};
   named below = {0};
   double depth_of_first = 0.0;
   int32_t last = -1;
