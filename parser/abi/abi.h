@@ -344,7 +344,8 @@ typedef int (*strutlib_row)(void *context, size_t point, int status);
  * keep[0..keep_count): columns to keep, words as in a study's `keep`, or names of measured
  * quantities; none: the usual ones.
  * Options: "compute" (run, equilibria, modes, rigidity, path or form), "threads", "lanes"
- * (default automatic), and "limit_evaluations", "limit_time", "at", "lowest" as in a study.
+ * (default automatic), "limit_evaluations", "limit_time", "at", "lowest" as in a study, and those
+ * of method and model as of strutlib_run: "accuracy", "step", "integrator", "bars", ...
  * Arrays: each column of numbers by its name, of the axes first, (points) [SI]; "status"
  * (points): STRUTLIB_OK or why the point failed. Columns of words: strutlib_result_cell. A failed
  * point is a row of NAN with its status and message, no error. The bits of a row depend on its

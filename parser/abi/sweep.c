@@ -9,7 +9,9 @@
 #include "engine/study/sweep/sweep.h"
 #include "parser/abi/handles.h"
 #include "parser/abi/scratch.h"
+#include "parser/command/fidelity_settings.h"
 #include "parser/command/option_values.h"
+#include "parser/command/run_settings.h"
 #include "parser/write/write_scene.h"
 
 enum { MOST_THREADS = 4096, MOST_LANES = 8 };
@@ -19,6 +21,9 @@ static const char *const files[] = {slots_name, table_name, NULL};
 /* A sweep under way. Stays where it is. */
 typedef struct sweep {
   const strutlib_scene *scene;
+  strut_arguments options; /* of method and model, for each point; nobody listens */
+  strut_purpose purpose;
+  bool located; /* the error is there, with its places */
   strut_study study;
   strut_study_axis axis;
   const strut_declared **declared; /* (axis.column_count) */
@@ -188,6 +193,42 @@ static strut_status read_options(abi_call *call, sweep *s, strut_error *what) {
   return status;
 }
 
+/* Applies the options of method and model. */
+static strut_status apply_options(const strut_arguments *options, strut_setup *setup) {
+  strut_status status = strut_run_settings_apply(&abi_sweep_command, options, &setup->experiment);
+  return status ? status : strut_model_options_apply(&abi_sweep_command, options, &setup->scene);
+}
+
+static bool gives_options(const strut_arguments *a) {
+  static const strut_option_id ids[] = {STRUT_OPTION_ACCURACY,     STRUT_OPTION_BUDGET,
+                                        STRUT_OPTION_INTEGRATOR,   STRUT_OPTION_STEP,
+                                        STRUT_OPTION_TOLERANCE,    STRUT_OPTION_STEADY,
+                                        STRUT_OPTION_BARS,         STRUT_OPTION_MASS_MODEL,
+                                        STRUT_OPTION_FRICTION_LAW, STRUT_OPTION_DAMPING_LAW};
+  for (size_t i = 0; i < sizeof ids / sizeof ids[0]; i++)
+    if (strut_option_text(a, ids[i])) return true;
+  return false;
+}
+
+/* The same to the scene itself, so that what is wrong with them is said once. */
+static strut_status check_options(abi_call *call, sweep *s) {
+  const strut_arguments *a = &call->arguments;
+  bool later =
+      strut_option_text(a, STRUT_OPTION_ACCURACY) || strut_option_text(a, STRUT_OPTION_STEP);
+  bool run = s->study.compute == STRUT_COMPUTE_RUN;
+  strut_setup setup;
+  s->purpose = !run ? STRUT_FOR_ANY : later ? STRUT_FOR_RUN_STEP_LATER : STRUT_FOR_RUN;
+  s->options = *a;
+  s->options.listener = NULL;
+  if (!gives_options(a)) return STRUT_OK;
+  strut_status status = abi_setup(s->scene, s->purpose, &setup, call->error);
+  s->located = status != STRUT_OK;
+  if (status != STRUT_OK) return status;
+  status = apply_options(a, &setup);
+  strut_setup_free(&setup);
+  return status;
+}
+
 /* ---- scenes of points; called from several threads ---- */
 
 static bool is_axis(const sweep *s, const char *name) {
@@ -222,9 +263,8 @@ static strut_status setup_of(void *context, const strut_study_value *values, str
   if (!settings) return strut_no_memory(error, "");
   size_t count = fill_settings(s, values, settings, (char(*)[STRUT_NUMBER_TEXT])(settings + most));
   strut_diagnostics found = {0};
-  strut_status status = strut_scene_source_read(
-      s->scene->source->tree, settings, count,
-      s->study.compute == STRUT_COMPUTE_RUN ? STRUT_FOR_RUN : STRUT_FOR_ANY, &found, setup);
+  strut_status status =
+      strut_scene_source_read(s->scene->source->tree, settings, count, s->purpose, &found, setup);
   if (status == STRUT_BAD_SCENE) {
     const strut_diagnostic *first = &found.items[0];
     for (size_t i = 1; i < found.count; i++)
@@ -237,6 +277,10 @@ static strut_status setup_of(void *context, const strut_study_value *values, str
   }
   strut_diagnostics_free(&found);
   strut_release(settings);
+  if (status == STRUT_OK && (status = apply_options(&s->options, setup)) != STRUT_OK) {
+    strut_fail(error, status, "the options do not fit the scene of this point");
+    strut_setup_free(setup);
+  }
   return status;
 }
 
@@ -412,12 +456,13 @@ strutlib_result *strutlib_sweep(const strutlib_scene *scene, size_t axis_count,
     s.study.quantities = strut_arena_allocate(&s.arena, keep_count, sizeof *s.study.quantities);
     if (!s.study.quantities) status = strut_no_memory(&what, "");
     if (status == STRUT_OK) status = read_options(&call, &s, &what);
+    if (status == STRUT_OK) status = check_options(&call, &s);
     if (status == STRUT_OK)
       status = add_axes(&s, axis_count, axes, point_count, points, words, &what);
     for (size_t i = 0; i < keep_count && status == STRUT_OK; i++)
       status = add_kept(&s, keep[i], &what);
     if (status == STRUT_OK) status = run_sweep(&s, result, &what);
-    if (status != STRUT_OK) abi_call_fail(&call, status, &what);
+    if (status != STRUT_OK && !s.located) abi_call_fail(&call, status, &what);
   }
   strut_sweep_plan_free(&s.plan);
   strut_arena_free(&s.arena);

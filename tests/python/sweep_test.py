@@ -38,6 +38,17 @@ class Sweeps(unittest.TestCase):
     def setUp(self) -> None:
         self.scene = strut.loads(quick_crawler())
 
+    def test_options_of_method_and_model_are_those_of_run(self):
+        for options in ({"accuracy": "1 %"}, {"integrator": "verlet", "step": "30 us"},
+                        {"integrator": "rk4-events", "friction_law": "coulomb"}):
+            table = self.scene.sweep({"friction": [0.1, 0.3]}, keep=["velocity"], **options)
+            wanted = [self.scene(friction=f).run(**options).velocity for f in (0.1, 0.3)]
+            self.assertEqual(list(table["velocity"]), wanted, options)
+        for options, text in (({"integrator": "rk5"}, "rk4"), ({"accuracy": "-1"}, "accuracy"),
+                              ({"tolerance": "1 kg"}, "tolerance"), ({"bars": "soft"}, "rigid")):
+            with self.assertRaisesRegex(strut.UsageError, text):
+                self.scene.sweep({"friction": [0.1, 0.3]}, keep=["velocity"], **options)
+
     def test_the_table_has_the_bits_of_the_programs(self):
         table = self.scene.sweep(AXES, keep=["velocity", "outcome", "work"])
         with tempfile.TemporaryDirectory() as folder:
