@@ -142,7 +142,8 @@ strut_status strut_stepping_advance(strut_stepping *s, int64_t steps, strut_erro
     strut_status valid = strut_stepping_inputs_apply(&s->inputs, s->model, &s->run, error);
     if (valid != STRUT_OK) return valid;
   }
-  strut_status status = step_to(s, s->run.state->step + steps);
+  int64_t done = s->run.state->step, most = INT64_MAX - done;
+  strut_status status = step_to(s, done + (steps < most ? steps : most));
   refresh(s);
   if (status == STRUT_OK) return STRUT_OK;
   if (error) *error = s->error;

@@ -3,8 +3,10 @@
  * Simulations: the steps of a run however they are divided, snapshots that go on with the same bits, inputs
  * that are events, and a ledger that closes over all of it.
  */
+#include <limits.h>
 #include <math.h>
 #include <setjmp.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -13,6 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strut/abi.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -295,8 +298,36 @@ static void a_divergence_stays_until_a_restore(void **unused) {
   strutlib_close(scene);
 }
 
+static strutlib_control *control;
+
+static void interrupt(int signal) {
+  (void)signal;
+  strutlib_interrupt(control);
+}
+
+/* The largest number of steps is a number of steps, which an interrupt ends. */
+static void an_endless_advance_can_be_interrupted(void **unused) {
+  (void)unused;
+  strutlib_error *error;
+  strutlib_scene *scene = open_for("rk4");
+  control = strutlib_control_create();
+  strutlib_simulation *s = strutlib_simulation_open(scene, 0, NULL, NULL, control, &error);
+  assert_non_null(s);
+  advance(s, 3);
+  double before = strutlib_simulation_time(s);
+  signal(SIGALRM, interrupt);
+  alarm(1);
+  assert_int_equal(strutlib_simulation_advance(s, LONG_MAX, &error), STRUTLIB_INTERRUPTED);
+  strutlib_error_free(error);
+  assert_true(strutlib_simulation_time(s) > before);
+  strutlib_simulation_close(s);
+  strutlib_control_free(control);
+  strutlib_close(scene);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(an_endless_advance_can_be_interrupted),
       cmocka_unit_test(steps_do_not_depend_on_their_division),
       cmocka_unit_test(steps_are_those_of_a_run),
       cmocka_unit_test(a_snapshot_goes_on_with_the_same_bits),
