@@ -50,23 +50,9 @@ static void release(void *detail) { strut_release(detail); }
 
 /* ---- the study ---- */
 
-static const char *parameter_at(const void *context, size_t i) {
-  size_t count;
-  const strut_declared *all = strut_scene_source_parameters(context, &count);
-  return i < count ? all[i].name : NULL;
-}
-
-static const strut_declared *declaration_of(const strut_scene_source *source, const char *name) {
-  size_t count;
-  const strut_declared *all = strut_scene_source_parameters(source, &count);
-  for (size_t i = 0; i < count; i++)
-    if (strcmp(all[i].name, name) == 0) return &all[i];
-  return NULL;
-}
-
 static strut_status refuse_parameter(const strut_scene_source *source, const char *name,
                                      strut_error *what) {
-  const char *near = strut_did_you_mean(name, parameter_at, source);
+  const char *near = strut_did_you_mean(name, strut_scene_source_parameter_name, source);
   return strut_fail(what, STRUT_USAGE, "the scene has no parameter '%s'%s%s%s", name,
                     near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
 }
@@ -76,7 +62,7 @@ static strut_status add_axis(sweep *s, size_t k, const char *name, const double 
                              const char *const *words, strut_error *what) {
   size_t count = (size_t)s->axis.count, axes = s->axis.column_count;
   const strut_scene_source *source = s->scene->source->tree;
-  const strut_declared *d = declaration_of(source, name);
+  const strut_declared *d = strut_scene_source_parameter(source, name);
   if (!d) return refuse_parameter(source, name, what);
   strut_study_column *c = &s->axis.columns[k];
   *c = (strut_study_column){.name = d->name,

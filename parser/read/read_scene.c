@@ -328,6 +328,18 @@ const strut_declared *strut_scene_source_parameters(const strut_scene_source *so
   return source->declared;
 }
 
+const strut_declared *strut_scene_source_parameter(const strut_scene_source *source,
+                                                   const char *name) {
+  for (size_t i = 0; i < source->count; i++)
+    if (strcmp(source->declared[i].name, name) == 0) return &source->declared[i];
+  return NULL;
+}
+
+const char *strut_scene_source_parameter_name(const void *context, size_t i) {
+  const strut_scene_source *source = context;
+  return i < source->count ? source->declared[i].name : NULL;
+}
+
 bool strut_scene_source_uses_files(const strut_scene_source *source) {
   return source->used_count > 0;
 }

@@ -57,6 +57,11 @@ STRUT_API void strut_scene_source_free(strut_scene_source *source); /* NULL is a
 /** The *count parameters, in the text's order. */
 STRUT_API const strut_declared *strut_scene_source_parameters(const strut_scene_source *source,
                                                               size_t *count);
+/** The parameter of that name, or NULL. */
+STRUT_API const strut_declared *strut_scene_source_parameter(const strut_scene_source *source,
+                                                             const char *name);
+/** Name of the i-th parameter of a source, NULL after the last; for strut_did_you_mean. */
+STRUT_API const char *strut_scene_source_parameter_name(const void *source, size_t i);
 /** Does the text name files, which the tree has taken in? */
 STRUT_API bool strut_scene_source_uses_files(const strut_scene_source *source);
 /** The tree, which may be changed until the first scene is made. */

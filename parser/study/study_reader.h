@@ -24,6 +24,8 @@ const strut_declared *strut_study_parameter(strut_study_reader *r, const strut_t
  * Opens the model that the study names, once for each variant, lays their keys over it, and finds its
  * parameters.
  */
+/** A model that cannot be read may be the study itself, or another: then that is all there is to say. */
+bool strut_study_is_its_model(const strut_study_file *file);
 strut_status strut_study_open_sources(strut_study_reader *r, strut_fields *top, strut_error *error);
 /** Reads the axes into the study, and their columns. */
 void strut_study_read_axes(strut_study_reader *r, const strut_tree *list);

@@ -37,23 +37,12 @@ strut_status strut_study_open_model(const char *path, const strut_override *over
   return STRUT_OK;
 }
 
-/* Was what could not be read as a model a study? */
-static bool is_study(const strut_study_file *file) {
-  strut_document document = {0};
-  strut_diagnostics unsaid = {0};
-  strut_diagnostics_source(&unsaid, file->model_path, file->model_text, file->model_length);
-  strut_document_read(&document, &unsaid);
-  bool found = document.root && strut_tree_is_study(document.root);
-  strut_document_free(&document);
-  strut_diagnostics_free(&unsaid);
-  return found;
-}
-
 strut_status strut_study_open_either(const char *path, const strut_override *overrides,
                                      size_t override_count, strut_study_file *file,
                                      strut_error *error) {
   strut_status status = strut_study_open_model(path, overrides, override_count, file, error);
-  if (status != STRUT_BAD_SCENE || !file->model_text || !is_study(file)) return status;
+  if (status != STRUT_BAD_SCENE || !file->model_text || !strut_study_is_its_model(file))
+    return status;
   strut_study_close(file);
   return strut_study_open(path, overrides, override_count, file, error);
 }
@@ -88,23 +77,9 @@ __attribute__((format(printf, 4, 5))) static void find_fault(strut_request *r,
   f->text[f->count - 1] = whole ? whole : "out of memory";
 }
 
-static const char *parameter_name(const void *context, size_t i) {
-  size_t count;
-  const strut_declared *declared = strut_scene_source_parameters(context, &count);
-  return i < count ? declared[i].name : NULL;
-}
-
-static const strut_declared *find_parameter(const strut_scene_source *source, const char *name) {
-  size_t count;
-  const strut_declared *declared = strut_scene_source_parameters(source, &count);
-  for (size_t i = 0; i < count; i++)
-    if (strcmp(declared[i].name, name) == 0) return &declared[i];
-  return NULL;
-}
-
 bool strut_request_parameter(const strut_study_file *file, const strut_request *request,
                              const char *name, bool *text) {
-  const strut_declared *found = find_parameter(file->sources[request->source], name);
+  const strut_declared *found = strut_scene_source_parameter(file->sources[request->source], name);
   *text = found && found->text;
   return found != NULL;
 }
@@ -202,9 +177,9 @@ static void read_value(const strut_study_file *file, const strut_tree *key, stru
                        strut_request_findings *f) {
   const strut_tree *value = key->next;
   const strut_scene_source *source = file->sources[r->source];
-  const strut_declared *parameter = find_parameter(source, key->text);
+  const strut_declared *parameter = strut_scene_source_parameter(source, key->text);
   if (!parameter) {
-    const char *near = strut_did_you_mean(key->text, parameter_name, source);
+    const char *near = strut_did_you_mean(key->text, strut_scene_source_parameter_name, source);
     find_fault(r, f, key->place, "the model has no parameter '%.80s'%s%s%s", key->text,
                near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
     return;
@@ -299,7 +274,8 @@ strut_status strut_request_read(const strut_study_file *file, const strut_tree *
   }
   const strut_tree *set = strut_tree_find(tree, "set", NULL);
   bool whole = set && set->kind == STRUT_TREE_MAP;
-  bool named = !whole && find_parameter(file->sources[0], "id"); /* it is no identifier */
+  bool named =
+      !whole && strut_scene_source_parameter(file->sources[0], "id"); /* it is no identifier */
   if (!named) read_id(strut_tree_find(tree, "id", NULL), r, f);
   if (whole)
     read_choices(file, tree, r, f);
@@ -345,7 +321,7 @@ static strut_setting *list_settings(const strut_study_file *file, strut_request 
     strut_setting *s = &settings[n++];
     *s = (strut_setting){.name = v->name, .text = v->text, .place = v->place};
     s->place.line |= REQUEST_LINE;
-    if (v->number) set_number(r, v, find_parameter(source, v->name), s, f);
+    if (v->number) set_number(r, v, strut_scene_source_parameter(source, v->name), s, f);
   }
   *count = n;
   return settings;
