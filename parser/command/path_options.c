@@ -95,17 +95,6 @@ static const strut_parameter *find_parameter(const strut_scene *scene, const cha
   return NULL;
 }
 
-/* "node.x" as 2 node, "node.y" as 2 node + 1; -1: no such node. */
-static int32_t find_coordinate(const strut_scene *scene, const char *name) {
-  const char *dot = strrchr(name, '.');
-  if (!dot || (strcmp(dot, ".x") != 0 && strcmp(dot, ".y") != 0)) return -1;
-  size_t length = (size_t)(dot - name);
-  for (size_t i = 0; i < scene->node_count; i++)
-    if (strlen(scene->nodes[i].name) == length && strncmp(scene->nodes[i].name, name, length) == 0)
-      return (int32_t)(2 * i) + (dot[1] == 'y');
-  return -1;
-}
-
 static int32_t find_actuator(const strut_scene *scene, const char *name) {
   for (size_t i = 0; i < scene->actuator_count; i++)
     if (strcmp(scene->actuators[i].name, name) == 0) return (int32_t)i;
@@ -178,7 +167,7 @@ static strut_status choose_followed(const strut_command *command, const strut_ar
     return STRUT_OK;
   }
   wanted->over = STRUT_PATH_OVER_COORDINATE;
-  wanted->index = find_coordinate(scene, name);
+  wanted->index = strut_path_coordinate(scene, name);
   return wanted->index >= 0 ? STRUT_OK : reject_name(command, arguments, scene, name);
 }
 

@@ -368,3 +368,13 @@ void strut_path_free(strut_path *path) {
   strut_arena_free(&path->arena);
   *path = (strut_path){0};
 }
+
+int32_t strut_path_coordinate(const strut_scene *scene, const char *name) {
+  const char *dot = strrchr(name, '.');
+  if (!dot || (strcmp(dot, ".x") != 0 && strcmp(dot, ".y") != 0)) return -1;
+  size_t length = (size_t)(dot - name);
+  for (size_t i = 0; i < scene->node_count; i++)
+    if (strlen(scene->nodes[i].name) == length && strncmp(scene->nodes[i].name, name, length) == 0)
+      return (int32_t)(2 * i) + (dot[1] == 'y');
+  return -1;
+}

@@ -117,6 +117,8 @@ typedef struct strut_path_options {
   int32_t steps; /* maximum number of steps; 0: 400 */
 } strut_path_options;
 
+/** The coordinate that a path may be driven by: "node.x" is 2 node, "node.y" 2 node + 1; -1: none. */
+STRUT_API int32_t strut_path_coordinate(const strut_scene *scene, const char *name);
 /**
  * Begins at an equilibrium of the structure where the parameter is `from`: of loads, that without
  * them unless from says more. Everything else stays as it is. A free coordinate that is displaced

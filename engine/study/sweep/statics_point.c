@@ -236,17 +236,6 @@ static int32_t find_actuator(const strut_scene *scene, const char *name) {
   return -1;
 }
 
-/* "node.x" as 2 node, "node.y" as 2 node + 1; -1: no such node. */
-static int32_t find_coordinate(const strut_scene *scene, const char *name) {
-  const char *dot = strrchr(name, '.');
-  if (!dot || (strcmp(dot, ".x") != 0 && strcmp(dot, ".y") != 0)) return -1;
-  size_t length = (size_t)(dot - name);
-  for (size_t i = 0; i < scene->node_count; i++)
-    if (strlen(scene->nodes[i].name) == length && strncmp(scene->nodes[i].name, name, length) == 0)
-      return (int32_t)(2 * i) + (dot[1] == 'y');
-  return -1;
-}
-
 static const char *unit_of_actuator(const strut_actuator *a) {
   return a->member >= 0 ? "m" : a->hinge >= 0 ? "rad" : "N/m";
 }
@@ -267,7 +256,7 @@ static strut_status choose_path(const strut_study *study, const strut_scene *sce
     if (to->index >= 0) *unit = unit_of_actuator(&scene->actuators[to->index]);
     if (to->index < 0) {
       to->over = STRUT_PATH_OVER_COORDINATE;
-      to->index = find_coordinate(scene, study->path_over);
+      to->index = strut_path_coordinate(scene, study->path_over);
       *unit = "m";
     }
     if (to->index < 0)
