@@ -156,6 +156,7 @@ static void put_two_numbers(schema *s) { put_list(s, 2, 2, put_number); }
 static void put_touching(schema *s) { put_member(s, "enum", "[\"touching\"]"); }
 static void put_values(schema *s) { put_list(s, 0, 0, put_scalar); }
 static void put_range(schema *s) { put_section(s, STRUT_SECTION_RANGE); }
+static void put_variable(schema *s) { put_section(s, STRUT_SECTION_VARIABLE); }
 static void put_points(schema *s) { put_section(s, STRUT_SECTION_POINTS); }
 static void put_along(schema *s) { put_either(s, "array", put_values, put_range); }
 
@@ -270,6 +271,14 @@ static void put_thing(schema *s, const strut_key *key) {
       plain[i].put(s);
       return;
     }
+  if (key == strut_key_at(STRUT_KEY_SEARCH_OVER)) {
+    put_either(s, "array", put_values, put_variable);
+    return;
+  }
+  if (key == strut_key_at(STRUT_KEY_SEARCH_WORST_OVER)) {
+    put_along(s);
+    return;
+  }
   for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
     if (strcmp(others[i].name, key->name) == 0) {
       put_section(s, others[i].section);
