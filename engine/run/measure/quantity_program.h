@@ -10,7 +10,8 @@
 
 /** Evaluates a program; `index` (length): position of each column in `value`. */
 STRUT_API double strut_quantity_program_evaluate(const strut_quantity_definition *definition,
-                                       const size_t *index, const double *value, double *stack);
+                                                 const size_t *index, const double *value,
+                                                 double *stack);
 
 /** Size of a term, and two uncertainties that propagate alike. */
 typedef struct strut_magnitude {

@@ -40,8 +40,8 @@ typedef struct strut_search_outcome {
   int64_t evaluations, repeated, failed, feasible, valueless; /* valueless: the goal has no value */
   double top[STRUT_SEARCH_LATEST];                            /* the best objectives, best first */
   size_t top_count;
-  bool constant;       /* all objectives are the same */
-  double least, most;  /* objectives of all points, feasible or not */
+  bool constant;      /* all objectives are the same */
+  double least, most; /* objectives of all points, feasible or not */
 } strut_search_outcome;
 
 /** A point beside the best one, along one variable. */

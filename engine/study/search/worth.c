@@ -43,8 +43,8 @@ static int32_t count_agreeing(const strut_search_result *r, size_t best) {
     const strut_search_outcome *o = &r->outcomes[i];
     double apart = fabs(o->best.objective - first->best.objective);
     bool alike = (o->best.violation > 0.0) == (first->best.violation > 0.0);
-    count += o->outer == first->outer && o->best.evaluation >= 0 && alike &&
-             apart <= AGREEING * size;
+    count +=
+        o->outer == first->outer && o->best.evaluation >= 0 && alike && apart <= AGREEING * size;
   }
   return count;
 }
