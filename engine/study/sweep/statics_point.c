@@ -464,6 +464,7 @@ strut_status strut_statics_point(const strut_sweep_worker *w, strut_sweep_job *j
   if (!r) return strut_fail(&job->error, STRUT_NO_MEMORY, "out of memory");
   strut_status status = strut_model_compile(&job->setup.scene, &model, &job->error);
   r->model = model;
+  job->setup.experiment.interrupt = strut_sweep_interrupt_of(w, job);
   strut_sweep_fill_counts(w->plan, model, &job->cells);
   if (!status) status = compute(w, job, r);
   if (!status) fill_columns(w->plan, r, &job->cells);
