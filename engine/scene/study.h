@@ -140,7 +140,9 @@ enum {
   X(DENSITY_CHANGE, "density_change", STRUT_OF_FORM)                                               \
   X(LEAST_TENSION, "least_tension", STRUT_OF_FORM)                                                 \
   X(LARGEST_FORCE, "largest_force", STRUT_OF_FORM)                                                 \
-  X(LENGTHS, "lengths", STRUT_OF_FORM)
+  X(LENGTHS, "lengths", STRUT_OF_FORM)                                                             \
+  X(COST, "cost_of_transport", STRUT_OF_RUN)                                                       \
+  X(LOWEST_BARRIER, "lowest_barrier", STRUT_OF_EQUILIBRIA)
 
 typedef enum strut_keep {
 #define STRUT_KEEP_ENUM(name, word, of) STRUT_KEEP_##name,
@@ -213,11 +215,12 @@ typedef struct strut_study {
   int64_t limit_evaluations; /* of the forces, in each run of a point; 0: any number */
   double limit_time;         /* of a point [s], by the clock; 0: any */
   /* Refinement of a map: the two axes then have the values of the finest grid. */
-  int32_t refine_depth;       /* halvings of the axes' steps; 0: no refinement */
-  const char *refine_where;   /* column whose value decides which cells are divided */
-  double refine_by;           /* by how much its numbers must differ, in SI */
-  size_t refine_axes[2];      /* the axes, in their order */
-  strut_study_search *search; /* NULL: the points are all of the axes */
+  int32_t refine_depth;     /* halvings of the axes' steps; 0: no refinement */
+  const char *refine_where; /* column whose value decides which cells are divided */
+  double refine_by;         /* by how much its numbers must differ, in SI */
+  size_t refine_axes[2];    /* the axes, in their order */
+  /* What is searched; NULL: the points are all of the axes. */
+  strut_study_search *search;
 } strut_study;
 
 #endif
