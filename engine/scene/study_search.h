@@ -24,7 +24,8 @@
   X(COBYLA, "cobyla")                                                                              \
   X(BOBYQA, "bobyqa")                                                                              \
   X(SBPLX, "sbplx")                                                                                \
-  X(NELDERMEAD, "neldermead")
+  X(NELDERMEAD, "neldermead")                                                                      \
+  X(CMA, "cma")
 
 typedef enum strut_search_method {
 #define STRUT_SEARCH_METHOD_ENUM(name, word) STRUT_SEARCH_##name,

@@ -73,7 +73,7 @@ OVER = "over: {stiffness: {from: 10 N/m, to: 1000 N/m, scale: log}}"
 
 for method, evaluations, within in (("crs2", 120, 1e-6), ("direct", 120, 1e-4), ("isres", 200, 0.05),
                                     ("cobyla", 80, 1e-5), ("bobyqa", 80, 0.01), ("sbplx", 80, 1e-5),
-                                    ("neldermead", 80, 1e-5)):
+                                    ("neldermead", 80, 1e-5), ("cma", 150, 1e-4)):
     found = search(method, f"search: {{{GOAL}, {OVER}, method: {method}, "
                    f"evaluations: {evaluations}}}\n")["best"][0]
     value = found["values"]["stiffness"]
@@ -94,6 +94,10 @@ for threads in ("2", "8"):
     for name in ("table.csv", "best.csv", "best.yaml", "points.slots"):
         check(read("one", name) == read("several" + threads, name),
               f"{threads} threads change {name}")
+GENERATIONS = f"search: {{{GOAL}, {OVER}, method: cma, starts: 2, evaluations: 70}}\n"
+search("cma1", GENERATIONS, "--threads", "1", "--lanes", "1")
+search("cma8", GENERATIONS, "--threads", "8")
+check(read("cma1", "table.csv") == read("cma8", "table.csv"), "threads change generations")
 before = read("one", "table.csv")
 again = search("one", SEVERAL)
 check(again["computed"] == 0 and read("one", "table.csv") == before, "a search was computed again")

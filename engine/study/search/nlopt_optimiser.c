@@ -43,7 +43,9 @@ static const struct method_row {
     [STRUT_SEARCH_NELDERMEAD] = {NLOPT_LN_NELDERMEAD, false, false},
 };
 
-bool strut_search_knows_conditions(strut_search_method method) { return rows[method].conditions; }
+bool strut_search_knows_conditions(strut_search_method method) {
+  return method != STRUT_SEARCH_CMA && rows[method].conditions;
+}
 
 /* Asks for a point, unless it is the latest one. */
 static double look_at(nlopt_search *s, const double *point) {
@@ -181,7 +183,8 @@ static bool spread(nlopt_search *s) {
   return true;
 }
 
-bool strut_search_optimise(const strut_search_task *task, const strut_search_asker *asker) {
+bool strut_search_optimise_by_nlopt(const strut_search_task *task,
+                                    const strut_search_asker *asker) {
   size_t n = task->dimension;
   nlopt_search s = {.task = task, .asker = asker, .least = HUGE_VAL};
   double *block = strut_allocate(2 * n + task->conditions + 1, sizeof *block);

@@ -39,5 +39,7 @@ typedef struct strut_search_task {
 bool strut_search_knows_conditions(strut_search_method method);
 /** Runs to the end. To be called in a thread of its own: random numbers are the thread's. False: no memory. */
 bool strut_search_optimise(const strut_search_task *task, const strut_search_asker *asker);
+/** The same of methods of NLopt, in nlopt_optimiser.c. */
+bool strut_search_optimise_by_nlopt(const strut_search_task *task, const strut_search_asker *asker);
 
 #endif
