@@ -153,11 +153,13 @@ typedef enum strut_keep {
 
 /** Kinds of figures, in the order of the language. */
 typedef enum strut_study_figure_kind {
-  STRUT_FIGURE_LINES,    /* of the table: x, y, series */
-  STRUT_FIGURE_MAP,      /* of the table: x, y, color */
-  STRUT_FIGURE_MOTION,   /* lines of recorded runs, node by node */
-  STRUT_FIGURE_PERIOD,   /* node trajectories over the last period of each run */
-  STRUT_FIGURE_SNAPSHOTS /* shapes of each run */
+  STRUT_FIGURE_LINES,     /* of the table: x, y, series */
+  STRUT_FIGURE_MAP,       /* of the table: x, y, color */
+  STRUT_FIGURE_MOTION,    /* lines of recorded runs, node by node */
+  STRUT_FIGURE_PERIOD,    /* node trajectories over the last period of each run */
+  STRUT_FIGURE_SNAPSHOTS, /* shapes of each run */
+  STRUT_FIGURE_BEST,      /* of a search: the best objective over evaluations */
+  STRUT_FIGURE_POINTS     /* of a search: its points over x and y, by color */
 } strut_study_figure_kind;
 
 /** Colour scale of a map, as strut_colours of the figures. */

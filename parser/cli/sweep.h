@@ -116,6 +116,11 @@ strut_status strut_sweep_search_report(const strut_sweep_plan *plan,
                                        const strut_sweep_state *state, const char *table,
                                        bool json);
 
+/** Draws a figure of a search, of its table, into the file `path`. */
+strut_status strut_sweep_search_figure(const strut_sweep_plan *plan,
+                                       const strut_study_figure *figure, const char *path,
+                                       const strut_table *table, double width, strut_error *error);
+
 /** Prints the script for the study of that name. */
 strut_status strut_sweep_emit(const strut_arguments *arguments, const char *name);
 
