@@ -12,8 +12,8 @@
 typedef struct tracker {
   const strut_study_search *search;
   const strut_table *table;
-  int number, evaluation, objective, violation; /* columns */
-  size_t outer;                                 /* columns of the axes before the searches */
+  int number, evaluation, objective, second, violation; /* columns */
+  size_t outer; /* columns of the axes before the searches */
 } tracker;
 
 static int find(const strut_table *table, const char *name) {
@@ -45,12 +45,12 @@ static bool same_evaluation(const tracker *t, size_t a, size_t b) {
 }
 
 /* The worst of the scenarios from `row` on, NAN where a condition is broken; *next: the row behind. */
-static double judge(const tracker *t, size_t row, size_t *next) {
-  double worst = value_at(t, t->objective, row);
+static double judge(const tracker *t, int column, size_t row, size_t *next) {
+  double worst = value_at(t, column, row);
   bool broken = false;
   size_t i = row;
   for (; i < t->table->row_count && same_evaluation(t, row, i); i++) {
-    double value = value_at(t, t->objective, i);
+    double value = value_at(t, column, i);
     bool worse = t->search->maximise ? value < worst : value > worst;
     if (worse || isnan(value)) worst = value;
     broken = broken || isnan(value) || value_at(t, t->violation, i) > 0.0;
@@ -65,6 +65,7 @@ static tracker track(const strut_sweep_plan *plan, const strut_table *table) {
                .number = find(table, "search"),
                .evaluation = find(table, "evaluation"),
                .objective = find(table, "objective"),
+               .second = find(table, "objective_2"),
                .violation = find(table, "violation")};
   for (size_t i = 0; i < t.search->axis; i++) t.outer += plan->study->axes[i].column_count;
   return t;
@@ -79,7 +80,7 @@ static void follow(const tracker *t, double *best, bool *shown, bool *marked) {
     bool begins = row == 0 || !same_search(t, row - 1, row);
     if (begins && any) marked[at] = true;
     if (begins) so_far = (double)NAN, any = false;
-    double value = judge(t, row, &next);
+    double value = judge(t, t->objective, row, &next);
     bool proper = value_at(t, t->number, row) > 0.0;
     if (proper && isfinite(value) &&
         (isnan(so_far) || (t->search->maximise ? value > so_far : value < so_far)))
@@ -90,6 +91,29 @@ static void follow(const tracker *t, double *best, bool *shown, bool *marked) {
     }
   }
   if (any) marked[at] = true;
+}
+
+/* Marks the points that no other of the same axes beats in both goals. */
+static bool mark_front(const tracker *t, const bool *shown, bool *marked, strut_arena *arena) {
+  size_t rows = t->table->row_count, next;
+  double sign = t->search->maximise ? -1.0 : 1.0;
+  double(*goal)[2] = strut_arena_allocate(arena, rows, sizeof *goal);
+  for (size_t i = 0; goal && i < rows; i++) {
+    marked[i] = false;
+    if (!shown[i]) continue;
+    goal[i][0] = sign * judge(t, t->objective, i, &next);
+    goal[i][1] = sign * judge(t, t->second, i, &next);
+    marked[i] = !isnan(goal[i][0]) && !isnan(goal[i][1]);
+  }
+  for (size_t i = 0; goal && i < rows; i++)
+    for (size_t k = 0; k < rows && marked[i]; k++) {
+      bool same = shown[k];
+      for (size_t c = 1; c <= t->outer && same; c++) same = same_text(t, c, i, k);
+      bool better = same && goal[k][0] <= goal[i][0] && goal[k][1] <= goal[i][1] &&
+                    (goal[k][0] < goal[i][0] || goal[k][1] < goal[i][1]);
+      if (better) marked[i] = false;
+    }
+  return goal != NULL;
 }
 
 /* A column of the rows that are shown. */
@@ -155,6 +179,10 @@ strut_status strut_sweep_search_figure(const strut_sweep_plan *plan, const strut
     return strut_no_memory(error, "while drawing");
   }
   follow(&t, best, shown, marked);
+  if (t.second >= 0 && !mark_front(&t, shown, marked, &own.arena)) {
+    strut_arena_free(&own.arena);
+    return strut_no_memory(error, "while drawing");
+  }
   strut_table_choice choice = STRUT_TABLE_ALL;
   choice.only = choose(&t, f->only, &choice.only_value, shown);
   if (f->kind == STRUT_FIGURE_BEST) {

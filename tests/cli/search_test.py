@@ -187,6 +187,32 @@ for item, mass in zip(found["best"], (1, 2, 3)):
 check(len(rows("outer", "best.csv")) == 3 and os.path.exists(path("outer", "best-3.yaml")),
       "one best for each point of the axes")
 
+# ---- two goals: the front has a formula, |f - 1 Hz| + |f - 2 Hz| = 1 Hz between the two ----
+
+PARETO = ("search: {minimise: [abs(frequency_1 - 1 Hz), abs(frequency_1 - 2 Hz)], over: {stiffness: "
+          "{from: 10 N/m, to: 1000 N/m, scale: log}, mass: {from: 1, to: 2}}, evaluations: 150}\n"
+          "figures: {front: {kind: points, x: objective, y: objective_2, color: mass}}\n")
+found = search("pareto", PARETO)
+front = found["fronts"][0]
+check(len(front) > 20 and found["best"] == [], f"a front of {len(front)} points")
+for point in front:
+    check(abs(point["objective"] + point["objective_2"] - 1) < 1e-9, f"off the front: {point}")
+check(front[0]["objective"] < 0.05 and front[-1]["objective"] > 0.95, f"the front ends at {front[-1]}")
+check(len(rows("pareto", "best.csv")) == len(front), "best.csv is not the front")
+check(b"<svg" in read("pareto", "front.svg"), "no figure of the front")
+mode = json.loads(run("modes", "pareto/best.yaml", "--json").stdout)["modes"][0]["frequency"]
+check(abs(mode - 1.5) < 0.1, f"the compromise of the front has {mode} Hz")
+search("pareto1", PARETO, "--threads", "1")
+check(read("pareto", "table.csv") == read("pareto1", "table.csv"), "threads change a front")
+
+# ---- figures ----
+
+search("drawn", "axes: [{mass: [1 kg, 2 kg]}]\nsearch: {" + GOAL + ", " + OVER + ", starts: 2, "
+       "evaluations: 30}\nfigures: {best: {kind: best, only: mass=2}, "
+       "points: {kind: points, x: stiffness, y: frequency_1, only: mass=1}}\n")
+for name in ("best.svg", "points.svg"):
+    check(b"<svg" in read("drawn", name), f"no {name}")
+
 # ---- what cannot be found is told ----
 
 found = search("never", f"search: {{{GOAL}, {OVER}, subject_to: [frequency_1 < 0.1 Hz], "
@@ -236,6 +262,10 @@ for condition, text in (("frequency_1 < 1 kg", "compared"), ("at < 2", "texts"),
            "refused.yaml:6:", text)
 refuse("search: {" + GOAL + ", " + OVER + ", method: direct, starts: 3}\n", "refused.yaml:6:",
        "no seed")
+refuse("search: {minimise: [at], " + OVER + "}\n", "a list of two")
+refuse("search: {minimise: [frequency_1, frequency_2], " + OVER + ", method: cma}\n", "nsga2")
+refuse("search: {" + GOAL + ", " + OVER + ", method: nsga2}\n", "two goals")
+refuse("axes: [{mass: [1, 2]}]\nfigures: {a: {kind: best}}\n", "is of a search")
 refuse("search: {" + GOAL + ", " + OVER + ", evaluations: 0}\n", "refused.yaml:6:", "evaluations")
 refuse("axes: [{stiffness: [1, 2]}]\nsearch: {" + GOAL + ", " + OVER + "}\n", "given twice")
 refuse("axes: [{mass: [1, 2]}]\nrefine: {where: at, depth: 1}\nsearch: {" + GOAL + ", " + OVER +
