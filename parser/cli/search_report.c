@@ -39,9 +39,9 @@ static void add_value(strut_buffer *b, strut_study_value value, const char *unit
 static void add_change(report *r, const strut_search_outcome *o, double change, bool sign) {
   double size = strut_search_size(o);
   if (size > 0.0)
-    strut_buffer_add(&r->text, sign ? "%+.2g %%" : "%.2g %%", 100.0 * change / size);
+    strut_buffer_add(&r->text, sign ? "%+.3g %%" : "%.3g %%", 100.0 * change / size);
   else
-    strut_buffer_add(&r->text, sign ? "%+.2g%s%s" : "%.2g%s%s", change,
+    strut_buffer_add(&r->text, sign ? "%+.3g%s%s" : "%.3g%s%s", change,
                      *unit_of(r->search->goal.program.unit) ? " " : "",
                      unit_of(r->search->goal.program.unit));
 }

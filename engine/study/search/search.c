@@ -253,7 +253,8 @@ static double told(const conductor *c, search *s, const known *k, bool second) {
 
 double strut_search_size(const strut_search_outcome *o) {
   double size = fabs(o->best.objective);
-  return size >= 1e-4 * (o->most - o->least) ? size : 0.0;
+  double last = o->top_count ? fabs(o->top[o->top_count - 1]) : size;
+  return size >= 0.05 * last ? size : 0.0;
 }
 
 /* Why the search must end now, if it must. */

@@ -88,8 +88,8 @@ STRUT_API void strut_search_values(const strut_sweep_plan *plan, int64_t point,
                                    const strut_study_value *values, strut_study_value *all);
 
 /**
- * The size that changes of a best objective are compared with: its own, or 0 where it is less than
- * 1e-4 of the range of all objectives of its search, as that of a difference which vanishes.
+ * The size that changes of a best objective are compared with: its own, or 0 where it is far below that of the
+ * tenth best, as that of a difference which vanishes.
  */
 STRUT_API double strut_search_size(const strut_search_outcome *outcome);
 
