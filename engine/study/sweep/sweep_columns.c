@@ -213,7 +213,7 @@ static void choose_of_run(strut_sweep_plan *plan, const strut_setup *setup, bool
   plan->keep = usual ? USUAL : study->keep;
   if (usual && !shapes) plan->keep &= ~BIT(OUTCOME);
   plan->start = usual && setup->experiment.settle.wanted;
-  plan->check = study->half_step || study->check_accuracy > 0.0;
+  plan->check = !study->search && (study->half_step || study->check_accuracy > 0.0);
   if (plan->check && shapes) plan->keep |= BIT(OUTCOME);
   if (plan->check && !shapes) plan->keep |= BIT(MOTION);
   plan->flips = plan->check && shapes;
@@ -232,9 +232,14 @@ static strut_status choose_columns(strut_sweep_plan *plan, const strut_setup *se
     if (status) return status;
   }
   size_t quantities = setup->experiment.quantity_count;
+<<<<<<< HEAD
   size_t most = plan->axis_columns + ENTRIES + COUNTS + STRUT_STATICS_COLUMNS + 5 +
                 2 * scene->contact_count + 2 * scene->node_count + scene->member_count +
                 2 * quantities;
+=======
+  size_t most = plan->axis_columns + ENTRIES + COUNTS + STRUT_STATICS_COLUMNS + 7 +
+                2 * scene->contact_count + 2 * scene->node_count + scene->member_count + quantities;
+>>>>>>> ready-search
   plan->column_capacity = most;
   plan->columns = strut_arena_allocate(&plan->arena, most, sizeof *plan->columns);
   plan->quantities = strut_arena_allocate(&plan->arena, quantities, sizeof *plan->quantities);
