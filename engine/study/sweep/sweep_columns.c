@@ -232,14 +232,9 @@ static strut_status choose_columns(strut_sweep_plan *plan, const strut_setup *se
     if (status) return status;
   }
   size_t quantities = setup->experiment.quantity_count;
-<<<<<<< HEAD
-  size_t most = plan->axis_columns + ENTRIES + COUNTS + STRUT_STATICS_COLUMNS + 5 +
+  size_t most = plan->axis_columns + ENTRIES + COUNTS + STRUT_STATICS_COLUMNS + 7 +
                 2 * scene->contact_count + 2 * scene->node_count + scene->member_count +
                 2 * quantities;
-=======
-  size_t most = plan->axis_columns + ENTRIES + COUNTS + STRUT_STATICS_COLUMNS + 7 +
-                2 * scene->contact_count + 2 * scene->node_count + scene->member_count + quantities;
->>>>>>> ready-search
   plan->column_capacity = most;
   plan->columns = strut_arena_allocate(&plan->arena, most, sizeof *plan->columns);
   plan->quantities = strut_arena_allocate(&plan->arena, quantities, sizeof *plan->quantities);
