@@ -2,6 +2,7 @@
 /* `strut sweep` of a study that searches. */
 #include <math.h>
 #include <stdio.h>
+#include <unistd.h>
 
 #include "engine/output/file.h"
 #include "engine/study/results/study_table.h"
@@ -185,6 +186,26 @@ static strut_status complete(const strut_arguments *arguments, strut_sweep_study
   return STRUT_DIVERGED;
 }
 
+strut_status strut_sweep_search_status(strut_slots *slots, const char *directory, bool json) {
+  char text[300];
+  strut_arena arena = {0};
+  const strut_slots_plan *plan = strut_slots_plan_of(slots);
+  const char *table = strut_arena_format(&arena, "%s/%s", directory, table_name);
+  if (!table) return strut_print_out_of_memory();
+  bool over = access(table, F_OK) == 0; /* written at the end */
+  long long failed = (long long)strut_slots_failed(slots);
+  long long done = (long long)(plan->count - strut_slots_missing(slots));
+  snprintf(text, sizeof text,
+           json ? "{\"points\": %lld, \"done\": %lld, \"failed\": %lld, \"finished\": %s}\n"
+                : "at most %lld points, %lld done, %lld of the done failed: %s\n",
+           (long long)plan->count, done, failed,
+           json   ? over ? "true" : "false"
+           : over ? "the searches are finished"
+                  : "the searches are not finished");
+  strut_arena_free(&arena);
+  return strut_print(text);
+}
+
 strut_status strut_sweep_search(const strut_arguments *arguments, strut_sweep_study *study,
                                 int threads, int lanes) {
   strut_slots *slots = NULL;
@@ -198,6 +219,8 @@ strut_status strut_sweep_search(const strut_arguments *arguments, strut_sweep_st
   if (!status) status = strut_directory_create(arguments->output, &error);
   if (!status) status = strut_shard_begin(arguments->output, (strut_shard){0}, &error);
   if (!status) status = strut_slots_open(path, &study->slots, &slots, &error);
+  if (!status && strut_slots_missing(slots) == strut_slots_plan_of(slots)->count)
+    strut_file_remove(arguments->output, table_name); /* of another search */
   if (!status)
     status = run_search(arguments, study, threads, lanes, slots, &state, &result, &error);
   strut_sweep_print_warnings(&state);
