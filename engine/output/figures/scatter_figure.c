@@ -96,5 +96,6 @@ strut_status strut_table_scatter(const char *path, const strut_scatter_figure *f
   find_colours(&s);
   draw(&s);
   status = strut_canvas_commit(s.canvas, error);
+  strut_canvas_free(s.canvas);
   return status;
 }
