@@ -232,7 +232,7 @@ static strut_status choose_columns(strut_sweep_plan *plan, const strut_setup *se
     if (status) return status;
   }
   size_t quantities = setup->experiment.quantity_count;
-  size_t most = plan->axis_columns + ENTRIES + COUNTS + STRUT_STATICS_COLUMNS + 7 +
+  size_t most = plan->axis_columns + ENTRIES + COUNTS + STRUT_STATICS_COLUMNS + 8 +
                 2 * scene->contact_count + 2 * scene->node_count + scene->member_count +
                 2 * quantities;
   plan->column_capacity = most;
