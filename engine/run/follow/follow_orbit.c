@@ -15,7 +15,7 @@ static const double ROUGH = 1e-5, SLOW = 0.5;
 static const double LONGEST = 3.0;
 /* Pairs outside the unit circle by less than this count as on it: rounding. */
 static const double ON_CIRCLE = 1e-6;
-enum { MOST_ROUNDS = 14, MOST_HALVINGS = 5 };
+enum { MOST_ROUNDS = 14, MOST_HALVINGS = 4, MOST_DERIVATIVES = 2 };
 
 strut_follow_orbit *strut_follow_orbit_new(strut_follow_walk *w) {
   strut_arena *a = &w->branch->arena;
@@ -123,12 +123,13 @@ static void update_derivative(strut_follow_walk *w, const double *f) {
 static bool iterate(strut_follow_walk *w, const plane *p, trial *here, trial *next, int *rounds) {
   const double enough = w->rough ? ROUGH : CONVERGED;
   bool wanted = !w->s->differentiated;
-  int slow = 0;
+  int slow = 0, made = 0;
   if (!evaluate(w, p, here) || !isfinite(here->left)) return false;
   for (*rounds = 0; *rounds < MOST_ROUNDS; ++*rounds) {
     if (size_of(here) <= enough) return true;
     bool own = wanted;
-    if (own && !differentiate_at(w, here)) return false;
+    if (own && (made++ == MOST_DERIVATIVES || !differentiate_at(w, here)))
+      return size_of(here) <= ACCEPTED;
     wanted = false;
     if (!find_step(w, p, here)) {
       if (own) return false;

@@ -51,6 +51,7 @@ typedef struct strut_follow_walk {
   double *eigen;       /* (n, n) scratch */
   size_t room;
   double arc;
+  size_t begin; /* first point of this way in the branch */
   bool rough; /* orbits need not be exact now */
   bool backwards; /* the points go into the branch in reverse order, with negative arcs */
 } strut_follow_walk;

@@ -9,10 +9,11 @@
 #include "engine/run/follow/follow_parts.h"
 
 /* A change is located to this part of the step. */
-static const double LOCATED = 1e-4, LOCATED_EVENT = 4e-3;
+static const double LOCATED = 2e-3, LOCATED_EVENT = 4e-3;
 /* A pair of multipliers this near to the real axis [rad] is real but for rounding. */
 static const double REAL = 1e-3;
-enum { MOST_CHANGES = 40, MOST_HALVINGS = 24 };
+/* Beyond so many events in a period they are located only where stability changes. */
+enum { MOST_CHANGES = 40, MOST_HALVINGS = 24, MOST_LETTERS = 24 };
 
 /* An interval within a step: orbits at its ends. */
 typedef struct bracket {
@@ -109,17 +110,25 @@ static bool add_event(const span *p, const bracket *k) {
   return true;
 }
 
-/* The multiplier that passes the circle: that of `to` or `from` nearest to it. */
-static void critical_multiplier(const bracket *k, bool minus, double value[2]) {
+/* The multiplier of o nearest to the circle; `minus`: of the negative ones. Returns its size less 1. */
+static double critical_multiplier(const strut_follow_orbit *o, bool minus, double value[2]) {
   double best = HUGE_VAL;
-  const strut_follow_orbit *ends[2] = {k->from, k->to};
-  for (int e = 0; e < 2; e++)
-    for (size_t i = 0; i < ends[e]->multipliers; i++) {
-      const double *m = ends[e]->multiplier[i];
-      double off = fabs(hypot(m[0], m[1]) - 1.0);
-      if (minus && !(m[0] < 0.0 && m[1] == 0.0)) continue;
-      if (off < best) best = off, value[0] = m[0], value[1] = m[1];
-    }
+  for (size_t i = 0; i < o->multipliers; i++) {
+    const double *m = o->multiplier[i];
+    double off = hypot(m[0], m[1]) - 1.0;
+    if (minus && !(m[0] < 0.0 && m[1] == 0.0)) continue;
+    if (fabs(off) < fabs(best)) best = off, value[0] = m[0], value[1] = m[1];
+  }
+  return best;
+}
+
+/* Part of the bracket at which the multiplier is on the circle, by interpolation. */
+static double part_on_circle(const bracket *k, bool minus, double value[2]) {
+  double other[2] = {1.0, 0.0};
+  double from = critical_multiplier(k->from, minus, other);
+  double to = critical_multiplier(k->to, minus, value);
+  if (fabs(from) < fabs(to)) value[0] = other[0], value[1] = other[1];
+  return from * to < 0.0 && isfinite(from) && isfinite(to) ? from / (from - to) : 0.5;
 }
 
 static bool add_signature(const span *p, const bracket *k) {
@@ -128,7 +137,7 @@ static bool add_signature(const span *p, const bracket *k) {
   double value[2] = {1.0, 0.0};
   strut_follow_kind kind = STRUT_FOLLOW_BRANCHING;
   bool doubles = a.minus != b.minus && a.pairs == b.pairs;
-  critical_multiplier(k, doubles, value);
+  double part = part_on_circle(k, doubles, value);
   if (a.turn != b.turn)
     kind = STRUT_FOLLOW_FOLD;
   else if (doubles)
@@ -138,10 +147,11 @@ static bool add_signature(const span *p, const bracket *k) {
   if (kind == STRUT_FOLLOW_REGULAR) return true; /* a pair outside the circle becomes real */
   if (kind == STRUT_FOLLOW_TORUS && fabs(atan2(value[1], value[0])) < REAL)
     kind = STRUT_FOLLOW_BRANCHING;
-  double arc = w->arc + 0.5 * (k->from->distance + k->to->distance);
+  double arc = w->arc + k->from->distance + part * (k->to->distance - k->from->distance);
   strut_follow_point *point = strut_follow_add(w, k->to, arc, kind);
   if (!point) return false;
-  note_stability(point, k);
+  if (kind != STRUT_FOLLOW_FOLD)
+    point->value = k->from->value + part * (k->to->value - k->from->value);
   const bracket ahead = w->backwards ? (bracket){k->to, k->from} : *k;
   note_stability(point, &ahead);
   point->multiplier[0] = value[0], point->multiplier[1] = value[1];
@@ -190,6 +200,8 @@ bool strut_follow_locate(strut_follow_walk *w, const strut_follow_orbit *a,
   bool signatures = !same_signature(a->signature, b->signature);
   from.distance = 0.0;
   double least = LOCATED_EVENT * to.distance;
+  bool many = a->word.count > MOST_LETTERS || b->word.count > MOST_LETTERS;
+  if (many && !signatures) return true;
   for (int i = 0; i < MOST_CHANGES && !w->limits->without_words; i++) {
     if (strut_follow_words_equal(&here->word, &to.word)) break;
     bracket k = {here, &to};

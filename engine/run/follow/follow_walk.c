@@ -7,11 +7,13 @@
 #include "engine/run/simulate.h"
 
 /* Steps of arclength [1]: the first, the least; and least cosine between successive tangents. */
-static const double FIRST = 0.01, LEAST = 1e-5, MOST = 1.0, STRAIGHT = 0.5;
+static const double FIRST = 0.01, LEAST = 5e-5, MOST = 1.0, STRAIGHT = 0.5;
 /* Below this step a corner is passed whatever the tangents say. */
 static const double CORNER = 1e-3;
+/* Part of a step: orbits this near to the way come have been passed before. */
+static const double BACK = 0.02;
 /* Rounds of Newton's method after which the step grows, and shrinks. */
-enum { FEW = 7, MANY = 13, CLOSED = 12 };
+enum { FEW = 7, MANY = 13, CLOSED = 12, LATEST = 12 };
 /* Amplitude with which a doubled branch is left [1]. */
 static const double LEAVE = 0.02;
 
@@ -86,6 +88,61 @@ static strut_follow_orbit *try_step(strut_follow_walk *w, const strut_follow_orb
     return NULL;
   }
   return next;
+}
+
+/* secant (n + 1): unit vector from a to b; returns their distance. */
+static double secant_of(const strut_follow_system *s, const strut_follow_orbit *a,
+                        const strut_follow_orbit *b, double *secant) {
+  size_t n = s->n;
+  for (size_t i = 0; i < n; i++)
+    secant[i] = (b->y[s->place[i]] - a->y[s->place[i]]) / strut_follow_unit(s, i);
+  secant[n] = (b->value - a->value) / (s->high - s->low);
+  double length = sqrt(dot(secant, secant, n + 1));
+  for (size_t i = 0; i <= n && length > 0.0; i++) secant[i] /= length;
+  return length;
+}
+
+/*
+ * Behind a corner the derivative may be that of neither side, and its tangent lead back: then the way
+ * come from a to b leads on.
+ */
+static bool straighten(strut_follow_walk *w, const strut_follow_orbit *a, strut_follow_orbit *b) {
+  size_t n = w->s->n;
+  double *secant = strut_arena_allocate(&w->branch->arena, n + 1, sizeof(double));
+  if (!secant) w->status = strut_no_memory(w->error, "");
+  if (!secant) return false;
+  secant_of(w->s, a, b, secant);
+  if (dot(secant, b->tangent, n + 1) >= STRAIGHT) return true;
+  memcpy(b->tangent, secant, (n + 1) * sizeof(double));
+  b->signature.turn = secant[n] < 0.0 ? -1 : 1;
+  return true;
+}
+
+/* Does b lie on the way behind a, on which the latest points are? */
+static bool retraces(const strut_follow_walk *w, const strut_follow_orbit *a,
+                     const strut_follow_orbit *b) {
+  const strut_follow_system *s = w->s;
+  const strut_follow_branch *branch = w->branch;
+  size_t from = branch->count > LATEST ? branch->count - LATEST : 0;
+  if (from < w->begin) from = w->begin;
+  double step = 0.0, least = HUGE_VAL;
+  for (size_t i = 0; i < s->n; i++)
+    step += pow((b->y[s->place[i]] - a->y[s->place[i]]) / strut_follow_unit(s, i), 2);
+  step += pow((b->value - a->value) / (s->high - s->low), 2);
+  for (size_t k = from; k + 1 < branch->count; k++) {
+    const strut_follow_point *p = &branch->points[k], *q = p + 1;
+    double whole = 0.0, along = 0.0, off = 0.0;
+    for (size_t i = 0; i <= s->n; i++) {
+      double unit = i < s->n ? strut_follow_unit(s, i) : s->high - s->low;
+      double d = (i < s->n ? q->y[s->place[i]] - p->y[s->place[i]] : q->value - p->value) / unit;
+      double e = (i < s->n ? b->y[s->place[i]] - p->y[s->place[i]] : b->value - p->value) / unit;
+      whole += d * d, along += d * e, off += e * e;
+    }
+    double part = whole > 0.0 ? along / whole : 0.0;
+    if (part < 0.0 || part > 1.0) continue;
+    least = fmin(least, off - part * along);
+  }
+  return least < BACK * BACK * step;
 }
 
 static bool outside(const strut_follow_system *s, double value) {
@@ -172,6 +229,7 @@ static double limited(const strut_follow_walk *w, const strut_follow_orbit *o, d
 
 static const char *walk_on(strut_follow_walk *w, strut_follow_orbit *o, double first) {
   strut_follow_system *s = w->s;
+  w->begin = w->branch->count - (w->backwards ? 0 : 1);
   strut_follow_orbit *begin = o;
   double h = first;
   const char *reason = "";
@@ -179,17 +237,21 @@ static const char *walk_on(strut_follow_walk *w, strut_follow_orbit *o, double f
     int rounds = 0;
     strut_follow_orbit *next = try_step(w, o, h, &rounds, &reason);
     if (w->status) return "";
+    if (next && retraces(w, o, next)) {
+      reason = "no periodic motion was found beyond: the branch leads back";
+      next = NULL;
+    }
     bool sharp = next && h > CORNER && dot(o->tangent, next->tangent, s->n + 1) < STRAIGHT;
     if (!next || sharp || (rounds > MANY && h > CORNER)) {
       if (h > LEAST) {
-        h = fmax(0.5 * h, LEAST);
+        h = fmax(0.35 * h, LEAST);
         steps--;
         continue;
       }
       next = turn_at_corner(w, o, 10.0 * LEAST, &reason);
-      if (w->status || !next) return reason;
-      o->tangent[s->n] = next->value > o->value ? fabs(o->tangent[s->n]) : -fabs(o->tangent[s->n]);
+      if (w->status || !next || retraces(w, o, next)) return reason;
     }
+    if (!straighten(w, o, next)) return "";
     if (outside(s, next->value)) {
       strut_follow_orbit *last = at_edge(w, o, next);
       if (!w->status && last) accept_step(w, o, last, STRUT_FOLLOW_END);
