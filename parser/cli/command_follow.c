@@ -41,14 +41,12 @@ static strut_status write_files(const char *directory, const strut_follow_result
   strut_plot own = *plot;
   strut_status status = strut_results_begin_named(&files, directory, file_names, error);
   if (!status)
-    status =
-        strut_file_write_block(files.stage, "branches.csv", strut_follow_csv(result), error);
+    status = strut_file_write_block(files.stage, "branches.csv", strut_follow_csv(result), error);
   if (!status)
-    status =
-        strut_file_write_block(files.stage, "branches.json", strut_follow_json(result), error);
+    status = strut_file_write_block(files.stage, "branches.json", strut_follow_json(result), error);
   if (!status && snprintf(path, sizeof path, "%s/branches.svg", files.stage) >= (int)sizeof path)
-    status = strut_fail(error, STRUT_FILE_TROUBLE, "cannot write '%s': the path is too long",
-                        directory);
+    status =
+        strut_fail(error, STRUT_FILE_TROUBLE, "cannot write '%s': the path is too long", directory);
   own.path = path;
   if (!status) status = strut_follow_figure(&own, result, error);
   if (!status) status = strut_results_commit(&files, error);
@@ -66,8 +64,8 @@ static strut_status report(const strut_arguments *arguments, const strut_plot *p
     strut_print_error(&error);
     return status;
   }
-  return strut_print_report(arguments, arguments->json ? strut_follow_json(result)
-                                                       : strut_follow_table(result));
+  return strut_print_report(
+      arguments, arguments->json ? strut_follow_json(result) : strut_follow_table(result));
 }
 
 static strut_status follow(const strut_arguments *arguments, const strut_plot *plot,
@@ -102,8 +100,8 @@ static strut_status run_follow(const strut_arguments *arguments) {
   if (!status) status = strut_open_model_text(arguments, &text, &source.length, &setup);
   if (status) return status;
   source.text = text;
-  status = strut_follow_options_read(&strut_command_follow, arguments, &setup.scene, &source,
-                                     &wanted);
+  status =
+      strut_follow_options_read(&strut_command_follow, arguments, &setup.scene, &source, &wanted);
   strut_setup_free(&setup);
   if (!status) status = follow(arguments, &plot, &wanted);
   strut_follow_source_free(&source);

@@ -97,7 +97,8 @@ static strut_status read_range(const strut_command *command, const strut_argumen
                                const strut_scene *scene, strut_follow_source *source,
                                strut_follow_options *wanted, strut_dimension *dimension) {
   const char *over = strut_option_text(arguments, STRUT_OPTION_OVER);
-  const char *equals = over ? strchr(over, '=') : NULL, *dots = equals ? strstr(equals, "..") : NULL;
+  const char *equals = over ? strchr(over, '=') : NULL,
+             *dots = equals ? strstr(equals, "..") : NULL;
   char low[200];
   if (!over || !dots || equals == over || (size_t)(equals - over) >= sizeof source->name ||
       (size_t)(dots - equals) >= sizeof low)
@@ -121,9 +122,9 @@ static strut_status read_range(const strut_command *command, const strut_argumen
       strut_option_numbers(dots + 2, *dimension, &wanted->high, 1) != 1 ||
       !(wanted->low < wanted->high) || !isfinite(wanted->low) || !isfinite(wanted->high)) {
     const char *example = strut_dimension_example(*dimension);
-    return strut_usage_error(command, arguments,
-                             "--over %s: expected two values LOW..HIGH, the lower one first%s%s",
-                             source->name, example ? ", each such as " : "", example ? example : "");
+    return strut_usage_error(
+        command, arguments, "--over %s: expected two values LOW..HIGH, the lower one first%s%s",
+        source->name, example ? ", each such as " : "", example ? example : "");
   }
   wanted->name = source->name;
   wanted->unit = unit_of(*dimension);
@@ -190,8 +191,7 @@ strut_status strut_follow_options_read(const strut_command *command,
   double values[MOST_AT];
   size_t value_count = 0, name_count = read_names(arguments, source, names);
   int64_t steps = 0;
-  strut_status status =
-      read_range(command, arguments, scene, source, wanted, &dimension);
+  strut_status status = read_range(command, arguments, scene, source, wanted, &dimension);
   if (!status)
     status = read_values(command, arguments, scene, dimension, wanted, values, &value_count);
   if (!status) status = check_names(command, arguments, scene, names, name_count);

@@ -15,7 +15,7 @@ typedef struct strut_follow_source {
   const char *file, *text; /* of the scene; not owned */
   size_t length;
   strut_scene_source *source; /* its tree */
-  strut_setting *settings;    /* (setting_count) those of --set, and last the one that is followed */
+  strut_setting *settings; /* (setting_count) those of --set, and last the one that is followed */
   size_t setting_count;
   char name[STRUT_FOLLOW_NAME];
   char from[1024]; /* names of configurations, each ended by NUL */

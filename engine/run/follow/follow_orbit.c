@@ -35,8 +35,8 @@ static bool set_value(strut_follow_walk *w, double value) {
 
 static bool interrupted(strut_follow_walk *w) {
   if (!w->s->interrupt || !*w->s->interrupt) return false;
-  w->status = strut_fail(w->error, STRUT_INTERRUPTED, "interrupted at %.9g of the parameter",
-                         w->s->value);
+  w->status =
+      strut_fail(w->error, STRUT_INTERRUPTED, "interrupted at %.9g of the parameter", w->s->value);
   return true;
 }
 
@@ -78,8 +78,7 @@ static bool find_step(strut_follow_walk *w, const plane *p, const trial *t) {
   const strut_follow_system *s = w->s;
   double most = 0.0;
   for (size_t i = 0; i < s->n; i++) w->right[i] = -t->f[i];
-  w->right[s->n] =
-      -off_plane(w, t->y, t->value, p->normal, p->base_y, p->base_value, p->distance);
+  w->right[s->n] = -off_plane(w, t->y, t->value, p->normal, p->base_y, p->base_value, p->distance);
   if (!strut_follow_solve(w->s, p->normal, w->right)) return false;
   for (size_t i = 0; i <= s->n; i++) most = fmax(most, fabs(w->right[i]));
   return most <= LONGEST;
@@ -258,7 +257,8 @@ bool strut_follow_eigenvector(strut_follow_walk *w, const strut_follow_orbit *o,
   w->status = strut_follow_differentiate(s, o->y, w->f, &lost, w->error);
   if (w->status || lost) return false;
   s->differentiated = false;
-  double *matrix = s->jacobian; /* jacobian - 1 must be jacobian - value: shifted, and back by the next */
+  double *matrix =
+      s->jacobian; /* jacobian - 1 must be jacobian - value: shifted, and back by the next */
   for (size_t i = 0; i < n; i++) matrix[i * n + i] += 1.0 - value - 1e-7;
   memset(s->column, 0, n * sizeof(double));
   for (size_t i = 0; i < n; i++) direction[i] = 1.0 / (double)(i + 1);
@@ -303,7 +303,8 @@ strut_status strut_follow_correct(strut_follow_system *s, double *y, bool *found
   if (!*found)
     snprintf(reason, 200,
              "Newton's method on the period map did not converge in %d rounds; the motion may be "
-             "irregular, or one of a family, such as at rest", rounds);
+             "irregular, or one of a family, such as at rest",
+             rounds);
   strut_arena_free(&scratch.arena);
   return w.status;
 }

@@ -28,12 +28,13 @@ typedef struct strut_follow_signature {
 /** A periodic motion on a branch. */
 typedef struct strut_follow_orbit {
   double value;
-  double *y;             /* (both) */
-  double *tangent;       /* (n + 1) of length 1 */
+  double *y;               /* (both) */
+  double *tangent;         /* (n + 1) of length 1 */
   double (*multiplier)[2]; /* (n) the largest first */
   size_t multipliers;
   strut_follow_signature signature;
-  double velocity, work, amplitude, distance; /* distance: from the begin of the step, along its tangent */
+  double velocity, work, amplitude,
+      distance; /* distance: from the begin of the step, along its tangent */
   strut_follow_word word;
   bool complete; /* multipliers, signature and tangent are there */
 } strut_follow_orbit;
@@ -51,8 +52,8 @@ typedef struct strut_follow_walk {
   double *eigen;       /* (n, n) scratch */
   size_t room;
   double arc;
-  size_t begin; /* first point of this way in the branch */
-  bool rough; /* orbits need not be exact now */
+  size_t begin;   /* first point of this way in the branch */
+  bool rough;     /* orbits need not be exact now */
   bool backwards; /* the points go into the branch in reverse order, with negative arcs */
 } strut_follow_walk;
 

@@ -54,9 +54,10 @@ static strut_status check_scene(const strut_follow_system *s, strut_error *error
                       s->method);
   if ((m->plan & STRUT_TERM_MEMORY) || strut_feedback_remembers(&m->feedback) ||
       (m->plan & STRUT_TERM_SLIDING_MASS))
-    return strut_fail(error, STRUT_USAGE,
-                      "positions and velocities are not the whole state here: what breaks, yields or "
-                      "slides along members, and internal states of controllers, cannot be followed");
+    return strut_fail(
+        error, STRUT_USAGE,
+        "positions and velocities are not the whole state here: what breaks, yields or "
+        "slides along members, and internal states of controllers, cannot be followed");
   strut_experiment e = s->setup.experiment;
   e.integrator = s->method;
   return strut_integrator_check(m, &e, error);
@@ -114,9 +115,10 @@ strut_status strut_follow_set_value(strut_follow_system *s, double value, strut_
     status = check_scene(s, error);
   }
   if (!status && s->log && !has_same_structure(s))
-    status = strut_fail(error, STRUT_USAGE,
-                        "the parameter changes what the structure consists of, over which no motion "
-                        "is followed");
+    status =
+        strut_fail(error, STRUT_USAGE,
+                   "the parameter changes what the structure consists of, over which no motion "
+                   "is followed");
   if (!status) status = make_maps(s, error);
   if (status) {
     drop_model(s);
@@ -319,8 +321,7 @@ strut_status strut_follow_differentiate(strut_follow_system *s, const double *y,
   strut_status status = strut_follow_set_value(s, value + step, error);
   if (status) return status;
   *lost = !isfinite(strut_follow_residual(s, y, s->column));
-  for (size_t i = 0; i < n; i++)
-    s->column[i] = (s->column[i] - f[i]) * (s->high - s->low) / step;
+  for (size_t i = 0; i < n; i++) s->column[i] = (s->column[i] - f[i]) * (s->high - s->low) / step;
   return strut_follow_set_value(s, value, error);
 }
 

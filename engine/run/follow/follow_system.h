@@ -47,18 +47,18 @@ typedef struct strut_follow_system {
   double *column;       /* (n) derivative of G to the parameter over its range */
   double *there;        /* (threads, both) scratch */
   double *end;          /* (both) */
-  double *seen;         /* (4, 2 nodes) lowest and highest positions, latest positions and velocities */
-  double *matrix;       /* (n + 1, n + 1) scratch */
-  int64_t evaluations;  /* of the forces */
-  int64_t maps;         /* periods computed */
+  double *seen;   /* (4, 2 nodes) lowest and highest positions, latest positions and velocities */
+  double *matrix; /* (n + 1, n + 1) scratch */
+  int64_t evaluations; /* of the forces */
+  int64_t maps;        /* periods computed */
   int64_t scenes_made;
   strut_arena arena;
 } strut_follow_system;
 
 /** Result of one application of P. */
 typedef struct strut_follow_period {
-  double travel; /* [m]; NAN where the motion was lost or interrupted */
-  double work;   /* done on the structure [J]; only with `works` */
+  double travel;    /* [m]; NAN where the motion was lost or interrupted */
+  double work;      /* done on the structure [J]; only with `works` */
   double amplitude; /* half the largest range of a coordinate [m]; only with `works` */
 } strut_follow_period;
 

@@ -54,8 +54,7 @@ strut_follow_point *strut_follow_add(strut_follow_walk *w, const strut_follow_or
                             .y = o->y};
   const strut_follow_signature g = o->signature;
   p->stable = o->complete && g.plus == 0 && g.minus == 0 && g.pairs == 0;
-  if (o->complete && o->multipliers)
-    memcpy(p->multiplier, o->multiplier[0], sizeof p->multiplier);
+  if (o->complete && o->multipliers) memcpy(p->multiplier, o->multiplier[0], sizeof p->multiplier);
   p->word = strut_follow_word_text(w->s, &o->word, &b->arena);
   if (!p->word) w->status = strut_no_memory(w->error, "");
   if (!p->word) return NULL;
@@ -310,18 +309,25 @@ static strut_follow_orbit *first_orbit(strut_follow_walk *w, const double *y) {
   return strut_follow_measure(w, o) && strut_follow_complete(w, o, upward) ? o : NULL;
 }
 
-/* The first orbit of a doubled branch: off y along the direction. */
+/*
+ * The first orbit of a doubled branch, off y along the direction, behind y itself as the branch's first
+ * point. NULL: there is none.
+ */
 static strut_follow_orbit *doubled_orbit(strut_follow_walk *w, const double *y,
-                                         const double *direction) {
+                                         const double *direction, const char **reason) {
   strut_follow_system *s = w->s;
-  strut_follow_orbit *base = strut_follow_orbit_new(w);
-  const char *reason;
+  strut_follow_orbit *base = strut_follow_orbit_new(w), *next = NULL;
   int rounds;
   if (!base) return NULL;
   memcpy(base->y, y, s->both * sizeof(double));
   memcpy(base->tangent, direction, s->n * sizeof(double));
   base->value = s->value;
-  return try_step(w, base, LEAVE, &rounds, &reason);
+  if (!strut_follow_measure(w, base)) return NULL;
+  for (double off = LEAVE; off > 0.01 * LEAVE && !next && !w->status; off *= 0.3)
+    next = try_step(w, base, off, &rounds, reason);
+  if (!next || !strut_follow_add(w, base, 0.0, STRUT_FOLLOW_START)) return NULL;
+  w->arc = next->distance;
+  return next;
 }
 
 strut_status strut_follow_branch_make(strut_follow_system *s, const double *y,
@@ -333,8 +339,10 @@ strut_status strut_follow_branch_make(strut_follow_system *s, const double *y,
   strut_follow_walk w = {.s = s, .limits = limits, .branch = branch, .error = error};
   double first = fmin(FIRST, limits->longest);
   if (!allocate(&w)) return w.status;
-  strut_follow_orbit *o = direction ? doubled_orbit(&w, y, direction) : first_orbit(&w, y);
-  if (o && strut_follow_add(&w, o, 0.0, STRUT_FOLLOW_START)) {
+  strut_follow_orbit *o =
+      direction ? doubled_orbit(&w, y, direction, &branch->ends[1]) : first_orbit(&w, y);
+  strut_follow_kind kind = direction ? STRUT_FOLLOW_REGULAR : STRUT_FOLLOW_START;
+  if (o && strut_follow_add(&w, o, w.arc, kind)) {
     branch->ends[1] = walk_on(&w, o, first);
     size_t forth = branch->count;
     w.arc = 0.0;

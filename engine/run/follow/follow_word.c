@@ -84,7 +84,8 @@ static const char *item_name(const strut_follow_system *s, int32_t item) {
   const strut_event_log *log = s->log;
   if (item < log->contacts) return scene->nodes[m->contacts.entry[item].node].name;
   item -= log->contacts;
-  if (item < log->members) return (size_t)item < scene->member_count ? scene->members[item].name : "";
+  if (item < log->members)
+    return (size_t)item < scene->member_count ? scene->members[item].name : "";
   item -= log->members;
   if (log->elements) item %= log->elements;
   const strut_element *e = &m->elements.element[item];
@@ -162,11 +163,17 @@ static const char *sentence(strut_follow_kind kind, bool begins, const char *nam
   const char *verb = begins ? "begins to" : "no longer";
   const char *what = "";
   switch (kind) {
-    case STRUT_FOLLOW_TOUCH: what = begins ? "touch the ground once more" : "touches it once more"; break;
-    case STRUT_FOLLOW_LIFT: what = begins ? "leave the ground for a moment" : "leaves the ground for a moment"; break;
+    case STRUT_FOLLOW_TOUCH:
+      what = begins ? "touch the ground once more" : "touches it once more";
+      break;
+    case STRUT_FOLLOW_LIFT:
+      what = begins ? "leave the ground for a moment" : "leaves the ground for a moment";
+      break;
     case STRUT_FOLLOW_STICK: what = begins ? "stick for a moment" : "sticks for a moment"; break;
     case STRUT_FOLLOW_SLIP: what = begins ? "slip for a moment" : "slips for a moment"; break;
-    case STRUT_FOLLOW_SWITCH: what = begins ? "change its mode for a moment" : "changes its mode for a moment"; break;
+    case STRUT_FOLLOW_SWITCH:
+      what = begins ? "change its mode for a moment" : "changes its mode for a moment";
+      break;
     case STRUT_FOLLOW_REGULAR:
     case STRUT_FOLLOW_START:
     case STRUT_FOLLOW_END:
@@ -207,8 +214,8 @@ bool strut_follow_words_compare(const strut_follow_system *s, const strut_follow
     const strut_follow_word *longer = begins ? b : a;
     const strut_follow_letter *l = shortest(longer, item);
     if (!l) continue;
-    bool touch = l->item < s->log->contacts && l->mode != STRUT_LOGGED_OPEN &&
-                 between_flights(longer, l);
+    bool touch =
+        l->item < s->log->contacts && l->mode != STRUT_LOGGED_OPEN && between_flights(longer, l);
     point->kind = kind_of(s, l, touch);
     if (touch) point->kind = STRUT_FOLLOW_TOUCH;
     point->node = strut_arena_format(arena, "%s", item_name(s, item));

@@ -128,13 +128,24 @@ static void draw_key(drawing *d, strut_box box) {
   const strut_pen solid = {.colour = strut_grey(0.2), .width = 1.4};
   const strut_pen dashed = {.colour = strut_grey(0.2), .width = 0.9, .dash = {3.0, 2.0}};
   const strut_pen edge = {.colour = strut_grey(0.1), .width = 0.6};
-  const strut_key_item items[] = {
-      {.sign = STRUT_KEY_LINE, .pen = solid, .text = "stable"},
-      {.sign = STRUT_KEY_LINE, .pen = dashed, .text = "unstable"},
-      {.sign = STRUT_KEY_DOT, .pen = edge, .fill = {.colour = kind_colour(STRUT_FOLLOW_FOLD)}, .text = "fold"},
-      {.sign = STRUT_KEY_DOT, .pen = edge, .fill = {.colour = kind_colour(STRUT_FOLLOW_DOUBLING)}, .text = "period doubling"},
-      {.sign = STRUT_KEY_DOT, .pen = edge, .fill = {.colour = kind_colour(STRUT_FOLLOW_TORUS)}, .text = "torus, branching"},
-      {.sign = STRUT_KEY_DOT, .pen = edge, .fill = {.colour = kind_colour(STRUT_FOLLOW_TOUCH)}, .text = "an event that changes the stability"}};
+  const strut_key_item items[] = {{.sign = STRUT_KEY_LINE, .pen = solid, .text = "stable"},
+                                  {.sign = STRUT_KEY_LINE, .pen = dashed, .text = "unstable"},
+                                  {.sign = STRUT_KEY_DOT,
+                                   .pen = edge,
+                                   .fill = {.colour = kind_colour(STRUT_FOLLOW_FOLD)},
+                                   .text = "fold"},
+                                  {.sign = STRUT_KEY_DOT,
+                                   .pen = edge,
+                                   .fill = {.colour = kind_colour(STRUT_FOLLOW_DOUBLING)},
+                                   .text = "period doubling"},
+                                  {.sign = STRUT_KEY_DOT,
+                                   .pen = edge,
+                                   .fill = {.colour = kind_colour(STRUT_FOLLOW_TORUS)},
+                                   .text = "torus, branching"},
+                                  {.sign = STRUT_KEY_DOT,
+                                   .pen = edge,
+                                   .fill = {.colour = kind_colour(STRUT_FOLLOW_TOUCH)},
+                                   .text = "an event that changes the stability"}};
   strut_draw_key(d->canvas, box, items, sizeof items / sizeof items[0]);
 }
 
@@ -163,10 +174,10 @@ strut_status strut_follow_figure(const strut_plot *plot, const strut_follow_resu
   strut_axis_choose(&x, &plot->x);
   strut_axis_choose(&y, &plot->y);
   d.points = strut_arena_allocate(&arena, longest, sizeof *d.points);
-  strut_status status =
-      d.points ? strut_canvas_open(plot->path, width, ASPECT * width + KEY + 2 * EDGE, title,
-                                   &d.canvas, error)
-               : strut_no_memory(error, "while drawing");
+  strut_status status = d.points
+                            ? strut_canvas_open(plot->path, width, ASPECT * width + KEY + 2 * EDGE,
+                                                title, &d.canvas, error)
+                            : strut_no_memory(error, "while drawing");
   if (!status) {
     strut_box box = {EDGE, EDGE, width - 2 * EDGE, ASPECT * width};
     d.axes = strut_axes_place(d.canvas, box, x, y, NULL, title);

@@ -34,8 +34,9 @@ char *strut_follow_csv(const strut_follow_result *r) {
   strut_buffer_add(&csv, "branch,arclength");
   add_text(&csv, r->name);
   if (*r->unit) strut_buffer_add(&csv, " [%s]", r->unit);
-  strut_buffer_add(&csv, ",velocity [m/s],work [J],amplitude [m],period_multiple,stable,multiplier,"
-                         "multiplier_angle [deg],point,node,detail,word\n");
+  strut_buffer_add(&csv,
+                   ",velocity [m/s],work [J],amplitude [m],period_multiple,stable,multiplier,"
+                   "multiplier_angle [deg],point,node,detail,word\n");
   for (size_t i = 0; i < r->count; i++) {
     const strut_follow_branch *b = &r->branches[i].branch;
     for (size_t k = 0; k < b->count; k++) {
@@ -113,11 +114,16 @@ char *strut_follow_json(const strut_follow_result *r) {
 
 static const char *unit_of(const strut_follow_result *r) { return *r->unit ? r->unit : "1"; }
 
-static void add_special(strut_buffer *t, const strut_follow_result *r,
-                        const strut_follow_branch *b, const strut_follow_point *p) {
-  strut_buffer_add(t, "  %-14s %-16s at %s, %s: %s", strut_quantity_of_any(p->value, 7, unit_of(r)).text,
-                   strut_follow_kind_word(p->kind), (b->travels ? strut_quantity_of(p->velocity, 4, "m/s") : strut_quantity_of(p->amplitude, 4, "m")).text,
-                   p->changes ? (p->unstable[1] ? "stability lost" : "stable from here") : "no change of stability",
+static void add_special(strut_buffer *t, const strut_follow_result *r, const strut_follow_branch *b,
+                        const strut_follow_point *p) {
+  strut_buffer_add(t, "  %-14s %-16s at %s, %s: %s",
+                   strut_quantity_of_any(p->value, 7, unit_of(r)).text,
+                   strut_follow_kind_word(p->kind),
+                   (b->travels ? strut_quantity_of(p->velocity, 4, "m/s")
+                               : strut_quantity_of(p->amplitude, 4, "m"))
+                       .text,
+                   p->changes ? (p->unstable[1] ? "stability lost" : "stable from here")
+                              : "no change of stability",
                    p->detail);
   strut_buffer_add(t, "\n");
 }

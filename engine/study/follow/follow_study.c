@@ -99,8 +99,8 @@ static strut_status open_system(follower *f, double value) {
   strut_status status = strut_follow_open(s, value, f->error);
   f->opened = true;
   if (status) return status;
-  f->r->title = strut_arena_format(&f->r->arena, "%s", s->setup.scene.name ? s->setup.scene.name
-                                                                           : "model");
+  f->r->title =
+      strut_arena_format(&f->r->arena, "%s", s->setup.scene.name ? s->setup.scene.name : "model");
   return f->r->title ? STRUT_OK : strut_no_memory(f->error, "");
 }
 
@@ -184,8 +184,9 @@ static strut_status follow_start(follower *f, const strut_follow_start *start) {
     note(f, text);
     status = STRUT_OK;
   } else if (!status && summary.steady.kind != STRUT_MOTION_PERIODIC) {
-    snprintf(text, sizeof text, "the motion from %s is %s after %" PRId64 " periods, which starts no branch",
-             label, strut_motion_name(summary.steady.kind), summary.steady.periods);
+    snprintf(text, sizeof text,
+             "the motion from %s is %s after %" PRId64 " periods, which starts no branch", label,
+             strut_motion_name(summary.steady.kind), summary.steady.periods);
     note(f, text);
   } else if (!status) {
     status = follow_motion(f, label, y, summary.steady.repeats > 0 ? summary.steady.repeats : 1);

@@ -40,7 +40,7 @@ typedef struct strut_followed {
 } strut_followed_branch;
 
 typedef struct strut_follow_result {
-  char *title;      /* of the model */
+  char *title;       /* of the model */
   char *name, *unit; /* of the parameter */
   char method[32];
   double low, high, tolerance, seconds;
