@@ -28,7 +28,9 @@ breaches() {
         "engine/statics/modes engine/statics/rigidity engine/statics/form engine/statics/path|" \
         "engine/output|engine/output/draw engine/output/report|" \
         "engine/output/figures engine/output/film engine/output/page|engine/study/results|" \
-        "engine/study/cluster engine/study/tradeoff engine/study/sweep engine/study/follow|engine/study/compare", line, "|")
+        "engine/study/search|" \
+        "engine/study/cluster engine/study/tradeoff engine/study/sweep engine/study/follow|" \
+        "engine/study/compare", line, "|")
       for (i = 1; i <= count; i++) {
         n = split(line[i], side, " ")
         for (k = 1; k <= n; k++) floor[side[k]] = i

@@ -169,6 +169,7 @@ static void add_measured(strut_json *json, cJSON *to, const strut_summary *s) {
     strut_json_number(json, quantity, "spread", m->spread);
     strut_json_number(json, quantity, "scale", m->scale);
     strut_json_bool(json, quantity, "zero", m->zero);
+    if (m->member) strut_json_text(json, quantity, "member", m->member);
     if (!isfinite(m->expected)) continue;
     strut_json_number(json, quantity, "expected", m->expected);
     strut_json_bool(json, quantity, "kept", m->kept);

@@ -112,7 +112,8 @@ static void add_head(strut_buffer *table, const strut_summary *s, const strut_sc
 }
 
 /* Why a quantity has no value. */
-static const char *missing(const strut_summary *s) {
+static const char *missing(const strut_summary *s, const strut_measured *m) {
+  if (m->arrival && s->status == STRUT_OK) return "the target was not reached";
   return s->status == STRUT_OK ? "not finite" : "the window was not reached";
 }
 
@@ -125,8 +126,9 @@ static void add_measured(strut_buffer *table, const strut_summary *s) {
                      strut_quantity_of_any(m->value, DIGITS, m->unit).text);
     if (isfinite(m->spread))
       strut_buffer_add(table, " %14s", strut_quantity_of_any(m->spread, DIGITS, m->unit).text);
-    if (isnan(m->value)) strut_buffer_add(table, "  %s", missing(s));
+    if (isnan(m->value)) strut_buffer_add(table, "  %s", missing(s, m));
     if (m->zero) strut_buffer_add(table, "  zero up to rounding");
+    if (m->member) strut_buffer_add(table, "  in %.40s", m->member);
     if (isfinite(m->expected))
       strut_buffer_add(table, "  %s within %s",
                        m->kept ? "known" : "NOT as accurate as requested, but",

@@ -72,7 +72,8 @@ static strut_status allocate_summary(strut_run *r) {
                                       .value = (double)NAN,
                                       .spread = (double)NAN,
                                       .scale = (double)NAN,
-                                      .expected = (double)NAN};
+                                      .expected = (double)NAN,
+                                      .arrival = e->quantities[i].take == STRUT_TAKE_ARRIVAL};
   for (size_t i = 0; i < s->node_count; i++) s->node_names[i] = scene->nodes[i].name;
   for (size_t i = 0; i < s->hinge_count; i++)
     s->hinges[i] = (strut_hinge_summary){scene->hinges[i].name, (double)NAN, (double)NAN};

@@ -83,7 +83,8 @@ typedef enum strut_column_owner {
   X(SLIDER_Y, SLIDER, "y", 0, 1, 0, 0)                                                             \
   X(SLIDER_VX, SLIDER, "vx", 0, 1, -1, 0)                                                          \
   X(SLIDER_VY, SLIDER, "vy", 0, 1, -1, 0)                                                          \
-  X(SLIDER_SHARE, SLIDER, "share", 0, 0, 0, 0) /* of its member, from the first node */
+  X(SLIDER_SHARE, SLIDER, "share", 0, 0, 0, 0)        /* of its member, from the first node */     \
+  X(LARGEST_FORCE, RUN, "largest_force", 1, 1, -2, 0) /* of all members' absolute ones */
 
 typedef enum strut_column_kind {
 #define STRUT_COLUMN_ENUM(id, ...) STRUT_COLUMN_##id,
@@ -163,7 +164,9 @@ typedef enum strut_reduction {
   STRUT_TAKE_RMS,
   STRUT_TAKE_FINAL,  /* at the window's end */
   STRUT_TAKE_CHANGE, /* end - begin */
-  STRUT_TAKE_RATE    /* change per second */
+  STRUT_TAKE_RATE,   /* change per second */
+  STRUT_TAKE_RISE,   /* sum of all increases: of the work of drives that which is positive */
+  STRUT_TAKE_ARRIVAL /* time at which `target` is first reached or passed [s]; missing: never */
 } strut_reduction;
 
 typedef struct strut_quantity_definition {
@@ -173,6 +176,8 @@ typedef struct strut_quantity_definition {
   strut_reduction take;
   double accuracy;          /* wanted, relative [1]; 0: that of the run */
   double accuracy_absolute; /* wanted, in `unit`; 0: none */
+  double target;            /* of ARRIVAL, in the expression's SI unit */
+  const char *target_unit;  /* of ARRIVAL: that unit; "1": none */
 } strut_quantity_definition;
 
 #endif

@@ -139,7 +139,9 @@ enum {
   X(DENSITY_CHANGE, "density_change", STRUT_OF_FORM)                                               \
   X(LEAST_TENSION, "least_tension", STRUT_OF_FORM)                                                 \
   X(LARGEST_FORCE, "largest_force", STRUT_OF_FORM)                                                 \
-  X(LENGTHS, "lengths", STRUT_OF_FORM)
+  X(LENGTHS, "lengths", STRUT_OF_FORM)                                                             \
+  X(COST, "cost_of_transport", STRUT_OF_RUN)                                                       \
+  X(LOWEST_BARRIER, "lowest_barrier", STRUT_OF_EQUILIBRIA)
 
 typedef enum strut_keep {
 #define STRUT_KEEP_ENUM(name, word, of) STRUT_KEEP_##name,

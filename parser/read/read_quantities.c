@@ -365,6 +365,27 @@ static void read_accuracy(strut_reader *reader, const strut_slot *slot, strut_ow
     *(relative ? &d->accuracy : &d->accuracy_absolute) = q.value;
 }
 
+/* The value that an arrival waits for, of the expression's dimension. */
+static void read_target(strut_reader *reader, const strut_slot *slot, strut_owner owner,
+                        const strut_tree *key, strut_dimension dimension, bool known,
+                        strut_quantity_definition *d) {
+  bool wanted = d->take == STRUT_TAKE_ARRIVAL, given = slot->state == STRUT_GIVEN;
+  char unit[STRUT_SUFFIX_TEXT];
+  if (slot->state == STRUT_BROKEN) return;
+  if (given && !wanted)
+    strut_report_error(reader, slot->key->place,
+                       "'target' of %s is what 'take: arrival' waits for, and has no meaning with "
+                       "another 'take'",
+                       strut_owner_text(reader, owner));
+  else if (!given && wanted)
+    strut_report_error(reader, key->place, "%s lacks 'target', the value that it waits for",
+                       strut_owner_text(reader, owner));
+  if (!given || !wanted || !known) return;
+  strut_read_number(reader, slot->value, "target", owner, dimension, STRUT_RANGE_ANY, &d->target);
+  strut_dimension_suffix(dimension, unit, sizeof unit);
+  d->target_unit = *unit ? strut_keep_text(reader, unit) : "1";
+}
+
 bool strut_ends_at_comma(strut_reader *reader, const strut_tree *of, const char *key,
                          strut_owner owner) {
   int open = 0;
@@ -382,7 +403,8 @@ bool strut_ends_at_comma(strut_reader *reader, const strut_tree *of, const char 
 /* A moment is no energy, though the dimension is that of one. */
 static bool is_moment(const strut_quantity_definition *d) {
   return d->length == 1 && d->program[0].operation == STRUT_OPERATION_COLUMN &&
-         d->program[0].column.kind == STRUT_COLUMN_MOMENT && d->take != STRUT_TAKE_RATE;
+         d->program[0].column.kind == STRUT_COLUMN_MOMENT && d->take != STRUT_TAKE_RATE &&
+         d->take != STRUT_TAKE_ARRIVAL;
 }
 
 static void read_quantity(strut_reader *reader, const strut_tree *key,
@@ -406,7 +428,11 @@ static void read_quantity(strut_reader *reader, const strut_tree *key,
   }
   bool known = of && read_expression(reader, of, owner, d, &dimension);
   strut_store_fields(reader, &fields, &reader->scene->arena, d, sizeof *d);
+  if (of && map)
+    read_target(reader, strut_slot_of(&fields, STRUT_KEY_QUANTITY_TARGET), owner, key, dimension,
+                known, d);
   if (d->take == STRUT_TAKE_RATE) dimension.s -= 1.0f;
+  if (d->take == STRUT_TAKE_ARRIVAL) dimension = STRUT_DIM_TIME;
   read_accuracy(reader, strut_slot_of(&fields, STRUT_KEY_QUANTITY_ACCURACY), owner, dimension,
                 known, d);
   strut_dimension_suffix(dimension, unit, sizeof unit);

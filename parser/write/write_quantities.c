@@ -154,7 +154,7 @@ void strut_put_program(strut_writer *writer, const strut_instruction *program, s
   strut_release(part.text);
 }
 
-/* The expression, and an accuracy: relative, or in the quantity's own unit. */
+/* The expression; an accuracy: relative, or in the quantity's own unit; a target in the expression's. */
 static void put_quantity_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
                                  const void *object) {
   const strut_quantity_definition *d = object;
@@ -162,6 +162,15 @@ static void put_quantity_by_hand(strut_writer *writer, strut_mapping *mapping, i
   if (key == STRUT_KEY_QUANTITY_OF) {
     strut_put_key_name(writer, mapping, key);
     strut_put_program(writer, d->program, d->length);
+  } else if (key == STRUT_KEY_QUANTITY_TARGET) {
+    if (d->take != STRUT_TAKE_ARRIVAL) return;
+    bool unit = d->target_unit && strcmp(d->target_unit, "1") != 0;
+    strut_put_key_name(writer, mapping, key);
+    strut_put(writer, unit ? "\"" : "");
+    strut_put_number(writer, d->target);
+    strut_put(writer, unit ? " " : "");
+    strut_put(writer, unit ? d->target_unit : "");
+    strut_put(writer, unit ? "\"" : "");
   } else if (absolute || d->accuracy > 0.0) {
     strut_put_key_name(writer, mapping, key);
     strut_put(writer, absolute ? "\"" : "");

@@ -94,6 +94,7 @@ static const struct exception {
     {STRUT_SECTION_SETTLE, "step", "depends on the step of the run"},
     {STRUT_SECTION_MEASURE, "last", "in periods or in seconds, as the run is"},
     {STRUT_SECTION_QUANTITY, "accuracy", "relative, or in the quantity's unit"},
+    {STRUT_SECTION_QUANTITY, "target", "in the expression's unit"},
     {STRUT_SECTION_OUTPUT, "last", "in periods or in seconds, as the run is"},
     {STRUT_SECTION_STUDY, "model", "a path, from the study's folder"},
     {STRUT_SECTION_STATE, "start", "its unit is that of the state"},

@@ -138,6 +138,7 @@ void strut_batch_sample(const strut_batch *b, int32_t lane, strut_state *state) 
     state->q[i] = b->q[i * width + lane];
     state->v[i] = b->v[i * width + lane];
   }
+  if (b->ledger) state->work[STRUT_POWER_DRIVE] = b->work[STRUT_POWER_DRIVE * width + lane];
   strut_batch_count(b, lane, state);
 }
 

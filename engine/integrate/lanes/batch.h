@@ -45,7 +45,7 @@ STRUT_API void strut_batch_put(strut_batch *batch, int32_t lane, strut_state *st
 STRUT_API void strut_batch_get(strut_batch *batch, int32_t lane, strut_state *state);
 /** Only the step's number and the count of evaluations. */
 STRUT_API void strut_batch_count(const strut_batch *batch, int32_t lane, strut_state *state);
-/** These and positions and velocities. */
+/** These, positions and velocities, and the work of the drives. */
 STRUT_API void strut_batch_sample(const strut_batch *batch, int32_t lane, strut_state *state);
 /**
  * Advances the lanes until one of them has taken the steps that are left to it, left[lane] > 0; none

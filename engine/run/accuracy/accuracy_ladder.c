@@ -228,6 +228,9 @@ static double compare_results(ladder *l, const strut_summary *one, const strut_s
   for (size_t i = 0; i < one->measured_count; i++) {
     const strut_measured *m = &one->measured[i];
     double apart = fabs(m->value - other->measured[i].value), allowed = tolerated_error(l, m, i);
+    bool never = isnan(m->value) && isnan(other->measured[i].value) &&
+                 l->a->experiment.quantities[i].take == STRUT_TAKE_ARRIVAL;
+    if (never) apart = 0.0; /* neither run reaches the target */
     l->difference[i] = apart;
     if (apart == 0.0) continue;
     double part = l->a->target * apart / allowed;

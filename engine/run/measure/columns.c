@@ -64,8 +64,8 @@ static bool is_of_hinge(strut_column_kind kind) {
 
 static void note_needs(strut_columns *c, strut_column_kind kind) {
   bool rigid = c->model->plan & STRUT_TERM_RIGID;
-  if (rows[kind].owner == STRUT_COLUMN_OF_CONTACT || (kind == STRUT_COLUMN_FORCE && rigid))
-    c->forces = true;
+  bool force = kind == STRUT_COLUMN_FORCE || kind == STRUT_COLUMN_LARGEST_FORCE;
+  if (rows[kind].owner == STRUT_COLUMN_OF_CONTACT || (force && rigid)) c->forces = true;
   if (rows[kind].owner == STRUT_COLUMN_OF_ENERGY) c->energies = true;
   if (is_speed(kind) || kind == STRUT_COLUMN_HINGE_RATE) c->speeds = true;
 }
@@ -202,8 +202,22 @@ static double evaluate_slider(const strut_columns *c, const strut_state *state,
   return rate ? place + strut_sliding_mass_rate(c->model->scene, slider, t) * (q[b] - q[a]) : place;
 }
 
+/* The largest absolute force of a member; *member: which. */
+static double largest_force(const strut_columns *c, const strut_state *state, int32_t *member) {
+  double most = 0.0;
+  *member = -1;
+  for (int32_t j = 0; j < c->model->members.count; j++) {
+    double force = fmax(fabs(strut_member_measure(c->model, state, j).force),
+                        fabs(last_force_of_member(c->model, state, j)));
+    if (!(force > most)) continue;
+    most = force;
+    *member = j;
+  }
+  return most;
+}
+
 /* Evaluates a column; *size: magnitude of the terms that it sums, where that is not the value. */
-static double evaluate_column(const strut_columns *c, const strut_state *state, strut_column column,
+static double evaluate_column(strut_columns *c, const strut_state *state, strut_column column,
                               double *size) {
   size_t at = 2 * (size_t)(column.item < 0 ? 0 : column.item);
   const double *w = state->work;
@@ -268,6 +282,7 @@ static double evaluate_column(const strut_columns *c, const strut_state *state, 
     case STRUT_COLUMN_SLIDER_VY: return evaluate_slider(c, state, column);
     case STRUT_COLUMN_SLIDER_SHARE:
       return strut_sliding_mass_share(c->model->scene, (size_t)column.item, column_time(c, state));
+    case STRUT_COLUMN_LARGEST_FORCE: return largest_force(c, state, &c->loaded_now);
     case STRUT_COLUMN_COUNT: break;
   }
   return 0.0;
@@ -286,6 +301,8 @@ static void prepare_state(strut_columns *c, strut_state *state) {
 }
 
 static void note_extremes(strut_columns *c, size_t i, double size) {
+  if (c->column[i].kind == STRUT_COLUMN_LARGEST_FORCE && c->value[i] > c->most[i])
+    c->loaded_most = c->loaded_now;
   c->least[i] = fmin(c->least[i], c->value[i]);
   c->most[i] = fmax(c->most[i], c->value[i]);
   c->largest[i] = fmax(c->largest[i], size);
@@ -304,6 +321,7 @@ void strut_columns_evaluate(strut_columns *c, strut_state *state) {
 
 void strut_columns_begin(strut_columns *c, strut_state *state) {
   c->fastest = 0.0;
+  c->loaded_now = c->loaded_most = -1;
   prepare_state(c, state);
   for (size_t i = 0; i < c->count; i++) {
     double size = -1.0;
@@ -336,6 +354,8 @@ double strut_columns_noise(const strut_columns *c, size_t index) {
   if (is_speed(column.kind)) return SUM_ROUNDING * c->fastest;
   if (column.kind == STRUT_COLUMN_FORCE || column.kind == STRUT_COLUMN_LAST_FORCE)
     return length * member_stiffness(c->model, column.item);
+  if (column.kind == STRUT_COLUMN_LARGEST_FORCE)
+    return c->loaded_most < 0 ? 0.0 : length * member_stiffness(c->model, c->loaded_most);
   if (column.kind == STRUT_COLUMN_HINGE_RATE) return SUM_ROUNDING * c->fastest / c->model->size;
   if (column.kind == STRUT_COLUMN_MOMENT)
     return POSITION_ROUNDING * c->model->elements.element[column.item].numbers.stiffness;

@@ -25,6 +25,8 @@ typedef struct strut_columns {
   bool energies;         /* some column needs the stored energies */
   bool speeds;           /* some column is a velocity, whose rounding scales with the node speeds */
   strut_energies stored; /* [J]; with `energies` */
+  int32_t loaded_now,
+      loaded_most; /* member of the largest force now, and in the window; -1: none */
 } strut_columns;
 
 /** Allocates for `most` columns in the arena. False: out of memory. */

@@ -64,16 +64,19 @@ strut_status strut_measure_create(const strut_model *model, const strut_experime
   m->capacity = capacity > m->marks ? capacity : m->marks;
   m->time = strut_arena_allocate(&m->arena, m->capacity, sizeof *m->time);
   m->x = strut_arena_allocate(&m->arena, m->capacity, sizeof *m->x);
+  m->work = strut_arena_allocate(&m->arena, m->capacity, sizeof *m->work);
   m->contact_steps = strut_arena_allocate(&m->arena, contacts, sizeof *m->contact_steps);
   m->max_height = strut_arena_allocate(&m->arena, contacts, sizeof *m->max_height);
   bool wanted = experiment->quantity_count > 0;
   if (wanted) m->quantities = strut_quantities_create(model, experiment, grid->step, &m->arena);
-  if (!m->time || !m->x || !m->contact_steps || !m->max_height || (wanted && !m->quantities)) {
+  if (!m->time || !m->x || !m->work || !m->contact_steps || !m->max_height ||
+      (wanted && !m->quantities)) {
     strut_measure_free(m);
     return STRUT_NO_MEMORY;
   }
   place_marks(&span, begin, m);
   for (int32_t i = 0; i < model->node_count; i++) m->total_mass += model->weight[i];
+  m->weight = m->total_mass * hypot(model->scene->gravity[0], model->scene->gravity[1]);
   for (size_t i = 0; i < contacts; i++) m->max_height[i] = -HUGE_VAL;
   return STRUT_OK;
 }
@@ -99,9 +102,12 @@ void strut_measure_begin(const strut_model *model, strut_state *state, strut_mea
   m->fastest = largest_node_speed(model, state);
   if (m->quantities) strut_quantities_begin(m->quantities, &marks, state);
   strut_measure_tracked_point(model, state, m, &m->last_x, &m->last_v);
+  m->last_work = state->work[STRUT_POWER_DRIVE];
+  m->ledger = state->ledger;
   double position = m->time[0] / m->grid.step - (double)state->step;
   if (fabs(position) < MARK_TOLERANCE) {
     m->x[0] = m->last_x;
+    m->work[0] = m->last_work;
     m->next = 1;
   }
 }
@@ -135,8 +141,10 @@ static __attribute__((noinline)) void pass_marks(const strut_model *model, const
   m->fastest = fmax(m->fastest, largest_node_speed(model, state));
   while (mark_reached(m, n)) {
     double s = (m->time[m->next] / step - (n - 1.0)) * (step / length);
-    m->x[m->next++] =
-        s > 1.0 - MARK_TOLERANCE ? x : strut_hermite(m->last_x, m->last_v, x, v, length, s);
+    bool end = s > 1.0 - MARK_TOLERANCE;
+    double work = state->work[STRUT_POWER_DRIVE];
+    m->work[m->next] = end ? work : m->last_work + s * (work - m->last_work);
+    m->x[m->next++] = end ? x : strut_hermite(m->last_x, m->last_v, x, v, length, s);
   }
 }
 
@@ -147,6 +155,7 @@ void strut_measure_step(const strut_model *model, const strut_state *state, stru
   if (mark_reached(m, (double)state->step)) pass_marks(model, state, m, x, v);
   m->last_x = x;
   m->last_v = v;
+  m->last_work = state->work[STRUT_POWER_DRIVE];
 }
 
 void strut_measure_step_quantities(const strut_model *model, strut_state *state,
@@ -166,7 +175,11 @@ void strut_measure_finish(const strut_measurement *m, strut_summary *summary) {
   if (m->quantities) strut_quantities_finish(m->quantities, summary);
   summary->velocity = summary->velocity_spread = (double)NAN;
   summary->window_start = m->time[0] + m->grid.offset;
+  summary->window_time = summary->window_work = (double)NAN;
+  summary->weight = m->weight;
   if (passed >= 2) {
+    summary->window_time = m->time[passed - 1] - m->time[0];
+    if (m->ledger) summary->window_work = m->work[passed - 1] - m->work[0];
     summary->velocity = (m->x[passed - 1] - m->x[0]) / (m->time[passed - 1] - m->time[0]);
     double sum = 0.0, count = (double)(passed - 1);
     for (size_t i = 1; i < passed; i++) {

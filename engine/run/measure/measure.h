@@ -29,6 +29,10 @@ typedef struct strut_measurement {
   double fastest; /* largest speed of a node at the start of the window and at marks [m/s] */
   strut_quantities *quantities; /* NULL where the scene names none */
   strut_arena arena;
+  double *work;     /* (marks) work of the drives there [J] */
+  double last_work; /* and after the latest step [J] */
+  double weight;    /* of the structure [N] */
+  bool ledger;      /* works are known */
 } strut_measurement;
 
 /**

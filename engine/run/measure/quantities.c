@@ -23,9 +23,11 @@ enum { RECENT = 5 };
 typedef struct stretch {
   double integral, square; /* integrals of the value and its square over the time */
   double low, high;
-  double begin;  /* value at the start */
-  double origin; /* position at the start, where its change is the integral */
-  double time;   /* start [s] */
+  double begin;   /* value at the start */
+  double origin;  /* position at the start, where its change is the integral */
+  double time;    /* start [s] */
+  double rise;    /* sum of all increases */
+  double arrival; /* when the target was first reached or passed [s]; NAN: not yet */
 } stretch;
 
 typedef struct meter {
@@ -125,8 +127,13 @@ static double evaluate_meter(const strut_quantities *q, const meter *m) {
   return strut_quantity_program_evaluate(m->definition, m->index, q->columns.value, q->stack);
 }
 
-static stretch begin_stretch(double time, double value, double origin) {
-  return (stretch){.low = value, .high = value, .begin = value, .origin = origin, .time = time};
+static stretch begin_stretch(const meter *m, double time, double value, double origin) {
+  return (stretch){.low = value,
+                   .high = value,
+                   .begin = value,
+                   .origin = origin,
+                   .time = time,
+                   .arrival = value == m->definition->target ? time : (double)NAN};
 }
 
 static void note_extreme(stretch *s, double value) {
@@ -134,13 +141,18 @@ static void note_extreme(stretch *s, double value) {
   if (!(value <= s->high)) s->high = value;
 }
 
-/* Adds a part of a step of `time` [s], linear from one value to another. */
-static void add_interval(meter *m, double from, double to, double time) {
+/* Adds a part of a step of `time` [s] that begins at `begin` [s], linear from one value to another. */
+static void add_interval(meter *m, double from, double to, double begin, double time) {
   stretch *const both[] = {&m->whole, &m->part};
+  double before = from - m->definition->target, after = to - m->definition->target;
+  bool arrives = (before < 0.0 && after >= 0.0) || (before > 0.0 && after <= 0.0);
   for (int k = 0; k < 2; k++) {
     both[k]->integral += 0.5 * (from + to) * time;
     both[k]->square += 0.5 * (from * from + to * to) * time;
     note_extreme(both[k], to);
+    both[k]->rise += fmax(to - from, 0.0);
+    if (arrives && isnan(both[k]->arrival))
+      both[k]->arrival = begin + time * (before / (before - after));
   }
   m->largest = fmax(m->largest, fabs(to));
 }
@@ -158,12 +170,14 @@ static double reduce_stretch(const meter *m, const stretch *s, double time, doub
     case STRUT_TAKE_FINAL: return value;
     case STRUT_TAKE_CHANGE: return value - s->begin;
     case STRUT_TAKE_RATE: return (value - s->begin) / length;
+    case STRUT_TAKE_RISE: return s->rise;
+    case STRUT_TAKE_ARRIVAL: return s->arrival;
   }
   return (double)NAN;
 }
 
 static void open_window(meter *m, double time, double value, double place) {
-  m->whole = m->part = begin_stretch(time, value, place);
+  m->whole = m->part = begin_stretch(m, time, value, place);
   m->parts = 0;
   m->part_mean = m->part_square = 0.0;
   m->recent_count = 0;
@@ -176,7 +190,7 @@ static void close_part(meter *m, double time, double value, double place) {
   m->parts++;
   m->part_mean += d / (double)m->parts;
   m->part_square += d * (of_part - m->part_mean);
-  m->part = begin_stretch(time, value, place);
+  m->part = begin_stretch(m, time, value, place);
 }
 
 /* Interpolates the primitive at the fraction `s` of the latest step, of length h [s]. */
@@ -188,9 +202,10 @@ static double interpolate_primitive(const strut_quantities *q, const meter *m, d
   return strut_hermite(c->before[x], c->before[v], c->value[x], c->value[v], h, s);
 }
 
-/* Passes the mark `time` at the fraction `s` of the step; `from`: fraction of the mark before. */
-static void pass_mark(strut_quantities *q, double time, double h, double from, double s,
-                      const double *last) {
+/* Passes the mark `time` at the fraction `s` of the step, which began at `step_begin` [s]; `from`:
+ * fraction of the mark before. */
+static void pass_mark(strut_quantities *q, double time, double step_begin, double h, double from,
+                      double s, const double *last) {
   for (size_t i = 0; i < q->count; i++) {
     meter *m = &q->meters[i];
     double now = m->value, rise = now - last[i];
@@ -198,7 +213,7 @@ static void pass_mark(strut_quantities *q, double time, double h, double from, d
     double b = s < 1.0 ? last[i] + s * rise : now;
     double place = interpolate_primitive(q, m, h, s);
     if (q->next > 0) {
-      add_interval(m, a, b, (s - from) * h);
+      add_interval(m, a, b, step_begin + from * h, (s - from) * h);
       close_part(m, time, b, place);
     } else {
       open_window(m, time, b, place);
@@ -257,7 +272,7 @@ void strut_quantities_begin(strut_quantities *q, const strut_marks *marks, strut
 void strut_quantities_step(strut_quantities *q, const strut_marks *marks, strut_state *state) {
   if (q->next >= marks->count) return;
   double n = (double)state->step, step = marks->step, h = marks->length, from = 0.0;
-  double *last = q->last;
+  double *last = q->last, begin = (n - 1.0) * step + state->time_offset;
   q->columns.shorter = h - step;
   strut_columns_evaluate(&q->columns, state);
   for (size_t i = 0; i < q->count; i++) {
@@ -269,14 +284,14 @@ void strut_quantities_step(strut_quantities *q, const strut_marks *marks, strut_
   while (q->next < marks->count && marks->time[q->next] / step <= n + MARK_TOLERANCE) {
     double s = (marks->time[q->next] / step - (n - 1.0)) * (step / h);
     if (s > 1.0 - MARK_TOLERANCE) s = 1.0;
-    pass_mark(q, marks->time[q->next], h, from, s, last);
+    pass_mark(q, marks->time[q->next], begin, h, from, s, last);
     from = s;
   }
   if (q->next == 0 || q->next >= marks->count) return;
   for (size_t i = 0; i < q->count; i++) {
     meter *m = &q->meters[i];
-    double now = m->value, begin = from > 0.0 ? last[i] + from * (now - last[i]) : last[i];
-    if (from < 1.0) add_interval(m, begin, now, (1.0 - from) * h);
+    double now = m->value, start = from > 0.0 ? last[i] + from * (now - last[i]) : last[i];
+    if (from < 1.0) add_interval(m, start, now, begin + from * h, (1.0 - from) * h);
   }
 }
 
@@ -289,9 +304,21 @@ static void measure_columns(strut_quantities *q) {
                                     .noise = strut_columns_noise(c, i)};
 }
 
+/* The member of the largest force, where the largest one of all was asked for. */
+static const char *loaded_member(const strut_quantities *q, const meter *m) {
+  const strut_quantity_definition *d = m->definition;
+  bool asked = false;
+  for (size_t i = 0; i < d->length; i++)
+    asked = asked || (d->program[i].operation == STRUT_OPERATION_COLUMN &&
+                      d->program[i].column.kind == STRUT_COLUMN_LARGEST_FORCE);
+  if (!asked || d->take != STRUT_TAKE_MAX || q->columns.loaded_most < 0) return NULL;
+  return q->columns.model->scene->members[q->columns.loaded_most].name;
+}
+
 static void fill_measured(strut_quantities *q, meter *m, strut_measured *to) {
   strut_reduction take = m->definition->take;
-  bool differs = take == STRUT_TAKE_RANGE || take == STRUT_TAKE_CHANGE || take == STRUT_TAKE_RATE;
+  bool differs = take == STRUT_TAKE_RANGE || take == STRUT_TAKE_CHANGE || take == STRUT_TAKE_RATE ||
+                 take == STRUT_TAKE_RISE;
   bool cancels = take == STRUT_TAKE_MEAN || take == STRUT_TAKE_CHANGE || take == STRUT_TAKE_RATE;
   double per = take == STRUT_TAKE_RATE ? q->time - q->begin : 1.0;
   strut_magnitude made =
@@ -299,6 +326,11 @@ static void fill_measured(strut_quantities *q, meter *m, strut_measured *to) {
   double size = fmax(made.size, m->largest);
   if (!isfinite(m->result)) return;
   to->value = m->result;
+  to->member = loaded_member(q, m);
+  if (take == STRUT_TAKE_ARRIVAL) { /* a time, not a value of the expression */
+    to->scale = fabs(m->result);
+    return;
+  }
   double scale = (differs ? made.span : size) / per;
   if (isfinite(scale)) to->scale = scale;
   double noise = made.noise + (cancels ? CANCELLED : ROUNDED) * size;

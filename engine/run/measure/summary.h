@@ -81,9 +81,11 @@ typedef struct strut_measured {
   double spread; /* standard deviation of the value of each of the window's periods; or NAN */
   double scale;  /* largest absolute value over the window, of the quantity and of the terms that it
                       is made of: relative errors mean nothing where the value is far below it */
-  double expected; /* expected error, SI; NAN where unknown */
-  bool kept;       /* expected is within the wanted error */
-  bool zero;       /* zero by symmetry: only rounding */
+  double expected;    /* expected error, SI; NAN where unknown */
+  bool kept;          /* expected is within the wanted error */
+  bool zero;          /* zero by symmetry: only rounding */
+  const char *member; /* that of a largest `largest_force`; owned by the scene; else NULL */
+  bool arrival;       /* the time of an arrival: missing where the target was not reached */
 } strut_measured;
 
 /** Kind of motion that a run with steady detection found; STRUT_MOTION_NOT_WATCHED without. */
@@ -185,6 +187,9 @@ typedef struct strut_summary {
   size_t break_count;
   strut_break_summary *breaks; /* (break_count) in the scene's order, members first */
   bool feedback;               /* signals follow sensors, which the step limit leaves out */
+  double window_time;          /* between the marks that the velocity is measured by [s]; or NAN */
+  double window_work;          /* of the drives in that time [J]; NAN without works */
+  double weight;               /* of the whole structure [N] */
 } strut_summary;
 
 /** Adds a warning with a printf-style text; replaces one with the same code. */

@@ -46,6 +46,13 @@ static double state_barrier(const rest_result *r, size_t i) {
   return lowest;
 }
 
+/* The lowest barrier out of any stable state. */
+static double lowest_barrier(const rest_result *r) {
+  double lowest = (double)NAN;
+  for (size_t i = 0; i < r->stable_count; i++) lowest = fmin(lowest, state_barrier(r, i));
+  return lowest;
+}
+
 static double count_modes(const strut_modes *modes, strut_mode_kind kind) {
   double count = 0.0;
   for (size_t i = 0; i < modes->count; i++) count += modes->list[i].kind == kind;
@@ -120,7 +127,8 @@ typedef enum column_shape {
   X(ENERGIES, "energy", "J", NUMBERS, state_energy(r, i))                                          \
   X(BARRIERS, "barrier", "J", NUMBERS, state_barrier(r, i))                                        \
   X(STARTS, "starts", "1", NUMBER, (double)r->equilibria.starts)                                   \
-  X(MISSED, "missed_probability", "1", NUMBER, r->equilibria.missed)
+  X(MISSED, "missed_probability", "1", NUMBER, r->equilibria.missed)                               \
+  X(LOWEST_BARRIER, "lowest_barrier", "J", NUMBER, lowest_barrier(r))
 #define MODES_COLUMNS(X)                                                                           \
   X(AT, "at", "1", WORD, (double)NAN)                                                              \
   X(FREQUENCIES, "frequency", "Hz", NUMBERS, frequency_of(elastic_mode(&r->modes, i)))             \
@@ -216,7 +224,8 @@ static const char *word_of(const rest_result *r, strut_keep keep, size_t i,
 uint64_t strut_statics_usual(strut_compute compute) {
   uint64_t usual = 0;
   for (size_t i = 0; i < COLUMNS; i++)
-    if (columns[i].compute == compute) usual |= (uint64_t)1 << columns[i].keep;
+    if (columns[i].compute == compute && columns[i].keep != STRUT_KEEP_LOWEST_BARRIER)
+      usual |= (uint64_t)1 << columns[i].keep;
   return usual;
 }
 
@@ -464,6 +473,7 @@ strut_status strut_statics_point(const strut_sweep_worker *w, strut_sweep_job *j
   if (!r) return strut_fail(&job->error, STRUT_NO_MEMORY, "out of memory");
   strut_status status = strut_model_compile(&job->setup.scene, &model, &job->error);
   r->model = model;
+  job->setup.experiment.interrupt = strut_sweep_interrupt_of(w, job);
   strut_sweep_fill_counts(w->plan, model, &job->cells);
   if (!status) status = compute(w, job, r);
   if (!status) fill_columns(w->plan, r, &job->cells);

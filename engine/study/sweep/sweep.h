@@ -39,6 +39,7 @@ typedef struct strut_sweep_plan {
   /* names in the first point's scene; other points may have others, and leave these cells empty */
   size_t contact_count, node_count, member_count;
   const char **contacts, **nodes, **members;
+  bool *names_member; /* (quantity_count) a word beside it: the member of the largest force */
 } strut_sweep_plan;
 
 /**

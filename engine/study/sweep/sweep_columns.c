@@ -41,7 +41,9 @@ static const uint64_t USUAL = BIT(VELOCITY) | BIT(SPREAD) | BIT(MOTION) | BIT(PE
   X(KEPT, "accuracy_kept", "1", false,                                                             \
     s->accuracy.wanted > 0.0 ? (double)s->accuracy.kept : (double)NAN)                             \
   STRUT_ENERGY_TABLE(ENERGY_##X)                                                                   \
-  X(RESIDUAL, "residual", "J", false, s->energy.residual)
+  X(RESIDUAL, "residual", "J", false, s->energy.residual)                                          \
+  X(COST, "cost_of_transport", "1", false, cost_of_transport(s))                                   \
+  X(COST, "work_per_distance", "N", false, work_per_distance(s))
 
 typedef struct entry {
   strut_keep keep;
@@ -143,6 +145,15 @@ static bool is_kept(const strut_study *study, const char *quantity) {
   return false;
 }
 
+/* Does the quantity name the member of the largest force? */
+static bool names_member(const strut_quantity_definition *d) {
+  for (size_t i = 0; i < d->length && d->take == STRUT_TAKE_MAX; i++)
+    if (d->program[i].operation == STRUT_OPERATION_COLUMN &&
+        d->program[i].column.kind == STRUT_COLUMN_LARGEST_FORCE)
+      return true;
+  return false;
+}
+
 /* Adds the measured quantities that are kept; one with the name of a column gets a prefix. */
 static bool add_quantities(strut_sweep_plan *plan, const strut_experiment *e) {
   for (size_t i = 0; i < e->quantity_count; i++) {
@@ -151,10 +162,14 @@ static bool add_quantities(strut_sweep_plan *plan, const strut_experiment *e) {
     const char *name = strut_arena_text(&plan->arena, d->name, strlen(d->name));
     const char *unit = strut_arena_text(&plan->arena, d->unit, strlen(d->unit));
     if (!name || !unit) return false;
+    plan->names_member[plan->quantity_count] = names_member(d);
     plan->quantities[plan->quantity_count++] = name;
     bool taken =
         is_taken(plan, plan->column_count, name) && !is_taken(plan, plan->axis_columns, name);
     if (!strut_sweep_add_column(plan, taken ? "measured_" : "", name, unit, false)) return false;
+    const char *member = strut_arena_format(&plan->arena, "%s_member", name);
+    if (!member || (names_member(d) && !strut_sweep_add_column(plan, "", member, "1", true)))
+      return false;
   }
   return true;
 }
@@ -218,11 +233,13 @@ static strut_status choose_columns(strut_sweep_plan *plan, const strut_setup *se
   }
   size_t quantities = setup->experiment.quantity_count;
   size_t most = plan->axis_columns + ENTRIES + COUNTS + STRUT_STATICS_COLUMNS + 5 +
-                2 * scene->contact_count + 2 * scene->node_count + scene->member_count + quantities;
+                2 * scene->contact_count + 2 * scene->node_count + scene->member_count +
+                2 * quantities;
   plan->column_capacity = most;
   plan->columns = strut_arena_allocate(&plan->arena, most, sizeof *plan->columns);
   plan->quantities = strut_arena_allocate(&plan->arena, quantities, sizeof *plan->quantities);
-  if (!plan->columns || !plan->quantities || !add_columns(plan, setup))
+  plan->names_member = strut_arena_allocate(&plan->arena, quantities, sizeof *plan->names_member);
+  if (!plan->columns || !plan->quantities || !plan->names_member || !add_columns(plan, setup))
     return strut_no_memory(error, "");
   return STRUT_OK;
 }
@@ -266,6 +283,19 @@ void strut_sweep_word(strut_row_buffer *cells, const char *word) {
   char *to = cells->words[cells->word_count++];
   memset(to, 0, STRUT_SLOT_WORD);
   for (size_t i = 0; i + 1 < STRUT_SLOT_WORD && word[i]; i++) to[i] = word[i];
+}
+
+/* Net work of the drives over the distance that the measured point moves; missing where it stands. */
+static double work_per_distance(const strut_summary *s) {
+  double distance = fabs(s->velocity) * s->window_time;
+  bool moves = !s->velocity_zero && distance > 0.0;
+  return moves ? s->window_work / distance : (double)NAN;
+}
+
+/* The same over the weight, as `strut compare` has it: missing where drives do no work. */
+static double cost_of_transport(const strut_summary *s) {
+  double cost = work_per_distance(s) / s->weight;
+  return s->weight > 0.0 && cost > 0.0 ? cost : (double)NAN;
 }
 
 /* The value of an entry; NAN if the summary has none. */
@@ -336,11 +366,20 @@ static void fill_contacts(const strut_sweep_plan *plan, const strut_scene *scene
   }
 }
 
-/* A variant may lack a quantity of the first point, which names the columns. */
-static double measured_value(const strut_summary *s, const char *name) {
-  for (size_t i = 0; i < s->measured_count; i++)
-    if (strcmp(s->measured[i].name, name) == 0) return s->measured[i].value;
-  return (double)NAN;
+/* A variant may lack a quantity of the first point, which names the columns: NULL. */
+static const strut_measured *find_measured(const strut_summary *s, const char *name) {
+  for (size_t i = 0; s && i < s->measured_count; i++)
+    if (strcmp(s->measured[i].name, name) == 0) return &s->measured[i];
+  return NULL;
+}
+
+static void fill_measured(const strut_sweep_plan *plan, const strut_summary *s,
+                          strut_row_buffer *cells) {
+  for (size_t i = 0; i < plan->quantity_count; i++) {
+    const strut_measured *m = find_measured(s, plan->quantities[i]);
+    strut_sweep_number(cells, m ? m->value : (double)NAN);
+    if (plan->names_member[i]) strut_sweep_word(cells, m && m->member ? m->member : "");
+  }
 }
 
 void strut_sweep_fill(const strut_sweep_plan *plan, const strut_setup *setup,
@@ -357,8 +396,7 @@ void strut_sweep_fill(const strut_sweep_plan *plan, const strut_setup *setup,
     fill_contacts(plan, &setup->scene, summary, cells);
     strut_sweep_fill_positions(plan, &setup->scene, known ? summary->positions : NULL, cells);
   }
-  for (size_t i = 0; i < plan->quantity_count; i++)
-    strut_sweep_number(cells, summary ? measured_value(summary, plan->quantities[i]) : (double)NAN);
+  fill_measured(plan, summary, cells);
   if (keeps(plan, STRUT_KEEP_OUTCOME)) strut_sweep_word(cells, outcome);
   if (plan->start)
     strut_sweep_number(cells, summary ? (double)summary->settle.unstable : (double)NAN);

@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Numbers that a search may ask for, against closed forms: cost of transport, positive work, the time
+# at which something is reached, the largest force and its member, the lowest barrier.
+#
+#   python3 objectives_test.py STRUT
+import csv
+import json
+import math
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
+from findings import check, finish  # noqa: E402
+
+strut = os.path.realpath(sys.argv[1])
+models = os.path.realpath("models")
+work = tempfile.mkdtemp()
+
+
+def run(*words, code=0):
+    done = subprocess.run([strut, *words], capture_output=True, text=True, cwd=work)
+    check(done.returncode == code,
+          f"strut {' '.join(words)}: exit code {done.returncode}, expected {code}: {done.stderr}")
+    return done
+
+
+def write(name, text):
+    with open(os.path.join(work, name), "w", encoding="utf-8") as file:
+        file.write(text)
+
+
+def sweep(name, text, *words, code=0):
+    write(name + "-study.yaml", "strut: 1\nstudy: s\n" + text)
+    run("sweep", name + "-study.yaml", "-o", name, "--quiet", *words, code=code)
+    with open(os.path.join(work, name, "table.csv"), newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def near(found, wanted, what, relative=1e-9):
+    check(found != "" and math.isclose(float(found), wanted, rel_tol=relative),
+          f"{what}: {found}, expected {wanted}")
+
+
+# A block that a stiff actuator pushes along rough ground: the work per distance is the friction, and
+# the cost of transport its coefficient.
+BLOCK = """strut: 1
+name: A block pushed along the ground
+parameters: {friction: 0.3, speed: 20 mm/s, fall: 9.81 m/s^2}
+gravity: [0, -fall]
+nodes:
+  wall: {position: [0, 0], fixed: both}
+  block: {position: [100 mm, 0], mass: 0.5 kg}
+members:
+  push: {nodes: [wall, block], kind: spring, stiffness: 5 kN/m, damping: 20 N s/m, rest_length: 100 mm}
+ground:
+  friction: {mu: friction, stick_velocity: 0.01 mm/s}
+  nodes: [block]
+  stiffness: 1 MN/m
+  damping: 300 N s/m
+actuators:
+  drive: {member: push, signal: {expression: speed*time}}
+solver: {integrator: rk4-events, step: 0.1 ms}
+run:
+  duration: 1 s
+  measure: {last: 0.5 s%s}
+"""
+QUANTITIES = """, quantities: {
+      peak: {of: largest_force, take: max},
+      there: {of: block.x, take: arrival, target: 115 mm},
+      never: {of: block.x, take: arrival, target: 2 m},
+      pushed: {of: work.drives, take: rise},
+      away: {of: -block.x, take: rise}}"""
+
+
+def moves():
+    write("block.yaml", BLOCK % QUANTITIES)
+    write("plain.yaml", BLOCK % "")
+    rows = sweep("cost", """model: block.yaml
+axes: [{friction: [0.1, 0.3]}]
+keep: [velocity, cost_of_transport, quantities]
+""")
+    for row, mu in zip(rows, (0.1, 0.3)):
+        force = mu * 0.5 * 9.81
+        near(row["cost_of_transport"], mu, f"cost of transport at friction {mu}", 1e-4)
+        near(row["work_per_distance [N]"], force, "work per distance", 1e-4)
+        near(row["pushed [J]"], force * 0.01, "positive work", 1e-4)
+        near(row["peak [N]"], force, "largest force", 1e-3)
+        check(row["peak_member"] == "push", str(row))
+        near(row["there [s]"], 0.75 + force / 5e3 / 0.02, "arrival", 1e-6)
+        check(row["never [s]"] == "", str(row))
+        check(abs(float(row["away [m]"])) < 1e-12, str(row))
+    # without weight or motion there is no cost of transport
+    row = sweep("still", """model: plain.yaml
+axes: [{speed: [0 mm/s]}]
+keep: [velocity, cost_of_transport]
+""")[0]
+    check(row["cost_of_transport"] == "" and row["work_per_distance [N]"] == "", str(row))
+    row = sweep("weightless", """model: plain.yaml
+axes: [{fall: [0 m/s^2]}]
+keep: [velocity, cost_of_transport]
+""")[0]
+    check(row["cost_of_transport"] == "" and row["work_per_distance [N]"] != "", str(row))
+    # the report and the summary
+    said = run("run", "block.yaml").stdout
+    check("in push" in said and "the target was not reached" in said, said)
+    told = json.loads(run("run", "block.yaml", "--json").stdout)["measured"]
+    check(told["peak"]["member"] == "push" and told["never"]["value"] is None, str(told))
+    check("member" not in told["there"], str(told))
+    # an arrival that never comes does not keep a wanted accuracy from being reached
+    told = json.loads(run("run", "block.yaml", "--accuracy", "1%", "--json").stdout)
+    check(told["accuracy"]["kept"] is True and told["measured"]["never"]["value"] is None, str(told))
+
+
+# Lanes give the same bits, with events and without, and so does the compared design of `strut compare`.
+def lanes():
+    for method in ("rk4", "verlet-events"):
+        for n in ("1", "4"):
+            sweep(f"lanes-{method}-{n}", f"""model: {models}/crawler/crawler.yaml
+axes: [{{frequency: [9 Hz, 10 Hz, 11 Hz, 12 Hz, 13 Hz]}}]
+solver: {{integrator: {method}, step: 0.08 ms}}
+run: {{periods: 12, measure: {{last: 2}}}}
+keep: [velocity, cost_of_transport, work]
+""", "--lanes", n, "--threads", "1")
+        tables = []
+        for n in ("1", "4"):
+            with open(os.path.join(work, f"lanes-{method}-{n}", "table.csv")) as file:
+                tables.append(file.read())
+        check(tables[0] == tables[1] and ",," not in tables[0], f"lanes of {method}: {tables}")
+
+
+def compared():
+    row = sweep("steady", f"""model: {models}/crawler/crawler.yaml
+axes: [{{frequency: [10 Hz]}}]
+solver: {{accuracy: 0.5 %}}
+run: {{measure: {{steady: true}}}}
+keep: [velocity, cost_of_transport]
+""")[0]
+    told = json.loads(run("compare", f"{models}/crawler/crawler.yaml",
+                          f"{models}/basics/belt.yaml", "--no-states", "--json").stdout)
+    near(row["cost_of_transport"], told["models"][0]["values"]["cost_of_transport"],
+         "cost of transport of strut compare", 0.01)
+
+
+def at_rest():
+    row = sweep("barriers", f"""model: {models}/crawler/crawler.yaml
+compute: equilibria
+axes: [{{friction: [0.1]}}]
+lowest: 20
+keep: [stable_count, barriers, lowest_barrier]
+""")[0]
+    barriers = [float(row[f"barrier_{i} [J]"]) for i in range(1, 21) if row[f"barrier_{i} [J]"]]
+    check(len(barriers) == int(row["stable_count"]), str(row))
+    near(row["lowest_barrier [J]"], min(barriers), "lowest barrier", 1e-15)
+
+
+moves()
+lanes()
+compared()
+at_rest()
+shutil.rmtree(work)
+finish()
