@@ -25,6 +25,7 @@ static const strut_option options[] = {
     {STRUT_OPTION_INTEGRATOR, "integrator", "NAME",
      "method, which must locate events (default adaptive)"},
     {STRUT_OPTION_STEPS, "steps", "N", "maximum number of steps each way (default 400)"},
+    {STRUT_OPTION_BASINS, "basins", NULL, "kick the stable motions at the values of --at"},
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
     {STRUT_OPTION_OUTPUT, "output", "DIR", "write branches.csv, .json and .svg into DIR"},
     {STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object"},

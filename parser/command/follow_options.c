@@ -209,6 +209,7 @@ strut_status strut_follow_options_read(const strut_command *command,
       source->starts[wanted->start_count++] = (strut_follow_start){values[v], names[k]};
   wanted->starts = source->starts;
   wanted->steps = (int32_t)steps;
+  wanted->basins = arguments->basins;
   wanted->method = strut_option_text(arguments, STRUT_OPTION_INTEGRATOR);
   wanted->scenes = (strut_follow_scenes){make_setup, source};
   return STRUT_OK;

@@ -105,6 +105,15 @@ char *strut_follow_json(const strut_follow_result *r) {
     add_points(&json, row, &f->branch, true);
     add_points(&json, row, &f->branch, false);
   }
+  struct cJSON *basins = r->basin_count ? strut_json_array(&json, json.root, "basins") : NULL;
+  for (size_t i = 0; i < r->basin_count; i++) {
+    const strut_follow_basin *b = &r->basins[i];
+    struct cJSON *row = strut_json_object(&json, basins, NULL);
+    strut_json_integer(&json, row, "branch", (int64_t)b->branch + 1);
+    strut_json_number(&json, row, "value", b->value);
+    for (int k = 0; k < STRUT_FOLLOW_KICKS; k++)
+      strut_json_number(&json, row, strut_follow_kick_name(k), b->kick[k]);
+  }
   struct cJSON *notes = strut_json_array(&json, json.root, "notes");
   for (size_t i = 0; i < r->note_count; i++) strut_json_text(&json, notes, NULL, r->notes[i]);
   return strut_json_end(&json);
@@ -173,6 +182,23 @@ static void add_branch(strut_buffer *t, const strut_follow_result *r, size_t ind
   strut_buffer_add(t, "  begins: %s; ends: %s\n", b->ends[0], b->ends[1]);
 }
 
+/* Kicks that motions do not survive. */
+static void add_basins(strut_buffer *t, const strut_follow_result *r) {
+  if (r->basin_count)
+    strut_buffer_add(t, "\nsmallest kicks found from which a motion does not come back\n");
+  for (size_t i = 0; i < r->basin_count; i++) {
+    const strut_follow_basin *b = &r->basins[i];
+    strut_buffer_add(t, "  branch %zu at %s, %s:", b->branch + 1,
+                     strut_quantity_of_any(b->value, 6, unit_of(r)).text,
+                     strut_quantity_of(b->velocity, 4, "m/s").text);
+    for (int k = 0; k < STRUT_FOLLOW_KICKS; k++)
+      strut_buffer_add(t, "%s %s %s", k ? "," : "", strut_follow_kick_name(k),
+                       isfinite(b->kick[k]) ? strut_quantity_of(b->kick[k], 2, "m/s").text
+                                            : "any");
+    strut_buffer_add(t, "\n");
+  }
+}
+
 char *strut_follow_table(const strut_follow_result *r) {
   strut_buffer t = {0};
   strut_c_locale locale = strut_c_locale_enter();
@@ -180,6 +206,7 @@ char *strut_follow_table(const strut_follow_result *r) {
                    strut_quantity_of_any(r->low, 6, unit_of(r)).text,
                    strut_quantity_of_any(r->high, 6, unit_of(r)).text, r->method);
   for (size_t i = 0; i < r->count; i++) add_branch(&t, r, i);
+  add_basins(&t, r);
   if (r->note_count) strut_buffer_add(&t, "\n");
   for (size_t i = 0; i < r->note_count; i++) strut_buffer_add(&t, "note: %s\n", r->notes[i]);
   strut_c_locale_leave(locale);

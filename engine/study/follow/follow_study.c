@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/study/follow/follow_study.h"
+#include "engine/study/follow/follow_parts.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -229,6 +229,52 @@ static strut_status follow_doublings(follower *f) {
   return STRUT_OK;
 }
 
+/* ---- basins ---- */
+
+/* The motion of a branch between two of its points, made exact; kicked where it is stable. */
+static strut_status push_between(follower *f, size_t index, size_t k, double value) {
+  const strut_follow_branch *b = &f->r->branches[index].branch;
+  const strut_follow_point *from = &b->points[k], *to = from + 1;
+  strut_follow_basin *basin = &f->r->basins[f->r->basin_count];
+  double part = to->value != from->value ? (value - from->value) / (to->value - from->value) : 0.0;
+  char reason[200];
+  bool found = false;
+  if (!from->stable || !to->stable || f->r->basin_count == STRUT_FOLLOW_MOST_BASINS)
+    return STRUT_OK;
+  strut_status status = strut_follow_set_value(&f->s, value, f->error);
+  if (!status) status = strut_follow_set_repeats(&f->s, b->repeats, f->error);
+  double *y = status ? NULL : strut_arena_allocate(&f->r->arena, f->s.both, sizeof(double));
+  if (!y) return status ? status : strut_no_memory(f->error, "");
+  for (size_t i = 0; i < f->s.both; i++) y[i] = from->y[i] + part * (to->y[i] - from->y[i]);
+  status = strut_follow_correct(&f->s, y, &found, reason, f->error);
+  if (status || !found) return status;
+  strut_follow_centre(&f->s, y);
+  *basin = (strut_follow_basin){.branch = index, .value = value};
+  basin->velocity = from->velocity + part * (to->velocity - from->velocity);
+  status = strut_follow_push(&f->s, y, basin, f->error);
+  if (!status) f->r->basin_count++;
+  return status;
+}
+
+static strut_status push_motions(follower *f) {
+  for (size_t v = 0; v < f->o->start_count; v++) {
+    double value = f->o->starts[v].value;
+    bool again = false;
+    for (size_t i = 0; i < v; i++) again = again || f->o->starts[i].value == value;
+    for (size_t i = 0; i < f->r->count && !again; i++) {
+      const strut_follow_branch *b = &f->r->branches[i].branch;
+      for (size_t k = 0; k + 1 < b->count; k++) {
+        double low = b->points[k].value, high = b->points[k + 1].value;
+        bool within = low < high ? low <= value && value < high : high < value && value <= low;
+        if (b->points[k + 1].value == value && k + 2 == b->count) within = true;
+        strut_status status = within ? push_between(f, i, k, value) : STRUT_OK;
+        if (status) return status;
+      }
+    }
+  }
+  return STRUT_OK;
+}
+
 strut_status strut_follow_make(const strut_follow_options *options, strut_follow_result *result,
                                strut_error *error) {
   double clock = strut_run_clock();
@@ -246,6 +292,7 @@ strut_status strut_follow_make(const strut_follow_options *options, strut_follow
   for (size_t i = 0; i < options->start_count && !status; i++)
     status = follow_start(&f, &options->starts[i]);
   if (!status && !options->not_doubled) status = follow_doublings(&f);
+  if (!status && options->basins) status = push_motions(&f);
   if (!status && result->count == 0)
     status = strut_fail(error, STRUT_NOT_SETTLED, "there is no periodic motion to follow: %s",
                         result->note_count ? result->notes[0] : "no start was given");

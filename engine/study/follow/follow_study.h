@@ -9,6 +9,7 @@
 #include "engine/output/draw/plot.h"
 #include "engine/run/follow/follow.h"
 
+enum { STRUT_FOLLOW_KICKS = 4, STRUT_FOLLOW_MOST_BASINS = 64 };
 enum { STRUT_FOLLOW_MOST_BRANCHES = 24, STRUT_FOLLOW_NOTE = 320, STRUT_FOLLOW_LABEL = 120 };
 
 /** A motion from which a branch is followed. */
@@ -31,6 +32,7 @@ typedef struct strut_follow_options {
   const volatile sig_atomic_t *interrupt;
   void (*progress)(void *context, double fraction); /* may be NULL */
   void *progress_context;
+  bool basins; /* kick the stable motions at the values of the starts */
 } strut_follow_options;
 
 typedef struct strut_followed {
@@ -38,6 +40,17 @@ typedef struct strut_followed {
   char label[STRUT_FOLLOW_LABEL]; /* where it comes from */
   int32_t parent;                 /* index of the branch whose doubling it is, or -1 */
 } strut_followed_branch;
+
+/** How far a stable motion may be pushed at the start of a period. */
+typedef struct strut_follow_basin {
+  size_t branch; /* index */
+  double value, velocity;
+  /** Speeds of the smallest kicks found from which it does not come back within 60 periods [m/s];
+      INFINITY: none that is sensible. */
+  double kick[STRUT_FOLLOW_KICKS];
+} strut_follow_basin;
+/** "forwards", "backwards", "up", "down". */
+STRUT_API const char *strut_follow_kick_name(int i);
 
 typedef struct strut_follow_result {
   char *title;       /* of the model */
@@ -49,6 +62,8 @@ typedef struct strut_follow_result {
   size_t note_count;
   char notes[4 * STRUT_FOLLOW_MOST_BRANCHES][STRUT_FOLLOW_NOTE]; /* sentences */
   strut_arena arena;
+  size_t basin_count;
+  strut_follow_basin basins[STRUT_FOLLOW_MOST_BASINS];
 } strut_follow_result;
 
 /**
