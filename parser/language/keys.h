@@ -76,7 +76,9 @@
   X(SAMPLE, "sample", SAMPLE_COUNT) \
   X(DISTRIBUTION, "distribution", DISTRIBUTION_UNIFORM) \
   X(LIMIT, "limit", LIMIT_EVALUATIONS) \
-  X(REFINE, "refine", REFINE_WHERE)
+  X(REFINE, "refine", REFINE_WHERE) \
+  X(SEARCH, "search", SEARCH_MAXIMISE) \
+  X(VARIABLE, "variable", VARIABLE_FROM)
 /* clang-format on */
 
 /** The mappings of the language. */

@@ -131,6 +131,12 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
         "`axes: [{points: {...}}]` of a study; `{points: FILE}` is short for it.",
     [STRUT_SECTION_SAMPLE] = "`axes: [{sample: {...}}]` of a study: parameters from distributions.",
     [STRUT_SECTION_REFINE] = "`refine: {...}` of a study.",
+    [STRUT_SECTION_SEARCH] =
+        "`search: {...}` of a study; either `maximise` or `minimise`. [Searches](search.md) has "
+        "examples.",
+    [STRUT_SECTION_VARIABLE] =
+        "`over: {NAME: {...}}` of a search. `{NAME: [...]}` is a list of choices, numbers or "
+        "texts.",
     [STRUT_SECTION_LIMIT] = "`limit: {...}` of a study.",
     [STRUT_SECTION_DISTRIBUTION] = "`over: {NAME: {...}}` of a sample, with one of these keys.",
     [STRUT_SECTION_SENSOR] =
