@@ -35,8 +35,7 @@ static bool comes_back(strut_follow_system *s, const double *y, const kick *k, d
   memcpy(work, y, s->both * sizeof(double));
   for (int32_t i = 0; i < 2 * m->node_count; i++) {
     double along = ground ? t[i % 2] : i % 2 == 0, outward = ground ? n[i % 2] : i % 2 == 1;
-    if (!m->fixed[i])
-      work[m->length + i] += speed * (k->along * along + k->outward * outward);
+    if (!m->fixed[i]) work[m->length + i] += speed * (k->along * along + k->outward * outward);
   }
   for (int period = 0; period < PERIODS; period += s->repeats) {
     if (!isfinite(strut_follow_apply(s, work, false).travel)) return false;

@@ -193,8 +193,7 @@ static void add_basins(strut_buffer *t, const strut_follow_result *r) {
                      strut_quantity_of(b->velocity, 4, "m/s").text);
     for (int k = 0; k < STRUT_FOLLOW_KICKS; k++)
       strut_buffer_add(t, "%s %s %s", k ? "," : "", strut_follow_kick_name(k),
-                       isfinite(b->kick[k]) ? strut_quantity_of(b->kick[k], 2, "m/s").text
-                                            : "any");
+                       isfinite(b->kick[k]) ? strut_quantity_of(b->kick[k], 2, "m/s").text : "any");
     strut_buffer_add(t, "\n");
   }
 }

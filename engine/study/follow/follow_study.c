@@ -20,6 +20,8 @@ static const double LEAST_PERIODS = 300.0, MOST_PERIODS = 2000.0;
 static const double LONGEST = 0.02;
 /* Most drive periods of a doubled branch. */
 enum { MOST_REPEATS = 16 };
+/* Runs between attempts to make a motion exact, and their length in its repetitions. */
+enum { MORE_RUNS = 4, MORE_PERIODS = 15 };
 
 typedef struct follower {
   const strut_follow_options *o;
@@ -144,6 +146,22 @@ static strut_status add_branch(follower *f, const double *y, const double *direc
   return STRUT_OK;
 }
 
+/*
+ * Makes the motion exact. Where Newton's method does not get there, as at kinks, a stable motion is
+ * approached by running on.
+ */
+static strut_status make_exact(follower *f, double *y, bool *found, char reason[200]) {
+  strut_follow_system *s = &f->s;
+  strut_status status = strut_follow_correct(s, y, found, reason, f->error);
+  for (int k = 0; k < MORE_RUNS && !status && !*found; k++) {
+    for (int i = 0; i < MORE_PERIODS; i++)
+      if (!isfinite(strut_follow_apply(s, y, false).travel)) return STRUT_OK;
+    strut_follow_centre(s, y);
+    status = strut_follow_correct(s, y, found, reason, f->error);
+  }
+  return status;
+}
+
 /* The motion at the start, which the run has found, and its branch. */
 static strut_status follow_motion(follower *f, const char *label, double *y, int32_t repeats) {
   char reason[200] = "", text[STRUT_FOLLOW_NOTE];
@@ -152,7 +170,7 @@ static strut_status follow_motion(follower *f, const char *label, double *y, int
   if (status) return status;
   if (f->r->count == 0 && !strut_follow_set_units(&f->s, y)) return STRUT_OK;
   strut_follow_centre(&f->s, y);
-  status = strut_follow_correct(&f->s, y, &found, reason, f->error);
+  status = make_exact(f, y, &found, reason);
   if (status) return status;
   if (!found) {
     snprintf(text, sizeof text, "the motion from %s: %s", label, reason);
