@@ -237,6 +237,18 @@ with open(os.path.join(work, "threads-1", "branches.csv"), encoding="utf-8") as 
 both = follow("bilinear.yaml", "frequency=1Hz..1.4Hz", "--at", "1.1Hz,1.2Hz")
 check(len(both["branches"]) == 1 and "on branch 1" in both["notes"][0], f"notes {both['notes']}")
 
+# ---- kicks: a linear motion always comes back, the larger of two stable ones does not
+
+kicked = json.loads(run("follow", "linear.yaml", "--over", "frequency=1Hz..1.1Hz", "--at", "1.05Hz", "--basins",
+                        "--json").stdout)
+check(kicked["basins"][0]["forwards"] is None, f"kicks {kicked['basins']}")
+between = round((low + high) / 2 / (2 * math.pi), 4)
+kicked = json.loads(run("follow", "duffing.yaml", "--over", "frequency=0.14Hz..0.22Hz", "--at",
+                        f"{between}Hz,0.14Hz", "--basins", "--json").stdout)
+pushed = [b for b in kicked["basins"] if b["value"] == between]
+check(len(pushed) == 2, f"two stable motions at {between} Hz: {kicked['basins']}")
+check(all(b["backwards"] is not None and 0 < b["backwards"] < 20 for b in pushed), f"kicks {pushed}")
+
 # ---- refusals
 
 
