@@ -253,6 +253,11 @@ static const char *walk_on(strut_follow_walk *w, strut_follow_orbit *o, double f
     if (!straighten(w, o, next)) return "";
     if (outside(s, next->value)) {
       strut_follow_orbit *last = at_edge(w, o, next);
+      if (!w->status && !last && h > LEAST) { /* nearer to the edge first */
+        h = fmax(0.35 * h, LEAST);
+        steps--;
+        continue;
+      }
       if (!w->status && last) accept_step(w, o, last, STRUT_FOLLOW_END);
       return "the range of the parameter ends";
     }
