@@ -28,7 +28,7 @@ breaches() {
         "engine/statics/modes engine/statics/rigidity engine/statics/form engine/statics/path|" \
         "engine/output|engine/output/draw engine/output/report|" \
         "engine/output/figures engine/output/film engine/output/page|engine/study/results|" \
-        "engine/study/search|" \
+        "engine/study/search|engine/study/sensitivity|" \
         "engine/study/cluster engine/study/tradeoff engine/study/sweep|engine/study/compare", line, "|")
       for (i = 1; i <= count; i++) {
         n = split(line[i], side, " ")

@@ -184,6 +184,19 @@ typedef struct strut_study_figure {
   const double *times;             /* (time_count) [s] */
 } strut_study_figure;
 
+/** A sensitivity analysis: what follows from which parameters; see sensitivity_design.h. */
+typedef struct strut_study_sensitivity {
+  bool wanted;
+  size_t axis; /* of the study, the last one: a column for each parameter */
+  size_t of_count;
+  const char **of; /* (of_count) columns of the table */
+  int64_t samples; /* base samples; 0: derivatives only */
+  uint32_t seed;   /* of samples and of bootstraps */
+  uint32_t scheme; /* strut_sample_scheme */
+  bool derivatives;
+  double accuracy; /* relative, that of the runs; 0: rounding */
+} strut_study_sensitivity;
+
 /** How many energies, barriers and frequencies a row lists, unless the study says. */
 enum { STRUT_STUDY_LOWEST = 3, STRUT_STUDY_MOST_LOWEST = 20 };
 
@@ -218,6 +231,7 @@ typedef struct strut_study {
   const char *refine_where; /* column whose value decides which cells are divided */
   double refine_by;         /* by how much its numbers must differ, in SI */
   size_t refine_axes[2];    /* the axes, in their order */
+  strut_study_sensitivity sensitivity;
 } strut_study;
 
 #endif

@@ -102,11 +102,15 @@ strut_status strut_sweep_figures_check_files(const strut_sweep_plan *plan, const
                                              strut_error *error) {
   const strut_study *study = plan->study;
   strut_arena arena = {0};
-  const char **names = strut_arena_allocate(&arena, study->figure_count + 2, sizeof *names);
+  const char **names = strut_arena_allocate(&arena, study->figure_count + 4, sizeof *names);
   if (names) names[0] = "table.csv";
   for (size_t i = 0; i < study->figure_count && names; i++) {
     names[i + 1] = strut_arena_format(&arena, "%s.svg", study->figures[i].name);
     if (!names[i + 1]) names = NULL;
+  }
+  if (names && study->sensitivity.wanted) {
+    names[study->figure_count + 1] = "sensitivity.csv";
+    names[study->figure_count + 2] = "sensitivity.svg";
   }
   strut_status status =
       names ? strut_ownership_check(directory, names, error) : strut_no_memory(error, "");

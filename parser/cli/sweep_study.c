@@ -75,6 +75,7 @@ strut_status strut_sweep_study_try(const strut_arguments *arguments, strut_sweep
   if (!status) status = try_ends(file);
   if (!status) status = strut_sweep_plan_make(&file->study, &scenes, &study->plan, error);
   if (!status) status = strut_sweep_figures_check(&study->plan, error);
+  if (!status) status = strut_sweep_sensitivity_check(&study->plan, error);
   return status;
 }
 

@@ -76,7 +76,8 @@
   X(SAMPLE, "sample", SAMPLE_COUNT) \
   X(DISTRIBUTION, "distribution", DISTRIBUTION_UNIFORM) \
   X(LIMIT, "limit", LIMIT_EVALUATIONS) \
-  X(REFINE, "refine", REFINE_WHERE)
+  X(REFINE, "refine", REFINE_WHERE) \
+  X(SENSITIVITY, "sensitivity", SENSITIVITY_OF)
 /* clang-format on */
 
 /** The mappings of the language. */

@@ -347,7 +347,7 @@
   X(STUDY, DESCRIPTION, "description", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study, description), "What the study is for.") \
   X(STUDY, MODEL, "model", TEXT, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "File of the model, relative to the folder of the study.") \
   X(STUDY, SET, "set", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression or a text", BY_HAND, "Values of the model's parameters at all points; `--set` takes precedence.") \
-  X(STUDY, AXES, "axes", AXES, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "Each axis gives one parameter its values, `{NAME: [...]}` or `{NAME: {...}}` with the keys of a [range](#range), or several parameters together, `{zip: {NAME: ..., NAME: ...}}`. Several parameters go together in `{points: FILE}`, with a row for each value, or the keys of [points](#points), and in `{sample: {...}}`, with the keys of a [sample](#sample). The points are all combinations of the axes; the last axis varies fastest.") \
+  X(STUDY, AXES, "axes", AXES, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Each axis gives one parameter its values, `{NAME: [...]}` or `{NAME: {...}}` with the keys of a [range](#range), or several parameters together, `{zip: {NAME: ..., NAME: ...}}`. Several parameters go together in `{points: FILE}`, with a row for each value, or the keys of [points](#points), and in `{sample: {...}}`, with the keys of a [sample](#sample). The points are all combinations of the axes; the last axis varies fastest.") \
   X(STUDY, DERIVE, "derive", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression", BY_HAND, "Parameters computed from others at each point, such as `{step: 1/(1000*frequency)}`.") \
   X(STUDY, VARIANTS, "variants", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a [variant](#variant)", BY_HAND, "Variants of the model, for example with other numerics; they form the first axis, the column `variant`.") \
   X(STUDY, SOLVER, "solver", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Keys that replace those of the model.") \
@@ -363,6 +363,7 @@
   X(STUDY, AT, "at", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study, at), "The equilibrium of modes, rigidity and path, as `--at` of these commands.") \
   X(STUDY, PATH, "path", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "What `compute: path` follows.") \
   X(STUDY, REFINE, "refine", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Divide the cells of a map where a column changes, instead of computing all points of a fine grid.") \
+  X(STUDY, SENSITIVITY, "sensitivity", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "What columns owe to which parameters: derivatives, and first-order and total indices from samples, at every point of the axes.") \
   X(STUDY, LIMIT, "limit", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "What a point may cost. One that needs more fails, and its row says so.") \
   X(STUDY, FORM, "form", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "How `compute: form` finds the form.") \
   X(RANGE, FROM, "from", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "First value.") \
@@ -420,7 +421,13 @@
   X(REFINE, WHERE, "where", NAME, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_study, refine_where), "A column of the table, such as `outcome`. Cells whose points differ in it are divided; a point that failed differs from others.") \
   X(REFINE, DEPTH, "depth", NUMBER, NONE, WHOLE(1, 10), "", REQUIRED, 0, "", BY_HAND, "How often: the finest cells have 2^depth of the width of those of the axes.") \
   X(REFINE, BY, "by", NUMBER, NONE, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_study, refine_by), "Numbers must differ by more than this, in the SI unit of the column.") \
-  X(REFINE, AXES, "axes", NAMES, NONE, ANY, "the axes with ranges", OPTIONAL, 0, "", BY_HAND, "The parameters of the two axes to divide.")
+  X(REFINE, AXES, "axes", NAMES, NONE, ANY, "the axes with ranges", OPTIONAL, 0, "", BY_HAND, "The parameters of the two axes to divide.") \
+  X(SENSITIVITY, OF, "of", NAMES, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "Columns of the table: numbers, or texts such as `outcome`.") \
+  X(SENSITIVITY, OVER, "over", THINGS, NONE, ANY, "", REQUIRED, 0, "a [distribution](#distribution)", BY_HAND, "The parameters, up to 20, and their distributions.") \
+  X(SENSITIVITY, SAMPLES, "samples", NUMBER, NONE, WHOLE(0, 100000), "256", OPTIONAL, 0, "", BY_HAND, "Base samples of Saltelli's design, each of as many points as there are parameters, and two; 0: derivatives only.") \
+  X(SENSITIVITY, SEED, "seed", NUMBER, NONE, WHOLE(1, 4294967295), "1", OPTIONAL, 0, "", BY_HAND, "Another seed gives other points, the same seed the same.") \
+  X(SENSITIVITY, SCHEME, "scheme", WORD, NONE, ANY, "sobol", OPTIONAL, 0, "sobol|lhs|random", BY_HAND, "As that of a [sample](#sample).") \
+  X(SENSITIVITY, DERIVATIVES, "derivatives", WORD, NONE, ANY, "yes", OPTIONAL, 0, "no|yes", BY_HAND, "Central differences about the medians, with two steps, four points for each parameter.")
 
 /* clang-format on */
 

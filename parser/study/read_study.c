@@ -365,7 +365,20 @@ static void read_points(strut_study_reader *r, strut_fields *top, const strut_ov
   read_settings(r, derive, count, false);
   if (axes->state == STRUT_GIVEN) strut_study_read_axes(r, axes->value);
   strut_study_read_refine(r, strut_slot_of(top, STRUT_KEY_STUDY_REFINE));
+  strut_study_read_sensitivity(r, top);
   check_overrides(r, count);
+}
+
+/* Without axes there must be something else that makes points. */
+static void require_points(strut_study_reader *r, strut_fields *top) {
+  char expected[300];
+  strut_slot *axes = strut_slot_of(top, STRUT_KEY_STUDY_AXES);
+  if (axes->state != STRUT_ABSENT || r->reader->holes ||
+      strut_slot_of(top, STRUT_KEY_STUDY_SENSITIVITY)->state != STRUT_ABSENT)
+    return;
+  strut_report_error(r->reader, strut_root_place(r->reader), "the study lacks 'axes', expected %s",
+                     strut_key_expected(STRUT_KEY_STUDY_AXES, expected, sizeof expected));
+  axes->state = STRUT_BROKEN;
 }
 
 /* A model instead of a study gets one message instead of one for each line. */
@@ -392,6 +405,7 @@ static strut_status read_all(strut_study_reader *r, const strut_override *overri
   strut_read_fields(reader, STRUT_SECTION_STUDY, file->document.root, study_owner, &top);
   if (file->document.root->kind != STRUT_TREE_MAP) return STRUT_BAD_SCENE;
   strut_require(reader, &top, study_owner, strut_root_place(reader));
+  require_points(r, &top);
   read_rest(r, &top);
   status = strut_study_open_sources(r, &top, error);
   read_keep(r, strut_slot_of(&top, STRUT_KEY_STUDY_KEEP));

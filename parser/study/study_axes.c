@@ -256,20 +256,20 @@ static void add_variants(strut_study_reader *r) {
 
 void strut_study_read_axes(strut_study_reader *r, const strut_tree *list) {
   strut_study *study = &r->file->study;
-  study->axes =
-      strut_reader_allocate(r->reader, &r->file->arena, list->count + 1, sizeof *study->axes);
-  r->file->columns =
-      strut_reader_allocate(r->reader, &r->file->arena, count_columns(list) + r->declared_count + 1,
-                            sizeof *r->file->columns);
-  r->file->tables =
-      strut_reader_allocate(r->reader, &r->file->arena, list->count + 1, sizeof *r->file->tables);
+  study->axes = strut_reader_allocate(r->reader, &r->file->arena, (list ? list->count : 0) + 2,
+                                      sizeof *study->axes); /* variants, sensitivity */
+  r->file->columns = strut_reader_allocate(r->reader, &r->file->arena,
+                                           (list ? count_columns(list) : 0) + r->declared_count + 1,
+                                           sizeof *r->file->columns);
+  r->file->tables = strut_reader_allocate(r->reader, &r->file->arena, (list ? list->count : 0) + 1,
+                                          sizeof *r->file->tables);
   if (!study->axes || !r->file->columns || !r->file->tables) return;
   if (r->variant_count > 0) add_variants(r);
-  for (const strut_tree *item = list->first; item; item = item->next)
+  for (const strut_tree *item = list ? list->first : NULL; item; item = item->next)
     read_axis(r, item, &study->axes[study->axis_count++]);
   double points = 1.0;
   for (size_t i = 0; i < study->axis_count; i++) points *= (double)study->axes[i].count;
-  if (points > (double)STRUT_STUDY_MOST_POINTS)
+  if (list && points > (double)STRUT_STUDY_MOST_POINTS)
     strut_report_error(r->reader, list->place, "the axes make %.3g points, a study may have 1e9",
                        points);
 }
