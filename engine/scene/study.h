@@ -141,7 +141,10 @@ enum {
   X(LARGEST_FORCE, "largest_force", STRUT_OF_FORM)                                                 \
   X(LENGTHS, "lengths", STRUT_OF_FORM)                                                             \
   X(COST, "cost_of_transport", STRUT_OF_RUN)                                                       \
-  X(LOWEST_BARRIER, "lowest_barrier", STRUT_OF_EQUILIBRIA)
+  X(LOWEST_BARRIER, "lowest_barrier", STRUT_OF_EQUILIBRIA)                                         \
+  X(STIFFNESS, "stiffness", STRUT_OF_MODES)                                                        \
+  X(SHAPE, "shape_distance", STRUT_OF_RUN | STRUT_OF_EQUILIBRIA | STRUT_OF_MODES)                  \
+  X(CURVE, "curve_distance", STRUT_OF_PATH)
 
 typedef enum strut_keep {
 #define STRUT_KEEP_ENUM(name, word, of) STRUT_KEEP_##name,
@@ -232,6 +235,15 @@ typedef struct strut_study {
   double refine_by;         /* by how much its numbers must differ, in SI */
   size_t refine_axes[2];    /* the axes, in their order */
   strut_study_sensitivity sensitivity;
+  /* Goals, see engine/study/sweep/goals.h. */
+  const char *stiffness_node; /* of the column stiffness; NULL: none */
+  double stiffness_direction; /* [rad] */
+  const char *like;           /* a configuration: the shape that is wanted; NULL: `shape` */
+  size_t shape_count;
+  const char **shape_nodes; /* (shape_count) */
+  double (*shape)[2];       /* (shape_count) [m] */
+  size_t curve_count;
+  double (*curve)[2]; /* (curve_count) displacement [m], force [N] */
 } strut_study;
 
 #endif

@@ -77,7 +77,8 @@
   X(DISTRIBUTION, "distribution", DISTRIBUTION_UNIFORM) \
   X(LIMIT, "limit", LIMIT_EVALUATIONS) \
   X(REFINE, "refine", REFINE_WHERE) \
-  X(SENSITIVITY, "sensitivity", SENSITIVITY_OF)
+  X(SENSITIVITY, "sensitivity", SENSITIVITY_OF) \
+  X(STIFFNESS_AT, "stiffness_at", STIFFNESS_AT_NODE)
 /* clang-format on */
 
 /** The mappings of the language. */

@@ -311,6 +311,10 @@ static void check_computed(strut_study_reader *r, strut_fields *top) {
       {STRUT_KEY_STUDY_FORM, STRUT_OF_FORM},
       {STRUT_KEY_STUDY_CHECK, STRUT_OF_RUN},
       {STRUT_KEY_STUDY_TRAJECTORIES, STRUT_OF_RUN},
+      {STRUT_KEY_STUDY_STIFFNESS_AT, STRUT_OF_MODES},
+      {STRUT_KEY_STUDY_SHAPE, STRUT_OF_RUN | STRUT_OF_EQUILIBRIA | STRUT_OF_MODES},
+      {STRUT_KEY_STUDY_LIKE, STRUT_OF_RUN | STRUT_OF_EQUILIBRIA | STRUT_OF_MODES},
+      {STRUT_KEY_STUDY_CURVE, STRUT_OF_PATH},
   };
   const strut_study *study = &r->file->study;
   const char *words = strut_key_at(STRUT_KEY_STUDY_COMPUTE)->words;
@@ -409,6 +413,7 @@ static strut_status read_all(strut_study_reader *r, const strut_override *overri
   read_rest(r, &top);
   status = strut_study_open_sources(r, &top, error);
   read_keep(r, strut_slot_of(&top, STRUT_KEY_STUDY_KEEP));
+  strut_study_read_goals(r, &top);
   if (status == STRUT_OK) read_points(r, &top, overrides, count);
   if (reader->out_of_memory) return STRUT_NO_MEMORY;
   return status == STRUT_OK && reader->failed ? STRUT_BAD_SCENE : status;

@@ -73,6 +73,11 @@ bool strut_study_read_distributions(strut_study_reader *r, const strut_tree *ove
                                     strut_owner owner, size_t most, strut_study_axis *axis,
                                     strut_distribution *distributions);
 
+/* study_goals.c */
+
+/** Reads what the study wants of its points, after `keep`. */
+void strut_study_read_goals(strut_study_reader *r, strut_fields *top);
+
 /* study_sensitivity.c */
 
 /** Reads the analysis and adds its points as the last axis, after all others. */

@@ -131,6 +131,7 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
         "`axes: [{points: {...}}]` of a study; `{points: FILE}` is short for it.",
     [STRUT_SECTION_SAMPLE] = "`axes: [{sample: {...}}]` of a study: parameters from distributions.",
     [STRUT_SECTION_REFINE] = "`refine: {...}` of a study.",
+    [STRUT_SECTION_STIFFNESS_AT] = "`stiffness_at: {...}` of a study.",
     [STRUT_SECTION_SENSITIVITY] =
         "`sensitivity: {...}` of a study; results are in `sensitivity.csv` beside the table.",
     [STRUT_SECTION_LIMIT] = "`limit: {...}` of a study.",
