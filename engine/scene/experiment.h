@@ -9,6 +9,8 @@
 #ifndef STRUT_ENGINE_SCENE_EXPERIMENT_H
 #define STRUT_ENGINE_SCENE_EXPERIMENT_H
 
+#include <signal.h>
+
 #include "engine/scene/quantity.h"
 #include "engine/scene/scene.h"
 
@@ -111,6 +113,9 @@ typedef struct strut_experiment {
   double output_every; /* sampling interval [s]; 0: a thousandth of the recorded time */
   double output_last;  /* record only the last periods or seconds; 0: all */
   unsigned channels;   /* strut_channel bits; default position, length, force */
+  /* Ends statics on this experiment with STRUT_INTERRUPTED, soon after it is set; NULL: nothing does.
+     Not part of what a file describes; runs and searches for all equilibria have options for it. */
+  const volatile sig_atomic_t *interrupt;
 } strut_experiment;
 
 /** A scene and the experiment on it: what a file of the language describes. */
@@ -118,6 +123,17 @@ typedef struct strut_setup {
   strut_scene scene; /* its arena also owns the experiment's texts and arrays */
   strut_experiment experiment;
 } strut_setup;
+
+/** Shall statics on this experiment end? */
+static inline bool strut_experiment_interrupted(const strut_experiment *experiment) {
+  return experiment->interrupt && *experiment->interrupt;
+}
+/**
+ * What a computation on this experiment returns whose loops end early once it is interrupted:
+ * STRUT_INTERRUPTED then, else `status`.
+ */
+STRUT_API strut_status strut_experiment_end(const strut_experiment *experiment, strut_status status,
+                                            strut_error *error);
 
 /** The default experiment. */
 STRUT_API strut_experiment strut_experiment_default(void);

@@ -152,6 +152,12 @@ strut_experiment strut_experiment_default(void) {
       .channels = STRUT_CHANNEL_POSITION | STRUT_CHANNEL_LENGTH | STRUT_CHANNEL_FORCE};
 }
 
+strut_status strut_experiment_end(const strut_experiment *experiment, strut_status status,
+                                  strut_error *error) {
+  if (!strut_experiment_interrupted(experiment)) return status;
+  return strut_fail(error, STRUT_INTERRUPTED, "interrupted");
+}
+
 void strut_setup_init(strut_setup *setup) {
   strut_scene_init(&setup->scene);
   setup->experiment = strut_experiment_default();

@@ -7,7 +7,7 @@
 #include <setjmp.h>
 
 /* Tried in turn: GLPK's own choice has been seen to call a programme infeasible that is not. */
-enum { SCALINGS = 3 };
+enum { SCALINGS = 3, LOOK_EVERY = 20 /* ms */ };
 static const int scalings[SCALINGS] = {GLP_SF_AUTO, GLP_SF_EQ, 0};
 
 static const double TOLERANCE = 1e-10; /* of bounds and of reduced costs */
@@ -49,7 +49,6 @@ static int kind_of(double low, double high) {
   return isfinite(high) ? GLP_UP : GLP_FR;
 }
 
-/* GLPK counts from 1. */
 /* The entries as GLPK wants them, counted from 1. */
 typedef struct entries {
   int *row, *column;
@@ -87,7 +86,8 @@ static strut_linear_program_end end_of(int code, int status) {
 static int run_simplex(glp_prob *problem, int scaling) {
   glp_smcp how;
   glp_init_smcp(&how);
-  how.msg_lev = GLP_MSG_OFF;
+  how.msg_lev = GLP_MSG_ON; /* so that it calls look_up now and then */
+  how.out_frq = LOOK_EVERY;
   how.tol_bnd = how.tol_dj = TOLERANCE;
   if (scaling) {
     glp_scale_prob(problem, scaling);
@@ -122,31 +122,44 @@ static void solve(const strut_linear_program *p, const entries *e, double *x, do
   glp_delete_prob(problem);
 }
 
-/* GLPK knows no other way out when memory fails than to end the process, or this. */
-static void leave(void *place) { longjmp(*(jmp_buf *)place, 1); }
+typedef struct way_out {
+  jmp_buf place;
+  const volatile sig_atomic_t *interrupt;
+} way_out;
 
-static int print_nothing(void *unused, const char *text) {
-  (void)unused;
+/* GLPK knows no other way out when memory fails than to end the process, or this. */
+static void leave(void *out) { longjmp(((way_out *)out)->place, STRUT_NO_MEMORY); }
+
+/* GLPK has something to print, which nobody reads: the moment to look for an interrupt. */
+static int look_up(void *context, const char *text) {
+  way_out *out = context;
   (void)text;
+  if (out->interrupt && *out->interrupt) longjmp(out->place, STRUT_INTERRUPTED);
   return 1;
 }
 
 strut_status strut_linear_program_solve(const strut_linear_program *p, double *x, double *sum,
                                         strut_linear_program_end *end) {
   assert(p->entry_count <= p->entry_room);
-  jmp_buf out;
+  way_out out = {.interrupt = p->interrupt};
   entries e = {0};
   if (!make_entries(p, &e) || glp_init_env() > 1) {
     free_entries(&e);
     return STRUT_NO_MEMORY;
   }
-  if (setjmp(out)) { /* all that GLPK has is lost to us */
+  strut_status left = STRUT_OK;
+  switch (setjmp(out.place)) { /* once left, all that GLPK has is lost to us */
+    case 0: break;
+    case STRUT_INTERRUPTED: left = STRUT_INTERRUPTED; break;
+    default: left = STRUT_NO_MEMORY;
+  }
+  if (left) {
     glp_free_env();
     free_entries(&e);
-    return STRUT_NO_MEMORY;
+    return left;
   }
-  glp_term_out(GLP_OFF);
-  glp_term_hook(print_nothing, NULL);
+  glp_term_out(GLP_ON);
+  glp_term_hook(look_up, &out);
   glp_error_hook(leave, &out);
   solve(p, &e, x, sum, end);
   glp_error_hook(NULL, NULL);

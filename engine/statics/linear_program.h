@@ -2,11 +2,12 @@
 /**
  * The seam around GLPK: a linear programme with bounds, solved by the simplex method.
  *
- * The same programme gives the same bits. GLPK itself ends the process when memory is out.
+ * The same programme gives the same bits.
  */
 #ifndef STRUT_ENGINE_STATICS_LINEAR_PROGRAM_H
 #define STRUT_ENGINE_STATICS_LINEAR_PROGRAM_H
 
+#include <signal.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -22,6 +23,7 @@ typedef struct strut_linear_program {
   size_t entry_count, entry_room;
   int32_t *entry_row, *entry_column; /* each place once */
   double *entry;
+  const volatile sig_atomic_t *interrupt; /* ends the solution; NULL at first */
 } strut_linear_program;
 
 typedef enum strut_linear_program_end {
@@ -37,7 +39,7 @@ bool strut_linear_program_create(strut_linear_program *program, int32_t rows, in
 /** A(row, column) = value; nothing where it is 0. */
 void strut_linear_program_add(strut_linear_program *program, int32_t row, int32_t column,
                               double value);
-/** x (columns) and the sum, filled where optimal; STRUT_NO_MEMORY or STRUT_OK. */
+/** x (columns) and the sum, filled where optimal; STRUT_NO_MEMORY, STRUT_INTERRUPTED or STRUT_OK. */
 strut_status strut_linear_program_solve(const strut_linear_program *program, double *x, double *sum,
                                         strut_linear_program_end *end);
 

@@ -24,6 +24,7 @@ struct strut_minimiser {
   double *g, *g_trial, *step; /* (n) */
   double *unbent;             /* (n) the step before its correction */
   double *trial, *before;     /* (length) */
+  const volatile sig_atomic_t *interrupt;
   strut_arena arena;
 };
 
@@ -258,6 +259,10 @@ static bool descend_once(strut_minimiser *m, double *q, double still, double *ra
  * A gradient within rounding ends the descent only if the Newton step is short too: beside very
  * stiff members rounding hides forces that soft members still yield to.
  */
+void strut_minimiser_watch(strut_minimiser *m, const volatile sig_atomic_t *interrupt) {
+  m->interrupt = interrupt;
+}
+
 strut_descent strut_minimise(strut_minimiser *m, double *q, double tolerance) {
   strut_descent end = {.end = STRUT_DESCENT_EXHAUSTED};
   int32_t n = m->potential->n, extra = 0;
@@ -273,6 +278,7 @@ strut_descent strut_minimise(strut_minimiser *m, double *q, double tolerance) {
       end.end = STRUT_DESCENT_RUNAWAY;
       return end;
     }
+    if (m->interrupt && *m->interrupt) return end;
     if (!decompose_hessian(m, q)) return end;
     if (end.residual <= allowed) {
       if ((extra < 3 && leave_collapse(m, q) && ++extra) || leave_ridge(m, q, radius)) {

@@ -9,6 +9,8 @@
 #ifndef STRUT_ENGINE_STATICS_MINIMISE_H
 #define STRUT_ENGINE_STATICS_MINIMISE_H
 
+#include <signal.h>
+
 #include "engine/statics/potential.h"
 
 enum { STRUT_DENSE_STATICS = 120 };
@@ -32,6 +34,9 @@ typedef struct strut_minimiser strut_minimiser;
 STRUT_API strut_status strut_minimiser_create(const strut_potential *potential,
                                               strut_minimiser **minimiser, strut_error *error);
 STRUT_API void strut_minimiser_free(strut_minimiser *minimiser);
+
+/** Descents end as exhausted soon after the flag is set. NULL: no flag. */
+void strut_minimiser_watch(strut_minimiser *minimiser, const volatile sig_atomic_t *interrupt);
 
 /**
  * Moves q (length) downhill to a point where g = 0, never uphill. It may end on a saddle only if

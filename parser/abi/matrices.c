@@ -125,6 +125,7 @@ strutlib_result *strutlib_matrices(const strutlib_scene *scene, size_t count,
   if (status == STRUT_OK) status = abi_setup(scene, STRUT_FOR_ANY, &result->setup, error);
   if (status == STRUT_OK) {
     result->opened = true;
+    result->setup.experiment.interrupt = abi_interrupt_of(control);
     status = strut_model_compile(&result->setup.scene, &result->model, &what);
     if (status == STRUT_OK) status = build(&call, result, &what);
     if (status != STRUT_OK) abi_call_fail(&call, status, &what);

@@ -40,6 +40,7 @@ static strut_status open_setup(abi_call *call, const strutlib_scene *scene, bool
   strut_error what = {0};
   strut_status status = abi_setup(scene, STRUT_FOR_ANY, &result->setup, call->error);
   result->opened = status == STRUT_OK;
+  result->setup.experiment.interrupt = abi_interrupt_of(call->control);
   if (status != STRUT_OK || !compiled) return status;
   status = strut_model_compile(&result->setup.scene, &result->model, &what);
   if (status != STRUT_OK) abi_call_fail(call, status, &what);

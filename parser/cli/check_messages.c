@@ -56,19 +56,47 @@ void strut_add_message(strut_json *json, struct cJSON *to, const char *file, con
   strut_json_array(json, add_row(json, to, file, whole, severity, message), "notes");
 }
 
-/* The name of the thing that a finding is about, in the text; line 0 where it is not there, as in a copy. */
+static const strut_tree *map_below(const strut_tree *tree, const char *name, strut_tree **key) {
+  if (!tree || tree->kind != STRUT_TREE_MAP) return NULL;
+  return strut_tree_find(tree, name, key);
+}
+
+/*
+ * The entry of a map with that name. A thing of a copy, "legs.2.foot", is where its part has it, as far
+ * as parts are named in a line of their own; else where the copies are placed.
+ */
+static strut_tree *entry_of(const strut_tree *root, const strut_tree *tree, const char *map,
+                            const char *name) {
+  strut_tree *key = NULL, *placed = NULL;
+  if (map_below(map_below(tree, map, NULL), name, &key)) return key;
+  const strut_tree *place = map_below(tree, "place", NULL);
+  if (!place || place->kind != STRUT_TREE_MAP) return NULL;
+  size_t length = 0; /* of the placement's name: the longest that begins the thing's */
+  for (strut_tree *at = place->first; at; at = at->next->next) {
+    size_t n = strlen(at->text);
+    if (n > length && strncmp(at->text, name, n) == 0 && name[n] == '.') placed = at, length = n;
+  }
+  if (!placed) return NULL;
+  const strut_tree *part = map_below(placed->next, "part", NULL);
+  part = part && part->kind == STRUT_TREE_SCALAR
+             ? map_below(map_below(root, "parts", NULL), part->text, NULL)
+             : NULL;
+  const char *rest = name + length + 1;
+  if (rest[0] >= '0' && rest[0] <= '9' && strchr(rest, '.')) rest = strchr(rest, '.') + 1;
+  strut_tree *within = part ? entry_of(root, part, map, rest) : NULL;
+  return within ? within : placed;
+}
+
+/* The name of the thing that a finding is about, in the text; line 0 where it is not there. */
 static strut_place place_of(const strut_finding *finding, const strut_scene *scene,
                             const strut_tree *root) {
   const strut_place whole = {.line = 0};
   const char *map = NULL, *name = NULL;
-  strut_tree *key = NULL;
   if (finding->subject == STRUT_ON_NODE)
     map = "nodes", name = scene->nodes[finding->index].name;
   else if (finding->subject == STRUT_ON_MEMBER)
     map = "members", name = scene->members[finding->index].name;
-  const strut_tree *things =
-      map && root && root->kind == STRUT_TREE_MAP ? strut_tree_find(root, map, NULL) : NULL;
-  if (things && things->kind == STRUT_TREE_MAP) strut_tree_find(things, name, &key);
+  const strut_tree *key = map ? entry_of(root, root, map, name) : NULL;
   return key ? key->place : whole;
 }
 

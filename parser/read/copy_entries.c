@@ -72,7 +72,8 @@ void strut_copy_things(strut_expansion *e, strut_fields *fields, strut_copy *sco
   int first = strut_section_first(fields->section);
   for (int k = 0; k < strut_section_size(fields->section) && !e->stopped; k++) {
     const strut_slot *slot = &fields->slot[k];
-    if (slot->state != STRUT_GIVEN) continue; // before the look by name: a part may have 1e6 copies
+    if (slot->state != STRUT_GIVEN)
+      continue;  // before the look by name: a part may have 1e6 copies
     int key = scene_key(first + k);
     bool contacts = first + k == STRUT_KEY_PART_CONTACTS;
     if (key >= 0 || contacts) copy_entries(e, slot->value, scope, contacts ? -1 : key);

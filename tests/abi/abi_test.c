@@ -730,6 +730,31 @@ static void another_thread_interrupts_searches_and_sweeps(void **unused) {
   strutlib_close(scene);
 }
 
+/* Statics look at the interrupt between factorisations, and within a linear programme of 40 s. */
+static void statics_end_too(void **unused) {
+  (void)unused;
+  static strutlib_result *(*const find[])(const strutlib_scene *, size_t, const char *const *,
+                                          const char *const *, strutlib_control *,
+                                          strutlib_error **) = {strutlib_form, strutlib_modes};
+  strutlib_error *error;
+  strutlib_control *control = strutlib_control_create();
+  const char *names[] = {"cells"}, *values[] = {"4000"};
+  strutlib_scene *scene = strutlib_open("models/parts/x-chain.yaml", 1, names, values, &error);
+  assert_non_null(scene);
+  for (size_t i = 0; i < sizeof find / sizeof *find; i++) {
+    pthread_t thread;
+    strutlib_control_reset(control);
+    pthread_create(&thread, NULL, interrupt_later, control);
+    double begin = processor_time();
+    assert_null(find[i](scene, 0, NULL, NULL, control, &error));
+    assert_true(processor_time() - begin < 5.0);
+    assert_refused(error, STRUTLIB_INTERRUPTED, "interrupted");
+    pthread_join(thread, NULL);
+  }
+  strutlib_control_free(control);
+  strutlib_close(scene);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(versions_and_codes_are_told),
@@ -750,6 +775,7 @@ int main(void) {
       cmocka_unit_test(eight_threads_get_the_bytes_of_one),
       cmocka_unit_test(an_interrupt_returns_what_there_is),
       cmocka_unit_test(another_thread_interrupts_searches_and_sweeps),
+      cmocka_unit_test(statics_end_too),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

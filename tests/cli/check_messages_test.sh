@@ -52,6 +52,13 @@ else
   echo "no vim"
 fi
 
+# A warning about a thing of a copy is where its part says it, or where it is placed.
+printf 'strut: 1\nparts:\n  rod: {nodes: {a: {position: [0, 0], mass: 1 kg}}}\nnodes: {b: {position: [0, 0], mass: 1 kg}, c: {position: [0, 1], mass: 1 kg}}\nmembers: {bc: {kind: spring, nodes: [b, c], stiffness: 1 N/m, rest_length: 1 m}}\nplace:\n  one: {part: rod, repeat: {count: 2, step: [1, 0]}}\n' >copies.yaml
+printf 'run: {duration: 1 s}\nsolver: {step: 1 ms}\n' >>copies.yaml
+expect 0 check copies.yaml --json
+jq -e '.messages[0] | (.message | startswith("nodes one.0.a, one.1.a have mass")) and .line == 3 and .column == 17' out >/dev/null ||
+  fail "the place of a warning in a part"
+
 # Notes and other files.
 printf 'strut: 1\nparts: {rod: {use: part.yaml}}\nplace: {one: {part: rod}}\n' >used.yaml
 printf 'strut: 1\nnodes: {a: [0, 0], b: [1, 0]}\nmembers: {m: {kind: bra, nodes: [a, b], stiffness: 1}}\n' >part.yaml

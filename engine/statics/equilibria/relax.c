@@ -223,6 +223,7 @@ strut_status strut_relax(strut_relaxer *r, double *q, strut_pass_of passes, cons
   outcome end = DECIDED;
   *relaxed = (strut_relaxed){.end = STRUT_RELAXED_RESTS};
   memcpy(r->start, q, bytes);
+  strut_minimiser_watch(r->minimiser, interrupt);
   if (r->state) {
     double step = r->step;
     end = simulate(r, step, passes, context, interrupt);

@@ -129,7 +129,7 @@ static strut_status relax_to_rest(strut_equilibrium_search *h, const char *what,
   if (close || !strut_relaxer_simulates(h->relaxer))
     memcpy(q, near, bytes);
   else
-    status = strut_relax(h->relaxer, q, NULL, NULL, NULL, &relaxed, h->error);
+    status = strut_relax(h->relaxer, q, NULL, NULL, h->experiment->interrupt, &relaxed, h->error);
   if (status || relaxed.end == STRUT_RELAXED_RESTS) return status;
   return strut_fail(
       h->error, STRUT_NOT_SETTLED,
@@ -181,7 +181,8 @@ static strut_status relax_from_shape(strut_equilibrium_search *h, const strut_co
 static strut_status find_named(const strut_model *model, const strut_experiment *experiment,
                                const strut_node_set *set, const char *name, double *q, bool *found,
                                strut_error *error) {
-  strut_equilibria_options options = {.standing_only = true, .supports = set};
+  strut_equilibria_options options = {
+      .standing_only = true, .supports = set, .interrupt = experiment->interrupt};
   strut_equilibria all;
   strut_status status = strut_equilibria_find(model, experiment, &options, &all, error);
   for (size_t i = 0; i < all.count && !status && !*found; i++) {
@@ -247,7 +248,7 @@ static strut_status report_unknown(const strut_scene *scene, const char *name, s
 static strut_status find_in_list(const strut_model *model, const strut_experiment *experiment,
                                  const char *name, strut_arena *arena, strut_rest_state *rest,
                                  strut_error *error) {
-  strut_equilibria_options options = {0};
+  strut_equilibria_options options = {.interrupt = experiment->interrupt};
   strut_equilibria all;
   strut_status status = strut_equilibria_find(model, experiment, &options, &all, error);
   bool found = false;
@@ -293,8 +294,8 @@ static strut_status find_rest(const strut_model *model, const strut_experiment *
 static strut_status settle_scene(const strut_model *model, const strut_experiment *experiment,
                                  strut_arena *arena, strut_rest_state *rest, strut_error *error) {
   double time;
-  strut_status status =
-      strut_settle_experiment(model, experiment, NULL, NULL, rest->q, &time, &rest->settle, error);
+  strut_status status = strut_settle_experiment(model, experiment, NULL, experiment->interrupt,
+                                                rest->q, &time, &rest->settle, error);
   if (!status) status = judge_rest(model, arena, rest, error);
   if (!experiment->settle.friction) rest->at_rest = true;
   return status;
@@ -329,7 +330,7 @@ strut_status strut_rest_state_find(const strut_model *model, const strut_experim
   strut_status status = find_rest(model, experiment, c, rest->q, error);
   if (!status) status = judge_rest(model, arena, rest, error);
   rest->at_rest = true;
-  return status;
+  return strut_experiment_end(experiment, status, error);
 }
 
 strut_status strut_resolve_start_equilibrium(strut_setup *setup, strut_error *error) {

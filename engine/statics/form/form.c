@@ -381,6 +381,7 @@ static strut_status polish(strut_former *f, strut_error *error) {
   if (status == STRUT_OK && !q) status = strut_no_memory(error, "");
   if (status == STRUT_OK) {
     memcpy(q, model->start, (size_t)model->length * sizeof *q);
+    strut_minimiser_watch(minimiser, f->experiment->interrupt);
     strut_descent descent = strut_minimise(minimiser, q, 0.0);
     if (descent.end != STRUT_DESCENT_RUNAWAY && undo_drift(f, q))
       descent = strut_polish(minimiser, q, 0.0);
@@ -526,5 +527,5 @@ strut_status strut_form_find(strut_setup *setup, const strut_form_options *optio
   strut_potential_free(potential);
   strut_model_free(model);
   strut_arena_free(&f.arena);
-  return status;
+  return strut_experiment_end(&setup->experiment, status, error);
 }

@@ -274,7 +274,9 @@ static void set_costs(prestress *p, int32_t from, int32_t to, double cost) {
 
 static strut_status solve_program(prestress *p, double *sum, strut_error *error) {
   strut_linear_program_end end;
+  p->program.interrupt = p->f->experiment->interrupt;
   strut_status status = strut_linear_program_solve(&p->program, p->x, sum, &end);
+  if (status == STRUT_INTERRUPTED) return strut_fail(error, status, "interrupted");
   if (status) return strut_fail(error, status, "out of memory");
   if (end == STRUT_PROGRAM_OPTIMAL) return STRUT_OK;
   return strut_fail(error, STRUT_NOT_SETTLED,

@@ -272,7 +272,8 @@ strut_status strut_modes_sparse(strut_modes_work *work, int32_t count, strut_err
   set->vector = strut_arena_allocate(work->arena, room * (size_t)v->n, sizeof *set->vector);
   if (!set->value || !set->vector) return strut_no_memory(error, "");
   for (int i = 0; i < MOST_FACTORS && count_below(work, shift) > 0; i++) shift *= 4.0;
-  strut_lanczos_problem problem = {v->n, shift, work, apply_inverse, apply_mass};
+  strut_lanczos_problem problem = {v->n,          shift,      work,
+                                   apply_inverse, apply_mass, work->experiment->interrupt};
   strut_status status = strut_lanczos(&problem, below, set->value, set->vector, error);
   /* All that the signs have counted must be there. */
   if (status == STRUT_OK && !(set->value[below - 1] < 1.001 * bound))

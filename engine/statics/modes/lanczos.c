@@ -8,7 +8,12 @@
 
 #include "engine/base/memory.h"
 
-enum { SHIFT_INVERT = 3, MOST_RESTARTS = 2000, LEAST_VECTORS = 40 };
+enum {
+  INTERRUPTED = 1000, /* no code of ARPACK's */
+  SHIFT_INVERT = 3,
+  MOST_RESTARTS = 2000,
+  LEAST_VECTORS = 40
+};
 
 /* Relative error of the vectors; that of the eigenvalues is its square. */
 static const double GOOD = 1e-11;
@@ -49,6 +54,7 @@ static a_int iterate(const strut_lanczos_problem *problem, search *s) {
   a_int task = 0, info = 1; /* the residual is ours */
   a_int small = s->vectors * (s->vectors + 8);
   for (;;) {
+    if (problem->interrupt && *problem->interrupt) return INTERRUPTED;
     dsaupd_c(&task, "G", s->n, "LM", s->wanted, GOOD, s->residual, s->vectors, s->basis, s->n,
              s->parameter, s->pointer, s->work, s->small, small, &info);
     double *x = s->work + s->pointer[0] - 1, *y = s->work + s->pointer[1] - 1;
@@ -99,7 +105,9 @@ strut_status strut_lanczos(const strut_lanczos_problem *problem, int32_t count, 
     a_int info = iterate(problem, &s);
     if (info == 0) info = finish(problem, &s);
     pthread_mutex_unlock(&arpack_lock);
-    if (info != 0 || s.parameter[4] < count)
+    if (info == INTERRUPTED)
+      status = strut_fail(error, STRUT_INTERRUPTED, "interrupted");
+    else if (info != 0 || s.parameter[4] < count)
       status = strut_fail(error, STRUT_SINGULAR,
                           "Lanczos's method found %d of the %d lowest modes (ARPACK code %d)",
                           (int)s.parameter[4], (int)count, (int)info);

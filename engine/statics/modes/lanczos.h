@@ -7,6 +7,7 @@
 #ifndef STRUT_ENGINE_STATICS_MODES_LANCZOS_H
 #define STRUT_ENGINE_STATICS_MODES_LANCZOS_H
 
+#include <signal.h>
 #include <stdint.h>
 
 #include "engine/base/status.h"
@@ -17,6 +18,7 @@ typedef struct strut_lanczos_problem {
   void *context;
   void (*solve)(void *context, double *x);                 /* x becomes (K - shift M)^-1 x */
   void (*mass)(void *context, const double *x, double *y); /* y = M x */
+  const volatile sig_atomic_t *interrupt; /* ends it with STRUT_INTERRUPTED; or NULL */
 } strut_lanczos_problem;
 
 /**

@@ -222,11 +222,14 @@ static strut_status solve_modes(strut_modes_work *work, int32_t wanted, strut_mo
                                 strut_error *error) {
   const strut_vibration *v = work->v;
   strut_status status = strut_modes_solver_create(v, &work->solver, error);
+  work->solver.interrupt = work->experiment->interrupt;
   if (status == STRUT_OK) status = check_problem(work, error);
   if (status != STRUT_OK) return status;
   if (modes->at_rest) status = strut_modes_settle(work, error);
   if (status != STRUT_OK) return status;
   modes->coordinates = v->n;
+  status = strut_experiment_end(work->experiment, status, error);
+  if (status != STRUT_OK) return status;
   status = modes->dense ? strut_modes_dense(work, error) : strut_modes_sparse(work, wanted, error);
   if (status != STRUT_OK) return status;
   size_t count = (size_t)work->set.count;
@@ -252,7 +255,7 @@ strut_status strut_modes_find(const strut_model *model, const strut_experiment *
                               strut_error *error) {
   strut_rest_state rest = {0};
   *modes = (strut_modes){0};
-  strut_modes_work work = {.arena = &modes->arena};
+  strut_modes_work work = {.arena = &modes->arena, .experiment = experiment};
   strut_status status =
       strut_modes_shape(model, experiment, options->at, &modes->arena, &rest, error);
   if (status != STRUT_OK) return status;
@@ -274,7 +277,7 @@ strut_status strut_modes_find(const strut_model *model, const strut_experiment *
   }
   strut_modes_solver_free(&work.solver);
   strut_vibration_free(work.v);
-  return status;
+  return strut_experiment_end(experiment, status, error);
 }
 
 void strut_modes_free(strut_modes *modes) {

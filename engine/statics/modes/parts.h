@@ -26,6 +26,7 @@ typedef struct strut_modes_work {
   int32_t rigid_count;
   double *rigid; /* (rigid_count, n) rigid motions left, x'Mx = 1, orthogonal */
   strut_arena *arena;
+  const strut_experiment *experiment; /* which may be interrupted */
 } strut_modes_work;
 
 /** The shape of that name, as strut_rest_state_find. */

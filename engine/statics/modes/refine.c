@@ -204,11 +204,13 @@ strut_status strut_modes_noise(strut_modes_work *work, bool at_rest, strut_error
       strut_arena_allocate(work->arena, (size_t)v->model->elements.count, sizeof *elements);
   if (!step || !noise || !elements) return strut_no_memory(error, "");
   if (at_rest) strut_modes_factorise(&work->solver, find_soft(work));
-  for (uint64_t sample = 0; sample < SAMPLES; sample++) {
+  strut_status status = STRUT_OK;
+  for (uint64_t sample = 0; sample < SAMPLES && status == STRUT_OK; sample++) {
+    status = strut_experiment_end(work->experiment, status, error);
     sample_noise(work, at_rest, sample, noise, elements, step);
     measure_noise(work, noise, elements);
   }
-  return STRUT_OK;
+  return status;
 }
 
 /* Eigenpairs by inverse iteration in twice a double's precision, and how far off they are. */
@@ -374,6 +376,7 @@ strut_status strut_modes_refine(strut_modes_work *work, strut_error *error) {
   strut_status status = STRUT_OK;
   if (!p.x || !p.mx || !p.kx) status = strut_no_memory(error, "");
   for (int32_t i = 0; i < set->count && status == STRUT_OK; i++) {
+    status = strut_experiment_end(work->experiment, status, error);
     double *x = set->vector + (size_t)i * n, gap = gap_of(work, i);
     for (size_t k = 0; k < n; k++) p.x[k] = dd_of(x[k]);
     measure(v, gap, &p);

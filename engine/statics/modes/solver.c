@@ -204,8 +204,11 @@ static bool factorise_plainly(strut_modes_solver *s) {
   return true;
 }
 
+static bool is_interrupted(const strut_modes_solver *s) { return s->interrupt && *s->interrupt; }
+
 void strut_modes_factorise(strut_modes_solver *s, double shift) {
   const strut_vibration *v = s->v;
+  if (is_interrupted(s)) return;
   s->shift = shift;
   s->is_plain = fabs(shift) >= SAFE_SHIFT * v->largest && factorise_plainly(s);
   if (s->is_plain) return;
@@ -218,6 +221,7 @@ void strut_modes_factorise(strut_modes_solver *s, double shift) {
 void strut_modes_solve(strut_modes_solver *s, strut_dd *x) {
   const strut_vibration *v = s->v;
   int32_t n = v->n;
+  if (is_interrupted(s)) return;
   if (!s->is_plain) {
     strut_extended_solve(s->extended, x);
     return;

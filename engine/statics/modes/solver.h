@@ -14,6 +14,8 @@
 #ifndef STRUT_ENGINE_STATICS_MODES_SOLVER_H
 #define STRUT_ENGINE_STATICS_MODES_SOLVER_H
 
+#include <signal.h>
+
 #include "engine/base/double_double.h"
 #include "engine/model/linear_solver.h"
 #include "engine/statics/modes/vibration.h"
@@ -60,6 +62,8 @@ typedef struct strut_modes_solver {
   strut_dd *b, *r, *mx; /* (n) each */
   double *step;         /* (n) */
   strut_arena arena;
+  const volatile sig_atomic_t
+      *interrupt; /* once set, nothing more is factorised or solved; or NULL */
 } strut_modes_solver;
 
 /** v must outlive it. STRUT_OK or STRUT_NO_MEMORY; strut_modes_solver_free either way. */

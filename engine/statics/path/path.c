@@ -187,17 +187,18 @@ static strut_status make_model(path_start *b, strut_error *error) {
   return status ? status : strut_model_compile(&b->setup.scene, &b->model, error);
 }
 
-/* Descends from q to an equilibrium, with the `held` coordinates fixed. */
-static strut_status descend_to_rest(const strut_model *model, const uint8_t *held, bool without,
-                                    double *q, strut_error *error) {
+/* Descends from b->q to an equilibrium, with the `held` coordinates fixed. */
+static strut_status descend_to_rest(const path_start *b, const uint8_t *held, bool without,
+                                    strut_error *error) {
   strut_potential *potential = NULL;
   strut_minimiser *minimiser = NULL;
   const char *where = without ? "without the load" : "at the start of the path";
-  strut_status status = strut_potential_create(model, held, true, &potential, error);
+  strut_status status = strut_potential_create(b->model, held, true, &potential, error);
   if (status == STRUT_OK && potential->n > 0)
     status = strut_minimiser_create(potential, &minimiser, error);
   if (status == STRUT_OK && potential->n > 0) {
-    strut_descent descent = strut_minimise(minimiser, q, 0.0);
+    strut_minimiser_watch(minimiser, b->setup.experiment.interrupt);
+    strut_descent descent = strut_minimise(minimiser, b->q, 0.0);
     if (descent.end == STRUT_DESCENT_RUNAWAY)
       status = strut_fail(error, STRUT_NOT_SETTLED,
                           "%s there is no equilibrium to start from: nothing holds the structure; "
@@ -233,15 +234,14 @@ static strut_status find_start(path_start *b, strut_error *error) {
   size_t length = (size_t)b->model->length;
   bool without = o->over == STRUT_PATH_OVER_LOAD && o->from == 0;
   memcpy(b->q, b->model->start, length * sizeof *b->q);
-  strut_status status =
-      o->at ? start_at_name(b, error) : descend_to_rest(b->model, NULL, without, b->q, error);
+  strut_status status = o->at ? start_at_name(b, error) : descend_to_rest(b, NULL, without, error);
   if (status || o->over != STRUT_PATH_OVER_COORDINATE || b->model->fixed[o->index]) return status;
   b->held = strut_arena_allocate(&b->arena, length, sizeof *b->held);
   if (!b->held) return strut_no_memory(error, "");
   b->held[o->index] = 1;
   if (o->from == 0) return STRUT_OK;
   b->q[o->index] += o->from;
-  return descend_to_rest(b->model, b->held, false, b->q, error);
+  return descend_to_rest(b, b->held, false, error);
 }
 
 static bool allocate_walk(strut_path_walk *w) {
@@ -279,7 +279,8 @@ static strut_status walk_from(path_start *b, double until, int32_t steps, strut_
     strut_path_unplace(&w.system, b->q, w.y);
     path->end = STRUT_PATH_STEPS;
     bool on = strut_path_walk_begin(&w);
-    for (int32_t i = 0; i < steps && on; i++) on = strut_path_walk_step(&w);
+    for (int32_t i = 0; i < steps && on && !strut_experiment_interrupted(&b->setup.experiment); i++)
+      on = strut_path_walk_step(&w);
     if (w.system.drifts && path->point_count == 0)
       status = strut_fail(error, STRUT_NOT_SETTLED,
                           "nothing holds the structure against %s: it moves as a whole",
@@ -348,6 +349,7 @@ strut_status strut_path_follow(const strut_model *model, const strut_experiment 
   if (status == STRUT_OK && over_load)
     status = choose_loads(model->scene, options->load, b.load, path, error);
   if (status == STRUT_OK) status = make_model(&b, error);
+  b.setup.experiment.interrupt = experiment->interrupt;
   if (status == STRUT_OK && b.model->length != model->length)
     status = strut_fail(error, STRUT_USAGE, "%s changes how many nodes there are", path->name);
   if (status == STRUT_OK) status = find_start(&b, error);
@@ -359,7 +361,7 @@ strut_status strut_path_follow(const strut_model *model, const strut_experiment 
   strut_model_free(b.model);
   if (b.owned) strut_setup_free(&b.setup);
   strut_arena_free(&b.arena);
-  return status;
+  return strut_experiment_end(experiment, status, error);
 }
 
 void strut_path_free(strut_path *path) {

@@ -504,6 +504,7 @@ strut_status strut_statics_point(const strut_sweep_worker *w, strut_sweep_job *j
   r->model = model;
   r->study = w->plan->study;
   r->stiffness = (double)NAN;
+  job->setup.experiment.interrupt = strut_sweep_interrupt_of(w, job);
   strut_sweep_fill_counts(w->plan, model, &job->cells);
   if (!status) status = compute(w, job, r);
   if (!status) fill_columns(w->plan, r, &job->cells);
