@@ -135,7 +135,8 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
     [STRUT_SECTION_SENSITIVITY] =
         "`sensitivity: {...}` of a study; results are in `sensitivity.csv` beside the table.",
     [STRUT_SECTION_LIMIT] = "`limit: {...}` of a study.",
-    [STRUT_SECTION_DISTRIBUTION] = "`over: {NAME: {...}}` of a sample or a sensitivity analysis, with one of these keys.",
+    [STRUT_SECTION_DISTRIBUTION] =
+        "`over: {NAME: {...}}` of a sample or a sensitivity analysis, with one of these keys.",
     [STRUT_SECTION_SENSOR] =
         "`sensors: {NAME: {...}}` with one thing to sense. Expressions of signals, and measured "
         "quantities, use the name. In an expression `rate(NAME)` is the rate of a length, an angle "
