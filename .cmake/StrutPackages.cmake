@@ -81,8 +81,8 @@ strut_package(
   "This package holds the headers, the static libraries, and what CMake and
 pkg-config read."
   ON library
-  DEPENDS libarpack2-dev libcjson-dev libglpk-dev libgsl-dev libhdf5-dev libpango1.0-dev
-          libsuitesparse-dev libyaml-dev zlib1g-dev
+  DEPENDS libarpack2-dev libcjson-dev libglpk-dev libgsl-dev libhdf5-dev libnlopt-dev
+          libpango1.0-dev libsuitesparse-dev libyaml-dev zlib1g-dev
   SUGGESTS strut-doc)
 strut_package(
   python python3-strut python "simulator of planar tensegrity structures - Python module"

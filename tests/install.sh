@@ -8,7 +8,7 @@ set -eu
 
 packages="gcc libc6-dev make cmake pkg-config
   libyaml-dev libgsl-dev libsuitesparse-dev libcjson-dev libhdf5-dev libarpack2-dev libglpk-dev
-  libpango1.0-dev zlib1g-dev fonts-dejavu-core libjs-dygraphs"
+  libnlopt-dev libpango1.0-dev zlib1g-dev fonts-dejavu-core libjs-dygraphs"
 case ${1:-} in
   '') ;;
   tests) packages="$packages g++ clang clang-format libcmocka-dev locales jq

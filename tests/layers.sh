@@ -28,8 +28,9 @@ breaches() {
         "engine/statics/modes engine/statics/rigidity engine/statics/form engine/statics/path|" \
         "engine/output|engine/output/draw engine/output/report|" \
         "engine/output/figures engine/output/film engine/output/page|engine/study/results|" \
-        "engine/study/search|engine/study/sensitivity|" \
-        "engine/study/cluster engine/study/tradeoff engine/study/sweep|engine/study/compare", line, "|")
+        "engine/study/sensitivity|" \
+        "engine/study/cluster engine/study/tradeoff engine/study/sweep|" \
+        "engine/study/compare engine/study/search", line, "|")
       for (i = 1; i <= count; i++) {
         n = split(line[i], side, " ")
         for (k = 1; k <= n; k++) floor[side[k]] = i
@@ -47,6 +48,7 @@ breaches() {
       room_of["SuiteSparseQR_C.h"] = "engine/statics/rigidity/sparse_qr"
       room_of["arpack.h"] = room_of["arpack/arpack.h"] = "engine/statics/modes/lanczos"
       room_of["glpk.h"] = "engine/statics/linear_program"
+      room_of["nlopt.h"] = "engine/study/search/nlopt_optimiser"
     }
     {
       split($0, part, ":"); file = part[1]; place = file ":" part[2]

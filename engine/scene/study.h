@@ -15,6 +15,7 @@
 #include <stdint.h>
 
 #include "engine/base/export.h"
+#include "engine/scene/study_search.h"
 
 /** Most points of a study, and most values of one list. */
 #define STRUT_STUDY_MOST_POINTS ((int64_t)1000000000)
@@ -230,10 +231,11 @@ typedef struct strut_study {
   int64_t limit_evaluations; /* of the forces, in each run of a point; 0: any number */
   double limit_time;         /* of a point [s], by the clock; 0: any */
   /* Refinement of a map: the two axes then have the values of the finest grid. */
-  int32_t refine_depth;     /* halvings of the axes' steps; 0: no refinement */
-  const char *refine_where; /* column whose value decides which cells are divided */
-  double refine_by;         /* by how much its numbers must differ, in SI */
-  size_t refine_axes[2];    /* the axes, in their order */
+  int32_t refine_depth;       /* halvings of the axes' steps; 0: no refinement */
+  const char *refine_where;   /* column whose value decides which cells are divided */
+  double refine_by;           /* by how much its numbers must differ, in SI */
+  size_t refine_axes[2];      /* the axes, in their order */
+  strut_study_search *search; /* NULL: the points are all of the axes */
   strut_study_sensitivity sensitivity;
   /* Goals, see engine/study/sweep/goals.h. */
   const char *stiffness_node; /* of the column stiffness; NULL: none */

@@ -288,6 +288,21 @@ static strut_status emit_script(const strut_arguments *arguments, const strut_st
   return status;
 }
 
+/* A search decides by each point where the next one is. */
+static strut_status check_search(const strut_arguments *arguments) {
+  const char *option = arguments->retry                                   ? "--retry"
+                       : strut_option_text(arguments, STRUT_OPTION_SHARD) ? "--shard"
+                       : strut_option_text(arguments, STRUT_OPTION_EMIT)  ? "--emit"
+                                                                          : NULL;
+  if (!option) return STRUT_OK;
+  fprintf(
+      stderr,
+      "strut sweep: %s cannot be used with a study that searches: each of its points depends on "
+      "those before it\n",
+      option);
+  return STRUT_USAGE;
+}
+
 static strut_status run_sweep(const strut_arguments *arguments) {
   strut_sweep_study study = {0};
   concurrency at_a_time = {0};
@@ -316,12 +331,15 @@ static strut_status run_sweep(const strut_arguments *arguments) {
         stderr);
     status = STRUT_USAGE;
   }
+  if (!status && study.plan.study->search) status = check_search(arguments);
   if (!status && arguments->count_points)
     status = strut_sweep_print_count(&study.plan, arguments->json);
   else if (!status && strut_option_text(arguments, STRUT_OPTION_EMIT))
     status = emit_script(arguments, study.plan.study);
   else if (!status && arguments->status)
     status = show_status(arguments, &study);
+  else if (!status && study.plan.study->search)
+    status = strut_sweep_search(arguments, &study, (int)at_a_time.threads, (int)at_a_time.lanes);
   else if (!status)
     status = compute_points(arguments, &study, at_a_time);
   strut_sweep_study_close(&study);

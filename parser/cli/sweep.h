@@ -8,6 +8,7 @@
 
 #include "engine/output/table_data.h"
 #include "engine/study/results/shard.h"
+#include "engine/study/search/search.h"
 #include "engine/study/sweep/refine.h"
 #include "engine/study/sweep/sweep.h"
 #include "parser/cli/options.h"
@@ -113,6 +114,15 @@ strut_status strut_sweep_print_end(const strut_sweep_state *state, const char *t
 /** Prints a line, or an object of a JSON list, for each started or missing shard. */
 strut_status strut_sweep_print_shards(const char *directory, const strut_shards_found *found,
                                       strut_arena *arena, bool json);
+
+/** Does what the command does with a study that searches, once it is open. */
+strut_status strut_sweep_search(const strut_arguments *arguments, strut_sweep_study *study,
+                                int threads, int lanes);
+/** Prints what a search has found on stdout; `table`: the path of its rows. */
+strut_status strut_sweep_search_report(const strut_sweep_plan *plan,
+                                       const strut_search_result *result,
+                                       const strut_sweep_state *state, const char *table,
+                                       bool json);
 
 /** Prints the script for the study of that name. */
 strut_status strut_sweep_emit(const strut_arguments *arguments, const char *name);

@@ -112,6 +112,10 @@ strut_status strut_sweep_figures_check_files(const strut_sweep_plan *plan, const
     names[study->figure_count + 1] = "sensitivity.csv";
     names[study->figure_count + 2] = "sensitivity.svg";
   }
+  if (names && study->search) {
+    names[study->figure_count + 1] = "best.csv";
+    names[study->figure_count + 2] = "best.yaml";
+  }
   strut_status status =
       names ? strut_ownership_check(directory, names, error) : strut_no_memory(error, "");
   strut_arena_free(&arena);

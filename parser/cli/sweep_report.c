@@ -56,7 +56,10 @@ void strut_sweep_progress_show(void *context, const strut_sweep_state *state) {
   progress->reported = state->seconds;
   format_state(state, text, sizeof text);
   format_row(progress->plan, state->row, row, sizeof row);
-  snprintf(all, sizeof all, "%s; %s", text, row);
+  if (state->has_best)
+    snprintf(all, sizeof all, "%s; best %.5g; %s", text, state->best, row);
+  else
+    snprintf(all, sizeof all, "%s; %s", text, row);
   if (!bar->wanted) {
     fprintf(stderr, "strut: %s\n", all);
     return;
@@ -100,6 +103,7 @@ strut_status strut_sweep_print_count(const strut_sweep_plan *plan, bool json) {
   strut_buffer b = {0};
   bool refined = plan->study->refine_depth > 0;
   int64_t points = refined ? strut_refinement_coarse(plan) : plan->points;
+  if (plan->study->search && !json) strut_buffer_add(&b, "at most ");
   strut_buffer_add(&b, json ? "{\"points\": %lld" : "%lld points", (long long)points);
   if (refined)
     strut_buffer_add(&b, json ? ", \"most_points\": %lld" : ", refined to at most %lld",

@@ -8,8 +8,10 @@
 #include "engine/base/checksum.h"
 #include "engine/output/file.h"
 #include "engine/output/ownership.h"
+#include "engine/study/search/score.h"
 #include "engine/study/sweep/grid.h"
 #include "parser/cli/streams.h"
+#include "parser/study/study_search.h"
 #include "parser/write/write_scene.h"
 
 enum { MOST_MESSAGES = 50 };
@@ -37,7 +39,8 @@ static strut_status try_ends(strut_study_file *file) {
   strut_status status = strut_study_try(file, values);
   int64_t stride = 1;
   for (size_t a = study->axis_count; a-- > 0 && !status;) {
-    if (study->axes[a].count > 1) {
+    bool evaluations = study->search && a == study->search->axis; /* no parameters */
+    if (study->axes[a].count > 1 && !evaluations) {
       strut_grid_values(study, stride * (study->axes[a].count - 1), values);
       status = strut_study_try(file, values);
     }
@@ -66,6 +69,18 @@ static bool identify(const strut_study_file *file, uint8_t hash[STRUT_STUDY_HASH
   return true;
 }
 
+/* The expressions of a search are those of the table's columns. */
+static strut_status bind_search(strut_sweep_study *study, strut_error *error) {
+  strut_sweep_plan *plan = &study->plan;
+  strut_table_name *names = strut_arena_allocate(&plan->arena, plan->column_count, sizeof *names);
+  if (!names) return strut_no_memory(error, "");
+  for (size_t i = 0; i < plan->column_count; i++)
+    names[i] =
+        (strut_table_name){plan->columns[i].name, plan->columns[i].unit, plan->columns[i].word};
+  strut_status status = strut_study_search_bind(&study->file, names, plan->column_count);
+  return status ? status : strut_search_add_columns(plan, error);
+}
+
 strut_status strut_sweep_study_try(const strut_arguments *arguments, strut_sweep_study *study,
                                    strut_error *error) {
   strut_study_file *file = &study->file;
@@ -74,6 +89,7 @@ strut_status strut_sweep_study_try(const strut_arguments *arguments, strut_sweep
                                          arguments->override_count, file, error);
   if (!status) status = try_ends(file);
   if (!status) status = strut_sweep_plan_make(&file->study, &scenes, &study->plan, error);
+  if (!status && file->study.search) status = bind_search(study, error);
   if (!status) status = strut_sweep_figures_check(&study->plan, error);
   if (!status) status = strut_sweep_sensitivity_check(&study->plan, error);
   return status;

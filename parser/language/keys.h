@@ -78,7 +78,9 @@
   X(LIMIT, "limit", LIMIT_EVALUATIONS) \
   X(REFINE, "refine", REFINE_WHERE) \
   X(SENSITIVITY, "sensitivity", SENSITIVITY_OF) \
-  X(STIFFNESS_AT, "stiffness_at", STIFFNESS_AT_NODE)
+  X(STIFFNESS_AT, "stiffness_at", STIFFNESS_AT_NODE) \
+  X(SEARCH, "search", SEARCH_MAXIMISE) \
+  X(VARIABLE, "variable", VARIABLE_FROM)
 /* clang-format on */
 
 /** The mappings of the language. */

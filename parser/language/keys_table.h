@@ -347,7 +347,7 @@
   X(STUDY, DESCRIPTION, "description", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study, description), "What the study is for.") \
   X(STUDY, MODEL, "model", TEXT, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "File of the model, relative to the folder of the study.") \
   X(STUDY, SET, "set", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression or a text", BY_HAND, "Values of the model's parameters at all points; `--set` takes precedence.") \
-  X(STUDY, AXES, "axes", AXES, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Each axis gives one parameter its values, `{NAME: [...]}` or `{NAME: {...}}` with the keys of a [range](#range), or several parameters together, `{zip: {NAME: ..., NAME: ...}}`. Several parameters go together in `{points: FILE}`, with a row for each value, or the keys of [points](#points), and in `{sample: {...}}`, with the keys of a [sample](#sample). The points are all combinations of the axes; the last axis varies fastest.") \
+  X(STUDY, AXES, "axes", AXES, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Each axis gives one parameter its values, `{NAME: [...]}` or `{NAME: {...}}` with the keys of a [range](#range), or several parameters together, `{zip: {NAME: ..., NAME: ...}}`. Several parameters go together in `{points: FILE}`, with a row for each value, or the keys of [points](#points), and in `{sample: {...}}`, with the keys of a [sample](#sample). The points are all combinations of the axes; the last axis varies fastest. Required without a `search` or a `sensitivity` analysis; beside one, there is one for each of these points.") \
   X(STUDY, DERIVE, "derive", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression", BY_HAND, "Parameters computed from others at each point, such as `{step: 1/(1000*frequency)}`.") \
   X(STUDY, VARIANTS, "variants", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a [variant](#variant)", BY_HAND, "Variants of the model, for example with other numerics; they form the first axis, the column `variant`.") \
   X(STUDY, SOLVER, "solver", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Keys that replace those of the model.") \
@@ -370,6 +370,7 @@
   X(STUDY, CURVE, "curve", POINTS, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "Of `compute: path` with `over: NODE.x` or `NODE.y`: displacements and forces `[[-1 mm, 2 N], ...]` that `curve_distance` compares with.") \
   X(STUDY, LIMIT, "limit", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "What a point may cost. One that needs more fails, and its row says so.") \
   X(STUDY, FORM, "form", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "How `compute: form` finds the form.") \
+  X(STUDY, SEARCH, "search", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Search for the parameters at which a column is best, instead of computing the points of a grid.") \
   X(RANGE, FROM, "from", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "First value.") \
   X(RANGE, TO, "to", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "Last value, if the steps meet it.") \
   X(RANGE, STEP, "step", NUMBER, CONTEXT, ANY, "", OPTIONAL, 4, "", BY_HAND, "Difference between successive values.") \
@@ -433,7 +434,22 @@
   X(SENSITIVITY, SCHEME, "scheme", WORD, NONE, ANY, "sobol", OPTIONAL, 0, "sobol|lhs|random", BY_HAND, "As that of a [sample](#sample).") \
   X(SENSITIVITY, DERIVATIVES, "derivatives", WORD, NONE, ANY, "yes", OPTIONAL, 0, "no|yes", BY_HAND, "Central differences about the medians, with two steps, four points for each parameter.") \
   X(STIFFNESS_AT, NODE, "node", NAME, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_study, stiffness_node), "A node of the model.") \
-  X(STIFFNESS_AT, DIRECTION, "direction", NUMBER, ANGLE, ANY, "", REQUIRED, 0, "", FIELD(strut_study, stiffness_direction), "From the x axis: 90 deg is upwards.")
+  X(STIFFNESS_AT, DIRECTION, "direction", NUMBER, ANGLE, ANY, "", REQUIRED, 0, "", FIELD(strut_study, stiffness_direction), "From the x axis: 90 deg is upwards.") \
+  X(SEARCH, MAXIMISE, "maximise", TEXT, NONE, ANY, "", OPTIONAL, 12, "", BY_HAND, "What is to be as large as possible: a column of the table, or an expression of columns such as `velocity/frequency`.") \
+  X(SEARCH, MINIMISE, "minimise", TEXT, NONE, ANY, "", OPTIONAL, 12, "", BY_HAND, "What is to be as small as possible, likewise: `abs(velocity - 10 mm/s)`.") \
+  X(SEARCH, OVER, "over", THINGS, NONE, ANY, "", REQUIRED, 0, "the keys of a [variable](#variable), or a list of choices", BY_HAND, "The parameters to be found.") \
+  X(SEARCH, METHOD, "method", WORD, NONE, ANY, "crs2", OPTIONAL, 0, "crs2|direct|isres|cobyla|bobyqa|sbplx|neldermead", FIELD(strut_study_search, method), "Of the whole range: `crs2` (points spread evenly, controlled random search, then `sbplx` from the best point), `direct` (dividing rectangles; has no seed), `isres` (evolution). From a start: `cobyla`, `bobyqa`, `sbplx`, `neldermead`.") \
+  X(SEARCH, EVALUATIONS, "evaluations", NUMBER, NONE, WHOLE(1, 100000), "200", OPTIONAL, 0, "", FIELD(strut_study_search, evaluations), "How many different points each search may compute.") \
+  X(SEARCH, STARTS, "starts", NUMBER, NONE, WHOLE(1, 1000), "1", OPTIONAL, 0, "", FIELD(strut_study_search, starts), "Searches side by side; the first begins at `start`, the others anywhere.") \
+  X(SEARCH, SEED, "seed", NUMBER, NONE, WHOLE(1, 4294960000), "1", OPTIONAL, 0, "", FIELD(strut_study_search, seed), "Of the random numbers of the first search; the next has the next seed. The same seed gives the same points.") \
+  X(SEARCH, SUBJECT_TO, "subject_to", NAMES, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "What must hold at the best point, a list of texts: `work < 2 mJ`, `outcome = I`; with `<`, `<=`, `>`, `>=` between expressions of columns, `=` and `!=` between a column of texts and a word.") \
+  X(SEARCH, WORST_OVER, "worst_over", THINGS, NONE, ANY, "", OPTIONAL, 0, "a list of values, or the keys of a [range](#range)", BY_HAND, "Scenarios: each evaluation computes all combinations of these values, and the worst of them counts; what `subject_to` says must hold in all.") \
+  X(VARIABLE, FROM, "from", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "Lower bound.") \
+  X(VARIABLE, TO, "to", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "Upper bound.") \
+  X(VARIABLE, START, "start", NUMBER, CONTEXT, ANY, "the middle", OPTIONAL, 0, "", BY_HAND, "Where the first search begins.") \
+  X(VARIABLE, SCALE, "scale", WORD, NONE, ANY, "linear", OPTIONAL, 0, "linear|log", BY_HAND, "`log`: steps are ratios.") \
+  X(VARIABLE, WRAPS, "wraps", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_search_variable, wraps), "`yes`: both bounds are the same, as 0 deg and 360 deg of a phase.") \
+  X(VARIABLE, INTEGER, "integer", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_search_variable, integer), "`yes`: only whole numbers, of the SI unit.")
 
 /* clang-format on */
 

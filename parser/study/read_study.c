@@ -367,7 +367,9 @@ static void read_points(strut_study_reader *r, strut_fields *top, const strut_ov
         (strut_setting){.name = overrides[i].name, .text = overrides[i].value};
   read_settings(r, set, count, true);
   read_settings(r, derive, count, false);
-  if (axes->state == STRUT_GIVEN) strut_study_read_axes(r, axes->value);
+  const strut_slot *search = strut_slot_of(top, STRUT_KEY_STUDY_SEARCH);
+  if (axes->state == STRUT_GIVEN || search->state == STRUT_GIVEN)
+    strut_study_read_axes(r, axes->state == STRUT_GIVEN ? axes->value : NULL, search);
   strut_study_read_refine(r, strut_slot_of(top, STRUT_KEY_STUDY_REFINE));
   strut_study_read_sensitivity(r, top);
   check_overrides(r, count);
@@ -378,7 +380,8 @@ static void require_points(strut_study_reader *r, strut_fields *top) {
   char expected[300];
   strut_slot *axes = strut_slot_of(top, STRUT_KEY_STUDY_AXES);
   if (axes->state != STRUT_ABSENT || r->reader->holes ||
-      strut_slot_of(top, STRUT_KEY_STUDY_SENSITIVITY)->state != STRUT_ABSENT)
+      strut_slot_of(top, STRUT_KEY_STUDY_SENSITIVITY)->state != STRUT_ABSENT ||
+      strut_slot_of(top, STRUT_KEY_STUDY_SEARCH)->state != STRUT_ABSENT)
     return;
   strut_report_error(r->reader, strut_root_place(r->reader), "the study lacks 'axes', expected %s",
                      strut_key_expected(STRUT_KEY_STUDY_AXES, expected, sizeof expected));
@@ -473,14 +476,15 @@ static const strut_scene_source *source_of(const strut_study_file *file,
 /* Reads a point's scene; its messages go to `diagnostics`, of the model's text. */
 static strut_status read_point(const strut_study_file *file, const strut_study_value *values,
                                strut_diagnostics *diagnostics, strut_setup *setup) {
-  size_t first = file->variants, fixed = file->setting_count;
-  size_t count = fixed + file->column_count - first;
-  strut_setting *settings = strut_allocate(count, sizeof *settings + STRUT_NUMBER_TEXT);
+  size_t first = file->variants, count = file->setting_count;
+  size_t most = count + file->column_count - first;
+  strut_setting *settings = strut_allocate(most, sizeof *settings + STRUT_NUMBER_TEXT);
   if (!settings) return STRUT_NO_MEMORY;
-  char(*texts)[STRUT_NUMBER_TEXT] = (char(*)[STRUT_NUMBER_TEXT])(settings + count);
-  for (size_t i = 0; i < fixed; i++) settings[i] = file->settings[i];
+  char(*texts)[STRUT_NUMBER_TEXT] = (char(*)[STRUT_NUMBER_TEXT])(settings + most);
+  for (size_t i = 0; i < count; i++) settings[i] = file->settings[i];
   for (size_t i = first; i < file->column_count; i++) {
-    strut_setting *s = &settings[fixed + i - first];
+    if (!file->columns[i].name) continue; /* a number of the search's own */
+    strut_setting *s = &settings[count++];
     *s = file->columns[i];
     s->place = strut_overlay_place(s->place);
     s->value = values[i].number;
@@ -520,13 +524,14 @@ static void format_values(const strut_study_file *file, const strut_study_value 
   size_t used = 0;
   *text = '\0';
   for (size_t i = 0; i < file->column_count && used < size; i++) {
+    if (!file->columns[i].name) continue;
     char number[STRUT_NUMBER_TEXT];
     const char *unit =
         file->columns[i].bare ? "1" : strut_dimension_unit(file->columns[i].dimension);
     bool plain = values[i].word || strcmp(unit, "1") == 0;
     strut_number_text(values[i].number, number);
     int n =
-        snprintf(text + used, size - used, "%s%s = %s%s%s", i ? ", " : "", file->columns[i].name,
+        snprintf(text + used, size - used, "%s%s = %s%s%s", used ? ", " : "", file->columns[i].name,
                  values[i].word ? values[i].word : number, plain ? "" : " ", plain ? "" : unit);
     used += n > 0 ? (size_t)n : 0;
   }

@@ -131,7 +131,10 @@ static bool read_range(strut_study_reader *r, along *a) {
 /* Names of the table's own columns, which no axis may have. */
 static bool is_reserved(const strut_study_reader *r, const char *name) {
   static const char *const names[] = {"point", "status", "message"};
+  static const char *const searching[] = {"search", "evaluation", "objective", "violation"};
   bool found = r->variant_count > 0 && strcmp(name, "variant") == 0;
+  for (size_t i = 0; r->searching && i < sizeof searching / sizeof searching[0]; i++)
+    found = found || strcmp(name, searching[i]) == 0;
   for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
     found = found || strcmp(name, names[i]) == 0;
   return found;
@@ -254,22 +257,29 @@ static void add_variants(strut_study_reader *r) {
   file->variants = true;
 }
 
-void strut_study_read_axes(strut_study_reader *r, const strut_tree *list) {
+bool strut_study_read_along(strut_study_reader *r, strut_study_along *a) {
+  return read_along(r, a);
+}
+
+void strut_study_read_axes(strut_study_reader *r, const strut_tree *list,
+                           const strut_slot *search) {
   strut_study *study = &r->file->study;
-  study->axes = strut_reader_allocate(r->reader, &r->file->arena, (list ? list->count : 0) + 2,
-                                      sizeof *study->axes); /* variants, sensitivity */
-  r->file->columns = strut_reader_allocate(r->reader, &r->file->arena,
-                                           (list ? count_columns(list) : 0) + r->declared_count + 1,
+  strut_arena *arena = &r->file->arena;
+  size_t listed = list ? list->count : 0, names = list ? count_columns(list) : 0;
+  size_t more = strut_study_search_columns(search);
+  r->searching = more > 0;
+  study->axes = strut_reader_allocate(r->reader, arena, listed + more + 2, sizeof *study->axes);
+  r->file->columns = strut_reader_allocate(r->reader, arena, names + r->declared_count + more + 1,
                                            sizeof *r->file->columns);
-  r->file->tables = strut_reader_allocate(r->reader, &r->file->arena, (list ? list->count : 0) + 1,
-                                          sizeof *r->file->tables);
+  r->file->tables = strut_reader_allocate(r->reader, arena, listed + 1, sizeof *r->file->tables);
   if (!study->axes || !r->file->columns || !r->file->tables) return;
   if (r->variant_count > 0) add_variants(r);
   for (const strut_tree *item = list ? list->first : NULL; item; item = item->next)
     read_axis(r, item, &study->axes[study->axis_count++]);
+  strut_study_read_search(r, search);
   double points = 1.0;
   for (size_t i = 0; i < study->axis_count; i++) points *= (double)study->axes[i].count;
-  if (list && points > (double)STRUT_STUDY_MOST_POINTS)
-    strut_report_error(r->reader, list->place, "the axes make %.3g points, a study may have 1e9",
-                       points);
+  if (points > (double)STRUT_STUDY_MOST_POINTS)
+    strut_report_error(r->reader, list ? list->place : search->key->place,
+                       "the axes make %.3g points, a study may have 1e9", points);
 }

@@ -17,6 +17,7 @@ typedef struct strut_study_reader {
   strut_name_map given; /* parameters that the study gives: their declared index */
   size_t variant_count; /* 0: the study has none */
   const char **variant_names;
+  bool searching; /* the table has the columns of a search */
 } strut_study_reader;
 
 /** The parameter of the model that a key names; NULL where that was reported. */
@@ -28,8 +29,8 @@ const strut_declared *strut_study_parameter(strut_study_reader *r, const strut_t
 /** A model that cannot be read may be the study itself, or another: then that is all there is to say. */
 bool strut_study_is_its_model(const strut_study_file *file);
 strut_status strut_study_open_sources(strut_study_reader *r, strut_fields *top, strut_error *error);
-/** Reads the axes into the study, and their columns. */
-void strut_study_read_axes(strut_study_reader *r, const strut_tree *list);
+/** Reads the axes into the study, and their columns; list NULL: none. Then what is searched. */
+void strut_study_read_axes(strut_study_reader *r, const strut_tree *list, const strut_slot *search);
 
 /** One parameter along its axis, while it is read. */
 typedef struct strut_study_along {
@@ -52,6 +53,16 @@ bool strut_study_begin_along(strut_study_reader *r, strut_study_along *a, strut_
 /** A number in the parameter's dimension; where that has none the first value decides. */
 bool strut_study_read_value(strut_study_reader *r, strut_study_along *a, const strut_tree *value,
                             const char *key, bool first, double *number);
+
+/** Reads a parameter along its axis: a list or a range. False where something was reported. */
+bool strut_study_read_along(strut_study_reader *r, strut_study_along *a);
+
+/* study_search.c */
+
+/** Most axes and columns that a search adds. */
+size_t strut_study_search_columns(const strut_slot *slot);
+/** Reads what is searched, after the axes, and adds its axes. Nothing without one. */
+void strut_study_read_search(strut_study_reader *r, const strut_slot *slot);
 
 /* study_refine.c */
 

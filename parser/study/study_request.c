@@ -53,6 +53,7 @@ void strut_request_begin(const strut_study_file *file, strut_request *request) {
   request->study.axes = NULL;
   request->study.trajectories = false;
   request->study.refine_depth = 0;
+  request->study.search = NULL;
 }
 
 void strut_request_free(strut_request *request) {

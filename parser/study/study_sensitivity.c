@@ -26,7 +26,8 @@ static void read_of(strut_study_reader *r, const strut_slot *slot, strut_study_s
 
 /* Keys that choose points in another way. */
 static void refuse_others(strut_study_reader *r, strut_fields *top, const strut_slot *own) {
-  static const int others[] = {STRUT_KEY_STUDY_REFINE, STRUT_KEY_STUDY_TRAJECTORIES};
+  static const int others[] = {STRUT_KEY_STUDY_REFINE, STRUT_KEY_STUDY_TRAJECTORIES,
+                               STRUT_KEY_STUDY_SEARCH};
   for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
     const strut_slot *slot = strut_slot_of(top, others[i]);
     if (slot->state == STRUT_GIVEN)
@@ -99,7 +100,8 @@ void strut_study_read_sensitivity(strut_study_reader *r, strut_fields *top) {
   strut_fields fields;
   if (slot->state != STRUT_GIVEN) return;
   refuse_others(r, top, slot);
-  if (!study->axes) strut_study_read_axes(r, NULL); /* the study has no others */
+  if (!study->axes) /* the study has no others */
+    strut_study_read_axes(r, NULL, strut_slot_of(top, STRUT_KEY_STUDY_SEARCH));
   strut_read_fields(r->reader, STRUT_SECTION_SENSITIVITY, slot->value, sensitivity_owner, &fields);
   if (!fields.broken) strut_require(r->reader, &fields, sensitivity_owner, slot->value->place);
   const strut_slot *of = strut_slot_of(&fields, STRUT_KEY_SENSITIVITY_OF);

@@ -149,6 +149,31 @@ static void put_computed(strut_writer *w, const strut_study *study) {
   put_number(w, study->form_least_density);
 }
 
+/* What is searched; the goal decides the column `objective`. */
+static void put_search(strut_writer *w, const strut_study_search *search) {
+  put_number(w, search->maximise);
+  put_word(w, search->goal.text);
+  for (size_t i = 0; i < search->condition_count; i++) put_word(w, search->conditions[i].text);
+  for (size_t i = 0; i < search->variable_count; i++) {
+    const strut_search_variable *v = &search->variables[i];
+    put_word(w, v->name);
+    put_number(w, v->from);
+    put_number(w, v->to);
+    put_number(w, v->start);
+    put_number(w, v->logarithmic + 2 * v->wraps + 4 * v->integer);
+    for (size_t k = 0; k < v->choice_count; k++) {
+      if (v->word)
+        put_word(w, v->words[k]);
+      else
+        put_number(w, v->numbers[k]);
+    }
+  }
+  put_number(w, (double)search->method);
+  put_number(w, (double)search->starts);
+  put_number(w, (double)search->evaluations);
+  put_number(w, (double)search->seed);
+}
+
 char *strut_study_identity(const strut_study_file *file) {
   strut_writer w = {.text = NULL};
   const strut_study *study = &file->study;
@@ -171,6 +196,7 @@ char *strut_study_identity(const strut_study_file *file) {
     put_number(&w, study->refine_by);
     put_word(&w, study->refine_where);
   }
+  if (study->search) put_search(&w, study->search);
   if (study->limit_evaluations) put_number(&w, (double)study->limit_evaluations);
   if (!w.failed) return w.text;
   strut_release(w.text);

@@ -134,6 +134,12 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
     [STRUT_SECTION_STIFFNESS_AT] = "`stiffness_at: {...}` of a study.",
     [STRUT_SECTION_SENSITIVITY] =
         "`sensitivity: {...}` of a study; results are in `sensitivity.csv` beside the table.",
+    [STRUT_SECTION_SEARCH] =
+        "`search: {...}` of a study; either `maximise` or `minimise`. [Searches](search.md) has "
+        "examples.",
+    [STRUT_SECTION_VARIABLE] =
+        "`over: {NAME: {...}}` of a search. `{NAME: [...]}` is a list of choices, numbers or "
+        "texts.",
     [STRUT_SECTION_LIMIT] = "`limit: {...}` of a study.",
     [STRUT_SECTION_DISTRIBUTION] =
         "`over: {NAME: {...}}` of a sample or a sensitivity analysis, with one of these keys.",

@@ -253,6 +253,9 @@ keep: [frequencies]
             ("axes: [{long: {from: 1 m, to: 2 m, count: 3}}, {idle: {from: 0, to: 1, count: 3}}]\n"
              "refine: {where: frequency_1, depth: 1}\nsensitivity: {of: [frequency_1], over: "
              "{stiff: {uniform: [1 N/m, 2 N/m]}}}\n", "exclude each other"),
+            ("search: {maximise: frequency_1, over: {idle: {from: 0, to: 1}}}\n"
+             "sensitivity: {of: [frequency_1], over: {stiff: {uniform: [1 N/m, 2 N/m]}}}\n",
+             "exclude each other"),
             ("", "lacks 'axes'")):
         write("wrong.yaml", "strut: 1\nstudy: s\n" + base + more)
         said = run("sweep", "wrong.yaml", "-o", "wrong", code=2).stderr

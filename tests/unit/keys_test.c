@@ -135,6 +135,12 @@ static const struct exception {
     {STRUT_SECTION_RANGE, "step", "in the unit of the axis' parameter"},
     {STRUT_SECTION_RANGE, "count", "chooses the kind of range"},
     {STRUT_SECTION_RANGE, "scale", "chooses the kind of range"},
+    {STRUT_SECTION_SEARCH, "maximise", "an expression of columns of the table"},
+    {STRUT_SECTION_SEARCH, "minimise", "an expression of columns of the table"},
+    {STRUT_SECTION_VARIABLE, "from", "in the unit of the parameter"},
+    {STRUT_SECTION_VARIABLE, "to", "in the unit of the parameter"},
+    {STRUT_SECTION_VARIABLE, "start", "in the unit of the parameter"},
+    {STRUT_SECTION_VARIABLE, "scale", "not every range may be logarithmic"},
 };
 
 static const char *reason_of(const strut_key *key) {

@@ -5,11 +5,13 @@
 #ifndef STRUT_ENGINE_RUN_MEASURE_QUANTITY_PROGRAM_H
 #define STRUT_ENGINE_RUN_MEASURE_QUANTITY_PROGRAM_H
 
+#include "engine/base/export.h"
 #include "engine/scene/quantity.h"
 
 /** Evaluates a program; `index` (length): position of each column in `value`. */
-double strut_quantity_program_evaluate(const strut_quantity_definition *definition,
-                                       const size_t *index, const double *value, double *stack);
+STRUT_API double strut_quantity_program_evaluate(const strut_quantity_definition *definition,
+                                                 const size_t *index, const double *value,
+                                                 double *stack);
 
 /** Size of a term, and two uncertainties that propagate alike. */
 typedef struct strut_magnitude {

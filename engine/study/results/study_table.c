@@ -167,3 +167,18 @@ strut_status strut_study_table_write_partial(const char *directory, const char *
   int64_t unread;
   return write_table(directory, name, sources, count, true, rows ? rows : &unread, error);
 }
+
+strut_status strut_study_table_write_points(const char *directory, const char *name,
+                                            strut_slots *source, const int64_t *points,
+                                            size_t count, strut_error *error) {
+  writer w = {.used = 0};
+  const strut_slots_plan *plan = strut_slots_plan_of(source);
+  strut_status status = strut_file_open(&w.file, directory, name, error);
+  if (status != STRUT_OK) return status;
+  put_header(&w, plan);
+  for (size_t i = 0; i < count && !w.failed; i++) {
+    strut_result_slot row;
+    if (strut_slots_get(source, points[i], &row)) put_row(&w, plan, points[i], &row);
+  }
+  return finish(&w, error);
+}

@@ -28,4 +28,9 @@ STRUT_API strut_status strut_study_table_write_partial(const char *directory, co
                                                        strut_slots *const *sources, size_t count,
                                                        int64_t *rows, strut_error *error);
 
+/** The same of some points, which have rows, in this order. */
+STRUT_API strut_status strut_study_table_write_points(const char *directory, const char *name,
+                                                      strut_slots *source, const int64_t *points,
+                                                      size_t count, strut_error *error);
+
 #endif

@@ -30,9 +30,8 @@ const strut_study_column *strut_grid_column(const strut_study *study, size_t k, 
   return &study->axes[i].columns[k];
 }
 
-/* Rounds to the 15 digits that a double can represent, counted from the first digit of `scale`, so that
- * 0.1 + 0.2 is 0.3. */
-static double rounded(double value, double scale) {
+/* So that 0.1 + 0.2 is 0.3. */
+double strut_grid_rounded(double value, double scale) {
   static const double tens[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                 1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
                                 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22}; /* all exact */
@@ -54,17 +53,17 @@ double strut_grid_value(const strut_study_column *column, int64_t i, int64_t cou
   if (i == 0) return from;
   if (column->kind == STRUT_RANGE_STEP) {
     sum = from + (double)i * column->step;
-    return rounded(sum, fmax(fabs(from), fabs(sum)));
+    return strut_grid_rounded(sum, fmax(fabs(from), fabs(sum)));
   }
   if (i == count - 1) return to; /* exactly */
   if (column->kind == STRUT_RANGE_EVEN) {
     sum = from + (to - from) * (double)i / last;
-    return rounded(sum, fmax(fabs(from), fabs(sum)));
+    return strut_grid_rounded(sum, fmax(fabs(from), fabs(sum)));
   }
   long double first = from, part = (long double)i / (long double)last;
   long double ratio = powl((long double)to / first, part);
   double value = (double)(first * ratio);
-  return rounded(value, fabs(value));
+  return strut_grid_rounded(value, fabs(value));
 }
 
 void strut_grid_values(const strut_study *study, int64_t point, strut_study_value *values) {

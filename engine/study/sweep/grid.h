@@ -24,4 +24,9 @@ STRUT_API double strut_grid_value(const strut_study_column *column, int64_t i, i
 STRUT_API void strut_grid_values(const strut_study *study, int64_t point,
                                  strut_study_value *values);
 
+/**
+ * The value to the 15 digits that a double can represent, counted from the first digit of `scale`.
+ */
+STRUT_API double strut_grid_rounded(double value, double scale);
+
 #endif

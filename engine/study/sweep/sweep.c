@@ -186,8 +186,7 @@ static void stop_sweep(sweep *s, strut_status status, const strut_error *error) 
   }
 }
 
-/* Counts the warnings of a run by their code, and keeps the text of the first point. */
-static void count_warnings(strut_sweep_state *state, const strut_sweep_job *job) {
+void strut_sweep_count_warnings(strut_sweep_state *state, const strut_sweep_job *job) {
   for (size_t i = 0; i < job->warning_count; i++) {
     const strut_warning *warning = &job->warnings[i];
     size_t at = 0;
@@ -219,7 +218,7 @@ static void count_point(sweep *s, const strut_sweep_job *job) {
     assert(state->done <= state->points);
     state->failed += row->status != STRUT_OK;
     state->last = job->point;
-    count_warnings(state, job);
+    strut_sweep_count_warnings(state, job);
     state->row = row;
     state->seconds = now - s->began;
     if (s->worker.options->progress && now - s->reported > OFTEN) {
@@ -272,15 +271,15 @@ static void run_threads(sweep *s, int threads, int32_t lanes, strut_sweep_job *j
   }
 }
 
-/* No more lanes on each processor than there are points for it. */
-static int32_t lanes_for(int wanted, int threads, int64_t points) {
+int32_t strut_sweep_lanes_for(int wanted, int threads, int64_t points) {
   int32_t widest = strut_batch_widest(), lanes = 1;
   if (wanted > 0 && wanted < widest) widest = wanted;
   while (2 * lanes <= widest && (int64_t)lanes * threads < points) lanes *= 2;
   return lanes;
 }
 
-static strut_sweep_job *make_jobs(const strut_sweep_plan *plan, strut_arena *arena, size_t count) {
+strut_sweep_job *strut_sweep_make_jobs(const strut_sweep_plan *plan, strut_arena *arena,
+                                       size_t count) {
   strut_sweep_job *jobs = strut_arena_allocate(arena, count, sizeof *jobs);
   for (size_t i = 0; i < count && jobs; i++)
     if (!allocate_cells(plan, arena, &jobs[i].cells)) return NULL;
@@ -301,8 +300,8 @@ strut_status strut_sweep_run(const strut_sweep_plan *plan, strut_slots *slots,
       .error = error ? error : &own};
   int64_t missing =
       options->wants ? options->wanted - options->wanted_done : strut_slots_missing(slots);
-  int32_t lanes = lanes_for(options->lanes, threads, missing);
-  strut_sweep_job *jobs = make_jobs(plan, &arena, (size_t)threads * (size_t)lanes);
+  int32_t lanes = strut_sweep_lanes_for(options->lanes, threads, missing);
+  strut_sweep_job *jobs = strut_sweep_make_jobs(plan, &arena, (size_t)threads * (size_t)lanes);
   int64_t count = strut_slots_plan_of(slots)->count;
   *state = (strut_sweep_state){.points = count,
                                .done = count - strut_slots_missing(slots),

@@ -69,6 +69,8 @@ typedef struct strut_sweep_state {
   const strut_result_slot *row; /* and its row */
   size_t warning_count;
   strut_sweep_warning warnings[STRUT_SWEEP_MOST_WARNINGS]; /* by code */
+  bool has_best;                                           /* of a search: */
+  double best;                                             /* the best objective so far */
 } strut_sweep_state;
 
 typedef struct strut_sweep_options {
@@ -83,6 +85,10 @@ typedef struct strut_sweep_options {
   bool (*wants)(const void *context, int64_t point);
   const void *wants_context;
   int64_t wanted, wanted_done;
+  /** May replace values of a point, and change its scene and experiment; may be NULL. From any thread. */
+  void (*values)(const void *context, int64_t point, strut_study_value *values);
+  void (*adjust)(const void *context, int64_t point, strut_setup *setup);
+  const void *point_context;
 } strut_sweep_options;
 
 /**

@@ -216,7 +216,7 @@ static void choose_of_run(strut_sweep_plan *plan, const strut_setup *setup, bool
   plan->keep = usual ? USUAL : study->keep;
   if (usual && !shapes) plan->keep &= ~BIT(OUTCOME);
   plan->start = usual && setup->experiment.settle.wanted;
-  plan->check = study->half_step || study->check_accuracy > 0.0;
+  plan->check = !study->search && (study->half_step || study->check_accuracy > 0.0);
   if (plan->check && shapes) plan->keep |= BIT(OUTCOME);
   if (plan->check && !shapes) plan->keep |= BIT(MOTION);
   plan->flips = plan->check && shapes;
@@ -237,7 +237,7 @@ static strut_status choose_columns(strut_sweep_plan *plan, const strut_setup *se
     if (status) return status;
   }
   size_t quantities = setup->experiment.quantity_count;
-  size_t most = plan->axis_columns + ENTRIES + COUNTS + STRUT_STATICS_COLUMNS + 6 +
+  size_t most = plan->axis_columns + ENTRIES + COUNTS + STRUT_STATICS_COLUMNS + 8 +
                 2 * scene->contact_count + 2 * scene->node_count + scene->member_count +
                 2 * quantities;
   plan->column_capacity = most;

@@ -135,6 +135,16 @@ typedef struct strut_sweep_queue {
 void strut_sweep_work(const strut_sweep_worker *worker, const strut_sweep_queue *queue,
                       strut_sweep_job *jobs, int32_t lanes);
 
+/* sweep.c */
+
+/** No more lanes on each of the threads than there are points for it; wanted 0: as many as fit. */
+int32_t strut_sweep_lanes_for(int wanted, int threads, int64_t points);
+/** Idle jobs with room for their rows; NULL: no memory. */
+strut_sweep_job *strut_sweep_make_jobs(const strut_sweep_plan *plan, strut_arena *arena,
+                                       size_t count);
+/** Counts the warnings of a run by their code, and keeps the text of the first point. */
+void strut_sweep_count_warnings(strut_sweep_state *state, const strut_sweep_job *job);
+
 /* sweep_record.c */
 
 /** A directory of results for a run of a sweep. Zero-initialise. */

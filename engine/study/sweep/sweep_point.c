@@ -96,7 +96,9 @@ bool strut_sweep_job_begin(const strut_sweep_worker *w, int64_t point, strut_swe
   job->warning_count = 0;
   job->error = (strut_error){0};
   strut_sweep_watch_begin(w->watch, job);
+  const strut_sweep_options *options = w->options;
   strut_grid_values(plan->study, point, cells->values);
+  if (options->values) options->values(options->point_context, point, cells->values);
   for (size_t i = 0; i < plan->axis_columns; i++) {
     if (plan->columns[i].word)
       strut_sweep_word(cells, cells->values[i].word);
@@ -106,6 +108,7 @@ bool strut_sweep_job_begin(const strut_sweep_worker *w, int64_t point, strut_swe
   strut_status status =
       plan->scenes.setup(plan->scenes.context, cells->values, &job->setup, &job->error);
   if (status) return finish_point(w, job, status);
+  if (options->adjust) options->adjust(options->point_context, point, &job->setup);
   if (plan->study->compute != STRUT_COMPUTE_RUN)
     return finish_with_scene(w, job, strut_statics_point(w, job));
   status = strut_equilibrium_cache_resolve(w->standing, &job->setup, &job->error);

@@ -1,0 +1,203 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Points that searches ask for at the same time, on all threads and lanes. See search_parts.h. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "engine/integrate/lanes/batch.h"
+#include "engine/study/search/search_parts.h"
+#include "engine/study/sweep/grid.h"
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+/* Time between two reports [s]. */
+static const double OFTEN = 0.1;
+
+static int by_point(const void *a, const void *b) {
+  int64_t first = ((const strut_batch_point_wanted *)a)->point;
+  int64_t second = ((const strut_batch_point_wanted *)b)->point;
+  return (first > second) - (first < second);
+}
+
+/* The variables' values at a point of the batch. */
+static void give_values(const void *context, int64_t point, strut_study_value *values) {
+  const strut_search_batch *b = context;
+  const strut_study_search *search = b->plan->study->search;
+  const strut_batch_point_wanted key = {.point = point};
+  const strut_batch_point_wanted *found = bsearch(&key, b->wanted, b->count, sizeof key, by_point);
+  for (size_t i = 0; found && i < search->variable_count; i++)
+    values[search->column + i] = found->values[i];
+}
+
+/* The best point is computed with a tenth of the error, or half the step. */
+static void make_exact(const void *context, int64_t point, strut_setup *setup) {
+  const strut_search_batch *b = context;
+  const strut_study *study = b->plan->study;
+  const strut_search_layout layout = strut_search_layout_of(b->plan);
+  strut_experiment *e = &setup->experiment;
+  if (point / layout.scenarios % layout.rows != b->first_check) return;
+  if (study->check_accuracy > 0.0)
+    e->accuracy = study->check_accuracy;
+  else if (e->accuracy > 0.0)
+    e->accuracy /= study->half_step ? 2.0 : 10.0;
+  else
+    e->step /= 2.0, e->tolerance /= 10.0;
+}
+
+strut_search_layout strut_search_layout_of(const strut_sweep_plan *plan) {
+  const strut_study *study = plan->study;
+  const strut_study_search *search = study->search;
+  strut_search_layout l = {.outers = 1,
+                           .rows = study->axes[search->axis].count,
+                           .scenarios = 1,
+                           .variables = search->variable_count,
+                           .conditions = search->condition_count};
+  for (size_t i = 0; i < search->axis; i++) l.outers *= study->axes[i].count;
+  for (size_t i = 1; i <= search->scenario_axes; i++)
+    l.scenarios *= study->axes[search->axis + i].count;
+  return l;
+}
+
+strut_status strut_search_batch_begin(strut_search_batch *b) {
+  const strut_study_search *search = b->plan->study->search;
+  double seconds = b->plan->study->limit_time;
+  b->options = *b->given;
+  b->options.wants = NULL;
+  b->options.directory = NULL;
+  b->options.values = give_values;
+  b->options.adjust = make_exact;
+  b->options.point_context = b;
+  b->threads = b->given->threads > 0 ? b->given->threads : strut_sweep_threads();
+  b->lanes = strut_sweep_lanes_for(b->given->lanes, b->threads, INT64_MAX);
+  b->first_check = search->starts * search->evaluations;
+  size_t jobs = (size_t)b->threads * (size_t)b->lanes;
+  b->jobs = strut_sweep_make_jobs(b->plan, &b->arena, jobs);
+  b->worker = (strut_sweep_worker){
+      .plan = b->plan, .options = &b->options, .standing = strut_equilibrium_cache_create()};
+  if (b->jobs && seconds > 0.0)
+    b->worker.watch = strut_sweep_watch_create(seconds, b->jobs, jobs, b->options.interrupt);
+  if (b->jobs && b->worker.standing && (b->worker.watch || seconds <= 0.0)) return STRUT_OK;
+  return strut_no_memory(b->error, "");
+}
+
+void strut_search_batch_free(strut_search_batch *b) {
+  strut_sweep_watch_free(b->worker.watch);
+  strut_equilibrium_cache_free(b->worker.standing);
+  strut_release(b->wanted);
+  strut_arena_free(&b->arena);
+}
+
+static bool add_point(strut_search_batch *b, int64_t point, const strut_study_value *values) {
+  if (b->count == b->capacity) {
+    size_t capacity = b->capacity ? 2 * b->capacity : 64;
+    strut_batch_point_wanted *more = strut_reallocate(b->wanted, capacity, sizeof *more);
+    if (!more) return false;
+    b->wanted = more;
+    b->capacity = capacity;
+  }
+  b->wanted[b->count++] = (strut_batch_point_wanted){point, values};
+  return true;
+}
+
+bool strut_search_batch_add(strut_search_batch *b, int64_t outer, int64_t row,
+                            const strut_study_value *values) {
+  const strut_search_layout l = strut_search_layout_of(b->plan);
+  bool fine = true;
+  for (int64_t i = 0; i < l.scenarios && fine; i++) {
+    int64_t point = (outer * l.rows + row) * l.scenarios + i;
+    if (!strut_slots_done(b->slots, point)) fine = add_point(b, point, values);
+  }
+  return fine;
+}
+
+static bool is_running(strut_search_batch *b) {
+  strut_status status;
+#ifdef _OPENMP
+#pragma omp atomic read
+#endif
+  status = b->status;
+  const volatile sig_atomic_t *interrupt = b->options.interrupt;
+  return !status && !(interrupt && *interrupt);
+}
+
+static bool next_point(void *context, int64_t *point) {
+  strut_search_batch *b = context;
+  size_t i = 0;
+  if (!is_running(b)) return false;
+#ifdef _OPENMP
+#pragma omp atomic capture
+#endif
+  i = b->next++;
+  if (i >= b->count) return false;
+  *point = b->wanted[i].point;
+  return true;
+}
+
+static void report(strut_search_batch *b, const strut_sweep_job *job) {
+  strut_sweep_state *state = b->state;
+  double now = strut_run_clock();
+  state->done++;
+  state->computed++;
+  state->failed += job->cells.row.status != STRUT_OK;
+  state->last = job->point;
+  state->row = &job->cells.row;
+  state->seconds = now - b->began;
+  strut_sweep_count_warnings(state, job);
+  if (!b->options.progress || now - b->reported <= OFTEN) return;
+  b->options.progress(b->options.progress_context, state);
+  b->reported = now;
+}
+
+/* Fills the columns of the search and stores the row. */
+static void store_point(void *context, const strut_sweep_job *job) {
+  strut_search_batch *b = context;
+  strut_error error = {0};
+  strut_row_buffer cells = job->cells;
+  const strut_study_search *search = b->plan->study->search;
+  strut_status status = job->status;
+  if (!status && !cells.row.status) {
+    double broken[STRUT_SEARCH_MOST_CONDITIONS];
+    double goal = strut_search_score(b->plan, cells.numbers, cells.row.words, broken);
+    strut_sweep_number(&cells, goal);
+    strut_sweep_number(&cells, strut_search_violation(search, broken));
+  }
+  if (!status) status = strut_slots_put(b->slots, job->point, &cells.row, &error);
+#ifdef _OPENMP
+#pragma omp critical(strut_search_report_progress)
+#endif
+  {
+    if (status && !b->status) {
+      strut_fail(b->error, status, "%s", job->status ? job->error.message : error.message);
+#ifdef _OPENMP
+#pragma omp atomic write
+#endif
+      b->status = status;
+    }
+    if (!status) report(b, job);
+  }
+}
+
+strut_status strut_search_batch_run(strut_search_batch *b) {
+  const strut_sweep_queue queue = {b, next_point, store_point};
+  int threads = b->count < (size_t)b->threads ? (int)b->count : b->threads;
+  const volatile sig_atomic_t *interrupt = b->options.interrupt;
+  b->next = 0;
+  if (b->count > 0) {
+    int32_t lanes = strut_sweep_lanes_for(b->lanes, threads, (int64_t)b->count);
+    qsort(b->wanted, b->count, sizeof *b->wanted, by_point);
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static, 1) num_threads(threads)
+#endif
+    for (int i = 0; i < threads; i++) {
+#ifdef _OPENMP
+      omp_set_num_threads(1); /* of searches within a point */
+#endif
+      strut_sweep_work(&b->worker, &queue, b->jobs + i * b->lanes, lanes);
+    }
+  }
+  if (!b->status && interrupt && *interrupt)
+    b->status = strut_fail(b->error, STRUT_INTERRUPTED, "interrupted");
+  b->count = 0;
+  return b->status;
+}

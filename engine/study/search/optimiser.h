@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Optimisers in the unit box, by the word of the language.
+ *
+ * An optimiser asks for the values of points and decides by them where to ask next. It keeps no best point
+ * for its caller, and it ends when it is told to stop or sees no way to go on. The same options and answers
+ * give the same questions.
+ */
+#ifndef STRUT_ENGINE_STUDY_SEARCH_OPTIMISER_H
+#define STRUT_ENGINE_STUDY_SEARCH_OPTIMISER_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "engine/scene/study_search.h"
+
+/** Answers an optimiser. */
+typedef struct strut_search_asker {
+  void *context;
+  /**
+   * The values of `count` points (count, dimension), the smaller the better and all of them finite, and of
+   * each point how far it breaks each condition (count, conditions): at most 0 where it holds. False: the
+   * optimiser must end.
+   */
+  bool (*ask)(void *context, size_t count, const double *points, double *values, double *broken);
+} strut_search_asker;
+
+typedef struct strut_search_task {
+  strut_search_method method;
+  size_t dimension, conditions; /* conditions: 0 where the values account for them */
+  const double *start;          /* (dimension) in the box */
+  const bool *wraps;            /* (dimension) numbers that may leave the box, modulo 1 */
+  int64_t evaluations;          /* roughly how many will be answered */
+  uint32_t seed;
+} strut_search_task;
+
+/** Does the method know conditions? Else broken ones have to make the values worse. */
+bool strut_search_knows_conditions(strut_search_method method);
+/** Runs to the end. To be called in a thread of its own: random numbers are the thread's. False: no memory. */
+bool strut_search_optimise(const strut_search_task *task, const strut_search_asker *asker);
+
+#endif

@@ -1,0 +1,392 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/study/search/search.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "engine/base/checksum.h"
+#include "engine/study/search/box.h"
+#include "engine/study/search/dialogue.h"
+#include "engine/study/search/search_parts.h"
+
+/* Optimisers at the same time, and known points that one may ask for in a row. */
+enum { MOST_ACTIVE = 64, MOST_REPEATS = 5000 };
+
+/* A point that was evaluated, or is about to be. */
+typedef struct known {
+  strut_study_value *values; /* (variables) */
+  double *broken;            /* (conditions) */
+  strut_search_point point;
+  bool failed, valueless;
+  int32_t same_hash; /* the one before it with the same hash, or -1 */
+} known;
+
+/* One search in progress. */
+typedef struct search {
+  strut_search_outcome *outcome;
+  strut_search_task task;
+  strut_dialogue *dialogue;
+  strut_question question;
+  int32_t *answers; /* (question.count) of the known points, -1: no evaluation is left for it */
+  size_t answer_room;
+  known *list;                /* (count) in the order of their evaluation */
+  int32_t count, new;         /* new: first that has not been judged */
+  int32_t *heads;             /* (hashes) latest known point of a hash, or -1 */
+  uint32_t hashes;            /* a power of two */
+  int64_t repeats;            /* in a row */
+  double first, scale, worst; /* the first objective, its size, and the worst that was told */
+  bool over;
+  strut_arena arena;
+} search;
+
+typedef struct conductor {
+  const strut_sweep_plan *plan;
+  const strut_study_search *what;
+  strut_search_layout layout;
+  strut_search_batch batch;
+  strut_search_result *result;
+  search *active[MOST_ACTIVE];
+  size_t active_count, next; /* next: outcome to be begun */
+  bool penalise;             /* broken conditions make values worse */
+} conductor;
+
+/* ---- beginning and ending a search ---- */
+
+/* Numbers in (0, 1) from a seed: splitmix64. */
+static double next_share(uint64_t *state) {
+  uint64_t z = (*state += 0x9e3779b97f4a7c15u);
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  z ^= z >> 31;
+  return ((double)(z >> 11) + 0.5) * 0x1p-53;
+}
+
+/* The first search begins where the study says, the others anywhere. */
+static void choose_start(const conductor *c, const search *s, double *start) {
+  uint64_t state = (uint64_t)s->task.seed;
+  for (size_t i = 0; i < c->layout.variables; i++) {
+    double share = next_share(&state);
+    start[i] = s->outcome->start == 0 ? strut_search_start(&c->what->variables[i]) : share;
+  }
+}
+
+static void free_search(search *s) {
+  strut_dialogue_end(s->dialogue);
+  strut_release(s->answers);
+  strut_release(s->list);
+  strut_release(s->heads);
+  strut_arena_free(&s->arena);
+  strut_release(s);
+}
+
+static search *begin_search(conductor *c, strut_search_outcome *outcome) {
+  search *s = strut_allocate(1, sizeof *s);
+  if (!s) return NULL;
+  size_t n = c->layout.variables;
+  int64_t most = c->what->evaluations;
+  double *start = strut_arena_allocate(&s->arena, n, sizeof *start);
+  bool *wraps = strut_arena_allocate(&s->arena, n, sizeof *wraps);
+  for (s->hashes = 64; s->hashes < 2 * most;) s->hashes *= 2;
+  s->list = strut_allocate((size_t)most, sizeof *s->list);
+  s->heads = strut_allocate(s->hashes, sizeof *s->heads);
+  s->outcome = outcome;
+  s->task = (strut_search_task){.method = (strut_search_method)c->what->method,
+                                .dimension = n,
+                                .conditions = c->penalise ? 0 : c->layout.conditions,
+                                .start = start,
+                                .wraps = wraps,
+                                .evaluations = most,
+                                .seed = (uint32_t)(c->what->seed + outcome->start)};
+  if (start && wraps && s->list && s->heads) {
+    for (uint32_t i = 0; i < s->hashes; i++) s->heads[i] = -1;
+    for (size_t i = 0; i < n; i++) wraps[i] = c->what->variables[i].wraps;
+    choose_start(c, s, start);
+    s->dialogue = strut_dialogue_begin(&s->task);
+    if (s->dialogue) return s;
+  }
+  free_search(s);
+  return NULL;
+}
+
+/* The values of a point as owned by the result. */
+static bool keep_best(conductor *c, search *s) {
+  strut_search_outcome *o = s->outcome;
+  size_t n = c->layout.variables;
+  strut_study_value *values = strut_arena_allocate(&c->result->arena, n, sizeof *values);
+  if (!values) return false;
+  if (o->best.evaluation >= 0) memcpy(values, o->best.values, n * sizeof *values);
+  o->best.values = values;
+  return true;
+}
+
+/* ---- known points ---- */
+
+static uint32_t hash_of(const conductor *c, const strut_study_value *values) {
+  uint64_t sum = 0;
+  for (size_t i = 0; i < c->layout.variables; i++)
+    sum = values[i].word ? strut_checksum(values[i].word, strlen(values[i].word), sum)
+                         : strut_checksum(&values[i].number, sizeof values[i].number, sum);
+  return (uint32_t)(sum ^ sum >> 32);
+}
+
+static bool same_values(const conductor *c, const strut_study_value *a,
+                        const strut_study_value *b) {
+  bool same = true;
+  for (size_t i = 0; i < c->layout.variables && same; i++) same = strut_search_same(a[i], b[i]);
+  return same;
+}
+
+/* The point with these values, a new one if necessary; -1: no evaluation is left; -2: no memory. */
+static int32_t find_point(const conductor *c, search *s, const strut_study_value *values) {
+  uint32_t hash = hash_of(c, values) & (s->hashes - 1);
+  int32_t i = s->heads[hash];
+  while (i >= 0 && !same_values(c, s->list[i].values, values)) i = s->list[i].same_hash;
+  if (i >= 0) return i;
+  if (s->count >= c->what->evaluations) return -1;
+  known *k = &s->list[s->count];
+  k->values = strut_arena_allocate(&s->arena, c->layout.variables, sizeof *k->values);
+  k->broken = strut_arena_allocate(&s->arena, c->layout.conditions + 1, sizeof *k->broken);
+  if (!k->values || !k->broken) return -2;
+  memcpy(k->values, values, c->layout.variables * sizeof *values);
+  k->same_hash = s->heads[hash];
+  return s->heads[hash] = s->count++;
+}
+
+/* ---- questions ---- */
+
+/* How many points there are in all; 0: a continuum, or too many to count. */
+static int64_t count_all(const conductor *c) {
+  int64_t all = 1;
+  for (size_t i = 0; i < c->layout.variables && all > 0; i++) {
+    int64_t count = strut_search_count(&c->what->variables[i]);
+    all = count > 0 && all < INT32_MAX / count ? all * count : 0;
+  }
+  return all;
+}
+
+/* Finds the points of the question, and lists those that are to be computed. */
+static bool take_question(conductor *c, search *s) {
+  size_t n = c->layout.variables;
+  strut_study_value values[STRUT_SEARCH_MOST_VARIABLES];
+  if (s->question.count > s->answer_room) {
+    strut_release(s->answers);
+    s->answer_room = s->question.count;
+    s->answers = strut_allocate(s->answer_room, sizeof *s->answers);
+    if (!s->answers) return false;
+  }
+  s->new = s->count;
+  for (size_t i = 0; i < s->question.count; i++) {
+    int32_t before = s->count;
+    for (size_t k = 0; k < n; k++)
+      values[k] = strut_search_value(&c->what->variables[k], s->question.points[i * n + k]);
+    s->answers[i] = find_point(c, s, values);
+    if (s->answers[i] == -2) return false;
+    bool repeated = s->answers[i] >= 0 && s->count == before;
+    s->repeats = repeated ? s->repeats + 1 : 0;
+    s->outcome->repeated += repeated;
+    if (s->count == before) continue;
+    int64_t row = s->outcome->start * c->what->evaluations + before;
+    if (!strut_search_batch_add(&c->batch, s->outcome->outer, row, s->list[before].values))
+      return false;
+  }
+  return true;
+}
+
+/* Puts an objective among the best ones of a search. */
+static void rank_objective(const conductor *c, strut_search_outcome *o, double objective) {
+  size_t at = 0;
+  while (at < o->top_count &&
+         (c->what->maximise ? o->top[at] >= objective : o->top[at] <= objective))
+    at++;
+  if (at == STRUT_SEARCH_LATEST) return;
+  if (o->top_count < STRUT_SEARCH_LATEST) o->top_count++;
+  memmove(o->top + at + 1, o->top + at, (o->top_count - at - 1) * sizeof *o->top);
+  o->top[at] = objective;
+}
+
+/* Takes the rows of a new point in. */
+static strut_status judge_point(conductor *c, search *s, int32_t i) {
+  strut_search_outcome *o = s->outcome;
+  known *k = &s->list[i];
+  strut_sweep_state *state = c->batch.state;
+  int64_t row = o->start * c->what->evaluations + i;
+  strut_status status =
+      strut_search_judge(c->plan, c->batch.slots, o->outer, row, k->values, &k->point, k->broken,
+                         &k->failed, &k->valueless, c->batch.error);
+  if (status) return status;
+  o->evaluations++;
+  o->failed += k->failed;
+  o->valueless += !k->failed && k->valueless;
+  if (isnan(k->point.objective)) return STRUT_OK;
+  bool feasible = k->point.violation <= 0.0;
+  o->feasible += feasible;
+  if (s->scale == 0.0) {
+    s->scale = k->point.objective != 0.0 ? fabs(k->point.objective) : 1.0;
+    s->first = k->point.objective;
+    o->constant = true;
+    o->least = o->most = s->first;
+  }
+  o->least = fmin(o->least, k->point.objective);
+  o->most = fmax(o->most, k->point.objective);
+  o->constant = o->constant && k->point.objective == s->first;
+  if (feasible) rank_objective(c, o, k->point.objective);
+  if (strut_search_better(c->what, &k->point, &o->best)) o->best = k->point;
+  bool best =
+      feasible && (!state->has_best || (c->what->maximise ? k->point.objective > state->best
+                                                          : k->point.objective < state->best));
+  if (best) state->best = k->point.objective, state->has_best = true;
+  return STRUT_OK;
+}
+
+/*
+ * What the optimiser is told: the objective in units of the first one. Where it does not know the conditions
+ * itself, those of feasible points are pressed into (-1, 1), and the others are above. A failed point is
+ * worse than all before it.
+ */
+static double told(const conductor *c, search *s, const known *k) {
+  double value = k->point.objective / s->scale;
+  if (isnan(k->point.objective)) return s->worst + 1.0;
+  if (c->what->maximise) value = -value;
+  if (c->penalise && c->layout.conditions > 0)
+    value = k->point.violation > 0.0 ? 1.0 + fmin(k->point.violation, 1e9)
+                                     : value / (1.0 + fabs(value));
+  value = fmin(fmax(value, -1e300), 1e300);
+  s->worst = fmax(s->worst, value);
+  return value;
+}
+
+double strut_search_size(const strut_search_outcome *o) {
+  double size = fabs(o->best.objective);
+  return size >= 0.01 * (o->most - o->least) ? size : 0.0;
+}
+
+/* Why the search must end now, if it must. */
+static bool must_end(const conductor *c, search *s, int64_t all) {
+  strut_search_outcome *o = s->outcome;
+  bool used_up = false;
+  for (size_t i = 0; i < s->question.count; i++) used_up = used_up || s->answers[i] < 0;
+  if (used_up || s->count >= c->what->evaluations)
+    o->end = STRUT_SEARCH_USED_UP;
+  else if (all > 0 && s->count >= all)
+    o->end = STRUT_SEARCH_ENUMERATED;
+  else if (s->repeats > MOST_REPEATS)
+    o->end = STRUT_SEARCH_REPEATS;
+  else
+    return false;
+  return true;
+}
+
+/* Answers the question of a search whose points are all in the file. */
+static strut_status answer_question(conductor *c, search *s, int64_t all) {
+  const strut_question *q = &s->question;
+  size_t m = s->task.conditions;
+  for (int32_t i = s->new; i < s->count; i++) {
+    strut_status status = judge_point(c, s, i);
+    if (status) return status;
+  }
+  s->over = must_end(c, s, all);
+  for (size_t i = 0; i < q->count && !s->over; i++) {
+    const known *k = &s->list[s->answers[i]];
+    q->values[i] = told(c, s, k);
+    for (size_t j = 0; j < m; j++)
+      q->broken[i * m + j] = isnan(k->point.objective) ? 1.0 : fmin(fmax(k->broken[j], -1e9), 1e9);
+  }
+  if (!s->over) strut_dialogue_answer(s->dialogue);
+  return STRUT_OK;
+}
+
+/* ---- all searches ---- */
+
+static bool fill_active(conductor *c) {
+  while (c->active_count < MOST_ACTIVE && c->next < c->result->outcome_count) {
+    search *s = begin_search(c, &c->result->outcomes[c->next]);
+    if (!s) return false;
+    c->active[c->active_count++] = s;
+    c->next++;
+  }
+  return true;
+}
+
+/* Waits for all questions; searches without one have ended. */
+static bool collect_questions(conductor *c) {
+  size_t left = 0;
+  bool fine = true;
+  for (size_t i = 0; i < c->active_count; i++) {
+    search *s = c->active[i];
+    if (!s->over && fine && strut_dialogue_question(s->dialogue, &s->question)) {
+      c->active[left++] = s;
+      fine = take_question(c, s);
+      continue;
+    }
+    if (!s->over) s->outcome->end = STRUT_SEARCH_CONVERGED;
+    fine = keep_best(c, s) && fine;
+    fine = strut_dialogue_end(s->dialogue) && fine;
+    s->dialogue = NULL;
+    free_search(s);
+  }
+  c->active_count = left;
+  return fine;
+}
+
+static strut_status run_searches(conductor *c) {
+  int64_t all = count_all(c);
+  strut_status status = STRUT_OK;
+  while (!status && (c->active_count > 0 || c->next < c->result->outcome_count)) {
+    if (!fill_active(c) || !collect_questions(c)) return strut_no_memory(c->batch.error, "");
+    status = strut_search_batch_run(&c->batch);
+    for (size_t i = 0; i < c->active_count && !status; i++)
+      status = answer_question(c, c->active[i], all);
+  }
+  return status;
+}
+
+static bool make_outcomes(conductor *c) {
+  size_t starts = (size_t)c->what->starts;
+  strut_search_result *r = c->result;
+  r->outcome_count = (size_t)c->layout.outers * starts;
+  r->outcomes = strut_arena_allocate(&r->arena, r->outcome_count, sizeof *r->outcomes);
+  for (size_t i = 0; r->outcomes && i < r->outcome_count; i++) {
+    r->outcomes[i].outer = (int64_t)(i / starts);
+    r->outcomes[i].start = (int32_t)(i % starts);
+    r->outcomes[i].best = (strut_search_point){.evaluation = -1, .objective = (double)NAN};
+  }
+  return r->outcomes != NULL;
+}
+
+strut_status strut_search_run(const strut_sweep_plan *plan, strut_slots *slots,
+                              const strut_sweep_options *options, strut_sweep_state *state,
+                              strut_search_result *result, strut_error *error) {
+  strut_error own = {0};
+  conductor c = {.plan = plan,
+                 .what = plan->study->search,
+                 .layout = strut_search_layout_of(plan),
+                 .result = result,
+                 .batch = {.plan = plan,
+                           .slots = slots,
+                           .given = options,
+                           .state = state,
+                           .error = error ? error : &own,
+                           .began = strut_run_clock()}};
+  c.penalise = !strut_search_knows_conditions((strut_search_method)c.what->method);
+  int64_t count = strut_slots_plan_of(slots)->count;
+  *result = (strut_search_result){0};
+  *state = (strut_sweep_state){.points = count,
+                               .done = count - strut_slots_missing(slots),
+                               .failed = strut_slots_failed(slots),
+                               .last = -1};
+  strut_status status = strut_search_batch_begin(&c.batch);
+  if (!status && !make_outcomes(&c)) status = strut_no_memory(c.batch.error, "");
+  if (!status) status = run_searches(&c);
+  for (size_t i = 0; i < c.active_count; i++) free_search(c.active[i]);
+  if (!status) status = strut_search_find_worth(&c.batch, result);
+  if (!status) state->points = state->done;
+  state->seconds = strut_run_clock() - c.batch.began;
+  state->row = NULL;
+  strut_search_batch_free(&c.batch);
+  return status;
+}
+
+void strut_search_result_free(strut_search_result *result) {
+  strut_arena_free(&result->arena);
+  *result = (strut_search_result){0};
+}

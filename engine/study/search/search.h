@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * A study that searches: optimisers choose its points, whose rows are kept like those of any study.
+ *
+ * A search that is run again asks for the same points; what is in the file of slots already answers it, so
+ * that an interrupted search is resumed by repeating it. Every search is a sequence of its own: the rows do
+ * not depend on how many run side by side.
+ */
+#ifndef STRUT_ENGINE_STUDY_SEARCH_SEARCH_H
+#define STRUT_ENGINE_STUDY_SEARCH_SEARCH_H
+
+#include "engine/study/search/score.h"
+
+/** An evaluated point of the searched parameters, all scenarios together. */
+typedef struct strut_search_point {
+  int64_t evaluation;              /* its place on the axis of evaluations; -1: there is none */
+  int64_t worst;                   /* point of the study: its worst scenario */
+  double objective;                /* there, as maximised or minimised; NAN: failed */
+  double violation;                /* the largest of all scenarios */
+  const strut_study_value *values; /* (variable_count) */
+} strut_search_point;
+
+/** How a search ended. */
+typedef enum strut_search_end {
+  STRUT_SEARCH_USED_UP,   /* all evaluations were computed */
+  STRUT_SEARCH_CONVERGED, /* the method saw no way to go on */
+  STRUT_SEARCH_REPEATS,   /* it asked for known points again and again */
+  STRUT_SEARCH_ENUMERATED /* there are no other points */
+} strut_search_end;
+
+enum { STRUT_SEARCH_LATEST = 10 };
+
+/** One search. */
+typedef struct strut_search_outcome {
+  int64_t outer; /* point of the axes before the searches */
+  int32_t start; /* from 0 */
+  strut_search_point
+      best; /* of the feasible points the best, or the one that breaks conditions least */
+  strut_search_end end;
+  int64_t evaluations, repeated, failed, feasible, valueless; /* valueless: the goal has no value */
+  double top[STRUT_SEARCH_LATEST];                            /* the best objectives, best first */
+  size_t top_count;
+  bool constant;      /* all objectives are the same */
+  double least, most; /* objectives of all points, feasible or not */
+} strut_search_outcome;
+
+/** A point beside the best one, along one variable. */
+typedef struct strut_search_neighbour {
+  bool there;
+  strut_search_point point;
+} strut_search_neighbour;
+
+/** What the best point of one outer point is worth. */
+typedef struct strut_search_worth {
+  size_t best;  /* its search among the outcomes */
+  bool checked; /* it was computed more exactly: */
+  strut_search_point check;
+  strut_search_neighbour (*neighbours)[2]; /* (variable_count) 1 % of the range below and above */
+  int *bound;                              /* (variable_count) -1 or 1: it lies on a bound */
+  int32_t agreeing; /* starts whose best is within 1 % of the best's size, itself included */
+} strut_search_worth;
+
+typedef struct strut_search_result {
+  size_t outcome_count, worth_count;
+  strut_search_outcome *outcomes; /* (outcome_count) by outer point, then start */
+  strut_search_worth *worths;     /* (worth_count) of each outer point that has a best */
+  strut_arena arena;
+} strut_search_result;
+
+/** As strut_sweep_run. The result is complete on STRUT_OK; release it in any case. */
+STRUT_API strut_status strut_search_run(const strut_sweep_plan *plan, strut_slots *slots,
+                                        const strut_sweep_options *options,
+                                        strut_sweep_state *state, strut_search_result *result,
+                                        strut_error *error);
+STRUT_API void strut_search_result_free(strut_search_result *result);
+
+/** The values of all columns of the axes at a point of the study whose variables have `values`. */
+STRUT_API void strut_search_values(const strut_sweep_plan *plan, int64_t point,
+                                   const strut_study_value *values, strut_study_value *all);
+
+/**
+ * The size that changes of a best objective are compared with: its own, or 0 where it is less than a
+ * hundredth of the range of all objectives of its search, as that of a difference which vanishes.
+ */
+STRUT_API double strut_search_size(const strut_search_outcome *outcome);
+
+/** Is point a better than b for the study? */
+STRUT_API bool strut_search_better(const strut_study_search *search, const strut_search_point *a,
+                                   const strut_search_point *b);
+
+#endif

@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * What the parts of a search share. Internal to engine/study/search.
+ */
+#ifndef STRUT_ENGINE_STUDY_SEARCH_SEARCH_PARTS_H
+#define STRUT_ENGINE_STUDY_SEARCH_SEARCH_PARTS_H
+
+#include "engine/study/search/search.h"
+#include "engine/study/sweep/sweep_parts.h"
+
+/** How the points of the study are numbered: (outer * rows + row) * scenarios + scenario. */
+typedef struct strut_search_layout {
+  int64_t outers, rows, scenarios;
+  size_t variables, conditions;
+} strut_search_layout;
+
+strut_search_layout strut_search_layout_of(const strut_sweep_plan *plan);
+
+/* batch.c: points of the study side by side */
+
+/** A point that is to be computed. */
+typedef struct strut_batch_point_wanted {
+  int64_t point;
+  const strut_study_value *values; /* of the variables */
+} strut_batch_point_wanted;
+
+typedef struct strut_search_batch {
+  const strut_sweep_plan *plan;
+  strut_slots *slots;
+  const strut_sweep_options *given; /* by the caller */
+  strut_sweep_options options;      /* with the hooks of the search */
+  strut_sweep_state *state;
+  strut_error *error;
+  strut_sweep_worker worker;
+  strut_sweep_job *jobs;
+  int threads;
+  int32_t lanes;       /* at most */
+  int64_t first_check; /* rows from here on are those of search 0 */
+  double began, reported;
+  size_t count, capacity, next;
+  strut_batch_point_wanted *wanted; /* (count) */
+  strut_status status;              /* of what stopped it */
+  strut_arena arena;
+} strut_search_batch;
+
+strut_status strut_search_batch_begin(strut_search_batch *batch);
+void strut_search_batch_free(strut_search_batch *batch);
+/** Adds the points of all scenarios of a row that have no result yet. False: no memory. */
+bool strut_search_batch_add(strut_search_batch *batch, int64_t outer, int64_t row,
+                            const strut_study_value *values);
+/** Computes what was added, and forgets it. */
+strut_status strut_search_batch_run(strut_search_batch *batch);
+
+/* judge.c: rows to points of the search */
+
+/**
+ * The worst of the scenarios of a row, all of which are there; broken (condition_count) is the largest of
+ * each. *failed: the row has a failed point, *valueless: or one without a goal. STRUT_FILE_TROUBLE where the
+ * rows have other values of the variables.
+ */
+strut_status strut_search_judge(const strut_sweep_plan *plan, strut_slots *slots, int64_t outer,
+                                int64_t row, const strut_study_value *values,
+                                strut_search_point *point, double *broken, bool *failed,
+                                bool *valueless, strut_error *error);
+
+/* worth.c */
+
+/** Computes the best points of all outer points more exactly, and their neighbours. */
+strut_status strut_search_find_worth(strut_search_batch *batch, strut_search_result *result);
+
+#endif

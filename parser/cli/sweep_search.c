@@ -1,0 +1,167 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* `strut sweep` of a study that searches. */
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/output/file.h"
+#include "engine/study/results/study_table.h"
+#include "parser/cli/option_values.h"
+#include "parser/cli/streams.h"
+#include "parser/cli/sweep.h"
+
+static const char table_name[] = "table.csv", partial_name[] = "table-partial.csv";
+/* A running search writes its rows after these times, ever less often [s]. */
+static const double FIRST_PARTIAL = 2.0, RAREST_PARTIAL = 60.0;
+
+/* What a running search shows. */
+typedef struct display {
+  strut_sweep_progress progress;
+  strut_slots *slots;
+  const char *directory;
+  double next, interval; /* [s] since it began */
+} display;
+
+static void show(void *context, const strut_sweep_state *state) {
+  display *d = context;
+  strut_sweep_progress_show(&d->progress, state);
+  if (state->seconds < d->next) return;
+  strut_slots *const sources[] = {d->slots};
+  strut_study_table_write_partial(d->directory, partial_name, sources, 1, NULL, NULL);
+  if (d->interval < RAREST_PARTIAL) d->interval *= 2.0;
+  d->next = state->seconds + d->interval;
+}
+
+static void write_partial(const char *directory, strut_slots *slots) {
+  int64_t rows = 0;
+  strut_error error = {0};
+  strut_slots *const sources[] = {slots};
+  if (strut_study_table_write_partial(directory, partial_name, sources, 1, &rows, &error))
+    strut_print_error(&error);
+  else
+    fprintf(stderr, "strut: %s/%s has the %lld rows that are done\n", directory, partial_name,
+            (long long)rows);
+}
+
+static strut_status run_search(const strut_arguments *arguments, strut_sweep_study *study,
+                               int threads, int lanes, strut_slots *slots, strut_sweep_state *state,
+                               strut_search_result *result, strut_error *error) {
+  display shown = {.progress = strut_sweep_progress_begin(&study->plan, arguments->quiet),
+                   .slots = slots,
+                   .directory = arguments->output,
+                   .next = FIRST_PARTIAL,
+                   .interval = FIRST_PARTIAL};
+  const strut_sweep_options how = {.threads = threads,
+                                   .lanes = lanes,
+                                   .interrupt = strut_interrupt_watch(),
+                                   .progress = show,
+                                   .progress_context = &shown};
+  strut_status status = strut_sweep_texts_write(arguments, study, error);
+  if (!status) status = strut_search_run(&study->plan, slots, &how, state, result, error);
+  strut_sweep_progress_end(&shown.progress);
+  strut_error late = {0};
+  strut_status synced = strut_slots_sync(slots, &late);
+  if (!status && synced) status = strut_fail(error, synced, "%s", late.message);
+  if (status && state->done > 0) write_partial(arguments->output, slots);
+  if (status == STRUT_INTERRUPTED)
+    strut_fail(error, status, "interrupted after %lld points; the same command resumes",
+               (long long)state->done);
+  return status;
+}
+
+/* A row for each search that has found something: of the worst scenario. */
+static strut_status write_best_rows(const strut_arguments *arguments, strut_slots *slots,
+                                    const strut_search_result *result, strut_error *error) {
+  size_t count = 0;
+  int64_t *points = strut_allocate(result->outcome_count, sizeof *points);
+  if (!points) return strut_no_memory(error, "");
+  for (size_t i = 0; i < result->outcome_count; i++)
+    if (result->outcomes[i].best.evaluation >= 0) points[count++] = result->outcomes[i].best.worst;
+  strut_status status =
+      strut_study_table_write_points(arguments->output, "best.csv", slots, points, count, error);
+  strut_release(points);
+  return status;
+}
+
+/* The scene of a best point as a file that runs. */
+static strut_status write_scene(const strut_arguments *arguments, const strut_sweep_plan *plan,
+                                const strut_search_point *best, const char *name,
+                                strut_error *error) {
+  strut_setup setup;
+  strut_study_value *values = strut_allocate(plan->axis_columns + 1, sizeof *values);
+  if (!values) return strut_no_memory(error, "");
+  strut_search_values(plan, best->worst, best->values, values);
+  strut_status status = plan->scenes.setup(plan->scenes.context, values, &setup, error);
+  strut_release(values);
+  if (status) return status;
+  char *text = plan->scenes.text(&setup);
+  status = text ? strut_file_write_text(arguments->output, name, text, error)
+                : strut_no_memory(error, "");
+  strut_release(text);
+  strut_setup_free(&setup);
+  return status;
+}
+
+/* best.yaml of all, and best-N.yaml of each point of the axes where there are several. */
+static strut_status write_best_scenes(const strut_arguments *arguments,
+                                      const strut_sweep_plan *plan,
+                                      const strut_search_result *result, strut_error *error) {
+  const strut_search_point *best = NULL;
+  strut_status status = STRUT_OK;
+  bool several = result->outcome_count > (size_t)plan->study->search->starts;
+  for (size_t i = 0; i < result->worth_count && !status; i++) {
+    const strut_search_outcome *o = &result->outcomes[result->worths[i].best];
+    char name[40];
+    snprintf(name, sizeof name, "best-%lld.yaml", (long long)o->outer + 1);
+    if (several) status = write_scene(arguments, plan, &o->best, name, error);
+    if (!best || strut_search_better(plan->study->search, &o->best, best)) best = &o->best;
+  }
+  if (!status && best) status = write_scene(arguments, plan, best, "best.yaml", error);
+  return status;
+}
+
+static strut_status complete(const strut_arguments *arguments, strut_sweep_study *study,
+                             strut_slots *slots, const strut_sweep_state *state,
+                             const strut_search_result *result) {
+  strut_error error = {0};
+  strut_slots *const sources[] = {slots};
+  const char *table =
+      strut_arena_format(&study->plan.arena, "%s/%s", arguments->output, table_name);
+  if (!table) return strut_print_out_of_memory();
+  strut_status status =
+      strut_study_table_write_partial(arguments->output, table_name, sources, 1, NULL, &error);
+  if (!status) status = write_best_rows(arguments, slots, result, &error);
+  if (!status) status = write_best_scenes(arguments, &study->plan, result, &error);
+  if (status) return strut_print_failure(status, &error);
+  strut_file_remove(arguments->output, partial_name);
+  status = strut_sweep_figures_draw(&study->plan, arguments->output, table, NULL);
+  if (!status && (!arguments->quiet || arguments->json))
+    status = strut_sweep_search_report(&study->plan, result, state, table, arguments->json);
+  if (status) return status;
+  for (size_t i = 0; i < result->worth_count; i++)
+    if (result->outcomes[result->worths[i].best].best.violation <= 0.0) return STRUT_OK;
+  fputs("strut: no point was found that is computed and meets all conditions\n", stderr);
+  return STRUT_DIVERGED;
+}
+
+strut_status strut_sweep_search(const strut_arguments *arguments, strut_sweep_study *study,
+                                int threads, int lanes) {
+  strut_slots *slots = NULL;
+  strut_sweep_state state = {0};
+  strut_search_result result = {0};
+  strut_error error = {0};
+  const char *path = strut_shard_path(arguments->output, (strut_shard){0}, &study->plan.arena);
+  if (!path) return strut_print_out_of_memory();
+  strut_status status = strut_sweep_texts_check(arguments, study, &error);
+  if (!status) status = strut_sweep_figures_check_files(&study->plan, arguments->output, &error);
+  if (!status) status = strut_directory_create(arguments->output, &error);
+  if (!status) status = strut_shard_begin(arguments->output, (strut_shard){0}, &error);
+  if (!status) status = strut_slots_open(path, &study->slots, &slots, &error);
+  if (!status)
+    status = run_search(arguments, study, threads, lanes, slots, &state, &result, &error);
+  strut_sweep_print_warnings(&state);
+  strut_print_failure(status, &error);
+  if (!status) status = complete(arguments, study, slots, &state, &result);
+  strut_search_result_free(&result);
+  strut_slots_close(slots);
+  return status;
+}

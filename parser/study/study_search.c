@@ -1,0 +1,268 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a study searches: variables, scenarios, and its texts as written. See study_reader.h. */
+#include <math.h>
+#include <string.h>
+
+#include "parser/study/study_reader.h"
+
+static const strut_owner search_owner = {"the search", NULL};
+/* Scenarios of one evaluation, at most. */
+enum { MOST_SCENARIOS = 1000 };
+
+size_t strut_study_search_columns(const strut_slot *slot) {
+  size_t count = 0;
+  if (slot->state != STRUT_GIVEN || slot->value->kind != STRUT_TREE_MAP) return 0;
+  for (const strut_tree *key = slot->value->first; key; key = key->next->next)
+    count += key->next->kind == STRUT_TREE_MAP ? key->next->count : 0;
+  return count + 4; /* search, evaluation; an axis each for them and the variables */
+}
+
+static bool refuse(strut_study_reader *r, const strut_study_along *a, const char *why) {
+  strut_report_error(r->reader, a->value->place, "variable '%s' of the search %s",
+                     a->parameter->name, why);
+  return false;
+}
+
+static bool read_choices(strut_study_reader *r, strut_study_along *a, strut_search_variable *v) {
+  if (a->value->count < 2)
+    return refuse(r, a, "has no choice: list two values or more, or write its value under 'set'");
+  v->choice_count = (size_t)a->count;
+  v->numbers = a->column->number;
+  v->words = a->column->words;
+  return true;
+}
+
+/* An angle that wraps must go once around. */
+static bool wraps_around(const strut_study_along *a, const strut_search_variable *v) {
+  const double turn = 6.283185307179586;
+  bool angle = !a->setting->bare && strut_dimension_equal(a->setting->dimension, STRUT_DIM_ANGLE);
+  return !angle || fabs((v->to - v->from) / turn - 1.0) < 1e-9;
+}
+
+static bool check_range(strut_study_reader *r, const strut_study_along *a,
+                        const strut_search_variable *v) {
+  if (v->from == v->to)
+    return refuse(r, a, "has a range of one value: write it under 'set' of the study");
+  if (v->from > v->to) return refuse(r, a, "has a reversed range: 'from' must be below 'to'");
+  if (v->logarithmic && v->from * v->to <= 0.0)
+    return refuse(r, a, "cannot be logarithmic: 'from' and 'to' must be on one side of 0");
+  if (v->wraps && (v->logarithmic || v->integer))
+    return refuse(r, a, "cannot wrap: only even ranges of any number do");
+  if (v->wraps && !wraps_around(a, v))
+    return refuse(r, a, "cannot wrap: its range is no full turn, such as 0 deg to 360 deg");
+  if (v->integer && floor(v->to) < ceil(v->from) + 1.0)
+    return refuse(r, a, "has no two whole numbers in its range");
+  if (!(v->start >= v->from && v->start <= v->to))
+    return refuse(r, a, "has a 'start' outside of its range");
+  return true;
+}
+
+static bool read_range(strut_study_reader *r, strut_study_along *a, strut_search_variable *v) {
+  strut_fields fields;
+  const strut_owner owner = {"variable", a->parameter->name};
+  if (a->parameter->text) return refuse(r, a, "is a text: give a list of the texts to choose from");
+  strut_read_fields(r->reader, STRUT_SECTION_VARIABLE, a->value, owner, &fields);
+  if (!fields.broken) strut_require(r->reader, &fields, owner, a->value->place);
+  if (fields.broken) return false;
+  strut_store_fields(r->reader, &fields, &r->file->arena, v, sizeof *v);
+  const strut_slot *scale = strut_slot_of(&fields, STRUT_KEY_VARIABLE_SCALE);
+  const strut_slot *start = strut_slot_of(&fields, STRUT_KEY_VARIABLE_START);
+  v->logarithmic = scale->state == STRUT_GIVEN && scale->word == 1;
+  bool fine = strut_study_read_value(r, a, strut_slot_of(&fields, STRUT_KEY_VARIABLE_FROM)->value,
+                                     "from", true, &v->from);
+  fine = strut_study_read_value(r, a, strut_slot_of(&fields, STRUT_KEY_VARIABLE_TO)->value, "to",
+                                false, &v->to) &&
+         fine;
+  v->start = v->from + 0.5 * (v->to - v->from);
+  if (fine && v->logarithmic && v->from * v->to > 0.0)
+    v->start = copysign(sqrt(v->from) * sqrt(v->to), v->from);
+  if (start->state == STRUT_GIVEN)
+    fine = strut_study_read_value(r, a, start->value, "start", false, &v->start) && fine;
+  if (fine && v->logarithmic && v->from < 0.0)
+    return refuse(r, a, "cannot be logarithmic below 0: search over its negative");
+  if (fine && v->integer && start->state != STRUT_GIVEN) v->start = round(v->start);
+  return fine && check_range(r, a, v);
+}
+
+/* A variable: its column has the value at which the search begins. */
+static bool read_variable(strut_study_reader *r, strut_study_along *a, strut_search_variable *v) {
+  bool list = a->value->kind == STRUT_TREE_LIST, fine;
+  double *start = strut_reader_allocate(r->reader, &r->file->arena, 1, sizeof *start);
+  if (!start) return false;
+  if (list) {
+    fine = strut_study_read_along(r, a) && read_choices(r, a, v);
+  } else {
+    a->parameter = strut_study_parameter(r, a->key);
+    fine = a->parameter && strut_study_begin_along(r, a, a->key->place);
+    if (fine && a->value->kind != STRUT_TREE_MAP)
+      fine = refuse(r, a, "needs a range such as {from: 1, to: 2}, or a list of choices");
+    fine = fine && read_range(r, a, v);
+    *start = v->start;
+    a->column->kind = STRUT_RANGE_LIST;
+    a->column->number = start;
+    a->column->unit = fine && !a->setting->bare ? strut_dimension_unit(a->setting->dimension) : "1";
+  }
+  if (!fine) return false;
+  v->name = a->parameter->name;
+  v->unit = a->column->unit;
+  v->word = a->parameter->text;
+  return true;
+}
+
+static void read_variables(strut_study_reader *r, const strut_slot *over,
+                           strut_study_search *search) {
+  strut_study *study = &r->file->study;
+  strut_arena *arena = &r->file->arena;
+  size_t count = over->value->count;
+  if (count == 0 || count > STRUT_SEARCH_MOST_VARIABLES) {
+    strut_report_error(r->reader, over->value->place,
+                       "a search is 'over' 1 to %d parameters, found %zu",
+                       STRUT_SEARCH_MOST_VARIABLES, count);
+    return;
+  }
+  strut_study_axis *axis = &study->axes[study->axis_count++];
+  *axis = (strut_study_axis){.count = 1};
+  axis->columns = strut_reader_allocate(r->reader, arena, count, sizeof *axis->columns);
+  search->variables = strut_reader_allocate(r->reader, arena, count, sizeof *search->variables);
+  search->column = r->file->column_count;
+  if (!axis->columns || !search->variables) return;
+  for (const strut_tree *key = over->value->first; key; key = key->next->next) {
+    strut_study_along a = {.key = key, .value = key->next};
+    a.column = &axis->columns[axis->column_count++];
+    a.setting = &r->file->columns[r->file->column_count++];
+    read_variable(r, &a, &search->variables[search->variable_count++]);
+  }
+}
+
+/* The axes of the scenarios. */
+static void read_scenarios(strut_study_reader *r, const strut_slot *slot,
+                           strut_study_search *search) {
+  strut_study *study = &r->file->study;
+  double scenarios = 1.0;
+  if (slot->state != STRUT_GIVEN) return;
+  for (const strut_tree *key = slot->value->first; key; key = key->next->next) {
+    strut_study_axis *axis = &study->axes[study->axis_count++];
+    *axis = (strut_study_axis){.count = 1, .column_count = 1};
+    axis->columns = strut_reader_allocate(r->reader, &r->file->arena, 1, sizeof *axis->columns);
+    strut_study_along a = {.key = key, .value = key->next, .column = axis->columns};
+    a.setting = &r->file->columns[r->file->column_count++];
+    if (axis->columns && strut_study_read_along(r, &a)) axis->count = a.count;
+    scenarios *= (double)axis->count;
+    search->scenario_axes++;
+  }
+  if (scenarios > MOST_SCENARIOS)
+    strut_report_error(r->reader, slot->value->place,
+                       "'worst_over' makes %.4g scenarios, an evaluation may have %d", scenarios,
+                       MOST_SCENARIOS);
+}
+
+/*
+ * The axis that numbers evaluations: those of each search, then as `search` 0 the best point computed more
+ * exactly, and its neighbours.
+ */
+static void add_evaluations(strut_study_reader *r, const strut_study_search *search,
+                            strut_study_axis *axis, size_t variables) {
+  int64_t checks = 1 + 2 * (int64_t)variables;
+  axis->count = search->starts * search->evaluations + checks;
+  axis->column_count = 2;
+  size_t count = (size_t)axis->count;
+  strut_arena *arena = &r->file->arena;
+  double *numbers = strut_reader_allocate(r->reader, arena, 2 * count, sizeof *numbers);
+  axis->columns = strut_reader_allocate(r->reader, arena, 2, sizeof *axis->columns);
+  if (!numbers || !axis->columns) {
+    axis->count = 1;
+    return;
+  }
+  for (int64_t i = 0; i < axis->count; i++) {
+    bool proper = i < search->starts * search->evaluations;
+    int64_t checked = i - search->starts * search->evaluations;
+    numbers[i] = proper ? (double)(i / search->evaluations + 1) : 0.0;
+    numbers[axis->count + i] = proper ? (double)(i % search->evaluations + 1) : (double)checked;
+  }
+  axis->columns[0] = (strut_study_column){.name = "search", .unit = "1", .number = numbers};
+  axis->columns[1] =
+      (strut_study_column){.name = "evaluation", .unit = "1", .number = numbers + axis->count};
+  r->file->column_count += 2; /* settings without a name: no parameters */
+}
+
+static void keep_text(const strut_tree *value, strut_search_formula *formula) {
+  formula->text = value->text;
+  formula->place =
+      (strut_search_place){value->place.line, value->place.column + (value->quoted ? 1 : 0)};
+}
+
+static void read_goal(strut_study_reader *r, strut_fields *fields, const strut_slot *slot,
+                      strut_study_search *search) {
+  const strut_slot *most = strut_slot_of(fields, STRUT_KEY_SEARCH_MAXIMISE);
+  const strut_slot *least = strut_slot_of(fields, STRUT_KEY_SEARCH_MINIMISE);
+  search->maximise = most->state == STRUT_GIVEN;
+  const strut_slot *goal = search->maximise ? most : least;
+  if (goal->state == STRUT_GIVEN)
+    keep_text(goal->value, &search->goal);
+  else if (!fields->broken)
+    strut_report_error(r->reader, slot->value->place,
+                       "the search lacks 'maximise' or 'minimise', a column of the table or an "
+                       "expression of columns");
+}
+
+static void read_conditions(strut_study_reader *r, const strut_slot *slot,
+                            strut_study_search *search) {
+  if (slot->state != STRUT_GIVEN) return;
+  if (slot->value->count > STRUT_SEARCH_MOST_CONDITIONS)
+    strut_report_error(r->reader, slot->value->place,
+                       "'subject_to' may have %d conditions, found %zu",
+                       STRUT_SEARCH_MOST_CONDITIONS, (size_t)slot->value->count);
+  search->conditions = strut_reader_allocate(r->reader, &r->file->arena, slot->value->count + 1,
+                                             sizeof *search->conditions);
+  for (const strut_tree *item = slot->value->first; item && search->conditions; item = item->next) {
+    strut_search_condition *c = &search->conditions[search->condition_count];
+    if (!strut_read_scalar(r->reader, item, "subject_to", search_owner,
+                           "a text such as \"work < 2 mJ\""))
+      continue;
+    search->condition_count++;
+    keep_text(item, &c->left);
+    c->text = c->left.text;
+    c->place = c->left.place;
+  }
+}
+
+/* Keys of a study that a search has no use for. */
+static void refuse_others(strut_study_reader *r, const strut_slot *slot) {
+  const strut_study *study = &r->file->study;
+  const strut_tree *root = r->file->document.root;
+  strut_tree *key = NULL;
+  if (study->trajectories && strut_tree_find(root, "trajectories", &key))
+    strut_report_error(r->reader, key ? key->place : slot->key->place,
+                       "a study that searches records no trajectories: run its best.yaml for that");
+  if (strut_tree_find(root, "refine", &key))
+    strut_report_error(r->reader, key ? key->place : slot->key->place,
+                       "a study that searches has no grid to refine");
+}
+
+void strut_study_read_search(strut_study_reader *r, const strut_slot *slot) {
+  strut_study *study = &r->file->study;
+  strut_fields fields;
+  if (slot->state != STRUT_GIVEN) return;
+  strut_study_search *search = strut_reader_allocate(r->reader, &r->file->arena, 1, sizeof *search);
+  if (!search) return;
+  strut_read_fields(r->reader, STRUT_SECTION_SEARCH, slot->value, search_owner, &fields);
+  if (!fields.broken) strut_require(r->reader, &fields, search_owner, slot->value->place);
+  *search = (strut_study_search){.starts = 1, .evaluations = 200, .seed = 1};
+  strut_store_fields(r->reader, &fields, &r->file->arena, search, sizeof *search);
+  read_goal(r, &fields, slot, search);
+  read_conditions(r, strut_slot_of(&fields, STRUT_KEY_SEARCH_SUBJECT_TO), search);
+  refuse_others(r, slot);
+  const strut_slot *over = strut_slot_of(&fields, STRUT_KEY_SEARCH_OVER);
+  const strut_slot *starts = strut_slot_of(&fields, STRUT_KEY_SEARCH_STARTS);
+  if (search->method == STRUT_SEARCH_DIRECT && search->starts > 1)
+    strut_report_error(r->reader, starts->value->place,
+                       "'direct' has no seed, all its searches would be the same: give another "
+                       "method, or no 'starts'");
+  if (over->state != STRUT_GIVEN) return;
+  search->axis = study->axis_count;
+  strut_study_axis *evaluations = &study->axes[study->axis_count++];
+  add_evaluations(r, search, evaluations, over->value->count);
+  read_scenarios(r, strut_slot_of(&fields, STRUT_KEY_SEARCH_WORST_OVER), search);
+  read_variables(r, over, search);
+  study->search = search;
+}
