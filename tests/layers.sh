@@ -23,13 +23,13 @@ breaches() {
       count = split("engine/base|engine/scene/laws|engine/scene|engine/model|engine/forces/strains|" \
         "engine/forces|engine/integrate|" \
         "engine/integrate/events engine/integrate/limit|engine/integrate/lanes|engine/run/measure|" \
-        "engine/run/orbit|engine/run|engine/run/accuracy|engine/statics|engine/statics/search|" \
+        "engine/run/orbit|engine/run|engine/run/accuracy|engine/run/follow|engine/statics|engine/statics/search|" \
         "engine/statics/equilibria|" \
         "engine/statics/modes engine/statics/rigidity engine/statics/form engine/statics/path|" \
         "engine/output|engine/output/draw engine/output/report|" \
         "engine/output/figures engine/output/film engine/output/page|engine/study/results|" \
         "engine/study/sensitivity|" \
-        "engine/study/cluster engine/study/tradeoff engine/study/sweep|" \
+        "engine/study/cluster engine/study/tradeoff engine/study/sweep engine/study/follow|" \
         "engine/study/compare engine/study/search", line, "|")
       for (i = 1; i <= count; i++) {
         n = split(line[i], side, " ")

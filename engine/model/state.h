@@ -107,6 +107,8 @@ typedef struct strut_state {
   strut_sliding_motion *sliding; /* (n) */
   double *sliding_factor;        /* (2, n, n) Cholesky factors of 1/m + N M^-1 N', of x, then y */
   double *sliding_push;          /* (2, n) scratch */
+  struct strut_event_log *event_log; /* methods with events note there when modes change, see
+                                        integrate/events/event_log.h; NULL: nobody asks */
 } strut_state;
 
 /** All memory a run needs; an integrator adds its own to the arena. STRUT_OK or STRUT_NO_MEMORY. */

@@ -156,11 +156,13 @@ typedef enum strut_keep {
 
 /** Kinds of figures, in the order of the language. */
 typedef enum strut_study_figure_kind {
-  STRUT_FIGURE_LINES,    /* of the table: x, y, series */
-  STRUT_FIGURE_MAP,      /* of the table: x, y, color */
-  STRUT_FIGURE_MOTION,   /* lines of recorded runs, node by node */
-  STRUT_FIGURE_PERIOD,   /* node trajectories over the last period of each run */
-  STRUT_FIGURE_SNAPSHOTS /* shapes of each run */
+  STRUT_FIGURE_LINES,     /* of the table: x, y, series */
+  STRUT_FIGURE_MAP,       /* of the table: x, y, color */
+  STRUT_FIGURE_MOTION,    /* lines of recorded runs, node by node */
+  STRUT_FIGURE_PERIOD,    /* node trajectories over the last period of each run */
+  STRUT_FIGURE_SNAPSHOTS, /* shapes of each run */
+  STRUT_FIGURE_BEST,      /* of a search: the best objective over evaluations */
+  STRUT_FIGURE_POINTS     /* of a search: its points over x and y, by color */
 } strut_study_figure_kind;
 
 /** Colour scale of a map, as strut_colours of the figures. */
@@ -231,11 +233,12 @@ typedef struct strut_study {
   int64_t limit_evaluations; /* of the forces, in each run of a point; 0: any number */
   double limit_time;         /* of a point [s], by the clock; 0: any */
   /* Refinement of a map: the two axes then have the values of the finest grid. */
-  int32_t refine_depth;       /* halvings of the axes' steps; 0: no refinement */
-  const char *refine_where;   /* column whose value decides which cells are divided */
-  double refine_by;           /* by how much its numbers must differ, in SI */
-  size_t refine_axes[2];      /* the axes, in their order */
-  strut_study_search *search; /* NULL: the points are all of the axes */
+  int32_t refine_depth;     /* halvings of the axes' steps; 0: no refinement */
+  const char *refine_where; /* column whose value decides which cells are divided */
+  double refine_by;         /* by how much its numbers must differ, in SI */
+  size_t refine_axes[2];    /* the axes, in their order */
+  /* What is searched; NULL: the points are all of the axes. */
+  strut_study_search *search;
   strut_study_sensitivity sensitivity;
   /* Goals, see engine/study/sweep/goals.h. */
   const char *stiffness_node; /* of the column stiffness; NULL: none */

@@ -24,7 +24,9 @@
   X(COBYLA, "cobyla")                                                                              \
   X(BOBYQA, "bobyqa")                                                                              \
   X(SBPLX, "sbplx")                                                                                \
-  X(NELDERMEAD, "neldermead")
+  X(NELDERMEAD, "neldermead")                                                                      \
+  X(CMA, "cma")                                                                                    \
+  X(NSGA2, "nsga2")
 
 typedef enum strut_search_method {
 #define STRUT_SEARCH_METHOD_ENUM(name, word) STRUT_SEARCH_##name,
@@ -78,7 +80,7 @@ typedef struct strut_search_condition {
 
 typedef struct strut_study_search {
   bool maximise;
-  strut_search_formula goal;
+  strut_search_formula goal, second; /* second.text NULL: one goal; NSGA2 is for two */
   size_t variable_count, condition_count;
   strut_search_variable *variables;   /* (variable_count) */
   strut_search_condition *conditions; /* (condition_count) */

@@ -87,7 +87,9 @@ static strut_status show_status(const strut_arguments *arguments, strut_sweep_st
     return strut_sweep_print_shards(arguments->output, &found, arena, arguments->json);
   status = strut_slots_read(path, &slots, &there, &error);
   if (status) return strut_print_failure(status, &error);
-  status = study->plan.study->refine_depth
+  status = study->plan.study->search
+               ? strut_sweep_search_status(slots, arguments->output, arguments->json)
+           : study->plan.study->refine_depth
                ? strut_sweep_refine_status(&study->plan, arguments->output, slots, arguments->json)
                : strut_sweep_print_status(slots, arguments->json);
   strut_slots_close(slots);

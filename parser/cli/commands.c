@@ -51,6 +51,7 @@ static const strut_command *const commands[] = {
     &strut_command_examples,
     &strut_command_evaluate,
     &strut_command_import,
+    &strut_command_follow,
     &help_command,
     NULL,
 };

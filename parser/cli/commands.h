@@ -30,6 +30,7 @@ extern const strut_command strut_command_fmt;
 extern const strut_command strut_command_new;
 extern const strut_command strut_command_examples;
 extern const strut_command strut_command_completion;
+extern const strut_command strut_command_follow;
 
 /** The i-th command, or NULL after the last. */
 const strut_command *strut_command_at(size_t i);

@@ -125,6 +125,7 @@ static strut_status store_option(const strut_command *command, int id, strut_arg
     case STRUT_OPTION_STUDY: to->study = true; break;
     case STRUT_OPTION_MAN: to->man = true; break;
     case STRUT_OPTION_CHECK: to->check = true; break;
+    case STRUT_OPTION_BASINS: to->basins = true; break;
     case STRUT_OPTION_DAKOTA: to->dakota = true; break;
     case STRUT_OPTION_HELP: to->help = true; break;
     default: break;

@@ -39,9 +39,9 @@ static void add_value(strut_buffer *b, strut_study_value value, const char *unit
 static void add_change(report *r, const strut_search_outcome *o, double change, bool sign) {
   double size = strut_search_size(o);
   if (size > 0.0)
-    strut_buffer_add(&r->text, sign ? "%+.2g %%" : "%.2g %%", 100.0 * change / size);
+    strut_buffer_add(&r->text, sign ? "%+.3g %%" : "%.3g %%", 100.0 * change / size);
   else
-    strut_buffer_add(&r->text, sign ? "%+.2g%s%s" : "%.2g%s%s", change,
+    strut_buffer_add(&r->text, sign ? "%+.3g%s%s" : "%.3g%s%s", change,
                      *unit_of(r->search->goal.program.unit) ? " " : "",
                      unit_of(r->search->goal.program.unit));
 }
@@ -176,12 +176,39 @@ static void add_best(report *r, const strut_search_worth *w) {
   add_verdicts(r, w, o);
 }
 
+/* The points of a front, at most some. */
+static void add_front(report *r, const strut_search_front *front) {
+  enum { SHOWN = 12 };
+  const strut_study_search *search = r->search;
+  strut_buffer *b = &r->text;
+  if (!front->count) return;
+  add_outer(r, front->points[0].worst);
+  strut_buffer_add(b, "%zu points are beaten by no other in both %s and %s%s; best.csv has all\n",
+                   front->count, search->goal.text, search->second.text,
+                   search->scenario_axes ? ", each in its worst scenario" : "");
+  size_t shown = front->count < SHOWN ? front->count : SHOWN;
+  for (size_t i = 0; i < shown; i++) {
+    size_t at = shown > 1 ? i * (front->count - 1) / (shown - 1) : 0;
+    const strut_search_point *p = &front->points[at];
+    strut_buffer_add(b, "  ");
+    add_number(b, p->objective, search->goal.program.unit);
+    strut_buffer_add(b, ", ");
+    add_number(b, p->second, search->second.program.unit);
+    for (size_t k = 0; k < search->variable_count; k++) {
+      strut_buffer_add(b, "%s%s = ", k ? ", " : " at ", search->variables[k].name);
+      add_value(b, p->values[k], search->variables[k].unit);
+    }
+    strut_buffer_add(b, "\n");
+  }
+}
+
 /* ---- JSON ---- */
 
 static void add_json_point(strut_json *j, struct cJSON *to, const strut_study_search *search,
                            const strut_search_point *p) {
   strut_json_integer(j, to, "point", p->worst);
   strut_json_number(j, to, "objective", p->objective);
+  if (search->second.text) strut_json_number(j, to, "objective_2", p->second);
   strut_json_number(j, to, "violation", p->violation);
   struct cJSON *values = strut_json_object(j, to, "values");
   for (size_t i = 0; i < search->variable_count; i++) {
@@ -244,6 +271,13 @@ static char *make_json(const report *r, const strut_sweep_state *state, const ch
   struct cJSON *best = strut_json_array(&j, j.root, "best");
   for (size_t i = 0; i < r->result->worth_count; i++)
     add_json_worth(&j, best, r, &r->result->worths[i]);
+  struct cJSON *fronts = r->result->front_count ? strut_json_array(&j, j.root, "fronts") : NULL;
+  for (size_t i = 0; i < r->result->front_count; i++) {
+    struct cJSON *front = strut_json_array(&j, fronts, NULL);
+    for (size_t k = 0; k < r->result->fronts[i].count; k++)
+      add_json_point(&j, strut_json_object(&j, front, NULL), r->search,
+                     &r->result->fronts[i].points[k]);
+  }
   struct cJSON *searches = strut_json_array(&j, j.root, "searches");
   for (size_t i = 0; i < r->result->outcome_count; i++)
     add_json_outcome(&j, searches, r->search, &r->result->outcomes[i]);
@@ -269,6 +303,7 @@ strut_status strut_sweep_search_report(const strut_sweep_plan *plan,
     text = make_json(&r, state, table);
   } else {
     for (size_t i = 0; i < result->worth_count; i++) add_best(&r, &result->worths[i]);
+    for (size_t i = 0; i < result->front_count; i++) add_front(&r, &result->fronts[i]);
     strut_progress_time(time, sizeof time, state->seconds);
     strut_buffer_add(&r.text, "%lld points, %lld failed; %lld computed in %s\n%s\n",
                      (long long)state->points, (long long)state->failed, (long long)state->computed,

@@ -118,11 +118,18 @@ strut_status strut_sweep_print_shards(const char *directory, const strut_shards_
 /** Does what the command does with a study that searches, once it is open. */
 strut_status strut_sweep_search(const strut_arguments *arguments, strut_sweep_study *study,
                                 int threads, int lanes);
+/** Prints how far the searches in a directory are. */
+strut_status strut_sweep_search_status(strut_slots *slots, const char *directory, bool json);
 /** Prints what a search has found on stdout; `table`: the path of its rows. */
 strut_status strut_sweep_search_report(const strut_sweep_plan *plan,
                                        const strut_search_result *result,
                                        const strut_sweep_state *state, const char *table,
                                        bool json);
+
+/** Draws a figure of a search, of its table, into the file `path`. */
+strut_status strut_sweep_search_figure(const strut_sweep_plan *plan,
+                                       const strut_study_figure *figure, const char *path,
+                                       const strut_table *table, double width, strut_error *error);
 
 /** Prints the script for the study of that name. */
 strut_status strut_sweep_emit(const strut_arguments *arguments, const char *name);

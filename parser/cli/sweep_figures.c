@@ -13,7 +13,11 @@
 
 static const double PAGE = 510.24; /* 180 mm [pt] */
 
-static bool of_runs(const strut_study_figure *f) { return f->kind >= STRUT_FIGURE_MOTION; }
+static bool of_runs(const strut_study_figure *f) {
+  return f->kind >= STRUT_FIGURE_MOTION && f->kind <= STRUT_FIGURE_SNAPSHOTS;
+}
+
+static bool of_search(const strut_study_figure *f) { return f->kind >= STRUT_FIGURE_BEST; }
 
 /* The source of a figure: the table, or the recorded runs. */
 typedef struct source {
@@ -79,6 +83,15 @@ static strut_status check_figure(const source *s, const strut_study_figure *f, s
                       "figure '%.60s' of the study needs recorded runs: add "
                       "'trajectories: yes' to the study",
                       f->name);
+  if (of_search(f) && !s->plan->study->search)
+    return strut_fail(error, STRUT_BAD_SCENE,
+                      "figure '%.60s' of the study is of a search, which the study has not",
+                      f->name);
+  if (of_search(f) && (f->difference || f->band))
+    return strut_fail(
+        error, STRUT_BAD_SCENE,
+        "figure '%.60s' of the study is of a search: it has no 'difference' and no 'band'",
+        f->name);
   strut_status status = check_column(s, f, f->x, true, error);
   if (!status) status = check_column(s, f, f->y, true, error);
   if (!status) status = check_column(s, f, f->series, false, error);
@@ -206,6 +219,8 @@ static strut_status draw_figure(const strut_sweep_plan *plan, const char *direct
   strut_status status = STRUT_OK;
   if (f->kind == STRUT_FIGURE_MOTION)
     status = draw_motion(plan, directory, f, file, &error);
+  else if (of_search(f))
+    status = strut_sweep_search_figure(plan, f, file, table, PAGE, &error);
   else if (of_runs(f))
     status = strut_study_pictures(plan, directory, f, PAGE, &error);
   else if (refinement && f->kind == STRUT_FIGURE_MAP && strut_sweep_refine_shows(plan, f))

@@ -206,6 +206,17 @@ strut_status strut_sweep_refine_merge(const strut_arguments *arguments, bool *me
   }
   strut_status status = strut_study_open(inner.model, NULL, 0, &study.file, &error);
   *merged = !status && study.file.study.refine_depth > 0;
+  if (!status && study.file.study.search) {
+    *merged = true;
+    strut_fail(&error, STRUT_USAGE,
+               "'%s' has the results of a search, which are never in shards: 'strut sweep' writes "
+               "their table",
+               directory);
+    status = strut_print_failure(STRUT_USAGE, &error);
+    strut_study_close(&study.file);
+    strut_arena_free(&arena);
+    return status;
+  }
   strut_study_close(&study.file);
   error = (strut_error){0};
   if (*merged) status = strut_sweep_study_open(&inner, &study);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* `strut sweep` of a study that searches. */
+#include <math.h>
 #include <stdio.h>
-#include <string.h>
+#include <unistd.h>
 
 #include "engine/output/file.h"
 #include "engine/study/results/study_table.h"
@@ -68,13 +69,20 @@ static strut_status run_search(const strut_arguments *arguments, strut_sweep_stu
   return status;
 }
 
-/* A row for each search that has found something: of the worst scenario. */
+/*
+ * A row for each search that has found something, of the worst scenario; of two goals, for each point of the
+ * front.
+ */
 static strut_status write_best_rows(const strut_arguments *arguments, strut_slots *slots,
                                     const strut_search_result *result, strut_error *error) {
-  size_t count = 0;
-  int64_t *points = strut_allocate(result->outcome_count, sizeof *points);
+  size_t count = 0, room = result->outcome_count;
+  for (size_t i = 0; i < result->front_count; i++) room += result->fronts[i].count;
+  int64_t *points = strut_allocate(room, sizeof *points);
   if (!points) return strut_no_memory(error, "");
-  for (size_t i = 0; i < result->outcome_count; i++)
+  for (size_t i = 0; i < result->front_count; i++)
+    for (size_t k = 0; k < result->fronts[i].count; k++)
+      points[count++] = result->fronts[i].points[k].worst;
+  for (size_t i = 0; i < result->outcome_count && !result->front_count; i++)
     if (result->outcomes[i].best.evaluation >= 0) points[count++] = result->outcomes[i].best.worst;
   strut_status status =
       strut_study_table_write_points(arguments->output, "best.csv", slots, points, count, error);
@@ -101,19 +109,52 @@ static strut_status write_scene(const strut_arguments *arguments, const strut_sw
   return status;
 }
 
+/* Of a front, which is in order of the first goal: the point nearest to the best of both, in ranges. */
+static const strut_search_point *compromise_of(const strut_search_front *front, bool maximise) {
+  const strut_search_point *first = front->points, *last = front->points + front->count - 1;
+  const strut_search_point *best = maximise ? last : first, *other = maximise ? first : last;
+  const strut_search_point *found = NULL;
+  double x = last->objective - first->objective, y = fabs(last->second - first->second);
+  double least = 0.0;
+  for (const strut_search_point *p = first; p <= last; p++) {
+    double a = x > 0.0 ? (p->objective - best->objective) / x : 0.0;
+    double b = y > 0.0 ? (p->second - other->second) / y : 0.0;
+    if (found && a * a + b * b >= least) continue;
+    least = a * a + b * b;
+    found = p;
+  }
+  return found;
+}
+
+/* What is written of each point of the axes: its best, or the compromise of its front; NULL: nothing. */
+static const strut_search_point *pick(const strut_search_result *result, bool maximise, size_t i,
+                                      int64_t *outer) {
+  if (result->front_count) {
+    *outer = (int64_t)i;
+    return result->fronts[i].count ? compromise_of(&result->fronts[i], maximise) : NULL;
+  }
+  const strut_search_outcome *o = &result->outcomes[result->worths[i].best];
+  *outer = o->outer;
+  return &o->best;
+}
+
 /* best.yaml of all, and best-N.yaml of each point of the axes where there are several. */
 static strut_status write_best_scenes(const strut_arguments *arguments,
                                       const strut_sweep_plan *plan,
                                       const strut_search_result *result, strut_error *error) {
+  const strut_study_search *search = plan->study->search;
   const strut_search_point *best = NULL;
   strut_status status = STRUT_OK;
-  bool several = result->outcome_count > (size_t)plan->study->search->starts;
-  for (size_t i = 0; i < result->worth_count && !status; i++) {
-    const strut_search_outcome *o = &result->outcomes[result->worths[i].best];
+  bool several = result->outcome_count > (size_t)search->starts;
+  size_t count = result->front_count ? result->front_count : result->worth_count;
+  for (size_t i = 0; i < count && !status; i++) {
+    int64_t outer;
+    const strut_search_point *found = pick(result, search->maximise, i, &outer);
     char name[40];
-    snprintf(name, sizeof name, "best-%lld.yaml", (long long)o->outer + 1);
-    if (several) status = write_scene(arguments, plan, &o->best, name, error);
-    if (!best || strut_search_better(plan->study->search, &o->best, best)) best = &o->best;
+    if (!found) continue;
+    snprintf(name, sizeof name, "best-%lld.yaml", (long long)outer + 1);
+    if (several) status = write_scene(arguments, plan, found, name, error);
+    if (!best || strut_search_better(search, found, best)) best = found;
   }
   if (!status && best) status = write_scene(arguments, plan, best, "best.yaml", error);
   return status;
@@ -139,8 +180,30 @@ static strut_status complete(const strut_arguments *arguments, strut_sweep_study
   if (status) return status;
   for (size_t i = 0; i < result->worth_count; i++)
     if (result->outcomes[result->worths[i].best].best.violation <= 0.0) return STRUT_OK;
+  for (size_t i = 0; i < result->front_count; i++)
+    if (result->fronts[i].count > 0) return STRUT_OK;
   fputs("strut: no point was found that is computed and meets all conditions\n", stderr);
   return STRUT_DIVERGED;
+}
+
+strut_status strut_sweep_search_status(strut_slots *slots, const char *directory, bool json) {
+  char text[300];
+  strut_arena arena = {0};
+  const strut_slots_plan *plan = strut_slots_plan_of(slots);
+  const char *table = strut_arena_format(&arena, "%s/%s", directory, table_name);
+  if (!table) return strut_print_out_of_memory();
+  bool over = access(table, F_OK) == 0; /* written at the end */
+  long long failed = (long long)strut_slots_failed(slots);
+  long long done = (long long)(plan->count - strut_slots_missing(slots));
+  snprintf(text, sizeof text,
+           json ? "{\"points\": %lld, \"done\": %lld, \"failed\": %lld, \"finished\": %s}\n"
+                : "at most %lld points, %lld done, %lld of the done failed: %s\n",
+           (long long)plan->count, done, failed,
+           json   ? over ? "true" : "false"
+           : over ? "the searches are finished"
+                  : "the searches are not finished");
+  strut_arena_free(&arena);
+  return strut_print(text);
 }
 
 strut_status strut_sweep_search(const strut_arguments *arguments, strut_sweep_study *study,
@@ -156,6 +219,8 @@ strut_status strut_sweep_search(const strut_arguments *arguments, strut_sweep_st
   if (!status) status = strut_directory_create(arguments->output, &error);
   if (!status) status = strut_shard_begin(arguments->output, (strut_shard){0}, &error);
   if (!status) status = strut_slots_open(path, &study->slots, &slots, &error);
+  if (!status && strut_slots_missing(slots) == strut_slots_plan_of(slots)->count)
+    strut_file_remove(arguments->output, table_name); /* of another search */
   if (!status)
     status = run_search(arguments, study, threads, lanes, slots, &state, &result, &error);
   strut_sweep_print_warnings(&state);

@@ -36,6 +36,7 @@ typedef enum strut_option_id {
   STRUT_OPTION_MAN,    /* of help: the manual page */
   STRUT_OPTION_CHECK,  /* of fmt: change nothing */
   STRUT_OPTION_DAKOTA, /* of evaluate: the files of DAKOTA */
+  STRUT_OPTION_BASINS, /* of follow */
   /* kept as text: strut_option_text, and option_values.h for numbers */
   STRUT_OPTION_TEXTS,
   STRUT_OPTION_AT = STRUT_OPTION_TEXTS,
@@ -140,6 +141,7 @@ typedef struct strut_arguments {
   bool parts, study, man, dakota;
   bool check;
   const strut_listener *listener; /* hears what is wrong with an option, warnings and notes */
+  bool basins;
 } strut_arguments;
 
 /** A command: how it is called, explained and run. */

@@ -106,12 +106,11 @@ static bool compile(binder *b, const char *text, size_t offset, strut_search_for
   return true;
 }
 
-static void bind_goal(binder *b, strut_study_search *search) {
+static void bind_goal(binder *b, strut_search_formula *goal) {
   strut_quantity q;
-  if (!compile(b, search->goal.text, 0, &search->goal, &q) || q.varies) return;
-  strut_diagnose(&b->file->diagnostics, place_of(search->goal.place, 0, strlen(search->goal.text)),
-                 "'%s' of the search is the same everywhere: it names no column",
-                 search->goal.text);
+  if (!compile(b, goal->text, 0, goal, &q) || q.varies) return;
+  strut_diagnose(&b->file->diagnostics, place_of(goal->place, 0, strlen(goal->text)),
+                 "'%s' of the search is the same everywhere: it names no column", goal->text);
 }
 
 /* The text [from..to) without blanks about it; *from moves to its beginning. */
@@ -188,7 +187,8 @@ strut_status strut_study_search_bind(strut_study_file *file, const strut_table_n
   strut_study_search *search = file->study.search;
   size_t before = file->diagnostics.count;
   strut_c_locale locale = strut_c_locale_enter();
-  bind_goal(&b, search);
+  bind_goal(&b, &search->goal);
+  if (search->second.text) bind_goal(&b, &search->second);
   for (size_t i = 0; i < search->condition_count; i++) bind_condition(&b, &search->conditions[i]);
   strut_c_locale_leave(locale);
   if (b.no_memory) return STRUT_NO_MEMORY;

@@ -131,7 +131,8 @@ static bool read_range(strut_study_reader *r, along *a) {
 /* Names of the table's own columns, which no axis may have. */
 static bool is_reserved(const strut_study_reader *r, const char *name) {
   static const char *const names[] = {"point", "status", "message"};
-  static const char *const searching[] = {"search", "evaluation", "objective", "violation"};
+  static const char *const searching[] = {"search", "evaluation", "objective", "objective_2",
+                                          "violation"};
   bool found = r->variant_count > 0 && strcmp(name, "variant") == 0;
   for (size_t i = 0; r->searching && i < sizeof searching / sizeof searching[0]; i++)
     found = found || strcmp(name, searching[i]) == 0;

@@ -191,18 +191,42 @@ static void keep_text(const strut_tree *value, strut_search_formula *formula) {
       (strut_search_place){value->place.line, value->place.column + (value->quoted ? 1 : 0)};
 }
 
+/* One expression, or a list of two. */
+static void read_goals(strut_study_reader *r, const strut_tree *value, strut_study_search *search) {
+  bool two = value->kind == STRUT_TREE_LIST && value->count == 2;
+  const strut_tree *first = two ? value->first : value;
+  bool fine = first->kind == STRUT_TREE_SCALAR &&
+              (!two || first->next->kind == STRUT_TREE_SCALAR) && !strut_is_null(first);
+  if (!fine) {
+    strut_report_error(r->reader, value->place,
+                       "expected a column, an expression of columns, or a list of two of them for "
+                       "'%s' of the search, found %s",
+                       search->maximise ? "maximise" : "minimise", strut_found(r->reader, value));
+    return;
+  }
+  keep_text(first, &search->goal);
+  if (two) keep_text(first->next, &search->second);
+}
+
 static void read_goal(strut_study_reader *r, strut_fields *fields, const strut_slot *slot,
                       strut_study_search *search) {
   const strut_slot *most = strut_slot_of(fields, STRUT_KEY_SEARCH_MAXIMISE);
   const strut_slot *least = strut_slot_of(fields, STRUT_KEY_SEARCH_MINIMISE);
+  const strut_slot *method = strut_slot_of(fields, STRUT_KEY_SEARCH_METHOD);
   search->maximise = most->state == STRUT_GIVEN;
   const strut_slot *goal = search->maximise ? most : least;
   if (goal->state == STRUT_GIVEN)
-    keep_text(goal->value, &search->goal);
+    read_goals(r, goal->value, search);
   else if (!fields->broken)
     strut_report_error(r->reader, slot->value->place,
                        "the search lacks 'maximise' or 'minimise', a column of the table or an "
                        "expression of columns");
+  bool two = search->second.text != NULL, given = method->state == STRUT_GIVEN;
+  if (given && goal->state == STRUT_GIVEN && two != (search->method == STRUT_SEARCH_NSGA2))
+    strut_report_error(r->reader, method->value->place,
+                       two ? "two goals need the method 'nsga2'"
+                           : "the method 'nsga2' is for two goals: [velocity, -cost_of_transport]");
+  if (two) search->method = STRUT_SEARCH_NSGA2;
 }
 
 static void read_conditions(strut_study_reader *r, const strut_slot *slot,

@@ -153,6 +153,7 @@ static void put_computed(strut_writer *w, const strut_study *study) {
 static void put_search(strut_writer *w, const strut_study_search *search) {
   put_number(w, search->maximise);
   put_word(w, search->goal.text);
+  if (search->second.text) put_word(w, search->second.text);
   for (size_t i = 0; i < search->condition_count; i++) put_word(w, search->conditions[i].text);
   for (size_t i = 0; i < search->variable_count; i++) {
     const strut_search_variable *v = &search->variables[i];

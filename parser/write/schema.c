@@ -152,6 +152,7 @@ static void put_quantity(schema *s) { put_either(s, "object", put_quantity_keys,
 static void put_repeat(schema *s) { put_section(s, STRUT_SECTION_REPEAT); }
 static void put_next(schema *s) { put_section(s, STRUT_SECTION_NEXT); }
 static void put_two_next(schema *s) { put_list(s, 2, 2, put_next); }
+static void put_two_texts(schema *s) { put_list(s, 2, 2, put_scalar); }
 static void put_two_numbers(schema *s) { put_list(s, 2, 2, put_number); }
 static void put_touching(schema *s) { put_member(s, "enum", "[\"touching\"]"); }
 static void put_values(schema *s) { put_list(s, 0, 0, put_scalar); }
@@ -217,7 +218,9 @@ static void put_kept(schema *s) {
 
 /* Keys of several forms. */
 static void put_free(schema *s, const strut_key *key) {
-  if (strcmp(key->name, "merge") == 0)
+  if (key->section == STRUT_SECTION_SEARCH)
+    put_either(s, "array", put_two_texts, put_scalar);
+  else if (strcmp(key->name, "merge") == 0)
     put_either(s, "object", put_names_of_things, put_touching);
   else if (strcmp(key->name, "repeat") == 0)
     put_either(s, "object", put_repeat, put_number);

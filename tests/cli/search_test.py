@@ -73,7 +73,7 @@ OVER = "over: {stiffness: {from: 10 N/m, to: 1000 N/m, scale: log}}"
 
 for method, evaluations, within in (("crs2", 120, 1e-6), ("direct", 120, 1e-4), ("isres", 200, 0.05),
                                     ("cobyla", 80, 1e-5), ("bobyqa", 80, 0.01), ("sbplx", 80, 1e-5),
-                                    ("neldermead", 80, 1e-5)):
+                                    ("neldermead", 80, 1e-5), ("cma", 150, 1e-4)):
     found = search(method, f"search: {{{GOAL}, {OVER}, method: {method}, "
                    f"evaluations: {evaluations}}}\n")["best"][0]
     value = found["values"]["stiffness"]
@@ -94,6 +94,10 @@ for threads in ("2", "8"):
     for name in ("table.csv", "best.csv", "best.yaml", "points.slots"):
         check(read("one", name) == read("several" + threads, name),
               f"{threads} threads change {name}")
+GENERATIONS = f"search: {{{GOAL}, {OVER}, method: cma, starts: 2, evaluations: 70}}\n"
+search("cma1", GENERATIONS, "--threads", "1", "--lanes", "1")
+search("cma8", GENERATIONS, "--threads", "8")
+check(read("cma1", "table.csv") == read("cma8", "table.csv"), "threads change generations")
 before = read("one", "table.csv")
 again = search("one", SEVERAL)
 check(again["computed"] == 0 and read("one", "table.csv") == before, "a search was computed again")
@@ -123,19 +127,18 @@ for seed in range(2, 7 if "--long" in sys.argv else 3):
     check(abs(found["check"] / found["objective"] - 1) < 0.02, f"the gait does not stand: {found}")
 speed = json.loads(run("run", "gait2/best.yaml", "--json").stdout)["velocity"]
 check(f"{speed}" in read("gait2", "best.csv").decode(), f"best.yaml runs at {speed}")
-write("gait.yaml", GAIT.replace("SEED", "1").replace("50", "12"))
-run("sweep", "gait.yaml", "-o", "whole", "--quiet")
+write("gait.yaml", GAIT.replace("SEED", "2"))
 for how in (signal.SIGKILL, signal.SIGINT):
     process = subprocess.Popen([strut, "sweep", "gait.yaml", "-o", "killed", "--quiet"], cwd=work,
                                stderr=subprocess.PIPE)
-    time.sleep(0.5)
+    time.sleep(0.4)
     process.send_signal(how)
     process.communicate()
 check(os.path.exists(path("killed", "points.slots")) and
       not os.path.exists(path("killed", "table.csv")), "the search was not interrupted")
 run("sweep", "gait.yaml", "-o", "killed", "--quiet")
 for name in ("table.csv", "best.csv", "points.slots"):
-    check(read("whole", name) == read("killed", name), f"killed and resumed: {name} differs")
+    check(read("gait2", name) == read("killed", name), f"killed and resumed: {name} differs")
 
 # ---- constraints, worst cases, choices, whole numbers, outer axes ----
 
@@ -182,6 +185,32 @@ for item, mass in zip(found["best"], (1, 2, 3)):
     check(abs(item["values"]["stiffness"] / (mass * wanted) - 1) < 1e-5, f"mass {mass}: {item}")
 check(len(rows("outer", "best.csv")) == 3 and os.path.exists(path("outer", "best-3.yaml")),
       "one best for each point of the axes")
+
+# ---- two goals: the front has a formula, |f - 1 Hz| + |f - 2 Hz| = 1 Hz between the two ----
+
+PARETO = ("search: {minimise: [abs(frequency_1 - 1 Hz), abs(frequency_1 - 2 Hz)], over: {stiffness: "
+          "{from: 10 N/m, to: 1000 N/m, scale: log}, mass: {from: 1, to: 2}}, evaluations: 150}\n"
+          "figures: {front: {kind: points, x: objective, y: objective_2, color: mass}}\n")
+found = search("pareto", PARETO)
+front = found["fronts"][0]
+check(len(front) > 20 and found["best"] == [], f"a front of {len(front)} points")
+for point in front:
+    check(abs(point["objective"] + point["objective_2"] - 1) < 1e-9, f"off the front: {point}")
+check(front[0]["objective"] < 0.05 and front[-1]["objective"] > 0.95, f"the front ends at {front[-1]}")
+check(len(rows("pareto", "best.csv")) == len(front), "best.csv is not the front")
+check(b"<svg" in read("pareto", "front.svg"), "no figure of the front")
+mode = json.loads(run("modes", "pareto/best.yaml", "--json").stdout)["modes"][0]["frequency"]
+check(abs(mode - 1.5) < 0.1, f"the compromise of the front has {mode} Hz")
+search("pareto1", PARETO, "--threads", "1")
+check(read("pareto", "table.csv") == read("pareto1", "table.csv"), "threads change a front")
+
+# ---- figures ----
+
+search("drawn", "axes: [{mass: [1 kg, 2 kg]}]\nsearch: {" + GOAL + ", " + OVER + ", starts: 2, "
+       "evaluations: 30}\nfigures: {best: {kind: best, only: mass=2}, "
+       "points: {kind: points, x: stiffness, y: frequency_1, only: mass=1}}\n")
+for name in ("best.svg", "points.svg"):
+    check(b"<svg" in read("drawn", name), f"no {name}")
 
 # ---- what cannot be found is told ----
 
@@ -232,6 +261,10 @@ for condition, text in (("frequency_1 < 1 kg", "compared"), ("at < 2", "texts"),
            "refused.yaml:6:", text)
 refuse("search: {" + GOAL + ", " + OVER + ", method: direct, starts: 3}\n", "refused.yaml:6:",
        "no seed")
+refuse("search: {minimise: [at], " + OVER + "}\n", "a list of two")
+refuse("search: {minimise: [frequency_1, frequency_2], " + OVER + ", method: cma}\n", "nsga2")
+refuse("search: {" + GOAL + ", " + OVER + ", method: nsga2}\n", "two goals")
+refuse("axes: [{mass: [1, 2]}]\nfigures: {a: {kind: best}}\n", "is of a search")
 refuse("search: {" + GOAL + ", " + OVER + ", evaluations: 0}\n", "refused.yaml:6:", "evaluations")
 refuse("axes: [{stiffness: [1, 2]}]\nsearch: {" + GOAL + ", " + OVER + "}\n", "given twice")
 refuse("axes: [{mass: [1, 2]}]\nrefine: {where: at, depth: 1}\nsearch: {" + GOAL + ", " + OVER +
@@ -243,6 +276,9 @@ for word in (["--shard", "0/2"], ["--retry"], ["--emit", "slurm"]):
     done = run("sweep", "fine.yaml", "-o", "fine", *word, code=1)
     check("depends on those before" in done.stderr, f"{word}: {done.stderr}")
 check(run("sweep", "fine.yaml", "--count").stdout.startswith("at most 203 points"), "--count")
+check("never in shards" in run("merge", "one", code=1).stderr, "searches were merged")
+done = json.loads(run("sweep", "one.yaml", "-o", "one", "--status", "--json").stdout)
+check(done["finished"] and 0 < done["done"] <= done["points"] == 303, f"the status is {done}")
 text = run("sweep", "one.yaml", "-o", "one").stdout
 check(re.search(r"least abs\(frequency_1 - 2 Hz\) = .* Hz \(search \d, evaluation \d+ of \d+; ", text)
       and "searches agree" in text, f"the report is {text}")

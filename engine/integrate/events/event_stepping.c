@@ -9,6 +9,7 @@
 #include "engine/forces/relay.h"
 #include "engine/forces/unbalance.h"
 #include "engine/integrate/events/event_kernel.h"
+#include "engine/integrate/events/event_log.h"
 #include "engine/model/element_compile.h"
 
 /* A root this close to where the step begins, in grid steps, is there already. */
@@ -160,6 +161,7 @@ void strut_event_stepper_restart(const strut_model *model, strut_state *state, v
   if (l->next_break < HUGE_VAL) t += moment_before(t, dt);
   strut_modes_start(model, state, l, t);
   show_contacts(model, state, l);
+  if (state->event_log) strut_event_log_begin(model, state, l);
   l->started = true;
 }
 
@@ -390,7 +392,9 @@ void strut_event_stepper_step(const strut_model *model, strut_state *state, void
                               double dt) {
   strut_event_stepper *l = workspace;
   double t = (double)state->step * dt + l->done, h = next_step_size(state, l, dt);
-  advance_within_grid(state, l, step(model, state, l, evaluation_time(l, t, dt), h, dt), dt);
+  double gone = step(model, state, l, evaluation_time(l, t, dt), h, dt);
+  if (state->event_log) strut_event_log_note(model, state, l, t + gone);
+  advance_within_grid(state, l, gone, dt);
   if (l->next_break < HUGE_VAL) pass_break(model, state, l, dt);
 }
 

@@ -71,8 +71,9 @@ static void advance_application(strut_period_map *map) {
     state->most_evaluations =
         map->most_evaluations > map->evaluations ? map->most_evaluations - map->evaluations : 1;
   while (left > 0 && !state->trouble && !strut_period_map_interrupted(map) && !is_spent_now(map)) {
-    int64_t count = left < most ? left : most;
+    int64_t count = map->watch ? 1 : left < most ? left : most;
     strut_integrator_advance(map->method, model, state, map->workspace, map->dt, count);
+    if (map->watch) map->watch(map->watch_context, state);
     left -= count;
   }
 }

@@ -157,9 +157,10 @@ static void store_point(void *context, const strut_sweep_job *job) {
   const strut_study_search *search = b->plan->study->search;
   strut_status status = job->status;
   if (!status && !cells.row.status) {
-    double broken[STRUT_SEARCH_MOST_CONDITIONS];
-    double goal = strut_search_score(b->plan, cells.numbers, cells.row.words, broken);
+    double broken[STRUT_SEARCH_MOST_CONDITIONS], second;
+    double goal = strut_search_score(b->plan, cells.numbers, cells.row.words, &second, broken);
     strut_sweep_number(&cells, goal);
+    if (search->second.text) strut_sweep_number(&cells, second);
     strut_sweep_number(&cells, strut_search_violation(search, broken));
   }
   if (!status) status = strut_slots_put(b->slots, job->point, &cells.row, &error);

@@ -43,12 +43,16 @@ strut_status strut_search_judge(const strut_sweep_plan *plan, strut_slots *slots
   const strut_study_search *search = plan->study->search;
   const strut_search_layout l = strut_search_layout_of(plan);
   int64_t first = (outer * l.rows + row) * l.scenarios;
-  *point = (strut_search_point){row, first, (double)NAN, 0.0, values};
+  *point = (strut_search_point){.evaluation = row,
+                                .worst = first,
+                                .objective = (double)NAN,
+                                .second = (double)NAN,
+                                .values = values};
   *failed = *valueless = false;
   for (size_t i = 0; i < l.conditions; i++) broken[i] = -HUGE_VAL;
   for (int64_t i = 0; i < l.scenarios; i++) {
     strut_result_slot slot;
-    double own[STRUT_SEARCH_MOST_CONDITIONS];
+    double own[STRUT_SEARCH_MOST_CONDITIONS], second;
     if (!strut_slots_get(slots, first + i, &slot))
       return strut_fail(error, STRUT_FILE_TROUBLE, "point %lld cannot be read",
                         (long long)(first + i));
@@ -61,11 +65,13 @@ strut_status strut_search_judge(const strut_sweep_plan *plan, strut_slots *slots
       *failed = true;
       continue;
     }
-    double goal = strut_search_score(plan, slot.numbers, slot.words, own);
-    *valueless = *valueless || isnan(goal);
+    double goal = strut_search_score(plan, slot.numbers, slot.words, &second, own);
+    *valueless = *valueless || isnan(goal) || isnan(second);
     point->violation = fmax(point->violation, strut_search_violation(search, own));
     for (size_t k = 0; k < l.conditions; k++) broken[k] = fmax(broken[k], own[k]);
     bool worse = search->maximise ? goal < point->objective : goal > point->objective;
+    bool worse_second = search->maximise ? second < point->second : second > point->second;
+    if (worse_second || isnan(point->second)) point->second = second;
     if (worse || isnan(point->objective)) point->objective = goal, point->worst = first + i;
   }
   if (*failed || *valueless) point->objective = (double)NAN;

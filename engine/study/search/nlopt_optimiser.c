@@ -43,7 +43,9 @@ static const struct method_row {
     [STRUT_SEARCH_NELDERMEAD] = {NLOPT_LN_NELDERMEAD, false, false},
 };
 
-bool strut_search_knows_conditions(strut_search_method method) { return rows[method].conditions; }
+bool strut_search_knows_conditions(strut_search_method method) {
+  return rows[method].conditions; /* of others: no */
+}
 
 /* Asks for a point, unless it is the latest one. */
 static double look_at(nlopt_search *s, const double *point) {
@@ -145,43 +147,28 @@ static bool run(nlopt_search *s, strut_search_method method, double first_step, 
   return fine;
 }
 
-/* Numbers in (0, 1) from a seed: splitmix64. */
-static double next_share(uint64_t *state) {
-  uint64_t z = (*state += 0x9e3779b97f4a7c15u);
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  z ^= z >> 31;
-  return ((double)(z >> 11) + 0.5) * 0x1p-53;
-}
-
 /*
- * Asks for the start and points spread evenly over the box: the additive sequence of the generalised golden
- * ratio, shifted by the seed. Controlled random search alone, which begins at random, misses a narrow basin
- * more often.
+ * Asks for the start and points spread evenly over the box. Controlled random search alone, which begins at
+ * random, misses a narrow basin more often.
  */
 static bool spread(nlopt_search *s) {
   size_t n = s->task->dimension;
-  double usual = 20.0 * ((double)n + 1.0), golden = 2.0;
-  double *block = strut_allocate(2 * n, sizeof *block), *point = block + n;
-  if (!block) return false;
-  uint64_t state = s->task->seed;
-  for (int i = 0; i < 60; i++) golden = pow(1.0 + golden, 1.0 / ((double)n + 1.0));
-  for (size_t i = 0; i < n; i++) block[i] = next_share(&state);
+  const strut_search_spread sequence = strut_search_spread_begin(n, s->task->seed);
+  double usual = 20.0 * ((double)n + 1.0), *point = strut_allocate(n, sizeof *point);
+  if (!point) return false;
   int64_t count = (int64_t)fmin(usual, floor(SPREAD_SHARE * (double)s->task->evaluations));
   s->most = INT64_MAX;
   look_at(s, s->task->start);
   for (int64_t k = 1; k < count && !s->ended; k++) {
-    for (size_t i = 0; i < n; i++) {
-      double at = block[i] + (double)k * pow(golden, -(double)(i + 1));
-      point[i] = at - floor(at);
-    }
+    for (size_t i = 0; i < n; i++) point[i] = strut_search_spread_at(&sequence, k, i);
     look_at(s, point);
   }
-  strut_release(block);
+  strut_release(point);
   return true;
 }
 
-bool strut_search_optimise(const strut_search_task *task, const strut_search_asker *asker) {
+bool strut_search_optimise_by_nlopt(const strut_search_task *task,
+                                    const strut_search_asker *asker) {
   size_t n = task->dimension;
   nlopt_search s = {.task = task, .asker = asker, .least = HUGE_VAL};
   double *block = strut_allocate(2 * n + task->conditions + 1, sizeof *block);

@@ -19,7 +19,8 @@
 typedef struct strut_search_asker {
   void *context;
   /**
-   * The values of `count` points (count, dimension), the smaller the better and all of them finite, and of
+   * The values of `count` points (count, dimension), the smaller the better and all of them finite, two of
+   * each point (count, 2) where the method is for two goals, and of
    * each point how far it breaks each condition (count, conditions): at most 0 where it holds. False: the
    * optimiser must end.
    */
@@ -39,5 +40,21 @@ typedef struct strut_search_task {
 bool strut_search_knows_conditions(strut_search_method method);
 /** Runs to the end. To be called in a thread of its own: random numbers are the thread's. False: no memory. */
 bool strut_search_optimise(const strut_search_task *task, const strut_search_asker *asker);
+bool strut_search_optimise_by_nsga2(const strut_search_task *task, const strut_search_asker *asker);
+
+/** The next number in (0, 1) after a state, which begins as a seed: splitmix64. */
+double strut_search_share(uint64_t *state);
+
+/** Points spread evenly over the box: the additive sequence of the generalised golden ratio. */
+typedef struct strut_search_spread {
+  double golden;
+  uint64_t seed; /* shifts the sequence */
+} strut_search_spread;
+strut_search_spread strut_search_spread_begin(size_t dimension, uint64_t seed);
+/** The k-th number of the i-th point, which is the same in any order. */
+double strut_search_spread_at(const strut_search_spread *spread, int64_t i, size_t k);
+
+/** The same of methods of NLopt, in nlopt_optimiser.c. */
+bool strut_search_optimise_by_nlopt(const strut_search_task *task, const strut_search_asker *asker);
 
 #endif

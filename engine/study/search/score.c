@@ -30,7 +30,8 @@ static bool resolve(const strut_sweep_plan *plan, strut_search_formula *f) {
 
 strut_status strut_search_add_columns(strut_sweep_plan *plan, strut_error *error) {
   strut_study_search *search = plan->study->search;
-  bool fine = resolve(plan, &search->goal);
+  bool two = search->second.text != NULL;
+  bool fine = resolve(plan, &search->goal) && (!two || resolve(plan, &search->second));
   for (size_t i = 0; i < search->condition_count && fine; i++) {
     strut_search_condition *c = &search->conditions[i];
     if (c->word)
@@ -39,7 +40,9 @@ strut_status strut_search_add_columns(strut_sweep_plan *plan, strut_error *error
       fine = resolve(plan, &c->left) && resolve(plan, &c->right);
   }
   if (!fine) return strut_fail(error, STRUT_USAGE, "an expression of the search is too long");
+  const char *unit = search->second.program.unit;
   if (!strut_sweep_add_column(plan, "", "objective", search->goal.program.unit, false) ||
+      (two && !strut_sweep_add_column(plan, "", "objective_2", unit, false)) ||
       !strut_sweep_add_column(plan, "", "violation", "1", false))
     return strut_no_memory(error, "");
   return STRUT_OK;
@@ -68,11 +71,13 @@ static double broken_by(const strut_search_condition *c, const double *numbers,
 }
 
 double strut_search_score(const strut_sweep_plan *plan, const double *numbers,
-                          const char (*words)[STRUT_SLOT_WORD], double *broken) {
+                          const char (*words)[STRUT_SLOT_WORD], double *second, double *broken) {
   const strut_study_search *search = plan->study->search;
   for (size_t i = 0; i < search->condition_count; i++)
     broken[i] = broken_by(&search->conditions[i], numbers, words);
   double goal = evaluate(&search->goal, numbers);
+  *second = search->second.text ? evaluate(&search->second, numbers) : 0.0;
+  if (!isfinite(*second)) *second = (double)NAN;
   return isfinite(goal) ? goal : (double)NAN;
 }
 

@@ -29,12 +29,13 @@ typedef struct search {
   strut_question question;
   int32_t *answers; /* (question.count) of the known points, -1: no evaluation is left for it */
   size_t answer_room;
-  known *list;                /* (count) in the order of their evaluation */
-  int32_t count, new;         /* new: first that has not been judged */
-  int32_t *heads;             /* (hashes) latest known point of a hash, or -1 */
-  uint32_t hashes;            /* a power of two */
-  int64_t repeats;            /* in a row */
-  double first, scale, worst; /* the first objective, its size, and the worst that was told */
+  known *list;        /* (count) in the order of their evaluation */
+  int32_t count, new; /* new: first that has not been judged */
+  int32_t *heads;     /* (hashes) latest known point of a hash, or -1 */
+  uint32_t hashes;    /* a power of two */
+  int64_t repeats;    /* in a row */
+  double first, scale, second_scale,
+      worst; /* the first objective, its size, and the worst that was told */
   bool over;
   strut_arena arena;
 } search;
@@ -52,20 +53,11 @@ typedef struct conductor {
 
 /* ---- beginning and ending a search ---- */
 
-/* Numbers in (0, 1) from a seed: splitmix64. */
-static double next_share(uint64_t *state) {
-  uint64_t z = (*state += 0x9e3779b97f4a7c15u);
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  z ^= z >> 31;
-  return ((double)(z >> 11) + 0.5) * 0x1p-53;
-}
-
 /* The first search begins where the study says, the others anywhere. */
 static void choose_start(const conductor *c, const search *s, double *start) {
   uint64_t state = (uint64_t)s->task.seed;
   for (size_t i = 0; i < c->layout.variables; i++) {
-    double share = next_share(&state);
+    double share = strut_search_share(&state);
     start[i] = s->outcome->start == 0 ? strut_search_start(&c->what->variables[i]) : share;
   }
 }
@@ -223,6 +215,7 @@ static strut_status judge_point(conductor *c, search *s, int32_t i) {
   if (s->scale == 0.0) {
     s->scale = k->point.objective != 0.0 ? fabs(k->point.objective) : 1.0;
     s->first = k->point.objective;
+    s->second_scale = k->point.second != 0.0 ? fabs(k->point.second) : 1.0;
     o->constant = true;
     o->least = o->most = s->first;
   }
@@ -230,6 +223,9 @@ static strut_status judge_point(conductor *c, search *s, int32_t i) {
   o->most = fmax(o->most, k->point.objective);
   o->constant = o->constant && k->point.objective == s->first;
   if (feasible) rank_objective(c, o, k->point.objective);
+  if (feasible && c->result->front_count &&
+      !strut_search_front_take(c->what, &c->result->fronts[o->outer], &k->point, &c->result->arena))
+    return strut_no_memory(c->batch.error, "");
   if (strut_search_better(c->what, &k->point, &o->best)) o->best = k->point;
   bool best =
       feasible && (!state->has_best || (c->what->maximise ? k->point.objective > state->best
@@ -243,8 +239,8 @@ static strut_status judge_point(conductor *c, search *s, int32_t i) {
  * itself, those of feasible points are pressed into (-1, 1), and the others are above. A failed point is
  * worse than all before it.
  */
-static double told(const conductor *c, search *s, const known *k) {
-  double value = k->point.objective / s->scale;
+static double told(const conductor *c, search *s, const known *k, bool second) {
+  double value = second ? k->point.second / s->second_scale : k->point.objective / s->scale;
   if (isnan(k->point.objective)) return s->worst + 1.0;
   if (c->what->maximise) value = -value;
   if (c->penalise && c->layout.conditions > 0)
@@ -257,7 +253,8 @@ static double told(const conductor *c, search *s, const known *k) {
 
 double strut_search_size(const strut_search_outcome *o) {
   double size = fabs(o->best.objective);
-  return size >= 0.01 * (o->most - o->least) ? size : 0.0;
+  double last = o->top_count ? fabs(o->top[o->top_count - 1]) : size;
+  return size >= 0.05 * last ? size : 0.0;
 }
 
 /* Why the search must end now, if it must. */
@@ -287,7 +284,12 @@ static strut_status answer_question(conductor *c, search *s, int64_t all) {
   s->over = must_end(c, s, all);
   for (size_t i = 0; i < q->count && !s->over; i++) {
     const known *k = &s->list[s->answers[i]];
-    q->values[i] = told(c, s, k);
+    if (c->result->front_count) {
+      q->values[2 * i] = told(c, s, k, false);
+      q->values[2 * i + 1] = told(c, s, k, true);
+    } else {
+      q->values[i] = told(c, s, k, false);
+    }
     for (size_t j = 0; j < m; j++)
       q->broken[i * m + j] = isnan(k->point.objective) ? 1.0 : fmin(fmax(k->broken[j], -1e9), 1e9);
   }
@@ -350,7 +352,9 @@ static bool make_outcomes(conductor *c) {
     r->outcomes[i].start = (int32_t)(i % starts);
     r->outcomes[i].best = (strut_search_point){.evaluation = -1, .objective = (double)NAN};
   }
-  return r->outcomes != NULL;
+  r->front_count = c->what->second.text ? (size_t)c->layout.outers : 0;
+  r->fronts = strut_arena_allocate(&r->arena, r->front_count + 1, sizeof *r->fronts);
+  return r->outcomes != NULL && r->fronts != NULL;
 }
 
 strut_status strut_search_run(const strut_sweep_plan *plan, strut_slots *slots,

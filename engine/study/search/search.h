@@ -16,6 +16,7 @@ typedef struct strut_search_point {
   int64_t evaluation;              /* its place on the axis of evaluations; -1: there is none */
   int64_t worst;                   /* point of the study: its worst scenario */
   double objective;                /* there, as maximised or minimised; NAN: failed */
+  double second;                   /* likewise of the second goal, in its worst scenario; 0: none */
   double violation;                /* the largest of all scenarios */
   const strut_study_value *values; /* (variable_count) */
 } strut_search_point;
@@ -60,10 +61,18 @@ typedef struct strut_search_worth {
   int32_t agreeing; /* starts whose best is within 1 % of the best's size, itself included */
 } strut_search_worth;
 
+/** Feasible points none of which is better than another in both goals, by the first goal. */
+typedef struct strut_search_front {
+  size_t count, room;
+  strut_search_point *points;
+} strut_search_front;
+
 typedef struct strut_search_result {
   size_t outcome_count, worth_count;
   strut_search_outcome *outcomes; /* (outcome_count) by outer point, then start */
   strut_search_worth *worths;     /* (worth_count) of each outer point that has a best */
+  size_t front_count;             /* of two goals: the outer points; else 0 */
+  strut_search_front *fronts;     /* (front_count) */
   strut_arena arena;
 } strut_search_result;
 
@@ -79,8 +88,8 @@ STRUT_API void strut_search_values(const strut_sweep_plan *plan, int64_t point,
                                    const strut_study_value *values, strut_study_value *all);
 
 /**
- * The size that changes of a best objective are compared with: its own, or 0 where it is less than a
- * hundredth of the range of all objectives of its search, as that of a difference which vanishes.
+ * The size that changes of a best objective are compared with: its own, or 0 where it is far below that of the
+ * tenth best, as that of a difference which vanishes.
  */
 STRUT_API double strut_search_size(const strut_search_outcome *outcome);
 

@@ -63,6 +63,12 @@ strut_status strut_search_judge(const strut_sweep_plan *plan, strut_slots *slots
                                 strut_search_point *point, double *broken, bool *failed,
                                 bool *valueless, strut_error *error);
 
+/* front.c */
+
+/** Takes a feasible point into the front, unless another is as good in both goals. False: no memory. */
+bool strut_search_front_take(const strut_study_search *search, strut_search_front *front,
+                             const strut_search_point *point, strut_arena *arena);
+
 /* worth.c */
 
 /** Computes the best points of all outer points more exactly, and their neighbours. */

@@ -112,6 +112,7 @@ strut_status strut_search_find_worth(strut_search_batch *b, strut_search_result 
   const strut_search_layout l = strut_search_layout_of(b->plan);
   r->worths = strut_arena_allocate(&r->arena, (size_t)l.outers, sizeof *r->worths);
   if (!r->worths) return strut_no_memory(b->error, "");
+  if (r->front_count) return STRUT_OK; /* there is no one best */
   for (int64_t outer = 0; outer < l.outers; outer++) {
     size_t best = best_of(b, r, outer);
     if (best == SIZE_MAX) continue;

@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Branches of periodic motions over a parameter, stable and unstable, by pseudo-arclength (Keller 1977),
+ * with their Floquet multipliers and the points where their kind changes.
+ *
+ * A branch is followed both ways from a motion. Between two of its points special ones are located:
+ * where a multiplier passes the unit circle, where the branch turns, and where the sequence of touchdowns,
+ * slips and other events changes.
+ */
+#ifndef STRUT_ENGINE_RUN_FOLLOW_H
+#define STRUT_ENGINE_RUN_FOLLOW_H
+
+#include "engine/run/follow/follow_system.h"
+
+/** Kinds of points: X(NAME, word, what it is). */
+#define STRUT_FOLLOW_TABLE(X)                                                                      \
+  X(REGULAR, "", "a point of the branch")                                                          \
+  X(START, "start", "the motion from which the branch was followed")                               \
+  X(END, "end", "the branch ends, or leaves the range")                                            \
+  X(FOLD, "fold", "the branch turns: a multiplier passes 1")                                       \
+  X(BRANCHING, "branching", "a multiplier passes 1 though the branch does not turn")               \
+  X(DOUBLING, "period-doubling", "a multiplier passes -1")                                         \
+  X(TORUS, "torus", "a pair of multipliers passes the unit circle")                                \
+  X(TOUCH, "grazing", "a node begins or ceases to touch the ground")                               \
+  X(LIFT, "lift-off", "a node begins or ceases to leave the ground for a moment")                  \
+  X(STICK, "stick", "a node begins or ceases to stick for a moment")                               \
+  X(SLIP, "slip", "a node begins or ceases to slip one way for a moment")                          \
+  X(SWITCH, "switch", "a cable or an element begins or ceases to change its mode")                 \
+  X(MEETING, "meeting", "two events change their order")
+
+typedef enum strut_follow_kind {
+#define STRUT_FOLLOW_ENUM(name, word, what) STRUT_FOLLOW_##name,
+  STRUT_FOLLOW_TABLE(STRUT_FOLLOW_ENUM)
+#undef STRUT_FOLLOW_ENUM
+      STRUT_FOLLOW_KINDS
+} strut_follow_kind;
+
+/** The word of a kind, "" of a regular point. */
+STRUT_API const char *strut_follow_kind_word(strut_follow_kind kind);
+
+/** A point of a branch. Texts and arrays belong to the branch. */
+typedef struct strut_follow_point {
+  strut_follow_kind kind;
+  double value, arc; /* of the parameter [SI]; along the branch, from its lower end [1] */
+  double velocity;   /* [m/s] */
+  double work;       /* of drives, loads and belts in a drive period [J] */
+  bool stable;
+  double multiplier[2]; /* the largest, real and imaginary part; NAN where there is none */
+  const char *word;     /* the events of a period */
+  const char *node;     /* of an event, or a member or element; or NULL */
+  const char *detail;   /* of a special point: a sentence without full stop; or NULL */
+  bool changes;         /* of a special point: stability changes there */
+  int32_t unstable[2];  /* multipliers outside the unit circle before and behind it */
+  double *y;            /* (2 length + 1) the state at the start of a period */
+  double amplitude;     /* half the largest range of a coordinate in a repetition [m] */
+  double *critical;     /* (n) of DOUBLING: direction of the doubled motion; or NULL */
+} strut_follow_point;
+
+typedef struct strut_follow_branch {
+  int32_t repeats; /* drive periods after which its motions repeat */
+  size_t count, start;
+  strut_follow_point *points; /* (count) by arc */
+  const char *ends[2];        /* why it ends there: sentences without full stop */
+  int64_t evaluations, maps, scenes;
+  double seconds;
+  bool travels;
+  strut_arena arena;
+} strut_follow_branch;
+
+typedef struct strut_follow_limits {
+  int32_t steps;      /* most steps each way */
+  double longest;     /* step of the parameter, in its range */
+  bool without_words; /* events are not located */
+  /** Fraction of the range covered; may be NULL. */
+  void (*progress)(void *context, double fraction);
+  void *progress_context;
+} strut_follow_limits;
+
+/**
+ * Moves y (both), near a periodic motion at the system's value, onto it. *found is false where Newton's
+ * method does not converge; `reason` (200) says why.
+ */
+STRUT_API strut_status strut_follow_correct(strut_follow_system *s, double *y, bool *found,
+                                            char *reason, strut_error *error);
+/**
+ * Follows the branch both ways from the motion y at the system's value, which is on it; `direction` (n):
+ * NULL, or that in which the branch leaves y, of a doubled branch. The branch is to be freed in any case.
+ */
+STRUT_API strut_status strut_follow_branch_make(strut_follow_system *s, const double *y,
+                                                const double *direction,
+                                                const strut_follow_limits *limits,
+                                                strut_follow_branch *branch, strut_error *error);
+STRUT_API void strut_follow_branch_free(strut_follow_branch *branch);
+/** Is the motion y at the value on the branch, which has the same repeats? Corrects to find out. */
+STRUT_API strut_status strut_follow_is_on(strut_follow_system *s, const strut_follow_branch *branch,
+                                          const double *y, bool *on, strut_error *error);
+
+#endif

@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * The equations of a periodic motion over a parameter: G(z, p) = P(z; p) - z, with P the period map.
+ *
+ * Unknowns are the free coordinates over `length`, their velocities over `speed`, and the parameter
+ * over its range, counted from its lower end: all of order one. Each value of the parameter has a scene
+ * and a model of its own. Where the structure travels, shifts along the ground are neutral; the
+ * derivative of P is kept without that direction, whose multiplier is then 0 instead of 1.
+ */
+#ifndef STRUT_ENGINE_RUN_FOLLOW_SYSTEM_H
+#define STRUT_ENGINE_RUN_FOLLOW_SYSTEM_H
+
+#include "engine/integrate/events/event_log.h"
+#include "engine/run/orbit/period_map.h"
+
+enum { STRUT_FOLLOW_MOST = 96 }; /* most free coordinates and velocities */
+
+/** Makes the scene of a value of the parameter [SI]; strut_setup_free releases it. */
+typedef struct strut_follow_scenes {
+  strut_status (*setup)(void *context, double value, strut_setup *setup, strut_error *error);
+  void *context;
+} strut_follow_scenes;
+
+typedef struct strut_follow_system {
+  strut_follow_scenes scenes;
+  double low, high;         /* range of the parameter [SI] */
+  const char *method;       /* of integration */
+  double tolerance;         /* of a method with error control [1] */
+  int64_t steps_per_period; /* of a method with fixed steps; of others the fewest */
+  int32_t repeats;          /* drive periods of P */
+  int threads;
+  const volatile sig_atomic_t *interrupt;
+  /* made by open and by the first value */
+  double value; /* of the model below [SI]; NAN: there is none */
+  strut_setup setup;
+  strut_model *model;
+  strut_period_map *map; /* (threads) */
+  double period;         /* of the drive there [s] */
+  strut_event_log *log;  /* of map[0] */
+  size_t n, both;        /* free coordinates and velocities; 2 length + 1 */
+  size_t *place;         /* (n) of an unknown in a state */
+  double *along;         /* (n) unit vector of shifts along the ground, or zeros */
+  bool travels;
+  double length, speed; /* units of the unknowns [m], [m/s] */
+  double *jacobian;     /* (n, n) derivative of P, without shifts */
+  bool differentiated;  /* both are those of some point on the way */
+  double *column;       /* (n) derivative of G to the parameter over its range */
+  double *there;        /* (threads, both) scratch */
+  double *end;          /* (both) */
+  double *seen;   /* (4, 2 nodes) lowest and highest positions, latest positions and velocities */
+  double *matrix; /* (n + 1, n + 1) scratch */
+  int64_t evaluations; /* of the forces */
+  int64_t maps;        /* periods computed */
+  int64_t scenes_made;
+  strut_arena arena;
+} strut_follow_system;
+
+/** Result of one application of P. */
+typedef struct strut_follow_period {
+  double travel;    /* [m]; NAN where the motion was lost or interrupted */
+  double work;      /* done on the structure [J]; only with `works` */
+  double amplitude; /* half the largest range of a coordinate [m]; only with `works` */
+} strut_follow_period;
+
+/**
+ * Prepares the equations at the value [SI]; `repeats` and what stands before it in the struct must be
+ * filled. STRUT_USAGE with a sentence where the scene has no such motions: no periodic drive, a memory,
+ * too many coordinates, a method without events over contacts.
+ */
+strut_status strut_follow_open(strut_follow_system *s, double value, strut_error *error);
+void strut_follow_close(strut_follow_system *s);
+/** Makes the model of a value, if it is another one. */
+strut_status strut_follow_set_value(strut_follow_system *s, double value, strut_error *error);
+/** Changes the number of drive periods of P. */
+strut_status strut_follow_set_repeats(strut_follow_system *s, int32_t repeats, strut_error *error);
+/** Chooses the units by the motion from the state y (both) over one application. */
+bool strut_follow_set_units(strut_follow_system *s, const double *y);
+/** Moves y (both) by one application at the present value; with `works` and events in s->log. */
+strut_follow_period strut_follow_apply(strut_follow_system *s, double *y, bool works);
+/** f (n): scaled residual at y; returns its largest entry, HUGE_VAL where the motion was lost. */
+double strut_follow_residual(strut_follow_system *s, const double *y, double *f);
+/** Fills jacobian and column at y and the present value; f is the residual there. */
+strut_status strut_follow_differentiate(strut_follow_system *s, const double *y, const double *f,
+                                        bool *lost, strut_error *error);
+/** The parameter [SI] over its range, and back. */
+static inline double strut_follow_scaled(const strut_follow_system *s, double value) {
+  return (value - s->low) / (s->high - s->low);
+}
+static inline double strut_follow_value(const strut_follow_system *s, double scaled) {
+  return s->low + scaled * (s->high - s->low);
+}
+/** z (n): the unknowns of the state y; and y moved by a difference d (n) of unknowns. */
+void strut_follow_unknowns(const strut_follow_system *s, const double *y, double *z);
+void strut_follow_move(const strut_follow_system *s, double *y, const double *d, double factor);
+/** Shifts y along the ground so that the mean of the nodes is at 0, where the structure travels. */
+void strut_follow_centre(const strut_follow_system *s, double *y);
+/** Unit of unknown i [m] or [m/s]. */
+static inline double strut_follow_unit(const strut_follow_system *s, size_t i) {
+  return i < s->n / 2 ? s->length : s->speed;
+}
+/**
+ * Solves the bordered system [jacobian - 1, column; normal] x = right in place of right (n + 1); normal
+ * (n + 1). False where it is singular.
+ */
+bool strut_follow_solve(strut_follow_system *s, const double *normal, double *right);
+
+#endif

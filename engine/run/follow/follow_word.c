@@ -1,0 +1,261 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The word of an orbit: its touchdowns, slips and other events in their order. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/run/follow/follow_parts.h"
+
+/* Modes that last for less than this part of a period are rounding. */
+static const double INSTANT = 1e-12;
+enum { MOST_TEXT = 400 };
+
+bool strut_follow_word_read(const strut_follow_system *s, strut_arena *arena,
+                            strut_follow_word *word) {
+  const strut_event_log *log = s->log;
+  double span = s->period * s->repeats, begin = s->map[0].time;
+  word->count = 0;
+  word->letter = strut_arena_allocate(arena, log->count + 1, sizeof *word->letter);
+  word->first = strut_arena_allocate(arena, (size_t)log->items + 1, 1);
+  int32_t *latest = strut_arena_allocate(arena, (size_t)log->items + 1, sizeof *latest);
+  if (!word->letter || !word->first || !latest) return false;
+  memcpy(word->first, log->first, (size_t)log->items);
+  for (size_t i = 0; i < log->count; i++) {
+    const strut_logged_event *e = &log->event[i];
+    double time = (e->time - begin) / span;
+    int32_t before = latest[e->item] - 1; /* index of the item's latest letter */
+    if (before >= 0 && time - word->letter[before].time <= INSTANT) {
+      word->letter[before].mode = e->mode; /* two changes at once are one */
+      continue;
+    }
+    word->letter[word->count++] = (strut_follow_letter){e->item, e->mode, time, 1.0};
+    latest[e->item] = (int32_t)word->count;
+  }
+  /* changes at once that cancel */
+  size_t kept = 0;
+  for (int32_t i = 0; i < log->items; i++) latest[i] = 0;
+  for (size_t i = 0; i < word->count; i++) {
+    strut_follow_letter l = word->letter[i];
+    int8_t mode = latest[l.item] ? word->letter[latest[l.item] - 1].mode : word->first[l.item];
+    if (l.mode == mode) continue;
+    if (latest[l.item]) {
+      strut_follow_letter *p = &word->letter[latest[l.item] - 1];
+      p->lasts = l.time - p->time;
+    }
+    word->letter[kept++] = l;
+    latest[l.item] = (int32_t)kept;
+  }
+  word->count = kept;
+  /* the last mode of an item lasts into the next period */
+  for (size_t i = 0; i < word->count; i++) {
+    strut_follow_letter *l = &word->letter[i];
+    if (latest[l->item] == 0) continue;
+    strut_follow_letter *end = &word->letter[latest[l->item] - 1];
+    end->lasts = l->time + 1.0 - end->time;
+    latest[l->item] = 0;
+  }
+  return true;
+}
+
+static bool same_letter(const strut_follow_word *a, size_t i, const strut_follow_word *b,
+                        size_t k) {
+  return a->letter[i].item == b->letter[k].item && a->letter[i].mode == b->letter[k].mode;
+}
+
+/* Words are cycles: an event may pass the start of the period. */
+bool strut_follow_words_equal(const strut_follow_word *a, const strut_follow_word *b) {
+  if (a->count != b->count) return false;
+  size_t n = a->count;
+  if (n == 0) return true;
+  size_t most = n < 8 ? n : 8;
+  for (size_t turn = 0; turn < 2 * most - 1; turn++) {
+    size_t by = turn % 2 ? n - (turn + 1) / 2 : turn / 2, i = 0;
+    while (i < n && same_letter(a, i, b, (i + by) % n)) i++;
+    if (i == n) return true;
+  }
+  return false;
+}
+
+/* ---- what a change is ---- */
+
+static const char *item_name(const strut_follow_system *s, int32_t item) {
+  const strut_scene *scene = &s->setup.scene;
+  const strut_model *m = s->model;
+  const strut_event_log *log = s->log;
+  if (item < log->contacts) return scene->nodes[m->contacts.entry[item].node].name;
+  item -= log->contacts;
+  if (item < log->members)
+    return (size_t)item < scene->member_count ? scene->members[item].name : "";
+  item -= log->members;
+  if (log->elements) item %= log->elements;
+  const strut_element *e = &m->elements.element[item];
+  if (e->role == STRUT_ELEMENT_MEMBER) return scene->members[e->item].name;
+  if (e->role == STRUT_ELEMENT_HINGE) return scene->hinges[e->item].name;
+  if (e->role == STRUT_ELEMENT_CELL) return scene->cells[e->item].name;
+  return "a collision";
+}
+
+static size_t count_of(const strut_follow_word *w, int32_t item) {
+  size_t count = 0;
+  for (size_t i = 0; i < w->count; i++) count += w->letter[i].item == item;
+  return count;
+}
+
+/* The modes of an item around the period, equal up to their begin? */
+static bool same_cycle(const strut_follow_word *a, const strut_follow_word *b, int32_t item) {
+  size_t n = count_of(a, item), k = 0;
+  int8_t mode[2][64];
+  if (n != count_of(b, item) || n > 64) return n == count_of(b, item) && n > 64;
+  for (size_t i = 0; i < a->count; i++)
+    if (a->letter[i].item == item) mode[0][k++] = a->letter[i].mode;
+  k = 0;
+  for (size_t i = 0; i < b->count; i++)
+    if (b->letter[i].item == item) mode[1][k++] = b->letter[i].mode;
+  if (n == 0) return a->first[item] == b->first[item];
+  for (size_t turn = 0; turn < n; turn++) {
+    size_t i = 0;
+    while (i < n && mode[0][i] == mode[1][(i + turn) % n]) i++;
+    if (i == n) return true;
+  }
+  return false;
+}
+
+/* The shortest mode of the item. */
+static const strut_follow_letter *shortest(const strut_follow_word *w, int32_t item) {
+  const strut_follow_letter *best = NULL;
+  for (size_t i = 0; i < w->count; i++)
+    if (w->letter[i].item == item && (!best || w->letter[i].lasts < best->lasts))
+      best = &w->letter[i];
+  return best;
+}
+
+static strut_follow_kind kind_of(const strut_follow_system *s, const strut_follow_letter *l,
+                                 bool only_touch) {
+  if (l->item >= s->log->contacts) return STRUT_FOLLOW_SWITCH;
+  switch ((strut_logged_contact)l->mode) {
+    case STRUT_LOGGED_OPEN: return STRUT_FOLLOW_LIFT;
+    case STRUT_LOGGED_STICK: return STRUT_FOLLOW_STICK;
+    case STRUT_LOGGED_SLIDE: return STRUT_FOLLOW_TOUCH;
+    case STRUT_LOGGED_FORWARD:
+    case STRUT_LOGGED_BACKWARD: return only_touch ? STRUT_FOLLOW_TOUCH : STRUT_FOLLOW_SLIP;
+  }
+  return STRUT_FOLLOW_SWITCH;
+}
+
+/* Is the mode between two flights? */
+static bool between_flights(const strut_follow_word *w, const strut_follow_letter *l) {
+  int8_t before = -1, after = -1;
+  size_t at = (size_t)(l - w->letter);
+  for (size_t k = 1; k <= w->count && before < 0; k++) {
+    const strut_follow_letter *o = &w->letter[(at + w->count - k) % w->count];
+    if (o->item == l->item && o != l) before = o->mode;
+  }
+  for (size_t k = 1; k <= w->count && after < 0; k++) {
+    const strut_follow_letter *o = &w->letter[(at + k) % w->count];
+    if (o->item == l->item && o != l) after = o->mode;
+  }
+  return before == STRUT_LOGGED_OPEN && after == STRUT_LOGGED_OPEN;
+}
+
+/* A sentence on what begins or ceases for a moment. */
+static const char *sentence(strut_follow_kind kind, bool begins, const char *name,
+                            strut_arena *arena) {
+  const char *verb = begins ? "begins to" : "no longer";
+  const char *what = "";
+  switch (kind) {
+    case STRUT_FOLLOW_TOUCH:
+      what = begins ? "touch the ground once more" : "touches it once more";
+      break;
+    case STRUT_FOLLOW_LIFT:
+      what = begins ? "leave the ground for a moment" : "leaves the ground for a moment";
+      break;
+    case STRUT_FOLLOW_STICK: what = begins ? "stick for a moment" : "sticks for a moment"; break;
+    case STRUT_FOLLOW_SLIP: what = begins ? "slip for a moment" : "slips for a moment"; break;
+    case STRUT_FOLLOW_SWITCH:
+      what = begins ? "change its mode for a moment" : "changes its mode for a moment";
+      break;
+    case STRUT_FOLLOW_REGULAR:
+    case STRUT_FOLLOW_START:
+    case STRUT_FOLLOW_END:
+    case STRUT_FOLLOW_FOLD:
+    case STRUT_FOLLOW_BRANCHING:
+    case STRUT_FOLLOW_DOUBLING:
+    case STRUT_FOLLOW_TORUS:
+    case STRUT_FOLLOW_MEETING:
+    case STRUT_FOLLOW_KINDS: break;
+  }
+  return strut_arena_format(arena, "%s %s %s", name, verb, what);
+}
+
+static bool compare_orders(const strut_follow_system *s, const strut_follow_word *a,
+                           const strut_follow_word *b, strut_arena *arena,
+                           strut_follow_point *point) {
+  int32_t pair[2] = {-1, -1};
+  for (size_t i = 0; i < a->count && i < b->count; i++) {
+    if (same_letter(a, i, b, i)) continue;
+    pair[0] = a->letter[i].item, pair[1] = b->letter[i].item;
+    break;
+  }
+  point->kind = STRUT_FOLLOW_MEETING;
+  point->node = pair[0] >= 0 ? strut_arena_format(arena, "%s", item_name(s, pair[0])) : NULL;
+  point->detail = pair[0] >= 0 && pair[1] != pair[0]
+                      ? strut_arena_format(arena, "events of %s and %s change their order",
+                                           item_name(s, pair[0]), item_name(s, pair[1]))
+                      : strut_arena_format(arena, "events change their order");
+  return point->detail != NULL;
+}
+
+bool strut_follow_words_compare(const strut_follow_system *s, const strut_follow_word *a,
+                                const strut_follow_word *b, strut_arena *arena,
+                                strut_follow_point *point) {
+  for (int32_t item = 0; item < s->log->items; item++) {
+    if (same_cycle(a, b, item)) continue;
+    bool begins = count_of(b, item) >= count_of(a, item);
+    const strut_follow_word *longer = begins ? b : a;
+    const strut_follow_letter *l = shortest(longer, item);
+    if (!l) continue;
+    bool touch =
+        l->item < s->log->contacts && l->mode != STRUT_LOGGED_OPEN && between_flights(longer, l);
+    point->kind = kind_of(s, l, touch);
+    if (touch) point->kind = STRUT_FOLLOW_TOUCH;
+    point->node = strut_arena_format(arena, "%s", item_name(s, item));
+    if (count_of(a, item) == count_of(b, item))
+      point->detail =
+          strut_arena_format(arena, "%s replaces one short mode by another", point->node);
+    else
+      point->detail = sentence(point->kind, begins, point->node, arena);
+    return point->node && point->detail;
+  }
+  return compare_orders(s, a, b, arena, point);
+}
+
+static const char *mode_text(const strut_follow_system *s, const strut_follow_letter *l) {
+  if (l->item >= s->log->contacts) return l->mode > 0 ? "*" : "o";
+  switch ((strut_logged_contact)l->mode) {
+    case STRUT_LOGGED_OPEN: return "^";
+    case STRUT_LOGGED_SLIDE: return "_";
+    case STRUT_LOGGED_FORWARD: return ">";
+    case STRUT_LOGGED_BACKWARD: return "<";
+    case STRUT_LOGGED_STICK: return "=";
+  }
+  return "?";
+}
+
+const char *strut_follow_word_text(const strut_follow_system *s, const strut_follow_word *word,
+                                   strut_arena *arena) {
+  char text[MOST_TEXT];
+  size_t used = 0;
+  text[0] = '\0';
+  for (size_t i = 0; i < word->count; i++) {
+    char one[80];
+    int n = snprintf(one, sizeof one, "%s%.60s%s", i ? " " : "", item_name(s, word->letter[i].item),
+                     mode_text(s, &word->letter[i]));
+    if (used + (size_t)n + 5 >= sizeof text) {
+      memcpy(text + used, " ...", 5);
+      break;
+    }
+    memcpy(text + used, one, (size_t)n + 1);
+    used += (size_t)n;
+  }
+  return strut_arena_text(arena, text, strlen(text));
+}

@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * All branches of periodic motions of a model over one parameter: from steady motions at some of its
+ * values, and where a branch doubles its period, from there.
+ */
+#ifndef STRUT_ENGINE_STUDY_FOLLOW_STUDY_H
+#define STRUT_ENGINE_STUDY_FOLLOW_STUDY_H
+
+#include "engine/output/draw/plot.h"
+#include "engine/run/follow/follow.h"
+
+enum { STRUT_FOLLOW_KICKS = 4, STRUT_FOLLOW_MOST_BASINS = 64 };
+enum { STRUT_FOLLOW_MOST_BRANCHES = 24, STRUT_FOLLOW_NOTE = 320, STRUT_FOLLOW_LABEL = 120 };
+
+/** A motion from which a branch is followed. */
+typedef struct strut_follow_start {
+  double value;     /* of the parameter [SI] */
+  const char *from; /* configuration at whose equilibrium the run starts; NULL: as the scene says */
+} strut_follow_start;
+
+typedef struct strut_follow_options {
+  const char *name, *unit; /* of the parameter; unit "": none */
+  double low, high;        /* its range [SI], low < high */
+  size_t start_count;
+  const strut_follow_start *starts; /* (start_count) at least one */
+  strut_follow_scenes scenes;
+  const char *method; /* NULL: chosen */
+  double accuracy;    /* relative, of velocities; 0: the default */
+  int32_t steps;      /* most of a branch each way; 0: the default */
+  bool not_doubled;   /* do not follow doubled branches */
+  int threads;
+  const volatile sig_atomic_t *interrupt;
+  void (*progress)(void *context, double fraction); /* may be NULL */
+  void *progress_context;
+  bool basins; /* kick the stable motions at the values of the starts */
+} strut_follow_options;
+
+typedef struct strut_followed {
+  strut_follow_branch branch;
+  char label[STRUT_FOLLOW_LABEL]; /* where it comes from */
+  int32_t parent;                 /* index of the branch whose doubling it is, or -1 */
+} strut_followed_branch;
+
+/** How far a stable motion may be pushed at the start of a period. */
+typedef struct strut_follow_basin {
+  size_t branch; /* index */
+  double value, velocity;
+  /** Speeds of the smallest kicks found from which it does not come back within 60 periods [m/s];
+      INFINITY: none that is sensible. */
+  double kick[STRUT_FOLLOW_KICKS];
+} strut_follow_basin;
+/** "forwards", "backwards", "up", "down". */
+STRUT_API const char *strut_follow_kick_name(int i);
+
+typedef struct strut_follow_result {
+  char *title;       /* of the model */
+  char *name, *unit; /* of the parameter */
+  char method[32];
+  double low, high, tolerance, seconds;
+  size_t count;
+  strut_followed_branch branches[STRUT_FOLLOW_MOST_BRANCHES];
+  size_t note_count;
+  char notes[4 * STRUT_FOLLOW_MOST_BRANCHES][STRUT_FOLLOW_NOTE]; /* sentences */
+  strut_arena arena;
+  size_t basin_count;
+  strut_follow_basin basins[STRUT_FOLLOW_MOST_BASINS];
+} strut_follow_result;
+
+/**
+ * Follows all branches. The result is to be freed in any case. STRUT_USAGE with a sentence where the
+ * scene has no such motions, or none of the starts leads to a periodic one.
+ */
+STRUT_API strut_status strut_follow_make(const strut_follow_options *options,
+                                         strut_follow_result *result, strut_error *error);
+STRUT_API void strut_follow_free(strut_follow_result *result);
+
+/* follow_report.c: texts are blocks of strut_allocate; NULL: out of memory */
+STRUT_API char *strut_follow_csv(const strut_follow_result *result);
+STRUT_API char *strut_follow_json(const strut_follow_result *result);
+STRUT_API char *strut_follow_table(const strut_follow_result *result);
+
+/** Velocity over the parameter: stable solid, unstable dashed, special points marked. */
+STRUT_API strut_status strut_follow_figure(const strut_plot *plot,
+                                           const strut_follow_result *result, strut_error *error);
+
+#endif

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Folds of a Duffing oscillator by strut follow and by AUTO-07p (Debian's auto-07p), which discretises the
+# same periodic motion by collocation. Skipped where AUTO or gfortran is not installed.
+#
+#   python3 follow_auto_test.py STRUT
+import json
+import math
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
+from findings import check, finish  # noqa: E402
+
+auto = shutil.which("auto-07p")
+if not auto or not shutil.which("gfortran"):
+    print("skipped: auto-07p or gfortran is not installed")
+    sys.exit(77)
+
+strut = os.path.realpath(sys.argv[1])
+work = tempfile.mkdtemp()
+DAMPING, CUBIC, FORCE = 0.05, 0.05, 0.1
+FROM, TO = 0.14, 0.22  # [Hz]
+
+with open(os.path.join(work, "duffing.yaml"), "w", encoding="utf-8") as file:
+    file.write(f"""strut: 1
+name: Duffing
+parameters: {{frequency: {FROM} Hz}}
+nodes:
+  wall: {{position: [0, 0], fixed: both}}
+  mass: {{position: [10, 0], fixed: y, mass: 1}}
+members:
+  spring:
+    {{nodes: [wall, mass], kind: spring, law: {{kind: polynomial, coefficients: [1 N/m, 0, {CUBIC} N/m^3]}},
+     damping: {DAMPING}, rest_length: 10}}
+loads:
+  push: {{node: mass, force: [{FORCE} N, 0], signal: {{sine: {{amplitude: 1, frequency: frequency}}}}}}
+solver: {{integrator: rk4, step: 1 ms}}
+run: {{periods: 300, of: push, measure: {{node: mass}}}}
+""")
+done = subprocess.run([strut, "follow", "duffing.yaml", "--over", f"frequency={FROM}Hz..{TO}Hz", "--json"],
+                      capture_output=True, text=True, cwd=work, timeout=100, check=True)
+points = json.loads(done.stdout)["branches"][0]["special"]
+ours = [p["value"] for p in points if p["point"] == "fold"]
+
+# x' = v and so on over one period, and an oscillator that makes sin and cos of the drive
+with open(os.path.join(work, "duf.f90"), "w", encoding="utf-8") as file:
+    file.write(f"""subroutine FUNC(NDIM,U,ICP,PAR,IJAC,F,DFDU,DFDP)
+  implicit none
+  integer, intent(in) :: NDIM, ICP(*), IJAC
+  double precision, intent(in) :: U(NDIM), PAR(*)
+  double precision, intent(out) :: F(NDIM)
+  double precision, intent(inout) :: DFDU(NDIM,NDIM), DFDP(NDIM,*)
+  double precision :: period, rest
+  period = 8d0*atan(1d0)/PAR(1)
+  rest = 1d0 - U(3)**2 - U(4)**2
+  F(1) = period*U(2)
+  F(2) = period*({FORCE}d0*U(3) - {DAMPING}d0*U(2) - U(1) - {CUBIC}d0*U(1)**3)
+  F(3) = period*(PAR(1)*U(4) + U(3)*rest)
+  F(4) = period*(-PAR(1)*U(3) + U(4)*rest)
+end subroutine
+subroutine STPNT(NDIM,U,PAR,T)
+  implicit none
+  integer, intent(in) :: NDIM
+  double precision, intent(inout) :: U(NDIM), PAR(*)
+  double precision, intent(in) :: T
+  double precision :: w, a, p
+  w = 8d0*atan(1d0)*{FROM}d0
+  PAR(1) = w
+  a = {FORCE}d0/(1d0-w*w)
+  p = 8d0*atan(1d0)*T
+  U(1) = a*sin(p)
+  U(2) = a*w*cos(p)
+  U(3) = sin(p)
+  U(4) = cos(p)
+end subroutine
+subroutine BCND(NDIM,PAR,ICP,NBC,U0,U1,FB,IJAC,DBC)
+  implicit none
+  integer, intent(in) :: NDIM, ICP(*), NBC, IJAC
+  double precision, intent(in) :: PAR(*), U0(NDIM), U1(NDIM)
+  double precision, intent(out) :: FB(NBC)
+  double precision, intent(inout) :: DBC(NBC,*)
+  FB(1) = U1(1)-U0(1)
+  FB(2) = U1(2)-U0(2)
+  FB(3) = U0(3)
+  FB(4) = U0(4)-1d0
+end subroutine
+subroutine ICND
+end subroutine
+subroutine FOPT
+end subroutine
+subroutine PVLS
+end subroutine
+""")
+with open(os.path.join(work, "c.duf"), "w", encoding="utf-8") as file:
+    file.write(f"""NDIM=4, IPS=4, IRS=0, ILP=1
+ICP=[1]
+NTST=40, NCOL=4, IAD=3, ISP=0, ISW=1, IPLT=0, NBC=4, NINT=0
+NMX=400, NPR=400, MXBF=0, IID=2, ITMX=9, ITNW=7, NWTN=3, JAC=0
+EPSL=1e-08, EPSU=1e-08, EPSS=1e-07
+DS=0.01, DSMIN=0.0001, DSMAX=0.05, IADS=1
+RL0=0.7, RL1=1.5, A0=0, A1=1e6
+UZSTOP={{1: {2 * math.pi * TO}}}
+""")
+with open(os.path.join(work, "duf.auto"), "w", encoding="utf-8") as file:
+    file.write("run('duf')\n")
+done = subprocess.run([auto, "duf.auto"], capture_output=True, text=True, cwd=work, timeout=100,
+                      stdin=subprocess.DEVNULL, check=False)
+theirs = [float(v) / (2 * math.pi) for v in re.findall(r"^\s*\d+\s+\d+\s+LP\s+\d+\s+(\S+)", done.stdout, re.M)]
+check(len(theirs) == 2, f"AUTO finds folds at {theirs}: {done.stdout[-500:]} {done.stderr[-500:]}")
+check(len(ours) == 2, f"strut finds folds at {ours}")
+for mine, other in zip(ours, theirs):
+    check(abs(mine - other) <= 2e-5 * other, f"a fold at {mine} Hz, by AUTO at {other} Hz")
+finish()

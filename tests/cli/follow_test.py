@@ -1,0 +1,278 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Branches of periodic motions against closed forms: multipliers and amplitude of a linear oscillator,
+# Duffing's folds, the cascade of doublings in two wells, the bilinear oscillator's grazing, Den Hartog's
+# boundary of motions without stops, the two-mass crawler; refusals, threads, files.
+#
+#   python3 follow_test.py STRUT MODELS
+import csv
+import json
+import math
+import os
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
+from findings import check, finish  # noqa: E402
+
+strut = os.path.realpath(sys.argv[1])
+models = os.path.realpath(sys.argv[2])
+work = tempfile.mkdtemp()
+
+
+def run(*words, code=0, env=None):
+    done = subprocess.run([strut, *words], capture_output=True, text=True, cwd=work, timeout=120,
+                          env={**os.environ, **(env or {})})
+    check(done.returncode == code,
+          f"strut {' '.join(words)}: exit code {done.returncode}, expected {code}: {done.stderr}")
+    return done
+
+
+def write(name, text):
+    with open(os.path.join(work, name), "w", encoding="utf-8") as file:
+        file.write(text)
+
+
+def rows(directory):
+    with open(os.path.join(work, directory, "branches.csv"), newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def follow(model, over, *words):
+    return json.loads(run("follow", model, "--over", over, "--json", *words).stdout)
+
+
+def special(result, kind, branch=0):
+    return [p for p in result["branches"][branch]["special"] if p["point"] == kind]
+
+
+def near(got, want, tolerance, what):
+    check(abs(got - want) <= tolerance * abs(want), f"{what}: {got}, expected {want}")
+
+
+def root(f, a, b):
+    for _ in range(100):
+        middle = (a + b) / 2
+        a, b = (a, middle) if f(a) * f(middle) <= 0 else (middle, b)
+    return a
+
+
+OSCILLATOR = """strut: 1
+name: {name}
+parameters: {{{parameters}}}
+nodes:
+  wall: {{position: [0, 0], fixed: both}}
+  mass: {{position: [{at}, 0], fixed: y, mass: 1}}
+members:
+  spring: {{kind: spring, nodes: [wall, mass], {law}, rest_length: 10}}
+loads:
+  push: {{node: mass, force: [force, 0], signal: {{sine: {{amplitude: 1, frequency: frequency}}}}}}
+solver: {{integrator: rk4, step: 1 ms}}
+run: {{periods: 200, of: push, measure: {{node: mass}}}}
+"""
+
+# ---- linear: multipliers exp(-c T / 2 m), amplitude by the transfer function
+
+write("linear.yaml", OSCILLATOR.format(name="Linear oscillator", at=10, law="stiffness: 100, damping: 0.5",
+                                       parameters="frequency: 1 Hz, force: 1 N"))
+run("follow", "linear.yaml", "--over", "frequency=1Hz..3Hz", "-o", "linear")
+table = rows("linear")
+check(len(table) > 30, f"{len(table)} points")
+near(float(table[0]["frequency [Hz]"]), 1, 1e-12, "the lower end")
+near(float(table[-1]["frequency [Hz]"]), 3, 1e-12, "the upper end")
+for row in table:
+    f, turn = float(row["frequency [Hz]"]), 2 * math.pi * float(row["frequency [Hz]"])
+    near(float(row["multiplier"]), math.exp(-0.25 / f), 1e-5, f"multiplier at {f}")
+    near(float(row["amplitude [m]"]), 1 / math.hypot(100 - turn**2, 0.5 * turn), 1e-4, f"amplitude at {f}")
+    want = math.pi * 0.5 * turn * float(row["amplitude [m]"])**2
+    near(float(row["work [J]"]), want, 1e-4, f"work at {f}")
+    check(row["stable"] == "yes" and row["period_multiple"] == "1", "not stable")
+check(os.path.exists(os.path.join(work, "linear", "branches.svg")), "no figure")
+
+# ---- Duffing: folds of the harmonic balance, small amplitude
+
+DUFFING = "law: {kind: polynomial, coefficients: [1 N/m, 0, 0.05 N/m^3]}, damping: 0.05"
+write("duffing.yaml", OSCILLATOR.format(name="Duffing", at=10, law=DUFFING,
+                                        parameters="frequency: 0.14 Hz, force: 0.1 N"))
+duffing = follow("duffing.yaml", "frequency=0.14Hz..0.22Hz")
+folds = [p["value"] for p in special(duffing, "fold")]
+
+
+def balance():
+    """Folds of ((1 - w^2 + 3/4 b A^2)^2 + (c w)^2) A^2 = F^2 along A: where dw/dA vanishes."""
+    beta, damping, force = 0.05, 0.05, 0.1
+    curve = []
+    for k in range(8000):
+        amplitude = 0.3 + k * 3e-4
+        # w^2 solves (s - w^2)^2 + c^2 w^2 = F^2 / A^2
+        s = 1 + 0.75 * beta * amplitude**2
+        half = s - damping**2 / 2
+        inside = half**2 - s**2 + (force / amplitude)**2
+        if inside >= 0:
+            curve.append(math.sqrt(half + math.sqrt(inside)))
+    least = min(range(len(curve)), key=curve.__getitem__)
+    return max(curve[least:]), curve[least]
+
+
+high, low = balance()
+check(len(folds) == 2, f"folds at {folds}")
+if len(folds) == 2:
+    near(folds[0], high / (2 * math.pi), 2e-3, "upper fold")
+    near(folds[1], low / (2 * math.pi), 2e-3, "lower fold")
+    for p in special(duffing, "fold"):
+        near(p["multiplier"][0], 1, 2e-2, "multiplier at a fold")
+stable = [p["stable"] for p in duffing["branches"][0]["points"]]
+check(stable[0] and stable[-1] and not all(stable), "stability over the folds")
+
+# ---- doublings in two wells: the cascade, whose steps shrink by Feigenbaum's 4.669
+
+write("wells.yaml", OSCILLATOR.format(
+    name="Two wells", at=10.2, law="law: {kind: polynomial, coefficients: [-1 N/m, 0, 1 N/m^3]}, damping: 0.25",
+    parameters="frequency: 1/(2*pi)*1 Hz, force: 0.17 N"))
+wells = follow("wells.yaml", "force=0.165N..0.19N")
+doublings = [special(wells, "period-doubling", i)[0]["value"] for i in range(3)]
+near((doublings[1] - doublings[0]) / (doublings[2] - doublings[1]), 4.64, 0.03, "ratio of doublings")
+check([b["period_multiple"] for b in wells["branches"][:3]] == [1, 2, 4], "period multiples")
+check(wells["branches"][1]["doubled_from"] == 1, "the doubled branch's parent")
+near(wells["branches"][1]["points"][0]["value"], doublings[0], 1e-4, "begin of the doubled branch")
+check(wells["branches"][1]["points"][2]["stable"], "the doubled branch is stable at first")
+
+# ---- the bilinear oscillator touches where the linear amplitude is the gap
+
+write("bilinear.yaml", """strut: 1
+name: Bilinear oscillator
+parameters: {frequency: 1 Hz, gap: 30 mm}
+nodes:
+  top: {position: [0, 1 + gap], fixed: both}
+  mass: {position: [0, gap], fixed: x, mass: 1}
+members:
+  spring: {kind: spring, nodes: [top, mass], stiffness: 100, damping: 1, rest_length: 1}
+ground: {stiffness: 100, damping: 0, contacts: {mass: {}}}
+loads:
+  push: {node: mass, force: [0, 1 N], signal: {sine: {amplitude: 1, frequency: frequency}}}
+solver: {integrator: rk4, step: 1 ms}
+run: {periods: 100, of: push, measure: {node: mass}}
+""")
+
+
+def over_gap(f):
+    turn = 2 * math.pi * f
+    return 1 / math.hypot(100 - turn**2, turn) - 0.03
+
+
+bilinear = follow("bilinear.yaml", "frequency=1Hz..2Hz")
+grazings = special(bilinear, "grazing")
+check(len(grazings) == 2 and all(p["node"] == "mass" for p in grazings), f"grazings: {grazings}")
+near(grazings[0]["value"], root(over_gap, 1, 1.58), 3e-4, "first grazing")
+near(grazings[-1]["value"], root(over_gap, 1.6, 2), 3e-4, "last grazing")
+
+# ---- Den Hartog 1931: dry friction, and where motions without stops end
+
+write("dry.yaml", """strut: 1
+name: Dry friction
+parameters: {friction: 0.3, ratio: 0.8}
+gravity: [0, -10 m/s^2]
+nodes:
+  wall: {position: [0, -10 mm], fixed: both}
+  mass: {position: [1, -10 mm], mass: 1}
+members:
+  spring: {kind: spring, nodes: [wall, mass], stiffness: 100, rest_length: 1}
+ground: {stiffness: 1000, damping: 50, contacts: {mass: {}}, friction: {law: coulomb, mu: friction}}
+loads:
+  push: {node: mass, force: [10 N, 0], signal: {sine: {amplitude: 1, frequency: ratio*10/(2*pi)*1 Hz}}}
+solver: {integrator: rk4-events, step: 1 ms}
+run: {periods: 200, of: push, measure: {node: mass}}
+""")
+
+
+def without_stops(r):
+    """Largest friction over force for which the half cycle of x'' + x has no stop."""
+    static, half = 1 / (1 - r * r), math.pi / r
+
+    def free(b):
+        sine_part = -b * math.sin(half) / (1 + math.cos(half))
+        phase = sine_part / (static * r)
+        if abs(phase) >= 1:
+            return False
+        phase = math.asin(phase)
+        phase = math.pi - phase if static * math.cos(phase) < 0 else phase
+        return all(b * math.sin(t) + sine_part * math.cos(t) < static * r * math.sin(r * t + phase)
+                   for t in (half * k / 2000 for k in range(1, 2000)))
+
+    low, high = 0.0, 1.5
+    for _ in range(40):
+        middle = (low + high) / 2
+        low, high = (middle, high) if free(middle) else (low, middle)
+    return low
+
+
+for ratio in (0.8, 1.2):
+    dry = follow("dry.yaml", "friction=0.2..0.85", "--set", f"ratio={ratio}")
+    sticks = special(dry, "stick")
+    check(sticks and sticks[0]["node"] == "mass", f"ratio {ratio}: no stick: {dry['branches'][0]['special']}")
+    if sticks:
+        near(sticks[0]["value"], without_stops(ratio), 1e-3, f"first stop at ratio {ratio}")
+
+# ---- the two-mass crawler's velocities, computed apart (models/gallery)
+
+crawler = os.path.join(models, "gallery", "two-mass-crawler.yaml")
+for friction, velocity in ((0.1, -3.6798), (0.3, -4.4777), (0.5, -2.6839)):
+    two = follow(crawler, f"friction={friction - 0.01}..{friction + 0.01}", "--at", str(friction),
+                 "--set", "periods=300", "--steps", "1")
+    points = two["branches"][0]["points"]
+    start = [p for p in points if p.get("point") == "start"]
+    near(start[0]["velocity"], velocity * 1e-3, 1e-3, f"velocity at friction {friction}")
+
+# ---- the same for any number of threads, and twice
+
+for threads in ("1", "3"):
+    run("follow", "bilinear.yaml", "--over", "frequency=1.2Hz..1.4Hz", "-o", f"threads-{threads}", "-q",
+        env={"OMP_NUM_THREADS": threads})
+with open(os.path.join(work, "threads-1", "branches.csv"), encoding="utf-8") as a, \
+        open(os.path.join(work, "threads-3", "branches.csv"), encoding="utf-8") as b:
+    check(a.read() == b.read(), "the number of threads changes the result")
+
+# ---- two starts on one branch are told
+
+both = follow("bilinear.yaml", "frequency=1Hz..1.4Hz", "--at", "1.1Hz,1.2Hz")
+check(len(both["branches"]) == 1 and "on branch 1" in both["notes"][0], f"notes {both['notes']}")
+
+# ---- kicks: a linear motion always comes back, the larger of two stable ones does not
+
+kicked = json.loads(run("follow", "linear.yaml", "--over", "frequency=1Hz..1.1Hz", "--at", "1.05Hz", "--basins",
+                        "--json").stdout)
+check(kicked["basins"][0]["forwards"] is None, f"kicks {kicked['basins']}")
+between = round((low + high) / 2 / (2 * math.pi), 4)
+kicked = json.loads(run("follow", "duffing.yaml", "--over", "frequency=0.14Hz..0.22Hz", "--at",
+                        f"{between}Hz,0.14Hz", "--basins", "--json").stdout)
+pushed = [b for b in kicked["basins"] if b["value"] == between]
+check(len(pushed) == 2, f"two stable motions at {between} Hz: {kicked['basins']}")
+check(all(b["backwards"] is not None and 0 < b["backwards"] < 20 for b in pushed), f"kicks {pushed}")
+
+# ---- refusals
+
+
+def refused(model, over, text, *words, code=1):
+    done = run("follow", model, *(("--over", over) if over else ()), *words, code=code)
+    check(text in done.stderr, f"stderr lacks '{text}': {done.stderr}")
+
+
+refused("linear.yaml", None, "missing --over NAME=LOW..HIGH")
+refused("linear.yaml", "frequenzy=1Hz..2Hz", "did you mean 'frequency'?")
+refused("linear.yaml", "frequency=2Hz..1Hz", "the lower one first")
+refused("linear.yaml", "frequency=1Hz..2Hz", "within the range", "--at", "3Hz")
+refused("linear.yaml", "frequency=1Hz..2Hz", "no configuration 'I'", "--from", "I")
+refused("bilinear.yaml", "frequency=1Hz..2Hz", "locates no events", "--integrator", "rk4")
+with open(os.path.join(work, "linear.yaml"), encoding="utf-8") as file:
+    text = file.read()
+write("seconds.yaml", text.replace("periods: 200, of: push", "duration: 5 s"))
+refused("seconds.yaml", "frequency=1Hz..2Hz", "no drive whose period")
+write("two.yaml", text.replace("solver:", "  pull: {node: mass, force: [force, 0], "
+                               "signal: {sine: {amplitude: 1, frequency: 1.3*frequency}}}\nsolver:"))
+refused("two.yaml", "frequency=1Hz..2Hz", "does not repeat itself")
+write("chaos.yaml", OSCILLATOR.format(
+    name="Chaos", at=11, law="law: {kind: polynomial, coefficients: [-1 N/m, 0, 1 N/m^3]}, damping: 0.25",
+    parameters="frequency: 1/(2*pi)*1 Hz, force: 0.4 N"))
+refused("chaos.yaml", "force=0.39N..0.41N", "no periodic motion to follow", code=3)
+
+finish()
