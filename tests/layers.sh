@@ -28,6 +28,7 @@ breaches() {
         "engine/statics/modes engine/statics/rigidity engine/statics/form engine/statics/path|" \
         "engine/output|engine/output/draw engine/output/report|" \
         "engine/output/figures engine/output/film engine/output/page|engine/study/results|" \
+        "engine/study/sensitivity|" \
         "engine/study/cluster engine/study/tradeoff engine/study/sweep engine/study/follow|" \
         "engine/study/compare engine/study/search", line, "|")
       for (i = 1; i <= count; i++) {

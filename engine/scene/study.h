@@ -142,7 +142,10 @@ enum {
   X(LARGEST_FORCE, "largest_force", STRUT_OF_FORM)                                                 \
   X(LENGTHS, "lengths", STRUT_OF_FORM)                                                             \
   X(COST, "cost_of_transport", STRUT_OF_RUN)                                                       \
-  X(LOWEST_BARRIER, "lowest_barrier", STRUT_OF_EQUILIBRIA)
+  X(LOWEST_BARRIER, "lowest_barrier", STRUT_OF_EQUILIBRIA)                                         \
+  X(STIFFNESS, "stiffness", STRUT_OF_MODES)                                                        \
+  X(SHAPE, "shape_distance", STRUT_OF_RUN | STRUT_OF_EQUILIBRIA | STRUT_OF_MODES)                  \
+  X(CURVE, "curve_distance", STRUT_OF_PATH)
 
 typedef enum strut_keep {
 #define STRUT_KEEP_ENUM(name, word, of) STRUT_KEEP_##name,
@@ -187,6 +190,19 @@ typedef struct strut_study_figure {
   const double *times;             /* (time_count) [s] */
 } strut_study_figure;
 
+/** A sensitivity analysis: what follows from which parameters; see sensitivity_design.h. */
+typedef struct strut_study_sensitivity {
+  bool wanted;
+  size_t axis; /* of the study, the last one: a column for each parameter */
+  size_t of_count;
+  const char **of; /* (of_count) columns of the table */
+  int64_t samples; /* base samples; 0: derivatives only */
+  uint32_t seed;   /* of samples and of bootstraps */
+  uint32_t scheme; /* strut_sample_scheme */
+  bool derivatives;
+  double accuracy; /* relative, that of the runs; 0: rounding */
+} strut_study_sensitivity;
+
 /** How many energies, barriers and frequencies a row lists, unless the study says. */
 enum { STRUT_STUDY_LOWEST = 3, STRUT_STUDY_MOST_LOWEST = 20 };
 
@@ -223,6 +239,16 @@ typedef struct strut_study {
   size_t refine_axes[2];    /* the axes, in their order */
   /* What is searched; NULL: the points are all of the axes. */
   strut_study_search *search;
+  strut_study_sensitivity sensitivity;
+  /* Goals, see engine/study/sweep/goals.h. */
+  const char *stiffness_node; /* of the column stiffness; NULL: none */
+  double stiffness_direction; /* [rad] */
+  const char *like;           /* a configuration: the shape that is wanted; NULL: `shape` */
+  size_t shape_count;
+  const char **shape_nodes; /* (shape_count) */
+  double (*shape)[2];       /* (shape_count) [m] */
+  size_t curve_count;
+  double (*curve)[2]; /* (curve_count) displacement [m], force [N] */
 } strut_study;
 
 #endif

@@ -228,6 +228,9 @@ static strut_status complete_sweep(const strut_arguments *arguments, strut_sweep
   if (status) return status;
   if (!arguments->quiet || arguments->json)
     status = strut_sweep_print_end(state, table, arguments->json);
+  if (!status && !shard.count)
+    status = strut_sweep_sensitivity_complete(&study->plan, slots, arguments->output,
+                                              !arguments->quiet && !arguments->json);
   if (status || !state->failed) return status;
   fprintf(stderr,
           "strut: %lld of %lld points failed: see the table's columns status and "
@@ -321,6 +324,15 @@ static strut_status run_sweep(const strut_arguments *arguments) {
     return STRUT_USAGE;
   }
   status = strut_sweep_study_open(arguments, &study);
+  if (!status && study.plan.study->sensitivity.wanted &&
+      (strut_option_text(arguments, STRUT_OPTION_SHARD) ||
+       strut_option_text(arguments, STRUT_OPTION_EMIT))) {
+    fputs(
+        "strut sweep: a sensitivity analysis needs all points in one file: run it without "
+        "--shard and --emit\n",
+        stderr);
+    status = STRUT_USAGE;
+  }
   if (!status && study.plan.study->search) status = check_search(arguments);
   if (!status && arguments->count_points)
     status = strut_sweep_print_count(&study.plan, arguments->json);

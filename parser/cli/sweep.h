@@ -81,6 +81,14 @@ strut_status strut_sweep_refine_status(const strut_sweep_plan *plan, const char 
  */
 strut_status strut_sweep_refine_merge(const strut_arguments *arguments, bool *merged);
 
+/* sweep_sensitivity.c; nothing where the study has no sensitivity analysis */
+
+/** Checks that what is analysed are columns. STRUT_BAD_SCENE with the reason. */
+strut_status strut_sweep_sensitivity_check(const strut_sweep_plan *plan, strut_error *error);
+/** Writes sensitivity.csv and sensitivity.svg into the directory, and prints the report if wanted. */
+strut_status strut_sweep_sensitivity_complete(const strut_sweep_plan *plan, strut_slots *slots,
+                                              const char *directory, bool report);
+
 /** A progress bar on a terminal, occasional lines elsewhere. */
 typedef struct strut_sweep_progress {
   strut_progress bar;

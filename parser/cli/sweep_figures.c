@@ -121,6 +121,10 @@ strut_status strut_sweep_figures_check_files(const strut_sweep_plan *plan, const
     names[i + 1] = strut_arena_format(&arena, "%s.svg", study->figures[i].name);
     if (!names[i + 1]) names = NULL;
   }
+  if (names && study->sensitivity.wanted) {
+    names[study->figure_count + 1] = "sensitivity.csv";
+    names[study->figure_count + 2] = "sensitivity.svg";
+  }
   if (names && study->search) {
     names[study->figure_count + 1] = "best.csv";
     names[study->figure_count + 2] = "best.yaml";

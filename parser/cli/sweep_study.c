@@ -91,6 +91,7 @@ strut_status strut_sweep_study_try(const strut_arguments *arguments, strut_sweep
   if (!status) status = strut_sweep_plan_make(&file->study, &scenes, &study->plan, error);
   if (!status && file->study.search) status = bind_search(study, error);
   if (!status) status = strut_sweep_figures_check(&study->plan, error);
+  if (!status) status = strut_sweep_sensitivity_check(&study->plan, error);
   return status;
 }
 

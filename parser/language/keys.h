@@ -77,6 +77,8 @@
   X(DISTRIBUTION, "distribution", DISTRIBUTION_UNIFORM) \
   X(LIMIT, "limit", LIMIT_EVALUATIONS) \
   X(REFINE, "refine", REFINE_WHERE) \
+  X(SENSITIVITY, "sensitivity", SENSITIVITY_OF) \
+  X(STIFFNESS_AT, "stiffness_at", STIFFNESS_AT_NODE) \
   X(SEARCH, "search", SEARCH_MAXIMISE) \
   X(VARIABLE, "variable", VARIABLE_FROM)
 /* clang-format on */

@@ -313,6 +313,10 @@ static void check_computed(strut_study_reader *r, strut_fields *top) {
       {STRUT_KEY_STUDY_FORM, STRUT_OF_FORM},
       {STRUT_KEY_STUDY_CHECK, STRUT_OF_RUN},
       {STRUT_KEY_STUDY_TRAJECTORIES, STRUT_OF_RUN},
+      {STRUT_KEY_STUDY_STIFFNESS_AT, STRUT_OF_MODES},
+      {STRUT_KEY_STUDY_SHAPE, STRUT_OF_RUN | STRUT_OF_EQUILIBRIA | STRUT_OF_MODES},
+      {STRUT_KEY_STUDY_LIKE, STRUT_OF_RUN | STRUT_OF_EQUILIBRIA | STRUT_OF_MODES},
+      {STRUT_KEY_STUDY_CURVE, STRUT_OF_PATH},
   };
   const strut_study *study = &r->file->study;
   const char *words = strut_key_at(STRUT_KEY_STUDY_COMPUTE)->words;
@@ -369,14 +373,16 @@ static void read_points(strut_study_reader *r, strut_fields *top, const strut_ov
   if (axes->state == STRUT_GIVEN || search->state == STRUT_GIVEN)
     strut_study_read_axes(r, axes->state == STRUT_GIVEN ? axes->value : NULL, search);
   strut_study_read_refine(r, strut_slot_of(top, STRUT_KEY_STUDY_REFINE));
+  strut_study_read_sensitivity(r, top);
   check_overrides(r, count);
 }
 
-/* Without axes there must be a search. */
+/* Without axes there must be something else that makes points. */
 static void require_points(strut_study_reader *r, strut_fields *top) {
   char expected[300];
   strut_slot *axes = strut_slot_of(top, STRUT_KEY_STUDY_AXES);
   if (axes->state != STRUT_ABSENT || r->reader->holes ||
+      strut_slot_of(top, STRUT_KEY_STUDY_SENSITIVITY)->state != STRUT_ABSENT ||
       strut_slot_of(top, STRUT_KEY_STUDY_SEARCH)->state != STRUT_ABSENT)
     return;
   strut_report_error(r->reader, strut_root_place(r->reader), "the study lacks 'axes', expected %s",
@@ -412,6 +418,7 @@ static strut_status read_all(strut_study_reader *r, const strut_override *overri
   read_rest(r, &top);
   status = strut_study_open_sources(r, &top, error);
   read_keep(r, strut_slot_of(&top, STRUT_KEY_STUDY_KEEP));
+  strut_study_read_goals(r, &top);
   if (status == STRUT_OK) read_points(r, &top, overrides, count);
   if (reader->out_of_memory) return STRUT_NO_MEMORY;
   return status == STRUT_OK && reader->failed ? STRUT_BAD_SCENE : status;

@@ -269,7 +269,7 @@ void strut_study_read_axes(strut_study_reader *r, const strut_tree *list,
   size_t listed = list ? list->count : 0, names = list ? count_columns(list) : 0;
   size_t more = strut_study_search_columns(search);
   r->searching = more > 0;
-  study->axes = strut_reader_allocate(r->reader, arena, listed + more + 1, sizeof *study->axes);
+  study->axes = strut_reader_allocate(r->reader, arena, listed + more + 2, sizeof *study->axes);
   r->file->columns = strut_reader_allocate(r->reader, arena, names + r->declared_count + more + 1,
                                            sizeof *r->file->columns);
   r->file->tables = strut_reader_allocate(r->reader, arena, listed + 1, sizeof *r->file->tables);

@@ -5,6 +5,7 @@
 #ifndef STRUT_PARSER_STUDY_STUDY_READER_H
 #define STRUT_PARSER_STUDY_STUDY_READER_H
 
+#include "engine/scene/sample.h"
 #include "parser/read/reader.h"
 #include "parser/study/read_study.h"
 
@@ -77,6 +78,21 @@ void strut_study_read_points(strut_study_reader *r, const strut_tree *value,
                              strut_study_axis *axis);
 void strut_study_read_sample(strut_study_reader *r, const strut_tree *value,
                              strut_study_axis *axis);
+
+/** Reads parameters, at most `most`, and their distributions into columns of the axis; false: reported. */
+bool strut_study_read_distributions(strut_study_reader *r, const strut_tree *over,
+                                    strut_owner owner, size_t most, strut_study_axis *axis,
+                                    strut_distribution *distributions);
+
+/* study_goals.c */
+
+/** Reads what the study wants of its points, after `keep`. */
+void strut_study_read_goals(strut_study_reader *r, strut_fields *top);
+
+/* study_sensitivity.c */
+
+/** Reads the analysis and adds its points as the last axis, after all others. */
+void strut_study_read_sensitivity(strut_study_reader *r, strut_fields *top);
 
 /** Set in the line of every place of the study's text within the tree of the model. */
 #define STRUT_OVERLAY_LINE ((uint32_t)1 << 30)

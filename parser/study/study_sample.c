@@ -93,27 +93,20 @@ static void make_values(strut_study_reader *r, const strut_fields *fields, strut
     r->reader->out_of_memory = true;
 }
 
-void strut_study_read_sample(strut_study_reader *r, const strut_tree *value,
-                             strut_study_axis *axis) {
-  strut_fields fields;
-  strut_distribution distributions[STRUT_SAMPLE_MOST_NUMBERS] = {0};
+bool strut_study_read_distributions(strut_study_reader *r, const strut_tree *over,
+                                    strut_owner owner, size_t most, strut_study_axis *axis,
+                                    strut_distribution *distributions) {
   bool fine = true;
-  strut_read_fields(r->reader, STRUT_SECTION_SAMPLE, value, sample_owner, &fields);
-  if (!fields.broken) strut_require(r->reader, &fields, sample_owner, value->place);
-  const strut_slot *over = strut_slot_of(&fields, STRUT_KEY_SAMPLE_OVER);
-  const strut_slot *count = strut_slot_of(&fields, STRUT_KEY_SAMPLE_COUNT);
-  if (over->state != STRUT_GIVEN) return;
-  if (over->value->count == 0 || over->value->count > STRUT_SAMPLE_MOST_NUMBERS) {
-    strut_report_error(r->reader, over->value->place,
-                       "expected 1 to %d parameters for 'over' of the sample, found %zu",
-                       STRUT_SAMPLE_MOST_NUMBERS, (size_t)over->value->count);
-    return;
+  if (over->count == 0 || over->count > most) {
+    strut_report_error(r->reader, over->place,
+                       "expected 1 to %zu parameters for 'over' of %s, found %zu", most,
+                       strut_owner_text(r->reader, owner), (size_t)over->count);
+    return false;
   }
-  axis->count = count->state == STRUT_GIVEN ? (int64_t)count->number[0] : 1;
   axis->columns =
-      strut_reader_allocate(r->reader, &r->file->arena, over->value->count, sizeof *axis->columns);
-  if (!axis->columns) return;
-  for (const strut_tree *key = over->value->first; key; key = key->next->next) {
+      strut_reader_allocate(r->reader, &r->file->arena, over->count, sizeof *axis->columns);
+  if (!axis->columns) return false;
+  for (const strut_tree *key = over->first; key; key = key->next->next) {
     strut_study_along a = {.key = key, .value = key->next};
     if (!strut_study_declared(r, key->text) ||
         strut_name_map_find(&r->given, key->text) >= 0) { /* no slot for it */
@@ -125,5 +118,20 @@ void strut_study_read_sample(strut_study_reader *r, const strut_tree *value,
     a.setting = &r->file->columns[r->file->column_count++];
     fine = read_parameter(r, &a, &distributions[axis->column_count++]) && fine;
   }
+  return fine;
+}
+
+void strut_study_read_sample(strut_study_reader *r, const strut_tree *value,
+                             strut_study_axis *axis) {
+  strut_fields fields;
+  strut_distribution distributions[STRUT_SAMPLE_MOST_NUMBERS] = {0};
+  strut_read_fields(r->reader, STRUT_SECTION_SAMPLE, value, sample_owner, &fields);
+  if (!fields.broken) strut_require(r->reader, &fields, sample_owner, value->place);
+  const strut_slot *over = strut_slot_of(&fields, STRUT_KEY_SAMPLE_OVER);
+  const strut_slot *count = strut_slot_of(&fields, STRUT_KEY_SAMPLE_COUNT);
+  if (over->state != STRUT_GIVEN) return;
+  axis->count = count->state == STRUT_GIVEN ? (int64_t)count->number[0] : 1;
+  bool fine = strut_study_read_distributions(r, over->value, sample_owner,
+                                             STRUT_SAMPLE_MOST_NUMBERS, axis, distributions);
   if (fine && !fields.broken) make_values(r, &fields, axis, distributions);
 }

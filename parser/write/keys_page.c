@@ -131,6 +131,9 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
         "`axes: [{points: {...}}]` of a study; `{points: FILE}` is short for it.",
     [STRUT_SECTION_SAMPLE] = "`axes: [{sample: {...}}]` of a study: parameters from distributions.",
     [STRUT_SECTION_REFINE] = "`refine: {...}` of a study.",
+    [STRUT_SECTION_STIFFNESS_AT] = "`stiffness_at: {...}` of a study.",
+    [STRUT_SECTION_SENSITIVITY] =
+        "`sensitivity: {...}` of a study; results are in `sensitivity.csv` beside the table.",
     [STRUT_SECTION_SEARCH] =
         "`search: {...}` of a study; either `maximise` or `minimise`. [Searches](search.md) has "
         "examples.",
@@ -138,7 +141,8 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
         "`over: {NAME: {...}}` of a search. `{NAME: [...]}` is a list of choices, numbers or "
         "texts.",
     [STRUT_SECTION_LIMIT] = "`limit: {...}` of a study.",
-    [STRUT_SECTION_DISTRIBUTION] = "`over: {NAME: {...}}` of a sample, with one of these keys.",
+    [STRUT_SECTION_DISTRIBUTION] =
+        "`over: {NAME: {...}}` of a sample or a sensitivity analysis, with one of these keys.",
     [STRUT_SECTION_SENSOR] =
         "`sensors: {NAME: {...}}` with one thing to sense. Expressions of signals, and measured "
         "quantities, use the name. In an expression `rate(NAME)` is the rate of a length, an angle "

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Numbers that a search may ask for, against closed forms: cost of transport, positive work, the time
-# at which something is reached, the largest force and its member, the lowest barrier.
+# at which something is reached, the largest force and its member, the lowest barrier,
+# stiffness at a node, distances from a shape and from a curve of force over displacement.
 #
 #   python3 objectives_test.py STRUT
 import csv
@@ -156,7 +157,107 @@ keep: [stable_count, barriers, lowest_barrier]
     near(row["lowest_barrier [J]"], min(barriers), "lowest barrier", 1e-15)
 
 
+# Von Mises' truss: the stiffness of its apex, the force that holds it, its shape turned and moved.
+def goals():
+    truss = f"{models}/basics/von-mises-truss.yaml"
+    rest = math.hypot(1, 0.3)
+
+    def force(u):
+        y = 0.3 + u
+        return 2000 * y * (1 - rest / math.hypot(1, y))
+
+    for degrees in (90, 0, 30):
+        row = sweep(f"stiffness-{degrees}", f"""model: {truss}
+compute: modes
+axes: [{{load: [0 N]}}]
+keep: [stiffness]
+stiffness_at: {{node: apex, direction: {degrees} deg}}
+""")[0]
+        x, y = 2000 / rest ** 2, 2000 * 0.09 / rest ** 2
+        c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+        near(row["stiffness [N/m]"], 1 / (c * c / x + s * s / y), f"stiffness at {degrees} deg")
+    row = sweep("held", f"""model: {truss}
+compute: modes
+axes: [{{load: [0 N]}}]
+keep: [stiffness]
+stiffness_at: {{node: left, direction: 0 deg}}
+""")[0]
+    check(row["stiffness [N/m]"] == "", str(row))
+    points = [-0.05, -0.1, -0.2, -0.35, -0.5, -0.6]
+    for off in (0.0, 2.0):
+        pairs = ", ".join(f"[{u} m, {force(u) + off} N]" for u in points)
+        row = sweep(f"curve-{off}", f"""model: {truss}
+compute: path
+axes: [{{load: [0 N]}}]
+path: {{over: apex.y, until: -0.6 m, steps: 2000}}
+keep: [curve_distance, end]
+curve: [{pairs}]
+""")[0]
+        found = row["curve_distance [N]"]
+        check(found != "" and abs(float(found) - off) < 0.02, f"curve off by {off}: {row}")
+    row = sweep("far", f"""model: {truss}
+compute: path
+axes: [{{load: [0 N]}}]
+path: {{over: apex.y, until: -0.1 m}}
+keep: [curve_distance]
+curve: [[-0.5 m, 0 N]]
+""")[0]
+    check(row["curve_distance [N]"] == "", str(row))
+    # as drawn but for the apex, which hangs 0.1 m lower; turned by 30 degrees and moved
+    def turned(x, y):
+        c, s = math.cos(math.pi / 6), math.sin(math.pi / 6)
+        return f"[{c * x - s * y + 5} m, {s * x + c * y - 3} m]"
+
+    for low, wanted in ((0.0, 0.0), (0.1, 0.1 * math.sqrt(2 / 9))):
+        shape = (f"{{left: {turned(-1, 0)}, right: {turned(1, 0)}, apex: {turned(0, 0.3 - low)}}}")
+        for compute, place in (("modes", ""), ("run", "run: {duration: 10 ms}\n")):
+            row = sweep(f"shape-{compute}-{low}", f"""model: {truss}
+compute: {compute}
+axes: [{{load: [0 N]}}]
+keep: [shape_distance]
+{place}shape: {shape}
+""")[0]
+            check(abs(float(row["shape_distance [m]"]) - wanted) < 1e-9, f"{row}: {wanted}")
+    # the nearest of the stable states: the apex below
+    row = sweep("below", f"""model: {truss}
+compute: equilibria
+axes: [{{load: [0 N]}}]
+keep: [shape_distance, stable_count]
+shape: {{left: [-1 m, 0 m], right: [1 m, 0 m], apex: [0 m, -0.3 m]}}
+""")[0]
+    check(abs(float(row["shape_distance [m]"])) < 1e-9, str(row))
+    row = sweep("like", f"""model: {models}/crawler/crawler.yaml
+compute: modes
+at: "II"
+axes: [{{friction: [0.1]}}]
+keep: [shape_distance]
+like: "II"
+""")[0]
+    check(float(row["shape_distance [m]"]) < 1e-5, str(row))
+    base = f"strut: 1\nstudy: s\nmodel: {truss}\naxes: [{{load: [0 N]}}]\n"
+    for more, words in (
+            ("compute: modes\nkeep: [stiffness]\n", "'stiffness' needs 'stiffness_at'"),
+            ("compute: modes\nkeep: [stiffness]\nstiffness_at: {node: top, direction: 0 deg}\n",
+             "no node 'top'"),
+            ("compute: modes\nstiffness_at: {node: apex, direction: 0 deg}\n", "add it to 'keep'"),
+            ("compute: modes\nkeep: [stiffness]\nstiffness_at: {node: apex, direction: 1 m}\n",
+             "expected an angle"),
+            ("keep: [shape_distance]\n", "'shape_distance' needs 'shape' of the study, or 'like'"),
+            ("keep: [shape_distance]\nlike: \"II\"\n", "no configuration 'II'"),
+            ("keep: [shape_distance]\nshape: {tip: [0, 0]}\n", "no node 'tip'"),
+            ("keep: [shape_distance]\nshape: {apex: 3}\n", "expected two numbers"),
+            ("compute: path\nkeep: [curve_distance]\ncurve: [[1 mm, 2 N]]\n", "'over: NODE.x'"),
+            ("compute: path\npath: {over: apex.y, until: -1 mm}\nkeep: [curve_distance]\n"
+             "curve: [[1 N, 2 N]]\n", "expected a length"),
+            ("compute: path\npath: {over: apex.y, until: -1 mm}\nkeep: [curve_distance]\n"
+             "curve: [3]\n", "expected a displacement and a force")):
+        write("wrong.yaml", base + more)
+        said = run("sweep", "wrong.yaml", "-o", "wrong", code=2).stderr
+        check(words in said, f"{more}: {said}")
+
+
 moves()
+goals()
 lanes()
 compared()
 at_rest()

@@ -15,6 +15,7 @@
 #include "engine/statics/modes/modes.h"
 #include "engine/statics/path/path.h"
 #include "engine/statics/rigidity/rigidity.h"
+#include "engine/study/sweep/goals.h"
 #include "engine/study/sweep/sweep_parts.h"
 
 /* Results of one point; those of the study's computation are filled. */
@@ -28,6 +29,8 @@ typedef struct rest_result {
   strut_path path;
   strut_form form;
   strut_arena arena;
+  const strut_study *study;
+  double stiffness; /* of the study's node [N/m] */
 } rest_result;
 
 /* ---- single numbers ---- */
@@ -51,6 +54,19 @@ static double lowest_barrier(const rest_result *r) {
   double lowest = (double)NAN;
   for (size_t i = 0; i < r->stable_count; i++) lowest = fmin(lowest, state_barrier(r, i));
   return lowest;
+}
+
+/* Distance of positions from the shape that the study wants. */
+static double shape_distance(const rest_result *r, const double *q) {
+  return q ? strut_goals_shape_distance(r->study, r->model->scene, q) : (double)NAN;
+}
+
+/* That of the stable state nearest to it. */
+static double nearest_shape(const rest_result *r) {
+  double least = (double)NAN;
+  for (size_t i = 0; i < r->stable_count; i++)
+    least = fmin(least, shape_distance(r, r->equilibria.list[r->stable[i]].point.q));
+  return least;
 }
 
 static double count_modes(const strut_modes *modes, strut_mode_kind kind) {
@@ -128,7 +144,8 @@ typedef enum column_shape {
   X(BARRIERS, "barrier", "J", NUMBERS, state_barrier(r, i))                                        \
   X(STARTS, "starts", "1", NUMBER, (double)r->equilibria.starts)                                   \
   X(MISSED, "missed_probability", "1", NUMBER, r->equilibria.missed)                               \
-  X(LOWEST_BARRIER, "lowest_barrier", "J", NUMBER, lowest_barrier(r))
+  X(LOWEST_BARRIER, "lowest_barrier", "J", NUMBER, lowest_barrier(r))                              \
+  X(SHAPE, "shape_distance", "m", NUMBER, nearest_shape(r))
 #define MODES_COLUMNS(X)                                                                           \
   X(AT, "at", "1", WORD, (double)NAN)                                                              \
   X(FREQUENCIES, "frequency", "Hz", NUMBERS, frequency_of(elastic_mode(&r->modes, i)))             \
@@ -137,7 +154,9 @@ typedef enum column_shape {
   X(MODE_COUNTS, "rigid_body_modes", "1", NUMBER, count_modes(&r->modes, STRUT_MODE_RIGID))        \
   X(MODE_COUNTS, "mechanism_modes", "1", NUMBER, count_modes(&r->modes, STRUT_MODE_MECHANISM))     \
   X(MODE_COUNTS, "unstable_modes", "1", NUMBER, count_modes(&r->modes, STRUT_MODE_UNSTABLE))       \
-  X(CONDITION, "condition", "1", NUMBER, r->modes.condition)
+  X(CONDITION, "condition", "1", NUMBER, r->modes.condition)                                       \
+  X(STIFFNESS, "stiffness", "N/m", NUMBER, r->stiffness)                                           \
+  X(SHAPE, "shape_distance", "m", NUMBER, shape_distance(r, r->modes.q))
 #define RIGIDITY_COLUMNS(X)                                                                        \
   X(RANK, "rank", "1", NUMBER, (double)r->rigidity.spaces.rank)                                    \
   X(SELF_STRESS, "self_stress_count", "1", NUMBER, (double)r->rigidity.states.count)               \
@@ -155,7 +174,8 @@ typedef enum column_shape {
   X(CRITICAL, "critical_factor", NULL, NUMBER, first_factor(&r->path, loses_stability))            \
   X(LAST_FACTOR, "last_factor", NULL, NUMBER, last_factor(&r->path))                               \
   X(PATH_EVENTS, "event_count", "1", NUMBER, (double)r->path.event_count)                          \
-  X(END, "end", "1", WORD, (double)NAN)
+  X(END, "end", "1", WORD, (double)NAN)                                                            \
+  X(CURVE, "curve_distance", "N", NUMBER, strut_goals_curve_distance(r->study, &r->path))
 #define FORM_COLUMNS(X)                                                                            \
   X(MOVED, "moved", "m", NUMBER, r->form.moved)                                                    \
   X(RESIDUAL, "residual", "N", NUMBER, r->form.residual)                                           \
@@ -221,10 +241,16 @@ static const char *word_of(const rest_result *r, strut_keep keep, size_t i,
   return end_word(r->path.end);
 }
 
+/* Columns that only a study which asks for them has. */
+static bool is_goal(strut_keep keep) {
+  return keep == STRUT_KEEP_LOWEST_BARRIER || keep == STRUT_KEEP_STIFFNESS ||
+         keep == STRUT_KEEP_SHAPE || keep == STRUT_KEEP_CURVE;
+}
+
 uint64_t strut_statics_usual(strut_compute compute) {
   uint64_t usual = 0;
   for (size_t i = 0; i < COLUMNS; i++)
-    if (columns[i].compute == compute && columns[i].keep != STRUT_KEEP_LOWEST_BARRIER)
+    if (columns[i].compute == compute && !is_goal(columns[i].keep))
       usual |= (uint64_t)1 << columns[i].keep;
   return usual;
 }
@@ -288,7 +314,8 @@ strut_status strut_statics_check(const strut_study *study, const strut_scene *sc
                                  strut_error *error) {
   strut_path_options options;
   const char *unit;
-  if (study->compute != STRUT_COMPUTE_PATH) return STRUT_OK;
+  strut_status status = strut_goals_check(study, scene, error);
+  if (status || study->compute != STRUT_COMPUTE_PATH) return status;
   return choose_path(study, scene, &options, &unit, error);
 }
 
@@ -381,6 +408,8 @@ static strut_status find_modes(const strut_study *study, strut_sweep_job *job, r
   strut_status status =
       strut_modes_find(r->model, &job->setup.experiment, &options, &r->modes, &job->error);
   if (!status) warn_of_overload(job, r->model, r->modes.q, r->modes.at);
+  if (!status && study->stiffness_node)
+    status = strut_goals_stiffness(study, r->model, r->modes.q, &r->stiffness, &job->error);
   return status;
 }
 
@@ -473,6 +502,8 @@ strut_status strut_statics_point(const strut_sweep_worker *w, strut_sweep_job *j
   if (!r) return strut_fail(&job->error, STRUT_NO_MEMORY, "out of memory");
   strut_status status = strut_model_compile(&job->setup.scene, &model, &job->error);
   r->model = model;
+  r->study = w->plan->study;
+  r->stiffness = (double)NAN;
   job->setup.experiment.interrupt = strut_sweep_interrupt_of(w, job);
   strut_sweep_fill_counts(w->plan, model, &job->cells);
   if (!status) status = compute(w, job, r);

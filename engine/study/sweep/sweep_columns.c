@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/study/sweep/goals.h"
 #include "engine/study/sweep/grid.h"
 #include "engine/study/sweep/sweep_parts.h"
 
@@ -198,6 +199,8 @@ static bool add_columns(strut_sweep_plan *plan, const strut_setup *setup) {
   fine = add_quantities(plan, &setup->experiment);
   if (fine && keeps(plan, STRUT_KEEP_OUTCOME))
     fine = strut_sweep_add_column(plan, "", "outcome", "1", true);
+  if (fine && keeps(plan, STRUT_KEEP_SHAPE))
+    fine = strut_sweep_add_column(plan, "", "shape_distance", "m", false);
   if (fine && plan->start) fine = strut_sweep_add_column(plan, "", "start_unstable", "1", false);
   if (fine && plan->check)
     fine = strut_sweep_add_column(plan, "check_", "velocity", "m/s", false) &&
@@ -226,6 +229,8 @@ static strut_status choose_columns(strut_sweep_plan *plan, const strut_setup *se
   bool usual = !study->keep && !study->quantity_count;
   if (study->compute == STRUT_COMPUTE_RUN) {
     choose_of_run(plan, setup, usual);
+    strut_status status = strut_goals_check(study, scene, error);
+    if (status) return status;
   } else {
     plan->keep = usual ? strut_statics_usual((strut_compute)study->compute) : study->keep;
     strut_status status = strut_statics_check(study, scene, error);
@@ -398,6 +403,10 @@ void strut_sweep_fill(const strut_sweep_plan *plan, const strut_setup *setup,
   }
   fill_measured(plan, summary, cells);
   if (keeps(plan, STRUT_KEEP_OUTCOME)) strut_sweep_word(cells, outcome);
+  if (keeps(plan, STRUT_KEEP_SHAPE))
+    strut_sweep_number(
+        cells, summary ? strut_goals_shape_distance(plan->study, &setup->scene, summary->positions)
+                       : (double)NAN);
   if (plan->start)
     strut_sweep_number(cells, summary ? (double)summary->settle.unstable : (double)NAN);
 }

@@ -1,0 +1,325 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/study/sensitivity/sensitivity.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/base/c_locale.h"
+#include "engine/base/number_text.h"
+#include "engine/output/buffer.h"
+#include "engine/output/file.h"
+#include "engine/scene/sensitivity_design.h"
+
+enum { MOST_TEXTS = 12 };
+static const strut_estimate MISSING = {(double)NAN, (double)NAN, (double)NAN, (double)NAN};
+
+static const char *const words[] = {
+#define WORD(name, word) word,
+    STRUT_SENSITIVITY_MEASURES(WORD)};
+
+const char *strut_sensitivity_word(strut_sensitivity_measure measure) { return words[measure]; }
+
+/* What is analysed: a column, or a condition on it, which is 0 or 1. */
+typedef struct target {
+  const char *name;
+  size_t column;    /* of the table */
+  size_t place;     /* among its numbers, or among its words */
+  const char *text; /* the column has it; NULL: a column of numbers */
+  bool above_zero;
+} target;
+
+typedef struct analysis {
+  const strut_study *study;
+  const strut_study_sensitivity *s;
+  const strut_study_axis *axis;
+  strut_slots *slots;
+  const strut_slot_column *columns;
+  size_t column_count, axis_columns;
+  int64_t block; /* points of one analysis */
+  target *targets;
+  size_t target_count, target_room;
+  double *values;     /* (block) of a target */
+  double *parameters; /* (block, parameters) */
+  double *design;     /* (samples, parameters + 2) or (2 samples) */
+  strut_sensitivity_result *result;
+  size_t room; /* for rows */
+  strut_arena scratch;
+} analysis;
+
+static size_t find_column(const strut_slot_column *columns, size_t count, const char *name) {
+  size_t i = 0;
+  while (i < count && strcmp(columns[i].name, name) != 0) i++;
+  return i;
+}
+
+bool strut_sensitivity_check(const strut_study *study, const strut_slot_column *columns,
+                             size_t count, const char **missing) {
+  const strut_study_sensitivity *s = &study->sensitivity;
+  for (size_t i = 0; i < s->of_count; i++)
+    if (find_column(columns, count, s->of[i]) == count) {
+      *missing = s->of[i];
+      return false;
+    }
+  return true;
+}
+
+static bool add_target(analysis *a, target t) {
+  if (a->target_count == a->target_room) return true; /* more texts than are described */
+  a->targets[a->target_count++] = t;
+  return t.name != NULL;
+}
+
+/* Adds a text to a sorted list without twins. */
+static size_t note_text(char texts[][STRUT_SLOT_WORD], size_t count, const char *text) {
+  size_t at = 0;
+  while (at < count && strcmp(texts[at], text) < 0) at++;
+  if (!*text || (at < count && strcmp(texts[at], text) == 0) || count == MOST_TEXTS) return count;
+  memmove(texts[at + 1], texts[at], (count - at) * sizeof *texts);
+  memcpy(texts[at], text, STRUT_SLOT_WORD);
+  return count + 1;
+}
+
+/* A target for each text that a column has at any point. */
+static bool add_texts(analysis *a, target t) {
+  char texts[MOST_TEXTS + 1][STRUT_SLOT_WORD];
+  size_t count = 0;
+  strut_result_slot row;
+  for (int64_t p = 0; p < strut_slots_plan_of(a->slots)->points; p++)
+    if (strut_slots_get(a->slots, p, &row) && row.status == STRUT_OK)
+      count = note_text(texts, count, row.words[t.place]);
+  for (size_t i = 0; i < count; i++) {
+    t.text = strut_arena_format(&a->scratch, "%s", texts[i]);
+    t.name = strut_arena_format(&a->result->arena, "%s = %s", a->columns[t.column].name, texts[i]);
+    if (!t.text || !add_target(a, t)) return false;
+  }
+  return true;
+}
+
+static bool list_targets(analysis *a) {
+  bool fine = true;
+  a->target_room = a->s->of_count * MOST_TEXTS;
+  a->targets = strut_arena_allocate(&a->scratch, a->target_room + 1, sizeof *a->targets);
+  for (size_t i = 0; i < a->s->of_count && fine && a->targets; i++) {
+    target t = {.column = find_column(a->columns, a->column_count, a->s->of[i])};
+    const strut_slot_column *c = &a->columns[t.column];
+    for (size_t k = 0; k < t.column; k++) t.place += a->columns[k].word == c->word;
+    if (c->word) {
+      fine = add_texts(a, t);
+      continue;
+    }
+    t.name = strut_arena_format(&a->result->arena, "%s", c->name);
+    fine = add_target(a, t);
+    t.above_zero = true;
+    t.name = strut_arena_format(&a->result->arena, "%s > 0", c->name);
+    if (a->s->samples > 0) fine = fine && add_target(a, t);
+  }
+  return fine && a->targets;
+}
+
+static bool is_condition(const target *t) { return t->text || t->above_zero; }
+
+static double value_of(const target *t, const strut_result_slot *row) {
+  if (row->status != STRUT_OK) return (double)NAN;
+  if (t->text)
+    return *row->words[t->place] ? strcmp(row->words[t->place], t->text) == 0 : (double)NAN;
+  double number = row->numbers[t->place];
+  return t->above_zero && isfinite(number) ? (double)(number > 0.0) : number;
+}
+
+/* The values of a target at the points from `first` on. */
+static void read_values(analysis *a, int64_t first, const target *t) {
+  for (int64_t p = 0; p < a->block; p++) {
+    strut_result_slot row;
+    bool there = strut_slots_get(a->slots, first + p, &row);
+    a->values[p] = there ? value_of(t, &row) : (double)NAN;
+  }
+}
+
+static bool add_row(analysis *a, strut_sensitivity_row row) {
+  if (a->result->count == a->room) return false;
+  a->result->rows[a->result->count++] = row;
+  return row.unit != NULL;
+}
+
+static strut_estimate scaled(strut_estimate e, double factor) {
+  double low = e.low * factor, high = e.high * factor;
+  return (strut_estimate){e.value * factor, e.error * fabs(factor), fmin(low, high),
+                          fmax(low, high)};
+}
+
+/* "m/s/(N/m)", "m/kg", "1/s" */
+static const char *quotient_unit(analysis *a, const char *of, const char *by) {
+  bool several = strpbrk(by, "/ ") != NULL;
+  if (strcmp(by, "1") == 0) return of;
+  return strut_arena_format(&a->result->arena, several ? "%s/(%s)" : "%s/%s", of, by);
+}
+
+static bool add_derivatives(analysis *a, int64_t first, const target *t) {
+  const double *f = a->values;
+  const char *of = a->columns[t->column].unit;
+  for (size_t k = 0; k < a->axis->column_count; k++) {
+    const strut_study_column *column = &a->axis->columns[k];
+    int64_t at = strut_sensitivity_moved(k, 0);
+    const double *x = column->number, moved[] = {f[at], f[at + 1], f[at + 2], f[at + 3]};
+    size_t used = 0;
+    for (int i = 0; i < 4; i++) used += isfinite(moved[i]);
+    strut_estimate d = strut_sensitivity_derivative(moved, x[at] - x[at + 1], x[at + 2] - x[at + 3],
+                                                    a->s->accuracy * fabs(f[0]));
+    strut_sensitivity_row row = {
+        .point = first, .of = t->name, .parameter = column->name, .used = used};
+    row.measure = STRUT_SENSITIVITY_DERIVATIVE;
+    row.estimate = d;
+    row.unit = quotient_unit(a, of, column->unit);
+    if (!add_row(a, row)) return false;
+    row.measure = STRUT_SENSITIVITY_ELASTICITY;
+    row.estimate = f[0] != 0.0 ? scaled(d, x[0] / f[0]) : MISSING;
+    row.unit = "1";
+    if (!add_row(a, row)) return false;
+  }
+  return true;
+}
+
+/* Mean and deviation, or the share, of the independent samples A and B. */
+static bool add_statistics(analysis *a, int64_t first, const target *t) {
+  size_t count = a->axis->column_count, n = 0;
+  for (int64_t j = 0; j < a->s->samples; j++) {
+    int64_t at = strut_sensitivity_sample(a->s, count, j);
+    a->design[n++] = a->values[at];
+    a->design[n++] = a->values[at + (int64_t)count + 1];
+  }
+  size_t used = 0;
+  for (size_t i = 0; i < n; i++) used += isfinite(a->design[i]);
+  strut_sensitivity_row row = {.point = first, .of = t->name, .unit = "1", .used = used};
+  if (is_condition(t)) {
+    row.measure = STRUT_SENSITIVITY_SHARE;
+    row.estimate = strut_sensitivity_share(a->design, n);
+    return add_row(a, row);
+  }
+  row.unit = a->columns[t->column].unit;
+  row.measure = STRUT_SENSITIVITY_MEAN;
+  row.estimate = strut_sensitivity_mean(a->design, n);
+  if (!add_row(a, row)) return false;
+  row.measure = STRUT_SENSITIVITY_DEVIATION;
+  row.estimate = MISSING;
+  row.estimate.value = strut_sensitivity_deviation(a->design, n);
+  return add_row(a, row);
+}
+
+static strut_status add_indices(analysis *a, int64_t first, const target *t) {
+  strut_estimate of_first[STRUT_SENSITIVITY_MOST], of_total[STRUT_SENSITIVITY_MOST];
+  size_t count = a->axis->column_count, used;
+  const double *design = a->values + strut_sensitivity_sample(a->s, count, 0);
+  strut_status status = strut_sensitivity_indices(design, (size_t)a->s->samples, count, a->s->seed,
+                                                  of_first, of_total, &used);
+  for (size_t k = 0; k < count && !status; k++) {
+    strut_sensitivity_row row = {.point = first,
+                                 .of = t->name,
+                                 .parameter = a->axis->columns[k].name,
+                                 .unit = "1",
+                                 .used = used,
+                                 .measure = STRUT_SENSITIVITY_FIRST_ORDER,
+                                 .estimate = of_first[k]};
+    bool fine = add_row(a, row);
+    row.measure = STRUT_SENSITIVITY_TOTAL;
+    row.estimate = of_total[k];
+    if (!fine || !add_row(a, row)) status = STRUT_NO_MEMORY;
+  }
+  return status;
+}
+
+static strut_status analyse_target(analysis *a, int64_t first, const target *t) {
+  read_values(a, first, t);
+  if (a->s->derivatives && !is_condition(t) && !add_derivatives(a, first, t))
+    return STRUT_NO_MEMORY;
+  if (a->s->samples == 0) return STRUT_OK;
+  return add_statistics(a, first, t) ? add_indices(a, first, t) : STRUT_NO_MEMORY;
+}
+
+strut_status strut_sensitivity_find(const strut_study *study, strut_slots *slots,
+                                    strut_sensitivity_result *result, strut_error *error) {
+  const strut_slots_plan *plan = strut_slots_plan_of(slots);
+  analysis a = {.study = study,
+                .s = &study->sensitivity,
+                .axis = &study->axes[study->sensitivity.axis],
+                .slots = slots,
+                .columns = plan->columns,
+                .column_count = plan->column_count,
+                .result = result};
+  *result = (strut_sensitivity_result){0};
+  size_t count = a.axis->column_count;
+  a.block = a.axis->count;
+  a.values = strut_arena_allocate(&a.scratch, (size_t)a.block, sizeof *a.values);
+  a.design = strut_arena_allocate(&a.scratch, 2 * (size_t)a.s->samples + 1, sizeof *a.design);
+  bool fine = a.values && a.design && list_targets(&a);
+  a.room = (size_t)(plan->points / a.block) * a.target_count * (4 * count + 2);
+  if (fine) result->rows = strut_arena_allocate(&result->arena, a.room + 1, sizeof *result->rows);
+  strut_status status = fine && result->rows ? STRUT_OK : STRUT_NO_MEMORY;
+  for (int64_t first = 0; first < plan->points && !status; first += a.block)
+    for (size_t i = 0; i < a.target_count && !status; i++)
+      status = analyse_target(&a, first, &a.targets[i]);
+  strut_arena_free(&a.scratch);
+  return status ? strut_no_memory(error, "") : STRUT_OK;
+}
+
+/* ---- the table ---- */
+
+static void put_text(strut_buffer *b, const char *text) {
+  bool quoted = strpbrk(text, ",\"\r\n") != NULL;
+  strut_buffer_add(b, quoted ? "\"" : "");
+  for (; *text; text++) strut_buffer_add(b, *text == '"' ? "\"\"" : "%c", *text);
+  strut_buffer_add(b, quoted ? "\"," : ",");
+}
+
+static void put_number(strut_buffer *b, double value) {
+  char text[STRUT_NUMBER_TEXT];
+  if (isfinite(value)) strut_number_text(value, text);
+  strut_buffer_add(b, "%s,", isfinite(value) ? text : "");
+}
+
+/* Columns of the other axes: all before that of the analysis. */
+static size_t other_columns(const strut_study *study) {
+  size_t count = 0;
+  for (size_t i = 0; i < study->sensitivity.axis; i++) count += study->axes[i].column_count;
+  return count;
+}
+
+static void put_axes(strut_buffer *b, const strut_study *study, strut_slots *slots, int64_t point) {
+  const strut_slots_plan *plan = strut_slots_plan_of(slots);
+  strut_result_slot row;
+  size_t numbers = 0, texts = 0, count = other_columns(study);
+  bool there = strut_slots_get(slots, point, &row);
+  for (size_t i = 0; i < count; i++) {
+    if (plan->columns[i].word)
+      put_text(b, there ? row.words[texts++] : "");
+    else
+      put_number(b, there ? row.numbers[numbers++] : (double)NAN);
+  }
+}
+
+strut_status strut_sensitivity_write(const strut_study *study, strut_slots *slots,
+                                     const strut_sensitivity_result *result, const char *directory,
+                                     strut_error *error) {
+  const strut_slots_plan *plan = strut_slots_plan_of(slots);
+  strut_buffer b = {0};
+  for (size_t i = 0; i < other_columns(study); i++) {
+    const strut_slot_column *c = &plan->columns[i];
+    bool plain = strcmp(c->unit, "1") == 0;
+    strut_buffer_add(&b, plain ? "%s%s," : "%s [%s],", c->name, plain ? "" : c->unit);
+  }
+  strut_buffer_add(&b, "of,measure,parameter,value,error,low,high,unit,used\n");
+  for (size_t i = 0; i < result->count; i++) {
+    const strut_sensitivity_row *r = &result->rows[i];
+    put_axes(&b, study, slots, r->point);
+    put_text(&b, r->of);
+    put_text(&b, strut_sensitivity_word(r->measure));
+    put_text(&b, r->parameter ? r->parameter : "");
+    put_number(&b, r->estimate.value);
+    put_number(&b, r->estimate.error);
+    put_number(&b, r->estimate.low);
+    put_number(&b, r->estimate.high);
+    put_text(&b, strcmp(r->unit, "1") == 0 ? "" : r->unit);
+    strut_buffer_add(&b, "%zu\n", r->used);
+  }
+  return strut_file_write_block(directory, "sensitivity.csv", strut_buffer_take(&b), error);
+}

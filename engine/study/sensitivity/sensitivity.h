@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * The sensitivity analysis of a study, from the rows of its points: see scene/sensitivity_design.h.
+ *
+ * A result is a column of numbers; whether such a column is above 0; or whether a column of texts has a
+ * certain one. Each is described at every point of the study's other axes.
+ */
+#ifndef STRUT_ENGINE_STUDY_SENSITIVITY_SENSITIVITY_H
+#define STRUT_ENGINE_STUDY_SENSITIVITY_SENSITIVITY_H
+
+#include <stdbool.h>
+
+#include "engine/base/memory.h"
+#include "engine/scene/study.h"
+#include "engine/study/results/slots.h"
+#include "engine/study/sensitivity/indices.h"
+
+/** X(NAME, word), in the order of the rows of a result. */
+#define STRUT_SENSITIVITY_MEASURES(X)                                                              \
+  X(MEAN, "mean")               /* of the samples; the error is that of the mean */                \
+  X(DEVIATION, "deviation")     /* standard deviation of the samples */                            \
+  X(SHARE, "share")             /* of the samples for which it is so, with Wilson's interval */    \
+  X(DERIVATIVE, "derivative")   /* by a parameter, at the medians */                               \
+  X(ELASTICITY, "elasticity")   /* the derivative times parameter over result, at the medians */   \
+  X(FIRST_ORDER, "first_order") /* part of the variance owed to the parameter alone */             \
+  X(TOTAL, "total")             /* the same with all that it does together with others */
+
+typedef enum strut_sensitivity_measure {
+#define STRUT_SENSITIVITY_ENUM(name, word) STRUT_SENSITIVITY_##name,
+  STRUT_SENSITIVITY_MEASURES(STRUT_SENSITIVITY_ENUM)
+#undef STRUT_SENSITIVITY_ENUM
+      STRUT_SENSITIVITY_MEASURE_COUNT
+} strut_sensitivity_measure;
+
+typedef struct strut_sensitivity_row {
+  int64_t point;  /* the study's first point with the same values of the other axes */
+  const char *of; /* "velocity", "velocity > 0", "outcome = I" */
+  strut_sensitivity_measure measure;
+  const char *parameter; /* NULL: of all together */
+  const char *unit;      /* "1": none */
+  strut_estimate estimate;
+  size_t used; /* base samples, samples or points that it is made of */
+} strut_sensitivity_row;
+
+typedef struct strut_sensitivity_result {
+  size_t count;
+  strut_sensitivity_row *rows; /* (count) point after point */
+  strut_arena arena;
+} strut_sensitivity_result;
+
+STRUT_API const char *strut_sensitivity_word(strut_sensitivity_measure measure);
+
+/** Does every result of the analysis name a column? If not, *missing is the first that does not. */
+STRUT_API bool strut_sensitivity_check(const strut_study *study, const strut_slot_column *columns,
+                                       size_t count, const char **missing);
+/**
+ * All rows, from a file of all points. What failed counts as missing. Release the arena, after a
+ * failure too. STRUT_NO_MEMORY.
+ */
+STRUT_API strut_status strut_sensitivity_find(const strut_study *study, strut_slots *slots,
+                                              strut_sensitivity_result *result, strut_error *error);
+/**
+ * Writes directory/sensitivity.csv: the other axes, of, measure, parameter, value, error, low, high, unit,
+ * used.
+ */
+STRUT_API strut_status strut_sensitivity_write(const strut_study *study, strut_slots *slots,
+                                               const strut_sensitivity_result *result,
+                                               const char *directory, strut_error *error);
+/**
+ * Draws the picture `path`: of one point, indices as bars with their 95 % intervals; of several along an
+ * axis of numbers, indices over it. *drawn: false where there is nothing to draw.
+ */
+STRUT_API strut_status strut_sensitivity_figure(const strut_study *study, strut_slots *slots,
+                                                const strut_sensitivity_result *result,
+                                                const char *path, double width, bool *drawn,
+                                                strut_error *error);
+
+#endif
