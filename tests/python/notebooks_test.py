@@ -13,7 +13,7 @@ from support import ROOT, main, skip_without
 
 skip_without("numpy", "matplotlib")
 
-NEEDS = {"controller": "matplotlib", "gait": "scipy", "sensitivity": "openturns"}
+NEEDS = {"controller": "matplotlib", "crawlers": "matplotlib", "gait": "scipy", "sensitivity": "openturns"}
 
 
 class Notebooks(unittest.TestCase):
