@@ -35,7 +35,7 @@ typedef struct strut_follow_options {
   bool basins; /* kick the stable motions at the values of the starts */
 } strut_follow_options;
 
-typedef struct strut_followed {
+typedef struct strut_followed_branch {
   strut_follow_branch branch;
   char label[STRUT_FOLLOW_LABEL]; /* where it comes from */
   int32_t parent;                 /* index of the branch whose doubling it is, or -1 */
