@@ -15,7 +15,8 @@ cd "$root"
 # What the run executes, and no more: everything is compiled eight times.
 sources="tests/golden/golden.c engine/run/settle.c engine/integrate/rk4.c
   engine/integrate/events/verlet_events.c engine/integrate/events/event_stepping.c
-  engine/integrate/events/event_location.c engine/integrate/events/contact_modes.c
+  engine/integrate/events/event_log.c engine/integrate/events/event_location.c
+  engine/integrate/events/contact_modes.c
   engine/integrate/events/contact_compliance.c engine/integrate/events/memory_modes.c
   engine/integrate/events/surface_contacts.c
   $(ls engine/base/*.c engine/scene/*.c engine/model/*.c engine/forces/*.c)
