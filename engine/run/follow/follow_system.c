@@ -6,6 +6,7 @@
 
 #include "engine/base/vec.h"
 #include "engine/model/pose.h"
+#include "engine/run/orbit/shooting.h"
 
 #ifdef _OPENMP
 #include <omp.h>
@@ -353,26 +354,5 @@ bool strut_follow_solve(strut_follow_system *s, const double *normal, double *x)
   }
   memcpy(a + n * m, normal, m * sizeof(double));
   for (size_t i = 0; i < m * m; i++) most = fmax(most, fabs(a[i]));
-  for (size_t p = 0; p < m; p++) {
-    size_t best = p;
-    for (size_t i = p + 1; i < m; i++)
-      if (fabs(a[i * m + p]) > fabs(a[best * m + p])) best = i;
-    if (!(fabs(a[best * m + p]) > 1e-14 * most)) return false;
-    for (size_t j = 0; j < m && best != p; j++) {
-      double keep = a[p * m + j];
-      a[p * m + j] = a[best * m + j], a[best * m + j] = keep;
-    }
-    double keep = x[p];
-    x[p] = x[best], x[best] = keep;
-    for (size_t i = p + 1; i < m; i++) {
-      double factor = a[i * m + p] / a[p * m + p];
-      for (size_t j = p; j < m; j++) a[i * m + j] -= factor * a[p * m + j];
-      x[i] -= factor * x[p];
-    }
-  }
-  for (size_t i = m; i-- > 0;) {
-    for (size_t j = i + 1; j < m; j++) x[i] -= a[i * m + j] * x[j];
-    x[i] /= a[i * m + i];
-  }
-  return true;
+  return strut_solve_dense(a, x, m, 1e-14 * most);
 }

@@ -90,17 +90,12 @@ static bool differentiate(shooting_problem *s, const double *y) {
   return true;
 }
 
-/* change = -(J - 1)^-1 f by elimination with pivots; false where it is singular. */
-static bool solve_newton_step(shooting_problem *s) {
-  size_t n = s->count;
-  double *a = s->work, *x = s->change;
-  memcpy(a, s->matrix, n * n * sizeof(double));
-  for (size_t i = 0; i < n; i++) a[i * n + i] -= 1.0, x[i] = -s->f[i];
+bool strut_solve_dense(double *a, double *x, size_t n, double least) {
   for (size_t p = 0; p < n; p++) {
     size_t best = p;
     for (size_t i = p + 1; i < n; i++)
       if (fabs(a[i * n + p]) > fabs(a[best * n + p])) best = i;
-    if (!(fabs(a[best * n + p]) > 1e-12)) return false;
+    if (!(fabs(a[best * n + p]) > least)) return false;
     for (size_t j = 0; j < n && best != p; j++) {
       double keep = a[p * n + j];
       a[p * n + j] = a[best * n + j], a[best * n + j] = keep;
@@ -118,6 +113,14 @@ static bool solve_newton_step(shooting_problem *s) {
     x[i] /= a[i * n + i];
   }
   return true;
+}
+
+/* change = -(J - 1)^-1 f; false where it is singular. */
+static bool solve_newton_step(shooting_problem *s) {
+  size_t n = s->count;
+  memcpy(s->work, s->matrix, n * n * sizeof(double));
+  for (size_t i = 0; i < n; i++) s->work[i * n + i] -= 1.0, s->change[i] = -s->f[i];
+  return strut_solve_dense(s->work, s->change, n, 1e-12);
 }
 
 /*

@@ -17,6 +17,12 @@
 enum { STRUT_MOST_SHOT = 96 }; /* most free coordinates and velocities */
 
 /**
+ * x (n) becomes a^-1 x by elimination with pivots; a (n, n), row by row, is lost. False where a pivot is not
+ * above `least`.
+ */
+bool strut_solve_dense(double *a, double *x, size_t n, double least);
+
+/**
  * Moves y (2 length + 1), near a fixed point, to the fixed point; *travel is its travel in one
  * application [m]. Fills shot, iterations, reason, residual (the largest change of shape and
  * velocities over one application, in sizes and sizes times 2 pi f) and the multipliers of `found`.
