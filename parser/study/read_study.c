@@ -169,7 +169,7 @@ static void read_keep(strut_study_reader *r, const strut_slot *slot) {
       strut_report_error(r->reader, item->place, "'%s' appears twice in 'keep' of the study",
                          item->text);
     else if (word >= 0 && kept_words[word].of >> study->compute & 1u)
-      study->keep |= (uint64_t)1 << word;
+      strut_keep_add(&study->keep, (unsigned)word);
     else if (scalar && quantities && strut_tree_find(quantities, item->text, NULL))
       study->quantities[study->quantity_count++] = item->text;
     else
