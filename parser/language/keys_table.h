@@ -433,6 +433,7 @@
   X(SENSITIVITY, SEED, "seed", NUMBER, NONE, WHOLE(1, 4294967295), "1", OPTIONAL, 0, "", BY_HAND, "Another seed gives other points, the same seed the same.") \
   X(SENSITIVITY, SCHEME, "scheme", WORD, NONE, ANY, "sobol", OPTIONAL, 0, "sobol|lhs|random", BY_HAND, "As that of a [sample](#sample).") \
   X(SENSITIVITY, DERIVATIVES, "derivatives", WORD, NONE, ANY, "yes", OPTIONAL, 0, "no|yes", BY_HAND, "Central differences about the medians, with two steps, four points for each parameter.") \
+  X(SENSITIVITY, THRESHOLD, "threshold", NUMBER, NONE, NOT_NEGATIVE, "0", OPTIONAL, 0, "", BY_HAND, "Shares of the samples above it, within it in both directions, and below minus it, in the SI unit of the columns; 0: the share above 0.") \
   X(STIFFNESS_AT, NODE, "node", NAME, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_study, stiffness_node), "A node of the model.") \
   X(STIFFNESS_AT, DIRECTION, "direction", NUMBER, ANGLE, ANY, "", REQUIRED, 0, "", FIELD(strut_study, stiffness_direction), "From the x axis: 90 deg is upwards.") \
   X(SEARCH, MAXIMISE, "maximise", FREE, NONE, ANY, "", OPTIONAL, 12, "an expression of columns, or a list of two", BY_HAND, "What is to be as large as possible: a column of the table, or an expression of columns such as `velocity/frequency`. Two of them, `[velocity, -cost_of_transport]`: the points that no other one beats in both.") \
