@@ -14,7 +14,8 @@ static bool optimise_by_cma(const strut_search_task *task, const strut_search_as
   const strut_cma_options options = {.dimension = task->dimension,
                                      .start = task->start,
                                      .multiple = SIDE_BY_SIDE,
-                                     .seed = task->seed};
+                                     .seed = task->seed,
+                                     .wraps = task->wraps};
   strut_cma *cma = NULL;
   if (strut_cma_create(&options, &cma, NULL)) return false;
   size_t count = strut_cma_population(cma);
