@@ -183,7 +183,8 @@ typedef enum strut_study_figure_kind {
   STRUT_FIGURE_PERIOD,    /* node trajectories over the last period of each run */
   STRUT_FIGURE_SNAPSHOTS, /* shapes of each run */
   STRUT_FIGURE_BEST,      /* of a search: the best objective over evaluations */
-  STRUT_FIGURE_POINTS     /* of a search: its points over x and y, by color */
+  STRUT_FIGURE_POINTS,    /* of a search: its points over x and y, by color */
+  STRUT_FIGURE_WINNER /* of a search: the best of all beside the start, as strut compare draws them */
 } strut_study_figure_kind;
 
 /** Colour scale of a map, as strut_colours of the figures. */

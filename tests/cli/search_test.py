@@ -208,8 +208,9 @@ check(read("pareto", "table.csv") == read("pareto1", "table.csv"), "threads chan
 
 search("drawn", "axes: [{mass: [1 kg, 2 kg]}]\nsearch: {" + GOAL + ", " + OVER + ", starts: 2, "
        "evaluations: 30}\nfigures: {best: {kind: best, only: mass=2}, "
-       "points: {kind: points, x: stiffness, y: frequency_1, only: mass=1}}\n")
-for name in ("best.svg", "points.svg"):
+       "points: {kind: points, x: stiffness, y: frequency_1, only: mass=1}, "
+       "beside: {kind: winner}}\n")
+for name in ("best.svg", "points.svg", "beside.svg"):
     check(b"<svg" in read("drawn", name), f"no {name}")
 
 # ---- what cannot be found is told ----
