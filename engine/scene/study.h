@@ -154,6 +154,27 @@ typedef enum strut_keep {
       STRUT_KEEP_COUNT
 } strut_keep;
 
+/** A set of them: bit k % 64 of bits[k / 64] is strut_keep k. */
+enum { STRUT_KEEP_WORDS = (STRUT_KEEP_COUNT + 63) / 64 };
+typedef struct strut_keep_set {
+  uint64_t bits[STRUT_KEEP_WORDS];
+} strut_keep_set;
+
+static inline void strut_keep_add(strut_keep_set *set, unsigned keep) {
+  set->bits[keep / 64] |= (uint64_t)1 << keep % 64;
+}
+static inline void strut_keep_remove(strut_keep_set *set, unsigned keep) {
+  set->bits[keep / 64] &= ~((uint64_t)1 << keep % 64);
+}
+static inline bool strut_keep_has(const strut_keep_set *set, unsigned keep) {
+  return set->bits[keep / 64] >> keep % 64 & 1u;
+}
+static inline bool strut_keep_is_empty(const strut_keep_set *set) {
+  bool empty = true;
+  for (unsigned i = 0; i < STRUT_KEEP_WORDS; i++) empty = empty && set->bits[i] == 0;
+  return empty;
+}
+
 /** Kinds of figures, in the order of the language. */
 typedef enum strut_study_figure_kind {
   STRUT_FIGURE_LINES,     /* of the table: x, y, series */
@@ -162,7 +183,8 @@ typedef enum strut_study_figure_kind {
   STRUT_FIGURE_PERIOD,    /* node trajectories over the last period of each run */
   STRUT_FIGURE_SNAPSHOTS, /* shapes of each run */
   STRUT_FIGURE_BEST,      /* of a search: the best objective over evaluations */
-  STRUT_FIGURE_POINTS     /* of a search: its points over x and y, by color */
+  STRUT_FIGURE_POINTS,    /* of a search: its points over x and y, by color */
+  STRUT_FIGURE_WINNER /* of a search: the best of all beside the start, as strut compare draws them */
 } strut_study_figure_kind;
 
 /** Colour scale of a map, as strut_colours of the figures. */
@@ -200,7 +222,8 @@ typedef struct strut_study_sensitivity {
   uint32_t seed;   /* of samples and of bootstraps */
   uint32_t scheme; /* strut_sample_scheme */
   bool derivatives;
-  double accuracy; /* relative, that of the runs; 0: rounding */
+  double accuracy;  /* relative, that of the runs; 0: rounding */
+  double threshold; /* numbers up to this have no sign; in the unit of their column */
 } strut_study_sensitivity;
 
 /** How many energies, barriers and frequencies a row lists, unless the study says. */
@@ -210,7 +233,7 @@ typedef struct strut_study {
   const char *name, *description, *model; /* model: its file, from the study's folder */
   size_t axis_count, figure_count;
   strut_study_axis *axes;
-  uint64_t keep; /* bits 1 << strut_keep; 0: what is usual, if no quantity is kept either */
+  strut_keep_set keep; /* empty: what is usual, if no quantity is kept either */
   size_t quantity_count;
   const char **quantities; /* (quantity_count) measured quantities that are kept by name */
   bool trajectories;       /* a directory of results for each run */

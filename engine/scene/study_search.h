@@ -18,6 +18,7 @@
 
 /** Methods of searches: X(NAME, word of the language). */
 #define STRUT_SEARCH_METHOD_TABLE(X)                                                               \
+  X(MULTISTART, "multistart")                                                                      \
   X(CRS2, "crs2")                                                                                  \
   X(DIRECT, "direct")                                                                              \
   X(ISRES, "isres")                                                                                \

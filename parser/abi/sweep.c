@@ -130,7 +130,7 @@ static const char *kept_word_at(const void *context, size_t i) {
 static strut_status add_kept(sweep *s, const char *word, strut_error *what) {
   for (int i = 0; i < STRUT_KEEP_COUNT; i++)
     if (strcmp(kept_words[i].word, word) == 0 && (kept_words[i].of >> s->study.compute & 1u)) {
-      s->study.keep |= (uint64_t)1 << i;
+      strut_keep_add(&s->study.keep, (unsigned)i);
       return STRUT_OK;
     }
   if (s->study.compute == STRUT_COMPUTE_RUN && strutlib_index(s->scene, "quantities", word) >= 0) {

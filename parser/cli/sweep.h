@@ -126,6 +126,10 @@ strut_status strut_sweep_search_report(const strut_sweep_plan *plan,
                                        const strut_sweep_state *state, const char *table,
                                        bool json);
 
+/** Draws `best` beside the start of its search into the file `path`. */
+strut_status strut_sweep_search_winner(const strut_sweep_plan *plan, const strut_study_figure *f,
+                                       const char *path, const strut_search_point *best,
+                                       double width, strut_error *error);
 /** Draws a figure of a search, of its table, into the file `path`. */
 strut_status strut_sweep_search_figure(const strut_sweep_plan *plan,
                                        const strut_study_figure *figure, const char *path,

@@ -215,6 +215,7 @@ static strut_status draw_figure(const strut_sweep_plan *plan, const char *direct
                                 const strut_refinement *refinement) {
   strut_error error = {0};
   const char *file = strut_arena_format(&table->arena, "%s/%s.svg", directory, f->name);
+  if (f->kind == STRUT_FIGURE_WINNER) return STRUT_OK; /* not of the table: sweep_search.c */
   if (!file) return strut_print_out_of_memory();
   strut_status status = STRUT_OK;
   if (f->kind == STRUT_FIGURE_MOTION)

@@ -50,7 +50,7 @@ static void format_state(const strut_sweep_state *state, char *text, size_t size
 void strut_sweep_progress_show(void *context, const strut_sweep_state *state) {
   strut_sweep_progress *progress = context;
   strut_progress *bar = &progress->bar;
-  char text[TEXT], row[TEXT], all[2 * TEXT + 8], blocks[BAR_ROOM];
+  char text[TEXT], row[TEXT], all[2 * TEXT + 40], blocks[BAR_ROOM];
   if (progress->quiet || state->seconds < PATIENCE) return;
   if (!bar->wanted && state->seconds - progress->reported < REPORT_INTERVAL) return;
   progress->reported = state->seconds;

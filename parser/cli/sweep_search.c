@@ -11,6 +11,7 @@
 #include "parser/cli/sweep.h"
 
 static const char table_name[] = "table.csv", partial_name[] = "table-partial.csv";
+static const double PAGE = 510.24; /* 180 mm [pt] */
 /* A running search writes its rows after these times, ever less often [s]. */
 static const double FIRST_PARTIAL = 2.0, RAREST_PARTIAL = 60.0;
 
@@ -138,10 +139,14 @@ static const strut_search_point *pick(const strut_search_result *result, bool ma
   return &o->best;
 }
 
-/* best.yaml of all, and best-N.yaml of each point of the axes where there are several. */
+/*
+ * best.yaml of all, whose point is *of_all, and best-N.yaml of each point of the axes where there are
+ * several.
+ */
 static strut_status write_best_scenes(const strut_arguments *arguments,
                                       const strut_sweep_plan *plan,
-                                      const strut_search_result *result, strut_error *error) {
+                                      const strut_search_result *result,
+                                      const strut_search_point **of_all, strut_error *error) {
   const strut_study_search *search = plan->study->search;
   const strut_search_point *best = NULL;
   strut_status status = STRUT_OK;
@@ -157,6 +162,23 @@ static strut_status write_best_scenes(const strut_arguments *arguments,
     if (!best || strut_search_better(search, found, best)) best = found;
   }
   if (!status && best) status = write_scene(arguments, plan, best, "best.yaml", error);
+  *of_all = best;
+  return status;
+}
+
+/* The figures of the best of all. A search that found none has none. */
+static strut_status draw_winner(const strut_arguments *arguments, strut_sweep_plan *plan,
+                                const strut_search_point *best) {
+  strut_error error = {0};
+  strut_status status = STRUT_OK;
+  for (size_t i = 0; i < plan->study->figure_count && best && !status; i++) {
+    const strut_study_figure *f = &plan->study->figures[i];
+    if (f->kind != STRUT_FIGURE_WINNER) continue;
+    const char *path = strut_arena_format(&plan->arena, "%s/%s.svg", arguments->output, f->name);
+    if (!path) return strut_print_out_of_memory();
+    status = strut_sweep_search_winner(plan, f, path, best, PAGE, &error);
+    if (status) strut_print_failure(status, &error);
+  }
   return status;
 }
 
@@ -164,6 +186,7 @@ static strut_status complete(const strut_arguments *arguments, strut_sweep_study
                              strut_slots *slots, const strut_sweep_state *state,
                              const strut_search_result *result) {
   strut_error error = {0};
+  const strut_search_point *best = NULL;
   strut_slots *const sources[] = {slots};
   const char *table =
       strut_arena_format(&study->plan.arena, "%s/%s", arguments->output, table_name);
@@ -171,10 +194,11 @@ static strut_status complete(const strut_arguments *arguments, strut_sweep_study
   strut_status status =
       strut_study_table_write_partial(arguments->output, table_name, sources, 1, NULL, &error);
   if (!status) status = write_best_rows(arguments, slots, result, &error);
-  if (!status) status = write_best_scenes(arguments, &study->plan, result, &error);
+  if (!status) status = write_best_scenes(arguments, &study->plan, result, &best, &error);
   if (status) return strut_print_failure(status, &error);
   strut_file_remove(arguments->output, partial_name);
   status = strut_sweep_figures_draw(&study->plan, arguments->output, table, NULL);
+  if (!status) status = draw_winner(arguments, &study->plan, best);
   if (!status && (!arguments->quiet || arguments->json))
     status = strut_sweep_search_report(&study->plan, result, state, table, arguments->json);
   if (status) return status;

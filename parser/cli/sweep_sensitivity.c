@@ -50,7 +50,73 @@ static void add_line(strut_buffer *b, const strut_sensitivity_row *r) {
   strut_buffer_add(b, "\n");
 }
 
-static strut_status print_report(const strut_sensitivity_result *result, const char *directory) {
+/* Columns of the table before those of the analysis: of the other axes. */
+static size_t other_columns(const strut_study *study) {
+  size_t count = 0;
+  for (size_t i = 0; i < study->sensitivity.axis; i++) count += study->axes[i].column_count;
+  return count;
+}
+
+/* Room for a column of the table of shares. */
+static int width_of(const char *name) {
+  int length = (int)strlen(name);
+  return length > 8 ? length : 8;
+}
+
+/* Headers of the table of shares: the axes, and the conditions. */
+static void add_header(strut_buffer *b, const strut_sweep_plan *plan,
+                       const strut_sensitivity_result *result) {
+  for (size_t i = 0; i < other_columns(plan->study); i++) {
+    const strut_slot_column *c = &plan->columns[i];
+    bool plain = strcmp(c->unit, "1") == 0;
+    strut_buffer_add(b, "  %12s%s%s", c->name, plain ? "" : ", ", plain ? "" : c->unit);
+  }
+  for (size_t i = 0; i < result->count && result->rows[i].point == result->rows[0].point; i++)
+    if (result->rows[i].measure == STRUT_SENSITIVITY_SHARE)
+      strut_buffer_add(b, "  %*s", width_of(result->rows[i].of), result->rows[i].of);
+  strut_buffer_add(b, "  %8s\n", "used");
+}
+
+/* The values of the axes at a point, each as wide as its header. */
+static void add_axes(strut_buffer *b, const strut_sweep_plan *plan, strut_slots *slots,
+                     int64_t point) {
+  strut_result_slot row;
+  size_t numbers = 0, words = 0;
+  if (!strut_slots_get(slots, point, &row)) return;
+  for (size_t i = 0; i < other_columns(plan->study); i++) {
+    const strut_slot_column *c = &plan->columns[i];
+    int more = strcmp(c->unit, "1") == 0 ? 0 : (int)strlen(c->unit) + 2;
+    int width = more + (strlen(c->name) > 12 ? (int)strlen(c->name) : 12);
+    if (c->word)
+      strut_buffer_add(b, "  %*s", width, row.words[words++]);
+    else
+      strut_buffer_add(b, "  %*.6g", width, row.numbers[numbers++]);
+  }
+}
+
+/* A line for each point of the axes: the shares of the samples that meet each condition. */
+static void add_shares(strut_buffer *b, const strut_sweep_plan *plan, strut_slots *slots,
+                       const strut_sensitivity_result *result) {
+  add_header(b, plan, result);
+  size_t lines = 0;
+  for (size_t i = 0, k = 0; i < result->count && lines < MOST_LINES; i = k, lines++) {
+    size_t used = 0;
+    add_axes(b, plan, slots, result->rows[i].point);
+    for (k = i; k < result->count && result->rows[k].point == result->rows[i].point; k++) {
+      const strut_sensitivity_row *r = &result->rows[k];
+      if (r->measure != STRUT_SENSITIVITY_SHARE) continue;
+      if (isfinite(r->estimate.value))
+        strut_buffer_add(b, "  %*.3f", width_of(r->of), r->estimate.value);
+      else
+        strut_buffer_add(b, "  %*s", width_of(r->of), "-");
+      if (r->used > used) used = r->used;
+    }
+    strut_buffer_add(b, "  %8zu\n", used);
+  }
+}
+
+static strut_status print_report(const strut_sweep_plan *plan, strut_slots *slots,
+                                 const strut_sensitivity_result *result, const char *directory) {
   strut_buffer b = {0};
   size_t shown = 0;
   bool one = result->count && result->rows[0].point == result->rows[result->count - 1].point;
@@ -58,6 +124,7 @@ static strut_status print_report(const strut_sensitivity_result *result, const c
     if (!is_shown(&result->rows[i])) continue;
     if (shown++ < MOST_LINES) add_line(&b, &result->rows[i]);
   }
+  if (!one && plan->study->sensitivity.samples > 0) add_shares(&b, plan, slots, result);
   if (shown > MOST_LINES)
     strut_buffer_add(&b, "  ... and %zu more in the file\n", shown - MOST_LINES);
   strut_buffer_add(&b, "%s/sensitivity.csv\n", directory);
@@ -81,7 +148,7 @@ strut_status strut_sweep_sensitivity_complete(const strut_sweep_plan *plan, stru
   if (!status)
     status = strut_sensitivity_figure(plan->study, slots, &result, path, PAGE, &drawn, &error);
   if (status) strut_print_failure(status, &error);
-  if (!status && report) status = print_report(&result, directory);
+  if (!status && report) status = print_report(plan, slots, &result, directory);
   strut_arena_free(&result.arena);
   strut_arena_free(&arena);
   return status;

@@ -169,7 +169,7 @@ static void read_keep(strut_study_reader *r, const strut_slot *slot) {
       strut_report_error(r->reader, item->place, "'%s' appears twice in 'keep' of the study",
                          item->text);
     else if (word >= 0 && kept_words[word].of >> study->compute & 1u)
-      study->keep |= (uint64_t)1 << word;
+      strut_keep_add(&study->keep, (unsigned)word);
     else if (scalar && quantities && strut_tree_find(quantities, item->text, NULL))
       study->quantities[study->quantity_count++] = item->text;
     else
@@ -187,10 +187,10 @@ static void require_column(strut_study_reader *r, const strut_fields *fields, co
 /* Reports columns that the kind of figure needs. */
 static void require_columns(strut_study_reader *r, const strut_fields *fields,
                             const strut_tree *key, const strut_study_figure *f) {
-  static const char *const kinds[] = {"figure", "map", "figure", "", "", "", "figure"};
+  static const char *const kinds[] = {"figure", "map", "figure", "", "", "", "figure", ""};
   const char *kind = kinds[f->kind];
   if (f->kind == STRUT_FIGURE_PERIOD || f->kind == STRUT_FIGURE_SNAPSHOTS ||
-      f->kind == STRUT_FIGURE_BEST)
+      f->kind == STRUT_FIGURE_BEST || f->kind == STRUT_FIGURE_WINNER)
     return;
   require_column(r, fields, key, kind, "x", f->x);
   require_column(r, fields, key, kind, "y", f->y);

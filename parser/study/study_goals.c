@@ -60,7 +60,7 @@ static void require_pairs(strut_study_reader *r, strut_fields *top) {
   for (size_t i = 0; i < sizeof goals / sizeof goals[0]; i++) {
     const strut_slot *first = strut_slot_of(top, goals[i].keys[0]);
     const strut_slot *second = strut_slot_of(top, goals[i].keys[1]);
-    bool kept = study->keep >> goals[i].keep & 1u;
+    bool kept = strut_keep_has(&study->keep, goals[i].keep);
     const strut_slot *given = first->state != STRUT_ABSENT    ? first
                               : second->state != STRUT_ABSENT ? second
                                                               : NULL;

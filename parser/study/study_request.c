@@ -104,7 +104,7 @@ static strut_status choose_compute(strut_request *r, const char *word, strut_err
     return strut_fail(error, STRUT_BAD_SCENE, "expected %s for 'compute', found '%.40s'",
                       strut_words_text(words, expected, sizeof expected), word);
   if ((uint32_t)found != r->study.compute) { /* what the study keeps is of another computation */
-    r->study.keep = 0;
+    r->study.keep = (strut_keep_set){{0}};
     r->study.quantity_count = 0;
   }
   r->study.compute = (uint32_t)found;
@@ -126,7 +126,7 @@ static strut_status keep_word(strut_request *r, const char *word, size_t length,
   for (int i = 0; i < STRUT_KEEP_COUNT; i++) {
     if (strcmp(kept_words[i].word, name) != 0 || !(kept_words[i].of >> study->compute & 1u))
       continue;
-    study->keep |= (uint64_t)1 << i;
+    strut_keep_add(&study->keep, (unsigned)i);
     return STRUT_OK;
   }
   const char *near = strut_did_you_mean(name, kept_word_at, study);
@@ -144,7 +144,7 @@ static strut_status keep_word(strut_request *r, const char *word, size_t length,
 static strut_status choose_kept(strut_request *r, const char *text, strut_error *error) {
   static const char between[] = ", \t";
   size_t most = strlen(text) / 2 + 1;
-  r->study.keep = 0;
+  r->study.keep = (strut_keep_set){{0}};
   r->study.quantity_count = 0;
   r->study.quantities = strut_arena_allocate(&r->arena, most, sizeof *r->study.quantities);
   if (!r->study.quantities) return strut_no_memory(error, "");
@@ -154,7 +154,7 @@ static strut_status choose_kept(strut_request *r, const char *text, strut_error 
     if (status) return status;
     text += length;
   }
-  if (r->study.keep || r->study.quantity_count) return STRUT_OK;
+  if (!strut_keep_is_empty(&r->study.keep) || r->study.quantity_count) return STRUT_OK;
   return strut_fail(error, STRUT_BAD_SCENE, "'keep' names nothing");
 }
 

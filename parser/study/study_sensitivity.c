@@ -113,6 +113,7 @@ void strut_study_read_sensitivity(strut_study_reader *r, strut_fields *top) {
   s->samples = (int64_t)number_or(strut_slot_of(&fields, STRUT_KEY_SENSITIVITY_SAMPLES), 256.0);
   s->seed = (uint32_t)number_or(strut_slot_of(&fields, STRUT_KEY_SENSITIVITY_SEED), 1.0);
   s->scheme = scheme->state == STRUT_GIVEN ? (uint32_t)scheme->word : STRUT_SAMPLE_SOBOL;
+  s->threshold = number_or(strut_slot_of(&fields, STRUT_KEY_SENSITIVITY_THRESHOLD), 0.0);
   s->derivatives = derivatives->state != STRUT_GIVEN || derivatives->word == 1;
   if (s->samples == 0 && !s->derivatives)
     strut_report_error(r->reader, slot->key->place,

@@ -185,8 +185,10 @@ char *strut_study_identity(const strut_study_file *file) {
     put_word(&w, file->settings[i].text);
   }
   for (size_t i = 0; i < study->axis_count; i++) put_axis(&w, &study->axes[i]);
-  put_number(&w, (double)(study->keep >> 32));
-  put_number(&w, (double)(study->keep & UINT32_MAX));
+  for (size_t i = 0; i < STRUT_KEEP_WORDS; i++) {
+    put_number(&w, (double)(study->keep.bits[i] >> 32));
+    put_number(&w, (double)(study->keep.bits[i] & UINT32_MAX));
+  }
   for (size_t i = 0; i < study->quantity_count; i++) put_word(&w, study->quantities[i]);
   put_number(&w, study->trajectories);
   put_number(&w, study->half_step);

@@ -71,7 +71,8 @@ OVER = "over: {stiffness: {from: 10 N/m, to: 1000 N/m, scale: log}}"
 
 # ---- a formula, by each method ----
 
-for method, evaluations, within in (("crs2", 120, 1e-6), ("direct", 120, 1e-4), ("isres", 200, 0.05),
+for method, evaluations, within in (("multistart", 120, 1e-6), ("crs2", 120, 1e-6),
+                                    ("direct", 120, 1e-4), ("isres", 200, 0.05),
                                     ("cobyla", 80, 1e-5), ("bobyqa", 80, 0.01), ("sbplx", 80, 1e-5),
                                     ("neldermead", 80, 1e-5), ("cma", 150, 1e-4)):
     found = search(method, f"search: {{{GOAL}, {OVER}, method: {method}, "
@@ -119,15 +120,14 @@ solver: {{accuracy: 2 %}}
 run: {{measure: {{steady: true}}}}
 keep: [velocity, work]
 """
-# Of the seeds 1 to 10 all but 1 find the basin at 12.8 Hz; that one stays at 9.2 Hz with 23.3 mm/s.
-for seed in range(2, 7 if "--long" in sys.argv else 3):
+for seed in range(1, 6 if "--long" in sys.argv else 2):
     write("gait.yaml", GAIT.replace("SEED", str(seed)))
     found = json.loads(run("sweep", "gait.yaml", "-o", f"gait{seed}", "--json").stdout)["best"][0]
     check(found["objective"] >= 0.0242, f"the gait of seed {seed} is {found}")
     check(abs(found["check"] / found["objective"] - 1) < 0.02, f"the gait does not stand: {found}")
-speed = json.loads(run("run", "gait2/best.yaml", "--json").stdout)["velocity"]
-check(f"{speed}" in read("gait2", "best.csv").decode(), f"best.yaml runs at {speed}")
-write("gait.yaml", GAIT.replace("SEED", "2"))
+speed = json.loads(run("run", "gait1/best.yaml", "--json").stdout)["velocity"]
+check(f"{speed}" in read("gait1", "best.csv").decode(), f"best.yaml runs at {speed}")
+write("gait.yaml", GAIT.replace("SEED", "1"))
 for how in (signal.SIGKILL, signal.SIGINT):
     process = subprocess.Popen([strut, "sweep", "gait.yaml", "-o", "killed", "--quiet"], cwd=work,
                                stderr=subprocess.PIPE)
@@ -138,11 +138,11 @@ check(os.path.exists(path("killed", "points.slots")) and
       not os.path.exists(path("killed", "table.csv")), "the search was not interrupted")
 run("sweep", "gait.yaml", "-o", "killed", "--quiet")
 for name in ("table.csv", "best.csv", "points.slots"):
-    check(read("gait2", name) == read("killed", name), f"killed and resumed: {name} differs")
+    check(read("gait1", name) == read("killed", name), f"killed and resumed: {name} differs")
 
 # ---- constraints, worst cases, choices, whole numbers, outer axes ----
 
-for method in ("crs2", "direct", "isres", "cobyla", "sbplx"):
+for method in ("multistart", "crs2", "direct", "isres", "cobyla", "sbplx"):
     found = search("limit-" + method, "search: {maximise: stiffness, " + OVER +
                    f", method: {method}, evaluations: 150, subject_to: [frequency_1 <= 2 Hz]}}\n")
     value = found["best"][0]["values"]["stiffness"]
@@ -208,8 +208,9 @@ check(read("pareto", "table.csv") == read("pareto1", "table.csv"), "threads chan
 
 search("drawn", "axes: [{mass: [1 kg, 2 kg]}]\nsearch: {" + GOAL + ", " + OVER + ", starts: 2, "
        "evaluations: 30}\nfigures: {best: {kind: best, only: mass=2}, "
-       "points: {kind: points, x: stiffness, y: frequency_1, only: mass=1}}\n")
-for name in ("best.svg", "points.svg"):
+       "points: {kind: points, x: stiffness, y: frequency_1, only: mass=1}, "
+       "beside: {kind: winner}}\n")
+for name in ("best.svg", "points.svg", "beside.svg"):
     check(b"<svg" in read("drawn", name), f"no {name}")
 
 # ---- what cannot be found is told ----

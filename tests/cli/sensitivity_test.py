@@ -116,6 +116,15 @@ sensitivity:
     within(pick(rows, "total_mass", "first_order", "heavy"), 1.0)
     check(pick(rows, "total_mass > 0", "share")["value"] == "1", "share of a sign")
     check(pick(rows, "total_mass > 0", "total", "heavy")["value"] == "", "index without variance")
+    # a threshold: shares of a lognormal mass below and above its median; a line for each point of an axis
+    report, cut = sweep("cut", text.replace("samples: 512", "samples: 64\n  threshold: 2").replace(
+        "sensitivity:", "axes: [{long: [1 m, 2 m]}]\nsensitivity:"))
+    for condition, share in (("total_mass > 2", 0.5), ("|total_mass| <= 2", 0.5),
+                             ("total_mass < -2", 0.0)):
+        row = pick(cut, condition, "share", **{"long [m]": "2"})
+        check(abs(float(row["value"]) - share) < 0.05 and row["used"] == "128", str(row))
+        check(condition in report, report)
+    check(len([line for line in report.splitlines() if line.split()[-1:] == ["128"]]) == 2, report)
     check("first_order  stiff" in said and "total_mass > 0" not in said, said)
     picture = read("product/sensitivity.svg").decode()
     check(picture.startswith("<?xml") and len(picture) > 2000, "the figure")

@@ -248,7 +248,7 @@ static void a_study_is_what_it_says(void **state) {
   assert_int_equal(figures[4].time_count, 2);
   assert_true(figures[4].times[1] == 0.12 && figures[5].scale[0] == 10);
   assert_true(file.study.half_step);
-  assert_int_equal(file.study.keep,
+  assert_int_equal(file.study.keep.bits[0],
                    1 << STRUT_KEEP_VELOCITY | 1 << STRUT_KEEP_WORK | 1 << STRUT_KEEP_POSITIONS);
   strut_grid_values(&file.study, 18 + 2 * 6 + 1 * 3 + 1, values);
   assert_string_equal(values[0].word, "long");

@@ -219,6 +219,39 @@ static void populations_fill_lanes(void **unused) {
   strut_cma_free(c);
 }
 
+/* A minimum at 0.95 is near to a start at 0.05, if that is an angle; else the bound is in between. */
+static void an_angle_wraps(void **unused) {
+  (void)unused;
+  const double start[] = {0.05, 0.05};
+  const bool wraps[] = {true, true};
+  for (uint32_t seed = 1; seed <= SEEDS; seed++) {
+    const strut_cma_options options = {.dimension = 2,
+                                       .start = start,
+                                       .spread = 0.02,
+                                       .seed = seed,
+                                       .evaluations = 600,
+                                       .wraps = wraps};
+    strut_cma *c;
+    double values[100], value;
+    assert_int_equal(strut_cma_create(&options, &c, NULL), STRUT_OK);
+    while (!strut_cma_stopped(c)) {
+      const double *x = strut_cma_ask(c);
+      for (size_t p = 0; p < strut_cma_population(c); p++) {
+        values[p] = 0.0;
+        for (size_t i = 0; i < 2; i++) {
+          double apart = fabs(x[2 * p + i] - 0.95);
+          assert_true(x[2 * p + i] >= 0.0 && x[2 * p + i] <= 1.0);
+          values[p] += pow(fmin(apart, 1.0 - apart), 2.0);
+        }
+      }
+      strut_cma_tell(c, values);
+    }
+    assert_non_null(strut_cma_best(c, &value));
+    assert_true(value < 1e-12);
+    strut_cma_free(c);
+  }
+}
+
 static void wrong_options_are_refused(void **unused) {
   (void)unused;
   strut_cma *c;
@@ -245,6 +278,7 @@ int main(void) {
       cmocka_unit_test(one_number_is_searched),
       cmocka_unit_test(seeds_decide_the_bits),
       cmocka_unit_test(populations_fill_lanes),
+      cmocka_unit_test(an_angle_wraps),
       cmocka_unit_test(wrong_options_are_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

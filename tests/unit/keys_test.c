@@ -125,6 +125,7 @@ static const struct exception {
     {STRUT_SECTION_SENSITIVITY, "seed", "of values that are made at once"},
     {STRUT_SECTION_SENSITIVITY, "scheme", "of values that are made at once"},
     {STRUT_SECTION_SENSITIVITY, "derivatives", "of values that are made at once"},
+    {STRUT_SECTION_SENSITIVITY, "threshold", "of values that are made at once"},
     {STRUT_SECTION_SAMPLE, "count", "of values that are made at once"},
     {STRUT_SECTION_SAMPLE, "seed", "of values that are made at once"},
     {STRUT_SECTION_SAMPLE, "scheme", "of values that are made at once"},

@@ -48,6 +48,7 @@ struct strut_cma {
   size_t history_count, history_capacity; /* best values of generations, the latest last */
   double *history;
   strut_cma_stop stop;
+  bool *wraps; /* (n) */
 };
 
 /* Maps a number of the strategy's space into [0, 1]; even about both ends, with a slope everywhere
@@ -119,9 +120,10 @@ static bool allocate(strut_cma *c) {
   /* As many generations as stagnation is judged by, and half as many again. */
   c->history_capacity = 120 + 30 * n / m + 20;
   c->history = strut_arena_allocate(&c->arena, c->history_capacity, sizeof *c->history);
+  c->wraps = strut_arena_allocate(&c->arena, n, sizeof *c->wraps);
   c->rng = gsl_rng_alloc(gsl_rng_mt19937);
-  return fine && c->weight && c->order && c->steps && c->points && c->covariance && c->axes &&
-         c->history && c->rng;
+  return fine && c->wraps && c->weight && c->order && c->steps && c->points && c->covariance &&
+         c->axes && c->history && c->rng;
 }
 
 static strut_status check_options(const strut_cma_options *o, strut_error *error) {
@@ -166,7 +168,9 @@ strut_status strut_cma_create(const strut_cma_options *options, strut_cma **cma,
   gsl_rng_set(c->rng, options->seed ? options->seed : UINT32_MAX); /* 0 is the default of GSL */
   c->sigma = options->spread > 0.0 ? fmin(options->spread, WIDEST) : 0.3;
   for (size_t i = 0; i < n; i++) {
-    c->mean[i] = from_box(options->start ? options->start[i] : 0.5);
+    double start = options->start ? options->start[i] : 0.5;
+    c->wraps[i] = options->wraps && options->wraps[i];
+    c->mean[i] = c->wraps[i] ? start : from_box(start);
     c->covariance[i * n + i] = c->axes[i * n + i] = c->length[i] = 1.0;
   }
   *cma = c;
@@ -202,7 +206,10 @@ const double *strut_cma_ask(strut_cma *c) {
       double along = c->length[k] * gsl_ran_gaussian(c->rng, 1.0);
       for (size_t i = 0; i < n; i++) step[i] += along * c->axes[k * n + i];
     }
-    for (size_t i = 0; i < n; i++) c->points[p * n + i] = into_box(c->mean[i] + c->sigma * step[i]);
+    for (size_t i = 0; i < n; i++) {
+      double y = c->mean[i] + c->sigma * step[i];
+      c->points[p * n + i] = c->wraps[i] ? y - floor(y) : into_box(y);
+    }
   }
   c->asked = true;
   return c->points;

@@ -6,7 +6,8 @@
  *
  * Points lie in the unit box. Bounds: the strategy lives in all of space; a number beyond the box is
  * mirrored into it, and next to each bound the map is a parabola, so that a minimum on a bound is a
- * smooth one for the strategy. Values only have to be comparable; one that is not finite is worst.
+ * smooth one for the strategy. A number that wraps is taken modulo 1 instead. Values only have to be
+ * comparable; one that is not finite is worst.
  *
  * The same options and values give the same points, bit by bit, so that a search is resumed by telling
  * it the values that are known.
@@ -14,6 +15,7 @@
 #ifndef STRUT_ENGINE_STUDY_SEARCH_CMA_H
 #define STRUT_ENGINE_STUDY_SEARCH_CMA_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -48,6 +50,7 @@ typedef struct strut_cma_options {
   int has_target;         /* a value <= target ends the search */
   double point_tolerance; /* in widths of the box; 0: 1e-9 */
   double value_tolerance; /* in the values' unit; 0: none but equal values */
+  const bool *wraps;      /* (dimension) numbers whose 0 and 1 are the same; NULL: none */
 } strut_cma_options;
 
 /** STRUT_USAGE for options out of range, STRUT_NO_MEMORY. Release with strut_cma_free. */

@@ -13,6 +13,13 @@ static const double FINEST = 1e-7;
 static const double FIRST_STEP = 0.2, REFINED_STEP = 0.1;
 /* Shares of the evaluations of crs2 for evenly spread points, and of the rest for controlled random search. */
 static const double SPREAD_SHARE = 0.4, GLOBAL_SHARE = 0.5;
+/*
+ * multistart: share of the evaluations for evenly spread points; share of the rest for descents from the best of
+ * them, which lie further apart than APART, in widths of the box; first step of the descent that goes on from the
+ * best point with what is left.
+ */
+static const double MULTISTART_SPREAD = 0.3, DESCENT_SHARE = 0.5, APART = 0.2, LAST_STEP = 0.05;
+enum { DESCENTS = 2 };
 
 /* CRS2 looks at the same point for ever once all of its population are there. */
 enum { MOST_STUCK = 1000 };
@@ -28,6 +35,9 @@ typedef struct nlopt_search {
   double *best, least; /* (dimension) and its value */
   double *last, value; /* the latest point and its value, for the conditions */
   double *broken;      /* (conditions) there */
+  double
+      *spread; /* (spread_count, dimension + 1) evenly spread points, and behind each its value */
+  int64_t spread_count;
 } nlopt_search;
 
 static const struct method_row {
@@ -41,6 +51,7 @@ static const struct method_row {
     [STRUT_SEARCH_BOBYQA] = {NLOPT_LN_BOBYQA, false, false},
     [STRUT_SEARCH_SBPLX] = {NLOPT_LN_SBPLX, false, false},
     [STRUT_SEARCH_NELDERMEAD] = {NLOPT_LN_NELDERMEAD, false, false},
+    [STRUT_SEARCH_MULTISTART] = {NLOPT_LN_SBPLX, false, false},
 };
 
 bool strut_search_knows_conditions(strut_search_method method) {
@@ -148,23 +159,91 @@ static bool run(nlopt_search *s, strut_search_method method, double first_step, 
 }
 
 /*
- * Asks for the start and points spread evenly over the box. Controlled random search alone, which begins at
- * random, misses a narrow basin more often.
+ * Asks for the start and for points spread evenly over the box, together a share of the evaluations, and keeps
+ * them in s->spread. Controlled random search alone, which begins at random, misses a narrow basin more often.
  */
-static bool spread(nlopt_search *s) {
+static bool spread_points(nlopt_search *s, double share) {
   size_t n = s->task->dimension;
   const strut_search_spread sequence = strut_search_spread_begin(n, s->task->seed);
-  double usual = 20.0 * ((double)n + 1.0), *point = strut_allocate(n, sizeof *point);
-  if (!point) return false;
-  int64_t count = (int64_t)fmin(usual, floor(SPREAD_SHARE * (double)s->task->evaluations));
+  double usual = 20.0 * ((double)n + 1.0);
+  int64_t count = (int64_t)fmax(fmin(usual, floor(share * (double)s->task->evaluations)), 1.0);
+  s->spread = strut_allocate((size_t)count * (n + 1), sizeof *s->spread);
+  if (!s->spread) return false;
   s->most = INT64_MAX;
-  look_at(s, s->task->start);
-  for (int64_t k = 1; k < count && !s->ended; k++) {
-    for (size_t i = 0; i < n; i++) point[i] = strut_search_spread_at(&sequence, k, i);
-    look_at(s, point);
+  for (int64_t k = 0; k < count && !s->ended; k++) {
+    double *point = s->spread + (size_t)k * (n + 1);
+    for (size_t i = 0; i < n; i++)
+      point[i] = k == 0 ? s->task->start[i] : strut_search_spread_at(&sequence, k, i);
+    point[n] = look_at(s, point);
+    if (!s->ended) s->spread_count++;
   }
-  strut_release(point);
   return true;
+}
+
+/* Is the point within APART of another one, in every number? */
+static bool is_near(const nlopt_search *s, const double *point, const double *other) {
+  double largest = 0.0;
+  for (size_t i = 0; i < s->task->dimension; i++) {
+    double apart = fabs(point[i] - other[i]);
+    if (s->task->wraps[i]) apart = fmin(apart, 1.0 - apart);
+    largest = fmax(largest, apart);
+  }
+  return largest <= APART;
+}
+
+/* The best of the spread points that is near to none of `others`; NULL: there is none. */
+static const double *best_apart(const nlopt_search *s, const double *const *others, size_t count) {
+  size_t n = s->task->dimension;
+  const double *best = NULL;
+  for (int64_t k = 0; k < s->spread_count; k++) {
+    const double *point = s->spread + (size_t)k * (n + 1);
+    bool near = false;
+    for (size_t i = 0; i < count && !near; i++) near = is_near(s, point, others[i]);
+    if (!near && (!best || point[n] < best[n])) best = point;
+  }
+  return best;
+}
+
+/* A descent from a point. s->best becomes the best of what it was and of the descent. */
+static bool descend(nlopt_search *s, const double *from, double first_step, int64_t most,
+                    double *before) {
+  size_t n = s->task->dimension;
+  double least = s->least;
+  memcpy(before, s->best, n * sizeof *before);
+  memcpy(s->best, from, n * sizeof *from);
+  s->least = HUGE_VAL;
+  bool fine = run(s, STRUT_SEARCH_SBPLX, first_step, most);
+  if (least <= s->least) {
+    memcpy(s->best, before, n * sizeof *before);
+    s->least = least;
+  }
+  return fine;
+}
+
+/*
+ * Descends from the best spread points that lie apart, and goes on from the better end: a narrow basin may be
+ * deeper than the one with the best of the spread points.
+ */
+static bool descend_from_spread(nlopt_search *s) {
+  size_t n = s->task->dimension, count = 0;
+  const double *from[DESCENTS];
+  double *before = strut_allocate(n, sizeof *before);
+  bool fine = before != NULL;
+  while (count < DESCENTS && (from[count] = best_apart(s, from, count))) count++;
+  double rest = (double)(s->task->evaluations - s->asked) * DESCENT_SHARE;
+  int64_t most = (int64_t)fmax(ceil(rest / (double)(count ? count : 1)), 1.0);
+  for (size_t i = 0; i < count && fine && !s->ended; i++)
+    fine = descend(s, from[i], REFINED_STEP, most, before);
+  if (fine && !s->ended) fine = run(s, STRUT_SEARCH_SBPLX, LAST_STEP, INT64_MAX);
+  strut_release(before);
+  return fine;
+}
+
+/* Controlled random search, then a descent from the best point. */
+static bool search_and_descend(nlopt_search *s) {
+  double rest = (double)(s->task->evaluations - s->asked) * GLOBAL_SHARE;
+  bool fine = run(s, STRUT_SEARCH_CRS2, FIRST_STEP, (int64_t)fmax(ceil(rest), 1.0));
+  return fine && (s->ended || run(s, STRUT_SEARCH_SBPLX, REFINED_STEP, INT64_MAX));
 }
 
 bool strut_search_optimise_by_nlopt(const strut_search_task *task,
@@ -177,12 +256,14 @@ bool strut_search_optimise_by_nlopt(const strut_search_task *task,
   s.last = block + n;
   s.broken = block + 2 * n;
   memcpy(s.best, task->start, n * sizeof *block);
-  bool two = task->method == STRUT_SEARCH_CRS2, fine;
-  fine = !two || spread(&s);
-  double rest = (double)(task->evaluations - s.asked) * GLOBAL_SHARE;
+  bool two = task->method == STRUT_SEARCH_CRS2, many = task->method == STRUT_SEARCH_MULTISTART;
+  bool fine = true;
+  if (two || many) fine = spread_points(&s, two ? SPREAD_SHARE : MULTISTART_SPREAD);
   if (fine && !s.ended)
-    fine = run(&s, task->method, FIRST_STEP, two ? (int64_t)fmax(ceil(rest), 1.0) : INT64_MAX);
-  if (fine && two && !s.ended) fine = run(&s, STRUT_SEARCH_SBPLX, REFINED_STEP, INT64_MAX);
+    fine = two    ? search_and_descend(&s)
+           : many ? descend_from_spread(&s)
+                  : run(&s, task->method, FIRST_STEP, INT64_MAX);
+  strut_release(s.spread);
   strut_release(block);
   return fine;
 }

@@ -14,7 +14,8 @@ static bool optimise_by_cma(const strut_search_task *task, const strut_search_as
   const strut_cma_options options = {.dimension = task->dimension,
                                      .start = task->start,
                                      .multiple = SIDE_BY_SIDE,
-                                     .seed = task->seed};
+                                     .seed = task->seed,
+                                     .wraps = task->wraps};
   strut_cma *cma = NULL;
   if (strut_cma_create(&options, &cma, NULL)) return false;
   size_t count = strut_cma_population(cma);
@@ -40,7 +41,8 @@ bool strut_search_optimise(const strut_search_task *task, const strut_search_ask
     case STRUT_SEARCH_COBYLA:
     case STRUT_SEARCH_BOBYQA:
     case STRUT_SEARCH_SBPLX:
-    case STRUT_SEARCH_NELDERMEAD: return strut_search_optimise_by_nlopt(task, asker);
+    case STRUT_SEARCH_NELDERMEAD:
+    case STRUT_SEARCH_MULTISTART: return strut_search_optimise_by_nlopt(task, asker);
     case STRUT_SEARCH_METHOD_COUNT: break;
   }
   return true;

@@ -23,10 +23,10 @@ const char *strut_sensitivity_word(strut_sensitivity_measure measure) { return w
 /* What is analysed: a column, or a condition on it, which is 0 or 1. */
 typedef struct target {
   const char *name;
-  size_t column;    /* of the table */
-  size_t place;     /* among its numbers, or among its words */
-  const char *text; /* the column has it; NULL: a column of numbers */
-  bool above_zero;
+  size_t column;                              /* of the table */
+  size_t place;                               /* among its numbers, or among its words */
+  const char *text;                           /* the column has it; NULL: a column of numbers */
+  enum { NUMBER, ABOVE, WITHIN, BELOW } kind; /* the number, or where it lies to the threshold */
 } target;
 
 typedef struct analysis {
@@ -96,6 +96,27 @@ static bool add_texts(analysis *a, target t) {
   return true;
 }
 
+/*
+ * Targets for the sign of a column: whether it is above 0; or above, within and below a threshold in both
+ * directions.
+ */
+static bool add_signs(analysis *a, target t) {
+  strut_arena *arena = &a->result->arena;
+  const char *name = a->columns[t.column].name;
+  char text[STRUT_NUMBER_TEXT];
+  strut_number_text(a->s->threshold, text);
+  t.kind = ABOVE;
+  t.name = strut_arena_format(arena, "%s > %s", name, text);
+  bool fine = add_target(a, t);
+  if (!fine || a->s->threshold == 0.0) return fine;
+  t.kind = WITHIN;
+  t.name = strut_arena_format(arena, "|%s| <= %s", name, text);
+  fine = add_target(a, t);
+  t.kind = BELOW;
+  t.name = strut_arena_format(arena, "%s < -%s", name, text);
+  return fine && add_target(a, t);
+}
+
 static bool list_targets(analysis *a) {
   bool fine = true;
   a->target_room = a->s->of_count * MOST_TEXTS;
@@ -110,21 +131,22 @@ static bool list_targets(analysis *a) {
     }
     t.name = strut_arena_format(&a->result->arena, "%s", c->name);
     fine = add_target(a, t);
-    t.above_zero = true;
-    t.name = strut_arena_format(&a->result->arena, "%s > 0", c->name);
-    if (a->s->samples > 0) fine = fine && add_target(a, t);
+    if (a->s->samples > 0) fine = fine && add_signs(a, t);
   }
   return fine && a->targets;
 }
 
-static bool is_condition(const target *t) { return t->text || t->above_zero; }
+static bool is_condition(const target *t) { return t->text || t->kind != NUMBER; }
 
-static double value_of(const target *t, const strut_result_slot *row) {
+static double value_of(const target *t, double threshold, const strut_result_slot *row) {
   if (row->status != STRUT_OK) return (double)NAN;
   if (t->text)
     return *row->words[t->place] ? strcmp(row->words[t->place], t->text) == 0 : (double)NAN;
   double number = row->numbers[t->place];
-  return t->above_zero && isfinite(number) ? (double)(number > 0.0) : number;
+  if (t->kind == NUMBER || !isfinite(number)) return number;
+  return t->kind == ABOVE   ? number > threshold
+         : t->kind == BELOW ? number < -threshold
+                            : fabs(number) <= threshold;
 }
 
 /* The values of a target at the points from `first` on. */
@@ -132,7 +154,7 @@ static void read_values(analysis *a, int64_t first, const target *t) {
   for (int64_t p = 0; p < a->block; p++) {
     strut_result_slot row;
     bool there = strut_slots_get(a->slots, first + p, &row);
-    a->values[p] = there ? value_of(t, &row) : (double)NAN;
+    a->values[p] = there ? value_of(t, a->s->threshold, &row) : (double)NAN;
   }
 }
 

@@ -2,7 +2,8 @@
 /**
  * The sensitivity analysis of a study, from the rows of its points: see scene/sensitivity_design.h.
  *
- * A result is a column of numbers; whether such a column is above 0; or whether a column of texts has a
+ * A result is a column of numbers; whether such a column is above 0, or above,
+ * within or below a threshold; or whether a column of texts has a
  * certain one. Each is described at every point of the study's other axes.
  */
 #ifndef STRUT_ENGINE_STUDY_SENSITIVITY_SENSITIVITY_H

@@ -247,11 +247,11 @@ static bool is_goal(strut_keep keep) {
          keep == STRUT_KEEP_SHAPE || keep == STRUT_KEEP_CURVE;
 }
 
-uint64_t strut_statics_usual(strut_compute compute) {
-  uint64_t usual = 0;
+strut_keep_set strut_statics_usual(strut_compute compute) {
+  strut_keep_set usual = {{0}};
   for (size_t i = 0; i < COLUMNS; i++)
     if (columns[i].compute == compute && !is_goal(columns[i].keep))
-      usual |= (uint64_t)1 << columns[i].keep;
+      strut_keep_add(&usual, columns[i].keep);
   return usual;
 }
 
@@ -260,7 +260,7 @@ static size_t lowest_of(const strut_study *study) {
 }
 
 static bool is_kept(const strut_sweep_plan *plan, const column *c) {
-  return c->compute == (strut_compute)plan->study->compute && (plan->keep >> c->keep & 1);
+  return c->compute == (strut_compute)plan->study->compute && strut_keep_has(&plan->keep, c->keep);
 }
 
 /* ---- what a path follows ---- */

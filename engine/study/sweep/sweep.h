@@ -27,7 +27,7 @@ typedef struct strut_sweep_plan {
   const strut_study *study;
   strut_sweep_scenes scenes;
   int64_t points;
-  uint64_t keep; /* bits 1 << strut_keep */
+  strut_keep_set keep;
   size_t quantity_count;
   const char **quantities; /* (quantity_count) names of the measured quantities that are kept */
   bool check, flips;       /* each point is run twice; and outcomes are compared */

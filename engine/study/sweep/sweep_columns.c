@@ -9,9 +9,9 @@
 #include "engine/study/sweep/grid.h"
 #include "engine/study/sweep/sweep_parts.h"
 
-#define BIT(name) ((uint64_t)1 << STRUT_KEEP_##name)
-static const uint64_t USUAL = BIT(VELOCITY) | BIT(SPREAD) | BIT(MOTION) | BIT(PERIODS) |
-                              BIT(EVALUATIONS) | BIT(OUTCOME) | BIT(QUANTITIES);
+static const strut_keep USUAL[] = {STRUT_KEEP_VELOCITY,  STRUT_KEEP_SPREAD,      STRUT_KEEP_MOTION,
+                                   STRUT_KEEP_PERIODS,   STRUT_KEEP_EVALUATIONS, STRUT_KEEP_OUTCOME,
+                                   STRUT_KEEP_QUANTITIES};
 
 /*
  * The columns of each word of `keep`, in order: word, name, unit, whether its cells are words, and the
@@ -70,7 +70,9 @@ static const entry counts[] = {
     COUNT_TABLE(COUNT)};
 enum { COUNTS = sizeof counts / sizeof counts[0] };
 
-static bool keeps(const strut_sweep_plan *plan, strut_keep keep) { return plan->keep >> keep & 1u; }
+static bool keeps(const strut_sweep_plan *plan, strut_keep keep) {
+  return strut_keep_has(&plan->keep, keep);
+}
 
 /* Does one of the first `count` columns have this name? An axis may share the name of a column. */
 static bool is_taken(const strut_sweep_plan *plan, size_t count, const char *name) {
@@ -213,12 +215,13 @@ static bool add_columns(strut_sweep_plan *plan, const strut_setup *setup) {
 static void choose_of_run(strut_sweep_plan *plan, const strut_setup *setup, bool usual) {
   const strut_study *study = plan->study;
   bool shapes = setup->scene.configuration_count > 0;
-  plan->keep = usual ? USUAL : study->keep;
-  if (usual && !shapes) plan->keep &= ~BIT(OUTCOME);
+  plan->keep = study->keep;
+  for (size_t i = 0; i < sizeof USUAL / sizeof USUAL[0] && usual; i++)
+    if (shapes || USUAL[i] != STRUT_KEEP_OUTCOME) strut_keep_add(&plan->keep, USUAL[i]);
   plan->start = usual && setup->experiment.settle.wanted;
   plan->check = !study->search && (study->half_step || study->check_accuracy > 0.0);
-  if (plan->check && shapes) plan->keep |= BIT(OUTCOME);
-  if (plan->check && !shapes) plan->keep |= BIT(MOTION);
+  if (plan->check && shapes) strut_keep_add(&plan->keep, STRUT_KEEP_OUTCOME);
+  if (plan->check && !shapes) strut_keep_add(&plan->keep, STRUT_KEEP_MOTION);
   plan->flips = plan->check && shapes;
 }
 
@@ -226,7 +229,7 @@ static strut_status choose_columns(strut_sweep_plan *plan, const strut_setup *se
                                    strut_error *error) {
   const strut_scene *scene = &setup->scene;
   const strut_study *study = plan->study;
-  bool usual = !study->keep && !study->quantity_count;
+  bool usual = strut_keep_is_empty(&study->keep) && !study->quantity_count;
   if (study->compute == STRUT_COMPUTE_RUN) {
     choose_of_run(plan, setup, usual);
     strut_status status = strut_goals_check(study, scene, error);

@@ -102,7 +102,7 @@ void strut_sweep_job_finish(const strut_sweep_worker *worker, strut_sweep_job *j
 /** Most columns that strut_statics_columns adds, apart from those of nodes and members. */
 enum { STRUT_STATICS_COLUMNS = 16 + 3 * STRUT_STUDY_MOST_LOWEST };
 /** What is usual to keep of a computation that is no run. */
-uint64_t strut_statics_usual(strut_compute compute);
+strut_keep_set strut_statics_usual(strut_compute compute);
 /** Adds the columns of what is computed at rest. False: no memory. */
 bool strut_statics_columns(strut_sweep_plan *plan, const strut_scene *scene);
 /** STRUT_BAD_SCENE where the study asks for what the scene does not have. */

@@ -123,7 +123,8 @@ static strut_status name_outcome(const strut_sweep_worker *w, strut_sweep_job *j
                                  const strut_summary *summary, char *name) {
   const strut_scene *scene = &job->setup.scene;
   int32_t index = -1;
-  if (!(w->plan->keep >> STRUT_KEEP_OUTCOME & 1) || !scene->configuration_count) return STRUT_OK;
+  if (!strut_keep_has(&w->plan->keep, STRUT_KEEP_OUTCOME) || !scene->configuration_count)
+    return STRUT_OK;
   strut_status status = strut_equilibrium_cache_nearest(w->standing, &job->setup,
                                                         summary->positions, &index, &job->error);
   snprintf(name, STRUT_SLOT_WORD, "%s", index >= 0 ? scene->configurations[index].name : "other");
