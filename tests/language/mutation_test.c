@@ -38,6 +38,7 @@ static const char *const said_anyway[] = {
     "turn: turn",
     "set: {long: 200 mm + 0 mm*i}", /* where these are 0, or as declared */
     "normal: [-fy*si",
+    "soft: {stiffness: soft}",                /* as its base has it */
     "mu: 0.3, width: 10 mm/s}, nodes: [k.a]", /* level; a contact has its own */
 };
 
