@@ -81,10 +81,11 @@ static strut_status follow(const strut_arguments *arguments, const strut_plot *p
   wanted->threads = strut_sweep_threads();
   strut_status status = strut_follow_make(wanted, result, &error);
   strut_progress_end(&progress);
-  if (status)
-    strut_print_error(&error);
-  else
+  if (status) strut_print_error(&error);
+  if (!status)
     status = report(arguments, plot, result);
+  else if (status == STRUT_INTERRUPTED && result->count > 0)
+    report(arguments, plot, result);
   strut_follow_free(result);
   strut_release(result);
   return status;

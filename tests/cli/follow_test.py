@@ -8,9 +8,11 @@ import csv
 import json
 import math
 import os
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
 from findings import check, finish  # noqa: E402
@@ -236,6 +238,22 @@ with open(os.path.join(work, "threads-1", "branches.csv"), encoding="utf-8") as 
 
 both = follow("bilinear.yaml", "frequency=1Hz..1.4Hz", "--at", "1.1Hz,1.2Hz")
 check(len(both["branches"]) == 1 and "on branch 1" in both["notes"][0], f"notes {both['notes']}")
+
+# ---- an interrupted branch is kept, and marked; the first waits may end within the run that starts it
+
+for wait in (1.5, 4, 12, 30):
+    partial = subprocess.Popen([strut, "follow", os.path.join(models, "crawler", "crawler.yaml"), "--set", "friction=0.2",
+                                "--from", "I", "--over", "frequency=9Hz..13Hz", "--at", "10Hz", "-o", "partial", "--json",
+                                "-q"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=work)
+    time.sleep(wait)
+    partial.send_signal(signal.SIGINT)
+    out, err = partial.communicate(timeout=60)
+    if out:
+        break
+check(partial.returncode not in (0, 1) and "interrupted" in err, f"interrupt: {partial.returncode} {err}")
+got = json.loads(out)
+check("interrupted" in got["notes"][-1] and got["branches"][0]["begins"] == "interrupted", f"{got['notes']}")
+check(len(rows("partial")) == len(got["branches"][0]["points"]) >= 2, "points of a partial branch")
 
 # ---- kicks: a linear motion always comes back, the larger of two stable ones does not
 

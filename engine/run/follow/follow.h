@@ -84,7 +84,8 @@ STRUT_API strut_status strut_follow_correct(strut_follow_system *s, double *y, b
                                             char *reason, strut_error *error);
 /**
  * Follows the branch both ways from the motion y at the system's value, which is on it; `direction` (n):
- * NULL, or that in which the branch leaves y, of a doubled branch. The branch is to be freed in any case.
+ * NULL, or that in which the branch leaves y, of a doubled branch. The branch is to be freed in any case;
+ * with STRUT_INTERRUPTED it holds what was followed so far.
  */
 STRUT_API strut_status strut_follow_branch_make(strut_follow_system *s, const double *y,
                                                 const double *direction,

@@ -359,6 +359,10 @@ strut_status strut_follow_branch_make(strut_follow_system *s, const double *y,
     } else {
       branch->ends[0] = direction ? "the branch begins here" : branch->ends[1];
     }
+    if (w.status == STRUT_INTERRUPTED) {
+      if (!direction) branch->ends[0] = "interrupted";
+      if (!*branch->ends[1]) branch->ends[1] = "interrupted";
+    }
     order_points(branch, forth);
   }
   branch->evaluations = s->evaluations - evaluations;

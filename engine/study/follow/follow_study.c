@@ -134,7 +134,7 @@ static strut_status add_branch(follower *f, const double *y, const double *direc
   snprintf(b->label, sizeof b->label, "%s", label);
   strut_status status =
       strut_follow_branch_make(&f->s, y, direction, &f->limits, &b->branch, f->error);
-  if (status || b->branch.count < 2) {
+  if ((status && status != STRUT_INTERRUPTED) || b->branch.count < 2) {
     char text[STRUT_FOLLOW_NOTE];
     snprintf(text, sizeof text, "no branch leads away from %s: %s", label,
              b->branch.ends[1] ? b->branch.ends[1] : "");
@@ -143,7 +143,7 @@ static strut_status add_branch(follower *f, const double *y, const double *direc
     return status;
   }
   f->r->count++;
-  return STRUT_OK;
+  return status;
 }
 
 /*
@@ -314,6 +314,8 @@ strut_status strut_follow_make(const strut_follow_options *options, strut_follow
   if (!status && result->count == 0)
     status = strut_fail(error, STRUT_NOT_SETTLED, "there is no periodic motion to follow: %s",
                         result->note_count ? result->notes[0] : "no start was given");
+  if (status == STRUT_INTERRUPTED && result->count > 0)
+    note(&f, "interrupted: branches are missing, or end early");
   if (f.opened) strut_follow_close(&f.s);
   result->seconds = strut_run_clock() - clock;
   return status;

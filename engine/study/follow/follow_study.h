@@ -68,7 +68,8 @@ typedef struct strut_follow_result {
 
 /**
  * Follows all branches. The result is to be freed in any case. STRUT_USAGE with a sentence where the
- * scene has no such motions, or none of the starts leads to a periodic one.
+ * scene has no such motions, or none of the starts leads to a periodic one; with STRUT_INTERRUPTED the
+ * result has what was followed so far, and a note.
  */
 STRUT_API strut_status strut_follow_make(const strut_follow_options *options,
                                          strut_follow_result *result, strut_error *error);
