@@ -226,6 +226,13 @@ stalled 1% 0.01 0.0510317
 pair 0.3% 0.003 -0.0495417
 END
 
+# An orbit that runs leave again is not extrapolated to, though its period is the drive's: beside it the steady
+# motion takes two periods, and is 7 % slower (adaptive until steady within 0.05 %: 16.708 mm/s).
+expect 0 run "$crawler" --set friction=0.1 --set "frequency=13.613 Hz" --set "amplitude=0.2986 mm" --accuracy 2% --json
+cp "$work/out" "$work/json"
+about "$(field .velocity)" 0.016708 0.02
+[ "$(field .steady.repeats)" = 2 ] || fail "an unstable orbit was taken for the answer"
+
 # What makes no sense is refused.
 expect 1 run "$crawler" --accuracy 1% --integrator rk4
 err_has "give either --accuracy, or --integrator and --step"
