@@ -28,7 +28,7 @@ static const double MOST_WEIGHT = 100.0;
 /*
  * Differences grow where their multiplier is above GROWN; the square of what its fit leaves of them is at most FITTED.
  */
-static const double GROWN = 1.01, FITTED = 0.04;
+static const double GROWN = 1.02, FITTED = 0.04;
 
 /* Solves the small symmetric system a x = 1 in place by elimination; false if it is singular. */
 static bool solve_ones(double a[WINDOW][WINDOW], int32_t n, double *x) {
