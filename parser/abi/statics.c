@@ -293,9 +293,9 @@ static strut_status find_path(abi_call *call, const strutlib_scene *scene, strut
                               strut_error *what) {
   strut_path_options wanted;
   strut_varied_scenes followed = {.file = scene->source->name,
-                             .text = scene->source->text,
-                             .length = scene->source->length,
-                             .source = scene->source->tree};
+                                  .text = scene->source->text,
+                                  .length = scene->source->length,
+                                  .source = scene->source->tree};
   const strut_scene *s = &result->setup.scene;
   path_detail *d = make_detail(result, sizeof *d, release_path);
   if (!d) return strut_no_memory(what, "");

@@ -78,8 +78,7 @@ static strut_status report_first(const strut_varied_scenes *scenes,
                      s->text);
     used += n > 0 ? (size_t)n : 0;
   }
-  if (first->place.line == 0)
-    return strut_fail(error, STRUT_BAD_SCENE, "at %s: %s", at, message);
+  if (first->place.line == 0) return strut_fail(error, STRUT_BAD_SCENE, "at %s: %s", at, message);
   return strut_fail(error, STRUT_BAD_SCENE, "%s:%u:%u: at %s: %s", scenes->file, first->place.line,
                     first->place.column, at, message);
 }
