@@ -371,6 +371,7 @@
   X(STUDY, LIMIT, "limit", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "What a point may cost. One that needs more fails, and its row says so.") \
   X(STUDY, FORM, "form", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "How `compute: form` finds the form.") \
   X(STUDY, SEARCH, "search", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Search for the parameters at which a column is best, instead of computing the points of a grid.") \
+  X(STUDY, FOLLOW, "follow", MAP, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Follow periodic motions, stable or not, over a parameter at every point of the axes, as `strut follow` does, instead of running the points.") \
   X(RANGE, FROM, "from", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "First value.") \
   X(RANGE, TO, "to", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "Last value, if the steps meet it.") \
   X(RANGE, STEP, "step", NUMBER, CONTEXT, ANY, "", OPTIONAL, 4, "", BY_HAND, "Difference between successive values.") \
@@ -450,7 +451,16 @@
   X(VARIABLE, START, "start", NUMBER, CONTEXT, ANY, "the middle", OPTIONAL, 0, "", BY_HAND, "Where the first search begins.") \
   X(VARIABLE, SCALE, "scale", WORD, NONE, ANY, "linear", OPTIONAL, 0, "linear|log", BY_HAND, "`log`: steps are ratios.") \
   X(VARIABLE, WRAPS, "wraps", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_search_variable, wraps), "`yes`: both bounds are the same, as 0 deg and 360 deg of a phase.") \
-  X(VARIABLE, INTEGER, "integer", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_search_variable, integer), "`yes`: only whole numbers, of the SI unit.")
+  X(VARIABLE, INTEGER, "integer", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_search_variable, integer), "`yes`: only whole numbers, of the SI unit.") \
+  X(FOLLOW, OVER, "over", NAME, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "The parameter over which motions are followed.") \
+  X(FOLLOW, FROM, "from", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "The lower end of its range.") \
+  X(FOLLOW, TO, "to", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "The upper end.") \
+  X(FOLLOW, AT, "at", NUMBERS, CONTEXT, ANY, "the model's own value, or the middle", OPTIONAL, 0, "", BY_HAND, "Values at which runs start branches.") \
+  X(FOLLOW, START_FROM, "start_from", NAMES, NONE, ANY, "as the model says", OPTIONAL, 0, "", BY_HAND, "Configurations from whose equilibria these runs start.") \
+  X(FOLLOW, ACCURACY, "accuracy", NUMBER, NONE, ABOVE_ZERO, "0.1 %", OPTIONAL, 0, "", FIELD(strut_study_follow, accuracy), "Relative error of velocities, at most 10 %.") \
+  X(FOLLOW, INTEGRATOR, "integrator", WORD, NONE, ANY, "adaptive", OPTIONAL, 0, STRUT_INTEGRATOR_WORDS, FIELD(strut_study_follow, integrator), "A method that locates events where there are contacts or cables.") \
+  X(FOLLOW, STEPS, "steps", NUMBER, NONE, WHOLE(1, 100000), "400", OPTIONAL, 0, "", FIELD(strut_study_follow, steps), "Maximum number of steps of a branch each way.") \
+  X(FOLLOW, BASINS, "basins", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_study_follow, basins), "Kick the stable motions at the values of `at`, to find how far they may be pushed.")
 
 /* clang-format on */
 
