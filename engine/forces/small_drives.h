@@ -20,9 +20,9 @@ STRUT_SMALL_INLINE void small_sincos(strut_lanes turns, strut_lanes *sine, strut
   strut_lanes x = STRUT_TAU * (turns - 0.25 * quarter);
   strut_lanes s = small_sine(x), c = small_cosine(x);
   strut_lane_mask quadrant = (strut_lane_mask)rounded, odd = -(quadrant & 1);
-  strut_lanes first = strut_lanes_choose(odd, c, s), second = strut_lanes_choose(odd, s, c);
-  *sine = strut_lanes_choose(-((quadrant >> 1) & 1), -first, first);
-  *cosine = strut_lanes_choose(-(((quadrant + 1) >> 1) & 1), -second, second);
+  strut_lanes first = small4_choose(odd, c, s), second = small4_choose(odd, s, c);
+  *sine = small4_choose(-((quadrant >> 1) & 1), -first, first);
+  *cosine = small4_choose(-(((quadrant + 1) >> 1) & 1), -second, second);
 }
 
 /* Is the signal a sine, and on, at all of these times? */
@@ -45,10 +45,10 @@ STRUT_SMALL_INLINE void small_signal(const strut_signal *signals, int32_t index,
   double fast = s->amplitude * STRUT_TAU * s->frequency;
   for (int32_t h = 0; h < count; h += STRUT_LANES) {
     strut_lanes sine, cosine;
-    strut_lanes turns = s->frequency * (strut_lanes_load(time + h) - s->start) + s->phase;
+    strut_lanes turns = s->frequency * (small4_load(time + h) - s->start) + s->phase;
     small_sincos(turns, &sine, &cosine);
-    strut_lanes_store(value + h, s->amplitude * sine);
-    strut_lanes_store(rate + h, fast * cosine);
+    small4_store(value + h, s->amplitude * sine);
+    small4_store(rate + h, fast * cosine);
   }
 }
 

@@ -16,8 +16,8 @@
 typedef struct small_run {
   const strut_small_model *tables;
   const strut_contact_table *contacts;
-  unsigned plan;                /* with the terms that a copy knows */
-  strut_small_row constant[2];  /* constant forces [N] */
+  unsigned plan;               /* with the terms that a copy knows */
+  strut_small_row constant[2]; /* constant forces [N] */
   double slack_length_threshold[STRUT_SMALL_SLOTS], slack_force_threshold[STRUT_SMALL_SLOTS];
 } small_run;
 
@@ -34,18 +34,17 @@ typedef struct small_rest {
     number x, y, u, w;                                                                             \
   } PREFIX##_span;                                                                                 \
                                                                                                    \
-  STRUT_SMALL_INLINE PREFIX##_values PREFIX##_values_at(const small_run *r, const small_rest *rest, \
-                                                        int j, number length, number rate) {       \
+  STRUT_SMALL_INLINE PREFIX##_values PREFIX##_values_at(                                           \
+      const small_run *r, const small_rest *rest, int j, number length, number rate) {             \
     const strut_small_model *s = r->tables;                                                        \
-    return (PREFIX##_values){                                                                      \
-        .length = length,                                                                          \
-        .rate = rate,                                                                              \
-        .rest = load(rest->rest + j),                                                              \
-        .rest_rate = load(rest->rate + j),                                                         \
-        .stiffness = load(s->stiffness + j),                                                       \
-        .damping = load(s->damping + j),                                                           \
-        .slack_length_threshold = load(r->slack_length_threshold + j),                             \
-        .slack_force_threshold = load(r->slack_force_threshold + j)};                              \
+    return (PREFIX##_values){.length = length,                                                     \
+                             .rate = rate,                                                         \
+                             .rest = load(rest->rest + j),                                         \
+                             .rest_rate = load(rest->rate + j),                                    \
+                             .stiffness = load(s->stiffness + j),                                  \
+                             .damping = load(s->damping + j),                                      \
+                             .slack_length_threshold = load(r->slack_length_threshold + j),        \
+                             .slack_force_threshold = load(r->slack_force_threshold + j)};         \
   }                                                                                                \
                                                                                                    \
   /* Pulls of the members from j on into d->u and d->w. */                                         \
@@ -59,7 +58,7 @@ typedef struct small_rest {
     d->u = density * d->x, d->w = density * d->y;                                                  \
   }
 
-STRUT_DEFINE_SMALL_GROUP(strut_lanes, strut_lane_mask, small4, strut_lanes_load, small_root_of_4)
+STRUT_DEFINE_SMALL_GROUP(strut_lanes, strut_lane_mask, small4, small4_load, small_root_of_4)
 
 /* Powers of the members in the order of groups of 4, which the general kernel sums. */
 typedef struct small_powers {
@@ -158,8 +157,8 @@ STRUT_SMALL_INLINE small_real small_damper(const strut_small_contacts *c, int p,
 
 /* See strut_friction_force. */
 STRUT_SMALL_INLINE small_real small_friction(const strut_small_contacts *c, int p,
-                                             small_real normal, small_real slip,
-                                             small_real applied, bool laws) {
+                                             small_real normal, small_real slip, small_real applied,
+                                             bool laws) {
   small_real zero = {0}, one = small_all(1.0);
   small_real stick = SMALL_CONTACT(stick_velocity);
   small_real holding = SMALL_CONTACT(mu_static), sliding = SMALL_CONTACT(mu_kinetic);
@@ -217,15 +216,15 @@ STRUT_SMALL_INLINE void small_ground_part(const small_run *r, int p, small_real 
 STRUT_SMALL_INLINE small_row small_divide(const strut_small_model *s, int c, small_row f) {
   const strut_small_column *column = s->column[c];
   small_row a = small_permute(column->lane, f);
-  SMALL_EACH(p) a.part[p] =
-      small_keep(small_mask_load(column->has + p * SMALL_WIDTH),
-                 small_load(column->inverse + p * SMALL_WIDTH) * a.part[p]);
+  SMALL_EACH(p)
+  a.part[p] = small_keep(small_mask_load(column->has + p * SMALL_WIDTH),
+                         small_load(column->inverse + p * SMALL_WIDTH) * a.part[p]);
   for (int32_t j = 1, columns = s->columns; j < columns; j++) {
     column = &s->column[c][j];
     small_row x = small_permute(column->lane, f);
-    SMALL_EACH(p) a.part[p] =
-        small_add_where(small_mask_load(column->has + p * SMALL_WIDTH), a.part[p],
-                        small_load(column->inverse + p * SMALL_WIDTH) * x.part[p]);
+    SMALL_EACH(p)
+    a.part[p] = small_add_where(small_mask_load(column->has + p * SMALL_WIDTH), a.part[p],
+                                small_load(column->inverse + p * SMALL_WIDTH) * x.part[p]);
   }
   return a;
 }
@@ -244,10 +243,10 @@ STRUT_SMALL_INLINE small_work small_sum_powers(const small_run *r, const small_p
                                        {1, 0, 0, 5, 0, 0, 9, 0},
                                        {2, 0, 0, 6, 0, 0, 10, 0},
                                        {3, 0, 0, 7, 0, 0, 11, 0}};
-  static const int64_t contact[8][8] = {
-      {0, 0, 0, 0, 0, 8, 0, 0},  {1, 1, 1, 1, 1, 9, 1, 1},  {2, 2, 2, 2, 2, 10, 2, 2},
-      {3, 3, 3, 3, 3, 11, 3, 3}, {4, 4, 4, 4, 4, 12, 4, 4}, {5, 5, 5, 5, 5, 13, 5, 5},
-      {6, 6, 6, 6, 6, 14, 6, 6}, {7, 7, 7, 7, 7, 15, 7, 7}};
+  static const int64_t contact[8][8] = {{0, 0, 0, 0, 0, 8, 0, 0},  {1, 1, 1, 1, 1, 9, 1, 1},
+                                        {2, 2, 2, 2, 2, 10, 2, 2}, {3, 3, 3, 3, 3, 11, 3, 3},
+                                        {4, 4, 4, 4, 4, 12, 4, 4}, {5, 5, 5, 5, 5, 13, 5, 5},
+                                        {6, 6, 6, 6, 6, 14, 6, 6}, {7, 7, 7, 7, 7, 15, 7, 7}};
   __m512d sum = _mm512_setzero_pd();
   if (r->plan & (STRUT_TERM_DRIVE | STRUT_TERM_DAMPING)) {
     __m512d pair = _mm512_insertf64x4(_mm512_castpd256_pd512(m->drive), m->lost, 1);
@@ -259,8 +258,8 @@ STRUT_SMALL_INLINE small_work small_sum_powers(const small_run *r, const small_p
   }
   for (unsigned left = t->touching; left; left &= left - 1) {
     __m512i at = (__m512i)small_bits_load(contact[__builtin_ctz(left)]);
-    __m512d x = _mm512_maskz_permutex2var_pd(CONTACT_FRICTION, t->damped.part[0], at,
-                                             t->rubbed.part[0]);
+    __m512d x =
+        _mm512_maskz_permutex2var_pd(CONTACT_FRICTION, t->damped.part[0], at, t->rubbed.part[0]);
     x = _mm512_mask_permutexvar_pd(x, EXCHANGED, at, t->exchanged.part[0]);
     if (r->contacts->belt_speed != 0.0)
       x = _mm512_mask_permutexvar_pd(x, BELT, at, t->belt.part[0]);
@@ -273,16 +272,14 @@ STRUT_SMALL_INLINE small_work small_sum_powers(const small_run *r, const small_p
 /* Forces f and accelerations a at positions q and velocities v; the powers with the ledger. */
 STRUT_SMALL_INLINE small_points small_accelerate(const small_run *r, const small_rest *rest,
                                                  const small_points *q, const small_points *v,
-                                                 bool ledger, small_points *f,
-                                                 small_work *power) {
+                                                 bool ledger, small_points *f, small_work *power) {
   small_pulls px, py;
   small_powers members = {0};
   small_touch touch;
   touch.touching = 0;
   small_members(r, rest, q, v, ledger, &px, &py, &members);
   *f = small_sum_pulls(r, &px, &py);
-  if (r->plan & STRUT_TERM_CONTACT)
-    SMALL_EACH(p)
+  if (r->plan & STRUT_TERM_CONTACT) SMALL_EACH(p)
   small_ground_part(r, p, q->x.part[p], q->y.part[p], v->x.part[p], v->y.part[p], f, ledger,
                     &touch);
   if (ledger) *power = small_sum_powers(r, &members, &touch);

@@ -3,7 +3,7 @@
  * Hot: vectors for the kernel of small models. A number of each node is a row: one register of 8 lanes
  * (AVX-512) or two of 4 (AVX2). A number of each member is a register of 8 and one of 4, or three of 4.
  *
- * A file defines STRUT_SMALL_WIDTH, 8 or 4, and includes this once, on x86-64 only.
+ * A file defines STRUT_SMALL_WIDTH, 8 (as by default) or 4, and includes this once, on x86-64 only.
  */
 #ifndef STRUT_ENGINE_FORCES_SMALL_VECTOR_H
 #define STRUT_ENGINE_FORCES_SMALL_VECTOR_H
@@ -14,6 +14,9 @@
 #include "engine/model/hot.h"
 #include "engine/model/small_model.h"
 
+#ifndef STRUT_SMALL_WIDTH
+#define STRUT_SMALL_WIDTH 8
+#endif
 #if STRUT_SMALL_WIDTH == 8
 #define STRUT_SMALL_TARGET __attribute__((target("avx512f,avx512dq,avx512vl")))
 #else
@@ -44,6 +47,11 @@ STRUT_SMALL_INLINE small_real small_load(const double *p) { return *(const small
 STRUT_SMALL_INLINE void small_store(double *p, small_real x) { *(small_real_at *)p = x; }
 STRUT_SMALL_INLINE small_bits small_bits_load(const int64_t *p) {
   return *(const small_bits_at *)p;
+}
+STRUT_SMALL_INLINE strut_lanes small4_load(const double *p) { return *(const strut_lanes_at *)p; }
+STRUT_SMALL_INLINE void small4_store(double *p, strut_lanes x) { *(strut_lanes_at *)p = x; }
+STRUT_SMALL_INLINE strut_lanes small4_choose(strut_lane_mask mask, strut_lanes x, strut_lanes y) {
+  return (strut_lanes)((mask & (strut_lane_mask)x) | (~mask & (strut_lane_mask)y));
 }
 STRUT_SMALL_INLINE small_real small_all(double x) {
 #if STRUT_SMALL_WIDTH == 8

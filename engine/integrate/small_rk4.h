@@ -31,7 +31,7 @@ STRUT_SMALL_INLINE void small_rk4_step(const small_run *r, const small_rest *res
   v[0] = m->v;
 #define SMALL_STAGE(k, weight, at, where)                                                          \
   do {                                                                                             \
-    a[k] = small_accelerate(r, rest + (at) * stride, where, &v[k], ledger, &m->f, &m->power);      \
+    a[k] = small_accelerate(r, rest + (at)*stride, where, &v[k], ledger, &m->f, &m->power);        \
     if (ledger) small_add_work(&m->work, (weight) * (sixth), &m->power);                           \
   } while (0)
 #define SMALL_NEXT(k, h)                                                                           \

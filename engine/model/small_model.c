@@ -16,8 +16,7 @@ static bool is_small(const strut_model *model) {
   return !(model->plan & ~(unsigned)STRUT_TERMS_SMALL) && model->plan & STRUT_TERM_MEMBERS &&
          model->node_count <= STRUT_SMALL_NODES && model->members.count <= STRUT_SMALL_MEMBERS &&
          model->members.slots <= STRUT_SMALL_SLOTS && model->drives.count <= STRUT_SMALL_DRIVES &&
-         model->mass && !model->mass->coordinate[0].factor &&
-         !model->mass->coordinate[1].factor;
+         model->mass && !model->mass->coordinate[0].factor && !model->mass->coordinate[1].factor;
 }
 
 /* The next pull at a lane: members come in the scene's order. */
@@ -59,8 +58,7 @@ static void list_masses(const strut_model *model, strut_small_model *s, int c) {
   for (int32_t b = 0; b < op->block_count && !mass->diagonal; b++) {
     int32_t n = op->block_size[b];
     for (int32_t i = 0; i < n; i++)
-      for (int32_t j = 0; j < n; j++)
-        add_entry(s, c, j, at[i] / 2, at[j] / 2, inverse[i * n + j]);
+      for (int32_t j = 0; j < n; j++) add_entry(s, c, j, at[i] / 2, at[j] / 2, inverse[i * n + j]);
     at += n, inverse += n * n;
   }
 }

@@ -55,8 +55,8 @@ typedef struct strut_small_contacts {
 typedef struct strut_small_model {
   int64_t from[STRUT_SMALL_SLOTS], to[STRUT_SMALL_SLOTS]; /* lanes of the members' ends */
   double stiffness[STRUT_SMALL_SLOTS], damping[STRUT_SMALL_SLOTS];
-  strut_small_pull pull[STRUT_SMALL_MEMBERS];           /* (degree) */
-  strut_small_column column[2][STRUT_SMALL_NODES];      /* of x and of y, (columns) */
+  strut_small_pull pull[STRUT_SMALL_MEMBERS];      /* (degree) */
+  strut_small_column column[2][STRUT_SMALL_NODES]; /* of x and of y, (columns) */
   strut_small_contacts contact;
   int32_t nodes, members, degree, columns;
   strut_small_level level; /* what the processor has; a test may lower it */

@@ -14,6 +14,7 @@ mkdir -p "$scratch"
 cd "$root"
 # What the run executes, and no more: everything is compiled eight times.
 sources="tests/golden/golden.c engine/run/settle.c engine/integrate/rk4.c
+  engine/integrate/small_avx512.c
   engine/integrate/events/verlet_events.c engine/integrate/events/event_stepping.c
   engine/integrate/events/event_log.c engine/integrate/events/event_location.c
   engine/integrate/events/contact_modes.c

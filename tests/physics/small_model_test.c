@@ -36,7 +36,6 @@ static void add_structure(strut_scene *scene, uint64_t *r) {
   }
 }
 
-
 static void add_drives(strut_scene *scene, uint64_t *r) {
   for (int i = 0; i < 3; i++) {
     bool wave = i < 2;
