@@ -30,14 +30,6 @@ STRUT_SMALL_INLINE void small_write(const strut_small_model *s, const small_poin
   for (int32_t i = 0; i < s->nodes; i++) array[2 * i] = row[0][i], array[2 * i + 1] = row[1][i];
 }
 
-STRUT_SMALL_INLINE small_work small_work_load(const double *p) {
-  return (small_work){_mm512_loadu_pd(p)};
-}
-STRUT_SMALL_INLINE void small_work_store(double *p, small_work w) { _mm512_storeu_pd(p, w.sum); }
-STRUT_SMALL_INLINE void small_add_work(small_work *work, double weight, const small_work *power) {
-  work->sum += weight * power->sum;
-}
-
 /* Rest lengths before the drives change them, in the rows of `count` instants. */
 STRUT_SMALL_INLINE void small_fill_rest(const strut_model *model, const strut_state *state,
                                         unsigned plan, int64_t count, small_rest *rows) {
