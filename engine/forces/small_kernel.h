@@ -335,6 +335,9 @@ STRUT_SMALL_INLINE void small_work_store(double *p, small_work w) { _mm512_store
 STRUT_SMALL_INLINE void small_add_work(small_work *work, double weight, const small_work *power) {
   work->sum += weight * power->sum;
 }
+STRUT_SMALL_INLINE void small_add_powers(small_work *to, const small_work *power) {
+  to->sum += power->sum;
+}
 #else
 /* Powers in the order of strut_power. */
 typedef struct small_work {
@@ -375,6 +378,10 @@ STRUT_SMALL_INLINE void small_work_store(double *p, small_work w) {
 STRUT_SMALL_INLINE void small_add_work(small_work *work, double weight, const small_work *power) {
   work->low += weight * power->low;
   work->high += weight * power->high;
+}
+STRUT_SMALL_INLINE void small_add_powers(small_work *to, const small_work *power) {
+  to->low += power->low;
+  to->high += power->high;
 }
 #endif
 

@@ -6,6 +6,7 @@
 #include "engine/integrate/small_copies.h"
 
 STRUT_SMALL_METHOD(rk4)
+STRUT_SMALL_METHOD(verlet)
 #else
 extern int strut_small_avx512_is_empty;
 #endif

@@ -14,6 +14,12 @@ typedef struct small_motion {
   small_work power, work;
 } small_motion;
 
+/* z + h k */
+STRUT_SMALL_INLINE small_row small_ahead(small_row z, double h, small_row k) {
+  SMALL_EACH(p) z.part[p] = z.part[p] + h * k.part[p];
+  return z;
+}
+
 /* A coordinate array, lane by lane. */
 STRUT_SMALL_INLINE small_points small_read(const strut_small_model *s, const double *array) {
   strut_small_row row[2] = {{0}};
