@@ -7,12 +7,6 @@
 
 #include "engine/integrate/small_run.h"
 
-/* z + h k */
-STRUT_SMALL_INLINE small_row small_ahead(small_row z, double h, small_row k) {
-  SMALL_EACH(p) z.part[p] = z.part[p] + h * k.part[p];
-  return z;
-}
-
 /* z + sixth (k1 + 2 (k2 + k3) + k4) */
 STRUT_SMALL_INLINE small_row small_combine(small_row z, double sixth, small_row k1, small_row k2,
                                            small_row k3, small_row k4) {
@@ -54,8 +48,10 @@ STRUT_SMALL_INLINE void small_rk4_step(const small_run *r, const small_rest *res
   m->v.y = small_combine(m->v.y, sixth, a[0].y, a[1].y, a[2].y, a[3].y);
 }
 
-STRUT_SMALL_INLINE void small_rk4(const strut_model *model, strut_state *state, double dt,
-                                  int64_t count, unsigned terms, bool ledger) {
+STRUT_SMALL_INLINE void small_rk4(const strut_model *model, strut_state *state,
+                                  const strut_small_kept *kept, double dt, int64_t count,
+                                  unsigned terms, bool ledger) {
+  (void)kept;
   small_run run;
   small_rest rows[SMALL_INSTANTS];
   small_motion m;

@@ -14,6 +14,12 @@ typedef struct small_motion {
   small_work power, work;
 } small_motion;
 
+/* z + h k */
+STRUT_SMALL_INLINE small_row small_ahead(small_row z, double h, small_row k) {
+  SMALL_EACH(p) z.part[p] = z.part[p] + h * k.part[p];
+  return z;
+}
+
 /* A coordinate array, lane by lane. */
 STRUT_SMALL_INLINE small_points small_read(const strut_small_model *s, const double *array) {
   strut_small_row row[2] = {{0}};
@@ -28,14 +34,6 @@ STRUT_SMALL_INLINE void small_write(const strut_small_model *s, const small_poin
   small_row_store(row[0], x->x);
   small_row_store(row[1], x->y);
   for (int32_t i = 0; i < s->nodes; i++) array[2 * i] = row[0][i], array[2 * i + 1] = row[1][i];
-}
-
-STRUT_SMALL_INLINE small_work small_work_load(const double *p) {
-  return (small_work){_mm512_loadu_pd(p)};
-}
-STRUT_SMALL_INLINE void small_work_store(double *p, small_work w) { _mm512_storeu_pd(p, w.sum); }
-STRUT_SMALL_INLINE void small_add_work(small_work *work, double weight, const small_work *power) {
-  work->sum += weight * power->sum;
 }
 
 /* Rest lengths before the drives change them, in the rows of `count` instants. */

@@ -8,6 +8,7 @@ static strut_small_level level_here(void) {
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
       __builtin_cpu_supports("avx512vl"))
     return STRUT_SMALL_AVX512;
+  if (__builtin_cpu_supports("avx2")) return STRUT_SMALL_AVX2;
 #endif
   return STRUT_SMALL_NONE;
 }
@@ -26,14 +27,19 @@ static void add_pull(strut_small_model *s, int64_t lane, int32_t member, int64_t
   if (k == s->degree) s->degree++;
   s->pull[k].has[lane] = -1;
   s->pull[k].slot[lane] = member;
+  s->pull[k].slot_halves[lane] = strut_small_halves(member);
   s->pull[k].sign[lane] = sign;
 }
 
 static void list_members(const strut_model *model, strut_small_model *s) {
   const strut_member_table *t = &model->members;
   s->members = t->count;
+  for (int32_t j = 0; j < STRUT_SMALL_SLOTS; j++)
+    s->from_halves[j] = s->to_halves[j] = strut_small_halves(0);
   for (int32_t j = 0; j < t->count; j++) {
     s->from[j] = t->from[j] / 2, s->to[j] = t->to[j] / 2;
+    s->from_halves[j] = strut_small_halves(s->from[j]);
+    s->to_halves[j] = strut_small_halves(s->to[j]);
     s->stiffness[j] = t->stiffness[j], s->damping[j] = t->damping[j];
     add_pull(s, s->from[j], j, 0);
     add_pull(s, s->to[j], j, INT64_MIN);
@@ -44,7 +50,8 @@ static void add_entry(strut_small_model *s, int c, int32_t j, int64_t row, int64
                       double inverse) {
   strut_small_column *to = &s->column[c][j];
   if (j >= s->columns) s->columns = j + 1;
-  to->lane[row] = column, to->inverse[row] = inverse, to->has[row] = -1;
+  to->lane[row] = column, to->lane_halves[row] = strut_small_halves(column);
+  to->inverse[row] = inverse, to->has[row] = -1;
 }
 
 /* The inverse masses of one coordinate. Rows of blocks take the place of what stands in the diagonal. */
@@ -68,12 +75,13 @@ static void list_contacts(const strut_model *model, strut_small_contacts *t) {
     const strut_contact_entry *e = &model->contacts.entry[i];
     const strut_friction *f = &e->friction;
     int32_t n = e->node;
-    t->stiffness[n] = e->stiffness, t->damping[n] = e->damping, t->dissipation[n] = e->dissipation;
+    t->minus_stiffness[n] = -e->stiffness, t->minus_damping[n] = -e->damping;
+    t->dissipation[n] = e->dissipation;
     t->mu_static[n] = t->mu_static_backward[n] = f->mu_static;
-    t->mu_kinetic[n] = t->mu_kinetic_backward[n] = f->mu_kinetic;
+    t->minus_mu_kinetic[n] = t->minus_mu_kinetic_backward[n] = -f->mu_kinetic;
     if (f->directional) {
       t->mu_static_backward[n] = f->mu_static_backward;
-      t->mu_kinetic_backward[n] = f->mu_kinetic_backward;
+      t->minus_mu_kinetic_backward[n] = -f->mu_kinetic_backward;
     }
     t->stick_velocity[n] = f->stick_velocity, t->width[n] = f->width;
     t->touches[n] = -1;

@@ -32,28 +32,39 @@ typedef int64_t strut_small_lanes[STRUT_SMALL_NODES];
 /** The lanes of which something holds: all bits set, or none. */
 typedef strut_small_lanes strut_small_mask;
 
+/**
+ * Lanes as AVX2 wants them, which permutes registers of 4 by halves of numbers: the halves' places, and at the
+ * top bit 63 of lanes 4 to 7, bit 62 of lanes 8 to 11.
+ */
+static inline int64_t strut_small_halves(int64_t lane) {
+  uint64_t place = (uint64_t)(lane % 4), top = lane / 4 == 1 ? UINT64_C(1) << 63 : 0;
+  if (lane / 4 == 2) top = UINT64_C(1) << 62;
+  return (int64_t)(place * UINT64_C(0x200000002) + UINT64_C(0x100000000) + top);
+}
+
 /** Column j of the blocks of the inverse mass matrix: of which lane, times what, and in which rows. */
 typedef struct strut_small_column {
-  strut_small_lanes lane;
+  strut_small_lanes lane, lane_halves;
   strut_small_row inverse;
   strut_small_mask has;
 } strut_small_column;
 
 /** The k-th member at each node: its slot, the sign bit with which it pulls, and at which nodes there is one. */
 typedef struct strut_small_pull {
-  strut_small_lanes slot, sign;
+  strut_small_lanes slot, slot_halves, sign;
   strut_small_mask has;
 } strut_small_pull;
 
 typedef struct strut_small_contacts {
-  strut_small_row stiffness, damping, dissipation;
-  strut_small_row mu_static, mu_kinetic, mu_static_backward, mu_kinetic_backward;
+  strut_small_row minus_stiffness, minus_damping, dissipation;
+  strut_small_row mu_static, mu_static_backward, minus_mu_kinetic, minus_mu_kinetic_backward;
   strut_small_row stick_velocity, width;
   strut_small_mask touches, hunt_crossley, frictionless, smooth;
 } strut_small_contacts;
 
 typedef struct strut_small_model {
   int64_t from[STRUT_SMALL_SLOTS], to[STRUT_SMALL_SLOTS]; /* lanes of the members' ends */
+  int64_t from_halves[STRUT_SMALL_SLOTS], to_halves[STRUT_SMALL_SLOTS];
   double stiffness[STRUT_SMALL_SLOTS], damping[STRUT_SMALL_SLOTS];
   strut_small_pull pull[STRUT_SMALL_MEMBERS];      /* (degree) */
   strut_small_column column[2][STRUT_SMALL_NODES]; /* of x and of y, (columns) */

@@ -85,6 +85,10 @@ static const strut_option options[] = {
     {STRUT_OPTION_OUTPUT, "output", "DIR", "where --format writes: a directory, for mjcf a file"},
     {STRUT_OPTION_ALLOWANCE, "allowance", "LENGTH",
      "build: what a cable needs at each end, such as 20 mm"},
+    {STRUT_OPTION_CODE, "code", "DIR", "write C99 that steps the model by itself into DIR"},
+    {STRUT_OPTION_REAL, "real", "TYPE", "of --code: double (default) or float"},
+    {STRUT_OPTION_PREFIX, "prefix", "NAME",
+     "of --code: begins all names; default: the file's name"},
     {STRUT_OPTION_AT, "at", "NAME", "the shape: drawn (default), start, or an equilibrium"},
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
     {STRUT_OPTION_END, NULL, NULL, NULL},
@@ -119,13 +123,34 @@ static strut_status export_format(const strut_arguments *arguments, const char *
   return format == 1 ? strut_export_build(arguments) : strut_export_mjcf(arguments);
 }
 
+/* Options of --code without it, and --code with those of others. */
+static strut_status check_code_options(const strut_arguments *arguments) {
+  const char *code = strut_option_text(arguments, STRUT_OPTION_CODE);
+  const strut_command *command = &strut_command_export;
+  if (!code && strut_option_text(arguments, STRUT_OPTION_REAL))
+    return strut_print_usage_error(command, "--real is for --code DIR");
+  if (!code && strut_option_text(arguments, STRUT_OPTION_PREFIX))
+    return strut_print_usage_error(command, "--prefix is for --code DIR");
+  if (!code) return STRUT_OK;
+  if (!*code) return strut_print_usage_error(command, "--code expects a directory");
+  if (strut_option_text(arguments, STRUT_OPTION_FORMAT) ||
+      strut_option_text(arguments, STRUT_OPTION_MATRICES) || arguments->output)
+    return strut_print_usage_error(
+        command, "--code DIR stands alone: leave out --format, --matrices and -o");
+  return STRUT_OK;
+}
+
 static strut_status run_export(const strut_arguments *arguments) {
   const char *directory = strut_option_text(arguments, STRUT_OPTION_MATRICES);
+  strut_status status = check_code_options(arguments);
+  if (status) return status;
+  if (strut_option_text(arguments, STRUT_OPTION_CODE)) return strut_export_code(arguments);
   if (strut_option_text(arguments, STRUT_OPTION_FORMAT)) return export_format(arguments, directory);
   if (!directory || !*directory || arguments->output) {
     fprintf(stderr, "strut export: %s\n",
-            arguments->output ? "-o DIR needs --format"
-                              : "missing --matrices DIR, or --format vtk, build or mjcf with -o");
+            arguments->output
+                ? "-o DIR needs --format"
+                : "missing --matrices DIR, --code DIR, or --format vtk, build or mjcf with -o");
     return STRUT_USAGE;
   }
   return strut_analysis_run(&strut_command_export, arguments, NULL, write_matrices);
@@ -134,7 +159,7 @@ static strut_status run_export(const strut_arguments *arguments) {
 const strut_command strut_command_export = {
     .name = "export",
     .model = "RUN|MODEL",
-    .summary = "writes matrices, a motion for ParaView, lengths to cut, or MuJoCo's format",
+    .summary = "writes matrices, C code, a motion for ParaView, lengths to cut, or MuJoCo's format",
     .details =
         "\nWith --matrices, for MATLAB, Octave or Python: Matrix Market files:\n"
         "connectivity, equilibrium, mass, stiffness_elastic,\n"
@@ -147,6 +172,9 @@ const strut_command strut_command_export = {
         "holes,\n"
         "and drawing.svg and drawing.dxf at true scale.\n"
         "With --format mjcf, FILE.xml for MuJoCo; what it cannot say is refused or listed.\n"
+        "With --code, for microcontrollers, controllers and other simulators: PREFIX.h and "
+        "PREFIX.c,\n"
+        "which start and step the model by rk4 or verlet with strut's bits, and PREFIX_example.c.\n"
         "Either all files are written or none.\n",
     .options = options,
     .run = run_export,

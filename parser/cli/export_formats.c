@@ -2,10 +2,13 @@
 #include "parser/cli/export_formats.h"
 
 #include <stdio.h>
+#include <string.h>
 
 #include "engine/output/build_list.h"
+#include "engine/output/code/code.h"
 #include "engine/output/file.h"
 #include "engine/output/mjcf.h"
+#include "engine/run/settle.h"
 #include "parser/cli/commands.h"
 #include "parser/cli/open_model.h"
 #include "parser/cli/option_values.h"
@@ -75,4 +78,48 @@ strut_status strut_export_mjcf(const strut_arguments *arguments) {
     return strut_print_usage_error(&strut_command_export,
                                    "--at is not for mjcf, which begins where a run does");
   return export_model(arguments, STRUT_OPEN_AS_RUN, write_mjcf);
+}
+
+/* The prefix that was asked for, or one of the model's file. */
+static strut_status choose_prefix(const strut_arguments *arguments, char prefix[65]) {
+  const char *asked = strut_option_text(arguments, STRUT_OPTION_PREFIX);
+  if (!asked) {
+    strut_code_prefix_of(strcmp(arguments->model, "-") ? arguments->model : "", prefix);
+    return STRUT_OK;
+  }
+  if (!strut_code_is_prefix(asked))
+    return strut_print_usage_error(&strut_command_export,
+                                   "--prefix expects a letter, then letters, digits and "
+                                   "underscores, 64 at most, not '%s'",
+                                   asked);
+  snprintf(prefix, 65, "%s", asked);
+  return STRUT_OK;
+}
+
+/* The code starts where the run does: settled, where the experiment asks for that. */
+static strut_status write_code(exported *x, strut_error *error) {
+  static const char *const reals[] = {"double", "float", NULL};
+  char prefix[65];
+  int real = 0;
+  strut_settled_start start = {.model = NULL};
+  strut_status status = choose_prefix(x->arguments, prefix);
+  if (!status && strut_option_text(x->arguments, STRUT_OPTION_REAL))
+    status =
+        strut_option_word(&strut_command_export, x->arguments, STRUT_OPTION_REAL, reals, &real);
+  if (!status) status = strut_code_check(x->model, error);
+  if (!status) status = strut_settle_model(x->model, &x->setup.experiment, NULL, &start, error);
+  if (!status) {
+    strut_code_options options = {prefix, real == 1, "strut " STRUT_VERSION};
+    status = strut_code_write(strut_option_text(x->arguments, STRUT_OPTION_CODE), start.model,
+                              &x->setup.experiment, &options, error);
+  }
+  strut_settled_start_free(&start);
+  return status;
+}
+
+strut_status strut_export_code(const strut_arguments *arguments) {
+  if (strut_option_text(arguments, STRUT_OPTION_AT))
+    return strut_print_usage_error(&strut_command_export,
+                                   "--at is not for --code, which starts where a run does");
+  return export_model(arguments, STRUT_OPEN_AS_RUN, write_code);
 }

@@ -113,6 +113,9 @@ typedef enum strut_option_id {
   STRUT_OPTION_LOWEST,
   STRUT_OPTION_LIMIT_EVALUATIONS,
   STRUT_OPTION_LIMIT_TIME,
+  STRUT_OPTION_CODE, /* of export: C for other programs, its numbers and names */
+  STRUT_OPTION_REAL,
+  STRUT_OPTION_PREFIX,
   STRUT_OPTION_TEXTS_END
 } strut_option_id;
 

@@ -34,8 +34,12 @@ static const budget budgets[] = {
     {"euler-events", true, 18426, STRUT_SMALL_NONE},
     {"adaptive", true, 94476, STRUT_SMALL_NONE},
     /* by the kernel of small models, which is younger */
-    {"rk4", true, 17242, STRUT_SMALL_AVX512},
-    {"rk4", false, 12452, STRUT_SMALL_AVX512},
+    {"rk4", true, 17024, STRUT_SMALL_AVX512},
+    {"rk4", false, 12531, STRUT_SMALL_AVX512},
+    {"verlet", true, 5621, STRUT_SMALL_AVX512},
+    {"rk4", true, 35943, STRUT_SMALL_AVX2},
+    {"rk4", false, 29617, STRUT_SMALL_AVX2},
+    {"verlet", true, 10534, STRUT_SMALL_AVX2},
 };
 enum { BUDGETS = sizeof budgets / sizeof budgets[0] };
 

@@ -125,7 +125,7 @@ static void compare(const strut_setup *setup, const char *method, strut_small_le
 }
 
 static void test_small_models_have_the_bits_of_the_general_kernel(void **unused) {
-  static const char *const methods[] = {"rk4"};
+  static const char *const methods[] = {"rk4", "verlet"};
   int stepped[STRUT_SMALL_AVX512 + 1] = {0};
   (void)unused;
   for (uint64_t seed = 1; seed <= SCENES; seed++) {
@@ -136,7 +136,7 @@ static void test_small_models_have_the_bits_of_the_general_kernel(void **unused)
         compare(&setup, methods[i], (strut_small_level)level, seed % 2, &stepped[level]);
     strut_scene_free(&setup.scene);
   }
-  print_message("%d scenes by AVX2, %d by AVX-512\n", stepped[STRUT_SMALL_AVX2],
+  print_message("%d motions by AVX2, %d by AVX-512\n", stepped[STRUT_SMALL_AVX2],
                 stepped[STRUT_SMALL_AVX512]);
 }
 

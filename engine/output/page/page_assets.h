@@ -5,13 +5,7 @@
 #ifndef STRUT_ENGINE_OUTPUT_PAGE_PAGE_ASSETS_H
 #define STRUT_ENGINE_OUTPUT_PAGE_PAGE_ASSETS_H
 
-#include <stddef.h>
-
-/** A file: `length` bytes of UTF-8 and a NUL. */
-typedef struct strut_embedded {
-  const char *text;
-  size_t length;
-} strut_embedded;
+#include "engine/output/embedded.h"
 
 /*
  * Each ends with a row of NULL. In the template, page.html, four comments are replaced:

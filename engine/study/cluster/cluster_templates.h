@@ -6,7 +6,7 @@
 #ifndef STRUT_ENGINE_STUDY_CLUSTER_CLUSTER_TEMPLATES_H
 #define STRUT_ENGINE_STUDY_CLUSTER_CLUSTER_TEMPLATES_H
 
-#include "engine/output/page/page_assets.h"
+#include "engine/output/embedded.h"
 
 extern const strut_embedded strut_slurm_template[], strut_parallel_template[],
     strut_htcondor_template[];

@@ -1,0 +1,162 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/output/code/code.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/base/c_locale.h"
+#include "engine/integrate/integrator.h"
+#include "engine/integrate/limit/step_limit.h"
+#include "engine/model/mass.h"
+#include "engine/output/code/templates.h"
+#include "engine/output/code/writer.h"
+#include "engine/output/file.h"
+#include "engine/output/results.h"
+
+/* ---- what there is no code for ---- */
+
+typedef struct refusal {
+  char text[600];
+  size_t used;
+} refusal;
+
+static void refuse(refusal *r, size_t count, const char *what) {
+  if (!count || r->used >= sizeof r->text - 1) return;
+  int n = snprintf(r->text + r->used, sizeof r->text - r->used, "%s%s", r->used ? ", " : "", what);
+  r->used += n > 0 ? (size_t)n : 0;
+}
+
+static void refuse_members(refusal *r, const strut_scene *scene) {
+  size_t laws = 0, stops = 0, breaks = 0, released = 0, maxwell = 0, guides = 0;
+  for (size_t i = 0; i < scene->member_count; i++) {
+    const strut_member *m = &scene->members[i];
+    laws += m->law.kind != STRUT_LAW_LINEAR ||
+            (m->law.carries != STRUT_CARRIES_BOTH && m->kind != STRUT_CABLE);
+    stops += m->shortest > 0.0 || m->longest > 0.0;
+    breaks += m->breaks_at > 0.0;
+    released += m->released_at > 0.0;
+    maxwell += m->maxwell.stiffness > 0.0;
+    guides += m->guide_count > 0;
+  }
+  refuse(r, guides, "cables over guides (more than two nodes)");
+  refuse(r, laws, "law of members");
+  refuse(r, stops, "shortest and longest");
+  refuse(r, breaks, "breaks_at");
+  refuse(r, released, "released_at");
+  refuse(r, maxwell, "maxwell");
+}
+
+static void refuse_signal(refusal *r, const strut_scene *scene) {
+  size_t programs = 0, relays = 0, triggers = 0, lags = 0, samples = 0;
+  for (size_t i = 0; i < scene->signal_count; i++) {
+    const strut_signal *s = &scene->signals[i];
+    programs += s->kind == STRUT_EXPRESSION;
+    relays += s->kind == STRUT_RELAY;
+    triggers += s->trigger.kind != STRUT_TRIGGER_NONE;
+    lags += s->lag > 0.0;
+    samples += s->every > 0.0;
+  }
+  refuse(r, programs, "expression of signals");
+  refuse(r, relays, "relay");
+  refuse(r, triggers, "starts");
+  refuse(r, lags, "lag");
+  refuse(r, samples, "every");
+}
+
+strut_status strut_code_check(const strut_model *model, strut_error *error) {
+  const strut_scene *s = model->scene;
+  refusal r = {.used = 0};
+  size_t forces = 0;
+  for (size_t i = 0; i < s->actuator_count; i++) forces += s->actuators[i].force;
+  refuse(&r, (model->plan & STRUT_TERM_RIGID) != 0, "bars: rigid");
+  refuse_members(&r, s);
+  refuse(&r, s->hinge_count, "hinges and beams");
+  refuse(&r, s->cell_count, "cells");
+  refuse(&r, s->collision_count, "collisions");
+  refuse(&r, s->ground_count, "grounds other than one line at rest");
+  refuse(&r, strut_first_exact_contact(model) >= 0, "friction law coulomb (use karnopp)");
+  refuse(&r, s->rayleigh_mass > 0.0, "rayleigh mass");
+  refuse(&r, s->support_motion_count, "moves of nodes");
+  refuse(&r, s->unbalance_count, "unbalances");
+  refuse(&r, s->sliding_count, "sliders");
+  refuse(&r, forces, "force of actuators");
+  refuse(&r, s->sensor_count, "sensors");
+  refuse(&r, s->state_count, "states");
+  refuse_signal(&r, s);
+  if (r.used)
+    return strut_fail(error, STRUT_BAD_SCENE,
+                      "the scene has what no C code is written for: %s; leave it out, or compute "
+                      "it in your program and give it as an input",
+                      r.text);
+  if (!model->mass)
+    return strut_fail(error, STRUT_BAD_SCENE,
+                      "a free node has no mass, so that no step can be made; give it one");
+  return STRUT_OK;
+}
+
+/* ---- files ---- */
+
+/* NULL: memory is out, or some number is no float. */
+static char *expand(strut_code_writer *w, const strut_embedded *template) {
+  strut_code_expand(w, template->text);
+  return strut_buffer_take(&w->text);
+}
+
+static strut_status prepare(strut_code_writer *w, strut_error *error) {
+  const char *prefix = w->options->prefix;
+  for (size_t i = 0; prefix[i] && i + 1 < sizeof w->upper; i++)
+    w->upper[i] = (char)toupper((unsigned char)prefix[i]);
+  if (!strut_code_make_names(w)) return strut_no_memory(error, "");
+  strut_status status =
+      strut_step_limit_for_method(w->model, strut_integrator_find("rk4"), &w->rk4_limit, error);
+  if (!status)
+    status = strut_step_limit_for_method(w->model, strut_integrator_find("verlet"),
+                                         &w->verlet_limit, error);
+  return status;
+}
+
+static strut_status write_files(strut_code_writer *w, const char *directory, strut_error *error) {
+  const strut_embedded *const templates[] = {strut_code_header_template, strut_code_source_template,
+                                             strut_code_example_template};
+  static const char *const endings[] = {".h", ".c", "_example.c"};
+  char name[3][80];
+  const char *const names[] = {name[0], name[1], name[2], NULL};
+  char *text[3] = {NULL};
+  strut_results results = {0};
+  for (int i = 0; i < 3; i++) {
+    snprintf(name[i], sizeof name[i], "%s%s", w->options->prefix, endings[i]);
+    text[i] = expand(w, templates[i]);
+  }
+  strut_status status = STRUT_OK;
+  if (w->no_float)
+    status = strut_fail(error, STRUT_BAD_SCENE,
+                        "some number of the scene is above 3.4e38, which no float is; use --real "
+                        "double");
+  if (!status) status = strut_results_begin_named(&results, directory, names, error);
+  for (int i = 0; i < 3 && !status; i++) {
+    status = strut_file_write_block(results.stage, name[i], text[i], error);
+    text[i] = NULL;
+  }
+  for (int i = 0; i < 3; i++) strut_release(text[i]);
+  if (!status) return strut_results_commit(&results, error);
+  strut_results_abandon(&results);
+  return status;
+}
+
+strut_status strut_code_write(const char *directory, const strut_model *model,
+                              const strut_experiment *experiment, const strut_code_options *options,
+                              strut_error *error) {
+  strut_code_writer w = {
+      .model = model, .scene = model->scene, .experiment = experiment, .options = options};
+  strut_status status = strut_code_check(model, error);
+  if (!status) status = prepare(&w, error);
+  if (!status) {
+    strut_c_locale locale = strut_c_locale_enter();
+    status = write_files(&w, directory, error);
+    strut_c_locale_leave(locale);
+  }
+  strut_arena_free(&w.arena);
+  return status;
+}

@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the files of this folder share. See code.h. */
+#ifndef STRUT_ENGINE_OUTPUT_CODE_WRITER_H
+#define STRUT_ENGINE_OUTPUT_CODE_WRITER_H
+
+#include "engine/base/name_map.h"
+#include "engine/output/buffer.h"
+#include "engine/output/code/code.h"
+
+/* Identifiers of things in an enum, all different. */
+typedef struct strut_code_names {
+  size_t count;
+  char **name; /* (count) */
+} strut_code_names;
+
+typedef struct strut_code_writer {
+  const strut_model *model;
+  const strut_scene *scene;
+  const strut_experiment *experiment;
+  const strut_code_options *options;
+  char upper[65]; /* the prefix in capitals */
+  strut_code_names nodes, members, inputs;
+  double rk4_limit, verlet_limit; /* largest stable steps [s] */
+  strut_buffer text;
+  bool no_float; /* some number is none of a float */
+  strut_arena arena;
+} strut_code_writer;
+
+/* Inputs: the drives in the model's order, then the loads with a signal. */
+static inline int32_t strut_code_input_count(const strut_model *model) {
+  return model->drives.count + model->loads.count;
+}
+
+/* Makes the identifiers; false: memory is out. */
+bool strut_code_make_names(strut_code_writer *w);
+
+/* Appends a text as it may stand in a comment. */
+void strut_code_add_comment(strut_code_writer *w, const char *text);
+/* Appends a literal of the file's numbers, or of a double whatever these are. */
+void strut_code_add_real(strut_code_writer *w, double value);
+void strut_code_add_double(strut_code_writer *w, double value);
+
+/* What templates ask for: does a word hold; declarations; numbers in a line. Words are the templates' own. */
+bool strut_code_has(const strut_code_writer *w, const char *word, size_t length);
+void strut_code_add_table(strut_code_writer *w, const char *word, size_t length);
+void strut_code_add_word(strut_code_writer *w, const char *word, size_t length);
+
+/* Declarations of the model: members, contacts, drives, loads, masses, start. And the lines that solve for
+   accelerations. */
+void strut_code_add_model(strut_code_writer *w);
+void strut_code_add_solve(strut_code_writer *w);
+/* A function for each signal that acts, and the table of the inputs' own. */
+void strut_code_add_signals(strut_code_writer *w);
+/* Does some signal that acts, or one of its terms, have this kind? */
+bool strut_code_has_signal(const strut_code_writer *w, strut_signal_kind kind);
+
+/* Expands a template into the text. */
+void strut_code_expand(strut_code_writer *w, const char *template);
+
+#endif
