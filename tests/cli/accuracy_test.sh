@@ -255,6 +255,10 @@ expect 0 run "$work/stiffer.yaml" --set "frequency=7 Hz" --set friction=0.15933 
   --set "strong=9809.7 N/m" --accuracy 2% --json
 cp "$work/out" "$work/json"
 [ "$(field '.accuracy.kept and .accuracy.check_evaluations < 1000000')" = true ] || fail "stiffer: too much work"
+expect 0 run "$work/stiffer.yaml" --set "frequency=9 Hz" --set friction=0.331206 --set "soft=3048.8557 N/m" \
+  --set "strong=9924.3047 N/m" --accuracy 2% --json
+cp "$work/out" "$work/json"
+[ "$(field '.accuracy.kept and (.velocity | fabs) < 1e-3')" = true ] || fail "stiffer: the first run exploded"
 
 # What makes no sense is refused.
 expect 1 run "$crawler" --accuracy 1% --integrator rk4

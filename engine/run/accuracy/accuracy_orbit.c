@@ -61,25 +61,24 @@ static strut_status allocate_arrays(strut_orbit_solve *solve, const strut_model 
 }
 
 /*
- * The step is chosen for the start; where the structure becomes stiffer, so that the run is lost, it is repeated with
- * a step for the stiffest shape so far.
+ * The step is chosen for the start; where the structure becomes so stiff that the step is too large, the run is
+ * repeated with a step for the stiffest shape so far.
  */
 static strut_status run_coarse_from_start(strut_orbit_solve *solve, double periods) {
   strut_accuracy *a = solve->a;
-  strut_status status = STRUT_OK;
   for (int k = 0; k < MOST_STEPS; k++) {
-    status = strut_orbit_solve_run_until_steady(solve, a->coarse, fmax(0.1, 16.0 * a->target), 3,
-                                                periods, false, &solve->coarse_run);
+    strut_status status = strut_orbit_solve_run_until_steady(
+        solve, a->coarse, fmax(0.1, 16.0 * a->target), 3, periods, false, &solve->coarse_run);
     double limit = solve->coarse_run.limit_fell.limit;
-    if (status != STRUT_DIVERGED || k + 1 == MOST_STEPS || !(limit > 0.0) ||
-        !(limit < a->coarse.step))
-      break;
+    if ((status && status != STRUT_DIVERGED) || !(limit > 0.0 && limit < a->coarse.step))
+      return status;
     a->check_evaluations += solve->coarse_run.force_evaluations;
     strut_summary_free(&solve->coarse_run);
     solve->coarse_run = (strut_summary){0};
     a->coarse.step = STRUT_COARSE_STEP * limit;
   }
-  return status;
+  solve->coarse_run.status = STRUT_DIVERGED;
+  return STRUT_DIVERGED;
 }
 
 /*
