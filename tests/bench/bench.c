@@ -64,17 +64,21 @@ static void compare_crawlers(int repeats) {
       const rival *it = rival_at((size_t)i);
       if (crawlers[i]) times[i][r] = 1e9 * it->run(crawlers[i], it->steps) / (double)it->steps;
     }
-  printf("crawler, RK4, 0.1 ms\n  %-32s %10s %10s %14s\n", "", "ns/step", "of strut",
-         "x_1(0.2 s) [mm]");
-  double own = crawlers[0] ? median(times[0], repeats) : (double)NAN;
+  printf("crawler, RK4, 0.1 ms\n  %-32s %10s %10s %10s %14s\n", "", "ns/step", "of strut",
+         "of scalar", "x_1(0.2 s) [mm]");
+  double typical[MOST_RIVALS] = {0.0}, scalar = (double)NAN;
+  for (int i = 0; i < count; i++) {
+    if (crawlers[i]) typical[i] = median(times[i], repeats);
+    if (strcmp(rival_at((size_t)i)->name, BENCH_SCALAR) == 0) scalar = typical[i];
+  }
   for (int i = 0; i < count; i++) {
     const rival *it = rival_at((size_t)i);
     if (!crawlers[i]) {
       printf("  %-32s %10s\n", it->name, "not here");
       continue;
     }
-    double typical = i ? median(times[i], repeats) : own;
-    printf("  %-32s %10.1f %10.3f %14.9f\n", it->name, typical, typical / own, 1e3 * position[i]);
+    printf("  %-32s %10.1f %10.3f %10.3f %14.9f\n", it->name, typical[i], typical[i] / typical[0],
+           typical[i] / scalar, 1e3 * position[i]);
     it->free(crawlers[i]);
   }
 }

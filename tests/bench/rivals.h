@@ -6,6 +6,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+/** The row that others are compared with: C for this structure, as one would write it down. */
+#define BENCH_SCALAR "by hand, scalar"
+
 /** One way to step the crawler at f = 10 Hz, a = 0.1 mm, mu = 0.1 and dt = 1e-4 s. */
 typedef struct rival {
   const char *name;
