@@ -83,6 +83,18 @@ typedef struct strut_follow_limits {
 STRUT_API strut_status strut_follow_correct(strut_follow_system *s, double *y, bool *found,
                                             char *reason, strut_error *error);
 /**
+ * Chooses the steps of a period, of a method that takes fixed ones, for the fastest vibrations at both ends of
+ * the range and here. Not `good`: there would be too many.
+ */
+STRUT_API strut_status strut_follow_choose_steps(strut_follow_system *s, double accuracy,
+                                                 bool *good, strut_error *error);
+/**
+ * Compares the motion y (both) with what half the step makes of it, and halves the step until velocity or
+ * amplitude agree to the accuracy.
+ */
+STRUT_API strut_status strut_follow_check_steps(strut_follow_system *s, double *y, double accuracy,
+                                                strut_error *error);
+/**
  * Follows the branch both ways from the motion y at the system's value, which is on it; `direction` (n):
  * NULL, or that in which the branch leaves y, of a doubled branch. The branch is to be freed in any case;
  * with STRUT_INTERRUPTED it holds what was followed so far.

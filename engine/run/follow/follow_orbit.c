@@ -9,6 +9,8 @@
 
 /* Residuals of an orbit: wanted, and accepted where rounding or kinks prevent that. */
 static const double CONVERGED = 1e-7, ACCEPTED = 2e-6;
+/* Residual that suffices where the derivative of the orbit itself follows and corrects it once more. */
+static const double NEAR = 2e-6, FARTHEST = 1e-2;
 /* Residual that suffices while events are located; reduction of a step that is slow. */
 static const double ROUGH = 1e-5, SLOW = 0.5;
 /* Newton's step that is too long to trust, in unknowns of order one. */
@@ -120,7 +122,7 @@ static void update_derivative(strut_follow_walk *w, const double *f) {
  * a new one is made at the best point so far, and its steps are halved until the residual falls.
  */
 static bool iterate(strut_follow_walk *w, const plane *p, trial *here, trial *next, int *rounds) {
-  const double enough = w->rough ? ROUGH : CONVERGED;
+  const double enough = w->rough ? ROUGH : w->s->variation && !w->exact ? NEAR : CONVERGED;
   bool wanted = !w->s->differentiated;
   int slow = 0, made = 0;
   if (!evaluate(w, p, here) || !isfinite(here->left)) return false;
@@ -168,12 +170,15 @@ bool strut_follow_newton(strut_follow_walk *w, double *y, double *value, const d
   return true;
 }
 
-bool strut_follow_measure(strut_follow_walk *w, strut_follow_orbit *o) {
+/* Travel, work and word of the orbit; `carry`: and the derivative there, and in w->f the residual. */
+static bool measure(strut_follow_walk *w, strut_follow_orbit *o, bool carry) {
   strut_follow_system *s = w->s;
   if (!set_value(w, o->value)) return false;
   strut_follow_centre(s, o->y);
   memcpy(w->try_y, o->y, s->both * sizeof(double));
-  strut_follow_period p = strut_follow_apply(s, w->try_y, true);
+  strut_follow_period p =
+      carry ? strut_follow_carry(s, w->try_y, true) : strut_follow_apply(s, w->try_y, true);
+  if (carry) strut_follow_change(s, o->y, w->try_y, w->f);
   if (interrupted(w) || !isfinite(p.travel)) return false;
   o->velocity = p.travel / (s->period * s->repeats);
   o->work = p.work / s->repeats;
@@ -183,6 +188,10 @@ bool strut_follow_measure(strut_follow_walk *w, strut_follow_orbit *o) {
     return false;
   }
   return true;
+}
+
+bool strut_follow_measure(strut_follow_walk *w, strut_follow_orbit *o) {
+  return measure(w, o, false);
 }
 
 /* Multipliers of s->jacobian by size; the one of shifts, 0 in it, is the last. */
@@ -227,13 +236,12 @@ static strut_follow_signature signature_of(const strut_follow_orbit *o, double a
   return g;
 }
 
-bool strut_follow_complete(strut_follow_walk *w, strut_follow_orbit *o, const double *before) {
+/* Multipliers and tangent from the derivative, which is there but for the parameter's. */
+static bool complete(strut_follow_walk *w, strut_follow_orbit *o, const double *before) {
   strut_follow_system *s = w->s;
   double length = 0.0;
   bool lost = false;
-  if (o->complete) return true;
-  if (!set_value(w, o->value) || !isfinite(strut_follow_residual(s, o->y, w->f))) return false;
-  w->status = strut_follow_differentiate(s, o->y, w->f, &lost, w->error);
+  w->status = strut_follow_differentiate_parameter(s, o->y, w->f, &lost, w->error);
   if (w->status || lost || interrupted(w) || !find_multipliers(w, o)) return false;
   memset(w->right, 0, (s->n + 1) * sizeof(double));
   w->right[s->n] = 1.0;
@@ -244,6 +252,42 @@ bool strut_follow_complete(strut_follow_walk *w, strut_follow_orbit *o, const do
   for (size_t i = 0; i <= s->n; i++) o->tangent[i] = w->right[i] / length;
   o->signature = signature_of(o, o->tangent[s->n]);
   o->complete = true;
+  return true;
+}
+
+bool strut_follow_complete(strut_follow_walk *w, strut_follow_orbit *o, const double *before) {
+  strut_follow_system *s = w->s;
+  bool lost = false;
+  if (o->complete) return true;
+  if (!set_value(w, o->value)) return false;
+  if (s->variation) {
+    memcpy(w->try_y, o->y, s->both * sizeof(double));
+    lost = !isfinite(strut_follow_carry(s, w->try_y, false).travel);
+    strut_follow_change(s, o->y, w->try_y, w->f);
+    return !lost && !interrupted(w) && complete(w, o, before);
+  }
+  if (!isfinite(strut_follow_residual(s, o->y, w->f))) return false;
+  strut_follow_difference(s, o->y, &lost);
+  return !lost && complete(w, o, before);
+}
+
+/* Moves the orbit by Newton's step from the residual w->f on the plane normal to `before`. */
+static void polish(strut_follow_walk *w, strut_follow_orbit *o, const double *before) {
+  strut_follow_system *s = w->s;
+  double most = 0.0;
+  for (size_t i = 0; i < s->n; i++) w->right[i] = -w->f[i];
+  w->right[s->n] = 0.0;
+  if (!strut_follow_solve(s, before, w->right)) return;
+  for (size_t i = 0; i <= s->n; i++) most = fmax(most, fabs(w->right[i]));
+  if (!(most < FARTHEST)) return;
+  strut_follow_move(s, o->y, w->right, 1.0);
+  o->value += w->right[s->n] * (s->high - s->low);
+}
+
+bool strut_follow_examine(strut_follow_walk *w, strut_follow_orbit *o, const double *before) {
+  if (!w->s->variation) return measure(w, o, false) && strut_follow_complete(w, o, before);
+  if (!measure(w, o, true) || !complete(w, o, before)) return false;
+  polish(w, o, before);
   return true;
 }
 
@@ -298,6 +342,7 @@ strut_status strut_follow_correct(strut_follow_system *s, double *y, bool *found
   memcpy(base, y, s->both * sizeof(double));
   normal[n] = 1.0;
   s->differentiated = false;
+  w.exact = true;
   *found = strut_follow_newton(&w, base, &value, normal, y, value, 0.0, &rounds);
   if (*found) memcpy(y, base, s->both * sizeof(double));
   if (!*found)

@@ -36,7 +36,8 @@ typedef struct strut_follow_orbit {
   double velocity, work, amplitude,
       distance; /* distance: from the begin of the step, along its tangent */
   strut_follow_word word;
-  bool complete; /* multipliers, signature and tangent are there */
+  bool complete;                           /* multipliers, signature and tangent are there */
+  const struct strut_follow_orbit *before; /* from which the step came; or NULL */
 } strut_follow_orbit;
 
 /** What a walk along a branch works on. */
@@ -54,6 +55,7 @@ typedef struct strut_follow_walk {
   double arc;
   size_t begin;   /* first point of this way in the branch */
   bool rough;     /* orbits need not be exact now */
+  bool exact;     /* they are not corrected afterwards */
   bool backwards; /* the points go into the branch in reverse order, with negative arcs */
 } strut_follow_walk;
 
@@ -67,6 +69,8 @@ bool strut_follow_newton(strut_follow_walk *w, double *y, double *value, const d
                          const double *base_y, double base_value, double distance, int *rounds);
 /** Travel, work and word of the orbit at o->y, o->value. False: motion lost, or status. */
 bool strut_follow_measure(strut_follow_walk *w, strut_follow_orbit *o);
+/** Both that and what follows, which then takes one run less. */
+bool strut_follow_examine(strut_follow_walk *w, strut_follow_orbit *o, const double *before);
 /** Derivative, multipliers, tangent along `before` (n + 1). False as above. */
 bool strut_follow_complete(strut_follow_walk *w, strut_follow_orbit *o, const double *before);
 /** An orbit with its arrays; NULL: out of memory, which the walk's status says. */

@@ -87,12 +87,14 @@ static strut_status make_maps(strut_follow_system *s, strut_error *error) {
   e.refine = e.refine_time = 0.0;
   e.accuracy = 0.0;
   int64_t before = periods_before(s->model->scene, s->period);
-  for (int i = 0; i < s->threads; i++) {
+  int count = s->threads;
+  for (int i = 0; i < count; i++) {
     strut_period_map *map = &s->map[i];
     strut_status status = strut_period_map_create(s->model, &e, s->repeats, map, error);
     if (status) return status;
     map->interrupt = s->interrupt;
     map->time = (double)before * s->period;
+    if (strut_variation_possible(s->model, map->method)) count = 1; /* one run then does */
   }
   if (strut_variation_possible(s->model, s->map[0].method)) {
     s->variation = strut_variation_create(s->model, s->map[0].state);
@@ -138,6 +140,15 @@ strut_status strut_follow_set_repeats(strut_follow_system *s, int32_t repeats, s
   double value = s->value;
   if (repeats == s->repeats) return STRUT_OK;
   s->repeats = repeats;
+  s->differentiated = false;
+  drop_model(s);
+  return strut_follow_set_value(s, value, error);
+}
+
+strut_status strut_follow_set_steps(strut_follow_system *s, int64_t steps, strut_error *error) {
+  double value = s->value;
+  if (steps == s->steps_per_period) return STRUT_OK;
+  s->steps_per_period = steps;
   s->differentiated = false;
   drop_model(s);
   return strut_follow_set_value(s, value, error);
@@ -275,9 +286,8 @@ strut_follow_period strut_follow_apply(strut_follow_system *s, double *y, bool w
   return p;
 }
 
-/* Scaled change over an application that ended in `end`; returns its largest entry. */
-static double residual_of(const strut_follow_system *s, const double *y, const double *end,
-                          double *f) {
+double strut_follow_change(const strut_follow_system *s, const double *y, const double *end,
+                           double *f) {
   double most = 0.0;
   for (size_t i = 0; i < s->n; i++) {
     f[i] = (end[s->place[i]] - y[s->place[i]]) / strut_follow_unit(s, i);
@@ -289,17 +299,15 @@ static double residual_of(const strut_follow_system *s, const double *y, const d
 double strut_follow_residual(strut_follow_system *s, const double *y, double *f) {
   memcpy(s->end, y, s->both * sizeof(double));
   if (!isfinite(strut_follow_apply(s, s->end, false).travel)) return HUGE_VAL;
-  return residual_of(s, y, s->end, f);
+  return strut_follow_change(s, y, s->end, f);
 }
 
-/* The derivative from variations that one run carries along. Number of lost runs. */
-static int carry_variations(strut_follow_system *s, const double *y) {
+strut_follow_period strut_follow_carry(strut_follow_system *s, double *y, bool works) {
   strut_variation *x = s->variation;
   size_t n = s->n;
-  memcpy(s->end, y, s->both * sizeof(double));
   strut_variation_reset(x);
   s->map[0].state->variation = x;
-  bool lost = !isfinite(strut_follow_apply(s, s->end, false).travel);
+  strut_follow_period p = strut_follow_apply(s, y, works);
   s->map[0].state->variation = NULL;
   for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j < n; j++)
@@ -310,11 +318,11 @@ static int carry_variations(strut_follow_system *s, const double *y) {
     for (size_t i = 0; i < n; i++) shift += s->along[i] * s->jacobian[i * n + j];
     for (size_t i = 0; i < n; i++) s->jacobian[i * n + j] -= shift * s->along[i];
   }
-  return lost;
+  s->differentiated = isfinite(p.travel);
+  return p;
 }
 
-/* The derivative by central differences of whole runs. Number of lost runs. */
-static int difference_runs(strut_follow_system *s, const double *y) {
+void strut_follow_difference(strut_follow_system *s, const double *y, bool *lost) {
   size_t n = s->n;
   int gone = 0;
 #ifdef _OPENMP
@@ -340,17 +348,25 @@ static int difference_runs(strut_follow_system *s, const double *y) {
   }
   for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j < n; j++) s->jacobian[i * n + j] -= s->along[i] * s->along[j];
-  return gone;
+  *lost = gone > 0;
+  s->differentiated = !*lost;
 }
 
 strut_status strut_follow_differentiate(strut_follow_system *s, const double *y, const double *f,
                                         bool *lost, strut_error *error) {
+  memcpy(s->end, y, s->both * sizeof(double));
+  if (s->variation)
+    *lost = !isfinite(strut_follow_carry(s, s->end, false).travel);
+  else
+    strut_follow_difference(s, y, lost);
+  return *lost ? STRUT_OK : strut_follow_differentiate_parameter(s, y, f, lost, error);
+}
+
+strut_status strut_follow_differentiate_parameter(strut_follow_system *s, const double *y,
+                                                  const double *f, bool *lost, strut_error *error) {
   size_t n = s->n;
   double value = s->value, step = PARAMETER_DIFFERENCE * (s->high - s->low);
   if (value + step > fmax(s->low, s->high)) step = -step;
-  *lost = (s->variation ? carry_variations(s, y) : difference_runs(s, y)) > 0;
-  s->differentiated = !*lost;
-  if (*lost) return STRUT_OK;
   strut_status status = strut_follow_set_value(s, value + step, error);
   if (status) return status;
   *lost = !isfinite(strut_follow_residual(s, y, s->column));

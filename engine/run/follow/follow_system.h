@@ -75,12 +75,24 @@ void strut_follow_close(strut_follow_system *s);
 strut_status strut_follow_set_value(strut_follow_system *s, double value, strut_error *error);
 /** Changes the number of drive periods of P. */
 strut_status strut_follow_set_repeats(strut_follow_system *s, int32_t repeats, strut_error *error);
+/** Changes the number of steps of a period. */
+strut_status strut_follow_set_steps(strut_follow_system *s, int64_t steps, strut_error *error);
 /** Chooses the units by the motion from the state y (both) over one application. */
 bool strut_follow_set_units(strut_follow_system *s, const double *y);
 /** Moves y (both) by one application at the present value; with `works` and events in s->log. */
 strut_follow_period strut_follow_apply(strut_follow_system *s, double *y, bool works);
 /** f (n): scaled residual at y; returns its largest entry, HUGE_VAL where the motion was lost. */
 double strut_follow_residual(strut_follow_system *s, const double *y, double *f);
+/** As strut_follow_apply, and fills jacobian at the start; only where there is `variation`. */
+strut_follow_period strut_follow_carry(strut_follow_system *s, double *y, bool works);
+/** Fills jacobian by central differences of whole runs. */
+void strut_follow_difference(strut_follow_system *s, const double *y, bool *lost);
+/** f (n): scaled residual of an application from y to `end`; returns its largest entry. */
+double strut_follow_change(const strut_follow_system *s, const double *y, const double *end,
+                           double *f);
+/** Fills column at y and the present value; f is the residual there. */
+strut_status strut_follow_differentiate_parameter(strut_follow_system *s, const double *y,
+                                                  const double *f, bool *lost, strut_error *error);
 /** Fills jacobian and column at y and the present value; f is the residual there. */
 strut_status strut_follow_differentiate(strut_follow_system *s, const double *y, const double *f,
                                         bool *lost, strut_error *error);

@@ -12,6 +12,8 @@ static const double FIRST = 0.01, LEAST = 5e-5, MOST = 1.0, STRAIGHT = 0.5;
 static const double CORNER = 1e-3;
 /* Part of a step: orbits this near to the way come have been passed before. */
 static const double BACK = 0.02;
+/* Longest step along a parabola, in the step before, and least cosine of the tangents at its ends. */
+static const double REACH = 2.0, SMOOTH = 0.95;
 /* Rounds of Newton's method after which the step grows, and shrinks. */
 enum { FEW = 7, MANY = 13, CLOSED = 12, LATEST = 12 };
 /* Amplitude with which a doubled branch is left [1]. */
@@ -68,21 +70,40 @@ static double dot(const double *a, const double *b, size_t n) {
   return sum;
 }
 
+/*
+ * A guess of the orbit one step h from o, along the parabola through o and the orbit before, whose tangents
+ * turn by little; along the tangent of o otherwise.
+ */
+static void predict(strut_follow_walk *w, const strut_follow_orbit *o, double h,
+                    strut_follow_orbit *next) {
+  const strut_follow_system *s = w->s;
+  const strut_follow_orbit *a = o->before;
+  double bend = 0.0, *way = w->right;
+  if (a && a->complete && h <= REACH * o->distance &&
+      dot(a->tangent, o->tangent, s->n + 1) > SMOOTH)
+    bend = 0.5 * h * h / o->distance;
+  for (size_t i = 0; i <= s->n; i++) {
+    way[i] = h * o->tangent[i];
+    if (bend > 0.0) way[i] += bend * (o->tangent[i] - a->tangent[i]);
+  }
+  memcpy(next->y, o->y, s->both * sizeof(double));
+  strut_follow_move(s, next->y, way, 1.0);
+  next->value = o->value + way[s->n] * (s->high - s->low);
+  next->distance = h;
+}
+
 /* The orbit one step h from o, complete; NULL: none, and `reason` says why. */
 static strut_follow_orbit *try_step(strut_follow_walk *w, const strut_follow_orbit *o, double h,
                                     int *rounds, const char **reason) {
-  strut_follow_system *s = w->s;
   strut_follow_orbit *next = strut_follow_orbit_new(w);
   if (!next) return NULL;
-  memcpy(next->y, o->y, s->both * sizeof(double));
-  strut_follow_move(s, next->y, o->tangent, h);
-  next->value = o->value + h * o->tangent[s->n] * (s->high - s->low);
-  next->distance = h;
+  predict(w, o, h, next);
+  next->before = o;
   if (!strut_follow_newton(w, next->y, &next->value, o->tangent, o->y, o->value, h, rounds)) {
     *reason = "no periodic motion was found beyond: Newton's method does not converge";
     return NULL;
   }
-  if (!strut_follow_measure(w, next) || !strut_follow_complete(w, next, o->tangent)) {
+  if (!strut_follow_examine(w, next, o->tangent)) {
     *reason = "the motion was lost beyond";
     return NULL;
   }
@@ -165,7 +186,7 @@ static strut_follow_orbit *at_edge(strut_follow_walk *w, const strut_follow_orbi
   last->value = edge;
   normal[s->n] = 1.0;
   if (!strut_follow_newton(w, last->y, &last->value, normal, last->y, edge, 0.0, &rounds) ||
-      !strut_follow_measure(w, last) || !strut_follow_complete(w, last, o->tangent))
+      !strut_follow_examine(w, last, o->tangent))
     return NULL;
   last->value = edge;
   double z = (last->value - o->value) / (s->high - s->low) * o->tangent[s->n];
@@ -311,7 +332,7 @@ static strut_follow_orbit *first_orbit(strut_follow_walk *w, const double *y) {
   upward[s->n] = 1.0;
   memcpy(o->y, y, s->both * sizeof(double));
   o->value = s->value;
-  return strut_follow_measure(w, o) && strut_follow_complete(w, o, upward) ? o : NULL;
+  return strut_follow_examine(w, o, upward) ? o : NULL;
 }
 
 /*

@@ -29,7 +29,7 @@ typedef struct follower {
   strut_follow_system s;
   strut_follow_limits limits;
   strut_error *error;
-  bool opened;
+  bool opened, stepped; /* stepped: fixed steps, whose number has been chosen */
 } follower;
 
 static void note(follower *f, const char *text) {
@@ -80,26 +80,46 @@ static strut_status run_start(follower *f, const strut_setup *setup, const strut
   return status;
 }
 
-static strut_status open_system(follower *f, double value) {
+static double accuracy_of(const follower *f) {
+  return f->o->accuracy > 0.0 ? f->o->accuracy : ACCURACY;
+}
+
+/* Opens the system at the value with a method. */
+static strut_status open_with(follower *f, double value, const char *method) {
   strut_follow_system *s = &f->s;
-  const strut_integrator *chosen = strut_integrator_for(STRUT_ROLE_REFERENCE);
-  const char *method = f->o->method ? f->o->method : chosen->name;
-  double accuracy = f->o->accuracy > 0.0 ? f->o->accuracy : ACCURACY;
-  bool adaptive = strcmp(method, chosen->name) == 0;
-  if (f->opened) return strut_follow_set_value(s, value, f->error);
+  bool adaptive = strcmp(method, strut_integrator_for(STRUT_ROLE_REFERENCE)->name) == 0;
   *s = (strut_follow_system){.scenes = f->o->scenes,
                              .low = f->o->low,
                              .high = f->o->high,
                              .method = method,
-                             .tolerance = fmin(2.5e-6, accuracy * TOLERANCE),
+                             .tolerance = fmin(2.5e-6, accuracy_of(f) * TOLERANCE),
                              .steps_per_period = adaptive ? STEPS_PER_PERIOD : FIXED_STEPS,
                              .repeats = 1,
                              .threads = f->o->threads,
                              .interrupt = f->o->interrupt};
   snprintf(f->r->method, sizeof f->r->method, "%s", method);
   f->r->tolerance = s->tolerance;
-  strut_status status = strut_follow_open(s, value, f->error);
   f->opened = true;
+  return strut_follow_open(s, value, f->error);
+}
+
+/*
+ * Fixed steps make the smoothest period map; where variations cannot follow them, or there would be too many,
+ * the method with error control serves.
+ */
+static strut_status open_system(follower *f, double value) {
+  strut_follow_system *s = &f->s;
+  const char *fixed = strut_integrator_for(STRUT_ROLE_EXACT_STICK)->name;
+  const char *careful = strut_integrator_for(STRUT_ROLE_REFERENCE)->name;
+  if (f->opened) return strut_follow_set_value(s, value, f->error);
+  strut_status status = open_with(f, value, f->o->method ? f->o->method : fixed);
+  bool good = !f->o->method && s->variation;
+  if (!status && good) status = strut_follow_choose_steps(s, accuracy_of(f), &good, f->error);
+  f->stepped = good;
+  if (!status && !good && !f->o->method) {
+    strut_follow_close(s);
+    status = open_with(f, value, careful);
+  }
   if (status) return status;
   f->r->title =
       strut_arena_format(&f->r->arena, "%s", s->setup.scene.name ? s->setup.scene.name : "model");
@@ -171,6 +191,8 @@ static strut_status follow_motion(follower *f, const char *label, double *y, int
   if (f->r->count == 0 && !strut_follow_set_units(&f->s, y)) return STRUT_OK;
   strut_follow_centre(&f->s, y);
   status = make_exact(f, y, &found, reason);
+  if (!status && found && f->stepped && f->r->count == 0)
+    status = strut_follow_check_steps(&f->s, y, accuracy_of(f), f->error);
   if (status) return status;
   if (!found) {
     snprintf(text, sizeof text, "the motion from %s: %s", label, reason);
