@@ -292,10 +292,10 @@ static strut_status follow(const strutlib_result *result, const strut_path_optio
 static strut_status find_path(abi_call *call, const strutlib_scene *scene, strutlib_result *result,
                               strut_error *what) {
   strut_path_options wanted;
-  strut_followed followed = {.file = scene->source->name,
-                             .text = scene->source->text,
-                             .length = scene->source->length,
-                             .source = scene->source->tree};
+  strut_varied_scenes followed = {.file = scene->source->name,
+                                  .text = scene->source->text,
+                                  .length = scene->source->length,
+                                  .source = scene->source->tree};
   const strut_scene *s = &result->setup.scene;
   path_detail *d = make_detail(result, sizeof *d, release_path);
   if (!d) return strut_no_memory(what, "");
@@ -303,7 +303,7 @@ static strut_status find_path(abi_call *call, const strutlib_scene *scene, strut
   if (status == STRUT_OK)
     status = strut_path_followed_read(result->command, &call->arguments, s, &followed, &wanted);
   if (status == STRUT_OK) status = follow(result, &wanted, d, what);
-  strut_followed_free(&followed);
+  strut_varied_scenes_free(&followed);
   if (status != STRUT_OK) return status;
   strut_warn_of_path(&call->listener, s, &d->path);
   result->draw = draw_path;

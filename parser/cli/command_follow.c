@@ -94,14 +94,14 @@ static strut_status follow(const strut_arguments *arguments, const strut_plot *p
 static strut_status run_follow(const strut_arguments *arguments) {
   strut_setup setup;
   strut_plot plot;
-  strut_follow_source source = {.file = strut_model_name(arguments)};
+  strut_follow_source source = {.scenes = {.file = strut_model_name(arguments)}};
   strut_follow_options wanted = {0};
   char *text = NULL;
   strut_status status = strut_plot_read(&strut_command_follow, arguments, 0, &plot);
   if (!status) status = strut_check_output_writable(arguments, file_names);
-  if (!status) status = strut_open_model_text(arguments, &text, &source.length, &setup);
+  if (!status) status = strut_open_model_text(arguments, &text, &source.scenes.length, &setup);
   if (status) return status;
-  source.text = text;
+  source.scenes.text = text;
   status =
       strut_follow_options_read(&strut_command_follow, arguments, &setup.scene, &source, &wanted);
   strut_setup_free(&setup);

@@ -56,7 +56,7 @@ static strut_status follow_path(const strut_arguments *arguments, const strut_pl
 static strut_status run_path(const strut_arguments *arguments) {
   strut_setup setup;
   strut_path_options wanted;
-  strut_followed followed = {.file = strut_model_name(arguments)};
+  strut_varied_scenes followed = {.file = strut_model_name(arguments)};
   strut_plot plot;
   char *text = NULL;
   strut_status status = strut_path_options_read(&strut_command_path, arguments, &wanted);
@@ -70,7 +70,7 @@ static strut_status run_path(const strut_arguments *arguments) {
   status =
       strut_path_followed_read(&strut_command_path, arguments, &setup.scene, &followed, &wanted);
   if (status == STRUT_OK) status = follow_path(arguments, &plot, &wanted, &setup);
-  strut_followed_free(&followed);
+  strut_varied_scenes_free(&followed);
   strut_release(text);
   strut_setup_free(&setup);
   return status;

@@ -5,91 +5,17 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/base/memory.h"
-#include "engine/base/number_text.h"
 #include "parser/command/option_values.h"
 
 enum { MOST_STEPS = 100000, MOST_AT = 8 };
 
-/* The first message about a scene, with its place. */
-static strut_status report_first(const strut_follow_source *source,
-                                 const strut_diagnostics *diagnostics, strut_error *error) {
-  const strut_setting *followed = &source->settings[source->setting_count - 1];
-  if (diagnostics->count == 0) return strut_fail(error, STRUT_BAD_SCENE, "the scene is not valid");
-  const strut_diagnostic *first = &diagnostics->items[0];
-  return strut_fail(error, STRUT_BAD_SCENE, "%s:%u:%u: at %s = %.17g: %s", source->file,
-                    first->place.line, first->place.column, followed->name, followed->value,
-                    first->message);
-}
-
-static strut_status make_setup(void *context, double value, strut_setup *setup,
-                               strut_error *error) {
-  strut_follow_source *source = context;
-  strut_diagnostics diagnostics = {0};
-  char text[STRUT_NUMBER_TEXT];
-  strut_setting *followed = &source->settings[source->setting_count - 1];
-  strut_number_text(value, text);
-  followed->text = text;
-  followed->value = value;
-  strut_status status =
-      strut_scene_source_read(source->source, source->settings, source->setting_count,
-                              STRUT_FOR_RUN_STEP_LATER, &diagnostics, setup);
-  if (status == STRUT_BAD_SCENE)
-    status = report_first(source, &diagnostics, error);
-  else if (status != STRUT_OK)
-    strut_fail(error, status, "out of memory");
-  strut_diagnostics_free(&diagnostics);
-  followed->text = "";
-  return status;
-}
-
 void strut_follow_source_free(strut_follow_source *source) {
-  strut_scene_source_free(source->source);
-  strut_release(source->settings);
-  source->source = NULL;
-  source->settings = NULL;
+  strut_varied_scenes_free(&source->scenes);
 }
 
 static const char *parameter_at(const void *context, size_t i) {
   const strut_scene *scene = context;
   return i < scene->parameter_count ? scene->parameters[i].name : NULL;
-}
-
-static const strut_parameter *find_parameter(const strut_scene *scene, const char *name) {
-  for (size_t i = 0; i < scene->parameter_count; i++)
-    if (strcmp(scene->parameters[i].name, name) == 0) return &scene->parameters[i];
-  return NULL;
-}
-
-/* The file's tree, and the settings with which scenes are made of it. */
-static strut_status open_source(const strut_arguments *arguments, strut_follow_source *source,
-                                strut_dimension *dimension) {
-  strut_diagnostics unused = {0};
-  strut_scene_source_open(source->file, source->text, source->length, &unused, &source->source);
-  strut_diagnostics_free(&unused);
-  source->settings = strut_allocate(arguments->override_count + 1, sizeof *source->settings);
-  const strut_declared *declared =
-      source->source ? strut_scene_source_parameter(source->source, source->name) : NULL;
-  if (!declared || !source->settings) {
-    strut_tell(arguments->listener, STRUT_MESSAGE_ERROR, NULL, "out of memory");
-    return STRUT_NO_MEMORY;
-  }
-  for (size_t i = 0; i < arguments->override_count; i++)
-    if (strcmp(arguments->overrides[i].name, source->name) != 0)
-      source->settings[source->setting_count++] = (strut_setting){
-          .name = arguments->overrides[i].name, .text = arguments->overrides[i].value};
-  source->settings[source->setting_count++] = (strut_setting){.name = source->name,
-                                                              .text = "",
-                                                              .known = true,
-                                                              .bare = declared->bare,
-                                                              .dimension = declared->dimension};
-  *dimension = declared->bare ? STRUT_DIM_NONE : declared->dimension;
-  return STRUT_OK;
-}
-
-static const char *unit_of(strut_dimension dimension) {
-  const char *unit = strut_dimension_unit(dimension);
-  return strcmp(unit, "1") == 0 || strcmp(unit, "SI") == 0 ? "" : unit;
 }
 
 /* NAME=LOW..HIGH */
@@ -106,7 +32,7 @@ static strut_status read_range(const strut_command *command, const strut_argumen
                              "missing --over NAME=LOW..HIGH, such as --over frequency=8Hz..12Hz");
   snprintf(source->name, sizeof source->name, "%.*s", (int)(equals - over), over);
   snprintf(low, sizeof low, "%.*s", (int)(dots - equals - 1), equals + 1);
-  const strut_parameter *parameter = find_parameter(scene, source->name);
+  const strut_parameter *parameter = strut_find_parameter(scene, source->name);
   if (!parameter) {
     const char *near = strut_did_you_mean(source->name, parameter_at, scene);
     return strut_usage_error(command, arguments, "--over: the model has no parameter '%s'%s%s%s",
@@ -116,7 +42,9 @@ static strut_status read_range(const strut_command *command, const strut_argumen
   if (!isfinite(parameter->value))
     return strut_usage_error(command, arguments,
                              "--over: parameter '%s' is a text, expected a number", source->name);
-  strut_status status = open_source(arguments, source, dimension);
+  const char *const name = source->name;
+  source->scenes.purpose = STRUT_FOR_RUN_STEP_LATER;
+  strut_status status = strut_varied_scenes_open(arguments, &name, 1, &source->scenes, dimension);
   if (status) return status;
   if (strut_option_numbers(low, *dimension, &wanted->low, 1) != 1 ||
       strut_option_numbers(dots + 2, *dimension, &wanted->high, 1) != 1 ||
@@ -127,7 +55,7 @@ static strut_status read_range(const strut_command *command, const strut_argumen
         source->name, example ? ", each such as " : "", example ? example : "");
   }
   wanted->name = source->name;
-  wanted->unit = unit_of(*dimension);
+  wanted->unit = strut_unit_of(*dimension);
   return STRUT_OK;
 }
 
@@ -137,7 +65,7 @@ static strut_status read_values(const strut_command *command, const strut_argume
                                 const strut_follow_options *wanted, double values[MOST_AT],
                                 size_t *count) {
   const char *at = strut_option_text(arguments, STRUT_OPTION_AT);
-  double own = find_parameter(scene, wanted->name)->value;
+  double own = strut_find_parameter(scene, wanted->name)->value;
   *count = 1;
   values[0] = own >= wanted->low && own <= wanted->high ? own : 0.5 * (wanted->low + wanted->high);
   if (!at) return STRUT_OK;
@@ -211,6 +139,6 @@ strut_status strut_follow_options_read(const strut_command *command,
   wanted->steps = (int32_t)steps;
   wanted->basins = arguments->basins;
   wanted->method = strut_option_text(arguments, STRUT_OPTION_INTEGRATOR);
-  wanted->scenes = (strut_follow_scenes){make_setup, source};
+  wanted->scenes = (strut_follow_scenes){strut_varied_scenes_at, &source->scenes};
   return STRUT_OK;
 }

@@ -6,17 +6,13 @@
 #define STRUT_PARSER_COMMAND_FOLLOW_OPTIONS_H
 
 #include "engine/study/follow/follow_study.h"
-#include "parser/command/arguments.h"
+#include "parser/command/varied_scenes.h"
 
 enum { STRUT_FOLLOW_MOST_STARTS = 64, STRUT_FOLLOW_NAME = 128 };
 
 /** Scenes over the parameter, and the options that refer to them. Must not move. Zero-initialise. */
 typedef struct strut_follow_source {
-  const char *file, *text; /* of the scene; not owned */
-  size_t length;
-  strut_scene_source *source; /* its tree */
-  strut_setting *settings; /* (setting_count) those of --set, and last the one that is followed */
-  size_t setting_count;
+  strut_varied_scenes scenes;
   char name[STRUT_FOLLOW_NAME];
   char from[1024]; /* names of configurations, each ended by NUL */
   strut_follow_start starts[STRUT_FOLLOW_MOST_STARTS];

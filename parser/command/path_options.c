@@ -6,53 +6,9 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/base/number_text.h"
 #include "parser/command/option_values.h"
 
 enum { MOST_STEPS = 1000000 };
-
-/* Reports the first message about a scene with its place, without the "--set" of the varied value. */
-static strut_status report_first(const strut_followed *source, const strut_diagnostics *diagnostics,
-                                 strut_error *error) {
-  const strut_setting *followed = &source->settings[source->setting_count - 1];
-  char set[300];
-  if (diagnostics->count == 0) return strut_fail(error, STRUT_BAD_SCENE, "the scene is not valid");
-  const strut_diagnostic *first = &diagnostics->items[0];
-  for (size_t i = 1; i < diagnostics->count; i++)
-    if (diagnostics->items[i].place.line < first->place.line) first = &diagnostics->items[i];
-  snprintf(set, sizeof set, "--set %.100s=%.100s: ", followed->name, followed->text);
-  const char *message = first->message;
-  if (strncmp(message, set, strlen(set)) == 0) message += strlen(set);
-  if (first->place.line == 0) return strut_fail(error, STRUT_BAD_SCENE, "%s", message);
-  return strut_fail(error, STRUT_BAD_SCENE, "%s:%u:%u: %s", source->file, first->place.line,
-                    first->place.column, message);
-}
-
-static strut_status make_setup(void *context, double value, strut_setup *setup,
-                               strut_error *error) {
-  strut_followed *source = context;
-  strut_diagnostics diagnostics = {0};
-  char text[STRUT_NUMBER_TEXT];
-  strut_setting *followed = &source->settings[source->setting_count - 1];
-  strut_number_text(value, text);
-  followed->text = text;
-  followed->value = value;
-  strut_status status =
-      strut_scene_source_read(source->source, source->settings, source->setting_count,
-                              STRUT_FOR_STATICS, &diagnostics, setup);
-  if (status == STRUT_BAD_SCENE)
-    status = report_first(source, &diagnostics, error);
-  else if (status != STRUT_OK)
-    strut_fail(error, status, "out of memory");
-  strut_diagnostics_free(&diagnostics);
-  return status;
-}
-
-void strut_followed_free(strut_followed *source) {
-  strut_scene_source_free(source->own);
-  strut_release(source->settings);
-  *source = (strut_followed){0};
-}
 
 /* Everything that --over may name: candidates for suggestions. */
 typedef struct candidates {
@@ -89,62 +45,17 @@ static strut_status reject_name(const strut_command *command, const strut_argume
   return STRUT_USAGE;
 }
 
-static const strut_parameter *find_parameter(const strut_scene *scene, const char *name) {
-  for (size_t i = 0; i < scene->parameter_count; i++)
-    if (strcmp(scene->parameters[i].name, name) == 0) return &scene->parameters[i];
-  return NULL;
-}
-
 static int32_t find_actuator(const strut_scene *scene, const char *name) {
   for (size_t i = 0; i < scene->actuator_count; i++)
     if (strcmp(scene->actuators[i].name, name) == 0) return (int32_t)i;
   return -1;
 }
 
-static const strut_declared *find_declared(const strut_scene_source *source, const char *name) {
-  size_t count;
-  const strut_declared *all = strut_scene_source_parameters(source, &count);
-  for (size_t i = 0; i < count; i++)
-    if (strcmp(all[i].name, name) == 0) return &all[i];
-  return NULL;
-}
-
-/* The file's tree, and the settings with which scenes are made of it. */
-static strut_status open_source(const strut_arguments *arguments, const char *name,
-                                strut_followed *source, strut_dimension *dimension) {
-  strut_diagnostics unused = {0};
-  if (!source->source) {
-    strut_scene_source_open(source->file, source->text, source->length, &unused, &source->own);
-    source->source = source->own;
-  }
-  strut_diagnostics_free(&unused);
-  source->settings = strut_allocate(arguments->override_count + 1, sizeof *source->settings);
-  const strut_declared *declared = source->source ? find_declared(source->source, name) : NULL;
-  if (!declared || !source->settings) {
-    strut_tell(arguments->listener, STRUT_MESSAGE_ERROR, NULL, "out of memory");
-    return STRUT_NO_MEMORY;
-  }
-  for (size_t i = 0; i < arguments->override_count; i++)
-    if (strcmp(arguments->overrides[i].name, name) != 0)
-      source->settings[source->setting_count++] = (strut_setting){
-          .name = arguments->overrides[i].name, .text = arguments->overrides[i].value};
-  source->settings[source->setting_count++] = (strut_setting){
-      .name = name, .known = true, .bare = declared->bare, .dimension = declared->dimension};
-  *dimension = declared->bare ? STRUT_DIM_NONE : declared->dimension;
-  return STRUT_OK;
-}
-
-/* The unit to print after a value, or "". */
-static const char *unit_of(strut_dimension dimension) {
-  const char *unit = strut_dimension_unit(dimension);
-  return strcmp(unit, "1") == 0 || strcmp(unit, "SI") == 0 ? "" : unit;
-}
-
 static strut_status choose_followed(const strut_command *command, const strut_arguments *arguments,
                                     const strut_scene *scene, const char *name,
-                                    strut_followed *source, strut_path_options *wanted,
+                                    strut_varied_scenes *scenes, strut_path_options *wanted,
                                     strut_dimension *dimension) {
-  const strut_parameter *parameter = find_parameter(scene, name);
+  const strut_parameter *parameter = strut_find_parameter(scene, name);
   *dimension = STRUT_DIM_LENGTH;
   if (parameter && !isfinite(parameter->value))
     return strut_usage_error(command, arguments,
@@ -153,10 +64,11 @@ static strut_status choose_followed(const strut_command *command, const strut_ar
     wanted->over = STRUT_PATH_OVER_SCENE;
     wanted->name = name;
     wanted->from = parameter->value;
-    wanted->scene_at = make_setup;
-    wanted->context = source;
-    strut_status status = open_source(arguments, name, source, dimension);
-    wanted->unit = unit_of(*dimension);
+    wanted->scene_at = strut_varied_scenes_at;
+    wanted->context = scenes;
+    scenes->purpose = STRUT_FOR_STATICS;
+    strut_status status = strut_varied_scenes_open(arguments, &name, 1, scenes, dimension);
+    wanted->unit = strut_unit_of(*dimension);
     return status;
   }
   wanted->over = STRUT_PATH_OVER_ACTUATOR;
@@ -183,7 +95,7 @@ strut_status strut_path_options_read(const strut_command *command, const strut_a
 
 strut_status strut_path_followed_read(const strut_command *command,
                                       const strut_arguments *arguments, const strut_scene *scene,
-                                      strut_followed *source, strut_path_options *wanted) {
+                                      strut_varied_scenes *scenes, strut_path_options *wanted) {
   const char *name = strut_option_text(arguments, STRUT_OPTION_OVER);
   strut_dimension dimension = STRUT_DIM_NONE;
   strut_status status = STRUT_OK;
@@ -191,7 +103,7 @@ strut_status strut_path_followed_read(const strut_command *command,
   wanted->until = 1.0;
   if (name && wanted->load)
     return strut_usage_error(command, arguments, "give either --load or --over, not both");
-  if (name) status = choose_followed(command, arguments, scene, name, source, wanted, &dimension);
+  if (name) status = choose_followed(command, arguments, scene, name, scenes, wanted, &dimension);
   if (status == STRUT_OK && name && !strut_option_text(arguments, STRUT_OPTION_UNTIL)) {
     const char *example = strut_dimension_example(dimension);
     return strut_usage_error(command, arguments, "missing --until VALUE, the end value of %s%s%s%s",

@@ -6,7 +6,7 @@
 #define STRUT_PARSER_COMMAND_PATH_OPTIONS_H
 
 #include "engine/statics/path/path.h"
-#include "parser/command/arguments.h"
+#include "parser/command/varied_scenes.h"
 
 /** Rows for a table of options. */
 #define STRUT_PATH_OPTIONS                                                                         \
@@ -19,23 +19,15 @@
     STRUT_OPTION_STEPS, "steps", "N", "maximum number of steps (default 400)"                      \
   }
 
-/** Where scenes along a path over a parameter come from. Must stay in place while the path is followed. */
-typedef struct strut_followed {
-  const char *file, *text; /* of the scene; not owned */
-  size_t length;
-  const strut_scene_source *source; /* its tree; NULL: it is read from the text when it is needed */
-  strut_scene_source *own;
-  strut_setting *settings; /* (setting_count) those of --set, and last the one that is followed */
-  size_t setting_count;
-} strut_followed;
-
 /** Reads --at and --steps. STRUT_USAGE; the listener hears why. */
 strut_status strut_path_options_read(const strut_command *command, const strut_arguments *arguments,
                                      strut_path_options *wanted);
-/** Reads what is followed, and from where to where. As above; free `followed` in any case. */
+/**
+ * Reads what is followed, and from where to where. As above; `scenes`, which make those over a parameter,
+ * must stay in place while the path is followed. Free them in any case.
+ */
 strut_status strut_path_followed_read(const strut_command *command,
                                       const strut_arguments *arguments, const strut_scene *scene,
-                                      strut_followed *followed, strut_path_options *wanted);
-void strut_followed_free(strut_followed *followed);
+                                      strut_varied_scenes *scenes, strut_path_options *wanted);
 
 #endif

@@ -226,6 +226,26 @@ stalled 1% 0.01 0.0510317
 pair 0.3% 0.003 -0.0495417
 END
 
+# An orbit that runs leave again is not extrapolated to, though its period is the drive's: beside it the steady
+# motion takes two periods, and is 7 % slower (adaptive until steady within 0.05 %: 16.708 mm/s).
+expect 0 run "$crawler" --set friction=0.1 --set "frequency=13.613 Hz" --set "amplitude=0.2986 mm" --accuracy 2% --json
+cp "$work/out" "$work/json"
+about "$(field .velocity)" 0.016708 0.02
+[ "$(field .steady.repeats)" = 2 ] || fail "an unstable orbit was taken for the answer"
+
+# A structure that becomes stiffer than at its start, here as it falls into state III, gets smaller steps, and not
+# minutes of other methods.
+cat >"$work/stiffer.yaml" <<END
+strut: 1
+base: springs.yaml
+run: {measure: {steady: true}}
+END
+cp "$here/../../models/crawler/crawler.yaml" "$here/../../models/crawler/springs.yaml" "$work"
+expect 0 run "$work/stiffer.yaml" --set "frequency=7 Hz" --set friction=0.15933 --set "soft=2989.6 N/m" \
+  --set "strong=9809.7 N/m" --accuracy 2% --json
+cp "$work/out" "$work/json"
+[ "$(field '.accuracy.kept and .accuracy.check_evaluations < 1000000')" = true ] || fail "stiffer: too much work"
+
 # What makes no sense is refused.
 expect 1 run "$crawler" --accuracy 1% --integrator rk4
 err_has "give either --accuracy, or --integrator and --step"

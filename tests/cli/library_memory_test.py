@@ -39,6 +39,12 @@ COMMANDS = {  # name: (words, folders and files to remove before, libraries that
     "rigidity": (["rigidity", PENTAGON, "-o", "out"], ABORTING),
     "form": (["form", PENTAGON, "-o", "out.html", "--quiet"], ABORTING),
     "check": (["check", HOPPER], ABORTING),
+    "search": (["sweep", "search.yaml", "-o", "out", "--threads", "1", "--quiet"], WITH_HDF5),
+    "evolution": (["sweep", "evolution.yaml", "-o", "out", "--threads", "1", "--quiet"], WITH_HDF5),
+    "front": (["sweep", "front.yaml", "-o", "out", "--threads", "1", "--quiet"], WITH_HDF5),
+    "sensitivity": (["sweep", "sensitivity.yaml", "-o", "out", "--threads", "1", "--quiet"], WITH_HDF5),
+    "follow": (["follow", f"{MODELS}/gallery/two-mass-crawler.yaml", "--over", "friction=0.09..0.13",
+                "--set", "periods=60", "--steps", "2", "-o", "out"], WITH_HDF5),
 }
 GOOD = os.path.abspath("tests/language/good")
 for theme in ("elements", "memory", "feedback", "grounds", "collisions", "drives"):
@@ -91,6 +97,15 @@ os.chdir(tempfile.mkdtemp())
 with open("study.yaml", "w", encoding="utf-8") as study:
     study.write(f"strut: 1\nstudy: s\nmodel: {HOPPER}\naxes:\n  - seconds: [0.1, 0.2]\n"
                 "trajectories: yes\n")
+OVER = "over: {stiffness: {from: 50 N/m, to: 150 N/m}, mass: {from: 0.5 kg, to: 2 kg}}"
+for study_name, rest in (
+        ("search", f"search: {{maximise: frequency_1, {OVER}, evaluations: 12}}"),
+        ("evolution", f"search: {{maximise: frequency_1, {OVER}, method: cma, evaluations: 24}}"),
+        ("front", f"search: {{maximise: [frequency_1, -total_mass], {OVER}, evaluations: 24}}"),
+        ("sensitivity", "sensitivity: {of: [frequency_1], samples: 8, over: {mass: {normal: [1 kg, 0.1 kg]}}}")):
+    with open(f"{study_name}.yaml", "w", encoding="utf-8") as study:
+        study.write(f"strut: 1\nstudy: s\nmodel: {MODELS}/basics/oscillator.yaml\ncompute: modes\nlowest: 1\n"
+                    f"keep: [frequencies, total_mass]\n{rest}\n")
 subprocess.run([STRUT, "run", HOPPER, "--set", "seconds=0.1", "-o", "kept", "--quiet"], check=True)
 wanted = sys.argv[4:] or COMMANDS
 for command in wanted:

@@ -7,8 +7,8 @@
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/run/settle.h"
 
-/* Part of the largest stable step that the coarse method takes, and least steps per period. */
-static const double LIMIT_FRACTION = 0.82, LEAST_STEPS = 100.0;
+/* Least steps per period. */
+static const double LEAST_STEPS = 100.0;
 /* Velocities below this part of size over time are not measured relative to themselves. */
 static const double STANDSTILL = 1e-3;
 
@@ -71,7 +71,7 @@ static strut_status choose_coarse_method(strut_accuracy *a) {
       strut_integrator_for(a->single_method ? STRUT_ROLE_PLAIN : STRUT_ROLE_COARSE)->name;
   status =
       strut_step_limit_for_method(model, strut_integrator_find(e->integrator), &limit, a->error);
-  e->step = fmin(LIMIT_FRACTION * limit, unit / LEAST_STEPS);
+  e->step = fmin(STRUT_COARSE_STEP * limit, unit / LEAST_STEPS);
   e->refine = e->refine_time = 0.0;
   double fine = FINE_EVALUATIONS * FINE_STEPS * span.duration / e->step;
   double least = e->budget / STRUT_USUAL_BUDGET * LEAST_WORK;

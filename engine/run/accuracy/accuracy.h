@@ -27,6 +27,9 @@ STRUT_API strut_status strut_simulate_accurately(const strut_model *model,
 
 /* Shared by the strategies in accuracy_midpoint.c, accuracy_orbit.c and accuracy_ladder.c. */
 
+/** Part of the largest stable step that the coarse method takes. */
+static const double STRUT_COARSE_STEP = 0.82;
+
 typedef struct strut_accuracy {
   const strut_model *model;    /* of the settled start */
   const strut_scene *scene;    /* model->scene */

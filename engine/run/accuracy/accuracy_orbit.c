@@ -26,6 +26,8 @@ static const double PART_OF_BUDGET = 0.6;
 /* The whole run is made as a check where it costs at most this many times the work so far. */
 static const double WHOLE_RUN = 2.0;
 enum { MOST_CORRECTIONS = 4 };
+/* Steps tried for the coarse method where the structure becomes stiffer. */
+enum { MOST_STEPS = 3 };
 /*
  * Periods in which a motion normally becomes steady, and those of a second chance before it is
  * called irregular.
@@ -54,6 +56,28 @@ static strut_status allocate_arrays(strut_orbit_solve *solve, const strut_model 
 }
 
 /*
+ * The step is chosen for the start; where the structure becomes stiffer, so that the run is lost, it is repeated with
+ * a step for the stiffest shape so far.
+ */
+static strut_status run_coarse_from_start(strut_orbit_solve *solve, double periods) {
+  strut_accuracy *a = solve->a;
+  strut_status status = STRUT_OK;
+  for (int k = 0; k < MOST_STEPS; k++) {
+    status = strut_orbit_solve_run_until_steady(solve, a->coarse, fmax(0.1, 16.0 * a->target), 3,
+                                                periods, false, &solve->coarse_run);
+    double limit = solve->coarse_run.limit_fell.limit;
+    if (status != STRUT_DIVERGED || k + 1 == MOST_STEPS || !(limit > 0.0) ||
+        !(limit < a->coarse.step))
+      break;
+    a->check_evaluations += solve->coarse_run.force_evaluations;
+    strut_summary_free(&solve->coarse_run);
+    solve->coarse_run = (strut_summary){0};
+    a->coarse.step = STRUT_COARSE_STEP * limit;
+  }
+  return status;
+}
+
+/*
  * Runs the coarse method until the motion repeats itself. Its fixed steps meet the events
  * differently in each period, which limits how closely the motion repeats: the first tolerance is
  * therefore loose. *steady is false where even that is not reached.
@@ -66,8 +90,7 @@ static strut_status run_coarse(strut_orbit_solve *solve, bool *steady) {
   bool may_be_slow = a->model->contacts.count == 0;
   if (status) return status;
   strut_accuracy_begin_phase(a, "waiting for steady motion");
-  status = strut_orbit_solve_run_until_steady(solve, a->coarse, fmax(0.1, 16.0 * a->target), 3,
-                                              first, false, &solve->coarse_run);
+  status = run_coarse_from_start(solve, first);
   if (!status && solve->coarse_run.steady.kind != STRUT_MOTION_PERIODIC && may_be_slow &&
       periods > first) {
     strut_summary more = {0};
@@ -460,7 +483,7 @@ strut_status strut_accuracy_try_orbit(strut_accuracy *a, bool *done) {
   if (strut_accuracy_transient_periods(a) < (steady_wanted ? LEAST : LEAST_OF_RUN)) return STRUT_OK;
   bool steady = false;
   strut_summary orbit = {0};
-  const strut_experiment given = a->coarse;
+  strut_experiment given = a->coarse;
   a->allowed = (int64_t)(PART_OF_BUDGET * (double)a->budget);
   a->coarse.refine_rate =
       0.5; /* the orbit will be corrected, so that a short refinement suffices */
@@ -475,6 +498,7 @@ strut_status strut_accuracy_try_orbit(strut_accuracy *a, bool *done) {
     report_orbit(&solve, &orbit);
   else
     charge_costs(&solve, &orbit);
+  given.step = a->coarse.step;
   a->coarse = given;
   a->allowed = a->budget;
   free_solve(&solve);

@@ -25,6 +25,10 @@ enum { WINDOW = 5, KEPT = WINDOW + 1, MOST_PERIODS = 20, LOST = 12, MOST_CYCLES 
 
 /* Larger weights lose more digits than extrapolation gains. */
 static const double MOST_WEIGHT = 100.0;
+/*
+ * Differences grow where their multiplier is above GROWN; the square of what its fit leaves of them is at most FITTED.
+ */
+static const double GROWN = 1.02, FITTED = 0.04;
 
 /* Solves the small symmetric system a x = 1 in place by elimination; false if it is singular. */
 static bool solve_ones(double a[WINDOW][WINDOW], int32_t n, double *x) {
@@ -44,24 +48,25 @@ static bool solve_ones(double a[WINDOW][WINDOW], int32_t n, double *x) {
   return true;
 }
 
+/* Product of two differences, positions over the size and velocities over size times 2 pi f. */
+static double multiply(const strut_period_map *map, const double *a, const double *b) {
+  int32_t length = map->model->length, nodes = 2 * map->model->node_count;
+  double in = map->model->size, speed = in * STRUT_TAU / map->period, product = 0.0;
+  for (int32_t k = 0; k < nodes; k++)
+    product += a[k] * b[k] / (in * in) + a[length + k] * b[length + k] / (speed * speed);
+  return product;
+}
+
 /*
  * Fills weight (count) of the differences d (count, each 2 length + 1), 1 <= count <= WINDOW. False
  * where the system is singular or the weights would amplify errors.
  */
 static bool find_extrapolation_weights(const strut_period_map *map, double *const *d, int32_t count,
                                        double *weight) {
-  int32_t length = map->model->length, nodes = 2 * map->model->node_count;
   double a[WINDOW][WINDOW], sum = 0.0, most = 0.0;
   assert(count >= 1 && count <= WINDOW);
-  double in = map->model->size, speed = in * STRUT_TAU / map->period;
   for (int32_t i = 0; i < count; i++)
-    for (int32_t j = 0; j <= i; j++) {
-      double product = 0.0;
-      for (int32_t k = 0; k < nodes; k++)
-        product +=
-            d[i][k] * d[j][k] / (in * in) + d[i][length + k] * d[j][length + k] / (speed * speed);
-      a[i][j] = a[j][i] = product;
-    }
+    for (int32_t j = 0; j <= i; j++) a[i][j] = a[j][i] = multiply(map, d[i], d[j]);
   for (int32_t i = 0; i < count; i++) a[i][i] *= 1.0 + 1e-10;
   if (!solve_ones(a, count, weight)) return false;
   for (int32_t i = 0; i < count; i++) sum += weight[i];
@@ -219,6 +224,38 @@ static double estimate_remaining_travel(const window *w) {
   return effect * last * rate / (1.0 - rate);
 }
 
+/*
+ * Do the differences grow from period to period? They follow d[k + 1] = s d[k], or, where a pair of
+ * multipliers rules, d[k + 2] = s d[k + 1] + p d[k]; both are fitted, each period with the same weight. An
+ * extrapolation finds the orbit that they leave, too, but it is unstable, and no run stays on it.
+ */
+static bool grow(const strut_period_map *map, double *const *d) {
+  double g[WINDOW][WINDOW], a = 0.0, b = 0.0, c = 0.0, e = 0.0, f = 0.0;
+  for (int i = 0; i < WINDOW; i++)
+    for (int j = 0; j < WINDOW; j++) g[i][j] = multiply(map, d[i], d[j]);
+  for (int k = 0; k + 1 < WINDOW; k++) {
+    if (!(g[k][k] > 0.0) || !(g[k + 1][k + 1] > 0.0)) return false;
+    a += g[k][k] / g[k + 1][k + 1];
+    e += g[k][k + 1] / g[k + 1][k + 1];
+  }
+  const double periods = WINDOW - 1;
+  double single = e / a;
+  if (periods - single * e <= FITTED * periods) return fabs(single) > GROWN;
+  a = b = c = e = f = 0.0;
+  for (int k = 0; k + 2 < WINDOW; k++) {
+    double weight = 1.0 / g[k + 2][k + 2];
+    a += weight * g[k + 1][k + 1], b += weight * g[k][k + 1], c += weight * g[k][k];
+    e += weight * g[k + 1][k + 2], f += weight * g[k][k + 2];
+  }
+  double det = a * c - b * b;
+  if (!(det > 1e-6 * a * c)) return false;
+  double s = (e * c - f * b) / det, p = (a * f - b * e) / det;
+  if (periods - 1.0 - s * e - p * f > FITTED * (periods - 1.0)) return false;
+  double root = 0.25 * s * s + p; /* z^2 = s z + p */
+  double most = root < 0.0 ? sqrt(-p) : 0.5 * fabs(s) + sqrt(root);
+  return most > GROWN;
+}
+
 strut_status strut_orbit_limit(strut_period_map *map, double enough, double *y, double *travel,
                                bool *found) {
   size_t both = 2 * (size_t)map->model->length + 1, bytes = both * sizeof(double);
@@ -243,6 +280,7 @@ strut_status strut_orbit_limit(strut_period_map *map, double enough, double *y, 
     if (cycle == MOST_CYCLES) break;
     if (jumped && w.size[WINDOW - 1] > before)
       break; /* extrapolation led away: the motion is not steady */
+    if (grow(map, w.d)) break;
     if (estimate_remaining_travel(&w) <= enough) {
       memcpy(y, w.y[WINDOW], bytes);
       *travel = w.travel[WINDOW - 1];
