@@ -129,11 +129,25 @@ static bool order_members(const strut_model *model, const incidence *at, const i
   return good;
 }
 
+/* Node after node those of its members that are not stored yet. */
+static void order_members_freely(const strut_model *model, const incidence *at,
+                                 const int32_t *order, const int32_t *place, int32_t *member) {
+  const strut_member_table *t = &model->members;
+  int32_t count = 0;
+  for (int32_t i = 0; i < model->node_count; i++)
+    for (int32_t k = at->start[order[i]]; k < at->start[order[i] + 1]; k++) {
+      int32_t j = at->member[k], a = place[t->from[j] / 2], b = place[t->to[j] / 2];
+      bool first = (a < b ? a : b) == i;
+      if (first && (a != b || k == at->start[order[i]] || at->member[k - 1] != j))
+        member[count++] = j;
+    }
+}
+
 /* ---- tables ---- */
 
 typedef struct copier {
   const strut_model *model;
-  const int32_t *place, *order, *member;
+  const int32_t *place, *order, *member, *stored;
   strut_arena *arena;
   bool failed;
 } copier;
@@ -200,22 +214,18 @@ static void copy_terms(copier *c, strut_model *to) {
   const strut_drive_table *d = &c->model->drives;
   uint16_t *terms = allocate(c, (size_t)t->blocks, sizeof *terms);
   int32_t *driven = allocate(c, (size_t)d->count, sizeof *driven);
-  int32_t *stored = strut_allocate((size_t)t->count, sizeof *stored);
-  if (!stored) c->failed = true;
   if (!c->failed) {
     for (int32_t k = 0; k < t->count; k++) {
       unsigned needs = STRUT_TERM_MEMBERS;
       if (t->damping[k] > 0) needs |= STRUT_TERM_DAMPING;
       if (t->slack[k] > -HUGE_VAL) needs |= STRUT_TERM_SLACK;
       terms[k / STRUT_BLOCK] = (uint16_t)(terms[k / STRUT_BLOCK] | needs);
-      stored[c->member[k]] = k;
     }
     for (int32_t i = 0; i < d->count; i++) {
-      driven[i] = stored[d->member[i]];
+      driven[i] = c->stored[d->member[i]];
       terms[driven[i] / STRUT_BLOCK] |= STRUT_TERM_DRIVE;
     }
   }
-  strut_release(stored);
   to->members.block_terms = terms;
   to->drives.member = driven;
 }
@@ -293,8 +303,8 @@ static strut_model *copy_model(copier *c) {
   return c->failed ? NULL : to;
 }
 
-strut_status strut_renumbering_create(const strut_model *model, strut_renumbering **renumbering,
-                                      strut_error *error) {
+strut_status strut_renumbering_create(const strut_model *model, bool free_members,
+                                      strut_renumbering **renumbering, strut_error *error) {
   strut_renumbering *r = *renumbering = strut_allocate(1, sizeof *r);
   if (!r) return strut_memory_fail_model(model->scene, error);
   size_t nodes = (size_t)model->node_count;
@@ -303,11 +313,21 @@ strut_status strut_renumbering_create(const strut_model *model, strut_renumberin
   int32_t *place = strut_arena_allocate(&r->arena, nodes, sizeof *place);
   int32_t *member = strut_arena_allocate(&r->arena, (size_t)model->members.count, sizeof *member);
   int32_t *order = strut_arena_allocate(&scratch, nodes, sizeof *order);
-  bool good = place && member && order && find_incidence(model, &scratch, &at);
+  int32_t *stored = strut_arena_allocate(&r->arena, (size_t)model->members.count, sizeof *stored);
+  bool good = place && member && stored && order && find_incidence(model, &scratch, &at);
   if (good) order_nodes(model, &at, place, order);
-  good = good && order_members(model, &at, order, member);
-  copier c = {.model = model, .place = place, .order = order, .member = member, .arena = &r->arena};
-  r->place = place, r->member = member;
+  if (good && free_members)
+    order_members_freely(model, &at, order, place, member);
+  else
+    good = good && order_members(model, &at, order, member);
+  for (int32_t k = 0; k < model->members.count && good; k++) stored[member[k]] = k;
+  copier c = {.model = model,
+              .place = place,
+              .order = order,
+              .member = member,
+              .stored = stored,
+              .arena = &r->arena};
+  r->place = place, r->member = member, r->stored = stored;
   if (good) r->model = copy_model(&c);
   strut_arena_free(&scratch);
   if (r->model) return STRUT_OK;

@@ -16,15 +16,19 @@ typedef struct strut_renumbering {
   strut_model
       *model; /* with tables of its own; it shares the mass factor with the model it comes from */
   const int32_t *place;  /* (node_count) where a node of the scene is stored */
+  const int32_t *stored; /* (member count) where a member of the scene is stored */
   const int32_t *member; /* (member count) member of the scene that is stored at a place */
   strut_arena arena;
 } strut_renumbering;
 
 /** Would another order pay? It does not for small models, those in order, and terms that it cannot store. */
 bool strut_model_is_scattered(const strut_model *model);
-/** `model` must stay while the renumbered one is used. STRUT_OK or STRUT_NO_MEMORY. */
-strut_status strut_renumbering_create(const strut_model *model, strut_renumbering **renumbering,
-                                      strut_error *error);
+/**
+ * `model` must stay while the renumbered one is used. free_members: the members at a node need not keep their
+ * order, since who steps the model sums them in the scene's order by itself. STRUT_OK or STRUT_NO_MEMORY.
+ */
+strut_status strut_renumbering_create(const strut_model *model, bool free_members,
+                                      strut_renumbering **renumbering, strut_error *error);
 /** NULL is allowed. */
 void strut_renumbering_free(strut_renumbering *renumbering);
 

@@ -12,8 +12,8 @@
 #include "engine/forces/forces.h"
 #include "engine/forces/memory.h"
 #include "engine/forces/support_motion.h"
+#include "engine/integrate/large_steps.h"
 #include "engine/integrate/limit/step_limit.h"
-#include "engine/integrate/renumbered.h"
 #include "engine/model/memory_estimate.h"
 #include "engine/run/orbit/shooting.h"
 #include "engine/run/settle.h"
@@ -23,7 +23,7 @@
 /* Members times steps between two checks of the state and the interrupt flag. */
 static const int64_t CHUNK_WORK = 2000, LONGEST_CHUNK = 64;
 /* Steps at least between two checks where each costs a copy in the scene's order. */
-static const int64_t RENUMBERED_CHUNK = 8;
+static const int64_t LARGE_CHUNK = 8;
 
 double strut_run_clock(void) {
   struct timespec t;
@@ -202,15 +202,15 @@ static strut_status prepare_run(strut_run *r) {
 
 /* Whoever changed the state has restarted the method, and steps it on from there. */
 static void restart(strut_run *r) {
-  if (r->renumbered)
-    strut_renumbered_restart(r->renumbered, r->state, r->dt);
+  if (r->large)
+    strut_large_steps_restart(r->large, r->state, r->dt);
   else if (r->method->restart)
     r->method->restart(r->model, r->state, r->workspace, r->dt);
 }
 
 static void advance(strut_run *r, double dt, int64_t count) {
-  if (r->renumbered)
-    strut_renumbered_advance(r->renumbered, r->state, dt, count);
+  if (r->large)
+    strut_large_steps_advance(r->large, r->state, dt, count);
   else
     strut_integrator_advance(r->method, r->model, r->state, r->workspace, dt, count);
 }
@@ -564,20 +564,20 @@ strut_status strut_run_end(strut_run *r, strut_status status) {
   strut_recording_free(&r->recording);
   strut_measure_free(&r->measure);
   strut_steady_detector_free(&r->steady);
-  strut_renumbered_free(r->renumbered);
+  strut_large_steps_free(r->large);
   strut_state_free(r->state);
   return status;
 }
 
-/* From here on the model is stepped in another order where that pays. */
-static strut_status renumber(strut_run *r) {
+/* From here on a large model is stepped in another order and by several threads, where that pays. */
+static strut_status use_large_steps(strut_run *r) {
   const strut_integrator_settings settings = strut_integrator_settings_of(r->experiment);
   if (r->options->scene_order) return STRUT_OK;
-  strut_status status =
-      strut_renumbered_create(r->model, r->method, &settings, &r->renumbered, r->error);
-  if (!r->renumbered) return status;
-  strut_renumbered_restart(r->renumbered, r->state, r->dt);
-  if (r->chunk < RENUMBERED_CHUNK) r->chunk = RENUMBERED_CHUNK;
+  strut_status status = strut_large_steps_create(r->model, r->method, &settings,
+                                                 strut_large_threads(), &r->large, r->error);
+  if (!r->large) return status;
+  strut_large_steps_restart(r->large, r->state, r->dt);
+  if (r->chunk < LARGE_CHUNK) r->chunk = LARGE_CHUNK;
   return status;
 }
 
@@ -589,7 +589,7 @@ strut_status strut_simulate(const strut_model *model, const strut_experiment *ex
   int64_t stop = INT64_MAX;
   strut_status status =
       strut_run_begin(model, experiment, options, NULL, summary, error ? error : &own, &r);
-  if (!status) status = renumber(&r);
+  if (!status) status = use_large_steps(&r);
   while (!status) {
     status = strut_run_sample(&r, &stop);
     if (status || stop == r.state->step) break;
