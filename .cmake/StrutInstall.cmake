@@ -10,6 +10,10 @@ include(CMakePackageConfigHelpers)
 set(strut_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/strut")
 
 install(TARGETS strut RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT program)
+if(NOT BUILD_SHARED_LIBS)
+  install(TARGETS strut_algebra_module strut_hdf5_module strut_drawing_module
+          LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/strut" COMPONENT program)
+endif()
 install(
   TARGETS strut_engine strut_output strut_pictures strut_study strut_parser
   EXPORT strut

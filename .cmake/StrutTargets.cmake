@@ -54,6 +54,17 @@ function(strut_library room)
                SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 endfunction()
 
+# strut_module(NAME SOURCE...): modules/strut-NAME.so, which the program loads by itself.
+function(strut_module name)
+  add_library(strut_${name}_module MODULE ${ARGN})
+  strut_compile_options(strut_${name}_module)
+  target_include_directories(strut_${name}_module PRIVATE "${PROJECT_SOURCE_DIR}")
+  target_link_options(strut_${name}_module PRIVATE -Wl,--as-needed)
+  set_target_properties(
+    strut_${name}_module PROPERTIES PREFIX "" OUTPUT_NAME strut-${name}
+                                    LIBRARY_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/modules")
+endfunction()
+
 # strut_all_listed(FOLDER TARGET...): says which source files of FOLDER none of the targets has, so
 # that a new file does not stay out of the build unnoticed.
 function(strut_all_listed folder)

@@ -10,6 +10,9 @@
 #if defined(__SSE2__)
 #include <xmmintrin.h>
 
+/** The mode, for strut_subnormals_restore in another thread. */
+static inline unsigned strut_subnormals_mode(void) { return _mm_getcsr(); }
+
 /** The mode before, for strut_subnormals_restore. */
 static inline unsigned strut_subnormals_off(void) {
   unsigned before = _mm_getcsr();
@@ -24,6 +27,7 @@ static inline void strut_subnormals_restore(unsigned before) {
 
 #else
 
+static inline unsigned strut_subnormals_mode(void) { return 0; }
 static inline unsigned strut_subnormals_off(void) { return 0; }
 static inline void strut_subnormals_restore(unsigned before) { (void)before; }
 

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/model/linear_solver.h"
 
-#include <cholmod.h>
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
 
 #include "engine/base/memory.h"
+#include "engine/model/algebra_calls.h"
 #include "engine/model/memory_estimate.h"
 
 static void start_cholmod(cholmod_common *common) {
@@ -94,12 +94,14 @@ static int32_t bad_row(const cholmod_factor *l) {
 strut_status strut_factor_create(const strut_sparse *matrix, strut_factor **factor,
                                  strut_error *error) {
   cholmod_common common;
+  *factor = NULL;
+  strut_status status = strut_algebra_load(error);
+  if (status) return status;
   start_cholmod(&common);
   cholmod_sparse a = view(matrix);
   cholmod_factor *l = cholmod_analyze(&a, &common);
   double nonzeros = common.lnz; /* counted by the analysis */
-  strut_status status = l ? strut_memory_check_factor(matrix->n, nonzeros, error) : STRUT_OK;
-  *factor = NULL;
+  status = l ? strut_memory_check_factor(matrix->n, nonzeros, error) : STRUT_OK;
   if (l && !status && cholmod_factorize(&a, l, &common) && common.status >= CHOLMOD_OK &&
       cholmod_change_factor(CHOLMOD_REAL, 0, 0, 1, 1, l, &common)) {
     int32_t row = bad_row(l);
@@ -170,16 +172,18 @@ struct strut_ldl {
 };
 
 strut_status strut_ldl_create(const strut_sparse *pattern, strut_ldl **ldl, strut_error *error) {
+  *ldl = NULL;
+  strut_status status = strut_algebra_load(error);
+  if (status) return status;
   strut_ldl *l = *ldl = strut_allocate(1, sizeof *l);
   if (!l) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   start_cholmod(&l->common);
   cholmod_sparse a = view(pattern);
   l->symbolic = cholmod_analyze(&a, &l->common);
   l->work = strut_allocate(3 * (size_t)pattern->n, sizeof *l->work);
-  strut_status status =
-      l->symbolic && l->work
-          ? strut_memory_check_factor(pattern->n, l->common.lnz, error)
-          : strut_fail(error, STRUT_NO_MEMORY, "out of memory while analysing a matrix");
+  status = l->symbolic && l->work
+               ? strut_memory_check_factor(pattern->n, l->common.lnz, error)
+               : strut_fail(error, STRUT_NO_MEMORY, "out of memory while analysing a matrix");
   if (status == STRUT_OK) return status;
   strut_ldl_free(l);
   *ldl = NULL;

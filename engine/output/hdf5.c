@@ -85,6 +85,17 @@ static void abandon(hdf5 *self) {
   self->scale_count = 0;
 }
 
+/* Without a message of the library, which where no file is open is not initialised, and need not be. */
+static void abandon_quietly(hdf5 *self) {
+  if (self->id <= 0) {
+    abandon(self);
+    return;
+  }
+  strut_hdf5_quiet quiet = strut_hdf5_hush();
+  abandon(self);
+  strut_hdf5_unhush(quiet);
+}
+
 /* The scale of that name, created from the names if necessary; NULL on failure. */
 static strut_hdf5_scale *scale_of_names(hdf5 *self, const char *name, const char *const *names,
                                         size_t count) {
@@ -165,7 +176,9 @@ static strut_status begin(void *context, const strut_record_layout *layout, stru
   hdf5 *self = context;
   self->width = layout->width;
   if (!strut_hdf5_has_memory()) return strut_no_memory(error, "while writing files");
-  strut_status status = strut_file_open(&self->file, self->directory, "trajectory.h5", error);
+  strut_status status = strut_hdf5_load(error);
+  if (status != STRUT_OK) return status;
+  status = strut_file_open(&self->file, self->directory, "trajectory.h5", error);
   if (status != STRUT_OK) return status;
   strut_hdf5_quiet quiet = strut_hdf5_hush();
   errno = 0;
@@ -236,11 +249,13 @@ static strut_status complete(hdf5 *self, strut_status run_status, strut_error *e
 static strut_status end(void *context, strut_status run_status, strut_error *error) {
   hdf5 *self = context;
   strut_status status = STRUT_OK;
-  strut_hdf5_quiet quiet = strut_hdf5_hush();
   bool keep = run_status != STRUT_FILE_TROUBLE && run_status != STRUT_NO_MEMORY;
-  if (keep && self->id > 0) status = complete(self, run_status, error);
-  abandon(self);
-  strut_hdf5_unhush(quiet);
+  if (keep && self->id > 0) {
+    strut_hdf5_quiet quiet = strut_hdf5_hush();
+    status = complete(self, run_status, error);
+    strut_hdf5_unhush(quiet);
+  }
+  abandon_quietly(self);
   return status;
 }
 
@@ -262,18 +277,10 @@ strut_sink *strut_hdf5_create(const char *directory, const char *scene_text) {
   return NULL;
 }
 
-void strut_hdf5_leave_at_exit(void) { H5dont_atexit(); }
-
 void strut_hdf5_free(strut_sink *sink) {
   if (!sink) return;
   hdf5 *self = sink->context;
-  if (self->id > 0) { /* otherwise the library is not initialised, and need not be */
-    strut_hdf5_quiet quiet = strut_hdf5_hush();
-    abandon(self);
-    strut_hdf5_unhush(quiet);
-  } else {
-    abandon(self);
-  }
+  abandon_quietly(self);
   strut_release(self->directory);
   strut_release(self->scene_text);
   strut_release(self);

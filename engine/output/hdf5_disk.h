@@ -9,7 +9,7 @@
 #ifndef STRUT_ENGINE_OUTPUT_HDF5_DISK_H
 #define STRUT_ENGINE_OUTPUT_HDF5_DISK_H
 
-#include <hdf5.h>
+#include "engine/output/hdf5_calls.h"
 
 /** Destination of one file's bytes. Must outlive the file's closing. */
 typedef struct strut_hdf5_disk {

@@ -10,8 +10,9 @@
 #ifndef STRUT_ENGINE_OUTPUT_HDF5_PARTS_H
 #define STRUT_ENGINE_OUTPUT_HDF5_PARTS_H
 
-#include <hdf5.h>
 #include <stdbool.h>
+
+#include "engine/output/hdf5_calls.h"
 
 enum { STRUT_HDF5_RANK = 3, STRUT_HDF5_USERS = 8 };
 

@@ -390,7 +390,7 @@ strut_status strut_trajectory_read(const char *directory, const strut_scene *sce
     char reason[128];
     if (strerror_r(errno, reason, sizeof reason) != 0) snprintf(reason, sizeof reason, "no access");
     status = trouble(&r, reason);
-  } else {
+  } else if ((status = strut_hdf5_load(error)) == STRUT_OK) {
     strut_hdf5_quiet quiet = strut_hdf5_hush();
     r.file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
     status = r.file >= 0 ? read_file(&r, room) : trouble(&r, "it is not an HDF5 file, or damaged");

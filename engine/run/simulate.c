@@ -12,6 +12,7 @@
 #include "engine/forces/forces.h"
 #include "engine/forces/memory.h"
 #include "engine/forces/support_motion.h"
+#include "engine/integrate/large_steps.h"
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/model/memory_estimate.h"
 #include "engine/run/orbit/shooting.h"
@@ -21,6 +22,8 @@
 
 /* Members times steps between two checks of the state and the interrupt flag. */
 static const int64_t CHUNK_WORK = 2000, LONGEST_CHUNK = 64;
+/* Steps at least between two checks where each costs a copy in the scene's order. */
+static const int64_t LARGE_CHUNK = 8;
 
 double strut_run_clock(void) {
   struct timespec t;
@@ -197,6 +200,21 @@ static strut_status prepare_run(strut_run *r) {
                                 r->options->sink_count, &r->recording, r->error);
 }
 
+/* Whoever changed the state has restarted the method, and steps it on from there. */
+static void restart(strut_run *r) {
+  if (r->large)
+    strut_large_steps_restart(r->large, r->state, r->dt);
+  else if (r->method->restart)
+    r->method->restart(r->model, r->state, r->workspace, r->dt);
+}
+
+static void advance(strut_run *r, double dt, int64_t count) {
+  if (r->large)
+    strut_large_steps_advance(r->large, r->state, dt, count);
+  else
+    strut_integrator_advance(r->method, r->model, r->state, r->workspace, dt, count);
+}
+
 /* ---- steady motion ---- */
 
 /* A step within the period that no symmetry of the drive prefers. */
@@ -214,7 +232,7 @@ static void jump_to_orbit(strut_run *r, const double *y) {
   memcpy(r->state->q, y, bytes);
   memcpy(r->state->v, y + r->model->length, bytes);
   r->state->refined_until = t + y[2 * r->model->length];
-  if (r->method->restart) r->method->restart(r->model, r->state, r->workspace, r->dt);
+  restart(r);
   strut_energies after = strut_energy_evaluate(r->model, r->state, t);
   r->state->support_work_origin += strut_support_motion_work(r->model, r->state) - work;
   r->initial.kinetic += after.kinetic - before.kinetic;
@@ -316,7 +334,7 @@ static int64_t find_next_stop(const strut_run *r, int64_t chunk) {
 
 static void step_with_quantities(strut_run *r, int64_t stop) {
   while (r->state->step < stop) {
-    strut_integrator_advance(r->method, r->model, r->state, r->workspace, r->dt, 1);
+    advance(r, r->dt, 1);
     strut_measure_step_quantities(r->model, r->state, &r->measure);
   }
 }
@@ -324,7 +342,7 @@ static void step_with_quantities(strut_run *r, int64_t stop) {
 static void step_to(strut_run *r, int64_t stop) {
   int64_t n = r->state->step;
   if (n < strut_measure_first_step(&r->measure)) {
-    strut_integrator_advance(r->method, r->model, r->state, r->workspace, r->dt, stop - n);
+    advance(r, r->dt, stop - n);
     return;
   }
   if (r->measure.quantities) {
@@ -332,7 +350,7 @@ static void step_to(strut_run *r, int64_t stop) {
     return;
   }
   for (; n < stop; n++) {
-    strut_integrator_advance(r->method, r->model, r->state, r->workspace, r->dt, 1);
+    advance(r, r->dt, 1);
     strut_measure_step(r->model, r->state, &r->measure);
   }
 }
@@ -354,7 +372,7 @@ static void step_short(strut_run *r) {
   state->time_offset += later;
   state->refined_until -= later;
   state->drive_time = (double)NAN;
-  strut_integrator_advance(r->method, r->model, state, r->workspace, length, 1);
+  advance(r, length, 1);
   state->time_offset = before;
   state->refined_until += later;
   state->drive_time = (double)NAN;
@@ -547,7 +565,20 @@ strut_status strut_run_end(strut_run *r, strut_status status) {
   strut_recording_free(&r->recording);
   strut_measure_free(&r->measure);
   strut_steady_detector_free(&r->steady);
+  strut_large_steps_free(r->large);
   strut_state_free(r->state);
+  return status;
+}
+
+/* From here on a large model is stepped in another order and by several threads, where that pays. */
+static strut_status use_large_steps(strut_run *r) {
+  const strut_integrator_settings settings = strut_integrator_settings_of(r->experiment);
+  if (r->options->scene_order) return STRUT_OK;
+  strut_status status = strut_large_steps_create(r->model, r->method, &settings,
+                                                 strut_large_threads(), &r->large, r->error);
+  if (!r->large) return status;
+  strut_large_steps_restart(r->large, r->state, r->dt);
+  if (r->chunk < LARGE_CHUNK) r->chunk = LARGE_CHUNK;
   return status;
 }
 
@@ -559,6 +590,7 @@ strut_status strut_simulate(const strut_model *model, const strut_experiment *ex
   int64_t stop = INT64_MAX;
   strut_status status =
       strut_run_begin(model, experiment, options, NULL, summary, error ? error : &own, &r);
+  if (!status) status = use_large_steps(&r);
   while (!status) {
     status = strut_run_sample(&r, &stop);
     if (status || stop == r.state->step) break;

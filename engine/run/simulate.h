@@ -40,6 +40,7 @@ typedef struct strut_run_options {
       most_evaluations; /* force evaluations after which the run ends with STRUT_WORK_LIMIT; 0: no limit */
   bool chosen;          /* method and step were chosen for a wanted accuracy */
   bool without_ledger; /* leaves works and energy residual of the summary 0; cheaper */
+  bool scene_order;    /* steps the model as it is stored, however scattered its nodes are */
 } strut_run_options;
 
 /**

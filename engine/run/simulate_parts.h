@@ -45,6 +45,7 @@ typedef struct strut_run {
   int32_t tunnel;    /* the element of a collision that may have been passed through, + 1; or 0 */
   double
       tunnel_speed; /* at which its two sides moved [m/s]; 0: they were pressed together instead */
+  struct strut_large_steps *large; /* what steps instead of the method; NULL: the method */
 } strut_run;
 
 /**

@@ -24,14 +24,25 @@ static bool join(const char *folder, const char *below, const char *name,
   return fits;
 }
 
-bool strut_find_installed(const char *name, const char *built, char path[STRUT_LONGEST_PATH]) {
-  char folder[STRUT_LONGEST_PATH];
-  ssize_t length = readlink("/proc/self/exe", folder, sizeof folder - 1);
+/* The folder of the program. */
+static bool find_folder(char folder[STRUT_LONGEST_PATH]) {
+  ssize_t length = readlink("/proc/self/exe", folder, STRUT_LONGEST_PATH - 1);
   if (length <= 0) return false;
   folder[length] = '\0';
   *strrchr(folder, '/') = '\0';
-  return join(folder, "/" STRUT_SHARE_FROM_PROGRAM "/", name, path) ||
-         join(folder, "/", built, path);
+  return true;
+}
+
+bool strut_find_module(const char *name, char path[STRUT_LONGEST_PATH]) {
+  char folder[STRUT_LONGEST_PATH];
+  return find_folder(folder) && (join(folder, "/" STRUT_MODULES_FROM_PROGRAM "/", name, path) ||
+                                 join(folder, "/modules/", name, path));
+}
+
+bool strut_find_installed(const char *name, const char *built, char path[STRUT_LONGEST_PATH]) {
+  char folder[STRUT_LONGEST_PATH];
+  return find_folder(folder) && (join(folder, "/" STRUT_SHARE_FROM_PROGRAM "/", name, path) ||
+                                 join(folder, "/", built, path));
 }
 
 static strut_status trouble(strut_error *error, const char *path, int code) {

@@ -143,9 +143,13 @@ const char *strut_found(strut_reader *reader, const strut_tree *value) {
                                          strut_sanitised_text(reader, value->text)));
 }
 
+static bool is_scalar(const strut_tree *value) {
+  return value->kind == STRUT_TREE_SCALAR && !strut_is_null(value);
+}
+
 bool strut_read_scalar(strut_reader *reader, const strut_tree *value, const char *key,
                        strut_owner owner, const char *expected) {
-  if (value->kind == STRUT_TREE_SCALAR && !strut_is_null(value)) return true;
+  if (is_scalar(value)) return true;
   strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s", expected, key,
                      strut_owner_text(reader, owner), strut_found(reader, value));
   return false;
@@ -303,9 +307,12 @@ static const char *hint_of_names(strut_reader *reader, const strut_tree *value,
 int32_t strut_read_reference(strut_reader *reader, const strut_tree *value, const char *key,
                              strut_owner owner, const char *kind, const strut_name_map *map,
                              strut_names *names, size_t count) {
-  char expected[80];
-  snprintf(expected, sizeof expected, "the name of a %s", kind);
-  if (!strut_read_scalar(reader, value, key, owner, expected)) return -1;
+  if (!is_scalar(value)) {
+    char expected[80];
+    snprintf(expected, sizeof expected, "the name of a %s", kind);
+    strut_read_scalar(reader, value, key, owner, expected);
+    return -1;
+  }
   int32_t index = strut_find_named(reader, map, value, value->text);
   const char *hiding =
       index < 0 && map == &reader->node_names ? strut_hiding_part(reader, value) : NULL;

@@ -5,6 +5,7 @@
  *   strut_bench [--repeats N] [--members N]  the crawler in strut and elsewhere, then chains of
  *                                            X-frames of 10 to N (default 1000000) members
  *   strut_bench lanes                        the crawler in 1, 2, 4 and 8 lanes alone
+ *   strut_bench large [MEMBERS]              grids in order and shuffled, by one thread and several
  *   strut_bench terms                        what each term costs, alone
  *   strut_bench chain MEMBERS [lumped|consistent]   writes such a chain as a scene file to stdout
  *   strut_bench load FILE                    reads and compiles a scene file; seconds and memory
@@ -23,6 +24,7 @@
 #include "parser/read/read_scene.h"
 #endif
 #include "tests/bench/lanes.h"
+#include "tests/bench/large.h"
 #include "tests/bench/rivals.h"
 #include "tests/bench/scenes.h"
 #include "tests/bench/terms.h"
@@ -195,6 +197,7 @@ static int usage(void) {
   fprintf(stderr,
           "usage: strut_bench [--repeats N] [--members N]\n"
           "       strut_bench lanes\n"
+          "       strut_bench large [MEMBERS]\n"
           "       strut_bench terms\n"
           "       strut_bench chain MEMBERS [lumped|consistent] > FILE\n"
           "       strut_bench load FILE\n");
@@ -204,6 +207,10 @@ static int usage(void) {
 int main(int argc, char **argv) {
   if (argc == 2 && strcmp(argv[1], "lanes") == 0) {
     bench_lanes(15);
+    return 0;
+  }
+  if (argc >= 2 && strcmp(argv[1], "large") == 0) {
+    bench_large(argc > 2 ? atol(argv[2]) : 0);
     return 0;
   }
   if (argc == 2 && strcmp(argv[1], "terms") == 0) {

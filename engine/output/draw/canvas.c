@@ -2,18 +2,15 @@
 #include "engine/output/draw/canvas.h"
 #include "engine/base/vec.h"
 
-#include <cairo-pdf.h>
-#include <cairo-svg.h>
-#include <cairo.h>
 #include <errno.h>
 #include <math.h>
-#include <pango/pangocairo.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "engine/base/memory.h"
 #include "engine/output/buffer.h"
+#include "engine/output/draw/drawing_calls.h"
 #include "engine/output/file.h"
 
 struct strut_canvas {
@@ -267,6 +264,7 @@ strut_status strut_canvas_open(const char *path, double width, double height, co
                                strut_canvas **canvas, strut_error *error) {
   *canvas = NULL;
   strut_status status = strut_canvas_check_name(path, error);
+  if (status == STRUT_OK) status = strut_drawing_load(error);
   if (status != STRUT_OK) return status;
   strut_canvas *c = strut_allocate(1, sizeof *c);
   if (!c) return strut_no_memory(error, "");
@@ -287,11 +285,13 @@ strut_status strut_canvas_open(const char *path, double width, double height, co
 
 strut_status strut_canvas_open_pixels(int width, int height, double scale, strut_canvas **canvas,
                                       strut_error *error) {
-  strut_canvas *c = strut_allocate(1, sizeof *c);
   *canvas = NULL;
+  strut_status status = strut_drawing_load(error);
+  if (status != STRUT_OK) return status;
+  strut_canvas *c = strut_allocate(1, sizeof *c);
   if (!c) return strut_no_memory(error, "");
   *c = (strut_canvas){.box = {0, 0, width / scale, height / scale}};
-  strut_status status =
+  status =
       open_context(c, cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height), scale, error);
   if (status == STRUT_OK) {
     strut_canvas_clear(c, (strut_colour){1, 1, 1, 1});

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/model/algebra_calls.h"
 #include "engine/run/settle.h"
 #include "engine/statics/equilibria/equilibrium_search.h"
 #include "engine/statics/equilibria/naming.h"
@@ -326,9 +327,12 @@ strut_status strut_equilibria_find(const strut_model *model, const strut_experim
                                    const strut_equilibria_options *options,
                                    strut_equilibria *equilibria, strut_error *error) {
   memset(equilibria, 0, sizeof *equilibria);
+  strut_status status =
+      strut_algebra_load(error); /* its parts say no more than that memory is out */
+  if (status) return status;
   strut_equilibrium_search h = {
       .experiment = experiment, .options = options, .out = equilibria, .error = error};
-  strut_status status = prepare_search(&h, model);
+  status = prepare_search(&h, model);
   if (!status) status = search_scene(&h);
   if (!status) status = report_equilibria(&h);
   if (!status) status = settle_start(&h, model);

@@ -8,6 +8,7 @@
 
 #include "engine/base/vec.h"
 #include "engine/integrate/limit/step_limit.h"
+#include "engine/model/algebra_calls.h"
 #include "engine/model/pose.h"
 #include "engine/statics/form/form.h"
 #include "engine/statics/minimise.h"
@@ -496,11 +497,12 @@ strut_status strut_form_find(strut_setup *setup, const strut_form_options *optio
   strut_model *model = NULL;
   strut_potential *potential = NULL;
   *form = (strut_form){.from = choose_source(scene, options->from)};
+  strut_status status = strut_algebra_load(error);
+  if (status) return status;
   strut_former f = {
       .scene = scene, .experiment = &setup->experiment, .options = options, .form = form};
   double *drawn = strut_arena_allocate(&f.arena, 2 * scene->node_count, sizeof *drawn);
-  strut_status status =
-      drawn ? strut_model_compile(scene, &model, error) : strut_no_memory(error, "");
+  status = drawn ? strut_model_compile(scene, &model, error) : strut_no_memory(error, "");
   if (status == STRUT_OK && model->contacts.surface)
     status = strut_fail(error, STRUT_USAGE,
                         "form finding needs a ground that is one straight line at rest; give "

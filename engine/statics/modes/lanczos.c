@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/modes/lanczos.h"
 
-#include <arpack.h>
 #include <pthread.h>
 #include <stdbool.h>
 #include <string.h>
 
 #include "engine/base/memory.h"
+#include "engine/model/algebra_calls.h"
 
 enum {
   INTERRUPTED = 1000, /* no code of ARPACK's */
@@ -97,7 +97,8 @@ strut_status strut_lanczos(const strut_lanczos_problem *problem, int32_t count, 
   search s = {.n = problem->n, .wanted = count};
   s.vectors = 2 * count + 10 > LEAST_VECTORS ? 2 * count + 10 : LEAST_VECTORS;
   if (s.vectors > s.n) s.vectors = s.n;
-  strut_status status = STRUT_OK;
+  strut_status status = strut_algebra_load(error);
+  if (status) return status;
   if (!begin(&s, &arena)) {
     status = strut_no_memory(error, "");
   } else {

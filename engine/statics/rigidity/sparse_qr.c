@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/rigidity/sparse_qr.h"
 
-#include <SuiteSparseQR_C.h>
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
+
+#include "engine/model/algebra_calls.h"
 
 /* A column of the squeezed R is live where it reaches one row further down than those before it. */
 struct strut_sparse_qr {
@@ -73,6 +74,9 @@ static bool factorise(strut_sparse_qr *qr, cholmod_sparse *a, double tolerance) 
 strut_status strut_sparse_qr_create(int32_t rows, int32_t columns, const int32_t *start,
                                     const int32_t *row, const double *value, double tolerance,
                                     strut_sparse_qr **result, strut_error *error) {
+  *result = NULL;
+  strut_status status = strut_algebra_load(error);
+  if (status) return status;
   strut_sparse_qr *qr = *result = strut_allocate(1, sizeof *qr);
   if (!qr) return strut_no_memory(error, "");
   cholmod_l_start(&qr->common);

@@ -61,7 +61,7 @@ static bool estimate_indices(const samples *s, const size_t *pick, double *index
   }
   double mean = sum / (2.0 * (double)n), variance = square / (2.0 * (double)n) - mean * mean;
   for (size_t k = 0; k < 2 * s->count; k++) index[k] /= (double)n * variance;
-  return variance > 1e-24 * square / (2.0 * (double)n) && variance > 0.0;
+  return variance > 1e-12 * square / (2.0 * (double)n) && variance > 0.0;
 }
 
 static int ascending(const void *a, const void *b) {
