@@ -113,6 +113,7 @@ typedef enum strut_option_id {
   STRUT_OPTION_LOWEST,
   STRUT_OPTION_LIMIT_EVALUATIONS,
   STRUT_OPTION_LIMIT_TIME,
+  STRUT_OPTION_AND, /* the second parameter of curves */
   STRUT_OPTION_TEXTS_END
 } strut_option_id;
 
