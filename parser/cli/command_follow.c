@@ -146,7 +146,10 @@ const strut_command strut_command_follow = {
         "branches it follows, too), tori, and where touchdowns, lift-offs, stick or slip begin "
         "or\n"
         "cease within a period. Motions that travel along level ground repeat but for their "
-        "travel.\n",
+        "travel.\n"
+        "--and follows these points over a second parameter: curves of folds, doublings, grazings "
+        "and\n"
+        "lift-offs, with their cusps.\n",
     .options = options,
     .run = run_follow,
     .timed = true,
