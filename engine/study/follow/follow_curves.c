@@ -41,10 +41,8 @@ static strut_status follow_from(const strut_follow_options *o, strut_follow_resu
   strut_follow_curve *c = &r->curves[r->curve_count];
   int64_t steps = u->s.steps_per_period;
   if (gap && steps < STEPS_PER_PERIOD) u->s.steps_per_period = STEPS_PER_PERIOD;
-  if (gap) u->s.value = (double)NAN; /* the maps are made again, with the steps */
   strut_status status = strut_follow_curve_make(u, &start, &limits, c, error);
   u->s.steps_per_period = steps;
-  if (gap) u->s.value = (double)NAN;
   if (c->count > 1 && (!status || status == STRUT_INTERRUPTED)) {
     r->curve_count++;
     return status;
@@ -80,8 +78,9 @@ strut_status strut_follow_find_curves(const strut_follow_options *o, strut_follo
     const strut_follow_branch *b = &r->branches[i].branch;
     for (size_t k = 0; k < b->count && !status; k++) {
       if (!strut_follow_curve_known(b->points[k].kind)) continue;
-      status = strut_follow_set_repeats(&u.s, b->repeats, error);
-      if (!status) status = follow_from(o, r, &u, &b->points[k], error);
+      u.s.repeats = b->repeats;
+      u.s.value = (double)NAN; /* the maps are made again, with their repeats and steps */
+      status = follow_from(o, r, &u, &b->points[k], error);
     }
   }
   strut_follow_surface_close(&u);
@@ -96,14 +95,14 @@ static void add_number(strut_buffer *csv, double value) {
   strut_buffer_add(csv, ",%s", text);
 }
 
-/* "frequency [Hz]" as a cell. */
-static bool add_header(strut_buffer *csv, const char *name, const char *unit) {
+/* "frequency [Hz]", or a text, as a cell. False: out of memory. */
+static bool add_cell(strut_buffer *csv, const char *name, const char *unit, const char *text) {
   strut_arena arena = {0};
   char *header, *cell;
   const strut_slot_column column = {.name = name, .unit = unit};
-  bool fine =
-      strut_follow_axis_cell(&column, (strut_study_value){.number = 0.0}, &arena, &header, &cell);
-  if (fine) strut_buffer_add(csv, ",%s", header);
+  const strut_study_value value = {.word = text ? text : ""};
+  bool fine = strut_follow_axis_cell(&column, value, &arena, &header, &cell);
+  if (fine) strut_buffer_add(csv, ",%s", *name ? header : cell);
   strut_arena_free(&arena);
   return fine;
 }
@@ -112,8 +111,8 @@ char *strut_follow_curves_csv(const strut_follow_result *r) {
   strut_buffer csv = {0};
   strut_c_locale locale = strut_c_locale_enter();
   strut_buffer_add(&csv, "curve,kind,node,period_multiple,arclength");
-  bool fine =
-      add_header(&csv, r->name, r->unit) && add_header(&csv, r->second.name, r->second.unit);
+  bool fine = add_cell(&csv, r->name, r->unit, NULL) &&
+              add_cell(&csv, r->second.name, r->second.unit, NULL);
   strut_buffer_add(&csv,
                    ",velocity [m/s],work [J],amplitude [m],stable,multiplier,"
                    "multiplier_angle [deg],point\n");
@@ -121,8 +120,9 @@ char *strut_follow_curves_csv(const strut_follow_result *r) {
     const strut_follow_curve *c = &r->curves[i];
     for (size_t k = 0; k < c->count; k++) {
       const strut_follow_curve_point *p = &c->points[k];
-      strut_buffer_add(&csv, "%zu,%s,%s,%d", i + 1, strut_follow_kind_word(c->kind),
-                       c->node ? c->node : "", (int)c->repeats);
+      strut_buffer_add(&csv, "%zu,%s", i + 1, strut_follow_kind_word(c->kind));
+      fine = fine && add_cell(&csv, "", "", c->node);
+      strut_buffer_add(&csv, ",%d", (int)c->repeats);
       add_number(&csv, p->arc);
       for (int v = 0; v < 2; v++) add_number(&csv, p->value[v]);
       add_number(&csv, p->velocity);
