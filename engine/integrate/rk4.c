@@ -7,6 +7,8 @@
 #include "engine/forces/rigid.h"
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/plain_steps.h"
+#include "engine/integrate/small_steps.h"
+#include "engine/model/small_model.h"
 
 /* Stage values, (length) each: positions now, velocities of stages 2 to 4, accelerations of all. */
 typedef struct rk4_workspace {
@@ -100,6 +102,8 @@ static void rk4_advance(const strut_model *model, strut_state *state, void *work
                         int64_t count) {
   if (state->rigid)
     rk4_rigid(model, state, workspace, dt, count);
+  else if (model->small && model->small->level == STRUT_SMALL_AVX512)
+    strut_small_rk4_avx512(model, state, dt, count);
   else
     rk4_plain(model, state, workspace, dt, count);
 }
