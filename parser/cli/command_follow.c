@@ -14,10 +14,13 @@
 #include "parser/cli/streams.h"
 #include "parser/command/follow_options.h"
 
-static const char *const file_names[] = {"branches.csv", "branches.json", "branches.svg", NULL};
+static const char *const file_names[] = {"branches.csv", "branches.json", "branches.svg",
+                                         "curves.csv",   "curves.svg",    NULL};
 
 static const strut_option options[] = {
     {STRUT_OPTION_OVER, "over", "NAME=LOW..HIGH", "the parameter and its range"},
+    {STRUT_OPTION_AND, "and", "NAME=LOW..HIGH",
+     "a second parameter, over which curves of folds, doublings and grazings are followed"},
     {STRUT_OPTION_AT, "at", "VALUE,...",
      "values at which branches start (default: the model's own, or the middle)"},
     {STRUT_OPTION_FROM, "from", "NAME,...", "configurations to start from (default: the start)"},
@@ -33,6 +36,21 @@ static const strut_option options[] = {
     STRUT_AXIS_OPTIONS,
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
+
+/* The curves over both parameters. */
+static strut_status write_curves(const char *directory, const strut_follow_result *result,
+                                 const strut_plot *plot, strut_error *error) {
+  char path[4096];
+  strut_plot own = *plot;
+  strut_status status =
+      strut_file_write_block(directory, "curves.csv", strut_follow_curves_csv(result), error);
+  if (status || !result->curve_count) return status;
+  if (snprintf(path, sizeof path, "%s/curves.svg", directory) >= (int)sizeof path)
+    return strut_fail(error, STRUT_FILE_TROUBLE, "cannot write '%s': the path is too long",
+                      directory);
+  own.path = path;
+  return strut_follow_curves_figure(&own, result, error);
+}
 
 /* Writes all files, or none. */
 static strut_status write_files(const char *directory, const strut_follow_result *result,
@@ -50,6 +68,7 @@ static strut_status write_files(const char *directory, const strut_follow_result
         strut_fail(error, STRUT_FILE_TROUBLE, "cannot write '%s': the path is too long", directory);
   own.path = path;
   if (!status) status = strut_follow_figure(&own, result, error);
+  if (!status && result->second.name) status = write_curves(files.stage, result, plot, error);
   if (!status) status = strut_results_commit(&files, error);
   strut_results_abandon(&files);
   return status;
@@ -60,7 +79,10 @@ static strut_status report(const strut_arguments *arguments, const strut_plot *p
   strut_error error = {0};
   strut_status status = STRUT_OK;
   if (arguments->output) status = write_files(arguments->output, result, plot, &error);
-  if (!status && plot->path) status = strut_follow_figure(plot, result, &error);
+  bool curves = result->second.name && result->curve_count;
+  if (!status && plot->path)
+    status = curves ? strut_follow_curves_figure(plot, result, &error)
+                    : strut_follow_figure(plot, result, &error);
   if (status) {
     strut_print_error(&error);
     return status;
@@ -124,7 +146,10 @@ const strut_command strut_command_follow = {
         "branches it follows, too), tori, and where touchdowns, lift-offs, stick or slip begin "
         "or\n"
         "cease within a period. Motions that travel along level ground repeat but for their "
-        "travel.\n",
+        "travel.\n"
+        "--and follows these points over a second parameter: curves of folds, doublings, grazings "
+        "and\n"
+        "lift-offs, with their cusps.\n",
     .options = options,
     .run = run_follow,
     .timed = true,

@@ -116,6 +116,7 @@ typedef enum strut_option_id {
   STRUT_OPTION_CODE, /* of export: C for other programs, its numbers and names */
   STRUT_OPTION_REAL,
   STRUT_OPTION_PREFIX,
+  STRUT_OPTION_AND, /* the second parameter of curves */
   STRUT_OPTION_TEXTS_END
 } strut_option_id;
 

@@ -18,44 +18,105 @@ static const char *parameter_at(const void *context, size_t i) {
   return i < scene->parameter_count ? scene->parameters[i].name : NULL;
 }
 
-/* NAME=LOW..HIGH */
-static strut_status read_range(const strut_command *command, const strut_arguments *arguments,
-                               const strut_scene *scene, strut_follow_source *source,
-                               strut_follow_options *wanted, strut_dimension *dimension) {
-  const char *over = strut_option_text(arguments, STRUT_OPTION_OVER);
-  const char *equals = over ? strchr(over, '=') : NULL,
-             *dots = equals ? strstr(equals, "..") : NULL;
+/* NAME=LOW..HIGH of an option, taken apart. */
+typedef struct range_text {
+  const char *option; /* "--over" */
+  char *name;         /* [STRUT_FOLLOW_NAME] */
   char low[200];
-  if (!over || !dots || equals == over || (size_t)(equals - over) >= sizeof source->name ||
-      (size_t)(dots - equals) >= sizeof low)
+  const char *high;
+} range_text;
+
+/* The name must be that of a number of the scene. */
+static strut_status split_range(const strut_command *command, const strut_arguments *arguments,
+                                const strut_scene *scene, const char *text, range_text *r) {
+  const char *equals = text ? strchr(text, '=') : NULL;
+  const char *dots = equals ? strstr(equals, "..") : NULL;
+  if (!dots || equals == text || (size_t)(equals - text) >= STRUT_FOLLOW_NAME ||
+      (size_t)(dots - equals) >= sizeof r->low)
     return strut_usage_error(command, arguments,
-                             "missing --over NAME=LOW..HIGH, such as --over frequency=8Hz..12Hz");
-  snprintf(source->name, sizeof source->name, "%.*s", (int)(equals - over), over);
-  snprintf(low, sizeof low, "%.*s", (int)(dots - equals - 1), equals + 1);
-  const strut_parameter *parameter = strut_find_parameter(scene, source->name);
-  if (!parameter) {
-    const char *near = strut_did_you_mean(source->name, parameter_at, scene);
-    return strut_usage_error(command, arguments, "--over: the model has no parameter '%s'%s%s%s",
-                             source->name, near ? "; did you mean '" : "", near ? near : "",
+                             "missing %s NAME=LOW..HIGH, such as %s frequency=8Hz..12Hz", r->option,
+                             r->option);
+  snprintf(r->name, STRUT_FOLLOW_NAME, "%.*s", (int)(equals - text), text);
+  snprintf(r->low, sizeof r->low, "%.*s", (int)(dots - equals - 1), equals + 1);
+  r->high = dots + 2;
+  const strut_parameter *parameter = strut_find_parameter(scene, r->name);
+  const char *near = parameter ? NULL : strut_did_you_mean(r->name, parameter_at, scene);
+  if (!parameter)
+    return strut_usage_error(command, arguments, "%s: the model has no parameter '%s'%s%s%s",
+                             r->option, r->name, near ? "; did you mean '" : "", near ? near : "",
                              near ? "'?" : "");
-  }
   if (!isfinite(parameter->value))
-    return strut_usage_error(command, arguments,
-                             "--over: parameter '%s' is a text, expected a number", source->name);
-  const char *const name = source->name;
-  source->scenes.purpose = STRUT_FOR_RUN_STEP_LATER;
-  strut_status status = strut_varied_scenes_open(arguments, &name, 1, &source->scenes, dimension);
+    return strut_usage_error(command, arguments, "%s: parameter '%s' is a text, expected a number",
+                             r->option, r->name);
+  return STRUT_OK;
+}
+
+static strut_status read_ends(const strut_command *command, const strut_arguments *arguments,
+                              const range_text *r, strut_dimension dimension, double *low,
+                              double *high) {
+  if (strut_option_numbers(r->low, dimension, low, 1) == 1 &&
+      strut_option_numbers(r->high, dimension, high, 1) == 1 && *low < *high && isfinite(*low) &&
+      isfinite(*high))
+    return STRUT_OK;
+  const char *example = strut_dimension_example(dimension);
+  return strut_usage_error(
+      command, arguments, "%s %s: expected two values LOW..HIGH, the lower one first%s%s",
+      r->option, r->name, example ? ", each such as " : "", example ? example : "");
+}
+
+/* The scene of a value of the first parameter, the second one being where the branches are. */
+static strut_status setup_first(void *context, double value, strut_setup *setup,
+                                strut_error *error) {
+  strut_follow_source *source = context;
+  const double values[STRUT_MOST_VARIED] = {value, source->second_value};
+  return strut_varied_scenes_read(&source->scenes, values, setup, error);
+}
+
+static strut_status setup_both(void *context, const double values[2], strut_setup *setup,
+                               strut_error *error) {
+  return strut_varied_scenes_read(&((strut_follow_source *)context)->scenes, values, setup, error);
+}
+
+/* The scene's own value where it is within the range, or the middle. */
+static double own_value(const strut_scene *scene, const char *name, double low, double high) {
+  double own = strut_find_parameter(scene, name)->value;
+  return own >= low && own <= high ? own : 0.5 * (low + high);
+}
+
+/* --over and --and */
+static strut_status read_ranges(const strut_command *command, const strut_arguments *arguments,
+                                const strut_scene *scene, strut_follow_source *source,
+                                strut_follow_options *wanted, strut_dimension *dimension) {
+  const char *and = strut_option_text(arguments, STRUT_OPTION_AND);
+  range_text first = {.option = "--over", .name = source->name};
+  range_text other = {.option = "--and", .name = source->second};
+  strut_dimension dimensions[STRUT_MOST_VARIED] = {STRUT_DIM_NONE};
+  strut_follow_second *second = &wanted->second;
+  strut_status status = split_range(command, arguments, scene,
+                                    strut_option_text(arguments, STRUT_OPTION_OVER), &first);
+  if (!status && and) status = split_range(command, arguments, scene, and, &other);
+  if (!status && and&&strcmp(source->name, source->second) == 0)
+    status = strut_usage_error(command, arguments, "--over and --and name the same parameter '%s'",
+                               source->name);
   if (status) return status;
-  if (strut_option_numbers(low, *dimension, &wanted->low, 1) != 1 ||
-      strut_option_numbers(dots + 2, *dimension, &wanted->high, 1) != 1 ||
-      !(wanted->low < wanted->high) || !isfinite(wanted->low) || !isfinite(wanted->high)) {
-    const char *example = strut_dimension_example(*dimension);
-    return strut_usage_error(
-        command, arguments, "--over %s: expected two values LOW..HIGH, the lower one first%s%s",
-        source->name, example ? ", each such as " : "", example ? example : "");
-  }
+  const char *const names[STRUT_MOST_VARIED] = {source->name, source->second};
+  source->scenes.purpose = STRUT_FOR_RUN_STEP_LATER;
+  status = strut_varied_scenes_open(arguments, names, and? 2 : 1, &source->scenes, dimensions);
+  if (!status)
+    status = read_ends(command, arguments, &first, dimensions[0], &wanted->low, &wanted->high);
+  if (!status && and)
+    status = read_ends(command, arguments, &other, dimensions[1], &second->low, &second->high);
+  if (status) return status;
+  *dimension = dimensions[0];
   wanted->name = source->name;
-  wanted->unit = strut_unit_of(*dimension);
+  wanted->unit = strut_unit_of(dimensions[0]);
+  wanted->scenes = (strut_follow_scenes){setup_first, source};
+  if (!and) return STRUT_OK;
+  second->name = source->second;
+  second->unit = strut_unit_of(dimensions[1]);
+  second->value = source->second_value =
+      own_value(scene, source->second, second->low, second->high);
+  second->scenes = (strut_follow_plane){setup_both, source};
   return STRUT_OK;
 }
 
@@ -65,9 +126,8 @@ static strut_status read_values(const strut_command *command, const strut_argume
                                 const strut_follow_options *wanted, double values[MOST_AT],
                                 size_t *count) {
   const char *at = strut_option_text(arguments, STRUT_OPTION_AT);
-  double own = strut_find_parameter(scene, wanted->name)->value;
   *count = 1;
-  values[0] = own >= wanted->low && own <= wanted->high ? own : 0.5 * (wanted->low + wanted->high);
+  values[0] = own_value(scene, wanted->name, wanted->low, wanted->high);
   if (!at) return STRUT_OK;
   *count = strut_option_numbers(at, dimension, values, MOST_AT);
   bool good = *count > 0;
@@ -119,7 +179,7 @@ strut_status strut_follow_options_read(const strut_command *command,
   double values[MOST_AT];
   size_t value_count = 0, name_count = read_names(arguments, source, names);
   int64_t steps = 0;
-  strut_status status = read_range(command, arguments, scene, source, wanted, &dimension);
+  strut_status status = read_ranges(command, arguments, scene, source, wanted, &dimension);
   if (!status)
     status = read_values(command, arguments, scene, dimension, wanted, values, &value_count);
   if (!status) status = check_names(command, arguments, scene, names, name_count);
@@ -139,6 +199,5 @@ strut_status strut_follow_options_read(const strut_command *command,
   wanted->steps = (int32_t)steps;
   wanted->basins = arguments->basins;
   wanted->method = strut_option_text(arguments, STRUT_OPTION_INTEGRATOR);
-  wanted->scenes = (strut_follow_scenes){strut_varied_scenes_at, &source->scenes};
   return STRUT_OK;
 }

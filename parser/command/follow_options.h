@@ -16,10 +16,12 @@ typedef struct strut_follow_source {
   char name[STRUT_FOLLOW_NAME];
   char from[1024]; /* names of configurations, each ended by NUL */
   strut_follow_start starts[STRUT_FOLLOW_MOST_STARTS];
+  char second[STRUT_FOLLOW_NAME]; /* name of the second parameter; "": there is none */
+  double second_value;            /* where the branches are [SI] */
 } strut_follow_source;
 
 /**
- * Reads --over, --at, --from, --steps, --accuracy and --integrator for the scene as it was read.
+ * Reads --over, --and, --at, --from, --steps, --accuracy and --integrator for the scene as it was read.
  * STRUT_USAGE; the listener hears why. Free `source` in any case.
  */
 strut_status strut_follow_options_read(const strut_command *command,

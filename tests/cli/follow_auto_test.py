@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Folds of a Duffing oscillator by strut follow and by AUTO-07p (Debian's auto-07p), which discretises the
+# Folds of a Duffing oscillator, and their curve over the force, by strut follow and by AUTO-07p (Debian's auto-07p), which discretises the
 # same periodic motion by collocation. Skipped where AUTO or gfortran is not installed.
 #
 #   python3 follow_auto_test.py STRUT
@@ -28,7 +28,7 @@ FROM, TO = 0.14, 0.22  # [Hz]
 with open(os.path.join(work, "duffing.yaml"), "w", encoding="utf-8") as file:
     file.write(f"""strut: 1
 name: Duffing
-parameters: {{frequency: {FROM} Hz}}
+parameters: {{frequency: {FROM} Hz, force: {FORCE} N}}
 nodes:
   wall: {{position: [0, 0], fixed: both}}
   mass: {{position: [10, 0], fixed: y, mass: 1}}
@@ -37,13 +37,15 @@ members:
     {{nodes: [wall, mass], kind: spring, law: {{kind: polynomial, coefficients: [1 N/m, 0, {CUBIC} N/m^3]}},
      damping: {DAMPING}, rest_length: 10}}
 loads:
-  push: {{node: mass, force: [{FORCE} N, 0], signal: {{sine: {{amplitude: 1, frequency: frequency}}}}}}
+  push: {{node: mass, force: [force, 0], signal: {{sine: {{amplitude: 1, frequency: frequency}}}}}}
 solver: {{integrator: rk4, step: 1 ms}}
 run: {{periods: 300, of: push, measure: {{node: mass}}}}
 """)
-done = subprocess.run([strut, "follow", "duffing.yaml", "--over", f"frequency={FROM}Hz..{TO}Hz", "--json"],
+done = subprocess.run([strut, "follow", "duffing.yaml", "--over", f"frequency={FROM}Hz..{TO}Hz", "--and",
+                       "force=0.05N..0.2N", "--json"],
                       capture_output=True, text=True, cwd=work, timeout=100, check=True)
-points = json.loads(done.stdout)["branches"][0]["special"]
+result = json.loads(done.stdout)
+points = result["branches"][0]["special"]
 ours = [p["value"] for p in points if p["point"] == "fold"]
 
 # x' = v and so on over one period, and an oscillator that makes sin and cos of the drive
@@ -58,7 +60,7 @@ with open(os.path.join(work, "duf.f90"), "w", encoding="utf-8") as file:
   period = 8d0*atan(1d0)/PAR(1)
   rest = 1d0 - U(3)**2 - U(4)**2
   F(1) = period*U(2)
-  F(2) = period*({FORCE}d0*U(3) - {DAMPING}d0*U(2) - U(1) - {CUBIC}d0*U(1)**3)
+  F(2) = period*(PAR(2)*U(3) - {DAMPING}d0*U(2) - U(1) - {CUBIC}d0*U(1)**3)
   F(3) = period*(PAR(1)*U(4) + U(3)*rest)
   F(4) = period*(-PAR(1)*U(3) + U(4)*rest)
 end subroutine
@@ -70,6 +72,7 @@ subroutine STPNT(NDIM,U,PAR,T)
   double precision :: w, a, p
   w = 8d0*atan(1d0)*{FROM}d0
   PAR(1) = w
+  PAR(2) = {FORCE}d0
   a = {FORCE}d0/(1d0-w*w)
   p = 8d0*atan(1d0)*T
   U(1) = a*sin(p)
@@ -106,7 +109,11 @@ RL0=0.7, RL1=1.5, A0=0, A1=1e6
 UZSTOP={{1: {2 * math.pi * TO}}}
 """)
 with open(os.path.join(work, "duf.auto"), "w", encoding="utf-8") as file:
-    file.write("run('duf')\n")
+    file.write("""r = run('duf')
+s = run(r('LP1'), ISW=2, ICP=[1, 2])
+run(s, DS=0.01, UZR={2: [0.12, 0.15, 0.18]}, UZSTOP={2: [0.2, 0.05]})
+run(s, DS=-0.01, UZR={2: [0.09, 0.12, 0.15, 0.18]}, UZSTOP={2: [0.2, 0.05]})
+""")
 done = subprocess.run([auto, "duf.auto"], capture_output=True, text=True, cwd=work, timeout=100,
                       stdin=subprocess.DEVNULL, check=False)
 theirs = [float(v) / (2 * math.pi) for v in re.findall(r"^\s*\d+\s+\d+\s+LP\s+\d+\s+(\S+)", done.stdout, re.M)]
@@ -114,4 +121,20 @@ check(len(theirs) == 2, f"AUTO finds folds at {theirs}: {done.stdout[-500:]} {do
 check(len(ours) == 2, f"strut finds folds at {ours}")
 for mine, other in zip(ours, theirs):
     check(abs(mine - other) <= 2e-5 * other, f"a fold at {mine} Hz, by AUTO at {other} Hz")
+
+# the curve of folds at other forces: three points of it by Lagrange's formula
+curve = [p["values"] for p in result["curves"][0]["points"]]
+found = re.findall(r"^\s*\d+\s+\d+\s+UZ\s+\d+\s+(\S+)(?:\s+\S+){5}\s+(\S+)\s*$", done.stdout, re.M)
+check(len(found) == 10, f"AUTO's curve: {found}")
+for turn, force in ((float(a), float(b)) for a, b in found):
+    if abs(force - 0.2) < 1e-6:
+        continue
+    nearest = []
+    for k in range(1, len(curve) - 2):
+        if (curve[k][1] - force) * (curve[k + 1][1] - force) > 0:
+            continue
+        value = sum(curve[i][0] * math.prod((force - curve[j][1]) / (curve[i][1] - curve[j][1])
+                                            for j in range(k - 1, k + 2) if j != i) for i in range(k - 1, k + 2))
+        nearest.append(abs(2 * math.pi * value / turn - 1))
+    check(nearest and min(nearest) < 3e-5, f"AUTO's fold at {force} N, {turn / 2 / math.pi} Hz: off by {nearest}")
 finish()

@@ -194,27 +194,32 @@ bool strut_follow_measure(strut_follow_walk *w, strut_follow_orbit *o) {
   return measure(w, o, false);
 }
 
-/* Multipliers of s->jacobian by size; the one of shifts, 0 in it, is the last. */
-static bool find_multipliers(strut_follow_walk *w, strut_follow_orbit *o) {
-  size_t n = w->s->n;
-  gsl_matrix_view view = gsl_matrix_view_array(w->eigen, n, n);
+bool strut_follow_multipliers(const strut_follow_system *s, double *scratch,
+                              double (*multiplier)[2], size_t *count) {
+  size_t n = s->n;
+  gsl_matrix_view view = gsl_matrix_view_array(scratch, n, n);
   gsl_eigen_nonsymm_workspace *space = gsl_eigen_nonsymm_alloc(n);
   gsl_vector_complex *values = gsl_vector_complex_alloc(n);
-  memcpy(w->eigen, w->s->jacobian, n * n * sizeof(double));
+  memcpy(scratch, s->jacobian, n * n * sizeof(double));
   bool good = space && values;
   bool found = good && gsl_eigen_nonsymm(&view.matrix, values, space) == 0;
-  o->multipliers = 0;
+  *count = 0;
   for (size_t i = 0; i < n && found; i++) { /* insertion by size */
     double re = GSL_REAL(gsl_vector_complex_get(values, i));
     double im = GSL_IMAG(gsl_vector_complex_get(values, i)), size = hypot(re, im);
-    size_t at = o->multipliers++;
-    for (; at > 0 && size > hypot(o->multiplier[at - 1][0], o->multiplier[at - 1][1]); at--)
-      memcpy(o->multiplier[at], o->multiplier[at - 1], sizeof o->multiplier[0]);
-    o->multiplier[at][0] = re, o->multiplier[at][1] = im;
+    size_t at = (*count)++;
+    for (; at > 0 && size > hypot(multiplier[at - 1][0], multiplier[at - 1][1]); at--)
+      memcpy(multiplier[at], multiplier[at - 1], sizeof multiplier[0]);
+    multiplier[at][0] = re, multiplier[at][1] = im;
   }
-  if (o->multipliers && w->s->travels) o->multipliers--;
+  if (*count && s->travels) --*count;
   gsl_eigen_nonsymm_free(space);
   gsl_vector_complex_free(values);
+  return good;
+}
+
+static bool find_multipliers(strut_follow_walk *w, strut_follow_orbit *o) {
+  bool good = strut_follow_multipliers(w->s, w->eigen, o->multiplier, &o->multipliers);
   if (!good) w->status = strut_no_memory(w->error, "");
   return good;
 }

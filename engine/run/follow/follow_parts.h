@@ -67,6 +67,12 @@ typedef struct strut_follow_walk {
  */
 bool strut_follow_newton(strut_follow_walk *w, double *y, double *value, const double *normal,
                          const double *base_y, double base_value, double distance, int *rounds);
+/**
+ * Multipliers of the system's derivative by size; the one of shifts, 0 in it, is left out. scratch (n, n),
+ * multiplier (n). False: out of memory.
+ */
+bool strut_follow_multipliers(const strut_follow_system *s, double *scratch,
+                              double (*multiplier)[2], size_t *count);
 /** Travel, work and word of the orbit at o->y, o->value. False: motion lost, or status. */
 bool strut_follow_measure(strut_follow_walk *w, strut_follow_orbit *o);
 /** Both that and what follows, which then takes one run less. */

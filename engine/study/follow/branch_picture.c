@@ -92,7 +92,7 @@ static void draw_name(drawing *d, const strut_branch_mark *m, strut_box *taken, 
   char text[120];
   double at[2], width, height;
   strut_axes_point(&d->axes, m->data[0], m->data[1], at);
-  snprintf(text, sizeof text, "%s%s%.60s", strut_follow_kind_word(m->kind),
+  snprintf(text, sizeof text, "%s%s%.60s", m->text ? m->text : strut_follow_kind_word(m->kind),
            m->node && *m->node ? " " : "", m->node ? m->node : "");
   strut_text_size(d->canvas, text, font, &width, &height);
   for (int side = 0; side < 4; side++) {

@@ -17,6 +17,7 @@ typedef struct strut_branch_mark {
   double data[2];
   strut_follow_kind kind;
   const char *node; /* or NULL */
+  const char *text; /* in place of the kind's word; or NULL */
 } strut_branch_mark;
 
 /** Texts and arrays belong to whoever made them. */

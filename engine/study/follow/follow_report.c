@@ -8,7 +8,7 @@
 #include "engine/output/buffer.h"
 #include "engine/output/json_value.h"
 #include "engine/output/quantity_text.h"
-#include "engine/study/follow/follow_study.h"
+#include "engine/study/follow/follow_parts.h"
 
 static const double DEGREES = 57.29577951308232;
 /* Special points that change no stability are counted, not listed, beyond so many of a branch. */
@@ -122,6 +122,7 @@ char *strut_follow_json(const strut_follow_result *r) {
     for (int k = 0; k < STRUT_FOLLOW_KICKS; k++)
       strut_json_number(&json, row, strut_follow_kick_name(k), b->kick[k]);
   }
+  strut_follow_curves_json(r, &json);
   struct cJSON *notes = strut_json_array(&json, json.root, "notes");
   for (size_t i = 0; i < r->note_count; i++) strut_json_text(&json, notes, NULL, r->notes[i]);
   return strut_json_end(&json);
@@ -215,6 +216,7 @@ char *strut_follow_table(const strut_follow_result *r) {
   for (size_t i = 0; i < r->count; i++) add_branch(&t, r, i);
   add_basins(&t, r);
   if (r->note_count) strut_buffer_add(&t, "\n");
+  strut_follow_curves_table(r, &t);
   for (size_t i = 0; i < r->note_count; i++) strut_buffer_add(&t, "note: %s\n", r->notes[i]);
   strut_c_locale_leave(locale);
   return strut_buffer_take(&t);

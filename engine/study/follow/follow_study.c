@@ -315,6 +315,16 @@ static strut_status push_motions(follower *f) {
   return STRUT_OK;
 }
 
+/* The second parameter, with texts that stay. */
+static strut_status keep_second(strut_follow_result *r, const strut_follow_second *second,
+                                strut_error *error) {
+  r->second = *second;
+  r->second.name = strut_arena_format(&r->arena, "%s", second->name);
+  r->second.unit = strut_arena_format(&r->arena, "%s", second->unit);
+  r->second.scenes = (strut_follow_plane){NULL, NULL};
+  return r->second.name && r->second.unit ? STRUT_OK : strut_no_memory(error, "");
+}
+
 strut_status strut_follow_make(const strut_follow_options *options, strut_follow_result *result,
                                strut_error *error) {
   double clock = strut_run_clock();
@@ -329,10 +339,13 @@ strut_status strut_follow_make(const strut_follow_options *options, strut_follow
   result->name = strut_arena_format(&result->arena, "%s", options->name);
   result->unit = strut_arena_format(&result->arena, "%s", options->unit);
   strut_status status = result->name && result->unit ? STRUT_OK : strut_no_memory(error, "");
+  if (!status && options->second.name) status = keep_second(result, &options->second, error);
   for (size_t i = 0; i < options->start_count && !status; i++)
     status = follow_start(&f, &options->starts[i]);
   if (!status && !options->not_doubled) status = follow_doublings(&f);
   if (!status && options->basins) status = push_motions(&f);
+  if (!status && result->second.name && result->count > 0)
+    status = strut_follow_find_curves(options, result, &f.s, error);
   if (!status && result->count == 0)
     status = strut_fail(error, STRUT_NOT_SETTLED, "there is no periodic motion to follow: %s",
                         result->note_count ? result->notes[0] : "no start was given");
@@ -355,6 +368,7 @@ strut_status strut_follow_possible(const strut_follow_options *options, strut_er
 
 void strut_follow_free(strut_follow_result *result) {
   for (size_t i = 0; i < result->count; i++) strut_follow_branch_free(&result->branches[i].branch);
+  for (size_t i = 0; i < result->curve_count; i++) strut_follow_curve_free(&result->curves[i]);
   strut_arena_free(&result->arena);
   result->count = result->note_count = 0;
 }

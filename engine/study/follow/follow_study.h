@@ -7,9 +7,9 @@
 #define STRUT_ENGINE_STUDY_FOLLOW_STUDY_H
 
 #include "engine/output/draw/plot.h"
-#include "engine/run/follow/follow.h"
+#include "engine/run/follow/follow_curve.h"
 
-enum { STRUT_FOLLOW_KICKS = 4, STRUT_FOLLOW_MOST_BASINS = 64 };
+enum { STRUT_FOLLOW_KICKS = 4, STRUT_FOLLOW_MOST_BASINS = 64, STRUT_FOLLOW_MOST_CURVES = 24 };
 enum { STRUT_FOLLOW_MOST_BRANCHES = 24, STRUT_FOLLOW_NOTE = 320, STRUT_FOLLOW_LABEL = 120 };
 
 /** A motion from which a branch is followed. */
@@ -17,6 +17,14 @@ typedef struct strut_follow_start {
   double value;     /* of the parameter [SI] */
   const char *from; /* configuration at whose equilibrium the run starts; NULL: as the scene says */
 } strut_follow_start;
+
+/** A second parameter, over which curves of special points are followed. */
+typedef struct strut_follow_second {
+  const char *name, *unit; /* name NULL: there is none; unit "": none */
+  double low, high;        /* its range [SI] */
+  double value;            /* where the branches are [SI] */
+  strut_follow_plane scenes;
+} strut_follow_second;
 
 typedef struct strut_follow_options {
   const char *name, *unit; /* of the parameter; unit "": none */
@@ -33,6 +41,7 @@ typedef struct strut_follow_options {
   void (*progress)(void *context, double fraction); /* may be NULL */
   void *progress_context;
   bool basins; /* kick the stable motions at the values of the starts */
+  strut_follow_second second;
 } strut_follow_options;
 
 typedef struct strut_followed_branch {
@@ -64,6 +73,9 @@ typedef struct strut_follow_result {
   strut_arena arena;
   size_t basin_count;
   strut_follow_basin basins[STRUT_FOLLOW_MOST_BASINS];
+  strut_follow_second second; /* texts belong to the result; without scenes */
+  size_t curve_count;
+  strut_follow_curve curves[STRUT_FOLLOW_MOST_CURVES];
 } strut_follow_result;
 
 /**
@@ -85,6 +97,13 @@ STRUT_API char *strut_follow_csv_beside(const strut_follow_result *result, const
                                         const char *values);
 STRUT_API char *strut_follow_json(const strut_follow_result *result);
 STRUT_API char *strut_follow_table(const strut_follow_result *result);
+
+/* follow_curves.c, of a result with a second parameter */
+STRUT_API char *strut_follow_curves_csv(const strut_follow_result *result);
+/** The curves in the plane of both parameters, with their cusps. */
+STRUT_API strut_status strut_follow_curves_figure(const strut_plot *plot,
+                                                  const strut_follow_result *result,
+                                                  strut_error *error);
 
 /** Velocity over the parameter: stable solid, unstable dashed, special points marked. */
 STRUT_API strut_status strut_follow_figure(const strut_plot *plot,

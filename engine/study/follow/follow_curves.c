@@ -1,0 +1,269 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Curves of the special points of all branches over a second parameter, with what is written of them. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/base/c_locale.h"
+#include "engine/base/number_text.h"
+#include "engine/output/buffer.h"
+#include "engine/output/json_value.h"
+#include "engine/output/quantity_text.h"
+#include "engine/study/follow/branch_picture.h"
+#include "engine/study/follow/follow_parts.h"
+
+/* Longest step of a parameter in its range; steps each way; drive steps that show a gap's extrema. */
+static const double LONGEST = 0.03;
+enum { STEPS = 200, STEPS_PER_PERIOD = 200, CURVE_KEYS = 4 };
+static const double DEGREES = 57.29577951308232;
+
+/* ---- following ---- */
+
+static void note(strut_follow_result *r, const char *text) {
+  if (r->note_count == sizeof r->notes / sizeof r->notes[0]) return;
+  snprintf(r->notes[r->note_count++], STRUT_FOLLOW_NOTE, "%s", text);
+}
+
+/* The curve through a special point of a branch, unless it is known. */
+static strut_status follow_from(const strut_follow_options *o, strut_follow_result *r,
+                                strut_follow_surface *u, const strut_follow_point *p,
+                                strut_error *error) {
+  bool gap = p->kind == STRUT_FOLLOW_TOUCH || p->kind == STRUT_FOLLOW_LIFT;
+  const strut_follow_curve_start start = {.kind = p->kind,
+                                          .node = gap ? p->node : NULL,
+                                          .value = {p->value, o->second.value},
+                                          .y = p->y};
+  const strut_follow_curve_limits limits = {.steps = o->steps > 0 ? o->steps : STEPS,
+                                            .longest = LONGEST};
+  for (size_t i = 0; i < r->curve_count; i++)
+    if (strut_follow_curve_passes(u, &r->curves[i], &start)) return STRUT_OK;
+  if (r->curve_count == STRUT_FOLLOW_MOST_CURVES) return STRUT_OK;
+  strut_follow_curve *c = &r->curves[r->curve_count];
+  int64_t steps = u->s.steps_per_period;
+  if (gap && steps < STEPS_PER_PERIOD) u->s.steps_per_period = STEPS_PER_PERIOD;
+  strut_status status = strut_follow_curve_make(u, &start, &limits, c, error);
+  u->s.steps_per_period = steps;
+  if (c->count > 1 && (!status || status == STRUT_INTERRUPTED)) {
+    r->curve_count++;
+    return status;
+  }
+  if (!status) {
+    char text[STRUT_FOLLOW_NOTE];
+    const char *word = strut_follow_kind_word(p->kind);
+    snprintf(text, sizeof text, "the curve of the %s%s%.60s at %s is not followed: %.120s", word,
+             gap ? " of " : "", gap ? p->node : "",
+             strut_quantity_of_any(p->value, 6, *r->unit ? r->unit : "1").text,
+             c->count ? c->ends[1] : c->ends[0]);
+    note(r, text);
+  }
+  strut_follow_curve_free(c);
+  return status;
+}
+
+strut_status strut_follow_find_curves(const strut_follow_options *o, strut_follow_result *r,
+                                      const strut_follow_system *like, strut_error *error) {
+  strut_follow_surface u = {.scenes = o->second.scenes,
+                            .low = {o->low, o->second.low},
+                            .high = {o->high, o->second.high},
+                            .s = {.method = like->method,
+                                  .tolerance = like->tolerance,
+                                  .steps_per_period = like->steps_per_period,
+                                  .repeats = 1,
+                                  .threads = o->threads,
+                                  .interrupt = o->interrupt}};
+  const double value[2] = {0.5 * (o->low + o->high), o->second.value};
+  strut_status status = strut_follow_surface_open(&u, value, error);
+  u.s.length = like->length, u.s.speed = like->speed;
+  for (size_t i = 0; i < r->count && !status; i++) {
+    const strut_follow_branch *b = &r->branches[i].branch;
+    for (size_t k = 0; k < b->count && !status; k++) {
+      if (!strut_follow_curve_known(b->points[k].kind)) continue;
+      u.s.repeats = b->repeats;
+      u.s.value = (double)NAN; /* the maps are made again, with their repeats and steps */
+      status = follow_from(o, r, &u, &b->points[k], error);
+    }
+  }
+  strut_follow_surface_close(&u);
+  return status;
+}
+
+/* ---- curves.csv ---- */
+
+static void add_number(strut_buffer *csv, double value) {
+  char text[STRUT_NUMBER_TEXT] = "";
+  if (isfinite(value)) strut_number_text(value, text);
+  strut_buffer_add(csv, ",%s", text);
+}
+
+/* "frequency [Hz]", or a text, as a cell. False: out of memory. */
+static bool add_cell(strut_buffer *csv, const char *name, const char *unit, const char *text) {
+  strut_arena arena = {0};
+  char *header, *cell;
+  const strut_slot_column column = {.name = name, .unit = unit};
+  const strut_study_value value = {.word = text ? text : ""};
+  bool fine = strut_follow_axis_cell(&column, value, &arena, &header, &cell);
+  if (fine) strut_buffer_add(csv, ",%s", *name ? header : cell);
+  strut_arena_free(&arena);
+  return fine;
+}
+
+char *strut_follow_curves_csv(const strut_follow_result *r) {
+  strut_buffer csv = {0};
+  strut_c_locale locale = strut_c_locale_enter();
+  strut_buffer_add(&csv, "curve,kind,node,period_multiple,arclength");
+  bool fine = add_cell(&csv, r->name, r->unit, NULL) &&
+              add_cell(&csv, r->second.name, r->second.unit, NULL);
+  strut_buffer_add(&csv,
+                   ",velocity [m/s],work [J],amplitude [m],stable,multiplier,"
+                   "multiplier_angle [deg],point\n");
+  for (size_t i = 0; i < r->curve_count; i++) {
+    const strut_follow_curve *c = &r->curves[i];
+    for (size_t k = 0; k < c->count; k++) {
+      const strut_follow_curve_point *p = &c->points[k];
+      strut_buffer_add(&csv, "%zu,%s", i + 1, strut_follow_kind_word(c->kind));
+      fine = fine && add_cell(&csv, "", "", c->node);
+      strut_buffer_add(&csv, ",%d", (int)c->repeats);
+      add_number(&csv, p->arc);
+      for (int v = 0; v < 2; v++) add_number(&csv, p->value[v]);
+      add_number(&csv, p->velocity);
+      add_number(&csv, p->work);
+      add_number(&csv, c->travels ? (double)NAN : p->amplitude);
+      strut_buffer_add(&csv, ",%s", p->stable ? "yes" : "no");
+      add_number(&csv, hypot(p->multiplier[0], p->multiplier[1]));
+      add_number(&csv, fabs(atan2(p->multiplier[1], p->multiplier[0])) * DEGREES);
+      strut_buffer_add(&csv, ",%s\n", p->cusp ? "cusp" : k == c->start ? "start" : "");
+    }
+  }
+  strut_c_locale_leave(locale);
+  char *text = strut_buffer_take(&csv);
+  if (fine) return text;
+  strut_release(text);
+  return NULL;
+}
+
+/* ---- within the other reports ---- */
+
+void strut_follow_curves_json(const strut_follow_result *r, strut_json *json) {
+  if (!r->second.name) return;
+  strut_json_text(json, json->root, "and", r->second.name);
+  strut_json_text(json, json->root, "and_unit", r->second.unit);
+  strut_json_number(json, json->root, "and_from", r->second.low);
+  strut_json_number(json, json->root, "and_to", r->second.high);
+  strut_json_number(json, json->root, "and_at", r->second.value);
+  struct cJSON *curves = strut_json_array(json, json->root, "curves");
+  for (size_t i = 0; i < r->curve_count; i++) {
+    const strut_follow_curve *c = &r->curves[i];
+    struct cJSON *row = strut_json_object(json, curves, NULL);
+    strut_json_text(json, row, "kind", strut_follow_kind_word(c->kind));
+    strut_json_text(json, row, "node", c->node);
+    strut_json_integer(json, row, "period_multiple", c->repeats);
+    strut_json_text(json, row, "begins", c->ends[0]);
+    strut_json_text(json, row, "ends", c->ends[1]);
+    struct cJSON *cusps = strut_json_array(json, row, "cusps");
+    struct cJSON *points = strut_json_array(json, row, "points");
+    for (size_t k = 0; k < c->count; k++) {
+      const strut_follow_curve_point *p = &c->points[k];
+      if (p->cusp) strut_json_numbers(json, cusps, NULL, p->value, 2);
+      struct cJSON *point = strut_json_object(json, points, NULL);
+      strut_json_numbers(json, point, "values", p->value, 2);
+      strut_json_number(json, point, "velocity", p->velocity);
+      if (!c->travels) strut_json_number(json, point, "amplitude", p->amplitude);
+      strut_json_bool(json, point, "stable", p->stable);
+    }
+  }
+}
+
+static const char *unit_of(const char *unit) { return *unit ? unit : "1"; }
+
+void strut_follow_curves_table(const strut_follow_result *r, strut_buffer *t) {
+  if (!r->second.name) return;
+  strut_buffer_add(t, "\ncurves over %s and %s from %s to %s: %zu\n", r->name, r->second.name,
+                   strut_quantity_of_any(r->second.low, 6, unit_of(r->second.unit)).text,
+                   strut_quantity_of_any(r->second.high, 6, unit_of(r->second.unit)).text,
+                   r->curve_count);
+  for (size_t i = 0; i < r->curve_count; i++) {
+    const strut_follow_curve *c = &r->curves[i];
+    const strut_follow_curve_point *ends[2] = {&c->points[0], &c->points[c->count - 1]};
+    strut_buffer_add(t, "  %zu %-15s", i + 1, strut_follow_kind_word(c->kind));
+    if (c->node) strut_buffer_add(t, " of %s", c->node);
+    if (c->repeats > 1) strut_buffer_add(t, " (%d periods)", (int)c->repeats);
+    for (int e = 0; e < 2; e++)
+      strut_buffer_add(t, "%s%s, %s", e ? " to " : " from ",
+                       strut_quantity_of_any(ends[e]->value[0], 5, unit_of(r->unit)).text,
+                       strut_quantity_of_any(ends[e]->value[1], 5, unit_of(r->second.unit)).text);
+    strut_buffer_add(t, ": %zu points; begins: %s; ends: %s\n", c->count, c->ends[0], c->ends[1]);
+    for (size_t k = 0; k < c->count; k++)
+      if (c->points[k].cusp)
+        strut_buffer_add(
+            t, "    cusp at %s, %s: two folds meet\n",
+            strut_quantity_of_any(c->points[k].value[0], 5, unit_of(r->unit)).text,
+            strut_quantity_of_any(c->points[k].value[1], 5, unit_of(r->second.unit)).text);
+  }
+}
+
+/* ---- curves.svg ---- */
+
+static const struct {
+  strut_follow_kind kind;
+  const char *text;
+} kinds[CURVE_KEYS] = {{STRUT_FOLLOW_FOLD, "fold"},
+                       {STRUT_FOLLOW_DOUBLING, "period doubling"},
+                       {STRUT_FOLLOW_TOUCH, "grazing"},
+                       {STRUT_FOLLOW_LIFT, "lift-off"}};
+
+static size_t look_of(strut_follow_kind kind) {
+  size_t look = 0;
+  while (look + 1 < CURVE_KEYS && kinds[look].kind != kind) look++;
+  return look;
+}
+
+static bool add_curve(strut_branch_picture *p, const strut_follow_curve *c, strut_arena *arena) {
+  strut_branch_line *line = &p->lines[p->line_count];
+  line->data = strut_arena_allocate(arena, c->count, sizeof *line->data);
+  line->stable = strut_arena_allocate(arena, c->count, sizeof *line->stable);
+  if (!line->data || !line->stable) return false;
+  p->line_count++;
+  line->look = look_of(c->kind);
+  line->count = c->count;
+  for (size_t k = 0; k < c->count; k++) {
+    const strut_follow_curve_point *point = &c->points[k];
+    memcpy(line->data[k], point->value, sizeof line->data[k]);
+    line->stable[k] = point->stable;
+    if (point->cusp)
+      p->marks[p->mark_count++] = (strut_branch_mark){
+          .data = {point->value[0], point->value[1]}, .kind = c->kind, .text = "cusp"};
+  }
+  return true;
+}
+
+strut_status strut_follow_curves_figure(const strut_plot *plot, const strut_follow_result *r,
+                                        strut_error *error) {
+  strut_arena arena = {0};
+  strut_key_item keys[CURVE_KEYS + 2];
+  size_t points = 0;
+  for (size_t i = 0; i < r->curve_count; i++) points += r->curves[i].count;
+  strut_branch_picture p = {
+      .title = r->title,
+      .x = {.name = r->name, .unit = r->unit},
+      .y = {.name = r->second.name, .unit = r->second.unit},
+      .lines = strut_arena_allocate(&arena, r->curve_count + 1, sizeof *p.lines),
+      .marks = strut_arena_allocate(&arena, points + 1, sizeof *p.marks),
+      .keys = keys,
+      .key_count = CURVE_KEYS + 2};
+  for (size_t i = 0; i < CURVE_KEYS; i++)
+    keys[i] = (strut_key_item){.sign = STRUT_KEY_LINE,
+                               .pen = {.colour = strut_palette_thing(i), .width = 1.4},
+                               .text = kinds[i].text};
+  for (int i = 0; i < 2; i++)
+    keys[CURVE_KEYS + i] = (strut_key_item){
+        .sign = STRUT_KEY_LINE,
+        .pen = {.colour = strut_grey(0.2), .width = i ? 0.9 : 1.4},
+        .text = i ? "of an unstable motion" : "of a motion that is stable beside it"};
+  keys[CURVE_KEYS + 1].pen.dash[0] = 3.0, keys[CURVE_KEYS + 1].pen.dash[1] = 2.0;
+  bool fine = p.lines && p.marks;
+  for (size_t i = 0; i < r->curve_count && fine; i++) fine = add_curve(&p, &r->curves[i], &arena);
+  strut_status status =
+      fine ? strut_branch_draw(plot, &p, error) : strut_no_memory(error, "while drawing");
+  strut_arena_free(&arena);
+  return status;
+}
