@@ -29,8 +29,8 @@ breaches() {
         "engine/output|engine/output/draw engine/output/report|" \
         "engine/output/figures engine/output/film engine/output/page engine/output/code|engine/study/results|" \
         "engine/study/sensitivity|" \
-        "engine/study/cluster engine/study/tradeoff engine/study/sweep engine/study/follow|" \
-        "engine/study/compare engine/study/search", line, "|")
+        "engine/study/cluster engine/study/tradeoff engine/study/sweep|" \
+        "engine/study/compare engine/study/search engine/study/follow", line, "|")
       for (i = 1; i <= count; i++) {
         n = split(line[i], side, " ")
         for (k = 1; k <= n; k++) floor[side[k]] = i

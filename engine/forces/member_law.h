@@ -15,7 +15,8 @@
 
 /**
  * Defines PREFIX_values, what the law asks of members; PREFIX_powers, sums of what actuators and
- * dampers do [W]; and PREFIX_tension, the members' tensions [N], cables never below 0.
+ * dampers do [W]; PREFIX_law, the members' tensions [N], cables never below 0; and PREFIX_tension, the same
+ * with the powers added up.
  */
 #define STRUT_DEFINE_MEMBER_LAW(inlined, number, mask, PREFIX)                                     \
   typedef struct PREFIX##_values {                                                                 \
@@ -26,19 +27,28 @@
     number drive, exchanged, lost;                                                                 \
   } PREFIX##_powers;                                                                               \
                                                                                                    \
-  inlined number PREFIX##_tension(const PREFIX##_values *m, unsigned terms, bool ledger,           \
-                                  PREFIX##_powers *powers) {                                       \
+  /* The tension; *elastic: its elastic part, where the member acts. */                            \
+  inlined number PREFIX##_law(const PREFIX##_values *m, unsigned terms, bool ledger,               \
+                              number *elastic) {                                                   \
     bool driven = terms & STRUT_TERM_DRIVE;                                                        \
     number stretch = m->length - m->rest;                                                          \
-    number elastic = m->stiffness * stretch, tension = elastic;                                    \
-    number own_rate = driven ? m->rate - m->rest_rate : m->rate;                                   \
-    if (terms & STRUT_TERM_DAMPING) tension = elastic + m->damping * own_rate;                     \
+    *elastic = m->stiffness * stretch;                                                             \
+    number tension = *elastic, own_rate = driven ? m->rate - m->rest_rate : m->rate;               \
+    if (terms & STRUT_TERM_DAMPING) tension = *elastic + m->damping * own_rate;                    \
     if (terms & STRUT_TERM_SLACK) {                                                                \
       mask taut = stretch > m->slack_length_threshold;                                             \
       mask pulling = taut & (tension > m->slack_force_threshold);                                  \
       tension = (number)(pulling & (mask)tension);                                                 \
-      if (ledger) elastic = (number)(taut & (mask)elastic);                                        \
+      if (ledger) *elastic = (number)(taut & (mask)*elastic);                                      \
     }                                                                                              \
+    return tension;                                                                                \
+  }                                                                                                \
+                                                                                                   \
+  inlined number PREFIX##_tension(const PREFIX##_values *m, unsigned terms, bool ledger,           \
+                                  PREFIX##_powers *powers) {                                       \
+    bool driven = terms & STRUT_TERM_DRIVE;                                                        \
+    number elastic, tension = PREFIX##_law(m, terms, ledger, &elastic);                            \
+    number own_rate = driven ? m->rate - m->rest_rate : m->rate;                                   \
     if (ledger && driven) {                                                                        \
       number power = -tension * m->rest_rate;                                                      \
       powers->drive += power;                                                                      \

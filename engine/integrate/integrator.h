@@ -67,6 +67,7 @@ typedef struct strut_integrator {
                   int64_t count);
   bool no_memory;         /* cannot step elements with memory */
   bool no_sliding_masses; /* cannot step masses that slide along members */
+  bool tangent;           /* carries variations along: events/variation.h */
 } strut_integrator;
 
 /** The i-th method, or NULL after the last. */

@@ -6,11 +6,12 @@
 #include "engine/forces/memory.h"
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/plain_steps.h"
+#include "engine/integrate/small_steps.h"
 
 /* Accelerations at both ends of a step, predicted velocities, and the powers at its begin. */
 typedef struct verlet_workspace {
   double *a, *next, *predicted;
-  double power[STRUT_POWER_COUNT];
+  double power[STRUT_POWER_ROOM];
   bool started;
 } verlet_workspace;
 
@@ -72,7 +73,11 @@ static void verlet_advance(const strut_model *model, strut_state *state, void *w
                            int64_t count) {
   verlet_workspace *w = workspace;
   if (!w->started) verlet_restart(model, state, workspace, dt);
-  verlet_plain(model, state, w, dt, count);
+  strut_small_steps *small = STRUT_SMALL_STEPS(model, strut_small_verlet);
+  if (small)
+    small(model, state, &(strut_small_kept){w->a, w->power}, dt, count);
+  else
+    verlet_plain(model, state, w, dt, count);
 }
 
 const strut_integrator strut_integrator_verlet = {

@@ -9,6 +9,7 @@
 #include "engine/model/memory_estimate.h"
 #include "engine/model/model.h"
 #include "engine/model/sliding_compile.h"
+#include "engine/model/small_model.h"
 
 /* Zeroed doubles in the model's arena; *failed remembers a refusal so that passes stay short. */
 static double *doubles(strut_model *model, size_t count, bool *failed) {
@@ -286,6 +287,10 @@ strut_status strut_model_compile(const strut_scene *scene, strut_model **result,
     return status;
   }
   if (model->mass && !model->mass->diagonal) model->plan |= STRUT_TERM_SOLVE;
+  if (!strut_small_model_compile(model)) {
+    strut_model_free(model);
+    return strut_memory_fail_model(scene, error);
+  }
   *result = model;
   return STRUT_OK;
 }

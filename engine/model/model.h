@@ -146,6 +146,7 @@ typedef struct strut_model {
   strut_support_motion_table support_motion;
   bool unbalance_corners; /* some rotating mass has an angle whose rate jumps */
   strut_sliding_table sliding;
+  struct strut_small_model *small; /* small_model.h; NULL where only the general kernel steps it */
 } strut_model;
 
 /**

@@ -109,6 +109,8 @@ typedef struct strut_state {
   double *sliding_push;          /* (2, n) scratch */
   struct strut_event_log *event_log; /* methods with events note there when modes change, see
                                         integrate/events/event_log.h; NULL: nobody asks */
+  struct strut_variation *variation; /* exact methods with events carry it along, see
+                                        integrate/events/variation.h; NULL: nobody asks */
 } strut_state;
 
 /** All memory a run needs; an integrator adds its own to the arena. STRUT_OK or STRUT_NO_MEMORY. */

@@ -46,6 +46,10 @@ static void add_claims(strut_buffer *table, const strut_summary *s) {
   } else if (m->kind == STRUT_MOTION_IRREGULAR) {
     strut_buffer_add(table, "  irregular   mean velocity known within %s\n",
                      in(m->interval, "m/s").text);
+  } else if (m->kind == STRUT_MOTION_CREEPING) {
+    strut_buffer_add(table,
+                     "  creeping    over %" PRId64 " periods; mean velocity known within %s\n",
+                     m->periods, in(m->interval, "m/s").text);
   }
   if (m->shot) {
     double most = 0.0;
@@ -69,8 +73,11 @@ static void add_claims(strut_buffer *table, const strut_summary *s) {
   strut_buffer_add(table,
                    "  accuracy    %.2g %% %s, %s; checked with %" PRId64
                    " more force evaluations\n              %s\n",
-                   100.0 * a->wanted, a->kept ? "kept" : "NOT kept", expected, a->check_evaluations,
-                   a->why);
+                   100.0 * a->wanted,
+                   !a->kept                           ? "NOT kept"
+                   : m->kind == STRUT_MOTION_CREEPING ? "not needed"
+                                                      : "kept",
+                   expected, a->check_evaluations, a->why);
 }
 
 static void add_head(strut_buffer *table, const strut_summary *s, const strut_scene *scene) {

@@ -279,7 +279,8 @@ static strut_status detect_steady_motion(strut_run *r) {
               "correct"
             : "what breaks, is released or yields has a memory that shooting does not "
               "correct");
-  strut_status status = r->experiment->steady.shooting && !memory ? shoot_orbit(r) : STRUT_OK;
+  bool shoot = r->experiment->steady.shooting && r->steady.result.kind == STRUT_MOTION_PERIODIC;
+  strut_status status = shoot && !memory ? shoot_orbit(r) : STRUT_OK;
   if (status) return status;
   double now = (double)n * r->dt, period = r->steady.period;
   int64_t periods = r->recorded_periods, repeats = r->steady.result.repeats;

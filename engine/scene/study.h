@@ -15,6 +15,7 @@
 #include <stdint.h>
 
 #include "engine/base/export.h"
+#include "engine/scene/study_follow.h"
 #include "engine/scene/study_search.h"
 
 /** Most points of a study, and most values of one list. */
@@ -271,7 +272,8 @@ typedef struct strut_study {
   const char **shape_nodes; /* (shape_count) */
   double (*shape)[2];       /* (shape_count) [m] */
   size_t curve_count;
-  double (*curve)[2]; /* (curve_count) displacement [m], force [N] */
+  double (*curve)[2];         /* (curve_count) displacement [m], force [N] */
+  strut_study_follow *follow; /* motions that are followed; NULL: none */
 } strut_study;
 
 #endif

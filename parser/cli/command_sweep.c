@@ -305,6 +305,20 @@ static strut_status check_search(const strut_arguments *arguments) {
   return STRUT_USAGE;
 }
 
+/* The branches of all points go into one folder. */
+static strut_status check_follow(const strut_arguments *arguments) {
+  const char *option = strut_option_text(arguments, STRUT_OPTION_SHARD)   ? "--shard"
+                       : strut_option_text(arguments, STRUT_OPTION_EMIT)  ? "--emit"
+                       : strut_option_text(arguments, STRUT_OPTION_LANES) ? "--lanes"
+                                                                          : NULL;
+  if (!option) return STRUT_OK;
+  fprintf(stderr,
+          "strut sweep: %s cannot be used with a study that follows motions: its points run on the "
+          "threads of one machine\n",
+          option);
+  return STRUT_USAGE;
+}
+
 static strut_status run_sweep(const strut_arguments *arguments) {
   strut_sweep_study study = {0};
   concurrency at_a_time = {0};
@@ -334,6 +348,7 @@ static strut_status run_sweep(const strut_arguments *arguments) {
     status = STRUT_USAGE;
   }
   if (!status && study.plan.study->search) status = check_search(arguments);
+  if (!status && study.plan.study->follow) status = check_follow(arguments);
   if (!status && arguments->count_points)
     status = strut_sweep_print_count(&study.plan, arguments->json);
   else if (!status && strut_option_text(arguments, STRUT_OPTION_EMIT))
@@ -342,6 +357,8 @@ static strut_status run_sweep(const strut_arguments *arguments) {
     status = show_status(arguments, &study);
   else if (!status && study.plan.study->search)
     status = strut_sweep_search(arguments, &study, (int)at_a_time.threads, (int)at_a_time.lanes);
+  else if (!status && study.plan.study->follow)
+    status = strut_sweep_follow(arguments, &study, (int)at_a_time.threads);
   else if (!status)
     status = compute_points(arguments, &study, at_a_time);
   strut_sweep_study_close(&study);

@@ -126,6 +126,12 @@ strut_status strut_sweep_search_report(const strut_sweep_plan *plan,
                                        const strut_sweep_state *state, const char *table,
                                        bool json);
 
+/** Adds the columns of a study that follows motions, and checks that its first point has some. */
+strut_status strut_sweep_follow_check(strut_sweep_study *study, strut_error *error);
+/** Does what the command does with a study that follows motions, once it is open. */
+strut_status strut_sweep_follow(const strut_arguments *arguments, strut_sweep_study *study,
+                                int threads);
+
 /** Draws `best` beside the start of its search into the file `path`. */
 strut_status strut_sweep_search_winner(const strut_sweep_plan *plan, const strut_study_figure *f,
                                        const char *path, const strut_search_point *best,

@@ -115,7 +115,7 @@ strut_status strut_sweep_figures_check_files(const strut_sweep_plan *plan, const
                                              strut_error *error) {
   const strut_study *study = plan->study;
   strut_arena arena = {0};
-  const char **names = strut_arena_allocate(&arena, study->figure_count + 4, sizeof *names);
+  const char **names = strut_arena_allocate(&arena, study->figure_count + 5, sizeof *names);
   if (names) names[0] = "table.csv";
   for (size_t i = 0; i < study->figure_count && names; i++) {
     names[i + 1] = strut_arena_format(&arena, "%s.svg", study->figures[i].name);
@@ -128,6 +128,11 @@ strut_status strut_sweep_figures_check_files(const strut_sweep_plan *plan, const
   if (names && study->search) {
     names[study->figure_count + 1] = "best.csv";
     names[study->figure_count + 2] = "best.yaml";
+  }
+  if (names && study->follow) {
+    names[study->figure_count + 1] = "branches.csv";
+    names[study->figure_count + 2] = "branches.svg";
+    names[study->figure_count + 3] = "report.json";
   }
   strut_status status =
       names ? strut_ownership_check(directory, names, error) : strut_no_memory(error, "");

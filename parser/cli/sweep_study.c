@@ -30,19 +30,27 @@ strut_status strut_sweep_study_report(strut_sweep_study *study, strut_status sta
   return status;
 }
 
+/* Tries a point; of motions that are followed, at both ends of the parameter. */
+static strut_status try_point(strut_study_file *file, const strut_study_value *values) {
+  const strut_study_follow *f = file->study.follow;
+  if (!f) return strut_study_try(file, values);
+  strut_status status = strut_study_try_at(file, values, f->from);
+  return status ? status : strut_study_try_at(file, values, f->to);
+}
+
 /* Tries the first point, then both ends of each axis with the others at their first values. */
 static strut_status try_ends(strut_study_file *file) {
   const strut_study *study = &file->study;
-  strut_study_value *values = strut_allocate(file->column_count, sizeof *values);
+  strut_study_value *values = strut_allocate(file->column_count + 1, sizeof *values);
   if (!values) return STRUT_NO_MEMORY;
   strut_grid_values(study, 0, values);
-  strut_status status = strut_study_try(file, values);
+  strut_status status = try_point(file, values);
   int64_t stride = 1;
   for (size_t a = study->axis_count; a-- > 0 && !status;) {
     bool evaluations = study->search && a == study->search->axis; /* no parameters */
     if (study->axes[a].count > 1 && !evaluations) {
       strut_grid_values(study, stride * (study->axes[a].count - 1), values);
-      status = strut_study_try(file, values);
+      status = try_point(file, values);
     }
     stride *= study->axes[a].count;
   }
@@ -90,6 +98,7 @@ strut_status strut_sweep_study_try(const strut_arguments *arguments, strut_sweep
   if (!status) status = try_ends(file);
   if (!status) status = strut_sweep_plan_make(&file->study, &scenes, &study->plan, error);
   if (!status && file->study.search) status = bind_search(study, error);
+  if (!status && file->study.follow) status = strut_sweep_follow_check(study, error);
   if (!status) status = strut_sweep_figures_check(&study->plan, error);
   if (!status) status = strut_sweep_sensitivity_check(&study->plan, error);
   return status;

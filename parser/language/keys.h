@@ -80,7 +80,8 @@
   X(SENSITIVITY, "sensitivity", SENSITIVITY_OF) \
   X(STIFFNESS_AT, "stiffness_at", STIFFNESS_AT_NODE) \
   X(SEARCH, "search", SEARCH_MAXIMISE) \
-  X(VARIABLE, "variable", VARIABLE_FROM)
+  X(VARIABLE, "variable", VARIABLE_FROM) \
+  X(FOLLOW, "follow", FOLLOW_OVER)
 /* clang-format on */
 
 /** The mappings of the language. */

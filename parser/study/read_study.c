@@ -73,6 +73,10 @@ static void check_overrides(strut_study_reader *r, size_t overrides) {
         strut_report_error(r->reader, file->columns[k].place,
                            "--set %s=%s: an axis gives '%s' its values", name,
                            strut_sanitised_text(r->reader, file->settings[i].text), name);
+    if (file->followed.name && strcmp(file->followed.name, name) == 0)
+      strut_report_error(r->reader, file->followed.place,
+                         "--set %s=%s: the study follows motions over '%s'", name,
+                         strut_sanitised_text(r->reader, file->settings[i].text), name);
     for (size_t k = overrides; k < file->setting_count; k++)
       if (strcmp(file->settings[k].name, name) == 0)
         strut_report_error(r->reader, (strut_place){0}, "--set %s=%s: the study derives '%s'", name,
@@ -370,10 +374,12 @@ static void read_points(strut_study_reader *r, strut_fields *top, const strut_ov
   read_settings(r, set, count, true);
   read_settings(r, derive, count, false);
   const strut_slot *search = strut_slot_of(top, STRUT_KEY_STUDY_SEARCH);
+  r->following = strut_slot_of(top, STRUT_KEY_STUDY_FOLLOW)->state == STRUT_GIVEN;
   if (axes->state == STRUT_GIVEN || search->state == STRUT_GIVEN)
     strut_study_read_axes(r, axes->state == STRUT_GIVEN ? axes->value : NULL, search);
   strut_study_read_refine(r, strut_slot_of(top, STRUT_KEY_STUDY_REFINE));
   strut_study_read_sensitivity(r, top);
+  strut_study_read_follow(r, top);
   check_overrides(r, count);
 }
 
@@ -383,7 +389,8 @@ static void require_points(strut_study_reader *r, strut_fields *top) {
   strut_slot *axes = strut_slot_of(top, STRUT_KEY_STUDY_AXES);
   if (axes->state != STRUT_ABSENT || r->reader->holes ||
       strut_slot_of(top, STRUT_KEY_STUDY_SENSITIVITY)->state != STRUT_ABSENT ||
-      strut_slot_of(top, STRUT_KEY_STUDY_SEARCH)->state != STRUT_ABSENT)
+      strut_slot_of(top, STRUT_KEY_STUDY_SEARCH)->state != STRUT_ABSENT ||
+      strut_slot_of(top, STRUT_KEY_STUDY_FOLLOW)->state != STRUT_ABSENT)
     return;
   strut_report_error(r->reader, strut_root_place(r->reader), "the study lacks 'axes', expected %s",
                      strut_key_expected(STRUT_KEY_STUDY_AXES, expected, sizeof expected));
@@ -475,11 +482,21 @@ static const strut_scene_source *source_of(const strut_study_file *file,
   return file->sources[i];
 }
 
-/* Reads a point's scene; its messages go to `diagnostics`, of the model's text. */
+/* What the scenes of the study are for. */
+static strut_purpose purpose_of(const strut_study *study) {
+  if (study->follow) return STRUT_FOR_RUN_STEP_LATER;
+  return study->compute == STRUT_COMPUTE_RUN ? STRUT_FOR_RUN : STRUT_FOR_ANY;
+}
+
+/*
+ * Reads a point's scene; its messages go to `diagnostics`, of the model's text. `followed`: the value of
+ * the followed parameter, or NULL.
+ */
 static strut_status read_point(const strut_study_file *file, const strut_study_value *values,
-                               strut_diagnostics *diagnostics, strut_setup *setup) {
+                               const double *followed, strut_diagnostics *diagnostics,
+                               strut_setup *setup) {
   size_t first = file->variants, count = file->setting_count;
-  size_t most = count + file->column_count - first;
+  size_t most = count + file->column_count - first + 1;
   strut_setting *settings = strut_allocate(most, sizeof *settings + STRUT_NUMBER_TEXT);
   if (!settings) return STRUT_NO_MEMORY;
   char(*texts)[STRUT_NUMBER_TEXT] = (char(*)[STRUT_NUMBER_TEXT])(settings + most);
@@ -493,17 +510,24 @@ static strut_status read_point(const strut_study_file *file, const strut_study_v
     s->text = values[i].word ? values[i].word : texts[i - first];
     if (!values[i].word) strut_number_text(values[i].number, texts[i - first]);
   }
-  strut_purpose purpose = file->study.compute == STRUT_COMPUTE_RUN ? STRUT_FOR_RUN : STRUT_FOR_ANY;
-  strut_status status = strut_scene_source_read(source_of(file, values), settings, count, purpose,
-                                                diagnostics, setup);
+  if (followed) {
+    strut_setting *s = &settings[count++];
+    *s = file->followed;
+    s->place = strut_overlay_place(s->place);
+    s->value = *followed;
+    s->text = texts[most - 1];
+    strut_number_text(*followed, texts[most - 1]);
+  }
+  strut_status status = strut_scene_source_read(source_of(file, values), settings, count,
+                                                purpose_of(&file->study), diagnostics, setup);
   strut_release(settings);
   return status;
 }
 
-strut_status strut_study_setup(const strut_study_file *file, const strut_study_value *values,
-                               strut_setup *setup, strut_error *error) {
+static strut_status make_setup(const strut_study_file *file, const strut_study_value *values,
+                               const double *followed, strut_setup *setup, strut_error *error) {
   strut_diagnostics diagnostics = {0};
-  strut_status status = read_point(file, values, &diagnostics, setup);
+  strut_status status = read_point(file, values, followed, &diagnostics, setup);
   if (status == STRUT_BAD_SCENE) {
     const strut_diagnostic *first = &diagnostics.items[0];
     for (size_t i = 1; i < diagnostics.count; i++)
@@ -520,35 +544,76 @@ strut_status strut_study_setup(const strut_study_file *file, const strut_study_v
   return status;
 }
 
-/* "frequency = 10 Hz, start = I" */
-static void format_values(const strut_study_file *file, const strut_study_value *values, char *text,
-                          size_t size) {
-  size_t used = 0;
-  *text = '\0';
-  for (size_t i = 0; i < file->column_count && used < size; i++) {
-    if (!file->columns[i].name) continue;
-    char number[STRUT_NUMBER_TEXT];
-    const char *unit =
-        file->columns[i].bare ? "1" : strut_dimension_unit(file->columns[i].dimension);
-    bool plain = values[i].word || strcmp(unit, "1") == 0;
-    strut_number_text(values[i].number, number);
-    int n =
-        snprintf(text + used, size - used, "%s%s = %s%s%s", used ? ", " : "", file->columns[i].name,
-                 values[i].word ? values[i].word : number, plain ? "" : " ", plain ? "" : unit);
-    used += n > 0 ? (size_t)n : 0;
+strut_status strut_study_setup(const strut_study_file *file, const strut_study_value *values,
+                               strut_setup *setup, strut_error *error) {
+  return make_setup(file, values, NULL, setup, error);
+}
+
+strut_status strut_study_setup_at(const strut_study_file *file, const strut_study_value *values,
+                                  double value, strut_setup *setup, strut_error *error) {
+  return make_setup(file, values, &value, setup, error);
+}
+
+/* Appends "frequency = 10 Hz" or "start = I" to a text. */
+static size_t format_value(const strut_setting *setting, strut_study_value value, char *text,
+                           size_t used, size_t size) {
+  char number[STRUT_NUMBER_TEXT];
+  const char *unit = setting->bare ? "1" : strut_dimension_unit(setting->dimension);
+  bool plain = value.word || strcmp(unit, "1") == 0;
+  if (used >= size) return used;
+  strut_number_text(value.number, number);
+  int n = snprintf(text + used, size - used, "%s%s = %s%s%s", used ? ", " : "", setting->name,
+                   value.word ? value.word : number, plain ? "" : " ", plain ? "" : unit);
+  return used + (n > 0 ? (size_t)n : 0);
+}
+
+/* The configurations to start from are known once there is a scene. */
+static strut_status check_starts(strut_study_file *file, const strut_scene *scene) {
+  const strut_tree *follow = strut_tree_find(file->document.root, "follow", NULL);
+  const strut_tree *list = follow ? strut_tree_find(follow, "start_from", NULL) : NULL;
+  strut_status status = STRUT_OK;
+  for (const strut_tree *item = list ? list->first : NULL; item; item = item->next) {
+    size_t i = 0;
+    while (i < scene->configuration_count && strcmp(scene->configurations[i].name, item->text) != 0)
+      i++;
+    if (i < scene->configuration_count) continue;
+    strut_diagnose(&file->diagnostics, item->place,
+                   "'start_from' of what is followed: the model has no configuration '%.60s'",
+                   item->text);
+    status = STRUT_BAD_SCENE;
   }
+  return status;
+}
+
+static strut_status try_point(strut_study_file *file, const strut_study_value *values,
+                              const double *followed) {
+  strut_setup setup;
+  char text[300] = "";
+  size_t used = 0;
+  strut_status status = read_point(file, values, followed, &file->model_diagnostics, &setup);
+  strut_status started = STRUT_OK;
+  if (status == STRUT_OK && followed) started = check_starts(file, &setup.scene);
+  if (status == STRUT_OK) strut_setup_free(&setup);
+  if (!strut_overlay_split(&file->model_diagnostics, &file->diagnostics)) return STRUT_NO_MEMORY;
+  if (status == STRUT_OK) return started;
+  if (status != STRUT_BAD_SCENE || (!file->column_count && !followed)) return status;
+  for (size_t i = 0; i < file->column_count; i++)
+    if (file->columns[i].name)
+      used = format_value(&file->columns[i], values[i], text, used, sizeof text);
+  if (followed)
+    format_value(&file->followed, (strut_study_value){.number = *followed}, text, used,
+                 sizeof text);
+  strut_diagnose(&file->diagnostics, (strut_place){0}, "the model cannot be run at %s", text);
+  return status;
 }
 
 strut_status strut_study_try(strut_study_file *file, const strut_study_value *values) {
-  strut_setup setup;
-  char text[300];
-  strut_status status = read_point(file, values, &file->model_diagnostics, &setup);
-  if (status == STRUT_OK) strut_setup_free(&setup);
-  if (!strut_overlay_split(&file->model_diagnostics, &file->diagnostics)) return STRUT_NO_MEMORY;
-  if (status != STRUT_BAD_SCENE || !file->column_count) return status;
-  format_values(file, values, text, sizeof text);
-  strut_diagnose(&file->diagnostics, (strut_place){0}, "the model cannot be run at %s", text);
-  return status;
+  return try_point(file, values, NULL);
+}
+
+strut_status strut_study_try_at(strut_study_file *file, const strut_study_value *values,
+                                double value) {
+  return try_point(file, values, &value);
 }
 
 void strut_study_close(strut_study_file *file) {

@@ -40,6 +40,7 @@ typedef struct strut_study_file {
   size_t table_count;
   strut_study_points *tables; /* (table_count) files of points */
   char *model_copy;           /* a model that uses files, in one text; NULL: model_text is that */
+  strut_setting followed;     /* the parameter that is followed, its value to be filled in */
 } strut_study_file;
 
 /**
@@ -60,8 +61,15 @@ STRUT_API const char *strut_study_notes(strut_study_file *file);
 STRUT_API strut_status strut_study_setup(const strut_study_file *file,
                                          const strut_study_value *values, strut_setup *setup,
                                          strut_error *error);
+/** The same where the parameter that is followed has the value [SI]. */
+STRUT_API strut_status strut_study_setup_at(const strut_study_file *file,
+                                            const strut_study_value *values, double value,
+                                            strut_setup *setup, strut_error *error);
 /** Like strut_study_setup, for one thread: all findings go to the messages, with the values of the axes. */
 STRUT_API strut_status strut_study_try(strut_study_file *file, const strut_study_value *values);
+/** The same for strut_study_setup_at. */
+STRUT_API strut_status strut_study_try_at(strut_study_file *file, const strut_study_value *values,
+                                          double value);
 /**
  * All that decides the results, as a text that does not change with comments, blanks and the order
  * of texts; a block of strut_allocate, or NULL.

@@ -133,7 +133,13 @@ static bool is_reserved(const strut_study_reader *r, const char *name) {
   static const char *const names[] = {"point", "status", "message"};
   static const char *const searching[] = {"search", "evaluation", "objective", "objective_2",
                                           "violation"};
+  static const char *const following[] = {
+      "branch",           "arclength",  "velocity",         "work", "amplitude", "period_multiple",
+      "stable",           "multiplier", "multiplier_angle", "node", "detail",    "word",
+      "changes_stability"};
   bool found = r->variant_count > 0 && strcmp(name, "variant") == 0;
+  for (size_t i = 0; r->following && i < sizeof following / sizeof following[0]; i++)
+    found = found || strcmp(name, following[i]) == 0;
   for (size_t i = 0; r->searching && i < sizeof searching / sizeof searching[0]; i++)
     found = found || strcmp(name, searching[i]) == 0;
   for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)

@@ -18,6 +18,7 @@ typedef struct strut_study_reader {
   size_t variant_count; /* 0: the study has none */
   const char **variant_names;
   bool searching; /* the table has the columns of a search */
+  bool following; /* the tables have those of branches */
 } strut_study_reader;
 
 /** The parameter of the model that a key names; NULL where that was reported. */
@@ -93,6 +94,11 @@ void strut_study_read_goals(strut_study_reader *r, strut_fields *top);
 
 /** Reads the analysis and adds its points as the last axis, after all others. */
 void strut_study_read_sensitivity(strut_study_reader *r, strut_fields *top);
+
+/* study_follow.c */
+
+/** Reads what is followed, after the axes. Nothing without it. */
+void strut_study_read_follow(strut_study_reader *r, strut_fields *top);
 
 /** Set in the line of every place of the study's text within the tree of the model. */
 #define STRUT_OVERLAY_LINE ((uint32_t)1 << 30)

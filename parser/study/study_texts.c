@@ -175,6 +175,20 @@ static void put_search(strut_writer *w, const strut_study_search *search) {
   put_number(w, (double)search->seed);
 }
 
+/* What is followed at each point. */
+static void put_follow(strut_writer *w, const strut_study_follow *f) {
+  put_word(w, f->over);
+  put_number(w, f->from);
+  put_number(w, f->to);
+  put_number(w, (double)f->at_count);
+  for (size_t i = 0; i < f->at_count; i++) put_number(w, f->at[i]);
+  for (size_t i = 0; i < f->start_count; i++) put_word(w, f->start_from[i]);
+  put_number(w, f->accuracy);
+  put_word(w, f->integrator ? f->integrator : "");
+  put_number(w, (double)f->steps);
+  put_number(w, f->basins);
+}
+
 char *strut_study_identity(const strut_study_file *file) {
   strut_writer w = {.text = NULL};
   const strut_study *study = &file->study;
@@ -200,6 +214,7 @@ char *strut_study_identity(const strut_study_file *file) {
     put_word(&w, study->refine_where);
   }
   if (study->search) put_search(&w, study->search);
+  if (study->follow) put_follow(&w, study->follow);
   if (study->limit_evaluations) put_number(&w, (double)study->limit_evaluations);
   if (!w.failed) return w.text;
   strut_release(w.text);

@@ -137,6 +137,9 @@ static const char *const introductions[STRUT_SECTION_COUNT] = {
     [STRUT_SECTION_SEARCH] =
         "`search: {...}` of a study; either `maximise` or `minimise`. [Searches](search.md) has "
         "examples.",
+    [STRUT_SECTION_FOLLOW] =
+        "`follow: {...}` of a study, as the options of `strut follow`. [Branches of "
+        "motions](follow.md#studies-of-branches) has an example.",
     [STRUT_SECTION_VARIABLE] =
         "`over: {NAME: {...}}` of a search. `{NAME: [...]}` is a list of choices, numbers or "
         "texts.",

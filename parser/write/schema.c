@@ -509,7 +509,7 @@ char *strut_schema_write(bool study) {
   if (study)
     put_member(&s, "anyOf",
                "[{\"required\": [\"axes\"]}, {\"required\": [\"search\"]}, "
-               "{\"required\": [\"sensitivity\"]}]");
+               "{\"required\": [\"sensitivity\"]}, {\"required\": [\"follow\"]}]");
   put_definitions(&s);
   strut_json_close(&s.json, '}');
   return strut_json_finish(&s.json);

@@ -14,6 +14,7 @@ mkdir -p "$scratch"
 cd "$root"
 # What the run executes, and no more: the engine is compiled eight times, the reader once for each compiler.
 engine="tests/golden/golden.c engine/run/settle.c engine/integrate/rk4.c
+  $(ls engine/integrate/small_*.c)
   engine/integrate/events/verlet_events.c engine/integrate/events/event_stepping.c
   engine/integrate/events/event_log.c engine/integrate/events/event_location.c
   engine/integrate/events/contact_modes.c

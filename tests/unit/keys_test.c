@@ -131,6 +131,8 @@ static const struct exception {
     {STRUT_SECTION_SAMPLE, "scheme", "of values that are made at once"},
     {STRUT_SECTION_PATH, "from", "in the unit of what the path follows"},
     {STRUT_SECTION_PATH, "until", "in the unit of what the path follows"},
+    {STRUT_SECTION_FOLLOW, "from", "in the unit of the parameter that is followed"},
+    {STRUT_SECTION_FOLLOW, "to", "in the unit of the parameter that is followed"},
     {STRUT_SECTION_RANGE, "from", "in the unit of the axis' parameter"},
     {STRUT_SECTION_RANGE, "to", "in the unit of the axis' parameter"},
     {STRUT_SECTION_RANGE, "step", "in the unit of the axis' parameter"},

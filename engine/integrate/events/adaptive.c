@@ -226,8 +226,10 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
 
 STRUT_EVENT_TRIAL(adaptive, take)
 
+static const strut_tableau pair = {
+    .stages = PAIR - 1, .velocities = V, .ahead = ahead, .weight = table[0]};
 static const strut_step_formula stepper = {
-    .trial = adaptive_trial, .stages = STAGES, .exact = true, .adaptive = true};
+    .trial = adaptive_trial, .stages = STAGES, .exact = true, .adaptive = true, .tableau = &pair};
 
 static void *create(const strut_model *model, strut_state *state,
                     const strut_integrator_settings *settings) {
@@ -244,4 +246,5 @@ const strut_integrator strut_integrator_adaptive = {
     .create = create,
     .restart = strut_event_stepper_restart,
     .advance = strut_event_stepper_advance,
+    .tangent = true,
 };

@@ -10,6 +10,7 @@
 #include "engine/forces/unbalance.h"
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/integrate/events/event_log.h"
+#include "engine/integrate/events/variation.h"
 #include "engine/model/element_compile.h"
 
 /* A root this close to where the step begins, in grid steps, is there already. */
@@ -162,6 +163,7 @@ void strut_event_stepper_restart(const strut_model *model, strut_state *state, v
   strut_modes_start(model, state, l, t);
   show_contacts(model, state, l);
   if (state->event_log) strut_event_log_begin(model, state, l);
+  if (state->variation) strut_variation_begin(model, state, l);
   l->started = true;
 }
 
@@ -201,6 +203,7 @@ static void pass_break(const strut_model *model, strut_state *state, strut_event
     strut_modes_start(model, state, l, t + moment);
   else
     strut_modes_after_jump(model, state, l, t + moment);
+  if (state->variation) strut_variation_pass(model, state, l, false);
 }
 
 /* Where a value passes 0: between low and high, and the latest two points of the search. */
@@ -343,11 +346,14 @@ static double step(const strut_model *model, strut_state *state, strut_event_ste
     h = 0.0;
   }
   if (h > 0.0) {
+    if (state->variation) strut_variation_step(model, state, l, t, h);
     accept_step(model, state, l, state->ledger);
     l->at_once = 0;
   } else {
     l->at_once++;
   }
+  if (state->variation && event.kind)
+    strut_variation_meet(model, state, l, &event, t + h, dt, h > 0.0);
   if (event.kind) {
     strut_event_apply(model, state, l, event, t + h);
     if (event.kind == STRUT_EVENT_TOUCH && model->feedback.trigger_count)
@@ -361,6 +367,8 @@ static double step(const strut_model *model, strut_state *state, strut_event_ste
   } else if (strut_modes_after_step(model, l)) {
     strut_evaluate_acceleration(model, state, l, t + h);
   }
+  if (state->variation && (event.kind || force))
+    strut_variation_pass(model, state, l, event.kind != STRUT_EVENT_NONE);
   return h;
 }
 

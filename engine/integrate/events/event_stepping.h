@@ -120,6 +120,15 @@ typedef struct strut_law_switch {
 
 typedef struct strut_event_stepper strut_event_stepper;
 
+/** An explicit Runge-Kutta method, for what follows its steps; velocities are those of an equation of second order. */
+typedef struct strut_tableau {
+  int stages;
+  int velocities;      /* velocities of stage k > 0 are in l->stage[velocities + k] */
+  const double *ahead; /* (stages) times, in steps */
+  const double
+      *weight; /* (stages + 1, stages) of the stages before, row by row; then of the step */
+} strut_tableau;
+
 /** What a method adds: how one step goes while nothing happens. */
 typedef struct strut_step_formula {
   /** From l->now at time t over h to l->next, with the works of it in l->gained. */
@@ -137,6 +146,7 @@ typedef struct strut_step_formula {
       before the step in which something does, with l->tried if it has tried that one. May be NULL. */
   void (*advance_until_event)(const strut_model *model, strut_state *state, strut_event_stepper *l,
                               double dt, int64_t end);
+  const strut_tableau *tableau; /* NULL: variations cannot follow */
 } strut_step_formula;
 
 /** Workspace of a method with events; in the state's arena. */

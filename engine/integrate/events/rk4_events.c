@@ -57,8 +57,13 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
 
 STRUT_EVENT_TRIAL(rk4_events, take)
 
+static const double ahead[4] = {0.0, 0.5, 0.5, 1.0};
+static const double table[5][4] = {
+    {0}, {0.5}, {0.0, 0.5}, {0.0, 0.0, 1.0}, {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6}};
+static const strut_tableau tableau = {
+    .stages = 4, .velocities = V - 1, .ahead = ahead, .weight = table[0]};
 static const strut_step_formula stepper = {
-    .trial = rk4_events_trial, .stages = STAGES, .exact = true};
+    .trial = rk4_events_trial, .stages = STAGES, .exact = true, .tableau = &tableau};
 
 static void *create(const strut_model *model, strut_state *state,
                     const strut_integrator_settings *settings) {
@@ -78,4 +83,5 @@ const strut_integrator strut_integrator_rk4_events = {
     .create = create,
     .restart = strut_event_stepper_restart,
     .advance = strut_event_stepper_advance,
+    .tangent = true,
 };

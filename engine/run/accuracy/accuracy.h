@@ -8,7 +8,8 @@
 /**
  * Runs an experiment so that the error of the measured velocity is within experiment.accuracy,
  * relative to the velocity or, where that is small, to a thousandth of the structure's size per
- * period (or per run).
+ * period (or per run). Of a motion without a period that stays below a fifth of that speed, it is only
+ * known that it creeps, and its mean velocity with an error of its own.
  *
  * The velocity is the mean over the experiment's window or, with experiment.steady, that of the
  * steady motion. A run by periods whose motion becomes steady long before its window is made with

@@ -15,6 +15,11 @@ static const double COARSE = 0.0099;
 /* Wanted errors below which the reference method itself must become steady. */
 static const double FINE = 0.0019;
 /*
+ * Part of the velocity below which errors are not relative: motions without a period that stay below it creep, unless
+ * the wanted error is below FINE.
+ */
+static const double CREEP = 0.2;
+/*
  * Periods that the transient must leave room for before an orbit is worth searching: of a run that
  * ends when it is steady, and of one with a given window, where repeated runs are more reliable.
  */
@@ -121,6 +126,7 @@ static strut_status create_maps(strut_orbit_solve *solve, int32_t repeats) {
   strut_period_map_free(&solve->coarse_map);
   strut_period_map_free(&solve->reference_map);
   solve->reference = a->coarse;
+  solve->reference.steady.creep = 0.0;
   solve->reference.integrator = strut_integrator_for(STRUT_ROLE_REFERENCE)->name;
   solve->reference.tolerance = fmin(2.5e-6, fmax(1e-12, a->target * STRUT_TOLERANCE_PER_ERROR));
   solve->reference.step = strut_experiment_span(&a->experiment, a->scene).period / 50.0;
@@ -284,6 +290,20 @@ static strut_status find_by_reference(strut_orbit_solve *solve) {
   return status || solve->answer ? status : find_without_fixed_point(solve);
 }
 
+/* Confirms a creeping motion, or runs on as if it did not matter. */
+static strut_status find_creep(strut_orbit_solve *solve, bool *steady) {
+  strut_accuracy *a = solve->a;
+  strut_status status = create_maps(solve, 1);
+  if (!status) status = strut_orbit_solve_confirm_creep(solve);
+  if (status || solve->answer) return status;
+  a->coarse.steady.creep = 0.0;
+  a->check_evaluations += solve->coarse_run.force_evaluations + solve->last_run.force_evaluations;
+  strut_summary_free(&solve->coarse_run);
+  strut_summary_free(&solve->last_run);
+  solve->coarse_run = solve->last_run = (strut_summary){0};
+  return run_coarse(solve, steady);
+}
+
 /* Finds the orbit to the wanted accuracy. */
 static strut_status find_orbit(strut_orbit_solve *solve, bool steady) {
   strut_status status = create_maps(solve, steady ? solve->coarse_run.steady.repeats : 1);
@@ -398,6 +418,13 @@ static void explain_orbit(const strut_orbit_solve *solve, strut_accuracy_summary
           "%.1g) does not: their mean velocities and that with half the step agree to %.2g m/s",
           step, tolerance, solve->error);
       return;
+    case STRUT_ORBIT_CREEPING:
+      snprintf(to->why, size,
+               "it creeps: over 24 periods its mean velocity was below %.2g m/s, and it did not "
+               "repeat itself; by "
+               "verlet-events with steps of %.3g s and %.3g s it is known to %.2g m/s",
+               solve->a->coarse.steady.creep, step, 0.5 * step, solve->error);
+      return;
     case STRUT_ORBIT_NONE:
     case STRUT_ORBIT_CORRECTED:
     case STRUT_ORBIT_REFERENCE:
@@ -472,7 +499,7 @@ static void report_orbit(strut_orbit_solve *solve, const strut_summary *orbit) {
       .scale = a->scale,
       .check_evaluations =
           a->check_evaluations + orbit->force_evaluations + (coarse_suffices ? corrections : 0)};
-  s->accuracy.kept = s->accuracy.expected <= a->target;
+  s->accuracy.kept = s->accuracy.expected <= a->target || solve->answer == STRUT_ORBIT_CREEPING;
   explain_orbit(solve, &s->accuracy);
 }
 
@@ -489,9 +516,13 @@ strut_status strut_accuracy_try_orbit(strut_accuracy *a, bool *done) {
       0.5; /* the orbit will be corrected, so that a short refinement suffices */
   a->coarse.refine_memory = 3.0;
   a->coarse.steady.mean_tolerance = MEAN * a->target;
+  if (a->target >= FINE && !a->experiment.steady.shooting)
+    a->coarse.steady.creep = CREEP * a->scale;
   strut_status status = run_coarse(&solve, &steady);
   bool ran = !status && solve.coarse_run.status == STRUT_OK;
-  if (ran) status = find_orbit(&solve, steady);
+  if (ran && solve.coarse_run.steady.kind == STRUT_MOTION_CREEPING)
+    status = find_creep(&solve, &steady);
+  if (ran && !status && !solve.answer) status = find_orbit(&solve, steady);
   if (ran && !status) status = confirm_orbit(&solve, &orbit);
   *done = !status && solve.answer;
   if (*done)

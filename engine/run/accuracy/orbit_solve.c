@@ -28,6 +28,9 @@ void strut_summary_append(strut_summary *whole, strut_summary *part) {
   whole->steady.periods = periods;
 }
 
+/* Periods within which a slow motion may yet repeat itself. */
+enum { CREEP_AFTER = 48 };
+
 strut_status strut_orbit_solve_run_until_steady(strut_orbit_solve *solve, strut_experiment e,
                                                 double tolerance, int32_t successive,
                                                 double periods, bool from_end,
@@ -37,6 +40,7 @@ strut_status strut_orbit_solve_run_until_steady(strut_orbit_solve *solve, strut_
   e.steady.wanted = true;
   e.steady.tolerance = tolerance;
   e.steady.floor = tolerance * a->scale;
+  e.steady.creep_after = from_end ? 0 : CREEP_AFTER;
   e.steady.successive = successive;
   e.periods = fmin(e.periods, periods);
   e.measure_last = fmin(e.measure_last, e.periods);
@@ -194,12 +198,15 @@ strut_status strut_orbit_solve_check_tolerance(strut_orbit_solve *solve) {
 static const double PERIODS = 136.0, MORE_PERIODS = 544.0;
 /* Periods of the half-step run: half of those above. */
 static const double HALF_PERIODS = 68.0;
+/* Periods in which a run with half the step must prove to creep, too. */
+static const double CREEPING = 30.0;
 /* Velocities agree if they differ by less than this part of the wanted error. */
 static const double AGREE = 0.4;
 
 static strut_experiment halve_coarse_step(const strut_orbit_solve *solve) {
   strut_experiment half = solve->a->coarse;
   half.step *= 0.5;
+  half.steady.creep = 0.0;
   return half;
 }
 
@@ -238,6 +245,12 @@ strut_status strut_orbit_solve_average_irregular(strut_orbit_solve *solve, bool 
   solve->answer = STRUT_ORBIT_NONE;
   if (solve->coarse_run.steady.kind != STRUT_MOTION_IRREGULAR)
     status = continue_coarse_run(solve, PERIODS);
+  if (!status && solve->coarse_run.steady.kind == STRUT_MOTION_CREEPING) {
+    status = strut_orbit_solve_confirm_creep(solve);
+    if (status || solve->answer) return status;
+    a->coarse.steady.creep = 0.0;
+    status = continue_coarse_run(solve, PERIODS);
+  }
   if (!status && solve->coarse_run.steady.kind == STRUT_MOTION_TRANSIENT)
     status = continue_coarse_run(solve, MORE_PERIODS);
   *periodic = !status && solve->coarse_run.steady.kind == STRUT_MOTION_PERIODIC;
@@ -283,6 +296,28 @@ strut_status strut_orbit_solve_confirm_stuck(strut_orbit_solve *solve) {
       apart <= AGREE * a->target * strut_accuracy_velocity_scale(a, solve->last_run.velocity))
     accept_last_run(solve, STRUT_ORBIT_STUCK, apart + solve->last_run.steady.interval);
   return STRUT_OK;
+}
+
+strut_status strut_orbit_solve_confirm_creep(strut_orbit_solve *solve) {
+  strut_accuracy *a = solve->a;
+  strut_summary half = {0};
+  strut_experiment finer = halve_coarse_step(solve);
+  finer.steady.creep = a->coarse.steady.creep;
+  strut_status status =
+      strut_orbit_solve_run_until_steady(solve, finer, a->target, 5, CREEPING, true, &half);
+  if (!status) {
+    strut_steady_summary found = half.steady;
+    strut_summary_append(&solve->last_run, &half);
+    double apart = fabs(solve->last_run.velocity - solve->coarse_run.velocity);
+    bool steady = found.kind == STRUT_MOTION_CREEPING || found.kind == STRUT_MOTION_PERIODIC;
+    solve->last_run.steady.kind = STRUT_MOTION_CREEPING;
+    solve->last_run.steady.repeats = 0;
+    if (steady && fabs(solve->last_run.velocity) <= finer.steady.creep)
+      accept_last_run(solve, STRUT_ORBIT_CREEPING,
+                      apart + fmax(found.interval, solve->coarse_run.steady.interval));
+  }
+  strut_summary_free(&half);
+  return status;
 }
 
 strut_status strut_orbit_solve_average_disputed(strut_orbit_solve *solve) {

@@ -25,7 +25,8 @@ typedef enum strut_orbit_answer {
   STRUT_ORBIT_REFERENCE, /* the reference method, run until it was steady itself */
   STRUT_ORBIT_STUCK,     /* the coarse method with half the step, confirmed by the full step */
   STRUT_ORBIT_IRREGULAR, /* a mean over many periods, by two steps */
-  STRUT_ORBIT_DISPUTED   /* periodic by the coarse method only: means over many periods */
+  STRUT_ORBIT_DISPUTED,  /* periodic by the coarse method only: means over many periods */
+  STRUT_ORBIT_CREEPING   /* slower than matters, by two steps */
 } strut_orbit_answer;
 
 typedef struct strut_orbit_solve {
@@ -95,6 +96,10 @@ bool strut_orbit_solve_is_stuck(const strut_orbit_solve *solve);
  * solve->answer if both agree.
  */
 strut_status strut_orbit_solve_confirm_stuck(strut_orbit_solve *solve);
+/**
+ * The coarse run creeps. Runs it on with half the step; sets solve->answer if that is as slow.
+ */
+strut_status strut_orbit_solve_confirm_creep(strut_orbit_solve *solve);
 /**
  * The reference method (solve->last_run) did not become periodic, the coarse one did. Averages the
  * coarse method with half the step; the differences of the means are the error.

@@ -74,6 +74,7 @@ static void drop_model(strut_follow_system *s) {
   }
   strut_model_free(s->model);
   s->model = NULL;
+  s->variation = NULL;
   strut_setup_free(&s->setup);
   s->value = (double)NAN;
 }
@@ -92,6 +93,10 @@ static strut_status make_maps(strut_follow_system *s, strut_error *error) {
     if (status) return status;
     map->interrupt = s->interrupt;
     map->time = (double)before * s->period;
+  }
+  if (strut_variation_possible(s->model, s->map[0].method)) {
+    s->variation = strut_variation_create(s->model, s->map[0].state);
+    if (!s->variation) return strut_no_memory(error, "");
   }
   if (!s->log) s->log = strut_event_log_create(s->model, &s->arena);
   return s->log ? STRUT_OK : strut_no_memory(error, "");
@@ -287,12 +292,31 @@ double strut_follow_residual(strut_follow_system *s, const double *y, double *f)
   return residual_of(s, y, s->end, f);
 }
 
-strut_status strut_follow_differentiate(strut_follow_system *s, const double *y, const double *f,
-                                        bool *lost, strut_error *error) {
+/* The derivative from variations that one run carries along. Number of lost runs. */
+static int carry_variations(strut_follow_system *s, const double *y) {
+  strut_variation *x = s->variation;
   size_t n = s->n;
-  double value = s->value, step = PARAMETER_DIFFERENCE * (s->high - s->low);
+  memcpy(s->end, y, s->both * sizeof(double));
+  strut_variation_reset(x);
+  s->map[0].state->variation = x;
+  bool lost = !isfinite(strut_follow_apply(s, s->end, false).travel);
+  s->map[0].state->variation = NULL;
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j < n; j++)
+      s->jacobian[i * n + j] =
+          x->columns[i * (size_t)x->stride + j] * strut_follow_unit(s, j) / strut_follow_unit(s, i);
+  for (size_t j = 0; j < n && s->travels; j++) { /* the map takes the travel out */
+    double shift = 0.0;
+    for (size_t i = 0; i < n; i++) shift += s->along[i] * s->jacobian[i * n + j];
+    for (size_t i = 0; i < n; i++) s->jacobian[i * n + j] -= shift * s->along[i];
+  }
+  return lost;
+}
+
+/* The derivative by central differences of whole runs. Number of lost runs. */
+static int difference_runs(strut_follow_system *s, const double *y) {
+  size_t n = s->n;
   int gone = 0;
-  if (value + step > fmax(s->low, s->high)) step = -step;
 #ifdef _OPENMP
 #pragma omp parallel for schedule(dynamic) num_threads(s->threads) reduction(+ : gone)
 #endif
@@ -316,7 +340,15 @@ strut_status strut_follow_differentiate(strut_follow_system *s, const double *y,
   }
   for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j < n; j++) s->jacobian[i * n + j] -= s->along[i] * s->along[j];
-  *lost = gone > 0;
+  return gone;
+}
+
+strut_status strut_follow_differentiate(strut_follow_system *s, const double *y, const double *f,
+                                        bool *lost, strut_error *error) {
+  size_t n = s->n;
+  double value = s->value, step = PARAMETER_DIFFERENCE * (s->high - s->low);
+  if (value + step > fmax(s->low, s->high)) step = -step;
+  *lost = (s->variation ? carry_variations(s, y) : difference_runs(s, y)) > 0;
   s->differentiated = !*lost;
   if (*lost) return STRUT_OK;
   strut_status status = strut_follow_set_value(s, value + step, error);

@@ -11,6 +11,7 @@
 #define STRUT_ENGINE_RUN_FOLLOW_SYSTEM_H
 
 #include "engine/integrate/events/event_log.h"
+#include "engine/integrate/events/variation.h"
 #include "engine/run/orbit/period_map.h"
 
 enum { STRUT_FOLLOW_MOST = 96 }; /* most free coordinates and velocities */
@@ -53,6 +54,7 @@ typedef struct strut_follow_system {
   int64_t maps;        /* periods computed */
   int64_t scenes_made;
   strut_arena arena;
+  strut_variation *variation; /* of map[0]; NULL: derivatives are differences of runs */
 } strut_follow_system;
 
 /** Result of one application of P. */

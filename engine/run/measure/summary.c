@@ -9,7 +9,7 @@
 #include "engine/base/memory.h"
 
 const char *strut_motion_name(strut_motion motion) {
-  static const char *const names[] = {"", "periodic", "irregular", "transient"};
+  static const char *const names[] = {"", "periodic", "irregular", "transient", "creeping"};
   return names[motion];
 }
 

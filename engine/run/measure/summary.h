@@ -93,10 +93,11 @@ typedef enum strut_motion {
   STRUT_MOTION_NOT_WATCHED,
   STRUT_MOTION_PERIODIC,  /* repeats itself after `repeats` drive periods */
   STRUT_MOTION_IRREGULAR, /* never repeats, but its mean is known within `interval` */
-  STRUT_MOTION_TRANSIENT  /* the run ended before either was established */
+  STRUT_MOTION_TRANSIENT, /* the run ended before any of these was established */
+  STRUT_MOTION_CREEPING   /* slower than matters; velocity known within `interval` */
 } strut_motion;
 
-/** "periodic", "irregular", "transient", or "" where not watched. */
+/** "periodic", "irregular", "transient", "creeping", or "" where not watched. */
 STRUT_API const char *strut_motion_name(strut_motion motion);
 
 enum { STRUT_MOST_MULTIPLIERS = 8 };

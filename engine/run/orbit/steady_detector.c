@@ -24,6 +24,13 @@ enum { LEAST_PERIODS = 24 };
 enum { BATCHES = 8, LEAST_IRREGULAR = 256 };
 static const double STUDENT_7 = 2.365, STUDENT_6 = 2.447; /* 95 %, two-sided */
 
+/*
+ * Periods over which a motion must creep, in batches of three; growth of its changes over half of them that may be
+ * the beginning of another motion.
+ */
+enum { CREEP_PERIODS = 3 * BATCHES };
+static const double CREEP_GROWTH = 1.5;
+
 /* Equal growth factors in a row that prove growth. */
 enum { GROWTH_FACTORS = 3 };
 
@@ -63,6 +70,8 @@ strut_status strut_steady_detector_create(const strut_model *model, const strut_
       .floor = wanted->floor,
       .mean_tolerance = wanted->mean_tolerance > 0.0 ? wanted->mean_tolerance : wanted->tolerance,
       .successive = wanted->successive,
+      .creep = wanted->creep,
+      .creep_after = wanted->creep_after,
       .stride = 1};
   w->not_before = (last_signal_event(model->scene) - begin) / period;
   if (w->successive < 2) w->successive = 2;
@@ -251,6 +260,31 @@ static bool repeats_itself(strut_steady_detector *w, int64_t now, int k) {
 }
 
 /*
+ * Is the mean velocity of the latest periods, with its confidence interval, slower than matters? A motion that sets in would show in
+ * growing changes of the shape.
+ */
+static bool creeps(strut_steady_detector *w, int64_t now) {
+  if (!(w->creep > 0.0) || !w->travels || now < CREEP_PERIODS || now < w->creep_after ||
+      (double)now < w->not_before + CREEP_PERIODS)
+    return false;
+  if (!drives_repeat(w, 1)) return false;
+  double mean = mean_velocity(w, now, CREEP_PERIODS), square = 0.0, changes[2] = {0.0};
+  for (int i = 0; i < BATCHES; i++) {
+    double speed = mean_velocity(w, now - 3 * i, 3);
+    square += (speed - mean) * (speed - mean);
+  }
+  for (int j = 0; j < CREEP_PERIODS; j++)
+    changes[2 * j / CREEP_PERIODS] += w->residual[0][(now - j) % STRUT_RING];
+  double interval = STUDENT_7 * sqrt(square / (BATCHES - 1) / BATCHES);
+  if (!(fabs(mean) + interval <= w->creep) || changes[0] > CREEP_GROWTH * changes[1]) return false;
+  w->result.kind = STRUT_MOTION_CREEPING;
+  w->result.periods = now;
+  w->result.interval = interval;
+  w->velocity = mean;
+  return true;
+}
+
+/*
  * Stores the position at equal intervals over the whole run, which double when the marks are full.
  */
 static void add_mark(strut_steady_detector *w, int64_t now, double x) {
@@ -342,6 +376,8 @@ bool strut_steady_detector_period(const strut_state *state, double x, strut_stea
   }
   if (!w->known) add_mark(w, now, x);
   for (int k = 0; k < STRUT_REPEATS && !w->known; k++) w->known = repeats_itself(w, now, k);
+  if (!w->known && creeps(w, now)) w->known = true;
+  if (w->result.kind == STRUT_MOTION_CREEPING) return true;
   int32_t n = w->known ? w->result.repeats : 1;
   int32_t rounds = n * ((w->successive + n - 1) / n);
   if (now >= rounds && !w->result.shot) w->velocity = mean_velocity(w, now, rounds);

@@ -7,7 +7,8 @@
  * repeats its shape and not its place. A motion counts as period-n when several repetitions in a
  * row agree, and the rest of the transient, extrapolated with its own rate of decay, is within the
  * tolerance too: a slow transient is not steady. Nothing is steady before the last signal has
- * started or ended, or where the signals do not repeat themselves.
+ * started or ended, or where the signals do not repeat themselves. Where it is wanted, a motion without a
+ * period ends, too, if it has long been slower than matters, and its shape does not change more and more.
  */
 #ifndef STRUT_ENGINE_RUN_ORBIT_STEADY_DETECTOR_H
 #define STRUT_ENGINE_RUN_ORBIT_STEADY_DETECTOR_H
@@ -40,6 +41,8 @@ typedef struct strut_steady_detector {
   double wander;
   int32_t marks;
   int64_t stride;
+  double creep;        /* motions that stay slower end as creeping [m/s]; 0: none does */
+  int64_t creep_after; /* periods before, in which they may yet repeat themselves */
   strut_steady_summary result;
   double velocity, spread; /* over the latest repetitions [m/s] */
   bool known;

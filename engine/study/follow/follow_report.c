@@ -28,20 +28,26 @@ static void add_text(strut_buffer *csv, const char *text) {
   strut_buffer_add(csv, quoted ? "\"" : "");
 }
 
-char *strut_follow_csv(const strut_follow_result *r) {
+/* Does stability change at a special point? Nothing of other points. */
+static const char *change_of(const strut_follow_point *p) {
+  if (!p->detail) return "";
+  return p->changes ? "yes" : "no";
+}
+
+char *strut_follow_csv_beside(const strut_follow_result *r, const char *names, const char *values) {
   strut_buffer csv = {0};
   strut_c_locale locale = strut_c_locale_enter();
-  strut_buffer_add(&csv, "branch,arclength");
+  strut_buffer_add(&csv, "%sbranch,arclength", names);
   add_text(&csv, r->name);
   if (*r->unit) strut_buffer_add(&csv, " [%s]", r->unit);
   strut_buffer_add(&csv,
                    ",velocity [m/s],work [J],amplitude [m],period_multiple,stable,multiplier,"
-                   "multiplier_angle [deg],point,node,detail,word\n");
+                   "multiplier_angle [deg],point,node,detail,word,changes_stability\n");
   for (size_t i = 0; i < r->count; i++) {
     const strut_follow_branch *b = &r->branches[i].branch;
     for (size_t k = 0; k < b->count; k++) {
       const strut_follow_point *p = &b->points[k];
-      strut_buffer_add(&csv, "%zu", i + 1);
+      strut_buffer_add(&csv, "%s%zu", values, i + 1);
       add_number(&csv, p->arc);
       add_number(&csv, p->value);
       add_number(&csv, p->velocity);
@@ -54,12 +60,14 @@ char *strut_follow_csv(const strut_follow_result *r) {
       add_text(&csv, p->node);
       add_text(&csv, p->detail);
       add_text(&csv, p->word);
-      strut_buffer_add(&csv, "\n");
+      strut_buffer_add(&csv, ",%s\n", change_of(p));
     }
   }
   strut_c_locale_leave(locale);
   return strut_buffer_take(&csv);
 }
+
+char *strut_follow_csv(const strut_follow_result *r) { return strut_follow_csv_beside(r, "", ""); }
 
 static void add_points(strut_json *json, struct cJSON *to, const strut_follow_branch *b,
                        bool special) {

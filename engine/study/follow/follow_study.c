@@ -321,6 +321,16 @@ strut_status strut_follow_make(const strut_follow_options *options, strut_follow
   return status;
 }
 
+strut_status strut_follow_possible(const strut_follow_options *options, strut_error *error) {
+  follower f = {.o = options, .r = strut_allocate(1, sizeof *f.r), .error = error};
+  if (!f.r) return strut_no_memory(error, "");
+  strut_status status = open_system(&f, options->low);
+  if (f.opened) strut_follow_close(&f.s);
+  strut_follow_free(f.r);
+  strut_release(f.r);
+  return status;
+}
+
 void strut_follow_free(strut_follow_result *result) {
   for (size_t i = 0; i < result->count; i++) strut_follow_branch_free(&result->branches[i].branch);
   strut_arena_free(&result->arena);

@@ -73,10 +73,16 @@ typedef struct strut_follow_result {
  */
 STRUT_API strut_status strut_follow_make(const strut_follow_options *options,
                                          strut_follow_result *result, strut_error *error);
+/** STRUT_USAGE with a sentence where motions of the scene at the lower end cannot be followed at all. */
+STRUT_API strut_status strut_follow_possible(const strut_follow_options *options,
+                                             strut_error *error);
 STRUT_API void strut_follow_free(strut_follow_result *result);
 
 /* follow_report.c: texts are blocks of strut_allocate; NULL: out of memory */
 STRUT_API char *strut_follow_csv(const strut_follow_result *result);
+/** The same with columns before its own: their headers, and their cells in every row, each followed by a comma. */
+STRUT_API char *strut_follow_csv_beside(const strut_follow_result *result, const char *names,
+                                        const char *values);
 STRUT_API char *strut_follow_json(const strut_follow_result *result);
 STRUT_API char *strut_follow_table(const strut_follow_result *result);
 

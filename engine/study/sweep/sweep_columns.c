@@ -229,7 +229,7 @@ static strut_status choose_columns(strut_sweep_plan *plan, const strut_setup *se
                                    strut_error *error) {
   const strut_scene *scene = &setup->scene;
   const strut_study *study = plan->study;
-  bool usual = strut_keep_is_empty(&study->keep) && !study->quantity_count;
+  bool usual = strut_keep_is_empty(&study->keep) && !study->quantity_count && !study->follow;
   if (study->compute == STRUT_COMPUTE_RUN) {
     choose_of_run(plan, setup, usual);
     strut_status status = strut_goals_check(study, scene, error);

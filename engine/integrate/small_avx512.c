@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Steps of small models with a register for each coordinate of all nodes. */
+#if defined(__x86_64__)
+#define STRUT_SMALL_WIDTH 8
+#define STRUT_SMALL_NAME(method) strut_small_##method##_avx512
+#include "engine/integrate/small_copies.h"
+
+STRUT_SMALL_METHOD(rk4)
+STRUT_SMALL_METHOD(verlet)
+#else
+extern int strut_small_avx512_is_empty;
+#endif

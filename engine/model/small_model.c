@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/model/small_model.h"
+
+#include "engine/model/mass.h"
+
+static strut_small_level level_here(void) {
+#if defined(__x86_64__) && defined(__gnu_linux__)
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+      __builtin_cpu_supports("avx512vl"))
+    return STRUT_SMALL_AVX512;
+  if (__builtin_cpu_supports("avx2")) return STRUT_SMALL_AVX2;
+#endif
+  return STRUT_SMALL_NONE;
+}
+
+static bool is_small(const strut_model *model) {
+  return !(model->plan & ~(unsigned)STRUT_TERMS_SMALL) && model->plan & STRUT_TERM_MEMBERS &&
+         model->node_count <= STRUT_SMALL_NODES && model->members.count <= STRUT_SMALL_MEMBERS &&
+         model->members.slots <= STRUT_SMALL_SLOTS && model->drives.count <= STRUT_SMALL_DRIVES &&
+         model->mass && !model->mass->coordinate[0].factor && !model->mass->coordinate[1].factor;
+}
+
+/* The next pull at a lane: members come in the scene's order. */
+static void add_pull(strut_small_model *s, int64_t lane, int32_t member, int64_t sign) {
+  int32_t k = 0;
+  while (k < s->degree && s->pull[k].has[lane]) k++;
+  if (k == s->degree) s->degree++;
+  s->pull[k].has[lane] = -1;
+  s->pull[k].slot[lane] = member;
+  s->pull[k].slot_halves[lane] = strut_small_halves(member);
+  s->pull[k].sign[lane] = sign;
+}
+
+static void list_members(const strut_model *model, strut_small_model *s) {
+  const strut_member_table *t = &model->members;
+  s->members = t->count;
+  for (int32_t j = 0; j < STRUT_SMALL_SLOTS; j++)
+    s->from_halves[j] = s->to_halves[j] = strut_small_halves(0);
+  for (int32_t j = 0; j < t->count; j++) {
+    s->from[j] = t->from[j] / 2, s->to[j] = t->to[j] / 2;
+    s->from_halves[j] = strut_small_halves(s->from[j]);
+    s->to_halves[j] = strut_small_halves(s->to[j]);
+    s->stiffness[j] = t->stiffness[j], s->damping[j] = t->damping[j];
+    add_pull(s, s->from[j], j, 0);
+    add_pull(s, s->to[j], j, INT64_MIN);
+  }
+}
+
+static void add_entry(strut_small_model *s, int c, int32_t j, int64_t row, int64_t column,
+                      double inverse) {
+  strut_small_column *to = &s->column[c][j];
+  if (j >= s->columns) s->columns = j + 1;
+  to->lane[row] = column, to->lane_halves[row] = strut_small_halves(column);
+  to->inverse[row] = inverse, to->has[row] = -1;
+}
+
+/* The inverse masses of one coordinate. Rows of blocks take the place of what stands in the diagonal. */
+static void list_masses(const strut_model *model, strut_small_model *s, int c) {
+  const strut_mass *mass = model->mass;
+  const strut_mass_operator *op = &mass->coordinate[c];
+  const uint32_t *at = op->block_at;
+  const double *inverse = op->block_inverse;
+  for (int32_t i = 0; i < s->nodes && mass->any_single; i++)
+    add_entry(s, c, 0, i, i, mass->inverse[2 * i + c]);
+  for (int32_t b = 0; b < op->block_count && !mass->diagonal; b++) {
+    int32_t n = op->block_size[b];
+    for (int32_t i = 0; i < n; i++)
+      for (int32_t j = 0; j < n; j++) add_entry(s, c, j, at[i] / 2, at[j] / 2, inverse[i * n + j]);
+    at += n, inverse += n * n;
+  }
+}
+
+static void list_contacts(const strut_model *model, strut_small_contacts *t) {
+  for (int32_t i = 0; i < model->contacts.count; i++) {
+    const strut_contact_entry *e = &model->contacts.entry[i];
+    const strut_friction *f = &e->friction;
+    int32_t n = e->node;
+    t->minus_stiffness[n] = -e->stiffness, t->minus_damping[n] = -e->damping;
+    t->dissipation[n] = e->dissipation;
+    t->mu_static[n] = t->mu_static_backward[n] = f->mu_static;
+    t->minus_mu_kinetic[n] = t->minus_mu_kinetic_backward[n] = -f->mu_kinetic;
+    if (f->directional) {
+      t->mu_static_backward[n] = f->mu_static_backward;
+      t->minus_mu_kinetic_backward[n] = -f->mu_kinetic_backward;
+    }
+    t->stick_velocity[n] = f->stick_velocity, t->width[n] = f->width;
+    t->touches[n] = -1;
+    t->hunt_crossley[n] = e->dissipation > 0.0 ? -1 : 0;
+    t->frictionless[n] = f->law == STRUT_FRICTION_NONE ? -1 : 0;
+    t->smooth[n] = f->law == STRUT_FRICTION_SMOOTH ? -1 : 0;
+  }
+}
+
+bool strut_small_model_compile(strut_model *model) {
+  strut_small_level level = level_here();
+  if (level == STRUT_SMALL_NONE || !is_small(model)) return true;
+  strut_small_model *s = strut_arena_allocate(&model->arena, 1, sizeof *s);
+  if (!s) return false;
+  s->level = level;
+  s->nodes = model->node_count;
+  list_members(model, s);
+  for (int c = 0; c < 2; c++) list_masses(model, s, c);
+  list_contacts(model, &s->contact);
+  model->small = s;
+  return true;
+}

@@ -1,0 +1,360 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The points of a study that follows motions, side by side. */
+#include "engine/study/follow/follow_points.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+#include "engine/output/file.h"
+#include "engine/run/simulate.h"
+#include "engine/study/follow/follow_parts.h"
+#include "engine/study/sweep/grid.h"
+#include "engine/study/sweep/sweep_parts.h"
+
+/* Columns of a row: X(name, unit, value); unit "over": that of the followed parameter. */
+#define ROW_TABLE(X)                                                                               \
+  X("branches", "1", (double)c->branches)                                                          \
+  X("branch_points", "1", (double)c->points)                                                       \
+  X("folds", "1", (double)c->kinds[STRUT_FOLLOW_FOLD])                                             \
+  X("period_doublings", "1", (double)c->kinds[STRUT_FOLLOW_DOUBLING])                              \
+  X("tori", "1", (double)c->kinds[STRUT_FOLLOW_TORUS])                                             \
+  X("branchings", "1", (double)c->kinds[STRUT_FOLLOW_BRANCHING])                                   \
+  X("events", "1", (double)c->events)                                                              \
+  X("velocity_max", "m/s", c->high.velocity)                                                       \
+  X("velocity_max_at", "over", c->high.at)                                                         \
+  X("velocity_min", "m/s", c->low.velocity)                                                        \
+  X("velocity_min_at", "over", c->low.at)                                                          \
+  X("amplitude_max", "m", c->wide.velocity)                                                        \
+  X("amplitude_max_at", "over", c->wide.at)
+
+static const struct {
+  const char *name, *unit;
+} row_columns[] = {
+#define ROW_COLUMN(name, unit, value) {name, unit},
+    ROW_TABLE(ROW_COLUMN)};
+enum { ROW_COLUMNS = sizeof row_columns / sizeof row_columns[0] };
+
+/* An extreme value of the stable motions, and where; NAN: none. */
+typedef struct extreme {
+  double velocity, at;
+} extreme;
+
+/* What a point's branches come to. */
+typedef struct counts {
+  size_t branches, points, events, kinds[STRUT_FOLLOW_KINDS];
+  extreme high, low, wide;
+} counts;
+
+/* A point of the study, and what is made of it. */
+typedef struct point_work {
+  const strut_sweep_plan *plan;
+  const strut_follow_points_options *options;
+  int64_t point;
+  strut_study_value *values;
+  strut_follow_result *result;
+  strut_arena *arena;
+  strut_error error;
+} point_work;
+
+/* All points. */
+typedef struct conductor {
+  const strut_sweep_plan *plan;
+  const strut_follow_points_options *options;
+  strut_slots *slots;
+  strut_sweep_state *state;
+  strut_error *error;
+  strut_status status; /* of what stopped it */
+  double began;
+} conductor;
+
+strut_status strut_follow_points_columns(strut_sweep_plan *plan, strut_error *error) {
+  const strut_study_follow *f = plan->study->follow;
+  for (size_t i = 0; i < ROW_COLUMNS; i++) {
+    const char *unit = row_columns[i].unit;
+    if (strcmp(unit, "over") == 0) unit = *f->unit ? f->unit : "1";
+    if (!strut_sweep_add_column(plan, "", row_columns[i].name, unit, false))
+      return strut_no_memory(error, "");
+  }
+  return STRUT_OK;
+}
+
+/* ---- what is followed at a point ---- */
+
+static strut_status setup_at(void *context, double value, strut_setup *setup, strut_error *error) {
+  const point_work *w = context;
+  return w->options->setup(w->options->context, w->values, value, setup, error);
+}
+
+static double own_value(const strut_study_follow *f, const strut_scene *scene) {
+  for (size_t i = 0; i < scene->parameter_count; i++) {
+    double value = scene->parameters[i].value;
+    if (strcmp(scene->parameters[i].name, f->over) == 0 && value >= f->from && value <= f->to)
+      return value;
+  }
+  return 0.5 * (f->from + f->to);
+}
+
+/* Every value of `at` from every configuration. */
+static strut_status make_starts(point_work *w, strut_follow_options *o) {
+  const strut_study_follow *f = w->plan->study->follow;
+  size_t values = f->at_count ? f->at_count : 1, names = f->start_count ? f->start_count : 1;
+  double own = (double)NAN;
+  strut_setup setup;
+  strut_follow_start *starts = strut_arena_allocate(w->arena, values * names, sizeof *starts);
+  if (!starts) return strut_no_memory(&w->error, "");
+  if (!f->at_count) {
+    strut_status status =
+        w->plan->scenes.setup(w->plan->scenes.context, w->values, &setup, &w->error);
+    if (status) return status;
+    own = own_value(f, &setup.scene);
+    strut_setup_free(&setup);
+  }
+  for (size_t v = 0; v < values; v++)
+    for (size_t k = 0; k < names; k++)
+      starts[o->start_count++] = (strut_follow_start){f->at_count ? f->at[v] : own,
+                                                      f->start_count ? f->start_from[k] : NULL};
+  o->starts = starts;
+  return STRUT_OK;
+}
+
+static strut_status follow_point(point_work *w, int threads) {
+  const strut_study_follow *f = w->plan->study->follow;
+  strut_follow_options o = {.name = f->over,
+                            .unit = f->unit,
+                            .low = f->from,
+                            .high = f->to,
+                            .scenes = {setup_at, w},
+                            .method = f->integrator,
+                            .accuracy = f->accuracy,
+                            .steps = f->steps,
+                            .basins = f->basins,
+                            .threads = threads,
+                            .interrupt = w->options->interrupt};
+  strut_status status = make_starts(w, &o);
+  return status ? status : strut_follow_make(&o, w->result, &w->error);
+}
+
+strut_status strut_follow_points_check(const strut_sweep_plan *plan,
+                                       const strut_follow_points_options *options,
+                                       strut_error *error) {
+  const strut_study_follow *f = plan->study->follow;
+  strut_study_value *values = strut_allocate(plan->axis_columns + 1, sizeof *values);
+  point_work w = {.plan = plan, .options = options, .values = values};
+  const strut_follow_options o = {.scenes = {setup_at, &w},
+                                  .low = f->from,
+                                  .high = f->to,
+                                  .method = f->integrator,
+                                  .accuracy = f->accuracy};
+  if (!values) return strut_no_memory(error, "");
+  strut_grid_values(plan->study, 0, values);
+  strut_status status = strut_follow_possible(&o, error);
+  if (status == STRUT_USAGE) status = STRUT_BAD_SCENE;
+  strut_release(values);
+  return status;
+}
+
+/* ---- the row and the files of a point ---- */
+
+static void take_extreme(extreme *e, double value, double at, bool larger) {
+  if (!isnan(e->velocity) && !(larger ? value > e->velocity : value < e->velocity)) return;
+  *e = (extreme){value, at};
+}
+
+static counts count_branches(const strut_follow_result *r) {
+  const extreme none = {(double)NAN, (double)NAN};
+  counts c = {.branches = r->count, .high = none, .low = none, .wide = none};
+  for (size_t i = 0; i < r->count; i++) {
+    const strut_follow_branch *b = &r->branches[i].branch;
+    for (size_t k = 0; k < b->count; k++) {
+      const strut_follow_point *p = &b->points[k];
+      c.points++;
+      c.kinds[p->kind]++;
+      c.events += p->kind > STRUT_FOLLOW_TORUS;
+      if (p->stable && b->travels) take_extreme(&c.high, p->velocity, p->value, true);
+      if (p->stable && b->travels) take_extreme(&c.low, p->velocity, p->value, false);
+      if (p->stable && !b->travels) take_extreme(&c.wide, p->amplitude, p->value, true);
+    }
+  }
+  return c;
+}
+
+/* Cells of the axes as the tables have them, and their headers, each followed by a comma. */
+static bool format_axes(const point_work *w, const char **names, const char **cells) {
+  const strut_sweep_plan *plan = w->plan;
+  *names = *cells = "";
+  for (size_t i = 0; i < plan->axis_columns && *names && *cells; i++) {
+    char *name, *cell;
+    if (!strut_follow_axis_cell(&plan->columns[i], w->values[i], w->arena, &name, &cell))
+      return false;
+    *names = strut_arena_format(w->arena, "%s%s,", *names, name);
+    *cells = strut_arena_format(w->arena, "%s%s,", *cells, cell);
+  }
+  return *names && *cells;
+}
+
+static strut_status write_branches(point_work *w, bool partial) {
+  const char *names, *cells;
+  char csv[64], json[64];
+  const char *folder = strut_arena_format(w->arena, "%s/branches", w->options->directory);
+  if (!folder || !format_axes(w, &names, &cells)) return strut_no_memory(&w->error, "");
+  snprintf(csv, sizeof csv, "%09lld%s.csv", (long long)w->point, partial ? "-partial" : "");
+  snprintf(json, sizeof json, "%09lld.json", (long long)w->point);
+  strut_status status = strut_directory_create(folder, &w->error);
+  if (!status)
+    status = strut_file_write_block(folder, csv, strut_follow_csv_beside(w->result, names, cells),
+                                    &w->error);
+  if (status || partial) return status;
+  status = strut_file_write_block(folder, json, strut_follow_json(w->result), &w->error);
+  snprintf(csv, sizeof csv, "%09lld-partial.csv", (long long)w->point);
+  if (!status) strut_file_remove(folder, csv);
+  return status;
+}
+
+static void fill_row(const point_work *w, strut_status status, strut_row_buffer *cells) {
+  const strut_sweep_plan *plan = w->plan;
+  for (size_t i = 0; i < plan->axis_columns; i++) {
+    if (plan->columns[i].word)
+      strut_sweep_word(cells, w->values[i].word);
+    else
+      strut_sweep_number(cells, w->values[i].number);
+  }
+  const counts all = count_branches(w->result), *c = &all;
+  const double values[] = {
+#define ROW_VALUE(name, unit, value) value,
+      ROW_TABLE(ROW_VALUE)};
+  for (size_t i = 0; i < ROW_COLUMNS; i++)
+    strut_sweep_number(cells, status ? (double)NAN : values[i]);
+  snprintf(cells->message, sizeof cells->message, "%.*s", (int)sizeof cells->message - 1,
+           status ? w->error.message : "");
+  cells->row = (strut_result_slot){.status = status,
+                                   .numbers = cells->numbers,
+                                   .words = (const char(*)[STRUT_SLOT_WORD])cells->words,
+                                   .message = cells->message};
+}
+
+/* ---- all points ---- */
+
+static void stop(conductor *c, strut_status status, const strut_error *error) {
+#ifdef _OPENMP
+#pragma omp critical(strut_follow_points_state)
+#endif
+  if (!c->status) {
+    c->status = status;
+    strut_fail(c->error, status, "%s", error->message);
+  }
+}
+
+static bool is_stopped(conductor *c) {
+  bool stopped;
+#ifdef _OPENMP
+#pragma omp critical(strut_follow_points_state)
+#endif
+  stopped = c->status != STRUT_OK;
+  return stopped || (c->options->interrupt && *c->options->interrupt);
+}
+
+static void count_point(conductor *c, int64_t point, const strut_row_buffer *cells) {
+#ifdef _OPENMP
+#pragma omp critical(strut_follow_points_state)
+#endif
+  {
+    strut_sweep_state *state = c->state;
+    state->done++, state->computed++;
+    state->failed += cells->row.status != STRUT_OK;
+    state->last = point;
+    state->row = &cells->row;
+    state->seconds = strut_run_clock() - c->began;
+    if (c->options->progress) c->options->progress(c->options->progress_context, state);
+    state->row = NULL;
+  }
+}
+
+/* Does this end the study, instead of the point alone? */
+static bool stops(strut_status status) {
+  return status == STRUT_NO_MEMORY || status == STRUT_FILE_TROUBLE || status == STRUT_INTERRUPTED;
+}
+
+static strut_status run_point(conductor *c, point_work *w, strut_row_buffer *cells, int threads) {
+  strut_status status = follow_point(w, threads);
+  bool partial = status == STRUT_INTERRUPTED && w->result->count > 0;
+  if (!status || partial) {
+    strut_status written;
+#ifdef _OPENMP
+#pragma omp critical(strut_follow_points_files) /* the folder keeps one list of its files */
+#endif
+    written = write_branches(w, partial);
+    if (written) return written;
+  }
+  if (stops(status)) return status;
+  fill_row(w, status, cells);
+  return strut_slots_put(c->slots, w->point, &cells->row, &w->error);
+}
+
+static void do_point(conductor *c, int64_t point, int threads) {
+  strut_arena arena = {0};
+  size_t columns = c->plan->column_count + 1;
+  strut_row_buffer cells = {.numbers = strut_arena_allocate(&arena, columns, sizeof(double)),
+                            .words = strut_arena_allocate(&arena, columns, sizeof *cells.words)};
+  point_work w = {.plan = c->plan, .options = c->options, .point = point, .arena = &arena};
+  w.values = strut_arena_allocate(&arena, columns, sizeof *w.values);
+  w.result = strut_allocate(1, sizeof *w.result);
+  strut_status status = cells.numbers && cells.words && w.values && w.result
+                            ? STRUT_OK
+                            : strut_no_memory(&w.error, "");
+  if (!status) {
+    strut_grid_values(c->plan->study, point, w.values);
+    status = run_point(c, &w, &cells, threads);
+  }
+  if (status)
+    stop(c, status, &w.error);
+  else
+    count_point(c, point, &cells);
+  if (w.result) strut_follow_free(w.result);
+  strut_release(w.result);
+  strut_arena_free(&arena);
+}
+
+static void run_points(conductor *c, int threads) {
+  int64_t count = strut_slots_plan_of(c->slots)->count, missing = strut_slots_missing(c->slots);
+  int side = missing < threads ? (int)missing : threads;
+  int inner = side > 1 ? 1 : threads; /* points go side by side, else the columns of derivatives */
+  if (side < 1) return;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(dynamic, 1) num_threads(side)
+#endif
+  for (int64_t i = 0; i < count; i++) {
+    int64_t point = strut_slots_point(c->slots, i);
+    if (strut_slots_done(c->slots, point) || is_stopped(c)) continue;
+#ifdef _OPENMP
+    if (side > 1) omp_set_num_threads(1); /* of searches for equilibria within a point */
+#endif
+    do_point(c, point, inner);
+  }
+}
+
+strut_status strut_follow_points_run(const strut_sweep_plan *plan, strut_slots *slots,
+                                     const strut_follow_points_options *options,
+                                     strut_sweep_state *state, strut_error *error) {
+  strut_error own = {0};
+  int64_t count = strut_slots_plan_of(slots)->count;
+  *state = (strut_sweep_state){.points = count,
+                               .done = count - strut_slots_missing(slots),
+                               .failed = strut_slots_failed(slots),
+                               .last = -1};
+  conductor c = {.plan = plan,
+                 .options = options,
+                 .slots = slots,
+                 .state = state,
+                 .error = error ? error : &own,
+                 .began = strut_run_clock()};
+  run_points(&c, options->threads > 0 ? options->threads : strut_sweep_threads());
+  if (!c.status && options->interrupt && *options->interrupt && state->done < count)
+    c.status = strut_fail(c.error, STRUT_INTERRUPTED, "interrupted");
+  state->seconds = strut_run_clock() - c.began;
+  return c.status;
+}

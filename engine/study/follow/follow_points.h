@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * A study that follows motions: all branches over a parameter at every point of its axes.
+ *
+ * A point's branches are the files branches/POINT.csv and branches/POINT.json of the results, its row says
+ * how many there are, and what they reach. A point is done once its row is there, which is written last.
+ */
+#ifndef STRUT_ENGINE_STUDY_FOLLOW_POINTS_H
+#define STRUT_ENGINE_STUDY_FOLLOW_POINTS_H
+
+#include "engine/output/draw/plot.h"
+#include "engine/output/table_data.h"
+#include "engine/study/sweep/sweep.h"
+
+typedef struct strut_follow_points_options {
+  /** The scene of the axes' values where the followed parameter has the value [SI]; from any thread. */
+  strut_status (*setup)(void *context, const strut_study_value *values, double value,
+                        strut_setup *setup, strut_error *error);
+  void *context;
+  const char *directory;
+  int threads;                            /* 0: strut_sweep_threads */
+  const volatile sig_atomic_t *interrupt; /* may be NULL */
+  /** After each point, one thread at a time; may be NULL. */
+  void (*progress)(void *context, const strut_sweep_state *state);
+  void *progress_context;
+} strut_follow_points_options;
+
+/** Adds the columns of a point's row behind those of the axes. */
+STRUT_API strut_status strut_follow_points_columns(strut_sweep_plan *plan, strut_error *error);
+/**
+ * STRUT_BAD_SCENE where motions of the first point cannot be followed: its scene has no drive that repeats,
+ * or a memory.
+ */
+STRUT_API strut_status strut_follow_points_check(const strut_sweep_plan *plan,
+                                                 const strut_follow_points_options *options,
+                                                 strut_error *error);
+/**
+ * Follows at every point that has no row yet. A failed point gets a row with the reason. With
+ * STRUT_INTERRUPTED what was followed of points under way is in branches/POINT-partial.csv. Files and rows
+ * depend on their point alone.
+ */
+STRUT_API strut_status strut_follow_points_run(const strut_sweep_plan *plan, strut_slots *slots,
+                                               const strut_follow_points_options *options,
+                                               strut_sweep_state *state, strut_error *error);
+
+/* follow_points_files.c */
+
+/**
+ * Writes directory/name with the branches of all points, by point; `partial`: with what was followed of
+ * interrupted points too, and a column that says which points are finished. *rows (may be NULL): how many.
+ */
+STRUT_API strut_status strut_follow_points_combine(const strut_sweep_plan *plan, strut_slots *slots,
+                                                   const char *directory, const char *name,
+                                                   bool partial, int64_t *rows, strut_error *error);
+/** All reports as one JSON text in *json, a block of strut_allocate. */
+STRUT_API strut_status strut_follow_points_json(const strut_sweep_plan *plan, strut_slots *slots,
+                                                const char *directory, char **json,
+                                                strut_error *error);
+/** A line for each point, for people; a block of strut_allocate, or NULL. */
+STRUT_API char *strut_follow_points_table(const strut_sweep_plan *plan, strut_slots *slots);
+
+/* follow_points_figure.c */
+
+/** Draws the branches of `table`, as combine has written it: a colour for each point of the axes. */
+STRUT_API strut_status strut_follow_points_figure(const strut_plot *plot,
+                                                  const strut_sweep_plan *plan,
+                                                  const strut_table *table, strut_error *error);
+
+#endif

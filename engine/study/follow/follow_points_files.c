@@ -1,0 +1,222 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The branches of all points as one table, as one JSON text, and as people read them. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/base/c_locale.h"
+#include "engine/base/number_text.h"
+#include "engine/output/buffer.h"
+#include "engine/output/file.h"
+#include "engine/output/json_value.h"
+#include "engine/output/quantity_text.h"
+#include "engine/study/follow/follow_parts.h"
+#include "engine/study/sweep/grid.h"
+
+enum { MOST_LINES = 60, MOST_BLOCK = 1 << 28 };
+
+/* A text as a cell of a CSV file. */
+static char *quote_cell(const char *text, strut_arena *arena) {
+  if (!strpbrk(text, ",\"\r\n")) return strut_arena_format(arena, "%s", text);
+  char *cell = strut_arena_allocate(arena, 2 * strlen(text) + 3, 1), *to = cell;
+  if (!cell) return NULL;
+  *to++ = '"';
+  for (; *text; text++) {
+    if (*text == '"') *to++ = '"';
+    *to++ = *text;
+  }
+  *to++ = '"';
+  return cell;
+}
+
+bool strut_follow_axis_cell(const strut_slot_column *column, strut_study_value value,
+                            strut_arena *arena, char **name, char **cell) {
+  char number[STRUT_NUMBER_TEXT] = "";
+  bool plain = strcmp(column->unit, "1") == 0 || !*column->unit;
+  const char *header =
+      strut_arena_format(arena, plain ? "%s" : "%s [%s]", column->name, plain ? "" : column->unit);
+  if (!value.word && isfinite(value.number)) strut_number_text(value.number, number);
+  *name = header ? quote_cell(header, arena) : NULL;
+  *cell = quote_cell(value.word ? value.word : number, arena);
+  return *name && *cell;
+}
+
+/* The text of a point's file, in the arena; NULL where there is none, or no memory. */
+static char *read_branches(const char *directory, int64_t point, const char *ending,
+                           strut_arena *arena) {
+  const char *path =
+      strut_arena_format(arena, "%s/branches/%09lld%s", directory, (long long)point, ending);
+  FILE *file = path ? fopen(path, "rb") : NULL;
+  char *text = NULL;
+  if (file && fseek(file, 0, SEEK_END) == 0) {
+    long size = ftell(file);
+    rewind(file);
+    if (size >= 0 && size < MOST_BLOCK) text = strut_arena_allocate(arena, (size_t)size + 1, 1);
+    if (text && fread(text, 1, (size_t)size, file) != (size_t)size) text = NULL;
+  }
+  if (file) fclose(file);
+  return text;
+}
+
+static strut_status report_missing(int64_t point, strut_error *error) {
+  return strut_fail(error, STRUT_FILE_TROUBLE,
+                    "the branches of point %lld are missing below 'branches': remove points.slots "
+                    "to compute all points again",
+                    (long long)point);
+}
+
+/* ---- branches.csv ---- */
+
+/* Headers of the table: those of the axes and of the branches. */
+static strut_status write_header(FILE *to, const strut_sweep_plan *plan, bool partial,
+                                 strut_arena *arena, strut_error *error) {
+  const strut_study_follow *f = plan->study->follow;
+  strut_follow_result *none = strut_arena_allocate(arena, 1, sizeof *none);
+  const char *names = "";
+  for (size_t i = 0; i < plan->axis_columns && names; i++) {
+    char *name, *cell;
+    const strut_study_value value = {.number = 0.0};
+    if (!strut_follow_axis_cell(&plan->columns[i], value, arena, &name, &cell))
+      return strut_no_memory(error, "");
+    names = strut_arena_format(arena, "%s%s,", names, name);
+  }
+  if (!none || !names) return strut_no_memory(error, "");
+  none->name = strut_arena_format(arena, "%s", f->over);
+  none->unit = strut_arena_format(arena, "%s", f->unit);
+  char *header = none->name && none->unit ? strut_follow_csv_beside(none, names, "") : NULL;
+  if (!header) return strut_no_memory(error, "");
+  fprintf(to, "%.*s%s\n", (int)strcspn(header, "\n"), header, partial ? ",finished" : "");
+  strut_release(header);
+  return STRUT_OK;
+}
+
+/* Copies the rows of a point's file; returns how many. */
+static int64_t copy_rows(FILE *to, const char *text, const char *finished) {
+  int64_t rows = 0;
+  const char *line = strchr(text, '\n');
+  for (line = line ? line + 1 : ""; *line; rows++) {
+    size_t length = strcspn(line, "\n");
+    fwrite(line, 1, length, to);
+    fprintf(to, "%s\n", finished);
+    line += length + (line[length] == '\n');
+  }
+  return rows;
+}
+
+strut_status strut_follow_points_combine(const strut_sweep_plan *plan, strut_slots *slots,
+                                         const char *directory, const char *name, bool partial,
+                                         int64_t *rows, strut_error *error) {
+  strut_file file = {0};
+  strut_arena arena = {0};
+  int64_t count = 0;
+  strut_status status = strut_file_open(&file, directory, name, error);
+  if (!status) status = write_header(file.stream, plan, partial, &arena, error);
+  for (int64_t point = 0; point < plan->points && !status; point++) {
+    strut_result_slot row;
+    strut_arena_free(&arena);
+    bool done = strut_slots_get(slots, point, &row);
+    if (done && row.status) continue;
+    char *text = read_branches(directory, point, done ? ".csv" : "-partial.csv", &arena);
+    if (text)
+      count += copy_rows(file.stream, text, partial ? done ? ",yes" : ",no" : "");
+    else if (done)
+      status = report_missing(point, error);
+  }
+  if (!status)
+    status = strut_file_commit(&file, error);
+  else
+    strut_file_abandon(&file);
+  strut_arena_free(&arena);
+  if (rows) *rows = count;
+  return status;
+}
+
+/* ---- report.json ---- */
+
+/* Cells of the row that are no axes, by name. */
+static void add_row(strut_json *json, struct cJSON *to, const strut_sweep_plan *plan,
+                    const strut_result_slot *row) {
+  size_t numbers = 0, words = 0;
+  struct cJSON *axes = strut_json_object(json, to, "axes");
+  for (size_t i = 0; i < plan->column_count; i++) {
+    struct cJSON *where = i < plan->axis_columns ? axes : to;
+    if (plan->columns[i].word)
+      strut_json_text(json, where, plan->columns[i].name, row->words[words++]);
+    else
+      strut_json_number(json, where, plan->columns[i].name, row->numbers[numbers++]);
+  }
+}
+
+strut_status strut_follow_points_json(const strut_sweep_plan *plan, strut_slots *slots,
+                                      const char *directory, char **text, strut_error *error) {
+  const strut_study_follow *f = plan->study->follow;
+  strut_arena arena = {0};
+  strut_json json = strut_json_begin();
+  strut_status status = STRUT_OK;
+  strut_json_text(&json, json.root, "study", plan->study->name);
+  strut_json_text(&json, json.root, "over", f->over);
+  strut_json_number(&json, json.root, "from", f->from);
+  strut_json_number(&json, json.root, "to", f->to);
+  struct cJSON *points = strut_json_array(&json, json.root, "points");
+  for (int64_t point = 0; point < plan->points && !status; point++) {
+    strut_result_slot row;
+    if (!strut_slots_get(slots, point, &row)) continue;
+    struct cJSON *item = strut_json_object(&json, points, NULL);
+    strut_json_integer(&json, item, "point", point);
+    strut_json_text(&json, item, "status", strut_status_text(row.status));
+    strut_json_text(&json, item, "message", row.message && *row.message ? row.message : NULL);
+    add_row(&json, item, plan, &row);
+    if (row.status) continue;
+    strut_arena_free(&arena);
+    char *own = read_branches(directory, point, ".json", &arena);
+    if (!own)
+      status = report_missing(point, error);
+    else
+      strut_json_raw(&json, item, "result", own);
+  }
+  strut_arena_free(&arena);
+  *text = strut_json_end(&json);
+  if (!status && !*text) status = strut_no_memory(error, "");
+  if (status) {
+    strut_release(*text);
+    *text = NULL;
+  }
+  return status;
+}
+
+/* ---- for people ---- */
+
+/* Room for a column. */
+static int width_of(const strut_slot_column *c) {
+  int length = (int)strlen(c->name);
+  return length > 10 ? length : 10;
+}
+
+char *strut_follow_points_table(const strut_sweep_plan *plan, strut_slots *slots) {
+  strut_buffer b = {0};
+  strut_c_locale locale = strut_c_locale_enter();
+  int64_t lines = plan->points < MOST_LINES ? plan->points : MOST_LINES;
+  for (size_t i = 0; i < plan->column_count; i++)
+    strut_buffer_add(&b, "%s%*s", i ? "  " : "", width_of(&plan->columns[i]),
+                     plan->columns[i].name);
+  strut_buffer_add(&b, "\n");
+  for (int64_t point = 0; point < lines; point++) {
+    strut_result_slot row;
+    size_t numbers = 0, words = 0;
+    if (!strut_slots_get(slots, point, &row)) continue;
+    for (size_t i = 0; i < plan->column_count; i++) {
+      const strut_slot_column *c = &plan->columns[i];
+      double value = c->word ? 0.0 : row.numbers[numbers++];
+      const char *text = c->word           ? row.words[words++]
+                         : isfinite(value) ? strut_quantity_of_any(value, 4, c->unit).text
+                                           : "";
+      strut_buffer_add(&b, "%s%*.20s", i ? "  " : "", width_of(c), text);
+    }
+    strut_buffer_add(&b, "%s%s\n", row.status ? "  " : "", row.status ? row.message : "");
+  }
+  if (plan->points > lines)
+    strut_buffer_add(&b, "... and %lld more points in the table\n",
+                     (long long)(plan->points - lines));
+  strut_c_locale_leave(locale);
+  return strut_buffer_take(&b);
+}

@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Studies that follow motions: Duffing's folds over the force, threads, a kill, Ctrl-C, refusals.
+#
+#   python3 follow_study_test.py STRUT
+import csv
+import filecmp
+import json
+import math
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
+from findings import check, finish  # noqa: E402
+
+strut = os.path.realpath(sys.argv[1])
+work = tempfile.mkdtemp()
+
+
+def path(*parts):
+    return os.path.join(work, *parts)
+
+
+def write(name, text):
+    with open(path(name), "w", encoding="utf-8") as file:
+        file.write(text)
+
+
+def run(*words, code=0):
+    done = subprocess.run([strut, *words], capture_output=True, text=True, cwd=work, timeout=120, check=False)
+    check(done.returncode == code,
+          f"strut {' '.join(words)}: exit code {done.returncode}, expected {code}: {done.stderr}")
+    return done
+
+
+def rows(*parts):
+    with open(path(*parts), newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+write("duffing.yaml", """strut: 1
+name: Duffing
+parameters: {frequency: 0.14 Hz, force: 0.1 N, periods: 200, step: 1 ms}
+nodes:
+  wall: {position: [0, 0], fixed: both}
+  mass: {position: [10, 0], fixed: y, mass: 1}
+members:
+  spring:
+    {nodes: [wall, mass], kind: spring, law: {kind: polynomial, coefficients: [1 N/m, 0, 0.05 N/m^3]},
+     damping: 0.05, rest_length: 10}
+loads:
+  push: {node: mass, force: [force, 0], signal: {sine: {amplitude: 1, frequency: frequency}}}
+configurations: {drawn: {}, far: {mass: [12, 0]}}
+solver: {integrator: rk4, step: step}
+run: {periods: periods, of: push, measure: {node: mass}}
+""")
+STUDY = """strut: 1
+study: Duffing's folds
+model: duffing.yaml
+axes: [{force: [0.06 N, 0.1 N, 0.15 N]}]
+follow:
+  over: frequency
+  from: 0.14 Hz
+  to: 0.24 Hz
+figures: {widest: {x: force, y: amplitude_max}}
+"""
+write("study.yaml", STUDY)
+
+
+def balance(force):
+    """Folds of ((1 - w^2 + 3/4 b A^2)^2 + (c w)^2) A^2 = F^2 along A: where dw/dA vanishes."""
+    beta, damping, curve = 0.05, 0.05, []
+    for k in range(12000):
+        amplitude = 0.3 + k * 3e-4
+        half = 1 + 0.75 * beta * amplitude**2 - damping**2 / 2
+        inside = half**2 - (1 + 0.75 * beta * amplitude**2)**2 + (force / amplitude)**2
+        if inside >= 0:
+            curve.append(math.sqrt(half + math.sqrt(inside)))
+    least = min(range(1, len(curve) - 1), key=lambda i: curve[i] if curve[i] < curve[i - 1] else 9)
+    return max(curve[least:]) / 2 / math.pi, curve[least] / 2 / math.pi
+
+
+# ---- the same bytes from one thread and from several, and the folds of the harmonic balance
+
+check("points             3" in run("check", "study.yaml").stdout, "check tells the points")
+check("3 points" in run("sweep", "study.yaml", "--count").stdout, "the count")
+report = json.loads(run("sweep", "study.yaml", "-o", "out", "--json").stdout)
+run("sweep", "study.yaml", "-o", "one", "--threads", "1", "-q")
+for name in ("branches.csv", "branches.svg", "report.json", "table.csv", "widest.svg"):
+    check(filecmp.cmp(path("out", name), path("one", name), shallow=False), f"threads change {name}")
+table = rows("out", "table.csv")
+check([row["folds"] for row in table] == ["0", "2", "2"], f"folds: {table}")
+check(all(row["status"] == "completed" and row["branches"] == "1" for row in table), f"table: {table}")
+points = rows("out", "branches.csv")
+check(len(points) == sum(int(row["branch_points"]) for row in table), "rows of all branches")
+for force in ("0.1", "0.15"):
+    folds = [float(p["frequency [Hz]"]) for p in points if p["force [N]"] == force and p["point"] == "fold"]
+    check(len(folds) == 2, f"folds at {force}: {folds}")
+    for got, want in zip(folds, balance(float(force))):
+        check(abs(got - want) < 5e-3 * want, f"a fold at {force} N: {got}, expected {want}")
+    wide = [row for row in table if row["force [N]"] == force][0]
+    mine = max(float(p["amplitude [m]"]) for p in points if p["force [N]"] == force and p["stable"] == "yes")
+    check(float(wide["amplitude_max [m]"]) == mine, "the widest stable motion")
+check([p["axes"]["force"] for p in report["points"]] == [0.06, 0.1, 0.15], "axes of the report")
+check([s["point"] for s in report["points"][2]["result"]["branches"][0]["special"]] == ["fold", "fold"], "the report")
+check(report == json.load(open(path("out", "report.json"), encoding="utf-8")), "report.json")
+check("3 done" in run("sweep", "study.yaml", "-o", "out", "--status").stdout, "status")
+
+# ---- one point alone is what `strut follow` finds
+
+run("follow", "duffing.yaml", "--over", "frequency=0.14Hz..0.24Hz", "--set", "force=0.15", "-o", "alone", "-q")
+alone = rows("alone", "branches.csv")
+check([{"force [N]": "0.15", **p} for p in alone] == [p for p in points if p["force [N]"] == "0.15"], "the command alone")
+
+# ---- what is there is not computed again; a point lost before its row is
+
+before = os.stat(path("out", "branches", "000000000.csv")).st_mtime_ns
+run("sweep", "study.yaml", "-o", "out", "-q")
+check(os.stat(path("out", "branches", "000000000.csv")).st_mtime_ns == before, "computed again")
+os.rename(path("out", "branches", "000000001.csv"), path("away.csv"))
+check("remove points.slots" in run("sweep", "study.yaml", "-o", "out", "-q", code=4).stderr, "a missing file")
+os.rename(path("away.csv"), path("out", "branches", "000000001.csv"))
+
+# ---- killed, and interrupted: the same command goes on
+
+write("long.yaml", STUDY.replace("0.15 N]", "0.15 N, 0.2 N]").replace("to: 0.24 Hz", "to: 0.3 Hz\n  accuracy: 0.001 %"))
+run("sweep", "long.yaml", "-o", "whole", "-q")
+for stop, wait in ((signal.SIGKILL, 0.7), (signal.SIGINT, 0.7)):
+    shutil.rmtree(path("part"), ignore_errors=True)
+    with subprocess.Popen([strut, "sweep", "long.yaml", "-o", "part", "-q", "--threads", "1"], cwd=work,
+                          stderr=subprocess.PIPE, text=True) as job:
+        time.sleep(wait)
+        job.send_signal(stop)
+        err = job.communicate(timeout=60)[1]
+    if stop == signal.SIGINT and job.returncode != 0:
+        check("interrupted after" in err, f"interrupt: {err}")
+        partial = rows("part", "branches-partial.csv")
+        check({p["finished"] for p in partial} <= {"yes", "no"}, "what is finished")
+    run("sweep", "long.yaml", "-o", "part", "-q")
+    for name in ("branches.csv", "report.json", "table.csv"):
+        check(filecmp.cmp(path("part", name), path("whole", name), shallow=False), f"{stop} changes {name}")
+    check(not os.path.exists(path("part", "branches-partial.csv")), "a partial file is left")
+    check(not [f for f in os.listdir(path("part", "branches")) if "partial" in f], "partial branches are left")
+
+# ---- without axes; from configurations; kicks
+
+write("single.yaml", STUDY.replace("axes: [{force: [0.06 N, 0.1 N, 0.15 N]}]\n", "").replace(
+    "figures: {widest: {x: force, y: amplitude_max}}", "  at: [0.17 Hz]\n  start_from: [drawn]\n  basins: yes"))
+single = json.loads(run("sweep", "single.yaml", "-o", "single", "--json").stdout)
+result = single["points"][0]["result"]
+check(len(result["branches"]) == 1 and len(result["basins"]) >= 1, f"a single point: {result['notes']}")
+check(len(rows("single", "branches.csv")) == len(result["branches"][0]["points"]), "rows of a single point")
+
+# ---- a point that cannot be followed is a row
+
+write("weak.yaml", open(path("duffing.yaml"), encoding="utf-8").read().replace("damping: 0.05,", "damping: damped,").replace(
+    "step: 1 ms}", "step: 1 ms, damped: 0.05}"))
+write("damped.yaml", STUDY.replace("duffing.yaml", "weak.yaml").replace("force: [0.06 N, 0.1 N, 0.15 N]", "damped: [0, 0.05]").replace(
+    "figures: {widest: {x: force, y: amplitude_max}}", ""))
+done = run("sweep", "damped.yaml", "-o", "damped", "-q", code=3)
+table = rows("damped", "table.csv")
+check([row["status"] == "completed" for row in table] == [False, True], f"a failed point: {table}")
+check("starts no branch" in table[0]["message"] or "periodic" in table[0]["message"], table[0]["message"])
+check("1 of 2 points failed" in done.stderr, done.stderr)
+
+# ---- refusals
+
+
+def refused(text, *words, study="study.yaml", change=None, code=1):
+    name = study
+    if change:
+        name = "changed.yaml"
+        with open(path(study), encoding="utf-8") as file:
+            write(name, file.read().replace(*change))
+    done = run(*(words or ("check",)), name, code=code)
+    check(text in done.stderr, f"stderr lacks '{text}': {done.stderr}")
+
+
+refused("--shard cannot be used", "sweep", "-o", "none", "--shard", "0/2")
+refused("--emit cannot be used", "sweep", "-o", "none", "--emit", "slurm")
+refused("the study follows motions over 'frequency'", "sweep", "-o", "none", "--set", "frequency=1", code=2)
+refused("9:16: error: 'start_from' of what is followed: the model has no configuration 'I'", change=(
+    "figures:", "  start_from: [I]\nfigures:"), code=2)
+refused("no drive whose period", change=("figures:", "run: {duration: 5 s}\nfigures:"), code=2)
+refused("the table has no column 'velocity'", change=("y: amplitude_max", "y: velocity"), code=2)
+finish()
