@@ -91,16 +91,21 @@ static void multiply(int32_t n, int32_t stride, const double *restrict rate,
   }
 }
 
+/* A vector of z + h sum_j weight[j] slope[j], from i on. */
+STRUT_INLINE void combine_vector(int32_t i, double h, const double *weight, int count,
+                                 double *const *slope, const double *restrict z,
+                                 double *restrict out) {
+  strut_lanes sum = {0};
+  for (int j = 0; j < count; j++)
+    if (weight[j] != 0.0) sum += weight[j] * strut_lanes_load(slope[j] + i);
+  strut_lanes_store(out + i, strut_lanes_load(z + i) + h * sum);
+}
+
 /* out = z + h sum_j weight[j] slope[j] */
 STRUT_CLONES
 static void combine(int32_t all, double h, const double *weight, int count, double *const *slope,
                     const double *restrict z, double *restrict out) {
-  for (int32_t i = 0; i < all; i += STRUT_LANES) {
-    strut_lanes sum = {0};
-    for (int j = 0; j < count; j++)
-      if (weight[j] != 0.0) sum += weight[j] * strut_lanes_load(slope[j] + i);
-    strut_lanes_store(out + i, strut_lanes_load(z + i) + h * sum);
-  }
+  for (int32_t i = 0; i < all; i += STRUT_LANES) combine_vector(i, h, weight, count, slope, z, out);
 }
 
 /* Positions and velocities of the motion itself at stage k. */

@@ -25,11 +25,11 @@ enum { BATCHES = 8, LEAST_IRREGULAR = 256 };
 static const double STUDENT_7 = 2.365, STUDENT_6 = 2.447; /* 95 %, two-sided */
 
 /*
- * Periods over which a motion must creep, in batches of three; growth of its changes over half of them that may be
- * the beginning of another motion.
+ * Periods over which a motion must creep, in batches of three; factor of its changes over half of them that is the
+ * beginning of another motion, or the end of a transient.
  */
 enum { CREEP_PERIODS = 3 * BATCHES };
-static const double CREEP_GROWTH = 1.5;
+static const double CREEP_CHANGE = 1.5;
 
 /* Equal growth factors in a row that prove growth. */
 enum { GROWTH_FACTORS = 3 };
@@ -260,8 +260,8 @@ static bool repeats_itself(strut_steady_detector *w, int64_t now, int k) {
 }
 
 /*
- * Is the mean velocity of the latest periods, with its confidence interval, slower than matters? A motion that sets in would show in
- * growing changes of the shape.
+ * Is the mean velocity of the latest periods, with its confidence interval, slower than matters? A motion that sets
+ * in would show in growing changes of the shape, one that will repeat itself in falling ones.
  */
 static bool creeps(strut_steady_detector *w, int64_t now) {
   if (!(w->creep > 0.0) || !w->travels || now < CREEP_PERIODS || now < w->creep_after ||
@@ -276,7 +276,9 @@ static bool creeps(strut_steady_detector *w, int64_t now) {
   for (int j = 0; j < CREEP_PERIODS; j++)
     changes[2 * j / CREEP_PERIODS] += w->residual[0][(now - j) % STRUT_RING];
   double interval = STUDENT_7 * sqrt(square / (BATCHES - 1) / BATCHES);
-  if (!(fabs(mean) + interval <= w->creep) || changes[0] > CREEP_GROWTH * changes[1]) return false;
+  if (!(fabs(mean) + interval <= w->creep)) return false;
+  if (changes[0] > CREEP_CHANGE * changes[1] || changes[1] > CREEP_CHANGE * changes[0])
+    return false;
   w->result.kind = STRUT_MOTION_CREEPING;
   w->result.periods = now;
   w->result.interval = interval;
