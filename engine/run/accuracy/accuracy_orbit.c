@@ -70,12 +70,12 @@ static strut_status run_coarse_from_start(strut_orbit_solve *solve, double perio
     strut_status status = strut_orbit_solve_run_until_steady(
         solve, a->coarse, fmax(0.1, 16.0 * a->target), 3, periods, false, &solve->coarse_run);
     double limit = solve->coarse_run.limit_fell.limit;
-    if ((status && status != STRUT_DIVERGED) || !(limit > 0.0 && limit < a->coarse.step))
-      return status;
+    bool fell = limit > 0.0 && limit < a->coarse.step;
+    if (status ? status != STRUT_DIVERGED : !fell) return status;
     a->check_evaluations += solve->coarse_run.force_evaluations;
     strut_summary_free(&solve->coarse_run);
     solve->coarse_run = (strut_summary){0};
-    a->coarse.step = STRUT_COARSE_STEP * limit;
+    a->coarse.step = fell ? STRUT_COARSE_STEP * limit : 0.5 * a->coarse.step;
   }
   solve->coarse_run.status = STRUT_DIVERGED;
   return STRUT_DIVERGED;
