@@ -156,8 +156,9 @@ static strut_status add_branch(follower *f, const double *y, const double *direc
       strut_follow_branch_make(&f->s, y, direction, &f->limits, &b->branch, f->error);
   if ((status && status != STRUT_INTERRUPTED) || b->branch.count < 2) {
     char text[STRUT_FOLLOW_NOTE];
-    snprintf(text, sizeof text, "no branch leads away from %s: %s", label,
-             b->branch.ends[1] ? b->branch.ends[1] : "");
+    const char *why = b->branch.ends[1];
+    snprintf(text, sizeof text, "no branch leads away from %s%s%s", label, why && *why ? ": " : "",
+             why ? why : "");
     strut_follow_branch_free(&b->branch);
     if (!status) note(f, text);
     return status;
