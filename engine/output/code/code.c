@@ -14,21 +14,11 @@
 #include "engine/output/code/writer.h"
 #include "engine/output/file.h"
 #include "engine/output/results.h"
+#include "engine/output/untold.h"
 
 /* ---- what there is no code for ---- */
 
-typedef struct refusal {
-  char text[600];
-  size_t used;
-} refusal;
-
-static void refuse(refusal *r, size_t count, const char *what) {
-  if (!count || r->used >= sizeof r->text - 1) return;
-  int n = snprintf(r->text + r->used, sizeof r->text - r->used, "%s%s", r->used ? ", " : "", what);
-  r->used += n > 0 ? (size_t)n : 0;
-}
-
-static void refuse_members(refusal *r, const strut_scene *scene) {
+static void refuse_members(strut_untold *r, const strut_scene *scene) {
   size_t laws = 0, stops = 0, breaks = 0, released = 0, maxwell = 0, guides = 0;
   for (size_t i = 0; i < scene->member_count; i++) {
     const strut_member *m = &scene->members[i];
@@ -40,15 +30,15 @@ static void refuse_members(refusal *r, const strut_scene *scene) {
     maxwell += m->maxwell.stiffness > 0.0;
     guides += m->guide_count > 0;
   }
-  refuse(r, guides, "cables over guides (more than two nodes)");
-  refuse(r, laws, "law of members");
-  refuse(r, stops, "shortest and longest");
-  refuse(r, breaks, "breaks_at");
-  refuse(r, released, "released_at");
-  refuse(r, maxwell, "maxwell");
+  strut_untold_add(r, guides, "cables over guides (more than two nodes)");
+  strut_untold_add(r, laws, "law of members");
+  strut_untold_add(r, stops, "shortest and longest");
+  strut_untold_add(r, breaks, "breaks_at");
+  strut_untold_add(r, released, "released_at");
+  strut_untold_add(r, maxwell, "maxwell");
 }
 
-static void refuse_signal(refusal *r, const strut_scene *scene) {
+static void refuse_signal(strut_untold *r, const strut_scene *scene) {
   size_t programs = 0, relays = 0, triggers = 0, lags = 0, samples = 0;
   for (size_t i = 0; i < scene->signal_count; i++) {
     const strut_signal *s = &scene->signals[i];
@@ -58,32 +48,32 @@ static void refuse_signal(refusal *r, const strut_scene *scene) {
     lags += s->lag > 0.0;
     samples += s->every > 0.0;
   }
-  refuse(r, programs, "expression of signals");
-  refuse(r, relays, "relay");
-  refuse(r, triggers, "starts");
-  refuse(r, lags, "lag");
-  refuse(r, samples, "every");
+  strut_untold_add(r, programs, "expression of signals");
+  strut_untold_add(r, relays, "relay");
+  strut_untold_add(r, triggers, "starts");
+  strut_untold_add(r, lags, "lag");
+  strut_untold_add(r, samples, "every");
 }
 
 strut_status strut_code_check(const strut_model *model, strut_error *error) {
   const strut_scene *s = model->scene;
-  refusal r = {.used = 0};
+  strut_untold r = {.used = 0};
   size_t forces = 0;
   for (size_t i = 0; i < s->actuator_count; i++) forces += s->actuators[i].force;
-  refuse(&r, (model->plan & STRUT_TERM_RIGID) != 0, "bars: rigid");
+  strut_untold_add(&r, (model->plan & STRUT_TERM_RIGID) != 0, "bars: rigid");
   refuse_members(&r, s);
-  refuse(&r, s->hinge_count, "hinges and beams");
-  refuse(&r, s->cell_count, "cells");
-  refuse(&r, s->collision_count, "collisions");
-  refuse(&r, s->ground_count, "grounds other than one line at rest");
-  refuse(&r, strut_first_exact_contact(model) >= 0, "friction law coulomb (use karnopp)");
-  refuse(&r, s->rayleigh_mass > 0.0, "rayleigh mass");
-  refuse(&r, s->support_motion_count, "moves of nodes");
-  refuse(&r, s->unbalance_count, "unbalances");
-  refuse(&r, s->sliding_count, "sliders");
-  refuse(&r, forces, "force of actuators");
-  refuse(&r, s->sensor_count, "sensors");
-  refuse(&r, s->state_count, "states");
+  strut_untold_add(&r, s->hinge_count, "hinges and beams");
+  strut_untold_add(&r, s->cell_count, "cells");
+  strut_untold_add(&r, s->collision_count, "collisions");
+  strut_untold_add(&r, s->ground_count, "grounds other than one line at rest");
+  strut_untold_add(&r, strut_first_exact_contact(model) >= 0, "friction law coulomb (use karnopp)");
+  strut_untold_add(&r, s->rayleigh_mass > 0.0, "rayleigh mass");
+  strut_untold_add(&r, s->support_motion_count, "moves of nodes");
+  strut_untold_add(&r, s->unbalance_count, "unbalances");
+  strut_untold_add(&r, s->sliding_count, "sliders");
+  strut_untold_add(&r, forces, "force of actuators");
+  strut_untold_add(&r, s->sensor_count, "sensors");
+  strut_untold_add(&r, s->state_count, "states");
   refuse_signal(&r, s);
   if (r.used)
     return strut_fail(error, STRUT_BAD_SCENE,
