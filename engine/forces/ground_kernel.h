@@ -67,12 +67,12 @@ STRUT_INLINE void ground_touch(const strut_contact_table *c, strut_state *state,
 }
 
 STRUT_INLINE void ground_all(const strut_model *model, strut_state *state, const double *restrict q,
-                             const double *restrict v, double *restrict force, bool sloped,
-                             bool rough, bool laws, bool ledger) {
+                             const double *restrict v, double *restrict force, int32_t begin,
+                             int32_t end, bool sloped, bool rough, bool laws, bool ledger) {
   const strut_contact_table *c = &model->contacts;
   const uint32_t *restrict at = c->at;
   const double height = c->height;
-  for (int32_t i = 0, count = c->count; i < count; i++) {
+  for (int32_t i = begin; i < end; i++) {
     double gap = q[at[i] + 1] - height;
     if (sloped) gap = q[at[i]] * c->normal[0] + gap * c->normal[1];
     if (gap < 0.0)
@@ -80,18 +80,31 @@ STRUT_INLINE void ground_all(const strut_model *model, strut_state *state, const
   }
 }
 
-/* Adds the ground's forces; slope and friction are compiled out where the scene has none. */
+/* Adds the ground's forces on contacts begin to end; slope and friction are compiled out where the scene has
+   none. */
+STRUT_INLINE void ground_kernel_range(const strut_model *model, strut_state *state,
+                                      const double *restrict q, const double *restrict v,
+                                      double *restrict force, int32_t begin, int32_t end,
+                                      bool ledger) {
+  enum { F = STRUT_TERM_FRICTION, S = STRUT_TERM_SLOPE };
+#define STRUT_CASE(sloped, rough, laws)                                                            \
+  ground_all(model, state, q, v, force, begin, end, sloped, rough, laws, ledger);                  \
+  break
+  switch (model->plan & (S | F | STRUT_TERM_LAWS)) {
+    case 0: STRUT_CASE(false, false, false);
+    case F: STRUT_CASE(false, true, false);
+    case S: STRUT_CASE(true, false, false);
+    case S | F: STRUT_CASE(true, true, false);
+    default: STRUT_CASE(true, true, true);
+  }
+#undef STRUT_CASE
+}
+
+/* Those on all contacts. */
 STRUT_INLINE void ground_kernel(const strut_model *model, strut_state *state,
                                 const double *restrict q, const double *restrict v,
                                 double *restrict force, bool ledger) {
-  enum { F = STRUT_TERM_FRICTION, S = STRUT_TERM_SLOPE };
-  switch (model->plan & (S | F | STRUT_TERM_LAWS)) {
-    case 0: ground_all(model, state, q, v, force, false, false, false, ledger); break;
-    case F: ground_all(model, state, q, v, force, false, true, false, ledger); break;
-    case S: ground_all(model, state, q, v, force, true, false, false, ledger); break;
-    case S | F: ground_all(model, state, q, v, force, true, true, false, ledger); break;
-    default: ground_all(model, state, q, v, force, true, true, true, ledger); break;
-  }
+  ground_kernel_range(model, state, q, v, force, 0, model->contacts.count, ledger);
 }
 
 #endif

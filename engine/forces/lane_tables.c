@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
+#include "engine/forces/member_law.h"
 #include "engine/model/mass.h"
 
 /* Does every contact have the printed laws, whose coefficients may differ by direction? */
@@ -38,6 +39,9 @@ bool strut_lanes_possible(const strut_model *model) {
                               STRUT_TERM_UNBALANCE | STRUT_TERM_MEMORY | STRUT_TERM_SURFACES |
                               STRUT_TERM_FEEDBACK | STRUT_TERM_SLIDING_MASS;
   if (!mass || (model->plan & one_by_one) || !strains_are_known(&model->elements)) return false;
+  /* the ledger of one run adds up so many members in parts */
+  bool powers = model->plan & (STRUT_TERM_DAMPING | STRUT_TERM_DRIVE);
+  if (powers && model->members.blocks > STRUT_LEDGER_BLOCKS) return false;
   bool directional = model->plan & STRUT_TERM_DIRECTION;
   if ((model->plan & STRUT_TERM_LAWS) && !(directional && laws_are_printed(model))) return false;
   return !mass->coordinate[0].factor && !mass->coordinate[1].factor;

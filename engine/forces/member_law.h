@@ -13,6 +13,9 @@
 
 #include "engine/model/model.h"
 
+/** The ledger adds up the powers of so many blocks of members, and then these sums: threads share the work. */
+enum { STRUT_LEDGER_BLOCKS = 16 };
+
 /**
  * Defines PREFIX_values, what the law asks of members; PREFIX_powers, sums of what actuators and
  * dampers do [W]; PREFIX_law, the members' tensions [N], cables never below 0; and PREFIX_tension, the same

@@ -93,29 +93,49 @@ STRUT_INLINE void members_block(const strut_member_table *t, const strut_state *
     members_group(t, state, q, v, force, j, terms, ledger, powers);
 }
 
-/* Adds the forces of all members; one copy of the loop per set of terms, so none is tested inside. */
+/* Block b; one copy of the loop per set of terms, so none is tested inside. */
+STRUT_INLINE void members_of_block(const strut_member_table *t, const strut_state *state,
+                                   const double *restrict q, const double *restrict v,
+                                   double *restrict force, int32_t b, bool ledger,
+                                   member_powers *powers) {
+  enum { K = STRUT_TERM_DAMPING, S = STRUT_TERM_SLACK, D = STRUT_TERM_DRIVE };
+  int32_t begin = b * STRUT_BLOCK;
+  int32_t end = begin + STRUT_BLOCK < t->slots ? begin + STRUT_BLOCK : t->slots;
+#define STRUT_CASE(set)                                                                            \
+  case set: members_block(t, state, q, v, force, begin, end, set, ledger, powers); break
+  switch (t->block_terms[b] & (K | S | D)) {
+    STRUT_CASE(0);
+    STRUT_CASE(K);
+    STRUT_CASE(S);
+    STRUT_CASE(K | S);
+    STRUT_CASE(D);
+    STRUT_CASE(D | K);
+    STRUT_CASE(D | S);
+    STRUT_CASE(D | K | S);
+  }
+#undef STRUT_CASE
+}
+
+STRUT_INLINE void members_add_powers(member_powers *sum, const member_powers *part) {
+  sum->drive += part->drive, sum->exchanged += part->exchanged, sum->lost += part->lost;
+}
+
+/* In many_members.c: those of all members, whose powers are added up in parts. */
+void strut_many_members_add_forces(const strut_model *model, const strut_state *state,
+                                   const double *q, const double *v, double *force,
+                                   member_powers *powers);
+
+/* Adds the forces of all members. */
 STRUT_INLINE void members_kernel(const strut_model *model, strut_state *state,
                                  const double *restrict q, const double *restrict v,
                                  double *restrict force, bool ledger, member_powers *powers) {
-  enum { K = STRUT_TERM_DAMPING, S = STRUT_TERM_SLACK, D = STRUT_TERM_DRIVE };
   const strut_member_table t = model->members;
-  for (int32_t b = 0; b < t.blocks; b++) {
-    int32_t begin = b * STRUT_BLOCK;
-    int32_t end = begin + STRUT_BLOCK < t.slots ? begin + STRUT_BLOCK : t.slots;
-#define STRUT_CASE(set)                                                                            \
-  case set: members_block(&t, state, q, v, force, begin, end, set, ledger, powers); break
-    switch (t.block_terms[b] & (K | S | D)) {
-      STRUT_CASE(0);
-      STRUT_CASE(K);
-      STRUT_CASE(S);
-      STRUT_CASE(K | S);
-      STRUT_CASE(D);
-      STRUT_CASE(D | K);
-      STRUT_CASE(D | S);
-      STRUT_CASE(D | K | S);
-    }
-#undef STRUT_CASE
+  if (ledger && t.blocks > STRUT_LEDGER_BLOCKS) {
+    strut_many_members_add_forces(model, state, q, v, force, powers);
+    return;
   }
+  for (int32_t b = 0; b < t.blocks; b++)
+    members_of_block(&t, state, q, v, force, b, ledger, powers);
 }
 
 #endif

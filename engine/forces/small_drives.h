@@ -7,7 +7,7 @@
 #define STRUT_ENGINE_FORCES_SMALL_DRIVES_H
 
 #include "engine/base/trig.h"
-#include "engine/forces/small_kernel.h"
+#include "engine/forces/small_ledger.h"
 
 enum { SMALL_STEPS = 16, SMALL_INSTANTS = 2 * SMALL_STEPS + 4 }; /* whole groups of 4 */
 

@@ -9,6 +9,7 @@
 #ifndef STRUT_ENGINE_FORCES_SMALL_KERNEL_H
 #define STRUT_ENGINE_FORCES_SMALL_KERNEL_H
 
+#include "engine/forces/small_inputs.h"
 #include "engine/forces/small_vector.h"
 #include "engine/model/state.h"
 
@@ -16,15 +17,9 @@
 typedef struct small_run {
   const strut_small_model *tables;
   const strut_contact_table *contacts;
-  unsigned plan;               /* with the terms that a copy knows */
-  strut_small_row constant[2]; /* constant forces [N] */
-  double slack_length_threshold[STRUT_SMALL_SLOTS], slack_force_threshold[STRUT_SMALL_SLOTS];
+  const strut_small_inputs *inputs;
+  unsigned plan; /* with the terms that a copy knows */
 } small_run;
-
-/* Rest lengths [m] and their rates [m/s] at one instant. */
-typedef struct small_rest {
-  double rest[STRUT_SMALL_SLOTS], rate[STRUT_SMALL_SLOTS];
-} small_rest;
 
 /* Along the members: differences of the ends' positions and velocities, pulls. */
 #define STRUT_DEFINE_SMALL_GROUP(number, mask, PREFIX, load, root)                                  \
@@ -37,14 +32,15 @@ typedef struct small_rest {
   STRUT_SMALL_INLINE PREFIX##_values PREFIX##_values_at(                                            \
       const small_run *r, const small_rest *rest, int j, number length, number rate) {              \
     const strut_small_model *s = r->tables;                                                         \
-    return (PREFIX##_values){.length = length,                                                      \
-                             .rate = rate,                                                          \
-                             .rest = load(rest->rest + j),                                          \
-                             .rest_rate = load(rest->rate + j),                                     \
-                             .stiffness = load(s->stiffness + j),                                   \
-                             .damping = load(s->damping + j),                                       \
-                             .slack_length_threshold = load(r->slack_length_threshold + j),         \
-                             .slack_force_threshold = load(r->slack_force_threshold + j)};          \
+    return (PREFIX##_values){                                                                       \
+        .length = length,                                                                           \
+        .rate = rate,                                                                               \
+        .rest = load(rest->rest + j),                                                               \
+        .rest_rate = load(rest->rate + j),                                                          \
+        .stiffness = load(s->stiffness + j),                                                        \
+        .damping = load(s->damping + j),                                                            \
+        .slack_length_threshold = load(r->inputs->slack_length_threshold + j),                      \
+        .slack_force_threshold = load(r->inputs->slack_force_threshold + j)};                       \
   }                                                                                                 \
                                                                                                     \
   /* Pulls of the members from j on into d->u and d->w. No sum begins at 0: that changes no bit. */ \
@@ -61,7 +57,7 @@ typedef struct small_rest {
     bool driven = r->plan & STRUT_TERM_DRIVE;                                                       \
     number own_rate = driven ? m.rate - m.rest_rate : m.rate;                                       \
     if (driven) {                                                                                   \
-      powers->drive = -tension * m.rest_rate;                                                       \
+      powers->drive = tension * m.rest_rate;                                                        \
       powers->exchanged = (number)((mask)powers->drive & INT64_MAX);                                \
     }                                                                                               \
     if (r->plan & STRUT_TERM_DAMPING) powers->lost = (tension - elastic) * own_rate;                \
@@ -69,13 +65,14 @@ typedef struct small_rest {
 
 STRUT_DEFINE_SMALL_GROUP(strut_lanes, strut_lane_mask, small4, small4_load, small_root_of_4)
 
-/* Powers of the members in the order of groups of 4, which the general kernel sums. */
-typedef struct small_powers {
-  strut_lanes drive, lost, both; /* both: exchanged */
-} small_powers;
-
 #if STRUT_SMALL_WIDTH == 8
 STRUT_DEFINE_SMALL_GROUP(small_real, small_bits, small8, small_load, small_root)
+
+/* Powers of the members; drive: what drives take. */
+typedef struct small_powers {
+  small8_powers first;
+  small4_powers last;
+} small_powers;
 
 STRUT_SMALL_INLINE small_real small_gather(const int64_t *lane, small_row x) {
   return _mm512_permutexvar_pd((__m512i)small_bits_load(lane), x.part[0]);
@@ -99,8 +96,6 @@ STRUT_SMALL_INLINE void small_members(const small_run *r, const small_rest *rest
                                       const small_points *q, const small_points *v, bool ledger,
                                       small_pulls *px, small_pulls *py, small_powers *sum) {
   const strut_small_model *s = r->tables;
-  small8_powers powers = {0};
-  small4_powers more = {0};
   small8_span d = {.x = small_difference(s, 0, q->x), .y = small_difference(s, 0, q->y)};
   small4_span e = {0};
   if (r->plan & STRUT_TERM_DAMPING)
@@ -112,18 +107,18 @@ STRUT_SMALL_INLINE void small_members(const small_run *r, const small_rest *rest
       e.u = small_half(small_difference(s, 8, v->x), 0);
       e.w = small_half(small_difference(s, 8, v->y), 0);
     }
-    small4_pull(r, rest, 8, &e, ledger, &more);
+    small4_pull(r, rest, 8, &e, ledger, &sum->last);
   }
-  small8_pull(r, rest, 0, &d, ledger, &powers);
+  small8_pull(r, rest, 0, &d, ledger, &sum->first);
   px->first = d.u, py->first = d.w;
   px->last = e.u, py->last = e.w;
-  if (!ledger) return;
-  sum->drive = small_half(powers.drive, 0) + small_half(powers.drive, 1) + more.drive;
-  sum->lost = small_half(powers.lost, 0) + small_half(powers.lost, 1) + more.lost;
-  sum->both = small_half(powers.exchanged, 0) + small_half(powers.exchanged, 1) + more.exchanged;
-  sum->both += sum->lost;
 }
 #else
+/* Powers of the members, of groups of 4 together; drive: what drives take. */
+typedef struct small_powers {
+  small4_powers sum;
+} small_powers;
+
 STRUT_SMALL_INLINE strut_lanes small_halves(strut_lanes x, small_bits halves) {
   return (strut_lanes)_mm256_permutevar8x32_ps((__m256)x, (__m256i)halves);
 }
@@ -139,15 +134,25 @@ STRUT_SMALL_INLINE small_row small_permute(const strut_small_column *column, sma
 STRUT_SMALL_INLINE strut_lanes small_difference(const strut_small_model *s, int j, small_row x) {
   return small_gather(s->to_halves + j, x) - small_gather(s->from_halves + j, x);
 }
-STRUT_SMALL_INLINE small_row small_gather_pulls(const strut_small_pull *k, const small_pulls *p) {
-  small_row x;
-  SMALL_EACH(h) {
-    small_bits at = small_bits_load(k->slot_halves + 4 * h);
-    x.part[h] = _mm256_blendv_pd(small_halves(p->part[0], at), small_halves(p->part[1], at),
-                                 (strut_lanes)at);
-    x.part[h] = _mm256_blendv_pd(x.part[h], small_halves(p->part[2], at), (strut_lanes)(at << 1));
+
+/* The ends of 4 members: positions and, for dampers, velocities. */
+STRUT_SMALL_INLINE small4_span small_ends(const small_run *r, const int64_t *halves,
+                                          strut_small_source source, const small_points *q,
+                                          const small_points *v) {
+  bool damped = r->plan & STRUT_TERM_DAMPING;
+  small_bits at = small_bits_load(halves);
+  small4_span e = {0};
+  if (source != STRUT_SMALL_BOTH) {
+    const int p = source == STRUT_SMALL_SECOND;
+    strut_lanes x = p ? q->x.part[1] : q->x.part[0], y = p ? q->y.part[1] : q->y.part[0];
+    e.x = small_halves(x, at), e.y = small_halves(y, at);
+    strut_lanes u = p ? v->x.part[1] : v->x.part[0], w = p ? v->y.part[1] : v->y.part[0];
+    if (damped) e.u = small_halves(u, at), e.w = small_halves(w, at);
+    return e;
   }
-  return x;
+  e.x = small_gather(halves, q->x), e.y = small_gather(halves, q->y);
+  if (damped) e.u = small_gather(halves, v->x), e.w = small_gather(halves, v->y);
+  return e;
 }
 
 STRUT_SMALL_INLINE void small_members(const small_run *r, const small_rest *rest,
@@ -160,23 +165,27 @@ STRUT_SMALL_INLINE void small_members(const small_run *r, const small_rest *rest
     small4_powers powers = {0};
     small4_span d = {0};
     if (4 * g >= s->members) break;
-    d.x = small_difference(s, 4 * g, q->x), d.y = small_difference(s, 4 * g, q->y);
-    if (r->plan & STRUT_TERM_DAMPING)
-      d.u = small_difference(s, 4 * g, v->x), d.w = small_difference(s, 4 * g, v->y);
+    small4_span from = small_ends(r, s->from_halves + 4 * g, s->from_source[g], q, v);
+    d = small_ends(r, s->to_halves + 4 * g, s->to_source[g], q, v);
+    d.x -= from.x, d.y -= from.y;
+    if (r->plan & STRUT_TERM_DAMPING) d.u -= from.u, d.w -= from.w;
     small4_pull(r, rest, 4 * g, &d, ledger, &powers);
     px->part[g] = d.u, py->part[g] = d.w;
     if (!ledger) continue;
-    sum->drive += powers.drive, sum->lost += powers.lost, sum->both += powers.exchanged;
+    small4_powers *to = &sum->sum;
+    to->drive = g ? to->drive + powers.drive : powers.drive;
+    to->lost = g ? to->lost + powers.lost : powers.lost;
+    to->exchanged = g ? to->exchanged + powers.exchanged : powers.exchanged;
   }
-  sum->both += sum->lost;
 }
 #endif
 
 /* Constant forces, and then the pulls of the members in the scene's order. */
+#if STRUT_SMALL_WIDTH == 8
 STRUT_SMALL_INLINE small_points small_sum_pulls(const small_run *r, const small_pulls *px,
                                                 const small_pulls *py) {
   const strut_small_model *s = r->tables;
-  small_points f = {small_row_load(r->constant[0]), small_row_load(r->constant[1])};
+  small_points f = {small_row_load(r->inputs->constant[0]), small_row_load(r->inputs->constant[1])};
   for (int32_t k = 0, degree = s->degree; k < degree; k++) {
     const strut_small_pull *at = &s->pull[k];
     small_row x = small_gather_pulls(at, px), y = small_gather_pulls(at, py);
@@ -189,12 +198,40 @@ STRUT_SMALL_INLINE small_points small_sum_pulls(const small_run *r, const small_
   }
   return f;
 }
+#else
+STRUT_SMALL_INLINE small_points small_sum_pulls(const small_run *r, const small_pulls *px,
+                                                const small_pulls *py) {
+  small_points f = {small_row_load(r->inputs->constant[0]), small_row_load(r->inputs->constant[1])};
+  const strut_small_pull_turns *t = &r->tables->pull_turns;
+  int32_t k = 0;
+#pragma GCC unroll 3
+  for (int g = 0; g < 3; g++)
+    for (int32_t end = t->end[g]; k < end; k++) {
+      const strut_small_pull_turn *turn = &t->turn[k];
+      SMALL_EACH(h) {
+        small_bits at = small_bits_load(turn->halves + 4 * h);
+        small_bits sign = small_bits_load(turn->sign + 4 * h);
+        small_bits has = small_bits_load(turn->has + 4 * h);
+        small_bits x = (small_bits)small_halves(px->part[g], at) & has;
+        small_bits y = (small_bits)small_halves(py->part[g], at) & has;
+        f.x.part[h] += (strut_lanes)(x ^ sign), f.y.part[h] += (strut_lanes)(y ^ sign);
+      }
+    }
+  return f;
+}
+#endif
 
-/* What the ground does to the nodes that touch it, where it is booked. */
+/* What the ground takes from the nodes that touch it, where it is booked; 0 at all others. */
 typedef struct small_touch {
   unsigned touching; /* a bit of each lane */
-  small_row damped, rubbed, belt, exchanged;
+  small_row minus_damped, minus_rubbed, belt, exchanged;
 } small_touch;
+
+/* What the powers of one evaluation are made of, see small_ledger.h. */
+typedef struct small_entries {
+  small_powers members;
+  small_touch touch;
+} small_entries;
 
 /* The numbers of contact law at part p. */
 #define SMALL_CONTACT(field) small_load(c->field + p * SMALL_WIDTH)
@@ -241,6 +278,21 @@ STRUT_SMALL_INLINE small_real small_friction(const strut_small_contacts *c, int 
   return small_choose(SMALL_CONTACT_MASK(frictionless), zero, friction);
 }
 
+/* See ground_ledger; both_signs: what dampers do is exchanged by its size. */
+STRUT_SMALL_INLINE void small_book_contacts(const strut_contact_table *t, small_mask closed,
+                                            small_real damper, small_real into, small_real friction,
+                                            small_real slip, bool both_signs, int p,
+                                            small_touch *touch) {
+  small_real damped = small_keep(closed, damper * into);
+  small_real rubbed = small_keep(closed, friction * slip);
+  touch->minus_damped.part[p] = damped, touch->minus_rubbed.part[p] = rubbed;
+  touch->exchanged.part[p] = both_signs ? small_magnitude(damped) + small_magnitude(rubbed)
+                                        : small_magnitude(rubbed) - damped;
+  if (t->belt_speed == 0.0) return;
+  touch->belt.part[p] = small_keep(closed, friction * t->belt_speed);
+  touch->exchanged.part[p] += small_magnitude(touch->belt.part[p]);
+}
+
 /* See ground_touch: adds the ground's forces on the nodes of part p. */
 STRUT_SMALL_INLINE void small_ground_part(const small_run *r, int p, small_real x, small_real y,
                                           small_real u, small_real w, small_points *f, bool ledger,
@@ -256,6 +308,7 @@ STRUT_SMALL_INLINE void small_ground_part(const small_run *r, int p, small_real 
   small_mask closed = small_less(gap, zero) & SMALL_CONTACT_MASK(touches);
   unsigned closed_bits = small_set_bits(closed);
   touch->touching |= closed_bits << (p * SMALL_WIDTH);
+  if (SMALL_PARTS > 1 && !closed_bits) return;
   small_real elastic = SMALL_CONTACT(minus_stiffness) * gap;
   small_real damper = small_damper(c, p, elastic, into, laws);
   small_real normal = elastic + damper, slip = along - t->belt_speed, friction = zero;
@@ -264,141 +317,66 @@ STRUT_SMALL_INLINE void small_ground_part(const small_run *r, int p, small_real 
   f->x.part[p] = small_add_where(closed, fx, sloped ? friction * tx + normal * nx : friction);
   f->y.part[p] = small_add_where(closed, fy, sloped ? friction * ty + normal * ny : normal);
   if (!ledger) return;
-  touch->damped.part[p] = -damper * into;
-  touch->rubbed.part[p] = -friction * slip;
-  touch->exchanged.part[p] = touch->damped.part[p] + small_magnitude(touch->rubbed.part[p]);
-  if (t->belt_speed == 0.0) return;
-  touch->belt.part[p] = friction * t->belt_speed;
-  touch->exchanged.part[p] += small_magnitude(touch->belt.part[p]);
+  small_book_contacts(t, closed, damper, into, friction, slip, false, p, touch);
 }
 
 /* a = M^-1 f, and 0 where there is no mass to divide by. */
-STRUT_SMALL_INLINE small_row small_divide(const strut_small_model *s, int c, small_row f) {
-  const strut_small_column *column = s->column[c];
-  small_row a = small_permute(column, f);
-  SMALL_EACH(p)
-  a.part[p] = small_keep(small_mask_load(column->has + p * SMALL_WIDTH),
-                         small_load(column->inverse + p * SMALL_WIDTH) * a.part[p]);
-  for (int32_t j = 1, columns = s->columns; j < columns; j++) {
-    column = &s->column[c][j];
-    small_row x = small_permute(column, f);
-    SMALL_EACH(p)
-    a.part[p] = small_add_where(small_mask_load(column->has + p * SMALL_WIDTH), a.part[p],
-                                small_load(column->inverse + p * SMALL_WIDTH) * x.part[p]);
-  }
-  return a;
-}
-
 #if STRUT_SMALL_WIDTH == 8
-/* Powers in the order of strut_power. */
-typedef struct small_work {
-  __m512d sum;
-} small_work;
-
-/* Sums of the members' powers, place by place within groups of 4, and then of the contacts'. */
-STRUT_SMALL_INLINE small_work small_sum_powers(const small_run *r, const small_powers *m,
-                                               const small_touch *t) {
-  enum { DRIVE_LOST_BOTH = 0x49, CONTACT_FRICTION = 0x30, EXCHANGED = 0x40, BELT = 0x04 };
-  static const int64_t member[4][8] = {{0, 0, 0, 4, 0, 0, 8, 0},
-                                       {1, 0, 0, 5, 0, 0, 9, 0},
-                                       {2, 0, 0, 6, 0, 0, 10, 0},
-                                       {3, 0, 0, 7, 0, 0, 11, 0}};
-  static const int64_t contact[8][8] = {{0, 0, 0, 0, 0, 8, 0, 0},  {1, 1, 1, 1, 1, 9, 1, 1},
-                                        {2, 2, 2, 2, 2, 10, 2, 2}, {3, 3, 3, 3, 3, 11, 3, 3},
-                                        {4, 4, 4, 4, 4, 12, 4, 4}, {5, 5, 5, 5, 5, 13, 5, 5},
-                                        {6, 6, 6, 6, 6, 14, 6, 6}, {7, 7, 7, 7, 7, 15, 7, 7}};
-  __m512d sum = _mm512_setzero_pd();
-  if (r->plan & (STRUT_TERM_DRIVE | STRUT_TERM_DAMPING)) {
-    __m512d pair = _mm512_insertf64x4(_mm512_castpd256_pd512(m->drive), m->lost, 1);
-    __m512d both = _mm512_castpd256_pd512(m->both);
-#pragma GCC unroll 4
-    for (int l = 0; l < 4; l++)
-      sum += _mm512_maskz_permutex2var_pd(DRIVE_LOST_BOTH, pair,
-                                          (__m512i)small_bits_load(member[l]), both);
-  }
-  for (unsigned left = t->touching; left; left &= left - 1) {
-    __m512i at = (__m512i)small_bits_load(contact[__builtin_ctz(left)]);
-    __m512d x =
-        _mm512_maskz_permutex2var_pd(CONTACT_FRICTION, t->damped.part[0], at, t->rubbed.part[0]);
-    x = _mm512_mask_permutexvar_pd(x, EXCHANGED, at, t->exchanged.part[0]);
-    if (r->contacts->belt_speed != 0.0)
-      x = _mm512_mask_permutexvar_pd(x, BELT, at, t->belt.part[0]);
-    sum += x;
-  }
-  return (small_work){sum};
-}
-
-STRUT_SMALL_INLINE small_work small_work_load(const double *p) {
-  return (small_work){_mm512_loadu_pd(p)};
-}
-STRUT_SMALL_INLINE void small_work_store(double *p, small_work w) { _mm512_storeu_pd(p, w.sum); }
-STRUT_SMALL_INLINE void small_add_work(small_work *work, double weight, const small_work *power) {
-  work->sum += weight * power->sum;
-}
-STRUT_SMALL_INLINE void small_add_powers(small_work *to, const small_work *power) {
-  to->sum += power->sum;
+STRUT_SMALL_INLINE small_points small_divide_points(const strut_small_model *s,
+                                                    const small_points *f) {
+  const strut_small_column *column[2] = {s->column[0], s->column[1]};
+  small_real a[2], force[2] = {f->x.part[0], f->y.part[0]};
+#pragma GCC unroll 2
+  for (int c = 0; c < 2; c++)
+    a[c] = small_keep(
+        small_mask_load(column[c]->has),
+        small_load(column[c]->inverse) * small_gather(column[c]->lane, (small_row){{force[c]}}));
+  for (int32_t j = 1, columns = s->columns; j < columns; j++)
+#pragma GCC unroll 2
+    for (int c = 0; c < 2; c++) {
+      const strut_small_column *at = &column[c][j];
+      small_real x = small_gather(at->lane, (small_row){{force[c]}});
+      a[c] = small_add_where(small_mask_load(at->has), a[c], small_load(at->inverse) * x);
+    }
+  return (small_points){{{a[0]}}, {{a[1]}}};
 }
 #else
-/* Powers in the order of strut_power. */
-typedef struct small_work {
-  strut_lanes low, high;
-} small_work;
-
-STRUT_SMALL_INLINE small_work small_sum_powers(const small_run *r, const small_powers *m,
-                                               const small_touch *t) {
-  double damped[STRUT_SMALL_NODES], rubbed[STRUT_SMALL_NODES], belt[STRUT_SMALL_NODES];
-  double exchanged[STRUT_SMALL_NODES];
-  strut_lanes zero = {0}, sum = zero;
-  strut_lanes even = _mm256_unpacklo_pd(m->drive, m->lost),
-              odd = _mm256_unpackhi_pd(m->drive, m->lost);
-  strut_lanes even2 = _mm256_unpacklo_pd(m->both, zero), odd2 = _mm256_unpackhi_pd(m->both, zero);
-  sum += _mm256_permute2f128_pd(even, even2, 0x20);
-  sum += _mm256_permute2f128_pd(odd, odd2, 0x20);
-  sum += _mm256_permute2f128_pd(even, even2, 0x31);
-  sum += _mm256_permute2f128_pd(odd, odd2, 0x31);
-  double contact = 0.0, friction = 0.0, moved = 0.0, both = sum[2];
-  small_row_store(damped, t->damped), small_row_store(rubbed, t->rubbed);
-  small_row_store(exchanged, t->exchanged);
-  if (r->contacts->belt_speed != 0.0) small_row_store(belt, t->belt);
-  for (unsigned left = t->touching; left; left &= left - 1) {
-    int i = __builtin_ctz(left);
-    contact += damped[i], friction += rubbed[i], both += exchanged[i];
-    if (r->contacts->belt_speed != 0.0) moved += belt[i];
-  }
-  return (small_work){{sum[0], 0.0, moved, sum[1]}, {contact, friction, both, 0.0}};
+STRUT_SMALL_INLINE strut_lanes small_share(const strut_small_mass_turn *turn, int c, int h,
+                                           strut_lanes f) {
+  strut_lanes x = small_halves(f, small_bits_load(turn->halves[c] + 4 * h));
+  x *= small4_load(turn->minus_inverse[c] + 4 * h);
+  return (strut_lanes)((small_bits)x & small_bits_load(turn->has[c] + 4 * h));
 }
-
-STRUT_SMALL_INLINE small_work small_work_load(const double *p) {
-  return (small_work){small4_load(p), small4_load(p + 4)};
-}
-STRUT_SMALL_INLINE void small_work_store(double *p, small_work w) {
-  small4_store(p, w.low);
-  small4_store(p + 4, w.high);
-}
-STRUT_SMALL_INLINE void small_add_work(small_work *work, double weight, const small_work *power) {
-  work->low += weight * power->low;
-  work->high += weight * power->high;
-}
-STRUT_SMALL_INLINE void small_add_powers(small_work *to, const small_work *power) {
-  to->low += power->low;
-  to->high += power->high;
+/* Shares are taken off, of -0 first, so that lanes without one keep their bits. */
+STRUT_SMALL_INLINE small_points small_divide_points(const strut_small_model *s,
+                                                    const small_points *f) {
+  const strut_small_mass_turns *t = &s->mass_turns;
+  strut_lanes zero = small_all(-0.0);
+  small_points a = {{{zero, zero}}, {{zero, zero}}};
+  int32_t k = 0;
+#pragma GCC unroll 2
+  for (int g = 0; g < 2; g++)
+    for (int32_t end = t->end[g]; k < end; k++) SMALL_EACH(h) {
+        a.x.part[h] -= small_share(&t->turn[k], 0, h, f->x.part[g]);
+        a.y.part[h] -= small_share(&t->turn[k], 1, h, f->y.part[g]);
+      }
+  return a;
 }
 #endif
 
-/* Forces f and accelerations a at positions q and velocities v; the powers with the ledger. */
+/* Forces f and accelerations at positions q and velocities v; with the ledger what its powers are made of. */
 STRUT_SMALL_INLINE small_points small_accelerate(const small_run *r, const small_rest *rest,
                                                  const small_points *q, const small_points *v,
-                                                 bool ledger, small_points *f, small_work *power) {
+                                                 bool ledger, small_points *f,
+                                                 small_entries *entries) {
   small_pulls px, py;
-  small_powers members = {0};
-  small_touch touch = {0};
-  small_members(r, rest, q, v, ledger, &px, &py, &members);
+  if (ledger) *entries = (small_entries){0};
+  small_members(r, rest, q, v, ledger, &px, &py, &entries->members);
   *f = small_sum_pulls(r, &px, &py);
   if (r->plan & STRUT_TERM_CONTACT) SMALL_EACH(p)
   small_ground_part(r, p, q->x.part[p], q->y.part[p], v->x.part[p], v->y.part[p], f, ledger,
-                    &touch);
-  if (ledger) *power = small_sum_powers(r, &members, &touch);
-  return (small_points){small_divide(r->tables, 0, f->x), small_divide(r->tables, 1, f->y)};
+                    &entries->touch);
+  return small_divide_points(r->tables, f);
 }
 
 #endif

@@ -12,8 +12,6 @@
 #include "engine/integrate/small_rk4.h"
 #include "engine/integrate/small_verlet.h"
 
-#define STRUT_SMALL_COMMON (~(unsigned)(STRUT_TERM_SLACK | STRUT_TERM_SLOPE | STRUT_TERM_LAWS))
-
 #define STRUT_SMALL_METHOD(method)                                                                 \
   STRUT_SMALL_TARGET                                                                               \
   static void method##_common_with_ledger(const strut_model *model, strut_state *state,            \

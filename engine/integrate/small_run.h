@@ -8,6 +8,9 @@
 #include "engine/forces/small_drives.h"
 #include "engine/integrate/small_steps.h"
 
+/* Copies know these terms, or all. */
+#define STRUT_SMALL_COMMON (~(unsigned)(STRUT_TERM_SLACK | STRUT_TERM_SLOPE | STRUT_TERM_LAWS))
+
 /* The state proper, and what the latest evaluation left. */
 typedef struct small_motion {
   small_points q, v, f;
@@ -20,54 +23,67 @@ STRUT_SMALL_INLINE small_row small_ahead(small_row z, double h, small_row k) {
   return z;
 }
 
-/* A coordinate array, lane by lane. */
+/* A coordinate array, lane by lane; padding follows the nodes. */
+#if STRUT_SMALL_WIDTH == 8
 STRUT_SMALL_INLINE small_points small_read(const strut_small_model *s, const double *array) {
-  strut_small_row row[2] = {{0}};
-  for (int32_t i = 0; i < s->nodes && array; i++)
-    row[0][i] = array[2 * i], row[1][i] = array[2 * i + 1];
-  return (small_points){small_row_load(row[0]), small_row_load(row[1])};
+  static const int64_t even[8] = {0, 2, 4, 6, 8, 10, 12, 14}, odd[8] = {1, 3, 5, 7, 9, 11, 13, 15};
+  unsigned lanes = (1u << 2 * s->nodes) - 1;
+  __m512d low = _mm512_maskz_loadu_pd((__mmask8)lanes, array);
+  __m512d high = _mm512_maskz_loadu_pd((__mmask8)(lanes >> 8), array + 8);
+  return (small_points){{{_mm512_permutex2var_pd(low, (__m512i)small_bits_load(even), high)}},
+                        {{_mm512_permutex2var_pd(low, (__m512i)small_bits_load(odd), high)}}};
 }
 
 STRUT_SMALL_INLINE void small_write(const strut_small_model *s, const small_points *x,
                                     double *array) {
-  strut_small_row row[2];
-  small_row_store(row[0], x->x);
-  small_row_store(row[1], x->y);
-  for (int32_t i = 0; i < s->nodes; i++) array[2 * i] = row[0][i], array[2 * i + 1] = row[1][i];
+  static const int64_t first[8] = {0, 8, 1, 9, 2, 10, 3, 11},
+                       last[8] = {4, 12, 5, 13, 6, 14, 7, 15};
+  unsigned lanes = (1u << 2 * s->nodes) - 1;
+  __m512d a = x->x.part[0], b = x->y.part[0];
+  __m512d low = _mm512_permutex2var_pd(a, (__m512i)small_bits_load(first), b);
+  __m512d high = _mm512_permutex2var_pd(a, (__m512i)small_bits_load(last), b);
+  _mm512_mask_storeu_pd(array, (__mmask8)lanes, low);
+  _mm512_mask_storeu_pd(array + 8, (__mmask8)(lanes >> 8), high);
+}
+#else
+STRUT_SMALL_INLINE small_points small_read(const strut_small_model *s, const double *array) {
+  small_points x;
+  SMALL_EACH(p) {
+    strut_lanes low = {0}, high = {0};
+    if (s->nodes > 4 * p) low = small4_load(array + 8 * p);
+    if (s->nodes > 4 * p + 2) high = small4_load(array + 8 * p + 4);
+    x.x.part[p] = _mm256_permute4x64_pd(_mm256_unpacklo_pd(low, high), 0xd8);
+    x.y.part[p] = _mm256_permute4x64_pd(_mm256_unpackhi_pd(low, high), 0xd8);
+  }
+  return x;
 }
 
-/* Rest lengths before the drives change them, in the rows of `count` instants. */
-STRUT_SMALL_INLINE void small_fill_rest(const strut_model *model, const strut_state *state,
-                                        unsigned plan, int64_t count, small_rest *rows) {
-  bool driven = plan & STRUT_TERM_DRIVE;
-  const double *rest = driven ? state->rest : model->members.rest;
-  if (count > SMALL_INSTANTS) count = SMALL_INSTANTS;
-  if (!driven || !model->drives.count) count = 1;
-  for (int64_t h = 0; h < count; h++)
-    for (int32_t j = 0; j < STRUT_SMALL_SLOTS; j++) {
-      bool there = j < model->members.count;
-      rows[h].rest[j] = there ? rest[j] : 0.0;
-      rows[h].rate[j] = there ? state->rest_rate[j] : 0.0;
-    }
+STRUT_SMALL_INLINE void small_write(const strut_small_model *s, const small_points *x,
+                                    double *array) {
+  SMALL_EACH(p) {
+    strut_lanes a = _mm256_permute4x64_pd(x->x.part[p], 0xd8);
+    strut_lanes b = _mm256_permute4x64_pd(x->y.part[p], 0xd8);
+    if (s->nodes > 4 * p) small4_store(array + 8 * p, _mm256_unpacklo_pd(a, b));
+    if (s->nodes > 4 * p + 2) small4_store(array + 8 * p + 4, _mm256_unpackhi_pd(a, b));
+  }
 }
+#endif
 
 STRUT_SMALL_INLINE void small_begin(const strut_model *model, const strut_state *state,
                                     unsigned terms, int64_t instants, small_run *r,
-                                    small_rest *rows, small_motion *m) {
+                                    strut_small_inputs *inputs, small_rest *rows, small_motion *m) {
   const strut_small_model *s = model->small;
   r->tables = s;
   r->contacts = &model->contacts;
   r->plan = model->plan & terms;
-  small_points constant =
-      small_read(s, r->plan & STRUT_TERM_CONSTANT ? model->constant_force : NULL);
-  small_row_store(r->constant[0], constant.x);
-  small_row_store(r->constant[1], constant.y);
-  for (int32_t j = 0; j < STRUT_SMALL_SLOTS; j++) {
-    bool there = j < s->members;
-    r->slack_length_threshold[j] = there ? state->slack_length_threshold[j] : 0.0;
-    r->slack_force_threshold[j] = there ? state->slack_force_threshold[j] : 0.0;
-  }
-  small_fill_rest(model, state, r->plan, instants, rows);
+  r->inputs = inputs;
+  strut_small_inputs_read(model, state, inputs);
+  bool driven = r->plan & STRUT_TERM_DRIVE && model->drives.count;
+  strut_small_rest_fill(model, state,
+                        !driven                     ? 1
+                        : instants < SMALL_INSTANTS ? instants
+                                                    : SMALL_INSTANTS,
+                        rows);
   m->q = small_read(s, state->q), m->v = small_read(s, state->v);
   m->work = small_work_load(state->work);
   m->power = small_work_load(state->power);

@@ -27,10 +27,12 @@ STRUT_SMALL_INLINE void small_verlet_step(const small_run *r, const small_rest *
   small_work before = m->power;
   m->q.x = small_glide(m->q.x, dt, m->v.x, a->x), m->q.y = small_glide(m->q.y, dt, m->v.y, a->y);
   small_points predicted = {small_ahead(m->v.x, dt, a->x), small_ahead(m->v.y, dt, a->y)};
-  small_points next = small_accelerate(r, rest, &m->q, &predicted, ledger, &m->f, &m->power);
+  small_entries entries;
+  small_points next = small_accelerate(r, rest, &m->q, &predicted, ledger, &m->f, &entries);
   m->v.x = small_mean(m->v.x, half, a->x, next.x), m->v.y = small_mean(m->v.y, half, a->y, next.y);
   *a = next;
   if (!ledger) return;
+  m->power = small_sum_powers(r, &entries);
   small_add_powers(&before, &m->power);
   small_add_work(&m->work, half, &before);
 }
@@ -40,9 +42,10 @@ STRUT_SMALL_INLINE void small_verlet(const strut_model *model, strut_state *stat
                                      unsigned terms, bool ledger) {
   enum { MOST = SMALL_INSTANTS - 4 };
   small_run run;
+  strut_small_inputs inputs;
   small_rest rows[SMALL_INSTANTS];
   small_motion m;
-  small_begin(model, state, terms, count + 1, &run, rows, &m);
+  small_begin(model, state, terms, count + 1, &run, &inputs, rows, &m);
   small_points a = small_read(run.tables, kept->acceleration);
   m.power = small_work_load(kept->power);
   int stride = run.plan & STRUT_TERM_DRIVE && model->drives.count ? 1 : 0;

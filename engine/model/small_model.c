@@ -34,8 +34,6 @@ static void add_pull(strut_small_model *s, int64_t lane, int32_t member, int64_t
 static void list_members(const strut_model *model, strut_small_model *s) {
   const strut_member_table *t = &model->members;
   s->members = t->count;
-  for (int32_t j = 0; j < STRUT_SMALL_SLOTS; j++)
-    s->from_halves[j] = s->to_halves[j] = strut_small_halves(0);
   for (int32_t j = 0; j < t->count; j++) {
     s->from[j] = t->from[j] / 2, s->to[j] = t->to[j] / 2;
     s->from_halves[j] = strut_small_halves(s->from[j]);
@@ -44,6 +42,65 @@ static void list_members(const strut_model *model, strut_small_model *s) {
     add_pull(s, s->from[j], j, 0);
     add_pull(s, s->to[j], j, INT64_MIN);
   }
+  /* slots without a member, which have no stiffness, find their ends where the last member does */
+  for (int32_t j = t->count; j < STRUT_SMALL_SLOTS; j++) {
+    s->from_halves[j] = strut_small_halves(s->from[t->count - 1]);
+    s->to_halves[j] = strut_small_halves(s->to[t->count - 1]);
+  }
+}
+
+static strut_small_source source_of(const int64_t halves[4]) {
+  int second = 0;
+  for (int l = 0; l < 4; l++) second += halves[l] < 0;
+  return second == 0 ? STRUT_SMALL_FIRST : second == 4 ? STRUT_SMALL_SECOND : STRUT_SMALL_BOTH;
+}
+
+static int32_t larger(int32_t a, int32_t b) { return a > b ? a : b; }
+
+/* The turns of AVX2, from what is listed for whole rows. */
+static void list_pull_turns(strut_small_model *s) {
+  strut_small_pull_turns *t = &s->pull_turns;
+  for (int32_t g = 0, begin = 0; g < 3; begin = t->end[g++]) {
+    t->end[g] = begin;
+    for (int32_t l = 0; l < STRUT_SMALL_NODES; l++)
+      for (int32_t k = 0, at = begin; k < s->degree; k++) {
+        const strut_small_pull *p = &s->pull[k];
+        if (!p->has[l] || p->slot[l] / 4 != g) continue;
+        t->turn[at].halves[l] = p->slot_halves[l];
+        t->turn[at].sign[l] = p->sign[l];
+        t->turn[at++].has[l] = -1;
+        t->end[g] = larger(t->end[g], at);
+      }
+  }
+  /* where nothing pulls, -0 is added, which changes no bit */
+  for (int32_t k = 0; k < t->end[2]; k++)
+    for (int l = 0; l < STRUT_SMALL_NODES; l++)
+      if (!t->turn[k].has[l]) t->turn[k].sign[l] = INT64_MIN;
+}
+
+static void list_mass_turns(strut_small_model *s) {
+  strut_small_mass_turns *t = &s->mass_turns;
+  for (int32_t g = 0, begin = 0; g < 2; begin = t->end[g++]) {
+    t->end[g] = begin;
+    for (int32_t i = 0; i < 2 * STRUT_SMALL_NODES; i++)
+      for (int32_t c = i % 2, l = i / 2, k = 0, at = begin; k < s->columns; k++) {
+        const strut_small_column *p = &s->column[c][k];
+        if (!p->has[l] || p->lane[l] / 4 != g) continue;
+        t->turn[at].halves[c][l] = p->lane_halves[l];
+        t->turn[at].minus_inverse[c][l] = -p->inverse[l];
+        t->turn[at++].has[c][l] = -1;
+        t->end[g] = larger(t->end[g], at);
+      }
+  }
+}
+
+static void list_turns(strut_small_model *s) {
+  for (int32_t g = 0; g < STRUT_SMALL_SLOTS / 4; g++) {
+    s->from_source[g] = source_of(s->from_halves + 4 * g);
+    s->to_source[g] = source_of(s->to_halves + 4 * g);
+  }
+  list_pull_turns(s);
+  list_mass_turns(s);
 }
 
 static void add_entry(strut_small_model *s, int c, int32_t j, int64_t row, int64_t column,
@@ -100,6 +157,7 @@ bool strut_small_model_compile(strut_model *model) {
   s->nodes = model->node_count;
   list_members(model, s);
   for (int c = 0; c < 2; c++) list_masses(model, s, c);
+  list_turns(s);
   list_contacts(model, &s->contact);
   model->small = s;
   return true;

@@ -55,6 +55,36 @@ typedef struct strut_small_pull {
   strut_small_mask has;
 } strut_small_pull;
 
+/**
+ * The same for AVX2, whose registers of 4 lanes are permuted one at a time: turns, each of one source register. Those
+ * of register g lie before end[g]. Members, and columns, ascend at each node, so all of one register come before those
+ * of the next, and sums keep their order.
+ */
+typedef struct strut_small_pull_turn {
+  strut_small_lanes halves, sign;
+  strut_small_mask has;
+} strut_small_pull_turn;
+typedef struct strut_small_pull_turns {
+  strut_small_pull_turn turn[STRUT_SMALL_MEMBERS];
+  int32_t end[3];
+} strut_small_pull_turns;
+typedef struct strut_small_mass_turn {
+  strut_small_lanes halves[2]; /* of x and of y */
+  strut_small_mask has[2];
+  strut_small_row minus_inverse[2];
+} strut_small_mass_turn;
+typedef struct strut_small_mass_turns {
+  strut_small_mass_turn turn[STRUT_SMALL_NODES];
+  int32_t end[2];
+} strut_small_mass_turns;
+
+/** Of which registers of 4 lanes the ends of 4 members are. */
+typedef enum strut_small_source {
+  STRUT_SMALL_FIRST,
+  STRUT_SMALL_SECOND,
+  STRUT_SMALL_BOTH
+} strut_small_source;
+
 typedef struct strut_small_contacts {
   strut_small_row minus_stiffness, minus_damping, dissipation;
   strut_small_row mu_static, mu_static_backward, minus_mu_kinetic, minus_mu_kinetic_backward;
@@ -71,6 +101,9 @@ typedef struct strut_small_model {
   strut_small_contacts contact;
   int32_t nodes, members, degree, columns;
   strut_small_level level; /* what the processor has; a test may lower it */
+  strut_small_pull_turns pull_turns;
+  strut_small_mass_turns mass_turns;
+  strut_small_source from_source[STRUT_SMALL_SLOTS / 4], to_source[STRUT_SMALL_SLOTS / 4];
 } strut_small_model;
 
 /** Do these terms, and no others, make a model that is stepped so? */

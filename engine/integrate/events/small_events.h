@@ -1,0 +1,290 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Hot: forces and accelerations of a small model with the contacts' modes frozen, in vector registers. Every
+ * number goes through the operations of event_kernel.h in their order, so that it has the same bits.
+ */
+#ifndef STRUT_ENGINE_INTEGRATE_EVENTS_SMALL_EVENTS_H
+#define STRUT_ENGINE_INTEGRATE_EVENTS_SMALL_EVENTS_H
+
+#include "engine/integrate/events/event_kernel.h"
+#include "engine/integrate/events/small_trials.h"
+#include "engine/integrate/small_run.h"
+
+/* Contacts at one evaluation, each at its node's lane. */
+typedef struct small_contacts {
+  small_row gap, into, slip, normal, friction, applied;
+} small_contacts;
+
+/* A step under way: what it reads, and what the latest evaluation left. */
+typedef struct small_events {
+  small_run run;
+  const strut_small_modes *modes;
+  strut_event_stepper *stepper;
+  small_points structure, force; /* without the ground, and with it */
+  small_work structure_power, power;
+  small_contacts contacts;
+  const small_rest *rest; /* at its time, without the offset [s] */
+  double time;
+} small_events;
+
+#define SMALL_MODE(field) small_load(m->field + p * SMALL_WIDTH)
+#define SMALL_MODE_MASK(field) small_mask_load(m->field + p * SMALL_WIDTH)
+
+STRUT_SMALL_INLINE small_events small_events_begin(const strut_model *model, strut_event_stepper *l,
+                                                   unsigned terms) {
+  return (small_events){.run = {.tables = model->small,
+                                .contacts = &model->contacts,
+                                .inputs = &l->small->inputs,
+                                .plan = model->plan & terms},
+                        .modes = l->small,
+                        .stepper = l};
+}
+
+STRUT_SMALL_INLINE small_real small_nearer(small_mask back, const double *backward,
+                                           const double *forward, bool laws) {
+  small_real most = small_load(forward);
+  return laws ? small_choose(back, small_load(backward), most) : most;
+}
+
+/* Coefficient of static friction against a force in this direction. */
+STRUT_SMALL_INLINE small_real small_static(const strut_small_contacts *c, int p, small_real towards,
+                                           bool laws) {
+  small_real zero = {0};
+  return small_nearer(small_less(towards, zero), c->mu_static_backward + p * SMALL_WIDTH,
+                      c->mu_static + p * SMALL_WIDTH, laws);
+}
+
+/* See contact_normal_force: with explicit dampers. */
+STRUT_SMALL_INLINE small_real small_normal_force(const strut_small_contacts *c,
+                                                 const strut_small_modes *m, int p, small_real gap,
+                                                 small_real into, bool laws) {
+  small_real zero = {0}, spring = SMALL_CONTACT(minus_stiffness) * gap;
+  small_mask acts = SMALL_MODE_MASK(damper_on);
+  if (m->any_by_sign) acts |= SMALL_MODE_MASK(damper_by_sign) & small_less(into, zero);
+  small_real normal = small_add_where(acts, spring, SMALL_CONTACT(minus_damping) * into);
+  if (!laws) return normal;
+  small_real other = spring - spring * SMALL_CONTACT(dissipation) * into;
+  other = small_choose(small_less(zero, other) | small_at_least(gap, zero), other, zero);
+  return small_choose(SMALL_CONTACT_MASK(hunt_crossley), other, normal);
+}
+
+/* See friction_in_mode. */
+STRUT_SMALL_INLINE small_real small_friction_in_mode(const strut_small_contacts *c,
+                                                     const strut_small_modes *m, int p,
+                                                     small_real normal, small_real applied,
+                                                     bool laws) {
+  small_real friction = small_keep(SMALL_MODE_MASK(rubs), SMALL_MODE(slip_factor) * normal);
+  if (!m->any_band) return friction;
+  small_real most = small_static(c, p, applied, laws) * normal;
+  small_real held = small_choose(small_less(applied, -most), most, -applied);
+  held = small_choose(small_less(most, applied), -most, held);
+  return small_choose(SMALL_MODE_MASK(band), held, friction);
+}
+
+/* See add_contact_forces. */
+STRUT_SMALL_INLINE void small_add_ground(small_events *e, int p, const small_points *q,
+                                         const small_points *v) {
+  const strut_small_contacts *c = &e->run.tables->contact;
+  const strut_contact_table *t = e->run.contacts;
+  const strut_small_modes *m = e->modes;
+  bool laws = e->run.plan & STRUT_TERM_LAWS, sloped = e->run.plan & STRUT_TERM_SLOPE;
+  small_real x = q->x.part[p], gap = q->y.part[p] - t->height, along = v->x.part[p];
+  small_real into = v->y.part[p], fx = e->force.x.part[p], fy = e->force.y.part[p], applied = fx;
+  small_real nx = small_all(t->normal[0]), ny = small_all(t->normal[1]);
+  small_real tx = small_all(t->tangent[0]), ty = small_all(t->tangent[1]);
+  if (sloped) {
+    gap = x * nx + gap * ny;
+    small_real u = along, w = into;
+    into = u * nx + w * ny, along = u * tx + w * ty;
+    applied = fx * tx + fy * ty;
+  }
+  small_mask closed = SMALL_MODE_MASK(closed);
+  small_real normal = small_normal_force(c, m, p, gap, into, laws);
+  small_real friction = small_friction_in_mode(c, m, p, normal, applied, laws);
+  e->contacts.gap.part[p] = gap, e->contacts.into.part[p] = into;
+  e->contacts.slip.part[p] = along - t->belt_speed, e->contacts.applied.part[p] = applied;
+  e->contacts.normal.part[p] = normal, e->contacts.friction.part[p] = friction;
+  small_real px = sloped ? friction * tx + normal * nx : friction;
+  small_real py = sloped ? friction * ty + normal * ny : normal;
+  e->force.x.part[p] = small_add_where(closed, fx, px);
+  e->force.y.part[p] = small_add_where(closed, fy, py);
+}
+
+/* The multipliers that hold stuck contacts on level ground, in place: `x` of (l->stuck_count). */
+STRUT_SMALL_INLINE void small_multipliers(const strut_event_stepper *l, double *x) {
+  const double *f = l->stuck_factor;
+  int32_t n = l->stuck_count;
+  if (n == 1) {
+    x[0] /= l->response[l->stuck[0]].tangent;
+    return;
+  }
+  for (int32_t i = 0; i < n; i++) {
+    for (int32_t j = 0; j < i; j++) x[i] -= f[i * n + j] * x[j];
+    x[i] /= f[i * n + i];
+  }
+  for (int32_t i = n - 1; i >= 0; i--) {
+    for (int32_t j = i + 1; j < n; j++) x[i] -= f[j * n + i] * x[j];
+    x[i] /= f[i * n + i];
+  }
+}
+
+/* See strut_solve_stick_constraints. */
+STRUT_SMALL_INLINE void small_hold(small_events *e, small_points *a) {
+  const strut_event_stepper *l = e->stepper;
+  const strut_small_modes *m = e->modes;
+  strut_small_row along, more = {0};
+  double x[STRUT_SMALL_NODES];
+  small_row_store(along, a->x);
+  for (int32_t k = 0; k < l->stuck_count; k++) x[k] = -along[m->stuck_lane[k]];
+  small_multipliers(l, x);
+  for (int32_t k = 0; k < l->stuck_count; k++) {
+    small_real force = small_all(x[k]);
+    more[m->stuck_lane[k]] = x[k];
+    SMALL_EACH(p)
+    a->x.part[p] = small_add_where(small_mask_load(m->stuck[k].has + p * SMALL_WIDTH), a->x.part[p],
+                                   small_load(m->stuck[k].x + p * SMALL_WIDTH) * force);
+  }
+  SMALL_EACH(p) {
+    small_real zero = {0};
+    small_mask held = SMALL_MODE_MASK(held);
+    a->x.part[p] = small_choose(held, zero, a->x.part[p]);
+    e->contacts.friction.part[p] =
+        small_add_where(held, e->contacts.friction.part[p], small_load(more + p * SMALL_WIDTH));
+  }
+}
+
+/* See add_contact_powers. */
+STRUT_SMALL_INLINE void small_add_ground_powers(small_events *e) {
+  const strut_small_contacts *c = &e->run.tables->contact;
+  const strut_small_modes *m = e->modes;
+  small_touch touch = {0};
+  SMALL_EACH(p) {
+    const small_contacts *o = &e->contacts;
+    touch.touching |= small_set_bits(SMALL_MODE_MASK(closed)) << (p * SMALL_WIDTH);
+    small_real damper = o->normal.part[p] - SMALL_CONTACT(minus_stiffness) * o->gap.part[p];
+    small_book_contacts(e->run.contacts, SMALL_MODE_MASK(closed), damper, o->into.part[p],
+                        o->friction.part[p], o->slip.part[p], true, p, &touch);
+  }
+  small_add_contacts(&e->run, &touch, &e->power);
+}
+
+/* Forces of all but the ground into e->structure and e->force. */
+STRUT_SMALL_INLINE void small_structure(small_events *e, const small_rest *rest,
+                                        const small_points *q, const small_points *v, bool ledger) {
+  small_pulls px, py;
+  small_powers members = {0};
+  small_members(&e->run, rest, q, v, ledger, &px, &py, &members);
+  e->structure = e->force = small_sum_pulls(&e->run, &px, &py);
+  if (ledger) e->structure_power = e->power = small_sum_members(&members);
+}
+
+/* See accelerate_in_modes. */
+STRUT_SMALL_INLINE small_points small_accelerate_in_modes(small_events *e, const small_rest *rest,
+                                                          const small_points *q,
+                                                          const small_points *v, bool ledger) {
+  const strut_event_stepper *l = e->stepper;
+  small_structure(e, rest, q, v, ledger);
+  if (l->closed_count) SMALL_EACH(p) small_add_ground(e, p, q, v);
+  small_points a = small_divide_points(e->run.tables, &e->force);
+  if (l->stuck_count) small_hold(e, &a);
+  if (ledger && l->closed_count) small_add_ground_powers(e);
+  return a;
+}
+
+/* Some lane of a row's parts. */
+STRUT_SMALL_INLINE bool small_any(small_mask mask) { return small_set_bits(mask) != 0; }
+
+/* See contradicts_at_stage in adaptive.c. */
+STRUT_SMALL_INLINE bool small_contradicts_at_stage(const small_events *e) {
+  const strut_small_contacts *c = &e->run.tables->contact;
+  const strut_small_modes *m = e->modes;
+  const double part = STRUT_STAGE_ERROR;
+  bool laws = e->run.plan & STRUT_TERM_LAWS, any = false;
+  if (!m->any_band && !m->any_held) return false;
+  SMALL_EACH(p) {
+    small_real zero = {0}, normal = e->contacts.normal.part[p];
+    small_real friction = e->contacts.friction.part[p], applied = e->contacts.applied.part[p];
+    small_real size = small_magnitude(applied), rubs = small_magnitude(friction);
+    small_real held = small_static(c, p, -friction, laws) * normal;
+    small_real most = small_static(c, p, applied, laws) * normal;
+    small_mask bad = SMALL_MODE_MASK(stick) & small_less(held * (1.0 + part), rubs);
+    bad |= SMALL_MODE_MASK(band) & SMALL_MODE_MASK(drops) & small_less(most * (1.0 + part), size);
+    bad |= SMALL_MODE_MASK(pushes) & small_less(size, most * (1.0 - part));
+    bad |= SMALL_MODE_MASK(creep) & small_less(SMALL_MODE(side) * friction,
+                                               SMALL_MODE(minus_kinetic) * normal * (1.0 + part));
+    any = any || small_any(bad & SMALL_MODE_MASK(closed) & small_less(zero, normal));
+  }
+  return any;
+}
+
+/* The contacts that touch, one by one, into end->touch; a: the acceleration there. */
+STRUT_SMALL_INLINE void small_keep_contacts(const small_events *e, const strut_model *model,
+                                            const small_points *a, strut_step_end *end) {
+  const strut_event_stepper *l = e->stepper;
+  const strut_contact_table *c = e->run.contacts;
+  const small_contacts *o = &e->contacts;
+  strut_small_row row[8];
+  small_points along = *a;
+  if (e->run.plan & STRUT_TERM_SLOPE) SMALL_EACH(p) {
+      small_real x = a->x.part[p], y = a->y.part[p];
+      along.x.part[p] = x * c->tangent[0] + y * c->tangent[1];
+      along.y.part[p] = x * c->normal[0] + y * c->normal[1];
+    }
+  small_row_store(row[0], o->gap), small_row_store(row[1], o->into),
+      small_row_store(row[2], o->slip);
+  small_row_store(row[3], along.y), small_row_store(row[4], along.x);
+  small_row_store(row[5], o->normal), small_row_store(row[6], o->friction);
+  small_row_store(row[7], o->applied);
+  for (int32_t k = 0; k < l->closed_count; k++) {
+    int32_t i = l->closed[k], n = model->contacts.entry[i].node;
+    end->touch[i] = (strut_touch){.gap = row[0][n],
+                                  .into = row[1][n],
+                                  .slip = row[2][n],
+                                  .into_rate = row[3][n],
+                                  .slip_rate = row[4][n],
+                                  .normal = row[5][n],
+                                  .friction = row[6][n],
+                                  .applied = row[7][n]};
+  }
+}
+
+/* Rest lengths and forces as the general kernel leaves them in the state after the latest evaluation. */
+STRUT_SMALL_INLINE void small_leave(const small_events *e, const strut_model *model,
+                                    strut_state *state, bool ledger) {
+  small_write(e->run.tables, &e->force, state->force);
+  if (ledger) small_work_store(state->power, e->power);
+  if (!(e->run.plan & STRUT_TERM_DRIVE)) return;
+  state->drive_time = e->time;
+  for (int32_t i = 0; i < model->drives.count; i++) {
+    int32_t j = model->drives.member[i];
+    state->rest[j] = e->rest->rest[j], state->rest_rate[j] = e->rest->rate[j];
+  }
+}
+
+/* The step's end, with all that belongs to it, as evaluate_step_end leaves it. */
+STRUT_SMALL_INLINE void small_keep_end(const small_events *e, const strut_model *model,
+                                       const small_points *q, const small_points *v,
+                                       const small_points *a, strut_step_end *end, bool ledger) {
+  const strut_small_model *s = e->run.tables;
+  small_write(s, q, end->q), small_write(s, v, end->v), small_write(s, a, end->a);
+  small_write(s, &e->structure, end->structure);
+  if (e->stepper->closed_count) small_keep_contacts(e, model, a, end);
+  if (!ledger) return;
+  small_work_store(end->structure_power, e->structure_power);
+  small_work_store(end->power, e->power);
+}
+
+/* Rest lengths at the instants t + part[i] h, which ascend, into the rows of the modes. */
+STRUT_SMALL_INLINE const small_rest *small_rest_at(const strut_model *model,
+                                                   const strut_state *state, strut_small_modes *m,
+                                                   double t, double h, const double *part,
+                                                   int32_t count) {
+  double time[SMALL_INSTANTS];
+  if (!(model->plan & STRUT_TERM_DRIVE)) return m->rest;
+  for (int32_t i = 0; i < (count + 3) / 4 * 4; i++)
+    time[i] = t + part[i < count ? i : count - 1] * h + state->time_offset;
+  small_drive(model, time, count, m->rest);
+  return m->rest;
+}
+
+#endif

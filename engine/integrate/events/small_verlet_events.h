@@ -1,0 +1,250 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Hot: velocity Verlet between events for small models while nothing happens; see verlet_events.c and
+ * implicit_ground.h, whose operations these are.
+ */
+#ifndef STRUT_ENGINE_INTEGRATE_EVENTS_SMALL_VERLET_EVENTS_H
+#define STRUT_ENGINE_INTEGRATE_EVENTS_SMALL_VERLET_EVENTS_H
+
+#include "engine/integrate/events/small_checks.h"
+#include "engine/integrate/small_verlet.h"
+
+/* Steps due if nothing happens: where they begin, how long they are, and when their ends are. */
+typedef struct small_plan {
+  int32_t count;
+  int64_t step[STRUT_SMALL_INSTANTS + 1];
+  double done[STRUT_SMALL_INSTANTS + 1], h[STRUT_SMALL_INSTANTS], time[STRUT_SMALL_INSTANTS + 4];
+} small_plan;
+
+/* What an evaluation leaves for an end of a step. */
+typedef struct small_kept {
+  small_contacts contacts;
+  small_points structure;
+  small_work structure_power;
+} small_kept;
+
+/* Fills the plan with at most `most` steps, up to grid point `end` and before the next break. */
+STRUT_SMALL_INLINE void small_plan_steps(strut_state *state, strut_event_stepper *l, double dt,
+                                         int64_t end, int32_t most, small_plan *plan) {
+  int64_t step = state->step;
+  double done = l->done;
+  int32_t n = 0, switches = l->switches;
+  while (n < most && state->step < end) {
+    double t = (double)state->step * dt + l->done, h = next_step_size(state, l, dt);
+    if (t + h + state->time_offset > l->next_break - STRUT_AT_BREAK * dt) break;
+    plan->step[n] = state->step, plan->done[n] = l->done, plan->h[n] = h;
+    plan->time[n] = evaluation_time(l, t, dt) + h;
+    advance_within_grid(state, l, h, dt);
+    n++;
+  }
+  plan->step[n] = state->step, plan->done[n] = l->done;
+  plan->count = n;
+  state->step = step, l->done = done, l->switches = switches;
+}
+
+/* Rest lengths at the ends of the planned steps, from row 1 on. */
+STRUT_SMALL_INLINE void small_drive_plan(const strut_model *model, const strut_state *state,
+                                         strut_small_modes *m, const small_plan *plan) {
+  double time[SMALL_INSTANTS];
+  for (int32_t i = 0; i < (plan->count + 3) / 4 * 4; i++)
+    time[i] = plan->time[i < plan->count ? i : plan->count - 1] + state->time_offset;
+  small_drive(model, time, plan->count, m->rest + 1);
+}
+
+/* See implicit_damper. */
+STRUT_SMALL_INLINE small_real small_implicit_damper(const strut_small_contacts *c, int p,
+                                                    small_real spring, small_real free,
+                                                    small_real half, bool laws) {
+  small_real zero = {0}, damping = -SMALL_CONTACT(minus_damping);
+  small_mask smooth = SMALL_CONTACT_MASK(hunt_crossley);
+  if (laws) {
+    small_real rate = small_keep(small_less(zero, spring), SMALL_CONTACT(dissipation) * spring);
+    damping = small_choose(smooth, rate, damping);
+  }
+  small_real into = free / (1.0 + half * damping), force = -damping * into;
+  small_real damper = small_choose(small_less(zero, into), zero, force);
+  if (laws) {
+    small_real pulls = small_keep(small_less(zero, spring), -spring);
+    small_real other = small_choose(small_at_least(force, -spring), force, pulls);
+    damper = small_choose(smooth, other, damper);
+  }
+  return small_keep(small_less(zero, damping), damper);
+}
+
+/*
+ * The ground on contacts that do not answer to each other: adds to a1, the acceleration of the structure
+ * alone. v, a0: at the begin of the step; speed: predicted.
+ */
+STRUT_SMALL_INLINE void small_implicit_ground(small_events *e, double h, const small_points *q,
+                                              const small_points *v, const small_points *a0,
+                                              const small_points *speed, small_points *a1) {
+  const strut_small_contacts *c = &e->run.tables->contact;
+  const strut_contact_table *t = e->run.contacts;
+  const strut_small_modes *m = e->modes;
+  bool laws = e->run.plan & STRUT_TERM_LAWS;
+  small_contacts *o = &e->contacts;
+  small_row x, y;
+  SMALL_EACH(p) {
+    small_real gap = q->y.part[p] - t->height, applied = e->force.x.part[p];
+    small_real spring = SMALL_CONTACT(minus_stiffness) * gap, half = 0.5 * h * SMALL_MODE(normal);
+    small_real free = v->y.part[p] + 0.5 * h * (a0->y.part[p] + a1->y.part[p]) + half * spring;
+    small_real normal = spring + small_implicit_damper(c, p, spring, free, half, laws);
+    small_real friction = small_friction_in_mode(c, m, p, normal, applied, laws);
+    if (m->any_held)
+      friction = small_choose(SMALL_MODE_MASK(stick) | SMALL_MODE_MASK(creep),
+                              -a1->x.part[p] / SMALL_MODE(tangent), friction);
+    o->gap.part[p] = gap, o->applied.part[p] = applied;
+    o->slip.part[p] = speed->x.part[p] - t->belt_speed;
+    x.part[p] = o->friction.part[p] = friction;
+    y.part[p] = o->normal.part[p] = normal;
+  }
+  x = small_permute(&m->answer[0], x), y = small_permute(&m->answer[1], y);
+  SMALL_EACH(p) {
+    small_real zero = {0};
+    small_mask has = small_mask_load(m->answer[0].has + p * SMALL_WIDTH);
+    a1->x.part[p] = small_add_where(has, a1->x.part[p], SMALL_MODE(answer[0].inverse) * x.part[p]);
+    a1->y.part[p] = small_add_where(has, a1->y.part[p], SMALL_MODE(answer[1].inverse) * y.part[p]);
+    if (m->any_held)
+      a1->x.part[p] =
+          small_choose(SMALL_MODE_MASK(stick) | SMALL_MODE_MASK(creep), zero, a1->x.part[p]);
+  }
+}
+
+/* Does a cable cease or begin to act at this end of a step? See law_value and measure_cable. */
+STRUT_SMALL_INLINE bool small_cable_switches(const small_events *e, const small_rest *rest,
+                                             const small_points *q, const small_points *v) {
+  const strut_small_model *s = e->run.tables;
+  const strut_small_modes *m = e->modes;
+  bool any = false;
+  for (int j = 0; j < s->members; j += SMALL_WIDTH) {
+    small_real x = small_difference(s, j, q->x), y = small_difference(s, j, q->y), zero = {0};
+    small_real length = small_root(x * x + y * y), one = small_all(1.0);
+    small_real inverse = small_keep(small_less(zero, length), one / length);
+    small_real rate =
+        (small_difference(s, j, v->x) * x + small_difference(s, j, v->y) * y) * inverse;
+    small_real stretch = length - small_load(rest->rest + j);
+    small_real own = rate - small_load(rest->rate + j);
+    small_real tension = small_load(s->stiffness + j) * stretch + small_load(s->damping + j) * own;
+    small_real elastic = small_load(m->elastic + j) * stretch;
+    small_real lesser = small_choose(small_less(elastic, tension), elastic, tension);
+    small_mask slack = small_mask_load(m->slack + j) & small_less(zero, lesser);
+    small_mask taut = small_mask_load(m->taut + j) & small_less(tension, zero);
+    any = any || small_any(slack | taut);
+  }
+  return any;
+}
+
+/* The steps until something happens, in registers. */
+STRUT_SMALL_INLINE void small_verlet_events(const strut_model *model, strut_state *state,
+                                            strut_event_stepper *l, double dt, int64_t end,
+                                            unsigned terms, bool ledger) {
+  enum { FIRST = 4 };
+  const strut_small_model *s = model->small;
+  strut_small_modes *m = l->small;
+  small_events e = small_events_begin(model, l, terms);
+  small_kept kept;
+  small_plan plan;
+  small_work gained = small_work_load(l->gained), work = small_work_load(state->work);
+  small_work power = small_work_load(l->now->power);
+  small_points q = small_read(s, state->q), v = small_read(s, state->v);
+  small_points a = small_read(s, l->now->a), q1, v1, a1;
+  int64_t begin = state->step;
+  int32_t taken = 0, n = 0, most = FIRST;
+  int stride = e.run.plan & STRUT_TERM_DRIVE ? 1 : 0;
+  bool tried = false, crosses = false;
+  double t = 0.0;
+  do {
+    if (n && stride) m->rest[0] = m->rest[n];
+    small_plan_steps(state, l, dt, end, most, &plan);
+    if (plan.count && stride) small_drive_plan(model, state, m, &plan);
+    for (n = 0; n < plan.count; n++) {
+      const double h = plan.h[n], half = 0.5 * h;
+      q1.x = small_glide(q.x, h, v.x, a.x), q1.y = small_glide(q.y, h, v.y, a.y);
+      crosses = small_crosses(&e, &q1);
+      if (crosses) break;
+      small_points speed = {small_ahead(v.x, h, a.x), small_ahead(v.y, h, a.y)};
+      small_structure(&e, m->rest + (n + 1) * stride, &q1, &speed, ledger);
+      a1 = small_divide_points(s, &e.force);
+      if (l->closed_count) small_implicit_ground(&e, h, &q1, &v, &a, &speed, &a1);
+      v1.x = small_mean(v.x, half, a.x, a1.x), v1.y = small_mean(v.y, half, a.y, a1.y);
+      SMALL_EACH(p) {
+        e.contacts.into.part[p] = v1.y.part[p];
+        e.contacts.slip.part[p] = v1.x.part[p] - e.run.contacts->belt_speed;
+      }
+      if (ledger && l->closed_count) {
+        small_work structure = e.power;
+        e.power = (small_work){0};
+        small_add_ground_powers(&e);
+        small_add_powers(&structure, &e.power);
+        e.power = structure;
+      }
+      if (!l->all_sliding && l->closed_count) small_settle_ties(&e);
+      if (ledger) {
+        small_work sum = power;
+        small_add_powers(&sum, &e.power);
+        gained = small_scaled_work(half, &sum);
+      }
+      tried = (l->closed_count && small_contradicts(&e)) ||
+              (l->law_count && small_cable_switches(&e, m->rest + (n + 1) * stride, &q1, &v1));
+      if (tried) break;
+      kept = (small_kept){e.contacts, e.structure, e.structure_power};
+      q = q1, v = v1, a = a1, power = e.power;
+      if (ledger) small_add_powers(&work, &gained);
+      t = plan.time[n];
+    }
+    taken += n;
+    state->step = plan.step[n], l->done = plan.done[n];
+    most = STRUT_SMALL_INSTANTS - 1;
+  } while (n && n == plan.count && state->step < end && !crosses && !tried);
+  if (state->step > begin) l->switches = 0;
+  l->tried = tried;
+  if (!taken && !tried) return;
+  state->evaluations += taken + tried;
+  if (ledger) small_work_store(l->gained, gained);
+  if (taken) {
+    small_events at_now = e;
+    at_now.contacts = kept.contacts, at_now.structure = kept.structure;
+    at_now.structure_power = kept.structure_power, at_now.power = power;
+    small_keep_end(&at_now, model, &q, &v, &a, l->now, ledger);
+    if (ledger) small_work_store(state->work, work);
+    l->fresh = true;
+    e.rest = m->rest + n * stride, e.time = t;
+    small_leave(&e, model, state, ledger);
+    strut_event_measure(model, state, l, l->now);
+  }
+  if (!tried) return;
+  small_keep_end(&e, model, &q1, &v1, &a1, l->next, ledger);
+  e.rest = m->rest + (n + 1) * stride, e.time = plan.time[n];
+  small_leave(&e, model, state, ledger);
+}
+
+/* Copies for models with common terms only and for all, with the ledger and without. */
+#define STRUT_SMALL_QUIET(name, steps)                                                             \
+  STRUT_SMALL_TARGET                                                                               \
+  static void name##_common_with_ledger(const strut_model *model, strut_state *state,              \
+                                        strut_event_stepper *l, double dt, int64_t end) {          \
+    steps(model, state, l, dt, end, STRUT_SMALL_COMMON, true);                                     \
+  }                                                                                                \
+  STRUT_SMALL_TARGET                                                                               \
+  static void name##_common(const strut_model *model, strut_state *state, strut_event_stepper *l,  \
+                            double dt, int64_t end) {                                              \
+    steps(model, state, l, dt, end, STRUT_SMALL_COMMON, false);                                    \
+  }                                                                                                \
+  STRUT_SMALL_TARGET                                                                               \
+  static void name##_any(const strut_model *model, strut_state *state, strut_event_stepper *l,     \
+                         double dt, int64_t end) {                                                 \
+    steps(model, state, l, dt, end, STRUT_TERMS_ALL, state->ledger);                               \
+  }                                                                                                \
+                                                                                                   \
+  double STRUT_SMALL_NAME(name)(const strut_model *model, strut_state *state,                      \
+                                strut_event_stepper *l, double dt, int64_t end) {                  \
+    if (model->plan & ~STRUT_SMALL_COMMON)                                                         \
+      name##_any(model, state, l, dt, end);                                                        \
+    else if (state->ledger)                                                                        \
+      name##_common_with_ledger(model, state, l, dt, end);                                         \
+    else                                                                                           \
+      name##_common(model, state, l, dt, end);                                                     \
+    return 0.0;                                                                                    \
+  }
+
+#endif
