@@ -7,23 +7,12 @@
  * against the fastest speed so far for velocities. A step within which a contact's gap or slip dips
  * below its mode's edge and comes back is rejected as well: its ends alone would not show that.
  */
+#include "engine/integrate/events/dormand_prince.h"
 #include "engine/integrate/events/event_kernel.h"
+#include "engine/integrate/events/small_trials.h"
 #include "engine/integrate/integrator.h"
 
-enum { PAIR = 7, V = 1, A = V + PAIR, KEPT = A + PAIR, STAGES = KEPT + 2 };
-
-static const double ahead[PAIR] = {0.0, 1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1.0, 1.0};
-static const double table[PAIR][PAIR - 1] = {
-    {0},
-    {1.0 / 5},
-    {3.0 / 40, 9.0 / 40},
-    {44.0 / 45, -56.0 / 15, 32.0 / 9},
-    {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729},
-    {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
-    {35.0 / 384, 0.0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
-/* Weights of order 5 less those of order 4. */
-static const double difference[PAIR] = {71.0 / 57600,      0.0,        -71.0 / 16695, 71.0 / 1920,
-                                        -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
+enum { V = 1, A = V + PAIR, KEPT = A + PAIR, STAGES = KEPT + 2 };
 
 /* sum_j weight[j] k[j] over `count` stages at i; where these are constants no weight is looked at. */
 STRUT_INLINE strut_lanes weighted(double *const *k, const double *weight, int count, int32_t i) {
@@ -104,9 +93,6 @@ static double dip(double g0, double d0, double g1, double d1, double faint) {
   return g0 + x * (d0 + x * (b + x * c)) < -faint ? x : 0.0;
 }
 
-/* Forces of stages, which are of lower order, may be off by this part without a word. */
-static const double STAGE_ERROR = 0.01;
-
 /*
  * Does contact i, as a stage has it, contradict its mode by more than a stage's own error? Where the ends
  * of the step do not, what began within it would have ended within it unseen.
@@ -116,7 +102,7 @@ static bool contradicts_at_stage(const strut_model *model, const strut_event_ste
   const strut_contact_entry *e = &model->contacts.entry[i];
   const strut_touch *o = &l->next->touch[i];
   const strut_friction *f = &e->friction;
-  double part = STAGE_ERROR, held = strut_friction_static(f, -o->friction) * o->normal,
+  double part = STRUT_STAGE_ERROR, held = strut_friction_static(f, -o->friction) * o->normal,
          most = strut_friction_static(f, o->applied) * o->normal;
   if (!(o->normal > 0.0)) return false;
   switch ((strut_contact_mode)l->mode[i]) {
@@ -145,7 +131,9 @@ static double earliest_slack_dip(const strut_model *model, strut_state *state,
                                  const strut_event_stepper *l, double h) {
   double first = 0.0, faint = 0.01 * fmax(0.1 * l->tolerance, 1e-12) * model->size;
   strut_event_measure(model, state, l, l->next);
-  for (int32_t k = 0; k < l->law_count; k++) {
+  int32_t count = strut_laws_of(l);
+  for (int32_t n = 0; n < count; n++) {
+    int32_t k = strut_law_of(l, n);
     double side = l->acting[k] ? 1.0 : -1.0;
     if (l->laws[k].event != STRUT_EVENT_ACTS) continue;
     double from = side * l->now->stretch[k], to = side * l->next->stretch[k];
@@ -163,7 +151,9 @@ STRUT_INLINE double earliest_dip(const strut_model *model, const strut_event_ste
   const strut_contact_table *c = &model->contacts;
   double first = 0.0, part = fmax(0.1 * l->tolerance, 1e-12);
   double faint[2] = {0.01 * part * model->size, part * l->fastest}; /* of a gap, of a slip */
-  for (int32_t i = 0; i < c->count; i++) {
+  int32_t count = strut_contacts_of(model, l);
+  for (int32_t k = 0; k < count; k++) {
+    int32_t i = strut_contact_of(l, k);
     strut_touch from, to;
     measure_at_end(c, l, l->now, i, terms, &from);
     measure_at_end(c, l, l->next, i, terms, &to);
@@ -191,6 +181,19 @@ static const double LEAST_SPLIT = 1e-4;
 /* The error that makes the next step end there. */
 static double error_to_reach(double part) { return fmax(1.01, pow(0.9 / part, 5.0)); }
 
+/* What the ends of a step of sufficient accuracy, and stages from `broken` on, say about the time between. */
+STRUT_INLINE void look_between(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                               double h, double broken, unsigned terms) {
+  if (!(l->error <= 1.0)) return;
+  double part = model->contacts.count ? earliest_dip(model, l, h, terms) : 0.0;
+  double slack = l->law_count ? earliest_slack_dip(model, state, l, h) : 0.0;
+  if (slack > 0.0 && (part == 0.0 || slack < part)) part = slack;
+  if (broken > 0.0 && (part == 0.0 || broken < part) && h > LEAST_SPLIT * l->longest &&
+      strut_event_first(model, state, l, h).kind == STRUT_EVENT_NONE)
+    part = broken;
+  if (part > 0.0) l->error = error_to_reach(part);
+}
+
 STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *l,
                        double t, double h, unsigned terms, bool ledger) {
   double *v[PAIR], *a[PAIR];
@@ -214,22 +217,50 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
   }
   evaluate_step_end(model, state, l, t + h, l->next, terms, ledger);
   l->error = error_of(model, l, h, v, a);
-  if (!(l->error <= 1.0)) return;
-  double part = model->contacts.count ? earliest_dip(model, l, h, terms) : 0.0;
-  double slack = l->law_count ? earliest_slack_dip(model, state, l, h) : 0.0;
-  if (slack > 0.0 && (part == 0.0 || slack < part)) part = slack;
-  if (broken > 0.0 && (part == 0.0 || broken < part) && h > LEAST_SPLIT * l->longest &&
-      strut_event_first(model, state, l, h).kind == STRUT_EVENT_NONE)
-    part = broken;
-  if (part > 0.0) l->error = error_to_reach(part);
+  look_between(model, state, l, h, broken, terms);
 }
 
 STRUT_EVENT_TRIAL(adaptive, take)
 
-static const strut_tableau pair = {
-    .stages = PAIR - 1, .velocities = V, .ahead = ahead, .weight = table[0]};
-static const strut_step_formula stepper = {
-    .trial = adaptive_trial, .stages = STAGES, .exact = true, .adaptive = true, .tableau = &pair};
+/* The step of a small model in registers, see small_adaptive.h; else by the general kernel. */
+static void trial(const strut_model *model, strut_state *state, strut_event_stepper *l, double t,
+                  double h) {
+  strut_small_trial *small = STRUT_SMALL_EVENTS(model, state, l, strut_small_adaptive);
+  if (small) {
+    double broken = small(model, state, l, t, h);
+    look_between(model, state, l, h, broken, STRUT_TERMS_COMMON);
+  } else {
+    adaptive_trial(model, state, l, t, h);
+  }
+}
+
+static void advance_until_event(const strut_model *model, strut_state *state,
+                                strut_event_stepper *l, double dt, int64_t end) {
+  strut_small_quiet *small = STRUT_SMALL_EVENTS(model, state, l, strut_small_adaptive_quiet);
+  if (!small || !strut_small_is_quiet(state, l)) return;
+  double broken = small(model, state, l, dt, end);
+  if (l->tried)
+    look_between(model, state, l, next_step_size(state, l, dt), broken, STRUT_TERMS_COMMON);
+}
+
+static void look_between_of_region(const strut_model *model, strut_state *state,
+                                   strut_event_stepper *l, double h, double broken) {
+  look_between(model, state, l, h, broken, STRUT_TERMS_COMMON);
+}
+
+static const strut_tableau pair = {.stages = PAIR - 1,
+                                   .velocities = V,
+                                   .ahead = ahead,
+                                   .weight = table[0],
+                                   .difference = difference};
+static const strut_step_formula stepper = {.trial = trial,
+                                           .stages = STAGES,
+                                           .exact = true,
+                                           .adaptive = true,
+                                           .advance_until_event = advance_until_event,
+                                           .tableau = &pair,
+                                           .contradicts_at_stage = any_contradicts_at_stage,
+                                           .look_between = look_between_of_region};
 
 static void *create(const strut_model *model, strut_state *state,
                     const strut_integrator_settings *settings) {

@@ -3,12 +3,17 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/integrate/events/contact_coupling.h"
 #include "engine/integrate/events/event_kernel.h"
+#include "engine/integrate/events/local_events.h"
+#include "engine/integrate/events/small_modes.h"
 
 /* Entries below this part of a column's largest one change no bit that matters. */
 static const double NEGLIGIBLE = 1e-18;
 /* Sets of stuck contacts above this size are solved for by sweeps, without a matrix. */
 enum { LARGEST_FACTOR = 512 };
+/* So many stuck contacts push column by column; more of them by one solution with the mass matrix. */
+enum { FEW_COLUMNS = 16 };
 /* Steps are not made shorter than by this on a contact's account: its damper is implicit anyway. */
 static const double MOST_REFINED = 64.0;
 
@@ -187,7 +192,8 @@ strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *
   l->body_seen = strut_arena_allocate(&state->arena, (size_t)c->count, sizeof *l->body_seen);
   l->sliding = strut_arena_allocate(&state->arena, (size_t)c->count, sizeof *l->sliding);
   if (!l->stuck_factor || !l->stuck_work || !l->body_seen || !l->sliding) return STRUT_NO_MEMORY;
-  return find_bodies(model, l);
+  strut_status status = strut_contact_coupling_create(model, state, l);
+  return status ? status : find_bodies(model, l);
 }
 
 void strut_apply_contact_impulse(const strut_event_stepper *l, int32_t i,
@@ -266,11 +272,21 @@ static void list_sliding_contacts(const strut_model *model, strut_event_stepper 
   }
 }
 
+static void factor_matrix(const strut_model *model, strut_event_stepper *l) {
+  if (l->coupling)
+    strut_contact_coupling_factor(model, l);
+  else
+    factor_stuck(model, l, NULL);
+}
+
 void strut_update_active_set(const strut_model *model, strut_event_stepper *l) {
+  strut_small_modes_change(l);
   l->closed_count = l->stuck_count = 0;
   l->contacts_decoupled = model->contacts.normal[0] == 0.0 && !has_moving_axes(model);
-  for (int32_t i = 0; i < model->contacts.count; i++) l->body_seen[i] = false;
-  for (int32_t i = 0; i < model->contacts.count; i++) {
+  int32_t count = strut_contacts_of(model, l);
+  for (int32_t k = 0; k < count; k++) l->body_seen[l->body[strut_contact_of(l, k)]] = false;
+  for (int32_t k = 0; k < count; k++) {
+    int32_t i = strut_contact_of(l, k);
     l->outward[i] = l->mode[i] == STRUT_MODE_OPEN ? 1.0 : -1.0;
     if (l->mode[i] == STRUT_MODE_OPEN) continue;
     if (l->body_seen[l->body[i]]) l->contacts_decoupled = false;
@@ -279,11 +295,16 @@ void strut_update_active_set(const strut_model *model, strut_event_stepper *l) {
     if (l->mode[i] == STRUT_MODE_STICK || l->mode[i] == STRUT_MODE_CREEP)
       if (l->response[i].tangent > 0.0) l->stuck[l->stuck_count++] = i;
   }
+  if (l->within) {
+    l->all_sliding = l->contacts_decoupled = false;
+    strut_local_factor(model, l);
+    return;
+  }
   list_sliding_contacts(model, l);
   if (l->stuck_count > l->stuck_room)
     l->stuck_count = -l->stuck_count;
   else if (l->stuck_count > 1 && !l->now->frame && !has_moving_masses(model))
-    factor_stuck(model, l, NULL);
+    factor_matrix(model, l);
 }
 
 /* Rate of the sliding speed of a contact under the accelerations x. */
@@ -351,6 +372,8 @@ STRUT_INLINE void hold_stuck(const strut_model *model, strut_event_stepper *l, d
   for (int32_t k = 0; k < n; k++) x[k] = -along(c, l->stuck[k], a, frame);
   if (n == 1) {
     x[0] /= tangent_compliance(l, l->stuck[0], frame);
+  } else if (l->coupling) {
+    strut_contact_coupling_solve(l, x);
   } else {
     const double *f = l->stuck_factor;
     for (int32_t i = 0; i < n; i++) {
@@ -362,9 +385,12 @@ STRUT_INLINE void hold_stuck(const strut_model *model, strut_event_stepper *l, d
       x[i] /= f[i * n + i];
     }
   }
+  bool together = l->coupling && !model->mass->diagonal && n > FEW_COLUMNS;
+  if (together) strut_contact_coupling_push(model, l, x, a);
   for (int32_t k = 0; k < n; k++) {
     int32_t i = l->stuck[k];
-    strut_apply_contact_impulse(l, i, strut_axes_of_contact(c, frame, i), 0.0, x[k], a);
+    if (!together)
+      strut_apply_contact_impulse(l, i, strut_axes_of_contact(c, frame, i), 0.0, x[k], a);
     end->touch[i].friction += x[k];
     still(c, i, a, frame);
   }

@@ -4,6 +4,7 @@
 
 #include "engine/forces/drive.h"
 #include "engine/integrate/events/event_kernel.h"
+#include "engine/integrate/events/local_events.h"
 
 /* At rest on the ground is what is slower than this part of size times the contact's frequency. */
 static const double TIE = 1e-12;
@@ -28,7 +29,10 @@ static void evaluate_now(const strut_model *model, strut_state *state, strut_eve
 void strut_evaluate_acceleration(const strut_model *model, strut_state *state,
                                  strut_event_stepper *l, double t) {
   bool fresh = l->fresh;
-  evaluate_now(model, state, l, t);
+  if (l->within)
+    strut_local_evaluate(model, state, l, t);
+  else
+    evaluate_now(model, state, l, t);
   /* a rejected step has taken the sensors further */
   if (fresh && model->feedback.relay_count) strut_drive_apply(model, state, t);
   strut_event_measure(model, state, l, l->now);
@@ -57,7 +61,7 @@ static void snap(const strut_model *model, strut_event_stepper *l, int32_t i, do
   v[1] += more * axes.tangent[1];
 }
 
-static void set_acting(strut_state *state, strut_event_stepper *l, int32_t k, bool pulls) {
+void strut_cable_set_acting(strut_state *state, strut_event_stepper *l, int32_t k, bool pulls) {
   int32_t j = l->laws[k].member;
   l->acting[k] = pulls;
   l->fresh = false;
@@ -168,14 +172,18 @@ static void start_laws(const strut_model *model, strut_state *state, strut_event
   bool changed = false, memory = model->plan & STRUT_TERM_MEMORY;
   if (memory) strut_drive_apply(model, state, t);
   if (memory) strut_memory_thaw(model, state, l);
-  for (int32_t k = 0; k < l->law_count; k++)
+  int32_t laws = strut_laws_of(l);
+  for (int32_t n = 0; n < laws; n++) {
+    int32_t k = strut_law_of(l, n);
     if (l->laws[k].event == STRUT_EVENT_KINK)
       set_piece(state, l, k, -1);
     else if (l->laws[k].event == STRUT_EVENT_ACTS)
-      set_acting(state, l, k, true);
+      strut_cable_set_acting(state, l, k, true);
+  }
   if (memory) strut_memory_drop_gone(model, state, l);
   derive_consistently(model, state, l, t);
-  for (int32_t k = 0; k < l->law_count; k++)
+  for (int32_t n = 0; n < laws; n++) {
+    int32_t k = strut_law_of(l, n);
     if (l->laws[k].event == STRUT_EVENT_KINK) {
       find_piece(model, state, l, k);
       changed = true;
@@ -185,9 +193,10 @@ static void start_laws(const strut_model *model, strut_state *state, strut_event
       strut_memory_start(model, state, l, k);
       changed = true;
     } else if (!(l->now->stretch[k] > 0.0 && l->now->tension[k] > 0.0)) {
-      set_acting(state, l, k, false);
+      strut_cable_set_acting(state, l, k, false);
       changed = true;
     }
+  }
   if (changed) derive_consistently(model, state, l, t);
 }
 
@@ -201,8 +210,10 @@ void strut_modes_start(const strut_model *model, strut_state *state, strut_event
                        double t) {
   l->fresh = false;
   strut_surface_move(model, state, l->now, t);
-  for (int32_t i = 0; i < model->contacts.count; i++) {
+  int32_t contacts = strut_contacts_of(model, l);
+  for (int32_t k = 0; k < contacts; k++) {
     strut_touch o;
+    int32_t i = strut_contact_of(l, k);
     l->mode[i] = STRUT_MODE_OPEN;
     measure_at_end(&model->contacts, l, l->now, i, STRUT_TERMS_ALL, &o);
     if (o.gap < 0.0 || (o.gap == 0.0 && o.into <= 0.0)) close_contact(model, l, i, -1);
@@ -287,7 +298,7 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_event
     }
     case STRUT_EVENT_DAMPER: l->damper[i] = (int8_t)-l->damper[i]; break;
     case STRUT_EVENT_ACTS:
-      set_acting(state, l, i, !l->acting[i]);
+      strut_cable_set_acting(state, l, i, !l->acting[i]);
       if (l->laws[i].whole) strut_memory_apply(model, state, l, i, t);
       break;
     case STRUT_EVENT_KINK: pass_kink(model, state, l, i); break;

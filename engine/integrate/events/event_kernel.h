@@ -325,6 +325,23 @@ STRUT_INLINE double next_step_size(const strut_state *state, const strut_event_s
   return h > rest * (1.0 - 1e-9) ? rest : h;
 }
 
+/* New step after an error of l->error in a method of fifth order. */
+STRUT_INLINE void control_step(strut_event_stepper *l, double h, bool whole) {
+  double factor = 0.9 * pow(fmax(l->error, 1e-10), -0.2);
+  factor = factor < 0.2 ? 0.2 : factor > 5.0 ? 5.0 : factor;
+  if (!whole || factor < 1.0 || factor * h > l->h) l->h = factor * h;
+}
+
+/* Has the method made all evaluations that it may? */
+STRUT_INLINE bool is_spent(const strut_state *state) {
+  return state->most_evaluations > 0 && state->evaluations > state->most_evaluations;
+}
+
+/* Is it to give up, for that or on an interrupt? */
+STRUT_INLINE bool is_wanted_back(const strut_state *state) {
+  return is_spent(state) || (state->interrupt && *state->interrupt);
+}
+
 /* The time at which a step from t is evaluated; see moment_before. */
 STRUT_INLINE double evaluation_time(const strut_event_stepper *l, double t, double dt) {
   return l->next_break < HUGE_VAL ? t - moment_before(t, dt) : t;

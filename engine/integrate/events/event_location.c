@@ -117,8 +117,8 @@ static double cubic_root(double g0, double d0, double g1, double d1) {
     double slope = 6.0 * x * r * (g1 - g0) + d0 * r * (r - 2.0 * x) + d1 * x * (x - 2.0 * r);
     *(value > 0.0 ? &low : &high) = x;
     double next = x - value / slope;
+    if (fabs(next - x) <= 1e-15) break; /* before the bracket is asked, which x itself bounds */
     if (!(next > low && next < high)) next = 0.5 * (low + high);
-    if (fabs(next - x) <= 1e-16) break;
     x = next;
   }
   return x;
@@ -205,7 +205,9 @@ static void measure_relay(const strut_model *model, const strut_state *state,
 /* The rest lengths are those of the end. */
 static void measure_laws(const strut_model *model, const strut_state *state,
                          const strut_event_stepper *l, const strut_step_end *end) {
-  for (int32_t k = 0; k < l->law_count; k++)
+  int32_t count = strut_laws_of(l);
+  for (int32_t n = 0; n < count; n++) {
+    int32_t k = strut_law_of(l, n);
     if (l->laws[k].member >= 0)
       measure_cable(model, state, l->laws[k].member, end, k);
     else if (l->laws[k].event == STRUT_EVENT_RELAY)
@@ -214,6 +216,7 @@ static void measure_laws(const strut_model *model, const strut_state *state,
       strut_memory_measure(model, state, l, end, k);
     else
       measure_element(model, state, &l->laws[k], end, k);
+  }
 }
 
 void strut_event_measure(const strut_model *model, const strut_state *state,
@@ -230,40 +233,58 @@ static bool closes(const strut_contact_table *c, int32_t i, const strut_event_st
   return to.into < 0.0;
 }
 
-STRUT_INLINE strut_event first_event(const strut_model *model, const strut_state *state,
-                                     const strut_event_stepper *l, double h, unsigned terms) {
+/* What ends a mode of contact i, if it comes before `first`. */
+STRUT_INLINE void keep_first_of(const strut_model *model, const strut_event_stepper *l, int32_t i,
+                                double h, unsigned terms, strut_event *first) {
   const strut_contact_table *c = &model->contacts;
-  strut_event first = {STRUT_EVENT_NONE, 0, 1.0};
-  int32_t k = 0;
-  for (int32_t i = 0; i < c->count; i++) {
-    if (k < l->closed_count && l->closed[k] == i) {
-      const strut_touch *o = &l->next->touch[i];
-      strut_event_kind kind = contradicting_event(&c->entry[i], o, l->mode[i], l->side[i]);
-      if (kind) keep_first(model, l, kind, i, h, &first);
-      k++;
-      int32_t nearest;
-      if (frames_of(l->next, terms) && strut_surface_facet_margin(c, l, l->next, i, &nearest) < 0.0)
-        keep_first(model, l, STRUT_EVENT_FACET, i, h, &first);
-      if (!l->stepper->exact) continue;
-      /* a gap that rounding left above 0 at touchdown is closing: only one that grows has opened */
-      if (o->gap > 0.0 && o->into > 0.0) keep_first(model, l, STRUT_EVENT_OPEN, i, h, &first);
-      if (l->damper[i] && (l->damper[i] > 0 ? o->into > 0.0 : o->into < 0.0) &&
-          c->entry[i].damping * fabs(o->into) > FAINT * fabs(o->normal))
-        keep_first(model, l, STRUT_EVENT_DAMPER, i, h, &first);
-    } else if (gap_at_end(c, l, i, l->next, terms) < 0.0 && closes(c, i, l)) {
-      keep_first(model, l, STRUT_EVENT_TOUCH, i, h, &first);
-    }
+  if (l->mode[i] == STRUT_MODE_OPEN) {
+    if (gap_at_end(c, l, i, l->next, terms) < 0.0 && closes(c, i, l))
+      keep_first(model, l, STRUT_EVENT_TOUCH, i, h, first);
+    return;
   }
+  const strut_touch *o = &l->next->touch[i];
+  strut_event_kind kind = contradicting_event(&c->entry[i], o, l->mode[i], l->side[i]);
+  if (kind) keep_first(model, l, kind, i, h, first);
+  int32_t nearest;
+  if (frames_of(l->next, terms) && strut_surface_facet_margin(c, l, l->next, i, &nearest) < 0.0)
+    keep_first(model, l, STRUT_EVENT_FACET, i, h, first);
+  if (!l->stepper->exact) return;
+  /* a gap that rounding left above 0 at touchdown is closing: only one that grows has opened */
+  if (o->gap > 0.0 && o->into > 0.0) keep_first(model, l, STRUT_EVENT_OPEN, i, h, first);
+  if (l->damper[i] && (l->damper[i] > 0 ? o->into > 0.0 : o->into < 0.0) &&
+      c->entry[i].damping * fabs(o->into) > FAINT * fabs(o->normal))
+    keep_first(model, l, STRUT_EVENT_DAMPER, i, h, first);
+}
+
+/* whole: contacts and laws are all that there are, not those of a list. */
+STRUT_INLINE strut_event first_event(const strut_model *model, const strut_state *state,
+                                     const strut_event_stepper *l, double h, bool whole,
+                                     unsigned terms) {
+  strut_event first = {STRUT_EVENT_NONE, 0, 1.0};
+  int32_t contacts = whole ? model->contacts.count : strut_contacts_of(model, l);
+  int32_t laws = whole ? l->law_count : strut_laws_of(l);
+  for (int32_t k = 0; k < contacts; k++)
+    keep_first_of(model, l, whole ? k : strut_contact_of(l, k), h, terms, &first);
   strut_event_measure(model, state, l, l->next);
-  for (int32_t j = 0; j < l->law_count; j++)
+  for (int32_t k = 0; k < laws; k++) {
+    int32_t j = whole ? k : strut_law_of(l, k);
     if (law_value(l, l->next, j) < 0.0) keep_first(model, l, l->laws[j].event, j, h, &first);
+  }
+  return first;
+}
+
+strut_event strut_event_of_contact(const strut_model *model, const strut_event_stepper *l,
+                                   int32_t i, double h) {
+  strut_event first = {STRUT_EVENT_NONE, 0, 1.0};
+  keep_first_of(model, l, i, h, STRUT_TERMS_COMMON, &first);
   return first;
 }
 
 strut_event strut_event_first(const strut_model *model, const strut_state *state,
                               const strut_event_stepper *l, double h) {
-  return l->now->frame ? first_event(model, state, l, h, STRUT_TERMS_ALL)
-                       : first_event(model, state, l, h, STRUT_TERMS_COMMON);
+  if (l->now->frame) return first_event(model, state, l, h, false, STRUT_TERMS_ALL);
+  if (l->within) return first_event(model, state, l, h, false, STRUT_TERMS_COMMON);
+  return first_event(model, state, l, h, true, STRUT_TERMS_COMMON);
 }
 
 /* First fraction in [0, 1] where gap + speed x + bend x^2 falls below 0; 2 if it does not. */

@@ -10,6 +10,8 @@
 #include "engine/forces/unbalance.h"
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/integrate/events/event_log.h"
+#include "engine/integrate/events/local_events.h"
+#include "engine/integrate/events/small_modes.h"
 #include "engine/integrate/events/variation.h"
 #include "engine/model/element_compile.h"
 
@@ -17,7 +19,7 @@
 static const double AT_ONCE = 1e-9;
 /* After so many switches without a step, or within one step of the grid, one is taken whatever the
    modes say: switches may follow each other faster and faster without end (Zeno). */
-enum { MOST_AT_ONCE = 8, MOST_SWITCHES = 2000, MOST_TRIALS = 60 };
+enum { MOST_AT_ONCE = 8, MOST_TRIALS = 60 };
 
 /* What contacts of surfaces need beside the others. */
 static bool make_frames(const strut_model *model, strut_arena *arena, strut_step_end *end) {
@@ -29,10 +31,11 @@ static bool make_frames(const strut_model *model, strut_arena *arena, strut_step
   return end->frame && (end->motion || !c->moves);
 }
 
-static bool make_end(const strut_model *model, strut_arena *arena, strut_step_end *end, bool own) {
+bool strut_step_end_create(const strut_model *model, strut_arena *arena, strut_step_end *end,
+                           bool borrowed) {
   size_t length = (size_t)model->length, switches = strut_most_law_switches(model) + 1;
-  if (!own) end->q = strut_arena_allocate(arena, length, sizeof(double));
-  if (!own) end->v = strut_arena_allocate(arena, length, sizeof(double));
+  if (!borrowed) end->q = strut_arena_allocate(arena, length, sizeof(double));
+  if (!borrowed) end->v = strut_arena_allocate(arena, length, sizeof(double));
   end->a = strut_arena_allocate(arena, length, sizeof(double));
   end->structure = strut_arena_allocate(arena, length, sizeof(double));
   end->touch = strut_arena_allocate(arena, (size_t)model->contacts.count, sizeof *end->touch);
@@ -125,10 +128,12 @@ void *strut_event_stepper_create(const strut_model *model, strut_state *state,
   l->now = &l->end[0], l->next = &l->end[1];
   l->now->q = state->q, l->now->v = state->v;
   l->tolerance = settings->tolerance;
-  if (!make_end(model, &state->arena, l->now, true) ||
-      !make_end(model, &state->arena, l->next, false) || !make_arrays(model, state, l) ||
-      !list_laws(model, state, l) || !make_held(model, state) ||
-      strut_event_stepper_prepare(model, state, settings, l))
+  if (!strut_step_end_create(model, &state->arena, l->now, true) ||
+      !strut_step_end_create(model, &state->arena, l->next, false) ||
+      !make_arrays(model, state, l) || !list_laws(model, state, l) || !make_held(model, state) ||
+      strut_small_modes_create(model, state, l) ||
+      strut_event_stepper_prepare(model, state, settings, l) ||
+      strut_local_events_create(model, state, settings, l))
     return NULL;
   return l;
 }
@@ -157,6 +162,7 @@ void strut_event_stepper_restart(const strut_model *model, strut_state *state, v
   l->at_once = l->switches = 0;
   l->pushed = -1;
   l->tried = false;
+  if (l->small) l->small->rows_current = false;
   l->next_break =
       strut_drive_next_break(model, state, t + state->time_offset + STRUT_AT_BREAK * dt);
   if (l->next_break < HUGE_VAL) t += moment_before(t, dt);
@@ -210,13 +216,16 @@ static void pass_break(const strut_model *model, strut_state *state, strut_event
 typedef struct search {
   double low, high;
   double x, value, last_x, last_value;
+  double low_value, high_value; /* of a region's search, which uses both */
 } search;
 
 static search begin_search(double before, double fraction, double after, double first) {
   return (search){.high = fraction,
                   .x = first,
                   .last_x = before > 0.0 ? 0.0 : fraction,
-                  .last_value = before > 0.0 ? before : after};
+                  .last_value = before > 0.0 ? before : after,
+                  .low_value = before,
+                  .high_value = after};
 }
 
 /* Newton's step where the slope is known, else the secant's; halves where they leave the bracket. */
@@ -228,9 +237,29 @@ static double next_point(search *s, double slope) {
   return next > s->low && next < s->high ? next : 0.5 * (s->low + s->high);
 }
 
+/* The root of the parabola through the ends of the bracket and the point between, which narrows it. */
+static double next_by_parabola(search *s) {
+  double low = s->low_value, high = s->high_value, width = s->high - s->low;
+  double x = (s->x - s->low) / width, y = s->value, chord = (y - low) / x;
+  double bend = ((high - y) / (1.0 - x) - chord), slope = chord - bend * x;
+  *(s->value < 0.0 ? &s->high_value : &s->low_value) = s->value;
+  double root = -2.0 * low / (slope - sqrt(fmax(0.0, slope * slope - 4.0 * bend * low)));
+  double next = s->low + root * width;
+  *(s->value < 0.0 ? &s->high : &s->low) = s->x;
+  s->last_x = s->x, s->last_value = s->value;
+  return next > s->low && next < s->high ? next : 0.5 * (s->low + s->high);
+}
+
 /* The latest correction was small and did not make the value smaller: the rest is rounding. */
 static bool stagnant(const search *s) {
   return fabs(s->x - s->last_x) <= 1e-6 && fabs(s->value) > 0.1 * fabs(s->last_value);
+}
+
+/* Near enough for a region, which is joined to the step of the whole with an error of its own: what is left is
+   below a thousandth of what the method leaves. */
+static bool is_near(const search *s, double rate) {
+  double slope = rate != 0.0 ? rate : (s->value - s->last_value) / (s->x - s->last_x);
+  return fabs(s->value) <= 1e-8 * fabs(slope);
 }
 
 /* Where forces balance until then, an edge is left so gently that this part of a step is no matter. */
@@ -270,21 +299,15 @@ static double retake(const strut_model *model, strut_state *state, strut_event_s
     if (strut_event_rate(l, l->next, event->kind, event->index, &rate)) rate *= h;
     if (fabs(s.value) <= 1e-13 * fabs(rate)) break;
     bool tied = tied_at_edge(model, event, s.value);
+    if (l->within && !tied && is_near(&s, rate)) break;
     if (s.value == 0.0 || (k > 0 && !tied && stagnant(&s))) break;
     if (tied && s.high - s.x <= BALANCED) break;
-    double x = next_point(&s, rate);
+    double x = l->within && rate == 0.0 ? next_by_parabola(&s) : next_point(&s, rate);
     if (tied) x = 0.5 * (s.low + s.high);
     if (s.high - s.low <= 1e-13) break;
     s.x = x;
   }
   return s.x * h;
-}
-
-/* New step after an error of l->error in a method of fifth order. */
-static void control(strut_event_stepper *l, double h, bool whole) {
-  double factor = 0.9 * pow(fmax(l->error, 1e-10), -0.2);
-  factor = factor < 0.2 ? 0.2 : factor > 5.0 ? 5.0 : factor;
-  if (!whole || factor < 1.0 || factor * h > l->h) l->h = factor * h;
 }
 
 /* The trial over h, and what happens in it. False: the error is too large; l->h says what to try. */
@@ -294,7 +317,7 @@ static bool try_step(const strut_model *model, strut_state *state, strut_event_s
   l->tried = false;
   if (!l->stepper->adaptive) return true;
   double error = l->error;
-  control(l, h, h < l->h);
+  control_step(l, h, h < l->h);
   if (error <= 1.0) return true;
   if (!(l->h > 1e-14 * (fabs(t) + dt))) state->trouble = STRUT_FAILURE_STEP;
   return false;
@@ -320,11 +343,25 @@ static void switch_relay(const strut_model *model, strut_state *state, strut_eve
   strut_modes_after_jump(model, state, l, t);
 }
 
-/* One trial over at most h; handles rejection and events. Returns the time gone, 0 if none. */
-static double step(const strut_model *model, strut_state *state, strut_event_stepper *l, double t,
-                   double h, double dt) {
+/* The step of a region: its ends change places. */
+static void accept_within(strut_state *state, strut_event_stepper *l) {
+  strut_step_end *now = l->next;
+  l->next = l->now, l->now = now;
+  l->fresh = true;
+  for (int p = 0; p < STRUT_POWER_COUNT && state->ledger; p++) state->work[p] += l->gained[p];
+}
+
+/* Must a step be taken whatever the modes say? In a region many may change at once, none many times. */
+static bool must_step(const strut_event_stepper *l) {
+  int at_once = l->within ? strut_local_most_at_once(l) : l->at_once;
+  return at_once >= MOST_AT_ONCE || l->switches >= STRUT_MOST_SWITCHES;
+}
+
+/* One trial over at most h at time t; handles rejection and events. Returns the time gone, 0 if none. */
+STRUT_INLINE double step_piece(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                               double t, double h, double dt) {
   strut_event event = {STRUT_EVENT_NONE, 0, 1.0};
-  bool force = l->at_once >= MOST_AT_ONCE || l->switches >= MOST_SWITCHES;
+  bool force = must_step(l);
   if (l->stepper->predict && !l->tried) {
     l->stepper->predict(model, l, h);
     strut_surface_move(model, state, l->next, t + h);
@@ -335,6 +372,8 @@ static double step(const strut_model *model, strut_state *state, strut_event_ste
     if (!try_step(model, state, l, t, h, dt)) return 0.0;
     strut_event inside =
         force ? (strut_event){STRUT_EVENT_NONE, 0, 1.0} : strut_event_first(model, state, l, h);
+    if (inside.kind && l->local && strut_local_events_take(model, state, l, t, h, dt))
+      inside.kind = STRUT_EVENT_NONE;
     if (inside.kind) {
       event = inside;
       double taken = event.fraction * h <= AT_ONCE * dt && !l->stepper->exact
@@ -347,7 +386,10 @@ static double step(const strut_model *model, strut_state *state, strut_event_ste
   }
   if (h > 0.0) {
     if (state->variation) strut_variation_step(model, state, l, t, h);
-    accept_step(model, state, l, state->ledger);
+    if (l->within)
+      accept_within(state, l);
+    else
+      accept_step(model, state, l, state->ledger);
     l->at_once = 0;
   } else {
     l->at_once++;
@@ -362,6 +404,7 @@ static double step(const strut_model *model, strut_state *state, strut_event_ste
       switch_relay(model, state, l, l->laws[event.index].relay - 1, t + h);
     state->events++;
     l->switches++;
+    if (l->within) strut_local_count_switch(model, l, &event, h > 0.0);
   } else if (force) {
     strut_modes_start(model, state, l, t + h);
   } else if (strut_modes_after_step(model, l)) {
@@ -372,14 +415,18 @@ static double step(const strut_model *model, strut_state *state, strut_event_ste
   return h;
 }
 
+double strut_event_stepper_piece(const strut_model *model, strut_state *state,
+                                 strut_event_stepper *l, double t, double h, double dt) {
+  return step_piece(model, state, l, t, h, dt);
+}
+
 /*
  * Error control may take long within one step of the grid: when interrupted, or out of work allowed, it
  * goes back to the start of it. The last two stages hold that.
  */
 static bool given_up(const strut_model *model, strut_state *state, strut_event_stepper *l) {
   double **kept = l->stage + l->stepper->stages - 2;
-  bool spent = state->most_evaluations > 0 && state->evaluations > state->most_evaluations;
-  bool wanted = spent || (state->interrupt && *state->interrupt);
+  bool spent = is_spent(state), wanted = is_wanted_back(state);
   size_t bytes = (size_t)model->length * sizeof(double);
   if (l->done == 0.0) {
     memcpy(kept[0], state->q, bytes);
@@ -400,7 +447,7 @@ void strut_event_stepper_step(const strut_model *model, strut_state *state, void
                               double dt) {
   strut_event_stepper *l = workspace;
   double t = (double)state->step * dt + l->done, h = next_step_size(state, l, dt);
-  double gone = step(model, state, l, evaluation_time(l, t, dt), h, dt);
+  double gone = step_piece(model, state, l, evaluation_time(l, t, dt), h, dt);
   if (state->event_log) strut_event_log_note(model, state, l, t + gone);
   advance_within_grid(state, l, gone, dt);
   if (l->next_break < HUGE_VAL) pass_break(model, state, l, dt);

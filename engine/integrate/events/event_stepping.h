@@ -118,6 +118,9 @@ typedef struct strut_law_switch {
   int32_t relay;     /* with RELAY 1 + its signal */
 } strut_law_switch;
 
+/** After so many switches within one step of the grid, steps are taken whatever the modes say. */
+enum { STRUT_MOST_SWITCHES = 2000 };
+
 typedef struct strut_event_stepper strut_event_stepper;
 
 /** An explicit Runge-Kutta method, for what follows its steps; velocities are those of an equation of second order. */
@@ -127,6 +130,8 @@ typedef struct strut_tableau {
   const double *ahead; /* (stages) times, in steps */
   const double
       *weight; /* (stages + 1, stages) of the stages before, row by row; then of the step */
+  const double
+      *difference; /* (stages + 1) weights of the local error, the end's last; NULL: none */
 } strut_tableau;
 
 /** What a method adds: how one step goes while nothing happens. */
@@ -147,6 +152,12 @@ typedef struct strut_step_formula {
   void (*advance_until_event)(const strut_model *model, strut_state *state, strut_event_stepper *l,
                               double dt, int64_t end);
   const strut_tableau *tableau; /* NULL: variations cannot follow */
+  /** With error control, in a region (local_events.h): does a contact contradict its mode at the stage just evaluated?
+      And raises l->error where something happens and ends within the step; broken: the part of the step at which the
+      first stage that contradicts is, or 0. */
+  bool (*contradicts_at_stage)(const strut_model *model, const strut_event_stepper *l);
+  void (*look_between)(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                       double h, double broken);
 } strut_step_formula;
 
 /** Workspace of a method with events; in the state's arena. */
@@ -192,7 +203,28 @@ struct strut_event_stepper {
   int switches;     /* since the latest grid point */
   bool tried;       /* next is the end of the step that is due */
   int32_t *facet; /* (contacts) of closed contacts of surfaces; NULL without STRUT_TERM_SURFACES */
+  struct strut_small_modes *small; /* see small_modes.h; NULL where the model is not small */
+  struct strut_contact_coupling *coupling; /* contact_coupling.h; NULL where contacts are few */
+  struct strut_local_events *local; /* takes events locally; NULL: the whole structure does */
+  /* of the stepper of a region, local_kernel.h: its contacts and laws; NULL of the whole structure's */
+  struct strut_local_events *within;
+  const int32_t *contact_list, *law_list;
+  int32_t contact_list_count, law_list_count;
 };
+
+/** Contacts and laws that a stepper looks at: `count` of them, each by its place in a list. */
+static inline int32_t strut_contacts_of(const strut_model *model, const strut_event_stepper *l) {
+  return l->contact_list ? l->contact_list_count : model->contacts.count;
+}
+static inline int32_t strut_contact_of(const strut_event_stepper *l, int32_t place) {
+  return l->contact_list ? l->contact_list[place] : place;
+}
+static inline int32_t strut_laws_of(const strut_event_stepper *l) {
+  return l->law_list ? l->law_list_count : l->law_count;
+}
+static inline int32_t strut_law_of(const strut_event_stepper *l, int32_t place) {
+  return l->law_list ? l->law_list[place] : place;
+}
 
 /** Most laws that switch: each cable, each element by its sign, by its kinks and by its memory, relays. */
 static inline size_t strut_most_law_switches(const strut_model *model) {
@@ -215,6 +247,13 @@ void strut_event_stepper_step(const strut_model *model, strut_state *state, void
 /** `count` steps of dt. */
 void strut_event_stepper_advance(const strut_model *model, strut_state *state, void *workspace,
                                  double dt, int64_t count);
+
+/** One trial over at most h at time t; handles rejection and events. Returns the time gone, 0 if none. */
+double strut_event_stepper_piece(const strut_model *model, strut_state *state,
+                                 strut_event_stepper *l, double t, double h, double dt);
+/** Arrays of one end of a step, with or without positions and velocities of its own. */
+bool strut_step_end_create(const strut_model *model, strut_arena *arena, strut_step_end *end,
+                           bool borrowed);
 
 /* ---- parts of it, in contact_compliance.c, contact_modes.c and event_location.c ---- */
 
@@ -247,6 +286,9 @@ typedef struct strut_event {
 /** The earliest event between now and next, a step h apart; kind NONE if every mode holds. */
 strut_event strut_event_first(const strut_model *model, const strut_state *state,
                               const strut_event_stepper *l, double h);
+/** The earliest one of contact i alone. */
+strut_event strut_event_of_contact(const strut_model *model, const strut_event_stepper *l,
+                                   int32_t i, double h);
 /** The value that event ends at 0, at an end; positive while the mode holds. */
 double strut_event_value(const strut_model *model, const strut_event_stepper *l,
                          const strut_step_end *end, strut_event_kind kind, int32_t index);
@@ -283,6 +325,8 @@ void strut_memory_apply(const strut_model *model, strut_state *state, strut_even
 /** Of what has broken, no switch acts. */
 void strut_memory_drop_gone(const strut_model *model, strut_state *state, strut_event_stepper *l);
 
+/** A cable, law k, acts from now on, or not. */
+void strut_cable_set_acting(strut_state *state, strut_event_stepper *l, int32_t k, bool pulls);
 /** After a drive has jumped: laws anew; contacts keep their modes, since nothing has moved. */
 void strut_modes_after_jump(const strut_model *model, strut_state *state, strut_event_stepper *l,
                             double t);

@@ -3,7 +3,9 @@
  * Velocity Verlet between events, with the ground's dampers implicit: one evaluation a step, no
  * limit from the dampers, and shorter steps for a while after a touchdown.
  */
+#include "engine/integrate/events/contact_coupling.h"
 #include "engine/integrate/events/implicit_ground.h"
+#include "engine/integrate/events/small_trials.h"
 #include "engine/integrate/integrator.h"
 
 enum { PREDICTED, STAGES };
@@ -48,7 +50,10 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
     add_contact_forces(model, l, l->next->q, predicted, state->force, false, l->next, terms);
     divide_by_mass(model, state, a1, terms);
     if (sliding) strut_refresh_compliances(model, state, l);
-    implicit_ground_together(model, l, h, a1, terms);
+    if (l->coupling)
+      strut_contact_coupling_ground(model, l, h, a1);
+    else
+      implicit_ground_together(model, l, h, a1, terms);
   }
   correct(n, h, l->now->v, l->now->a, a1, l->next->v);
   if (moves) strut_support_motion_place(model, state, t + h, l->next->q, l->next->v);
@@ -141,7 +146,10 @@ static void verlet_advance_with_rare_terms(const strut_model *model, strut_state
 
 static void verlet_advance_until_event(const strut_model *model, strut_state *state,
                                        strut_event_stepper *l, double dt, int64_t end) {
-  if (model->plan & STRUT_TERMS_RARE)
+  strut_small_quiet *small = STRUT_SMALL_EVENTS(model, state, l, strut_small_verlet_events);
+  if (small && l->small->decoupled)
+    small(model, state, l, dt, end);
+  else if (model->plan & STRUT_TERMS_RARE)
     verlet_advance_with_rare_terms(model, state, l, dt, end);
   else if (state->ledger)
     verlet_advance_with_ledger(model, state, l, dt, end);

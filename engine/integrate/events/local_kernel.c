@@ -1,0 +1,248 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/integrate/events/local_kernel.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "engine/integrate/events/event_kernel.h"
+#include "engine/integrate/events/local_events.h"
+
+/* ---- the rim: positions by the polynomial of degree 5 with the positions, velocities and accelerations of both
+   ends, velocities by that of degree 3 ---- */
+
+void strut_local_place_rim(strut_local_events *p, double part, double *q, double *v) {
+  const strut_local_region *r = &p->region;
+  const strut_step_end *b = p->begin, *e = p->end;
+  double x = part, h = p->span, x2 = x * x, x3 = x2 * x, rest = 1.0 - x;
+  double rise = x3 * (10.0 - x * (15.0 - 6.0 * x));
+  double v0 = h * (x - x3 * (6.0 - x * (8.0 - 3.0 * x))), v1 = h * x3 * (x * (7.0 - 3.0 * x) - 4.0);
+  double a0 = 0.5 * h * h * x2 * rest * rest * rest, a1 = 0.5 * h * h * x3 * rest * rest;
+  double up = x2 * (3.0 - 2.0 * x), s0 = h * x * rest * rest, s1 = -h * x2 * rest;
+  double slope = 6.0 * x * rest / h, d0 = rest * (1.0 - 3.0 * x), d1 = x * (3.0 * x - 2.0);
+  for (int32_t k = 0; k < r->rim_count; k++)
+    for (int32_t i = 2 * r->rim[k], c = 0; c < 2; i++, c++) {
+      double more = e->v[i] - b->v[i];
+      q[i] = b->q[i] + rise * (e->q[i] - b->q[i]) + v0 * b->v[i] + v1 * e->v[i] + a0 * b->a[i] +
+             a1 * e->a[i];
+      v[i] = b->v[i] + up * more + s0 * b->a[i] + s1 * e->a[i];
+      r->rim_a[2 * k + c] = slope * more + d0 * b->a[i] + d1 * e->a[i];
+    }
+}
+
+/* ---- forces ---- */
+
+void strut_local_load_members(const strut_model *model, strut_local_events *p) {
+  const strut_member_table *t = &model->members;
+  const strut_local_region *r = &p->region;
+  int32_t count = r->member_count, slots = (count + STRUT_LANES - 1) / STRUT_LANES * STRUT_LANES;
+  for (int32_t k = 0; k < slots; k++) {
+    bool pad = k >= count;
+    int32_t j = pad ? 0 : r->member[k];
+    p->from[k] = pad ? 2 * (uint32_t)model->node_count : t->from[j];
+    p->to[k] = pad ? p->from[k] : t->to[j];
+    p->stiffness[k] = pad ? 0.0 : t->stiffness[j];
+    p->damping[k] = pad ? 0.0 : t->damping[j];
+    p->rest[k] = pad ? 0.0 : t->rest[j];
+    p->shell.rest_rate[k] = 0.0;
+    p->shell.slack_length_threshold[k] = p->shell.slack_force_threshold[k] = -HUGE_VAL;
+  }
+  p->table.count = count, p->table.slots = slots;
+}
+
+static void refresh_members(const strut_model *model, const strut_state *state,
+                            strut_local_events *p) {
+  const strut_local_region *r = &p->region;
+  for (int32_t k = 0; k < r->member_count; k++) {
+    int32_t j = r->member[k];
+    p->shell.slack_length_threshold[k] = state->slack_length_threshold[j];
+    p->shell.slack_force_threshold[k] = state->slack_force_threshold[j];
+  }
+  for (int32_t k = 0; k < r->member_count && model->plan & STRUT_TERM_DRIVE; k++) {
+    p->rest[k] = state->rest[r->member[k]];
+    p->shell.rest_rate[k] = state->rest_rate[r->member[k]];
+  }
+}
+
+/* A region's evaluations count by its nodes. */
+static void count_evaluation(const strut_model *model, strut_state *state, strut_local_events *p) {
+  p->evaluated += p->region.node_count;
+  if (p->evaluated < model->node_count) return;
+  p->evaluated -= model->node_count;
+  state->evaluations++;
+}
+
+STRUT_INLINE void add_members(const strut_local_events *p, strut_state *state, const double *q,
+                              const double *v, bool driven, bool ledger) {
+  enum { KEPT = STRUT_TERM_DAMPING | STRUT_TERM_SLACK, ALL = KEPT | STRUT_TERM_DRIVE };
+  member_powers powers = {0};
+  for (int32_t j = 0; j < p->table.slots; j += STRUT_LANES)
+    members_group(&p->table, &p->shell, q, v, state->force, j, driven ? ALL : KEPT, ledger,
+                  &powers);
+  for (int l = 0; l < STRUT_LANES && ledger; l++) {
+    state->power[STRUT_POWER_DRIVE] += powers.drive[l];
+    state->power[STRUT_POWER_MEMBERS] += powers.lost[l];
+    state->power[STRUT_POWER_EXCHANGED] += powers.exchanged[l] + powers.lost[l];
+  }
+}
+
+/* All forces but the ground's. */
+STRUT_INLINE void region_forces(const strut_model *model, strut_state *state, strut_local_events *p,
+                                double t, const double *q, const double *v, bool ledger) {
+  const strut_local_region *r = &p->region;
+  const double *constant = model->plan & STRUT_TERM_CONSTANT ? model->constant_force : NULL;
+  count_evaluation(model, state, p);
+  for (int k = 0; k < STRUT_POWER_COUNT && ledger; k++) state->power[k] = 0.0;
+  for (int32_t k = 0; k < r->node_count; k++)
+    for (int32_t i = 2 * r->node[k]; i < 2 * r->node[k] + 2; i++)
+      state->force[i] = constant ? constant[i] : 0.0;
+  if ((model->plan & STRUT_TERM_DRIVE) && t != state->drive_time)
+    strut_drive_apply(model, state, t);
+  refresh_members(model, state, p);
+  if (model->plan & STRUT_TERM_DRIVE)
+    add_members(p, state, q, v, true, ledger);
+  else
+    add_members(p, state, q, v, false, ledger);
+}
+
+STRUT_INLINE void region_accelerations(const strut_model *model, strut_state *state,
+                                       strut_event_stepper *l, const double *q, const double *v,
+                                       double *a, strut_step_end *end, bool ledger) {
+  strut_local_events *p = l->within;
+  if (l->closed_count)
+    add_contact_forces(model, l, q, v, state->force, true, end, STRUT_TERMS_COMMON);
+  strut_local_region_divide(model, &p->map, &p->region, state->force, a);
+  if (l->stuck_count) strut_local_hold(model, l, a, end);
+  if (ledger && l->closed_count) add_contact_powers(model, state, l, end, STRUT_TERMS_COMMON);
+}
+
+/* As evaluate_step_end; the rim has been placed. */
+STRUT_INLINE void region_end(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                             double t, strut_step_end *end, bool ledger) {
+  const strut_local_region *r = &l->within->region;
+  region_forces(model, state, l->within, t, end->q, end->v, ledger);
+  for (int32_t k = 0; k < r->node_count; k++)
+    for (int32_t i = 2 * r->node[k]; i < 2 * r->node[k] + 2; i++)
+      end->structure[i] = state->force[i];
+  for (int k = 0; k < STRUT_POWER_COUNT && ledger; k++) end->structure_power[k] = state->power[k];
+  region_accelerations(model, state, l, end->q, end->v, end->a, end, ledger);
+  measure_contact_rates(model, l, end, STRUT_TERMS_COMMON);
+  if (end == l->next) settle_band_ties(model, l);
+  for (int k = 0; k < STRUT_POWER_COUNT && ledger; k++) end->power[k] = state->power[k];
+}
+
+STRUT_CLONES
+static void region_now(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                       double t, bool ledger) {
+  const strut_local_region *r = &l->within->region;
+  strut_step_end *now = l->now;
+  strut_local_place_rim(l->within, (t - l->within->start) / l->within->span, now->q, now->v);
+  if (!l->fresh) {
+    region_end(model, state, l, t, now, ledger);
+    return;
+  }
+  for (int32_t k = 0; k < r->node_count; k++)
+    for (int32_t i = 2 * r->node[k]; i < 2 * r->node[k] + 2; i++)
+      state->force[i] = now->structure[i];
+  for (int k = 0; k < STRUT_POWER_COUNT && ledger; k++) state->power[k] = now->structure_power[k];
+  region_accelerations(model, state, l, now->q, now->v, now->a, now, ledger);
+  measure_contact_rates(model, l, now, STRUT_TERMS_COMMON);
+  for (int k = 0; k < STRUT_POWER_COUNT && ledger; k++) now->power[k] = state->power[k];
+}
+
+void strut_local_evaluate(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                          double t) {
+  region_now(model, state, l, t, state->ledger);
+  l->fresh = true;
+}
+
+/* ---- steps ---- */
+
+enum { MOST_STAGES = 7 };
+
+/* q = q0 + h sum v, speed = v0 + h sum a at the region's nodes, over `count` stages. */
+STRUT_INLINE void region_stage(const strut_local_region *r, double h, const strut_step_end *now,
+                               double *const *v, double *const *a, const double *weight, int count,
+                               double *q, double *speed) {
+  for (int32_t k = 0; k < r->node_count; k++) {
+    int32_t i = 2 * r->node[k];
+    strut_pair x = weight[0] * strut_pair_load(v[0] + i), y = weight[0] * strut_pair_load(a[0] + i);
+    for (int j = 1; j < count; j++) {
+      x += weight[j] * strut_pair_load(v[j] + i);
+      y += weight[j] * strut_pair_load(a[j] + i);
+    }
+    strut_pair_store(q + i, strut_pair_load(now->q + i) + h * x);
+    strut_pair_store(speed + i, strut_pair_load(now->v + i) + h * y);
+  }
+}
+
+/* Local error over what is allowed, as that of the whole structure. */
+STRUT_INLINE double region_error(const strut_model *model, const strut_event_stepper *l, double h,
+                                 double *const *v, double *const *a) {
+  const strut_local_region *r = &l->within->region;
+  const double *difference = l->stepper->tableau->difference;
+  int count = l->stepper->tableau->stages + 1;
+  double position = 0.0, velocity = 0.0;
+  for (int32_t k = 0; k < r->node_count; k++)
+    for (int32_t i = 2 * r->node[k]; i < 2 * r->node[k] + 2; i++) {
+      double x = 0.0, y = 0.0;
+      for (int j = 0; j < count; j++) x += difference[j] * v[j][i], y += difference[j] * a[j][i];
+      if (!(fabs(h * x) <= position)) position = fabs(h * x);
+      if (!(fabs(h * y) <= velocity)) velocity = fabs(h * y);
+    }
+  double error = position / (0.01 * model->size * l->tolerance);
+  double other = velocity > 0.0 ? velocity / (l->fastest * l->tolerance) : 0.0;
+  error = other > error ? other : error;
+  return error == error ? error : HUGE_VAL;
+}
+
+STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                       double t, double h, bool ledger) {
+  const strut_tableau *tableau = l->stepper->tableau;
+  strut_local_events *p = l->within;
+  int stages = tableau->stages;
+  double *v[MOST_STAGES], *a[MOST_STAGES], *q = l->stage[0];
+  double broken = 0.0; /* where a stage contradicts a contact's mode */
+  v[0] = l->now->v, a[0] = l->now->a;
+  for (int k = 1; k < stages; k++) v[k] = l->stage[k], a[k] = l->stage[stages - 1 + k];
+  v[stages] = l->next->v, a[stages] = l->next->a;
+  const double *weight = tableau->weight, *last = weight + stages * stages;
+  for (int k = 0; k < STRUT_POWER_COUNT && ledger; k++)
+    l->gained[k] = last[0] * h * l->now->power[k];
+  for (int s = 1; s < stages; s++) {
+    double at = t + tableau->ahead[s] * h;
+    region_stage(&p->region, h, l->now, v, a, weight + s * stages, s, q, v[s]);
+    strut_local_place_rim(p, (at - p->start) / p->span, q, v[s]);
+    region_forces(model, state, p, at, q, v[s], ledger);
+    region_accelerations(model, state, l, q, v[s], a[s], l->next, ledger);
+    if (l->stepper->adaptive && broken == 0.0 && l->stepper->contradicts_at_stage(model, l))
+      broken = tableau->ahead[s];
+    for (int k = 0; k < STRUT_POWER_COUNT && ledger; k++)
+      l->gained[k] += last[s] * h * state->power[k];
+  }
+  region_stage(&p->region, h, l->now, v, a, last, stages, l->next->q, l->next->v);
+  strut_local_place_rim(p, (t + h - p->start) / p->span, l->next->q, l->next->v);
+  region_end(model, state, l, t + h, l->next, ledger);
+  if (!l->stepper->adaptive) return;
+  l->error = region_error(model, l, h, v, a);
+  l->stepper->look_between(model, state, l, h, broken);
+}
+
+STRUT_CLONES
+static void take_with_ledger(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                             double t, double h) {
+  take(model, state, l, t, h, true);
+}
+
+STRUT_CLONES
+static void take_without_ledger(const strut_model *model, strut_state *state,
+                                strut_event_stepper *l, double t, double h) {
+  take(model, state, l, t, h, false);
+}
+
+void strut_local_trial(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                       double t, double h) {
+  if (state->ledger)
+    take_with_ledger(model, state, l, t, h);
+  else
+    take_without_ledger(model, state, l, t, h);
+}

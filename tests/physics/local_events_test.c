@@ -1,0 +1,201 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Events taken in regions about them, as large structures do, here on small ones: closed forms, and falls of
+ * random grids against steps of the whole structure.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "engine/forces/energy.h"
+#include "tests/support/build.h"
+#include "tests/support/check.h"
+#include "tests/support/motion.h"
+#include "tests/support/random.h"
+
+static const double G = 9.81;
+enum { ALL_BY_REGIONS = 1, BY_THE_WHOLE = INT32_MAX };
+
+/* As motion_begin_by, with events taken locally in structures of so many nodes and more. */
+static void begin(motion *m, const strut_scene *scene, const char *method, double step,
+                  double tolerance, int32_t local_from) {
+  strut_experiment experiment = strut_experiment_default();
+  experiment.tolerance = tolerance, experiment.step = step;
+  strut_integrator_settings settings = strut_integrator_settings_of(&experiment);
+  settings.local_from = local_from;
+  *m = (motion){.model = motion_compile(scene), .step = step};
+  assert_int_equal(strut_state_create(m->model, &m->state, NULL), STRUT_OK);
+  m->method = strut_integrator_find(method);
+  m->workspace = m->method->create(m->model, m->state, &settings);
+  assert_non_null(m->workspace);
+  m->state->ledger = true;
+}
+
+/* ---- closed forms ---- */
+
+/*
+ * Blocks of 1 kg on springs of 100 N/m to the wall, pulled out to different widths: after each half period the
+ * width is smaller by 2 mu m g / k, and a block stays where the spring cannot overcome friction.
+ */
+enum { BLOCKS = 12 };
+static const double SPRING = 100.0, MU = 0.2, GROUND = 1e5;
+
+static double width_of(int32_t i) { return 0.05 + 0.0137 * i; }
+
+static double block_at(double width, double t) {
+  double less = MU * G / SPRING, half = acos(-1.0) / sqrt(SPRING), side = 1.0;
+  for (; width > less && t > half; t -= half) width -= 2.0 * less, side = -side;
+  if (width <= less) return side * width;
+  return side * (less + (width - less) * cos(sqrt(SPRING) * t));
+}
+
+static void make_blocks(strut_scene *scene) {
+  strut_scene_init(scene);
+  scene->gravity[1] = -G;
+  for (int32_t i = 0; i < BLOCKS; i++) {
+    double y = -G / GROUND, x = width_of(i);
+    int32_t block = build_mass(scene, x, y, 1.0), wall = build_support(scene, -1.0, y);
+    int32_t contact = build_contact(scene, block, GROUND, 0.0);
+    scene->contacts[contact].friction =
+        (strut_friction){.law = STRUT_FRICTION_COULOMB, .mu_static = MU, .mu_kinetic = MU};
+    build_sized(scene, STRUT_SPRING, block, wall, SPRING, 0.0, 0.0, 1.0);
+  }
+}
+
+static void test_blocks_stop_where_coulomb_says(void **unused) {
+  (void)unused;
+  static const char *const methods[] = {"rk4-events", "adaptive"};
+  for (int k = 0; k < 2; k++) {
+    strut_scene scene;
+    motion m;
+    make_blocks(&scene);
+    begin(&m, &scene, methods[k], 1e-3, 1e-9, ALL_BY_REGIONS);
+    for (int n = 0; n < 25; n++) {
+      motion_steps(&m, 70);
+      for (int32_t i = 0; i < BLOCKS; i++)
+        assert_near(m.state->q[4 * i], block_at(width_of(i), (double)m.state->step * m.step), 1e-9);
+    }
+    for (int32_t i = 0; i < BLOCKS; i++) assert_true(m.state->v[4 * i] == 0.0);
+    motion_end(&m);
+    strut_scene_free(&scene);
+  }
+}
+
+/* ---- random grids ---- */
+
+static void add_member(strut_scene *scene, uint64_t *random, int32_t from, int32_t to, bool cable) {
+  const double *a = scene->nodes[from].position, *b = scene->nodes[to].position;
+  double length = hypot(a[0] - b[0], a[1] - b[1]);
+  double rest = cable ? length * random_between(random, 0.97, 1.002) : length;
+  build_sized(scene, cable ? STRUT_CABLE : STRUT_BAR, from, to, cable ? 3e3 : 5e4, 0.3, 0.1, rest);
+}
+
+static void add_contact(strut_scene *scene, uint64_t *random, int32_t node, int law) {
+  int32_t i = build_contact(scene, node, 1e4, random_between(random, 0.0, 4.0));
+  strut_friction *f = &scene->contacts[i].friction;
+  double mu = random_between(random, 0.1, 0.6);
+  if (law == 1)
+    *f = (strut_friction){.law = STRUT_FRICTION_COULOMB, .mu_static = mu, .mu_kinetic = mu};
+  if (law == 2)
+    *f = (strut_friction){.law = STRUT_FRICTION_KARNOPP,
+                          .mu_static = 1.2 * mu,
+                          .mu_kinetic = mu,
+                          .stick_velocity = 5e-3};
+}
+
+/* A grid that falls on its lowest nodes and slides; law: of friction, 0: none. */
+enum { COLUMNS = 36, ROWS = 3, NODES = COLUMNS * ROWS, LAWS = 3 };
+
+static void make_grid(strut_scene *scene, uint64_t seed, int law, bool lumped) {
+  uint64_t random = seed;
+  strut_scene_init(scene);
+  scene->gravity[1] = -G;
+  scene->mass_model = lumped ? STRUT_MASS_LUMPED : STRUT_MASS_CONSISTENT;
+  for (int32_t c = 0; c < COLUMNS; c++)
+    for (int32_t r = 0; r < ROWS; r++) {
+      int32_t i = build_mass(scene, 0.1 * c + random_between(&random, -0.01, 0.01),
+                             0.1 * r + random_between(&random, 0.0005, 0.008), 0.05);
+      scene->nodes[i].velocity[0] = 0.2 + random_between(&random, -0.1, 0.1);
+      scene->nodes[i].velocity[1] = -0.8;
+      if (r == 0) add_contact(scene, &random, i, law);
+    }
+  for (int32_t c = 0; c < COLUMNS; c++)
+    for (int32_t r = 0; r < ROWS; r++) {
+      int32_t i = c * ROWS + r;
+      if (c + 1 < COLUMNS) add_member(scene, &random, i, i + ROWS, true);
+      if (r + 1 < ROWS) add_member(scene, &random, i, i + 1, true);
+      if (c + 1 == COLUMNS || r + 1 == ROWS) continue;
+      add_member(scene, &random, i, i + ROWS + 1, false);
+      add_member(scene, &random, i + 1, i + ROWS, false);
+    }
+  if (law) build_actuator(scene, COLUMNS, build_sine(scene, 1e-3, 40.0));
+  if (law == 1) scene->ground.slope = -0.002;
+}
+
+typedef struct fall {
+  double q[2 * NODES], v[2 * NODES], residual;
+  int64_t evaluations, events;
+} fall;
+
+static double total_energy(motion *m) {
+  strut_energies e = strut_energy_evaluate(m->model, m->state, (double)m->state->step * m->step);
+  const double *w = m->state->work;
+  return e.kinetic + e.elastic + e.gravity + e.contact + w[STRUT_POWER_MEMBERS] +
+         w[STRUT_POWER_CONTACT] + w[STRUT_POWER_FRICTION] - w[STRUT_POWER_DRIVE];
+}
+
+static void let_fall(const strut_scene *scene, const char *method, double step, double tolerance,
+                     int32_t local_from, fall *f) {
+  motion m;
+  begin(&m, scene, method, step, tolerance, local_from);
+  double before = total_energy(&m);
+  motion_steps(&m, llround(0.02 / step));
+  assert_int_equal(m.state->trouble, STRUT_FAILURE_NONE);
+  memcpy(f->q, m.state->q, sizeof f->q);
+  memcpy(f->v, m.state->v, sizeof f->v);
+  f->residual = total_energy(&m) - before;
+  f->evaluations = m.state->evaluations, f->events = m.state->events;
+  motion_end(&m);
+}
+
+static double distance(const double *a, const double *b) {
+  double most = 0.0;
+  for (int i = 0; i < 2 * NODES; i++) most = fmax(most, fabs(a[i] - b[i]));
+  return most;
+}
+
+/* No farther from the exact motion than steps of the whole, but for a little. */
+static void assert_as_good(const fall *local, const fall *whole, const fall *exact, double least) {
+  double q = distance(whole->q, exact->q), v = distance(whole->v, exact->v);
+  assert_within(distance(local->q, exact->q), 0.0, 2.0 * q + least);
+  assert_within(distance(local->v, exact->v), 0.0, 2.0 * v + 1e3 * least);
+  assert_near(local->residual, 0.0, 1e-6);
+  assert_within((double)local->evaluations, 0.0, 0.8 * (double)whole->evaluations);
+}
+
+static void compare(uint64_t seed, int law, bool lumped) {
+  static fall exact, whole, local;
+  strut_scene scene;
+  make_grid(&scene, seed, law, lumped);
+  let_fall(&scene, "adaptive", 4e-5, 1e-11, BY_THE_WHOLE, &exact);
+  let_fall(&scene, "rk4-events", 1e-4, 1e-6, BY_THE_WHOLE, &whole);
+  let_fall(&scene, "rk4-events", 1e-4, 1e-6, ALL_BY_REGIONS, &local);
+  assert_as_good(&local, &whole, &exact, 1e-12);
+  let_fall(&scene, "adaptive", 1e-4, 1e-6, BY_THE_WHOLE, &whole);
+  let_fall(&scene, "adaptive", 1e-4, 1e-6, ALL_BY_REGIONS, &local);
+  assert_as_good(&local, &whole, &exact, 1e-12);
+  if (law < 2)
+    assert_int_equal(local.events, exact.events); /* a yielding contact may switch to and fro */
+  strut_scene_free(&scene);
+}
+
+static void test_grids_fall_as_by_steps_of_the_whole(void **unused) {
+  (void)unused;
+  for (int lumped = 0; lumped < 2; lumped++)
+    for (int law = 0; law < LAWS; law++) compare(1 + (uint64_t)law, law, lumped);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_blocks_stop_where_coulomb_says),
+                                     cmocka_unit_test(test_grids_fall_as_by_steps_of_the_whole)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
