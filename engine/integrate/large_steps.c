@@ -7,18 +7,25 @@
 #include <omp.h>
 #endif
 
-#include "engine/integrate/rows.h"
+#include "engine/integrate/domain_steps.h"
+#include "engine/model/mass.h"
 #include "engine/model/renumber.h"
 
-/* Members from which on two threads are faster than one: meeting takes some microseconds, 8 to 16 times a step. */
+/* Members from which on two threads are faster than one: meeting takes some microseconds. */
 enum { LEAST_FOR_THREADS = 16384, MEMBERS_PER_THREAD = 8192 };
+
+/* Members from which on subdomains are as fast for one thread, too: less of a structure stays in the caches. */
+enum { LEAST_FOR_ONE = 200000 };
+
+/* Evaluations of the forces at once, since each look at the state costs a copy in the scene's order. */
+enum { EVALUATIONS_AT_ONCE = 32 };
 
 struct strut_large_steps {
   const strut_integrator *method;
-  strut_renumbering *order; /* NULL: as in the scene; then there are rows */
-  strut_rows *rows;         /* NULL: the method steps `state` */
-  strut_state *state;       /* of order->model */
+  strut_renumbering *order; /* the method steps `state`, of order->model */
+  strut_state *state;
   void *workspace;
+  strut_domain_steps *domains; /* instead of all these */
 };
 
 int strut_large_threads(void) {
@@ -29,19 +36,49 @@ int strut_large_threads(void) {
 #endif
 }
 
-static strut_status create_parts(strut_large_steps *s, const strut_model *model,
-                                 const strut_integrator_settings *settings, bool scattered,
-                                 bool rows, int threads, strut_error *error) {
-  strut_status status =
-      scattered ? strut_renumbering_create(model, rows, &s->order, error) : STRUT_OK;
-  const strut_model *own = s->order ? s->order->model : model;
-  if (!status && scattered) status = strut_state_create(own, &s->state, error);
+static strut_status create_reordered(strut_large_steps *s, const strut_model *model,
+                                     const strut_integrator_settings *settings,
+                                     strut_error *error) {
+  /* members in the order of subdomains: the ledger adds them up as they are stored */
+  strut_status status = strut_renumbering_create(model, false, &s->order, error);
+  if (!status) status = strut_state_create(s->order->model, &s->state, error);
   if (status) return status;
-  if (rows)
-    s->rows = strut_rows_create(own, s->order ? s->order->stored : NULL, threads);
-  else
-    s->workspace = s->method->create(own, s->state, settings);
-  return s->rows || s->workspace ? STRUT_OK : strut_no_memory(error, "");
+  s->workspace = s->method->create(s->order->model, s->state, settings);
+  return s->workspace ? STRUT_OK : strut_no_memory(error, "");
+}
+
+static strut_status create_domains(strut_large_steps *s, const strut_model *model, bool scattered,
+                                   int threads, strut_error *error) {
+  strut_arena scratch = {0};
+  int32_t *member = NULL;
+  strut_status status =
+      scattered ? strut_member_order_create(model, &scratch, &member, error) : STRUT_OK;
+  if (!status) s->domains = strut_domain_steps_create(model, s->method, member, threads);
+  strut_arena_free(&scratch);
+  return status || s->domains ? status : strut_no_memory(error, "");
+}
+
+typedef struct choice {
+  bool scattered, domains;
+} choice;
+
+/* Which of them step the model, if there are threads enough. */
+static choice choose(const strut_model *model, const strut_integrator *method) {
+  bool plain = !method->events && method->role != STRUT_ROLE_STIFF;
+  bool large = plain && model->members.count >= LEAST_FOR_THREADS;
+  return (choice){.scattered = plain && strut_model_is_scattered(model),
+                  .domains = large && strut_domain_steps_possible(model, method)};
+}
+
+int64_t strut_large_steps_at_once(const strut_model *model, const strut_integrator *method) {
+  choice c = choose(model, method);
+  return c.scattered || c.domains ? EVALUATIONS_AT_ONCE / method->evaluations : 1;
+}
+
+/* Masses that are not coupled: in another order, or from some size on, by one thread too, since memory is read a
+   fourth as often. */
+static bool one_thread_pays(const strut_model *model, choice c) {
+  return model->mass->diagonal && (c.scattered || model->members.count >= LEAST_FOR_ONE);
 }
 
 strut_status strut_large_steps_create(const strut_model *model, const strut_integrator *method,
@@ -49,16 +86,15 @@ strut_status strut_large_steps_create(const strut_model *model, const strut_inte
                                       strut_large_steps **steps, strut_error *error) {
   *steps = NULL;
   int32_t members = model->members.count;
-  bool plain = !method->events && method->role != STRUT_ROLE_STIFF;
-  bool scattered = plain && strut_model_is_scattered(model);
+  choice c = choose(model, method);
   if (threads > members / MEMBERS_PER_THREAD) threads = members / MEMBERS_PER_THREAD;
-  bool rows = plain && method->lanes == STRUT_LANES_RK4 && strut_rows_possible(model) &&
-              threads > 1 && members >= LEAST_FOR_THREADS;
-  if (!scattered && !rows) return STRUT_OK;
+  if (threads < 2) threads = 1, c.domains = c.domains && one_thread_pays(model, c);
+  if (!c.scattered && !c.domains) return STRUT_OK;
   strut_large_steps *s = strut_allocate(1, sizeof *s);
   if (!s) return strut_no_memory(error, "");
   s->method = method;
-  strut_status status = create_parts(s, model, settings, scattered, rows, threads, error);
+  strut_status status = c.domains ? create_domains(s, model, c.scattered, threads, error)
+                                  : create_reordered(s, model, settings, error);
   if (status)
     strut_large_steps_free(s);
   else
@@ -68,7 +104,7 @@ strut_status strut_large_steps_create(const strut_model *model, const strut_inte
 
 void strut_large_steps_free(strut_large_steps *steps) {
   if (!steps) return;
-  strut_rows_free(steps->rows);
+  strut_domain_steps_free(steps->domains);
   strut_state_free(steps->state);
   strut_renumbering_free(steps->order);
   strut_release(steps);
@@ -92,6 +128,7 @@ static void copy_numbers(const strut_state *from, strut_state *to) {
 
 void strut_large_steps_restart(strut_large_steps *steps, strut_state *state, double dt) {
   strut_state *own = steps->state;
+  if (steps->domains) strut_domain_steps_restart(steps->domains, state, dt);
   if (!steps->order) return;
   const strut_model *model = steps->order->model;
   const int32_t *place = steps->order->place;
@@ -125,16 +162,13 @@ static void copy_back(const strut_renumbering *order, const strut_state *own, st
 void strut_large_steps_advance(strut_large_steps *steps, strut_state *state, double dt,
                                int64_t count) {
   strut_state *own = steps->state;
-  if (!steps->order) {
-    strut_rows_advance(steps->rows, state, dt, count);
+  if (steps->domains) {
+    strut_domain_steps_advance(steps->domains, state, dt, count);
     return;
   }
   copy_numbers(state, own);
   own->drive_time = (double)NAN;
-  if (steps->rows)
-    strut_rows_advance(steps->rows, own, dt, count);
-  else
-    steps->method->advance(steps->order->model, own, steps->workspace, dt, count);
+  steps->method->advance(steps->order->model, own, steps->workspace, dt, count);
   copy_numbers(own, state);
   copy_back(steps->order, own, state);
 }

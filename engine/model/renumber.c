@@ -19,6 +19,24 @@ static const unsigned STORED = STRUT_TERM_MEMBERS | STRUT_TERM_DAMPING | STRUT_T
    in FEW may reach far, as those do that close a ring. */
 enum { LEAST_MEMBERS = 16384, NEAR = 8192, FEW = 32 };
 
+/* Members whose nodes have their last members in another eighth of the list, as where all bars are listed before
+   all cables: threads that share the list by length would work on the same nodes. */
+enum { SHARES = 8, MOST_STRAY = 4 };
+
+static bool members_stray(const strut_model *model) {
+  const strut_member_table *t = &model->members;
+  uint8_t *last = strut_allocate((size_t)model->node_count, sizeof *last);
+  int64_t stray = 0, count = t->count;
+  for (int64_t j = 0; j < count && last; j++)
+    last[t->from[j] / 2] = last[t->to[j] / 2] = (uint8_t)(SHARES * j / count);
+  for (int64_t j = 0; j < count && last; j++) {
+    int share = (int)(SHARES * j / count);
+    stray += last[t->from[j] / 2] != share || last[t->to[j] / 2] != share;
+  }
+  strut_release(last);
+  return stray > count / MOST_STRAY;
+}
+
 bool strut_model_is_scattered(const strut_model *model) {
   const strut_member_table *t = &model->members;
   int32_t far = 0;
@@ -29,7 +47,7 @@ bool strut_model_is_scattered(const strut_model *model) {
     int64_t from = t->from[j] / 2, to = t->to[j] / 2, before = t->from[j - 1] / 2;
     far += llabs(to - from) > NEAR || llabs(from - before) > NEAR;
   }
-  return far > t->count / FEW;
+  return far > t->count / FEW || members_stray(model);
 }
 
 /* ---- order of nodes ---- */
@@ -91,6 +109,19 @@ static void order_nodes(const strut_model *model, const incidence *at, int32_t *
     count = begin;
     visit_levels(model, at, last, place, order, &count);
   }
+}
+
+/* From the end at which the scene begins, so far as it has an order: members that must follow each other then
+   stand where their nodes do. */
+static void turn_as_listed(const strut_model *model, int32_t *place, int32_t *order) {
+  const strut_member_table *t = &model->members;
+  int32_t nodes = model->node_count, ahead = 0;
+  for (int32_t j = 1; j < t->count; j++) {
+    int32_t now = place[t->from[j] / 2], before = place[t->from[j - 1] / 2];
+    ahead += (now > before) - (now < before);
+  }
+  for (int32_t i = 0; i < nodes && ahead < 0; i++) place[i] = nodes - 1 - place[i];
+  for (int32_t i = 0; i < nodes && ahead < 0; i++) order[place[i]] = i;
 }
 
 /* ---- order of members ---- */
@@ -316,6 +347,7 @@ strut_status strut_renumbering_create(const strut_model *model, bool free_member
   int32_t *stored = strut_arena_allocate(&r->arena, (size_t)model->members.count, sizeof *stored);
   bool good = place && member && stored && order && find_incidence(model, &scratch, &at);
   if (good) order_nodes(model, &at, place, order);
+  if (good) turn_as_listed(model, place, order);
   if (good && free_members)
     order_members_freely(model, &at, order, place, member);
   else
@@ -334,6 +366,22 @@ strut_status strut_renumbering_create(const strut_model *model, bool free_member
   strut_renumbering_free(r);
   *renumbering = NULL;
   return strut_memory_fail_model(model->scene, error);
+}
+
+strut_status strut_member_order_create(const strut_model *model, strut_arena *arena,
+                                       int32_t **member, strut_error *error) {
+  size_t nodes = (size_t)model->node_count;
+  strut_arena scratch = {0};
+  incidence at;
+  *member = strut_arena_allocate(arena, (size_t)model->members.count, sizeof **member);
+  int32_t *place = strut_arena_allocate(&scratch, nodes, sizeof *place);
+  int32_t *order = strut_arena_allocate(&scratch, nodes, sizeof *order);
+  bool good = *member && place && order && find_incidence(model, &scratch, &at);
+  if (good) order_nodes(model, &at, place, order);
+  if (good) turn_as_listed(model, place, order);
+  good = good && order_members(model, &at, order, *member);
+  strut_arena_free(&scratch);
+  return good ? STRUT_OK : strut_memory_fail_model(model->scene, error);
 }
 
 void strut_renumbering_free(strut_renumbering *renumbering) {

@@ -32,4 +32,8 @@ strut_status strut_renumbering_create(const strut_model *model, bool free_member
 /** NULL is allowed. */
 void strut_renumbering_free(strut_renumbering *renumbering);
 
+/** Only the order of the members: (members) the scene's member that is stored at k. STRUT_OK, STRUT_NO_MEMORY. */
+STRUT_API strut_status strut_member_order_create(const strut_model *model, strut_arena *arena,
+                                                 int32_t **member, strut_error *error);
+
 #endif

@@ -22,8 +22,6 @@
 
 /* Members times steps between two checks of the state and the interrupt flag. */
 static const int64_t CHUNK_WORK = 2000, LONGEST_CHUNK = 64;
-/* Steps at least between two checks where each costs a copy in the scene's order. */
-static const int64_t LARGE_CHUNK = 8;
 
 double strut_run_clock(void) {
   struct timespec t;
@@ -573,12 +571,15 @@ strut_status strut_run_end(strut_run *r, strut_status status) {
 /* From here on a large model is stepped in another order and by several threads, where that pays. */
 static strut_status use_large_steps(strut_run *r) {
   const strut_integrator_settings settings = strut_integrator_settings_of(r->experiment);
+  int64_t at_once = strut_large_steps_at_once(r->model, r->method);
+  if (r->chunk < at_once) r->chunk = at_once;
   if (r->options->scene_order) return STRUT_OK;
   strut_status status = strut_large_steps_create(r->model, r->method, &settings,
                                                  strut_large_threads(), &r->large, r->error);
   if (!r->large) return status;
+  int64_t evaluations = r->state->evaluations; /* the method's own start has been counted */
   strut_large_steps_restart(r->large, r->state, r->dt);
-  if (r->chunk < LARGE_CHUNK) r->chunk = LARGE_CHUNK;
+  r->state->evaluations = evaluations;
   return status;
 }
 

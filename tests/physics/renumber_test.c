@@ -4,13 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/integrate/domain_steps.h"
 #include "engine/integrate/large_steps.h"
 #include "engine/model/renumber.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"
 #include "tests/support/motion.h"
 
-enum { WIDE = 120, HIGH = 100, NODES = WIDE * HIGH, MOST = 4 * NODES };
+enum { WIDE = 210, HIGH = 80, NODES = WIDE * HIGH, MOST = 4 * NODES };
 
 static uint64_t noise = 1;
 
@@ -152,37 +153,186 @@ static void compare(const strut_setup *setup, const char *name, int threads, boo
   strut_model_free(model);
 }
 
+static const char *const methods[] = {"rk4", "verlet", "euler"};
+enum { METHODS = sizeof methods / sizeof *methods };
+
 static void test_every_method_has_the_same_bits(void **unused) {
   (void)unused;
-  static const char *const methods[] = {"rk4", "verlet", "euler"};
   strut_setup setup;
   for (int consistent = 0; consistent < 2; consistent++) {
     grid(&setup, true, consistent, true);
-    for (size_t i = 0; i < sizeof methods / sizeof *methods; i++)
+    for (size_t i = 0; i < METHODS; i++)
       compare(&setup, methods[i], 1, false, i % 2 == (size_t)consistent);
     compare(&setup, "rk4", 3, false, true);
     strut_setup_free(&setup);
   }
   grid(&setup, true, false, false);
-  compare(&setup, "rk4", 2, false, true);
+  for (size_t i = 0; i < METHODS; i++) compare(&setup, methods[i], 2, false, true);
   strut_setup_free(&setup);
 }
 
 /* As listed, any number of threads sums the ledger, too, in the order of one. */
 static void test_any_number_of_threads_has_the_same_bits(void **unused) {
   (void)unused;
+  static const int threads[] = {2, 3, 5, 8};
   strut_setup setup;
-  for (int consistent = 0; consistent < 2; consistent++) {
-    grid(&setup, false, consistent, !consistent);
-    for (int threads = 2; threads < 9; threads += 3)
-      compare(&setup, "rk4", threads, true, threads != 5);
-    strut_setup_free(&setup);
-  }
   grid(&setup, false, false, true);
+  for (size_t i = 0; i < METHODS; i++)
+    for (size_t k = 0; k < sizeof threads / sizeof *threads; k++)
+      compare(&setup, methods[i], threads[k], true, threads[k] != 5);
   setup.scene.contact_count = 0;
   compare(&setup, "rk4", 2, true, true);
   setup.scene.load_count = setup.scene.actuator_count = 0;
-  compare(&setup, "rk4", 4, true, true);
+  for (size_t i = 0; i < METHODS; i++) compare(&setup, methods[i], 4, true, true);
+  strut_setup_free(&setup);
+}
+
+/* Rows of nodes that nothing couples; all nodes coupled; small groups; supports that differ in x and y. */
+static void test_coupled_masses(void **unused) {
+  (void)unused;
+  enum { ROWS, ALL, GROUPS, SUPPORTS, KINDS };
+  static const int threads[] = {3};
+  strut_setup setup;
+  for (int kind = ROWS; kind < KINDS; kind++) {
+    grid(&setup, false, true, true);
+    strut_scene *scene = &setup.scene;
+    for (size_t j = 0; j < scene->member_count && kind != ROWS; j++)
+      scene->members[j].mass = kind != GROUPS || j % 37 == 0 || j % 37 == 5 ? 0.05 : 0.0;
+    if (kind == SUPPORTS) scene->nodes[NODES / 2].fixed[0] = true;
+    for (size_t k = 0; k < sizeof threads / sizeof *threads; k++)
+      compare(&setup, methods[(size_t)kind % METHODS], threads[k], true, k != 1);
+    for (size_t i = 0; i < METHODS; i++) compare(&setup, methods[i], 2, true, i != 1);
+    strut_setup_free(&setup);
+  }
+}
+
+/* In another order, too, the ledger adds up the same for any number of threads. */
+static void test_the_ledger_does_not_depend_on_threads(void **unused) {
+  (void)unused;
+  static const int threads[] = {1, 2, 8};
+  const strut_integrator_settings settings = {.step = 1e-3};
+  strut_setup setup;
+  for (int consistent = 0; consistent < 2; consistent++) {
+    double work[STRUT_POWER_COUNT] = {0};
+    grid(&setup, true, consistent, true);
+    strut_model *model = compile(&setup.scene);
+    for (size_t k = 0; k < sizeof threads / sizeof *threads; k++) {
+      strut_state *state = state_of(model, true);
+      strut_large_steps *steps;
+      strut_error error = {0};
+      assert_int_equal(strut_large_steps_create(model, strut_integrator_find("rk4"), &settings,
+                                                threads[k], &steps, &error),
+                       STRUT_OK);
+      strut_large_steps_restart(steps, state, 1e-3);
+      strut_large_steps_advance(steps, state, 1e-3, 5);
+      for (int p = 0; p < STRUT_POWER_COUNT; p++)
+        if (k == 0)
+          work[p] = state->work[p];
+        else
+          assert_same_bits(work[p], state->work[p]);
+      strut_large_steps_free(steps);
+      strut_state_free(state);
+    }
+    strut_model_free(model);
+    strut_setup_free(&setup);
+  }
+}
+
+/* All springs before all cables, as tables of a paper are: each thread would need all nodes. */
+static void test_kinds_one_after_the_other_are_reordered(void **unused) {
+  (void)unused;
+  strut_setup setup;
+  grid(&setup, false, false, true);
+  strut_scene *scene = &setup.scene;
+  static strut_member kept[MOST];
+  size_t count = 0;
+  memcpy(kept, scene->members, scene->member_count * sizeof *kept);
+  for (int cables = 0; cables < 2; cables++)
+    for (size_t j = 0; j < scene->member_count; j++)
+      if ((kept[j].kind == STRUT_CABLE) == cables) scene->members[count++] = kept[j];
+  assert_int_equal(count, scene->member_count);
+  strut_model *model = compile(scene);
+  assert_true(strut_model_is_scattered(model));
+  strut_model_free(model);
+  for (size_t i = 0; i < METHODS; i++) compare(&setup, methods[i], 2, false, true);
+  strut_setup_free(&setup);
+}
+
+static int by_later_node(const void *a, const void *b) {
+  const strut_member *x = a, *y = b;
+  int32_t later = x->node[0] > x->node[1] ? x->node[0] : x->node[1];
+  int32_t other = y->node[0] > y->node[1] ? y->node[0] : y->node[1];
+  if (later != other) return later > other ? 1 : -1;
+  int32_t sum = x->node[0] + x->node[1], others = y->node[0] + y->node[1];
+  return (sum > others) - (sum < others);
+}
+
+/* Few members lead from one half to a node of the other that is tied to much of it: ghosts of ghosts. */
+static void test_a_hub_makes_no_difference(void **unused) {
+  (void)unused;
+  enum { HUB = HIGH / 2 };
+  static int32_t place[NODES];
+  strut_setup setup;
+  grid(&setup, false, false, true);
+  strut_scene *scene = &setup.scene;
+  scene->actuator_count = 0;
+  for (int32_t i = 0; i < NODES; i++) place[i] = i;
+  for (int32_t i = 2 * HIGH; i < 100 * HIGH && scene->member_count < MOST; i += 7)
+    add_member(scene, place, HUB, i, true, true, 0.0);
+  qsort(scene->members, scene->member_count, sizeof *scene->members, by_later_node);
+  strut_model *model = compile(scene);
+  assert_false(strut_model_is_scattered(model));
+  strut_model_free(model);
+  for (size_t i = 0; i < METHODS; i++) compare(&setup, methods[i], 2, true, i != 1);
+  compare(&setup, "rk4", 8, true, true);
+  strut_setup_free(&setup);
+}
+
+/* One, and more than a team has: as many as it has. */
+static void test_one_thread_and_a_hundred(void **unused) {
+  (void)unused;
+  enum { CELLS = 16000 };
+  static strut_node node[2 * CELLS];
+  static strut_member member[5 * CELLS];
+  strut_setup setup;
+  strut_setup_init(&setup);
+  strut_scene *scene = &setup.scene;
+  scene->nodes = node, scene->members = member;
+  scene->node_count = 2 * CELLS, scene->mass_model = STRUT_MASS_LUMPED;
+  for (int32_t i = 0; i < 2 * CELLS; i++) {
+    node[i] = strut_node_default();
+    node[i].position[0] = node[i].start[0] = i / 2 + 1e-3 * (i % 7);
+    node[i].position[1] = node[i].start[1] = i % 2;
+    node[i].mass = 0.1;
+  }
+  for (int32_t i = 0; i + 2 < 2 * CELLS; i++)
+    for (int32_t step = 1; step < 4; step++) {
+      if (step + i % 2 == 4) continue;
+      strut_member *m = &member[scene->member_count++];
+      *m = strut_member_default();
+      m->kind = STRUT_SPRING, m->node[0] = i, m->node[1] = i + step;
+      m->rest_kind = STRUT_REST_LENGTH, m->rest_value = 0.97 * hypot((i % 2 + step) / 2, step % 2);
+      m->stiffness = 100.0, m->damping = 0.1;
+    }
+  strut_model *model = compile(scene);
+  const strut_integrator_settings settings = {.step = 1e-3};
+  for (size_t k = 0; k < 2 * METHODS; k++) {
+    const strut_integrator *method = strut_integrator_find(methods[k / 2]);
+    strut_state *usual = state_of(model, true), *state = state_of(model, true);
+    void *workspace = method->create(model, usual, &settings);
+    strut_domain_steps *other = strut_domain_steps_create(model, method, NULL, k % 2 ? 1 : 100);
+    assert_true(workspace && other);
+    strut_domain_steps_restart(other, state, 1e-3);
+    method->advance(model, usual, workspace, 1e-3, 6);
+    strut_domain_steps_advance(other, state, 1e-3, 6);
+    assert_memory_equal(usual->q, state->q, (size_t)model->length * sizeof(double));
+    assert_memory_equal(usual->work, state->work, sizeof state->work);
+    strut_domain_steps_free(other);
+    strut_state_free(usual);
+    strut_state_free(state);
+  }
+  strut_model_free(model);
+  scene->nodes = NULL, scene->members = NULL;
   strut_setup_free(&setup);
 }
 
@@ -233,6 +383,11 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_every_method_has_the_same_bits),
       cmocka_unit_test(test_any_number_of_threads_has_the_same_bits),
+      cmocka_unit_test(test_coupled_masses),
+      cmocka_unit_test(test_the_ledger_does_not_depend_on_threads),
+      cmocka_unit_test(test_kinds_one_after_the_other_are_reordered),
+      cmocka_unit_test(test_a_hub_makes_no_difference),
+      cmocka_unit_test(test_one_thread_and_a_hundred),
       cmocka_unit_test(test_what_is_in_order_stays_as_it_is),
       cmocka_unit_test(test_members_at_a_node_keep_their_order),
   };
