@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "engine/integrate/lanes/batch.h"
+#include "engine/model/small_model.h"
 #include "engine/run/simulate_batch.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"
@@ -258,10 +259,32 @@ static void test_no_memory_for_lanes(void **unused) {
   strut_setup_free(&crawler);
 }
 
+/* Where single runs have a kernel of their own that is as fast, they are not put into lanes. */
+static void test_lanes_that_pay(void **unused) {
+  (void)unused;
+  strut_setup crawler;
+  strut_setup_init(&crawler);
+  structure_crawler(&crawler.scene, 10, 1e-4, 0.1, false);
+  strut_model *model = motion_compile(&crawler.scene);
+  const strut_integrator *rk4 = strut_integrator_find("rk4");
+  const strut_integrator *events = strut_integrator_find("verlet-events");
+  bool small = model->small && model->small->level != STRUT_SMALL_NONE;
+  assert_true(strut_batch_pays(model, rk4, 8));
+  assert_int_equal(strut_batch_pays(model, rk4, 2), !small);
+  assert_int_equal(strut_batch_pays(model, events, 8), !small);
+  if (model->small) model->small->level = STRUT_SMALL_NONE;
+  assert_true(strut_batch_pays(model, rk4, 2));
+  assert_true(strut_batch_pays(model, events, 8));
+  strut_model_free(model);
+  strut_setup_free(&crawler);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_every_width), cmocka_unit_test(test_without_ledger),
-      cmocka_unit_test(test_events), cmocka_unit_test(test_few_points),
-      cmocka_unit_test(test_no_memory_for_lanes)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_every_width),
+                                     cmocka_unit_test(test_without_ledger),
+                                     cmocka_unit_test(test_events),
+                                     cmocka_unit_test(test_few_points),
+                                     cmocka_unit_test(test_no_memory_for_lanes),
+                                     cmocka_unit_test(test_lanes_that_pay)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

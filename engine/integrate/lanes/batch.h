@@ -20,6 +20,9 @@ STRUT_API int32_t strut_batch_widest(void);
 STRUT_API bool strut_batch_knows(const strut_integrator *method);
 /** Can it step this model in lanes? */
 STRUT_API bool strut_batch_possible(const strut_model *model, const strut_integrator *method);
+/** Do so many lanes take less time than the runs one by one, which have kernels of their own? As measured. */
+STRUT_API bool strut_batch_pays(const strut_model *model, const strut_integrator *method,
+                                int32_t width);
 
 /**
  * A batch for models like `first`, which must be possible and outlive it. width: 2, 4 or 8, at most the
