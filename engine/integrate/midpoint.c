@@ -321,6 +321,7 @@ const strut_integrator strut_integrator_midpoint = {
     .no_ground = true,
     .no_memory = true,
     .no_sliding_masses = true,
+    .solves = true,
     .create = midpoint_create,
     .restart = midpoint_restart,
     .advance = midpoint_advance,

@@ -15,6 +15,13 @@ extern const void *strut_algebra_loaded;
 /** Makes the libraries ready, once; fails where they are not installed, or memory is out. */
 strut_status strut_algebra_load(strut_error *error);
 
+/**
+ * Between begin and end the BLAS keeps to one thread, since its sums have other bits with several. Several threads
+ * may do so at a time.
+ */
+void strut_algebra_begin(void);
+void strut_algebra_end(void);
+
 #define cholmod_analyze (strut_algebra->cholmod_analyze)
 #define cholmod_change_factor (strut_algebra->cholmod_change_factor)
 #define cholmod_copy_factor (strut_algebra->cholmod_copy_factor)

@@ -37,6 +37,9 @@ typedef struct strut_algebra_library {
 #define FUNCTION(name) __typeof__(name) *name;
   STRUT_ALGEBRA_FUNCTIONS(FUNCTION)
 #undef FUNCTION
+  /* of OpenBLAS; NULL with another BLAS */
+  void (*set_threads)(int);
+  int (*get_threads)(void);
 } strut_algebra_library;
 
 /** The table of the libraries that this program was linked to, or that a module of it was. */

@@ -7,6 +7,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/model/algebra_calls.h"
+#include "engine/model/hot.h"
 #include "engine/model/memory_estimate.h"
 
 static void start_cholmod(cholmod_common *common) {
@@ -36,6 +37,8 @@ static cholmod_sparse view(const strut_sparse *matrix) {
   result.packed = 1;
   return result;
 }
+
+strut_status strut_linear_solver_load(strut_error *error) { return strut_algebra_load(error); }
 
 static strut_factor *allocate_factor(int32_t n, size_t nonzeros) {
   strut_factor *factor = strut_allocate(1, sizeof *factor);
@@ -78,6 +81,75 @@ static strut_factor *copy_out(const cholmod_factor *l) {
   return factor;
 }
 
+/* ---- parts side by side ---- */
+
+/* Matrices from this size on; smaller ones are in no hurry. Parts that are solved in turns. */
+enum { LEAST_TO_WEAVE = 256, MOST_TURNS = 4 };
+
+/* Which part each column belongs to; returns how many parts there are. */
+static int32_t find_parts(const strut_factor *f, int32_t *part) {
+  int32_t parts = 0;
+  for (int32_t j = f->n - 1; j >= 0; j--)
+    part[j] = f->start[j] < f->start[j + 1] ? part[f->row[f->start[j]]] : parts++;
+  return parts;
+}
+
+/* Each part goes to the turn with the fewest columns so far; columns of the turns one after the other. */
+static void order_turns(int32_t n, int32_t parts, const int32_t *part, int32_t *turn,
+                        int32_t *old) {
+  int32_t load[MOST_TURNS] = {0}, at[MOST_TURNS] = {0};
+  for (int32_t p = 0; p < parts; p++) turn[p] = 0;
+  for (int32_t j = 0; j < n; j++) turn[part[j]]++;
+  for (int32_t p = 0; p < parts; p++) {
+    int32_t least = 0, columns = turn[p];
+    for (int32_t t = 1; t < MOST_TURNS; t++)
+      if (load[t] < load[least]) least = t;
+    load[least] += columns;
+    turn[p] = least;
+  }
+  for (int32_t i = 0, t = 0; i < n; t = (t + 1) % MOST_TURNS) {
+    while (at[t] < n && turn[part[at[t]]] != t) at[t]++;
+    if (at[t] < n) old[i++] = at[t]++;
+  }
+}
+
+/*
+ * Stores parts of the matrix that nothing couples column by column in turns: a column waits for the one before of
+ * its own part, and the processor works on the others meanwhile. Every sum keeps its order. False: out of memory.
+ */
+static bool weave_parts(strut_factor **factor) {
+  const strut_factor *f = *factor;
+  strut_arena scratch = {0};
+  size_t n = (size_t)f->n;
+  if (f->n < LEAST_TO_WEAVE) return true;
+  int32_t *part = strut_arena_allocate(&scratch, n, sizeof *part);
+  int32_t *turn = strut_arena_allocate(&scratch, n, sizeof *turn);
+  int32_t *old = strut_arena_allocate(&scratch, n, sizeof *old);
+  int32_t *place = strut_arena_allocate(&scratch, n, sizeof *place);
+  bool good = part && turn && old && place;
+  int32_t parts = good ? find_parts(f, part) : 0, at = 0;
+  strut_factor *woven = parts > 1 ? allocate_factor(f->n, (size_t)f->start[f->n]) : NULL;
+  if (parts > 1) good = woven;
+  if (woven) order_turns(f->n, parts, part, turn, old);
+  for (int32_t i = 0; i < f->n && woven; i++) place[old[i]] = i;
+  for (int32_t i = 0; i < f->n && woven; i++) {
+    int32_t j = old[i];
+    woven->order[i] = f->order[j], woven->inverse_diagonal[i] = f->inverse_diagonal[j];
+    woven->start[i] = at;
+    for (int32_t k = f->start[j]; k < f->start[j + 1]; k++, at++)
+      woven->row[at] = place[f->row[k]], woven->value[at] = f->value[k];
+  }
+  if (woven) {
+    woven->start[f->n] = at;
+    strut_factor_free(*factor);
+    *factor = woven;
+  }
+  strut_arena_free(&scratch);
+  return good;
+}
+
+/* ---- factors ---- */
+
 /*
  * The row of A at which it shows not to be positive definite, or -1. CHOLMOD's L D L' stops at a
  * zero in D only, so the signs are looked at here.
@@ -105,9 +177,11 @@ strut_status strut_factor_create(const strut_sparse *matrix, strut_factor **fact
   if (l && !status && cholmod_factorize(&a, l, &common) && common.status >= CHOLMOD_OK &&
       cholmod_change_factor(CHOLMOD_REAL, 0, 0, 1, 1, l, &common)) {
     int32_t row = bad_row(l);
-    if (row < 0)
-      *factor = copy_out(l);
-    else
+    if (row < 0 && (*factor = copy_out(l)) && !weave_parts(factor)) {
+      strut_factor_free(*factor);
+      *factor = NULL;
+    }
+    if (row >= 0)
       status = strut_fail(error, STRUT_SINGULAR,
                           "the matrix is not positive definite (row %d of %d)", row, matrix->n);
   }
@@ -142,24 +216,19 @@ void strut_factor_solve(const strut_factor *factor, double *restrict b) {
 }
 
 void strut_factor_solve_pair(const strut_factor *factor, double *restrict b) {
-  const int32_t *start = factor->start, *row = factor->row;
-  const double *value = factor->value;
-  for (int32_t j = 0; j < factor->n; j++) {
-    double x = b[2 * j], y = b[2 * j + 1];
-    for (int32_t k = start[j]; k < start[j + 1]; k++) {
-      b[2 * row[k]] -= value[k] * x;
-      b[2 * row[k] + 1] -= value[k] * y;
-    }
+  const int32_t *restrict start = factor->start, *restrict row = factor->row;
+  const double *restrict value = factor->value, *restrict inverse = factor->inverse_diagonal;
+  int32_t n = factor->n;
+  for (int32_t j = 0; j < n; j++) {
+    strut_pair x = strut_pair_load(b + 2 * j);
+    for (int32_t k = start[j]; k < start[j + 1]; k++)
+      strut_pair_store(b + 2 * row[k], strut_pair_load(b + 2 * row[k]) - value[k] * x);
   }
-  for (int32_t j = factor->n - 1; j >= 0; j--) {
-    double x = b[2 * j] * factor->inverse_diagonal[j];
-    double y = b[2 * j + 1] * factor->inverse_diagonal[j];
-    for (int32_t k = start[j]; k < start[j + 1]; k++) {
-      x -= value[k] * b[2 * row[k]];
-      y -= value[k] * b[2 * row[k] + 1];
-    }
-    b[2 * j] = x;
-    b[2 * j + 1] = y;
+  for (int32_t j = n - 1; j >= 0; j--) {
+    strut_pair x = strut_pair_load(b + 2 * j) * inverse[j];
+    for (int32_t k = start[j]; k < start[j + 1]; k++)
+      x -= value[k] * strut_pair_load(b + 2 * row[k]);
+    strut_pair_store(b + 2 * j, x);
   }
 }
 
@@ -268,6 +337,50 @@ void strut_ldl_solve(strut_ldl *ldl, double *b) {
   for (int32_t i = 0; i < f->n; i++) x[i] = b[f->order[i]];
   strut_factor_solve(f, x);
   for (int32_t i = 0; i < f->n; i++) b[f->order[i]] = x[i];
+}
+
+enum { SIDE_BY_SIDE = 4 };
+
+/* Four right-hand sides, row by row: as strut_factor_solve. */
+STRUT_CLONES static void solve_four(const strut_factor *factor, double *restrict b) {
+  const int32_t *start = factor->start, *row = factor->row;
+  const double *value = factor->value;
+  for (int32_t j = 0; j < factor->n; j++) {
+    double x[SIDE_BY_SIDE];
+    memcpy(x, b + SIDE_BY_SIDE * (size_t)j, sizeof x);
+    for (int32_t k = start[j]; k < start[j + 1]; k++) {
+      double *to = b + SIDE_BY_SIDE * (size_t)row[k];
+      for (int i = 0; i < SIDE_BY_SIDE; i++) to[i] -= value[k] * x[i];
+    }
+  }
+  for (int32_t j = factor->n - 1; j >= 0; j--) {
+    double sum[SIDE_BY_SIDE], *at = b + SIDE_BY_SIDE * (size_t)j;
+    for (int i = 0; i < SIDE_BY_SIDE; i++) sum[i] = at[i] * factor->inverse_diagonal[j];
+    for (int32_t k = start[j]; k < start[j + 1]; k++) {
+      const double *from = b + SIDE_BY_SIDE * (size_t)row[k];
+      for (int i = 0; i < SIDE_BY_SIDE; i++) sum[i] -= value[k] * from[i];
+    }
+    memcpy(at, sum, sizeof sum);
+  }
+}
+
+bool strut_ldl_solve_many(strut_ldl *ldl, double *b, size_t count) {
+  const strut_factor *f = ldl->factor;
+  size_t n = (size_t)f->n, k = 0;
+  double *x = count < SIDE_BY_SIDE ? NULL : strut_allocate(SIDE_BY_SIDE * n, sizeof *x);
+  if (count >= SIDE_BY_SIDE && !x) return false;
+  for (; k + SIDE_BY_SIDE <= count; k += SIDE_BY_SIDE, b += SIDE_BY_SIDE * n) {
+    for (size_t i = 0; i < n; i++)
+      for (size_t s = 0; s < SIDE_BY_SIDE; s++)
+        x[SIDE_BY_SIDE * i + s] = b[s * n + (size_t)f->order[i]];
+    solve_four(f, x);
+    for (size_t i = 0; i < n; i++)
+      for (size_t s = 0; s < SIDE_BY_SIDE; s++)
+        b[s * n + (size_t)f->order[i]] = x[SIDE_BY_SIDE * i + s];
+  }
+  for (; k < count; k++, b += n) strut_ldl_solve(ldl, b);
+  strut_release(x);
+  return true;
 }
 
 /* Hager's method: climbs to a column of A^-1 with a large sum; then Higham's second guess. */

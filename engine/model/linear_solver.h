@@ -8,6 +8,8 @@
 #ifndef STRUT_ENGINE_MODEL_LINEAR_SOLVER_H
 #define STRUT_ENGINE_MODEL_LINEAR_SOLVER_H
 
+#include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "engine/base/status.h"
@@ -29,6 +31,9 @@ typedef struct strut_factor {
   double *value;
   double *inverse_diagonal; /* (n) 1 / D */
 } strut_factor;
+
+/** Loads the libraries of all below, and tells why where they cannot be had. */
+strut_status strut_linear_solver_load(strut_error *error);
 
 /**
  * Factorises a positive definite matrix. STRUT_SINGULAR with the row if it is not. STRUT_NO_MEMORY,
@@ -71,6 +76,8 @@ strut_status strut_ldl_factorise(strut_ldl *ldl, const strut_sparse *matrix, dou
                                  strut_inertia *inertia);
 /** b (n) becomes (matrix + shift I)^-1 b, in the matrix's own order. */
 void strut_ldl_solve(strut_ldl *ldl, double *b);
+/** The same, to the bit, of `count` right-hand sides one after the other: (count, n). False: out of memory. */
+bool strut_ldl_solve_many(strut_ldl *ldl, double *b, size_t count);
 /**
  * Estimate of 1 / (|A| |A^-1|) in the 1-norm of what was factorised last, by a few solves (Hager,
  * Higham); it is seldom off by more than a factor of 3. Solutions lose that many digits.

@@ -192,6 +192,7 @@ typedef struct sparse_curvature {
   double shift;           /* of the factor at hand; NAN: there is none */
   double scale;           /* largest diagonal entry */
   double *work, *scratch; /* (n) */
+  double *factored;       /* (nonzeros) the Hessian that the factor is of */
   strut_arena arena;
 } sparse_curvature;
 
@@ -210,7 +211,10 @@ void *strut_curvature_sparse_create(const strut_potential *potential) {
   r->hessian = strut_potential_matrix(potential, &r->arena);
   r->work = strut_arena_allocate(&r->arena, (size_t)potential->n, sizeof *r->work);
   r->scratch = strut_arena_allocate(&r->arena, (size_t)potential->n, sizeof *r->scratch);
-  if (r->hessian && r->work && r->scratch &&
+  size_t nonzeros = r->hessian ? (size_t)r->hessian->start[r->hessian->n] : 0;
+  r->factored = strut_arena_allocate(&r->arena, nonzeros, sizeof *r->factored);
+  r->shift = (double)NAN;
+  if (r->hessian && r->work && r->scratch && r->factored &&
       strut_ldl_create(potential->pattern, &r->ldl, NULL) == STRUT_OK)
     return r;
   sparse_free(r);
@@ -220,9 +224,10 @@ void *strut_curvature_sparse_create(const strut_potential *potential) {
 /* Pivots of this share of their diagonal are rounding: neither their size nor their sign counts. */
 static const double NOISE = 32 * DBL_EPSILON;
 
-/* Factorises H + shift; true where it is positive definite beyond rounding. */
+/* Factorises H + shift, unless that was done last; true where it is positive definite beyond rounding. */
 static bool factorise(sparse_curvature *r, double shift) {
-  bool good = strut_ldl_factorise(r->ldl, r->hessian, shift, &r->inertia) == STRUT_OK;
+  bool good =
+      r->shift == shift || strut_ldl_factorise(r->ldl, r->hessian, shift, &r->inertia) == STRUT_OK;
   r->shift = good ? shift : (double)NAN;
   return good && r->inertia.negative == 0 && r->inertia.smallest > NOISE;
 }
@@ -230,11 +235,15 @@ static bool factorise(sparse_curvature *r, double shift) {
 static bool sparse_decompose(void *memory, const double *q) {
   sparse_curvature *r = memory;
   const strut_sparse *h = r->hessian;
+  size_t bytes = (size_t)h->start[h->n] * sizeof *h->value;
   strut_potential_hessian(r->potential, q, r->hessian);
+  bool same = memcmp(r->factored, h->value, bytes) == 0;
   r->scale = 0.0;
   for (int32_t k = 0; k < h->start[h->n]; k++)
     if (!isfinite(h->value[k])) return false;
   for (int32_t j = 0; j < h->n; j++) r->scale = fmax(r->scale, fabs(h->value[h->start[j]]));
+  if (same) return true;
+  memcpy(r->factored, h->value, bytes);
   r->shift = (double)NAN;
   return true;
 }

@@ -8,6 +8,7 @@
 
 #include "engine/base/vec.h"
 #include "engine/forces/elements.h"
+#include "engine/model/linear_solver.h"
 #include "engine/statics/curvature.h"
 
 enum { MOST_STEPS = 400, MOST_POLISH = 30, MOST_EXTRA = 25, MOST_BENDS = 4 };
@@ -34,6 +35,12 @@ strut_status strut_minimiser_create(const strut_potential *potential, strut_mini
   size_t n = (size_t)potential->n, length = (size_t)potential->model->length;
   if (!m) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
   bool dense = potential->n <= STRUT_DENSE_STATICS;
+  strut_status status = dense ? STRUT_OK : strut_linear_solver_load(error);
+  if (status) {
+    strut_release(m);
+    *minimiser = NULL;
+    return status;
+  }
   m->potential = potential;
   m->size = potential->model->size > 0 ? potential->model->size : 1.0;
   m->longest_step = HUGE_VAL;

@@ -31,6 +31,10 @@ static strut_status write_files(const char *directory, const char *const *names,
   return status;
 }
 
+bool strut_report_needs_json(const strut_arguments *arguments) {
+  return arguments->json || arguments->output;
+}
+
 strut_status strut_report(const strut_arguments *arguments, const char *const *names, char *json,
                           char *csv, char *table, strut_error *error) {
   strut_status status = STRUT_OK;

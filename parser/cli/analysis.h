@@ -26,9 +26,13 @@ typedef strut_status (*strut_analyse)(strut_analysis *analysis, strut_error *err
 strut_status strut_analysis_run(const strut_command *command, const strut_arguments *arguments,
                                 const char *const *names, strut_analyse analyse);
 
+/** True where the JSON of results is written or printed; of large structures it takes long to make. */
+bool strut_report_needs_json(const strut_arguments *arguments);
+
 /**
  * Writes the files of -o and prints the JSON or the table: blocks of strut_allocate, which are
- * released; NULL means memory is out. csv is NULL where there is no such file.
+ * released; NULL means memory is out. csv is NULL where there is no such file, json where it is not
+ * needed.
  */
 strut_status strut_report(const strut_arguments *arguments, const char *const *names, char *json,
                           char *csv, char *table, strut_error *error);

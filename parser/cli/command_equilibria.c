@@ -28,8 +28,10 @@ static strut_status analyse_equilibria(strut_analysis *a, strut_error *error) {
   wanted.interrupt = strut_interrupt_watch();
   if (!status) status = strut_equilibria_find(a->model, &a->setup.experiment, &wanted, &all, error);
   if (!status)
-    status = strut_report(a->arguments, a->names, strut_equilibria_json(&all, a->model), NULL,
-                          strut_equilibria_table(&all, a->model, a->arguments->all), error);
+    status = strut_report(
+        a->arguments, a->names,
+        strut_report_needs_json(a->arguments) ? strut_equilibria_json(&all, a->model) : NULL, NULL,
+        strut_equilibria_table(&all, a->model, a->arguments->all), error);
   if (!status) strut_warn_of_equilibria(a->arguments->listener, a->model, &all);
   if (!status && a->plot.path && all.count > 0)
     status = strut_equilibria_figure(&a->plot, a->model, &all, error);

@@ -25,8 +25,11 @@ static strut_status analyse_modes(strut_analysis *a, strut_error *error) {
   if (status != STRUT_OK) return status;
   status = strut_modes_find(a->model, &a->setup.experiment, &wanted, &modes, error);
   if (status == STRUT_OK)
-    status = strut_report(a->arguments, a->names, strut_modes_json(a->model, &modes),
-                          strut_modes_csv(&modes), strut_modes_table(a->model, &modes), error);
+    status = strut_report(
+        a->arguments, a->names,
+        strut_report_needs_json(a->arguments) ? strut_modes_json(a->model, &modes) : NULL,
+        a->arguments->output ? strut_modes_csv(&modes) : NULL, strut_modes_table(a->model, &modes),
+        error);
   if (status == STRUT_OK)
     strut_warn_of_overload(a->arguments->listener, a->model, modes.q, "in this shape");
   if (status == STRUT_OK && a->plot.path)

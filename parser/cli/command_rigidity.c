@@ -26,7 +26,10 @@ static strut_status analyse_rigidity(strut_analysis *a, strut_error *error) {
       strut_named_shape_find(a->arguments, model, &a->setup.experiment, &arena, &shape, error);
   if (status == STRUT_OK) status = strut_rigidity_find(model, shape.q, &rigidity, error);
   if (status == STRUT_OK)
-    status = strut_report(a->arguments, a->names, strut_rigidity_json(&rigidity, model, shape.name),
+    status = strut_report(a->arguments, a->names,
+                          strut_report_needs_json(a->arguments)
+                              ? strut_rigidity_json(&rigidity, model, shape.name)
+                              : NULL,
                           NULL, strut_rigidity_table(&rigidity, model, shape.name), error);
   if (status == STRUT_OK && a->plot.path)
     status = strut_rigidity_figure(&a->plot, model, shape.q, shape.name, &rigidity, error);

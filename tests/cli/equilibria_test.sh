@@ -162,7 +162,7 @@ out_has_not "fJ"
   done
 } >tower.yaml
 expect 0 equilibria tower.yaml
-out_has "cut short"
+out_has "cut short: a search of all shapes, bounded to some ten seconds of work"
 expect 0 equilibria "$crawler" --starts 20
 out_has_not "cut short"
 done_testing

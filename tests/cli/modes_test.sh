@@ -34,6 +34,14 @@ OMP_NUM_THREADS=1 expect 0 modes frame.yaml --json
 same first out
 OMP_NUM_THREADS=3 expect 0 modes frame.yaml --json
 same first out
+# Beyond 400 coordinates too, where the BLAS would use threads of its own.
+OPENBLAS_NUM_THREADS=1 expect 0 modes "$here/../../models/parts/x-chain.yaml" --set cells=1000 --json
+cp out long
+for threads in 2 4; do
+  OPENBLAS_NUM_THREADS=$threads expect 0 modes "$here/../../models/parts/x-chain.yaml" --set cells=1000 --json
+  same long out
+done
+cp first out
 [ "$(grep -c '"frequency"' out)" -eq 8 ] || fail "not all 8 modes"
 expect 0 modes frame.yaml --count 4 --json
 [ "$(grep -c '"frequency"' out)" -eq 4 ] || fail "not 4 modes"

@@ -38,6 +38,7 @@ absent pendulum
 missing 4 strut-drawing.so run "$models/basics/pendulum.yaml" --plot pendulum.svg
 absent pendulum.svg
 missing 4 strut-algebra.so equilibria "$models/basics/von-mises-truss.yaml"
+missing 4 strut-algebra.so run "$models/basics/pendulum.yaml" --integrator midpoint
 
 # What is no module, and a module of another strut.
 folder=$built/modules

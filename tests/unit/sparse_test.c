@@ -176,6 +176,45 @@ static void test_factors_without_memory(void **unused) {
   strut_arena_free(&arena);
 }
 
+/* Two paths and a ring that nothing couples, row by row in turns: each has the factor that it has alone. */
+static void test_parts_are_solved_in_turns(void **unused) {
+  (void)unused;
+  enum { PART = 100, PARTS = 3, ALL = PART * PARTS };
+  strut_arena arena = {0};
+  strut_triplets triplets = {0};
+  strut_factor *factor;
+  double b[ALL], x[ALL], back[ALL];
+  int32_t changes = 0;
+  assert_true(strut_triplets_reserve(&triplets, 2 * ALL, &arena));
+  for (int32_t i = 0; i < ALL; i++) {
+    strut_triplets_add(&triplets, i, i, 3.0 + i % 5);
+    if (i % PART) strut_triplets_add(&triplets, i, i - 1, 1.0);
+  }
+  strut_triplets_add(&triplets, ALL - 1, ALL - PART, 0.5);
+  strut_sparse *m = strut_sparse_build(ALL, &triplets, &arena);
+  for (int64_t n = 0;; n++) {
+    strut_error error = {0};
+    strut_fail_allocation_after(n);
+    strut_status status = strut_factor_create(m, &factor, &error);
+    strut_fail_allocation_after(-1);
+    if (!status) break;
+    assert_int_equal(status, STRUT_NO_MEMORY);
+    assert_null(factor);
+    assert_true(n < 100);
+  }
+  for (int32_t i = 0; i < ALL; i++) b[i] = cos(i);
+  for (int32_t i = 0; i < ALL; i++) x[i] = b[factor->order[i]];
+  for (int32_t i = 1; i < ALL; i++)
+    changes += factor->order[i] / PART != factor->order[i - 1] / PART;
+  assert_int_equal(changes, ALL - 1);
+  strut_factor_solve(factor, x);
+  for (int32_t i = 0; i < ALL; i++) back[factor->order[i]] = x[i];
+  strut_sparse_multiply(m, back, x);
+  for (int32_t i = 0; i < ALL; i++) assert_near(x[i], b[i], 1e-14);
+  strut_factor_free(factor);
+  strut_arena_free(&arena);
+}
+
 /* One pattern, many numbers: solutions against products, and a matrix that is not positive definite. */
 static void test_factorised_again(void **unused) {
   (void)unused;
@@ -212,6 +251,7 @@ static void test_factorised_again(void **unused) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_factorised_again),
+      cmocka_unit_test(test_parts_are_solved_in_turns),
       cmocka_unit_test(test_contributions_are_summed_and_sorted),
       cmocka_unit_test(test_product),
       cmocka_unit_test(test_an_empty_matrix),

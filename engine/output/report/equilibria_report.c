@@ -26,35 +26,6 @@ const char *strut_outcome_name(strut_outcome fate) {
   return names[fate];
 }
 
-/* Twice the area of a, b, c: positive where they turn left. */
-static double turn(const double *a, const double *b, const double *c) {
-  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-}
-
-static bool members_cross(const strut_model *model, const double *q, int32_t i, int32_t j) {
-  const strut_member_table *t = &model->members;
-  if (t->from[i] == t->from[j] || t->from[i] == t->to[j] || t->to[i] == t->from[j] ||
-      t->to[i] == t->to[j])
-    return false;
-  const double *a = q + t->from[i], *b = q + t->to[i], *c = q + t->from[j], *d = q + t->to[j];
-  double least = 1e-8 * model->size * model->size;
-  double c_side = turn(a, b, c), d_side = turn(a, b, d);
-  double a_side = turn(c, d, a), b_side = turn(c, d, b);
-  bool apart = fmin(fabs(c_side), fabs(d_side)) > least && fmin(fabs(a_side), fabs(b_side)) > least;
-  return apart && (c_side > 0) != (d_side > 0) && (a_side > 0) != (b_side > 0);
-}
-
-strut_shape_flaws strut_find_shape_flaws(const strut_model *model, const double *q) {
-  const double least = 1e-4 * model->size;
-  strut_shape_flaws flaws = {0};
-  for (int32_t i = 0; i < model->node_count && !flaws.collapsed; i++)
-    for (int32_t j = 0; j < i && !flaws.collapsed; j++)
-      flaws.collapsed = hypot(q[2 * i] - q[2 * j], q[2 * i + 1] - q[2 * j + 1]) < least;
-  for (int32_t i = 0; i < model->members.count; i++)
-    for (int32_t j = 0; j < i; j++) flaws.crossings += members_cross(model, q, i, j);
-  return flaws;
-}
-
 static void put_names(strut_json *json, struct cJSON *to, const char *key, const strut_scene *scene,
                       const int32_t *node, size_t count) {
   struct cJSON *names = strut_json_array(json, to, key);
@@ -380,8 +351,9 @@ char *strut_equilibria_table(const strut_equilibria *all, const strut_model *mod
                      all->unmet, all->unmet == 1 ? "one was" : "ones were");
   if (all->cut_short)
     strut_buffer_add(&table,
-                     "  cut short: a structure of this size needs more starts and climbs; --starts "
-                     "N asks for more\n");
+                     "  cut short: a search of all shapes, bounded to some ten seconds of work; a "
+                     "structure of this\n  size needs more starts and climbs; --starts N asks for "
+                     "more\n");
   if (all->settle.evaluations > 0)
     strut_buffer_add(
         &table, "  the start settles in %s\n",

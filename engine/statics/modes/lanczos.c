@@ -103,8 +103,10 @@ strut_status strut_lanczos(const strut_lanczos_problem *problem, int32_t count, 
     status = strut_no_memory(error, "");
   } else {
     pthread_mutex_lock(&arpack_lock);
+    strut_algebra_begin();
     a_int info = iterate(problem, &s);
     if (info == 0) info = finish(problem, &s);
+    strut_algebra_end();
     pthread_mutex_unlock(&arpack_lock);
     if (info == INTERRUPTED)
       status = strut_fail(error, STRUT_INTERRUPTED, "interrupted");

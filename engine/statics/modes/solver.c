@@ -167,6 +167,8 @@ static const double SAFE_SHIFT = 1e-10;
 static const double SAFE_PIVOT = 1e-9; /* relative: what is less may have the wrong sign */
 
 enum { CORRECTIONS = 2 };
+/* A correction this small beside the solution leaves an error of its square: no further one is worth it. */
+static const double ENOUGH = 1e-10;
 
 strut_status strut_modes_solver_create(const strut_vibration *v, strut_modes_solver *solver,
                                        strut_error *error) {
@@ -236,6 +238,12 @@ void strut_modes_solve(strut_modes_solver *s, strut_dd *x) {
     for (int32_t i = 0; i < n; i++)
       s->step[i] = dd_double(dd_sub(s->b[i], dd_add(s->r[i], dd_scale(s->mx[i], s->shift))));
     strut_ldl_solve(s->plain, s->step);
-    for (int32_t i = 0; i < n; i++) x[i] = dd_add(x[i], dd_of(s->step[i]));
+    double size = 0.0, change = 0.0;
+    for (int32_t i = 0; i < n; i++) {
+      size = fmax(size, fabs(x[i].hi));
+      change = fmax(change, fabs(s->step[i]));
+      x[i] = dd_add(x[i], dd_of(s->step[i]));
+    }
+    if (change <= ENOUGH * size) break;
   }
 }

@@ -13,15 +13,27 @@ static const double PIVOT_SHARE = 0.1; /* of the largest entry: what a pivot mus
 static const double MOST_WORK = 4e8;   /* multiplications spent on locality */
 static const double LEADS = 0.01;      /* of the largest: what a force made 1 must have */
 
-/* Reduced echelon form, members from `shift` on: 1 at its own pivot, 0 at the others. */
-static void reduce_echelon(double *rows, size_t count, size_t columns, size_t shift) {
+/* The largest magnitude in a row. */
+static double peak_of(const double *row, size_t columns) {
+  double largest = 0.0;
+  for (size_t k = 0; k < columns; k++)
+    if (fabs(row[k]) > largest) largest = fabs(row[k]);
+  return largest;
+}
+
+/*
+ * Reduced echelon form, members from `shift` on: 1 at its own pivot, 0 at the others. `peak` has room for
+ * the peaks of the rows.
+ */
+static void reduce_echelon(double *rows, size_t count, size_t columns, size_t shift, double *peak) {
   size_t done = 0;
+  for (size_t i = 0; i < count; i++) peak[i] = peak_of(rows + i * columns, columns);
   for (size_t c = 0; c < columns && done < count; c++) {
     size_t j = (c + shift) % columns, best = done;
     double largest = 0.0;
     for (size_t i = done; i < count; i++) {
       if (fabs(rows[i * columns + j]) > fabs(rows[best * columns + j])) best = i;
-      for (size_t k = 0; k < columns; k++) largest = fmax(largest, fabs(rows[i * columns + k]));
+      largest = fmax(largest, peak[i]);
     }
     double pivot = rows[best * columns + j];
     bool last = columns - c <= count - done; /* no choice left */
@@ -31,12 +43,14 @@ static void reduce_echelon(double *rows, size_t count, size_t columns, size_t sh
       rows[best * columns + k] = rows[done * columns + k];
       rows[done * columns + k] = swap / pivot;
     }
+    peak[best] = peak[done]; /* of the rows that are done no peak is asked for */
     for (size_t i = 0; i < count; i++) {
       double factor = rows[i * columns + j];
       if (i == done || factor == 0.0) continue;
       for (size_t k = 0; k < columns; k++)
         rows[i * columns + k] -= factor * rows[done * columns + k];
       rows[i * columns + j] = 0.0;
+      if (i > done) peak[i] = peak_of(rows + i * columns, columns);
     }
     done++;
   }
@@ -93,10 +107,11 @@ static bool choose_local(const double *basis, size_t count, size_t columns, size
   double *rows = strut_arena_allocate(scratch, total * columns, sizeof *rows);
   double *chosen = strut_arena_allocate(scratch, (count + 1) * columns, sizeof *chosen);
   candidate *list = strut_arena_allocate(scratch, total, sizeof *list);
-  if (!rows || !chosen || !list) return false;
+  double *peak = strut_arena_allocate(scratch, count, sizeof *peak);
+  if (!rows || !chosen || !list || !peak) return false;
   for (size_t o = 0; o < orders; o++) {
     memcpy(rows + o * size, basis, size * sizeof *rows);
-    reduce_echelon(rows + o * size, count, columns, o * columns / orders);
+    reduce_echelon(rows + o * size, count, columns, o * columns / orders, peak);
   }
   for (size_t i = 0; i < total; i++) {
     double *row = rows + i * columns;

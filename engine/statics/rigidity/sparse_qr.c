@@ -85,7 +85,9 @@ strut_status strut_sparse_qr_create(int32_t rows, int32_t columns, const int32_t
   qr->common.SPQR_nthreads = 1;
   qr->rows = rows, qr->columns = columns;
   cholmod_sparse *a = copy_matrix(qr, start, row, value);
+  strut_algebra_begin();
   bool done = a && factorise(qr, a, tolerance);
+  strut_algebra_end();
   bool memory =
       qr->common.status == CHOLMOD_OUT_OF_MEMORY || qr->common.status == CHOLMOD_TOO_LARGE;
   cholmod_l_free_sparse(&a, &qr->common);

@@ -109,13 +109,14 @@ static void project_subspace(lowest *l) {
   l->space = l->image, l->image = swap;
 }
 
-static void iterate_subspace(lowest *l, double scale) {
+/* False: out of memory. */
+static bool iterate_subspace(lowest *l, double scale) {
   size_t n = (size_t)l->hessian->n;
   double before[WANTED] = {0};
   for (size_t i = 0; i < SPACE * n; i++) l->space[i] = sin(1.0 + 12.9898 * (double)i);
   for (int turn = 0; turn < TURNS; turn++) {
     bool settled = turn > 1;
-    for (size_t k = 0; k < SPACE; k++) strut_ldl_solve(l->ldl, l->space + k * n);
+    if (!strut_ldl_solve_many(l->ldl, l->space, SPACE)) return false;
     orthonormalise(l);
     project_subspace(l);
     for (int i = 0; i < WANTED; i++) {
@@ -123,8 +124,9 @@ static void iterate_subspace(lowest *l, double scale) {
       settled = settled && change <= fmax(1e-8 * fabs(l->value[i]), 1e-15 * scale);
       before[i] = l->value[i];
     }
-    if (settled) return;
+    if (settled) break;
   }
+  return true;
 }
 
 /*
@@ -164,13 +166,16 @@ static bool judge_sparse(const judgement *j, strut_arena *arena, strut_critical_
   point->eigenvalues = strut_arena_allocate(arena, WANTED, sizeof *point->eigenvalues);
   bool good = l.space && l.image && l.workspace && point->eigenvalues &&
               strut_ldl_create(j->hessian, &l.ldl, NULL) == STRUT_OK;
-  int32_t below = good ? count_negative(&l, noise, &inertia) : -1;
   int32_t above = good ? count_negative(&l, -noise, &inertia) : -1;
-  good = good && below >= 0 && above >= 0 && factorise_above(&l, noise);
+  /* where none is below the upper bound, none is below the lower one, and its factor serves */
+  int32_t below = above > 0 ? count_negative(&l, noise, &inertia) : above;
+  good = good && below >= 0 && above >= 0 && (below == 0 || factorise_above(&l, noise));
   if (good) {
     point->negative = below;
     point->zero = above > below ? above - below : 0;
-    iterate_subspace(&l, scale);
+    good = iterate_subspace(&l, scale);
+  }
+  if (good) {
     memcpy(point->eigenvalues, l.value, WANTED * sizeof *l.value);
     point->eigenvalue_count = WANTED;
     set_softest(j, l.space, SPACE, j->work, point);
