@@ -186,10 +186,13 @@ static bool check_names(strut_reader *reader, const strut_tree *value, const cha
 
 /* True where the fields have the key, or another one of its set, already. */
 static bool taken(strut_fields *fields, int key) {
-  int first = strut_section_first(fields->section), set = strut_key_at(key)->set;
+  int set = strut_key_at(key)->set;
   if (strut_slot_of(fields, key)->state != STRUT_ABSENT) return true;
-  for (int i = 0; set && i < strut_section_size(fields->section); i++)
-    if (strut_key_at(first + i)->set == set && fields->slot[i].state != STRUT_ABSENT) return true;
+  if (!set) return false;
+  int size = strut_section_size(fields->section);
+  const strut_key *keys = strut_key_at(strut_section_first(fields->section));
+  for (int i = 0; i < size; i++)
+    if (keys[i].set == set && fields->slot[i].state != STRUT_ABSENT) return true;
   return false;
 }
 

@@ -42,7 +42,7 @@ static int32_t find_root(merging *m, int32_t i) {
 }
 
 static double structure_size(const strut_scene *scene) {
-  double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+  double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
   for (size_t i = 0; i < scene->node_count; i++)
     for (int c = 0; c < 2; c++) {
       low[c] = fmin(low[c], scene->nodes[i].position[c]);

@@ -286,10 +286,11 @@ static void store_value(strut_reader *reader, strut_arena *arena, const strut_ke
 
 void strut_store_fields(strut_reader *reader, const strut_fields *fields, strut_arena *arena,
                         void *object, size_t object_size) {
-  int first = strut_section_first(fields->section);
+  int size = strut_section_size(fields->section);
+  const strut_key *keys = strut_key_at(strut_section_first(fields->section));
   if (strut_diagnostics_full(reader->diagnostics)) return; /* the object will not be used */
-  for (int i = 0; i < strut_section_size(fields->section); i++) {
-    const strut_key *key = strut_key_at(first + i);
+  for (int i = 0; i < size; i++) {
+    const strut_key *key = &keys[i];
     if (fields->slot[i].state != STRUT_GIVEN || !strut_key_is_bound(key)) continue;
     assert(key->field.object_size == object_size);
     store_value(reader, arena, key, &fields->slot[i], (char *)object + key->field.offset);
@@ -299,10 +300,12 @@ void strut_store_fields(strut_reader *reader, const strut_fields *fields, strut_
 
 /* Another key of the same set that the mapping itself gives, or NULL. */
 static const strut_tree *rival(const strut_fields *fields, int key) {
-  int first = strut_section_first(fields->section), set = strut_key_at(key)->set;
-  for (int i = 0; set && i < strut_section_size(fields->section); i++)
-    if (first + i != key && strut_key_at(first + i)->set == set && fields->slot[i].key)
-      return fields->slot[i].key;
+  int set = strut_key_at(key)->set;
+  if (!set) return NULL;
+  int first = strut_section_first(fields->section), size = strut_section_size(fields->section);
+  const strut_key *keys = strut_key_at(first);
+  for (int i = 0; i < size; i++)
+    if (first + i != key && keys[i].set == set && fields->slot[i].key) return fields->slot[i].key;
   return NULL;
 }
 
@@ -363,11 +366,12 @@ void strut_read_fields(strut_reader *reader, strut_section section, const strut_
 
 void strut_require(strut_reader *reader, strut_fields *fields, strut_owner owner,
                    strut_place place) {
-  int first = strut_section_first(fields->section);
-  for (int i = 0; i < strut_section_size(fields->section); i++) {
+  int first = strut_section_first(fields->section), size = strut_section_size(fields->section);
+  const strut_key *keys = strut_key_at(first);
+  for (int i = 0; i < size; i++) {
     char expected[300];
     strut_slot *slot = &fields->slot[i];
-    if (slot->state != STRUT_ABSENT || strut_key_at(first + i)->need != STRUT_REQUIRED) continue;
+    if (slot->state != STRUT_ABSENT || keys[i].need != STRUT_REQUIRED) continue;
     if (!reader->holes)
       strut_report_error(reader, place, "%s lacks '%s', expected %s",
                          strut_owner_text(reader, owner), strut_key_at(first + i)->name,

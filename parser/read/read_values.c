@@ -249,11 +249,13 @@ bool strut_read_number(strut_reader *reader, const strut_tree *value, const char
   char expected[200], found[80];
   strut_quantity quantity;
   const char *what = reader->signal_quantity ? reader->signal_quantity : key;
-  strut_expected_quantity(what, dimension, expected, sizeof expected);
-  if (value->kind != STRUT_TREE_SCALAR || strut_is_null(value))
+  if (value->kind != STRUT_TREE_SCALAR || strut_is_null(value)) {
+    strut_expected_quantity(what, dimension, expected, sizeof expected);
     return strut_read_scalar(reader, value, key, owner, expected);
+  }
   if (!strut_read_quantity(reader, value, key, owner, &quantity)) return false;
   if (!quantity.bare && !strut_dimension_equal(quantity.dimension, dimension)) {
+    strut_expected_quantity(what, dimension, expected, sizeof expected);
     strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s", expected, key,
                        strut_owner_text(reader, owner),
                        strut_dimension_name(quantity.dimension, found, sizeof found));

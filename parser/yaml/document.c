@@ -6,6 +6,7 @@
 #include <time.h>
 
 #include "parser/yaml/document_parts.h"
+#include "parser/yaml/rows.h"
 #include "parser/yaml/text.h"
 
 enum {
@@ -15,6 +16,7 @@ enum {
   RECENT_LENGTH = 24,
   PROBLEMS_MOST = 1000, /* then reading stops */
   ANCHOR_MOST = 1000,
+  RUN_LEAST = 64, /* shorter runs of rows are libyaml's */
 };
 static const uint64_t NODES_MOST = 64000000, EXPANDED_MOST = 1000000;
 
@@ -33,28 +35,11 @@ typedef struct anchor_table {
   uint64_t seed;
 } anchor_table;
 
-/* A hash table of the keys of a map, reused for the next map. */
-typedef struct key_table {
-  strut_tree **slots;
-  size_t capacity;
-  uint64_t seed;
-} key_table;
-
-enum { SLOT_COUNT = 2048, FEW_KEYS = 8 };
-
-/* Seeds differ from run to run, so that no text can be made to collide on purpose. */
-static uint64_t hash_text(const char *text, size_t length, uint64_t seed) {
-  uint64_t hash = seed ^ UINT64_C(0xCBF29CE484222325);
-  for (size_t i = 0; i < length; i++)
-    hash = (hash ^ (unsigned char)text[i]) * UINT64_C(0x100000001B3);
-  hash ^= hash >> 32;
-  hash *= UINT64_C(0x9E3779B97F4A7C15);
-  return hash ^ hash >> 29;
-}
+enum { SLOT_COUNT = 2048 };
 
 /* The slot of that name, or the empty slot in which to store it. */
 static size_t anchor_slot(const anchor_table *anchors, const char *name) {
-  size_t slot = (size_t)hash_text(name, strlen(name), anchors->seed) % SLOT_COUNT;
+  size_t slot = (size_t)strut_document_hash(name, strlen(name), anchors->seed) % SLOT_COUNT;
   while (anchors->slots[slot] && strcmp(anchors->items[anchors->slots[slot] - 1].name, name) != 0)
     slot = (slot + 1) % SLOT_COUNT;
   return slot;
@@ -82,71 +67,6 @@ static void free_anchors(anchor_table *anchors) {
   strut_release(anchors->slots);
 }
 
-static bool clear_table(key_table *table, size_t count) {
-  size_t capacity = 32;
-  while (capacity < 2 * count) capacity *= 2;
-  if (capacity > table->capacity) {
-    strut_release(table->slots);
-    table->slots = strut_allocate(capacity, sizeof(strut_tree *));
-    table->capacity = table->slots ? capacity : 0;
-    return table->slots != NULL;
-  }
-  memset(table->slots, 0, capacity * sizeof(strut_tree *));
-  return true;
-}
-
-/* An earlier key of the same text; otherwise NULL, and `key` is stored. */
-static strut_tree *find_or_add_key(key_table *table, size_t mask, strut_tree *key) {
-  size_t slot = (size_t)hash_text(key->text, strlen(key->text), table->seed) & mask;
-  for (; table->slots[slot]; slot = (slot + 1) & mask)
-    if (strcmp(table->slots[slot]->text, key->text) == 0) return table->slots[slot];
-  table->slots[slot] = key;
-  return NULL;
-}
-
-static strut_tree *find_among_few(strut_tree *map, strut_tree *key) {
-  for (strut_tree *other = map->first; other != key; other = other->next->next)
-    if (strcmp(other->text, key->text) == 0) return other;
-  return NULL;
-}
-
-/* Longest stretch of a key that a message repeats, in bytes. */
-enum { SHOWN_MOST = 64 };
-
-static bool refuse_key(strut_tree *key, strut_tree *earlier, strut_diagnostics *diagnostics) {
-  bool plain = !key->quoted;
-  if (plain && key->text[0] == '\0')
-    strut_diagnose(diagnostics, key->place, "a key is missing before this ':'");
-  else if (plain && strcmp(key->text, "<<") == 0)
-    strut_diagnose(diagnostics, key->place,
-                   "'<<' is not allowed; use groups to share keys between things");
-  else if (earlier)
-    strut_diagnose(diagnostics, key->place, "duplicate key '%.*s'; the first one is in line %u",
-                   strut_text_cut(key->text, SHOWN_MOST), key->text, earlier->place.line);
-  else
-    return false;
-  return true;
-}
-
-static bool check_keys(strut_tree *map, key_table *table, strut_diagnostics *diagnostics) {
-  bool few = map->count <= FEW_KEYS;
-  if (!few && !clear_table(table, map->count)) return false;
-  size_t mask = 31;
-  while (mask + 1 < 2 * (size_t)map->count) mask = 2 * mask + 1;
-  strut_tree **link = &map->first;
-  while (*link) {
-    strut_tree *key = *link;
-    strut_tree *earlier = few ? find_among_few(map, key) : find_or_add_key(table, mask, key);
-    if (refuse_key(key, earlier, diagnostics)) {
-      *link = key->next->next;
-      map->count--;
-    } else {
-      link = &key->next->next;
-    }
-  }
-  return true;
-}
-
 /* A list or map whose end has not come yet. */
 typedef struct frame {
   strut_tree *node, *last; /* last child so far */
@@ -156,6 +76,12 @@ typedef struct frame {
   bool bracketed;
   bool value_next; /* map: a key waits for its value */
 } frame;
+
+/* From libyaml's marks, which know nothing of the runs, to those of the text. */
+typedef struct run_marks {
+  size_t passed;       /* runs before the latest mark */
+  size_t lines, bytes; /* in them */
+} run_marks;
 
 typedef struct reader {
   yaml_parser_t yaml;
@@ -168,9 +94,15 @@ typedef struct reader {
   size_t spare_count;
   uint64_t nodes, expanded;
   anchor_table anchors;
-  key_table keys;
+  strut_key_table keys;
   const char *recent[RECENT_SLOTS];
   bool ended, no_memory;
+  strut_row_runs runs;
+  run_marks marks;
+  size_t input;     /* bytes of the text that libyaml was given, runs among them */
+  size_t input_run; /* runs among them */
+  size_t next_run;  /* the first that is not in the tree yet */
+  size_t run_depth; /* its first row's key has come, at this depth; 0: not yet */
 } reader;
 
 static strut_place place_of(const yaml_event_t *event) {
@@ -292,7 +224,7 @@ static bool check_escapes(reader *r, const char *text, size_t length, strut_plac
 static const char *keep_text(reader *r, const char *text, size_t length) {
   if (!length) return "";
   if (length > RECENT_LENGTH) return strut_arena_text(&r->document->arena, text, length);
-  size_t slot = (size_t)hash_text(text, length, 0) % RECENT_SLOTS;
+  size_t slot = (size_t)strut_document_hash(text, length, 0) % RECENT_SLOTS;
   const char *known = r->recent[slot];
   if (known && strncmp(known, text, length) == 0 && known[length] == '\0') return known;
   return r->recent[slot] = strut_arena_text(&r->document->arena, text, length);
@@ -379,7 +311,7 @@ static bool close_collection(reader *r, const yaml_event_t *event) {
   if (event->end_mark.index > event->start_mark.index && line == node->place.line &&
       column > node->place.column)
     node->place.length = strut_place_at(0, 0, (uint32_t)column - node->place.column).length;
-  if (node->kind == STRUT_TREE_MAP && !check_keys(node, &r->keys, r->diagnostics))
+  if (node->kind == STRUT_TREE_MAP && !strut_document_check_keys(node, &r->keys, r->diagnostics))
     return out_of_memory(r);
   if (closed.anchor) {
     anchored_node *anchor = &r->anchors.items[closed.anchor - 1];
@@ -442,17 +374,136 @@ static bool handle_event(reader *r, const yaml_event_t *event) {
   }
 }
 
+/* ---- runs of rows, see rows.h ---- */
+
+static void translate(reader *r, yaml_mark_t *mark) {
+  run_marks *m = &r->marks;
+  const strut_row_run *run = r->runs.run;
+  while (m->passed < r->runs.count && mark->line + m->lines >= run[m->passed].line) {
+    m->lines += run[m->passed].lines;
+    m->bytes += run[m->passed].end - run[m->passed].begin;
+    m->passed++;
+  }
+  while (m->passed > 0 &&
+         mark->line + m->lines < run[m->passed - 1].line + run[m->passed - 1].lines) {
+    m->passed--;
+    m->lines -= run[m->passed].lines;
+    m->bytes -= run[m->passed].end - run[m->passed].begin;
+  }
+  mark->line += m->lines;
+  mark->index += m->bytes; /* rows are ASCII */
+}
+
+/* The node of a row's token and all in it. */
+static strut_tree *row_node(reader *r, const char *text, uint32_t line,
+                            const strut_row_token **token, uint64_t *weight, size_t *height) {
+  const strut_row_token *t = (*token)++;
+  strut_place place = strut_place_at(line, t->at + 1, t->length);
+  strut_tree *node = new_node(r, (strut_tree_kind)t->kind, place);
+  if (!node) return NULL;
+  *weight = 1;
+  *height = 0;
+  if (t->kind == STRUT_TREE_SCALAR) {
+    node->text = keep_text(r, text + t->at, t->length);
+    return node->text || out_of_memory(r) ? node : NULL;
+  }
+  node->count = t->count & 0xFFFu; /* for the field's 28 bits */
+  strut_tree **link = &node->first;
+  size_t highest = 0;
+  for (int i = (t->kind == STRUT_TREE_MAP ? 2 : 1) * t->count; i > 0; i--) {
+    uint64_t inner_weight;
+    size_t inner_height;
+    *link = row_node(r, text, line, token, &inner_weight, &inner_height);
+    if (!*link) return NULL;
+    link = &(*link)->next;
+    *weight += inner_weight;
+    if (highest < inner_height) highest = inner_height;
+  }
+  *height = highest + 1;
+  return node;
+}
+
+static bool append_row(reader *r, const char *text, uint32_t line, const strut_row *row) {
+  const strut_row_token *token = row->token;
+  for (int i = 0; i < 2; i++) {
+    uint64_t weight;
+    size_t height;
+    strut_tree *node = row_node(r, text, line, &token, &weight, &height);
+    if (!node) return false;
+    attach(r, node, weight, height);
+  }
+  return true;
+}
+
+/* Appends the rows of the next run to the open mapping, to which libyaml added the first one. */
+static bool append_run(reader *r) {
+  const strut_row_run *run = &r->runs.run[r->next_run++];
+  const char *text = r->diagnostics->text;
+  strut_row row;
+  size_t at = run->begin;
+  r->run_depth = 0;
+  for (uint32_t i = 0; i < run->lines; i++) {
+    if (!strut_row_read(text + at, run->end - at, &row)) return false;
+    if (!append_row(r, text + at, run->line + i + 1, &row)) return false;
+    at += row.length;
+  }
+  return true;
+}
+
+/*
+ * Is the first row of the next run what it seemed to be? Then its key begins where the row does, in a
+ * mapping that is no bracketed one. False: the line has come as something else.
+ */
+static bool meet_run(reader *r, const yaml_event_t *event) {
+  if (r->next_run == r->runs.count || r->run_depth) return true;
+  const strut_row_run *run = &r->runs.run[r->next_run];
+  const yaml_mark_t *mark = &event->start_mark;
+  if (mark->line + 1 < run->line) return true;
+  bool text = event->type == YAML_SCALAR_EVENT, here = mark->line + 1 == run->line;
+  if (here && !text && event->type != YAML_ALIAS_EVENT) return true; /* what begins or ends there */
+  if (!text || !here || mark->column != run->indent || !key_expected(r)) return false;
+  if (event->data.scalar.style != YAML_PLAIN_SCALAR_STYLE || event->data.scalar.anchor)
+    return false;
+  if (r->stack[r->depth - 1].bracketed || r->depth + STRUT_ROW_LEVELS > DEPTH_MOST) return false;
+  r->run_depth = r->depth;
+  return true;
+}
+
+/* Gives libyaml the text without the runs. */
+static int give_input(void *context, unsigned char *buffer, size_t size, size_t *given) {
+  reader *r = context;
+  *given = 0;
+  while (*given < size && r->input < r->diagnostics->length) {
+    const strut_row_run *run = r->input_run < r->runs.count ? &r->runs.run[r->input_run] : NULL;
+    size_t end = run ? run->begin : r->diagnostics->length, left = end - r->input;
+    if (left > size - *given) left = size - *given;
+    memcpy(buffer + *given, r->diagnostics->text + r->input, left);
+    *given += left;
+    r->input += left;
+    if (run && r->input == run->begin) r->input = run->end, r->input_run++;
+  }
+  return 1;
+}
+
+static bool read_event(reader *r, yaml_event_t *event) {
+  translate(r, &event->start_mark);
+  translate(r, &event->end_mark);
+  if (!meet_run(r, event)) return false;
+  if (!handle_event(r, event)) return false;
+  bool appended = r->run_depth && r->depth == r->run_depth && key_expected(r);
+  return !appended || append_run(r);
+}
+
 static bool read_events(reader *r) {
-  size_t mark = strut_text_mark(r->diagnostics->text, r->diagnostics->length);
   if (!yaml_parser_initialize(&r->yaml)) return out_of_memory(r);
   yaml_parser_set_encoding(&r->yaml, YAML_UTF8_ENCODING);
-  yaml_parser_set_input_string(&r->yaml, (const unsigned char *)r->diagnostics->text + mark,
-                               r->diagnostics->length - mark);
+  r->input = strut_text_mark(r->diagnostics->text, r->diagnostics->length);
+  yaml_parser_set_input(&r->yaml, give_input, r);
   bool fine = true;
   while (fine && !r->ended) {
     yaml_event_t event;
     if (yaml_parser_parse(&r->yaml, &event)) {
-      fine = handle_event(r, &event) && r->diagnostics->count < PROBLEMS_MOST;
+      fine = read_event(r, &event) && r->diagnostics->count < PROBLEMS_MOST;
       yaml_event_delete(&event);
     } else {
       const frame *open = r->depth ? &r->stack[r->depth - 1] : NULL;
@@ -465,25 +516,59 @@ static bool read_events(reader *r) {
   return fine;
 }
 
-strut_status strut_document_read(strut_document *document, strut_diagnostics *diagnostics) {
-  size_t before = diagnostics->count;
-  document->root = NULL;
-  if (!strut_document_scan(diagnostics))
-    return diagnostics->out_of_memory ? STRUT_NO_MEMORY : STRUT_BAD_SCENE;
+/* Reads the text with these runs; whether all of it, and every run, was read. The runs are released. */
+static bool read_with(strut_document *document, strut_diagnostics *diagnostics,
+                      strut_row_runs *runs, bool *no_memory) {
   reader *r = strut_allocate(1, sizeof *r);
-  if (!r) return STRUT_NO_MEMORY;
+  *no_memory = !r;
+  if (!r) return false;
   r->document = document;
   r->diagnostics = diagnostics;
   r->cursor = strut_cursor_begin(diagnostics->text, diagnostics->length);
   r->keys.seed = r->anchors.seed = (uint64_t)(uintptr_t)r ^ (uint64_t)time(NULL) << 20;
-  if (!read_events(r)) document->root = NULL;
-  bool no_memory = r->no_memory || diagnostics->out_of_memory;
+  r->runs = *runs;
+  bool fine = read_events(r) && r->next_run == r->runs.count;
+  if (!fine) document->root = NULL;
+  *no_memory = r->no_memory || diagnostics->out_of_memory;
   free_anchors(&r->anchors);
   strut_release(r->keys.slots);
   strut_release(r);
-  if (no_memory) document->root = NULL;
+  if (*no_memory) document->root = NULL;
+  return fine && !*no_memory;
+}
+
+/* Reads runs of rows without libyaml. False: something is wrong, which is not told. */
+static bool read_rows(strut_document *document, const strut_diagnostics *diagnostics,
+                      uint32_t least, bool *no_memory) {
+  strut_row_runs runs = {0};
+  strut_diagnostics unused = {0};
+  strut_diagnostics_source(&unused, diagnostics->file, diagnostics->text, diagnostics->length);
+  *no_memory = !strut_row_runs_find(diagnostics->text, diagnostics->length, least, &runs);
+  bool fine =
+      !*no_memory && runs.count && read_with(document, &unused, &runs, no_memory) && !unused.count;
+  strut_row_runs_free(&runs);
+  strut_diagnostics_free(&unused);
+  if (!fine) strut_document_free(document);
+  return fine;
+}
+
+strut_status strut_document_read_runs(strut_document *document, strut_diagnostics *diagnostics,
+                                      uint32_t least) {
+  size_t before = diagnostics->count;
+  bool no_memory = false;
+  strut_row_runs none = {0};
+  document->root = NULL;
+  if (!strut_document_scan(diagnostics))
+    return diagnostics->out_of_memory ? STRUT_NO_MEMORY : STRUT_BAD_SCENE;
+  bool alone = !document->arena.chunk; /* what is not read well is released */
+  if (least && alone && read_rows(document, diagnostics, least, &no_memory)) return STRUT_OK;
+  if (!no_memory) read_with(document, diagnostics, &none, &no_memory);
   if (no_memory) return STRUT_NO_MEMORY;
   return diagnostics->count > before ? STRUT_BAD_SCENE : STRUT_OK;
+}
+
+strut_status strut_document_read(strut_document *document, strut_diagnostics *diagnostics) {
+  return strut_document_read_runs(document, diagnostics, RUN_LEAST);
 }
 
 void strut_document_free(strut_document *document) {

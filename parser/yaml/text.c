@@ -90,8 +90,21 @@ void strut_cursor_to_offset(strut_cursor *cursor, size_t offset) {
   while (cursor->offset < offset && strut_cursor_step(cursor)) continue;
 }
 
+/* Steps over printable ASCII up to an index, as most of a text is. */
+static void step_over_ascii(strut_cursor *cursor, size_t index) {
+  size_t most = index - cursor->index, left = cursor->length - cursor->offset, steps = 0;
+  const char *here = cursor->text + cursor->offset;
+  if (most > left) most = left;
+  while (steps < most && here[steps] >= ' ' && here[steps] < 0x7F) steps++;
+  cursor->offset += steps;
+  cursor->index += steps;
+  cursor->column += (uint32_t)steps;
+}
+
 void strut_cursor_to_index(strut_cursor *cursor, size_t index) {
-  while (cursor->index < index && strut_cursor_step(cursor)) continue;
+  do
+    if (cursor->index < index) step_over_ascii(cursor, index);
+  while (cursor->index < index && strut_cursor_step(cursor));
 }
 
 void strut_cursor_to_line(strut_cursor *cursor, uint32_t line) {

@@ -1,0 +1,206 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/yaml/rows.h"
+
+#include <string.h>
+
+#include "parser/yaml/text.h"
+
+enum {
+  NAME_MOST = 128,  /* libyaml wants the colon within 1024 characters */
+  LINE_MOST = 4096, /* bytes */
+  PAIRS_MOST = 16,  /* of a mapping, whose keys are compared one by one */
+};
+
+/* ---- one row ---- */
+
+typedef struct scanner {
+  const char *text;
+  uint32_t at, end; /* end: where the line feed stands */
+  int levels;
+  strut_row *row;
+} scanner;
+
+/* Is the character among those of a set of ASCII? One bit each. */
+static bool is_in(const uint64_t set[2], char c) {
+  unsigned char byte = (unsigned char)c;
+  return byte < 128 && (set[byte >> 6] >> (byte & 63) & 1);
+}
+
+/* Letters, digits, '_'; for names also '.' and '-'; for values also these and + * / ^ ( ). */
+static const uint64_t word_set[2] = {0x03FF000000000000, 0x07FFFFFE87FFFFFE};
+static const uint64_t name_set[2] = {0x03FF600000000000, 0x07FFFFFE87FFFFFE};
+static const uint64_t value_set[2] = {0x03FFEF0000000000, 0x07FFFFFEC7FFFFFE};
+
+static char here(const scanner *s) { return s->text[s->at]; }
+
+static void skip_spaces(scanner *s) {
+  while (here(s) == ' ') s->at++;
+}
+
+static strut_row_token *add_token(scanner *s, strut_tree_kind kind) {
+  if (s->row->count == STRUT_ROW_TOKENS) return NULL;
+  strut_row_token *token = &s->row->token[s->row->count++];
+  *token = (strut_row_token){.at = s->at, .kind = (uint8_t)kind};
+  return token;
+}
+
+/* A name, its colon, and at least one space behind it. */
+static strut_row_token *read_key(scanner *s) {
+  strut_row_token *token = is_in(word_set, here(s)) ? add_token(s, STRUT_TREE_SCALAR) : NULL;
+  if (!token) return NULL;
+  while (is_in(name_set, here(s))) s->at++;
+  token->length = s->at - token->at;
+  if (token->length > NAME_MOST || here(s) != ':' || s->text[s->at + 1] != ' ') return NULL;
+  s->at++;
+  skip_spaces(s);
+  return token;
+}
+
+/* A plain scalar within brackets; it ends before the comma or bracket. */
+static bool read_plain(scanner *s) {
+  char c = here(s);
+  bool sign = c == '-' || c == '+';
+  char first = sign ? s->text[s->at + 1] : c;
+  if (!is_in(word_set, first) && first != '.') return false;
+  strut_row_token *token = add_token(s, STRUT_TREE_SCALAR);
+  if (!token) return false;
+  uint32_t end = s->at;
+  s->at += sign;
+  for (;;) {
+    while (is_in(value_set, here(s))) s->at++;
+    end = s->at;
+    skip_spaces(s);
+    if (!is_in(value_set, here(s))) break;
+  }
+  token->length = end - token->at;
+  return true;
+}
+
+static bool is_new_key(const scanner *s, const strut_row_token *map, const strut_row_token *key) {
+  const strut_row_token *other = map + 1;
+  while (other != key) {
+    if (other->length == key->length &&
+        memcmp(s->text + other->at, s->text + key->at, key->length) == 0)
+      return false;
+    other++;
+    int inside = 1; /* tokens of the key's value that are still to be passed */
+    for (; inside > 0; other++)
+      inside += (other->kind == STRUT_TREE_MAP ? 2 : 1) * other->count - 1;
+  }
+  return true;
+}
+
+static bool read_brackets(scanner *s);
+
+static bool read_value(scanner *s) {
+  char c = here(s);
+  return c == '{' || c == '[' ? read_brackets(s) : read_plain(s);
+}
+
+/* A list or a mapping, from its bracket to the one that closes it. */
+static bool read_brackets(scanner *s) {
+  bool map = here(s) == '{';
+  strut_row_token *token = add_token(s, map ? STRUT_TREE_MAP : STRUT_TREE_LIST);
+  if (!token || ++s->levels > STRUT_ROW_LEVELS) return false;
+  char close = map ? '}' : ']';
+  do {
+    s->at++; /* the bracket or comma */
+    skip_spaces(s);
+    strut_row_token *key = map ? read_key(s) : NULL;
+    if (map && (!key || token->count == PAIRS_MOST || !is_new_key(s, token, key))) return false;
+    if (!read_value(s)) return false;
+    skip_spaces(s);
+    token->count++;
+  } while (here(s) == ',');
+  if (here(s) != close) return false;
+  s->at++;
+  s->levels--;
+  token->length = s->at - token->at;
+  return true;
+}
+
+/* Nothing, or a comment in ASCII, up to the end of the line. */
+static bool read_rest(scanner *s) {
+  uint32_t before = s->at;
+  skip_spaces(s);
+  if (s->at == s->end) return true;
+  if (here(s) != '#' || s->at == before) return false;
+  while (here(s) >= ' ' && here(s) < 0x7F) s->at++;
+  return s->at == s->end;
+}
+
+bool strut_row_read(const char *text, size_t left, strut_row *row) {
+  size_t most = left < LINE_MOST ? left : LINE_MOST;
+  const char *end = memchr(text, '\n', most);
+  row->count = 0;
+  if (!end) return false;
+  scanner s = {.text = text, .end = (uint32_t)(end - text), .row = row};
+  row->length = s.end + 1;
+  skip_spaces(&s);
+  if (!read_key(&s) || (here(&s) != '{' && here(&s) != '[')) return false;
+  return read_brackets(&s) && read_rest(&s);
+}
+
+/* ---- runs ---- */
+
+/* Lines end at line feeds only, so that they can be counted by these. */
+static bool has_other_breaks(const char *text, size_t length) {
+  static const char leads[] = {'\r', '\xC2', '\xE2'};
+  for (size_t i = 0; i < sizeof leads; i++) {
+    const char *at = text, *end = text + length;
+    while (at < end && (at = memchr(at, leads[i], (size_t)(end - at)))) {
+      if (strut_text_break(at, (size_t)(end - at))) return true;
+      at++;
+    }
+  }
+  return false;
+}
+
+static bool add_run(strut_row_runs *runs, const strut_row_run *run) {
+  if (runs->count == runs->capacity) {
+    size_t wider = runs->capacity ? 2 * runs->capacity : 8;
+    strut_row_run *block = strut_reallocate(runs->run, wider, sizeof *block);
+    if (!block) return false;
+    runs->run = block;
+    runs->capacity = wider;
+  }
+  runs->run[runs->count++] = *run;
+  return true;
+}
+
+/* Bytes of the rows with this indentation that begin at `at`; *lines: how many. */
+static size_t measure_run(const char *text, size_t at, size_t length, uint32_t indent,
+                          uint32_t *lines) {
+  size_t begin = at;
+  strut_row row;
+  while (at < length && strut_row_read(text + at, length - at, &row) && row.token[0].at == indent) {
+    at += row.length;
+    ++*lines;
+  }
+  return at - begin;
+}
+
+bool strut_row_runs_find(const char *text, size_t length, uint32_t least, strut_row_runs *runs) {
+  size_t at = strut_text_mark(text, length);
+  if (has_other_breaks(text, length)) return true;
+  for (uint32_t line = 0; at < length; line++) {
+    strut_row row;
+    if (!strut_row_read(text + at, length - at, &row)) {
+      const char *end = memchr(text + at, '\n', length - at);
+      at = end ? (size_t)(end - text) + 1 : length;
+      continue;
+    }
+    at += row.length;
+    strut_row_run run = {.begin = at, .line = line + 1, .indent = row.token[0].at};
+    run.end = at + measure_run(text, at, length, run.indent, &run.lines);
+    at = run.end;
+    line += run.lines;
+    if (run.lines && run.lines + 1 >= least && !add_run(runs, &run)) return false;
+  }
+  return true;
+}
+
+void strut_row_runs_free(strut_row_runs *runs) {
+  strut_release(runs->run);
+  *runs = (strut_row_runs){0};
+}
