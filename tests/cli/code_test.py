@@ -170,6 +170,96 @@ def test_terms():
     compare("chain.yaml", "rk4", 1e-3, 2000, 100, compilers[:1])
 
 
+# Every strain, law and kind of actuator, and expressions of every operation; the motion is large enough for stops,
+# collisions and the pieces of all laws.
+ELEMENTS = """strut: 1
+nodes:
+  a: {position: [0, 0], fixed: both}
+  p: {position: [1, 0.5], mass: 1}
+  q: {position: [2, 0.5], mass: 1}
+  b: {position: [3, 0], mass: 1}
+  c: {position: [1.5, 1.5], mass: 0.5}
+members:
+  tendon: {kind: cable, nodes: [a, p, q, b], stiffness: 100, damping: 1, mass: 0.1, rest_length: 3}
+  plain: {kind: spring, nodes: [a, p], stiffness: 10, damping: 0.1}
+  one_way: {kind: spring, nodes: [p, q], stiffness: 10, law: compression_only}
+  other_way: {kind: bar, nodes: [q, b], stiffness: 10, law: {carries: tension}}
+  stopped: {kind: spring, nodes: [a, q], stiffness: 10, shortest: 1.9 m, longest: 2.1 m,
+            stop_stiffness: 500 N/m, stop_damping: 3 N s/m}
+  bilinear: {kind: spring, nodes: [p, b], stiffness: 10, law: {kind: bilinear, knee: 20 mm, second_stiffness: 30 N/m}}
+  play: {kind: spring, nodes: [a, b], stiffness: 10, law: {kind: play, gap: 5 mm}}
+  polynomial: {kind: cable, nodes: [a, p], law: {kind: polynomial, coefficients: [10 N/m, 0, 200 N/m^3]}}
+  logarithmic: {kind: spring, nodes: [p, q], axial_stiffness: 10 N, law: logarithmic}
+  exponential: {kind: spring, nodes: [q, b], stiffness: 10, law: {kind: exponential, scale: 50 mm, carries: both}}
+  table: {kind: spring, nodes: [a, q], law: {kind: table, points: [[-10 mm, -1 N], [0, 0], [20 mm, 5 N]]}}
+  smooth: {kind: spring, nodes: [p, b], law: {kind: table, smooth: yes, points: [[-10 mm, -1 N], [0, 0], [20 mm, 5 N]]}}
+  up: {kind: spring, nodes: [p, c], stiffness: 40, damping: 0.2}
+  down: {kind: spring, nodes: [c, q], stiffness: 40}
+hinges:
+  plain: {nodes: [a, p, q], stiffness: 2 N m/rad, damping: 0.1 N m s/rad, rest_angle: 170 deg}
+  drawn: {nodes: [p, q, b], stiffness: 3, law: {kind: play, gap: 2 deg}}
+  spun: {nodes: [q, c, p], stiffness: 0.2}
+  listed: {nodes: [b, q, p], law: {kind: table, points: [[-10 deg, -1 N m], [10 deg, 1 N m]]}}
+cells:
+  pumped: {nodes: [p, q, c], pressure: 2 N/m}
+  cold: {nodes: [p, q, c], gas: {kind: isothermal, pressure: 3 N/m, outside: 1 N/m}}
+  quick: {nodes: [q, c, p], gas: {kind: isentropic, exponent: 1.3, pressure: 3 N/m}}
+collisions:
+  on: {node: c, member: tendon_line, thickness: 0.9 m, stiffness: 100 N/m, damping: 2 N s/m}
+  discs: {nodes: [p, q], thickness: 0.95 m, stiffness: 1 kN/m}
+signals:
+  wave: {sine: {amplitude: 50 mm, frequency: 1 Hz}}
+  all: {expression: "0.02 m * (sin(9 Hz*t) + cos(3 Hz*t) - tan(0.1 Hz*t) * exp(-t/(1 s)) + log(1 + t/(1 s)) / log10(20 + t/(1 s)) + sqrt(1 + t/(1 s)) + abs(sin(5 Hz*t)) + min(t/(1 s), 0.3) - max(t/(1 s), 0.2) + floor(4 Hz*t) - ceil(3 Hz*t) + round(2 Hz*t) + hypot(t/(1 s), 1) + (atan2(t/(1 s), 1) + asin(0.1) + acos(0.5 Hz*t) - atan(t/(1 s)))/(1 rad) + (1 + t/(1 s))^1.5) - wave"}
+actuators:
+  pull: {member: tendon, signal: wave}
+  more: {member: tendon, signal: {sine: {amplitude: 5 mm, frequency: 3 Hz}}}
+  bend: {hinge: plain, signal: {sine: {amplitude: 10 deg, frequency: 1 Hz}}}
+  pump: {cell: pumped, signal: {sine: {amplitude: 1 N/m, frequency: 2 Hz}}}
+  follow: {member: up, signal: all}
+  push: {member: down, force: {half_sine: {amplitude: 5 N, frequency: 1 Hz}}}
+  turn: {hinge: drawn, moment: {ramp: {amplitude: 1 N m, stop: 0.5 s}}}
+loads:
+  shake: {node: b, force: [1 N, 0], signal: {square: {amplitude: 1, frequency: 4 Hz}}}
+initial: {velocities: {c: [2 m/s, -3 m/s], b: [0, 1 m/s]}}
+"""
+
+
+def test_elements():
+    for method, compiler in zip(("rk4", "verlet"), (compilers[0], compilers[-1])):
+        text = ELEMENTS.replace("tendon_line", "one_way")
+        write("elements.yaml", text + f"solver: {{integrator: {method}, step: 0.2 ms}}\nrun: {{duration: 1 s}}\n"
+              "output: {every: 10 ms, channels: [position, force, length, energy]}\n")
+        compare("elements.yaml", method, 2e-4, 5000, 50, [compiler])
+    with open(path("run", "members.csv"), encoding="utf-8") as table:
+        heads, *rows = list(csv.reader(table))
+    with open(path("run", "energy.csv"), encoding="utf-8") as table:
+        heads_of_energies, *all_energies = list(csv.reader(table))
+    energies = dict(zip(heads_of_energies, all_energies[-1]))
+    wanted = dict(zip(heads, map(float, rows[-1])))
+    names = [re.sub(r"\..*", "", head) for head in heads if ".force" in head]
+    queries = "".join(f'  printf("%.17g %.17g\\n", elements_length(&s, ELEMENTS_MEMBER_{n}), '
+                      f"elements_tension(&s, ELEMENTS_MEMBER_{n}));\n" for n in names)
+    with open(path("code", "elements_example.c"), "w", encoding="utf-8") as main:
+        main.write('#include <stdio.h>\n#include "elements.h"\nstatic elements_state s;\nint main(void) {\n'
+                   "  elements_init(&s);\n  for (int n = 0; n < 5000; n++) elements_step_verlet(&s, NULL, 2e-4);\n"
+                   f'{queries}  printf("%.17g\\n", elements_energy(&s).elastic);\n  return 0;\n}}\n')
+    lines = subprocess.run([build(compilers[0], "elements")], capture_output=True, text=True).stdout.splitlines()
+    for name, line in zip(names, lines):
+        length, tension = map(float, line.split())
+        for key, got in ((f"{name}.length [m]", length), (f"{name}.force [N]", tension)):
+            check(abs(got - wanted[key]) <= 1e-9 * max(1, abs(got)), f"{key}: {got}, strut says {wanted[key]}")
+    elastic = float(next(v for k, v in energies.items() if k.startswith("elastic")))
+    check(abs(float(lines[-1]) - elastic) < 1e-9 * abs(elastic), f"elastic energy {lines[-1]}, strut says {elastic}")
+    rows = {}
+    for real in ("double", "float"):
+        run("export", "elements.yaml", "--code", real, "--real", real)
+        rows[real] = code_rows(build(compilers[-1], "elements", "-DSTEP=2e-4", "-DSTEPS=1000", "-DEVERY=1000",
+                                     directory=real))
+    error = max(abs(float(a) - float(b)) for a, b in zip(rows["float"][-1], rows["double"][-1]))
+    print(f"error of floats with elements [m]: {error:.1e}")
+    check(error < 2e-5, f"floats are {error} m from doubles")
+
+
 HELD = """#include <stdio.h>
 #include "crawler.h"
 static crawler_state s, copy;
@@ -276,8 +366,9 @@ def test_arm():
 
 def test_words():
     crawler = os.path.join(models, "crawler", "crawler.yaml")
-    refused = run("export", os.path.join(models, "crawler", "stops.yaml"), "--code", "no", code=2)
-    check("shortest and longest; leave it out" in refused.stderr, f"stops are refused by: {refused.stderr}")
+    refused = run("export", os.path.join(models, "gallery", "wave-crawler.yaml"), "--code", "no", code=2)
+    check("friction law coulomb (use karnopp); leave it out" in refused.stderr,
+          f"Coulomb's law is refused by: {refused.stderr}")
     check(not os.path.exists(path("no")), "a scene that is refused leaves a folder")
     for words, text in ((("--code", "no", "--real", "half"), "double"),
                         (("--code", "no", "--prefix", "9x"), "--prefix expects a letter"),
@@ -307,6 +398,7 @@ if __name__ == "__main__":
         compare_model("crawler/crawler.yaml", "verlet", 2e-5, 5000, 100, compilers[:1])
         compare_model("gallery/x-tower-on-slope.yaml", "rk4", 2e-4, 2000, 100, compilers[-1:])
         test_terms()
+        test_elements()
         test_inputs()
         test_floats()
         test_arm()

@@ -19,36 +19,37 @@
 /* ---- what there is no code for ---- */
 
 static void refuse_members(strut_untold *r, const strut_scene *scene) {
-  size_t laws = 0, stops = 0, breaks = 0, released = 0, maxwell = 0, guides = 0;
+  size_t yields = 0, breaks = 0, released = 0, maxwell = 0, rubs = 0;
   for (size_t i = 0; i < scene->member_count; i++) {
     const strut_member *m = &scene->members[i];
-    laws += m->law.kind != STRUT_LAW_LINEAR ||
-            (m->law.carries != STRUT_CARRIES_BOTH && m->kind != STRUT_CABLE);
-    stops += m->shortest > 0.0 || m->longest > 0.0;
+    yields += m->law.kind == STRUT_LAW_ELASTIC_PLASTIC;
     breaks += m->breaks_at > 0.0;
     released += m->released_at > 0.0;
     maxwell += m->maxwell.stiffness > 0.0;
-    guides += m->guide_count > 0;
+    rubs += m->guide_friction > 0.0;
   }
-  strut_untold_add(r, guides, "cables over guides (more than two nodes)");
-  strut_untold_add(r, laws, "law of members");
-  strut_untold_add(r, stops, "shortest and longest");
+  for (size_t i = 0; i < scene->hinge_count; i++) {
+    const strut_hinge *h = &scene->hinges[i];
+    yields += h->law.kind == STRUT_LAW_ELASTIC_PLASTIC;
+    breaks += h->breaks_at > 0.0;
+    released += h->released_at > 0.0;
+  }
+  strut_untold_add(r, rubs, "friction at guides");
+  strut_untold_add(r, yields, "law elastic_plastic");
   strut_untold_add(r, breaks, "breaks_at");
   strut_untold_add(r, released, "released_at");
   strut_untold_add(r, maxwell, "maxwell");
 }
 
 static void refuse_signal(strut_untold *r, const strut_scene *scene) {
-  size_t programs = 0, relays = 0, triggers = 0, lags = 0, samples = 0;
+  size_t relays = 0, triggers = 0, lags = 0, samples = 0;
   for (size_t i = 0; i < scene->signal_count; i++) {
     const strut_signal *s = &scene->signals[i];
-    programs += s->kind == STRUT_EXPRESSION;
     relays += s->kind == STRUT_RELAY;
     triggers += s->trigger.kind != STRUT_TRIGGER_NONE;
     lags += s->lag > 0.0;
     samples += s->every > 0.0;
   }
-  strut_untold_add(r, programs, "expression of signals");
   strut_untold_add(r, relays, "relay");
   strut_untold_add(r, triggers, "starts");
   strut_untold_add(r, lags, "lag");
@@ -58,20 +59,14 @@ static void refuse_signal(strut_untold *r, const strut_scene *scene) {
 strut_status strut_code_check(const strut_model *model, strut_error *error) {
   const strut_scene *s = model->scene;
   strut_untold r = {.used = 0};
-  size_t forces = 0;
-  for (size_t i = 0; i < s->actuator_count; i++) forces += s->actuators[i].force;
   strut_untold_add(&r, (model->plan & STRUT_TERM_RIGID) != 0, "bars: rigid");
   refuse_members(&r, s);
-  strut_untold_add(&r, s->hinge_count, "hinges and beams");
-  strut_untold_add(&r, s->cell_count, "cells");
-  strut_untold_add(&r, s->collision_count, "collisions");
   strut_untold_add(&r, s->ground_count, "grounds other than one line at rest");
   strut_untold_add(&r, strut_first_exact_contact(model) >= 0, "friction law coulomb (use karnopp)");
   strut_untold_add(&r, s->rayleigh_mass > 0.0, "rayleigh mass");
   strut_untold_add(&r, s->support_motion_count, "moves of nodes");
   strut_untold_add(&r, s->unbalance_count, "unbalances");
   strut_untold_add(&r, s->sliding_count, "sliders");
-  strut_untold_add(&r, forces, "force of actuators");
   strut_untold_add(&r, s->sensor_count, "sensors");
   strut_untold_add(&r, s->state_count, "states");
   refuse_signal(&r, s);

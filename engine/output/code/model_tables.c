@@ -138,10 +138,12 @@ static void add_drives(strut_code_writer *w) {
                      "  unsigned char first; /* of those on its member */\n"
                      "} drive;\n\nstatic const drive drives[] = {\n");
     for (int32_t i = 0; i < d->count; i++) {
-      strut_buffer_add(&w->text, "    {%d, %d", d->member[i], d->first[i]);
+      strut_buffer_add(&w->text, "    {%d, %d", strut_code_slot(w->model, d->member[i]),
+                       d->first[i]);
       end_row(w, w->inputs.name[i]);
     }
     strut_buffer_add(&w->text, "};\n\n");
+    strut_code_add_own_rests(w);
   }
   if (!l->count) return;
   strut_buffer_add(&w->text,

@@ -7,21 +7,39 @@
 
 /* The signal of input k. */
 static int32_t signal_of_input(const strut_model *model, int32_t k) {
-  int32_t drives = model->drives.count;
-  return k < drives ? model->drives.signal[k] : model->loads.signal[k - drives];
+  int32_t drives = model->drives.count, loads = model->loads.count;
+  return k < drives           ? model->drives.signal[k]
+         : k < drives + loads ? model->loads.signal[k - drives]
+                              : model->actuator_forces.item[k - drives - loads].signal;
 }
 
-static bool contains_kind(const strut_signal *signals, int32_t index, strut_signal_kind kind) {
-  const strut_signal *s = &signals[index];
-  if (s->kind == kind) return true;
-  for (size_t i = 0; s->kind == STRUT_SUM && i < s->term_count; i++)
-    if (contains_kind(signals, s->terms[i], kind)) return true;
+/* Part n of a signal, which is a sum or an expression; -1: there are no more. */
+static int32_t part_of(const strut_signal *s, size_t n) {
+  if (s->kind == STRUT_SUM) return n < s->term_count ? s->terms[n] : -1;
+  for (size_t i = 0; s->kind == STRUT_EXPRESSION && i < s->program.length; i++) {
+    const strut_instruction *p = &s->program.instruction[i];
+    bool reads = p->operation == STRUT_OPERATION_COLUMN && p->column.kind == STRUT_COLUMN_SIGNAL;
+    if (reads && n-- == 0) return p->column.item;
+  }
+  return -1;
+}
+
+static bool contains(const strut_signal *signals, int32_t index, int32_t wanted) {
+  if (index == wanted) return true;
+  for (size_t n = 0; part_of(&signals[index], n) >= 0; n++)
+    if (contains(signals, part_of(&signals[index], n), wanted)) return true;
+  return false;
+}
+
+bool strut_code_signal_acts(const strut_code_writer *w, int32_t signal) {
+  for (int32_t k = 0; k < strut_code_input_count(w->model); k++)
+    if (contains(w->scene->signals, signal_of_input(w->model, k), signal)) return true;
   return false;
 }
 
 bool strut_code_has_signal(const strut_code_writer *w, strut_signal_kind kind) {
-  for (int32_t k = 0; k < strut_code_input_count(w->model); k++)
-    if (contains_kind(w->scene->signals, signal_of_input(w->model, k), kind)) return true;
+  for (size_t i = 0; i < w->scene->signal_count; i++)
+    if (w->scene->signals[i].kind == kind && strut_code_signal_acts(w, (int32_t)i)) return true;
   return false;
 }
 
@@ -127,7 +145,7 @@ static void add_body(strut_code_writer *w, const strut_signal *s, int32_t index)
                          "  *value += part, *rate += part_rate;\n",
                          s->terms[i]);
       break;
-    case STRUT_EXPRESSION:
+    case STRUT_EXPRESSION: strut_code_add_program(w, &s->program); break;
     case STRUT_RELAY:
     case STRUT_SIGNAL_KINDS: break; /* refused by strut_code_check */
   }
@@ -136,11 +154,10 @@ static void add_body(strut_code_writer *w, const strut_signal *s, int32_t index)
 /* The functions of a signal and of its terms, those that are not there yet. */
 static void add_signal(strut_code_writer *w, int32_t index, uint8_t *done) {
   const strut_signal *s = &w->scene->signals[index];
-  bool holds = s->kind == STRUT_RAMP || s->kind == STRUT_TABLE;
+  bool holds = s->kind == STRUT_RAMP || s->kind == STRUT_TABLE || s->kind == STRUT_EXPRESSION;
   if (done[index]) return;
   done[index] = 1;
-  for (size_t i = 0; s->kind == STRUT_SUM && i < s->term_count; i++)
-    add_signal(w, s->terms[i], done);
+  for (size_t n = 0; part_of(s, n) >= 0; n++) add_signal(w, part_of(s, n), done);
   if (s->kind == STRUT_TABLE) add_points(w, s, index);
   if (s->name && s->name[0]) {
     strut_buffer_add(&w->text, "/* ");

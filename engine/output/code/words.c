@@ -10,6 +10,7 @@
 
 #include "engine/base/number_text.h"
 #include "engine/model/mass.h"
+#include "engine/output/code/templates.h"
 #include "engine/output/code/writer.h"
 
 /* ---- literals and comments ---- */
@@ -108,13 +109,23 @@ static const char *member_name(const strut_code_writer *w, size_t i) {
 static const strut_load *driven_load(const strut_scene *scene, size_t n) {
   for (size_t i = 0; i < scene->load_count; i++)
     if (scene->loads[i].signal >= 0 && n-- == 0) return &scene->loads[i];
-  assert(!"inputs are counted from the same loads");
+  assert(false && "inputs are counted from the same loads");
+  return NULL;
+}
+
+/* The n-th actuator of the scene that gives a force, or that gives none. */
+static const strut_actuator *actuator(const strut_scene *scene, bool force, size_t n) {
+  for (size_t i = 0; i < scene->actuator_count; i++)
+    if (scene->actuators[i].force == force && n-- == 0) return &scene->actuators[i];
+  assert(false && "inputs are counted from the same actuators");
   return NULL;
 }
 
 static const char *input_name(const strut_code_writer *w, size_t i) {
-  size_t drives = (size_t)w->model->drives.count;
-  return i < drives ? w->scene->actuators[i].name : driven_load(w->scene, i - drives)->name;
+  size_t drives = (size_t)w->model->drives.count, loads = (size_t)w->model->loads.count;
+  return i < drives           ? actuator(w->scene, false, i)->name
+         : i < drives + loads ? driven_load(w->scene, i - drives)->name
+                              : actuator(w->scene, true, i - drives - loads)->name;
 }
 
 bool strut_code_make_names(strut_code_writer *w) {
@@ -153,7 +164,21 @@ static bool has_karnopp(const strut_code_writer *w) {
 }
 static bool has_directional(const strut_code_writer *w) { return in_plan(w, STRUT_TERM_DIRECTION); }
 static bool has_speed(const strut_code_writer *w) { return has_karnopp(w) || has_directional(w); }
-static bool has_root(const strut_code_writer *w) { return has_members(w) || has_smooth(w); }
+static bool has_elements(const strut_code_writer *w) { return w->model->elements.count > 0; }
+static bool has_actuator_forces(const strut_code_writer *w) {
+  return w->model->actuator_forces.count > 0;
+}
+static bool has_strains(const strut_code_writer *w) {
+  return has_elements(w) || has_actuator_forces(w);
+}
+static bool has_path(const strut_code_writer *w) { return strut_code_has_strain(w, "path", 4); }
+static bool has_angle(const strut_code_writer *w) { return strut_code_has_strain(w, "angle", 5); }
+static bool has_expressions(const strut_code_writer *w) {
+  return strut_code_has_signal(w, STRUT_EXPRESSION);
+}
+static bool has_root(const strut_code_writer *w) {
+  return has_members(w) || has_smooth(w) || has_path(w) || strut_code_has_strain(w, "reach", 5);
+}
 static bool has_belt(const strut_code_writer *w) { return w->model->contacts.belt_speed != 0.0; }
 static bool has_hunt_crossley(const strut_code_writer *w) {
   return w->scene->ground.present && w->scene->ground.damping_law == STRUT_DAMPING_HUNT_CROSSLEY;
@@ -194,11 +219,25 @@ bool strut_code_has(const strut_code_writer *w, const char *word, size_t length)
                {"belt", has_belt},         {"hunt_crossley", has_hunt_crossley},
                {"gravity", has_gravity},   {"consistent", has_consistent},
                {"groups", has_groups},     {"factor", has_factor},
-               {"wave", has_wave},         {"table_signal", has_table_signal}};
+               {"wave", has_wave},         {"table_signal", has_table_signal},
+               {"elements", has_elements}, {"actuator_forces", has_actuator_forces},
+               {"strains", has_strains},   {"path", has_path},
+               {"angle", has_angle},       {"expressions", has_expressions}};
+  static const struct {
+    const char *prefix;
+    bool (*holds)(const strut_code_writer *, const char *, size_t);
+  } families[] = {{"strain_", strut_code_has_strain},
+                  {"law_", strut_code_has_law},
+                  {"op_", strut_code_has_operation}};
+  for (size_t i = 0; i < sizeof families / sizeof families[0]; i++) {
+    size_t skip = strlen(families[i].prefix);
+    if (length > skip && !memcmp(word, families[i].prefix, skip))
+      return families[i].holds(w, word + skip, length - skip);
+  }
   for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
     if (strlen(words[i].word) == length && !memcmp(words[i].word, word, length))
       return words[i].holds(w);
-  assert(!"a template asks for a word that there is not");
+  assert(false && "a template asks for a word that there is not");
   return false;
 }
 
@@ -248,6 +287,9 @@ static void add_enums(strut_code_writer *w) {
   if (has_inputs(w)) strut_buffer_add(&w->text, ", %s_INPUTS = %zu", w->upper, w->inputs.count);
   if (has_contact(w))
     strut_buffer_add(&w->text, ", %s_CONTACTS = %d", w->upper, w->model->contacts.count);
+  if (has_elements(w))
+    strut_buffer_add(&w->text, ", %s_ELEMENTS = %d, %s_SLOTS = %d", w->upper,
+                     w->model->elements.count, w->upper, strut_code_slot_count(w));
   if (has_factor(w)) {
     int32_t n = op[0].factor ? op[0].factor->n : 0;
     if (op[1].factor && op[1].factor->n > n) n = op[1].factor->n;
@@ -257,7 +299,8 @@ static void add_enums(strut_code_writer *w) {
   add_enum(w, "node", &w->nodes, "Nodes: x is q[2 * node], y is q[2 * node + 1].");
   if (has_members(w)) add_enum(w, "member", &w->members, "Members.");
   if (has_inputs(w))
-    add_enum(w, "input", &w->inputs, "Actuators, then loads that change with time.");
+    add_enum(w, "input", &w->inputs,
+             "Actuators of lengths, loads that change with time, actuators of forces.");
 }
 
 static void add_node_names(strut_code_writer *w) {
@@ -265,6 +308,13 @@ static void add_node_names(strut_code_writer *w) {
   for (size_t i = 0; i < w->nodes.count; i++)
     strut_buffer_add(&w->text, "%s\"%s\"", i ? ", " : "", w->nodes.name[i]);
   strut_buffer_add(&w->text, "};\n");
+}
+
+static void add_element_code(strut_code_writer *w) {
+  strut_code_expand(w, strut_code_elements_template->text);
+}
+static void add_dual_code(strut_code_writer *w) {
+  strut_code_expand(w, strut_code_duals_template->text);
 }
 
 void strut_code_add_table(strut_code_writer *w, const char *word, size_t length) {
@@ -277,13 +327,18 @@ void strut_code_add_table(strut_code_writer *w, const char *word, size_t length)
                {"node_names", add_node_names},
                {"model", strut_code_add_model},
                {"solve", strut_code_add_solve},
-               {"signals", strut_code_add_signals}};
+               {"signals", strut_code_add_signals},
+               {"element_code", add_element_code},
+               {"elements", strut_code_add_elements},
+               {"blocks", strut_code_add_blocks},
+               {"actuator_forces", strut_code_add_actuator_forces},
+               {"dual_code", add_dual_code}};
   for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
     if (strlen(words[i].word) == length && !memcmp(words[i].word, word, length)) {
       words[i].add(w);
       return;
     }
-  assert(!"a template asks for a table that there is not");
+  assert(false && "a template asks for a table that there is not");
 }
 
 static void add_reals(strut_code_writer *w, const double *values, size_t count) {
@@ -299,17 +354,22 @@ void strut_code_add_word(strut_code_writer *w, const char *word, size_t length) 
   static const double cosine[] = {
       1.0 / 24,   1.0 / 40320,    1.0 / 479001600.0,   1.0 / 20922789888000.0,
       -1.0 / 720, -1.0 / 3628800, -1.0 / 87178291200.0};
+  static const double arctangent[] = {-1.0 / 3,  1.0 / 5,  -1.0 / 7,  1.0 / 9,
+                                      -1.0 / 11, 1.0 / 13, -1.0 / 15, 1.0 / 17,
+                                      -1.0 / 19, 1.0 / 21, -1.0 / 23, 1.0 / 25};
   bool verlet = !strcmp(w->experiment->integrator, "verlet");
   if (length == 4 && !memcmp(word, "sine", 4)) {
     add_reals(w, sine, sizeof sine / sizeof sine[0]);
   } else if (length == 6 && !memcmp(word, "cosine", 6)) {
     add_reals(w, cosine, sizeof cosine / sizeof cosine[0]);
+  } else if (length == 10 && !memcmp(word, "arctangent", 10)) {
+    add_reals(w, arctangent, sizeof arctangent / sizeof arctangent[0]);
   } else if (length == 6 && !memcmp(word, "method", 6)) {
     strut_buffer_add(&w->text, verlet ? "verlet" : "rk4");
   } else if (length == 4 && !memcmp(word, "step", 4)) {
     double limit = 0.5 * (verlet ? w->verlet_limit : w->rk4_limit);
     strut_code_add_double(w, w->experiment->step > 0.0 ? w->experiment->step : limit);
   } else {
-    assert(!"a template asks for a number that there is not");
+    assert(false && "a template asks for a number that there is not");
   }
 }

@@ -26,9 +26,9 @@ typedef struct strut_code_writer {
   strut_arena arena;
 } strut_code_writer;
 
-/* Inputs: the drives in the model's order, then the loads with a signal. */
+/* Inputs: the drives in the model's order, then the loads with a signal, then the forces of actuators. */
 static inline int32_t strut_code_input_count(const strut_model *model) {
-  return model->drives.count + model->loads.count;
+  return model->drives.count + model->loads.count + model->actuator_forces.count;
 }
 
 /* Makes the identifiers; false: memory is out. */
@@ -53,6 +53,23 @@ void strut_code_add_solve(strut_code_writer *w);
 void strut_code_add_signals(strut_code_writer *w);
 /* Does some signal that acts, or one of its terms, have this kind? */
 bool strut_code_has_signal(const strut_code_writer *w, strut_signal_kind kind);
+/* Is the signal that of an input, or part of one? */
+bool strut_code_signal_acts(const strut_code_writer *w, int32_t signal);
+
+/* element_tables.c: what templates ask for behind "strain_", "law_" and "op_". */
+bool strut_code_has_strain(const strut_code_writer *w, const char *word, size_t length);
+bool strut_code_has_law(const strut_code_writer *w, const char *word, size_t length);
+bool strut_code_has_operation(const strut_code_writer *w, const char *word, size_t length);
+/* Where a natural strain stands: those of members, of hinges, of cells. */
+int32_t strut_code_slot(const strut_model *model, int32_t slot);
+int32_t strut_code_slot_count(const strut_code_writer *w);
+/* Natural strains of all slots, from which drives start. */
+void strut_code_add_own_rests(strut_code_writer *w);
+void strut_code_add_elements(strut_code_writer *w);
+void strut_code_add_blocks(strut_code_writer *w);
+void strut_code_add_actuator_forces(strut_code_writer *w);
+/* The lines that compute an expression at t. */
+void strut_code_add_program(strut_code_writer *w, const strut_program *program);
 
 /* Expands a template into the text. */
 void strut_code_expand(strut_code_writer *w, const char *template);

@@ -1,0 +1,347 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Elements, forces of actuators and expressions: which there are, their tables, and the programs of expressions. */
+#include <assert.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/output/code/templates.h"
+#include "engine/output/code/writer.h"
+#include "engine/scene/signal_program.h"
+
+static const char *const strain_names[] = {
+#define STRUT_NAME(NAME, name, ...) #name,
+    STRUT_STRAINS(STRUT_NAME, )
+#undef STRUT_NAME
+};
+static const char *const law_names[] = {
+#define STRUT_NAME(NAME, name, ...) #name,
+    STRUT_ALL_LAWS(STRUT_NAME, )
+#undef STRUT_NAME
+};
+
+/* ---- which there are ---- */
+
+static bool is_word(const char *word, size_t length, const char *name) {
+  return strlen(name) == length && !memcmp(word, name, length);
+}
+
+static bool has_law(const strut_code_writer *w, strut_law_kind law) {
+  const strut_element_table *t = &w->model->elements;
+  for (int32_t b = 0; b < t->block_count; b++)
+    if (t->block[b].law == law) return true;
+  return false;
+}
+
+static bool has_strain(const strut_code_writer *w, strut_strain_kind strain) {
+  const strut_element_table *t = &w->model->elements;
+  for (int32_t b = 0; b < t->block_count; b++)
+    if (t->block[b].strain == strain) return true;
+  return false;
+}
+
+/* A length is a path without guides. */
+static bool has_path(const strut_code_writer *w) {
+  const strut_actuator_force_table *t = &w->model->actuator_forces;
+  for (int32_t i = 0; i < t->count; i++)
+    if (t->item[i].strain != STRUT_STRAIN_ANGLE) return true;
+  return has_strain(w, STRUT_STRAIN_LENGTH) || has_strain(w, STRUT_STRAIN_PATH);
+}
+
+bool strut_code_has_strain(const strut_code_writer *w, const char *word, size_t length) {
+  if (is_word(word, length, "path")) return has_path(w);
+  for (int k = 0; k < STRUT_STRAIN_COUNT; k++)
+    if (is_word(word, length, strain_names[k])) return has_strain(w, (strut_strain_kind)k);
+  assert(false && "a template asks for a strain that there is not");
+  return false;
+}
+
+bool strut_code_has_law(const strut_code_writer *w, const char *word, size_t length) {
+  bool gas = has_law(w, STRUT_LAW_ISOTHERMAL) || has_law(w, STRUT_LAW_ISENTROPIC);
+  if (is_word(word, length, "gas")) return gas;
+  if (is_word(word, length, "cell")) return gas || has_law(w, STRUT_LAW_PRESSURE);
+  for (int k = 0; k < STRUT_LAW_COUNT; k++)
+    if (is_word(word, length, law_names[k])) return has_law(w, (strut_law_kind)k);
+  assert(false && "a template asks for a law that there is not");
+  return false;
+}
+
+/* ---- elements ---- */
+
+int32_t strut_code_slot(const strut_model *model, int32_t slot) {
+  int32_t members = model->members.count,
+          padded = (members + STRUT_LANES - 1) / STRUT_LANES * STRUT_LANES;
+  return slot < members ? slot : slot - padded + members;
+}
+
+int32_t strut_code_slot_count(const strut_code_writer *w) {
+  return (int32_t)(w->scene->member_count + w->scene->hinge_count + w->scene->cell_count);
+}
+
+static void add_nodes(strut_code_writer *w, const char *name, const uint32_t *at, int32_t count) {
+  strut_buffer_add(&w->text, "static const index_type %s[] = {", name);
+  for (int32_t i = 0; i < count; i++)
+    strut_buffer_add(&w->text, "%s%u%s", i % 16 ? " " : "\n    ", at[i], i + 1 < count ? "," : "");
+  strut_buffer_add(&w->text, "};\n");
+}
+
+/* Natural strains of the slots, from which drives start. */
+void strut_code_add_own_rests(strut_code_writer *w) {
+  const strut_model *model = w->model;
+  int32_t members = model->members.count, count = strut_code_slot_count(w);
+  int32_t padded = (members + STRUT_LANES - 1) / STRUT_LANES * STRUT_LANES;
+  if (!model->drives.count || !model->elements.count) return;
+  strut_buffer_add(&w->text, "static const real own_rest[] = {");
+  for (int32_t i = 0; i < count; i++) {
+    strut_buffer_add(&w->text, i % 5 ? " " : "\n    ");
+    strut_code_add_real(w, model->members.rest[i < members ? i : i - members + padded]);
+    strut_buffer_add(&w->text, i + 1 < count ? "," : "");
+  }
+  strut_buffer_add(&w->text, "};\n\n");
+}
+
+static int32_t count_coefficients(const strut_element *e) {
+  return e->law == STRUT_LAW_POLYNOMIAL ? (int32_t)e->numbers.count : 0;
+}
+
+static void add_coefficients(strut_code_writer *w) {
+  const strut_element_table *t = &w->model->elements;
+  if (!has_law(w, STRUT_LAW_POLYNOMIAL)) return;
+  strut_buffer_add(&w->text, "static const real coefficient[] = {\n");
+  for (int32_t i = 0; i < t->count; i++)
+    for (int32_t k = 0; k < count_coefficients(&t->element[i]); k++) {
+      strut_buffer_add(&w->text, k ? " " : "    ");
+      strut_code_add_real(w, t->element[i].numbers.coefficient[k]);
+      strut_buffer_add(&w->text, k + 1 < count_coefficients(&t->element[i]) ? "," : ",\n");
+    }
+  strut_buffer_add(&w->text, "};\n");
+}
+
+static void add_list(strut_code_writer *w, const double *values, size_t count) {
+  for (size_t i = 0; i < count; i++) {
+    strut_buffer_add(&w->text, i ? ", " : "");
+    strut_code_add_real(w, values[i]);
+  }
+}
+
+/* A curve of each element with a table. */
+static void add_curves(strut_code_writer *w) {
+  const strut_element_table *t = &w->model->elements;
+  for (int32_t i = 0; i < t->count; i++) {
+    const strut_law_curve *c = t->element[i].numbers.curve;
+    if (t->element[i].law != STRUT_LAW_TABLE) continue;
+    strut_buffer_add(&w->text, "static const real curve_x_%d[] = {", i);
+    add_list(w, c->x, c->count);
+    strut_buffer_add(&w->text, "};\nstatic const real curve_energy_%d[] = {", i);
+    add_list(w, c->energy, c->count);
+    strut_buffer_add(&w->text, "};\nstatic const real curve_piece_%d[][4] = {\n", i);
+    for (size_t k = 0; k + 1 < c->count; k++) {
+      strut_buffer_add(&w->text, "    {");
+      add_list(w, c->piece[k], 4);
+      strut_buffer_add(&w->text, "},\n");
+    }
+    strut_buffer_add(&w->text,
+                     "};\nstatic const curve curve_%d = {%zu, curve_x_%d, curve_piece_%d, "
+                     "curve_energy_%d};\n",
+                     i, c->count, i, i, i);
+  }
+}
+
+static void add_number(strut_code_writer *w, double value) {
+  strut_buffer_add(&w->text, ", ");
+  strut_code_add_real(w, value);
+}
+
+/* The fields of struct element in elements.c.in. */
+static void add_element(strut_code_writer *w, int32_t i, int32_t *coefficient) {
+  const strut_model *model = w->model;
+  const strut_element *e = &model->elements.element[i];
+  const strut_law_numbers *n = &e->numbers;
+  double natural = e->slot >= 0 ? model->members.rest[e->slot] : e->natural;
+  int32_t count = count_coefficients(e);
+  strut_buffer_add(&w->text, "    {%d, %d, %d", e->slot >= 0 ? strut_code_slot(model, e->slot) : -1,
+                   e->first, e->nodes);
+  add_number(w, e->carries);
+  add_number(w, natural);
+  add_number(w, e->damping);
+  add_number(w, n->stiffness);
+  if (has_law(w, STRUT_LAW_BILINEAR)) {
+    add_number(w, n->knee);
+    add_number(w, n->second_stiffness);
+  }
+  if (has_law(w, STRUT_LAW_PLAY)) add_number(w, n->gap);
+  if (has_law(w, STRUT_LAW_EXPONENTIAL)) add_number(w, n->scale);
+  if (has_law(w, STRUT_LAW_POLYNOMIAL)) strut_buffer_add(&w->text, ", %d, %d", *coefficient, count);
+  *coefficient += count;
+  if (has_law(w, STRUT_LAW_TABLE) && e->law == STRUT_LAW_TABLE)
+    strut_buffer_add(&w->text, ", &curve_%d", i);
+  else if (has_law(w, STRUT_LAW_TABLE))
+    strut_buffer_add(&w->text, ", NULL");
+  if (strut_code_has_law(w, "cell", 4)) {
+    add_number(w, n->area);
+    add_number(w, n->outside);
+    add_number(w, n->exponent);
+  }
+  const char *name = strut_element_name(w->scene, e);
+  strut_buffer_add(&w->text, "}, /* ");
+  strut_code_add_comment(w, name ? name : "");
+  strut_buffer_add(&w->text, " */\n");
+}
+
+void strut_code_add_elements(strut_code_writer *w) {
+  const strut_element_table *t = &w->model->elements;
+  const strut_element *last = &t->element[t->count - 1];
+  int32_t coefficient = 0;
+  add_nodes(w, "element_node", t->at, last->first + last->nodes);
+  add_coefficients(w);
+  add_curves(w);
+  strut_buffer_add(&w->text, "static const element elements[] = {\n");
+  for (int32_t i = 0; i < t->count; i++) add_element(w, i, &coefficient);
+  strut_buffer_add(&w->text, "};\n");
+  if (w->scene->member_count) {
+    strut_buffer_add(&w->text, "static const int member_of_element[] = {");
+    for (int32_t i = 0; i < t->count; i++)
+      strut_buffer_add(&w->text, "%s%d", i ? ", " : "",
+                       strut_element_is_of_member(&t->element[i]) ? t->element[i].item : -1);
+    strut_buffer_add(&w->text, "};\n");
+  }
+  strut_buffer_add(&w->text, "\n");
+}
+
+static const char *strain_function(strut_strain_kind strain) {
+  return strain_names[strain == STRUT_STRAIN_LENGTH ? STRUT_STRAIN_PATH : strain];
+}
+
+void strut_code_add_blocks(strut_code_writer *w) {
+  const strut_element_table *t = &w->model->elements;
+  strut_buffer_add(
+      &w->text,
+      "enum { BLOCKS = %d, MOST_GRADIENT = %d };\n\n"
+      "/* Elements begin .. end - 1 have one strain and one law. */\n"
+      "typedef struct block {\n"
+      "  real (*strain)(const index_type *at, int n, const real *q, real near, real *b);\n"
+      "  real (*force)(const element *m, real e, real e0);\n"
+      "  real (*energy)(const element *m, real e, real e0);\n"
+      "  int begin, end;\n} block;\n\nstatic const block blocks[] = {\n",
+      t->block_count, 2 * t->most_nodes);
+  for (int32_t b = 0; b < t->block_count; b++) {
+    const strut_element_block *k = &t->block[b];
+    strut_buffer_add(&w->text, "    {strain_%s, force_%s, energy_%s, %d, %d},\n",
+                     strain_function(k->strain), law_names[k->law], law_names[k->law], k->begin,
+                     k->end);
+  }
+  strut_buffer_add(&w->text, "};\n\n");
+}
+
+/* ---- forces of actuators ---- */
+
+void strut_code_add_actuator_forces(strut_code_writer *w) {
+  const strut_actuator_force_table *t = &w->model->actuator_forces;
+  const strut_actuator_force *last = &t->item[t->count - 1];
+  int32_t most = 2, first = w->model->drives.count + w->model->loads.count;
+  for (int32_t i = 0; i < t->count; i++)
+    if (t->item[i].nodes > most) most = t->item[i].nodes;
+  strut_buffer_add(&w->text, "enum { FORCES = %d, MOST_ACTUATOR_GRADIENT = %d };\n\n", t->count,
+                   2 * most);
+  add_nodes(w, "actuator_node", t->at, last->first + last->nodes);
+  strut_buffer_add(
+      &w->text,
+      "typedef struct actuator_force {\n"
+      "  real (*strain)(const index_type *at, int n, const real *q, real near, real *b);\n"
+      "  int first, nodes; /* its nodes: entries of actuator_node */\n"
+      "} actuator_force;\n\nstatic const actuator_force actuator_forces[] = {\n");
+  for (int32_t i = 0; i < t->count; i++)
+    strut_buffer_add(&w->text, "    {strain_%s, %d, %d}, /* %s */\n",
+                     strain_function(t->item[i].strain), t->item[i].first, t->item[i].nodes,
+                     w->inputs.name[first + i]);
+  strut_buffer_add(&w->text, "};\n\n");
+}
+
+/* ---- expressions ---- */
+
+typedef struct operation_name {
+  const char *word;     /* in templates, behind "op_" */
+  const char *function; /* in duals.c.in */
+  bool chain;           /* by the chain rule */
+} operation_name;
+
+/* NULL: no function. */
+static operation_name name_of(strut_operation operation) {
+  switch (operation) {
+    case STRUT_OPERATION_ADD: return (operation_name){"add", "add", false};
+    case STRUT_OPERATION_SUBTRACT: return (operation_name){"subtract", "subtract", false};
+    case STRUT_OPERATION_MULTIPLY: return (operation_name){"multiply", "multiply", false};
+    case STRUT_OPERATION_DIVIDE: return (operation_name){"divide", "divide", false};
+    case STRUT_OPERATION_POWER: return (operation_name){"power", "power", true};
+    case STRUT_OPERATION_NEGATE: return (operation_name){"negate", "negate", false};
+    case STRUT_OPERATION_SIN: return (operation_name){"sin", "dual_sin", true};
+    case STRUT_OPERATION_COS: return (operation_name){"cos", "dual_cos", true};
+    case STRUT_OPERATION_TAN: return (operation_name){"tan", "dual_tan", true};
+    case STRUT_OPERATION_ASIN: return (operation_name){"asin", "dual_asin", true};
+    case STRUT_OPERATION_ACOS: return (operation_name){"acos", "dual_acos", true};
+    case STRUT_OPERATION_ATAN: return (operation_name){"atan", "dual_atan", true};
+    case STRUT_OPERATION_ATAN2: return (operation_name){"atan2", "dual_atan2", true};
+    case STRUT_OPERATION_SQRT: return (operation_name){"sqrt", "dual_sqrt", true};
+    case STRUT_OPERATION_EXP: return (operation_name){"exp", "dual_exp", true};
+    case STRUT_OPERATION_LOG: return (operation_name){"log", "dual_log", true};
+    case STRUT_OPERATION_LOG10: return (operation_name){"log10", "dual_log10", true};
+    case STRUT_OPERATION_ABS: return (operation_name){"abs", "dual_abs", false};
+    case STRUT_OPERATION_MIN: return (operation_name){"min", "least", false};
+    case STRUT_OPERATION_MAX: return (operation_name){"max", "most", false};
+    case STRUT_OPERATION_FLOOR: return (operation_name){"floor", "dual_floor", false};
+    case STRUT_OPERATION_CEIL: return (operation_name){"ceil", "dual_ceil", false};
+    case STRUT_OPERATION_ROUND: return (operation_name){"round", "dual_round", false};
+    case STRUT_OPERATION_HYPOT: return (operation_name){"hypot", "dual_hypot", true};
+    case STRUT_OPERATION_NUMBER:
+    case STRUT_OPERATION_COLUMN:
+    case STRUT_OPERATION_COUNT: break;
+  }
+  return (operation_name){NULL, NULL, false};
+}
+
+static bool asks_for(const strut_instruction *p, const char *word, size_t length) {
+  operation_name name = name_of(p->operation);
+  if (is_word(word, length, "signal"))
+    return p->operation == STRUT_OPERATION_COLUMN && p->column.kind == STRUT_COLUMN_SIGNAL;
+  if (is_word(word, length, "chain")) return name.chain;
+  return name.word && is_word(word, length, name.word);
+}
+
+bool strut_code_has_operation(const strut_code_writer *w, const char *word, size_t length) {
+  for (size_t s = 0; s < w->scene->signal_count; s++) {
+    const strut_program *p = &w->scene->signals[s].program;
+    if (!strut_code_signal_acts(w, (int32_t)s)) continue;
+    for (size_t i = 0; i < p->length; i++)
+      if (asks_for(&p->instruction[i], word, length)) return true;
+  }
+  return false;
+}
+
+/* "x[2] = add(x[2], x[3]);", an operation a line, on a stack x. */
+void strut_code_add_program(strut_code_writer *w, const strut_program *program) {
+  size_t top = 0;
+  strut_buffer_add(&w->text, "  dual x[%zu];\n", program->depth > 0 ? program->depth : 1);
+  for (size_t i = 0; i < program->length; i++) {
+    const strut_instruction *p = &program->instruction[i];
+    int operands = strut_operation_operands(p->operation);
+    if (operands == 0) {
+      strut_buffer_add(&w->text, "  x[%zu] = ", top++);
+      if (p->operation == STRUT_OPERATION_NUMBER) {
+        strut_buffer_add(&w->text, "(dual){");
+        strut_code_add_double(w, p->number);
+        strut_buffer_add(&w->text, ", 0};\n");
+      } else if (p->column.kind == STRUT_COLUMN_SIGNAL) {
+        strut_buffer_add(&w->text, "follow(signal_%d, t);\n", p->column.item);
+      } else {
+        strut_buffer_add(&w->text, "(dual){t, 1};\n"); /* others are refused by strut_code_check */
+      }
+    } else if (operands == 1) {
+      strut_buffer_add(&w->text, "  x[%zu] = %s(x[%zu]);\n", top - 1,
+                       name_of(p->operation).function, top - 1);
+    } else {
+      top--;
+      strut_buffer_add(&w->text, "  x[%zu] = %s(x[%zu], x[%zu]);\n", top - 1,
+                       name_of(p->operation).function, top - 1, top);
+    }
+  }
+  strut_buffer_add(&w->text, "  *value = (real)x[0].value, *rate = (real)x[0].rate;\n");
+}
