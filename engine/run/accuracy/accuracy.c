@@ -72,6 +72,7 @@ static strut_status choose_coarse_method(strut_accuracy *a) {
   status =
       strut_step_limit_for_method(model, strut_integrator_find(e->integrator), &limit, a->error);
   e->step = fmin(STRUT_COARSE_STEP * limit, unit / LEAST_STEPS);
+  a->stiff = e->step < unit / LEAST_STEPS;
   e->refine = e->refine_time = 0.0;
   double fine = FINE_EVALUATIONS * FINE_STEPS * span.duration / e->step;
   double least = e->budget / STRUT_USUAL_BUDGET * LEAST_WORK;

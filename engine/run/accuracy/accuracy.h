@@ -45,6 +45,7 @@ typedef struct strut_accuracy {
   int64_t used, allowed;     /* made so far; allowed until the present strategy must stop */
   strut_summary *summary;
   strut_error *error;
+  bool stiff; /* the coarse method's step is bounded by stability, not by the period or the run */
 } strut_accuracy;
 
 /** The shortest period or duration of a signal [s]; HUGE_VAL: none. */

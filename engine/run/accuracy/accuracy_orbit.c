@@ -5,7 +5,6 @@
  */
 #include <assert.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "engine/run/accuracy/orbit_solve.h"
@@ -24,8 +23,11 @@ static const double CREEP = 0.2;
  * ends when it is steady, and of one with a given window, where repeated runs are more reliable.
  */
 static const double LEAST = 20.0, LEAST_OF_RUN = 60.0;
-/* A first correction below this part of the tolerated one needs no second. */
-static const double SMALL = 0.15;
+/*
+ * A first correction below this part of the tolerated one needs no second; the same where a run with the finer step
+ * confirms it.
+ */
+static const double SMALL = 0.15, SMALL_CONFIRMED = 0.6;
 /* Part of the budget for the orbit; the rest is kept for repeated runs. */
 static const double PART_OF_BUDGET = 0.6;
 /* The whole run is made as a check where it costs at most this many times the work so far. */
@@ -48,6 +50,15 @@ static const double MEAN = 20.0;
  * its own steady motion counts.
  */
 static const double TRIAL = 24.0, LONG_TRIAL = 60.0;
+/* Steps of the finer coarse method in one of the first coarse method. */
+static const double FINER = 4.0;
+/* Cycles of extrapolation towards a fixed point of either method; of a finer step where the motion may only creep. */
+enum { MOST_CYCLES = 8, FINER_CYCLES = 3, CREEPING_CYCLES = 2 };
+/* A run of the orbit with the finer step confirms it to this part of the wanted error; that of the reference method. */
+static const double CONFIRMED_BY_FINER = 0.3, CONFIRMED = 0.6;
+
+/* Where stability bounds the coarse step, finer ones cost less than the reference method. */
+static bool uses_finer_steps(const strut_accuracy *a) { return a->stiff && a->target >= FINE; }
 
 static strut_status allocate_arrays(strut_orbit_solve *solve, const strut_model *model) {
   size_t length = (size_t)model->length;
@@ -116,6 +127,16 @@ static void take_end_as_fixed_point(strut_orbit_solve *solve) {
   solve->travel = solve->coarse_run.velocity * solve->coarse_map.period * solve->coarse_map.repeats;
 }
 
+/*
+ * Longer steps than stability allows would be refused one by one, and what grows until then would open and close
+ * contacts.
+ */
+static double longest_reference_step(const strut_orbit_solve *solve) {
+  const strut_accuracy *a = solve->a;
+  double longest = strut_experiment_span(&a->experiment, a->scene).period / 50.0;
+  return a->stiff ? fmin(longest, solve->finer * a->coarse.step) : longest;
+}
+
 static strut_status create_maps(strut_orbit_solve *solve, int32_t repeats) {
   strut_accuracy *a = solve->a;
   a->check_evaluations += solve->coarse_map.evaluations + solve->reference_map.evaluations;
@@ -128,7 +149,9 @@ static strut_status create_maps(strut_orbit_solve *solve, int32_t repeats) {
   solve->reference.steady.creep = 0.0;
   solve->reference.integrator = strut_integrator_for(STRUT_ROLE_REFERENCE)->name;
   solve->reference.tolerance = fmin(2.5e-6, fmax(1e-12, a->target * STRUT_TOLERANCE_PER_ERROR));
-  solve->reference.step = strut_experiment_span(&a->experiment, a->scene).period / 50.0;
+  solve->tightened = solve->finer > 1.0; /* an orbit that needs finer steps is sensitive */
+  if (solve->tightened) solve->reference.tolerance /= STRUT_TIGHTENED;
+  solve->reference.step = longest_reference_step(solve);
   strut_status status =
       strut_period_map_create(a->model, &a->coarse, repeats, &solve->coarse_map, a->error);
   if (!status)
@@ -148,6 +171,7 @@ static strut_status create_maps(strut_orbit_solve *solve, int32_t repeats) {
  * smaller than the one before, and the velocity follows it in proportion.
  */
 static strut_status correct_orbit(strut_orbit_solve *solve, double enough, int least) {
+  double little = (uses_finer_steps(solve->a) ? SMALL_CONFIRMED : SMALL) * enough;
   double defect = HUGE_VAL;
   solve->error = HUGE_VAL;
   for (int k = 0; k < MOST_CORRECTIONS; k++) {
@@ -161,26 +185,27 @@ static strut_status correct_orbit(strut_orbit_solve *solve, double enough, int l
     double better = k == 0 ? 0.5 : fmax(0.1, solve->orbit.defect / defect);
     defect = solve->orbit.defect;
     solve->error = better * fabs(solve->orbit.correction);
-    bool small = fabs(solve->orbit.correction) <= SMALL * enough;
+    bool small = fabs(solve->orbit.correction) <= little;
     if ((k + 1 >= least || small) && solve->error <= enough) return STRUT_OK;
   }
   return STRUT_OK;
 }
 
-/* Runs the orbit by the reference method, for recordings and contact figures. */
-static strut_status run_orbit(strut_orbit_solve *solve, strut_summary *summary) {
+/* Runs the orbit by the method of `e`, for contact figures, or as long as recordings want it. */
+static strut_status run_orbit(strut_orbit_solve *solve, strut_experiment e, bool record,
+                              strut_summary *summary) {
   strut_accuracy *a = solve->a;
-  strut_experiment e = solve->reference;
   double last = e.output_last;
   e.measure_last = 0.0;
   strut_orbit_solve_copy_orbit_to_end(solve);
   e.steady.wanted = false;
   bool ran_on = solve->answer > STRUT_ORBIT_CORRECTED && solve->last_run.steady.repeats > 0;
   e.periods = ran_on ? solve->last_run.steady.repeats : solve->coarse_map.repeats;
-  if (a->options->sink_count && last > e.periods) e.periods = last;
+  if (record && last > e.periods) e.periods = last;
   e.output_last = 0.0;
   strut_run_options options = *a->options;
   strut_accuracy_begin_phase(a, "running the orbit");
+  if (!record) options.sink_count = 0;
   options.from = &solve->end_state;
   options.progress = NULL;
   return strut_accuracy_run(a, &e, &options, summary);
@@ -202,6 +227,31 @@ static void free_solve(strut_orbit_solve *solve) {
   strut_arena_free(&solve->arena);
 }
 
+static void accept_fixed_point(strut_orbit_solve *solve) {
+  solve->coarse_run.velocity =
+      solve->travel / (solve->coarse_map.period * solve->coarse_map.repeats);
+  memcpy(solve->orbit.y, solve->fixed_point,
+         (2 * (size_t)solve->coarse_map.model->length + 1) * sizeof(double));
+  solve->until_steady = (strut_orbit_solve_cost){
+      solve->coarse_map.evaluations, solve->coarse_map.events, solve->coarse_map.applied};
+}
+
+static strut_status extrapolate_to_fixed_point(strut_orbit_solve *solve, bool *found) {
+  const strut_accuracy *a = solve->a;
+  double size = strut_accuracy_velocity_scale(a, solve->coarse_run.velocity);
+  double enough = STRUT_FIXED_POINT_PART * a->target * size * solve->coarse_map.period;
+  bool slow = fabs(solve->coarse_run.velocity) <= a->coarse.steady.creep;
+  int cycles = solve->finer > 1.0 ? slow ? CREEPING_CYCLES : FINER_CYCLES : MOST_CYCLES;
+  strut_status status = strut_orbit_limit(&solve->coarse_map, enough * solve->coarse_map.repeats,
+                                          cycles, solve->fixed_point, &solve->travel, found);
+  status = strut_orbit_solve_check_maps(solve, status);
+  if (status || !*found) return status;
+  accept_fixed_point(solve);
+  solve->coarse_run.steady.kind = STRUT_MOTION_PERIODIC;
+  solve->coarse_run.steady.repeats = solve->coarse_map.repeats;
+  return STRUT_OK;
+}
+
 /*
  * Finds the fixed point of the coarse map from a nearly steady state, by extrapolation or, where
  * that fails, by running on. *steady is false where there is none.
@@ -209,56 +259,88 @@ static void free_solve(strut_orbit_solve *solve) {
 static strut_status find_coarse_fixed_point(strut_orbit_solve *solve, bool *steady) {
   strut_accuracy *a = solve->a;
   bool found = false;
-  double enough = 0.1 * a->target * strut_accuracy_velocity_scale(a, solve->coarse_run.velocity) *
-                  solve->coarse_map.period;
-  strut_status status = strut_orbit_limit(&solve->coarse_map, enough * solve->coarse_map.repeats,
-                                          solve->fixed_point, &solve->travel, &found);
-  status = strut_orbit_solve_check_maps(solve, status);
+  strut_status status = extrapolate_to_fixed_point(solve, &found);
   if (status) return status;
   *steady = true;
   if (!found) {
     strut_summary more = {0};
-    status = strut_orbit_solve_run_until_steady(solve, a->coarse, fmin(0.002, 0.1 * a->target), 5,
-                                                CHANCE, true, &more);
+    status = strut_orbit_solve_run_until_steady(
+        solve, a->coarse, fmin(0.002, STRUT_FIXED_POINT_PART * a->target), 5, CHANCE, true, &more);
     *steady = !status && more.steady.kind == STRUT_MOTION_PERIODIC &&
               more.steady.repeats == solve->coarse_map.repeats;
     if (!status) strut_summary_append(&solve->coarse_run, &more);
     strut_summary_free(&more);
     take_end_as_fixed_point(solve);
+    accept_fixed_point(solve);
   }
-  solve->coarse_run.velocity =
-      solve->travel / (solve->coarse_map.period * solve->coarse_map.repeats);
-  memcpy(solve->orbit.y, solve->fixed_point,
-         (2 * (size_t)solve->coarse_map.model->length + 1) * sizeof(double));
-  solve->until_steady = (strut_orbit_solve_cost){
-      solve->coarse_map.evaluations, solve->coarse_map.events, solve->coarse_map.applied};
   return status;
 }
 
-/* Corrects the coarse orbit; where that is not enough, runs the reference method from it. */
-static strut_status correct_or_rerun(strut_orbit_solve *solve) {
+/* The coarse method with a finer step than the first. */
+static strut_experiment finer_experiment(const strut_orbit_solve *solve) {
+  strut_experiment e = solve->a->coarse;
+  e.steady.creep = 0.0;
+  e.step *= solve->finer / FINER;
+  return e;
+}
+
+/*
+ * A finer step may be what an orbit needs: finds the fixed point of its map, from the one of the coarse map or where
+ * the coarse run ended. *found is false, and the maps are the coarse ones again, where there is none.
+ */
+static strut_status find_finer_fixed_point(strut_orbit_solve *solve, bool from_orbit, bool *found) {
   strut_accuracy *a = solve->a;
-  double size = strut_accuracy_velocity_scale(a, solve->coarse_run.velocity),
-         all = fmax(20.0, strut_accuracy_transient_periods(a));
-  strut_status status = STRUT_OK;
-  solve->error = HUGE_VAL;
-  if (strut_orbit_solve_is_stuck(solve)) {
-    status = strut_orbit_solve_confirm_stuck(solve);
-    return status || solve->answer ? status : strut_orbit_solve_run_reference(solve, false, all);
+  int32_t repeats = solve->coarse_map.repeats;
+  double step = a->coarse.step;
+  *found = false;
+  if (!uses_finer_steps(a) || solve->finer > 1.0) return STRUT_OK;
+  if (from_orbit) {
+    memcpy(solve->orbit.y, solve->fixed_point,
+           (2 * (size_t)solve->coarse_map.model->length + 1) * sizeof(double));
+    strut_orbit_solve_copy_orbit_to_end(solve);
   }
+  strut_accuracy_begin_phase(a, "finding the orbit by finer steps");
+  a->coarse.step = step / FINER, solve->finer = FINER;
+  strut_status status = create_maps(solve, repeats);
+  if (!status) status = extrapolate_to_fixed_point(solve, found);
+  if (status || *found) return status;
+  a->coarse.step = step, solve->finer = 1.0;
+  return create_maps(solve, repeats);
+}
+
+/* Corrects the coarse orbit; sets solve->answer if it is accurate enough then. */
+static strut_status correct_to_answer(strut_orbit_solve *solve) {
+  strut_accuracy *a = solve->a;
+  double size = strut_accuracy_velocity_scale(a, solve->coarse_run.velocity);
   strut_accuracy_begin_phase(a, "correcting the orbit");
-  bool last_word =
-      a->target <
-      FINE; /* the reference method runs on from the orbit, so that a rough one suffices */
+  /* the reference method runs on from the orbit, so that a rough one suffices */
+  bool last_word = a->target < FINE;
   double enough = (last_word ? 3.0 : 0.3) * a->target * size;
-  status = correct_orbit(solve, enough, a->target >= COARSE || last_word ? 1 : 2);
+  strut_status status = correct_orbit(solve, enough, a->target >= COARSE || last_word ? 1 : 2);
   if (status) return status;
   double moved = fabs(solve->orbit.velocity - solve->coarse_run.velocity) + solve->error;
   if (a->target >= COARSE && moved <= 0.8 * a->target * size)
     solve->answer = STRUT_ORBIT_COARSE;
   else if (!last_word && strut_orbit_solve_error_share(solve) <= 0.8)
     solve->answer = STRUT_ORBIT_CORRECTED;
-  if (solve->answer) return STRUT_OK;
+  return STRUT_OK;
+}
+
+/* Corrects the coarse orbit; where that is not enough, runs the reference method from it. */
+static strut_status correct_or_rerun(strut_orbit_solve *solve) {
+  strut_accuracy *a = solve->a;
+  double all = fmax(20.0, strut_accuracy_transient_periods(a));
+  strut_status status = STRUT_OK;
+  solve->error = HUGE_VAL;
+  if (strut_orbit_solve_is_stuck(solve)) {
+    status = strut_orbit_solve_confirm_stuck(solve);
+    return status || solve->answer ? status : strut_orbit_solve_run_reference(solve, false, all);
+  }
+  bool finer = false, last_word = a->target < FINE;
+  status = correct_to_answer(solve);
+  if (!status && !solve->answer) status = find_finer_fixed_point(solve, true, &finer);
+  if (!status && finer) status = correct_to_answer(solve);
+  if (status || solve->answer) return status;
   status = strut_orbit_solve_run_reference(solve, true, fmin(all, last_word ? LONG_TRIAL : TRIAL));
   if (status) return status;
   if (!solve->answer) return strut_orbit_solve_average_disputed(solve);
@@ -305,6 +387,7 @@ static strut_status find_creep(strut_orbit_solve *solve, bool *steady) {
 
 /* Finds the orbit to the wanted accuracy. */
 static strut_status find_orbit(strut_orbit_solve *solve, bool steady) {
+  const strut_accuracy *a = solve->a;
   strut_status status = create_maps(solve, steady ? solve->coarse_run.steady.repeats : 1);
   solve->error = HUGE_VAL;
   if (status) return status;
@@ -315,8 +398,13 @@ static strut_status find_orbit(strut_orbit_solve *solve, bool steady) {
     status = create_maps(solve, 1);
     solve->until_steady = (strut_orbit_solve_cost){0};
   }
-  if (status) return status;
-  return steady ? correct_or_rerun(solve) : find_by_reference(solve);
+  if (status || steady) return status ? status : correct_or_rerun(solve);
+  if (uses_finer_steps(a)) {
+    status = find_finer_fixed_point(solve, false, &steady);
+    if (status) return status;
+    return steady ? correct_or_rerun(solve) : find_without_fixed_point(solve);
+  }
+  return find_by_reference(solve);
 }
 
 /*
@@ -363,6 +451,47 @@ static strut_status check_window(strut_orbit_solve *solve) {
   return status;
 }
 
+/* A run that does not agree counts as a check. */
+static void discard_run(strut_orbit_solve *solve, strut_summary *orbit) {
+  solve->a->check_evaluations += orbit->force_evaluations;
+  strut_summary_free(orbit);
+  *orbit = (strut_summary){0};
+}
+
+/*
+ * Runs the orbit once. *confirmed: its velocity agrees within `part` of the wanted error. The run is then repeated
+ * where it is recorded, so that the answer does not depend on recordings.
+ */
+static strut_status confirm_by(strut_orbit_solve *solve, strut_experiment e, double part,
+                               strut_summary *orbit, bool *confirmed) {
+  const strut_accuracy *a = solve->a;
+  discard_run(solve, orbit);
+  strut_status status = run_orbit(solve, e, false, orbit);
+  double size = strut_accuracy_velocity_scale(a, solve->coarse_run.velocity);
+  solve->apart = fabs(orbit->velocity - solve->orbit.velocity);
+  bool ran_on = solve->answer > STRUT_ORBIT_CORRECTED;
+  *confirmed = !status && (ran_on || solve->apart <= part * a->target * size);
+  if (!*confirmed || !a->options->sink_count) return status;
+  strut_summary_free(orbit); /* the same run again, whose cost is counted once */
+  *orbit = (strut_summary){0};
+  return run_orbit(solve, e, true, orbit);
+}
+
+/*
+ * Where a finer step of the coarse method does not confirm a corrected orbit, it is corrected once more, and the
+ * reference method has the word.
+ */
+static strut_status confirm_by_finer(strut_orbit_solve *solve, strut_summary *orbit,
+                                     bool *confirmed) {
+  bool corrected = solve->answer == STRUT_ORBIT_CORRECTED;
+  if (!uses_finer_steps(solve->a)) return STRUT_OK;
+  strut_status status =
+      confirm_by(solve, finer_experiment(solve), CONFIRMED_BY_FINER, orbit, confirmed);
+  if (status || *confirmed || !corrected) return status;
+  solve->answer = STRUT_ORBIT_NONE;
+  return correct_to_answer(solve);
+}
+
 /* Runs the orbit once more; its velocity must agree with that of the orbit. */
 static strut_status confirm_orbit(strut_orbit_solve *solve, strut_summary *orbit) {
   strut_accuracy *a = solve->a;
@@ -370,140 +499,20 @@ static strut_status confirm_orbit(strut_orbit_solve *solve, strut_summary *orbit
     solve->answer = STRUT_ORBIT_NONE;
   strut_status status = check_window(solve);
   if (status || !solve->answer) return status;
-  status = run_orbit(solve, orbit);
-  double away = fabs(orbit->velocity - solve->orbit.velocity);
-  if (status || solve->answer > STRUT_ORBIT_CORRECTED ||
-      away <= 0.6 * a->target * strut_accuracy_velocity_scale(a, solve->coarse_run.velocity))
-    return status;
+  bool confirmed = false;
+  status = confirm_by_finer(solve, orbit, &confirmed);
+  if (!status && !confirmed && solve->answer)
+    status = confirm_by(solve, solve->reference, CONFIRMED, orbit, &confirmed);
+  if (status || confirmed) return status;
   solve->answer = STRUT_ORBIT_NONE;
-  a->check_evaluations += orbit->force_evaluations; /* the run disagrees, so it counts as a check */
-  strut_summary_free(orbit);
-  *orbit = (strut_summary){0};
+  discard_run(solve, orbit);
   status = strut_orbit_solve_run_reference(solve, true, a->target < FINE ? LONG_TRIAL : TRIAL);
   if (!status && !solve->answer) status = strut_orbit_solve_average_disputed(solve);
-  return status ? status : run_orbit(solve, orbit);
-}
-
-/* ---- the report ---- */
-
-static void explain_orbit(const strut_orbit_solve *solve, strut_accuracy_summary *to) {
-  double step = solve->coarse_map.dt, tolerance = solve->reference.tolerance;
-  double moved = fabs(solve->orbit.velocity - solve->coarse_run.velocity);
-  size_t size = sizeof to->why;
-  switch (solve->answer) {
-    case STRUT_ORBIT_COARSE:
-      snprintf(to->why, size,
-               "verlet-events with a step of %.3g s is accurate enough: correcting its orbit by a "
-               "period of adaptive (tolerance %.1g) changes the velocity by %.2g m/s",
-               step, tolerance, moved);
-      return;
-    case STRUT_ORBIT_STUCK:
-      snprintf(to->why, size,
-               "verlet-events with a step of %.3g s: all contacts stick for the whole period, and "
-               "twice the step changes the velocity by %.2g m/s",
-               0.5 * step, moved);
-      return;
-    case STRUT_ORBIT_IRREGULAR:
-      snprintf(
-          to->why, size,
-          "the motion does not repeat itself: mean velocities over many periods, by verlet-events "
-          "with steps of %.3g s and %.3g s, agree to %.2g m/s including their scatter",
-          step, 0.5 * step, solve->error);
-      return;
-    case STRUT_ORBIT_DISPUTED:
-      snprintf(
-          to->why, size,
-          "verlet-events with a step of %.3g s finds a periodic motion and adaptive (tolerance "
-          "%.1g) does not: their mean velocities and that with half the step agree to %.2g m/s",
-          step, tolerance, solve->error);
-      return;
-    case STRUT_ORBIT_CREEPING:
-      snprintf(to->why, size,
-               "it creeps: over 24 periods its mean velocity was below %.2g m/s, and it did not "
-               "repeat itself; by "
-               "verlet-events with steps of %.3g s and %.3g s it is known to %.2g m/s",
-               solve->a->coarse.steady.creep, step, 0.5 * step, solve->error);
-      return;
-    case STRUT_ORBIT_NONE:
-    case STRUT_ORBIT_CORRECTED:
-    case STRUT_ORBIT_REFERENCE:
-      snprintf(
-          to->why, size,
-          "verlet-events with a step of %.3g s until the motion was steady; its orbit was then "
-          "corrected by periods of adaptive (tolerance %.1g), which changed the velocity by %.2g "
-          "m/s%s",
-          step, tolerance, moved,
-          solve->answer == STRUT_ORBIT_REFERENCE ? "; adaptive then ran until it was steady itself"
-                                                 : "");
-  }
-}
-
-/* Estimated error of the velocity [m/s]. */
-static double estimate_error(const strut_orbit_solve *solve, const strut_summary *orbit) {
-  double size = strut_accuracy_velocity_scale(solve->a, solve->orbit.velocity);
-  double apart = fabs(orbit->velocity - solve->orbit.velocity);
-  double method = solve->reference.tolerance / STRUT_TOLERANCE_PER_ERROR / 3.0 * size;
-  if (solve->answer >= STRUT_ORBIT_IRREGULAR) return solve->error;
-  double error = fmax(solve->error, apart) + method;
-  return solve->answer == STRUT_ORBIT_COARSE
-             ? error + fabs(solve->orbit.velocity - solve->coarse_run.velocity)
-             : error;
-}
-
-/* Sums steps, evaluations and duration of all parts of the answer. */
-static void add_costs(const strut_orbit_solve *solve, strut_summary *s) {
-  const strut_orbit_solve_cost *settled = &solve->until_steady;
-  int64_t later = solve->coarse_map.applied - settled->applied, fine = solve->reference_map.applied;
-  s->steps = solve->coarse_run.steps + settled->applied * solve->coarse_map.steps;
-  s->events = solve->coarse_run.events + settled->events;
-  s->force_evaluations = solve->coarse_run.force_evaluations + settled->evaluations;
-  s->duration = solve->coarse_run.duration + (double)settled->applied * solve->coarse_map.period;
-  if (solve->answer == STRUT_ORBIT_COARSE) return;
-  s->steps +=
-      later * solve->coarse_map.steps + fine * solve->reference_map.steps + solve->last_run.steps;
-  s->events += solve->coarse_map.events - settled->events + solve->reference_map.events +
-               solve->last_run.events;
-  s->force_evaluations += solve->coarse_map.evaluations - settled->evaluations +
-                          solve->reference_map.evaluations + solve->last_run.force_evaluations;
-  s->duration += (double)(later + fine) * solve->coarse_map.period + solve->last_run.duration;
-}
-
-static void report_orbit(strut_orbit_solve *solve, const strut_summary *orbit) {
-  strut_accuracy *a = solve->a;
-  strut_summary *s = a->summary;
-  assert(solve->answer != STRUT_ORBIT_NONE);
-  bool coarse_suffices = solve->answer == STRUT_ORBIT_COARSE;
-  bool ran_on = solve->answer > STRUT_ORBIT_CORRECTED;
-  double error = estimate_error(solve, orbit);
-  int64_t corrections = solve->coarse_map.evaluations - solve->until_steady.evaluations +
-                        solve->reference_map.evaluations;
-  *s = *orbit;
-  s->velocity = coarse_suffices ? solve->coarse_run.velocity : solve->orbit.velocity;
-  s->velocity_spread = ran_on ? solve->last_run.velocity_spread : solve->coarse_run.velocity_spread;
-  s->settle_time = solve->coarse_run.settle_time;
-  s->steady = ran_on ? solve->last_run.steady : solve->coarse_run.steady;
-  if (ran_on) s->steady.periods += solve->coarse_run.steady.periods;
-  s->steady.periods += solve->until_steady.applied;
-  s->steady.interval = error;
-  add_costs(solve, s);
-  s->step = solve->coarse_map.dt;
-  s->step_limit = solve->coarse_run.step_limit;
-  s->wall_time = solve->coarse_run.wall_time;
-  bool adaptive = solve->answer == STRUT_ORBIT_CORRECTED || solve->answer == STRUT_ORBIT_REFERENCE;
-  snprintf(s->method, sizeof s->method, "%s%s%s", strut_integrator_for(STRUT_ROLE_COARSE)->name,
-           adaptive ? "+" : "", adaptive ? strut_integrator_for(STRUT_ROLE_REFERENCE)->name : "");
-  s->accuracy = (strut_accuracy_summary){
-      .wanted = a->target,
-      .expected = error / strut_accuracy_velocity_scale(a, s->velocity),
-      .scale = a->scale,
-      .check_evaluations =
-          a->check_evaluations + orbit->force_evaluations + (coarse_suffices ? corrections : 0)};
-  s->accuracy.kept = s->accuracy.expected <= a->target || solve->answer == STRUT_ORBIT_CREEPING;
-  explain_orbit(solve, &s->accuracy);
+  return status ? status : confirm_by(solve, solve->reference, CONFIRMED, orbit, &confirmed);
 }
 
 strut_status strut_accuracy_try_orbit(strut_accuracy *a, bool *done) {
-  strut_orbit_solve solve = {.a = a};
+  strut_orbit_solve solve = {.a = a, .finer = 1.0};
   *done = false;
   bool steady_wanted = a->experiment.steady.wanted;
   if (strut_accuracy_transient_periods(a) < (steady_wanted ? LEAST : LEAST_OF_RUN)) return STRUT_OK;
@@ -525,10 +534,10 @@ strut_status strut_accuracy_try_orbit(strut_accuracy *a, bool *done) {
   if (ran && !status) status = confirm_orbit(&solve, &orbit);
   *done = !status && solve.answer;
   if (*done)
-    report_orbit(&solve, &orbit);
+    strut_orbit_solve_report(&solve, &orbit);
   else
     charge_costs(&solve, &orbit);
-  given.step = a->coarse.step;
+  given.step = solve.finer * a->coarse.step;
   a->coarse = given;
   a->allowed = a->budget;
   free_solve(&solve);

@@ -107,7 +107,7 @@ strut_status strut_orbit_solve_run_reference(strut_orbit_solve *solve, bool from
   strut_orbit_solve_copy_orbit_to_end(solve);
   /* a failed correction means a sensitive orbit, for which local errors matter more than usual */
   if (!solve->tightened && !(strut_orbit_solve_error_share(solve) <= 0.8)) {
-    solve->reference.tolerance = fmax(1e-12, solve->reference.tolerance / 25.0);
+    solve->reference.tolerance = fmax(1e-12, solve->reference.tolerance / STRUT_TIGHTENED);
     solve->tightened = true;
   }
   strut_status status = strut_orbit_solve_run_until_steady(

@@ -12,6 +12,12 @@
 /** Largest tolerance of the reference method per velocity error; measured at random points. */
 static const double STRUT_TOLERANCE_PER_ERROR = 1.0 / 1500.0;
 
+/** For a sensitive orbit the tolerance is smaller by this factor. */
+static const double STRUT_TIGHTENED = 25.0;
+
+/** Part of the wanted error of the velocity to which the fixed point of a period map is sought. */
+static const double STRUT_FIXED_POINT_PART = 0.1;
+
 /** Cost of the coarse map up to the steady motion. */
 typedef struct strut_orbit_solve_cost {
   int64_t evaluations, events, applied;
@@ -45,6 +51,8 @@ typedef struct strut_orbit_solve {
   bool tightened;         /* the reference tolerance was reduced for a sensitive orbit */
   strut_summary last_run; /* the run that gave the answer, if any */
   strut_arena arena;
+  double finer; /* how often the coarse map's step is in the first coarse one [1] */
+  double apart; /* velocity of the orbit from that of the run that confirms it [m/s] */
 } strut_orbit_solve;
 
 /** The velocity that errors are relative to [m/s]. */
@@ -105,5 +113,7 @@ strut_status strut_orbit_solve_confirm_creep(strut_orbit_solve *solve);
  * coarse method with half the step; the differences of the means are the error.
  */
 strut_status strut_orbit_solve_average_disputed(strut_orbit_solve *solve);
+/** Fills the request's summary from the answer; orbit: the run of its periods. */
+void strut_orbit_solve_report(strut_orbit_solve *solve, const strut_summary *orbit);
 
 #endif

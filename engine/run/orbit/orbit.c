@@ -14,9 +14,9 @@
 static const double DECAYED = 0.02;
 /*
  * Members of a sequence that are combined; stored; most periods of a disturbance, and those after
- * which it must have decayed; cycles of extrapolation.
+ * which it must have decayed.
  */
-enum { WINDOW = 5, KEPT = WINDOW + 1, MOST_PERIODS = 20, LOST = 12, MOST_CYCLES = 8 };
+enum { WINDOW = 5, KEPT = WINDOW + 1, MOST_PERIODS = 20, LOST = 12 };
 /*
  * The limit of a sequence from a few of its members: reduced rank extrapolation (Eddy 1979; Mesina
  * 1977; Sidi 1991). Finds the combination of successive differences, with weights of sum 1, that is
@@ -256,8 +256,8 @@ static bool grow(const strut_period_map *map, double *const *d) {
   return most > GROWN;
 }
 
-strut_status strut_orbit_limit(strut_period_map *map, double enough, double *y, double *travel,
-                               bool *found) {
+strut_status strut_orbit_limit(strut_period_map *map, double enough, int cycles, double *y,
+                               double *travel, bool *found) {
   size_t both = 2 * (size_t)map->model->length + 1, bytes = both * sizeof(double);
   strut_arena arena = {0};
   window w = {.best = NULL};
@@ -268,16 +268,16 @@ strut_status strut_orbit_limit(strut_period_map *map, double enough, double *y, 
   }
   double before = HUGE_VAL; /* the last difference before extrapolation */
   bool jumped = false;
-  for (int cycle = 0; cycle < MOST_CYCLES && !*found; cycle++) {
+  for (int cycle = 0; cycle < cycles && !*found; cycle++) {
     memcpy(w.y[0], y, bytes);
     for (int k = 0; k < WINDOW; k++) {
       memcpy(w.y[k + 1], w.y[k], bytes);
       w.travel[k] = strut_period_map_apply(map, w.y[k + 1]);
       strut_period_map_subtract(map, w.y[k], w.y[k + 1], w.d[k]);
       w.size[k] = strut_period_map_size(map, w.d[k]);
-      if (!isfinite(w.travel[k])) cycle = MOST_CYCLES;
+      if (!isfinite(w.travel[k])) cycle = cycles;
     }
-    if (cycle == MOST_CYCLES) break;
+    if (cycle == cycles) break;
     if (jumped && w.size[WINDOW - 1] > before)
       break; /* extrapolation led away: the motion is not steady */
     if (grow(map, w.d)) break;

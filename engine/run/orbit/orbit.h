@@ -34,10 +34,10 @@ strut_status strut_orbit_correct(strut_period_map *coarse, strut_period_map *ref
 
 /**
  * Extrapolates the sequence of applications of the map from y (2 length + 1) to its fixed point.
- * enough: acceptable error of the travel per application [m]. *found: y is the fixed point and
+ * enough: acceptable error of the travel per application [m]; cycles: most extrapolations. *found: y is the fixed point and
  * *travel its travel [m]; false, too, where the applications lead away from it. STRUT_OK or STRUT_NO_MEMORY.
  */
-strut_status strut_orbit_limit(strut_period_map *map, double enough, double *y, double *travel,
-                               bool *found);
+strut_status strut_orbit_limit(strut_period_map *map, double enough, int cycles, double *y,
+                               double *travel, bool *found);
 
 #endif
