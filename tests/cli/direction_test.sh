@@ -62,9 +62,11 @@ for forward in 0 0.1 0.6; do
     fail "forward $forward: $one alone, $many in the study"
 done
 
-# With equal coefficients both ways it stays: a cycle leads back.
-worm "$work/worm.yaml" adaptive "step: 20 ms, tolerance: 1e-6" "law: coulomb"
-expect 0 run "$work/worm.yaml" --set forward=0.6 --json
+# With equal coefficients both ways it stays: a cycle leads back. The lighter mass slides both ways; which of two equal
+# ones does is left to rounding, in each half of a cycle anew.
+worm "$work/even.yaml" adaptive "step: 20 ms, tolerance: 1e-6" "law: coulomb"
+sed -i 's/\[1 m, 0\], mass: 1 kg/[1 m, 0], mass: 1.1 kg/' "$work/even.yaml"
+expect 0 run "$work/even.yaml" --set forward=0.6 --json
 jq -e '(.velocity | fabs) < 1e-6' "$work/out" >"$work/value" || fail "it advances on even friction"
 
 # What it needs and does not have.

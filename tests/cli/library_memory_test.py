@@ -3,7 +3,7 @@
 """The n-th allocation of the whole program fails, those of libraries included: an error, or none, but
 never a signal; and so it is under limits of memory (ulimit -v) that grow in small steps.
 
-Left out are allocations that HDF5, GLib, Pango and Fontconfig make themselves, and with HDF5 the C
+Left out are allocations that HDF5, GLib, Pango, Fontconfig and libgfortran make themselves, and with HDF5 the C
 library's, which it calls: these end the process from inside, whatever their caller does. docs/testing.md
 says what guards against that.
 
@@ -25,7 +25,7 @@ STRUT, PRELOAD, COUNT = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2
 HERE = os.path.dirname(os.path.abspath(__file__))
 MODELS = os.path.abspath("models")
 HOPPER, PENTAGON = f"{HERE}/hopper.yaml", f"{HERE}/pentagon.yaml"
-ABORTING = "libglib:libpango:libfontconfig"
+ABORTING = "libglib:libpango:libfontconfig:libgfortran"
 WITH_HDF5 = ABORTING + ":libhdf5:libc.so"
 COMMANDS = {  # name: (words, folders and files to remove before, libraries that are spared)
     "run": (["run", HOPPER, "--set", "seconds=0.1", "-o", "out", "--quiet"], WITH_HDF5),

@@ -131,7 +131,11 @@ write("gait.yaml", GAIT.replace("SEED", "1"))
 for how in (signal.SIGKILL, signal.SIGINT):
     process = subprocess.Popen([strut, "sweep", "gait.yaml", "-o", "killed", "--quiet"], cwd=work,
                                stderr=subprocess.PIPE)
-    time.sleep(0.4)
+    for _ in range(1000):
+        if os.path.exists(path("killed", "points.slots")):
+            break
+        time.sleep(0.01)
+    time.sleep(0.05)
     process.send_signal(how)
     process.communicate()
 check(os.path.exists(path("killed", "points.slots")) and

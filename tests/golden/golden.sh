@@ -16,7 +16,8 @@ cd "$root"
 # What the run executes, and no more: the mechanics are compiled for each level, the
 # description and its reader once for each compiler.
 engine="tests/golden/golden.c engine/run/settle.c engine/integrate/rk4.c
-  $(ls engine/integrate/small_*.c)
+  $(ls engine/integrate/small_*.c engine/integrate/events/small_*.c engine/integrate/events/contact_coupling.c)
+  $(ls engine/integrate/events/local_*.c)
   engine/integrate/events/verlet_events.c engine/integrate/events/event_stepping.c
   engine/integrate/events/event_log.c engine/integrate/events/event_location.c
   engine/integrate/events/contact_modes.c

@@ -8,6 +8,7 @@
  * compiler, its options and one set of registers; elsewhere there is nothing to compare with.
  */
 #include "tests/support/instructions.h"
+#include "engine/integrate/lanes/batch.h"
 #include "engine/model/small_model.h"
 #include "tests/support/check.h"
 #include "tests/support/motion.h"
@@ -34,12 +35,18 @@ static const budget budgets[] = {
     {"euler-events", true, 18426, STRUT_SMALL_NONE},
     {"adaptive", true, 94476, STRUT_SMALL_NONE},
     /* by the kernel of small models, which is younger */
-    {"rk4", true, 17024, STRUT_SMALL_AVX512},
-    {"rk4", false, 12531, STRUT_SMALL_AVX512},
-    {"verlet", true, 5621, STRUT_SMALL_AVX512},
-    {"rk4", true, 35943, STRUT_SMALL_AVX2},
-    {"rk4", false, 29617, STRUT_SMALL_AVX2},
-    {"verlet", true, 10534, STRUT_SMALL_AVX2},
+    {"rk4", true, 15292, STRUT_SMALL_AVX512},
+    {"rk4", false, 12067, STRUT_SMALL_AVX512},
+    {"verlet", true, 5393, STRUT_SMALL_AVX512},
+    {"rk4", true, 29956, STRUT_SMALL_AVX2},
+    {"rk4", false, 25481, STRUT_SMALL_AVX2},
+    {"verlet", true, 9145, STRUT_SMALL_AVX2},
+    {"verlet-events", true, 6308, STRUT_SMALL_AVX512},
+    {"rk4-events", true, 18035, STRUT_SMALL_AVX512},
+    {"adaptive", true, 35235, STRUT_SMALL_AVX512},
+    {"verlet-events", true, 11121, STRUT_SMALL_AVX2},
+    {"rk4-events", true, 34034, STRUT_SMALL_AVX2},
+    {"adaptive", true, 63416, STRUT_SMALL_AVX2},
 };
 enum { BUDGETS = sizeof budgets / sizeof budgets[0] };
 
@@ -107,9 +114,85 @@ static void test_what_the_crawler_does_not_use_costs_it_nothing(void **unused) {
   assert_int_equal(over, 0);
 }
 
+/* ---- eight crawlers side by side ---- */
+
+typedef struct lanes_budget {
+  const char *method;
+  bool ledger, halves; /* in registers of AVX2 */
+  long instructions;   /* of STEPS steps of all lanes */
+} lanes_budget;
+
+static const lanes_budget lanes_budgets[] = {{"rk4", true, false, 59644},
+                                             {"rk4", false, false, 47790},
+                                             {"verlet-events", true, false, 61836}};
+enum { LANES_BUDGETS = sizeof lanes_budgets / sizeof lanes_budgets[0] };
+
+typedef struct side_by_side {
+  motion lane[STRUT_MOST_LANES];
+  strut_batch *batch;
+} side_by_side;
+
+static void step_lanes(side_by_side *all, int64_t steps) {
+  int64_t left[STRUT_MOST_LANES];
+  for (int64_t end = all->lane[0].state->step + steps; all->lane[0].state->step < end;) {
+    for (int i = 0; i < STRUT_MOST_LANES; i++) left[i] = end - all->lane[0].state->step;
+    strut_batch_advance(all->batch, left);
+    strut_batch_count(all->batch, 0, all->lane[0].state);
+  }
+}
+static void some_lane_steps(void *context) { step_lanes(context, STEPS); }
+
+static long count_of_lanes(const lanes_budget *b) {
+  side_by_side all;
+  strut_setup setup = {.experiment = strut_experiment_default()};
+  setup.experiment.step = STEP;
+  strut_scene_init(&setup.scene);
+  structure_crawler(&setup.scene, 10, 1e-4, 0.1, false);
+  for (int i = 0; i < STRUT_MOST_LANES; i++) {
+    motion_begin_by(&all.lane[i], &setup, b->method, STEP);
+    all.lane[i].state->ledger = b->ledger;
+    if (i == 0)
+      all.batch =
+          strut_batch_create(all.lane[0].model, all.lane[0].method, STRUT_MOST_LANES, b->ledger);
+    assert_non_null(all.batch);
+    strut_batch_fill(all.batch, i, all.lane[i].model, STEP);
+    strut_batch_put(all.batch, i, all.lane[i].state, all.lane[i].workspace);
+  }
+  if (b->halves) strut_batch_halve(all.batch);
+  step_lanes(&all, BEFORE);
+  long count = count_instructions(some_lane_steps, &all);
+  strut_batch_free(all.batch);
+  for (int i = 0; i < STRUT_MOST_LANES; i++) motion_end(&all.lane[i]);
+  strut_scene_free(&setup.scene);
+  return count;
+}
+
+/* Their budgets are of the day when they were first counted. */
+static void test_nor_does_it_cost_lanes(void **unused) {
+  (void)unused;
+  int over = 0;
+  if (!numbers_hold_here() || !__builtin_cpu_supports("avx512dq") ||
+      !__builtin_cpu_supports("avx512vl")) {
+    print_message("the numbers are of another compiler, build or processor\n");
+    skip();
+  }
+  for (int i = 0; i < LANES_BUDGETS; i++) {
+    const lanes_budget *b = &lanes_budgets[i];
+    long count = count_of_lanes(b);
+    if (count < 0) skip();
+    bool good = (double)count <= MORE * (double)b->instructions;
+    print_message("%s: {\"%s\", %s, %s, %ld}, budget %ld\n", good ? "ok" : "over", b->method,
+                  b->ledger ? "true" : "false", b->halves ? "true" : "false", count,
+                  b->instructions);
+    over += !good;
+  }
+  assert_int_equal(over, 0);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_what_the_crawler_does_not_use_costs_it_nothing),
+      cmocka_unit_test(test_nor_does_it_cost_lanes),
   };
   return cmocka_run_group_tests_name("instructions", tests, NULL, NULL);
 }

@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sensitivity indices of made-up results: closed forms, missing ones, and results that hardly vary. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "engine/study/sensitivity/indices.h"
+
+enum { SAMPLES = 4096, FEW = 24 };
+
+static double uniform(uint64_t *seed) {
+  *seed = *seed * 6364136223846793005u + 1442695040888963407u;
+  return ldexp((double)(*seed >> 11), -53);
+}
+
+/* f = 2 x + y on the unit square: variances 4/12 and 1/12. */
+static void linear(void **state) {
+  static double row[SAMPLES][4];
+  strut_estimate first[2], total[2];
+  uint64_t seed = 7;
+  size_t used;
+  (void)state;
+  for (size_t j = 0; j < SAMPLES; j++) {
+    double a[2] = {uniform(&seed), uniform(&seed)}, b[2] = {uniform(&seed), uniform(&seed)};
+    row[j][0] = 2 * a[0] + a[1];
+    row[j][1] = 2 * b[0] + a[1];
+    row[j][2] = 2 * a[0] + b[1];
+    row[j][3] = 2 * b[0] + b[1];
+  }
+  assert_int_equal(strut_sensitivity_indices(row[0], SAMPLES, 2, 1, first, total, &used), STRUT_OK);
+  assert_int_equal(used, SAMPLES);
+  for (int k = 0; k < 2; k++) {
+    double exact = k ? 0.2 : 0.8;
+    assert_true(fabs(first[k].value - exact) < 4 * first[k].error);
+    assert_true(fabs(total[k].value - exact) < 4 * total[k].error);
+    assert_true(first[k].error < 0.03 && total[k].error < 0.03);
+    assert_true(first[k].low < first[k].value && first[k].value < first[k].high);
+  }
+}
+
+/*
+ * All base samples but one have the same result at A and B: about a third of the resamples are without that one,
+ * and have no variance but the rounding of the mean. They give no indices.
+ */
+static void one_differs(void **state) {
+  (void)state;
+  for (size_t n = 5; n <= FEW; n++) {
+    double row[FEW][4];
+    strut_estimate first[2], total[2];
+    size_t used;
+    for (size_t j = 0; j < n; j++)
+      for (size_t k = 0; k < 4; k++) row[j][k] = k == 1 ? 0.1 + 0.01 * (double)(j % 3) : 0.1;
+    row[3][0] = row[3][2] = 0.3;
+    assert_int_equal(strut_sensitivity_indices(row[0], n, 2, 1, first, total, &used), STRUT_OK);
+    assert_int_equal(used, n);
+    for (int k = 0; k < 2; k++) {
+      assert_true(fabs(first[k].low) < 10 && fabs(first[k].high) < 10);
+      assert_true(total[k].low >= 0 && total[k].high < 10);
+    }
+  }
+}
+
+static void missing_and_constant(void **state) {
+  double row[FEW][3];
+  strut_estimate first, total;
+  size_t used;
+  (void)state;
+  for (size_t j = 0; j < FEW; j++)
+    for (size_t k = 0; k < 3; k++) row[j][k] = 0.7;
+  assert_int_equal(strut_sensitivity_indices(row[0], FEW, 1, 1, &first, &total, &used), STRUT_OK);
+  assert_int_equal(used, FEW);
+  assert_true(isnan(first.value) && isnan(total.value));
+  for (size_t j = 0; j < FEW; j++) row[j][1] = (double)j;
+  row[3][2] = (double)NAN;
+  row[9][0] = (double)INFINITY;
+  assert_int_equal(strut_sensitivity_indices(row[0], FEW, 1, 1, &first, &total, &used), STRUT_OK);
+  assert_int_equal(used, FEW - 2);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(linear), cmocka_unit_test(one_differs),
+                                     cmocka_unit_test(missing_and_constant)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
