@@ -18,7 +18,7 @@ static const double frequency = 10.0, amplitude = 1e-4, friction = 0.1, step = 1
 
 double bench_seconds(void) {
   struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 

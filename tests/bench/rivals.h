@@ -25,7 +25,7 @@ typedef struct rival {
 /** The i-th, or NULL after the last. The first is strut itself. */
 const rival *rival_at(size_t i);
 
-/** Monotonic time [s]. */
+/** CPU time of this thread [s]. */
 double bench_seconds(void);
 
 #endif

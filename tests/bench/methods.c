@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "tests/bench/methods.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+#include "engine/integrate/integrator.h"
+#include "engine/model/small_model.h"
+#include "tests/bench/scenes.h"
+
+enum { STEPS = 4000, KERNELS = 3, LEDGERS = 2 };
+
+typedef struct method_row {
+  const char *method;
+  double step; /* of the grid [s] */
+} method_row;
+
+static const method_row rows[] = {
+    {"rk4", 5e-5},      {"verlet", 5e-5}, {"verlet-events", 5e-5}, {"rk4-events", 1e-4},
+    {"adaptive", 1e-3}, {"euler", 5e-5},  {"euler-events", 5e-5}};
+enum { ROWS = sizeof rows / sizeof rows[0] };
+static const strut_small_level levels[KERNELS] = {STRUT_SMALL_AVX512, STRUT_SMALL_AVX2,
+                                                  STRUT_SMALL_NONE};
+
+static double now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* ns of a force evaluation; NAN where the processor has no such kernel. */
+static double run(const method_row *row, strut_small_level level, bool ledger) {
+  strut_setup setup = {0};
+  strut_model *model = NULL;
+  strut_state *state = NULL;
+  double time = (double)NAN;
+  strut_experiment experiment = strut_experiment_default();
+  experiment.integrator = row->method;
+  experiment.step = row->step;
+  const strut_integrator_settings settings = strut_integrator_settings_of(&experiment);
+  const strut_integrator *method = strut_integrator_find(row->method);
+  void *work = NULL;
+  if (bench_crawler_scene(&setup, 10.0, 1e-4, 0.1) == STRUT_OK &&
+      strut_model_compile(&setup.scene, &model, NULL) == STRUT_OK &&
+      strut_state_create(model, &state, NULL) == STRUT_OK)
+    work = method->create(model, state, &settings);
+  bool here =
+      model && (level == STRUT_SMALL_NONE || (model->small && model->small->level >= level));
+  if (work && here) {
+    if (model->small) model->small->level = level;
+    state->ledger = ledger;
+    if (method->restart) method->restart(model, state, work, row->step);
+    int64_t steps = (int64_t)(STEPS * 5e-5 / row->step);
+    double begin = now();
+    method->advance(model, state, work, row->step, steps);
+    time = 1e9 * (now() - begin) / (double)state->evaluations;
+  }
+  strut_state_free(state);
+  strut_model_free(model);
+  strut_setup_free(&setup);
+  return time;
+}
+
+static bool is_wanted(const method_row *row, const char *only) {
+  return !only || strcmp(row->method, only) == 0 || strcmp(row->method, "rk4") == 0;
+}
+
+void bench_methods(int repeats, const char *only) {
+  static double best[ROWS][KERNELS][LEDGERS];
+  for (int r = 0; r < repeats; r++)
+    for (int i = 0; i < ROWS; i++)
+      for (int k = 0; k < KERNELS && is_wanted(&rows[i], only); k++)
+        for (int b = 0; b < LEDGERS; b++) {
+          double time = run(&rows[i], levels[k], b == 1);
+          best[i][k][b] = r ? fmin(best[i][k][b], time) : time;
+        }
+  printf(
+      "crawler, 10 Hz, friction 0.1: ns of a force evaluation, and times rk4; without the ledger, "
+      "and with it\n"
+      "  %-16s %26s %26s %26s\n",
+      "method", "AVX-512", "AVX2", "general kernel");
+  for (int i = 0; i < ROWS; i++) {
+    if (!is_wanted(&rows[i], only)) continue;
+    printf("  %-16s", rows[i].method);
+    for (int k = 0; k < KERNELS; k++) {
+      const double *time = best[i][k], *rk4 = best[0][k];
+      printf("   %5.1f %4.2f  %5.1f %4.2f", time[0], time[0] / rk4[0], time[1], time[1] / rk4[1]);
+    }
+    printf("\n");
+  }
+}

@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/** What a force evaluation costs by each method. */
+#ifndef STRUT_TESTS_BENCH_METHODS_H
+#define STRUT_TESTS_BENCH_METHODS_H
+
+/** Prints a row for each method: processor time of an evaluation in the crawler, and how many times that of
+    `rk4`, by the kernel of small models and by the general one; the best of `repeats`. only: of this method;
+    NULL: of all. */
+void bench_methods(int repeats, const char *only);
+
+#endif
