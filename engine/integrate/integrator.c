@@ -9,6 +9,7 @@
 #include "engine/forces/feedback.h"
 #include "engine/forces/relay.h"
 #include "engine/forces/rigid.h"
+#include "engine/model/linear_solver.h"
 
 /* The rows, each defined in its method's own file. */
 #define STRUT_INTEGRATOR_ROW(row, word) extern const strut_integrator strut_integrator_##row;
@@ -34,7 +35,7 @@ const strut_integrator *strut_integrator_for(strut_integrator_role role) {
   assert(role != STRUT_ROLE_NONE);
   for (size_t i = 0; i < COUNT; i++)
     if (table[i]->role == role) return table[i];
-  assert(!"every role has a method");
+  assert(false && "every role has a method");
   return NULL;
 }
 
@@ -79,6 +80,10 @@ strut_status strut_integrator_check(const strut_model *model, const strut_experi
                       "%s has no varying mass matrix, and slider '%s' moves; use solver.integrator "
                       "rk4, verlet or adaptive",
                       name, scene->sliding_masses[model->sliding.moving[0]].name);
+  if (method->solves) {
+    strut_status status = strut_linear_solver_load(error);
+    if (status) return status;
+  }
   if (!(model->plan & STRUT_TERM_RIGID)) return STRUT_OK;
   if (model->plan & STRUT_TERM_SURFACES)
     return strut_fail(

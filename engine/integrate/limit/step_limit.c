@@ -9,6 +9,7 @@
 #include "engine/integrate/limit/tangent_bound.h"
 #include "engine/integrate/limit/tangent_limits.h"
 #include "engine/model/memory_estimate.h"
+#include "engine/model/renumber.h"
 
 /*
  * Many coordinates: a space that grows by what the binding motions leave of K x and D x, Davidson's
@@ -227,6 +228,23 @@ static bool ground_damps(const strut_model *model) {
   return damped;
 }
 
+/* The limits at the start. A structure that is scattered in memory and too large for more than a bound is stored in
+   another order first: every pass over its matrices would wait for memory. */
+static strut_status limits_at_start(const strut_model *model, strut_closed closed, bool rk4,
+                                    strut_arena *arena, strut_step_limit *limit) {
+  strut_renumbering *r = NULL;
+  const strut_model *stored = model;
+  *limit = (strut_step_limit){.limit = HUGE_VAL};
+  if (2 * model->node_count > TOO_LARGE && strut_model_is_scattered(model)) {
+    if (strut_renumbering_create(model, true, &r, NULL)) return STRUT_NO_MEMORY;
+    stored = r->model;
+  }
+  strut_status status =
+      limits(stored, stored->start, stored->members.rest, closed, rk4, arena, limit);
+  strut_renumbering_free(r);
+  return status;
+}
+
 strut_status strut_step_limit_with_bound(const strut_model *model, const strut_integrator *method,
                                          double *limit, bool *bound, strut_error *error) {
   strut_arena arena = {0};
@@ -235,9 +253,9 @@ strut_status strut_step_limit_with_bound(const strut_model *model, const strut_i
   *bound = false;
   if (strut_region_at(method->region)->sets == 0) return STRUT_OK;
   bool undamped = method->implicit_damper && ground_damps(model);
-  strut_status status = limits(model, model->start, model->members.rest,
-                               undamped ? STRUT_CLOSED_UNDAMPED : STRUT_CLOSED_ALL,
-                               strut_region_at(method->region)->by_eigenvalue, &arena, &found);
+  strut_status status =
+      limits_at_start(model, undamped ? STRUT_CLOSED_UNDAMPED : STRUT_CLOSED_ALL,
+                      strut_region_at(method->region)->by_eigenvalue, &arena, &found);
   *limit = found.of[method->region];
   *bound = found.bound;
   strut_arena_free(&arena);
@@ -254,12 +272,11 @@ strut_status strut_step_limit_estimate(const strut_model *model, strut_step_limi
                                        strut_error *error) {
   strut_arena arena = {0};
   strut_step_limit implicit;
-  const double *q = model->start, *rest = model->members.rest;
-  strut_status status = limits(model, q, rest, STRUT_CLOSED_ALL, true, &arena, limit);
+  strut_status status = limits_at_start(model, STRUT_CLOSED_ALL, true, &arena, limit);
   implicit = *limit;
   strut_arena_free(&arena);
   if (!status && ground_damps(model))
-    status = limits(model, q, rest, STRUT_CLOSED_UNDAMPED, false, &arena, &implicit);
+    status = limits_at_start(model, STRUT_CLOSED_UNDAMPED, false, &arena, &implicit);
   for (int region = 0; region < STRUT_REGIONS; region++)
     limit->of_implicit[region] = implicit.of[region];
   limit->bound = limit->bound || implicit.bound;

@@ -47,7 +47,7 @@ strut_colour strut_palette_at(strut_colours colours, double value, double low, d
     case STRUT_COLOURS_SIGNED: return strut_palette_signed(value / limit);
     case STRUT_COLOURS_AUTO: break;
   }
-  assert(!"a map decides what AUTO means");
+  assert(false && "a map decides what AUTO means");
   return strut_grey(0.5);
 }
 

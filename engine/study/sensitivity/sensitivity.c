@@ -185,7 +185,7 @@ static bool add_derivatives(analysis *a, int64_t first, const target *t) {
     int64_t at = strut_sensitivity_moved(k, 0);
     const double *x = column->number, moved[] = {f[at], f[at + 1], f[at + 2], f[at + 3]};
     size_t used = 0;
-    for (int i = 0; i < 4; i++) used += isfinite(moved[i]);
+    for (int i = 0; i < 4; i++) used += isfinite(moved[i]) ? 1 : 0;
     strut_estimate d = strut_sensitivity_derivative(moved, x[at] - x[at + 1], x[at + 2] - x[at + 3],
                                                     a->s->accuracy * fabs(f[0]));
     strut_sensitivity_row row = {
@@ -211,7 +211,7 @@ static bool add_statistics(analysis *a, int64_t first, const target *t) {
     a->design[n++] = a->values[at + (int64_t)count + 1];
   }
   size_t used = 0;
-  for (size_t i = 0; i < n; i++) used += isfinite(a->design[i]);
+  for (size_t i = 0; i < n; i++) used += isfinite(a->design[i]) ? 1 : 0;
   strut_sensitivity_row row = {.point = first, .of = t->name, .unit = "1", .used = used};
   if (is_condition(t)) {
     row.measure = STRUT_SENSITIVITY_SHARE;

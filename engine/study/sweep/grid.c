@@ -60,7 +60,7 @@ double strut_grid_value(const strut_study_column *column, int64_t i, int64_t cou
     sum = from + (to - from) * (double)i / last;
     return strut_grid_rounded(sum, fmax(fabs(from), fabs(sum)));
   }
-  long double first = from, part = (long double)i / (long double)last;
+  long double first = (long double)from, part = (long double)i / (long double)last;
   long double ratio = powl((long double)to / first, part);
   double value = (double)(first * ratio);
   return strut_grid_rounded(value, fabs(value));
