@@ -44,7 +44,7 @@ STRUT_INLINE member_values members_values(const strut_member_table *t, const str
       .length = length,
       .rate = rate,
       .rest = strut_lanes_load((driven ? state->rest : t->rest) + j),
-      .rest_rate = strut_lanes_load(state->rest_rate + j),
+      .rest_rate = driven ? strut_lanes_load(state->rest_rate + j) : (strut_lanes){0},
       .stiffness = strut_lanes_load(t->stiffness + j),
       .damping = strut_lanes_load(t->damping + j),
       .slack_length_threshold = strut_lanes_load(state->slack_length_threshold + j),
