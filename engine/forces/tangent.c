@@ -197,6 +197,51 @@ static void add_maxwell(assembly *a, const double *rest) {
   }
 }
 
+/*
+ * Contributions that are in memory at once: they take three times as much as the matrix that they add up to.
+ * More are visited again for each stretch of columns.
+ */
+enum { MOST_AT_ONCE = 1 << 20 };
+
+/* Collects the contributions to the columns [first, end). */
+static void collect_columns(assembly *a, const double *rest, strut_closed closed, int32_t first,
+                            int32_t end) {
+  a->stiffness.count = a->damping.count = 0;
+  a->stiffness.first = a->damping.first = first;
+  a->stiffness.end = a->damping.end = end;
+  strut_tangent_visit(a->model, a->q, rest, -HUGE_VAL, closed, a, add_member, add_element,
+                      add_contact);
+  if (a->stiffest) add_maxwell(a, rest);
+  strut_mass_damping_add(a->model, a->row_of, &a->damping);
+}
+
+/* Builds both matrices a stretch of columns at a time. */
+static bool build_by_stretches(assembly *a, const double *rest, strut_closed closed,
+                               strut_arena *arena, strut_tangent *tangent) {
+  a->stiffness.counting = a->damping.counting = true;
+  collect_columns(a, rest, closed, 0, tangent->n);
+  a->stiffness.counting = a->damping.counting = false;
+  int32_t n = tangent->n, stretches = (int32_t)(a->stiffness.count / MOST_AT_ONCE) + 1;
+  int32_t columns = n / stretches + 1;
+  tangent->stiffness = strut_sparse_begin(n, a->stiffness.count, arena);
+  tangent->damping = strut_sparse_begin(n, a->damping.count, arena);
+  if (!tangent->stiffness || !tangent->damping) return false;
+  for (int32_t first = 0; first < n; first += columns) {
+    collect_columns(a, rest, closed, first, n - first < columns ? n : first + columns);
+    strut_sparse_append(tangent->stiffness, &a->stiffness);
+    strut_sparse_append(tangent->damping, &a->damping);
+  }
+  return true;
+}
+
+static bool build_at_once(assembly *a, const double *rest, strut_closed closed, strut_arena *arena,
+                          strut_tangent *tangent) {
+  collect_columns(a, rest, closed, 0, tangent->n);
+  tangent->stiffness = strut_sparse_build(tangent->n, &a->stiffness, arena);
+  tangent->damping = strut_sparse_build(tangent->n, &a->damping, arena);
+  return tangent->stiffness && tangent->damping;
+}
+
 strut_status strut_tangent_assemble(const strut_model *model, const double *q, const double *rest,
                                     strut_closed closed, strut_arena *arena,
                                     strut_tangent *tangent) {
@@ -216,13 +261,9 @@ strut_status strut_tangent_assemble(const strut_model *model, const double *q, c
   if (row_of && tangent->coordinate && strut_triplets_reserve(&a.stiffness, most, &scratch) &&
       strut_triplets_reserve(&a.damping, most, &scratch)) {
     tangent->n = strut_number_free(model, NULL, row_of, tangent->coordinate);
-    strut_tangent_visit(model, q, rest, -HUGE_VAL, closed, &a, add_member, add_element,
-                        add_contact);
-    if (a.stiffest) add_maxwell(&a, rest);
-    strut_mass_damping_add(model, row_of, &a.damping);
-    tangent->stiffness = strut_sparse_build(tangent->n, &a.stiffness, arena);
-    tangent->damping = strut_sparse_build(tangent->n, &a.damping, arena);
-    if (tangent->stiffness && tangent->damping) status = STRUT_OK;
+    if (most > MOST_AT_ONCE ? build_by_stretches(&a, rest, closed, arena, tangent)
+                            : build_at_once(&a, rest, closed, arena, tangent))
+      status = STRUT_OK;
   }
   strut_arena_free(&scratch);
   return status;

@@ -13,9 +13,15 @@ bool strut_triplets_reserve(strut_triplets *triplets, size_t capacity, strut_are
 }
 
 void strut_triplets_add(strut_triplets *triplets, int32_t row, int32_t column, double value) {
+  int32_t low = row > column ? column : row;
+  if (triplets->end && (low < triplets->first || low >= triplets->end)) return;
+  if (triplets->counting) {
+    triplets->count++;
+    return;
+  }
   assert(triplets->count < triplets->capacity);
   triplets->row[triplets->count] = row > column ? row : column;
-  triplets->column[triplets->count] = row > column ? column : row;
+  triplets->column[triplets->count] = low;
   triplets->value[triplets->count++] = value;
 }
 
@@ -37,9 +43,10 @@ static int32_t tidy_column(int32_t *row, double *value, int32_t length) {
   return last + 1;
 }
 
-static void tidy(strut_sparse *m) {
-  int32_t at = 0;
-  for (int32_t j = 0, begin = 0; j < m->n; j++) {
+/* Tidies the columns [first, last), whose entries follow those before. */
+static void tidy(strut_sparse *m, int32_t first, int32_t last) {
+  int32_t at = m->start[first];
+  for (int32_t j = first, begin = at; j < last; j++) {
     int32_t end = m->start[j + 1];
     int32_t length = tidy_column(m->row + begin, m->value + begin, end - begin);
     memmove(m->row + at, m->row + begin, (size_t)length * sizeof *m->row);
@@ -50,25 +57,58 @@ static void tidy(strut_sparse *m) {
   }
 }
 
-strut_sparse *strut_sparse_build(int32_t n, const strut_triplets *triplets, strut_arena *arena) {
-  size_t count = triplets->count + (size_t)n;
+/* Fills the columns [first, end); `start` is set up to `first`, and zero behind. */
+static void fill_columns(strut_sparse *m, int32_t first, int32_t end,
+                         const strut_triplets *triplets) {
+  int32_t *next = m->start + 1; /* shifted by one while filling: becomes start at the end */
+  next[first] = m->start[first];
+  for (size_t k = 0; k < triplets->count; k++) next[triplets->column[k] + 1]++;
+  for (int32_t j = first; j < end; j++) next[j + 1] += next[j] + 1;
+  for (int32_t j = first; j < end; j++) {
+    m->value[next[j]] = 0.0;
+    m->row[next[j]++] = j;
+  }
+  for (size_t k = 0; k < triplets->count; k++) {
+    int32_t at = next[triplets->column[k]]++;
+    m->row[at] = triplets->row[k];
+    m->value[at] = triplets->value[k];
+  }
+  tidy(m, first, end);
+}
+
+strut_sparse *strut_sparse_begin(int32_t n, size_t capacity, strut_arena *arena) {
+  size_t count = capacity + (size_t)n;
   strut_sparse *m = strut_arena_allocate(arena, 1, sizeof *m);
   if (!m) return NULL;
   m->n = n;
   m->start = strut_arena_allocate(arena, (size_t)n + 2, sizeof *m->start);
   m->row = strut_arena_allocate(arena, count, sizeof *m->row);
   m->value = strut_arena_allocate(arena, count, sizeof *m->value);
+  return m->start && m->row && m->value ? m : NULL;
+}
+
+void strut_sparse_append(strut_sparse *matrix, const strut_triplets *triplets) {
+  fill_columns(matrix, triplets->first, triplets->end, triplets);
+}
+
+strut_sparse *strut_sparse_build(int32_t n, const strut_triplets *triplets, strut_arena *arena) {
+  strut_sparse *m = strut_sparse_begin(n, triplets->count, arena);
+  if (m) fill_columns(m, 0, n, triplets);
+  return m;
+}
+
+strut_sparse *strut_sparse_copy(const strut_sparse *matrix, strut_arena *arena) {
+  size_t n = (size_t)matrix->n, entries = (size_t)matrix->start[n];
+  strut_sparse *m = strut_arena_allocate(arena, 1, sizeof *m);
+  if (!m) return NULL;
+  m->n = matrix->n;
+  m->start = strut_arena_allocate(arena, n + 1, sizeof *m->start);
+  m->row = strut_arena_allocate(arena, entries, sizeof *m->row);
+  m->value = strut_arena_allocate(arena, entries, sizeof *m->value);
   if (!m->start || !m->row || !m->value) return NULL;
-  int32_t *next = m->start + 1; /* shifted by one while filling: becomes start at the end */
-  for (size_t k = 0; k < triplets->count; k++) next[triplets->column[k] + 1]++;
-  for (int32_t j = 0; j < n; j++) next[j + 1] += next[j] + 1;
-  for (int32_t j = 0; j < n; j++) m->row[next[j]++] = j;
-  for (size_t k = 0; k < triplets->count; k++) {
-    int32_t at = next[triplets->column[k]]++;
-    m->row[at] = triplets->row[k];
-    m->value[at] = triplets->value[k];
-  }
-  tidy(m);
+  memcpy(m->start, matrix->start, (n + 1) * sizeof *m->start);
+  memcpy(m->row, matrix->row, entries * sizeof *m->row);
+  memcpy(m->value, matrix->value, entries * sizeof *m->value);
   return m;
 }
 

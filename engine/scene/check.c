@@ -94,6 +94,9 @@ void strut_check_names(strut_checker *checker) {
   strut_name_map nodes = {0}, members = {0}, actuators = {0}, loads = {0}, signals = {0},
                  configurations = {0}, hinges = {0}, cells = {0}, collisions = {0},
                  unbalances = {0}, sensors = {0}, states = {0}, sliders = {0};
+  if (!strut_name_map_reserve(&nodes, s->node_count) ||
+      !strut_name_map_reserve(&members, s->member_count))
+    checker->out_of_memory = true;
   for (size_t i = 0; i < s->node_count; i++)
     check_name(checker, &nodes, STRUT_ON_NODE, "node", s->nodes[i].name, i);
   for (size_t i = 0; i < s->member_count; i++)

@@ -163,7 +163,7 @@ static bool fill_item(const strut_diagnostics *found, const strut_document *docu
 }
 
 static strut_document reread(const strut_diagnostics *found) {
-  strut_document document = {{0}, NULL};
+  strut_document document = {.root = NULL};
   strut_diagnostics unused = {0};
   if (!found->text) return document;
   strut_diagnostics_source(&unused, found->file, found->text, found->length);

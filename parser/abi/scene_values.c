@@ -214,7 +214,7 @@ char *strutlib_scene_yaml(const strutlib_scene *scene, int parts, strutlib_error
 /* The tree of the scene as it stands, a start equilibrium unresolved; NULL: memory is out. */
 static abi_tree *make_tree(const strutlib_scene *scene) {
   strut_diagnostics unused = {0};
-  strut_document document = {{0}, NULL};
+  strut_document document = {.root = NULL};
   char *text = strut_setup_write(&scene->setup);
   abi_tree *tree = NULL;
   if (text) {

@@ -132,7 +132,7 @@ void strut_join_entries(strut_expansion *e, int key) {
   strut_tree *first = NULL;
   if (slot->state == STRUT_GIVEN)
     first = strut_lay_over_copies(reader, slot->value, &list->first, &list->count, &count, key);
-  map->count = (count + (uint32_t)list->count) & 0xFFFFFFFu;
+  map->count = (count + (uint32_t)list->count) & STRUT_TREE_COUNT_MASK;
   map->first = first ? first : list->first;
   strut_tree *last = first;
   while (last && last->next->next) last = last->next->next;

@@ -86,7 +86,7 @@ static void lay_over(strut_reader *reader, strut_tree *value, const strut_tree *
     *end = key, key->next = below, end = &below->next, count++;
   }
   value->first = first;
-  value->count = count & 0xFFFFFFFu;
+  value->count = count & STRUT_TREE_COUNT_MASK;
 }
 
 static bool is_removal(const strut_tree *value) {

@@ -21,10 +21,11 @@ static strut_group_item *group_item(strut_reader *reader, const strut_tree *map,
    value has a finding already. */
 static bool thing_place(strut_reader *reader, const strut_source *source, const char *key,
                         strut_place *place) {
-  bool map = source->value->kind == STRUT_TREE_MAP;
+  const strut_tree *value = strut_expand_value(reader, source->value);
+  bool map = value->kind == STRUT_TREE_MAP;
   strut_enter_scope(reader, source->key);
-  const strut_tree *own = key && map ? strut_tree_find(source->value, key, NULL) : NULL;
-  strut_group_item *item = key && map && !own ? group_item(reader, source->value, key) : NULL;
+  const strut_tree *own = key && map ? strut_tree_find(value, key, NULL) : NULL;
+  strut_group_item *item = key && map && !own ? group_item(reader, value, key) : NULL;
   *place = own ? own->place : item ? item->slot.value->place : source->key->place;
   if (!item) return true;
   bool first = !item->found;

@@ -59,7 +59,7 @@ static bool turn_support(strut_reader *reader, const strut_slot *slot, strut_nod
 
 /* Reads one node; returns false where something about it could not be read. */
 static bool read_node(strut_reader *reader, const strut_tree *key, strut_node *node) {
-  const strut_tree *value = key->next;
+  const strut_tree *value = strut_expand_value(reader, key->next);
   strut_owner owner = {"node", node->name};
   bool fine = strut_read_name(reader, key, "node");
   node->position[0] = node->position[1] = (double)NAN;
@@ -96,6 +96,7 @@ void strut_read_nodes(strut_reader *reader) {
   reader->node_moves =
       strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->node_moves);
   if (!scene->nodes || !reader->node_source || !reader->node_moves) return;
+  strut_reserve_names(reader, &reader->node_names, map->count);
   for (const strut_tree *key = strut_first_entry(reader, map); key;
        key = strut_following_entry(reader, key)) {
     size_t i = strut_next_entry(reader, &scene->node_count);
@@ -169,7 +170,8 @@ static bool read_member(strut_reader *reader, const strut_tree *key, strut_membe
   strut_owner owner = {"member", member->name};
   bool fine = strut_read_name(reader, key, "member");
   strut_fields fields;
-  strut_read_fields(reader, STRUT_SECTION_MEMBER, key->next, owner, &fields);
+  strut_read_fields(reader, STRUT_SECTION_MEMBER, strut_expand_value(reader, key->next), owner,
+                    &fields);
   strut_apply_groups(reader, &fields, STRUT_KEY_MEMBER_GROUP, owner);
   strut_require(reader, &fields, owner, key->place);
   if (!read_path(reader, strut_slot_of(&fields, STRUT_KEY_MEMBER_NODES), owner, member)) {
@@ -199,6 +201,7 @@ void strut_read_members(strut_reader *reader) {
   reader->member_source =
       strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->member_source);
   if (!scene->members || !reader->member_source) return;
+  strut_reserve_names(reader, &reader->member_names, map->count);
   for (const strut_tree *key = strut_first_entry(reader, map); key;
        key = strut_following_entry(reader, key)) {
     size_t i = strut_next_entry(reader, &scene->member_count);

@@ -31,6 +31,10 @@ void *strut_reader_allocate(strut_reader *reader, strut_arena *arena, size_t cou
   return block;
 }
 
+void strut_reserve_names(strut_reader *reader, strut_name_map *map, size_t count) {
+  if (!strut_name_map_reserve(map, count)) reader->out_of_memory = true;
+}
+
 void strut_add_name(strut_reader *reader, strut_name_map *map, const char *name, size_t index) {
   if (strut_diagnostics_full(reader->diagnostics)) return;
   if (strut_name_map_add(map, name, (int32_t)index) == -2) reader->out_of_memory = true;

@@ -15,8 +15,7 @@ enum {
   RECENT_SLOTS = 1024, /* recent short scalars, whose texts are shared */
   RECENT_LENGTH = 24,
   PROBLEMS_MOST = 1000, /* then reading stops */
-  ANCHOR_MOST = 1000,
-  RUN_LEAST = 64, /* shorter runs of rows are libyaml's */
+  ANCHOR_MOST = 1000
 };
 static const uint64_t NODES_MOST = 64000000, EXPANDED_MOST = 1000000;
 
@@ -99,10 +98,11 @@ typedef struct reader {
   bool ended, no_memory;
   strut_row_runs runs;
   run_marks marks;
-  size_t input;     /* bytes of the text that libyaml was given, runs among them */
-  size_t input_run; /* runs among them */
-  size_t next_run;  /* the first that is not in the tree yet */
-  size_t run_depth; /* its first row's key has come, at this depth; 0: not yet */
+  size_t input;                     /* bytes of the text that libyaml was given, runs among them */
+  size_t input_run;                 /* runs among them */
+  size_t next_run;                  /* the first that is not in the tree yet */
+  size_t run_depth;                 /* its first row's key has come, at this depth; 0: not yet */
+  const char *const *deferred_keys; /* NULL: none */
 } reader;
 
 static strut_place place_of(const yaml_event_t *event) {
@@ -145,19 +145,18 @@ static bool over_limit(reader *r, strut_place place, const char *what, uint64_t 
   return false;
 }
 
+static bool new_slab(reader *r) {
+  r->spare = strut_arena_allocate(&r->document->arena, SLAB, sizeof *r->spare);
+  r->spare_count = r->spare ? SLAB : 0;
+  return r->spare || out_of_memory(r);
+}
+
 static strut_tree *new_node(reader *r, strut_tree_kind kind, strut_place place) {
   if (r->nodes >= NODES_MOST) {
     over_limit(r, place, "values", NODES_MOST);
     return NULL;
   }
-  if (!r->spare_count) {
-    r->spare = strut_arena_allocate(&r->document->arena, SLAB, sizeof *r->spare);
-    if (!r->spare) {
-      out_of_memory(r);
-      return NULL;
-    }
-    r->spare_count = SLAB;
-  }
+  if (!r->spare_count && !new_slab(r)) return NULL;
   r->nodes++;
   r->spare_count--;
   strut_tree *node = r->spare++;
@@ -394,44 +393,49 @@ static void translate(reader *r, yaml_mark_t *mark) {
   mark->index += m->bytes; /* rows are ASCII */
 }
 
-/* The node of a row's token and all in it. */
-static strut_tree *row_node(reader *r, const char *text, uint32_t line,
-                            const strut_row_token **token, uint64_t *weight, size_t *height) {
-  const strut_row_token *t = (*token)++;
-  strut_place place = strut_place_at(line, t->at + 1, t->length);
-  strut_tree *node = new_node(r, (strut_tree_kind)t->kind, place);
-  if (!node) return NULL;
-  *weight = 1;
-  *height = 0;
-  if (t->kind == STRUT_TREE_SCALAR) {
-    node->text = keep_text(r, text + t->at, t->length);
-    return node->text || out_of_memory(r) ? node : NULL;
+/* Nodes of a row, one after the other. They are as many values as the row has tokens, deferred or not. */
+static strut_tree *new_row_nodes(reader *r, size_t count, const strut_row *row, strut_place place) {
+  if (r->nodes + (uint64_t)row->count > NODES_MOST) {
+    over_limit(r, place, "values", NODES_MOST);
+    return NULL;
   }
-  node->count = t->count & 0xFFFu; /* for the field's 28 bits */
-  strut_tree **link = &node->first;
-  size_t highest = 0;
-  for (int i = (t->kind == STRUT_TREE_MAP ? 2 : 1) * t->count; i > 0; i--) {
-    uint64_t inner_weight;
-    size_t inner_height;
-    *link = row_node(r, text, line, token, &inner_weight, &inner_height);
-    if (!*link) return NULL;
-    link = &(*link)->next;
-    *weight += inner_weight;
-    if (highest < inner_height) highest = inner_height;
-  }
-  *height = highest + 1;
-  return node;
+  if (r->spare_count < count && !new_slab(r)) return NULL;
+  strut_tree *nodes = r->spare;
+  r->nodes += (uint64_t)row->count;
+  r->spare += count;
+  r->spare_count -= count;
+  return nodes;
 }
 
-static bool append_row(reader *r, const char *text, uint32_t line, const strut_row *row) {
-  const strut_row_token *token = row->token;
-  for (int i = 0; i < 2; i++) {
-    uint64_t weight;
-    size_t height;
-    strut_tree *node = row_node(r, text, line, &token, &weight, &height);
-    if (!node) return false;
-    attach(r, node, weight, height);
+static const char *keep_row_text(void *context, const char *text, size_t length) {
+  return keep_text(context, text, length);
+}
+
+/* Are rows of the open mapping deferred? An anchor's value is not, which an alias may put elsewhere. */
+static bool defers_rows(const reader *r) {
+  const char *const *key = r->deferred_keys;
+  if (!key || r->depth != 2 || r->anchors.count || !r->stack[0].value_next) return false;
+  while (*key && strcmp(*key, r->stack[0].last->text) != 0) key++;
+  return *key != NULL;
+}
+
+/* Appends a row, which `text` begins with, to the open mapping. */
+static bool append_row(reader *r, const char *text, uint32_t line, const strut_row *row,
+                       bool defers) {
+  const strut_row_token *value = &row->token[1];
+  bool deferred = defers && strut_row_is_deferrable(row);
+  int count = deferred ? 1 : row->count;
+  strut_place place = strut_place_at(line, value->at + 1, value->length);
+  strut_tree *nodes = new_row_nodes(r, deferred ? 2 : (size_t)count, row, place);
+  if (!nodes) return false;
+  if (!strut_row_build(row, count, text, line, nodes, keep_row_text, r)) return out_of_memory(r);
+  if (deferred) {
+    nodes[1] = (strut_tree){.kind = value->kind & 3u, .place = place};
+    strut_row_defer(row, text, &nodes[1]);
+    r->document->deferred = true;
   }
+  attach(r, &nodes[0], 1, 0);
+  attach(r, &nodes[1], (uint64_t)row->count - 1, (size_t)row->levels);
   return true;
 }
 
@@ -441,10 +445,11 @@ static bool append_run(reader *r) {
   const char *text = r->diagnostics->text;
   strut_row row;
   size_t at = run->begin;
+  bool defers = defers_rows(r);
   r->run_depth = 0;
   for (uint32_t i = 0; i < run->lines; i++) {
     if (!strut_row_read(text + at, run->end - at, &row)) return false;
-    if (!append_row(r, text + at, run->line + i + 1, &row)) return false;
+    if (!append_row(r, text + at, run->line + i + 1, &row, defers)) return false;
     at += row.length;
   }
   return true;
@@ -516,9 +521,10 @@ static bool read_events(reader *r) {
   return fine;
 }
 
-/* Reads the text with these runs; whether all of it, and every run, was read. The runs are released. */
+/* Reads the text with these runs; whether all of it, and every run, was read. */
 static bool read_with(strut_document *document, strut_diagnostics *diagnostics,
-                      strut_row_runs *runs, bool *no_memory) {
+                      const strut_row_runs *runs, const char *const *deferred_keys,
+                      bool *no_memory) {
   reader *r = strut_allocate(1, sizeof *r);
   *no_memory = !r;
   if (!r) return false;
@@ -527,6 +533,7 @@ static bool read_with(strut_document *document, strut_diagnostics *diagnostics,
   r->cursor = strut_cursor_begin(diagnostics->text, diagnostics->length);
   r->keys.seed = r->anchors.seed = (uint64_t)(uintptr_t)r ^ (uint64_t)time(NULL) << 20;
   r->runs = *runs;
+  r->deferred_keys = deferred_keys;
   bool fine = read_events(r) && r->next_run == r->runs.count;
   if (!fine) document->root = NULL;
   *no_memory = r->no_memory || diagnostics->out_of_memory;
@@ -539,21 +546,21 @@ static bool read_with(strut_document *document, strut_diagnostics *diagnostics,
 
 /* Reads runs of rows without libyaml. False: something is wrong, which is not told. */
 static bool read_rows(strut_document *document, const strut_diagnostics *diagnostics,
-                      uint32_t least, bool *no_memory) {
+                      uint32_t least, const char *const *keys, bool *no_memory) {
   strut_row_runs runs = {0};
   strut_diagnostics unused = {0};
   strut_diagnostics_source(&unused, diagnostics->file, diagnostics->text, diagnostics->length);
   *no_memory = !strut_row_runs_find(diagnostics->text, diagnostics->length, least, &runs);
-  bool fine =
-      !*no_memory && runs.count && read_with(document, &unused, &runs, no_memory) && !unused.count;
+  bool fine = !*no_memory && runs.count && read_with(document, &unused, &runs, keys, no_memory) &&
+              !unused.count;
   strut_row_runs_free(&runs);
   strut_diagnostics_free(&unused);
   if (!fine) strut_document_free(document);
   return fine;
 }
 
-strut_status strut_document_read_runs(strut_document *document, strut_diagnostics *diagnostics,
-                                      uint32_t least) {
+strut_status strut_document_read_rows(strut_document *document, strut_diagnostics *diagnostics,
+                                      uint32_t least, const char *const *keys) {
   size_t before = diagnostics->count;
   bool no_memory = false;
   strut_row_runs none = {0};
@@ -561,19 +568,20 @@ strut_status strut_document_read_runs(strut_document *document, strut_diagnostic
   if (!strut_document_scan(diagnostics))
     return diagnostics->out_of_memory ? STRUT_NO_MEMORY : STRUT_BAD_SCENE;
   bool alone = !document->arena.chunk; /* what is not read well is released */
-  if (least && alone && read_rows(document, diagnostics, least, &no_memory)) return STRUT_OK;
-  if (!no_memory) read_with(document, diagnostics, &none, &no_memory);
+  if (least && alone && read_rows(document, diagnostics, least, keys, &no_memory)) return STRUT_OK;
+  if (!no_memory) read_with(document, diagnostics, &none, NULL, &no_memory);
   if (no_memory) return STRUT_NO_MEMORY;
   return diagnostics->count > before ? STRUT_BAD_SCENE : STRUT_OK;
 }
 
 strut_status strut_document_read(strut_document *document, strut_diagnostics *diagnostics) {
-  return strut_document_read_runs(document, diagnostics, RUN_LEAST);
+  return strut_document_read_rows(document, diagnostics, STRUT_RUN_LEAST, NULL);
 }
 
 void strut_document_free(strut_document *document) {
   strut_arena_free(&document->arena);
   document->root = NULL;
+  document->deferred = false;
 }
 
 strut_tree *strut_tree_find(const strut_tree *map, const char *key, strut_tree **key_node) {

@@ -25,18 +25,23 @@ typedef enum strut_tree_kind { STRUT_TREE_SCALAR, STRUT_TREE_LIST, STRUT_TREE_MA
 /** One value: 40 bytes. A map's children alternate key, value; keys are scalars. */
 typedef struct strut_tree {
   strut_place place;               /* of its first character (an alias: of the alias), its length */
-  uint32_t count : 28;             /* list: items; map: pairs */
+  uint32_t count : 27;             /* list: items; map: pairs */
   uint32_t kind : 2;               /* a strut_tree_kind */
   bool quoted : 1;                 /* scalar: written in quotes or as a block */
   bool placed : 1;                 /* it belongs to a copy of a part, see parser/read/copies.h */
+  bool deferred : 1;               /* list or map: its children are still text, see rows.h */
   const char *text;                /* scalar: NUL-terminated, no NUL inside, "" for nothing */
   struct strut_tree *first, *next; /* first child; next sibling */
 } strut_tree;
+
+/** Mask that fits a number into `count`, which the limits on values keep below it. */
+#define STRUT_TREE_COUNT_MASK 0x7FFFFFFu
 
 /** The tree and the arena that owns it. Zero-initialise; release with strut_document_free. */
 typedef struct strut_document {
   strut_arena arena;
   strut_tree *root; /* NULL when the text could not be read to its end */
+  bool deferred;    /* some values of the tree are */
 } strut_document;
 
 /**
@@ -47,6 +52,20 @@ typedef struct strut_document {
  */
 STRUT_API strut_status strut_document_read(strut_document *document,
                                            strut_diagnostics *diagnostics);
+/** Shorter runs of rows (rows.h) are left to libyaml. */
+enum { STRUT_RUN_LEAST = 64 };
+/**
+ * As strut_document_read, which reads runs of at least STRUT_RUN_LEAST rows without libyaml, with another least
+ * length; 0: libyaml reads all. In the mappings under these `keys` of the root (NULL-terminated; NULL: none)
+ * such rows may be deferred: a large file takes a third of the memory. Whoever looks into these mappings
+ * expands their values one by one (strut_row_expand), or all for good; the text must outlive the tree. The
+ * same tree, once expanded, or messages, whatever `least` and `keys` are.
+ */
+STRUT_API strut_status strut_document_read_rows(strut_document *document,
+                                                strut_diagnostics *diagnostics, uint32_t least,
+                                                const char *const *keys);
+/** Expands all deferred values. False: memory is out. */
+STRUT_API bool strut_document_expand(strut_document *document);
 STRUT_API void strut_document_free(strut_document *document);
 
 /** Value of `key` in a map, or NULL; key_node (may be NULL) receives the key itself. */

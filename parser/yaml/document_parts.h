@@ -36,11 +36,4 @@ typedef struct strut_key_table {
 bool strut_document_check_keys(strut_tree *map, strut_key_table *table,
                                strut_diagnostics *diagnostics);
 
-/**
- * As strut_document_read; runs of at least `least` rows (rows.h; 0: none) are read without libyaml. The
- * same tree or messages, whatever `least` is.
- */
-strut_status strut_document_read_runs(strut_document *document, strut_diagnostics *diagnostics,
-                                      uint32_t least);
-
 #endif

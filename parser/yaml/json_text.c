@@ -253,7 +253,7 @@ static strut_tree *read_list(json_reader *r) {
     if (!item) break;
     *end = item;
     end = &item->next;
-    list->count = (list->count + 1) & 0xFFFFFFFu;
+    list->count = (list->count + 1) & STRUT_TREE_COUNT_MASK;
     if (!goes_on(r, ']', "',' or ']'")) break;
   }
   return r->status ? NULL : list;
@@ -295,7 +295,7 @@ static strut_tree *read_map(json_reader *r) {
     if (!key->next) break;
     *end = key;
     end = &key->next->next;
-    map->count = (map->count + 1) & 0xFFFFFFFu;
+    map->count = (map->count + 1) & STRUT_TREE_COUNT_MASK;
     if (!goes_on(r, '}', "',' or '}'")) break;
   }
   return r->status ? NULL : map;

@@ -15,7 +15,10 @@
  */
 STRUT_API double strut_document_needs(const char *text, size_t length);
 
-/** STRUT_OK, or STRUT_NO_MEMORY with the needed and the available memory (memory_limit.h). */
+/**
+ * STRUT_OK, or STRUT_NO_MEMORY with the needed and the available memory (memory_limit.h). Needed is what the tree
+ * takes where rows are deferred (rows.h).
+ */
 STRUT_API strut_status strut_memory_check_document(const char *name, const char *text,
                                                    size_t length, strut_error *error);
 /** STRUT_NO_MEMORY with the same message, for memory that ran out in spite of the check. */

@@ -6,9 +6,8 @@
 #include "parser/yaml/text.h"
 
 enum {
-  NAME_MOST = 128,  /* libyaml wants the colon within 1024 characters */
-  LINE_MOST = 4096, /* bytes */
-  PAIRS_MOST = 16,  /* of a mapping, whose keys are compared one by one */
+  NAME_MOST = 128, /* libyaml wants the colon within 1024 characters */
+  PAIRS_MOST = 16, /* of a mapping, whose keys are compared one by one */
 };
 
 /* ---- one row ---- */
@@ -102,6 +101,8 @@ static bool read_brackets(scanner *s) {
   bool map = here(s) == '{';
   strut_row_token *token = add_token(s, map ? STRUT_TREE_MAP : STRUT_TREE_LIST);
   if (!token || ++s->levels > STRUT_ROW_LEVELS) return false;
+  if (s->row->levels < s->levels) s->row->levels = s->levels;
+  s->row->maps += map;
   char close = map ? '}' : ']';
   do {
     s->at++; /* the bracket or comma */
@@ -130,9 +131,9 @@ static bool read_rest(scanner *s) {
 }
 
 bool strut_row_read(const char *text, size_t left, strut_row *row) {
-  size_t most = left < LINE_MOST ? left : LINE_MOST;
+  size_t most = left < STRUT_ROW_BYTES ? left : STRUT_ROW_BYTES;
   const char *end = memchr(text, '\n', most);
-  row->count = 0;
+  row->count = row->levels = row->maps = 0;
   if (!end) return false;
   scanner s = {.text = text, .end = (uint32_t)(end - text), .row = row};
   row->length = s.end + 1;

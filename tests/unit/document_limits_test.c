@@ -17,18 +17,8 @@
 #include "engine/base/memory.h"
 #include "parser/read/read_scene.h"
 #include "parser/yaml/document.h"
+#include "tests/support/sanitized.h"
 #include "tests/unit/document_support.h"
-
-#if defined(__SANITIZE_ADDRESS__)
-#define SANITIZED 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define SANITIZED 1
-#endif
-#endif
-#ifndef SANITIZED
-#define SANITIZED 0
-#endif
 
 static void depth_is_limited(void **state) {
   (void)state;
@@ -149,7 +139,7 @@ static void expect_bomb_defused(const char *name, char *text, const char *messag
   print_message("%-12s %.4f s %.1f MiB\n", name, got.seconds, got.memory);
   assert_int_equal(got.status, STRUT_BAD_SCENE);
   assert_string_equal(got.message, message);
-  if (!SANITIZED) {
+  if (!ADDRESS_SANITIZED) {
     assert_true(got.seconds <= 0.1);
     assert_true(got.memory <= 64);
   }

@@ -37,11 +37,32 @@ static void many_names(void **state) {
   assert_int_equal(map.count, 0);
 }
 
+static void reserved_room_holds_its_names(void **state) {
+  (void)state;
+  static char names[MANY][16];
+  strut_name_map map = {0};
+  assert_true(strut_name_map_reserve(&map, 3)); /* few begin as ever */
+  assert_int_equal(map.slots, 0);
+  for (int32_t first = 0, end = MANY / 2; first < MANY; first = end, end = MANY) {
+    assert_true(strut_name_map_reserve(&map, (size_t)end));
+    uint64_t before = strut_allocation_count();
+    for (int32_t i = first; i < end; i++) {
+      snprintf(names[i], sizeof names[i], "n%d", (int)i);
+      assert_int_equal(strut_name_map_add(&map, names[i], i), -1);
+    }
+    assert_true(strut_allocation_count() == before);
+  }
+  for (int32_t i = 0; i < MANY; i++) assert_int_equal(strut_name_map_find(&map, names[i]), i);
+  assert_int_equal(strut_name_map_find(&map, "n"), -1);
+  strut_name_map_free(&map);
+}
+
 static void no_memory(void **state) {
   (void)state;
   strut_name_map map = {0};
   strut_fail_allocation_after(0);
   assert_int_equal(strut_name_map_add(&map, "a", 0), -2);
+  assert_false(strut_name_map_reserve(&map, MANY));
   strut_fail_allocation_after(-1);
   assert_int_equal(strut_name_map_find(&map, "a"), -1);
   assert_int_equal(strut_name_map_add(&map, "a", 7), -1);
@@ -50,6 +71,8 @@ static void no_memory(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(many_names), cmocka_unit_test(no_memory)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(many_names),
+                                     cmocka_unit_test(reserved_room_holds_its_names),
+                                     cmocka_unit_test(no_memory)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

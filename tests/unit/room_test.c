@@ -14,18 +14,7 @@
 #include "parser/yaml/document.h"
 #include "parser/yaml/memory_estimate.h"
 #include "tests/support/check.h"
-
-/* Sanitizers take memory of their own, and stop the program where it is refused. */
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define SANITIZED 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define SANITIZED 1
-#endif
-#endif
-#ifndef SANITIZED
-#define SANITIZED 0
-#endif
+#include "tests/support/sanitized.h"
 
 /* Nothing but its counts is looked at. */
 static strut_status compile(size_t nodes, size_t members, strut_error *error) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Runs of rows that libyaml does not see give the tree and the messages that libyaml alone gives: for every
- * scene of the repository, good and bad, and for texts with faults thrown in by a fixed sequence of dice.
+ * Runs of rows that libyaml does not see, deferred or not, give the tree and the messages that libyaml alone
+ * gives: for every scene of the repository, good and bad, and for texts with random faults.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -15,12 +15,14 @@
 
 #include "parser/yaml/document_parts.h"
 #include "parser/yaml/rows.h"
+#include "tests/language/faults.h"
 #include "tests/language/scenes.h"
 
 /* Equal in every field, down to the last leaf. */
 static bool same_tree(const strut_tree *a, const strut_tree *b) {
   if (!a || !b) return a == b;
-  if (a->kind != b->kind || a->count != b->count || a->quoted != b->quoted) return false;
+  if (a->kind != b->kind || a->count != b->count || a->quoted != b->quoted || b->deferred)
+    return false;
   if (memcmp(&a->place, &b->place, sizeof a->place) != 0) return false;
   if (strcmp(a->text, b->text) != 0) return false;
   const strut_tree *x = a->first, *y = b->first;
@@ -36,10 +38,11 @@ typedef struct reading {
   const char *messages;
 } reading;
 
-static void read_text(const char *text, size_t length, uint32_t least, reading *r) {
+static void read_text(const char *text, size_t length, uint32_t least, const char *const *keys,
+                      reading *r) {
   *r = (reading){.status = STRUT_OK};
   strut_diagnostics_source(&r->diagnostics, "text", text, length);
-  r->status = strut_document_read_runs(&r->document, &r->diagnostics, least);
+  r->status = strut_document_read_rows(&r->document, &r->diagnostics, least, keys);
   r->messages = strut_diagnostics_render(&r->diagnostics, 50);
 }
 
@@ -48,22 +51,48 @@ static void free_reading(reading *r) {
   strut_diagnostics_free(&r->diagnostics);
 }
 
-/* Reads it both ways; the number of its runs. */
+static size_t deferred_values; /* seen so far */
+
+/* Expands the deferred values below the root one by one: each is that of the other tree. */
+static bool same_values(const strut_tree *plain, const strut_tree *root) {
+  strut_row_nodes nodes;
+  const strut_tree *x = plain ? plain->first : NULL, *y = root ? root->first : NULL;
+  if (root && root->kind != STRUT_TREE_MAP) return true;
+  for (; x && y; x = x->next->next, y = y->next->next) {
+    const strut_tree *a = x->next->first, *b = y->next->first;
+    bool map = y->next->kind == STRUT_TREE_MAP;
+    for (; a && b && map; a = a->next->next, b = b->next->next) {
+      if (!same_tree(a->next, strut_row_expand(b->next, &nodes))) return false;
+      deferred_values += b->next->deferred;
+    }
+  }
+  return true;
+}
+
+/* Reads it without runs, with runs, and with deferred rows; the number of its runs. */
 static size_t expect_same(const char *text, size_t length) {
-  reading plain, rows;
+  static const char *const keys[] = {"nodes", "members", "x", "list", "text", NULL};
+  reading plain, rows, deferred;
   strut_row_runs runs = {0};
   assert_true(strut_row_runs_find(text, length, 2, &runs));
   size_t count = runs.count;
-  read_text(text, length, 0, &plain);
-  read_text(text, length, 2, &rows);
+  read_text(text, length, 0, NULL, &plain);
+  read_text(text, length, 2, NULL, &rows);
+  read_text(text, length, 2, keys, &deferred);
   bool same = plain.status == rows.status && strcmp(plain.messages, rows.messages) == 0 &&
               same_tree(plain.document.root, rows.document.root);
+  same = same && plain.status == deferred.status &&
+         strcmp(plain.messages, deferred.messages) == 0 &&
+         same_values(plain.document.root, deferred.document.root);
+  same = same && strut_document_expand(&deferred.document) &&
+         same_tree(plain.document.root, deferred.document.root);
   if (!same)
     print_error("without runs: %s\nwith runs: %s\nof the text:\n%.*s\n", plain.messages,
                 rows.messages, length < 4000 ? (int)length : 4000, text);
   assert_true(same);
   free_reading(&plain);
   free_reading(&rows);
+  free_reading(&deferred);
   strut_row_runs_free(&runs);
   return plain.status == STRUT_OK ? count : 0;
 }
@@ -74,98 +103,12 @@ static void every_scene_is_the_same(void **state) {
     scene_file *files;
     size_t count = bad ? refused_files(&files) : scene_files(&files), runs = 0;
     for (size_t i = 0; i < count; i++) runs += expect_same(files[i].text, files[i].length);
-    assert_true(runs > 20);
+    assert_true(runs > 20 && deferred_values > 100);
     free_scene_files(files, count);
   }
 }
 
-/* ---- dice ---- */
-
-static uint64_t dice = 20260101;
-
-static uint32_t throw_dice(uint32_t sides) {
-  dice ^= dice << 13;
-  dice ^= dice >> 7;
-  dice ^= dice << 17;
-  return (uint32_t)((dice >> 32) % sides);
-}
-
-static const char *const pieces[] = {"{",
-                                     "}",
-                                     "[",
-                                     "]",
-                                     ",",
-                                     ":",
-                                     " ",
-                                     "\n",
-                                     "#",
-                                     " #x",
-                                     "-",
-                                     "- ",
-                                     "\"",
-                                     "'",
-                                     "&a ",
-                                     "*a",
-                                     "!x ",
-                                     "%",
-                                     "@",
-                                     "|",
-                                     ">",
-                                     "?",
-                                     "? ",
-                                     "\t",
-                                     "\r",
-                                     "\\",
-                                     "<<",
-                                     "~",
-                                     "0",
-                                     "x",
-                                     ".",
-                                     "...",
-                                     "--",
-                                     "---",
-                                     "(",
-                                     ")",
-                                     "*",
-                                     "/",
-                                     "^",
-                                     "+",
-                                     "\xC3\xA4",
-                                     "\xC2\x85",
-                                     "\xE2\x80\xA8",
-                                     "  ",
-                                     ", ",
-                                     ": ",
-                                     "\n\n",
-                                     "\n ",
-                                     "\n  ",
-                                     "a: ",
-                                     "{a: ",
-                                     "[a",
-                                     "|\n",
-                                     "\"\n",
-                                     "'\n",
-                                     "&b\n",
-                                     "\n# comment\n",
-                                     "\n---\n",
-                                     "\n...\n"};
-
-/* One to three faults. */
-static size_t spoil(const char *text, size_t length, char *spoilt) {
-  memcpy(spoilt, text, length);
-  for (uint32_t left = 1 + throw_dice(3); left > 0; left--) {
-    size_t at = throw_dice((uint32_t)length), cut = throw_dice(3) ? throw_dice(3) : throw_dice(40);
-    const char *piece = pieces[throw_dice(sizeof pieces / sizeof pieces[0])];
-    size_t insert = throw_dice(4) ? strlen(piece) : 0;
-    if (cut > length - at) cut = length - at;
-    memmove(spoilt + at + insert, spoilt + at + cut, length - at - cut);
-    memcpy(spoilt + at, piece, insert);
-    length += insert;
-    length -= cut;
-    if (!length) spoilt[length++] = '\n';
-  }
-  return length;
-}
+/* ---- faults ---- */
 
 /* Texts that are mostly rows, with what may stand between, before and behind them. */
 static const char *const texts[] = {
@@ -178,6 +121,8 @@ static const char *const texts[] = {
     "text: |\n  a: [1]\n  b: [2]\n  c: [3]\nquoted: \"\n  a: [1]\n  b: [2]\n\"\nx: [1]\ny: [2]\n",
     "x:\n  a: &n [1]\n  b: [2]\n  c: [3]\n  d: *n\n  e: [4]\n  f: [5]\n  g: [6, -7, a*b, (2), "
     ".5]\n",
+    "nodes:\n  a: [1]\n  b: [2]\n  c: {x: {y: 3}}\nmembers: &m\n  a: [1]\n  b: [2]\n  c: [3]\nx: "
+    "*m\n",
     "%YAML 1.2\n---\n  a: [1]\n  b: [2]\n  c: [3]\n...\n# end\n",
     "\xEF\xBB\xBFumlaut: \xC3\xA4\na: {k: v} \nb: {k: v}  # x\nc: {k: v}\nd: &x\n  e: [1]\n  f: "
     "[2]\ng: *x\n",
@@ -193,7 +138,7 @@ static void faults_are_the_same(void **state) {
     size_t length = strlen(texts[t]);
     expect_same(texts[t], length);
     for (size_t turn = 0; turn < turns; turn++)
-      good += expect_same(spoilt, spoil(texts[t], length, spoilt)) > 0;
+      good += expect_same(spoilt, spoil_text(texts[t], length, spoilt)) > 0;
   }
   assert_true(good > turns / 2); /* often enough the runs were read */
 }

@@ -51,6 +51,40 @@ static void test_contributions_are_summed_and_sorted(void **unused) {
   }
 }
 
+/* Some columns at a time, from contributions that come again each time: the same bits. */
+static void test_stretches_of_columns_make_the_same_matrix(void **unused) {
+  (void)unused;
+  static double dense[N * N];
+  for (uint64_t turn = 0; turn < 50; turn++) {
+    strut_arena arena = {0};
+    uint64_t r = 30 + turn;
+    int32_t n = 1 + random_below(&r, N);
+    size_t count = (size_t)random_below(&r, 600);
+    uint64_t begin = r;
+    strut_sparse *whole = random_matrix(&r, n, count, dense, &arena);
+    strut_sparse *m = strut_sparse_begin(n, count, &arena);
+    strut_triplets triplets = {0};
+    assert_true(strut_triplets_reserve(&triplets, count, &arena));
+    for (int32_t first = 0; first < n; first = triplets.end) {
+      triplets.count = 0;
+      triplets.first = first;
+      triplets.end = first + 1 + random_below(&r, n - first);
+      uint64_t again = begin;
+      for (size_t k = 0; k < count; k++) {
+        int32_t i = random_below(&again, n), j = random_below(&again, n);
+        strut_triplets_add(&triplets, i, j, random_between(&again, -1, 1));
+      }
+      strut_sparse_append(m, &triplets);
+    }
+    size_t entries = (size_t)whole->start[n];
+    if (turn % 2) m = strut_sparse_copy(m, &arena);
+    assert_memory_equal(m->start, whole->start, ((size_t)n + 1) * sizeof *m->start);
+    assert_memory_equal(m->row, whole->row, entries * sizeof *m->row);
+    assert_memory_equal(m->value, whole->value, entries * sizeof *m->value);
+    strut_arena_free(&arena);
+  }
+}
+
 static void test_product(void **unused) {
   (void)unused;
   uint64_t r = 4;
@@ -253,6 +287,7 @@ int main(void) {
       cmocka_unit_test(test_factorised_again),
       cmocka_unit_test(test_parts_are_solved_in_turns),
       cmocka_unit_test(test_contributions_are_summed_and_sorted),
+      cmocka_unit_test(test_stretches_of_columns_make_the_same_matrix),
       cmocka_unit_test(test_product),
       cmocka_unit_test(test_an_empty_matrix),
       cmocka_unit_test(test_factors_solve),
