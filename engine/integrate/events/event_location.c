@@ -139,6 +139,26 @@ static double room_to_leave(const strut_model *model, const strut_event_stepper 
   return room < faint && rate > -balanced ? faint : room;
 }
 
+/* Rates of the value of a cable's law at both ends of a region's step, that of the stretch's own rate by a secant;
+   false where they are not known, or not alike at both ends. */
+static bool cable_rates(const strut_event_stepper *l, int32_t i, double h, double *d0, double *d1) {
+  const strut_law_switch *law = &l->laws[i];
+  if (!l->within || law->event != STRUT_EVENT_ACTS || law->member < 0 || !(law->stiffness > 0.0))
+    return false;
+  const strut_step_end *a = l->now, *b = l->next;
+  double k = law->stiffness, d = law->damping, sign = l->acting[i] ? 1.0 : -1.0;
+  bool elastic[2] = {false};
+  if (!l->acting[i] || law->abrupt) {
+    elastic[0] = k * a->stretch[i] < a->tension[i];
+    elastic[1] = k * b->stretch[i] < b->tension[i];
+  }
+  if (elastic[0] != elastic[1]) return false;
+  double bend = elastic[0] ? 0.0 : d * (b->stretch_rate[i] - a->stretch_rate[i]) / h;
+  *d0 = sign * (k * a->stretch_rate[i] + bend);
+  *d1 = sign * (k * b->stretch_rate[i] + bend);
+  return true;
+}
+
 /* Where between now and next the event's value passes 0. */
 static double fraction_of(const strut_model *model, const strut_event_stepper *l,
                           strut_event_kind kind, int32_t i, double h) {
@@ -154,6 +174,8 @@ static double fraction_of(const strut_model *model, const strut_event_stepper *l
     return cubic_root(g0, h * a.into, g1, h * b.into);
   }
   if (strut_event_rate(l, l->now, kind, i, &d0) && strut_event_rate(l, l->next, kind, i, &d1))
+    return cubic_root(g0, h * d0, g1, h * d1);
+  if (kind == STRUT_EVENT_ACTS && cable_rates(l, i, h, &d0, &d1))
     return cubic_root(g0, h * d0, g1, h * d1);
   return g0 / (g0 - g1);
 }

@@ -256,9 +256,13 @@ static bool stagnant(const search *s) {
 }
 
 /* Near enough for a region, which is joined to the step of the whole with an error of its own: what is left is
-   below a thousandth of what the method leaves. */
-static bool is_near(const search *s, double rate) {
+   below a thousandth of what the method leaves. A creeping contact that is tied to the edge is there, too. */
+static bool is_near(const strut_event_stepper *l, const strut_event *event, const search *s,
+                    double rate) {
   double slope = rate != 0.0 ? rate : (s->value - s->last_value) / (s->x - s->last_x);
+  if (event->kind == STRUT_EVENT_CREEP_IN &&
+      fabs(s->value) <= 2.0 * TIED * l->next->touch[event->index].normal)
+    return true;
   return fabs(s->value) <= 1e-8 * fabs(slope);
 }
 
@@ -281,9 +285,14 @@ static double retake(const strut_model *model, strut_state *state, strut_event_s
   double before = strut_event_value(model, l, l->now, event->kind, event->index);
   double after = strut_event_value(model, l, l->next, event->kind, event->index);
   search s = begin_search(before, 1.0, after, event->fraction);
+  double reached = 1.0; /* the part of the step at whose end l->next is */
   for (int k = 0; k < MOST_TRIALS && s.x * h > 0.0; k++) {
     if (l->stepper->predict) l->stepper->predict(model, l, s.x * h);
-    l->stepper->trial(model, state, l, t, s.x * h);
+    if (l->within && fabs(s.x - reached) <= STRUT_LOCAL_SHIFT * reached)
+      strut_local_shift(model, state, l, t, reached * h, s.x * h);
+    else
+      l->stepper->trial(model, state, l, t, s.x * h);
+    reached = s.x;
     if (!l->stepper->exact) break;
     strut_event other = strut_event_first(model, state, l, s.x * h);
     bool same = other.kind == event->kind && other.index == event->index;
@@ -299,7 +308,7 @@ static double retake(const strut_model *model, strut_state *state, strut_event_s
     if (strut_event_rate(l, l->next, event->kind, event->index, &rate)) rate *= h;
     if (fabs(s.value) <= 1e-13 * fabs(rate)) break;
     bool tied = tied_at_edge(model, event, s.value);
-    if (l->within && !tied && is_near(&s, rate)) break;
+    if (l->within && !tied && is_near(l, event, &s, rate)) break;
     if (s.value == 0.0 || (k > 0 && !tied && stagnant(&s))) break;
     if (tied && s.high - s.x <= BALANCED) break;
     double x = l->within && rate == 0.0 ? next_by_parabola(&s) : next_point(&s, rate);
