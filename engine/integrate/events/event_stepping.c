@@ -84,6 +84,7 @@ static bool list_laws(const strut_model *model, strut_state *state, strut_event_
                                                    .element = -1,
                                                    .stiffness = t->stiffness[j],
                                                    .damping = t->damping[j]};
+  l->cable_count = l->law_count;
   for (int32_t i = 0; i < model->elements.count; i++) {
     const strut_element *e = &model->elements.element[i];
     double natural = strut_element_start(model, i);

@@ -182,8 +182,8 @@ struct strut_event_stepper {
   int32_t *stuck, stuck_count, stuck_room; /* contacts in STICK or CREEP */
   double *stuck_factor;   /* (stuck_count, stuck_count) Cholesky factor of T' M^-1 T */
   double *stuck_work;     /* (stuck_room) */
-  strut_law_switch *laws; /* (law_count) */
-  int32_t law_count;
+  strut_law_switch *laws; /* (law_count), cables first */
+  int32_t law_count, cable_count;
   uint8_t *acting;                           /* (laws) of those without kinks */
   double *scatter;                           /* (length) scratch, zero between uses */
   double wanted_step;                        /* of the settings [s] */

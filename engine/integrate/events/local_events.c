@@ -58,7 +58,8 @@ static bool make_laws(const strut_model *model, strut_arena *arena, const strut_
 static bool make_scratch(const strut_model *model, strut_arena *arena, const strut_event_stepper *l,
                          strut_local_events *p) {
   size_t contacts = (size_t)model->contacts.count, nodes = (size_t)model->node_count;
-  double **all[] = {&p->quiet_q, &p->quiet_v, &p->more_q, &p->more_v, &p->own_q, &p->own_v};
+  double **all[] = {&p->quiet_q, &p->quiet_v, &p->more_q, &p->more_v, &p->own_q,
+                    &p->own_v,   &p->push_q,  &p->push_v, &p->far_q,  &p->far_v};
   uint8_t **marks[] = {&p->seed, &p->joined, &p->regions, &p->inside};
   bool good = true;
   for (size_t k = 0; k < sizeof all / sizeof *all && good; k++)
@@ -136,9 +137,12 @@ strut_status strut_local_events_create(const strut_model *model, strut_state *st
     return STRUT_NO_MEMORY;
   double left = LEFT;
   if (l->stepper->adaptive) left = fmin(left, OF_TOLERANCE * settings->tolerance);
-  int reach = strut_local_reach(model, &p->map, settings->step, left);
-  if (!reach) return STRUT_OK;
-  p->region.reach = reach + STRUT_LOCAL_MARGIN;
+  strut_local_passing passing;
+  if (strut_local_passing_find(model, &p->map, &passing)) return STRUT_NO_MEMORY;
+  p->longest = settings->step;
+  for (int k = 0; k < STRUT_LOCAL_HALVINGS; k++)
+    p->reach[k] = strut_local_reach(&passing, ldexp(p->longest, -k), left);
+  if (!p->reach[STRUT_LOCAL_HALVINGS - 1]) return STRUT_OK;
   l->local = p;
   return STRUT_OK;
 }
@@ -380,9 +384,20 @@ static bool step_with_events(const strut_model *model, strut_state *state, strut
   return false;
 }
 
+/* By how much the region's end differs from that without events; and what its masses do to its rim. */
+static void pass_on(const strut_local_region *r, const double *end, const double *quiet,
+                    double *push) {
+  for (int32_t k = 0; k < r->node_count && r->joint_count; k++)
+    for (int32_t c = 0; c < 2; c++)
+      r->pair[2 * k + c] = end[2 * r->node[k] + c] - quiet[2 * r->node[k] + c];
+  strut_local_region_pass_on(r, r->pair, push);
+}
+
 /* What the region adds to the step of the whole. */
 static void keep_result(strut_local_events *p) {
   const strut_local_region *r = &p->region;
+  pass_on(r, p->own.now->q, p->quiet_q, p->push_q);
+  pass_on(r, p->own.now->v, p->quiet_v, p->push_v);
   const strut_step_end *end = p->own.now;
   for (int32_t k = 0; k < r->node_count; k++) {
     int32_t node = r->node[k];
@@ -499,6 +514,8 @@ static bool step_regions(const strut_model *model, strut_state *state, strut_eve
   for (int attempt = 0; attempt < MOST_ATTEMPTS; attempt++) {
     state->events = events;
     memset(works, 0, STRUT_POWER_ROOM * sizeof *works);
+    memset(p->push_q, 0, (size_t)model->length * sizeof *p->push_q);
+    memset(p->push_v, 0, (size_t)model->length * sizeof *p->push_v);
     forget_results(p);
     bool good = true;
     for (int32_t k = 0; k < p->seed_count && good; k++)
@@ -512,6 +529,15 @@ static bool step_regions(const strut_model *model, strut_state *state, strut_eve
   }
   state->events = events;
   return false;
+}
+
+/* x += M^-1 push, where what sticks keeps its place: regions have been stepped with their rims as they move without
+   events, and this lets go of them. */
+static void add_far_motion(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                           const double *push, double *far, double *x) {
+  strut_mass_solve(model, push, far, state->scratch);
+  if (l->stuck_count) strut_solve_stick_constraints(model, l, far, l->next);
+  for (int32_t i = 0; i < 2 * model->node_count; i++) x[i] += far[i];
 }
 
 static void write_results(const strut_local_events *p, const strut_step_end *next) {
@@ -532,11 +558,18 @@ static void evaluate_whole_end(const strut_model *model, strut_state *state, str
   evaluate_step_end(model, state, l, t, l->next, STRUT_TERMS_COMMON, state->ledger);
 }
 
+/* The region's reach for a step of h, by the next longer one that has been prepared; 0: too far. */
+static int find_reach(const strut_local_events *p, double h) {
+  int k = 0;
+  while (k + 1 < STRUT_LOCAL_HALVINGS && h <= ldexp(p->longest, -k - 1)) k++;
+  return p->reach[k] ? p->reach[k] + STRUT_LOCAL_MARGIN : 0;
+}
+
 bool strut_local_events_take(const strut_model *model, strut_state *state, strut_event_stepper *l,
                              double t, double h, double dt) {
   strut_local_events *p = l->local;
   double works[STRUT_POWER_ROOM];
-  if (state->event_log || state->variation) return false;
+  if (state->event_log || state->variation || !(p->region.reach = find_reach(p, h))) return false;
   p->begin = l->now, p->end = l->next;
   p->start = t, p->span = h;
   p->seed_count = p->written_count = 0;
@@ -544,8 +577,12 @@ bool strut_local_events_take(const strut_model *model, strut_state *state, strut
   save_modes(model, l, p);
   bool good = p->seed_count > 0 && step_regions(model, state, l, p, t, dt, works);
   if (good) {
-    write_results(p, l->next);
     strut_update_active_set(model, l);
+    if (!model->mass->diagonal) {
+      add_far_motion(model, state, l, p->push_q, p->far_q, l->next->q);
+      add_far_motion(model, state, l, p->push_v, p->far_v, l->next->v);
+    }
+    write_results(p, l->next);
     evaluate_whole_end(model, state, l, t + h);
     strut_event_measure(model, state, l, l->next);
     for (int k = 0; k < STRUT_POWER_COUNT && state->ledger; k++) l->gained[k] += works[k];

@@ -110,7 +110,7 @@ STRUT_INLINE void region_accelerations(const strut_model *model, strut_state *st
   strut_local_events *p = l->within;
   if (l->closed_count)
     add_contact_forces(model, l, q, v, state->force, true, end, STRUT_TERMS_COMMON);
-  strut_local_region_divide(model, &p->map, &p->region, state->force, a);
+  strut_local_region_divide(model, &p->region, state->force, a);
   if (l->stuck_count) strut_local_hold(model, l, a, end);
   if (ledger && l->closed_count) add_contact_powers(model, state, l, end, STRUT_TERMS_COMMON);
 }
