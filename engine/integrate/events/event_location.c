@@ -26,8 +26,7 @@ STRUT_INLINE double gap_at_end(const strut_contact_table *c, const strut_event_s
   return strut_contact_pose_at(c, i, end->q, end->motion, facet).gap;
 }
 
-/* Does the event end the mode of a law, not of a contact? */
-static bool is_of_law(strut_event_kind kind) {
+bool strut_event_is_of_law(strut_event_kind kind) {
   return kind == STRUT_EVENT_ACTS || kind == STRUT_EVENT_KINK || kind == STRUT_EVENT_SLIDER ||
          kind == STRUT_EVENT_BREAK || kind == STRUT_EVENT_RELAY;
 }
@@ -46,7 +45,7 @@ STRUT_INLINE double law_value(const strut_event_stepper *l, const strut_step_end
 
 double strut_event_value(const strut_model *model, const strut_event_stepper *l,
                          const strut_step_end *end, strut_event_kind kind, int32_t i) {
-  if (is_of_law(kind)) return law_value(l, end, i);
+  if (strut_event_is_of_law(kind)) return law_value(l, end, i);
   const strut_contact_entry *e = &model->contacts.entry[i];
   const strut_touch *o = &end->touch[i];
   double s = l->side[i];
@@ -83,7 +82,7 @@ double strut_event_value(const strut_model *model, const strut_event_stepper *l,
 
 bool strut_event_rate(const strut_event_stepper *l, const strut_step_end *end,
                       strut_event_kind kind, int32_t i, double *rate) {
-  if (is_of_law(kind)) return false;
+  if (strut_event_is_of_law(kind)) return false;
   const strut_touch *o = &end->touch[i];
   switch (kind) {
     case STRUT_EVENT_OPEN: *rate = -o->into; return true;

@@ -55,8 +55,7 @@ static bool make_laws(const strut_model *model, strut_arena *arena, const strut_
   return true;
 }
 
-static bool make_scratch(const strut_model *model, strut_arena *arena, const strut_event_stepper *l,
-                         strut_local_events *p) {
+static bool make_scratch(const strut_model *model, strut_arena *arena, strut_local_events *p) {
   size_t contacts = (size_t)model->contacts.count, nodes = (size_t)model->node_count;
   double **all[] = {&p->quiet_q, &p->quiet_v, &p->more_q, &p->more_v, &p->own_q,
                     &p->own_v,   &p->push_q,  &p->push_v, &p->far_q,  &p->far_v};
@@ -72,10 +71,6 @@ static bool make_scratch(const strut_model *model, strut_arena *arena, const str
   p->mode = strut_arena_allocate(arena, contacts, 1);
   p->side = strut_arena_allocate(arena, contacts, 1);
   p->damper = strut_arena_allocate(arena, contacts, 1);
-  size_t switches = contacts + (size_t)l->law_count;
-  p->at_once = strut_arena_allocate(arena, switches, 1);
-  p->switched = strut_arena_allocate(arena, switches, sizeof *p->switched);
-  if (!p->at_once || !p->switched) return false;
   return good && p->written && p->seeds && p->changed && p->mode && p->side && p->damper;
 }
 
@@ -112,7 +107,8 @@ static bool make_stepper(const strut_model *model, strut_arena *arena, const str
   own->sliding = strut_arena_allocate(arena, contacts, sizeof *own->sliding);
   return own->closed && own->stuck && own->stuck_factor && own->stuck_work && own->body_seen &&
          own->sliding && p->answers && p->columns && p->answered && p->place && p->first &&
-         p->factored && strut_step_end_create(model, arena, own->now, false) &&
+         p->factored && strut_switch_counts_create(model, arena, own) &&
+         strut_step_end_create(model, arena, own->now, false) &&
          strut_step_end_create(model, arena, own->next, false);
 }
 
@@ -133,7 +129,7 @@ strut_status strut_local_events_create(const strut_model *model, strut_state *st
   if (!p || strut_local_region_map_create(model, arena, &p->map) ||
       strut_local_region_create(model, &p->map, arena, &p->region) ||
       !make_members(model, arena, p) || !make_laws(model, arena, l, p) ||
-      !make_scratch(model, arena, l, p) || !make_stepper(model, arena, l, p))
+      !make_scratch(model, arena, p) || !make_stepper(model, arena, l, p))
     return STRUT_NO_MEMORY;
   double left = LEFT;
   if (l->stepper->adaptive) left = fmin(left, OF_TOLERANCE * settings->tolerance);
@@ -286,27 +282,6 @@ void strut_local_hold(const strut_model *model, strut_event_stepper *l, double *
   }
 }
 
-/* ---- switches at one moment ---- */
-
-static void forget_switches(strut_local_events *p) {
-  for (int32_t k = 0; k < p->switched_count; k++) p->at_once[p->switched[k]] = 0;
-  p->switched_count = p->most_at_once = 0;
-}
-
-int strut_local_most_at_once(const strut_event_stepper *l) {
-  return l->at_once ? l->within->most_at_once : 0;
-}
-
-void strut_local_count_switch(const strut_model *model, strut_event_stepper *l,
-                              const strut_event *event, bool moved) {
-  strut_local_events *p = l->within;
-  if (moved || l->at_once == 1) forget_switches(p); /* after a step: that of the count before */
-  int32_t i = event->index + (event->kind == STRUT_EVENT_ACTS ? model->contacts.count : 0);
-  if (!p->at_once[i]) p->switched[p->switched_count++] = i;
-  if (p->at_once[i] < UINT8_MAX) p->at_once[i]++;
-  if (p->at_once[i] > p->most_at_once) p->most_at_once = p->at_once[i];
-}
-
 /* ---- one region over the step ---- */
 
 static void copy_pairs(const int32_t *node, int32_t count, const double *from, double *to) {
@@ -336,7 +311,6 @@ static void begin_region(const strut_model *model, strut_state *state, const str
   strut_event_stepper *own = &p->own;
   own->fresh = false;
   own->at_once = own->switches = 0;
-  forget_switches(p);
   own->pushed = -1;
   own->tried = false;
   own->h = 0.0, own->fastest = l->fastest, own->longest = l->longest;

@@ -46,8 +46,6 @@ typedef struct strut_local_events {
   bool far, failed;       /* something changed far out; the region cannot be stepped alone */
   uint8_t *mode, *acting; /* (contacts), (laws) at the beginning of the step */
   int8_t *side, *damper;
-  uint8_t *at_once; /* (contacts, then laws) switches without a step between them */
-  int32_t *switched, switched_count, most_at_once; /* those, and the most often */
   int64_t evaluated; /* nodes, since so many counted as an evaluation of the forces */
 } strut_local_events;
 
