@@ -268,6 +268,17 @@ static void scale_rows(strut_local_region *r) {
   for (int32_t k = 0; k < r->node_count; k++) r->inverse[k] *= r->inverse[k];
 }
 
+/* Sum of a[m] b[m] over `count` columns, in four parts. */
+STRUT_INLINE double dot_rows(const double *a, const double *b, int32_t count) {
+  strut_lanes part = {0};
+  double rest = 0.0;
+  int32_t m = 0;
+  for (; m + STRUT_LANES <= count; m += STRUT_LANES)
+    part += strut_lanes_load(a + m) * strut_lanes_load(b + m);
+  for (; m < count; m++) rest += a[m] * b[m];
+  return (part[0] + part[1]) + (part[2] + part[3]) + rest;
+}
+
 STRUT_CLONES
 static bool factor_region(const strut_local_region_map *map, strut_local_region *r) {
   if (!place_rows(map, r)) return false;
@@ -284,13 +295,8 @@ static bool factor_region(const strut_local_region_map *map, strut_local_region 
     for (int32_t j = begin; j < k; j++) {
       const double *left = r->lower + r->row[j];
       int32_t from = r->first[j];
-      int32_t m = begin > from ? begin : from;
-      double sum = row[j - begin];
-      strut_lanes part = {0};
-      for (; m + STRUT_LANES <= j; m += STRUT_LANES)
-        part += strut_lanes_load(row + m - begin) * strut_lanes_load(left + m - from);
-      for (; m < j; m++) sum -= row[m - begin] * left[m - from];
-      sum -= (part[0] + part[1]) + (part[2] + part[3]);
+      int32_t both = begin > from ? begin : from;
+      double sum = row[j - begin] - dot_rows(row + both - begin, left + both - from, j - both);
       sum *= r->inverse[j];
       row[j - begin] = sum;
       diagonal -= sum * sum;
