@@ -80,6 +80,37 @@ static void test_blocks_stop_where_coulomb_says(void **unused) {
   }
 }
 
+/* ---- many switches at one moment, by steps of the whole ---- */
+
+/* Of `adaptive`, whose steps after events differ with their number. */
+static const double TOLERANCE = 1e-9;
+
+/* Blocks that fall from one height all touch and open at once; each moves as it would alone. */
+static void test_blocks_that_touch_at_once_move_as_one(void **unused) {
+  (void)unused;
+  static const char *const methods[] = {"rk4-events", "adaptive", "verlet-events"};
+  for (int k = 0; k < 3; k++) {
+    double alone[2] = {0.0, 0.0};
+    for (int blocks = 1; blocks <= BLOCKS; blocks += BLOCKS - 1) {
+      strut_scene scene;
+      motion m;
+      strut_scene_init(&scene);
+      scene.gravity[1] = -G;
+      for (int i = 0; i < blocks; i++)
+        build_contact(&scene, build_mass(&scene, i, 0.0123, 1.0), GROUND, 20.0);
+      begin(&m, &scene, methods[k], 1e-3, TOLERANCE, BY_THE_WHOLE);
+      motion_steps(&m, 100);
+      if (blocks == 1) alone[0] = m.state->q[1], alone[1] = m.state->v[1];
+      for (int i = 0; i < blocks; i++) {
+        assert_near(m.state->q[2 * i + 1], alone[0], TOLERANCE);
+        assert_near(m.state->v[2 * i + 1], alone[1], 1e3 * TOLERANCE);
+      }
+      motion_end(&m);
+      strut_scene_free(&scene);
+    }
+  }
+}
+
 /* ---- random grids ---- */
 
 static void add_member(strut_scene *scene, uint64_t *random, int32_t from, int32_t to, bool cable) {
@@ -194,8 +225,17 @@ static void test_grids_fall_as_by_steps_of_the_whole(void **unused) {
     for (int law = 0; law < LAWS; law++) compare(1 + (uint64_t)law, law, lumped);
 }
 
+/* Contacts at rest that let go and hold again: forces have kinks where a threshold is passed. */
+static void test_grids_on_yielding_contacts_fall_so_too(void **unused) {
+  (void)unused;
+  for (uint64_t seed = 1; seed <= 8; seed++) compare(seed, 2, true);
+  compare(23, 2, true);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_blocks_stop_where_coulomb_says),
-                                     cmocka_unit_test(test_grids_fall_as_by_steps_of_the_whole)};
+                                     cmocka_unit_test(test_blocks_that_touch_at_once_move_as_one),
+                                     cmocka_unit_test(test_grids_fall_as_by_steps_of_the_whole),
+                                     cmocka_unit_test(test_grids_on_yielding_contacts_fall_so_too)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -26,8 +26,7 @@ STRUT_INLINE double gap_at_end(const strut_contact_table *c, const strut_event_s
   return strut_contact_pose_at(c, i, end->q, end->motion, facet).gap;
 }
 
-/* Does the event end the mode of a law, not of a contact? */
-static bool is_of_law(strut_event_kind kind) {
+bool strut_event_is_of_law(strut_event_kind kind) {
   return kind == STRUT_EVENT_ACTS || kind == STRUT_EVENT_KINK || kind == STRUT_EVENT_SLIDER ||
          kind == STRUT_EVENT_BREAK || kind == STRUT_EVENT_RELAY;
 }
@@ -46,7 +45,7 @@ STRUT_INLINE double law_value(const strut_event_stepper *l, const strut_step_end
 
 double strut_event_value(const strut_model *model, const strut_event_stepper *l,
                          const strut_step_end *end, strut_event_kind kind, int32_t i) {
-  if (is_of_law(kind)) return law_value(l, end, i);
+  if (strut_event_is_of_law(kind)) return law_value(l, end, i);
   const strut_contact_entry *e = &model->contacts.entry[i];
   const strut_touch *o = &end->touch[i];
   double s = l->side[i];
@@ -83,7 +82,7 @@ double strut_event_value(const strut_model *model, const strut_event_stepper *l,
 
 bool strut_event_rate(const strut_event_stepper *l, const strut_step_end *end,
                       strut_event_kind kind, int32_t i, double *rate) {
-  if (is_of_law(kind)) return false;
+  if (strut_event_is_of_law(kind)) return false;
   const strut_touch *o = &end->touch[i];
   switch (kind) {
     case STRUT_EVENT_OPEN: *rate = -o->into; return true;
@@ -139,6 +138,26 @@ static double room_to_leave(const strut_model *model, const strut_event_stepper 
   return room < faint && rate > -balanced ? faint : room;
 }
 
+/* Rates of the value of a cable's law at both ends of a region's step, that of the stretch's own rate by a secant;
+   false where they are not known, or not alike at both ends. */
+static bool cable_rates(const strut_event_stepper *l, int32_t i, double h, double *d0, double *d1) {
+  const strut_law_switch *law = &l->laws[i];
+  if (!l->within || law->event != STRUT_EVENT_ACTS || law->member < 0 || !(law->stiffness > 0.0))
+    return false;
+  const strut_step_end *a = l->now, *b = l->next;
+  double k = law->stiffness, d = law->damping, sign = l->acting[i] ? 1.0 : -1.0;
+  bool elastic[2] = {false};
+  if (!l->acting[i] || law->abrupt) {
+    elastic[0] = k * a->stretch[i] < a->tension[i];
+    elastic[1] = k * b->stretch[i] < b->tension[i];
+  }
+  if (elastic[0] != elastic[1]) return false;
+  double bend = elastic[0] ? 0.0 : d * (b->stretch_rate[i] - a->stretch_rate[i]) / h;
+  *d0 = sign * (k * a->stretch_rate[i] + bend);
+  *d1 = sign * (k * b->stretch_rate[i] + bend);
+  return true;
+}
+
 /* Where between now and next the event's value passes 0. */
 static double fraction_of(const strut_model *model, const strut_event_stepper *l,
                           strut_event_kind kind, int32_t i, double h) {
@@ -155,6 +174,8 @@ static double fraction_of(const strut_model *model, const strut_event_stepper *l
   }
   if (strut_event_rate(l, l->now, kind, i, &d0) && strut_event_rate(l, l->next, kind, i, &d1))
     return cubic_root(g0, h * d0, g1, h * d1);
+  if (kind == STRUT_EVENT_ACTS && cable_rates(l, i, h, &d0, &d1))
+    return cubic_root(g0, h * d0, g1, h * d1);
   return g0 / (g0 - g1);
 }
 
@@ -165,13 +186,45 @@ static void keep_first(const strut_model *model, const strut_event_stepper *l,
   *first = (strut_event){kind, i, fraction};
 }
 
-static void measure_cable(const strut_model *model, const strut_state *state, int32_t j,
-                          const strut_step_end *end, int32_t k) {
+/* Cables `k`, STRUT_LANES of them side by side, with the bits of strut_member_pose_at. */
+STRUT_INLINE void measure_cables_group(const strut_model *model, const strut_state *state,
+                                       const strut_event_stepper *l, const strut_step_end *end,
+                                       const int32_t *k) {
   const strut_member_table *t = &model->members;
-  strut_member_pose pose = strut_member_pose_at(t, state->rest, j, end->q);
-  end->stretch[k] = pose.stretch;
-  end->stretch_rate[k] = strut_member_rate(t, j, &pose, end->v) - state->rest_rate[j];
-  end->tension[k] = t->stiffness[j] * end->stretch[k] + t->damping[j] * end->stretch_rate[k];
+  uint32_t from[STRUT_LANES], to[STRUT_LANES];
+  strut_lanes rest, rest_rate, stiffness, damping;
+  for (int n = 0; n < STRUT_LANES; n++) {
+    int32_t j = l->laws[k[n]].member;
+    from[n] = t->from[j], to[n] = t->to[j];
+    rest[n] = state->rest[j], rest_rate[n] = state->rest_rate[j];
+    stiffness[n] = t->stiffness[j], damping[n] = t->damping[j];
+  }
+  member_vectors d = members_gather(end->q, from, to), w = members_gather(end->v, from, to);
+  strut_lanes length = members_root(d.x * d.x + d.y * d.y);
+  strut_lanes inverse = strut_lanes_choose(length > 0.0, 1.0 / length, (strut_lanes){0});
+  strut_lanes stretch = length - rest;
+  strut_lanes rate = (w.x * d.x + w.y * d.y) * inverse - rest_rate;
+  strut_lanes tension = stiffness * stretch + damping * rate;
+  for (int n = 0; n < STRUT_LANES; n++) {
+    end->stretch[k[n]] = stretch[n];
+    end->stretch_rate[k[n]] = rate[n];
+    end->tension[k[n]] = tension[n];
+  }
+}
+
+/* The first `count` laws, or those of a list, which all are cables; the last group repeats one. */
+STRUT_CLONES
+static void measure_cables(const strut_model *model, const strut_state *state,
+                           const strut_event_stepper *l, const strut_step_end *end,
+                           const int32_t *list, int32_t count) {
+  for (int32_t n = 0; n < count; n += STRUT_LANES) {
+    int32_t k[STRUT_LANES];
+    for (int32_t m = 0; m < STRUT_LANES; m++) {
+      int32_t place = n + m < count ? n + m : count - 1;
+      k[m] = list ? list[place] : place;
+    }
+    measure_cables_group(model, state, l, end, k);
+  }
 }
 
 /* Of an element that carries one sign, with that sign; of kinks, the margins of the piece. */
@@ -202,15 +255,13 @@ static void measure_relay(const strut_model *model, const strut_state *state,
   end->tension[k] = strut_relay_margin(model, state, law->relay - 1, now, end->v);
 }
 
-/* The rest lengths are those of the end. */
+/* The rest lengths are those of the end. Laws of a list are cables, and of all laws the first ones. */
 static void measure_laws(const strut_model *model, const strut_state *state,
                          const strut_event_stepper *l, const strut_step_end *end) {
-  int32_t count = strut_laws_of(l);
-  for (int32_t n = 0; n < count; n++) {
-    int32_t k = strut_law_of(l, n);
-    if (l->laws[k].member >= 0)
-      measure_cable(model, state, l->laws[k].member, end, k);
-    else if (l->laws[k].event == STRUT_EVENT_RELAY)
+  int32_t cables = l->law_list ? l->law_list_count : l->cable_count;
+  measure_cables(model, state, l, end, l->law_list, cables);
+  for (int32_t k = cables; k < l->law_count && !l->law_list; k++) {
+    if (l->laws[k].event == STRUT_EVENT_RELAY)
       measure_relay(model, state, &l->laws[k], end, k);
     else if (l->laws[k].event >= STRUT_EVENT_SLIDER || l->laws[k].whole)
       strut_memory_measure(model, state, l, end, k);

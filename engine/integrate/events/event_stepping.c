@@ -17,8 +17,8 @@
 
 /* A root this close to where the step begins, in grid steps, is there already. */
 static const double AT_ONCE = 1e-9;
-/* After so many switches without a step, or within one step of the grid, one is taken whatever the
-   modes say: switches may follow each other faster and faster without end (Zeno). */
+/* After so many switches of one contact or law without a step, or of all within one step of the grid, one is taken
+   whatever the modes say: switches may follow each other faster and faster without end (Zeno). */
 enum { MOST_AT_ONCE = 8, MOST_TRIALS = 60 };
 
 /* What contacts of surfaces need beside the others. */
@@ -84,6 +84,7 @@ static bool list_laws(const strut_model *model, strut_state *state, strut_event_
                                                    .element = -1,
                                                    .stiffness = t->stiffness[j],
                                                    .damping = t->damping[j]};
+  l->cable_count = l->law_count;
   for (int32_t i = 0; i < model->elements.count; i++) {
     const strut_element *e = &model->elements.element[i];
     double natural = strut_element_start(model, i);
@@ -110,6 +111,15 @@ static bool list_laws(const strut_model *model, strut_state *state, strut_event_
   return true;
 }
 
+bool strut_switch_counts_create(const strut_model *model, strut_arena *arena,
+                                strut_event_stepper *l) {
+  size_t switches = (size_t)model->contacts.count + (size_t)l->law_count;
+  strut_switch_counts *c = &l->counts;
+  c->times = strut_arena_allocate(arena, switches, sizeof *c->times);
+  c->switched = strut_arena_allocate(arena, switches, sizeof *c->switched);
+  return c->times && c->switched;
+}
+
 /* Contact forces for whoever looks on. */
 static bool make_held(const strut_model *model, strut_state *state) {
   size_t contacts = (size_t)model->contacts.count;
@@ -130,7 +140,8 @@ void *strut_event_stepper_create(const strut_model *model, strut_state *state,
   l->tolerance = settings->tolerance;
   if (!strut_step_end_create(model, &state->arena, l->now, true) ||
       !strut_step_end_create(model, &state->arena, l->next, false) ||
-      !make_arrays(model, state, l) || !list_laws(model, state, l) || !make_held(model, state) ||
+      !make_arrays(model, state, l) || !list_laws(model, state, l) ||
+      !strut_switch_counts_create(model, &state->arena, l) || !make_held(model, state) ||
       strut_small_modes_create(model, state, l) ||
       strut_event_stepper_prepare(model, state, settings, l) ||
       strut_local_events_create(model, state, settings, l))
@@ -256,9 +267,13 @@ static bool stagnant(const search *s) {
 }
 
 /* Near enough for a region, which is joined to the step of the whole with an error of its own: what is left is
-   below a thousandth of what the method leaves. */
-static bool is_near(const search *s, double rate) {
+   below a thousandth of what the method leaves. A creeping contact that is tied to the edge is there, too. */
+static bool is_near(const strut_event_stepper *l, const strut_event *event, const search *s,
+                    double rate) {
   double slope = rate != 0.0 ? rate : (s->value - s->last_value) / (s->x - s->last_x);
+  if (event->kind == STRUT_EVENT_CREEP_IN &&
+      fabs(s->value) <= 2.0 * TIED * l->next->touch[event->index].normal)
+    return true;
   return fabs(s->value) <= 1e-8 * fabs(slope);
 }
 
@@ -272,6 +287,29 @@ static bool tied_at_edge(const strut_model *model, const strut_event *event, dou
          value > 0.5 * TIED * stick_band_edge(&model->contacts.entry[event->index]);
 }
 
+static bool is_above_threshold(const strut_friction *f, const strut_touch *o) {
+  return fabs(o->applied) > strut_friction_static(f, o->applied) * o->normal;
+}
+
+/*
+ * May the end of a region's step be moved, instead of taking it again? Not far, and not where a force has had a kink on
+ * the way, which the polynomial of both ends does not know: a contact within its band is held by as much as acts on it,
+ * up to its threshold, where its mode may end.
+ */
+static bool may_shift(const strut_model *model, const strut_event_stepper *l, double from,
+                      double to) {
+  if (!l->within || fabs(to - from) > STRUT_LOCAL_SHIFT * from) return false;
+  for (int32_t k = 0; k < l->closed_count; k++) {
+    int32_t i = l->closed[k];
+    const strut_friction *f = &model->contacts.entry[i].friction;
+    if (l->mode[i] == STRUT_MODE_YIELD) return false;
+    if (l->mode[i] != STRUT_MODE_BAND) continue;
+    bool before = !strut_friction_drops(f) && is_above_threshold(f, &l->now->touch[i]);
+    if (is_above_threshold(f, &l->next->touch[i]) != before) return false;
+  }
+  return true;
+}
+
 /*
  * Takes the step again up to the event. Returns the length taken; l->next is its end. Exact steppers
  * go on until the root is known to 1e-13 of the step, or to rounding.
@@ -281,9 +319,14 @@ static double retake(const strut_model *model, strut_state *state, strut_event_s
   double before = strut_event_value(model, l, l->now, event->kind, event->index);
   double after = strut_event_value(model, l, l->next, event->kind, event->index);
   search s = begin_search(before, 1.0, after, event->fraction);
+  double reached = 1.0; /* the part of the step at whose end l->next is */
   for (int k = 0; k < MOST_TRIALS && s.x * h > 0.0; k++) {
     if (l->stepper->predict) l->stepper->predict(model, l, s.x * h);
-    l->stepper->trial(model, state, l, t, s.x * h);
+    if (may_shift(model, l, reached, s.x))
+      strut_local_shift(model, state, l, t, reached * h, s.x * h);
+    else
+      l->stepper->trial(model, state, l, t, s.x * h);
+    reached = s.x;
     if (!l->stepper->exact) break;
     strut_event other = strut_event_first(model, state, l, s.x * h);
     bool same = other.kind == event->kind && other.index == event->index;
@@ -299,7 +342,7 @@ static double retake(const strut_model *model, strut_state *state, strut_event_s
     if (strut_event_rate(l, l->next, event->kind, event->index, &rate)) rate *= h;
     if (fabs(s.value) <= 1e-13 * fabs(rate)) break;
     bool tied = tied_at_edge(model, event, s.value);
-    if (l->within && !tied && is_near(&s, rate)) break;
+    if (l->within && !tied && is_near(l, event, &s, rate)) break;
     if (s.value == 0.0 || (k > 0 && !tied && stagnant(&s))) break;
     if (tied && s.high - s.x <= BALANCED) break;
     double x = l->within && rate == 0.0 ? next_by_parabola(&s) : next_point(&s, rate);
@@ -351,10 +394,23 @@ static void accept_within(strut_state *state, strut_event_stepper *l) {
   for (int p = 0; p < STRUT_POWER_COUNT && state->ledger; p++) state->work[p] += l->gained[p];
 }
 
-/* Must a step be taken whatever the modes say? In a region many may change at once, none many times. */
+/* Counts an event; moved: a step has led to it. */
+static void count_switch(const strut_model *model, strut_event_stepper *l, const strut_event *event,
+                         bool moved) {
+  strut_switch_counts *c = &l->counts;
+  if (moved || l->at_once == 1) { /* after a step: that of the count before */
+    for (int32_t k = 0; k < c->count; k++) c->times[c->switched[k]] = 0;
+    c->count = c->most = 0;
+  }
+  int32_t i = event->index + (strut_event_is_of_law(event->kind) ? model->contacts.count : 0);
+  if (!c->times[i]) c->switched[c->count++] = i;
+  if (c->times[i] < UINT8_MAX) c->times[i]++;
+  if (c->times[i] > c->most) c->most = c->times[i];
+}
+
+/* Must a step be taken whatever the modes say? */
 static bool must_step(const strut_event_stepper *l) {
-  int at_once = l->within ? strut_local_most_at_once(l) : l->at_once;
-  return at_once >= MOST_AT_ONCE || l->switches >= STRUT_MOST_SWITCHES;
+  return (l->at_once > 0 && l->counts.most >= MOST_AT_ONCE) || l->switches >= STRUT_MOST_SWITCHES;
 }
 
 /* One trial over at most h at time t; handles rejection and events. Returns the time gone, 0 if none. */
@@ -404,7 +460,7 @@ STRUT_INLINE double step_piece(const strut_model *model, strut_state *state, str
       switch_relay(model, state, l, l->laws[event.index].relay - 1, t + h);
     state->events++;
     l->switches++;
-    if (l->within) strut_local_count_switch(model, l, &event, h > 0.0);
+    count_switch(model, l, &event, h > 0.0);
   } else if (force) {
     strut_modes_start(model, state, l, t + h);
   } else if (strut_modes_after_step(model, l)) {

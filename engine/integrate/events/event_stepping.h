@@ -160,6 +160,14 @@ typedef struct strut_step_formula {
                        double h, double broken);
 } strut_step_formula;
 
+/** Who has switched since the latest step: many may do so at one moment, but none many times. */
+typedef struct strut_switch_counts {
+  uint8_t *times;    /* (contacts, then laws) */
+  int32_t *switched; /* (count) those that are not 0 */
+  int32_t count;
+  int most; /* the largest of them */
+} strut_switch_counts;
+
 /** Workspace of a method with events; in the state's arena. */
 struct strut_event_stepper {
   const strut_step_formula *stepper;
@@ -182,8 +190,8 @@ struct strut_event_stepper {
   int32_t *stuck, stuck_count, stuck_room; /* contacts in STICK or CREEP */
   double *stuck_factor;   /* (stuck_count, stuck_count) Cholesky factor of T' M^-1 T */
   double *stuck_work;     /* (stuck_room) */
-  strut_law_switch *laws; /* (law_count) */
-  int32_t law_count;
+  strut_law_switch *laws; /* (law_count), cables first */
+  int32_t law_count, cable_count;
   uint8_t *acting;                           /* (laws) of those without kinks */
   double *scatter;                           /* (length) scratch, zero between uses */
   double wanted_step;                        /* of the settings [s] */
@@ -196,8 +204,9 @@ struct strut_event_stepper {
                                [s]; INFINITY: never */
   bool fresh;        /* now.structure holds for now */
   bool started;
-  double done;      /* of the grid step under way [s] */
-  int at_once;      /* switches since the latest step */
+  double done; /* of the grid step under way [s] */
+  int at_once; /* switches since the latest step */
+  strut_switch_counts counts;
   int32_t pushed;   /* contact that passed its threshold last, or -1 */
   double pushed_at; /* when that was [s] */
   int switches;     /* since the latest grid point */
@@ -255,6 +264,10 @@ double strut_event_stepper_piece(const strut_model *model, strut_state *state,
 bool strut_step_end_create(const strut_model *model, strut_arena *arena, strut_step_end *end,
                            bool borrowed);
 
+/** After the laws have been listed. */
+bool strut_switch_counts_create(const strut_model *model, strut_arena *arena,
+                                strut_event_stepper *l);
+
 /* ---- parts of it, in contact_compliance.c, contact_modes.c and event_location.c ---- */
 
 /** Responses, settling times, refinement. STRUT_OK or STRUT_NO_MEMORY. */
@@ -283,6 +296,8 @@ typedef struct strut_event {
   double fraction; /* of the step, by interpolation */
 } strut_event;
 
+/** Does the event end the mode of a law, not of a contact? */
+bool strut_event_is_of_law(strut_event_kind kind);
 /** The earliest event between now and next, a step h apart; kind NONE if every mode holds. */
 strut_event strut_event_first(const strut_model *model, const strut_state *state,
                               const strut_event_stepper *l, double h);

@@ -55,10 +55,10 @@ static bool make_laws(const strut_model *model, strut_arena *arena, const strut_
   return true;
 }
 
-static bool make_scratch(const strut_model *model, strut_arena *arena, const strut_event_stepper *l,
-                         strut_local_events *p) {
+static bool make_scratch(const strut_model *model, strut_arena *arena, strut_local_events *p) {
   size_t contacts = (size_t)model->contacts.count, nodes = (size_t)model->node_count;
-  double **all[] = {&p->quiet_q, &p->quiet_v, &p->more_q, &p->more_v, &p->own_q, &p->own_v};
+  double **all[] = {&p->quiet_q, &p->quiet_v, &p->more_q, &p->more_v, &p->own_q,
+                    &p->own_v,   &p->push_q,  &p->push_v, &p->far_q,  &p->far_v};
   uint8_t **marks[] = {&p->seed, &p->joined, &p->regions, &p->inside};
   bool good = true;
   for (size_t k = 0; k < sizeof all / sizeof *all && good; k++)
@@ -71,10 +71,6 @@ static bool make_scratch(const strut_model *model, strut_arena *arena, const str
   p->mode = strut_arena_allocate(arena, contacts, 1);
   p->side = strut_arena_allocate(arena, contacts, 1);
   p->damper = strut_arena_allocate(arena, contacts, 1);
-  size_t switches = contacts + (size_t)l->law_count;
-  p->at_once = strut_arena_allocate(arena, switches, 1);
-  p->switched = strut_arena_allocate(arena, switches, sizeof *p->switched);
-  if (!p->at_once || !p->switched) return false;
   return good && p->written && p->seeds && p->changed && p->mode && p->side && p->damper;
 }
 
@@ -111,7 +107,8 @@ static bool make_stepper(const strut_model *model, strut_arena *arena, const str
   own->sliding = strut_arena_allocate(arena, contacts, sizeof *own->sliding);
   return own->closed && own->stuck && own->stuck_factor && own->stuck_work && own->body_seen &&
          own->sliding && p->answers && p->columns && p->answered && p->place && p->first &&
-         p->factored && strut_step_end_create(model, arena, own->now, false) &&
+         p->factored && strut_switch_counts_create(model, arena, own) &&
+         strut_step_end_create(model, arena, own->now, false) &&
          strut_step_end_create(model, arena, own->next, false);
 }
 
@@ -132,13 +129,16 @@ strut_status strut_local_events_create(const strut_model *model, strut_state *st
   if (!p || strut_local_region_map_create(model, arena, &p->map) ||
       strut_local_region_create(model, &p->map, arena, &p->region) ||
       !make_members(model, arena, p) || !make_laws(model, arena, l, p) ||
-      !make_scratch(model, arena, l, p) || !make_stepper(model, arena, l, p))
+      !make_scratch(model, arena, p) || !make_stepper(model, arena, l, p))
     return STRUT_NO_MEMORY;
   double left = LEFT;
   if (l->stepper->adaptive) left = fmin(left, OF_TOLERANCE * settings->tolerance);
-  int reach = strut_local_reach(model, &p->map, settings->step, left);
-  if (!reach) return STRUT_OK;
-  p->region.reach = reach + STRUT_LOCAL_MARGIN;
+  strut_local_passing passing;
+  if (strut_local_passing_find(model, &p->map, &passing)) return STRUT_NO_MEMORY;
+  p->longest = settings->step;
+  for (int k = 0; k < STRUT_LOCAL_HALVINGS; k++)
+    p->reach[k] = strut_local_reach(&passing, ldexp(p->longest, -k), left);
+  if (!p->reach[STRUT_LOCAL_HALVINGS - 1]) return STRUT_OK;
   l->local = p;
   return STRUT_OK;
 }
@@ -282,27 +282,6 @@ void strut_local_hold(const strut_model *model, strut_event_stepper *l, double *
   }
 }
 
-/* ---- switches at one moment ---- */
-
-static void forget_switches(strut_local_events *p) {
-  for (int32_t k = 0; k < p->switched_count; k++) p->at_once[p->switched[k]] = 0;
-  p->switched_count = p->most_at_once = 0;
-}
-
-int strut_local_most_at_once(const strut_event_stepper *l) {
-  return l->at_once ? l->within->most_at_once : 0;
-}
-
-void strut_local_count_switch(const strut_model *model, strut_event_stepper *l,
-                              const strut_event *event, bool moved) {
-  strut_local_events *p = l->within;
-  if (moved || l->at_once == 1) forget_switches(p); /* after a step: that of the count before */
-  int32_t i = event->index + (event->kind == STRUT_EVENT_ACTS ? model->contacts.count : 0);
-  if (!p->at_once[i]) p->switched[p->switched_count++] = i;
-  if (p->at_once[i] < UINT8_MAX) p->at_once[i]++;
-  if (p->at_once[i] > p->most_at_once) p->most_at_once = p->at_once[i];
-}
-
 /* ---- one region over the step ---- */
 
 static void copy_pairs(const int32_t *node, int32_t count, const double *from, double *to) {
@@ -332,7 +311,6 @@ static void begin_region(const strut_model *model, strut_state *state, const str
   strut_event_stepper *own = &p->own;
   own->fresh = false;
   own->at_once = own->switches = 0;
-  forget_switches(p);
   own->pushed = -1;
   own->tried = false;
   own->h = 0.0, own->fastest = l->fastest, own->longest = l->longest;
@@ -380,9 +358,20 @@ static bool step_with_events(const strut_model *model, strut_state *state, strut
   return false;
 }
 
+/* By how much the region's end differs from that without events; and what its masses do to its rim. */
+static void pass_on(const strut_local_region *r, const double *end, const double *quiet,
+                    double *push) {
+  for (int32_t k = 0; k < r->node_count && r->joint_count; k++)
+    for (int32_t c = 0; c < 2; c++)
+      r->pair[2 * k + c] = end[2 * r->node[k] + c] - quiet[2 * r->node[k] + c];
+  strut_local_region_pass_on(r, r->pair, push);
+}
+
 /* What the region adds to the step of the whole. */
 static void keep_result(strut_local_events *p) {
   const strut_local_region *r = &p->region;
+  pass_on(r, p->own.now->q, p->quiet_q, p->push_q);
+  pass_on(r, p->own.now->v, p->quiet_v, p->push_v);
   const strut_step_end *end = p->own.now;
   for (int32_t k = 0; k < r->node_count; k++) {
     int32_t node = r->node[k];
@@ -499,6 +488,8 @@ static bool step_regions(const strut_model *model, strut_state *state, strut_eve
   for (int attempt = 0; attempt < MOST_ATTEMPTS; attempt++) {
     state->events = events;
     memset(works, 0, STRUT_POWER_ROOM * sizeof *works);
+    memset(p->push_q, 0, (size_t)model->length * sizeof *p->push_q);
+    memset(p->push_v, 0, (size_t)model->length * sizeof *p->push_v);
     forget_results(p);
     bool good = true;
     for (int32_t k = 0; k < p->seed_count && good; k++)
@@ -512,6 +503,15 @@ static bool step_regions(const strut_model *model, strut_state *state, strut_eve
   }
   state->events = events;
   return false;
+}
+
+/* x += M^-1 push, where what sticks keeps its place: regions have been stepped with their rims as they move without
+   events, and this lets go of them. */
+static void add_far_motion(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                           const double *push, double *far, double *x) {
+  strut_mass_solve(model, push, far, state->scratch);
+  if (l->stuck_count) strut_solve_stick_constraints(model, l, far, l->next);
+  for (int32_t i = 0; i < 2 * model->node_count; i++) x[i] += far[i];
 }
 
 static void write_results(const strut_local_events *p, const strut_step_end *next) {
@@ -532,11 +532,18 @@ static void evaluate_whole_end(const strut_model *model, strut_state *state, str
   evaluate_step_end(model, state, l, t, l->next, STRUT_TERMS_COMMON, state->ledger);
 }
 
+/* The region's reach for a step of h, by the next longer one that has been prepared; 0: too far. */
+static int find_reach(const strut_local_events *p, double h) {
+  int k = 0;
+  while (k + 1 < STRUT_LOCAL_HALVINGS && h <= ldexp(p->longest, -k - 1)) k++;
+  return p->reach[k] ? p->reach[k] + STRUT_LOCAL_MARGIN : 0;
+}
+
 bool strut_local_events_take(const strut_model *model, strut_state *state, strut_event_stepper *l,
                              double t, double h, double dt) {
   strut_local_events *p = l->local;
   double works[STRUT_POWER_ROOM];
-  if (state->event_log || state->variation) return false;
+  if (state->event_log || state->variation || !(p->region.reach = find_reach(p, h))) return false;
   p->begin = l->now, p->end = l->next;
   p->start = t, p->span = h;
   p->seed_count = p->written_count = 0;
@@ -544,8 +551,12 @@ bool strut_local_events_take(const strut_model *model, strut_state *state, strut
   save_modes(model, l, p);
   bool good = p->seed_count > 0 && step_regions(model, state, l, p, t, dt, works);
   if (good) {
-    write_results(p, l->next);
     strut_update_active_set(model, l);
+    if (!model->mass->diagonal) {
+      add_far_motion(model, state, l, p->push_q, p->far_q, l->next->q);
+      add_far_motion(model, state, l, p->push_v, p->far_v, l->next->v);
+    }
+    write_results(p, l->next);
     evaluate_whole_end(model, state, l, t + h);
     strut_event_measure(model, state, l, l->next);
     for (int k = 0; k < STRUT_POWER_COUNT && state->ledger; k++) l->gained[k] += works[k];

@@ -31,11 +31,14 @@ bool strut_local_events_take(const strut_model *model, strut_state *state, strut
 /** As evaluate_now of contact_modes.c. */
 void strut_local_evaluate(const strut_model *model, strut_state *state, strut_event_stepper *l,
                           double t);
-/** Switches at the present moment of the one that has switched most often. */
-int strut_local_most_at_once(const strut_event_stepper *l);
-/** Counts an event for that; moved: a step has led to it. */
-void strut_local_count_switch(const strut_model *model, strut_event_stepper *l,
-                              const strut_event *event, bool moved);
+/** Ends of a region's steps are shifted by up to this part of them. */
+static const double STRUT_LOCAL_SHIFT = 1e-3;
+/**
+ * l->next, the end of a step of `from` from l->now at time t, becomes that of a step of `to`: by the polynomial that
+ * has speeds and accelerations of both ends, whose error there is far below that of the step.
+ */
+void strut_local_shift(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                       double t, double from, double to);
 /** Factors T' M^-1 T of the stuck contacts of the region. */
 void strut_local_factor(const strut_model *model, strut_event_stepper *l);
 /** As strut_solve_stick_constraints. */

@@ -110,7 +110,7 @@ STRUT_INLINE void region_accelerations(const strut_model *model, strut_state *st
   strut_local_events *p = l->within;
   if (l->closed_count)
     add_contact_forces(model, l, q, v, state->force, true, end, STRUT_TERMS_COMMON);
-  strut_local_region_divide(model, &p->map, &p->region, state->force, a);
+  strut_local_region_divide(model, &p->region, state->force, a);
   if (l->stuck_count) strut_local_hold(model, l, a, end);
   if (ledger && l->closed_count) add_contact_powers(model, state, l, end, STRUT_TERMS_COMMON);
 }
@@ -245,4 +245,40 @@ void strut_local_trial(const strut_model *model, strut_state *state, strut_event
     take_with_ledger(model, state, l, t, h);
   else
     take_without_ledger(model, state, l, t, h);
+}
+
+/* ---- a step's end a little earlier or later ---- */
+
+STRUT_INLINE void shift_nodes(const strut_event_stepper *l, double from, double d) {
+  const strut_local_region *r = &l->within->region;
+  const strut_step_end *now = l->now, *next = l->next;
+  double d2 = 0.5 * d * d, d3 = d * d * d / 6.0, inverse = 1.0 / from;
+  for (int32_t k = 0; k < r->node_count; k++) {
+    int32_t i = 2 * r->node[k];
+    strut_pair v = strut_pair_load(next->v + i), a = strut_pair_load(next->a + i);
+    strut_pair a0 = strut_pair_load(now->a + i);
+    strut_pair mean = (v - strut_pair_load(now->v + i)) * inverse;
+    strut_pair jerk = (2.0 * a0 + 4.0 * a - 6.0 * mean) * inverse;
+    strut_pair bend = (6.0 * (a0 + a) - 12.0 * mean) * inverse * inverse;
+    strut_pair_store(next->q + i, strut_pair_load(next->q + i) + d * v + d2 * a + d3 * jerk);
+    strut_pair_store(next->v + i, v + d * a + d2 * jerk + d3 * bend);
+  }
+}
+
+STRUT_CLONES
+static void shift(const strut_model *model, strut_state *state, strut_event_stepper *l, double t,
+                  double from, double to, bool ledger) {
+  strut_local_events *p = l->within;
+  strut_step_end *next = l->next;
+  double half = 0.5 * (to - from);
+  for (int k = 0; k < STRUT_POWER_COUNT && ledger; k++) l->gained[k] += half * next->power[k];
+  shift_nodes(l, from, to - from);
+  strut_local_place_rim(p, (t + to - p->start) / p->span, next->q, next->v);
+  region_end(model, state, l, t + to, next, ledger);
+  for (int k = 0; k < STRUT_POWER_COUNT && ledger; k++) l->gained[k] += half * next->power[k];
+}
+
+void strut_local_shift(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                       double t, double from, double to) {
+  shift(model, state, l, t, from, to, state->ledger);
 }

@@ -6,8 +6,13 @@
 #include "engine/integrate/events/event_stepping.h"
 #include "engine/integrate/events/local_region.h"
 
+/* Steps of error control may be far shorter than the longest, by so many halvings; shorter ones reach no farther. */
+enum { STRUT_LOCAL_HALVINGS = 24 };
+
 typedef struct strut_local_events {
   strut_local_region_map map;
+  double longest;                  /* step [s] */
+  int reach[STRUT_LOCAL_HALVINGS]; /* of regions in steps of that over 2^k; 0: too far */
   strut_local_region region;
   strut_event_stepper own; /* of the region under way */
   strut_step_formula formula;
@@ -23,9 +28,12 @@ typedef struct strut_local_events {
   double *quiet_q, *quiet_v; /* (length) the region's step without events */
   double *more_q, *more_v;   /* (length) what regions add to the step of the whole */
   double *own_q, *own_v;     /* (length) their own ends */
-  uint8_t *seed, *joined;    /* (nodes) where events are; those that a region has been grown from */
-  uint8_t *regions;          /* (nodes) regions with this node: 0, 1, or 2 for more */
-  uint8_t *inside;           /* (nodes) whether it was in the middle of the region that wrote it */
+  double *push_q,
+      *push_v; /* (length) what their masses do to their rims: M times a change of motion */
+  double *far_q, *far_v;  /* (length) that change */
+  uint8_t *seed, *joined; /* (nodes) where events are; those that a region has been grown from */
+  uint8_t *regions;       /* (nodes) regions with this node: 0, 1, or 2 for more */
+  uint8_t *inside;        /* (nodes) whether it was in the middle of the region that wrote it */
   int32_t *seeds, *written, *changed; /* (nodes) lists */
   int32_t seed_count, written_count, changed_count;
   /* contacts of the region: how they answer along the ground to each other, (place, place), where known */
@@ -38,8 +46,6 @@ typedef struct strut_local_events {
   bool far, failed;       /* something changed far out; the region cannot be stepped alone */
   uint8_t *mode, *acting; /* (contacts), (laws) at the beginning of the step */
   int8_t *side, *damper;
-  uint8_t *at_once; /* (contacts, then laws) switches without a step between them */
-  int32_t *switched, switched_count, most_at_once; /* those, and the most often */
   int64_t evaluated; /* nodes, since so many counted as an evaluation of the forces */
 } strut_local_events;
 

@@ -7,9 +7,6 @@
 #include "engine/base/memory.h"
 #include "engine/model/hot.h"
 
-/* Regions that must reach farther do not pay. */
-enum { FARTHEST = 40 };
-
 static const unsigned POSSIBLE = STRUT_TERM_MEMBERS | STRUT_TERM_DAMPING | STRUT_TERM_SLACK |
                                  STRUT_TERM_DRIVE | STRUT_TERM_CONSTANT | STRUT_TERM_CONTACT |
                                  STRUT_TERM_FRICTION | STRUT_TERM_SLOPE | STRUT_TERM_SOLVE |
@@ -115,59 +112,6 @@ strut_status strut_local_region_map_create(const strut_model *model, strut_arena
   return STRUT_OK;
 }
 
-/* ---- how far something reaches within a step ---- */
-
-/* What a step does to one neighbour: by stiffness, by damping, by one entry of the inverse mass matrix. */
-typedef struct passing {
-  double stiffness, damping, mass;
-} passing;
-
-static passing find_passing(const strut_model *model, const strut_local_region_map *map, double h) {
-  const strut_member_table *t = &model->members;
-  double coupled = 0.0; /* largest sum of a scaled mass matrix's row beside its diagonal */
-  passing most = {0};
-  for (int32_t i = 0; i < model->node_count; i++) {
-    double stiffness = 0.0, damping = 0.0, sum = 0.0, own = map->diagonal[i];
-    if (!(own > 0.0)) continue;
-    for (int32_t e = map->member_start[i]; e < map->member_start[i + 1]; e++)
-      stiffness += t->stiffness[map->member[e]], damping += t->damping[map->member[e]];
-    for (int32_t e = map->mass_start[i]; e < map->mass_start[i + 1]; e++)
-      sum += fabs(map->mass_value[e]) / sqrt(own * map->diagonal[map->mass_node[e]]);
-    most.stiffness = fmax(most.stiffness, stiffness / own);
-    most.damping = fmax(most.damping, damping / own);
-    coupled = fmax(coupled, sum);
-  }
-  if (!(coupled < 1.0)) return (passing){.mass = 1.0};
-  double root = sqrt((1.0 + coupled) / (1.0 - coupled));
-  most.stiffness *= h * h / (1.0 - coupled), most.damping *= h / (1.0 - coupled);
-  most.mass = (root - 1.0) / (root + 1.0);
-  return most;
-}
-
-static double choose(int n, int k) {
-  return exp(lgamma(n + 1.0) - lgamma(k + 1.0) - lgamma(n - k + 1.0));
-}
-
-/* What is left behind `rings` neighbours: s of them passed by members, in any order, the others by masses. */
-static double left_behind(const passing *p, int rings) {
-  double left = 0.0;
-  for (int s = 0; s <= rings; s++) {
-    double members = 0.0, masses = choose(rings, s) * pow(p->mass, rings - s);
-    for (int j = 0; j <= s; j++)
-      members += choose(s, j) * pow(p->stiffness, j) * pow(p->damping, s - j) / tgamma(s + j + 2.0);
-    left += members * masses;
-  }
-  return left;
-}
-
-int strut_local_reach(const strut_model *model, const strut_local_region_map *map, double h,
-                      double left) {
-  const passing p = find_passing(model, map, h);
-  for (int rings = 1; rings <= FARTHEST; rings++)
-    if (left_behind(&p, rings) <= left) return rings;
-  return 0;
-}
-
 /* Entries between the first and the diagonal of all rows of M, and at least a diagonal. */
 static size_t count_entries(const strut_model *model, const strut_local_region_map *map) {
   size_t entries = 0;
@@ -206,7 +150,8 @@ strut_status strut_local_region_create(const strut_model *model, const strut_loc
   r->first = strut_arena_allocate(arena, nodes, sizeof *r->first);
   r->lower = strut_arena_allocate(arena, r->room, sizeof *r->lower);
   r->inverse = strut_arena_allocate(arena, nodes, sizeof *r->inverse);
-  return r->row && r->first && r->lower && r->inverse ? STRUT_OK : STRUT_NO_MEMORY;
+  r->joint = strut_arena_allocate(arena, (size_t)map->mass_start[nodes], sizeof *r->joint);
+  return r->row && r->first && r->lower && r->inverse && r->joint ? STRUT_OK : STRUT_NO_MEMORY;
 }
 
 /* ---- growth ---- */
@@ -214,7 +159,7 @@ strut_status strut_local_region_create(const strut_model *model, const strut_loc
 static void clear(strut_local_region *r) {
   for (int32_t k = 0; k < r->node_count; k++) r->slot[r->node[k]] = r->ring[r->node[k]] = 0;
   for (int32_t k = 0; k < r->rim_count; k++) r->slot[r->rim[k]] = 0;
-  r->node_count = r->rim_count = r->member_count = r->contact_count = 0;
+  r->node_count = r->rim_count = r->member_count = r->contact_count = r->joint_count = 0;
 }
 
 /* Nodes that have come nearer wait in a circle. */
@@ -314,7 +259,28 @@ static bool place_rows(const strut_local_region_map *map, strut_local_region *r)
   return true;
 }
 
-static bool factor(const strut_local_region_map *map, strut_local_region *r) {
+/* L L' to L D L' with ones on the diagonal of L, and the inverse of D: its solutions have no products in a row. */
+static void scale_rows(strut_local_region *r) {
+  for (int32_t k = 0; k < r->node_count; k++) {
+    double *row = r->lower + r->row[k];
+    for (int32_t j = r->first[k]; j < k; j++) row[j - r->first[k]] *= r->inverse[j];
+  }
+  for (int32_t k = 0; k < r->node_count; k++) r->inverse[k] *= r->inverse[k];
+}
+
+/* Sum of a[m] b[m] over `count` columns, in four parts. */
+STRUT_INLINE double dot_rows(const double *a, const double *b, int32_t count) {
+  strut_lanes part = {0};
+  double rest = 0.0;
+  int32_t m = 0;
+  for (; m + STRUT_LANES <= count; m += STRUT_LANES)
+    part += strut_lanes_load(a + m) * strut_lanes_load(b + m);
+  for (; m < count; m++) rest += a[m] * b[m];
+  return (part[0] + part[1]) + (part[2] + part[3]) + rest;
+}
+
+STRUT_CLONES
+static bool factor_region(const strut_local_region_map *map, strut_local_region *r) {
   if (!place_rows(map, r)) return false;
   for (int32_t k = 0; k < r->node_count; k++) {
     int32_t i = r->node[k], begin = r->first[k];
@@ -329,12 +295,8 @@ static bool factor(const strut_local_region_map *map, strut_local_region *r) {
     for (int32_t j = begin; j < k; j++) {
       const double *left = r->lower + r->row[j];
       int32_t from = r->first[j];
-      int32_t m = begin > from ? begin : from;
-      double sum = row[j - begin], part[4] = {0};
-      for (; m + 4 <= j; m += 4)
-        for (int k4 = 0; k4 < 4; k4++) part[k4] += row[m + k4 - begin] * left[m + k4 - from];
-      for (; m < j; m++) sum -= row[m - begin] * left[m - from];
-      sum -= (part[0] + part[1]) + (part[2] + part[3]);
+      int32_t both = begin > from ? begin : from;
+      double sum = row[j - begin] - dot_rows(row + both - begin, left + both - from, j - both);
       sum *= r->inverse[j];
       row[j - begin] = sum;
       diagonal -= sum * sum;
@@ -343,7 +305,18 @@ static bool factor(const strut_local_region_map *map, strut_local_region *r) {
     row[k - begin] = sqrt(diagonal);
     r->inverse[k] = 1.0 / row[k - begin];
   }
+  scale_rows(r);
   return true;
+}
+
+/* The masses that join the region to its rim. */
+static void list_joints(const strut_local_region_map *map, strut_local_region *r) {
+  for (int32_t k = 0; k < r->node_count; k++)
+    for (int32_t e = map->mass_start[r->node[k]]; e < map->mass_start[r->node[k] + 1]; e++) {
+      int32_t rim = -1 - r->slot[map->mass_node[e]];
+      if (rim < 0) continue;
+      r->joint[r->joint_count++] = (strut_local_joint){k, rim, map->mass_value[e]};
+    }
 }
 
 bool strut_local_region_grow(const strut_model *model, const strut_local_region_map *map,
@@ -353,7 +326,9 @@ bool strut_local_region_grow(const strut_model *model, const strut_local_region_
   reach(model, map, start, seed, joined, region);
   list_nodes(model, map, region);
   list_rest(model, map, region);
-  return model->mass->diagonal || factor(map, region);
+  if (model->mass->diagonal) return true;
+  list_joints(map, region);
+  return factor_region(map, region);
 }
 
 /* Sum of row[j] x[j], j from 0 to below `count`, x and y side by side; in four parts, which need not wait. */
@@ -367,21 +342,24 @@ STRUT_INLINE strut_pair dot(const double *row, const double *x, int32_t count) {
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
-/* pair becomes (L L')^-1 pair. */
+/* pair becomes (L D L')^-1 pair. What the row before has just become is used last: nothing else need wait for it. */
 STRUT_CLONES
 static void solve_rows(const strut_local_region *r) {
   double *x = r->pair;
-  for (int32_t k = 0; k < r->node_count; k++) {
-    int32_t begin = r->first[k];
-    strut_pair sum = dot(r->lower + r->row[k], x + 2 * begin, k - begin);
-    strut_pair_store(x + 2 * k, (strut_pair_load(x + 2 * k) - sum) * r->inverse[k]);
-  }
-  for (int32_t k = r->node_count - 1; k >= 0; k--) {
+  for (int32_t k = 1; k < r->node_count; k++) {
+    int32_t begin = r->first[k], last = k - begin - 1;
+    if (last < 0) continue;
     const double *row = r->lower + r->row[k];
+    strut_pair rest = strut_pair_load(x + 2 * k) - dot(row, x + 2 * begin, last);
+    strut_pair_store(x + 2 * k, rest - row[last] * strut_pair_load(x + 2 * k - 2));
+  }
+  for (int32_t k = 0; k < r->node_count; k++)
+    strut_pair_store(x + 2 * k, strut_pair_load(x + 2 * k) * r->inverse[k]);
+  for (int32_t k = r->node_count - 1; k > 0; k--) {
     int32_t begin = r->first[k];
-    strut_pair own = strut_pair_load(x + 2 * k) * r->inverse[k];
-    strut_pair_store(x + 2 * k, own);
-    for (int32_t j = begin; j < k; j++)
+    const double *row = r->lower + r->row[k];
+    strut_pair own = strut_pair_load(x + 2 * k);
+    for (int32_t j = k - 1; j >= begin; j--)
       strut_pair_store(x + 2 * j, strut_pair_load(x + 2 * j) - row[j - begin] * own);
   }
 }
@@ -393,27 +371,31 @@ void strut_local_region_solve(const strut_model *model, const strut_local_region
   if (!model->mass->diagonal) solve_rows(r);
 }
 
-void strut_local_region_divide(const strut_model *model, const strut_local_region_map *map,
-                               const strut_local_region *r, const double *force, double *a) {
+void strut_local_region_divide(const strut_model *model, const strut_local_region *r,
+                               const double *force, double *a) {
   const double *inverse = model->mass->inverse;
   if (model->mass->diagonal) {
     for (int32_t k = 0; k < r->node_count; k++)
       for (int32_t i = 2 * r->node[k]; i < 2 * r->node[k] + 2; i++) a[i] = force[i] * inverse[i];
     return;
   }
-  for (int32_t k = 0; k < r->node_count; k++) {
-    int32_t i = r->node[k];
-    double x = force[2 * i], y = force[2 * i + 1];
-    for (int32_t e = map->mass_start[i]; e < map->mass_start[i + 1]; e++) {
-      int32_t rim = -1 - r->slot[map->mass_node[e]];
-      if (rim < 0) continue;
-      x -= map->mass_value[e] * r->rim_a[2 * rim], y -= map->mass_value[e] * r->rim_a[2 * rim + 1];
-    }
-    r->pair[2 * k] = x, r->pair[2 * k + 1] = y;
+  for (int32_t k = 0; k < r->node_count; k++)
+    strut_pair_store(r->pair + 2 * k, strut_pair_load(force + 2 * r->node[k]));
+  for (int32_t n = 0; n < r->joint_count; n++) {
+    const strut_local_joint *j = &r->joint[n];
+    double *own = r->pair + 2 * j->own;
+    strut_pair_store(own, strut_pair_load(own) - j->mass * strut_pair_load(r->rim_a + 2 * j->rim));
   }
   strut_local_region_solve(model, r);
-  for (int32_t k = 0; k < r->node_count; k++) {
-    a[2 * r->node[k]] = r->pair[2 * k];
-    a[2 * r->node[k] + 1] = r->pair[2 * k + 1];
+  for (int32_t k = 0; k < r->node_count; k++)
+    strut_pair_store(a + 2 * r->node[k], strut_pair_load(r->pair + 2 * k));
+}
+
+void strut_local_region_pass_on(const strut_local_region *r, const double *change, double *force) {
+  for (int32_t n = 0; n < r->joint_count; n++) {
+    const strut_local_joint *j = &r->joint[n];
+    double *rim = force + 2 * r->rim[j->rim];
+    strut_pair own = strut_pair_load(change + 2 * j->own);
+    strut_pair_store(rim, strut_pair_load(rim) - j->mass * own);
   }
 }

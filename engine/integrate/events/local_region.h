@@ -7,6 +7,8 @@
  * passed by their stiffness and n - j by their damping, remains C(n, j) x^j y^(n-j) / (n + j + 1)!, where x and y are
  * the largest sums of stiffnesses and dampings over a mass, times the step squared and the step; of an entry of the
  * inverse mass matrix (sqrt(c) - 1) / (sqrt(c) + 1), where c bounds its condition after scaling (3 for rods alone).
+ * What masses alone pass on is not left out, however far: one solution with the mass matrix of the whole adds it when
+ * the region has been stepped. The reach then counts what members would make of that, beyond the region.
  */
 #ifndef STRUT_ENGINE_INTEGRATE_EVENTS_LOCAL_REGION_H
 #define STRUT_ENGINE_INTEGRATE_EVENTS_LOCAL_REGION_H
@@ -25,6 +27,18 @@ typedef struct strut_local_region_map {
   int32_t *contact;       /* (nodes) or -1 */
 } strut_local_region_map;
 
+/** Bounds for what one neighbour passes on to the next: by stiffness over h^2, by damping over h, by an entry of the
+    inverse mass matrix (0 where masses are not coupled). */
+typedef struct strut_local_passing {
+  double stiffness, damping, mass; /* [1/s^2], [1/s], [1] */
+} strut_local_passing;
+
+/** A mass between a node of a region and one of its rim. */
+typedef struct strut_local_joint {
+  int32_t own, rim; /* indices in `node` and `rim` */
+  double mass;
+} strut_local_joint;
+
 /** Arrays have space for the whole structure; counts are those of the present region. */
 typedef struct strut_local_region {
   int32_t node_count, rim_count, member_count, contact_count;
@@ -34,20 +48,22 @@ typedef struct strut_local_region {
   int32_t *contact; /* of its nodes, ascending */
   int32_t *slot;    /* (nodes) 1 + index in `node`; -1 - index in `rim`; 0 elsewhere */
   uint8_t *ring;    /* (nodes) 1 + neighbours from what it was grown from; 0 elsewhere */
-  /* M of its nodes = L L', row by row from the first entry that is not 0; not where masses are not coupled */
+  /* M of its nodes = L D L', row by row from the first entry that is not 0; not where masses are not coupled */
   size_t *row, room; /* (node_count + 1) begins of rows; space for so many entries */
   int32_t *first;
   double *lower;
-  double *inverse; /* (node_count) of the diagonal of L */
-  double *pair;    /* (node_count, 2) scratch */
-  double *rim_a;   /* (rim_count, 2) accelerations of the rim, which its masses feel [m/s^2] */
-  uint8_t *seen;   /* (nodes, members or contacts) marks, 0 between uses */
+  double *inverse; /* (node_count) of D */
+  strut_local_joint *joint;
+  int32_t joint_count;
+  double *pair;  /* (node_count, 2) scratch */
+  double *rim_a; /* (rim_count, 2) accelerations of the rim, which its masses feel [m/s^2] */
+  uint8_t *seen; /* (nodes, members or contacts) marks, 0 between uses */
   int32_t *queue, *stack; /* (nodes) scratch of the growth */
   int reach;              /* neighbours up to which it grows */
 } strut_local_region;
 
 /** A region grows so far beyond the reach: what happens up to there from where it was grown keeps the bound. */
-enum { STRUT_LOCAL_MARGIN = 2 };
+enum { STRUT_LOCAL_MARGIN = 1 };
 
 /** Can regions of this model be stepped alone? */
 bool strut_local_region_possible(const strut_model *model);
@@ -63,15 +79,19 @@ strut_status strut_local_region_create(const strut_model *model, const strut_loc
 bool strut_local_region_grow(const strut_model *model, const strut_local_region_map *map,
                              int32_t start, const uint8_t *seed, uint8_t *joined,
                              strut_local_region *region);
+strut_status strut_local_passing_find(const strut_model *model, const strut_local_region_map *map,
+                                      strut_local_passing *passing);
 /** The reach for a part `left` and steps of h; 0: too far for regions to pay. */
-int strut_local_reach(const strut_model *model, const strut_local_region_map *map, double h,
-                      double left);
+int strut_local_reach(const strut_local_passing *passing, double h, double left);
 /** Is a node of it so far from where it was grown that what happens there reaches beyond the region? */
 bool strut_local_region_is_far(const strut_local_region *region, int32_t node);
 /** region->pair, forces on its nodes, become accelerations, with the rim at rest. */
 void strut_local_region_solve(const strut_model *model, const strut_local_region *region);
 /** a = M^-1 (force - M' rim_a) at the region's nodes; arrays are those of the whole structure. */
-void strut_local_region_divide(const strut_model *model, const strut_local_region_map *map,
-                               const strut_local_region *region, const double *force, double *a);
+void strut_local_region_divide(const strut_model *model, const strut_local_region *region,
+                               const double *force, double *a);
+/** Adds to `force` (length) what a change (node_count, 2) of the motion of its nodes does to the rim by its masses. */
+void strut_local_region_pass_on(const strut_local_region *region, const double *change,
+                                double *force);
 
 #endif
