@@ -435,7 +435,7 @@ static void save_modes(const strut_model *model, const strut_event_stepper *l,
   memcpy(p->mode, l->mode, contacts);
   memcpy(p->side, l->side, contacts);
   memcpy(p->damper, l->damper, contacts);
-  memcpy(p->acting, l->acting, (size_t)l->law_count);
+  if (l->law_count) memcpy(p->acting, l->acting, (size_t)l->law_count);
 }
 
 static void restore_modes(const strut_model *model, strut_state *state, strut_event_stepper *l,
