@@ -7,6 +7,7 @@
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/integrate/events/local_events.h"
 #include "engine/integrate/events/small_modes.h"
+#include "engine/integrate/events/stick_factor.h"
 
 /* Entries below this part of a column's largest one change no bit that matters. */
 static const double NEGLIGIBLE = 1e-18;
@@ -375,15 +376,7 @@ STRUT_INLINE void hold_stuck(const strut_model *model, strut_event_stepper *l, d
   } else if (l->coupling) {
     strut_contact_coupling_solve(l, x);
   } else {
-    const double *f = l->stuck_factor;
-    for (int32_t i = 0; i < n; i++) {
-      for (int32_t j = 0; j < i; j++) x[i] -= f[i * n + j] * x[j];
-      x[i] /= f[i * n + i];
-    }
-    for (int32_t i = n - 1; i >= 0; i--) {
-      for (int32_t j = i + 1; j < n; j++) x[i] -= f[j * n + i] * x[j];
-      x[i] /= f[i * n + i];
-    }
+    strut_stick_solve(n, l->stuck_factor, x);
   }
   bool together = l->coupling && !model->mass->diagonal && n > FEW_COLUMNS;
   if (together) strut_contact_coupling_push(model, l, x, a);

@@ -6,6 +6,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/integrate/events/implicit_ground.h"
+#include "engine/integrate/events/stick_factor.h"
 
 /* 1 + the contact of each node, or 0, into `owner`; false where a node has two. */
 static bool find_owners(const strut_model *model, int32_t *owner) {
@@ -106,48 +107,19 @@ static void assemble_stuck(const strut_contact_table *c, const strut_event_stepp
   for (int32_t j = 0; j < n; j++) p->place[l->stuck[j]] = 0;
 }
 
-/* In place; false if it is not positive definite. */
-static bool factor_rows(int32_t n, const int32_t *first, double *a) {
-  for (int32_t i = 0; i < n; i++) {
-    double *row = a + (size_t)i * (size_t)n;
-    for (int32_t j = first[i]; j < i; j++) {
-      const double *left = a + (size_t)j * (size_t)n;
-      double sum = row[j];
-      for (int32_t k = first[i] > first[j] ? first[i] : first[j]; k < j; k++)
-        sum -= row[k] * left[k];
-      row[j] = sum / left[j];
-    }
-    double diagonal = row[i];
-    for (int32_t k = first[i]; k < i; k++) diagonal -= row[k] * row[k];
-    if (!(diagonal > 0.0)) return false;
-    row[i] = sqrt(diagonal);
-  }
-  return true;
-}
-
 void strut_contact_coupling_factor(const strut_model *model, strut_event_stepper *l) {
   struct strut_contact_coupling *p = l->coupling;
   if (is_factored(p, l)) return;
   assemble_stuck(&model->contacts, l, p);
   p->factored_count = l->stuck_count;
   memcpy(p->factored, l->stuck, (size_t)l->stuck_count * sizeof *l->stuck);
-  if (factor_rows(l->stuck_count, p->first, l->stuck_factor)) return;
+  if (strut_stick_factor_rows(l->stuck_count, p->first, l->stuck_factor)) return;
   p->factored_count = 0;
   l->stuck_count = -l->stuck_count; /* singular: by sweeps */
 }
 
 void strut_contact_coupling_solve(const strut_event_stepper *l, double *x) {
-  const struct strut_contact_coupling *p = l->coupling;
-  int32_t n = l->stuck_count;
-  const double *f = l->stuck_factor;
-  for (int32_t i = 0; i < n; i++) {
-    for (int32_t j = p->first[i]; j < i; j++) x[i] -= f[i * n + j] * x[j];
-    x[i] /= f[i * n + i];
-  }
-  for (int32_t i = n - 1; i >= 0; i--) {
-    x[i] /= f[i * n + i];
-    for (int32_t j = p->first[i]; j < i; j++) x[j] -= f[i * n + j] * x[i];
-  }
+  strut_stick_solve_rows(l->stuck_count, l->coupling->first, l->stuck_factor, x);
 }
 
 /* ---- forces on contacts, to the whole structure ---- */

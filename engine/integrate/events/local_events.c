@@ -6,6 +6,7 @@
 
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/integrate/events/local_kernel.h"
+#include "engine/integrate/events/stick_factor.h"
 
 /* Regions with more contacts are not stepped alone. */
 enum { MOST_CONTACTS = 512 };
@@ -188,19 +189,6 @@ static void assemble_stuck(const strut_model *model, const strut_event_stepper *
   }
 }
 
-/* Cholesky factor in place, lower triangle; false if the matrix is not positive definite. */
-static bool factor_rows(int32_t n, const int32_t *first, double *a) {
-  for (int32_t i = 0; i < n; i++)
-    for (int32_t j = first[i]; j <= i; j++) {
-      double sum = a[i * n + j];
-      for (int32_t k = first[i] > first[j] ? first[i] : first[j]; k < j; k++)
-        sum -= a[i * n + k] * a[j * n + k];
-      if (i == j && !(sum > 0.0)) return false;
-      a[i * n + j] = i == j ? sqrt(sum) : sum / a[j * n + j];
-    }
-  return true;
-}
-
 static void find_column(const strut_model *model, const strut_event_stepper *l, int32_t k) {
   const strut_local_events *p = l->within;
   const strut_local_region *r = &p->region;
@@ -219,7 +207,7 @@ void strut_local_factor(const strut_model *model, strut_event_stepper *l) {
   p->failed = p->failed || n > l->stuck_room;
   if (p->failed) return;
   assemble_stuck(model, l, p);
-  if (!factor_rows(n, p->first, l->stuck_factor)) p->failed = true;
+  if (!strut_stick_factor_rows(n, p->first, l->stuck_factor)) p->failed = true;
   for (int32_t k = 0; k < n && n <= FEW_STUCK; k++) find_column(model, l, k);
   memcpy(p->factored, l->stuck, bytes);
   p->factored_count = n;
@@ -258,18 +246,10 @@ void strut_local_hold(const strut_model *model, strut_event_stepper *l, double *
   const strut_local_events *p = l->within;
   const strut_contact_table *c = &model->contacts;
   int32_t n = l->stuck_count;
-  const double *f = l->stuck_factor;
   double *x = l->stuck_work;
   if (p->failed) return;
-  for (int32_t i = 0; i < n; i++) {
-    x[i] = -strut_contact_along_ground(c, l->stuck[i], a);
-    for (int32_t j = p->first[i]; j < i; j++) x[i] -= f[i * n + j] * x[j];
-    x[i] /= f[i * n + i];
-  }
-  for (int32_t i = n - 1; i >= 0; i--) {
-    x[i] /= f[i * n + i];
-    for (int32_t j = p->first[i]; j < i; j++) x[j] -= f[i * n + j] * x[i];
-  }
+  for (int32_t i = 0; i < n; i++) x[i] = -strut_contact_along_ground(c, l->stuck[i], a);
+  strut_stick_solve_rows(n, p->first, l->stuck_factor, x);
   for (int32_t k = 0; k < n; k++) end->touch[l->stuck[k]].friction += x[k];
   if (n <= FEW_STUCK)
     add_columns(p, n, x, a);

@@ -8,6 +8,7 @@
 
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/integrate/events/small_trials.h"
+#include "engine/integrate/events/stick_factor.h"
 #include "engine/integrate/small_run.h"
 
 /* Contacts at one evaluation, each at its node's lane. */
@@ -112,20 +113,10 @@ STRUT_SMALL_INLINE void small_add_ground(small_events *e, int p, const small_poi
 
 /* The multipliers that hold stuck contacts on level ground, in place: `x` of (l->stuck_count). */
 STRUT_SMALL_INLINE void small_multipliers(const strut_event_stepper *l, double *x) {
-  const double *f = l->stuck_factor;
-  int32_t n = l->stuck_count;
-  if (n == 1) {
+  if (l->stuck_count == 1)
     x[0] /= l->response[l->stuck[0]].tangent;
-    return;
-  }
-  for (int32_t i = 0; i < n; i++) {
-    for (int32_t j = 0; j < i; j++) x[i] -= f[i * n + j] * x[j];
-    x[i] /= f[i * n + i];
-  }
-  for (int32_t i = n - 1; i >= 0; i--) {
-    for (int32_t j = i + 1; j < n; j++) x[i] -= f[j * n + i] * x[j];
-    x[i] /= f[i * n + i];
-  }
+  else
+    strut_stick_solve(l->stuck_count, l->stuck_factor, x);
 }
 
 /* See strut_solve_stick_constraints. */
