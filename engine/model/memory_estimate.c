@@ -5,9 +5,9 @@
 
 #include "engine/base/memory_limit.h"
 
-/* Bytes for each thing, from the tables and matrices that hold it: a little less than
-   what chains of X-frames were seen to take, so that nothing is refused that would do. */
-static const double PER_NODE = 650.0, PER_MEMBER = 450.0, PER_CONTACT = 100.0;
+/* Bytes for each thing, from the tables and matrices that hold it: a little less than what
+   chains and grids of 350,000 nodes were seen to take, so that nothing is refused that would do. */
+static const double PER_NODE = 440.0, PER_MEMBER = 220.0, PER_CONTACT = 100.0;
 /* Rows and numbers of a factor, CHOLMOD's and the copy that is kept of it. */
 static const double PER_NONZERO = 24.0, PER_ROW = 40.0;
 

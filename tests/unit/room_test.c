@@ -46,11 +46,11 @@ static void test_more_than_the_process_may_have(void **unused) {
     assert_int_equal(getrlimit(resource[i], &before), 0);
     now = before, now.rlim_cur = 300000000;
     assert_int_equal(setrlimit(resource[i], &now), 0);
-    strut_status status = compile(400000, 1000000, &error); /* 260 + 450 MB */
+    strut_status status = compile(400000, 1000000, &error); /* 176 + 220 MB */
     assert_int_equal(setrlimit(resource[i], &before), 0);
     assert_int_equal(status, STRUT_NO_MEMORY);
     print_message("%s\n", error.message);
-    assert_non_null(strstr(error.message, "needs at least 710 MB"));
+    assert_non_null(strstr(error.message, "needs at least 396 MB"));
     assert_non_null(strstr(error.message, i ? "(ulimit -d) 300 MB" : "(ulimit -v) 300 MB"));
   }
 }
