@@ -181,6 +181,7 @@ static strut_status find_instability(const strut_model *model, double accelerati
     found->direction = strut_arena_allocate(arena, (size_t)model->length, sizeof(double));
     if (!x || !found->direction) status = STRUT_NO_MEMORY;
   }
+  if (status) strut_fail(error, status, "out of memory");
   if (!status && tangent.n > 0) {
     s.matrix = tangent.stiffness;
     add_stick_stiffness(model, q, &tangent);
@@ -188,12 +189,12 @@ static strut_status find_instability(const strut_model *model, double accelerati
     status = strut_ldl_create(s.matrix, &s.ldl, error);
     if (!status && least > 0.0 && isfinite(least) && count_negative(&s, &shift) > 0)
       find_unstable_direction(&s, model, &tangent, least, x, x + tangent.n, found);
-    if (s.status == STRUT_NO_MEMORY) status = s.status;
+    if (s.status == STRUT_NO_MEMORY) status = strut_no_memory(error, "");
   }
   if (found->node < 0) *found = (instability){.node = -1};
   strut_ldl_free(s.ldl);
   strut_arena_free(&scratch);
-  return status ? strut_fail(error, status, "out of memory") : STRUT_OK;
+  return status;
 }
 
 /* ---- the settled start of an experiment ---- */

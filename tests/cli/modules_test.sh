@@ -39,6 +39,7 @@ missing 4 strut-drawing.so run "$models/basics/pendulum.yaml" --plot pendulum.sv
 absent pendulum.svg
 missing 4 strut-algebra.so equilibria "$models/basics/von-mises-truss.yaml"
 missing 4 strut-algebra.so run "$models/basics/pendulum.yaml" --integrator midpoint
+missing 4 strut-algebra.so run "$models/basics/von-mises-truss.yaml" # settles
 
 # What is no module, and a module of another strut.
 folder=$built/modules
