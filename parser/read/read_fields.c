@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Mappings by the table of keys: unknown keys, missing keys, typed values. See reader.h. */
 #include <assert.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "parser/read/reader.h"
@@ -54,15 +55,29 @@ static const char *punctuation_advice(const strut_tree *key) {
   return number ? "; within {...} a comma separates keys, and the decimal mark is a point" : NULL;
 }
 
+/* "; the keys here are 'a', 'b'" where there are few; "" where there are many, or enough has been said. */
+static const char *known_keys(strut_reader *reader, const sections_context *context, char *text,
+                              size_t size) {
+  enum { MOST = 12 };
+  size_t used = 0;
+  text[0] = '\0';
+  if (key_of_sections(context, MOST) >= 0 || !strut_hints_left(reader)) return text;
+  for (size_t i = 0; key_of_sections(context, i) >= 0 && used < size; i++)
+    used += (size_t)snprintf(text + used, size - used, "%s'%s'", i ? ", " : "; the keys here are ",
+                             name_of_sections(context, i));
+  return text;
+}
+
 int strut_unknown_key(strut_reader *reader, const strut_tree *key, const strut_section *sections,
                       size_t count, strut_owner owner) {
   sections_context context = {sections, count};
   const char *advice = punctuation_advice(key);
   const char *near = advice ? NULL : nearest_key(reader, key->text, &context);
+  char others[400];
+  if (!advice) advice = near ? "" : known_keys(reader, &context, others, sizeof others);
   strut_report_error(reader, key->place, "unknown key '%s' in %s%s%s%s%s",
                      strut_sanitised_text(reader, key->text), strut_owner_text(reader, owner),
-                     advice ? advice : "", near ? "; did you mean '" : "", near ? near : "",
-                     near ? "'?" : "");
+                     advice, near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
   for (int i = 0; key_of_sections(&context, (size_t)i) >= 0; i++) {
     int meant = key_of_sections(&context, (size_t)i);
     const char *name = strut_key_at(meant)->name;
