@@ -61,7 +61,6 @@ strut_status strut_code_check(const strut_model *model, strut_error *error) {
   strut_untold r = {.used = 0};
   strut_untold_add(&r, (model->plan & STRUT_TERM_RIGID) != 0, "bars: rigid");
   refuse_members(&r, s);
-  strut_untold_add(&r, s->ground_count, "grounds other than one line at rest");
   strut_untold_add(&r, strut_first_exact_contact(model) >= 0, "friction law coulomb (use karnopp)");
   strut_untold_add(&r, s->rayleigh_mass > 0.0, "rayleigh mass");
   strut_untold_add(&r, s->support_motion_count, "moves of nodes");

@@ -146,11 +146,6 @@ static void add_curves(strut_code_writer *w) {
   }
 }
 
-static void add_number(strut_code_writer *w, double value) {
-  strut_buffer_add(&w->text, ", ");
-  strut_code_add_real(w, value);
-}
-
 /* The fields of struct element in elements.c.in. */
 static void add_element(strut_code_writer *w, int32_t i, int32_t *coefficient) {
   const strut_model *model = w->model;
@@ -160,16 +155,16 @@ static void add_element(strut_code_writer *w, int32_t i, int32_t *coefficient) {
   int32_t count = count_coefficients(e);
   strut_buffer_add(&w->text, "    {%d, %d, %d", e->slot >= 0 ? strut_code_slot(model, e->slot) : -1,
                    e->first, e->nodes);
-  add_number(w, e->carries);
-  add_number(w, natural);
-  add_number(w, e->damping);
-  add_number(w, n->stiffness);
+  strut_code_add_field(w, e->carries);
+  strut_code_add_field(w, natural);
+  strut_code_add_field(w, e->damping);
+  strut_code_add_field(w, n->stiffness);
   if (has_law(w, STRUT_LAW_BILINEAR)) {
-    add_number(w, n->knee);
-    add_number(w, n->second_stiffness);
+    strut_code_add_field(w, n->knee);
+    strut_code_add_field(w, n->second_stiffness);
   }
-  if (has_law(w, STRUT_LAW_PLAY)) add_number(w, n->gap);
-  if (has_law(w, STRUT_LAW_EXPONENTIAL)) add_number(w, n->scale);
+  if (has_law(w, STRUT_LAW_PLAY)) strut_code_add_field(w, n->gap);
+  if (has_law(w, STRUT_LAW_EXPONENTIAL)) strut_code_add_field(w, n->scale);
   if (has_law(w, STRUT_LAW_POLYNOMIAL)) strut_buffer_add(&w->text, ", %d, %d", *coefficient, count);
   *coefficient += count;
   if (has_law(w, STRUT_LAW_TABLE) && e->law == STRUT_LAW_TABLE)
@@ -177,14 +172,11 @@ static void add_element(strut_code_writer *w, int32_t i, int32_t *coefficient) {
   else if (has_law(w, STRUT_LAW_TABLE))
     strut_buffer_add(&w->text, ", NULL");
   if (strut_code_has_law(w, "cell", 4)) {
-    add_number(w, n->area);
-    add_number(w, n->outside);
-    add_number(w, n->exponent);
+    strut_code_add_field(w, n->area);
+    strut_code_add_field(w, n->outside);
+    strut_code_add_field(w, n->exponent);
   }
-  const char *name = strut_element_name(w->scene, e);
-  strut_buffer_add(&w->text, "}, /* ");
-  strut_code_add_comment(w, name ? name : "");
-  strut_buffer_add(&w->text, " */\n");
+  strut_code_end_row(w, strut_element_name(w->scene, e));
 }
 
 void strut_code_add_elements(strut_code_writer *w) {

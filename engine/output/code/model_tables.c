@@ -6,28 +6,6 @@
 #include "engine/model/mass.h"
 #include "engine/output/code/writer.h"
 
-static bool has(const strut_code_writer *w, const char *word) {
-  return strut_code_has(w, word, strlen(word));
-}
-
-/* ", 1.0": a field of a row. */
-static void add_field(strut_code_writer *w, double value) {
-  strut_buffer_add(&w->text, ", ");
-  strut_code_add_real(w, value);
-}
-
-static void end_row(strut_code_writer *w, const char *name) {
-  strut_buffer_add(&w->text, "}, /* ");
-  strut_code_add_comment(w, name);
-  strut_buffer_add(&w->text, " */\n");
-}
-
-static void add_constant(strut_code_writer *w, const char *name, double value) {
-  strut_buffer_add(&w->text, "static const real %s = ", name);
-  strut_code_add_real(w, value);
-  strut_buffer_add(&w->text, ";\n");
-}
-
 /* An array of numbers, or of those that follow from indices; `per` of them in a line. */
 static void add_array(strut_code_writer *w, const char *name, const double *values, size_t count,
                       size_t per) {
@@ -47,7 +25,7 @@ static void add_of_nodes(strut_code_writer *w, const char *name, const char *wha
   for (size_t i = 0; i < w->nodes.count; i++) {
     strut_buffer_add(&w->text, "    ");
     strut_code_add_real(w, values[2 * i]);
-    add_field(w, values[2 * i + 1]);
+    strut_code_add_field(w, values[2 * i + 1]);
     strut_buffer_add(&w->text, ", /* ");
     strut_code_add_comment(w, w->scene->nodes[i].name);
     strut_buffer_add(&w->text, " */\n");
@@ -57,7 +35,7 @@ static void add_of_nodes(strut_code_writer *w, const char *name, const char *wha
 
 static void add_members(strut_code_writer *w) {
   const strut_member_table *t = &w->model->members;
-  bool damping = has(w, "damping"), slack = has(w, "slack");
+  bool damping = strut_code_holds(w, "damping"), slack = strut_code_holds(w, "slack");
   if (!t->count) return;
   strut_buffer_add(&w->text,
                    "typedef struct member {\n"
@@ -70,59 +48,11 @@ static void add_members(strut_code_writer *w) {
   strut_buffer_add(&w->text, "} member;\n\nstatic const member members[] = {\n");
   for (int32_t j = 0; j < t->count; j++) {
     strut_buffer_add(&w->text, "    {%u, %u", t->from[j], t->to[j]);
-    add_field(w, t->stiffness[j]);
-    add_field(w, t->rest[j]);
-    if (damping) add_field(w, t->damping[j]);
+    strut_code_add_field(w, t->stiffness[j]);
+    strut_code_add_field(w, t->rest[j]);
+    if (damping) strut_code_add_field(w, t->damping[j]);
     if (slack) strut_buffer_add(&w->text, ", %d", t->slack[j] >= 0.0);
-    end_row(w, w->scene->members[j].name);
-  }
-  strut_buffer_add(&w->text, "};\n\n");
-}
-
-static void add_contacts(strut_code_writer *w) {
-  const strut_contact_table *t = &w->model->contacts;
-  bool hunt = has(w, "hunt_crossley"), friction = has(w, "friction"), karnopp = has(w, "karnopp");
-  bool smooth = has(w, "smooth"), directional = has(w, "directional"), speed = has(w, "speed");
-  if (!has(w, "contact")) return;
-  if (has(w, "slope")) {
-    add_constant(w, "tangent_x", t->tangent[0]);
-    add_constant(w, "tangent_y", t->tangent[1]);
-    add_constant(w, "normal_x", t->normal[0]);
-    add_constant(w, "normal_y", t->normal[1]);
-  }
-  add_constant(w, "height", t->height);
-  if (friction && has(w, "belt")) add_constant(w, "belt_speed", t->belt_speed);
-  strut_buffer_add(&w->text,
-                   "\ntypedef struct contact {\n"
-                   "  index_type at; /* where the x of its node stands */\n"
-                   "  real stiffness; /* [N/m] */\n");
-  strut_buffer_add(&w->text, hunt ? "  real dissipation; /* [s/m] */\n"
-                                  : "  real damping; /* while the node moves in [N s/m] */\n");
-  if (friction) strut_buffer_add(&w->text, "  real mu_kinetic;\n");
-  if (karnopp) strut_buffer_add(&w->text, "  real mu_static;\n");
-  if (friction && speed) strut_buffer_add(&w->text, "  real stick_velocity; /* [m/s] */\n");
-  if (friction && smooth)
-    strut_buffer_add(&w->text, "  real width; /* of smooth friction [m/s] */\n");
-  if (friction && directional)
-    strut_buffer_add(&w->text, "  real mu_kinetic_backward;\n%s",
-                     karnopp ? "  real mu_static_backward;\n" : "");
-  strut_buffer_add(&w->text, "} contact;\n\nstatic const contact contacts[] = {\n");
-  for (int32_t i = 0; i < t->count; i++) {
-    const strut_contact_entry *e = &t->entry[i];
-    const strut_friction *f = &e->friction;
-    bool smooth_here = f->law == STRUT_FRICTION_SMOOTH;
-    strut_buffer_add(&w->text, "    {%u", t->at[i]);
-    add_field(w, e->stiffness);
-    add_field(w, hunt ? e->dissipation : e->damping);
-    if (friction) add_field(w, f->mu_kinetic);
-    if (karnopp) add_field(w, f->mu_static);
-    if (friction && speed) add_field(w, f->stick_velocity);
-    if (friction && smooth) add_field(w, smooth_here ? f->width : 0.0);
-    if (friction && directional) {
-      add_field(w, strut_friction_kinetic(f, -1.0));
-      if (karnopp) add_field(w, strut_friction_static(f, -1.0));
-    }
-    end_row(w, w->scene->nodes[e->node].name);
+    strut_code_end_row(w, w->scene->members[j].name);
   }
   strut_buffer_add(&w->text, "};\n\n");
 }
@@ -130,7 +60,7 @@ static void add_contacts(strut_code_writer *w) {
 static void add_drives(strut_code_writer *w) {
   const strut_drive_table *d = &w->model->drives;
   const strut_load_table *l = &w->model->loads;
-  if (!has(w, "inputs")) return;
+  if (!strut_code_holds(w, "inputs")) return;
   strut_buffer_add(&w->text, "enum { DRIVES = %d, LOADS = %d };\n\n", d->count, l->count);
   if (d->count) {
     strut_buffer_add(&w->text,
@@ -140,7 +70,7 @@ static void add_drives(strut_code_writer *w) {
     for (int32_t i = 0; i < d->count; i++) {
       strut_buffer_add(&w->text, "    {%d, %d", strut_code_slot(w->model, d->member[i]),
                        d->first[i]);
-      end_row(w, w->inputs.name[i]);
+      strut_code_end_row(w, w->inputs.name[i]);
     }
     strut_buffer_add(&w->text, "};\n\n");
     strut_code_add_own_rests(w);
@@ -152,9 +82,9 @@ static void add_drives(strut_code_writer *w) {
                    "} load;\n\nstatic const load loads[] = {\n");
   for (int32_t i = 0; i < l->count; i++) {
     strut_buffer_add(&w->text, "    {%d", 2 * l->node[i]);
-    add_field(w, l->x[i]);
-    add_field(w, l->y[i]);
-    end_row(w, w->inputs.name[d->count + i]);
+    strut_code_add_field(w, l->x[i]);
+    strut_code_add_field(w, l->y[i]);
+    strut_code_end_row(w, w->inputs.name[d->count + i]);
   }
   strut_buffer_add(&w->text, "};\n\n");
 }
@@ -177,7 +107,7 @@ static const char *operator_name(const strut_model *model, int c) {
 static void add_groups(strut_code_writer *w) {
   const strut_model *model = w->model;
   size_t node = 0, entry = 0;
-  if (!has(w, "groups")) return;
+  if (!strut_code_holds(w, "groups")) return;
   strut_buffer_add(&w->text,
                    "/* Nodes that masses couple: their number, and where they and the "
                    "inverse of their mass matrix begin. */\n"
@@ -233,7 +163,7 @@ static void add_indices(strut_code_writer *w, const char *type, const char *name
 
 static void add_factors(strut_code_writer *w) {
   const strut_model *model = w->model;
-  if (!has(w, "factor")) return;
+  if (!strut_code_holds(w, "factor")) return;
   strut_buffer_add(&w->text,
                    "/* L D L' of a mass matrix: columns of L below the diagonal. */\n"
                    "typedef struct factor {\n  int n;\n"
@@ -269,9 +199,9 @@ static void add_masses(strut_code_writer *w) {
   add_groups(w);
   add_factors(w);
   add_array(w, "point_mass", model->point_mass, (size_t)model->node_count, 5);
-  if (has(w, "members"))
+  if (strut_code_holds(w, "members"))
     add_array(w, "member_mass", model->members.mass, (size_t)model->members.count, 5);
-  if (has(w, "gravity")) {
+  if (strut_code_holds(w, "gravity")) {
     add_array(w, "weight", model->weight, (size_t)model->node_count, 5);
     add_array(w, "gravity", w->scene->gravity, 2, 2);
   }
@@ -283,9 +213,9 @@ void strut_code_add_model(strut_code_writer *w) {
   bool small = model->length < 65536 && model->members.count < 65536;
   strut_buffer_add(&w->text, "typedef %s index_type;\n\n", small ? "uint16_t" : "uint32_t");
   add_members(w);
-  add_contacts(w);
+  strut_code_add_contacts(w);
   add_drives(w);
-  if (has(w, "constant"))
+  if (strut_code_holds(w, "constant"))
     add_of_nodes(w, "constant_force", "weight, and loads without a signal [N]",
                  model->constant_force);
   add_masses(w);

@@ -8,6 +8,12 @@
 /* The signal of input k. */
 static int32_t signal_of_input(const strut_model *model, int32_t k) {
   int32_t drives = model->drives.count, loads = model->loads.count;
+  int32_t others = drives + loads + model->actuator_forces.count;
+  if (k >= others) {
+    int axis;
+    const strut_ground *ground = strut_code_shaken(model, k - others, &axis);
+    return ground->motion[axis];
+  }
   return k < drives           ? model->drives.signal[k]
          : k < drives + loads ? model->loads.signal[k - drives]
                               : model->actuator_forces.item[k - drives - loads].signal;

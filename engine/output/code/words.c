@@ -45,6 +45,23 @@ void strut_code_add_comment(strut_code_writer *w, const char *text) {
     strut_buffer_add(&w->text, "%c", *c < 32 || *c == 127 || strchr("*\\?", *c) ? '_' : *c);
 }
 
+void strut_code_add_field(strut_code_writer *w, double value) {
+  strut_buffer_add(&w->text, ", ");
+  strut_code_add_real(w, value);
+}
+
+void strut_code_end_row(strut_code_writer *w, const char *name) {
+  strut_buffer_add(&w->text, "}, /* ");
+  strut_code_add_comment(w, name ? name : "");
+  strut_buffer_add(&w->text, " */\n");
+}
+
+void strut_code_add_constant(strut_code_writer *w, const char *name, double value) {
+  strut_buffer_add(&w->text, "static const real %s = ", name);
+  strut_code_add_real(w, value);
+  strut_buffer_add(&w->text, ";\n");
+}
+
 /* ---- identifiers ---- */
 
 bool strut_code_is_prefix(const char *text) {
@@ -71,14 +88,14 @@ void strut_code_prefix_of(const char *text, char prefix[65]) {
 }
 
 static bool make_names(strut_code_writer *w, strut_code_names *names, size_t count,
-                       const char *(*name_of)(const strut_code_writer *, size_t)) {
+                       const char *(*name_of)(strut_code_writer *, size_t)) {
   strut_name_map taken = {0};
   bool good = true;
   names->count = count;
   names->name = strut_arena_allocate(&w->arena, count, sizeof *names->name);
   if (!names->name) return false;
   for (size_t i = 0; i < count && good; i++) {
-    const char *text = name_of(w, i) ? name_of(w, i) : "";
+    const char *given = name_of(w, i), *text = given ? given : "";
     size_t length = strlen(text);
     char *name = strut_arena_allocate(&w->arena, length + 24, 1);
     if (!name) {
@@ -98,12 +115,8 @@ static bool make_names(strut_code_writer *w, strut_code_names *names, size_t cou
   return good;
 }
 
-static const char *node_name(const strut_code_writer *w, size_t i) {
-  return w->scene->nodes[i].name;
-}
-static const char *member_name(const strut_code_writer *w, size_t i) {
-  return w->scene->members[i].name;
-}
+static const char *node_name(strut_code_writer *w, size_t i) { return w->scene->nodes[i].name; }
+static const char *member_name(strut_code_writer *w, size_t i) { return w->scene->members[i].name; }
 
 /* The n-th load of the scene that has a signal. */
 static const strut_load *driven_load(const strut_scene *scene, size_t n) {
@@ -121,9 +134,22 @@ static const strut_actuator *actuator(const strut_scene *scene, bool force, size
   return NULL;
 }
 
-static const char *input_name(const strut_code_writer *w, size_t i) {
+/* "GROUND_x" */
+static const char *shake_name(strut_code_writer *w, size_t n) {
+  int axis;
+  const strut_ground *ground = strut_code_shaken(w->model, (int32_t)n, &axis);
+  const char *of = ground->name && ground->name[0] ? ground->name : "ground";
+  size_t length = strlen(of) + 3;
+  char *name = strut_arena_allocate(&w->arena, length, 1);
+  if (name) snprintf(name, length, "%s_%c", of, "xy"[axis]);
+  return name;
+}
+
+static const char *input_name(strut_code_writer *w, size_t i) {
   size_t drives = (size_t)w->model->drives.count, loads = (size_t)w->model->loads.count;
-  return i < drives           ? actuator(w->scene, false, i)->name
+  size_t others = drives + loads + (size_t)w->model->actuator_forces.count;
+  return i >= others          ? shake_name(w, i - others)
+         : i < drives         ? actuator(w->scene, false, i)->name
          : i < drives + loads ? driven_load(w->scene, i - drives)->name
                               : actuator(w->scene, true, i - drives - loads)->name;
 }
@@ -152,7 +178,11 @@ static bool has_members(const strut_code_writer *w) { return w->scene->member_co
 static bool has_damping(const strut_code_writer *w) { return in_plan(w, STRUT_TERM_DAMPING); }
 static bool has_slack(const strut_code_writer *w) { return in_plan(w, STRUT_TERM_SLACK); }
 static bool has_constant(const strut_code_writer *w) { return in_plan(w, STRUT_TERM_CONSTANT); }
-static bool has_contact(const strut_code_writer *w) { return in_plan(w, STRUT_TERM_CONTACT); }
+static bool has_contact(const strut_code_writer *w) {
+  return in_plan(w, STRUT_TERM_CONTACT | STRUT_TERM_SURFACES);
+}
+static bool has_surfaces(const strut_code_writer *w) { return in_plan(w, STRUT_TERM_SURFACES); }
+static bool has_shaken(const strut_code_writer *w) { return strut_code_shake_count(w->model) > 0; }
 static bool has_slope(const strut_code_writer *w) { return in_plan(w, STRUT_TERM_SLOPE); }
 static bool has_friction(const strut_code_writer *w) {
   return has_contact(w) && in_plan(w, STRUT_TERM_FRICTION);
@@ -177,11 +207,15 @@ static bool has_expressions(const strut_code_writer *w) {
   return strut_code_has_signal(w, STRUT_EXPRESSION);
 }
 static bool has_root(const strut_code_writer *w) {
-  return has_members(w) || has_smooth(w) || has_path(w) || strut_code_has_strain(w, "reach", 5);
+  return has_members(w) || has_smooth(w) || has_path(w) || strut_code_has_strain(w, "reach", 5) ||
+         strut_code_has_circles(w) || strut_code_has_pieces(w);
 }
 static bool has_belt(const strut_code_writer *w) { return w->model->contacts.belt_speed != 0.0; }
 static bool has_hunt_crossley(const strut_code_writer *w) {
-  return w->scene->ground.present && w->scene->ground.damping_law == STRUT_DAMPING_HUNT_CROSSLEY;
+  const strut_contact_table *c = &w->model->contacts;
+  bool some = w->scene->ground.damping_law == STRUT_DAMPING_HUNT_CROSSLEY;
+  for (int32_t i = 0; i < c->count; i++) some = some || c->entry[i].dissipation > 0.0;
+  return some;
 }
 static bool has_gravity(const strut_code_writer *w) {
   return w->scene->gravity[0] != 0.0 || w->scene->gravity[1] != 0.0;
@@ -208,21 +242,43 @@ bool strut_code_has(const strut_code_writer *w, const char *word, size_t length)
   static const struct {
     const char *word;
     bool (*holds)(const strut_code_writer *);
-  } words[] = {{"float", has_float},       {"inputs", has_inputs},
-               {"drive", has_drive},       {"loads", has_loads},
-               {"members", has_members},   {"damping", has_damping},
-               {"slack", has_slack},       {"constant", has_constant},
-               {"contact", has_contact},   {"slope", has_slope},
-               {"friction", has_friction}, {"smooth", has_smooth},
-               {"karnopp", has_karnopp},   {"directional", has_directional},
-               {"speed", has_speed},       {"root", has_root},
-               {"belt", has_belt},         {"hunt_crossley", has_hunt_crossley},
-               {"gravity", has_gravity},   {"consistent", has_consistent},
-               {"groups", has_groups},     {"factor", has_factor},
-               {"wave", has_wave},         {"table_signal", has_table_signal},
-               {"elements", has_elements}, {"actuator_forces", has_actuator_forces},
-               {"strains", has_strains},   {"path", has_path},
-               {"angle", has_angle},       {"expressions", has_expressions}};
+  } words[] = {{"float", has_float},
+               {"inputs", has_inputs},
+               {"drive", has_drive},
+               {"loads", has_loads},
+               {"members", has_members},
+               {"damping", has_damping},
+               {"slack", has_slack},
+               {"constant", has_constant},
+               {"contact", has_contact},
+               {"slope", has_slope},
+               {"friction", has_friction},
+               {"smooth", has_smooth},
+               {"karnopp", has_karnopp},
+               {"directional", has_directional},
+               {"speed", has_speed},
+               {"root", has_root},
+               {"belt", has_belt},
+               {"hunt_crossley", has_hunt_crossley},
+               {"gravity", has_gravity},
+               {"consistent", has_consistent},
+               {"groups", has_groups},
+               {"factor", has_factor},
+               {"wave", has_wave},
+               {"table_signal", has_table_signal},
+               {"elements", has_elements},
+               {"actuator_forces", has_actuator_forces},
+               {"strains", has_strains},
+               {"path", has_path},
+               {"angle", has_angle},
+               {"expressions", has_expressions},
+               {"surfaces", has_surfaces},
+               {"shaken", has_shaken},
+               {"circles", strut_code_has_circles},
+               {"pieces", strut_code_has_pieces},
+               {"facets", strut_code_has_facets},
+               {"belts", strut_code_has_belts},
+               {"corners", strut_code_has_corners}};
   static const struct {
     const char *prefix;
     bool (*holds)(const strut_code_writer *, const char *, size_t);
@@ -239,6 +295,10 @@ bool strut_code_has(const strut_code_writer *w, const char *word, size_t length)
       return words[i].holds(w);
   assert(false && "a template asks for a word that there is not");
   return false;
+}
+
+bool strut_code_holds(const strut_code_writer *w, const char *word) {
+  return strut_code_has(w, word, strlen(word));
 }
 
 /* ---- tables and numbers ---- */
@@ -300,7 +360,8 @@ static void add_enums(strut_code_writer *w) {
   if (has_members(w)) add_enum(w, "member", &w->members, "Members.");
   if (has_inputs(w))
     add_enum(w, "input", &w->inputs,
-             "Actuators of lengths, loads that change with time, actuators of forces.");
+             "Actuators of lengths, loads that change with time, actuators of forces, motions of "
+             "grounds.");
 }
 
 static void add_node_names(strut_code_writer *w) {
@@ -312,6 +373,9 @@ static void add_node_names(strut_code_writer *w) {
 
 static void add_element_code(strut_code_writer *w) {
   strut_code_expand(w, strut_code_elements_template->text);
+}
+static void add_ground_code(strut_code_writer *w) {
+  strut_code_expand(w, strut_code_grounds_template->text);
 }
 static void add_dual_code(strut_code_writer *w) {
   strut_code_expand(w, strut_code_duals_template->text);
@@ -332,7 +396,9 @@ void strut_code_add_table(strut_code_writer *w, const char *word, size_t length)
                {"elements", strut_code_add_elements},
                {"blocks", strut_code_add_blocks},
                {"actuator_forces", strut_code_add_actuator_forces},
-               {"dual_code", add_dual_code}};
+               {"dual_code", add_dual_code},
+               {"ground_code", add_ground_code},
+               {"surfaces", strut_code_add_surfaces}};
   for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
     if (strlen(words[i].word) == length && !memcmp(words[i].word, word, length)) {
       words[i].add(w);

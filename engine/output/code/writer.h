@@ -26,9 +26,15 @@ typedef struct strut_code_writer {
   strut_arena arena;
 } strut_code_writer;
 
-/* Inputs: the drives in the model's order, then the loads with a signal, then the forces of actuators. */
+/* Grounds that are shaken, an axis each; the n-th of them, NULL: there are no more. */
+int32_t strut_code_shake_count(const strut_model *model);
+const strut_ground *strut_code_shaken(const strut_model *model, int32_t n, int *axis);
+
+/* Inputs: the drives in the model's order, then the loads with a signal, then the forces of actuators, then the
+   motions of grounds. */
 static inline int32_t strut_code_input_count(const strut_model *model) {
-  return model->drives.count + model->loads.count + model->actuator_forces.count;
+  return model->drives.count + model->loads.count + model->actuator_forces.count +
+         strut_code_shake_count(model);
 }
 
 /* Makes the identifiers; false: memory is out. */
@@ -40,10 +46,26 @@ void strut_code_add_comment(strut_code_writer *w, const char *text);
 void strut_code_add_real(strut_code_writer *w, double value);
 void strut_code_add_double(strut_code_writer *w, double value);
 
+/* Parts of declarations: ", 1.0"; the end of a row, with its name as a comment; a constant. */
+void strut_code_add_field(strut_code_writer *w, double value);
+void strut_code_end_row(strut_code_writer *w, const char *name);
+void strut_code_add_constant(strut_code_writer *w, const char *name, double value);
+
 /* What templates ask for: does a word hold; declarations; numbers in a line. Words are the templates' own. */
 bool strut_code_has(const strut_code_writer *w, const char *word, size_t length);
+bool strut_code_holds(const strut_code_writer *w, const char *word);
 void strut_code_add_table(strut_code_writer *w, const char *word, size_t length);
 void strut_code_add_word(strut_code_writer *w, const char *word, size_t length);
+
+/* ground_tables.c: contacts, and the surfaces they touch where these are not one straight line at rest. */
+bool strut_code_has_circles(const strut_code_writer *w);
+bool strut_code_has_pieces(const strut_code_writer *w);
+bool strut_code_has_facets(const strut_code_writer *w);
+bool strut_code_has_belts(const strut_code_writer *w);
+/* Does some node touch several surfaces? */
+bool strut_code_has_corners(const strut_code_writer *w);
+void strut_code_add_contacts(strut_code_writer *w);
+void strut_code_add_surfaces(strut_code_writer *w);
 
 /* Declarations of the model: members, contacts, drives, loads, masses, start. And the lines that solve for
    accelerations. */

@@ -1,0 +1,206 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Contacts and the surfaces that they touch, as static tables. */
+#include <math.h>
+#include <string.h>
+
+#include "engine/output/code/writer.h"
+
+/* ---- which there are ---- */
+
+typedef enum shape { LINE, PIECE, CIRCLE } shape;
+
+static shape shape_of(const strut_surface *s) {
+  if (!s->facets) return CIRCLE;
+  return s->facets == 1 && s->before == HUGE_VAL && s->beyond == HUGE_VAL ? LINE : PIECE;
+}
+
+static bool has_shape(const strut_code_writer *w, shape wanted) {
+  const strut_contact_table *t = &w->model->contacts;
+  for (int32_t i = 0; i < t->surfaces; i++)
+    if (shape_of(&t->surface[i]) == wanted) return true;
+  return false;
+}
+bool strut_code_has_circles(const strut_code_writer *w) { return has_shape(w, CIRCLE); }
+bool strut_code_has_pieces(const strut_code_writer *w) { return has_shape(w, PIECE); }
+
+bool strut_code_has_facets(const strut_code_writer *w) {
+  return has_shape(w, LINE) || has_shape(w, PIECE);
+}
+
+bool strut_code_has_belts(const strut_code_writer *w) {
+  const strut_contact_table *t = &w->model->contacts;
+  for (int32_t i = 0; i < t->surfaces; i++)
+    if (t->surface[i].belt_speed != 0.0) return true;
+  return false;
+}
+
+/* The most contacts of one node. */
+static int32_t most_touches(const strut_contact_table *t) {
+  int32_t most = 1;
+  for (int32_t i = 0, first = 0; i < t->count; i++) {
+    if (t->at[i] != t->at[first]) first = i;
+    if (i + 1 - first > most) most = i + 1 - first;
+  }
+  return most;
+}
+bool strut_code_has_corners(const strut_code_writer *w) {
+  return most_touches(&w->model->contacts) > 1;
+}
+
+/* ---- grounds that are shaken ---- */
+
+int32_t strut_code_shake_count(const strut_model *model) {
+  const strut_scene *scene = model->scene;
+  int32_t count = 0;
+  for (size_t g = 0; g < scene->ground_count && model->contacts.moves; g++)
+    count += scene->grounds[g].moves[0] + scene->grounds[g].moves[1];
+  return count;
+}
+
+const strut_ground *strut_code_shaken(const strut_model *model, int32_t n, int *axis) {
+  const strut_scene *scene = model->scene;
+  for (size_t g = 0; g < scene->ground_count; g++)
+    for (*axis = 0; *axis < 2; (*axis)++)
+      if (scene->grounds[g].moves[*axis] && n-- == 0) return &scene->grounds[g];
+  return NULL;
+}
+
+/* The input that moves a ground along an axis; -1: it does not move so. */
+static int32_t shake_of(const strut_code_writer *w, int32_t ground, int axis) {
+  const strut_scene *scene = w->scene;
+  int32_t count = strut_code_shake_count(w->model), own;
+  for (int32_t n = 0; n < count; n++)
+    if (strut_code_shaken(w->model, n, &own) == &scene->grounds[ground] && own == axis)
+      return strut_code_input_count(w->model) - count + n;
+  return -1;
+}
+
+/* ---- contacts ---- */
+
+/* The one straight line at rest. */
+static void add_line(strut_code_writer *w) {
+  const strut_contact_table *t = &w->model->contacts;
+  if (strut_code_holds(w, "slope")) {
+    strut_code_add_constant(w, "tangent_x", t->tangent[0]);
+    strut_code_add_constant(w, "tangent_y", t->tangent[1]);
+    strut_code_add_constant(w, "normal_x", t->normal[0]);
+    strut_code_add_constant(w, "normal_y", t->normal[1]);
+  }
+  strut_code_add_constant(w, "height", t->height);
+  if (strut_code_holds(w, "friction") && t->belt_speed != 0.0)
+    strut_code_add_constant(w, "belt_speed", t->belt_speed);
+}
+
+static void add_contact_type(strut_code_writer *w) {
+  bool friction = strut_code_holds(w, "friction"), karnopp = strut_code_holds(w, "karnopp");
+  bool hunt = strut_code_holds(w, "hunt_crossley"), surfaces = strut_code_holds(w, "surfaces");
+  strut_buffer_add(&w->text,
+                   "\ntypedef struct contact {\n"
+                   "  index_type at; /* where the x of its node stands */\n%s"
+                   "  real stiffness; /* [N/m] */\n",
+                   surfaces ? "  index_type surface; /* which of surfaces */\n" : "");
+  if (!hunt || surfaces)
+    strut_buffer_add(&w->text, "  real damping; /* while the node moves in [N s/m] */\n");
+  if (hunt)
+    strut_buffer_add(&w->text, surfaces ? "  real dissipation; /* instead of it [s/m] */\n"
+                                        : "  real dissipation; /* [s/m] */\n");
+  if (friction) strut_buffer_add(&w->text, "  real mu_kinetic;\n");
+  if (karnopp) strut_buffer_add(&w->text, "  real mu_static;\n");
+  if (friction && strut_code_holds(w, "speed"))
+    strut_buffer_add(&w->text, "  real stick_velocity; /* [m/s] */\n");
+  if (friction && strut_code_holds(w, "smooth"))
+    strut_buffer_add(&w->text, "  real width; /* of smooth friction [m/s] */\n");
+  if (friction && strut_code_holds(w, "directional"))
+    strut_buffer_add(&w->text, "  real mu_kinetic_backward;\n%s",
+                     karnopp ? "  real mu_static_backward;\n" : "");
+  strut_buffer_add(&w->text, "} contact;\n\n");
+}
+
+static void add_contact(strut_code_writer *w, int32_t i) {
+  const strut_contact_table *t = &w->model->contacts;
+  const strut_contact_entry *e = &t->entry[i];
+  const strut_friction *f = &e->friction;
+  bool friction = strut_code_holds(w, "friction"), karnopp = strut_code_holds(w, "karnopp");
+  bool hunt = strut_code_holds(w, "hunt_crossley"), surfaces = strut_code_holds(w, "surfaces");
+  strut_buffer_add(&w->text, "    {%u", t->at[i]);
+  if (surfaces) strut_buffer_add(&w->text, ", %d", t->surface_of[i]);
+  strut_code_add_field(w, e->stiffness);
+  if (!hunt || surfaces) strut_code_add_field(w, e->damping);
+  if (hunt) strut_code_add_field(w, e->dissipation);
+  if (friction) strut_code_add_field(w, f->mu_kinetic);
+  if (karnopp) strut_code_add_field(w, f->mu_static);
+  if (friction && strut_code_holds(w, "speed")) strut_code_add_field(w, f->stick_velocity);
+  if (friction && strut_code_holds(w, "smooth"))
+    strut_code_add_field(w, f->law == STRUT_FRICTION_SMOOTH ? f->width : 0.0);
+  if (friction && strut_code_holds(w, "directional")) {
+    strut_code_add_field(w, strut_friction_kinetic(f, -1.0));
+    if (karnopp) strut_code_add_field(w, strut_friction_static(f, -1.0));
+  }
+  strut_code_end_row(w, strut_contact_name(w->scene, (size_t)i));
+}
+
+void strut_code_add_contacts(strut_code_writer *w) {
+  const strut_contact_table *t = &w->model->contacts;
+  if (!strut_code_holds(w, "contact")) return;
+  if (!strut_code_holds(w, "surfaces")) add_line(w);
+  add_contact_type(w);
+  strut_buffer_add(&w->text, "static const contact contacts[] = {\n");
+  for (int32_t i = 0; i < t->count; i++) add_contact(w, i);
+  strut_buffer_add(&w->text, "};\n\n");
+}
+
+/* ---- surfaces ---- */
+
+static void add_facet(strut_code_writer *w, const strut_surface *s, int32_t k) {
+  const strut_facet *f = &s->facet[k];
+  strut_buffer_add(&w->text, "    {");
+  strut_code_add_real(w, f->point[0]);
+  strut_code_add_field(w, f->point[1]);
+  strut_code_add_field(w, f->axes.tangent[0]);
+  strut_code_add_field(w, f->axes.tangent[1]);
+  strut_code_add_field(w, f->axes.normal[0]);
+  strut_code_add_field(w, f->axes.normal[1]);
+  strut_code_add_field(w, f->length < HUGE_VAL ? f->length : 0.0);
+  strut_code_end_row(w, w->scene->grounds[s->ground].name);
+}
+
+static void add_reach(strut_code_writer *w, const strut_surface *s, double reach) {
+  if (shape_of(s) != PIECE || reach < HUGE_VAL)
+    strut_code_add_field(w, shape_of(s) == PIECE ? reach : 0.0);
+  else
+    strut_buffer_add(&w->text, ", (real)HUGE_VAL");
+}
+
+/* The fields of struct surface in grounds.c.in. */
+static void add_surface(strut_code_writer *w, const strut_surface *s, int32_t first) {
+  static const char *const names[] = {"LINE", "PIECE", "CIRCLE"};
+  strut_buffer_add(&w->text, "    {%s, %d, %d", names[shape_of(s)], first, s->facets);
+  add_reach(w, s, s->before);
+  add_reach(w, s, s->beyond);
+  if (strut_code_has_circles(w)) {
+    strut_code_add_field(w, s->centre[0]);
+    strut_code_add_field(w, s->centre[1]);
+    strut_code_add_field(w, s->radius);
+    strut_code_add_field(w, s->inside ? -1.0 : 1.0);
+  }
+  if (strut_code_has_belts(w)) strut_code_add_field(w, s->belt_speed);
+  if (w->model->contacts.moves)
+    strut_buffer_add(&w->text, ", %d, %d", shake_of(w, s->ground, 0), shake_of(w, s->ground, 1));
+  strut_code_end_row(w, w->scene->grounds[s->ground].name);
+}
+
+void strut_code_add_surfaces(strut_code_writer *w) {
+  const strut_contact_table *t = &w->model->contacts;
+  int32_t first = 0;
+  if (strut_code_has_facets(w)) {
+    strut_buffer_add(&w->text, "static const facet facets[] = {\n");
+    for (int32_t i = 0; i < t->surfaces; i++)
+      for (int32_t k = 0; k < t->surface[i].facets; k++) add_facet(w, &t->surface[i], k);
+    strut_buffer_add(&w->text, "};\n\n");
+  }
+  strut_buffer_add(&w->text, "static const surface surfaces[] = {\n");
+  for (int32_t i = 0; i < t->surfaces; first += t->surface[i++].facets)
+    add_surface(w, &t->surface[i], first);
+  strut_buffer_add(&w->text, "};\n\nenum { MOST_TOUCHES = %d }; /* of one node */\n\n",
+                   most_touches(t));
+}
