@@ -18,22 +18,13 @@ static double base_rate_of(const strut_element *e, const strut_state *state) {
 
 static bool yields(const strut_element *e) { return e->law == STRUT_LAW_ELASTIC_PLASTIC; }
 
-/* k_1 and F_1. */
-static double spring_of(const strut_element *e) {
-  return e->numbers.stiffness - e->numbers.second_stiffness;
-}
-
-static double yield_of(const strut_element *e) {
-  return e->numbers.yield * (spring_of(e) / e->numbers.stiffness);
-}
-
 static double shift_of(const strut_element *e, double plastic) {
-  return spring_of(e) / e->numbers.stiffness * plastic;
+  return strut_slider_share(e) * plastic;
 }
 
 /* The plastic strain at which the slider at x is at its yield, on the side of `sign`. */
 static double plastic_at(const strut_element *e, double x, double sign) {
-  return x - sign * yield_of(e) / spring_of(e);
+  return x - sign * strut_slider_yield(e) / strut_slider_spring(e);
 }
 
 /* Which way the slider gives way at x: by its mode, or by its force; 0: it holds. */
@@ -41,9 +32,9 @@ static int direction_at(const strut_state *state, const strut_element *e, int32_
   int piece = state->element_piece[i];
   if (state->forgetful) return 0;
   if (piece >= 0) return piece - STRUT_SLIDER_HOLDS;
-  double p = state->plastic[e->memory], force = spring_of(e) * (x - p);
+  double p = state->plastic[e->memory], force = strut_slider_spring(e) * (x - p);
   if (e->carries && !(e->carries * (x - shift_of(e, p)) > 0.0)) return 0;
-  return fabs(force) > yield_of(e) ? (force > 0.0 ? 1 : -1) : 0;
+  return fabs(force) > strut_slider_yield(e) ? (force > 0.0 ? 1 : -1) : 0;
 }
 
 double strut_memory_natural(const strut_model *model, const strut_state *state, int32_t i,
@@ -60,7 +51,7 @@ double strut_memory_natural(const strut_model *model, const strut_state *state, 
 double strut_memory_locked_energy(const strut_element *e, const double *rest) {
   double shift = rest[e->slot] - base_of(e, rest), beside = e->numbers.second_stiffness;
   if (!yields(e) || beside == 0.0) return 0.0;
-  return 0.5 * shift * shift * e->numbers.stiffness * beside / spring_of(e);
+  return 0.5 * shift * shift * e->numbers.stiffness * beside / strut_slider_spring(e);
 }
 
 strut_slider strut_slider_at(const strut_model *model, const strut_state *state, int32_t i,
@@ -70,9 +61,9 @@ strut_slider strut_slider_at(const strut_model *model, const strut_state *state,
   double b[STRUT_MOST_GRADIENT], rate = -base_rate_of(e, state);
   double x = strut_element_strain(model, i, q, state->element_turn[i], b) - base_of(e, state->rest);
   for (int32_t k = 0; k < e->nodes; k++) rate += b[2 * k] * v[at[k]] + b[2 * k + 1] * v[at[k] + 1];
-  double p = state->plastic[e->memory], force = spring_of(e) * (x - p);
+  double p = state->plastic[e->memory], force = strut_slider_spring(e) * (x - p);
   return (strut_slider){.force = force,
-                        .yield = yield_of(e),
+                        .yield = strut_slider_yield(e),
                         .rate = rate,
                         .plastic = plastic_at(e, x, force < 0.0 ? -1.0 : 1.0),
                         .acts = !e->carries || e->carries * (x - shift_of(e, p)) > 0.0};
@@ -137,7 +128,7 @@ static void add_element(const strut_model *model, strut_state *state, int32_t i,
                         const double *v, double *force) {
   const strut_element *e = &model->elements.element[i];
   const uint32_t *at = model->elements.at + e->first;
-  double b[STRUT_MOST_GRADIENT], rate = -base_rate_of(e, state);
+  double b[STRUT_MOST_GRADIENT], rate = 0.0;
   if (strut_capstan_remembers(e, state->rest) && !strut_element_is_gone(state->rest[e->slot])) {
     strut_capstan_add_forces(model, state, i, q, v, force);
     return;
@@ -149,8 +140,9 @@ static void add_element(const strut_model *model, strut_state *state, int32_t i,
   state->rest[e->slot] = natural;
   if (yields(e) && state->element_piece[i] >= 0)
     state->plastic[e->memory] =
-        (natural - base_of(e, state->rest)) * e->numbers.stiffness / spring_of(e);
+        (natural - base_of(e, state->rest)) * e->numbers.stiffness / strut_slider_spring(e);
   for (int32_t k = 0; k < e->nodes; k++) rate += b[2 * k] * v[at[k]] + b[2 * k + 1] * v[at[k] + 1];
+  rate -= base_rate_of(e, state); /* last, as of other elements: with their bits before it breaks */
   strut_law_response r =
       strut_law_respond(e->law, &e->numbers, strain, natural, state->element_piece[i]);
   double whole = r.force + e->damping * rate;

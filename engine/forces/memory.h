@@ -24,6 +24,17 @@ enum { STRUT_SLIDER_BACK, STRUT_SLIDER_HOLDS, STRUT_SLIDER_FORTH };
 /** Has the element broken or been released, by its natural strain? */
 static inline bool strut_element_is_gone(double natural) { return isinf(natural) != 0; }
 
+/** k_1, F_1 and k_1 / k of an elastic-plastic element. */
+static inline double strut_slider_spring(const strut_element *e) {
+  return e->numbers.stiffness - e->numbers.second_stiffness;
+}
+static inline double strut_slider_share(const strut_element *e) {
+  return strut_slider_spring(e) / e->numbers.stiffness;
+}
+static inline double strut_slider_yield(const strut_element *e) {
+  return e->numbers.yield * strut_slider_share(e);
+}
+
 /** A slider at some strain x = e - e0 of its element. */
 typedef struct strut_slider {
   double force, yield; /* k_1 (x - p), and F_1 */

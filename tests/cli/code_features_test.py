@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# strut export --code of what only some scenes have: several grounds. The C has strut's bits, by rk4 and verlet, and
-# compiles without a warning.
+# strut export --code of what only some scenes have: several grounds, and what breaks or yields. The C has strut's
+# bits, by rk4 and verlet, and compiles without a warning.
 #
 #   python3 code_features_test.py STRUT MODELS
+import csv
 import os
+import re
 import shutil
+import subprocess
 import sys
 
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
@@ -102,8 +105,92 @@ def test_grounds():
     compare_scene("steps.yaml", STEPS, 1e-4, 8000, 100)
 
 
+# ---- what yields, breaks or is released ----
+
+# A frame that is driven until parts of it give way: cables, a running cable, stops, hinges, with dampers and drives.
+MEMORY = """gravity: [0, -9.81 m/s^2]
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0], fixed: both}
+  c: {position: [1, 1], mass: 0.5}
+  d: {position: [0, 1], mass: 0.5}
+  e: {position: [0.5, 1.5], mass: 0.3}
+members:
+  post: {kind: bar, nodes: [a, d], stiffness: 800, damping: 1, law: {kind: elastic_plastic, yield: 12, second_stiffness: 60}}
+  other: {kind: bar, nodes: [b, c], stiffness: 800, damping: 1, law: {kind: elastic_plastic, yield: 15}}
+  top: {kind: bar, nodes: [c, d], stiffness: 500, damping: 0.5}
+  up: {kind: cable, nodes: [a, c], stiffness: 200, damping: 1, rest_length_ratio: 0.95, breaks_at: 14 N}
+  down: {kind: cable, nodes: [b, d], stiffness: 200, damping: 1, rest_length_ratio: 0.9, law: {kind: elastic_plastic, yield: 20, second_stiffness: 30}}
+  left: {kind: cable, nodes: [d, e], stiffness: 100, damping: 0.3, released_at: 0.7 s}
+  right: {kind: spring, nodes: [c, e], stiffness: 100, damping: 0.3, shortest: 0.6, longest: 0.72, breaks_at: 25 N}
+  run: {kind: cable, nodes: [a, d, e, c], stiffness: 60, damping: 0.5, rest_length_ratio: 0.9, breaks_at: 14 N}
+hinges:
+  knee: {nodes: [a, d, c], stiffness: 3, damping: 0.02, breaks_at: 0.7 N m}
+  bent: {nodes: [d, e, c], stiffness: 2, law: {kind: elastic_plastic, yield: 0.2 N m}}
+  plain: {nodes: [b, c, d], stiffness: 1}
+actuators:
+  pull: {member: up, signal: {sine: {amplitude: 60 mm, frequency: 1 Hz}}}
+  press: {member: post, signal: {sine: {amplitude: 40 mm, frequency: 1.3 Hz}}}
+  wave: {member: run, signal: {sine: {amplitude: 50 mm, frequency: 2 Hz}}}
+initial: {velocities: {c: [1 m/s, 0], e: [0, -1 m/s]}}
+"""
+
+LATCH = """nodes:
+  wall: {position: [0, 0], fixed: both}
+  block: {position: [90 mm, 0], mass: 1 kg, fixed: y}
+  end: {position: [200 mm, 0], fixed: both}
+members:
+  spring: {nodes: [wall, block], kind: spring, stiffness: 2 kN/m, rest_length: 100 mm}
+  latch: {nodes: [wall, block], kind: cable, stiffness: 10 kN/m, pretension: 20 N, released_at: 50 ms}
+  weak: {nodes: [block, end], kind: spring, stiffness: 10 N/m, rest_length: 10 mm, breaks_at: 0.9 N}
+"""
+
+BROKEN = """#include <stdio.h>
+#include "memory.h"
+static memory_state s;
+int main(void) {
+  memory_init(&s);
+  for (int n = 0; n < 10000; n++) memory_step_rk4(&s, NULL, 2e-4);
+  printf("%d %d %d %d\\n", s.broken[MEMORY_BREAKABLE_up], s.broken[MEMORY_BREAKABLE_left],
+         s.broken[MEMORY_BREAKABLE_right], s.broken[MEMORY_BREAKABLE_knee]);
+  for (int k = 0; k < MEMORY_SLIDERS; k++) printf("%.17g\\n", s.plastic[k]);
+  printf("%.17g\\n%.17g\\n", memory_energy(&s).elastic, memory_tension(&s, MEMORY_MEMBER_down));
+  return 0;
+}
+"""
+
+
+def last_of(table, column):
+    with open(path("run", table), encoding="utf-8") as file:
+        head, *rows = list(csv.reader(file))
+    return float(rows[-1][next(k for k, name in enumerate(head) if name.startswith(column + " "))])
+
+
+def test_memory():
+    compare_scene("latch.yaml", LATCH, 1e-4, 4000, 50)
+    compare_scene("memory.yaml", MEMORY, 2e-4, 10000, 100)
+    floats_near("memory.yaml", 2e-4, 2000, 1e-3)
+    scene("memory.yaml", MEMORY, "rk4", 2e-4, 10000, 10000, "position, energy, force")
+    done = run("run", "memory.yaml", "-o", "run", "--force")
+    run("export", "memory.yaml", "--code", "asked")
+    with open(path("asked", "memory_example.c"), "w", encoding="utf-8") as main:
+        main.write(BROKEN)
+    lines = subprocess.run([build(compilers[0], "memory", directory="asked")], capture_output=True,
+                           text=True).stdout.splitlines()
+    print("broken:", lines[0], "plastic:", *lines[1:-2])
+    for name, flag in zip(("up", "left", "right", "knee"), lines[0].split()):
+        listed = re.search(rf"\b{name}\b[^\n]*(broke|released)", done.stdout) is not None
+        check(listed == (flag == "1"), f"{name} has broken: {flag} in the code, strut says\n{done.stdout}")
+    check(lines[0].count("1") >= 3, f"of what can break next to nothing has: {lines[0]}")
+    check(all(abs(float(line)) > 1e-6 for line in lines[1:-2]), f"plastic strains {lines[1:-2]}")
+    for what, got, want in (("elastic energy", lines[-2], last_of("energy.csv", "elastic")),
+                            ("force", lines[-1], last_of("members.csv", "down.force"))):
+        check(abs(float(got) - want) <= 1e-9 * max(1, abs(want)), f"{what} {got}, strut says {want}")
+
+
 if __name__ == "__main__":
     if compilers:
         test_grounds()
+        test_memory()
     shutil.rmtree(work)
     finish()

@@ -19,25 +19,13 @@
 /* ---- what there is no code for ---- */
 
 static void refuse_members(strut_untold *r, const strut_scene *scene) {
-  size_t yields = 0, breaks = 0, released = 0, maxwell = 0, rubs = 0;
+  size_t maxwell = 0, rubs = 0;
   for (size_t i = 0; i < scene->member_count; i++) {
     const strut_member *m = &scene->members[i];
-    yields += m->law.kind == STRUT_LAW_ELASTIC_PLASTIC;
-    breaks += m->breaks_at > 0.0;
-    released += m->released_at > 0.0;
     maxwell += m->maxwell.stiffness > 0.0;
     rubs += m->guide_friction > 0.0;
   }
-  for (size_t i = 0; i < scene->hinge_count; i++) {
-    const strut_hinge *h = &scene->hinges[i];
-    yields += h->law.kind == STRUT_LAW_ELASTIC_PLASTIC;
-    breaks += h->breaks_at > 0.0;
-    released += h->released_at > 0.0;
-  }
   strut_untold_add(r, rubs, "friction at guides");
-  strut_untold_add(r, yields, "law elastic_plastic");
-  strut_untold_add(r, breaks, "breaks_at");
-  strut_untold_add(r, released, "released_at");
   strut_untold_add(r, maxwell, "maxwell");
 }
 

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Elements, forces of actuators and expressions: which there are, their tables, and the programs of expressions. */
 #include <assert.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/forces/memory.h"
 #include "engine/output/code/templates.h"
 #include "engine/output/code/writer.h"
 #include "engine/scene/signal_program.h"
@@ -58,6 +60,9 @@ bool strut_code_has_strain(const strut_code_writer *w, const char *word, size_t 
 bool strut_code_has_law(const strut_code_writer *w, const char *word, size_t length) {
   bool gas = has_law(w, STRUT_LAW_ISOTHERMAL) || has_law(w, STRUT_LAW_ISENTROPIC);
   if (is_word(word, length, "gas")) return gas;
+  /* before it has yielded it is linear */
+  if (is_word(word, length, "straight"))
+    return has_law(w, STRUT_LAW_LINEAR) || has_law(w, STRUT_LAW_ELASTIC_PLASTIC);
   if (is_word(word, length, "cell")) return gas || has_law(w, STRUT_LAW_PRESSURE);
   for (int k = 0; k < STRUT_LAW_COUNT; k++)
     if (is_word(word, length, law_names[k])) return has_law(w, (strut_law_kind)k);
@@ -146,14 +151,63 @@ static void add_curves(strut_code_writer *w) {
   }
 }
 
+/* ---- what yields, breaks or is released ---- */
+
+bool strut_code_has_breakables(const strut_code_writer *w) {
+  return w->model->elements.breakable_count > 0;
+}
+
+/* How many elements before i yield. */
+static int32_t count_sliders(const strut_element_table *t, int32_t i) {
+  int32_t count = 0;
+  for (int32_t k = 0; k < i; k++) count += t->element[k].law == STRUT_LAW_ELASTIC_PLASTIC;
+  return count;
+}
+
+int32_t strut_code_slider_count(const strut_code_writer *w) {
+  return count_sliders(&w->model->elements, w->model->elements.count);
+}
+
+static void add_slider(strut_code_writer *w, int32_t i) {
+  const strut_element *e = &w->model->elements.element[i];
+  bool yields = e->law == STRUT_LAW_ELASTIC_PLASTIC;
+  strut_buffer_add(&w->text, ", %d", yields ? count_sliders(&w->model->elements, i) : -1);
+  strut_code_add_field(w, yields ? strut_slider_spring(e) : 0.0);
+  strut_code_add_field(w, yields ? strut_slider_yield(e) : 0.0);
+  strut_code_add_field(w, yields ? strut_slider_share(e) : 0.0);
+}
+
+static int32_t breakable_of(const strut_element_table *t, int32_t element) {
+  for (int32_t b = 0; b < t->breakable_count; b++)
+    for (int32_t i = t->breakable[b].first; i >= 0; i = t->element[i].sibling)
+      if (i == element) return b;
+  return -1;
+}
+
+void strut_code_add_breakables(strut_code_writer *w) {
+  const strut_element_table *t = &w->model->elements;
+  strut_buffer_add(&w->text, "static const breakable breakables[] = {\n");
+  for (int32_t b = 0; b < t->breakable_count; b++) {
+    const strut_breakable *k = &t->breakable[b];
+    strut_buffer_add(&w->text, "    {%d", k->role == STRUT_ELEMENT_HINGE);
+    strut_buffer_add(&w->text, k->force < HUGE_VAL ? "" : ", (real)HUGE_VAL");
+    if (k->force < HUGE_VAL) strut_code_add_field(w, k->force);
+    strut_buffer_add(&w->text, k->time < HUGE_VAL ? ", " : ", HUGE_VAL");
+    if (k->time < HUGE_VAL) strut_code_add_double(w, k->time);
+    strut_code_end_row(w, w->breakables.name[b]);
+  }
+  strut_buffer_add(&w->text, "};\n\n");
+}
+
 /* The fields of struct element in elements.c.in. */
 static void add_element(strut_code_writer *w, int32_t i, int32_t *coefficient) {
   const strut_model *model = w->model;
   const strut_element *e = &model->elements.element[i];
   const strut_law_numbers *n = &e->numbers;
-  double natural = e->slot >= 0 ? model->members.rest[e->slot] : e->natural;
+  int32_t slot = e->remembers ? e->base : e->slot;
+  double natural = slot >= 0 ? model->members.rest[slot] : e->natural;
   int32_t count = count_coefficients(e);
-  strut_buffer_add(&w->text, "    {%d, %d, %d", e->slot >= 0 ? strut_code_slot(model, e->slot) : -1,
+  strut_buffer_add(&w->text, "    {%d, %d, %d", slot >= 0 ? strut_code_slot(model, slot) : -1,
                    e->first, e->nodes);
   strut_code_add_field(w, e->carries);
   strut_code_add_field(w, natural);
@@ -171,6 +225,9 @@ static void add_element(strut_code_writer *w, int32_t i, int32_t *coefficient) {
     strut_buffer_add(&w->text, ", &curve_%d", i);
   else if (has_law(w, STRUT_LAW_TABLE))
     strut_buffer_add(&w->text, ", NULL");
+  if (has_law(w, STRUT_LAW_ELASTIC_PLASTIC)) add_slider(w, i);
+  if (strut_code_has_breakables(w))
+    strut_buffer_add(&w->text, ", %d", breakable_of(&model->elements, i));
   if (strut_code_has_law(w, "cell", 4)) {
     strut_code_add_field(w, n->area);
     strut_code_add_field(w, n->outside);
@@ -217,9 +274,10 @@ void strut_code_add_blocks(strut_code_writer *w) {
       t->block_count, 2 * t->most_nodes);
   for (int32_t b = 0; b < t->block_count; b++) {
     const strut_element_block *k = &t->block[b];
+    bool yields = k->law == STRUT_LAW_ELASTIC_PLASTIC;
+    const char *law = law_names[yields ? STRUT_LAW_LINEAR : k->law];
     strut_buffer_add(&w->text, "    {strain_%s, force_%s, energy_%s, %d, %d},\n",
-                     strain_function(k->strain), law_names[k->law], law_names[k->law], k->begin,
-                     k->end);
+                     strain_function(k->strain), law, law, k->begin, k->end);
   }
   strut_buffer_add(&w->text, "};\n\n");
 }

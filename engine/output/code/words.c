@@ -154,10 +154,17 @@ static const char *input_name(strut_code_writer *w, size_t i) {
                               : actuator(w->scene, true, i - drives - loads)->name;
 }
 
+static const char *breakable_name(strut_code_writer *w, size_t i) {
+  const strut_breakable *b = &w->model->elements.breakable[i];
+  return b->role == STRUT_ELEMENT_HINGE ? w->scene->hinges[b->item].name
+                                        : w->scene->members[b->item].name;
+}
+
 bool strut_code_make_names(strut_code_writer *w) {
   return make_names(w, &w->nodes, w->scene->node_count, node_name) &&
          make_names(w, &w->members, w->scene->member_count, member_name) &&
-         make_names(w, &w->inputs, (size_t)strut_code_input_count(w->model), input_name);
+         make_names(w, &w->inputs, (size_t)strut_code_input_count(w->model), input_name) &&
+         make_names(w, &w->breakables, (size_t)w->model->elements.breakable_count, breakable_name);
 }
 
 /* ---- conditions ---- */
@@ -206,6 +213,7 @@ static bool has_angle(const strut_code_writer *w) { return strut_code_has_strain
 static bool has_expressions(const strut_code_writer *w) {
   return strut_code_has_signal(w, STRUT_EXPRESSION);
 }
+static bool has_memory(const strut_code_writer *w) { return in_plan(w, STRUT_TERM_MEMORY); }
 static bool has_root(const strut_code_writer *w) {
   return has_members(w) || has_smooth(w) || has_path(w) || strut_code_has_strain(w, "reach", 5) ||
          strut_code_has_circles(w) || strut_code_has_pieces(w);
@@ -272,6 +280,8 @@ bool strut_code_has(const strut_code_writer *w, const char *word, size_t length)
                {"path", has_path},
                {"angle", has_angle},
                {"expressions", has_expressions},
+               {"memory", has_memory},
+               {"breakables", strut_code_has_breakables},
                {"surfaces", has_surfaces},
                {"shaken", has_shaken},
                {"circles", strut_code_has_circles},
@@ -350,6 +360,10 @@ static void add_enums(strut_code_writer *w) {
   if (has_elements(w))
     strut_buffer_add(&w->text, ", %s_ELEMENTS = %d, %s_SLOTS = %d", w->upper,
                      w->model->elements.count, w->upper, strut_code_slot_count(w));
+  if (strut_code_slider_count(w))
+    strut_buffer_add(&w->text, ", %s_SLIDERS = %d", w->upper, strut_code_slider_count(w));
+  if (strut_code_has_breakables(w))
+    strut_buffer_add(&w->text, ", %s_BREAKABLES = %zu", w->upper, w->breakables.count);
   if (has_factor(w)) {
     int32_t n = op[0].factor ? op[0].factor->n : 0;
     if (op[1].factor && op[1].factor->n > n) n = op[1].factor->n;
@@ -358,6 +372,8 @@ static void add_enums(strut_code_writer *w) {
   strut_buffer_add(&w->text, " };\n\n");
   add_enum(w, "node", &w->nodes, "Nodes: x is q[2 * node], y is q[2 * node + 1].");
   if (has_members(w)) add_enum(w, "member", &w->members, "Members.");
+  if (strut_code_has_breakables(w))
+    add_enum(w, "breakable", &w->breakables, "Members and hinges that break or are released.");
   if (has_inputs(w))
     add_enum(w, "input", &w->inputs,
              "Actuators of lengths, loads that change with time, actuators of forces, motions of "
@@ -373,6 +389,9 @@ static void add_node_names(strut_code_writer *w) {
 
 static void add_element_code(strut_code_writer *w) {
   strut_code_expand(w, strut_code_elements_template->text);
+}
+static void add_memory_code(strut_code_writer *w) {
+  strut_code_expand(w, strut_code_memory_template->text);
 }
 static void add_ground_code(strut_code_writer *w) {
   strut_code_expand(w, strut_code_grounds_template->text);
@@ -398,6 +417,8 @@ void strut_code_add_table(strut_code_writer *w, const char *word, size_t length)
                {"actuator_forces", strut_code_add_actuator_forces},
                {"dual_code", add_dual_code},
                {"ground_code", add_ground_code},
+               {"memory_code", add_memory_code},
+               {"breakables", strut_code_add_breakables},
                {"surfaces", strut_code_add_surfaces}};
   for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
     if (strlen(words[i].word) == length && !memcmp(words[i].word, word, length)) {

@@ -19,7 +19,7 @@ typedef struct strut_code_writer {
   const strut_experiment *experiment;
   const strut_code_options *options;
   char upper[65]; /* the prefix in capitals */
-  strut_code_names nodes, members, inputs;
+  strut_code_names nodes, members, inputs, breakables;
   double rk4_limit, verlet_limit; /* largest stable steps [s] */
   strut_buffer text;
   bool no_float; /* some number is none of a float */
@@ -88,6 +88,9 @@ int32_t strut_code_slot_count(const strut_code_writer *w);
 /* Natural strains of all slots, from which drives start. */
 void strut_code_add_own_rests(strut_code_writer *w);
 void strut_code_add_elements(strut_code_writer *w);
+int32_t strut_code_slider_count(const strut_code_writer *w);
+bool strut_code_has_breakables(const strut_code_writer *w);
+void strut_code_add_breakables(strut_code_writer *w);
 void strut_code_add_blocks(strut_code_writer *w);
 void strut_code_add_actuator_forces(strut_code_writer *w);
 /* The lines that compute an expression at t. */
