@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# strut export --code of what only some scenes have: several grounds, and what breaks or yields. The C has strut's
-# bits, by rk4 and verlet, and compiles without a warning.
+# strut export --code of what only some scenes have: several grounds, what breaks or yields, and what follows the
+# motion. The C has strut's bits, by rk4 and verlet, and compiles without a warning.
 #
 #   python3 code_features_test.py STRUT MODELS
 import csv
@@ -11,7 +11,7 @@ import subprocess
 import sys
 
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from exported_code import build, code_rows, compare, compilers, path, run, work, write  # noqa: E402
+from exported_code import build, code_rows, compare, compilers, models, path, run, work, write  # noqa: E402
 from findings import check, finish  # noqa: E402
 
 
@@ -188,9 +188,90 @@ def test_memory():
         check(abs(float(got) - want) <= 1e-9 * max(1, abs(want)), f"{what} {got}, strut says {want}")
 
 
+# ---- what follows the motion ----
+
+# Sensors of every kind, lags, samples, starts, relays, controllers, oscillators, internal states, Maxwell branches.
+def feedback_scene():
+    with open(os.path.join(models, "..", "tests", "language", "good", "feedback.yaml"), encoding="utf-8") as file:
+        text = file.read()
+    text = re.sub(r"^(strut|solver|run|parameters):.*\n", "", text, flags=re.M).replace("gain*", "0.2*").replace(
+        "gain *", "0.2 *")
+    # of all that can begin something, some does
+    return text.replace("of: \"l + 0 m*fan + 0*slow\"", "of: \"l + 0.001 m*fan + 0*slow\"").replace(
+        "mass: 1}", "mass: 0.05}")
+
+
+# Signals that start and relays that switch again and again, without internal states.
+SWITCHES = """gravity: [0, -9.81 m/s^2]
+nodes:
+  left: {position: [0, 1 mm], mass: 0.1 kg}
+  right: {position: [100 mm, 5 mm], mass: 0.1 kg}
+  top: {position: [50 mm, 80 mm], mass: 0.1 kg}
+members:
+  foot: {kind: spring, nodes: [left, right], stiffness: 500 N/m, damping: 0.5 N s/m}
+  a: {kind: cable, nodes: [left, top], stiffness: 800 N/m, damping: 0.5 N s/m, rest_length_ratio: 0.98}
+  b: {kind: bar, nodes: [right, top], stiffness: 800 N/m, damping: 0.5 N s/m, breaks_at: 1 kN, law: {kind: elastic_plastic, yield: 0.8 N, second_stiffness: 200 N/m}}
+grounds:
+  floor: {height: 0, stiffness: 5 kN/m, damping: 3 N s/m, friction: {mu: 0.3, stick_velocity: 1 mm/s}}
+  wall: {slope: 90 deg, through: [105 mm, 0], stiffness: 5 kN/m, damping: 3 N s/m, motion: {x: {sine: {amplitude: 1 mm, frequency: 3 Hz}}}}
+sensors:
+  pull: {force: b}
+  touch: {contact: right}
+  height: {position: top, along: y}
+  sink: {velocity: top, along: y}
+  all: {energy: total}
+signals:
+  hop: {half_sine: {amplitude: 8 mm, frequency: 8 Hz}, starts: {contact: right, each: yes}}
+  rise: {ramp: {amplitude: 3 mm, stop: 0.1 s}, starts: {sensor: sink, below: -0.05 m/s}}
+  seen: {expression: 1 mm*pull/(1 N), every: 4 ms}
+controllers:
+  kick: {kind: relay, of: "sink + 0*height/(1 s)", on_above: 0.01 m/s, off_below: -0.01 m/s, on_value: -1 mm, off_value: 1 mm}
+  slow: {kind: relay, of: pull, on_below: -0.5 N, off_above: 0.5 N, on_value: 0.5 mm, off_value: 0, every: 10 ms}
+actuators:
+  one: {member: foot, signal: {sum: [hop, rise]}}
+  two: {member: a, signal: {sum: [kick, slow, seen]}}
+  push: {member: foot, force: {expression: 0.1 N*touch + 0.1*pull - 0.01*all/(1 m)}}
+"""
+
+MAXWELL = """nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0.1], mass: 1}
+  c: {position: [2, 0], fixed: both}
+members:
+  one: {kind: spring, nodes: [a, b], stiffness: 50, damping: 0.1, maxwell: {stiffness: 100, time: 0.2 s, force: 1 N}}
+  two: {kind: spring, nodes: [b, c], stiffness: 50, rest_length: 0.9, maxwell: {stiffness: 80, damping: 4}}
+"""
+
+
+def changes(rows):
+    """How often a column of numbers takes another value."""
+    return sum(a != b for a, b in zip(rows, rows[1:]))
+
+
+def test_feedback():
+    compare_scene("maxwell.yaml", MAXWELL, 1e-3, 3000, 50)
+    compare_scene("feedback.yaml", feedback_scene(), 2e-4, 10000, 100)
+    floats_near("feedback.yaml", 2e-4, 500, 1e-3)
+    compare_scene("switches.yaml", SWITCHES, 1e-4, 20000, 100)
+    floats_near("switches.yaml", 1e-4, 500, 1e-3)
+    run("export", "switches.yaml", "--code", "asked")
+    with open(path("asked", "switches_example.c"), "w", encoding="utf-8") as main:
+        main.write('#include <stdio.h>\n#include "switches.h"\nstatic switches_state s;\nint main(void) {\n'
+                   "  switches_init(&s);\n  for (int n = 0; n < 20000; n++) {\n"
+                   "    switches_step_rk4(&s, NULL, 1e-4);\n"
+                   '    if (n % 20 == 0) printf("%d %d %.17g %.17g %.17g\\n", s.relay_above[0], s.relay_above[1], '
+                   "s.started_at[0], s.held[0], s.sensor[SWITCHES_SENSOR_pull]);\n  }\n  return 0;\n}\n")
+    lines = subprocess.run([build(compilers[0], "switches", directory="asked")], capture_output=True,
+                           text=True).stdout.splitlines()
+    counts = [changes(column) for column in zip(*(line.split() for line in lines))]
+    print("changes of relays, start, sample, sensor:", *counts)
+    check(all(count >= 2 for count in counts), f"something never switches: {counts}")
+
+
 if __name__ == "__main__":
     if compilers:
         test_grounds()
         test_memory()
+        test_feedback()
     shutil.rmtree(work)
     finish()

@@ -280,8 +280,11 @@ def test_arm():
 def test_words():
     crawler = os.path.join(models, "crawler", "crawler.yaml")
     refused = run("export", os.path.join(models, "gallery", "wave-crawler.yaml"), "--code", "no", code=2)
-    check("friction law coulomb (use karnopp); leave it out" in refused.stderr,
-          f"Coulomb's law is refused by: {refused.stderr}")
+    check("friction law coulomb (its stops and starts are located within steps; use karnopp or smooth)"
+          in refused.stderr, f"Coulomb's law is refused by: {refused.stderr}")
+    refused = run("export", os.path.join(models, "gallery", "x-with-ring.yaml"), "--code", "no", code=2)
+    check("bars: rigid (" in refused.stderr and "use bars: elastic)" in refused.stderr,
+          f"rigid bars are refused by: {refused.stderr}")
     check(not os.path.exists(path("no")), "a scene that is refused leaves a folder")
     for words, text in ((("--code", "no", "--real", "half"), "double"),
                         (("--code", "no", "--prefix", "9x"), "--prefix expects a letter"),

@@ -18,45 +18,26 @@
 
 /* ---- what there is no code for ---- */
 
-static void refuse_members(strut_untold *r, const strut_scene *scene) {
-  size_t maxwell = 0, rubs = 0;
-  for (size_t i = 0; i < scene->member_count; i++) {
-    const strut_member *m = &scene->members[i];
-    maxwell += m->maxwell.stiffness > 0.0;
-    rubs += m->guide_friction > 0.0;
-  }
-  strut_untold_add(r, rubs, "friction at guides");
-  strut_untold_add(r, maxwell, "maxwell");
-}
-
-static void refuse_signal(strut_untold *r, const strut_scene *scene) {
-  size_t relays = 0, triggers = 0, lags = 0, samples = 0;
-  for (size_t i = 0; i < scene->signal_count; i++) {
-    const strut_signal *s = &scene->signals[i];
-    relays += s->kind == STRUT_RELAY;
-    triggers += s->trigger.kind != STRUT_TRIGGER_NONE;
-    lags += s->lag > 0.0;
-    samples += s->every > 0.0;
-  }
-  strut_untold_add(r, relays, "relay");
-  strut_untold_add(r, triggers, "starts");
-  strut_untold_add(r, lags, "lag");
-  strut_untold_add(r, samples, "every");
+static size_t count_rubbing(const strut_scene *scene) {
+  size_t rubs = 0;
+  for (size_t i = 0; i < scene->member_count; i++) rubs += scene->members[i].guide_friction > 0.0;
+  return rubs;
 }
 
 strut_status strut_code_check(const strut_model *model, strut_error *error) {
   const strut_scene *s = model->scene;
   strut_untold r = {.used = 0};
-  strut_untold_add(&r, (model->plan & STRUT_TERM_RIGID) != 0, "bars: rigid");
-  refuse_members(&r, s);
-  strut_untold_add(&r, strut_first_exact_contact(model) >= 0, "friction law coulomb (use karnopp)");
+  strut_untold_add(&r, (model->plan & STRUT_TERM_RIGID) != 0,
+                   "bars: rigid (their forces follow from equations "
+                   "that each step would solve; use bars: elastic)");
+  strut_untold_add(&r, count_rubbing(s), "friction at guides");
+  strut_untold_add(&r, strut_first_exact_contact(model) >= 0,
+                   "friction law coulomb (its "
+                   "stops and starts are located within steps; use karnopp or smooth)");
   strut_untold_add(&r, s->rayleigh_mass > 0.0, "rayleigh mass");
   strut_untold_add(&r, s->support_motion_count, "moves of nodes");
   strut_untold_add(&r, s->unbalance_count, "unbalances");
   strut_untold_add(&r, s->sliding_count, "sliders");
-  strut_untold_add(&r, s->sensor_count, "sensors");
-  strut_untold_add(&r, s->state_count, "states");
-  refuse_signal(&r, s);
   if (r.used)
     return strut_fail(error, STRUT_BAD_SCENE,
                       "the scene has what no C code is written for: %s; leave it out, or compute "

@@ -356,14 +356,36 @@ static bool asks_for(const strut_instruction *p, const char *word, size_t length
   return name.word && is_word(word, length, name.word);
 }
 
-bool strut_code_has_operation(const strut_code_writer *w, const char *word, size_t length) {
-  for (size_t s = 0; s < w->scene->signal_count; s++) {
-    const strut_program *p = &w->scene->signals[s].program;
-    if (!strut_code_signal_acts(w, (int32_t)s)) continue;
-    for (size_t i = 0; i < p->length; i++)
-      if (asks_for(&p->instruction[i], word, length)) return true;
-  }
+static bool program_asks_for(const strut_program *p, const char *word, size_t length) {
+  for (size_t i = 0; i < p->length; i++)
+    if (asks_for(&p->instruction[i], word, length)) return true;
   return false;
+}
+
+bool strut_code_has_operation(const strut_code_writer *w, const char *word, size_t length) {
+  for (size_t s = 0; s < w->scene->signal_count; s++)
+    if (strut_code_signal_acts(w, (int32_t)s) &&
+        program_asks_for(&w->scene->signals[s].program, word, length))
+      return true;
+  for (size_t k = 0; k < w->scene->state_count && strut_code_has_feedback(w); k++)
+    if (program_asks_for(&w->scene->states[k].rate, word, length)) return true;
+  return false;
+}
+
+/* The time, a sensor or its rate, or an internal state. */
+static void add_column(strut_code_writer *w, strut_column column) {
+  bool rate = column.kind == STRUT_COLUMN_SENSOR_RATE;
+  if (column.kind == STRUT_COLUMN_TIME) {
+    strut_buffer_add(&w->text, "(dual){t, 1};\n");
+  } else if (column.kind == STRUT_COLUMN_STATE) {
+    strut_buffer_add(&w->text, "internal_state(o, %d, t);\n", column.item);
+  } else {
+    const char *of = w->sensors.name[column.item];
+    strut_buffer_add(&w->text, "(dual){o->s->sensor%s[%s_SENSOR_%s], ", rate ? "_rate" : "",
+                     w->upper, of);
+    if (!rate) strut_buffer_add(&w->text, "o->s->sensor_rate[%s_SENSOR_%s]};\n", w->upper, of);
+    if (rate) strut_buffer_add(&w->text, "0};\n");
+  }
 }
 
 /* "x[2] = add(x[2], x[3]);", an operation a line, on a stack x. */
@@ -380,9 +402,10 @@ void strut_code_add_program(strut_code_writer *w, const strut_program *program) 
         strut_code_add_double(w, p->number);
         strut_buffer_add(&w->text, ", 0};\n");
       } else if (p->column.kind == STRUT_COLUMN_SIGNAL) {
-        strut_buffer_add(&w->text, "follow(signal_%d, t);\n", p->column.item);
+        strut_buffer_add(&w->text, "follow(%ssignal_%d, t);\n",
+                         strut_code_has_feedback(w) ? "o, " : "", p->column.item);
       } else {
-        strut_buffer_add(&w->text, "(dual){t, 1};\n"); /* others are refused by strut_code_check */
+        add_column(w, p->column);
       }
     } else if (operands == 1) {
       strut_buffer_add(&w->text, "  x[%zu] = %s(x[%zu]);\n", top - 1,
@@ -393,5 +416,4 @@ void strut_code_add_program(strut_code_writer *w, const strut_program *program) 
                        name_of(p->operation).function, top - 1, top);
     }
   }
-  strut_buffer_add(&w->text, "  *value = (real)x[0].value, *rate = (real)x[0].rate;\n");
 }

@@ -51,7 +51,7 @@ static void add_line(strut_code_writer *w, const char *line, const char *end) {
       strut_buffer_add(&w->text, "%s", w->upper);
     } else {
       size_t length = word_length(line);
-      strut_code_add_word(w, line, length);
+      strut_code_add_part(w, line, length);
       line += length;
     }
   }
@@ -76,7 +76,7 @@ void strut_code_expand(strut_code_writer *w, const char *template) {
     } else if (!is_shown(&c)) {
       continue;
     } else if (starts(line, "@table ")) {
-      strut_code_add_table(w, line + 7, word_length(line + 7));
+      strut_code_add_part(w, line + 7, word_length(line + 7));
     } else {
       add_line(w, line, end);
     }

@@ -23,11 +23,11 @@ static bool has_shape(const strut_code_writer *w, shape wanted) {
 bool strut_code_has_circles(const strut_code_writer *w) { return has_shape(w, CIRCLE); }
 bool strut_code_has_pieces(const strut_code_writer *w) { return has_shape(w, PIECE); }
 
-bool strut_code_has_facets(const strut_code_writer *w) {
+static bool has_facets(const strut_code_writer *w) {
   return has_shape(w, LINE) || has_shape(w, PIECE);
 }
 
-bool strut_code_has_belts(const strut_code_writer *w) {
+static bool has_belts(const strut_code_writer *w) {
   const strut_contact_table *t = &w->model->contacts;
   for (int32_t i = 0; i < t->surfaces; i++)
     if (t->surface[i].belt_speed != 0.0) return true;
@@ -43,7 +43,7 @@ static int32_t most_touches(const strut_contact_table *t) {
   }
   return most;
 }
-bool strut_code_has_corners(const strut_code_writer *w) {
+static bool has_corners(const strut_code_writer *w) {
   return most_touches(&w->model->contacts) > 1;
 }
 
@@ -74,6 +74,17 @@ static int32_t shake_of(const strut_code_writer *w, int32_t ground, int axis) {
       return strut_code_input_count(w->model) - count + n;
   return -1;
 }
+
+static bool has_shaken(const strut_code_writer *w) { return strut_code_shake_count(w->model) > 0; }
+static bool has_surfaces(const strut_code_writer *w) {
+  return w->model->plan & STRUT_TERM_SURFACES;
+}
+
+const strut_code_condition strut_code_ground_conditions[] = {
+    {"surfaces", has_surfaces},        {"shaken", has_shaken}, {"circles", strut_code_has_circles},
+    {"pieces", strut_code_has_pieces}, {"facets", has_facets}, {"belts", has_belts},
+    {"corners", has_corners},          {NULL, NULL},
+};
 
 /* ---- contacts ---- */
 
@@ -183,7 +194,7 @@ static void add_surface(strut_code_writer *w, const strut_surface *s, int32_t fi
     strut_code_add_field(w, s->radius);
     strut_code_add_field(w, s->inside ? -1.0 : 1.0);
   }
-  if (strut_code_has_belts(w)) strut_code_add_field(w, s->belt_speed);
+  if (has_belts(w)) strut_code_add_field(w, s->belt_speed);
   if (w->model->contacts.moves)
     strut_buffer_add(&w->text, ", %d, %d", shake_of(w, s->ground, 0), shake_of(w, s->ground, 1));
   strut_code_end_row(w, w->scene->grounds[s->ground].name);
@@ -192,7 +203,7 @@ static void add_surface(strut_code_writer *w, const strut_surface *s, int32_t fi
 void strut_code_add_surfaces(strut_code_writer *w) {
   const strut_contact_table *t = &w->model->contacts;
   int32_t first = 0;
-  if (strut_code_has_facets(w)) {
+  if (has_facets(w)) {
     strut_buffer_add(&w->text, "static const facet facets[] = {\n");
     for (int32_t i = 0; i < t->surfaces; i++)
       for (int32_t k = 0; k < t->surface[i].facets; k++) add_facet(w, &t->surface[i], k);

@@ -221,6 +221,7 @@ void strut_code_add_model(strut_code_writer *w) {
   add_masses(w);
   add_of_nodes(w, "start", "positions at t = 0 [m]", model->start);
   add_of_nodes(w, "start_velocity", "velocities at t = 0 [m/s]", model->velocity);
+  strut_code_add_start_states(w);
 }
 
 void strut_code_add_solve(strut_code_writer *w) {

@@ -4,6 +4,7 @@
 
 #include "engine/base/vec.h"
 #include "engine/output/code/writer.h"
+#include "engine/scene/signal_program.h"
 
 /* The signal of input k. */
 static int32_t signal_of_input(const strut_model *model, int32_t k) {
@@ -19,15 +20,23 @@ static int32_t signal_of_input(const strut_model *model, int32_t k) {
                               : model->actuator_forces.item[k - drives - loads].signal;
 }
 
+static bool reads(const strut_instruction *p, strut_column_kind kind) {
+  return p->operation == STRUT_OPERATION_COLUMN && p->column.kind == kind;
+}
+
+/* The n-th signal that a program reads; -1: there are no more. */
+static int32_t signal_in(const strut_program *program, size_t n) {
+  for (size_t i = 0; i < program->length; i++) {
+    const strut_instruction *p = &program->instruction[i];
+    if (reads(p, STRUT_COLUMN_SIGNAL) && n-- == 0) return p->column.item;
+  }
+  return -1;
+}
+
 /* Part n of a signal, which is a sum or an expression; -1: there are no more. */
 static int32_t part_of(const strut_signal *s, size_t n) {
   if (s->kind == STRUT_SUM) return n < s->term_count ? s->terms[n] : -1;
-  for (size_t i = 0; s->kind == STRUT_EXPRESSION && i < s->program.length; i++) {
-    const strut_instruction *p = &s->program.instruction[i];
-    bool reads = p->operation == STRUT_OPERATION_COLUMN && p->column.kind == STRUT_COLUMN_SIGNAL;
-    if (reads && n-- == 0) return p->column.item;
-  }
-  return -1;
+  return strut_signal_has_program(s) ? signal_in(&s->program, n) : -1;
 }
 
 static bool contains(const strut_signal *signals, int32_t index, int32_t wanted) {
@@ -40,6 +49,9 @@ static bool contains(const strut_signal *signals, int32_t index, int32_t wanted)
 bool strut_code_signal_acts(const strut_code_writer *w, int32_t signal) {
   for (int32_t k = 0; k < strut_code_input_count(w->model); k++)
     if (contains(w->scene->signals, signal_of_input(w->model, k), signal)) return true;
+  for (size_t k = 0; k < w->scene->state_count && strut_code_has_feedback(w); k++)
+    for (size_t n = 0; signal_in(&w->scene->states[k].rate, n) >= 0; n++)
+      if (contains(w->scene->signals, signal_in(&w->scene->states[k].rate, n), signal)) return true;
   return false;
 }
 
@@ -147,20 +159,111 @@ static void add_body(strut_code_writer *w, const strut_signal *s, int32_t index)
       strut_buffer_add(&w->text, "  real part, part_rate;\n");
       for (size_t i = 0; i < s->term_count; i++)
         strut_buffer_add(&w->text,
-                         "  signal_%d(t, &part, &part_rate);\n"
+                         "  signal_%d(%st, &part, &part_rate);\n"
                          "  *value += part, *rate += part_rate;\n",
-                         s->terms[i]);
+                         s->terms[i], strut_code_has_feedback(w) ? "o, " : "");
       break;
-    case STRUT_EXPRESSION: strut_code_add_program(w, &s->program); break;
+    case STRUT_EXPRESSION:
+      strut_code_add_program(w, &s->program);
+      strut_buffer_add(&w->text, "  *value = (real)x[0].value, *rate = (real)x[0].rate;\n");
+      break;
     case STRUT_RELAY:
-    case STRUT_SIGNAL_KINDS: break; /* refused by strut_code_check */
+      strut_buffer_add(&w->text, "  *value = o->s->relay_above[%d] ? ",
+                       strut_code_relay_of(w, index));
+      strut_code_add_real(w, strut_relay_value(s, 1));
+      strut_buffer_add(&w->text, " : ");
+      strut_code_add_real(w, strut_relay_value(s, -1));
+      strut_buffer_add(&w->text, ";\n");
+      break;
+    case STRUT_SIGNAL_KINDS: break;
   }
+}
+
+/* "static TYPE NAME(const observed *o, double t" */
+static void begin_function(strut_code_writer *w, const char *type, const char *name, int32_t index,
+                           const char *behind) {
+  strut_buffer_add(&w->text, "static %s %s_%d%s(%sdouble t", type, name, index, behind,
+                   strut_code_has_feedback(w) ? "const observed *o, " : "");
+}
+
+/* Parameters that the function does not read. */
+static void add_unread(strut_code_writer *w, bool reads_observed, bool reads_time) {
+  if (!reads_observed && strut_code_has_feedback(w)) strut_buffer_add(&w->text, "  (void)o;\n");
+  if (!reads_time) strut_buffer_add(&w->text, "  (void)t;\n");
+}
+
+static bool program_reads_time(const strut_program *program) {
+  for (size_t i = 0; i < program->length; i++) {
+    const strut_instruction *p = &program->instruction[i];
+    if (reads(p, STRUT_COLUMN_TIME) || reads(p, STRUT_COLUMN_SIGNAL) ||
+        reads(p, STRUT_COLUMN_STATE))
+      return true;
+  }
+  return false;
+}
+
+static bool program_reads_observed(const strut_program *program) {
+  for (size_t i = 0; i < program->length; i++) {
+    const strut_instruction *p = &program->instruction[i];
+    if (p->operation == STRUT_OPERATION_COLUMN && p->column.kind != STRUT_COLUMN_TIME) return true;
+  }
+  return false;
+}
+
+/* What a program gives, rates of states and lags left out. */
+static void add_value_of(strut_code_writer *w, const char *name, int32_t index,
+                         const strut_program *program) {
+  begin_function(w, "double", name, index, "");
+  strut_buffer_add(&w->text, ") {\n");
+  add_unread(w, program_reads_observed(program), program_reads_time(program));
+  strut_code_add_program(w, program);
+  strut_buffer_add(&w->text, "  return x[0].value;\n}\n\n");
+}
+
+/* The signal itself, from its start on, without lag and samples. */
+static void add_plain(strut_code_writer *w, int32_t index, const char *behind) {
+  const strut_signal *s = &w->scene->signals[index];
+  bool holds = s->kind == STRUT_RAMP || s->kind == STRUT_TABLE || strut_signal_has_program(s);
+  bool starts = s->trigger.kind != STRUT_TRIGGER_NONE;
+  bool observes = s->kind == STRUT_SUM || s->kind == STRUT_RELAY || starts ||
+                  (s->kind == STRUT_EXPRESSION && program_reads_observed(&s->program));
+  begin_function(w, "void", "signal", index, behind);
+  strut_buffer_add(&w->text, ", real *value, real *rate) {\n  *value = 0, *rate = 0;\n");
+  add_unread(w, observes,
+             starts || (s->kind == STRUT_EXPRESSION ? program_reads_time(&s->program)
+                                                    : s->kind != STRUT_RELAY));
+  if (starts) {
+    int32_t k = strut_code_start_of(w, index);
+    strut_buffer_add(&w->text,
+                     "  if (!(t >= o->s->started_at[%d])) return;\n  t -= o->s->started_at[%d];\n",
+                     k, k);
+  }
+  if (!holds) add_span(w, s);
+  add_body(w, s, index);
+  strut_buffer_add(&w->text, "}\n\n");
+}
+
+/* It follows with a first-order lag, which is an internal state. */
+static void add_lagged(strut_code_writer *w, int32_t index, const char *behind) {
+  int32_t state = w->model->feedback.lag_of[index];
+  begin_function(w, "void", "signal", index, behind);
+  strut_buffer_add(&w->text,
+                   ", real *value, real *rate) {\n"
+                   "  const observed values = {o->s, o->state, 1};\n"
+                   "  real wanted, unused;\n"
+                   "  *value = o->state[%d], *rate = 0;\n"
+                   "  if (o->values_only) return;\n"
+                   "  signal_%d_unlagged(&values, t, &wanted, &unused);\n"
+                   "  *rate = (wanted - *value) / ",
+                   state, index);
+  strut_code_add_real(w, w->scene->signals[index].lag);
+  strut_buffer_add(&w->text, ";\n}\n\n");
 }
 
 /* The functions of a signal and of its terms, those that are not there yet. */
 static void add_signal(strut_code_writer *w, int32_t index, uint8_t *done) {
   const strut_signal *s = &w->scene->signals[index];
-  bool holds = s->kind == STRUT_RAMP || s->kind == STRUT_TABLE || s->kind == STRUT_EXPRESSION;
+  bool lagged = s->lag > 0.0, sampled = s->every > 0.0;
   if (done[index]) return;
   done[index] = 1;
   for (size_t n = 0; part_of(s, n) >= 0; n++) add_signal(w, part_of(s, n), done);
@@ -170,13 +273,36 @@ static void add_signal(strut_code_writer *w, int32_t index, uint8_t *done) {
     strut_code_add_comment(w, s->name);
     strut_buffer_add(&w->text, " */\n");
   }
+  if (s->kind == STRUT_RELAY) add_value_of(w, "relay_input", index, &s->program);
+  add_plain(w, index, lagged ? "_unlagged" : sampled ? "_unsampled" : "");
+  if (lagged) add_lagged(w, index, sampled ? "_lagged" : "");
+  if (!sampled) return;
+  begin_function(w, "void", "signal", index, "");
   strut_buffer_add(&w->text,
-                   "static void signal_%d(double t, real *value, real *rate) {\n"
-                   "  *value = 0, *rate = 0;\n",
-                   index);
-  if (!holds) add_span(w, s);
-  add_body(w, s, index);
-  strut_buffer_add(&w->text, "}\n\n");
+                   ", real *value, real *rate) {\n  (void)t;\n"
+                   "  *value = o->s->held[%d], *rate = 0;\n}\n\n",
+                   strut_code_sample_of(w, index));
+}
+
+/* Rates of the scene's internal states. */
+static void add_states(strut_code_writer *w, uint8_t *done) {
+  int32_t count = (int32_t)w->scene->state_count;
+  for (int32_t k = 0; k < count; k++) {
+    const strut_program *rate = &w->scene->states[k].rate;
+    for (size_t n = 0; signal_in(rate, n) >= 0; n++) add_signal(w, signal_in(rate, n), done);
+  }
+  for (int32_t k = 0; k < count; k++) {
+    strut_buffer_add(&w->text, "/* d/dt ");
+    strut_code_add_comment(w, w->scene->states[k].name);
+    strut_buffer_add(&w->text, " */\n");
+    add_value_of(w, "state_rate", k, &w->scene->states[k].rate);
+  }
+  strut_buffer_add(&w->text,
+                   "static double rate_of_state(const observed *o, int k, double t) {\n"
+                   "  static double (*const rates[])(const observed *, double) = {");
+  for (int32_t k = 0; k < count; k++)
+    strut_buffer_add(&w->text, "%sstate_rate_%d", k ? ", " : "", k);
+  strut_buffer_add(&w->text, "};\n  return rates[k](o, t);\n}\n\n");
 }
 
 void strut_code_add_signals(strut_code_writer *w) {
@@ -188,7 +314,9 @@ void strut_code_add_signals(strut_code_writer *w) {
     return;
   }
   for (int32_t k = 0; k < count; k++) add_signal(w, signal_of_input(w->model, k), done);
-  strut_buffer_add(&w->text, "static void (*const own_signal[])(double, real *, real *) = {\n");
+  if (strut_code_has_internal_states(w)) add_states(w, done);
+  strut_buffer_add(&w->text, "static void (*const own_signal[])(%sdouble, real *, real *) = {\n",
+                   strut_code_has_feedback(w) ? "const observed *, " : "");
   for (int32_t k = 0; k < count; k++)
     strut_buffer_add(&w->text, "    signal_%d, /* %s */\n", signal_of_input(w->model, k),
                      w->inputs.name[k]);

@@ -1,171 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The words of the templates, and the names and literals of the text. */
+/* The words of the templates. */
 #include <assert.h>
 #include <ctype.h>
-#include <float.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "engine/base/number_text.h"
 #include "engine/model/mass.h"
 #include "engine/output/code/templates.h"
 #include "engine/output/code/writer.h"
-
-/* ---- literals and comments ---- */
-
-static void add_literal(strut_code_writer *w, const char *digits, const char *suffix) {
-  strut_buffer_add(&w->text, "%s%s%s", digits, strpbrk(digits, ".e") ? "" : ".0", suffix);
-}
-
-void strut_code_add_double(strut_code_writer *w, double value) {
-  char text[STRUT_NUMBER_TEXT];
-  strut_number_text(value, text);
-  add_literal(w, text, "");
-}
-
-void strut_code_add_real(strut_code_writer *w, double value) {
-  char text[STRUT_NUMBER_TEXT];
-  if (!w->options->single) {
-    strut_code_add_double(w, value);
-    return;
-  }
-  float nearest = (float)value;
-  if (!isfinite(nearest)) w->no_float = true;
-  int digits = 1;
-  do snprintf(text, sizeof text, "%.*g", digits, (double)nearest);
-  while (digits++ < FLT_DECIMAL_DIG &&
-         !(strtof(text, NULL) >= nearest && strtof(text, NULL) <= nearest));
-  add_literal(w, text, "f");
-}
-
-void strut_code_add_comment(strut_code_writer *w, const char *text) {
-  for (const unsigned char *c = (const unsigned char *)text; *c; c++)
-    strut_buffer_add(&w->text, "%c", *c < 32 || *c == 127 || strchr("*\\?", *c) ? '_' : *c);
-}
-
-void strut_code_add_field(strut_code_writer *w, double value) {
-  strut_buffer_add(&w->text, ", ");
-  strut_code_add_real(w, value);
-}
-
-void strut_code_end_row(strut_code_writer *w, const char *name) {
-  strut_buffer_add(&w->text, "}, /* ");
-  strut_code_add_comment(w, name ? name : "");
-  strut_buffer_add(&w->text, " */\n");
-}
-
-void strut_code_add_constant(strut_code_writer *w, const char *name, double value) {
-  strut_buffer_add(&w->text, "static const real %s = ", name);
-  strut_code_add_real(w, value);
-  strut_buffer_add(&w->text, ";\n");
-}
-
-/* ---- identifiers ---- */
-
-bool strut_code_is_prefix(const char *text) {
-  size_t length = strlen(text);
-  if (length < 1 || length > 64 || !isalpha((unsigned char)text[0])) return false;
-  for (; *text; text++)
-    if (!isalnum((unsigned char)*text) && *text != '_') return false;
-  return true;
-}
-
-static char identifier_letter(char c) {
-  bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-  return plain ? c : '_';
-}
-
-void strut_code_prefix_of(const char *text, char prefix[65]) {
-  const char *slash = strrchr(text, '/'), *stem = slash ? slash + 1 : text;
-  size_t length = strcspn(stem, "."), used = 0;
-  bool letter = (*stem >= 'a' && *stem <= 'z') || (*stem >= 'A' && *stem <= 'Z');
-  if (!letter && length) used = (size_t)snprintf(prefix, 65, "model_");
-  if (!length) used = (size_t)snprintf(prefix, 65, "model");
-  for (size_t i = 0; i < length && used < 64; i++) prefix[used++] = identifier_letter(stem[i]);
-  prefix[used] = '\0';
-}
-
-static bool make_names(strut_code_writer *w, strut_code_names *names, size_t count,
-                       const char *(*name_of)(strut_code_writer *, size_t)) {
-  strut_name_map taken = {0};
-  bool good = true;
-  names->count = count;
-  names->name = strut_arena_allocate(&w->arena, count, sizeof *names->name);
-  if (!names->name) return false;
-  for (size_t i = 0; i < count && good; i++) {
-    const char *given = name_of(w, i), *text = given ? given : "";
-    size_t length = strlen(text);
-    char *name = strut_arena_allocate(&w->arena, length + 24, 1);
-    if (!name) {
-      good = false;
-      break;
-    }
-    for (size_t k = 0; k < length; k++) name[k] = identifier_letter(text[k]);
-    int32_t other = strut_name_map_add(&taken, name, (int32_t)i);
-    for (int again = 2; other >= 0; again++) {
-      snprintf(name + length, 24, "_%d", again);
-      other = strut_name_map_add(&taken, name, (int32_t)i);
-    }
-    good = other == -1;
-    names->name[i] = name;
-  }
-  strut_name_map_free(&taken);
-  return good;
-}
-
-static const char *node_name(strut_code_writer *w, size_t i) { return w->scene->nodes[i].name; }
-static const char *member_name(strut_code_writer *w, size_t i) { return w->scene->members[i].name; }
-
-/* The n-th load of the scene that has a signal. */
-static const strut_load *driven_load(const strut_scene *scene, size_t n) {
-  for (size_t i = 0; i < scene->load_count; i++)
-    if (scene->loads[i].signal >= 0 && n-- == 0) return &scene->loads[i];
-  assert(false && "inputs are counted from the same loads");
-  return NULL;
-}
-
-/* The n-th actuator of the scene that gives a force, or that gives none. */
-static const strut_actuator *actuator(const strut_scene *scene, bool force, size_t n) {
-  for (size_t i = 0; i < scene->actuator_count; i++)
-    if (scene->actuators[i].force == force && n-- == 0) return &scene->actuators[i];
-  assert(false && "inputs are counted from the same actuators");
-  return NULL;
-}
-
-/* "GROUND_x" */
-static const char *shake_name(strut_code_writer *w, size_t n) {
-  int axis;
-  const strut_ground *ground = strut_code_shaken(w->model, (int32_t)n, &axis);
-  const char *of = ground->name && ground->name[0] ? ground->name : "ground";
-  size_t length = strlen(of) + 3;
-  char *name = strut_arena_allocate(&w->arena, length, 1);
-  if (name) snprintf(name, length, "%s_%c", of, "xy"[axis]);
-  return name;
-}
-
-static const char *input_name(strut_code_writer *w, size_t i) {
-  size_t drives = (size_t)w->model->drives.count, loads = (size_t)w->model->loads.count;
-  size_t others = drives + loads + (size_t)w->model->actuator_forces.count;
-  return i >= others          ? shake_name(w, i - others)
-         : i < drives         ? actuator(w->scene, false, i)->name
-         : i < drives + loads ? driven_load(w->scene, i - drives)->name
-                              : actuator(w->scene, true, i - drives - loads)->name;
-}
-
-static const char *breakable_name(strut_code_writer *w, size_t i) {
-  const strut_breakable *b = &w->model->elements.breakable[i];
-  return b->role == STRUT_ELEMENT_HINGE ? w->scene->hinges[b->item].name
-                                        : w->scene->members[b->item].name;
-}
-
-bool strut_code_make_names(strut_code_writer *w) {
-  return make_names(w, &w->nodes, w->scene->node_count, node_name) &&
-         make_names(w, &w->members, w->scene->member_count, member_name) &&
-         make_names(w, &w->inputs, (size_t)strut_code_input_count(w->model), input_name) &&
-         make_names(w, &w->breakables, (size_t)w->model->elements.breakable_count, breakable_name);
-}
 
 /* ---- conditions ---- */
 
@@ -188,8 +29,6 @@ static bool has_constant(const strut_code_writer *w) { return in_plan(w, STRUT_T
 static bool has_contact(const strut_code_writer *w) {
   return in_plan(w, STRUT_TERM_CONTACT | STRUT_TERM_SURFACES);
 }
-static bool has_surfaces(const strut_code_writer *w) { return in_plan(w, STRUT_TERM_SURFACES); }
-static bool has_shaken(const strut_code_writer *w) { return strut_code_shake_count(w->model) > 0; }
 static bool has_slope(const strut_code_writer *w) { return in_plan(w, STRUT_TERM_SLOPE); }
 static bool has_friction(const strut_code_writer *w) {
   return has_contact(w) && in_plan(w, STRUT_TERM_FRICTION);
@@ -211,7 +50,8 @@ static bool has_strains(const strut_code_writer *w) {
 static bool has_path(const strut_code_writer *w) { return strut_code_has_strain(w, "path", 4); }
 static bool has_angle(const strut_code_writer *w) { return strut_code_has_strain(w, "angle", 5); }
 static bool has_expressions(const strut_code_writer *w) {
-  return strut_code_has_signal(w, STRUT_EXPRESSION);
+  return strut_code_has_internal_states(w) || strut_code_has_relays(w) ||
+         strut_code_has_signal(w, STRUT_EXPRESSION);
 }
 static bool has_memory(const strut_code_writer *w) { return in_plan(w, STRUT_TERM_MEMORY); }
 static bool has_root(const strut_code_writer *w) {
@@ -246,49 +86,51 @@ static bool has_table_signal(const strut_code_writer *w) {
   return strut_code_has_signal(w, STRUT_TABLE);
 }
 
+static const strut_code_condition conditions[] = {{"float", has_float},
+                                                  {"inputs", has_inputs},
+                                                  {"drive", has_drive},
+                                                  {"loads", has_loads},
+                                                  {"members", has_members},
+                                                  {"damping", has_damping},
+                                                  {"slack", has_slack},
+                                                  {"constant", has_constant},
+                                                  {"contact", has_contact},
+                                                  {"slope", has_slope},
+                                                  {"friction", has_friction},
+                                                  {"smooth", has_smooth},
+                                                  {"karnopp", has_karnopp},
+                                                  {"directional", has_directional},
+                                                  {"speed", has_speed},
+                                                  {"root", has_root},
+                                                  {"belt", has_belt},
+                                                  {"hunt_crossley", has_hunt_crossley},
+                                                  {"gravity", has_gravity},
+                                                  {"consistent", has_consistent},
+                                                  {"groups", has_groups},
+                                                  {"factor", has_factor},
+                                                  {"wave", has_wave},
+                                                  {"table_signal", has_table_signal},
+                                                  {"elements", has_elements},
+                                                  {"actuator_forces", has_actuator_forces},
+                                                  {"strains", has_strains},
+                                                  {"path", has_path},
+                                                  {"angle", has_angle},
+                                                  {"expressions", has_expressions},
+                                                  {"memory", has_memory},
+                                                  {"breakables", strut_code_has_breakables},
+                                                  {NULL, NULL}};
+
+/* The row of a word; NULL: it is not in the table. */
+static const strut_code_condition *find_condition(const strut_code_condition *table,
+                                                  const char *word, size_t length) {
+  for (; table->word; table++)
+    if (strlen(table->word) == length && !memcmp(table->word, word, length)) return table;
+  return NULL;
+}
+
 bool strut_code_has(const strut_code_writer *w, const char *word, size_t length) {
-  static const struct {
-    const char *word;
-    bool (*holds)(const strut_code_writer *);
-  } words[] = {{"float", has_float},
-               {"inputs", has_inputs},
-               {"drive", has_drive},
-               {"loads", has_loads},
-               {"members", has_members},
-               {"damping", has_damping},
-               {"slack", has_slack},
-               {"constant", has_constant},
-               {"contact", has_contact},
-               {"slope", has_slope},
-               {"friction", has_friction},
-               {"smooth", has_smooth},
-               {"karnopp", has_karnopp},
-               {"directional", has_directional},
-               {"speed", has_speed},
-               {"root", has_root},
-               {"belt", has_belt},
-               {"hunt_crossley", has_hunt_crossley},
-               {"gravity", has_gravity},
-               {"consistent", has_consistent},
-               {"groups", has_groups},
-               {"factor", has_factor},
-               {"wave", has_wave},
-               {"table_signal", has_table_signal},
-               {"elements", has_elements},
-               {"actuator_forces", has_actuator_forces},
-               {"strains", has_strains},
-               {"path", has_path},
-               {"angle", has_angle},
-               {"expressions", has_expressions},
-               {"memory", has_memory},
-               {"breakables", strut_code_has_breakables},
-               {"surfaces", has_surfaces},
-               {"shaken", has_shaken},
-               {"circles", strut_code_has_circles},
-               {"pieces", strut_code_has_pieces},
-               {"facets", strut_code_has_facets},
-               {"belts", strut_code_has_belts},
-               {"corners", strut_code_has_corners}};
+  const strut_code_condition *const tables[] = {conditions, strut_code_ground_conditions,
+                                                strut_code_feedback_conditions};
   static const struct {
     const char *prefix;
     bool (*holds)(const strut_code_writer *, const char *, size_t);
@@ -300,9 +142,10 @@ bool strut_code_has(const strut_code_writer *w, const char *word, size_t length)
     if (length > skip && !memcmp(word, families[i].prefix, skip))
       return families[i].holds(w, word + skip, length - skip);
   }
-  for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
-    if (strlen(words[i].word) == length && !memcmp(words[i].word, word, length))
-      return words[i].holds(w);
+  for (size_t i = 0; i < sizeof tables / sizeof tables[0]; i++) {
+    const strut_code_condition *found = find_condition(tables[i], word, length);
+    if (found) return found->holds(w);
+  }
   assert(false && "a template asks for a word that there is not");
   return false;
 }
@@ -364,6 +207,11 @@ static void add_enums(strut_code_writer *w) {
     strut_buffer_add(&w->text, ", %s_SLIDERS = %d", w->upper, strut_code_slider_count(w));
   if (strut_code_has_breakables(w))
     strut_buffer_add(&w->text, ", %s_BREAKABLES = %zu", w->upper, w->breakables.count);
+  if (strut_code_has_states(w))
+    strut_buffer_add(&w->text, ", %s_STATES = %zu, %s_COORDINATES = %zu", w->upper, w->states.count,
+                     w->upper, 2 * w->nodes.count + w->states.count);
+  if (strut_code_holds(w, "sensors"))
+    strut_buffer_add(&w->text, ", %s_SENSORS = %zu", w->upper, w->sensors.count);
   if (has_factor(w)) {
     int32_t n = op[0].factor ? op[0].factor->n : 0;
     if (op[1].factor && op[1].factor->n > n) n = op[1].factor->n;
@@ -372,6 +220,11 @@ static void add_enums(strut_code_writer *w) {
   strut_buffer_add(&w->text, " };\n\n");
   add_enum(w, "node", &w->nodes, "Nodes: x is q[2 * node], y is q[2 * node + 1].");
   if (has_members(w)) add_enum(w, "member", &w->members, "Members.");
+  if (strut_code_holds(w, "sensors")) add_enum(w, "sensor", &w->sensors, "Sensors.");
+  if (strut_code_has_states(w))
+    add_enum(w, "internal", &w->states,
+             "Internal states, behind the velocities: those of the scene, of lags, and forces of "
+             "Maxwell branches.");
   if (strut_code_has_breakables(w))
     add_enum(w, "breakable", &w->breakables, "Members and hinges that break or are released.");
   if (has_inputs(w))
@@ -390,6 +243,17 @@ static void add_node_names(strut_code_writer *w) {
 static void add_element_code(strut_code_writer *w) {
   strut_code_expand(w, strut_code_elements_template->text);
 }
+static void add_observed_code(strut_code_writer *w) {
+  strut_code_expand(w, strut_code_observed_template->text);
+}
+static void add_feedback_code(strut_code_writer *w) {
+  strut_code_expand(w, strut_code_feedback_template->text);
+}
+static void add_dual_type(strut_code_writer *w) {
+  strut_buffer_add(&w->text,
+                   "/* A number and its rate, of which expressions are computed. */\n"
+                   "typedef struct dual {\n  double value, rate;\n} dual;\n\n");
+}
 static void add_memory_code(strut_code_writer *w) {
   strut_code_expand(w, strut_code_memory_template->text);
 }
@@ -400,33 +264,11 @@ static void add_dual_code(strut_code_writer *w) {
   strut_code_expand(w, strut_code_duals_template->text);
 }
 
-void strut_code_add_table(strut_code_writer *w, const char *word, size_t length) {
-  static const struct {
-    const char *word;
-    void (*add)(strut_code_writer *);
-  } words[] = {{"title", add_title},
-               {"limits", add_limits},
-               {"enums", add_enums},
-               {"node_names", add_node_names},
-               {"model", strut_code_add_model},
-               {"solve", strut_code_add_solve},
-               {"signals", strut_code_add_signals},
-               {"element_code", add_element_code},
-               {"elements", strut_code_add_elements},
-               {"blocks", strut_code_add_blocks},
-               {"actuator_forces", strut_code_add_actuator_forces},
-               {"dual_code", add_dual_code},
-               {"ground_code", add_ground_code},
-               {"memory_code", add_memory_code},
-               {"breakables", strut_code_add_breakables},
-               {"surfaces", strut_code_add_surfaces}};
-  for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
-    if (strlen(words[i].word) == length && !memcmp(words[i].word, word, length)) {
-      words[i].add(w);
-      return;
-    }
-  assert(false && "a template asks for a table that there is not");
-}
+/* A word that templates have text put in place of. */
+typedef struct part {
+  const char *word;
+  void (*add)(strut_code_writer *);
+} part;
 
 static void add_reals(strut_code_writer *w, const double *values, size_t count) {
   for (size_t i = 0; i < count; i++) {
@@ -435,28 +277,91 @@ static void add_reals(strut_code_writer *w, const double *values, size_t count) 
   }
 }
 
-void strut_code_add_word(strut_code_writer *w, const char *word, size_t length) {
-  static const double sine[] = {-1.0 / 6,  -1.0 / 5040,  -1.0 / 39916800,   -1.0 / 1307674368000.0,
-                                1.0 / 120, 1.0 / 362880, 1.0 / 6227020800.0};
-  static const double cosine[] = {
+static void add_sine(strut_code_writer *w) {
+  static const double c[] = {-1.0 / 6,  -1.0 / 5040,  -1.0 / 39916800,   -1.0 / 1307674368000.0,
+                             1.0 / 120, 1.0 / 362880, 1.0 / 6227020800.0};
+  add_reals(w, c, sizeof c / sizeof c[0]);
+}
+static void add_cosine(strut_code_writer *w) {
+  static const double c[] = {
       1.0 / 24,   1.0 / 40320,    1.0 / 479001600.0,   1.0 / 20922789888000.0,
       -1.0 / 720, -1.0 / 3628800, -1.0 / 87178291200.0};
-  static const double arctangent[] = {-1.0 / 3,  1.0 / 5,  -1.0 / 7,  1.0 / 9,
-                                      -1.0 / 11, 1.0 / 13, -1.0 / 15, 1.0 / 17,
-                                      -1.0 / 19, 1.0 / 21, -1.0 / 23, 1.0 / 25};
-  bool verlet = !strcmp(w->experiment->integrator, "verlet");
-  if (length == 4 && !memcmp(word, "sine", 4)) {
-    add_reals(w, sine, sizeof sine / sizeof sine[0]);
-  } else if (length == 6 && !memcmp(word, "cosine", 6)) {
-    add_reals(w, cosine, sizeof cosine / sizeof cosine[0]);
-  } else if (length == 10 && !memcmp(word, "arctangent", 10)) {
-    add_reals(w, arctangent, sizeof arctangent / sizeof arctangent[0]);
-  } else if (length == 6 && !memcmp(word, "method", 6)) {
-    strut_buffer_add(&w->text, verlet ? "verlet" : "rk4");
-  } else if (length == 4 && !memcmp(word, "step", 4)) {
-    double limit = 0.5 * (verlet ? w->verlet_limit : w->rk4_limit);
-    strut_code_add_double(w, w->experiment->step > 0.0 ? w->experiment->step : limit);
-  } else {
-    assert(false && "a template asks for a number that there is not");
-  }
+  add_reals(w, c, sizeof c / sizeof c[0]);
+}
+static void add_arctangent(strut_code_writer *w) {
+  static const double c[] = {-1.0 / 3,  1.0 / 5,  -1.0 / 7,  1.0 / 9,  -1.0 / 11, 1.0 / 13,
+                             -1.0 / 15, 1.0 / 17, -1.0 / 19, 1.0 / 21, -1.0 / 23, 1.0 / 25};
+  add_reals(w, c, sizeof c / sizeof c[0]);
+}
+
+/* The run's method and step. */
+static bool uses_verlet(const strut_code_writer *w) {
+  return !strcmp(w->experiment->integrator, "verlet");
+}
+static void add_method(strut_code_writer *w) {
+  strut_buffer_add(&w->text, uses_verlet(w) ? "verlet" : "rk4");
+}
+static void add_step(strut_code_writer *w) {
+  double limit = 0.5 * (uses_verlet(w) ? w->verlet_limit : w->rk4_limit);
+  strut_code_add_double(w, w->experiment->step > 0.0 ? w->experiment->step : limit);
+}
+
+/* Coordinates in arrays of the state. */
+static void add_length(strut_code_writer *w) {
+  strut_buffer_add(&w->text, strut_code_has_states(w) ? "%s_COORDINATES" : "2 * %s_NODES",
+                   w->upper);
+}
+static void add_samples(strut_code_writer *w) {
+  strut_buffer_add(&w->text, "%d", strut_code_sample_count(w));
+}
+static void add_starts(strut_code_writer *w) {
+  strut_buffer_add(&w->text, "%d", strut_code_start_count(w));
+}
+static void add_relays(strut_code_writer *w) {
+  strut_buffer_add(&w->text, "%d", strut_code_relay_count(w));
+}
+/* The function that takes plastic strains as they are. */
+static void add_observe(strut_code_writer *w) {
+  strut_buffer_add(&w->text, strut_code_slider_count(w) ? "observe" : "exert");
+}
+
+void strut_code_add_part(strut_code_writer *w, const char *word, size_t length) {
+  static const part parts[] = {{"title", add_title},
+                               {"limits", add_limits},
+                               {"enums", add_enums},
+                               {"node_names", add_node_names},
+                               {"model", strut_code_add_model},
+                               {"solve", strut_code_add_solve},
+                               {"signals", strut_code_add_signals},
+                               {"element_code", add_element_code},
+                               {"elements", strut_code_add_elements},
+                               {"blocks", strut_code_add_blocks},
+                               {"actuator_forces", strut_code_add_actuator_forces},
+                               {"dual_code", add_dual_code},
+                               {"ground_code", add_ground_code},
+                               {"memory_code", add_memory_code},
+                               {"observed_code", add_observed_code},
+                               {"feedback_code", add_feedback_code},
+                               {"dual_type", add_dual_type},
+                               {"maxwell", strut_code_add_maxwell},
+                               {"sensors", strut_code_add_sensors},
+                               {"feedback", strut_code_add_feedback},
+                               {"breakables", strut_code_add_breakables},
+                               {"surfaces", strut_code_add_surfaces},
+                               {"sine", add_sine},
+                               {"cosine", add_cosine},
+                               {"arctangent", add_arctangent},
+                               {"method", add_method},
+                               {"step", add_step},
+                               {"length", add_length},
+                               {"samples", add_samples},
+                               {"starts", add_starts},
+                               {"relays", add_relays},
+                               {"observe", add_observe}};
+  for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++)
+    if (strlen(parts[i].word) == length && !memcmp(parts[i].word, word, length)) {
+      parts[i].add(w);
+      return;
+    }
+  assert(false && "a template asks for a text that there is not");
 }

@@ -19,7 +19,7 @@ typedef struct strut_code_writer {
   const strut_experiment *experiment;
   const strut_code_options *options;
   char upper[65]; /* the prefix in capitals */
-  strut_code_names nodes, members, inputs, breakables;
+  strut_code_names nodes, members, inputs, breakables, sensors, states;
   double rk4_limit, verlet_limit; /* largest stable steps [s] */
   strut_buffer text;
   bool no_float; /* some number is none of a float */
@@ -37,7 +37,7 @@ static inline int32_t strut_code_input_count(const strut_model *model) {
          strut_code_shake_count(model);
 }
 
-/* Makes the identifiers; false: memory is out. */
+/* names.c: makes the identifiers; false: memory is out. */
 bool strut_code_make_names(strut_code_writer *w);
 
 /* Appends a text as it may stand in a comment. */
@@ -54,18 +54,40 @@ void strut_code_add_constant(strut_code_writer *w, const char *name, double valu
 /* What templates ask for: does a word hold; declarations; numbers in a line. Words are the templates' own. */
 bool strut_code_has(const strut_code_writer *w, const char *word, size_t length);
 bool strut_code_holds(const strut_code_writer *w, const char *word);
-void strut_code_add_table(strut_code_writer *w, const char *word, size_t length);
-void strut_code_add_word(strut_code_writer *w, const char *word, size_t length);
+void strut_code_add_part(strut_code_writer *w, const char *word, size_t length);
+
+/* A word that templates ask for; tables of them end with a row of NULL. */
+typedef struct strut_code_condition {
+  const char *word;
+  bool (*holds)(const strut_code_writer *);
+} strut_code_condition;
 
 /* ground_tables.c: contacts, and the surfaces they touch where these are not one straight line at rest. */
+extern const strut_code_condition strut_code_ground_conditions[];
 bool strut_code_has_circles(const strut_code_writer *w);
 bool strut_code_has_pieces(const strut_code_writer *w);
-bool strut_code_has_facets(const strut_code_writer *w);
-bool strut_code_has_belts(const strut_code_writer *w);
-/* Does some node touch several surfaces? */
-bool strut_code_has_corners(const strut_code_writer *w);
 void strut_code_add_contacts(strut_code_writer *w);
 void strut_code_add_surfaces(strut_code_writer *w);
+
+/* feedback_tables.c: what follows the motion. Signals that no input follows are left out. */
+extern const strut_code_condition strut_code_feedback_conditions[];
+bool strut_code_has_feedback(const strut_code_writer *w);
+bool strut_code_has_states(const strut_code_writer *w);
+bool strut_code_has_internal_states(const strut_code_writer *w);
+bool strut_code_has_relays(const strut_code_writer *w);
+/* How many samples, times of start and sides of relays the state has, and which a signal has. */
+int32_t strut_code_sample_count(const strut_code_writer *w);
+int32_t strut_code_start_count(const strut_code_writer *w);
+int32_t strut_code_relay_count(const strut_code_writer *w);
+int32_t strut_code_sample_of(const strut_code_writer *w, int32_t signal);
+int32_t strut_code_start_of(const strut_code_writer *w, int32_t signal);
+int32_t strut_code_relay_of(const strut_code_writer *w, int32_t signal);
+/* Internal state k, which is that of a lag or a Maxwell branch where `kind` is not empty. */
+const char *strut_code_state_name(const strut_code_writer *w, int32_t k, const char **kind);
+void strut_code_add_start_states(strut_code_writer *w);
+void strut_code_add_maxwell(strut_code_writer *w);
+void strut_code_add_sensors(strut_code_writer *w);
+void strut_code_add_feedback(strut_code_writer *w);
 
 /* Declarations of the model: members, contacts, drives, loads, masses, start. And the lines that solve for
    accelerations. */
@@ -93,7 +115,7 @@ bool strut_code_has_breakables(const strut_code_writer *w);
 void strut_code_add_breakables(strut_code_writer *w);
 void strut_code_add_blocks(strut_code_writer *w);
 void strut_code_add_actuator_forces(strut_code_writer *w);
-/* The lines that compute an expression at t. */
+/* The lines that compute an expression at t, into x[0]. */
 void strut_code_add_program(strut_code_writer *w, const strut_program *program);
 
 /* Expands a template into the text. */
