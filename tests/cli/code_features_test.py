@@ -153,7 +153,7 @@ int main(void) {
   for (int n = 0; n < 10000; n++) memory_step_rk4(&s, NULL, 2e-4);
   printf("%d %d %d %d\\n", s.broken[MEMORY_BREAKABLE_up], s.broken[MEMORY_BREAKABLE_left],
          s.broken[MEMORY_BREAKABLE_right], s.broken[MEMORY_BREAKABLE_knee]);
-  for (int k = 0; k < MEMORY_SLIDERS; k++) printf("%.17g\\n", s.plastic[k]);
+  for (int k = 0; k < MEMORY_YIELDING; k++) printf("%.17g\\n", s.plastic[k]);
   printf("%.17g\\n%.17g\\n", memory_energy(&s).elastic, memory_tension(&s, MEMORY_MEMBER_down));
   return 0;
 }

@@ -402,8 +402,8 @@ void strut_code_add_program(strut_code_writer *w, const strut_program *program) 
         strut_code_add_double(w, p->number);
         strut_buffer_add(&w->text, ", 0};\n");
       } else if (p->column.kind == STRUT_COLUMN_SIGNAL) {
-        strut_buffer_add(&w->text, "follow(%ssignal_%d, t);\n",
-                         strut_code_has_feedback(w) ? "o, " : "", p->column.item);
+        strut_buffer_add(&w->text, "follow(%ssignal_%s, t);\n",
+                         strut_code_has_feedback(w) ? "o, " : "", w->signals.name[p->column.item]);
       } else {
         add_column(w, p->column);
       }

@@ -243,7 +243,8 @@ static void add_sense(strut_code_writer *w, bool driven) {
   if (driven && has_total(w)) strut_buffer_add(&w->text, "  %s_energies e;\n", w->options->prefix);
   for (int32_t i = 0; i < f->count; i++)
     if (strut_sensor_needs_drives(f->sensor[i].kind) == driven) add_sensor(w, i);
-  strut_buffer_add(&w->text, "  (void)s, (void)q, (void)v;\n}\n\n");
+  strut_buffer_add(&w->text,
+                   "  (void)s, (void)q, (void)v; /* sensors may need none of them */\n}\n\n");
 }
 
 void strut_code_add_sensors(strut_code_writer *w) {
@@ -267,9 +268,9 @@ void strut_code_add_sensors(strut_code_writer *w) {
 static void add_lag_rate(strut_code_writer *w, int32_t signal) {
   int32_t k = w->model->feedback.lag_of[signal], at = 2 * w->model->node_count + k;
   strut_buffer_add(&w->text,
-                   "  signal_%d_unlagged(&values, t, &wanted, &unused); /* %s */\n"
+                   "  unlagged_%s(&values, t, &wanted, &unused); /* %s */\n"
                    "  s->force[%d] = (wanted - v[%d]) / ",
-                   signal, w->states.name[k], at, at);
+                   w->signals.name[signal], w->states.name[k], at, at);
   strut_code_add_real(w, w->scene->signals[signal].lag);
   strut_buffer_add(&w->text, ";\n");
 }
@@ -303,9 +304,9 @@ static void add_observed(strut_code_writer *w) {
     strut_buffer_add(&w->text, "  const observed o = {s, 0};\n");
 }
 
-/* "relay_input_3(&values, t)" behind what the input is compared with. */
+/* "relay_input_NAME(&values, t)" behind what the input is compared with. */
 static void add_input(strut_code_writer *w, int32_t signal) {
-  strut_buffer_add(&w->text, "relay_input_%d(&values, t)", signal);
+  strut_buffer_add(&w->text, "relay_input_%s(&values, t)", w->signals.name[signal]);
 }
 
 static void add_thresholds(strut_code_writer *w, int32_t signal) {
@@ -327,8 +328,9 @@ static void add_switch_condition(strut_code_writer *w, int32_t signal) {
 
 static void add_sampling(strut_code_writer *w, int32_t signal, const char *indent) {
   bool lagged = w->scene->signals[signal].lag > 0.0;
-  strut_buffer_add(&w->text, "%ssignal_%d_%s(&o, t, &s->held[%d], &unused);\n", indent, signal,
-                   lagged ? "lagged" : "unsampled", strut_code_sample_of(w, signal));
+  strut_buffer_add(&w->text, "%s%s_%s(&o, t, &s->held[%d], &unused);\n", indent,
+                   lagged ? "lagged" : "unsampled", w->signals.name[signal],
+                   strut_code_sample_of(w, signal));
 }
 
 /* At the start of a run, parts before their users. */

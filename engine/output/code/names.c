@@ -158,6 +158,14 @@ static const char *breakable_name(strut_code_writer *w, size_t i) {
                                         : w->scene->members[b->item].name;
 }
 
+/* Its name, or its number. */
+static const char *signal_name(strut_code_writer *w, size_t i) {
+  const char *given = w->scene->signals[i].name;
+  if (given && given[0]) return given;
+  char *number = strut_arena_allocate(&w->arena, 24, 1);
+  if (number) snprintf(number, 24, "%zu", i);
+  return number;
+}
 static const char *sensor_name(strut_code_writer *w, size_t i) { return w->scene->sensors[i].name; }
 
 /* "z", "lag_SIGNAL", "maxwell_MEMBER" */
@@ -175,6 +183,7 @@ bool strut_code_make_names(strut_code_writer *w) {
          make_names(w, &w->inputs, (size_t)strut_code_input_count(w->model), input_name) &&
          make_names(w, &w->breakables, (size_t)w->model->elements.breakable_count,
                     breakable_name) &&
+         make_names(w, &w->signals, w->scene->signal_count, signal_name) &&
          make_names(w, &w->sensors, w->scene->sensor_count, sensor_name) &&
          make_names(w, &w->states, (size_t)w->model->feedback.state_count, state_name);
 }

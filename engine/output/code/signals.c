@@ -159,9 +159,9 @@ static void add_body(strut_code_writer *w, const strut_signal *s, int32_t index)
       strut_buffer_add(&w->text, "  real part, part_rate;\n");
       for (size_t i = 0; i < s->term_count; i++)
         strut_buffer_add(&w->text,
-                         "  signal_%d(%st, &part, &part_rate);\n"
+                         "  signal_%s(%st, &part, &part_rate);\n"
                          "  *value += part, *rate += part_rate;\n",
-                         s->terms[i], strut_code_has_feedback(w) ? "o, " : "");
+                         w->signals.name[s->terms[i]], strut_code_has_feedback(w) ? "o, " : "");
       break;
     case STRUT_EXPRESSION:
       strut_code_add_program(w, &s->program);
@@ -180,9 +180,9 @@ static void add_body(strut_code_writer *w, const strut_signal *s, int32_t index)
 }
 
 /* "static TYPE NAME(const observed *o, double t" */
-static void begin_function(strut_code_writer *w, const char *type, const char *name, int32_t index,
-                           const char *behind) {
-  strut_buffer_add(&w->text, "static %s %s_%d%s(%sdouble t", type, name, index, behind,
+static void begin_function(strut_code_writer *w, const char *type, const char *what,
+                           const char *name) {
+  strut_buffer_add(&w->text, "static %s %s_%s(%sdouble t", type, what, name,
                    strut_code_has_feedback(w) ? "const observed *o, " : "");
 }
 
@@ -211,9 +211,9 @@ static bool program_reads_observed(const strut_program *program) {
 }
 
 /* What a program gives, rates of states and lags left out. */
-static void add_value_of(strut_code_writer *w, const char *name, int32_t index,
+static void add_value_of(strut_code_writer *w, const char *what, const char *name,
                          const strut_program *program) {
-  begin_function(w, "double", name, index, "");
+  begin_function(w, "double", what, name);
   strut_buffer_add(&w->text, ") {\n");
   add_unread(w, program_reads_observed(program), program_reads_time(program));
   strut_code_add_program(w, program);
@@ -221,13 +221,13 @@ static void add_value_of(strut_code_writer *w, const char *name, int32_t index,
 }
 
 /* The signal itself, from its start on, without lag and samples. */
-static void add_plain(strut_code_writer *w, int32_t index, const char *behind) {
+static void add_plain(strut_code_writer *w, int32_t index, const char *what) {
   const strut_signal *s = &w->scene->signals[index];
   bool holds = s->kind == STRUT_RAMP || s->kind == STRUT_TABLE || strut_signal_has_program(s);
   bool starts = s->trigger.kind != STRUT_TRIGGER_NONE;
   bool observes = s->kind == STRUT_SUM || s->kind == STRUT_RELAY || starts ||
                   (s->kind == STRUT_EXPRESSION && program_reads_observed(&s->program));
-  begin_function(w, "void", "signal", index, behind);
+  begin_function(w, "void", what, w->signals.name[index]);
   strut_buffer_add(&w->text, ", real *value, real *rate) {\n  *value = 0, *rate = 0;\n");
   add_unread(w, observes,
              starts || (s->kind == STRUT_EXPRESSION ? program_reads_time(&s->program)
@@ -244,18 +244,18 @@ static void add_plain(strut_code_writer *w, int32_t index, const char *behind) {
 }
 
 /* It follows with a first-order lag, which is an internal state. */
-static void add_lagged(strut_code_writer *w, int32_t index, const char *behind) {
+static void add_lagged(strut_code_writer *w, int32_t index, const char *what) {
   int32_t state = w->model->feedback.lag_of[index];
-  begin_function(w, "void", "signal", index, behind);
+  begin_function(w, "void", what, w->signals.name[index]);
   strut_buffer_add(&w->text,
                    ", real *value, real *rate) {\n"
                    "  const observed values = {o->s, o->state, 1};\n"
                    "  real wanted, unused;\n"
                    "  *value = o->state[%d], *rate = 0;\n"
                    "  if (o->values_only) return;\n"
-                   "  signal_%d_unlagged(&values, t, &wanted, &unused);\n"
+                   "  unlagged_%s(&values, t, &wanted, &unused);\n"
                    "  *rate = (wanted - *value) / ",
-                   state, index);
+                   state, w->signals.name[index]);
   strut_code_add_real(w, w->scene->signals[index].lag);
   strut_buffer_add(&w->text, ";\n}\n\n");
 }
@@ -273,11 +273,11 @@ static void add_signal(strut_code_writer *w, int32_t index, uint8_t *done) {
     strut_code_add_comment(w, s->name);
     strut_buffer_add(&w->text, " */\n");
   }
-  if (s->kind == STRUT_RELAY) add_value_of(w, "relay_input", index, &s->program);
-  add_plain(w, index, lagged ? "_unlagged" : sampled ? "_unsampled" : "");
-  if (lagged) add_lagged(w, index, sampled ? "_lagged" : "");
+  if (s->kind == STRUT_RELAY) add_value_of(w, "relay_input", w->signals.name[index], &s->program);
+  add_plain(w, index, lagged ? "unlagged" : sampled ? "unsampled" : "signal");
+  if (lagged) add_lagged(w, index, sampled ? "lagged" : "signal");
   if (!sampled) return;
-  begin_function(w, "void", "signal", index, "");
+  begin_function(w, "void", "signal", w->signals.name[index]);
   strut_buffer_add(&w->text,
                    ", real *value, real *rate) {\n  (void)t;\n"
                    "  *value = o->s->held[%d], *rate = 0;\n}\n\n",
@@ -295,13 +295,13 @@ static void add_states(strut_code_writer *w, uint8_t *done) {
     strut_buffer_add(&w->text, "/* d/dt ");
     strut_code_add_comment(w, w->scene->states[k].name);
     strut_buffer_add(&w->text, " */\n");
-    add_value_of(w, "state_rate", k, &w->scene->states[k].rate);
+    add_value_of(w, "state_rate", w->states.name[k], &w->scene->states[k].rate);
   }
   strut_buffer_add(&w->text,
                    "static double rate_of_state(const observed *o, int k, double t) {\n"
                    "  static double (*const rates[])(const observed *, double) = {");
   for (int32_t k = 0; k < count; k++)
-    strut_buffer_add(&w->text, "%sstate_rate_%d", k ? ", " : "", k);
+    strut_buffer_add(&w->text, "%sstate_rate_%s", k ? ", " : "", w->states.name[k]);
   strut_buffer_add(&w->text, "};\n  return rates[k](o, t);\n}\n\n");
 }
 
@@ -318,7 +318,7 @@ void strut_code_add_signals(strut_code_writer *w) {
   strut_buffer_add(&w->text, "static void (*const own_signal[])(%sdouble, real *, real *) = {\n",
                    strut_code_has_feedback(w) ? "const observed *, " : "");
   for (int32_t k = 0; k < count; k++)
-    strut_buffer_add(&w->text, "    signal_%d, /* %s */\n", signal_of_input(w->model, k),
-                     w->inputs.name[k]);
+    strut_buffer_add(&w->text, "    signal_%s, /* %s */\n",
+                     w->signals.name[signal_of_input(w->model, k)], w->inputs.name[k]);
   strut_buffer_add(&w->text, "};\n\n");
 }

@@ -193,31 +193,42 @@ static void add_enum(strut_code_writer *w, const char *type, const strut_code_na
   strut_buffer_add(&w->text, "} %s_%s;\n\n", w->options->prefix, type);
 }
 
-static void add_enums(strut_code_writer *w) {
+/* The longest factor of a coordinate's masses. */
+static size_t factor_length(const strut_code_writer *w) {
   const strut_mass_operator *op = w->model->mass->coordinate;
-  strut_buffer_add(&w->text, "enum { %s_NODES = %zu, %s_MEMBERS = %zu", w->upper, w->nodes.count,
-                   w->upper, w->members.count);
-  if (has_inputs(w)) strut_buffer_add(&w->text, ", %s_INPUTS = %zu", w->upper, w->inputs.count);
-  if (has_contact(w))
-    strut_buffer_add(&w->text, ", %s_CONTACTS = %d", w->upper, w->model->contacts.count);
-  if (has_elements(w))
-    strut_buffer_add(&w->text, ", %s_ELEMENTS = %d, %s_SLOTS = %d", w->upper,
-                     w->model->elements.count, w->upper, strut_code_slot_count(w));
-  if (strut_code_slider_count(w))
-    strut_buffer_add(&w->text, ", %s_SLIDERS = %d", w->upper, strut_code_slider_count(w));
-  if (strut_code_has_breakables(w))
-    strut_buffer_add(&w->text, ", %s_BREAKABLES = %zu", w->upper, w->breakables.count);
-  if (strut_code_has_states(w))
-    strut_buffer_add(&w->text, ", %s_STATES = %zu, %s_COORDINATES = %zu", w->upper, w->states.count,
-                     w->upper, 2 * w->nodes.count + w->states.count);
-  if (strut_code_holds(w, "sensors"))
-    strut_buffer_add(&w->text, ", %s_SENSORS = %zu", w->upper, w->sensors.count);
-  if (has_factor(w)) {
-    int32_t n = op[0].factor ? op[0].factor->n : 0;
-    if (op[1].factor && op[1].factor->n > n) n = op[1].factor->n;
-    strut_buffer_add(&w->text, ", %s_FACTOR = %d", w->upper, n);
-  }
-  strut_buffer_add(&w->text, " };\n\n");
+  int32_t n = op[0].factor ? op[0].factor->n : 0;
+  if (op[1].factor && op[1].factor->n > n) n = op[1].factor->n;
+  return (size_t)n;
+}
+
+/* Numbers of things, by which arrays of the state are sized; those that there are none of are left out. */
+static void add_counts(strut_code_writer *w) {
+  bool states = strut_code_has_states(w);
+  const struct {
+    const char *of;
+    size_t count;
+  } counts[] = {{"NODES", w->nodes.count},
+                {"MEMBERS", w->members.count},
+                {"INPUTS", w->inputs.count},
+                {"CONTACTS", (size_t)w->model->contacts.count},
+                {"ELEMENTS", (size_t)w->model->elements.count},
+                {"SLOTS", has_elements(w) ? (size_t)strut_code_slot_count(w) : 0},
+                {"YIELDING", (size_t)strut_code_slider_count(w)},
+                {"BREAKABLES", w->breakables.count},
+                {"STATES", w->states.count},
+                {"COORDINATES", states ? 2 * w->nodes.count + w->states.count : 0},
+                {"SENSORS", strut_code_holds(w, "sensors") ? w->sensors.count : 0},
+                {"FACTOR", factor_length(w)}};
+  strut_buffer_add(&w->text, "enum {");
+  for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++)
+    if (counts[i].count || i < 2)
+      strut_buffer_add(&w->text, "%s\n  %s_%s = %zu", i ? "," : "", w->upper, counts[i].of,
+                       counts[i].count);
+  strut_buffer_add(&w->text, "\n};\n\n");
+}
+
+static void add_enums(strut_code_writer *w) {
+  add_counts(w);
   add_enum(w, "node", &w->nodes, "Nodes: x is q[2 * node], y is q[2 * node + 1].");
   if (has_members(w)) add_enum(w, "member", &w->members, "Members.");
   if (strut_code_holds(w, "sensors")) add_enum(w, "sensor", &w->sensors, "Sensors.");

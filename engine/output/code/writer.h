@@ -19,7 +19,7 @@ typedef struct strut_code_writer {
   const strut_experiment *experiment;
   const strut_code_options *options;
   char upper[65]; /* the prefix in capitals */
-  strut_code_names nodes, members, inputs, breakables, sensors, states;
+  strut_code_names nodes, members, inputs, breakables, signals, sensors, states;
   double rk4_limit, verlet_limit; /* largest stable steps [s] */
   strut_buffer text;
   bool no_float; /* some number is none of a float */
