@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# strut export --code of what only some scenes have: several grounds, what breaks or yields, and what follows the
-# motion. The C has strut's bits, by rk4 and verlet, and compiles without a warning.
+# strut export --code of what only some scenes have: several grounds, what breaks or yields, what follows the
+# motion, and sliders. The C has strut's bits, by rk4 and verlet, and compiles without a warning.
 #
 #   python3 code_features_test.py STRUT MODELS
 import csv
@@ -268,10 +268,52 @@ def test_feedback():
     check(all(count >= 2 for count in counts), f"something never switches: {counts}")
 
 
+# ---- masses that slide along members ----
+
+SLIDERS = """gravity: [0, -9.81 m/s^2]
+nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [200 mm, 0], mass: 0.2}
+  c: {position: [200 mm, 100 mm], mass: 0.1}
+  d: {position: [0, 150 mm], fixed: x, mass: 0.1}
+members:
+  ab: {kind: bar, nodes: [a, b], stiffness: 10 kN/m, damping: 1, mass: 0.1}
+  bc: {kind: spring, nodes: [b, c], stiffness: 1 kN/m, mass: 0.1}
+  ca: {kind: cable, nodes: [c, a], stiffness: 1 kN/m, damping: 1}
+  cd: {kind: bar, nodes: [c, d], stiffness: 2 kN/m, damping: 2}
+  da: {kind: bar, nodes: [d, a], stiffness: 2 kN/m, mass: 0.05}
+signals:
+  to_and_fro: {sine: {amplitude: 0.3, frequency: 3 Hz}}
+  away: {ramp: {amplitude: 20 mm, start: 0.1 s, stop: 0.3 s}}
+  zigzag: {table: [[0, 0], [0.1 s, 30 mm], [0.25 s, -30 mm], [0.4 s, 0], [2 s, 20 mm]]}
+sliders:
+  still: {member: ab, mass: 0.1, position: 30 %}
+  metres: {member: bc, mass: 20 g, position: 40 mm, travel: away}
+  shares: {member: bc, mass: 20 g, position: 0.5, moves: to_and_fro}
+  both: {member: ca, mass: 20 g, position: 50 mm, moves: {sum: [to_and_fro, {constant: 0.3}]}}
+  blows: {member: cd, mass: 50 g, position: 50 %, travel: zigzag}
+actuators: {pull: {member: ca, signal: {sine: {amplitude: 3 mm, frequency: 2 Hz}}}}
+"""
+
+
+def test_sliders():
+    rows = compare_scene("sliders.yaml", SLIDERS, 1e-4, 10000, 100)
+    check(rows[0][-1] != rows[0][-2], "sliders are at rest")
+    alone = re.sub(r"actuators:.*\n", "sensors: {x: {position: c, along: x}}\n", SLIDERS)
+    compare_scene("alone.yaml", "mass_model: lumped\n" + alone, 1e-4, 5000, 100)
+    watched = re.sub(r"actuators:.*\n", "sensors: {k: {energy: total}, x: {position: c, along: x}}\n"
+                     "states: {z: {rate: (x - z)/(0.1 s), start: 0 m}}\n"
+                     "actuators: {pull: {member: ca, signal: {expression: 0.1*z, every: 5 ms}}}\n"
+                     "loads: {push: {node: b, force: [0, 1 N], signal: {expression: k/(1 J)}}}\n", SLIDERS)
+    compare_scene("watched.yaml", watched, 1e-4, 5000, 100)
+    floats_near("sliders.yaml", 1e-4, 1000, 1e-4)
+
+
 if __name__ == "__main__":
     if compilers:
         test_grounds()
         test_memory()
         test_feedback()
+        test_sliders()
     shutil.rmtree(work)
     finish()

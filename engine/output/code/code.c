@@ -37,7 +37,6 @@ strut_status strut_code_check(const strut_model *model, strut_error *error) {
   strut_untold_add(&r, s->rayleigh_mass > 0.0, "rayleigh mass");
   strut_untold_add(&r, s->support_motion_count, "moves of nodes");
   strut_untold_add(&r, s->unbalance_count, "unbalances");
-  strut_untold_add(&r, s->sliding_count, "sliders");
   if (r.used)
     return strut_fail(error, STRUT_BAD_SCENE,
                       "the scene has what no C code is written for: %s; leave it out, or compute "

@@ -166,6 +166,9 @@ static const char *signal_name(strut_code_writer *w, size_t i) {
   if (number) snprintf(number, 24, "%zu", i);
   return number;
 }
+static const char *slider_name(strut_code_writer *w, size_t k) {
+  return strut_code_slider_name(w, (int32_t)k);
+}
 static const char *sensor_name(strut_code_writer *w, size_t i) { return w->scene->sensors[i].name; }
 
 /* "z", "lag_SIGNAL", "maxwell_MEMBER" */
@@ -184,6 +187,7 @@ bool strut_code_make_names(strut_code_writer *w) {
          make_names(w, &w->breakables, (size_t)w->model->elements.breakable_count,
                     breakable_name) &&
          make_names(w, &w->signals, w->scene->signal_count, signal_name) &&
+         make_names(w, &w->sliders, (size_t)w->model->sliding.moving_count, slider_name) &&
          make_names(w, &w->sensors, w->scene->sensor_count, sensor_name) &&
          make_names(w, &w->states, (size_t)w->model->feedback.state_count, state_name);
 }

@@ -49,6 +49,8 @@ static bool contains(const strut_signal *signals, int32_t index, int32_t wanted)
 bool strut_code_signal_acts(const strut_code_writer *w, int32_t signal) {
   for (int32_t k = 0; k < strut_code_input_count(w->model); k++)
     if (contains(w->scene->signals, signal_of_input(w->model, k), signal)) return true;
+  for (int32_t k = 0; strut_code_slider_signal(w, k) >= 0; k++)
+    if (contains(w->scene->signals, strut_code_slider_signal(w, k), signal)) return true;
   for (size_t k = 0; k < w->scene->state_count && strut_code_has_feedback(w); k++)
     for (size_t n = 0; signal_in(&w->scene->states[k].rate, n) >= 0; n++)
       if (contains(w->scene->signals, signal_in(&w->scene->states[k].rate, n), signal)) return true;
@@ -130,14 +132,14 @@ static void add_points(strut_code_writer *w, const strut_signal *s, int32_t inde
 }
 
 /* Outside its time the signal is 0. */
-static void add_span(strut_code_writer *w, const strut_signal *s) {
+static void add_span(strut_code_writer *w, const strut_signal *s, const char *leave) {
   strut_buffer_add(&w->text, "  if (t < ");
   strut_code_add_double(w, s->start);
   if (isfinite(s->stop)) {
     strut_buffer_add(&w->text, " || t >= ");
     strut_code_add_double(w, s->stop);
   }
-  strut_buffer_add(&w->text, ") return;\n");
+  strut_buffer_add(&w->text, ") %s;\n", leave);
 }
 
 static void add_body(strut_code_writer *w, const strut_signal *s, int32_t index) {
@@ -238,7 +240,7 @@ static void add_plain(strut_code_writer *w, int32_t index, const char *what) {
                      "  if (!(t >= o->s->started_at[%d])) return;\n  t -= o->s->started_at[%d];\n",
                      k, k);
   }
-  if (!holds) add_span(w, s);
+  if (!holds) add_span(w, s, "return");
   add_body(w, s, index);
   strut_buffer_add(&w->text, "}\n\n");
 }
@@ -307,18 +309,60 @@ static void add_states(strut_code_writer *w, uint8_t *done) {
 
 void strut_code_add_signals(strut_code_writer *w) {
   int32_t count = strut_code_input_count(w->model);
-  if (!count) return;
+  if (!count && !strut_code_has_sliding(w)) return;
   uint8_t *done = strut_arena_allocate(&w->arena, w->scene->signal_count, 1);
   if (!done) {
     w->text.failed = true;
     return;
   }
   for (int32_t k = 0; k < count; k++) add_signal(w, signal_of_input(w->model, k), done);
+  for (int32_t k = 0; strut_code_slider_signal(w, k) >= 0; k++)
+    add_signal(w, strut_code_slider_signal(w, k), done);
   if (strut_code_has_internal_states(w)) add_states(w, done);
+  if (!count) return;
   strut_buffer_add(&w->text, "static void (*const own_signal[])(%sdouble, real *, real *) = {\n",
                    strut_code_has_feedback(w) ? "const observed *, " : "");
   for (int32_t k = 0; k < count; k++)
     strut_buffer_add(&w->text, "    signal_%s, /* %s */\n",
                      w->signals.name[signal_of_input(w->model, k)], w->inputs.name[k]);
   strut_buffer_add(&w->text, "};\n\n");
+}
+
+/* As strut_signal_acceleration: of waves and their sums, 0 of others. */
+static void add_second_rate(strut_code_writer *w, int32_t index, uint8_t *done) {
+  const strut_signal *s = &w->scene->signals[index];
+  bool wave = s->kind == STRUT_SINE || s->kind == STRUT_HALF_SINE;
+  double omega = STRUT_TAU * s->frequency;
+  if (done[index]) return;
+  done[index] = 1;
+  for (size_t n = 0; part_of(s, n) >= 0; n++) add_second_rate(w, part_of(s, n), done);
+  strut_buffer_add(&w->text, "static real second_rate_%s(double t) {\n", w->signals.name[index]);
+  if (wave) {
+    strut_buffer_add(&w->text, "  real sine = 0, unused = 0;\n");
+    add_span(w, s, "return 0");
+    add_turns(w, s);
+    strut_buffer_add(&w->text, "  %swave(turns, 1, 0, &sine, &unused);\n  return ",
+                     s->kind == STRUT_HALF_SINE ? "if (turns < 0.5) " : "");
+    strut_code_add_real(w, -s->amplitude * omega * omega);
+    strut_buffer_add(&w->text, " * sine;\n");
+  } else if (s->kind == STRUT_SUM) {
+    strut_buffer_add(&w->text, "  real sum = 0;\n");
+    add_span(w, s, "return 0");
+    for (size_t i = 0; i < s->term_count; i++)
+      strut_buffer_add(&w->text, "  sum += second_rate_%s(t);\n", w->signals.name[s->terms[i]]);
+    strut_buffer_add(&w->text, "  return sum;\n");
+  } else {
+    strut_buffer_add(&w->text, "  (void)t;\n  return 0;\n");
+  }
+  strut_buffer_add(&w->text, "}\n\n");
+}
+
+void strut_code_add_second_rates(strut_code_writer *w) {
+  uint8_t *done = strut_arena_allocate(&w->arena, w->scene->signal_count, 1);
+  if (!done) {
+    w->text.failed = true;
+    return;
+  }
+  for (int32_t k = 0; strut_code_slider_signal(w, k) >= 0; k++)
+    add_second_rate(w, strut_code_slider_signal(w, k), done);
 }

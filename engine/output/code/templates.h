@@ -14,6 +14,6 @@
 extern const strut_embedded strut_code_header_template[], strut_code_source_template[],
     strut_code_example_template[], strut_code_elements_template[], strut_code_duals_template[],
     strut_code_grounds_template[], strut_code_memory_template[], strut_code_observed_template[],
-    strut_code_feedback_template[];
+    strut_code_feedback_template[], strut_code_sliding_template[];
 
 #endif

@@ -20,6 +20,9 @@ static bool in_plan(const strut_code_writer *w, unsigned term) { return w->model
 
 static bool has_float(const strut_code_writer *w) { return w->options->single; }
 static bool has_inputs(const strut_code_writer *w) { return strut_code_input_count(w->model) > 0; }
+static bool has_signals(const strut_code_writer *w) {
+  return has_inputs(w) || strut_code_has_sliding(w);
+}
 static bool has_drive(const strut_code_writer *w) { return w->model->drives.count > 0; }
 static bool has_loads(const strut_code_writer *w) { return w->model->loads.count > 0; }
 static bool has_members(const strut_code_writer *w) { return w->scene->member_count > 0; }
@@ -56,7 +59,7 @@ static bool has_expressions(const strut_code_writer *w) {
 static bool has_memory(const strut_code_writer *w) { return in_plan(w, STRUT_TERM_MEMORY); }
 static bool has_root(const strut_code_writer *w) {
   return has_members(w) || has_smooth(w) || has_path(w) || strut_code_has_strain(w, "reach", 5) ||
-         strut_code_has_circles(w) || strut_code_has_pieces(w);
+         strut_code_has_circles(w) || strut_code_has_pieces(w) || strut_code_has_sliding(w);
 }
 static bool has_belt(const strut_code_writer *w) { return w->model->contacts.belt_speed != 0.0; }
 static bool has_hunt_crossley(const strut_code_writer *w) {
@@ -87,6 +90,7 @@ static bool has_table_signal(const strut_code_writer *w) {
 }
 
 static const strut_code_condition conditions[] = {{"float", has_float},
+                                                  {"signals", has_signals},
                                                   {"inputs", has_inputs},
                                                   {"drive", has_drive},
                                                   {"loads", has_loads},
@@ -130,7 +134,8 @@ static const strut_code_condition *find_condition(const strut_code_condition *ta
 
 bool strut_code_has(const strut_code_writer *w, const char *word, size_t length) {
   const strut_code_condition *const tables[] = {conditions, strut_code_ground_conditions,
-                                                strut_code_feedback_conditions};
+                                                strut_code_feedback_conditions,
+                                                strut_code_sliding_conditions};
   static const struct {
     const char *prefix;
     bool (*holds)(const strut_code_writer *, const char *, size_t);
@@ -218,6 +223,7 @@ static void add_counts(strut_code_writer *w) {
                 {"STATES", w->states.count},
                 {"COORDINATES", states ? 2 * w->nodes.count + w->states.count : 0},
                 {"SENSORS", strut_code_holds(w, "sensors") ? w->sensors.count : 0},
+                {"SLIDERS", w->sliders.count},
                 {"FACTOR", factor_length(w)}};
   strut_buffer_add(&w->text, "enum {");
   for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++)
@@ -236,6 +242,8 @@ static void add_enums(strut_code_writer *w) {
     add_enum(w, "internal", &w->states,
              "Internal states, behind the velocities: those of the scene, of lags, and forces of "
              "Maxwell branches.");
+  if (w->sliders.count)
+    add_enum(w, "slider", &w->sliders, "Masses that slide along their members.");
   if (strut_code_has_breakables(w))
     add_enum(w, "breakable", &w->breakables, "Members and hinges that break or are released.");
   if (has_inputs(w))
@@ -251,34 +259,17 @@ static void add_node_names(strut_code_writer *w) {
   strut_buffer_add(&w->text, "};\n");
 }
 
-static void add_element_code(strut_code_writer *w) {
-  strut_code_expand(w, strut_code_elements_template->text);
-}
-static void add_observed_code(strut_code_writer *w) {
-  strut_code_expand(w, strut_code_observed_template->text);
-}
-static void add_feedback_code(strut_code_writer *w) {
-  strut_code_expand(w, strut_code_feedback_template->text);
-}
 static void add_dual_type(strut_code_writer *w) {
   strut_buffer_add(&w->text,
                    "/* A number and its rate, of which expressions are computed. */\n"
                    "typedef struct dual {\n  double value, rate;\n} dual;\n\n");
-}
-static void add_memory_code(strut_code_writer *w) {
-  strut_code_expand(w, strut_code_memory_template->text);
-}
-static void add_ground_code(strut_code_writer *w) {
-  strut_code_expand(w, strut_code_grounds_template->text);
-}
-static void add_dual_code(strut_code_writer *w) {
-  strut_code_expand(w, strut_code_duals_template->text);
 }
 
 /* A word that templates have text put in place of. */
 typedef struct part {
   const char *word;
   void (*add)(strut_code_writer *);
+  const strut_embedded *template; /* or one that is expanded */
 } part;
 
 static void add_reals(strut_code_writer *w, const double *values, size_t count) {
@@ -336,42 +327,50 @@ static void add_observe(strut_code_writer *w) {
   strut_buffer_add(&w->text, strut_code_slider_count(w) ? "observe" : "exert");
 }
 
+static const part parts[] = {{"title", add_title, NULL},
+                             {"limits", add_limits, NULL},
+                             {"enums", add_enums, NULL},
+                             {"node_names", add_node_names, NULL},
+                             {"model", strut_code_add_model, NULL},
+                             {"solve", strut_code_add_solve, NULL},
+                             {"signals", strut_code_add_signals, NULL},
+                             {"element_code", NULL, strut_code_elements_template},
+                             {"elements", strut_code_add_elements, NULL},
+                             {"blocks", strut_code_add_blocks, NULL},
+                             {"actuator_forces", strut_code_add_actuator_forces, NULL},
+                             {"dual_code", NULL, strut_code_duals_template},
+                             {"ground_code", NULL, strut_code_grounds_template},
+                             {"memory_code", NULL, strut_code_memory_template},
+                             {"observed_code", NULL, strut_code_observed_template},
+                             {"feedback_code", NULL, strut_code_feedback_template},
+                             {"sliding_code", NULL, strut_code_sliding_template},
+                             {"sliders", strut_code_add_sliders, NULL},
+                             {"places", strut_code_add_places, NULL},
+                             {"resting", strut_code_add_resting, NULL},
+                             {"dual_type", add_dual_type, NULL},
+                             {"maxwell", strut_code_add_maxwell, NULL},
+                             {"sensors", strut_code_add_sensors, NULL},
+                             {"feedback", strut_code_add_feedback, NULL},
+                             {"breakables", strut_code_add_breakables, NULL},
+                             {"surfaces", strut_code_add_surfaces, NULL},
+                             {"sine", add_sine, NULL},
+                             {"cosine", add_cosine, NULL},
+                             {"arctangent", add_arctangent, NULL},
+                             {"method", add_method, NULL},
+                             {"step", add_step, NULL},
+                             {"length", add_length, NULL},
+                             {"samples", add_samples, NULL},
+                             {"starts", add_starts, NULL},
+                             {"relays", add_relays, NULL},
+                             {"observe", add_observe, NULL}};
+
 void strut_code_add_part(strut_code_writer *w, const char *word, size_t length) {
-  static const part parts[] = {{"title", add_title},
-                               {"limits", add_limits},
-                               {"enums", add_enums},
-                               {"node_names", add_node_names},
-                               {"model", strut_code_add_model},
-                               {"solve", strut_code_add_solve},
-                               {"signals", strut_code_add_signals},
-                               {"element_code", add_element_code},
-                               {"elements", strut_code_add_elements},
-                               {"blocks", strut_code_add_blocks},
-                               {"actuator_forces", strut_code_add_actuator_forces},
-                               {"dual_code", add_dual_code},
-                               {"ground_code", add_ground_code},
-                               {"memory_code", add_memory_code},
-                               {"observed_code", add_observed_code},
-                               {"feedback_code", add_feedback_code},
-                               {"dual_type", add_dual_type},
-                               {"maxwell", strut_code_add_maxwell},
-                               {"sensors", strut_code_add_sensors},
-                               {"feedback", strut_code_add_feedback},
-                               {"breakables", strut_code_add_breakables},
-                               {"surfaces", strut_code_add_surfaces},
-                               {"sine", add_sine},
-                               {"cosine", add_cosine},
-                               {"arctangent", add_arctangent},
-                               {"method", add_method},
-                               {"step", add_step},
-                               {"length", add_length},
-                               {"samples", add_samples},
-                               {"starts", add_starts},
-                               {"relays", add_relays},
-                               {"observe", add_observe}};
   for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++)
     if (strlen(parts[i].word) == length && !memcmp(parts[i].word, word, length)) {
-      parts[i].add(w);
+      if (parts[i].template)
+        strut_code_expand(w, parts[i].template->text);
+      else
+        parts[i].add(w);
       return;
     }
   assert(false && "a template asks for a text that there is not");

@@ -19,7 +19,7 @@ typedef struct strut_code_writer {
   const strut_experiment *experiment;
   const strut_code_options *options;
   char upper[65]; /* the prefix in capitals */
-  strut_code_names nodes, members, inputs, breakables, signals, sensors, states;
+  strut_code_names nodes, members, inputs, breakables, signals, sensors, states, sliders;
   double rk4_limit, verlet_limit; /* largest stable steps [s] */
   strut_buffer text;
   bool no_float; /* some number is none of a float */
@@ -89,12 +89,23 @@ void strut_code_add_maxwell(strut_code_writer *w);
 void strut_code_add_sensors(strut_code_writer *w);
 void strut_code_add_feedback(strut_code_writer *w);
 
+/* sliding_tables.c: masses that slide along members. The signal of the k-th that moves, -1: there are no more. */
+extern const strut_code_condition strut_code_sliding_conditions[];
+bool strut_code_has_sliding(const strut_code_writer *w);
+int32_t strut_code_slider_signal(const strut_code_writer *w, int32_t k);
+const char *strut_code_slider_name(const strut_code_writer *w, int32_t k);
+void strut_code_add_sliders(strut_code_writer *w);
+void strut_code_add_places(strut_code_writer *w);
+void strut_code_add_resting(strut_code_writer *w);
+
 /* Declarations of the model: members, contacts, drives, loads, masses, start. And the lines that solve for
    accelerations. */
 void strut_code_add_model(strut_code_writer *w);
 void strut_code_add_solve(strut_code_writer *w);
 /* A function for each signal that acts, and the table of the inputs' own. */
 void strut_code_add_signals(strut_code_writer *w);
+/* Second derivatives of the signals that move sliders. */
+void strut_code_add_second_rates(strut_code_writer *w);
 /* Does some signal that acts, or one of its terms, have this kind? */
 bool strut_code_has_signal(const strut_code_writer *w, strut_signal_kind kind);
 /* Is the signal that of an input, or part of one? */
