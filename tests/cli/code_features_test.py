@@ -309,11 +309,79 @@ def test_sliders():
     floats_near("sliders.yaml", 1e-4, 1000, 1e-4)
 
 
+# ---- each feature alone ----
+
+# Code is written of what a scene has only, so that each alone must compile without a warning, too.
+ALONE = """nodes:
+  a: {position: [0, 0], fixed: both}
+  b: {position: [1, 0.1], mass: 1}
+  d: {position: [2, 0], mass: 1}
+members:
+  one: {kind: spring, nodes: [a, b], stiffness: 50, damping: 0.1MEMBER}
+  two: {kind: cable, nodes: [b, d], stiffness: 50, rest_length: 0.9, mass: 0.1}
+initial: {velocities: {b: [0, 1], d: [0.3, -1]}}
+"""
+GRAVITY = "gravity: [0, -9.81]\n"
+GROUND = GRAVITY + "ground: {height: -0.01, stiffness: 1e4, damping: 10}\n"
+
+
+def driven_by(signal, more=""):
+    return f"{more}actuators: {{p: {{member: two, signal: {signal}}}}}\n"
+
+
+def loaded_by(sensor, unit, more=""):
+    return (f"{more}sensors: {{k: {sensor}}}\n"
+            f"loads: {{f: {{node: d, force: [0, 1], signal: {{expression: k/(1 {unit})}}}}}}\n")
+
+
+WAVE = "{sine: {amplitude: 0.1, frequency: 3 Hz}}"
+FEATURES = {  # of the first member, and of the scene
+    "plastic": (", law: {kind: elastic_plastic, yield: 0.3}", ""),
+    "plastic_drive": (", law: {kind: elastic_plastic, yield: 0.3}", driven_by(WAVE)),
+    "breaks": (", breaks_at: 1", ""),
+    "breaks_drive": (", breaks_at: 1", driven_by(WAVE)),
+    "hinge": ("", "hinges: {h: {nodes: [a, b, d], stiffness: 3, law: {kind: elastic_plastic, yield: 0.3}}}\n"),
+    "lag": ("", driven_by("s", "signals: {s: {constant: 0.1, lag: 0.1 s}}\n")),
+    "every": ("", driven_by("s", "signals: {s: {expression: 0.1*sin(3 Hz*t), every: 10 ms}}\n")),
+    "state": ("", driven_by("{expression: 0.1 m*z}", "states: {z: {rate: 1/(1 s) - z/(1 s), start: 0}}\n")),
+    "unused": ("", "sensors: {l: {length: one}}\nstates: {z: {rate: l - z/(1 s), start: 0 m s}}\n"),
+    "length": ("", driven_by("{expression: 0.1*l}", "sensors: {l: {length: one}}\n")),
+    "relay": ("", driven_by("k", "sensors: {x: {position: d, along: x}}\ncontrollers: {k: {kind: relay, of: x, "
+                            "on_above: 2.02 m, off_below: 2.01 m, on_value: 0.1 m, off_value: 0 m}}\n")),
+    "sampled_relay": ("", driven_by("k", "controllers: {k: {kind: relay, of: sin(20 Hz*t), on_above: 0.5, "
+                                    "off_below: -0.5, on_value: 0.1 m, off_value: 0 m, every: 20 ms}}\n")),
+    "start": ("", driven_by("s", "sensors: {v: {velocity: d, along: x}}\nsignals: {s: {ramp: {amplitude: 0.1, "
+                            "stop: 0.1 s}, starts: {sensor: v, below: 0.25 m/s}}}\n")),
+    "touchdown": ("", driven_by("s", GROUND + "signals: {s: {ramp: {amplitude: 0.1, stop: 0.1 s}, "
+                                "starts: {contact: d}}}\n")),
+    "touch": ("", loaded_by("{contact: b}", "N", GROUND).replace("k/(1 N)", "k")),
+    "energy": ("", loaded_by("{energy: kinetic}", "J")),
+    "force": (", law: {kind: elastic_plastic, yield: 0.3}", loaded_by("{force: one}", "N")),
+    "broken_force": (", breaks_at: 1, shortest: 0.98, stop_stiffness: 100", loaded_by("{force: one}", "N")),
+    "maxwell_force": (", maxwell: {stiffness: 3, time: 0.1 s}", loaded_by("{force: one}", "N")),
+    "slides": ("", f"sliders: {{m: {{member: one, mass: 0.1, position: 50 %, moves: {WAVE}}}}}\n"),
+    "turns": ("", GRAVITY + "sliders: {m: {member: one, mass: 0.1, position: 50 %, moves: {ramp: {amplitude: 0.1, "
+              "stop: 0.1 s}}}}\n"),
+    "rests": ("", GRAVITY + "sliders: {m: {member: one, mass: 0.1, position: 50 %}}\n"),
+    "shaken": ("", GROUND.replace("}", ", motion: {y: {sine: {amplitude: 10 mm, frequency: 3 Hz}}}}")),
+}
+
+
+def test_alone():
+    for k, (name, (member, more)) in enumerate(FEATURES.items()):
+        method, compiler = (("rk4", compilers[0]), ("verlet", compilers[-1]))[k % 2]
+        scene(name + ".yaml", ALONE.replace("MEMBER", member) + more, method, 1e-3, 1000, 20)
+        compare(name + ".yaml", method, 1e-3, 1000, 20, [compiler])
+    scene("single.yaml", "nodes: {a: {position: [0, 1], mass: 1}}\ninitial: {velocity: [1, 0]}", "rk4", 1e-3, 100, 10)
+    compare("single.yaml", "rk4", 1e-3, 100, 10, compilers)
+
+
 if __name__ == "__main__":
     if compilers:
         test_grounds()
         test_memory()
         test_feedback()
         test_sliders()
+        test_alone()
     shutil.rmtree(work)
     finish()

@@ -360,7 +360,7 @@ static void add_begin(strut_code_writer *w) {
     }
     if (signals[i].every > 0.0) add_sampling(w, i, "  ");
   }
-  strut_buffer_add(&w->text, "  (void)values, (void)unused;\n}\n\n");
+  strut_buffer_add(&w->text, "  (void)t, (void)values, (void)unused;\n}\n\n");
 }
 
 static void add_sample(strut_code_writer *w, int32_t signal) {
