@@ -363,6 +363,10 @@ FEATURES = {  # of the first member, and of the scene
     "turns": ("", GRAVITY + "sliders: {m: {member: one, mass: 0.1, position: 50 %, moves: {ramp: {amplitude: 0.1, "
               "stop: 0.1 s}}}}\n"),
     "rests": ("", GRAVITY + "sliders: {m: {member: one, mass: 0.1, position: 50 %}}\n"),
+    "rayleigh": ("", "rayleigh: {mass: 0.5 s^-1}\n"),
+    "rayleigh_lumped": (", mass: 0.2", "mass_model: lumped\nrayleigh: {mass: 0.5 s^-1}\n"),
+    "rayleigh_sliders": (", mass: 0.2", "rayleigh: {mass: 0.5 s^-1}\nsliders:\n  m: {member: one, mass: 0.1, position: 50 %, "
+                         f"moves: {WAVE}}}\n  n: {{member: one, mass: 0.1, position: 30 %}}\n"),
     "shaken": ("", GROUND.replace("}", ", motion: {y: {sine: {amplitude: 10 mm, frequency: 3 Hz}}}}")),
 }
 

@@ -34,7 +34,6 @@ strut_status strut_code_check(const strut_model *model, strut_error *error) {
   strut_untold_add(&r, strut_first_exact_contact(model) >= 0,
                    "friction law coulomb (its "
                    "stops and starts are located within steps; use karnopp or smooth)");
-  strut_untold_add(&r, s->rayleigh_mass > 0.0, "rayleigh mass");
   strut_untold_add(&r, s->support_motion_count, "moves of nodes");
   strut_untold_add(&r, s->unbalance_count, "unbalances");
   if (r.used)

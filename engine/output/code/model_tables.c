@@ -198,6 +198,8 @@ static void add_masses(strut_code_writer *w) {
                  model->mass->inverse);
   add_groups(w);
   add_factors(w);
+  if (strut_code_holds(w, "mass_damping"))
+    strut_code_add_constant(w, "mass_damping", model->mass_damping);
   add_array(w, "point_mass", model->point_mass, (size_t)model->node_count, 5);
   if (strut_code_holds(w, "members"))
     add_array(w, "member_mass", model->members.mass, (size_t)model->members.count, 5);

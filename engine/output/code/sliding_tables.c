@@ -133,6 +133,15 @@ void strut_code_add_sliders(strut_code_writer *w) {
   strut_code_add_second_rates(w);
 }
 
+/* "  u = 0.7 * v[2] + 0.3 * v[4];": the speed of a mass that rests on its member. */
+static void add_speed(strut_code_writer *w, const strut_sliding_item *s, uint32_t c) {
+  strut_buffer_add(&w->text, "  u = ");
+  strut_code_add_real(w, 1.0 - s->start);
+  strut_buffer_add(&w->text, " * v[%u] + ", s->at[0] + c);
+  strut_code_add_real(w, s->start);
+  strut_buffer_add(&w->text, " * v[%u];\n", s->at[1] + c);
+}
+
 /* Kinetic energy of masses that rest on their members, which the mass matrix has. */
 void strut_code_add_resting(strut_code_writer *w) {
   const strut_sliding_table *t = &w->model->sliding;
@@ -140,14 +149,32 @@ void strut_code_add_resting(strut_code_writer *w) {
                    "static real energy_of_resting(const real *v) {\n  real sum = 0, u;\n");
   for (int32_t i = 0; i < t->count; i++)
     for (uint32_t c = 0; c < 2 && t->item[i].signal < 0; c++) {
-      const strut_sliding_item *s = &t->item[i];
-      strut_buffer_add(&w->text, "  u = ");
-      strut_code_add_real(w, 1.0 - s->start);
-      strut_buffer_add(&w->text, " * v[%u] + ", s->at[0] + c);
-      strut_code_add_real(w, s->start);
-      strut_buffer_add(&w->text, " * v[%u];\n  sum += ", s->at[1] + c);
-      strut_code_add_real(w, 0.5 * s->mass);
+      add_speed(w, &t->item[i], c);
+      strut_buffer_add(&w->text, "  sum += ");
+      strut_code_add_real(w, 0.5 * t->item[i].mass);
       strut_buffer_add(&w->text, " * u * u;\n");
     }
   strut_buffer_add(&w->text, "  return sum;\n}\n\n");
+}
+
+static void add_drag(strut_code_writer *w, uint32_t at, double share) {
+  strut_buffer_add(&w->text, "  s->force[%u] -= ", at);
+  strut_code_add_real(w, share);
+  strut_buffer_add(&w->text, " * drag;\n");
+}
+
+/* And what damps them by their mass. */
+void strut_code_add_resting_damping(strut_code_writer *w) {
+  const strut_sliding_table *t = &w->model->sliding;
+  strut_buffer_add(&w->text, "  real u, drag; /* of masses that rest on their members */\n");
+  for (int32_t i = 0; i < t->count; i++)
+    for (uint32_t c = 0; c < 2 && t->item[i].signal < 0; c++) {
+      const strut_sliding_item *s = &t->item[i];
+      add_speed(w, s, c);
+      strut_buffer_add(&w->text, "  drag = mass_damping * ");
+      strut_code_add_real(w, s->mass);
+      strut_buffer_add(&w->text, " * u;\n");
+      add_drag(w, s->at[0] + c, 1.0 - s->start);
+      add_drag(w, s->at[1] + c, s->start);
+    }
 }

@@ -71,6 +71,9 @@ static bool has_hunt_crossley(const strut_code_writer *w) {
 static bool has_gravity(const strut_code_writer *w) {
   return w->scene->gravity[0] != 0.0 || w->scene->gravity[1] != 0.0;
 }
+static bool has_mass_damping(const strut_code_writer *w) {
+  return in_plan(w, STRUT_TERM_MASS_DAMPING);
+}
 static bool has_consistent(const strut_code_writer *w) {
   return w->scene->mass_model == STRUT_MASS_CONSISTENT;
 }
@@ -91,6 +94,7 @@ static bool has_table_signal(const strut_code_writer *w) {
 
 static const strut_code_condition conditions[] = {{"float", has_float},
                                                   {"signals", has_signals},
+                                                  {"mass_damping", has_mass_damping},
                                                   {"inputs", has_inputs},
                                                   {"drive", has_drive},
                                                   {"loads", has_loads},
@@ -347,6 +351,7 @@ static const part parts[] = {{"title", add_title, NULL},
                              {"sliders", strut_code_add_sliders, NULL},
                              {"places", strut_code_add_places, NULL},
                              {"resting", strut_code_add_resting, NULL},
+                             {"resting_damping", strut_code_add_resting_damping, NULL},
                              {"dual_type", add_dual_type, NULL},
                              {"maxwell", strut_code_add_maxwell, NULL},
                              {"sensors", strut_code_add_sensors, NULL},

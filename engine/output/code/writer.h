@@ -97,6 +97,7 @@ const char *strut_code_slider_name(const strut_code_writer *w, int32_t k);
 void strut_code_add_sliders(strut_code_writer *w);
 void strut_code_add_places(strut_code_writer *w);
 void strut_code_add_resting(strut_code_writer *w);
+void strut_code_add_resting_damping(strut_code_writer *w);
 
 /* Declarations of the model: members, contacts, drives, loads, masses, start. And the lines that solve for
    accelerations. */
