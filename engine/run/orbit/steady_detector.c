@@ -30,6 +30,11 @@ static const double STUDENT_7 = 2.365, STUDENT_6 = 2.447; /* 95 %, two-sided */
  */
 enum { CREEP_PERIODS = 3 * BATCHES };
 static const double CREEP_CHANGE = 1.5;
+/*
+ * Part of the velocity below which motions creep. One that slow repeats itself after several periods only where its
+ * velocities differ by less than this part.
+ */
+static const double CREEP_DIFFERENCE = 0.025;
 
 /* Equal growth factors in a row that prove growth. */
 enum { GROWTH_FACTORS = 3 };
@@ -224,6 +229,16 @@ static bool still_decays(const strut_steady_detector *w, int64_t now, int32_t n)
   return last < pow(0.99, over) * first;
 }
 
+/*
+ * Change of the velocity [m/s] that counts as none. Any change of a creeping motion is below a loose floor, so that it
+ * would soon seem to repeat itself after one of the several numbers of periods that are tried.
+ */
+static double allowed_change(const strut_steady_detector *w, double velocity, int32_t n) {
+  double allowed = fmax(w->tolerance * fabs(velocity), w->floor);
+  bool slow = w->creep > 0.0 && fabs(velocity) <= w->creep;
+  return slow && n > 1 ? fmin(allowed, CREEP_DIFFERENCE * w->creep) : allowed;
+}
+
 /* Does the motion repeat itself every n periods? */
 static bool repeats_itself(strut_steady_detector *w, int64_t now, int k) {
   int32_t n = repeats[k], over = w->successive;
@@ -235,7 +250,7 @@ static bool repeats_itself(strut_steady_detector *w, int64_t now, int k) {
   for (int64_t j = now - over + 1; j <= now; j++)
     change = fmax(change, w->change[k][j % STRUT_RING]);
   double rest = remaining_decay(w->residual[k], now, n, over, w->amplitude);
-  double allowed = fmax(w->tolerance * fabs(velocity), w->floor);
+  double allowed = allowed_change(w, velocity, n);
   double residual = w->residual[k][now % STRUT_RING];
   double still = w->floor * w->period / w->model->size;
   if (!(change <= allowed && change * rest <= allowed)) return false;
