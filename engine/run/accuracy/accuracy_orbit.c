@@ -54,6 +54,11 @@ static const double TRIAL = 24.0, LONG_TRIAL = 60.0;
 static const double FINER = 4.0;
 /* Cycles of extrapolation towards a fixed point of either method; of a finer step where the motion may only creep. */
 enum { MOST_CYCLES = 8, FINER_CYCLES = 3, CREEPING_CYCLES = 2 };
+/*
+ * Where the answer hardly depends on extrapolation, a cycle follows only one in which the differences of periods fell
+ * to this part.
+ */
+static const double FALL = 0.7;
 /* A run of the orbit with the finer step confirms it to this part of the wanted error; that of the reference method. */
 static const double CONFIRMED_BY_FINER = 0.3, CONFIRMED = 0.6;
 
@@ -236,44 +241,32 @@ static void accept_fixed_point(strut_orbit_solve *solve) {
       solve->coarse_map.evaluations, solve->coarse_map.events, solve->coarse_map.applied};
 }
 
-static strut_status extrapolate_to_fixed_point(strut_orbit_solve *solve, bool *found) {
+/* Did the coarse run become as steady as its fixed point is sought? */
+static bool is_as_steady_as_sought(const strut_orbit_solve *solve) {
+  double size = strut_accuracy_velocity_scale(solve->a, solve->coarse_run.velocity);
+  return solve->finer == 1.0 &&
+         solve->coarse_run.steady.interval <= STRUT_FIXED_POINT_PART * solve->a->target * size;
+}
+
+/* Extrapolates to the fixed point of the coarse map; fills `to`. */
+static strut_status extrapolate_to_fixed_point(strut_orbit_solve *solve, strut_extrapolation *to) {
   const strut_accuracy *a = solve->a;
   double size = strut_accuracy_velocity_scale(a, solve->coarse_run.velocity);
   double enough = STRUT_FIXED_POINT_PART * a->target * size * solve->coarse_map.period;
-  bool slow = fabs(solve->coarse_run.velocity) <= a->coarse.steady.creep;
-  int cycles = solve->finer > 1.0 ? slow ? CREEPING_CYCLES : FINER_CYCLES : MOST_CYCLES;
-  strut_status status = strut_orbit_limit(&solve->coarse_map, enough * solve->coarse_map.repeats,
-                                          cycles, solve->fixed_point, &solve->travel, found);
+  bool slow = fabs(solve->coarse_run.velocity) <= a->coarse.steady.creep,
+       finer = solve->finer > 1.0;
+  *to = (strut_extrapolation){
+      .enough = enough * solve->coarse_map.repeats,
+      .fall = is_as_steady_as_sought(solve) || (finer && slow) ? FALL : HUGE_VAL,
+      .cycles = finer ? slow ? CREEPING_CYCLES : FINER_CYCLES : MOST_CYCLES};
+  strut_status status =
+      strut_orbit_limit(&solve->coarse_map, to, solve->fixed_point, &solve->travel);
   status = strut_orbit_solve_check_maps(solve, status);
-  if (status || !*found) return status;
+  if (status || !to->found) return status;
   accept_fixed_point(solve);
   solve->coarse_run.steady.kind = STRUT_MOTION_PERIODIC;
   solve->coarse_run.steady.repeats = solve->coarse_map.repeats;
   return STRUT_OK;
-}
-
-/*
- * Finds the fixed point of the coarse map from a nearly steady state, by extrapolation or, where
- * that fails, by running on. *steady is false where there is none.
- */
-static strut_status find_coarse_fixed_point(strut_orbit_solve *solve, bool *steady) {
-  strut_accuracy *a = solve->a;
-  bool found = false;
-  strut_status status = extrapolate_to_fixed_point(solve, &found);
-  if (status) return status;
-  *steady = true;
-  if (!found) {
-    strut_summary more = {0};
-    status = strut_orbit_solve_run_until_steady(
-        solve, a->coarse, fmin(0.002, STRUT_FIXED_POINT_PART * a->target), 5, CHANCE, true, &more);
-    *steady = !status && more.steady.kind == STRUT_MOTION_PERIODIC &&
-              more.steady.repeats == solve->coarse_map.repeats;
-    if (!status) strut_summary_append(&solve->coarse_run, &more);
-    strut_summary_free(&more);
-    take_end_as_fixed_point(solve);
-    accept_fixed_point(solve);
-  }
-  return status;
 }
 
 /* The coarse method with a finer step than the first. */
@@ -302,7 +295,9 @@ static strut_status find_finer_fixed_point(strut_orbit_solve *solve, bool from_o
   strut_accuracy_begin_phase(a, "finding the orbit by finer steps");
   a->coarse.step = step / FINER, solve->finer = FINER;
   strut_status status = create_maps(solve, repeats);
-  if (!status) status = extrapolate_to_fixed_point(solve, found);
+  strut_extrapolation to = {.found = false};
+  if (!status) status = extrapolate_to_fixed_point(solve, &to);
+  *found = to.found;
   if (status || *found) return status;
   a->coarse.step = step, solve->finer = 1.0;
   return create_maps(solve, repeats);
@@ -324,6 +319,44 @@ static strut_status correct_to_answer(strut_orbit_solve *solve) {
   else if (!last_word && strut_orbit_solve_error_share(solve) <= 0.8)
     solve->answer = STRUT_ORBIT_CORRECTED;
   return STRUT_OK;
+}
+
+/*
+ * Fixed steps may keep the differences of periods from falling, though the run is as steady as its fixed point is
+ * sought. Its end serves then, if a correction leads to the answer.
+ */
+static strut_status correct_end_of_run(strut_orbit_solve *solve) {
+  take_end_as_fixed_point(solve);
+  accept_fixed_point(solve);
+  strut_status status = correct_to_answer(solve);
+  if (!solve->answer) solve->error = HUGE_VAL;
+  return status;
+}
+
+/*
+ * Finds the fixed point of the coarse map from a nearly steady state, by extrapolation or, where
+ * that fails for a single period, by running on, too briefly for several. *steady is false where there is none. May
+ * set solve->answer.
+ */
+static strut_status find_coarse_fixed_point(strut_orbit_solve *solve, bool *steady) {
+  strut_accuracy *a = solve->a;
+  strut_extrapolation to;
+  strut_status status = extrapolate_to_fixed_point(solve, &to);
+  bool end_serves = is_as_steady_as_sought(solve) && !strut_orbit_solve_is_stuck(solve);
+  if (!status && !to.found && !to.unsteady && end_serves) status = correct_end_of_run(solve);
+  *steady = to.found;
+  if (status || solve->answer) return status;
+  if (!to.found && solve->coarse_map.repeats == 1) {
+    strut_summary more = {0};
+    status = strut_orbit_solve_run_until_steady(
+        solve, a->coarse, fmin(0.002, STRUT_FIXED_POINT_PART * a->target), 5, CHANCE, true, &more);
+    *steady = !status && more.steady.kind == STRUT_MOTION_PERIODIC && more.steady.repeats == 1;
+    if (!status) strut_summary_append(&solve->coarse_run, &more);
+    strut_summary_free(&more);
+    take_end_as_fixed_point(solve);
+    accept_fixed_point(solve);
+  }
+  return status;
 }
 
 /* Corrects the coarse orbit; where that is not enough, runs the reference method from it. */
@@ -393,18 +426,18 @@ static strut_status find_orbit(strut_orbit_solve *solve, bool steady) {
   if (status) return status;
   if (!steady) return find_without_fixed_point(solve);
   status = find_coarse_fixed_point(solve, &steady);
-  if (status) return status;
-  if (!steady && solve->coarse_map.repeats > 1) {
+  if (status || solve->answer) return status;
+  bool several = solve->coarse_map.repeats > 1;
+  if (!steady && several) {
     status = create_maps(solve, 1);
     solve->until_steady = (strut_orbit_solve_cost){0};
   }
   if (status || steady) return status ? status : correct_or_rerun(solve);
-  if (uses_finer_steps(a)) {
-    status = find_finer_fixed_point(solve, false, &steady);
-    if (status) return status;
-    return steady ? correct_or_rerun(solve) : find_without_fixed_point(solve);
-  }
-  return find_by_reference(solve);
+  if (!uses_finer_steps(a)) return find_by_reference(solve);
+  /* for several periods, running on costs less than finer steps */
+  if (!several) status = find_finer_fixed_point(solve, false, &steady);
+  if (status) return status;
+  return steady ? correct_or_rerun(solve) : find_without_fixed_point(solve);
 }
 
 /*

@@ -256,37 +256,37 @@ static bool grow(const strut_period_map *map, double *const *d) {
   return most > GROWN;
 }
 
-strut_status strut_orbit_limit(strut_period_map *map, double enough, int cycles, double *y,
-                               double *travel, bool *found) {
+strut_status strut_orbit_limit(strut_period_map *map, strut_extrapolation *to, double *y,
+                               double *travel) {
   size_t both = 2 * (size_t)map->model->length + 1, bytes = both * sizeof(double);
   strut_arena arena = {0};
   window w = {.best = NULL};
-  *found = false;
+  to->found = to->unsteady = false;
   if (!allocate_window(both, &arena, &w)) {
     strut_arena_free(&arena);
     return STRUT_NO_MEMORY;
   }
   double before = HUGE_VAL; /* the last difference before extrapolation */
-  bool jumped = false;
-  for (int cycle = 0; cycle < cycles && !*found; cycle++) {
+  bool jumped = false, lost = false;
+  for (int cycle = 0; cycle < to->cycles && !to->found; cycle++) {
     memcpy(w.y[0], y, bytes);
     for (int k = 0; k < WINDOW; k++) {
       memcpy(w.y[k + 1], w.y[k], bytes);
       w.travel[k] = strut_period_map_apply(map, w.y[k + 1]);
       strut_period_map_subtract(map, w.y[k], w.y[k + 1], w.d[k]);
       w.size[k] = strut_period_map_size(map, w.d[k]);
-      if (!isfinite(w.travel[k])) cycle = cycles;
+      lost = lost || !isfinite(w.travel[k]);
     }
-    if (cycle == cycles) break;
-    if (jumped && w.size[WINDOW - 1] > before)
-      break; /* extrapolation led away: the motion is not steady */
-    if (grow(map, w.d)) break;
-    if (estimate_remaining_travel(&w) <= enough) {
+    if (lost) break;
+    to->unsteady = (jumped && w.size[WINDOW - 1] > before) || grow(map, w.d);
+    if (to->unsteady) break;
+    if (estimate_remaining_travel(&w) <= to->enough) {
       memcpy(y, w.y[WINDOW], bytes);
       *travel = w.travel[WINDOW - 1];
-      *found = true;
+      to->found = true;
       break;
     }
+    if (w.size[WINDOW - 1] > to->fall * w.size[0]) break;
     before = w.size[WINDOW - 1];
     extrapolate_periods(map, &w);
     memcpy(y, w.best, bytes);

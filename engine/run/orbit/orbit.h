@@ -32,12 +32,20 @@ strut_status strut_orbit_correct(strut_period_map *coarse, strut_period_map *ref
                                  const double *base, double travel, double enough,
                                  strut_orbit *orbit);
 
+/** How far an extrapolation goes, and how it ended. */
+typedef struct strut_extrapolation {
+  double enough; /* acceptable error of the travel per application [m] */
+  double fall;   /* part of a cycle's first difference that its last must be to continue [1] */
+  int cycles;    /* most extrapolations */
+  bool found;    /* the fixed point */
+  bool unsteady; /* applications, or their extrapolation, lead away */
+} strut_extrapolation;
+
 /**
- * Extrapolates the sequence of applications of the map from y (2 length + 1) to its fixed point.
- * enough: acceptable error of the travel per application [m]; cycles: most extrapolations. *found: y is the fixed point and
- * *travel its travel [m]; false, too, where the applications lead away from it. STRUT_OK or STRUT_NO_MEMORY.
+ * Extrapolates the sequence of applications of the map from y (2 length + 1) to its fixed point. Where it is found, y
+ * is the fixed point and *travel its travel [m]. STRUT_OK or STRUT_NO_MEMORY.
  */
-strut_status strut_orbit_limit(strut_period_map *map, double enough, int cycles, double *y,
-                               double *travel, bool *found);
+strut_status strut_orbit_limit(strut_period_map *map, strut_extrapolation *to, double *y,
+                               double *travel);
 
 #endif
