@@ -15,6 +15,7 @@
 #include "engine/forces/ground_kernel.h"
 #include "engine/forces/members_kernel.h"
 #include "engine/forces/sliding_masses.h"
+#include "engine/forces/step_ledger.h"
 #include "engine/forces/support_motion.h"
 #include "engine/forces/surfaces.h"
 #include "engine/model/mass_kernel.h"
@@ -31,10 +32,15 @@ STRUT_INLINE void forces_start(const strut_model *model, double *restrict force)
 
 STRUT_INLINE void forces_of_members(const strut_model *model, strut_state *state,
                                     const double *restrict q, const double *restrict v,
-                                    double *restrict force, bool ledger) {
-  member_powers powers = {0};
-  members_kernel(model, state, q, v, force, ledger, &powers);
+                                    double *restrict force, strut_booking ledger) {
+  member_powers powers;
+  powers.drive = powers.exchanged = powers.lost = (strut_lanes){0};
+  members_kernel(model, state, q, v, force, ledger != STRUT_BOOK_NOTHING, &powers);
   if (!ledger) return;
+  if (ledger == STRUT_BOOK_LANES) {
+    strut_book_members(state->booked, &powers);
+    return;
+  }
   double *power = state->power, drive = 0.0, lost = 0.0, exchanged = power[STRUT_POWER_EXCHANGED];
   for (int l = 0; l < STRUT_LANES; l++) {
     drive += powers.drive[l];
@@ -54,11 +60,12 @@ void strut_forces_add_rare(const strut_model *model, strut_state *state, double 
 /* All forces but the ground's. terms: which ones the plan may have, see STRUT_TERMS_RARE. */
 STRUT_INLINE void forces_of_structure(const strut_model *model, strut_state *state, double t,
                                       const double *restrict q, const double *restrict v,
-                                      unsigned terms, bool ledger) {
+                                      unsigned terms, strut_booking ledger) {
   unsigned plan = model->plan & terms;
   double *restrict force = state->force;
   state->evaluations++;
-  for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) state->power[p] = 0.0;
+  bool powers = ledger == STRUT_BOOK_POWERS || (ledger && plan & ~STRUT_TERMS_IN_LANES);
+  for (int p = 0; p < STRUT_POWER_COUNT && powers; p++) state->power[p] = 0.0;
   forces_start(model, force);
   if (plan & STRUT_TERM_FEEDBACK) {
     strut_feedback_apply(model, state, t, q, v);
@@ -73,7 +80,7 @@ STRUT_INLINE void forces_of_structure(const strut_model *model, strut_state *sta
 
 STRUT_INLINE void forces_sum(const strut_model *model, strut_state *state, double t,
                              const double *restrict q, const double *restrict v, unsigned terms,
-                             bool ledger) {
+                             strut_booking ledger) {
   forces_of_structure(model, state, t, q, v, terms, ledger);
   if (model->plan & STRUT_TERM_CONTACT)
     ground_kernel(model, state, q, v, state->force, ledger);
@@ -91,7 +98,7 @@ STRUT_INLINE void divide_by_mass(const strut_model *model, strut_state *state, d
 /* See strut_forces_acceleration. */
 STRUT_INLINE void forces_kernel(const strut_model *model, strut_state *state, double t,
                                 const double *restrict q, const double *restrict v,
-                                double *restrict a, unsigned terms, bool ledger) {
+                                double *restrict a, unsigned terms, strut_booking ledger) {
   forces_sum(model, state, t, q, v, terms, ledger);
   divide_by_mass(model, state, a, terms);
   if (ledger && model->plan & terms & STRUT_TERM_SLIDING_MASS)

@@ -14,6 +14,22 @@
 #include "engine/model/hot.h"
 #include "engine/model/state.h"
 
+/* Books a contact in its lane. */
+STRUT_INLINE void ground_book_lanes(strut_power_lanes *restrict to, int32_t lane, bool moves,
+                                    double belt_speed, double damper, double into, double friction,
+                                    double slip) {
+  double rubbed = friction * slip;
+  to->minus_damped[lane] += damper * into;
+  to->minus_rubbed[lane] += rubbed;
+  if (!moves) {
+    to->turnover[lane] += fabs(rubbed);
+    return;
+  }
+  double belt = friction * belt_speed;
+  to->belt[lane] += belt;
+  to->turnover[lane] += fabs(rubbed) + fabs(belt);
+}
+
 STRUT_INLINE void ground_ledger(strut_state *state, double belt_speed, double damper, double into,
                                 double friction, double slip) {
   double damped = -damper * into, rubbed = -friction * slip, belt = friction * belt_speed;
@@ -42,7 +58,8 @@ STRUT_INLINE double ground_friction(const strut_contact_entry *e, double normal,
 /* One node in contact; f, v: its force and velocity; gap < 0. */
 STRUT_INLINE void ground_touch(const strut_contact_table *c, strut_state *state, int32_t i,
                                double gap, double *restrict f, const double *restrict v,
-                               bool sloped, bool rough, bool laws, bool ledger) {
+                               bool sloped, bool rough, bool laws, strut_booking ledger,
+                               strut_power_lanes *lanes, bool moves) {
   const strut_contact_entry *e = &c->entry[i];
   strut_pair sum = strut_pair_load(f), reaction;
   double into = sloped ? v[0] * c->normal[0] + v[1] * c->normal[1] : v[1];
@@ -63,20 +80,27 @@ STRUT_INLINE void ground_touch(const strut_contact_table *c, strut_state *state,
   strut_pair_store(f, sum + reaction);
   state->normal[i] = normal;
   state->friction[i] = friction;
-  if (ledger) ground_ledger(state, c->belt_speed, damper, into, friction, slip);
+  if (ledger == STRUT_BOOK_POWERS)
+    ground_ledger(state, c->belt_speed, damper, into, friction, slip);
+  if (ledger == STRUT_BOOK_LANES)
+    ground_book_lanes(lanes, e->lane, moves, c->belt_speed, damper, into, friction, slip);
 }
 
 STRUT_INLINE void ground_all(const strut_model *model, strut_state *state, const double *restrict q,
                              const double *restrict v, double *restrict force, int32_t begin,
-                             int32_t end, bool sloped, bool rough, bool laws, bool ledger) {
+                             int32_t end, bool sloped, bool rough, bool laws,
+                             strut_booking ledger) {
   const strut_contact_table *c = &model->contacts;
   const uint32_t *restrict at = c->at;
   const double height = c->height;
+  strut_power_lanes *lanes = state->booked;
+  bool moves = c->belt_speed != 0.0;
   for (int32_t i = begin; i < end; i++) {
     double gap = q[at[i] + 1] - height;
     if (sloped) gap = q[at[i]] * c->normal[0] + gap * c->normal[1];
     if (gap < 0.0)
-      ground_touch(c, state, i, gap, force + at[i], v + at[i], sloped, rough, laws, ledger);
+      ground_touch(c, state, i, gap, force + at[i], v + at[i], sloped, rough, laws, ledger, lanes,
+                   moves);
   }
 }
 
@@ -85,7 +109,7 @@ STRUT_INLINE void ground_all(const strut_model *model, strut_state *state, const
 STRUT_INLINE void ground_kernel_range(const strut_model *model, strut_state *state,
                                       const double *restrict q, const double *restrict v,
                                       double *restrict force, int32_t begin, int32_t end,
-                                      bool ledger) {
+                                      strut_booking ledger) {
   enum { F = STRUT_TERM_FRICTION, S = STRUT_TERM_SLOPE };
 #define STRUT_CASE(sloped, rough, laws)                                                            \
   ground_all(model, state, q, v, force, begin, end, sloped, rough, laws, ledger);                  \
@@ -103,7 +127,7 @@ STRUT_INLINE void ground_kernel_range(const strut_model *model, strut_state *sta
 /* Those on all contacts. */
 STRUT_INLINE void ground_kernel(const strut_model *model, strut_state *state,
                                 const double *restrict q, const double *restrict v,
-                                double *restrict force, bool ledger) {
+                                double *restrict force, strut_booking ledger) {
   ground_kernel_range(model, state, q, v, force, 0, model->contacts.count, ledger);
 }
 

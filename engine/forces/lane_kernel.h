@@ -9,6 +9,7 @@
 #define STRUT_ENGINE_FORCES_LANE_KERNEL_H
 
 #include "engine/forces/lane_elements.h"
+#include "engine/forces/lane_ledger.h"
 #include "engine/forces/lane_vector.h"
 
 /* Signals */
@@ -177,15 +178,14 @@ STRUT_LANE_INLINE void lane_sum_powers(strut_lane_tables *t, int p,
   lane_put(t->power, STRUT_POWER_EXCHANGED, p, exchanged);
 }
 
-/* Slots of padding pull with no force, and no one asks for the place where they do. */
+/* Slots of padding pull with no force, and no one asks for the place where they do. book: where powers are booked;
+   NULL: in t->power. */
 STRUT_LANE_INLINE void lane_members(strut_lane_tables *t, const double *restrict q,
-                                    const double *restrict v, bool ledger) {
+                                    const double *restrict v, bool ledger, const lane_book *book) {
   enum { K = STRUT_TERM_DAMPING, S = STRUT_TERM_SLACK, D = STRUT_TERM_DRIVE };
   const strut_member_table *m = &t->first->members;
-  lane_powers powers[STRUT_LANES][LANE_PARTS];
-  lane_real none = {0};
-  for (int l = 0; l < STRUT_LANES && ledger; l++)
-    LANE_EACH((powers[l][p] = (lane_powers){.drive = none, .exchanged = none, .lost = none}));
+  lane_powers own[STRUT_LANES][LANE_PARTS], (*powers)[LANE_PARTS] = book ? book->member : own;
+  if (ledger) lane_clear_members(powers);
   for (int32_t b = 0; b < m->blocks; b++) {
     int32_t begin = b * STRUT_BLOCK,
             end = begin + STRUT_BLOCK < m->count ? begin + STRUT_BLOCK : m->count;
@@ -203,7 +203,7 @@ STRUT_LANE_INLINE void lane_members(strut_lane_tables *t, const double *restrict
     }
 #undef STRUT_CASE
   }
-  if (ledger) LANE_EACH(lane_sum_powers(t, p, powers));
+  if (ledger && !book) LANE_EACH(lane_sum_powers(t, p, powers));
 }
 
 STRUT_LANE_INLINE lane_switch lane_measure_cable(const strut_lane_tables *t, size_t j, int p,
@@ -249,7 +249,7 @@ STRUT_LANE_INLINE void lane_add(double *table, size_t i, int p, lane_mask where,
 /* See ground_touch; where: the lanes in which it does. */
 STRUT_LANE_INLINE void lane_touch(strut_lane_tables *t, const double *restrict v, size_t at,
                                   const double *entry, int p, lane_mask where, lane_real gap,
-                                  bool sloped, bool rough, bool ledger) {
+                                  bool sloped, bool rough, lane_contact_sums *book, bool moves) {
   const double *g = t->ground;
   lane_real tx = lane_row(g, STRUT_LANE_TANGENT_X, p), ty = lane_row(g, STRUT_LANE_TANGENT_Y, p);
   lane_real nx = lane_row(g, STRUT_LANE_NORMAL_X, p), ny = lane_row(g, STRUT_LANE_NORMAL_Y, p);
@@ -264,64 +264,68 @@ STRUT_LANE_INLINE void lane_touch(strut_lane_tables *t, const double *restrict v
                              t->first->plan & STRUT_TERM_DIRECTION);
   lane_add(t->force, at, p, where, sloped ? friction * tx + normal * nx : friction);
   lane_add(t->force, at + 1, p, where, sloped ? friction * ty + normal * ny : normal);
-  if (!ledger) return;
-  lane_real damped = -damper * into, rubbed = -friction * slip, belt = friction * belt_speed;
-  lane_add(t->power, STRUT_POWER_CONTACT, p, where, damped);
-  lane_add(t->power, STRUT_POWER_FRICTION, p, where, rubbed);
-  lane_add(t->power, STRUT_POWER_BELT, p, where, belt);
-  lane_add(t->power, STRUT_POWER_EXCHANGED, p, where,
-           damped + lane_magnitude(rubbed) + lane_magnitude(belt));
+  if (!book) return;
+  if (moves)
+    lane_book_belt(book, where, belt_speed != zero, damper * into, friction * slip,
+                   friction * belt_speed);
+  else
+    lane_book_contact(book, where, damper * into, friction * slip);
 }
 
 /* One node, in those lanes of a part in which it touches. */
 STRUT_LANE_INLINE void lane_contact(strut_lane_tables *t, const double *restrict q,
                                     const double *restrict v, size_t at, const double *entry, int p,
-                                    bool sloped, bool rough, bool ledger) {
+                                    bool sloped, bool rough, lane_contact_sums *book, bool moves) {
   lane_real zero = {0}, gap = lane_row(q, at + 1, p) - lane_row(t->ground, STRUT_LANE_HEIGHT, p);
   if (sloped)
     gap = lane_row(q, at, p) * lane_row(t->ground, STRUT_LANE_NORMAL_X, p) +
           gap * lane_row(t->ground, STRUT_LANE_NORMAL_Y, p);
   lane_mask touches = gap < zero;
-  if (lane_any(touches)) lane_touch(t, v, at, entry, p, touches, gap, sloped, rough, ledger);
+  if (lane_any(touches)) lane_touch(t, v, at, entry, p, touches, gap, sloped, rough, book, moves);
 }
 
 STRUT_LANE_INLINE void lane_ground(strut_lane_tables *t, const double *restrict q,
-                                   const double *restrict v, bool sloped, bool rough, bool ledger) {
+                                   const double *restrict v, bool sloped, bool rough,
+                                   const lane_book *book) {
   const strut_contact_table *c = &t->first->contacts;
+  bool moves = book && book->moves;
   for (int32_t i = 0; i < c->count; i++) {
     const double *entry = t->contact + i * STRUT_LANE_CONTACT_ROWS * LANE_ROW;
-    LANE_EACH(lane_contact(t, q, v, c->at[i], entry, p, sloped, rough, ledger));
+    lane_contact_sums *to = book ? book->contact[c->entry[i].lane] : NULL;
+    LANE_EACH(lane_contact(t, q, v, c->at[i], entry, p, sloped, rough, to ? to + p : NULL, moves));
   }
 }
 
 /* All forces but the ground's at positions q and velocities v, with rest lengths and loads as
    lane_drive left them. */
 STRUT_LANE_INLINE void lane_structure(strut_lane_tables *t, const double *restrict q,
-                                      const double *restrict v, bool ledger) {
+                                      const double *restrict v, bool ledger,
+                                      const lane_book *book) {
   const strut_model *m = t->first;
   lane_real zero = {0};
-  for (size_t k = 0; k < STRUT_LANE_POWERS && ledger; k++)
+  bool powers = ledger && (!book || m->plan & (STRUT_TERM_LOADS | STRUT_TERM_ELEMENTS));
+  for (size_t k = 0; k < STRUT_LANE_POWERS && powers; k++)
     LANE_EACH(lane_put(t->power, k, p, zero));
   for (size_t i = 0; i < 2 * (size_t)m->node_count; i++)
     LANE_EACH(lane_put(t->force, i, p,
                        (m->plan & STRUT_TERM_CONSTANT) ? lane_row(t->constant, i, p) : zero));
   if (m->plan & STRUT_TERM_LOADS) LANE_EACH(lane_loads(t, p, v, ledger));
-  if (m->plan & STRUT_TERM_MEMBERS) lane_members(t, q, v, ledger);
+  if (m->plan & STRUT_TERM_MEMBERS) lane_members(t, q, v, ledger, book);
   if (m->plan & STRUT_TERM_ELEMENTS) lane_elements(t, q, v, ledger);
 }
 
-/* All forces, the same way. */
+/* All forces, the same way. book: where the ledger is kept; NULL: nowhere. */
 STRUT_LANE_INLINE void lane_forces(strut_lane_tables *t, const double *restrict q,
-                                   const double *restrict v, bool ledger) {
+                                   const double *restrict v, const lane_book *book) {
   const strut_model *m = t->first;
-  lane_structure(t, q, v, ledger);
+  lane_structure(t, q, v, book != NULL, book);
   if (!(m->plan & STRUT_TERM_CONTACT)) return;
   if (m->plan & STRUT_TERM_SLOPE)
-    lane_ground(t, q, v, true, m->plan & STRUT_TERM_FRICTION, ledger);
+    lane_ground(t, q, v, true, m->plan & STRUT_TERM_FRICTION, book);
   else if (m->plan & STRUT_TERM_FRICTION)
-    lane_ground(t, q, v, false, true, ledger);
+    lane_ground(t, q, v, false, true, book);
   else
-    lane_ground(t, q, v, false, false, ledger);
+    lane_ground(t, q, v, false, false, book);
 }
 
 /* Masses */

@@ -66,6 +66,10 @@ STRUT_LANE_INLINE void lane_put(double *table, size_t i, int p, lane_real x) {
 STRUT_LANE_INLINE lane_real lane_choose(lane_mask mask, lane_real x, lane_real y) {
   return (lane_real)((mask & (lane_mask)x) | (~mask & (lane_mask)y));
 }
+/* x in the lanes of the mask, 0 in others. */
+STRUT_LANE_INLINE lane_real lane_keep(lane_mask mask, lane_real x) {
+  return (lane_real)(mask & (lane_mask)x);
+}
 STRUT_LANE_INLINE lane_real lane_magnitude(lane_real x) {
   return (lane_real)((lane_mask)x & 0x7fffffffffffffffLL);
 }

@@ -30,19 +30,20 @@ enum { STRUT_LEDGER_BLOCKS = 16 };
     number drive, exchanged, lost;                                                                 \
   } PREFIX##_powers;                                                                               \
                                                                                                    \
-  /* The tension; *elastic: its elastic part, where the member acts. */                            \
+  /* The tension; *damper: what it has beyond its elastic part, where the member acts. */          \
   inlined number PREFIX##_law(const PREFIX##_values *m, unsigned terms, bool ledger,               \
-                              number *elastic) {                                                   \
+                              number *damper) {                                                    \
     bool driven = terms & STRUT_TERM_DRIVE;                                                        \
-    number stretch = m->length - m->rest;                                                          \
-    *elastic = m->stiffness * stretch;                                                             \
-    number tension = *elastic, own_rate = driven ? m->rate - m->rest_rate : m->rate;               \
-    if (terms & STRUT_TERM_DAMPING) tension = *elastic + m->damping * own_rate;                    \
+    number stretch = m->length - m->rest, elastic = m->stiffness * stretch;                        \
+    number tension = elastic, own_rate = driven ? m->rate - m->rest_rate : m->rate;                \
+    *damper = m->damping * own_rate;                                                               \
+    if (terms & STRUT_TERM_DAMPING) tension = elastic + *damper;                                   \
     if (terms & STRUT_TERM_SLACK) {                                                                \
       mask taut = stretch > m->slack_length_threshold;                                             \
       mask pulling = taut & (tension > m->slack_force_threshold);                                  \
       tension = (number)(pulling & (mask)tension);                                                 \
-      if (ledger) *elastic = (number)(taut & (mask)*elastic);                                      \
+      mask loose = taut & ~pulling & (mask)-elastic;                                               \
+      if (ledger) *damper = (number)((pulling & (mask)*damper) | loose);                           \
     }                                                                                              \
     return tension;                                                                                \
   }                                                                                                \
@@ -50,14 +51,14 @@ enum { STRUT_LEDGER_BLOCKS = 16 };
   inlined number PREFIX##_tension(const PREFIX##_values *m, unsigned terms, bool ledger,           \
                                   PREFIX##_powers *powers) {                                       \
     bool driven = terms & STRUT_TERM_DRIVE;                                                        \
-    number elastic, tension = PREFIX##_law(m, terms, ledger, &elastic);                            \
+    number damper, tension = PREFIX##_law(m, terms, ledger, &damper);                              \
     number own_rate = driven ? m->rate - m->rest_rate : m->rate;                                   \
     if (ledger && driven) {                                                                        \
       number power = -tension * m->rest_rate;                                                      \
       powers->drive += power;                                                                      \
       powers->exchanged += (number)((mask)power & 0x7fffffffffffffffLL);                           \
     }                                                                                              \
-    if (ledger && (terms & STRUT_TERM_DAMPING)) powers->lost += (tension - elastic) * own_rate;    \
+    if (ledger && (terms & STRUT_TERM_DAMPING)) powers->lost += damper * own_rate;                 \
     return tension;                                                                                \
   }
 

@@ -52,6 +52,23 @@ STRUT_SMALL_INLINE void small_signal(const strut_signal *signals, int32_t index,
   }
 }
 
+/*
+ * row[j] = x, by a store as wide as the loads that the law of members makes: one that has to gather a row from several
+ * stores waits until these have left the processor's queue, and with them all that came before.
+ */
+STRUT_SMALL_INLINE void small_put(double *row, int32_t j, double x) {
+  static const int64_t one[2 * STRUT_SMALL_SLOTS] = {[STRUT_SMALL_SLOTS] = -1};
+  int32_t from = j / SMALL_WIDTH * SMALL_WIDTH;
+  const int64_t *at = one + STRUT_SMALL_SLOTS - (j - from);
+  if (from < 8) {
+    small_store(row + from,
+                small_choose(small_mask_load(at), small_all(x), small_load(row + from)));
+    return;
+  }
+  strut_lane_mask there = (strut_lane_mask)_mm256_loadu_si256((const __m256i *)at);
+  small4_store(row + from, small4_choose(there, _mm256_set1_pd(x), small4_load(row + from)));
+}
+
 /* The drives' share of rest lengths at `count` times; rows have the other members' already. */
 STRUT_SMALL_INLINE void small_drive(const strut_model *model, const double *time, int32_t count,
                                     small_rest *rows) {
@@ -62,9 +79,11 @@ STRUT_SMALL_INLINE void small_drive(const strut_model *model, const double *time
     double natural = model->members.rest[j];
     small_signal(model->scene->signals, d->signal[i], time, count, value, rate);
     for (int32_t h = 0; h < count && d->first[i]; h++)
-      rows[h].rest[j] = natural + value[h], rows[h].rate[j] = rate[h];
-    for (int32_t h = 0; h < count && !d->first[i]; h++)
-      rows[h].rest[j] += value[h], rows[h].rate[j] += rate[h];
+      small_put(rows[h].rest, j, natural + value[h]), small_put(rows[h].rate, j, rate[h]);
+    for (int32_t h = 0; h < count && !d->first[i]; h++) {
+      small_put(rows[h].rest, j, rows[h].rest[j] + value[h]);
+      small_put(rows[h].rate, j, rows[h].rate[j] + rate[h]);
+    }
   }
 }
 

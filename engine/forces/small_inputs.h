@@ -12,6 +12,7 @@
 typedef struct strut_small_inputs {
   strut_small_row constant[2]; /* constant forces [N] */
   double slack_length_threshold[STRUT_SMALL_SLOTS], slack_force_threshold[STRUT_SMALL_SLOTS];
+  unsigned driven; /* bit g: rest lengths of some of the members 4 g to 4 g + 3 change */
 } strut_small_inputs;
 
 /** Rest lengths [m] and their rates [m/s] at one instant. */
@@ -32,6 +33,11 @@ static inline void strut_small_inputs_read(const strut_model *model, const strut
     inputs->slack_length_threshold[j] = there ? state->slack_length_threshold[j] : 0.0;
     inputs->slack_force_threshold[j] = there ? state->slack_force_threshold[j] : 0.0;
   }
+  inputs->driven = 0;
+  for (int32_t j = 0; j < s->members && model->plan & STRUT_TERM_DRIVE; j++)
+    if (state->rest_rate[j] != 0.0) inputs->driven |= 1u << j / 4;
+  for (int32_t i = 0; i < model->drives.count; i++)
+    inputs->driven |= 1u << model->drives.member[i] / 4;
 }
 
 /** Rest lengths before the drives change them, in `count` rows. */

@@ -18,61 +18,95 @@ typedef struct small_run {
   const strut_small_model *tables;
   const strut_contact_table *contacts;
   const strut_small_inputs *inputs;
-  unsigned plan; /* with the terms that a copy knows */
+  unsigned plan;   /* with the terms that a copy knows; see small_plan_in_copy */
+  unsigned driven; /* bit g: some of the members 4 g to 4 g + 3 is */
 } small_run;
 
+/* A term of this kernel alone: the ground moves. */
+#define STRUT_SMALL_BELT (1u << 31)
+/* Copies know all terms, or those of most models, or are for models with exactly these, which they need not ask for. */
+#define STRUT_SMALL_COMMON (~(unsigned)(STRUT_TERM_SLACK | STRUT_TERM_SLOPE | STRUT_TERM_LAWS))
+#define STRUT_SMALL_USUAL                                                                          \
+  ((unsigned)(STRUT_TERM_MEMBERS | STRUT_TERM_DAMPING | STRUT_TERM_DRIVE | STRUT_TERM_CONTACT |    \
+              STRUT_TERM_FRICTION))
+
+/* The terms of the model that forces ask for. */
+static inline unsigned small_plan_of(const strut_model *model) {
+  unsigned belt = model->contacts.belt_speed != 0.0 ? STRUT_SMALL_BELT : 0;
+  return (model->plan & ~(unsigned)(STRUT_TERM_CONSTANT | STRUT_TERM_SOLVE)) | belt;
+}
+/* Which of the three kinds of copies steps the model: 0 for all terms, 1 for common ones, 2 for exactly the usual. */
+static inline int small_copy_of(const strut_model *model) {
+  unsigned plan = small_plan_of(model);
+  return plan == STRUT_SMALL_USUAL ? 2 : !(plan & ~STRUT_SMALL_COMMON);
+}
+/* What a copy that knows these terms reads of them. */
+STRUT_SMALL_INLINE unsigned small_plan_in_copy(const strut_model *model, unsigned terms) {
+  return terms == STRUT_SMALL_USUAL ? terms : small_plan_of(model) & terms;
+}
+
+/* The speed of the ground; 0 is known to copies without one. */
+STRUT_SMALL_INLINE double small_belt(const small_run *r) {
+  return r->plan & STRUT_SMALL_BELT ? r->contacts->belt_speed : 0.0;
+}
+
 /* Along the members: differences of the ends' positions and velocities, pulls. */
-#define STRUT_DEFINE_SMALL_GROUP(number, mask, PREFIX, load, root)                                  \
-  STRUT_DEFINE_MEMBER_LAW(STRUT_SMALL_INLINE, number, mask, PREFIX)                                 \
-                                                                                                    \
-  typedef struct PREFIX##_span {                                                                    \
-    number x, y, u, w;                                                                              \
-  } PREFIX##_span;                                                                                  \
-                                                                                                    \
-  STRUT_SMALL_INLINE PREFIX##_values PREFIX##_values_at(                                            \
-      const small_run *r, const small_rest *rest, int j, number length, number rate) {              \
-    const strut_small_model *s = r->tables;                                                         \
-    return (PREFIX##_values){                                                                       \
-        .length = length,                                                                           \
-        .rate = rate,                                                                               \
-        .rest = load(rest->rest + j),                                                               \
-        .rest_rate = load(rest->rate + j),                                                          \
-        .stiffness = load(s->stiffness + j),                                                        \
-        .damping = load(s->damping + j),                                                            \
-        .slack_length_threshold = load(r->inputs->slack_length_threshold + j),                      \
-        .slack_force_threshold = load(r->inputs->slack_force_threshold + j)};                       \
-  }                                                                                                 \
-                                                                                                    \
-  /* Pulls of the members from j on into d->u and d->w. No sum begins at 0: that changes no bit. */ \
-  STRUT_SMALL_INLINE void PREFIX##_pull(const small_run *r, const small_rest *rest, int j,          \
-                                        PREFIX##_span *d, bool ledger, PREFIX##_powers *powers) {   \
-    number length = root(d->x * d->x + d->y * d->y), rate = {0}, elastic;                           \
-    number inverse = (number)((length > 0.0) & (mask)(1.0 / length));                               \
-    if (r->plan & STRUT_TERM_DAMPING) rate = (d->u * d->x + d->w * d->y) * inverse;                 \
-    PREFIX##_values m = PREFIX##_values_at(r, rest, j, length, rate);                               \
-    number tension = PREFIX##_law(&m, r->plan, ledger, &elastic);                                   \
-    number density = tension * inverse;                                                             \
-    d->u = density * d->x, d->w = density * d->y;                                                   \
-    if (!ledger) return;                                                                            \
-    bool driven = r->plan & STRUT_TERM_DRIVE;                                                       \
-    number own_rate = driven ? m.rate - m.rest_rate : m.rate;                                       \
-    if (driven) {                                                                                   \
-      powers->drive = tension * m.rest_rate;                                                        \
-      powers->exchanged = (number)((mask)powers->drive & INT64_MAX);                                \
-    }                                                                                               \
-    if (r->plan & STRUT_TERM_DAMPING) powers->lost = (tension - elastic) * own_rate;                \
+#define STRUT_DEFINE_SMALL_GROUP(number, mask, PREFIX, load, root)                                                          \
+  STRUT_DEFINE_MEMBER_LAW(STRUT_SMALL_INLINE, number, mask, PREFIX)                                                         \
+                                                                                                                            \
+  STRUT_SMALL_INLINE PREFIX##_values PREFIX##_values_at(                                                                    \
+      const small_run *r, const small_rest *rest, int j, number length, number rate) {                                      \
+    const strut_small_model *s = r->tables;                                                                                 \
+    return (PREFIX##_values){                                                                                               \
+        .length = length,                                                                                                   \
+        .rate = rate,                                                                                                       \
+        .rest = load(rest->rest + j),                                                                                       \
+        .rest_rate = load(rest->rate + j),                                                                                  \
+        .stiffness = load(s->stiffness + j),                                                                                \
+        .damping = load(s->damping + j),                                                                                    \
+        .slack_length_threshold = load(r->inputs->slack_length_threshold + j),                                              \
+        .slack_force_threshold = load(r->inputs->slack_force_threshold + j)};                                               \
+  }                                                                                                                         \
+                                                                                                                            \
+  /* What follows from positions alone. */                                                                                  \
+  typedef struct PREFIX##_shape {                                                                                           \
+    number x, y, length, inverse;                                                                                           \
+  } PREFIX##_shape;                                                                                                         \
+                                                                                                                            \
+  STRUT_SMALL_INLINE PREFIX##_shape PREFIX##_measure(number x, number y) {                                                  \
+    PREFIX##_shape d = {.x = x, .y = y, .length = root(x * x + y * y)};                                                     \
+    d.inverse = (number)((d.length > 0.0) & (mask)(1.0 / d.length));                                                        \
+    return d;                                                                                                               \
+  }                                                                                                                         \
+                                                                                                                            \
+  /* Pulls of the members from j on, at differences u and w of their ends' velocities, which they replace; their tensions \
+     and, for the ledger, what their dampers lose. */ \
+  STRUT_SMALL_INLINE number PREFIX##_pull(const small_run *r, const small_rest *rest, int j,                                \
+                                          const PREFIX##_shape *d, number *u, number *w,                                    \
+                                          bool ledger, number *lost) {                                                      \
+    number rate = {0}, damper;                                                                                              \
+    if (r->plan & STRUT_TERM_DAMPING) rate = (*u * d->x + *w * d->y) * d->inverse;                                          \
+    PREFIX##_values m = PREFIX##_values_at(r, rest, j, d->length, rate);                                                    \
+    number tension = PREFIX##_law(&m, r->plan, ledger, &damper);                                                            \
+    number density = tension * d->inverse;                                                                                  \
+    *u = density * d->x, *w = density * d->y;                                                                               \
+    if (ledger && r->plan & STRUT_TERM_DAMPING)                                                                             \
+      *lost = damper * (r->plan & STRUT_TERM_DRIVE ? m.rate - m.rest_rate : m.rate);                                        \
+    return tension;                                                                                                         \
   }
 
 STRUT_DEFINE_SMALL_GROUP(strut_lanes, strut_lane_mask, small4, small4_load, small_root_of_4)
 
+/* Adds what drives take from 4 members whose rest lengths change at these rates. */
+STRUT_SMALL_INLINE void small_add_drive(small4_powers *sum, strut_lanes tension,
+                                        const double *rate) {
+  strut_lanes power = tension * small4_load(rate);
+  sum->drive += power;
+  sum->exchanged += (strut_lanes)((strut_lane_mask)power & INT64_MAX);
+}
+
 #if STRUT_SMALL_WIDTH == 8
 STRUT_DEFINE_SMALL_GROUP(small_real, small_bits, small8, small_load, small_root)
-
-/* Powers of the members; drive: what drives take. */
-typedef struct small_powers {
-  small8_powers first;
-  small4_powers last;
-} small_powers;
 
 STRUT_SMALL_INLINE small_real small_gather(const int64_t *lane, small_row x) {
   return _mm512_permutexvar_pd((__m512i)small_bits_load(lane), x.part[0]);
@@ -86,39 +120,60 @@ STRUT_SMALL_INLINE small_real small_difference(const strut_small_model *s, int j
 STRUT_SMALL_INLINE strut_lanes small_half(small_real x, int half) {
   return half ? _mm512_extractf64x4_pd(x, 1) : _mm512_castpd512_pd256(x);
 }
-/* What the members pull with, at each node's k-th. */
+/* What the members pull with, at each node's k-th; -0, which changes no bit, where there is none. */
 STRUT_SMALL_INLINE small_row small_gather_pulls(const strut_small_pull *at, const small_pulls *p) {
-  __m512d last = _mm512_castpd256_pd512(p->last);
+  __m512d last = _mm512_zextpd256_pd512(p->last);
   return (small_row){{_mm512_permutex2var_pd(p->first, (__m512i)small_bits_load(at->slot), last)}};
 }
 
+/* All members at positions q; 0 where there are none. */
+typedef struct small_shapes {
+  small8_shape first;
+  small4_shape last;
+} small_shapes;
+
+STRUT_SMALL_INLINE void small_measure_members(const strut_small_model *s, const small_points *q,
+                                              small_shapes *d) {
+  if (s->members > 8)
+    d->last = small4_measure(small_half(small_difference(s, 8, q->x), 0),
+                             small_half(small_difference(s, 8, q->y), 0));
+  d->first = small8_measure(small_difference(s, 0, q->x), small_difference(s, 0, q->y));
+}
+
+/*
+ * Pulls of the members, whose shapes are those at the positions; sum: their powers for the ledger, added up in the order
+ * of groups of 4; drive: what drives take. The shapes become those at next_q, the positions that are
+ * wanted next, where these are known already: roots and divisions take long, and are there when velocities are.
+ */
 STRUT_SMALL_INLINE void small_members(const small_run *r, const small_rest *rest,
-                                      const small_points *q, const small_points *v, bool ledger,
-                                      small_pulls *px, small_pulls *py, small_powers *sum) {
+                                      small_shapes *shapes, const small_points *next_q,
+                                      const small_points *v, bool ledger, small_pulls *px,
+                                      small_pulls *py, small4_powers *sum) {
   const strut_small_model *s = r->tables;
-  small8_span d = {.x = small_difference(s, 0, q->x), .y = small_difference(s, 0, q->y)};
-  small4_span e = {0};
+  small_shapes d = *shapes;
+  small_real lost = {0}, tension;
+  strut_lanes lost_last = {0}, tension_last = {0};
+  *px = *py = (small_pulls){0};
   if (r->plan & STRUT_TERM_DAMPING)
-    d.u = small_difference(s, 0, v->x), d.w = small_difference(s, 0, v->y);
+    px->first = small_difference(s, 0, v->x), py->first = small_difference(s, 0, v->y);
   if (s->members > 8) {
-    e.x = small_half(small_difference(s, 8, q->x), 0);
-    e.y = small_half(small_difference(s, 8, q->y), 0);
     if (r->plan & STRUT_TERM_DAMPING) {
-      e.u = small_half(small_difference(s, 8, v->x), 0);
-      e.w = small_half(small_difference(s, 8, v->y), 0);
+      px->last = small_half(small_difference(s, 8, v->x), 0);
+      py->last = small_half(small_difference(s, 8, v->y), 0);
     }
-    small4_pull(r, rest, 8, &e, ledger, &sum->last);
+    tension_last = small4_pull(r, rest, 8, &d.last, &px->last, &py->last, ledger, &lost_last);
   }
-  small8_pull(r, rest, 0, &d, ledger, &sum->first);
-  px->first = d.u, py->first = d.w;
-  px->last = e.u, py->last = e.w;
+  tension = small8_pull(r, rest, 0, &d.first, &px->first, &py->first, ledger, &lost);
+  if (ledger) {
+    sum->lost = small_half(lost, 0) + small_half(lost, 1) + lost_last;
+    small_real drive = tension * small_load(rest->rate), size = small_magnitude(drive);
+    sum->drive = small_half(drive, 0) + small_half(drive, 1);
+    sum->exchanged = small_half(size, 0) + small_half(size, 1);
+    if (r->driven & 4) small_add_drive(sum, tension_last, rest->rate + 8);
+  }
+  if (next_q) small_measure_members(s, next_q, shapes);
 }
 #else
-/* Powers of the members, of groups of 4 together; drive: what drives take. */
-typedef struct small_powers {
-  small4_powers sum;
-} small_powers;
-
 STRUT_SMALL_INLINE strut_lanes small_halves(strut_lanes x, small_bits halves) {
   return (strut_lanes)_mm256_permutevar8x32_ps((__m256)x, (__m256i)halves);
 }
@@ -135,48 +190,63 @@ STRUT_SMALL_INLINE strut_lanes small_difference(const strut_small_model *s, int 
   return small_gather(s->to_halves + j, x) - small_gather(s->from_halves + j, x);
 }
 
-/* The ends of 4 members: positions and, for dampers, velocities. */
-STRUT_SMALL_INLINE small4_span small_ends(const small_run *r, const int64_t *halves,
-                                          strut_small_source source, const small_points *q,
-                                          const small_points *v) {
-  bool damped = r->plan & STRUT_TERM_DAMPING;
+/* The ends of 4 members. */
+STRUT_SMALL_INLINE void small_ends(const int64_t *halves, strut_small_source source,
+                                   const small_points *z, strut_lanes *x, strut_lanes *y) {
   small_bits at = small_bits_load(halves);
-  small4_span e = {0};
-  if (source != STRUT_SMALL_BOTH) {
-    const int p = source == STRUT_SMALL_SECOND;
-    strut_lanes x = p ? q->x.part[1] : q->x.part[0], y = p ? q->y.part[1] : q->y.part[0];
-    e.x = small_halves(x, at), e.y = small_halves(y, at);
-    strut_lanes u = p ? v->x.part[1] : v->x.part[0], w = p ? v->y.part[1] : v->y.part[0];
-    if (damped) e.u = small_halves(u, at), e.w = small_halves(w, at);
-    return e;
+  if (source == STRUT_SMALL_FIRST)
+    *x = small_halves(z->x.part[0], at), *y = small_halves(z->y.part[0], at);
+  else if (source == STRUT_SMALL_SECOND)
+    *x = small_halves(z->x.part[1], at), *y = small_halves(z->y.part[1], at);
+  else
+    *x = small_gather(halves, z->x), *y = small_gather(halves, z->y);
+}
+/* The differences of their ends, group g. */
+STRUT_SMALL_INLINE void small_group_differences(const strut_small_model *s, int g,
+                                                const small_points *z, strut_lanes *x,
+                                                strut_lanes *y) {
+  strut_lanes x0, y0;
+  small_ends(s->from_halves + 4 * g, s->from_source[g], z, &x0, &y0);
+  small_ends(s->to_halves + 4 * g, s->to_source[g], z, x, y);
+  *x -= x0, *y -= y0;
+}
+
+/* All members at positions q; 0 where there are none. */
+typedef struct small_shapes {
+  small4_shape part[3];
+} small_shapes;
+
+STRUT_SMALL_INLINE void small_measure_members(const strut_small_model *s, const small_points *q,
+                                              small_shapes *d) {
+#pragma GCC unroll 3
+  for (int g = 0; g < 3; g++) {
+    strut_lanes x, y;
+    if (4 * g >= s->members) break;
+    small_group_differences(s, g, q, &x, &y);
+    d->part[g] = small4_measure(x, y);
   }
-  e.x = small_gather(halves, q->x), e.y = small_gather(halves, q->y);
-  if (damped) e.u = small_gather(halves, v->x), e.w = small_gather(halves, v->y);
-  return e;
 }
 
 STRUT_SMALL_INLINE void small_members(const small_run *r, const small_rest *rest,
-                                      const small_points *q, const small_points *v, bool ledger,
-                                      small_pulls *px, small_pulls *py, small_powers *sum) {
+                                      small_shapes *shapes, const small_points *next_q,
+                                      const small_points *v, bool ledger, small_pulls *px,
+                                      small_pulls *py, small4_powers *sum) {
   const strut_small_model *s = r->tables;
+  small_shapes d = *shapes;
   *px = *py = (small_pulls){0};
+  if (ledger) sum->drive = sum->exchanged = (strut_lanes){0};
 #pragma GCC unroll 3
   for (int g = 0; g < 3; g++) {
-    small4_powers powers = {0};
-    small4_span d = {0};
+    strut_lanes u = {0}, w = {0}, lost = {0}, tension;
     if (4 * g >= s->members) break;
-    small4_span from = small_ends(r, s->from_halves + 4 * g, s->from_source[g], q, v);
-    d = small_ends(r, s->to_halves + 4 * g, s->to_source[g], q, v);
-    d.x -= from.x, d.y -= from.y;
-    if (r->plan & STRUT_TERM_DAMPING) d.u -= from.u, d.w -= from.w;
-    small4_pull(r, rest, 4 * g, &d, ledger, &powers);
-    px->part[g] = d.u, py->part[g] = d.w;
+    if (r->plan & STRUT_TERM_DAMPING) small_group_differences(s, g, v, &u, &w);
+    tension = small4_pull(r, rest, 4 * g, &d.part[g], &u, &w, ledger, &lost);
+    px->part[g] = u, py->part[g] = w;
     if (!ledger) continue;
-    small4_powers *to = &sum->sum;
-    to->drive = g ? to->drive + powers.drive : powers.drive;
-    to->lost = g ? to->lost + powers.lost : powers.lost;
-    to->exchanged = g ? to->exchanged + powers.exchanged : powers.exchanged;
+    sum->lost = g ? sum->lost + lost : lost;
+    if (r->driven >> g & 1) small_add_drive(sum, tension, rest->rate + 4 * g);
   }
+  if (next_q) small_measure_members(s, next_q, shapes);
 }
 #endif
 
@@ -189,12 +259,8 @@ STRUT_SMALL_INLINE small_points small_sum_pulls(const small_run *r, const small_
   for (int32_t k = 0, degree = s->degree; k < degree; k++) {
     const strut_small_pull *at = &s->pull[k];
     small_row x = small_gather_pulls(at, px), y = small_gather_pulls(at, py);
-    SMALL_EACH(p) {
-      small_bits sign = small_bits_load(at->sign + p * SMALL_WIDTH);
-      small_mask has = small_mask_load(at->has + p * SMALL_WIDTH);
-      f.x.part[p] = small_add_where(has, f.x.part[p], small_flip(x.part[p], sign));
-      f.y.part[p] = small_add_where(has, f.y.part[p], small_flip(y.part[p], sign));
-    }
+    small_bits sign = small_bits_load(at->sign);
+    f.x.part[0] += small_flip(x.part[0], sign), f.y.part[0] += small_flip(y.part[0], sign);
   }
   return f;
 }
@@ -203,10 +269,10 @@ STRUT_SMALL_INLINE small_points small_sum_pulls(const small_run *r, const small_
                                                 const small_pulls *py) {
   small_points f = {small_row_load(r->inputs->constant[0]), small_row_load(r->inputs->constant[1])};
   const strut_small_pull_turns *t = &r->tables->pull_turns;
-  int32_t k = 0;
+  int64_t k = 0;
 #pragma GCC unroll 3
   for (int g = 0; g < 3; g++)
-    for (int32_t end = t->end[g]; k < end; k++) {
+    for (int64_t end = t->end[g]; k < end; k++) {
       const strut_small_pull_turn *turn = &t->turn[k];
       SMALL_EACH(h) {
         small_bits at = small_bits_load(turn->halves + 4 * h);
@@ -229,7 +295,7 @@ typedef struct small_touch {
 
 /* What the powers of one evaluation are made of, see small_ledger.h. */
 typedef struct small_entries {
-  small_powers members;
+  small4_powers members;
   small_touch touch;
 } small_entries;
 
@@ -269,8 +335,8 @@ STRUT_SMALL_INLINE small_real small_friction(const strut_small_contacts *c, int 
     most = small_choose(back, SMALL_CONTACT(minus_mu_kinetic_backward) * normal, most);
   }
   small_mask pushed = small_at_least(small_magnitude(applied), holding * normal);
-  small_real friction = small_choose(pushed, small_times_sign(most, applied), -applied);
-  friction = small_choose(slides, small_times_sign(most, slip), friction);
+  small_real against = small_times_sign(most, small_choose(slides, slip, applied));
+  small_real friction = small_choose(slides | pushed, against, -applied);
   if (!laws) return friction;
   small_real width = SMALL_CONTACT(width);
   small_real smooth = most * slip / small_root(slip * slip + width * width);
@@ -279,7 +345,7 @@ STRUT_SMALL_INLINE small_real small_friction(const strut_small_contacts *c, int 
 }
 
 /* See ground_ledger; both_signs: what dampers do is exchanged by its size. */
-STRUT_SMALL_INLINE void small_book_contacts(const strut_contact_table *t, small_mask closed,
+STRUT_SMALL_INLINE void small_book_contacts(const small_run *r, small_mask closed,
                                             small_real damper, small_real into, small_real friction,
                                             small_real slip, bool both_signs, int p,
                                             small_touch *touch) {
@@ -288,8 +354,8 @@ STRUT_SMALL_INLINE void small_book_contacts(const strut_contact_table *t, small_
   touch->minus_damped.part[p] = damped, touch->minus_rubbed.part[p] = rubbed;
   touch->exchanged.part[p] = both_signs ? small_magnitude(damped) + small_magnitude(rubbed)
                                         : small_magnitude(rubbed) - damped;
-  if (t->belt_speed == 0.0) return;
-  touch->belt.part[p] = small_keep(closed, friction * t->belt_speed);
+  if (!(r->plan & STRUT_SMALL_BELT)) return;
+  touch->belt.part[p] = small_keep(closed, friction * r->contacts->belt_speed);
   touch->exchanged.part[p] += small_magnitude(touch->belt.part[p]);
 }
 
@@ -311,13 +377,13 @@ STRUT_SMALL_INLINE void small_ground_part(const small_run *r, int p, small_real 
   if (SMALL_PARTS > 1 && !closed_bits) return;
   small_real elastic = SMALL_CONTACT(minus_stiffness) * gap;
   small_real damper = small_damper(c, p, elastic, into, laws);
-  small_real normal = elastic + damper, slip = along - t->belt_speed, friction = zero;
+  small_real normal = elastic + damper, slip = along - small_belt(r), friction = zero;
   small_real fx = f->x.part[p], fy = f->y.part[p];
   if (rough) friction = small_friction(c, p, normal, slip, sloped ? fx * tx + fy * ty : fx, laws);
   f->x.part[p] = small_add_where(closed, fx, sloped ? friction * tx + normal * nx : friction);
   f->y.part[p] = small_add_where(closed, fy, sloped ? friction * ty + normal * ny : normal);
   if (!ledger) return;
-  small_book_contacts(t, closed, damper, into, friction, slip, false, p, touch);
+  small_book_contacts(r, closed, damper, into, friction, slip, false, p, touch);
 }
 
 /* a = M^-1 f, and 0 where there is no mass to divide by. */
@@ -328,15 +394,14 @@ STRUT_SMALL_INLINE small_points small_divide_points(const strut_small_model *s,
   small_real a[2], force[2] = {f->x.part[0], f->y.part[0]};
 #pragma GCC unroll 2
   for (int c = 0; c < 2; c++)
-    a[c] = small_keep(
-        small_mask_load(column[c]->has),
-        small_load(column[c]->inverse) * small_gather(column[c]->lane, (small_row){{force[c]}}));
+    a[c] = small_keep(column[c]->bits, small_load(column[c]->inverse) *
+                                           small_gather(column[c]->lane, (small_row){{force[c]}}));
   for (int32_t j = 1, columns = s->columns; j < columns; j++)
 #pragma GCC unroll 2
     for (int c = 0; c < 2; c++) {
       const strut_small_column *at = &column[c][j];
       small_real x = small_gather(at->lane, (small_row){{force[c]}});
-      a[c] = small_add_where(small_mask_load(at->has), a[c], small_load(at->inverse) * x);
+      a[c] = small_add_where(at->bits, a[c], small_load(at->inverse) * x);
     }
   return (small_points){{{a[0]}}, {{a[1]}}};
 }
@@ -353,10 +418,10 @@ STRUT_SMALL_INLINE small_points small_divide_points(const strut_small_model *s,
   const strut_small_mass_turns *t = &s->mass_turns;
   strut_lanes zero = small_all(-0.0);
   small_points a = {{{zero, zero}}, {{zero, zero}}};
-  int32_t k = 0;
+  int64_t k = 0;
 #pragma GCC unroll 2
   for (int g = 0; g < 2; g++)
-    for (int32_t end = t->end[g]; k < end; k++) SMALL_EACH(h) {
+    for (int64_t end = t->end[g]; k < end; k++) SMALL_EACH(h) {
         a.x.part[h] -= small_share(&t->turn[k], 0, h, f->x.part[g]);
         a.y.part[h] -= small_share(&t->turn[k], 1, h, f->y.part[g]);
       }
@@ -364,19 +429,13 @@ STRUT_SMALL_INLINE small_points small_divide_points(const strut_small_model *s,
 }
 #endif
 
-/* Forces f and accelerations at positions q and velocities v; with the ledger what its powers are made of. */
-STRUT_SMALL_INLINE small_points small_accelerate(const small_run *r, const small_rest *rest,
-                                                 const small_points *q, const small_points *v,
-                                                 bool ledger, small_points *f,
-                                                 small_entries *entries) {
-  small_pulls px, py;
-  if (ledger) *entries = (small_entries){0};
-  small_members(r, rest, q, v, ledger, &px, &py, &entries->members);
-  *f = small_sum_pulls(r, &px, &py);
-  if (r->plan & STRUT_TERM_CONTACT) SMALL_EACH(p)
-  small_ground_part(r, p, q->x.part[p], q->y.part[p], v->x.part[p], v->y.part[p], f, ledger,
-                    &entries->touch);
-  return small_divide_points(r->tables, f);
+/* The ground's forces on all nodes. */
+STRUT_SMALL_INLINE void small_ground(const small_run *r, const small_points *q,
+                                     const small_points *v, small_points *f, bool ledger,
+                                     small_touch *touch) {
+  if (!(r->plan & STRUT_TERM_CONTACT)) return;
+  SMALL_EACH(p)
+  small_ground_part(r, p, q->x.part[p], q->y.part[p], v->x.part[p], v->y.part[p], f, ledger, touch);
 }
 
 #endif

@@ -39,6 +39,10 @@ STRUT_SMALL_INLINE void small_add_work(small_work *work, double weight, const sm
 STRUT_SMALL_INLINE void small_add_powers(small_work *to, const small_work *power) {
   to->all += power->all;
 }
+STRUT_SMALL_INLINE void small_add_works(small_work *work, double sixth, const small_work *sign,
+                                        const small_work *sum) {
+  work->all += sixth * sign->all * sum->all;
+}
 #else
 STRUT_SMALL_INLINE small_work small_work_join(strut_lanes low, strut_lanes high) {
   return (small_work){low, high};
@@ -62,6 +66,11 @@ STRUT_SMALL_INLINE void small_add_work(small_work *work, double weight, const sm
 STRUT_SMALL_INLINE void small_add_powers(small_work *to, const small_work *power) {
   to->low += power->low;
   to->high += power->high;
+}
+STRUT_SMALL_INLINE void small_add_works(small_work *work, double sixth, const small_work *sign,
+                                        const small_work *sum) {
+  work->low += sixth * sign->low * sum->low;
+  work->high += sixth * sign->high * sum->high;
 }
 #endif
 
@@ -93,31 +102,14 @@ STRUT_SMALL_INLINE strut_lanes small_quarter(small_row x, int h) {
 #endif
 }
 
-/* Powers of the members in the order of groups of 4; both: exchanged. */
-typedef struct small_groups {
-  strut_lanes drive, lost, both;
-} small_groups;
-
-STRUT_SMALL_INLINE small_groups small_sum_groups(const small_powers *m) {
-#if STRUT_SMALL_WIDTH == 8
-#define SMALL_SUM_GROUPS(field)                                                                    \
-  (small_half(m->first.field, 0) + small_half(m->first.field, 1) + m->last.field)
-#else
-#define SMALL_SUM_GROUPS(field) m->sum.field
-#endif
-  strut_lanes lost = SMALL_SUM_GROUPS(lost);
-  return (small_groups){SMALL_SUM_GROUPS(drive), lost, SMALL_SUM_GROUPS(exchanged) + lost};
-#undef SMALL_SUM_GROUPS
-}
-
 /* x in the lanes of the bits, else 0 - x, which is no -0 where x is 0. */
 #define SMALL_BOOKED(x, bits) _mm256_blend_pd((strut_lanes){0} - (x), (x), bits)
 
 /* The members' powers. */
-STRUT_SMALL_INLINE small_work small_sum_members(const small_powers *m) {
+STRUT_SMALL_INLINE small_work small_sum_members(const small4_powers *m) {
   strut_lanes zero = {0};
-  small_groups g = small_sum_groups(m);
-  strut_lanes sum = small_add_rows(zero, small_transpose(g.drive, g.lost, g.both, zero));
+  strut_lanes both = m->exchanged + m->lost;
+  strut_lanes sum = small_add_rows(zero, small_transpose(m->drive, m->lost, both, zero));
   sum = SMALL_BOOKED(sum, 0xe);
   strut_lanes low = _mm256_blend_pd(_mm256_permute4x64_pd(sum, 0x40), zero, 0x6);
   return small_work_join(low, _mm256_blend_pd(sum, zero, 0xb));
@@ -127,7 +119,7 @@ STRUT_SMALL_INLINE small_work small_sum_members(const small_powers *m) {
 STRUT_SMALL_INLINE void small_add_contacts(const small_run *r, const small_touch *t,
                                            small_work *power) {
   strut_lanes sum = small_work_high(*power), low = small_work_low(*power), belt = {0};
-  bool moves = r->contacts->belt_speed != 0.0;
+  bool moves = r->plan & STRUT_SMALL_BELT;
   for (int h = 0; h < 2; h++) {
     if (!(t->touching >> 4 * h & 0xf)) continue;
     if (moves) belt = small_quarter(t->belt, h);
@@ -140,63 +132,79 @@ STRUT_SMALL_INLINE void small_add_contacts(const small_run *r, const small_touch
   *power = small_work_join(low, _mm256_blend_pd(sum, (strut_lanes){0}, 0x8));
 }
 
-/* All powers of one evaluation. */
-STRUT_SMALL_INLINE small_work small_sum_powers(const small_run *r, const small_entries *e) {
-  small_work power = small_sum_members(&e->members);
-  small_add_contacts(r, &e->touch, &power);
-  return power;
+/* Powers of one evaluation of a step, lane by lane, see strut_power_lanes. */
+typedef struct small_stage_powers {
+  small4_powers members;
+  small_row minus_damped, minus_rubbed, belt;
+} small_stage_powers;
+
+/* Here the compiler has x in memory: powers wait for the end of the step, and registers are wanted for the motion. */
+#define SMALL_WAITS_IN_MEMORY(x) __asm__ volatile("" : "+m"(x))
+
+STRUT_SMALL_INLINE void small_book_touch(const small_run *r, const small_touch *t,
+                                         small_stage_powers *to) {
+  to->minus_damped = t->minus_damped, to->minus_rubbed = t->minus_rubbed;
+  if (r->plan & STRUT_SMALL_BELT) to->belt = t->belt;
 }
 
-/* The powers of 4 evaluations, which are lanes here. */
-typedef struct small_work4 {
-  strut_lanes drive, belt, lost, contact, friction, exchanged;
-} small_work4;
-
-/* What 4 evaluations have at the nodes 4 h and up: a row of each node. */
-#define SMALL_ROWS_OF_4(e, field, h)                                                               \
-  small_transpose(small_quarter((e)[0].touch.field, h), small_quarter((e)[1].touch.field, h),      \
-                  small_quarter((e)[2].touch.field, h), small_quarter((e)[3].touch.field, h))
-
-/* small_sum_powers of each of 4 evaluations. */
-STRUT_SMALL_INLINE small_work4 small_sum_powers_of_4(const small_run *r, const small_entries *e) {
-  strut_lanes zero = {0};
-  small_groups g[4];
-  unsigned touching = 0;
-#pragma GCC unroll 4
-  for (int k = 0; k < 4; k++)
-    g[k] = small_sum_groups(&e[k].members), touching |= e[k].touch.touching;
-  small_work4 sum = {
-      .drive =
-          small_take_rows(zero, small_transpose(g[0].drive, g[1].drive, g[2].drive, g[3].drive)),
-      .lost = small_add_rows(zero, small_transpose(g[0].lost, g[1].lost, g[2].lost, g[3].lost)),
-      .exchanged =
-          small_add_rows(zero, small_transpose(g[0].both, g[1].both, g[2].both, g[3].both))};
-  bool moves = r->contacts->belt_speed != 0.0;
-  for (int h = 0; h < 2; h++) {
-    if (!(touching >> 4 * h & 0xf)) continue;
-    sum.contact = small_take_rows(sum.contact, SMALL_ROWS_OF_4(e, minus_damped, h));
-    sum.friction = small_take_rows(sum.friction, SMALL_ROWS_OF_4(e, minus_rubbed, h));
-    sum.exchanged = small_add_rows(sum.exchanged, SMALL_ROWS_OF_4(e, exchanged, h));
-    if (moves) sum.belt = small_add_rows(sum.belt, SMALL_ROWS_OF_4(e, belt, h));
+/* The weighted sums of what stages have: of members; of contacts, see step_ledger_contacts; of magnitudes of two. */
+STRUT_SMALL_INLINE strut_lanes small_weigh(strut_lanes k1, strut_lanes k2, strut_lanes k3,
+                                           strut_lanes k4) {
+  return (k1 + k4) + 2.0 * (k2 + k3);
+}
+STRUT_SMALL_INLINE small_row small_weigh_rows(small_row k1, small_row k2, small_row k3,
+                                              small_row k4) {
+  SMALL_EACH(p)
+  k1.part[p] = (k1.part[p] + k4.part[p]) + 2.0 * (k2.part[p] + k3.part[p]);
+  return k1;
+}
+STRUT_SMALL_INLINE strut_lanes small_join_halves(small_row x) {
+  return small_quarter(x, 0) + small_quarter(x, 1);
+}
+STRUT_SMALL_INLINE small_row small_turnover(const small_stage_powers *k, bool moves) {
+  small_row x;
+  SMALL_EACH(p) {
+    x.part[p] = small_magnitude(k->minus_rubbed.part[p]);
+    if (moves) x.part[p] += small_magnitude(k->belt.part[p]);
   }
-  return sum;
+  return x;
 }
 
-/* work + weight[k] times the powers of evaluation k, one after the other. */
-STRUT_SMALL_INLINE void small_add_work_of_4(small_work *work, strut_lanes weight,
-                                            const small_work4 *p) {
-  strut_lanes zero = {0};
-  small_square low = small_transpose(weight * p->drive, zero, weight * p->belt, weight * p->lost);
-  small_square high =
-      small_transpose(weight * p->contact, weight * p->friction, weight * p->exchanged, zero);
-  *work = small_work_join(small_add_rows(small_work_low(*work), low),
-                          small_add_rows(small_work_high(*work), high));
+/* a0 + a2, a1 + a3, b0 + b2, b1 + b3 */
+STRUT_SMALL_INLINE strut_lanes small_fold(strut_lanes a, strut_lanes b) {
+  return _mm256_permute2f128_pd(a, b, 0x20) + _mm256_permute2f128_pd(a, b, 0x31);
+}
+/* The sums of the lanes of a, b, c and d, in the order of step_ledger_add. */
+STRUT_SMALL_INLINE strut_lanes small_sum_lanes(strut_lanes a, strut_lanes b, strut_lanes c,
+                                               strut_lanes d) {
+  strut_lanes ac = small_fold(a, c), bd = small_fold(b, d);
+  return _mm256_unpacklo_pd(ac, bd) + _mm256_unpackhi_pd(ac, bd);
 }
 
-/* The powers of the last of 4. */
-STRUT_SMALL_INLINE small_work small_last_of_4(const small_work4 *p) {
-  return small_work_join((strut_lanes){p->drive[3], 0.0, p->belt[3], p->lost[3]},
-                         (strut_lanes){p->contact[3], p->friction[3], p->exchanged[3], 0.0});
+/* See strut_step_ledger_end; k: of the four stages. */
+STRUT_SMALL_INLINE void small_end_stages(const small_run *r, const small_stage_powers *k,
+                                         double sixth, small_work *work) {
+  strut_lanes zero = {0}, belt = zero, damped = zero, rubbed = zero, turnover = zero;
+  bool moves = r->plan & STRUT_SMALL_BELT;
+#define SMALL_WEIGH(weigh, field) weigh(k[0].field, k[1].field, k[2].field, k[3].field)
+  strut_lanes drive = SMALL_WEIGH(small_weigh, members.drive),
+              lost = SMALL_WEIGH(small_weigh, members.lost);
+  strut_lanes driven = SMALL_WEIGH(small_weigh, members.exchanged);
+  if (r->plan & STRUT_TERM_CONTACT) {
+    damped = small_join_halves(SMALL_WEIGH(small_weigh_rows, minus_damped));
+    rubbed = small_join_halves(SMALL_WEIGH(small_weigh_rows, minus_rubbed));
+    turnover = small_join_halves(
+        small_weigh_rows(small_turnover(&k[0], moves), small_turnover(&k[1], moves),
+                         small_turnover(&k[2], moves), small_turnover(&k[3], moves)));
+    if (moves) belt = small_join_halves(SMALL_WEIGH(small_weigh_rows, belt));
+  }
+#undef SMALL_WEIGH
+  strut_lanes exchanged = (driven + lost) + (turnover - damped);
+  strut_lanes first = small_sum_lanes(drive, zero, belt, lost);
+  strut_lanes last = small_sum_lanes(damped, rubbed, exchanged, zero);
+  small_work all = small_work_join(first, last);
+  small_work signs = small_work_join((strut_lanes){-1, 1, 1, 1}, (strut_lanes){-1, -1, 1, 1});
+  small_add_works(work, sixth, &signs, &all);
 }
 
 #endif

@@ -26,6 +26,12 @@
 
 enum { SMALL_WIDTH = STRUT_SMALL_WIDTH, SMALL_PARTS = STRUT_SMALL_NODES / STRUT_SMALL_WIDTH };
 
+/*
+ * The compiler forgets what it has read of p: of tables that stay the same it would else hold so many rows in registers
+ * that the motion has to leave them.
+ */
+#define SMALL_READS_AGAIN(p) __asm__ volatile("" : "+r"(p))
+
 /* For each part p of a row. */
 #define SMALL_EACH(p) _Pragma("GCC unroll 2") for (int p = 0; p < SMALL_PARTS; p++)
 

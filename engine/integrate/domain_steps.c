@@ -7,6 +7,7 @@
 #include "engine/base/subnormals.h"
 #include "engine/forces/drive.h"
 #include "engine/forces/forces.h"
+#include "engine/forces/step_ledger.h"
 #include "engine/integrate/domain_parts.h"
 #include "engine/model/mass.h"
 
@@ -307,12 +308,18 @@ static void store_state(const strut_domain_steps *s, const domain_part *p) {
 
 /* ---- ledger ---- */
 
+/* Of all blocks of the ledger, in their order. */
+static member_powers sum_member_powers(const strut_domain_steps *s, const member_powers *block) {
+  member_powers sum = {0};
+  for (int32_t b = 0; b < s->ledger_blocks; b++) members_add_powers(&sum, &block[b]);
+  return sum;
+}
+
 /* The sums that forces_of_members makes, in its order. */
 static void add_member_powers(const strut_domain_steps *s, const member_powers *block,
                               double *power) {
-  member_powers sum = {0};
+  member_powers sum = sum_member_powers(s, block);
   double drive = 0.0, lost = 0.0, exchanged = power[STRUT_POWER_EXCHANGED];
-  for (int32_t b = 0; b < s->ledger_blocks; b++) members_add_powers(&sum, &block[b]);
   for (int l = 0; l < STRUT_LANES; l++) {
     drive += sum.drive[l];
     lost += sum.lost[l];
@@ -322,10 +329,23 @@ static void add_member_powers(const strut_domain_steps *s, const member_powers *
   power[STRUT_POWER_EXCHANGED] = exchanged;
 }
 
-/* Those of ground_kernel; what was noted is cleared for the sweep after next. */
-static void add_contact_powers(const strut_domain_steps *s, int side, int k, double *power) {
+static void add_contact_to_powers(strut_state *state, const double *of) {
   static const int which[DOMAIN_CONTACT_POWERS] = {STRUT_POWER_CONTACT, STRUT_POWER_FRICTION,
                                                    STRUT_POWER_BELT, STRUT_POWER_EXCHANGED};
+  for (int w = 0; w < DOMAIN_CONTACT_POWERS; w++) state->power[which[w]] += of[w];
+}
+
+/* As ground_book_lanes does. */
+static void add_contact_to_lanes(strut_power_lanes *to, int32_t lane, bool moves,
+                                 const double *of) {
+  to->minus_damped[lane] -= of[0], to->minus_rubbed[lane] -= of[1];
+  if (moves) to->belt[lane] += of[2];
+  to->turnover[lane] += moves ? fabs(of[1]) + fabs(of[2]) : fabs(of[1]);
+}
+
+/* Those of ground_kernel; what was noted is cleared for the sweep after next. */
+static void add_contact_powers(const strut_domain_steps *s, int side, int k) {
+  bool moves = s->model->contacts.belt_speed != 0.0;
   int32_t all = s->model->contacts.count,
           blocks = (all + DOMAIN_CONTACT_BLOCK - 1) / DOMAIN_CONTACT_BLOCK;
   for (int32_t b = 0; b < blocks; b++) {
@@ -336,7 +356,12 @@ static void add_contact_powers(const strut_domain_steps *s, int side, int k, dou
     for (int32_t i = b * DOMAIN_CONTACT_BLOCK; i < end; i++) {
       double *of =
           s->ledger[side].contact + DOMAIN_CONTACT_POWERS * ((size_t)k * (size_t)all + (size_t)i);
-      for (int w = 0; w < DOMAIN_CONTACT_POWERS; w++) power[which[w]] += of[w], of[w] = 0.0;
+      if (s->stepping == DOMAIN_RK4)
+        add_contact_to_lanes(&s->state->lanes[strut_weight_side(k)],
+                             s->model->contacts.entry[i].lane, moves, of);
+      else
+        add_contact_to_powers(s->state, of);
+      memset(of, 0, DOMAIN_CONTACT_POWERS * sizeof *of);
     }
   }
 }
@@ -356,19 +381,28 @@ static void add_works(strut_domain_steps *s, int k) {
 
 static void keep_ledger(strut_domain_steps *s, int passes, int side) {
   strut_state *state = s->state;
+  bool lanes = s->stepping == DOMAIN_RK4;
   const domain_ledger *l = &s->ledger[side];
   int32_t loads = s->model->loads.count;
+  if (lanes) strut_step_ledger_begin(s->model, state);
   for (int k = 0; k < passes; k++) {
     double *power = state->power;
+    const member_powers *members = l->member + k * s->ledger_blocks;
     for (int p = 0; p < STRUT_POWER_COUNT; p++) power[p] = 0.0;
     for (int32_t i = 0; i < loads; i++) {
       power[STRUT_POWER_LOAD] += l->load[k * loads + i];
       power[STRUT_POWER_EXCHANGED] += fabs(l->load[k * loads + i]);
     }
-    add_member_powers(s, l->member + k * s->ledger_blocks, power);
-    add_contact_powers(s, side, k, power);
-    add_works(s, k);
+    if (lanes) {
+      member_powers sum = sum_member_powers(s, members);
+      strut_book_members(&state->lanes[strut_weight_side(k)], &sum);
+    } else {
+      add_member_powers(s, members, power);
+    }
+    add_contact_powers(s, side, k);
+    if (!lanes || loads) add_works(s, k);
   }
+  if (lanes) strut_step_ledger_end(s->model, state, s->dt / 6.0);
 }
 
 /* ---- steps ---- */

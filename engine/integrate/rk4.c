@@ -52,22 +52,28 @@ STRUT_INLINE void combine(int32_t n, double h, double *restrict z, const double 
 
 /*
  * The step as a loop over its stages, so that the forces stand in it once. Times are n dt, (n + 1/2)
- * dt and (n + 1) dt, never sums. With the ledger the powers enter the works with the stage's weight.
+ * dt and (n + 1) dt, never sums. With the ledger the powers enter the works with the stage's weight: those of members
+ * and of level ground once for the whole step, see step_ledger.h, all others stage by stage.
  */
 STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, rk4_workspace *w,
                             double dt, int64_t count, unsigned terms, bool ledger, bool rigid) {
   static const double ahead[4] = {0.0, 0.5, 0.5, 1.0}, weight[4] = {1, 2, 2, 1};
+  strut_booking booking = ledger ? STRUT_BOOK_LANES : STRUT_BOOK_NOTHING;
   double *restrict q = state->q, *restrict v = state->v;
   const double *const at[4] = {q, w->q, w->q, w->q};
   const double *const speed[4] = {v, w->v[1], w->v[2], w->v[3]};
   int32_t n = model->length;
   bool moves = model->plan & terms & STRUT_TERMS_AT_STEP_END;
+  bool others = ledger && model->plan & terms & ~STRUT_TERMS_IN_LANES;
+  for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) state->power[p] = 0.0;
   for (int64_t end = state->step + count; state->step < end; state->step++) {
+    if (ledger) strut_step_ledger_begin(model, state);
     for (int k = 0; k < 4; k++) {
+      if (ledger) state->booked = &state->lanes[strut_weight_side(k)];
       double t = ((double)state->step + ahead[k]) * dt;
-      forces_kernel(model, state, t, at[k], speed[k], w->a[k], terms, ledger);
+      forces_kernel(model, state, t, at[k], speed[k], w->a[k], terms, booking);
       if (rigid) strut_rigid_accelerate(model, state, at[k], speed[k], w->a[k]);
-      for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++)
+      for (int p = 0; p < STRUT_POWER_COUNT && others; p++)
         state->work[p] += weight[k] * (dt / 6.0) * state->power[p];
       if (k == 3) break;
       stage(n, ahead[k + 1] * dt, q, v, speed[k], w->a[k], w->q, w->v[k + 1]);
@@ -75,6 +81,7 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, rk4_wo
         strut_support_motion_place(model, state, ((double)state->step + ahead[k + 1]) * dt, w->q,
                                    w->v[k + 1]);
     }
+    if (ledger) strut_step_ledger_end(model, state, dt / 6.0);
     combine(n, dt, q, v, w->v[1], w->v[2], w->v[3]);
     combine(n, dt, v, w->a[0], w->a[1], w->a[2], w->a[3]);
     if (moves) end_moving_step(model, state, dt);

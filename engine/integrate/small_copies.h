@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * The methods of small models for one set of registers: with the ledger and without it, and once more for
- * models that have neither cables, slope nor other laws, which those copies do not ask for.
+ * The methods of small models for one set of registers: with the ledger and without it, for all models, for those
+ * that have neither cables, slope nor other laws, and for those that have exactly the usual terms. Copies do not ask for
+ * what they know.
  *
  * A file defines STRUT_SMALL_WIDTH and STRUT_SMALL_NAME(method), the name of the public function, and includes
  * this once.
@@ -12,40 +13,28 @@
 #include "engine/integrate/small_rk4.h"
 #include "engine/integrate/small_verlet.h"
 
-#define STRUT_SMALL_METHOD(method)                                                                 \
+#define STRUT_SMALL_COPY(method, name, terms, ledger)                                              \
   STRUT_SMALL_TARGET                                                                               \
-  static void method##_common_with_ledger(const strut_model *model, strut_state *state,            \
-                                          const strut_small_kept *kept, double dt,                 \
-                                          int64_t count) {                                         \
-    small_##method(model, state, kept, dt, count, STRUT_SMALL_COMMON, true);                       \
-  }                                                                                                \
-  STRUT_SMALL_TARGET                                                                               \
-  static void method##_common(const strut_model *model, strut_state *state,                        \
+  static void method##_##name(const strut_model *model, strut_state *state,                        \
                               const strut_small_kept *kept, double dt, int64_t count) {            \
-    small_##method(model, state, kept, dt, count, STRUT_SMALL_COMMON, false);                      \
-  }                                                                                                \
-  STRUT_SMALL_TARGET                                                                               \
-  static void method##_with_ledger(const strut_model *model, strut_state *state,                   \
-                                   const strut_small_kept *kept, double dt, int64_t count) {       \
-    small_##method(model, state, kept, dt, count, STRUT_TERMS_ALL, true);                          \
-  }                                                                                                \
-  STRUT_SMALL_TARGET                                                                               \
-  static void method##_without_ledger(const strut_model *model, strut_state *state,                \
-                                      const strut_small_kept *kept, double dt, int64_t count) {    \
-    small_##method(model, state, kept, dt, count, STRUT_TERMS_ALL, false);                         \
-  }                                                                                                \
+    small_##method(model, state, kept, dt, count, terms, ledger);                                  \
+  }
+
+#define STRUT_SMALL_METHOD(method)                                                                 \
+  STRUT_SMALL_COPY(method, usual_with_ledger, STRUT_SMALL_USUAL, true)                             \
+  STRUT_SMALL_COPY(method, usual, STRUT_SMALL_USUAL, false)                                        \
+  STRUT_SMALL_COPY(method, common_with_ledger, STRUT_SMALL_COMMON, true)                           \
+  STRUT_SMALL_COPY(method, common, STRUT_SMALL_COMMON, false)                                      \
+  STRUT_SMALL_COPY(method, with_ledger, STRUT_TERMS_ALL, true)                                     \
+  STRUT_SMALL_COPY(method, without_ledger, STRUT_TERMS_ALL, false)                                 \
                                                                                                    \
   void STRUT_SMALL_NAME(method)(const strut_model *model, strut_state *state,                      \
                                 const strut_small_kept *kept, double dt, int64_t count) {          \
-    bool common = !(model->plan & ~STRUT_SMALL_COMMON);                                            \
-    if (common && state->ledger)                                                                   \
-      method##_common_with_ledger(model, state, kept, dt, count);                                  \
-    else if (common)                                                                               \
-      method##_common(model, state, kept, dt, count);                                              \
-    else if (state->ledger)                                                                        \
-      method##_with_ledger(model, state, kept, dt, count);                                         \
-    else                                                                                           \
-      method##_without_ledger(model, state, kept, dt, count);                                      \
+    static strut_small_steps *const copies[3][2] = {                                               \
+        {method##_without_ledger, method##_with_ledger},                                           \
+        {method##_common, method##_common_with_ledger},                                            \
+        {method##_usual, method##_usual_with_ledger}};                                             \
+    copies[small_copy_of(model)][state->ledger](model, state, kept, dt, count);                    \
   }
 
 #endif

@@ -8,9 +8,6 @@
 #include "engine/forces/small_drives.h"
 #include "engine/integrate/small_steps.h"
 
-/* Copies know these terms, or all. */
-#define STRUT_SMALL_COMMON (~(unsigned)(STRUT_TERM_SLACK | STRUT_TERM_SLOPE | STRUT_TERM_LAWS))
-
 /* The state proper, and what the latest evaluation left. */
 typedef struct small_motion {
   small_points q, v, f;
@@ -75,9 +72,10 @@ STRUT_SMALL_INLINE void small_begin(const strut_model *model, const strut_state 
   const strut_small_model *s = model->small;
   r->tables = s;
   r->contacts = &model->contacts;
-  r->plan = model->plan & terms;
+  r->plan = small_plan_in_copy(model, terms);
   r->inputs = inputs;
   strut_small_inputs_read(model, state, inputs);
+  r->driven = inputs->driven;
   bool driven = r->plan & STRUT_TERM_DRIVE && model->drives.count;
   strut_small_rest_fill(model, state,
                         !driven                     ? 1

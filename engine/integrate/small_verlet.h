@@ -27,12 +27,19 @@ STRUT_SMALL_INLINE void small_verlet_step(const small_run *r, const small_rest *
   small_work before = m->power;
   m->q.x = small_glide(m->q.x, dt, m->v.x, a->x), m->q.y = small_glide(m->q.y, dt, m->v.y, a->y);
   small_points predicted = {small_ahead(m->v.x, dt, a->x), small_ahead(m->v.y, dt, a->y)};
-  small_entries entries;
-  small_points next = small_accelerate(r, rest, &m->q, &predicted, ledger, &m->f, &entries);
+  small_entries entries = {0};
+  small_pulls px, py;
+  small_shapes shapes = {0};
+  small_measure_members(r->tables, &m->q, &shapes);
+  small_members(r, rest, &shapes, NULL, &predicted, ledger, &px, &py, &entries.members);
+  if (ledger) m->power = small_sum_members(&entries.members);
+  m->f = small_sum_pulls(r, &px, &py);
+  small_ground(r, &m->q, &predicted, &m->f, ledger, &entries.touch);
+  if (ledger) small_add_contacts(r, &entries.touch, &m->power);
+  small_points next = small_divide_points(r->tables, &m->f);
   m->v.x = small_mean(m->v.x, half, a->x, next.x), m->v.y = small_mean(m->v.y, half, a->y, next.y);
   *a = next;
   if (!ledger) return;
-  m->power = small_sum_powers(r, &entries);
   small_add_powers(&before, &m->power);
   small_add_work(&m->work, half, &before);
 }

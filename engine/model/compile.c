@@ -231,8 +231,10 @@ static void compile_contacts(strut_model *model, bool *failed) {
   for (size_t i = 0; i < count; i++) {
     const strut_contact *contact = &scene->contacts[i];
     at[i] = 2 * (uint32_t)contact->node;
-    entry[i] = (strut_contact_entry){
-        .node = contact->node, .stiffness = contact->stiffness, .damping = contact->damping};
+    entry[i] = (strut_contact_entry){.node = contact->node,
+                                     .lane = contact->node % STRUT_CONTACT_LANES,
+                                     .stiffness = contact->stiffness,
+                                     .damping = contact->damping};
     if (ground_of(scene, contact)->damping_law == STRUT_DAMPING_HUNT_CROSSLEY) {
       entry[i].damping = 0.0;
       entry[i].dissipation = contact->dissipation;

@@ -82,9 +82,14 @@ typedef struct strut_member_table {
   const uint16_t *block_terms; /* (blocks) DAMPING, SLACK, DRIVE: what some member of it needs */
 } strut_member_table;
 
+/** Sums in which the ledger of a Runge-Kutta step keeps the powers of contacts. */
+enum { STRUT_CONTACT_LANES = 8 };
+
 /** A contact, a node with a surface: a record, because most of them are only asked whether they do. */
 typedef struct strut_contact_entry {
   int32_t node;
+  int32_t
+      lane; /* of the ledger: the scene's node, modulo STRUT_CONTACT_LANES, however nodes are stored */
   double stiffness, damping; /* c_g [N/m], k_g [N s/m] */
   double dissipation;        /* chi of the Hunt-Crossley law [s/m]; 0 with the approach-only one */
   strut_friction friction;   /* its numbers are 0 without friction */

@@ -20,11 +20,16 @@ static bool is_small(const strut_model *model) {
          model->mass && !model->mass->coordinate[0].factor && !model->mass->coordinate[1].factor;
 }
 
+static void begin_pulls(strut_small_pull *p) {
+  for (int l = 0; l < STRUT_SMALL_NODES; l++)
+    p->slot[l] = STRUT_SMALL_MEMBERS, p->sign[l] = INT64_MIN;
+}
+
 /* The next pull at a lane: members come in the scene's order. */
 static void add_pull(strut_small_model *s, int64_t lane, int32_t member, int64_t sign) {
   int32_t k = 0;
   while (k < s->degree && s->pull[k].has[lane]) k++;
-  if (k == s->degree) s->degree++;
+  if (k == s->degree) begin_pulls(&s->pull[s->degree++]);
   s->pull[k].has[lane] = -1;
   s->pull[k].slot[lane] = member;
   s->pull[k].slot_halves[lane] = strut_small_halves(member);
@@ -55,15 +60,15 @@ static strut_small_source source_of(const int64_t halves[4]) {
   return second == 0 ? STRUT_SMALL_FIRST : second == 4 ? STRUT_SMALL_SECOND : STRUT_SMALL_BOTH;
 }
 
-static int32_t larger(int32_t a, int32_t b) { return a > b ? a : b; }
+static int64_t larger(int64_t a, int64_t b) { return a > b ? a : b; }
 
 /* The turns of AVX2, from what is listed for whole rows. */
 static void list_pull_turns(strut_small_model *s) {
   strut_small_pull_turns *t = &s->pull_turns;
-  for (int32_t g = 0, begin = 0; g < 3; begin = t->end[g++]) {
+  for (int64_t g = 0, begin = 0; g < 3; begin = t->end[g++]) {
     t->end[g] = begin;
     for (int32_t l = 0; l < STRUT_SMALL_NODES; l++)
-      for (int32_t k = 0, at = begin; k < s->degree; k++) {
+      for (int64_t k = 0, at = begin; k < s->degree; k++) {
         const strut_small_pull *p = &s->pull[k];
         if (!p->has[l] || p->slot[l] / 4 != g) continue;
         t->turn[at].halves[l] = p->slot_halves[l];
@@ -80,10 +85,10 @@ static void list_pull_turns(strut_small_model *s) {
 
 static void list_mass_turns(strut_small_model *s) {
   strut_small_mass_turns *t = &s->mass_turns;
-  for (int32_t g = 0, begin = 0; g < 2; begin = t->end[g++]) {
+  for (int64_t g = 0, begin = 0; g < 2; begin = t->end[g++]) {
     t->end[g] = begin;
     for (int32_t i = 0; i < 2 * STRUT_SMALL_NODES; i++)
-      for (int32_t c = i % 2, l = i / 2, k = 0, at = begin; k < s->columns; k++) {
+      for (int64_t c = i % 2, l = i / 2, k = 0, at = begin; k < s->columns; k++) {
         const strut_small_column *p = &s->column[c][k];
         if (!p->has[l] || p->lane[l] / 4 != g) continue;
         t->turn[at].halves[c][l] = p->lane_halves[l];
@@ -109,6 +114,7 @@ static void add_entry(strut_small_model *s, int c, int32_t j, int64_t row, int64
   if (j >= s->columns) s->columns = j + 1;
   to->lane[row] = column, to->lane_halves[row] = strut_small_halves(column);
   to->inverse[row] = inverse, to->has[row] = -1;
+  to->bits = (uint8_t)(to->bits | 1u << row);
 }
 
 /* The inverse masses of one coordinate. Rows of blocks take the place of what stands in the diagonal. */

@@ -47,9 +47,13 @@ typedef struct strut_small_column {
   strut_small_lanes lane, lane_halves;
   strut_small_row inverse;
   strut_small_mask has;
+  uint8_t bits; /* of has */
 } strut_small_column;
 
-/** The k-th member at each node: its slot, the sign bit with which it pulls, and at which nodes there is one. */
+/**
+ * The k-th member at each node: its slot, the sign bit with which it pulls, and at which nodes there is one. Elsewhere
+ * the slot is that of a 0, and the sign makes it -0.
+ */
 typedef struct strut_small_pull {
   strut_small_lanes slot, slot_halves, sign;
   strut_small_mask has;
@@ -66,7 +70,7 @@ typedef struct strut_small_pull_turn {
 } strut_small_pull_turn;
 typedef struct strut_small_pull_turns {
   strut_small_pull_turn turn[STRUT_SMALL_MEMBERS];
-  int32_t end[3];
+  int64_t end[3];
 } strut_small_pull_turns;
 typedef struct strut_small_mass_turn {
   strut_small_lanes halves[2]; /* of x and of y */
@@ -75,7 +79,7 @@ typedef struct strut_small_mass_turn {
 } strut_small_mass_turn;
 typedef struct strut_small_mass_turns {
   strut_small_mass_turn turn[STRUT_SMALL_NODES];
-  int32_t end[2];
+  int64_t end[2];
 } strut_small_mass_turns;
 
 /** Of which registers of 4 lanes the ends of 4 members are. */

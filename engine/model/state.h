@@ -26,6 +26,26 @@ typedef enum strut_power {
   STRUT_POWER_ROOM = 8 /* arrays of powers have this size: whole vectors; the rest is 0 */
 } strut_power;
 
+/** Powers of the evaluations of a Runge-Kutta step that have one weight [W]; step_ledger.h adds up the lanes at its
+    end. Of members by place in groups of STRUT_LANES; of contacts by the lane that
+    strut_contact_entry has. */
+typedef struct strut_power_lanes {
+  double drive[STRUT_LANES], lost[STRUT_LANES], driven[STRUT_LANES]; /* driven: magnitudes */
+  double minus_damped[STRUT_CONTACT_LANES], minus_rubbed[STRUT_CONTACT_LANES];
+  double belt[STRUT_CONTACT_LANES];
+  double turnover[STRUT_CONTACT_LANES]; /* magnitudes of the last two */
+} strut_power_lanes;
+
+/** Which of two such sums stage k of a step adds to: the first, of weight 1, or the second, of weight 2. */
+static inline int32_t strut_weight_side(int k) { return k == 1 || k == 2; }
+
+/** Where an evaluation of the forces leaves its powers. */
+typedef enum strut_booking {
+  STRUT_BOOK_NOTHING,
+  STRUT_BOOK_POWERS, /* in state->power */
+  STRUT_BOOK_LANES /* those of members and level ground in state->lanes, all others in state->power */
+} strut_booking;
+
 typedef enum strut_failure {
   STRUT_FAILURE_NONE,
   STRUT_FAILURE_STEP,      /* the step has become too small to matter */
@@ -73,6 +93,8 @@ typedef struct strut_state {
   double *normal;   /* (contacts) normal force [N]; in the step only where it touches */
   double *friction; /* (contacts) friction force along the ground [N] */
   double power[STRUT_POWER_ROOM]; /* [W]; only where the ledger is kept */
+  strut_power_lanes lanes[2];     /* see strut_weight_side */
+  strut_power_lanes *booked;      /* which of them the next evaluation adds to */
 
   /* (contacts) contact forces as a method with events has them [N]; NULL with others, where the
      forces follow from q, v and t alone */

@@ -8,7 +8,12 @@
 #include "engine/integrate/events/dormand_prince.h"
 #include "engine/integrate/events/small_checks.h"
 
-/* Sums of rates and of accelerations over stages, with their weights. */
+STRUT_SMALL_INLINE small_row small_scaled(double weight, small_row x) {
+  SMALL_EACH(p) x.part[p] = weight * x.part[p];
+  return x;
+}
+
+/* Sums of velocities and of accelerations over stages. */
 typedef struct small_sums {
   small_points v, a;
 } small_sums;
@@ -21,19 +26,19 @@ STRUT_SMALL_INLINE void small_add_weighted(small_points *sum, double weight,
   }
 }
 
-/* sum_j weight[j] k[j] over `count` stages. Weights of 0 are left out. Loops, since six copies of all that
-   follows would not stay in the processor's cache of instructions. */
-STRUT_SMALL_INLINE small_sums small_weighted(const small_points *v, const small_points *a,
-                                             const double *weight, int count) {
-  small_sums sum;
-  SMALL_EACH(p) {
-    sum.v.x.part[p] = weight[0] * v[0].x.part[p], sum.v.y.part[p] = weight[0] * v[0].y.part[p];
-    sum.a.x.part[p] = weight[0] * a[0].x.part[p], sum.a.y.part[p] = weight[0] * a[0].y.part[p];
-  }
-  for (int j = 1; j < count; j++) {
-    if (weight[j] == 0.0) continue;
-    small_add_weighted(&sum.v, weight[j], &v[j]);
-    small_add_weighted(&sum.a, weight[j], &a[j]);
+/* sum_j for_v[j] v[j] and sum_j for_a[j] a[j] over `count` stages. A weight of 0, which only the second
+   stage has, is left out. Loops, since six copies of
+   all that follows would not stay in the processor's cache of instructions. */
+STRUT_SMALL_INLINE small_sums small_weighted(const small_points *v, const double *for_v,
+                                             const small_points *a, const double *for_a,
+                                             int count) {
+  small_sums sum = {{small_scaled(for_v[0], v[0].x), small_scaled(for_v[0], v[0].y)},
+                    {small_scaled(for_a[0], a[0].x), small_scaled(for_a[0], a[0].y)}};
+  if (count > 1 && for_v[1] != 0.0) small_add_weighted(&sum.v, for_v[1], &v[1]);
+  if (count > 1 && for_a[1] != 0.0) small_add_weighted(&sum.a, for_a[1], &a[1]);
+  for (int j = 2; j < count; j++) {
+    small_add_weighted(&sum.v, for_v[j], &v[j]);
+    small_add_weighted(&sum.a, for_a[j], &a[j]);
   }
   return sum;
 }
@@ -65,7 +70,7 @@ STRUT_SMALL_INLINE double small_error(const strut_model *model, strut_event_step
                                       const small_points *v, const small_points *a,
                                       const small_points *speed) {
   small_largest position = {0}, velocity = {0}, fastest = {0};
-  small_sums off_by = small_weighted(v, a, difference, PAIR);
+  small_sums off_by = small_weighted(v, difference, a, difference, PAIR);
   SMALL_EACH(p) {
     small_enlarge(&position, h * off_by.v.x.part[p]);
     small_enlarge(&position, h * off_by.v.y.part[p]);
@@ -90,16 +95,25 @@ STRUT_SMALL_INLINE double small_adaptive_step(small_events *e, const strut_model
   strut_event_stepper *l = e->stepper;
   int stride = e->run.plan & STRUT_TERM_DRIVE ? 1 : 0;
   const small_rest *rest = small_rest_at(model, state, l->small, t, h, ahead + 1, PAIR - 2);
-  small_points v[PAIR], a[PAIR], q;
+  small_points v[PAIR], a[PAIR], q, next_q;
   double broken = 0.0;
   v[0] = now->v, a[0] = now->a;
+  q.x = small_ahead(now->q.x, h, small_scaled(table[1][0], v[0].x));
+  q.y = small_ahead(now->q.y, h, small_scaled(table[1][0], v[0].y));
+  small_shapes shapes = {0};
+  small_measure_members(e->run.tables, &q, &shapes);
   if (ledger) *gained = small_scaled_work(table[PAIR - 1][0] * h, &now->power);
   for (int k = 1; k < PAIR; k++) {
-    small_sums sum = small_weighted(v, a, table[k], k);
-    q.x = small_ahead(now->q.x, h, sum.v.x), q.y = small_ahead(now->q.y, h, sum.v.y);
+    bool last = k == PAIR - 1;
+    const double *further = table[last ? 0 : k + 1]; /* positions are a stage ahead */
+    small_sums sum = small_weighted(v, further, a, table[k], k);
     v[k].x = small_ahead(v[0].x, h, sum.a.x), v[k].y = small_ahead(v[0].y, h, sum.a.y);
-    a[k] = small_accelerate_in_modes(e, rest + (k < 6 ? k - 1 : 4) * stride, &q, &v[k], ledger);
-    if (k == PAIR - 1) break;
+    if (!last) small_add_weighted(&sum.v, further[k], &v[k]);
+    next_q.x = small_ahead(now->q.x, h, sum.v.x), next_q.y = small_ahead(now->q.y, h, sum.v.y);
+    a[k] = small_accelerate_in_modes(e, rest + (k < 6 ? k - 1 : 4) * stride, &q, &shapes,
+                                     last ? NULL : &next_q, &v[k], ledger);
+    if (last) break;
+    q = next_q;
     if (l->closed_count && broken == 0.0 && small_contradicts_at_stage(e)) broken = ahead[k];
     if (ledger) small_add_work(gained, table[PAIR - 1][k] * h, &e->power);
   }

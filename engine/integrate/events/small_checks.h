@@ -102,7 +102,7 @@ STRUT_SMALL_INLINE small_measures small_measure(const small_events *e, int p,
     into = u * t->normal[0] + w * t->normal[1], along = u * t->tangent[0] + w * t->tangent[1];
     rate = rate * t->tangent[0] + x->a.y.part[p] * t->tangent[1];
   }
-  return (small_measures){gap, into, along - t->belt_speed, rate};
+  return (small_measures){gap, into, along - small_belt(&e->run), rate};
 }
 
 /* See dip in adaptive.c: the lanes in which the cubic is below -faint. */

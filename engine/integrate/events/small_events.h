@@ -36,7 +36,8 @@ STRUT_SMALL_INLINE small_events small_events_begin(const strut_model *model, str
   return (small_events){.run = {.tables = model->small,
                                 .contacts = &model->contacts,
                                 .inputs = &l->small->inputs,
-                                .plan = model->plan & terms},
+                                .driven = l->small->inputs.driven,
+                                .plan = small_plan_in_copy(model, terms)},
                         .modes = l->small,
                         .stepper = l};
 }
@@ -103,7 +104,7 @@ STRUT_SMALL_INLINE void small_add_ground(small_events *e, int p, const small_poi
   small_real normal = small_normal_force(c, m, p, gap, into, laws);
   small_real friction = small_friction_in_mode(c, m, p, normal, applied, laws);
   e->contacts.gap.part[p] = gap, e->contacts.into.part[p] = into;
-  e->contacts.slip.part[p] = along - t->belt_speed, e->contacts.applied.part[p] = applied;
+  e->contacts.slip.part[p] = along - small_belt(&e->run), e->contacts.applied.part[p] = applied;
   e->contacts.normal.part[p] = normal, e->contacts.friction.part[p] = friction;
   small_real px = sloped ? friction * tx + normal * nx : friction;
   small_real py = sloped ? friction * ty + normal * ny : normal;
@@ -153,28 +154,33 @@ STRUT_SMALL_INLINE void small_add_ground_powers(small_events *e) {
     const small_contacts *o = &e->contacts;
     touch.touching |= small_set_bits(SMALL_MODE_MASK(closed)) << (p * SMALL_WIDTH);
     small_real damper = o->normal.part[p] - SMALL_CONTACT(minus_stiffness) * o->gap.part[p];
-    small_book_contacts(e->run.contacts, SMALL_MODE_MASK(closed), damper, o->into.part[p],
+    small_book_contacts(&e->run, SMALL_MODE_MASK(closed), damper, o->into.part[p],
                         o->friction.part[p], o->slip.part[p], true, p, &touch);
   }
   small_add_contacts(&e->run, &touch, &e->power);
 }
 
-/* Forces of all but the ground into e->structure and e->force. */
+/* Forces of all but the ground into e->structure and e->force. For shapes and `next_q` see small_accelerate. */
 STRUT_SMALL_INLINE void small_structure(small_events *e, const small_rest *rest,
-                                        const small_points *q, const small_points *v, bool ledger) {
+                                        small_shapes *shapes, const small_points *next_q,
+                                        const small_points *v, bool ledger) {
   small_pulls px, py;
-  small_powers members = {0};
-  small_members(&e->run, rest, q, v, ledger, &px, &py, &members);
-  e->structure = e->force = small_sum_pulls(&e->run, &px, &py);
+  small4_powers members = {0};
+  small_run run = e->run;
+  if (ledger) SMALL_READS_AGAIN(run.tables);
+  small_members(&run, rest, shapes, next_q, v, ledger, &px, &py, &members);
+  e->structure = e->force = small_sum_pulls(&run, &px, &py);
   if (ledger) e->structure_power = e->power = small_sum_members(&members);
 }
 
 /* See accelerate_in_modes. */
 STRUT_SMALL_INLINE small_points small_accelerate_in_modes(small_events *e, const small_rest *rest,
                                                           const small_points *q,
+                                                          small_shapes *shapes,
+                                                          const small_points *next_q,
                                                           const small_points *v, bool ledger) {
   const strut_event_stepper *l = e->stepper;
-  small_structure(e, rest, q, v, ledger);
+  small_structure(e, rest, shapes, next_q, v, ledger);
   if (l->closed_count) SMALL_EACH(p) small_add_ground(e, p, q, v);
   small_points a = small_divide_points(e->run.tables, &e->force);
   if (l->stuck_count) small_hold(e, &a);
@@ -263,6 +269,23 @@ STRUT_SMALL_INLINE void small_keep_end(const small_events *e, const strut_model 
   if (!ledger) return;
   small_work_store(end->structure_power, e->structure_power);
   small_work_store(end->power, e->power);
+}
+
+/* What an evaluation leaves for an end of a step, and no more: copies of all would have to wait for it. */
+typedef struct small_kept {
+  small_contacts contacts;
+  small_points structure;
+  small_work structure_power, power;
+} small_kept;
+
+STRUT_SMALL_INLINE small_kept small_kept_of(const small_events *e) {
+  return (small_kept){e->contacts, e->structure, e->structure_power, e->power};
+}
+STRUT_SMALL_INLINE small_events small_at_kept(const small_events *e, const small_kept *kept) {
+  small_events at = *e;
+  at.contacts = kept->contacts, at.structure = kept->structure;
+  at.structure_power = kept->structure_power, at.power = kept->power;
+  return at;
 }
 
 /* Rest lengths at the instants t + part[i] h, which ascend, into the rows of the modes. */

@@ -77,7 +77,8 @@ STRUT_SMALL_INLINE bool small_is_eventful(const small_events *e, const strut_mod
 STRUT_SMALL_INLINE double small_exact(const strut_model *model, strut_state *state,
                                       strut_event_stepper *l, small_request r, unsigned terms,
                                       bool adaptive, bool ledger) {
-  small_events e = small_events_begin(model, l, terms), kept = e;
+  small_events e = small_events_begin(model, l, terms);
+  small_kept kept;
   small_end_point now = small_end_now(model, l), next;
   small_work gained = small_work_load(l->gained), work = small_work_load(state->work);
   small_grid_start start = {.known = false};
@@ -89,7 +90,7 @@ STRUT_SMALL_INLINE double small_exact(const strut_model *model, strut_state *sta
     tried = !r.quiet || small_is_eventful(&e, model, r.h, adaptive, broken, &now, &next);
     if (tried) break;
     taken = true;
-    kept = e;
+    kept = small_kept_of(&e);
     now = next;
     if (ledger) small_add_powers(&work, &gained);
     if (adaptive) control_step(l, r.h, r.h < l->h);
@@ -100,7 +101,8 @@ STRUT_SMALL_INLINE double small_exact(const strut_model *model, strut_state *sta
   if (!taken && !tried) return 0.0;
   if (ledger) small_work_store(l->gained, gained);
   if (taken) {
-    small_keep_end(&kept, model, &now.q, &now.v, &now.a, l->now, ledger);
+    small_events at_now = small_at_kept(&e, &kept);
+    small_keep_end(&at_now, model, &now.q, &now.v, &now.a, l->now, ledger);
     if (ledger) small_work_store(state->work, work);
     l->fresh = true;
   }
@@ -111,27 +113,22 @@ STRUT_SMALL_INLINE double small_exact(const strut_model *model, strut_state *sta
 
 /* Defines the trial and the quiet steps of a method: copies for models with common terms only and for all, with
    the ledger and without. */
-#define STRUT_SMALL_EXACT(name, adaptive)                                                          \
+#define STRUT_SMALL_EXACT_COPY(name, copy, terms, adaptive, ledger)                                \
   STRUT_SMALL_TARGET                                                                               \
-  static double name##_common_with_ledger(const strut_model *model, strut_state *state,            \
-                                          strut_event_stepper *l, small_request r) {               \
-    return small_exact(model, state, l, r, STRUT_SMALL_COMMON, adaptive, true);                    \
-  }                                                                                                \
-  STRUT_SMALL_TARGET                                                                               \
-  static double name##_common(const strut_model *model, strut_state *state,                        \
+  static double name##_##copy(const strut_model *model, strut_state *state,                        \
                               strut_event_stepper *l, small_request r) {                           \
-    return small_exact(model, state, l, r, STRUT_SMALL_COMMON, adaptive, false);                   \
-  }                                                                                                \
-  STRUT_SMALL_TARGET                                                                               \
-  static double name##_any(const strut_model *model, strut_state *state, strut_event_stepper *l,   \
-                           small_request r) {                                                      \
-    return small_exact(model, state, l, r, STRUT_TERMS_ALL, adaptive, state->ledger);              \
-  }                                                                                                \
+    return small_exact(model, state, l, r, terms, adaptive, ledger);                               \
+  }
+
+#define STRUT_SMALL_EXACT(name, adaptive)                                                          \
+  STRUT_SMALL_EXACT_COPY(name, usual_with_ledger, STRUT_SMALL_USUAL, adaptive, true)               \
+  STRUT_SMALL_EXACT_COPY(name, usual, STRUT_SMALL_USUAL, adaptive, false)                          \
+  STRUT_SMALL_EXACT_COPY(name, any, STRUT_TERMS_ALL, adaptive, state->ledger)                      \
   static double name##_steps(const strut_model *model, strut_state *state, strut_event_stepper *l, \
                              small_request r) {                                                    \
-    if (model->plan & ~STRUT_SMALL_COMMON) return name##_any(model, state, l, r);                  \
-    return state->ledger ? name##_common_with_ledger(model, state, l, r)                           \
-                         : name##_common(model, state, l, r);                                      \
+    if (small_copy_of(model) < 2) return name##_any(model, state, l, r);                           \
+    return state->ledger ? name##_usual_with_ledger(model, state, l, r)                            \
+                         : name##_usual(model, state, l, r);                                       \
   }                                                                                                \
                                                                                                    \
   double STRUT_SMALL_NAME(name)(const strut_model *model, strut_state *state,                      \

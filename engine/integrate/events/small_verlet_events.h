@@ -16,13 +16,6 @@ typedef struct small_plan {
   double done[STRUT_SMALL_INSTANTS + 1], h[STRUT_SMALL_INSTANTS], time[STRUT_SMALL_INSTANTS + 4];
 } small_plan;
 
-/* What an evaluation leaves for an end of a step. */
-typedef struct small_kept {
-  small_contacts contacts;
-  small_points structure;
-  small_work structure_power;
-} small_kept;
-
 /* Fills the plan with at most `most` steps, up to grid point `end` and before the next break. */
 STRUT_SMALL_INLINE void small_plan_steps(strut_state *state, strut_event_stepper *l, double dt,
                                          int64_t end, int32_t most, small_plan *plan) {
@@ -94,7 +87,7 @@ STRUT_SMALL_INLINE void small_implicit_ground(small_events *e, double h, const s
       friction = small_choose(SMALL_MODE_MASK(stick) | SMALL_MODE_MASK(creep),
                               -a1->x.part[p] / SMALL_MODE(tangent), friction);
     o->gap.part[p] = gap, o->applied.part[p] = applied;
-    o->slip.part[p] = speed->x.part[p] - t->belt_speed;
+    o->slip.part[p] = speed->x.part[p] - small_belt(&e->run);
     x.part[p] = o->friction.part[p] = friction;
     y.part[p] = o->normal.part[p] = normal;
   }
@@ -163,13 +156,15 @@ STRUT_SMALL_INLINE void small_verlet_events(const strut_model *model, strut_stat
       crosses = small_crosses(&e, &q1);
       if (crosses) break;
       small_points speed = {small_ahead(v.x, h, a.x), small_ahead(v.y, h, a.y)};
-      small_structure(&e, m->rest + (n + 1) * stride, &q1, &speed, ledger);
+      small_shapes shapes = {0};
+      small_measure_members(s, &q1, &shapes);
+      small_structure(&e, m->rest + (n + 1) * stride, &shapes, NULL, &speed, ledger);
       a1 = small_divide_points(s, &e.force);
       if (l->closed_count) small_implicit_ground(&e, h, &q1, &v, &a, &speed, &a1);
       v1.x = small_mean(v.x, half, a.x, a1.x), v1.y = small_mean(v.y, half, a.y, a1.y);
       SMALL_EACH(p) {
         e.contacts.into.part[p] = v1.y.part[p];
-        e.contacts.slip.part[p] = v1.x.part[p] - e.run.contacts->belt_speed;
+        e.contacts.slip.part[p] = v1.x.part[p] - small_belt(&e.run);
       }
       if (ledger && l->closed_count) {
         small_work structure = e.power;
@@ -187,7 +182,7 @@ STRUT_SMALL_INLINE void small_verlet_events(const strut_model *model, strut_stat
       tried = (l->closed_count && small_contradicts(&e)) ||
               (l->law_count && small_cable_switches(&e, m->rest + (n + 1) * stride, &q1, &v1));
       if (tried) break;
-      kept = (small_kept){e.contacts, e.structure, e.structure_power};
+      kept = small_kept_of(&e);
       q = q1, v = v1, a = a1, power = e.power;
       if (ledger) small_add_powers(&work, &gained);
       t = plan.time[n];
@@ -202,9 +197,7 @@ STRUT_SMALL_INLINE void small_verlet_events(const strut_model *model, strut_stat
   state->evaluations += taken + tried;
   if (ledger) small_work_store(l->gained, gained);
   if (taken) {
-    small_events at_now = e;
-    at_now.contacts = kept.contacts, at_now.structure = kept.structure;
-    at_now.structure_power = kept.structure_power, at_now.power = power;
+    small_events at_now = small_at_kept(&e, &kept);
     small_keep_end(&at_now, model, &q, &v, &a, l->now, ledger);
     if (ledger) small_work_store(state->work, work);
     l->fresh = true;
@@ -221,14 +214,14 @@ STRUT_SMALL_INLINE void small_verlet_events(const strut_model *model, strut_stat
 /* Copies for models with common terms only and for all, with the ledger and without. */
 #define STRUT_SMALL_QUIET(name, steps)                                                             \
   STRUT_SMALL_TARGET                                                                               \
-  static void name##_common_with_ledger(const strut_model *model, strut_state *state,              \
-                                        strut_event_stepper *l, double dt, int64_t end) {          \
-    steps(model, state, l, dt, end, STRUT_SMALL_COMMON, true);                                     \
+  static void name##_usual_with_ledger(const strut_model *model, strut_state *state,               \
+                                       strut_event_stepper *l, double dt, int64_t end) {           \
+    steps(model, state, l, dt, end, STRUT_SMALL_USUAL, true);                                      \
   }                                                                                                \
   STRUT_SMALL_TARGET                                                                               \
-  static void name##_common(const strut_model *model, strut_state *state, strut_event_stepper *l,  \
-                            double dt, int64_t end) {                                              \
-    steps(model, state, l, dt, end, STRUT_SMALL_COMMON, false);                                    \
+  static void name##_usual(const strut_model *model, strut_state *state, strut_event_stepper *l,   \
+                           double dt, int64_t end) {                                               \
+    steps(model, state, l, dt, end, STRUT_SMALL_USUAL, false);                                     \
   }                                                                                                \
   STRUT_SMALL_TARGET                                                                               \
   static void name##_any(const strut_model *model, strut_state *state, strut_event_stepper *l,     \
@@ -238,12 +231,12 @@ STRUT_SMALL_INLINE void small_verlet_events(const strut_model *model, strut_stat
                                                                                                    \
   double STRUT_SMALL_NAME(name)(const strut_model *model, strut_state *state,                      \
                                 strut_event_stepper *l, double dt, int64_t end) {                  \
-    if (model->plan & ~STRUT_SMALL_COMMON)                                                         \
+    if (small_copy_of(model) < 2)                                                                  \
       name##_any(model, state, l, dt, end);                                                        \
     else if (state->ledger)                                                                        \
-      name##_common_with_ledger(model, state, l, dt, end);                                         \
+      name##_usual_with_ledger(model, state, l, dt, end);                                          \
     else                                                                                           \
-      name##_common(model, state, l, dt, end);                                                     \
+      name##_usual(model, state, l, dt, end);                                                      \
     return 0.0;                                                                                    \
   }
 

@@ -34,7 +34,7 @@ STRUT_LANE_INLINE void batch_combine(size_t n, const lane_real *sixth, double *r
   for (size_t i = 0; i < n; i++) LANE_EACH(batch_combine_row(i, p, sixth[p], z, k1, k2, k3, k4));
 }
 
-/* Powers enter the works with the stage's weight. */
+/* Powers other than those of members and contacts enter the works with the stage's weight. */
 STRUT_LANE_INLINE void batch_work(const strut_batch *b, const double *power, double weight,
                                   const lane_real *sixth) {
   for (size_t k = 0; k < STRUT_LANE_POWERS; k++)
@@ -53,17 +53,28 @@ STRUT_LANE_INLINE void batch_rk4_steps(strut_batch *b, int64_t count, bool ledge
   lane_real dt[LANE_PARTS], step[LANE_PARTS], sixth[LANE_PARTS];
   LANE_EACH(
       (dt[p] = lane_row(b->dt, 0, p), step[p] = lane_row(b->step, 0, p), sixth[p] = dt[p] / 6.0));
+  bool others = ledger && tables.first->plan & (STRUT_TERM_LOADS | STRUT_TERM_ELEMENTS);
+  const strut_contact_table *contacts = &tables.first->contacts;
+  bool moves = false;
+  LANE_EACH(moves |= lane_any(lane_row(tables.ground, STRUT_LANE_BELT, p) != 0.0));
+  lane_step_sums sums;
+  if (ledger) lane_clear_sums(&sums);
+  for (size_t k = 0; k < STRUT_LANE_POWERS && ledger; k++) /* booked ones are not here */
+    LANE_EACH(lane_put(tables.power, k, p, (lane_real){0}));
   if (!b->driven) lane_drive(&tables, step, 0.0, dt);
   for (; count > 0; count--) {
+    if (ledger) lane_begin_sums(contacts, moves, &sums);
     for (int k = 0; k < 4; k++) {
       /* stages 1 and 3 are at the times of the ones before */
       if (k == 1 || k == 3) lane_drive(&tables, step, ahead[k], dt);
-      lane_forces(&tables, at[k], speed[k], ledger);
+      lane_book book = lane_book_of_stage(&sums, k, moves);
+      lane_forces(&tables, at[k], speed[k], ledger ? &book : NULL);
       lane_mass(&tables, b->a[k]);
-      if (ledger) batch_work(b, tables.power, weight[k], sixth);
+      if (others) batch_work(b, tables.power, weight[k], sixth);
       if (k < 3)
         batch_stage(n, ahead[k + 1], dt, q, v, speed[k], b->a[k], b->stage_q, b->stage_v[k + 1]);
     }
+    if (ledger) LANE_EACH(lane_end_sums(tables.first, &sums, p, moves, sixth[p], b->work));
     batch_combine(n, sixth, q, v, b->stage_v[1], b->stage_v[2], b->stage_v[3]);
     batch_combine(n, sixth, v, b->a[0], b->a[1], b->a[2], b->a[3]);
     LANE_EACH((step[p] += 1.0));

@@ -40,7 +40,7 @@ STRUT_LANE_INLINE void verlet_predict(strut_batch *b, bool ledger) {
   for (size_t i = 0; i < n; i++) LANE_EACH(verlet_predict_row(b, i, p, h[p]));
   LANE_EACH(verlet_cross(b, &tables, p));
   LANE_EACH(lane_drive_part(&tables, p, time[p]));
-  lane_structure(&tables, e->next->q, e->predicted, ledger);
+  lane_structure(&tables, e->next->q, e->predicted, ledger, NULL);
   lane_mass(&tables, e->next->a);
   for (size_t k = 0; k < STRUT_LANE_POWERS && ledger; k++)
     LANE_EACH(lane_put(e->next->power, k, p, lane_row(tables.power, k, p)));
