@@ -21,14 +21,20 @@ void strut_forces_add_rare(const strut_model *model, strut_state *state, double 
   if (plan & STRUT_TERM_SUPPORT_MOTION) strut_support_motion_apply(model, state, t, v);
 }
 
-void strut_forces_evaluate(const strut_model *model, strut_state *state, double t,
-                           const double *restrict q, const double *restrict v) {
-  for (int32_t i = 0; i < model->contacts.count; i++)
-    state->normal[i] = state->friction[i] = 0.0; /* the sum fills those that touch, and only them */
+STRUT_CLONES
+static void sum_once(const strut_model *model, strut_state *state, double t,
+                     const double *restrict q, const double *restrict v) {
   if (state->ledger)
     forces_sum(model, state, t, q, v, STRUT_TERMS_ALL, true);
   else
     forces_sum(model, state, t, q, v, STRUT_TERMS_ALL, false);
+}
+
+void strut_forces_evaluate(const strut_model *model, strut_state *state, double t,
+                           const double *restrict q, const double *restrict v) {
+  for (int32_t i = 0; i < model->contacts.count; i++)
+    state->normal[i] = state->friction[i] = 0.0; /* the sum fills those that touch, and only them */
+  sum_once(model, state, t, q, v);
   if (state->rigid) strut_rigid_constrain(model, state, q, v);
 }
 

@@ -2,9 +2,9 @@
 /**
  * Hot: forces along members, equations (1), (2) and (6).
  *
- * Blocks of members are worked on in groups of STRUT_LANES: gather the ends, compute along the
- * group, scatter in the scene's order. What no member of a block needs (dampers, slack, drive) is
- * compiled out of the block's loop.
+ * Blocks of members are worked on in groups of STRUT_LANES: gather the ends, and compute along the
+ * group. Then each node of the block adds up the pulls on it in the scene's order (pull_rows.h). What no
+ * member of a block needs (dampers, slack, drive) is compiled out of the block's loop.
  */
 #ifndef STRUT_ENGINE_FORCES_MEMBERS_KERNEL_H
 #define STRUT_ENGINE_FORCES_MEMBERS_KERNEL_H
@@ -51,19 +51,19 @@ STRUT_INLINE member_values members_values(const strut_member_table *t, const str
       .slack_force_threshold = strut_lanes_load(state->slack_force_threshold + j)};
 }
 
-STRUT_INLINE void members_pull(double *a, double *b, strut_pair pull) {
-  strut_pair_store(a, strut_pair_load(a) + pull);
-  strut_pair_store(b, strut_pair_load(b) - pull);
-}
+/* Pulls of a group on the first ends: x and y of its even members, and of its odd ones. */
+typedef struct member_pulls {
+  strut_lanes even, odd;
+} member_pulls;
 
 /*
- * Forces of the STRUT_LANES members from j on. A member of zero length has no direction and
+ * Pulls of the STRUT_LANES members from j on. A member of zero length has no direction and
  * no force.
  */
-STRUT_INLINE void members_group(const strut_member_table *t, const strut_state *state,
-                                const double *restrict q, const double *restrict v,
-                                double *restrict force, int32_t j, unsigned terms, bool ledger,
-                                member_powers *powers) {
+STRUT_INLINE member_pulls members_group(const strut_member_table *t, const strut_state *state,
+                                        const double *restrict q, const double *restrict v,
+                                        int32_t j, unsigned terms, bool ledger,
+                                        member_powers *powers) {
   const uint32_t *restrict from = t->from + j, *restrict to = t->to + j;
   member_vectors d = members_gather(q, from, to);
   strut_lanes length = members_root(d.x * d.x + d.y * d.y);
@@ -76,33 +76,107 @@ STRUT_INLINE void members_group(const strut_member_table *t, const strut_state *
   member_values m = members_values(t, state, j, terms & STRUT_TERM_DRIVE, length, rate);
   strut_lanes tension = member_tension(&m, terms, ledger, powers);
   strut_lanes density = tension * inverse, px = density * d.x, py = density * d.y;
-  strut_lanes even = __builtin_shufflevector(px, py, 0, 4, 2, 6);
-  strut_lanes odd = __builtin_shufflevector(px, py, 1, 5, 3, 7);
+  return (member_pulls){__builtin_shufflevector(px, py, 0, 4, 2, 6),
+                        __builtin_shufflevector(px, py, 1, 5, 3, 7)};
+}
+
+STRUT_INLINE void members_pull(double *a, double *b, strut_pair pull) {
+  strut_pair_store(a, strut_pair_load(a) + pull);
+  strut_pair_store(b, strut_pair_load(b) - pull);
+}
+
+/* Adds the pulls of a group member by member, where there are no rows, or code is to be short. */
+STRUT_INLINE void members_scatter(const strut_member_table *t, int32_t j, member_pulls pulls,
+                                  double *restrict force) {
+  const uint32_t *restrict from = t->from + j, *restrict to = t->to + j;
+  strut_lanes even = pulls.even, odd = pulls.odd;
   members_pull(force + from[0], force + to[0], __builtin_shufflevector(even, even, 0, 1));
   members_pull(force + from[1], force + to[1], __builtin_shufflevector(odd, odd, 0, 1));
   members_pull(force + from[2], force + to[2], __builtin_shufflevector(even, even, 2, 3));
   members_pull(force + from[3], force + to[3], __builtin_shufflevector(odd, odd, 2, 3));
 }
 
-/* A block; the table is a copy in the caller's frame, so that no store can be taken to change it. */
+/* Pulls of two members on their first and second ends, pair by pair. */
+STRUT_INLINE void members_store_pairs(double *pull, strut_lanes pulls) {
+  strut_pair one = __builtin_shufflevector(pulls, pulls, 0, 1);
+  strut_pair other = __builtin_shufflevector(pulls, pulls, 2, 3);
+  strut_pair_store(pull, one);
+  strut_pair_store(pull + 2, other);
+  strut_pair_store(pull + 2 * STRUT_LANES, -one);
+  strut_pair_store(pull + 2 * STRUT_LANES + 2, -other);
+}
+
+/*
+ * Pulls of a group where strut_pull_at tells. Where registers are narrower than strut_lanes, pair by pair: such a vector
+ * would be put together in memory, and copying it from there would have to wait.
+ */
+STRUT_INLINE void members_store(double *pull, member_pulls group, bool wide) {
+  if (wide) {
+    strut_lanes_store(pull, group.even);
+    strut_lanes_store(pull + STRUT_LANES, group.odd);
+    strut_lanes_store(pull + 2 * STRUT_LANES, -group.even);
+    strut_lanes_store(pull + 3 * STRUT_LANES, -group.odd);
+  } else {
+    members_store_pairs(pull, group.even);
+    members_store_pairs(pull + STRUT_LANES, group.odd);
+  }
+}
+
+/*
+ * A block: its pulls go where strut_pull_at tells, or, without `rows`, to the nodes. The table is a copy in the caller's
+ * frame, so that no store can be taken to change it.
+ */
 STRUT_INLINE void members_block(const strut_member_table *t, const strut_state *state,
                                 const double *restrict q, const double *restrict v,
-                                double *restrict force, int32_t begin, int32_t end, unsigned terms,
-                                bool ledger, member_powers *powers) {
-  for (int32_t j = begin; j < end; j += STRUT_LANES)
-    members_group(t, state, q, v, force, j, terms, ledger, powers);
+                                double *restrict pull, double *restrict force, int32_t begin,
+                                int32_t end, unsigned terms, bool rows, bool ledger,
+                                member_powers *powers) {
+  bool wide = STRUT_WIDE_REGISTERS;
+  for (int32_t j = begin; j < end; j += STRUT_LANES, pull += 4 * STRUT_LANES) {
+    member_pulls group = members_group(t, state, q, v, j, terms, ledger, powers);
+    if (rows)
+      members_store(pull, group, wide);
+    else
+      members_scatter(t, j, group, force);
+  }
+}
+
+/* Adds the pulls of a block, whose rows have `width` of them. */
+STRUT_INLINE void members_add_rows_of(const strut_pull_rows *t, int32_t width,
+                                      const double *restrict pull, double *restrict force) {
+  const uint32_t *restrict at = t->at;
+  const uint16_t *restrict from = t->pull;
+  for (int32_t i = 0, rows = t->rows; i < rows; i++, from += width) {
+    strut_pair sum = strut_pair_load(force + at[i]);
+    for (int32_t k = 0; k < width; k++) sum += strut_pair_load(pull + from[k]);
+    strut_pair_store(force + at[i], sum);
+  }
+}
+
+STRUT_INLINE void members_add_rows(const strut_pull_rows *t, double *restrict pull,
+                                   double *restrict force) {
+  strut_pair_store(pull + STRUT_NO_PULL, (strut_pair){-0.0, -0.0});
+  switch (t->width) {
+    case 1: members_add_rows_of(t, 1, pull, force); break;
+    case 2: members_add_rows_of(t, 2, pull, force); break;
+    case 3: members_add_rows_of(t, 3, pull, force); break;
+    case 4: members_add_rows_of(t, 4, pull, force); break;
+    case 5: members_add_rows_of(t, 5, pull, force); break;
+    case STRUT_WIDEST_ROW: members_add_rows_of(t, STRUT_WIDEST_ROW, pull, force); break;
+  }
 }
 
 /* Block b; one copy of the loop per set of terms, so none is tested inside. */
 STRUT_INLINE void members_of_block(const strut_member_table *t, const strut_state *state,
                                    const double *restrict q, const double *restrict v,
-                                   double *restrict force, int32_t b, bool ledger,
+                                   double *restrict force, int32_t b, bool rows, bool ledger,
                                    member_powers *powers) {
   enum { K = STRUT_TERM_DAMPING, S = STRUT_TERM_SLACK, D = STRUT_TERM_DRIVE };
+  _Alignas(64) double pull[STRUT_PULL_NUMBERS];
   int32_t begin = b * STRUT_BLOCK;
   int32_t end = begin + STRUT_BLOCK < t->slots ? begin + STRUT_BLOCK : t->slots;
 #define STRUT_CASE(set)                                                                            \
-  case set: members_block(t, state, q, v, force, begin, end, set, ledger, powers); break
+  case set: members_block(t, state, q, v, pull, force, begin, end, set, rows, ledger, powers); break
   switch (t->block_terms[b] & (K | S | D)) {
     STRUT_CASE(0);
     STRUT_CASE(K);
@@ -114,6 +188,7 @@ STRUT_INLINE void members_of_block(const strut_member_table *t, const strut_stat
     STRUT_CASE(D | K | S);
   }
 #undef STRUT_CASE
+  if (rows) members_add_rows(&t->rows[b], pull, force);
 }
 
 STRUT_INLINE void members_add_powers(member_powers *sum, const member_powers *part) {
@@ -128,14 +203,15 @@ void strut_many_members_add_forces(const strut_model *model, const strut_state *
 /* Adds the forces of all members. */
 STRUT_INLINE void members_kernel(const strut_model *model, strut_state *state,
                                  const double *restrict q, const double *restrict v,
-                                 double *restrict force, bool ledger, member_powers *powers) {
+                                 double *restrict force, bool rows, bool ledger,
+                                 member_powers *powers) {
   const strut_member_table t = model->members;
   if (ledger && t.blocks > STRUT_LEDGER_BLOCKS) {
     strut_many_members_add_forces(model, state, q, v, force, powers);
     return;
   }
   for (int32_t b = 0; b < t.blocks; b++)
-    members_of_block(&t, state, q, v, force, b, ledger, powers);
+    members_of_block(&t, state, q, v, force, b, rows, ledger, powers);
 }
 
 #endif

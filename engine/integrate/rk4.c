@@ -66,11 +66,14 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, rk4_wo
   bool moves = model->plan & terms & STRUT_TERMS_AT_STEP_END;
   bool others = ledger && model->plan & terms & ~STRUT_TERMS_IN_LANES;
   for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) state->power[p] = 0.0;
+  strut_drives_ahead drives;
+  drives_ahead_begin(model, terms, &drives);
   for (int64_t end = state->step + count; state->step < end; state->step++) {
     if (ledger) strut_step_ledger_begin(model, state);
     for (int k = 0; k < 4; k++) {
       if (ledger) state->booked = &state->lanes[strut_weight_side(k)];
-      double t = ((double)state->step + ahead[k]) * dt;
+      double step = (double)state->step + ahead[k], t = step * dt;
+      drives_ahead_apply(model, state, &drives, t, step, 0.5, dt, 2 * (end - state->step));
       forces_kernel(model, state, t, at[k], speed[k], w->a[k], terms, booking);
       if (rigid) strut_rigid_accelerate(model, state, at[k], speed[k], w->a[k]);
       for (int p = 0; p < STRUT_POWER_COUNT && others; p++)

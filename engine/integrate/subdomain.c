@@ -206,6 +206,8 @@ static void make_members(builder *b) {
     terms[i / STRUT_BLOCK] = (uint16_t)(terms[i / STRUT_BLOCK] | needs);
   }
   t->block_terms = terms;
+  t->rows = strut_pull_rows_create(b->arena, b->slots, t->from, t->to);
+  if (!t->rows) b->failed = true;
 }
 
 /* Actuators of its members, in the scene's order, and a second list of them by slot. */

@@ -41,6 +41,8 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, verlet
   double half = 0.5 * dt;
   int32_t n = model->length;
   bool moves = model->plan & terms & STRUT_TERMS_AT_STEP_END;
+  strut_drives_ahead drives;
+  drives_ahead_begin(model, terms, &drives);
   for (int64_t end = state->step + count; state->step < end; state->step++) {
     double *a = w->a, *next = w->next;
     for (int32_t i = 0; i < n; i += STRUT_LANES) {
@@ -48,8 +50,9 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, verlet
       strut_lanes_store(q + i, strut_lanes_load(q + i) + dt * (rate + half * bend));
       strut_lanes_store(predicted + i, rate + dt * bend);
     }
-    double t = ((double)state->step + 1.0) * dt;
+    double step = (double)state->step + 1.0, t = step * dt;
     if (moves) strut_support_motion_place(model, state, t, q, predicted);
+    drives_ahead_apply(model, state, &drives, t, step, 1.0, dt, end - state->step);
     forces_kernel(model, state, t, q, predicted, next, terms, ledger);
     for (int32_t i = 0; i < n; i += STRUT_LANES)
       strut_lanes_store(v + i, strut_lanes_load(v + i) + half * (strut_lanes_load(a + i) +

@@ -101,6 +101,8 @@ static void compile_members(strut_model *model, bool *failed) {
   }
   t->from = from, t->to = to, t->stiffness = stiffness, t->damping = damping, t->rest = rest;
   t->slack = slack, t->mass = mass, t->block_terms = terms;
+  t->rows = strut_pull_rows_create(&model->arena, t->count, from, to);
+  if (!t->rows) *failed = true;
 }
 
 static void compile_elements(strut_model *model, bool *failed) {

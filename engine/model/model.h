@@ -19,13 +19,11 @@
 #include "engine/model/actuator_forces.h"
 #include "engine/model/elements.h"
 #include "engine/model/feedback.h"
+#include "engine/model/pull_rows.h"
 #include "engine/model/sliding_masses.h"
 #include "engine/model/support_motion.h"
 #include "engine/model/surfaces.h"
 #include "engine/scene/scene.h"
-
-/** Members are stepped in groups of this many, so tables are padded to a multiple of it. */
-enum { STRUT_LANES = 4, STRUT_BLOCK = 64 };
 
 /** The terms a scene may need. The plan of a model is the set of those it does need. */
 typedef enum strut_term {
@@ -80,6 +78,7 @@ typedef struct strut_member_table {
   const double *slack;         /* least force [N]: 0 for cables, -INFINITY otherwise */
   const double *mass;          /* m [kg] */
   const uint16_t *block_terms; /* (blocks) DAMPING, SLACK, DRIVE: what some member of it needs */
+  const strut_pull_rows *rows; /* (blocks) */
 } strut_member_table;
 
 /** Sums in which the ledger of a Runge-Kutta step keeps the powers of contacts. */

@@ -270,7 +270,10 @@ static void copy_members(copier *c, strut_model *to) {
   t->rest = copy_of_members(c, from->rest);
   t->slack = copy_of_members(c, from->slack);
   t->mass = copy_of_members(c, from->mass);
-  if (!c->failed) copy_terms(c, to);
+  if (c->failed) return;
+  copy_terms(c, to);
+  t->rows = strut_pull_rows_create(c->arena, t->count, t->from, t->to);
+  if (!t->rows) c->failed = true;
 }
 
 /* Contacts and loads keep their order: sums over them are the ledger's. */

@@ -75,9 +75,11 @@ STRUT_INLINE void add_members(const strut_local_events *p, strut_state *state, c
                               const double *v, bool driven, bool ledger) {
   enum { KEPT = STRUT_TERM_DAMPING | STRUT_TERM_SLACK, ALL = KEPT | STRUT_TERM_DRIVE };
   member_powers powers = {0};
-  for (int32_t j = 0; j < p->table.slots; j += STRUT_LANES)
-    members_group(&p->table, &p->shell, q, v, state->force, j, driven ? ALL : KEPT, ledger,
-                  &powers);
+  for (int32_t j = 0; j < p->table.slots; j += STRUT_LANES) {
+    member_pulls pulls =
+        members_group(&p->table, &p->shell, q, v, j, driven ? ALL : KEPT, ledger, &powers);
+    members_scatter(&p->table, j, pulls, state->force); /* made anew at each event: no rows */
+  }
   for (int l = 0; l < STRUT_LANES && ledger; l++) {
     state->power[STRUT_POWER_DRIVE] += powers.drive[l];
     state->power[STRUT_POWER_MEMBERS] += powers.lost[l];

@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Hot: driven rest lengths for many evaluations to come, for methods that know beforehand when these are: sines are
+ * computed by vectors (signal_lanes.h), with the bits of strut_drive_apply.
+ *
+ * Holds for a run of steps, during which neither drives nor time_offset change.
+ */
+#ifndef STRUT_ENGINE_FORCES_DRIVES_AHEAD_H
+#define STRUT_ENGINE_FORCES_DRIVES_AHEAD_H
+
+#include "engine/model/hot.h"
+#include "engine/model/state.h"
+
+enum { STRUT_DRIVES_AHEAD = 8, STRUT_INSTANTS_AHEAD = 32 };
+
+typedef struct strut_drives_ahead {
+  bool used;
+  int32_t next, count;                                    /* instants */
+  double time[STRUT_INSTANTS_AHEAD];                      /* of the signals, ascending [s] */
+  double value[STRUT_DRIVES_AHEAD][STRUT_INSTANTS_AHEAD]; /* of each drive [m] */
+  double rate[STRUT_DRIVES_AHEAD][STRUT_INSTANTS_AHEAD];  /* [m/s] */
+} strut_drives_ahead;
+
+/**
+ * The drives' values at the first `count` of drives->time, which the caller has filled up to a whole number of
+ * STRUT_LANES.
+ */
+void strut_drives_ahead_evaluate(const strut_model *model, strut_drives_ahead *drives,
+                                 int32_t count);
+
+/* terms: as a copy of a step loop knows them. Drives of rare terms may follow sensors, and are not known beforehand. */
+STRUT_INLINE void drives_ahead_begin(const strut_model *model, unsigned terms,
+                                     strut_drives_ahead *drives) {
+  drives->used = terms == STRUT_TERMS_COMMON && model->plan & STRUT_TERM_DRIVE &&
+                 model->drives.count <= STRUT_DRIVES_AHEAD;
+  drives->next = drives->count = 0;
+}
+
+/* row[j] = x, by a store as wide as the loads of members: a wider load than the store before it would have to wait. */
+STRUT_INLINE void drives_ahead_put(double *row, int32_t j, double x) {
+  const strut_lane_mask place = {0, 1, 2, 3};
+  double *group = row + j / STRUT_LANES * STRUT_LANES;
+  strut_lanes all = {x, x, x, x};
+  strut_lanes_store(group,
+                    strut_lanes_choose(place == j % STRUT_LANES, all, strut_lanes_load(group)));
+}
+
+/* Rest lengths at the next instant, which is time t of the state. */
+STRUT_INLINE void drives_ahead_place(const strut_model *model, strut_state *state,
+                                     strut_drives_ahead *drives, double t) {
+  const strut_drive_table *d = &model->drives;
+  int32_t h = drives->next++;
+  for (int32_t i = 0; i < d->count; i++) {
+    int32_t j = d->member[i];
+    /* the first actuator of a member starts from its own rest length, further ones add */
+    double rest = d->first[i] ? model->members.rest[j] : state->rest[j];
+    double rate = drives->rate[i][h];
+    drives_ahead_put(state->rest, j, rest + drives->value[i][h]);
+    drives_ahead_put(state->rest_rate, j, d->first[i] ? rate : state->rest_rate[j] + rate);
+  }
+  state->drive_time = t;
+}
+
+/**
+ * Rest lengths at time t = step * dt; `step` may be a half. Evaluations are `part` steps apart, and `most` of them are
+ * still to come. Does nothing where the state has them already, or where drives cannot be known beforehand.
+ */
+STRUT_INLINE void drives_ahead_apply(const strut_model *model, strut_state *state,
+                                     strut_drives_ahead *drives, double t, double step, double part,
+                                     double dt, int64_t most) {
+  if (!drives->used || t == state->drive_time) return;
+  if (drives->next == drives->count || drives->time[drives->next] != t + state->time_offset) {
+    for (int32_t h = 0; h < STRUT_INSTANTS_AHEAD; h++)
+      drives->time[h] = (step + part * (double)h) * dt + state->time_offset;
+    strut_drives_ahead_evaluate(model, drives,
+                                most < STRUT_INSTANTS_AHEAD ? (int32_t)most : STRUT_INSTANTS_AHEAD);
+  }
+  drives_ahead_place(model, state, drives, t);
+}
+
+/** Foresees the stages of one step of h from t on: 1 to `count`, at parts of it that do not descend. */
+STRUT_INLINE void drives_ahead_stages(const strut_model *model, const strut_state *state,
+                                      strut_drives_ahead *drives, double t, double h,
+                                      const double *part, int32_t count) {
+  if (!drives->used) return;
+  for (int32_t k = 0; k < (count + STRUT_LANES - 1) / STRUT_LANES * STRUT_LANES; k++)
+    drives->time[k] = t + part[k < count ? k + 1 : count] * h + state->time_offset;
+  strut_drives_ahead_evaluate(model, drives, count);
+}
+
+/**
+ * Foresees the ends of whole steps of h from step * h on, one after the other, unless the next of them has been: some,
+ * since an event may come between.
+ */
+STRUT_INLINE void drives_ahead_ends(const strut_model *model, const strut_state *state,
+                                    strut_drives_ahead *drives, double h) {
+  enum { ENDS = 2 * STRUT_LANES };
+  double begin = (double)state->step * h;
+  if (!drives->used || (drives->next < drives->count &&
+                        drives->time[drives->next] == begin + h + state->time_offset))
+    return;
+  for (int32_t k = 0; k < ENDS; k++)
+    drives->time[k] = (double)(state->step + k) * h + h + state->time_offset;
+  strut_drives_ahead_evaluate(model, drives, ENDS);
+}
+
+/** Rest lengths at time t, if that is the next stage; else strut_drive_apply will do it. */
+STRUT_INLINE void drives_ahead_meet(const strut_model *model, strut_state *state,
+                                    strut_drives_ahead *drives, double t) {
+  if (!drives->used || t == state->drive_time || drives->next == drives->count) return;
+  if (drives->time[drives->next] == t + state->time_offset)
+    drives_ahead_place(model, state, drives, t);
+}
+
+#endif

@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Hot: a signal at many times at once. Sines go by vectors, with the bits of strut_signal_evaluate; all other signals
+ * through it.
+ */
+#ifndef STRUT_ENGINE_FORCES_SIGNAL_LANES_H
+#define STRUT_ENGINE_FORCES_SIGNAL_LANES_H
+
+#include "engine/base/trig.h"
+#include "engine/model/hot.h"
+#include "engine/model/model.h"
+
+STRUT_DEFINE_TRIG(STRUT_INLINE, strut_lanes, signal_lanes_sine, signal_lanes_cosine)
+
+/* strut_sincos_turns for turns that need no floor; quarters are the last bits of the rounded number. */
+STRUT_INLINE void signal_lanes_sincos(strut_lanes turns, strut_lanes *sine, strut_lanes *cosine) {
+  const double rounder = 6755399441055744.0;
+  strut_lanes rounded = 4.0 * turns + rounder, quarter = rounded - rounder;
+  strut_lanes x = STRUT_TAU * (turns - 0.25 * quarter);
+  strut_lanes s = signal_lanes_sine(x), c = signal_lanes_cosine(x);
+  strut_lane_mask quadrant = (strut_lane_mask)rounded, odd = -(quadrant & 1);
+  strut_lanes first = strut_lanes_choose(odd, c, s), second = strut_lanes_choose(odd, s, c);
+  *sine = strut_lanes_choose(-((quadrant >> 1) & 1), -first, first);
+  *cosine = strut_lanes_choose(-(((quadrant + 1) >> 1) & 1), -second, second);
+}
+
+/* Is the signal a sine, and on, at all of these times? */
+STRUT_INLINE bool signal_is_wave(const strut_signal *s, const double *time, int32_t count) {
+  double first = s->frequency * (time[0] - s->start) + s->phase;
+  double last = s->frequency * (time[count - 1] - s->start) + s->phase;
+  return s->kind == STRUT_SINE && time[0] >= s->start && time[count - 1] < s->stop &&
+         fabs(first) < 0x1p48 && fabs(last) < 0x1p48;
+}
+
+/* Values and rates of a signal at `count` times, which ascend; arrays have room for whole vectors. */
+STRUT_INLINE void signal_at_times(const strut_signal *signals, int32_t index, const double *time,
+                                  int32_t count, double *value, double *rate) {
+  const strut_signal *s = &signals[index];
+  if (!signal_is_wave(s, time, count)) {
+    for (int32_t h = 0; h < count; h++)
+      strut_signal_evaluate(signals, index, time[h], &value[h], &rate[h]);
+    return;
+  }
+  double fast = s->amplitude * STRUT_TAU * s->frequency;
+  for (int32_t h = 0; h < count; h += STRUT_LANES) {
+    strut_lanes sine, cosine;
+    strut_lanes turns = s->frequency * (strut_lanes_load(time + h) - s->start) + s->phase;
+    signal_lanes_sincos(turns, &sine, &cosine);
+    strut_lanes_store(value + h, s->amplitude * sine);
+    strut_lanes_store(rate + h, fast * cosine);
+  }
+}
+
+#endif

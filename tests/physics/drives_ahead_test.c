@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Drives that are computed for many evaluations at once have the bits of those computed one by one. */
+#include "engine/forces/drives_ahead.h"
+
+#include "engine/forces/drive.h"
+#include "tests/support/check.h"
+#include "tests/support/motion.h"
+#include "tests/support/structures.h"
+
+static const double STEP = 1e-4;
+
+/* The crawler; its sine acts from `start` to `stop`. */
+typedef struct crawlers {
+  strut_setup setup;
+  motion together, alone;
+} crawlers;
+
+static void begin(crawlers *c, double start, double stop) {
+  c->setup = (strut_setup){.experiment = strut_experiment_default()};
+  strut_scene_init(&c->setup.scene);
+  structure_crawler(&c->setup.scene, 10, 1e-4, 0.1, false);
+  assert_int_equal(c->setup.scene.signal_count, 1);
+  c->setup.scene.signals[0].start = start, c->setup.scene.signals[0].stop = stop;
+  motion_begin_by(&c->together, &c->setup, "rk4", STEP);
+  motion_begin_by(&c->alone, &c->setup, "rk4", STEP);
+}
+
+static void end(crawlers *c) {
+  motion_end(&c->together);
+  motion_end(&c->alone);
+  strut_scene_free(&c->setup.scene);
+}
+
+static void compare(crawlers *c, double t) {
+  const strut_state *a = c->together.state, *b = c->alone.state;
+  strut_drive_apply(c->alone.model, c->alone.state, t);
+  assert_same_bits(a->drive_time, b->drive_time);
+  for (int32_t j = 0; j < c->alone.model->members.slots; j++) {
+    assert_same_bits(a->rest[j], b->rest[j]);
+    assert_same_bits(a->rest_rate[j], b->rest_rate[j]);
+  }
+}
+
+/* Halves of steps one after the other, begun anew now and then, as calls of a method begin. */
+static void run_steps(double start, double stop, double offset) {
+  crawlers c;
+  begin(&c, start, stop);
+  const strut_model *model = c.together.model;
+  strut_drives_ahead drives;
+  c.together.state->time_offset = c.alone.state->time_offset = offset;
+  for (int half = 0; half < 1000; half++) {
+    if (half % 130 == 0) drives_ahead_begin(model, STRUT_TERMS_COMMON, &drives);
+    assert_true(drives.used);
+    double step = 0.5 * (double)half, t = step * STEP;
+    drives_ahead_apply(model, c.together.state, &drives, t, step, 0.5, STEP, 130 - half % 130);
+    compare(&c, t);
+  }
+  end(&c);
+}
+
+static void test_steps(void **unused) {
+  (void)unused;
+  run_steps(0.0, HUGE_VAL, 0.0);
+  run_steps(0.0, HUGE_VAL, 1234.5);
+  run_steps(0.01, 0.03, 0.0);
+  run_steps(-1e17, HUGE_VAL, 0.0); /* so many turns that they are taken modulo 1 first */
+}
+
+static void test_stages_of_a_step(void **unused) {
+  (void)unused;
+  static const double part[6] = {0.0, 0.2, 0.3, 0.8, 8.0 / 9, 1.0};
+  crawlers c;
+  begin(&c, 0.0, 0.02);
+  strut_drives_ahead drives;
+  for (int n = 0; n < 300; n++) {
+    double h = STEP * (1.0 + 0.01 * n), t = 1e-4 * n;
+    drives_ahead_begin(c.together.model, STRUT_TERMS_COMMON, &drives);
+    drives_ahead_stages(c.together.model, c.together.state, &drives, t, h, part, 5);
+    for (int k = 1; k < 6; k++) {
+      drives_ahead_meet(c.together.model, c.together.state, &drives, t + part[k] * h);
+      compare(&c, t + part[k] * h);
+    }
+  }
+  end(&c);
+}
+
+/* Scenes with rare terms have drives that may follow what is not known beforehand. */
+static void test_rare_terms_are_left_alone(void **unused) {
+  (void)unused;
+  crawlers c;
+  begin(&c, 0.0, HUGE_VAL);
+  strut_drives_ahead drives;
+  drives_ahead_begin(c.together.model, STRUT_TERMS_ALL, &drives);
+  assert_false(drives.used);
+  end(&c);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_steps),
+      cmocka_unit_test(test_stages_of_a_step),
+      cmocka_unit_test(test_rare_terms_are_left_alone),
+  };
+  return cmocka_run_group_tests_name("drives ahead", tests, NULL, NULL);
+}
