@@ -14,12 +14,19 @@
 
 enum { V = 1, A = V + PAIR, KEPT = A + PAIR, STAGES = KEPT + 2 };
 
-/* sum_j weight[j] k[j] over `count` stages at i; where these are constants no weight is looked at. */
-STRUT_INLINE strut_lanes weighted(double *const *k, const double *weight, int count, int32_t i) {
-  strut_lanes sum = weight[0] * strut_lanes_load_pairs(k[0] + i);
+/*
+ * sum_j weight[j] k[j] over `count` stages at i; where these are constants no weight is looked at. `pairs`: the last one
+ * has just been stored pair by pair.
+ */
+STRUT_INLINE strut_lanes weighted(double *const *k, const double *weight, int count, bool pairs,
+                                  int32_t i) {
+  strut_lanes sum = weight[0] * (pairs && count == 1 ? strut_lanes_load_pairs(k[0] + i)
+                                                     : strut_lanes_load(k[0] + i));
 #pragma GCC unroll 8
   for (int j = 1; j < count; j++)
-    if (weight[j] != 0.0) sum += weight[j] * strut_lanes_load_pairs(k[j] + i);
+    if (weight[j] != 0.0)
+      sum += weight[j] * (pairs && j == count - 1 ? strut_lanes_load_pairs(k[j] + i)
+                                                  : strut_lanes_load(k[j] + i));
   return sum;
 }
 
@@ -27,8 +34,9 @@ STRUT_INLINE strut_lanes weighted(double *const *k, const double *weight, int co
 STRUT_INLINE void stage(int32_t n, double h, const strut_step_end *now, double *const *v,
                         double *const *a, int k, double *restrict q, double *restrict speed) {
   for (int32_t i = 0; i < n; i += STRUT_LANES) {
-    strut_lanes_store(q + i, strut_lanes_load(now->q + i) + h * weighted(v, table[k], k, i));
-    strut_lanes_store(speed + i, strut_lanes_load(now->v + i) + h * weighted(a, table[k], k, i));
+    strut_lanes_store(q + i, strut_lanes_load(now->q + i) + h * weighted(v, table[k], k, false, i));
+    strut_lanes_store(speed + i,
+                      strut_lanes_load(now->v + i) + h * weighted(a, table[k], k, true, i));
   }
 }
 
@@ -69,8 +77,8 @@ STRUT_INLINE double error_of(const strut_model *model, strut_event_stepper *l, d
                              double *const *v, double *const *a) {
   largest position = {0}, velocity = {0}, speed = {0};
   for (int32_t i = 0; i < model->length; i += STRUT_LANES) {
-    position = larger_of(position, h * weighted(v, difference, PAIR, i));
-    velocity = larger_of(velocity, h * weighted(a, difference, PAIR, i));
+    position = larger_of(position, h * weighted(v, difference, PAIR, false, i));
+    velocity = larger_of(velocity, h * weighted(a, difference, PAIR, true, i));
     speed = larger_of(speed, strut_lanes_load(l->now->v + i));
     speed = larger_of(speed, strut_lanes_load(l->next->v + i));
   }
@@ -202,6 +210,9 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
   v[PAIR - 1] = l->next->v, a[PAIR - 1] = l->next->a;
   int32_t n = model->length;
   double broken = 0.0; /* where a stage contradicts a contact's mode */
+  strut_drives_ahead drives;
+  drives_ahead_begin(model, terms, &drives);
+  drives_ahead_stages(model, state, &drives, t, h, ahead, PAIR - 2);
   for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++)
     l->gained[p] = table[PAIR - 1][0] * h * l->now->power[p];
   for (int k = 1; k < PAIR; k++) {
@@ -210,6 +221,7 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
     if (model->plan & terms & STRUT_TERM_SUPPORT_MOTION)
       strut_support_motion_place(model, state, t + ahead[k] * h, q, v[k]);
     if (k == PAIR - 1) break;
+    drives_ahead_meet(model, state, &drives, t + ahead[k] * h);
     accelerate_in_modes(model, state, l, t + ahead[k] * h, q, v[k], a[k], l->next, terms, ledger);
     if (l->closed_count && broken == 0.0 && any_contradicts_at_stage(model, l)) broken = ahead[k];
     for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++)

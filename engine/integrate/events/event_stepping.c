@@ -513,11 +513,14 @@ void strut_event_stepper_advance(const strut_model *model, strut_state *state, v
                                  double dt, int64_t count) {
   strut_event_stepper *l = workspace;
   if (!l->started) strut_event_stepper_restart(model, state, workspace, dt);
+  drives_ahead_begin(model, model->plan & STRUT_TERMS_RARE ? STRUT_TERMS_ALL : STRUT_TERMS_COMMON,
+                     &l->drives);
   for (int64_t end = state->step + count; state->step < end && !state->trouble;) {
     if (l->stepper->advance_until_event && l->at_once == 0 && !model->contacts.surface)
       l->stepper->advance_until_event(model, state, l, dt, end);
     if (state->step == end || (l->stepper->adaptive && given_up(model, state, l))) break;
     strut_event_stepper_step(model, state, l, dt);
   }
+  l->drives.used = false; /* whoever calls may change drives */
   show_contacts(model, state, l);
 }

@@ -10,6 +10,7 @@
 #ifndef STRUT_ENGINE_INTEGRATE_EVENTS_EVENT_STEPPING_H
 #define STRUT_ENGINE_INTEGRATE_EVENTS_EVENT_STEPPING_H
 
+#include "engine/forces/drives_ahead.h"
 #include "engine/integrate/integrator.h"
 
 /** Modes of a contact. u: sliding speed; N: normal force; s: the side, +-1. */
@@ -207,10 +208,11 @@ struct strut_event_stepper {
   double done; /* of the grid step under way [s] */
   int at_once; /* switches since the latest step */
   strut_switch_counts counts;
-  int32_t pushed;   /* contact that passed its threshold last, or -1 */
-  double pushed_at; /* when that was [s] */
-  int switches;     /* since the latest grid point */
-  bool tried;       /* next is the end of the step that is due */
+  int32_t pushed;            /* contact that passed its threshold last, or -1 */
+  double pushed_at;          /* when that was [s] */
+  int switches;              /* since the latest grid point */
+  bool tried;                /* next is the end of the step that is due */
+  strut_drives_ahead drives; /* of methods with one evaluation a step, during a call */
   int32_t *facet; /* (contacts) of closed contacts of surfaces; NULL without STRUT_TERM_SURFACES */
   struct strut_small_modes *small; /* see small_modes.h; NULL where the model is not small */
   struct strut_contact_coupling *coupling; /* contact_coupling.h; NULL where contacts are few */

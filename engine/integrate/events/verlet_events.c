@@ -35,6 +35,9 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
   bool moves = model->plan & terms & STRUT_TERM_SUPPORT_MOTION;
   bool sliding = model->plan & terms & STRUT_TERM_SLIDING_MASS;
   if (moves) strut_support_motion_place(model, state, t + h, l->next->q, predicted);
+  if (terms == STRUT_TERMS_COMMON && t == (double)state->step * h)
+    drives_ahead_ends(model, state, &l->drives, h);
+  if (terms == STRUT_TERMS_COMMON) drives_ahead_meet(model, state, &l->drives, t + h);
   forces_of_structure(model, state, t + h, l->next->q, predicted, terms, ledger);
   keep_structure_forces(model, state, l->next, ledger);
   keep_ground_motion(model, state, l->next, terms);
