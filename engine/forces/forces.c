@@ -25,9 +25,9 @@ STRUT_CLONES
 static void sum_once(const strut_model *model, strut_state *state, double t,
                      const double *restrict q, const double *restrict v) {
   if (state->ledger)
-    forces_sum(model, state, t, q, v, STRUT_TERMS_ALL, true);
+    forces_sum(model, state, t, q, v, STRUT_TERMS_ALL, STRUT_BOOK_POWERS);
   else
-    forces_sum(model, state, t, q, v, STRUT_TERMS_ALL, false);
+    forces_sum(model, state, t, q, v, STRUT_TERMS_ALL, STRUT_BOOK_NOTHING);
 }
 
 void strut_forces_evaluate(const strut_model *model, strut_state *state, double t,

@@ -32,10 +32,10 @@ STRUT_INLINE void forces_start(const strut_model *model, double *restrict force)
 
 STRUT_INLINE void forces_of_members(const strut_model *model, strut_state *state,
                                     const double *restrict q, const double *restrict v,
-                                    double *restrict force, bool rows, strut_booking ledger) {
+                                    double *restrict force, strut_booking ledger) {
   member_powers powers;
   powers.drive = powers.exchanged = powers.lost = (strut_lanes){0};
-  members_kernel(model, state, q, v, force, rows, ledger != STRUT_BOOK_NOTHING, &powers);
+  members_kernel(model, state, q, v, force, ledger != STRUT_BOOK_NOTHING, &powers);
   if (!ledger) return;
   if (ledger == STRUT_BOOK_LANES) {
     strut_book_members(state->booked, &powers);
@@ -57,13 +57,10 @@ STRUT_INLINE void forces_of_members(const strut_model *model, strut_state *state
 void strut_forces_add_rare(const strut_model *model, strut_state *state, double t, const double *q,
                            const double *v);
 
-/*
- * All forces but the ground's. terms: which ones the plan may have, see STRUT_TERMS_RARE. rows: nodes add up members by
- * pull_rows.h, which takes less time but more instructions.
- */
-STRUT_INLINE void forces_of_structure_by(const strut_model *model, strut_state *state, double t,
-                                         const double *restrict q, const double *restrict v,
-                                         unsigned terms, bool rows, strut_booking ledger) {
+/* All forces but the ground's. terms: which ones the plan may have, see STRUT_TERMS_RARE. */
+STRUT_INLINE void forces_of_structure(const strut_model *model, strut_state *state, double t,
+                                      const double *restrict q, const double *restrict v,
+                                      unsigned terms, strut_booking ledger) {
   unsigned plan = model->plan & terms;
   double *restrict force = state->force;
   state->evaluations++;
@@ -76,22 +73,15 @@ STRUT_INLINE void forces_of_structure_by(const strut_model *model, strut_state *
   }
   if (plan & STRUT_TERM_LOADS) strut_loads_apply(model, state, t, v);
   if ((plan & STRUT_TERM_DRIVE) && t != state->drive_time) strut_drive_apply(model, state, t);
-  if (plan & STRUT_TERM_MEMBERS) forces_of_members(model, state, q, v, force, rows, ledger);
+  if (plan & STRUT_TERM_MEMBERS) forces_of_members(model, state, q, v, force, ledger);
   if (plan & STRUT_TERM_ELEMENTS) strut_elements_add_forces(model, state, q, v, force);
   if (plan & STRUT_TERMS_RARE) strut_forces_add_rare(model, state, t, q, v);
-}
-
-/* The same for methods with events. */
-STRUT_INLINE void forces_of_structure(const strut_model *model, strut_state *state, double t,
-                                      const double *restrict q, const double *restrict v,
-                                      unsigned terms, bool ledger) {
-  forces_of_structure_by(model, state, t, q, v, terms, false, ledger);
 }
 
 STRUT_INLINE void forces_sum(const strut_model *model, strut_state *state, double t,
                              const double *restrict q, const double *restrict v, unsigned terms,
                              strut_booking ledger) {
-  forces_of_structure_by(model, state, t, q, v, terms, true, ledger);
+  forces_of_structure(model, state, t, q, v, terms, ledger);
   if (model->plan & STRUT_TERM_CONTACT)
     ground_kernel(model, state, q, v, state->force, ledger);
   else if (model->plan & terms & STRUT_TERM_SURFACES)

@@ -9,7 +9,7 @@ static void add_forces_of_many(const strut_model *model, const strut_state *stat
   const strut_member_table t = model->members;
   member_powers sum = {0}, part = {0};
   for (int32_t b = 0; b < t.blocks; b++) {
-    members_of_block(&t, state, q, v, force, b, true, true, &part);
+    members_of_block(&t, state, q, v, force, b, true, &part);
     if ((b + 1) % STRUT_LEDGER_BLOCKS && b + 1 < t.blocks) continue;
     members_add_powers(&sum, &part);
     part = (member_powers){0};

@@ -85,7 +85,7 @@ STRUT_INLINE void members_pull(double *a, double *b, strut_pair pull) {
   strut_pair_store(b, strut_pair_load(b) - pull);
 }
 
-/* Adds the pulls of a group member by member, where there are no rows, or code is to be short. */
+/* Adds the pulls of a group member by member, where there are no rows. */
 STRUT_INLINE void members_scatter(const strut_member_table *t, int32_t j, member_pulls pulls,
                                   double *restrict force) {
   const uint32_t *restrict from = t->from + j, *restrict to = t->to + j;
@@ -122,22 +122,16 @@ STRUT_INLINE void members_store(double *pull, member_pulls group, bool wide) {
   }
 }
 
-/*
- * A block: its pulls go where strut_pull_at tells, or, without `rows`, to the nodes. The table is a copy in the caller's
- * frame, so that no store can be taken to change it.
- */
+/* A block: its pulls go where strut_pull_at tells. The table is a copy in the caller's frame, so that no store can be
+   taken to change it. */
 STRUT_INLINE void members_block(const strut_member_table *t, const strut_state *state,
                                 const double *restrict q, const double *restrict v,
-                                double *restrict pull, double *restrict force, int32_t begin,
-                                int32_t end, unsigned terms, bool rows, bool ledger,
-                                member_powers *powers) {
+                                double *restrict pull, int32_t begin, int32_t end, unsigned terms,
+                                bool ledger, member_powers *powers) {
   bool wide = STRUT_WIDE_REGISTERS;
   for (int32_t j = begin; j < end; j += STRUT_LANES, pull += 4 * STRUT_LANES) {
     member_pulls group = members_group(t, state, q, v, j, terms, ledger, powers);
-    if (rows)
-      members_store(pull, group, wide);
-    else
-      members_scatter(t, j, group, force);
+    members_store(pull, group, wide);
   }
 }
 
@@ -169,14 +163,14 @@ STRUT_INLINE void members_add_rows(const strut_pull_rows *t, double *restrict pu
 /* Block b; one copy of the loop per set of terms, so none is tested inside. */
 STRUT_INLINE void members_of_block(const strut_member_table *t, const strut_state *state,
                                    const double *restrict q, const double *restrict v,
-                                   double *restrict force, int32_t b, bool rows, bool ledger,
+                                   double *restrict force, int32_t b, bool ledger,
                                    member_powers *powers) {
   enum { K = STRUT_TERM_DAMPING, S = STRUT_TERM_SLACK, D = STRUT_TERM_DRIVE };
   _Alignas(64) double pull[STRUT_PULL_NUMBERS];
   int32_t begin = b * STRUT_BLOCK;
   int32_t end = begin + STRUT_BLOCK < t->slots ? begin + STRUT_BLOCK : t->slots;
 #define STRUT_CASE(set)                                                                            \
-  case set: members_block(t, state, q, v, pull, force, begin, end, set, rows, ledger, powers); break
+  case set: members_block(t, state, q, v, pull, begin, end, set, ledger, powers); break
   switch (t->block_terms[b] & (K | S | D)) {
     STRUT_CASE(0);
     STRUT_CASE(K);
@@ -188,7 +182,7 @@ STRUT_INLINE void members_of_block(const strut_member_table *t, const strut_stat
     STRUT_CASE(D | K | S);
   }
 #undef STRUT_CASE
-  if (rows) members_add_rows(&t->rows[b], pull, force);
+  members_add_rows(&t->rows[b], pull, force);
 }
 
 STRUT_INLINE void members_add_powers(member_powers *sum, const member_powers *part) {
@@ -203,15 +197,14 @@ void strut_many_members_add_forces(const strut_model *model, const strut_state *
 /* Adds the forces of all members. */
 STRUT_INLINE void members_kernel(const strut_model *model, strut_state *state,
                                  const double *restrict q, const double *restrict v,
-                                 double *restrict force, bool rows, bool ledger,
-                                 member_powers *powers) {
+                                 double *restrict force, bool ledger, member_powers *powers) {
   const strut_member_table t = model->members;
   if (ledger && t.blocks > STRUT_LEDGER_BLOCKS) {
     strut_many_members_add_forces(model, state, q, v, force, powers);
     return;
   }
   for (int32_t b = 0; b < t.blocks; b++)
-    members_of_block(&t, state, q, v, force, b, rows, ledger, powers);
+    members_of_block(&t, state, q, v, force, b, ledger, powers);
 }
 
 #endif

@@ -190,9 +190,9 @@ static void work_on_members(const strut_subdomain *d, const double *q, const dou
                             double *force, int32_t block, bool ledger, member_powers *powers) {
   const strut_member_table t = d->model.members;
   if (ledger)
-    members_of_block(&t, &d->state, q, v, force, block, true, true, powers);
+    members_of_block(&t, &d->state, q, v, force, block, true, powers);
   else
-    members_of_block(&t, &d->state, q, v, force, block, true, false, powers);
+    members_of_block(&t, &d->state, q, v, force, block, false, powers);
 }
 
 static void drive_block(domain_part *p, int k, int32_t block) {

@@ -48,7 +48,7 @@ static inline uint16_t strut_pull_at(int32_t k, bool second) {
  * Rows of all blocks of `count` members, whose ends have their x at from and to (count). Those with both ends in one
  * place, as padding has them, pull nowhere. NULL: out of memory.
  */
-strut_pull_rows *strut_pull_rows_create(strut_arena *arena, int32_t count, const uint32_t *from,
-                                        const uint32_t *to);
+STRUT_API strut_pull_rows *strut_pull_rows_create(strut_arena *arena, int32_t count,
+                                                  const uint32_t *from, const uint32_t *to);
 
 #endif

@@ -25,15 +25,15 @@ typedef struct budget {
 } budget;
 
 static const budget budgets[] = {
-    {"rk4", true, 38419, STRUT_SMALL_NONE},
+    {"rk4", true, 39092, STRUT_SMALL_NONE},
     {"rk4", false, 33772, STRUT_SMALL_NONE},
     {"euler", true, 10011, STRUT_SMALL_NONE},
     {"verlet", true, 11085, STRUT_SMALL_NONE},
-    {"verlet-events", true, 13968, STRUT_SMALL_NONE},
-    {"verlet-events", false, 12412, STRUT_SMALL_NONE},
-    {"rk4-events", true, 49687, STRUT_SMALL_NONE},
-    {"euler-events", true, 18317, STRUT_SMALL_NONE},
-    {"adaptive", true, 88299, STRUT_SMALL_NONE},
+    {"verlet-events", true, 14448, STRUT_SMALL_NONE},
+    {"verlet-events", false, 12678, STRUT_SMALL_NONE},
+    {"rk4-events", true, 51537, STRUT_SMALL_NONE},
+    {"euler-events", true, 18647, STRUT_SMALL_NONE},
+    {"adaptive", true, 91089, STRUT_SMALL_NONE},
     /* by the kernel of small models, which is younger */
     {"rk4", true, 14258, STRUT_SMALL_AVX512},
     {"rk4", false, 11232, STRUT_SMALL_AVX512},
