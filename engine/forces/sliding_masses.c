@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
+#include "engine/model/dense_cholesky.h"
 #include "engine/model/mass.h"
 #include "engine/scene/signal_motion.h"
 
@@ -69,27 +70,6 @@ static void fill(const strut_sliding_table *t, const strut_sliding_motion *at,
     }
 }
 
-/* Cholesky's factor in place. */
-static void factor(int32_t n, double *a) {
-  for (int32_t i = 0; i < n; i++)
-    for (int32_t j = 0; j <= i; j++) {
-      double sum = a[i * n + j];
-      for (int32_t k = 0; k < j; k++) sum -= a[i * n + k] * a[j * n + k];
-      a[i * n + j] = i == j ? sqrt(sum) : sum / a[j * n + j];
-    }
-}
-
-static void solve(int32_t n, const double *a, double *x) {
-  for (int32_t i = 0; i < n; i++) {
-    for (int32_t j = 0; j < i; j++) x[i] -= a[i * n + j] * x[j];
-    x[i] /= a[i * n + i];
-  }
-  for (int32_t i = n - 1; i >= 0; i--) {
-    for (int32_t j = i + 1; j < n; j++) x[i] -= a[j * n + i] * x[j];
-    x[i] /= a[i * n + i];
-  }
-}
-
 void strut_sliding_masses_place(const strut_model *model, strut_state *state, double t) {
   const strut_sliding_table *table = &model->sliding;
   const strut_signal *signals = model->scene->signals;
@@ -107,7 +87,7 @@ void strut_sliding_masses_place(const strut_model *model, strut_state *state, do
   for (int c = 0; c < 2 && table->between; c++) {
     double *matrix = state->sliding_factor + c * n * n;
     fill(table, state->sliding, table->between + 4 * c * n * n, matrix);
-    factor(n, matrix);
+    if (!strut_cholesky_factor(n, NULL, matrix)) matrix[0] = NAN; /* as the motion is by then */
   }
 }
 
@@ -120,7 +100,7 @@ void strut_sliding_masses_correct(const strut_model *model, const strut_state *s
     double far = state->sliding[k].share, near = 1.0 - far;
     for (uint32_t c = 0; c < 2; c++) push[c][k] = near * a[s->at[0] + c] + far * a[s->at[1] + c];
   }
-  for (int c = 0; c < 2; c++) solve(n, state->sliding_factor + c * n * n, push[c]);
+  for (int c = 0; c < 2; c++) strut_cholesky_solve(n, state->sliding_factor + c * n * n, push[c]);
   for (int32_t k = 0; k < n; k++) {
     const strut_sliding_answer *r = &table->answer[k];
     double far = state->sliding[k].share, near = 1.0 - far;

@@ -7,7 +7,7 @@
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/integrate/events/local_events.h"
 #include "engine/integrate/events/small_modes.h"
-#include "engine/integrate/events/stick_factor.h"
+#include "engine/model/dense_cholesky.h"
 
 /* Entries below this part of a column's largest one change no bit that matters. */
 static const double NEGLIGIBLE = 1e-18;
@@ -376,7 +376,7 @@ STRUT_INLINE void hold_stuck(const strut_model *model, strut_event_stepper *l, d
   } else if (l->coupling) {
     strut_contact_coupling_solve(l, x);
   } else {
-    strut_stick_solve(n, l->stuck_factor, x);
+    strut_cholesky_solve(n, l->stuck_factor, x);
   }
   bool together = l->coupling && !model->mass->diagonal && n > FEW_COLUMNS;
   if (together) strut_contact_coupling_push(model, l, x, a);

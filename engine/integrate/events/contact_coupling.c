@@ -6,7 +6,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/integrate/events/implicit_ground.h"
-#include "engine/integrate/events/stick_factor.h"
+#include "engine/model/dense_cholesky.h"
 
 /* 1 + the contact of each node, or 0, into `owner`; false where a node has two. */
 static bool find_owners(const strut_model *model, int32_t *owner) {
@@ -113,13 +113,13 @@ void strut_contact_coupling_factor(const strut_model *model, strut_event_stepper
   assemble_stuck(&model->contacts, l, p);
   p->factored_count = l->stuck_count;
   memcpy(p->factored, l->stuck, (size_t)l->stuck_count * sizeof *l->stuck);
-  if (strut_stick_factor_rows(l->stuck_count, p->first, l->stuck_factor)) return;
+  if (strut_cholesky_factor(l->stuck_count, p->first, l->stuck_factor)) return;
   p->factored_count = 0;
   l->stuck_count = -l->stuck_count; /* singular: by sweeps */
 }
 
 void strut_contact_coupling_solve(const strut_event_stepper *l, double *x) {
-  strut_stick_solve_rows(l->stuck_count, l->coupling->first, l->stuck_factor, x);
+  strut_cholesky_solve_rows(l->stuck_count, l->coupling->first, l->stuck_factor, x);
 }
 
 /* ---- forces on contacts, to the whole structure ---- */

@@ -6,7 +6,7 @@
 
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/integrate/events/local_kernel.h"
-#include "engine/integrate/events/stick_factor.h"
+#include "engine/model/dense_cholesky.h"
 
 /* Regions with more contacts are not stepped alone. */
 enum { MOST_CONTACTS = 512 };
@@ -207,7 +207,7 @@ void strut_local_factor(const strut_model *model, strut_event_stepper *l) {
   p->failed = p->failed || n > l->stuck_room;
   if (p->failed) return;
   assemble_stuck(model, l, p);
-  if (!strut_stick_factor_rows(n, p->first, l->stuck_factor)) p->failed = true;
+  if (!strut_cholesky_factor(n, p->first, l->stuck_factor)) p->failed = true;
   for (int32_t k = 0; k < n && n <= FEW_STUCK; k++) find_column(model, l, k);
   memcpy(p->factored, l->stuck, bytes);
   p->factored_count = n;
@@ -249,7 +249,7 @@ void strut_local_hold(const strut_model *model, strut_event_stepper *l, double *
   double *x = l->stuck_work;
   if (p->failed) return;
   for (int32_t i = 0; i < n; i++) x[i] = -strut_contact_along_ground(c, l->stuck[i], a);
-  strut_stick_solve_rows(n, p->first, l->stuck_factor, x);
+  strut_cholesky_solve_rows(n, p->first, l->stuck_factor, x);
   for (int32_t k = 0; k < n; k++) end->touch[l->stuck[k]].friction += x[k];
   if (n <= FEW_STUCK)
     add_columns(p, n, x, a);

@@ -8,8 +8,8 @@
 
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/integrate/events/small_trials.h"
-#include "engine/integrate/events/stick_factor.h"
 #include "engine/integrate/small_run.h"
+#include "engine/model/dense_cholesky.h"
 
 /* Contacts at one evaluation, each at its node's lane. */
 typedef struct small_contacts {
@@ -117,7 +117,7 @@ STRUT_SMALL_INLINE void small_multipliers(const strut_event_stepper *l, double *
   if (l->stuck_count == 1)
     x[0] /= l->response[l->stuck[0]].tangent;
   else
-    strut_stick_solve(l->stuck_count, l->stuck_factor, x);
+    strut_cholesky_solve(l->stuck_count, l->stuck_factor, x);
 }
 
 /* See strut_solve_stick_constraints. */

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Cholesky factor L (n, n; lower triangle, in rows) of the matrix T' M^-1 T by which stuck contacts hold each other.
- * first: (n) the column where each row of L begins.
+ * Cholesky factor L (n, n; lower triangle, in rows) of a small dense matrix, such as that by which stuck contacts hold
+ * each other. first: (n) the column where each row of L begins; NULL: the first.
  */
-#ifndef STRUT_ENGINE_INTEGRATE_EVENTS_STICK_FACTOR_H
-#define STRUT_ENGINE_INTEGRATE_EVENTS_STICK_FACTOR_H
+#ifndef STRUT_ENGINE_MODEL_DENSE_CHOLESKY_H
+#define STRUT_ENGINE_MODEL_DENSE_CHOLESKY_H
 
 #include <math.h>
 #include <stdbool.h>
@@ -14,13 +14,14 @@
 #include "engine/model/hot.h"
 
 /** In place; false if the matrix is not positive definite. */
-STRUT_INLINE bool strut_stick_factor_rows(int32_t n, const int32_t *first, double *a) {
+STRUT_INLINE bool strut_cholesky_factor(int32_t n, const int32_t *first, double *a) {
   for (int32_t i = 0; i < n; i++) {
     double *row = a + (size_t)i * (size_t)n;
-    for (int32_t j = first[i]; j <= i; j++) {
+    int32_t begin = first ? first[i] : 0;
+    for (int32_t j = begin; j <= i; j++) {
       const double *left = a + (size_t)j * (size_t)n;
       double sum = row[j];
-      for (int32_t k = first[i] > first[j] ? first[i] : first[j]; k < j; k++)
+      for (int32_t k = first && first[j] > begin ? first[j] : begin; k < j; k++)
         sum -= row[k] * left[k];
       if (i == j && !(sum > 0.0)) return false;
       row[j] = i == j ? sqrt(sum) : sum / left[j];
@@ -30,8 +31,8 @@ STRUT_INLINE bool strut_stick_factor_rows(int32_t n, const int32_t *first, doubl
 }
 
 /** x becomes (L L')^-1 x. */
-STRUT_INLINE void strut_stick_solve_rows(int32_t n, const int32_t *first, const double *f,
-                                         double *x) {
+STRUT_INLINE void strut_cholesky_solve_rows(int32_t n, const int32_t *first, const double *f,
+                                            double *x) {
   for (int32_t i = 0; i < n; i++) {
     for (int32_t j = first[i]; j < i; j++) x[i] -= f[i * n + j] * x[j];
     x[i] /= f[i * n + i];
@@ -43,7 +44,7 @@ STRUT_INLINE void strut_stick_solve_rows(int32_t n, const int32_t *first, const 
 }
 
 /** The same with whole rows. */
-STRUT_INLINE void strut_stick_solve(int32_t n, const double *f, double *x) {
+STRUT_INLINE void strut_cholesky_solve(int32_t n, const double *f, double *x) {
   for (int32_t i = 0; i < n; i++) {
     for (int32_t j = 0; j < i; j++) x[i] -= f[i * n + j] * x[j];
     x[i] /= f[i * n + i];
