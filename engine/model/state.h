@@ -133,6 +133,8 @@ typedef struct strut_state {
                                         integrate/events/event_log.h; NULL: nobody asks */
   struct strut_variation *variation; /* exact methods with events carry it along, see
                                         integrate/events/variation.h; NULL: nobody asks */
+  struct strut_observer *observer;   /* sees each piece of the motion of a method with events, see
+                                        integrate/observer.h; NULL: nobody asks */
 } strut_state;
 
 /** All memory a run needs; an integrator adds its own to the arena. STRUT_OK or STRUT_NO_MEMORY. */

@@ -180,6 +180,12 @@ static strut_status prepare_run(strut_run *r) {
       (r->detect_steady && strut_steady_detector_create(r->model, &r->experiment->steady,
                                                         span.period, begin, &r->steady)))
     return strut_memory_fail_model(r->model->scene, r->error);
+  if (r->measure.quantities && strut_quantities_need_pieces(r->measure.quantities) &&
+      r->method->observe) {
+    if (!r->method->observe(r->model, r->state, r->workspace))
+      return strut_memory_fail_model(r->model->scene, r->error);
+    strut_quantities_observe(r->measure.quantities);
+  }
   if ((status = place_state(r))) return status;
   if (r->model->plan & STRUT_TERM_SUPPORT_MOTION)
     strut_support_motion_place(r->model, r->state, begin, r->state->q, r->state->v);
@@ -333,6 +339,7 @@ static int64_t find_next_stop(const strut_run *r, int64_t chunk) {
 static void step_with_quantities(strut_run *r, int64_t stop) {
   while (r->state->step < stop) {
     advance(r, r->dt, 1);
+    if (r->state->trouble) return;
     strut_measure_step_quantities(r->model, r->state, &r->measure);
   }
 }
@@ -349,6 +356,7 @@ static void step_to(strut_run *r, int64_t stop) {
   }
   for (; n < stop; n++) {
     advance(r, r->dt, 1);
+    if (r->state->trouble) return;
     strut_measure_step(r->model, r->state, &r->measure);
   }
 }
