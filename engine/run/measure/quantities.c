@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/run/measure/quantities.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -237,7 +238,8 @@ static void add_part(motion_part *part, double begin) {
   strut_quantities *q = part->quantities;
   int last = STRUT_MOST_SAMPLES - 1;
   if (!(part->to > part->from)) return;
-  for (int k = 0; k < last; k++) q->known[k] = k == 0;
+  memset(q->known, 0, sizeof q->known);
+  q->known[0] = true;
   q->coarse_known = false;
   evaluate_at(part, part->to, row_at(q, last));
   q->known[last] = true;
@@ -297,11 +299,21 @@ static void see_piece(strut_observer *observer, strut_state *state,
   if (q->next >= q->marks.count) state->observer = NULL;
 }
 
+/* May a mark lie within the next step of the grid? */
+static bool mark_is_near(const strut_quantities *q, double begin) {
+  return q->next < q->marks.count && q->marks.time[q->next] <= begin + 1.5 * q->marks.step;
+}
+
+/* Does a step of the grid matter by its end alone? */
+static bool ends_suffice(const strut_quantities *q) { return !q->inner && q->next > 0; }
+
 void strut_quantities_begin(strut_quantities *q, const strut_marks *marks, strut_state *state) {
   double t = (double)state->step * marks->step;
   q->marks = *marks;
   q->next = 0;
   q->fresh = true;
+  /* what jumps where the window begins has its value from before that, as at its end */
+  if (q->observed) t -= fmax(4.0 * DBL_EPSILON * t, state->step > 0 ? 1e-12 * marks->step : 0.0);
   strut_columns_begin(&q->columns, state, t);
   for (size_t i = 0; i < q->count; i++) {
     q->meters[i].result = (double)NAN;
@@ -322,10 +334,16 @@ void strut_quantities_begin(strut_quantities *q, const strut_marks *marks, strut
 
 void strut_quantities_step(strut_quantities *q, double length, strut_state *state) {
   double begin = ((double)state->step - 1.0) * q->marks.step;
-  if (q->observed) return; /* the method has shown it */
-  strut_motion_piece piece = strut_dense_step(&q->dense, state, begin, length);
-  see_piece(&q->observer, state, &piece);
-  strut_dense_keep(&q->dense, state);
+  if (q->observed || q->next >= q->marks.count) return; /* the method has shown it; or it is over */
+  if (ends_suffice(q) && !mark_is_near(q, begin)) {
+    strut_columns_evaluate(&q->columns, state, begin + length);
+    for (size_t i = 0; i < q->count; i++)
+      strut_meter_add_even(&q->meters[i], evaluate_meter(q, i), length);
+  } else {
+    strut_motion_piece piece = strut_dense_step(&q->dense, state, begin, length);
+    see_piece(&q->observer, state, &piece);
+  }
+  if (!ends_suffice(q) || mark_is_near(q, begin + length)) strut_dense_keep(&q->dense, state);
 }
 
 /* Fills size, span and noise of all columns over the window. */
