@@ -18,7 +18,8 @@ typedef struct strut_motion_piece {
   const double *q[2], *v[2];        /* [m], [m/s] */
   const double *a[2];               /* [m/s^2]; NULL: of a method without events, see dense.h */
   const double *work[2], *power[2]; /* [J], [W]; only with the ledger */
-  bool smooth; /* it continues the piece before: nothing has switched or jumped in between */
+  bool smooth;    /* it continues the piece before: nothing has switched or jumped in between */
+  bool ends_only; /* velocities have jumped within it: only its ends are known */
   /** Fills the state's held contact forces for an instant within the piece; NULL: they follow from
       q, v and t by the contacts' laws. */
   void (*hold)(const struct strut_motion_piece *piece, const strut_model *model, strut_state *state,

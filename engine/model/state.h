@@ -104,7 +104,8 @@ typedef struct strut_state {
   double *started;     /* (signals) when those with a trigger started [s]; INFINITY: not yet */
   int8_t *trigger_was; /* (signals) did its condition hold when last looked at? -1: not looked at */
   double *held; /* (signals) of sampled ones the value at the latest sample; NAN before the first */
-  bool ledger;  /* keep the ledger? It costs some arithmetic per evaluation */
+  bool kicked; /* velocities have jumped at the end of the latest step of a method without events */
+  bool ledger; /* keep the ledger? It costs some arithmetic per evaluation */
   double *scratch; /* (length) for the mass solve */
   strut_arena arena;
   /* memory of elements, see forces/memory.h; the slots of `rest` that belong to them follow from it */

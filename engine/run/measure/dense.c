@@ -32,7 +32,8 @@ strut_motion_piece strut_dense_step(strut_dense *d, const strut_state *state, do
                               .v = {d->begin_v, state->v},
                               .work = {d->begin_work, state->work},
                               .power = {d->power[0], d->power[1]},
-                              .smooth = true};
+                              .smooth = true,
+                              .ends_only = state->kicked};
 }
 
 /* Accelerations and powers at both ends of a step of the grid. */

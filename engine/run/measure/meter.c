@@ -178,7 +178,7 @@ static double integrate_parabola(double before, double elapsed, double from, dou
   return length * (0.5 * (from + to) - bend * length / (6.0 * (length + elapsed)));
 }
 
-void strut_meter_add_even(strut_meter *m, double value, double length) {
+void strut_meter_add_even(strut_meter *m, double value, double begin, double length) {
   double f = m->value, b = m->before, e = m->elapsed;
   bool curved = m->inner && e > 0.0;
   double integral =
@@ -188,6 +188,8 @@ void strut_meter_add_even(strut_meter *m, double value, double length) {
   note_value(m, value);
   add_integrals(m, integral, square);
   add_rise(m, fmax(0.0, value - f));
+  if (awaits_arrival(m) && is_passed(m, f, value))
+    note_arrival(m, begin + length * (m->definition->target - f) / (value - f));
   if (curved && (f - b) * (value - f) < 0.0) { /* an extreme about the value before */
     double right = (value - f) / length, left = (f - b) / e;
     double curvature = 2.0 * (right - left) / (length + e);

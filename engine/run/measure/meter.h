@@ -65,8 +65,8 @@ void strut_meter_mark(strut_meter *m, double time, double value, double place);
 void strut_meter_jump(strut_meter *m, double time, double value);
 /** Does the value change so evenly to `value`, within `length` [s], that this end tells enough? */
 bool strut_meter_is_even(const strut_meter *m, double value, double length);
-/** Adds a part by its ends alone. */
-void strut_meter_add_even(strut_meter *m, double value, double length);
+/** Adds a part by its ends alone; `begin` and `length` in [s]. */
+void strut_meter_add_even(strut_meter *m, double value, double begin, double length);
 /** Do the samples tell enough? Those at odd places are compared with what the others foretell. */
 bool strut_meter_is_resolved(const strut_meter *m, const strut_samples *samples);
 /** Adds a part by its samples, searching for extremes and arrivals between them. */

@@ -218,8 +218,9 @@ static void add_to_meter(motion_part *part, size_t i, double begin) {
                            .context = part};
   double end = row_at(q, STRUT_MOST_SAMPLES - 1)[i];
   part->meter = i;
-  if (strut_meter_is_even(m, end, samples.length)) {
-    strut_meter_add_even(m, end, samples.length);
+  if (part->piece->ends_only) m->elapsed = 0.0; /* a straight line */
+  if (part->piece->ends_only || strut_meter_is_even(m, end, samples.length)) {
+    strut_meter_add_even(m, end, begin, samples.length);
     return;
   }
   row_at(q, 0)[i] = m->value;
@@ -338,7 +339,7 @@ void strut_quantities_step(strut_quantities *q, double length, strut_state *stat
   if (ends_suffice(q) && !mark_is_near(q, begin)) {
     strut_columns_evaluate(&q->columns, state, begin + length);
     for (size_t i = 0; i < q->count; i++)
-      strut_meter_add_even(&q->meters[i], evaluate_meter(q, i), length);
+      strut_meter_add_even(&q->meters[i], evaluate_meter(q, i), begin, length);
   } else {
     strut_motion_piece piece = strut_dense_step(&q->dense, state, begin, length);
     see_piece(&q->observer, state, &piece);
