@@ -88,6 +88,55 @@ static const char *super_stability_words(const strut_rigidity *r,
 
 /* ---- JSON ---- */
 
+/* A cable that does not pull in this shape. */
+static bool is_idle(const strut_rigidity *r, const strut_scene *scene, size_t j) {
+  return scene->members[j].kind == STRUT_CABLE && !(r->force[j] > 0.0);
+}
+
+enum { MOST_ROWS = 30, MOST_STATES = 6, DIGITS = 6 };
+
+static strut_rounded_quantity in(double value, const char *unit) {
+  return strut_quantity_of(value, DIGITS, unit);
+}
+
+static void add_rank(strut_buffer *table, const strut_rigidity *r) {
+  const strut_null_spaces *s = &r->spaces;
+  strut_buffer_add(table, "  rank               %d of %d x %d; %s kept down to %.4g, ", s->rank,
+                   r->matrix.rows, r->matrix.columns,
+                   s->dense ? "singular values" : "diagonal of R", s->kept);
+  if (s->dense && s->dropped > 0)
+    strut_buffer_add(table, "dropped from %.1e\n", s->dropped);
+  else
+    strut_buffer_add(table, "%s\n", s->dense ? "the rest are zero" : "by sparse QR");
+  if (s->weak > 0)
+    strut_buffer_add(
+        table,
+        "                     %d of them below a millionth of the largest: as small a\n"
+        "                     displacement of nodes may change s and f\n",
+        s->weak);
+}
+
+static void add_counts(strut_buffer *table, const strut_rigidity *r, const strut_scene *scene) {
+  const char *others = scene->hinge_count && scene->cell_count ? ", hinges and cells"
+                       : scene->hinge_count                    ? " and hinges"
+                       : scene->cell_count                     ? " and cells"
+                                                               : "";
+  const strut_mechanisms *m = &r->mechanisms;
+  strut_buffer_add(table, "  self-stress        s = %d\n", r->states.count);
+  strut_buffer_add(table, "  mechanisms         f = %d", m->count);
+  const char *before = ": ";
+  const int32_t count[] = {m->rigid_body, m->infinitesimal, m->finite, m->undecided};
+  for (int i = 0; i < 4; i++) {
+    if (count[i] == 0) continue;
+    strut_buffer_add(table, "%s%d %s", before, count[i],
+                     strut_motion_kind_name((strut_motion_kind)i));
+    before = ", ";
+  }
+  strut_buffer_add(table,
+                   "\n  Maxwell-Calladine  %d members%s - %d free coordinates = %d = s - f\n",
+                   r->matrix.columns, others, r->matrix.rows, r->matrix.columns - r->matrix.rows);
+}
+
 /* Forces by member, or force densities where lengths are given. */
 static void put_map(strut_json *json, struct cJSON *to, const char *key, const strut_scene *scene,
                     const double *force, const double *length) {
@@ -262,6 +311,9 @@ static void put_members(strut_json *json, const strut_rigidity *r, const strut_s
   strut_json_bool(json, json->root, "equilibrium", r->equilibrium);
   strut_json_number(json, json->root, "residual", r->residual);
   strut_json_bool(json, json->root, "self_equilibrium", r->self_equilibrium);
+  struct cJSON *idle = strut_json_array(json, json->root, "without_force");
+  for (size_t j = 0; j < scene->member_count; j++)
+    if (is_idle(r, scene, j)) strut_json_text(json, idle, NULL, scene->members[j].name);
   struct cJSON *members = strut_json_object(json, json->root, "members_at");
   for (size_t j = 0; j < scene->member_count; j++) {
     struct cJSON *row = strut_json_object(json, members, scene->members[j].name);
@@ -302,51 +354,21 @@ char *strut_rigidity_json(const strut_rigidity *rigidity, const strut_model *mod
 
 /* ---- the table ---- */
 
-enum { MOST_ROWS = 30, MOST_STATES = 6, DIGITS = 6 };
-
-static strut_rounded_quantity in(double value, const char *unit) {
-  return strut_quantity_of(value, DIGITS, unit);
-}
-
-static void add_rank(strut_buffer *table, const strut_rigidity *r) {
-  const strut_null_spaces *s = &r->spaces;
-  strut_buffer_add(table, "  rank               %d of %d x %d; %s kept down to %.4g, ", s->rank,
-                   r->matrix.rows, r->matrix.columns,
-                   s->dense ? "singular values" : "diagonal of R", s->kept);
-  if (s->dense && s->dropped > 0)
-    strut_buffer_add(table, "dropped from %.1e\n", s->dropped);
-  else
-    strut_buffer_add(table, "%s\n", s->dense ? "the rest are zero" : "by sparse QR");
-  if (s->weak > 0)
-    strut_buffer_add(
-        table,
-        "                     %d of them below a millionth of the largest: as small a\n"
-        "                     displacement of nodes may change s and f\n",
-        s->weak);
-}
-
-static void add_counts(strut_buffer *table, const strut_rigidity *r, const strut_scene *scene) {
-  const char *others = scene->hinge_count && scene->cell_count ? ", hinges and cells"
-                       : scene->hinge_count                    ? " and hinges"
-                       : scene->cell_count                     ? " and cells"
-                                                               : "";
-  const strut_mechanisms *m = &r->mechanisms;
-  strut_buffer_add(table, "  self-stress        s = %d\n", r->states.count);
-  strut_buffer_add(table, "  mechanisms         f = %d", m->count);
-  const char *before = ": ";
-  const int32_t count[] = {m->rigid_body, m->infinitesimal, m->finite, m->undecided};
-  for (int i = 0; i < 4; i++) {
-    if (count[i] == 0) continue;
-    strut_buffer_add(table, "%s%d %s", before, count[i],
-                     strut_motion_kind_name((strut_motion_kind)i));
-    before = ", ";
-  }
+/* Cables that do not pull here, which strut modes leaves out. */
+static void add_idle(strut_buffer *table, const strut_rigidity *r, const strut_scene *scene) {
+  size_t count = 0, first = 0;
+  for (size_t j = scene->member_count; j-- > 0;)
+    if (is_idle(r, scene, j)) count++, first = j;
+  if (!count) return;
+  strut_buffer_add(table, "  without force      %s", scene->members[first].name);
+  if (count > 1) strut_buffer_add(table, " and %zu more", count - 1);
   strut_buffer_add(table,
-                   "\n  Maxwell-Calladine  %d members%s - %d free coordinates = %d = s - f\n",
-                   r->matrix.columns, others, r->matrix.rows, r->matrix.columns - r->matrix.rows);
+                   ": slack or just taut. They count as members here;\n%21sstrut modes leaves them "
+                   "out, and so finds more motions without stiffness\n",
+                   "");
 }
 
-static void add_verdicts(strut_buffer *table, const strut_rigidity *r) {
+static void add_verdicts(strut_buffer *table, const strut_rigidity *r, const strut_scene *scene) {
   char words[STRUT_RIGIDITY_WORDS];
   const strut_tensegrity *t = &r->tensegrity;
   if (r->bars_at_node > 0)
@@ -366,6 +388,7 @@ static void add_verdicts(strut_buffer *table, const strut_rigidity *r) {
                      t->struts_inside ? "I" : "");
   strut_buffer_add(table, "\n  equilibrium        %s: net force on a free coordinate up to %s\n",
                    r->equilibrium ? "yes" : "no", in(r->residual, "N").text);
+  add_idle(table, r, scene);
   if (r->without_length)
     strut_buffer_add(table, "  without length     %d members, which have no direction here\n",
                      r->without_length);
@@ -459,7 +482,7 @@ char *strut_rigidity_table(const strut_rigidity *r, const strut_model *model, co
   strut_buffer_add(&table, "%s%srigidity at: %s\n", name, *name ? ": " : "", at);
   add_rank(&table, r);
   add_counts(&table, r, model->scene);
-  add_verdicts(&table, r);
+  add_verdicts(&table, r, model->scene);
   add_members(&table, r, model->scene);
   add_modes(&table, &r->mechanisms);
   strut_c_locale_leave(locale);
