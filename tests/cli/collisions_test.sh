@@ -187,7 +187,7 @@ holds '.barriers | length == 0'
 holds '[.equilibria[] | select(.nodes.c[1] < 0)] | length == 1 and .[0].through == "k"'
 holds '[.equilibria[] | select(.nodes.c[1] > 0) | .through] | all(. == null)'
 expect 0 equilibria held.yaml --plot held.svg
-out_has "no way here is known but through 'k'"
+out_has "reached only through 'k'"
 # Two rods that cross lie in each other, though nothing pushes them apart; no barrier leads there, nor to the
 # other side by a floppy shape that both sides have.
 cat >rods.yaml <<'YAML'

@@ -322,12 +322,10 @@ static void write_remark(strut_equilibrium_search *h, strut_candidate_equilibriu
 static void add_collisions(const strut_scene *scene, strut_equilibrium *e) {
   size_t used = strlen(e->verdict), room = sizeof e->verdict - used;
   if (e->overlap >= 0)
-    snprintf(e->verdict + used, room, "; the bodies of '%.60s' lie in each other",
-             scene->collisions[e->overlap].name);
+    snprintf(e->verdict + used, room, "; '%.60s' overlaps", scene->collisions[e->overlap].name);
   else if (e->through >= 0)
-    snprintf(e->verdict + used, room,
-             e->outcome == STRUT_OUTCOME_UNSTABLE ? "; leads through '%.60s'"
-                                                  : "; no way here is known but through '%.60s'",
+    snprintf(e->verdict + used, room, "; %s '%.60s'",
+             e->outcome == STRUT_OUTCOME_UNSTABLE ? "leads through" : "reached only through",
              scene->collisions[e->through].name);
 }
 
