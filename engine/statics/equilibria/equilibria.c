@@ -210,6 +210,7 @@ static strut_status find_start_state(const strut_equilibrium_search *h, double *
   strut_minimiser *minimiser;
   strut_status status = strut_minimiser_create(h->potential, &minimiser, h->error);
   if (status) return status;
+  strut_minimiser_watch(minimiser, h->options->interrupt);
   memcpy(q, h->model->start, (size_t)h->model->length * sizeof *q);
   bool rests = strut_descend_gently(minimiser, q) == STRUT_DESCENT_REACHED;
   *state = rests ? strut_landscape_find(&h->landscape, q) : -1;

@@ -302,6 +302,7 @@ static void describe_idle(const strut_modes_work *work, const double *x, strut_m
     if (fabs(strut_vibration_spread(v, j, x).along) <= 1e-6 * hypot(lead[0], lead[1])) continue;
     if (!count++) first = j;
   }
+  mode->just_taut = count;
   if (count == 1)
     append_text(mode, ", as '%.24s' is just taut", v->model->scene->members[first].name);
   if (count > 1) append_text(mode, ", as %d members are just taut", (int)count);

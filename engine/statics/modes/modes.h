@@ -46,6 +46,7 @@ typedef struct strut_mode {
   double error; /* of the eigenvalue, relative, estimated: of the method, and of the last
                               bits of the scene's numbers */
   strut_mode_kind kind;
+  int32_t just_taut;     /* of a mechanism: members without force that would resist it one way */
   double *shape;         /* (length) largest entry 1 */
   char description[200]; /* in words */
 } strut_mode;
