@@ -86,56 +86,12 @@ static const char *super_stability_words(const strut_rigidity *r,
   return words;
 }
 
-/* ---- JSON ---- */
-
 /* A cable that does not pull in this shape. */
 static bool is_idle(const strut_rigidity *r, const strut_scene *scene, size_t j) {
   return scene->members[j].kind == STRUT_CABLE && !(r->force[j] > 0.0);
 }
 
-enum { MOST_ROWS = 30, MOST_STATES = 6, DIGITS = 6 };
-
-static strut_rounded_quantity in(double value, const char *unit) {
-  return strut_quantity_of(value, DIGITS, unit);
-}
-
-static void add_rank(strut_buffer *table, const strut_rigidity *r) {
-  const strut_null_spaces *s = &r->spaces;
-  strut_buffer_add(table, "  rank               %d of %d x %d; %s kept down to %.4g, ", s->rank,
-                   r->matrix.rows, r->matrix.columns,
-                   s->dense ? "singular values" : "diagonal of R", s->kept);
-  if (s->dense && s->dropped > 0)
-    strut_buffer_add(table, "dropped from %.1e\n", s->dropped);
-  else
-    strut_buffer_add(table, "%s\n", s->dense ? "the rest are zero" : "by sparse QR");
-  if (s->weak > 0)
-    strut_buffer_add(
-        table,
-        "                     %d of them below a millionth of the largest: as small a\n"
-        "                     displacement of nodes may change s and f\n",
-        s->weak);
-}
-
-static void add_counts(strut_buffer *table, const strut_rigidity *r, const strut_scene *scene) {
-  const char *others = scene->hinge_count && scene->cell_count ? ", hinges and cells"
-                       : scene->hinge_count                    ? " and hinges"
-                       : scene->cell_count                     ? " and cells"
-                                                               : "";
-  const strut_mechanisms *m = &r->mechanisms;
-  strut_buffer_add(table, "  self-stress        s = %d\n", r->states.count);
-  strut_buffer_add(table, "  mechanisms         f = %d", m->count);
-  const char *before = ": ";
-  const int32_t count[] = {m->rigid_body, m->infinitesimal, m->finite, m->undecided};
-  for (int i = 0; i < 4; i++) {
-    if (count[i] == 0) continue;
-    strut_buffer_add(table, "%s%d %s", before, count[i],
-                     strut_motion_kind_name((strut_motion_kind)i));
-    before = ", ";
-  }
-  strut_buffer_add(table,
-                   "\n  Maxwell-Calladine  %d members%s - %d free coordinates = %d = s - f\n",
-                   r->matrix.columns, others, r->matrix.rows, r->matrix.columns - r->matrix.rows);
-}
+/* ---- JSON ---- */
 
 /* Forces by member, or force densities where lengths are given. */
 static void put_map(strut_json *json, struct cJSON *to, const char *key, const strut_scene *scene,
@@ -353,6 +309,50 @@ char *strut_rigidity_json(const strut_rigidity *rigidity, const strut_model *mod
 }
 
 /* ---- the table ---- */
+
+enum { MOST_ROWS = 30, MOST_STATES = 6, DIGITS = 6 };
+
+static strut_rounded_quantity in(double value, const char *unit) {
+  return strut_quantity_of(value, DIGITS, unit);
+}
+
+static void add_rank(strut_buffer *table, const strut_rigidity *r) {
+  const strut_null_spaces *s = &r->spaces;
+  strut_buffer_add(table, "  rank               %d of %d x %d; %s kept down to %.4g, ", s->rank,
+                   r->matrix.rows, r->matrix.columns,
+                   s->dense ? "singular values" : "diagonal of R", s->kept);
+  if (s->dense && s->dropped > 0)
+    strut_buffer_add(table, "dropped from %.1e\n", s->dropped);
+  else
+    strut_buffer_add(table, "%s\n", s->dense ? "the rest are zero" : "by sparse QR");
+  if (s->weak > 0)
+    strut_buffer_add(
+        table,
+        "                     %d of them below a millionth of the largest: as small a\n"
+        "                     displacement of nodes may change s and f\n",
+        s->weak);
+}
+
+static void add_counts(strut_buffer *table, const strut_rigidity *r, const strut_scene *scene) {
+  const char *others = scene->hinge_count && scene->cell_count ? ", hinges and cells"
+                       : scene->hinge_count                    ? " and hinges"
+                       : scene->cell_count                     ? " and cells"
+                                                               : "";
+  const strut_mechanisms *m = &r->mechanisms;
+  strut_buffer_add(table, "  self-stress        s = %d\n", r->states.count);
+  strut_buffer_add(table, "  mechanisms         f = %d", m->count);
+  const char *before = ": ";
+  const int32_t count[] = {m->rigid_body, m->infinitesimal, m->finite, m->undecided};
+  for (int i = 0; i < 4; i++) {
+    if (count[i] == 0) continue;
+    strut_buffer_add(table, "%s%d %s", before, count[i],
+                     strut_motion_kind_name((strut_motion_kind)i));
+    before = ", ";
+  }
+  strut_buffer_add(table,
+                   "\n  Maxwell-Calladine  %d members%s - %d free coordinates = %d = s - f\n",
+                   r->matrix.columns, others, r->matrix.rows, r->matrix.columns - r->matrix.rows);
+}
 
 /* Cables that do not pull here, which strut modes leaves out. */
 static void add_idle(strut_buffer *table, const strut_rigidity *r, const strut_scene *scene) {
