@@ -109,7 +109,7 @@ typedef struct strut_state {
   double *scratch; /* (length) for the mass solve */
   strut_arena arena;
   /* memory of elements, see forces/memory.h; the slots of `rest` that belong to them follow from it */
-  double *plastic; /* (memory_count) plastic strain */
+  double *plastic; /* (memory_count) slip of sliders, see forces/memory.h */
   double
       *broken_at; /* (breakable_count) since when it carries nothing [s]; INFINITY: it does not */
   int8_t *guide_mode; /* (memory_slots) at the slots of cables with guide friction: see capstan.h */

@@ -31,9 +31,18 @@ double strut_run_clock(void) {
 
 /* ---- before the first step ---- */
 
+/* More steps than these are refused, so that to recommend them is no help. */
+static const double MOST_STEPS = 1e15;
+
 static strut_status check_step_limit(const strut_run *r, bool bound) {
-  double limit = r->summary->step_limit;
+  double limit = r->summary->step_limit, duration = (double)(r->steps - r->first) * r->dt;
   if (r->dt <= limit || r->options->force) return STRUT_OK;
+  if (!(limit * MOST_STEPS > duration))
+    return strut_fail(r->error, STRUT_STEP_TOO_LARGE,
+                      "the largest stable step of %s would be %.2g s (all contacts closed), too "
+                      "small for a run of %.4g s: stiffnesses or dampings are far too large beside "
+                      "the masses; check their units",
+                      r->method->name, limit, duration);
   if (bound)
     return strut_fail(r->error, STRUT_STEP_TOO_LARGE,
                       "the step %g s is above %.4g s, a bound below which %s is stable (all "

@@ -336,10 +336,9 @@ strut_status strut_path_follow(const strut_model *model, const strut_experiment 
   int32_t steps = options->steps > 0 ? options->steps : DEFAULT_STEPS;
   path_start b = {.options = options, .drawn = model, .setup.experiment = *experiment};
   *path = (strut_path){0};
-  if (model->contacts.surface)
+  if (!strut_path_has_line(model))
     return strut_fail(error, STRUT_USAGE,
-                      "paths need a ground that is one straight line at rest; give 'ground' with "
-                      "height and slope, or none");
+                      "paths need a ground that is one straight line at rest, or none");
   if (!(fabs(until - options->from) > 0))
     return strut_fail(error, STRUT_USAGE, "the path ends where it starts, at %.6g", until);
   b.load = strut_arena_allocate(&b.arena, length, sizeof *b.load);
