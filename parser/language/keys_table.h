@@ -457,9 +457,9 @@
   X(FOLLOW, TO, "to", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "The upper end.") \
   X(FOLLOW, AT, "at", NUMBERS, CONTEXT, ANY, "the model's own value, or the middle", OPTIONAL, 0, "", BY_HAND, "Values at which runs start branches.") \
   X(FOLLOW, START_FROM, "start_from", NAMES, NONE, ANY, "as the model says", OPTIONAL, 0, "", BY_HAND, "Configurations from whose equilibria these runs start.") \
-  X(FOLLOW, ACCURACY, "accuracy", NUMBER, NONE, ABOVE_ZERO, "0.1 %", OPTIONAL, 0, "", FIELD(strut_study_follow, accuracy), "Relative error of velocities, at most 10 %.") \
-  X(FOLLOW, INTEGRATOR, "integrator", WORD, NONE, ANY, "adaptive", OPTIONAL, 0, STRUT_INTEGRATOR_WORDS, FIELD(strut_study_follow, integrator), "A method that locates events where there are contacts or cables.") \
-  X(FOLLOW, STEPS, "steps", NUMBER, NONE, WHOLE(1, 100000), "400", OPTIONAL, 0, "", FIELD(strut_study_follow, steps), "Maximum number of steps of a branch each way.") \
+  X(FOLLOW, ACCURACY, "accuracy", NUMBER, NONE, ABOVE_ZERO, STRUT_TEXT_OF(STRUT_FOLLOW_USUAL_PERCENT) " %", OPTIONAL, 0, "", FIELD(strut_study_follow, accuracy), "Relative error of velocities, at most 10 %.") \
+  X(FOLLOW, INTEGRATOR, "integrator", WORD, NONE, ANY, "`rk4-events`, or `adaptive` where that cannot", OPTIONAL, 0, STRUT_INTEGRATOR_WORDS, FIELD(strut_study_follow, integrator), "A method that locates events where there are contacts or cables.") \
+  X(FOLLOW, STEPS, "steps", NUMBER, NONE, WHOLE(1, 100000), STRUT_TEXT_OF(STRUT_FOLLOW_USUAL_STEPS), OPTIONAL, 0, "", FIELD(strut_study_follow, steps), "Maximum number of steps of a branch each way.") \
   X(FOLLOW, BASINS, "basins", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_study_follow, basins), "Kick the stable motions at the values of `at`, to find how far they may be pushed.")
 
 /* clang-format on */
