@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The documents are right: every command of every ```sh block of README.md, docs/*.md and docs/*/*.md
-# runs in a scratch folder (one per document, holding models/) with the strut just built first on the
-# PATH, and none fails; every link leads to a file and, after #, to a heading of it; and every source
+# runs in a scratch folder (one per document, holding models/ and the tables of docs/paper) with the strut just
+# built first on the PATH, and none fails; every link leads to a file and, after #, to a heading of it; every source
 # file that is named exists; and what a page says is printed, is (docs_numbers.py). Two blocks of README.md
 # install and build, which is not done here: the one for the tests must be what .ci/run runs, the one for
 # users the same with another preset, and its last command runs here.
@@ -46,6 +46,8 @@ commands_work() {
   complaints=$(blocks "$1" "$2/blocks")
   [ -z "$complaints" ] || { echo "$complaints"; return 1; }
   cp -R "$root/models" "$2/here/models"
+  mkdir -p "$2/here/docs/paper" # tables of figures that take too long to make here
+  cp "$root"/docs/paper/*.csv "$2/here/docs/paper"
   for block in "$2"/blocks/*.sh; do
     [ -e "$block" ] || continue
     ran=$((ran + 1))
