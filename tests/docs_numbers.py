@@ -19,7 +19,7 @@ BASES = {"%": ("%", 0.01), "degrees": ("rad", math.pi / 180), "deg": ("rad", mat
 BASES.update({base: (base, 1.0) for base in "N/m m/s rad/s m/s² Hz rad N J W g s m".split()})
 UNIT = re.compile(r" ?([" + "".join(PREFIXES) + r"]?)(" + "|".join(sorted(BASES, key=len, reverse=True)) +
                   r")(?![\w/²^])")
-NUMBER = re.compile(r"(?<![\w.,])([-+−]?)(\d{1,3}(?:,\d{3})+|\d+(?:\.\d+)?)(e[-+]?\d+)?(?![\d]|\.\d)")
+NUMBER = re.compile(r"(?<![\w.])([-+−]?)(\d{1,3}(?:,\d{3})+|\d+(?:\.\d+)?)(e[-+]?\d+)?(?![\d]|\.\d)")
 SLACK = 0.6  # of a unit of the last digit: rounding, and last bits that differ from machine to machine
 
 
@@ -80,6 +80,9 @@ def fail(line, text):
 
 with open(page, encoding="utf-8") as file:
     lines = file.read().split("\n")
+for at, text in enumerate(lines):
+    if text != MARKER and text.strip(" <!->") == MARKER.strip(" <!->"):
+        fail(at + 1, f"not spelled {MARKER}")
 for claims, blocks in sections(lines):
     printed = []
     for line, text in blocks if claims else []:
