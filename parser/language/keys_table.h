@@ -322,7 +322,7 @@
   X(SOLVER, REFINE, "refine", NUMBER, NONE, ABOVE_ZERO, "from the scene", OPTIONAL, 0, "", FIELD(strut_experiment, refine), "Methods with events divide the step by this factor after a touchdown; 1 switches the refinement off.") \
   X(SOLVER, REFINE_TIME, "refine_time", NUMBER, TIME, ABOVE_ZERO, "from the scene", OPTIONAL, 0, "", FIELD(strut_experiment, refine_time), "Duration of the refinement after a touchdown.") \
   X(SOLVER, ACCURACY, "accuracy", NUMBER, NONE, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_experiment, accuracy), "Wanted relative accuracy of the measured quantities, such as 1 %; method and step are chosen to meet it.") \
-  X(SOLVER, BUDGET, "budget", NUMBER, NONE, ABOVE_ZERO, "20", OPTIONAL, 0, "", FIELD(strut_experiment, budget), "Work allowed for `accuracy`, in units of one fine run with a fixed step; a result that would need more is reported as such.") \
+  X(SOLVER, BUDGET, "budget", NUMBER, NONE, ABOVE_ZERO, STRUT_TEXT_OF(STRUT_USUAL_BUDGET), OPTIONAL, 0, "", FIELD(strut_experiment, budget), "Work allowed for `accuracy`, in units of one fine run with a fixed step; a result that would need more is reported as such.") \
   X(RUN, DURATION, "duration", NUMBER, TIME, ABOVE_ZERO, "", OPTIONAL, 3, "", FIELD(strut_experiment, duration), "Simulated time.") \
   X(RUN, PERIODS, "periods", NUMBER, NONE, ABOVE_ZERO, "", OPTIONAL, 3, "", FIELD(strut_experiment, periods), "Simulated time in periods of the signal that `of` names.") \
   X(RUN, OF, "of", NAME, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "The actuator, load or signal whose periods count.") \
