@@ -97,6 +97,9 @@ os.chdir(tempfile.mkdtemp())
 with open("study.yaml", "w", encoding="utf-8") as study:
     study.write(f"strut: 1\nstudy: s\nmodel: {HOPPER}\naxes:\n  - seconds: [0.1, 0.2]\n"
                 "trajectories: yes\n")
+with open("map.yaml", "w", encoding="utf-8") as study:  # two threads ask for the same equilibria
+    study.write(f"strut: 1\nstudy: s\nmodel: {MODELS}/crawler/switch.yaml\naxes:\n  - amplitude: [0.1 mm, 1 mm]\n"
+                "  - frequency: [10 Hz, 11 Hz, 12 Hz]\nrun: {duration: 20 ms}\nkeep: [outcome]\n")
 OVER = "over: {stiffness: {from: 50 N/m, to: 150 N/m}, mass: {from: 0.5 kg, to: 2 kg}}"
 for study_name, rest in (
         ("search", f"search: {{maximise: frequency_1, {OVER}, evaluations: 12}}"),
@@ -113,5 +116,7 @@ for command in wanted:
 for command in ("run", "sweep", "export", "view", "path"):
     if command in wanted:
         limited(command, COMMANDS[command][0])
+if "sweep" in wanted:
+    limited("map", ["sweep", "map.yaml", "-o", "out", "--threads", "2", "--quiet"])
 shutil.rmtree(os.getcwd())
 finish()
