@@ -82,6 +82,8 @@ strut_status strut_run_fail_lost_node(const strut_run *r, int32_t node);
 void strut_run_watch_collisions(strut_run *run);
 /** The error of a run in which a cell has collapsed. */
 strut_status strut_run_fail_flat_cell(const strut_run *run, int32_t cell);
+/** STRUT_DIVERGED with the place where a loss has given energy. */
+strut_status strut_run_check_losses(const strut_run *r);
 /** STRUT_DIVERGED with the name of an internal state that is no longer a finite number. */
 strut_status strut_run_check_states(const strut_run *r);
 /** Reports a method that failed: STRUT_DIVERGED. */
