@@ -87,12 +87,23 @@ static void warn_of_tunnelling(const strut_run *r) {
                      c->name, r->tunnel_speed, c->thickness, r->dt);
 }
 
-strut_status strut_run_fail_flat_cell(const strut_run *r, int32_t cell) {
-  return strut_fail(
-      r->error, STRUT_DIVERGED,
-      "the area of cell '%s' reached zero at t = %.9g s, so that it encloses nothing; "
-      "keep its nodes apart, or use a smaller step if they should not meet",
-      r->model->scene->cells[cell].name, strut_run_time(r));
+strut_status strut_run_check_collapse(const strut_run *r) {
+  const strut_scene *scene = r->model->scene;
+  int32_t cell = strut_cell_that_collapsed(r->model, r->state->q);
+  int32_t member = strut_member_that_is_wound_in(r->model, r->state->rest);
+  if (cell >= 0)
+    return strut_fail(
+        r->error, STRUT_DIVERGED,
+        "the area of cell '%s' reached zero at t = %.9g s, so that it encloses nothing; "
+        "keep its nodes apart, or use a smaller step if they should not meet",
+        scene->cells[cell].name, strut_run_time(r));
+  if (member >= 0)
+    return strut_fail(
+        r->error, STRUT_DIVERGED,
+        "the rest length of member '%s' reached zero at t = %.9g s, where its stiffness, "
+        "axial_stiffness / rest length, has no bound; shorten it by less",
+        scene->members[member].name, strut_run_time(r));
+  return STRUT_OK;
 }
 
 /* The node that moves fastest, of those that touch a ground or of all. */

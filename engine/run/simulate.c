@@ -414,8 +414,8 @@ strut_status strut_run_sample(strut_run *r, int64_t *stop) {
   if (states_status) return states_status;
   if (lost >= 0) return strut_run_fail_lost_node(r, lost);
   if (r->model->scene->collision_count) strut_run_watch_collisions(r);
-  int32_t flat = strut_cell_that_collapsed(r->model, r->state->q);
-  if (flat >= 0) return strut_run_fail_flat_cell(r, flat);
+  strut_status collapse_status = strut_run_check_collapse(r);
+  if (collapse_status) return collapse_status;
   strut_status balance_status = n >= r->balance.next ? sample_balance(r) : STRUT_OK;
   if (balance_status) return balance_status;
   strut_status steady_status = r->detect_steady ? detect_steady_motion(r) : STRUT_OK;
