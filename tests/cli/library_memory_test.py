@@ -79,7 +79,7 @@ def fails_everywhere(name, words, spared):
     check(codes.get(4, 0) > 0, f"{name}: nothing failed")
 
 
-def limited(name, words):
+def limited(name, words, times=1):
     """From the limit on at which the program starts at all, in steps of a megabyte."""
     begin = 40 << 20
     while call(["--version"], begin).returncode != 0:
@@ -87,9 +87,10 @@ def limited(name, words):
     step = (1 << 20) if not COUNT else (3 << 20)
     codes = {}
     for limit in range(begin, begin + (60 << 20), step):
-        done = call(words, limit)
-        codes[done.returncode] = codes.get(done.returncode, 0) + 1
-        check(done.returncode >= 0, f"{name}: with {limit >> 20} MB: signal {-done.returncode}")
+        for _ in range(times):
+            done = call(words, limit)
+            codes[done.returncode] = codes.get(done.returncode, 0) + 1
+            check(done.returncode >= 0, f"{name}: with {limit >> 20} MB: signal {-done.returncode}")
     print(f"{name}: from {begin >> 20} MB on, exit codes {codes}", flush=True)
 
 
@@ -98,8 +99,8 @@ with open("study.yaml", "w", encoding="utf-8") as study:
     study.write(f"strut: 1\nstudy: s\nmodel: {HOPPER}\naxes:\n  - seconds: [0.1, 0.2]\n"
                 "trajectories: yes\n")
 with open("map.yaml", "w", encoding="utf-8") as study:  # two threads ask for the same equilibria
-    study.write(f"strut: 1\nstudy: s\nmodel: {MODELS}/crawler/switch.yaml\naxes:\n  - amplitude: [0.1 mm, 1 mm]\n"
-                "  - frequency: [10 Hz, 11 Hz, 12 Hz]\nrun: {duration: 20 ms}\nkeep: [outcome]\n")
+    study.write(f"strut: 1\nstudy: s\nmodel: {MODELS}/crawler/switch.yaml\naxes:\n  - amplitude: [0.1 mm, 0.5 mm, 1 mm]\n"
+                "  - frequency: [10 Hz, 11 Hz, 12 Hz, 13 Hz]\nrun: {duration: 20 ms}\nkeep: [outcome]\n")
 OVER = "over: {stiffness: {from: 50 N/m, to: 150 N/m}, mass: {from: 0.5 kg, to: 2 kg}}"
 for study_name, rest in (
         ("search", f"search: {{maximise: frequency_1, {OVER}, evaluations: 12}}"),
@@ -117,6 +118,6 @@ for command in ("run", "sweep", "export", "view", "path"):
     if command in wanted:
         limited(command, COMMANDS[command][0])
 if "sweep" in wanted:
-    limited("map", ["sweep", "map.yaml", "-o", "out", "--threads", "2", "--quiet"])
+    limited("map", ["sweep", "map.yaml", "-o", "out", "--threads", "2", "--quiet"], times=5)
 shutil.rmtree(os.getcwd())
 finish()
