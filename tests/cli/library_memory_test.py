@@ -56,8 +56,8 @@ def call(words, limit=None, **environment):
     if os.path.exists("out.html"):
         os.remove("out.html")
     return subprocess.run(
-        [STRUT, *words], capture_output=True, text=True, errors="replace",
-        env=dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", **environment),
+        [STRUT, *words], capture_output=True, text=True, errors="replace", timeout=120,
+        env=dict(os.environ, **{"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", **environment}),
         preexec_fn=limit and (lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit))))
 
 
@@ -79,7 +79,7 @@ def fails_everywhere(name, words, spared):
     check(codes.get(4, 0) > 0, f"{name}: nothing failed")
 
 
-def limited(name, words, times=1):
+def limited(name, words, times=1, **environment):
     """From the limit on at which the program starts at all, in steps of a megabyte."""
     begin = 40 << 20
     while call(["--version"], begin).returncode != 0:
@@ -88,7 +88,7 @@ def limited(name, words, times=1):
     codes = {}
     for limit in range(begin, begin + (60 << 20), step):
         for _ in range(times):
-            done = call(words, limit)
+            done = call(words, limit, **environment)
             codes[done.returncode] = codes.get(done.returncode, 0) + 1
             check(done.returncode >= 0, f"{name}: with {limit >> 20} MB: signal {-done.returncode}")
     print(f"{name}: from {begin >> 20} MB on, exit codes {codes}", flush=True)
@@ -117,6 +117,8 @@ for command in wanted:
 for command in ("run", "sweep", "export", "view", "path"):
     if command in wanted:
         limited(command, COMMANDS[command][0])
+if "modes" in wanted:  # OpenBLAS, if it is the BLAS, waits at exit for threads that it could not start
+    limited("modes", COMMANDS["modes"][0], OPENBLAS_NUM_THREADS="8")
 if "sweep" in wanted:
     limited("map", ["sweep", "map.yaml", "-o", "out", "--threads", "2", "--quiet"], times=5)
 shutil.rmtree(os.getcwd())
