@@ -17,6 +17,7 @@ static const double STRAIGHT = 1e-13;
 typedef struct cable {
   int n;                     /* segments */
   double ea, whole, winding; /* E [N], rest length [m] and its rate [m/s] */
+  bool axial;                /* E stays where the rest length is driven */
   double friction;
   double length[MOST], x[MOST], y[MOST]; /* and direction */
   double turn[MOST], bend[MOST];         /* of the guide, with its sign and without */
@@ -47,7 +48,8 @@ static void measure(const strut_model *model, const double *rest, int32_t i, con
   double others = 0.0;
   c->n = e->nodes - 1;
   c->whole = rest[e->base];
-  c->ea = e->numbers.stiffness * c->whole;
+  c->axial = e->law == STRUT_LAW_AXIAL;
+  c->ea = c->axial ? e->numbers.axial : e->numbers.stiffness * c->whole;
   c->friction = e->guide_friction;
   for (int k = 0; k < c->n; k++) {
     double x = q[at[k + 1]] - q[at[k]], y = q[at[k + 1] + 1] - q[at[k] + 1];
@@ -287,7 +289,8 @@ static double damper_force(const strut_element *e, const cable *c) {
 static void add_powers(strut_state *state, const cable *c, double damper, bool frozen) {
   double rate = -c->winding, lost = 0.0;
   for (int k = 0; k < c->n; k++) rate += c->length_rate[k];
-  double drive = (energy_of(c) / c->whole - carried(c, 0) - damper) * c->winding;
+  double stiffer = c->axial ? 0.0 : energy_of(c) / c->whole; /* E grows with the rest length */
+  double drive = (stiffer - carried(c, 0) - damper) * c->winding;
   for (int k = 0; k + 1 < c->n && frozen; k++)
     lost += (carried(c, k) - carried(c, k + 1)) * c->flow[k];
   lost += damper * rate;

@@ -125,11 +125,39 @@ static void add_members(const strut_model *model, strut_state *state, strut_disc
   }
 }
 
-/* Energy of an element at a stretch from its natural strain at the step's end. */
+/* Energy of an element at a stretch from a natural strain. */
 static double energy_at(const strut_element *e, double natural, double stretch) {
   if (e->carries && !(e->carries * stretch > 0.0)) return 0.0;
   double strain = strut_element_origin(e, natural) + stretch;
   return strut_law_respond(e->law, &e->numbers, strain, natural, -1).energy;
+}
+
+/* Does the force depend on the natural strain beside the stretch? */
+static bool law_scales(strut_law_kind law) {
+  return law == STRUT_LAW_LOGARITHMIC || law >= STRUT_LAW_AXIAL;
+}
+
+/*
+ * The end of a step at which the element's force is averaged. A law that does not depend on the stretch alone has the
+ * natural strain half-way, so that the method keeps its order.
+ */
+static strut_element_pose averaged_end(const strut_element *e, const strut_element_pose *end,
+                                       double natural0) {
+  strut_element_pose at = {.strain = end->strain,
+                           .natural = end->natural,
+                           .force = end->force,
+                           .energy = end->energy,
+                           .slope = end->slope};
+  if (!law_scales(e->law) || natural0 == end->natural) return at;
+  double stretch = end->strain - strut_element_origin(e, end->natural);
+  at.natural = 0.5 * (natural0 + end->natural);
+  at.strain = strut_element_origin(e, at.natural) + stretch;
+  strut_law_response r = strut_law_respond(e->law, &e->numbers, at.strain, at.natural, -1);
+  bool beyond = !e->carries || e->carries * stretch > 0.0;
+  bool acts = beyond && (!e->carries || e->carries * r.force > 0.0);
+  at.energy = beyond ? r.energy : 0.0;
+  at.force = acts ? r.force : 0.0, at.slope = acts ? r.slope : 0.0;
+  return at;
 }
 
 /* The energy's change over the stretch's; where that is rounding, the force half-way. */
@@ -184,13 +212,14 @@ static void add_element(const strut_model *model, strut_state *state, strut_disc
   }
   double more = square > 0.0 ? (change - work) / square : 0.0;
   double stretch0 = step->strain0[i] - origin0, stretch1 = end.strain - origin1;
-  double energy0 = energy_at(e, end.natural, stretch0);
-  double elastic = average_force(e, &end, stretch0, energy0);
+  strut_element_pose at1 = averaged_end(e, &end, natural0);
+  double energy0 = energy_at(e, at1.natural, stretch0);
+  double elastic = average_force(e, &at1, stretch0, energy0);
   double damping = e->damping * part_beyond(e, stretch0, stretch1);
   double force = elastic + damping * rate;
   bool none = e->carries && !(e->carries * force > 0.0);
   if (none) force = 0.0;
-  double slope = average_slope(e, &end, stretch0, elastic) + damping / step->h;
+  double slope = average_slope(e, &at1, stretch0, elastic) + damping / step->h;
   step->element_slope[i] = none ? 0.0 : fmax(slope, 0.0);
   for (int32_t k = 0; k < 2 * e->nodes; k++) {
     uint32_t c = at[k / 2] + (uint32_t)(k % 2);
@@ -201,7 +230,7 @@ static void add_element(const strut_model *model, strut_state *state, strut_disc
   const stretching m = {.rate = rate, .h = step->h};
   add_powers(state, &now, &m, origin1 - origin0, rest_rate);
   /* what the drive does to the energy at the same stretch, of a law that depends on more */
-  double excess = (energy0 - step->energy0[i]) / step->h;
+  double excess = (energy0 - step->energy0[i] + (end.energy - at1.energy)) / step->h;
   state->power[STRUT_POWER_DRIVE] += excess;
   state->power[STRUT_POWER_EXCHANGED] += fabs(excess);
 }

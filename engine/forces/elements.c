@@ -303,6 +303,18 @@ int32_t strut_cell_that_collapsed(const strut_model *model, const double *q) {
   return -1;
 }
 
+int32_t strut_member_that_is_wound_in(const strut_model *model, const double *rest) {
+  const strut_element_table *t = &model->elements;
+  for (int32_t b = 0; b < t->block_count; b++)
+    for (int32_t i = t->block[b].begin; t->block[b].law == STRUT_LAW_AXIAL && i < t->block[b].end;
+         i++) {
+      const strut_element *e = &t->element[i];
+      double natural = rest[e->remembers ? e->base : e->slot];
+      if (strut_axial_length(&e->numbers, natural) != natural) return e->item;
+    }
+  return -1;
+}
+
 bool strut_shape_has_collapsed(const strut_model *model, const double *q) {
   return strut_hinges_have_collapsed(model, q) || strut_cell_that_collapsed(model, q) >= 0;
 }

@@ -95,6 +95,8 @@ bool strut_hinges_have_collapsed(const strut_model *model, const double *q);
 
 /** A cell with next to no area left, or turned over, or -1: it encloses nothing any more. */
 STRUT_API int32_t strut_cell_that_collapsed(const strut_model *model, const double *q);
+/** A member whose stiffness follows its rest length, next to none of which is left, or -1. */
+STRUT_API int32_t strut_member_that_is_wound_in(const strut_model *model, const double *rest);
 /** True where a hinge or a cell has collapsed. */
 bool strut_shape_has_collapsed(const strut_model *model, const double *q);
 

@@ -11,8 +11,9 @@
 /* A stop is this many times stiffer than its member where the scene does not say. */
 static const double USUAL_STOP = 100.0;
 
-static size_t elements_of_member(const strut_member *m) {
-  return (size_t)strut_member_is_special(m) + (size_t)(m->longest > 0.0) +
+/* `reeled`: see mark_reeled. */
+static size_t elements_of_member(const strut_member *m, bool reeled) {
+  return (size_t)(strut_member_is_special(m) || reeled) + (size_t)(m->longest > 0.0) +
          (size_t)(m->shortest > 0.0);
 }
 
@@ -28,7 +29,8 @@ static size_t count_memory_slots(const strut_scene *scene) {
   size_t count = 0;
   for (size_t j = 0; j < scene->member_count; j++) {
     const strut_member *m = &scene->members[j];
-    count += strut_member_ends(m) ? elements_of_member(m) : (size_t)(yields(&m->law) || rubs(m));
+    count +=
+        strut_member_ends(m) ? elements_of_member(m, false) : (size_t)(yields(&m->law) || rubs(m));
     if (rubs(m)) count += m->guide_count + 1;
   }
   for (size_t i = 0; i < scene->hinge_count; i++)
@@ -65,14 +67,31 @@ double strut_element_start(const strut_model *model, int32_t element) {
 /* A collision of two members is that of each of their four ends with the other member. */
 enum { MOST_PAIRS = 4 };
 
-static void count_elements(const strut_scene *scene, size_t *elements, size_t *nodes) {
+/*
+ * Marks the members with an axial_stiffness whose rest length is driven: their stiffness follows it, so that
+ * they are elements. NULL: there is none, or no memory, which sets *failed.
+ */
+static uint8_t *mark_reeled(const strut_scene *scene, bool *failed) {
+  uint8_t *reeled = NULL;
+  for (size_t i = 0; i < scene->actuator_count && !*failed; i++) {
+    const strut_actuator *a = &scene->actuators[i];
+    if (a->force || a->member < 0 || !(scene->members[a->member].axial_stiffness > 0.0)) continue;
+    if (!reeled) reeled = strut_allocate(scene->member_count, sizeof *reeled);
+    *failed = !reeled;
+    if (reeled) reeled[a->member] = 1;
+  }
+  return reeled;
+}
+
+static void count_elements(const strut_scene *scene, const uint8_t *reeled, size_t *elements,
+                           size_t *nodes) {
   *elements = scene->hinge_count + scene->cell_count;
   *nodes = 3 * scene->hinge_count;
   for (size_t i = 0; i < scene->cell_count; i++) *nodes += scene->cells[i].node_count;
   *elements += MOST_PAIRS * scene->collision_count;
   *nodes += 3 * MOST_PAIRS * scene->collision_count;
   for (size_t j = 0; j < scene->member_count; j++) {
-    size_t own = elements_of_member(&scene->members[j]);
+    size_t own = elements_of_member(&scene->members[j], reeled && reeled[j]);
     *elements += own;
     *nodes += own * (scene->members[j].guide_count + 2);
   }
@@ -146,6 +165,7 @@ static int8_t sign_of(strut_carries carries) {
 
 typedef struct compilation {
   strut_model *model;
+  const uint8_t *reeled;
   strut_element *element;
   uint32_t *at;
   int32_t count, nodes;
@@ -230,11 +250,12 @@ static void add_stop(compilation *c, size_t j, strut_element_role role, double a
 static void add_member(compilation *c, size_t j) {
   const strut_member *m = &c->model->scene->members[j];
   double stiffness = c->model->members.stiffness[j];
-  if (strut_member_is_special(m)) {
+  bool reeled = c->reeled && c->reeled[j];
+  if (strut_member_is_special(m) || reeled) {
     bool cable = m->kind == STRUT_CABLE;
     strut_element *e = add_element(
         c, (strut_element){.strain = m->guide_count ? STRUT_STRAIN_PATH : STRUT_STRAIN_LENGTH,
-                           .law = m->law.kind,
+                           .law = reeled ? STRUT_LAW_AXIAL : m->law.kind,
                            .role = STRUT_ELEMENT_MEMBER,
                            .item = (int32_t)j,
                            .slot = (int32_t)j,
@@ -243,6 +264,7 @@ static void add_member(compilation *c, size_t j) {
     add_way(c, e, m);
     if (!set_numbers(c->model, &m->law, stiffness, &e->numbers)) c->failed = true;
     stiffness = e->numbers.stiffness;
+    if (reeled) e->numbers.axial = m->axial_stiffness, e->numbers.material = (int)m->law.kind;
     e->guide_friction = m->guide_friction;
     if (strut_member_ends(m) || yields(&m->law) || rubs(m)) remember(c, e);
     take_over(c, j);
@@ -443,17 +465,17 @@ static bool list_memories(strut_model *model) {
   return list_breakables(model);
 }
 
-bool strut_elements_compile(strut_model *model) {
+static bool compile(strut_model *model, const uint8_t *reeled) {
   const strut_scene *scene = model->scene;
   size_t elements, nodes;
-  count_elements(scene, &elements, &nodes);
+  count_elements(scene, reeled, &elements, &nodes);
   if (!elements) return true;
-  compilation c = {.model = model};
+  compilation c = {.model = model, .reeled = reeled};
   c.element = strut_arena_allocate(&model->arena, elements, sizeof *c.element);
   c.at = strut_arena_allocate(&model->arena, nodes, sizeof *c.at);
   if (!c.element || !c.at) return false;
   for (size_t j = 0; j < scene->member_count; j++)
-    if (elements_of_member(&scene->members[j])) add_member(&c, j);
+    if (elements_of_member(&scene->members[j], reeled && reeled[j])) add_member(&c, j);
   for (size_t i = 0; i < scene->hinge_count; i++) add_hinge(&c, i);
   for (size_t i = 0; i < scene->cell_count; i++) add_cell(&c, i);
   for (size_t i = 0; i < scene->collision_count; i++) add_collision(&c, i);
@@ -462,4 +484,12 @@ bool strut_elements_compile(strut_model *model) {
   model->plan |= STRUT_TERM_ELEMENTS;
   return !c.failed && sort_elements(&c, &model->elements) && lay_out(model, c.nodes) &&
          link_members(model) && list_memories(model);
+}
+
+bool strut_elements_compile(strut_model *model) {
+  bool failed = false;
+  uint8_t *reeled = mark_reeled(model->scene, &failed);
+  bool done = !failed && compile(model, reeled);
+  strut_release(reeled);
+  return done;
 }

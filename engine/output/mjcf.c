@@ -262,7 +262,8 @@ static void write_actuators(mjcf_writer *w) {
   if (w->scene->actuator_count)
     note(w,
          "signals of actuators: their values are the controls, of a driven rest length its change "
-         "in m (a driven cable then pushes where it would be slack)");
+         "in m (a driven cable then pushes where it would be slack, and an axial_stiffness does "
+         "not follow the length)");
 }
 
 static void write_loads(mjcf_writer *w) {

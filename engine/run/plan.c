@@ -13,6 +13,7 @@ static const strut_plan_term terms[] = {
     {STRUT_TERM_SLACK, "slack test", "a cable", false},
     {STRUT_TERM_ELEMENTS, "running cables", "a cable that runs over guides", false},
     {STRUT_TERM_ELEMENTS, "member laws", "a member with another law than the linear one", false},
+    {STRUT_TERM_ELEMENTS, "reeled members", "an actuator on a member with axial_stiffness", false},
     {STRUT_TERM_ELEMENTS, "stops", "a member with a shortest or longest length", false},
     {STRUT_TERM_ELEMENTS, "hinges", "a hinge", false},
     {STRUT_TERM_ELEMENTS, "cells", "a cell", false},
@@ -51,6 +52,8 @@ static void count_elements(const strut_model *model, strut_plan *plan) {
     plan->laws += m->law.kind != STRUT_LAW_LINEAR || m->law.carries == STRUT_CARRIES_COMPRESSION;
     plan->stops += (size_t)(m->shortest > 0.0) + (size_t)(m->longest > 0.0);
   }
+  for (int32_t i = 0; i < model->elements.count; i++)
+    plan->reeled += model->elements.element[i].law == STRUT_LAW_AXIAL;
   plan->hinges = scene->hinge_count;
   plan->cells = scene->cell_count;
   plan->collisions = scene->collision_count;
@@ -68,6 +71,7 @@ static bool has_element(const strut_plan *plan, const char *name) {
     size_t count;
   } kinds[] = {{"running cables", plan->running_cables},
                {"member laws", plan->laws},
+               {"reeled members", plan->reeled},
                {"stops", plan->stops},
                {"hinges", plan->hinges},
                {"cells", plan->cells},

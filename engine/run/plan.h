@@ -13,11 +13,12 @@ typedef struct strut_plan_term {
   bool in;
 } strut_plan_term;
 
-enum { STRUT_PLAN_TERMS = 24 };
+enum { STRUT_PLAN_TERMS = 25 };
 
 typedef struct strut_plan {
   size_t nodes, degrees_of_freedom, bars, springs, cables, contacts, actuators, loads;
   size_t hinges, running_cables, laws, stops; /* laws: members with another law than the linear */
+  size_t reeled;            /* members with an axial_stiffness whose rest length is driven */
   size_t mass_nonzeros;     /* stored entries of M (lower triangle, each coordinate that differs) */
   size_t factor_nonzeros;   /* entries of its sparse factor; 0 without one */
   size_t dense_entries;     /* of dense block inverses */

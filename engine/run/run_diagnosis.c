@@ -87,12 +87,50 @@ static void warn_of_tunnelling(const strut_run *r) {
                      c->name, r->tunnel_speed, c->thickness, r->dt);
 }
 
-strut_status strut_run_fail_flat_cell(const strut_run *r, int32_t cell) {
+strut_status strut_run_check_collapse(const strut_run *r) {
+  const strut_scene *scene = r->model->scene;
+  int32_t cell = strut_cell_that_collapsed(r->model, r->state->q);
+  int32_t member = strut_member_that_is_wound_in(r->model, r->state->rest);
+  if (cell >= 0)
+    return strut_fail(
+        r->error, STRUT_DIVERGED,
+        "the area of cell '%s' reached zero at t = %.9g s, so that it encloses nothing; "
+        "keep its nodes apart, or use a smaller step if they should not meet",
+        scene->cells[cell].name, strut_run_time(r));
+  if (member >= 0)
+    return strut_fail(
+        r->error, STRUT_DIVERGED,
+        "the rest length of member '%s' reached zero at t = %.9g s, where its stiffness, "
+        "axial_stiffness / rest length, has no bound; shorten it by less",
+        scene->members[member].name, strut_run_time(r));
+  return STRUT_OK;
+}
+
+/* The node that moves fastest, of those that touch a ground or of all. */
+static const char *fastest_node(const strut_run *r, bool of_contacts) {
+  const strut_contact_table *c = &r->model->contacts;
+  int32_t count = of_contacts ? c->count : r->model->node_count, found = 0;
+  double most = -1.0;
+  for (int32_t i = 0; i < count; i++) {
+    uint32_t at = of_contacts ? c->at[i] : 2 * (uint32_t)i;
+    if (speed_of(r, at) > most) most = speed_of(r, at), found = (int32_t)at / 2;
+  }
+  return r->model->scene->nodes[found].name;
+}
+
+strut_status strut_run_check_losses(const strut_run *r) {
+  static const char *const names[] = {[STRUT_LOSS_MEMBERS] = "the dampers of members",
+                                      [STRUT_LOSS_CONTACT] = "the ground's dampers",
+                                      [STRUT_LOSS_FRICTION] = "friction"};
+  const strut_balance_monitor *b = &r->balance;
+  if (!(b->given > 0.0) || r->options->force) return STRUT_OK;
+  bool contacts = b->giver != STRUT_LOSS_MEMBERS;
   return strut_fail(
       r->error, STRUT_DIVERGED,
-      "the area of cell '%s' reached zero at t = %.9g s, so that it encloses nothing; "
-      "keep its nodes apart, or use a smaller step if they should not meet",
-      r->model->scene->cells[cell].name, strut_run_time(r));
+      "by t = %.9g s %s gave %.3g J, which they can only take: the step of %s cannot follow the "
+      "motion, which is fastest at node '%s'; use a smaller step%s, or --force to continue anyway",
+      b->time + r->grid.offset, names[b->giver], b->given, r->method->name,
+      fastest_node(r, contacts), b->giver == STRUT_LOSS_FRICTION ? " or a smaller friction" : "");
 }
 
 strut_status strut_run_check_states(const strut_run *r) {

@@ -411,10 +411,12 @@ void strut_run_step(strut_run *r, int64_t stop) {
   strut_subnormals_restore(before);
 }
 
-static void sample_balance(strut_run *r) {
+static strut_status sample_balance(strut_run *r) {
+  if (!r->state->ledger) return STRUT_OK;
   strut_balance_sample(r->model, r->state, &r->initial,
                        strut_time_grid_at(&r->grid, r->state->step), &r->balance,
                        &r->summary->energy);
+  return strut_run_check_losses(r);
 }
 
 strut_status strut_run_sample(strut_run *r, int64_t *stop) {
@@ -429,9 +431,10 @@ strut_status strut_run_sample(strut_run *r, int64_t *stop) {
   if (states_status) return states_status;
   if (lost >= 0) return strut_run_fail_lost_node(r, lost);
   if (r->model->scene->collision_count) strut_run_watch_collisions(r);
-  int32_t flat = strut_cell_that_collapsed(r->model, r->state->q);
-  if (flat >= 0) return strut_run_fail_flat_cell(r, flat);
-  if (n >= r->balance.next) sample_balance(r);
+  strut_status collapse_status = strut_run_check_collapse(r);
+  if (collapse_status) return collapse_status;
+  strut_status balance_status = n >= r->balance.next ? sample_balance(r) : STRUT_OK;
+  if (balance_status) return balance_status;
   strut_status steady_status = r->detect_steady ? detect_steady_motion(r) : STRUT_OK;
   if (steady_status) return steady_status;
   if (n == strut_measure_first_step(&r->measure))
@@ -566,6 +569,7 @@ strut_status strut_run_end(strut_run *r, strut_status status) {
   strut_error *error = r->error;
   if (r->ready) {
     summary->wall_time = strut_run_clock() - r->start_time;
+    if (!status) status = sample_balance(r);
     fill_summary(r, status);
     strut_error first = *error;
     strut_status written = strut_recording_finish(&r->recording, status, error);

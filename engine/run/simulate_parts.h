@@ -80,8 +80,10 @@ int32_t strut_run_find_lost_node(const strut_model *model, const strut_state *st
 strut_status strut_run_fail_lost_node(const strut_run *r, int32_t node);
 /** Notes collisions whose sides move by more than their thickness in a step, or are deeper than half. */
 void strut_run_watch_collisions(strut_run *run);
-/** The error of a run in which a cell has collapsed. */
-strut_status strut_run_fail_flat_cell(const strut_run *run, int32_t cell);
+/** STRUT_DIVERGED with the name of a cell without area, or of a member that is wound in. */
+strut_status strut_run_check_collapse(const strut_run *run);
+/** STRUT_DIVERGED with the place where a loss has given energy. */
+strut_status strut_run_check_losses(const strut_run *r);
 /** STRUT_DIVERGED with the name of an internal state that is no longer a finite number. */
 strut_status strut_run_check_states(const strut_run *r);
 /** Reports a method that failed: STRUT_DIVERGED. */

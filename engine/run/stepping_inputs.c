@@ -6,6 +6,7 @@
 
 #include "engine/forces/drive.h"
 #include "engine/forces/forces.h"
+#include "engine/model/small_model.h"
 
 /* ---- room ---- */
 
@@ -102,6 +103,11 @@ static strut_status check(const strut_stepping_inputs *in, strut_error *error) {
       return strut_fail(error, STRUT_USAGE,
                         "input 'rest': the rest length of member '%s' must be a number from 0 on",
                         s->members[i].name);
+    if (changed && !(in->given[i] > 0.0) && s->members[i].axial_stiffness > 0.0)
+      return strut_fail(error, STRUT_USAGE,
+                        "input 'rest': the rest length of member '%s', which has an "
+                        "axial_stiffness, must be above zero",
+                        s->members[i].name);
     if (changed && rigid && s->members[i].kind == STRUT_BAR)
       return strut_fail(error, STRUT_USAGE,
                         "input 'rest': member '%s' is a rigid bar, which keeps its length",
@@ -120,10 +126,30 @@ static strut_status check(const strut_stepping_inputs *in, strut_error *error) {
   return STRUT_OK;
 }
 
+/* EA over the rest length, of a member that no actuator drives: there the law follows by itself. */
+static void write_stiffness(const strut_model *model, int32_t member, double stiffness) {
+  const strut_element_table *t = &model->elements;
+  strut_element *e = (strut_element *)(uintptr_t)strut_element_of_member(t, member);
+  bool element = e && e->role == STRUT_ELEMENT_MEMBER;
+  if (element && e->law == STRUT_LAW_AXIAL) return;
+  if (element) {
+    e->numbers.stiffness = stiffness;
+    ((double *)(uintptr_t)t->stiffness)[e - t->element] = stiffness;
+    return;
+  }
+  ((double *)(uintptr_t)model->members.stiffness)[member] = stiffness;
+  if (model->small) model->small->stiffness[member] = stiffness;
+}
+
 /* The tables of a model that inputs change, which is why it belongs to one stepping alone. */
 static void write_rest(const strut_stepping_inputs *in, const strut_model *model) {
+  const strut_member *members = in->scene->members;
   double *rest = (double *)(uintptr_t)model->members.rest;
-  for (size_t i = 0; i < in->members; i++) rest[i] = in->applied[i];
+  for (size_t i = 0; i < in->members; i++) {
+    rest[i] = in->applied[i];
+    if (members[i].axial_stiffness > 0.0)
+      write_stiffness(model, (int32_t)i, members[i].axial_stiffness / rest[i]);
+  }
 }
 
 /* Actuators of rest lengths and those of forces stand in two tables, each in the scene's order. */

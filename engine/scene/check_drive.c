@@ -492,6 +492,13 @@ void strut_check_drives(strut_checker *checker) {
       strut_report_finding(
           checker, STRUT_ON_ACTUATOR, i, "member",
           "%s drives a bar, but bars are rigid; make the member a spring, or bars: elastic", owner);
+    else if (!hinge && !cell && !a->force && scene->members[a->member].axial_stiffness > 0.0 &&
+             scene->members[a->member].law.kind == STRUT_LAW_ELASTIC_PLASTIC)
+      strut_report_finding(checker, STRUT_ON_ACTUATOR, i, "member",
+                           "%s drives the rest length of an elastic-plastic member with an "
+                           "axial_stiffness, of which it is not defined how much set is wound in; "
+                           "give the member its stiffness instead",
+                           owner);
     if (!exists(a->signal, scene->signal_count))
       strut_report_finding(checker, STRUT_ON_ACTUATOR, i, "signal", "%s has no signal", owner);
     else if (!checker->wild[a->signal])

@@ -29,8 +29,9 @@ static const char *fault_of_lists(const strut_law *law) {
 /* The law of `owner` by itself. */
 static bool check_numbers(strut_checker *checker, strut_subject subject, size_t index,
                           const char *owner, const strut_law *law) {
-  const char *fault = (unsigned)law->kind >= STRUT_LAW_COUNT ? "is of an unknown kind"
-                      : strut_law_is_of_cells(law->kind)     ? "is for cells only"
+  bool unknown = (unsigned)law->kind >= STRUT_LAW_COUNT || law->kind == STRUT_LAW_AXIAL;
+  const char *fault = unknown                            ? "is of an unknown kind"
+                      : strut_law_is_of_cells(law->kind) ? "is for cells only"
                       : (unsigned)law->carries > STRUT_CARRIES_COMPRESSION
                           ? "carries an unknown sign"
                           : fault_of_lists(law);

@@ -37,6 +37,13 @@
   X(EXPONENTIAL, exponential, "exponential", SCALE_BIT, context)                                   \
   X(TABLE, table, "table", POINTS_BIT | OWN, context)
 
+/**
+ * Those of members and hinges come first, then the one that a model gives to members with an axial_stiffness whose
+ * rest length is driven. No scene can ask for that, so that it has no word.
+ */
+#define STRUT_ALL_LAWS(X, context)                                                                 \
+  STRUT_LAWS(X, context) X(AXIAL, axial, "", 0, context) STRUT_CELL_LAWS(X, context)
+
 typedef enum strut_law_kind {
 #define STRUT_LAW_ROW(NAME, ...) STRUT_LAW_##NAME,
   STRUT_ALL_LAWS(STRUT_LAW_ROW, )
@@ -44,7 +51,7 @@ typedef enum strut_law_kind {
       STRUT_LAW_COUNT
 } strut_law_kind;
 /** Laws of members and hinges. */
-enum { STRUT_MEMBER_LAW_COUNT = STRUT_LAW_PRESSURE };
+enum { STRUT_MEMBER_LAW_COUNT = STRUT_LAW_AXIAL };
 
 enum {
 #define STRUT_LAW_ROW(NAME, ...) STRUT_LAW_PARAMETER_##NAME,
@@ -161,6 +168,71 @@ static inline double *strut_law_number(strut_law *law, int p) {
 static inline double strut_law_value(const strut_law *law, int p) {
   strut_law copy = *law;
   return *strut_law_number(&copy, p);
+}
+
+/*
+ * Law axial: the law `material` of a member with a stiffness that is EA over the present natural strain.
+ */
+
+/** The law by itself, with the stiffness in n. */
+static inline strut_law_response strut_law_of_material(const strut_law_numbers *n, double e,
+                                                       double e0, int piece) {
+  switch (n->material) {
+#define STRUT_LAW_ROW(NAME, name, ...)                                                             \
+  case STRUT_LAW_##NAME: return strut_law_##name(n, e, e0, piece);
+    STRUT_LAWS(STRUT_LAW_ROW, )
+#undef STRUT_LAW_ROW
+    default: break;
+  }
+  return (strut_law_response){0.0, 0.0, 0.0, 0.0};
+}
+
+/** Share of the first natural strain below which none is left. */
+#define STRUT_AXIAL_LEAST 1e-6
+
+/**
+ * The natural strain over which EA is taken. Below the least one the stiffness stays what it is there, so that
+ * a step that went too far can be judged; a run stops.
+ */
+static inline double strut_axial_length(const strut_law_numbers *n, double e0) {
+  double least = STRUT_AXIAL_LEAST * n->axial / n->stiffness;
+  return e0 > least ? e0 : least;
+}
+
+static inline strut_law_response strut_law_axial(const strut_law_numbers *n, double e, double e0,
+                                                 int piece) {
+  strut_law_numbers now = *n;
+  now.stiffness = n->axial / strut_axial_length(n, e0);
+  strut_law_response r = strut_law_of_material(&now, e, e0, piece);
+  double energy = r.energy;
+  if (n->second_stiffness != 0.0) { /* the energy that is in proportion to EA */
+    now.second_stiffness = 0.0;
+    energy = strut_law_of_material(&now, e, e0, piece).energy;
+  }
+  if (strut_axial_length(n, e0) == e0) r.excess -= energy / e0;
+  return r;
+}
+
+static inline int strut_law_axial_kinks(const strut_law_numbers *n) {
+  switch (n->material) {
+#define STRUT_LAW_ROW(NAME, name, ...)                                                             \
+  case STRUT_LAW_##NAME: return strut_law_##name##_kinks(n);
+    STRUT_LAWS(STRUT_LAW_ROW, )
+#undef STRUT_LAW_ROW
+    default: break;
+  }
+  return 0;
+}
+
+static inline double strut_law_axial_kink(const strut_law_numbers *n, int k) {
+  switch (n->material) {
+#define STRUT_LAW_ROW(NAME, name, ...)                                                             \
+  case STRUT_LAW_##NAME: return strut_law_##name##_kink(n, k);
+    STRUT_LAWS(STRUT_LAW_ROW, )
+#undef STRUT_LAW_ROW
+    default: break;
+  }
+  return 0.0;
 }
 
 /** Force, energy and slope at strain e. piece: the smooth piece to stay on, or -1 for the one at e. */

@@ -5,7 +5,9 @@
 #include <malloc.h>
 #endif
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <time.h>
 
 #include "engine/output/hdf5.h"
@@ -68,8 +70,19 @@ static void return_large_blocks(void) {
 #endif
 }
 
+/*
+ * OpenBLAS starts its threads when it is loaded, and at exit waits for ever for those that it had no memory for.
+ * Where the process's memory is limited (ulimit -v), it gets none.
+ */
+static void keep_blas_to_one_thread(void) {
+  struct rlimit limit;
+  bool limited = getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+  if (limited) setenv("OPENBLAS_NUM_THREADS", "1", 1);
+}
+
 int main(int argc, char **argv) {
   return_large_blocks();
+  keep_blas_to_one_thread();
   strut_streams_open();
   strut_hdf5_leave_at_exit();
   gsl_set_error_handler_off(); /* GSL reports by its return values; it must not abort */

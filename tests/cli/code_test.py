@@ -107,6 +107,8 @@ members:
   table: {kind: spring, nodes: [a, q], law: {kind: table, points: [[-10 mm, -1 N], [0, 0], [20 mm, 5 N]]}}
   smooth: {kind: spring, nodes: [p, b], law: {kind: table, smooth: yes, points: [[-10 mm, -1 N], [0, 0], [20 mm, 5 N]]}}
   up: {kind: spring, nodes: [p, c], stiffness: 40, damping: 0.2}
+  reeled: {kind: cable, nodes: [a, p, c], axial_stiffness: 20 N, damping: 0.1, rest_length: 1.5}
+  wound: {kind: spring, nodes: [p, b], axial_stiffness: 5 N, law: logarithmic}
   down: {kind: spring, nodes: [c, q], stiffness: 40}
 hinges:
   plain: {nodes: [a, p, q], stiffness: 2 N m/rad, damping: 0.1 N m s/rad, rest_angle: 170 deg}
@@ -126,6 +128,8 @@ signals:
 actuators:
   pull: {member: tendon, signal: wave}
   more: {member: tendon, signal: {sine: {amplitude: 5 mm, frequency: 3 Hz}}}
+  winch: {member: reeled, signal: wave}
+  reel: {member: wound, signal: all}
   bend: {hinge: plain, signal: {sine: {amplitude: 10 deg, frequency: 1 Hz}}}
   pump: {cell: pumped, signal: {sine: {amplitude: 1 N/m, frequency: 2 Hz}}}
   follow: {member: up, signal: all}

@@ -56,8 +56,8 @@ def call(words, limit=None, **environment):
     if os.path.exists("out.html"):
         os.remove("out.html")
     return subprocess.run(
-        [STRUT, *words], capture_output=True, text=True, errors="replace",
-        env=dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", **environment),
+        [STRUT, *words], capture_output=True, text=True, errors="replace", timeout=120,
+        env=dict(os.environ, **{"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", **environment}),
         preexec_fn=limit and (lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit))))
 
 
@@ -79,7 +79,7 @@ def fails_everywhere(name, words, spared):
     check(codes.get(4, 0) > 0, f"{name}: nothing failed")
 
 
-def limited(name, words):
+def limited(name, words, times=1, **environment):
     """From the limit on at which the program starts at all, in steps of a megabyte."""
     begin = 40 << 20
     while call(["--version"], begin).returncode != 0:
@@ -87,9 +87,10 @@ def limited(name, words):
     step = (1 << 20) if not COUNT else (3 << 20)
     codes = {}
     for limit in range(begin, begin + (60 << 20), step):
-        done = call(words, limit)
-        codes[done.returncode] = codes.get(done.returncode, 0) + 1
-        check(done.returncode >= 0, f"{name}: with {limit >> 20} MB: signal {-done.returncode}")
+        for _ in range(times):
+            done = call(words, limit, **environment)
+            codes[done.returncode] = codes.get(done.returncode, 0) + 1
+            check(done.returncode >= 0, f"{name}: with {limit >> 20} MB: signal {-done.returncode}")
     print(f"{name}: from {begin >> 20} MB on, exit codes {codes}", flush=True)
 
 
@@ -97,6 +98,9 @@ os.chdir(tempfile.mkdtemp())
 with open("study.yaml", "w", encoding="utf-8") as study:
     study.write(f"strut: 1\nstudy: s\nmodel: {HOPPER}\naxes:\n  - seconds: [0.1, 0.2]\n"
                 "trajectories: yes\n")
+with open("map.yaml", "w", encoding="utf-8") as study:  # two threads ask for the same equilibria
+    study.write(f"strut: 1\nstudy: s\nmodel: {MODELS}/crawler/switch.yaml\naxes:\n  - amplitude: [0.1 mm, 0.5 mm, 1 mm]\n"
+                "  - frequency: [10 Hz, 11 Hz, 12 Hz, 13 Hz]\nrun: {duration: 20 ms}\nkeep: [outcome]\n")
 OVER = "over: {stiffness: {from: 50 N/m, to: 150 N/m}, mass: {from: 0.5 kg, to: 2 kg}}"
 for study_name, rest in (
         ("search", f"search: {{maximise: frequency_1, {OVER}, evaluations: 12}}"),
@@ -113,5 +117,9 @@ for command in wanted:
 for command in ("run", "sweep", "export", "view", "path"):
     if command in wanted:
         limited(command, COMMANDS[command][0])
+if "modes" in wanted:  # OpenBLAS, if it is the BLAS, waits at exit for threads that it could not start
+    limited("modes", COMMANDS["modes"][0], OPENBLAS_NUM_THREADS="8")
+if "sweep" in wanted:
+    limited("map", ["sweep", "map.yaml", "-o", "out", "--threads", "2", "--quiet"], times=5)
 shutil.rmtree(os.getcwd())
 finish()

@@ -151,6 +151,24 @@ jq -e '([.events[] | .kind] | index("lift-off")) as $lift |
   ([.points[] | .contacts.n1 + .contacts.n2 + .contacts.n4 | . - 1.3734 | fabs] | max) < 1e-9' \
   "$work/out" >jq.out || fail "the crawler over its drive"
 
+# EA is over the present rest length L: EA (x/L - 1) = k (1 - x), so that x = 2 L / (1 + L) for EA = k.
+cat >reel.yaml <<END
+strut: 1
+parameters: {L: 1 m}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1, fixed: y}, c: {position: [2, 0], fixed: both}}
+members:
+  rope: {kind: cable, nodes: [a, b], axial_stiffness: 100 N, rest_length: L}
+  back: {kind: spring, nodes: [b, c], stiffness: 100, rest_length: 1}
+actuators: {reel: {member: rope, signal: {constant: 0}}}
+END
+for over in "--over reel --until -0.5" "--over L --until 0.5"; do
+  expect 0 path reel.yaml $over --json
+  jq -e '(.points[-1].nodes.b[0] - 2 / 3 | fabs) < 1e-12' "$work/out" >jq.out || fail "$over"
+done
+expect 0 path reel.yaml --over reel --until "-1.5 m" --json
+jq -e '.end == "invalid" and (.remark | contains("rest length of rope would reach zero"))' \
+  "$work/out" >jq.out || fail "wound in"
+
 # It ends where the scene means nothing any more, and says why.
 expect 0 path over.yaml --set load=0 --over k --until "-10 N/m" --json
 jq -e '.end == "invalid" and (.points[-1].value | fabs) < 1e-3 and

@@ -137,6 +137,98 @@ static void test_without_a_ledger_nothing_is_said(void **unused) {
   strut_setup_free(&setup);
 }
 
+/* ---- losses ---- */
+
+/* A mass on a one-sided spring whose damper drives it. */
+static void build_driving_damper(strut_scene *scene) {
+  build_support(scene, 0, 0);
+  build_mass(scene, 1, 0, 1);
+  int32_t j = build_sized(scene, STRUT_SPRING, 0, 1, 100, -1, 0, 0.9);
+  scene->members[j].law = (strut_law){.kind = STRUT_LAW_PLAY, .gap = 0.01};
+}
+
+/* A ball on ground whose damper throws it. */
+static void build_driving_ground(strut_scene *scene) {
+  scene->gravity[1] = -10;
+  build_mass(scene, 0, 0.1, 1);
+  build_contact(scene, 0, 1e4, 0);
+  scene->contacts[0].damping = -5;
+}
+
+/* A block that slides on ground that pushes it. */
+static void build_driving_friction(strut_scene *scene) {
+  scene->gravity[1] = -10;
+  build_mass(scene, 0, -1e-3, 1);
+  build_rough_contact(scene, 0, 1e4, 10, 0.5, 0.5, 1e-3);
+  scene->contacts[0].friction.mu_kinetic = -0.5;
+  scene->nodes[0].velocity[0] = 1;
+}
+
+/* No valid scene has these; methods that go wrong do. Scenes are not checked here. */
+static void test_a_loss_that_gives_ends_the_run(void **unused) {
+  (void)unused;
+  static const char *const methods[] = {"rk4",        "euler",    "verlet",
+                                        "rk4-events", "adaptive", "verlet-events"};
+  static void (*const builders[])(strut_scene *) = {build_driving_damper, build_driving_ground,
+                                                    build_driving_friction};
+  static const char *const words[] = {"the dampers of members gave", "the ground's dampers gave",
+                                      "friction gave"};
+  for (int k = 0; k < 3; k++)
+    for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
+      strut_setup setup;
+      strut_model *model;
+      strut_summary s;
+      strut_error error = {0};
+      strut_setup_init(&setup);
+      builders[k](&setup.scene);
+      motion_experiment(&setup, 5e-4, 1);
+      setup.experiment.integrator = methods[i];
+      for (int forced = 0; forced < 2; forced++) {
+        const strut_run_options options = {.force = forced};
+        assert_int_equal(strut_model_compile(&setup.scene, &model, NULL), STRUT_OK);
+        strut_status status = strut_simulate(model, &setup.experiment, &options, &s, &error);
+        assert_int_equal(status, forced ? STRUT_OK : STRUT_DIVERGED);
+        if (!forced && !strstr(error.message, words[k]))
+          fail_msg("%s said: %s", methods[i], error.message);
+        assert_int_equal(s.status, status);
+        assert_true(forced ? s.steps == 2000 : s.steps > 0 && s.steps < 2000);
+        strut_summary_free(&s);
+        strut_model_free(model);
+      }
+      strut_setup_free(&setup);
+    }
+}
+
+/* A ball on a spring that bounces on ground of any roughness: sliding ends as it touches. */
+static void test_friction_of_any_size_only_takes(void **unused) {
+  (void)unused;
+  static const char *const methods[] = {"rk4-events", "adaptive", "verlet-events"};
+  static const double mu[] = {1e6, 2e8, 1e9};
+  double right = 0;
+  for (size_t i = 0; i < 3; i++)
+    for (size_t k = 0; k < 3; k++) {
+      strut_setup setup;
+      strut_setup_init(&setup);
+      strut_scene *scene = &setup.scene;
+      scene->gravity[1] = -9.81;
+      build_support(scene, 0, 0);
+      build_mass(scene, 1, 0.01, 1);
+      build_member(scene, STRUT_SPRING, 0, 1, 100, 0.1, 0);
+      scene->nodes[1].velocity[0] = 0.1;
+      build_rough_contact(scene, 1, 1e5, 10, mu[k], mu[k], 0);
+      scene->contacts[0].friction.law = STRUT_FRICTION_COULOMB;
+      motion_experiment(&setup, 1e-4, 1);
+      setup.experiment.integrator = methods[i];
+      strut_summary s = motion_simulate(&setup);
+      if (right == 0) right = s.energy.dissipated_friction;
+      assert_within(s.energy.dissipated_friction, 0, 0.5 * 0.1 * 0.1);
+      assert_relative(s.energy.dissipated_friction, right, 1e-4);
+      assert_near(s.energy.residual, 0, 1e-6);
+      strut_summary_free(&s);
+      strut_setup_free(&setup);
+    }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_steps_over_touchdowns),
@@ -144,6 +236,8 @@ int main(void) {
       cmocka_unit_test(test_a_swing_that_ends_as_it_began),
       cmocka_unit_test(test_rest_is_no_open_balance),
       cmocka_unit_test(test_without_a_ledger_nothing_is_said),
+      cmocka_unit_test(test_a_loss_that_gives_ends_the_run),
+      cmocka_unit_test(test_friction_of_any_size_only_takes),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

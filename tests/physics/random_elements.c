@@ -46,6 +46,7 @@ strut_law random_law(strut_scene *scene, strut_law_kind kind, double size, doubl
     }
     case STRUT_LAW_TABLE: make_table(scene, &law, size, force, r); break;
     case STRUT_LAW_LINEAR:
+    case STRUT_LAW_AXIAL:
     case STRUT_LAW_LOGARITHMIC:
     case STRUT_LAW_PRESSURE:
     case STRUT_LAW_ISOTHERMAL:

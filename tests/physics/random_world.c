@@ -118,8 +118,10 @@ static void put_structure(random_world *w) {
     put_damping(w, MEMBERS);
     put(w, MEMBERS, ", rest_length_ratio: %.17g}\n", between(w, 0.9, 1.1));
   }
-  bool slack = !has(w, WORLD_SMOOTH); /* it may get slack */
-  put(w, MEMBERS, "  rope: {kind: cable, nodes: [n0, n2, n4, n3], stiffness: 80, mass: 0.3");
+  bool slack = !has(w, WORLD_SMOOTH);               /* it may get slack */
+  bool axial = has(w, WORLD_DRIVES) && w->ring % 2; /* a winch drives its rest length */
+  put(w, MEMBERS, "  rope: {kind: cable, nodes: [n0, n2, n4, n3], %s, mass: 0.3",
+      axial ? "axial_stiffness: 240" : "stiffness: 80");
   put_damping(w, MEMBERS);
   put(w, MEMBERS, ", rest_length_ratio: %.17g}\n", slack ? between(w, 0.8, 1.05) : 0.6);
   for (int k = 0; k < 3; k++) {

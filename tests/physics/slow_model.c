@@ -83,6 +83,11 @@ void slow_member_rest(const strut_scene *scene, const strut_member *m, long doub
   *stiffness = ea > 0 ? ea / *rest : m->stiffness;
 }
 
+/* EA over the present rest length, down to a millionth of that at the start. */
+static long double slow_axial(const strut_member *m, long double start, long double present) {
+  return m->axial_stiffness / fmaxl(present, 1e-6L * start);
+}
+
 /* (1), (2), (6): the pull between the two ends of member j. */
 static void add_member(slow_model *slow, const strut_scene *scene, size_t j, double t,
                        const double *q, const double *v) {
@@ -99,9 +104,13 @@ static void add_member(slow_model *slow, const strut_scene *scene, size_t j, dou
     slow_signal(scene, scene->actuators[i].signal, t, &value, &value_rate);
     s += value, s_rate += value_rate;
   }
+  bool axial = m->axial_stiffness > 0, slack = m->kind == STRUT_CABLE && length <= rest + s;
+  if (axial) stiffness = slow_axial(m, rest, rest + s);
   long double elastic = stiffness * (length - rest - s), tension = elastic;
   tension += m->damping * (rate - s_rate);
-  if (m->kind == STRUT_CABLE && length <= rest + s) elastic = tension = 0;
+  if (axial && !slack && rest + s > 1e-6L * rest) /* EA x^2 / (2 L0) also falls as L0 grows */
+    slow->drive -= 0.5L * elastic * (length - rest - s) / (rest + s) * s_rate;
+  if (slack) elastic = tension = 0;
   if (m->kind == STRUT_CABLE && tension < 0) tension = 0;
   long double pull[2] = {tension * x / length, tension * y / length};
   for (size_t c = 0; c < 2; c++) slow->force[a + c] += pull[c], slow->force[b + c] -= pull[c];

@@ -248,7 +248,8 @@ typedef struct stretched {
   slow_strain path;
   long double b[2 * SLOW_MOST], e, rate; /* strain, its gradient and rate */
   long double natural, winding;          /* driven rest length, and its rate */
-  long double stiffness, damping;
+  long double stiffness, damping;        /* at the start */
+  long double present;                   /* stiffness at the driven rest length */
 } stretched;
 
 static stretched stretch_of(const slow_world *w, const slow_instant *at, size_t j) {
@@ -260,10 +261,12 @@ static stretched stretch_of(const slow_world *w, const slow_instant *at, size_t 
   slow_strain_gradient(&s.path, here.q, s.b);
   s.rate = rate_of(&s.path, s.b, at->v);
   slow_member_rest(w->scene, m, &s.natural, &s.stiffness);
+  long double least = 1e-6L * s.natural; /* nothing is left of it */
   s.natural += rest.value, s.winding = rest.rate;
   long double first = first_stiffness(&m->law, s.stiffness);
   s.damping = m->damping + w->scene->rayleigh_stiffness * first;
   if (m->damping_ratio > 0) s.damping += ratio_damping(w, m, first);
+  s.present = m->axial_stiffness > 0 ? m->axial_stiffness / fmaxl(s.natural, least) : s.stiffness;
   return s;
 }
 
@@ -273,7 +276,7 @@ static long double spring_force(const slow_world *w, const stretched *s, size_t 
   long double stop = m->stop_stiffness > 0 ? m->stop_stiffness : 100 * s->stiffness;
   int carries = m->kind == STRUT_CABLE ? 1 : sign_of(m->law.carries);
   if (w->gone[0][j]) return 0;
-  long double t = element_force(&m->law, s->stiffness, s->damping, s->natural, s->e - s->natural,
+  long double t = element_force(&m->law, s->present, s->damping, s->natural, s->e - s->natural,
                                 s->rate - s->winding, carries, w->plastic[0][j]);
   if (m->longest > 0)
     t += element_force(&LINEAR, stop, m->stop_damping, 0, s->e - m->longest, s->rate, 1, 0);
@@ -318,7 +321,7 @@ static long double flow_at(const rubbing *r, size_t k) {
  */
 static rubbing rub(const slow_world *w, const stretched *s, size_t j, const long double *q) {
   const strut_member *m = &w->scene->members[j];
-  rubbing r = {.segments = s->path.count - 1, .ea = s->stiffness * s->natural, .whole = s->natural};
+  rubbing r = {.segments = s->path.count - 1, .ea = s->present * s->natural, .whole = s->natural};
   long double flow[SLOW_MOST] = {0}, others = 0, sum = 0;
   for (size_t k = 0; k < r.segments; k++) {
     const long double *a = q + 2 * s->path.node[k], *b = q + 2 * s->path.node[k + 1];

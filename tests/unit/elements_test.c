@@ -288,6 +288,33 @@ static void test_laws_at_known_places(void **unused) {
   assert_near(strut_law_respond(STRUT_LAW_EXPONENTIAL, &n, 3, 2, -1).force, 2 * expm1(2), 1e-14);
 }
 
+/* EA over the natural strain: force and work of the drive are the slopes of the energy, over e and over e0. */
+static void test_a_stiffness_that_follows_the_length(void **unused) {
+  (void)unused;
+  static const strut_law_kind materials[] = {STRUT_LAW_LINEAR, STRUT_LAW_BILINEAR, STRUT_LAW_PLAY,
+                                             STRUT_LAW_LOGARITHMIC, STRUT_LAW_EXPONENTIAL};
+  for (size_t k = 0; k < sizeof materials / sizeof *materials; k++)
+    for (double e0 = 0.3; e0 < 3; e0 *= 1.3)
+      for (double x = -0.21; x < 0.5; x += 0.0973) {
+        const double h = 1e-5;
+        strut_law_numbers n = {.axial = 8, .material = materials[k], .stiffness = 4};
+        n.knee = n.gap = 0.1, n.scale = 0.5, n.second_stiffness = k == 1 ? 3 : 0;
+        strut_law_response at = strut_law_respond(STRUT_LAW_AXIAL, &n, e0 + x, e0, -1), r[4];
+        for (int i = 0; i < 4; i++)
+          r[i] = strut_law_respond(STRUT_LAW_AXIAL, &n, e0 + x + (i < 2 ? (2 * i - 1) * h : 0),
+                                   e0 + (i < 2 ? 0 : (2 * i - 5) * h), -1);
+        assert_near(at.force, (r[1].energy - r[0].energy) / (2 * h), 1e-7);
+        assert_near(at.excess - at.force, (r[3].energy - r[2].energy) / (2 * h), 1e-7);
+        n.stiffness = 8 / e0; /* as the law alone has it at that length */
+        assert_near(at.force, strut_law_respond(materials[k], &n, e0 + x, e0, -1).force, 0);
+      }
+  /* down to a millionth of the first length, and straight on below */
+  strut_law_numbers n = {.axial = 8, .material = STRUT_LAW_LINEAR, .stiffness = 4};
+  assert_relative(strut_law_respond(STRUT_LAW_AXIAL, &n, 1, 1e-3, -1).slope, 8e3, 1e-15);
+  assert_relative(strut_law_respond(STRUT_LAW_AXIAL, &n, 1, -1, -1).slope, 8 / 2e-6, 1e-12);
+  assert_near(strut_law_respond(STRUT_LAW_AXIAL, &n, 1, -1, -1).excess, 0, 0);
+}
+
 /* Energies of small strains, as series; and what a change of the natural strain does to them. */
 static void test_energies_of_small_strains_keep_their_digits(void **unused) {
   (void)unused;
@@ -727,6 +754,7 @@ int main(void) {
       cmocka_unit_test(test_strains_without_a_direction_are_finite),
       cmocka_unit_test(test_force_is_the_slope_of_the_energy),
       cmocka_unit_test(test_laws_at_known_places),
+      cmocka_unit_test(test_a_stiffness_that_follows_the_length),
       cmocka_unit_test(test_energies_of_small_strains_keep_their_digits),
       cmocka_unit_test(test_a_smooth_table_has_no_kinks_and_does_not_overshoot),
       cmocka_unit_test(test_forces_of_a_model_are_the_slope_of_its_energy),

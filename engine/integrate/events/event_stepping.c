@@ -476,11 +476,28 @@ static bool must_step(const strut_event_stepper *l) {
   return (l->at_once > 0 && l->counts.most >= MOST_AT_ONCE) || l->switches >= STRUT_MOST_SWITCHES;
 }
 
+/*
+ * A step that is taken whatever the modes say. Where a contact opens within AT_ONCE, it may stick and slip in turn until
+ * then, and in the wrong mode friction would push it on: that step only passes the opening.
+ */
+static double forced_step(const strut_model *model, strut_event_stepper *l, double h, double dt) {
+  double moment = 10.0 * AT_ONCE * dt;
+  for (int32_t k = 0; k < l->closed_count; k++) {
+    const strut_touch *o = &l->now->touch[l->closed[k]];
+    bool rubs = strut_friction_largest(&model->contacts.entry[l->closed[k]].friction) > 0.0;
+    if (!rubs || !(o->gap > -moment * o->into) || !(2.0 * moment < h)) continue;
+    l->tried = false;
+    return 2.0 * moment;
+  }
+  return h;
+}
+
 /* One trial over at most h at time t; handles rejection and events. Returns the time gone, 0 if none. */
 STRUT_INLINE double step_piece(const strut_model *model, strut_state *state, strut_event_stepper *l,
                                double t, double h, double dt) {
   strut_event event = {STRUT_EVENT_NONE, 0, 1.0};
   bool force = must_step(l);
+  if (force) h = forced_step(model, l, h, dt);
   if (l->stepper->predict && !l->tried) {
     l->stepper->predict(model, l, h);
     strut_surface_move(model, state, l->next, t + h);

@@ -309,7 +309,9 @@ static void digest_elements(const strut_element_table *t, uint64_t key[2]) {
                               e->natural,
                               e->carries,
                               e->damping,
-                              STRUT_LAW_PARAMETERS(STRUT_LAW_ROW) n->stiffness};
+                              STRUT_LAW_PARAMETERS(STRUT_LAW_ROW) n->stiffness,
+                              n->axial,
+                              n->material};
 #undef STRUT_LAW_ROW
     digest(key, numbers, sizeof numbers);
     digest(key, n->coefficient, n->count * sizeof(double));

@@ -29,8 +29,11 @@ static bool is_word(const char *word, size_t length, const char *name) {
 
 static bool has_law(const strut_code_writer *w, strut_law_kind law) {
   const strut_element_table *t = &w->model->elements;
-  for (int32_t b = 0; b < t->block_count; b++)
-    if (t->block[b].law == law) return true;
+  for (int32_t i = 0; i < t->count; i++) {
+    const strut_element *e = &t->element[i];
+    if (e->law == law || (e->law == STRUT_LAW_AXIAL && e->numbers.material == (int)law))
+      return true;
+  }
   return false;
 }
 
@@ -151,6 +154,29 @@ static void add_curves(strut_code_writer *w) {
   }
 }
 
+/* Functions of the laws whose stiffness follows the rest length, before they are defined. */
+static void declare_materials(strut_code_writer *w) {
+  const strut_element_table *t = &w->model->elements;
+  bool declared[STRUT_LAW_COUNT] = {false};
+  for (int32_t i = 0; i < t->count; i++) {
+    int material = t->element[i].numbers.material;
+    if (t->element[i].law != STRUT_LAW_AXIAL || declared[material]) continue;
+    declared[material] = true;
+    strut_buffer_add(&w->text,
+                     "static real force_%s(const element *m, real e, real e0);\n"
+                     "static real energy_%s(const element *m, real e, real e0);\n",
+                     law_names[material], law_names[material]);
+  }
+}
+
+static void add_material(strut_code_writer *w, const strut_element *e) {
+  const char *law = law_names[e->numbers.material];
+  bool axial = e->law == STRUT_LAW_AXIAL;
+  strut_code_add_field(w, e->numbers.axial);
+  if (axial) strut_buffer_add(&w->text, ", force_%s, energy_%s", law, law);
+  if (!axial) strut_buffer_add(&w->text, ", NULL, NULL");
+}
+
 /* ---- what yields, breaks or is released ---- */
 
 bool strut_code_has_breakables(const strut_code_writer *w) {
@@ -225,6 +251,7 @@ static void add_element(strut_code_writer *w, int32_t i, int32_t *coefficient) {
     strut_buffer_add(&w->text, ", &curve_%d", i);
   else if (has_law(w, STRUT_LAW_TABLE))
     strut_buffer_add(&w->text, ", NULL");
+  if (has_law(w, STRUT_LAW_AXIAL)) add_material(w, e);
   if (has_law(w, STRUT_LAW_ELASTIC_PLASTIC)) add_slider(w, i);
   if (strut_code_has_breakables(w))
     strut_buffer_add(&w->text, ", %d", breakable_of(&model->elements, i));
@@ -243,6 +270,7 @@ void strut_code_add_elements(strut_code_writer *w) {
   add_nodes(w, "element_node", t->at, last->first + last->nodes);
   add_coefficients(w);
   add_curves(w);
+  declare_materials(w);
   strut_buffer_add(&w->text, "static const element elements[] = {\n");
   for (int32_t i = 0; i < t->count; i++) add_element(w, i, &coefficient);
   strut_buffer_add(&w->text, "};\n");

@@ -13,9 +13,17 @@
 void strut_balance_fill(const strut_model *model, strut_state *state, const strut_energies *begin,
                         double t, strut_energy *energy);
 
+/** What takes energy out of a run, and never gives any. */
+typedef enum strut_loss {
+  STRUT_LOSS_MEMBERS,
+  STRUT_LOSS_CONTACT,
+  STRUT_LOSS_FRICTION,
+  STRUT_LOSS_COUNT
+} strut_loss;
+
 /**
- * Samples the balance during a run: the largest kinetic energy, and when the balance opened most.
- * The steps of the samples depend on the run alone, not on its recording.
+ * Samples the balance during a run: the largest kinetic energy, when the balance opened most, and whether a
+ * loss gave energy. The steps of the samples depend on the run alone, not on its recording.
  */
 typedef struct strut_balance_monitor {
   int64_t every, next;   /* steps between samples; step of the next one, INT64_MAX: none */
@@ -23,6 +31,10 @@ typedef struct strut_balance_monitor {
   double residual, time; /* at the latest sample [J], [s] */
   double worst;          /* largest change of the residual between two samples, with its sign [J] */
   double from, to;       /* its interval [s] */
+  double lost[STRUT_LOSS_COUNT]; /* at the latest sample [J] */
+  double creep;                  /* what friction may have given within its bands by then [J] */
+  strut_loss giver;              /* the loss that gave energy first, by more than errors explain */
+  double given;                  /* how much it gave by the latest sample [J]; 0: none */
 } strut_balance_monitor;
 
 /** Starts the monitor; evaluations: of the forces per step. Without a ledger it never samples. */

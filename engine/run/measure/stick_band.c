@@ -68,6 +68,13 @@ static bool is_stuck(const strut_model *model, const strut_state *state, int32_t
   return gap < 0.0 && fabs(slip) < c->entry[i].friction.stick_velocity;
 }
 
+/* Of a member at the present rest length, where that matters. */
+static double stiffness_of(const strut_model *model, const strut_state *state, int32_t member) {
+  const strut_element *e = strut_element_of_member(&model->elements, member);
+  if (!e || e->law != STRUT_LAW_AXIAL) return model->members.stiffness[member];
+  return e->numbers.axial / strut_axial_length(&e->numbers, state->rest[member]);
+}
+
 static void sample_tie(const strut_model *model, const strut_state *state, double time,
                        strut_band_tie *tie) {
   const strut_member_table *t = &model->members;
@@ -86,7 +93,7 @@ static void sample_tie(const strut_model *model, const strut_state *state, doubl
   }
   /* a larger change means that one of them has slid */
   if (held && tie->held && fabs(change) <= creep)
-    tie->force += t->stiffness[tie->member] * change;
+    tie->force += stiffness_of(model, state, tie->member) * change;
   else
     tie->force = 0.0;
   if (held && fabs(tie->force) > tie->worst * resistance)

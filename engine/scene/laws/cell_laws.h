@@ -13,7 +13,4 @@
   X(ISOTHERMAL, isothermal, "isothermal", 0, context)                                              \
   X(ISENTROPIC, isentropic, "isentropic", 0, context)
 
-/** Those of members and hinges come first. */
-#define STRUT_ALL_LAWS(X, context) STRUT_LAWS(X, context) STRUT_CELL_LAWS(X, context)
-
 #endif

@@ -31,6 +31,8 @@ typedef struct strut_law_numbers {
   const strut_law_curve *curve; /* of a table */
   size_t count;                 /* of a polynomial */
   const double *coefficient;    /* (count) of x, x^2, ... */
+  double axial;                 /* EA of a member whose stiffness is EA over the natural strain */
+  int material;                 /* the law of such a member, a strut_law_kind */
   double area;                  /* of a cell as drawn [m^2] */
   double exponent, outside;     /* of a gas: its isentropic exponent, the pressure outside [N/m] */
 } strut_law_numbers;

@@ -171,9 +171,11 @@ bool strut_path_parameter_terms(strut_path_parameter *p, strut_dd value, strut_p
     int32_t slot = strut_actuator_slot(p->model, (size_t)at);
     strut_dd rest = dd_add(dd_of(p->base.rest[slot]), change);
     t->rest[slot] = rest.hi, t->rest_low[slot] = rest.lo;
-    if (member >= 0 && rest.hi < 0) {
-      strut_fail(&error, STRUT_BAD_SCENE, "the rest length of %s would be negative",
-                 p->model->scene->members[member].name);
+    bool axial = member >= 0 && p->model->scene->members[member].axial_stiffness > 0.0;
+    double least = axial ? STRUT_AXIAL_LEAST * p->model->members.rest[slot] : 0.0;
+    if (member >= 0 && rest.hi < least) {
+      strut_fail(&error, STRUT_BAD_SCENE, "the rest length of %s would %s",
+                 p->model->scene->members[member].name, axial ? "reach zero" : "be negative");
       return refuse_value(p, dd_double(value), &error);
     }
   } else {
@@ -240,7 +242,7 @@ static bool are_laws_different(const strut_element_table *a, const strut_element
     const strut_element *s = &a->element[i], *t = &b->element[i];
     const strut_law_numbers *m = &s->numbers, *n = &t->numbers;
     bool numbers = m->stiffness != n->stiffness || m->count != n->count || m->area != n->area ||
-                   m->exponent != n->exponent || m->outside != n->outside;
+                   m->exponent != n->exponent || m->outside != n->outside || m->axial != n->axial;
 #define STRUT_LAW_ROW(NAME, field, ...) numbers = numbers || m->field != n->field;
     STRUT_LAW_PARAMETERS(STRUT_LAW_ROW)
 #undef STRUT_LAW_ROW

@@ -141,21 +141,18 @@ static strut_status fill_cell(path_start *b, strut_error *error) {
 static strut_status lengthen_member(path_start *b, strut_error *error) {
   const strut_scene *drawn = b->drawn->scene;
   int32_t driven = drawn->actuators[b->options->index].member;
-  strut_rest rest;
   if (driven < 0 && drawn->actuators[b->options->index].hinge < 0) return fill_cell(b, error);
   if (driven < 0) return turn_hinge(b, error);
   strut_member *members = strut_arena_allocate(&b->arena, drawn->member_count, sizeof *members);
   if (!members) return strut_no_memory(error, "");
   memcpy(members, drawn->members, drawn->member_count * sizeof *members);
   b->setup.scene.members = members;
-  if (!strut_member_rest(drawn, (size_t)driven, &rest)) rest.stiffness = members[driven].stiffness;
-  if (members[driven].axial_stiffness > 0) members[driven].stiffness = rest.stiffness;
-  members[driven].axial_stiffness = 0;
   members[driven].rest_kind = STRUT_REST_LENGTH;
   members[driven].rest_value = b->drawn->members.rest[driven] + b->options->from;
-  if (members[driven].rest_value >= 0) return STRUT_OK;
-  return strut_fail(error, STRUT_USAGE, "the rest length of %s would be negative at the start",
-                    members[driven].name);
+  bool axial = members[driven].axial_stiffness > 0;
+  if (axial ? members[driven].rest_value > 0 : members[driven].rest_value >= 0) return STRUT_OK;
+  return strut_fail(error, STRUT_USAGE, "the rest length of %s would be %s at the start",
+                    members[driven].name, axial ? "zero or less" : "negative");
 }
 
 /* A support where the path begins. */

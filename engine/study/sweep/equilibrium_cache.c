@@ -258,13 +258,17 @@ static void find_equilibrium(const strut_setup *setup, size_t configuration, fou
   strut_model_free(model);
 }
 
-/* The equilibrium of a configuration; valid as long as the structure. */
-static const found *find(structure *s, const strut_setup *setup, size_t configuration) {
+/*
+ * The equilibrium of a configuration; its positions are valid as long as the structure. A copy, since another
+ * thread searches again where memory was out.
+ */
+static found find(structure *s, const strut_setup *setup, size_t configuration) {
   found *f = &s->configurations[configuration];
   pthread_mutex_lock(&s->lock);
   if (!f->known) find_equilibrium(setup, configuration, f);
+  found copy = *f;
   pthread_mutex_unlock(&s->lock);
-  return f;
+  return copy;
 }
 
 strut_equilibrium_cache *strut_equilibrium_cache_create(void) {
@@ -288,12 +292,12 @@ strut_status strut_equilibrium_cache_resolve(strut_equilibrium_cache *standing, 
   if (scene->start_equilibrium < 0) return STRUT_OK;
   structure *s = structure_of(standing, setup, &own);
   if (!s) return strut_no_memory(error, "");
-  const found *f = find(s, setup, (size_t)scene->start_equilibrium);
-  strut_status status = f->status;
-  if (status) strut_fail(error, status, "%s", f->error.message);
+  const found f = find(s, setup, (size_t)scene->start_equilibrium);
+  strut_status status = f.status;
+  if (status) strut_fail(error, status, "%s", f.error.message);
   for (size_t i = 0; i < scene->node_count && !status; i++)
     for (size_t c = 0; c < 2; c++)
-      if (!scene->nodes[i].fixed[c]) scene->nodes[i].start[c] = f->q[2 * i + c];
+      if (!scene->nodes[i].fixed[c]) scene->nodes[i].start[c] = f.q[2 * i + c];
   if (!status) scene->start_equilibrium = -1;
   if (own) free_structure(s);
   return status;
@@ -308,22 +312,23 @@ static double extent(const double *q, size_t nodes) {
   return fmax(high[0] - low[0], high[1] - low[1]);
 }
 
-static int32_t nearest(structure *s, const strut_setup *setup, const double *positions) {
+/* *index: -1 where none is near. STRUT_OK or STRUT_NO_MEMORY. */
+static strut_status nearest(structure *s, const strut_setup *setup, const double *positions,
+                            int32_t *index, strut_error *error) {
   const strut_scene *scene = &setup->scene;
   const strut_model shape = {.node_count =
                                  (int32_t)scene->node_count}; /* all fields that are read */
   double least = HUGE_VAL;
-  int32_t index = -1;
   for (size_t i = 0; i < scene->configuration_count; i++) {
-    const found *f = find(s, setup, i);
-    if (f->status) continue;
-    double d =
-        strut_shape_distance(&shape, f->q, positions, !scene->configurations[i].shaped, NULL);
-    if (!(d < least) || d > NEAR * extent(f->q, scene->node_count)) continue;
+    const found f = find(s, setup, i);
+    if (f.status == STRUT_NO_MEMORY) return strut_fail(error, f.status, "%s", f.error.message);
+    if (f.status) continue;
+    double d = strut_shape_distance(&shape, f.q, positions, !scene->configurations[i].shaped, NULL);
+    if (!(d < least) || d > NEAR * extent(f.q, scene->node_count)) continue;
     least = d;
-    index = (int32_t)i;
+    *index = (int32_t)i;
   }
-  return index;
+  return STRUT_OK;
 }
 
 /* The nearest configuration must not depend on the start of the run. */
@@ -344,8 +349,9 @@ strut_status strut_equilibrium_cache_nearest(strut_equilibrium_cache *standing,
         drawn.scene.nodes[i].start[c] = drawn.scene.nodes[i].position[c];
   }
   structure *s = drawn.scene.nodes ? structure_of(standing, &drawn, &own) : NULL;
-  if (s) *index = nearest(s, &drawn, positions);
+  strut_status status =
+      s ? nearest(s, &drawn, positions, index, error) : strut_no_memory(error, "");
   strut_release(drawn.scene.nodes);
   if (own) free_structure(s);
-  return s ? STRUT_OK : strut_no_memory(error, "");
+  return status;
 }
