@@ -19,6 +19,8 @@ typedef struct strut_snapshot {
   double time;    /* time of drives and loads [s] */
   double refined; /* refinement after a touchdown lasts this much longer [s] */
   double *memory; /* (strut_memory_count of the model) what elements remember; NULL: nothing */
+  const strut_energy *balance; /* up to there, which that of a run from there continues; not stored;
+                                  NULL: works and losses begin anew */
 } strut_snapshot;
 
 /** Options of a run. Zero: obey the step limit, no callbacks, no recording. */
