@@ -87,6 +87,13 @@ STRUT_API bool strut_slots_done(const strut_slots *slots, int64_t point);
 /** Number of points of this file without a result, and number of failed ones. */
 STRUT_API int64_t strut_slots_missing(const strut_slots *slots);
 STRUT_API int64_t strut_slots_failed(const strut_slots *slots);
+/**
+ * Number of completed points whose column STRUT_KEPT_COLUMN is 0: reads all rows. One thread at a
+ * time.
+ */
+STRUT_API int64_t strut_slots_inaccurate(strut_slots *slots);
+/** The column that says whether a requested accuracy was reached: 1 or 0. */
+#define STRUT_KEPT_COLUMN "accuracy_kept"
 
 /**
  * Writes the row of a point of this file; safe from several threads for different points, and free
