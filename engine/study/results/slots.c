@@ -334,17 +334,21 @@ bool strut_slots_get(strut_slots *slots, int64_t point, strut_result_slot *row) 
   return true;
 }
 
-int64_t strut_slots_inaccurate(strut_slots *slots) {
+bool strut_slots_is_inaccurate(strut_slots *slots, int64_t point) {
   const strut_slots_plan *plan = &slots->plan;
   size_t column = 0, number = 0;
-  int64_t inaccurate = 0;
+  strut_result_slot row;
   while (column < plan->column_count && strcmp(plan->columns[column].name, STRUT_KEPT_COLUMN) != 0)
     number += !plan->columns[column++].word;
-  for (int64_t i = 0; i < plan->count && column < plan->column_count; i++) {
-    strut_result_slot row;
-    if (!is_done(slots, i) || !strut_slots_get(slots, strut_slots_point(slots, i), &row)) continue;
-    inaccurate += row.status == STRUT_OK && row.numbers[number] == 0.0;
-  }
+  return column < plan->column_count && strut_slots_done(slots, point) &&
+         strut_slots_get(slots, point, &row) && row.status == STRUT_OK &&
+         row.numbers[number] == 0.0;
+}
+
+int64_t strut_slots_inaccurate(strut_slots *slots) {
+  int64_t inaccurate = 0;
+  for (int64_t i = 0; i < slots->plan.count; i++)
+    inaccurate += strut_slots_is_inaccurate(slots, strut_slots_point(slots, i));
   return inaccurate;
 }
 

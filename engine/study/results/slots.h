@@ -87,10 +87,9 @@ STRUT_API bool strut_slots_done(const strut_slots *slots, int64_t point);
 /** Number of points of this file without a result, and number of failed ones. */
 STRUT_API int64_t strut_slots_missing(const strut_slots *slots);
 STRUT_API int64_t strut_slots_failed(const strut_slots *slots);
-/**
- * Number of completed points whose column STRUT_KEPT_COLUMN is 0: reads all rows. One thread at a
- * time.
- */
+/** Is the point completed, and its column STRUT_KEPT_COLUMN 0? One thread at a time. */
+STRUT_API bool strut_slots_is_inaccurate(strut_slots *slots, int64_t point);
+/** Number of such points. */
 STRUT_API int64_t strut_slots_inaccurate(strut_slots *slots);
 /** The column that says whether a requested accuracy was reached: 1 or 0. */
 #define STRUT_KEPT_COLUMN "accuracy_kept"
