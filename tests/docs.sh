@@ -1,11 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The documents are right: every command of every ```sh block of README.md, docs/*.md and docs/*/*.md
-# runs in a scratch folder (one per document, holding models/) with the strut just built first on the
-# PATH, and none fails; every link leads to a file and, after #, to a heading of it; and every source
-# file that is named exists. Two blocks of README.md install and build, which is not done here: the one
-# for the tests must be what .ci/run runs, the one for users the same with another preset, and its last
-# command runs here.
+# runs in a scratch folder (one per document, holding models/ and the tables of docs/paper) with the strut just
+# built first on the PATH, and none fails; every link leads to a file and, after #, to a heading of it; every source
+# file that is named exists; and what a page says is printed, is (docs_numbers.py). Two blocks of README.md
+# install and build, which is not done here: the one for the tests must be what .ci/run runs, the one for
+# users the same with another preset, and its last command runs here.
 #
 #   sh tests/docs.sh ROOT STRUT
 # shellcheck disable=SC2016  # backticks that mark a fence, not a command
@@ -46,20 +46,26 @@ commands_work() {
   complaints=$(blocks "$1" "$2/blocks")
   [ -z "$complaints" ] || { echo "$complaints"; return 1; }
   cp -R "$root/models" "$2/here/models"
+  mkdir -p "$2/here/docs/paper" # tables of figures that take too long to make here
+  cp "$root"/docs/paper/*.csv "$2/here/docs/paper"
   for block in "$2"/blocks/*.sh; do
     [ -e "$block" ] || continue
     ran=$((ran + 1))
     # "set -e" overlooks a "! command" that should have failed, so that is spelled out.
     sed 's/^! \(.*\)$/if \1; then exit 1; fi/' "$block" >"$2/run"
-    if ! (cd "$2/here" && bash -euo pipefail "$2/run") >"$2/log" 2>&1 </dev/null; then
+    log=${block%.sh}.log
+    if ! (cd "$2/here" && bash -euo pipefail "$2/run") >"$log" 2>&1 </dev/null; then
       echo "$1, the block at line $(basename "$block" .sh | sed 's/^0*//'):"
       cat "$block"
       echo "--- ended badly, saying:"
-      tail -n 20 "$2/log"
+      tail -n 20 "$log"
       return 1
     fi
   done
 }
+
+# wrong_numbers FILE FOLDER: numbers that FILE says are printed, which no block that ran in FOLDER printed.
+wrong_numbers() { python3 "$root/tests/docs_numbers.py" "$1" "$2/blocks"; }
 
 # dead_links FILE: the links of FILE, to files and to headings, that lead nowhere. Web addresses are not
 # followed.
@@ -108,6 +114,20 @@ for bad in '```sh\nfalse\ntrue\n```\n' '```sh\nfalse | cat\n```\n' '```bash\ntru
     fail "self-test: passes: $bad"
 done
 
+claim() { # TEXT: a document that claims TEXT, and the numbers in it that its command does not print
+  printed="v 12.34 mm/s; {\\\"t\\\": 0.0025}; -7"
+  document "\`\`\`sh\necho \"$printed\"\n\`\`\`\n\n<!-- printed -->\n$1\n"
+  commands_work "$scratch/made-up.md" "$scratch/self" >/dev/null
+  wrong_numbers "$scratch/made-up.md" "$scratch/self"
+}
+for good in 'With 12.3 mm/s or 0.0123 m/s, after 2.5 ms: **7**.' \
+  'n1, `9.9` and [a](b9.md) by 7 and -7\n\n9.9 elsewhere'; do
+  said=$(claim "$good") || fail "self-test: $said: $good"
+done
+for bad in '<!--printed-->' '12.4 mm/s' '12.3 m/s' '12.34 N' '12.345 mm/s' '0.0026' '+7' '12.34 and 8' 'nothing'; do
+  ! claim "$bad" >/dev/null || fail "self-test: passes: $bad"
+done
+
 document '# A\n## One, two\n[b](#one-two) [c](https://example.org/x)\n'
 [ -z "$(dead_links "$scratch/made-up.md")" ] || fail "self-test: a good link is dead"
 for bad in '# A\n[b](#two)\n' '# A\n[b](nowhere.md)\n'; do
@@ -142,6 +162,12 @@ tested=$(sed 's/ && ctest .*//; s/install.sh tests/install.sh/; s/preset tests/p
 [ "$built" = "$tested" ] || fail "the two command lines build in different ways: $built | $tested"
 crawl=$(sed -n 's/.* && build\/release\/\(strut .*\)/\1/p' "$build")
 [ -n "$crawl" ] || fail "the first command line does not end with a run"
-(cd "$scratch/README/here" && sh -euc "$crawl") >"$scratch/log" 2>&1 </dev/null ||
-  { cat "$scratch/log"; fail "failed: $crawl"; }
+log=$scratch/README/blocks/$(awk '/^<!-- command: build -->/ { printf "%05d", NR + 1 }' "$root/README.md").log
+(cd "$scratch/README/here" && sh -euc "$crawl") >"$log" 2>&1 </dev/null ||
+  { cat "$log"; fail "failed: $crawl"; }
+
+for document in "$root"/README.md "$root"/docs/*.md "$root"/docs/*/*.md; do
+  [ -e "$document" ] || continue
+  wrong_numbers "$document" "$scratch/$(basename "$document" .md)" || failures=$((failures + 1))
+done
 exit "$((failures > 0))"

@@ -9,6 +9,10 @@
 
 #include "engine/base/export.h"
 
+/** A constant as the code writes it, for help texts. */
+#define STRUT_TEXT_OF(constant) STRUT_LITERAL_OF(constant)
+#define STRUT_LITERAL_OF(literal) #literal
+
 /** Room that any text of strut_number_text fits in, its NUL included. */
 enum { STRUT_NUMBER_TEXT = 32 };
 

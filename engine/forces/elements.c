@@ -349,5 +349,7 @@ double strut_element_measure_at(const strut_model *model, const strut_state *sta
   double rest_rate = slot >= 0 ? state->rest_rate[slot] : 0.0;
   strut_law_response r = strut_law_respond(e->law, &e->numbers, pose->strain, pose->natural, -1);
   double own = strut_element_rate(model, element, pose, v) - rest_rate;
-  return exert(e, state, element, &r, pose->strain - pose->natural, own).force;
+  double force = exert(e, state, element, &r, pose->strain - pose->natural, own).force;
+  /* where a step ends a little beyond the end of a frozen mode */
+  return e->carries && !(e->carries * force > 0.0) ? 0.0 : force;
 }

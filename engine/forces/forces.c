@@ -38,14 +38,20 @@ void strut_forces_evaluate(const strut_model *model, strut_state *state, double 
   if (state->rigid) strut_rigid_constrain(model, state, q, v);
 }
 
-void strut_forces_observe(const strut_model *model, strut_state *state, double t) {
-  int64_t evaluations = state->evaluations;
-  strut_forces_evaluate(model, state, t, state->q, state->v);
-  state->evaluations = evaluations; /* looking on is not part of the run's cost */
-  for (int32_t i = 0; i < model->contacts.count && state->held_normal; i++) {
+bool strut_forces_show_held(const strut_model *model, strut_state *state) {
+  if (!state->held_normal) return false;
+  for (int32_t i = 0; i < model->contacts.count; i++) {
     state->normal[i] = state->held_normal[i];
     state->friction[i] = state->held_friction[i];
   }
+  return true;
+}
+
+void strut_forces_observe(const strut_model *model, strut_state *state, double t) {
+  int64_t evaluations = state->evaluations;
+  strut_forces_evaluate(model, state, t, state->q, state->v);
+  state->evaluations = evaluations; /* observing is not part of the run's cost */
+  strut_forces_show_held(model, state);
 }
 
 void strut_forces_acceleration(const strut_model *model, strut_state *state, double t,

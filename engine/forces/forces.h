@@ -28,6 +28,9 @@ STRUT_API void strut_forces_evaluate(const strut_model *model, strut_state *stat
  */
 STRUT_API void strut_forces_observe(const strut_model *model, strut_state *state, double t);
 
+/** Shows the contact forces that a method with events holds in normal and friction; false: it holds none. */
+STRUT_API bool strut_forces_show_held(const strut_model *model, strut_state *state);
+
 /** One member at the state: length [m], its rate [m/s], force [N] (tension positive). */
 typedef struct strut_member_values {
   double length, rate, force;

@@ -22,7 +22,7 @@ static double shift_of(const strut_element *e, double plastic) {
   return strut_slider_share(e) * plastic;
 }
 
-/* The plastic strain at which the slider at x is at its yield, on the side of `sign`. */
+/* The slip at which the slider at x is at its yield, on the side of `sign`. */
 static double plastic_at(const strut_element *e, double x, double sign) {
   return x - sign * strut_slider_yield(e) / strut_slider_spring(e);
 }
@@ -289,7 +289,7 @@ double strut_element_last_force(const strut_model *model, const strut_state *sta
 
 double strut_element_plastic(const strut_model *model, const strut_state *state, int32_t element) {
   const strut_element *e = &model->elements.element[element];
-  return e->remembers && yields(e) ? state->plastic[e->memory] : 0.0;
+  return e->remembers && yields(e) ? shift_of(e, state->plastic[e->memory]) : 0.0;
 }
 
 static void keep_worst(const strut_model *model, strut_element_role role, int32_t item, bool breaks,

@@ -5,9 +5,10 @@
  * Such an element has a slot of its own among the natural strains, which follows that of its member or
  * hinge. What breaks or is released gets the natural strain INFINITY, by which it carries and stores
  * nothing. An elastic-plastic element is a spring k_1 in series with a slider that gives way at F_1,
- * beside a spring k_2: with the plastic strain p
+ * beside a spring k_2: with the slip p of the slider
  *   force = k_1 (x - p) + k_2 x,  |k_1 (x - p)| <= F_1,  k_1 = k - k_2,  F_1 = yield (1 - k_2/k),
  * which is k x about a natural strain that is k_1/k p larger, and the energy stored in k_1 against k_2.
+ * That shift, x - force/k, is the plastic strain: what remains when the force is taken away.
  *
  * Methods with events freeze whether the slider holds or gives way (state->element_piece); p is then
  * constant, or follows from x. With others the slider gives way within a step as its force says, and p
@@ -104,7 +105,7 @@ STRUT_API bool strut_memory_overload(const strut_model *model, const double *q,
 
 /** Tension at the last node of element i: of a cable with guide friction another than at its first. */
 double strut_element_last_force(const strut_model *model, const strut_state *state, int32_t i);
-/** Plastic strain of an element; 0 of one that cannot yield. */
+/** Plastic strain of an element, k_1/k p; 0 of one that cannot yield. */
 double strut_element_plastic(const strut_model *model, const strut_state *state, int32_t element);
 
 /**

@@ -21,9 +21,9 @@ enum {
 /** At the end of the step of dt [s] from state->step on: supports that move, and impulses. */
 static inline void end_moving_step(const strut_model *model, strut_state *state, double dt) {
   double t = ((double)state->step + 1.0) * dt;
-  strut_sliding_masses_kick(model, state, t - dt, t);
-  strut_support_motion_kick(model, state, t - dt, t);
-  strut_unbalance_kick(model, state, t - dt, t);
+  state->kicked = strut_sliding_masses_kick(model, state, t - dt, t);
+  state->kicked = strut_support_motion_kick(model, state, t - dt, t) || state->kicked;
+  state->kicked = strut_unbalance_kick(model, state, t - dt, t) || state->kicked;
   strut_support_motion_place(model, state, t, state->q, state->v);
 }
 

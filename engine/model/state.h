@@ -104,11 +104,12 @@ typedef struct strut_state {
   double *started;     /* (signals) when those with a trigger started [s]; INFINITY: not yet */
   int8_t *trigger_was; /* (signals) did its condition hold when last looked at? -1: not looked at */
   double *held; /* (signals) of sampled ones the value at the latest sample; NAN before the first */
-  bool ledger;  /* keep the ledger? It costs some arithmetic per evaluation */
+  bool kicked; /* velocities have jumped at the end of the latest step of a method without events */
+  bool ledger; /* keep the ledger? It costs some arithmetic per evaluation */
   double *scratch; /* (length) for the mass solve */
   strut_arena arena;
   /* memory of elements, see forces/memory.h; the slots of `rest` that belong to them follow from it */
-  double *plastic; /* (memory_count) plastic strain */
+  double *plastic; /* (memory_count) slip of sliders, see forces/memory.h */
   double
       *broken_at; /* (breakable_count) since when it carries nothing [s]; INFINITY: it does not */
   int8_t *guide_mode; /* (memory_slots) at the slots of cables with guide friction: see capstan.h */
@@ -133,6 +134,8 @@ typedef struct strut_state {
                                         integrate/events/event_log.h; NULL: nobody asks */
   struct strut_variation *variation; /* exact methods with events carry it along, see
                                         integrate/events/variation.h; NULL: nobody asks */
+  struct strut_observer *observer;   /* sees each piece of the motion of a method with events, see
+                                        integrate/observer.h; NULL: nobody asks */
 } strut_state;
 
 /** All memory a run needs; an integrator adds its own to the arena. STRUT_OK or STRUT_NO_MEMORY. */

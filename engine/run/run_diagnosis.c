@@ -217,6 +217,28 @@ static void warn_of_limit(const strut_run *r) {
                      violation->limit, violation->time, r->summary->step, 0.9 * violation->limit);
 }
 
+/* Quantities are not followed between steps where interpolation leaves more than this part of their size. */
+static const double COARSE = 0.01;
+
+/* Names the quantity that fixed steps follow worst between their ends. */
+static void warn_of_coarse_steps(const strut_run *r) {
+  const strut_summary *s = r->summary;
+  const strut_measured *worst = NULL;
+  double most = COARSE;
+  for (size_t i = 0; i < s->measured_count && s->status == STRUT_OK && !r->options->chosen; i++) {
+    const strut_measured *q = &s->measured[i];
+    if (!(q->doubt > most * q->scale)) continue;
+    most = q->doubt / q->scale;
+    worst = q;
+  }
+  if (!worst) return;
+  strut_summary_warn(
+      r->summary, "coarse_step",
+      "quantity '%s' is known only within some %.2g %%: steps of %g s are too coarse "
+      "to follow it from one to the next; use a smaller step, or --accuracy 1%%",
+      worst->name, 100.0 * most, s->step);
+}
+
 /* A drive that changes by more than this part of its member within a step jumps. */
 static const double JUMP = 1e-3;
 
@@ -339,5 +361,6 @@ void strut_run_warn(const strut_run *r) {
   warn_of_narrow_bands(r);
   warn_of_creep(r);
   warn_of_limit(r);
+  warn_of_coarse_steps(r);
   warn_of_tunnelling(r);
 }

@@ -31,9 +31,18 @@ double strut_run_clock(void) {
 
 /* ---- before the first step ---- */
 
+/* More steps than these are refused, so that to recommend them is no help. */
+static const double MOST_STEPS = 1e15;
+
 static strut_status check_step_limit(const strut_run *r, bool bound) {
-  double limit = r->summary->step_limit;
+  double limit = r->summary->step_limit, duration = (double)(r->steps - r->first) * r->dt;
   if (r->dt <= limit || r->options->force) return STRUT_OK;
+  if (!(limit * MOST_STEPS > duration))
+    return strut_fail(r->error, STRUT_STEP_TOO_LARGE,
+                      "the largest stable step of %s would be %.2g s (all contacts closed), too "
+                      "small for a run of %.4g s: stiffnesses or dampings are far too large beside "
+                      "the masses; check their units",
+                      r->method->name, limit, duration);
   if (bound)
     return strut_fail(r->error, STRUT_STEP_TOO_LARGE,
                       "the step %g s is above %.4g s, a bound below which %s is stable (all "
@@ -182,6 +191,12 @@ static strut_status prepare_run(strut_run *r) {
       (r->detect_steady && strut_steady_detector_create(r->model, &r->experiment->steady,
                                                         span.period, begin, &r->steady)))
     return strut_memory_fail_model(r->model->scene, r->error);
+  if (r->measure.quantities && strut_quantities_need_pieces(r->measure.quantities) &&
+      r->method->observe) {
+    if (!r->method->observe(r->model, r->state, r->workspace))
+      return strut_memory_fail_model(r->model->scene, r->error);
+    strut_quantities_observe(r->measure.quantities);
+  }
   if ((status = place_state(r))) return status;
   if (r->model->plan & STRUT_TERM_SUPPORT_MOTION)
     strut_support_motion_place(r->model, r->state, begin, r->state->q, r->state->v);
@@ -340,6 +355,7 @@ static int64_t find_next_check(const strut_run *r, int64_t chunk) {
 static void step_with_quantities(strut_run *r, int64_t stop) {
   while (r->state->step < stop) {
     advance(r, r->dt, 1);
+    if (r->state->trouble) return;
     strut_measure_step_quantities(r->model, r->state, &r->measure);
   }
 }
@@ -356,6 +372,7 @@ static void step_to(strut_run *r, int64_t stop) {
   }
   for (; n < stop; n++) {
     advance(r, r->dt, 1);
+    if (r->state->trouble) return;
     strut_measure_step(r->model, r->state, &r->measure);
   }
 }

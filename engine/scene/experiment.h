@@ -14,7 +14,7 @@
 #include "engine/scene/quantity.h"
 #include "engine/scene/scene.h"
 
-enum { STRUT_USUAL_BUDGET = 20 }; /* see strut_experiment.budget */
+#define STRUT_USUAL_BUDGET 20 /* see strut_experiment.budget */
 
 /** Settling before t = 0: actuators, loads with a signal and the belt are off. */
 typedef struct strut_settle {

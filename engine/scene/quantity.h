@@ -46,12 +46,12 @@ typedef enum strut_column_owner {
   X(RATE, MEMBER, "rate", 0, 1, -1, 0)      /* of the length */                                    \
   X(FORCE, MEMBER, "force", 1, 1, -2, 0)                                                           \
   X(TILT, MEMBER, "angle", 0, 0, 0, 1) /* of its direction, from +x, counted on beyond a turn */   \
-  X(PLASTIC, MEMBER, "plastic", 0, 1, 0, 0)        /* elongation that has yielded */               \
+  X(PLASTIC, MEMBER, "plastic", 0, 1, 0, 0) /* permanent set: elongation less force/stiffness */   \
   X(LAST_FORCE, MEMBER, "last_force", 1, 1, -2, 0) /* at its last node */                          \
   X(HINGE_ANGLE, HINGE, "angle", 0, 0, 0, 1)                                                       \
   X(HINGE_RATE, HINGE, "rate", 0, 0, -1, 1) /* of the angle */                                     \
   X(MOMENT, HINGE, "moment", 1, 2, -2, 0)                                                          \
-  X(HINGE_PLASTIC, HINGE, "plastic", 0, 0, 0, 1) /* angle that has yielded */                      \
+  X(HINGE_PLASTIC, HINGE, "plastic", 0, 0, 0, 1) /* permanent set, as an angle */                  \
   X(ANGLE, PAIR, "angle", 0, 0, 0, 1)                                                              \
   X(DISTANCE, PAIR, "distance", 0, 1, 0, 0)                                                        \
   X(CENTRE_X, CENTRE, "x", 0, 1, 0, 0)                                                             \

@@ -7,6 +7,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/** What zeros stand for: of the accuracy; of the steps of a branch, and of a curve over two parameters. */
+#define STRUT_FOLLOW_USUAL_PERCENT 0.1
+#define STRUT_FOLLOW_USUAL_STEPS 400
+#define STRUT_FOLLOW_USUAL_CURVE_STEPS 200
+
 typedef struct strut_study_follow {
   const char *over, *unit; /* the parameter; unit "": none */
   double from, to;         /* its range [SI], from < to */
@@ -14,9 +19,9 @@ typedef struct strut_study_follow {
   const double *at;        /* (at_count) values at which runs start branches [SI] */
   size_t start_count;      /* 0: as the model says */
   const char **start_from; /* (start_count) configurations */
-  double accuracy;         /* relative; 0: the default */
-  const char *integrator;  /* NULL: the default */
-  int32_t steps;           /* 0: the default */
+  double accuracy;         /* relative; 0: the usual one */
+  const char *integrator;  /* NULL: chosen */
+  int32_t steps;           /* 0: the usual ones */
   bool basins;
 } strut_study_follow;
 

@@ -26,6 +26,8 @@ struct strut_minimiser {
   double *unbent;             /* (n) the step before its correction */
   double *trial, *before;     /* (length) */
   const volatile sig_atomic_t *interrupt;
+  void (*visit)(void *context, const double *q); /* or NULL */
+  void *visitor;
   strut_arena arena;
 };
 
@@ -270,6 +272,16 @@ void strut_minimiser_watch(strut_minimiser *m, const volatile sig_atomic_t *inte
   m->interrupt = interrupt;
 }
 
+void strut_minimiser_visit(strut_minimiser *m, void (*visit)(void *context, const double *q),
+                           void *context) {
+  m->visit = visit;
+  m->visitor = context;
+}
+
+static void visit(const strut_minimiser *m, const double *q) {
+  if (m->visit) m->visit(m->visitor, q);
+}
+
 strut_descent strut_minimise(strut_minimiser *m, double *q, double tolerance) {
   strut_descent end = {.end = STRUT_DESCENT_EXHAUSTED};
   int32_t n = m->potential->n, extra = 0;
@@ -281,6 +293,7 @@ strut_descent strut_minimise(strut_minimiser *m, double *q, double tolerance) {
     end.residual = strut_largest_magnitude(m->g, n);
     double allowed = residual_allowed(m, q, tolerance, &end.rounding);
     end.end = STRUT_DESCENT_EXHAUSTED;
+    visit(m, q);
     if (ran_away(m, q, m->before)) {
       end.end = STRUT_DESCENT_RUNAWAY;
       return end;
@@ -301,6 +314,7 @@ strut_descent strut_minimise(strut_minimiser *m, double *q, double tolerance) {
   }
   if (end.end != STRUT_DESCENT_REACHED) return end;
   polish_point(m, q, tolerance, 1e-3 * m->size, &end);
+  visit(m, q);
   if (end.step > 1e-5 * m->size || strut_shape_has_collapsed(m->potential->model, q))
     end.end = STRUT_DESCENT_EXHAUSTED;
   return end;

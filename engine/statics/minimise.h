@@ -38,6 +38,10 @@ STRUT_API void strut_minimiser_free(strut_minimiser *minimiser);
 /** Descents end as exhausted soon after the flag is set. NULL: no flag. */
 void strut_minimiser_watch(strut_minimiser *minimiser, const volatile sig_atomic_t *interrupt);
 
+/** Calls `visit` with every point q (length) that a descent keeps, its start and its end too; NULL: nothing. */
+void strut_minimiser_visit(strut_minimiser *minimiser,
+                           void (*visit)(void *context, const double *q), void *context);
+
 /**
  * Moves q (length) downhill to a point where g = 0, never uphill. It may end on a saddle only if
  * the start lies exactly on its ridge; then it leaves along the unstable direction. At the end it

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "engine/base/memory.h"
+#include "engine/base/number_text.h"
 #include "engine/output/file.h"
 #include "engine/output/results.h"
 #include "engine/study/compare/compare.h"
@@ -266,7 +267,8 @@ static const strut_option options[] = {
     {STRUT_OPTION_SET, "set", "NAME=VALUE",
      "change a parameter of all models that have it; after a MODEL, of that one"},
     {STRUT_OPTION_ACCURACY, "accuracy", "X",
-     "relative accuracy of velocities, such as 1% (default 0.5%)"},
+     "relative accuracy of velocities, such as 1% (default " STRUT_TEXT_OF(
+         STRUT_COMPARE_USUAL_PERCENT) "%)"},
     {STRUT_OPTION_NO_MOTION, "no-motion", NULL, "skip the simulated motion"},
     {STRUT_OPTION_NO_STATES, "no-states", NULL, "skip the search for stable states"},
     {STRUT_OPTION_OUTPUT, "output", "DIR",

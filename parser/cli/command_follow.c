@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "engine/base/memory.h"
+#include "engine/base/number_text.h"
 #include "engine/output/file.h"
 #include "engine/output/results.h"
 #include "engine/study/follow/follow_study.h"
@@ -24,10 +25,13 @@ static const strut_option options[] = {
     {STRUT_OPTION_AT, "at", "VALUE,...",
      "values at which branches start (default: the model's own, or the middle)"},
     {STRUT_OPTION_FROM, "from", "NAME,...", "configurations to start from (default: the start)"},
-    {STRUT_OPTION_ACCURACY, "accuracy", "E", "relative error of velocities (default 0.1 %)"},
+    {STRUT_OPTION_ACCURACY, "accuracy", "E",
+     "relative error of velocities (default " STRUT_TEXT_OF(STRUT_FOLLOW_USUAL_PERCENT) " %)"},
     {STRUT_OPTION_INTEGRATOR, "integrator", "NAME",
-     "method, which must locate events (default adaptive)"},
-    {STRUT_OPTION_STEPS, "steps", "N", "maximum number of steps each way (default 400)"},
+     "method, which must locate events (default: rk4-events, or else adaptive)"},
+    {STRUT_OPTION_STEPS, "steps", "N",
+     "maximum number of steps each way (default " STRUT_TEXT_OF(
+         STRUT_FOLLOW_USUAL_STEPS) ", of curves " STRUT_TEXT_OF(STRUT_FOLLOW_USUAL_CURVE_STEPS) ")"},
     {STRUT_OPTION_BASINS, "basins", NULL, "kick the stable motions at the values of --at"},
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
     {STRUT_OPTION_OUTPUT, "output", "DIR", "write branches.csv, .json and .svg into DIR"},

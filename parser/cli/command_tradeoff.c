@@ -7,6 +7,7 @@
 
 #include "engine/base/c_locale.h"
 #include "engine/base/memory.h"
+#include "engine/base/number_text.h"
 #include "engine/output/file.h"
 #include "engine/output/results.h"
 #include "engine/study/tradeoff/tradeoff.h"
@@ -131,7 +132,9 @@ static strut_status open_points(const strut_command *command, const strut_argume
   return status;
 }
 
-enum { MOST_METHODS = 64, MOST_POINTS = 10000, USUAL_POINTS = 40 };
+enum { MOST_METHODS = 64, MOST_POINTS = 10000 };
+#define USUAL_POINTS 40
+#define USUAL_SEED 1
 static const double PAGE = 510.24; /* 180 mm [pt] */
 static const double LEAST_BUDGET = 1e-3, MOST_BUDGET = 1e7, MOST_PERIODS = 1e7;
 
@@ -139,13 +142,19 @@ static const strut_option options[] = {
     {STRUT_OPTION_MEASURE, "measure", "WHAT",
      "measured quantity: velocity, position or energy (default automatic)"},
     {STRUT_OPTION_METHODS, "methods", "LIST", "only these methods, such as rk4,verlet-events"},
-    {STRUT_OPTION_STEPS, "steps", "N", "steps per method, five per decade (default 8)"},
-    {STRUT_OPTION_PERIODS, "periods", "N", "maximum number of periods of a run (default 120)"},
+    {STRUT_OPTION_STEPS, "steps", "N",
+     "steps per method, five per decade (default " STRUT_TEXT_OF(STRUT_TRADEOFF_USUAL_STEPS) ")"},
+    {STRUT_OPTION_PERIODS, "periods", "N",
+     "maximum number of periods of a run (default " STRUT_TEXT_OF(
+         STRUT_TRADEOFF_USUAL_PERIODS) ")"},
     {STRUT_OPTION_VARY, "vary", "NAME=RANGE",
      "draw a parameter at random: LOW..HIGH or WORD,WORD; may be repeated"},
-    {STRUT_OPTION_POINTS, "points", "N", "number of points drawn with --vary (default 40)"},
-    {STRUT_OPTION_SEED, "seed", "N", "seed of the random points (default 1)"},
-    {STRUT_OPTION_BUDGET, "budget", "TIME", "approximate CPU time to spend (default 2 min)"},
+    {STRUT_OPTION_POINTS, "points", "N",
+     "number of points drawn with --vary (default " STRUT_TEXT_OF(USUAL_POINTS) ")"},
+    {STRUT_OPTION_SEED, "seed", "N",
+     "seed of the random points (default " STRUT_TEXT_OF(USUAL_SEED) ")"},
+    {STRUT_OPTION_BUDGET, "budget", "TIME",
+     "approximate CPU time to spend (default " STRUT_TEXT_OF(STRUT_TRADEOFF_USUAL_BUDGET) " s)"},
     {STRUT_OPTION_OWN_MODEL, "own-model", NULL, "skip variants of the model"},
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
     {STRUT_OPTION_OUTPUT, "output", "DIR", "write tradeoff.csv, .json and .svg into DIR"},
@@ -198,7 +207,7 @@ static strut_status check_positive(const char *name, double value, double least,
 static strut_status read_numbers(const strut_arguments *arguments, tradeoff_request *w) {
   const strut_command *command = &strut_command_tradeoff;
   static const char *const measures[] = {"velocity", "position", "energy", NULL};
-  int64_t steps = 0, seed = 1, points = arguments->varied_count > 0 ? USUAL_POINTS : 1;
+  int64_t steps = 0, seed = USUAL_SEED, points = arguments->varied_count > 0 ? USUAL_POINTS : 1;
   int measure = -1;
   strut_status status =
       strut_option_word(command, arguments, STRUT_OPTION_MEASURE, measures, &measure);

@@ -5,6 +5,7 @@
 #ifndef STRUT_PARSER_CLI_RUN_PICTURES_H
 #define STRUT_PARSER_CLI_RUN_PICTURES_H
 
+#include "engine/base/number_text.h"
 #include "engine/output/figures/run_figure.h"
 #include "engine/output/film/film.h"
 #include "parser/cli/option_values.h"
@@ -16,7 +17,9 @@
       {STRUT_OPTION_SPEED, "speed", "SPEED",                                                       \
        "speed of the film, such as 1/10 or 5 (default 1, real time)"},                             \
   {                                                                                                \
-    STRUT_OPTION_FPS, "fps", "NUMBER", "frames per second (default 30; gif: 25)"                   \
+    STRUT_OPTION_FPS, "fps", "NUMBER",                                                             \
+        "frames per second (default " STRUT_TEXT_OF(STRUT_FILM_FPS) "; gif: " STRUT_TEXT_OF(       \
+            STRUT_FILM_GIF_FPS) ")"                                                                \
   }
 
 /**

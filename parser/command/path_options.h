@@ -5,6 +5,7 @@
 #ifndef STRUT_PARSER_COMMAND_PATH_OPTIONS_H
 #define STRUT_PARSER_COMMAND_PATH_OPTIONS_H
 
+#include "engine/base/number_text.h"
 #include "engine/statics/path/path.h"
 #include "parser/command/varied_scenes.h"
 
@@ -16,7 +17,8 @@
       {STRUT_OPTION_FROM, "from", "VALUE", "start value: a load factor, or in the unit of WHAT"},  \
       {STRUT_OPTION_UNTIL, "until", "VALUE", "end value, likewise (default: load factor 1)"},      \
       {STRUT_OPTION_AT, "at", "NAME", "equilibrium to start from (default: that of the start)"}, { \
-    STRUT_OPTION_STEPS, "steps", "N", "maximum number of steps (default 400)"                      \
+    STRUT_OPTION_STEPS, "steps", "N",                                                              \
+        "maximum number of steps (default " STRUT_TEXT_OF(STRUT_PATH_USUAL_STEPS) ")"              \
   }
 
 /** Reads --at and --steps. STRUT_USAGE; the listener hears why. */

@@ -5,6 +5,7 @@
 #ifndef STRUT_PARSER_COMMAND_RUN_SETTINGS_H
 #define STRUT_PARSER_COMMAND_RUN_SETTINGS_H
 
+#include "engine/base/number_text.h"
 #include "engine/scene/experiment.h"
 #include "parser/command/arguments.h"
 
@@ -13,7 +14,8 @@
   {STRUT_OPTION_ACCURACY, "accuracy", "X",                                                         \
    "choose method and step for a relative error of the velocity of X, such as 1%"},                \
       {STRUT_OPTION_BUDGET, "budget", "N",                                                         \
-       "limit on the work of --accuracy, in units of one fine fixed-step run (default 20)"},       \
+       "limit on the work of --accuracy, in units of one fine fixed-step run "                     \
+       "(default " STRUT_TEXT_OF(STRUT_USUAL_BUDGET) ")"},                                         \
       {STRUT_OPTION_INTEGRATOR, "integrator", "NAME",                                              \
        "integration method, instead of that of the file"},                                         \
       {STRUT_OPTION_STEP, "step", "TIME", "time step, instead of that of the file"},               \

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/number_text.h"
 #include "engine/scene/study.h"
 
 /* clang-format off */

@@ -322,7 +322,7 @@
   X(SOLVER, REFINE, "refine", NUMBER, NONE, ABOVE_ZERO, "from the scene", OPTIONAL, 0, "", FIELD(strut_experiment, refine), "Methods with events divide the step by this factor after a touchdown; 1 switches the refinement off.") \
   X(SOLVER, REFINE_TIME, "refine_time", NUMBER, TIME, ABOVE_ZERO, "from the scene", OPTIONAL, 0, "", FIELD(strut_experiment, refine_time), "Duration of the refinement after a touchdown.") \
   X(SOLVER, ACCURACY, "accuracy", NUMBER, NONE, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_experiment, accuracy), "Wanted relative accuracy of the measured quantities, such as 1 %; method and step are chosen to meet it.") \
-  X(SOLVER, BUDGET, "budget", NUMBER, NONE, ABOVE_ZERO, "20", OPTIONAL, 0, "", FIELD(strut_experiment, budget), "Work allowed for `accuracy`, in units of one fine run with a fixed step; a result that would need more is reported as such.") \
+  X(SOLVER, BUDGET, "budget", NUMBER, NONE, ABOVE_ZERO, STRUT_TEXT_OF(STRUT_USUAL_BUDGET), OPTIONAL, 0, "", FIELD(strut_experiment, budget), "Work allowed for `accuracy`, in units of one fine run with a fixed step; a result that would need more is reported as such.") \
   X(RUN, DURATION, "duration", NUMBER, TIME, ABOVE_ZERO, "", OPTIONAL, 3, "", FIELD(strut_experiment, duration), "Simulated time.") \
   X(RUN, PERIODS, "periods", NUMBER, NONE, ABOVE_ZERO, "", OPTIONAL, 3, "", FIELD(strut_experiment, periods), "Simulated time in periods of the signal that `of` names.") \
   X(RUN, OF, "of", NAME, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "The actuator, load or signal whose periods count.") \
@@ -457,9 +457,9 @@
   X(FOLLOW, TO, "to", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", BY_HAND, "The upper end.") \
   X(FOLLOW, AT, "at", NUMBERS, CONTEXT, ANY, "the model's own value, or the middle", OPTIONAL, 0, "", BY_HAND, "Values at which runs start branches.") \
   X(FOLLOW, START_FROM, "start_from", NAMES, NONE, ANY, "as the model says", OPTIONAL, 0, "", BY_HAND, "Configurations from whose equilibria these runs start.") \
-  X(FOLLOW, ACCURACY, "accuracy", NUMBER, NONE, ABOVE_ZERO, "0.1 %", OPTIONAL, 0, "", FIELD(strut_study_follow, accuracy), "Relative error of velocities, at most 10 %.") \
-  X(FOLLOW, INTEGRATOR, "integrator", WORD, NONE, ANY, "adaptive", OPTIONAL, 0, STRUT_INTEGRATOR_WORDS, FIELD(strut_study_follow, integrator), "A method that locates events where there are contacts or cables.") \
-  X(FOLLOW, STEPS, "steps", NUMBER, NONE, WHOLE(1, 100000), "400", OPTIONAL, 0, "", FIELD(strut_study_follow, steps), "Maximum number of steps of a branch each way.") \
+  X(FOLLOW, ACCURACY, "accuracy", NUMBER, NONE, ABOVE_ZERO, STRUT_TEXT_OF(STRUT_FOLLOW_USUAL_PERCENT) " %", OPTIONAL, 0, "", FIELD(strut_study_follow, accuracy), "Relative error of velocities, at most 10 %.") \
+  X(FOLLOW, INTEGRATOR, "integrator", WORD, NONE, ANY, "`rk4-events`, or `adaptive` where that cannot", OPTIONAL, 0, STRUT_INTEGRATOR_WORDS, FIELD(strut_study_follow, integrator), "A method that locates events where there are contacts or cables.") \
+  X(FOLLOW, STEPS, "steps", NUMBER, NONE, WHOLE(1, 100000), STRUT_TEXT_OF(STRUT_FOLLOW_USUAL_STEPS), OPTIONAL, 0, "", FIELD(strut_study_follow, steps), "Maximum number of steps of a branch each way.") \
   X(FOLLOW, BASINS, "basins", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_study_follow, basins), "Kick the stable motions at the values of `at`, to find how far they may be pushed.")
 
 /* clang-format on */

@@ -167,6 +167,50 @@ sed 's/stiffness: 1e5}/stiffness: 1e3}/' rods.yaml >soft.yaml
 expect 0 run soft.yaml --quiet
 err_has "the sides of collision 'hit' were pressed into each other by more than half"
 
+# Equilibria on both sides of a rod. The node may go round an end of it, and the pass lies there.
+cat >over.yaml <<'YAML'
+strut: 1
+gravity: [0, -9.81]
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], fixed: both}, c: {position: [0.5, 0.5], mass: 1}, top: {position: [0.5, 1.5], fixed: both}}
+members: {beam: {kind: bar, nodes: [a, b], stiffness: 1e4}, s: {kind: spring, nodes: [top, c], stiffness: 10, rest_length: 1}}
+collisions: {k: {node: c, member: beam, thickness: 0.1, stiffness: 1e3}}
+YAML
+holds() { jq -e "$1" out >/dev/null || fail "not so: $1"; }
+expect 0 equilibria over.yaml --json
+holds '[.equilibria[] | .overlap, .through] | all(. == null)'
+holds '.barriers | length == 2'
+holds '.barriers[0].saddle as $pass | .equilibria[] | select(.name == $pass) | .nodes.c[0] | . < 0 or . > 1'
+# Held in x it cannot: the far side is out of reach, and no barrier is listed.
+sed 's/mass: 1}/mass: 1, fixed: x}/' over.yaml >held.yaml
+expect 0 equilibria held.yaml --json
+holds '.barriers | length == 0'
+holds '[.equilibria[] | select(.nodes.c[1] < 0)] | length == 1 and .[0].through == "k"'
+holds '[.equilibria[] | select(.nodes.c[1] > 0) | .through] | all(. == null)'
+expect 0 equilibria held.yaml --plot held.svg
+out_has "reached only through 'k'"
+# Two rods that cross lie in each other, though nothing pushes them apart; no barrier leads there, nor to the
+# other side by a floppy shape that both sides have.
+cat >rods.yaml <<'YAML'
+strut: 1
+nodes:
+  a: {position: [-1, 0], fixed: both}
+  b: {position: [1, 0], fixed: both}
+  p: {position: [-0.5, 0.5], mass: 1}
+  q: {position: [0.5, 0.5], mass: 1}
+  u: {position: [-0.6, 0.2], fixed: both}
+  v: {position: [0.6, 0.2], fixed: both}
+members:
+  wall: {kind: bar, nodes: [a, b], stiffness: 1e4}
+  rod: {kind: bar, nodes: [p, q], stiffness: 1e3}
+  s1: {kind: spring, nodes: [u, p], stiffness: 10, rest_length: 0.4}
+  s2: {kind: spring, nodes: [v, q], stiffness: 10, rest_length: 0.4}
+collisions: {k: {members: [wall, rod], thickness: 0.05, stiffness: 1e3}}
+YAML
+expect 0 equilibria rods.yaml --json
+holds '[.equilibria[] | select((.nodes.p[1] < 0) != (.nodes.q[1] < 0) and .label == "stable")] | length > 0 and all(.overlap == "k")'
+holds '[.equilibria[] | select(.nodes.p[1] < 0 and .nodes.q[1] < 0 and .label == "stable")] | length > 0 and all(.through == "k")'
+holds '[.equilibria[] | select(.overlap or .through) | .name] as $out | [.barriers[] | .from, .to] | length > 0 and all(. as $n | $out | index($n) == null)'
+
 # Everything else knows collisions.
 expect 0 check hinged.yaml
 out_has "drawn gap"

@@ -261,6 +261,34 @@ awk -v x="$x" 'BEGIN { exit !(x > 0.35) }' || fail "the wheel got to $x only"
 go left.yaml adaptive
 near_number "$(last nodes hub.x)" "-$x" 1e-6 "mirror image of the wheel"
 
+# ---- a path against a ceiling and a wall: as against the floor, mirrored and turned ----
+cat >floor.yaml <<'YAML'
+strut: 1
+parameters: {gap: 0.2}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, -0.1], mass: 1}, c: {position: [2, 0], fixed: both}}
+members: {l: {kind: spring, nodes: [a, b], stiffness: 100}, r: {kind: spring, nodes: [b, c], stiffness: 100}}
+ground: {height: -gap, stiffness: 1e4, nodes: [b]}
+loads: {p: {node: b, force: [1, -20]}}
+YAML
+sed 's/-0.1/0.1/; s/height: -gap/through: [5, gap], normal: [0, -1]/; s/-20/20/' floor.yaml >ceiling.yaml
+sed -e 's/\[1, -0.1\]/[-0.1, -1]/; s/\[2, 0\]/[0, -2]/; s/\[1, -20\]/[-20, -1]/' \
+  -e 's/height: -gap/through: [-gap, 7], normal: [1, 0]/' floor.yaml >wall.yaml
+ends_as_on_the_floor() { # MODEL X Y: the point of the floor that the node's last place stands for
+  # shellcheck disable=SC2086
+  expect 0 path "$1" $over --json
+  jq -e --slurpfile floor floor.last "[.points[-1] | $2, $3, .contacts.b] as \$x |
+    [range(3) | \$x[.] - \$floor[0][.] | fabs] | max < 1e-9" out >/dev/null ||
+    fail "$1 $over ends at $(jq -c '.points[-1] | [.nodes.b, .contacts.b]' out), not $(cat floor.last)"
+}
+for over in '' '--over gap --until 0.05'; do
+  # shellcheck disable=SC2086
+  expect 0 path floor.yaml $over --json
+  jq -c '[.points[-1] | .nodes.b[], .contacts.b]' out >floor.last
+  jq -e '.points[-1].contacts.b > 1' out >/dev/null || fail "the floor is not reached"
+  ends_as_on_the_floor ceiling.yaml '.nodes.b[0]' '-.nodes.b[1]'
+  ends_as_on_the_floor wall.yaml '-.nodes.b[1]' '.nodes.b[0]'
+done
+
 # ---- what is drawn and written ----
 mkdir seen
 expect 0 run right.yaml --step '1 ms' --quiet -o seen/run --plot seen/run.svg

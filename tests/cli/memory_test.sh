@@ -151,8 +151,8 @@ YAML
 far='0.01 + (-10 + (100 + 4 * 50 * (0.5 - 0.05) | sqrt)) / 100'
 expect 0 run catch.yaml --set h='10 us' --json
 near .measured.far.value "$far" 1e-7
-# p at the turn: x minus what is left in the slider's spring, F1 / k1 = yield / k
-near .measured.p.value "$far - 0.01" 1e-7
+# The set at the turn: the elongation x less (yield + k2 (x - yield / k)) / k, which is elastic.
+near .measured.p.value "($far - 0.01) * 0.9" 1e-7
 x_of() {
   sed "s/rk4-events/$1/" catch.yaml >other.yaml
   expect 0 run other.yaml --set h="$2" --json
@@ -182,6 +182,25 @@ near .energy.dissipated_members '0.5 - 0.05' 1e-8 # it flies back with what the 
 near .energy.kinetic 0.05 1e-8
 near .measured.p.value 0.045 1e-8
 
+# Pulled by 4 N and let go slowly, it keeps the set it had: 4 N are just twice the yield, no more.
+cat >set.yaml <<'YAML'
+strut: 1
+nodes:
+  wall: {position: [0, 0], fixed: both}
+  hand: {position: [1, 0], mass: 1e-3, fixed: y}
+members:
+  e: {kind: spring, nodes: [wall, hand], stiffness: 1000, damping: 1,
+      law: {kind: elastic_plastic, yield: 2, second_stiffness: 500}}
+loads: {p: {node: hand, force: [4 N, 0], signal: {table: [[0, 0], [1, 1], [2, 0]]}}}
+solver: {integrator: rk4-events, step: 0.1 ms}
+run:
+  duration: 2.5 s
+  measure: {quantities: {left: {of: e.stretch, take: final}, p: {of: e.plastic, take: final}}}
+YAML
+expect 0 run set.yaml --json
+near .measured.left.value 0.002 5e-6
+near .measured.p.value "$(jq .measured.left.value out)" 1e-9
+
 # A hinge likewise.
 cat >bend.yaml <<'YAML'
 strut: 1
@@ -200,6 +219,10 @@ YAML
 expect 0 run bend.yaml --json
 near .measured.p.value '0.125 - 0.005' 1e-4
 near .energy.dissipated_members '0.125 - 0.005' 1e-4
+# Stiffening as it yields: F z + k2 z^2/2 beyond the yield, of which (1 - k2/k) z remains.
+sed 's/yield: 1 N m/&, second_stiffness: 20/; s/take: final/take: max/' bend.yaml >stiff.yaml
+expect 0 run stiff.yaml --json
+near .measured.p.value '0.8 * (-1 + (1 + 40 * 0.12 | sqrt)) / 20' 1e-4
 
 # Statics take it as whole and elastic, and warn.
 cat >rest.yaml <<'YAML'

@@ -84,6 +84,45 @@ err_has "not to 1e-8"
 err_has "condition"
 out_empty
 
+# Cables that are just taut pull one way only: they count as slack, whatever their last bits, and this is said.
+# Of the arch of N wedges 2 N bars remain for 4 (N - 1) coordinates.
+arch=$here/../../models/parts/arch.yaml
+for cells in 8 16 23; do
+  expect 0 modes "$arch" --set cells=$cells --json
+  near '[.modes[] | select(.kind == "mechanism" and .frequency == 0)] | length' "2 * $cells - 4" 0
+  near '[.modes[] | select(.frequency > 0) | .frequency] | min | if . > 1 then 1 else 0 end' 1 0
+  near '.just_taut | length' "3 * $cells + 1" 0
+done
+expect 0 modes "$arch" --set cells=16 --count 1
+out_has "just taut, without prestress: foot and 48 more"
+out_has "members are just taut"
+expect 0 rigidity "$arch" --set cells=16
+out_has "without force      foot and 48 more"
+expect 3 modes "$arch" --set cells=200 --count 4
+err_has "396 modes have no stiffness"
+# Two ropes as one running cable, and a spring that only pulls, likewise.
+cat >vee.yaml <<'END'
+strut: 1
+nodes: {a: {position: [-1, 1], fixed: both}, b: {position: [1, 1], fixed: both}, c: {position: [0, 0], mass: 1}}
+members: {l: {kind: cable, nodes: [a, b, c], stiffness: 100}, r: {kind: spring, law: tension_only, nodes: [b, c], stiffness: 100}}
+END
+expect 0 modes vee.yaml --json
+near '[.modes[] | select(.frequency == 0)] | length' 2 0
+near '.just_taut | length' 2 0
+# Loads decide it, even where a cable's stretch is below the last bit of its length.
+cat >hang.yaml <<'END'
+strut: 1
+gravity: [0, -10]
+parameters: {k: 1e3}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [0, -1], mass: 1}}
+members: {s: {kind: cable, nodes: [a, b], stiffness: k, rest_length: 1}}
+END
+for k in 1e12 1e16 3e16; do
+  expect 0 modes hang.yaml --set k=$k --json
+  near '.just_taut | length' 0 0
+  near '.modes[0].angular_frequency' '10 | sqrt' 1e-10
+done
+
 # Contacts that touch are closed; --stuck holds them along the ground.
 cat >standing.yaml <<'END'
 strut: 1

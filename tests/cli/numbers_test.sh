@@ -25,6 +25,21 @@ grep -q '^#' kept/nodes.csv && fail "CSV with comments"
 expect 3 run "$hopper" --set "step=20 ms" --set seconds=60 --force
 out_has "Hopper: diverged"
 
+# A stiffness beyond physical sense: no step can be recommended.
+cat >stiff.yaml <<'YAML'
+strut: 1
+parameters: {stiffness: 1e300}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1e-300}}
+members: {s: {kind: spring, nodes: [a, b], stiffness: stiffness}}
+solver: {step: 1 ms}
+run: {duration: 1 s}
+YAML
+for stiffness in 1e300 1e-265; do
+  expect 3 run stiff.yaml --set "stiffness=$stiffness"
+  err_has "check their units"
+  ! grep -qF 'solver.step <=' err || fail "a step is recommended"
+done
+
 expect 0 check "$hopper" --set "step=20 ms"
 out_has "strut run rejects it"
 done_testing

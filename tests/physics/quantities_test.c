@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/integrate/integrator.h"
 #include "parser/read/read_scene.h"
 #include "tests/support/check.h"
 #include "tests/support/motion.h"
@@ -558,6 +559,82 @@ static void test_a_running_cable(void **unused) {
   end_run(&r);
 }
 
+/*
+ * A ball without weight meets the ground for half a period of sqrt(k/m): each way of taking its force, by
+ * every method that steps over contacts, whose steps pass over the greatest force.
+ */
+static void test_a_blow_between_steps(void **unused) {
+  (void)unused;
+  static const char text[] =
+      "strut: 1\n"
+      "gravity: [0, 0]\n"
+      "nodes: {ball: {position: [0, 0.5], mass: 0.1}}\n"
+      "ground: {stiffness: 2e4}\n"
+      "initial: {velocities: {ball: [0, -2]}}\n"
+      "solver: {integrator: %s, step: %s}\n"
+      "run:\n"
+      "  duration: 0.4 s\n"
+      "  measure:\n"
+      "    quantities:\n"
+      "      blow: {of: ball.normal, take: max}\n"
+      "      span: {of: ball.normal, take: range}\n"
+      "      mean: {of: ball.normal, take: mean}\n"
+      "      rms: {of: ball.normal, take: rms}\n"
+      "      rise: {of: ball.normal, take: rise}\n"
+      "      deep: {of: ball.height, take: min}\n"
+      "      stored: {of: energy.contact, take: max}\n"
+      "      slow: {of: abs(ball.vy), take: min}\n"
+      "      half: {of: ball.normal, take: arrival, target: 44.721359549995796 N}\n";
+  const double m = 0.1, k = 2e4, v = 2.0, w = sqrt(k / m), peak = v * sqrt(k * m), time = 0.4;
+  for (size_t i = 0; strut_integrator_at(i); i++) {
+    const strut_integrator *method = strut_integrator_at(i);
+    const bool adaptive = strcmp(method->name, "adaptive") == 0;
+    const double close = adaptive ? 1e-5 : method->order < 2 ? 2e-2 : 1e-2;
+    char filled[2000];
+    snprintf(filled, sizeof filled, text, method->name, adaptive ? "10 ms" : "0.31 ms");
+    if (method->no_ground) continue;
+    measured_run r = run_text(filled);
+    assert_relative(value(&r, "blow"), peak, close);
+    assert_relative(value(&r, "span"), peak, close);
+    assert_relative(value(&r, "mean") * time, 2 * m * v, close);
+    assert_relative(value(&r, "rms") * value(&r, "rms") * time, peak * peak * PI / (2 * w), close);
+    assert_relative(value(&r, "rise"), peak, close);
+    assert_relative(value(&r, "deep"), -v / w, close);
+    assert_relative(value(&r, "stored"), 0.5 * m * v * v, close);
+    assert_true(fabs(value(&r, "slow")) < 0.01 * close * v);
+    assert_relative(value(&r, "half"), 0.5 / v + asin(0.5) / w, 0.1 * close);
+    assert_int_equal(r.summary.warning_count, 0);
+    end_run(&r);
+  }
+}
+
+/* Fixed steps that are too coarse for a greatest force say so. */
+static void test_a_step_too_coarse_for_a_peak(void **unused) {
+  (void)unused;
+  static const char text[] =
+      "strut: 1\n"
+      "parameters: {dt: 1 ms}\n"
+      "nodes: {wall: {position: [0, 0], fixed: both}, block: {position: [1, 0], mass: 2 kg, fixed: "
+      "y}}\n"
+      "members: {spring: {nodes: [wall, block], kind: spring, stiffness: 5 kN/m}}\n"
+      "initial: {positions: {block: [1.1, 0]}}\n"
+      "solver: {step: dt}\n"
+      "run: {duration: 1 s, measure: {quantities: {p: {of: spring.force * block.vx, take: "
+      "max}}}}\n";
+  const strut_override coarse[] = {{"dt", "20 ms"}};
+  measured_run r = run_text(text);
+  assert_relative(value(&r, "p"), 0.5 * 5000 * 0.1 * 0.1 * 50, 1e-5);
+  assert_int_equal(r.summary.warning_count, 0);
+  end_run(&r);
+  r = run_with(text, coarse, 1);
+  bool warned = false;
+  for (size_t i = 0; i < r.summary.warning_count; i++)
+    warned = warned || (strcmp(r.summary.warnings[i].code, "coarse_step") == 0 &&
+                        strstr(r.summary.warnings[i].text, "'p'"));
+  assert_true(warned);
+  end_run(&r);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_a_mass_caught_by_a_cable),
@@ -578,6 +655,8 @@ int main(void) {
       cmocka_unit_test(test_a_steady_run_measures_its_whole_orbit),
       cmocka_unit_test(test_a_hinge_swings),
       cmocka_unit_test(test_a_running_cable),
+      cmocka_unit_test(test_a_blow_between_steps),
+      cmocka_unit_test(test_a_step_too_coarse_for_a_peak),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

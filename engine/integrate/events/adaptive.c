@@ -289,5 +289,6 @@ const strut_integrator strut_integrator_adaptive = {
     .create = create,
     .restart = strut_event_stepper_restart,
     .advance = strut_event_stepper_advance,
+    .observe = strut_event_stepper_observe,
     .tangent = true,
 };

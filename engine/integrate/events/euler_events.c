@@ -38,4 +38,5 @@ const strut_integrator strut_integrator_euler_events = {
     .create = create,
     .restart = strut_event_stepper_restart,
     .advance = strut_event_stepper_advance,
+    .observe = strut_event_stepper_observe,
 };

@@ -13,6 +13,7 @@
 #include "engine/integrate/events/local_events.h"
 #include "engine/integrate/events/small_modes.h"
 #include "engine/integrate/events/variation.h"
+#include "engine/integrate/observer.h"
 #include "engine/model/element_compile.h"
 
 /* A root this close to where the step begins, in grid steps, is there already. */
@@ -149,15 +150,75 @@ void *strut_event_stepper_create(const strut_model *model, strut_state *state,
   return l;
 }
 
-/* Contact forces as they are now, for recording and measuring. */
+/* Contact forces at an end, for recording and measuring. */
 static void show_contacts(const strut_model *model, strut_state *state,
-                          const strut_event_stepper *l) {
+                          const strut_event_stepper *l, const strut_step_end *end) {
   double *normal = (double *)state->held_normal, *friction = (double *)state->held_friction;
   for (int32_t i = 0; i < model->contacts.count; i++) {
-    bool open = l->mode[i] == STRUT_MODE_OPEN;
-    normal[i] = open ? 0.0 : l->now->touch[i].normal;
-    friction[i] = open ? 0.0 : l->now->touch[i].friction;
+    /* a step may end a little beyond the opening */
+    bool open = l->mode[i] == STRUT_MODE_OPEN || end->touch[i].gap > 0.0;
+    normal[i] = open ? 0.0 : end->touch[i].normal;
+    friction[i] = open ? 0.0 : end->touch[i].friction;
   }
+}
+
+/* ---- what an observer sees ---- */
+
+bool strut_event_stepper_observe(const strut_model *model, strut_state *state, void *workspace) {
+  strut_event_stepper *l = workspace;
+  strut_arena *arena = &state->arena;
+  strut_event_view *view = strut_arena_allocate(arena, 1, sizeof *view);
+  if (!view) return false;
+  view->q = strut_arena_allocate(arena, (size_t)model->length, sizeof(double));
+  view->v = strut_arena_allocate(arena, (size_t)model->length, sizeof(double));
+  l->view = view;
+  return view->q && view->v && strut_step_end_create(model, arena, &view->instant, false);
+}
+
+/* Contact forces in the present modes at an instant within a step. */
+STRUT_CLONES
+static void hold_contacts(const strut_motion_piece *piece, const strut_model *model,
+                          strut_state *state, double t, const double *q, const double *v) {
+  strut_event_stepper *l = piece->workspace;
+  strut_step_end *at = &l->view->instant;
+  int64_t evaluations = state->evaluations;
+  accelerate_in_modes(model, state, l, t, q, v, at->a, at, STRUT_TERMS_ALL, false);
+  state->evaluations = evaluations; /* observing is not part of the run's cost */
+  show_contacts(model, state, l, at);
+}
+
+/* Keeps the begin of a step that is about to be accepted. */
+static void keep_begin(const strut_model *model, const strut_state *state, strut_event_view *view) {
+  memcpy(view->q, state->q, (size_t)model->length * sizeof(double));
+  memcpy(view->v, state->v, (size_t)model->length * sizeof(double));
+  memcpy(view->work, state->work, sizeof view->work);
+}
+
+/* Shows the step of h that began at t and has been accepted, in whose modes l still is. */
+static void show_piece(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                       double t, double h, double dt) {
+  const strut_step_end *begin = l->next, *end = l->now;
+  const strut_event_view *view = l->view;
+  const strut_motion_piece piece = {
+      .begin = t,
+      .length = h,
+      .moment = l->next_break < HUGE_VAL ? 2.0 * moment_before(t, dt) : 0.0,
+      .q = {view->q, end->q},
+      .v = {view->v, end->v},
+      .a = {begin->a, end->a},
+      .work = {view->work, state->work},
+      .power = {begin->power, end->power},
+      .smooth = view->smooth,
+      .hold = hold_contacts,
+      .workspace = l};
+  show_contacts(model, state, l, end);
+  state->observer->see(state->observer, state, &piece);
+  l->view->smooth = true;
+}
+
+/* Something has switched or jumped. */
+static void end_smooth(strut_event_stepper *l) {
+  if (l->view) l->view->smooth = false;
 }
 
 void strut_event_stepper_restart(const strut_model *model, strut_state *state, void *workspace,
@@ -178,7 +239,8 @@ void strut_event_stepper_restart(const strut_model *model, strut_state *state, v
       strut_drive_next_break(model, state, t + state->time_offset + STRUT_AT_BREAK * dt);
   if (l->next_break < HUGE_VAL) t += moment_before(t, dt);
   strut_modes_start(model, state, l, t);
-  show_contacts(model, state, l);
+  show_contacts(model, state, l, l->now);
+  end_smooth(l);
   if (state->event_log) strut_event_log_begin(model, state, l);
   if (state->variation) strut_variation_begin(model, state, l);
   l->started = true;
@@ -201,6 +263,7 @@ static void pass_break(const strut_model *model, strut_state *state, strut_event
   double t = (double)state->step * dt + l->done;
   if (t + state->time_offset < l->next_break - STRUT_AT_BREAK * dt) return;
   double moment = moment_before(t, dt), before = 0.0;
+  end_smooth(l);
   if (state->ledger) before = strut_energy_evaluate(model, state, t - moment).elastic;
   l->next_break =
       strut_drive_next_break(model, state, t + state->time_offset + STRUT_AT_BREAK * dt);
@@ -442,10 +505,13 @@ STRUT_INLINE double step_piece(const strut_model *model, strut_state *state, str
   }
   if (h > 0.0) {
     if (state->variation) strut_variation_step(model, state, l, t, h);
+    bool observed = l->view && state->observer;
+    if (observed) keep_begin(model, state, l->view);
     if (l->within)
       accept_within(state, l);
     else
       accept_step(model, state, l, state->ledger);
+    if (observed) show_piece(model, state, l, t, h, dt);
     l->at_once = 0;
   } else {
     l->at_once++;
@@ -465,7 +531,10 @@ STRUT_INLINE double step_piece(const strut_model *model, strut_state *state, str
     strut_modes_start(model, state, l, t + h);
   } else if (strut_modes_after_step(model, l)) {
     strut_evaluate_acceleration(model, state, l, t + h);
+  } else {
+    return h;
   }
+  end_smooth(l);
   if (state->variation && (event.kind || force))
     strut_variation_pass(model, state, l, event.kind != STRUT_EVENT_NONE);
   return h;
@@ -516,11 +585,12 @@ void strut_event_stepper_advance(const strut_model *model, strut_state *state, v
   drives_ahead_begin(model, model->plan & STRUT_TERMS_RARE ? STRUT_TERMS_ALL : STRUT_TERMS_COMMON,
                      &l->drives);
   for (int64_t end = state->step + count; state->step < end && !state->trouble;) {
-    if (l->stepper->advance_until_event && l->at_once == 0 && !model->contacts.surface)
+    if (l->stepper->advance_until_event && l->at_once == 0 && !model->contacts.surface &&
+        !state->observer)
       l->stepper->advance_until_event(model, state, l, dt, end);
     if (state->step == end || (l->stepper->adaptive && given_up(model, state, l))) break;
     strut_event_stepper_step(model, state, l, dt);
   }
   l->drives.used = false; /* whoever calls may change drives */
-  show_contacts(model, state, l);
+  show_contacts(model, state, l, l->now);
 }

@@ -124,6 +124,14 @@ enum { STRUT_MOST_SWITCHES = 2000 };
 
 typedef struct strut_event_stepper strut_event_stepper;
 
+/** What an observer of the pieces needs beside the ends of a step. */
+typedef struct strut_event_view {
+  double *q, *v;                 /* (length) at the begin of the step */
+  double work[STRUT_POWER_ROOM]; /* there [J] */
+  strut_step_end instant;        /* of contact forces within the piece */
+  bool smooth;                   /* nothing has switched or jumped since the latest piece */
+} strut_event_view;
+
 /** An explicit Runge-Kutta method, for what follows its steps; velocities are those of an equation of second order. */
 typedef struct strut_tableau {
   int stages;
@@ -212,6 +220,7 @@ struct strut_event_stepper {
   double pushed_at;          /* when that was [s] */
   int switches;              /* since the latest grid point */
   bool tried;                /* next is the end of the step that is due */
+  strut_event_view *view;    /* NULL: nothing is observed */
   strut_drives_ahead drives; /* of methods with one evaluation a step, during a call */
   int32_t *facet; /* (contacts) of closed contacts of surfaces; NULL without STRUT_TERM_SURFACES */
   struct strut_small_modes *small; /* see small_modes.h; NULL where the model is not small */
@@ -255,6 +264,8 @@ void strut_event_stepper_restart(const strut_model *model, strut_state *state, v
 /** One step within the grid's, and what happens in it. */
 void strut_event_stepper_step(const strut_model *model, strut_state *state, void *workspace,
                               double dt);
+/** Prepares for an observer; see strut_integrator. */
+bool strut_event_stepper_observe(const strut_model *model, strut_state *state, void *workspace);
 /** `count` steps of dt. */
 void strut_event_stepper_advance(const strut_model *model, strut_state *state, void *workspace,
                                  double dt, int64_t count);

@@ -102,5 +102,6 @@ const strut_integrator strut_integrator_rk4_events = {
     .create = create,
     .restart = strut_event_stepper_restart,
     .advance = strut_event_stepper_advance,
+    .observe = strut_event_stepper_observe,
     .tangent = true,
 };

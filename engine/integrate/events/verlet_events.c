@@ -185,4 +185,5 @@ const strut_integrator strut_integrator_verlet_events = {
     .create = create,
     .restart = strut_event_stepper_restart,
     .advance = strut_event_stepper_advance,
+    .observe = strut_event_stepper_observe,
 };

@@ -169,8 +169,11 @@ static void write_title(const strut_mode *mode, size_t number, char title[TITLE]
   } else if (mode->kind == STRUT_MODE_UNSTABLE) {
     snprintf(title, TITLE, "mode %zu: unstable", number);
   } else {
-    snprintf(title, TITLE, "mode %zu: %s", number,
-             mode->kind == STRUT_MODE_RIGID ? "rigid-body motion" : "mechanism");
+    int used = snprintf(title, TITLE, "mode %zu: %s", number,
+                        mode->kind == STRUT_MODE_RIGID ? "rigid-body motion" : "mechanism");
+    if (mode->just_taut && used > 0)
+      snprintf(title + used, TITLE - (size_t)used, ", %d member%s just taut", (int)mode->just_taut,
+               mode->just_taut == 1 ? "" : "s");
   }
   strut_c_locale_leave(locale);
 }

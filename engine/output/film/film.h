@@ -17,7 +17,9 @@
   ((unsigned)STRUT_CHANNEL_POSITION | STRUT_CHANNEL_FORCE | STRUT_CHANNEL_CONTACT)
 
 /** Longest film [s], and the default frames per second of a format. */
-enum { STRUT_FILM_LONGEST = 1800, STRUT_FILM_FPS = 30, STRUT_FILM_GIF_FPS = 25 };
+enum { STRUT_FILM_LONGEST = 1800 };
+#define STRUT_FILM_FPS 30
+#define STRUT_FILM_GIF_FPS 25
 
 typedef struct strut_film {
   const strut_experiment *experiment; /* of the run: whose travel is shown */

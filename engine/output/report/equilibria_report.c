@@ -116,6 +116,12 @@ static void put_equilibrium(strut_json *json, struct cJSON *to, const strut_equi
   strut_shape_flaws flaws = strut_find_shape_flaws(model, p->q);
   strut_json_bool(json, to, "collapsed", flaws.collapsed);
   strut_json_integer(json, to, "crossings", flaws.crossings);
+  if (scene->collision_count) {
+    strut_json_text(json, to, "overlap",
+                    e->overlap >= 0 ? scene->collisions[e->overlap].name : NULL);
+    strut_json_text(json, to, "through",
+                    e->through >= 0 ? scene->collisions[e->through].name : NULL);
+  }
   put_nodes(json, to, scene, p->q);
   put_forces(json, to, scene, e);
   put_below(json, to, scene, e);
@@ -205,13 +211,22 @@ static void describe_flaws(strut_shape_flaws flaws, char text[NAMES]) {
     snprintf(text, NAMES, "-");
 }
 
+/* What the verdict says of collisions, which it says last. */
+static const char *collision_words(const strut_equilibrium *e) {
+  const char *words = strrchr(e->verdict, ';');
+  return words && (e->overlap >= 0 || e->through >= 0) ? words : "";
+}
+
 /* The minima on both sides of a saddle, else the outcome of the equilibrium; empty if it stands. */
 static void add_end(strut_buffer *table, const strut_equilibria *all, const strut_equilibrium *e) {
   const int32_t *down = e->point.down;
-  if (e->outcome == STRUT_OUTCOME_STANDS) return;
+  if (e->outcome == STRUT_OUTCOME_STANDS) {
+    strut_buffer_add(table, "%s", collision_words(e));
+    return;
+  }
   if (e->point.negative == 1 && down[0] >= 0 && down[1] >= 0)
-    strut_buffer_add(table, "  between %s and %s", all->list[down[0]].name,
-                     all->list[down[1]].name);
+    strut_buffer_add(table, "  between %s and %s%s", all->list[down[0]].name,
+                     all->list[down[1]].name, collision_words(e));
   else
     strut_buffer_add(table, "  %s", e->verdict);
 }

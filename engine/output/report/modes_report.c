@@ -52,6 +52,35 @@ static void add_mode(strut_json *json, struct cJSON *list, const strut_model *mo
   add_nodes(json, row, "shape", model, mode->shape);
 }
 
+static void add_idle(strut_json *json, const char *key, const strut_model *model,
+                     const strut_modes *modes, strut_idleness kind) {
+  struct cJSON *list = strut_json_array(json, json->root, key);
+  for (size_t j = 0; j < model->scene->member_count; j++)
+    if (modes->idleness[j] == kind)
+      strut_json_text(json, list, NULL, model->scene->members[j].name);
+}
+
+/* Members that take no part here. */
+static void add_idle_lines(strut_buffer *table, const strut_model *model,
+                           const strut_modes *modes) {
+  static const char *const words[][2] = {
+      [STRUT_SLACK] = {"slack", "."},
+      [STRUT_JUST_TAUT] = {"just taut, without prestress",
+                           ". They act one way only, and count as slack here."}};
+  const strut_member *member = model->scene->members;
+  size_t count[STRUT_JUST_TAUT + 1] = {0}, first[STRUT_JUST_TAUT + 1];
+  for (size_t j = model->scene->member_count; j-- > 0;)
+    count[modes->idleness[j]]++, first[modes->idleness[j]] = j;
+  for (int k = STRUT_SLACK; k <= STRUT_JUST_TAUT; k++) {
+    if (!count[k]) continue;
+    strut_buffer_add(table, "  %s: %s", words[k][0], member[first[k]].name);
+    if (count[k] > 1) strut_buffer_add(table, " and %zu more", count[k] - 1);
+    strut_buffer_add(table, "%s\n", words[k][1]);
+  }
+  if (count[STRUT_SLACK] + count[STRUT_JUST_TAUT])
+    strut_buffer_add(table, "  strut rigidity counts these as members, and so fewer mechanisms\n");
+}
+
 char *strut_modes_json(const strut_model *model, const strut_modes *modes) {
   strut_json json = strut_json_begin();
   strut_json_text(&json, json.root, "name", model->scene->name);
@@ -62,6 +91,8 @@ char *strut_modes_json(const strut_model *model, const strut_modes *modes) {
   struct cJSON *contacts = strut_json_array(&json, json.root, "contacts");
   for (int32_t i = 0; i < modes->closed_count; i++)
     strut_json_text(&json, contacts, NULL, name_of(model, modes->closed[i]));
+  add_idle(&json, "slack", model, modes, STRUT_SLACK);
+  add_idle(&json, "just_taut", model, modes, STRUT_JUST_TAUT);
   strut_json_text(&json, json.root, "method", modes->dense ? "dense" : "sparse");
   strut_json_number(&json, json.root, "condition", modes->condition);
   strut_json_bool(&json, json.root, "at_rest", modes->at_rest);
@@ -89,6 +120,7 @@ static void add_head(strut_buffer *table, const strut_model *model, const strut_
   if (strut_settle_warning(&modes->settle, warning, sizeof warning))
     strut_buffer_add(table, "  %s\n", warning);
   if (left_out(model)) strut_buffer_add(table, "  without %s\n", left_out(model));
+  add_idle_lines(table, model, modes);
   if (!modes->damped_exactly)
     strut_buffer_add(table,
                      "  damping ratios by modal quotient, coupling between modes neglected\n");

@@ -86,6 +86,11 @@ static const char *super_stability_words(const strut_rigidity *r,
   return words;
 }
 
+/* A cable that does not pull in this shape. */
+static bool is_idle(const strut_rigidity *r, const strut_scene *scene, size_t j) {
+  return scene->members[j].kind == STRUT_CABLE && !(r->force[j] > 0.0);
+}
+
 /* ---- JSON ---- */
 
 /* Forces by member, or force densities where lengths are given. */
@@ -262,6 +267,9 @@ static void put_members(strut_json *json, const strut_rigidity *r, const strut_s
   strut_json_bool(json, json->root, "equilibrium", r->equilibrium);
   strut_json_number(json, json->root, "residual", r->residual);
   strut_json_bool(json, json->root, "self_equilibrium", r->self_equilibrium);
+  struct cJSON *idle = strut_json_array(json, json->root, "without_force");
+  for (size_t j = 0; j < scene->member_count; j++)
+    if (is_idle(r, scene, j)) strut_json_text(json, idle, NULL, scene->members[j].name);
   struct cJSON *members = strut_json_object(json, json->root, "members_at");
   for (size_t j = 0; j < scene->member_count; j++) {
     struct cJSON *row = strut_json_object(json, members, scene->members[j].name);
@@ -346,7 +354,21 @@ static void add_counts(strut_buffer *table, const strut_rigidity *r, const strut
                    r->matrix.columns, others, r->matrix.rows, r->matrix.columns - r->matrix.rows);
 }
 
-static void add_verdicts(strut_buffer *table, const strut_rigidity *r) {
+/* Cables that do not pull here, which strut modes leaves out. */
+static void add_idle(strut_buffer *table, const strut_rigidity *r, const strut_scene *scene) {
+  size_t count = 0, first = 0;
+  for (size_t j = scene->member_count; j-- > 0;)
+    if (is_idle(r, scene, j)) count++, first = j;
+  if (!count) return;
+  strut_buffer_add(table, "  without force      %s", scene->members[first].name);
+  if (count > 1) strut_buffer_add(table, " and %zu more", count - 1);
+  strut_buffer_add(table,
+                   ": slack or just taut. They count as members here;\n%21sstrut modes leaves them "
+                   "out, and so finds more motions without stiffness\n",
+                   "");
+}
+
+static void add_verdicts(strut_buffer *table, const strut_rigidity *r, const strut_scene *scene) {
   char words[STRUT_RIGIDITY_WORDS];
   const strut_tensegrity *t = &r->tensegrity;
   if (r->bars_at_node > 0)
@@ -366,6 +388,7 @@ static void add_verdicts(strut_buffer *table, const strut_rigidity *r) {
                      t->struts_inside ? "I" : "");
   strut_buffer_add(table, "\n  equilibrium        %s: net force on a free coordinate up to %s\n",
                    r->equilibrium ? "yes" : "no", in(r->residual, "N").text);
+  add_idle(table, r, scene);
   if (r->without_length)
     strut_buffer_add(table, "  without length     %d members, which have no direction here\n",
                      r->without_length);
@@ -459,7 +482,7 @@ char *strut_rigidity_table(const strut_rigidity *r, const strut_model *model, co
   strut_buffer_add(&table, "%s%srigidity at: %s\n", name, *name ? ": " : "", at);
   add_rank(&table, r);
   add_counts(&table, r, model->scene);
-  add_verdicts(&table, r);
+  add_verdicts(&table, r, model->scene);
   add_members(&table, r, model->scene);
   add_modes(&table, &r->mechanisms);
   strut_c_locale_leave(locale);

@@ -38,17 +38,16 @@ static bool is_length(strut_column_kind kind) {
   return rows[kind].kg == 0 && rows[kind].m == 1 && rows[kind].s == 0;
 }
 
-bool strut_columns_create(const strut_model *model, double step, size_t most, strut_arena *arena,
+bool strut_columns_create(const strut_model *model, size_t most, strut_arena *arena,
                           strut_columns *c) {
   double slope = model->scene->ground.slope;
-  *c = (strut_columns){.model = model, .step = step, .normal = {-sin(slope), cos(slope)}};
+  *c = (strut_columns){.model = model, .normal = {-sin(slope), cos(slope)}};
   c->column = strut_arena_allocate(arena, most, sizeof *c->column);
   c->value = strut_arena_allocate(arena, most, sizeof *c->value);
-  c->before = strut_arena_allocate(arena, most, sizeof *c->before);
   c->least = strut_arena_allocate(arena, most, sizeof *c->least);
   c->most = strut_arena_allocate(arena, most, sizeof *c->most);
   c->largest = strut_arena_allocate(arena, most, sizeof *c->largest);
-  return c->column && c->value && c->before && c->least && c->most && c->largest;
+  return c->column && c->value && c->least && c->most && c->largest;
 }
 
 /* Finds the first contact of a node: the scene refers to contacts by nodes. */
@@ -185,7 +184,7 @@ static double total_energy(const strut_energies *s, double *size) {
 }
 
 static double column_time(const strut_columns *c, const strut_state *state) {
-  return (double)state->step * c->step + c->shorter + state->time_offset;
+  return c->time + state->time_offset;
 }
 
 /* Place or velocity of a mass on a member, along x or y. */
@@ -289,9 +288,9 @@ static double evaluate_column(strut_columns *c, const strut_state *state, strut_
 }
 
 /* Computes forces and energies at the state where a column needs them. */
-static void prepare_state(strut_columns *c, strut_state *state) {
-  double t = (double)state->step * c->step + c->shorter;
-  if (c->forces)
+static void prepare_state(strut_columns *c, strut_state *state, double t) {
+  c->time = t;
+  if (c->forces && !strut_forces_show_held(c->model, state))
     strut_forces_observe(c->model, state, t);
   else
     strut_drive_apply(c->model, state, t);
@@ -308,24 +307,23 @@ static void note_extremes(strut_columns *c, size_t i, double size) {
   c->largest[i] = fmax(c->largest[i], size);
 }
 
-void strut_columns_evaluate(strut_columns *c, strut_state *state) {
-  prepare_state(c, state);
+void strut_columns_evaluate(strut_columns *c, strut_state *state, double t) {
+  prepare_state(c, state, t);
   for (size_t i = 0; i < c->count; i++) {
     double size = -1.0, last = c->value[i], now = evaluate_column(c, state, c->column[i], &size);
     if (is_angle(c->column[i].kind)) now += STRUT_TAU * round((last - now) / STRUT_TAU);
-    c->before[i] = last;
     c->value[i] = now;
     note_extremes(c, i, size < 0.0 ? fabs(now) : size);
   }
 }
 
-void strut_columns_begin(strut_columns *c, strut_state *state) {
+void strut_columns_begin(strut_columns *c, strut_state *state, double t) {
   c->fastest = 0.0;
   c->loaded_now = c->loaded_most = -1;
-  prepare_state(c, state);
+  prepare_state(c, state, t);
   for (size_t i = 0; i < c->count; i++) {
     double size = -1.0;
-    c->before[i] = c->value[i] = evaluate_column(c, state, c->column[i], &size);
+    c->value[i] = evaluate_column(c, state, c->column[i], &size);
     c->least[i] = (double)INFINITY, c->most[i] = -(double)INFINITY, c->largest[i] = 0.0;
     note_extremes(c, i, size < 0.0 ? fabs(c->value[i]) : size);
   }

@@ -67,10 +67,12 @@ strut_status strut_measure_create(const strut_model *model, const strut_experime
   m->work = strut_arena_allocate(&m->arena, m->capacity, sizeof *m->work);
   m->contact_steps = strut_arena_allocate(&m->arena, contacts, sizeof *m->contact_steps);
   m->max_height = strut_arena_allocate(&m->arena, contacts, sizeof *m->max_height);
+  m->last_gap = strut_arena_allocate(&m->arena, contacts, sizeof *m->last_gap);
+  m->gap_before = strut_arena_allocate(&m->arena, contacts, sizeof *m->gap_before);
   bool wanted = experiment->quantity_count > 0;
-  if (wanted) m->quantities = strut_quantities_create(model, experiment, grid->step, &m->arena);
-  if (!m->time || !m->x || !m->work || !m->contact_steps || !m->max_height ||
-      (wanted && !m->quantities)) {
+  if (wanted) m->quantities = strut_quantities_create(model, experiment, &m->arena);
+  if (!m->time || !m->x || !m->work || !m->contact_steps || !m->max_height || !m->last_gap ||
+      !m->gap_before || (wanted && !m->quantities)) {
     strut_measure_free(m);
     return STRUT_NO_MEMORY;
   }
@@ -93,12 +95,9 @@ static double largest_node_speed(const strut_model *model, const strut_state *st
   return most;
 }
 
-static strut_marks make_marks(const strut_measurement *m, double length) {
-  return (strut_marks){.step = m->grid.step, .length = length, .count = m->marks, .time = m->time};
-}
-
 void strut_measure_begin(const strut_model *model, strut_state *state, strut_measurement *m) {
-  strut_marks marks = make_marks(m, m->grid.step);
+  const strut_marks marks = {
+      .step = m->grid.step, .offset = m->grid.offset, .count = m->marks, .time = m->time};
   m->fastest = largest_node_speed(model, state);
   if (m->quantities) strut_quantities_begin(m->quantities, &marks, state);
   strut_measure_tracked_point(model, state, m, &m->last_x, &m->last_v);
@@ -115,11 +114,16 @@ void strut_measure_begin(const strut_model *model, strut_state *state, strut_mea
 static void count_contacts(const strut_model *model, const strut_state *state,
                            strut_measurement *m) {
   const strut_contact_table *c = &model->contacts;
+  bool equal = m->window_steps >= 2 && state->step != m->grid.last;
   m->window_steps++;
   for (int32_t i = 0; i < c->count; i++) {
-    double gap = strut_contact_gap_at(c, i, state->q, state->ground_motion);
+    double gap = strut_contact_gap_at(c, i, state->q, state->ground_motion), high = gap;
+    double last = m->last_gap[i], before = m->gap_before[i];
     if (gap < 0.0) m->contact_steps[i]++;
-    if (gap > m->max_height[i]) m->max_height[i] = gap;
+    if (equal && last > gap && last > before) /* the vertex between these steps */
+      high = last + (gap - before) * (gap - before) / (8.0 * (2.0 * last - gap - before));
+    if (high > m->max_height[i]) m->max_height[i] = high;
+    m->gap_before[i] = last, m->last_gap[i] = gap;
   }
 }
 
@@ -160,10 +164,9 @@ void strut_measure_step(const strut_model *model, const strut_state *state, stru
 
 void strut_measure_step_quantities(const strut_model *model, strut_state *state,
                                    strut_measurement *m) {
-  strut_marks marks = make_marks(m, step_length(m, state->step));
   assert(m->quantities);
   strut_measure_step(model, state, m);
-  strut_quantities_step(m->quantities, &marks, state);
+  strut_quantities_step(m->quantities, step_length(m, state->step), state);
 }
 
 bool strut_measure_is_zero(const strut_measurement *m, double velocity) {

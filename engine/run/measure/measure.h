@@ -26,7 +26,9 @@ typedef struct strut_measurement {
   int64_t window_steps;
   int64_t *contact_steps; /* (contacts) steps of the window that ended in contact */
   double *max_height;     /* (contacts) [m] */
-  double fastest; /* largest speed of a node at the start of the window and at marks [m/s] */
+  double *last_gap,
+      *gap_before; /* (contacts) after the latest step, and after the one before it [m] */
+  double fastest;  /* largest speed of a node at the start of the window and at marks [m/s] */
   strut_quantities *quantities; /* NULL where the scene names none */
   strut_arena arena;
   double *work;     /* (marks) work of the drives there [J] */

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/run/measure/quantities.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "engine/run/measure/columns.h"
+#include "engine/run/measure/dense.h"
+#include "engine/run/measure/meter.h"
 #include "engine/run/measure/quantity_program.h"
-#include "engine/run/measure/time_grid.h"
 
 /* A mark this close to the end of a step, in steps, counts as being there. */
 static const double MARK_TOLERANCE = 1e-6;
@@ -14,47 +16,36 @@ static const double MARK_TOLERANCE = 1e-6;
 /* Results below these parts of their terms are rounding: of differences, and of others. */
 static const double CANCELLED = 1e-10, ROUNDED = 1e-15;
 
-/* Successive second differences within this factor belong to a smooth curve. */
-static const double SMOOTH = 2.0;
-
-enum { RECENT = 5 };
-
-/* Sums and extremes over a stretch of the window. */
-typedef struct stretch {
-  double integral, square; /* integrals of the value and its square over the time */
-  double low, high;
-  double begin;   /* value at the start */
-  double origin;  /* position at the start, where its change is the integral */
-  double time;    /* start [s] */
-  double rise;    /* sum of all increases */
-  double arrival; /* when the target was first reached or passed [s]; NAN: not yet */
-} stretch;
-
-typedef struct meter {
-  const strut_quantity_definition *definition;
-  size_t *index;  /* (length) the columns of the program */
-  size_t rate_of; /* column whose change is the integral of a single velocity; or NONE */
-  double value;   /* after the latest step */
-  double recent[RECENT];
-  int recent_count;
-  double largest;      /* absolute value in the window */
-  stretch whole, part; /* since the start of the window; since the latest mark */
-  double result;       /* up to the latest mark */
-  int64_t parts;       /* periods so far; mean of their values; sum of squares about it */
-  double part_mean, part_square;
-} meter;
-
 struct strut_quantities {
+  strut_observer observer; /* first: this is what the state knows */
   strut_columns columns;
+  strut_dense dense;
+  strut_marks marks;
   size_t count, next; /* of quantities; the next mark to pass */
   double time;        /* of the latest mark passed [s] */
   double begin;       /* of the first */
   bool by_periods;
-  meter *meters;                       /* (count) */
-  double *last;                        /* (count) values before the latest step */
+  bool inner;                          /* some quantity needs what happens between steps */
+  bool observed;                       /* and the method shows it */
+  bool fresh;                          /* nothing has been seen since the window was begun */
+  strut_meter *meters;                 /* (count) */
   double *stack;                       /* (depth) */
   strut_magnitude *sizes, *size_stack; /* (columns), (depth) */
+  /* the part of a piece under way: values of all quantities at equal distances, row by row */
+  double *grid;                   /* (STRUT_MOST_SAMPLES, count) */
+  bool known[STRUT_MOST_SAMPLES]; /* which rows are filled */
+  double *coarse;                 /* (count) in the middle, by polynomials of one order less */
+  bool coarse_known;
 };
+
+/* A part of a piece of the motion: fractions of it. */
+typedef struct motion_part {
+  strut_quantities *quantities;
+  strut_state *state;
+  strut_motion_piece *piece;
+  double from, to;
+  size_t meter; /* whose samples are asked for */
+} motion_part;
 
 static const size_t NONE = (size_t)-1;
 
@@ -75,10 +66,27 @@ static bool find_primitive(strut_column column, strut_column *primitive) {
   return false;
 }
 
+/* Does what happens between steps matter? */
+static bool needs_inner(const strut_meter *m) {
+  switch (m->definition->take) {
+    case STRUT_TAKE_MEAN: return m->rate_of == NONE;
+    case STRUT_TAKE_FINAL:
+    case STRUT_TAKE_CHANGE:
+    case STRUT_TAKE_RATE: return false;
+    case STRUT_TAKE_MIN:
+    case STRUT_TAKE_MAX:
+    case STRUT_TAKE_RANGE:
+    case STRUT_TAKE_RMS:
+    case STRUT_TAKE_RISE:
+    case STRUT_TAKE_ARRIVAL: break;
+  }
+  return true;
+}
+
 static bool make_meter(strut_quantities *q, const strut_quantity_definition *d, strut_arena *arena,
-                       meter *m) {
+                       strut_meter *m) {
   strut_column primitive;
-  *m = (meter){.definition = d, .rate_of = NONE};
+  *m = (strut_meter){.definition = d, .rate_of = NONE};
   m->index = strut_arena_allocate(arena, d->length, sizeof *m->index);
   if (!m->index) return false;
   for (size_t i = 0; i < d->length; i++)
@@ -87,11 +95,16 @@ static bool make_meter(strut_quantities *q, const strut_quantity_definition *d, 
   bool mean = d->length == 1 && d->take == STRUT_TAKE_MEAN;
   if (mean && find_primitive(d->program[0].column, &primitive))
     m->rate_of = strut_columns_add(&q->columns, primitive);
+  m->inner = needs_inner(m);
+  q->inner = q->inner || m->inner;
   return true;
 }
 
+static void see_piece(strut_observer *observer, strut_state *state,
+                      const strut_motion_piece *piece);
+
 strut_quantities *strut_quantities_create(const strut_model *model, const strut_experiment *e,
-                                          double step, strut_arena *arena) {
+                                          strut_arena *arena) {
   size_t columns = 0, depth = 1;
   strut_quantities *q = strut_arena_allocate(arena, 1, sizeof *q);
   if (!q) return NULL;
@@ -100,14 +113,17 @@ strut_quantities *strut_quantities_create(const strut_model *model, const strut_
     if (e->quantities[i].depth > depth) depth = e->quantities[i].depth;
   }
   q->count = e->quantity_count;
+  q->observer.see = see_piece;
   q->by_periods = strut_experiment_span(e, model->scene).period > 0.0;
   q->meters = strut_arena_allocate(arena, q->count, sizeof *q->meters);
-  q->last = strut_arena_allocate(arena, q->count, sizeof *q->last);
+  q->grid = strut_arena_allocate(arena, q->count * STRUT_MOST_SAMPLES, sizeof *q->grid);
+  q->coarse = strut_arena_allocate(arena, q->count, sizeof *q->coarse);
   q->stack = strut_arena_allocate(arena, depth, sizeof *q->stack);
   q->sizes = strut_arena_allocate(arena, columns, sizeof *q->sizes);
   q->size_stack = strut_arena_allocate(arena, depth, sizeof *q->size_stack);
-  bool ready = q->meters && q->last && q->stack && q->sizes && q->size_stack &&
-               strut_columns_create(model, step, columns, arena, &q->columns);
+  bool ready = q->meters && q->grid && q->coarse && q->stack && q->sizes && q->size_stack &&
+               strut_columns_create(model, columns, arena, &q->columns) &&
+               strut_dense_create(model, arena, &q->dense);
   for (size_t i = 0; i < q->count && ready; i++)
     ready = make_meter(q, &e->quantities[i], arena, &q->meters[i]);
   return ready ? q : NULL;
@@ -123,176 +139,212 @@ bool strut_quantities_need_ledger(const strut_experiment *e) {
   return false;
 }
 
-static double evaluate_meter(const strut_quantities *q, const meter *m) {
+bool strut_quantities_need_pieces(const strut_quantities *q) { return q->inner; }
+
+void strut_quantities_observe(strut_quantities *q) { q->observed = true; }
+
+/* ---- values at an instant ---- */
+
+/* The row of a place of the grid. */
+static double *row_at(const strut_quantities *q, int k) { return q->grid + (size_t)k * q->count; }
+
+static double evaluate_meter(const strut_quantities *q, size_t i) {
+  const strut_meter *m = &q->meters[i];
   return strut_quantity_program_evaluate(m->definition, m->index, q->columns.value, q->stack);
 }
 
-static stretch begin_stretch(const meter *m, double time, double value, double origin) {
-  return (stretch){.low = value,
-                   .high = value,
-                   .begin = value,
-                   .origin = origin,
-                   .time = time,
-                   .arrival = value == m->definition->target ? time : (double)NAN};
+/* Values of all quantities at the fraction s of the piece. */
+static void evaluate_at(const motion_part *part, double s, double *row) {
+  strut_quantities *q = part->quantities;
+  double t;
+  if (s >= 1.0 && !q->dense.away)
+    t = part->piece->begin + part->piece->length;
+  else
+    t = strut_dense_place(&q->dense, part->state, part->piece, s);
+  strut_columns_evaluate(&q->columns, part->state, t);
+  for (size_t i = 0; i < q->count; i++) row[i] = evaluate_meter(q, i);
 }
 
-static void note_extreme(stretch *s, double value) {
-  if (!(value >= s->low)) s->low = value; /* a NaN remains */
-  if (!(value <= s->high)) s->high = value;
+/* One quantity at the fraction `at` of the part. */
+static double sample_part(void *context, double at) {
+  const motion_part *part = context;
+  strut_quantities *q = part->quantities;
+  double s = part->from + at * (part->to - part->from);
+  double t = strut_dense_place(&q->dense, part->state, part->piece, s);
+  strut_columns_evaluate(&q->columns, part->state, t);
+  return evaluate_meter(q, part->meter);
 }
 
-/* Adds a part of a step of `time` [s] that begins at `begin` [s], linear from one value to another. */
-static void add_interval(meter *m, double from, double to, double begin, double time) {
-  stretch *const both[] = {&m->whole, &m->part};
-  double before = from - m->definition->target, after = to - m->definition->target;
-  bool arrives = (before < 0.0 && after >= 0.0) || (before > 0.0 && after <= 0.0);
-  for (int k = 0; k < 2; k++) {
-    both[k]->integral += 0.5 * (from + to) * time;
-    both[k]->square += 0.5 * (from * from + to * to) * time;
-    note_extreme(both[k], to);
-    both[k]->rise += fmax(to - from, 0.0);
-    if (arrives && isnan(both[k]->arrival))
-      both[k]->arrival = begin + time * (before / (before - after));
+/* Fills the rows of the grid that divide the part into 2^depth. */
+static void fill_grid(const motion_part *part, int depth) {
+  strut_quantities *q = part->quantities;
+  int last = STRUT_MOST_SAMPLES - 1, stride = last >> depth;
+  for (int k = 0; k <= last; k += stride) {
+    if (q->known[k]) continue;
+    double at = part->from + (part->to - part->from) * k / last;
+    evaluate_at(part, at, row_at(q, k));
+    q->known[k] = true;
   }
-  m->largest = fmax(m->largest, fabs(to));
 }
 
-/* Reduces a stretch that ends here to its value. */
-static double reduce_stretch(const meter *m, const stretch *s, double time, double value,
-                             double place) {
-  double length = time - s->time;
-  switch (m->definition->take) {
-    case STRUT_TAKE_MEAN: return (m->rate_of == NONE ? s->integral : place - s->origin) / length;
-    case STRUT_TAKE_MIN: return s->low;
-    case STRUT_TAKE_MAX: return s->high;
-    case STRUT_TAKE_RANGE: return s->high - s->low;
-    case STRUT_TAKE_RMS: return sqrt(s->square / length);
-    case STRUT_TAKE_FINAL: return value;
-    case STRUT_TAKE_CHANGE: return value - s->begin;
-    case STRUT_TAKE_RATE: return (value - s->begin) / length;
-    case STRUT_TAKE_RISE: return s->rise;
-    case STRUT_TAKE_ARRIVAL: return s->arrival;
+static void copy_samples(const motion_part *part, int depth, strut_samples *samples) {
+  const strut_quantities *q = part->quantities;
+  int stride = (STRUT_MOST_SAMPLES - 1) >> depth;
+  samples->count = (1 << depth) + 1;
+  for (int k = 0; k < samples->count; k++) samples->value[k] = row_at(q, k * stride)[part->meter];
+}
+
+/* By how much the value in the middle of the part depends on the order of the interpolation. */
+static double find_doubt(const motion_part *part) {
+  strut_quantities *q = part->quantities;
+  if (!q->coarse_known) {
+    q->dense.coarse = true;
+    evaluate_at(part, 0.5 * (part->from + part->to), q->coarse);
+    q->dense.coarse = false;
+    q->coarse_known = true;
   }
-  return (double)NAN;
+  return fabs(q->coarse[part->meter] - row_at(q, (STRUT_MOST_SAMPLES - 1) / 2)[part->meter]);
 }
 
-static void open_window(meter *m, double time, double value, double place) {
-  m->whole = m->part = begin_stretch(m, time, value, place);
-  m->parts = 0;
-  m->part_mean = m->part_square = 0.0;
-  m->recent_count = 0;
-  m->largest = fabs(value);
+/* ---- parts of pieces ---- */
+
+/* Adds a part of the piece, whose value at the begin is m->value, to one quantity. */
+static void add_to_meter(motion_part *part, size_t i, double begin) {
+  strut_quantities *q = part->quantities;
+  strut_meter *m = &q->meters[i];
+  strut_samples samples = {.begin = begin,
+                           .length = (part->to - part->from) * part->piece->length,
+                           .sample = sample_part,
+                           .context = part};
+  double end = row_at(q, STRUT_MOST_SAMPLES - 1)[i];
+  part->meter = i;
+  if (part->piece->ends_only) m->elapsed = 0.0; /* a straight line */
+  if (part->piece->ends_only || strut_meter_is_even(m, end, samples.length)) {
+    strut_meter_add_even(m, end, begin, samples.length);
+    return;
+  }
+  row_at(q, 0)[i] = m->value;
+  int depth = 0;
+  do {
+    depth++;
+    fill_grid(part, depth);
+    copy_samples(part, depth, &samples);
+  } while (depth < STRUT_DEEPEST && !strut_meter_is_resolved(m, &samples));
+  if (depth > 1) samples.doubt = find_doubt(part);
+  strut_meter_add(m, &samples);
 }
 
-static void close_part(meter *m, double time, double value, double place) {
-  double of_part = reduce_stretch(m, &m->part, time, value, place), d = of_part - m->part_mean;
-  m->result = reduce_stretch(m, &m->whole, time, value, place);
-  m->parts++;
-  m->part_mean += d / (double)m->parts;
-  m->part_square += d * (of_part - m->part_mean);
-  m->part = begin_stretch(m, time, value, place);
+/* Adds a part of the piece to all quantities; begin: its time [s]. */
+static void add_part(motion_part *part, double begin) {
+  strut_quantities *q = part->quantities;
+  int last = STRUT_MOST_SAMPLES - 1;
+  if (!(part->to > part->from)) return;
+  memset(q->known, 0, sizeof q->known);
+  q->known[0] = true;
+  q->coarse_known = false;
+  evaluate_at(part, part->to, row_at(q, last));
+  q->known[last] = true;
+  for (size_t i = 0; i < q->count; i++) add_to_meter(part, i, begin);
 }
 
-/* Interpolates the primitive at the fraction `s` of the latest step, of length h [s]. */
-static double interpolate_primitive(const strut_quantities *q, const meter *m, double h, double s) {
-  const strut_columns *c = &q->columns;
-  if (m->rate_of == NONE) return 0.0;
-  size_t x = m->rate_of, v = m->index[0];
-  if (s >= 1.0) return c->value[x];
-  return strut_hermite(c->before[x], c->before[v], c->value[x], c->value[v], h, s);
+static double primitive_of(const strut_quantities *q, const strut_meter *m) {
+  return m->rate_of == NONE ? 0.0 : q->columns.value[m->rate_of];
 }
 
-/* Passes the mark `time` at the fraction `s` of the step, which began at `step_begin` [s]; `from`:
- * fraction of the mark before. */
-static void pass_mark(strut_quantities *q, double time, double step_begin, double h, double from,
-                      double s, const double *last) {
+/* Passes the mark at the fraction s of the piece, up to which it has been added; the first opens the window. */
+static void pass_mark(const motion_part *part, double s) {
+  strut_quantities *q = part->quantities;
+  double time = q->marks.time[q->next], *row = row_at(q, 0);
+  evaluate_at(part, s, row);
   for (size_t i = 0; i < q->count; i++) {
-    meter *m = &q->meters[i];
-    double now = m->value, rise = now - last[i];
-    double a = from > 0.0 ? last[i] + from * rise : last[i];
-    double b = s < 1.0 ? last[i] + s * rise : now;
-    double place = interpolate_primitive(q, m, h, s);
-    if (q->next > 0) {
-      add_interval(m, a, b, step_begin + from * h, (s - from) * h);
-      close_part(m, time, b, place);
-    } else {
-      open_window(m, time, b, place);
-    }
+    strut_meter *m = &q->meters[i];
+    if (q->next > 0)
+      strut_meter_mark(m, time, m->value, primitive_of(q, m));
+    else
+      strut_meter_open(m, time, row[i], primitive_of(q, m));
   }
   if (q->next == 0) q->begin = time;
   q->time = time;
   q->next++;
 }
 
-/* Finds an extreme between steps where the values around it lie on a smooth curve. */
-static void refine_extremes(meter *m) {
-  const double *f = m->recent;
-  double left = (f[2] - f[1]) - (f[1] - f[0]), middle = (f[3] - f[2]) - (f[2] - f[1]);
-  double right = (f[4] - f[3]) - (f[3] - f[2]);
-  if (!((f[2] - f[1]) * (f[3] - f[2]) <= 0.0) || !(left * middle > 0.0 && right * middle > 0.0))
-    return;
-  double least = fmin(fabs(middle), fmin(fabs(left), fabs(right)));
-  double most = fmax(fabs(middle), fmax(fabs(left), fabs(right)));
-  if (most > SMOOTH * least) return;
-  double slope = 0.5 * (f[3] - f[1]), vertex = f[2] - 0.5 * slope * slope / middle;
-  note_extreme(&m->whole, vertex);
-  note_extreme(&m->part, vertex);
+/* Values just after the begin of a piece, which may have jumped there. */
+static void pass_jump(const motion_part *part, double time) {
+  strut_quantities *q = part->quantities;
+  evaluate_at(part, 0.0, row_at(q, 0));
+  for (size_t i = 0; i < q->count; i++) strut_meter_jump(&q->meters[i], time, row_at(q, 0)[i]);
 }
 
-static void store_recent(meter *m, double value) {
-  strut_reduction take = m->definition->take;
-  if (take != STRUT_TAKE_MIN && take != STRUT_TAKE_MAX && take != STRUT_TAKE_RANGE) return;
-  if (m->recent_count == RECENT)
-    memmove(m->recent, m->recent + 1, (RECENT - 1) * sizeof *m->recent);
-  else
-    m->recent_count++;
-  m->recent[m->recent_count - 1] = value;
-  if (m->recent_count == RECENT) refine_extremes(m);
+/* Measures a piece: up to each mark within it, then to its end. */
+static void see_piece(strut_observer *observer, strut_state *state,
+                      const strut_motion_piece *seen) {
+  strut_quantities *q = (strut_quantities *)observer;
+  strut_motion_piece piece = *seen;
+  motion_part part = {.quantities = q, .state = state, .piece = &piece};
+  double begin = piece.begin + (state->time_offset - q->marks.offset), h = piece.length;
+  double end = begin + h, near = MARK_TOLERANCE * q->marks.step;
+  bool smooth = piece.smooth && !q->fresh;
+  if (q->next >= q->marks.count) return;
+  if (q->next > 0 && q->inner && !smooth) pass_jump(&part, begin);
+  q->fresh = false;
+  while (q->next < q->marks.count && q->marks.time[q->next] <= end + near) {
+    double s = (q->marks.time[q->next] - begin) / h;
+    part.to = s * h > h - near ? 1.0 : fmax(s, part.from);
+    if (q->next > 0) add_part(&part, begin + part.from * h);
+    pass_mark(&part, part.to);
+    part.from = part.to;
+  }
+  part.to = 1.0;
+  if (q->next > 0 && q->next < q->marks.count) add_part(&part, begin + part.from * h);
+  strut_dense_return(&q->dense, state, &piece);
+  if (q->next >= q->marks.count) state->observer = NULL;
 }
+
+/* May a mark lie within the next step of the grid? */
+static bool mark_is_near(const strut_quantities *q, double begin) {
+  return q->next < q->marks.count && q->marks.time[q->next] <= begin + 1.5 * q->marks.step;
+}
+
+/* Does a step of the grid matter by its end alone? */
+static bool ends_suffice(const strut_quantities *q) { return !q->inner && q->next > 0; }
 
 void strut_quantities_begin(strut_quantities *q, const strut_marks *marks, strut_state *state) {
+  double t = (double)state->step * marks->step;
+  q->marks = *marks;
   q->next = 0;
-  strut_columns_begin(&q->columns, state);
+  q->fresh = true;
+  /* what jumps where the window begins has its value from before that, as at its end */
+  if (q->observed) t -= fmax(4.0 * DBL_EPSILON * t, state->step > 0 ? 1e-12 * marks->step : 0.0);
+  strut_columns_begin(&q->columns, state, t);
   for (size_t i = 0; i < q->count; i++) {
-    q->meters[i].value = evaluate_meter(q, &q->meters[i]);
     q->meters[i].result = (double)NAN;
     q->meters[i].parts = 0;
   }
+  if (q->observed)
+    state->observer = &q->observer;
+  else
+    strut_dense_keep(&q->dense, state);
   if (fabs(marks->time[0] / marks->step - (double)state->step) >= MARK_TOLERANCE) return;
   for (size_t i = 0; i < q->count; i++) {
-    meter *m = &q->meters[i];
-    open_window(m, marks->time[0], m->value,
-                m->rate_of == NONE ? 0.0 : q->columns.value[m->rate_of]);
-    store_recent(m, m->value);
+    strut_meter *m = &q->meters[i];
+    strut_meter_open(m, marks->time[0], evaluate_meter(q, i), primitive_of(q, m));
   }
   q->begin = q->time = marks->time[0];
   q->next = 1;
 }
 
-void strut_quantities_step(strut_quantities *q, const strut_marks *marks, strut_state *state) {
-  if (q->next >= marks->count) return;
-  double n = (double)state->step, step = marks->step, h = marks->length, from = 0.0;
-  double *last = q->last, begin = (n - 1.0) * step + state->time_offset;
-  q->columns.shorter = h - step;
-  strut_columns_evaluate(&q->columns, state);
-  for (size_t i = 0; i < q->count; i++) {
-    last[i] = q->meters[i].value;
-    q->meters[i].value = evaluate_meter(q, &q->meters[i]);
+void strut_quantities_step(strut_quantities *q, double length, strut_state *state) {
+  double begin = ((double)state->step - 1.0) * q->marks.step;
+  if (q->observed || q->next >= q->marks.count) return; /* the method has shown it; or it is over */
+  if (ends_suffice(q) && !mark_is_near(q, begin)) {
+    strut_columns_evaluate(&q->columns, state, begin + length);
+    for (size_t i = 0; i < q->count; i++)
+      strut_meter_add_even(&q->meters[i], evaluate_meter(q, i), begin, length);
+  } else {
+    strut_motion_piece piece = strut_dense_step(&q->dense, state, begin, length);
+    see_piece(&q->observer, state, &piece);
   }
-  for (size_t i = 0; i < q->count && q->next > 0; i++)
-    store_recent(&q->meters[i], q->meters[i].value);
-  while (q->next < marks->count && marks->time[q->next] / step <= n + MARK_TOLERANCE) {
-    double s = (marks->time[q->next] / step - (n - 1.0)) * (step / h);
-    if (s > 1.0 - MARK_TOLERANCE) s = 1.0;
-    pass_mark(q, marks->time[q->next], begin, h, from, s, last);
-    from = s;
-  }
-  if (q->next == 0 || q->next >= marks->count) return;
-  for (size_t i = 0; i < q->count; i++) {
-    meter *m = &q->meters[i];
-    double now = m->value, start = from > 0.0 ? last[i] + from * (now - last[i]) : last[i];
-    if (from < 1.0) add_interval(m, start, now, begin + from * h, (1.0 - from) * h);
-  }
+  if (!ends_suffice(q) || mark_is_near(q, begin + length)) strut_dense_keep(&q->dense, state);
 }
 
 /* Fills size, span and noise of all columns over the window. */
@@ -305,7 +357,7 @@ static void measure_columns(strut_quantities *q) {
 }
 
 /* The member of the largest force, where the largest one of all was asked for. */
-static const char *loaded_member(const strut_quantities *q, const meter *m) {
+static const char *loaded_member(const strut_quantities *q, const strut_meter *m) {
   const strut_quantity_definition *d = m->definition;
   bool asked = false;
   for (size_t i = 0; i < d->length; i++)
@@ -315,16 +367,18 @@ static const char *loaded_member(const strut_quantities *q, const meter *m) {
   return q->columns.model->scene->members[q->columns.loaded_most].name;
 }
 
-static void fill_measured(strut_quantities *q, meter *m, strut_measured *to) {
+static void fill_measured(strut_quantities *q, strut_meter *m, strut_measured *to) {
   strut_reduction take = m->definition->take;
   bool differs = take == STRUT_TAKE_RANGE || take == STRUT_TAKE_CHANGE || take == STRUT_TAKE_RATE ||
                  take == STRUT_TAKE_RISE;
   bool cancels = take == STRUT_TAKE_MEAN || take == STRUT_TAKE_CHANGE || take == STRUT_TAKE_RATE;
-  double per = take == STRUT_TAKE_RATE ? q->time - q->begin : 1.0;
   strut_magnitude made =
       strut_quantity_program_magnitude(m->definition, m->index, q->sizes, q->size_stack);
-  double size = fmax(made.size, m->largest);
+  double size = fmax(made.size, m->largest), window = q->time - q->begin;
+  double per = take == STRUT_TAKE_RATE ? window : 1.0;
+  bool summed = take == STRUT_TAKE_MEAN || take == STRUT_TAKE_RMS;
   if (!isfinite(m->result)) return;
+  to->doubt = m->doubt / (summed ? window : 1.0);
   to->value = m->result;
   to->member = loaded_member(q, m);
   if (take == STRUT_TAKE_ARRIVAL) { /* a time, not a value of the expression */

@@ -83,6 +83,7 @@ typedef struct strut_measured {
   double scale;  /* largest absolute value over the window, of the quantity and of the terms that it
                       is made of: relative errors mean nothing where the value is far below it */
   double expected;    /* expected error, SI; NAN where unknown */
+  double doubt;       /* uncertainty where steps are too coarse for what happens between them, SI */
   bool kept;          /* expected is within the wanted error */
   bool zero;          /* zero by symmetry: only rounding */
   const char *member; /* that of a largest `largest_force`; owned by the scene; else NULL */

@@ -10,6 +10,7 @@
 #include "engine/run/settle.h"
 #include "engine/statics/equilibria/equilibrium_search.h"
 #include "engine/statics/equilibria/naming.h"
+#include "engine/statics/equilibria/passages.h"
 
 /* Adds a search's counts; of its estimates the largest is kept. */
 static void count_starts(strut_equilibrium_search *h, const strut_critical_set *set) {
@@ -204,6 +205,40 @@ static void link_saddles(strut_equilibrium_search *h) {
   }
 }
 
+/* The landscape's minimum into which the drawn shape descends, or -1; q (length) is scratch. */
+static strut_status find_start_state(const strut_equilibrium_search *h, double *q, int32_t *state) {
+  strut_minimiser *minimiser;
+  strut_status status = strut_minimiser_create(h->potential, &minimiser, h->error);
+  if (status) return status;
+  strut_minimiser_watch(minimiser, h->options->interrupt);
+  memcpy(q, h->model->start, (size_t)h->model->length * sizeof *q);
+  bool rests = strut_descend_gently(minimiser, q) == STRUT_DESCENT_REACHED;
+  *state = rests ? strut_landscape_find(&h->landscape, q) : -1;
+  strut_minimiser_free(minimiser);
+  return STRUT_OK;
+}
+
+/* Marks shapes in which bodies lie in each other, saddles that lead through one, and what lies behind one. */
+static strut_status mark_collisions(strut_equilibrium_search *h) {
+  const strut_landscape *l = &h->landscape;
+  int32_t start = -1, ground = (int32_t)h->supports.count;
+  double *q = strut_arena_allocate(&h->out->arena, (size_t)h->model->length, sizeof *q);
+  if (!q) return strut_no_memory(h->error, "");
+  bool connected = h->explored && !h->options->standing_only;
+  strut_status status = connected ? find_start_state(h, q, &start) : STRUT_OK;
+  for (size_t i = 0; i < h->count && status == STRUT_OK; i++) {
+    strut_candidate_equilibrium *f = &h->candidates[i];
+    f->e.overlap = strut_overlap_find(h->model, f->e.point.q);
+    if (l->through && f->group == ground && f->state < 0) f->e.through = l->through[f->number];
+    if (start < 0 || f->state < 0 || start == f->state) continue;
+    if (strut_landscape_path(l, start, f->state) >= 0) continue;
+    const double *from = l->set.points[start].q, *to = l->set.points[f->state].q;
+    f->e.through = l->merged ? strut_crossing_find(h->model, from, to)
+                             : strut_passage_find(h->model, from, to);
+  }
+  return status;
+}
+
 static void turn_to_original(strut_equilibrium_search *h, strut_equilibrium *e) {
   size_t nodes = (size_t)h->model->node_count;
   strut_level_frame_to_original(&h->level, nodes, e->point.q);
@@ -223,8 +258,10 @@ static strut_status report_equilibria(strut_equilibrium_search *h) {
   if (strut_name_equilibria(h->model, h->count, list, arena)) return strut_no_memory(h->error, "");
   link_ends(h);
   link_saddles(h);
-  strut_report_candidates(h, h->candidates, h->count);
   strut_status status = STRUT_OK;
+  if (h->model->scene->collision_count) status = mark_collisions(h);
+  if (status) return status;
+  strut_report_candidates(h, h->candidates, h->count);
   if (h->explored && !h->options->standing_only) status = strut_barriers_find(h);
   for (size_t i = 0; i < h->count; i++) {
     turn_to_original(h, &h->candidates[i].e);

@@ -41,6 +41,9 @@ typedef struct strut_equilibrium {
   int32_t contact_count;
   int32_t *contacts; /* nodes that touch at the end; before it is followed: supports */
   double *normal;    /* (contact_count) [N] */
+  int32_t overlap;   /* collision whose bodies lie in each other here, or -1 */
+  int32_t through;   /* collision: of a saddle, on a way down from it; of others, on every known way
+                        here from where the drawn shape comes to rest; or -1 */
   char verdict[208]; /* in words: "stands", "tips over n4 onto n2, n4: II", ... */
 } strut_equilibrium;
 

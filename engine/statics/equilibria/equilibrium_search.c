@@ -24,6 +24,7 @@ int32_t strut_equilibrium_search_add(strut_equilibrium_search *h) {
   }
   h->candidates[h->count] = (strut_candidate_equilibrium){.state = -1};
   h->candidates[h->count].e.tips_over = h->candidates[h->count].e.ends_as = -1;
+  h->candidates[h->count].e.overlap = h->candidates[h->count].e.through = -1;
   return (int32_t)h->count++;
 }
 

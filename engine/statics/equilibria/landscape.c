@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 #include "engine/statics/equilibria/equilibrium_search.h"
+#include "engine/statics/equilibria/passages.h"
 
 /* Two shapes are one: as a share of the model's size, and of the potential. */
 static const double SAME_SHAPE = 1e-5, SAME_POTENTIAL = 1e-8;
@@ -49,6 +50,13 @@ strut_status strut_landscape_create(const strut_potential *potential,
   *landscape = (strut_landscape){.potential = potential};
   landscape->merged = 2 * potential->model->node_count - potential->n <= FEW_FIXED;
   strut_status status = strut_critical_search(potential, effort, &landscape->set, error);
+  if (status == STRUT_OK && potential->model->scene->collision_count) {
+    landscape->through =
+        strut_arena_allocate(&landscape->arena, landscape->set.count, sizeof *landscape->through);
+    status = landscape->through ? strut_passages_find(potential, &landscape->set, landscape->merged,
+                                                      effort->interrupt, landscape->through, error)
+                                : strut_no_memory(error, "");
+  }
   return status ? status : find_lowest(landscape, error);
 }
 
@@ -91,8 +99,9 @@ static int32_t find_root(int32_t *parent, int32_t a) {
   return a;
 }
 
-/* A pass whose two sides are both known. */
+/* A pass whose two sides are both known, and lead through no body. */
 static bool connects(const strut_landscape *l, const strut_critical_point *pass) {
+  if (l->through && l->through[pass - l->set.points] >= 0) return false;
   return is_pass(pass) && !is_unknown(pass) && pass->down[0] < l->minima &&
          pass->down[1] < l->minima;
 }

@@ -11,7 +11,10 @@ typedef struct strut_landscape {
   const strut_potential *potential;
   bool merged; /* congruent shapes are one point, mirror images too */
   strut_critical_set set;
-  int32_t minima;    /* stable and floppy points: the first ones of the set */
+  int32_t minima; /* stable and floppy points: the first ones of the set */
+  int32_t
+      *through; /* (set.count) a collision that a saddle's ways down lead through, or -1; NULL: the
+                        scene has no collision */
   double *lowest;    /* (minima) potential of the lowest pass out of it [J]; HUGE_VAL: none known */
   int32_t *parent;   /* (minima) scratch of the path searches below */
   strut_arena arena; /* of the above */
@@ -31,7 +34,7 @@ double strut_landscape_pass(const void *landscape, const double *q);
 
 /**
  * Index of the highest saddle on the lowest path from minimum a to minimum b; -1 if the known
- * saddles do not connect them.
+ * saddles do not connect them. Saddles that lead through a collision are none.
  */
 int32_t strut_landscape_path(const strut_landscape *landscape, int32_t a, int32_t b);
 

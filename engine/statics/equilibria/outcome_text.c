@@ -318,10 +318,24 @@ static void write_remark(strut_equilibrium_search *h, strut_candidate_equilibriu
   }
 }
 
+/* Appends what the potential alone does not say: bodies in each other, and ways through them. */
+static void add_collisions(const strut_scene *scene, strut_equilibrium *e) {
+  size_t used = strlen(e->verdict), room = sizeof e->verdict - used;
+  if (e->overlap >= 0)
+    snprintf(e->verdict + used, room, "; '%.60s' overlaps", scene->collisions[e->overlap].name);
+  else if (e->through >= 0)
+    snprintf(e->verdict + used, room, "; %s '%.60s'",
+             e->outcome == STRUT_OUTCOME_UNSTABLE ? "leads through" : "reached only through",
+             scene->collisions[e->through].name);
+}
+
 void strut_report_candidates(strut_equilibrium_search *h, strut_candidate_equilibrium *finds,
                              size_t count) {
   uint8_t *flag = strut_arena_allocate(&h->out->arena, (size_t)h->model->length, 1);
   if (!flag) return;
-  for (size_t i = 0; i < count; i++) describe_outcome(h, finds, &finds[i], flag);
+  for (size_t i = 0; i < count; i++) {
+    describe_outcome(h, finds, &finds[i], flag);
+    add_collisions(&h->level.scene, &finds[i].e);
+  }
   if (!h->out->remark[0]) write_remark(h, finds, count, flag);
 }

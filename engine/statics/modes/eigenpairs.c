@@ -226,7 +226,9 @@ strut_status strut_modes_dense(strut_modes_work *work, strut_error *error) {
 
 /* The lowest modes of a large structure: bracketed by counting, found by Lanczos's method. */
 
-enum { MOST_FACTORS = 80 };
+enum { MOST_FACTORS = 80, MOST_ALIKE = 100 }; /* eigenvalues at one place */
+/* Of the largest eigenvalue: what is below has none of its own. */
+static const double NO_STIFFNESS = 1e-20;
 
 /* Some z > 0 with at least `count` and a few more eigenvalues below; *below gets how many. */
 static double find_bound(strut_modes_work *work, int32_t count, int32_t *below) {
@@ -238,7 +240,7 @@ static double find_bound(strut_modes_work *work, int32_t count, int32_t *below) 
       low = z;
     else
       high = z, *below = found;
-    if (found >= least && found <= most) break;
+    if (found >= least && (found <= most || z <= NO_STIFFNESS * work->v->largest)) break;
     if (low > 0 && high > 0 && high < 1.0001 * low) break; /* many at one place */
     z = low > 0 && high > 0 ? sqrt(low * high) : low > 0 ? 30.0 * low : 0.01 * high;
   }
@@ -263,6 +265,11 @@ strut_status strut_modes_sparse(strut_modes_work *work, int32_t count, strut_err
   int32_t below = 0;
   if (count > v->massive - 3) count = v->massive - 3; /* Lanczos's method wants a few to spare */
   double bound = find_bound(work, count, &below), shift = -1e-3 * bound;
+  if (below > 2 * count + MOST_ALIKE && bound <= NO_STIFFNESS * v->largest)
+    return strut_fail(error, STRUT_SINGULAR,
+                      "%d modes have no stiffness, too many to tell apart in a structure of this "
+                      "size; cables that are only just taut have none: give them a prestress",
+                      (int)below);
   if (below >= v->massive) below = v->massive - 1;
   size_t room = (size_t)below;
   strut_eigen_set *set = &work->set;

@@ -291,6 +291,23 @@ static void describe_rigid(const strut_vibration *v, const double *x, strut_mode
     append_text(mode, "the structure rotates freely");
 }
 
+/* Members that the mechanism would stretch one way, and let go the other. */
+static void describe_idle(const strut_modes_work *work, const double *x, strut_mode *mode) {
+  const strut_vibration *v = work->v;
+  double lead[2];
+  largest_node(v, x, lead);
+  int32_t count = 0, first = -1;
+  for (int32_t j = 0; j < v->model->members.count; j++) {
+    if (work->idleness[j] != STRUT_JUST_TAUT) continue;
+    if (fabs(strut_vibration_spread(v, j, x).along) <= 1e-6 * hypot(lead[0], lead[1])) continue;
+    if (!count++) first = j;
+  }
+  mode->just_taut = count;
+  if (count == 1)
+    append_text(mode, ", as '%.24s' is just taut", v->model->scene->members[first].name);
+  if (count > 1) append_text(mode, ", as %d members are just taut", (int)count);
+}
+
 void strut_modes_describe(const strut_modes_work *work, const double *x, strut_mode *mode) {
   const strut_vibration *v = work->v;
   mode->description[0] = '\0';
@@ -301,6 +318,7 @@ void strut_modes_describe(const strut_modes_work *work, const double *x, strut_m
   describe_nodes(v, x, mode);
   if (mode->kind == STRUT_MODE_MECHANISM) {
     append_text(mode, "; no stiffness resists");
+    describe_idle(work, x, mode);
     return;
   }
   size_t items = (size_t)count_items(v->model);

@@ -225,7 +225,9 @@ static strut_status solve_modes(strut_modes_work *work, int32_t wanted, strut_mo
   work->solver.interrupt = work->experiment->interrupt;
   if (status == STRUT_OK) status = check_problem(work, error);
   if (status != STRUT_OK) return status;
-  if (modes->at_rest) status = strut_modes_settle(work, error);
+  status = strut_modes_loosen(work, modes->at_rest, error);
+  modes->idleness = work->idleness;
+  if (status == STRUT_OK && modes->at_rest) status = strut_modes_settle(work, error);
   if (status != STRUT_OK) return status;
   modes->coordinates = v->n;
   status = strut_experiment_end(work->experiment, status, error);

@@ -28,6 +28,13 @@ typedef enum strut_mode_kind {
 /** "rigid-body", "mechanism", "elastic", "unstable". */
 STRUT_API const char *strut_mode_kind_name(strut_mode_kind kind);
 
+/** What a member that only pulls, or only pushes, does in the shape. */
+typedef enum strut_idleness {
+  STRUT_ACTS,
+  STRUT_SLACK,
+  STRUT_JUST_TAUT /* without a force: it would act one way only, so that it counts as slack */
+} strut_idleness;
+
 typedef struct strut_mode {
   double eigenvalue;        /* omega^2 [1/s^2]; 0 where there is no stiffness */
   double angular_frequency; /* [rad/s]; 0 where the eigenvalue is not above zero */
@@ -39,6 +46,7 @@ typedef struct strut_mode {
   double error; /* of the eigenvalue, relative, estimated: of the method, and of the last
                               bits of the scene's numbers */
   strut_mode_kind kind;
+  int32_t just_taut;     /* of a mechanism: members without force that would resist it one way */
   double *shape;         /* (length) largest entry 1 */
   char description[200]; /* in words */
 } strut_mode;
@@ -48,10 +56,11 @@ typedef struct strut_modes {
   const double *q;     /* (length) its shape [m] */
   int32_t coordinates; /* free ones */
   int32_t closed_count;
-  const int32_t *closed; /* (closed_count) nodes */
-  bool dense;            /* all modes were computed */
-  bool damped_exactly;   /* damping from the quadratic eigenproblem; else by the modal quotient */
-  bool at_rest;          /* the shape is an equilibrium */
+  const int32_t *closed;          /* (closed_count) nodes */
+  const strut_idleness *idleness; /* (members) */
+  bool dense;                     /* all modes were computed */
+  bool damped_exactly; /* damping from the quadratic eigenproblem; else by the modal quotient */
+  bool at_rest;        /* the shape is an equilibrium */
   strut_settle_summary settle; /* of strut_rest_state */
   double condition;            /* largest eigenvalue over the smallest that is not zero */
   size_t count;

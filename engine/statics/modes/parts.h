@@ -24,7 +24,8 @@ typedef struct strut_modes_work {
   strut_eigen_set set;
   double soft; /* a shift well below the elastic eigenvalues, > 0 [1/s^2] */
   int32_t rigid_count;
-  double *rigid; /* (rigid_count, n) rigid motions left, x'Mx = 1, orthogonal */
+  double *rigid;            /* (rigid_count, n) rigid motions left, x'Mx = 1, orthogonal */
+  strut_idleness *idleness; /* (members) as in strut_modes */
   strut_arena *arena;
   const strut_experiment *experiment; /* which may be interrupted */
 } strut_modes_work;
@@ -37,6 +38,12 @@ strut_status strut_modes_shape(const strut_model *model, const strut_experiment 
 /** All modes of a dense problem, or the lowest ones of a sparse one, into work->set. */
 strut_status strut_modes_dense(strut_modes_work *work, strut_error *error);
 strut_status strut_modes_sparse(strut_modes_work *work, int32_t count, strut_error *error);
+
+/**
+ * Decides which members and elements that act one way only act in the shape, into work->idleness. One that is at the edge
+ * counts as slack if it carries nothing there, or only what last bits of the scene's numbers make of it.
+ */
+strut_status strut_modes_loosen(strut_modes_work *work, bool at_rest, strut_error *error);
 
 /** The shape to twice a double's precision, from one that is at rest as far as doubles tell. */
 strut_status strut_modes_settle(strut_modes_work *work, strut_error *error);

@@ -176,7 +176,8 @@ static void measure_noise(strut_modes_work *work, const double *noise, const dou
     }
     for (int32_t j = 0; j < v->model->elements.count; j++)
       sum = fabs(sum) + element_noise(v, j, elements[j], set->vector + (size_t)i * (size_t)v->n);
-    set->noise[i] = fmax(set->noise[i], 2.0 * fabs(sum)); /* twice: there are few samples */
+    double rounding = 4.0 * STRUT_DD_EPSILON * v->largest;           /* of the sums that make K */
+    set->noise[i] = fmax(set->noise[i], 2.0 * fabs(sum) + rounding); /* twice: few samples */
   }
 }
 
@@ -185,6 +186,107 @@ strut_status strut_modes_settle(strut_modes_work *work, strut_error *error) {
   if (!step) return strut_no_memory(error, "");
   if (!settle(work, FIRM, step)) settle(work, HARDLY, step);
   return STRUT_OK;
+}
+
+/* Of what last bits make of a force: it is known from here on. Of k times the length: it is more than the
+   rounding of twice a double's digits. */
+static const double KNOWN = 1e3, SOME = 1e-22;
+
+/* Largest noise of the forces of members (members) and elements [N]. */
+static strut_status sample_forces(strut_modes_work *work, bool at_rest, double *members,
+                                  double *elements, strut_error *error) {
+  const strut_vibration *v = work->v;
+  size_t member_count = (size_t)v->model->members.count;
+  size_t element_count = (size_t)v->model->elements.count;
+  strut_arena scratch = {0};
+  strut_dd *x = strut_arena_allocate(&scratch, (size_t)v->n, sizeof *x);
+  double *one = strut_arena_allocate(&scratch, member_count, sizeof *one);
+  double *other = strut_arena_allocate(&scratch, element_count, sizeof *other);
+  bool good = x && one && other;
+  if (good && at_rest) strut_modes_factorise(&work->solver, FIRM * v->largest);
+  for (uint64_t sample = 0; sample < SAMPLES && good; sample++) {
+    sample_noise(work, at_rest, sample, one, other, x);
+    for (size_t j = 0; j < member_count; j++)
+      members[j] = fmax(members[j], fabs(one[j]) * v->member[j].length);
+    for (size_t i = 0; i < element_count; i++) elements[i] = fmax(elements[i], fabs(other[i]));
+  }
+  strut_arena_free(&scratch);
+  return good ? STRUT_OK : strut_no_memory(error, "");
+}
+
+static bool is_known(double force, double noise, double largest) {
+  return fabs(force) > KNOWN * noise && fabs(force) > SOME * largest;
+}
+
+/* Borderline ones, which are made to act for now; their number. */
+static int32_t hold_borderline(strut_modes_work *work, uint8_t *member, uint8_t *element) {
+  strut_vibration *v = work->v;
+  int32_t count = 0;
+  for (int32_t j = 0; j < v->model->members.count; j++)
+    if ((member[j] = strut_vibration_is_borderline(v, j))) v->member[j].state = 1, count++;
+  for (int32_t i = 0; i < v->model->elements.count; i++)
+    if ((element[i] = strut_vibration_element_is_borderline(v, i))) count++;
+  return count;
+}
+
+static void release_borderline(strut_modes_work *work, const uint8_t *member,
+                               const uint8_t *element, const double *member_noise,
+                               const double *element_noise) {
+  strut_vibration *v = work->v;
+  const strut_member_table *t = &v->model->members;
+  for (int32_t j = 0; j < t->count; j++) {
+    strut_vibration_member *m = &v->member[j];
+    double force = t->stiffness[j] * dd_double(m->stretch), most = t->stiffness[j] * m->length;
+    if (!member[j]) continue;
+    bool known = is_known(force, member_noise[j], most);
+    m->state = known ? 0 : -1;
+    if (!known) work->idleness[j] = STRUT_JUST_TAUT;
+  }
+  for (int32_t i = 0; i < v->model->elements.count; i++) {
+    const strut_element *e = &v->model->elements.element[i];
+    strut_element_pose pose;
+    if (!element[i]) continue;
+    bool acts = strut_vibration_pose(v, i, &pose);
+    v->idle[i] = !acts || !is_known(pose.force, element_noise[i], pose.slope * pose.strain);
+    if (v->idle[i] && e->role == STRUT_ELEMENT_MEMBER) work->idleness[e->item] = STRUT_JUST_TAUT;
+  }
+}
+
+static void find_slack(strut_modes_work *work) {
+  const strut_vibration *v = work->v;
+  strut_element_pose pose;
+  for (int32_t j = 0; j < v->model->members.count; j++)
+    if (!v->member[j].taut && v->model->members.stiffness[j] > 0 && work->idleness[j] == STRUT_ACTS)
+      work->idleness[j] = STRUT_SLACK;
+  for (int32_t i = 0; i < v->model->elements.count; i++) {
+    const strut_element *e = &v->model->elements.element[i];
+    if (e->role != STRUT_ELEMENT_MEMBER || work->idleness[e->item] != STRUT_ACTS) continue;
+    if (!strut_vibration_pose(v, i, &pose)) work->idleness[e->item] = STRUT_SLACK;
+  }
+}
+
+strut_status strut_modes_loosen(strut_modes_work *work, bool at_rest, strut_error *error) {
+  strut_vibration *v = work->v;
+  size_t members = (size_t)v->model->members.count, elements = (size_t)v->model->elements.count;
+  strut_arena scratch = {0};
+  uint8_t *member = strut_arena_allocate(&scratch, members, sizeof *member);
+  uint8_t *element = strut_arena_allocate(&scratch, elements, sizeof *element);
+  double *member_noise = strut_arena_allocate(&scratch, members, sizeof *member_noise);
+  double *element_noise = strut_arena_allocate(&scratch, elements, sizeof *element_noise);
+  work->idleness = strut_arena_allocate(work->arena, members, sizeof *work->idleness);
+  bool good = member && element && member_noise && element_noise && work->idleness;
+  strut_status status = good ? STRUT_OK : strut_no_memory(error, "");
+  if (good && hold_borderline(work, member, element) > 0) {
+    strut_vibration_update(v);
+    if (at_rest) status = strut_modes_settle(work, error);
+    if (status == STRUT_OK)
+      status = sample_forces(work, at_rest, member_noise, element_noise, error);
+    if (status == STRUT_OK) release_borderline(work, member, element, member_noise, element_noise);
+    strut_vibration_update(v);
+  }
+  if (status == STRUT_OK) find_slack(work);
+  strut_arena_free(&scratch);
+  return status;
 }
 
 /* A shift that leaves all but the motions without stiffness as they are. */

@@ -1,9 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/modes/vibration.h"
 
+#include <float.h>
+#include <math.h>
 #include <string.h>
 
 #include "engine/forces/tangent.h"
+
+static const double EDGE =
+    8.0; /* last bits that a length and a rest length are known to, together */
 
 static void place_member(strut_vibration *v, int32_t j) {
   const strut_member_table *t = &v->model->members;
@@ -14,7 +19,7 @@ static void place_member(strut_vibration *v, int32_t j) {
   bool any = length.hi > 0;
   m->length = length.hi;
   m->stretch = dd_sub(length, dd_of(t->rest[j]));
-  m->taut = dd_double(m->stretch) > t->slack[j];
+  m->taut = m->state ? m->state > 0 : dd_double(m->stretch) > t->slack[j];
   m->ux = any ? dd_div(dx, length) : dd_of(0.0);
   m->uy = any ? dd_div(dy, length) : dd_of(0.0);
   /* of zero length and zero rest length: an isotropic spring */
@@ -57,6 +62,7 @@ bool strut_vibration_pose(const strut_vibration *v, int32_t i, strut_element_pos
   int32_t n = 2 * e->nodes;
   bool any = false;
   strut_element_evaluate(v->model, i, v->model->members.rest, v->rounded, (double)NAN, pose);
+  if (v->idle[i]) pose->acts = false;
   for (int32_t k = 0; k < n; k++) {
     low[k] = v->q[at[k / 2] + (uint32_t)(k % 2)].lo;
     any = any || low[k] != 0.0;
@@ -69,6 +75,24 @@ bool strut_vibration_pose(const strut_vibration *v, int32_t i, strut_element_pos
   pose->strain += change;
   pose->force += pose->slope * change;
   return true;
+}
+
+/* Is a length the natural one to its last bits? */
+static bool is_at_edge(double stretch, double length, double natural) {
+  return fabs(stretch) <= EDGE * DBL_EPSILON * (fabs(length) + fabs(natural));
+}
+
+bool strut_vibration_is_borderline(const strut_vibration *v, int32_t j) {
+  const strut_vibration_member *m = &v->member[j];
+  const strut_member_table *t = &v->model->members;
+  return t->slack[j] > -HUGE_VAL && is_at_edge(dd_double(m->stretch), m->length, t->rest[j]);
+}
+
+bool strut_vibration_element_is_borderline(const strut_vibration *v, int32_t i) {
+  const strut_element *e = &v->model->elements.element[i];
+  strut_element_pose pose;
+  strut_element_evaluate(v->model, i, v->model->members.rest, v->rounded, (double)NAN, &pose);
+  return e->carries && is_at_edge(pose.strain - pose.natural, pose.strain, pose.natural);
 }
 
 /* The gradient with a last node that makes its sum vanish to all digits: a shift costs nothing. */
@@ -96,7 +120,7 @@ static void add_element(void *context, int32_t i, const strut_element_pose *roun
   strut_vibration *v = ((const element_sum *)context)->vibration;
   strut_element_pose sharp, *pose = &sharp;
   (void)rounded;
-  strut_vibration_pose(v, i, pose);
+  if (!strut_vibration_pose(v, i, pose)) return;
   const strut_element *e = &v->model->elements.element[i];
   const int32_t *place = v->shape->place + strut_places_of_elements(v->model);
   double k[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
@@ -125,7 +149,7 @@ static void add_element_force(void *context, int32_t i, const strut_element_pose
   const element_sum *s = context;
   strut_element_pose sharp, *pose = &sharp;
   (void)rounded;
-  strut_vibration_pose(s->vibration, i, pose);
+  if (!strut_vibration_pose(s->vibration, i, pose)) return;
   const strut_element_table *t = &s->vibration->model->elements;
   const strut_element *e = &t->element[i];
   strut_dd b[STRUT_MOST_GRADIENT];
@@ -257,8 +281,9 @@ static bool allocate(strut_vibration *v) {
   v->mass = strut_arena_allocate(&v->arena, n, sizeof *v->mass);
   v->own_mass = strut_arena_allocate(&v->arena, n, sizeof *v->own_mass);
   v->work = strut_arena_allocate(&v->arena, n, sizeof *v->work);
-  return v->rounded && v->q && v->member && v->closed && v->k && v->m && v->d && v->mass &&
-         v->own_mass && v->work;
+  v->idle = strut_arena_allocate(&v->arena, (size_t)model->elements.count, sizeof *v->idle);
+  return v->idle && v->rounded && v->q && v->member && v->closed && v->k && v->m && v->d &&
+         v->mass && v->own_mass && v->work;
 }
 
 strut_status strut_vibration_create(const strut_model *model, const double *q,

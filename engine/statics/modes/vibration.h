@@ -19,6 +19,7 @@ typedef struct strut_vibration_member {
   strut_dd across;  /* force / length: stiffness across it [N/m] */
   double length;    /* [m] */
   bool taut;        /* pulls or pushes */
+  int8_t state;     /* 1: taut, -1: slack, whatever the stretch; 0: by the stretch */
 } strut_vibration_member;
 
 typedef struct strut_vibration {
@@ -37,6 +38,7 @@ typedef struct strut_vibration {
   strut_dd *work;                 /* (n) */
   strut_arena arena;
   double *own_mass; /* (n) diagonal of M without sliding masses */
+  bool *idle;       /* (elements) it does not act, whatever its strain */
 } strut_vibration;
 
 /**
@@ -72,6 +74,13 @@ typedef struct strut_end_displacement {
 } strut_end_displacement;
 strut_end_displacement strut_vibration_spread(const strut_vibration *vibration, int32_t j,
                                               const double *x);
+
+/**
+ * Does a member or an element that acts one way only sit at the edge of that, to the last bits of its length
+ * or strain? Whether it acts is then rounding, unless loads decide it.
+ */
+bool strut_vibration_is_borderline(const strut_vibration *vibration, int32_t member);
+bool strut_vibration_element_is_borderline(const strut_vibration *vibration, int32_t element);
 
 /**
  * An element in the shape: strain, force and gradient with the digits of positions that a double does

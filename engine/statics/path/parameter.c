@@ -23,6 +23,13 @@ bool strut_path_terms_create(const strut_model *model, strut_arena *arena, strut
          t->ground;
 }
 
+bool strut_path_has_line(const strut_model *model) {
+  const strut_scene *scene = model->scene;
+  const strut_surface *surface = model->contacts.surface;
+  return !surface || (scene->ground_count == 1 && scene->grounds->shape == STRUT_GROUND_LINE &&
+                      !surface->moves);
+}
+
 /* A scene at a value with its model, kept as long as laws of its elements are used. */
 struct strut_path_scene {
   strut_setup setup;
@@ -59,7 +66,7 @@ static void copy_terms(const strut_model *model, const strut_path_terms *from,
   memcpy(to->force, from->force, length);
   memcpy(to->ground, from->ground, (size_t)model->contacts.count * sizeof(double));
   memcpy(to->normal, from->normal, sizeof to->normal);
-  to->height = from->height;
+  memcpy(to->point, from->point, sizeof to->point);
   to->laws = from->laws;
 }
 
@@ -77,8 +84,9 @@ static void read_terms(const strut_model *model, strut_path_terms *t) {
   else
     memset(t->force, 0, length);
   for (int32_t i = 0; i < c->count; i++) t->ground[i] = c->entry[i].stiffness;
-  memcpy(t->normal, c->normal, sizeof t->normal);
-  t->height = c->height;
+  const double level[2] = {0.0, c->height};
+  memcpy(t->normal, c->surface ? c->surface->facet->axes.normal : c->normal, sizeof t->normal);
+  memcpy(t->point, c->surface ? c->surface->facet->point : level, sizeof t->point);
   t->laws = model;
 }
 
@@ -100,7 +108,8 @@ static bool are_elements_alike(const strut_element_table *a, const strut_element
 static bool is_same_structure(const strut_model *a, const strut_model *b) {
   const strut_member_table *s = &a->members, *t = &b->members;
   if (a->node_count != b->node_count || a->length != b->length || s->count != t->count ||
-      s->slots != t->slots || a->contacts.count != b->contacts.count)
+      s->slots != t->slots || a->contacts.count != b->contacts.count || !strut_path_has_line(a) ||
+      !strut_path_has_line(b))
     return false;
   for (int32_t j = 0; j < s->count; j++)
     if (s->from[j] != t->from[j] || s->to[j] != t->to[j] || s->slack[j] != t->slack[j])
@@ -201,7 +210,7 @@ static bool difference_scenes(strut_path_parameter *p, double value, strut_path_
   divide_difference(a->force, b->force, apart, length, rates->force);
   divide_difference(a->ground, b->ground, apart, (size_t)p->model->contacts.count, rates->ground);
   divide_difference(a->normal, b->normal, apart, 2, rates->normal);
-  divide_difference(&a->height, &b->height, apart, 1, &rates->height);
+  divide_difference(a->point, b->point, apart, 2, rates->point);
   return true;
 }
 
@@ -256,7 +265,7 @@ static bool is_different(const strut_model *model, const strut_path_terms *a,
   return are_laws_different(&a->laws->elements, &b->laws->elements) ||
          !is_equal(a->stiffness, b->stiffness, slots) || !is_equal(a->rest, b->rest, slots) ||
          !is_equal(a->ground, b->ground, (size_t)model->contacts.count) ||
-         !is_equal(a->normal, b->normal, 2) || a->height != b->height;
+         !is_equal(a->normal, b->normal, 2) || !is_equal(a->point, b->point, 2);
 }
 
 /* Checks that a scene's number has an effect and does not change the structure. */

@@ -11,7 +11,7 @@
 #include "engine/statics/minimise.h"
 #include "engine/statics/path/walk.h"
 
-enum { DEFAULT_STEPS = 400, NAMES = 400 };
+enum { NAMES = 400 };
 
 /* Residual that a descent may leave, relative to the rounding in forces; the path is corrected later. */
 static const double NEARLY = 1e6;
@@ -333,13 +333,12 @@ strut_status strut_path_follow(const strut_model *model, const strut_experiment 
   bool over_load = options->over == STRUT_PATH_OVER_LOAD;
   bool unsaid = over_load && options->until == 0 && options->from == 0;
   double until = unsaid ? 1.0 : options->until;
-  int32_t steps = options->steps > 0 ? options->steps : DEFAULT_STEPS;
+  int32_t steps = options->steps > 0 ? options->steps : STRUT_PATH_USUAL_STEPS;
   path_start b = {.options = options, .drawn = model, .setup.experiment = *experiment};
   *path = (strut_path){0};
-  if (model->contacts.surface)
+  if (!strut_path_has_line(model))
     return strut_fail(error, STRUT_USAGE,
-                      "paths need a ground that is one straight line at rest; give 'ground' with "
-                      "height and slope, or none");
+                      "paths need a ground that is one straight line at rest, or none");
   if (!(fabs(until - options->from) > 0))
     return strut_fail(error, STRUT_USAGE, "the path ends where it starts, at %.6g", until);
   b.load = strut_arena_allocate(&b.arena, length, sizeof *b.load);

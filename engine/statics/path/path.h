@@ -15,6 +15,9 @@
 #include "engine/model/model.h"
 #include "engine/scene/experiment.h"
 
+/** What 0 steps stand for. */
+#define STRUT_PATH_USUAL_STEPS 400
+
 /** Free coordinates that a path is followed with at most: its matrices are dense. */
 enum { STRUT_PATH_COORDINATES = 600 };
 
@@ -114,7 +117,7 @@ typedef struct strut_path_options {
                         comes to rest */
   double from;  /* where the path begins: in SI, or the factor */
   double until; /* where it ends; a load's factor from 0 to 0 ends at 1 */
-  int32_t steps; /* maximum number of steps; 0: 400 */
+  int32_t steps; /* maximum number of steps; 0: the usual ones */
 } strut_path_options;
 
 /** The coordinate that a path may be driven by: "node.x" is 2 node, "node.y" 2 node + 1; -1: none. */

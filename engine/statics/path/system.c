@@ -137,9 +137,10 @@ static double measure_member(const strut_path_system *s, int32_t j, strut_path_m
 
 static double gap_of(const strut_path_system *s, int32_t i) {
   uint32_t at = s->model->contacts.at[i];
-  strut_dd up = dd_sub(coordinate(s, at + 1), dd_of(s->terms.height));
-  return dd_double(
-      dd_add(dd_scale(coordinate(s, at), s->terms.normal[0]), dd_scale(up, s->terms.normal[1])));
+  const double *point = s->terms.point, *normal = s->terms.normal;
+  strut_dd x = dd_sub(coordinate(s, at), dd_of(point[0]));
+  strut_dd y = dd_sub(coordinate(s, at + 1), dd_of(point[1]));
+  return dd_double(dd_add(dd_scale(x, normal[0]), dd_scale(y, normal[1])));
 }
 
 static void add_stiffness(strut_path_system *s, const int32_t *row, int count, double (*block)[4]) {
@@ -195,14 +196,14 @@ static void add_members(strut_path_system *s) {
 
 /* The ground as a spring that is there or not, whatever the sign of the gap. */
 static void add_contacts(strut_path_system *s) {
-  const double *normal = s->terms.normal, *turn = s->rates.normal;
+  const double *normal = s->terms.normal, *turn = s->rates.normal, *point = s->terms.point;
   for (int32_t i = 0; i < s->model->contacts.count; i++) {
     uint32_t at = s->model->contacts.at[i];
     const int32_t *row = s->potential->row_of + at;
     double gap = gap_of(s, i), k = s->terms.ground[i], block[4][4] = {{0}};
     if (!s->touching[i]) continue;
-    double rate = s->q[at] * turn[0] + (s->q[at + 1] - s->terms.height) * turn[1] -
-                  s->rates.height * normal[1];
+    double rate = (s->q[at] - point[0]) * turn[0] + (s->q[at + 1] - point[1]) * turn[1] -
+                  (s->rates.point[0] * normal[0] + s->rates.point[1] * normal[1]);
     for (int a = 0; a < 2; a++) { /* a support on the ground that is moved */
       if (row[a] < 0) rate += normal[a] * s->rates.position[at + (uint32_t)a];
       for (int b = 0; b < 2; b++) block[a][b] = k * normal[a] * normal[b];

@@ -89,8 +89,6 @@ strut_status strut_compare_structure(strut_compare_work *work, const strut_model
 
 /* ---- columns ---- */
 
-static const double USUAL_ACCURACY = 0.005;
-
 static const strut_compare_row rows[STRUT_COMPARE_QUANTITIES] = {
     [STRUT_COMPARE_NODES] = {"structure", "nodes", "nodes", ""},
     [STRUT_COMPARE_MEMBERS] = {"structure", "members", "members", ""},
@@ -246,7 +244,7 @@ strut_status strut_compare_make(const strut_compare_input *inputs, size_t count,
                                 const strut_compare_options *options, strut_compare *result,
                                 strut_error *error) {
   strut_compare_options wanted = *options;
-  if (!(wanted.accuracy > 0.0)) wanted.accuracy = USUAL_ACCURACY;
+  if (!(wanted.accuracy > 0.0)) wanted.accuracy = STRUT_COMPARE_USUAL_PERCENT / 100;
   *result = (strut_compare){.count = count,
                             .accuracy = wanted.accuracy,
                             .no_motion = wanted.no_motion,

@@ -120,8 +120,11 @@ typedef struct strut_compare_column {
   char message[600];
 } strut_compare_column;
 
+/** What an accuracy of 0 stands for. */
+#define STRUT_COMPARE_USUAL_PERCENT 0.5
+
 typedef struct strut_compare_options {
-  double accuracy;                                  /* of velocities, relative; 0: 0.005 */
+  double accuracy;                                  /* of velocities, relative; 0: the usual one */
   bool no_motion;                                   /* leave out runs */
   bool no_states;                                   /* leave out the search for stable states */
   const volatile sig_atomic_t *interrupt;           /* may be NULL */

@@ -14,7 +14,7 @@
 
 /* Longest step of a parameter in its range; steps each way; drive steps that show a gap's extrema. */
 static const double LONGEST = 0.03;
-enum { STEPS = 200, STEPS_PER_PERIOD = 200, CURVE_KEYS = 4 };
+enum { STEPS_PER_PERIOD = 200, CURVE_KEYS = 4 };
 static const double DEGREES = 57.29577951308232;
 
 /* ---- following ---- */
@@ -33,8 +33,8 @@ static strut_status follow_from(const strut_follow_options *o, strut_follow_resu
                                           .node = gap ? p->node : NULL,
                                           .value = {p->value, o->second.value},
                                           .y = p->y};
-  const strut_follow_curve_limits limits = {.steps = o->steps > 0 ? o->steps : STEPS,
-                                            .longest = LONGEST};
+  const strut_follow_curve_limits limits = {
+      .steps = o->steps > 0 ? o->steps : STRUT_FOLLOW_USUAL_CURVE_STEPS, .longest = LONGEST};
   for (size_t i = 0; i < r->curve_count; i++)
     if (strut_follow_curve_passes(u, &r->curves[i], &start)) return STRUT_OK;
   if (r->curve_count == STRUT_FOLLOW_MOST_CURVES) return STRUT_OK;

@@ -11,8 +11,8 @@
 #include "engine/statics/equilibria/rest_state.h"
 
 /* Accuracy of velocities, relative; the tolerance of error control for it; steps of a period. */
-static const double ACCURACY = 1e-3, TOLERANCE = 1e-3;
-enum { STEPS_PER_PERIOD = 50, FIXED_STEPS = 2000, USUAL_STEPS = 400 };
+static const double ACCURACY = STRUT_FOLLOW_USUAL_PERCENT / 100, TOLERANCE = 1e-3;
+enum { STEPS_PER_PERIOD = 50, FIXED_STEPS = 2000 };
 /* A run that starts a branch: its accuracy, tolerance of steady motion, and periods. */
 static const double START_ACCURACY = 0.02, START_TOLERANCE = 0.005;
 static const double LEAST_PERIODS = 300.0, MOST_PERIODS = 2000.0;
@@ -333,7 +333,7 @@ strut_status strut_follow_make(const strut_follow_options *options, strut_follow
   follower f = {.o = options,
                 .r = result,
                 .error = error,
-                .limits = {.steps = options->steps > 0 ? options->steps : USUAL_STEPS,
+                .limits = {.steps = options->steps > 0 ? options->steps : STRUT_FOLLOW_USUAL_STEPS,
                            .longest = LONGEST,
                            .progress = options->progress,
                            .progress_context = options->progress_context}};

@@ -8,6 +8,7 @@
 
 #include "engine/output/draw/plot.h"
 #include "engine/run/follow/follow_curve.h"
+#include "engine/scene/study_follow.h"
 
 enum { STRUT_FOLLOW_KICKS = 4, STRUT_FOLLOW_MOST_BASINS = 64, STRUT_FOLLOW_MOST_CURVES = 24 };
 enum { STRUT_FOLLOW_MOST_BRANCHES = 24, STRUT_FOLLOW_NOTE = 320, STRUT_FOLLOW_LABEL = 120 };
@@ -33,8 +34,8 @@ typedef struct strut_follow_options {
   const strut_follow_start *starts; /* (start_count) at least one */
   strut_follow_scenes scenes;
   const char *method; /* NULL: chosen */
-  double accuracy;    /* relative, of velocities; 0: the default */
-  int32_t steps;      /* most of a branch each way; 0: the default */
+  double accuracy;    /* relative, of velocities; 0: STRUT_FOLLOW_USUAL_PERCENT */
+  int32_t steps;      /* most of a branch each way; 0: STRUT_FOLLOW_USUAL_STEPS */
   bool not_doubled;   /* do not follow doubled branches */
   int threads;
   const volatile sig_atomic_t *interrupt;

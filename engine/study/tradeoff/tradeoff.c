@@ -296,7 +296,7 @@ bool strut_tradeoff_is_wanted(const tradeoff_study *s, const strut_integrator *m
 /* ---- the study: base, references, rows, other models ---- */
 
 enum { BEST_METHODS = 2 };
-static const double USUAL_BUDGET = 120, FIRST_TARGET = 1e-4, SPEED_SHARE = 1e-3; /* [s], [1], [1] */
+static const double FIRST_TARGET = 1e-4, SPEED_SHARE = 1e-3; /* [s], [1], [1] */
 /* Cumulative shares of the budget for the unchanged model: references, rows, refined references. */
 static const double OWN_REFERENCE = 0.3, OWN_ROWS = 0.6, OWN_REFINED = 0.75;
 
@@ -556,12 +556,13 @@ strut_status strut_tradeoff_make(const strut_setup *const *setups, size_t count,
                                  strut_error *error) {
   strut_error own = {0};
   *result = (strut_tradeoff){.name = ""};
-  tradeoff_study s = {.setups = setups,
-                      .options = options,
-                      .result = result,
-                      .error = error ? error : &own,
-                      .began = strut_tradeoff_cpu_clock(),
-                      .budget = options->budget > 0 ? options->budget : USUAL_BUDGET};
+  tradeoff_study s = {
+      .setups = setups,
+      .options = options,
+      .result = result,
+      .error = error ? error : &own,
+      .began = strut_tradeoff_cpu_clock(),
+      .budget = options->budget > 0 ? options->budget : STRUT_TRADEOFF_USUAL_BUDGET};
   strut_status status = make(&s, count);
   free_models(&s);
   return status;

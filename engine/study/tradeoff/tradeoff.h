@@ -31,12 +31,17 @@ typedef enum strut_tradeoff_measure {
 
 enum { STRUT_TRADEOFF_MOST_STEPS = 40 };
 
+/** What zeros in strut_tradeoff_options stand for. */
+#define STRUT_TRADEOFF_USUAL_STEPS 8
+#define STRUT_TRADEOFF_USUAL_PERIODS 120
+#define STRUT_TRADEOFF_USUAL_BUDGET 120 /* [s] */
+
 /** Zero-initialise for the defaults. */
 typedef struct strut_tradeoff_options {
   strut_tradeoff_measure measure;
-  int steps;      /* per method, five per decade from its limit down; 0: 8 */
-  double periods; /* maximum for a run given in periods; 0: 120 */
-  double budget;  /* approximate CPU time [s]; 0: 120 */
+  int steps;      /* per method, five per decade from its limit down; 0: the usual ones */
+  double periods; /* maximum for a run given in periods; 0: the usual ones */
+  double budget;  /* approximate CPU time [s]; 0: the usual one */
   int repeats;    /* of a short run, for its CPU time; 0: 5 */
   const strut_integrator *const *methods; /* (method_count) only these; 0: all */
   size_t method_count;

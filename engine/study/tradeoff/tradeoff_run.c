@@ -9,8 +9,6 @@
 #include "engine/run/simulate.h"
 #include "engine/study/tradeoff/tradeoff_parts.h"
 
-enum { USUAL_PERIODS = 120 };
-
 double strut_tradeoff_cpu_clock(void) {
   struct timespec t;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
@@ -28,7 +26,7 @@ bool strut_tradeoff_is_adaptive(const strut_integrator *method) {
 strut_experiment strut_tradeoff_experiment(const tradeoff_study *s, size_t point) {
   strut_experiment e = s->setups[point]->experiment;
   e.quantity_count = 0; /* only velocity and positions are compared */
-  double most = s->options->periods > 0 ? s->options->periods : USUAL_PERIODS;
+  double most = s->options->periods > 0 ? s->options->periods : STRUT_TRADEOFF_USUAL_PERIODS;
   e.accuracy = 0;
   e.steady = (strut_steady){.wanted = false};
   if (e.periods > most) {
@@ -320,7 +318,7 @@ strut_status strut_tradeoff_reference_refine(tradeoff_study *s, tradeoff_referen
 
 /* ---- rows: the settings of a method from coarse to fine ---- */
 
-enum { USUAL_STEPS = 8, USUAL_REPEATS = 5, ABOVE = 3, MOST_TIMES = 64, LOOKED_AT = 5 };
+enum { USUAL_REPEATS = 5, ABOVE = 3, MOST_TIMES = 64, LOOKED_AT = 5 };
 static const double SHORT = 0.05; /* a run that is repeated for its CPU time [s] */
 static const double BELOW = 0.95, IN_DECADE = 5;
 /* Series without a stability limit start at this multiple of the explicit limit, or of the base's step. */
@@ -328,7 +326,7 @@ static const double FREE = 100, FREE_OF_BASE = 10;
 static const double above[ABOVE] = {2.5, 1.5, 1.1};
 
 static int step_count(const tradeoff_study *s) {
-  return s->options->steps > 0 ? s->options->steps : USUAL_STEPS;
+  return s->options->steps > 0 ? s->options->steps : STRUT_TRADEOFF_USUAL_STEPS;
 }
 
 static void report_progress(const tradeoff_study *s, double fraction) {
