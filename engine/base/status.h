@@ -23,7 +23,8 @@
   X(STRUT_WORK_LIMIT, 3, "the work allowed was used up")                                           \
   X(STRUT_FILE_TROUBLE, 4, "a file could not be read or written")                                  \
   X(STRUT_NO_MEMORY, 4, "out of memory")                                                           \
-  X(STRUT_INTERRUPTED, 130, "interrupted")
+  X(STRUT_INTERRUPTED, 130, "interrupted")                                                         \
+  X(STRUT_INACCURATE, 5, "completed, but less accurate than requested")
 
 typedef enum strut_status {
 #define STRUT_STATUS_ENUM(code, exit_code, text) code,
@@ -41,7 +42,7 @@ typedef struct strut_error {
 /** General text of a status, e.g. "completed", "diverged", "interrupted". Never NULL. */
 STRUT_API const char *strut_status_text(strut_status status);
 
-/** The program's exit code for a status: 0, 1, 2, 3, 4 or 130. */
+/** The program's exit code for a status: 0, 1, 2, 3, 4, 5 or 130. */
 STRUT_API int strut_status_exit_code(strut_status status);
 
 /** Writes status and printf-style message into error (may be NULL); returns status. */

@@ -76,11 +76,16 @@ static void add_run(strut_json *json, cJSON *to, const strut_summary *s, bool wi
   strut_json_text(json, to, "status", strut_status_text(s->status));
   strut_json_text(json, to, "reason", s->reason[0] ? s->reason : NULL);
   add_warnings(json, to, s);
+  char worth[200];
+  strut_summary_worth(s, worth, sizeof worth);
+  strut_json_text(json, to, "worth", worth[0] ? worth : NULL);
   strut_json_text(json, to, "caveat", s->caveat[0] ? s->caveat : NULL);
   strut_json_number(json, to, "velocity", s->velocity);
   strut_json_number(json, to, "velocity_spread", s->velocity_spread);
   if (s->velocity_zero) strut_json_bool(json, to, "velocity_zero", true);
   strut_json_number(json, to, "window_start", s->window_start);
+  strut_json_number(json, to, "window_duration", s->window_time);
+  strut_json_number(json, to, "window_drive_work", s->window_work);
   strut_json_number(json, to, "duration", s->duration);
   strut_json_number(json, to, "settle_time", s->settle_time);
   strut_json_settle(json, to, &s->settle);

@@ -61,9 +61,13 @@ static void add_warnings(rows *r) {
   }
 }
 
-static void add_caveat(rows *r) {
-  const char *caveat = text(r->from, "caveat");
-  if (caveat) add_row(r, "accuracy", caveat);
+/* What the numbers are worth, and why; of version 0.1 only the latter. */
+static void add_worth(rows *r) {
+  const cJSON *accuracy = cJSON_GetObjectItemCaseSensitive(r->from, "accuracy");
+  const char *worth = text(r->from, "worth"), *caveat = text(r->from, "caveat");
+  const char *why = accuracy ? text(accuracy, "why") : caveat;
+  if (worth) add_row(r, "accuracy", worth);
+  if (why) add_row(r, worth ? "because" : "accuracy", why);
 }
 
 static void add_velocity(rows *r, const strut_experiment *experiment, const strut_scene *scene) {
@@ -171,7 +175,7 @@ void strut_summary_rows(strut_json *json, cJSON *to, const char *summary,
     add_status(&r);
     add_warnings(&r);
     add_velocity(&r, experiment, scene);
-    add_caveat(&r);
+    add_worth(&r);
     add_measured(&r);
     add_steps(&r);
     add_contacts(&r);

@@ -18,29 +18,31 @@ static strut_rounded_quantity in(double value, const char *unit) {
   return strut_quantity_of(value, DIGITS, unit);
 }
 
-/* Each clause of the caveat on a line of its own. */
-static void add_caveat(strut_buffer *table, const char *caveat) {
-  const char *label = "accuracy";
-  while (*caveat) {
-    const char *end = strstr(caveat, "; ");
-    int length = end ? (int)(end - caveat) + 1 : (int)strlen(caveat);
-    strut_buffer_add(table, "  %-11s %.*s\n", label, length, caveat);
-    caveat += end ? length + 1 : length;
-    label = "";
-  }
+/* What the numbers are worth in one line, then why. */
+static void add_worth(strut_buffer *table, const strut_summary *s) {
+  const strut_accuracy_summary *a = &s->accuracy;
+  char worth[200];
+  strut_summary_worth(s, worth, sizeof worth);
+  if (*worth) strut_buffer_add(table, "  accuracy    %s\n", worth);
+  if (a->wanted > 0.0)
+    strut_buffer_add(table, "              %s; checked with %" PRId64 " more force evaluations\n",
+                     a->why, a->check_evaluations);
+  else if (s->caveat[0])
+    strut_buffer_add(table, "              %s\n", s->caveat);
 }
 
-/* Steady motion and accuracy, if requested. */
+/* Steady motion, and what is known of it. */
 static void add_claims(strut_buffer *table, const strut_summary *s) {
   const strut_steady_summary *m = &s->steady;
-  const strut_accuracy_summary *a = &s->accuracy;
+  bool checked = s->accuracy.wanted > 0.0;
   if (m->kind == STRUT_MOTION_PERIODIC) {
     strut_buffer_add(table, "  steady      after %" PRId64 " periods, every ", m->periods);
     if (m->repeats > 1)
       strut_buffer_add(table, "%d of them repeating", (int)m->repeats);
     else
       strut_buffer_add(table, "one repeating");
-    strut_buffer_add(table, "; velocity known within %s\n", in(m->interval, "m/s").text);
+    strut_buffer_add(table, checked ? "; velocity known within %s\n" : " within %s\n",
+                     in(m->interval, "m/s").text);
   } else if (m->kind == STRUT_MOTION_TRANSIENT) {
     strut_buffer_add(table, "  steady      not within %" PRId64 " periods\n", m->periods);
   } else if (m->kind == STRUT_MOTION_IRREGULAR) {
@@ -64,20 +66,7 @@ static void add_claims(strut_buffer *table, const strut_summary *s) {
   } else if (m->reason[0]) {
     strut_buffer_add(table, "  orbit       not computed: %s\n", m->reason);
   }
-  if (!(a->wanted > 0.0)) add_caveat(table, s->caveat);
-  if (!(a->wanted > 0.0)) return;
-  char expected[40] = "the velocity is zero by symmetry";
-  if (!s->velocity_zero || s->measured_count)
-    snprintf(expected, sizeof expected, isnan(a->expected) ? "error not known" : "%.3g %% expected",
-             100.0 * a->expected);
-  strut_buffer_add(table,
-                   "  accuracy    %.2g %% %s, %s; checked with %" PRId64
-                   " more force evaluations\n              %s\n",
-                   100.0 * a->wanted,
-                   !a->kept                           ? "NOT kept"
-                   : m->kind == STRUT_MOTION_CREEPING ? "not needed"
-                                                      : "kept",
-                   expected, a->check_evaluations, a->why);
+  add_worth(table, s);
 }
 
 static void add_head(strut_buffer *table, const strut_summary *s, const strut_scene *scene) {
@@ -149,7 +138,9 @@ static void add_more(strut_buffer *table, size_t count) {
 }
 
 static void add_positions(strut_buffer *table, const strut_summary *s) {
-  if (s->node_count) strut_buffer_add(table, "\n  %-16s %14s %14s\n", "node", "x", "y");
+  if (s->node_count)
+    strut_buffer_add(table, "\n  %-16s %14s %14s   after %s\n", "node", "x", "y",
+                     in(s->duration, "s").text);
   for (size_t i = 0; i < s->node_count && i < MOST_ROWS; i++) {
     strut_buffer_add(table, "  %-16s %14s %14s\n", s->node_names[i],
                      in(s->positions[2 * i], "m").text, in(s->positions[2 * i + 1], "m").text);
@@ -218,7 +209,8 @@ static void add_balance(strut_buffer *table, const strut_summary *s) {
 /* Energies below this part of all of them are rounding. */
 static const double ENERGY_ROUNDING = 4.0 * DBL_EPSILON;
 
-static void add_energy(strut_buffer *table, const strut_energy *e) {
+static void add_energy(strut_buffer *table, const strut_summary *s) {
+  const strut_energy *e = &s->energy;
   const struct {
     const char *name;
     double value;
@@ -229,7 +221,8 @@ static void add_energy(strut_buffer *table, const strut_energy *e) {
   };
   double most = e->moved + fabs(e->initial);
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) most = fmax(most, fabs(rows[i].value));
-  strut_buffer_add(table, "\n  energy\n");
+  strut_buffer_add(table, "\n  energy after %s, works and losses until then\n",
+                   in(s->duration, "s").text);
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
     if (!(fabs(rows[i].value) > ENERGY_ROUNDING * most)) continue; /* not in this scene */
     strut_buffer_add(table, "  %-16s %14s\n", rows[i].name, in(rows[i].value, "J").text);
@@ -246,7 +239,7 @@ char *strut_summary_table(const strut_summary *summary, const strut_scene *scene
   add_cells(&table, summary);
   add_breaks(&table, summary);
   add_contacts(&table, summary);
-  add_energy(&table, &summary->energy);
+  add_energy(&table, summary);
   add_balance(&table, summary);
   strut_c_locale_leave(locale);
   return strut_buffer_take(&table);

@@ -355,9 +355,7 @@ static void explain_balance(const strut_run *r, char *text, size_t size) {
   jump j = sudden ? find_jump(r, from - r->dt, to) : find_jump(r, begin + 1e-3 * r->dt, now);
   const char *over = describe_missed_events(r);
   if (r->options->chosen) {
-    snprintf(text, size,
-             "; the wanted accuracy applies to the measured quantities only: also measure "
-             "energy.total, or request a higher accuracy");
+    snprintf(text, size, "%s", STRUT_BALANCE_CHOSEN);
     return;
   }
   int used = sudden ? snprintf(text, size, ", most of it by t = %.6g s", to) : 0;
@@ -380,41 +378,18 @@ static void explain_balance(const strut_run *r, char *text, size_t size) {
 }
 
 static void warn_of_balance(const strut_run *r) {
-  strut_summary *s = r->summary;
   char why[400] = "";
-  if (s->balance != STRUT_BALANCE_OPEN || s->status != STRUT_OK) return;
-  explain_balance(r, why, sizeof why);
-  strut_summary_warn(
-      s, "energy_balance",
-      "the energy balance does not close: %.3g J, %.2g %% of the exchanged energy, %s%s",
-      fabs(s->energy.residual), 100.0 * fabs(s->energy.residual) / s->energy.moved,
-      s->energy.residual > 0.0 ? "appeared without a source" : "disappeared without a sink", why);
-}
-
-/* The residual of the energy balance over the net work done on the structure, in words. */
-static void describe_residual(const strut_energy *e, char *text, size_t size) {
-  double work = fabs(e->drive_work + e->load_work + e->belt_work + e->support_work);
-  double part = fabs(e->residual) / work;
-  if (!(work > 0.0) || !isfinite(part)) return;
-  const char *verdict = part < 1e-3 ? "small" : part < 1e-2 ? "moderate" : "large";
-  snprintf(text, size, "; the energy residual is %s: %.2g %% of the net work done", verdict,
-           100.0 * part);
+  if (r->summary->balance == STRUT_BALANCE_OPEN) explain_balance(r, why, sizeof why);
+  strut_balance_warn(r->summary, why);
 }
 
 /* States that the error is unknown where fixed steps pass over events. */
 static void add_caveat(const strut_run *r) {
   strut_summary *s = r->summary;
   const char *events = describe_missed_events(r);
-  char residual[160] = "";
   s->caveat[0] = '\0';
   if (!events || r->options->chosen || s->status != STRUT_OK) return;
-  if (s->balance != STRUT_BALANCE_NOT_KEPT)
-    describe_residual(&s->energy, residual, sizeof residual);
-  snprintf(
-      s->caveat, sizeof s->caveat,
-      "not known: fixed steps of %s pass over %s%s; --accuracy 1%% chooses the method and step "
-      "and states the error",
-      s->method, events, residual);
+  snprintf(s->caveat, sizeof s->caveat, "fixed steps of %s pass over %s", s->method, events);
 }
 
 void strut_run_warn(const strut_run *r) {

@@ -104,11 +104,13 @@ static void choose_steps(strut_run *r, const strut_span *span) {
   if (r->detect_steady) {
     r->period_steps = (int64_t)ceil(span->period / r->dt * (1.0 - 1e-9));
     r->dt = span->period / (double)r->period_steps;
-    r->recorded_periods = r->options->sink_count && last > 1.0 ? (int64_t)ceil(last - 1e-9) : 1;
+    r->recorded_periods = r->options->sink_count ? (int64_t)ceil(last - 1e-9) : 0;
+    r->answer_periods = e->steady.run_on > 1 ? e->steady.run_on : 1;
   }
   r->summary->step = r->dt;
   r->first = r->options->from ? llround(r->options->from->time / r->dt) : 0;
   r->steps = r->first + (int64_t)ceil(span->duration / r->dt - 1e-6);
+  r->answer = r->steps;
   r->grid = (strut_time_grid){
       .step = r->dt, .last = r->steps, .end = (double)r->first * r->dt + span->duration};
   double offset = r->options->from ? r->options->from->time - (double)r->first * r->dt : 0.0;
@@ -182,7 +184,7 @@ static strut_status prepare_run(strut_run *r) {
   r->workspace = r->method->create(r->model, r->state, &settings);
   double begin = (double)r->first * r->dt;
   int64_t marks =
-      r->recorded_periods > STRUT_LONGEST_REPEAT ? r->recorded_periods : STRUT_LONGEST_REPEAT;
+      r->answer_periods > STRUT_LONGEST_REPEAT ? r->answer_periods : STRUT_LONGEST_REPEAT;
   if (!r->workspace ||
       strut_measure_create(r->model, r->experiment, &r->grid, begin, (size_t)marks + 1,
                            &r->measure) ||
@@ -208,6 +210,8 @@ static strut_status prepare_run(strut_run *r) {
     return strut_memory_fail_model(r->model->scene, r->error);
   strut_energy_reset_load_work(r->model, r->state);
   r->initial = strut_energy_evaluate(r->model, r->state, begin);
+  if (r->options->from && r->options->from->balance && r->state->ledger)
+    strut_balance_continue(r->options->from->balance, r->state, &r->initial);
   strut_balance_begin(r->state, &r->initial, begin, r->method->evaluations, &r->balance);
   return strut_recording_create(r->model, r->experiment, &r->grid, begin, r->options->sinks,
                                 r->options->sink_count, &r->recording, r->error);
@@ -289,7 +293,8 @@ static strut_status shoot_orbit(strut_run *r) {
 
 /*
  * Samples the detector at the end of each period and once within it. Once the motion is steady, the run
- * continues for the recorded periods, at least one, over which contacts are measured.
+ * continues for at least one period, over which contacts are measured, and which ends the summary. It may go on
+ * for more that are recorded, of which the summary knows nothing: an answer does not depend on recordings.
  */
 static strut_status detect_steady_motion(strut_run *r) {
   int64_t n = r->state->step, past = (n - r->first) % r->period_steps;
@@ -314,30 +319,32 @@ static strut_status detect_steady_motion(strut_run *r) {
   strut_status status = shoot && !memory ? shoot_orbit(r) : STRUT_OK;
   if (status) return status;
   double now = (double)n * r->dt, period = r->steady.period;
-  int64_t periods = r->recorded_periods, repeats = r->steady.result.repeats;
+  int64_t periods = r->answer_periods, repeats = r->steady.result.repeats;
   if (r->measure.quantities && periods < repeats)
     periods = repeats; /* a window over the whole orbit */
-  r->steps = n + periods * r->period_steps;
+  int64_t recorded = r->recorded_periods, all = recorded > periods ? recorded : periods;
+  r->answer = n + periods * r->period_steps;
+  r->steps = n + all * r->period_steps;
   r->grid.last = r->measure.grid.last = r->recording.grid.last = -1;
   strut_measure_window(r->model, r->state, now, period, (size_t)periods, &r->measure);
-  if (r->experiment->output_last > 0.0) r->recording.start = now;
+  if (recorded > 0) r->recording.start = now + (double)(all - recorded) * period;
   return STRUT_OK;
 }
 
 /* ---- stepping ---- */
 
 /*
- * Finds the step at which to stop next: a sample, the window, a period, the end, or the next check.
+ * Finds the step at which to look at the state next: the window, a period, the end, or a check. It does not
+ * depend on what is recorded.
  */
-static int64_t find_next_stop(const strut_run *r, int64_t chunk) {
-  int64_t n = r->state->step, stop = n + chunk;
-  int64_t sample = strut_recording_next_step(&r->recording);
+static int64_t find_next_check(const strut_run *r, int64_t chunk) {
+  int64_t n = r->state->step, stop = n - (n - r->first) % chunk + chunk;
   int64_t window = strut_measure_first_step(&r->measure);
   int64_t whole = strut_time_grid_rest(&r->grid) > 0.0 ? r->steps - 1 : r->steps;
   if (stop > whole) stop = n < whole ? whole : r->steps;
-  if (sample > n && stop > sample) stop = sample;
   if (window > n && stop > window) stop = window;
   if (r->balance.next > n && stop > r->balance.next) stop = r->balance.next;
+  if (r->step_monitor.next > n && stop > r->step_monitor.next) stop = r->step_monitor.next;
   if (!r->detect_steady) return stop;
   int64_t period = r->period_steps, past = (n - r->first) % period, end = n - past + period;
   int64_t middle = n - past + asymmetric_phase(period);
@@ -411,6 +418,8 @@ void strut_run_step(strut_run *r, int64_t stop) {
   strut_subnormals_restore(before);
 }
 
+static void fill_summary(strut_run *r, strut_status status);
+
 static strut_status sample_balance(strut_run *r) {
   if (!r->state->ledger) return STRUT_OK;
   strut_balance_sample(r->model, r->state, &r->initial,
@@ -423,27 +432,30 @@ strut_status strut_run_sample(strut_run *r, int64_t *stop) {
   const strut_run_options *o = r->options;
   int64_t n = r->state->step;
   int32_t lost = strut_run_find_lost_node(r->model, r->state);
-  strut_status limit_status = strut_run_check_step_limit(r);
+  bool due = n >= r->check || r->state->trouble;
+  strut_status limit_status = due ? strut_run_check_step_limit(r) : STRUT_OK;
   assert(r->ready && n >= r->first);
   *stop = n;
   if (limit_status) return limit_status;
-  strut_status states_status = strut_run_check_states(r);
+  strut_status states_status = due ? strut_run_check_states(r) : STRUT_OK;
   if (states_status) return states_status;
-  if (lost >= 0) return strut_run_fail_lost_node(r, lost);
+  if (lost >= 0 && due) return strut_run_fail_lost_node(r, lost);
   if (r->model->scene->collision_count) strut_run_watch_collisions(r);
   strut_status collapse_status = strut_run_check_collapse(r);
   if (collapse_status) return collapse_status;
-  strut_status balance_status = n >= r->balance.next ? sample_balance(r) : STRUT_OK;
+  bool balance_due = n == r->answer || (n >= r->balance.next && n < r->answer);
+  strut_status balance_status = balance_due ? sample_balance(r) : STRUT_OK;
   if (balance_status) return balance_status;
   strut_status steady_status = r->detect_steady ? detect_steady_motion(r) : STRUT_OK;
   if (steady_status) return steady_status;
   if (n == strut_measure_first_step(&r->measure))
     strut_measure_begin(r->model, r->state, &r->measure);
-  if (n == strut_recording_next_step(&r->recording) ||
-      (n >= r->steps && strut_recording_lacks(&r->recording, n))) {
+  if (lost < 0 && (n == strut_recording_next_step(&r->recording) ||
+                   (n >= r->steps && strut_recording_lacks(&r->recording, n)))) {
     strut_status status = strut_recording_sample(r->model, r->state, &r->recording, r->error);
     if (status) return status;
   }
+  if (n == r->answer) fill_summary(r, STRUT_OK);
   if (n >= r->steps) return STRUT_OK;
   if (o->interrupt && *o->interrupt)
     return strut_fail(r->error, STRUT_INTERRUPTED, "interrupted at t = %.9g s", strut_run_time(r));
@@ -457,7 +469,9 @@ strut_status strut_run_sample(strut_run *r, int64_t *stop) {
     o->progress(o->progress_context, (double)(n - r->first) / (double)(r->steps - r->first));
     r->progress_time = strut_run_clock();
   }
-  *stop = find_next_stop(r, r->chunk);
+  int64_t sample = strut_recording_next_step(&r->recording);
+  r->check = find_next_check(r, r->chunk);
+  *stop = sample > n && sample < r->check ? sample : r->check;
   return STRUT_OK;
 }
 
@@ -521,7 +535,7 @@ static void fill_summary(strut_run *r, strut_status status) {
   fill_contacts(r);
   s->status = status;
   s->steps = r->state->step - r->first;
-  s->duration = (double)(s->steps + r->shooting_periods * r->period_steps) * r->dt;
+  s->duration = (double)s->steps * r->dt;
   if (r->state->step == r->grid.last)
     s->duration = strut_experiment_span(r->experiment, r->model->scene).duration;
   s->force_evaluations = r->state->evaluations;
@@ -537,11 +551,12 @@ static void fill_summary(strut_run *r, strut_status status) {
   measure_elements(r);
   list_breaks(r);
   if (r->state->ledger) {
-    sample_balance(r);
+    (void)sample_balance(r);
     s->balance = strut_balance_judge(&s->energy, s->steps);
   }
   strut_run_warn(r);
   store_end_state(r);
+  r->filled = true;
 }
 
 strut_status strut_run_begin(const strut_model *model, const strut_experiment *experiment,
@@ -568,9 +583,8 @@ strut_status strut_run_end(strut_run *r, strut_status status) {
   strut_summary *summary = r->summary;
   strut_error *error = r->error;
   if (r->ready) {
+    if (status || !r->filled) fill_summary(r, status); /* where the run ended early */
     summary->wall_time = strut_run_clock() - r->start_time;
-    if (!status) status = sample_balance(r);
-    fill_summary(r, status);
     strut_error first = *error;
     strut_status written = strut_recording_finish(&r->recording, status, error);
     if (written && (!status || status == STRUT_DIVERGED || status == STRUT_INTERRUPTED))

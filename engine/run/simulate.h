@@ -19,6 +19,8 @@ typedef struct strut_snapshot {
   double time;    /* time of drives and loads [s] */
   double refined; /* refinement after a touchdown lasts this much longer [s] */
   double *memory; /* (strut_memory_count of the model) what elements remember; NULL: nothing */
+  const strut_energy *balance; /* up to there, which that of a run from there continues; not stored;
+                                  NULL: works and losses begin anew */
 } strut_snapshot;
 
 /** Options of a run. Zero: obey the step limit, no callbacks, no recording. */
@@ -31,7 +33,7 @@ typedef struct strut_run_options {
       const char *
           name); /* a run in several parts begins another, such as "checking by adaptive"; may be NULL */
   void *progress_context; /* of both */
-  strut_sink **sinks;     /* (sink_count) */
+  strut_sink **sinks;     /* (sink_count); the summary does not depend on what is recorded */
   size_t sink_count;
   const strut_snapshot *
       from; /* start instead of that of the scene; its time becomes a whole number of steps in a run that stops when it is steady; may be NULL */

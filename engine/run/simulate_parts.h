@@ -36,9 +36,13 @@ typedef struct strut_run {
   strut_time_grid grid;
   int64_t first, steps;     /* first step number; last step number */
   int64_t period_steps;     /* steps per drive period; only where steady motion is detected */
-  int64_t recorded_periods; /* periods to run and record once the motion is steady */
+  int64_t answer;           /* step at which the summary is filled; later ones are recorded only */
+  bool filled;              /* it has been */
+  int64_t answer_periods;   /* least periods of the summary once the motion is steady */
+  int64_t recorded_periods; /* and those that are recorded */
   int64_t shooting_periods; /* drive periods run by shooting */
   int64_t chunk;            /* most steps between two samples */
+  int64_t check;            /* step of the next check: a stop that nothing recorded asked for */
   double start_time,
       progress_time; /* wall clock at the first step and at the latest progress report [s] */
   bool ready;        /* preparation succeeded: the first step may be made */

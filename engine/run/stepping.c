@@ -112,7 +112,7 @@ static void refresh(strut_stepping *s) {
 /* Checks the state as a run does between its steps. */
 static strut_status check(strut_stepping *s) {
   int64_t stop;
-  s->checked = s->run.state->step;
+  s->checked = s->run.check = s->run.state->step;
   return strut_run_sample(&s->run, &stop);
 }
 

@@ -69,6 +69,7 @@ typedef struct strut_steady {
   double
       creep; /* a motion without a period that stays slower ends as creeping [m/s]; 0: none does */
   int64_t creep_after; /* but not within so many periods */
+  int64_t run_on;      /* least periods of a steady run's summary; 0: one */
 } strut_steady;
 
 /**

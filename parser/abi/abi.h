@@ -66,6 +66,7 @@ extern "C" {
 #define STRUTLIB_FILE_TROUBLE 8   /* a file could not be read or written */
 #define STRUTLIB_NO_MEMORY 9      /* memory is out */
 #define STRUTLIB_INTERRUPTED 10   /* by strutlib_interrupt; what there is so far is returned */
+#define STRUTLIB_INACCURATE 11    /* of the program alone: less accurate than requested */
 
 /** A scene as it was opened, with its settings: constant. */
 typedef struct strutlib_scene strutlib_scene;
@@ -97,7 +98,7 @@ STRUTLIB_API void strutlib_release(char *text);
 STRUTLIB_API const char *strutlib_status_name(int status);
 /** A status as a few words, such as "the scene is not valid". Never NULL. */
 STRUTLIB_API const char *strutlib_status_text(int status);
-/** The program's exit code for a status: 0, 1, 2, 3, 4 or 130. */
+/** The program's exit code for a status: 0, 1, 2, 3, 4, 5 or 130. */
 STRUTLIB_API int strutlib_exit_code(int status);
 
 /* ---- errors ---- */

@@ -27,12 +27,13 @@ _Static_assert(STRUTLIB_OK == (int)STRUT_OK && STRUTLIB_USAGE == (int)STRUT_USAG
                    STRUTLIB_FILE_TROUBLE == (int)STRUT_FILE_TROUBLE &&
                    STRUTLIB_NO_MEMORY == (int)STRUT_NO_MEMORY &&
                    STRUTLIB_INTERRUPTED == (int)STRUT_INTERRUPTED &&
-                   STRUTLIB_INTERRUPTED + 1 == (int)STRUT_STATUS_COUNT,
+                   STRUTLIB_INACCURATE == (int)STRUT_INACCURATE &&
+                   STRUTLIB_INACCURATE + 1 == (int)STRUT_STATUS_COUNT,
                "the header's numbers are those of strut_status");
 
 static const char *const status_names[] = {
     "ok",       "usage",      "bad_scene",    "diverged",  "step_too_large", "not_settled",
-    "singular", "work_limit", "file_trouble", "no_memory", "interrupted"};
+    "singular", "work_limit", "file_trouble", "no_memory", "interrupted",    "inaccurate"};
 
 static bool is_status(int status) { return status >= 0 && status < (int)STRUT_STATUS_COUNT; }
 

@@ -335,16 +335,21 @@ static strut_status print_comparison(const strut_arguments *arguments,
   return strut_print_block(text);
 }
 
-/* Repeats on stderr what could not be computed. */
+/* Repeats on stderr what could not be computed, or not as accurately as requested. */
 static strut_status report_failures(const strut_compare *result) {
   strut_status status = STRUT_OK;
   for (size_t i = 0; i < result->count; i++) {
     const strut_compare_column *c = &result->columns[i];
     strut_error error = {0};
+    if (c->inaccurate) {
+      fprintf(stderr, "strut: warning: %s: the velocity is less accurate than requested: %s\n",
+              c->input->label, c->how);
+      if (status == STRUT_OK) status = STRUT_INACCURATE;
+    }
     if (c->status == STRUT_OK) continue;
     strut_fail(&error, c->status, "%s: %s", c->input->label, c->message);
     strut_print_error(&error);
-    if (status == STRUT_OK) status = c->status;
+    if (status == STRUT_OK || status == STRUT_INACCURATE) status = c->status;
   }
   return status;
 }

@@ -182,7 +182,9 @@ const strut_command strut_command_evaluate = {
         "The axes of a STUDY do not matter; its other keys do.\n"
         "With --dakota, after MODEL: PARAMETERS RESULTS, as DAKOTA calls a driver. The response\n"
         "descriptors name the results; a failed point is written as FAIL.\n"
-        "\nExit code: 2 if a request could not be understood, else 3 if one failed, else 0;\n"
+        "\nExit code: 2 if a request could not be understood, else 3 if one failed, else 5 if one "
+        "is\n"
+        "less accurate than requested, which its result accuracy_kept says, else 0;\n"
         "with --dakota 0 where RESULTS says FAIL.\n",
     .options = options,
     .run = run_evaluate,

@@ -33,10 +33,7 @@ static strut_status run_merge(const strut_arguments *arguments) {
     if (merged.shards) printf(" of %lld shards", (long long)merged.shards);
     printf("\n");
   }
-  if (!merged.failed) return STRUT_OK;
-  fprintf(stderr, "strut: %lld of %lld points failed: see the columns status and message\n",
-          (long long)merged.failed, (long long)merged.points);
-  return STRUT_DIVERGED;
+  return strut_sweep_judge(merged.points, merged.failed, merged.inaccurate);
 }
 
 const strut_command strut_command_merge = {
@@ -48,6 +45,8 @@ const strut_command strut_command_merge = {
         "same\n"
         "study, model and version of strut. DIR/table.csv is then byte for byte the table of an\n"
         "undivided sweep; otherwise the command reports what is missing.\n"
-        "\nExit code: 3 if points of the study failed, 4 if shards or points are missing.\n",
+        "\nExit code: 3 if points of the study failed, 4 if shards or points are missing, else 5 "
+        "if\n"
+        "points are less accurate than requested.\n",
     .run = run_merge,
 };

@@ -147,6 +147,7 @@ static strut_status run_model(const strut_arguments *arguments, const strut_setu
     if (status == STRUT_OK) status = printed;
     if (written == STRUT_OK) written = make_film(pictures, model);
     if (written != STRUT_OK) status = written;
+    if (status == STRUT_OK && strut_summary_is_inaccurate(&summary)) status = STRUT_INACCURATE;
   }
   strut_summary_free(&summary);
   free_results(&keep);
@@ -200,6 +201,9 @@ const strut_command strut_command_run = {
         "instants (snapshots), or curves of everything recorded (curves). A run that diverged is\n"
         "drawn up to that point.\n"
         "--animate makes a film of the recorded motion with the program ffmpeg.\n"
+        "A result that is less accurate than requested is printed all the same, with a warning "
+        "and\n"
+        "exit code 5.\n"
         "Ctrl-C stops the run and keeps the results so far; a second Ctrl-C kills it.\n",
     .options = options,
     .run = run_run,

@@ -231,12 +231,8 @@ static strut_status complete_sweep(const strut_arguments *arguments, strut_sweep
   if (!status && !shard.count)
     status = strut_sweep_sensitivity_complete(&study->plan, slots, arguments->output,
                                               !arguments->quiet && !arguments->json);
-  if (status || !state->failed) return status;
-  fprintf(stderr,
-          "strut: %lld of %lld points failed: see the table's columns status and "
-          "message\n",
-          (long long)state->failed, (long long)state->points);
-  return STRUT_DIVERGED;
+  return status ? status
+                : strut_sweep_judge(state->points, state->failed, strut_slots_inaccurate(slots));
 }
 
 static strut_status compute_points(const strut_arguments *arguments, strut_sweep_study *study,
@@ -269,7 +265,7 @@ static strut_status compute_points(const strut_arguments *arguments, strut_sweep
   strut_sweep_print_warnings(&state);
   strut_print_failure(status, &error);
   if (!status) status = complete_sweep(arguments, study, shard, slots, refinement, &state);
-  if (others && (!status || status == STRUT_DIVERGED))
+  if (others && (!status || status == STRUT_DIVERGED || status == STRUT_INACCURATE))
     fprintf(stderr,
             "strut: %lld points of other shards decide what is refined next: run this shard again "
             "when they are done\n",
@@ -378,7 +374,11 @@ const strut_command strut_command_sweep = {
         "threads. Remove points.slots to start afresh.\n"
         "An interrupted sweep leaves table-partial.csv, the rows that are done.\n"
         "A failed point is a row that gives the reason; the exit code is then 3, and only --retry\n"
-        "recomputes it. Ctrl-C stops after a moment.\n",
+        "recomputes it. Where an accuracy is requested, the column accuracy_kept says of each "
+        "point\n"
+        "whether it was reached; the exit code is 5 if it was not everywhere. Ctrl-C stops after "
+        "a\n"
+        "moment.\n",
     .options = options,
     .run = run_sweep,
 };

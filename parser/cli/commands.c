@@ -93,7 +93,7 @@ void strut_program_help(void) {
       "\n'strut help COMMAND' explains a command; 'strut --version' prints the version.\n"
       "MODEL is a file in strut's language (see 'strut keys'), or - for standard input.\n\n"
       "Exit codes: 0 success, 1 wrong usage, 2 invalid scene, 3 computation failed,\n"
-      "4 file or memory trouble, 130 interrupted.\n");
+      "4 file or memory trouble, 5 less accurate than requested, 130 interrupted.\n");
 }
 
 static strut_status print_help(const strut_arguments *arguments) {

@@ -22,6 +22,7 @@ static const strut_evaluated *find_result(const strut_evaluation *evaluation,
     const strut_evaluated *r = &evaluation->results[i];
     if (r->word) continue;
     if (strcmp(r->name, file->functions[function].name) == 0) return r;
+    if (strcmp(r->name, STRUT_KEPT_COLUMN) == 0) continue; /* it is there without being asked for */
     only = r;
     numbers++;
   }
@@ -86,6 +87,8 @@ static strut_status compute(const strut_evaluate_task *task, const strut_dakota_
   strut_evaluation evaluation;
   strut_status status = strut_evaluate(task->evaluator, &request->study, setup, &evaluation);
   if (status) return status;
+  for (size_t i = 0; i < evaluation.warning_count; i++)
+    fprintf(stderr, "strut: warning: %s\n", evaluation.warnings[i]);
   if (!evaluation.status) return list_values(&evaluation, file, path, text);
   fprintf(stderr, "strut: %s\n", evaluation.message);
   return STRUT_DIVERGED;

@@ -27,8 +27,8 @@ typedef struct exchange {
   uint32_t line;
   FILE *to;
   strut_file file;
-  bool misunderstood, failed; /* some request was */
-  strut_status status;        /* what ends the loop early */
+  bool misunderstood, failed, inaccurate; /* some request was */
+  strut_status status;                    /* what ends the loop early */
   strut_error error;
 } exchange;
 
@@ -135,7 +135,9 @@ static void refuse(exchange *x, const strut_request *request, strut_status statu
 static void send_evaluation(exchange *x, const strut_request *request,
                             const strut_evaluation *evaluation) {
   strut_json json = strut_json_begin();
-  begin_answer(&json, x, request, evaluation->status, strut_status_text(evaluation->status));
+  strut_status status = evaluation->inaccurate ? STRUT_INACCURATE : evaluation->status;
+  begin_answer(&json, x, request, status, strut_status_text(status));
+  x->inaccurate = x->inaccurate || evaluation->inaccurate;
   if (evaluation->status) {
     strut_json_text(&json, json.root, "message", evaluation->message);
     x->failed = true;
@@ -232,7 +234,10 @@ static strut_status close_streams(exchange *x) {
   if (x->from > STDIN_FILENO) close(x->from);
   strut_release(x->text);
   if (x->status) return x->status;
-  return x->misunderstood ? STRUT_BAD_SCENE : x->failed ? STRUT_DIVERGED : STRUT_OK;
+  return x->misunderstood ? STRUT_BAD_SCENE
+         : x->failed      ? STRUT_DIVERGED
+         : x->inaccurate  ? STRUT_INACCURATE
+                          : STRUT_OK;
 }
 
 strut_status strut_evaluate_lines(const strut_evaluate_task *task) {

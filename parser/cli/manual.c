@@ -135,6 +135,7 @@ static void print_exit_codes(void) {
               {"2", "invalid scene"},
               {"3", "computation failed"},
               {"4", "file or memory trouble"},
+              {"5", "computed, but less accurate than requested"},
               {"130", "interrupted"}};
   strut_manual_heading("SH", "EXIT STATUS");
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {

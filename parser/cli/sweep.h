@@ -111,6 +111,9 @@ void strut_sweep_print_warnings(const strut_sweep_state *state);
 /** Prints the final report on stdout. `table`: its path. */
 strut_status strut_sweep_print_end(const strut_sweep_state *state, const char *table, bool json);
 
+/** Prints how many points failed or are inaccurate on stderr; the status that follows from it. */
+strut_status strut_sweep_judge(int64_t points, int64_t failed, int64_t inaccurate);
+
 /** Prints a line, or an object of a JSON list, for each started or missing shard. */
 strut_status strut_sweep_print_shards(const char *directory, const strut_shards_found *found,
                                       strut_arena *arena, bool json);

@@ -125,10 +125,9 @@ static strut_status complete(const strut_arguments *arguments, strut_sweep_study
   if (!status) status = strut_sweep_figures_draw(plan, arguments->output, table, NULL);
   if (!status) status = print_report(arguments, plan, slots, report);
   strut_release(report);
-  if (status || !strut_slots_failed(slots)) return status;
-  fprintf(stderr, "strut: %lld of %lld points failed: see the table's columns status and message\n",
-          (long long)strut_slots_failed(slots), (long long)plan->points);
-  return STRUT_DIVERGED;
+  return status ? status
+                : strut_sweep_judge(plan->points, strut_slots_failed(slots),
+                                    strut_slots_inaccurate(slots));
 }
 
 strut_status strut_sweep_follow(const strut_arguments *arguments, strut_sweep_study *study,

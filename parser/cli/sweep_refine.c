@@ -159,8 +159,9 @@ static strut_slots **open_shards(const char *directory, const strut_shards_found
   return slots;
 }
 
+/* bad: failed and inaccurate points. */
 static strut_status merge_shards(const strut_sweep_study *study, const char *directory,
-                                 strut_arena *arena, int64_t *rows, int64_t *failed,
+                                 strut_arena *arena, int64_t *rows, int64_t bad[2],
                                  strut_error *error) {
   strut_shards_found found = {0};
   strut_refinement *r = NULL;
@@ -177,7 +178,8 @@ static strut_status merge_shards(const strut_sweep_study *study, const char *dir
                     STRUT_STUDY_HASH) != 0)
       status = strut_fail(error, STRUT_USAGE, "shard %zu of %zu is of another study", k, count);
     if (!status) strut_refinement_learn(r, slots[k]);
-    if (!status) *failed += strut_slots_failed(slots[k]);
+    if (!status) bad[0] += strut_slots_failed(slots[k]);
+    if (!status) bad[1] += strut_slots_inaccurate(slots[k]);
   }
   int64_t unknown = status ? 0 : strut_refinement_choose(r);
   if (unknown)
@@ -196,7 +198,7 @@ strut_status strut_sweep_refine_merge(const strut_arguments *arguments, bool *me
   strut_arena arena = {0};
   strut_error error = {0};
   strut_arguments inner = *arguments;
-  int64_t rows = 0, failed = 0;
+  int64_t rows = 0, bad[2] = {0};
   const char *directory = arguments->model;
   inner.model = strut_arena_format(&arena, "%s/study.yaml", directory);
   *merged = false;
@@ -221,15 +223,11 @@ strut_status strut_sweep_refine_merge(const strut_arguments *arguments, bool *me
   error = (strut_error){0};
   if (*merged) status = strut_sweep_study_open(&inner, &study);
   if (*merged && !status)
-    status = strut_print_failure(merge_shards(&study, directory, &arena, &rows, &failed, &error),
-                                 &error);
+    status =
+        strut_print_failure(merge_shards(&study, directory, &arena, &rows, bad, &error), &error);
   if (*merged && !status && !arguments->quiet)
     printf("%s/table.csv: %lld points\n", directory, (long long)rows);
-  if (*merged && !status && failed) {
-    fprintf(stderr, "strut: %lld of %lld points failed: see the columns status and message\n",
-            (long long)failed, (long long)rows);
-    status = STRUT_DIVERGED;
-  }
+  if (*merged && !status) status = strut_sweep_judge(rows, bad[0], bad[1]);
   if (*merged) strut_sweep_study_close(&study);
   strut_arena_free(&arena);
   return status;

@@ -223,6 +223,19 @@ strut_status strut_sweep_print_end(const strut_sweep_state *state, const char *t
   return print_buffer(&b);
 }
 
+strut_status strut_sweep_judge(int64_t points, int64_t failed, int64_t inaccurate) {
+  if (failed)
+    fprintf(stderr,
+            "strut: %lld of %lld points failed: see the table's columns status and message\n",
+            (long long)failed, (long long)points);
+  if (inaccurate)
+    fprintf(stderr,
+            "strut: %lld of %lld points are less accurate than requested: see the table's "
+            "column " STRUT_KEPT_COLUMN "\n",
+            (long long)inaccurate, (long long)points);
+  return failed ? STRUT_DIVERGED : inaccurate ? STRUT_INACCURATE : STRUT_OK;
+}
+
 /* ---- shards ---- */
 
 static strut_status add_shard(strut_buffer *b, const char *directory, strut_shard shard,

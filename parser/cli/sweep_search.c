@@ -202,12 +202,17 @@ static strut_status complete(const strut_arguments *arguments, strut_sweep_study
   if (!status && (!arguments->quiet || arguments->json))
     status = strut_sweep_search_report(&study->plan, result, state, table, arguments->json);
   if (status) return status;
+  bool found = false;
   for (size_t i = 0; i < result->worth_count; i++)
-    if (result->outcomes[result->worths[i].best].best.violation <= 0.0) return STRUT_OK;
-  for (size_t i = 0; i < result->front_count; i++)
-    if (result->fronts[i].count > 0) return STRUT_OK;
-  fputs("strut: no point was found that is computed and meets all conditions\n", stderr);
-  return STRUT_DIVERGED;
+    found = found || result->outcomes[result->worths[i].best].best.violation <= 0.0;
+  for (size_t i = 0; i < result->front_count; i++) found = found || result->fronts[i].count > 0;
+  if (!found) {
+    fputs("strut: no point was found that is computed and meets all conditions\n", stderr);
+    return STRUT_DIVERGED;
+  }
+  if (!best || !strut_slots_is_inaccurate(slots, best->worst)) return STRUT_OK;
+  fputs("strut: the best point is less accurate than requested\n", stderr);
+  return STRUT_INACCURATE;
 }
 
 strut_status strut_sweep_search_status(strut_slots *slots, const char *directory, bool json) {

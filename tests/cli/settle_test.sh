@@ -128,7 +128,7 @@ output: {last: 5}
 END
 expect 0 run cell.yaml --json
 evaluations=$(jq .settle.evaluations out)
-expect 0 run cell.yaml --accuracy 5% --json
+expect 5 run cell.yaml --accuracy 5% --json
 [ "$(jq .settle.evaluations out)" = "$evaluations" ] || fail "it settled in another way"
 [ "$evaluations" -lt 50000 ] || fail "settling took $evaluations evaluations"
 jq -e '.force_evaluations + .accuracy.check_evaluations < 1e7' out >/dev/null ||

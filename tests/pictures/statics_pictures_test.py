@@ -91,7 +91,7 @@ crawler = os.path.join(root, "models/crawler/crawler.yaml")
 # Equilibria: those that stand, by energy, each to the same scale where it rests on the ground.
 found = json.loads(run("equilibria", crawler, "--json", "--plot", "e.svg"))["equilibria"]
 standing = [e for e in found if e["outcome"] == "stands"]
-standing.sort(key=lambda e: e["rest"]["energy"])
+standing.sort(key=lambda e: e["energy"])
 members, names = members_of(crawler)
 _, _, paths = read("e.svg")
 centres = circles(paths)
@@ -100,7 +100,7 @@ scales = []
 remaining = list(standing)
 for k in range(len(centres) // 5):
     drawn = centres[5 * k:5 * k + 5]
-    fits = [e for e in remaining if abs(e["rest"]["energy"] - remaining[0]["rest"]["energy"]) < 1e-6]
+    fits = [e for e in remaining if abs(e["energy"] - remaining[0]["energy"]) < 1e-6]
     # Mirror images have one energy: the card is one of them.
     best = min(fits, key=lambda e: sum(
         math.dist((d[0] - drawn[0][0], drawn[0][1] - d[1]),

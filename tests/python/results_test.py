@@ -63,6 +63,20 @@ class Runs(unittest.TestCase):
                         mine = recorded(run, path.stem, column)
                         np.testing.assert_array_equal(mine, numbers, f"{path.name}: {column}")
 
+    def test_what_is_recorded_changes_no_number(self):
+        for name in ("crawler/crawler", "topologies/jib"):
+            with self.subTest(name):
+                scene, options = strut.load(MODELS / f"{name}.yaml"), {"accuracy": "1 %", "steady": "0.5 %"}
+                run = scene.run(**options)
+                self.assertEqual(scene.run(record="no", **options).json, run.json)
+                keep = ["velocity", "duration", "work", "positions"]
+                table = scene.sweep(keep=keep, **options)
+                self.assertEqual(table["accuracy_kept"][0], 1)
+                self.assertEqual(table["duration"][0], run.duration)
+                self.assertEqual(table["drive_work"][0], run.energy.drive_work)
+                node = scene.names("nodes")[0]
+                self.assertEqual(table[f"x_{node}"][0], run.nodes[node].position[0])
+
 
 def recorded(run: strut.Run, file: str, column: str):
     """The array of a column such as "n1.vx [m/s]" of nodes.csv."""

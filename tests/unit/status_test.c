@@ -14,7 +14,7 @@ static void test_exit_codes_are_as_documented(void **unused) {
   } expected[] = {{STRUT_OK, 0},        {STRUT_USAGE, 1},          {STRUT_BAD_SCENE, 2},
                   {STRUT_DIVERGED, 3},  {STRUT_STEP_TOO_LARGE, 3}, {STRUT_NOT_SETTLED, 3},
                   {STRUT_SINGULAR, 3},  {STRUT_WORK_LIMIT, 3},     {STRUT_FILE_TROUBLE, 4},
-                  {STRUT_NO_MEMORY, 4}, {STRUT_INTERRUPTED, 130}};
+                  {STRUT_NO_MEMORY, 4}, {STRUT_INTERRUPTED, 130},  {STRUT_INACCURATE, 5}};
   assert_int_equal(sizeof expected / sizeof expected[0], STRUT_STATUS_COUNT);
   for (size_t i = 0; i < STRUT_STATUS_COUNT; i++)
     assert_int_equal(strut_status_exit_code(expected[i].status), expected[i].code);

@@ -20,11 +20,8 @@ static const double *drawn_shape(const strut_equilibria *all, size_t i) {
   return on_ground(e) && e->ends_as == (int32_t)i ? e->rest : e->point.q;
 }
 
-/* Energy of the equilibrium at rest [J]. */
-static double drawn_energy(const strut_equilibria *all, size_t i) {
-  const strut_equilibrium *e = &all->list[i];
-  return on_ground(e) && e->ends_as == (int32_t)i ? e->rest_energy : e->energy;
-}
+/* The energy that all outputs list of an equilibrium [J]. */
+static double drawn_energy(const strut_equilibria *all, size_t i) { return all->list[i].energy; }
 
 /* The energy ladder: states as levels, with the barriers between them. */
 
@@ -156,7 +153,8 @@ typedef struct plan {
   const char *title;
   const strut_model *model;
   const strut_equilibria *all;
-  size_t *standing, standing_count; /* stable on the ground, by energy */
+  size_t *standing, standing_count; /* those that stand, and floppy ones, by energy */
+  size_t floppy_count;              /* of these */
   size_t *aside, aside_count;       /* further stable ones, by energy */
   size_t cards, columns, small, small_columns;
   double width, size[2], cell[2], small_cell[2], force_limit, contact_limit, largest_energy;
@@ -193,6 +191,7 @@ static bool choose_equilibria(plan *p) {
     if (!is_stable(e)) continue;
     if (e->outcome == STRUT_OUTCOME_STANDS || e->outcome == STRUT_OUTCOME_FLOPPY) {
       p->standing[p->standing_count++] = i;
+      p->floppy_count += e->outcome == STRUT_OUTCOME_FLOPPY;
     } else {
       p->aside[p->aside_count++] = i;
     }
@@ -366,9 +365,11 @@ static strut_status draw_figure(plan *p, strut_canvas *canvas) {
   strut_font note = {.size = 8, .colour = strut_grey(0.3)};
   double inner = p->width - 2 * EDGE, y = EDGE + TITLE;
 
-  snprintf(text, sizeof text, "%zu stable equilibri%s%s%s", p->standing_count,
-           p->standing_count == 1 ? "um" : "a",
-           p->model->scene->ground.present ? " on the ground" : "",
+  size_t stable = p->standing_count - p->floppy_count;
+  char floppy[40] = "";
+  if (p->floppy_count) snprintf(floppy, sizeof floppy, ", %zu floppy", p->floppy_count);
+  snprintf(text, sizeof text, "%zu stable equilibri%s%s%s%s", stable, stable == 1 ? "um" : "a",
+           p->model->scene->ground.present ? " on the ground" : "", floppy,
            p->cards < p->standing_count ? ", the lowest are drawn" : "");
   strut_draw_heading(canvas, EDGE, p->title, text);
   y = draw_cards(p, canvas, y, &good);

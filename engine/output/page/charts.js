@@ -69,8 +69,10 @@
       kinds.push({ name: "member force", unit: "N", curves: data.members.map((m, j) => ({
         name: m.name, at: column(motion.force, data.members.length, j) })) });
     if (motion.angle)
-      kinds.push({ name: "angle", unit: "rad", curves: data.hinges.map((h, i) => ({
-        name: h.name, at: column(motion.angle, data.hinges.length, i) })) });
+      kinds.push({ name: "angle", unit: "deg", curves: data.hinges.map((h, i) => {
+        const radians = column(motion.angle, data.hinges.length, i);
+        return { name: h.name, at: (frame) => radians(frame) * (180 / Math.PI) };
+      }) });
     if (motion.moment)
       kinds.push({ name: "moment", unit: "N m", curves: data.hinges.map((h, i) => ({
         name: h.name, at: column(motion.moment, data.hinges.length, i) })) });
@@ -193,7 +195,7 @@
     function add(kind) {
       const box = document.createElement("div"), title = document.createElement("div");
       const plot = document.createElement("div"), cursor = document.createElement("div");
-      const holder = document.createElement("div"), prefix = kind.unit === "m^2"
+      const holder = document.createElement("div"), prefix = ["m^2", "deg"].includes(kind.unit)
         ? { text: "", factor: 1 } : prefixOf(kind.curves, motion.frames);
       const chart = { kind, box, plot, cursor };
       chart.scaled = kind.curves.map((c) => ({ at: (f) => c.at(f) / prefix.factor }));

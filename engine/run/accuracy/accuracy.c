@@ -131,6 +131,7 @@ strut_status strut_simulate_accurately(const strut_model *model, const strut_exp
   summary->status = status;
   summary->settle_time = start.time, summary->settle = start.how;
   strut_summary_warn_of_start(summary);
+  strut_summary_warn_of_accuracy(summary);
   strut_settled_start_free(&start);
   return status;
 }

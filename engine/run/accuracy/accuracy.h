@@ -48,6 +48,14 @@ typedef struct strut_accuracy {
   bool stiff; /* the coarse method's step is bounded by stability, not by the period or the run */
 } strut_accuracy;
 
+/**
+ * Is a wanted error kept? Only where the expected one is an estimate that can be trusted
+ * (`confirmed`) and within it, in the same unit.
+ */
+static inline bool strut_accuracy_is_kept(bool confirmed, double expected, double wanted) {
+  return confirmed && expected <= wanted;
+}
+
 /** The shortest period or duration of a signal [s]; HUGE_VAL: none. */
 double strut_accuracy_signal_time(const strut_scene *scene);
 /** Announces the next part of the work to the progress display. */

@@ -199,6 +199,8 @@ static strut_experiment refine_experiment(const ladder *l, int k) {
   double kept = (MOST_MOMENTS - 1) * l->moment;
   e.output_every = l->moment;
   e.output_last = kept < span.duration ? kept / (span.period > 0.0 ? span.period : 1.0) : 0.0;
+  e.steady.run_on =
+      (int64_t)ceil(e.output_last - 1e-9); /* of the answer too, whatever is recorded */
   return e;
 }
 
@@ -349,12 +351,12 @@ static void judge_agreement(ladder *l) {
   /* steps of one method must agree twice: a single agreement may be chance */
   bool once = l->a->single_method && l->runs < 3;
   bool apart = l->runs == 2 && l->distance > fmin(SAME_MOTION_OF_TWO * wanted, MOST_APART_OF_TWO);
-  l->kept = !once && !apart && l->expected <= enough * wanted;
+  l->kept = strut_accuracy_is_kept(!once && !apart, l->expected, enough * wanted);
   if (l->kept || l->same_motion) return;
   l->expected = estimate_mean_error(l);
   bool zero = !l->now->s.measured_count && l->now->s.velocity_zero && l->before->s.velocity_zero;
   if (zero) l->expected = 0.0;
-  l->kept = zero || l->expected <= ENOUGH_OF_MEANS * wanted;
+  l->kept = strut_accuracy_is_kept(true, l->expected, ENOUGH_OF_MEANS * wanted);
 }
 
 static bool may_refine(const ladder *l) {
@@ -441,7 +443,8 @@ static void report_quantities(const ladder *l) {
   for (size_t i = 0; i < s->measured_count; i++) {
     strut_measured *m = &s->measured[i];
     m->expected = l->runs > 1 ? choose_margin(l) * factor * l->difference[i] : (double)NAN;
-    m->kept = l->kept || (l->same_motion && m->expected <= tolerated_error(l, m, i));
+    m->kept =
+        l->kept || strut_accuracy_is_kept(l->same_motion, m->expected, tolerated_error(l, m, i));
   }
 }
 
@@ -468,8 +471,7 @@ static strut_status deliver_answer(ladder *l) {
     l->now->s = (strut_summary){0};
     return STRUT_OK;
   }
-  a->check_evaluations += l->now->cost;
-  strut_experiment e = l->now->e;
+  strut_experiment e = l->now->e; /* the same run again, whose cost is counted once */
   strut_accuracy_begin_phase(a, "recording the answer");
   a->allowed = INT64_MAX; /* the same run was within the budget before */
   e.output_every = a->experiment.output_every;
@@ -490,7 +492,9 @@ strut_status strut_accuracy_climb_ladder(strut_accuracy *a) {
     if (!status && !l.budget_spent && l.runs > 1) judge_agreement(&l);
   }
   /* three runs or more that ran into a limit may still agree well enough */
-  if (!l.kept && l.same_motion && l.runs > 2) l.kept = choose_margin(&l) * l.expected <= a->target;
+  if (!l.kept)
+    l.kept = strut_accuracy_is_kept(l.same_motion && l.runs > 2, choose_margin(&l) * l.expected,
+                                    a->target);
   if (!status) status = deliver_answer(&l);
   if (!status) report_ladder(&l);
   for (int k = 0; k < 3; k++) strut_summary_free(&l.rung[k].s);

@@ -177,8 +177,8 @@ static strut_status run_with_half_step(midpoint_runs *h, bool *kept) {
   h->share =
       h->fast_motion.slow > 0.0 ? h->fast_motion.fast / h->fast_motion.slow * size / window : 0.0;
   bool converges = h->earlier >= CONVERGES * h->moved && isfinite(h->earlier);
-  *kept = h->change <= AGREE * tolerated_error(h) && h->share <= AGREE * tolerated_error(h) &&
-          (converges || h->moved <= AGREE * tolerated_error(h) * window);
+  *kept = strut_accuracy_is_kept(converges || h->moved <= AGREE * tolerated_error(h) * window,
+                                 fmax(h->change, h->share), AGREE * tolerated_error(h));
   return status;
 }
 
@@ -186,11 +186,12 @@ static void report_midpoint(midpoint_runs *h, double explicit_evaluations) {
   strut_accuracy *a = h->a;
   strut_summary *s = a->summary;
   double error = 0.5 * h->change + h->share, size = fmax(fabs(s->velocity), a->scale);
-  s->accuracy = (strut_accuracy_summary){.wanted = a->target,
-                                         .expected = error / size,
-                                         .scale = a->scale,
-                                         .kept = error <= a->target * size,
-                                         .check_evaluations = a->check_evaluations};
+  s->accuracy =
+      (strut_accuracy_summary){.wanted = a->target,
+                               .expected = error / size,
+                               .scale = a->scale,
+                               .kept = strut_accuracy_is_kept(true, error, a->target * size),
+                               .check_evaluations = a->check_evaluations};
   snprintf(s->accuracy.why, sizeof s->accuracy.why,
            "midpoint with a step of %.3g s, %.3g times that of verlet-events, which would take "
            "%.2g force evaluations: twice the step changes the velocity by %.2g m/s, and motions "
@@ -201,12 +202,13 @@ static void report_midpoint(midpoint_runs *h, double explicit_evaluations) {
 /* Delivers the finest run; repeats it where it is recorded. */
 static strut_status deliver_answer(midpoint_runs *h) {
   strut_accuracy *a = h->a;
+  a->check_evaluations -= h->now.force_evaluations;
   if (!a->options->sink_count && !a->options->to) {
-    a->check_evaluations -= h->now.force_evaluations;
     *a->summary = h->now;
     h->now = (strut_summary){0};
     return STRUT_OK;
   }
+  a->allowed = INT64_MAX; /* the same run was within the budget before */
   h->e.output_every = a->experiment.output_every;
   h->e.output_last = a->experiment.output_last;
   return strut_accuracy_run(a, &h->e, a->options, a->summary);

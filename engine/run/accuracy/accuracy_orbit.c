@@ -196,21 +196,33 @@ static strut_status correct_orbit(strut_orbit_solve *solve, double enough, int l
   return STRUT_OK;
 }
 
-/* Runs the orbit by the method of `e`, for contact figures, or as long as recordings want it. */
+/* Drive periods in which the orbit repeats itself. */
+static double orbit_periods(const strut_orbit_solve *solve) {
+  bool ran_on = solve->answer > STRUT_ORBIT_CORRECTED && solve->last_run.steady.repeats > 0;
+  return ran_on ? solve->last_run.steady.repeats : solve->coarse_map.repeats;
+}
+
+/*
+ * Runs the orbit by the method of `e` over one repetition, or, to record it, over as many periods as `output` names.
+ */
 static strut_status run_orbit(strut_orbit_solve *solve, strut_experiment e, bool record,
                               strut_summary *summary) {
   strut_accuracy *a = solve->a;
-  double last = e.output_last;
+  double period = solve->coarse_map.period;
   e.measure_last = 0.0;
   strut_orbit_solve_copy_orbit_to_end(solve);
   e.steady.wanted = false;
-  bool ran_on = solve->answer > STRUT_ORBIT_CORRECTED && solve->last_run.steady.repeats > 0;
-  e.periods = ran_on ? solve->last_run.steady.repeats : solve->coarse_map.repeats;
-  if (record && last > e.periods) e.periods = last;
+  e.step = period / ceil(period / e.step * (1.0 - 1e-9)); /* as the maps have it */
+  e.periods = orbit_periods(solve);
+  if (record) e.periods = fmax(e.periods, e.output_last);
   e.output_last = 0.0;
   strut_run_options options = *a->options;
   strut_accuracy_begin_phase(a, "running the orbit");
-  if (!record) options.sink_count = 0;
+  if (record)
+    options.to = NULL;
+  else
+    options.sink_count = 0;
+  solve->end_state.balance = &solve->history.energy;
   options.from = &solve->end_state;
   options.progress = NULL;
   return strut_accuracy_run(a, &e, &options, summary);
@@ -237,8 +249,7 @@ static void accept_fixed_point(strut_orbit_solve *solve) {
       solve->travel / (solve->coarse_map.period * solve->coarse_map.repeats);
   memcpy(solve->orbit.y, solve->fixed_point,
          (2 * (size_t)solve->coarse_map.model->length + 1) * sizeof(double));
-  solve->until_steady = (strut_orbit_solve_cost){
-      solve->coarse_map.evaluations, solve->coarse_map.events, solve->coarse_map.applied};
+  solve->until_steady = solve->coarse_map.evaluations;
 }
 
 /* Did the coarse run become as steady as its fixed point is sought? */
@@ -430,7 +441,7 @@ static strut_status find_orbit(strut_orbit_solve *solve, bool steady) {
   bool several = solve->coarse_map.repeats > 1;
   if (!steady && several) {
     status = create_maps(solve, 1);
-    solve->until_steady = (strut_orbit_solve_cost){0};
+    solve->until_steady = 0;
   }
   if (status || steady) return status ? status : correct_or_rerun(solve);
   if (!uses_finer_steps(a)) return find_by_reference(solve);
@@ -492,12 +503,12 @@ static void discard_run(strut_orbit_solve *solve, strut_summary *orbit) {
 }
 
 /*
- * Runs the orbit once. *confirmed: its velocity agrees within `part` of the wanted error. The run is then repeated
- * where it is recorded, so that the answer does not depend on recordings.
+ * Runs the orbit once. *confirmed: its velocity agrees within `part` of the wanted error. Where it is recorded it is
+ * then run again, of which nothing is reported, so that the answer does not depend on recordings.
  */
 static strut_status confirm_by(strut_orbit_solve *solve, strut_experiment e, double part,
                                strut_summary *orbit, bool *confirmed) {
-  const strut_accuracy *a = solve->a;
+  strut_accuracy *a = solve->a;
   discard_run(solve, orbit);
   strut_status status = run_orbit(solve, e, false, orbit);
   double size = strut_accuracy_velocity_scale(a, solve->coarse_run.velocity);
@@ -505,9 +516,13 @@ static strut_status confirm_by(strut_orbit_solve *solve, strut_experiment e, dou
   bool ran_on = solve->answer > STRUT_ORBIT_CORRECTED;
   *confirmed = !status && (ran_on || solve->apart <= part * a->target * size);
   if (!*confirmed || !a->options->sink_count) return status;
-  strut_summary_free(orbit); /* the same run again, whose cost is counted once */
-  *orbit = (strut_summary){0};
-  return run_orbit(solve, e, true, orbit);
+  strut_summary recorded = {0};
+  int64_t allowed = a->allowed;
+  a->allowed = INT64_MAX; /* what is recorded does not decide whether the work suffices */
+  status = run_orbit(solve, e, true, &recorded);
+  a->allowed = allowed;
+  strut_summary_free(&recorded);
+  return status;
 }
 
 /*

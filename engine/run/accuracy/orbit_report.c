@@ -74,22 +74,26 @@ static double estimate_error(const strut_orbit_solve *solve) {
              : error;
 }
 
-/* Sums steps, evaluations and duration of all parts of the answer. */
-static void add_costs(const strut_orbit_solve *solve, strut_summary *s) {
-  const strut_orbit_solve_cost *settled = &solve->until_steady;
-  int64_t later = solve->coarse_map.applied - settled->applied, fine = solve->reference_map.applied;
-  s->steps = solve->coarse_run.steps + settled->applied * solve->coarse_map.steps;
-  s->events = solve->coarse_run.events + settled->events;
-  s->force_evaluations = solve->coarse_run.force_evaluations + settled->evaluations;
-  s->duration = solve->coarse_run.duration + (double)settled->applied * solve->coarse_map.period;
-  if (solve->answer == STRUT_ORBIT_COARSE) return;
-  s->steps +=
-      later * solve->coarse_map.steps + fine * solve->reference_map.steps + solve->last_run.steps;
-  s->events += solve->coarse_map.events - settled->events + solve->reference_map.events +
-               solve->last_run.events;
-  s->force_evaluations += solve->coarse_map.evaluations - settled->evaluations +
-                          solve->reference_map.evaluations + solve->last_run.force_evaluations;
-  s->duration += (double)(later + fine) * solve->coarse_map.period + solve->last_run.duration;
+/* The force evaluations of all parts of the answer. */
+static int64_t sum_evaluations(const strut_orbit_solve *solve) {
+  int64_t coarse = solve->coarse_run.force_evaluations;
+  if (solve->answer == STRUT_ORBIT_COARSE) return coarse + solve->until_steady;
+  return coarse + solve->coarse_map.evaluations + solve->reference_map.evaluations +
+         solve->last_run.force_evaluations;
+}
+
+/*
+ * Makes the summary that of the whole motion from t = 0: up to the orbit, then along it, as `orbit` is, whose works
+ * and losses are over all of it already.
+ */
+static void tell_whole_motion(const strut_orbit_solve *solve, const strut_summary *orbit,
+                              strut_summary *s) {
+  const strut_snapshot *from = solve->a->options->from;
+  double before = solve->orbit_time - (from ? from->time : 0.0);
+  s->duration = before + orbit->duration;
+  s->steps = solve->orbit_history.steps + orbit->steps;
+  s->events = solve->orbit_history.events + orbit->events;
+  s->steady.periods = llround(before / solve->coarse_map.period);
 }
 
 void strut_orbit_solve_report(strut_orbit_solve *solve, const strut_summary *orbit) {
@@ -99,17 +103,16 @@ void strut_orbit_solve_report(strut_orbit_solve *solve, const strut_summary *orb
   bool coarse_suffices = solve->answer == STRUT_ORBIT_COARSE;
   bool ran_on = solve->answer > STRUT_ORBIT_CORRECTED;
   double error = estimate_error(solve);
-  int64_t corrections = solve->coarse_map.evaluations - solve->until_steady.evaluations +
-                        solve->reference_map.evaluations;
+  int64_t corrections =
+      solve->coarse_map.evaluations - solve->until_steady + solve->reference_map.evaluations;
   *s = *orbit;
   s->velocity = coarse_suffices ? solve->coarse_run.velocity : solve->orbit.velocity;
   s->velocity_spread = ran_on ? solve->last_run.velocity_spread : solve->coarse_run.velocity_spread;
   s->settle_time = solve->coarse_run.settle_time;
   s->steady = ran_on ? solve->last_run.steady : solve->coarse_run.steady;
-  if (ran_on) s->steady.periods += solve->coarse_run.steady.periods;
-  s->steady.periods += solve->until_steady.applied;
   s->steady.interval = error;
-  add_costs(solve, s);
+  tell_whole_motion(solve, orbit, s);
+  s->force_evaluations = sum_evaluations(solve);
   s->step = solve->coarse_map.dt;
   s->step_limit = solve->coarse_run.step_limit;
   s->wall_time = solve->coarse_run.wall_time;
@@ -122,6 +125,8 @@ void strut_orbit_solve_report(strut_orbit_solve *solve, const strut_summary *orb
       .scale = a->scale,
       .check_evaluations =
           a->check_evaluations + orbit->force_evaluations + (coarse_suffices ? corrections : 0)};
-  s->accuracy.kept = s->accuracy.expected <= a->target || solve->answer == STRUT_ORBIT_CREEPING;
+  /* of what creeps only that is promised */
+  double known = solve->answer == STRUT_ORBIT_CREEPING ? 0.0 : s->accuracy.expected;
+  s->accuracy.kept = strut_accuracy_is_kept(true, known, a->target);
   explain_orbit(solve, &s->accuracy);
 }

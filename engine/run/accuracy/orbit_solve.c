@@ -46,13 +46,19 @@ strut_status strut_orbit_solve_run_until_steady(strut_orbit_solve *solve, strut_
   e.measure_last = fmin(e.measure_last, e.periods);
   e.output_last = 0.0;
   /* the energy of the first run tells whether its step is too large: what it leads to would look periodic, too */
-  strut_run_options options = {.without_ledger = from_end,
+  strut_run_options options = {.without_ledger = from_end && a->options->without_ledger,
                                .interrupt = a->options->interrupt,
                                .progress = a->options->progress,
                                .progress_context = a->options->progress_context,
                                .from = from_end ? &from : a->options->from,
                                .to = &solve->end_state};
-  return strut_accuracy_run(a, &e, &options, summary);
+  if (!from_end) solve->history = (strut_orbit_history){0};
+  from.balance = &solve->history.energy;
+  strut_status status = strut_accuracy_run(a, &e, &options, summary);
+  solve->history.energy = summary->energy; /* it continues that of the runs before */
+  solve->history.steps += summary->steps;
+  solve->history.events += summary->events;
+  return status;
 }
 
 void strut_orbit_solve_copy_end_to_orbit(strut_orbit_solve *solve) {
@@ -60,6 +66,8 @@ void strut_orbit_solve_copy_end_to_orbit(strut_orbit_solve *solve) {
   memcpy(solve->orbit.y, solve->end_state.q, length * sizeof(double));
   memcpy(solve->orbit.y + length, solve->end_state.v, length * sizeof(double));
   solve->orbit.y[2 * length] = solve->end_state.refined;
+  solve->orbit_time = solve->end_state.time;
+  solve->orbit_history = solve->history;
 }
 
 /* ---- the reference method and the check of its tolerance ---- */
@@ -90,6 +98,8 @@ void strut_orbit_solve_copy_orbit_to_end(strut_orbit_solve *solve) {
   memcpy(solve->end_state.q, solve->orbit.y, length * sizeof(double));
   memcpy(solve->end_state.v, solve->orbit.y + length, length * sizeof(double));
   solve->end_state.refined = solve->orbit.y[2 * length];
+  solve->end_state.time = solve->orbit_time;
+  solve->history = solve->orbit_history;
 }
 
 static void accept_reference_run(strut_orbit_solve *solve) {
@@ -164,8 +174,7 @@ static strut_status correct_with_finer_tolerance(strut_orbit_solve *solve) {
   finer.tolerance = fmax(1e-12, 0.1 * finer.tolerance);
   double size = strut_accuracy_velocity_scale(a, solve->orbit.velocity),
          half = 0.5 * a->target * size;
-  const strut_orbit_solve_cost before = {solve->coarse_map.evaluations, solve->coarse_map.events,
-                                         solve->coarse_map.applied};
+  int64_t before = solve->coarse_map.evaluations;
   strut_status status =
       strut_period_map_create(a->model, &finer, solve->coarse_map.repeats, &map, a->error);
   if (status) return status;
@@ -173,10 +182,9 @@ static strut_status correct_with_finer_tolerance(strut_orbit_solve *solve) {
   map.most_evaluations = strut_accuracy_evaluations_left(a);
   status = strut_orbit_correct(&solve->coarse_map, &map, solve->fixed_point, solve->travel,
                                0.1 * half * solve->coarse_map.period, &there);
-  a->check_evaluations += solve->coarse_map.evaluations - before.evaluations + map.evaluations;
-  a->used += solve->coarse_map.evaluations - before.evaluations + map.evaluations;
-  solve->coarse_map.evaluations = before.evaluations;
-  solve->coarse_map.events = before.events, solve->coarse_map.applied = before.applied;
+  a->check_evaluations += solve->coarse_map.evaluations - before + map.evaluations;
+  a->used += solve->coarse_map.evaluations - before + map.evaluations;
+  solve->coarse_map.evaluations = before;
   strut_period_map_free(&map);
   status = strut_orbit_solve_check_maps(solve, status);
   double apart = there.converged ? fabs(there.velocity - solve->orbit.velocity) : HUGE_VAL;

@@ -18,10 +18,11 @@ static const double STRUT_TIGHTENED = 25.0;
 /** Part of the wanted error of the velocity to which the fixed point of a period map is sought. */
 static const double STRUT_FIXED_POINT_PART = 0.1;
 
-/** Cost of the coarse map up to the steady motion. */
-typedef struct strut_orbit_solve_cost {
-  int64_t evaluations, events, applied;
-} strut_orbit_solve_cost;
+/** What was simulated from t = 0 up to a state: nothing that was tried and left. */
+typedef struct strut_orbit_history {
+  strut_energy energy;
+  int64_t steps, events;
+} strut_orbit_history;
 
 /** The run or correction that gives the answer. */
 typedef enum strut_orbit_answer {
@@ -41,12 +42,15 @@ typedef struct strut_orbit_solve {
   strut_period_map coarse_map, reference_map;
   strut_summary coarse_run; /* up to the steady state */
   strut_snapshot end_state;
+  strut_orbit_history history; /* up to end_state */
+  double orbit_time;           /* of orbit.y, from which it may be run on [s] */
+  strut_orbit_history orbit_history;
   double *fixed_point; /* (2 length + 1) of the coarse map */
   double travel;       /* over one application of it [m] */
   strut_orbit orbit;
-  double error;                        /* of orbit.velocity, estimated [m/s] */
-  strut_orbit_solve_cost until_steady; /* of the coarse map */
-  int64_t counted;                     /* evaluations of the present maps already in a->used */
+  double error;         /* of orbit.velocity, estimated [m/s] */
+  int64_t until_steady; /* evaluations of the coarse map up to its fixed point */
+  int64_t counted;      /* evaluations of the present maps already in a->used */
   strut_orbit_answer answer;
   bool tightened;         /* the reference tolerance was reduced for a sensitive orbit */
   strut_summary last_run; /* the run that gave the answer, if any */

@@ -125,6 +125,31 @@ void strut_balance_sample(const strut_model *model, strut_state *state, const st
   while (monitor->next <= state->step) monitor->next += monitor->every;
 }
 
+void strut_balance_continue(const strut_energy *before, strut_state *state, strut_energies *begin) {
+  double *w = state->work;
+  w[STRUT_POWER_DRIVE] = before->drive_work;
+  w[STRUT_POWER_LOAD] = before->load_work;
+  w[STRUT_POWER_BELT] = before->belt_work;
+  w[STRUT_POWER_MEMBERS] = before->dissipated_members;
+  w[STRUT_POWER_CONTACT] = before->dissipated_contact;
+  w[STRUT_POWER_FRICTION] = before->dissipated_friction;
+  w[STRUT_POWER_EXCHANGED] = before->moved;
+  state->support_work_origin -= before->support_work;
+  double end = before->kinetic + before->elastic + before->gravity + before->contact;
+  begin->elastic += before->initial - end;
+}
+
+void strut_balance_warn(strut_summary *s, const char *why) {
+  const char *code = "energy_balance";
+  double residual = s->energy.residual;
+  strut_summary_withdraw(s, code);
+  if (s->balance != STRUT_BALANCE_OPEN || s->status != STRUT_OK) return;
+  strut_summary_warn(
+      s, code, "the energy balance does not close: %.3g J, %.2g %% of the exchanged energy, %s%s",
+      fabs(residual), 100.0 * fabs(residual) / s->energy.moved,
+      residual > 0.0 ? "appeared without a source" : "disappeared without a sink", why);
+}
+
 strut_balance strut_balance_judge(const strut_energy *e, int64_t steps) {
   bool open = fabs(e->residual) > OPEN * e->moved && fabs(e->residual) > rounding_of(e, steps);
   return open ? STRUT_BALANCE_OPEN : STRUT_BALANCE_CLOSED;

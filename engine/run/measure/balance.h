@@ -47,6 +47,20 @@ void strut_balance_begin(const strut_state *state, const strut_energies *begin, 
 void strut_balance_sample(const strut_model *model, strut_state *state, const strut_energies *begin,
                           double t, strut_balance_monitor *monitor, strut_energy *energy);
 
+/**
+ * Makes the balance of a run continue that of the one before, whose state may have been corrected in
+ * between: works and losses go on from there, and what the correction added to the stored energies
+ * `begin` counts as initial.
+ */
+void strut_balance_continue(const strut_energy *before, strut_state *state, strut_energies *begin);
+
+/** What to say of an open balance where method and step were chosen for a wanted accuracy. */
+#define STRUT_BALANCE_CHOSEN                                                                       \
+  "; the wanted accuracy applies to the measured quantities only: also measure energy.total, or "  \
+  "request a higher accuracy"
+/** Warns of the balance of a summary where that is open, with cause and remedy; else of nothing. */
+void strut_balance_warn(strut_summary *summary, const char *why);
+
 /** Open where more than 1 % of the exchanged energy is missing, and more than rounding explains. */
 strut_balance strut_balance_judge(const strut_energy *energy, int64_t steps);
 

@@ -2,6 +2,7 @@
 #include "engine/run/measure/summary.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -27,6 +28,14 @@ void strut_summary_warn(strut_summary *summary, const char *code, const char *fo
   va_end(arguments);
 }
 
+void strut_summary_withdraw(strut_summary *summary, const char *code) {
+  size_t kept = 0;
+  for (size_t i = 0; i < summary->warning_count; i++)
+    if (strcmp(summary->warnings[i].code, code) != 0)
+      summary->warnings[kept++] = summary->warnings[i];
+  summary->warning_count = kept;
+}
+
 void strut_summary_free(strut_summary *summary) {
   strut_release(summary->node_names);
   strut_release(summary->positions);
@@ -45,6 +54,46 @@ void strut_summary_free(strut_summary *summary) {
   summary->measured = NULL;
   summary->node_count = summary->contact_count = summary->hinge_count = summary->cell_count = 0;
   summary->measured_count = 0;
+}
+
+bool strut_summary_is_inaccurate(const strut_summary *s) {
+  return s->status == STRUT_OK && s->accuracy.wanted > 0.0 && !s->accuracy.kept;
+}
+
+/* What is known of the error where an accuracy was requested. */
+static void describe_error(const strut_summary *s, char *text, size_t size) {
+  const strut_accuracy_summary *a = &s->accuracy;
+  bool velocity = s->measured_count == 0;
+  char error[60] = "the error is not known";
+  if (isfinite(a->expected) && velocity && fabs(s->velocity) < a->scale)
+    snprintf(error, sizeof error, "within %.2g m/s", a->expected * a->scale);
+  else if (isfinite(a->expected))
+    snprintf(error, sizeof error, "within %.2g %%", 100.0 * a->expected);
+  if (a->kept && s->steady.kind == STRUT_MOTION_CREEPING)
+    snprintf(text, size, "right %s for this model: it only creeps", error);
+  else if (a->kept && velocity && s->velocity_zero)
+    snprintf(text, size, "right for this model: the velocity is zero by symmetry");
+  else if (a->kept)
+    snprintf(text, size, "right %s for this model; %.2g %% requested", error, 100.0 * a->wanted);
+  else
+    snprintf(text, size, "NOT kept: %s%s, but %.2g %% requested",
+             isfinite(a->expected) ? "right only " : "", error, 100.0 * a->wanted);
+}
+
+void strut_summary_worth(const strut_summary *s, char *text, size_t size) {
+  if (size) *text = '\0';
+  if (s->status != STRUT_OK) return;
+  if (s->accuracy.wanted > 0.0)
+    describe_error(s, text, size);
+  else
+    snprintf(text, size, "not known: no error was estimated; --accuracy 1%% does that");
+}
+
+void strut_summary_warn_of_accuracy(strut_summary *s) {
+  char text[200];
+  if (!strut_summary_is_inaccurate(s)) return;
+  strut_summary_worth(s, text, sizeof text);
+  strut_summary_warn(s, "accuracy", "the requested accuracy is %s: %s", text, s->accuracy.why);
 }
 
 void strut_summary_warn_of_start(strut_summary *summary) {

@@ -11,7 +11,7 @@
 
 /**
  * Energies, works and losses [J] in the order of all outputs, with their kind and what people read.
- * Energies are those at the end; works and losses count from t = 0.
+ * Energies are those at the end of the summary's duration; works and losses are over all of it.
  */
 #define STRUT_ENERGY_TABLE(X)                                                                      \
   X(kinetic, ENERGY, "kinetic")                                                                    \
@@ -30,7 +30,8 @@ typedef struct strut_energy {
 #define STRUT_ENERGY_FIELD(name, kind, label) double name;
   STRUT_ENERGY_TABLE(STRUT_ENERGY_FIELD)
 #undef STRUT_ENERGY_FIELD
-  double initial;  /* kinetic + elastic + gravity + contact at t = 0 */
+  double initial;  /* kinetic + elastic + gravity + contact at t = 0, and what later corrections of
+                      the state (to an orbit) added */
   double residual; /* end total - initial - works + losses; 0 but for the integration error */
   double moved;    /* sum of the absolute energies exchanged, or the largest kinetic energy seen if
                       that is more: the scale of the residual */
@@ -160,13 +161,14 @@ typedef struct strut_summary {
   double velocity_spread; /* standard deviation over the window's periods; NAN without periods */
   bool velocity_zero;     /* zero by symmetry: only rounding beside the node speeds */
   double window_start;    /* [s] */
-  double duration;        /* simulated [s] */
+  double duration;        /* from t = 0 to the end, whose state, works and losses these are [s] */
   double settle_time;     /* simulated before t = 0 to come to rest [s]; not in duration */
   strut_settle_summary settle;
-  int64_t steps, force_evaluations; /* from t = 0 on */
-  int64_t events;                   /* events located in time; 0 with methods that locate none */
-  char method[32];                  /* method used */
-  double step, step_limit;          /* [s]; step_limit is INFINITY where nothing limits it */
+  int64_t steps;             /* of the duration */
+  int64_t force_evaluations; /* of these steps and of what corrected the state */
+  int64_t events;            /* events located in time; 0 with methods that locate none */
+  char method[32];           /* method used */
+  double step, step_limit;   /* [s]; step_limit is INFINITY where nothing limits it */
   strut_step_limit_violation limit_fell;
   double wall_time; /* seconds spent stepping; never written into a file */
   size_t node_count, contact_count, hinge_count;
@@ -198,7 +200,22 @@ typedef struct strut_summary {
 STRUT_API void strut_summary_warn(strut_summary *summary, const char *code, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/** Removes the warning with that code, if there is one. */
+STRUT_API void strut_summary_withdraw(strut_summary *summary, const char *code);
+
 STRUT_API void strut_summary_free(strut_summary *summary);
+
+/** Was an accuracy requested that the answer does not have? */
+STRUT_API bool strut_summary_is_inaccurate(const strut_summary *summary);
+
+/**
+ * Writes what the numbers are worth: one sentence without a full stop for people, the same in all
+ * outputs; empty where the run did not complete.
+ */
+STRUT_API void strut_summary_worth(const strut_summary *summary, char *text, size_t size);
+
+/** Adds a warning if a requested accuracy was not reached. */
+STRUT_API void strut_summary_warn_of_accuracy(strut_summary *summary);
 
 /** Adds a warning if the start settled on an unstable equilibrium. */
 STRUT_API void strut_summary_warn_of_start(strut_summary *summary);

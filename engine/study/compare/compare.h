@@ -115,6 +115,7 @@ typedef struct strut_compare_column {
   const char *motion;              /* "periodic", "irregular", ... or NULL */
   int32_t repeats;                 /* drive periods of a periodic one */
   const char *how;                 /* how the velocity was found, in words; or NULL */
+  bool inaccurate;                 /* it is less accurate than requested */
   strut_status status; /* the worst of what was computed: STRUT_OK unless something failed */
   char message[600];
 } strut_compare_column;

@@ -116,6 +116,7 @@ static strut_status put_motion(strut_compare_work *work, const strut_summary *ru
   c->repeats = run->steady.kind == STRUT_MOTION_PERIODIC ? run->steady.repeats : 0;
   c->how = strut_arena_format(work->arena, "%s", run->accuracy.why);
   if (!c->how) return STRUT_NO_MEMORY;
+  c->inaccurate = strut_summary_is_inaccurate(run);
   double uncertain = run->accuracy.expected * fmax(fabs(run->velocity), run->accuracy.scale);
   c->still = fabs(run->velocity) <= uncertain;
   put_velocity(work, run, period);
@@ -153,6 +154,7 @@ strut_status strut_compare_motion(strut_compare_work *work, const strut_model *m
   if (!end.q || !end.v || !end.memory) return STRUT_NO_MEMORY;
   e->accuracy = work->options->accuracy;
   e->steady.wanted = e->periods > 0.0;
+  e->quantity_count = 0; /* the accuracy is that of the velocity */
   const strut_run_options wanted = {.interrupt = work->options->interrupt, .to = &end};
   double began = strut_tradeoff_cpu_clock();
   strut_status status = strut_simulate_accurately(model, e, &wanted, &summary, &error);

@@ -79,10 +79,6 @@ static int by_energy(const void *a, const void *b) {
   return (x->energy > y->energy) - (x->energy < y->energy);
 }
 
-static double rest_energy(const strut_equilibrium *e) {
-  return e->rest ? e->rest_energy : e->energy;
-}
-
 static strut_status keep_states(strut_compare_work *work, const strut_equilibria *all) {
   strut_compare_column *c = work->column;
   c->states = strut_arena_allocate(work->arena, all->count + 1, sizeof *c->states);
@@ -93,7 +89,7 @@ static strut_status keep_states(strut_compare_work *work, const strut_equilibria
     names[i] = strut_arena_format(work->arena, "%s", all->list[i].name);
     if (!names[i]) return STRUT_NO_MEMORY;
     if (all->list[i].outcome == STRUT_OUTCOME_STANDS)
-      c->states[c->state_count++] = (strut_compare_state){names[i], rest_energy(&all->list[i])};
+      c->states[c->state_count++] = (strut_compare_state){names[i], all->list[i].energy};
   }
   for (size_t i = 0; i < all->barrier_count; i++)
     c->barriers[c->barrier_count++] = (strut_compare_barrier){

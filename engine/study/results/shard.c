@@ -392,7 +392,10 @@ strut_status strut_merge(const char *directory, strut_merged *merged, strut_erro
   if (status == STRUT_OK) {
     merged->shards = m.found.count;
     merged->points = strut_slots_plan_of(m.sources[0])->points;
-    for (size_t i = 0; i < m.count; i++) merged->failed += strut_slots_failed(m.sources[i]);
+    for (size_t i = 0; i < m.count; i++) {
+      merged->failed += strut_slots_failed(m.sources[i]);
+      merged->inaccurate += strut_slots_inaccurate(m.sources[i]);
+    }
   }
   for (size_t i = 0; m.sources && i < m.count; i++) strut_slots_close(m.sources[i]);
   strut_arena_free(&m.arena);

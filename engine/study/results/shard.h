@@ -59,7 +59,7 @@ STRUT_API strut_status strut_shards_find(const char *directory, strut_shards_fou
 /** Report of a merge. */
 typedef struct strut_merged {
   int64_t shards; /* 0: the study was in one piece */
-  int64_t points, failed;
+  int64_t points, failed, inaccurate;
 } strut_merged;
 
 /**

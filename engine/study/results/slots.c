@@ -334,6 +334,24 @@ bool strut_slots_get(strut_slots *slots, int64_t point, strut_result_slot *row) 
   return true;
 }
 
+bool strut_slots_is_inaccurate(strut_slots *slots, int64_t point) {
+  const strut_slots_plan *plan = &slots->plan;
+  size_t column = 0, number = 0;
+  strut_result_slot row;
+  while (column < plan->column_count && strcmp(plan->columns[column].name, STRUT_KEPT_COLUMN) != 0)
+    number += !plan->columns[column++].word;
+  return column < plan->column_count && strut_slots_done(slots, point) &&
+         strut_slots_get(slots, point, &row) && row.status == STRUT_OK &&
+         row.numbers[number] == 0.0;
+}
+
+int64_t strut_slots_inaccurate(strut_slots *slots) {
+  int64_t inaccurate = 0;
+  for (int64_t i = 0; i < slots->plan.count; i++)
+    inaccurate += strut_slots_is_inaccurate(slots, strut_slots_point(slots, i));
+  return inaccurate;
+}
+
 strut_status strut_slots_retry(strut_slots *slots, strut_error *error) {
   slots->retried = true;
   for (int64_t i = 0; i < slots->plan.count && strut_slots_failed(slots) > 0; i++) {

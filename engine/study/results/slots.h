@@ -87,6 +87,12 @@ STRUT_API bool strut_slots_done(const strut_slots *slots, int64_t point);
 /** Number of points of this file without a result, and number of failed ones. */
 STRUT_API int64_t strut_slots_missing(const strut_slots *slots);
 STRUT_API int64_t strut_slots_failed(const strut_slots *slots);
+/** Is the point completed, and its column STRUT_KEPT_COLUMN 0? One thread at a time. */
+STRUT_API bool strut_slots_is_inaccurate(strut_slots *slots, int64_t point);
+/** Number of such points. */
+STRUT_API int64_t strut_slots_inaccurate(strut_slots *slots);
+/** The column that says whether a requested accuracy was reached: 1 or 0. */
+#define STRUT_KEPT_COLUMN "accuracy_kept"
 
 /**
  * Writes the row of a point of this file; safe from several threads for different points, and free

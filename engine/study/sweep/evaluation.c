@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/study/sweep/evaluation.h"
 
+#include <string.h>
+
 #include "engine/study/sweep/sweep_parts.h"
 
 #ifdef _OPENMP
@@ -88,6 +90,8 @@ static bool list_results(strut_evaluator *e, strut_evaluation *evaluation) {
       list[i].word = job->cells.words[words++];
     else
       list[i].number = job->cells.numbers[numbers++];
+    if (!c->word && strcmp(c->name, STRUT_KEPT_COLUMN) == 0)
+      evaluation->inaccurate = list[i].number == 0.0;
   }
   for (size_t i = 0; i < job->warning_count; i++) warnings[i] = job->warnings[i].text;
   evaluation->count = e->plan.column_count;

@@ -30,6 +30,7 @@ typedef struct strut_evaluation {
   const strut_evaluated *results; /* (count) in the order of the table */
   size_t warning_count;
   const char *const *warnings; /* (warning_count) sentences */
+  bool inaccurate;             /* a requested accuracy was not reached; there are results */
 } strut_evaluation;
 
 /**

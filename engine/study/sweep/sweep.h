@@ -31,6 +31,7 @@ typedef struct strut_sweep_plan {
   size_t quantity_count;
   const char **quantities; /* (quantity_count) names of the measured quantities that are kept */
   bool check, flips;       /* each point is run twice; and outcomes are compared */
+  bool accurate;           /* a further column says whether the requested accuracy was reached */
   bool start;              /* a column says whether the start settled on an unstable equilibrium */
   size_t axis_columns;     /* the first columns */
   size_t column_count, column_capacity;

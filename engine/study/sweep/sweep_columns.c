@@ -39,8 +39,7 @@ static const strut_keep USUAL[] = {STRUT_KEEP_VELOCITY,  STRUT_KEEP_SPREAD,     
   X(STEP_LIMIT, "step_limit", "s", false, s->step_limit)                                           \
   X(EXPECTED, "expected_error", "1", false,                                                        \
     s->accuracy.wanted > 0.0 ? s->accuracy.expected : (double)NAN)                                 \
-  X(KEPT, "accuracy_kept", "1", false,                                                             \
-    s->accuracy.wanted > 0.0 ? (double)s->accuracy.kept : (double)NAN)                             \
+  X(KEPT, STRUT_KEPT_COLUMN, "1", false, accuracy_kept(s))                                         \
   STRUT_ENERGY_TABLE(ENERGY_##X)                                                                   \
   X(RESIDUAL, "residual", "J", false, s->energy.residual)                                          \
   X(COST, "cost_of_transport", "1", false, cost_of_transport(s))                                   \
@@ -204,6 +203,8 @@ static bool add_columns(strut_sweep_plan *plan, const strut_setup *setup) {
   if (fine && keeps(plan, STRUT_KEEP_SHAPE))
     fine = strut_sweep_add_column(plan, "", "shape_distance", "m", false);
   if (fine && plan->start) fine = strut_sweep_add_column(plan, "", "start_unstable", "1", false);
+  if (fine && plan->accurate)
+    fine = strut_sweep_add_column(plan, "", STRUT_KEPT_COLUMN, "1", false);
   if (fine && plan->check)
     fine = strut_sweep_add_column(plan, "check_", "velocity", "m/s", false) &&
            strut_sweep_add_column(plan, "check_", plan->flips ? "outcome" : "motion", "1", true) &&
@@ -211,13 +212,14 @@ static bool add_columns(strut_sweep_plan *plan, const strut_setup *setup) {
   return fine;
 }
 
-/* What a run keeps, and whether it is repeated. */
+/* What a run keeps, always whether a requested accuracy was reached, and whether it is repeated. */
 static void choose_of_run(strut_sweep_plan *plan, const strut_setup *setup, bool usual) {
   const strut_study *study = plan->study;
   bool shapes = setup->scene.configuration_count > 0;
   plan->keep = study->keep;
   for (size_t i = 0; i < sizeof USUAL / sizeof USUAL[0] && usual; i++)
     if (shapes || USUAL[i] != STRUT_KEEP_OUTCOME) strut_keep_add(&plan->keep, USUAL[i]);
+  plan->accurate = setup->experiment.accuracy > 0.0 && !keeps(plan, STRUT_KEEP_KEPT);
   plan->start = usual && setup->experiment.settle.wanted;
   plan->check = !study->search && (study->half_step || study->check_accuracy > 0.0);
   if (plan->check && shapes) strut_keep_add(&plan->keep, STRUT_KEEP_OUTCOME);
@@ -298,6 +300,11 @@ static double work_per_distance(const strut_summary *s) {
   double distance = fabs(s->velocity) * s->window_time;
   bool moves = !s->velocity_zero && distance > 0.0;
   return moves ? s->window_work / distance : (double)NAN;
+}
+
+/* 1 or 0; missing where no accuracy is requested. */
+static double accuracy_kept(const strut_summary *s) {
+  return s->accuracy.wanted > 0.0 ? (double)s->accuracy.kept : (double)NAN;
 }
 
 /* The same over the weight, as `strut compare` has it: missing where drives do no work. */
@@ -412,4 +419,5 @@ void strut_sweep_fill(const strut_sweep_plan *plan, const strut_setup *setup,
                        : (double)NAN);
   if (plan->start)
     strut_sweep_number(cells, summary ? (double)summary->settle.unstable : (double)NAN);
+  if (plan->accurate) strut_sweep_number(cells, summary ? accuracy_kept(summary) : (double)NAN);
 }

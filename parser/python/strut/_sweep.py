@@ -120,12 +120,13 @@ class Table:
 
     @property
     def status(self) -> list[str]:
-        """Of each point "ok", or why it failed."""
-        names: dict[float, str] = {}
-        found = self._raw.array("status")
-        return [
-            names.setdefault(code, _strut.status_name(int(code))) for code in memoryview(found)
-        ]
+        """Of each point what table.csv says: "completed", or why it failed."""
+        return [_strut.status_text(code) for code in self._codes]
+
+    @property
+    def _codes(self) -> list[int]:
+        """Of each point 0, or the number of its failure."""
+        return [int(code) for code in memoryview(self._raw.array("status"))]
 
     def grid(self, column: str) -> Array:
         """A column of numbers in the shape of the axes."""
@@ -150,7 +151,7 @@ class Table:
         return pandas.DataFrame({name: self[name] for name in self.columns})
 
     def __repr__(self) -> str:
-        failed = sum(word != "ok" for word in self.status)
+        failed = sum(code != 0 for code in self._codes)
         shown = f", {failed} failed" if failed else ""
         return f"<strut.Table: {len(self)} points{shown}; {', '.join(self.columns)}>"
 
