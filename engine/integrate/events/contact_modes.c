@@ -6,7 +6,8 @@
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/integrate/events/local_events.h"
 
-/* At rest on the ground is what is slower than this part of size times the contact's frequency. */
+/* At rest on the ground is what is slower than this part of size times the contact's frequency; and no force what
+   is below this part of the forces on the node. */
 static const double TIE = 1e-12;
 
 STRUT_CLONES
@@ -112,6 +113,12 @@ static void close_contact(const strut_model *model, strut_event_stepper *l, int3
   }
 }
 
+/* Is what holds stuck contact i no more than rounding of the forces on its node? */
+static bool is_held_by_rounding(const strut_model *model, const strut_event_stepper *l, int32_t i) {
+  const double *force = l->now->structure + model->contacts.at[i];
+  return fabs(l->now->touch[i].friction) <= TIE * hypot(force[0], force[1]);
+}
+
 /* The stuck contact that is held by more than friction can give, or -1. */
 static int32_t overloaded(const strut_model *model, const strut_event_stepper *l) {
   double worst = 1e-12;
@@ -123,8 +130,9 @@ static int32_t overloaded(const strut_model *model, const strut_event_stepper *l
     double most =
         strut_friction_static(&model->contacts.entry[i].friction, -o->friction) * o->normal;
     double over = fabs(o->friction) - most;
-    /* Without any normal force yet nothing can be said: the end of the step will tell. */
-    if (!(over > worst * fabs(o->friction)) || !(o->normal > 0.0)) continue;
+    if (!(over > worst * fabs(o->friction))) continue;
+    /* without a normal force yet, no friction is too little: rounding must not set the node in motion */
+    if (!(o->normal > 0.0) && is_held_by_rounding(model, l, i)) continue;
     worst = over / fabs(o->friction);
     found = i;
   }
@@ -270,6 +278,7 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_event
       }
       break;
     case STRUT_EVENT_LEAVES_STICK_BAND:
+    case STRUT_EVENT_BALANCE_ENDS:
       l->side[i] = l->now->touch[i].slip < 0.0 ? -1 : 1;
       decide_at_edge(model, state, l, i, true, t);
       break;
