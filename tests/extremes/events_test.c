@@ -253,6 +253,31 @@ static void test_the_edge_of_the_band_is_left_where_balance_ends(void **unused) 
 }
 
 /*
+ * Pushed backwards by a load that begins at 0, as the normal force does: friction is against the push from the start,
+ * and the block never within what it could balance.
+ */
+static void test_friction_is_against_a_push_that_begins(void **unused) {
+  (void)unused;
+  const double ground = 1000, omega = sqrt(ground), mu = 0.3, load = -400, frequency = 0.5;
+  const double drive = 2 * PI * frequency, step = 1e-3, t = 50 * step;
+  for (int i = 0; i < LOCATED_COUNT; i++) {
+    strut_setup setup;
+    motion m;
+    loaded_block(&setup, ground, 0, mu, load, frequency);
+    setup.scene.contacts[0].friction.mu_static = 1.2 * mu;
+    motion_begin_by(&m, &setup, LOCATED[i], step);
+    motion_steps(&m, 50);
+    double expected =
+        load / drive * (1 - cos(drive * t)) + mu * GRAVITY * (t - sin(omega * t) / omega);
+    print_message("%s: speed %.9g m/s, off by %.1e m/s\n", LOCATED[i], expected,
+                  m.state->v[0] - expected);
+    assert_near(m.state->v[0], expected, 1e-7);
+    motion_end(&m);
+    strut_setup_free(&setup);
+  }
+}
+
+/*
  * Drawn on the ground, which does not carry it yet, a block slips under the smallest load, until it is carried: here
  * within the first step.
  */
@@ -287,6 +312,7 @@ int main(void) {
       cmocka_unit_test(test_coulomb_oscillator),
       cmocka_unit_test(test_the_band_is_left_where_its_edge_is),
       cmocka_unit_test(test_the_edge_of_the_band_is_left_where_balance_ends),
+      cmocka_unit_test(test_friction_is_against_a_push_that_begins),
       cmocka_unit_test(test_a_slip_may_end_in_the_step_in_which_it_begins),
   };
   return cmocka_run_group_tests_name("extremes: events", tests, NULL, NULL);

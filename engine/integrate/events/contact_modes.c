@@ -255,6 +255,13 @@ static void decide_at_edge(const strut_model *model, strut_state *state, strut_e
   l->mode[i] = outside > 0.0 ? STRUT_MODE_SLIP : STRUT_MODE_CREEP;
 }
 
+/* Where contact i is pushed to. Without a normal force yet, other forces may begin just now: those a step later say. */
+static int8_t side_of_push(const strut_event_stepper *l, int32_t i) {
+  const strut_touch *o = &l->now->touch[i];
+  double applied = o->normal > 0.0 ? o->applied : l->next->touch[i].applied;
+  return applied < 0.0 ? -1 : 1;
+}
+
 static void begin_refinement(const strut_event_stepper *l, int32_t i, double t, double *until) {
   double time = l->refine_time > 0.0 ? l->refine_time : l->refine_memory * l->settling_time[i];
   *until = fmax(*until, t + time);
@@ -295,14 +302,14 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_event
       else
         l->mode[i] = l->mode[i] == STRUT_MODE_BAND ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
       l->pushed = i, l->pushed_at = t;
-      l->side[i] = l->now->touch[i].applied < 0.0 ? -1 : 1;
+      l->side[i] = side_of_push(l, i);
       break;
     case STRUT_EVENT_YIELDED: {
       const strut_touch *o = &l->now->touch[i];
       const strut_friction *f = &model->contacts.entry[i].friction;
       bool over = fabs(o->applied) > strut_friction_static(f, o->applied) * o->normal;
       l->mode[i] = over ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
-      l->side[i] = o->applied < 0.0 ? -1 : 1;
+      l->side[i] = side_of_push(l, i);
       break;
     }
     case STRUT_EVENT_DAMPER: l->damper[i] = (int8_t)-l->damper[i]; break;

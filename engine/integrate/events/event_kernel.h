@@ -270,13 +270,15 @@ STRUT_INLINE strut_event_kind contradicting_event(const strut_contact_entry *e,
       return s * (stick_band_force(e, o) - o->friction) < 0.0 ? STRUT_EVENT_CREEP_IN
                                                               : STRUT_EVENT_NONE;
     case STRUT_MODE_BAND:
-    case STRUT_MODE_PUSH:
+    case STRUT_MODE_PUSH: {
       if (fabs(o->slip) > stick_band_edge(e)) return STRUT_EVENT_LEAVES_STICK_BAND;
       if (!strut_friction_drops(&e->friction)) return STRUT_EVENT_NONE;
-      return (fabs(o->applied) > strut_friction_static(&e->friction, o->applied) * o->normal) ==
+      double size = mode == STRUT_MODE_PUSH ? s * o->applied : fabs(o->applied);
+      return (size > strut_friction_static(&e->friction, o->applied) * o->normal) ==
                      (mode == STRUT_MODE_PUSH)
                  ? STRUT_EVENT_NONE
                  : STRUT_EVENT_PUSH;
+    }
     case STRUT_MODE_YIELD:
       if (fabs(o->slip) > stick_band_edge(e)) return STRUT_EVENT_LEAVES_STICK_BAND;
       return yield_margin(e, o) < 0.0 ? STRUT_EVENT_YIELDED : STRUT_EVENT_NONE;

@@ -70,7 +70,8 @@ double strut_event_value(const strut_model *model, const strut_event_stepper *l,
     case STRUT_EVENT_CREEP_IN: return s * (stick_band_force(e, o) - o->friction);
     case STRUT_EVENT_BALANCE_ENDS: return balance_margin(e, o);
     case STRUT_EVENT_PUSH:
-      return l->mode[i] == STRUT_MODE_BAND ? balance_margin(e, o) : -balance_margin(e, o);
+      if (l->mode[i] == STRUT_MODE_BAND) return balance_margin(e, o);
+      return s * o->applied - strut_friction_static(&e->friction, o->applied) * o->normal;
     case STRUT_EVENT_YIELDED: return yield_margin(e, o);
     case STRUT_EVENT_DAMPER: return l->damper[i] > 0 ? -o->into : o->into;
     case STRUT_EVENT_NONE:

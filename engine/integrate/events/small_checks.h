@@ -56,7 +56,7 @@ STRUT_SMALL_INLINE bool small_contradicts(const small_events *e) {
       if (m->any_band) {
         small_mask held = SMALL_MODE_MASK(band), pushes = SMALL_MODE_MASK(pushes);
         bad |= (held | pushes) & small_less(edge, small_magnitude(slip));
-        held &= small_less(most, size), pushes &= small_at_least(most, size);
+        held &= small_less(most, size), pushes &= small_at_least(most, side * applied);
         bad |= (held | pushes) & SMALL_MODE_MASK(drops);
       }
       if (m->any_held) {
