@@ -254,6 +254,19 @@ stalled 1% 0.01 0.0510317
 pair 0.3% 0.003 -0.0495417
 END
 
+# The grids of successive runs share no points but some moments: the step of one is no multiple of the next one's.
+while read -r scene coarse fine; do
+  expect 0 run "$scene" --accuracy "$coarse" --json
+  cp "$work/out" "$work/json"
+  expect 0 run "$scene" --accuracy "$fine" --json
+  jq -ne --slurpfile a "$work/json" --slurpfile b "$work/out" \
+    '($a[0].step / $b[0].step) as $r | $r > 1.5 and ($r - ($r | round) | fabs) > 0.01' >/dev/null ||
+    fail "$scene: grids that are nested"
+done <<END
+$work/rod.yaml 0.0001% 0.000001%
+$here/capped.yaml 1% 0.1%
+END
+
 # Two coarse runs agree on a periodic motion to which the start does not lead; adaptive with tolerances from 1e-9 to
 # 1e-12, and verlet-events with 20 us, say 3.97162.
 for wanted in "2% 0.02" "1% 0.01"; do
