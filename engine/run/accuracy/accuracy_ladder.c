@@ -54,9 +54,9 @@ typedef struct ladder {
   double *difference;            /* (quantities) of the latest two runs, SI */
   double *shifted;               /* (quantities) what a shifted start changes, SI */
   double sensitivity;            /* the same as `change` */
-  double *low, *high; /* (quantities, then the velocity) range over the runs but the first, SI */
-  size_t worst;       /* index of the quantity with the largest relative error */
-  double distance;    /* of the latest two tracks */
+  double *results;               /* (runs, quantities + 1) of each run, then the velocity, SI */
+  size_t worst;                  /* index of the quantity with the largest relative error */
+  double distance;               /* of the latest two tracks */
   int runs;
   double mean[MOST_RUNS]; /* (means) velocities of the runs but the first [m/s] */
   int means;
@@ -179,13 +179,11 @@ static strut_status discard_unfinished_run(ladder *l) {
   return STRUT_OK;
 }
 
-/* Widens the range of each result by the latest run; the first one is coarser by far than the others. */
-static void note_range(const ladder *l, const strut_summary *s) {
-  for (size_t i = 0; i <= s->measured_count; i++) {
-    double value = i < s->measured_count ? s->measured[i].value : s->velocity;
-    if (l->runs <= 2 || value < l->low[i]) l->low[i] = value;
-    if (l->runs <= 2 || value > l->high[i]) l->high[i] = value;
-  }
+/* Keeps the results of the latest run, for their range. */
+static void keep_results(const ladder *l, const strut_summary *s) {
+  double *value = l->results + (size_t)(l->runs - 1) * (l->a->experiment.quantity_count + 1);
+  for (size_t i = 0; i < s->measured_count; i++) value[i] = s->measured[i].value;
+  value[s->measured_count] = s->velocity;
 }
 
 /* Makes one more run without output and compares it with the one before. */
@@ -208,7 +206,7 @@ static strut_status run_next_rung(ladder *l) {
   l->earlier_change = l->change;
   l->change = l->distance = HUGE_VAL;
   if (status && status != STRUT_DIVERGED) return status;
-  if (!status) note_range(l, &next->s);
+  keep_results(l, &next->s);
   if (status || l->runs == 1 || l->before->s.status) return STRUT_OK;
   double period =
       next->e.steady.wanted ? strut_experiment_span(&l->a->experiment, l->a->scene).period : 0.0;
@@ -316,9 +314,10 @@ static strut_status create_ladder(strut_accuracy *a, ladder *l) {
   for (int k = 0; k < 3 && !status; k++)
     status = strut_track_create(l->model, moments, &l->arena, &l->rung[k].track);
   size_t quantities = a->experiment.quantity_count;
-  double **const arrays[] = {&l->difference, &l->shifted, &l->low, &l->high};
+  double **const arrays[] = {&l->difference, &l->shifted, &l->results};
   for (size_t k = 0; k < sizeof arrays / sizeof arrays[0] && !status; k++)
-    if (!(*arrays[k] = strut_arena_allocate(&l->arena, quantities + 1, sizeof(double))))
+    if (!(*arrays[k] =
+              strut_arena_allocate(&l->arena, MOST_RUNS * (quantities + 1), sizeof(double))))
       status = STRUT_NO_MEMORY;
   return status ? strut_fail(a->error, status, "out of memory") : STRUT_OK;
 }
@@ -361,7 +360,7 @@ static strut_status check_sensitivity(ladder *l) {
   strut_snapshot start = {.q = NULL};
   strut_summary shifted = {0};
   const rung *r = l->budget_spent ? l->now : l->before; /* the one before was not finished */
-  if (!l->kept || !l->same_motion || a->single_method || l->runs < 3) return STRUT_OK;
+  if (!l->same_motion || a->single_method || l->runs < 3) return STRUT_OK;
   if (!(r->e.tolerance < CHECKED_BELOW)) return STRUT_OK;
   strut_status status = shift_start(l, &start);
   if (status) return status;
@@ -373,7 +372,7 @@ static strut_status check_sensitivity(ladder *l) {
   size_t worst = l->worst;
   l->sensitivity = status ? HUGE_VAL : compare_results(l, &r->s, &shifted, l->shifted);
   l->worst = worst;
-  l->kept = l->sensitivity <= a->target;
+  l->kept = l->kept && l->sensitivity <= a->target;
   strut_summary_free(&shifted);
   return status == STRUT_DIVERGED ? STRUT_OK : status;
 }
@@ -435,9 +434,16 @@ static double choose_margin(const ladder *l) {
   return l->runs == 3 && !l->a->single_method ? MARGIN_OF_FIRST_PAIR : MARGIN;
 }
 
-/* How far the runs are from `value`, of quantity i or, behind them, of the velocity. */
-static double range_about(const ladder *l, size_t i, double value) {
-  return MARGIN * fmax(l->high[i] - value, value - l->low[i]);
+/* Runs whose range counts where they are the same motion: earlier ones were further from it. */
+enum { LATEST = 3 };
+
+/* How far runs are from the latest, in quantity i or, behind them, in the velocity. The first run is coarser by far. */
+static double range_about_latest(const ladder *l, size_t i) {
+  size_t width = l->a->experiment.quantity_count + 1;
+  double latest = l->results[(size_t)(l->runs - 1) * width + i], most = 0.0;
+  for (int k = l->same_motion && l->runs > LATEST ? l->runs - LATEST : 1; k < l->runs; k++)
+    most = fmax(most, fabs(l->results[(size_t)k * width + i] - latest));
+  return MARGIN * most;
 }
 
 /* Fills the expected error of each quantity and whether it is within the wanted one. */
@@ -450,7 +456,7 @@ static void report_quantities(const ladder *l) {
     if (l->runs > 1)
       m->expected = fmax(choose_margin(l) * factor * l->difference[i], l->shifted[i]);
     m->kept = l->kept || (l->same_motion && m->expected <= tolerated_error(l, m, i));
-    if (!m->kept && l->runs > 1) m->expected = fmax(m->expected, range_about(l, i, m->value));
+    if (!m->kept && l->runs > 1) m->expected = fmax(m->expected, range_about_latest(l, i));
   }
 }
 
@@ -460,10 +466,10 @@ static double range_of_runs(const ladder *l) {
   if (l->runs < 2) return (double)NAN;
   double worst = 0.0, change = isfinite(l->change) ? MARGIN * l->change : 0.0;
   if (!s->measured_count)
-    return fmax(change, range_about(l, 0, s->velocity) / velocity_size(l, s->velocity));
+    return fmax(change, range_about_latest(l, 0) / velocity_size(l, s->velocity));
   for (size_t i = 0; i < s->measured_count; i++) {
     const strut_measured *m = &s->measured[i];
-    worst = fmax(worst, range_about(l, i, m->value) / tolerated_error(l, m, i));
+    worst = fmax(worst, range_about_latest(l, i) / tolerated_error(l, m, i));
   }
   return fmax(change, l->a->target * worst);
 }
@@ -472,7 +478,8 @@ static void report_ladder(ladder *l) {
   strut_accuracy *a = l->a;
   strut_summary *s = a->summary;
   double expected = l->same_motion ? choose_margin(l) * l->expected : l->expected;
-  expected = isfinite(expected) ? fmax(expected, l->sensitivity) : range_of_runs(l);
+  if (!isfinite(expected)) expected = range_of_runs(l);
+  if (isfinite(expected)) expected = fmax(expected, l->sensitivity);
   if (!isfinite(expected)) expected = (double)NAN; /* a single run */
   s->accuracy = (strut_accuracy_summary){.wanted = a->target,
                                          .expected = expected,
