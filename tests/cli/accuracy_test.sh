@@ -254,6 +254,38 @@ stalled 1% 0.01 0.0510317
 pair 0.3% 0.003 -0.0495417
 END
 
+# The grids of successive runs share no points but some moments: the step of one is no multiple of the next one's.
+while read -r scene coarse fine; do
+  expect 0 run "$scene" --accuracy "$coarse" --json
+  cp "$work/out" "$work/json"
+  expect 0 run "$scene" --accuracy "$fine" --json
+  jq -ne --slurpfile a "$work/json" --slurpfile b "$work/out" \
+    '($a[0].step / $b[0].step) as $r | $r > 1.5 and ($r - ($r | round) | fabs) > 0.01' >/dev/null ||
+    fail "$scene: grids that are nested"
+done <<END
+$work/rod.yaml 0.0001% 0.000001%
+$here/capped.yaml 1% 0.1%
+END
+
+# Two coarse runs agree on a periodic motion to which the start does not lead; adaptive with tolerances from 1e-9 to
+# 1e-12, and verlet-events with 20 us, say 3.97162.
+for wanted in "2% 0.02" "1% 0.01"; do
+  set -- $wanted
+  expect 0 run "$here/branch.yaml" --accuracy "$1" --json
+  cp "$work/out" "$work/json"
+  about "$(field .measured.f.value)" 3.971622 "$2"
+  [ "$(field .accuracy.kept)" = true ] || fail "branch: $1 is not kept"
+done
+# Feet without normal force at the start: all methods, with steps that are small enough, say -0.20297.
+expect 0 run "$here/weightless.yaml" --accuracy 2% --json
+cp "$work/out" "$work/json"
+about "$(field .velocity)" -0.20297 0.02
+[ "$(field .accuracy.kept)" = true ] || fail "weightless: not kept"
+# An answer that the last bits of the start decide is known no better than they say.
+expect 0 run "$here/sensitive.yaml" --accuracy 1% --json
+cp "$work/out" "$work/json"
+[ "$(field '(.accuracy.kept | not) and .accuracy.expected > 0.01')" = true ] || fail "sensitive: kept"
+
 # An orbit that runs leave again is not extrapolated to, though its period is the drive's: beside it the steady
 # motion takes two periods, and is 7 % slower (adaptive until steady within 0.05 %: 16.708 mm/s).
 expect 0 run "$crawler" --set friction=0.1 --set "frequency=13.613 Hz" --set "amplitude=0.2986 mm" --accuracy 2% --json

@@ -7,7 +7,7 @@
 #include "tests/support/check.h"
 #include "tests/support/motion.h"
 
-static const double PI = 3.14159265358979323846;
+static const double PI = 3.14159265358979323846, GRAVITY = 9.81;
 static const char *const LOCATED[] = {"rk4-events", "adaptive"};
 enum { LOCATED_COUNT = sizeof LOCATED / sizeof LOCATED[0] };
 
@@ -192,6 +192,117 @@ static void test_coulomb_oscillator(void **unused) {
   }
 }
 
+/* A block of 1 kg on ground, at height y above it, under a load along the ground. */
+static void loaded_block(strut_setup *setup, double ground, double y, double mu, double load,
+                         double frequency) {
+  strut_setup_init(setup);
+  setup->scene.gravity[1] = -GRAVITY;
+  int32_t block = build_mass(&setup->scene, 0, y, 1);
+  int32_t signal = frequency > 0 ? build_sine(&setup->scene, 1, frequency) : -1;
+  build_load(&setup->scene, block, load, 0, signal);
+  build_rough_contact(&setup->scene, 0, ground, 0, mu, mu, 1e-2);
+  setup->experiment.tolerance = 1e-11;
+}
+
+/* Pulled by more than friction from rest: uniformly accelerated, and no part of a step is lost at the edge. */
+static void test_the_band_is_left_where_its_edge_is(void **unused) {
+  (void)unused;
+  const double ground = 1e5, mu = 0.1, load = 2;
+  for (int i = 0; i < LOCATED_COUNT; i++) {
+    for (double step = 1e-3; step < 6e-3; step += 1.3e-3) {
+      strut_setup setup;
+      motion m;
+      loaded_block(&setup, ground, -GRAVITY / ground, mu, load, 0);
+      motion_begin_by(&m, &setup, LOCATED[i], step);
+      motion_steps(&m, 20);
+      double expected = 20 * step * (load - mu * GRAVITY);
+      print_message("%s, step %g: speed off by %.1e m/s\n", LOCATED[i], step,
+                    m.state->v[0] - expected);
+      assert_near(m.state->v[0], expected, 1e-12 * expected);
+      motion_end(&m);
+      strut_setup_free(&setup);
+    }
+  }
+}
+
+/*
+ * Slowed down to the edge of the band, where forces balance, the block keeps that speed until the load, which grows
+ * as a sine, exceeds what friction can balance.
+ */
+static void test_the_edge_of_the_band_is_left_where_balance_ends(void **unused) {
+  (void)unused;
+  const double ground = 1e5, mu = 0.1, load = 4, frequency = 0.05, edge = 1e-2, most = mu * GRAVITY;
+  const double omega = 2 * PI * frequency, leaves = asin(most / load) / omega, end = 1.5;
+  for (int i = 0; i < LOCATED_COUNT; i++) {
+    strut_setup setup;
+    motion m;
+    loaded_block(&setup, ground, -GRAVITY / ground, mu, load, frequency);
+    setup.scene.nodes[0].velocity[0] = 0.05;
+    motion_begin_by(&m, &setup, LOCATED[i], 5e-3);
+    motion_steps(&m, 120);
+    assert_near(m.state->v[0], edge, 1e-9 * edge);
+    motion_steps(&m, 180);
+    double expected =
+        edge + load / omega * (cos(omega * leaves) - cos(omega * end)) - most * (end - leaves);
+    print_message("%s: speed off by %.1e m/s, %lld events\n", LOCATED[i], m.state->v[0] - expected,
+                  (long long)m.state->events);
+    assert_near(m.state->v[0], expected, 1e-10 * expected);
+    motion_end(&m);
+    strut_setup_free(&setup);
+  }
+}
+
+/*
+ * Pushed backwards by a load that begins at 0, as the normal force does: friction is against the push from the start,
+ * and the block never within what it could balance.
+ */
+static void test_friction_is_against_a_push_that_begins(void **unused) {
+  (void)unused;
+  const double ground = 1000, omega = sqrt(ground), mu = 0.3, load = -400, frequency = 0.5;
+  const double drive = 2 * PI * frequency, step = 1e-3, t = 50 * step;
+  for (int i = 0; i < LOCATED_COUNT; i++) {
+    strut_setup setup;
+    motion m;
+    loaded_block(&setup, ground, 0, mu, load, frequency);
+    setup.scene.contacts[0].friction.mu_static = 1.2 * mu;
+    motion_begin_by(&m, &setup, LOCATED[i], step);
+    motion_steps(&m, 50);
+    double expected =
+        load / drive * (1 - cos(drive * t)) + mu * GRAVITY * (t - sin(omega * t) / omega);
+    print_message("%s: speed %.9g m/s, off by %.1e m/s\n", LOCATED[i], expected,
+                  m.state->v[0] - expected);
+    assert_near(m.state->v[0], expected, 1e-7);
+    motion_end(&m);
+    strut_setup_free(&setup);
+  }
+}
+
+/*
+ * Drawn on the ground, which does not carry it yet, a block slips under the smallest load, until it is carried: here
+ * within the first step.
+ */
+static void test_a_slip_may_end_in_the_step_in_which_it_begins(void **unused) {
+  (void)unused;
+  const double ground = 1000, omega = sqrt(ground), mu = 0.3, load = 0.01, most = mu * GRAVITY;
+  double t = sqrt(6 * load / most) / omega;
+  for (int k = 0; k < 50; k++)
+    t -= (load * t - most * (t - sin(omega * t) / omega)) / (load - most * (1 - cos(omega * t)));
+  double expected = load * t * t / 2 - most * (t * t / 2 + (cos(omega * t) - 1) / (omega * omega));
+  for (int i = 0; i < LOCATED_COUNT; i++) {
+    strut_setup setup;
+    motion m;
+    loaded_block(&setup, ground, 0, mu, load, 0);
+    setup.scene.contacts[0].friction.law = STRUT_FRICTION_COULOMB;
+    motion_begin_by(&m, &setup, LOCATED[i], 0.5 / omega);
+    motion_steps(&m, 6);
+    print_message("%s: slipped %.9g m, closed form %.9g m\n", LOCATED[i], m.state->q[0], expected);
+    assert_near(m.state->q[0], expected, 1e-3 * expected);
+    assert_true(m.state->v[0] == 0);
+    motion_end(&m);
+    strut_setup_free(&setup);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_restitution_of_the_one_sided_damper),
@@ -199,6 +310,10 @@ int main(void) {
       cmocka_unit_test(test_belt_stick_slip_period),
       cmocka_unit_test(test_no_stick_slip_with_equal_coefficients),
       cmocka_unit_test(test_coulomb_oscillator),
+      cmocka_unit_test(test_the_band_is_left_where_its_edge_is),
+      cmocka_unit_test(test_the_edge_of_the_band_is_left_where_balance_ends),
+      cmocka_unit_test(test_friction_is_against_a_push_that_begins),
+      cmocka_unit_test(test_a_slip_may_end_in_the_step_in_which_it_begins),
   };
   return cmocka_run_group_tests_name("extremes: events", tests, NULL, NULL);
 }

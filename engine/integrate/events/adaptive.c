@@ -116,7 +116,7 @@ static bool contradicts_at_stage(const strut_model *model, const strut_event_ste
   switch ((strut_contact_mode)l->mode[i]) {
     case STRUT_MODE_STICK: return fabs(o->friction) > held * (1.0 + part);
     case STRUT_MODE_BAND: return strut_friction_drops(f) && fabs(o->applied) > most * (1.0 + part);
-    case STRUT_MODE_PUSH: return fabs(o->applied) < most * (1.0 - part);
+    case STRUT_MODE_PUSH: return l->side[i] * o->applied < most * (1.0 - part);
     case STRUT_MODE_CREEP:
       return l->side[i] * o->friction <
              -strut_friction_kinetic(f, l->side[i]) * o->normal * (1.0 + part);

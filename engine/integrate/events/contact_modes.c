@@ -6,7 +6,8 @@
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/integrate/events/local_events.h"
 
-/* At rest on the ground is what is slower than this part of size times the contact's frequency. */
+/* At rest on the ground is what is slower than this part of size times the contact's frequency; and no force what
+   is below this part of the forces on the node. */
 static const double TIE = 1e-12;
 
 STRUT_CLONES
@@ -112,6 +113,12 @@ static void close_contact(const strut_model *model, strut_event_stepper *l, int3
   }
 }
 
+/* Is what holds stuck contact i no more than rounding of the forces on its node? */
+static bool is_held_by_rounding(const strut_model *model, const strut_event_stepper *l, int32_t i) {
+  const double *force = l->now->structure + model->contacts.at[i];
+  return fabs(l->now->touch[i].friction) <= TIE * hypot(force[0], force[1]);
+}
+
 /* The stuck contact that is held by more than friction can give, or -1. */
 static int32_t overloaded(const strut_model *model, const strut_event_stepper *l) {
   double worst = 1e-12;
@@ -123,8 +130,9 @@ static int32_t overloaded(const strut_model *model, const strut_event_stepper *l
     double most =
         strut_friction_static(&model->contacts.entry[i].friction, -o->friction) * o->normal;
     double over = fabs(o->friction) - most;
-    /* Without any normal force yet nothing can be said: the end of the step will tell. */
-    if (!(over > worst * fabs(o->friction)) || !(o->normal > 0.0)) continue;
+    if (!(over > worst * fabs(o->friction))) continue;
+    /* without a normal force yet, no friction is too little: rounding must not set the node in motion */
+    if (!(o->normal > 0.0) && is_held_by_rounding(model, l, i)) continue;
     worst = over / fabs(o->friction);
     found = i;
   }
@@ -247,6 +255,13 @@ static void decide_at_edge(const strut_model *model, strut_state *state, strut_e
   l->mode[i] = outside > 0.0 ? STRUT_MODE_SLIP : STRUT_MODE_CREEP;
 }
 
+/* Where contact i is pushed to. Without a normal force yet, other forces may begin just now: those a step later say. */
+static int8_t side_of_push(const strut_event_stepper *l, int32_t i) {
+  const strut_touch *o = &l->now->touch[i];
+  double applied = o->normal > 0.0 ? o->applied : l->next->touch[i].applied;
+  return applied < 0.0 ? -1 : 1;
+}
+
 static void begin_refinement(const strut_event_stepper *l, int32_t i, double t, double *until) {
   double time = l->refine_time > 0.0 ? l->refine_time : l->refine_memory * l->settling_time[i];
   *until = fmax(*until, t + time);
@@ -270,6 +285,7 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_event
       }
       break;
     case STRUT_EVENT_LEAVES_STICK_BAND:
+    case STRUT_EVENT_BALANCE_ENDS:
       l->side[i] = l->now->touch[i].slip < 0.0 ? -1 : 1;
       decide_at_edge(model, state, l, i, true, t);
       break;
@@ -286,14 +302,14 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_event
       else
         l->mode[i] = l->mode[i] == STRUT_MODE_BAND ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
       l->pushed = i, l->pushed_at = t;
-      l->side[i] = l->now->touch[i].applied < 0.0 ? -1 : 1;
+      l->side[i] = side_of_push(l, i);
       break;
     case STRUT_EVENT_YIELDED: {
       const strut_touch *o = &l->now->touch[i];
       const strut_friction *f = &model->contacts.entry[i].friction;
       bool over = fabs(o->applied) > strut_friction_static(f, o->applied) * o->normal;
       l->mode[i] = over ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
-      l->side[i] = o->applied < 0.0 ? -1 : 1;
+      l->side[i] = side_of_push(l, i);
       break;
     }
     case STRUT_EVENT_DAMPER: l->damper[i] = (int8_t)-l->damper[i]; break;

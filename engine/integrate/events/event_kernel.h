@@ -197,9 +197,16 @@ STRUT_INLINE void accelerate_in_modes(const strut_model *model, strut_state *sta
 /* Forces and speeds that agree to this part are taken to be equal at the edge of a band. */
 static const double TIED = 1e-8;
 
+/* Do the forces on a contact within its band balance, but for rounding? Then its speed does not change. */
+STRUT_INLINE bool band_forces_balance(const strut_event_stepper *l, const strut_touch *o,
+                                      int32_t i) {
+  return fabs(o->slip_rate) <= TIED * o->normal * l->response[i].tangent;
+}
+
 /*
  * Where the neighbours' inertia pushes nothing, what holds a creeping contact is the band's force but
- * for rounding: then the contact is within the band, at its edge, which rounding does not leave.
+ * for rounding: then the contact is within the band, at its edge, which rounding does not leave. A speed
+ * that passes the edge is not tied to it: steppers that are exact find where it does.
  */
 STRUT_INLINE void settle_band_ties(const strut_model *model, const strut_event_stepper *l) {
   for (int32_t k = 0; k < l->closed_count; k++) {
@@ -209,7 +216,8 @@ STRUT_INLINE void settle_band_ties(const strut_model *model, const strut_event_s
     double faint = TIED * o->normal, edge = e->friction.stick_velocity;
     if (l->mode[i] == STRUT_MODE_CREEP && fabs(o->friction + o->applied) <= faint)
       o->friction = -o->applied + l->side[i] * faint; /* creep ends */
-    if (l->mode[i] == STRUT_MODE_BAND && fabs(fabs(o->slip) - edge) <= TIED * edge)
+    if (l->mode[i] == STRUT_MODE_BAND && fabs(fabs(o->slip) - edge) <= TIED * edge &&
+        (!l->stepper->exact || band_forces_balance(l, o, i)))
       o->slip = (o->slip < 0.0 ? -edge : edge) * (1.0 - TIED); /* in it, not leaving */
   }
 }
@@ -262,13 +270,15 @@ STRUT_INLINE strut_event_kind contradicting_event(const strut_contact_entry *e,
       return s * (stick_band_force(e, o) - o->friction) < 0.0 ? STRUT_EVENT_CREEP_IN
                                                               : STRUT_EVENT_NONE;
     case STRUT_MODE_BAND:
-    case STRUT_MODE_PUSH:
+    case STRUT_MODE_PUSH: {
       if (fabs(o->slip) > stick_band_edge(e)) return STRUT_EVENT_LEAVES_STICK_BAND;
       if (!strut_friction_drops(&e->friction)) return STRUT_EVENT_NONE;
-      return (fabs(o->applied) > strut_friction_static(&e->friction, o->applied) * o->normal) ==
+      double size = mode == STRUT_MODE_PUSH ? s * o->applied : fabs(o->applied);
+      return (size > strut_friction_static(&e->friction, o->applied) * o->normal) ==
                      (mode == STRUT_MODE_PUSH)
                  ? STRUT_EVENT_NONE
                  : STRUT_EVENT_PUSH;
+    }
     case STRUT_MODE_YIELD:
       if (fabs(o->slip) > stick_band_edge(e)) return STRUT_EVENT_LEAVES_STICK_BAND;
       return yield_margin(e, o) < 0.0 ? STRUT_EVENT_YIELDED : STRUT_EVENT_NONE;

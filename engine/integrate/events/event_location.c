@@ -43,6 +43,11 @@ STRUT_INLINE double law_value(const strut_event_stepper *l, const strut_step_end
   return l->acting[i] ? lesser : -lesser;
 }
 
+/* How far the applied force is from what friction can balance [N]. */
+static double balance_margin(const strut_contact_entry *e, const strut_touch *o) {
+  return strut_friction_static(&e->friction, o->applied) * o->normal - fabs(o->applied);
+}
+
 double strut_event_value(const strut_model *model, const strut_event_stepper *l,
                          const strut_step_end *end, strut_event_kind kind, int32_t i) {
   if (strut_event_is_of_law(kind)) return law_value(l, end, i);
@@ -63,11 +68,10 @@ double strut_event_value(const strut_model *model, const strut_event_stepper *l,
     case STRUT_EVENT_CREEP_OUT:
       return s * o->friction + strut_friction_kinetic(&e->friction, s) * o->normal;
     case STRUT_EVENT_CREEP_IN: return s * (stick_band_force(e, o) - o->friction);
-    case STRUT_EVENT_PUSH: {
-      double most = strut_friction_static(&e->friction, o->applied) * o->normal;
-      double room = most - fabs(o->applied);
-      return l->mode[i] == STRUT_MODE_BAND ? room : -room;
-    }
+    case STRUT_EVENT_BALANCE_ENDS: return balance_margin(e, o);
+    case STRUT_EVENT_PUSH:
+      if (l->mode[i] == STRUT_MODE_BAND) return balance_margin(e, o);
+      return s * o->applied - strut_friction_static(&e->friction, o->applied) * o->normal;
     case STRUT_EVENT_YIELDED: return yield_margin(e, o);
     case STRUT_EVENT_DAMPER: return l->damper[i] > 0 ? -o->into : o->into;
     case STRUT_EVENT_NONE:
@@ -94,6 +98,7 @@ bool strut_event_rate(const strut_event_stepper *l, const strut_step_end *end,
     case STRUT_EVENT_STICK_BREAKS:
     case STRUT_EVENT_CREEP_OUT:
     case STRUT_EVENT_CREEP_IN:
+    case STRUT_EVENT_BALANCE_ENDS:
     case STRUT_EVENT_PUSH:
     case STRUT_EVENT_YIELDED:
     case STRUT_EVENT_ACTS:
@@ -138,6 +143,18 @@ static double room_to_leave(const strut_model *model, const strut_event_stepper 
   return room < faint && rate > -balanced ? faint : room;
 }
 
+/*
+ * How far contact i is from ceasing to slip, where that is `room` by its speed, which is `after` at the end of the
+ * step. A slip that begins where the step does, and grows at first, ends where it has come back.
+ */
+static double room_to_slip(const strut_model *model, const strut_event_stepper *l, int32_t i,
+                           double room, double after) {
+  double edge = stick_band_edge(&model->contacts.entry[i]), least = 1e-9 * edge, rate = 0.0;
+  if (edge > 0.0 && !l->stepper->exact) return room;
+  strut_event_rate(l, l->now, STRUT_EVENT_SLIP_ENDS, i, &rate);
+  return room <= least && rate > 0.0 ? fmax(least, -1e-12 * after) : room;
+}
+
 /* Rates of the value of a cable's law at both ends of a region's step, that of the stretch's own rate by a secant;
    false where they are not known, or not alike at both ends. */
 static bool cable_rates(const strut_event_stepper *l, int32_t i, double h, double *d0, double *d1) {
@@ -164,6 +181,7 @@ static double fraction_of(const strut_model *model, const strut_event_stepper *l
   double g0 = strut_event_value(model, l, l->now, kind, i), d0, d1;
   double g1 = strut_event_value(model, l, l->next, kind, i);
   if (kind == STRUT_EVENT_LEAVES_STICK_BAND) g0 = room_to_leave(model, l, i, g0);
+  if (kind == STRUT_EVENT_SLIP_ENDS) g0 = room_to_slip(model, l, i, g0, g1);
   if (!(g0 > 0.0)) return 0.0;
   if (kind == STRUT_EVENT_TOUCH) {
     const strut_contact_table *c = &model->contacts;
@@ -284,6 +302,19 @@ static bool closes(const strut_contact_table *c, int32_t i, const strut_event_st
   return to.into < 0.0;
 }
 
+/*
+ * Does contact i, at whose edge the forces balance where the step begins, leave because they cease to? The
+ * speed alone would show that late: it grows from there with the square of the time.
+ */
+static bool loses_balance(const strut_model *model, const strut_event_stepper *l, int32_t i) {
+  const strut_contact_entry *e = &model->contacts.entry[i];
+  const strut_touch *from = &l->now->touch[i];
+  double edge = stick_band_edge(e);
+  return l->stepper->exact && l->mode[i] == STRUT_MODE_BAND &&
+         fabs(from->slip) >= edge * (1.0 - 2.0 * TIED) && band_forces_balance(l, from, i) &&
+         balance_margin(e, from) > 0.0 && balance_margin(e, &l->next->touch[i]) < 0.0;
+}
+
 /* What ends a mode of contact i, if it comes before `first`. */
 STRUT_INLINE void keep_first_of(const strut_model *model, const strut_event_stepper *l, int32_t i,
                                 double h, unsigned terms, strut_event *first) {
@@ -295,6 +326,8 @@ STRUT_INLINE void keep_first_of(const strut_model *model, const strut_event_step
   }
   const strut_touch *o = &l->next->touch[i];
   strut_event_kind kind = contradicting_event(&c->entry[i], o, l->mode[i], l->side[i]);
+  if (kind == STRUT_EVENT_LEAVES_STICK_BAND && loses_balance(model, l, i))
+    kind = STRUT_EVENT_BALANCE_ENDS;
   if (kind) keep_first(model, l, kind, i, h, first);
   int32_t nearest;
   if (frames_of(l->next, terms) && strut_surface_facet_margin(c, l, l->next, i, &nearest) < 0.0)

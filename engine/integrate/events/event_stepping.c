@@ -340,16 +340,6 @@ static bool is_near(const strut_event_stepper *l, const strut_event *event, cons
   return fabs(s->value) <= 1e-8 * fabs(slope);
 }
 
-/* Where forces balance until then, an edge is left so gently that this part of a step is no matter. */
-static const double BALANCED = 1e-5;
-
-/* Forces still balance at the edge of the band, where speeds are held apart from it by TIED: there is no root
-   here, though the value does not change. */
-static bool tied_at_edge(const strut_model *model, const strut_event *event, double value) {
-  return event->kind == STRUT_EVENT_LEAVES_STICK_BAND &&
-         value > 0.5 * TIED * stick_band_edge(&model->contacts.entry[event->index]);
-}
-
 static bool is_above_threshold(const strut_friction *f, const strut_touch *o) {
   return fabs(o->applied) > strut_friction_static(f, o->applied) * o->normal;
 }
@@ -404,12 +394,9 @@ static double retake(const strut_model *model, strut_state *state, strut_event_s
     double rate = 0.0;
     if (strut_event_rate(l, l->next, event->kind, event->index, &rate)) rate *= h;
     if (fabs(s.value) <= 1e-13 * fabs(rate)) break;
-    bool tied = tied_at_edge(model, event, s.value);
-    if (l->within && !tied && is_near(l, event, &s, rate)) break;
-    if (s.value == 0.0 || (k > 0 && !tied && stagnant(&s))) break;
-    if (tied && s.high - s.x <= BALANCED) break;
+    if (l->within && is_near(l, event, &s, rate)) break;
+    if (s.value == 0.0 || (k > 0 && stagnant(&s))) break;
     double x = l->within && rate == 0.0 ? next_by_parabola(&s) : next_point(&s, rate);
-    if (tied) x = 0.5 * (s.low + s.high);
     if (s.high - s.low <= 1e-13) break;
     s.x = x;
   }

@@ -206,7 +206,7 @@ STRUT_SMALL_INLINE bool small_contradicts_at_stage(const small_events *e) {
     small_real most = small_static(c, p, applied, laws) * normal;
     small_mask bad = SMALL_MODE_MASK(stick) & small_less(held * (1.0 + part), rubs);
     bad |= SMALL_MODE_MASK(band) & SMALL_MODE_MASK(drops) & small_less(most * (1.0 + part), size);
-    bad |= SMALL_MODE_MASK(pushes) & small_less(size, most * (1.0 - part));
+    bad |= SMALL_MODE_MASK(pushes) & small_less(SMALL_MODE(side) * applied, most * (1.0 - part));
     bad |= SMALL_MODE_MASK(creep) & small_less(SMALL_MODE(side) * friction,
                                                SMALL_MODE(minus_kinetic) * normal * (1.0 + part));
     any = any || small_any(bad & SMALL_MODE_MASK(closed) & small_less(zero, normal));

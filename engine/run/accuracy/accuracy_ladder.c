@@ -10,110 +10,19 @@
 #include <string.h>
 
 #include "engine/integrate/integrator.h"
-#include "engine/model/pose.h"
 #include "engine/run/accuracy/accuracy.h"
-#include "engine/run/recorder.h"
-
-/* ---- tracks: node positions near the end of a run, to compare motions ---- */
-
-typedef struct track {
-  const strut_model *model; /* any run of this model may be recorded */
-  size_t capacity, count;   /* capacity; moments of the latest run */
-  double *time;             /* (capacity) [s] */
-  double *position;         /* (capacity, node_count, 2) [m] */
-  strut_sink sink;          /* for the run */
-} track;
-
-/* Moments of two runs closer than this, relative to their spacing, are the same. */
-static const double SAME_MOMENT = 1e-3;
-/* Smallest motion that distances are relative to, over the size of the structure. */
-static const double LEAST_MOTION = 1e-4;
-
-static strut_status begin_track(void *context, const strut_record_layout *layout,
-                                strut_error *error) {
-  (void)layout, (void)error;
-  ((track *)context)->count = 0;
-  return STRUT_OK;
-}
-
-static strut_status record_track_rows(void *context, const double *rows, size_t count,
-                                      strut_error *error) {
-  track *t = context;
-  size_t both = 2 * (size_t)t->model->node_count;
-  (void)error;
-  for (size_t k = 0; k < count && t->count < t->capacity; k++, t->count++) {
-    const double *row = rows + k * (both + 1);
-    t->time[t->count] = row[0];
-    memcpy(t->position + t->count * both, row + 1, both * sizeof(double));
-  }
-  return STRUT_OK;
-}
-
-static strut_status end_track(void *context, strut_status status, strut_error *error) {
-  (void)context, (void)status, (void)error;
-  return STRUT_OK;
-}
-
-static strut_status create_track(const strut_model *model, size_t capacity, strut_arena *arena,
-                                 track *t) {
-  size_t both = 2 * (size_t)model->node_count;
-  *t = (track){.model = model, .capacity = capacity};
-  t->sink = (strut_sink){t, begin_track, record_track_rows, end_track, STRUT_CHANNEL_POSITION};
-  t->time = strut_arena_allocate(arena, capacity, sizeof(double));
-  t->position = strut_arena_allocate(arena, capacity * both, sizeof(double));
-  return t->time && t->position ? STRUT_OK : STRUT_NO_MEMORY;
-}
-
-/* Mean position along the ground at moment k; 0 where a support holds it or there is no ground. */
-static double mean_along_ground(const track *t, size_t k) {
-  const strut_model *model = t->model;
-  const double *q = t->position + 2 * k * (size_t)model->node_count;
-  double sum = 0.0;
-  if (!strut_contacts_allow_travel(&model->contacts)) return 0.0;
-  for (int32_t i = 0; i < model->node_count; i++) {
-    if (model->fixed[2 * i] || model->fixed[2 * i + 1]) return 0.0;
-    sum += q[2 * i] * model->contacts.tangent[0] + q[2 * i + 1] * model->contacts.tangent[1];
-  }
-  return sum / model->node_count;
-}
+#include "engine/run/accuracy/accuracy_track.h"
 
 /*
- * Largest distance between two tracks at the same moments over the nodes' range of motion: 0 for
- * the same motion, about 1 for unrelated ones. Travel along the ground is left out. HUGE_VAL where
- * the moments differ, except by whole periods [s] if `period` is not 0. Motions below LEAST_MOTION
- * of the size count as that.
+ * Factor from one run with error control to the next. Local errors are of fifth order, so that half the
+ * longest step has about the same effect.
  */
-static double measure_track_distance(const track *a, const track *b, double period) {
-  const strut_model *model = a->model;
-  size_t both = 2 * (size_t)model->node_count, count = a->count;
-  double away = 0.0, motion = LEAST_MOTION * model->size;
-  if (count != b->count || count < 2) return HUGE_VAL;
-  double apart = (a->time[count - 1] - a->time[0]) / (double)(count - 1);
-  double first = mean_along_ground(a, 0);
-  for (size_t k = 0; k < count; k++) {
-    double here = mean_along_ground(a, k), there = mean_along_ground(b, k);
-    double later = a->time[k] - b->time[k];
-    if (period > 0.0) later = remainder(later, period);
-    if (fabs(later) > SAME_MOMENT * apart) return HUGE_VAL;
-    for (size_t i = 0; i < both; i++) {
-      double t =
-          strut_contacts_allow_travel(&model->contacts) ? model->contacts.tangent[i % 2] : 0.0;
-      double x = a->position[k * both + i] - here * t, y = b->position[k * both + i] - there * t;
-      double x0 = a->position[i] - first * t;
-      away = fmax(away, fabs(x - y));
-      motion = fmax(motion, fabs(x - x0));
-    }
-  }
-  return away / motion;
-}
-
-/* ---- the ladder of runs ---- */
-
+static const double FINER_TOLERANCE = 1.0 / 30.0;
 /*
- * Factors from one run with error control to the next. Local errors are of fifth order, so that
- * both have about the same effect.
+ * Tolerance of the first such run: at most, and over the wanted error. Looser ones cost hardly less, since the cost
+ * is in the events and the longest step, and may agree with verlet-events on a motion that neither leads to.
  */
-static const double FINER_TOLERANCE = 1.0 / 30.0, FINER_STEP = 0.5;
+static const double FIRST_TOLERANCE = 1e-5, FIRST_TOLERANCE_PER_ERROR = 1e-3;
 /* Smallest tolerance: below it rounding dominates. */
 static const double LEAST_TOLERANCE = 3e-14;
 /* Longest steps per period of the first such run; of these, steps per moment of a track. */
@@ -131,7 +40,7 @@ static const double ZERO_QUANTITY = 1e-3;
 typedef struct rung {
   strut_experiment e;
   strut_summary s;
-  track track;
+  strut_track track;
   int64_t cost; /* force evaluations */
 } rung;
 
@@ -143,6 +52,9 @@ typedef struct ladder {
   double change, earlier_change; /* relative, of the latest two runs and of the two before */
   double earliest_change;        /* of the two before those */
   double *difference;            /* (quantities) of the latest two runs, SI */
+  double *shifted;               /* (quantities) what a shifted start changes, SI */
+  double sensitivity;            /* the same as `change` */
+  double *results;               /* (runs, quantities + 1) of each run, then the velocity, SI */
   size_t worst;                  /* index of the quantity with the largest relative error */
   double distance;               /* of the latest two tracks */
   int runs;
@@ -180,6 +92,17 @@ static double divide_evenly(double unit, double step) {
 }
 
 /*
+ * Steps between two moments in the k-th of runs of which the first has `first`: about twice as many from run to
+ * run, without a common divisor. Two successive runs so meet at moments only, and a peak that both miss in between
+ * is not missed alike.
+ */
+static double count_steps_of_moment(double first, int k) {
+  double count = first;
+  for (int i = 0; i < k; i++) count = 2.0 * count + (i % 2 ? -1.0 : 1.0);
+  return count;
+}
+
+/*
  * Settings of the k-th run: ever smaller steps where only one method suits the scene, otherwise
  * first Verlet and then error control.
  */
@@ -187,13 +110,16 @@ static strut_experiment refine_experiment(const ladder *l, int k) {
   const strut_accuracy *a = l->a;
   strut_experiment e = a->coarse;
   e.steady.tolerance = fmin(e.steady.tolerance, 0.2 * a->target);
-  e.step = divide_evenly(l->moment, e.step);
-  if (a->single_method) e.step = ldexp(e.step, -k);
-  if (!a->single_method && k > 0) {
+  double coarse = ceil(l->moment / e.step * (1.0 - 1e-9));
+  if (a->single_method) {
+    e.step = l->moment / count_steps_of_moment(coarse, k);
+  } else if (k == 0) {
+    e.step = l->moment / (fmod(coarse, STEPS_OF_MOMENT) == 0.0 ? coarse + 1.0 : coarse);
+  } else {
     e.integrator = strut_integrator_for(STRUT_ROLE_REFERENCE)->name;
-    e.step = l->moment / STEPS_OF_MOMENT * pow(FINER_STEP, k - 1);
-    e.tolerance = fmin(1e-4, 1e-2 * a->target) * pow(FINER_TOLERANCE, k - 1);
-    e.tolerance = fmax(LEAST_TOLERANCE, e.tolerance);
+    e.step = l->moment / count_steps_of_moment(STEPS_OF_MOMENT, k - 1);
+    e.tolerance = fmin(FIRST_TOLERANCE, FIRST_TOLERANCE_PER_ERROR * a->target);
+    e.tolerance = fmax(LEAST_TOLERANCE, e.tolerance * pow(FINER_TOLERANCE, k - 1));
   }
   strut_span span = strut_experiment_span(&a->experiment, a->scene);
   double kept = (MOST_MOMENTS - 1) * l->moment;
@@ -221,9 +147,11 @@ static double tolerated_error(const ladder *l, const strut_measured *m, size_t i
 
 /*
  * Difference of two runs, relative to the velocity; or, where the scene names quantities, the
- * largest over its allowed error, times the wanted accuracy, so that both are comparable.
+ * largest over its allowed error, times the wanted accuracy, so that both are comparable. Fills
+ * `difference` (quantities), SI.
  */
-static double compare_results(ladder *l, const strut_summary *one, const strut_summary *other) {
+static double compare_results(ladder *l, const strut_summary *one, const strut_summary *other,
+                              double *difference) {
   double worst = 0.0;
   if (one->measured_count == 0)
     return fabs(one->velocity - other->velocity) / velocity_size(l, one->velocity);
@@ -233,7 +161,7 @@ static double compare_results(ladder *l, const strut_summary *one, const strut_s
     bool never = isnan(m->value) && isnan(other->measured[i].value) &&
                  l->a->experiment.quantities[i].take == STRUT_TAKE_ARRIVAL;
     if (never) apart = 0.0; /* neither run reaches the target */
-    l->difference[i] = apart;
+    difference[i] = apart;
     if (apart == 0.0) continue;
     double part = l->a->target * apart / allowed;
     if (!(part <= worst)) worst = isnan(part) ? HUGE_VAL : part;
@@ -251,6 +179,13 @@ static strut_status discard_unfinished_run(ladder *l) {
   l->before = unfinished;
   l->runs--;
   return STRUT_OK;
+}
+
+/* Keeps the results of the latest run, for their range. */
+static void keep_results(const ladder *l, const strut_summary *s) {
+  double *value = l->results + (size_t)(l->runs - 1) * (l->a->experiment.quantity_count + 1);
+  for (size_t i = 0; i < s->measured_count; i++) value[i] = s->measured[i].value;
+  value[s->measured_count] = s->velocity;
 }
 
 /* Makes one more run without output and compares it with the one before. */
@@ -273,11 +208,12 @@ static strut_status run_next_rung(ladder *l) {
   l->earlier_change = l->change;
   l->change = l->distance = HUGE_VAL;
   if (status && status != STRUT_DIVERGED) return status;
+  keep_results(l, &next->s);
   if (status || l->runs == 1 || l->before->s.status) return STRUT_OK;
   double period =
       next->e.steady.wanted ? strut_experiment_span(&l->a->experiment, l->a->scene).period : 0.0;
-  l->change = compare_results(l, &next->s, &l->before->s);
-  l->distance = measure_track_distance(&next->track, &l->before->track, period);
+  l->change = compare_results(l, &next->s, &l->before->s, l->difference);
+  l->distance = strut_track_distance(&next->track, &l->before->track, period);
   if (l->runs > 1 && l->means < MOST_RUNS) l->mean[l->means++] = next->s.velocity;
   return STRUT_OK;
 }
@@ -378,11 +314,69 @@ static strut_status create_ladder(strut_accuracy *a, ladder *l) {
   double capacity = MOST_TRACK_NUMBERS / (2.0 * l->model->node_count);
   size_t moments = capacity < 2.0 ? 2 : capacity < MOST_MOMENTS ? (size_t)capacity : MOST_MOMENTS;
   for (int k = 0; k < 3 && !status; k++)
-    status = create_track(l->model, moments, &l->arena, &l->rung[k].track);
+    status = strut_track_create(l->model, moments, &l->arena, &l->rung[k].track);
   size_t quantities = a->experiment.quantity_count;
-  if (!status && !(l->difference = strut_arena_allocate(&l->arena, quantities, sizeof(double))))
-    status = STRUT_NO_MEMORY;
+  double **const arrays[] = {&l->difference, &l->shifted, &l->results};
+  for (size_t k = 0; k < sizeof arrays / sizeof arrays[0] && !status; k++)
+    if (!(*arrays[k] =
+              strut_arena_allocate(&l->arena, MOST_RUNS * (quantities + 1), sizeof(double))))
+      status = STRUT_NO_MEMORY;
   return status ? strut_fail(a->error, status, "out of memory") : STRUT_OK;
+}
+
+/* ---- sensitivity to the start ---- */
+
+/* Shift of the start, over the size of the structure: no model is known to so many digits. */
+static const double SHIFT = 1e-12;
+/*
+ * Only two runs with tolerances below this are checked: coarser ones differ from each other by more than the shift, so
+ * that their difference contains its effect.
+ */
+static const double CHECKED_BELOW = 1e-8;
+
+/* The start with every free coordinate shifted, up or down. */
+static strut_status shift_start(ladder *l, strut_snapshot *start) {
+  const strut_model *model = l->model;
+  size_t bytes = (size_t)model->length * sizeof(double);
+  strut_state *state = NULL;
+  start->q = strut_arena_allocate(&l->arena, (size_t)model->length, sizeof(double));
+  start->v = strut_arena_allocate(&l->arena, (size_t)model->length, sizeof(double));
+  if (!start->q || !start->v) return strut_no_memory(l->a->error, "");
+  strut_status status = strut_state_create(model, &state, l->a->error);
+  if (status) return status;
+  memcpy(start->q, state->q, bytes);
+  memcpy(start->v, state->v, bytes);
+  for (int32_t i = 0; i < 2 * model->node_count; i++)
+    if (!model->fixed[i]) start->q[i] += (i % 3 ? -SHIFT : SHIFT) * model->size;
+  strut_state_free(state);
+  return STRUT_OK;
+}
+
+/*
+ * Repeats the run before the latest from the shifted start. The answer is not accepted where that changes it by more
+ * than the wanted error.
+ */
+static strut_status check_sensitivity(ladder *l) {
+  strut_accuracy *a = l->a;
+  strut_run_options quiet = *a->options;
+  strut_snapshot start = {.q = NULL};
+  strut_summary shifted = {0};
+  const rung *r = l->budget_spent ? l->now : l->before; /* the one before was not finished */
+  if (!l->same_motion || a->single_method || l->runs < 3) return STRUT_OK;
+  if (!(r->e.tolerance < CHECKED_BELOW)) return STRUT_OK;
+  strut_status status = shift_start(l, &start);
+  if (status) return status;
+  quiet.sink_count = 0, quiet.to = NULL, quiet.from = &start;
+  strut_accuracy_begin_phase(a, "checking with a shifted start");
+  a->allowed = INT64_MAX; /* the same run was within the budget before */
+  status = strut_accuracy_run(a, &r->e, &quiet, &shifted);
+  a->check_evaluations += shifted.force_evaluations;
+  size_t worst = l->worst;
+  l->sensitivity = status ? HUGE_VAL : compare_results(l, &r->s, &shifted, l->shifted);
+  l->worst = worst;
+  l->kept = l->kept && l->sensitivity <= a->target;
+  strut_summary_free(&shifted);
+  return status == STRUT_DIVERGED ? STRUT_OK : status;
 }
 
 /* Writes such as "a velocity that differs by 2 m/s". */
@@ -417,6 +411,12 @@ static void explain_ladder(const ladder *l, char *why, size_t size) {
   else if (l->kept && !l->same_motion)
     snprintf(why, size, "%s: a coarser run gives a different motion, but %s, as in all %d runs",
              how, apart, l->means);
+  else if (l->sensitivity > a->target)
+    snprintf(
+        why, size,
+        "%s; a start shifted by %.0e m changes the answer by %.2g of itself: the motion is too "
+        "sensitive",
+        how, SHIFT * l->model->size, l->sensitivity);
   else if (l->kept)
     snprintf(why, size, "%s: %s gives the same motion, and %s", how,
              l->runs == 2 && !a->single_method ? strut_integrator_for(STRUT_ROLE_COARSE)->name
@@ -436,23 +436,54 @@ static double choose_margin(const ladder *l) {
   return l->runs == 3 && !l->a->single_method ? MARGIN_OF_FIRST_PAIR : MARGIN;
 }
 
+/* Runs whose range counts where they are the same motion: earlier ones were further from it. */
+enum { LATEST = 3 };
+
+/* How far runs are from the latest, in quantity i or, behind them, in the velocity. The first run is coarser by far. */
+static double range_about_latest(const ladder *l, size_t i) {
+  size_t width = l->a->experiment.quantity_count + 1;
+  double latest = l->results[(size_t)(l->runs - 1) * width + i], most = 0.0;
+  for (int k = l->same_motion && l->runs > LATEST ? l->runs - LATEST : 1; k < l->runs; k++)
+    most = fmax(most, fabs(l->results[(size_t)k * width + i] - latest));
+  return MARGIN * most;
+}
+
 /* Fills the expected error of each quantity and whether it is within the wanted one. */
 static void report_quantities(const ladder *l) {
   strut_summary *s = l->a->summary;
   double factor = l->change > 0.0 && isfinite(l->expected) ? l->expected / l->change : 1.0;
   for (size_t i = 0; i < s->measured_count; i++) {
     strut_measured *m = &s->measured[i];
-    m->expected = l->runs > 1 ? choose_margin(l) * factor * l->difference[i] : (double)NAN;
+    m->expected = (double)NAN;
+    if (l->runs > 1)
+      m->expected = fmax(choose_margin(l) * factor * l->difference[i], l->shifted[i]);
     m->kept =
         l->kept || strut_accuracy_is_kept(l->same_motion, m->expected, tolerated_error(l, m, i));
+    if (!m->kept && l->runs > 1) m->expected = fmax(m->expected, range_about_latest(l, i));
   }
+}
+
+/* The relative error where the runs do not converge: nothing is known of the answer but their range. */
+static double range_of_runs(const ladder *l) {
+  const strut_summary *s = l->a->summary;
+  if (l->runs < 2) return (double)NAN;
+  double worst = 0.0, change = isfinite(l->change) ? MARGIN * l->change : 0.0;
+  if (!s->measured_count)
+    return fmax(change, range_about_latest(l, 0) / velocity_size(l, s->velocity));
+  for (size_t i = 0; i < s->measured_count; i++) {
+    const strut_measured *m = &s->measured[i];
+    worst = fmax(worst, range_about_latest(l, i) / tolerated_error(l, m, i));
+  }
+  return fmax(change, l->a->target * worst);
 }
 
 static void report_ladder(ladder *l) {
   strut_accuracy *a = l->a;
   strut_summary *s = a->summary;
   double expected = l->same_motion ? choose_margin(l) * l->expected : l->expected;
-  if (!isfinite(expected)) expected = (double)NAN; /* too few runs for an estimate */
+  if (!isfinite(expected)) expected = range_of_runs(l);
+  if (isfinite(expected)) expected = fmax(expected, l->sensitivity);
+  if (!isfinite(expected)) expected = (double)NAN; /* a single run */
   s->accuracy = (strut_accuracy_summary){.wanted = a->target,
                                          .expected = expected,
                                          .scale = a->scale,
@@ -495,6 +526,7 @@ strut_status strut_accuracy_climb_ladder(strut_accuracy *a) {
   if (!l.kept)
     l.kept = strut_accuracy_is_kept(l.same_motion && l.runs > 2, choose_margin(&l) * l.expected,
                                     a->target);
+  if (!status) status = check_sensitivity(&l);
   if (!status) status = deliver_answer(&l);
   if (!status) report_ladder(&l);
   for (int k = 0; k < 3; k++) strut_summary_free(&l.rung[k].s);
