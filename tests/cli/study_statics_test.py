@@ -122,7 +122,7 @@ def sizes():
 
 def rigidity():
     jib = "copied/topologies/jib.yaml"
-    name = next(line.split(":")[0].strip() for line in open(jib, encoding="utf-8")
+    name = next(line.split(":")[0].strip() for line in open(f"{work}/{jib}", encoding="utf-8")
                 if line.startswith("  ") and "friction" in line)
     rows = sweep("rigid", f"model: {jib}\ncompute: rigidity\naxes: [{{{name}: [0.1, 0.2]}}]\n")
     alone = command("rigidity", jib)
