@@ -51,7 +51,7 @@
   X(SCENE, PARTS, "parts", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a part", BY_HAND, "Structures to be placed, once or many times.") \
   X(SCENE, PLACE, "place", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a [place](#place)", BY_HAND, "Copies of parts. What is in a copy is called `NAME.THING`, or `NAME.0.THING` and so on where it is repeated.") \
   X(SCENE, MERGE, "merge", FREE, NONE, ANY, "", OPTIONAL, 0, "touching, or {node: other node, ...}", BY_HAND, "Nodes that become one: those named, or with `touching` all that lie in one place.") \
-  X(SCENE, LIMIT_THINGS, "limit_things", NUMBER, NONE, WHOLE(1, STRUT_MOST_THINGS), "500000", OPTIONAL, 0, "", BY_HAND, "How many nodes, members and other things all copies of parts may have together; more need memory and time.") \
+  X(SCENE, LIMIT_THINGS, "limit_things", NUMBER, NONE, WHOLE(1, STRUT_MOST_THINGS), "500000", OPTIONAL, 0, "", BY_HAND, "How many nodes, members and other things all copies of parts may have together, and how many contacts a profile; more need memory and time.") \
   X(SCENE, BASE, "base", TEXT, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "Another scene's file, relative to this one: the scene is that one with the keys here laid over it, and `NAME: remove` takes things away.") \
   X(PART, USE, "use", TEXT, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "A file whose structure is the part, relative to this one; its own keys lie over it.") \
   X(PART, PARAMETERS, "parameters", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression", BY_HAND, "Values that `set` of a placement may change.") \
