@@ -83,31 +83,77 @@ bool strut_surface_bound_facets(strut_arena *arena, strut_surface *s) {
   return node != NULL;
 }
 
-/* first, last: the facets at the ends of each piece. */
-static void bound_pieces(const strut_surface *piece, const strut_facet *first,
-                         const strut_facet *last, strut_piece_bounds *node, strut_subtree r) {
+/* ---- pieces ---- */
+
+/* Bounds of some pieces, of their first facets, and of their last ones. */
+typedef struct piece_bounds {
+  double low[2], high[2]; /* all facets, as far as they reach [m] */
+  strut_line_bounds first, last;
+} piece_bounds;
+
+/* A tree over some of the pieces. */
+typedef struct piece_tree {
+  size_t count;
+  const int32_t *piece; /* (count) ascending */
+  const piece_bounds *node;
+} piece_tree;
+
+/* A piece that reaches without end has no box, but its line leads away from a point that is far above: trees of one
+   kind each can tell either way. */
+enum { KINDS = 4 };
+struct strut_piece_index {
+  piece_tree tree[KINDS];
+};
+
+static int kind_of(const strut_surface *piece) {
+  return (piece->before == HUGE_VAL) + 2 * (piece->beyond == HUGE_VAL);
+}
+
+/* first, last: the facets at the ends of each piece of the tree. */
+static void bound_pieces(const strut_surface *all, const piece_tree *tree, const strut_facet *first,
+                         const strut_facet *last, piece_bounds *node, strut_subtree r) {
   size_t count = r.end - r.begin;
-  strut_piece_bounds *b = &node[r.at];
+  piece_bounds *b = &node[r.at];
   b->first = bound_lines(first + r.begin, count);
   b->last = bound_lines(last + r.begin, count);
   for (int c = 0; c < 2; c++) b->low[c] = HUGE_VAL, b->high[c] = -HUGE_VAL;
-  for (size_t k = r.begin; k < r.end; k++)
-    for (int32_t i = 0; i < piece[k].facets; i++) add_facet(&piece[k], i, b->low, b->high);
+  for (size_t k = r.begin; k < r.end; k++) {
+    const strut_surface *piece = &all[tree->piece[k]];
+    for (int32_t i = 0; i < piece->facets; i++) add_facet(piece, i, b->low, b->high);
+  }
   for (int i = 0; i < 2 && !strut_subtree_is_leaf(r); i++)
-    bound_pieces(piece, first, last, node, strut_subtree_child(r, i));
+    bound_pieces(all, tree, first, last, node, strut_subtree_child(r, i));
+}
+
+/* The tree of one kind of pieces; ends: space for twice as many facets. */
+static bool make_tree(strut_arena *arena, const strut_surface *all, size_t count, int kind,
+                      strut_facet *ends, piece_tree *tree) {
+  size_t n = 0;
+  for (size_t k = 0; k < count; k++) n += kind_of(&all[k]) == kind;
+  if (!n) return true;
+  int32_t *piece = strut_arena_allocate(arena, n, sizeof *piece);
+  piece_bounds *node = strut_arena_allocate(arena, strut_subtree_nodes(n), sizeof *node);
+  if (!piece || !node) return false;
+  *tree = (piece_tree){n, piece, node};
+  for (size_t k = 0, i = 0; k < count; k++) {
+    if (kind_of(&all[k]) != kind) continue;
+    ends[i] = all[k].facet[0], ends[n + i] = all[k].facet[all[k].facets - 1];
+    piece[i++] = (int32_t)k;
+  }
+  bound_pieces(all, tree, ends, ends + n, node, (strut_subtree){0, 0, n});
+  return true;
 }
 
 bool strut_surface_bound_pieces(strut_arena *arena, strut_surface *pieces, size_t count) {
   if (count <= STRUT_SUBTREE_LEAF) return true;
-  strut_piece_bounds *node = strut_arena_allocate(arena, strut_subtree_nodes(count), sizeof *node);
-  strut_facet *end = strut_allocate(2 * count, sizeof *end);
-  for (size_t k = 0; k < count && node && end; k++) {
-    end[k] = pieces[k].facet[0], end[count + k] = pieces[k].facet[pieces[k].facets - 1];
-    pieces[k].piece_bounds = node;
-  }
-  if (node && end) bound_pieces(pieces, end, end + count, node, (strut_subtree){0, 0, count});
-  strut_release(end);
-  return node && end;
+  struct strut_piece_index *index = strut_arena_allocate(arena, 1, sizeof *index);
+  strut_facet *ends = strut_allocate(2 * count, sizeof *ends);
+  bool fine = index && ends;
+  for (int kind = 0; kind < KINDS && fine; kind++)
+    fine = make_tree(arena, pieces, count, kind, ends, &index->tree[kind]);
+  for (size_t k = 0; k < count && fine; k++) pieces[k].index = index;
+  strut_release(ends);
+  return fine;
 }
 
 /* ---- searches ---- */
@@ -202,7 +248,7 @@ int32_t strut_surface_nearest(const strut_surface *surface, const double p[2],
 int32_t strut_contacts_of_profile(const strut_contact_table *c, int32_t first) {
   const strut_surface *s = &c->surface[c->surface_of[first]];
   int32_t last = first + s->pieces - 1;
-  bool whole = s->piece_bounds && s->piece == 0 && last < c->count && c->at[last] == c->at[first] &&
+  bool whole = s->index && s->piece == 0 && last < c->count && c->at[last] == c->at[first] &&
                c->surface_of[last] - c->surface_of[first] == last - first;
   return whole ? s->pieces : 0;
 }
@@ -225,7 +271,8 @@ static void place_of(const strut_contact_table *c, int32_t i, const double *q,
 }
 
 typedef struct piece_search {
-  const strut_surface *piece;
+  const strut_surface *all;
+  const piece_tree *tree;
   const double *p;
   double margin;
   int32_t first, count, *list;
@@ -236,25 +283,35 @@ typedef struct piece_search {
  * any of its lines; where it is negative, it is minus the distance from a point of the piece that is no further than
  * each of them.
  */
-static bool is_apart(const strut_piece_bounds *b, const piece_search *s) {
+static bool is_apart(const piece_bounds *b, const double p[2], double margin) {
   double first, last, unused;
-  bound_across(&b->first, s->p, &first, &unused);
-  bound_across(&b->last, s->p, &last, &unused);
-  if (first > s->margin || last > s->margin) return true;
+  bound_across(&b->first, p, &first, &unused);
+  bound_across(&b->last, p, &last, &unused);
+  if (first > margin || last > margin) return true;
   double deepest = first > last ? -first : -last;
-  return box_distance(b->low, b->high, s->p) > (deepest > s->margin ? deepest : s->margin);
+  return box_distance(b->low, b->high, p) > (deepest > margin ? deepest : margin);
 }
 
 static void search_pieces(piece_search *s, strut_subtree r) {
-  if (is_apart(&s->piece->piece_bounds[r.at], s)) return;
+  if (is_apart(&s->tree->node[r.at], s->p, s->margin)) return;
   for (size_t k = r.begin; k < r.end && strut_subtree_is_leaf(r); k++) {
-    const strut_surface *piece = &s->piece[k];
+    const strut_surface *piece = &s->all[s->tree->piece[k]];
     if (!(strut_facet_across(&piece->facet[0], s->p) > s->margin) &&
         !(strut_facet_across(&piece->facet[piece->facets - 1], s->p) > s->margin))
-      s->list[s->count++] = s->first + (int32_t)k;
+      s->list[s->count++] = s->first + s->tree->piece[k];
   }
   for (int i = 0; i < 2 && !strut_subtree_is_leaf(r); i++)
     search_pieces(s, strut_subtree_child(r, i));
+}
+
+/* Shell's sort, which needs no memory. */
+static void sort_numbers(int32_t *list, int32_t count) {
+  for (int32_t gap = count / 2; gap > 0; gap /= 2)
+    for (int32_t i = gap; i < count; i++) {
+      int32_t number = list[i], at = i;
+      for (; at >= gap && list[at - gap] > number; at -= gap) list[at] = list[at - gap];
+      list[at] = number;
+    }
 }
 
 int32_t strut_contacts_near(const strut_contact_table *c, int32_t first, int32_t end,
@@ -270,8 +327,13 @@ int32_t strut_contacts_near(const strut_contact_table *c, int32_t first, int32_t
     }
     double p[2];
     place_of(c, i, q, motion, p);
-    piece_search s = {&c->surface[c->surface_of[i]], p, margin, i, 0, list + count};
-    search_pieces(&s, (strut_subtree){0, 0, (size_t)pieces});
+    const strut_surface *all = &c->surface[c->surface_of[i]];
+    piece_search s = {all, NULL, p, margin, i, 0, list + count};
+    for (int kind = 0; kind < KINDS; kind++) {
+      s.tree = &all->index->tree[kind];
+      if (s.tree->count) search_pieces(&s, (strut_subtree){0, 0, s.tree->count});
+    }
+    sort_numbers(s.list, s.count);
     count += s.count;
   }
   return count;
@@ -287,15 +349,16 @@ int32_t strut_contacts_all_near(const strut_contact_table *c, const double *q,
 /* ---- the lowest piece ---- */
 
 typedef struct lowest_search {
-  const strut_surface *piece;
+  const strut_surface *all;
+  const piece_tree *tree;
   const double *p;
-  size_t which;
+  int32_t which;
   double gap;
 } lowest_search;
 
 /* No piece of a node of the tree has a smaller gap. */
 static double least_gap(const lowest_search *s, strut_subtree r) {
-  const strut_piece_bounds *b = &s->piece->piece_bounds[r.at];
+  const piece_bounds *b = &s->tree->node[r.at];
   double first, last, unused;
   bound_across(&b->first, s->p, &first, &unused);
   bound_across(&b->last, s->p, &last, &unused);
@@ -304,9 +367,10 @@ static double least_gap(const lowest_search *s, strut_subtree r) {
 }
 
 static void search_lowest(lowest_search *s, strut_subtree r) {
-  for (size_t k = r.begin; k < r.end && strut_subtree_is_leaf(r); k++) {
+  for (size_t i = r.begin; i < r.end && strut_subtree_is_leaf(r); i++) {
+    int32_t k = s->tree->piece[i];
     strut_contact_pose pose = {.gap = HUGE_VAL};
-    strut_surface_find(&s->piece[k], s->p, -1, &pose);
+    strut_surface_find(&s->all[k], s->p, -1, &pose);
     if (pose.gap < s->gap || (pose.gap == s->gap && k < s->which)) s->gap = pose.gap, s->which = k;
   }
   if (strut_subtree_is_leaf(r)) return;
@@ -318,10 +382,13 @@ static void search_lowest(lowest_search *s, strut_subtree r) {
 }
 
 int32_t strut_surface_lowest(const strut_surface *first, const double p[2], double *gap) {
-  lowest_search s = {first, p, 0, HUGE_VAL};
-  search_lowest(&s, (strut_subtree){0, 0, (size_t)first->pieces});
+  lowest_search s = {first, NULL, p, 0, HUGE_VAL};
+  for (int kind = 0; kind < KINDS; kind++) {
+    s.tree = &first->index->tree[kind];
+    if (s.tree->count) search_lowest(&s, (strut_subtree){0, 0, s.tree->count});
+  }
   *gap = s.gap;
-  return (int32_t)s.which;
+  return s.which;
 }
 
 int32_t strut_contacts_lowest(const strut_contact_table *c, int32_t first, const double *q,

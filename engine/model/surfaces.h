@@ -40,20 +40,14 @@ typedef struct strut_facet_bounds {
   strut_line_bounds lines;
 } strut_facet_bounds;
 
-/** Bounds of consecutive pieces, of their first facets, and of their last ones; a node of a tree. */
-typedef struct strut_piece_bounds {
-  double low[2], high[2]; /* all facets, as far as they reach [m] */
-  strut_line_bounds first, last;
-} strut_piece_bounds;
-
 /** A line, a circle, or a convex piece of a profile. */
 typedef struct strut_surface {
-  int32_t ground, piece;                  /* in the scene */
-  int32_t facets;                         /* 0: a circle */
-  const strut_facet *facet;               /* (facets) in the direction of the profile */
-  const strut_facet_bounds *bounds;       /* a tree over them; NULL where they are few */
-  int32_t pieces;                         /* of its ground, all of which follow each other */
-  const strut_piece_bounds *piece_bounds; /* a tree over these; NULL where they are few */
+  int32_t ground, piece;                 /* in the scene */
+  int32_t facets;                        /* 0: a circle */
+  const strut_facet *facet;              /* (facets) in the direction of the profile */
+  const strut_facet_bounds *bounds;      /* a tree over them; NULL where they are few */
+  int32_t pieces;                        /* of its ground, all of which follow each other */
+  const struct strut_piece_index *index; /* trees over these; NULL where they are few */
   double before, beyond;    /* how far the first and the last of them reach further [m] */
   double centre[2], radius; /* of a circle [m] */
   bool inside;              /* its free space is inside */

@@ -135,7 +135,7 @@ static double height_above_surfaces(const strut_contact_table *t, const double q
     const double *place = s->moves && motion ? motion[s->ground].place : NULL;
     double point[2] = {q[0] - (place ? place[0] : 0.0), q[1] - (place ? place[1] : 0.0)};
     strut_contact_pose pose;
-    if (s->piece_bounds) {
+    if (s->index) {
       strut_surface_lowest(s, point, &pose.gap);
       k += s->pieces - 1;
     } else {
