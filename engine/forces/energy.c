@@ -7,6 +7,7 @@
 #include "engine/forces/sliding_masses.h"
 #include "engine/forces/support_motion.h"
 #include "engine/model/pose.h"
+#include "engine/model/surface_search.h"
 
 /* Of masses that rest on their members. */
 static double sliding_at_rest(const strut_model *model, const double *v) {
@@ -65,7 +66,10 @@ static double gravity(const strut_model *model, const double *q) {
 static double contact(const strut_model *model, const strut_state *state, const double *q) {
   const strut_contact_table *c = &model->contacts;
   double sum = 0.0;
-  for (int32_t i = 0; i < c->count; i++) {
+  int32_t count =
+      c->surface ? strut_contacts_all_near(c, q, state->ground_motion, state->near) : c->count;
+  for (int32_t k = 0; k < count; k++) {
+    int32_t i = c->surface ? state->near[k] : k;
     double gap = strut_contact_gap_at(c, i, q, state->ground_motion);
     if (gap < 0.0) sum += 0.5 * c->entry[i].stiffness * gap * gap;
   }

@@ -3,19 +3,19 @@
 
 #include "engine/forces/ground_kernel.h"
 
-/* Contacts first .. end - 1 are of one node. */
-static int32_t end_of_node(const strut_contact_table *c, int32_t first) {
-  int32_t end = first + 1;
-  while (end < c->count && c->at[end] == c->at[first]) end++;
-  return end;
-}
+/* Contacts of one node that touch: `count` indices, ascending. */
+typedef struct touching {
+  int32_t count, *contact;
+} touching;
 
-/* Normal forces of the contacts that touch; how many do. *last: one of them. */
-static int32_t push(const strut_model *model, strut_state *state, const double *q, const double *v,
-                    int32_t first, int32_t end, int32_t *last) {
+/* Normal forces of those contacts first .. end - 1, of one node, that touch. */
+static touching push(const strut_model *model, strut_state *state, const double *q, const double *v,
+                     int32_t first, int32_t end) {
   const strut_contact_table *c = &model->contacts;
-  int32_t touching = 0;
-  for (int32_t i = first; i < end; i++) {
+  touching all = {0, state->near};
+  int32_t near = strut_contacts_near(c, first, end, q, state->ground_motion, 0.0, state->near);
+  for (int32_t k = 0; k < near; k++) {
+    int32_t i = state->near[k];
     strut_contact_pose *pose = &state->pose[i];
     *pose = strut_contact_pose_at(c, i, q, state->ground_motion, -1);
     if (!(pose->gap < 0.0)) continue;
@@ -27,10 +27,9 @@ static int32_t push(const strut_model *model, strut_state *state, const double *
     f[0] += normal * pose->axes.normal[0], f[1] += normal * pose->axes.normal[1];
     state->normal[i] = normal;
     state->friction[i] = 0.0;
-    *last = i;
-    touching++;
+    all.contact[all.count++] = i;
   }
-  return touching;
+  return all;
 }
 
 static double slip_of(const strut_model *model, const strut_state *state, const double *v,
@@ -65,8 +64,7 @@ static bool sticks(const strut_model *model, const strut_state *state, const dou
   const strut_friction *law = &model->contacts.entry[i].friction;
   const double *t = state->pose[i].axes.tangent, *f = state->force + model->contacts.at[i];
   bool has_band = strut_friction_states(law->law) == STRUT_FRICTION_STICK_BAND;
-  return has_band && state->pose[i].gap < 0.0 &&
-         fabs(slip_of(model, state, v, i)) < law->stick_velocity &&
+  return has_band && fabs(slip_of(model, state, v, i)) < law->stick_velocity &&
          can_hold(model, state, i, state->friction[i] - strut_component(t, f[0], f[1]));
 }
 
@@ -113,13 +111,15 @@ static void hold_together(const strut_model *model, strut_state *state, const do
 }
 
 /* The same of those two of all that stick whose directions differ most. */
-static void hold_node(const strut_model *model, strut_state *state, const double *v, int32_t first,
-                      int32_t end) {
+static void hold_node(const strut_model *model, strut_state *state, const double *v,
+                      const touching *all) {
   int32_t a = -1, b = -1;
   double most = 0.0;
-  for (int32_t i = first; i < end; i++) {
+  for (int32_t k = 0; k < all->count; k++) {
+    int32_t i = all->contact[k];
     if (!sticks(model, state, v, i)) continue;
-    for (int32_t j = i + 1; j < end; j++) {
+    for (int32_t m = k + 1; m < all->count; m++) {
+      int32_t j = all->contact[m];
       const double *ti = state->pose[i].axes.tangent, *tj = state->pose[j].axes.tangent;
       double area = fabs(ti[0] * tj[1] - ti[1] * tj[0]);
       if (area > most && sticks(model, state, v, j)) most = area, a = i, b = j;
@@ -129,18 +129,18 @@ static void hold_node(const strut_model *model, strut_state *state, const double
 }
 
 /* Friction of all contacts of a node, until they agree. */
-static void rub_all(const strut_model *model, strut_state *state, const double *v, int32_t first,
-                    int32_t end) {
+static void rub_all(const strut_model *model, strut_state *state, const double *v,
+                    const touching *all) {
   enum { MOST_SWEEPS = 60 };
   for (int sweep = 0; sweep < MOST_SWEEPS; sweep++) {
     double changed = 0.0, largest = 0.0;
-    for (int32_t i = first; i < end; i++) {
-      if (!(state->pose[i].gap < 0.0)) continue;
+    for (int32_t k = 0; k < all->count; k++) {
+      int32_t i = all->contact[k];
       changed = fmax(changed, fabs(rub(model, state, v, i)));
       largest = fmax(largest, fabs(state->friction[i]));
     }
     if (changed <= 1e-15 * largest) return;
-    hold_node(model, state, v, first, end);
+    hold_node(model, state, v, all);
   }
 }
 
@@ -169,16 +169,13 @@ void strut_surfaces_add_forces(const strut_model *model, strut_state *state,
                                const double *restrict q, const double *restrict v) {
   const strut_contact_table *c = &model->contacts;
   for (int32_t first = 0, end; first < c->count; first = end) {
-    int32_t one = first;
-    end = end_of_node(c, first);
-    int32_t touching = push(model, state, q, v, first, end, &one);
-    if (!touching) continue;
-    if (touching == 1)
-      rub(model, state, v, one);
-    else
-      rub_all(model, state, v, first, end);
-    for (int32_t i = first; i < end && state->ledger; i++)
-      if (state->pose[i].gap < 0.0) book(model, state, v, i);
+    end = strut_contacts_end_of_node(c, first);
+    const touching all = push(model, state, q, v, first, end);
+    if (all.count == 1)
+      rub(model, state, v, all.contact[0]);
+    else if (all.count)
+      rub_all(model, state, v, &all);
+    for (int32_t k = 0; k < all.count && state->ledger; k++) book(model, state, v, all.contact[k]);
   }
 }
 

@@ -159,11 +159,14 @@ STRUT_INLINE void strut_tangent_visit(const strut_model *model, const double *q,
     strut_elements_visit(model, rest, q, least,
                          closed == STRUT_CLOSED_ALL || closed == STRUT_CLOSED_UNDAMPED, context,
                          element);
-  for (int32_t i = 0; i < c->count && closed != STRUT_CLOSED_NONE; i++) {
+  for (int32_t i = 0, end = 0, near[2] = {0}; i < c->count && closed != STRUT_CLOSED_NONE; i++) {
+    if (c->surface && closed != STRUT_CLOSED_TOUCHING) {
+      if (i == end) end = strut_contacts_nearest(c, i, q, near);
+      if (i != near[0] && i != near[1]) continue;
+    }
     strut_contact_pose pose = strut_contact_pose_at(c, i, q, NULL, -1);
     strut_closed_contact n = {pose.gap, c->entry[i].stiffness, pose.axes, 0.0};
     if (pose.gap < 0.0 && pose.curvature != 0.0) n.across = n.stiffness * pose.gap * pose.curvature;
-    if (c->surface && closed != STRUT_CLOSED_TOUCHING && !strut_contact_is_near(c, i, q)) continue;
     if (closed == STRUT_CLOSED_TOUCHING && (!(n.gap < 0.0) || -n.stiffness * n.gap <= least))
       continue;
     contact(context, i, &n);

@@ -107,6 +107,16 @@ static inline strut_contact_pose strut_contact_pose_at(const strut_contact_table
   return pose;
 }
 
+/** The contact after those of the node of contact `first`. */
+STRUT_API int32_t strut_contacts_end_of_node(const strut_contact_table *c, int32_t first);
+/**
+ * Contacts first .. end - 1, of one node, without those whose gap in q exceeds `margin` [m] for certain and is not
+ * negative: few of the many pieces of a long profile. Ascending, into list; returns their number.
+ */
+STRUT_API int32_t strut_contacts_near(const strut_contact_table *c, int32_t first, int32_t end,
+                                      const double *q, const strut_ground_motion *motion,
+                                      double margin, int32_t *list);
+
 /** The gap alone. */
 static inline double strut_contact_gap_at(const strut_contact_table *c, int32_t i, const double *q,
                                           const strut_ground_motion *motion) {
@@ -120,19 +130,12 @@ static inline double strut_contact_gap(const strut_contact_table *c, int32_t i, 
   return strut_contact_gap_at(c, i, q, NULL);
 }
 
-/** Is the piece of contact i one of the two of its ground that are nearest to its node? A node hardly touches
-    more of them at once. */
-static inline bool strut_contact_is_near(const strut_contact_table *c, int32_t i, const double *q) {
-  int32_t nearer = 0, first = i, ground = c->surface[c->surface_of[i]].ground;
-  while (first > 0 && c->at[first - 1] == c->at[i]) first--;
-  double own = fabs(strut_contact_gap_at(c, i, q, NULL));
-  for (int32_t k = first; k < c->count && c->at[k] == c->at[i]; k++) {
-    if (k == i || c->surface[c->surface_of[k]].ground != ground) continue;
-    double gap = fabs(strut_contact_gap_at(c, k, q, NULL));
-    nearer += gap < own || (gap == own && k < i);
-  }
-  return nearer < 2;
-}
+/**
+ * The two pieces that are nearest to their node of contacts `first` and following, of this node with one ground: a node
+ * hardly touches more of them at once. near[1] is near[0] where there is only one. Returns the contact after these.
+ */
+STRUT_API int32_t strut_contacts_nearest(const strut_contact_table *c, int32_t first,
+                                         const double *q, int32_t near[2]);
 
 /** Is a displacement of the whole structure along x no change to any contact? */
 static inline bool strut_contacts_are_level(const strut_contact_table *c) {

@@ -13,10 +13,11 @@ static bool make_surfaces(const strut_model *model, strut_state *state) {
   size_t contacts = (size_t)c->count, grounds = model->scene->ground_count;
   if (!c->surface) return true;
   state->pose = strut_arena_allocate(&state->arena, contacts, sizeof *state->pose);
+  state->near = strut_arena_allocate(&state->arena, contacts, sizeof *state->near);
   if (c->moves)
     state->ground_motion =
         strut_arena_allocate(&state->arena, grounds, sizeof *state->ground_motion);
-  return state->pose && (state->ground_motion || !c->moves);
+  return state->pose && state->near && (state->ground_motion || !c->moves);
 }
 
 strut_status strut_state_create(const strut_model *model, strut_state **result,

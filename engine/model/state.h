@@ -124,6 +124,7 @@ typedef struct strut_state {
   /* with STRUT_TERM_SURFACES: poses of the contacts at the latest evaluation; and of grounds that are shaken
      the motion at drive_time, (grounds), NULL where none is */
   strut_contact_pose *pose;
+  int32_t *near; /* (contacts) scratch: those that may touch */
   strut_ground_motion *ground_motion;
   int8_t *relay_side; /* (signals) of relays: 1 last above, -1 last below; 0: not yet known */
   /* masses that slide, in the table's order of moving ones, as last placed: */

@@ -5,6 +5,7 @@
 
 #include "engine/base/vec.h"
 #include "engine/model/model.h"
+#include "engine/model/surface_search.h"
 #include "engine/scene/profile.h"
 
 /* Unit vectors of a line in direction (x, y): the solid is to the right. */
@@ -12,18 +13,10 @@ static strut_contact_axes axes_along(double x, double y) {
   return (strut_contact_axes){{x, y}, {-y, x}};
 }
 
-static double across(const strut_facet *f, const double p[2]) {
-  return (p[0] - f->point[0]) * f->axes.normal[0] + (p[1] - f->point[1]) * f->axes.normal[1];
-}
-
-static double along(const strut_facet *f, const double p[2]) {
-  return (p[0] - f->point[0]) * f->axes.tangent[0] + (p[1] - f->point[1]) * f->axes.tangent[1];
-}
-
 static void find_on_facet(const strut_surface *s, const double p[2], int32_t k,
                           strut_contact_pose *pose) {
-  *pose =
-      (strut_contact_pose){.axes = s->facet[k].axes, .gap = across(&s->facet[k], p), .facet = k};
+  *pose = (strut_contact_pose){
+      .axes = s->facet[k].axes, .gap = strut_facet_across(&s->facet[k], p), .facet = k};
 }
 
 /* From a point at distance `gap` outwards of `foot`; where they coincide the facet's own axes. */
@@ -35,33 +28,20 @@ static void find_from_foot(const double foot[2], const double p[2], double gap, 
 
 /* Outside a convex piece: its nearest segment or corner. */
 static void find_outside(const strut_surface *s, const double p[2], strut_contact_pose *pose) {
-  double least = HUGE_VAL;
-  for (int32_t k = 0; k < s->facets; k++) {
-    const strut_facet *f = &s->facet[k];
-    double low = k == 0 ? -s->before : 0.0;
-    double high = k + 1 == s->facets ? f->length + s->beyond : f->length;
-    double at = along(f, p), held = at < low ? low : at > high ? high : at;
-    const double foot[2] = {f->point[0] + held * f->axes.tangent[0],
-                            f->point[1] + held * f->axes.tangent[1]};
-    double gap = held == at ? fabs(across(f, p)) : strut_distance(foot, p);
-    if (!(gap < least)) continue;
-    least = gap;
-    *pose = (strut_contact_pose){.axes = f->axes, .gap = gap, .facet = k};
-    if (held == at || !(gap > 0.0)) continue;
-    find_from_foot(foot, p, gap, 1.0, pose);
-    pose->curvature = 1.0 / gap;
-  }
+  strut_facet_foot foot;
+  int32_t k = strut_surface_nearest(s, p, &foot);
+  if (k < 0) return;
+  *pose = (strut_contact_pose){.axes = s->facet[k].axes, .gap = foot.distance, .facet = k};
+  if (!foot.held || !(foot.distance > 0.0)) return;
+  find_from_foot(foot.at, p, foot.distance, 1.0, pose);
+  pose->curvature = 1.0 / foot.distance;
 }
 
 static void find_on_piece(const strut_surface *s, const double p[2], strut_contact_pose *pose) {
-  int32_t nearest = 0;
-  double gap = -HUGE_VAL;
-  for (int32_t k = 0; k < s->facets; k++) {
-    double own = across(&s->facet[k], p);
-    if (own > gap) gap = own, nearest = k;
-  }
+  int32_t nearest;
+  double gap = strut_surface_outermost(s, p, -1, &nearest);
   const strut_facet *f = &s->facet[nearest];
-  double at = along(f, p);
+  double at = strut_facet_along(f, p);
   bool beyond =
       (nearest == 0 && at < -s->before) || (nearest + 1 == s->facets && at > f->length + s->beyond);
   if (gap <= 0.0 && !beyond)
@@ -90,21 +70,17 @@ void strut_surface_find(const strut_surface *s, const double point[2], int32_t f
 
 double strut_surface_margin(const strut_surface *s, const double point[2], int32_t facet,
                             int32_t *nearest) {
-  double other = -HUGE_VAL;
-  *nearest = facet;
-  for (int32_t k = 0; k < s->facets; k++) {
-    if (k == facet) continue;
-    double gap = across(&s->facet[k], point);
-    if (gap > other) other = gap, *nearest = k;
-  }
-  return across(&s->facet[facet], point) - other;
+  double other = strut_surface_outermost(s, point, facet, nearest);
+  if (other == -HUGE_VAL) *nearest = facet;
+  return strut_facet_across(&s->facet[facet], point) - other;
 }
 
 /* ---- compilation ---- */
 
-static bool compile_profile(strut_model *model, const strut_ground *g, strut_surface *s) {
-  size_t first, last;
-  strut_profile_piece(g, (size_t)s->piece, &first, &last);
+/* The piece between points first and last. */
+static bool compile_piece(strut_model *model, const strut_profile_index *index, size_t first,
+                          size_t last, strut_surface *s) {
+  const strut_ground *g = index->ground;
   strut_facet *facet = strut_arena_allocate(&model->arena, last - first, sizeof *facet);
   if (!facet) return false;
   for (size_t k = first; k < last; k++) {
@@ -115,9 +91,22 @@ static bool compile_profile(strut_model *model, const strut_ground *g, strut_sur
                                      .length = length};
   }
   s->facet = facet, s->facets = (int32_t)(last - first);
-  s->before = strut_profile_reach(g, first, false);
-  s->beyond = strut_profile_reach(g, last, true);
-  return true;
+  s->before = strut_profile_reach(index, first, false);
+  s->beyond = strut_profile_reach(index, last, true);
+  return strut_surface_bound_facets(&model->arena, s);
+}
+
+static bool compile_profile(strut_model *model, const strut_ground *g, strut_surface *pieces,
+                            size_t count) {
+  strut_arena scratch = {0};
+  strut_profile_index index;
+  bool fine = strut_profile_index_create(&scratch, g, &index);
+  for (size_t k = 0, first = 0, last; k < count && fine; k++, first = last) {
+    last = strut_profile_piece_end(g, first);
+    fine = compile_piece(model, &index, first, last, &pieces[k]);
+  }
+  strut_arena_free(&scratch);
+  return fine && strut_surface_bound_pieces(&model->arena, pieces, count);
 }
 
 static bool compile_line(strut_model *model, const strut_ground *g, strut_surface *s) {
@@ -134,16 +123,18 @@ static bool compile_line(strut_model *model, const strut_ground *g, strut_surfac
   return true;
 }
 
-static bool compile_surface(strut_model *model, size_t ground, size_t piece, strut_surface *s) {
+static bool compile_ground(strut_model *model, size_t ground, strut_surface *s, size_t pieces) {
   const strut_ground *g = &model->scene->grounds[ground];
-  *s = (strut_surface){.ground = (int32_t)ground,
-                       .piece = (int32_t)piece,
-                       .belt_speed = g->belt_speed,
-                       .moves = g->moves[0] || g->moves[1]};
+  for (size_t k = 0; k < pieces; k++)
+    s[k] = (strut_surface){.ground = (int32_t)ground,
+                           .piece = (int32_t)k,
+                           .pieces = (int32_t)pieces,
+                           .belt_speed = g->belt_speed,
+                           .moves = g->moves[0] || g->moves[1]};
   if (s->moves) model->contacts.moves = true;
   switch (g->shape) {
     case STRUT_GROUND_LINE: return compile_line(model, g, s);
-    case STRUT_GROUND_PROFILE: return compile_profile(model, g, s);
+    case STRUT_GROUND_PROFILE: return compile_profile(model, g, s, pieces);
     case STRUT_GROUND_CIRCLE: break;
   }
   s->centre[0] = g->centre[0], s->centre[1] = g->centre[1];
@@ -177,8 +168,9 @@ bool strut_surfaces_compile(strut_model *model) {
   if (!surface || !begin || !of) return false;
   for (size_t g = 0; g < scene->ground_count; g++) {
     begin[g] = (int32_t)made;
-    for (size_t k = 0; k < strut_ground_pieces(&scene->grounds[g]); k++)
-      if (!compile_surface(model, g, k, &surface[made++])) return false;
+    size_t pieces = strut_ground_pieces(&scene->grounds[g]);
+    if (!compile_ground(model, g, &surface[made], pieces)) return false;
+    made += pieces;
   }
   for (size_t i = 0; i < scene->contact_count; i++)
     of[i] = begin[scene->contacts[i].ground] + scene->contacts[i].piece;

@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <stdbool.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -46,14 +47,43 @@ strut_status strut_directory_create(const char *directory, strut_error *error) {
   return status;
 }
 
-/* Creates `path`.PID-N with the first free N; writes that name into `part`. */
-static int create_beside(const char *path, char *part, size_t capacity) {
-  int descriptor = -1;
-  for (int i = 0; i < MOST_NAMES; i++) {
-    snprintf(part, capacity, "%s.%ld-%d", path, (long)getpid(), i);
-    descriptor = open(part, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor >= 0 || errno != EEXIST) break;
+/* Is the file that is open still the one of that name, and a plain file? */
+static bool is_still(int descriptor, const char *name) {
+  struct stat mine, there;
+  return fstat(descriptor, &mine) == 0 && lstat(name, &there) == 0 && S_ISREG(mine.st_mode) &&
+         mine.st_dev == there.st_dev && mine.st_ino == there.st_ino;
+}
+
+/* Opens what a killed process left under a name: it holds no lock any more. */
+static int take_over(const char *name) {
+  int descriptor = open(name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor < 0) return -1;
+  if (flock(descriptor, LOCK_EX | LOCK_NB) == 0 && is_still(descriptor, name) &&
+      ftruncate(descriptor, 0) == 0)
+    return descriptor;
+  close(descriptor);
+  return -1;
+}
+
+/* A new file, with a lock where the file system has them; -1 with EEXIST where somebody was quicker. */
+static int create_new(const char *name) {
+  int descriptor = open(name, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (descriptor < 0) return -1;
+  if (flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return descriptor;
+  close(descriptor);
+  errno = EEXIST;
+  return -1;
+}
+
+int strut_file_create_beside(const char *path, char *part, size_t capacity) {
+  int descriptor = -1, code = EEXIST;
+  for (int i = 0; i < MOST_NAMES && descriptor < 0 && code == EEXIST; i++) {
+    snprintf(part, capacity, "%s.strut-%d", path, i);
+    descriptor = create_new(part);
+    code = errno;
+    if (descriptor < 0 && code == EEXIST) descriptor = take_over(part);
   }
+  errno = code;
   return descriptor;
 }
 
@@ -80,7 +110,7 @@ static strut_status open_beside(strut_file *file, strut_error *error) {
     return status;
   }
   if (!folder) {
-    descriptor = create_beside(file->path, file->part, capacity);
+    descriptor = strut_file_create_beside(file->path, file->part, capacity);
     code = errno;
   }
   if (descriptor >= 0) {
@@ -136,6 +166,7 @@ strut_status strut_file_commit(strut_file *file, strut_error *error) {
   errno = 0;
   if (fflush(file->stream) != 0 || failed_before) code = errno ? errno : EIO;
   if (!code && fsync(fileno(file->stream)) != 0 && errno != EINVAL) code = errno;
+  int lock = dup(fileno(file->stream)); /* until it has its name, nobody may take it over */
   if (fclose(file->stream) != 0 && !code) code = errno;
   file->stream = NULL;
   bool renamed = false;
@@ -150,14 +181,15 @@ strut_status strut_file_commit(strut_file *file, strut_error *error) {
     status = code == ENOMEM ? strut_no_memory(error, "while writing files")
                             : trouble(error, "write", file->path, code);
   }
+  if (lock >= 0) close(lock);
   forget(file);
   return status;
 }
 
 void strut_file_abandon(strut_file *file) {
   if (file->stream) {
-    fclose(file->stream);
     unlink(file->part);
+    fclose(file->stream);
   }
   forget(file);
 }

@@ -177,7 +177,9 @@ strut_status strut_recording_create(const strut_model *model, const strut_experi
 
 int64_t strut_recording_next_step(const strut_recording *r) {
   if (!r->sink_count) return INT64_MAX;
-  int64_t due = (int64_t)ceil((r->start + (double)r->sampled * r->every) / r->grid.step - 1e-6);
+  double step = ceil((r->start + (double)r->sampled * r->every) / r->grid.step - 1e-6);
+  if (!(step < 9e18)) return INT64_MAX; /* never: beyond the integers */
+  int64_t due = (int64_t)step;
   return due > r->last ? due : r->last + 1;
 }
 

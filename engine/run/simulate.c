@@ -177,6 +177,9 @@ static strut_status prepare_run(strut_run *r) {
   status = r->limits ? strut_step_limit_cached(r->model, r->method, r->limits, limit, r->error)
                      : strut_step_limit_with_bound(r->model, r->method, limit, &bound, r->error);
   if (status) return status;
+  if (!r->options->force &&
+      (status = strut_step_limit_check_effort(r->model, r->method, r->dt, r->error)))
+    return status;
   if ((status = check_step_limit(r, bound)) || (status = allocate_summary(r)) ||
       (status = strut_state_create(r->model, &r->state, r->error)))
     return status;

@@ -105,6 +105,30 @@ static bool check_wave(strut_checker *checker, size_t index, const char *owner) 
   return false;
 }
 
+/* Times at which a signal jumps per second; tables and ramps jump as often as they are long. */
+static double jump_rate(const strut_signal *s) {
+  double rate = s->kind == STRUT_SQUARE ? 2.0 * s->frequency : 0.0;
+  return s->every > 0.0 ? fmax(rate, 1.0 / s->every) : rate;
+}
+
+/* A run stops at each jump: more of them than this in a step, or in a run without one, are a mistake. */
+static const double MOST_JUMPS_OF_STEP = 1e3, MOST_JUMPS_OF_RUN = 1e9;
+
+static void check_jumps(strut_checker *checker, size_t index, const char *owner) {
+  const strut_experiment *e = checker->experiment;
+  const strut_signal *s = &checker->scene->signals[index];
+  bool step = e->step > 0.0 && isfinite(e->step);
+  double rate = jump_rate(s), span = step ? e->step : e->duration;
+  if (checker->purpose != STRUT_FOR_RUN || !(span > 0.0 && isfinite(span))) return;
+  if (rate * span <= (step ? MOST_JUMPS_OF_STEP : MOST_JUMPS_OF_RUN)) return;
+  bool sampled = s->every > 0.0 && s->every * rate <= 1.0;
+  strut_report_finding(
+      checker, STRUT_ON_SIGNAL, index, sampled ? "every" : "frequency",
+      "%s jumps %.3g times within %s of %g s, expected at most %g; give %s%s", owner, rate * span,
+      step ? "a step" : "the run", span, step ? MOST_JUMPS_OF_STEP : MOST_JUMPS_OF_RUN,
+      sampled ? "a longer 'every'" : "a lower frequency", step ? " or a smaller step" : "");
+}
+
 /* Formats the name of a signal for messages: its own, or that of its first user. */
 static void call_signal(char owner[200], const strut_scene *scene, const size_t *user, size_t i) {
   char thing[200];
@@ -173,6 +197,7 @@ void strut_check_signals(strut_checker *checker) {
                                      : s->kind == STRUT_SUM || strut_signal_has_program(s)
                                          ? !check_sum(checker, i, owner, size, depth)
                                          : !check_wave(checker, i, owner));
+    if (!checker->wild[i]) check_jumps(checker, i, owner);
   }
   strut_release(size);
   strut_release(depth);
@@ -219,6 +244,7 @@ static void check_profile(strut_checker *checker, size_t index, const char *owne
       strut_profile_check(&checker->scene->grounds[index], &segment, &other);
   switch (fault) {
     case STRUT_PROFILE_FINE: break;
+    case STRUT_PROFILE_NO_MEMORY: checker->out_of_memory = true; break;
     case STRUT_PROFILE_SHORT:
       strut_report_finding(checker, STRUT_ON_GROUND, index, "profile",
                            "the profile of %s needs at least two points", owner);
@@ -316,13 +342,51 @@ static bool follows(const strut_contact *before, const strut_contact *c) {
   return c->piece > before->piece;
 }
 
-static bool has_surface(const strut_scene *scene, const strut_contact *c) {
+/* Pieces of each ground; of a profile with faults, which are reported, any number. */
+static size_t *count_pieces(strut_checker *checker) {
+  const strut_scene *scene = checker->scene;
+  size_t *pieces = strut_allocate(scene->ground_count + 1, sizeof *pieces), segment, other;
+  if (!pieces) checker->out_of_memory = true;
+  for (size_t i = 0; i < scene->ground_count && pieces; i++) {
+    const strut_ground *g = &scene->grounds[i];
+    bool faulty = g->shape == STRUT_GROUND_PROFILE && strut_profile_check(g, &segment, &other);
+    pieces[i] = faulty ? SIZE_MAX : strut_ground_pieces(g);
+  }
+  return pieces;
+}
+
+static bool has_surface(const strut_scene *scene, const strut_contact *c, const size_t *pieces) {
   if (!scene->ground_count) return c->ground == 0 && c->piece == 0;
-  size_t segment, other;
   if (c->ground < 0 || (size_t)c->ground >= scene->ground_count || c->piece < 0) return false;
-  const strut_ground *g = &scene->grounds[c->ground];
-  if (g->shape == STRUT_GROUND_PROFILE && strut_profile_check(g, &segment, &other)) return true;
-  return (size_t)c->piece < strut_ground_pieces(g);
+  return (size_t)c->piece < pieces[c->ground];
+}
+
+static void check_contacts(strut_checker *checker, const size_t *pieces) {
+  const strut_scene *scene = checker->scene;
+  for (size_t i = 0; i < scene->contact_count; i++) {
+    const strut_contact *c = &scene->contacts[i];
+    if (c->node < 0 || (size_t)c->node >= scene->node_count) {
+      strut_report_finding(checker, STRUT_ON_CONTACT, i, NULL,
+                           "contact number %zu is of a node that does not exist", i + 1);
+      continue;
+    }
+    char owner[200];
+    strut_format_name(owner, "the contact of node", scene->nodes[c->node].name, (size_t)c->node);
+    if (i && !follows(&scene->contacts[i - 1], c))
+      strut_report_finding(checker, STRUT_ON_CONTACT, i, NULL,
+                           "%s is out of order: contacts follow their nodes, one for each at most",
+                           owner);
+    if (!has_surface(scene, c, pieces))
+      strut_report_finding(checker, STRUT_ON_CONTACT, i, NULL,
+                           "%s is with a ground, or a piece of one, that does not exist", owner);
+    strut_check_range(checker, STRUT_ON_CONTACT, i, "stiffness", owner, c->stiffness,
+                      STRUT_ABOVE_ZERO);
+    strut_check_range(checker, STRUT_ON_CONTACT, i, "damping", owner, c->damping,
+                      STRUT_NOT_NEGATIVE);
+    strut_check_range(checker, STRUT_ON_CONTACT, i, "dissipation", owner, c->dissipation,
+                      STRUT_NOT_NEGATIVE);
+    check_friction(checker, i, owner);
+  }
 }
 
 void strut_check_ground(strut_checker *checker) {
@@ -346,30 +410,9 @@ void strut_check_ground(strut_checker *checker) {
   if (scene->ground_count) check_grounds(checker);
   if (!strut_scene_has_ground(scene) && scene->contact_count)
     strut_report_finding(checker, STRUT_ON_GROUND, 0, NULL, "there are contacts but no ground");
-  for (size_t i = 0; i < scene->contact_count; i++) {
-    const strut_contact *c = &scene->contacts[i];
-    if (c->node < 0 || (size_t)c->node >= scene->node_count) {
-      strut_report_finding(checker, STRUT_ON_CONTACT, i, NULL,
-                           "contact number %zu is of a node that does not exist", i + 1);
-      continue;
-    }
-    char owner[200];
-    strut_format_name(owner, "the contact of node", scene->nodes[c->node].name, (size_t)c->node);
-    if (i && !follows(&scene->contacts[i - 1], c))
-      strut_report_finding(checker, STRUT_ON_CONTACT, i, NULL,
-                           "%s is out of order: contacts follow their nodes, one for each at most",
-                           owner);
-    if (!has_surface(scene, c))
-      strut_report_finding(checker, STRUT_ON_CONTACT, i, NULL,
-                           "%s is with a ground, or a piece of one, that does not exist", owner);
-    strut_check_range(checker, STRUT_ON_CONTACT, i, "stiffness", owner, c->stiffness,
-                      STRUT_ABOVE_ZERO);
-    strut_check_range(checker, STRUT_ON_CONTACT, i, "damping", owner, c->damping,
-                      STRUT_NOT_NEGATIVE);
-    strut_check_range(checker, STRUT_ON_CONTACT, i, "dissipation", owner, c->dissipation,
-                      STRUT_NOT_NEGATIVE);
-    check_friction(checker, i, owner);
-  }
+  size_t *pieces = count_pieces(checker);
+  if (pieces) check_contacts(checker, pieces);
+  strut_release(pieces);
 }
 
 static bool exists(int32_t index, size_t count) { return index >= 0 && (size_t)index < count; }

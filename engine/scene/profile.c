@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "engine/base/vec.h"
+#include "engine/scene/profile_index.h"
 
 static strut_vec2 segment_of(const strut_ground *g, size_t k) {
   return strut_vec2_between(g->points[k], g->points[k + 1]);
@@ -12,12 +13,9 @@ static strut_vec2 segment_of(const strut_ground *g, size_t k) {
 static double cross(strut_vec2 a, strut_vec2 b) { return a.x * b.y - a.y * b.x; }
 static double dot(strut_vec2 a, strut_vec2 b) { return a.x * b.x + a.y * b.y; }
 
-/* Angles below this are those of one straight line [rad]. */
-static const double STRAIGHT = 1e-12;
-
 static bool is_concave(const strut_ground *g, size_t point) {
   strut_vec2 a = segment_of(g, point - 1), b = segment_of(g, point);
-  return cross(a, b) > STRAIGHT * strut_vec2_length(a) * strut_vec2_length(b);
+  return cross(a, b) > STRUT_PROFILE_STRAIGHT * strut_vec2_length(a) * strut_vec2_length(b);
 }
 
 size_t strut_ground_pieces(const strut_ground *g) {
@@ -27,45 +25,22 @@ size_t strut_ground_pieces(const strut_ground *g) {
   return count;
 }
 
-void strut_profile_piece(const strut_ground *g, size_t piece, size_t *first, size_t *last) {
-  *first = 0;
-  for (*last = 1; *last + 1 < g->point_count; (*last)++) {
-    if (!is_concave(g, *last)) continue;
-    if (!piece--) return;
-    *first = *last;
-  }
+size_t strut_profile_piece_end(const strut_ground *g, size_t first) {
+  size_t last = first + 1;
+  while (last + 1 < g->point_count && !is_concave(g, last)) last++;
+  return last;
 }
 
-/* A part of a straight line, from low to high times `along`. */
-typedef struct stretch {
-  const double *from;
-  strut_vec2 along;
-  double low, high;
-} stretch;
-
-/* Segment k of the profile, with the line beyond its ends. */
-static stretch stretch_of(const strut_ground *g, size_t k) {
-  bool first = k == 0, last = k + 2 == g->point_count;
-  return (stretch){g->points[k], segment_of(g, k), first ? -HUGE_VAL : 0.0, last ? HUGE_VAL : 1.0};
-}
-
-/* Where a meets b, in lengths of a; NAN: nowhere. */
-static double meet(const stretch *a, const stretch *b) {
-  strut_vec2 between = strut_vec2_between(a->from, b->from);
-  double area = cross(a->along, b->along);
-  double size = strut_vec2_length(a->along) * strut_vec2_length(b->along);
-  if (fabs(area) > STRAIGHT * size) {
-    double s = cross(between, b->along) / area, t = cross(between, a->along) / area;
-    bool both = s >= a->low && s <= a->high && t >= b->low && t <= b->high;
-    return both ? s : (double)NAN;
-  }
-  double length = strut_vec2_length(a->along);
-  if (fabs(cross(between, a->along)) > 1e-9 * length * length) return (double)NAN; /* apart */
-  double scale = dot(b->along, a->along) / (length * length);
-  double at = dot(between, a->along) / (length * length);
-  double p = at + scale * b->low, q = at + scale * b->high;
-  double low = fmax(a->low, fmin(p, q)), high = fmin(a->high, fmax(p, q));
-  return low <= high ? (isfinite(low) ? low : high) : (double)NAN;
+/* Two segments that meet, though no neighbours. */
+static strut_profile_fault find_crossing(const strut_ground *g, size_t *segment, size_t *other) {
+  strut_arena arena = {0};
+  strut_profile_index index;
+  strut_profile_fault fault = STRUT_PROFILE_NO_MEMORY;
+  if (strut_profile_index_create(&arena, g, &index))
+    fault = strut_profile_find_crossing(&index, segment, other) ? STRUT_PROFILE_CROSSES
+                                                                : STRUT_PROFILE_FINE;
+  strut_arena_free(&arena);
+  return fault;
 }
 
 strut_profile_fault strut_profile_check(const strut_ground *g, size_t *segment, size_t *other) {
@@ -81,31 +56,21 @@ strut_profile_fault strut_profile_check(const strut_ground *g, size_t *segment, 
     if (!(strut_vec2_length(a) > 0.0)) return STRUT_PROFILE_ZERO;
     if (!k) continue;
     strut_vec2 before = segment_of(g, k - 1);
-    if (fabs(cross(before, a)) <= STRAIGHT * strut_vec2_length(before) * strut_vec2_length(a) &&
+    if (fabs(cross(before, a)) <=
+            STRUT_PROFILE_STRAIGHT * strut_vec2_length(before) * strut_vec2_length(a) &&
         dot(before, a) < 0.0)
       return STRUT_PROFILE_BACK;
   }
-  for (size_t k = 2; k + 1 < g->point_count; k++)
-    for (size_t j = 0; j + 1 < k; j++) {
-      stretch a = stretch_of(g, j), b = stretch_of(g, k);
-      *segment = k, *other = j;
-      if (!isnan(meet(&a, &b))) return STRUT_PROFILE_CROSSES;
-    }
-  return STRUT_PROFILE_FINE;
+  return strut_profile_is_monotone(g) ? STRUT_PROFILE_FINE : find_crossing(g, segment, other);
 }
 
-double strut_profile_reach(const strut_ground *g, size_t at, bool forward) {
+double strut_profile_reach(const strut_profile_index *index, size_t at, bool forward) {
+  const strut_ground *g = index->ground;
   if (at == 0 || at + 1 == g->point_count) return HUGE_VAL;
   strut_vec2 along = segment_of(g, forward ? at - 1 : at);
   if (!forward) along = (strut_vec2){-along.x, -along.y};
-  const stretch ray = {g->points[at], along, 0.0, HUGE_VAL};
-  double first = HUGE_VAL;
-  for (size_t k = 0; k + 1 < g->point_count; k++) {
-    stretch other = stretch_of(g, k);
-    double where = k == at || k + 1 == at ? (double)NAN : meet(&ray, &other);
-    if (where < first) first = where;
-  }
-  return 0.5 * first * strut_vec2_length(along);
+  const strut_stretch ray = {g->points[at], along, 0.0, HUGE_VAL};
+  return 0.5 * strut_profile_cast_ray(index, &ray, at) * strut_vec2_length(along);
 }
 
 /* The nearest point of the profile decides on which side a point is: near a segment the side of its line,
@@ -113,7 +78,7 @@ double strut_profile_reach(const strut_ground *g, size_t at, bool forward) {
 static double profile_depth(const strut_ground *g, const double p[2]) {
   double least = HUGE_VAL, depth = 0.0;
   for (size_t k = 0; k + 1 < g->point_count; k++) {
-    stretch s = stretch_of(g, k);
+    strut_stretch s = strut_profile_stretch(g, k);
     strut_vec2 to = strut_vec2_between(s.from, p);
     double length = strut_vec2_length(s.along), at = dot(to, s.along) / (length * length);
     double held = fmax(s.low, fmin(s.high, at));

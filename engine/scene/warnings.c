@@ -126,14 +126,13 @@ static void warn_of_depths(strut_checker *checker) {
   for (size_t i = 0; i < scene->contact_count; i++) {
     const strut_contact *contact = &scene->contacts[i];
     const strut_node *node = &scene->nodes[contact->node];
+    if (contact->piece || contact->node == last || (node->fixed[0] && node->fixed[1])) continue;
     double depth = s * node->start[0] - c * (node->start[1] - g->height), size_of_load = weight;
     if (scene->ground_count) {
       depth = strut_ground_depth(&scene->grounds[contact->ground], node->start);
       size_of_load = whole;
     }
-    if (node->fixed[0] && node->fixed[1]) continue;
     if (!(depth > DEEPER * size_of_load / contact->stiffness && depth > DEEP * size)) continue;
-    if (contact->piece || contact->node == last) continue;
     last = contact->node;
     if (!below.count) depth_of_first = depth;
     add_name(&below, (size_t)contact->node, node->name);

@@ -13,6 +13,9 @@
  * are pairs of texts: "frequency", "10 Hz", as in `--set frequency="10 Hz"`; a number without
  * unit is in SI units.
  *
+ * NULL: an argument must not be NULL unless its function says that it may. A call that can fail then does,
+ * with STRUTLIB_USAGE; any other answers as if there were nothing: NULL, 0, -1 or NAN.
+ *
  * Errors: the last argument of a call that can fail is `strutlib_error **error`. NULL: the caller does
  * not want to know. Otherwise *error becomes NULL on success, and on failure an error to be
  * released by strutlib_error_free. Lack of memory is such an error; no call aborts, exits,

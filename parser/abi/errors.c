@@ -83,6 +83,21 @@ int abi_fail_with(strutlib_error **error, strut_status status, const strut_error
                         what && what->message[0] ? what->message : strut_status_text(status));
 }
 
+bool abi_lacks(strutlib_error **error, const void *argument, const char *name) {
+  if (!argument) abi_fail(error, STRUTLIB_USAGE, "argument '%s' is NULL", name);
+  return !argument;
+}
+
+bool abi_lacks_pairs(strutlib_error **error, size_t count, const char *const *names,
+                     const char *const *values) {
+  if (count && (abi_lacks(error, names, "names") || abi_lacks(error, values, "values")))
+    return true;
+  for (size_t i = 0; i < count; i++)
+    if (abi_lacks(error, names[i], "names[]") || abi_lacks(error, values[i], "values[]"))
+      return true;
+  return false;
+}
+
 /* ---- located ones ---- */
 
 /* The line of a place, without its end, in the arena. */
@@ -196,13 +211,22 @@ int abi_fail_located(strutlib_error **error, strut_status status, strut_diagnost
 
 /* ---- what the header shows ---- */
 
-int strutlib_error_status(const strutlib_error *error) { return error->status; }
-const char *strutlib_error_message(const strutlib_error *error) { return error->message; }
-const char *strutlib_error_report(const strutlib_error *error) { return error->report; }
-size_t strutlib_error_count(const strutlib_error *error) { return error->count; }
+int strutlib_error_status(const strutlib_error *error) {
+  return error ? error->status : STRUTLIB_OK;
+}
+
+const char *strutlib_error_message(const strutlib_error *error) {
+  return error ? error->message : NULL;
+}
+
+const char *strutlib_error_report(const strutlib_error *error) {
+  return error ? error->report : NULL;
+}
+
+size_t strutlib_error_count(const strutlib_error *error) { return error ? error->count : 0; }
 
 static const located *item_of(const strutlib_error *error, size_t i) {
-  return i < error->count ? &error->items[i] : NULL;
+  return i < strutlib_error_count(error) ? &error->items[i] : NULL;
 }
 
 const char *strutlib_error_text(const strutlib_error *error, size_t i) {

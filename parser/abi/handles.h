@@ -38,6 +38,11 @@ int abi_fail_with(strutlib_error **error, strut_status status, const strut_error
 /** The same from everything that was found in a text. */
 int abi_fail_located(strutlib_error **error, strut_status status, strut_diagnostics *found);
 int abi_no_memory(strutlib_error **error);
+/** Is an argument that a call needs NULL? Then *error says which. */
+bool abi_lacks(strutlib_error **error, const void *argument, const char *name);
+/** The same of `count` pairs of texts. */
+bool abi_lacks_pairs(strutlib_error **error, size_t count, const char *const *names,
+                     const char *const *values);
 
 /* ---- messages ---- */
 
@@ -91,7 +96,7 @@ struct strutlib_scene {
 /** Reads the scene again for a purpose: what a call may change. Release it by strut_setup_free. */
 strut_status abi_setup(const strutlib_scene *scene, strut_purpose purpose, strut_setup *setup,
                        strutlib_error **error);
-/** Shows an array; 1. */
+/** Shows an array; 1, or 0 where an argument is NULL. */
 int abi_show_array(const abi_array *array, const double **data, int *dimensions, size_t *shape,
                    size_t *stride);
 

@@ -56,14 +56,21 @@ strutlib_control *strutlib_control_create(void) {
 }
 
 void strutlib_control_free(strutlib_control *control) { strut_release(control); }
-void strutlib_interrupt(strutlib_control *control) { control->interrupt = 1; }
-void strutlib_control_reset(strutlib_control *control) { control->interrupt = 0; }
+void strutlib_interrupt(strutlib_control *control) {
+  if (control) control->interrupt = 1;
+}
+
+void strutlib_control_reset(strutlib_control *control) {
+  if (control) control->interrupt = 0;
+}
+
 int strutlib_control_interrupted(const strutlib_control *control) {
-  return control->interrupt != 0;
+  return control && control->interrupt != 0;
 }
 
 void strutlib_control_on_progress(strutlib_control *control, strutlib_progress progress,
                                   void *context) {
+  if (!control) return;
   control->context = context;
   control->progress = progress;
 }
@@ -98,7 +105,7 @@ void abi_leave(void) {
 /* ---- options ---- */
 
 static const strut_command *command_of(const char *name) {
-  for (size_t i = 0; abi_command_at(i); i++)
+  for (size_t i = 0; name && abi_command_at(i); i++)
     if (strcmp(abi_command_at(i)->name, name) == 0) return abi_command_at(i);
   return NULL;
 }
@@ -132,6 +139,8 @@ strut_status abi_call_begin(abi_call *call, const strutlib_scene *scene,
                             const char *const *values, strutlib_control *control,
                             strutlib_error **error, abi_messages *messages) {
   *call = (abi_call){.error = error, .control = control, .messages = messages};
+  if (abi_lacks(error, scene, "scene") || abi_lacks_pairs(error, count, names, values))
+    return STRUT_USAGE;
   call->listener = abi_listen(messages);
   call->arguments = (strut_arguments){.model = scene->source->name,
                                       .overrides = scene->overrides,

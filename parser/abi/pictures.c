@@ -62,6 +62,8 @@ char *strutlib_result_svg(const strutlib_result *result, size_t count, const cha
                           const char *const *values, strutlib_error **error) {
   abi_messages messages = {0};
   char *text = NULL;
+  if (abi_lacks(error, result, "result") || abi_lacks_pairs(error, count, names, values))
+    return NULL;
   abi_enter(error);
   strut_listener listener = abi_listen(&messages);
   /* There is a figure: options that belong to one are in their place. */
@@ -115,6 +117,7 @@ char *strutlib_scene_svg(const strutlib_scene *scene, strutlib_error **error) {
   strut_error what = {0};
   abi_scratch s;
   char *text = NULL;
+  if (abi_lacks(error, scene, "scene")) return NULL;
   abi_enter(error);
   strut_status status = strut_model_compile(&scene->setup.scene, &model, &what);
   if (status == STRUT_OK) status = abi_scratch_begin(&s, figure_name, &what);
@@ -146,6 +149,7 @@ static char *make_page(strut_page *page, const strut_setup *setup, strutlib_erro
 
 char *strutlib_result_html(const strutlib_result *result, strutlib_error **error) {
   char *html = NULL;
+  if (abi_lacks(error, result, "result")) return NULL;
   abi_enter(error);
   strut_page page = {.model = result->model,
                      .motion = abi_result_motion(result),
@@ -189,6 +193,7 @@ char *strutlib_scene_html(const strutlib_scene *scene, int equilibria, strutlib_
   strut_model *model = NULL;
   strut_error what = {0};
   char *html = NULL;
+  if (abi_lacks(error, scene, "scene")) return NULL;
   abi_enter(error);
   strut_status status = strut_model_compile(&scene->setup.scene, &model, &what);
   if (status == STRUT_OK)

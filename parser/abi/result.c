@@ -36,20 +36,28 @@ void strutlib_result_free(strutlib_result *result) {
 
 /* ---- texts ---- */
 
-int strutlib_result_status(const strutlib_result *result) { return result->status; }
-const char *strutlib_result_command(const strutlib_result *result) { return result->command->name; }
-const char *strutlib_result_json(const strutlib_result *result) {
-  return result->json ? result->json : "{}\n";
+int strutlib_result_status(const strutlib_result *result) {
+  return result ? result->status : STRUTLIB_USAGE;
 }
+
+const char *strutlib_result_command(const strutlib_result *result) {
+  return result ? result->command->name : NULL;
+}
+
+const char *strutlib_result_json(const strutlib_result *result) {
+  return result && result->json ? result->json : "{}\n";
+}
+
 const char *strutlib_result_table(const strutlib_result *result) {
-  return result->table ? result->table : "";
+  return result && result->table ? result->table : "";
 }
 
 const char *strutlib_result_warning(const strutlib_result *result, size_t i) {
-  return i < result->messages.count ? result->messages.warnings[i] : NULL;
+  return result && i < result->messages.count ? result->messages.warnings[i] : NULL;
 }
 
 char *strutlib_result_yaml(const strutlib_result *result, strutlib_error **error) {
+  if (abi_lacks(error, result, "result")) return NULL;
   abi_enter(error);
   char *text = NULL;
   if (result->yaml || result->opened)
@@ -79,6 +87,7 @@ static strutlib_result *lock(const strutlib_result *constant) {
 }
 
 static const abi_tree *tree_of(const strutlib_result *constant) {
+  if (!constant) return NULL;
   strutlib_result *result = lock(constant);
   const abi_tree *tree = locked_tree(result);
   pthread_mutex_unlock(&result->lock);
@@ -222,6 +231,7 @@ static const abi_array *made_array(strutlib_result *result, const char *name) {
 
 int strutlib_result_array(const strutlib_result *constant, const char *name, const double **data,
                           int *dimensions, size_t *shape, size_t *stride) {
+  if (!constant || !name) return 0;
   const abi_array *found = find_array(constant->arrays, constant->array_count, name);
   if (found) return abi_show_array(found, data, dimensions, shape, stride);
   abi_array part;
@@ -236,10 +246,11 @@ int strutlib_result_array(const strutlib_result *constant, const char *name, con
 }
 
 const char *strutlib_result_array_name(const strutlib_result *result, size_t i) {
-  return i < result->array_count ? result->arrays[i].name : NULL;
+  return result && i < result->array_count ? result->arrays[i].name : NULL;
 }
 
 const char *strutlib_result_array_unit(const strutlib_result *result, const char *name) {
+  if (!result || !name) return NULL;
   const abi_array *found = find_array(result->arrays, result->array_count, name);
   abi_array part;
   for (size_t i = 0; !found && i < result->array_count; i++)

@@ -153,6 +153,7 @@ strutlib_scene *strutlib_open(const char *path, size_t count, const char *const 
   size_t length = 0;
   strut_error what = {0};
   strutlib_scene *scene = NULL;
+  if (abi_lacks(error, path, "path") || abi_lacks_pairs(error, count, names, values)) return NULL;
   abi_enter(error);
   strut_status status =
       strcmp(path, "-") == 0
@@ -170,6 +171,9 @@ strutlib_scene *strutlib_open_text(const char *name, const char *text, size_t le
                                    const char *const *names, const char *const *values,
                                    strutlib_error **error) {
   strutlib_scene *scene = NULL;
+  if (abi_lacks(error, name, "name") || abi_lacks(error, text, "text") ||
+      abi_lacks_pairs(error, count, names, values))
+    return NULL;
   abi_enter(error);
   if (length <= STRUT_TEXT_MOST)
     scene = make_scene(read_source(name, copy_of(text, length), length, error), NULL, count, names,
@@ -183,6 +187,7 @@ strutlib_scene *strutlib_open_text(const char *name, const char *text, size_t le
 strutlib_scene *strutlib_scene_with(const strutlib_scene *scene, size_t count,
                                     const char *const *names, const char *const *values,
                                     strutlib_error **error) {
+  if (abi_lacks(error, scene, "scene") || abi_lacks_pairs(error, count, names, values)) return NULL;
   abi_enter(error);
   atomic_fetch_add(&scene->source->users, 1);
   strutlib_scene *other = make_scene(scene->source, scene, count, names, values, error);
@@ -202,5 +207,5 @@ void strutlib_close(strutlib_scene *scene) {
 }
 
 const char *strutlib_scene_warning(const strutlib_scene *scene, size_t i) {
-  return i < scene->messages.count ? scene->messages.warnings[i] : NULL;
+  return scene && i < scene->messages.count ? scene->messages.warnings[i] : NULL;
 }

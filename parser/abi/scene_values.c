@@ -76,10 +76,12 @@ static const char *name_at(const strut_setup *setup, const char *kind, size_t i)
 }
 
 const char *strutlib_name(const strutlib_scene *scene, const char *kind, size_t i) {
+  if (!scene || !kind) return NULL;
   return name_at(&scene->setup, kind, i);
 }
 
 size_t strutlib_name_count(const strutlib_scene *scene, const char *kind) {
+  if (!scene || !kind) return 0;
   const strut_scene *s = &scene->setup.scene;
 #define COUNT(things, count)                                                                       \
   if (strcmp(kind, #things) == 0) return s->count;
@@ -92,7 +94,7 @@ size_t strutlib_name_count(const strutlib_scene *scene, const char *kind) {
 
 long strutlib_index(const strutlib_scene *scene, const char *kind, const char *name) {
   const char *there;
-  for (size_t i = 0; (there = name_at(&scene->setup, kind, i)); i++)
+  for (size_t i = 0; scene && kind && name && (there = name_at(&scene->setup, kind, i)); i++)
     if (strcmp(there, name) == 0) return (long)i;
   return -1;
 }
@@ -148,6 +150,7 @@ bool abi_scene_fill_arrays(strutlib_scene *scene) {
 
 int abi_show_array(const abi_array *array, const double **data, int *dimensions, size_t *shape,
                    size_t *stride) {
+  if (!data || !dimensions || !shape || !stride) return 0;
   *data = array->data;
   *dimensions = array->dimensions;
   for (int d = 0; d < array->dimensions; d++) {
@@ -159,7 +162,7 @@ int abi_show_array(const abi_array *array, const double **data, int *dimensions,
 
 int strutlib_scene_array(const strutlib_scene *scene, const char *name, const double **data,
                          int *dimensions, size_t *shape, size_t *stride) {
-  for (size_t i = 0; i < ABI_SCENE_ARRAYS; i++)
+  for (size_t i = 0; i < ABI_SCENE_ARRAYS && scene && name; i++)
     if (strcmp(scene->arrays[i].name, name) == 0)
       return abi_show_array(&scene->arrays[i], data, dimensions, shape, stride);
   return 0;
@@ -203,6 +206,7 @@ static char *write_parts(const strutlib_scene *scene, strutlib_error **error) {
 }
 
 char *strutlib_scene_yaml(const strutlib_scene *scene, int parts, strutlib_error **error) {
+  if (abi_lacks(error, scene, "scene")) return NULL;
   abi_enter(error);
   char *text = parts ? write_parts(scene, error) : write_flat(scene, error);
   abi_leave();
@@ -236,6 +240,7 @@ static abi_tree *make_tree(const strutlib_scene *scene) {
 }
 
 static const abi_tree *tree_of(const strutlib_scene *constant) {
+  if (!constant) return NULL;
   strutlib_scene *scene = (strutlib_scene *)(uintptr_t)constant; /* the lock guards what changes */
   pthread_mutex_lock(&scene->lock);
   if (!scene->tree) scene->tree = make_tree(scene);
@@ -259,6 +264,7 @@ const char *strutlib_scene_text(const strutlib_scene *scene, const char *name) {
 }
 
 char *strutlib_scene_json(const strutlib_scene *scene, strutlib_error **error) {
+  if (abi_lacks(error, scene, "scene")) return NULL;
   abi_enter(error);
   const abi_tree *tree = tree_of(scene);
   char *text = abi_give(tree ? abi_tree_write(tree) : NULL, error);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A run that is advanced from outside. */
+#include <math.h>
 #include <string.h>
 
 #include "engine/run/stepping.h"
@@ -74,6 +75,7 @@ void strutlib_simulation_close(strutlib_simulation *simulation) {
 int strutlib_simulation_advance(strutlib_simulation *simulation, long steps,
                                 strutlib_error **error) {
   strut_error what;
+  if (abi_lacks(error, simulation, "simulation")) return STRUTLIB_USAGE;
   if (error) *error = NULL;
   what.message[0] = '\0'; /* a step is short: nothing more is cleared */
   strut_status status = strut_stepping_advance(simulation->stepping, steps, &what);
@@ -81,15 +83,15 @@ int strutlib_simulation_advance(strutlib_simulation *simulation, long steps,
 }
 
 double strutlib_simulation_time(const strutlib_simulation *simulation) {
-  return strut_stepping_time(simulation->stepping);
+  return simulation ? strut_stepping_time(simulation->stepping) : (double)NAN;
 }
 
 double strutlib_simulation_step(const strutlib_simulation *simulation) {
-  return strut_stepping_step(simulation->stepping);
+  return simulation ? strut_stepping_step(simulation->stepping) : (double)NAN;
 }
 
 double strutlib_simulation_input_work(const strutlib_simulation *simulation) {
-  return strut_stepping_input_work(simulation->stepping);
+  return simulation ? strut_stepping_input_work(simulation->stepping) : (double)NAN;
 }
 
 /* ---- arrays ---- */
@@ -115,6 +117,7 @@ int strutlib_simulation_array(strutlib_simulation *simulation, const char *name,
                   {"contact", STRUT_CHANNEL_CONTACT},   {"angle", STRUT_CHANNEL_ANGLE},
                   {"moment", STRUT_CHANNEL_MOMENT},     {"area", STRUT_CHANNEL_AREA},
                   {"pressure", STRUT_CHANNEL_PRESSURE}, {"energy", STRUT_CHANNEL_ENERGY}};
+  if (!simulation || !name || !data || !dimensions || !shape || !stride) return 0;
   for (size_t i = 0; i < sizeof channels / sizeof channels[0]; i++) {
     if (strcmp(channels[i].name, name) != 0) continue;
     const strut_record_channel *c =
@@ -131,6 +134,7 @@ static const char *const input_names[] = {"rest", "actuators", "load", NULL};
 
 int strutlib_simulation_input(strutlib_simulation *simulation, const char *name, double **data,
                               int *dimensions, size_t *shape, size_t *stride) {
+  if (!simulation || !name || !data || !dimensions || !shape || !stride) return 0;
   for (int i = 0; input_names[i]; i++) {
     size_t count, components = i == STRUT_INPUT_LOAD ? 2 : 1;
     if (strcmp(input_names[i], name) != 0) continue;
@@ -163,6 +167,9 @@ int strutlib_simulation_set(strutlib_simulation *simulation, const char *input, 
                             double value, strutlib_error **error) {
   int which = 0;
   size_t count;
+  if (abi_lacks(error, simulation, "simulation") || abi_lacks(error, input, "input") ||
+      abi_lacks(error, name, "name"))
+    return STRUTLIB_USAGE;
   if (error) *error = NULL;
   while (input_names[which] && strcmp(input_names[which], input) != 0) which++;
   if (!input_names[which])
@@ -180,6 +187,7 @@ int strutlib_simulation_set(strutlib_simulation *simulation, const char *input, 
 
 strutlib_snapshot *strutlib_simulation_snapshot(const strutlib_simulation *simulation,
                                                 strutlib_error **error) {
+  if (abi_lacks(error, simulation, "simulation")) return NULL;
   if (error) *error = NULL;
   strutlib_snapshot *snapshot = strut_allocate(1, sizeof *snapshot);
   if (snapshot) snapshot->stored = strut_stepping_store(simulation->stepping);
@@ -191,6 +199,8 @@ strutlib_snapshot *strutlib_simulation_snapshot(const strutlib_simulation *simul
 
 int strutlib_simulation_restore(strutlib_simulation *simulation, const strutlib_snapshot *snapshot,
                                 strutlib_error **error) {
+  if (abi_lacks(error, simulation, "simulation") || abi_lacks(error, snapshot, "snapshot"))
+    return STRUTLIB_USAGE;
   if (error) *error = NULL;
   if (strut_stepping_restore(simulation->stepping, snapshot->stored)) return STRUTLIB_OK;
   return abi_fail(error, STRUTLIB_USAGE, "the snapshot is of another simulation");

@@ -421,6 +421,14 @@ static strut_status run_sweep(sweep *s, strutlib_result *result, strut_error *wh
   return status;
 }
 
+/* Is a list of texts, or one of them, NULL? */
+static bool lacks_text(strutlib_error **error, size_t count, const char *const *texts,
+                       const char *name) {
+  bool lacks = count && abi_lacks(error, texts, name);
+  for (size_t i = 0; i < count && !lacks; i++) lacks = abi_lacks(error, texts[i], name);
+  return lacks;
+}
+
 strutlib_result *strutlib_sweep(const strutlib_scene *scene, size_t axis_count,
                                 const char *const *axes, size_t point_count, const double *points,
                                 const char *const *words, size_t keep_count,
@@ -437,7 +445,10 @@ strutlib_result *strutlib_sweep(const strutlib_scene *scene, size_t axis_count,
   if (result)
     status = abi_call_begin(&call, scene, &abi_sweep_command, count, names, values, control, error,
                             &result->messages);
-  if (status == STRUT_OK) {
+  if (status == STRUT_OK &&
+      (lacks_text(error, axis_count, axes, "axes") || lacks_text(error, keep_count, keep, "keep")))
+    status = STRUT_USAGE;
+  else if (status == STRUT_OK) {
     s.study.name = "sweep";
     s.study.quantities = strut_arena_allocate(&s.arena, keep_count, sizeof *s.study.quantities);
     if (!s.study.quantities) status = strut_no_memory(&what, "");
@@ -464,13 +475,13 @@ strutlib_result *strutlib_sweep(const strutlib_scene *scene, size_t axis_count,
 /* ---- columns of words ---- */
 
 const char *strutlib_result_column(const strutlib_result *result, size_t i) {
-  if (result->command != &abi_sweep_command) return NULL;
+  if (!result || result->command != &abi_sweep_command) return NULL;
   const sweep_detail *d = result->detail;
   return i < d->column_count ? d->columns[i].name : NULL;
 }
 
 const char *strutlib_result_cell(const strutlib_result *result, const char *column, size_t point) {
-  if (result->command != &abi_sweep_command) return NULL;
+  if (!result || !column || result->command != &abi_sweep_command) return NULL;
   const sweep_detail *d = result->detail;
   if (point >= d->points) return NULL;
   if (strcmp(column, "message") == 0) return d->messages[point];

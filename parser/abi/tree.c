@@ -120,6 +120,7 @@ static const cJSON *child_of(const cJSON *map, const char *name, const char **re
 }
 
 static const cJSON *find(const cJSON *at, const char *name) {
+  if (!name) return NULL;
   while (at && *name) {
     int index;
     if (cJSON_IsObject(at)) {
@@ -135,14 +136,14 @@ static const cJSON *find(const cJSON *at, const char *name) {
 
 bool abi_tree_number(const abi_tree *tree, const char *name, double *value) {
   const cJSON *at = find(tree, name);
-  if (!at || !cJSON_IsNumber(at)) return false;
+  if (!at || !value || !cJSON_IsNumber(at)) return false;
   *value = at->valuedouble;
   return true;
 }
 
 bool abi_tree_flag(const abi_tree *tree, const char *name, int *value) {
   const cJSON *at = find(tree, name);
-  if (!at || !cJSON_IsBool(at)) return false;
+  if (!at || !value || !cJSON_IsBool(at)) return false;
   *value = cJSON_IsTrue(at) ? 1 : 0;
   return true;
 }

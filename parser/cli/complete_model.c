@@ -12,6 +12,7 @@
 #include "parser/cli/complete.h"
 #include "parser/read/read_scene.h"
 #include "parser/read/reader.h"
+#include "parser/read/safe_path.h"
 
 enum { LARGEST = 4 << 20, PATH = 4096 };
 
@@ -44,17 +45,21 @@ static bool read_text(opened *o) {
   return small && strut_file_read(o->path, &o->text, &o->length, &error) == STRUT_OK;
 }
 
-/* The path of the model of a study, relative to the folder of the study, which is in o->path. */
+/* The path of the model of a study, which is o->path, where a study may name it. */
 static bool follow_study(opened *o, const strut_tree *root) {
-  char path[PATH];
   const strut_tree *model = strut_tree_find(root, "model", NULL);
-  const char *slash = strrchr(o->path, '/');
-  int folder = slash && model && model->text[0] != '/' ? (int)(slash + 1 - o->path) : 0;
+  strut_arena arena = {0};
+  strut_safe_text text = {0};
+  strut_error error = {0};
   if (!model || model->kind != STRUT_TREE_SCALAR) return false;
-  int length = snprintf(path, sizeof path, "%.*s%s", folder, o->path, model->text);
-  if (length < 0 || (size_t)length >= sizeof path) return false;
-  memcpy(o->path, path, sizeof path);
-  return true;
+  const char *folder = strut_folder_of(o->path, &arena);
+  bool found = folder &&
+               strut_safe_read(folder, o->path, model->text, LARGEST, &text, &error) == STRUT_OK &&
+               strlen(text.path) < sizeof o->path;
+  if (found) strcpy(o->path, text.path);
+  strut_safe_text_free(&text);
+  strut_arena_free(&arena);
+  return found;
 }
 
 /* The tree of o->path; false where there is none. */

@@ -76,13 +76,11 @@ strut_status strut_create_file(const char *path, const char *text, size_t length
   return trouble(error, path, code);
 }
 
-/* path.PID, beside the file. */
 static int replace(const char *path, const char *text, size_t length) {
   char part[STRUT_LONGEST_PATH + 32];
   struct stat found;
   if (access(path, W_OK) != 0 || stat(path, &found) != 0) return errno;
-  snprintf(part, sizeof part, "%s.%ld", path, (long)getpid());
-  int code = 0, file = open(part, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  int code = 0, file = strut_file_create_beside(path, part, sizeof part);
   if (file < 0) return errno;
   if (fchmod(file, found.st_mode & 07777) != 0) code = errno;
   int written = write_all(file, text, length);

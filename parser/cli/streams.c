@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* fopencookie is of GNU and musl. */
+#define _GNU_SOURCE
 #include "parser/cli/streams.h"
 
 #include <errno.h>
@@ -12,6 +14,79 @@
 #include <unistd.h>
 
 #include "engine/base/memory.h"
+#include "parser/yaml/text.h"
+
+/* ---- hidden characters ---- */
+
+/* A stream that people read. */
+typedef struct reading {
+  int descriptor;
+  size_t count;
+  char held[4]; /* (count) the begin of a character */
+} reading;
+
+/* May the held bytes become a character? */
+static bool is_begun(const reading *r) {
+  unsigned char lead = (unsigned char)r->held[0];
+  size_t size = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : lead >= 0xC2 ? 2 : 1;
+  for (size_t i = 1; i < r->count; i++)
+    if (((unsigned char)r->held[i] & 0xC0) != 0x80) return false;
+  return lead <= 0xF4 && r->count < size;
+}
+
+/* Moves the first held character, or bad byte, to `to`, where there is space for 16 bytes. */
+static size_t show_character(reading *r, char *to) {
+  uint32_t code;
+  size_t size = strut_text_decode(r->held, r->count, &code);
+  int shown = (int)size;
+  if (code != STRUT_BAD_CODE && strut_text_hidden(code))
+    shown = snprintf(to, 16, code > 0xFFFF ? "\\U%08X" : "\\u%04X", (unsigned)code);
+  else
+    memcpy(to, r->held, size);
+  r->count -= size;
+  memmove(r->held, r->held + size, r->count);
+  return (size_t)shown;
+}
+
+static bool write_whole(int descriptor, const char *bytes, size_t size) {
+  while (size > 0) {
+    ssize_t done = write(descriptor, bytes, size);
+    if (done < 0 && errno != EINTR) return false;
+    if (done > 0) bytes += done, size -= (size_t)done;
+  }
+  return true;
+}
+
+static ssize_t write_shown(void *cookie, const char *bytes, size_t size) {
+  reading *r = cookie;
+  char out[1024];
+  size_t used = 0;
+  bool whole = true;
+  for (size_t i = 0; i < size && whole; i++) {
+    r->held[r->count++] = bytes[i];
+    while (r->count && !is_begun(r)) used += show_character(r, out + used);
+    if (used + 4 * 16 <= sizeof out) continue;
+    whole = write_whole(r->descriptor, out, used);
+    used = 0;
+  }
+  return whole && write_whole(r->descriptor, out, used) ? (ssize_t)size : 0;
+}
+
+/* A stream in place of a standard one; NULL: that one stays. */
+static FILE *open_reading(reading *r, int mode) {
+  FILE *stream = fopencookie(r, "w", (cookie_io_functions_t){.write = write_shown});
+  if (stream) setvbuf(stream, NULL, mode, BUFSIZ);
+  return stream;
+}
+
+static void show_hidden(void) {
+  static reading out = {.descriptor = STDOUT_FILENO}, messages = {.descriptor = STDERR_FILENO};
+  FILE *stream = isatty(STDOUT_FILENO) ? open_reading(&out, _IOLBF) : NULL;
+  if (stream) stdout = stream;
+  if ((stream = open_reading(&messages, _IONBF))) stderr = stream;
+}
+
+/* ---- output ---- */
 
 void strut_streams_open(void) {
   /* Reversed on purpose: using a closed stream must stay an error. */
@@ -19,6 +94,7 @@ void strut_streams_open(void) {
   for (int i = 0; i < 3; i++) {
     if (fcntl(i, F_GETFD) == -1 && errno == EBADF && open("/dev/null", modes[i]) != i) break;
   }
+  show_hidden();
 }
 
 static void print_output_error(int reason) {

@@ -9,7 +9,10 @@
 
 #include "parser/cli/options.h"
 
-/** Opens /dev/null for standard streams that are closed, so that no file of results gets their place. */
+/**
+ * Opens /dev/null for standard streams that are closed, so that no file of results gets their place. Hidden
+ * characters of names (strut_text_hidden) appear on stderr, and on stdout where that is a terminal, as "\u202E".
+ */
 void strut_streams_open(void);
 /**
  * Flushes stdout and returns the program's exit code: that of `status`, or of file trouble instead of

@@ -231,7 +231,8 @@ enum {
       STRUT_KEY_COUNT
 };
 
-enum { STRUT_MOST_KEYS = 48 }; /* of one section */
+enum { STRUT_MOST_KEYS = 48 };         /* of one section */
+enum { STRUT_MOST_THINGS = 10000000 }; /* entries of all copies of parts */
 
 STRUT_API const strut_key *strut_key_at(int key);
 /** First key and number of keys of a section. */

@@ -237,6 +237,10 @@ static PyObject *options(PyObject *module, PyObject *argument) {
   if (read_text(argument, &command) != 0) {
     return NULL;
   }
+  if (command == NULL) {
+    PyErr_SetString(PyExc_TypeError, "the name of a command is needed, such as 'run', not None");
+    return NULL;
+  }
   PyObject *list = PyList_New(0);
   const char *name;
   for (size_t i = 0; list != NULL && (name = strutlib_option_name(command, i)) != NULL; i++) {

@@ -13,8 +13,7 @@
 #include "engine/base/vec.h"
 #include "parser/read/beams.h"
 
-/* Parts of all beams. */
-enum { MOST_PARTS = 2000000 };
+enum { THINGS_OF_PART = 3 }; /* a node, a bar and a hinge */
 
 enum { CLAMPED_START = 1, CLAMPED_END = 2 }; /* the words of the key, as bits */
 
@@ -156,9 +155,11 @@ void strut_read_beams(strut_reader *reader) {
     parts += (size_t)b->parts, clamps += count_clamps(b);
     reader->beam_count++;
   }
-  if (parts > MOST_PARTS) {
-    strut_report_error(reader, map->place, "the beams have %zu parts, at most %d are possible",
-                       parts, (int)MOST_PARTS);
+  double most = floor(reader->limit_things / THINGS_OF_PART);
+  if ((double)parts > most) {
+    strut_report_error(reader, map->place, "the beams have %zu parts, at most %.0f are possible%s",
+                       parts, most, strut_limit_hint(reader));
+    reader->ends_unknown = true;
     reader->beam_count = 0;
   }
   if (!reader->beam_count || strut_diagnostics_full(reader->diagnostics)) return;

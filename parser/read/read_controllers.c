@@ -145,6 +145,7 @@ typedef struct controller {
   int32_t sensor, state; /* state: of the integral, or -1 */
   double target, gain, integral, derivative, limit[2], every;
   bool limited[2];
+  const strut_tree *bare_gain; /* where it has no unit */
   strut_dimension sensed, gained, signal;
 } controller;
 
@@ -183,6 +184,7 @@ static bool read_gain(strut_reader *reader, strut_fields *fields, strut_owner ow
       !strut_read_quantity(reader, slot->value, "gain", owner, &q))
     return false;
   c->gain = q.value;
+  if (q.bare) c->bare_gain = slot->value;
   c->gained = q.bare ? STRUT_DIM_NONE : q.dimension;
   c->signal = (strut_dimension){c->gained.kg + c->sensed.kg, c->gained.m + c->sensed.m,
                                 c->gained.s + c->sensed.s, c->gained.angle + c->sensed.angle};
@@ -295,7 +297,7 @@ static int32_t read_pid(strut_reader *reader, const strut_tree *key) {
   c.sensor =
       strut_read_reference(reader, sensor->value, "sensor", owner, "sensor", &reader->sensor_names,
                            strut_sensor_name, reader->scene->sensor_count);
-  if (c.sensor < 0) return -1;
+  if (c.sensor < 0 || reader->sensor_source[c.sensor].broken) return -1;
   strut_sensor_kind kind = reader->scene->sensors[c.sensor].kind;
   c.sensed = strut_sensor_dimension(kind);
   if (!read_numbers(reader, &fields, owner, &c)) return -1;
@@ -318,7 +320,7 @@ static int32_t read_pid(strut_reader *reader, const strut_tree *key) {
   strut_signal signal = strut_signal_default(STRUT_EXPRESSION);
   signal.program = end_program(&b);
   signal.every = c.every;
-  return strut_add_controller_signal(reader, key, &signal, c.signal, false);
+  return strut_add_controller_signal(reader, key, &signal, c.signal, false, c.bare_gain);
 }
 
 bool strut_is_relay(const strut_tree *map) {

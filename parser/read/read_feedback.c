@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sensors, and signals as expressions of the time, sensors and other signals. See reader.h. */
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -149,6 +150,7 @@ bool strut_find_sensed(strut_reader *reader, const char *name, strut_column *col
   if (sensor < 0) return false;
   column->kind = STRUT_COLUMN_SENSOR, column->item = sensor;
   *dimension = strut_sensor_dimension(reader->scene->sensors[sensor].kind);
+  if (reader->sensor_source[sensor].broken) dimension->kg = (float)NAN; /* any */
   return true;
 }
 
@@ -156,10 +158,12 @@ int strut_find_sensor_rate(strut_reader *reader, strut_piece piece, strut_column
                            strut_dimension *dimension, strut_refusal *refusal) {
   const char *name = strut_arena_text(&reader->scratch, piece.text, piece.length);
   int32_t i = name ? strut_find_named(reader, &reader->sensor_names, NULL, name) : -1;
-  if (i >= 0 && strut_sensor_has_rate(reader->scene->sensors[i].kind)) {
+  bool broken = i >= 0 && reader->sensor_source[i].broken;
+  if (i >= 0 && (broken || strut_sensor_has_rate(reader->scene->sensors[i].kind))) {
     column->kind = STRUT_COLUMN_SENSOR_RATE, column->item = i;
     *dimension = strut_sensor_dimension(reader->scene->sensors[i].kind);
     dimension->s -= 1.0f;
+    if (broken) dimension->kg = (float)NAN; /* any */
     return 1;
   }
   if (i >= 0)

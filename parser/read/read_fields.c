@@ -249,6 +249,7 @@ static bool read_typed(strut_reader *reader, const strut_key *key, const strut_t
                        strut_owner owner, strut_slot *slot) {
   strut_key_type type = key->type;
   if (type == STRUT_TYPE_VERSION) return read_version(reader, value);
+  if (type == STRUT_TYPE_NUMBER && key->section == STRUT_SECTION_SCENE) return true; /* as pairs */
   if (type == STRUT_TYPE_NUMBER) return read_number(reader, key, value, owner, slot->number);
   if (type == STRUT_TYPE_WORD) return strut_read_word(reader, key, value, owner, &slot->word);
   if (type == STRUT_TYPE_WORDS) return read_words(reader, key, value, owner, &slot->word);

@@ -288,22 +288,40 @@ typedef struct contact_list {
   size_t count;
 } contact_list;
 
+/* Memory for the contacts of `nodes` nodes with all pieces. False: there are too many, which was reported. */
+static bool make_contacts(strut_reader *reader, strut_fields *fields, strut_owner owner,
+                          size_t nodes, size_t pieces, contact_list *list) {
+  const strut_slot *profile = strut_slot_of(fields, STRUT_KEY_GROUND_PROFILE);
+  double count = (double)nodes * (double)pieces;
+  if (pieces > 1 && count > reader->limit_things) {
+    strut_report_error(reader, profile->value->place,
+                       "%zu nodes with the %zu parts of the profile of %s make %.3g contacts, at "
+                       "most %.0f are possible%s",
+                       nodes, pieces, strut_owner_text(reader, owner), count, reader->limit_things,
+                       strut_limit_hint(reader));
+    fields->broken = true;
+    return false;
+  }
+  list->contact =
+      strut_reader_allocate(reader, &reader->scene->arena, nodes * pieces, sizeof *list->contact);
+  list->source =
+      strut_reader_allocate(reader, &reader->scratch, nodes * pieces, sizeof *list->source);
+  return list->contact && list->source;
+}
+
 /* The contacts of a ground with its nodes; of each node one for each convex piece. */
 static void read_contacts(strut_reader *reader, strut_fields *fields, strut_owner owner,
                           ground_defaults *defaults, size_t pieces, contact_list *list) {
-  strut_scene *scene = reader->scene;
-  size_t count = scene->node_count;
+  size_t count = reader->scene->node_count, touching = 0;
   unsigned char *touches = strut_reader_allocate(reader, &reader->scratch, count, 1);
   const strut_tree **entry = strut_reader_allocate(reader, &reader->scratch, count, sizeof *entry);
-  list->contact =
-      strut_reader_allocate(reader, &scene->arena, count * pieces, sizeof *list->contact);
-  list->source =
-      strut_reader_allocate(reader, &reader->scratch, count * pieces, sizeof *list->source);
-  if (!touches || !entry || !list->contact || !list->source) return;
+  if (!touches || !entry) return;
   bool complete = mark_nodes(reader, fields, owner, touches);
   complete = add_copied(reader, touches, entry) && complete;
   if (!find_entries(reader, fields, owner, touches, complete, entry) || !complete)
     fields->broken = true;
+  for (size_t i = 0; i < count; i++) touching += touches[i];
+  if (!make_contacts(reader, fields, owner, touching, pieces, list)) return;
   for (size_t i = 0; i < count; i++) {
     if (!touches[i]) continue;
     size_t c = list->count++;
@@ -463,8 +481,10 @@ static bool nodes_are_known(strut_reader *reader) {
 /* Names of contacts where a node may have several: NODE, NODE.GROUND, NODE.PIECE or NODE.GROUND.PIECE. */
 static void name_contacts(strut_reader *reader) {
   strut_scene *scene = reader->scene;
-  size_t surfaces = 0;
-  for (size_t g = 0; g < scene->ground_count; g++) surfaces += pieces_of(&scene->grounds[g]);
+  size_t surfaces = 0, *pieces = strut_reader_allocate(reader, &reader->scratch,
+                                                       scene->ground_count, sizeof *pieces);
+  for (size_t g = 0; g < scene->ground_count && pieces; g++)
+    surfaces += pieces[g] = pieces_of(&scene->grounds[g]);
   for (size_t i = 0; surfaces > 1 && i < scene->contact_count; i++) {
     strut_contact *c = &scene->contacts[i];
     const char *node = scene->nodes[c->node].name, *ground = scene->grounds[c->ground].name;
@@ -472,8 +492,7 @@ static void name_contacts(strut_reader *reader) {
     char *name = strut_reader_allocate(reader, &scene->arena, size, 1);
     if (!name) return;
     used = (size_t)snprintf(name, size, "%s%s%s", node, *ground ? "." : "", ground);
-    if (pieces_of(&scene->grounds[c->ground]) > 1)
-      snprintf(name + used, size - used, ".%d", (int)c->piece + 1);
+    if (pieces[c->ground] > 1) snprintf(name + used, size - used, ".%d", (int)c->piece + 1);
     c->name = name;
   }
 }

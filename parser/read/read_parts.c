@@ -8,13 +8,11 @@
  */
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "engine/base/memory_limit.h"
 #include "parser/read/expansion.h"
-
-/* Entries of all copies. */
-static const double MOST_THINGS = 1e7;
 
 /* ---- parts ---- */
 
@@ -333,12 +331,12 @@ static void link_all(strut_expansion *e, strut_placing *p, strut_copy **copies,
 /* Refuses what would become too large, before it is copied. */
 static bool check_size(strut_expansion *e, const strut_placing *p, double copies, double each) {
   const strut_slot *repeat = strut_slot_of((strut_fields *)&p->fields, STRUT_KEY_PLACE_REPEAT);
-  double all = copies * each;
-  if ((double)e->copies->things + all <= MOST_THINGS) return true;
+  double all = (double)e->copies->things + copies * each, most = e->reader->limit_things;
+  if (all <= most) return true;
   strut_report_error(e->reader, repeat->value ? repeat->value->place : p->placement->key->place,
                      "the copies would have %.3g nodes, members and other things, at most %.0f are "
-                     "possible",
-                     (double)e->copies->things + all, MOST_THINGS);
+                     "possible%s",
+                     all, most, strut_limit_hint(e->reader));
   e->stopped = true;
   return false;
 }
@@ -516,6 +514,26 @@ static bool check_memory(strut_expansion *e, const strut_slot *place) {
   return false;
 }
 
+static void read_limit(strut_reader *reader) {
+  const strut_key *key = strut_key_at(STRUT_KEY_SCENE_LIMIT_THINGS);
+  const strut_slot *slot = strut_slot_of(&reader->top, STRUT_KEY_SCENE_LIMIT_THINGS);
+  strut_owner owner = {"the scene", NULL};
+  double most;
+  reader->limit_things = strtod(key->fallback, NULL);
+  if (slot->state == STRUT_GIVEN &&
+      strut_read_number(reader, slot->value, key->name, owner, STRUT_DIM_NONE, STRUT_RANGE_ANY,
+                        &most) &&
+      strut_check_whole(reader, slot->value, key, owner, most))
+    reader->limit_things = most;
+}
+
+const char *strut_limit_hint(strut_reader *reader) {
+  char text[100];
+  if (reader->limit_things >= STRUT_MOST_THINGS) return "";
+  snprintf(text, sizeof text, "; 'limit_things' of the scene allows up to %d", STRUT_MOST_THINGS);
+  return strut_keep_text(reader, text);
+}
+
 /* Counts first, then copies. */
 static void expand_scene(strut_expansion *e) {
   strut_reader *reader = e->reader;
@@ -541,6 +559,7 @@ void strut_read_parts(strut_reader *reader) {
   const strut_slot *parts = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PARTS);
   const strut_slot *place = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PLACE);
   const strut_slot *merge = strut_slot_of(&reader->top, STRUT_KEY_SCENE_MERGE);
+  read_limit(reader);
   if (!parts->key && !place->key && !merge->key) {
     strut_require_nodes(reader);
     return;

@@ -65,5 +65,6 @@ int32_t strut_read_relay(strut_reader *reader, const strut_tree *key) {
   fine = read_values(reader, owner, &fields, &signal.relay, &unit) && fine;
   const strut_slot *every = strut_slot_of(&fields, STRUT_KEY_RELAY_EVERY);
   if (every->state == STRUT_GIVEN) signal.every = every->number[0];
-  return fine ? strut_add_controller_signal(reader, key, &signal, unit.dimension, unit.bare) : -1;
+  return fine ? strut_add_controller_signal(reader, key, &signal, unit.dimension, unit.bare, NULL)
+              : -1;
 }

@@ -37,7 +37,7 @@ static int32_t add_signal(strut_reader *reader, const strut_signal *signal, cons
   }
   size_t i = reader->signal_count++;
   reader->signals[i] = *signal;
-  reader->signal_state[i] = (strut_signal_state){m->dimension, m->bare, value};
+  reader->signal_state[i] = (strut_signal_state){m->dimension, m->bare, value, NULL};
   return (int32_t)i;
 }
 
@@ -284,6 +284,19 @@ static int32_t read_named(strut_reader *reader, strut_named_signal *named) {
   return named->index;
 }
 
+/* A controller's signal is a number of its sensor's kind where its gain has no unit, which may be a slip. */
+static void refuse_gain(strut_reader *reader, const strut_signal_state *state,
+                        const strut_tree *value, const char *wanted) {
+  char found[80];
+  size_t item = reader->diagnostics->count;
+  strut_report_error(reader, state->gain->place,
+                     "the gain of controller '%s' has no unit, so that its signal is %s, expected "
+                     "%s; give it the unit of the signal over that of the sensor",
+                     value->text, strut_dimension_name(state->dimension, found, sizeof found),
+                     wanted);
+  strut_diagnose_note(reader->diagnostics, item, value->place, "the signal is used here");
+}
+
 /* May the signal stand where `expected` is needed? Its first use decides for a bare one. */
 static bool claim(strut_reader *reader, int32_t index, const strut_tree *value,
                   const strut_dimension *expected) {
@@ -296,10 +309,12 @@ static bool claim(strut_reader *reader, int32_t index, const strut_tree *value,
     state->dimension = *expected;
   }
   if (strut_dimension_equal(state->dimension, *expected)) return true;
-  strut_report_error(
-      reader, value->place, "expected %s here, but signal '%s' is %s",
-      strut_expected_quantity(reader->signal_quantity, *expected, wanted, sizeof wanted),
-      value->text, strut_dimension_name(state->dimension, found, sizeof found));
+  strut_expected_quantity(reader->signal_quantity, *expected, wanted, sizeof wanted);
+  if (state->gain)
+    refuse_gain(reader, state, value, wanted);
+  else
+    strut_report_error(reader, value->place, "expected %s here, but signal '%s' is %s", wanted,
+                       value->text, strut_dimension_name(state->dimension, found, sizeof found));
   return false;
 }
 
@@ -318,6 +333,7 @@ static int32_t read_signal(strut_reader *reader, const strut_tree *value, const 
 int32_t strut_use_signal(strut_reader *reader, const char *name, strut_dimension *dimension) {
   int32_t i = strut_find_named(reader, &reader->signal_names, NULL, name);
   int32_t index = i < 0 ? -1 : read_named(reader, &reader->named[i]);
+  *dimension = (strut_dimension){.kg = (float)NAN}; /* any, where it could not be read */
   if (index < 0) return -1;
   strut_signal_state *state = &reader->signal_state[index];
   *dimension = state->dimension;
@@ -350,9 +366,11 @@ void strut_list_signals(strut_reader *reader) {
 
 int32_t strut_add_controller_signal(strut_reader *reader, const strut_tree *key,
                                     const strut_signal *signal, strut_dimension dimension,
-                                    bool bare) {
+                                    bool bare, const strut_tree *gain) {
   const meaning m = {NULL, dimension, bare};
-  return add_signal(reader, signal, &m, key->next);
+  int32_t index = add_signal(reader, signal, &m, key->next);
+  if (index >= 0) reader->signal_state[index].gain = gain;
+  return index;
 }
 
 /* Relays come first, since what is written has no other controllers. */

@@ -99,6 +99,7 @@ typedef struct strut_signal_state {
   strut_dimension dimension;
   bool bare; /* made of plain numbers, and nothing has used it yet */
   const strut_tree *value;
+  const strut_tree *gain; /* of a controller whose gain has no unit; NULL otherwise */
 } strut_signal_state;
 
 /** A signal with a name. */
@@ -141,6 +142,7 @@ typedef struct strut_reader {
   strut_source *unbalance_source, *slider_source;
   const strut_tree **node_moves; /* (node_count) the keys of moves of a node, or NULL */
   strut_signal_state *signal_state;
+  double limit_things;         /* entries of all copies, and of beams, that are allowed */
   const char *signal_quantity; /* what the signal that is being read gives, for messages, or NULL */
   size_t signal_count;
   strut_source *configuration_source;
@@ -193,6 +195,8 @@ void strut_report_error(strut_reader *reader, strut_place place, const char *for
 const char *strut_owner_text(strut_reader *reader, strut_owner owner);
 /** Text from the file, shortened and without control characters; lives in scratch. */
 const char *strut_sanitised_text(strut_reader *reader, const char *text);
+/** What may be said of reader->limit_things where that is too little: "; 'limit_things' of ...", or "". */
+const char *strut_limit_hint(strut_reader *reader);
 /** "; did you mean 'x'?" or "": the nearest of `count` names; lives in scratch. */
 const char *strut_hint(strut_reader *reader, const char *word, strut_names *names,
                        const void *context, size_t count);
@@ -451,10 +455,10 @@ bool strut_check_variable_name(strut_reader *reader, const strut_tree *key, cons
 /** Appends an internal state; -1: out of memory, or too many errors. */
 int32_t strut_add_state(strut_reader *reader, const strut_tree *key, const char *name,
                         strut_dimension dimension, double start);
-/** Appends the signal that a controller is; -1: out of memory. */
+/** Appends the signal that a controller is; -1: out of memory. gain: its gain where that has no unit, or NULL. */
 int32_t strut_add_controller_signal(strut_reader *reader, const strut_tree *key,
                                     const strut_signal *signal, strut_dimension dimension,
-                                    bool bare);
+                                    bool bare, const strut_tree *gain);
 /** The signal that the controller behind the key stands for; -1: it was reported. */
 int32_t strut_read_controller(strut_reader *reader, const strut_tree *key);
 /** Is the controller a relay? */

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "parser/read/overlay.h"
+#include "parser/read/safe_path.h"
 #include "parser/study/study_reader.h"
 #include "parser/write/write_tree.h"
 
@@ -72,15 +73,18 @@ static const struct {
                 {"initial", STRUT_KEY_STUDY_INITIAL, STRUT_KEY_VARIANT_INITIAL},
                 {"output", STRUT_KEY_STUDY_OUTPUT, STRUT_KEY_VARIANT_OUTPUT}};
 
-/* The model's file, relative to the study's folder unless its path is absolute. */
-static char *model_path(const char *study, const char *model) {
-  const char *slash = strrchr(study, '/');
-  size_t folder = *model == '/' || !slash ? 0 : (size_t)(slash - study) + 1;
-  char *path = strut_allocate(folder + strlen(model) + 1, 1);
-  if (!path) return NULL;
-  memcpy(path, study, folder);
-  strcpy(path + folder, model);
-  return path;
+/* Reads the model's file: below the folder of the study, as all files that a file names. */
+static strut_status read_model(strut_study_reader *r, const strut_tree *name, strut_error *error) {
+  strut_study_file *file = r->file;
+  strut_safe_text text;
+  const char *folder = strut_folder_of(file->path, &file->arena);
+  if (!folder) return STRUT_NO_MEMORY;
+  strut_status status =
+      strut_safe_read(folder, file->path, name->text, STRUT_TEXT_MOST, &text, error);
+  if (status == STRUT_BAD_SCENE) strut_report_error(r->reader, name->place, "%s", error->message);
+  if (status) return status;
+  file->model_path = text.path, file->model_text = text.text, file->model_length = text.length;
+  return STRUT_OK;
 }
 
 static bool lay_over(strut_document *document, const char *section, const strut_slot *slot) {
@@ -163,15 +167,7 @@ strut_status strut_study_open_sources(strut_study_reader *r, strut_fields *top,
     strut_report_error(r->reader, variants->value->place, "there are no variants in 'variants'");
   if (model->state != STRUT_GIVEN) return STRUT_BAD_SCENE;
   file->study.model = model->value->text;
-  if (!*file->study.model) {
-    strut_report_error(r->reader, model->value->place,
-                       "expected the path of a model for 'model', found ''");
-    return STRUT_BAD_SCENE;
-  }
-  file->model_path = model_path(file->path, model->value->text);
-  if (!file->model_path) return STRUT_NO_MEMORY;
-  strut_status status =
-      strut_file_read(file->model_path, &file->model_text, &file->model_length, error);
+  strut_status status = read_model(r, model->value, error);
   if (status != STRUT_OK) return status;
   file->sources = strut_reader_allocate(r->reader, &file->arena, count + 1, sizeof *file->sources);
   r->variant_names =

@@ -179,6 +179,7 @@ static int cells(uint32_t code) {
                 {0xAC00, 0xD7A3, 2},  {0xF900, 0xFAFF, 2},   {0xFE30, 0xFE6F, 2},
                 {0xFF00, 0xFF60, 2},  {0x1F300, 0x1F64F, 2}, {0x1F900, 0x1F9FF, 2},
                 {0x20000, 0x3FFFD, 2}};
+  if (strut_text_hidden(code)) return 1; /* shown as U+FFFD */
   for (size_t i = 0; code >= 0x300 && i < sizeof ranges / sizeof ranges[0]; i++)
     if (code >= ranges[i].first && code <= ranges[i].last) return ranges[i].cells;
   return 1;
@@ -219,7 +220,7 @@ static void append_source(text_builder *out, strut_cursor cursor, window shown) 
     size_t size = strut_text_decode(here, cursor.length - cursor.offset, &code);
     strut_cursor_step(&cursor);
     if (i < shown.first) continue;
-    if (code == STRUT_BAD_CODE || strut_text_forbidden(code))
+    if (code == STRUT_BAD_CODE || strut_text_forbidden(code) || strut_text_hidden(code))
       append_bytes(out, "\xEF\xBF\xBD", 3);
     else
       append_bytes(out, here, size);

@@ -60,6 +60,13 @@ bool strut_text_forbidden(uint32_t code) {
          code > 0x10FFFF;
 }
 
+bool strut_text_hidden(uint32_t code) {
+  return (code >= 0x80 && code < 0xA0) || code == 0x61C || code == 0x180E || code == 0x200B ||
+         code == 0x200E || code == 0x200F || (code >= 0x2028 && code <= 0x202E) ||
+         (code >= 0x2060 && code <= 0x206F) || code == 0xFEFF ||
+         (code >= 0xFFF9 && code <= 0xFFFB) || (code >= 0xE0000 && code <= 0xE0FFF);
+}
+
 strut_cursor strut_cursor_begin(const char *text, size_t length) {
   return (strut_cursor){.text = text,
                         .length = length,

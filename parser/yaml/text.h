@@ -26,6 +26,9 @@ int strut_text_cut(const char *text, int most);
 size_t strut_text_mark(const char *text, size_t length);
 /** True for a code point that no text may hold: controls except tab and breaks, U+FEFF, ... */
 bool strut_text_forbidden(uint32_t code);
+/** True for a code point of a valid text that a terminal does not show but acts on: what turns the direction of
+    writing, breaks lines or is a tag. */
+bool strut_text_hidden(uint32_t code);
 
 /** A position that moves forward only. It starts after a byte order mark. */
 typedef struct strut_cursor {

@@ -15,6 +15,7 @@ import csv
 import os
 import random
 import resource
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -34,7 +35,7 @@ def sweep(name, text, work, options):
     """Elapsed and CPU seconds, and the table."""
     path = os.path.join(work, name + ".yaml")
     with open(path, "w", encoding="utf-8") as file:
-        file.write(f"strut: 1\nstudy: {name}\nmodel: {model}\n{text}")
+        file.write(f"strut: 1\nstudy: {name}\nmodel: {os.path.basename(model)}\n{text}")
     before, begin = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
     run = subprocess.run([strut, "sweep", path, "-o", os.path.join(work, name)] + options,
                          capture_output=True, text=True, check=False)
@@ -84,6 +85,7 @@ def no_lanes():
 def main():
     points = drawn()
     with tempfile.TemporaryDirectory() as work:
+        shutil.copy(model, work)
         first = the_papers_way("before", points[0::2], work)
         elapsed, cpu, rows = sweep("figure-8", f"""axes:
   - friction: [{', '.join(FRICTIONS)}]

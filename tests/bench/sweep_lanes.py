@@ -42,8 +42,9 @@ print(f"{points} points of {periods} periods, points per second of CPU (best of 
 for name, solver in (("rk4", ""), ("verlet-events",
                                    "solver: {integrator: verlet-events, step: 0.08 ms}")):
     work = tempfile.mkdtemp()
+    shutil.copy(model, work)
     with open(os.path.join(work, "study.yaml"), "w") as file:
-        file.write(STUDY.replace("MODEL", model).replace("POINTS", str(points))
+        file.write(STUDY.replace("MODEL", os.path.basename(model)).replace("POINTS", str(points))
                    .replace("SOLVER", solver).replace("PERIODS", str(periods)))
     best, tables = {}, set()
     for _ in range(REPEATS):

@@ -75,7 +75,8 @@ offers "length= :" run bad.yaml --set ""
 offers "high :" modes bad.yaml --at h
 # Of a study those of its model.
 mkdir studies
-printf 'strut: 1\nstudy: s\nmodel: ../%s\naxes: [{friction: [0.1, 0.2]}]\n' "$crawler" >studies/s.yaml
+cp "$crawler" studies/crawler.yaml
+printf 'strut: 1\nstudy: s\nmodel: crawler.yaml\naxes: [{friction: [0.1, 0.2]}]\n' >studies/s.yaml
 offers "frequency= friction= :" sweep studies/s.yaml --set fr
 printf 'strut: 1\nstudy: s\nmodel: s.yaml\naxes: []\n' >studies/own.yaml
 offers ":" sweep studies/own.yaml --set ""

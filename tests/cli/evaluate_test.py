@@ -8,6 +8,7 @@ import json
 import math
 import os
 import signal
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -21,6 +22,7 @@ models = os.path.realpath(sys.argv[2])
 truss = f"{models}/basics/von-mises-truss.yaml"
 crawler = f"{models}/crawler/crawler.yaml"
 work = tempfile.mkdtemp()
+shutil.copytree(models, f"{work}/copied")  # a study names what is below its folder
 
 
 def run(*words, code=0, lines=None, timeout=60):
@@ -63,7 +65,7 @@ run: {duration: seconds, measure: {node: block, quantities: {reach: block.x}}}
 def results_are_those_of_a_sweep():
     write("grid.yaml", f"""strut: 1
 study: grid
-model: {crawler}
+model: copied/crawler/crawler.yaml
 axes: [{{friction: [0.1, 0.3]}}, {{frequency: [9.7 Hz, 10 Hz]}}]
 run: {{periods: 30, measure: {{last: 5}}}}
 keep: [velocity, work, motion, positions]

@@ -95,8 +95,10 @@ def limited(name, words, times=1, **environment):
 
 
 os.chdir(tempfile.mkdtemp())
+for model in (HOPPER, f"{MODELS}/basics/oscillator.yaml"):
+    shutil.copy(model, ".")
 with open("study.yaml", "w", encoding="utf-8") as study:
-    study.write(f"strut: 1\nstudy: s\nmodel: {HOPPER}\naxes:\n  - seconds: [0.1, 0.2]\n"
+    study.write(f"strut: 1\nstudy: s\nmodel: hopper.yaml\naxes:\n  - seconds: [0.1, 0.2]\n"
                 "trajectories: yes\n")
 with open("map.yaml", "w", encoding="utf-8") as study:  # two threads ask for the same equilibria
     study.write(f"strut: 1\nstudy: s\nmodel: {MODELS}/crawler/switch.yaml\naxes:\n  - amplitude: [0.1 mm, 0.5 mm, 1 mm]\n"
@@ -108,7 +110,7 @@ for study_name, rest in (
         ("front", f"search: {{maximise: [frequency_1, -total_mass], {OVER}, evaluations: 24}}"),
         ("sensitivity", "sensitivity: {of: [frequency_1], samples: 8, over: {mass: {normal: [1 kg, 0.1 kg]}}}")):
     with open(f"{study_name}.yaml", "w", encoding="utf-8") as study:
-        study.write(f"strut: 1\nstudy: s\nmodel: {MODELS}/basics/oscillator.yaml\ncompute: modes\nlowest: 1\n"
+        study.write(f"strut: 1\nstudy: s\nmodel: oscillator.yaml\ncompute: modes\nlowest: 1\n"
                     f"keep: [frequencies, total_mass]\n{rest}\n")
 subprocess.run([STRUT, "run", HOPPER, "--set", "seconds=0.1", "-o", "kept", "--quiet"], check=True)
 wanted = sys.argv[4:] or COMMANDS

@@ -19,6 +19,7 @@ from findings import check, finish  # noqa: E402
 strut = os.path.realpath(sys.argv[1])
 models = os.path.realpath("models")
 work = tempfile.mkdtemp()
+shutil.copytree(models, f"{work}/copied")  # a study names what is below its folder
 
 
 def run(*words, code=0):
@@ -119,7 +120,7 @@ keep: [velocity, cost_of_transport]
 def lanes():
     for method in ("rk4", "verlet-events"):
         for n in ("1", "4"):
-            sweep(f"lanes-{method}-{n}", f"""model: {models}/crawler/crawler.yaml
+            sweep(f"lanes-{method}-{n}", f"""model: copied/crawler/crawler.yaml
 axes: [{{frequency: [9 Hz, 10 Hz, 11 Hz, 12 Hz, 13 Hz]}}]
 solver: {{integrator: {method}, step: 0.08 ms}}
 run: {{periods: 12, measure: {{last: 2}}}}
@@ -133,7 +134,7 @@ keep: [velocity, cost_of_transport, work]
 
 
 def compared():
-    row = sweep("steady", f"""model: {models}/crawler/crawler.yaml
+    row = sweep("steady", f"""model: copied/crawler/crawler.yaml
 axes: [{{frequency: [10 Hz]}}]
 solver: {{accuracy: 0.5 %}}
 run: {{measure: {{steady: true}}}}
@@ -146,7 +147,7 @@ keep: [velocity, cost_of_transport]
 
 
 def at_rest():
-    row = sweep("barriers", f"""model: {models}/crawler/crawler.yaml
+    row = sweep("barriers", f"""model: copied/crawler/crawler.yaml
 compute: equilibria
 axes: [{{friction: [0.1]}}]
 lowest: 20
@@ -159,7 +160,7 @@ keep: [stable_count, barriers, lowest_barrier]
 
 # Von Mises' truss: the stiffness of its apex, the force that holds it, its shape turned and moved.
 def goals():
-    truss = f"{models}/basics/von-mises-truss.yaml"
+    truss = "copied/basics/von-mises-truss.yaml"
     rest = math.hypot(1, 0.3)
 
     def force(u):
@@ -226,7 +227,7 @@ keep: [shape_distance, stable_count]
 shape: {{left: [-1 m, 0 m], right: [1 m, 0 m], apex: [0 m, -0.3 m]}}
 """)[0]
     check(abs(float(row["shape_distance [m]"])) < 1e-9, str(row))
-    row = sweep("like", f"""model: {models}/crawler/crawler.yaml
+    row = sweep("like", f"""model: copied/crawler/crawler.yaml
 compute: modes
 at: "II"
 axes: [{{friction: [0.1]}}]

@@ -38,10 +38,11 @@ refuses ./page.html view "$hopper" -o ./page.html
 refuses ./new.yaml form "$pentagon" -o ./new.yaml
 
 # A file of a study is refused before a point is computed; so is one of its pictures.
+cp "$hopper" hopper.yaml
 cat >study.yaml <<END
 strut: 1
 study: heights
-model: $hopper
+model: hopper.yaml
 axes:
   - seconds: [0.1, 0.2]
 figures:

@@ -21,6 +21,7 @@ from findings import check, finish  # noqa: E402
 strut = os.path.realpath(sys.argv[1])
 models = os.path.realpath(sys.argv[2])
 work = tempfile.mkdtemp()
+shutil.copytree(models, f"{work}/copied")  # a study names what is below its folder
 
 
 def run(*words, code=0):
@@ -109,7 +110,7 @@ check(len(starts) == 5 and again["best"][0]["agreeing"] >= 4, f"starts found {st
 
 GAIT = f"""strut: 1
 study: Fastest gait
-model: {models}/crawler/crawler.yaml
+model: copied/crawler/crawler.yaml
 set: {{friction: 0.2}}
 search:
   maximise: velocity

@@ -18,6 +18,7 @@ from findings import check, finish  # noqa: E402
 strut = os.path.realpath(sys.argv[1])
 models = os.path.realpath("models")
 work = tempfile.mkdtemp()
+shutil.copytree(models, f"{work}/copied")  # a study names what is below its folder
 
 
 def run(*words, code=0):
@@ -82,7 +83,7 @@ def evaluations():
     # An accuracy has its own budget, which this one bounds.
     write("accurate.yaml", f"""strut: 1
 study: s
-model: {models}/crawler/crawler.yaml
+model: copied/crawler/crawler.yaml
 axes: [{{friction: [0.1]}}]
 solver: {{accuracy: 0.1 %}}
 limit: {{evaluations: 3000}}
@@ -113,7 +114,7 @@ def clock():
     check("0.1 s by the clock" in rows("clock1/table.csv")[1]["message"], "another time, with --retry")
     write("search.yaml", f"""strut: 1
 study: s
-model: {models}/crawler/crawler.yaml
+model: copied/crawler/crawler.yaml
 compute: equilibria
 axes: [{{friction: [0.1]}}]
 limit: {{time: 50 ms}}

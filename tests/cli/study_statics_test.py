@@ -18,6 +18,7 @@ from findings import check, finish  # noqa: E402
 strut = os.path.realpath(sys.argv[1])
 models = os.path.realpath("models")
 work = tempfile.mkdtemp()
+shutil.copytree(models, f"{work}/copied")  # a study names what is below its folder
 
 
 def run(*words, code=0):
@@ -53,7 +54,7 @@ def command(*words):
 
 
 def paths():
-    truss = f"{models}/basics/von-mises-truss.yaml"
+    truss = "copied/basics/von-mises-truss.yaml"
     rows = sweep("path", f"""model: {truss}
 compute: path
 axes: [{{height: [0.3 m, 0.4 m, 0.5 m]}}]
@@ -120,8 +121,8 @@ def sizes():
 
 
 def rigidity():
-    jib = f"{models}/topologies/jib.yaml"
-    name = next(line.split(":")[0].strip() for line in open(jib, encoding="utf-8")
+    jib = "copied/topologies/jib.yaml"
+    name = next(line.split(":")[0].strip() for line in open(f"{work}/{jib}", encoding="utf-8")
                 if line.startswith("  ") and "friction" in line)
     rows = sweep("rigid", f"model: {jib}\ncompute: rigidity\naxes: [{{{name}: [0.1, 0.2]}}]\n")
     alone = command("rigidity", jib)
@@ -207,7 +208,7 @@ def forms():
 
 def failures():
     """What has no equilibrium or asks for what is not there fails in its row, and holds no other."""
-    truss = f"{models}/basics/von-mises-truss.yaml"
+    truss = "copied/basics/von-mises-truss.yaml"
     rows = sweep("lost", f"""model: {truss}
 compute: modes
 at: nowhere

@@ -27,6 +27,7 @@ strut = os.path.realpath(sys.argv[1])
 kills = int(sys.argv[2]) if len(sys.argv) > 2 else 10
 models = os.path.realpath("models")
 work = tempfile.mkdtemp()
+shutil.copytree(models, f"{work}/copied")  # a study names what is below its folder
 
 
 def run(*words, code=0):
@@ -104,7 +105,7 @@ keep: [duration]
 
 CRAWLER = f"""strut: 1
 study: crawler
-model: {models}/crawler/crawler.yaml
+model: copied/crawler/crawler.yaml
 axes:
   - start: [I, II]
   - frequency: {{from: 8 Hz, to: 16 Hz, count: 9}}
@@ -185,7 +186,7 @@ def the_same_bytes():
 # Points that fail or have other terms stand between those that go side by side; all are run twice.
 MIXED = f"""strut: 1
 study: mixed
-model: {models}/crawler/crawler.yaml
+model: copied/crawler/crawler.yaml
 axes:
   - start: [I, II]
   - step: [0.1 ms, 10 ms]
@@ -195,7 +196,7 @@ check: {{half_step: yes}}
 """
 MOTIONS = f"""strut: 1
 study: motions
-model: {models}/crawler/crawler.yaml
+model: copied/crawler/crawler.yaml
 axes:
   - frequency: {{from: 8 Hz, to: 16 Hz, count: 11}}
 run: {{periods: 10, measure: {{last: 1}}}}

@@ -5,6 +5,7 @@ usage: topologies_beat_test.py STRUT
 """
 import csv
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -28,9 +29,9 @@ def rows(model, frequency):
     """The table of a model on three grounds."""
     with tempfile.TemporaryDirectory() as folder:
         study = os.path.join(folder, "study.yaml")
-        path = os.path.relpath(os.path.join("models/topologies", model), folder)
+        shutil.copytree("models/topologies", os.path.join(folder, "topologies"))
         with open(study, "w", encoding="utf-8") as file:
-            file.write(STUDY.format(model=path, frequency=frequency))
+            file.write(STUDY.format(model=f"topologies/{model}", frequency=frequency))
         out = os.path.join(folder, "out")
         subprocess.run([strut, "sweep", study, "-o", out, "--quiet"], check=True)
         with open(os.path.join(out, "table.csv"), encoding="utf-8") as file:

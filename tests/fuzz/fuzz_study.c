@@ -26,7 +26,7 @@ static const char *folder(void) {
   static bool made;
   if (made) return name;
   char text[8192], path[64];
-  FILE *model = fopen("tests/language/studies/model.yaml", "rb");
+  FILE *model = fopen("tests/language/studies/good/models/model.yaml", "rb");
   require(mkdtemp(name) && model);
   size_t length = fread(text, 1, sizeof text, model);
   fclose(model);

@@ -12,6 +12,7 @@ outcomes must be equal, and velocities of motions that repeat themselves within 
 import csv
 import os
 import random
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -43,7 +44,7 @@ def study(figure, points):
     lists = "\n".join(f"      {name}: [{', '.join(str(v) for v in values)}]"
                       for name, values in columns.items())
     run = "{measure: {steady: true}}" if figure == 8 else "{duration: 1 s}"
-    model = os.path.join(models, "crawler.yaml" if figure == 8 else "switch.yaml")
+    model = "crawler/crawler.yaml" if figure == 8 else "crawler/switch.yaml"
     return f"""strut: 1
 study: Random points of figure {figure}
 model: {model}
@@ -155,6 +156,7 @@ def main():
     if not same_crawler():
         sys.exit("FAILED: crawler.yaml and switch.yaml are not the same crawler")
     with tempfile.TemporaryDirectory() as work:
+        shutil.copytree(models, os.path.join(work, "crawler"))
         for figure in (8, 10):
             generator = random.Random(f"{figure} {seed}")
             points = [draw(generator, figure) for _ in range(count)]

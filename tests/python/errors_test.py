@@ -53,6 +53,13 @@ class Errors(unittest.TestCase):
             scene.with_(frequency=object())
         with self.assertRaises(TypeError):
             scene.with_(frequency=None)
+        for value in (b"1", bytearray(b"1"), [b"1"]):
+            with self.assertRaisesRegex(TypeError, "not byte"):
+                scene.with_(frequency=value)
+            with self.assertRaisesRegex(TypeError, "not byte"):
+                scene.sweep(frequency=value)
+        with self.assertRaisesRegex(TypeError, "not None"):
+            strut.options(None)
         with self.assertRaises(ValueError):
             scene.with_(frequency="1\0")
         with self.assertRaises(AttributeError):

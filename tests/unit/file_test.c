@@ -2,6 +2,7 @@
 /* Files that appear whole or not at all, and directories of them. */
 #include <errno.h>
 #include <setjmp.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -149,6 +150,36 @@ static void test_two_writers_do_not_meet(void **unused) {
   assert_int_equal(strut_file_commit(&second, NULL), STRUT_OK);
   assert_content(scratch_path("a.txt"), "second");
   assert_int_equal(scratch_count(directory), 1);
+  scratch_remove();
+}
+
+/* What a killed process left is written over; what another one writes stays. */
+static void test_left_files_go(void **unused) {
+  (void)unused;
+  const char *directory = scratch_make();
+  int ready[2];
+  assert_int_equal(pipe(ready), 0);
+  pid_t child = fork();
+  if (child == 0) {
+    strut_file file = {0};
+    bool begun = strut_file_open(&file, directory, "a.txt", NULL) == STRUT_OK &&
+                 fputs("a part that is longer", file.stream) >= 0 && fflush(file.stream) == 0;
+    if (!begun || write(ready[1], "x", 1) != 1) _exit(1);
+    for (;;) pause();
+  }
+  char byte;
+  assert_int_equal(read(ready[0], &byte, 1), 1);
+  assert_int_equal(scratch_count(directory), 1);
+  assert_int_equal(strut_file_write_text(directory, "a.txt", "new\n", NULL), STRUT_OK);
+  assert_int_equal(scratch_count(directory), 2); /* its writer lives */
+  kill(child, SIGKILL);
+  assert_int_equal(waitpid(child, NULL, 0), child);
+  assert_int_equal(scratch_count(directory), 2);
+  assert_int_equal(strut_file_write_text(directory, "a.txt", "newer\n", NULL), STRUT_OK);
+  assert_int_equal(scratch_count(directory), 1);
+  assert_content(scratch_path("a.txt"), "newer\n");
+  close(ready[0]);
+  close(ready[1]);
   scratch_remove();
 }
 
@@ -347,6 +378,7 @@ int main(void) {
       cmocka_unit_test(test_the_disk_has_a_file_before_its_name),
       cmocka_unit_test(test_a_disk_that_cannot_keep_it_is_told),
       cmocka_unit_test(test_two_writers_do_not_meet),
+      cmocka_unit_test(test_left_files_go),
       cmocka_unit_test(test_messages_name_the_file_and_the_reason),
       cmocka_unit_test(test_directories),
       cmocka_unit_test(test_a_full_disk_leaves_nothing),

@@ -144,6 +144,7 @@ static const struct exception {
     {STRUT_SECTION_VARIABLE, "to", "in the unit of the parameter"},
     {STRUT_SECTION_VARIABLE, "start", "in the unit of the parameter"},
     {STRUT_SECTION_VARIABLE, "scale", "not every range may be logarithmic"},
+    {STRUT_SECTION_SCENE, "limit_things", "of the reader; the scene knows no parts"},
 };
 
 static const char *reason_of(const strut_key *key) {

@@ -154,14 +154,16 @@ static double earliest_slack_dip(const strut_model *model, strut_state *state,
 }
 
 /* Earliest lowest point, within the step, of a gap or slip that passes its edge twice; 0: none. */
-STRUT_INLINE double earliest_dip(const strut_model *model, const strut_event_stepper *l, double h,
-                                 unsigned terms) {
+STRUT_INLINE double earliest_dip(const strut_model *model, const strut_state *state,
+                                 const strut_event_stepper *l, double h, unsigned terms) {
   const strut_contact_table *c = &model->contacts;
   double first = 0.0, part = fmax(0.1 * l->tolerance, 1e-12);
   double faint[2] = {0.01 * part * model->size, part * l->fastest}; /* of a gap, of a slip */
-  int32_t count = strut_contacts_of(model, l);
+  bool surfaces = frames_of(l->next, terms) && !l->contact_list;
+  int32_t count =
+      surfaces ? strut_surface_candidates(model, l, h, state->near) : strut_contacts_of(model, l);
   for (int32_t k = 0; k < count; k++) {
-    int32_t i = strut_contact_of(l, k);
+    int32_t i = surfaces ? state->near[k] : strut_contact_of(l, k);
     strut_touch from, to;
     measure_at_end(c, l, l->now, i, terms, &from);
     measure_at_end(c, l, l->next, i, terms, &to);
@@ -193,7 +195,7 @@ static double error_to_reach(double part) { return fmax(1.01, pow(0.9 / part, 5.
 STRUT_INLINE void look_between(const strut_model *model, strut_state *state, strut_event_stepper *l,
                                double h, double broken, unsigned terms) {
   if (!(l->error <= 1.0)) return;
-  double part = model->contacts.count ? earliest_dip(model, l, h, terms) : 0.0;
+  double part = model->contacts.count ? earliest_dip(model, state, l, h, terms) : 0.0;
   double slack = l->law_count ? earliest_slack_dip(model, state, l, h) : 0.0;
   if (slack > 0.0 && (part == 0.0 || slack < part)) part = slack;
   if (broken > 0.0 && (part == 0.0 || broken < part) && h > LEAST_SPLIT * l->longest &&

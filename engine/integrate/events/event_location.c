@@ -340,15 +340,14 @@ STRUT_INLINE void keep_first_of(const strut_model *model, const strut_event_step
     keep_first(model, l, STRUT_EVENT_DAMPER, i, h, first);
 }
 
-/* whole: contacts and laws are all that there are, not those of a list. */
+/* Of `contacts` in a list, or all with NULL. whole: laws are all that there are, not those of a list. */
 STRUT_INLINE strut_event first_event(const strut_model *model, const strut_state *state,
-                                     const strut_event_stepper *l, double h, bool whole,
-                                     unsigned terms) {
+                                     const strut_event_stepper *l, double h, const int32_t *list,
+                                     int32_t contacts, bool whole, unsigned terms) {
   strut_event first = {STRUT_EVENT_NONE, 0, 1.0};
-  int32_t contacts = whole ? model->contacts.count : strut_contacts_of(model, l);
   int32_t laws = whole ? l->law_count : strut_laws_of(l);
   for (int32_t k = 0; k < contacts; k++)
-    keep_first_of(model, l, whole ? k : strut_contact_of(l, k), h, terms, &first);
+    keep_first_of(model, l, list ? list[k] : k, h, terms, &first);
   strut_event_measure(model, state, l, l->next);
   for (int32_t k = 0; k < laws; k++) {
     int32_t j = whole ? k : strut_law_of(l, k);
@@ -366,9 +365,16 @@ strut_event strut_event_of_contact(const strut_model *model, const strut_event_s
 
 strut_event strut_event_first(const strut_model *model, const strut_state *state,
                               const strut_event_stepper *l, double h) {
-  if (l->now->frame) return first_event(model, state, l, h, false, STRUT_TERMS_ALL);
-  if (l->within) return first_event(model, state, l, h, false, STRUT_TERMS_COMMON);
-  return first_event(model, state, l, h, true, STRUT_TERMS_COMMON);
+  int32_t count = strut_contacts_of(model, l);
+  if (l->now->frame && !l->contact_list)
+    return first_event(model, state, l, h, state->near,
+                       strut_surface_candidates(model, l, 0.0, state->near), false,
+                       STRUT_TERMS_ALL);
+  if (l->now->frame)
+    return first_event(model, state, l, h, l->contact_list, count, false, STRUT_TERMS_ALL);
+  if (l->within)
+    return first_event(model, state, l, h, l->contact_list, count, false, STRUT_TERMS_COMMON);
+  return first_event(model, state, l, h, NULL, model->contacts.count, true, STRUT_TERMS_COMMON);
 }
 
 /* First fraction in [0, 1] where gap + speed x + bend x^2 falls below 0; 2 if it does not. */
@@ -402,7 +408,10 @@ strut_event strut_event_predict(const strut_model *model, const strut_state *sta
                                 const strut_event_stepper *l, double h) {
   const strut_contact_table *c = &model->contacts;
   strut_event first = {STRUT_EVENT_NONE, 0, 1.0};
-  for (int32_t i = 0; i < c->count; i++) {
+  bool surfaces = l->now->frame;
+  int32_t count = surfaces ? strut_surface_candidates(model, l, 0.0, state->near) : c->count;
+  for (int32_t k = 0; k < count; k++) {
+    int32_t i = surfaces ? state->near[k] : k;
     bool closed = l->mode[i] != STRUT_MODE_OPEN;
     double gap = gap_at_end(c, l, i, l->next, STRUT_TERMS_ALL);
     if (closed ? gap <= 0.0 : gap >= 0.0) continue;

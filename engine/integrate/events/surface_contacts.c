@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/integrate/events/surface_contacts.h"
 
+#include <string.h>
+
 #include "engine/forces/drive.h"
 #include "engine/forces/surfaces.h"
 #include "engine/integrate/events/event_kernel.h"
@@ -122,4 +124,39 @@ double strut_surface_facet_margin(const strut_contact_table *c, const strut_even
 void strut_surface_move(const strut_model *model, const strut_state *state, strut_step_end *end,
                         double t) {
   if (end->motion) strut_grounds_move(model, t + state->time_offset, end->motion);
+}
+
+/* A gap that is wider than this at the end of a step is positive at both ends, and so is the cubic between them. */
+static double dip_margin(const strut_contact_table *c, const strut_event_stepper *l, int32_t i,
+                         double h) {
+  const strut_step_end *end[2] = {l->now, l->next};
+  double place[2][2], margin = 0.0;
+  for (int e = 0; e < 2; e++) {
+    const strut_ground_motion *own = strut_contact_motion(c, i, end[e]->motion);
+    strut_vec2 u = strut_contact_velocity(c, i, end[e]->v, end[e]->motion);
+    for (int k = 0; k < 2; k++)
+      place[e][k] = end[e]->q[c->at[i] + (uint32_t)k] - (own ? own->place[k] : 0.0);
+    margin += h * strut_vec2_length(u);
+  }
+  return margin + strut_distance(place[0], place[1]);
+}
+
+int32_t strut_surface_candidates(const strut_model *model, const strut_event_stepper *l, double h,
+                                 int32_t *list) {
+  const strut_contact_table *c = &model->contacts;
+  int32_t count = 0, closed = 0;
+  for (int32_t first = 0, end; first < c->count; first = end) {
+    end = strut_contacts_end_of_node(c, first);
+    int32_t from = count;
+    double margin = h > 0.0 ? dip_margin(c, l, first, h) : 0.0;
+    count += strut_contacts_near(c, first, end, l->next->q, l->next->motion, margin, list + count);
+    for (; closed < l->closed_count && l->closed[closed] < end; closed++) {
+      int32_t i = l->closed[closed], at = count;
+      while (at > from && list[at - 1] > i) at--;
+      if (at > from && list[at - 1] == i) continue;
+      memmove(list + at + 1, list + at, (size_t)(count++ - at) * sizeof *list);
+      list[at] = i;
+    }
+  }
+  return count;
 }

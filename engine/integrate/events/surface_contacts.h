@@ -45,5 +45,11 @@ static inline const strut_contact_axes *strut_axes_of_contact(const strut_contac
                                                               int32_t i) {
   return frame ? &frame[i].axes : &c->axes;
 }
+/**
+ * Closed contacts, and open ones that may touch at l->next or, with h > 0, within the step of h that ends there.
+ * Ascending, into list (contacts); returns their number.
+ */
+int32_t strut_surface_candidates(const strut_model *model, const strut_event_stepper *l, double h,
+                                 int32_t *list);
 
 #endif

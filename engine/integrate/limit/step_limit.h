@@ -43,6 +43,14 @@ STRUT_API strut_status strut_step_limit_with_bound(const strut_model *model,
                                                    const strut_integrator *method, double *limit,
                                                    bool *bound, strut_error *error);
 
+/**
+ * STRUT_STEP_TOO_LARGE with the reason where a method that controls its error would take more than 1e9 steps in
+ * each step dt [s] of the grid, as it follows the fastest vibration: such a run does not end.
+ */
+STRUT_API strut_status strut_step_limit_check_effort(const strut_model *model,
+                                                     const strut_integrator *method, double dt,
+                                                     strut_error *error);
+
 /** Limits found lately. Zero-initialise it. */
 enum { STRUT_LIMITS_KEPT = 16 };
 typedef struct strut_step_limits {

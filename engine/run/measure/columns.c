@@ -11,6 +11,7 @@
 #include "engine/forces/sliding_masses.h"
 #include "engine/forces/support_motion.h"
 #include "engine/model/pose.h"
+#include "engine/model/surface_search.h"
 
 /* Rounding of positions, relative to the structure's size; and of sums over many steps. */
 static const double POSITION_ROUNDING = 1e-12, SUM_ROUNDING = 1e-10;
@@ -133,7 +134,12 @@ static double height_above_surfaces(const strut_contact_table *t, const double q
     const double *place = s->moves && motion ? motion[s->ground].place : NULL;
     double point[2] = {q[0] - (place ? place[0] : 0.0), q[1] - (place ? place[1] : 0.0)};
     strut_contact_pose pose;
-    strut_surface_find(s, point, -1, &pose);
+    if (s->index) {
+      strut_surface_lowest(s, point, &pose.gap);
+      k += s->pieces - 1;
+    } else {
+      strut_surface_find(s, point, -1, &pose);
+    }
     least = fmin(least, pose.gap);
   }
   return least;

@@ -6,6 +6,7 @@
 
 #include "engine/forces/sliding_masses.h"
 #include "engine/model/pose.h"
+#include "engine/model/surface_search.h"
 
 /* A mark this close to the end of a step, in steps, counts as being there. */
 static const double MARK_TOLERANCE = 1e-6;
@@ -111,12 +112,31 @@ void strut_measure_begin(const strut_model *model, strut_state *state, strut_mea
   }
 }
 
+/* Of the many pieces of a long profile: which touch, and the height over the lowest. */
+static void count_pieces(const strut_contact_table *c, const strut_state *state, int32_t first,
+                         int32_t pieces, strut_measurement *m) {
+  const strut_ground_motion *motion = state->ground_motion;
+  int32_t near = strut_contacts_near(c, first, first + pieces, state->q, motion, 0.0, state->near);
+  for (int32_t k = 0; k < near; k++)
+    if (strut_contact_gap_at(c, state->near[k], state->q, motion) < 0.0)
+      m->contact_steps[state->near[k]]++;
+  double gap;
+  int32_t lowest = strut_contacts_lowest(c, first, state->q, motion, &gap);
+  if (gap > m->max_height[lowest]) m->max_height[lowest] = gap;
+}
+
 static void count_contacts(const strut_model *model, const strut_state *state,
                            strut_measurement *m) {
   const strut_contact_table *c = &model->contacts;
   bool equal = m->window_steps >= 2 && state->step != m->grid.last;
   m->window_steps++;
   for (int32_t i = 0; i < c->count; i++) {
+    int32_t pieces = c->surface ? strut_contacts_of_profile(c, i) : 0;
+    if (pieces) {
+      count_pieces(c, state, i, pieces, m);
+      i += pieces - 1;
+      continue;
+    }
     double gap = strut_contact_gap_at(c, i, state->q, state->ground_motion), high = gap;
     double last = m->last_gap[i], before = m->gap_before[i];
     if (gap < 0.0) m->contact_steps[i]++;
@@ -195,7 +215,7 @@ void strut_measure_finish(const strut_measurement *m, strut_summary *summary) {
     strut_contact_summary *c = &summary->contacts[i];
     bool any = m->window_steps > 0;
     c->duty = any ? (double)m->contact_steps[i] / (double)m->window_steps : (double)NAN;
-    c->max_height = any ? m->max_height[i] : (double)NAN;
+    c->max_height = any && isfinite(m->max_height[i]) ? m->max_height[i] : (double)NAN;
   }
 }
 

@@ -7,6 +7,7 @@
 #include "engine/forces/surfaces.h"
 #include "engine/model/mass.h"
 #include "engine/model/pose.h"
+#include "engine/model/surface_search.h"
 
 /* Samples per solved acceleration; fewest of those for a mean. */
 enum { ACCELERATION_INTERVAL = 4, LEAST_SAMPLES = 4 };
@@ -141,7 +142,9 @@ void strut_stick_band_sample(const strut_model *model, const strut_state *state,
   if (with_acceleration) strut_mass_solve(model, state->force, band->a, band->scratch);
   if (with_acceleration && model->plan & STRUT_TERM_SLIDING_MASS)
     strut_sliding_masses_correct(model, state, band->a);
-  for (int32_t i = 0; i < c->count; i++) {
+  int32_t count = c->surface ? strut_contacts_all_near(c, state->q, NULL, state->near) : c->count;
+  for (int32_t k = 0; k < count; k++) {
+    int32_t i = c->surface ? state->near[k] : k;
     strut_stick_band_monitor *w = &band->contacts[i];
     if (!(strut_contact_gap(c, i, state->q) < 0.0)) continue;
     if (!with_acceleration ||

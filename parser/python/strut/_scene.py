@@ -11,7 +11,7 @@ from . import _strut
 from ._results import Equilibria, Form, Matrices, Modes, Path, Result, Rigidity, Run
 from ._simulation import Simulation
 from ._sweep import Table, plan
-from ._values import UnknownName, Words, numpy, options, settings, unknown
+from ._values import UnknownName, Words, numpy, options, refuse_bytes, settings, unknown
 
 if TYPE_CHECKING:
     import numpy as np
@@ -241,6 +241,7 @@ def _from(given: dict[str, object]) -> dict[str, object]:
 
 def _plain(value: Any) -> Any:
     """Numbers and arrays of numpy for JSON."""
+    refuse_bytes(value)
     if hasattr(value, "tolist"):
         return value.tolist()
     if hasattr(value, "__float__"):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Iterable, Iterator, Mapping, NamedTuple, 
 
 from . import _strut
 from ._results import _Raw, _Stored
-from ._values import UnknownName, numpy, unknown
+from ._values import UnknownName, numpy, refuse_bytes, unknown
 
 if TYPE_CHECKING:
     import numpy as np
@@ -71,6 +71,7 @@ def _rows(scene: Scene, points: Any, names: tuple[str, ...]) -> Plan:
 
 def _values(scene: Scene, name: str, values: Iterable[object] | object) -> list[Any]:
     """Numbers in SI; words of a parameter that is a text."""
+    refuse_bytes(values)
     if isinstance(values, str) or not isinstance(values, Iterable):
         values = [values]
     is_word = isinstance(scene[f"parameters.{name}"], str)
@@ -78,6 +79,7 @@ def _values(scene: Scene, name: str, values: Iterable[object] | object) -> list[
 
 
 def _value(scene: Scene, name: str, value: Any, is_word: bool) -> Any:
+    refuse_bytes(value)
     if is_word:
         return str(value)
     if isinstance(value, str):  # "8 Hz": the language says how much that is

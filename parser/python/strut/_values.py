@@ -13,10 +13,17 @@ if TYPE_CHECKING:
 Pairs = tuple[tuple[str, ...], tuple[str, ...]]
 
 
+def refuse_bytes(value: object) -> None:
+    """Bytes are no text, though they are iterable and float() takes them."""
+    if isinstance(value, (bytes, bytearray, memoryview)):
+        raise TypeError(f"a number or a text is needed, not {type(value).__name__}")
+
+
 def text(value: object) -> str:
     """A setting or an option as the program takes it: numbers in SI, texts as they are."""
     if isinstance(value, str):
         return value
+    refuse_bytes(value)
     if isinstance(value, bool) or type(value).__name__ == "bool_":  # numpy's, too
         return "yes" if value else "no"
     if isinstance(value, os.PathLike):

@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# What a scene asks for is done soon, or refused by name at once: long profiles, runs that would not end, samples beyond
+# the run; and what killed processes leave goes, and hidden characters do not act on the terminal.
+#
+#   python3 bounded_test.py STRUT
+import os
+import pty
+import random
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
+from findings import check, files_in, finish  # noqa: E402
+
+strut = os.path.realpath(sys.argv[1])
+work = tempfile.mkdtemp()
+
+def write(name, text):
+    with open(os.path.join(work, name), "w", encoding="utf-8") as file:
+        file.write(text)
+
+
+def run(*words, code=0):
+    """The output, and the seconds of processor time."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+    done = subprocess.run([strut, *words], capture_output=True, text=True, cwd=work, timeout=600)
+    check(done.returncode == code, f"{words}: exit code {done.returncode}: {done.stderr[-300:]}")
+    return done, resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+
+
+MASS = """strut: 1
+nodes: {w: {position: [0, 0], fixed: both}, b: {position: [1 m, 0], mass: 1 kg}}
+members: {s: {kind: spring, nodes: [w, b], stiffness: STIFFNESS, damping: 0.1}}
+initial: {velocities: {b: [0.1, 0]}}
+"""
+
+
+def profiles():
+    """Checked in time that grows like the points, and run in about the same time."""
+    def scene(name, count, height, method):
+        points = ", ".join(f"[{x:.12g}, {height(x):.12g}]"
+                           for x in (-100 + 200 * k / (count - 1) for k in range(count)))
+        write(name, MASS.replace("STIFFNESS", "100 N/m").replace("fixed: both", "mass: 1 kg") +
+              f"solver: {{integrator: {method}, step: 1 ms}}\nrun: {{duration: 1 s}}\ngravity: [0, -9.81]\n"
+              f"ground: {{stiffness: 1e4, damping: 10, friction: {{mu: 0.3, stick_velocity: 10 mm/s}}, "
+              f"profile: [{points}]}}\n")
+
+    generator = random.Random(1)
+    for name, height in (("hill", lambda x: -0.001 * x * x - 1),
+                         ("rough", lambda x: -1 + 1e-6 * generator.random())):
+        scene(f"{name}.yaml", 100000, height, "rk4")
+        _, seconds = run("check", f"{name}.yaml")
+        check(seconds < 10, f"{name}: checked in {seconds:.2f} s")
+    # Of a hill, on which a node touches one facet, whatever their number.
+    for method in ("rk4", "rk4-events", "adaptive"):
+        spent = {}
+        for count in (100, 100000):
+            scene("short.yaml", count, lambda x: -0.001 * x * x - 1, method)
+            done, _ = run("run", "short.yaml")
+            text = re.search(r"evaluations in ([\d.]+) (\w+)", done.stdout)
+            spent[count] = float(text[1]) * {"us": 1e-6, "ms": 1e-3, "s": 1}[text[2]]
+        check(spent[100000] < 20 * spent[100] + 0.2, f"{method}: {spent} s")
+
+
+def endless_runs():
+    write("stiff.yaml", MASS.replace("STIFFNESS", "1e30") + "solver: {integrator: adaptive, step: 1 ms}\n"
+          "run: {duration: 1 s}\n")
+    done, seconds = run("run", "stiff.yaml", code=3)
+    check("adaptive would take more than 1e+09 steps" in done.stderr and seconds < 5, done.stderr)
+    write("rare.yaml", MASS.replace("STIFFNESS", "100 N/m") + "solver: {integrator: rk4, step: 1 ms}\n"
+          "run: {duration: 1 s}\noutput: {every: 1e300 s, channels: [position]}\n")
+    run("run", "rare.yaml", "-o", "rare")
+    with open(os.path.join(work, "rare/nodes.csv"), encoding="utf-8") as file:
+        times = [float(line.split(",")[0]) for line in file.readlines()[1:]]
+    check(times == [0, 1], f"samples at {times}")
+
+
+def killed():
+    """A run that is killed while it writes leaves its stage, which the next one removes."""
+    write("long.yaml", MASS.replace("STIFFNESS", "100 N/m") + "solver: {integrator: rk4, step: 1 us}\n"
+          "run: {duration: 1000 s}\noutput: {every: 1 ms, channels: [position]}\n")
+    write("brief.yaml", MASS.replace("STIFFNESS", "100 N/m") + "solver: {integrator: rk4, step: 1 ms}\n"
+          "run: {duration: 1 s}\n")
+    process = subprocess.Popen([strut, "run", "long.yaml", "-o", "killed", "--quiet"], cwd=work)
+    folder = os.path.join(work, "killed")
+    begun = time.monotonic()
+    while not (os.path.isdir(folder) and os.listdir(folder)) and time.monotonic() - begun < 60:
+        time.sleep(0.02)
+    time.sleep(0.2)
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    check(any(name.startswith(".strut-stage") for name in os.listdir(folder)), "there is no stage")
+    run("run", "brief.yaml", "-o", "killed", "--quiet")
+    left = [name for name in files_in(folder) if name.startswith(".") or ".strut-" in name]
+    check(not left, f"left: {left}")
+
+
+def hidden():
+    """A name that turns the direction of writing appears as its number in a terminal, and as it is in a pipe."""
+    write("hidden.yaml", MASS.replace("STIFFNESS", "100 N/m").replace("b:", '"b\u202e":').replace(
+        "w, b", 'w, "b\u202e"') + "solver: {step: 1 ms}\nrun: {duration: 1 s}\n")
+    ours, theirs = pty.openpty()
+    process = subprocess.Popen([strut, "run", "hidden.yaml"], cwd=work, stdout=theirs, stderr=theirs)
+    shown = b""
+    os.close(theirs)
+    try:
+        while part := os.read(ours, 4096):
+            shown += part
+    except OSError:
+        pass  # the other end is closed
+    process.wait()
+    check("\u202e" not in shown.decode() and "b\\u202E" in shown.decode(), shown.decode())
+    done, _ = run("run", "hidden.yaml")
+    check("b\u202e" in done.stdout, done.stdout)
+    done, _ = run("check", "hidden.yaml", "--set", "x=1", code=2)
+    write("hidden.yaml", 'strut: 1\nnodes: {"a\u202e": {position: [0, 0], mas: 1}}\n')
+    done, _ = run("check", "hidden.yaml", code=2)
+    check("\u202e" not in done.stderr and "did you mean 'mass'" in done.stderr, done.stderr)
+
+
+profiles()
+endless_runs()
+killed()
+hidden()
+shutil.rmtree(work)
+finish()
