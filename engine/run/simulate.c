@@ -423,10 +423,17 @@ void strut_run_step(strut_run *r, int64_t stop) {
 
 static void fill_summary(strut_run *r, strut_status status);
 
+/* The time of the state; where a drive jumps there, just after that, as a method with events has booked it. */
+static double time_of_balance(const strut_run *r) {
+  double t = strut_time_grid_at(&r->grid, r->state->step), near = 2e-9 * r->dt;
+  if (!r->method->events) return t;
+  double now = t + r->state->time_offset;
+  return strut_drive_next_break(r->model, r->state, now - near) <= now + near ? t + near : t;
+}
+
 static strut_status sample_balance(strut_run *r) {
   if (!r->state->ledger) return STRUT_OK;
-  strut_balance_sample(r->model, r->state, &r->initial,
-                       strut_time_grid_at(&r->grid, r->state->step), &r->balance,
+  strut_balance_sample(r->model, r->state, &r->initial, time_of_balance(r), &r->balance,
                        &r->summary->energy);
   return strut_run_check_losses(r);
 }

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* fopencookie is of GNU and musl. */
+#ifndef _GNU_SOURCE
 #define _GNU_SOURCE
+#endif
 #include "parser/cli/streams.h"
 
 #include <errno.h>

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* CSV tables read for pictures: cells, numbers, what is no table, and nothing left behind. */
+#define _GNU_SOURCE /* streams.c is part of this file */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
