@@ -218,8 +218,9 @@ for path, axis in (("crawler/crawler.yaml", "friction: [0.1]"), ("gallery/two-ma
             milli = f"{1e3 * e['energy']:.6g}".replace("-", "\u2212")
             check(milli in text or milli.replace("\u2212", "-") in text or abs(e["energy"]) < 1e-9 or
                   abs(e["energy"]) >= 1, f"{path}: the figure lacks {milli} mJ of {e['name']}")
-    write("states.yaml", f"strut: 1\nstudy: states\nmodel: {model}\ncompute: equilibria\naxes: [{{{axis}}}]\n"
+    write("states.yaml", f"strut: 1\nstudy: states\nmodel: {os.path.basename(path)}\ncompute: equilibria\naxes: [{{{axis}}}]\n"
           "keep: [stable_count, states, energies]\n")
+    shutil.copy(model, ".")
     shutil.rmtree("states", ignore_errors=True)
     run("sweep", "states.yaml", "-o", "states", "--quiet")
     check(column("states/table.csv", "stable_count") == [str(len(stands))], f"{path}: sweep")

@@ -64,7 +64,7 @@ def make_tables():
     """That of the document's first commands, and one with points that fail."""
     with open(f"{root}/docs/how-to/results.md", encoding="utf-8") as file:
         block = re.search("```sh\n(.*?)```\n", file.read(), re.S).group(1)
-    os.symlink(f"{root}/models", f"{work}/models")
+    shutil.copytree(f"{root}/models", f"{work}/models")
     os.environ["PATH"] = os.path.dirname(strut) + os.pathsep + os.environ["PATH"]
     run(["sh", "-eu"], block)
     with open(f"{work}/fails.yaml", "w", encoding="utf-8") as file:

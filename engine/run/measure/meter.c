@@ -28,17 +28,18 @@ static double range_of(const strut_meter *m) { return m->whole.high - m->whole.l
 
 /* ---- stretches ---- */
 
-static strut_stretch begin_stretch(const strut_meter *m, double time, double value, double origin) {
-  return (strut_stretch){.low = value,
-                         .high = value,
-                         .begin = value,
-                         .origin = origin,
-                         .time = time,
-                         .arrival = value == m->definition->target ? time : (double)NAN};
+static strut_meter_stretch begin_stretch(const strut_meter *m, double time, double value,
+                                         double origin) {
+  return (strut_meter_stretch){.low = value,
+                               .high = value,
+                               .begin = value,
+                               .origin = origin,
+                               .time = time,
+                               .arrival = value == m->definition->target ? time : (double)NAN};
 }
 
 /* Reduces a stretch that ends here to its value. */
-static double reduce_stretch(const strut_meter *m, const strut_stretch *s, double time,
+static double reduce_stretch(const strut_meter *m, const strut_meter_stretch *s, double time,
                              double value, double origin) {
   double length = time - s->time;
   switch (m->definition->take) {
@@ -79,7 +80,7 @@ void strut_meter_mark(strut_meter *m, double time, double value, double origin) 
 /* ---- what every way of adding a part does ---- */
 
 static void note_value(strut_meter *m, double value) {
-  strut_stretch *const both[] = {&m->whole, &m->part};
+  strut_meter_stretch *const both[] = {&m->whole, &m->part};
   for (int k = 0; k < 2; k++) {
     if (!(value >= both[k]->low)) both[k]->low = value; /* a NaN remains */
     if (!(value <= both[k]->high)) both[k]->high = value;
@@ -142,7 +143,7 @@ static bool matters(const strut_meter *m, double value, double sign) {
   return false;
 }
 
-/* ---- parts that are known by their ends ---- */
+/* ---- parts that need no samples between their ends ---- */
 
 /* How far the value before is from the straight line through the ends, over the length of the part. */
 static double second_difference(double before, double elapsed, double from, double to,
@@ -318,8 +319,8 @@ static bool find_extreme(const strut_meter *m, const strut_samples *s, int k, pl
 }
 
 /* Uncertainty of the result by that of the value in a part that has just been added. */
-static void add_doubt(strut_meter *m, const strut_samples *s, const strut_stretch *before) {
-  const strut_stretch *now = &m->whole;
+static void add_doubt(strut_meter *m, const strut_samples *s, const strut_meter_stretch *before) {
+  const strut_meter_stretch *now = &m->whole;
   bool lower = now->low<before->low, higher = now->high> before->high;
   switch (m->definition->take) {
     case STRUT_TAKE_MIN: m->doubt = lower ? s->doubt : m->doubt; break;
@@ -340,7 +341,7 @@ static void add_doubt(strut_meter *m, const strut_samples *s, const strut_stretc
 
 void strut_meter_add(strut_meter *m, const strut_samples *s) {
   int last = s->count - 1;
-  strut_stretch before = m->whole;
+  strut_meter_stretch before = m->whole;
   place at = {0.0, s->value[0]};
   double passed = 0.0; /* the latest extreme */
   for (int k = 1; k <= last; k++) {

@@ -3,7 +3,7 @@
  * Reduces the values of one quantity over the window and over each of its periods, by its samples
  * between the steps.
  *
- * A part of the motion so short that the values change evenly is known by its ends: its integral and
+ * A part so short that the values change evenly needs no samples between its ends: its integral and
  * its extremes are those of the parabola through these and the value before. Any other one is halved
  * until a parabola through its samples meets those between. There integrals are by Simpson's rule,
  * extremes and arrivals are searched for where the samples show one.
@@ -18,7 +18,7 @@
 enum { STRUT_DEEPEST = 5, STRUT_MOST_SAMPLES = (1 << STRUT_DEEPEST) + 1 };
 
 /** Sums and extremes over a stretch of the window. */
-typedef struct strut_stretch {
+typedef struct strut_meter_stretch {
   double integral, square; /* integrals of the value and its square over the time */
   double low, high;
   double begin;   /* value at the start */
@@ -26,7 +26,7 @@ typedef struct strut_stretch {
   double time;    /* start [s] */
   double rise;    /* sum of all increases */
   double arrival; /* when the target was first reached or passed [s]; NAN: not yet */
-} strut_stretch;
+} strut_meter_stretch;
 
 typedef struct strut_meter {
   const strut_quantity_definition *definition;
@@ -40,9 +40,9 @@ typedef struct strut_meter {
   double
       doubt; /* uncertainty of the result, where the interpolation is too coarse; that of MEAN, RMS and
                    RISE over the whole window times its length [s] */
-  strut_stretch whole, part; /* since the start of the window; since the latest mark */
-  double result;             /* up to the latest mark */
-  int64_t parts;             /* periods so far; mean of their values; sum of squares about it */
+  strut_meter_stretch whole, part; /* since the start of the window; since the latest mark */
+  double result;                   /* up to the latest mark */
+  int64_t parts; /* periods so far; mean of their values; sum of squares about it */
   double part_mean, part_square;
 } strut_meter;
 
