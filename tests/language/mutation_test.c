@@ -19,6 +19,7 @@
 /* What saying nothing means too: dropping such a key changes nothing, and must not. */
 static const char *const said_anyway[] = {
     "settle: false",
+    "limit_things", /* a limit of the reader */
     "nodes: all",
     "law: none",
     "law: karnopp",

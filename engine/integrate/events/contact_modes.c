@@ -285,7 +285,6 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_event
       }
       break;
     case STRUT_EVENT_LEAVES_STICK_BAND:
-    case STRUT_EVENT_BALANCE_ENDS:
       l->side[i] = l->now->touch[i].slip < 0.0 ? -1 : 1;
       decide_at_edge(model, state, l, i, true, t);
       break;

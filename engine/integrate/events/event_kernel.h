@@ -205,8 +205,7 @@ STRUT_INLINE bool band_forces_balance(const strut_event_stepper *l, const strut_
 
 /*
  * Where the neighbours' inertia pushes nothing, what holds a creeping contact is the band's force but
- * for rounding: then the contact is within the band, at its edge, which rounding does not leave. A speed
- * that passes the edge is not tied to it: steppers that are exact find where it does.
+ * for rounding: then the contact is within the band, at its edge, which rounding does not leave.
  */
 STRUT_INLINE void settle_band_ties(const strut_model *model, const strut_event_stepper *l) {
   for (int32_t k = 0; k < l->closed_count; k++) {
@@ -216,8 +215,7 @@ STRUT_INLINE void settle_band_ties(const strut_model *model, const strut_event_s
     double faint = TIED * o->normal, edge = e->friction.stick_velocity;
     if (l->mode[i] == STRUT_MODE_CREEP && fabs(o->friction + o->applied) <= faint)
       o->friction = -o->applied + l->side[i] * faint; /* creep ends */
-    if (l->mode[i] == STRUT_MODE_BAND && fabs(fabs(o->slip) - edge) <= TIED * edge &&
-        (!l->stepper->exact || band_forces_balance(l, o, i)))
+    if (l->mode[i] == STRUT_MODE_BAND && fabs(fabs(o->slip) - edge) <= TIED * edge)
       o->slip = (o->slip < 0.0 ? -edge : edge) * (1.0 - TIED); /* in it, not leaving */
   }
 }

@@ -68,7 +68,6 @@ double strut_event_value(const strut_model *model, const strut_event_stepper *l,
     case STRUT_EVENT_CREEP_OUT:
       return s * o->friction + strut_friction_kinetic(&e->friction, s) * o->normal;
     case STRUT_EVENT_CREEP_IN: return s * (stick_band_force(e, o) - o->friction);
-    case STRUT_EVENT_BALANCE_ENDS: return balance_margin(e, o);
     case STRUT_EVENT_PUSH:
       if (l->mode[i] == STRUT_MODE_BAND) return balance_margin(e, o);
       return s * o->applied - strut_friction_static(&e->friction, o->applied) * o->normal;
@@ -98,7 +97,6 @@ bool strut_event_rate(const strut_event_stepper *l, const strut_step_end *end,
     case STRUT_EVENT_STICK_BREAKS:
     case STRUT_EVENT_CREEP_OUT:
     case STRUT_EVENT_CREEP_IN:
-    case STRUT_EVENT_BALANCE_ENDS:
     case STRUT_EVENT_PUSH:
     case STRUT_EVENT_YIELDED:
     case STRUT_EVENT_ACTS:
@@ -302,19 +300,6 @@ static bool closes(const strut_contact_table *c, int32_t i, const strut_event_st
   return to.into < 0.0;
 }
 
-/*
- * Does contact i, at whose edge the forces balance where the step begins, leave because they cease to? The
- * speed alone would show that late: it grows from there with the square of the time.
- */
-static bool loses_balance(const strut_model *model, const strut_event_stepper *l, int32_t i) {
-  const strut_contact_entry *e = &model->contacts.entry[i];
-  const strut_touch *from = &l->now->touch[i];
-  double edge = stick_band_edge(e);
-  return l->stepper->exact && l->mode[i] == STRUT_MODE_BAND &&
-         fabs(from->slip) >= edge * (1.0 - 2.0 * TIED) && band_forces_balance(l, from, i) &&
-         balance_margin(e, from) > 0.0 && balance_margin(e, &l->next->touch[i]) < 0.0;
-}
-
 /* What ends a mode of contact i, if it comes before `first`. */
 STRUT_INLINE void keep_first_of(const strut_model *model, const strut_event_stepper *l, int32_t i,
                                 double h, unsigned terms, strut_event *first) {
@@ -326,8 +311,6 @@ STRUT_INLINE void keep_first_of(const strut_model *model, const strut_event_step
   }
   const strut_touch *o = &l->next->touch[i];
   strut_event_kind kind = contradicting_event(&c->entry[i], o, l->mode[i], l->side[i]);
-  if (kind == STRUT_EVENT_LEAVES_STICK_BAND && loses_balance(model, l, i))
-    kind = STRUT_EVENT_BALANCE_ENDS;
   if (kind) keep_first(model, l, kind, i, h, first);
   int32_t nearest;
   if (frames_of(l->next, terms) && strut_surface_facet_margin(c, l, l->next, i, &nearest) < 0.0)

@@ -340,6 +340,16 @@ static bool is_near(const strut_event_stepper *l, const strut_event *event, cons
   return fabs(s->value) <= 1e-8 * fabs(slope);
 }
 
+/* Where forces balance until then, an edge is left so gently that this part of a step is no matter. */
+static const double BALANCED = 1e-8;
+
+/* Is the speed at the edge of the band, from which speeds are held apart by TIED? Nearer it cannot be told. */
+static bool is_at_edge(const strut_model *model, const strut_event *event, double value) {
+  if (event->kind != STRUT_EVENT_LEAVES_STICK_BAND) return false;
+  double tie = TIED * stick_band_edge(&model->contacts.entry[event->index]);
+  return value > 0.5 * tie && value < 1.5 * tie;
+}
+
 static bool is_above_threshold(const strut_friction *f, const strut_touch *o) {
   return fabs(o->applied) > strut_friction_static(f, o->applied) * o->normal;
 }
@@ -394,9 +404,15 @@ static double retake(const strut_model *model, strut_state *state, strut_event_s
     double rate = 0.0;
     if (strut_event_rate(l, l->next, event->kind, event->index, &rate)) rate *= h;
     if (fabs(s.value) <= 1e-13 * fabs(rate)) break;
-    if (l->within && is_near(l, event, &s, rate)) break;
-    if (s.value == 0.0 || (k > 0 && stagnant(&s))) break;
+    bool edge = is_at_edge(model, event, s.value);
+    /* forces that balance there keep it there for a while: no root is near, though the value does not change */
+    bool tied = edge && band_forces_balance(l, &l->next->touch[event->index], event->index);
+    if (edge && !tied) break;
+    if (l->within && !tied && is_near(l, event, &s, rate)) break;
+    if (s.value == 0.0 || (k > 0 && !tied && stagnant(&s))) break;
+    if (tied && s.high - s.x <= BALANCED) break;
     double x = l->within && rate == 0.0 ? next_by_parabola(&s) : next_point(&s, rate);
+    if (tied) x = 0.5 * (s.low + s.high);
     if (s.high - s.low <= 1e-13) break;
     s.x = x;
   }

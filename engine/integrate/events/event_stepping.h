@@ -89,7 +89,6 @@ typedef enum strut_event_kind {
   STRUT_EVENT_OPEN,              /* a closed one opens */
   STRUT_EVENT_SLIP_ENDS,         /* slip ends: u reaches 0, or the band */
   STRUT_EVENT_LEAVES_STICK_BAND, /* |u| reaches the edge of the band from inside */
-  STRUT_EVENT_BALANCE_ENDS,      /* at the edge, |F_res| passes mu_0 N, which balanced it */
   STRUT_EVENT_STICK_BREAKS,      /* a stuck node's multiplier leaves mu_0 N */
   STRUT_EVENT_CREEP_OUT,         /* creep's multiplier reaches mu N: slip */
   STRUT_EVENT_CREEP_IN,          /* it reaches the band's force: band */

@@ -8,11 +8,10 @@
 
 #include "engine/integrate/events/small_events.h"
 
-/* See settle_band_ties; a: the acceleration, of exact steppers, else NULL. */
-STRUT_SMALL_INLINE void small_settle_ties(small_events *e, const small_points *a) {
+/* See settle_band_ties. */
+STRUT_SMALL_INLINE void small_settle_ties(small_events *e) {
   const strut_small_contacts *c = &e->run.tables->contact;
   const strut_small_modes *m = e->modes;
-  const double *along = e->run.contacts->tangent;
   SMALL_EACH(p) {
     small_real friction = e->contacts.friction.part[p], slip = e->contacts.slip.part[p], zero = {0};
     small_real applied = e->contacts.applied.part[p], edge = SMALL_CONTACT(stick_velocity);
@@ -23,11 +22,6 @@ STRUT_SMALL_INLINE void small_settle_ties(small_events *e, const small_points *a
         small_choose(tied, -applied + SMALL_MODE(side) * faint, friction);
     tied = SMALL_MODE_MASK(band) &
            small_at_least(TIED * edge, small_magnitude(small_magnitude(slip) - edge));
-    if (a) {
-      small_real rate = a->x.part[p];
-      if (e->run.plan & STRUT_TERM_SLOPE) rate = rate * along[0] + a->y.part[p] * along[1];
-      tied &= small_at_least(faint * SMALL_MODE(tangent), small_magnitude(rate));
-    }
     small_real inside = small_choose(small_less(slip, zero), -edge, edge) * (1.0 - TIED);
     e->contacts.slip.part[p] = small_choose(tied, inside, slip);
   }

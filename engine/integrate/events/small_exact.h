@@ -19,7 +19,7 @@ STRUT_SMALL_INLINE double small_exact_step(small_events *e, const strut_model *m
     broken = small_adaptive_step(e, model, state, t, h, now, next, gained, ledger);
   else
     small_rk4_events_step(e, model, state, t, h, now, next, gained, ledger);
-  if (e->stepper->closed_count && !e->stepper->all_sliding) small_settle_ties(e, &next->a);
+  if (e->stepper->closed_count && !e->stepper->all_sliding) small_settle_ties(e);
   return broken;
 }
 

@@ -173,7 +173,7 @@ STRUT_SMALL_INLINE void small_verlet_events(const strut_model *model, strut_stat
         small_add_powers(&structure, &e.power);
         e.power = structure;
       }
-      if (!l->all_sliding && l->closed_count) small_settle_ties(&e, NULL);
+      if (!l->all_sliding && l->closed_count) small_settle_ties(&e);
       if (ledger) {
         small_work sum = power;
         small_add_powers(&sum, &e.power);

@@ -168,7 +168,6 @@ static bool contact_slopes(const strut_event_stepper *l, const strut_event *e, d
     case STRUT_EVENT_STICK_BREAKS:
     case STRUT_EVENT_CREEP_OUT:
     case STRUT_EVENT_CREEP_IN:
-    case STRUT_EVENT_BALANCE_ENDS:
     case STRUT_EVENT_PUSH:
     case STRUT_EVENT_YIELDED:
     case STRUT_EVENT_ACTS:
