@@ -347,6 +347,8 @@ static bool sort_elements(compilation *c, strut_element_table *t) {
     const strut_element *e = &sorted[begin];
     block[t->block_count++] =
         (strut_element_block){e->strain, e->law, begin, t->count, both, e->remembers};
+    c->model->laws.law |= UINT32_C(1) << e->law;
+    c->model->laws.strain |= UINT32_C(1) << e->strain;
   }
   for (int32_t i = 0; i < t->count; i++) {
     int32_t rows = 2 * sorted[i].nodes;
