@@ -5,8 +5,6 @@
 #ifndef STRUT_ENGINE_INTEGRATE_SMALL_RUN_H
 #define STRUT_ENGINE_INTEGRATE_SMALL_RUN_H
 
-#include <assert.h>
-
 #include "engine/forces/small_drives.h"
 #include "engine/integrate/small_steps.h"
 
@@ -72,7 +70,6 @@ STRUT_SMALL_INLINE void small_begin(const strut_model *model, const strut_state 
                                     unsigned terms, int64_t instants, small_run *r,
                                     strut_small_inputs *inputs, small_rest *rows, small_motion *m) {
   const strut_small_model *s = model->small;
-  assert(strut_laws_within(model->laws, strut_laws_small));
   r->tables = s;
   r->contacts = &model->contacts;
   r->plan = small_plan_in_copy(model, terms);
