@@ -11,6 +11,10 @@
 #include "engine/model/sliding_compile.h"
 #include "engine/model/small_model.h"
 
+_Static_assert(STRUT_FRICTION_LAW_COUNT <= 32 && STRUT_DAMPING_COUNT <= 32 &&
+                   STRUT_LAW_COUNT <= 32 && STRUT_STRAIN_COUNT <= 32,
+               "a bit for each in strut_law_set");
+
 /* Zeroed doubles in the model's arena; *failed remembers a refusal so that passes stay short. */
 static double *doubles(strut_model *model, size_t count, bool *failed) {
   double *block = strut_arena_allocate(&model->arena, count, sizeof *block);

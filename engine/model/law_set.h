@@ -27,14 +27,11 @@ typedef struct strut_law_set {
 /** Of kernels that loop over the table. */
 #define STRUT_HAS_ALL UINT32_MAX
 
-_Static_assert(STRUT_FRICTION_LAW_COUNT <= 32 && STRUT_DAMPING_COUNT <= 32 &&
-                   STRUT_LAW_COUNT <= 32 && STRUT_STRAIN_COUNT <= 32,
-               "a bit for each");
-
 /** What `has` has and `known` lacks. */
 static inline strut_law_set strut_laws_beyond(strut_law_set has, strut_law_set known) {
-  return (strut_law_set){has.friction & ~known.friction, has.damping & ~known.damping,
-                         has.law & ~known.law, has.strain & ~known.strain};
+  has.friction &= ~known.friction, has.damping &= ~known.damping;
+  has.law &= ~known.law, has.strain &= ~known.strain;
+  return has;
 }
 
 /** Does `known` have everything that `has` has? */
