@@ -178,9 +178,33 @@ mkdir -p "$scratch/twins/engine"
 printf 'STRUT_CLONES\nstatic void same(int a) {\n' | tee "$scratch/twins/engine/a.c" >"$scratch/twins/engine/b.c"
 [ -n "$(twins "$scratch/twins")" ] || { echo "twins are not seen"; failures=$((failures + 1)); }
 
+# What docs/architecture.md says of the tree: who uses CHOLMOD, GLPK and NLopt, and the files that it and
+# docs/recipes.md name by the end of their paths. Those in strut/ are installed.
+strangers() {
+  for pair in 'cholmod_:(model/(linear_solver|algebra_[a-z]+)|statics/rigidity/sparse_qr)' \
+    'glp_:statics/linear_program' 'nlopt_:study/search/nlopt_optimiser'; do
+    (cd "$1" && grep -rlE "\b${pair%%:*}[a-z_]+ *\(" engine parser --include='*.[ch]' || true) |
+      grep -vE "^engine/${pair#*:}[.][ch]$" | sed "s/$/ uses ${pair%%:*}/" || true
+  done
+}
+unknown_files() {
+  for page in "$1/docs/architecture.md" "$1/docs/recipes.md"; do
+    grep -v '^[-+]' "$page" | grep -oE '`[a-z0-9_/]+[.](c|h|sh|py|cmake)(\.in)?`' | tr -d '`' | sort -u |
+      grep -v '^strut/' | while read -r name; do
+        find "$1" -path "$1/build" -prune -o -path "*/$name" -print | grep -q . ||
+          echo "${page##*/} names $name, which does not exist"
+      done
+  done
+}
+mkdir -p "$scratch/claims/engine/a" "$scratch/claims/parser" "$scratch/claims/docs"
+echo 'cholmod_start(x);' >"$scratch/claims/engine/a/b.c"
+echo 'in `engine/a/c.c` and `b.c`' | tee "$scratch/claims/docs/architecture.md" >"$scratch/claims/docs/recipes.md"
+[ "$(strangers "$scratch/claims" | wc -l) $(unknown_files "$scratch/claims" | wc -l)" = "1 2" ] ||
+  { echo "false claims of the pages are not seen"; failures=$((failures + 1)); }
+
 root=${1:-$(dirname "$0")/..}
 root=$(cd "$root" && pwd)
-found=$(breaches "$root"; twins "$root")
+found=$(breaches "$root"; twins "$root"; strangers "$root"; unknown_files "$root")
 if [ -n "$found" ]; then
   echo "$found"
   failures=$((failures + 1))

@@ -39,6 +39,8 @@ STRUT_INLINE void ground_ledger(strut_state *state, double belt_speed, double da
   state->power[STRUT_POWER_EXCHANGED] += damped + fabs(rubbed) + fabs(belt);
 }
 
+_Static_assert(STRUT_DAMPING_COUNT == 2, "ground_damper distinguishes two laws by `dissipation`");
+
 /* Beyond the spring c d: k d' while going in, or of the Hunt-Crossley law c d chi d', never pulling. */
 STRUT_INLINE double ground_damper(const strut_contact_entry *e, double spring, double into) {
   if (!(e->dissipation > 0.0)) return into < 0.0 ? -e->damping * into : 0.0;
@@ -50,7 +52,7 @@ STRUT_INLINE double ground_damper(const strut_contact_entry *e, double spring, d
 STRUT_INLINE double ground_friction(const strut_contact_entry *e, double normal, double slip,
                                     double applied, bool bars_rigid) {
   const strut_friction *f = &e->friction;
-  bool band = strut_friction_states(f->law) == STRUT_FRICTION_STICK_BAND;
+  bool band = strut_friction_has_band(f->law);
   if (bars_rigid && band && fabs(slip) < f->stick_velocity) return 0.0;
   return strut_friction_force(f, normal, slip, applied);
 }

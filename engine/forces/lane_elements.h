@@ -47,7 +47,7 @@ STRUT_LANE_INLINE lane_real lane_angle(const uint32_t *at, const double *restric
   return lane_angle_near(lane_angle_of(ux * vx + uy * vy, ux * vy - uy * vx), reference);
 }
 
-/* The strains that lanes have are told by strut_lanes_possible. */
+/* strut_lanes_possible lists the strains that lanes have. */
 STRUT_LANE_INLINE lane_real lane_strain(const strut_lane_tables *t, int32_t i,
                                         const double *restrict q, int p, lane_real *b) {
   const strut_element_table *table = &t->first->elements;

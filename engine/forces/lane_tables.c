@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/forces/lane_tables.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -8,29 +9,13 @@
 #include "engine/forces/member_law.h"
 #include "engine/model/mass.h"
 
-/* Does every contact have the printed laws, whose coefficients may differ by direction? */
-static bool laws_are_printed(const strut_model *model) {
-  for (int32_t i = 0; i < model->contacts.count; i++) {
-    const strut_contact_entry *e = &model->contacts.entry[i];
-    bool printed =
-        e->friction.law == STRUT_FRICTION_KARNOPP || e->friction.law == STRUT_FRICTION_NONE;
-    if (!printed || e->dissipation > 0.0) return false;
-  }
-  return true;
-}
-
-/* Are all elements of strains that lane_elements.h has? */
-static bool strains_are_known(const strut_element_table *t) {
-  for (int32_t b = 0; b < t->block_count; b++) switch (t->block[b].strain) {
-      case STRUT_STRAIN_LENGTH:
-      case STRUT_STRAIN_PATH:
-      case STRUT_STRAIN_ANGLE: break;
-      case STRUT_STRAIN_AREA:
-      case STRUT_STRAIN_REACH:
-      case STRUT_STRAIN_COUNT: return false;
-    }
-  return true;
-}
+/* The laws of lane_kernel.h and lane_elements.h: the printed ones of contacts, and all of elements. */
+static const strut_law_set known = {
+    .friction = STRUT_HAS(STRUT_FRICTION, NONE) | STRUT_HAS(STRUT_FRICTION, KARNOPP),
+    .damping = STRUT_HAS(STRUT_DAMPING, APPROACH),
+    .law = STRUT_HAS_ALL,
+    .strain = STRUT_HAS(STRUT_STRAIN, LENGTH) | STRUT_HAS(STRUT_STRAIN, PATH) |
+              STRUT_HAS(STRUT_STRAIN, ANGLE)};
 
 bool strut_lanes_possible(const strut_model *model) {
   const strut_mass *mass = model->mass;
@@ -38,12 +23,10 @@ bool strut_lanes_possible(const strut_model *model) {
                               STRUT_TERM_MASS_DAMPING | STRUT_TERM_SUPPORT_MOTION |
                               STRUT_TERM_UNBALANCE | STRUT_TERM_MEMORY | STRUT_TERM_SURFACES |
                               STRUT_TERM_FEEDBACK | STRUT_TERM_SLIDING_MASS;
-  if (!mass || (model->plan & one_by_one) || !strains_are_known(&model->elements)) return false;
+  if (!mass || (model->plan & one_by_one) || !strut_laws_within(model->laws, known)) return false;
   /* the ledger of one run adds up so many members in parts */
   bool powers = model->plan & (STRUT_TERM_DAMPING | STRUT_TERM_DRIVE);
   if (powers && model->members.blocks > STRUT_LEDGER_BLOCKS) return false;
-  bool directional = model->plan & STRUT_TERM_DIRECTION;
-  if ((model->plan & STRUT_TERM_LAWS) && !(directional && laws_are_printed(model))) return false;
   return !mass->coordinate[0].factor && !mass->coordinate[1].factor;
 }
 
@@ -245,6 +228,7 @@ void strut_lane_tables_get_elements(const strut_lane_tables *t, int32_t lane, st
 void strut_lane_tables_fill(strut_lane_tables *t, int32_t lane, const strut_model *m) {
   const strut_member_table *s = &m->members;
   int32_t width = t->width;
+  assert(strut_laws_within(m->laws, known));
   t->model[lane] = m;
   spread(t->stiffness, width, lane, s->stiffness, s->slots);
   spread(t->damping, width, lane, s->damping, s->slots);

@@ -162,8 +162,7 @@ static int32_t find_stuck(const strut_model *model, strut_rigid *g, const double
   const strut_contact_table *c = &model->contacts;
   int32_t count = 0;
   for (int32_t i = 0; i < c->count; i++) {
-    if (strut_contact_gap(c, i, q) < 0.0 &&
-        strut_friction_states(c->entry[i].friction.law) == STRUT_FRICTION_STICK_BAND &&
+    if (strut_contact_gap(c, i, q) < 0.0 && strut_friction_has_band(c->entry[i].friction.law) &&
         fabs(strut_contact_slip(c, i, v)) < c->entry[i].friction.stick_velocity)
       g->stuck[count++] = i;
   }

@@ -63,7 +63,7 @@ static bool can_hold(const strut_model *model, const strut_state *state, int32_t
 static bool sticks(const strut_model *model, const strut_state *state, const double *v, int32_t i) {
   const strut_friction *law = &model->contacts.entry[i].friction;
   const double *t = state->pose[i].axes.tangent, *f = state->force + model->contacts.at[i];
-  bool has_band = strut_friction_states(law->law) == STRUT_FRICTION_STICK_BAND;
+  bool has_band = strut_friction_has_band(law->law);
   return has_band && fabs(slip_of(model, state, v, i)) < law->stick_velocity &&
          can_hold(model, state, i, state->friction[i] - strut_component(t, f[0], f[1]));
 }

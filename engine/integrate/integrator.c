@@ -41,8 +41,7 @@ const strut_integrator *strut_integrator_for(strut_integrator_role role) {
 
 int32_t strut_first_exact_contact(const strut_model *model) {
   for (int32_t i = 0; i < model->contacts.count; i++)
-    if (strut_friction_states(model->contacts.entry[i].friction.law) == STRUT_FRICTION_EXACT_STICK)
-      return i;
+    if (strut_friction_is_exact(model->contacts.entry[i].friction.law)) return i;
   return -1;
 }
 

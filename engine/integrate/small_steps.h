@@ -5,6 +5,8 @@
 #ifndef STRUT_ENGINE_INTEGRATE_SMALL_STEPS_H
 #define STRUT_ENGINE_INTEGRATE_SMALL_STEPS_H
 
+#include <assert.h>
+
 #include "engine/model/small_model.h"
 #include "engine/model/state.h"
 
@@ -22,12 +24,19 @@ typedef void strut_small_steps(const strut_model *model, strut_state *state,
 strut_small_steps strut_small_rk4_avx2, strut_small_rk4_avx512;
 strut_small_steps strut_small_verlet_avx2, strut_small_verlet_avx512;
 
+/** The registers that step the model. */
+static inline strut_small_level strut_small_level_of(const strut_model *model) {
+  if (!model->small) return STRUT_SMALL_NONE;
+  assert(strut_laws_within(model->laws, strut_laws_small));
+  return model->small->level;
+}
+
 /** The function of that name for the model; NULL where it is none that is stepped so. */
 #if defined(__x86_64__)
 #define STRUT_SMALL_STEPS(model, name)                                                             \
-  (!(model)->small || (model)->small->level == STRUT_SMALL_NONE ? NULL                             \
-   : (model)->small->level == STRUT_SMALL_AVX512                ? name##_avx512                    \
-                                                                : name##_avx2)
+  (strut_small_level_of(model) == STRUT_SMALL_NONE ? NULL                                          \
+   : (model)->small->level == STRUT_SMALL_AVX512   ? name##_avx512                                 \
+                                                   : name##_avx2)
 #else
 #define STRUT_SMALL_STEPS(model, name) ((strut_small_steps *)NULL)
 #endif

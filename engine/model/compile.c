@@ -11,6 +11,10 @@
 #include "engine/model/sliding_compile.h"
 #include "engine/model/small_model.h"
 
+_Static_assert(STRUT_FRICTION_LAW_COUNT <= 32 && STRUT_DAMPING_COUNT <= 32 &&
+                   STRUT_LAW_COUNT <= 32 && STRUT_STRAIN_COUNT <= 32,
+               "a bit for each in strut_law_set");
+
 /* Zeroed doubles in the model's arena; *failed remembers a refusal so that passes stay short. */
 static double *doubles(strut_model *model, size_t count, bool *failed) {
   double *block = strut_arena_allocate(&model->arena, count, sizeof *block);
@@ -222,6 +226,22 @@ static const strut_ground *ground_of(const strut_scene *scene, const strut_conta
   return scene->ground_count ? &scene->grounds[contact->ground] : &scene->ground;
 }
 
+/* A law of damping is a choice of numbers, which all kernels of the ground distinguish by `dissipation`. */
+static void set_damping(strut_model *model, strut_contact_entry *entry, strut_ground_damping law,
+                        double dissipation) {
+  model->laws.damping |= UINT32_C(1) << law;
+  switch (law) {
+    case STRUT_DAMPING_APPROACH: return;
+    case STRUT_DAMPING_HUNT_CROSSLEY:
+      entry->damping = 0.0;
+      entry->dissipation = dissipation;
+      model->plan |= STRUT_TERM_LAWS;
+      return;
+    case STRUT_DAMPING_COUNT: break;
+  }
+  assert(false && "the scene was checked");
+}
+
 static void compile_contacts(strut_model *model, bool *failed) {
   const strut_scene *scene = model->scene;
   size_t count = scene->contact_count;
@@ -237,11 +257,8 @@ static void compile_contacts(strut_model *model, bool *failed) {
                                      .lane = contact->node % STRUT_CONTACT_LANES,
                                      .stiffness = contact->stiffness,
                                      .damping = contact->damping};
-    if (ground_of(scene, contact)->damping_law == STRUT_DAMPING_HUNT_CROSSLEY) {
-      entry[i].damping = 0.0;
-      entry[i].dissipation = contact->dissipation;
-      model->plan |= STRUT_TERM_LAWS;
-    }
+    set_damping(model, &entry[i], ground_of(scene, contact)->damping_law, contact->dissipation);
+    model->laws.friction |= UINT32_C(1) << contact->friction.law;
     if (contact->friction.law == STRUT_FRICTION_NONE) continue;
     entry[i].friction = contact->friction;
     model->plan |= STRUT_TERM_FRICTION;

@@ -19,6 +19,7 @@
 #include "engine/model/actuator_forces.h"
 #include "engine/model/elements.h"
 #include "engine/model/feedback.h"
+#include "engine/model/law_set.h"
 #include "engine/model/pull_rows.h"
 #include "engine/model/sliding_masses.h"
 #include "engine/model/support_motion.h"
@@ -126,7 +127,8 @@ typedef struct strut_load_table {
 
 typedef struct strut_model {
   const strut_scene *scene;
-  unsigned plan; /* strut_term bits */
+  unsigned plan;      /* strut_term bits */
+  strut_law_set laws; /* of its contacts and elements */
   int32_t node_count, length;
   double size;                  /* largest extent as drawn, or 1 [m]: the scale for "beyond" */
   const double *start;          /* (length) positions at t = 0 */

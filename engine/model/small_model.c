@@ -15,6 +15,7 @@ static strut_small_level level_here(void) {
 
 static bool is_small(const strut_model *model) {
   return !(model->plan & ~(unsigned)STRUT_TERMS_SMALL) && model->plan & STRUT_TERM_MEMBERS &&
+         strut_laws_within(model->laws, strut_laws_small) &&
          model->node_count <= STRUT_SMALL_NODES && model->members.count <= STRUT_SMALL_MEMBERS &&
          model->members.slots <= STRUT_SMALL_SLOTS && model->drives.count <= STRUT_SMALL_DRIVES &&
          model->mass && !model->mass->coordinate[0].factor && !model->mass->coordinate[1].factor;

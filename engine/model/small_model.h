@@ -110,13 +110,19 @@ typedef struct strut_small_model {
   strut_small_source from_source[STRUT_SMALL_SLOTS / 4], to_source[STRUT_SMALL_SLOTS / 4];
 } strut_small_model;
 
-/** Do these terms, and no others, make a model that is stepped so? */
+/** Terms of models that are stepped so. */
 enum {
   STRUT_TERMS_SMALL = STRUT_TERM_MEMBERS | STRUT_TERM_DAMPING | STRUT_TERM_SLACK |
                       STRUT_TERM_DRIVE | STRUT_TERM_CONSTANT | STRUT_TERM_CONTACT |
                       STRUT_TERM_FRICTION | STRUT_TERM_SLOPE | STRUT_TERM_SOLVE | STRUT_TERM_LAWS |
                       STRUT_TERM_DIRECTION
 };
+
+/** And their laws, whose formulas small_kernel.h and integrate/events/small_events.h have. */
+static const strut_law_set strut_laws_small = {
+    .friction = STRUT_HAS(STRUT_FRICTION, NONE) | STRUT_HAS(STRUT_FRICTION, KARNOPP) |
+                STRUT_HAS(STRUT_FRICTION, COULOMB) | STRUT_HAS(STRUT_FRICTION, SMOOTH),
+    .damping = STRUT_HAS(STRUT_DAMPING, APPROACH) | STRUT_HAS(STRUT_DAMPING, HUNT_CROSSLEY)};
 
 /** Makes model->small where the model is small enough and the processor has the registers. False: out of
     memory. */

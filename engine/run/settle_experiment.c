@@ -103,7 +103,9 @@ static void add_stick_stiffness(const strut_model *model, const double *q, strut
     const strut_contact_pose pose = strut_contact_pose_at(c, i, q, NULL, -1);
     const double *t = pose.axes.tangent;
     bool touches = pose.gap < 0.0;
-    if (!touches || e->friction.law == STRUT_FRICTION_NONE ||
+    bool sticks =
+        strut_friction_has_band(e->friction.law) || strut_friction_is_exact(e->friction.law);
+    if (!touches || !sticks ||
         !(e->friction.mu_static > 0.0 || e->friction.mu_static_backward > 0.0))
       continue;
     strut_sparse *k = tangent->stiffness;

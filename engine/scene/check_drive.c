@@ -313,7 +313,7 @@ static void check_grounds(strut_checker *checker) {
       strut_format_name(owner, "ground", g->name, i);
     strut_check_range(checker, STRUT_ON_GROUND, i, "belt_speed", owner, g->belt_speed,
                       STRUT_ANY_NUMBER);
-    if ((unsigned)g->damping_law > STRUT_DAMPING_HUNT_CROSSLEY)
+    if ((unsigned)g->damping_law >= STRUT_DAMPING_COUNT)
       strut_report_finding(checker, STRUT_ON_GROUND, i, "damping_law",
                            "the damping law of %s is unknown", owner);
     switch (g->shape) {
@@ -402,7 +402,7 @@ void strut_check_ground(strut_checker *checker) {
         "the slope of the ground must lie between -90 deg and 90 deg, found %g deg; a line at any "
         "angle needs a point, through: [x, y]",
         g->slope / QUARTER_TURN * 90.0);
-  if ((unsigned)g->damping_law > STRUT_DAMPING_HUNT_CROSSLEY)
+  if ((unsigned)g->damping_law >= STRUT_DAMPING_COUNT)
     strut_report_finding(checker, STRUT_ON_GROUND, 0, "damping_law",
                          "the ground's damping law is unknown");
   if (g->present && !scene->contact_count)

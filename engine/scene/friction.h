@@ -218,6 +218,39 @@ static inline strut_friction_class strut_friction_states(strut_friction_law law)
   return STRUT_FRICTION_ABSENT;
 }
 
+/** Has it a band of speeds in which it balances the other forces? */
+static inline bool strut_friction_has_band(strut_friction_law law) {
+  switch (strut_friction_states(law)) {
+    case STRUT_FRICTION_STICK_BAND: return true;
+    case STRUT_FRICTION_ABSENT:
+    case STRUT_FRICTION_EXACT_STICK:
+    case STRUT_FRICTION_CONTINUOUS: break;
+  }
+  return false;
+}
+
+/** Does it need a method with events? */
+static inline bool strut_friction_is_exact(strut_friction_law law) {
+  switch (strut_friction_states(law)) {
+    case STRUT_FRICTION_EXACT_STICK: return true;
+    case STRUT_FRICTION_ABSENT:
+    case STRUT_FRICTION_STICK_BAND:
+    case STRUT_FRICTION_CONTINUOUS: break;
+  }
+  return false;
+}
+
+/** Is it a force that follows from the speed alone? */
+static inline bool strut_friction_is_continuous(strut_friction_law law) {
+  switch (strut_friction_states(law)) {
+    case STRUT_FRICTION_CONTINUOUS: return true;
+    case STRUT_FRICTION_ABSENT:
+    case STRUT_FRICTION_STICK_BAND:
+    case STRUT_FRICTION_EXACT_STICK: break;
+  }
+  return false;
+}
+
 /** Force of the law [N]; see the laws' own. A directional one is that of the direction it resists. */
 static inline double strut_friction_force(const strut_friction *f, double normal, double slip,
                                           double applied) {

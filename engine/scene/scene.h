@@ -117,8 +117,9 @@ typedef struct strut_collision {
 
 /** Damping law of the ground; d is the depth, d' its rate. */
 typedef enum strut_ground_damping {
-  STRUT_DAMPING_APPROACH,     /* (8): c_g d + k_g max(d', 0), which jumps at touchdown */
-  STRUT_DAMPING_HUNT_CROSSLEY /* c_g d (1 + chi d'), never pulling: continuous */
+  STRUT_DAMPING_APPROACH,      /* (8): c_g d + k_g max(d', 0), which jumps at touchdown */
+  STRUT_DAMPING_HUNT_CROSSLEY, /* c_g d (1 + chi d'), never pulling: continuous */
+  STRUT_DAMPING_COUNT
 } strut_ground_damping;
 
 /** Shape of a ground's surface. */

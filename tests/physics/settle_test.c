@@ -142,6 +142,27 @@ static void what_friction_holds_is_not_unstable(void **unused) {
   strut_setup_free(&setup);
 }
 
+/* A node that a spring above it presses on the ground: Karnopp's law keeps it there, a smooth one does not. */
+static void smooth_friction_holds_nothing(void **unused) {
+  (void)unused;
+  strut_setup setup;
+  strut_setup_init(&setup);
+  int32_t above = build_support(&setup.scene, 0, 1), node = build_mass(&setup.scene, 0, 0, 1);
+  build_sized(&setup.scene, STRUT_SPRING, above, node, 100, 10, 0, 1.1);
+  build_rough_contact(&setup.scene, node, 1e4, 10, 0.5, 0.5, 1e-3);
+  motion_experiment(&setup, 1e-4, 0.01);
+  setup.experiment.settle.wanted = setup.experiment.settle.friction = true;
+  assert_false(settle(&setup).how.unstable);
+  ((strut_contact *)setup.scene.contacts)[0].friction.law = STRUT_FRICTION_SMOOTH;
+  ((strut_contact *)setup.scene.contacts)[0].friction.width = 1e-3;
+  settled s = settle(&setup);
+  double depth = 100 * 0.1 / (100 + 1e4), length = 1 + depth;
+  assert_int_equal(s.status, STRUT_OK);
+  assert_true(s.how.unstable);
+  assert_relative(s.how.stiffness, -100 * (1.1 - length) / length, 1e-6);
+  strut_setup_free(&setup);
+}
+
 /* What method, step or accuracy a run has: it starts from the same bits. */
 static void every_method_starts_from_the_same_bits(void **unused) {
   (void)unused;
@@ -283,6 +304,7 @@ int main(void) {
       cmocka_unit_test(a_stable_rest_is_left_alone),
       cmocka_unit_test(free_motions_are_not_unstable),
       cmocka_unit_test(what_friction_holds_is_not_unstable),
+      cmocka_unit_test(smooth_friction_holds_nothing),
       cmocka_unit_test(every_method_starts_from_the_same_bits),
       cmocka_unit_test(an_accurate_run_starts_where_the_plain_one_does),
       cmocka_unit_test(statics_start_from_the_same_bits),

@@ -246,8 +246,7 @@ static void factor_stuck(const strut_model *model, strut_event_stepper *l,
 static bool is_sliding(const strut_event_stepper *l, const strut_contact_entry *e, int32_t i) {
   if (e->dissipation > 0.0) return false;
   return l->mode[i] == STRUT_MODE_SLIP ||
-         (l->mode[i] == STRUT_MODE_SLIDE &&
-          strut_friction_states(e->friction.law) != STRUT_FRICTION_CONTINUOUS);
+         (l->mode[i] == STRUT_MODE_SLIDE && !strut_friction_is_continuous(e->friction.law));
 }
 
 static void list_sliding_contacts(const strut_model *model, strut_event_stepper *l) {

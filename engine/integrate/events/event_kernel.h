@@ -15,6 +15,9 @@
 #include "engine/integrate/events/surface_contacts.h"
 #include "engine/model/pose.h"
 
+_Static_assert(STRUT_DAMPING_COUNT == 2,
+               "contact_normal_force distinguishes two laws by `dissipation`");
+
 /* Normal force of the spring and, where `damped`, the damper, of a contact that touches. */
 STRUT_INLINE double contact_normal_force(const strut_contact_entry *e, int8_t damper, double gap,
                                          double into, bool damped) {
@@ -49,7 +52,7 @@ STRUT_INLINE double friction_in_mode(const strut_contact_entry *e, uint8_t mode,
     case STRUT_MODE_SLIP:
     case STRUT_MODE_PUSH: return -side * strut_friction_kinetic(&e->friction, side) * normal;
     case STRUT_MODE_SLIDE:
-      return strut_friction_states(e->friction.law) == STRUT_FRICTION_CONTINUOUS
+      return strut_friction_is_continuous(e->friction.law)
                  ? strut_friction_force(&e->friction, normal, slip, applied)
                  : 0.0;
     case STRUT_MODE_BAND: {
@@ -235,7 +238,7 @@ STRUT_INLINE void evaluate_step_end(const strut_model *model, strut_state *state
 
 /* Edge of the band, or 0 where sticking is exact. */
 STRUT_INLINE double stick_band_edge(const strut_contact_entry *e) {
-  bool band = strut_friction_states(e->friction.law) == STRUT_FRICTION_STICK_BAND;
+  bool band = strut_friction_has_band(e->friction.law);
   return band ? e->friction.stick_velocity : 0.0;
 }
 

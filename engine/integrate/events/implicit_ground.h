@@ -11,6 +11,8 @@
 
 #include "engine/integrate/events/event_kernel.h"
 
+_Static_assert(STRUT_DAMPING_COUNT == 2, "implicit_damper distinguishes two laws by `dissipation`");
+
 /* The damper's force where the node would go into the ground at speed `free` without it. */
 STRUT_INLINE double implicit_damper(const strut_contact_entry *e, double spring, double free,
                                     double half) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/integrate/events/small_modes.h"
 
+#include <assert.h>
 #include <stddef.h>
 #include <string.h>
 
@@ -22,8 +23,7 @@ static bool is_known(const strut_contact_entry *e, uint8_t mode) {
     case STRUT_MODE_BAND:
     case STRUT_MODE_PUSH:
     case STRUT_MODE_CREEP: return true;
-    case STRUT_MODE_SLIDE:
-      return strut_friction_states(e->friction.law) != STRUT_FRICTION_CONTINUOUS;
+    case STRUT_MODE_SLIDE: return !strut_friction_is_continuous(e->friction.law);
     case STRUT_MODE_YIELD: break;
   }
   return false;
@@ -101,6 +101,7 @@ void strut_small_modes_update(const strut_model *model, const strut_state *state
   strut_small_modes *m = l->small;
   const strut_contact_table *c = &model->contacts;
   bool level = c->normal[0] == 0.0;
+  assert(strut_laws_within(model->laws, strut_laws_small));
   if (!m->rows_current) strut_small_rest_fill(model, state, STRUT_SMALL_INSTANTS, m->rest);
   memset(m, 0, offsetof(strut_small_modes, stuck));
   memset(m->answer, 0, sizeof m->answer);

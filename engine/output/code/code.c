@@ -24,6 +24,42 @@ static size_t count_rubbing(const strut_scene *scene) {
   return rubs;
 }
 
+/* The laws and strains of the templates. */
+static const strut_law_set written = {
+    .friction = STRUT_HAS(STRUT_FRICTION, NONE) | STRUT_HAS(STRUT_FRICTION, KARNOPP) |
+                STRUT_HAS(STRUT_FRICTION, SMOOTH),
+    .damping = STRUT_HAS(STRUT_DAMPING, APPROACH) | STRUT_HAS(STRUT_DAMPING, HUNT_CROSSLEY),
+    .law = STRUT_HAS(STRUT_LAW, LINEAR) | STRUT_HAS(STRUT_LAW, BILINEAR) |
+           STRUT_HAS(STRUT_LAW, PLAY) | STRUT_HAS(STRUT_LAW, POLYNOMIAL) |
+           STRUT_HAS(STRUT_LAW, LOGARITHMIC) | STRUT_HAS(STRUT_LAW, EXPONENTIAL) |
+           STRUT_HAS(STRUT_LAW, TABLE) | STRUT_HAS(STRUT_LAW, ELASTIC_PLASTIC) |
+           STRUT_HAS(STRUT_LAW, PRESSURE) | STRUT_HAS(STRUT_LAW, ISOTHERMAL) |
+           STRUT_HAS(STRUT_LAW, ISENTROPIC) | STRUT_HAS(STRUT_LAW, AXIAL),
+    .strain = STRUT_HAS(STRUT_STRAIN, LENGTH) | STRUT_HAS(STRUT_STRAIN, PATH) |
+              STRUT_HAS(STRUT_STRAIN, ANGLE) | STRUT_HAS(STRUT_STRAIN, AREA) |
+              STRUT_HAS(STRUT_STRAIN, REACH)};
+
+static void add_unwritten_laws(strut_untold *r, strut_law_set has) {
+  strut_law_set more = strut_laws_beyond(has, written);
+  char text[200];
+  for (unsigned k = 0; k < STRUT_FRICTION_LAW_COUNT; k++) {
+    bool exact = strut_friction_is_exact((strut_friction_law)k);
+    snprintf(
+        text, sizeof text, "friction law %s%s", strut_friction_law_at((strut_friction_law)k)->word,
+        exact ? " (its stops and starts are located within steps; use karnopp or smooth)" : "");
+    strut_untold_add(r, more.friction >> k & 1u, text);
+  }
+  strut_untold_add(r, more.damping, "this damping_law of a ground");
+  for (unsigned k = 0; k < STRUT_LAW_COUNT; k++) {
+    snprintf(text, sizeof text, "law %s", strut_law_at((strut_law_kind)k)->word);
+    strut_untold_add(r, more.law >> k & 1u, text);
+  }
+  for (unsigned k = 0; k < STRUT_STRAIN_COUNT; k++) {
+    snprintf(text, sizeof text, "strain %s", strut_strain_name((strut_strain_kind)k));
+    strut_untold_add(r, more.strain >> k & 1u, text);
+  }
+}
+
 strut_status strut_code_check(const strut_model *model, strut_error *error) {
   const strut_scene *s = model->scene;
   strut_untold r = {.used = 0};
@@ -31,9 +67,7 @@ strut_status strut_code_check(const strut_model *model, strut_error *error) {
                    "bars: rigid (their forces follow from equations "
                    "that each step would solve; use bars: elastic)");
   strut_untold_add(&r, count_rubbing(s), "friction at guides");
-  strut_untold_add(&r, strut_first_exact_contact(model) >= 0,
-                   "friction law coulomb (its "
-                   "stops and starts are located within steps; use karnopp or smooth)");
+  add_unwritten_laws(&r, model->laws);
   strut_untold_add(&r, s->support_motion_count, "moves of nodes");
   strut_untold_add(&r, s->unbalance_count, "unbalances");
   if (r.used)

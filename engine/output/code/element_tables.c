@@ -10,11 +10,6 @@
 #include "engine/output/code/writer.h"
 #include "engine/scene/signal_program.h"
 
-static const char *const strain_names[] = {
-#define STRUT_NAME(NAME, name, ...) #name,
-    STRUT_STRAINS(STRUT_NAME, )
-#undef STRUT_NAME
-};
 static const char *const law_names[] = {
 #define STRUT_NAME(NAME, name, ...) #name,
     STRUT_ALL_LAWS(STRUT_NAME, )
@@ -55,7 +50,8 @@ static bool has_path(const strut_code_writer *w) {
 bool strut_code_has_strain(const strut_code_writer *w, const char *word, size_t length) {
   if (is_word(word, length, "path")) return has_path(w);
   for (int k = 0; k < STRUT_STRAIN_COUNT; k++)
-    if (is_word(word, length, strain_names[k])) return has_strain(w, (strut_strain_kind)k);
+    if (is_word(word, length, strut_strain_name((strut_strain_kind)k)))
+      return has_strain(w, (strut_strain_kind)k);
   assert(false && "a template asks for a strain that there is not");
   return false;
 }
@@ -285,7 +281,7 @@ void strut_code_add_elements(strut_code_writer *w) {
 }
 
 static const char *strain_function(strut_strain_kind strain) {
-  return strain_names[strain == STRUT_STRAIN_LENGTH ? STRUT_STRAIN_PATH : strain];
+  return strut_strain_name(strain == STRUT_STRAIN_LENGTH ? STRUT_STRAIN_PATH : strain);
 }
 
 void strut_code_add_blocks(strut_code_writer *w) {

@@ -76,7 +76,7 @@ static double creeping_power(const strut_model *model, const strut_state *state)
   for (int32_t i = 0; i < c->count; i++) {
     const strut_contact_entry *e = &c->entry[i];
     double gap, slip;
-    if (strut_friction_states(e->friction.law) != STRUT_FRICTION_STICK_BAND) continue;
+    if (!strut_friction_has_band(e->friction.law)) continue;
     strut_contact_observe(c, i, state, &gap, &slip);
     power += e->friction.stick_velocity * strut_friction_largest(&e->friction) *
              (4.0 * fmax(0.0, -gap * e->stiffness) + weight);

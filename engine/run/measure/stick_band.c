@@ -24,7 +24,7 @@ static const double ALWAYS_MISSED = 0.5, MET_BY_CHANCE = 0.01;
 static const double STRAINED = 0.1;
 
 static bool has_band(const strut_contact_entry *e) {
-  return strut_friction_states(e->friction.law) == STRUT_FRICTION_STICK_BAND;
+  return strut_friction_has_band(e->friction.law);
 }
 
 static bool is_stronger_at_rest(const strut_contact_entry *e) {
