@@ -36,7 +36,8 @@ until ls "the results/shards/"*.slots >/dev/null 2>&1; do
   [ $tries -gt 0 ] || break
   sleep 0.05
 done
-env kill -KILL -- "-$job" || fail "the script did not run"
+# GNU parallel gives each job a process group of its own, in the session of the script
+pkill -KILL -s "$job" || fail "the script did not run"
 wait "$job" 2>/dev/null
 absent "the results/table.csv"
 
