@@ -11,6 +11,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "engine/output/file.h"
+
 /* folder/below/name; false where that is too long or does not exist. */
 static bool join(const char *folder, const char *below, const char *name,
                  char path[STRUT_LONGEST_PATH]) {
