@@ -105,7 +105,11 @@ def hidden():
     """A name that turns the direction of writing appears as its number in a terminal, and as it is in a pipe."""
     write("hidden.yaml", MASS.replace("STIFFNESS", "100 N/m").replace("b:", '"b\u202e":').replace(
         "w, b", 'w, "b\u202e"') + "solver: {step: 1 ms}\nrun: {duration: 1 s}\n")
-    ours, theirs = pty.openpty()
+    try:
+        ours, theirs = pty.openpty()
+    except OSError:
+        print("no terminals here: hidden characters are not tested")
+        return
     process = subprocess.Popen([strut, "run", "hidden.yaml"], cwd=work, stdout=theirs, stderr=theirs)
     shown = b""
     os.close(theirs)
