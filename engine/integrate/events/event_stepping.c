@@ -343,7 +343,7 @@ static bool is_near(const strut_event_stepper *l, const strut_event *event, cons
 /* Where forces balance until then, an edge is left so gently that this part of a step is no matter. */
 static const double BALANCED = 1e-8;
 
-/* Is the speed at the edge of the band, from which speeds are held apart by TIED? Nearer it cannot be told. */
+/* Is the speed at the edge of the band, within TIED? settle_band_ties keeps it no nearer. */
 static bool is_at_edge(const strut_model *model, const strut_event *event, double value) {
   if (event->kind != STRUT_EVENT_LEAVES_STICK_BAND) return false;
   double tie = TIED * stick_band_edge(&model->contacts.entry[event->index]);
@@ -405,7 +405,7 @@ static double retake(const strut_model *model, strut_state *state, strut_event_s
     if (strut_event_rate(l, l->next, event->kind, event->index, &rate)) rate *= h;
     if (fabs(s.value) <= 1e-13 * fabs(rate)) break;
     bool edge = is_at_edge(model, event, s.value);
-    /* forces that balance there keep it there for a while: no root is near, though the value does not change */
+    /* forces that balance keep the speed there for a while: the value stays small, but has no root nearby */
     bool tied = edge && band_forces_balance(l, &l->next->touch[event->index], event->index);
     if (edge && !tied) break;
     if (l->within && !tied && is_near(l, event, &s, rate)) break;
