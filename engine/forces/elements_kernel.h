@@ -8,7 +8,6 @@
 
 #include "engine/forces/elements.h"
 #include "engine/forces/members_kernel.h"
-#include "engine/forces/strains/angle.h"
 
 /* One node of each of four hinges. */
 typedef struct hinge_nodes {
@@ -42,9 +41,9 @@ STRUT_INLINE void add_four_hinges(const strut_element_table *t, strut_state *sta
   hinge_nodes a = gather_hinges(q, at, 0), o = gather_hinges(q, at, 1), c = gather_hinges(q, at, 2);
   strut_lanes ux = a.x - o.x, uy = a.y - o.y, vx = c.x - o.x, vy = c.y - o.y;
   strut_lanes u2 = ux * ux + uy * uy, v2 = vx * vx + vy * vy;
-  strut_lanes iu = strut_lanes_choose(u2 > zero, 1.0 / u2, zero);
-  strut_lanes iv = strut_lanes_choose(v2 > zero, 1.0 / v2, zero);
-  strut_lanes strain = strut_angle_near(strut_angle_of(ux * vx + uy * vy, ux * vy - uy * vx),
+  strut_lanes iu = four_choose(u2 > zero, 1.0 / u2, zero);
+  strut_lanes iv = four_choose(v2 > zero, 1.0 / v2, zero);
+  strut_lanes strain = four_direction_near(four_direction_of(ux * vx + uy * vy, ux * vy - uy * vx),
                                         strut_lanes_load(state->element_turn + i));
   strut_lanes_store(state->element_turn + i, strain);
   strut_lanes ax = iu * uy, ay = -iu * ux, cx = -iv * vy, cy = iv * vx, bx = -ax - cx,
@@ -66,7 +65,7 @@ STRUT_INLINE void add_four_hinges(const strut_element_table *t, strut_state *sta
   }
   strut_lanes drive = -moment * rest_rate, lost = (moment - elastic) * own;
   powers->drive += drive, powers->lost += lost;
-  powers->exchanged += strut_lanes_magnitude(drive) + lost;
+  powers->exchanged += four_magnitude(drive) + lost;
 }
 
 /* Segment k's unit vector enters the gradient at both of its ends. */
@@ -85,8 +84,8 @@ STRUT_INLINE double measure_path(const uint32_t *restrict at, int32_t nodes,
   b[0] = (strut_pair){0};
   for (; k + STRUT_LANES < nodes; k += STRUT_LANES) {
     member_vectors d = members_gather(q, at + k, at + k + 1);
-    strut_lanes length = members_root(d.x * d.x + d.y * d.y);
-    strut_lanes inverse = strut_lanes_choose(length > zero, 1.0 / length, zero);
+    strut_lanes length = four_root(d.x * d.x + d.y * d.y);
+    strut_lanes inverse = four_choose(length > zero, 1.0 / length, zero);
     d.x *= inverse, d.y *= inverse;
     for (int32_t l = 0; l < STRUT_LANES; l++) {
       sum += length[l];

@@ -33,7 +33,7 @@ STRUT_INLINE void forces_start(const strut_model *model, double *restrict force)
 STRUT_INLINE void forces_of_members(const strut_model *model, strut_state *state,
                                     const double *restrict q, const double *restrict v,
                                     double *restrict force, strut_booking ledger) {
-  member_powers powers;
+  four_member_powers powers;
   powers.drive = powers.exchanged = powers.lost = (strut_lanes){0};
   members_kernel(model, state, q, v, force, ledger != STRUT_BOOK_NOTHING, &powers);
   if (!ledger) return;

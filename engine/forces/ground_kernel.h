@@ -11,41 +11,28 @@
 
 #include <math.h>
 
+#include "engine/model/contact_law.h"
 #include "engine/model/hot.h"
 #include "engine/model/state.h"
 
-/* Books a contact in its lane. */
+/* Accumulates the powers of a contact in its place of the step's sums. */
 STRUT_INLINE void ground_book_lanes(strut_power_lanes *restrict to, int32_t lane, bool moves,
-                                    double belt_speed, double damper, double into, double friction,
-                                    double slip) {
-  double rubbed = friction * slip;
-  to->minus_damped[lane] += damper * into;
-  to->minus_rubbed[lane] += rubbed;
+                                    strut_law_contact_powers p) {
+  to->minus_damped[lane] += p.damper;
+  to->minus_rubbed[lane] += p.friction;
   if (!moves) {
-    to->turnover[lane] += fabs(rubbed);
+    to->turnover[lane] += fabs(p.friction);
     return;
   }
-  double belt = friction * belt_speed;
-  to->belt[lane] += belt;
-  to->turnover[lane] += fabs(rubbed) + fabs(belt);
+  to->belt[lane] += p.belt;
+  to->turnover[lane] += fabs(p.friction) + fabs(p.belt);
 }
 
-STRUT_INLINE void ground_ledger(strut_state *state, double belt_speed, double damper, double into,
-                                double friction, double slip) {
-  double damped = -damper * into, rubbed = -friction * slip, belt = friction * belt_speed;
-  state->power[STRUT_POWER_CONTACT] += damped;
-  state->power[STRUT_POWER_FRICTION] += rubbed;
-  state->power[STRUT_POWER_BELT] += belt;
-  state->power[STRUT_POWER_EXCHANGED] += damped + fabs(rubbed) + fabs(belt);
-}
-
-_Static_assert(STRUT_DAMPING_COUNT == 2, "ground_damper distinguishes two laws by `dissipation`");
-
-/* Beyond the spring c d: k d' while going in, or of the Hunt-Crossley law c d chi d', never pulling. */
-STRUT_INLINE double ground_damper(const strut_contact_entry *e, double spring, double into) {
-  if (!(e->dissipation > 0.0)) return into < 0.0 ? -e->damping * into : 0.0;
-  double damper = -spring * e->dissipation * into;
-  return damper > -spring ? damper : -spring;
+STRUT_INLINE void ground_ledger(strut_state *state, strut_law_contact_powers p) {
+  state->power[STRUT_POWER_CONTACT] -= p.damper;
+  state->power[STRUT_POWER_FRICTION] -= p.friction;
+  state->power[STRUT_POWER_BELT] += p.belt;
+  state->power[STRUT_POWER_EXCHANGED] += -p.damper + fabs(p.friction) + fabs(p.belt);
 }
 
 /* Within Karnopp's band at the ends of rigid bars friction is found with their forces: 0 here. */
@@ -66,13 +53,15 @@ STRUT_INLINE void ground_touch(const strut_contact_table *c, strut_state *state,
   strut_pair sum = strut_pair_load(f), reaction;
   double into = sloped ? v[0] * c->normal[0] + v[1] * c->normal[1] : v[1];
   double along = sloped ? v[0] * c->tangent[0] + v[1] * c->tangent[1] : v[0];
-  double damper = into < 0.0 ? -e->damping * into : 0.0, slip = along - c->belt_speed;
-  if (laws) damper = ground_damper(e, -e->stiffness * gap, into);
-  double normal = -e->stiffness * gap + damper, friction = 0.0;
+  const strut_law_ground_numbers numbers = strut_contact_numbers(e);
+  double spring = strut_law_ground_spring(&numbers, gap), slip = along - c->belt_speed;
+  double damper = strut_law_ground_damper(&numbers, spring, into, laws);
+  double normal = spring + damper, friction = 0.0;
   if (rough) {
     double applied = sloped ? sum[0] * c->tangent[0] + sum[1] * c->tangent[1] : sum[0];
+    const strut_law_friction_numbers rubs = strut_friction_numbers(&e->friction);
     friction = laws ? ground_friction(e, normal, slip, applied, state->rigid)
-                    : strut_friction_force_KARNOPP(&e->friction, normal, slip, applied);
+                    : strut_law_friction_karnopp(&rubs, normal, slip, applied);
   }
   if (sloped)
     reaction = (strut_pair){friction * c->tangent[0] + normal * c->normal[0],
@@ -82,10 +71,10 @@ STRUT_INLINE void ground_touch(const strut_contact_table *c, strut_state *state,
   strut_pair_store(f, sum + reaction);
   state->normal[i] = normal;
   state->friction[i] = friction;
-  if (ledger == STRUT_BOOK_POWERS)
-    ground_ledger(state, c->belt_speed, damper, into, friction, slip);
-  if (ledger == STRUT_BOOK_LANES)
-    ground_book_lanes(lanes, e->lane, moves, c->belt_speed, damper, into, friction, slip);
+  strut_law_contact_powers powers =
+      strut_law_contact_power(damper, into, friction, slip, c->belt_speed);
+  if (ledger == STRUT_BOOK_POWERS) ground_ledger(state, powers);
+  if (ledger == STRUT_BOOK_LANES) ground_book_lanes(lanes, e->lane, moves, powers);
 }
 
 STRUT_INLINE void ground_all(const strut_model *model, strut_state *state, const double *restrict q,

@@ -12,8 +12,6 @@
 #include "engine/forces/lane_vector.h"
 #include "engine/forces/strains/angle.h"
 
-STRUT_DEFINE_ANGLE(STRUT_LANE_INLINE, lane_real, lane_mask, lane, lane_choose, lane_magnitude)
-
 /* See strut_strain_path; b: (2 nodes) the gradient. */
 STRUT_LANE_INLINE lane_real lane_path(const uint32_t *at, int32_t nodes, const double *restrict q,
                                       int p, lane_real *b) {
@@ -44,7 +42,7 @@ STRUT_LANE_INLINE lane_real lane_angle(const uint32_t *at, const double *restric
   b[0] = iu * uy, b[1] = -iu * ux;
   b[4] = -iv * vy, b[5] = iv * vx;
   b[2] = -b[0] - b[4], b[3] = -b[1] - b[5];
-  return lane_angle_near(lane_angle_of(ux * vx + uy * vy, ux * vy - uy * vx), reference);
+  return lane_direction_near(lane_direction_of(ux * vx + uy * vy, ux * vy - uy * vx), reference);
 }
 
 /* strut_lanes_possible lists the strains that lanes have. */
@@ -115,7 +113,7 @@ STRUT_LANE_INLINE void lane_carry(const strut_lane_tables *t, int32_t i, int p, 
 
 STRUT_LANE_INLINE void lane_add_element(strut_lane_tables *t, int32_t i, int p,
                                         const double *restrict q, const double *restrict v,
-                                        bool ledger, lane_powers *powers) {
+                                        bool ledger, lane_member_powers *powers) {
   const strut_element_table *table = &t->first->elements;
   const strut_element *e = &table->element[i];
   const uint32_t *at = table->at + e->first;
@@ -133,7 +131,7 @@ STRUT_LANE_INLINE void lane_add_element(strut_lane_tables *t, int32_t i, int p,
   powers->exchanged += lane_magnitude(drive) + lost;
 }
 
-STRUT_LANE_INLINE void lane_add_powers(strut_lane_tables *t, int p, const lane_powers *powers) {
+STRUT_LANE_INLINE void lane_add_powers(strut_lane_tables *t, int p, const lane_member_powers *powers) {
   double *power = t->power;
   lane_put(power, STRUT_POWER_DRIVE, p, lane_row(power, STRUT_POWER_DRIVE, p) + powers->drive);
   lane_put(power, STRUT_POWER_MEMBERS, p, lane_row(power, STRUT_POWER_MEMBERS, p) + powers->lost);
@@ -146,7 +144,7 @@ STRUT_LANE_INLINE void lane_element_block(strut_lane_tables *t, const strut_elem
                                           int p, const double *restrict q, const double *restrict v,
                                           bool ledger) {
   lane_real zero = {0};
-  lane_powers none = {.drive = zero, .exchanged = zero, .lost = zero}, group[STRUT_LANES];
+  lane_member_powers none = {.drive = zero, .exchanged = zero, .lost = zero}, group[STRUT_LANES];
   bool grouped =
       block->strain == STRUT_STRAIN_ANGLE && block->law == STRUT_LAW_LINEAR && block->both_signs;
   int32_t i = block->begin, end = grouped ? i + (block->end - i) / STRUT_LANES * STRUT_LANES : i;
@@ -155,7 +153,7 @@ STRUT_LANE_INLINE void lane_element_block(strut_lane_tables *t, const strut_elem
     lane_add_element(t, i, p, q, v, ledger, &group[(i - block->begin) % STRUT_LANES]);
   for (int l = 0; l < STRUT_LANES && grouped && ledger; l++) lane_add_powers(t, p, &group[l]);
   for (; i < block->end; i++) {
-    lane_powers one = none;
+    lane_member_powers one = none;
     lane_add_element(t, i, p, q, v, ledger, &one);
     if (ledger) lane_add_powers(t, p, &one);
   }
@@ -167,30 +165,6 @@ STRUT_LANE_INLINE void lane_elements(strut_lane_tables *t, const double *restric
   const strut_element_table *table = &t->first->elements;
   for (int32_t b = 0; b < table->block_count; b++)
     LANE_EACH(lane_element_block(t, &table->block[b], p, q, v, ledger));
-}
-
-/* What switches a law, see strut_event_measure: beyond its kink, the rate of that, and the force. */
-typedef struct lane_switch {
-  lane_real stretch, rate, tension;
-} lane_switch;
-
-/* Of an element that carries one sign, with that sign; of kinks, the margins of the piece. */
-STRUT_LANE_INLINE lane_switch lane_measure_element(const strut_lane_tables *t, int32_t i,
-                                                   bool kinks, int p, const double *restrict q,
-                                                   const double *restrict v) {
-  const strut_element *e = &t->first->elements.element[i];
-  lane_real b[STRUT_MOST_GRADIENT], zero = {0}, sign = zero + (kinks ? 1 : e->carries);
-  lane_real strain = lane_strain(t, i, q, p, b);
-  lane_element x = lane_element_move(t, i, p, strain, b, v, true);
-  lane_switch s = {
-      .stretch = sign * x.stretch, .rate = sign * x.own_rate, .tension = sign * x.force};
-  for (int l = 0; l < LANE_WIDTH && kinks; l++) {
-    const strut_element *own = &t->model[p * LANE_WIDTH + l]->elements.element[i];
-    double low, high, piece = lane_row(t->element_piece, (size_t)i, p)[l];
-    strut_law_margins(e->law, &own->numbers, (int)piece, x.stretch[l], &low, &high);
-    s.tension[l] = fmin(low, high);
-  }
-  return s;
 }
 
 #endif

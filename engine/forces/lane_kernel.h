@@ -20,7 +20,7 @@ STRUT_DEFINE_TRIG(STRUT_LANE_INLINE, lane_real, lane_sine_of_small, lane_cosine_
 STRUT_LANE_INLINE void lane_sincos(lane_real turns, lane_real *sine, lane_real *cosine) {
   const double rounder = 6755399441055744.0;
   lane_mask far = ~((turns > -0x1p49) & (turns < 0x1p49));
-  if (lane_any(far))
+  if (lane_some(far))
     for (int l = 0; l < LANE_WIDTH; l++)
       if (far[l]) turns[l] -= floor(turns[l]);
   lane_real rounded = 4.0 * turns + rounder, quarter = rounded - rounder;
@@ -100,9 +100,9 @@ STRUT_LANE_INLINE void lane_loads(strut_lane_tables *t, int p, const double *res
 /* Members */
 
 /* What the law asks of member j; `rate`: of its length [m/s]. */
-STRUT_LANE_INLINE lane_values lane_values_of(const strut_lane_tables *t, size_t j, int p,
+STRUT_LANE_INLINE lane_member_values lane_values_of(const strut_lane_tables *t, size_t j, int p,
                                              lane_real length, lane_real rate) {
-  return (lane_values){.length = length,
+  return (lane_member_values){.length = length,
                        .rate = rate,
                        .rest = lane_row(t->rest, j, p),
                        .rest_rate = lane_row(t->rest_rate, j, p),
@@ -130,7 +130,7 @@ STRUT_LANE_INLINE void lane_measure(const strut_member_table *m, const double *r
 STRUT_LANE_INLINE void lane_pull(const strut_lane_tables *t, const strut_member_table *m,
                                  const lane_span *d, const double *restrict v,
                                  double *restrict force, size_t j, int p, unsigned terms,
-                                 bool ledger, lane_powers *powers) {
+                                 bool ledger, lane_member_powers *powers) {
   size_t a = m->from[j], b = m->to[j];
   lane_real rate = {0};
   if ((terms & STRUT_TERM_DAMPING) || (ledger && (terms & STRUT_TERM_DRIVE))) {
@@ -138,8 +138,11 @@ STRUT_LANE_INLINE void lane_pull(const strut_lane_tables *t, const strut_member_
               wy = lane_row(v, b + 1, p) - lane_row(v, a + 1, p);
     rate = (wx * d->x + wy * d->y) * d->inverse;
   }
-  lane_values values = lane_values_of(t, j, p, d->length, rate);
-  lane_real tension = lane_tension(&values, terms, ledger, powers);
+  lane_member_values values = lane_values_of(t, j, p, d->length, rate);
+  bool damped = terms & STRUT_TERM_DAMPING, slack = terms & STRUT_TERM_SLACK;
+  bool driven = terms & STRUT_TERM_DRIVE;
+  lane_real damper, tension = lane_member_tension(&values, damped, slack, driven, ledger, &damper);
+  if (ledger) lane_member_add_powers(&values, damped, driven, tension, damper, powers);
   lane_real density = tension * d->inverse, px = density * d->x, py = density * d->y;
   lane_put(force, a, p, lane_row(force, a, p) + px);
   lane_put(force, a + 1, p, lane_row(force, a + 1, p) + py);
@@ -150,11 +153,11 @@ STRUT_LANE_INLINE void lane_pull(const strut_lane_tables *t, const strut_member_
 STRUT_LANE_INLINE void lane_block(const strut_lane_tables *t, const double *restrict q,
                                   const double *restrict v, double *restrict force, int32_t begin,
                                   int32_t end, unsigned terms, bool ledger,
-                                  lane_powers (*powers)[LANE_PARTS]) {
+                                  lane_member_powers (*powers)[LANE_PARTS]) {
   const strut_member_table m = t->first->members;
   for (int32_t j = begin; j < end; j++) {
     lane_span d[LANE_PARTS];
-    lane_powers *sums = powers[ledger ? j % STRUT_LANES : 0];
+    lane_member_powers *sums = powers[ledger ? j % STRUT_LANES : 0];
     LANE_EACH(lane_measure(&m, q, (size_t)j, p, d + p));
     LANE_EACH(lane_pull(t, &m, d + p, v, force, (size_t)j, p, terms, ledger, sums + p));
   }
@@ -162,7 +165,7 @@ STRUT_LANE_INLINE void lane_block(const strut_lane_tables *t, const double *rest
 
 /* The members' powers, place by place within groups as a single run sums them. */
 STRUT_LANE_INLINE void lane_sum_powers(strut_lane_tables *t, int p,
-                                       lane_powers (*powers)[LANE_PARTS]) {
+                                       lane_member_powers (*powers)[LANE_PARTS]) {
   lane_real drive = {0}, lost = {0}, zero = {0},
             exchanged = lane_row(t->power, STRUT_POWER_EXCHANGED, p);
   for (int l = 0; l < STRUT_LANES; l++) {
@@ -184,7 +187,7 @@ STRUT_LANE_INLINE void lane_members(strut_lane_tables *t, const double *restrict
                                     const double *restrict v, bool ledger, const lane_book *book) {
   enum { K = STRUT_TERM_DAMPING, S = STRUT_TERM_SLACK, D = STRUT_TERM_DRIVE };
   const strut_member_table *m = &t->first->members;
-  lane_powers own[STRUT_LANES][LANE_PARTS], (*powers)[LANE_PARTS] = book ? book->member : own;
+  lane_member_powers own[STRUT_LANES][LANE_PARTS], (*powers)[LANE_PARTS] = book ? book->member : own;
   if (ledger) lane_clear_members(powers);
   for (int32_t b = 0; b < m->blocks; b++) {
     int32_t begin = b * STRUT_BLOCK,
@@ -206,39 +209,29 @@ STRUT_LANE_INLINE void lane_members(strut_lane_tables *t, const double *restrict
   if (ledger && !book) LANE_EACH(lane_sum_powers(t, p, powers));
 }
 
-STRUT_LANE_INLINE lane_switch lane_measure_cable(const strut_lane_tables *t, size_t j, int p,
-                                                 const double *restrict q,
-                                                 const double *restrict v) {
-  const strut_member_table *m = &t->first->members;
-  lane_span d;
-  lane_measure(m, q, j, p, &d);
-  lane_real wx = lane_row(v, m->to[j], p) - lane_row(v, m->from[j], p),
-            wy = lane_row(v, m->to[j] + 1, p) - lane_row(v, m->from[j] + 1, p);
-  lane_switch s = {
-      .stretch = d.length - lane_row(t->rest, j, p),
-      .rate = (wx * d.x + wy * d.y) * d.inverse - lane_row(t->rest_rate, j, p),
-  };
-  s.tension = lane_row(t->stiffness, j, p) * s.stretch + lane_row(t->damping, j, p) * s.rate;
-  return s;
-}
-
 /* Ground */
 
-/* See strut_friction_force_KARNOPP. */
-STRUT_LANE_INLINE lane_real lane_friction(const double *entry, int p, lane_real normal,
-                                          lane_real slip, lane_real applied, bool directional) {
-  lane_mask slides = lane_magnitude(slip) >= lane_row(entry, STRUT_LANE_STICK, p);
-  lane_real holding = lane_row(entry, STRUT_LANE_MU_STATIC, p);
-  lane_real sliding = lane_row(entry, STRUT_LANE_MU_KINETIC, p), zero = {0};
-  if (directional) {
-    lane_mask backward = lane_choose(slides, slip, applied) < zero;
-    holding = lane_choose(backward, lane_row(entry, STRUT_LANE_MU_STATIC_BACKWARD, p), holding);
-    sliding = lane_choose(backward, lane_row(entry, STRUT_LANE_MU_KINETIC_BACKWARD, p), sliding);
-  }
-  lane_mask pushed = lane_magnitude(applied) >= holding * normal;
-  lane_real most = -sliding * normal;
-  return lane_choose(slides | pushed, most * lane_sign(lane_choose(slides, slip, applied)),
-                     -applied);
+/* The numbers of a contact's laws in the runs of part p. */
+STRUT_LANE_INLINE lane_ground_numbers lane_ground_at(const double *entry, int p) {
+  return (lane_ground_numbers){lane_row(entry, STRUT_LANE_STIFFNESS, p),
+                               lane_row(entry, STRUT_LANE_DAMPING, p),
+                               lane_row(entry, STRUT_LANE_DISSIPATION, p)};
+}
+STRUT_LANE_INLINE lane_friction_numbers lane_friction_at(const double *entry, int p) {
+  return (lane_friction_numbers){
+#define STRUT_FRICTION_ROW(NAME, field, range) .field = lane_row(entry, STRUT_LANE_FRICTION_##NAME, p),
+      STRUT_FRICTION_PARAMETERS(STRUT_FRICTION_ROW)
+#undef STRUT_FRICTION_ROW
+          .mu_static_backward = lane_row(entry, STRUT_LANE_FRICTION_MU_STATIC_BACKWARD, p),
+      .mu_kinetic_backward = lane_row(entry, STRUT_LANE_FRICTION_MU_KINETIC_BACKWARD, p)};
+}
+STRUT_LANE_INLINE lane_friction_choice lane_choice_at(const double *entry, int p) {
+  lane_real law = lane_row(entry, STRUT_LANE_FRICTION_LAW, p);
+  return (lane_friction_choice){
+#define STRUT_FRICTION_ROW(NAME, name, ...) .name = law == lane_all(STRUT_FRICTION_##NAME),
+      STRUT_FRICTION_LAWS(STRUT_FRICTION_ROW)
+#undef STRUT_FRICTION_ROW
+  };
 }
 
 STRUT_LANE_INLINE void lane_add(double *table, size_t i, int p, lane_mask where, lane_real x) {
@@ -257,19 +250,25 @@ STRUT_LANE_INLINE void lane_touch(strut_lane_tables *t, const double *restrict v
   lane_real fx = lane_row(t->force, at, p), fy = lane_row(t->force, at + 1, p);
   lane_real into = sloped ? vx * nx + vy * ny : vy, along = sloped ? vx * tx + vy * ty : vx;
   lane_real belt_speed = lane_row(g, STRUT_LANE_BELT, p), slip = along - belt_speed;
-  lane_real damper = lane_choose(into < zero, -lane_row(entry, STRUT_LANE_DAMPING, p) * into, zero);
-  lane_real normal = -lane_row(entry, STRUT_LANE_STIFFNESS, p) * gap + damper;
-  if (rough)
-    friction = lane_friction(entry, p, normal, slip, sloped ? fx * tx + fy * ty : fx,
-                             t->first->plan & STRUT_TERM_DIRECTION);
+  const lane_ground_numbers ground = lane_ground_at(entry, p);
+  const lane_friction_numbers rubs = lane_friction_at(entry, p);
+  bool laws = t->first->plan & STRUT_TERM_LAWS;
+  lane_real spring = lane_ground_spring(&ground, gap);
+  lane_real damper = lane_ground_damper(&ground, spring, into, laws), normal = spring + damper;
+  if (rough) {
+    lane_real applied = sloped ? fx * tx + fy * ty : fx;
+    const lane_friction_choice has = lane_choice_at(entry, p);
+    friction = laws ? lane_friction(&rubs, &has, normal, slip, applied)
+                    : lane_friction_karnopp(&rubs, normal, slip, applied);
+  }
   lane_add(t->force, at, p, where, sloped ? friction * tx + normal * nx : friction);
   lane_add(t->force, at + 1, p, where, sloped ? friction * ty + normal * ny : normal);
   if (!book) return;
+  lane_contact_powers powers = lane_contact_power(damper, into, friction, slip, belt_speed);
   if (moves)
-    lane_book_belt(book, where, belt_speed != zero, damper * into, friction * slip,
-                   friction * belt_speed);
+    lane_book_belt(book, where, belt_speed != zero, powers);
   else
-    lane_book_contact(book, where, damper * into, friction * slip);
+    lane_book_contact(book, where, powers);
 }
 
 /* One node, in those lanes of a part in which it touches. */
@@ -281,7 +280,7 @@ STRUT_LANE_INLINE void lane_contact(strut_lane_tables *t, const double *restrict
     gap = lane_row(q, at, p) * lane_row(t->ground, STRUT_LANE_NORMAL_X, p) +
           gap * lane_row(t->ground, STRUT_LANE_NORMAL_Y, p);
   lane_mask touches = gap < zero;
-  if (lane_any(touches)) lane_touch(t, v, at, entry, p, touches, gap, sloped, rough, book, moves);
+  if (lane_some(touches)) lane_touch(t, v, at, entry, p, touches, gap, sloped, rough, book, moves);
 }
 
 STRUT_LANE_INLINE void lane_ground(strut_lane_tables *t, const double *restrict q,

@@ -15,12 +15,12 @@ typedef struct lane_contact_sums {
 } lane_contact_sums;
 /* Of members what each stage has, of contacts sums over the stages with one weight, see strut_weight_side. */
 typedef struct lane_step_sums {
-  lane_powers member[4][STRUT_LANES][LANE_PARTS];
+  lane_member_powers member[4][STRUT_LANES][LANE_PARTS];
   lane_contact_sums contact[2][STRUT_CONTACT_LANES][LANE_PARTS];
 } lane_step_sums;
 /* Where one stage books. moves: the ground does in some lane. */
 typedef struct lane_book {
-  lane_powers (*member)[LANE_PARTS];
+  lane_member_powers (*member)[LANE_PARTS];
   lane_contact_sums (*contact)[LANE_PARTS];
   bool moves;
 } lane_book;
@@ -34,12 +34,12 @@ STRUT_LANE_INLINE void lane_clear_contact(lane_contact_sums *s, bool moves) {
   s->minus_damped = zero, s->minus_rubbed = zero, s->turnover = zero;
   if (moves) s->belt = zero;
 }
-STRUT_LANE_INLINE void lane_clear_member(lane_powers *s) {
+STRUT_LANE_INLINE void lane_clear_member(lane_member_powers *s) {
   lane_real zero = {0};
   s->drive = zero, s->lost = zero, s->exchanged = zero;
 }
 /* Written out: of a loop would be made a call. */
-STRUT_LANE_INLINE void lane_clear_members(lane_powers (*s)[LANE_PARTS]) {
+STRUT_LANE_INLINE void lane_clear_members(lane_member_powers (*s)[LANE_PARTS]) {
   LANE_EACH(lane_clear_member(&s[0][p]));
   LANE_EACH(lane_clear_member(&s[1][p]));
   LANE_EACH(lane_clear_member(&s[2][p]));
@@ -62,16 +62,16 @@ STRUT_LANE_INLINE void lane_begin_sums(const strut_contact_table *c, bool moves,
 }
 
 /* No sum is ever -0, so nothing is changed by adding 0 in lanes where the contact is open. */
-STRUT_LANE_INLINE void lane_book_contact(lane_contact_sums *s, lane_mask where, lane_real damped,
-                                         lane_real rubbed) {
-  damped = lane_keep(where, damped), rubbed = lane_keep(where, rubbed);
+STRUT_LANE_INLINE void lane_book_contact(lane_contact_sums *s, lane_mask where,
+                                         lane_contact_powers powers) {
+  lane_real damped = lane_keep(where, powers.damper), rubbed = lane_keep(where, powers.friction);
   s->minus_damped += damped, s->minus_rubbed += rubbed, s->turnover += lane_magnitude(rubbed);
 }
 /* The same of a ground that moves in the lanes of a mask. */
 STRUT_LANE_INLINE void lane_book_belt(lane_contact_sums *s, lane_mask where, lane_mask moves,
-                                      lane_real damped, lane_real rubbed, lane_real belt) {
-  damped = lane_keep(where, damped), rubbed = lane_keep(where, rubbed);
-  belt = lane_keep(where & moves, belt);
+                                      lane_contact_powers powers) {
+  lane_real damped = lane_keep(where, powers.damper), rubbed = lane_keep(where, powers.friction);
+  lane_real belt = lane_keep(where & moves, powers.belt);
   s->minus_damped += damped, s->minus_rubbed += rubbed, s->belt += belt;
   s->turnover += lane_magnitude(rubbed) + lane_magnitude(belt);
 }
@@ -87,11 +87,11 @@ STRUT_LANE_INLINE lane_contact_sums lane_weigh_contacts(const lane_step_sums *s,
 #undef LANE_WEIGH
 }
 /* Those of members over the stages. */
-STRUT_LANE_INLINE lane_powers lane_weigh_members(const lane_step_sums *s, int l, int p) {
-  const lane_powers *a = &s->member[0][l][p], *b = &s->member[1][l][p];
-  const lane_powers *c = &s->member[2][l][p], *d = &s->member[3][l][p];
+STRUT_LANE_INLINE lane_member_powers lane_weigh_members(const lane_step_sums *s, int l, int p) {
+  const lane_member_powers *a = &s->member[0][l][p], *b = &s->member[1][l][p];
+  const lane_member_powers *c = &s->member[2][l][p], *d = &s->member[3][l][p];
 #define LANE_WEIGH(of) .of = (a->of + d->of) + 2.0 * (b->of + c->of)
-  return (lane_powers){LANE_WEIGH(drive), LANE_WEIGH(exchanged), LANE_WEIGH(lost)};
+  return (lane_member_powers){LANE_WEIGH(drive), LANE_WEIGH(exchanged), LANE_WEIGH(lost)};
 #undef LANE_WEIGH
 }
 
@@ -112,7 +112,7 @@ STRUT_LANE_INLINE void lane_end_sums(const strut_model *m, const lane_step_sums 
   bool members = m->plan & STRUT_TERM_MEMBERS, contacts = m->plan & STRUT_TERM_CONTACT;
   for (int l = 0; l < STRUT_LANES; l++) exchanged[l] = zero;
   for (int l = 0; l < STRUT_LANES && members; l++) {
-    lane_powers of = lane_weigh_members(s, l, p);
+    lane_member_powers of = lane_weigh_members(s, l, p);
     drive[l] = of.drive, lost[l] = of.lost, exchanged[l] = of.exchanged + of.lost;
   }
   for (int l = 0; l < STRUT_LANES && contacts; l++) {

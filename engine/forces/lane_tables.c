@@ -6,13 +6,12 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
-#include "engine/forces/member_law.h"
 #include "engine/model/mass.h"
 
-/* The laws of lane_kernel.h and lane_elements.h: the printed ones of contacts, and all of elements. */
+/* The laws and strains of lane_kernel.h and lane_elements.h. */
 static const strut_law_set known = {
-    .friction = STRUT_HAS(STRUT_FRICTION, NONE) | STRUT_HAS(STRUT_FRICTION, KARNOPP),
-    .damping = STRUT_HAS(STRUT_DAMPING, APPROACH),
+    .friction = STRUT_HAS_ALL,
+    .damping = STRUT_HAS_ALL,
     .law = STRUT_HAS_ALL,
     .strain = STRUT_HAS(STRUT_STRAIN, LENGTH) | STRUT_HAS(STRUT_STRAIN, PATH) |
               STRUT_HAS(STRUT_STRAIN, ANGLE)};
@@ -189,11 +188,13 @@ static void fill_ground(strut_lane_tables *t, int32_t lane, const strut_contact_
     const double row[STRUT_LANE_CONTACT_ROWS] = {
         [STRUT_LANE_STIFFNESS] = e->stiffness,
         [STRUT_LANE_DAMPING] = e->damping,
-        [STRUT_LANE_MU_STATIC] = e->friction.mu_static,
-        [STRUT_LANE_MU_KINETIC] = e->friction.mu_kinetic,
-        [STRUT_LANE_MU_STATIC_BACKWARD] = strut_friction_static(&e->friction, -1.0),
-        [STRUT_LANE_MU_KINETIC_BACKWARD] = strut_friction_kinetic(&e->friction, -1.0),
-        [STRUT_LANE_STICK] = e->friction.stick_velocity};
+        [STRUT_LANE_DISSIPATION] = e->dissipation,
+#define STRUT_FRICTION_ROW(NAME, field, range) [STRUT_LANE_FRICTION_##NAME] = e->friction.field,
+        STRUT_FRICTION_PARAMETERS(STRUT_FRICTION_ROW)
+#undef STRUT_FRICTION_ROW
+            [STRUT_LANE_FRICTION_MU_STATIC_BACKWARD] = strut_friction_static(&e->friction, -1.0),
+        [STRUT_LANE_FRICTION_MU_KINETIC_BACKWARD] = strut_friction_kinetic(&e->friction, -1.0),
+        [STRUT_LANE_FRICTION_LAW] = e->friction.law};
     spread(t->contact + i * STRUT_LANE_CONTACT_ROWS * t->width, t->width, lane, row,
            STRUT_LANE_CONTACT_ROWS);
   }

@@ -22,11 +22,13 @@ _Static_assert(STRUT_POWER_SUPPORT == STRUT_POWER_COUNT - 1, "powers of lanes co
 typedef enum strut_lane_contact_row {
   STRUT_LANE_STIFFNESS,
   STRUT_LANE_DAMPING,
-  STRUT_LANE_MU_STATIC,
-  STRUT_LANE_MU_KINETIC,
-  STRUT_LANE_MU_STATIC_BACKWARD,
-  STRUT_LANE_MU_KINETIC_BACKWARD,
-  STRUT_LANE_STICK,
+  STRUT_LANE_DISSIPATION,
+#define STRUT_FRICTION_ROW(NAME, ...) STRUT_LANE_FRICTION_##NAME,
+  STRUT_FRICTION_PARAMETERS(STRUT_FRICTION_ROW)
+#undef STRUT_FRICTION_ROW
+      STRUT_LANE_FRICTION_MU_STATIC_BACKWARD,
+  STRUT_LANE_FRICTION_MU_KINETIC_BACKWARD,
+  STRUT_LANE_FRICTION_LAW, /* strut_friction_law */
   STRUT_LANE_CONTACT_ROWS
 } strut_lane_contact_row;
 
@@ -74,7 +76,7 @@ typedef struct strut_lane_tables {
   double *power; /* (STRUT_LANE_POWERS, width) */
 } strut_lane_tables;
 
-/** Is there a kernel for what the model needs: no rigid bars, no factor, the printed friction only? */
+/** Is there a kernel for what the model needs: no rigid bars, no factor? */
 STRUT_API bool strut_lanes_possible(const strut_model *model);
 /** Can both be lanes of one batch: same members, contacts, supports, drives, plan? */
 STRUT_API bool strut_lanes_alike(const strut_model *a, const strut_model *b);

@@ -5,20 +5,20 @@
 STRUT_CLONES
 static void add_forces_of_many(const strut_model *model, const strut_state *state,
                                const double *restrict q, const double *restrict v,
-                               double *restrict force, member_powers *powers) {
+                               double *restrict force, four_member_powers *powers) {
   const strut_member_table t = model->members;
-  member_powers sum = {0}, part = {0};
+  four_member_powers sum = {0}, part = {0};
   for (int32_t b = 0; b < t.blocks; b++) {
     members_of_block(&t, state, q, v, force, b, true, &part);
     if ((b + 1) % STRUT_LEDGER_BLOCKS && b + 1 < t.blocks) continue;
     members_add_powers(&sum, &part);
-    part = (member_powers){0};
+    part = (four_member_powers){0};
   }
   *powers = sum;
 }
 
 void strut_many_members_add_forces(const strut_model *model, const strut_state *state,
                                    const double *q, const double *v, double *force,
-                                   member_powers *powers) {
+                                   four_member_powers *powers) {
   add_forces_of_many(model, state, q, v, force, powers);
 }

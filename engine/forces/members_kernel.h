@@ -12,10 +12,7 @@
 #include <math.h>
 
 #include "engine/forces/member_law.h"
-#include "engine/model/hot.h"
 #include "engine/model/state.h"
-
-STRUT_DEFINE_MEMBER_LAW(STRUT_INLINE, strut_lanes, strut_lane_mask, member)
 
 /* Vectors from the first to the second nodes of a group: their x and their y. */
 typedef struct member_vectors {
@@ -32,15 +29,11 @@ STRUT_INLINE member_vectors members_gather(const double *restrict p, const uint3
                           __builtin_shufflevector(even, odd, 1, 5, 3, 7)};
 }
 
-STRUT_INLINE strut_lanes members_root(strut_lanes x) {
-  return (strut_lanes){sqrt(x[0]), sqrt(x[1]), sqrt(x[2]), sqrt(x[3])};
-}
-
 /* What the law asks of the members from j on; `rate`: of the lengths [m/s]. */
-STRUT_INLINE member_values members_values(const strut_member_table *t, const strut_state *state,
+STRUT_INLINE four_member_values members_values(const strut_member_table *t, const strut_state *state,
                                           int32_t j, bool driven, strut_lanes length,
                                           strut_lanes rate) {
-  return (member_values){
+  return (four_member_values){
       .length = length,
       .rate = rate,
       .rest = strut_lanes_load((driven ? state->rest : t->rest) + j),
@@ -63,18 +56,21 @@ typedef struct member_pulls {
 STRUT_INLINE member_pulls members_group(const strut_member_table *t, const strut_state *state,
                                         const double *restrict q, const double *restrict v,
                                         int32_t j, unsigned terms, bool ledger,
-                                        member_powers *powers) {
+                                        four_member_powers *powers) {
   const uint32_t *restrict from = t->from + j, *restrict to = t->to + j;
   member_vectors d = members_gather(q, from, to);
-  strut_lanes length = members_root(d.x * d.x + d.y * d.y);
-  strut_lanes inverse = strut_lanes_choose(length > 0.0, 1.0 / length, (strut_lanes){0}),
+  strut_lanes length = four_root(d.x * d.x + d.y * d.y);
+  strut_lanes inverse = four_choose(length > 0.0, 1.0 / length, (strut_lanes){0}),
               rate = {0};
   if ((terms & STRUT_TERM_DAMPING) || (ledger && (terms & STRUT_TERM_DRIVE))) {
     member_vectors w = members_gather(v, from, to);
     rate = (w.x * d.x + w.y * d.y) * inverse; /* the products need not wait for the root */
   }
-  member_values m = members_values(t, state, j, terms & STRUT_TERM_DRIVE, length, rate);
-  strut_lanes tension = member_tension(&m, terms, ledger, powers);
+  four_member_values m = members_values(t, state, j, terms & STRUT_TERM_DRIVE, length, rate);
+  bool damped = terms & STRUT_TERM_DAMPING, slack = terms & STRUT_TERM_SLACK;
+  bool driven = terms & STRUT_TERM_DRIVE;
+  strut_lanes damper, tension = four_member_tension(&m, damped, slack, driven, ledger, &damper);
+  if (ledger) four_member_add_powers(&m, damped, driven, tension, damper, powers);
   strut_lanes density = tension * inverse, px = density * d.x, py = density * d.y;
   return (member_pulls){__builtin_shufflevector(px, py, 0, 4, 2, 6),
                         __builtin_shufflevector(px, py, 1, 5, 3, 7)};
@@ -127,7 +123,7 @@ STRUT_INLINE void members_store(double *pull, member_pulls group, bool wide) {
 STRUT_INLINE void members_block(const strut_member_table *t, const strut_state *state,
                                 const double *restrict q, const double *restrict v,
                                 double *restrict pull, int32_t begin, int32_t end, unsigned terms,
-                                bool ledger, member_powers *powers) {
+                                bool ledger, four_member_powers *powers) {
   bool wide = STRUT_WIDE_REGISTERS;
   for (int32_t j = begin; j < end; j += STRUT_LANES, pull += 4 * STRUT_LANES) {
     member_pulls group = members_group(t, state, q, v, j, terms, ledger, powers);
@@ -164,7 +160,7 @@ STRUT_INLINE void members_add_rows(const strut_pull_rows *t, double *restrict pu
 STRUT_INLINE void members_of_block(const strut_member_table *t, const strut_state *state,
                                    const double *restrict q, const double *restrict v,
                                    double *restrict force, int32_t b, bool ledger,
-                                   member_powers *powers) {
+                                   four_member_powers *powers) {
   enum { K = STRUT_TERM_DAMPING, S = STRUT_TERM_SLACK, D = STRUT_TERM_DRIVE };
   _Alignas(64) double pull[STRUT_PULL_NUMBERS];
   int32_t begin = b * STRUT_BLOCK;
@@ -185,19 +181,19 @@ STRUT_INLINE void members_of_block(const strut_member_table *t, const strut_stat
   members_add_rows(&t->rows[b], pull, force);
 }
 
-STRUT_INLINE void members_add_powers(member_powers *sum, const member_powers *part) {
+STRUT_INLINE void members_add_powers(four_member_powers *sum, const four_member_powers *part) {
   sum->drive += part->drive, sum->exchanged += part->exchanged, sum->lost += part->lost;
 }
 
 /* In many_members.c: those of all members, whose powers are added up in parts. */
 void strut_many_members_add_forces(const strut_model *model, const strut_state *state,
                                    const double *q, const double *v, double *force,
-                                   member_powers *powers);
+                                   four_member_powers *powers);
 
 /* Adds the forces of all members. */
 STRUT_INLINE void members_kernel(const strut_model *model, strut_state *state,
                                  const double *restrict q, const double *restrict v,
-                                 double *restrict force, bool ledger, member_powers *powers) {
+                                 double *restrict force, bool ledger, four_member_powers *powers) {
   const strut_member_table t = model->members;
   if (ledger && t.blocks > STRUT_LEDGER_BLOCKS) {
     strut_many_members_add_forces(model, state, q, v, force, powers);

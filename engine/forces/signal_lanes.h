@@ -19,9 +19,9 @@ STRUT_INLINE void signal_lanes_sincos(strut_lanes turns, strut_lanes *sine, stru
   strut_lanes x = STRUT_TAU * (turns - 0.25 * quarter);
   strut_lanes s = signal_lanes_sine(x), c = signal_lanes_cosine(x);
   strut_lane_mask quadrant = (strut_lane_mask)rounded, odd = -(quadrant & 1);
-  strut_lanes first = strut_lanes_choose(odd, c, s), second = strut_lanes_choose(odd, s, c);
-  *sine = strut_lanes_choose(-((quadrant >> 1) & 1), -first, first);
-  *cosine = strut_lanes_choose(-(((quadrant + 1) >> 1) & 1), -second, second);
+  strut_lanes first = four_choose(odd, c, s), second = four_choose(odd, s, c);
+  *sine = four_choose(-((quadrant >> 1) & 1), -first, first);
+  *cosine = four_choose(-(((quadrant + 1) >> 1) & 1), -second, second);
 }
 
 /* Is the signal a sine, and on, at all of these times? */

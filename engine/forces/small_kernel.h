@@ -51,13 +51,11 @@ STRUT_SMALL_INLINE double small_belt(const small_run *r) {
 }
 
 /* Along the members: differences of the ends' positions and velocities, pulls. */
-#define STRUT_DEFINE_SMALL_GROUP(number, mask, PREFIX, load, root)                                                          \
-  STRUT_DEFINE_MEMBER_LAW(STRUT_SMALL_INLINE, number, mask, PREFIX)                                                         \
-                                                                                                                            \
-  STRUT_SMALL_INLINE PREFIX##_values PREFIX##_values_at(                                                                    \
+#define STRUT_DEFINE_SMALL_GROUP(number, mask, PREFIX, law, load, root)                                                          \
+  STRUT_SMALL_INLINE law##_member_values PREFIX##_values_at(                                                                    \
       const small_run *r, const small_rest *rest, int j, number length, number rate) {                                      \
     const strut_small_model *s = r->tables;                                                                                 \
-    return (PREFIX##_values){                                                                                               \
+    return (law##_member_values){                                                                                               \
         .length = length,                                                                                                   \
         .rate = rate,                                                                                                       \
         .rest = load(rest->rest + j),                                                                                       \
@@ -86,19 +84,19 @@ STRUT_SMALL_INLINE double small_belt(const small_run *r) {
                                           bool ledger, number *lost) {                                                      \
     number rate = {0}, damper;                                                                                              \
     if (r->plan & STRUT_TERM_DAMPING) rate = (*u * d->x + *w * d->y) * d->inverse;                                          \
-    PREFIX##_values m = PREFIX##_values_at(r, rest, j, d->length, rate);                                                    \
-    number tension = PREFIX##_law(&m, r->plan, ledger, &damper);                                                            \
+    law##_member_values m = PREFIX##_values_at(r, rest, j, d->length, rate);                                                    \
+    bool damped = r->plan & STRUT_TERM_DAMPING, driven = r->plan & STRUT_TERM_DRIVE; \
+    number tension = law##_member_tension(&m, damped, r->plan & STRUT_TERM_SLACK, driven, ledger, &damper);                                                            \
     number density = tension * d->inverse;                                                                                  \
     *u = density * d->x, *w = density * d->y;                                                                               \
-    if (ledger && r->plan & STRUT_TERM_DAMPING)                                                                             \
-      *lost = damper * (r->plan & STRUT_TERM_DRIVE ? m.rate - m.rest_rate : m.rate);                                        \
+    if (ledger && damped) *lost = damper * law##_member_stretch_rate(&m, driven);  \
     return tension;                                                                                                         \
   }
 
-STRUT_DEFINE_SMALL_GROUP(strut_lanes, strut_lane_mask, small4, small4_load, small_root_of_4)
+STRUT_DEFINE_SMALL_GROUP(strut_lanes, strut_lane_mask, small4, four, small4_load, small_root_of_4)
 
 /* Adds what drives take from 4 members whose rest lengths change at these rates. */
-STRUT_SMALL_INLINE void small_add_drive(small4_powers *sum, strut_lanes tension,
+STRUT_SMALL_INLINE void small_add_drive(four_member_powers *sum, strut_lanes tension,
                                         const double *rate) {
   strut_lanes power = tension * small4_load(rate);
   sum->drive += power;
@@ -106,7 +104,7 @@ STRUT_SMALL_INLINE void small_add_drive(small4_powers *sum, strut_lanes tension,
 }
 
 #if STRUT_SMALL_WIDTH == 8
-STRUT_DEFINE_SMALL_GROUP(small_real, small_bits, small8, small_load, small_root)
+STRUT_DEFINE_SMALL_GROUP(small_real, small_bits, small8, small, small_load, small_root)
 
 STRUT_SMALL_INLINE small_real small_gather(const int64_t *lane, small_row x) {
   return _mm512_permutexvar_pd((__m512i)small_bits_load(lane), x.part[0]);
@@ -148,7 +146,7 @@ STRUT_SMALL_INLINE void small_measure_members(const strut_small_model *s, const 
 STRUT_SMALL_INLINE void small_members(const small_run *r, const small_rest *rest,
                                       small_shapes *shapes, const small_points *next_q,
                                       const small_points *v, bool ledger, small_pulls *px,
-                                      small_pulls *py, small4_powers *sum) {
+                                      small_pulls *py, four_member_powers *sum) {
   const strut_small_model *s = r->tables;
   small_shapes d = *shapes;
   small_real lost = {0}, tension;
@@ -230,7 +228,7 @@ STRUT_SMALL_INLINE void small_measure_members(const strut_small_model *s, const 
 STRUT_SMALL_INLINE void small_members(const small_run *r, const small_rest *rest,
                                       small_shapes *shapes, const small_points *next_q,
                                       const small_points *v, bool ledger, small_pulls *px,
-                                      small_pulls *py, small4_powers *sum) {
+                                      small_pulls *py, four_member_powers *sum) {
   const strut_small_model *s = r->tables;
   small_shapes d = *shapes;
   *px = *py = (small_pulls){0};
@@ -295,7 +293,7 @@ typedef struct small_touch {
 
 /* What the powers of one evaluation are made of, see small_ledger.h. */
 typedef struct small_entries {
-  small4_powers members;
+  four_member_powers members;
   small_touch touch;
 } small_entries;
 
@@ -303,59 +301,38 @@ typedef struct small_entries {
 #define SMALL_CONTACT(field) small_load(c->field + p * SMALL_WIDTH)
 #define SMALL_CONTACT_MASK(field) small_mask_load(c->field + p * SMALL_WIDTH)
 
-/* See ground_damper. */
-STRUT_SMALL_INLINE small_real small_damper(const strut_small_contacts *c, int p, small_real spring,
-                                           small_real into, bool laws) {
-  small_real zero = {0};
-  small_real damper = small_keep(small_less(into, zero), SMALL_CONTACT(minus_damping) * into);
-  if (!laws) return damper;
-  small_real other = -spring * SMALL_CONTACT(dissipation) * into;
-  other = small_choose(small_less(-spring, other), other, -spring);
-  return small_choose(SMALL_CONTACT_MASK(hunt_crossley), other, damper);
+/* What the laws take of the contacts of part p. */
+STRUT_SMALL_INLINE small_ground_numbers small_ground_at(const strut_small_contacts *c, int p) {
+  return (small_ground_numbers){SMALL_CONTACT(stiffness), SMALL_CONTACT(damping),
+                                SMALL_CONTACT(dissipation)};
 }
-
-/* x times the sign of y: 0 times x where y is 0 or no number. */
-STRUT_SMALL_INLINE small_real small_times_sign(small_real x, small_real y) {
-  small_real zero = {0};
-  small_real flipped = small_flip(x, (small_bits)y & INT64_MIN);
-  return small_choose(small_less(zero, small_magnitude(y)), flipped, x * zero);
+STRUT_SMALL_INLINE small_friction_numbers small_friction_at(const strut_small_contacts *c, int p) {
+  return (small_friction_numbers){
+#define STRUT_FRICTION_ROW(NAME, field, range) .field = SMALL_CONTACT(field),
+      STRUT_FRICTION_PARAMETERS(STRUT_FRICTION_ROW)
+#undef STRUT_FRICTION_ROW
+          .mu_static_backward = SMALL_CONTACT(mu_static_backward),
+      .mu_kinetic_backward = SMALL_CONTACT(mu_kinetic_backward)};
 }
-
-/* See strut_friction_force. The applied force comes last of all, so nothing else waits for it. */
-STRUT_SMALL_INLINE small_real small_friction(const strut_small_contacts *c, int p,
-                                             small_real normal, small_real slip, small_real applied,
-                                             bool laws) {
-  small_real zero = {0}, holding = SMALL_CONTACT(mu_static);
-  small_mask slides = small_at_least(small_magnitude(slip), SMALL_CONTACT(stick_velocity));
-  small_real most = SMALL_CONTACT(minus_mu_kinetic) * normal;
-  if (laws) {
-    small_mask moves = slides & small_less(zero, small_magnitude(slip));
-    small_mask back = small_less(small_choose(moves, slip, applied), zero);
-    holding = small_choose(back, SMALL_CONTACT(mu_static_backward), holding);
-    most = small_choose(back, SMALL_CONTACT(minus_mu_kinetic_backward) * normal, most);
-  }
-  small_mask pushed = small_at_least(small_magnitude(applied), holding * normal);
-  small_real against = small_times_sign(most, small_choose(slides, slip, applied));
-  small_real friction = small_choose(slides | pushed, against, -applied);
-  if (!laws) return friction;
-  small_real width = SMALL_CONTACT(width);
-  small_real smooth = most * slip / small_root(slip * slip + width * width);
-  friction = small_choose(SMALL_CONTACT_MASK(smooth), smooth, friction);
-  return small_choose(SMALL_CONTACT_MASK(frictionless), zero, friction);
+STRUT_SMALL_INLINE small_friction_choice small_choice_at(const strut_small_contacts *c, int p) {
+  return (small_friction_choice){
+#define STRUT_FRICTION_ROW(NAME, name, ...) .name = SMALL_CONTACT_MASK(name),
+      STRUT_FRICTION_LAWS(STRUT_FRICTION_ROW)
+#undef STRUT_FRICTION_ROW
+  };
 }
 
 /* See ground_ledger; both_signs: what dampers do is exchanged by its size. */
 STRUT_SMALL_INLINE void small_book_contacts(const small_run *r, small_mask closed,
-                                            small_real damper, small_real into, small_real friction,
-                                            small_real slip, bool both_signs, int p,
+                                            small_contact_powers powers, bool both_signs, int p,
                                             small_touch *touch) {
-  small_real damped = small_keep(closed, damper * into);
-  small_real rubbed = small_keep(closed, friction * slip);
+  small_real damped = small_keep(closed, powers.damper);
+  small_real rubbed = small_keep(closed, powers.friction);
   touch->minus_damped.part[p] = damped, touch->minus_rubbed.part[p] = rubbed;
   touch->exchanged.part[p] = both_signs ? small_magnitude(damped) + small_magnitude(rubbed)
                                         : small_magnitude(rubbed) - damped;
   if (!(r->plan & STRUT_SMALL_BELT)) return;
-  touch->belt.part[p] = small_keep(closed, friction * r->contacts->belt_speed);
+  touch->belt.part[p] = small_keep(closed, powers.belt);
   touch->exchanged.part[p] += small_magnitude(touch->belt.part[p]);
 }
 
@@ -375,15 +352,24 @@ STRUT_SMALL_INLINE void small_ground_part(const small_run *r, int p, small_real 
   unsigned closed_bits = small_set_bits(closed);
   touch->touching |= closed_bits << (p * SMALL_WIDTH);
   if (SMALL_PARTS > 1 && !closed_bits) return;
-  small_real elastic = SMALL_CONTACT(minus_stiffness) * gap;
-  small_real damper = small_damper(c, p, elastic, into, laws);
-  small_real normal = elastic + damper, slip = along - small_belt(r), friction = zero;
+  const small_ground_numbers ground = small_ground_at(c, p);
+  const small_friction_numbers rubs = small_friction_at(c, p);
+  small_real spring = small_ground_spring(&ground, gap);
+  small_real damper = small_ground_damper(&ground, spring, into, laws);
+  small_real normal = spring + damper, slip = along - small_belt(r), friction = zero;
   small_real fx = f->x.part[p], fy = f->y.part[p];
-  if (rough) friction = small_friction(c, p, normal, slip, sloped ? fx * tx + fy * ty : fx, laws);
+  if (rough) { /* the applied force comes last of all, so that nothing else waits for it */
+    small_real applied = sloped ? fx * tx + fy * ty : fx;
+    const small_friction_choice has = small_choice_at(c, p);
+    friction = laws ? small_friction(&rubs, &has, normal, slip, applied)
+                    : small_friction_karnopp(&rubs, normal, slip, applied);
+  }
   f->x.part[p] = small_add_where(closed, fx, sloped ? friction * tx + normal * nx : friction);
   f->y.part[p] = small_add_where(closed, fy, sloped ? friction * ty + normal * ny : normal);
   if (!ledger) return;
-  small_book_contacts(r, closed, damper, into, friction, slip, false, p, touch);
+  small_contact_powers powers =
+      small_contact_power(damper, into, friction, slip, small_all(r->contacts->belt_speed));
+  small_book_contacts(r, closed, powers, false, p, touch);
 }
 
 /* a = M^-1 f, and 0 where there is no mass to divide by. */

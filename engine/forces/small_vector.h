@@ -56,9 +56,6 @@ STRUT_SMALL_INLINE small_bits small_bits_load(const int64_t *p) {
 }
 STRUT_SMALL_INLINE strut_lanes small4_load(const double *p) { return *(const strut_lanes_at *)p; }
 STRUT_SMALL_INLINE void small4_store(double *p, strut_lanes x) { *(strut_lanes_at *)p = x; }
-STRUT_SMALL_INLINE strut_lanes small4_choose(strut_lane_mask mask, strut_lanes x, strut_lanes y) {
-  return (strut_lanes)((mask & (strut_lane_mask)x) | (~mask & (strut_lane_mask)y));
-}
 STRUT_SMALL_INLINE small_real small_all(double x) {
 #if STRUT_SMALL_WIDTH == 8
   return _mm512_set1_pd(x);
@@ -125,7 +122,25 @@ STRUT_SMALL_INLINE small_row small_row_load(const double *p) {
 STRUT_SMALL_INLINE void small_row_store(double *p, small_row x) {
   SMALL_EACH(k) small_store(p + k * SMALL_WIDTH, x.part[k]);
 }
-/* Members: the law for registers of each width. */
+/* The other words of laws (scene/laws/words.h), of which one text each is compiled here. */
+STRUT_SMALL_INLINE small_mask small_both(small_mask m, small_mask n) { return m & n; }
+STRUT_SMALL_INLINE small_mask small_either(small_mask m, small_mask n) { return m | n; }
+STRUT_SMALL_INLINE bool small_some(small_mask m) { return small_set_bits(m) != 0; }
+STRUT_SMALL_INLINE small_real small_times_sign(small_real x, small_real y) {
+  small_real zero = {0};
+  small_real flipped = small_flip(x, (small_bits)y & INT64_MIN);
+  return small_choose(small_less(zero, small_magnitude(y)), flipped, x * zero);
+}
+
+#define LAW(name) small_##name
+#define LAW_INLINE STRUT_SMALL_INLINE
+#include "engine/scene/laws/friction.h"
+#include "engine/scene/laws/ground.h"
+#include "engine/scene/laws/member.h"
+#undef LAW
+#undef LAW_INLINE
+
+/* What members pull with. */
 typedef struct small_pulls {
 #if STRUT_SMALL_WIDTH == 8
   small_real first;

@@ -15,7 +15,7 @@
               STRUT_TERM_CONSTANT | STRUT_TERM_CONTACT | STRUT_TERM_FRICTION | STRUT_TERM_SLOPE |  \
               STRUT_TERM_SOLVE | STRUT_TERM_LAWS | STRUT_TERM_DIRECTION))
 
-STRUT_INLINE void strut_book_members(strut_power_lanes *to, const member_powers *powers) {
+STRUT_INLINE void strut_book_members(strut_power_lanes *to, const four_member_powers *powers) {
   strut_lanes_store(to->drive, strut_lanes_load(to->drive) + powers->drive);
   strut_lanes_store(to->lost, strut_lanes_load(to->lost) + powers->lost);
   strut_lanes_store(to->driven, strut_lanes_load(to->driven) + powers->exchanged);

@@ -21,8 +21,10 @@ static touching push(const strut_model *model, strut_state *state, const double 
     if (!(pose->gap < 0.0)) continue;
     const strut_contact_entry *e = &c->entry[i];
     strut_vec2 u = strut_contact_velocity(c, i, v, state->ground_motion);
-    double into = strut_component(pose->axes.normal, u.x, u.y), spring = -e->stiffness * pose->gap;
-    double normal = spring + ground_damper(e, spring, into);
+    const strut_law_ground_numbers numbers = strut_contact_numbers(e);
+    double into = strut_component(pose->axes.normal, u.x, u.y);
+    double spring = strut_law_ground_spring(&numbers, pose->gap);
+    double normal = spring + strut_law_ground_damper(&numbers, spring, into, true);
     double *f = state->force + c->at[i];
     f[0] += normal * pose->axes.normal[0], f[1] += normal * pose->axes.normal[1];
     state->normal[i] = normal;

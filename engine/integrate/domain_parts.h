@@ -37,14 +37,14 @@ typedef struct domain_part {
   int32_t begun, done[STRUT_PASSES], block[STRUT_PASSES]; /* progress of nodes and of members */
   int32_t contact[STRUT_PASSES], loaded[STRUT_PASSES], paid[STRUT_PASSES],
       drive[STRUT_PASSES];           /* and of these */
-  member_powers power[STRUT_PASSES]; /* since the last whole block of the ledger */
+  four_member_powers power[STRUT_PASSES]; /* since the last whole block of the ledger */
   strut_arena arena;
   bool good;
 } domain_part;
 
 /* What subdomains leave for the ledger in one sweep; (STRUT_PASSES, ...). */
 typedef struct domain_ledger {
-  member_powers *member;  /* blocks of the ledger */
+  four_member_powers *member;  /* blocks of the ledger */
   double *contact, *load; /* (contacts, DOMAIN_CONTACT_POWERS), (loads) */
   atomic_uchar *touched;  /* blocks of contacts: some of them touch */
 } domain_ledger;

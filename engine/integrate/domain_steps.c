@@ -309,16 +309,16 @@ static void store_state(const strut_domain_steps *s, const domain_part *p) {
 /* ---- ledger ---- */
 
 /* Of all blocks of the ledger, in their order. */
-static member_powers sum_member_powers(const strut_domain_steps *s, const member_powers *block) {
-  member_powers sum = {0};
+static four_member_powers sum_member_powers(const strut_domain_steps *s, const four_member_powers *block) {
+  four_member_powers sum = {0};
   for (int32_t b = 0; b < s->ledger_blocks; b++) members_add_powers(&sum, &block[b]);
   return sum;
 }
 
 /* The sums that forces_of_members makes, in its order. */
-static void add_member_powers(const strut_domain_steps *s, const member_powers *block,
+static void add_member_powers(const strut_domain_steps *s, const four_member_powers *block,
                               double *power) {
-  member_powers sum = sum_member_powers(s, block);
+  four_member_powers sum = sum_member_powers(s, block);
   double drive = 0.0, lost = 0.0, exchanged = power[STRUT_POWER_EXCHANGED];
   for (int l = 0; l < STRUT_LANES; l++) {
     drive += sum.drive[l];
@@ -387,14 +387,14 @@ static void keep_ledger(strut_domain_steps *s, int passes, int side) {
   if (lanes) strut_step_ledger_begin(s->model, state);
   for (int k = 0; k < passes; k++) {
     double *power = state->power;
-    const member_powers *members = l->member + k * s->ledger_blocks;
+    const four_member_powers *members = l->member + k * s->ledger_blocks;
     for (int p = 0; p < STRUT_POWER_COUNT; p++) power[p] = 0.0;
     for (int32_t i = 0; i < loads; i++) {
       power[STRUT_POWER_LOAD] += l->load[k * loads + i];
       power[STRUT_POWER_EXCHANGED] += fabs(l->load[k * loads + i]);
     }
     if (lanes) {
-      member_powers sum = sum_member_powers(s, members);
+      four_member_powers sum = sum_member_powers(s, members);
       strut_book_members(&state->lanes[strut_weight_side(k)], &sum);
     } else {
       add_member_powers(s, members, power);

@@ -187,7 +187,7 @@ static void finish_to(const strut_domain_steps *s, domain_part *p, int k, int pa
 
 STRUT_CLONES
 static void work_on_members(const strut_subdomain *d, const double *q, const double *v,
-                            double *force, int32_t block, bool ledger, member_powers *powers) {
+                            double *force, int32_t block, bool ledger, four_member_powers *powers) {
   const strut_member_table t = d->model.members;
   if (ledger)
     members_of_block(&t, &d->state, q, v, force, block, true, powers);
@@ -216,7 +216,7 @@ static void add_block(const strut_domain_steps *s, domain_part *p, int k, int si
   if (counted && (own % STRUT_LEDGER_BLOCKS == 0 || block + 1 == d->block_end)) {
     int32_t to = d->ledger_begin + (own - 1) / STRUT_LEDGER_BLOCKS;
     s->ledger[side].member[k * s->ledger_blocks + to] = p->power[k];
-    p->power[k] = (member_powers){0};
+    p->power[k] = (four_member_powers){0};
   }
 }
 
@@ -233,7 +233,7 @@ static void begin_sweep(domain_part *p) {
   p->begun = 0;
   for (int k = 0; k < STRUT_PASSES; k++) {
     p->done[k] = p->block[k] = p->contact[k] = p->loaded[k] = p->paid[k] = p->drive[k] = 0;
-    p->power[k] = (member_powers){0};
+    p->power[k] = (four_member_powers){0};
   }
 }
 

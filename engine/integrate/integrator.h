@@ -27,13 +27,6 @@ typedef enum strut_integrator_role {
   STRUT_ROLE_STIFF        /* long steps over stiff members that hardly move */
 } strut_integrator_role;
 
-/** The kernel that steps several runs at once, lanes/batch.h. */
-typedef enum strut_lane_method {
-  STRUT_LANES_NONE, /* runs are stepped one by one */
-  STRUT_LANES_RK4,
-  STRUT_LANES_VERLET
-} strut_lane_method;
-
 /** What a method is set up for, beside the model; see strut_experiment. */
 typedef struct strut_integrator_settings {
   double step;      /* wanted [s]; a run may take slightly shorter ones, to divide a period */
@@ -50,7 +43,7 @@ typedef struct strut_integrator {
   int evaluations;         /* of the forces per step, where no event interrupts it */
   strut_region region;
   strut_integrator_role role; /* each at most once in the table */
-  strut_lane_method lanes;
+  bool lanes; /* several runs can be stepped at once, lanes/batch.h */
   bool implicit_damper; /* the ground's dampers do not limit the step */
   bool events;          /* locates events: modes of contacts are frozen within a step */
   bool rigid;           /* keeps the lengths of rigid bars */

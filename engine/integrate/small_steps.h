@@ -27,7 +27,6 @@ strut_small_steps strut_small_verlet_avx2, strut_small_verlet_avx512;
 /** The registers that step the model. */
 static inline strut_small_level strut_small_level_of(const strut_model *model) {
   if (!model->small) return STRUT_SMALL_NONE;
-  assert(strut_laws_within(model->laws, strut_laws_small));
   return model->small->level;
 }
 

@@ -10,6 +10,9 @@
 #ifndef STRUT_ENGINE_MODEL_HOT_H
 #define STRUT_ENGINE_MODEL_HOT_H
 
+#include <math.h>
+#include <stdbool.h>
+
 #if defined(__x86_64__) && defined(__gnu_linux__) && !defined(STRUT_NO_CLONES) &&                  \
     !defined(__AVX2__) && defined(__OPTIMIZE__)
 #define STRUT_CLONES __attribute__((target_clones("avx2", "default")))
@@ -51,13 +54,39 @@ STRUT_INLINE strut_lanes strut_lanes_load_pairs(const double *p) {
 }
 STRUT_INLINE void strut_lanes_store(double *p, strut_lanes x) { *(strut_lanes_at *)p = x; }
 
-/** mask ? x : y, lane by lane. */
-STRUT_INLINE strut_lanes strut_lanes_choose(strut_lane_mask mask, strut_lanes x, strut_lanes y) {
-  return (strut_lanes)((mask & (strut_lane_mask)x) | (~mask & (strut_lane_mask)y));
+/*
+ * The words of laws (scene/laws/words.h) for four doubles side by side.
+ */
+typedef strut_lanes four_real;
+typedef strut_lane_mask four_mask;
+STRUT_INLINE four_real four_all(double x) { return (four_real){x, x, x, x}; }
+STRUT_INLINE four_mask four_less(four_real a, four_real b) { return a < b; }
+STRUT_INLINE four_mask four_at_least(four_real a, four_real b) { return a >= b; }
+STRUT_INLINE four_mask four_both(four_mask m, four_mask n) { return m & n; }
+STRUT_INLINE four_mask four_either(four_mask m, four_mask n) { return m | n; }
+STRUT_INLINE bool four_some(four_mask m) { return (m[0] | m[1] | m[2] | m[3]) != 0; }
+STRUT_INLINE four_real four_choose(four_mask m, four_real a, four_real b) {
+  return (four_real)((m & (four_mask)a) | (~m & (four_mask)b));
 }
-
-STRUT_INLINE strut_lanes strut_lanes_magnitude(strut_lanes x) {
-  return (strut_lanes)((strut_lane_mask)x & 0x7fffffffffffffffLL);
+STRUT_INLINE four_real four_keep(four_mask m, four_real a) {
+  return (four_real)(m & (four_mask)a);
+}
+STRUT_INLINE four_real four_add_where(four_mask m, four_real sum, four_real a) {
+  return four_choose(m, sum + a, sum);
+}
+STRUT_INLINE four_real four_magnitude(four_real a) {
+  return (four_real)((four_mask)a & 0x7fffffffffffffffLL);
+}
+STRUT_INLINE four_real four_root(four_real a) {
+  return (four_real){sqrt(a[0]), sqrt(a[1]), sqrt(a[2]), sqrt(a[3])};
+}
+STRUT_INLINE four_real four_whole(four_real a) {
+  const double rounder = 6755399441055744.0;
+  return (a + rounder) - rounder;
+}
+STRUT_INLINE four_real four_times_sign(four_real a, four_real b) {
+  four_real zero = {0}, one = four_all(1.0);
+  return a * four_choose(b > zero, one, four_choose(b < zero, -one, zero));
 }
 
 #endif

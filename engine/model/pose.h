@@ -14,6 +14,7 @@
 
 #include "engine/base/vec.h"
 #include "engine/model/model.h"
+#include "engine/scene/laws/member.h"
 
 typedef struct strut_member_pose {
   strut_vec2 span;        /* from its first node to its second [m] */
@@ -41,7 +42,7 @@ static inline strut_member_pose strut_member_pose_at(const strut_member_table *t
   pose.length = strut_vec2_length(pose.span);
   pose.unit = strut_vec2_unit(pose.span, pose.length);
   pose.stretch = pose.length - rest[j];
-  pose.taut = pose.stretch > t->slack[j];
+  pose.taut = strut_law_member_is_taut(pose.stretch, t->slack[j]);
   return pose;
 }
 
@@ -62,7 +63,7 @@ static inline double strut_member_elastic_force(const strut_member_table *t, int
 /** Energy of the spring [J]; 0 of a slack cable. */
 static inline double strut_member_elastic_energy(const strut_member_table *t, int32_t j,
                                                  const strut_member_pose *pose) {
-  return pose->taut ? 0.5 * t->stiffness[j] * pose->stretch * pose->stretch : 0.0;
+  return strut_law_member_energy(t->stiffness[j], pose->stretch, pose->taut);
 }
 
 /**

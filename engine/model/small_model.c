@@ -15,7 +15,6 @@ static strut_small_level level_here(void) {
 
 static bool is_small(const strut_model *model) {
   return !(model->plan & ~(unsigned)STRUT_TERMS_SMALL) && model->plan & STRUT_TERM_MEMBERS &&
-         strut_laws_within(model->laws, strut_laws_small) &&
          model->node_count <= STRUT_SMALL_NODES && model->members.count <= STRUT_SMALL_MEMBERS &&
          model->members.slots <= STRUT_SMALL_SLOTS && model->drives.count <= STRUT_SMALL_DRIVES &&
          model->mass && !model->mass->coordinate[0].factor && !model->mass->coordinate[1].factor;
@@ -139,19 +138,17 @@ static void list_contacts(const strut_model *model, strut_small_contacts *t) {
     const strut_contact_entry *e = &model->contacts.entry[i];
     const strut_friction *f = &e->friction;
     int32_t n = e->node;
-    t->minus_stiffness[n] = -e->stiffness, t->minus_damping[n] = -e->damping;
+    t->stiffness[n] = e->stiffness, t->damping[n] = e->damping;
     t->dissipation[n] = e->dissipation;
-    t->mu_static[n] = t->mu_static_backward[n] = f->mu_static;
-    t->minus_mu_kinetic[n] = t->minus_mu_kinetic_backward[n] = -f->mu_kinetic;
-    if (f->directional) {
-      t->mu_static_backward[n] = f->mu_static_backward;
-      t->minus_mu_kinetic_backward[n] = -f->mu_kinetic_backward;
-    }
-    t->stick_velocity[n] = f->stick_velocity, t->width[n] = f->width;
+#define STRUT_FRICTION_ROW(NAME, field, range) t->field[n] = f->field;
+    STRUT_FRICTION_PARAMETERS(STRUT_FRICTION_ROW)
+#undef STRUT_FRICTION_ROW
+    t->mu_static_backward[n] = strut_friction_static(f, -1.0);
+    t->mu_kinetic_backward[n] = strut_friction_kinetic(f, -1.0);
     t->touches[n] = -1;
-    t->hunt_crossley[n] = e->dissipation > 0.0 ? -1 : 0;
-    t->frictionless[n] = f->law == STRUT_FRICTION_NONE ? -1 : 0;
-    t->smooth[n] = f->law == STRUT_FRICTION_SMOOTH ? -1 : 0;
+#define STRUT_FRICTION_ROW(NAME, name, ...) t->name[n] = f->law == STRUT_FRICTION_##NAME ? -1 : 0;
+    STRUT_FRICTION_LAWS(STRUT_FRICTION_ROW)
+#undef STRUT_FRICTION_ROW
   }
 }
 

@@ -89,11 +89,17 @@ typedef enum strut_small_source {
   STRUT_SMALL_BOTH
 } strut_small_source;
 
+/** Contacts at the lanes of their nodes: the numbers of their laws, and which laws they have. */
 typedef struct strut_small_contacts {
-  strut_small_row minus_stiffness, minus_damping, dissipation;
-  strut_small_row mu_static, mu_static_backward, minus_mu_kinetic, minus_mu_kinetic_backward;
-  strut_small_row stick_velocity, width;
-  strut_small_mask touches, hunt_crossley, frictionless, smooth;
+  strut_small_row stiffness, damping, dissipation;
+#define STRUT_FRICTION_ROW(NAME, field, range) strut_small_row field;
+  STRUT_FRICTION_PARAMETERS(STRUT_FRICTION_ROW)
+#undef STRUT_FRICTION_ROW
+  strut_small_row mu_static_backward, mu_kinetic_backward;
+  strut_small_mask touches;
+#define STRUT_FRICTION_ROW(NAME, name, ...) strut_small_mask name;
+  STRUT_FRICTION_LAWS(STRUT_FRICTION_ROW)
+#undef STRUT_FRICTION_ROW
 } strut_small_contacts;
 
 typedef struct strut_small_model {
@@ -117,12 +123,6 @@ enum {
                       STRUT_TERM_FRICTION | STRUT_TERM_SLOPE | STRUT_TERM_SOLVE | STRUT_TERM_LAWS |
                       STRUT_TERM_DIRECTION
 };
-
-/** And their laws, whose formulas small_kernel.h and integrate/events/small_events.h have. */
-static const strut_law_set strut_laws_small = {
-    .friction = STRUT_HAS(STRUT_FRICTION, NONE) | STRUT_HAS(STRUT_FRICTION, KARNOPP) |
-                STRUT_HAS(STRUT_FRICTION, COULOMB) | STRUT_HAS(STRUT_FRICTION, SMOOTH),
-    .damping = STRUT_HAS(STRUT_DAMPING, APPROACH) | STRUT_HAS(STRUT_DAMPING, HUNT_CROSSLEY)};
 
 /** Makes model->small where the model is small enough and the processor has the registers. False: out of
     memory. */

@@ -71,7 +71,7 @@ static void fill_lane(batch_state *h, int32_t lane) {
       s->taken = true;
       h->taken++;
       strut_batch_fill(h->batch, lane, s->run.model, s->run.dt);
-      strut_batch_put(h->batch, lane, s->run.state, s->run.workspace);
+      strut_batch_put(h->batch, lane, s->run.state);
     }
   }
 }
@@ -133,8 +133,7 @@ static void sample_lanes(batch_state *h) {
     } else if (strut_run_is_short_step_due(&s->run)) {
       run_lane_to_end(h, l);
     } else if (s->run.shooting_periods != shot) {
-      strut_batch_put(h->batch, l, s->run.state,
-                      s->run.workspace); /* shooting moved the state to the orbit */
+      strut_batch_put(h->batch, l, s->run.state); /* shooting moved the state to the orbit */
     }
   }
 }
@@ -154,7 +153,7 @@ static void finish_remaining(batch_state *h) {
 static strut_batch *create_batch(const strut_batch_source *source, int32_t wanted, int32_t *width) {
   const strut_model *m = source->example;
   const strut_integrator *method = m ? strut_integrator_find(source->integrator) : NULL;
-  if (wanted < 2 || !method || !strut_batch_possible(m, method)) return NULL;
+  if (wanted < 4 || !method || !strut_batch_possible(m, method)) return NULL;
   strut_batch *batch = strut_batch_create(m, method, wanted, !source->without_ledger);
   if (batch) *width = wanted;
   if (batch && source->halves) strut_batch_halve(batch);

@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Friction laws: one row and two functions for each.
+ * Friction of a contact as a scene describes it, and its force for single contacts.
  *
- * Reader, writer, checks, step limit, contact modes and forces loop over these tables, so that a
- * law is added only here; see docs/recipes.md.
+ * The laws are rows and texts of laws/friction.h, over which reader, writer, checks, step limit, contact
+ * modes and forces loop.
  */
 #ifndef STRUT_ENGINE_SCENE_FRICTION_H
 #define STRUT_ENGINE_SCENE_FRICTION_H
 
-#include <math.h>
-#include <stdbool.h>
+#include "engine/scene/laws/friction.h"
 
 /** Contact states under a law. */
 typedef enum strut_friction_class {
@@ -18,27 +17,6 @@ typedef enum strut_friction_class {
   STRUT_FRICTION_EXACT_STICK, /* sticks without moving; needs a method with events */
   STRUT_FRICTION_CONTINUOUS   /* a force that depends on the speed without a jump: no states */
 } strut_friction_class;
-
-/**
- * X(NAME, field, range): numbers of the laws, in the order of strut_friction; the field is the key too.
- * range: what is allowed where the law needs the number, NOT_NEGATIVE or ABOVE_ZERO.
- */
-#define STRUT_FRICTION_PARAMETERS(X)                                                               \
-  X(MU_STATIC, mu_static, NOT_NEGATIVE)         /* mu_0 [1] */                                     \
-  X(MU_KINETIC, mu_kinetic, NOT_NEGATIVE)       /* mu [1] */                                       \
-  X(STICK_VELOCITY, stick_velocity, ABOVE_ZERO) /* delta [m/s] */                                  \
-  X(WIDTH, width, ABOVE_ZERO)                   /* of a continuous law [m/s] */
-
-/**
- * X(NAME, word, class, needs): the laws, in the order of the key's words. needs: bits of the numbers it
- * needs.
- */
-#define STRUT_FRICTION_LAWS(X)                                                                     \
-  X(NONE, "none", ABSENT, 0)                                                                       \
-  /* equation (9) of the paper as printed: with a stick band */                                    \
-  X(KARNOPP, "karnopp", STICK_BAND, MU_STATIC_BIT | MU_KINETIC_BIT | STICK_VELOCITY_BIT)           \
-  X(COULOMB, "coulomb", EXACT_STICK, MU_STATIC_BIT | MU_KINETIC_BIT)                               \
-  X(SMOOTH, "smooth", CONTINUOUS, MU_KINETIC_BIT | WIDTH_BIT)
 
 typedef enum strut_friction_law {
 #define STRUT_FRICTION_ROW(NAME, ...) STRUT_FRICTION_##NAME,
@@ -95,7 +73,7 @@ typedef struct strut_friction_law_row {
 } strut_friction_law_row;
 
 /** The words of the laws as the key table lists them: "none|karnopp|...". */
-#define STRUT_FRICTION_WORD(NAME, word, ...) "|" word
+#define STRUT_FRICTION_WORD(NAME, name, word, ...) "|" word
 #define STRUT_FRICTION_WORDS (&("" STRUT_FRICTION_LAWS(STRUT_FRICTION_WORD))[1])
 
 /** The row of a valid law. */
@@ -106,7 +84,7 @@ static inline const strut_friction_law_row *strut_friction_law_at(strut_friction
 #undef STRUT_FRICTION_ROW
   };
   static const strut_friction_law_row rows[] = {
-#define STRUT_FRICTION_ROW(NAME, word, states, needs) {word, STRUT_FRICTION_##states, needs},
+#define STRUT_FRICTION_ROW(NAME, name, word, states, needs) {word, STRUT_FRICTION_##states, needs},
       STRUT_FRICTION_LAWS(STRUT_FRICTION_ROW)
 #undef STRUT_FRICTION_ROW
   };
@@ -153,63 +131,10 @@ static inline double strut_friction_value(const strut_friction *friction, int pa
   return *strut_friction_parameter(&copy, parameter);
 }
 
-/** Sign of x: -1, 0 or 1. */
-static inline double strut_sign(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
-
-/*
- * Each law's force along the ground [N] under the normal force [N] > 0 at the speed `slip` along it
- * [m/s]; applied: F_res, the sum of the other forces along the ground [N], for laws that stick. And
- * its slope: -d force / d slip at rest [N s/m], 0 of laws that are not continuous.
- */
-
-static inline double strut_friction_force_NONE(const strut_friction *f, double normal, double slip,
-                                               double applied) {
-  (void)f, (void)normal, (void)slip, (void)applied;
-  return 0.0;
-}
-static inline double strut_friction_slope_NONE(const strut_friction *f, double normal) {
-  (void)f, (void)normal;
-  return 0.0;
-}
-
-/** Coulomb's law with Karnopp's band, equation (9) as printed. */
-static inline double strut_friction_force_KARNOPP(const strut_friction *f, double normal,
-                                                  double slip, double applied) {
-  double speed = slip < 0.0 ? -slip : slip, push = applied < 0.0 ? -applied : applied;
-  if (speed >= f->stick_velocity) return -f->mu_kinetic * normal * strut_sign(slip);
-  if (push >= f->mu_static * normal) return -f->mu_kinetic * normal * strut_sign(applied);
-  return -applied;
-}
-static inline double strut_friction_slope_KARNOPP(const strut_friction *f, double normal) {
-  return strut_friction_slope_NONE(f, normal);
-}
-
-/** At a speed of exactly zero; methods with events hold the node there instead. */
-static inline double strut_friction_force_COULOMB(const strut_friction *f, double normal,
-                                                  double slip, double applied) {
-  return strut_friction_force_KARNOPP(f, normal, slip, applied);
-}
-static inline double strut_friction_slope_COULOMB(const strut_friction *f, double normal) {
-  return strut_friction_slope_NONE(f, normal);
-}
-
-/**
- * -mu N u / sqrt(u^2 + w^2), within 1 % of mu N from |u| = 7 w on. A node under load creeps. Algebraic,
- * so that every machine gives the same bits.
- */
-static inline double strut_friction_force_SMOOTH(const strut_friction *f, double normal,
-                                                 double slip, double applied) {
-  (void)applied;
-  return -f->mu_kinetic * normal * slip / sqrt(slip * slip + f->width * f->width);
-}
-static inline double strut_friction_slope_SMOOTH(const strut_friction *f, double normal) {
-  return normal * strut_friction_largest(f) / f->width;
-}
-
 /** Contact states of a law; see strut_friction_class. */
 static inline strut_friction_class strut_friction_states(strut_friction_law law) {
   switch (law) {
-#define STRUT_FRICTION_ROW(NAME, word, states, needs)                                              \
+#define STRUT_FRICTION_ROW(NAME, name, word, states, needs)                                        \
   case STRUT_FRICTION_##NAME: return STRUT_FRICTION_##states;
     STRUT_FRICTION_LAWS(STRUT_FRICTION_ROW)
 #undef STRUT_FRICTION_ROW
@@ -251,30 +176,35 @@ static inline bool strut_friction_is_continuous(strut_friction_law law) {
   return false;
 }
 
-/** Force of the law [N]; see the laws' own. A directional one is that of the direction it resists. */
-static inline double strut_friction_force(const strut_friction *f, double normal, double slip,
-                                          double applied) {
-  strut_friction towards = *f;
-  bool slides = slip != 0.0 && (slip < 0.0 ? -slip : slip) >= f->stick_velocity;
-  double direction = slides ? slip : applied;
-  towards.mu_static = strut_friction_static(f, direction);
-  towards.mu_kinetic = strut_friction_kinetic(f, direction);
-  f = &towards;
-  switch (f->law) {
-#define STRUT_FRICTION_ROW(NAME, ...)                                                              \
-  case STRUT_FRICTION_##NAME: return strut_friction_force_##NAME(f, normal, slip, applied);
-    STRUT_FRICTION_LAWS(STRUT_FRICTION_ROW)
+/** The numbers as the laws take them. */
+static inline strut_law_friction_numbers strut_friction_numbers(const strut_friction *f) {
+  return (strut_law_friction_numbers){
+#define STRUT_FRICTION_ROW(NAME, field, range) .field = f->field,
+      STRUT_FRICTION_PARAMETERS(STRUT_FRICTION_ROW)
 #undef STRUT_FRICTION_ROW
-    case STRUT_FRICTION_LAW_COUNT: break;
-  }
-  return 0.0;
+          .mu_static_backward = strut_friction_static(f, -1.0),
+      .mu_kinetic_backward = strut_friction_kinetic(f, -1.0)};
 }
 
-/** Slope of the law at rest under the normal force [N s/m]; see the laws' own. */
+/** Force of the law under the normal force [N], with the sum of the other forces along the ground [N]. */
+static inline double strut_friction_force(const strut_friction *f, double normal, double slip,
+                                          double applied) {
+  const strut_law_friction_numbers numbers = strut_friction_numbers(f);
+  const strut_law_friction_choice has = {
+#define STRUT_FRICTION_ROW(NAME, name, ...) .name = f->law == STRUT_FRICTION_##NAME,
+      STRUT_FRICTION_LAWS(STRUT_FRICTION_ROW)
+#undef STRUT_FRICTION_ROW
+  };
+  return strut_law_friction(&numbers, &has, normal, slip, applied);
+}
+
+/** Slope of the law at rest under the normal force [N s/m], of the direction in which it is steepest. */
 static inline double strut_friction_slope(const strut_friction *f, double normal) {
+  strut_law_friction_numbers numbers = strut_friction_numbers(f);
+  numbers.mu_kinetic = strut_friction_largest(f);
   switch (f->law) {
-#define STRUT_FRICTION_ROW(NAME, ...)                                                              \
-  case STRUT_FRICTION_##NAME: return strut_friction_slope_##NAME(f, normal);
+#define STRUT_FRICTION_ROW(NAME, name, ...)                                                        \
+  case STRUT_FRICTION_##NAME: return strut_law_friction_##name##_slope(&numbers, normal);
     STRUT_FRICTION_LAWS(STRUT_FRICTION_ROW)
 #undef STRUT_FRICTION_ROW
     case STRUT_FRICTION_LAW_COUNT: break;

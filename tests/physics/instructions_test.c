@@ -123,8 +123,7 @@ typedef struct lanes_budget {
 } lanes_budget;
 
 static const lanes_budget lanes_budgets[] = {{"rk4", true, false, 62476},
-                                             {"rk4", false, false, 47790},
-                                             {"verlet-events", true, false, 61836}};
+                                             {"rk4", false, false, 47790}};
 enum { LANES_BUDGETS = sizeof lanes_budgets / sizeof lanes_budgets[0] };
 
 typedef struct side_by_side {
@@ -156,7 +155,7 @@ static long count_of_lanes(const lanes_budget *b) {
           strut_batch_create(all.lane[0].model, all.lane[0].method, STRUT_MOST_LANES, b->ledger);
     assert_non_null(all.batch);
     strut_batch_fill(all.batch, i, all.lane[i].model, STEP);
-    strut_batch_put(all.batch, i, all.lane[i].state, all.lane[i].workspace);
+    strut_batch_put(all.batch, i, all.lane[i].state);
   }
   if (b->halves) strut_batch_halve(all.batch);
   step_lanes(&all, BEFORE);

@@ -214,7 +214,7 @@ static void compare(int32_t width, int count, const char *method, bool without_l
 
 static void test_every_width(void **unused) {
   (void)unused;
-  for (int32_t width = 1; width <= strut_batch_widest(); width *= 2)
+  for (int32_t width = 1; width <= strut_batch_widest(); width *= 2) /* 2: one by one, too */
     compare(width, POINTS, "rk4", false);
 }
 
@@ -225,8 +225,7 @@ static void test_without_ledger(void **unused) {
 
 static void test_events(void **unused) {
   (void)unused;
-  compare(2, POINTS, "verlet-events", false);
-  compare(4, POINTS, "verlet-events", true);
+  compare(4, POINTS, "verlet-events", true); /* without lanes, one by one */
   compare(0, POINTS, "verlet-events", false);
 }
 
@@ -259,32 +258,11 @@ static void test_no_memory_for_lanes(void **unused) {
   strut_setup_free(&crawler);
 }
 
-/* Where single runs have a kernel of their own that is as fast, they are not put into lanes. */
-static void test_lanes_that_pay(void **unused) {
-  (void)unused;
-  strut_setup crawler;
-  strut_setup_init(&crawler);
-  structure_crawler(&crawler.scene, 10, 1e-4, 0.1, false);
-  strut_model *model = motion_compile(&crawler.scene);
-  const strut_integrator *rk4 = strut_integrator_find("rk4");
-  const strut_integrator *events = strut_integrator_find("verlet-events");
-  bool small = model->small && model->small->level != STRUT_SMALL_NONE;
-  assert_true(strut_batch_pays(model, rk4, 8));
-  assert_int_equal(strut_batch_pays(model, rk4, 2), !small);
-  assert_int_equal(strut_batch_pays(model, events, 8), !small);
-  if (model->small) model->small->level = STRUT_SMALL_NONE;
-  assert_true(strut_batch_pays(model, rk4, 2));
-  assert_true(strut_batch_pays(model, events, 8));
-  strut_model_free(model);
-  strut_setup_free(&crawler);
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_every_width),
                                      cmocka_unit_test(test_without_ledger),
                                      cmocka_unit_test(test_events),
                                      cmocka_unit_test(test_few_points),
-                                     cmocka_unit_test(test_no_memory_for_lanes),
-                                     cmocka_unit_test(test_lanes_that_pay)};
+                                     cmocka_unit_test(test_no_memory_for_lanes)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

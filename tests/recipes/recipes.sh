@@ -15,17 +15,22 @@ awk '/^```diff/ { inside = 1; blocks++; next } /^```/ { inside = 0 } inside { pr
 cd "$scratch"
 touched=$(sed -n 's/^+++ b\///p' recipes.diff | sort | tr '\n' ' ')
 expected="engine/forces/elements.c engine/forces/strains/span.h engine/integrate/euler_forward.c \
-engine/model/elements.c engine/model/elements.h engine/scene/experiment.h engine/scene/friction.h \
-engine/scene/law.h engine/scene/laws/stiffening.h "
+engine/model/elements.c engine/model/elements.h engine/scene/experiment.h engine/scene/law.h \
+engine/scene/laws/friction.h engine/scene/laws/stiffening.h "
 [ "$touched" = "$expected" ] || { echo "the recipes touch other files: $touched"; exit 1; }
 patch -s -p1 <recipes.diff
 
-# The texts of exported code, which recipes.c has no use for, are empty.
-{
-  echo '#include "engine/output/code/templates.h"'
-  sed -n 's/.*extern//; s/strut_embedded//; /_template\[\]/p' engine/output/code/templates.h |
-    grep -o 'strut_code_[a-z]*_template' | sed 's/.*/const strut_embedded &[] = {{0}};/'
-} >templates.c
+# The texts of exported code, of which those of the laws are now others.
+embedded="strut_code_law_texts|engine/base/vec.h|engine/scene/law.h"
+for text in engine/scene/laws/*.h engine/forces/strains/*.h; do embedded="$embedded|$text"; done
+for name in $(grep -o 'strut_code_[a-z]*_template' engine/output/code/templates.h); do
+  of=${name#strut_code_} of=${of%_template}
+  file=engine/output/code/$of.c.in
+  [ -e "$file" ] || file=engine/output/code/$of.h.in
+  embedded="$embedded;$name|$file"
+done
+cmake "-DSOURCE=templates.c" "-DHEADER=engine/output/code/templates.h" "-DEMBED=$embedded" \
+  -P "$root/.cmake/EmbedFiles.cmake"
 sources="tests/recipes/recipes.c templates.c $(ls engine/base/*.c engine/scene/*.c \
   engine/model/*.c engine/forces/*.c engine/statics/search/*.c engine/statics/equilibria/*.c \
   engine/output/code/*.c) $(find engine/integrate parser/yaml parser/expression parser/language \
@@ -43,3 +48,13 @@ printf '%s\n' $sources | xargs -P 2 -n 12 sh -c 'cc=$1 includes=$2; shift 2
 # shellcheck disable=SC2086
 $cc ./*.o -o recipes $libraries -lpthread -lm
 ./recipes
+
+# Exported code computes the same laws with the same bits.
+for folder in code-*; do
+  dt=1e-3 steps=1000
+  case $folder in code-friction-*) dt=1e-4 steps=3000 ;; esac
+  $cc -std=c99 -Wall -Wextra -Werror -ffp-contract=off -O1 "-DSTEP=$dt" "-DSTEPS=$steps" "-DEVERY=$steps" \
+    -DMETHOD=model_step_rk4 "$folder/model_example.c" "$folder/model.c" -lm -o "$folder/run"
+  "./$folder/run" | tail -1 | sed 's/^[^,]*,//' >"$folder/got"
+  cmp "$folder/expected" "$folder/got"
+done

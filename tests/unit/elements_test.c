@@ -696,16 +696,16 @@ static void test_directions_are_those_of_atan2(void **unused) {
   for (int i = 0; i < 200000; i++) {
     double angle = STRUT_TAU * (i / 200000.0 - 0.5) + 1e-6, size = pow(10.0, i % 7 - 3);
     double x = size * cos(angle), y = size * sin(angle), expected = atan2(y, x);
-    double found = strut_angle_of((strut_lanes){x}, (strut_lanes){y})[0];
+    double found = strut_law_direction_of(x, y);
     assert_true(fabs(found - expected) <= 4 * DBL_EPSILON * fmax(fabs(expected), 1e-300));
   }
   for (size_t i = 0; i < sizeof tiny / sizeof tiny[0]; i++)
     for (int sign = -1; sign <= 1; sign += 2) {
       double x = sign, y = tiny[i];
-      assert_near(strut_angle_of((strut_lanes){x}, (strut_lanes){y})[0], atan2(y, x), 1e-15);
-      assert_near(strut_angle_of((strut_lanes){y}, (strut_lanes){x})[0], atan2(x, y), 1e-15);
+      assert_near(strut_law_direction_of(x, y), atan2(y, x), 1e-15);
+      assert_near(strut_law_direction_of(y, x), atan2(x, y), 1e-15);
     }
-  assert_true(strut_angle_of((strut_lanes){0.0}, (strut_lanes){0.0})[0] == 0.0);
+  assert_true(strut_law_direction_of(0.0, 0.0) == 0.0);
 }
 
 /* Hinges are stepped four at a time: the forces of seven are those of each alone, to the bit. */

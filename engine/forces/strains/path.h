@@ -8,13 +8,12 @@
 
 #include <math.h>
 #include <stdint.h>
-#include <string.h>
 
 static inline double strut_strain_path(const uint32_t *at, int n, const double *q, double reference,
                                        double *b) {
   double sum = 0.0;
   (void)reference;
-  memset(b, 0, 2 * (size_t)n * sizeof *b);
+  for (int k = 0; k < 2 * n; k++) b[k] = 0.0;
   for (int k = 0; k + 1 < n; k++) {
     double x = q[at[k + 1]] - q[at[k]], y = q[at[k + 1] + 1] - q[at[k] + 1];
     double length = sqrt(x * x + y * y), inverse = length > 0.0 ? 1.0 / length : 0.0;

@@ -58,8 +58,8 @@ typedef struct largest {
 } largest;
 
 STRUT_INLINE largest larger_of(largest so_far, strut_lanes x) {
-  strut_lanes size = strut_lanes_magnitude(x);
-  return (largest){strut_lanes_choose(size > so_far.most, size, so_far.most),
+  strut_lanes size = four_magnitude(x);
+  return (largest){four_choose(size > so_far.most, size, so_far.most),
                    so_far.poison + (x - x)};
 }
 
@@ -109,17 +109,22 @@ static bool contradicts_at_stage(const strut_model *model, const strut_event_ste
                                  int32_t i) {
   const strut_contact_entry *e = &model->contacts.entry[i];
   const strut_touch *o = &l->next->touch[i];
-  const strut_friction *f = &e->friction;
-  double part = STRUT_STAGE_ERROR, held = strut_friction_static(f, -o->friction) * o->normal,
-         most = strut_friction_static(f, o->applied) * o->normal;
+  double more = 1.0 + STRUT_STAGE_ERROR, fewer = 1.0 - STRUT_STAGE_ERROR, s = l->side[i];
+  double holding = holding_limit(e, o->normal, o->applied);
   if (!(o->normal > 0.0)) return false;
   switch ((strut_contact_mode)l->mode[i]) {
-    case STRUT_MODE_STICK: return fabs(o->friction) > held * (1.0 + part);
-    case STRUT_MODE_BAND: return strut_friction_drops(f) && fabs(o->applied) > most * (1.0 + part);
-    case STRUT_MODE_PUSH: return l->side[i] * o->applied < most * (1.0 - part);
-    case STRUT_MODE_CREEP:
-      return l->side[i] * o->friction <
-             -strut_friction_kinetic(f, l->side[i]) * o->normal * (1.0 + part);
+    case STRUT_MODE_STICK: {
+      double held = holding_limit(e, o->normal, -o->friction);
+      return strut_law_margin_of_holding(held * more, o->friction) < 0.0;
+    }
+    case STRUT_MODE_BAND:
+      return strut_friction_drops(&e->friction) &&
+             strut_law_margin_of_holding(holding * more, o->applied) < 0.0;
+    case STRUT_MODE_PUSH: return strut_law_margin_of_push(s, holding * fewer, o->applied) < 0.0;
+    case STRUT_MODE_CREEP: {
+      double sliding = sliding_limit(e, o->normal, s) * more;
+      return strut_law_margin_of_creep_out(s, sliding, o->friction) < 0.0;
+    }
     case STRUT_MODE_OPEN:
     case STRUT_MODE_SLIDE:
     case STRUT_MODE_SLIP: /* by earliest_dip */

@@ -100,7 +100,7 @@ static void close_contact(const strut_model *model, strut_event_stepper *l, int3
     case STRUT_FRICTION_ABSENT:
     case STRUT_FRICTION_CONTINUOUS: break;
     case STRUT_FRICTION_STICK_BAND: { /* inside, or at the edge by rounding */
-      bool inside = fabs(o.slip) < e->friction.stick_velocity * (1.0 + TIED);
+      bool inside = fabs(o.slip) < e->friction.stick_velocity * (1.0 + STRUT_TIED);
       l->mode[i] = inside ? STRUT_MODE_BAND : STRUT_MODE_SLIP;
       break;
     }

@@ -12,22 +12,26 @@
 
 #include "engine/forces/forces_kernel.h"
 #include "engine/integrate/events/event_stepping.h"
+#include "engine/integrate/events/mode_law.h"
 #include "engine/integrate/events/surface_contacts.h"
+#include "engine/model/contact_law.h"
 #include "engine/model/pose.h"
-
-_Static_assert(STRUT_DAMPING_COUNT == 2,
-               "contact_normal_force distinguishes two laws by `dissipation`");
 
 /* Normal force of the spring and, where `damped`, the damper, of a contact that touches. */
 STRUT_INLINE double contact_normal_force(const strut_contact_entry *e, int8_t damper, double gap,
                                          double into, bool damped) {
-  double normal = -e->stiffness * gap;
-  if (e->dissipation > 0.0 && damped) {
-    normal -= normal * e->dissipation * into;
-    return normal > 0.0 || gap >= 0.0 ? normal : 0.0;
-  }
+  const strut_law_ground_numbers numbers = strut_contact_numbers(e);
   bool acts = damper ? damper > 0 : into < 0.0;
-  return damped && acts ? normal - e->damping * into : normal;
+  return damped ? strut_law_ground_normal_in_mode(&numbers, acts, gap, into, true)
+                : strut_law_ground_spring(&numbers, gap);
+}
+
+/* The most that friction holds against a push, and with which it slides, in this direction [N]. */
+STRUT_INLINE double holding_limit(const strut_contact_entry *e, double normal, double towards) {
+  return strut_friction_static(&e->friction, towards) * normal;
+}
+STRUT_INLINE double sliding_limit(const strut_contact_entry *e, double normal, double towards) {
+  return strut_friction_kinetic(&e->friction, towards) * normal;
 }
 
 /* Half the layer about the threshold mu_0 N in which a contact yields, relative. */
@@ -35,8 +39,7 @@ static const double STRUT_YIELD_LAYER = 1e-3;
 
 /* Friction between holding and pushing, by how far the applied force is through the layer. */
 STRUT_INLINE double yield_friction(const strut_contact_entry *e, double normal, double applied) {
-  double threshold = strut_friction_static(&e->friction, applied) * normal,
-         half = STRUT_YIELD_LAYER * threshold;
+  double threshold = holding_limit(e, normal, applied), half = STRUT_YIELD_LAYER * threshold;
   double size = applied < 0.0 ? -applied : applied;
   double pushed = half > 0.0 ? 0.5 + 0.5 * (size - threshold) / half : 1.0;
   pushed = pushed < 0.0 ? 0.0 : pushed > 1.0 ? 1.0 : pushed;
@@ -55,10 +58,7 @@ STRUT_INLINE double friction_in_mode(const strut_contact_entry *e, uint8_t mode,
       return strut_friction_is_continuous(e->friction.law)
                  ? strut_friction_force(&e->friction, normal, slip, applied)
                  : 0.0;
-    case STRUT_MODE_BAND: {
-      double most = strut_friction_static(&e->friction, applied) * normal;
-      return applied > most ? -most : applied < -most ? most : -applied;
-    }
+    case STRUT_MODE_BAND: return strut_law_friction_in_band(holding_limit(e, normal, applied), applied);
     case STRUT_MODE_YIELD: return yield_friction(e, normal, applied);
     case STRUT_MODE_OPEN:
     case STRUT_MODE_STICK:
@@ -197,29 +197,21 @@ STRUT_INLINE void accelerate_in_modes(const strut_model *model, strut_state *sta
   accelerate_closed(model, state, l, q, v, a, end, terms, ledger);
 }
 
-/* Forces and speeds that agree to this part are taken to be equal at the edge of a band. */
-static const double TIED = 1e-8;
-
 /* Do the forces on a contact within its band balance, but for rounding? Then its speed does not change. */
 STRUT_INLINE bool band_forces_balance(const strut_event_stepper *l, const strut_touch *o,
                                       int32_t i) {
-  return fabs(o->slip_rate) <= TIED * o->normal * l->response[i].tangent;
+  return fabs(o->slip_rate) <= STRUT_TIED * o->normal * l->response[i].tangent;
 }
 
-/*
- * Where the neighbours' inertia pushes nothing, what holds a creeping contact is the band's force but
- * for rounding: then the contact is within the band, at its edge, which rounding does not leave.
- */
+/* Contacts at the edge of their band, but for rounding, at the end of a step. */
 STRUT_INLINE void settle_band_ties(const strut_model *model, const strut_event_stepper *l) {
   for (int32_t k = 0; k < l->closed_count; k++) {
     int32_t i = l->closed[k];
-    const strut_contact_entry *e = &model->contacts.entry[i];
+    double edge = model->contacts.entry[i].friction.stick_velocity;
     strut_touch *o = &l->next->touch[i];
-    double faint = TIED * o->normal, edge = e->friction.stick_velocity;
-    if (l->mode[i] == STRUT_MODE_CREEP && fabs(o->friction + o->applied) <= faint)
-      o->friction = -o->applied + l->side[i] * faint; /* creep ends */
-    if (l->mode[i] == STRUT_MODE_BAND && fabs(fabs(o->slip) - edge) <= TIED * edge)
-      o->slip = (o->slip < 0.0 ? -edge : edge) * (1.0 - TIED); /* in it, not leaving */
+    if (l->mode[i] == STRUT_MODE_CREEP)
+      o->friction = strut_law_friction_in_creep(l->side[i], o->normal, o->friction, o->applied);
+    if (l->mode[i] == STRUT_MODE_BAND) o->slip = strut_law_slip_in_band(o->slip, edge);
   }
 }
 
@@ -242,50 +234,62 @@ STRUT_INLINE double stick_band_edge(const strut_contact_entry *e) {
   return band ? e->friction.stick_velocity : 0.0;
 }
 
-STRUT_INLINE double stick_band_force(const strut_contact_entry *e, const strut_touch *o) {
-  double most = strut_friction_static(&e->friction, o->applied) * o->normal;
-  if (fabs(o->applied) < most) return -o->applied;
-  return -strut_friction_kinetic(&e->friction, o->applied) * o->normal * strut_sign(o->applied);
+/* Margins at whose zeros the modes of a contact end; see mode_law.h. */
+STRUT_INLINE double margin_of_stick(const strut_contact_entry *e, const strut_touch *o) {
+  return strut_law_margin_of_holding(holding_limit(e, o->normal, -o->friction), o->friction);
+}
+STRUT_INLINE double margin_of_creep_out(const strut_contact_entry *e, const strut_touch *o,
+                                        double side) {
+  return strut_law_margin_of_creep_out(side, sliding_limit(e, o->normal, side), o->friction);
+}
+STRUT_INLINE double margin_of_creep_in(const strut_contact_entry *e, const strut_touch *o,
+                                       double side) {
+  double holding = holding_limit(e, o->normal, o->applied);
+  double sliding = sliding_limit(e, o->normal, o->applied);
+  double at_edge = strut_law_friction_at_edge(holding, sliding, o->applied);
+  return strut_law_margin_of_creep_in(side, at_edge, o->friction);
+}
+STRUT_INLINE double margin_of_push(const strut_contact_entry *e, const strut_touch *o, uint8_t mode,
+                                   double side) {
+  double holding = holding_limit(e, o->normal, o->applied);
+  return mode == STRUT_MODE_PUSH ? strut_law_margin_of_push(side, holding, o->applied)
+                                 : strut_law_margin_of_holding(holding, o->applied);
 }
 
 /* How far the applied force is from either end of where a contact goes on yielding [N]. */
-STRUT_INLINE double yield_margin(const strut_contact_entry *e, const strut_touch *o) {
-  double threshold = strut_friction_static(&e->friction, o->applied) * o->normal;
+STRUT_INLINE double margin_of_yield(const strut_contact_entry *e, const strut_touch *o) {
+  double threshold = holding_limit(e, o->normal, o->applied);
   return 2.0 * STRUT_YIELD_LAYER * threshold - fabs(fabs(o->applied) - threshold);
 }
 
-/* What a closed contact's state at the end of a step contradicts of its mode. */
+/* The event that ends the mode of a closed contact, by its state at the end of a step. */
 STRUT_INLINE strut_event_kind contradicting_event(const strut_contact_entry *e,
                                                   const strut_touch *o, uint8_t mode, double s) {
+  double edge = stick_band_edge(e);
+#define STRUT_ENDS(margin, NAME) ((margin) < 0.0 ? STRUT_EVENT_##NAME : STRUT_EVENT_NONE)
   switch ((strut_contact_mode)mode) {
-    case STRUT_MODE_SLIP:
-      return s * o->slip < stick_band_edge(e) ? STRUT_EVENT_SLIP_ENDS : STRUT_EVENT_NONE;
+    case STRUT_MODE_SLIP: return STRUT_ENDS(strut_law_margin_of_slip(s, o->slip, edge), SLIP_ENDS);
     case STRUT_MODE_STICK:
       /* also where the gap is open by then: what holds a node lets go before that */
-      return fabs(o->friction) > strut_friction_static(&e->friction, -o->friction) * o->normal
-                 ? STRUT_EVENT_STICK_BREAKS
-                 : STRUT_EVENT_NONE;
+      return STRUT_ENDS(margin_of_stick(e, o), STICK_BREAKS);
     case STRUT_MODE_CREEP:
-      if (s * o->friction < -strut_friction_kinetic(&e->friction, s) * o->normal)
-        return STRUT_EVENT_CREEP_OUT;
-      return s * (stick_band_force(e, o) - o->friction) < 0.0 ? STRUT_EVENT_CREEP_IN
-                                                              : STRUT_EVENT_NONE;
+      if (margin_of_creep_out(e, o, s) < 0.0) return STRUT_EVENT_CREEP_OUT;
+      return STRUT_ENDS(margin_of_creep_in(e, o, s), CREEP_IN);
     case STRUT_MODE_BAND:
     case STRUT_MODE_PUSH: {
-      if (fabs(o->slip) > stick_band_edge(e)) return STRUT_EVENT_LEAVES_STICK_BAND;
+      if (strut_law_margin_of_band(fabs(o->slip), edge) < 0.0) return STRUT_EVENT_LEAVES_STICK_BAND;
       if (!strut_friction_drops(&e->friction)) return STRUT_EVENT_NONE;
-      double size = mode == STRUT_MODE_PUSH ? s * o->applied : fabs(o->applied);
-      return (size > strut_friction_static(&e->friction, o->applied) * o->normal) ==
-                     (mode == STRUT_MODE_PUSH)
-                 ? STRUT_EVENT_NONE
-                 : STRUT_EVENT_PUSH;
+      double margin = margin_of_push(e, o, mode, s);
+      bool holds = mode == STRUT_MODE_PUSH ? margin > 0.0 : !(margin < 0.0);
+      return holds ? STRUT_EVENT_NONE : STRUT_EVENT_PUSH;
     }
     case STRUT_MODE_YIELD:
-      if (fabs(o->slip) > stick_band_edge(e)) return STRUT_EVENT_LEAVES_STICK_BAND;
-      return yield_margin(e, o) < 0.0 ? STRUT_EVENT_YIELDED : STRUT_EVENT_NONE;
+      if (strut_law_margin_of_band(fabs(o->slip), edge) < 0.0) return STRUT_EVENT_LEAVES_STICK_BAND;
+      return STRUT_ENDS(margin_of_yield(e, o), YIELDED);
     case STRUT_MODE_OPEN:
     case STRUT_MODE_SLIDE: break;
   }
+#undef STRUT_ENDS
   return STRUT_EVENT_NONE;
 }
 

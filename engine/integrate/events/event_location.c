@@ -35,17 +35,9 @@ bool strut_event_is_of_law(strut_event_kind kind) {
 STRUT_INLINE double law_value(const strut_event_stepper *l, const strut_step_end *end, int32_t i) {
   const strut_law_switch *law = &l->laws[i];
   if (law->event != STRUT_EVENT_ACTS) return end->tension[i];
-  /* It acts where stretch and force are positive; the lesser decides, both in newtons. */
   double k = law->stiffness, d = law->damping;
   double elastic = (k > 0.0 ? k : d > 0.0 ? d / l->wanted_step : 1.0) * end->stretch[i];
-  if (l->acting[i] && !law->abrupt) return end->tension[i];
-  double lesser = elastic < end->tension[i] ? elastic : end->tension[i];
-  return l->acting[i] ? lesser : -lesser;
-}
-
-/* How far the applied force is from what friction can balance [N]. */
-static double balance_margin(const strut_contact_entry *e, const strut_touch *o) {
-  return strut_friction_static(&e->friction, o->applied) * o->normal - fabs(o->applied);
+  return strut_law_cable_margin(l->acting[i], elastic, end->tension[i], law->abrupt);
 }
 
 double strut_event_value(const strut_model *model, const strut_event_stepper *l,
@@ -61,17 +53,14 @@ double strut_event_value(const strut_model *model, const strut_event_stepper *l,
       int32_t nearest;
       return strut_surface_facet_margin(&model->contacts, l, end, i, &nearest);
     }
-    case STRUT_EVENT_SLIP_ENDS: return s * o->slip - stick_band_edge(e);
-    case STRUT_EVENT_LEAVES_STICK_BAND: return stick_band_edge(e) - way_out(l, o, i) * o->slip;
-    case STRUT_EVENT_STICK_BREAKS:
-      return strut_friction_static(&e->friction, -o->friction) * o->normal - fabs(o->friction);
-    case STRUT_EVENT_CREEP_OUT:
-      return s * o->friction + strut_friction_kinetic(&e->friction, s) * o->normal;
-    case STRUT_EVENT_CREEP_IN: return s * (stick_band_force(e, o) - o->friction);
-    case STRUT_EVENT_PUSH:
-      if (l->mode[i] == STRUT_MODE_BAND) return balance_margin(e, o);
-      return s * o->applied - strut_friction_static(&e->friction, o->applied) * o->normal;
-    case STRUT_EVENT_YIELDED: return yield_margin(e, o);
+    case STRUT_EVENT_SLIP_ENDS: return strut_law_margin_of_slip(s, o->slip, stick_band_edge(e));
+    case STRUT_EVENT_LEAVES_STICK_BAND:
+      return strut_law_margin_of_band(way_out(l, o, i) * o->slip, stick_band_edge(e));
+    case STRUT_EVENT_STICK_BREAKS: return margin_of_stick(e, o);
+    case STRUT_EVENT_CREEP_OUT: return margin_of_creep_out(e, o, s);
+    case STRUT_EVENT_CREEP_IN: return margin_of_creep_in(e, o, s);
+    case STRUT_EVENT_PUSH: return margin_of_push(e, o, l->mode[i], s);
+    case STRUT_EVENT_YIELDED: return margin_of_yield(e, o);
     case STRUT_EVENT_DAMPER: return l->damper[i] > 0 ? -o->into : o->into;
     case STRUT_EVENT_NONE:
     case STRUT_EVENT_ACTS:
@@ -136,7 +125,7 @@ static double room_to_leave(const strut_model *model, const strut_event_stepper 
   const strut_contact_entry *e = &model->contacts.entry[i];
   if (!l->stepper->exact && !strut_friction_drops(&e->friction)) return room;
   double faint = 1e-9 * stick_band_edge(e), rate = 0.0;
-  double balanced = TIED * l->now->touch[i].normal * l->response[i].tangent;
+  double balanced = STRUT_TIED * l->now->touch[i].normal * l->response[i].tangent;
   strut_event_rate(l, l->now, STRUT_EVENT_LEAVES_STICK_BAND, i, &rate);
   return room < faint && rate > -balanced ? faint : room;
 }
@@ -216,8 +205,8 @@ STRUT_INLINE void measure_cables_group(const strut_model *model, const strut_sta
     stiffness[n] = t->stiffness[j], damping[n] = t->damping[j];
   }
   member_vectors d = members_gather(end->q, from, to), w = members_gather(end->v, from, to);
-  strut_lanes length = members_root(d.x * d.x + d.y * d.y);
-  strut_lanes inverse = strut_lanes_choose(length > 0.0, 1.0 / length, (strut_lanes){0});
+  strut_lanes length = four_root(d.x * d.x + d.y * d.y);
+  strut_lanes inverse = four_choose(length > 0.0, 1.0 / length, (strut_lanes){0});
   strut_lanes stretch = length - rest;
   strut_lanes rate = (w.x * d.x + w.y * d.y) * inverse - rest_rate;
   strut_lanes tension = stiffness * stretch + damping * rate;

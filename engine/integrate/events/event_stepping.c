@@ -335,7 +335,7 @@ static bool is_near(const strut_event_stepper *l, const strut_event *event, cons
                     double rate) {
   double slope = rate != 0.0 ? rate : (s->value - s->last_value) / (s->x - s->last_x);
   if (event->kind == STRUT_EVENT_CREEP_IN &&
-      fabs(s->value) <= 2.0 * TIED * l->next->touch[event->index].normal)
+      fabs(s->value) <= 2.0 * STRUT_TIED * l->next->touch[event->index].normal)
     return true;
   return fabs(s->value) <= 1e-8 * fabs(slope);
 }
@@ -343,10 +343,10 @@ static bool is_near(const strut_event_stepper *l, const strut_event *event, cons
 /* Where forces balance until then, an edge is left so gently that this part of a step is no matter. */
 static const double BALANCED = 1e-8;
 
-/* Is the speed at the edge of the band, within TIED? settle_band_ties keeps it no nearer. */
+/* Is the speed at the edge of the band, within STRUT_TIED? settle_band_ties keeps it no nearer. */
 static bool is_at_edge(const strut_model *model, const strut_event *event, double value) {
   if (event->kind != STRUT_EVENT_LEAVES_STICK_BAND) return false;
-  double tie = TIED * stick_band_edge(&model->contacts.entry[event->index]);
+  double tie = STRUT_TIED * stick_band_edge(&model->contacts.entry[event->index]);
   return value > 0.5 * tie && value < 1.5 * tie;
 }
 

@@ -11,17 +11,11 @@
 
 #include "engine/integrate/events/event_kernel.h"
 
-_Static_assert(STRUT_DAMPING_COUNT == 2, "implicit_damper distinguishes two laws by `dissipation`");
-
 /* The damper's force where the node would go into the ground at speed `free` without it. */
 STRUT_INLINE double implicit_damper(const strut_contact_entry *e, double spring, double free,
                                     double half) {
-  bool smooth = e->dissipation > 0.0;
-  double rate = !smooth ? e->damping : spring > 0.0 ? e->dissipation * spring : 0.0;
-  if (!(rate > 0.0)) return 0.0;
-  double into = free / (1.0 + half * rate), force = -rate * into;
-  if (!smooth) return into > 0.0 ? 0.0 : force;
-  return force >= -spring ? force : spring > 0.0 ? -spring : 0.0;
+  const strut_law_ground_numbers numbers = strut_contact_numbers(e);
+  return strut_law_ground_implicit_damper(&numbers, spring, free, half, true);
 }
 
 /* Speed into the ground at the end of the step, given the accelerations so far. */

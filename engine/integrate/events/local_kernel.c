@@ -74,7 +74,7 @@ static void count_evaluation(const strut_model *model, strut_state *state, strut
 STRUT_INLINE void add_members(const strut_local_events *p, strut_state *state, const double *q,
                               const double *v, bool driven, bool ledger) {
   enum { KEPT = STRUT_TERM_DAMPING | STRUT_TERM_SLACK, ALL = KEPT | STRUT_TERM_DRIVE };
-  member_powers powers = {0};
+  four_member_powers powers = {0};
   for (int32_t j = 0; j < p->table.slots; j += STRUT_LANES) {
     member_pulls pulls =
         members_group(&p->table, &p->shell, q, v, j, driven ? ALL : KEPT, ledger, &powers);

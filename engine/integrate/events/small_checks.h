@@ -13,26 +13,43 @@ STRUT_SMALL_INLINE void small_settle_ties(small_events *e) {
   const strut_small_contacts *c = &e->run.tables->contact;
   const strut_small_modes *m = e->modes;
   SMALL_EACH(p) {
-    small_real friction = e->contacts.friction.part[p], slip = e->contacts.slip.part[p], zero = {0};
-    small_real applied = e->contacts.applied.part[p], edge = SMALL_CONTACT(stick_velocity);
-    small_real faint = TIED * e->contacts.normal.part[p];
-    small_mask tied =
-        SMALL_MODE_MASK(creep) & small_at_least(faint, small_magnitude(friction + applied));
-    e->contacts.friction.part[p] =
-        small_choose(tied, -applied + SMALL_MODE(side) * faint, friction);
-    tied = SMALL_MODE_MASK(band) &
-           small_at_least(TIED * edge, small_magnitude(small_magnitude(slip) - edge));
-    small_real inside = small_choose(small_less(slip, zero), -edge, edge) * (1.0 - TIED);
-    e->contacts.slip.part[p] = small_choose(tied, inside, slip);
+    small_real *friction = &e->contacts.friction.part[p], *slip = &e->contacts.slip.part[p];
+    small_real normal = e->contacts.normal.part[p], applied = e->contacts.applied.part[p];
+    small_real creeps = small_friction_in_creep(SMALL_MODE(side), normal, *friction, applied);
+    small_real inside = small_slip_in_band(*slip, SMALL_CONTACT(stick_velocity));
+    *friction = small_choose(SMALL_MODE_MASK(creep), creeps, *friction);
+    *slip = small_choose(SMALL_MODE_MASK(band), inside, *slip);
   }
 }
 
-/* Coefficient of kinetic friction, negative. */
-STRUT_SMALL_INLINE small_real small_kinetic(const strut_small_contacts *c, int p,
-                                            small_real towards, bool laws) {
-  small_real zero = {0};
-  return small_nearer(small_less(towards, zero), c->minus_mu_kinetic_backward + p * SMALL_WIDTH,
-                      c->minus_mu_kinetic + p * SMALL_WIDTH, laws);
+/* Inside its band: where a contact leaves it, or where it is pushed, or no more. */
+STRUT_SMALL_INLINE small_mask small_leaves_band(const strut_small_modes *m, int p, small_real slip,
+                                                small_real holding, small_real applied) {
+  small_real zero = {0}, side = SMALL_MODE(side);
+  small_mask held = SMALL_MODE_MASK(band), pushes = SMALL_MODE_MASK(pushes);
+  small_mask leaves = (held | pushes) &
+                      small_less(small_margin_of_band(small_magnitude(slip), SMALL_MODE(edge)), zero);
+  held &= small_less(small_margin_of_holding(holding, applied), zero);
+  pushes &= small_at_least(zero, small_margin_of_push(side, holding, applied));
+  return leaves | ((held | pushes) & SMALL_MODE_MASK(drops));
+}
+
+/* Where a contact that sticks or creeps does so no more. */
+STRUT_SMALL_INLINE small_mask small_gives_way(const small_events *e, int p, small_real holding,
+                                              bool laws) {
+  const strut_small_contacts *c = &e->run.tables->contact;
+  const strut_small_modes *m = e->modes;
+  const small_friction_numbers numbers = small_friction_at(c, p);
+  small_real normal = e->contacts.normal.part[p], friction = e->contacts.friction.part[p];
+  small_real applied = e->contacts.applied.part[p], side = SMALL_MODE(side), zero = {0};
+  small_real held = small_friction_holding(&numbers, normal, -friction, laws);
+  small_real at_edge = small_friction_at_edge(
+      holding, small_friction_sliding(&numbers, normal, applied, laws), applied);
+  small_real out = small_margin_of_creep_out(side, SMALL_MODE(kinetic) * normal, friction);
+  small_mask ends = small_less(out, zero);
+  ends |= small_less(small_margin_of_creep_in(side, at_edge, friction), zero);
+  return (SMALL_MODE_MASK(stick) & small_less(small_margin_of_holding(held, friction), zero)) |
+         (SMALL_MODE_MASK(creep) & ends);
 }
 
 /* See contradicting_event. */
@@ -41,30 +58,15 @@ STRUT_SMALL_INLINE bool small_contradicts(const small_events *e) {
   const strut_small_modes *m = e->modes;
   bool laws = e->run.plan & STRUT_TERM_LAWS, any = false;
   SMALL_EACH(p) {
-    small_real normal = e->contacts.normal.part[p], slip = e->contacts.slip.part[p];
-    small_real friction = e->contacts.friction.part[p], applied = e->contacts.applied.part[p];
-    small_real side = SMALL_MODE(side), edge = SMALL_MODE(edge), zero = {0};
-    small_mask bad = SMALL_MODE_MASK(slips) & small_less(side * slip, edge);
+    small_real slip = e->contacts.slip.part[p], applied = e->contacts.applied.part[p], zero = {0};
+    small_real margin = small_margin_of_slip(SMALL_MODE(side), slip, SMALL_MODE(edge));
+    small_mask bad = SMALL_MODE_MASK(slips) & small_less(margin, zero);
     if (!e->stepper->all_sliding) {
-      small_real most = small_static(c, p, applied, laws) * normal, size = small_magnitude(applied);
-      if (m->any_band) {
-        small_mask held = SMALL_MODE_MASK(band), pushes = SMALL_MODE_MASK(pushes);
-        bad |= (held | pushes) & small_less(edge, small_magnitude(slip));
-        held &= small_less(most, size), pushes &= small_at_least(most, side * applied);
-        bad |= (held | pushes) & SMALL_MODE_MASK(drops);
-      }
-      if (m->any_held) {
-        small_real held_by = small_static(c, p, -friction, laws) * normal;
-        bad |= SMALL_MODE_MASK(stick) & small_less(held_by, small_magnitude(friction));
-        small_real band = small_kinetic(c, p, applied, laws) * normal;
-        band = small_flip(band, (small_bits)applied & INT64_MIN);
-        band = small_choose(small_less(size, most), -applied, band);
-        small_mask ends = small_less(side * friction, SMALL_MODE(minus_kinetic) * normal);
-        ends |= small_less(side * (band - friction), zero);
-        bad |= SMALL_MODE_MASK(creep) & ends;
-      }
+      small_real holding = small_holding(c, p, e->contacts.normal.part[p], applied, laws);
+      if (m->any_band) bad |= small_leaves_band(m, p, slip, holding, applied);
+      if (m->any_held) bad |= small_gives_way(e, p, holding, laws);
     }
-    any = any || small_any(bad & SMALL_MODE_MASK(closed));
+    any = any || small_some(bad & SMALL_MODE_MASK(closed));
   }
   return any;
 }
@@ -75,7 +77,7 @@ STRUT_SMALL_INLINE bool small_crosses(const small_events *e, const small_points 
   bool any = false;
   SMALL_EACH(p) {
     small_real zero = {0}, gap = SMALL_MODE(outward) * (q->y.part[p] - e->run.contacts->height);
-    any = any || small_any(small_less(gap, zero));
+    any = any || small_some(small_less(gap, zero));
   }
   return any;
 }
@@ -131,10 +133,10 @@ STRUT_SMALL_INLINE bool small_dips(const small_events *e, const strut_model *mod
     small_mask bad = SMALL_CONTACT_MASK(touches) & small_less(zero, gap);
     bad &= small_dips_below(side * from.gap, side * h * from.into, gap, side * h * to.into, faint);
     small_mask slips = SMALL_MODE_MASK(slips) & small_less(zero, beyond);
-    if (small_any(slips))
+    if (small_some(slips))
       bad |= slips & small_dips_below(s * from.slip - edge, s * h * from.slip_rate, beyond,
                                       s * h * to.slip_rate, slow);
-    any = any || small_any(bad);
+    any = any || small_some(bad);
   }
   return any;
 }
@@ -149,7 +151,7 @@ STRUT_SMALL_INLINE bool small_exact_event(const small_events *e, const small_end
     small_mask turned = (SMALL_MODE_MASK(damper_on) & small_less(zero, to.into)) |
                         (SMALL_MODE_MASK(damper_off) & small_less(to.into, zero));
     turned |= small_less(SMALL_MODE(outward) * to.gap, zero);
-    any = any || small_any(turned);
+    any = any || small_some(turned);
   }
   return any;
 }

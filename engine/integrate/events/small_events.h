@@ -28,6 +28,12 @@ typedef struct small_events {
   double time;
 } small_events;
 
+#define LAW(name) small_##name
+#define LAW_INLINE STRUT_SMALL_INLINE
+#include "engine/integrate/events/mode_law.h"
+#undef LAW
+#undef LAW_INLINE
+
 #define SMALL_MODE(field) small_load(m->field + p * SMALL_WIDTH)
 #define SMALL_MODE_MASK(field) small_mask_load(m->field + p * SMALL_WIDTH)
 
@@ -42,32 +48,22 @@ STRUT_SMALL_INLINE small_events small_events_begin(const strut_model *model, str
                         .stepper = l};
 }
 
-STRUT_SMALL_INLINE small_real small_nearer(small_mask back, const double *backward,
-                                           const double *forward, bool laws) {
-  small_real most = small_load(forward);
-  return laws ? small_choose(back, small_load(backward), most) : most;
-}
-
-/* Coefficient of static friction against a force in this direction. */
-STRUT_SMALL_INLINE small_real small_static(const strut_small_contacts *c, int p, small_real towards,
-                                           bool laws) {
-  small_real zero = {0};
-  return small_nearer(small_less(towards, zero), c->mu_static_backward + p * SMALL_WIDTH,
-                      c->mu_static + p * SMALL_WIDTH, laws);
-}
-
 /* See contact_normal_force: with explicit dampers. */
 STRUT_SMALL_INLINE small_real small_normal_force(const strut_small_contacts *c,
                                                  const strut_small_modes *m, int p, small_real gap,
                                                  small_real into, bool laws) {
-  small_real zero = {0}, spring = SMALL_CONTACT(minus_stiffness) * gap;
+  const small_ground_numbers numbers = small_ground_at(c, p);
+  small_real zero = {0};
   small_mask acts = SMALL_MODE_MASK(damper_on);
   if (m->any_by_sign) acts |= SMALL_MODE_MASK(damper_by_sign) & small_less(into, zero);
-  small_real normal = small_add_where(acts, spring, SMALL_CONTACT(minus_damping) * into);
-  if (!laws) return normal;
-  small_real other = spring - spring * SMALL_CONTACT(dissipation) * into;
-  other = small_choose(small_less(zero, other) | small_at_least(gap, zero), other, zero);
-  return small_choose(SMALL_CONTACT_MASK(hunt_crossley), other, normal);
+  return small_ground_normal_in_mode(&numbers, acts, gap, into, laws);
+}
+
+/* The most that friction holds against a push in this direction. */
+STRUT_SMALL_INLINE small_real small_holding(const strut_small_contacts *c, int p, small_real normal,
+                                            small_real towards, bool laws) {
+  const small_friction_numbers numbers = small_friction_at(c, p);
+  return small_friction_holding(&numbers, normal, towards, laws);
 }
 
 /* See friction_in_mode. */
@@ -77,10 +73,8 @@ STRUT_SMALL_INLINE small_real small_friction_in_mode(const strut_small_contacts 
                                                      bool laws) {
   small_real friction = small_keep(SMALL_MODE_MASK(rubs), SMALL_MODE(slip_factor) * normal);
   if (!m->any_band) return friction;
-  small_real most = small_static(c, p, applied, laws) * normal;
-  small_real held = small_choose(small_less(applied, -most), most, -applied);
-  held = small_choose(small_less(most, applied), -most, held);
-  return small_choose(SMALL_MODE_MASK(band), held, friction);
+  small_real holding = small_holding(c, p, normal, applied, laws);
+  return small_choose(SMALL_MODE_MASK(band), small_friction_in_band(holding, applied), friction);
 }
 
 /* See add_contact_forces. */
@@ -153,9 +147,12 @@ STRUT_SMALL_INLINE void small_add_ground_powers(small_events *e) {
   SMALL_EACH(p) {
     const small_contacts *o = &e->contacts;
     touch.touching |= small_set_bits(SMALL_MODE_MASK(closed)) << (p * SMALL_WIDTH);
-    small_real damper = o->normal.part[p] - SMALL_CONTACT(minus_stiffness) * o->gap.part[p];
-    small_book_contacts(&e->run, SMALL_MODE_MASK(closed), damper, o->into.part[p],
-                        o->friction.part[p], o->slip.part[p], true, p, &touch);
+    const small_ground_numbers numbers = small_ground_at(c, p);
+    small_real damper = o->normal.part[p] - small_ground_spring(&numbers, o->gap.part[p]);
+    small_contact_powers powers =
+        small_contact_power(damper, o->into.part[p], o->friction.part[p], o->slip.part[p],
+                            small_all(e->run.contacts->belt_speed));
+    small_book_contacts(&e->run, SMALL_MODE_MASK(closed), powers, true, p, &touch);
   }
   small_add_contacts(&e->run, &touch, &e->power);
 }
@@ -165,7 +162,7 @@ STRUT_SMALL_INLINE void small_structure(small_events *e, const small_rest *rest,
                                         small_shapes *shapes, const small_points *next_q,
                                         const small_points *v, bool ledger) {
   small_pulls px, py;
-  small4_powers members = {0};
+  four_member_powers members = {0};
   small_run run = e->run;
   if (ledger) SMALL_READS_AGAIN(run.tables);
   small_members(&run, rest, shapes, next_q, v, ledger, &px, &py, &members);
@@ -188,28 +185,27 @@ STRUT_SMALL_INLINE small_points small_accelerate_in_modes(small_events *e, const
   return a;
 }
 
-/* Some lane of a row's parts. */
-STRUT_SMALL_INLINE bool small_any(small_mask mask) { return small_set_bits(mask) != 0; }
-
 /* See contradicts_at_stage in adaptive.c. */
 STRUT_SMALL_INLINE bool small_contradicts_at_stage(const small_events *e) {
   const strut_small_contacts *c = &e->run.tables->contact;
   const strut_small_modes *m = e->modes;
-  const double part = STRUT_STAGE_ERROR;
+  const double more = 1.0 + STRUT_STAGE_ERROR, fewer = 1.0 - STRUT_STAGE_ERROR;
   bool laws = e->run.plan & STRUT_TERM_LAWS, any = false;
   if (!m->any_band && !m->any_held) return false;
   SMALL_EACH(p) {
-    small_real zero = {0}, normal = e->contacts.normal.part[p];
+    small_real zero = {0}, normal = e->contacts.normal.part[p], side = SMALL_MODE(side);
     small_real friction = e->contacts.friction.part[p], applied = e->contacts.applied.part[p];
-    small_real size = small_magnitude(applied), rubs = small_magnitude(friction);
-    small_real held = small_static(c, p, -friction, laws) * normal;
-    small_real most = small_static(c, p, applied, laws) * normal;
-    small_mask bad = SMALL_MODE_MASK(stick) & small_less(held * (1.0 + part), rubs);
-    bad |= SMALL_MODE_MASK(band) & SMALL_MODE_MASK(drops) & small_less(most * (1.0 + part), size);
-    bad |= SMALL_MODE_MASK(pushes) & small_less(SMALL_MODE(side) * applied, most * (1.0 - part));
-    bad |= SMALL_MODE_MASK(creep) & small_less(SMALL_MODE(side) * friction,
-                                               SMALL_MODE(minus_kinetic) * normal * (1.0 + part));
-    any = any || small_any(bad & SMALL_MODE_MASK(closed) & small_less(zero, normal));
+    small_real held = small_holding(c, p, normal, -friction, laws) * more;
+    small_real holding = small_holding(c, p, normal, applied, laws);
+    small_real sliding = SMALL_MODE(kinetic) * normal * more;
+#define SMALL_ENDS(mode, margin) (SMALL_MODE_MASK(mode) & small_less(margin, zero))
+    small_mask bad = SMALL_ENDS(stick, small_margin_of_holding(held, friction));
+    bad |= SMALL_MODE_MASK(drops) &
+           SMALL_ENDS(band, small_margin_of_holding(holding * more, applied));
+    bad |= SMALL_ENDS(pushes, small_margin_of_push(side, holding * fewer, applied));
+    bad |= SMALL_ENDS(creep, small_margin_of_creep_out(side, sliding, friction));
+#undef SMALL_ENDS
+    any = any || small_some(bad & SMALL_MODE_MASK(closed) & small_less(zero, normal));
   }
   return any;
 }

@@ -56,7 +56,7 @@ static void list_contact(const strut_model *model, const strut_event_stepper *l,
   m->slip_factor[n] = slips ? -s * kinetic : 0.0;
   m->side[n] = s;
   m->edge[n] = stick_band_edge(e);
-  m->minus_kinetic[n] = -kinetic;
+  m->kinetic[n] = kinetic;
   m->normal[n] = l->response[i].normal;
   m->tangent[n] = l->response[i].tangent;
 }
@@ -101,7 +101,6 @@ void strut_small_modes_update(const strut_model *model, const strut_state *state
   strut_small_modes *m = l->small;
   const strut_contact_table *c = &model->contacts;
   bool level = c->normal[0] == 0.0;
-  assert(strut_laws_within(model->laws, strut_laws_small));
   if (!m->rows_current) strut_small_rest_fill(model, state, STRUT_SMALL_INSTANTS, m->rest);
   memset(m, 0, offsetof(strut_small_modes, stuck));
   memset(m->answer, 0, sizeof m->answer);

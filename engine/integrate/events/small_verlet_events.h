@@ -44,26 +44,6 @@ STRUT_SMALL_INLINE void small_drive_plan(const strut_model *model, const strut_s
   small_drive(model, time, plan->count, m->rest + 1);
 }
 
-/* See implicit_damper. */
-STRUT_SMALL_INLINE small_real small_implicit_damper(const strut_small_contacts *c, int p,
-                                                    small_real spring, small_real free,
-                                                    small_real half, bool laws) {
-  small_real zero = {0}, damping = -SMALL_CONTACT(minus_damping);
-  small_mask smooth = SMALL_CONTACT_MASK(hunt_crossley);
-  if (laws) {
-    small_real rate = small_keep(small_less(zero, spring), SMALL_CONTACT(dissipation) * spring);
-    damping = small_choose(smooth, rate, damping);
-  }
-  small_real into = free / (1.0 + half * damping), force = -damping * into;
-  small_real damper = small_choose(small_less(zero, into), zero, force);
-  if (laws) {
-    small_real pulls = small_keep(small_less(zero, spring), -spring);
-    small_real other = small_choose(small_at_least(force, -spring), force, pulls);
-    damper = small_choose(smooth, other, damper);
-  }
-  return small_keep(small_less(zero, damping), damper);
-}
-
 /*
  * The ground on contacts that do not answer to each other: adds to a1, the acceleration of the structure
  * alone. v, a0: at the begin of the step; speed: predicted.
@@ -79,9 +59,10 @@ STRUT_SMALL_INLINE void small_implicit_ground(small_events *e, double h, const s
   small_row x, y;
   SMALL_EACH(p) {
     small_real gap = q->y.part[p] - t->height, applied = e->force.x.part[p];
-    small_real spring = SMALL_CONTACT(minus_stiffness) * gap, half = 0.5 * h * SMALL_MODE(normal);
+    const small_ground_numbers numbers = small_ground_at(c, p);
+    small_real spring = small_ground_spring(&numbers, gap), half = 0.5 * h * SMALL_MODE(normal);
     small_real free = v->y.part[p] + 0.5 * h * (a0->y.part[p] + a1->y.part[p]) + half * spring;
-    small_real normal = spring + small_implicit_damper(c, p, spring, free, half, laws);
+    small_real normal = spring + small_ground_implicit_damper(&numbers, spring, free, half, laws);
     small_real friction = small_friction_in_mode(c, m, p, normal, applied, laws);
     if (m->any_held)
       friction = small_choose(SMALL_MODE_MASK(stick) | SMALL_MODE_MASK(creep),
@@ -115,14 +96,17 @@ STRUT_SMALL_INLINE bool small_cable_switches(const small_events *e, const small_
     small_real inverse = small_keep(small_less(zero, length), one / length);
     small_real rate =
         (small_difference(s, j, v->x) * x + small_difference(s, j, v->y) * y) * inverse;
-    small_real stretch = length - small_load(rest->rest + j);
-    small_real own = rate - small_load(rest->rate + j);
-    small_real tension = small_load(s->stiffness + j) * stretch + small_load(s->damping + j) * own;
-    small_real elastic = small_load(m->elastic + j) * stretch;
-    small_real lesser = small_choose(small_less(elastic, tension), elastic, tension);
-    small_mask slack = small_mask_load(m->slack + j) & small_less(zero, lesser);
-    small_mask taut = small_mask_load(m->taut + j) & small_less(tension, zero);
-    any = any || small_any(slack | taut);
+    const small_member_values values = {.length = length,
+                                        .rate = rate,
+                                        .rest = small_load(rest->rest + j),
+                                        .rest_rate = small_load(rest->rate + j),
+                                        .stiffness = small_load(s->stiffness + j),
+                                        .damping = small_load(s->damping + j)};
+    small_real damper, tension = small_member_tension(&values, true, false, true, false, &damper);
+    small_real elastic = small_load(m->elastic + j) * (length - values.rest);
+    small_mask taut = small_mask_load(m->taut + j), slack = small_mask_load(m->slack + j);
+    small_real margin = small_cable_margin(taut, elastic, tension, false);
+    any = any || small_some((slack | taut) & small_less(margin, zero));
   }
   return any;
 }

@@ -179,7 +179,6 @@ const strut_integrator strut_integrator_verlet_events = {
     .evaluations = 1,
     .region = STRUT_REGION_VERLET,
     .role = STRUT_ROLE_COARSE,
-    .lanes = STRUT_LANES_VERLET,
     .implicit_damper = true,
     .events = true,
     .create = create,

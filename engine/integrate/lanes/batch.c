@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/integrate/lanes/batch.h"
 
+#include <assert.h>
 #include <math.h>
-
-#include "engine/model/small_model.h"
 
 #if defined(__x86_64__)
 static bool has_eight(void) {
@@ -16,33 +15,20 @@ static bool has_eight(void) { return false; }
 static bool has_four(void) { return false; }
 #endif
 
-int32_t strut_batch_widest(void) { return has_four() ? 8 : 2; }
+int32_t strut_batch_widest(void) { return has_four() ? 8 : 1; }
 
-bool strut_batch_knows(const strut_integrator *method) { return method->lanes != STRUT_LANES_NONE; }
+bool strut_batch_knows(const strut_integrator *method) { return method->lanes; }
 
 bool strut_batch_possible(const strut_model *model, const strut_integrator *method) {
-  if (!strut_batch_knows(method) || !strut_lanes_possible(model)) return false;
-  /* slopes couple what a contact does to its node */
-  return !method->events || !(model->plan & STRUT_TERM_SLOPE);
+  return strut_batch_knows(method) && strut_lanes_possible(model);
 }
 
-bool strut_batch_pays(const strut_model *model, const strut_integrator *method, int32_t width) {
-  bool small = model->small && model->small->level != STRUT_SMALL_NONE;
-  /* eight lanes of small models against single runs: verlet-events gains 0.93 to 1.13, rk4 1.8; two lanes lose */
-  return !small || (width > 2 && !method->events);
-}
-
-static void choose_kernels(strut_batch *b, bool halves) {
+static void choose_kernel(strut_batch *b, bool halves) {
   int32_t width = b->tables.width;
-  b->run = width == 4   ? strut_batch_rk4_4
-           : width == 2 ? strut_batch_rk4_2
-           : halves     ? strut_batch_rk4_8_halves
-                        : strut_batch_rk4_8;
-  if (!b->events) return;
-  b->events->kernels = width == 4   ? &strut_batch_verlet_4
-                       : width == 2 ? &strut_batch_verlet_2
-                       : halves     ? &strut_batch_verlet_8_halves
-                                    : &strut_batch_verlet_8;
+  assert(width == 4 || width == 8);
+  b->run = width == 4 ? strut_batch_rk4_4
+           : halves   ? strut_batch_rk4_8_halves
+                      : strut_batch_rk4_8;
 }
 
 /* What rk4 needs. */
@@ -63,19 +49,18 @@ strut_batch *strut_batch_create(const strut_model *first, const strut_integrator
   if (!b) return NULL;
   b->method = method;
   b->ledger = ledger;
-  bool good = strut_lane_tables_create(first, width, &b->arena, &b->tables) &&
-              (method->events ? strut_batch_events_create(b) : create_stages(b));
+  bool good = strut_lane_tables_create(first, width, &b->arena, &b->tables) && create_stages(b);
   b->dt = strut_arena_allocate(&b->arena, (size_t)width, sizeof(double));
   b->step = strut_arena_allocate(&b->arena, (size_t)width, sizeof(double));
   if (good && b->dt && b->step) {
-    choose_kernels(b, !has_eight());
+    choose_kernel(b, !has_eight());
     return b;
   }
   strut_batch_free(b);
   return NULL;
 }
 
-void strut_batch_halve(strut_batch *b) { choose_kernels(b, true); }
+void strut_batch_halve(strut_batch *b) { choose_kernel(b, true); }
 
 void strut_batch_free(strut_batch *b) {
   if (!b) return;
@@ -91,7 +76,6 @@ static void copy_rows(double *table, int32_t rows, int32_t width, int32_t to, in
 static void imitate(strut_batch *b, int32_t to, int32_t from) {
   int32_t width = b->tables.width, length = b->tables.first->length;
   strut_lane_tables_copy(&b->tables, to, from);
-  if (b->events) return;
   copy_rows(b->q, length, width, to, from);
   copy_rows(b->v, length, width, to, from);
   copy_rows(b->work, STRUT_LANE_POWERS, width, to, from);
@@ -113,11 +97,7 @@ void strut_batch_empty(strut_batch *b, int32_t lane) {
     if (!b->filled[l]) b->tables.model[l] = NULL;
 }
 
-void strut_batch_put(strut_batch *b, int32_t lane, strut_state *state, void *workspace) {
-  if (b->events) {
-    strut_batch_events_put(b, lane, state, workspace);
-    return;
-  }
+void strut_batch_put(strut_batch *b, int32_t lane, const strut_state *state) {
   int32_t width = b->tables.width, length = b->tables.first->length;
   for (int32_t i = 0; i < length; i++) {
     b->q[i * width + lane] = state->q[i];
@@ -131,16 +111,11 @@ void strut_batch_put(strut_batch *b, int32_t lane, strut_state *state, void *wor
 
 void strut_batch_count(const strut_batch *b, int32_t lane, strut_state *state) {
   int64_t before = state->step;
-  if (b->events) return; /* the state counts itself */
   state->step = (int64_t)b->step[lane];
   state->evaluations += (state->step - before) * b->method->evaluations;
 }
 
 void strut_batch_sample(const strut_batch *b, int32_t lane, strut_state *state) {
-  if (b->events) {
-    strut_batch_events_sample(b, lane);
-    return;
-  }
   int32_t width = b->tables.width, length = 2 * b->tables.first->node_count;
   for (int32_t i = 0; i < length; i++) {
     state->q[i] = b->q[i * width + lane];
@@ -151,10 +126,6 @@ void strut_batch_sample(const strut_batch *b, int32_t lane, strut_state *state) 
 }
 
 void strut_batch_get(strut_batch *b, int32_t lane, strut_state *state) {
-  if (b->events) {
-    strut_batch_events_get(b, lane);
-    return;
-  }
   const strut_lane_tables *t = &b->tables;
   int32_t width = t->width;
   strut_batch_sample(b, lane, state);
@@ -180,9 +151,6 @@ void strut_batch_advance(strut_batch *b, const int64_t *left) {
     if (!b->filled[l] && !b->tables.model[l]) imitate(b, l, from);
     if (b->filled[l] && left[l] < count) count = left[l];
   }
-  if (b->events)
-    strut_batch_events_advance(b, left);
-  else
-    b->run(b, count);
+  b->run(b, count);
   b->driven = true;
 }

@@ -3,8 +3,7 @@
  * A batch: several states of models of one topology, stepped in lockstep with vector registers.
  *
  * Each lane has its own model, step size and step number, and after any number of steps the bits that
- * the method's single run would have. Lanes that no one has filled idle as copies of others. With a
- * method that locates events a lane in which something happens steps through it on its own, and rejoins.
+ * the method's single run would have. Lanes that are not filled idle as copies of others.
  */
 #ifndef STRUT_ENGINE_INTEGRATE_LANES_BATCH_H
 #define STRUT_ENGINE_INTEGRATE_LANES_BATCH_H
@@ -14,7 +13,7 @@
 
 typedef struct strut_batch strut_batch;
 
-/** The most lanes that this processor steps at once: 8 (from AVX2 on) or 2. */
+/** The most lanes that this processor steps at once: 8 from AVX2 on, else 1. */
 STRUT_API int32_t strut_batch_widest(void);
 /** Has the method lanes at all? */
 STRUT_API bool strut_batch_knows(const strut_integrator *method);
@@ -25,7 +24,7 @@ STRUT_API bool strut_batch_pays(const strut_model *model, const strut_integrator
                                 int32_t width);
 
 /**
- * A batch for models like `first`, which must be possible and outlive it. width: 2, 4 or 8, at most the
+ * A batch for models like `first`, which must be possible and outlive it. width: 4 or 8, at most the
  * widest. ledger: whether the lanes' states keep one. NULL: out of memory.
  */
 STRUT_API strut_batch *strut_batch_create(const strut_model *first, const strut_integrator *method,
@@ -36,14 +35,10 @@ STRUT_API void strut_batch_halve(strut_batch *batch);
 /** Puts a model, which must be like the first one (strut_lanes_alike), into a lane. */
 STRUT_API void strut_batch_fill(strut_batch *batch, int32_t lane, const strut_model *model,
                                 double dt);
-/** Nobody asks for this lane any more. Its model may go. */
+/** Releases the lane; its model may then be freed. */
 STRUT_API void strut_batch_empty(strut_batch *batch, int32_t lane);
-/**
- * The lane goes on from the state: q, v, works, step. A method that locates events may work on the state
- * and its workspace until the lane is emptied; NULL with others.
- */
-STRUT_API void strut_batch_put(strut_batch *batch, int32_t lane, strut_state *state,
-                               void *workspace);
+/** The lane continues from the state: q, v, works, step. */
+STRUT_API void strut_batch_put(strut_batch *batch, int32_t lane, const strut_state *state);
 /** The state becomes the lane's: all that the method's advance would have left there. */
 STRUT_API void strut_batch_get(strut_batch *batch, int32_t lane, strut_state *state);
 /** Only the step's number and the count of evaluations. */
@@ -58,37 +53,6 @@ STRUT_API void strut_batch_advance(strut_batch *batch, const int64_t *left);
 
 /* Shared by batch.c and the kernels of each width. */
 
-/** What a method with events does with all lanes at once; of a width, in halves or not. */
-typedef struct strut_batch_kernels {
-  void (*predict)(strut_batch *batch); /* from now over h to next, without the ground */
-  void (*correct)(strut_batch *batch); /* velocities at next */
-  void (*measure)(strut_batch *batch); /* the laws that switch, at next */
-} strut_batch_kernels;
-extern const strut_batch_kernels strut_batch_verlet_2, strut_batch_verlet_4, strut_batch_verlet_8,
-    strut_batch_verlet_8_halves;
-
-/** One end of the lanes' steps; arrays are (length, width), powers (STRUT_LANE_POWERS, width). */
-typedef struct strut_batch_end {
-  double *q, *v, *a, *structure; /* structure: all forces but the ground's */
-  double *power, *structure_power;
-} strut_batch_end;
-
-/** What lanes with located events need beside; see batch_events.c. */
-typedef struct strut_batch_events {
-  strut_batch_end end[2], *now, *next;
-  double *predicted;                     /* (length, width) velocities */
-  double *outward;                       /* (contacts, width) as strut_event_stepper has them */
-  double *time, *h, *crossed, *accepted; /* (width) [s], [s]; the last two 0 or 1 */
-  strut_state *state[STRUT_MOST_LANES];  /* of filled lanes, with its workspace */
-  struct strut_event_stepper *stepper[STRUT_MOST_LANES];
-  const struct strut_law_switch *laws; /* (law_count) of all lanes alike */
-  int32_t law_count;
-  double *stretch, *stretch_rate, *tension; /* (laws, width) at next; see strut_step_end */
-  bool joined[STRUT_MOST_LANES]; /* in step with others; else its state says where it is */
-  bool jumped[STRUT_MOST_LANES]; /* something happens in the step that is due */
-  const strut_batch_kernels *kernels;
-} strut_batch_events;
-
 /** Arrays are (length, width) where not said otherwise. */
 struct strut_batch {
   strut_lane_tables tables;
@@ -99,21 +63,11 @@ struct strut_batch {
   double *q, *v, *stage_q, *stage_v[4], *a[4];
   double *work; /* (STRUT_LANE_POWERS, width) */
   void (*run)(strut_batch *batch, int64_t count);
-  strut_batch_events *events; /* NULL with methods that locate none */
   strut_arena arena;
 };
 
-void strut_batch_rk4_2(strut_batch *batch, int64_t count);
 void strut_batch_rk4_4(strut_batch *batch, int64_t count);
 void strut_batch_rk4_8(strut_batch *batch, int64_t count);
 void strut_batch_rk4_8_halves(strut_batch *batch, int64_t count);
-
-/* batch_events.c */
-
-bool strut_batch_events_create(strut_batch *batch);
-void strut_batch_events_put(strut_batch *batch, int32_t lane, strut_state *state, void *workspace);
-void strut_batch_events_get(strut_batch *batch, int32_t lane);
-void strut_batch_events_sample(const strut_batch *batch, int32_t lane);
-void strut_batch_events_advance(strut_batch *batch, const int64_t *left);
 
 #endif

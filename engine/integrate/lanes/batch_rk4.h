@@ -56,7 +56,7 @@ STRUT_LANE_INLINE void batch_rk4_steps(strut_batch *b, int64_t count, bool ledge
   bool others = ledger && tables.first->plan & (STRUT_TERM_LOADS | STRUT_TERM_ELEMENTS);
   const strut_contact_table *contacts = &tables.first->contacts;
   bool moves = false;
-  LANE_EACH(moves |= lane_any(lane_row(tables.ground, STRUT_LANE_BELT, p) != 0.0));
+  LANE_EACH(moves |= lane_some(lane_row(tables.ground, STRUT_LANE_BELT, p) != 0.0));
   lane_step_sums sums;
   if (ledger) lane_clear_sums(&sums);
   for (size_t k = 0; k < STRUT_LANE_POWERS && ledger; k++) /* booked ones are not here */

@@ -10,8 +10,8 @@
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/model/mass.h"
+#include "engine/output/code/law_text.h"
 #include "engine/output/code/templates.h"
-#include "engine/output/code/writer.h"
 #include "engine/output/file.h"
 #include "engine/output/results.h"
 #include "engine/output/untold.h"
@@ -24,39 +24,26 @@ static size_t count_rubbing(const strut_scene *scene) {
   return rubs;
 }
 
-/* The laws and strains of the templates. */
-static const strut_law_set written = {
-    .friction = STRUT_HAS(STRUT_FRICTION, NONE) | STRUT_HAS(STRUT_FRICTION, KARNOPP) |
-                STRUT_HAS(STRUT_FRICTION, SMOOTH),
-    .damping = STRUT_HAS(STRUT_DAMPING, APPROACH) | STRUT_HAS(STRUT_DAMPING, HUNT_CROSSLEY),
-    .law = STRUT_HAS(STRUT_LAW, LINEAR) | STRUT_HAS(STRUT_LAW, BILINEAR) |
-           STRUT_HAS(STRUT_LAW, PLAY) | STRUT_HAS(STRUT_LAW, POLYNOMIAL) |
-           STRUT_HAS(STRUT_LAW, LOGARITHMIC) | STRUT_HAS(STRUT_LAW, EXPONENTIAL) |
-           STRUT_HAS(STRUT_LAW, TABLE) | STRUT_HAS(STRUT_LAW, ELASTIC_PLASTIC) |
-           STRUT_HAS(STRUT_LAW, PRESSURE) | STRUT_HAS(STRUT_LAW, ISOTHERMAL) |
-           STRUT_HAS(STRUT_LAW, ISENTROPIC) | STRUT_HAS(STRUT_LAW, AXIAL),
-    .strain = STRUT_HAS(STRUT_STRAIN, LENGTH) | STRUT_HAS(STRUT_STRAIN, PATH) |
-              STRUT_HAS(STRUT_STRAIN, ANGLE) | STRUT_HAS(STRUT_STRAIN, AREA) |
-              STRUT_HAS(STRUT_STRAIN, REACH)};
-
+/* Laws and strains are their own texts. Sticking that is exact needs a method with events. */
 static void add_unwritten_laws(strut_untold *r, strut_law_set has) {
-  strut_law_set more = strut_laws_beyond(has, written);
   char text[200];
   for (unsigned k = 0; k < STRUT_FRICTION_LAW_COUNT; k++) {
     bool exact = strut_friction_is_exact((strut_friction_law)k);
-    snprintf(
-        text, sizeof text, "friction law %s%s", strut_friction_law_at((strut_friction_law)k)->word,
-        exact ? " (its stops and starts are located within steps; use karnopp or smooth)" : "");
-    strut_untold_add(r, more.friction >> k & 1u, text);
+    snprintf(text, sizeof text,
+             "friction law %s (its stops and starts are located within steps; use karnopp or smooth)",
+             strut_friction_law_at((strut_friction_law)k)->word);
+    strut_untold_add(r, exact && has.friction >> k & 1u, text);
   }
-  strut_untold_add(r, more.damping, "this damping_law of a ground");
   for (unsigned k = 0; k < STRUT_LAW_COUNT; k++) {
     snprintf(text, sizeof text, "law %s", strut_law_at((strut_law_kind)k)->word);
-    strut_untold_add(r, more.law >> k & 1u, text);
+    strut_untold_add(r, has.law >> k & 1u && !strut_code_knows_element_law((strut_law_kind)k), text);
   }
   for (unsigned k = 0; k < STRUT_STRAIN_COUNT; k++) {
-    snprintf(text, sizeof text, "strain %s", strut_strain_name((strut_strain_kind)k));
-    strut_untold_add(r, more.strain >> k & 1u, text);
+    const char *name = strut_strain_name((strut_strain_kind)k);
+    char function[100];
+    snprintf(function, sizeof function, "strain_%s", name);
+    snprintf(text, sizeof text, "strain %s", name);
+    strut_untold_add(r, has.strain >> k & 1u && !strut_code_knows_law(function), text);
   }
 }
 

@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "engine/forces/memory.h"
+#include "engine/output/code/law_text.h"
 #include "engine/output/code/templates.h"
-#include "engine/output/code/writer.h"
 #include "engine/scene/signal_program.h"
 
 static const char *const law_names[] = {
@@ -39,16 +39,14 @@ static bool has_strain(const strut_code_writer *w, strut_strain_kind strain) {
   return false;
 }
 
-/* A length is a path without guides. */
-static bool has_path(const strut_code_writer *w) {
+static bool actuates_strain(const strut_code_writer *w, strut_strain_kind strain) {
   const strut_actuator_force_table *t = &w->model->actuator_forces;
   for (int32_t i = 0; i < t->count; i++)
-    if (t->item[i].strain != STRUT_STRAIN_ANGLE) return true;
-  return has_strain(w, STRUT_STRAIN_LENGTH) || has_strain(w, STRUT_STRAIN_PATH);
+    if (t->item[i].strain == strain) return true;
+  return false;
 }
 
 bool strut_code_has_strain(const strut_code_writer *w, const char *word, size_t length) {
-  if (is_word(word, length, "path")) return has_path(w);
   for (int k = 0; k < STRUT_STRAIN_COUNT; k++)
     if (is_word(word, length, strut_strain_name((strut_strain_kind)k)))
       return has_strain(w, (strut_strain_kind)k);
@@ -56,17 +54,134 @@ bool strut_code_has_strain(const strut_code_writer *w, const char *word, size_t 
   return false;
 }
 
+void strut_code_add_strains(strut_code_writer *w) {
+  char name[64];
+  for (int k = 0; k < STRUT_STRAIN_COUNT; k++) {
+    strut_strain_kind strain = (strut_strain_kind)k;
+    snprintf(name, sizeof name, "strain_%s", strut_strain_name(strain));
+    if (has_strain(w, strain) || actuates_strain(w, strain)) strut_code_add_law(w, name);
+  }
+}
+
 bool strut_code_has_law(const strut_code_writer *w, const char *word, size_t length) {
-  bool gas = has_law(w, STRUT_LAW_ISOTHERMAL) || has_law(w, STRUT_LAW_ISENTROPIC);
-  if (is_word(word, length, "gas")) return gas;
-  /* before it has yielded it is linear */
-  if (is_word(word, length, "straight"))
-    return has_law(w, STRUT_LAW_LINEAR) || has_law(w, STRUT_LAW_ELASTIC_PLASTIC);
-  if (is_word(word, length, "cell")) return gas || has_law(w, STRUT_LAW_PRESSURE);
   for (int k = 0; k < STRUT_LAW_COUNT; k++)
     if (is_word(word, length, law_names[k])) return has_law(w, (strut_law_kind)k);
   assert(false && "a template asks for a law that there is not");
   return false;
+}
+
+/* ---- laws ---- */
+
+bool strut_code_knows_element_law(strut_law_kind law) {
+  char name[64];
+  snprintf(name, sizeof name, "law_%s", law_names[law]);
+  return strut_code_knows_law(name);
+}
+
+static bool has_cells(const strut_code_writer *w) {
+  for (int k = 0; k < STRUT_LAW_COUNT; k++)
+    if (strut_law_is_of_cells((strut_law_kind)k) && has_law(w, (strut_law_kind)k)) return true;
+  return false;
+}
+
+/* Does some law of the model take this number? That of EA over the rest length asks all for the second stiffness. */
+static bool has_number(const strut_code_writer *w, int p) {
+  bool some = p == STRUT_LAW_PARAMETER_SECOND_STIFFNESS && has_law(w, STRUT_LAW_AXIAL);
+  for (int k = 0; k < STRUT_LAW_COUNT; k++)
+    some = some || (has_law(w, (strut_law_kind)k) && strut_law_allows((strut_law_kind)k, p));
+  return some;
+}
+
+/* What functions of laws take: those numbers that the model's laws have. */
+void strut_code_add_law_numbers(strut_code_writer *w) {
+  if (has_law(w, STRUT_LAW_TABLE)) strut_code_add_law(w, "law_curve");
+  strut_buffer_add(&w->text, "typedef struct law_numbers {\n"
+                             "  real stiffness; /* force per strain */\n");
+  for (int p = 0; p < STRUT_LAW_NUMBER_COUNT; p++)
+    if (has_number(w, p)) strut_buffer_add(&w->text, "  real %s;\n", strut_law_key(p));
+  if (has_law(w, STRUT_LAW_TABLE)) strut_buffer_add(&w->text, "  const law_curve *curve;\n");
+  if (has_law(w, STRUT_LAW_POLYNOMIAL))
+    strut_buffer_add(&w->text, "  size_t count;\n  const real *coefficient; /* (count) */\n");
+  if (has_law(w, STRUT_LAW_AXIAL))
+    strut_buffer_add(&w->text, "  real axial; /* EA, and the law that has it */\n  int material;\n");
+  if (has_cells(w))
+    strut_buffer_add(&w->text, "  real area, outside, exponent; /* as drawn [m^2]; pressure outside "
+                               "[N/m]; of an isentropic gas */\n");
+  strut_buffer_add(&w->text, "} law_numbers;\n\n");
+}
+
+static void add_numbers(strut_code_writer *w, int32_t i, int32_t *coefficient) {
+  const strut_element *e = &w->model->elements.element[i];
+  const strut_law_numbers *n = &e->numbers;
+  const double parameters[] = {
+#define STRUT_FIELD(NAME, field, ...) n->field,
+      STRUT_LAW_PARAMETERS(STRUT_FIELD)
+#undef STRUT_FIELD
+  };
+  size_t count = e->law == STRUT_LAW_POLYNOMIAL ? n->count : 0;
+  strut_buffer_add(&w->text, ", {");
+  strut_code_add_real(w, n->stiffness);
+  for (int p = 0; p < STRUT_LAW_NUMBER_COUNT; p++)
+    if (has_number(w, p)) strut_code_add_field(w, parameters[p]);
+  if (has_law(w, STRUT_LAW_TABLE) && e->law == STRUT_LAW_TABLE)
+    strut_buffer_add(&w->text, ", &curve_%d", i);
+  else if (has_law(w, STRUT_LAW_TABLE))
+    strut_buffer_add(&w->text, ", NULL");
+  if (has_law(w, STRUT_LAW_POLYNOMIAL))
+    strut_buffer_add(&w->text, ", %zu, coefficient + %d", count, *coefficient);
+  *coefficient += (int32_t)count;
+  if (has_law(w, STRUT_LAW_AXIAL)) {
+    strut_code_add_field(w, n->axial);
+    strut_buffer_add(&w->text, ", %d", n->material);
+  }
+  if (has_cells(w)) {
+    strut_code_add_field(w, n->area);
+    strut_code_add_field(w, n->outside);
+    strut_code_add_field(w, n->exponent);
+  }
+  strut_buffer_add(&w->text, "}");
+}
+
+/* The laws of members whose stiffness is EA over their rest length. */
+static void add_materials(strut_code_writer *w) {
+  const strut_element_table *t = &w->model->elements;
+  bool has[STRUT_LAW_COUNT] = {false};
+  char name[64];
+  for (int32_t i = 0; i < t->count; i++)
+    if (t->element[i].law == STRUT_LAW_AXIAL) has[t->element[i].numbers.material] = true;
+  strut_code_add_law(w, "law_response");
+  for (int k = 0; k < STRUT_LAW_COUNT; k++) {
+    snprintf(name, sizeof name, "law_%s", law_names[k]);
+    if (has[k]) strut_code_add_law(w, name);
+  }
+  strut_buffer_add(&w->text,
+                   "static law_response law_of_material(const law_numbers *n, real e, real e0, int "
+                   "piece) {\n  switch (n->material) {\n");
+  for (int k = 0; k < STRUT_LAW_COUNT; k++)
+    if (has[k])
+      strut_buffer_add(&w->text, "    case %d: return law_%s(n, e, e0, piece);\n", k, law_names[k]);
+  strut_buffer_add(&w->text, "  }\n  return (law_response){0, 0, 0, 0};\n}\n\n");
+}
+
+/* A law's force and energy apart, of which a step wants one. */
+void strut_code_add_element_laws(strut_code_writer *w) {
+  const strut_element_table *t = &w->model->elements;
+  bool written[STRUT_LAW_COUNT] = {false};
+  char name[64];
+  if (has_law(w, STRUT_LAW_AXIAL)) add_materials(w);
+  for (int32_t b = 0; b < t->block_count; b++) {
+    strut_law_kind law = t->block[b].law;
+    if (written[law]) continue;
+    written[law] = true;
+    snprintf(name, sizeof name, "law_%s", law_names[law]);
+    strut_code_add_law(w, name);
+    strut_buffer_add(&w->text,
+                     "static real force_%s(const element *m, real e, real e0) {\n"
+                     "  return %s(&m->law, e, e0, -1).force;\n}\n\n"
+                     "static real energy_%s(const element *m, real e, real e0) {\n"
+                     "  return %s(&m->law, e, e0, -1).energy;\n}\n\n",
+                     law_names[law], name, law_names[law], name);
+  }
 }
 
 /* ---- elements ---- */
@@ -144,33 +259,10 @@ static void add_curves(strut_code_writer *w) {
       strut_buffer_add(&w->text, "},\n");
     }
     strut_buffer_add(&w->text,
-                     "};\nstatic const curve curve_%d = {%zu, curve_x_%d, curve_piece_%d, "
-                     "curve_energy_%d};\n",
-                     i, c->count, i, i, i);
+                     "};\nstatic const law_curve curve_%d = {%zu, curve_x_%d, curve_piece_%d, "
+                     "curve_energy_%d, %d};\n",
+                     i, c->count, i, i, i, c->smooth);
   }
-}
-
-/* Functions of the laws whose stiffness follows the rest length, before they are defined. */
-static void declare_materials(strut_code_writer *w) {
-  const strut_element_table *t = &w->model->elements;
-  bool declared[STRUT_LAW_COUNT] = {false};
-  for (int32_t i = 0; i < t->count; i++) {
-    int material = t->element[i].numbers.material;
-    if (t->element[i].law != STRUT_LAW_AXIAL || declared[material]) continue;
-    declared[material] = true;
-    strut_buffer_add(&w->text,
-                     "static real force_%s(const element *m, real e, real e0);\n"
-                     "static real energy_%s(const element *m, real e, real e0);\n",
-                     law_names[material], law_names[material]);
-  }
-}
-
-static void add_material(strut_code_writer *w, const strut_element *e) {
-  const char *law = law_names[e->numbers.material];
-  bool axial = e->law == STRUT_LAW_AXIAL;
-  strut_code_add_field(w, e->numbers.axial);
-  if (axial) strut_buffer_add(&w->text, ", force_%s, energy_%s", law, law);
-  if (!axial) strut_buffer_add(&w->text, ", NULL, NULL");
 }
 
 /* ---- what yields, breaks or is released ---- */
@@ -225,37 +317,17 @@ void strut_code_add_breakables(strut_code_writer *w) {
 static void add_element(strut_code_writer *w, int32_t i, int32_t *coefficient) {
   const strut_model *model = w->model;
   const strut_element *e = &model->elements.element[i];
-  const strut_law_numbers *n = &e->numbers;
   int32_t slot = e->remembers ? e->base : e->slot;
   double natural = slot >= 0 ? model->members.rest[slot] : e->natural;
-  int32_t count = count_coefficients(e);
   strut_buffer_add(&w->text, "    {%d, %d, %d", slot >= 0 ? strut_code_slot(model, slot) : -1,
                    e->first, e->nodes);
   strut_code_add_field(w, e->carries);
   strut_code_add_field(w, natural);
   strut_code_add_field(w, e->damping);
-  strut_code_add_field(w, n->stiffness);
-  if (has_law(w, STRUT_LAW_BILINEAR)) {
-    strut_code_add_field(w, n->knee);
-    strut_code_add_field(w, n->second_stiffness);
-  }
-  if (has_law(w, STRUT_LAW_PLAY)) strut_code_add_field(w, n->gap);
-  if (has_law(w, STRUT_LAW_EXPONENTIAL)) strut_code_add_field(w, n->scale);
-  if (has_law(w, STRUT_LAW_POLYNOMIAL)) strut_buffer_add(&w->text, ", %d, %d", *coefficient, count);
-  *coefficient += count;
-  if (has_law(w, STRUT_LAW_TABLE) && e->law == STRUT_LAW_TABLE)
-    strut_buffer_add(&w->text, ", &curve_%d", i);
-  else if (has_law(w, STRUT_LAW_TABLE))
-    strut_buffer_add(&w->text, ", NULL");
-  if (has_law(w, STRUT_LAW_AXIAL)) add_material(w, e);
+  add_numbers(w, i, coefficient);
   if (has_law(w, STRUT_LAW_ELASTIC_PLASTIC)) add_slider(w, i);
   if (strut_code_has_breakables(w))
     strut_buffer_add(&w->text, ", %d", breakable_of(&model->elements, i));
-  if (strut_code_has_law(w, "cell", 4)) {
-    strut_code_add_field(w, n->area);
-    strut_code_add_field(w, n->outside);
-    strut_code_add_field(w, n->exponent);
-  }
   strut_code_end_row(w, strut_element_name(w->scene, e));
 }
 
@@ -266,7 +338,6 @@ void strut_code_add_elements(strut_code_writer *w) {
   add_nodes(w, "element_node", t->at, last->first + last->nodes);
   add_coefficients(w);
   add_curves(w);
-  declare_materials(w);
   strut_buffer_add(&w->text, "static const element elements[] = {\n");
   for (int32_t i = 0; i < t->count; i++) add_element(w, i, &coefficient);
   strut_buffer_add(&w->text, "};\n");
@@ -278,10 +349,6 @@ void strut_code_add_elements(strut_code_writer *w) {
     strut_buffer_add(&w->text, "};\n");
   }
   strut_buffer_add(&w->text, "\n");
-}
-
-static const char *strain_function(strut_strain_kind strain) {
-  return strut_strain_name(strain == STRUT_STRAIN_LENGTH ? STRUT_STRAIN_PATH : strain);
 }
 
 void strut_code_add_blocks(strut_code_writer *w) {
@@ -298,10 +365,9 @@ void strut_code_add_blocks(strut_code_writer *w) {
       t->block_count, 2 * t->most_nodes);
   for (int32_t b = 0; b < t->block_count; b++) {
     const strut_element_block *k = &t->block[b];
-    bool yields = k->law == STRUT_LAW_ELASTIC_PLASTIC;
-    const char *law = law_names[yields ? STRUT_LAW_LINEAR : k->law];
+    const char *law = law_names[k->law];
     strut_buffer_add(&w->text, "    {strain_%s, force_%s, energy_%s, %d, %d},\n",
-                     strain_function(k->strain), law, law, k->begin, k->end);
+                     strut_strain_name(k->strain), law, law, k->begin, k->end);
   }
   strut_buffer_add(&w->text, "};\n\n");
 }
@@ -325,7 +391,7 @@ void strut_code_add_actuator_forces(strut_code_writer *w) {
       "} actuator_force;\n\nstatic const actuator_force actuator_forces[] = {\n");
   for (int32_t i = 0; i < t->count; i++)
     strut_buffer_add(&w->text, "    {strain_%s, %d, %d}, /* %s */\n",
-                     strain_function(t->item[i].strain), t->item[i].first, t->item[i].nodes,
+                     strut_strain_name(t->item[i].strain), t->item[i].first, t->item[i].nodes,
                      w->inputs.name[first + i]);
   strut_buffer_add(&w->text, "};\n\n");
 }

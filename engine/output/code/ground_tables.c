@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Contacts and the surfaces that they touch, as static tables. */
+/* Contacts, their laws, and the surfaces that they touch, as static tables. */
+#include <ctype.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
-#include "engine/output/code/writer.h"
+#include "engine/output/code/law_text.h"
 
 /* ---- which there are ---- */
 
@@ -80,12 +82,6 @@ static bool has_surfaces(const strut_code_writer *w) {
   return w->model->plan & STRUT_TERM_SURFACES;
 }
 
-const strut_code_condition strut_code_ground_conditions[] = {
-    {"surfaces", has_surfaces},        {"shaken", has_shaken}, {"circles", strut_code_has_circles},
-    {"pieces", strut_code_has_pieces}, {"facets", has_facets}, {"belts", has_belts},
-    {"corners", has_corners},          {NULL, NULL},
-};
-
 /* ---- contacts ---- */
 
 /* The one straight line at rest. */
@@ -102,50 +98,144 @@ static void add_line(strut_code_writer *w) {
     strut_code_add_constant(w, "belt_speed", t->belt_speed);
 }
 
-static void add_contact_type(strut_code_writer *w) {
-  bool friction = strut_code_holds(w, "friction"), karnopp = strut_code_holds(w, "karnopp");
-  bool hunt = strut_code_holds(w, "hunt_crossley"), surfaces = strut_code_holds(w, "surfaces");
+/* ---- laws ---- */
+
+static const char *const friction_names[] = {
+#define STRUT_NAME(NAME, name, ...) #name,
+    STRUT_FRICTION_LAWS(STRUT_NAME)
+#undef STRUT_NAME
+};
+
+static bool has_friction(const strut_code_writer *w, int law) {
+  const strut_contact_table *c = &w->model->contacts;
+  for (int32_t i = 0; i < c->count; i++)
+    if ((int)c->entry[i].friction.law == law) return true;
+  return false;
+}
+
+static bool has_band_of(int law) { return strut_friction_has_band((strut_friction_law)law); }
+
+static bool has_bands(const strut_code_writer *w) {
+  for (int k = 0; k < STRUT_FRICTION_LAW_COUNT; k++)
+    if (has_friction(w, k) && has_band_of(k)) return strut_code_holds(w, "friction");
+  return false;
+}
+
+const strut_code_condition strut_code_ground_conditions[] = {
+    {"surfaces", has_surfaces},        {"shaken", has_shaken}, {"circles", strut_code_has_circles},
+    {"pieces", strut_code_has_pieces}, {"facets", has_facets}, {"belts", has_belts},
+    {"corners", has_corners},          {"band", has_bands},    {NULL, NULL},
+};
+
+/* A name in capitals. */
+static void add_capitals(strut_code_writer *w, const char *name) {
+  for (; *name; name++) strut_buffer_add(&w->text, "%c", toupper((unsigned char)*name));
+}
+
+void strut_code_add_ground_law(strut_code_writer *w) {
+  strut_code_add_law(w, "ground_spring");
+  strut_code_add_law(w, "ground_damper");
+}
+
+static void add_choice_of_friction(strut_code_writer *w, bool directional) {
+  const char *of = directional ? "&towards" : "&c->friction";
+  strut_buffer_add(&w->text, "  switch (c->law) {\n");
+  for (int k = 0; k < STRUT_FRICTION_LAW_COUNT; k++) {
+    if (!has_friction(w, k)) continue;
+    strut_buffer_add(&w->text, "    case FRICTION_");
+    add_capitals(w, friction_names[k]);
+    strut_buffer_add(&w->text, ": return friction_%s(%s, normal, slip, applied);\n",
+                     friction_names[k], of);
+  }
+  strut_buffer_add(&w->text, "  }\n  return 0;\n}\n\n");
+}
+
+/* The contacts that may stick, where several touch one node. */
+static void add_bands(strut_code_writer *w) {
+  strut_buffer_add(&w->text, "static int has_band(const contact *c) {\n  switch (c->law) {\n");
+  for (int k = 0; k < STRUT_FRICTION_LAW_COUNT; k++) {
+    if (!has_friction(w, k)) continue;
+    strut_buffer_add(&w->text, "    case FRICTION_");
+    add_capitals(w, friction_names[k]);
+    strut_buffer_add(&w->text, ": return %d;\n", has_band_of(k));
+  }
+  strut_buffer_add(&w->text, "  }\n  return 0;\n}\n\n");
+  strut_code_add_law(w, "friction_holding");
+  strut_code_add_law(w, "friction_sliding");
+}
+
+void strut_code_add_friction(strut_code_writer *w) {
+  bool directional = strut_code_holds(w, "directional");
+  char name[64];
+  for (int k = 0; k < STRUT_FRICTION_LAW_COUNT; k++) {
+    snprintf(name, sizeof name, "friction_%s", friction_names[k]);
+    if (has_friction(w, k)) strut_code_add_law(w, name);
+  }
+  if (directional) strut_code_add_law(w, "friction_towards");
+  strut_buffer_add(&w->text, "/* Friction under the normal force, at a sliding speed, where the other "
+                             "forces along the ground are `applied`. */\n"
+                             "static real friction_of(const contact *c, real normal, real slip, "
+                             "real applied) {\n");
+  if (directional)
+    strut_buffer_add(
+        &w->text,
+        "  mask moves = magnitude(slip) >= c->friction.stick_velocity && magnitude(slip) > 0;\n"
+        "  const friction_numbers towards = friction_towards(&c->friction, (moves ? slip : applied) "
+        "< 0);\n");
+  add_choice_of_friction(w, directional);
+  if (has_bands(w) && has_corners(w)) add_bands(w);
+}
+
+static void add_friction_numbers(strut_code_writer *w) {
   strut_buffer_add(&w->text,
-                   "\ntypedef struct contact {\n"
+                   "/* Those of motion towards -x along the ground apart. */\n"
+                   "typedef struct friction_numbers {\n"
+#define STRUT_NAME(NAME, field, range) "  real " #field ";\n"
+                   STRUT_FRICTION_PARAMETERS(STRUT_NAME)
+#undef STRUT_NAME
+                   "  real mu_static_backward, mu_kinetic_backward;\n} friction_numbers;\n\n"
+                   "enum {");
+  for (int k = 0, any = 0; k < STRUT_FRICTION_LAW_COUNT; k++) {
+    if (!has_friction(w, k)) continue;
+    strut_buffer_add(&w->text, any++ ? ", FRICTION_" : " FRICTION_");
+    add_capitals(w, friction_names[k]);
+  }
+  strut_buffer_add(&w->text, " };\n\n");
+}
+
+static void add_contact_type(strut_code_writer *w) {
+  bool friction = strut_code_holds(w, "friction"), surfaces = strut_code_holds(w, "surfaces");
+  strut_code_add_law(w, "ground_numbers");
+  if (friction) add_friction_numbers(w);
+  strut_buffer_add(&w->text,
+                   "typedef struct contact {\n"
                    "  index_type at; /* where the x of its node stands */\n%s"
-                   "  real stiffness; /* [N/m] */\n",
-                   surfaces ? "  index_type surface; /* which of surfaces */\n" : "");
-  if (!hunt || surfaces)
-    strut_buffer_add(&w->text, "  real damping; /* while the node moves in [N s/m] */\n");
-  if (hunt)
-    strut_buffer_add(&w->text, surfaces ? "  real dissipation; /* instead of it [s/m] */\n"
-                                        : "  real dissipation; /* [s/m] */\n");
-  if (friction) strut_buffer_add(&w->text, "  real mu_kinetic;\n");
-  if (karnopp) strut_buffer_add(&w->text, "  real mu_static;\n");
-  if (friction && strut_code_holds(w, "speed"))
-    strut_buffer_add(&w->text, "  real stick_velocity; /* [m/s] */\n");
-  if (friction && strut_code_holds(w, "smooth"))
-    strut_buffer_add(&w->text, "  real width; /* of smooth friction [m/s] */\n");
-  if (friction && strut_code_holds(w, "directional"))
-    strut_buffer_add(&w->text, "  real mu_kinetic_backward;\n%s",
-                     karnopp ? "  real mu_static_backward;\n" : "");
-  strut_buffer_add(&w->text, "} contact;\n\n");
+                   "  ground_numbers ground;\n%s} contact;\n\n",
+                   surfaces ? "  index_type surface; /* which of surfaces */\n" : "",
+                   friction ? "  friction_numbers friction;\n  int law; /* of friction */\n" : "");
 }
 
 static void add_contact(strut_code_writer *w, int32_t i) {
   const strut_contact_table *t = &w->model->contacts;
   const strut_contact_entry *e = &t->entry[i];
   const strut_friction *f = &e->friction;
-  bool friction = strut_code_holds(w, "friction"), karnopp = strut_code_holds(w, "karnopp");
-  bool hunt = strut_code_holds(w, "hunt_crossley"), surfaces = strut_code_holds(w, "surfaces");
   strut_buffer_add(&w->text, "    {%u", t->at[i]);
-  if (surfaces) strut_buffer_add(&w->text, ", %d", t->surface_of[i]);
-  strut_code_add_field(w, e->stiffness);
-  if (!hunt || surfaces) strut_code_add_field(w, e->damping);
-  if (hunt) strut_code_add_field(w, e->dissipation);
-  if (friction) strut_code_add_field(w, f->mu_kinetic);
-  if (karnopp) strut_code_add_field(w, f->mu_static);
-  if (friction && strut_code_holds(w, "speed")) strut_code_add_field(w, f->stick_velocity);
-  if (friction && strut_code_holds(w, "smooth"))
-    strut_code_add_field(w, f->law == STRUT_FRICTION_SMOOTH ? f->width : 0.0);
-  if (friction && strut_code_holds(w, "directional")) {
+  if (strut_code_holds(w, "surfaces")) strut_buffer_add(&w->text, ", %d", t->surface_of[i]);
+  strut_buffer_add(&w->text, ", {");
+  strut_code_add_real(w, e->stiffness);
+  strut_code_add_field(w, e->damping);
+  strut_code_add_field(w, e->dissipation);
+  strut_buffer_add(&w->text, "}");
+  if (strut_code_holds(w, "friction")) {
+    strut_buffer_add(&w->text, ", {");
+    for (int p = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++) {
+      if (p) strut_buffer_add(&w->text, ", ");
+      strut_code_add_real(w, strut_friction_value(f, p));
+    }
+    strut_code_add_field(w, strut_friction_static(f, -1.0));
     strut_code_add_field(w, strut_friction_kinetic(f, -1.0));
-    if (karnopp) strut_code_add_field(w, strut_friction_static(f, -1.0));
+    strut_buffer_add(&w->text, "}, FRICTION_");
+    add_capitals(w, friction_names[f->law]);
   }
   strut_code_end_row(w, strut_contact_name(w->scene, (size_t)i));
 }

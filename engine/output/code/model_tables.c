@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "engine/model/mass.h"
-#include "engine/output/code/writer.h"
+#include "engine/output/code/law_text.h"
 
 /* An array of numbers, or of those that follow from indices; `per` of them in a line. */
 static void add_array(strut_code_writer *w, const char *name, const double *values, size_t count,
@@ -55,6 +55,11 @@ static void add_members(strut_code_writer *w) {
     strut_code_end_row(w, w->scene->members[j].name);
   }
   strut_buffer_add(&w->text, "};\n\n");
+}
+
+void strut_code_add_member_law(strut_code_writer *w) {
+  strut_code_add_law(w, "member_tension");
+  strut_code_add_law(w, "member_energy");
 }
 
 static void add_drives(strut_code_writer *w) {

@@ -10,12 +10,6 @@
 
 /* ---- conditions ---- */
 
-static bool has_law(const strut_code_writer *w, strut_friction_law law) {
-  const strut_contact_table *c = &w->model->contacts;
-  for (int32_t i = 0; i < c->count; i++)
-    if (c->entry[i].friction.law == law) return true;
-  return false;
-}
 static bool in_plan(const strut_code_writer *w, unsigned term) { return w->model->plan & term; }
 
 static bool has_float(const strut_code_writer *w) { return w->options->single; }
@@ -36,13 +30,7 @@ static bool has_slope(const strut_code_writer *w) { return in_plan(w, STRUT_TERM
 static bool has_friction(const strut_code_writer *w) {
   return has_contact(w) && in_plan(w, STRUT_TERM_FRICTION);
 }
-static bool has_smooth(const strut_code_writer *w) { return has_law(w, STRUT_FRICTION_SMOOTH); }
-/* Contacts without friction among others have Karnopp's with coefficients of 0. */
-static bool has_karnopp(const strut_code_writer *w) {
-  return has_friction(w) && (has_law(w, STRUT_FRICTION_KARNOPP) || has_law(w, STRUT_FRICTION_NONE));
-}
 static bool has_directional(const strut_code_writer *w) { return in_plan(w, STRUT_TERM_DIRECTION); }
-static bool has_speed(const strut_code_writer *w) { return has_karnopp(w) || has_directional(w); }
 static bool has_elements(const strut_code_writer *w) { return w->model->elements.count > 0; }
 static bool has_actuator_forces(const strut_code_writer *w) {
   return w->model->actuator_forces.count > 0;
@@ -50,16 +38,14 @@ static bool has_actuator_forces(const strut_code_writer *w) {
 static bool has_strains(const strut_code_writer *w) {
   return has_elements(w) || has_actuator_forces(w);
 }
-static bool has_path(const strut_code_writer *w) { return strut_code_has_strain(w, "path", 4); }
 static bool has_angle(const strut_code_writer *w) { return strut_code_has_strain(w, "angle", 5); }
 static bool has_expressions(const strut_code_writer *w) {
   return strut_code_has_internal_states(w) || strut_code_has_relays(w) ||
          strut_code_has_signal(w, STRUT_EXPRESSION);
 }
 static bool has_memory(const strut_code_writer *w) { return in_plan(w, STRUT_TERM_MEMORY); }
-static bool has_root(const strut_code_writer *w) {
-  return has_members(w) || has_smooth(w) || has_path(w) || strut_code_has_strain(w, "reach", 5) ||
-         strut_code_has_circles(w) || strut_code_has_pieces(w) || strut_code_has_sliding(w);
+static bool has_laws(const strut_code_writer *w) {
+  return has_members(w) || has_contact(w) || has_strains(w) || strut_code_has_sliding(w);
 }
 static bool has_belt(const strut_code_writer *w) { return w->model->contacts.belt_speed != 0.0; }
 static bool has_hunt_crossley(const strut_code_writer *w) {
@@ -105,11 +91,8 @@ static const strut_code_condition conditions[] = {{"float", has_float},
                                                   {"contact", has_contact},
                                                   {"slope", has_slope},
                                                   {"friction", has_friction},
-                                                  {"smooth", has_smooth},
-                                                  {"karnopp", has_karnopp},
                                                   {"directional", has_directional},
-                                                  {"speed", has_speed},
-                                                  {"root", has_root},
+                                                  {"laws", has_laws},
                                                   {"belt", has_belt},
                                                   {"hunt_crossley", has_hunt_crossley},
                                                   {"gravity", has_gravity},
@@ -121,7 +104,6 @@ static const strut_code_condition conditions[] = {{"float", has_float},
                                                   {"elements", has_elements},
                                                   {"actuator_forces", has_actuator_forces},
                                                   {"strains", has_strains},
-                                                  {"path", has_path},
                                                   {"angle", has_angle},
                                                   {"expressions", has_expressions},
                                                   {"memory", has_memory},
@@ -294,11 +276,13 @@ static void add_cosine(strut_code_writer *w) {
       -1.0 / 720, -1.0 / 3628800, -1.0 / 87178291200.0};
   add_reals(w, c, sizeof c / sizeof c[0]);
 }
-static void add_arctangent(strut_code_writer *w) {
-  static const double c[] = {-1.0 / 3,  1.0 / 5,  -1.0 / 7,  1.0 / 9,  -1.0 / 11, 1.0 / 13,
-                             -1.0 / 15, 1.0 / 17, -1.0 / 19, 1.0 / 21, -1.0 / 23, 1.0 / 25};
-  add_reals(w, c, sizeof c / sizeof c[0]);
+static void add_truth(strut_code_writer *w, const char *word) {
+  strut_buffer_add(&w->text, strut_code_holds(w, word) ? "1" : "0");
 }
+static void add_damped(strut_code_writer *w) { add_truth(w, "damping"); }
+static void add_slackens(strut_code_writer *w) { add_truth(w, "slack"); }
+static void add_driven(strut_code_writer *w) { add_truth(w, "drive"); }
+static void add_crossley(strut_code_writer *w) { add_truth(w, "hunt_crossley"); }
 
 /* The run's method and step. */
 static bool uses_verlet(const strut_code_writer *w) {
@@ -360,7 +344,16 @@ static const part parts[] = {{"title", add_title, NULL},
                              {"surfaces", strut_code_add_surfaces, NULL},
                              {"sine", add_sine, NULL},
                              {"cosine", add_cosine, NULL},
-                             {"arctangent", add_arctangent, NULL},
+                             {"damped", add_damped, NULL},
+                             {"slackens", add_slackens, NULL},
+                             {"driven", add_driven, NULL},
+                             {"crossley", add_crossley, NULL},
+                             {"member_law", strut_code_add_member_law, NULL},
+                             {"ground_law", strut_code_add_ground_law, NULL},
+                             {"friction", strut_code_add_friction, NULL},
+                             {"strains", strut_code_add_strains, NULL},
+                             {"element_laws", strut_code_add_element_laws, NULL},
+                             {"law_numbers", strut_code_add_law_numbers, NULL},
                              {"method", add_method, NULL},
                              {"step", add_step, NULL},
                              {"length", add_length, NULL},

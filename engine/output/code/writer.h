@@ -13,6 +13,8 @@ typedef struct strut_code_names {
   char **name; /* (count) */
 } strut_code_names;
 
+enum { STRUT_CODE_MOST_LAW_TEXTS = 400 };
+
 typedef struct strut_code_writer {
   const strut_model *model;
   const strut_scene *scene;
@@ -23,6 +25,7 @@ typedef struct strut_code_writer {
   double rk4_limit, verlet_limit; /* largest stable steps [s] */
   strut_buffer text;
   bool no_float; /* some number is none of a float */
+  bool law_texts[STRUT_CODE_MOST_LAW_TEXTS]; /* which definitions of law_text.c are written */
   strut_arena arena;
 } strut_code_writer;
 
@@ -67,6 +70,8 @@ extern const strut_code_condition strut_code_ground_conditions[];
 bool strut_code_has_circles(const strut_code_writer *w);
 bool strut_code_has_pieces(const strut_code_writer *w);
 void strut_code_add_contacts(strut_code_writer *w);
+void strut_code_add_ground_law(strut_code_writer *w);
+void strut_code_add_friction(strut_code_writer *w);
 void strut_code_add_surfaces(strut_code_writer *w);
 
 /* feedback_tables.c: what follows the motion. Signals that no input follows are left out. */
@@ -99,6 +104,8 @@ void strut_code_add_places(strut_code_writer *w);
 void strut_code_add_resting(strut_code_writer *w);
 void strut_code_add_resting_damping(strut_code_writer *w);
 
+/* model_tables.c: the law of members. */
+void strut_code_add_member_law(strut_code_writer *w);
 /* Declarations of the model: members, contacts, drives, loads, masses, start. And the lines that solve for
    accelerations. */
 void strut_code_add_model(strut_code_writer *w);
@@ -126,6 +133,11 @@ int32_t strut_code_slider_count(const strut_code_writer *w);
 bool strut_code_has_breakables(const strut_code_writer *w);
 void strut_code_add_breakables(strut_code_writer *w);
 void strut_code_add_blocks(strut_code_writer *w);
+void strut_code_add_strains(strut_code_writer *w);
+/* Is there a text of it? */
+bool strut_code_knows_element_law(strut_law_kind law);
+void strut_code_add_element_laws(strut_code_writer *w);
+void strut_code_add_law_numbers(strut_code_writer *w);
 void strut_code_add_actuator_forces(strut_code_writer *w);
 /* The lines that compute an expression at t, into x[0]. */
 void strut_code_add_program(strut_code_writer *w, const strut_program *program);

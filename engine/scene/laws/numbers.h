@@ -50,7 +50,7 @@ typedef struct strut_law_response {
 static inline double strut_law_exp_rest(double u) {
   if (fabs(u) > STRUT_LAW_SERIES) return expm1(u) - u;
   double sum = 1.0;
-  for (int n = 10; n > 2; n--) sum = 1.0 + sum * u / n;
+  for (int n = 10; n > 2; n--) sum = 1.0 + sum * u / (double)n;
   return 0.5 * u * u * sum;
 }
 
@@ -58,7 +58,7 @@ static inline double strut_law_exp_rest(double u) {
 static inline double strut_law_log_rest(double u) {
   if (fabs(u) > STRUT_LAW_SERIES) return (1.0 + u) * log1p(u) - u;
   double sum = 0.0;
-  for (int n = 13; n > 1; n--) sum = 1.0 / (n * (n - 1)) - u * sum;
+  for (int n = 13; n > 1; n--) sum = 1.0 / (double)(n * (n - 1)) - u * sum;
   return u * u * sum;
 }
 

@@ -49,20 +49,19 @@ static void finish_alone(desk *d, strut_sweep_job *job) {
 }
 
 /* Should its run be in lanes, or can it be where they were asked for? Leaves it with a model then. */
-static bool suits_lanes(const desk *d, strut_sweep_job *job) {
+static bool suits_lanes(strut_sweep_job *job) {
   const strut_experiment *e = &job->setup.experiment;
   const strut_integrator *method = strut_integrator_find(e->integrator);
   if (e->accuracy > 0.0 || !method || !strut_batch_knows(method)) return false;
   if (strut_experiment_span(e, &job->setup.scene).duration < FEWEST_STEPS * e->step) return false;
-  if (strut_sweep_job_compile(job) || !strut_batch_possible(job->model, method)) return false;
-  return d->worker->options->lanes > 0 || strut_batch_pays(job->model, method, d->lanes);
+  return !strut_sweep_job_compile(job) && strut_batch_possible(job->model, method);
 }
 
 /* The next run for the batch. Points that no lane can take are run on the way. */
 static bool next_run(void *context, strut_batch_point *run) {
   desk *d = context;
   for (strut_sweep_job *job; (job = next_job(d));) {
-    if (!suits_lanes(d, job)) {
+    if (!suits_lanes(job)) {
       finish_alone(d, job);
       continue;
     }
@@ -110,7 +109,7 @@ void strut_sweep_work(const strut_sweep_worker *worker, const strut_sweep_queue 
                       strut_sweep_job *jobs, int32_t lanes) {
   desk d = {.worker = worker, .queue = queue, .jobs = jobs, .lanes = lanes};
   for (strut_sweep_job *job; (job = next_job(&d));) {
-    if (lanes > 1 && suits_lanes(&d, job) && make_example(&d, job))
+    if (lanes > 1 && suits_lanes(job) && make_example(&d, job))
       run_batch(&d);
     else
       finish_alone(&d, job);
@@ -276,7 +275,7 @@ int32_t strut_sweep_lanes_for(int wanted, int threads, int64_t points) {
   int32_t widest = strut_batch_widest(), lanes = 1;
   if (wanted > 0 && wanted < widest) widest = wanted;
   while (2 * lanes <= widest && (int64_t)lanes * threads < points) lanes *= 2;
-  return lanes;
+  return lanes < 4 ? 1 : lanes; /* two runs take as long one after the other */
 }
 
 strut_sweep_job *strut_sweep_make_jobs(const strut_sweep_plan *plan, strut_arena *arena,
