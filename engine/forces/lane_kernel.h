@@ -213,8 +213,8 @@ STRUT_LANE_INLINE void lane_members(strut_lane_tables *t, const double *restrict
 
 /* The numbers of a contact's laws in the runs of part p. */
 STRUT_LANE_INLINE lane_ground_numbers lane_ground_at(const double *entry, int p) {
-  return (lane_ground_numbers){lane_row(entry, STRUT_LANE_STIFFNESS, p),
-                               lane_row(entry, STRUT_LANE_DAMPING, p),
+  return (lane_ground_numbers){-lane_row(entry, STRUT_LANE_STIFFNESS, p),
+                               -lane_row(entry, STRUT_LANE_DAMPING, p),
                                lane_row(entry, STRUT_LANE_DISSIPATION, p)};
 }
 STRUT_LANE_INLINE lane_friction_numbers lane_friction_at(const double *entry, int p) {
@@ -239,10 +239,16 @@ STRUT_LANE_INLINE void lane_add(double *table, size_t i, int p, lane_mask where,
   lane_put(table, i, p, lane_choose(where, before + x, before));
 }
 
+/* Whether the ground is inclined, rough, has other laws than (8) and (9), and moves. */
+typedef struct lane_ground_terms {
+  bool sloped, rough, laws, moves;
+} lane_ground_terms;
+
 /* See ground_touch; where: the lanes in which it does. */
 STRUT_LANE_INLINE void lane_touch(strut_lane_tables *t, const double *restrict v, size_t at,
                                   const double *entry, int p, lane_mask where, lane_real gap,
-                                  bool sloped, bool rough, lane_contact_sums *book, bool moves) {
+                                  lane_ground_terms has, lane_contact_sums *book) {
+  bool sloped = has.sloped, rough = has.rough, laws = has.laws;
   const double *g = t->ground;
   lane_real tx = lane_row(g, STRUT_LANE_TANGENT_X, p), ty = lane_row(g, STRUT_LANE_TANGENT_Y, p);
   lane_real nx = lane_row(g, STRUT_LANE_NORMAL_X, p), ny = lane_row(g, STRUT_LANE_NORMAL_Y, p);
@@ -252,20 +258,19 @@ STRUT_LANE_INLINE void lane_touch(strut_lane_tables *t, const double *restrict v
   lane_real belt_speed = lane_row(g, STRUT_LANE_BELT, p), slip = along - belt_speed;
   const lane_ground_numbers ground = lane_ground_at(entry, p);
   const lane_friction_numbers rubs = lane_friction_at(entry, p);
-  bool laws = t->first->plan & STRUT_TERM_LAWS;
   lane_real spring = lane_ground_spring(&ground, gap);
   lane_real damper = lane_ground_damper(&ground, spring, into, laws), normal = spring + damper;
   if (rough) {
     lane_real applied = sloped ? fx * tx + fy * ty : fx;
-    const lane_friction_choice has = lane_choice_at(entry, p);
-    friction = laws ? lane_friction(&rubs, &has, normal, slip, applied)
+    const lane_friction_choice which = lane_choice_at(entry, p);
+    friction = laws ? lane_friction(&rubs, &which, normal, slip, applied)
                     : lane_friction_karnopp(&rubs, normal, slip, applied);
   }
   lane_add(t->force, at, p, where, sloped ? friction * tx + normal * nx : friction);
   lane_add(t->force, at + 1, p, where, sloped ? friction * ty + normal * ny : normal);
   if (!book) return;
   lane_contact_powers powers = lane_contact_power(damper, into, friction, slip, belt_speed);
-  if (moves)
+  if (has.moves)
     lane_book_belt(book, where, belt_speed != zero, powers);
   else
     lane_book_contact(book, where, powers);
@@ -274,24 +279,24 @@ STRUT_LANE_INLINE void lane_touch(strut_lane_tables *t, const double *restrict v
 /* One node, in those lanes of a part in which it touches. */
 STRUT_LANE_INLINE void lane_contact(strut_lane_tables *t, const double *restrict q,
                                     const double *restrict v, size_t at, const double *entry, int p,
-                                    bool sloped, bool rough, lane_contact_sums *book, bool moves) {
+                                    lane_ground_terms has, lane_contact_sums *book) {
   lane_real zero = {0}, gap = lane_row(q, at + 1, p) - lane_row(t->ground, STRUT_LANE_HEIGHT, p);
-  if (sloped)
+  if (has.sloped)
     gap = lane_row(q, at, p) * lane_row(t->ground, STRUT_LANE_NORMAL_X, p) +
           gap * lane_row(t->ground, STRUT_LANE_NORMAL_Y, p);
   lane_mask touches = gap < zero;
-  if (lane_some(touches)) lane_touch(t, v, at, entry, p, touches, gap, sloped, rough, book, moves);
+  if (lane_some(touches)) lane_touch(t, v, at, entry, p, touches, gap, has, book);
 }
 
 STRUT_LANE_INLINE void lane_ground(strut_lane_tables *t, const double *restrict q,
-                                   const double *restrict v, bool sloped, bool rough,
+                                   const double *restrict v, lane_ground_terms has,
                                    const lane_book *book) {
   const strut_contact_table *c = &t->first->contacts;
-  bool moves = book && book->moves;
+  has.moves = book && book->moves;
   for (int32_t i = 0; i < c->count; i++) {
     const double *entry = t->contact + i * STRUT_LANE_CONTACT_ROWS * LANE_ROW;
     lane_contact_sums *to = book ? book->contact[c->entry[i].lane] : NULL;
-    LANE_EACH(lane_contact(t, q, v, c->at[i], entry, p, sloped, rough, to ? to + p : NULL, moves));
+    LANE_EACH(lane_contact(t, q, v, c->at[i], entry, p, has, to ? to + p : NULL));
   }
 }
 
@@ -319,12 +324,12 @@ STRUT_LANE_INLINE void lane_forces(strut_lane_tables *t, const double *restrict 
   const strut_model *m = t->first;
   lane_structure(t, q, v, book != NULL, book);
   if (!(m->plan & STRUT_TERM_CONTACT)) return;
-  if (m->plan & STRUT_TERM_SLOPE)
-    lane_ground(t, q, v, true, m->plan & STRUT_TERM_FRICTION, book);
-  else if (m->plan & STRUT_TERM_FRICTION)
-    lane_ground(t, q, v, false, true, book);
+  if (m->plan & STRUT_TERM_LAWS)
+    lane_ground(t, q, v, (lane_ground_terms){true, true, true, false}, book);
+  else if (m->plan & STRUT_TERM_SLOPE)
+    lane_ground(t, q, v, (lane_ground_terms){true, m->plan & STRUT_TERM_FRICTION, false, false}, book);
   else
-    lane_ground(t, q, v, false, false, book);
+    lane_ground(t, q, v, (lane_ground_terms){false, m->plan & STRUT_TERM_FRICTION, false, false}, book);
 }
 
 /* Masses */

@@ -61,17 +61,8 @@ STRUT_LANE_INLINE void lane_put(double *table, size_t i, int p, lane_real x) {
   lane_store(table + i * LANE_ROW + p * LANE_WIDTH, x);
 }
 
-/* mask ? x : y */
-STRUT_LANE_INLINE lane_real lane_choose(lane_mask mask, lane_real x, lane_real y) {
-  return (lane_real)((mask & (lane_mask)x) | (~mask & (lane_mask)y));
-}
-/* x in the lanes of the mask, 0 in others. */
-STRUT_LANE_INLINE lane_real lane_keep(lane_mask mask, lane_real x) {
-  return (lane_real)(mask & (lane_mask)x);
-}
-STRUT_LANE_INLINE lane_real lane_magnitude(lane_real x) {
-  return (lane_real)((lane_mask)x & 0x7fffffffffffffffLL);
-}
+/* The words of laws (scene/laws/words.h), of which one text each is compiled below. */
+STRUT_DEFINE_LAW_WORDS(STRUT_LANE_INLINE, lane)
 STRUT_LANE_INLINE bool lane_some(lane_mask mask) {
 #if defined(__x86_64__) && STRUT_LANE_WIDTH == 8 && STRUT_LANE_PARTS == 1
   return __builtin_ia32_cvtq2mask512(mask) != 0;
@@ -89,29 +80,12 @@ STRUT_LANE_INLINE lane_real lane_root(lane_real x) {
   return root;
 }
 
-/* The other words of laws (scene/laws/words.h), of which one text each is compiled here. */
-STRUT_LANE_INLINE lane_real lane_all(double x) { return (lane_real){0} + x; }
-STRUT_LANE_INLINE lane_mask lane_less(lane_real a, lane_real b) { return a < b; }
-STRUT_LANE_INLINE lane_mask lane_at_least(lane_real a, lane_real b) { return a >= b; }
-STRUT_LANE_INLINE lane_mask lane_both(lane_mask m, lane_mask n) { return m & n; }
-STRUT_LANE_INLINE lane_mask lane_either(lane_mask m, lane_mask n) { return m | n; }
-STRUT_LANE_INLINE lane_real lane_add_where(lane_mask m, lane_real sum, lane_real a) {
-  return lane_choose(m, sum + a, sum);
-}
-STRUT_LANE_INLINE lane_real lane_whole(lane_real a) {
-  const double rounder = 6755399441055744.0;
-  return (a + rounder) - rounder;
-}
-STRUT_LANE_INLINE lane_real lane_times_sign(lane_real a, lane_real b) {
-  lane_real zero = {0}, one = lane_all(1.0);
-  return a * lane_choose(b > zero, one, lane_choose(b < zero, -one, zero));
-}
-
 #define LAW(name) lane_##name
 #define LAW_INLINE STRUT_LANE_INLINE
 #include "engine/scene/laws/friction.h"
 #include "engine/scene/laws/ground.h"
 #include "engine/scene/laws/member.h"
+#include "engine/scene/laws/runge_kutta.h"
 #include "engine/forces/strains/direction.h"
 #undef LAW
 #undef LAW_INLINE

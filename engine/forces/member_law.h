@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/** Texts of laws for four things side by side, the vectors of model/hot.h: members, and angles of hinges. */
+/** Texts of laws for four things side by side, the vectors of model/hot.h: members, angles of hinges, and
+    coordinates in a step. */
 #ifndef STRUT_ENGINE_FORCES_MEMBER_LAW_H
 #define STRUT_ENGINE_FORCES_MEMBER_LAW_H
 
@@ -10,6 +11,7 @@
 #define LAW_INLINE STRUT_INLINE
 #include "engine/forces/strains/direction.h"
 #include "engine/scene/laws/member.h"
+#include "engine/scene/laws/runge_kutta.h"
 #undef LAW
 #undef LAW_INLINE
 

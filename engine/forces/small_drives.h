@@ -24,7 +24,7 @@ STRUT_SMALL_INLINE void small_put(double *row, int32_t j, double x) {
     return;
   }
   strut_lane_mask there = (strut_lane_mask)_mm256_loadu_si256((const __m256i *)at);
-  small4_store(row + from, four_choose(there, _mm256_set1_pd(x), small4_load(row + from)));
+  small4_store(row + from, small4_choose(there, _mm256_set1_pd(x), small4_load(row + from)));
 }
 
 /* The drives' share of rest lengths at `count` times; rows have the other members' already. */

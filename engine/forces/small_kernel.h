@@ -93,10 +93,10 @@ STRUT_SMALL_INLINE double small_belt(const small_run *r) {
     return tension;                                                                                                         \
   }
 
-STRUT_DEFINE_SMALL_GROUP(strut_lanes, strut_lane_mask, small4, four, small4_load, small_root_of_4)
+STRUT_DEFINE_SMALL_GROUP(strut_lanes, strut_lane_mask, small4, small4, small4_load, small_root_of_4)
 
 /* Adds what drives take from 4 members whose rest lengths change at these rates. */
-STRUT_SMALL_INLINE void small_add_drive(four_member_powers *sum, strut_lanes tension,
+STRUT_SMALL_INLINE void small_add_drive(small4_member_powers *sum, strut_lanes tension,
                                         const double *rate) {
   strut_lanes power = tension * small4_load(rate);
   sum->drive += power;
@@ -146,7 +146,7 @@ STRUT_SMALL_INLINE void small_measure_members(const strut_small_model *s, const 
 STRUT_SMALL_INLINE void small_members(const small_run *r, const small_rest *rest,
                                       small_shapes *shapes, const small_points *next_q,
                                       const small_points *v, bool ledger, small_pulls *px,
-                                      small_pulls *py, four_member_powers *sum) {
+                                      small_pulls *py, small4_member_powers *sum) {
   const strut_small_model *s = r->tables;
   small_shapes d = *shapes;
   small_real lost = {0}, tension;
@@ -228,7 +228,7 @@ STRUT_SMALL_INLINE void small_measure_members(const strut_small_model *s, const 
 STRUT_SMALL_INLINE void small_members(const small_run *r, const small_rest *rest,
                                       small_shapes *shapes, const small_points *next_q,
                                       const small_points *v, bool ledger, small_pulls *px,
-                                      small_pulls *py, four_member_powers *sum) {
+                                      small_pulls *py, small4_member_powers *sum) {
   const strut_small_model *s = r->tables;
   small_shapes d = *shapes;
   *px = *py = (small_pulls){0};
@@ -293,7 +293,7 @@ typedef struct small_touch {
 
 /* What the powers of one evaluation are made of, see small_ledger.h. */
 typedef struct small_entries {
-  four_member_powers members;
+  small4_member_powers members;
   small_touch touch;
 } small_entries;
 
@@ -303,7 +303,7 @@ typedef struct small_entries {
 
 /* What the laws take of the contacts of part p. */
 STRUT_SMALL_INLINE small_ground_numbers small_ground_at(const strut_small_contacts *c, int p) {
-  return (small_ground_numbers){SMALL_CONTACT(stiffness), SMALL_CONTACT(damping),
+  return (small_ground_numbers){SMALL_CONTACT(minus_stiffness), SMALL_CONTACT(minus_damping),
                                 SMALL_CONTACT(dissipation)};
 }
 STRUT_SMALL_INLINE small_friction_numbers small_friction_at(const strut_small_contacts *c, int p) {

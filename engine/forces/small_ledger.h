@@ -106,7 +106,7 @@ STRUT_SMALL_INLINE strut_lanes small_quarter(small_row x, int h) {
 #define SMALL_BOOKED(x, bits) _mm256_blend_pd((strut_lanes){0} - (x), (x), bits)
 
 /* The members' powers. */
-STRUT_SMALL_INLINE small_work small_sum_members(const four_member_powers *m) {
+STRUT_SMALL_INLINE small_work small_sum_members(const small4_member_powers *m) {
   strut_lanes zero = {0};
   strut_lanes both = m->exchanged + m->lost;
   strut_lanes sum = small_add_rows(zero, small_transpose(m->drive, m->lost, both, zero));
@@ -134,7 +134,7 @@ STRUT_SMALL_INLINE void small_add_contacts(const small_run *r, const small_touch
 
 /* Powers of one evaluation of a step, lane by lane, see strut_power_lanes. */
 typedef struct small_stage_powers {
-  four_member_powers members;
+  small4_member_powers members;
   small_row minus_damped, minus_rubbed, belt;
 } small_stage_powers;
 

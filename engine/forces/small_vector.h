@@ -10,7 +10,6 @@
 
 #include <immintrin.h>
 
-#include "engine/forces/member_law.h"
 #include "engine/model/hot.h"
 #include "engine/model/small_model.h"
 
@@ -126,17 +125,28 @@ STRUT_SMALL_INLINE void small_row_store(double *p, small_row x) {
 STRUT_SMALL_INLINE small_mask small_both(small_mask m, small_mask n) { return m & n; }
 STRUT_SMALL_INLINE small_mask small_either(small_mask m, small_mask n) { return m | n; }
 STRUT_SMALL_INLINE bool small_some(small_mask m) { return small_set_bits(m) != 0; }
-STRUT_SMALL_INLINE small_real small_times_sign(small_real x, small_real y) {
+STRUT_SMALL_INLINE small_real small_against(small_real x, small_real y) {
   small_real zero = {0};
-  small_real flipped = small_flip(x, (small_bits)y & INT64_MIN);
-  return small_choose(small_less(zero, small_magnitude(y)), flipped, x * zero);
+  small_real flipped = small_flip(x, ~(small_bits)y & INT64_MIN);
+  return small_choose(small_less(zero, small_magnitude(y)), flipped, x * -0.0);
 }
+
+/* Members come in groups of four, too. */
+typedef strut_lanes small4_real;
+typedef strut_lane_mask small4_mask;
+STRUT_DEFINE_LAW_WORDS(STRUT_SMALL_INLINE, small4)
+#define LAW(name) small4_##name
+#define LAW_INLINE STRUT_SMALL_INLINE
+#include "engine/scene/laws/member.h"
+#undef LAW
+#undef LAW_INLINE
 
 #define LAW(name) small_##name
 #define LAW_INLINE STRUT_SMALL_INLINE
 #include "engine/scene/laws/friction.h"
 #include "engine/scene/laws/ground.h"
 #include "engine/scene/laws/member.h"
+#include "engine/scene/laws/runge_kutta.h"
 #undef LAW
 #undef LAW_INLINE
 

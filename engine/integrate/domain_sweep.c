@@ -35,26 +35,26 @@ static void begin_nodes(const domain_part *p, domain_method stepping, double h, 
 }
 
 /* The next stage of rk4 from stage k < 3: velocities of stages follow from the accelerations before. */
-STRUT_INLINE void rk4_stage(const domain_part *p, double h, double before, int k, bool moves,
-                            int32_t i) {
+STRUT_INLINE void rk4_next(const domain_part *p, double h, double before, int k, bool moves,
+                           int32_t i) {
   strut_lanes a = node_acceleration(p, i), v0 = strut_lanes_load(p->v0 + i), speed = v0;
-  if (k > 0) speed = v0 + before * strut_lanes_load(p->a[k - 1] + i);
+  strut_lanes step = four_all(h);
+  if (k > 0) speed = four_rk4_stage(v0, four_all(before), strut_lanes_load(p->a[k - 1] + i));
   strut_lanes_store(p->a[k] + i, a);
-  strut_lanes_store(p->q + i, strut_lanes_load(p->q0 + i) + h * speed);
-  if (moves) strut_lanes_store(p->v + i, v0 + h * a);
+  strut_lanes_store(p->q + i, four_rk4_stage(strut_lanes_load(p->q0 + i), step, speed));
+  if (moves) strut_lanes_store(p->v + i, four_rk4_stage(v0, step, a));
   strut_lanes_store(p->force + i, node_base(p, i));
 }
 
-STRUT_INLINE void rk4_end(const domain_part *p, double h, int32_t i) {
-  double half = 0.5 * h, sixth = h / 6.0;
+STRUT_INLINE void rk4_last(const domain_part *p, double h, int32_t i) {
+  strut_lanes half = four_all(0.5 * h), step = four_all(h), sixth = four_all(h / 6.0);
   strut_lanes a = node_acceleration(p, i), v0 = strut_lanes_load(p->v0 + i);
   strut_lanes a0 = strut_lanes_load(p->a[0] + i), a1 = strut_lanes_load(p->a[1] + i);
-  strut_lanes a2 = strut_lanes_load(p->a[2] + i);
-  strut_lanes v1 = v0 + half * a0, v2 = v0 + half * a1, v3 = v0 + h * a2;
-  strut_lanes inner = v1 + v2, sum = v0 + 2.0 * inner + v3;
-  strut_lanes_store(p->q0 + i, strut_lanes_load(p->q0 + i) + sixth * sum);
-  inner = a1 + a2, sum = a0 + 2.0 * inner + a;
-  strut_lanes_store(p->v0 + i, v0 + sixth * sum);
+  strut_lanes a2 = strut_lanes_load(p->a[2] + i), q0 = strut_lanes_load(p->q0 + i);
+  strut_lanes v1 = four_rk4_stage(v0, half, a0), v2 = four_rk4_stage(v0, half, a1);
+  strut_lanes_store(p->q0 + i,
+                    four_rk4_end(q0, sixth, v0, v1, v2, four_rk4_stage(v0, step, a2)));
+  strut_lanes_store(p->v0 + i, four_rk4_end(v0, sixth, a0, a1, a2, a));
 }
 
 STRUT_CLONES
@@ -62,14 +62,14 @@ static void finish_rk4(const domain_part *p, int k, double h, bool moves, int32_
                        int32_t end) {
   double half = 0.5 * h;
   if (k == 0)
-    for (int32_t i = 2 * begin; i < 2 * end; i += STRUT_LANES) rk4_stage(p, half, 0.0, 0, moves, i);
+    for (int32_t i = 2 * begin; i < 2 * end; i += STRUT_LANES) rk4_next(p, half, 0.0, 0, moves, i);
   else if (k == 1)
     for (int32_t i = 2 * begin; i < 2 * end; i += STRUT_LANES)
-      rk4_stage(p, half, half, 1, moves, i);
+      rk4_next(p, half, half, 1, moves, i);
   else if (k == 2)
-    for (int32_t i = 2 * begin; i < 2 * end; i += STRUT_LANES) rk4_stage(p, h, half, 2, moves, i);
+    for (int32_t i = 2 * begin; i < 2 * end; i += STRUT_LANES) rk4_next(p, h, half, 2, moves, i);
   else
-    for (int32_t i = 2 * begin; i < 2 * end; i += STRUT_LANES) rk4_end(p, h, i);
+    for (int32_t i = 2 * begin; i < 2 * end; i += STRUT_LANES) rk4_last(p, h, i);
 }
 
 /* The end of a step, and the begin of the next one where it is not the last. */

@@ -7,6 +7,7 @@
 #include "engine/forces/rigid.h"
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/plain_steps.h"
+#include "engine/integrate/rk4_stages.h"
 #include "engine/integrate/small_steps.h"
 
 /* Stage values, (length) each: positions now, velocities of stages 2 to 4, accelerations of all. */
@@ -28,28 +29,6 @@ static void *rk4_create(const strut_model *model, strut_state *state,
   return w;
 }
 
-/* Positions and velocities of the next stage: q + h v, v0 + h a. */
-STRUT_INLINE void stage(int32_t n, double h, const double *restrict q0, const double *restrict v0,
-                        const double *restrict v, const double *restrict a, double *restrict q,
-                        double *restrict next) {
-  for (int32_t i = 0; i < n; i += STRUT_LANES) {
-    strut_lanes_store(q + i, strut_lanes_load(q0 + i) + h * strut_lanes_load(v + i));
-    strut_lanes_store(next + i, strut_lanes_load(v0 + i) + h * strut_lanes_load_pairs(a + i));
-  }
-}
-
-/* z += h/6 (k1 + 2 (k2 + k3) + k4) */
-STRUT_INLINE void combine(int32_t n, double h, double *restrict z, const double *k1,
-                          const double *restrict k2, const double *restrict k3,
-                          const double *restrict k4) {
-  double sixth = h / 6.0;
-  for (int32_t i = 0; i < n; i += STRUT_LANES) {
-    strut_lanes inner = strut_lanes_load(k2 + i) + strut_lanes_load(k3 + i);
-    strut_lanes sum = strut_lanes_load(k1 + i) + 2.0 * inner + strut_lanes_load_pairs(k4 + i);
-    strut_lanes_store(z + i, strut_lanes_load(z + i) + sixth * sum);
-  }
-}
-
 /*
  * The step as a loop over its stages, so that the forces stand in it once. Times are n dt, (n + 1/2)
  * dt and (n + 1) dt, never sums. With the ledger the powers enter the works with the stage's weight: those of members
@@ -57,7 +36,7 @@ STRUT_INLINE void combine(int32_t n, double h, double *restrict z, const double 
  */
 STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, rk4_workspace *w,
                             double dt, int64_t count, unsigned terms, bool ledger, bool rigid) {
-  static const double ahead[4] = {0.0, 0.5, 0.5, 1.0}, weight[4] = {1, 2, 2, 1};
+  const double *ahead = STRUT_RK4_AHEAD, *weight = STRUT_RK4_WEIGHTS;
   strut_booking booking = ledger ? STRUT_BOOK_LANES : STRUT_BOOK_NOTHING;
   double *restrict q = state->q, *restrict v = state->v;
   const double *const at[4] = {q, w->q, w->q, w->q};
@@ -79,14 +58,14 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, rk4_wo
       for (int p = 0; p < STRUT_POWER_COUNT && others; p++)
         state->work[p] += weight[k] * (dt / 6.0) * state->power[p];
       if (k == 3) break;
-      stage(n, ahead[k + 1] * dt, q, v, speed[k], w->a[k], w->q, w->v[k + 1]);
+      rk4_next_stage(n, ahead[k + 1] * dt, q, v, speed[k], w->a[k], w->q, w->v[k + 1]);
       if (moves)
         strut_support_motion_place(model, state, ((double)state->step + ahead[k + 1]) * dt, w->q,
                                    w->v[k + 1]);
     }
     if (ledger) strut_step_ledger_end(model, state, dt / 6.0);
-    combine(n, dt, q, v, w->v[1], w->v[2], w->v[3]);
-    combine(n, dt, v, w->a[0], w->a[1], w->a[2], w->a[3]);
+    rk4_end_of_step(n, dt, q, v, w->v[1], w->v[2], w->v[3], q);
+    rk4_end_of_step(n, dt, v, w->a[0], w->a[1], w->a[2], w->a[3], v);
     if (moves) end_moving_step(model, state, dt);
     if (rigid) strut_rigid_project(model, state, q, v);
     if (model->plan & terms & STRUT_TERM_MEMORY)

@@ -16,7 +16,7 @@ typedef struct small_motion {
 
 /* z + h k */
 STRUT_SMALL_INLINE small_row small_ahead(small_row z, double h, small_row k) {
-  SMALL_EACH(p) z.part[p] = z.part[p] + h * k.part[p];
+  SMALL_EACH(p) z.part[p] = small_rk4_stage(z.part[p], small_all(h), k.part[p]);
   return z;
 }
 

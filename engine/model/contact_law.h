@@ -10,7 +10,7 @@
 
 /** The numbers of a contact as the law takes them. */
 static inline strut_law_ground_numbers strut_contact_numbers(const strut_contact_entry *e) {
-  return (strut_law_ground_numbers){e->stiffness, e->damping, e->dissipation};
+  return (strut_law_ground_numbers){-e->stiffness, -e->damping, e->dissipation};
 }
 
 #endif

@@ -11,7 +11,6 @@
 #define STRUT_ENGINE_MODEL_HOT_H
 
 #include <math.h>
-#include <stdbool.h>
 
 #if defined(__x86_64__) && defined(__gnu_linux__) && !defined(STRUT_NO_CLONES) &&                  \
     !defined(__AVX2__) && defined(__OPTIMIZE__)
@@ -54,39 +53,43 @@ STRUT_INLINE strut_lanes strut_lanes_load_pairs(const double *p) {
 }
 STRUT_INLINE void strut_lanes_store(double *p, strut_lanes x) { *(strut_lanes_at *)p = x; }
 
-/*
- * The words of laws (scene/laws/words.h) for four doubles side by side.
+/**
+ * Defines the words of laws (scene/laws/words.h) for PREFIX_real, a vector of doubles, and PREFIX_mask, one of
+ * integers of the same size: every bit of a number for which it holds. `inlined`: what the functions are.
  */
+#define STRUT_DEFINE_LAW_WORDS(inlined, PREFIX)                                                    \
+  inlined PREFIX##_real PREFIX##_all(double x) { return (PREFIX##_real){0} + x; }                  \
+  inlined PREFIX##_mask PREFIX##_less(PREFIX##_real a, PREFIX##_real b) { return a < b; }          \
+  inlined PREFIX##_mask PREFIX##_at_least(PREFIX##_real a, PREFIX##_real b) { return a >= b; }     \
+  inlined PREFIX##_mask PREFIX##_both(PREFIX##_mask m, PREFIX##_mask n) { return m & n; }          \
+  inlined PREFIX##_mask PREFIX##_either(PREFIX##_mask m, PREFIX##_mask n) { return m | n; }        \
+  inlined PREFIX##_real PREFIX##_choose(PREFIX##_mask m, PREFIX##_real a, PREFIX##_real b) {       \
+    return (PREFIX##_real)((m & (PREFIX##_mask)a) | (~m & (PREFIX##_mask)b));                      \
+  }                                                                                                \
+  inlined PREFIX##_real PREFIX##_keep(PREFIX##_mask m, PREFIX##_real a) {                          \
+    return (PREFIX##_real)(m & (PREFIX##_mask)a);                                                  \
+  }                                                                                                \
+  inlined PREFIX##_real PREFIX##_add_where(PREFIX##_mask m, PREFIX##_real sum, PREFIX##_real a) {  \
+    return PREFIX##_choose(m, sum + a, sum);                                                       \
+  }                                                                                                \
+  inlined PREFIX##_real PREFIX##_magnitude(PREFIX##_real a) {                                      \
+    return (PREFIX##_real)((PREFIX##_mask)a & 0x7fffffffffffffffLL);                               \
+  }                                                                                                \
+  inlined PREFIX##_real PREFIX##_whole(PREFIX##_real a) {                                          \
+    const double rounder = 6755399441055744.0; /* of such numbers units are the last bits */       \
+    return (a + rounder) - rounder;                                                                \
+  }                                                                                                \
+  inlined PREFIX##_real PREFIX##_against(PREFIX##_real a, PREFIX##_real b) {                       \
+    PREFIX##_real zero = {0}, one = zero + 1.0;                                                    \
+    return -a * PREFIX##_choose(b > zero, one, PREFIX##_choose(b < zero, -one, zero));             \
+  }
+
+/* Four doubles side by side. */
 typedef strut_lanes four_real;
 typedef strut_lane_mask four_mask;
-STRUT_INLINE four_real four_all(double x) { return (four_real){x, x, x, x}; }
-STRUT_INLINE four_mask four_less(four_real a, four_real b) { return a < b; }
-STRUT_INLINE four_mask four_at_least(four_real a, four_real b) { return a >= b; }
-STRUT_INLINE four_mask four_both(four_mask m, four_mask n) { return m & n; }
-STRUT_INLINE four_mask four_either(four_mask m, four_mask n) { return m | n; }
-STRUT_INLINE bool four_some(four_mask m) { return (m[0] | m[1] | m[2] | m[3]) != 0; }
-STRUT_INLINE four_real four_choose(four_mask m, four_real a, four_real b) {
-  return (four_real)((m & (four_mask)a) | (~m & (four_mask)b));
-}
-STRUT_INLINE four_real four_keep(four_mask m, four_real a) {
-  return (four_real)(m & (four_mask)a);
-}
-STRUT_INLINE four_real four_add_where(four_mask m, four_real sum, four_real a) {
-  return four_choose(m, sum + a, sum);
-}
-STRUT_INLINE four_real four_magnitude(four_real a) {
-  return (four_real)((four_mask)a & 0x7fffffffffffffffLL);
-}
+STRUT_DEFINE_LAW_WORDS(STRUT_INLINE, four)
 STRUT_INLINE four_real four_root(four_real a) {
   return (four_real){sqrt(a[0]), sqrt(a[1]), sqrt(a[2]), sqrt(a[3])};
-}
-STRUT_INLINE four_real four_whole(four_real a) {
-  const double rounder = 6755399441055744.0;
-  return (a + rounder) - rounder;
-}
-STRUT_INLINE four_real four_times_sign(four_real a, four_real b) {
-  four_real zero = {0}, one = four_all(1.0);
-  return a * four_choose(b > zero, one, four_choose(b < zero, -one, zero));
 }
 
 #endif

@@ -138,7 +138,7 @@ static void list_contacts(const strut_model *model, strut_small_contacts *t) {
     const strut_contact_entry *e = &model->contacts.entry[i];
     const strut_friction *f = &e->friction;
     int32_t n = e->node;
-    t->stiffness[n] = e->stiffness, t->damping[n] = e->damping;
+    t->minus_stiffness[n] = -e->stiffness, t->minus_damping[n] = -e->damping;
     t->dissipation[n] = e->dissipation;
 #define STRUT_FRICTION_ROW(NAME, field, range) t->field[n] = f->field;
     STRUT_FRICTION_PARAMETERS(STRUT_FRICTION_ROW)

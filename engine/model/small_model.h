@@ -91,7 +91,7 @@ typedef enum strut_small_source {
 
 /** Contacts at the lanes of their nodes: the numbers of their laws, and which laws they have. */
 typedef struct strut_small_contacts {
-  strut_small_row stiffness, damping, dissipation;
+  strut_small_row minus_stiffness, minus_damping, dissipation;
 #define STRUT_FRICTION_ROW(NAME, field, range) strut_small_row field;
   STRUT_FRICTION_PARAMETERS(STRUT_FRICTION_ROW)
 #undef STRUT_FRICTION_ROW

@@ -21,8 +21,8 @@
 STRUT_INLINE double contact_normal_force(const strut_contact_entry *e, int8_t damper, double gap,
                                          double into, bool damped) {
   const strut_law_ground_numbers numbers = strut_contact_numbers(e);
-  bool acts = damper ? damper > 0 : into < 0.0;
-  return damped ? strut_law_ground_normal_in_mode(&numbers, acts, gap, into, true)
+  bool acts = damper ? damper > 0 : into < 0.0, crossley = e->dissipation > 0.0;
+  return damped ? strut_law_ground_normal_in_mode(&numbers, acts, gap, into, crossley)
                 : strut_law_ground_spring(&numbers, gap);
 }
 

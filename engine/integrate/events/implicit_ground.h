@@ -15,7 +15,7 @@
 STRUT_INLINE double implicit_damper(const strut_contact_entry *e, double spring, double free,
                                     double half) {
   const strut_law_ground_numbers numbers = strut_contact_numbers(e);
-  return strut_law_ground_implicit_damper(&numbers, spring, free, half, true);
+  return strut_law_ground_implicit_damper(&numbers, spring, free, half, e->dissipation > 0.0);
 }
 
 /* Speed into the ground at the end of the step, given the accelerations so far. */

@@ -19,7 +19,7 @@ LAW_INLINE real LAW(friction_in_band)(real holding, real applied) {
 /** Friction inside the band of a contact that creeps along its edge. */
 LAW_INLINE real LAW(friction_at_edge)(real holding, real sliding, real applied) {
   mask held = less(magnitude(applied), holding);
-  return choose(held, -applied, times_sign(-sliding, applied));
+  return choose(held, -applied, against(sliding, applied));
 }
 
 /** STRUT_EVENT_SLIP_ENDS: from the speed at the edge of the band, or 0 [m/s]. */

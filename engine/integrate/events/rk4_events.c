@@ -6,29 +6,10 @@
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/integrate/events/small_trials.h"
 #include "engine/integrate/integrator.h"
+#include "engine/integrate/rk4_stages.h"
 
 /* Positions, then velocities and accelerations of the stages 2 to 4. */
 enum { Q, V, A = V + 3, STAGES = A + 3 };
-
-STRUT_INLINE void stage(int32_t n, double h, const double *restrict q0, const double *restrict v0,
-                        const double *restrict v, const double *restrict a, double *restrict q,
-                        double *restrict next) {
-  for (int32_t i = 0; i < n; i += STRUT_LANES) {
-    strut_lanes_store(q + i, strut_lanes_load(q0 + i) + h * strut_lanes_load(v + i));
-    strut_lanes_store(next + i, strut_lanes_load(v0 + i) + h * strut_lanes_load_pairs(a + i));
-  }
-}
-
-STRUT_INLINE void combine(int32_t n, double h, const double *restrict z, const double *k1,
-                          const double *restrict k2, const double *restrict k3,
-                          const double *restrict k4, double *restrict out) {
-  double sixth = h / 6.0;
-  for (int32_t i = 0; i < n; i += STRUT_LANES) {
-    strut_lanes inner = strut_lanes_load(k2 + i) + strut_lanes_load(k3 + i);
-    strut_lanes sum = strut_lanes_load(k1 + i) + 2.0 * inner + strut_lanes_load_pairs(k4 + i);
-    strut_lanes_store(out + i, strut_lanes_load(z + i) + sixth * sum);
-  }
-}
 
 STRUT_INLINE void gain(const strut_state *state, strut_event_stepper *l, double weight) {
   for (int p = 0; p < STRUT_POWER_COUNT; p++) l->gained[p] += weight * state->power[p];
@@ -36,7 +17,7 @@ STRUT_INLINE void gain(const strut_state *state, strut_event_stepper *l, double 
 
 STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *l,
                        double t, double h, unsigned terms, bool ledger) {
-  static const double ahead[4] = {0.0, 0.5, 0.5, 1.0}, weight[4] = {1, 2, 2, 1};
+  const double *ahead = STRUT_RK4_AHEAD, *weight = STRUT_RK4_WEIGHTS;
   double **w = l->stage;
   const double *const v[4] = {l->now->v, w[V], w[V + 1], w[V + 2]};
   double *const a[4] = {l->now->a, w[A], w[A + 1], w[A + 2]};
@@ -44,14 +25,14 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
   bool moves = model->plan & terms & STRUT_TERM_SUPPORT_MOTION;
   for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) l->gained[p] = h / 6.0 * l->now->power[p];
   for (int k = 1; k < 4; k++) {
-    stage(n, ahead[k] * h, l->now->q, l->now->v, v[k - 1], a[k - 1], w[Q], w[V + k - 1]);
+    rk4_next_stage(n, ahead[k] * h, l->now->q, l->now->v, v[k - 1], a[k - 1], w[Q], w[V + k - 1]);
     if (moves) strut_support_motion_place(model, state, t + ahead[k] * h, w[Q], w[V + k - 1]);
     accelerate_in_modes(model, state, l, t + ahead[k] * h, w[Q], v[k], a[k], l->next, terms,
                         ledger);
     if (ledger) gain(state, l, weight[k] * h / 6.0);
   }
-  combine(n, h, l->now->q, v[0], v[1], v[2], v[3], l->next->q);
-  combine(n, h, l->now->v, a[0], a[1], a[2], a[3], l->next->v);
+  rk4_end_of_step(n, h, l->now->q, v[0], v[1], v[2], v[3], l->next->q);
+  rk4_end_of_step(n, h, l->now->v, a[0], a[1], a[2], a[3], l->next->v);
   if (moves) strut_support_motion_place(model, state, t + h, l->next->q, l->next->v);
   evaluate_step_end(model, state, l, t + h, l->next, terms, ledger);
 }
@@ -73,11 +54,10 @@ static void advance_until_event(const strut_model *model, strut_state *state,
   if (small && strut_small_is_quiet(state, l)) small(model, state, l, dt, end);
 }
 
-static const double ahead[4] = {0.0, 0.5, 0.5, 1.0};
 static const double table[5][4] = {
     {0}, {0.5}, {0.0, 0.5}, {0.0, 0.0, 1.0}, {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6}};
 static const strut_tableau tableau = {
-    .stages = 4, .velocities = V - 1, .ahead = ahead, .weight = table[0]};
+    .stages = 4, .velocities = V - 1, .ahead = STRUT_RK4_AHEAD, .weight = table[0]};
 static const strut_step_formula stepper = {.trial = trial,
                                            .stages = STAGES,
                                            .exact = true,

@@ -162,7 +162,7 @@ STRUT_SMALL_INLINE void small_structure(small_events *e, const small_rest *rest,
                                         small_shapes *shapes, const small_points *next_q,
                                         const small_points *v, bool ledger) {
   small_pulls px, py;
-  four_member_powers members = {0};
+  small4_member_powers members = {0};
   small_run run = e->run;
   if (ledger) SMALL_READS_AGAIN(run.tables);
   small_members(&run, rest, shapes, next_q, v, ledger, &px, &py, &members);

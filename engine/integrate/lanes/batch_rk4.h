@@ -7,6 +7,7 @@
 
 #include "engine/forces/lane_kernel.h"
 #include "engine/integrate/lanes/batch.h"
+#include "engine/integrate/rk4_stages.h"
 
 /* Positions and velocities of the next stage: q + h v, v0 + h a. */
 STRUT_LANE_INLINE void batch_stage(size_t n, double ahead, const lane_real *dt,
@@ -14,8 +15,10 @@ STRUT_LANE_INLINE void batch_stage(size_t n, double ahead, const lane_real *dt,
                                    const double *restrict v, const double *restrict a,
                                    double *restrict q, double *restrict next) {
   for (size_t i = 0; i < n; i++) {
-    LANE_EACH(lane_put(q, i, p, lane_row(q0, i, p) + ahead * dt[p] * lane_row(v, i, p)));
-    LANE_EACH(lane_put(next, i, p, lane_row(v0, i, p) + ahead * dt[p] * lane_row(a, i, p)));
+    LANE_EACH(lane_put(q, i, p,
+                       lane_rk4_stage(lane_row(q0, i, p), ahead * dt[p], lane_row(v, i, p))));
+    LANE_EACH(lane_put(next, i, p,
+                       lane_rk4_stage(lane_row(v0, i, p), ahead * dt[p], lane_row(a, i, p))));
   }
 }
 
@@ -23,9 +26,8 @@ STRUT_LANE_INLINE void batch_stage(size_t n, double ahead, const lane_real *dt,
 STRUT_LANE_INLINE void batch_combine_row(size_t i, int p, lane_real sixth, double *restrict z,
                                          const double *k1, const double *restrict k2,
                                          const double *restrict k3, const double *restrict k4) {
-  lane_real inner = lane_row(k2, i, p) + lane_row(k3, i, p);
-  lane_real sum = lane_row(k1, i, p) + 2.0 * inner + lane_row(k4, i, p);
-  lane_put(z, i, p, lane_row(z, i, p) + sixth * sum);
+  lane_put(z, i, p, lane_rk4_end(lane_row(z, i, p), sixth, lane_row(k1, i, p), lane_row(k2, i, p),
+                                 lane_row(k3, i, p), lane_row(k4, i, p)));
 }
 
 STRUT_LANE_INLINE void batch_combine(size_t n, const lane_real *sixth, double *restrict z,
@@ -43,7 +45,7 @@ STRUT_LANE_INLINE void batch_work(const strut_batch *b, const double *power, dou
 }
 
 STRUT_LANE_INLINE void batch_rk4_steps(strut_batch *b, int64_t count, bool ledger) {
-  static const double ahead[4] = {0.0, 0.5, 0.5, 1.0}, weight[4] = {1, 2, 2, 1};
+  const double *ahead = STRUT_RK4_AHEAD, *weight = STRUT_RK4_WEIGHTS;
   /* a copy in this frame, so that no store can be taken to change it */
   strut_lane_tables tables = b->tables;
   double *restrict q = b->q, *restrict v = b->v;

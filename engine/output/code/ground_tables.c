@@ -222,8 +222,8 @@ static void add_contact(strut_code_writer *w, int32_t i) {
   strut_buffer_add(&w->text, "    {%u", t->at[i]);
   if (strut_code_holds(w, "surfaces")) strut_buffer_add(&w->text, ", %d", t->surface_of[i]);
   strut_buffer_add(&w->text, ", {");
-  strut_code_add_real(w, e->stiffness);
-  strut_code_add_field(w, e->damping);
+  strut_code_add_real(w, -e->stiffness);
+  strut_code_add_field(w, -e->damping);
   strut_code_add_field(w, e->dissipation);
   strut_buffer_add(&w->text, "}");
   if (strut_code_holds(w, "friction")) {

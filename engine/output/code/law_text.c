@@ -13,6 +13,7 @@ typedef struct definition {
   const char *text, *end;
   const char *name;
   size_t length;
+  bool type;
 } definition;
 
 static bool is_letter(char c) { return isalnum((unsigned char)c) || c == '_'; }
@@ -65,6 +66,7 @@ static bool find_name(definition *d) {
   const char *at = d->text, *name = NULL, *body = NULL;
   size_t length = 0;
   bool type = false;
+  d->type = false;
   for (const char *line = d->text; line < d->end; line = strchr(line, '\n') + 1) {
     if (*line == '#') return false; /* rows of a table: not for other programs */
     type = type || !strncmp(line, "typedef struct", 14);
@@ -79,6 +81,7 @@ static bool find_name(definition *d) {
     const char *open = *at == ')' ? at + 1 : at;
     if (!type && *open == '(') return true;
   }
+  d->type = type;
   return type;
 }
 
@@ -210,8 +213,10 @@ static void add_definition(strut_code_writer *w, const char *name, size_t length
   w->law_texts[number] = true;
   size_t own;
   for (const char *at = d.text; (at = next_identifier(at, d.end, &name, &own)) != NULL;) {
+    bool called = *at == '(' || (*at == ')' && at[1] == '(');
     name = definition_name(name, &own);
-    if (find_definition(name, own, &other, &of_other)) add_definition(w, name, own);
+    if (find_definition(name, own, &other, &of_other) && (called || other.type))
+      add_definition(w, name, own);
   }
   add_text(w, d.text, d.end);
 }

@@ -62,6 +62,11 @@ void strut_code_add_member_law(strut_code_writer *w) {
   strut_code_add_law(w, "member_energy");
 }
 
+void strut_code_add_step_law(strut_code_writer *w) {
+  strut_code_add_law(w, "rk4_stage");
+  strut_code_add_law(w, "rk4_end");
+}
+
 static void add_drives(strut_code_writer *w) {
   const strut_drive_table *d = &w->model->drives;
   const strut_load_table *l = &w->model->loads;

@@ -106,6 +106,8 @@ void strut_code_add_resting_damping(strut_code_writer *w);
 
 /* model_tables.c: the law of members. */
 void strut_code_add_member_law(strut_code_writer *w);
+/* The formulas of rk4. */
+void strut_code_add_step_law(strut_code_writer *w);
 /* Declarations of the model: members, contacts, drives, loads, masses, start. And the lines that solve for
    accelerations. */
 void strut_code_add_model(strut_code_writer *w);

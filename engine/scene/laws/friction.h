@@ -69,8 +69,8 @@ LAW_INLINE real LAW(friction_karnopp)(const LAW(friction_numbers) *f, real norma
                                       real applied) {
   mask slides = at_least(magnitude(slip), f->stick_velocity);
   mask pushed = at_least(magnitude(applied), f->mu_static * normal);
-  real against = times_sign(-f->mu_kinetic * normal, choose(slides, slip, applied));
-  return choose(either(slides, pushed), against, -applied);
+  real opposed = choose(slides, slip, applied);
+  return choose(either(slides, pushed), against(f->mu_kinetic * normal, opposed), -applied);
 }
 LAW_INLINE real LAW(friction_karnopp_slope)(const LAW(friction_numbers) *f, real normal) {
   (void)f, (void)normal;

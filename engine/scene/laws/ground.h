@@ -9,14 +9,14 @@
  */
 #include "engine/scene/laws/words.h"
 
-/** Numbers of contacts: c_g [N/m], k_g [N s/m], and chi of the Hunt-Crossley law [s/m] or 0. */
+/** Numbers of contacts: -c_g [N/m], -k_g [N s/m], and chi of the Hunt-Crossley law [s/m] or 0. */
 typedef struct LAW(ground_numbers) {
-  real stiffness, damping, dissipation;
+  real minus_stiffness, minus_damping, dissipation;
 } LAW(ground_numbers);
 
 /** Force of the ground's springs [N]. */
 LAW_INLINE real LAW(ground_spring)(const LAW(ground_numbers) *g, real gap) {
-  return -g->stiffness * gap;
+  return g->minus_stiffness * gap;
 }
 
 /**
@@ -25,7 +25,7 @@ LAW_INLINE real LAW(ground_spring)(const LAW(ground_numbers) *g, real gap) {
  */
 LAW_INLINE real LAW(ground_damper)(const LAW(ground_numbers) *g, real spring, real into,
                                    bool crossley) {
-  real zero = all(0.0), damper = keep(less(into, zero), -g->damping * into);
+  real zero = all(0.0), damper = keep(less(into, zero), g->minus_damping * into);
   if (!crossley) return damper;
   real other = -spring * g->dissipation * into;
   other = choose(less(-spring, other), other, -spring);
@@ -39,7 +39,7 @@ LAW_INLINE real LAW(ground_damper)(const LAW(ground_numbers) *g, real spring, re
 LAW_INLINE real LAW(ground_normal_in_mode)(const LAW(ground_numbers) *g, mask acts, real gap,
                                            real into, bool crossley) {
   real zero = all(0.0), spring = LAW(ground_spring)(g, gap);
-  real normal = add_where(acts, spring, -g->damping * into);
+  real normal = add_where(acts, spring, g->minus_damping * into);
   if (!crossley) return normal;
   real other = spring - spring * g->dissipation * into;
   other = keep(either(less(zero, other), at_least(gap, zero)), other);
@@ -52,7 +52,7 @@ LAW_INLINE real LAW(ground_normal_in_mode)(const LAW(ground_numbers) *g, mask ac
  */
 LAW_INLINE real LAW(ground_implicit_damper)(const LAW(ground_numbers) *g, real spring, real free,
                                             real half, bool crossley) {
-  real zero = all(0.0), damping = g->damping;
+  real zero = all(0.0), damping = -g->minus_damping;
   mask other = less(zero, g->dissipation);
   if (crossley)
     damping = choose(other, keep(less(zero, spring), g->dissipation * spring), damping);

@@ -26,6 +26,6 @@ static inline double strut_law_root(double a) { return sqrt(a); }
 
 /** Sign of x: -1, 0 or 1. */
 static inline double strut_sign(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
-static inline double strut_law_times_sign(double a, double b) { return a * strut_sign(b); }
+static inline double strut_law_against(double a, double b) { return -a * strut_sign(b); }
 
 #endif

@@ -16,10 +16,12 @@
  *   add_where(m, sum, a)                sum + a where m holds, sum elsewhere
  *   magnitude(a), root(a)
  *   whole(a)            the whole number that is nearest to a, for sizes below 2^51
- *   times_sign(a, b)    a, -a or 0 a, as b is positive, negative or neither
+ *   against(a, b)       -a, a or 0 a, as b is positive, negative or neither
  *
  * Without a back end the words are those of single doubles (laws/scalar.h), under the prefix strut_law_.
  */
+#include <stdbool.h>
+
 #ifndef LAW
 #include "engine/scene/laws/scalar.h"
 #define LAW(name) strut_law_##name
@@ -41,4 +43,4 @@
 #define magnitude LAW(magnitude)
 #define root LAW(root)
 #define whole LAW(whole)
-#define times_sign LAW(times_sign)
+#define against LAW(against)

@@ -14,7 +14,7 @@
 #undef magnitude
 #undef root
 #undef whole
-#undef times_sign
+#undef against
 #ifdef LAW_OF_DOUBLES
 #undef LAW
 #undef LAW_INLINE
