@@ -41,8 +41,7 @@ STRUT_INLINE void drives_ahead_put(double *row, int32_t j, double x) {
   const strut_lane_mask place = {0, 1, 2, 3};
   double *group = row + j / STRUT_LANES * STRUT_LANES;
   strut_lanes all = {x, x, x, x};
-  strut_lanes_store(group,
-                    four_choose(place == j % STRUT_LANES, all, strut_lanes_load(group)));
+  strut_lanes_store(group, four_choose(place == j % STRUT_LANES, all, strut_lanes_load(group)));
 }
 
 /* Rest lengths at the next instant, which is time t of the state. */

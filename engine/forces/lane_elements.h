@@ -131,7 +131,8 @@ STRUT_LANE_INLINE void lane_add_element(strut_lane_tables *t, int32_t i, int p,
   powers->exchanged += lane_magnitude(drive) + lost;
 }
 
-STRUT_LANE_INLINE void lane_add_powers(strut_lane_tables *t, int p, const lane_member_powers *powers) {
+STRUT_LANE_INLINE void lane_add_powers(strut_lane_tables *t, int p,
+                                       const lane_member_powers *powers) {
   double *power = t->power;
   lane_put(power, STRUT_POWER_DRIVE, p, lane_row(power, STRUT_POWER_DRIVE, p) + powers->drive);
   lane_put(power, STRUT_POWER_MEMBERS, p, lane_row(power, STRUT_POWER_MEMBERS, p) + powers->lost);

@@ -101,15 +101,15 @@ STRUT_LANE_INLINE void lane_loads(strut_lane_tables *t, int p, const double *res
 
 /* What the law asks of member j; `rate`: of its length [m/s]. */
 STRUT_LANE_INLINE lane_member_values lane_values_of(const strut_lane_tables *t, size_t j, int p,
-                                             lane_real length, lane_real rate) {
+                                                    lane_real length, lane_real rate) {
   return (lane_member_values){.length = length,
-                       .rate = rate,
-                       .rest = lane_row(t->rest, j, p),
-                       .rest_rate = lane_row(t->rest_rate, j, p),
-                       .stiffness = lane_row(t->stiffness, j, p),
-                       .damping = lane_row(t->damping, j, p),
-                       .slack_length_threshold = lane_row(t->slack_length_threshold, j, p),
-                       .slack_force_threshold = lane_row(t->slack_force_threshold, j, p)};
+                              .rate = rate,
+                              .rest = lane_row(t->rest, j, p),
+                              .rest_rate = lane_row(t->rest_rate, j, p),
+                              .stiffness = lane_row(t->stiffness, j, p),
+                              .damping = lane_row(t->damping, j, p),
+                              .slack_length_threshold = lane_row(t->slack_length_threshold, j, p),
+                              .slack_force_threshold = lane_row(t->slack_force_threshold, j, p)};
 }
 
 /* Vector from the first to the second node, length, and its inverse or 0. */
@@ -187,7 +187,8 @@ STRUT_LANE_INLINE void lane_members(strut_lane_tables *t, const double *restrict
                                     const double *restrict v, bool ledger, const lane_book *book) {
   enum { K = STRUT_TERM_DAMPING, S = STRUT_TERM_SLACK, D = STRUT_TERM_DRIVE };
   const strut_member_table *m = &t->first->members;
-  lane_member_powers own[STRUT_LANES][LANE_PARTS], (*powers)[LANE_PARTS] = book ? book->member : own;
+  lane_member_powers own[STRUT_LANES][LANE_PARTS],
+      (*powers)[LANE_PARTS] = book ? book->member : own;
   if (ledger) lane_clear_members(powers);
   for (int32_t b = 0; b < m->blocks; b++) {
     int32_t begin = b * STRUT_BLOCK,
@@ -213,13 +214,14 @@ STRUT_LANE_INLINE void lane_members(strut_lane_tables *t, const double *restrict
 
 /* The numbers of a contact's laws in the runs of part p. */
 STRUT_LANE_INLINE lane_ground_numbers lane_ground_at(const double *entry, int p) {
-  return (lane_ground_numbers){-lane_row(entry, STRUT_LANE_STIFFNESS, p),
-                               -lane_row(entry, STRUT_LANE_DAMPING, p),
+  return (lane_ground_numbers){lane_row(entry, STRUT_LANE_MINUS_STIFFNESS, p),
+                               lane_row(entry, STRUT_LANE_MINUS_DAMPING, p),
                                lane_row(entry, STRUT_LANE_DISSIPATION, p)};
 }
 STRUT_LANE_INLINE lane_friction_numbers lane_friction_at(const double *entry, int p) {
   return (lane_friction_numbers){
-#define STRUT_FRICTION_ROW(NAME, field, range) .field = lane_row(entry, STRUT_LANE_FRICTION_##NAME, p),
+#define STRUT_FRICTION_ROW(NAME, field, range)                                                     \
+  .field = lane_row(entry, STRUT_LANE_FRICTION_##NAME, p),
       STRUT_FRICTION_PARAMETERS(STRUT_FRICTION_ROW)
 #undef STRUT_FRICTION_ROW
           .mu_static_backward = lane_row(entry, STRUT_LANE_FRICTION_MU_STATIC_BACKWARD, p),
@@ -327,9 +329,11 @@ STRUT_LANE_INLINE void lane_forces(strut_lane_tables *t, const double *restrict 
   if (m->plan & STRUT_TERM_LAWS)
     lane_ground(t, q, v, (lane_ground_terms){true, true, true, false}, book);
   else if (m->plan & STRUT_TERM_SLOPE)
-    lane_ground(t, q, v, (lane_ground_terms){true, m->plan & STRUT_TERM_FRICTION, false, false}, book);
+    lane_ground(t, q, v, (lane_ground_terms){true, m->plan & STRUT_TERM_FRICTION, false, false},
+                book);
   else
-    lane_ground(t, q, v, (lane_ground_terms){false, m->plan & STRUT_TERM_FRICTION, false, false}, book);
+    lane_ground(t, q, v, (lane_ground_terms){false, m->plan & STRUT_TERM_FRICTION, false, false},
+                book);
 }
 
 /* Masses */

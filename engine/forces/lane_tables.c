@@ -9,12 +9,12 @@
 #include "engine/model/mass.h"
 
 /* The laws and strains of lane_kernel.h and lane_elements.h. */
-static const strut_law_set known = {
-    .friction = STRUT_HAS_ALL,
-    .damping = STRUT_HAS_ALL,
-    .law = STRUT_HAS_ALL,
-    .strain = STRUT_HAS(STRUT_STRAIN, LENGTH) | STRUT_HAS(STRUT_STRAIN, PATH) |
-              STRUT_HAS(STRUT_STRAIN, ANGLE)};
+static const strut_law_set known = {.friction = STRUT_HAS_ALL,
+                                    .damping = STRUT_HAS_ALL,
+                                    .law = STRUT_HAS_ALL,
+                                    .strain = STRUT_HAS(STRUT_STRAIN, LENGTH) |
+                                              STRUT_HAS(STRUT_STRAIN, PATH) |
+                                              STRUT_HAS(STRUT_STRAIN, ANGLE)};
 
 bool strut_lanes_possible(const strut_model *model) {
   const strut_mass *mass = model->mass;
@@ -186,8 +186,8 @@ static void fill_ground(strut_lane_tables *t, int32_t lane, const strut_contact_
   for (int32_t i = 0; i < c->count; i++) {
     const strut_contact_entry *e = &c->entry[i];
     const double row[STRUT_LANE_CONTACT_ROWS] = {
-        [STRUT_LANE_STIFFNESS] = e->stiffness,
-        [STRUT_LANE_DAMPING] = e->damping,
+        [STRUT_LANE_MINUS_STIFFNESS] = -e->stiffness,
+        [STRUT_LANE_MINUS_DAMPING] = -e->damping,
         [STRUT_LANE_DISSIPATION] = e->dissipation,
 #define STRUT_FRICTION_ROW(NAME, field, range) [STRUT_LANE_FRICTION_##NAME] = e->friction.field,
         STRUT_FRICTION_PARAMETERS(STRUT_FRICTION_ROW)

@@ -20,8 +20,8 @@ _Static_assert(STRUT_POWER_SUPPORT == STRUT_POWER_COUNT - 1, "powers of lanes co
 
 /** Rows of a contact, of the ground, and of a signal. */
 typedef enum strut_lane_contact_row {
-  STRUT_LANE_STIFFNESS,
-  STRUT_LANE_DAMPING,
+  STRUT_LANE_MINUS_STIFFNESS,
+  STRUT_LANE_MINUS_DAMPING,
   STRUT_LANE_DISSIPATION,
 #define STRUT_FRICTION_ROW(NAME, ...) STRUT_LANE_FRICTION_##NAME,
   STRUT_FRICTION_PARAMETERS(STRUT_FRICTION_ROW)

@@ -82,11 +82,11 @@ STRUT_LANE_INLINE lane_real lane_root(lane_real x) {
 
 #define LAW(name) lane_##name
 #define LAW_INLINE STRUT_LANE_INLINE
+#include "engine/forces/strains/direction.h"
 #include "engine/scene/laws/friction.h"
 #include "engine/scene/laws/ground.h"
 #include "engine/scene/laws/member.h"
 #include "engine/scene/laws/runge_kutta.h"
-#include "engine/forces/strains/direction.h"
 #undef LAW
 #undef LAW_INLINE
 

@@ -30,9 +30,9 @@ STRUT_INLINE member_vectors members_gather(const double *restrict p, const uint3
 }
 
 /* What the law asks of the members from j on; `rate`: of the lengths [m/s]. */
-STRUT_INLINE four_member_values members_values(const strut_member_table *t, const strut_state *state,
-                                          int32_t j, bool driven, strut_lanes length,
-                                          strut_lanes rate) {
+STRUT_INLINE four_member_values members_values(const strut_member_table *t,
+                                               const strut_state *state, int32_t j, bool driven,
+                                               strut_lanes length, strut_lanes rate) {
   return (four_member_values){
       .length = length,
       .rate = rate,
@@ -60,8 +60,7 @@ STRUT_INLINE member_pulls members_group(const strut_member_table *t, const strut
   const uint32_t *restrict from = t->from + j, *restrict to = t->to + j;
   member_vectors d = members_gather(q, from, to);
   strut_lanes length = four_root(d.x * d.x + d.y * d.y);
-  strut_lanes inverse = four_choose(length > 0.0, 1.0 / length, (strut_lanes){0}),
-              rate = {0};
+  strut_lanes inverse = four_choose(length > 0.0, 1.0 / length, (strut_lanes){0}), rate = {0};
   if ((terms & STRUT_TERM_DAMPING) || (ledger && (terms & STRUT_TERM_DRIVE))) {
     member_vectors w = members_gather(v, from, to);
     rate = (w.x * d.x + w.y * d.y) * inverse; /* the products need not wait for the root */

@@ -51,11 +51,11 @@ STRUT_SMALL_INLINE double small_belt(const small_run *r) {
 }
 
 /* Along the members: differences of the ends' positions and velocities, pulls. */
-#define STRUT_DEFINE_SMALL_GROUP(number, mask, PREFIX, law, load, root)                                                          \
-  STRUT_SMALL_INLINE law##_member_values PREFIX##_values_at(                                                                    \
+#define STRUT_DEFINE_SMALL_GROUP(number, mask, PREFIX, law, load, root)                                                     \
+  STRUT_SMALL_INLINE law##_member_values PREFIX##_values_at(                                                                \
       const small_run *r, const small_rest *rest, int j, number length, number rate) {                                      \
     const strut_small_model *s = r->tables;                                                                                 \
-    return (law##_member_values){                                                                                               \
+    return (law##_member_values){                                                                                           \
         .length = length,                                                                                                   \
         .rate = rate,                                                                                                       \
         .rest = load(rest->rest + j),                                                                                       \
@@ -84,12 +84,13 @@ STRUT_SMALL_INLINE double small_belt(const small_run *r) {
                                           bool ledger, number *lost) {                                                      \
     number rate = {0}, damper;                                                                                              \
     if (r->plan & STRUT_TERM_DAMPING) rate = (*u * d->x + *w * d->y) * d->inverse;                                          \
-    law##_member_values m = PREFIX##_values_at(r, rest, j, d->length, rate);                                                    \
-    bool damped = r->plan & STRUT_TERM_DAMPING, driven = r->plan & STRUT_TERM_DRIVE; \
-    number tension = law##_member_tension(&m, damped, r->plan & STRUT_TERM_SLACK, driven, ledger, &damper);                                                            \
+    law##_member_values m = PREFIX##_values_at(r, rest, j, d->length, rate);                                                \
+    bool damped = r->plan & STRUT_TERM_DAMPING, driven = r->plan & STRUT_TERM_DRIVE;                                        \
+    number tension =                                                                                                        \
+        law##_member_tension(&m, damped, r->plan & STRUT_TERM_SLACK, driven, ledger, &damper);                              \
     number density = tension * d->inverse;                                                                                  \
     *u = density * d->x, *w = density * d->y;                                                                               \
-    if (ledger && damped) *lost = damper * law##_member_stretch_rate(&m, driven);  \
+    if (ledger && damped) *lost = damper * law##_member_stretch_rate(&m, driven);                                           \
     return tension;                                                                                                         \
   }
 

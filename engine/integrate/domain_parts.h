@@ -36,7 +36,7 @@ typedef struct domain_part {
   double *rest, *rest_rate;                   /* (STRUT_PASSES, drives) */
   int32_t begun, done[STRUT_PASSES], block[STRUT_PASSES]; /* progress of nodes and of members */
   int32_t contact[STRUT_PASSES], loaded[STRUT_PASSES], paid[STRUT_PASSES],
-      drive[STRUT_PASSES];           /* and of these */
+      drive[STRUT_PASSES];                /* and of these */
   four_member_powers power[STRUT_PASSES]; /* since the last whole block of the ledger */
   strut_arena arena;
   bool good;
@@ -44,9 +44,9 @@ typedef struct domain_part {
 
 /* What subdomains leave for the ledger in one sweep; (STRUT_PASSES, ...). */
 typedef struct domain_ledger {
-  four_member_powers *member;  /* blocks of the ledger */
-  double *contact, *load; /* (contacts, DOMAIN_CONTACT_POWERS), (loads) */
-  atomic_uchar *touched;  /* blocks of contacts: some of them touch */
+  four_member_powers *member; /* blocks of the ledger */
+  double *contact, *load;     /* (contacts, DOMAIN_CONTACT_POWERS), (loads) */
+  atomic_uchar *touched;      /* blocks of contacts: some of them touch */
 } domain_ledger;
 
 struct strut_domain_steps {

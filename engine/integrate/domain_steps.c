@@ -309,7 +309,8 @@ static void store_state(const strut_domain_steps *s, const domain_part *p) {
 /* ---- ledger ---- */
 
 /* Of all blocks of the ledger, in their order. */
-static four_member_powers sum_member_powers(const strut_domain_steps *s, const four_member_powers *block) {
+static four_member_powers sum_member_powers(const strut_domain_steps *s,
+                                            const four_member_powers *block) {
   four_member_powers sum = {0};
   for (int32_t b = 0; b < s->ledger_blocks; b++) members_add_powers(&sum, &block[b]);
   return sum;

@@ -52,9 +52,8 @@ STRUT_INLINE void rk4_last(const domain_part *p, double h, int32_t i) {
   strut_lanes a0 = strut_lanes_load(p->a[0] + i), a1 = strut_lanes_load(p->a[1] + i);
   strut_lanes a2 = strut_lanes_load(p->a[2] + i), q0 = strut_lanes_load(p->q0 + i);
   strut_lanes v1 = four_rk4_stage(v0, half, a0), v2 = four_rk4_stage(v0, half, a1);
-  strut_lanes_store(p->q0 + i,
-                    four_rk4_end(q0, sixth, v0, v1, v2, four_rk4_stage(v0, step, a2)));
-  strut_lanes_store(p->v0 + i, four_rk4_end(v0, sixth, a0, a1, a2, a));
+  strut_lanes_store(p->q0 + i, four_rk4_end(q0, sixth, v0, v1 + v2, four_rk4_stage(v0, step, a2)));
+  strut_lanes_store(p->v0 + i, four_rk4_end(v0, sixth, a0, a1 + a2, a));
 }
 
 STRUT_CLONES
@@ -64,8 +63,7 @@ static void finish_rk4(const domain_part *p, int k, double h, bool moves, int32_
   if (k == 0)
     for (int32_t i = 2 * begin; i < 2 * end; i += STRUT_LANES) rk4_next(p, half, 0.0, 0, moves, i);
   else if (k == 1)
-    for (int32_t i = 2 * begin; i < 2 * end; i += STRUT_LANES)
-      rk4_next(p, half, half, 1, moves, i);
+    for (int32_t i = 2 * begin; i < 2 * end; i += STRUT_LANES) rk4_next(p, half, half, 1, moves, i);
   else if (k == 2)
     for (int32_t i = 2 * begin; i < 2 * end; i += STRUT_LANES) rk4_next(p, h, half, 2, moves, i);
   else

@@ -43,11 +43,11 @@ typedef struct strut_integrator {
   int evaluations;         /* of the forces per step, where no event interrupts it */
   strut_region region;
   strut_integrator_role role; /* each at most once in the table */
-  bool lanes; /* several runs can be stepped at once, lanes/batch.h */
-  bool implicit_damper; /* the ground's dampers do not limit the step */
-  bool events;          /* locates events: modes of contacts are frozen within a step */
-  bool rigid;           /* keeps the lengths of rigid bars */
-  bool no_ground;       /* cannot step over contacts */
+  bool lanes;                 /* several runs can be stepped at once, lanes/batch.h */
+  bool implicit_damper;       /* the ground's dampers do not limit the step */
+  bool events;                /* locates events: modes of contacts are frozen within a step */
+  bool rigid;                 /* keeps the lengths of rigid bars */
+  bool no_ground;             /* cannot step over contacts */
   /** Allocates the workspace beside the state's own arrays; NULL: out of memory. */
   void *(*create)(const strut_model *model, strut_state *state,
                   const strut_integrator_settings *settings);

@@ -19,7 +19,8 @@ STRUT_INLINE void rk4_next_stage(int32_t n, double h, const double *restrict q0,
                                  double *restrict next) {
   strut_lanes step = four_all(h);
   for (int32_t i = 0; i < n; i += STRUT_LANES) {
-    strut_lanes_store(q + i, four_rk4_stage(strut_lanes_load(q0 + i), step, strut_lanes_load(v + i)));
+    strut_lanes_store(q + i,
+                      four_rk4_stage(strut_lanes_load(q0 + i), step, strut_lanes_load(v + i)));
     strut_lanes_store(
         next + i, four_rk4_stage(strut_lanes_load(v0 + i), step, strut_lanes_load_pairs(a + i)));
   }
@@ -31,9 +32,10 @@ STRUT_INLINE void rk4_end_of_step(int32_t n, double h, const double *z, const do
                                   const double *restrict k4, double *out) {
   strut_lanes sixth = four_all(h / 6.0);
   for (int32_t i = 0; i < n; i += STRUT_LANES)
-    strut_lanes_store(out + i, four_rk4_end(strut_lanes_load(z + i), sixth, strut_lanes_load(k1 + i),
-                                            strut_lanes_load(k2 + i), strut_lanes_load(k3 + i),
-                                            strut_lanes_load_pairs(k4 + i)));
+    strut_lanes_store(out + i,
+                      four_rk4_end(strut_lanes_load(z + i), sixth, strut_lanes_load(k1 + i),
+                                   strut_lanes_load(k2 + i) + strut_lanes_load(k3 + i),
+                                   strut_lanes_load_pairs(k4 + i)));
 }
 
 #endif

@@ -8,13 +8,15 @@
 #include "engine/integrate/small_run.h"
 
 /* The end of a step, see rk4_end. */
-STRUT_SMALL_INLINE small_row small_combine(small_row z, double sixth, const small_row *k1,
-                                           const small_row *k2, const small_row *k3,
-                                           const small_row *k4) {
+STRUT_SMALL_INLINE small_row small_combine(small_row z, double sixth, small_row k1, small_row inner,
+                                           small_row k4) {
   SMALL_EACH(p)
-  z.part[p] = small_rk4_end(z.part[p], small_all(sixth), k1->part[p], k2->part[p], k3->part[p],
-                            k4->part[p]);
+  z.part[p] = small_rk4_end(z.part[p], small_all(sixth), k1.part[p], inner.part[p], k4.part[p]);
   return z;
+}
+STRUT_SMALL_INLINE small_row small_add(small_row a, small_row b) {
+  SMALL_EACH(p) a.part[p] = a.part[p] + b.part[p];
+  return a;
 }
 
 /*
@@ -40,11 +42,11 @@ STRUT_SMALL_INLINE small_points small_stage(const small_run *r, const small_rest
 }
 
 /* One step over the rest lengths at its begin, middle and end; shapes: of the members where it begins, and then where it
-   ends. */
+   ends. Of the two inner stages sums are kept. */
 STRUT_SMALL_INLINE void small_rk4_step(const small_run *r, const small_rest *rest, int stride,
                                        double dt, small_motion *m, small_shapes *shapes,
                                        bool ledger) {
-  small_points q = m->q, next_q, v = m->v, a, rates[3], speeds[3];
+  small_points q = m->q, next_q, v = m->v, a, first, inner_v, inner_a;
   small_stage_powers powers[4];
   const double half = 0.5 * dt, sixth = dt / 6.0;
 #define SMALL_AHEAD(h)                                                                             \
@@ -55,27 +57,27 @@ STRUT_SMALL_INLINE void small_rk4_step(const small_run *r, const small_rest *res
 #define SMALL_NEXT(h) v.x = small_ahead(m->v.x, h, a.x), v.y = small_ahead(m->v.y, h, a.y)
   SMALL_AHEAD(half);
   SMALL_STAGE(0, 0);
-  speeds[0] = v, rates[0] = a;
+  first = a;
   SMALL_NEXT(half);
   SMALL_AHEAD(half);
-  speeds[1] = v;
+  inner_v = v;
   SMALL_STAGE(1, 1);
-  rates[1] = a;
+  inner_a = a;
   SMALL_NEXT(half);
   SMALL_AHEAD(dt);
-  speeds[2] = v;
+  inner_v.x = small_add(inner_v.x, v.x), inner_v.y = small_add(inner_v.y, v.y);
   SMALL_STAGE(1, 2);
-  rates[2] = a;
+  inner_a.x = small_add(inner_a.x, a.x), inner_a.y = small_add(inner_a.y, a.y);
   SMALL_NEXT(dt);
-  next_q.x = small_combine(m->q.x, sixth, &speeds[0].x, &speeds[1].x, &speeds[2].x, &v.x);
-  next_q.y = small_combine(m->q.y, sixth, &speeds[0].y, &speeds[1].y, &speeds[2].y, &v.y);
+  next_q.x = small_combine(m->q.x, sixth, m->v.x, inner_v.x, v.x);
+  next_q.y = small_combine(m->q.y, sixth, m->v.y, inner_v.y, v.y);
   SMALL_STAGE(2, 3);
 #undef SMALL_AHEAD
 #undef SMALL_STAGE
 #undef SMALL_NEXT
   m->q = q;
-  m->v.x = small_combine(m->v.x, sixth, &rates[0].x, &rates[1].x, &rates[2].x, &a.x);
-  m->v.y = small_combine(m->v.y, sixth, &rates[0].y, &rates[1].y, &rates[2].y, &a.y);
+  m->v.x = small_combine(m->v.x, sixth, first.x, inner_a.x, a.x);
+  m->v.y = small_combine(m->v.y, sixth, first.y, inner_a.y, a.y);
   if (!ledger) return;
   SMALL_WAITS_IN_MEMORY(powers);
   small_end_stages(r, powers, sixth, &m->work);

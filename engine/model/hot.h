@@ -81,7 +81,7 @@ STRUT_INLINE void strut_lanes_store(double *p, strut_lanes x) { *(strut_lanes_at
   }                                                                                                \
   inlined PREFIX##_real PREFIX##_against(PREFIX##_real a, PREFIX##_real b) {                       \
     PREFIX##_real zero = {0}, one = zero + 1.0;                                                    \
-    return -a * PREFIX##_choose(b > zero, one, PREFIX##_choose(b < zero, -one, zero));             \
+    return a * PREFIX##_choose(b > zero, -one, PREFIX##_choose(b < zero, one, -zero));             \
   }
 
 /* Four doubles side by side. */

@@ -324,7 +324,7 @@ static void test_no_memory(void **unused) {
   int refused = 0;
   for (; !batch && refused < 100; refused++) {
     strut_fail_allocation_after(refused);
-    batch = strut_batch_create(model, strut_integrator_find("rk4"), 2, true);
+    batch = strut_batch_create(model, strut_integrator_find("rk4"), 4, true);
     strut_fail_allocation_after(-1);
   }
   assert_true(refused > 1 && batch);

@@ -259,10 +259,9 @@ static void test_no_memory_for_lanes(void **unused) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_every_width),
-                                     cmocka_unit_test(test_without_ledger),
-                                     cmocka_unit_test(test_events),
-                                     cmocka_unit_test(test_few_points),
-                                     cmocka_unit_test(test_no_memory_for_lanes)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_every_width), cmocka_unit_test(test_without_ledger),
+      cmocka_unit_test(test_events), cmocka_unit_test(test_few_points),
+      cmocka_unit_test(test_no_memory_for_lanes)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -173,11 +173,10 @@ static void export_code(const run_plan *plan, const char *name) {
   strut_error error = {0};
   char file[80];
   const strut_code_options options = {.prefix = "model", .program = "recipes"};
-  bool good =
-      !strut_model_compile(&plan->setup->scene, &model, &error) &&
-      !strut_code_write(name, model, &plan->setup->experiment, &options, &error) &&
-      !strut_state_create(model, &state, &error) &&
-      step(model, state, strut_integrator_find("rk4"), plan, GENERAL);
+  bool good = !strut_model_compile(&plan->setup->scene, &model, &error) &&
+              !strut_code_write(name, model, &plan->setup->experiment, &options, &error) &&
+              !strut_state_create(model, &state, &error) &&
+              step(model, state, strut_integrator_find("rk4"), plan, GENERAL);
   expect(good, error.message, name, 0);
   snprintf(file, sizeof file, "%s/expected", name);
   FILE *out = good ? fopen(file, "w") : NULL;

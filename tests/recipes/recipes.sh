@@ -10,6 +10,7 @@ rm -rf "$scratch"
 mkdir -p "$scratch/tests"
 cp -R "$root/engine" "$root/parser" "$scratch/"
 cp -R "$root/tests/recipes" "$scratch/tests/"
+cp "$root/.cmake/EmbedFiles.cmake" "$scratch/"
 awk '/^```diff/ { inside = 1; blocks++; next } /^```/ { inside = 0 } inside { print }
   END { exit blocks == 0 }' "$root/docs/recipes.md" >"$scratch/recipes.diff"
 cd "$scratch"
@@ -30,7 +31,7 @@ for name in $(grep -o 'strut_code_[a-z]*_template' engine/output/code/templates.
   embedded="$embedded;$name|$file"
 done
 cmake "-DSOURCE=templates.c" "-DHEADER=engine/output/code/templates.h" "-DEMBED=$embedded" \
-  -P "$root/.cmake/EmbedFiles.cmake"
+  -P EmbedFiles.cmake
 sources="tests/recipes/recipes.c templates.c $(ls engine/base/*.c engine/scene/*.c \
   engine/model/*.c engine/forces/*.c engine/statics/search/*.c engine/statics/equilibria/*.c \
   engine/output/code/*.c) $(find engine/integrate parser/yaml parser/expression parser/language \

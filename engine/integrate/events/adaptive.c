@@ -59,8 +59,7 @@ typedef struct largest {
 
 STRUT_INLINE largest larger_of(largest so_far, strut_lanes x) {
   strut_lanes size = four_magnitude(x);
-  return (largest){four_choose(size > so_far.most, size, so_far.most),
-                   so_far.poison + (x - x)};
+  return (largest){four_choose(size > so_far.most, size, so_far.most), so_far.poison + (x - x)};
 }
 
 STRUT_INLINE double largest_of(largest x) {

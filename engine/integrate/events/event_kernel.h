@@ -21,7 +21,7 @@
 STRUT_INLINE double contact_normal_force(const strut_contact_entry *e, int8_t damper, double gap,
                                          double into, bool damped) {
   const strut_law_ground_numbers numbers = strut_contact_numbers(e);
-  bool acts = damper ? damper > 0 : into < 0.0, crossley = e->dissipation > 0.0;
+  bool acts = damper ? damper > 0 : into<0.0, crossley = e->dissipation> 0.0;
   return damped ? strut_law_ground_normal_in_mode(&numbers, acts, gap, into, crossley)
                 : strut_law_ground_spring(&numbers, gap);
 }
@@ -58,7 +58,8 @@ STRUT_INLINE double friction_in_mode(const strut_contact_entry *e, uint8_t mode,
       return strut_friction_is_continuous(e->friction.law)
                  ? strut_friction_force(&e->friction, normal, slip, applied)
                  : 0.0;
-    case STRUT_MODE_BAND: return strut_law_friction_in_band(holding_limit(e, normal, applied), applied);
+    case STRUT_MODE_BAND:
+      return strut_law_friction_in_band(holding_limit(e, normal, applied), applied);
     case STRUT_MODE_YIELD: return yield_friction(e, normal, applied);
     case STRUT_MODE_OPEN:
     case STRUT_MODE_STICK:

@@ -27,8 +27,9 @@ STRUT_SMALL_INLINE small_mask small_leaves_band(const strut_small_modes *m, int 
                                                 small_real holding, small_real applied) {
   small_real zero = {0}, side = SMALL_MODE(side);
   small_mask held = SMALL_MODE_MASK(band), pushes = SMALL_MODE_MASK(pushes);
-  small_mask leaves = (held | pushes) &
-                      small_less(small_margin_of_band(small_magnitude(slip), SMALL_MODE(edge)), zero);
+  small_mask leaves =
+      (held | pushes) &
+      small_less(small_margin_of_band(small_magnitude(slip), SMALL_MODE(edge)), zero);
   held &= small_less(small_margin_of_holding(holding, applied), zero);
   pushes &= small_at_least(zero, small_margin_of_push(side, holding, applied));
   return leaves | ((held | pushes) & SMALL_MODE_MASK(drops));

@@ -200,8 +200,8 @@ STRUT_SMALL_INLINE bool small_contradicts_at_stage(const small_events *e) {
     small_real sliding = SMALL_MODE(kinetic) * normal * more;
 #define SMALL_ENDS(mode, margin) (SMALL_MODE_MASK(mode) & small_less(margin, zero))
     small_mask bad = SMALL_ENDS(stick, small_margin_of_holding(held, friction));
-    bad |= SMALL_MODE_MASK(drops) &
-           SMALL_ENDS(band, small_margin_of_holding(holding * more, applied));
+    bad |=
+        SMALL_MODE_MASK(drops) & SMALL_ENDS(band, small_margin_of_holding(holding * more, applied));
     bad |= SMALL_ENDS(pushes, small_margin_of_push(side, holding * fewer, applied));
     bad |= SMALL_ENDS(creep, small_margin_of_creep_out(side, sliding, friction));
 #undef SMALL_ENDS

@@ -30,10 +30,10 @@ typedef struct strut_small_modes {
   strut_small_mask closed, slips, rubs, band, pushes, held; /* rubs: slips or is pushed */
   strut_small_mask stick, creep, drops; /* drops: static and kinetic friction differ */
   strut_small_mask damper_on, damper_off, damper_by_sign;
-  strut_small_row slip_factor;               /* friction over normal force, where it slips [1] */
+  strut_small_row slip_factor;         /* friction over normal force, where it slips [1] */
   strut_small_row side, edge, kinetic; /* s; of the band [m/s]; mu towards s [1] */
-  strut_small_row outward;         /* the sign of gaps that keep the mode; 0: no contact */
-  strut_small_row normal, tangent; /* of a closed contact's own node [1/kg] */
+  strut_small_row outward;             /* the sign of gaps that keep the mode; 0: no contact */
+  strut_small_row normal, tangent;     /* of a closed contact's own node [1/kg] */
   /* of cables: which act, and which do not; force per stretch, by which both are compared */
   int64_t taut[STRUT_SMALL_SLOTS], slack[STRUT_SMALL_SLOTS];
   double elastic[STRUT_SMALL_SLOTS];

@@ -32,15 +32,15 @@ STRUT_SMALL_INLINE void small_rk4_events_step(small_events *e, const strut_model
       v[k].x = small_ahead(v[0].x, step, a[k - 1].x);
       v[k].y = small_ahead(v[0].y, step, a[k - 1].y);
     } else {
-      v[4].x = small_combine(v[0].x, sixth, &a[0].x, &a[1].x, &a[2].x, &a[3].x);
-      v[4].y = small_combine(v[0].y, sixth, &a[0].y, &a[1].y, &a[2].y, &a[3].y);
+      v[4].x = small_combine(v[0].x, sixth, a[0].x, small_add(a[1].x, a[2].x), a[3].x);
+      v[4].y = small_combine(v[0].y, sixth, a[0].y, small_add(a[1].y, a[2].y), a[3].y);
     }
     if (k < 3) {
       next_q.x = small_ahead(now->q.x, further, v[k].x);
       next_q.y = small_ahead(now->q.y, further, v[k].y);
     } else if (k == 3) {
-      next_q.x = small_combine(now->q.x, sixth, &v[0].x, &v[1].x, &v[2].x, &v[3].x);
-      next_q.y = small_combine(now->q.y, sixth, &v[0].y, &v[1].y, &v[2].y, &v[3].y);
+      next_q.x = small_combine(now->q.x, sixth, v[0].x, small_add(v[1].x, v[2].x), v[3].x);
+      next_q.y = small_combine(now->q.y, sixth, v[0].y, small_add(v[1].y, v[2].y), v[3].y);
     }
     a[k] = small_accelerate_in_modes(e, rest + k / 3 * stride, &q, &shapes, k < 4 ? &next_q : NULL,
                                      &v[k], ledger);

@@ -26,9 +26,7 @@ bool strut_batch_possible(const strut_model *model, const strut_integrator *meth
 static void choose_kernel(strut_batch *b, bool halves) {
   int32_t width = b->tables.width;
   assert(width == 4 || width == 8);
-  b->run = width == 4 ? strut_batch_rk4_4
-           : halves   ? strut_batch_rk4_8_halves
-                      : strut_batch_rk4_8;
+  b->run = width == 4 ? strut_batch_rk4_4 : halves ? strut_batch_rk4_8_halves : strut_batch_rk4_8;
 }
 
 /* What rk4 needs. */

@@ -15,10 +15,10 @@ STRUT_LANE_INLINE void batch_stage(size_t n, double ahead, const lane_real *dt,
                                    const double *restrict v, const double *restrict a,
                                    double *restrict q, double *restrict next) {
   for (size_t i = 0; i < n; i++) {
-    LANE_EACH(lane_put(q, i, p,
-                       lane_rk4_stage(lane_row(q0, i, p), ahead * dt[p], lane_row(v, i, p))));
-    LANE_EACH(lane_put(next, i, p,
-                       lane_rk4_stage(lane_row(v0, i, p), ahead * dt[p], lane_row(a, i, p))));
+    LANE_EACH(
+        lane_put(q, i, p, lane_rk4_stage(lane_row(q0, i, p), ahead * dt[p], lane_row(v, i, p))));
+    LANE_EACH(
+        lane_put(next, i, p, lane_rk4_stage(lane_row(v0, i, p), ahead * dt[p], lane_row(a, i, p))));
   }
 }
 
@@ -26,8 +26,9 @@ STRUT_LANE_INLINE void batch_stage(size_t n, double ahead, const lane_real *dt,
 STRUT_LANE_INLINE void batch_combine_row(size_t i, int p, lane_real sixth, double *restrict z,
                                          const double *k1, const double *restrict k2,
                                          const double *restrict k3, const double *restrict k4) {
-  lane_put(z, i, p, lane_rk4_end(lane_row(z, i, p), sixth, lane_row(k1, i, p), lane_row(k2, i, p),
-                                 lane_row(k3, i, p), lane_row(k4, i, p)));
+  lane_put(z, i, p,
+           lane_rk4_end(lane_row(z, i, p), sixth, lane_row(k1, i, p),
+                        lane_row(k2, i, p) + lane_row(k3, i, p), lane_row(k4, i, p)));
 }
 
 STRUT_LANE_INLINE void batch_combine(size_t n, const lane_real *sixth, double *restrict z,

@@ -29,14 +29,16 @@ static void add_unwritten_laws(strut_untold *r, strut_law_set has) {
   char text[200];
   for (unsigned k = 0; k < STRUT_FRICTION_LAW_COUNT; k++) {
     bool exact = strut_friction_is_exact((strut_friction_law)k);
-    snprintf(text, sizeof text,
-             "friction law %s (its stops and starts are located within steps; use karnopp or smooth)",
-             strut_friction_law_at((strut_friction_law)k)->word);
+    snprintf(
+        text, sizeof text,
+        "friction law %s (its stops and starts are located within steps; use karnopp or smooth)",
+        strut_friction_law_at((strut_friction_law)k)->word);
     strut_untold_add(r, exact && has.friction >> k & 1u, text);
   }
   for (unsigned k = 0; k < STRUT_LAW_COUNT; k++) {
     snprintf(text, sizeof text, "law %s", strut_law_at((strut_law_kind)k)->word);
-    strut_untold_add(r, has.law >> k & 1u && !strut_code_knows_element_law((strut_law_kind)k), text);
+    strut_untold_add(r, has.law >> k & 1u && !strut_code_knows_element_law((strut_law_kind)k),
+                     text);
   }
   for (unsigned k = 0; k < STRUT_STRAIN_COUNT; k++) {
     const char *name = strut_strain_name((strut_strain_kind)k);

@@ -95,18 +95,21 @@ static bool has_number(const strut_code_writer *w, int p) {
 /* What functions of laws take: those numbers that the model's laws have. */
 void strut_code_add_law_numbers(strut_code_writer *w) {
   if (has_law(w, STRUT_LAW_TABLE)) strut_code_add_law(w, "law_curve");
-  strut_buffer_add(&w->text, "typedef struct law_numbers {\n"
-                             "  real stiffness; /* force per strain */\n");
+  strut_buffer_add(&w->text,
+                   "typedef struct law_numbers {\n"
+                   "  real stiffness; /* force per strain */\n");
   for (int p = 0; p < STRUT_LAW_NUMBER_COUNT; p++)
     if (has_number(w, p)) strut_buffer_add(&w->text, "  real %s;\n", strut_law_key(p));
   if (has_law(w, STRUT_LAW_TABLE)) strut_buffer_add(&w->text, "  const law_curve *curve;\n");
   if (has_law(w, STRUT_LAW_POLYNOMIAL))
     strut_buffer_add(&w->text, "  size_t count;\n  const real *coefficient; /* (count) */\n");
   if (has_law(w, STRUT_LAW_AXIAL))
-    strut_buffer_add(&w->text, "  real axial; /* EA, and the law that has it */\n  int material;\n");
+    strut_buffer_add(&w->text,
+                     "  real axial; /* EA, and the law that has it */\n  int material;\n");
   if (has_cells(w))
-    strut_buffer_add(&w->text, "  real area, outside, exponent; /* as drawn [m^2]; pressure outside "
-                               "[N/m]; of an isentropic gas */\n");
+    strut_buffer_add(&w->text,
+                     "  real area, outside, exponent; /* as drawn [m^2]; pressure outside "
+                     "[N/m]; of an isentropic gas */\n");
   strut_buffer_add(&w->text, "} law_numbers;\n\n");
 }
 

@@ -172,15 +172,17 @@ void strut_code_add_friction(strut_code_writer *w) {
     if (has_friction(w, k)) strut_code_add_law(w, name);
   }
   if (directional) strut_code_add_law(w, "friction_towards");
-  strut_buffer_add(&w->text, "/* Friction under the normal force, at a sliding speed, where the other "
-                             "forces along the ground are `applied`. */\n"
-                             "static real friction_of(const contact *c, real normal, real slip, "
-                             "real applied) {\n");
+  strut_buffer_add(&w->text,
+                   "/* Friction under the normal force, at a sliding speed, where the other "
+                   "forces along the ground are `applied`. */\n"
+                   "static real friction_of(const contact *c, real normal, real slip, "
+                   "real applied) {\n");
   if (directional)
     strut_buffer_add(
         &w->text,
         "  mask moves = magnitude(slip) >= c->friction.stick_velocity && magnitude(slip) > 0;\n"
-        "  const friction_numbers towards = friction_towards(&c->friction, (moves ? slip : applied) "
+        "  const friction_numbers towards = friction_towards(&c->friction, (moves ? slip : "
+        "applied) "
         "< 0);\n");
   add_choice_of_friction(w, directional);
   if (has_bands(w) && has_corners(w)) add_bands(w);
@@ -193,8 +195,8 @@ static void add_friction_numbers(strut_code_writer *w) {
 #define STRUT_NAME(NAME, field, range) "  real " #field ";\n"
                    STRUT_FRICTION_PARAMETERS(STRUT_NAME)
 #undef STRUT_NAME
-                   "  real mu_static_backward, mu_kinetic_backward;\n} friction_numbers;\n\n"
-                   "enum {");
+                       "  real mu_static_backward, mu_kinetic_backward;\n} friction_numbers;\n\n"
+                       "enum {");
   for (int k = 0, any = 0; k < STRUT_FRICTION_LAW_COUNT; k++) {
     if (!has_friction(w, k)) continue;
     strut_buffer_add(&w->text, any++ ? ", FRICTION_" : " FRICTION_");

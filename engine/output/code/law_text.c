@@ -156,10 +156,10 @@ static const char *definition_name(const char *text, size_t *length) {
 
 static void add_identifier(strut_code_writer *w, const char *text, size_t length) {
   static const char *const pairs[][2] = {
-      {"LAW_INLINE", "static"}, {"double", "real"},       {"bool", "int"},
-      {"false", "0"},           {"true", "1"},            {"sqrt", "root"},
-      {"fabs", "magnitude"},    {"log1p", "real_log1p"},  {"expm1", "real_expm1"},
-      {"exp", "real_exp"},      {"log", "real_log"},      {"uint32_t", "index_type"}};
+      {"LAW_INLINE", "static"}, {"double", "real"},      {"bool", "int"},
+      {"false", "0"},           {"true", "1"},           {"sqrt", "root"},
+      {"fabs", "magnitude"},    {"log1p", "real_log1p"}, {"expm1", "real_expm1"},
+      {"exp", "real_exp"},      {"log", "real_log"},     {"uint32_t", "index_type"}};
   const char *value;
   for (size_t k = 0; k < sizeof pairs / sizeof pairs[0]; k++)
     if (is(text, length, pairs[k][0])) {

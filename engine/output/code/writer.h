@@ -24,7 +24,7 @@ typedef struct strut_code_writer {
   strut_code_names nodes, members, inputs, breakables, signals, sensors, states, sliders;
   double rk4_limit, verlet_limit; /* largest stable steps [s] */
   strut_buffer text;
-  bool no_float; /* some number is none of a float */
+  bool no_float;                             /* some number is none of a float */
   bool law_texts[STRUT_CODE_MOST_LAW_TEXTS]; /* which definitions of law_text.c are written */
   strut_arena arena;
 } strut_code_writer;

@@ -24,8 +24,7 @@
 #define STRUT_FRICTION_LAWS(X)                                                                     \
   X(NONE, none, "none", ABSENT, 0)                                                                 \
   /* equation (9) of the paper as printed: with a stick band */                                    \
-  X(KARNOPP, karnopp, "karnopp", STICK_BAND,                                                       \
-    MU_STATIC_BIT | MU_KINETIC_BIT | STICK_VELOCITY_BIT)                                           \
+  X(KARNOPP, karnopp, "karnopp", STICK_BAND, MU_STATIC_BIT | MU_KINETIC_BIT | STICK_VELOCITY_BIT)  \
   X(COULOMB, coulomb, "coulomb", EXACT_STICK, MU_STATIC_BIT | MU_KINETIC_BIT)                      \
   X(SMOOTH, smooth, "smooth", CONTINUOUS, MU_KINETIC_BIT | WIDTH_BIT)
 
@@ -54,35 +53,35 @@ typedef struct LAW(friction_choice) {
  * -d force / d slip at rest [N s/m], 0 of laws that are not continuous.
  */
 
-LAW_INLINE real LAW(friction_none)(const LAW(friction_numbers) *f, real normal, real slip,
+LAW_INLINE real LAW(friction_none)(const LAW(friction_numbers) * f, real normal, real slip,
                                    real applied) {
   (void)f, (void)normal, (void)slip, (void)applied;
   return all(0.0);
 }
-LAW_INLINE real LAW(friction_none_slope)(const LAW(friction_numbers) *f, real normal) {
+LAW_INLINE real LAW(friction_none_slope)(const LAW(friction_numbers) * f, real normal) {
   (void)f, (void)normal;
   return all(0.0);
 }
 
 /* Coulomb's law with Karnopp's band, equation (9) as printed. */
-LAW_INLINE real LAW(friction_karnopp)(const LAW(friction_numbers) *f, real normal, real slip,
+LAW_INLINE real LAW(friction_karnopp)(const LAW(friction_numbers) * f, real normal, real slip,
                                       real applied) {
   mask slides = at_least(magnitude(slip), f->stick_velocity);
   mask pushed = at_least(magnitude(applied), f->mu_static * normal);
   real opposed = choose(slides, slip, applied);
   return choose(either(slides, pushed), against(f->mu_kinetic * normal, opposed), -applied);
 }
-LAW_INLINE real LAW(friction_karnopp_slope)(const LAW(friction_numbers) *f, real normal) {
+LAW_INLINE real LAW(friction_karnopp_slope)(const LAW(friction_numbers) * f, real normal) {
   (void)f, (void)normal;
   return all(0.0);
 }
 
 /* At a speed of exactly zero; methods with events hold the node there instead. */
-LAW_INLINE real LAW(friction_coulomb)(const LAW(friction_numbers) *f, real normal, real slip,
+LAW_INLINE real LAW(friction_coulomb)(const LAW(friction_numbers) * f, real normal, real slip,
                                       real applied) {
   return LAW(friction_karnopp)(f, normal, slip, applied);
 }
-LAW_INLINE real LAW(friction_coulomb_slope)(const LAW(friction_numbers) *f, real normal) {
+LAW_INLINE real LAW(friction_coulomb_slope)(const LAW(friction_numbers) * f, real normal) {
   (void)f, (void)normal;
   return all(0.0);
 }
@@ -91,18 +90,17 @@ LAW_INLINE real LAW(friction_coulomb_slope)(const LAW(friction_numbers) *f, real
  * -mu N u / sqrt(u^2 + w^2), within 1 % of mu N from |u| = 7 w on. A node under load creeps. Algebraic, so
  * that every machine gives the same bits.
  */
-LAW_INLINE real LAW(friction_smooth)(const LAW(friction_numbers) *f, real normal, real slip,
+LAW_INLINE real LAW(friction_smooth)(const LAW(friction_numbers) * f, real normal, real slip,
                                      real applied) {
   (void)applied;
   return -f->mu_kinetic * normal * slip / root(slip * slip + f->width * f->width);
 }
-LAW_INLINE real LAW(friction_smooth_slope)(const LAW(friction_numbers) *f, real normal) {
+LAW_INLINE real LAW(friction_smooth_slope)(const LAW(friction_numbers) * f, real normal) {
   return normal * f->mu_kinetic / f->width;
 }
 
 /** The numbers for contacts that move, or are pushed, towards -x along the ground where `back` holds. */
-LAW_INLINE LAW(friction_numbers)
-    LAW(friction_towards)(const LAW(friction_numbers) *f, mask back) {
+LAW_INLINE LAW(friction_numbers) LAW(friction_towards)(const LAW(friction_numbers) * f, mask back) {
   LAW(friction_numbers) towards = *f;
   towards.mu_static = choose(back, f->mu_static_backward, f->mu_static);
   towards.mu_kinetic = choose(back, f->mu_kinetic_backward, f->mu_kinetic);
@@ -111,12 +109,12 @@ LAW_INLINE LAW(friction_numbers)
 
 /** The most that friction holds against a push, and with which it slides, in these directions [N]; directional: some
     contact's coefficients differ by direction. */
-LAW_INLINE real LAW(friction_holding)(const LAW(friction_numbers) *f, real normal, real towards,
+LAW_INLINE real LAW(friction_holding)(const LAW(friction_numbers) * f, real normal, real towards,
                                       bool directional) {
   mask back = less(towards, all(0.0));
   return (directional ? choose(back, f->mu_static_backward, f->mu_static) : f->mu_static) * normal;
 }
-LAW_INLINE real LAW(friction_sliding)(const LAW(friction_numbers) *f, real normal, real towards,
+LAW_INLINE real LAW(friction_sliding)(const LAW(friction_numbers) * f, real normal, real towards,
                                       bool directional) {
   mask back = less(towards, all(0.0));
   return (directional ? choose(back, f->mu_kinetic_backward, f->mu_kinetic) : f->mu_kinetic) *
@@ -124,11 +122,12 @@ LAW_INLINE real LAW(friction_sliding)(const LAW(friction_numbers) *f, real norma
 }
 
 /** Force along the ground of the contacts' laws, with the coefficients of the direction it resists [N]. */
-LAW_INLINE real LAW(friction)(const LAW(friction_numbers) *f, const LAW(friction_choice) *has,
+LAW_INLINE real LAW(friction)(const LAW(friction_numbers) * f, const LAW(friction_choice) * has,
                               real normal, real slip, real applied) {
   real zero = all(0.0), speed = magnitude(slip), force = zero;
   mask moves = both(at_least(speed, f->stick_velocity), less(zero, speed));
-  LAW(friction_numbers) towards = LAW(friction_towards)(f, less(choose(moves, slip, applied), zero));
+  LAW(friction_numbers)
+  towards = LAW(friction_towards)(f, less(choose(moves, slip, applied), zero));
 #define STRUT_FRICTION_ROW(NAME, name, ...)                                                        \
   if (some(has->name))                                                                             \
     force = choose(has->name, LAW(friction_##name)(&towards, normal, slip, applied), force);

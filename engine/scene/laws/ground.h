@@ -15,7 +15,7 @@ typedef struct LAW(ground_numbers) {
 } LAW(ground_numbers);
 
 /** Force of the ground's springs [N]. */
-LAW_INLINE real LAW(ground_spring)(const LAW(ground_numbers) *g, real gap) {
+LAW_INLINE real LAW(ground_spring)(const LAW(ground_numbers) * g, real gap) {
   return g->minus_stiffness * gap;
 }
 
@@ -23,7 +23,7 @@ LAW_INLINE real LAW(ground_spring)(const LAW(ground_numbers) *g, real gap) {
  * Force of the dampers beside the force `spring` of the springs [N]: k_g d' on the way in, or c_g d chi d' of
  * the Hunt-Crossley law, together with its spring never pulling.
  */
-LAW_INLINE real LAW(ground_damper)(const LAW(ground_numbers) *g, real spring, real into,
+LAW_INLINE real LAW(ground_damper)(const LAW(ground_numbers) * g, real spring, real into,
                                    bool crossley) {
   real zero = all(0.0), damper = keep(less(into, zero), g->minus_damping * into);
   if (!crossley) return damper;
@@ -36,7 +36,7 @@ LAW_INLINE real LAW(ground_damper)(const LAW(ground_numbers) *g, real spring, re
  * Normal force [N] of contacts in a mode of a method with events: the damper of (8) acts where `acts` holds.
  * A method may try steps that leave the ground again; the Hunt-Crossley law has no kink there.
  */
-LAW_INLINE real LAW(ground_normal_in_mode)(const LAW(ground_numbers) *g, mask acts, real gap,
+LAW_INLINE real LAW(ground_normal_in_mode)(const LAW(ground_numbers) * g, mask acts, real gap,
                                            real into, bool crossley) {
   real zero = all(0.0), spring = LAW(ground_spring)(g, gap);
   real normal = add_where(acts, spring, g->minus_damping * into);
@@ -50,12 +50,11 @@ LAW_INLINE real LAW(ground_normal_in_mode)(const LAW(ground_numbers) *g, mask ac
  * The damper's force at the end of a step by the trapezoidal rule [N], where a node would go into the ground at
  * the speed `free` without it, and a force F changes its speed by `half` F [m/s].
  */
-LAW_INLINE real LAW(ground_implicit_damper)(const LAW(ground_numbers) *g, real spring, real free,
+LAW_INLINE real LAW(ground_implicit_damper)(const LAW(ground_numbers) * g, real spring, real free,
                                             real half, bool crossley) {
   real zero = all(0.0), damping = -g->minus_damping;
   mask other = less(zero, g->dissipation);
-  if (crossley)
-    damping = choose(other, keep(less(zero, spring), g->dissipation * spring), damping);
+  if (crossley) damping = choose(other, keep(less(zero, spring), g->dissipation * spring), damping);
   real into = free / (1.0 + half * damping), force = -damping * into;
   real damper = choose(less(zero, into), zero, force);
   if (crossley) {

@@ -20,10 +20,12 @@ typedef struct LAW(member_values) {
 } LAW(member_values);
 
 /** Where members are long enough to carry a force. */
-LAW_INLINE mask LAW(member_is_taut)(real stretch, real threshold) { return less(threshold, stretch); }
+LAW_INLINE mask LAW(member_is_taut)(real stretch, real threshold) {
+  return less(threshold, stretch);
+}
 
 /** Rate of the stretch, against which dampers and actuators work [m/s]. */
-LAW_INLINE real LAW(member_stretch_rate)(const LAW(member_values) *m, bool driven) {
+LAW_INLINE real LAW(member_stretch_rate)(const LAW(member_values) * m, bool driven) {
   return driven ? m->rate - m->rest_rate : m->rate;
 }
 
@@ -31,7 +33,7 @@ LAW_INLINE real LAW(member_stretch_rate)(const LAW(member_values) *m, bool drive
  * Tensions [N], of cables never below 0. damper: what they have beyond their elastic part where members act
  * [N]; with `ledger`, where cables go slack while they are stretched, what they lack of it.
  */
-LAW_INLINE real LAW(member_tension)(const LAW(member_values) *m, bool damped, bool slack,
+LAW_INLINE real LAW(member_tension)(const LAW(member_values) * m, bool damped, bool slack,
                                     bool driven, bool ledger, real *damper) {
   real stretch = m->length - m->rest, elastic = m->stiffness * stretch, tension = elastic;
   *damper = m->damping * LAW(member_stretch_rate)(m, driven);
@@ -49,8 +51,8 @@ typedef struct LAW(member_powers) {
 } LAW(member_powers);
 
 /** Adds the powers of members with these tensions and dampers. */
-LAW_INLINE void LAW(member_add_powers)(const LAW(member_values) *m, bool damped, bool driven,
-                                       real tension, real damper, LAW(member_powers) *powers) {
+LAW_INLINE void LAW(member_add_powers)(const LAW(member_values) * m, bool damped, bool driven,
+                                       real tension, real damper, LAW(member_powers) * powers) {
   if (driven) {
     real power = -tension * m->rest_rate;
     powers->drive += power;

@@ -13,9 +13,9 @@
 /** A position or velocity for the stage that is `h` after the begin of the step, by the rate of the one before. */
 LAW_INLINE real LAW(rk4_stage)(real begin, real h, real rate) { return begin + h * rate; }
 
-/** At the end of the step, by the rates of all stages; sixth: of the step. */
-LAW_INLINE real LAW(rk4_end)(real begin, real sixth, real k1, real k2, real k3, real k4) {
-  real inner = k2 + k3, sum = k1 + 2.0 * inner + k4;
+/** At the end of the step, by the rates of its stages, those of the inner two as their sum; sixth: of the step. */
+LAW_INLINE real LAW(rk4_end)(real begin, real sixth, real k1, real inner, real k4) {
+  real sum = k1 + 2.0 * inner + k4;
   return begin + sixth * sum;
 }
 
