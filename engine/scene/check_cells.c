@@ -117,12 +117,10 @@ void strut_check_cells(strut_checker *checker) {
     if ((unsigned)c->law >= STRUT_LAW_COUNT || !strut_law_is_of_cells(c->law))
       strut_report_finding(checker, STRUT_ON_CELL, i, "gas", "%s has a law that is not for cells",
                            owner);
-    strut_check_range(checker, STRUT_ON_CELL, i, "pressure", owner, c->pressure,
-                      gas ? STRUT_ABOVE_ZERO : STRUT_ANY_NUMBER);
-    if (gas)
-      strut_check_range(checker, STRUT_ON_CELL, i, "outside", owner, c->outside,
-                        STRUT_NOT_NEGATIVE);
-    if (c->law == STRUT_LAW_ISENTROPIC && !(c->exponent > 1.0 && isfinite(c->exponent)))
+    const strut_checked whose = {STRUT_ON_CELL, i, owner, NULL};
+    bool fine = strut_check_fields(checker, &whose, gas ? STRUT_FIELDS_GAS : STRUT_FIELDS_CELL, c,
+                                   strut_thing_at(STRUT_THING_CELL)->usual);
+    if (fine && c->law == STRUT_LAW_ISENTROPIC && !(c->exponent > 1.0))
       strut_report_finding(checker, STRUT_ON_CELL, i, "exponent",
                            "the exponent of %s must be above 1, found %g", owner, c->exponent);
     if (check_corners(checker, i, owner)) check_area(checker, i, owner);

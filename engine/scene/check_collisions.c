@@ -61,12 +61,8 @@ void strut_check_collisions(strut_checker *checker) {
     const strut_collision *c = &scene->collisions[i];
     char owner[200];
     strut_format_name(owner, "collision", c->name, i);
-    strut_check_range(checker, STRUT_ON_COLLISION, i, "thickness", owner, c->thickness,
-                      STRUT_ABOVE_ZERO);
-    strut_check_range(checker, STRUT_ON_COLLISION, i, "stiffness", owner, c->stiffness,
-                      STRUT_ABOVE_ZERO);
-    strut_check_range(checker, STRUT_ON_COLLISION, i, "damping", owner, c->damping,
-                      STRUT_NOT_NEGATIVE);
+    const strut_checked whose = {STRUT_ON_COLLISION, i, owner, NULL};
+    strut_check_fields(checker, &whose, STRUT_FIELDS_COLLISION, c, NULL);
     if (!check_bodies(checker, i, owner)) continue;
     int32_t shared = shared_node(scene, c);
     bool ends =

@@ -84,15 +84,19 @@ static bool check_sum(strut_checker *checker, size_t index, const char *owner, u
 static bool check_wave(strut_checker *checker, size_t index, const char *owner) {
   const strut_signal *s = &checker->scene->signals[index];
   bool wave = s->kind == STRUT_SINE || s->kind == STRUT_HALF_SINE || s->kind == STRUT_SQUARE;
-  bool valid = strut_check_range(checker, STRUT_ON_SIGNAL, index, "amplitude", owner, s->amplitude,
-                                 STRUT_ANY_NUMBER);
+  const strut_checked whose = {STRUT_ON_SIGNAL, index, owner, NULL};
+  const struct {
+    const char *key;
+    double value;
+  } numbers[] = {{"amplitude", s->amplitude}, {"phase", s->phase}, {"start", s->start}};
+  bool valid = true; /* as of a sine, whatever the wave */
+  for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
+    valid =
+        strut_check_number(checker, &whose, STRUT_FIELDS_SINE, numbers[i].key, numbers[i].value) &&
+        valid;
   if (wave)
-    valid &= strut_check_range(checker, STRUT_ON_SIGNAL, index, "frequency", owner, s->frequency,
-                               STRUT_ABOVE_ZERO);
-  valid &= strut_check_range(checker, STRUT_ON_SIGNAL, index, "phase", owner, s->phase,
-                             STRUT_ANY_NUMBER);
-  valid &= strut_check_range(checker, STRUT_ON_SIGNAL, index, "start", owner, s->start,
-                             STRUT_ANY_NUMBER);
+    valid =
+        strut_check_number(checker, &whose, STRUT_FIELDS_SINE, "frequency", s->frequency) && valid;
   if (!valid) return false;
   if (s->kind == STRUT_RAMP && !isfinite(s->stop))
     strut_report_finding(checker, STRUT_ON_SIGNAL, index, "stop", "%s needs a stop", owner);
@@ -211,26 +215,21 @@ static void check_friction(strut_checker *checker, size_t index, const char *own
                          "the friction law of %s is unknown", owner);
     return;
   }
+  const strut_checked whose = {STRUT_ON_CONTACT, index, owner, NULL};
+  const strut_friction none = {0};
+  strut_check_fields(checker, &whose, STRUT_FIELDS_FRICTION, f, &none);
   for (int p = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++)
-    strut_check_range(
-        checker, STRUT_ON_CONTACT, index, strut_friction_key(p), owner, strut_friction_value(f, p),
-        strut_friction_needs(f->law, p) && strut_friction_above_zero(p) ? STRUT_ABOVE_ZERO
-                                                                        : STRUT_NOT_NEGATIVE);
-  if (!f->directional) return;
-  strut_check_range(checker, STRUT_ON_CONTACT, index, "mu_backward", owner, f->mu_kinetic_backward,
-                    STRUT_NOT_NEGATIVE);
-  strut_check_range(checker, STRUT_ON_CONTACT, index, "mu_backward_static", owner,
-                    f->mu_static_backward, STRUT_NOT_NEGATIVE);
+    if (strut_friction_needs(f->law, p) && strut_friction_value(f, p) == 0.0)
+      strut_check_number(checker, &whose, STRUT_FIELDS_FRICTION, strut_friction_key(p), 0.0);
 }
 
 static void check_line(strut_checker *checker, size_t index, const char *owner) {
   const strut_ground *g = &checker->scene->grounds[index];
-  strut_check_range(checker, STRUT_ON_GROUND, index, "height", owner, g->height, STRUT_ANY_NUMBER);
-  strut_check_range(checker, STRUT_ON_GROUND, index, "slope", owner, g->slope, STRUT_ANY_NUMBER);
-  strut_check_range(checker, STRUT_ON_GROUND, index, "through", owner, g->through[0],
-                    STRUT_ANY_NUMBER);
-  strut_check_range(checker, STRUT_ON_GROUND, index, "through", owner, g->through[1],
-                    STRUT_ANY_NUMBER);
+  const strut_checked whose = {STRUT_ON_GROUND, index, owner, NULL};
+  strut_check_number(checker, &whose, STRUT_FIELDS_GROUND, "height", g->height);
+  strut_check_number(checker, &whose, STRUT_FIELDS_GROUND, "slope", g->slope);
+  for (int c = 0; c < 2; c++)
+    strut_check_number(checker, &whose, STRUT_FIELDS_GROUND, "through", g->through[c]);
   if (!g->placed && fabs(cos(g->slope)) < 1e-12)
     strut_report_finding(checker, STRUT_ON_GROUND, index, "slope",
                          "%s is upright, so that it has no height at x = 0; give a point of it, "
@@ -311,8 +310,9 @@ static void check_grounds(strut_checker *checker) {
       snprintf(owner, sizeof owner, "the ground");
     else
       strut_format_name(owner, "ground", g->name, i);
-    strut_check_range(checker, STRUT_ON_GROUND, i, "belt_speed", owner, g->belt_speed,
-                      STRUT_ANY_NUMBER);
+    const strut_checked whose = {STRUT_ON_GROUND, i, owner, NULL};
+    const strut_checked circle = {STRUT_ON_GROUND, i, owner, "circle"};
+    strut_check_number(checker, &whose, STRUT_FIELDS_GROUND, "belt_speed", g->belt_speed);
     if ((unsigned)g->damping_law >= STRUT_DAMPING_COUNT)
       strut_report_finding(checker, STRUT_ON_GROUND, i, "damping_law",
                            "the damping law of %s is unknown", owner);
@@ -321,10 +321,8 @@ static void check_grounds(strut_checker *checker) {
       case STRUT_GROUND_PROFILE: check_profile(checker, i, owner); break;
       case STRUT_GROUND_CIRCLE:
         for (int c = 0; c < 2; c++)
-          strut_check_range(checker, STRUT_ON_GROUND, i, "circle", owner, g->centre[c],
-                            STRUT_ANY_NUMBER);
-        strut_check_range(checker, STRUT_ON_GROUND, i, "circle", owner, g->radius,
-                          STRUT_ABOVE_ZERO);
+          strut_check_number(checker, &circle, STRUT_FIELDS_CIRCLE, "centre", g->centre[c]);
+        strut_check_number(checker, &circle, STRUT_FIELDS_CIRCLE, "radius", g->radius);
         break;
     }
     check_motion(checker, i, owner);
@@ -379,12 +377,8 @@ static void check_contacts(strut_checker *checker, const size_t *pieces) {
     if (!has_surface(scene, c, pieces))
       strut_report_finding(checker, STRUT_ON_CONTACT, i, NULL,
                            "%s is with a ground, or a piece of one, that does not exist", owner);
-    strut_check_range(checker, STRUT_ON_CONTACT, i, "stiffness", owner, c->stiffness,
-                      STRUT_ABOVE_ZERO);
-    strut_check_range(checker, STRUT_ON_CONTACT, i, "damping", owner, c->damping,
-                      STRUT_NOT_NEGATIVE);
-    strut_check_range(checker, STRUT_ON_CONTACT, i, "dissipation", owner, c->dissipation,
-                      STRUT_NOT_NEGATIVE);
+    const strut_checked whose = {STRUT_ON_CONTACT, i, owner, NULL};
+    strut_check_fields(checker, &whose, STRUT_FIELDS_CONTACT, c, NULL);
     check_friction(checker, i, owner);
   }
 }
@@ -392,10 +386,9 @@ static void check_contacts(strut_checker *checker, const size_t *pieces) {
 void strut_check_ground(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   const strut_ground *g = &scene->ground;
-  strut_check_range(checker, STRUT_ON_GROUND, 0, "height", "the ground", g->height,
-                    STRUT_ANY_NUMBER);
-  strut_check_range(checker, STRUT_ON_GROUND, 0, "belt_speed", "the ground", g->belt_speed,
-                    STRUT_ANY_NUMBER);
+  const strut_checked whose = {STRUT_ON_GROUND, 0, "the ground", NULL};
+  strut_check_number(checker, &whose, STRUT_FIELDS_GROUND, "height", g->height);
+  strut_check_number(checker, &whose, STRUT_FIELDS_GROUND, "belt_speed", g->belt_speed);
   if (!(fabs(g->slope) < QUARTER_TURN))
     strut_report_finding(
         checker, STRUT_ON_GROUND, 0, "slope",
@@ -482,11 +475,9 @@ static void check_unbalances(strut_checker *checker) {
   for (size_t i = 0; i < scene->unbalance_count; i++) {
     const strut_unbalance *u = &scene->unbalances[i];
     strut_format_name(owner, "unbalance", u->name, i);
-    strut_check_range(checker, STRUT_ON_UNBALANCE, i, "mass", owner, u->mass, STRUT_ABOVE_ZERO);
-    strut_check_range(checker, STRUT_ON_UNBALANCE, i, "radius", owner, u->radius,
-                      STRUT_NOT_NEGATIVE);
-    strut_check_range(checker, STRUT_ON_UNBALANCE, i, "speed", owner, u->speed, STRUT_ANY_NUMBER);
-    strut_check_range(checker, STRUT_ON_UNBALANCE, i, "phase", owner, u->phase, STRUT_ANY_NUMBER);
+    const strut_checked whose = {STRUT_ON_UNBALANCE, i, owner, NULL};
+    strut_check_fields(checker, &whose, STRUT_FIELDS_UNBALANCE, u, NULL);
+    strut_check_number(checker, &whose, STRUT_FIELDS_UNBALANCE, "speed", u->speed);
     if (!exists(u->node, scene->node_count))
       strut_report_finding(checker, STRUT_ON_UNBALANCE, i, "node",
                            "%s rotates about a node that does not exist", owner);
@@ -565,11 +556,9 @@ void strut_check_drives(strut_checker *checker) {
 /* Checks the length of the run: its duration, or its period. */
 static bool check_length(strut_checker *checker) {
   const strut_experiment *e = checker->experiment;
-  if (!strut_check_range(checker, STRUT_ON_RUN, 0, "duration", "the run", e->duration,
-                         STRUT_NOT_NEGATIVE) ||
-      !strut_check_range(checker, STRUT_ON_RUN, 0, "periods", "the run", e->periods,
-                         STRUT_NOT_NEGATIVE))
-    return false;
+  const strut_experiment usual = {0};
+  const strut_checked whose = {STRUT_ON_RUN, 0, "the run", NULL};
+  if (!strut_check_fields(checker, &whose, STRUT_FIELDS_RUN, e, &usual)) return false;
   if (e->duration > 0.0 && e->periods > 0.0) {
     strut_report_finding(checker, STRUT_ON_RUN, 0, "periods",
                          "the run has both a duration and a number of periods; give one");
@@ -617,9 +606,8 @@ static void check_step(strut_checker *checker, bool length_known) {
                            "the solver has no step, expected a time such as '0.1 ms'");
     return;
   }
-  if (!strut_check_range(checker, STRUT_ON_SOLVER, 0, "step", "the solver", e->step,
-                         STRUT_ABOVE_ZERO) ||
-      !length_known)
+  const strut_checked whose = {STRUT_ON_SOLVER, 0, "the solver", NULL};
+  if (!strut_check_number(checker, &whose, STRUT_FIELDS_SOLVER, "step", e->step) || !length_known)
     return;
   double duration = strut_experiment_span(e, checker->scene).duration;
   if (e->step > duration)
@@ -636,17 +624,12 @@ void strut_check_experiment(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   const strut_experiment *e = checker->experiment;
   const strut_settle *settle = &e->settle;
-  const struct {
-    const char *key;
-    double value;
-  } limits[] = {
-      {"speed", settle->speed}, {"acceleration", settle->acceleration}, {"limit", settle->limit}};
-  for (size_t i = 0; i < 3 && settle->wanted; i++)
-    strut_check_range(checker, STRUT_ON_INITIAL, 0, limits[i].key, "settling", limits[i].value,
-                      STRUT_ABOVE_ZERO);
+  const strut_experiment usual = {0};
+  const strut_checked settling = {STRUT_ON_INITIAL, 0, "settling", NULL};
+  const strut_checked window = {STRUT_ON_RUN, 0, "the measuring window", NULL};
+  const strut_checked record = {STRUT_ON_OUTPUT, 0, "the output", NULL};
   if (settle->wanted)
-    strut_check_range(checker, STRUT_ON_INITIAL, 0, "evaluations", "settling", settle->evaluations,
-                      STRUT_NOT_NEGATIVE);
+    strut_check_fields(checker, &settling, STRUT_FIELDS_SETTLE, settle, &usual.settle);
   if (settle->wanted && !isfinite(settle->step))
     strut_report_finding(checker, STRUT_ON_INITIAL, 0, "step",
                          "the step of settling is not finite");
@@ -667,12 +650,8 @@ void strut_check_experiment(strut_checker *checker) {
   check_step(checker, length_known);
   if (e->measure_node != -1 && !exists(e->measure_node, scene->node_count))
     strut_report_finding(checker, STRUT_ON_RUN, 0, "node", "the measured node does not exist");
-  bool measure = strut_check_range(checker, STRUT_ON_RUN, 0, "last", "the measuring window",
-                                   e->measure_last, STRUT_NOT_NEGATIVE);
-  bool output = strut_check_range(checker, STRUT_ON_OUTPUT, 0, "last", "the output", e->output_last,
-                                  STRUT_NOT_NEGATIVE);
-  strut_check_range(checker, STRUT_ON_OUTPUT, 0, "every", "the output", e->output_every,
-                    STRUT_NOT_NEGATIVE);
+  bool measure = strut_check_fields(checker, &window, STRUT_FIELDS_MEASURE, e, &usual);
+  bool output = strut_check_fields(checker, &record, STRUT_FIELDS_OUTPUT, e, &usual);
   if (!length_known) return;
   if (measure) check_window(checker, STRUT_ON_RUN, "cannot measure over", e->measure_last);
   if (output) check_window(checker, STRUT_ON_OUTPUT, "cannot record", e->output_last);

@@ -78,20 +78,8 @@ static bool check_hardening(strut_checker *checker, strut_subject subject, size_
   return false;
 }
 
-/* Force and time from which on something carries nothing. */
-static bool check_end(strut_checker *checker, strut_subject subject, size_t index,
-                      const char *owner, double force, double time) {
-  bool valid =
-      strut_check_range(checker, subject, index, "breaks_at", owner, force, STRUT_NOT_NEGATIVE);
-  return strut_check_range(checker, subject, index, "released_at", owner, time,
-                           STRUT_NOT_NEGATIVE) &&
-         valid;
-}
-
 static bool check_end_of_member(strut_checker *checker, size_t index, const char *owner) {
   const strut_member *m = &checker->scene->members[index];
-  if (!check_end(checker, STRUT_ON_MEMBER, index, owner, m->breaks_at, m->released_at))
-    return false;
   bool rigid = m->kind == STRUT_BAR && checker->scene->bar_model == STRUT_BARS_RIGID;
   const char *key = m->breaks_at > 0.0 ? "breaks_at" : "released_at";
   if (strut_member_ends(m) && rigid)
@@ -110,9 +98,6 @@ static bool check_end_of_member(strut_checker *checker, size_t index, const char
 static bool check_guide_friction(strut_checker *checker, size_t index, const char *owner,
                                  double length) {
   const strut_member *m = &checker->scene->members[index];
-  if (!strut_check_range(checker, STRUT_ON_MEMBER, index, "guide_friction", owner,
-                         m->guide_friction, STRUT_NOT_NEGATIVE))
-    return false;
   const char *fault = m->guide_friction == 0.0 ? NULL
                       : !m->guide_count        ? "has guide_friction, but runs over no guides"
                       : m->law.kind != STRUT_LAW_LINEAR
@@ -126,31 +111,22 @@ static bool check_guide_friction(strut_checker *checker, size_t index, const cha
 
 static bool check_stops(strut_checker *checker, size_t index, const char *owner) {
   const strut_member *m = &checker->scene->members[index];
-  bool valid = true;
-  valid &= strut_check_range(checker, STRUT_ON_MEMBER, index, "shortest", owner, m->shortest,
-                             STRUT_NOT_NEGATIVE);
-  valid &= strut_check_range(checker, STRUT_ON_MEMBER, index, "stop_stiffness", owner,
-                             m->stop_stiffness, STRUT_NOT_NEGATIVE);
-  valid &= strut_check_range(checker, STRUT_ON_MEMBER, index, "stop_damping", owner,
-                             m->stop_damping, STRUT_NOT_NEGATIVE);
-  valid &= strut_check_range(checker, STRUT_ON_MEMBER, index, "longest", owner, m->longest,
-                             STRUT_NOT_NEGATIVE);
   bool stops = m->shortest > 0.0 || m->longest > 0.0;
   bool stiff = m->stop_stiffness > 0.0 || m->stiffness > 0.0 || m->axial_stiffness > 0.0 ||
                strut_law_at(m->law.kind)->own;
-  if (valid && m->longest > 0.0 && m->shortest >= m->longest)
+  if (m->longest > 0.0 && m->shortest >= m->longest)
     strut_report_finding(checker, STRUT_ON_MEMBER, index, "longest",
                          "the longest of %s, %g m, must be above its shortest, %g m", owner,
                          m->longest, m->shortest);
-  else if (valid && !stops && (m->stop_stiffness > 0.0 || m->stop_damping > 0.0))
+  else if (!stops && (m->stop_stiffness > 0.0 || m->stop_damping > 0.0))
     strut_report_finding(checker, STRUT_ON_MEMBER, index,
                          m->stop_stiffness > 0.0 ? "stop_stiffness" : "stop_damping",
                          "%s describes stops, but has neither a shortest nor a longest", owner);
-  else if (valid && stops && !stiff)
+  else if (stops && !stiff)
     strut_report_finding(checker, STRUT_ON_MEMBER, index, "stop_stiffness",
                          "the stops of %s need a stop_stiffness", owner);
   else
-    return valid;
+    return true;
   return false;
 }
 
@@ -211,16 +187,11 @@ void strut_check_hinges(strut_checker *checker) {
     const strut_hinge *h = &scene->hinges[i];
     char owner[200];
     strut_format_name(owner, "hinge", h->name, i);
-    bool valid = strut_check_range(checker, STRUT_ON_HINGE, i, "stiffness", owner, h->stiffness,
-                                   STRUT_NOT_NEGATIVE);
-    valid &= strut_check_range(checker, STRUT_ON_HINGE, i, "damping", owner, h->damping,
-                               STRUT_NOT_NEGATIVE);
-    if (isinf(h->rest_angle))
-      strut_report_finding(checker, STRUT_ON_HINGE, i, "rest_angle",
-                           "the rest_angle of %s is not a finite number", owner);
-    valid = valid && check_law(checker, STRUT_ON_HINGE, i, owner, &h->law, h->stiffness > 0.0) &&
-            check_hardening(checker, STRUT_ON_HINGE, i, owner, &h->law, h->stiffness) &&
-            check_end(checker, STRUT_ON_HINGE, i, owner, h->breaks_at, h->released_at);
+    const strut_checked whose = {STRUT_ON_HINGE, i, owner, NULL};
+    bool valid = strut_check_fields(checker, &whose, STRUT_FIELDS_HINGE, h,
+                                    strut_thing_at(STRUT_THING_HINGE)->usual) &&
+                 check_law(checker, STRUT_ON_HINGE, i, owner, &h->law, h->stiffness > 0.0) &&
+                 check_hardening(checker, STRUT_ON_HINGE, i, owner, &h->law, h->stiffness);
     if (valid && h->law.kind == STRUT_LAW_LOGARITHMIC)
       strut_report_finding(checker, STRUT_ON_HINGE, i, "law",
                            "the law logarithmic is for members, not for %s", owner);

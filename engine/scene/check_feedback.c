@@ -13,15 +13,10 @@ void strut_check_maxwell(strut_checker *checker, size_t index, const char *owner
   const strut_scene *scene = checker->scene;
   const strut_member *member = &scene->members[index];
   const strut_maxwell *m = &member->maxwell;
-  bool valid = strut_check_range(checker, STRUT_ON_MEMBER, index, "maxwell", owner, m->stiffness,
-                                 STRUT_NOT_NEGATIVE) &&
-               strut_check_range(checker, STRUT_ON_MEMBER, index, "maxwell", owner, m->damping,
-                                 STRUT_NOT_NEGATIVE) &&
-               strut_check_range(checker, STRUT_ON_MEMBER, index, "maxwell", owner, m->time,
-                                 STRUT_NOT_NEGATIVE) &&
-               strut_check_range(checker, STRUT_ON_MEMBER, index, "maxwell", owner, m->force,
-                                 STRUT_ANY_NUMBER);
-  if (!valid || m->stiffness == 0.0) return;
+  const strut_maxwell none = {0};
+  const strut_checked whose = {STRUT_ON_MEMBER, index, owner, "maxwell"};
+  if (memcmp(m, &none, sizeof none) == 0) return;
+  if (!strut_check_fields(checker, &whose, STRUT_FIELDS_MAXWELL, m, &none)) return;
   if ((m->damping > 0.0) == (m->time > 0.0))
     strut_report_finding(checker, STRUT_ON_MEMBER, index, "maxwell",
                          "the Maxwell branch of %s needs either a damping or a time", owner);
@@ -191,11 +186,10 @@ static bool check_trigger(strut_checker *checker, size_t index, const char *owne
 bool strut_check_modifiers(strut_checker *checker, size_t index, const char *owner) {
   const strut_signal *s = &checker->scene->signals[index];
   bool trigger = check_trigger(checker, index, owner);
-  bool lag = trigger && strut_check_range(checker, STRUT_ON_SIGNAL, index, "lag", owner, s->lag,
-                                          STRUT_NOT_NEGATIVE);
-  return strut_check_range(checker, STRUT_ON_SIGNAL, index, "every", owner, s->every,
-                           STRUT_NOT_NEGATIVE) &&
-         lag;
+  const strut_checked whose = {STRUT_ON_SIGNAL, index, owner, NULL};
+  return strut_check_fields(checker, &whose, STRUT_FIELDS_SIGNAL, s,
+                            strut_thing_at(STRUT_THING_SIGNAL)->usual) &&
+         trigger;
 }
 
 /* Do all programs that a signal may follow make sense? Others have been reported. */

@@ -127,9 +127,9 @@ void strut_check_sliding_masses(strut_checker *checker) {
   for (size_t i = 0; i < scene->sliding_count; i++) {
     const strut_sliding_mass *s = &scene->sliding_masses[i];
     strut_format_name(owner, "slider", s->name, i);
-    strut_check_range(checker, STRUT_ON_SLIDER, i, "mass", owner, s->mass, STRUT_ABOVE_ZERO);
-    bool placed = strut_check_range(checker, STRUT_ON_SLIDER, i, "position", owner, s->share,
-                                    STRUT_ANY_NUMBER);
+    const strut_checked whose = {STRUT_ON_SLIDER, i, owner, NULL};
+    strut_check_fields(checker, &whose, STRUT_FIELDS_SLIDER, s, NULL);
+    bool placed = isfinite(s->share);
     if (!exists(s->member, scene->member_count)) {
       strut_report_finding(checker, STRUT_ON_SLIDER, i, "member",
                            "%s is on a member that does not exist", owner);

@@ -7,6 +7,7 @@
 
 #include "engine/base/vec.h"
 #include "engine/scene/experiment.h"
+#include "engine/scene/things.h"
 
 void strut_scene_init(strut_scene *scene) {
   memset(scene, 0, sizeof *scene);
@@ -14,29 +15,17 @@ void strut_scene_init(strut_scene *scene) {
   scene->start_equilibrium = -1;
 }
 
-strut_node strut_node_default(void) { return (strut_node){.name = ""}; }
-
-strut_member strut_member_default(void) {
-  return (strut_member){.name = "",
-                        .node = {-1, -1},
-                        .kind = STRUT_BAR,
-                        .rest_kind = STRUT_REST_RATIO,
-                        .rest_value = 1};
+#define USUAL(KIND) (strut_thing_at(STRUT_THING_##KIND)->usual)
+strut_node strut_node_default(void) { return *(const strut_node *)USUAL(NODE); }
+strut_member strut_member_default(void) { return *(const strut_member *)USUAL(MEMBER); }
+strut_hinge strut_hinge_default(void) { return *(const strut_hinge *)USUAL(HINGE); }
+strut_contact strut_contact_default(void) { return *(const strut_contact *)USUAL(CONTACT); }
+strut_cell strut_cell_default(void) { return *(const strut_cell *)USUAL(CELL); }
+strut_collision strut_collision_default(void) { return *(const strut_collision *)USUAL(COLLISION); }
+strut_sliding_mass strut_sliding_mass_default(void) {
+  return *(const strut_sliding_mass *)USUAL(SLIDER);
 }
-
-strut_hinge strut_hinge_default(void) {
-  return (strut_hinge){.name = "", .node = {-1, -1, -1}, .rest_angle = (double)NAN};
-}
-
-strut_contact strut_contact_default(void) { return (strut_contact){.node = -1}; }
-
-strut_cell strut_cell_default(void) {
-  return (strut_cell){.name = "", .law = STRUT_LAW_PRESSURE, .exponent = 1.4};
-}
-
-strut_collision strut_collision_default(void) {
-  return (strut_collision){.name = "", .node = {-1, -1}, .member = {-1, -1}};
-}
+#undef USUAL
 
 void strut_scene_free(strut_scene *scene) {
   strut_arena_free(&scene->arena);

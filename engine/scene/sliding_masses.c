@@ -6,10 +6,6 @@
 #include "engine/base/vec.h"
 #include "engine/scene/scene.h"
 
-strut_sliding_mass strut_sliding_mass_default(void) {
-  return (strut_sliding_mass){.name = "", .member = -1, .signal = -1};
-}
-
 double strut_sliding_mass_scale(const strut_scene *scene, size_t index) {
   const strut_sliding_mass *s = &scene->sliding_masses[index];
   const int32_t *node = scene->members[s->member].node;

@@ -7,27 +7,15 @@
 #include <string.h>
 
 #include "engine/base/number_text.h"
+#include "engine/scene/sample.h"
 #include "engine/scene/study.h"
 
 /* clang-format off */
-#define STRUT_LIMITS_ANY {STRUT_RANGE_ANY, 0.0, 0.0}
-#define STRUT_LIMITS_NOT_NEGATIVE {STRUT_RANGE_NOT_NEGATIVE, 0.0, 0.0}
-#define STRUT_LIMITS_ABOVE_ZERO {STRUT_RANGE_ABOVE_ZERO, 0.0, 0.0}
-#define STRUT_LIMITS_WHOLE(least, most) {STRUT_RANGE_WHOLE, least, most}
-
-/* A field of a type that is not listed does not compile. */
-#define STRUT_KIND_OF(lvalue) _Generic((lvalue), \
-  double: STRUT_FIELD_DOUBLE, int32_t: STRUT_FIELD_INT32, uint32_t: STRUT_FIELD_UINT32, \
-  int64_t: STRUT_FIELD_INT64, uint64_t: STRUT_FIELD_UINT64, bool: STRUT_FIELD_BOOL, \
-  double *: STRUT_FIELD_DOUBLE_PAIR, bool *: STRUT_FIELD_BOOL_PAIR, const char *: STRUT_FIELD_TEXT)
-#define STRUT_FIELD_OF_BY_HAND {STRUT_FIELD_BY_HAND, 0, 0}
-#define STRUT_FIELD_OF_FIELD(object, member) \
-  {STRUT_KIND_OF(((object *)0)->member), offsetof(object, member), sizeof(object)}
-
+#define STRUT_BELOW(SECTION) STRUT_SECTION_##SECTION
 #define STRUT_KEY_ROW(section, id, name, type, measure, range, fallback, need, set, words, field, \
                       description) \
   {STRUT_SECTION_##section, name, STRUT_TYPE_##type, STRUT_MEASURE_##measure, \
-   STRUT_LIMITS_##range, fallback, STRUT_##need, set, words, STRUT_FIELD_OF_##field, description},
+   STRUT_LIMITS_##range, fallback, STRUT_##need, set, words, {STRUT_FIELD_OF_##field}, description},
 static const strut_key table[] = {STRUT_KEY_TABLE(STRUT_KEY_ROW)};
 /* clang-format on */
 
@@ -75,7 +63,16 @@ strut_section strut_wave_section(strut_signal_kind kind) {
 }
 
 bool strut_key_is_bound(const strut_key *key) {
-  return key->field.kind != STRUT_FIELD_BY_HAND && key->measure != STRUT_MEASURE_CONTEXT;
+  return key->field.role == STRUT_FIELD_VALUE && key->measure != STRUT_MEASURE_CONTEXT;
+}
+
+strut_section strut_section_below(const strut_key *key) {
+  bool mapping = key->field.role == STRUT_FIELD_NESTED || key->field.role == STRUT_FIELD_SECTION ||
+                 key->field.role == STRUT_FIELD_THINGS;
+  if (mapping) return (strut_section)key->field.below;
+  if (key->type != STRUT_TYPE_THINGS) return strut_section_find(key->name);
+  /* groups have keys of members, and of other things */
+  return strcmp(key->name, "groups") == 0 ? STRUT_SECTION_MEMBER : STRUT_SECTION_COUNT;
 }
 
 /* Former names stay readable for one version of strut at least; docs and models use the current ones. */

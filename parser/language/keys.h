@@ -11,7 +11,7 @@
 #include <stddef.h>
 
 #include "engine/base/export.h"
-#include "engine/scene/experiment.h"
+#include "engine/scene/things.h"
 #include "parser/expression/units.h"
 #include "parser/language/keys_table.h"
 
@@ -148,50 +148,6 @@ typedef enum strut_measure {
   STRUT_MEASURE_BENDING_STIFFNESS
 } strut_measure;
 
-typedef enum strut_key_range {
-  STRUT_RANGE_ANY,
-  STRUT_RANGE_NOT_NEGATIVE,
-  STRUT_RANGE_ABOVE_ZERO,
-  STRUT_RANGE_WHOLE /* a whole number from least to most */
-} strut_key_range;
-
-typedef struct strut_key_limits {
-  strut_key_range range;
-  double least, most; /* of WHOLE */
-} strut_key_limits;
-
-typedef enum strut_key_need {
-  STRUT_OPTIONAL, /* written only where it differs from the default */
-  STRUT_WRITTEN,  /* may be left out, but is always written */
-  STRUT_REQUIRED
-} strut_key_need;
-
-/** The C type of a field. */
-typedef enum strut_field_kind {
-  STRUT_FIELD_BY_HAND, /* no field: the section's reader and writer have code for the key */
-  STRUT_FIELD_DOUBLE,
-  STRUT_FIELD_INT32,
-  STRUT_FIELD_UINT32, /* enumerations and bits too */
-  STRUT_FIELD_INT64,
-  STRUT_FIELD_UINT64,
-  STRUT_FIELD_BOOL,
-  STRUT_FIELD_DOUBLE_PAIR,
-  STRUT_FIELD_BOOL_PAIR,
-  STRUT_FIELD_TEXT /* const char *; of a WORD, the word itself */
-} strut_field_kind;
-
-/** The field that holds a key's value in the object of its section. */
-typedef struct strut_field {
-  strut_field_kind kind;
-  size_t offset, object_size;
-} strut_field;
-
-/** The object of the section `ground`: its line, and the contact that every node starts from. */
-typedef struct strut_ground_section {
-  strut_ground ground;
-  strut_contact contact;
-} strut_ground_section;
-
 enum { STRUT_USUAL_PARTS = 10 };
 
 /** The object of the section `beam`, which the reader turns into nodes, members and hinges. */
@@ -208,6 +164,42 @@ typedef struct strut_beam {
   const struct strut_tree *clamped_to[2]; /* what its ends are clamped to, or NULL */
 } strut_beam;
 
+/** The object of the section `place`, as far as its keys are kept by rows. */
+typedef struct strut_place_keys {
+  uint32_t flip;      /* bits: x, y */
+  double turn, at[2]; /* [rad], [m] */
+} strut_place_keys;
+
+/** The same of `repeat`. */
+typedef struct strut_repeat_keys {
+  double turn, scale, about[2]; /* [rad], [1], [m] */
+} strut_repeat_keys;
+
+/** The object of the section `moves`. */
+typedef struct strut_moves {
+  int32_t signal[2]; /* in x, in y [m]; -1: none */
+} strut_moves;
+
+/** The object of the section `controller`: a PID controller. */
+typedef struct strut_controller {
+  int32_t sensor;
+  double target, gain, integral, derivative, every;
+  double limit[2]; /* least, most */
+  bool limited[2];
+} strut_controller;
+
+/** The object of the section `oscillator`. */
+typedef struct strut_oscillator {
+  double frequency, phase, bias; /* [Hz], [rad] */
+} strut_oscillator;
+
+/** The object of the section `sample`. */
+typedef struct strut_sample_keys {
+  int64_t count;
+  uint32_t scheme; /* strut_sample_scheme */
+  int64_t seed;
+} strut_sample_keys;
+
 /** One row of the table. */
 typedef struct strut_key {
   strut_section section;
@@ -217,8 +209,8 @@ typedef struct strut_key {
   strut_key_limits limits;
   const char *fallback; /* the default, as the reference page shows it */
   strut_key_need need;
-  int set; /* a mapping may give only one of the keys with the same set (not 0) */
-  const char *words;
+  int set;           /* a mapping may give only one of the keys with the same set (not 0) */
+  const char *words; /* of a nested mapping: what messages call it, "" if by its key */
   strut_field field;
   const char *description;
 } strut_key;
@@ -231,8 +223,7 @@ enum {
       STRUT_KEY_COUNT
 };
 
-enum { STRUT_MOST_KEYS = 48 };         /* of one section */
-enum { STRUT_MOST_THINGS = 10000000 }; /* entries of all copies of parts */
+enum { STRUT_MOST_KEYS = 48 }; /* of one section */
 
 STRUT_API const strut_key *strut_key_at(int key);
 /** First key and number of keys of a section. */
@@ -274,6 +265,8 @@ STRUT_API int strut_rest_key(strut_rest_kind kind);
 STRUT_API strut_section strut_wave_section(strut_signal_kind kind);
 /** True for a key whose value is kept in a field without code of its own. */
 STRUT_API bool strut_key_is_bound(const strut_key *key);
+/** The section of the keys below a mapping's key, or STRUT_SECTION_COUNT. */
+STRUT_API strut_section strut_section_below(const strut_key *key);
 
 STRUT_API strut_dimension strut_measure_dimension(strut_measure measure);
 /** "a length such as '10 mm'"; written into buffer. */

@@ -58,7 +58,7 @@ static bool find_target(strut_reader *reader, const strut_beam *b, int end, join
   const strut_tree *value = b->clamped_to[end];
   const char *name = value->text, *which = end ? "ends" : "starts";
   const strut_node *node = &reader->scene->nodes[b->node[end]];
-  *target = (joint_target){strut_find_named(reader, &reader->member_names, NULL, name),
+  *target = (joint_target){strut_find_thing(reader, STRUT_THING_MEMBER, NULL, name),
                            find_beam(reader, name), 0};
   const strut_member *m = target->member >= 0 ? &reader->scene->members[target->member] : NULL;
   const int32_t *ends = m ? m->node : target->beam ? target->beam->node : NULL;
@@ -235,9 +235,10 @@ void strut_add_joint_hinges(strut_reader *reader) {
     if (root_of(&j, e) == e) more += count_hinges(&j, e);
   scene->hinges = strut_lengthen(reader, &scene->arena, scene->hinges, scene->hinge_count, more,
                                  sizeof *scene->hinges);
-  reader->hinge_source = strut_lengthen(reader, &reader->scratch, reader->hinge_source,
-                                        scene->hinge_count, more, sizeof *reader->hinge_source);
-  if (!scene->hinges || !reader->hinge_source || reader->failed) return;
+  reader->things[STRUT_THING_HINGE].source =
+      strut_lengthen(reader, &reader->scratch, reader->things[STRUT_THING_HINGE].source,
+                     scene->hinge_count, more, sizeof *reader->things[STRUT_THING_HINGE].source);
+  if (!scene->hinges || !reader->things[STRUT_THING_HINGE].source || reader->failed) return;
   for (int32_t e = 0; e < 2 * (int32_t)reader->beam_count; e++)
     if (root_of(&j, e) == e) add_joint(&j, e);
 }

@@ -177,10 +177,10 @@ static bool check_names(strut_reader *reader, const strut_tree *value, const cha
                        strut_owner_text(reader, owner), (unsigned)value->count, STRUT_MOST_GROUPS);
     return false;
   }
+  const strut_namespace names = {"group", &reader->group_names, group_name, reader,
+                                 reader->group_count};
   for (; item && known; item = value == item ? NULL : item->next)
-    if (strut_read_reference(reader, item, key, owner, "group", &reader->group_names, group_name,
-                             reader->group_count) < 0)
-      fine = false;
+    if (strut_read_name_of(reader, item, key, owner, &names) < 0) fine = false;
   return fine && known;
 }
 

@@ -44,7 +44,7 @@ static strut_place field_place(strut_reader *reader, strut_fields *fields, const
 }
 
 static bool node_place(strut_reader *reader, const strut_finding *finding, strut_place *place) {
-  const strut_source *source = &reader->node_source[finding->index];
+  const strut_source *source = &reader->things[STRUT_THING_NODE].source[finding->index];
   bool mass = finding->key && strcmp(finding->key, "mass") == 0;
   bool velocity = finding->key && strcmp(finding->key, "velocity") == 0;
   if ((mass || !finding->key) && reader->ends_unknown) return false;
@@ -57,16 +57,17 @@ static bool node_place(strut_reader *reader, const strut_finding *finding, strut
 
 /* The value of a ground's own key, else its name. */
 static strut_place ground_place(strut_reader *reader, size_t ground, const char *key) {
-  if (!reader->ground_source)
+  if (!reader->things[STRUT_THING_GROUND].source)
     return field_place(reader, &reader->ground, key, STRUT_KEY_SCENE_GROUND);
   int found = key ? strut_key_find(STRUT_SECTION_GROUND, key) : -1;
   const strut_slot *slot = found < 0 ? NULL : strut_slot_of(&reader->grounds[ground], found);
-  return slot && slot->value ? slot->value->place : reader->ground_source[ground].key->place;
+  return slot && slot->value ? slot->value->place
+                             : reader->things[STRUT_THING_GROUND].source[ground].key->place;
 }
 
 /* The contact's own key, its group's, the ground's, or the name of the contact. */
 static bool contact_place(strut_reader *reader, const strut_finding *finding, strut_place *place) {
-  const strut_source *source = &reader->contact_source[finding->index];
+  const strut_source *source = &reader->things[STRUT_THING_CONTACT].source[finding->index];
   int32_t g = reader->scene->contacts[finding->index].ground;
   *place = ground_place(reader, (size_t)g, finding->key);
   if (!source->key) return true;
@@ -87,22 +88,9 @@ static bool signal_place(strut_reader *reader, const strut_finding *finding, str
   return true;
 }
 
-/* Findings about nodes, members, hinges, cells, contacts, actuators, loads and configurations. */
+/* Findings about things of a scene. */
 static bool many_place(strut_reader *reader, const strut_finding *finding, strut_place *place) {
-  const strut_source *sources[] = {[STRUT_ON_NODE] = reader->node_source,
-                                   [STRUT_ON_MEMBER] = reader->member_source,
-                                   [STRUT_ON_HINGE] = reader->hinge_source,
-                                   [STRUT_ON_CELL] = reader->cell_source,
-                                   [STRUT_ON_COLLISION] = reader->collision_source,
-                                   [STRUT_ON_CONTACT] = reader->contact_source,
-                                   [STRUT_ON_ACTUATOR] = reader->actuator_source,
-                                   [STRUT_ON_LOAD] = reader->load_source,
-                                   [STRUT_ON_UNBALANCE] = reader->unbalance_source,
-                                   [STRUT_ON_CONFIGURATION] = reader->configuration_source,
-                                   [STRUT_ON_SENSOR] = reader->sensor_source,
-                                   [STRUT_ON_STATE] = reader->state_source,
-                                   [STRUT_ON_SLIDER] = reader->slider_source};
-  const strut_source *source = &sources[finding->subject][finding->index];
+  const strut_source *source = &reader->things[finding->subject].source[finding->index];
   if (source->broken) return false;
   bool of_ground =
       finding->subject == STRUT_ON_CONFIGURATION || finding->subject == STRUT_ON_SENSOR;
@@ -114,62 +102,35 @@ static bool many_place(strut_reader *reader, const strut_finding *finding, strut
 
 /* Findings about the ground, the initial state, the solver and other single mappings. */
 static bool single_place(strut_reader *reader, const strut_finding *finding, strut_place *place) {
+  const struct {
+    strut_fields *fields;
+    int section;
+    bool broken; /* what it depends on, too */
+  } mappings[] = {
+      [STRUT_ON_GROUND] = {&reader->ground, STRUT_KEY_SCENE_GROUND, false},
+      [STRUT_ON_SCENE] = {&reader->top, STRUT_KEY_SCENE_NODES, false},
+      [STRUT_ON_INITIAL] = {&reader->settle, STRUT_KEY_SCENE_INITIAL, false},
+      [STRUT_ON_EQUILIBRIA] = {&reader->search, STRUT_KEY_SCENE_EQUILIBRIA, reader->ground.broken},
+      [STRUT_ON_SOLVER] = {&reader->solver, STRUT_KEY_SCENE_SOLVER, false},
+      [STRUT_ON_RUN] = {&reader->run, STRUT_KEY_SCENE_RUN, reader->run.broken},
+      [STRUT_ON_OUTPUT] = {&reader->output, STRUT_KEY_SCENE_OUTPUT, reader->run.broken}};
   const char *key = finding->key;
-  strut_fields *fields = &reader->top;
-  int section = STRUT_KEY_SCENE_NODES;
-  bool broken = false;
-  switch (finding->subject) {
-    case STRUT_ON_GROUND:
-      if (reader->ground_source) {
-        *place = ground_place(reader, finding->index, key);
-        return !reader->grounds[finding->index].broken;
-      }
-      fields = &reader->ground, section = STRUT_KEY_SCENE_GROUND;
-      broken = fields->broken;
-      if (key && strcmp(key, "slope") == 0 && /* does not depend on other keys */
-          strut_slot_of(fields, STRUT_KEY_GROUND_SLOPE)->state == STRUT_GIVEN)
-        broken = false;
-      break;
-    case STRUT_ON_INITIAL:
-      fields = &reader->settle, section = STRUT_KEY_SCENE_INITIAL;
-      broken = fields->broken;
-      break;
-    case STRUT_ON_EQUILIBRIA:
-      fields = &reader->search, section = STRUT_KEY_SCENE_EQUILIBRIA;
-      broken = fields->broken || reader->ground.broken;
-      break;
-    case STRUT_ON_SOLVER:
-      fields = &reader->solver, section = STRUT_KEY_SCENE_SOLVER;
-      broken = fields->broken;
-      break;
-    case STRUT_ON_RUN:
-      fields = key && (strcmp(key, "last") == 0 || strcmp(key, "node") == 0) ? &reader->measure
-                                                                             : &reader->run;
-      section = STRUT_KEY_SCENE_RUN;
-      broken = fields->broken || reader->run.broken;
-      break;
-    case STRUT_ON_OUTPUT:
-      fields = &reader->output, section = STRUT_KEY_SCENE_OUTPUT;
-      broken = fields->broken || reader->run.broken;
-      break;
-    case STRUT_ON_SCENE:
-    case STRUT_ON_NODE:
-    case STRUT_ON_MEMBER:
-    case STRUT_ON_HINGE:
-    case STRUT_ON_CELL:
-    case STRUT_ON_COLLISION:
-    case STRUT_ON_CONTACT:
-    case STRUT_ON_ACTUATOR:
-    case STRUT_ON_LOAD:
-    case STRUT_ON_UNBALANCE:
-    case STRUT_ON_SIGNAL:
-    case STRUT_ON_CONFIGURATION:
-    case STRUT_ON_SENSOR:
-    case STRUT_ON_STATE:
-    case STRUT_ON_SLIDER:
-      broken =
-          key && strut_key_find(STRUT_SECTION_SCENE, key) >= 0 &&
-          strut_slot_of(fields, strut_key_find(STRUT_SECTION_SCENE, key))->state == STRUT_BROKEN;
+  strut_subject subject = finding->subject;
+  strut_fields *fields = mappings[subject].fields;
+  int section = mappings[subject].section;
+  bool measured = key && (strcmp(key, "last") == 0 || strcmp(key, "node") == 0);
+  if (subject == STRUT_ON_RUN && measured) fields = &reader->measure;
+  bool broken = fields->broken || mappings[subject].broken;
+  if (subject == STRUT_ON_GROUND && reader->things[STRUT_THING_GROUND].source) {
+    *place = ground_place(reader, finding->index, key);
+    return !reader->grounds[finding->index].broken;
+  }
+  if (subject == STRUT_ON_GROUND && key && strcmp(key, "slope") == 0 &&
+      strut_slot_of(fields, STRUT_KEY_GROUND_SLOPE)->state == STRUT_GIVEN)
+    broken = false; /* it does not depend on other keys */
+  if (subject == STRUT_ON_SCENE) {
+    int found = key ? strut_key_find(STRUT_SECTION_SCENE, key) : -1;
+    broken = found >= 0 && strut_slot_of(fields, found)->state == STRUT_BROKEN;
   }
   if (!broken) *place = field_place(reader, fields, key, section);
   return !broken;
@@ -179,16 +140,10 @@ void strut_place_findings(strut_reader *reader, const strut_findings *findings) 
   for (size_t i = 0; i < findings->count; i++) {
     const strut_finding *finding = &findings->items[i];
     strut_place place;
-    bool many = finding->subject == STRUT_ON_NODE || finding->subject == STRUT_ON_MEMBER ||
-                finding->subject == STRUT_ON_HINGE || finding->subject == STRUT_ON_CONTACT ||
-                finding->subject == STRUT_ON_ACTUATOR || finding->subject == STRUT_ON_LOAD ||
-                finding->subject == STRUT_ON_CELL || finding->subject == STRUT_ON_COLLISION ||
-                finding->subject == STRUT_ON_UNBALANCE ||
-                finding->subject == STRUT_ON_CONFIGURATION || finding->subject == STRUT_ON_SENSOR ||
-                finding->subject == STRUT_ON_STATE || finding->subject == STRUT_ON_SLIDER;
-    bool fresh = many                                  ? many_place(reader, finding, &place)
-                 : finding->subject == STRUT_ON_SIGNAL ? signal_place(reader, finding, &place)
-                                                       : single_place(reader, finding, &place);
+    bool many = strut_subject_is_thing(finding->subject) && finding->subject != STRUT_ON_GROUND;
+    bool fresh = finding->subject == STRUT_ON_SIGNAL ? signal_place(reader, finding, &place)
+                 : many                              ? many_place(reader, finding, &place)
+                                                     : single_place(reader, finding, &place);
     if (fresh) strut_report_error(reader, place, "%s", finding->message);
     reader->scope = NULL;
   }

@@ -92,17 +92,10 @@ static bool read_beam(strut_reader *reader, const strut_tree *key, strut_beam *b
                     .key = key,
                     .node = {-1, -1},
                     .parts = STRUT_USUAL_PARTS};
-  strut_read_fields(reader, STRUT_SECTION_BEAM, key->next, owner, &fields);
+  strut_read_fields_of(reader, STRUT_SECTION_BEAM, key, owner, &fields);
   strut_require(reader, &fields, owner, key->place);
-  strut_store_fields(reader, &fields, &reader->scratch, b, sizeof *b);
-  const strut_slot *nodes = strut_slot_of(&fields, STRUT_KEY_BEAM_NODES);
+  fine = strut_store_fields(reader, &fields, owner, &reader->scratch, b, sizeof *b) && fine;
   const strut_slot *clamped = strut_slot_of(&fields, STRUT_KEY_BEAM_CLAMPED);
-  if (nodes->state != STRUT_GIVEN) return false;
-  const strut_tree *item = nodes->value->first;
-  for (int k = 0; k < 2; k++, item = item->next) {
-    b->node[k] = strut_read_node(reader, item, owner);
-    fine = fine && b->node[k] >= 0;
-  }
   fine =
       strut_read_clamped_to(reader, strut_slot_of(&fields, STRUT_KEY_BEAM_CLAMPED_TO), b) && fine;
   return fine && !fields.broken && check_ends(reader, key, clamped, b);
@@ -114,14 +107,14 @@ static void add_node(strut_reader *reader, strut_beam *b, const char *name, doub
   strut_scene *scene = reader->scene;
   const double *from = scene->nodes[b->node[0]].position, *to = scene->nodes[b->node[1]].position;
   size_t i = scene->node_count;
-  if (!claim_name(reader, b, "node", &reader->node_names, name, i)) return;
+  if (!claim_name(reader, b, "node", &reader->things[STRUT_THING_NODE].names, name, i)) return;
   strut_node *node = &scene->nodes[i];
   *node = strut_node_default();
   node->name = name;
   node->fixed[0] = node->fixed[1] = held >= 0;
   if (held >= 0) reader->node_moves[i] = reader->node_moves[held]; /* a clamp moves with its end */
   for (int d = 0; d < 2; d++) node->position[d] = node->start[d] = from[d] + s * (to[d] - from[d]);
-  reader->node_source[i] = (strut_source){b->key, b->key->next, false};
+  reader->things[STRUT_THING_NODE].source[i] = (strut_source){b->key, b->key->next, false};
   scene->node_count++;
 }
 
@@ -165,13 +158,13 @@ void strut_read_beams(strut_reader *reader) {
   if (!reader->beam_count || strut_diagnostics_full(reader->diagnostics)) return;
   scene->nodes = strut_lengthen(reader, &scene->arena, scene->nodes, scene->node_count,
                                 parts + clamps, sizeof *scene->nodes);
-  reader->node_source =
-      strut_lengthen(reader, &reader->scratch, reader->node_source, scene->node_count,
-                     parts + clamps, sizeof *reader->node_source);
+  reader->things[STRUT_THING_NODE].source = strut_lengthen(
+      reader, &reader->scratch, reader->things[STRUT_THING_NODE].source, scene->node_count,
+      parts + clamps, sizeof *reader->things[STRUT_THING_NODE].source);
   reader->node_moves =
       strut_lengthen(reader, &reader->scratch, reader->node_moves, scene->node_count,
                      parts + clamps, sizeof *reader->node_moves);
-  if (!scene->nodes || !reader->node_source || !reader->node_moves) return;
+  if (!scene->nodes || !reader->things[STRUT_THING_NODE].source || !reader->node_moves) return;
   for (size_t i = 0; i < reader->beam_count; i++) add_nodes(reader, &reader->beams[i]);
 }
 
@@ -185,7 +178,7 @@ static void add_part(strut_reader *reader, strut_beam *b, int32_t k) {
   strut_scene *scene = reader->scene;
   size_t i = scene->member_count;
   const char *name = part_name(reader, b, (size_t)k);
-  if (!claim_name(reader, b, "member", &reader->member_names, name, i)) return;
+  if (!claim_name(reader, b, "member", &reader->things[STRUT_THING_MEMBER].names, name, i)) return;
   strut_member *m = &scene->members[i];
   *m = strut_member_default();
   m->name = name;
@@ -193,7 +186,7 @@ static void add_part(strut_reader *reader, strut_beam *b, int32_t k) {
   m->axial_stiffness = b->axial_stiffness;
   m->damping = b->damping * b->axial_stiffness / strut_beam_part_length(reader, b);
   m->mass = b->mass / (double)b->parts;
-  reader->member_source[i] = (strut_source){b->key, b->key->next, false};
+  reader->things[STRUT_THING_MEMBER].source[i] = (strut_source){b->key, b->key->next, false};
   scene->member_count++;
 }
 
@@ -203,9 +196,11 @@ void strut_add_beam_members(strut_reader *reader) {
   if (!parts) return;
   scene->members = strut_lengthen(reader, &scene->arena, scene->members, scene->member_count, parts,
                                   sizeof *scene->members);
-  reader->member_source = strut_lengthen(reader, &reader->scratch, reader->member_source,
-                                         scene->member_count, parts, sizeof *reader->member_source);
-  for (size_t i = 0; i < reader->beam_count && scene->members && reader->member_source; i++) {
+  reader->things[STRUT_THING_MEMBER].source =
+      strut_lengthen(reader, &reader->scratch, reader->things[STRUT_THING_MEMBER].source,
+                     scene->member_count, parts, sizeof *reader->things[STRUT_THING_MEMBER].source);
+  for (size_t i = 0;
+       i < reader->beam_count && scene->members && reader->things[STRUT_THING_MEMBER].source; i++) {
     strut_beam *b = &reader->beams[i];
     for (int32_t k = 1; k <= b->parts && !b->broken; k++) add_part(reader, b, k);
   }
@@ -216,7 +211,7 @@ void strut_add_beam_hinge(strut_reader *reader, strut_beam *b, const char *name,
                           double rest_angle) {
   strut_scene *scene = reader->scene;
   size_t i = scene->hinge_count;
-  if (!claim_name(reader, b, "hinge", &reader->hinge_names, name, i)) return;
+  if (!claim_name(reader, b, "hinge", &reader->things[STRUT_THING_HINGE].names, name, i)) return;
   strut_hinge *h = &scene->hinges[i];
   *h = strut_hinge_default();
   h->name = name;
@@ -224,7 +219,7 @@ void strut_add_beam_hinge(strut_reader *reader, strut_beam *b, const char *name,
   h->stiffness = stiffness;
   h->damping = damping;
   h->rest_angle = rest_angle;
-  reader->hinge_source[i] = (strut_source){b->key, b->key->next, false};
+  reader->things[STRUT_THING_HINGE].source[i] = (strut_source){b->key, b->key->next, false};
   scene->hinge_count++;
 }
 
@@ -255,9 +250,11 @@ void strut_add_beam_hinges(strut_reader *reader) {
   if (!reader->beam_count) return;
   scene->hinges = strut_lengthen(reader, &scene->arena, scene->hinges, scene->hinge_count, most,
                                  sizeof *scene->hinges);
-  reader->hinge_source = strut_lengthen(reader, &reader->scratch, reader->hinge_source,
-                                        scene->hinge_count, most, sizeof *reader->hinge_source);
-  for (size_t i = 0; i < reader->beam_count && scene->hinges && reader->hinge_source; i++)
+  reader->things[STRUT_THING_HINGE].source =
+      strut_lengthen(reader, &reader->scratch, reader->things[STRUT_THING_HINGE].source,
+                     scene->hinge_count, most, sizeof *reader->things[STRUT_THING_HINGE].source);
+  for (size_t i = 0;
+       i < reader->beam_count && scene->hinges && reader->things[STRUT_THING_HINGE].source; i++)
     add_hinges(reader, &reader->beams[i]);
   strut_add_joint_hinges(reader);
 }

@@ -41,8 +41,7 @@ static bool read_set(strut_reader *reader, const strut_tree *list, const char *k
         set->node[set->count++] = n;
       continue;
     }
-    int32_t node = strut_read_reference(reader, item, key, owner, "node", &reader->node_names,
-                                        strut_node_name, reader->scene->node_count);
+    int32_t node = strut_read_reference(reader, item, key, owner, STRUT_THING_NODE);
     if (node >= 0)
       set->node[set->count++] = node;
     else
@@ -86,7 +85,7 @@ static bool read_sets(strut_reader *reader, const strut_slot *slot, strut_owner 
 static bool is_key(strut_reader *reader, const strut_tree *key) {
   const strut_tree *value = key->next;
   if (strut_key_find(STRUT_SECTION_CONFIGURATION, key->text) < 0) return false;
-  if (strut_find_named(reader, &reader->node_names, NULL, key->text) < 0) return true;
+  if (strut_find_thing(reader, STRUT_THING_NODE, NULL, key->text) < 0) return true;
   if (strcmp(key->text, strut_key_at(STRUT_KEY_CONFIGURATION_SHAPE)->name) == 0)
     return value->kind == STRUT_TREE_MAP;
   return value->kind == STRUT_TREE_LIST && value->count &&
@@ -98,7 +97,7 @@ static bool is_key(strut_reader *reader, const strut_tree *key) {
 static bool keys_only(strut_reader *reader, const strut_tree *map, strut_owner owner) {
   bool fine = true;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
-    if (is_key(reader, key) || strut_find_named(reader, &reader->node_names, NULL, key->text) < 0)
+    if (is_key(reader, key) || strut_find_thing(reader, STRUT_THING_NODE, NULL, key->text) < 0)
       continue;
     strut_report_error(
         reader, key->place,
@@ -129,11 +128,17 @@ static bool read_keys(strut_reader *reader, const strut_tree *map, strut_owner o
   return fine;
 }
 
-static bool read_configuration(strut_reader *reader, const strut_tree *key,
-                               strut_configuration *configuration) {
+bool strut_read_configuration(strut_reader *reader, const strut_tree *key, void *object) {
+  strut_configuration *configuration = object;
+  const strut_scene *scene = reader->scene;
   strut_owner owner = {"configuration", key->text};
   const strut_tree *value = key->next;
-  bool fine = strut_read_name(reader, key, "configuration"), keys = false;
+  bool keys = false;
+  configuration->position = strut_reader_allocate(reader, &reader->scene->arena, scene->node_count,
+                                                  sizeof *configuration->position);
+  if (!configuration->position) return false;
+  for (size_t i = 0; i < scene->node_count; i++)
+    memcpy(configuration->position[i], scene->nodes[i].position, sizeof *configuration->position);
   if (value->kind != STRUT_TREE_MAP) {
     strut_report_error(reader, value->place,
                        "expected positions such as {n1: [10 mm, 0]} for %s, found %s",
@@ -141,59 +146,34 @@ static bool read_configuration(strut_reader *reader, const strut_tree *key,
     return false;
   }
   for (const strut_tree *k = value->first; k; k = k->next->next) keys |= is_key(reader, k);
-  if (keys) return read_keys(reader, value, owner, configuration) && fine;
+  if (keys) return read_keys(reader, value, owner, configuration);
   configuration->shaped = true; /* `{}` is the drawn shape */
-  return strut_read_node_pairs(reader, value, owner, STRUT_DIM_LENGTH, take_position) && fine;
+  return strut_read_node_pairs(reader, value, owner, STRUT_DIM_LENGTH, take_position);
 }
 
 void strut_read_configurations(strut_reader *reader) {
-  strut_scene *scene = reader->scene;
   const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_CONFIGURATIONS);
+  size_t nodes = reader->scene->node_count;
   if (!map) return;
-  if (map->count > MOST_POSITIONS / (scene->node_count + 1)) {
-    strut_report_error(reader, map->place,
-                       "%u configurations of %zu nodes are more than %d positions",
-                       (unsigned)map->count, scene->node_count, (int)MOST_POSITIONS);
+  if (map->count <= MOST_POSITIONS / (nodes + 1)) {
+    strut_read_things(reader, STRUT_THING_CONFIGURATION);
     return;
   }
-  scene->configurations =
-      strut_reader_allocate(reader, &scene->arena, map->count, sizeof *scene->configurations);
-  reader->configuration_source = strut_reader_allocate(reader, &reader->scratch, map->count,
-                                                       sizeof *reader->configuration_source);
-  if (!scene->configurations || !reader->configuration_source) return;
-  for (const strut_tree *key = strut_first_entry(reader, map); key;
-       key = strut_following_entry(reader, key)) {
-    strut_configuration *configuration = &scene->configurations[scene->configuration_count];
-    configuration->name = strut_keep_text(reader, key->text);
-    if (!configuration->position)
-      configuration->position = strut_reader_allocate(reader, &scene->arena, scene->node_count,
-                                                      sizeof *configuration->position);
-    if (!configuration->position) return;
-    for (size_t i = 0; i < scene->node_count; i++)
-      memcpy(configuration->position[i], scene->nodes[i].position, sizeof *configuration->position);
-    size_t index = strut_next_entry(reader, &scene->configuration_count);
-    strut_add_name(reader, &reader->configuration_names, key->text, index);
-    bool fine = read_configuration(reader, key, configuration);
-    reader->configuration_source[index] = (strut_source){key, key->next, !fine};
-  }
-}
-
-static const char *configuration_name(const void *context, size_t i) {
-  const strut_reader *reader = context;
-  return i < reader->scene->configuration_count ? reader->scene->configurations[i].name : NULL;
+  strut_report_error(reader, map->place,
+                     "%u configurations of %zu nodes are more than %d positions",
+                     (unsigned)map->count, nodes, (int)MOST_POSITIONS);
 }
 
 int32_t strut_find_configuration(strut_reader *reader, int key) {
   const strut_slot *slot = strut_slot_of(&reader->initial, key);
   strut_owner owner = {"the initial state", NULL};
-  size_t count = reader->scene->configuration_count;
   if (slot->state != STRUT_GIVEN) return -1;
   if (strut_slot_of(&reader->top, STRUT_KEY_SCENE_CONFIGURATIONS)->state == STRUT_BROKEN) return -1;
   strut_parameter_state *p = strut_parameter_find(reader, slot->value->text);
-  int32_t direct = strut_find_named(reader, &reader->configuration_names, NULL, slot->value->text);
+  int32_t direct = strut_find_thing(reader, STRUT_THING_CONFIGURATION, NULL, slot->value->text);
   if (!p || !p->text)
-    return strut_read_reference(reader, slot->value, slot->key->text, owner, "configuration",
-                                &reader->configuration_names, configuration_name, count);
+    return strut_read_reference(reader, slot->value, slot->key->text, owner,
+                                STRUT_THING_CONFIGURATION);
   if (direct >= 0) {
     strut_report_error(reader, slot->value->place,
                        "'%s' is both a configuration and a text parameter; rename one of them",
@@ -202,14 +182,14 @@ int32_t strut_find_configuration(strut_reader *reader, int key) {
   }
   p->used = true;
   const char *text = p->set ? p->set->text : p->value->text;
-  int32_t index = strut_find_named(reader, &reader->configuration_names, NULL, text);
+  int32_t index = strut_find_thing(reader, STRUT_THING_CONFIGURATION, NULL, text);
   strut_place place = !p->set              ? p->value->place
                       : p->set->place.line ? p->set->place
                                            : p->key->place;
   if (index < 0)
     strut_report_error(reader, place, "unknown configuration '%s' in parameter '%s'%s",
                        strut_sanitised_text(reader, text), p->name,
-                       strut_hint(reader, text, configuration_name, reader, count));
+                       strut_hint_of_things(reader, text, STRUT_THING_CONFIGURATION));
   return index;
 }
 
@@ -218,7 +198,8 @@ void strut_read_search(strut_reader *reader) {
   if (!strut_read_section(reader, STRUT_KEY_SCENE_EQUILIBRIA, STRUT_SECTION_EQUILIBRIA,
                           search_owner.kind, &reader->search))
     return;
-  strut_store_fields(reader, &reader->search, &reader->scene->arena, search, sizeof *search);
+  strut_store_fields(reader, &reader->search, search_owner, &reader->scene->arena, search,
+                     sizeof *search);
   const strut_slot *supports = strut_slot_of(&reader->search, STRUT_KEY_EQUILIBRIA_SUPPORTS);
   if (supports->state == STRUT_GIVEN &&
       !read_sets(reader, supports, search_owner, &search->supports, &search->support_count))

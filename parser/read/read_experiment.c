@@ -39,7 +39,7 @@ static void read_settle(strut_reader *reader, const strut_slot *slot) {
   strut_owner initial = {"the initial state", NULL}, owner = {"the settling", NULL};
   if (!read_switch(reader, slot, STRUT_KEY_INITIAL_SETTLE, initial, &settle->wanted)) return;
   strut_read_fields(reader, STRUT_SECTION_SETTLE, slot->value, owner, &reader->settle);
-  strut_store_fields(reader, &reader->settle, &reader->scene->arena, settle, sizeof *settle);
+  strut_store_fields(reader, &reader->settle, owner, &reader->scene->arena, settle, sizeof *settle);
 }
 
 /* Positions and velocities: of all nodes first, then of single ones. */
@@ -108,12 +108,13 @@ static const char *driver_name(const void *context, size_t i) {
 /* The signal of the actuator or load that `of` names, or the signal of that name. */
 static int32_t find_signal_of(strut_reader *reader, const strut_tree *value, bool *broken) {
   const strut_scene *scene = reader->scene;
-  int32_t a = strut_find_named(reader, &reader->actuator_names, NULL, value->text);
-  int32_t l = strut_find_named(reader, &reader->load_names, NULL, value->text);
+  int32_t a = strut_find_thing(reader, STRUT_THING_ACTUATOR, NULL, value->text);
+  int32_t l = strut_find_thing(reader, STRUT_THING_LOAD, NULL, value->text);
   int32_t s = strut_find_named(reader, &reader->signal_names, NULL, value->text);
   int32_t found[3], count = 0;
   if (a >= 0) found[count++] = scene->actuators[a].signal;
-  if (l >= 0 && (scene->loads[l].signal >= 0 || reader->load_source[l].broken || a < 0))
+  if (l >= 0 &&
+      (scene->loads[l].signal >= 0 || reader->things[STRUT_THING_LOAD].source[l].broken || a < 0))
     found[count++] = scene->loads[l].signal;
   if (s >= 0) found[count++] = reader->named[s].index;
   *broken = true;
@@ -136,7 +137,7 @@ static int32_t find_signal_of(strut_reader *reader, const strut_tree *value, boo
                          strut_sanitised_text(reader, value->text));
       return -1;
     }
-  if (found[0] < 0 && l >= 0 && a < 0 && !reader->load_source[l].broken) {
+  if (found[0] < 0 && l >= 0 && a < 0 && !reader->things[STRUT_THING_LOAD].source[l].broken) {
     strut_report_error(reader, value->place,
                        "load '%s' has no signal whose periods could be counted",
                        strut_sanitised_text(reader, value->text));
@@ -193,17 +194,17 @@ static void read_steady(strut_reader *reader, const strut_slot *slot) {
   strut_owner measurement = {"the measurement", NULL}, owner = {"the steady state", NULL};
   if (!read_switch(reader, slot, STRUT_KEY_MEASURE_STEADY, measurement, &steady->wanted)) return;
   strut_read_fields(reader, STRUT_SECTION_STEADY, slot->value, owner, &reader->steady);
-  strut_store_fields(reader, &reader->steady, &reader->scene->arena, steady, sizeof *steady);
+  strut_store_fields(reader, &reader->steady, owner, &reader->scene->arena, steady, sizeof *steady);
 }
 
 static void read_run(strut_reader *reader) {
   strut_experiment *e = reader->experiment;
-  strut_owner owner = {"the measurement", NULL};
+  strut_owner owner = {"the measurement", NULL}, run = {"the run", NULL};
   reader->measure = (strut_fields){.section = STRUT_SECTION_MEASURE};
-  if (!strut_read_section(reader, STRUT_KEY_SCENE_RUN, STRUT_SECTION_RUN, "the run", &reader->run))
+  if (!strut_read_section(reader, STRUT_KEY_SCENE_RUN, STRUT_SECTION_RUN, run.kind, &reader->run))
     return;
   read_of(reader);
-  strut_store_fields(reader, &reader->run, &reader->scene->arena, e, sizeof *e);
+  strut_store_fields(reader, &reader->run, run, &reader->scene->arena, e, sizeof *e);
   const strut_slot *measure = strut_slot_of(&reader->run, STRUT_KEY_RUN_MEASURE);
   if (measure->state == STRUT_GIVEN) {
     strut_read_fields(reader, STRUT_SECTION_MEASURE, measure->value,
@@ -211,12 +212,7 @@ static void read_run(strut_reader *reader) {
     const strut_slot *steady = strut_slot_of(&reader->measure, STRUT_KEY_MEASURE_STEADY);
     if (steady->state == STRUT_GIVEN) read_steady(reader, steady);
     read_last(reader, &reader->measure, STRUT_KEY_MEASURE_LAST, owner, &e->measure_last);
-    const strut_slot *node = strut_slot_of(&reader->measure, STRUT_KEY_MEASURE_NODE);
-    bool known = strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN;
-    if (node->state == STRUT_GIVEN && known)
-      e->measure_node = strut_read_reference(
-          reader, node->value, "node", (strut_owner){"the measurement", NULL}, "node",
-          &reader->node_names, strut_node_name, reader->scene->node_count);
+    strut_store_fields(reader, &reader->measure, owner, &reader->scene->arena, e, sizeof *e);
     strut_read_quantities(reader, strut_slot_of(&reader->measure, STRUT_KEY_MEASURE_QUANTITIES));
   }
   if (reader->measure.broken) reader->run.broken = true;
@@ -238,15 +234,16 @@ static void choose_settling_step(strut_reader *reader) {
 
 void strut_read_experiment(strut_reader *reader) {
   strut_experiment *e = reader->experiment;
+  strut_arena *arena = &reader->scene->arena;
+  strut_owner solver = {"the solver", NULL}, output = {"the output", NULL};
   read_run(reader);
-  if (strut_read_section(reader, STRUT_KEY_SCENE_SOLVER, STRUT_SECTION_SOLVER, "the solver",
+  if (strut_read_section(reader, STRUT_KEY_SCENE_SOLVER, STRUT_SECTION_SOLVER, solver.kind,
                          &reader->solver))
-    strut_store_fields(reader, &reader->solver, &reader->scene->arena, e, sizeof *e);
+    strut_store_fields(reader, &reader->solver, solver, arena, e, sizeof *e);
   choose_settling_step(reader);
-  if (!strut_read_section(reader, STRUT_KEY_SCENE_OUTPUT, STRUT_SECTION_OUTPUT, "the output",
+  if (!strut_read_section(reader, STRUT_KEY_SCENE_OUTPUT, STRUT_SECTION_OUTPUT, output.kind,
                           &reader->output))
     return;
-  strut_store_fields(reader, &reader->output, &reader->scene->arena, e, sizeof *e);
-  read_last(reader, &reader->output, STRUT_KEY_OUTPUT_LAST, (strut_owner){"the output", NULL},
-            &e->output_last);
+  strut_store_fields(reader, &reader->output, output, arena, e, sizeof *e);
+  read_last(reader, &reader->output, STRUT_KEY_OUTPUT_LAST, output, &e->output_last);
 }

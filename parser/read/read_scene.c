@@ -45,44 +45,60 @@ static void read_head(strut_reader *reader) {
                                 strut_measure_dimension(strut_key_at(key)->measure), slot->number);
     if (!fine) slot->state = STRUT_BROKEN;
   }
-  strut_store_fields(reader, &reader->top, &reader->scene->arena, reader->scene,
+  strut_store_fields(reader, &reader->top, owner, &reader->scene->arena, reader->scene,
                      sizeof *reader->scene);
 }
 
 /* Stops behind the section in which the diagnostics became full. */
 static void read_sections(strut_reader *reader, const strut_setting *settings, size_t count) {
-  static void (*const sections[])(strut_reader *) = {read_head,
-                                                     strut_read_groups,
-                                                     strut_read_nodes,
-                                                     strut_merge_nodes,
-                                                     strut_read_beams,
-                                                     strut_read_members,
-                                                     strut_add_beam_members,
-                                                     strut_read_hinges,
-                                                     strut_add_beam_hinges,
-                                                     strut_read_cells,
-                                                     strut_read_collisions,
-                                                     strut_read_rayleigh,
-                                                     strut_list_signals,
-                                                     strut_list_controllers,
-                                                     strut_list_states,
-                                                     strut_read_sensors,
-                                                     strut_read_controllers,
-                                                     strut_read_signals,
-                                                     strut_read_states,
-                                                     strut_read_drives,
-                                                     strut_read_sliders,
-                                                     strut_read_ground,
-                                                     strut_read_configurations,
-                                                     strut_read_search,
-                                                     strut_read_initial,
-                                                     strut_read_experiment};
+  static const struct {
+    void (*read)(strut_reader *); /* NULL: all things of the kind */
+    strut_thing kind;
+  } sections[] = {
+#define STEP(function) {function, STRUT_THING_COUNT}
+#define THINGS(KIND)                                                                               \
+  { NULL, STRUT_THING_##KIND }
+      STEP(read_head),
+      STEP(strut_read_groups),
+      STEP(strut_read_nodes),
+      STEP(strut_merge_nodes),
+      STEP(strut_read_beams),
+      THINGS(MEMBER),
+      STEP(strut_add_beam_members),
+      THINGS(HINGE),
+      STEP(strut_add_beam_hinges),
+      THINGS(CELL),
+      THINGS(COLLISION),
+      STEP(strut_read_rayleigh),
+      STEP(strut_list_signals),
+      STEP(strut_list_controllers),
+      STEP(strut_list_states),
+      THINGS(SENSOR),
+      STEP(strut_read_controllers),
+      STEP(strut_read_signals),
+      STEP(strut_read_states),
+      STEP(strut_read_moves),
+      THINGS(UNBALANCE),
+      THINGS(ACTUATOR),
+      THINGS(LOAD),
+      THINGS(SLIDER),
+      STEP(strut_read_ground),
+      STEP(strut_read_configurations),
+      STEP(strut_read_search),
+      STEP(strut_read_initial),
+      STEP(strut_read_experiment)
+#undef STEP
+#undef THINGS
+  };
   strut_read_parameters(reader, settings, count);
   strut_read_parts(reader);
   for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++) {
     if (strut_diagnostics_full(reader->diagnostics)) return;
     reader->scope = NULL;
-    sections[i](reader);
+    if (sections[i].read)
+      sections[i].read(reader);
+    else
+      strut_read_things(reader, sections[i].kind);
   }
   reader->scope = NULL;
   if (strut_diagnostics_full(reader->diagnostics)) return;
@@ -141,8 +157,9 @@ static void read_tree(strut_reader *reader, const strut_setting *settings, size_
   if (reader->top.broken || reader->holes) reader->ends_unknown = true;
   read_sections(reader, settings, count);
   if (reader->out_of_memory || strut_diagnostics_full(reader->diagnostics)) return;
-  strut_name_map_free(&reader->node_names); /* the check makes such tables of its own */
-  strut_name_map_free(&reader->member_names);
+  strut_name_map_free(
+      &reader->things[STRUT_THING_NODE].names); /* the check makes such tables of its own */
+  strut_name_map_free(&reader->things[STRUT_THING_MEMBER].names);
   if (strut_setup_check(reader->setup, reader->purpose, &findings) == STRUT_NO_MEMORY)
     reader->out_of_memory = true;
   strut_place_findings(reader, &findings);
@@ -151,14 +168,10 @@ static void read_tree(strut_reader *reader, const strut_setting *settings, size_
 }
 
 static void free_reader(strut_reader *reader) {
-  strut_name_map *const maps[] = {
-      &reader->node_names,      &reader->member_names,    &reader->group_names,
-      &reader->parameter_names, &reader->signal_names,    &reader->configuration_names,
-      &reader->actuator_names,  &reader->load_names,      &reader->hinge_names,
-      &reader->cell_names,      &reader->collision_names, &reader->unbalance_names,
-      &reader->ground_names,    &reader->sensor_names,    &reader->state_names,
-      &reader->slider_names};
-  for (size_t i = 0; i < sizeof maps / sizeof maps[0]; i++) strut_name_map_free(maps[i]);
+  for (int k = 0; k < STRUT_THING_COUNT; k++) strut_name_map_free(&reader->things[k].names);
+  strut_name_map_free(&reader->signal_names);
+  strut_name_map_free(&reader->group_names);
+  strut_name_map_free(&reader->parameter_names);
   strut_copies_free(reader);
   strut_release(reader->signals);
   strut_release(reader->signal_state);

@@ -32,6 +32,15 @@ bool strut_study_read_value(strut_study_reader *r, along *a, const strut_tree *v
   return false;
 }
 
+bool strut_study_store_value(strut_study_reader *r, along *a, strut_fields *fields, int key,
+                             bool first, void *object) {
+  const strut_key *k = strut_key_at(key);
+  const strut_slot *slot = strut_slot_of(fields, key);
+  if (slot->state != STRUT_GIVEN) return slot->state == STRUT_ABSENT;
+  return strut_study_read_value(r, a, slot->value, k->name, first,
+                                (double *)(void *)((char *)object + k->field.offset));
+}
+
 static bool read_list(strut_study_reader *r, along *a) {
   strut_arena *arena = &r->file->arena;
   size_t count = a->value->count, i = 0;
@@ -79,7 +88,6 @@ static bool count_steps(strut_study_reader *r, along *a, double step) {
   if (whole >= (double)STRUT_STUDY_MOST_POINTS)
     return refuse_range(r, a, "has more than 1e9 values");
   a->count = (int64_t)whole + 1;
-  c->step = step;
   bool meets = fabs(steps - whole) <= 1e-9 * fmax(1.0, whole);
   c->kind = meets && a->count > 1 ? STRUT_RANGE_EVEN : STRUT_RANGE_STEP;
   return true;
@@ -100,7 +108,6 @@ static bool count_even(strut_study_reader *r, along *a, double count, bool logar
 
 static bool read_range(strut_study_reader *r, along *a) {
   strut_fields fields;
-  double step = 0.0;
   if (a->parameter->text)
     return refuse_range(r, a, "is for numbers; the parameter is a text: give a list of texts");
   strut_read_fields(r->reader, STRUT_SECTION_RANGE, a->value, owner_of(a), &fields);
@@ -110,13 +117,9 @@ static bool read_range(strut_study_reader *r, along *a) {
   const strut_slot *count = strut_slot_of(&fields, STRUT_KEY_RANGE_COUNT);
   const strut_slot *scale = strut_slot_of(&fields, STRUT_KEY_RANGE_SCALE);
   bool logarithmic = scale->state == STRUT_GIVEN && scale->word == 1;
-  bool fine = strut_study_read_value(r, a, strut_slot_of(&fields, STRUT_KEY_RANGE_FROM)->value,
-                                     "from", true, &a->column->from);
-  fine = strut_study_read_value(r, a, strut_slot_of(&fields, STRUT_KEY_RANGE_TO)->value, "to",
-                                false, &a->column->to) &&
-         fine;
-  if (by->state == STRUT_GIVEN)
-    fine = strut_study_read_value(r, a, by->value, "step", false, &step) && fine;
+  bool fine = strut_study_store_value(r, a, &fields, STRUT_KEY_RANGE_FROM, true, a->column);
+  fine = strut_study_store_value(r, a, &fields, STRUT_KEY_RANGE_TO, false, a->column) && fine;
+  fine = strut_study_store_value(r, a, &fields, STRUT_KEY_RANGE_STEP, false, a->column) && fine;
   if (by->state != STRUT_GIVEN && count->state != STRUT_GIVEN)
     return refuse_range(r, a, "lacks 'step' or 'count'");
   if (!fine) return false;
@@ -125,7 +128,7 @@ static bool read_range(strut_study_reader *r, along *a) {
     return refuse_range(r, a,
                         "needs 'count' instead of 'step' where it is "
                         "logarithmic");
-  return count_steps(r, a, step);
+  return count_steps(r, a, a->column->step);
 }
 
 /* Names of the table's own columns, which no axis may have. */

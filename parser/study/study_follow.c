@@ -33,8 +33,8 @@ static void read_values(strut_study_reader *r, strut_fields *fields, strut_study
   const strut_slot *to = strut_slot_of(fields, STRUT_KEY_FOLLOW_TO);
   const strut_slot *at = strut_slot_of(fields, STRUT_KEY_FOLLOW_AT);
   bool fine = from->state == STRUT_GIVEN && to->state == STRUT_GIVEN &&
-              strut_study_read_value(r, a, from->value, "from", true, &f->from) &&
-              strut_study_read_value(r, a, to->value, "to", false, &f->to);
+              strut_study_store_value(r, a, fields, STRUT_KEY_FOLLOW_FROM, true, f) &&
+              strut_study_store_value(r, a, fields, STRUT_KEY_FOLLOW_TO, false, f);
   if (fine && !(f->from < f->to)) {
     strut_report_error(r->reader, to->value->place,
                        "'to' of what is followed must be above 'from'");
@@ -105,7 +105,7 @@ void strut_study_read_follow(strut_study_reader *r, strut_fields *top) {
   if (!f) return;
   strut_read_fields(r->reader, STRUT_SECTION_FOLLOW, slot->value, follow_owner, &fields);
   if (!fields.broken) strut_require(r->reader, &fields, follow_owner, slot->value->place);
-  strut_store_fields(r->reader, &fields, &r->file->arena, f, sizeof *f);
+  strut_store_fields(r->reader, &fields, follow_owner, &r->file->arena, f, sizeof *f);
   const strut_slot *accuracy = strut_slot_of(&fields, STRUT_KEY_FOLLOW_ACCURACY);
   if (accuracy->state == STRUT_GIVEN && f->accuracy > 0.1)
     strut_report_error(r->reader, accuracy->value->place,

@@ -86,7 +86,8 @@ void strut_study_read_goals(strut_study_reader *r, strut_fields *top) {
     const strut_owner owner = {"the stiffness", NULL};
     strut_read_fields(r->reader, STRUT_SECTION_STIFFNESS_AT, stiffness->value, owner, &fields);
     if (!fields.broken) strut_require(r->reader, &fields, owner, stiffness->value->place);
-    strut_store_fields(r->reader, &fields, &r->file->arena, &r->file->study, sizeof(strut_study));
+    strut_store_fields(r->reader, &fields, owner, &r->file->arena, &r->file->study,
+                       sizeof(strut_study));
   }
   if (shape->state == STRUT_GIVEN && like->state == STRUT_GIVEN)
     strut_report_error(r->reader, like->key->place,

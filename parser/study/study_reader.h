@@ -55,6 +55,10 @@ bool strut_study_begin_along(strut_study_reader *r, strut_study_along *a, strut_
 bool strut_study_read_value(strut_study_reader *r, strut_study_along *a, const strut_tree *value,
                             const char *key, bool first, double *number);
 
+/** The same of a key that is given, into the field of its row. */
+bool strut_study_store_value(strut_study_reader *r, strut_study_along *a, strut_fields *fields,
+                             int key, bool first, void *object);
+
 /** Reads a parameter along its axis: a list or a range. False where something was reported. */
 bool strut_study_read_along(strut_study_reader *r, strut_study_along *a);
 

@@ -84,9 +84,10 @@ void strut_study_read_refine(strut_study_reader *r, const strut_slot *slot) {
   strut_read_fields(r->reader, STRUT_SECTION_REFINE, slot->value, refine_owner, &fields);
   if (!fields.broken) strut_require(r->reader, &fields, refine_owner, slot->value->place);
   if (fields.broken || r->reader->failed) return; /* the axes may be incomplete */
-  strut_store_fields(r->reader, &fields, &r->file->arena, study, sizeof *study);
+  strut_store_fields(r->reader, &fields, refine_owner, &r->file->arena, study, sizeof *study);
+  int32_t depth = study->refine_depth;
+  study->refine_depth = 0;
   if (!choose_axes(r, slot, strut_slot_of(&fields, STRUT_KEY_REFINE_AXES))) return;
-  int32_t depth = (int32_t)strut_slot_of(&fields, STRUT_KEY_REFINE_DEPTH)->number[0];
   double points = 1.0;
   for (int i = 0; i < 2; i++) refine_axis(&study->axes[study->refine_axes[i]], depth);
   for (size_t i = 0; i < study->axis_count; i++) points *= (double)study->axes[i].count;

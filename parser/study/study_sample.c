@@ -59,10 +59,11 @@ static bool read_parameter(strut_study_reader *r, strut_study_along *a, strut_di
   strut_read_fields(r->reader, STRUT_SECTION_DISTRIBUTION, a->value, owner, &fields);
   if (fields.broken) return false;
   for (int k = 0; k < STRUT_DISTRIBUTION_COUNT; k++) {
-    const strut_slot *slot = &fields.slot[k];
+    const int key = STRUT_KEY_DISTRIBUTION_UNIFORM + k;
+    const strut_slot *slot = strut_slot_of(&fields, key);
     if (slot->state != STRUT_GIVEN) continue;
     kinds++;
-    d->kind = (strut_distribution_kind)k;
+    strut_store_choice(strut_key_at(key), d);
     fine = read_numbers(r, a, slot, d) && fine;
   }
   if (kinds == 0)
@@ -75,10 +76,8 @@ static bool read_parameter(strut_study_reader *r, strut_study_along *a, strut_di
 }
 
 /* Makes the values of all columns. */
-static void make_values(strut_study_reader *r, const strut_fields *fields, strut_study_axis *axis,
-                        const strut_distribution *distributions) {
-  const strut_slot *seed = &fields->slot[STRUT_KEY_SAMPLE_SEED - STRUT_KEY_SAMPLE_COUNT];
-  const strut_slot *scheme = &fields->slot[STRUT_KEY_SAMPLE_SCHEME - STRUT_KEY_SAMPLE_COUNT];
+static void make_values(strut_study_reader *r, const strut_sample_keys *keys,
+                        strut_study_axis *axis, const strut_distribution *distributions) {
   double *values[STRUT_SAMPLE_MOST_NUMBERS];
   for (size_t i = 0; i < axis->column_count; i++) {
     values[i] =
@@ -86,10 +85,8 @@ static void make_values(strut_study_reader *r, const strut_fields *fields, strut
     if (!values[i]) return;
     axis->columns[i].number = values[i];
   }
-  strut_sample_scheme how =
-      scheme->state == STRUT_GIVEN ? (strut_sample_scheme)scheme->word : STRUT_SAMPLE_SOBOL;
-  uint32_t number = seed->state == STRUT_GIVEN ? (uint32_t)seed->number[0] : 1;
-  if (!strut_sample_make(how, number, axis->count, axis->column_count, distributions, values))
+  if (!strut_sample_make((strut_sample_scheme)keys->scheme, (uint32_t)keys->seed, axis->count,
+                         axis->column_count, distributions, values))
     r->reader->out_of_memory = true;
 }
 
@@ -124,14 +121,15 @@ bool strut_study_read_distributions(strut_study_reader *r, const strut_tree *ove
 void strut_study_read_sample(strut_study_reader *r, const strut_tree *value,
                              strut_study_axis *axis) {
   strut_fields fields;
+  strut_sample_keys keys = {.count = 1, .scheme = STRUT_SAMPLE_SOBOL, .seed = 1};
   strut_distribution distributions[STRUT_SAMPLE_MOST_NUMBERS] = {0};
   strut_read_fields(r->reader, STRUT_SECTION_SAMPLE, value, sample_owner, &fields);
   if (!fields.broken) strut_require(r->reader, &fields, sample_owner, value->place);
   const strut_slot *over = strut_slot_of(&fields, STRUT_KEY_SAMPLE_OVER);
-  const strut_slot *count = strut_slot_of(&fields, STRUT_KEY_SAMPLE_COUNT);
   if (over->state != STRUT_GIVEN) return;
-  axis->count = count->state == STRUT_GIVEN ? (int64_t)count->number[0] : 1;
+  strut_store_fields(r->reader, &fields, sample_owner, &r->file->arena, &keys, sizeof keys);
+  axis->count = keys.count;
   bool fine = strut_study_read_distributions(r, over->value, sample_owner,
                                              STRUT_SAMPLE_MOST_NUMBERS, axis, distributions);
-  if (fine && !fields.broken) make_values(r, &fields, axis, distributions);
+  if (fine && !fields.broken) make_values(r, &keys, axis, distributions);
 }

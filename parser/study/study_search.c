@@ -64,20 +64,14 @@ static bool read_range(strut_study_reader *r, strut_study_along *a, strut_search
   strut_read_fields(r->reader, STRUT_SECTION_VARIABLE, a->value, owner, &fields);
   if (!fields.broken) strut_require(r->reader, &fields, owner, a->value->place);
   if (fields.broken) return false;
-  strut_store_fields(r->reader, &fields, &r->file->arena, v, sizeof *v);
-  const strut_slot *scale = strut_slot_of(&fields, STRUT_KEY_VARIABLE_SCALE);
+  strut_store_fields(r->reader, &fields, owner, &r->file->arena, v, sizeof *v);
   const strut_slot *start = strut_slot_of(&fields, STRUT_KEY_VARIABLE_START);
-  v->logarithmic = scale->state == STRUT_GIVEN && scale->word == 1;
-  bool fine = strut_study_read_value(r, a, strut_slot_of(&fields, STRUT_KEY_VARIABLE_FROM)->value,
-                                     "from", true, &v->from);
-  fine = strut_study_read_value(r, a, strut_slot_of(&fields, STRUT_KEY_VARIABLE_TO)->value, "to",
-                                false, &v->to) &&
-         fine;
+  bool fine = strut_study_store_value(r, a, &fields, STRUT_KEY_VARIABLE_FROM, true, v);
+  fine = strut_study_store_value(r, a, &fields, STRUT_KEY_VARIABLE_TO, false, v) && fine;
   v->start = v->from + 0.5 * (v->to - v->from);
   if (fine && v->logarithmic && v->from * v->to > 0.0)
     v->start = copysign(sqrt(v->from) * sqrt(v->to), v->from);
-  if (start->state == STRUT_GIVEN)
-    fine = strut_study_read_value(r, a, start->value, "start", false, &v->start) && fine;
+  fine = strut_study_store_value(r, a, &fields, STRUT_KEY_VARIABLE_START, false, v) && fine;
   if (fine && v->logarithmic && v->from < 0.0)
     return refuse(r, a, "cannot be logarithmic below 0: search over its negative");
   if (fine && v->integer && start->state != STRUT_GIVEN) v->start = round(v->start);
@@ -272,7 +266,7 @@ void strut_study_read_search(strut_study_reader *r, const strut_slot *slot) {
   strut_read_fields(r->reader, STRUT_SECTION_SEARCH, slot->value, search_owner, &fields);
   if (!fields.broken) strut_require(r->reader, &fields, search_owner, slot->value->place);
   *search = (strut_study_search){.starts = 1, .evaluations = 200, .seed = 1};
-  strut_store_fields(r->reader, &fields, &r->file->arena, search, sizeof *search);
+  strut_store_fields(r->reader, &fields, search_owner, &r->file->arena, search, sizeof *search);
   read_goal(r, &fields, slot, search);
   read_conditions(r, strut_slot_of(&fields, STRUT_KEY_SEARCH_SUBJECT_TO), search);
   refuse_others(r, slot);

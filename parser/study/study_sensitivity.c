@@ -9,10 +9,6 @@
 
 static const strut_owner sensitivity_owner = {"the sensitivity analysis", NULL};
 
-static double number_or(const strut_slot *slot, double usual) {
-  return slot->state == STRUT_GIVEN ? slot->number[0] : usual;
-}
-
 static void read_of(strut_study_reader *r, const strut_slot *slot, strut_study_sensitivity *s) {
   s->of = strut_reader_allocate(r->reader, &r->file->arena, slot->value->count + 1, sizeof *s->of);
   if (!s->of) return;
@@ -106,15 +102,10 @@ void strut_study_read_sensitivity(strut_study_reader *r, strut_fields *top) {
   if (!fields.broken) strut_require(r->reader, &fields, sensitivity_owner, slot->value->place);
   const strut_slot *of = strut_slot_of(&fields, STRUT_KEY_SENSITIVITY_OF);
   const strut_slot *over = strut_slot_of(&fields, STRUT_KEY_SENSITIVITY_OVER);
-  const strut_slot *derivatives = strut_slot_of(&fields, STRUT_KEY_SENSITIVITY_DERIVATIVES);
-  const strut_slot *scheme = strut_slot_of(&fields, STRUT_KEY_SENSITIVITY_SCHEME);
   if (of->state == STRUT_GIVEN) read_of(r, of, s);
   if (over->state != STRUT_GIVEN || !study->axes || !r->file->columns) return;
-  s->samples = (int64_t)number_or(strut_slot_of(&fields, STRUT_KEY_SENSITIVITY_SAMPLES), 256.0);
-  s->seed = (uint32_t)number_or(strut_slot_of(&fields, STRUT_KEY_SENSITIVITY_SEED), 1.0);
-  s->scheme = scheme->state == STRUT_GIVEN ? (uint32_t)scheme->word : STRUT_SAMPLE_SOBOL;
-  s->threshold = number_or(strut_slot_of(&fields, STRUT_KEY_SENSITIVITY_THRESHOLD), 0.0);
-  s->derivatives = derivatives->state != STRUT_GIVEN || derivatives->word == 1;
+  s->samples = 256, s->seed = 1, s->derivatives = true;
+  strut_store_fields(r->reader, &fields, sensitivity_owner, &r->file->arena, s, sizeof *s);
   if (s->samples == 0 && !s->derivatives)
     strut_report_error(r->reader, slot->key->place,
                        "the sensitivity analysis has neither samples nor derivatives");

@@ -120,32 +120,11 @@ static void put_signal(strut_writer *writer, int32_t index) {
 
 static void put_sensor_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
                                const void *object) {
-  const strut_scene *scene = writer->scene;
   const strut_sensor *sensor = object;
-  if (key != STRUT_KEY_SENSOR_LENGTH + (int)sensor->kind) return;
-  bool member = sensor->kind == STRUT_SENSOR_LENGTH || sensor->kind == STRUT_SENSOR_FORCE;
+  bool directed = sensor->kind == STRUT_SENSOR_POSITION || sensor->kind == STRUT_SENSOR_VELOCITY;
+  if (key != STRUT_KEY_SENSOR_ALONG || !directed) return;
   strut_put_key_name(writer, mapping, key);
-  strut_put_name(writer, member                               ? scene->members[sensor->item].name
-                         : sensor->kind == STRUT_SENSOR_ANGLE ? scene->hinges[sensor->item].name
-                                                              : scene->nodes[sensor->item].name);
-}
-
-static void put_sensors(strut_writer *writer) {
-  const strut_scene *scene = writer->scene;
-  if (scene->sensor_count) strut_put(writer, "sensors:\n");
-  for (size_t i = 0; i < scene->sensor_count; i++) {
-    const strut_sensor *sensor = &scene->sensors[i];
-    strut_mapping mapping = STRUT_MAPPING_INLINE;
-    strut_sensor usual = {.energy = UINT32_MAX, .along = UINT32_MAX};
-    if (sensor->kind != STRUT_SENSOR_ENERGY) usual.energy = sensor->energy;
-    if (sensor->kind != STRUT_SENSOR_POSITION && sensor->kind != STRUT_SENSOR_VELOCITY)
-      usual.along = sensor->along;
-    strut_put(writer, "  ");
-    strut_put_name(writer, sensor->name);
-    strut_put(writer, ": {");
-    strut_put_fields(writer, &mapping, STRUT_SECTION_SENSOR, sensor, &usual, put_sensor_by_hand);
-    strut_put(writer, "}\n");
-  }
+  strut_put(writer, sensor->along ? "y" : "x");
 }
 
 static void put_states(strut_writer *writer) {
@@ -179,28 +158,12 @@ static void put_named_signals(strut_writer *writer) {
   }
 }
 
-static void put_relay_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
-                              const void *object) {
-  const strut_relay *r = object;
-  const double upper = r->upper, lower = r->lower;
-  if (key == STRUT_KEY_RELAY_ON_VALUE || key == STRUT_KEY_RELAY_OFF_VALUE) {
-    strut_put_key_name(writer, mapping, key);
-    strut_put_number(writer, key == STRUT_KEY_RELAY_ON_VALUE ? r->on : r->off);
-  } else if (key == (r->on_above ? STRUT_KEY_RELAY_ON_ABOVE : STRUT_KEY_RELAY_OFF_ABOVE)) {
-    strut_put_key_name(writer, mapping, key);
-    strut_put_number(writer, upper);
-  } else if (key == (r->on_above ? STRUT_KEY_RELAY_OFF_BELOW : STRUT_KEY_RELAY_ON_BELOW)) {
-    strut_put_key_name(writer, mapping, key);
-    strut_put_number(writer, lower);
-  }
-}
-
 /* PID controllers have become signals and states. */
 static void put_relays(strut_writer *writer) {
   bool any = false;
   for (size_t i = 0; i < writer->scene->signal_count; i++) {
     const strut_signal *s = &writer->scene->signals[i];
-    const strut_relay usual = {0};
+    const strut_relay usual = {.off = (double)NAN}; /* it is always written */
     strut_mapping mapping = STRUT_MAPPING_INLINE;
     if (s->kind != STRUT_RELAY) continue;
     strut_put(writer, any ? "  " : "controllers:\n  ");
@@ -211,122 +174,52 @@ static void put_relays(strut_writer *writer) {
     strut_put(writer, "relay");
     strut_put_key_name(writer, &mapping, STRUT_KEY_RELAY_OF);
     strut_put_program(writer, s->program.instruction, s->program.length);
-    strut_put_fields(writer, &mapping, STRUT_SECTION_RELAY, &s->relay, &usual, put_relay_by_hand);
+    strut_put_fields(writer, &mapping, STRUT_SECTION_RELAY, &s->relay, &usual, NULL);
     put_modifier(writer, &mapping, STRUT_KEY_RELAY_EVERY, s->every);
     strut_put(writer, "}\n");
   }
 }
 
-static void put_actuators(strut_writer *writer) {
-  const strut_scene *scene = writer->scene;
-  if (scene->actuator_count) strut_put(writer, "actuators:\n");
-  for (size_t i = 0; i < scene->actuator_count; i++) {
-    strut_put(writer, "  ");
-    strut_put_name(writer, scene->actuators[i].name);
-    const strut_actuator *a = &scene->actuators[i];
-    strut_put(writer, a->member >= 0 ? ": {member: " : a->hinge >= 0 ? ": {hinge: " : ": {cell: ");
-    strut_put_name(writer, a->member >= 0  ? scene->members[a->member].name
-                           : a->hinge >= 0 ? scene->hinges[a->hinge].name
-                                           : scene->cells[a->cell].name);
-    strut_put(writer, !a->force ? ", signal: " : a->member >= 0 ? ", force: " : ", moment: ");
-    strut_put_signal_reference(writer, scene->actuators[i].signal);
-    strut_put(writer, "}\n");
-  }
-}
-
-static void put_load_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
-                             const void *object) {
-  const strut_load *load = object;
-  if (key == STRUT_KEY_LOAD_NODE) {
-    strut_put_key_name(writer, mapping, key);
-    strut_put_name(writer, writer->scene->nodes[load->node].name);
-  } else if (load->signal >= 0) {
-    strut_put_key_name(writer, mapping, key);
-    strut_put_signal_reference(writer, load->signal);
-  }
+/* What a signal adds to, or its force or moment. */
+static void put_actuator_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
+                                 const void *object) {
+  const strut_actuator *a = object;
+  int own = !a->force        ? STRUT_KEY_ACTUATOR_SIGNAL
+            : a->member >= 0 ? STRUT_KEY_ACTUATOR_FORCE
+                             : STRUT_KEY_ACTUATOR_MOMENT;
+  if (key != own) return;
+  strut_put_key_name(writer, mapping, key);
+  strut_put_signal_reference(writer, a->signal);
 }
 
 static void put_unbalance_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
                                   const void *object) {
   const strut_unbalance *u = object;
-  if (key == STRUT_KEY_UNBALANCE_NODE) {
-    strut_put_key_name(writer, mapping, key);
-    strut_put_name(writer, writer->scene->nodes[u->node].name);
-  } else if (key == STRUT_KEY_UNBALANCE_SIGNAL && u->signal >= 0) {
-    strut_put_key_name(writer, mapping, key);
-    strut_put_signal_reference(writer, u->signal);
-  } else if (key == STRUT_KEY_UNBALANCE_SPEED && u->signal < 0) {
-    strut_put_key_name(writer, mapping, key);
-    strut_put_number(writer, u->speed);
-  }
-}
-
-static void put_unbalances(strut_writer *writer) {
-  const strut_scene *scene = writer->scene;
-  const strut_unbalance usual = {0};
-  if (scene->unbalance_count) strut_put(writer, "unbalances:\n");
-  for (size_t i = 0; i < scene->unbalance_count; i++) {
-    strut_mapping mapping = STRUT_MAPPING_INLINE;
-    strut_put(writer, "  ");
-    strut_put_name(writer, scene->unbalances[i].name);
-    strut_put(writer, ": {");
-    strut_put_fields(writer, &mapping, STRUT_SECTION_UNBALANCE, &scene->unbalances[i], &usual,
-                     put_unbalance_by_hand);
-    strut_put(writer, "}\n");
-  }
+  if (key != STRUT_KEY_UNBALANCE_SPEED || u->signal >= 0) return;
+  strut_put_key_name(writer, mapping, key);
+  strut_put_number(writer, u->speed);
 }
 
 static void put_slider_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
                                const void *object) {
   const strut_sliding_mass *s = object;
-  int motion = s->travel ? STRUT_KEY_SLIDER_TRAVEL : STRUT_KEY_SLIDER_MOVES;
-  if (key == STRUT_KEY_SLIDER_MEMBER) {
-    strut_put_key_name(writer, mapping, key);
-    strut_put_name(writer, writer->scene->members[s->member].name);
-  } else if (key == STRUT_KEY_SLIDER_POSITION) {
-    strut_put_key_name(writer, mapping, key);
-    strut_put_number(writer, s->share);
-  } else if (key == motion && s->signal >= 0) {
-    strut_put_key_name(writer, mapping, key);
-    strut_put_signal_reference(writer, s->signal);
-  }
-}
-
-static void put_sliders(strut_writer *writer) {
-  const strut_scene *scene = writer->scene;
-  const strut_sliding_mass usual = {0};
-  if (scene->sliding_count) strut_put(writer, "sliders:\n");
-  for (size_t i = 0; i < scene->sliding_count; i++) {
-    strut_mapping mapping = STRUT_MAPPING_INLINE;
-    strut_put(writer, "  ");
-    strut_put_name(writer, scene->sliding_masses[i].name);
-    strut_put(writer, ": {");
-    strut_put_fields(writer, &mapping, STRUT_SECTION_SLIDER, &scene->sliding_masses[i], &usual,
-                     put_slider_by_hand);
-    strut_put(writer, "}\n");
-  }
+  if (key != STRUT_KEY_SLIDER_MEMBER) return;
+  strut_put_key_name(writer, mapping, key);
+  strut_put_name(writer, writer->scene->members[s->member].name);
 }
 
 void strut_put_drives(strut_writer *writer) {
-  const strut_scene *scene = writer->scene;
-  const strut_load usual = {0};
-  put_sensors(writer);
+  const strut_sliding_mass placed = {.share = (double)NAN}; /* the position is always written */
+  strut_put_things(writer, STRUT_THING_SENSOR, STRUT_SECTION_SENSOR, NULL, put_sensor_by_hand);
   put_states(writer);
   put_named_signals(writer);
   put_relays(writer);
-  put_actuators(writer);
-  put_unbalances(writer);
-  put_sliders(writer);
-  if (scene->load_count) strut_put(writer, "loads:\n");
-  for (size_t i = 0; i < scene->load_count; i++) {
-    strut_mapping mapping = STRUT_MAPPING_INLINE;
-    strut_put(writer, "  ");
-    strut_put_name(writer, scene->loads[i].name);
-    strut_put(writer, ": {");
-    strut_put_fields(writer, &mapping, STRUT_SECTION_LOAD, &scene->loads[i], &usual,
-                     put_load_by_hand);
-    strut_put(writer, "}\n");
-  }
+  strut_put_things(writer, STRUT_THING_ACTUATOR, STRUT_SECTION_ACTUATOR, NULL,
+                   put_actuator_by_hand);
+  strut_put_things(writer, STRUT_THING_UNBALANCE, STRUT_SECTION_UNBALANCE, NULL,
+                   put_unbalance_by_hand);
+  strut_put_things(writer, STRUT_THING_SLIDER, STRUT_SECTION_SLIDER, &placed, put_slider_by_hand);
+  strut_put_things(writer, STRUT_THING_LOAD, STRUT_SECTION_LOAD, NULL, NULL);
 }
 
 /* Would `of: name` refer to this signal? */
@@ -373,9 +266,6 @@ static void put_measure_by_hand(strut_writer *writer, strut_mapping *mapping, in
     strut_put_fields(writer, &steady, STRUT_SECTION_STEADY, &e->steady,
                      &writer->usual.experiment.steady, NULL);
     strut_put(writer, "}");
-  } else if (key == STRUT_KEY_MEASURE_NODE && e->measure_node >= 0) {
-    strut_put_key_name(writer, mapping, key);
-    strut_put_name(writer, writer->scene->nodes[e->measure_node].name);
   } else if (key == STRUT_KEY_MEASURE_QUANTITIES) {
     strut_put_quantities(writer, mapping);
   }

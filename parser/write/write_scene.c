@@ -104,22 +104,17 @@ static void put_nodes(strut_writer *writer) {
   }
 }
 
+/* The list of a law that has one. */
 static void put_law_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
                             const void *object) {
   const strut_law *law = object;
-  int parameter = 0;
-  while (parameter < STRUT_LAW_PARAMETER_COUNT &&
-         strcmp(strut_law_key(parameter), strut_key_at(key)->name) != 0)
-    parameter++;
-  if (parameter == STRUT_LAW_PARAMETER_COUNT || !strut_law_allows(law->kind, parameter)) return;
+  bool points = key == STRUT_KEY_LAW_POINTS;
+  int list = points ? STRUT_LAW_PARAMETER_POINTS : STRUT_LAW_PARAMETER_COEFFICIENTS;
+  if (!strut_law_allows(law->kind, list)) return;
   strut_put_key_name(writer, mapping, key);
-  if (parameter < STRUT_LAW_NUMBER_COUNT) {
-    strut_put_number(writer, strut_law_value(law, parameter));
-    return;
-  }
   for (size_t i = 0; i < law->count; i++) {
     strut_put(writer, i ? ", " : "[");
-    if (key == STRUT_KEY_LAW_POINTS)
+    if (points)
       strut_put_pair(writer, (const double[2]){law->x[i], law->force[i]});
     else
       strut_put_number(writer, law->force[i]);
@@ -127,90 +122,45 @@ static void put_law_by_hand(strut_writer *writer, strut_mapping *mapping, int ke
   strut_put(writer, "]");
 }
 
-static void put_law(strut_writer *writer, strut_mapping *mapping, int key, const strut_law *law) {
+void strut_put_law(strut_writer *writer, const strut_law *law) {
   strut_law usual = {.kind = STRUT_LAW_LINEAR};
   for (int i = 0; i < STRUT_LAW_NUMBER_COUNT; i++) /* what a law needs is written, zero or not */
     if (strut_law_needs(law->kind, i)) *strut_law_number(&usual, i) = (double)NAN;
   strut_mapping inner = STRUT_MAPPING_INLINE;
-  if (law->kind == STRUT_LAW_LINEAR && law->carries == STRUT_CARRIES_BOTH) return;
-  strut_put_key_name(writer, mapping, key);
   strut_put(writer, "{");
   strut_put_fields(writer, &inner, STRUT_SECTION_LAW, law, &usual, put_law_by_hand);
   strut_put(writer, "}");
 }
 
-/* The nodes, the law, and the rest length in the way in which it was given. */
+/* The nodes; groups have been applied. */
 static void put_member_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
                                const void *object) {
-  const strut_node *nodes = writer->scene->nodes;
   const strut_member *m = object;
-  if (key == STRUT_KEY_MEMBER_NODES) {
-    strut_put_key_name(writer, mapping, key);
-    for (size_t k = 0; k < m->guide_count + 2; k++) {
-      strut_put(writer, k ? ", " : "[");
-      strut_put_name(writer, nodes[strut_member_node(m, k)].name);
-    }
-    strut_put(writer, "]");
-  } else if (key == STRUT_KEY_MEMBER_LAW) {
-    put_law(writer, mapping, key, &m->law);
-  } else if (key == STRUT_KEY_MEMBER_MAXWELL) {
-    const strut_maxwell none = {0};
-    strut_mapping inner = STRUT_MAPPING_INLINE;
-    if (m->maxwell.stiffness == 0.0) return;
-    strut_put_key_name(writer, mapping, key);
-    strut_put(writer, "{");
-    strut_put_fields(writer, &inner, STRUT_SECTION_MAXWELL, &m->maxwell, &none, NULL);
-    strut_put(writer, "}");
-  } else if (key == strut_rest_key(m->rest_kind)) {
-    strut_put_key_name(writer, mapping, key);
-    strut_put_number(writer, m->rest_value);
-  }
-}
-
-static void put_members(strut_writer *writer) {
-  const strut_scene *scene = writer->scene;
-  const strut_member usual = strut_member_default();
-  if (scene->member_count) strut_put(writer, "members:\n");
-  for (size_t i = 0; i < scene->member_count; i++) {
-    strut_mapping mapping = STRUT_MAPPING_INLINE;
-    strut_put(writer, "  ");
-    strut_put_name(writer, scene->members[i].name);
-    strut_put(writer, ": {");
-    strut_put_fields(writer, &mapping, STRUT_SECTION_MEMBER, &scene->members[i], &usual,
-                     put_member_by_hand);
-    strut_put(writer, "}\n");
-  }
-}
-
-static void put_hinge_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
-                              const void *object) {
-  const strut_hinge *h = object;
-  if (key == STRUT_KEY_HINGE_LAW) {
-    put_law(writer, mapping, key, &h->law);
-    return;
-  }
-  if (key != STRUT_KEY_HINGE_NODES) return; /* groups have been applied */
+  if (key != STRUT_KEY_MEMBER_NODES) return;
   strut_put_key_name(writer, mapping, key);
-  for (int k = 0; k < 3; k++) {
+  for (size_t k = 0; k < m->guide_count + 2; k++) {
     strut_put(writer, k ? ", " : "[");
-    strut_put_name(writer, writer->scene->nodes[h->node[k]].name);
+    strut_put_name(writer, writer->scene->nodes[strut_member_node(m, k)].name);
   }
   strut_put(writer, "]");
 }
 
-static void put_hinges(strut_writer *writer) {
-  const strut_scene *scene = writer->scene;
-  const strut_hinge usual = strut_hinge_default();
-  if (scene->hinge_count) strut_put(writer, "hinges:\n");
-  for (size_t i = 0; i < scene->hinge_count; i++) {
-    strut_mapping mapping = STRUT_MAPPING_INLINE;
-    strut_put(writer, "  ");
-    strut_put_name(writer, scene->hinges[i].name);
-    strut_put(writer, ": {");
-    strut_put_fields(writer, &mapping, STRUT_SECTION_HINGE, &scene->hinges[i], &usual,
-                     put_hinge_by_hand);
-    strut_put(writer, "}\n");
-  }
+static void put_gas_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
+                            const void *object) {
+  const strut_cell *cell = object;
+  strut_put_key_name(writer, mapping, key);
+  strut_put(writer, cell->law == STRUT_LAW_ISENTROPIC ? "isentropic" : "isothermal");
+}
+
+static void put_cell_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
+                             const void *object) {
+  const strut_cell *cell = object, usual = strut_cell_default();
+  strut_mapping inner = STRUT_MAPPING_INLINE;
+  if (key != STRUT_KEY_CELL_GAS || cell->law == STRUT_LAW_PRESSURE) return;
+  strut_put_key_name(writer, mapping, key);
+  strut_put(writer, "{");
+  strut_put_fields(writer, &inner, STRUT_SECTION_GAS, cell, &usual, put_gas_by_hand);
+  strut_put(writer, "}");
 }
 
 static void put_rayleigh(strut_writer *writer) {
@@ -222,29 +172,27 @@ static void put_rayleigh(strut_writer *writer) {
   strut_put(writer, "}\n");
 }
 
-static const strut_friction no_friction;
-
-static bool frictions_differ(const strut_friction *a, const strut_friction *b) {
-  return strut_fields_differ(STRUT_SECTION_FRICTION, a, b) || a->directional != b->directional ||
-         (a->directional && (a->mu_static_backward != b->mu_static_backward ||
-                             a->mu_kinetic_backward != b->mu_kinetic_backward));
+/* With these a friction is compared: of one with a direction, all its coefficients are written. */
+static strut_friction usual_friction(const strut_friction *f) {
+  strut_friction usual = {STRUT_FRICTION_NONE};
+  if (f->directional) usual.mu_static_backward = usual.mu_kinetic_backward = (double)NAN;
+  return usual;
 }
 
-static bool has_friction(const strut_friction *f) { return frictions_differ(f, &no_friction); }
+static bool frictions_differ(const strut_friction *a, const strut_friction *b) {
+  return strut_fields_differ(STRUT_SECTION_FRICTION, a, b) || a->directional != b->directional;
+}
 
-static void put_friction_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
-                                 const void *object) {
-  const strut_friction *f = object;
-  bool backward = key == STRUT_KEY_FRICTION_MU_BACKWARD;
-  if (!f->directional || (!backward && key != STRUT_KEY_FRICTION_MU_BACKWARD_STATIC)) return;
-  strut_put_key_name(writer, mapping, key);
-  strut_put_number(writer, backward ? f->mu_kinetic_backward : f->mu_static_backward);
+static bool has_friction(const strut_friction *f) {
+  const strut_friction none = {STRUT_FRICTION_NONE};
+  return frictions_differ(f, &none);
 }
 
 static void put_friction(strut_writer *writer, const strut_friction *f) {
   strut_mapping mapping = STRUT_MAPPING_INLINE;
+  const strut_friction usual = usual_friction(f);
   strut_put(writer, "{");
-  strut_put_fields(writer, &mapping, STRUT_SECTION_FRICTION, f, &no_friction, put_friction_by_hand);
+  strut_put_fields(writer, &mapping, STRUT_SECTION_FRICTION, f, &usual, NULL);
   strut_put(writer, "}");
 }
 
@@ -318,62 +266,9 @@ static void put_ground_nodes(strut_writer *writer) {
   if (!every) strut_put(writer, "]");
 }
 
-static void put_profile(strut_writer *writer, const strut_ground *g) {
-  for (size_t k = 0; k < g->point_count; k++) {
-    strut_put(writer, k ? ", " : "[");
-    strut_put_pair(writer, g->points[k]);
-  }
-  strut_put(writer, "]");
-}
-
-static void put_motion(strut_writer *writer, const strut_ground *g) {
-  strut_mapping mapping = STRUT_MAPPING_INLINE;
-  strut_put(writer, "{");
-  for (int c = 0; c < 2; c++) {
-    if (!g->moves[c]) continue;
-    strut_put_key_name(writer, &mapping, c ? STRUT_KEY_MOTION_IN_Y : STRUT_KEY_MOTION_IN_X);
-    strut_put_signal_reference(writer, g->motion[c]);
-  }
-  strut_put(writer, "}");
-}
-
-/* Keys of a ground's shape and motion; true if `key` is one of them. */
-static bool put_ground_shape(strut_writer *writer, strut_mapping *mapping, int key,
-                             const strut_ground *g) {
-  strut_mapping inner = STRUT_MAPPING_INLINE;
-  const strut_ground usual = {.radius = 0.0};
-  switch (key) {
-    case STRUT_KEY_GROUND_NORMAL: return true; /* as the slope */
-    case STRUT_KEY_GROUND_THROUGH:
-      if (!g->placed) return true;
-      strut_put_key_name(writer, mapping, key);
-      strut_put_pair(writer, g->through);
-      return true;
-    case STRUT_KEY_GROUND_PROFILE:
-      if (g->shape != STRUT_GROUND_PROFILE) return true;
-      strut_put_key_name(writer, mapping, key);
-      put_profile(writer, g);
-      return true;
-    case STRUT_KEY_GROUND_CIRCLE:
-      if (g->shape != STRUT_GROUND_CIRCLE) return true;
-      strut_put_key_name(writer, mapping, key);
-      strut_put(writer, "{");
-      strut_put_fields(writer, &inner, STRUT_SECTION_CIRCLE, g, &usual, NULL);
-      strut_put(writer, "}");
-      return true;
-    case STRUT_KEY_GROUND_MOTION:
-      if (!g->moves[0] && !g->moves[1]) return true;
-      strut_put_key_name(writer, mapping, key);
-      put_motion(writer, g);
-      return true;
-    default: return false;
-  }
-}
-
 static void put_ground_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
                                const void *object) {
   const strut_ground_section *section = object;
-  if (put_ground_shape(writer, mapping, key, &section->ground)) return;
   if (key == STRUT_KEY_GROUND_FRICTION) {
     const strut_friction *friction = &section->contact.friction;
     if (!friction_is_shared(writer) || !has_friction(friction)) return;
@@ -381,7 +276,7 @@ static void put_ground_by_hand(strut_writer *writer, strut_mapping *mapping, int
     put_friction(writer, friction);
   } else if (key == STRUT_KEY_GROUND_CONTACTS) {
     put_contacts(writer, mapping);
-  } else {
+  } else if (key == STRUT_KEY_GROUND_NODES) { /* a normal is written as the slope */
     strut_put_key_name(writer, mapping, key);
     put_ground_nodes(writer);
   }
@@ -436,10 +331,10 @@ char *strut_setup_write(const strut_setup *setup) {
   strut_c_locale locale = strut_c_locale_enter();
   put_head(&writer);
   put_nodes(&writer);
-  put_members(&writer);
-  put_hinges(&writer);
-  strut_put_cells(&writer);
-  strut_put_collisions(&writer);
+  strut_put_things(&writer, STRUT_THING_MEMBER, STRUT_SECTION_MEMBER, NULL, put_member_by_hand);
+  strut_put_things(&writer, STRUT_THING_HINGE, STRUT_SECTION_HINGE, NULL, NULL);
+  strut_put_things(&writer, STRUT_THING_CELL, STRUT_SECTION_CELL, NULL, put_cell_by_hand);
+  strut_put_things(&writer, STRUT_THING_COLLISION, STRUT_SECTION_COLLISION, NULL, NULL);
   put_rayleigh(&writer);
   put_ground(&writer);
   strut_put_drives(&writer);
