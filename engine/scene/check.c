@@ -76,15 +76,17 @@ bool strut_check_fields(strut_checker *checker, const strut_checked *whose,
   bool valid = true;
   for (size_t i = 0; i < count; i++) {
     const strut_field *field = &rows[i].field;
-    double value, other = 0.0;
-    if (field->role != STRUT_FIELD_VALUE || field->type != STRUT_FIELD_DOUBLE) continue;
-    memcpy(&value, (const char *)object + field->offset, sizeof value);
-    if (usual) memcpy(&other, (const char *)usual + field->offset, sizeof other);
+    if (field->type != STRUT_FIELD_DOUBLE || field->role != STRUT_FIELD_VALUE) continue;
+    const char *at = (const char *)object + field->offset;
     strut_key_range range = rows[i].limits.range;
-    bool may_lack = usual && rows[i].need == STRUT_OPTIONAL;
-    if (may_lack && memcmp(&value, &other, sizeof value) == 0) continue;
-    if (may_lack && other == 0.0 && range == STRUT_RANGE_ABOVE_ZERO)
-      range = STRUT_RANGE_NOT_NEGATIVE; /* 0: not given */
+    double value;
+    if (usual && rows[i].need == STRUT_OPTIONAL) {
+      const char *other = (const char *)usual + field->offset;
+      if (memcmp(at, other, sizeof value) == 0) continue; /* not given */
+      memcpy(&value, other, sizeof value);
+      if (value == 0.0 && range == STRUT_RANGE_ABOVE_ZERO) range = STRUT_RANGE_NOT_NEGATIVE;
+    }
+    memcpy(&value, at, sizeof value);
     if (is_chosen(field, object))
       valid = check_range(checker, whose, rows[i].name, value, range) && valid;
   }

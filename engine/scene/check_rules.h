@@ -24,6 +24,11 @@ void strut_report_finding(strut_checker *checker, strut_subject subject, size_t 
                           const char *key, const char *format, ...)
     __attribute__((format(printf, 5, 6)));
 
+/** Is it the index of one of so many things? */
+static inline bool strut_exists(int32_t index, size_t count) {
+  return index >= 0 && (size_t)index < count;
+}
+
 /** Formats a name for messages: "member 'm1'", or "member number 3" without one. */
 const char *strut_format_name(char buffer[200], const char *kind, const char *name, size_t index);
 
@@ -52,20 +57,17 @@ bool strut_is_pulled(const strut_scene *scene, int32_t member, int32_t hinge);
 /** The rules, one function for each kind of thing. */
 void strut_check_names(strut_checker *checker);
 void strut_check_nodes(strut_checker *checker);
-/** check_elements.c: a valid law of member `index`? Findings name its key. */
+/** Is it a valid law of member `index`? Findings name its key. */
 bool strut_check_member_law(strut_checker *checker, size_t index, const char *owner);
 void strut_check_hinges(strut_checker *checker);
-/** check_cells.c */
 void strut_check_cells(strut_checker *checker);
-/** check_collisions.c */
 void strut_check_collisions(strut_checker *checker);
 void strut_warn_of_overlaps(strut_checker *checker);
-/** check_sliding_masses.c; after the signals. */
+/** After the signals. */
 void strut_check_sliding_masses(strut_checker *checker);
 void strut_check_members(strut_checker *checker);
 void strut_check_use(strut_checker *checker);
 void strut_check_ground(strut_checker *checker);
-/** check_feedback.c */
 void strut_check_sensors(strut_checker *checker);
 /** Is the Maxwell branch of member `index` valid? */
 void strut_check_maxwell(strut_checker *checker, size_t index, const char *owner);

@@ -8,30 +8,13 @@
 
 /* ---- kinds ---- */
 
-static const strut_node usual_NODE = {.name = ""};
-static const strut_member usual_MEMBER = {.name = "",
-                                          .node = {-1, -1},
-                                          .kind = STRUT_BAR,
-                                          .rest_kind = STRUT_REST_RATIO,
-                                          .rest_value = 1};
-static const strut_hinge usual_HINGE = {
-    .name = "", .node = {-1, -1, -1}, .rest_angle = (double)NAN};
-static const strut_cell usual_CELL = {.name = "", .law = STRUT_LAW_PRESSURE, .exponent = 1.4};
-static const strut_collision usual_COLLISION = {.name = "", .node = {-1, -1}, .member = {-1, -1}};
-static const strut_actuator usual_ACTUATOR = {
-    .name = "", .member = -1, .signal = -1, .hinge = -1, .cell = -1};
-static const strut_load usual_LOAD = {.name = "", .node = -1, .signal = -1};
-static const strut_unbalance usual_UNBALANCE = {.name = "", .node = -1, .signal = -1};
-static const strut_sliding_mass usual_SLIDER = {.name = "", .member = -1, .signal = -1};
-static const strut_signal usual_SIGNAL = {.name = NULL, .stop = (double)INFINITY};
-static const strut_sensor usual_SENSOR = {.name = "", .item = -1};
-static const strut_internal_state usual_STATE = {.name = ""};
-static const strut_configuration usual_CONFIGURATION = {.name = ""};
-static const strut_ground usual_GROUND = {.name = ""};
-static const strut_contact usual_CONTACT = {.node = -1};
+#define USUAL(KIND, word, things, object, array, number, rest, ...)                                \
+  static const object usual_##KIND = {__VA_ARGS__};
+STRUT_THINGS(USUAL)
+#undef USUAL
 
 static const strut_thing_row kinds[] = {
-#define KIND_ROW(KIND, word, things, object, array, number, rest)                                  \
+#define KIND_ROW(KIND, word, things, object, array, number, rest, ...)                             \
   {word,                                                                                           \
    things,                                                                                         \
    sizeof(object),                                                                                 \
@@ -71,17 +54,18 @@ const char *strut_thing_name(const strut_scene *scene, strut_thing kind, size_t 
 #define STRUT_BELOW(SECTION) 0 /* the engine has no mappings */
 #define FIELD_ROW(section, id, name, type, measure, range, fallback, need, set, words, field, ...) \
   {name, STRUT_LIMITS_##range, STRUT_##need, {STRUT_FIELD_OF_##field}},
-#define FIELDS_OF_SECTION(SECTION)                                                                 \
+#define FIELDS_OF_SECTION(SECTION, ...)                                                            \
   static const strut_field_row fields_##SECTION[] = {STRUT_##SECTION##_FIELDS(FIELD_ROW)};
-STRUT_THING_SECTIONS(FIELDS_OF_SECTION)
+STRUT_THINGS(FIELDS_OF_SECTION)
+STRUT_FURTHER_SECTIONS(FIELDS_OF_SECTION)
 
 static const struct {
   const strut_field_row *row;
   size_t count;
 } sections[] = {
-#define SECTION_ROW(SECTION)                                                                       \
+#define SECTION_ROW(SECTION, ...)                                                                  \
   {fields_##SECTION, sizeof fields_##SECTION / sizeof fields_##SECTION[0]},
-    STRUT_THING_SECTIONS(SECTION_ROW)
+    STRUT_THINGS(SECTION_ROW) STRUT_FURTHER_SECTIONS(SECTION_ROW)
 #undef SECTION_ROW
 };
 
@@ -172,40 +156,21 @@ static void put_section(const numbers *to, strut_thing_section section, const vo
     if (inner[i].section == section) put_field(to, &inner[i].field, object, size);
 }
 
-/* The sections of a kind, and where its objects have them. */
+/* The section of a kind is that of the same number; these are within its objects, too. */
 static const struct {
   strut_thing kind;
   strut_thing_section section;
   size_t offset, size;
-} parts[] = {
-#define PART(KIND, SECTION)                                                                        \
-  { STRUT_THING_##KIND, STRUT_FIELDS_##SECTION, 0, 0 }
-#define PART_WITHIN(KIND, SECTION, object, member)                                                 \
-  {                                                                                                \
-    STRUT_THING_##KIND, STRUT_FIELDS_##SECTION, offsetof(object, member),                          \
-        sizeof STRUT_MEMBER(object, member)                                                        \
-  }
-    PART(NODE, NODE),
-    PART(MEMBER, MEMBER),
-    PART_WITHIN(MEMBER, LAW, strut_member, law),
-    PART(HINGE, HINGE),
-    PART_WITHIN(HINGE, LAW, strut_hinge, law),
-    PART(CELL, CELL),
-    PART(CELL, GAS),
-    PART(COLLISION, COLLISION),
-    PART(UNBALANCE, UNBALANCE),
-    PART(LOAD, LOAD),
-    PART(SLIDER, SLIDER),
-    PART(GROUND, GROUND),
-    PART(GROUND, CIRCLE),
-    PART(CONTACT, CONTACT),
-};
+} parts[] = {{STRUT_THING_MEMBER, STRUT_FIELDS_LAW, offsetof(strut_member, law), sizeof(strut_law)},
+             {STRUT_THING_HINGE, STRUT_FIELDS_LAW, offsetof(strut_hinge, law), sizeof(strut_law)},
+             {STRUT_THING_CELL, STRUT_FIELDS_GAS, 0, sizeof(strut_cell)},
+             {STRUT_THING_GROUND, STRUT_FIELDS_CIRCLE, 0, sizeof(strut_ground)}};
 
 static void put_thing(const numbers *to, strut_thing kind, const void *object) {
+  put_section(to, (strut_thing_section)kind, object, kinds[kind].size);
   for (size_t p = 0; p < sizeof parts / sizeof parts[0]; p++)
     if (parts[p].kind == kind)
-      put_section(to, parts[p].section, (const char *)object + parts[p].offset,
-                  parts[p].size ? parts[p].size : kinds[kind].size);
+      put_section(to, parts[p].section, (const char *)object + parts[p].offset, parts[p].size);
 }
 
 static void put_things(const numbers *to, const strut_scene *scene, strut_thing kind) {
@@ -256,7 +221,7 @@ static void put_moved(const numbers *to, const strut_scene *scene) {
 void strut_setup_at_rest(const strut_setup *setup, strut_number_sink *sink, void *context) {
   enum { AT_REST, OF_RUNS, BY_HAND };
   static const int rest[] = {
-#define REST_OF(KIND, word, things, object, array, count, rest) rest,
+#define REST_OF(KIND, word, things, object, array, count, rest, ...) rest,
       STRUT_THINGS(REST_OF)
 #undef REST_OF
   };

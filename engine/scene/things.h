@@ -160,17 +160,16 @@ typedef struct strut_field_row {
   strut_field field;
 } strut_field_row;
 
-/** The sections of things, X(NAME). */
+/** Sections of objects other than those of the kinds, X(NAME, ). */
 /* clang-format off */
-#define STRUT_THING_SECTIONS(X) \
-  X(SCENE) X(NODE) X(MEMBER) X(HINGE) X(CELL) X(GAS) X(COLLISION) X(LAW) X(RAYLEIGH) X(GROUND) \
-  X(CIRCLE) X(FRICTION) X(CONTACT) X(UNBALANCE) X(SLIDER) X(LOAD) X(SIGNAL) X(SINE) X(HALF_SINE) \
-  X(SQUARE) X(RAMP) X(MAXWELL) X(SETTLE) X(EQUILIBRIA) X(SOLVER) X(RUN) X(MEASURE) X(OUTPUT)
+#define STRUT_FURTHER_SECTIONS(X) \
+  X(SCENE, ) X(GAS, ) X(LAW, ) X(RAYLEIGH, ) X(CIRCLE, ) X(FRICTION, ) X(SINE, ) X(HALF_SINE, ) X(SQUARE, ) X(RAMP, ) \
+  X(MAXWELL, ) X(SETTLE, ) X(EQUILIBRIA, ) X(SOLVER, ) X(RUN, ) X(MEASURE, ) X(OUTPUT, )
 /* clang-format on */
 
 typedef enum strut_thing_section {
-#define STRUT_SECTION_ROW(NAME) STRUT_FIELDS_##NAME,
-  STRUT_THING_SECTIONS(STRUT_SECTION_ROW)
+#define STRUT_SECTION_ROW(NAME, ...) STRUT_FIELDS_##NAME,
+  STRUT_THINGS(STRUT_SECTION_ROW) STRUT_FURTHER_SECTIONS(STRUT_SECTION_ROW)
 #undef STRUT_SECTION_ROW
       STRUT_THING_SECTION_COUNT
 } strut_thing_section;
@@ -185,5 +184,20 @@ STRUT_API const strut_field_row *strut_fields_of(strut_thing_section section, si
 typedef void strut_number_sink(void *context, double number);
 STRUT_API void strut_setup_at_rest(const strut_setup *setup, strut_number_sink *sink,
                                    void *context);
+
+/* ---- scenes beside others ---- */
+
+/** One difference between two scenes, as texts. */
+typedef struct strut_difference {
+  const char *where;    /* such as "members.m8.stiffness", values in SI units */
+  const char *was, *is; /* in the first and the second scene; NULL: absent */
+} strut_difference;
+
+/**
+ * Removes sensors, signals, internal states and Maxwell branches, which have relaxed at rest, from a copy of
+ * a scene that has no driven loads any more. Members are copied into the arena where that changes them.
+ * False: out of memory.
+ */
+STRUT_API bool strut_scene_remove_feedback(strut_scene *scene, strut_arena *arena);
 
 #endif

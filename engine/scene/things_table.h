@@ -28,33 +28,34 @@
 #ifndef STRUT_ENGINE_SCENE_THINGS_TABLE_H
 #define STRUT_ENGINE_SCENE_THINGS_TABLE_H
 
+#include <math.h>
+
 #include "engine/base/number_text.h"
 #include "engine/scene/experiment.h"
 
-/**
- * X(KIND, word, things, object, array, count, rest): the kinds of which a scene has arrays, in the order in
- * which names are checked. rest: AT_REST where what is at rest depends on them; OF_RUNS where it does not;
- * BY_HAND where it depends on what follows from their numbers (things.c).
- */
-#define STRUT_THINGS(X)                                                                            \
-  X(NODE, "node", "nodes", strut_node, nodes, node_count, AT_REST)                                 \
-  X(MEMBER, "member", "members", strut_member, members, member_count, AT_REST)                     \
-  X(HINGE, "hinge", "hinges", strut_hinge, hinges, hinge_count, AT_REST)                           \
-  X(CELL, "cell", "cells", strut_cell, cells, cell_count, AT_REST)                                 \
-  X(COLLISION, "collision", "collisions", strut_collision, collisions, collision_count, AT_REST)   \
-  X(ACTUATOR, "actuator", "actuators", strut_actuator, actuators, actuator_count, OF_RUNS)         \
-  X(LOAD, "load", "loads", strut_load, loads, load_count, BY_HAND)                                 \
-  X(UNBALANCE, "unbalance", "unbalances", strut_unbalance, unbalances, unbalance_count, AT_REST)   \
-  X(SLIDER, "slider", "sliders", strut_sliding_mass, sliding_masses, sliding_count, BY_HAND)       \
-  X(SIGNAL, "signal", "signals", strut_signal, signals, signal_count, OF_RUNS)                     \
-  X(SENSOR, "sensor", "sensors", strut_sensor, sensors, sensor_count, OF_RUNS)                     \
-  X(STATE, "state", "states", strut_internal_state, states, state_count, OF_RUNS)                  \
-  X(CONFIGURATION, "configuration", "configurations", strut_configuration, configurations,         \
-    configuration_count, BY_HAND)                                                                  \
-  X(GROUND, "ground", "grounds", strut_ground, grounds, ground_count, AT_REST)                     \
-  X(CONTACT, "contact", "contacts", strut_contact, contacts, contact_count, AT_REST)
-
 /* clang-format off */
+
+/**
+ * X(KIND, word, things, object, array, count, rest, defaults...): the kinds of which a scene has arrays, in the
+ * order in which names are checked. rest: AT_REST where what is at rest depends on them; OF_RUNS where it does
+ * not; BY_HAND where it depends on what follows from their numbers (things.c). defaults: where not zero.
+ */
+#define STRUT_THINGS(X) \
+  X(NODE, "node", "nodes", strut_node, nodes, node_count, AT_REST, .name = "") \
+  X(MEMBER, "member", "members", strut_member, members, member_count, AT_REST, .name = "", .node = {-1, -1}, .rest_kind = STRUT_REST_RATIO, .rest_value = 1.0) \
+  X(HINGE, "hinge", "hinges", strut_hinge, hinges, hinge_count, AT_REST, .name = "", .node = {-1, -1, -1}, .rest_angle = (double)NAN) \
+  X(CELL, "cell", "cells", strut_cell, cells, cell_count, AT_REST, .name = "", .law = STRUT_LAW_PRESSURE, .exponent = 1.4) \
+  X(COLLISION, "collision", "collisions", strut_collision, collisions, collision_count, AT_REST, .name = "", .node = {-1, -1}, .member = {-1, -1}) \
+  X(ACTUATOR, "actuator", "actuators", strut_actuator, actuators, actuator_count, OF_RUNS, .name = "", .member = -1, .signal = -1, .hinge = -1, .cell = -1) \
+  X(LOAD, "load", "loads", strut_load, loads, load_count, BY_HAND, .name = "", .node = -1, .signal = -1) \
+  X(UNBALANCE, "unbalance", "unbalances", strut_unbalance, unbalances, unbalance_count, AT_REST, .name = "", .node = -1, .signal = -1) \
+  X(SLIDER, "slider", "sliders", strut_sliding_mass, sliding_masses, sliding_count, BY_HAND, .name = "", .member = -1, .signal = -1) \
+  X(SIGNAL, "signal", "signals", strut_signal, signals, signal_count, OF_RUNS, .stop = (double)INFINITY) \
+  X(SENSOR, "sensor", "sensors", strut_sensor, sensors, sensor_count, OF_RUNS, .name = "", .item = -1) \
+  X(STATE, "state", "states", strut_internal_state, states, state_count, OF_RUNS, .name = "") \
+  X(CONFIGURATION, "configuration", "configurations", strut_configuration, configurations, configuration_count, BY_HAND, .name = "") \
+  X(GROUND, "ground", "grounds", strut_ground, grounds, ground_count, AT_REST, .name = "") \
+  X(CONTACT, "contact", "contacts", strut_contact, contacts, contact_count, AT_REST, .node = -1)
 
 /**
  * Fields that no key has for itself, each with the section whose objects have them: X(section, field).

@@ -21,16 +21,25 @@ static const strut_key table[] = {STRUT_KEY_TABLE(STRUT_KEY_ROW)};
 
 /* First key of each section, and one more that ends the last; a test compares it with the table. */
 static const int first[] = {
-#define STRUT_SECTION_ROW(NAME, name, first) STRUT_KEY_##first,
+#define STRUT_SECTION_ROW(NAME, name, first, ...) STRUT_KEY_##first,
     STRUT_SECTIONS(STRUT_SECTION_ROW)
 #undef STRUT_SECTION_ROW
         STRUT_KEY_COUNT};
 
 static const char *const section_names[] = {
-#define STRUT_SECTION_ROW(NAME, name, first) name,
+#define STRUT_SECTION_ROW(NAME, name, ...) name,
     STRUT_SECTIONS(STRUT_SECTION_ROW)
 #undef STRUT_SECTION_ROW
 };
+
+static const char *const introductions[] = {
+#define STRUT_SECTION_ROW(NAME, name, first, introduction) introduction,
+    STRUT_SECTIONS(STRUT_SECTION_ROW)
+#undef STRUT_SECTION_ROW
+};
+
+const strut_section strut_group_sections[STRUT_GROUP_SECTIONS] = {
+    STRUT_SECTION_MEMBER, STRUT_SECTION_NODE, STRUT_SECTION_CONTACT, STRUT_SECTION_HINGE};
 
 const strut_key *strut_key_at(int key) {
   assert(key >= 0 && key < STRUT_KEY_COUNT);
@@ -43,6 +52,7 @@ int strut_section_first(strut_section section) {
 }
 int strut_section_size(strut_section section) { return first[section + 1] - first[section]; }
 const char *strut_section_name(strut_section section) { return section_names[section]; }
+const char *strut_section_introduction(strut_section section) { return introductions[section]; }
 
 int strut_key_find(strut_section section, const char *name) {
   for (int key = first[section]; key < first[section + 1]; key++)

@@ -15,78 +15,9 @@
 #include "parser/expression/units.h"
 #include "parser/language/keys_table.h"
 
-/** The sections: X(NAME, name, its first key). */
-/* clang-format off */
-#define STRUT_SECTIONS(X) \
-  X(SCENE, "scene", SCENE_VERSION) \
-  X(PART, "part", PART_USE) \
-  X(PLACE, "place", PLACE_PART) \
-  X(REPEAT, "repeat", REPEAT_COUNT) \
-  X(NEXT, "next", NEXT_MERGE) \
-  X(NODE, "node", NODE_POSITION) \
-  X(MOVES, "moves", MOVES_ALONG_X) \
-  X(MEMBER, "member", MEMBER_GROUP) \
-  X(HINGE, "hinge", HINGE_NODES) \
-  X(CELL, "cell", CELL_NODES) \
-  X(GAS, "gas", GAS_KIND) \
-  X(COLLISION, "collision", COLLISION_NODE) \
-  X(BEAM, "beam", BEAM_NODES) \
-  X(CLAMPED_TO, "clamped_to", CLAMPED_TO_START) \
-  X(LAW, "law", LAW_KIND) \
-  X(RAYLEIGH, "rayleigh", RAYLEIGH_MASS) \
-  X(GROUND, "ground", GROUND_HEIGHT) \
-  X(CIRCLE, "circle", CIRCLE_CENTRE) \
-  X(MOTION, "motion", MOTION_IN_X) \
-  X(FRICTION, "friction", FRICTION_LAW) \
-  X(CONTACT, "contact", CONTACT_GROUP) \
-  X(ACTUATOR, "actuator", ACTUATOR_MEMBER) \
-  X(LOAD, "load", LOAD_NODE) \
-  X(UNBALANCE, "unbalance", UNBALANCE_NODE) \
-  X(SLIDER, "slider", SLIDER_MEMBER) \
-  X(SIGNAL, "signal", SIGNAL_CONSTANT) \
-  X(SINE, "sine", SINE_AMPLITUDE) \
-  X(HALF_SINE, "half_sine", HALF_SINE_AMPLITUDE) \
-  X(SQUARE, "square", SQUARE_AMPLITUDE) \
-  X(RAMP, "ramp", RAMP_AMPLITUDE) \
-  X(SENSOR, "sensor", SENSOR_LENGTH) \
-  X(STATE, "state", STATE_RATE) \
-  X(OSCILLATOR, "oscillator", OSCILLATOR_FREQUENCY) \
-  X(CONTROLLER, "controller", CONTROLLER_SENSOR) \
-  X(RELAY, "relay", RELAY_KIND) \
-  X(MAXWELL, "maxwell", MAXWELL_STIFFNESS) \
-  X(STARTS, "starts", STARTS_CONTACT) \
-  X(CONFIGURATION, "configuration", CONFIGURATION_CONTACTS) \
-  X(INITIAL, "initial", INITIAL_CONFIGURATION) \
-  X(SETTLE, "settle", SETTLE_SPEED) \
-  X(EQUILIBRIA, "equilibria", EQUILIBRIA_SUPPORTS) \
-  X(SOLVER, "solver", SOLVER_INTEGRATOR) \
-  X(RUN, "run", RUN_DURATION) \
-  X(MEASURE, "measure", MEASURE_LAST) \
-  X(QUANTITY, "quantity", QUANTITY_OF) \
-  X(STEADY, "steady", STEADY_TOLERANCE) \
-  X(OUTPUT, "output", OUTPUT_EVERY) \
-  X(STUDY, "study", STUDY_VERSION) \
-  X(RANGE, "range", RANGE_FROM) \
-  X(VARIANT, "variant", VARIANT_SOLVER) \
-  X(CHECK, "check", CHECK_HALF_STEP) \
-  X(FIGURE, "figure", FIGURE_KIND) \
-  X(PATH, "path", PATH_LOAD) \
-  X(FORM, "form", FORM_FROM) \
-  X(POINTS, "points", POINTS_FILE) \
-  X(SAMPLE, "sample", SAMPLE_COUNT) \
-  X(DISTRIBUTION, "distribution", DISTRIBUTION_UNIFORM) \
-  X(LIMIT, "limit", LIMIT_EVALUATIONS) \
-  X(REFINE, "refine", REFINE_WHERE) \
-  X(SENSITIVITY, "sensitivity", SENSITIVITY_OF) \
-  X(STIFFNESS_AT, "stiffness_at", STIFFNESS_AT_NODE) \
-  X(SEARCH, "search", SEARCH_MAXIMISE) \
-  X(VARIABLE, "variable", VARIABLE_FROM) \
-  X(FOLLOW, "follow", FOLLOW_OVER)
-/* clang-format on */
-
 /** The mappings of the language. */
 typedef enum strut_section {
-#define STRUT_SECTION_ROW(NAME, name, first) STRUT_SECTION_##NAME,
+#define STRUT_SECTION_ROW(NAME, ...) STRUT_SECTION_##NAME,
   STRUT_SECTIONS(STRUT_SECTION_ROW)
 #undef STRUT_SECTION_ROW
       STRUT_SECTION_COUNT
@@ -258,6 +189,11 @@ STRUT_API const char *strut_key_current(strut_section section, const char *name)
 STRUT_API strut_section strut_section_find(const char *name);
 /** "node", "half_sine", ... */
 STRUT_API const char *strut_section_name(strut_section section);
+/** What the reference says about the section. */
+STRUT_API const char *strut_section_introduction(strut_section section);
+/** The sections whose things may name groups; a group may have the keys of all. */
+enum { STRUT_GROUP_SECTIONS = 4 };
+STRUT_API extern const strut_section strut_group_sections[STRUT_GROUP_SECTIONS];
 
 /** The key of a member that gives its rest length in this way. */
 STRUT_API int strut_rest_key(strut_rest_kind kind);

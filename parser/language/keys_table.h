@@ -325,6 +325,73 @@
   STRUT_SEARCH_KEYS(X) \
   STRUT_VARIABLE_KEYS(X) \
   STRUT_FOLLOW_KEYS(X)
+
+/** The sections: X(NAME, name, its first key, the text above their table in the reference). */
+#define STRUT_SECTIONS(X) \
+  X(SCENE, "scene", SCENE_VERSION, "The keys at the top level of a model.") \
+  X(PART, "part", PART_USE, "`parts: {NAME: {...}}`: a piece of structure, which `place` copies. It sees the parameters, groups and signals of the scene, and no nodes but its own.") \
+  X(PLACE, "place", PLACE_PART, "`place: {NAME: {...}}`: a copy of a part, or several, under names such as `NAME.node` or `NAME.3.node`.") \
+  X(REPEAT, "repeat", REPEAT_COUNT, "`repeat: {...}` of a placement. Copy k is moved k times against copy 0: scaled and turned about `about`, then by `step`, in its own frame.") \
+  X(NEXT, "next", NEXT_MERGE, "`next: {...}` of `repeat`: what a copy has in common with the next one. Names are those of the copy; `next.NAME` is one of the next copy.") \
+  X(NODE, "node", NODE_POSITION, "`nodes: {NAME: [x, y]}`, or `nodes: {NAME: {position: [x, y], ...}}` with these keys.") \
+  X(MOVES, "moves", MOVES_ALONG_X, "`nodes: {NAME: {moves: {...}}}`: from its position, plus the signal at t = 0, the node moves by the signal, whose value must not jump. Statics keep it where it is at t = 0.") \
+  X(MEMBER, "member", MEMBER_GROUP, "`members: {NAME: {...}}`. A member needs a stiffness, a damping, or both. Of the four keys for the rest length, the member's own replaces that of its group; the same holds for the two keys for the stiffness.") \
+  X(HINGE, "hinge", HINGE_NODES, "`hinges: {NAME: {...}}`. A hinge needs a stiffness, a damping, or a law that brings its own stiffness.") \
+  X(CELL, "cell", CELL_NODES, "`cells: {NAME: {...}}`: either `pressure` or `gas`. In the plane a pressure is a force per length.") \
+  X(GAS, "gas", GAS_KIND, "`cells: {NAME: {gas: {...}}}`.") \
+  X(COLLISION, "collision", COLLISION_NODE, "`collisions: {NAME: {...}}`: `node` and `member`, or `nodes`, or `members`. Things pass through each other unless a collision names them.") \
+  X(BEAM, "beam", BEAM_NODES, "`beams: {NAME: {...}}`. A beam is short for nodes `NAME.1`, `NAME.2`, ... between its ends, bars `NAME.1`, ... and hinges `NAME.1`, ... at these nodes; at a clamp also the fixed node and the hinge `NAME.start` or `NAME.end`. `strut write` writes these.") \
+  X(CLAMPED_TO, "clamped_to", CLAMPED_TO_START, "`clamped_to: {start: NAME, end: NAME}` of a beam: the end keeps its drawn angle to a member or to another beam that has the node, too, by the hinge `NAME.start` or `NAME.end`. Several beams at one node also get hinges between each other, such as `NAME.start.OTHER`.") \
+  X(LAW, "law", LAW_KIND, "`law: {...}` of a member or a hinge, or only its kind, such as `law: logarithmic`; `law: tension_only` and `law: compression_only` are linear and carry one sign. For a hinge read angle for length and moment for force. `polynomial` and `table` bring their own stiffness, so that the member must not give one.") \
+  X(RAYLEIGH, "rayleigh", RAYLEIGH_MASS, "`rayleigh: {...}`: a mode of angular frequency w gets the damping ratio alpha / (2 w) + beta w / 2, beside what members' own dampers give.") \
+  X(GROUND, "ground", GROUND_HEIGHT, "`ground: {...}`: the line, profile or circle that nodes may touch; or several of them, `grounds: {NAME: {...}}`.") \
+  X(CIRCLE, "circle", CIRCLE_CENTRE, "`circle: {...}` of a ground.") \
+  X(MOTION, "motion", MOTION_IN_X, "`motion: {x: SIGNAL, y: SIGNAL}` of a ground: its displacement, in lengths. Its work on the structure is in the energy balance. A displacement must not jump.") \
+  X(FRICTION, "friction", FRICTION_LAW, "`friction: {...}` of the ground, of a group, or of a contact; keys of a contact take precedence over those of its groups, and these over those of the ground. Karnopp's law and `coulomb` need `mu`, or `mu_static` and `mu_kinetic`; Karnopp's law also needs `stick_velocity`. The smooth law needs `mu` or `mu_kinetic`, and `width`. Where friction depends on the direction, `mu_forward` and `mu_backward` replace `mu`, in every law.") \
+  X(CONTACT, "contact", CONTACT_GROUP, "`ground: {contacts: {NODE: {...}}}`: settings of a single contact.") \
+  X(ACTUATOR, "actuator", ACTUATOR_MEMBER, "`actuators: {NAME: {...}}`, with a `signal`, a `force` of a member or a `moment` of a hinge.") \
+  X(LOAD, "load", LOAD_NODE, "`loads: {NAME: {...}}`.") \
+  X(UNBALANCE, "unbalance", UNBALANCE_NODE, "`unbalances: {NAME: {...}}`, each with a `speed` or an `angle`. Statics and settling have its mass at the node.") \
+  X(SLIDER, "slider", SLIDER_MEMBER, "`sliders: {NAME: {...}}`. Statics and settling have them where they are at t = 0.") \
+  X(SIGNAL, "signal", SIGNAL_CONSTANT, "A signal is a mapping with one of these keys, or the name of an entry of `signals`. The unit of its values follows from its use: a length, an angle or a pressure, or a force or a moment, for an actuator, a length for the motion of a ground, a number without unit for a load.") \
+  X(SINE, "sine", SINE_AMPLITUDE, "`{sine: {...}}`.") \
+  X(HALF_SINE, "half_sine", HALF_SINE_AMPLITUDE, "`{half_sine: {...}}`: a single pulse.") \
+  X(SQUARE, "square", SQUARE_AMPLITUDE, "`{square: {...}}`.") \
+  X(RAMP, "ramp", RAMP_AMPLITUDE, "`{ramp: {...}}`.") \
+  X(SENSOR, "sensor", SENSOR_LENGTH, "`sensors: {NAME: {...}}` with one thing to sense. Expressions of signals, and measured quantities, use the name. In an expression `rate(NAME)` is the rate of a length, an angle or a position.") \
+  X(STATE, "state", STATE_RATE, "`states: {NAME: {...}}`.") \
+  X(OSCILLATOR, "oscillator", OSCILLATOR_FREQUENCY, "`oscillators: {NAME: {...}}`. The name is the phase, an angle, in expressions: `2 mm * sin(NAME)`. `strut write` shows oscillators as states.") \
+  X(CONTROLLER, "controller", CONTROLLER_SENSOR, "`controllers: {NAME: {...}}`. The integral is the state `NAME_integral`. `strut write` shows PID controllers as signals and states.") \
+  X(RELAY, "relay", RELAY_KIND, "`controllers: {NAME: {kind: relay, ...}}`: a signal with two values. Either `on_above` and `off_below`, or `on_below` and `off_above`.") \
+  X(MAXWELL, "maxwell", MAXWELL_STIFFNESS, "`members: {NAME: {maxwell: {...}}}`: the force of the branch follows F' = k (u' - F/c), with the rate u' of the elongation. In statics it has relaxed to 0.") \
+  X(STARTS, "starts", STARTS_CONTACT, "`{sine: {...}, starts: {...}}` of any signal: the touchdown of a node, or a sensor that passes a level.") \
+  X(CONFIGURATION, "configuration", CONFIGURATION_CONTACTS, "`configurations: {NAME: {NODE: [x, y], ...}}`, or `configurations: {NAME: {...}}` with these keys. `{}` is the drawn shape. If a node is called `contacts`, that key followed by two plain values is its position.") \
+  X(INITIAL, "initial", INITIAL_CONFIGURATION, "`initial: {...}`.") \
+  X(SETTLE, "settle", SETTLE_SPEED, "`initial: {settle: {...}}`.") \
+  X(EQUILIBRIA, "equilibria", EQUILIBRIA_SUPPORTS, "`equilibria: {...}`: the search of `strut equilibria` and of `initial: {equilibrium: NAME}`.") \
+  X(SOLVER, "solver", SOLVER_INTEGRATOR, "`solver: {...}`.") \
+  X(RUN, "run", RUN_DURATION, "`run: {...}`: either `duration`, or `periods` and `of`.") \
+  X(MEASURE, "measure", MEASURE_LAST, "`run: {measure: {...}}`.") \
+  X(QUANTITY, "quantity", QUANTITY_OF, "`run: {measure: {quantities: {NAME: {...}}}}`.") \
+  X(STEADY, "steady", STEADY_TOLERANCE, "`run: {measure: {steady: {...}}}`.") \
+  X(OUTPUT, "output", OUTPUT_EVERY, "`output: {...}`.") \
+  X(STUDY, "study", STUDY_VERSION, "The keys at the top level of a study, the file that `strut sweep` runs. Expressions in `set` and `derive` may use the model's parameters.") \
+  X(RANGE, "range", RANGE_FROM, "`axes: [{NAME: {...}}]`: values of a parameter; either `step` or `count`.") \
+  X(VARIANT, "variant", VARIANT_SOLVER, "`variants: {NAME: {...}}` of a study.") \
+  X(CHECK, "check", CHECK_HALF_STEP, "`check: {...}` of a study.") \
+  X(FIGURE, "figure", FIGURE_KIND, "`figures: {NAME: {...}}` of a study.") \
+  X(PATH, "path", PATH_LOAD, "`path: {...}` of a study with `compute: path`, as the options of `strut path`.") \
+  X(FORM, "form", FORM_FROM, "`form: {...}` of a study with `compute: form`, as the options of `strut form`.") \
+  X(POINTS, "points", POINTS_FILE, "`axes: [{points: {...}}]` of a study; `{points: FILE}` is short for it.") \
+  X(SAMPLE, "sample", SAMPLE_COUNT, "`axes: [{sample: {...}}]` of a study: parameters from distributions.") \
+  X(DISTRIBUTION, "distribution", DISTRIBUTION_UNIFORM, "`over: {NAME: {...}}` of a sample or a sensitivity analysis, with one of these keys.") \
+  X(LIMIT, "limit", LIMIT_EVALUATIONS, "`limit: {...}` of a study.") \
+  X(REFINE, "refine", REFINE_WHERE, "`refine: {...}` of a study.") \
+  X(SENSITIVITY, "sensitivity", SENSITIVITY_OF, "`sensitivity: {...}` of a study; results are in `sensitivity.csv` beside the table.") \
+  X(STIFFNESS_AT, "stiffness_at", STIFFNESS_AT_NODE, "`stiffness_at: {...}` of a study.") \
+  X(SEARCH, "search", SEARCH_MAXIMISE, "`search: {...}` of a study; either `maximise` or `minimise`. [Searches](search.md) has examples.") \
+  X(VARIABLE, "variable", VARIABLE_FROM, "`over: {NAME: {...}}` of a search. `{NAME: [...]}` is a list of choices, numbers or texts.") \
+  X(FOLLOW, "follow", FOLLOW_OVER, "`follow: {...}` of a study, as the options of `strut follow`. [Branches of motions](follow.md#studies-of-branches) has an example.")
 /* clang-format on */
 
 #endif

@@ -378,7 +378,7 @@ static int32_t read_relay(strut_reader *reader, const strut_tree *key) {
               : -1;
 }
 
-/* Without `kind`, or with one that is none, it is a PID controller, whose keys say so. */
+/* Without a known `kind` it is read as a PID controller, which reports the kind. */
 int32_t strut_read_controller(strut_reader *reader, const strut_tree *key) {
   return strut_is_relay(key->next) ? read_relay(reader, key) : read_pid(reader, key);
 }

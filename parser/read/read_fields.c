@@ -185,7 +185,7 @@ static bool refuse_value(strut_reader *reader, int key, const strut_tree *value,
   return false;
 }
 
-/* Is the value a scalar, list or mapping, as the type requires? Its content is not looked at. */
+/* Is the value a scalar, list or mapping, as the type requires? Its content is not checked. */
 static bool shape_fits(strut_key_type type, const strut_tree *value) {
   bool scalar = value->kind == STRUT_TREE_SCALAR && !strut_is_null(value);
   switch (type) {

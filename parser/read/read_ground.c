@@ -180,7 +180,7 @@ static void read_contact(strut_reader *reader, const strut_tree *key, ground_def
   *source = (strut_source){key, key ? key->next : NULL, !fine};
 }
 
-/* A node that is moved cannot touch, and is none of `all`. */
+/* A node that is moved cannot touch; `all` leaves it out. */
 static bool moves(const strut_reader *reader, int32_t node) {
   return reader->node_moves && reader->node_moves[node];
 }

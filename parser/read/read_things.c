@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* All things of a scene, kind by kind. See reader.h. */
+/* All things of a scene, kind by kind, by the rows of their keys. See reader.h. */
 #include <assert.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "parser/read/reader.h"
@@ -115,4 +116,211 @@ void strut_read_things(strut_reader *reader, strut_thing thing) {
     bool fine = read_thing(reader, thing, key, name, object);
     things->source[i] = (strut_source){key, key->next, !fine};
   }
+}
+
+/* ---- the values of a mapping into an object ---- */
+
+/* The code that a section has beside its rows. */
+static strut_section_reader *const by_hand[STRUT_SECTION_COUNT] = {
+    [STRUT_SECTION_MEMBER] = strut_read_member,
+    [STRUT_SECTION_HINGE] = strut_read_hinge,
+    [STRUT_SECTION_CELL] = strut_read_cell,
+    [STRUT_SECTION_GAS] = strut_read_gas,
+    [STRUT_SECTION_COLLISION] = strut_read_collision,
+    [STRUT_SECTION_ACTUATOR] = strut_read_actuator,
+    [STRUT_SECTION_LOAD] = strut_read_load,
+    [STRUT_SECTION_UNBALANCE] = strut_read_unbalance,
+    [STRUT_SECTION_SLIDER] = strut_read_slider,
+    [STRUT_SECTION_SENSOR] = strut_read_sensor,
+    [STRUT_SECTION_STARTS] = strut_read_trigger};
+
+/* ---- single values ---- */
+
+static const char *store_text(strut_reader *reader, strut_arena *arena, const strut_key *key,
+                              const strut_slot *slot) {
+  char word[40] = "";
+  if (key->type == STRUT_TYPE_WORD) strut_word_at(key->words, slot->word, word, sizeof word);
+  const char *text = key->type == STRUT_TYPE_WORD ? word : slot->value->text;
+  const char *copy = strut_arena_text(arena, text, strlen(text));
+  if (copy) return copy;
+  reader->out_of_memory = true;
+  return "";
+}
+
+static void store_value(strut_reader *reader, strut_arena *arena, const strut_key *key,
+                        const strut_slot *slot, void *field) {
+  bool word = key->type == STRUT_TYPE_WORD || key->type == STRUT_TYPE_WORDS;
+  double number = word ? (double)slot->word : slot->number[0];
+  switch (key->field.type) {
+    case STRUT_FIELD_DOUBLE: *(double *)field = number; break;
+    case STRUT_FIELD_INT32: *(int32_t *)field = (int32_t)number; break;
+    case STRUT_FIELD_UINT32: *(uint32_t *)field = (uint32_t)number; break;
+    case STRUT_FIELD_INT64: *(int64_t *)field = (int64_t)number; break;
+    case STRUT_FIELD_UINT64: *(uint64_t *)field = (uint64_t)number; break;
+    case STRUT_FIELD_BOOL: *(bool *)field = slot->word == 1; break;
+    case STRUT_FIELD_DOUBLE_PAIR: memcpy(field, slot->number, sizeof slot->number); break;
+    case STRUT_FIELD_BOOL_PAIR:
+      for (int c = 0; c < 2; c++) ((bool *)field)[c] = (slot->word >> c & 1) != 0;
+      break;
+    case STRUT_FIELD_TEXT: *(const char **)field = store_text(reader, arena, key, slot); break;
+    case STRUT_FIELD_OBJECT: assert(false);
+  }
+}
+
+void strut_store_choice(const strut_key *key, void *object) {
+  char *tag = (char *)object + key->field.tag;
+  if (!key->field.chosen) return;
+  if (key->field.tag_size == sizeof(bool))
+    *(bool *)(void *)tag = key->field.tag_value != 0;
+  else
+    *(uint32_t *)(void *)tag = key->field.tag_value;
+}
+
+bool strut_store_number(strut_reader *reader, strut_fields *fields, int key, strut_owner owner,
+                        strut_dimension dimension, void *object) {
+  const strut_key *k = strut_key_at(key);
+  const strut_slot *slot = strut_slot_of(fields, key);
+  if (slot->state != STRUT_GIVEN) return slot->state == STRUT_ABSENT;
+  assert(k->field.type == STRUT_FIELD_DOUBLE);
+  strut_store_choice(k, object);
+  return strut_read_number(reader, slot->value, k->name, owner, dimension, k->limits.range,
+                           (double *)(void *)((char *)object + k->field.offset));
+}
+
+static bool store_signal(strut_reader *reader, const strut_key *key, const strut_slot *slot,
+                         strut_owner owner, int32_t *signal) {
+  const strut_dimension dimension = strut_measure_dimension(key->measure);
+  *signal = strut_read_signal(reader, slot->value, key->name, owner, &dimension);
+  return *signal >= 0;
+}
+
+/* ---- references and lists ---- */
+
+/* The things that a name, or a list of names, refers to; -1 for what is unknown. */
+static bool read_references(strut_reader *reader, const strut_key *key, const strut_tree *value,
+                            strut_owner owner, int32_t *index) {
+  const strut_tree *item = value->kind == STRUT_TREE_LIST ? value->first : value;
+  bool known = true;
+  for (; item; item = item == value ? NULL : item->next) {
+    *index = strut_read_reference(reader, item, key->name, owner, key->field.kind);
+    known = *index++ >= 0 && known;
+  }
+  return known;
+}
+
+static bool read_numbers(strut_reader *reader, const strut_key *key, const strut_tree *list,
+                         strut_owner owner, double *number) {
+  strut_dimension dimension = key->type == STRUT_TYPE_PROFILE ? STRUT_DIM_LENGTH : STRUT_DIM_TIME;
+  bool fine = true;
+  for (const strut_tree *item = list->first; item; item = item->next) {
+    if (key->type == STRUT_TYPE_PROFILE) {
+      fine = strut_read_pair(reader, item, key->name, owner, dimension, number) && fine;
+      number += 2;
+    } else {
+      fine =
+          strut_read_number(reader, item, key->name, owner, dimension, STRUT_RANGE_ANY, number++) &&
+          fine;
+    }
+  }
+  return fine;
+}
+
+static bool store_list(strut_reader *reader, const strut_key *key, const strut_slot *slot,
+                       strut_owner owner, strut_arena *arena, char *object) {
+  const strut_field *field = &key->field;
+  size_t count = slot->value->count;
+  bool things = field->type == STRUT_FIELD_INT32;
+  if (things && count > STRUT_MOST_ELEMENT_NODES) {
+    strut_report_error(reader, slot->value->place, "%s has %zu nodes, at most %d are possible",
+                       strut_owner_text(reader, owner), count, STRUT_MOST_ELEMENT_NODES);
+    return false;
+  }
+  size_t size = things                                   ? sizeof(int32_t)
+                : field->type == STRUT_FIELD_DOUBLE_PAIR ? 2 * sizeof(double)
+                                                         : sizeof(double);
+  void *array = strut_reader_allocate(reader, arena, count, size);
+  if (!array) return false;
+  memcpy(object + field->offset, &array, sizeof array);
+  *(size_t *)(void *)(object + field->number) = count;
+  return things ? read_references(reader, key, slot->value, owner, array)
+                : read_numbers(reader, key, slot->value, owner, array);
+}
+
+/* ---- mappings ---- */
+
+bool strut_read_nested(strut_reader *reader, const strut_key *key, const strut_slot *slot,
+                       strut_owner owner, void *object, size_t object_size) {
+  char text[200];
+  strut_fields fields;
+  snprintf(text, sizeof text, "the %s of %.150s", *key->words ? key->words : key->name,
+           strut_owner_text(reader, owner));
+  strut_owner within = {text, NULL};
+  strut_read_fields(reader, strut_section_below(key), slot->value, within, &fields);
+  fields.key = slot->key;
+  strut_require(reader, &fields, within, slot->key->place);
+  bool fine =
+      strut_store_fields(reader, &fields, within, &reader->scene->arena, object, object_size);
+  return fine && !fields.broken;
+}
+
+/* A law's strain and force follow from what its force measures: a moment acts on an angle. */
+static bool store_nested(strut_reader *reader, const strut_key *key, const strut_slot *slot,
+                         strut_owner owner, char *object) {
+  void *within = object + key->field.offset;
+  if (key->type != STRUT_TYPE_LAW)
+    return strut_read_nested(reader, key, slot, owner, within, key->field.size);
+  bool moment = key->measure == STRUT_MEASURE_MOMENT;
+  return strut_read_law(reader, slot, owner, moment ? STRUT_DIM_ANGLE : STRUT_DIM_LENGTH,
+                        strut_measure_dimension(key->measure), within);
+}
+
+static bool store_key(strut_reader *reader, const strut_key *key, strut_slot *slot,
+                      strut_owner owner, strut_arena *arena, char *object) {
+  void *field = object + key->field.offset;
+  bool fine = true;
+  switch (key->field.role) {
+    case STRUT_FIELD_VALUE:
+      if (key->measure == STRUT_MEASURE_CONTEXT) return true;
+      if (key->type == STRUT_TYPE_SIGNAL)
+        fine = store_signal(reader, key, slot, owner, field);
+      else if (!strut_diagnostics_full(reader->diagnostics)) /* else the object will not be used */
+        store_value(reader, arena, key, slot, field);
+      break;
+    case STRUT_FIELD_REFERENCE:
+      fine = read_references(reader, key, slot->value, owner, field);
+      break;
+    case STRUT_FIELD_LIST: fine = store_list(reader, key, slot, owner, arena, object); break;
+    case STRUT_FIELD_NESTED: fine = store_nested(reader, key, slot, owner, object); break;
+    case STRUT_FIELD_BY_HAND:
+    case STRUT_FIELD_NONE:
+    case STRUT_FIELD_SECTION:
+    case STRUT_FIELD_THINGS: return true;
+  }
+  strut_store_choice(key, object);
+  return fine;
+}
+
+static bool is_reference(const strut_field *field) {
+  return field->role == STRUT_FIELD_REFERENCE ||
+         (field->role == STRUT_FIELD_LIST && field->type == STRUT_FIELD_INT32);
+}
+
+bool strut_store_fields(strut_reader *reader, strut_fields *fields, strut_owner owner,
+                        strut_arena *arena, void *object, size_t object_size) {
+  int size = strut_section_size(fields->section);
+  const strut_key *keys = strut_key_at(strut_section_first(fields->section));
+  bool fine = true;
+  for (int i = 0; i < size; i++) {
+    strut_slot *slot = &fields->slot[i];
+    bool given = slot->state == STRUT_GIVEN;
+    if (!given && keys[i].need != STRUT_REQUIRED) continue;
+    assert(!keys[i].field.object_size || keys[i].field.object_size == object_size);
+    bool read = given && store_key(reader, &keys[i], slot, owner, arena, object);
+    if (!read && is_reference(&keys[i].field)) fields->unresolved = true;
+    if (given && !read) fine = false;
+  }
+  (void)object_size;
+  if (by_hand[fields->section])
+    fine = by_hand[fields->section](reader, fields, owner, object) && fine;
+  return fine;
 }

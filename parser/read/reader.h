@@ -41,12 +41,10 @@ typedef struct strut_fields {
   strut_section section;
   bool broken;           /* some value, or the mapping itself, could not be read */
   bool unresolved;       /* a thing that it must name is not known */
-  const strut_tree *map; /* NULL: there is none */
+  const strut_tree *map; /* NULL: the mapping is absent */
   const strut_tree *key; /* whose value it is, where reading needs its place */
   strut_slot slot[STRUT_MOST_KEYS];
 } strut_fields;
-
-enum { STRUT_GROUP_SECTIONS = 4 }; /* member, node, contact, hinge */
 
 /** One key of a group, and its number in each section that may use the group. */
 typedef struct strut_group_item {
@@ -313,7 +311,7 @@ void strut_read_fields(strut_reader *reader, strut_section section, const strut_
 /** Reports what is required and absent, at the place given. */
 void strut_require(strut_reader *reader, strut_fields *fields, strut_owner owner,
                    strut_place place);
-/** One of the words of `key`; false where it is none of them, which was reported. */
+/** One of the words of `key`; false for another text, which was reported. */
 bool strut_read_word(strut_reader *reader, const strut_key *key, const strut_tree *value,
                      strut_owner owner, int *word);
 /** Reads a value by the table's line for the key. */
@@ -337,7 +335,7 @@ bool strut_read_section(strut_reader *reader, int key, strut_section section, co
 /** The mapping of names to things that is the value of a key of the scene, or NULL. */
 const strut_tree *strut_entries(strut_reader *reader, int key);
 
-/* store_fields.c: values into objects */
+/* read_things.c: values into objects */
 
 /**
  * Stores what could be read in the section's object by the rows of its keys, texts in the arena: values,
@@ -461,7 +459,7 @@ bool strut_find_sensed(strut_reader *reader, const char *name, strut_column *col
  */
 bool strut_find_variable(strut_reader *reader, strut_piece name, strut_column *column,
                          strut_dimension *dimension);
-/** OWNER.FIELD as it stands in the text: a name with dots. */
+/** OWNER.FIELD as written in the text: a name with dots. */
 strut_piece strut_whole_name(strut_piece owner, strut_piece field);
 /** The rate of a sensor as a column, as strut_find_column. */
 int strut_find_sensor_rate(strut_reader *reader, strut_piece name, strut_column *column,
@@ -494,7 +492,7 @@ bool strut_read_signal_program(strut_reader *reader, const strut_tree *value, co
  * -1: it was reported.
  */
 int32_t strut_use_signal(strut_reader *reader, const char *name, strut_dimension *dimension);
-/** The instructions in the scene's own memory; NULL: there is none left. */
+/** The instructions in the scene's own memory; NULL: out of memory. */
 strut_instruction *strut_keep_program(strut_reader *reader, const strut_compiler *compiler);
 /**
  * Within {...} a comma ends an unquoted text: angle(a, b) becomes "angle(a". True where that has
@@ -503,7 +501,7 @@ strut_instruction *strut_keep_program(strut_reader *reader, const strut_compiler
 bool strut_ends_at_comma(strut_reader *reader, const strut_tree *of, const char *key,
                          strut_owner owner);
 
-/* places.c */
+/* read_scene.c */
 
 /** Reports findings where they belong, except those that follow from what was reported before. */
 void strut_place_findings(strut_reader *reader, const strut_findings *findings);

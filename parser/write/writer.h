@@ -70,16 +70,18 @@ void strut_put_things(strut_writer *writer, strut_thing kind, strut_section sect
 /** write_scene.c: a law as a mapping. */
 void strut_put_law(strut_writer *writer, const strut_law *law);
 
+/** The name of a signal in the file; NULL if it is written where it is used. */
+const char *strut_signal_name(const strut_writer *writer, int32_t index);
 /** A signal's name, or the signal itself where it has none. */
 void strut_put_signal_reference(strut_writer *writer, int32_t index);
-/** write_drives.c: signals, actuators, loads, run, solver, output. */
+/** signals, actuators, loads, run, solver, output. */
 void strut_put_drives(strut_writer *writer);
 void strut_put_experiment(strut_writer *writer);
-/** write_quantities.c: a program as an expression in quotes. */
+/** a program as an expression in quotes. */
 void strut_put_program(strut_writer *writer, const strut_instruction *program, size_t length);
-/** write_quantities.c: `quantities` of the measurement, if there are any. */
+/** `quantities` of the measurement, if there are any. */
 void strut_put_quantities(strut_writer *writer, strut_mapping *mapping);
-/** write_shapes.c: configurations, the search for equilibria, the initial state. */
+/** configurations, the search for equilibria, the initial state. */
 void strut_put_shapes(strut_writer *writer);
 
 #endif
