@@ -15,7 +15,7 @@
 #include "engine/output/file.h"
 #include "engine/output/results.h"
 #include "engine/output/trajectory.h"
-#include "engine/scene/outline.h"
+#include "engine/scene/profile.h"
 
 /* Data shared by all frames of a motion, and their buffers. */
 typedef struct vtk_frame {

@@ -11,7 +11,7 @@
 #include "engine/forces/forces.h"
 #include "engine/integrate/integrator.h"
 #include "engine/model/pose.h"
-#include "engine/scene/passive.h"
+#include "engine/scene/things.h"
 
 /* Force evaluations after which accelerations explained by rounding count as rest. */
 static const int64_t ROUNDING_EVALUATIONS = 1000000;

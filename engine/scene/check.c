@@ -2,6 +2,7 @@
 /* Rules about nodes and members, and the order of all rules. See check.h. */
 #include "engine/scene/check.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -42,20 +43,63 @@ void strut_report_finding(strut_checker *checker, strut_subject subject, size_t 
   f->items[f->count++] = (strut_finding){subject, index, key, message};
 }
 
-bool strut_check_range(strut_checker *checker, strut_subject subject, size_t index, const char *key,
-                       const char *owner, double value, strut_range range) {
+static bool check_range(strut_checker *checker, const strut_checked *whose, const char *name,
+                        double value, strut_key_range range) {
+  const char *key = whose->key ? whose->key : name;
   if (!isfinite(value))
-    strut_report_finding(checker, subject, index, key, "the %s of %s is not a finite number", key,
-                         owner);
-  else if (range == STRUT_NOT_NEGATIVE && value < 0.0)
-    strut_report_finding(checker, subject, index, key,
-                         "the %s of %s must not be negative, found %g", key, owner, value);
-  else if (range == STRUT_ABOVE_ZERO && value <= 0.0)
-    strut_report_finding(checker, subject, index, key, "the %s of %s must be above zero, found %g",
-                         key, owner, value);
+    strut_report_finding(checker, whose->subject, whose->index, key,
+                         "the %s of %s is not a finite number", name, whose->owner);
+  else if (range == STRUT_RANGE_NOT_NEGATIVE && value < 0.0)
+    strut_report_finding(checker, whose->subject, whose->index, key,
+                         "the %s of %s must not be negative, found %g", name, whose->owner, value);
+  else if (range == STRUT_RANGE_ABOVE_ZERO && value <= 0.0)
+    strut_report_finding(checker, whose->subject, whose->index, key,
+                         "the %s of %s must be above zero, found %g", name, whose->owner, value);
   else
     return true;
   return false;
+}
+
+/* Is it the key of the set that the object has? */
+static bool is_chosen(const strut_field *field, const char *object) {
+  if (!field->chosen) return true;
+  uint32_t tag = field->tag_size == sizeof(bool)
+                     ? *(const bool *)(object + field->tag)
+                     : *(const uint32_t *)(const void *)(object + field->tag);
+  return tag == field->tag_value;
+}
+
+bool strut_check_fields(strut_checker *checker, const strut_checked *whose,
+                        strut_thing_section section, const void *object, const void *usual) {
+  size_t count;
+  const strut_field_row *rows = strut_fields_of(section, &count);
+  bool valid = true;
+  for (size_t i = 0; i < count; i++) {
+    const strut_field *field = &rows[i].field;
+    if (field->type != STRUT_FIELD_DOUBLE || field->role != STRUT_FIELD_VALUE) continue;
+    const char *at = (const char *)object + field->offset;
+    strut_key_range range = rows[i].limits.range;
+    double value;
+    if (usual && rows[i].need == STRUT_OPTIONAL) {
+      const char *other = (const char *)usual + field->offset;
+      if (memcmp(at, other, sizeof value) == 0) continue; /* not given */
+      memcpy(&value, other, sizeof value);
+      if (value == 0.0 && range == STRUT_RANGE_ABOVE_ZERO) range = STRUT_RANGE_NOT_NEGATIVE;
+    }
+    memcpy(&value, at, sizeof value);
+    if (is_chosen(field, object))
+      valid = check_range(checker, whose, rows[i].name, value, range) && valid;
+  }
+  return valid;
+}
+
+bool strut_check_number(strut_checker *checker, const strut_checked *whose,
+                        strut_thing_section section, const char *key, double value) {
+  size_t count, i = 0;
+  const strut_field_row *rows = strut_fields_of(section, &count);
+  while (i < count && strcmp(rows[i].name, key) != 0) i++;
+  assert(i < count);
+  return check_range(checker, whose, key, value, rows[i].limits.range);
 }
 
 /*
@@ -89,66 +133,38 @@ static void check_name(strut_checker *checker, strut_name_map *map, strut_subjec
   if (first == -2) checker->out_of_memory = true;
 }
 
+/* Names of contacts are made, and a signal needs none; a `ground` has "". */
+static bool is_named(const strut_scene *scene, strut_thing kind, size_t i) {
+  if (kind == STRUT_THING_CONTACT || kind == STRUT_THING_GROUND) return false;
+  return kind != STRUT_THING_SIGNAL || scene->signals[i].name;
+}
+
 void strut_check_names(strut_checker *checker) {
-  const strut_scene *s = checker->scene;
-  strut_name_map nodes = {0}, members = {0}, actuators = {0}, loads = {0}, signals = {0},
-                 configurations = {0}, hinges = {0}, cells = {0}, collisions = {0},
-                 unbalances = {0}, sensors = {0}, states = {0}, sliders = {0};
-  if (!strut_name_map_reserve(&nodes, s->node_count) ||
-      !strut_name_map_reserve(&members, s->member_count))
-    checker->out_of_memory = true;
-  for (size_t i = 0; i < s->node_count; i++)
-    check_name(checker, &nodes, STRUT_ON_NODE, "node", s->nodes[i].name, i);
-  for (size_t i = 0; i < s->member_count; i++)
-    check_name(checker, &members, STRUT_ON_MEMBER, "member", s->members[i].name, i);
-  for (size_t i = 0; i < s->hinge_count; i++)
-    check_name(checker, &hinges, STRUT_ON_HINGE, "hinge", s->hinges[i].name, i);
-  for (size_t i = 0; i < s->cell_count; i++)
-    check_name(checker, &cells, STRUT_ON_CELL, "cell", s->cells[i].name, i);
-  for (size_t i = 0; i < s->collision_count; i++)
-    check_name(checker, &collisions, STRUT_ON_COLLISION, "collision", s->collisions[i].name, i);
-  for (size_t i = 0; i < s->actuator_count; i++)
-    check_name(checker, &actuators, STRUT_ON_ACTUATOR, "actuator", s->actuators[i].name, i);
-  for (size_t i = 0; i < s->load_count; i++)
-    check_name(checker, &loads, STRUT_ON_LOAD, "load", s->loads[i].name, i);
-  for (size_t i = 0; i < s->unbalance_count; i++)
-    check_name(checker, &unbalances, STRUT_ON_UNBALANCE, "unbalance", s->unbalances[i].name, i);
-  for (size_t i = 0; i < s->sliding_count; i++)
-    check_name(checker, &sliders, STRUT_ON_SLIDER, "slider", s->sliding_masses[i].name, i);
-  for (size_t i = 0; i < s->signal_count; i++)
-    if (s->signals[i].name)
-      check_name(checker, &signals, STRUT_ON_SIGNAL, "signal", s->signals[i].name, i);
-  for (size_t i = 0; i < s->sensor_count; i++)
-    check_name(checker, &sensors, STRUT_ON_SENSOR, "sensor", s->sensors[i].name, i);
-  for (size_t i = 0; i < s->state_count; i++)
-    check_name(checker, &states, STRUT_ON_STATE, "state", s->states[i].name, i);
-  for (size_t i = 0; i < s->configuration_count; i++)
-    check_name(checker, &configurations, STRUT_ON_CONFIGURATION, "configuration",
-               s->configurations[i].name, i);
-  strut_name_map_free(&nodes);
-  strut_name_map_free(&members);
-  strut_name_map_free(&actuators);
-  strut_name_map_free(&loads);
-  strut_name_map_free(&unbalances);
-  strut_name_map_free(&sliders);
-  strut_name_map_free(&hinges);
-  strut_name_map_free(&cells);
-  strut_name_map_free(&collisions);
-  strut_name_map_free(&signals);
-  strut_name_map_free(&configurations);
-  strut_name_map_free(&sensors);
-  strut_name_map_free(&states);
+  const strut_scene *scene = checker->scene;
+  for (int k = 0; k < STRUT_THING_COUNT; k++) {
+    strut_thing kind = (strut_thing)k;
+    strut_name_map names = {0};
+    size_t count = strut_thing_count(scene, kind);
+    if (count && !strut_name_map_reserve(&names, count)) checker->out_of_memory = true;
+    for (size_t i = 0; i < count; i++)
+      if (is_named(scene, kind, i))
+        check_name(checker, &names, strut_on_thing(kind), strut_thing_at(kind)->word,
+                   strut_thing_name(scene, kind, i), i);
+    strut_name_map_free(&names);
+  }
 }
 
 void strut_check_nodes(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
+  const void *usual = strut_thing_at(STRUT_THING_NODE)->usual;
   if (!scene->node_count)
     strut_report_finding(checker, STRUT_ON_SCENE, 0, "nodes", "the scene has no nodes");
   for (size_t i = 0; i < scene->node_count; i++) {
     const strut_node *node = &scene->nodes[i];
     char owner[200];
     strut_format_name(owner, "node", node->name, i);
-    strut_check_range(checker, STRUT_ON_NODE, i, "mass", owner, node->mass, STRUT_NOT_NEGATIVE);
+    const strut_checked whose = {STRUT_ON_NODE, i, owner, NULL};
+    strut_check_fields(checker, &whose, STRUT_FIELDS_NODE, node, usual);
     if (!isfinite(node->position[0]) || !isfinite(node->position[1]))
       strut_report_finding(checker, STRUT_ON_NODE, i, "position",
                            "the position of %s is not finite", owner);
@@ -196,28 +212,12 @@ static bool check_ends(strut_checker *checker, size_t index, const char *owner) 
 /* Checks each number of a member by itself. */
 static bool check_numbers(strut_checker *checker, size_t index, const char *owner) {
   const strut_member *m = &checker->scene->members[index];
-  const struct {
-    const char *key;
-    double value;
-  } numbers[] = {{"stiffness", m->stiffness},
-                 {"axial_stiffness", m->axial_stiffness},
-                 {"damping", m->damping},
-                 {"damping_ratio", m->damping_ratio},
-                 {"mass", m->mass}};
-  bool valid = true;
-  for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
-    valid &= strut_check_range(checker, STRUT_ON_MEMBER, index, numbers[i].key, owner,
-                               numbers[i].value, STRUT_NOT_NEGATIVE);
-  const char *key = rest_key(m->rest_kind);
-  if (!key || (unsigned)m->kind > STRUT_CABLE) {
-    strut_report_finding(checker, STRUT_ON_MEMBER, index, "kind", "%s is of an unknown kind",
-                         owner);
-    return false;
-  }
-  bool length = m->rest_kind == STRUT_REST_LENGTH || m->rest_kind == STRUT_REST_RATIO;
-  valid &= strut_check_range(checker, STRUT_ON_MEMBER, index, key, owner, m->rest_value,
-                             length ? STRUT_NOT_NEGATIVE : STRUT_ANY_NUMBER);
-  return valid;
+  const strut_checked whose = {STRUT_ON_MEMBER, index, owner, NULL};
+  bool valid = strut_check_fields(checker, &whose, STRUT_FIELDS_MEMBER, m,
+                                  strut_thing_at(STRUT_THING_MEMBER)->usual);
+  if (rest_key(m->rest_kind) && (unsigned)m->kind <= STRUT_CABLE) return valid;
+  strut_report_finding(checker, STRUT_ON_MEMBER, index, "kind", "%s is of an unknown kind", owner);
+  return false;
 }
 
 /* Checks the numbers of a member together. */
@@ -295,11 +295,8 @@ static void check_shape(strut_checker *checker, size_t index, const char *owner)
 }
 
 void strut_check_members(strut_checker *checker) {
-  const double rayleigh[] = {checker->scene->rayleigh_mass, checker->scene->rayleigh_stiffness};
-  for (int k = 0; k < 2; k++)
-    strut_check_range(checker, STRUT_ON_SCENE, 0, "rayleigh",
-                      k ? "stiffness of rayleigh in the scene" : "mass of rayleigh in the scene",
-                      rayleigh[k], STRUT_NOT_NEGATIVE);
+  const strut_checked rayleigh = {STRUT_ON_SCENE, 0, "rayleigh in the scene", "rayleigh"};
+  strut_check_fields(checker, &rayleigh, STRUT_FIELDS_RAYLEIGH, checker->scene, NULL);
   for (size_t i = 0; i < checker->scene->member_count; i++) {
     char owner[200];
     strut_format_name(owner, "member", checker->scene->members[i].name, i);

@@ -8,31 +8,26 @@
 #ifndef STRUT_ENGINE_SCENE_CHECK_H
 #define STRUT_ENGINE_SCENE_CHECK_H
 
-#include "engine/scene/experiment.h"
+#include "engine/scene/things.h"
 
+/** What a finding is about: a thing, or one of the scene's own mappings. */
 typedef enum strut_subject {
-  STRUT_ON_SCENE,
-  STRUT_ON_NODE,
-  STRUT_ON_MEMBER,
-  STRUT_ON_HINGE,
-  STRUT_ON_GROUND,
-  STRUT_ON_CONTACT,
-  STRUT_ON_ACTUATOR,
-  STRUT_ON_LOAD,
-  STRUT_ON_SIGNAL,
-  STRUT_ON_CONFIGURATION,
+#define STRUT_SUBJECT_ROW(KIND, ...) STRUT_ON_##KIND,
+  STRUT_THINGS(STRUT_SUBJECT_ROW)
+#undef STRUT_SUBJECT_ROW
+      STRUT_ON_SCENE,
   STRUT_ON_EQUILIBRIA,
   STRUT_ON_INITIAL,
   STRUT_ON_SOLVER,
   STRUT_ON_RUN,
-  STRUT_ON_OUTPUT,
-  STRUT_ON_CELL,
-  STRUT_ON_COLLISION,
-  STRUT_ON_UNBALANCE,
-  STRUT_ON_SENSOR,
-  STRUT_ON_STATE,
-  STRUT_ON_SLIDER
+  STRUT_ON_OUTPUT
 } strut_subject;
+
+/** Is it a thing? */
+static inline bool strut_subject_is_thing(strut_subject subject) {
+  return subject < STRUT_ON_SCENE;
+}
+static inline strut_subject strut_on_thing(strut_thing kind) { return (strut_subject)kind; }
 
 typedef struct strut_finding {
   strut_subject subject;

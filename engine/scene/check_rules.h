@@ -4,6 +4,7 @@
 #define STRUT_ENGINE_SCENE_CHECK_RULES_H
 
 #include "engine/scene/check.h"
+#include "engine/scene/things.h"
 
 /** State of a check. */
 typedef struct strut_checker {
@@ -23,14 +24,32 @@ void strut_report_finding(strut_checker *checker, strut_subject subject, size_t 
                           const char *key, const char *format, ...)
     __attribute__((format(printf, 5, 6)));
 
+/** Is it the index of one of so many things? */
+static inline bool strut_exists(int32_t index, size_t count) {
+  return index >= 0 && (size_t)index < count;
+}
+
 /** Formats a name for messages: "member 'm1'", or "member number 3" without one. */
 const char *strut_format_name(char buffer[200], const char *kind, const char *name, size_t index);
 
-typedef enum strut_range { STRUT_ANY_NUMBER, STRUT_NOT_NEGATIVE, STRUT_ABOVE_ZERO } strut_range;
+/** Whose numbers are checked. */
+typedef struct strut_checked {
+  strut_subject subject;
+  size_t index;
+  const char *owner; /* what messages call it */
+  const char *key;   /* of the mapping in which they are; NULL: each has its own */
+} strut_checked;
 
-/** Reports a number that is not finite or outside its range; returns true where it is valid. */
-bool strut_check_range(strut_checker *checker, strut_subject subject, size_t index, const char *key,
-                       const char *owner, double value, strut_range range);
+/**
+ * Reports the numbers of an object that are not finite, or outside the range of their row. Those that are as
+ * in `usual` were not given, and valid unless they are required; NULL: all must be in their range. True where
+ * all are valid.
+ */
+bool strut_check_fields(strut_checker *checker, const strut_checked *whose,
+                        strut_thing_section section, const void *object, const void *usual);
+/** The same of one number, by the row of its key. */
+bool strut_check_number(strut_checker *checker, const strut_checked *whose,
+                        strut_thing_section section, const char *key, double value);
 
 /** Does an actuator add a force to that member, a moment to that hinge? -1: none. */
 bool strut_is_pulled(const strut_scene *scene, int32_t member, int32_t hinge);
@@ -38,20 +57,17 @@ bool strut_is_pulled(const strut_scene *scene, int32_t member, int32_t hinge);
 /** The rules, one function for each kind of thing. */
 void strut_check_names(strut_checker *checker);
 void strut_check_nodes(strut_checker *checker);
-/** check_elements.c: a valid law of member `index`? Findings name its key. */
+/** Is it a valid law of member `index`? Findings name its key. */
 bool strut_check_member_law(strut_checker *checker, size_t index, const char *owner);
 void strut_check_hinges(strut_checker *checker);
-/** check_cells.c */
 void strut_check_cells(strut_checker *checker);
-/** check_collisions.c */
 void strut_check_collisions(strut_checker *checker);
 void strut_warn_of_overlaps(strut_checker *checker);
-/** check_sliding_masses.c; after the signals. */
+/** After the signals. */
 void strut_check_sliding_masses(strut_checker *checker);
 void strut_check_members(strut_checker *checker);
 void strut_check_use(strut_checker *checker);
 void strut_check_ground(strut_checker *checker);
-/** check_feedback.c */
 void strut_check_sensors(strut_checker *checker);
 /** Is the Maxwell branch of member `index` valid? */
 void strut_check_maxwell(strut_checker *checker, size_t index, const char *owner);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
  * Samples of several numbers at once, from distributions, in the unit cube by a low-discrepancy
- * sequence, by strata or at random. The same bits whenever and wherever they are made.
+ * sequence, by strata or at random; and the points of a sensitivity analysis. The same bits whenever and
+ * wherever they are made.
  */
 #ifndef STRUT_ENGINE_SCENE_SAMPLE_H
 #define STRUT_ENGINE_SCENE_SAMPLE_H
@@ -11,6 +12,7 @@
 #include <stdint.h>
 
 #include "engine/base/export.h"
+#include "engine/scene/study.h"
 
 /** Ways to fill the unit cube, in the order of the language. */
 typedef enum strut_sample_scheme {
@@ -48,5 +50,29 @@ STRUT_API double strut_distribution_value(const strut_distribution *distribution
 STRUT_API bool strut_sample_make(strut_sample_scheme scheme, uint32_t seed, int64_t count,
                                  size_t number_count, const strut_distribution *distributions,
                                  double *const *values);
+
+/* ---- sensitivity analyses ---- */
+
+/** Most parameters: A and B are one sample. */
+enum { STRUT_SENSITIVITY_MOST = STRUT_SAMPLE_MOST_NUMBERS / 2 };
+
+/** Points of one analysis of `count` parameters. */
+STRUT_API int64_t strut_sensitivity_points(const strut_study_sensitivity *s, size_t count);
+/** First point of base sample `j`: A; then the mixed points in the order of parameters; then B. */
+STRUT_API int64_t strut_sensitivity_sample(const strut_study_sensitivity *s, size_t count,
+                                           int64_t j);
+/**
+ * Point at which parameter `i` is moved: k 0 a step up, 1 a step down, 2 and 3 half a step. Point 0 is
+ * that between them.
+ */
+STRUT_API int64_t strut_sensitivity_moved(size_t i, int k);
+/**
+ * values[i] (strut_sensitivity_points) from distribution i. A step is accuracy^(1/3) of the distance
+ * between the median and the 84th percentile, at which the error of a difference of numbers with that
+ * relative accuracy balances the curvature of the curve. False: memory is out.
+ */
+STRUT_API bool strut_sensitivity_fill(const strut_study_sensitivity *s, size_t count,
+                                      const strut_distribution *distributions,
+                                      double *const *values);
 
 #endif

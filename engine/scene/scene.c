@@ -7,6 +7,7 @@
 
 #include "engine/base/vec.h"
 #include "engine/scene/experiment.h"
+#include "engine/scene/things.h"
 
 void strut_scene_init(strut_scene *scene) {
   memset(scene, 0, sizeof *scene);
@@ -14,29 +15,17 @@ void strut_scene_init(strut_scene *scene) {
   scene->start_equilibrium = -1;
 }
 
-strut_node strut_node_default(void) { return (strut_node){.name = ""}; }
-
-strut_member strut_member_default(void) {
-  return (strut_member){.name = "",
-                        .node = {-1, -1},
-                        .kind = STRUT_BAR,
-                        .rest_kind = STRUT_REST_RATIO,
-                        .rest_value = 1};
+#define USUAL(KIND) (strut_thing_at(STRUT_THING_##KIND)->usual)
+strut_node strut_node_default(void) { return *(const strut_node *)USUAL(NODE); }
+strut_member strut_member_default(void) { return *(const strut_member *)USUAL(MEMBER); }
+strut_hinge strut_hinge_default(void) { return *(const strut_hinge *)USUAL(HINGE); }
+strut_contact strut_contact_default(void) { return *(const strut_contact *)USUAL(CONTACT); }
+strut_cell strut_cell_default(void) { return *(const strut_cell *)USUAL(CELL); }
+strut_collision strut_collision_default(void) { return *(const strut_collision *)USUAL(COLLISION); }
+strut_sliding_mass strut_sliding_mass_default(void) {
+  return *(const strut_sliding_mass *)USUAL(SLIDER);
 }
-
-strut_hinge strut_hinge_default(void) {
-  return (strut_hinge){.name = "", .node = {-1, -1, -1}, .rest_angle = (double)NAN};
-}
-
-strut_contact strut_contact_default(void) { return (strut_contact){.node = -1}; }
-
-strut_cell strut_cell_default(void) {
-  return (strut_cell){.name = "", .law = STRUT_LAW_PRESSURE, .exponent = 1.4};
-}
-
-strut_collision strut_collision_default(void) {
-  return (strut_collision){.name = "", .node = {-1, -1}, .member = {-1, -1}};
-}
+#undef USUAL
 
 void strut_scene_free(strut_scene *scene) {
   strut_arena_free(&scene->arena);
@@ -213,4 +202,59 @@ bool strut_scene_stop_grounds(strut_scene *scene, strut_arena *arena) {
   }
   scene->grounds = grounds;
   return good;
+}
+
+/* ---- masses that slide ---- */
+
+double strut_sliding_mass_scale(const strut_scene *scene, size_t index) {
+  const strut_sliding_mass *s = &scene->sliding_masses[index];
+  const int32_t *node = scene->members[s->member].node;
+  if (!s->travel) return 1.0;
+  double drawn = strut_distance(scene->nodes[node[0]].position, scene->nodes[node[1]].position);
+  return drawn > 0.0 ? 1.0 / drawn : 0.0;
+}
+
+double strut_sliding_mass_share(const strut_scene *scene, size_t index, double t) {
+  const strut_sliding_mass *s = &scene->sliding_masses[index];
+  double value, rate;
+  if (s->signal < 0) return s->share;
+  strut_signal_evaluate(scene->signals, s->signal, t, &value, &rate);
+  return s->share + strut_sliding_mass_scale(scene, index) * value;
+}
+
+double strut_sliding_mass_rate(const strut_scene *scene, size_t index, double t) {
+  const strut_sliding_mass *s = &scene->sliding_masses[index];
+  double value, rate;
+  if (s->signal < 0) return 0.0;
+  strut_signal_evaluate(scene->signals, s->signal, t, &value, &rate);
+  return strut_sliding_mass_scale(scene, index) * rate;
+}
+
+bool strut_scene_hold_sliding_masses(strut_scene *scene, strut_arena *arena) {
+  size_t count = scene->sliding_count;
+  strut_sliding_mass *held = strut_arena_allocate(arena, count, sizeof *held);
+  if (!held) return false;
+  for (size_t i = 0; i < count; i++) {
+    held[i] = scene->sliding_masses[i];
+    held[i].share = strut_sliding_mass_share(scene, i, 0.0);
+    held[i].signal = -1;
+  }
+  scene->sliding_masses = held;
+  return true;
+}
+
+/* ---- without what makes it move by itself ---- */
+
+bool strut_scene_remove_feedback(strut_scene *scene, strut_arena *arena) {
+  bool relaxes = false;
+  scene->signal_count = scene->sensor_count = scene->state_count = 0;
+  for (size_t i = 0; i < scene->member_count; i++)
+    relaxes = relaxes || scene->members[i].maxwell.stiffness > 0.0;
+  if (!relaxes) return true;
+  strut_member *members = strut_arena_allocate(arena, scene->member_count, sizeof *members);
+  if (!members) return false;
+  memcpy(members, scene->members, scene->member_count * sizeof *members);
+  for (size_t i = 0; i < scene->member_count; i++) members[i].maxwell = (strut_maxwell){0};
+  scene->members = members;
+  return true;
 }

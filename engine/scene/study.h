@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
  * A study: one model at many points, as a plain description.
- *
+ * 
  * Points are the product of all axes, the last axis fastest. An axis gives one or several
  * parameters of the model, by a list or by a range that is never expanded, so that a billion points
  * need no memory. Variants of the model are the first axis, with the single column "variant". Texts
@@ -15,8 +15,111 @@
 #include <stdint.h>
 
 #include "engine/base/export.h"
-#include "engine/scene/study_follow.h"
-#include "engine/scene/study_search.h"
+#include "engine/scene/quantity.h"
+
+/* ---- searches ---- */
+
+/** Methods of searches: X(NAME, word of the language). */
+#define STRUT_SEARCH_METHOD_TABLE(X)                                                               \
+  X(MULTISTART, "multistart")                                                                      \
+  X(CRS2, "crs2")                                                                                  \
+  X(DIRECT, "direct")                                                                              \
+  X(ISRES, "isres")                                                                                \
+  X(COBYLA, "cobyla")                                                                              \
+  X(BOBYQA, "bobyqa")                                                                              \
+  X(SBPLX, "sbplx")                                                                                \
+  X(NELDERMEAD, "neldermead")                                                                      \
+  X(CMA, "cma")                                                                                    \
+  X(NSGA2, "nsga2")
+
+typedef enum strut_search_method {
+#define STRUT_SEARCH_METHOD_ENUM(name, word) STRUT_SEARCH_##name,
+  STRUT_SEARCH_METHOD_TABLE(STRUT_SEARCH_METHOD_ENUM)
+#undef STRUT_SEARCH_METHOD_ENUM
+      STRUT_SEARCH_METHOD_COUNT
+} strut_search_method;
+
+enum { STRUT_SEARCH_MOST_CONDITIONS = 32, STRUT_SEARCH_MOST_VARIABLES = 100 };
+
+/** A place in the study's text, from 1; line 0: none. */
+typedef struct strut_search_place {
+  uint32_t line, column;
+} strut_search_place;
+
+/** A parameter that is searched for. */
+typedef struct strut_search_variable {
+  const char *name, *unit; /* unit "1": none */
+  bool word;               /* a text parameter, with choices */
+  bool logarithmic, wraps, integer;
+  double from, to;     /* SI, from < to */
+  double start;        /* where the first search begins */
+  size_t choice_count; /* above 0: a list in place of a range */
+  const double *numbers;
+  const char *const *words;
+} strut_search_variable;
+
+/** An expression of columns; strut_column.item of its program is the number of a column of the table. */
+typedef struct strut_search_formula {
+  const char *text; /* as written */
+  strut_search_place place;
+  strut_quantity_definition program; /* its length is 0 until the columns are known */
+} strut_search_formula;
+
+typedef enum strut_search_relation {
+  STRUT_SEARCH_BELOW, /* < or <= */
+  STRUT_SEARCH_ABOVE, /* > or >= */
+  STRUT_SEARCH_IS,    /* a column of words = WORD */
+  STRUT_SEARCH_IS_NOT /* != */
+} strut_search_relation;
+
+/** What must hold: LEFT < RIGHT, or of a column of words WORD. */
+typedef struct strut_search_condition {
+  const char *text; /* as written */
+  strut_search_place place;
+  strut_search_relation relation;
+  strut_search_formula left, right; /* of numbers */
+  const char *word;
+  size_t column; /* of words: its number in the table */
+} strut_search_condition;
+
+typedef struct strut_study_search {
+  bool maximise;
+  strut_search_formula goal, second; /* second.text NULL: one goal; NSGA2 is for two */
+  size_t variable_count, condition_count;
+  strut_search_variable *variables;   /* (variable_count) */
+  strut_search_condition *conditions; /* (condition_count) */
+  uint32_t method;                    /* strut_search_method */
+  int32_t starts;
+  int64_t evaluations, seed;
+  size_t axis;          /* the axis of `search` and `evaluation` */
+  size_t scenario_axes; /* how many axes follow it before that of the variables */
+  size_t column;        /* of the first variable, among the columns of all axes */
+} strut_study_search;
+
+/* ---- branches ---- */
+
+/** What zeros stand for: of the accuracy; of the steps of a branch, and of a curve over two parameters. */
+#define STRUT_FOLLOW_USUAL_PERCENT 0.1
+#define STRUT_FOLLOW_USUAL_STEPS 400
+#define STRUT_FOLLOW_USUAL_CURVE_STEPS 200
+
+typedef struct strut_study_follow {
+  const char *over, *unit; /* the parameter; unit "": none */
+  double from, to;         /* its range [SI], from < to */
+  size_t at_count;         /* 0: the model's own value, or the middle */
+  const double *at;        /* (at_count) values at which runs start branches [SI] */
+  size_t start_count;      /* 0: as the model says */
+  const char **start_from; /* (start_count) configurations */
+  double accuracy;         /* relative; 0: the usual one */
+  const char *integrator;  /* NULL: chosen */
+  int32_t steps;           /* 0: the usual ones */
+  bool basins;
+} strut_study_follow;
+
+/** Most values and configurations to start from. */
+enum { STRUT_STUDY_FOLLOW_MOST_AT = 8, STRUT_STUDY_FOLLOW_MOST_FROM = 8 };
+
+/* ---- studies ---- */
 
 /** Most points of a study, and most values of one list. */
 #define STRUT_STUDY_MOST_POINTS ((int64_t)1000000000)
@@ -213,7 +316,7 @@ typedef struct strut_study_figure {
   const double *times;             /* (time_count) [s] */
 } strut_study_figure;
 
-/** A sensitivity analysis: what follows from which parameters; see sensitivity_design.h. */
+/** A sensitivity analysis: what follows from which parameters; see sample.h. */
 typedef struct strut_study_sensitivity {
   bool wanted;
   size_t axis; /* of the study, the last one: a column for each parameter */

@@ -4,10 +4,10 @@
 #include <string.h>
 
 #include "engine/run/measure/summary.h"
+#include "engine/scene/things.h"
 #include "engine/statics/equilibria/rest_state.h"
 #include "parser/abi/handles.h"
 #include "parser/write/write_scene.h"
-#include "parser/write/write_short.h"
 
 /* ---- names ---- */
 
@@ -28,43 +28,29 @@ static const char *channel_at(unsigned recorded, size_t i) {
   return NULL;
 }
 
-#define NAMES_OF_SCENE(X)                                                                          \
-  X(parameters, parameter_count)                                                                   \
-  X(nodes, node_count)                                                                             \
-  X(members, member_count)                                                                         \
-  X(hinges, hinge_count)                                                                           \
-  X(cells, cell_count)                                                                             \
-  X(collisions, collision_count)                                                                   \
-  X(actuators, actuator_count)                                                                     \
-  X(loads, load_count)                                                                             \
-  X(sensors, sensor_count)                                                                         \
-  X(states, state_count)                                                                           \
-  X(configurations, configuration_count)                                                           \
-  X(unbalances, unbalance_count)                                                                   \
-  X(grounds, ground_count)
+/* What names may be asked for: the things of a scene first. */
+static const char *const kinds[] = {"parameters", "nodes",      "members",        "hinges",
+                                    "cells",      "collisions", "actuators",      "loads",
+                                    "sensors",    "states",     "configurations", "unbalances",
+                                    "grounds",    "sliders",    "contacts",       "quantities",
+                                    "channels",   "energies",   "kinds",          NULL};
 
-static const char *const kinds[] = {
-#define KIND(things, count) #things,
-    NAMES_OF_SCENE(KIND)
-#undef KIND
-        "sliders",
-    "contacts",
-    "quantities",
-    "channels",
-    "energies",
-    "kinds",
-    NULL};
+/* The kind of things that "nodes", "members", ... name; STRUT_THING_COUNT: none, or things without names. */
+static strut_thing thing_of(const char *kind) {
+  int k = 0;
+  if (strcmp(kind, "contacts") == 0 || strcmp(kind, "signals") == 0) return STRUT_THING_COUNT;
+  while (k < STRUT_THING_COUNT && strcmp(strut_thing_at((strut_thing)k)->things, kind) != 0) k++;
+  return (strut_thing)k;
+}
 
 static const char *const energies[] = {STRUT_ENERGY_NAMES};
 
 static const char *name_at(const strut_setup *setup, const char *kind, size_t i) {
   const strut_scene *scene = &setup->scene;
-#define NAME(things, count)                                                                        \
-  if (strcmp(kind, #things) == 0) return i < scene->count ? scene->things[i].name : NULL;
-  NAMES_OF_SCENE(NAME)
-#undef NAME
-  if (strcmp(kind, "sliders") == 0)
-    return i < scene->sliding_count ? scene->sliding_masses[i].name : NULL;
+  strut_thing thing = thing_of(kind);
+  if (thing != STRUT_THING_COUNT) return strut_thing_name(scene, thing, i);
+  if (strcmp(kind, "parameters") == 0)
+    return i < scene->parameter_count ? scene->parameters[i].name : NULL;
   if (strcmp(kind, "contacts") == 0)
     return i < scene->contact_count ? strut_contact_name(scene, i) : NULL;
   if (strcmp(kind, "quantities") == 0)
@@ -83,10 +69,8 @@ const char *strutlib_name(const strutlib_scene *scene, const char *kind, size_t 
 size_t strutlib_name_count(const strutlib_scene *scene, const char *kind) {
   if (!scene || !kind) return 0;
   const strut_scene *s = &scene->setup.scene;
-#define COUNT(things, count)                                                                       \
-  if (strcmp(kind, #things) == 0) return s->count;
-  NAMES_OF_SCENE(COUNT)
-#undef COUNT
+  strut_thing thing = thing_of(kind);
+  if (thing != STRUT_THING_COUNT) return strut_thing_count(s, thing);
   size_t count = 0;
   while (name_at(&scene->setup, kind, count)) count++;
   return count;

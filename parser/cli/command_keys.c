@@ -5,7 +5,6 @@
 #include "parser/cli/commands.h"
 #include "parser/cli/streams.h"
 #include "parser/write/keys_page.h"
-#include "parser/write/keys_text.h"
 #include "parser/yaml/diagnostics.h"
 
 enum { LINE = 79 };

@@ -2,7 +2,7 @@
 #include "parser/cli/commands.h"
 
 #include "parser/cli/streams.h"
-#include "parser/write/schema.h"
+#include "parser/write/keys_page.h"
 
 static const strut_option options[] = {
     {STRUT_OPTION_STUDY, "study", NULL, "the schema of a study instead of a scene"},

@@ -12,7 +12,7 @@
 #include "parser/cli/complete.h"
 #include "parser/read/read_scene.h"
 #include "parser/read/reader.h"
-#include "parser/read/safe_path.h"
+#include "parser/read/used_files.h"
 
 enum { LARGEST = 4 << 20, PATH = 4096 };
 

@@ -9,7 +9,7 @@
 #include "parser/cli/commands.h"
 #include "parser/cli/evaluate.h"
 #include "parser/cli/streams.h"
-#include "parser/study/dakota_file.h"
+#include "parser/study/study_request.h"
 
 enum { MOST_MESSAGES = 50 };
 

@@ -8,7 +8,7 @@
 
 #include "engine/base/memory.h"
 #include "parser/cli/commands.h"
-#include "parser/write/key_text.h"
+#include "parser/write/keys_page.h"
 
 enum { LINE = 78 };
 

@@ -11,7 +11,7 @@
 #include "engine/statics/equilibria/rest_state.h"
 #include "parser/cli/streams.h"
 #include "parser/read/read_scene.h"
-#include "parser/write/write_short.h"
+#include "parser/write/write_scene.h"
 #include "parser/yaml/memory_estimate.h"
 
 enum { MOST_MESSAGES = 50 };

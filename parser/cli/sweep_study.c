@@ -11,7 +11,7 @@
 #include "engine/study/search/score.h"
 #include "engine/study/sweep/grid.h"
 #include "parser/cli/streams.h"
-#include "parser/study/study_search.h"
+#include "parser/study/read_study.h"
 #include "parser/write/write_scene.h"
 
 enum { MOST_MESSAGES = 50 };

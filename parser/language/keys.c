@@ -7,42 +7,39 @@
 #include <string.h>
 
 #include "engine/base/number_text.h"
+#include "engine/scene/sample.h"
 #include "engine/scene/study.h"
 
 /* clang-format off */
-#define STRUT_LIMITS_ANY {STRUT_RANGE_ANY, 0.0, 0.0}
-#define STRUT_LIMITS_NOT_NEGATIVE {STRUT_RANGE_NOT_NEGATIVE, 0.0, 0.0}
-#define STRUT_LIMITS_ABOVE_ZERO {STRUT_RANGE_ABOVE_ZERO, 0.0, 0.0}
-#define STRUT_LIMITS_WHOLE(least, most) {STRUT_RANGE_WHOLE, least, most}
-
-/* A field of a type that is not listed does not compile. */
-#define STRUT_KIND_OF(lvalue) _Generic((lvalue), \
-  double: STRUT_FIELD_DOUBLE, int32_t: STRUT_FIELD_INT32, uint32_t: STRUT_FIELD_UINT32, \
-  int64_t: STRUT_FIELD_INT64, uint64_t: STRUT_FIELD_UINT64, bool: STRUT_FIELD_BOOL, \
-  double *: STRUT_FIELD_DOUBLE_PAIR, bool *: STRUT_FIELD_BOOL_PAIR, const char *: STRUT_FIELD_TEXT)
-#define STRUT_FIELD_OF_BY_HAND {STRUT_FIELD_BY_HAND, 0, 0}
-#define STRUT_FIELD_OF_FIELD(object, member) \
-  {STRUT_KIND_OF(((object *)0)->member), offsetof(object, member), sizeof(object)}
-
+#define STRUT_BELOW(SECTION) STRUT_SECTION_##SECTION
 #define STRUT_KEY_ROW(section, id, name, type, measure, range, fallback, need, set, words, field, \
                       description) \
   {STRUT_SECTION_##section, name, STRUT_TYPE_##type, STRUT_MEASURE_##measure, \
-   STRUT_LIMITS_##range, fallback, STRUT_##need, set, words, STRUT_FIELD_OF_##field, description},
+   STRUT_LIMITS_##range, fallback, STRUT_##need, set, words, {STRUT_FIELD_OF_##field}, description},
 static const strut_key table[] = {STRUT_KEY_TABLE(STRUT_KEY_ROW)};
 /* clang-format on */
 
 /* First key of each section, and one more that ends the last; a test compares it with the table. */
 static const int first[] = {
-#define STRUT_SECTION_ROW(NAME, name, first) STRUT_KEY_##first,
+#define STRUT_SECTION_ROW(NAME, name, first, ...) STRUT_KEY_##first,
     STRUT_SECTIONS(STRUT_SECTION_ROW)
 #undef STRUT_SECTION_ROW
         STRUT_KEY_COUNT};
 
 static const char *const section_names[] = {
-#define STRUT_SECTION_ROW(NAME, name, first) name,
+#define STRUT_SECTION_ROW(NAME, name, ...) name,
     STRUT_SECTIONS(STRUT_SECTION_ROW)
 #undef STRUT_SECTION_ROW
 };
+
+static const char *const introductions[] = {
+#define STRUT_SECTION_ROW(NAME, name, first, introduction) introduction,
+    STRUT_SECTIONS(STRUT_SECTION_ROW)
+#undef STRUT_SECTION_ROW
+};
+
+const strut_section strut_group_sections[STRUT_GROUP_SECTIONS] = {
+    STRUT_SECTION_MEMBER, STRUT_SECTION_NODE, STRUT_SECTION_CONTACT, STRUT_SECTION_HINGE};
 
 const strut_key *strut_key_at(int key) {
   assert(key >= 0 && key < STRUT_KEY_COUNT);
@@ -55,6 +52,7 @@ int strut_section_first(strut_section section) {
 }
 int strut_section_size(strut_section section) { return first[section + 1] - first[section]; }
 const char *strut_section_name(strut_section section) { return section_names[section]; }
+const char *strut_section_introduction(strut_section section) { return introductions[section]; }
 
 int strut_key_find(strut_section section, const char *name) {
   for (int key = first[section]; key < first[section + 1]; key++)
@@ -75,7 +73,16 @@ strut_section strut_wave_section(strut_signal_kind kind) {
 }
 
 bool strut_key_is_bound(const strut_key *key) {
-  return key->field.kind != STRUT_FIELD_BY_HAND && key->measure != STRUT_MEASURE_CONTEXT;
+  return key->field.role == STRUT_FIELD_VALUE && key->measure != STRUT_MEASURE_CONTEXT;
+}
+
+strut_section strut_section_below(const strut_key *key) {
+  bool mapping = key->field.role == STRUT_FIELD_NESTED || key->field.role == STRUT_FIELD_SECTION ||
+                 key->field.role == STRUT_FIELD_THINGS;
+  if (mapping) return (strut_section)key->field.below;
+  if (key->type != STRUT_TYPE_THINGS) return strut_section_find(key->name);
+  /* groups have keys of members, and of other things */
+  return strcmp(key->name, "groups") == 0 ? STRUT_SECTION_MEMBER : STRUT_SECTION_COUNT;
 }
 
 /* Former names stay readable for one version of strut at least; docs and models use the current ones. */

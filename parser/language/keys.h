@@ -11,82 +11,13 @@
 #include <stddef.h>
 
 #include "engine/base/export.h"
-#include "engine/scene/experiment.h"
+#include "engine/scene/things.h"
 #include "parser/expression/units.h"
 #include "parser/language/keys_table.h"
 
-/** The sections: X(NAME, name, its first key). */
-/* clang-format off */
-#define STRUT_SECTIONS(X) \
-  X(SCENE, "scene", SCENE_VERSION) \
-  X(PART, "part", PART_USE) \
-  X(PLACE, "place", PLACE_PART) \
-  X(REPEAT, "repeat", REPEAT_COUNT) \
-  X(NEXT, "next", NEXT_MERGE) \
-  X(NODE, "node", NODE_POSITION) \
-  X(MOVES, "moves", MOVES_ALONG_X) \
-  X(MEMBER, "member", MEMBER_GROUP) \
-  X(HINGE, "hinge", HINGE_NODES) \
-  X(CELL, "cell", CELL_NODES) \
-  X(GAS, "gas", GAS_KIND) \
-  X(COLLISION, "collision", COLLISION_NODE) \
-  X(BEAM, "beam", BEAM_NODES) \
-  X(CLAMPED_TO, "clamped_to", CLAMPED_TO_START) \
-  X(LAW, "law", LAW_KIND) \
-  X(RAYLEIGH, "rayleigh", RAYLEIGH_MASS) \
-  X(GROUND, "ground", GROUND_HEIGHT) \
-  X(CIRCLE, "circle", CIRCLE_CENTRE) \
-  X(MOTION, "motion", MOTION_IN_X) \
-  X(FRICTION, "friction", FRICTION_LAW) \
-  X(CONTACT, "contact", CONTACT_GROUP) \
-  X(ACTUATOR, "actuator", ACTUATOR_MEMBER) \
-  X(LOAD, "load", LOAD_NODE) \
-  X(UNBALANCE, "unbalance", UNBALANCE_NODE) \
-  X(SLIDER, "slider", SLIDER_MEMBER) \
-  X(SIGNAL, "signal", SIGNAL_CONSTANT) \
-  X(SINE, "sine", SINE_AMPLITUDE) \
-  X(HALF_SINE, "half_sine", HALF_SINE_AMPLITUDE) \
-  X(SQUARE, "square", SQUARE_AMPLITUDE) \
-  X(RAMP, "ramp", RAMP_AMPLITUDE) \
-  X(SENSOR, "sensor", SENSOR_LENGTH) \
-  X(STATE, "state", STATE_RATE) \
-  X(OSCILLATOR, "oscillator", OSCILLATOR_FREQUENCY) \
-  X(CONTROLLER, "controller", CONTROLLER_SENSOR) \
-  X(RELAY, "relay", RELAY_KIND) \
-  X(MAXWELL, "maxwell", MAXWELL_STIFFNESS) \
-  X(STARTS, "starts", STARTS_CONTACT) \
-  X(CONFIGURATION, "configuration", CONFIGURATION_CONTACTS) \
-  X(INITIAL, "initial", INITIAL_CONFIGURATION) \
-  X(SETTLE, "settle", SETTLE_SPEED) \
-  X(EQUILIBRIA, "equilibria", EQUILIBRIA_SUPPORTS) \
-  X(SOLVER, "solver", SOLVER_INTEGRATOR) \
-  X(RUN, "run", RUN_DURATION) \
-  X(MEASURE, "measure", MEASURE_LAST) \
-  X(QUANTITY, "quantity", QUANTITY_OF) \
-  X(STEADY, "steady", STEADY_TOLERANCE) \
-  X(OUTPUT, "output", OUTPUT_EVERY) \
-  X(STUDY, "study", STUDY_VERSION) \
-  X(RANGE, "range", RANGE_FROM) \
-  X(VARIANT, "variant", VARIANT_SOLVER) \
-  X(CHECK, "check", CHECK_HALF_STEP) \
-  X(FIGURE, "figure", FIGURE_KIND) \
-  X(PATH, "path", PATH_LOAD) \
-  X(FORM, "form", FORM_FROM) \
-  X(POINTS, "points", POINTS_FILE) \
-  X(SAMPLE, "sample", SAMPLE_COUNT) \
-  X(DISTRIBUTION, "distribution", DISTRIBUTION_UNIFORM) \
-  X(LIMIT, "limit", LIMIT_EVALUATIONS) \
-  X(REFINE, "refine", REFINE_WHERE) \
-  X(SENSITIVITY, "sensitivity", SENSITIVITY_OF) \
-  X(STIFFNESS_AT, "stiffness_at", STIFFNESS_AT_NODE) \
-  X(SEARCH, "search", SEARCH_MAXIMISE) \
-  X(VARIABLE, "variable", VARIABLE_FROM) \
-  X(FOLLOW, "follow", FOLLOW_OVER)
-/* clang-format on */
-
 /** The mappings of the language. */
 typedef enum strut_section {
-#define STRUT_SECTION_ROW(NAME, name, first) STRUT_SECTION_##NAME,
+#define STRUT_SECTION_ROW(NAME, ...) STRUT_SECTION_##NAME,
   STRUT_SECTIONS(STRUT_SECTION_ROW)
 #undef STRUT_SECTION_ROW
       STRUT_SECTION_COUNT
@@ -148,50 +79,6 @@ typedef enum strut_measure {
   STRUT_MEASURE_BENDING_STIFFNESS
 } strut_measure;
 
-typedef enum strut_key_range {
-  STRUT_RANGE_ANY,
-  STRUT_RANGE_NOT_NEGATIVE,
-  STRUT_RANGE_ABOVE_ZERO,
-  STRUT_RANGE_WHOLE /* a whole number from least to most */
-} strut_key_range;
-
-typedef struct strut_key_limits {
-  strut_key_range range;
-  double least, most; /* of WHOLE */
-} strut_key_limits;
-
-typedef enum strut_key_need {
-  STRUT_OPTIONAL, /* written only where it differs from the default */
-  STRUT_WRITTEN,  /* may be left out, but is always written */
-  STRUT_REQUIRED
-} strut_key_need;
-
-/** The C type of a field. */
-typedef enum strut_field_kind {
-  STRUT_FIELD_BY_HAND, /* no field: the section's reader and writer have code for the key */
-  STRUT_FIELD_DOUBLE,
-  STRUT_FIELD_INT32,
-  STRUT_FIELD_UINT32, /* enumerations and bits too */
-  STRUT_FIELD_INT64,
-  STRUT_FIELD_UINT64,
-  STRUT_FIELD_BOOL,
-  STRUT_FIELD_DOUBLE_PAIR,
-  STRUT_FIELD_BOOL_PAIR,
-  STRUT_FIELD_TEXT /* const char *; of a WORD, the word itself */
-} strut_field_kind;
-
-/** The field that holds a key's value in the object of its section. */
-typedef struct strut_field {
-  strut_field_kind kind;
-  size_t offset, object_size;
-} strut_field;
-
-/** The object of the section `ground`: its line, and the contact that every node starts from. */
-typedef struct strut_ground_section {
-  strut_ground ground;
-  strut_contact contact;
-} strut_ground_section;
-
 enum { STRUT_USUAL_PARTS = 10 };
 
 /** The object of the section `beam`, which the reader turns into nodes, members and hinges. */
@@ -208,6 +95,42 @@ typedef struct strut_beam {
   const struct strut_tree *clamped_to[2]; /* what its ends are clamped to, or NULL */
 } strut_beam;
 
+/** The object of the section `place`, as far as its keys are kept by rows. */
+typedef struct strut_place_keys {
+  uint32_t flip;      /* bits: x, y */
+  double turn, at[2]; /* [rad], [m] */
+} strut_place_keys;
+
+/** The same of `repeat`. */
+typedef struct strut_repeat_keys {
+  double turn, scale, about[2]; /* [rad], [1], [m] */
+} strut_repeat_keys;
+
+/** The object of the section `moves`. */
+typedef struct strut_moves {
+  int32_t signal[2]; /* in x, in y [m]; -1: none */
+} strut_moves;
+
+/** The object of the section `controller`: a PID controller. */
+typedef struct strut_controller {
+  int32_t sensor;
+  double target, gain, integral, derivative, every;
+  double limit[2]; /* least, most */
+  bool limited[2];
+} strut_controller;
+
+/** The object of the section `oscillator`. */
+typedef struct strut_oscillator {
+  double frequency, phase, bias; /* [Hz], [rad] */
+} strut_oscillator;
+
+/** The object of the section `sample`. */
+typedef struct strut_sample_keys {
+  int64_t count;
+  uint32_t scheme; /* strut_sample_scheme */
+  int64_t seed;
+} strut_sample_keys;
+
 /** One row of the table. */
 typedef struct strut_key {
   strut_section section;
@@ -217,8 +140,8 @@ typedef struct strut_key {
   strut_key_limits limits;
   const char *fallback; /* the default, as the reference page shows it */
   strut_key_need need;
-  int set; /* a mapping may give only one of the keys with the same set (not 0) */
-  const char *words;
+  int set;           /* a mapping may give only one of the keys with the same set (not 0) */
+  const char *words; /* of a nested mapping: what messages call it, "" if by its key */
   strut_field field;
   const char *description;
 } strut_key;
@@ -231,8 +154,7 @@ enum {
       STRUT_KEY_COUNT
 };
 
-enum { STRUT_MOST_KEYS = 48 };         /* of one section */
-enum { STRUT_MOST_THINGS = 10000000 }; /* entries of all copies of parts */
+enum { STRUT_MOST_KEYS = 48 }; /* of one section */
 
 STRUT_API const strut_key *strut_key_at(int key);
 /** First key and number of keys of a section. */
@@ -267,6 +189,11 @@ STRUT_API const char *strut_key_current(strut_section section, const char *name)
 STRUT_API strut_section strut_section_find(const char *name);
 /** "node", "half_sine", ... */
 STRUT_API const char *strut_section_name(strut_section section);
+/** What the reference says about the section. */
+STRUT_API const char *strut_section_introduction(strut_section section);
+/** The sections whose things may name groups; a group may have the keys of all. */
+enum { STRUT_GROUP_SECTIONS = 4 };
+STRUT_API extern const strut_section strut_group_sections[STRUT_GROUP_SECTIONS];
 
 /** The key of a member that gives its rest length in this way. */
 STRUT_API int strut_rest_key(strut_rest_kind kind);
@@ -274,6 +201,8 @@ STRUT_API int strut_rest_key(strut_rest_kind kind);
 STRUT_API strut_section strut_wave_section(strut_signal_kind kind);
 /** True for a key whose value is kept in a field without code of its own. */
 STRUT_API bool strut_key_is_bound(const strut_key *key);
+/** The section of the keys below a mapping's key, or STRUT_SECTION_COUNT. */
+STRUT_API strut_section strut_section_below(const strut_key *key);
 
 STRUT_API strut_dimension strut_measure_dimension(strut_measure measure);
 /** "a length such as '10 mm'"; written into buffer. */

@@ -180,8 +180,10 @@ static bool own_name(const strut_copy *scope, const char *text, strut_full_name 
 
 /* True for what belongs to the structure: a part has its own, and joins no other. */
 static bool stays_within(const strut_reader *reader, const strut_name_map *map) {
-  return map == &reader->node_names || map == &reader->member_names ||
-         map == &reader->hinge_names || map == &reader->cell_names;
+  return map == &reader->things[STRUT_THING_NODE].names ||
+         map == &reader->things[STRUT_THING_MEMBER].names ||
+         map == &reader->things[STRUT_THING_HINGE].names ||
+         map == &reader->things[STRUT_THING_CELL].names;
 }
 
 bool strut_within_part(const strut_reader *reader, const strut_tree *value,
@@ -225,7 +227,8 @@ static int32_t find_seen(const strut_reader *reader, const strut_name_map *map,
                          const strut_copy *scope, const char *name) {
   int32_t index = find_resolved(reader, map, name);
   strut_full_name full;
-  if (index < 0 || map != &reader->node_names || !reader->copies || !reader->copies->ported_count)
+  if (index < 0 || map != &reader->things[STRUT_THING_NODE].names || !reader->copies ||
+      !reader->copies->ported_count)
     return index;
   return strut_name_resolve_last(reader, name, &full) &&
                  strut_name_is_hidden(reader, scope, full.text)
@@ -252,7 +255,7 @@ const char *strut_hiding_part(const strut_reader *reader, const strut_tree *valu
   if (scope ? !own_name(scope, value->text, &full) : !join_name("", value->text, &full))
     return NULL;
   if (!strut_name_resolve_last(reader, full.text, &resolved) ||
-      find_resolved(reader, &reader->node_names, resolved.text) < 0)
+      find_resolved(reader, &reader->things[STRUT_THING_NODE].names, resolved.text) < 0)
     return NULL;
   for (size_t i = 0; i < reader->copies->ported_count; i++) {
     const strut_copy *copy = reader->copies->ported_copies[i];

@@ -1,17 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Entries of copies, which become those of the scene. See expansion.h. */
+/* Entries of copies, which become those of the scene, and what is laid over them. See copies.h. */
 #include <string.h>
 
-#include "parser/read/expansion.h"
+#include "parser/read/copies.h"
+#include "parser/read/overlay.h"
 
 /* The keys of a part, or of `next`, whose entries are copied, and the scene's keys where they go. */
 static int scene_key(int key) {
   const strut_key *k = strut_key_at(key);
-  if (k->type != STRUT_TYPE_THINGS) return -1;
-  int of_scene = strut_key_find(STRUT_SECTION_SCENE, k->name);
-  bool own = of_scene == STRUT_KEY_SCENE_MERGE || of_scene == STRUT_KEY_SCENE_PARAMETERS ||
-             of_scene == STRUT_KEY_SCENE_PARTS || of_scene == STRUT_KEY_SCENE_PLACE;
-  return own ? -1 : of_scene;
+  strut_section below = strut_section_below(k);
+  bool groups = strcmp(k->name, strut_key_at(STRUT_KEY_SCENE_GROUPS)->name) == 0;
+  if (k->type != STRUT_TYPE_THINGS || (k->field.role != STRUT_FIELD_THINGS && !groups)) return -1;
+  if (below == STRUT_SECTION_PART || below == STRUT_SECTION_PLACE) return -1;
+  return strut_key_find(STRUT_SECTION_SCENE, k->name);
 }
 
 static void append(strut_entry_list *list, strut_tree *key) {
@@ -140,4 +141,220 @@ void strut_join_entries(strut_expansion *e, int key) {
   if (!slot->key) slot->key = place->key;
   slot->value = map;
   slot->state = STRUT_GIVEN;
+}
+
+/* ---- what the scene says about single things of copies ---- */
+
+strut_section strut_section_of_things(int scene_key) {
+  const strut_mapping_kind scene = {STRUT_SECTION_SCENE, false};
+  strut_mapping_kind kind = strut_kind_below(scene, strut_key_at(scene_key)->name);
+  return kind.things ? kind.section : STRUT_SECTION_COUNT;
+}
+
+static void *allocate(strut_reader *reader, size_t size) {
+  return strut_reader_allocate(reader, &reader->scratch, 1, size);
+}
+
+/* A copy of one node of the tree that shares its children. */
+static strut_tree *copied(strut_reader *reader, const strut_tree *from) {
+  size_t size = from->placed ? sizeof(strut_placed_tree) : sizeof(strut_tree);
+  strut_tree *copy = allocate(reader, size);
+  if (copy) memcpy(copy, from, size);
+  if (copy) copy->next = NULL;
+  return copy;
+}
+
+/* A copy of a whole value that keeps the scene as its scope. */
+static strut_tree *kept_in_scene(strut_reader *reader, const strut_tree *from) {
+  strut_placed_tree *copy = allocate(reader, sizeof *copy);
+  if (!copy) return NULL;
+  copy->tree = *from;
+  copy->tree.placed = true;
+  copy->tree.next = copy->tree.first = NULL;
+  strut_tree **end = &copy->tree.first;
+  for (const strut_tree *child = from->first; child; child = child->next) {
+    *end = kept_in_scene(reader, child);
+    if (!*end) return NULL;
+    end = &(*end)->next;
+  }
+  return &copy->tree;
+}
+
+/* Does a mapping give this key, or another one of its set? */
+static bool gives(const strut_tree *map, const char *name, strut_section section) {
+  int key = section == STRUT_SECTION_COUNT ? -1 : strut_key_find(section, name);
+  int set = key < 0 ? 0 : strut_key_at(key)->set;
+  for (const strut_tree *k = map->first; k; k = k->next->next) {
+    if (strcmp(k->text, name) == 0) return true;
+    int other = set ? strut_key_find(section, k->text) : -1;
+    if (other >= 0 && strut_key_at(other)->set == set) return true;
+  }
+  return false;
+}
+
+/* `[x, y]` of a node as {position: [x, y]}. */
+static bool write_out_position(strut_reader *reader, strut_tree *value) {
+  strut_tree *list = copied(reader, value), *key = copied(reader, value);
+  if (!list || !key) return false;
+  *key = (strut_tree){.kind = STRUT_TREE_SCALAR, .place = value->place, .text = "position"};
+  key->next = list;
+  value->kind = STRUT_TREE_MAP;
+  value->count = 1;
+  value->first = key;
+  return true;
+}
+
+/* Lays the mapping `over` on the value of a copied entry, whose head is its own. */
+static void lay_over(strut_reader *reader, strut_tree *value, const strut_tree *over,
+                     strut_section section) {
+  strut_tree *first = NULL, **end = &first;
+  uint32_t count = 0;
+  if (value->kind == STRUT_TREE_LIST && !write_out_position(reader, value)) return;
+  if (value->kind != STRUT_TREE_MAP) return;
+  for (const strut_tree *k = value->first; k; k = k->next->next) {
+    if (gives(over, k->text, section)) continue;
+    strut_tree *key = copied(reader, k), *below = copied(reader, k->next);
+    if (!key || !below) return;
+    *end = key, key->next = below, end = &below->next, count++;
+  }
+  for (const strut_tree *k = over->first; k; k = k->next->next) {
+    strut_tree *key = copied(reader, k), *below = kept_in_scene(reader, k->next);
+    if (!key || !below) return;
+    *end = key, key->next = below, end = &below->next, count++;
+  }
+  value->first = first;
+  value->count = count & STRUT_TREE_COUNT_MASK;
+}
+
+static bool is_removal(const strut_tree *value) {
+  return value->kind == STRUT_TREE_SCALAR && !value->quoted && strcmp(value->text, "remove") == 0;
+}
+
+/* Can the value be laid over a placed thing? If not, that is reported. */
+static bool check_value(strut_reader *reader, const strut_tree *key, int of) {
+  const strut_tree *value = key->next;
+  if (value->kind == STRUT_TREE_MAP || is_removal(value)) {
+    strut_tree *at = of == STRUT_KEY_SCENE_NODES ? strut_tree_find(value, "position", NULL) : NULL;
+    if (!at) return true;
+    strut_report_error(reader, at->place,
+                       "'%s' is placed, so its position stands in its part; give other keys here",
+                       strut_sanitised_text(reader, key->text));
+    return false;
+  }
+  strut_report_error(
+      reader, value->place,
+      "'%s' is placed already; expected keys that it should have, or remove, found %s",
+      strut_sanitised_text(reader, key->text), strut_found(reader, value));
+  return false;
+}
+
+/* The entries of copies by name. */
+typedef struct placed_index {
+  strut_name_map names;
+  strut_tree **key;
+  size_t count;
+  bool *removed;
+} placed_index;
+
+static bool index_placed(strut_reader *reader, strut_tree *first, size_t count, placed_index *all) {
+  all->key = strut_reader_allocate(reader, &reader->scratch, count, sizeof *all->key);
+  all->removed = strut_reader_allocate(reader, &reader->scratch, count, sizeof *all->removed);
+  for (strut_tree *k = first; k && all->key && all->removed; k = k->next->next) {
+    strut_add_name(reader, &all->names, k->text, all->count);
+    all->key[all->count++] = k;
+  }
+  return all->key && all->removed;
+}
+
+/* The placed entry of that full name, which may be that of a port, or -1. */
+static int32_t find_placed(const strut_reader *reader, const placed_index *all, const char *name,
+                           int key) {
+  int32_t entry = strut_name_map_find(&all->names, name);
+  if (entry >= 0 || key != STRUT_KEY_SCENE_NODES) return entry;
+  int32_t node = strut_name_map_find(&reader->copies->node_entries, name);
+  return node < 0 ? -1 : strut_name_map_find(&all->names, reader->copies->nodes[node]->text);
+}
+
+/* Does a full name begin with that of a placement? */
+static bool is_of_placement(const strut_reader *reader, const char *name) {
+  strut_full_name full;
+  strcpy(full.text, name);
+  for (char *dot = strchr(full.text, '.'); dot; dot = strchr(dot + 1, '.')) {
+    *dot = '\0';
+    if (strut_placement_find(reader, full.text)) return true;
+    *dot = '.';
+  }
+  return false;
+}
+
+/* Does the entry lack what one that stands by itself needs? Then a placed thing was meant. */
+static bool lacks_body(const strut_tree *own, int key) {
+  const strut_tree *value = own->next;
+  if (is_removal(value)) return true;
+  if (value->kind != STRUT_TREE_MAP) return false;
+  if (key == STRUT_KEY_SCENE_NODES) return !strut_tree_find(value, "position", NULL);
+  return key == STRUT_KEY_SCENE_MEMBERS && !strut_tree_find(value, "nodes", NULL);
+}
+
+/* Applies one entry of the scene to those of the copies. False: it names none of them. */
+static bool apply(strut_reader *reader, const strut_tree *own, placed_index *all, int key) {
+  strut_full_name full;
+  bool pattern = strut_is_pattern(own), found = false, fine = true;
+  if (!strut_name_resolve_last(reader, own->text, &full)) return false;
+  int32_t single = pattern ? -1 : find_placed(reader, all, full.text, key);
+  for (size_t i = pattern ? 0 : (size_t)(single < 0 ? (int32_t)all->count : single); i < all->count;
+       i++) {
+    if (pattern && !strut_name_matches(full.text, all->key[i]->text)) continue;
+    if (!found) fine = check_value(reader, own, key);
+    found = true;
+    if (fine && is_removal(own->next)) {
+      all->removed[i] = true;
+      strut_add_name(reader, &reader->copies->removed, all->key[i]->text, i);
+    } else if (fine) {
+      lay_over(reader, all->key[i]->next, own->next, strut_section_of_things(key));
+    }
+    if (!pattern) break;
+  }
+  if (!found && pattern)
+    strut_report_error(reader, own->place, "nothing that is placed fits '%s'",
+                       strut_sanitised_text(reader, own->text));
+  bool lost = !found && !pattern && is_of_placement(reader, full.text) && lacks_body(own, key);
+  if (lost)
+    strut_report_error(reader, own->place, "nothing that is placed is called '%s'%s",
+                       strut_sanitised_text(reader, own->text),
+                       strut_copy_hint_of(reader, full.text));
+  return found || pattern || lost;
+}
+
+/* Takes the removed entries out of the chain. */
+static void unlink_removed(placed_index *all, strut_tree **placed, size_t *placed_count) {
+  strut_tree **link = placed;
+  *placed_count = 0;
+  for (size_t i = 0; i < all->count; i++) {
+    if (all->removed[i]) continue;
+    *link = all->key[i];
+    link = &all->key[i]->next->next;
+    ++*placed_count;
+  }
+  *link = NULL;
+}
+
+strut_tree *strut_lay_over_copies(strut_reader *reader, const strut_tree *own, strut_tree **placed,
+                                  size_t *placed_count, uint32_t *count, int key) {
+  strut_tree *first = NULL, **end = &first;
+  placed_index all = {0};
+  bool indexed = false;
+  for (const strut_tree *k = own->first; k; k = k->next->next) {
+    bool may = strpbrk(k->text, ".*") != NULL;
+    if (may && !indexed && !index_placed(reader, *placed, *placed_count, &all)) break;
+    indexed = indexed || may;
+    if (may && apply(reader, k, &all, key)) continue;
+    strut_tree *name = copied(reader, k), *value = copied(reader, k->next);
+    if (!name || !value) break;
+    *end = name, name->next = value, end = &value->next;
+    ++*count;
+  }
+  if (indexed) unlink_removed(&all, placed, placed_count);
+  strut_name_map_free(&all.names);
+  return first;
 }

@@ -6,9 +6,6 @@
 #include "parser/read/copies.h"
 #include "parser/read/reader.h"
 
-static const strut_section sections[STRUT_GROUP_SECTIONS] = {
-    STRUT_SECTION_MEMBER, STRUT_SECTION_NODE, STRUT_SECTION_CONTACT, STRUT_SECTION_HINGE};
-
 enum { SECTIONS = STRUT_GROUP_SECTIONS, HINGE = 3 };
 
 static const char *group_name(const void *context, size_t i) {
@@ -18,7 +15,7 @@ static const char *group_name(const void *context, size_t i) {
 
 static size_t section_index(strut_section section) {
   size_t i = 0;
-  while (i < SECTIONS && sections[i] != section) i++;
+  while (i < SECTIONS && strut_group_sections[i] != section) i++;
   assert(i < SECTIONS);
   return i;
 }
@@ -51,7 +48,7 @@ static void read_item(strut_reader *reader, strut_group *group, const strut_tree
   strut_group_item item = {.key = {-1, -1, -1, -1}};
   int found = -1;
   for (size_t r = 0; r < SECTIONS; r++) {
-    item.key[r] = strut_key_named(reader, sections[r], key);
+    item.key[r] = strut_key_named(reader, strut_group_sections[r], key);
     if (found < 0) found = item.key[r];
   }
   if (found >= 0 && strut_key_at(found)->type == STRUT_TYPE_GROUPS) {
@@ -61,11 +58,11 @@ static void read_item(strut_reader *reader, strut_group *group, const strut_tree
     return;
   }
   if (found < 0) {
-    int meant = strut_unknown_key(reader, key, sections, SECTIONS, owner);
+    int meant = strut_unknown_key(reader, key, strut_group_sections, SECTIONS, owner);
     group->broken = true;
     if (meant < 0) return;
     for (size_t r = 0; r < SECTIONS; r++)
-      item.key[r] = strut_key_find(sections[r], strut_key_at(meant)->name);
+      item.key[r] = strut_key_find(strut_group_sections[r], strut_key_at(meant)->name);
     item.slot = (strut_slot){.state = STRUT_BROKEN, .key = key, .value = key->next};
     group->items[group->count++] = item;
     return;
@@ -177,10 +174,10 @@ static bool check_names(strut_reader *reader, const strut_tree *value, const cha
                        strut_owner_text(reader, owner), (unsigned)value->count, STRUT_MOST_GROUPS);
     return false;
   }
+  const strut_namespace names = {"group", &reader->group_names, group_name, reader,
+                                 reader->group_count};
   for (; item && known; item = value == item ? NULL : item->next)
-    if (strut_read_reference(reader, item, key, owner, "group", &reader->group_names, group_name,
-                             reader->group_count) < 0)
-      fine = false;
+    if (strut_read_name_of(reader, item, key, owner, &names) < 0) fine = false;
   return fine && known;
 }
 

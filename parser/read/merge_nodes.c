@@ -52,7 +52,7 @@ static double structure_size(const strut_scene *scene) {
 }
 
 static strut_place drawn_place(const merging *m, int32_t node) {
-  return m->reader->node_source[node].key->place;
+  return m->reader->things[STRUT_THING_NODE].source[node].key->place;
 }
 
 /* Reports two nodes that are apart, and where each is drawn. */
@@ -105,9 +105,11 @@ static void unite(merging *m, const strut_merger *merger, int32_t a, int32_t b) 
   for (int c = 0; c < 2; c++) kept->fixed[c] = kept->fixed[c] || node->fixed[c];
   if (reader->node_moves[goes]) {
     reader->node_moves[stays] = reader->node_moves[goes];
-    reader->node_source[stays].key = reader->node_source[goes].key; /* the scope of its signals */
+    reader->things[STRUT_THING_NODE].source[stays].key =
+        reader->things[STRUT_THING_NODE].source[goes].key; /* the scope of its signals */
   }
-  if (reader->node_source[goes].broken) reader->node_source[stays].broken = true;
+  if (reader->things[STRUT_THING_NODE].source[goes].broken)
+    reader->things[STRUT_THING_NODE].source[stays].broken = true;
 }
 
 static void merge_named(merging *m, const strut_merger *merger) {
@@ -117,10 +119,8 @@ static void merge_named(merging *m, const strut_merger *merger) {
                        : own->kind == STRUT_SCOPE_LINK ? "'next'"
                                                        : "part",
                        own && own->kind != STRUT_SCOPE_LINK ? own->placement->part->name : NULL};
-  size_t count = reader->scene->node_count;
   reader->scope = own;
-  int32_t a = strut_read_reference(reader, merger->a, "merge", owner, "node", &reader->node_names,
-                                   strut_node_name, count);
+  int32_t a = strut_read_reference(reader, merger->a, "merge", owner, STRUT_THING_NODE);
   /* in `next`, the other name is one of the next copy */
   strut_full_name full;
   const strut_tree *b_name = merger->b;
@@ -128,7 +128,7 @@ static void merge_named(merging *m, const strut_merger *merger) {
   if (own && own->kind == STRUT_SCOPE_LINK && !merger->b->placed) {
     strcpy(full.text, "next.");
     strncat(full.text, merger->b->text, sizeof full.text - 6);
-    b = strut_find_named(reader, &reader->node_names, NULL, full.text);
+    b = strut_find_thing(reader, STRUT_THING_NODE, NULL, full.text);
     if (b < 0)
       strut_report_error(
           reader, merger->b->place,
@@ -138,8 +138,7 @@ static void merge_named(merging *m, const strut_merger *merger) {
               : "unknown node '%s' of the next copy in 'merge'",
           strut_sanitised_text(reader, merger->b->text));
   } else {
-    b = strut_read_reference(reader, b_name, "merge", owner, "node", &reader->node_names,
-                             strut_node_name, count);
+    b = strut_read_reference(reader, b_name, "merge", owner, STRUT_THING_NODE);
   }
   if (a >= 0 && b >= 0) {
     double apart = distance(m, a, b);
@@ -273,14 +272,14 @@ static void name_port(strut_reader *reader, const strut_port *port) {
       strut_arena_format(&reader->scratch, "%s%s", port->scope->prefix, port->key->text);
   if (!name) reader->out_of_memory = true;
   if (port->node >= 0 && name)
-    strut_add_name(reader, &reader->node_names, name, (size_t)port->node);
+    strut_add_name(reader, &reader->things[STRUT_THING_NODE].names, name, (size_t)port->node);
 }
 
 /* Is a node other than the port's own called by its name? */
 static bool is_node_within(const strut_reader *reader, const strut_port *port) {
   strut_full_name full;
   snprintf(full.text, sizeof full.text, "%s%s", port->scope->prefix, port->key->text);
-  int32_t node = strut_name_map_find(&reader->node_names, full.text);
+  int32_t node = strut_name_map_find(&reader->things[STRUT_THING_NODE].names, full.text);
   return node >= 0 && port->node >= 0 && node != port->node;
 }
 
@@ -289,9 +288,7 @@ static void find_ports(strut_reader *reader) {
   for (strut_port *port = reader->copies->ports; port; port = port->next) {
     strut_owner owner = {"part", port->scope->placement->part->name};
     reader->scope = port->scope;
-    port->node =
-        strut_read_reference(reader, port->key->next, "ports", owner, "node", &reader->node_names,
-                             strut_node_name, reader->scene->node_count);
+    port->node = strut_read_reference(reader, port->key->next, "ports", owner, STRUT_THING_NODE);
     if (is_node_within(reader, port))
       strut_report_error(reader, port->key->place,
                          "port '%s' of part '%s' has the name of another node of the part",
@@ -318,14 +315,14 @@ static void compact(merging *m) {
     }
     index[i] = stays;
     scene->nodes[stays] = scene->nodes[i];
-    reader->node_source[stays] = reader->node_source[i];
+    reader->things[STRUT_THING_NODE].source[stays] = reader->things[STRUT_THING_NODE].source[i];
     reader->node_moves[stays] = reader->node_moves[i];
     stays++;
   }
   scene->node_count = (size_t)stays;
-  strut_name_map_free(&reader->node_names);
+  strut_name_map_free(&reader->things[STRUT_THING_NODE].names);
   for (size_t i = 0; i < m->count; i++)
-    strut_add_name(reader, &reader->node_names, name[i], (size_t)index[i]);
+    strut_add_name(reader, &reader->things[STRUT_THING_NODE].names, name[i], (size_t)index[i]);
   for (strut_port *port = reader->copies->ports; port; port = port->next) {
     if (port->node >= 0) port->node = index[port->node];
     name_port(reader, port);

@@ -7,38 +7,6 @@
 
 /* ---- what a mapping is ---- */
 
-/* The keys of the things whose mapping has this name, wherever it stands. */
-static strut_section section_of_things(const char *name) {
-  static const struct {
-    const char *name;
-    strut_section section;
-  } rows[] = {{"groups", STRUT_SECTION_MEMBER},
-              {"nodes", STRUT_SECTION_NODE},
-              {"members", STRUT_SECTION_MEMBER},
-              {"hinges", STRUT_SECTION_HINGE},
-              {"cells", STRUT_SECTION_CELL},
-              {"collisions", STRUT_SECTION_COLLISION},
-              {"beams", STRUT_SECTION_BEAM},
-              {"actuators", STRUT_SECTION_ACTUATOR},
-              {"loads", STRUT_SECTION_LOAD},
-              {"unbalances", STRUT_SECTION_UNBALANCE},
-              {"sliders", STRUT_SECTION_SLIDER},
-              {"signals", STRUT_SECTION_SIGNAL},
-              {"configurations", STRUT_SECTION_CONFIGURATION},
-              {"grounds", STRUT_SECTION_GROUND},
-              {"contacts", STRUT_SECTION_CONTACT},
-              {"sensors", STRUT_SECTION_SENSOR},
-              {"states", STRUT_SECTION_STATE},
-              {"oscillators", STRUT_SECTION_OSCILLATOR},
-              {"controllers", STRUT_SECTION_CONTROLLER},
-              {"parts", STRUT_SECTION_PART},
-              {"place", STRUT_SECTION_PLACE},
-              {"quantities", STRUT_SECTION_QUANTITY}};
-  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
-    if (strcmp(rows[i].name, name) == 0) return rows[i].section;
-  return STRUT_SECTION_COUNT;
-}
-
 strut_mapping_kind strut_kind_below(strut_mapping_kind kind, const char *key) {
   const strut_mapping_kind nothing = {STRUT_SECTION_COUNT, false};
   if (kind.section == STRUT_SECTION_COUNT) return nothing;
@@ -46,10 +14,8 @@ strut_mapping_kind strut_kind_below(strut_mapping_kind kind, const char *key) {
   int k = strut_key_find(kind.section, strut_key_current(kind.section, key));
   if (k < 0) return nothing;
   const strut_key *row = strut_key_at(k);
-  if (row->type == STRUT_TYPE_THINGS)
-    return (strut_mapping_kind){section_of_things(row->name), true};
   if (row->type == STRUT_TYPE_SIGNAL) return (strut_mapping_kind){STRUT_SECTION_SIGNAL, false};
-  return (strut_mapping_kind){strut_section_find(row->name), false};
+  return (strut_mapping_kind){strut_section_below(row), row->type == STRUT_TYPE_THINGS};
 }
 
 /* ---- keys that replace each other ---- */

@@ -82,7 +82,7 @@ static bool evaluate_set(strut_reader *reader, strut_parameter_state *p) {
   return fine;
 }
 
-/* The unit that a declared number is written with, such as "mm" of "2 mm"; "" where there is none. */
+/* The unit that a declared number is written with, such as "mm" of "2 mm"; "" without a unit. */
 static const char *unit_of(const char *text) {
   const char *rest = text + strspn(text, "+-.0123456789eE");
   if (rest == text) return "";

@@ -74,7 +74,7 @@ static bool read_strength(strut_reader *reader, const strut_tree *key, strut_own
 static bool put_coupling(builder *b, const strut_tree *key, strut_owner owner, int32_t own,
                          double bias, strut_dimension rate) {
   strut_reader *reader = b->reader;
-  int32_t other = strut_find_named(reader, &reader->state_names, NULL, key->text);
+  int32_t other = strut_find_thing(reader, STRUT_THING_STATE, NULL, key->text);
   double strength;
   bool phase = other >= 0 && strut_dimension_equal(reader->state_dimension[other], STRUT_DIM_ANGLE);
   if (!phase || other == own)
@@ -114,24 +114,22 @@ static bool read_feedback(strut_reader *reader, const strut_slot *slot, strut_ow
 bool strut_read_oscillator(strut_reader *reader, const strut_tree *key, int32_t state) {
   strut_owner owner = {"oscillator", key->text};
   strut_fields fields;
+  strut_oscillator o = {0};
   strut_program feedback = {0};
   strut_dimension rate = STRUT_DIM_FREQUENCY;
   builder b;
   strut_read_fields(reader, STRUT_SECTION_OSCILLATOR, key->next, owner, &fields);
   const strut_slot *coupling = strut_slot_of(&fields, STRUT_KEY_OSCILLATOR_COUPLING);
-  const strut_slot *bias = strut_slot_of(&fields, STRUT_KEY_OSCILLATOR_BIAS);
-  const strut_slot *frequency = strut_slot_of(&fields, STRUT_KEY_OSCILLATOR_FREQUENCY);
   bool fine = read_feedback(reader, strut_slot_of(&fields, STRUT_KEY_OSCILLATOR_FEEDBACK), owner,
                             &feedback, &rate);
   size_t couplings = coupling->state == STRUT_GIVEN ? coupling->value->count : 0;
   if (fields.broken || !begin_program(reader, 2 + 9 * couplings + feedback.length, &b))
     return false;
-  put_number(&b, STRUT_TAU * frequency->number[0], rate);
+  strut_store_fields(reader, &fields, owner, &reader->scratch, &o, sizeof o);
+  put_number(&b, STRUT_TAU * o.frequency, rate);
   const strut_tree *other = couplings ? coupling->value->first : NULL;
   for (; other; other = other->next->next)
-    fine = put_coupling(&b, other, owner, state, bias->state == STRUT_GIVEN ? bias->number[0] : 0.0,
-                        rate) &&
-           fine;
+    fine = put_coupling(&b, other, owner, state, o.bias, rate) && fine;
   for (size_t i = 0; i < feedback.length; i++) put(&b, feedback.instruction[i]);
   if (feedback.length) put_operation(&b, STRUT_OPERATION_ADD);
   reader->scene->states[state].rate = end_program(&b);
@@ -140,11 +138,10 @@ bool strut_read_oscillator(strut_reader *reader, const strut_tree *key, int32_t 
 
 /* ---- controllers ---- */
 
-/* The numbers of a controller, and what they measure. */
+/* A controller, and what its numbers measure. */
 typedef struct controller {
-  int32_t sensor, state; /* state: of the integral, or -1 */
-  double target, gain, integral, derivative, limit[2], every;
-  bool limited[2];
+  strut_controller keys;
+  int32_t state;               /* of the integral, or -1 */
   const strut_tree *bare_gain; /* where it has no unit */
   strut_dimension sensed, gained, signal;
 } controller;
@@ -166,15 +163,6 @@ void strut_list_controllers(strut_reader *reader) {
   }
 }
 
-/* A number of the controller; absent ones stay as they are. */
-static bool read_part(strut_reader *reader, strut_fields *fields, int key, strut_owner owner,
-                      strut_dimension dimension, double *number) {
-  const strut_slot *slot = strut_slot_of(fields, key);
-  return slot->state != STRUT_GIVEN ||
-         strut_read_number(reader, slot->value, strut_key_at(key)->name, owner, dimension,
-                           STRUT_RANGE_ANY, number);
-}
-
 /* The gain decides what the signal measures. */
 static bool read_gain(strut_reader *reader, strut_fields *fields, strut_owner owner,
                       controller *c) {
@@ -183,7 +171,7 @@ static bool read_gain(strut_reader *reader, strut_fields *fields, strut_owner ow
   if (!strut_read_scalar(reader, slot->value, "gain", owner, "a number such as '0.5'") ||
       !strut_read_quantity(reader, slot->value, "gain", owner, &q))
     return false;
-  c->gain = q.value;
+  c->keys.gain = q.value;
   if (q.bare) c->bare_gain = slot->value;
   c->gained = q.bare ? STRUT_DIM_NONE : q.dimension;
   c->signal = (strut_dimension){c->gained.kg + c->sensed.kg, c->gained.m + c->sensed.m,
@@ -196,26 +184,25 @@ static bool read_numbers(strut_reader *reader, strut_fields *fields, strut_owner
   if (!read_gain(reader, fields, owner, c)) return false;
   strut_dimension per_second = c->gained, seconds = c->gained;
   per_second.s -= 1.0f, seconds.s += 1.0f;
-  bool fine = read_part(reader, fields, STRUT_KEY_CONTROLLER_TARGET, owner, c->sensed, &c->target);
-  fine =
-      read_part(reader, fields, STRUT_KEY_CONTROLLER_INTEGRAL, owner, per_second, &c->integral) &&
-      fine;
-  fine =
-      read_part(reader, fields, STRUT_KEY_CONTROLLER_DERIVATIVE, owner, seconds, &c->derivative) &&
-      fine;
-  for (int k = 0; k < 2; k++) {
-    int key = k ? STRUT_KEY_CONTROLLER_MOST : STRUT_KEY_CONTROLLER_LEAST;
-    c->limited[k] = strut_slot_of(fields, key)->state == STRUT_GIVEN;
-    fine = read_part(reader, fields, key, owner, c->signal, &c->limit[k]) && fine;
-  }
-  const strut_slot *every = strut_slot_of(fields, STRUT_KEY_CONTROLLER_EVERY);
-  if (every->state == STRUT_GIVEN) c->every = every->number[0];
+  const struct {
+    int key;
+    strut_dimension dimension;
+  } numbers[] = {{STRUT_KEY_CONTROLLER_TARGET, c->sensed},
+                 {STRUT_KEY_CONTROLLER_INTEGRAL, per_second},
+                 {STRUT_KEY_CONTROLLER_DERIVATIVE, seconds},
+                 {STRUT_KEY_CONTROLLER_LEAST, c->signal},
+                 {STRUT_KEY_CONTROLLER_MOST, c->signal}};
+  bool fine = true;
+  for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
+    fine =
+        strut_store_number(reader, fields, numbers[i].key, owner, numbers[i].dimension, &c->keys) &&
+        fine;
   return fine;
 }
 
 static void put_error(builder *b, const controller *c) {
-  put_number(b, c->target, c->sensed);
-  put_column(b, STRUT_COLUMN_SENSOR, c->sensor);
+  put_number(b, c->keys.target, c->sensed);
+  put_column(b, STRUT_COLUMN_SENSOR, c->keys.sensor);
   put_operation(b, STRUT_OPERATION_SUBTRACT);
 }
 
@@ -223,24 +210,24 @@ static void put_error(builder *b, const controller *c) {
 static void put_control(builder *b, const controller *c, bool limited) {
   strut_dimension per_second = c->gained, seconds = c->gained;
   per_second.s -= 1.0f, seconds.s += 1.0f;
-  put_number(b, c->gain, c->gained);
+  put_number(b, c->keys.gain, c->gained);
   put_error(b, c);
   put_operation(b, STRUT_OPERATION_MULTIPLY);
   if (c->state >= 0) {
-    put_number(b, c->integral, per_second);
+    put_number(b, c->keys.integral, per_second);
     put_column(b, STRUT_COLUMN_STATE, c->state);
     put_operation(b, STRUT_OPERATION_MULTIPLY);
     put_operation(b, STRUT_OPERATION_ADD);
   }
-  if (c->derivative != 0.0) {
-    put_number(b, c->derivative, seconds);
-    put_column(b, STRUT_COLUMN_SENSOR_RATE, c->sensor);
+  if (c->keys.derivative != 0.0) {
+    put_number(b, c->keys.derivative, seconds);
+    put_column(b, STRUT_COLUMN_SENSOR_RATE, c->keys.sensor);
     put_operation(b, STRUT_OPERATION_MULTIPLY);
     put_operation(b, STRUT_OPERATION_SUBTRACT);
   }
   for (int k = 0; k < 2 && limited; k++) {
-    if (!c->limited[k]) continue;
-    put_number(b, c->limit[k], c->signal);
+    if (!c->keys.limited[k]) continue;
+    put_number(b, c->keys.limit[k], c->signal);
     put_operation(b, k ? STRUT_OPERATION_MIN : STRUT_OPERATION_MAX);
   }
 }
@@ -252,11 +239,11 @@ static bool make_integral(strut_reader *reader, const controller *c) {
   builder b;
   if (!begin_program(reader, MOST_INSTRUCTIONS, &b)) return false;
   put_error(&b, c);
-  if ((c->limited[0] || c->limited[1]) && c->gain != 0.0) {
+  if ((c->keys.limited[0] || c->keys.limited[1]) && c->keys.gain != 0.0) {
     put_control(&b, c, true);
     put_control(&b, c, false);
     put_operation(&b, STRUT_OPERATION_SUBTRACT);
-    put_number(&b, c->gain, c->gained);
+    put_number(&b, c->keys.gain, c->gained);
     put_operation(&b, STRUT_OPERATION_DIVIDE);
     put_operation(&b, STRUT_OPERATION_ADD);
   }
@@ -271,8 +258,8 @@ static bool add_integral(strut_reader *reader, const strut_tree *key, controller
   dimension.s += 1.0f;
   if (!name) reader->out_of_memory = true;
   if (!name) return false;
-  if (strut_name_map_find(&reader->state_names, name) >= 0 ||
-      strut_name_map_find(&reader->sensor_names, name) >= 0 ||
+  if (strut_name_map_find(&reader->things[STRUT_THING_STATE].names, name) >= 0 ||
+      strut_name_map_find(&reader->things[STRUT_THING_SENSOR].names, name) >= 0 ||
       strut_name_map_find(&reader->signal_names, name) >= 0 || strut_parameter_find(reader, name)) {
     strut_report_error(reader, key->place,
                        "the integral of controller '%s' is called '%s', a name that is taken",
@@ -286,40 +273,39 @@ static bool add_integral(strut_reader *reader, const strut_tree *key, controller
 static int32_t read_pid(strut_reader *reader, const strut_tree *key) {
   strut_owner owner = {"controller", key->text};
   strut_fields fields;
-  controller c = {.state = -1};
+  controller c = {.keys = {.sensor = -1}, .state = -1};
   builder b;
-  strut_read_fields(reader, STRUT_SECTION_CONTROLLER, key->next, owner, &fields);
+  strut_read_fields_of(reader, STRUT_SECTION_CONTROLLER, key, owner, &fields);
   if (strut_slot_of(&fields, STRUT_KEY_CONTROLLER_KIND)->state == STRUT_BROKEN) return -1;
   strut_require(reader, &fields, owner, key->place);
   const strut_slot *sensor = strut_slot_of(&fields, STRUT_KEY_CONTROLLER_SENSOR);
   const strut_slot *gain = strut_slot_of(&fields, STRUT_KEY_CONTROLLER_GAIN);
   if (fields.broken || sensor->state != STRUT_GIVEN || gain->state != STRUT_GIVEN) return -1;
-  c.sensor =
-      strut_read_reference(reader, sensor->value, "sensor", owner, "sensor", &reader->sensor_names,
-                           strut_sensor_name, reader->scene->sensor_count);
-  if (c.sensor < 0 || reader->sensor_source[c.sensor].broken) return -1;
-  strut_sensor_kind kind = reader->scene->sensors[c.sensor].kind;
+  strut_store_fields(reader, &fields, owner, &reader->scratch, &c.keys, sizeof c.keys);
+  if (c.keys.sensor < 0 || reader->things[STRUT_THING_SENSOR].source[c.keys.sensor].broken)
+    return -1;
+  strut_sensor_kind kind = reader->scene->sensors[c.keys.sensor].kind;
   c.sensed = strut_sensor_dimension(kind);
   if (!read_numbers(reader, &fields, owner, &c)) return -1;
-  if (c.derivative != 0.0 && !strut_sensor_has_rate(kind)) {
+  if (c.keys.derivative != 0.0 && !strut_sensor_has_rate(kind)) {
     strut_report_error(
         reader, key->place,
         "controller '%s' takes the derivative of sensor '%s', whose rate is not known", key->text,
-        reader->scene->sensors[c.sensor].name);
+        reader->scene->sensors[c.keys.sensor].name);
     return -1;
   }
-  if (c.limited[0] && c.limited[1] && c.limit[0] > c.limit[1]) {
+  if (c.keys.limited[0] && c.keys.limited[1] && c.keys.limit[0] > c.keys.limit[1]) {
     strut_report_error(reader, key->place,
                        "'least' of controller '%s' must not be above 'most', found %g and %g",
-                       key->text, c.limit[0], c.limit[1]);
+                       key->text, c.keys.limit[0], c.keys.limit[1]);
     return -1;
   }
-  if (c.integral != 0.0 && !add_integral(reader, key, &c)) return -1;
+  if (c.keys.integral != 0.0 && !add_integral(reader, key, &c)) return -1;
   if (!begin_program(reader, MOST_INSTRUCTIONS, &b)) return -1;
   put_control(&b, &c, true);
   strut_signal signal = strut_signal_default(STRUT_EXPRESSION);
   signal.program = end_program(&b);
-  signal.every = c.every;
+  signal.every = c.keys.every;
   return strut_add_controller_signal(reader, key, &signal, c.signal, false, c.bare_gain);
 }
 
@@ -328,7 +314,71 @@ bool strut_is_relay(const strut_tree *map) {
   return kind && kind->kind == STRUT_TREE_SCALAR && strcmp(kind->text, "relay") == 0;
 }
 
-/* Without `kind`, or with one that is none, it is a PID controller, whose keys say so. */
+/* ---- relays: controllers that switch between two values ---- */
+
+/* The thresholds, in the unit of the input. */
+static bool read_thresholds(strut_reader *reader, const strut_tree *key, strut_owner owner,
+                            strut_fields *fields, strut_dimension input, strut_relay *relay) {
+  static const int pairs[2][2] = {{STRUT_KEY_RELAY_OFF_ABOVE, STRUT_KEY_RELAY_ON_BELOW},
+                                  {STRUT_KEY_RELAY_ON_ABOVE, STRUT_KEY_RELAY_OFF_BELOW}};
+  const int *pair = pairs[strut_slot_of(fields, STRUT_KEY_RELAY_ON_ABOVE)->state == STRUT_GIVEN];
+  if (strut_slot_of(fields, pair[0])->state != STRUT_GIVEN ||
+      strut_slot_of(fields, pair[1])->state != STRUT_GIVEN) {
+    strut_report_error(reader, key->place,
+                       "controller '%s' needs two thresholds: on_above with off_below, or on_below "
+                       "with off_above",
+                       key->text);
+    return false;
+  }
+  bool fine = strut_store_number(reader, fields, pair[0], owner, input, relay);
+  return strut_store_number(reader, fields, pair[1], owner, input, relay) && fine;
+}
+
+/* The two values, which measure the same; what that is, the use of the signal decides for plain numbers. */
+static bool read_values(strut_reader *reader, strut_owner owner, strut_fields *fields,
+                        strut_relay *relay, strut_quantity *unit) {
+  const strut_slot *on = strut_slot_of(fields, STRUT_KEY_RELAY_ON_VALUE);
+  const strut_slot *off = strut_slot_of(fields, STRUT_KEY_RELAY_OFF_VALUE);
+  if (!strut_read_scalar(reader, on->value, "on_value", owner, "a number") ||
+      !strut_read_quantity(reader, on->value, "on_value", owner, unit))
+    return false;
+  relay->on = unit->value;
+  if (off->state != STRUT_GIVEN) return true;
+  if (!unit->bare)
+    return strut_read_number(reader, off->value, "off_value", owner, unit->dimension,
+                             STRUT_RANGE_ANY, &relay->off);
+  if (!strut_read_scalar(reader, off->value, "off_value", owner, "a number") ||
+      !strut_read_quantity(reader, off->value, "off_value", owner, unit))
+    return false;
+  relay->off = unit->value;
+  return true;
+}
+
+static int32_t read_relay(strut_reader *reader, const strut_tree *key) {
+  strut_owner owner = {"controller", key->text};
+  strut_fields fields;
+  strut_signal signal = strut_signal_default(STRUT_RELAY);
+  strut_quantity input, unit = {.bare = true};
+  const strut_tree *of = strut_tree_find(key->next, "of", NULL);
+  if (strut_ends_at_comma(reader, of, "of", owner)) return -1;
+  strut_read_fields(reader, STRUT_SECTION_RELAY, key->next, owner, &fields);
+  strut_require(reader, &fields, owner, key->place);
+  if (fields.broken || !of ||
+      strut_slot_of(&fields, STRUT_KEY_RELAY_ON_VALUE)->state != STRUT_GIVEN)
+    return -1;
+  if (!strut_read_signal_program(reader, of, "of", owner, &signal.program, &input)) return -1;
+  strut_store_fields(reader, &fields, owner, &reader->scene->arena, &signal.relay,
+                     sizeof signal.relay);
+  bool fine = read_thresholds(reader, key, owner, &fields,
+                              input.bare ? STRUT_DIM_NONE : input.dimension, &signal.relay);
+  fine = read_values(reader, owner, &fields, &signal.relay, &unit) && fine;
+  const strut_slot *every = strut_slot_of(&fields, STRUT_KEY_RELAY_EVERY);
+  if (every->state == STRUT_GIVEN) signal.every = every->number[0];
+  return fine ? strut_add_controller_signal(reader, key, &signal, unit.dimension, unit.bare, NULL)
+              : -1;
+}
+
+/* Without a known `kind` it is read as a PID controller, which reports the kind. */
 int32_t strut_read_controller(strut_reader *reader, const strut_tree *key) {
-  return strut_is_relay(key->next) ? strut_read_relay(reader, key) : read_pid(reader, key);
+  return strut_is_relay(key->next) ? read_relay(reader, key) : read_pid(reader, key);
 }

@@ -6,11 +6,6 @@
 
 #include "parser/read/reader.h"
 
-const char *strut_sensor_name(const void *context, size_t i) {
-  const strut_reader *reader = context;
-  return i < reader->scene->sensor_count ? reader->scene->sensors[i].name : NULL;
-}
-
 strut_dimension strut_sensor_dimension(strut_sensor_kind kind) {
   switch (kind) {
     case STRUT_SENSOR_LENGTH:
@@ -35,13 +30,14 @@ bool strut_check_variable_name(strut_reader *reader, const strut_tree *key, cons
     word++;
   if (word && name[word - 1] == '.') word = 0;
   bool sensor = strcmp(kind, "sensor") == 0, signal = strcmp(kind, "controller") == 0;
-  const char *other = strcmp(name, "t") == 0 || strcmp(name, "time") == 0 ? "the time"
-                      : strut_expression_reserved(name, length) ? "a function or a constant"
-                      : strut_parameter_find(reader, name)      ? "a parameter"
-                      : !signal && strut_name_map_find(&reader->signal_names, name) >= 0
-                          ? "a signal"
-                      : sensor && strut_name_map_find(&reader->state_names, name) >= 0 ? "a state"
-                                                                                       : NULL;
+  const char *other =
+      strcmp(name, "t") == 0 || strcmp(name, "time") == 0 ? "the time"
+      : strut_expression_reserved(name, length)           ? "a function or a constant"
+      : strut_parameter_find(reader, name)                ? "a parameter"
+      : !signal && strut_name_map_find(&reader->signal_names, name) >= 0 ? "a signal"
+      : sensor && strut_name_map_find(&reader->things[STRUT_THING_STATE].names, name) >= 0
+          ? "a state"
+          : NULL;
   if (word != length)
     strut_report_error(reader, key->place,
                        "'%s' cannot be the name of a %s, since expressions could not read it; "
@@ -54,19 +50,6 @@ bool strut_check_variable_name(strut_reader *reader, const strut_tree *key, cons
   else
     return true;
   return false;
-}
-
-static int32_t read_item(strut_reader *reader, const strut_slot *slot, int key, strut_owner owner) {
-  const char *name = strut_key_at(key)->name;
-  const strut_scene *scene = reader->scene;
-  if (key == STRUT_KEY_SENSOR_LENGTH || key == STRUT_KEY_SENSOR_FORCE)
-    return strut_read_reference(reader, slot->value, name, owner, "member", &reader->member_names,
-                                strut_member_name, scene->member_count);
-  if (key == STRUT_KEY_SENSOR_ANGLE)
-    return strut_read_reference(reader, slot->value, name, owner, "hinge", &reader->hinge_names,
-                                strut_hinge_name, scene->hinge_count);
-  return strut_read_reference(reader, slot->value, name, owner, "node", &reader->node_names,
-                              strut_node_name, scene->node_count);
 }
 
 /* A direction turns with the copy; the scene's sensors know those of the axes only. */
@@ -84,64 +67,40 @@ static bool turn_sensor(strut_reader *reader, const strut_slot *along, strut_sen
   return false;
 }
 
-static bool read_sensor(strut_reader *reader, const strut_tree *key, strut_sensor *sensor) {
-  strut_owner owner = {"sensor", key->text};
-  bool fine = strut_check_variable_name(reader, key, "sensor"), known = false;
-  strut_fields fields;
-  strut_read_fields(reader, STRUT_SECTION_SENSOR, key->next, owner, &fields);
-  if (fields.broken || !fields.map) return false;
-  strut_store_fields(reader, &fields, &reader->scene->arena, sensor, sizeof *sensor);
-  for (int k = 0; k < STRUT_SENSOR_KINDS; k++) {
-    const strut_slot *slot = strut_slot_of(&fields, STRUT_KEY_SENSOR_LENGTH + k);
-    if (slot->state != STRUT_GIVEN) continue;
-    known = true;
-    sensor->kind = (strut_sensor_kind)k;
-    if (k == STRUT_SENSOR_ENERGY) continue;
-    sensor->item = read_item(reader, slot, STRUT_KEY_SENSOR_LENGTH + k, owner);
-    if (sensor->item < 0) fine = false;
-  }
-  const strut_slot *along = strut_slot_of(&fields, STRUT_KEY_SENSOR_ALONG);
+bool strut_read_sensor(strut_reader *reader, strut_fields *fields, strut_owner owner,
+                       void *object) {
+  strut_sensor *sensor = object;
+  const strut_slot *along = strut_slot_of(fields, STRUT_KEY_SENSOR_ALONG);
   bool directed = sensor->kind == STRUT_SENSOR_POSITION || sensor->kind == STRUT_SENSOR_VELOCITY;
+  bool known = false;
+  for (int k = 0; k < STRUT_SENSOR_KINDS; k++)
+    known = known || strut_slot_of(fields, STRUT_KEY_SENSOR_LENGTH + k)->state == STRUT_GIVEN;
+  (void)owner;
+  if (fields->broken) return false;
+  if (along->state == STRUT_GIVEN) sensor->along = (uint32_t)along->word;
   if (!known)
-    strut_report_error(reader, key->place,
+    strut_report_error(reader, fields->key->place,
                        "sensor '%s' senses nothing; write one of length, force, angle, contact, "
                        "position, velocity and energy, such as {length: MEMBER}",
-                       key->text);
+                       fields->key->text);
   else if (directed && along->state == STRUT_ABSENT)
-    strut_report_error(reader, key->place, "sensor '%s' needs 'along': x or y", key->text);
+    strut_report_error(reader, fields->key->place, "sensor '%s' needs 'along': x or y",
+                       fields->key->text);
   else if (!directed && along->state != STRUT_ABSENT)
     strut_report_error(reader, along->key->place,
                        "sensor '%s' has 'along', which belongs to a position or a velocity",
-                       key->text);
+                       fields->key->text);
   else
-    return fine && (!directed || turn_sensor(reader, along, sensor));
+    return !directed || turn_sensor(reader, along, sensor);
   return false;
-}
-
-void strut_read_sensors(strut_reader *reader) {
-  strut_scene *scene = reader->scene;
-  const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_SENSORS);
-  if (!map) return;
-  scene->sensors = strut_reader_allocate(reader, &scene->arena, map->count, sizeof *scene->sensors);
-  reader->sensor_source =
-      strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->sensor_source);
-  if (!scene->sensors || !reader->sensor_source) return;
-  for (const strut_tree *key = strut_first_entry(reader, map); key;
-       key = strut_following_entry(reader, key)) {
-    size_t i = strut_next_entry(reader, &scene->sensor_count);
-    scene->sensors[i] = (strut_sensor){.name = strut_keep_text(reader, key->text), .item = -1};
-    strut_add_name(reader, &reader->sensor_names, scene->sensors[i].name, i);
-    bool fine = read_sensor(reader, key, &scene->sensors[i]);
-    reader->sensor_source[i] = (strut_source){key, key->next, !fine};
-  }
 }
 
 /* ---- expressions ---- */
 
 bool strut_find_sensed(strut_reader *reader, const char *name, strut_column *column,
                        strut_dimension *dimension) {
-  int32_t sensor = strut_find_named(reader, &reader->sensor_names, NULL, name);
-  int32_t state = strut_find_named(reader, &reader->state_names, NULL, name);
+  int32_t sensor = strut_find_thing(reader, STRUT_THING_SENSOR, NULL, name);
+  int32_t state = strut_find_thing(reader, STRUT_THING_STATE, NULL, name);
   if (state >= 0) {
     column->kind = STRUT_COLUMN_STATE, column->item = state;
     *dimension = reader->state_dimension[state];
@@ -150,15 +109,16 @@ bool strut_find_sensed(strut_reader *reader, const char *name, strut_column *col
   if (sensor < 0) return false;
   column->kind = STRUT_COLUMN_SENSOR, column->item = sensor;
   *dimension = strut_sensor_dimension(reader->scene->sensors[sensor].kind);
-  if (reader->sensor_source[sensor].broken) dimension->kg = (float)NAN; /* any */
+  if (reader->things[STRUT_THING_SENSOR].source[sensor].broken)
+    dimension->kg = (float)NAN; /* any */
   return true;
 }
 
 int strut_find_sensor_rate(strut_reader *reader, strut_piece piece, strut_column *column,
                            strut_dimension *dimension, strut_refusal *refusal) {
   const char *name = strut_arena_text(&reader->scratch, piece.text, piece.length);
-  int32_t i = name ? strut_find_named(reader, &reader->sensor_names, NULL, name) : -1;
-  bool broken = i >= 0 && reader->sensor_source[i].broken;
+  int32_t i = name ? strut_find_thing(reader, STRUT_THING_SENSOR, NULL, name) : -1;
+  bool broken = i >= 0 && reader->things[STRUT_THING_SENSOR].source[i].broken;
   if (i >= 0 && (broken || strut_sensor_has_rate(reader->scene->sensors[i].kind))) {
     column->kind = STRUT_COLUMN_SENSOR_RATE, column->item = i;
     *dimension = strut_sensor_dimension(reader->scene->sensors[i].kind);
@@ -173,8 +133,7 @@ int strut_find_sensor_rate(strut_reader *reader, strut_piece piece, strut_column
   else
     snprintf(refusal->text, sizeof refusal->text, "unknown sensor '%.*s'%s",
              piece.length > 40 ? 40 : (int)piece.length, piece.text,
-             name ? strut_hint(reader, name, strut_sensor_name, reader, reader->scene->sensor_count)
-                  : "");
+             name ? strut_hint_of_things(reader, name, STRUT_THING_SENSOR) : "");
   return -1;
 }
 
@@ -206,8 +165,7 @@ static int find_word(strut_reader *reader, strut_piece word, strut_column *colum
     return 1;
   }
   if (strut_find_variable(reader, word, column, dimension)) return column->item >= 0 ? 1 : -1;
-  size_t count = reader->scene->sensor_count;
-  const char *hint = strut_hint(reader, name, strut_sensor_name, reader, count);
+  const char *hint = strut_hint_of_things(reader, name, STRUT_THING_SENSOR);
   if (strut_slot_of(&reader->top, STRUT_KEY_SCENE_SENSORS)->state == STRUT_BROKEN) return -1;
   if (!*hint) return 0;
   snprintf(refusal->text, sizeof refusal->text, "unknown sensor '%.*s'%s", (int)word.length,
@@ -241,7 +199,7 @@ static int claims_word(void *context, strut_piece word) {
   if (word.length == 1 && *word.text == 't') return 1;
   const char *name = strut_arena_text(&reader->scratch, word.text, word.length);
   if (!name) reader->out_of_memory = true;
-  return name && strut_find_named(reader, &reader->sensor_names, NULL, name) >= 0 ? -1 : 0;
+  return name && strut_find_thing(reader, STRUT_THING_SENSOR, NULL, name) >= 0 ? -1 : 0;
 }
 
 bool strut_read_signal_program(strut_reader *reader, const strut_tree *value, const char *key,
@@ -273,9 +231,9 @@ int32_t strut_add_state(strut_reader *reader, const strut_tree *key, const char 
   scene->states[i] = (strut_internal_state){.name = strut_keep_text(reader, name),
                                             .start = start,
                                             .unit = *unit ? strut_keep_text(reader, unit) : NULL};
-  strut_add_name(reader, &reader->state_names, scene->states[i].name, i);
+  strut_add_name(reader, &reader->things[STRUT_THING_STATE].names, scene->states[i].name, i);
   reader->state_dimension[i] = dimension;
-  reader->state_source[i] = (strut_source){key, key->next, false};
+  reader->things[STRUT_THING_STATE].source[i] = (strut_source){key, key->next, false};
   return (int32_t)i;
 }
 
@@ -300,22 +258,21 @@ static void list_state(strut_reader *reader, const strut_tree *key) {
     fine = false;
   int32_t i =
       strut_add_state(reader, key, key->text, q.bare ? STRUT_DIM_NONE : q.dimension, q.value);
-  reader->state_source[i].broken = !fine;
+  reader->things[STRUT_THING_STATE].source[i].broken = !fine;
 }
 
 /* An oscillator's phase at t = 0. */
 static void list_oscillator(strut_reader *reader, const strut_tree *key) {
   strut_owner owner = {"oscillator", key->text};
   strut_fields fields;
-  double phase = 0.0;
+  strut_oscillator o = {.phase = 0.0};
   bool fine = strut_check_variable_name(reader, key, "oscillator");
-  strut_read_fields(reader, STRUT_SECTION_OSCILLATOR, key->next, owner, &fields);
+  strut_read_fields_of(reader, STRUT_SECTION_OSCILLATOR, key, owner, &fields);
   strut_require(reader, &fields, owner, key->place);
-  const strut_slot *slot = strut_slot_of(&fields, STRUT_KEY_OSCILLATOR_PHASE);
   if (fields.broken) fine = false;
-  if (slot->state == STRUT_GIVEN && !fields.broken) phase = slot->number[0];
-  int32_t i = strut_add_state(reader, key, key->text, STRUT_DIM_ANGLE, phase);
-  reader->state_source[i].broken = !fine;
+  if (fine) strut_store_fields(reader, &fields, owner, &reader->scratch, &o, sizeof o);
+  int32_t i = strut_add_state(reader, key, key->text, STRUT_DIM_ANGLE, o.phase);
+  reader->things[STRUT_THING_STATE].source[i].broken = !fine;
 }
 
 void strut_list_states(strut_reader *reader) {
@@ -327,10 +284,12 @@ void strut_list_states(strut_reader *reader) {
                 entries_of(reader, STRUT_KEY_SCENE_CONTROLLERS) + 1;
   strut_arena *scratch = &reader->scratch;
   scene->states = strut_reader_allocate(reader, &scene->arena, most, sizeof *scene->states);
-  reader->state_source = strut_reader_allocate(reader, scratch, most, sizeof *reader->state_source);
+  reader->things[STRUT_THING_STATE].source = strut_reader_allocate(
+      reader, scratch, most, sizeof *reader->things[STRUT_THING_STATE].source);
   reader->state_dimension =
       strut_reader_allocate(reader, scratch, most, sizeof *reader->state_dimension);
-  if (!scene->states || !reader->state_source || !reader->state_dimension) return;
+  if (!scene->states || !reader->things[STRUT_THING_STATE].source || !reader->state_dimension)
+    return;
   for (const strut_tree *key = strut_first_entry(reader, states); key;
        key = strut_following_entry(reader, key))
     list_state(reader, key);
@@ -362,19 +321,19 @@ void strut_read_states(strut_reader *reader) {
   for (const strut_tree *key = strut_first_entry(reader, states); key;
        key = strut_following_entry(reader, key)) {
     strut_owner owner = {"state", key->text};
-    int32_t i = strut_name_map_find(&reader->state_names, key->text);
+    int32_t i = strut_name_map_find(&reader->things[STRUT_THING_STATE].names, key->text);
     const strut_tree *rate =
         key->next->kind == STRUT_TREE_MAP ? strut_tree_find(key->next, "rate", NULL) : NULL;
-    if (i < 0 || reader->state_source[i].broken || !rate) continue;
+    if (i < 0 || reader->things[STRUT_THING_STATE].source[i].broken || !rate) continue;
     bool fine = strut_read_signal_program(reader, rate, "rate", owner,
                                           &reader->scene->states[i].rate, &q) &&
                 check_rate(reader, rate, owner, "rate", reader->state_dimension[i], &q);
-    reader->state_source[i].broken = !fine;
+    reader->things[STRUT_THING_STATE].source[i].broken = !fine;
   }
   for (const strut_tree *key = strut_first_entry(reader, oscillators); key;
        key = strut_following_entry(reader, key)) {
-    int32_t i = strut_name_map_find(&reader->state_names, key->text);
-    if (i < 0 || reader->state_source[i].broken) continue;
-    reader->state_source[i].broken = !strut_read_oscillator(reader, key, i);
+    int32_t i = strut_name_map_find(&reader->things[STRUT_THING_STATE].names, key->text);
+    if (i < 0 || reader->things[STRUT_THING_STATE].source[i].broken) continue;
+    reader->things[STRUT_THING_STATE].source[i].broken = !strut_read_oscillator(reader, key, i);
   }
 }

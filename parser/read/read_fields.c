@@ -185,7 +185,7 @@ static bool refuse_value(strut_reader *reader, int key, const strut_tree *value,
   return false;
 }
 
-/* Is the value a scalar, list or mapping, as the type requires? Its content is not looked at. */
+/* Is the value a scalar, list or mapping, as the type requires? Its content is not checked. */
 static bool shape_fits(strut_key_type type, const strut_tree *value) {
   bool scalar = value->kind == STRUT_TREE_SCALAR && !strut_is_null(value);
   switch (type) {
@@ -269,51 +269,6 @@ void strut_read_slot(strut_reader *reader, int key, const strut_tree *key_tree,
   slot->state = fine ? STRUT_GIVEN : STRUT_BROKEN;
 }
 
-static const char *store_text(strut_reader *reader, strut_arena *arena, const strut_key *key,
-                              const strut_slot *slot) {
-  char word[40] = "";
-  if (key->type == STRUT_TYPE_WORD) strut_word_at(key->words, slot->word, word, sizeof word);
-  const char *text = key->type == STRUT_TYPE_WORD ? word : slot->value->text;
-  const char *copy = strut_arena_text(arena, text, strlen(text));
-  if (copy) return copy;
-  reader->out_of_memory = true;
-  return "";
-}
-
-static void store_value(strut_reader *reader, strut_arena *arena, const strut_key *key,
-                        const strut_slot *slot, void *field) {
-  bool word = key->type == STRUT_TYPE_WORD || key->type == STRUT_TYPE_WORDS;
-  double number = word ? (double)slot->word : slot->number[0];
-  switch (key->field.kind) {
-    case STRUT_FIELD_DOUBLE: *(double *)field = number; break;
-    case STRUT_FIELD_INT32: *(int32_t *)field = (int32_t)number; break;
-    case STRUT_FIELD_UINT32: *(uint32_t *)field = (uint32_t)number; break;
-    case STRUT_FIELD_INT64: *(int64_t *)field = (int64_t)number; break;
-    case STRUT_FIELD_UINT64: *(uint64_t *)field = (uint64_t)number; break;
-    case STRUT_FIELD_BOOL: *(bool *)field = slot->word == 1; break;
-    case STRUT_FIELD_DOUBLE_PAIR: memcpy(field, slot->number, sizeof slot->number); break;
-    case STRUT_FIELD_BOOL_PAIR:
-      for (int c = 0; c < 2; c++) ((bool *)field)[c] = (slot->word >> c & 1) != 0;
-      break;
-    case STRUT_FIELD_TEXT: *(const char **)field = store_text(reader, arena, key, slot); break;
-    case STRUT_FIELD_BY_HAND: assert(false);
-  }
-}
-
-void strut_store_fields(strut_reader *reader, const strut_fields *fields, strut_arena *arena,
-                        void *object, size_t object_size) {
-  int size = strut_section_size(fields->section);
-  const strut_key *keys = strut_key_at(strut_section_first(fields->section));
-  if (strut_diagnostics_full(reader->diagnostics)) return; /* the object will not be used */
-  for (int i = 0; i < size; i++) {
-    const strut_key *key = &keys[i];
-    if (fields->slot[i].state != STRUT_GIVEN || !strut_key_is_bound(key)) continue;
-    assert(key->field.object_size == object_size);
-    store_value(reader, arena, key, &fields->slot[i], (char *)object + key->field.offset);
-  }
-  (void)object_size;
-}
-
 /* Another key of the same set that the mapping itself gives, or NULL. */
 static const strut_tree *rival(const strut_fields *fields, int key) {
   int set = strut_key_at(key)->set;
@@ -380,6 +335,12 @@ void strut_read_fields(strut_reader *reader, strut_section section, const strut_
   if (section == STRUT_SECTION_FRICTION) check_coefficients(reader, fields, owner);
 }
 
+void strut_read_fields_of(strut_reader *reader, strut_section section, const strut_tree *key,
+                          strut_owner owner, strut_fields *fields) {
+  strut_read_fields(reader, section, strut_expand_value(reader, key->next), owner, fields);
+  fields->key = key;
+}
+
 void strut_require(strut_reader *reader, strut_fields *fields, strut_owner owner,
                    strut_place place) {
   int first = strut_section_first(fields->section), size = strut_section_size(fields->section);
@@ -404,6 +365,7 @@ bool strut_read_section(strut_reader *reader, int key, strut_section section, co
   if (fields->broken) strut_suppress_missing(fields);
   if (slot->state != STRUT_GIVEN) return false;
   strut_read_fields(reader, section, slot->value, (strut_owner){owner, NULL}, fields);
+  fields->key = slot->key;
   return true;
 }
 

@@ -40,8 +40,10 @@ static void set_coefficients(friction_layers *f, strut_fields *fields) {
   double mu;
   bool both = is_given(fields, STRUT_KEY_FRICTION_MU, &mu);
   if (both || is_given(fields, STRUT_KEY_FRICTION_MU_STATIC, &all->mu_static) ||
-      is_given(fields, STRUT_KEY_FRICTION_MU_KINETIC, &all->mu_kinetic))
+      is_given(fields, STRUT_KEY_FRICTION_MU_KINETIC, &all->mu_kinetic)) {
     all->directional = false, f->given &= ~directions;
+    all->mu_static_backward = all->mu_kinetic_backward = 0.0;
+  }
   if (both || is_given(fields, STRUT_KEY_FRICTION_MU_FORWARD, &mu)) {
     all->mu_static = all->mu_kinetic = mu;
     f->given |= key_bit(STRUT_KEY_FRICTION_MU_STATIC) | key_bit(STRUT_KEY_FRICTION_MU_KINETIC);
@@ -60,7 +62,8 @@ static void add_layer(strut_reader *reader, friction_layers *f, strut_fields *fi
   f->last = fields->map;
   f->owner = owner;
   if (fields->broken) f->broken = true;
-  strut_store_fields(reader, fields, &reader->scene->arena, &f->friction, sizeof f->friction);
+  strut_store_fields(reader, fields, owner, &reader->scene->arena, &f->friction,
+                     sizeof f->friction);
   for (int i = 0; i < strut_section_size(STRUT_SECTION_FRICTION); i++)
     if (fields->slot[i].state == STRUT_GIVEN) f->given |= 1u << i;
   set_coefficients(f, fields);
@@ -167,7 +170,7 @@ static void read_contact(strut_reader *reader, const strut_tree *key, ground_def
     strut_enter_scope(reader, key);
     strut_read_fields(reader, STRUT_SECTION_CONTACT, key->next, owner, &fields);
     strut_apply_groups(reader, &fields, STRUT_KEY_CONTACT_GROUP, owner);
-    strut_store_fields(reader, &fields, &reader->scene->arena, contact, sizeof *contact);
+    strut_store_fields(reader, &fields, owner, &reader->scene->arena, contact, sizeof *contact);
     own_friction(reader, &fields, owner, &layers);
     fine = turn_friction(reader, key, defaults->along, &layers.friction) && fine && !fields.broken;
   }
@@ -177,7 +180,7 @@ static void read_contact(strut_reader *reader, const strut_tree *key, ground_def
   *source = (strut_source){key, key ? key->next : NULL, !fine};
 }
 
-/* A node that is moved cannot touch, and is none of `all`. */
+/* A node that is moved cannot touch; `all` leaves it out. */
 static bool moves(const strut_reader *reader, int32_t node) {
   return reader->node_moves && reader->node_moves[node];
 }
@@ -209,8 +212,7 @@ static bool mark_nodes(strut_reader *reader, strut_fields *fields, strut_owner o
       fine = mark_matches(reader, item, owner, touches) && fine;
       continue;
     }
-    int32_t node = strut_read_reference(reader, item, "nodes", owner, "node", &reader->node_names,
-                                        strut_node_name, count);
+    int32_t node = strut_read_reference(reader, item, "nodes", owner, STRUT_THING_NODE);
     if (node < 0) {
       fine = false;
     } else if (touches[node]) {
@@ -236,8 +238,7 @@ static bool find_entries(strut_reader *reader, strut_fields *fields, strut_owner
         if (touches[node]) entry[node] = key;
       continue;
     }
-    int32_t node = strut_read_reference(reader, key, "contacts", owner, "node", &reader->node_names,
-                                        strut_node_name, reader->scene->node_count);
+    int32_t node = strut_read_reference(reader, key, "contacts", owner, STRUT_THING_NODE);
     if (node >= 0 && touches[node]) {
       entry[node] = key;
       continue;
@@ -264,9 +265,7 @@ static bool add_copied(strut_reader *reader, unsigned char *touches, const strut
     strut_tree name = *key;
     name.text = strut_local_name(reader, key->text);
     name.placed = false;
-    int32_t node =
-        strut_read_reference(reader, &name, "contacts", owner, "node", &reader->node_names,
-                             strut_node_name, reader->scene->node_count);
+    int32_t node = strut_read_reference(reader, &name, "contacts", owner, STRUT_THING_NODE);
     if (node < 0) {
       fine = false;
     } else if (entry[node] && entry[node]->next->first != key->next->first) {
@@ -354,53 +353,6 @@ static ground_defaults read_defaults(strut_reader *reader, strut_fields *fields,
 
 /* ---- shape and motion ---- */
 
-static bool read_profile(strut_reader *reader, const strut_tree *list, strut_owner owner,
-                         strut_ground *ground) {
-  ground->shape = STRUT_GROUND_PROFILE;
-  ground->points =
-      strut_reader_allocate(reader, &reader->scene->arena, list->count, sizeof *ground->points);
-  bool fine = ground->points;
-  for (const strut_tree *point = fine ? list->first : NULL; point; point = point->next)
-    fine = strut_read_pair(reader, point, "profile", owner, STRUT_DIM_LENGTH,
-                           ground->points[ground->point_count++]) &&
-           fine;
-  return fine;
-}
-
-static bool read_circle(strut_reader *reader, const strut_slot *slot, strut_owner owner,
-                        strut_ground *ground) {
-  strut_fields fields;
-  char text[200];
-  snprintf(text, sizeof text, "the circle of %.150s", strut_owner_text(reader, owner));
-  strut_owner mine = {text, NULL};
-  ground->shape = STRUT_GROUND_CIRCLE;
-  strut_read_fields(reader, STRUT_SECTION_CIRCLE, slot->value, mine, &fields);
-  strut_require(reader, &fields, mine, slot->key->place);
-  strut_store_fields(reader, &fields, &reader->scene->arena, ground, sizeof *ground);
-  return !fields.broken;
-}
-
-static bool read_motion(strut_reader *reader, const strut_slot *slot, strut_owner owner,
-                        strut_ground *ground) {
-  strut_fields fields;
-  char text[200];
-  snprintf(text, sizeof text, "the motion of %.150s", strut_owner_text(reader, owner));
-  strut_owner mine = {text, NULL};
-  strut_read_fields(reader, STRUT_SECTION_MOTION, slot->value, mine, &fields);
-  bool fine = !fields.broken;
-  for (int c = 0; c < 2; c++) {
-    int key = c ? STRUT_KEY_MOTION_IN_Y : STRUT_KEY_MOTION_IN_X;
-    const strut_slot *signal = strut_slot_of(&fields, key);
-    const strut_dimension length = STRUT_DIM_LENGTH;
-    if (signal->state != STRUT_GIVEN) continue;
-    ground->motion[c] =
-        strut_read_signal(reader, signal->value, strut_key_at(key)->name, mine, &length);
-    ground->moves[c] = ground->motion[c] >= 0;
-    fine = fine && ground->moves[c];
-  }
-  return fine;
-}
-
 /* Keys of a line beside those of another shape. */
 static bool shape_is_alone(strut_reader *reader, strut_fields *fields, strut_owner owner) {
   static const int of_lines[] = {STRUT_KEY_GROUND_HEIGHT, STRUT_KEY_GROUND_SLOPE,
@@ -417,15 +369,10 @@ static bool shape_is_alone(strut_reader *reader, strut_fields *fields, strut_own
   return true;
 }
 
-/* A line by a point and a normal vector. */
-static bool read_line(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                      strut_ground *ground) {
-  const strut_slot *through = strut_slot_of(fields, STRUT_KEY_GROUND_THROUGH);
+/* The slope of a line by its normal vector. */
+static bool read_normal(strut_reader *reader, strut_fields *fields, strut_owner owner,
+                        strut_ground *ground) {
   const strut_slot *normal = strut_slot_of(fields, STRUT_KEY_GROUND_NORMAL);
-  if (through->state == STRUT_GIVEN) {
-    ground->placed = true;
-    ground->through[0] = through->number[0], ground->through[1] = through->number[1];
-  }
   if (normal->state != STRUT_GIVEN) return true;
   const double *n = normal->number;
   if (n[0] == 0.0 && n[1] == 0.0) {
@@ -440,20 +387,6 @@ static bool read_line(strut_reader *reader, strut_fields *fields, strut_owner ow
     ground->height = 0.0;
   }
   return true;
-}
-
-/* Reads what one ground is, and marks its fields as broken where that fails. */
-static void read_shape(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                       strut_ground *ground) {
-  const strut_slot *profile = strut_slot_of(fields, STRUT_KEY_GROUND_PROFILE);
-  const strut_slot *circle = strut_slot_of(fields, STRUT_KEY_GROUND_CIRCLE);
-  const strut_slot *motion = strut_slot_of(fields, STRUT_KEY_GROUND_MOTION);
-  bool fine = shape_is_alone(reader, fields, owner) && read_line(reader, fields, owner, ground);
-  if (profile->state == STRUT_GIVEN)
-    fine = read_profile(reader, profile->value, owner, ground) && fine;
-  if (circle->state == STRUT_GIVEN) fine = read_circle(reader, circle, owner, ground) && fine;
-  if (motion->state == STRUT_GIVEN) fine = read_motion(reader, motion, owner, ground) && fine;
-  if (!fine) fields->broken = true;
 }
 
 /* Is it the straight line at rest that `ground` was at first? A point of the line gives its height. */
@@ -504,16 +437,16 @@ static void merge_contacts(strut_reader *reader, const contact_list *lists) {
   size_t *next = strut_reader_allocate(reader, &reader->scratch, grounds, sizeof *next);
   for (size_t g = 0; g < grounds; g++) total += lists[g].count;
   scene->contacts = strut_reader_allocate(reader, &scene->arena, total, sizeof *scene->contacts);
-  reader->contact_source =
-      strut_reader_allocate(reader, &reader->scratch, total, sizeof *reader->contact_source);
-  if (!next || !scene->contacts || !reader->contact_source) return;
+  reader->things[STRUT_THING_CONTACT].source = strut_reader_allocate(
+      reader, &reader->scratch, total, sizeof *reader->things[STRUT_THING_CONTACT].source);
+  if (!next || !scene->contacts || !reader->things[STRUT_THING_CONTACT].source) return;
   for (int32_t node = 0; (size_t)node < scene->node_count; node++)
     for (size_t g = 0; g < grounds; g++)
       for (; next[g] < lists[g].count && lists[g].contact[next[g]].node == node; next[g]++) {
         size_t c = scene->contact_count++;
         scene->contacts[c] = lists[g].contact[next[g]];
         scene->contacts[c].ground = (int32_t)g;
-        reader->contact_source[c] = lists[g].source[next[g]];
+        reader->things[STRUT_THING_CONTACT].source[c] = lists[g].source[next[g]];
       }
   name_contacts(reader);
 }
@@ -523,9 +456,11 @@ static void read_one(strut_reader *reader, strut_fields *fields, strut_owner own
                      strut_place place, strut_ground *ground, contact_list *list) {
   strut_require(reader, fields, owner, place);
   strut_ground_section section = {.ground = *ground, .contact = strut_contact_default()};
-  strut_store_fields(reader, fields, &reader->scene->arena, &section, sizeof section);
+  if (!strut_store_fields(reader, fields, owner, &reader->scene->arena, &section, sizeof section) ||
+      !shape_is_alone(reader, fields, owner) ||
+      !read_normal(reader, fields, owner, &section.ground))
+    fields->broken = true;
   *ground = section.ground;
-  read_shape(reader, fields, owner, ground);
   ground_defaults defaults = read_defaults(reader, fields, &section.contact, owner);
   bool line = ground->shape == STRUT_GROUND_LINE;
   defaults.along[0] = line ? cos(ground->slope) : 1.0;
@@ -549,7 +484,7 @@ static void read_single(strut_reader *reader) {
   if (is_plain(&ground)) {
     scene->ground = ground;
     scene->contacts = list.contact, scene->contact_count = list.count;
-    reader->contact_source = list.source;
+    reader->things[STRUT_THING_CONTACT].source = list.source;
     return;
   }
   scene->grounds = strut_reader_allocate(reader, &scene->arena, 1, sizeof *scene->grounds);
@@ -582,22 +517,24 @@ void strut_read_ground(strut_reader *reader) {
   scene->grounds = strut_reader_allocate(reader, &scene->arena, map->count, sizeof *scene->grounds);
   reader->grounds =
       strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->grounds);
-  reader->ground_source =
-      strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *reader->ground_source);
-  if (!lists || !scene->grounds || !reader->grounds || !reader->ground_source) return;
+  reader->things[STRUT_THING_GROUND].source = strut_reader_allocate(
+      reader, &reader->scratch, map->count, sizeof *reader->things[STRUT_THING_GROUND].source);
+  if (!lists || !scene->grounds || !reader->grounds || !reader->things[STRUT_THING_GROUND].source)
+    return;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
     size_t g = strut_next_entry(reader, &scene->ground_count);
     strut_owner owner = {"ground", strut_keep_text(reader, key->text)};
     scene->grounds[g] = (strut_ground){.name = owner.name};
     lists[g] = (contact_list){0};
-    strut_add_name(reader, &reader->ground_names, owner.name, g);
+    strut_add_name(reader, &reader->things[STRUT_THING_GROUND].names, owner.name, g);
     bool fine = strut_read_name(reader, key, "ground");
     strut_read_fields(reader, STRUT_SECTION_GROUND, key->next, owner, &reader->grounds[g]);
     read_one(reader, &reader->grounds[g], owner, key->place, &scene->grounds[g], &lists[g]);
     if (!fine) reader->grounds[g].broken = true;
     if (reader->grounds[g].broken)
       reader->ground.broken = true; /* so that what depends on it is not reported */
-    reader->ground_source[g] = (strut_source){key, key->next, reader->grounds[g].broken};
+    reader->things[STRUT_THING_GROUND].source[g] =
+        (strut_source){key, key->next, reader->grounds[g].broken};
   }
   merge_contacts(reader, lists);
 }

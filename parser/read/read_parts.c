@@ -12,7 +12,7 @@
 #include <string.h>
 
 #include "engine/base/memory_limit.h"
-#include "parser/read/expansion.h"
+#include "parser/read/copies.h"
 
 /* ---- parts ---- */
 

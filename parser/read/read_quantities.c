@@ -94,18 +94,18 @@ static found_owner find_owner(strut_reader *reader, const char *kind, strut_piec
       .node = -1, .member = -1, .hinge = -1, .cell = -1, .collision = -1, .slider = -1};
   const char *text = text_of(reader, name);
   if (!kind || strcmp(kind, "member") == 0)
-    found.member = strut_find_named(reader, &reader->member_names, NULL, text);
+    found.member = strut_find_thing(reader, STRUT_THING_MEMBER, NULL, text);
   if (!kind || strcmp(kind, "node") == 0)
-    found.node = strut_find_named(reader, &reader->node_names, NULL, text);
+    found.node = strut_find_thing(reader, STRUT_THING_NODE, NULL, text);
   if (!kind || strcmp(kind, "hinge") == 0)
-    found.hinge = strut_find_named(reader, &reader->hinge_names, NULL, text);
+    found.hinge = strut_find_thing(reader, STRUT_THING_HINGE, NULL, text);
   if (!kind || strcmp(kind, "cell") == 0)
-    found.cell = strut_find_named(reader, &reader->cell_names, NULL, text);
+    found.cell = strut_find_thing(reader, STRUT_THING_CELL, NULL, text);
   if (!kind || strcmp(kind, "collision") == 0)
-    found.collision = strut_find_named(reader, &reader->collision_names, NULL, text);
+    found.collision = strut_find_thing(reader, STRUT_THING_COLLISION, NULL, text);
   if (found.collision >= 0) found.owners |= OWNER(COLLISION), found.what = "collision";
   if (!kind || strcmp(kind, "slider") == 0)
-    found.slider = strut_name_map_find(&reader->slider_names, text);
+    found.slider = strut_name_map_find(&reader->things[STRUT_THING_SLIDER].names, text);
   if (found.slider >= 0) found.owners |= OWNER(SLIDER), found.what = "slider";
   if (found.cell >= 0) found.owners |= OWNER(CELL), found.what = "cell";
   if (found.hinge >= 0) found.owners |= OWNER(HINGE), found.what = "hinge";
@@ -279,12 +279,11 @@ static int find_pair(void *context, strut_piece word, strut_piece first, strut_p
     }
   for (int k = 0; k < 2; k++) {
     const char *name = text_of(reader, names[k]);
-    node[k] = strut_find_named(reader, &reader->node_names, NULL, name);
+    node[k] = strut_find_thing(reader, STRUT_THING_NODE, NULL, name);
     if (node[k] >= 0) continue;
     if (all_known(reader))
       snprintf(refusal->text, sizeof refusal->text, "unknown node '%.*s'%s", shown(names[k].length),
-               names[k].text,
-               strut_hint(reader, name, strut_node_name, reader, reader->scene->node_count));
+               names[k].text, strut_hint_of_things(reader, name, STRUT_THING_NODE));
     return -1;
   }
   if (node[0] == node[1]) {
@@ -365,10 +364,10 @@ static void read_accuracy(strut_reader *reader, const strut_slot *slot, strut_ow
     *(relative ? &d->accuracy : &d->accuracy_absolute) = q.value;
 }
 
-/* The value that an arrival waits for, of the expression's dimension. */
-static void read_target(strut_reader *reader, const strut_slot *slot, strut_owner owner,
-                        const strut_tree *key, strut_dimension dimension, bool known,
-                        strut_quantity_definition *d) {
+/* The value that an arrival waits for, of the expression's dimension; NULL: that is not known. */
+static void read_target(strut_reader *reader, strut_fields *fields, strut_owner owner,
+                        const strut_dimension *dimension, strut_quantity_definition *d) {
+  const strut_slot *slot = strut_slot_of(fields, STRUT_KEY_QUANTITY_TARGET);
   bool wanted = d->take == STRUT_TAKE_ARRIVAL, given = slot->state == STRUT_GIVEN;
   char unit[STRUT_SUFFIX_TEXT];
   if (slot->state == STRUT_BROKEN) return;
@@ -378,11 +377,11 @@ static void read_target(strut_reader *reader, const strut_slot *slot, strut_owne
                        "another 'take'",
                        strut_owner_text(reader, owner));
   else if (!given && wanted)
-    strut_report_error(reader, key->place, "%s lacks 'target', the value that it waits for",
+    strut_report_error(reader, fields->key->place, "%s lacks 'target', the value that it waits for",
                        strut_owner_text(reader, owner));
-  if (!given || !wanted || !known) return;
-  strut_read_number(reader, slot->value, "target", owner, dimension, STRUT_RANGE_ANY, &d->target);
-  strut_dimension_suffix(dimension, unit, sizeof unit);
+  if (!given || !wanted || !dimension) return;
+  strut_read_number(reader, slot->value, "target", owner, *dimension, STRUT_RANGE_ANY, &d->target);
+  strut_dimension_suffix(*dimension, unit, sizeof unit);
   d->target_unit = *unit ? strut_keep_text(reader, unit) : "1";
 }
 
@@ -417,7 +416,7 @@ static void read_quantity(strut_reader *reader, const strut_tree *key,
   bool map = of->kind == STRUT_TREE_MAP;
   if (strut_ends_at_comma(reader, map ? strut_tree_find(of, "of", NULL) : of, "of", owner)) return;
   if (map) {
-    strut_read_fields(reader, STRUT_SECTION_QUANTITY, of, owner, &fields);
+    strut_read_fields_of(reader, STRUT_SECTION_QUANTITY, key, owner, &fields);
     strut_require(reader, &fields, owner, key->place);
     const strut_slot *slot = strut_slot_of(&fields, STRUT_KEY_QUANTITY_OF);
     of = slot->state == STRUT_GIVEN ? slot->value : NULL;
@@ -427,10 +426,8 @@ static void read_quantity(strut_reader *reader, const strut_tree *key,
     return;
   }
   bool known = of && read_expression(reader, of, owner, d, &dimension);
-  strut_store_fields(reader, &fields, &reader->scene->arena, d, sizeof *d);
-  if (of && map)
-    read_target(reader, strut_slot_of(&fields, STRUT_KEY_QUANTITY_TARGET), owner, key, dimension,
-                known, d);
+  strut_store_fields(reader, &fields, owner, &reader->scene->arena, d, sizeof *d);
+  if (of && map) read_target(reader, &fields, owner, known ? &dimension : NULL, d);
   if (d->take == STRUT_TAKE_RATE) dimension.s -= 1.0f;
   if (d->take == STRUT_TAKE_ARRIVAL) dimension = STRUT_DIM_TIME;
   read_accuracy(reader, strut_slot_of(&fields, STRUT_KEY_QUANTITY_ACCURACY), owner, dimension,

@@ -75,7 +75,7 @@ static bool read_wave(strut_reader *reader, strut_section section, const strut_t
     else if (key->measure == STRUT_MEASURE_ANGLE)
       signal->phase = slot->number[0] / STRUT_TAU; /* kept in turns */
   }
-  strut_store_fields(reader, &fields, &reader->scene->arena, signal, sizeof *signal);
+  strut_store_fields(reader, &fields, owner, &reader->scene->arena, signal, sizeof *signal);
   return fine;
 }
 
@@ -152,49 +152,32 @@ static bool read_expression(strut_reader *reader, const strut_tree *value, strut
 }
 
 /* The event with which the signal's time begins. */
-static bool read_trigger(strut_reader *reader, const strut_slot *slot, strut_owner owner,
-                         strut_trigger *trigger) {
-  char text[200];
-  strut_fields fields;
-  if (slot->state != STRUT_GIVEN) return slot->state == STRUT_ABSENT;
-  snprintf(text, sizeof text, "the start of %.150s", strut_owner_text(reader, owner));
-  strut_owner within = {text, NULL};
-  strut_read_fields(reader, STRUT_SECTION_STARTS, slot->value, within, &fields);
-  if (fields.broken) return false;
-  strut_store_fields(reader, &fields, &reader->scene->arena, trigger, sizeof *trigger);
-  const strut_slot *contact = strut_slot_of(&fields, STRUT_KEY_STARTS_CONTACT);
-  const strut_slot *sensor = strut_slot_of(&fields, STRUT_KEY_STARTS_SENSOR);
-  const strut_slot *above = strut_slot_of(&fields, STRUT_KEY_STARTS_ABOVE);
-  const strut_slot *below = strut_slot_of(&fields, STRUT_KEY_STARTS_BELOW);
-  const strut_slot *level = above->state == STRUT_GIVEN ? above : below;
-  if (contact->state != STRUT_GIVEN && sensor->state != STRUT_GIVEN) {
-    strut_report_error(reader, slot->value->place,
+bool strut_read_trigger(strut_reader *reader, strut_fields *fields, strut_owner owner,
+                        void *object) {
+  strut_trigger *trigger = object;
+  const strut_slot *contact = strut_slot_of(fields, STRUT_KEY_STARTS_CONTACT);
+  const strut_slot *sensor = strut_slot_of(fields, STRUT_KEY_STARTS_SENSOR);
+  int key = STRUT_KEY_STARTS_ABOVE;
+  if (strut_slot_of(fields, key)->state != STRUT_GIVEN) key = STRUT_KEY_STARTS_BELOW;
+  bool level = strut_slot_of(fields, key)->state == STRUT_GIVEN;
+  bool sensed = sensor->state == STRUT_GIVEN;
+  if (fields->broken) return false;
+  if (contact->state != STRUT_GIVEN && !sensed) {
+    strut_report_error(reader, fields->map->place,
                        "%s names no event; write {contact: NODE}, or {sensor: NAME, above: LEVEL}",
-                       text);
+                       owner.kind);
     return false;
   }
-  if ((sensor->state == STRUT_GIVEN) != (level->state == STRUT_GIVEN)) {
-    strut_report_error(reader, slot->value->place,
-                       sensor->state == STRUT_GIVEN
-                           ? "%s needs a level, 'above' or 'below', of its sensor"
-                           : "%s gives a level, which only a sensor passes",
-                       text);
+  if (sensed != level) {
+    strut_report_error(reader, fields->map->place,
+                       sensed ? "%s needs a level, 'above' or 'below', of its sensor"
+                              : "%s gives a level, which only a sensor passes",
+                       owner.kind);
     return false;
   }
-  trigger->kind = sensor->state != STRUT_GIVEN  ? STRUT_TRIGGER_CONTACT
-                  : above->state == STRUT_GIVEN ? STRUT_TRIGGER_ABOVE
-                                                : STRUT_TRIGGER_BELOW;
-  if (trigger->kind == STRUT_TRIGGER_CONTACT) {
-    trigger->item = strut_read_node(reader, contact->value, within);
-    return trigger->item >= 0;
-  }
-  trigger->item =
-      strut_read_reference(reader, sensor->value, "sensor", within, "sensor", &reader->sensor_names,
-                           strut_sensor_name, reader->scene->sensor_count);
-  if (trigger->item < 0) return false;
-  strut_dimension sensed = strut_sensor_dimension(reader->scene->sensors[trigger->item].kind);
-  return strut_read_number(reader, level->value, level == above ? "above" : "below", within, sensed,
-                           STRUT_RANGE_ANY, &trigger->level);
+  if (!sensed || trigger->item < 0) return trigger->item >= 0;
+  strut_dimension dimension = strut_sensor_dimension(reader->scene->sensors[trigger->item].kind);
+  return strut_store_number(reader, fields, key, owner, dimension, trigger);
 }
 
 /* A signal written out: a mapping with one key. */
@@ -215,21 +198,18 @@ static int32_t read_literal(strut_reader *reader, const strut_tree *map, strut_o
   if (kinds != 1 || fields.broken) return -1;
   const strut_tree *value = fields.slot[chosen].value;
   strut_signal signal = strut_signal_default((strut_signal_kind)chosen);
-  strut_store_fields(reader, &fields, &reader->scene->arena, &signal, sizeof signal);
-  bool fine;
+  bool fine =
+      strut_store_fields(reader, &fields, owner, &reader->scene->arena, &signal, sizeof signal);
   if (signal.kind == STRUT_CONSTANT)
-    fine = read_value(reader, value, "constant", owner, &m, &signal.amplitude);
+    fine = read_value(reader, value, "constant", owner, &m, &signal.amplitude) && fine;
   else if (signal.kind == STRUT_TABLE)
-    fine = read_table(reader, value, owner, &m, &signal);
+    fine = read_table(reader, value, owner, &m, &signal) && fine;
   else if (signal.kind == STRUT_EXPRESSION)
-    fine = read_expression(reader, value, owner, &m, &signal);
+    fine = read_expression(reader, value, owner, &m, &signal) && fine;
   else if (signal.kind == STRUT_SUM)
-    fine = read_sum(reader, value, owner, &m, &signal);
+    fine = read_sum(reader, value, owner, &m, &signal) && fine;
   else
-    fine = read_wave(reader, strut_wave_section(signal.kind), value, owner, &m, &signal);
-  if (!read_trigger(reader, strut_slot_of(&fields, STRUT_KEY_SIGNAL_STARTS), owner,
-                    &signal.trigger))
-    fine = false;
+    fine = read_wave(reader, strut_wave_section(signal.kind), value, owner, &m, &signal) && fine;
   if (m.expected) m.bare = false, m.dimension = *m.expected;
   return fine ? add_signal(reader, &signal, &m, value) : -1;
 }
@@ -323,8 +303,9 @@ static int32_t read_signal(strut_reader *reader, const strut_tree *value, const 
   if (value->kind == STRUT_TREE_MAP) return read_literal(reader, value, owner, expected);
   if (!strut_read_scalar(reader, value, key, owner, "a signal or the name of one")) return -1;
   if (strut_slot_of(&reader->top, STRUT_KEY_SCENE_SIGNALS)->state == STRUT_BROKEN) return -1;
-  int32_t i = strut_read_reference(reader, value, key, owner, "signal", &reader->signal_names,
-                                   signal_name, reader->named_count);
+  const strut_namespace names = {"signal", &reader->signal_names, signal_name, reader,
+                                 reader->named_count};
+  int32_t i = strut_read_name_of(reader, value, key, owner, &names);
   if (i < 0) return -1;
   int32_t index = read_named(reader, &reader->named[i]);
   return index >= 0 && claim(reader, index, value, expected) ? index : -1;

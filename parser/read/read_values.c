@@ -290,38 +290,38 @@ bool strut_read_pair(strut_reader *reader, const strut_tree *value, const char *
 /* Names as they are called within a copy; those of other things are "". */
 typedef struct local_names {
   const strut_reader *reader;
-  strut_names *names;
+  const strut_namespace *names;
 } local_names;
 
 static const char *local_name(const void *context, size_t i) {
   const local_names *all = context;
-  const char *name = all->names(all->reader, i);
+  const char *name = all->names->name(all->names->context, i);
   const char *local = name ? strut_local_name(all->reader, name) : NULL;
   return local == name && name ? "" : local;
 }
 
 static const char *hint_of_names(strut_reader *reader, const strut_tree *value,
-                                 const strut_name_map *map, strut_names *names, size_t count) {
-  const local_names within = {reader, names};
+                                 const strut_namespace *n) {
+  const local_names within = {reader, n};
   const char *word = value->text, *hint = strut_copy_hint(reader, value);
-  if (!*hint && reader->scope) hint = strut_hint(reader, word, local_name, &within, count);
+  if (!*hint && reader->scope) hint = strut_hint(reader, word, local_name, &within, n->count);
   if (*hint) return hint;
-  if (!strut_within_part(reader, value, map)) return strut_hint(reader, word, names, reader, count);
-  return strut_name_map_find(map, word) < 0 ? "" : "; a part knows its own only";
+  if (!strut_within_part(reader, value, n->map))
+    return strut_hint(reader, word, n->name, n->context, n->count);
+  return strut_name_map_find(n->map, word) < 0 ? "" : "; a part knows its own only";
 }
 
-int32_t strut_read_reference(strut_reader *reader, const strut_tree *value, const char *key,
-                             strut_owner owner, const char *kind, const strut_name_map *map,
-                             strut_names *names, size_t count) {
+int32_t strut_read_name_of(strut_reader *reader, const strut_tree *value, const char *key,
+                           strut_owner owner, const strut_namespace *names) {
+  const strut_name_map *nodes = &reader->things[STRUT_THING_NODE].names;
   if (!is_scalar(value)) {
     char expected[80];
-    snprintf(expected, sizeof expected, "the name of a %s", kind);
+    snprintf(expected, sizeof expected, "the name of a %s", names->kind);
     strut_read_scalar(reader, value, key, owner, expected);
     return -1;
   }
-  int32_t index = strut_find_named(reader, map, value, value->text);
-  const char *hiding =
-      index < 0 && map == &reader->node_names ? strut_hiding_part(reader, value) : NULL;
+  int32_t index = strut_find_named(reader, names->map, value, value->text);
+  const char *hiding = index < 0 && names->map == nodes ? strut_hiding_part(reader, value) : NULL;
   if (hiding)
     strut_report_error(reader, value->place,
                        "node '%s' in '%s' of %s is not among the ports of part '%s', which shows "
@@ -329,10 +329,9 @@ int32_t strut_read_reference(strut_reader *reader, const strut_tree *value, cons
                        strut_sanitised_text(reader, value->text), key,
                        strut_owner_text(reader, owner), hiding);
   else if (index < 0)
-    strut_report_error(reader, value->place, "unknown %s '%s' in '%s' of %s%s", kind,
+    strut_report_error(reader, value->place, "unknown %s '%s' in '%s' of %s%s", names->kind,
                        strut_sanitised_text(reader, value->text), key,
-                       strut_owner_text(reader, owner),
-                       hint_of_names(reader, value, map, names, count));
+                       strut_owner_text(reader, owner), hint_of_names(reader, value, names));
   return index;
 }
 

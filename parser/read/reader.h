@@ -40,11 +40,11 @@ typedef struct strut_slot {
 typedef struct strut_fields {
   strut_section section;
   bool broken;           /* some value, or the mapping itself, could not be read */
-  const strut_tree *map; /* NULL: there is none */
+  bool unresolved;       /* a thing that it must name is not known */
+  const strut_tree *map; /* NULL: the mapping is absent */
+  const strut_tree *key; /* whose value it is, where reading needs its place */
   strut_slot slot[STRUT_MOST_KEYS];
 } strut_fields;
-
-enum { STRUT_GROUP_SECTIONS = 4 }; /* member, node, contact, hinge */
 
 /** One key of a group, and its number in each section that may use the group. */
 typedef struct strut_group_item {
@@ -94,6 +94,12 @@ typedef struct strut_source {
   bool broken;
 } strut_source;
 
+/** The things of one kind that were read. */
+typedef struct strut_things_read {
+  strut_name_map names;
+  strut_source *source; /* of each; NULL: there are none */
+} strut_things_read;
+
 /** A signal of the scene under construction: what its values measure. */
 typedef struct strut_signal_state {
   strut_dimension dimension;
@@ -123,29 +129,24 @@ typedef struct strut_reader {
   strut_arena scratch; /* freed with the reader */
   strut_purpose purpose;
   strut_fields top;
-  strut_name_map node_names, member_names, group_names, parameter_names, signal_names,
-      configuration_names, actuator_names, load_names, hinge_names, cell_names, collision_names,
-      unbalance_names, sensor_names, state_names, slider_names;
+  strut_things_read things[STRUT_THING_COUNT]; /* signals: their names are the next ones */
+  strut_name_map signal_names, group_names, parameter_names;
   strut_group *groups;
   size_t group_count;
   strut_parameter_state *parameters;
   size_t parameter_count, parameter_depth;
   strut_parameter_state *parameter_stack[STRUT_DEEPEST_PARAMETER]; /* being read */
-  strut_source *node_source, *member_source, *actuator_source, *load_source, *contact_source,
-      *hinge_source, *cell_source, *collision_source, *sensor_source, *state_source;
-  strut_dimension *state_dimension;   /* (states) */
+  strut_dimension *state_dimension;                                /* (states) */
   const strut_tree **velocity_source; /* (node_count) or NULL: where single velocities stand */
   strut_named_signal *named;
   size_t named_count, signal_depth, signal_capacity;
   strut_named_signal *signal_stack[STRUT_DEEPEST_SIGNAL]; /* being read */
-  strut_signal *signals; /* strut_allocate; moves to the scene at the end */
-  strut_source *unbalance_source, *slider_source;
+  strut_signal *signals;         /* strut_allocate; moves to the scene at the end */
   const strut_tree **node_moves; /* (node_count) the keys of moves of a node, or NULL */
   strut_signal_state *signal_state;
   double limit_things;         /* entries of all copies, and of beams, that are allowed */
   const char *signal_quantity; /* what the signal that is being read gives, for messages, or NULL */
   size_t signal_count;
-  strut_source *configuration_source;
   strut_fields ground, initial, settle, search, solver, run, measure, steady, output;
   const strut_tree *asking; /* the value whose expression is being evaluated */
   const char *asking_set;   /* or the parameter whose setting is */
@@ -160,9 +161,7 @@ typedef struct strut_reader {
   bool failed, out_of_memory;
   strut_row_nodes *row_nodes; /* of the deferred value that was read last; NULL: none is deferred */
   strut_fields *grounds;      /* of each of the scene's grounds; of `ground` the one above */
-  strut_source *ground_source; /* of `grounds`, or NULL */
-  strut_name_map ground_names;
-  strut_copy *scope;           /* the copy of which a thing is being read; NULL: the scene's own */
+  strut_copy *scope;          /* the copy of which a thing is being read; NULL: the scene's own */
   struct strut_copies *copies; /* NULL: the scene has no parts */
 } strut_reader;
 
@@ -234,10 +233,23 @@ bool strut_check_whole(strut_reader *reader, const strut_tree *value, const stru
 /** A list of two numbers. */
 bool strut_read_pair(strut_reader *reader, const strut_tree *value, const char *key,
                      strut_owner owner, strut_dimension dimension, double number[2]);
-/** The index of the thing that the scalar names, or -1. `kind` is "node", "member", ... */
+/** Things that a name may refer to. */
+typedef struct strut_namespace {
+  const char *kind; /* "node", "group", ... */
+  const strut_name_map *map;
+  strut_names *name; /* of number i, for suggestions */
+  const void *context;
+  size_t count;
+} strut_namespace;
+
+/** The index of what the scalar names, or -1, which was reported. */
+int32_t strut_read_name_of(strut_reader *reader, const strut_tree *value, const char *key,
+                           strut_owner owner, const strut_namespace *names);
+/** The same of a thing of the scene; -1 without a message where the things of that kind could not be read. */
 int32_t strut_read_reference(strut_reader *reader, const strut_tree *value, const char *key,
-                             strut_owner owner, const char *kind, const strut_name_map *map,
-                             strut_names *names, size_t count);
+                             strut_owner owner, strut_thing kind);
+/** "; did you mean 'x'?" or "" for the name of a thing. */
+const char *strut_hint_of_things(strut_reader *reader, const char *word, strut_thing kind);
 /** Is the name allowed? If not, that is reported. */
 bool strut_read_name(strut_reader *reader, const strut_tree *key, const char *kind);
 /** Adds a name to a map; remembers when memory is out. */
@@ -268,6 +280,11 @@ strut_copy *strut_enter_scope(strut_reader *reader, const strut_tree *key);
 /** The index of what `text` names in the scope of `value` (NULL: of the reader), or -1. */
 int32_t strut_find_named(const strut_reader *reader, const strut_name_map *map,
                          const strut_tree *value, const char *text);
+/** The same of a thing of the scene. */
+static inline int32_t strut_find_thing(const strut_reader *reader, strut_thing kind,
+                                       const strut_tree *value, const char *text) {
+  return strut_find_named(reader, &reader->things[kind].names, value, text);
+}
 /** The name within the reader's scope of one of its things. */
 const char *strut_local_name(const strut_reader *reader, const char *name);
 /** Lengths that stand in the scope of `value` are multiplied by this. */
@@ -294,7 +311,7 @@ void strut_read_fields(strut_reader *reader, strut_section section, const strut_
 /** Reports what is required and absent, at the place given. */
 void strut_require(strut_reader *reader, strut_fields *fields, strut_owner owner,
                    strut_place place);
-/** One of the words of `key`; false where it is none of them, which was reported. */
+/** One of the words of `key`; false for another text, which was reported. */
 bool strut_read_word(strut_reader *reader, const strut_key *key, const strut_tree *value,
                      strut_owner owner, int *word);
 /** Reads a value by the table's line for the key. */
@@ -307,12 +324,9 @@ strut_slot *strut_slot_of(strut_fields *fields, int key);
 /** Reports an unknown key; returns the key of the sections that was probably meant, or -1. */
 int strut_unknown_key(strut_reader *reader, const strut_tree *key, const strut_section *sections,
                       size_t count, strut_owner owner);
-/**
- * Copies every value that could be read into its field of the section's object, texts into the arena.
- * Keys without a field, and numbers whose unit depends on the context, are left to the section's reader.
- */
-void strut_store_fields(strut_reader *reader, const strut_fields *fields, strut_arena *arena,
-                        void *object, size_t object_size);
+/** The mapping behind a key, with the place of the key in `fields`. */
+void strut_read_fields_of(strut_reader *reader, strut_section section, const strut_tree *key,
+                          strut_owner owner, strut_fields *fields);
 /** Marks every absent key as broken, so that none is reported as missing. */
 void strut_suppress_missing(strut_fields *fields);
 /** Reads the mapping of a key of the scene; true if it is present and a mapping. */
@@ -320,6 +334,29 @@ bool strut_read_section(strut_reader *reader, int key, strut_section section, co
                         strut_fields *fields);
 /** The mapping of names to things that is the value of a key of the scene, or NULL. */
 const strut_tree *strut_entries(strut_reader *reader, int key);
+
+/* read_things.c: values into objects */
+
+/**
+ * Stores what could be read in the section's object by the rows of its keys, texts in the arena: values,
+ * indices of things, signals, lists and nested mappings; then what the section's own code adds
+ * (strut_section_reader). Numbers whose unit depends on the context are left to the caller. False: some of
+ * it could not be read.
+ */
+bool strut_store_fields(strut_reader *reader, strut_fields *fields, strut_owner owner,
+                        strut_arena *arena, void *object, size_t object_size);
+/** Stores the value of a key that is given, by its row; `dimension` is that of a number. */
+bool strut_store_number(strut_reader *reader, strut_fields *fields, int key, strut_owner owner,
+                        strut_dimension dimension, void *object);
+/** Sets the tag that the choice of a key sets. */
+void strut_store_choice(const strut_key *key, void *object);
+/** Reads the mapping that is the value of a key, "the KEY of OWNER", and stores its values in `object`. */
+bool strut_read_nested(strut_reader *reader, const strut_key *key, const strut_slot *slot,
+                       strut_owner owner, void *object, size_t object_size);
+
+/** What rows do not say about a section: reads the keys that are BY_HAND. False: it could not be read. */
+typedef bool strut_section_reader(strut_reader *reader, strut_fields *fields, strut_owner owner,
+                                  void *object);
 
 /* groups.c */
 
@@ -354,18 +391,19 @@ const char *strut_parameter_name(const void *reader, size_t i);
 
 /* The sections, in the order in which they are read. */
 
-void strut_read_nodes(strut_reader *reader);
-void strut_read_members(strut_reader *reader);
+/** All things of a kind, by its row in read_things.c. */
+void strut_read_things(strut_reader *reader, strut_thing kind);
+/** The key of the scene whose mapping has the things of the kind. */
+int strut_key_of_things(strut_thing kind);
 void strut_read_ground(strut_reader *reader);
 /** Enters the names of signals, so that anything may refer to them. */
 void strut_list_signals(strut_reader *reader);
 void strut_read_signals(strut_reader *reader);
-void strut_read_drives(strut_reader *reader);
-/** read_sliders.c */
-void strut_read_sliders(strut_reader *reader);
+void strut_read_nodes(strut_reader *reader);
+void strut_read_moves(strut_reader *reader);
+void strut_read_configurations(strut_reader *reader);
 /** Moves the signals into the scene. */
 void strut_keep_signals(strut_reader *reader);
-void strut_read_configurations(strut_reader *reader);
 void strut_read_search(strut_reader *reader);
 void strut_read_initial(strut_reader *reader);
 void strut_read_experiment(strut_reader *reader);
@@ -388,34 +426,20 @@ typedef void strut_pair_taker(strut_reader *reader, int32_t node, const double p
                               const strut_tree *value);
 bool strut_read_node_pairs(strut_reader *reader, const strut_tree *map, strut_owner owner,
                            strut_dimension dimension, strut_pair_taker *take);
-/** Names of nodes and members, for suggestions; the context is the reader. */
-const char *strut_node_name(const void *reader, size_t i);
-const char *strut_member_name(const void *reader, size_t i);
 
-/** The index of a node that a list names, or -1. */
-int32_t strut_read_node(strut_reader *reader, const strut_tree *item, strut_owner owner);
+/* Readers of things, or of sections, beyond their rows: entries of the tables in read_things.c. */
 
-/* read_elements.c */
+/** A thing whose value may be more than a mapping. False: it could not be read. */
+typedef bool strut_thing_reader(strut_reader *reader, const strut_tree *key, void *object);
+strut_thing_reader strut_read_node, strut_read_configuration;
+strut_section_reader strut_read_member, strut_read_hinge, strut_read_cell, strut_read_gas,
+    strut_read_collision, strut_read_actuator, strut_read_load, strut_read_unbalance,
+    strut_read_slider, strut_read_sensor, strut_read_trigger;
 
-/** Name of hinge i, or NULL after the last; the context is the reader. */
-const char *strut_hinge_name(const void *reader, size_t i);
-/**
- * The law of a member or a hinge, whose strain and force have these dimensions. True if it is absent
- * or was read.
- */
+/** The law of a member or a hinge, whose strain and force have these dimensions. */
 bool strut_read_law(strut_reader *reader, const strut_slot *slot, strut_owner owner,
                     strut_dimension strain, strut_dimension force, strut_law *law);
-void strut_read_hinges(strut_reader *reader);
 void strut_read_rayleigh(strut_reader *reader);
-
-/* read_cells.c */
-
-/** Name of cell i, or NULL after the last; the context is the reader. */
-const char *strut_cell_name(const void *reader, size_t i);
-void strut_read_cells(strut_reader *reader);
-
-/* read_collisions.c */
-void strut_read_collisions(strut_reader *reader);
 
 /* read_beams.c */
 
@@ -425,9 +449,6 @@ void strut_add_beam_members(strut_reader *reader);
 void strut_add_beam_hinges(strut_reader *reader);
 /* read_feedback.c */
 
-void strut_read_sensors(strut_reader *reader);
-/** Name of sensor i, or NULL after the last; the context is the reader. */
-const char *strut_sensor_name(const void *reader, size_t i);
 strut_dimension strut_sensor_dimension(strut_sensor_kind kind);
 /** Finds a sensor as a column and its dimension. */
 bool strut_find_sensed(strut_reader *reader, const char *name, strut_column *column,
@@ -438,7 +459,7 @@ bool strut_find_sensed(strut_reader *reader, const char *name, strut_column *col
  */
 bool strut_find_variable(strut_reader *reader, strut_piece name, strut_column *column,
                          strut_dimension *dimension);
-/** OWNER.FIELD as it stands in the text: a name with dots. */
+/** OWNER.FIELD as written in the text: a name with dots. */
 strut_piece strut_whole_name(strut_piece owner, strut_piece field);
 /** The rate of a sensor as a column, as strut_find_column. */
 int strut_find_sensor_rate(strut_reader *reader, strut_piece name, strut_column *column,
@@ -463,8 +484,6 @@ int32_t strut_add_controller_signal(strut_reader *reader, const strut_tree *key,
 int32_t strut_read_controller(strut_reader *reader, const strut_tree *key);
 /** Is the controller a relay? */
 bool strut_is_relay(const strut_tree *map);
-/** read_relay.c: the same of a relay. */
-int32_t strut_read_relay(strut_reader *reader, const strut_tree *key);
 /** An expression of the time, sensors and signals; in the scene's memory. */
 bool strut_read_signal_program(strut_reader *reader, const strut_tree *value, const char *key,
                                strut_owner owner, strut_program *program, strut_quantity *q);
@@ -473,7 +492,7 @@ bool strut_read_signal_program(strut_reader *reader, const strut_tree *value, co
  * -1: it was reported.
  */
 int32_t strut_use_signal(strut_reader *reader, const char *name, strut_dimension *dimension);
-/** The instructions in the scene's own memory; NULL: there is none left. */
+/** The instructions in the scene's own memory; NULL: out of memory. */
 strut_instruction *strut_keep_program(strut_reader *reader, const strut_compiler *compiler);
 /**
  * Within {...} a comma ends an unquoted text: angle(a, b) becomes "angle(a". True where that has
@@ -482,7 +501,7 @@ strut_instruction *strut_keep_program(strut_reader *reader, const strut_compiler
 bool strut_ends_at_comma(strut_reader *reader, const strut_tree *of, const char *key,
                          strut_owner owner);
 
-/* places.c */
+/* read_scene.c */
 
 /** Reports findings where they belong, except those that follow from what was reported before. */
 void strut_place_findings(strut_reader *reader, const strut_findings *findings);

@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Files that a scene names. See used_files.h. */
+#define _XOPEN_SOURCE 700 /* realpath belongs to the X/Open part of POSIX */
+
 #include "parser/read/used_files.h"
 
 #include <stdio.h>
@@ -7,13 +10,12 @@
 
 #include "engine/base/name_map.h"
 #include "parser/read/overlay.h"
-#include "parser/read/safe_path.h"
 
 /* Values that files which are used several times may repeat, as those of aliases. */
 enum { MOST_REPEATED = 1000000 };
 
 /* A file that was read, or is being read. */
-typedef struct file {
+typedef struct text_file {
   const char *path;
   uint64_t device, inode;
   bool known; /* device and inode are */
@@ -25,7 +27,7 @@ typedef struct file {
   strut_tree *whole;       /* and with the files of its parts */
   strut_tree *part;        /* what a part takes of that */
   size_t values, uses;     /* in all of it; how many parts have it */
-} file;
+} text_file;
 
 typedef struct loader {
   strut_document *document;
@@ -34,16 +36,17 @@ typedef struct loader {
   size_t bytes;       /* of all texts */
   size_t repeated;    /* values of files that are used again */
   size_t count;
-  file *files; /* (STRUT_USED_FILES_MOST + 1) by their numbers; the first is the scene itself */
+  text_file
+      *files; /* (STRUT_USED_FILES_MOST + 1) by their numbers; the first is the scene itself */
   unsigned depth;
-  file *stack[STRUT_DEEPEST_FILE + 1]; /* that are open */
+  text_file *stack[STRUT_DEEPEST_FILE + 1]; /* that are open */
   bool failed, out_of_memory;
 } loader;
 
 /* ---- one file ---- */
 
 /* "a.yaml -> b.yaml -> " of the files that are open, from `first` on. */
-static void format_chain(const loader *l, const file *first, char *text, size_t size) {
+static void format_chain(const loader *l, const text_file *first, char *text, size_t size) {
   size_t used = 0, i = 0;
   while (l->stack[i] != first) i++;
   *text = '\0';
@@ -61,8 +64,8 @@ static size_t set_file(strut_tree *tree, unsigned number) {
   return count;
 }
 
-/* The messages about a file, told about the scene; the first says where the file is used. */
-static void take_messages(loader *l, const strut_diagnostics *own, const file *f,
+/* Adds the messages about a file to those of the scene; the first says where the file is used. */
+static void take_messages(loader *l, const strut_diagnostics *own, const text_file *f,
                           const strut_tree *name) {
   for (size_t i = 0; i < own->count; i++) {
     strut_place place = own->items[i].place;
@@ -76,7 +79,7 @@ static void take_messages(loader *l, const strut_diagnostics *own, const file *f
 }
 
 /* The tree of the file's text, in the document's memory. NULL: it was reported. */
-static strut_tree *read_tree(loader *l, file *f, const strut_tree *name) {
+static strut_tree *read_tree(loader *l, text_file *f, const strut_tree *name) {
   const strut_used_file *used = &l->diagnostics->used[f->number - 1];
   strut_diagnostics own = {0};
   strut_diagnostics_source(&own, used->file, used->text, used->length);
@@ -93,8 +96,8 @@ static strut_tree *read_tree(loader *l, file *f, const strut_tree *name) {
 }
 
 /* The file of that name, whose text has been read. NULL: it was reported. */
-static file *find_file(loader *l, const strut_tree *name) {
-  const file *from = &l->files[name->place.file];
+static text_file *find_file(loader *l, const strut_tree *name) {
+  const text_file *from = &l->files[name->place.file];
   strut_safe_text text = {0};
   strut_error error = {0};
   strut_status status =
@@ -117,14 +120,14 @@ static file *find_file(loader *l, const strut_tree *name) {
     strut_safe_text_free(&text);
     return NULL;
   }
-  file *f = &l->files[l->count++];
+  text_file *f = &l->files[l->count++];
   l->bytes += text.length;
   strut_diagnostics_own(l->diagnostics, number, text.text);
-  *f = (file){.path = l->diagnostics->used[number - 1].file,
-              .device = text.device,
-              .inode = text.inode,
-              .known = true,
-              .number = number};
+  *f = (text_file){.path = l->diagnostics->used[number - 1].file,
+                   .device = text.device,
+                   .inode = text.inode,
+                   .known = true,
+                   .number = number};
   text.text = NULL;
   strut_safe_text_free(&text);
   f->text = read_tree(l, f, name);
@@ -133,7 +136,7 @@ static file *find_file(loader *l, const strut_tree *name) {
 }
 
 /* May the file be opened from those that are open? If not, that is reported. */
-static bool enter(loader *l, file *f, const strut_tree *name) {
+static bool enter(loader *l, text_file *f, const strut_tree *name) {
   char chain[1200];
   if (f->open) {
     format_chain(l, f, chain, sizeof chain);
@@ -151,15 +154,15 @@ static bool enter(loader *l, file *f, const strut_tree *name) {
   return true;
 }
 
-static void leave(loader *l, file *f) {
+static void leave(loader *l, text_file *f) {
   l->depth--;
   f->open = false;
-  file *outer = l->stack[l->depth - 1];
+  text_file *outer = l->stack[l->depth - 1];
   if (outer->height < f->height + 1) outer->height = f->height + 1;
 }
 
 /* Is it a scene of this version of the language? */
-static bool is_scene(loader *l, const file *f, const strut_tree *name) {
+static bool is_scene(loader *l, const text_file *f, const strut_tree *name) {
   const char *expected = "expected a scene";
   strut_place place = name->place;
   if (f->text->kind != STRUT_TREE_MAP) {
@@ -178,17 +181,17 @@ static bool is_scene(loader *l, const file *f, const strut_tree *name) {
   return false;
 }
 
-static bool lay_over_base(loader *l, file *f);
+static bool lay_over_base(loader *l, text_file *f);
 static strut_tree *with_files(loader *l, strut_tree *map);
 
 /* The file that `name` names, laid over its base; `whole`: with all files of its parts, too. */
-static file *load(loader *l, const strut_tree *name, const char *key, bool whole) {
+static text_file *load(loader *l, const strut_tree *name, const char *key, bool whole) {
   if (name->kind != STRUT_TREE_SCALAR) {
     strut_diagnose(l->diagnostics, name->place, "expected the path of a file for '%s', found a %s",
                    key, name->kind == STRUT_TREE_LIST ? "list" : "mapping");
     return NULL;
   }
-  file *f = find_file(l, name);
+  text_file *f = find_file(l, name);
   if (!f || f->failed || !enter(l, f, name)) return NULL;
   bool fine = f->scene || (is_scene(l, f, name) && lay_over_base(l, f));
   if (fine && whole && !f->whole) {
@@ -300,7 +303,7 @@ static bool isolate(loader *l, strut_tree *part, const strut_tree *name) {
 }
 
 /* Files that each use another twice would make a tree that is too large to be written or compared. */
-static bool may_repeat(loader *l, file *used, const strut_tree *name) {
+static bool may_repeat(loader *l, text_file *used, const strut_tree *name) {
   l->stack[l->depth - 1]->values += used->values;
   bool before = l->repeated <= MOST_REPEATED;
   if (used->uses++) l->repeated += used->values;
@@ -315,7 +318,7 @@ static bool may_repeat(loader *l, file *used, const strut_tree *name) {
 static strut_tree *use_file(loader *l, strut_tree *part) {
   strut_tree *name = strut_tree_find(part, "use", NULL);
   if (!name || name->count) return part;
-  file *used = load(l, name, "use", true);
+  text_file *used = load(l, name, "use", true);
   if (used && !used->part) used->part = make_part(l, used->whole);
   if (used && !used->part) l->out_of_memory = true;
   if (!used || !used->part || !may_repeat(l, used, name)) {
@@ -358,13 +361,13 @@ static strut_tree *with_files(loader *l, strut_tree *map) {
 }
 
 /* Sets the file's scene; a base that cannot be read was reported. */
-static bool lay_over_base(loader *l, file *f) {
+static bool lay_over_base(loader *l, text_file *f) {
   const strut_mapping_kind kind = {STRUT_SECTION_SCENE, false};
   const strut_tree *name = strut_tree_find(f->text, "base", NULL);
   f->scene = f->text;
   if (!name) return true;
   f->scene = NULL;
-  file *base = load(l, name, "base", false);
+  text_file *base = load(l, name, "base", false);
   if (!base) return false;
   const strut_overlay overlay = {.arena = &l->document->arena, .diagnostics = l->diagnostics};
   size_t before = l->diagnostics->count;
@@ -380,9 +383,9 @@ static bool lay_over_base(loader *l, file *f) {
 
 static strut_status load_all(loader *l, strut_tree *root) {
   struct stat found;
-  file *top = &l->files[l->count++];
-  *top =
-      (file){.path = l->diagnostics->file ? l->diagnostics->file : "", .text = root, .open = true};
+  text_file *top = &l->files[l->count++];
+  *top = (text_file){
+      .path = l->diagnostics->file ? l->diagnostics->file : "", .text = root, .open = true};
   l->stack[l->depth++] = top;
   if (stat(top->path, &found) == 0) {
     top->known = true;
@@ -408,4 +411,179 @@ strut_status strut_read_used_files(strut_document *document, strut_diagnostics *
   strut_status status = l.files && l.folder ? load_all(&l, root) : STRUT_NO_MEMORY;
   strut_arena_free(&arena);
   return status;
+}
+
+/* ---- files below the folder of another ---- */
+
+#define _XOPEN_SOURCE 700
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#ifndef PATH_MAX
+#define PATH_MAX 4096
+#endif
+
+static strut_status cannot_read(strut_error *error, const char *path, int code) {
+  char reason[128];
+  if (strerror_r(code, reason, sizeof reason) != 0)
+    snprintf(reason, sizeof reason, "error %d", code);
+  return strut_fail(error, STRUT_FILE_TROUBLE, "cannot read '%.300s': %s", path, reason);
+}
+
+char *strut_folder_of(const char *path, strut_arena *arena) {
+  const char *slash = strrchr(path, '/');
+  if (!slash) return strut_arena_text(arena, ".", 1);
+  return strut_arena_text(arena, path, slash == path ? 1 : (size_t)(slash - path));
+}
+
+/* Is one of the parts of the path ".."? */
+static bool climbs(const char *name) {
+  for (const char *at = name; *at;) {
+    size_t length = strcspn(at, "/");
+    if (length == 2 && at[0] == '.' && at[1] == '.') return true;
+    at += length;
+    at += *at == '/';
+  }
+  return false;
+}
+
+static strut_status check_name(const char *name, strut_error *error) {
+  if (!*name) return strut_fail(error, STRUT_BAD_SCENE, "expected the path of a file, found ''");
+  if (*name == '/')
+    return strut_fail(error, STRUT_BAD_SCENE,
+                      "'%.300s' is an absolute path, expected one below the folder of this file",
+                      name);
+  if (climbs(name))
+    return strut_fail(error, STRUT_BAD_SCENE,
+                      "'%.300s' has a '..', expected a path below the folder of this file", name);
+  return STRUT_OK;
+}
+
+/* What `real` has behind the folder `root`; NULL: it lies elsewhere. Both have their links resolved. */
+static const char *path_below(const char *root, const char *real) {
+  size_t length = strlen(root);
+  if (length == 1) return real + 1; /* the root of the file system */
+  return strncmp(real, root, length) == 0 && real[length] == '/' ? real + length + 1 : NULL;
+}
+
+/*
+ * Opens a file below the folder part by part, following no link, so that a path that is changed
+ * meanwhile cannot lead elsewhere. -1 with errno; ELOOP and ENOTDIR then mean that it was changed.
+ */
+static int open_below(const char *root, const char *below, struct stat *found) {
+  int folder = open(root, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  while (folder >= 0) {
+    char part[NAME_MAX + 1];
+    size_t length = strcspn(below, "/");
+    bool last = !below[length];
+    int next = -1;
+    if (length > NAME_MAX) {
+      errno = ENAMETOOLONG;
+    } else {
+      memcpy(part, below, length);
+      part[length] = '\0';
+      int how = last ? O_NONBLOCK | O_NOCTTY : O_DIRECTORY;
+      bool regular = !last || (fstatat(folder, part, found, AT_SYMLINK_NOFOLLOW) == 0 &&
+                               S_ISREG(found->st_mode));
+      if (regular) next = openat(folder, part, O_RDONLY | O_NOFOLLOW | O_CLOEXEC | how);
+    }
+    int code = errno;
+    close(folder);
+    errno = code;
+    if (last || next < 0) return next;
+    folder = next;
+    below += length + 1;
+  }
+  return -1;
+}
+
+/* Reads `size` bytes and one more, which must not exist. */
+static strut_status read_bytes(int descriptor, size_t size, strut_safe_text *file,
+                               strut_error *error) {
+  file->text = strut_allocate(size + 2, 1);
+  if (!file->text) return strut_no_memory(error, "");
+  while (file->length <= size) {
+    ssize_t got = read(descriptor, file->text + file->length, size + 1 - file->length);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return cannot_read(error, file->path, errno);
+    if (got == 0) break;
+    file->length += (size_t)got;
+  }
+  if (file->length > size)
+    return strut_fail(error, STRUT_FILE_TROUBLE, "'%.300s' has changed while it was read",
+                      file->path);
+  file->text[file->length] = '\0';
+  return STRUT_OK;
+}
+
+static strut_status read_below(const char *root, const char *below, size_t most,
+                               strut_safe_text *file, strut_error *error) {
+  struct stat found = {0};
+  int descriptor = open_below(root, below, &found);
+  int code = errno;
+  strut_status status;
+  if (descriptor >= 0 && fstat(descriptor, &found) != 0) {
+    status = cannot_read(error, file->path, errno);
+  } else if ((descriptor >= 0 || found.st_nlink > 0) && !S_ISREG(found.st_mode)) {
+    status = strut_fail(error, STRUT_BAD_SCENE, "'%.300s' is not a regular file", file->path);
+  } else if (descriptor < 0) {
+    status = cannot_read(error, file->path, code);
+  } else if (found.st_size > 0 && (uintmax_t)found.st_size > most) {
+    status = strut_fail(error, STRUT_BAD_SCENE, "'%.300s' has %jd bytes, expected at most %zu",
+                        file->path, (intmax_t)found.st_size, most);
+  } else {
+    file->device = (uint64_t)found.st_dev;
+    file->inode = (uint64_t)found.st_ino;
+    status = read_bytes(descriptor, (size_t)found.st_size, file, error);
+  }
+  if (descriptor >= 0) close(descriptor);
+  return status;
+}
+
+/* The path of `name` from the folder of `from`, in a block of strut_allocate. */
+static char *join(const char *from, const char *name) {
+  const char *slash = strrchr(from, '/');
+  size_t folder = slash ? (size_t)(slash - from) + 1 : 0;
+  char *path = strut_allocate(folder + strlen(name) + 1, 1);
+  if (!path) return NULL;
+  memcpy(path, from, folder);
+  strcpy(path + folder, name);
+  return path;
+}
+
+strut_status strut_safe_read(const char *root, const char *from, const char *name, size_t most,
+                             strut_safe_text *file, strut_error *error) {
+  char top[PATH_MAX], real[PATH_MAX];
+  *file = (strut_safe_text){0};
+  strut_status status = check_name(name, error);
+  if (status) return status;
+  file->path = join(from, name);
+  if (!file->path) return strut_no_memory(error, "");
+  if (!realpath(root, top)) {
+    status = cannot_read(error, root, errno);
+  } else if (!realpath(file->path, real)) {
+    status = cannot_read(error, file->path, errno);
+  } else {
+    const char *below = path_below(top, real);
+    if (strcmp(top, real) == 0)
+      status = strut_fail(error, STRUT_BAD_SCENE, "'%.300s' is not a regular file", file->path);
+    else if (!below)
+      status = strut_fail(error, STRUT_BAD_SCENE, "'%.300s' leads out of the folder '%.200s'",
+                          file->path, root);
+    else
+      status = read_below(top, below, most, file, error);
+  }
+  if (status) strut_safe_text_free(file);
+  return status;
+}
+
+void strut_safe_text_free(strut_safe_text *file) {
+  strut_release(file->path);
+  strut_release(file->text);
+  *file = (strut_safe_text){0};
 }

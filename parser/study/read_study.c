@@ -10,7 +10,9 @@
 #include "engine/base/number_text.h"
 #include "parser/study/study_reader.h"
 
-static const strut_owner study_owner = {"the study", NULL};
+static const strut_owner study_owner = {"the study", NULL}, path_owner = {"the path", NULL},
+                         form_owner = {"the form", NULL}, limit_owner = {"the limit", NULL},
+                         check_owner = {"the check", NULL};
 
 const char *strut_study_declared_name(const void *context, size_t i) {
   const strut_study_reader *r = context;
@@ -210,26 +212,13 @@ static void check_limits(strut_study_reader *r, const strut_slot *slot, const st
                        key->text);
 }
 
-static void read_times(strut_study_reader *r, const strut_slot *slot, strut_owner owner,
-                       strut_study_figure *figure) {
-  if (slot->state != STRUT_GIVEN) return;
-  double *times =
-      strut_reader_allocate(r->reader, &r->file->arena, slot->value->count, sizeof *times);
-  for (const strut_tree *item = slot->value->first; item && times; item = item->next)
-    if (strut_read_number(r->reader, item, "times", owner, STRUT_DIM_TIME, STRUT_RANGE_ANY,
-                          &times[figure->time_count]))
-      figure->time_count++;
-  figure->times = times;
-}
-
 static void read_figure(strut_study_reader *r, const strut_tree *key, strut_study_figure *figure) {
   strut_fields fields;
   strut_owner owner = {"figure", key->text};
   strut_read_name(r->reader, key, "figure");
   strut_read_fields(r->reader, STRUT_SECTION_FIGURE, key->next, owner, &fields);
   *figure = (strut_study_figure){.name = key->text, .from = -HUGE_VAL, .to = HUGE_VAL};
-  strut_store_fields(r->reader, &fields, &r->file->arena, figure, sizeof *figure);
-  read_times(r, strut_slot_of(&fields, STRUT_KEY_FIGURE_TIMES), owner, figure);
+  strut_store_fields(r->reader, &fields, owner, &r->file->arena, figure, sizeof *figure);
   check_limits(r, strut_slot_of(&fields, STRUT_KEY_FIGURE_X_LIMITS), key, figure->x_limits);
   check_limits(r, strut_slot_of(&fields, STRUT_KEY_FIGURE_Y_LIMITS), key, figure->y_limits);
   require_columns(r, &fields, key, figure);
@@ -244,31 +233,30 @@ static void read_figures(strut_study_reader *r, const strut_slot *slot) {
     read_figure(r, key, &study->figures[study->figure_count++]);
 }
 
-/* A number of any dimension, which the model decides. */
-static void read_path_value(strut_study_reader *r, const strut_slot *slot, double *value,
-                            const char **unit, bool *given) {
+/* A number of any dimension, which the model decides; *unit: NULL without one. */
+static void read_path_value(strut_study_reader *r, strut_fields *fields, int key,
+                            const char **unit) {
   strut_quantity q;
-  const strut_owner owner = {"the path", NULL};
+  const strut_key *k = strut_key_at(key);
+  const strut_slot *slot = strut_slot_of(fields, key);
+  strut_study *study = &r->file->study;
   if (slot->state != STRUT_GIVEN) return;
-  if (!strut_read_scalar(r->reader, slot->value, slot->key->text, owner, "a number") ||
-      !strut_read_quantity(r->reader, slot->value, slot->key->text, owner, &q))
+  if (!strut_read_scalar(r->reader, slot->value, k->name, path_owner, "a number") ||
+      !strut_read_quantity(r->reader, slot->value, k->name, path_owner, &q))
     return;
-  *value = q.value;
+  memcpy((char *)study + k->field.offset, &q.value, sizeof q.value);
+  strut_store_choice(k, study);
   *unit = q.bare ? NULL : strut_dimension_unit(q.dimension);
-  *given = true;
 }
 
 static void read_path(strut_study_reader *r, const strut_slot *slot) {
   strut_study *study = &r->file->study;
   strut_fields fields;
   if (slot->state != STRUT_GIVEN) return;
-  strut_read_fields(r->reader, STRUT_SECTION_PATH, slot->value, (strut_owner){"the path", NULL},
-                    &fields);
-  strut_store_fields(r->reader, &fields, &r->file->arena, study, sizeof *study);
-  read_path_value(r, strut_slot_of(&fields, STRUT_KEY_PATH_FROM), &study->path_from,
-                  &study->path_from_unit, &study->path_from_given);
-  read_path_value(r, strut_slot_of(&fields, STRUT_KEY_PATH_UNTIL), &study->path_until,
-                  &study->path_until_unit, &study->path_until_given);
+  strut_read_fields(r->reader, STRUT_SECTION_PATH, slot->value, path_owner, &fields);
+  strut_store_fields(r->reader, &fields, path_owner, &r->file->arena, study, sizeof *study);
+  read_path_value(r, &fields, STRUT_KEY_PATH_FROM, &study->path_from_unit);
+  read_path_value(r, &fields, STRUT_KEY_PATH_UNTIL, &study->path_until_unit);
   if (fields.broken) return;
   if (study->path_over && !study->path_until_given)
     strut_report_error(r->reader, slot->value->place,
@@ -281,9 +269,9 @@ static void read_path(strut_study_reader *r, const strut_slot *slot) {
 static void read_form(strut_study_reader *r, const strut_slot *slot) {
   strut_fields fields;
   if (slot->state != STRUT_GIVEN) return;
-  strut_read_fields(r->reader, STRUT_SECTION_FORM, slot->value, (strut_owner){"the form", NULL},
-                    &fields);
-  strut_store_fields(r->reader, &fields, &r->file->arena, &r->file->study, sizeof(strut_study));
+  strut_read_fields(r->reader, STRUT_SECTION_FORM, slot->value, form_owner, &fields);
+  strut_store_fields(r->reader, &fields, form_owner, &r->file->arena, &r->file->study,
+                     sizeof(strut_study));
 }
 
 /* Wall time ends only what can be interrupted. */
@@ -291,9 +279,8 @@ static void read_limit(strut_study_reader *r, const strut_slot *slot) {
   strut_study *study = &r->file->study;
   strut_fields fields;
   if (slot->state != STRUT_GIVEN) return;
-  strut_read_fields(r->reader, STRUT_SECTION_LIMIT, slot->value, (strut_owner){"the limit", NULL},
-                    &fields);
-  strut_store_fields(r->reader, &fields, &r->file->arena, study, sizeof *study);
+  strut_read_fields(r->reader, STRUT_SECTION_LIMIT, slot->value, limit_owner, &fields);
+  strut_store_fields(r->reader, &fields, limit_owner, &r->file->arena, study, sizeof *study);
   const strut_slot *evaluations = strut_slot_of(&fields, STRUT_KEY_LIMIT_EVALUATIONS);
   const strut_slot *time = strut_slot_of(&fields, STRUT_KEY_LIMIT_TIME);
   bool run = study->compute == STRUT_COMPUTE_RUN;
@@ -341,11 +328,10 @@ static void read_rest(strut_study_reader *r, strut_fields *top) {
   const strut_slot *check = strut_slot_of(top, STRUT_KEY_STUDY_CHECK);
   strut_fields fields;
   study->name = study->description = "";
-  strut_store_fields(r->reader, top, &r->file->arena, study, sizeof *study);
+  strut_store_fields(r->reader, top, study_owner, &r->file->arena, study, sizeof *study);
   if (check->state == STRUT_GIVEN) {
-    strut_read_fields(r->reader, STRUT_SECTION_CHECK, check->value,
-                      (strut_owner){"the check", NULL}, &fields);
-    strut_store_fields(r->reader, &fields, &r->file->arena, study, sizeof *study);
+    strut_read_fields(r->reader, STRUT_SECTION_CHECK, check->value, check_owner, &fields);
+    strut_store_fields(r->reader, &fields, check_owner, &r->file->arena, study, sizeof *study);
   }
   read_path(r, strut_slot_of(top, STRUT_KEY_STUDY_PATH));
   read_form(r, strut_slot_of(top, STRUT_KEY_STUDY_FORM));

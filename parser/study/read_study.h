@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
  * From a study's YAML text, and the model it names, to points and their scenes.
- *
+ * 
  * The model's text becomes a tree once; each point's scene is read from that tree with the point's
  * parameters.
  */
@@ -10,7 +10,7 @@
 
 #include "engine/scene/study.h"
 #include "parser/read/read_scene.h"
-#include "parser/read/safe_path.h"
+#include "parser/read/used_files.h"
 
 /** A file of points that the study names. */
 typedef struct strut_study_points {
@@ -83,5 +83,20 @@ STRUT_API char *strut_study_identity(const strut_study_file *file);
 STRUT_API char *strut_study_copy(const strut_study_file *file, const char *model,
                                  const strut_override *overrides, size_t override_count);
 STRUT_API void strut_study_close(strut_study_file *file);
+
+/* ---- expressions of columns ---- */
+
+/** A column of the table. */
+typedef struct strut_table_name {
+  const char *name, *unit; /* unit "" or "1": none */
+  bool word;
+} strut_table_name;
+
+/**
+ * Compiles the goal and the conditions of an open study that searches, for a table with these columns.
+ * On STRUT_BAD_SCENE strut_study_messages has every finding.
+ */
+STRUT_API strut_status strut_study_search_bind(strut_study_file *file,
+                                               const strut_table_name *columns, size_t count);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The axes of a study: lists, ranges, and several that go together. See study_reader.h. */
+/* The axes of a study, what it refines, what it wants of its points, and what it follows. See study_reader.h. */
 #include <math.h>
 #include <string.h>
 
@@ -30,6 +30,15 @@ bool strut_study_read_value(strut_study_reader *r, along *a, const strut_tree *v
                      key, a->parameter->name,
                      strut_dimension_name(q.dimension, found, sizeof found));
   return false;
+}
+
+bool strut_study_store_value(strut_study_reader *r, along *a, strut_fields *fields, int key,
+                             bool first, void *object) {
+  const strut_key *k = strut_key_at(key);
+  const strut_slot *slot = strut_slot_of(fields, key);
+  if (slot->state != STRUT_GIVEN) return slot->state == STRUT_ABSENT;
+  return strut_study_read_value(r, a, slot->value, k->name, first,
+                                (double *)(void *)((char *)object + k->field.offset));
 }
 
 static bool read_list(strut_study_reader *r, along *a) {
@@ -79,7 +88,6 @@ static bool count_steps(strut_study_reader *r, along *a, double step) {
   if (whole >= (double)STRUT_STUDY_MOST_POINTS)
     return refuse_range(r, a, "has more than 1e9 values");
   a->count = (int64_t)whole + 1;
-  c->step = step;
   bool meets = fabs(steps - whole) <= 1e-9 * fmax(1.0, whole);
   c->kind = meets && a->count > 1 ? STRUT_RANGE_EVEN : STRUT_RANGE_STEP;
   return true;
@@ -100,7 +108,6 @@ static bool count_even(strut_study_reader *r, along *a, double count, bool logar
 
 static bool read_range(strut_study_reader *r, along *a) {
   strut_fields fields;
-  double step = 0.0;
   if (a->parameter->text)
     return refuse_range(r, a, "is for numbers; the parameter is a text: give a list of texts");
   strut_read_fields(r->reader, STRUT_SECTION_RANGE, a->value, owner_of(a), &fields);
@@ -110,13 +117,9 @@ static bool read_range(strut_study_reader *r, along *a) {
   const strut_slot *count = strut_slot_of(&fields, STRUT_KEY_RANGE_COUNT);
   const strut_slot *scale = strut_slot_of(&fields, STRUT_KEY_RANGE_SCALE);
   bool logarithmic = scale->state == STRUT_GIVEN && scale->word == 1;
-  bool fine = strut_study_read_value(r, a, strut_slot_of(&fields, STRUT_KEY_RANGE_FROM)->value,
-                                     "from", true, &a->column->from);
-  fine = strut_study_read_value(r, a, strut_slot_of(&fields, STRUT_KEY_RANGE_TO)->value, "to",
-                                false, &a->column->to) &&
-         fine;
-  if (by->state == STRUT_GIVEN)
-    fine = strut_study_read_value(r, a, by->value, "step", false, &step) && fine;
+  bool fine = strut_study_store_value(r, a, &fields, STRUT_KEY_RANGE_FROM, true, a->column);
+  fine = strut_study_store_value(r, a, &fields, STRUT_KEY_RANGE_TO, false, a->column) && fine;
+  fine = strut_study_store_value(r, a, &fields, STRUT_KEY_RANGE_STEP, false, a->column) && fine;
   if (by->state != STRUT_GIVEN && count->state != STRUT_GIVEN)
     return refuse_range(r, a, "lacks 'step' or 'count'");
   if (!fine) return false;
@@ -125,7 +128,7 @@ static bool read_range(strut_study_reader *r, along *a) {
     return refuse_range(r, a,
                         "needs 'count' instead of 'step' where it is "
                         "logarithmic");
-  return count_steps(r, a, step);
+  return count_steps(r, a, a->column->step);
 }
 
 /* Names of the table's own columns, which no axis may have. */
@@ -289,4 +292,310 @@ void strut_study_read_axes(strut_study_reader *r, const strut_tree *list,
   if (points > (double)STRUT_STUDY_MOST_POINTS)
     strut_report_error(r->reader, list ? list->place : search->key->place,
                        "the axes make %.3g points, a study may have 1e9", points);
+}
+
+/* ---- what is refined ---- */
+
+static const strut_owner refine_owner = {"the refinement", NULL};
+
+static bool is_range(const strut_study_axis *axis) {
+  bool all = axis->count > 1 && axis->column_count > 0;
+  for (size_t i = 0; i < axis->column_count; i++)
+    all = all && axis->columns[i].kind != STRUT_RANGE_LIST;
+  return all;
+}
+
+static bool has_parameter(const strut_study_axis *axis, const char *name) {
+  for (size_t i = 0; i < axis->column_count; i++)
+    if (strcmp(axis->columns[i].name, name) == 0) return true;
+  return false;
+}
+
+/* The axis of a named parameter, which must be a range; axis_count where that was reported. */
+static size_t find_axis(strut_study_reader *r, const strut_tree *item) {
+  const strut_study *study = &r->file->study;
+  size_t axis = 0;
+  if (!strut_read_scalar(r->reader, item, "axes", refine_owner, "a parameter of an axis"))
+    return study->axis_count;
+  while (axis < study->axis_count && !has_parameter(&study->axes[axis], item->text)) axis++;
+  if (axis < study->axis_count && is_range(&study->axes[axis])) return axis;
+  strut_report_error(r->reader, item->place,
+                     axis < study->axis_count
+                         ? "axis '%s' has no range such as {from: 1, to: 2, count: 11}: it cannot "
+                           "be refined"
+                         : "the study has no axis of '%s'",
+                     strut_sanitised_text(r->reader, item->text));
+  return study->axis_count;
+}
+
+/* The two axes that are named, or the only two that can be refined. */
+static bool choose_axes(strut_study_reader *r, const strut_slot *refine, const strut_slot *named) {
+  strut_study *study = &r->file->study;
+  size_t count = 0;
+  if (named->state == STRUT_GIVEN) {
+    for (const strut_tree *item = named->value->first; item; item = item->next) {
+      size_t axis = find_axis(r, item);
+      if (axis == study->axis_count) return false;
+      if (count < 2) study->refine_axes[count] = axis;
+      count++;
+    }
+  } else {
+    for (size_t i = 0; i < study->axis_count; i++) {
+      if (!is_range(&study->axes[i])) continue;
+      if (count < 2) study->refine_axes[count] = i;
+      count++;
+    }
+  }
+  if (count == 2 && study->refine_axes[0] != study->refine_axes[1]) {
+    if (study->refine_axes[0] > study->refine_axes[1]) {
+      size_t first = study->refine_axes[1];
+      study->refine_axes[1] = study->refine_axes[0];
+      study->refine_axes[0] = first;
+    }
+    return true;
+  }
+  strut_report_error(
+      r->reader, refine->key->place,
+      "'refine' divides two axes with ranges of more than one value, found %zu; name "
+      "them: axes: [NAME, NAME]",
+      count == 2 ? (size_t)1 : count);
+  return false;
+}
+
+/* Gives an axis the values of the finest grid; those of the coarsest keep their bits. */
+static void refine_axis(strut_study_axis *axis, int32_t depth) {
+  int64_t parts = (int64_t)1 << depth;
+  axis->count = (axis->count - 1) * parts + 1;
+  for (size_t i = 0; i < axis->column_count; i++) axis->columns[i].step /= (double)parts;
+}
+
+void strut_study_read_refine(strut_study_reader *r, const strut_slot *slot) {
+  strut_study *study = &r->file->study;
+  strut_fields fields;
+  if (slot->state != STRUT_GIVEN) return;
+  strut_read_fields(r->reader, STRUT_SECTION_REFINE, slot->value, refine_owner, &fields);
+  if (!fields.broken) strut_require(r->reader, &fields, refine_owner, slot->value->place);
+  if (fields.broken || r->reader->failed) return; /* the axes may be incomplete */
+  strut_store_fields(r->reader, &fields, refine_owner, &r->file->arena, study, sizeof *study);
+  int32_t depth = study->refine_depth;
+  study->refine_depth = 0;
+  if (!choose_axes(r, slot, strut_slot_of(&fields, STRUT_KEY_REFINE_AXES))) return;
+  double points = 1.0;
+  for (int i = 0; i < 2; i++) refine_axis(&study->axes[study->refine_axes[i]], depth);
+  for (size_t i = 0; i < study->axis_count; i++) points *= (double)study->axes[i].count;
+  study->refine_depth = depth;
+  if (points > (double)STRUT_STUDY_MOST_REFINED)
+    strut_report_error(r->reader, slot->key->place,
+                       "the finest grid has %.3g points, a refined study may have %.0e", points,
+                       (double)STRUT_STUDY_MOST_REFINED);
+}
+
+static const strut_owner shape_owner = {"the shape", NULL};
+static const strut_owner curve_owner = {"the curve", NULL};
+
+static void read_shape(strut_study_reader *r, const strut_slot *slot) {
+  strut_study *study = &r->file->study;
+  size_t count = slot->value->count, i = 0;
+  study->shape_nodes =
+      strut_reader_allocate(r->reader, &r->file->arena, count + 1, sizeof *study->shape_nodes);
+  study->shape = strut_reader_allocate(r->reader, &r->file->arena, count + 1, sizeof *study->shape);
+  if (!study->shape_nodes || !study->shape) return;
+  for (const strut_tree *key = slot->value->first; key; key = key->next->next, i++) {
+    study->shape_nodes[i] = key->text;
+    strut_read_pair(r->reader, key->next, key->text, shape_owner, STRUT_DIM_LENGTH,
+                    study->shape[i]);
+  }
+  study->shape_count = count;
+}
+
+static void read_curve(strut_study_reader *r, const strut_slot *slot) {
+  strut_study *study = &r->file->study;
+  study->curve = strut_reader_allocate(r->reader, &r->file->arena, slot->value->count + 1,
+                                       sizeof *study->curve);
+  if (!study->curve) return;
+  for (const strut_tree *item = slot->value->first; item; item = item->next) {
+    double *pair = study->curve[study->curve_count];
+    if (item->kind != STRUT_TREE_LIST || item->count != 2) {
+      strut_report_error(r->reader, item->place,
+                         "expected a displacement and a force such as [-1 mm, 2 N] for 'curve' of "
+                         "the study, found %s",
+                         strut_found(r->reader, item));
+      continue;
+    }
+    if (strut_read_number(r->reader, item->first, "curve", curve_owner, STRUT_DIM_LENGTH,
+                          STRUT_RANGE_ANY, &pair[0]) &&
+        strut_read_number(r->reader, item->first->next, "curve", curve_owner, STRUT_DIM_FORCE,
+                          STRUT_RANGE_ANY, &pair[1]))
+      study->curve_count++;
+  }
+}
+
+/* A column that is kept needs what it compares with, and what is given a column. */
+static void require_pairs(strut_study_reader *r, strut_fields *top) {
+  const strut_study *study = &r->file->study;
+  static const struct {
+    strut_keep keep;
+    int keys[2];
+    const char *word;
+  } goals[] = {
+      {STRUT_KEEP_STIFFNESS,
+       {STRUT_KEY_STUDY_STIFFNESS_AT, STRUT_KEY_STUDY_STIFFNESS_AT},
+       "stiffness"},
+      {STRUT_KEEP_SHAPE, {STRUT_KEY_STUDY_SHAPE, STRUT_KEY_STUDY_LIKE}, "shape_distance"},
+      {STRUT_KEEP_CURVE, {STRUT_KEY_STUDY_CURVE, STRUT_KEY_STUDY_CURVE}, "curve_distance"}};
+  for (size_t i = 0; i < sizeof goals / sizeof goals[0]; i++) {
+    const strut_slot *first = strut_slot_of(top, goals[i].keys[0]);
+    const strut_slot *second = strut_slot_of(top, goals[i].keys[1]);
+    bool kept = strut_keep_has(&study->keep, goals[i].keep);
+    const strut_slot *given = first->state != STRUT_ABSENT    ? first
+                              : second->state != STRUT_ABSENT ? second
+                                                              : NULL;
+    if (kept && !given)
+      strut_report_error(r->reader, strut_slot_of(top, STRUT_KEY_STUDY_KEEP)->value->place,
+                         "'%s' needs '%s' of the study%s", goals[i].word,
+                         strut_key_at(goals[i].keys[0])->name,
+                         first == second ? "" : ", or 'like'");
+    if (!kept && given && given->key)
+      strut_report_error(r->reader, given->key->place,
+                         "'%s' is for the column '%s': add it to 'keep'", given->key->text,
+                         goals[i].word);
+  }
+}
+
+void strut_study_read_goals(strut_study_reader *r, strut_fields *top) {
+  const strut_slot *stiffness = strut_slot_of(top, STRUT_KEY_STUDY_STIFFNESS_AT);
+  const strut_slot *shape = strut_slot_of(top, STRUT_KEY_STUDY_SHAPE);
+  const strut_slot *like = strut_slot_of(top, STRUT_KEY_STUDY_LIKE);
+  const strut_slot *curve = strut_slot_of(top, STRUT_KEY_STUDY_CURVE);
+  strut_fields fields;
+  if (stiffness->state == STRUT_GIVEN) {
+    const strut_owner owner = {"the stiffness", NULL};
+    strut_read_fields(r->reader, STRUT_SECTION_STIFFNESS_AT, stiffness->value, owner, &fields);
+    if (!fields.broken) strut_require(r->reader, &fields, owner, stiffness->value->place);
+    strut_store_fields(r->reader, &fields, owner, &r->file->arena, &r->file->study,
+                       sizeof(strut_study));
+  }
+  if (shape->state == STRUT_GIVEN && like->state == STRUT_GIVEN)
+    strut_report_error(r->reader, like->key->place,
+                       "'shape' and 'like' of the study exclude each other");
+  if (shape->state == STRUT_GIVEN) read_shape(r, shape);
+  if (curve->state == STRUT_GIVEN) read_curve(r, curve);
+  if (curve->state == STRUT_GIVEN && r->file->study.compute == STRUT_COMPUTE_PATH &&
+      (!r->file->study.path_over || !strchr(r->file->study.path_over, '.')))
+    strut_report_error(r->reader, curve->key->place,
+                       "'curve' is force over the displacement of a node: the path needs "
+                       "'over: NODE.x' or 'over: NODE.y'");
+  require_pairs(r, top);
+}
+
+/* ---- motions that are followed ---- */
+
+static const strut_owner follow_owner = {"what is followed", NULL};
+
+/* Keys that choose or judge points in another way. */
+static void refuse_others(strut_study_reader *r, strut_fields *top, const strut_slot *own) {
+  static const int others[] = {
+      STRUT_KEY_STUDY_REFINE,      STRUT_KEY_STUDY_TRAJECTORIES, STRUT_KEY_STUDY_SEARCH,
+      STRUT_KEY_STUDY_SENSITIVITY, STRUT_KEY_STUDY_KEEP,         STRUT_KEY_STUDY_CHECK,
+      STRUT_KEY_STUDY_LIMIT,       STRUT_KEY_STUDY_SHAPE,        STRUT_KEY_STUDY_LIKE};
+  for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
+    const strut_slot *slot = strut_slot_of(top, others[i]);
+    if (slot->state == STRUT_GIVEN)
+      strut_report_error(r->reader, slot->key->place,
+                         "'%s' and '%s' exclude each other: use two studies", slot->key->text,
+                         own->key->text);
+  }
+  const strut_slot *compute = strut_slot_of(top, STRUT_KEY_STUDY_COMPUTE);
+  if (compute->state == STRUT_GIVEN && r->file->study.compute != STRUT_COMPUTE_RUN)
+    strut_report_error(r->reader, compute->value->place,
+                       "a study that follows motions computes no '%s'", compute->value->text);
+}
+
+/* Both ends of the range, and values within it. */
+static void read_values(strut_study_reader *r, strut_fields *fields, strut_study_along *a,
+                        strut_study_follow *f) {
+  const strut_slot *from = strut_slot_of(fields, STRUT_KEY_FOLLOW_FROM);
+  const strut_slot *to = strut_slot_of(fields, STRUT_KEY_FOLLOW_TO);
+  const strut_slot *at = strut_slot_of(fields, STRUT_KEY_FOLLOW_AT);
+  bool fine = from->state == STRUT_GIVEN && to->state == STRUT_GIVEN &&
+              strut_study_store_value(r, a, fields, STRUT_KEY_FOLLOW_FROM, true, f) &&
+              strut_study_store_value(r, a, fields, STRUT_KEY_FOLLOW_TO, false, f);
+  if (fine && !(f->from < f->to)) {
+    strut_report_error(r->reader, to->value->place,
+                       "'to' of what is followed must be above 'from'");
+    fine = false;
+  }
+  if (!fine || at->state != STRUT_GIVEN) return;
+  if (!at->value->count || at->value->count > STRUT_STUDY_FOLLOW_MOST_AT) {
+    strut_report_error(r->reader, at->value->place, "'at' may have 1 to %d values, found %zu",
+                       STRUT_STUDY_FOLLOW_MOST_AT, (size_t)at->value->count);
+    return;
+  }
+  double *values =
+      strut_reader_allocate(r->reader, &r->file->arena, at->value->count, sizeof *values);
+  f->at = values;
+  for (const strut_tree *item = at->value->first; item && values; item = item->next) {
+    double *value = &values[f->at_count++];
+    if (!strut_study_read_value(r, a, item, "at", false, value)) continue;
+    if (*value < f->from || *value > f->to)
+      strut_report_error(r->reader, item->place, "'%s' of 'at' is not within 'from' and 'to'",
+                         strut_sanitised_text(r->reader, item->text));
+  }
+}
+
+static void read_starts(strut_study_reader *r, const strut_slot *slot, strut_study_follow *f) {
+  if (slot->state != STRUT_GIVEN) return;
+  if (!slot->value->count || slot->value->count > STRUT_STUDY_FOLLOW_MOST_FROM) {
+    strut_report_error(r->reader, slot->value->place,
+                       "'start_from' may have 1 to %d configurations, found %zu",
+                       STRUT_STUDY_FOLLOW_MOST_FROM, (size_t)slot->value->count);
+    return;
+  }
+  f->start_from =
+      strut_reader_allocate(r->reader, &r->file->arena, slot->value->count, sizeof *f->start_from);
+  for (const strut_tree *item = slot->value->first; item && f->start_from; item = item->next)
+    if (strut_read_scalar(r->reader, item, "start_from", follow_owner, "a configuration"))
+      f->start_from[f->start_count++] = item->text;
+}
+
+/* The parameter, its range and its unit. */
+static void read_over(strut_study_reader *r, strut_fields *fields, strut_study_follow *f) {
+  const strut_slot *over = strut_slot_of(fields, STRUT_KEY_FOLLOW_OVER);
+  strut_study_column unused = {0};
+  strut_study_along a = {.key = over->value, .column = &unused, .setting = &r->file->followed};
+  if (over->state != STRUT_GIVEN) return;
+  a.parameter = strut_study_parameter(r, over->value);
+  if (!a.parameter || !strut_study_begin_along(r, &a, over->value->place)) return;
+  if (a.parameter->text) {
+    strut_report_error(r->reader, over->value->place,
+                       "parameter '%s' is a text, over which no motion is followed",
+                       a.parameter->name);
+    return;
+  }
+  f->over = a.parameter->name;
+  read_values(r, fields, &a, f);
+  f->unit = a.setting->bare ? "" : strut_dimension_unit(a.setting->dimension);
+  if (strcmp(f->unit, "1") == 0 || strcmp(f->unit, "SI") == 0) f->unit = "";
+}
+
+void strut_study_read_follow(strut_study_reader *r, strut_fields *top) {
+  const strut_slot *slot = strut_slot_of(top, STRUT_KEY_STUDY_FOLLOW);
+  const strut_slot *search = strut_slot_of(top, STRUT_KEY_STUDY_SEARCH);
+  strut_study *study = &r->file->study;
+  strut_fields fields;
+  if (slot->state != STRUT_GIVEN) return;
+  refuse_others(r, top, slot);
+  if (!study->axes) strut_study_read_axes(r, NULL, search); /* the study has none */
+  strut_study_follow *f = strut_reader_allocate(r->reader, &r->file->arena, 1, sizeof *f);
+  if (!f) return;
+  strut_read_fields(r->reader, STRUT_SECTION_FOLLOW, slot->value, follow_owner, &fields);
+  if (!fields.broken) strut_require(r->reader, &fields, follow_owner, slot->value->place);
+  strut_store_fields(r->reader, &fields, follow_owner, &r->file->arena, f, sizeof *f);
+  const strut_slot *accuracy = strut_slot_of(&fields, STRUT_KEY_FOLLOW_ACCURACY);
+  if (accuracy->state == STRUT_GIVEN && f->accuracy > 0.1)
+    strut_report_error(r->reader, accuracy->value->place,
+                       "'accuracy' of what is followed may be up to 10 %%");
+  read_starts(r, strut_slot_of(&fields, STRUT_KEY_FOLLOW_START_FROM), f);
+  read_over(r, &fields, f);
+  study->follow = f;
 }

@@ -55,6 +55,10 @@ bool strut_study_begin_along(strut_study_reader *r, strut_study_along *a, strut_
 bool strut_study_read_value(strut_study_reader *r, strut_study_along *a, const strut_tree *value,
                             const char *key, bool first, double *number);
 
+/** The same of a key that is given, into the field of its row. */
+bool strut_study_store_value(strut_study_reader *r, strut_study_along *a, strut_fields *fields,
+                             int key, bool first, void *object);
+
 /** Reads a parameter along its axis: a list or a range. False where something was reported. */
 bool strut_study_read_along(strut_study_reader *r, strut_study_along *a);
 
@@ -65,7 +69,7 @@ size_t strut_study_search_columns(const strut_slot *slot);
 /** Reads what is searched, after the axes, and adds its axes. Nothing without one. */
 void strut_study_read_search(strut_study_reader *r, const strut_slot *slot);
 
-/* study_refine.c */
+/* study_axes.c: what is refined */
 
 /** Reads what is refined, after the axes, and gives the two axes the values of the finest grid. */
 void strut_study_read_refine(strut_study_reader *r, const strut_slot *slot);
@@ -85,17 +89,17 @@ bool strut_study_read_distributions(strut_study_reader *r, const strut_tree *ove
                                     strut_owner owner, size_t most, strut_study_axis *axis,
                                     strut_distribution *distributions);
 
-/* study_goals.c */
+/* study_axes.c: goals */
 
 /** Reads what the study wants of its points, after `keep`. */
 void strut_study_read_goals(strut_study_reader *r, strut_fields *top);
 
-/* study_sensitivity.c */
+/* study_points.c: sensitivity analyses */
 
 /** Reads the analysis and adds its points as the last axis, after all others. */
 void strut_study_read_sensitivity(strut_study_reader *r, strut_fields *top);
 
-/* study_follow.c */
+/* study_axes.c: what is followed */
 
 /** Reads what is followed, after the axes. Nothing without it. */
 void strut_study_read_follow(strut_study_reader *r, strut_fields *top);

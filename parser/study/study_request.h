@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
  * Requests for single evaluations: parameters of a model, and what is computed with them.
- *
+ * 
  * A request is a mapping {"set": {NAME: VALUE, ...}, "id": ..., "compute": ..., "keep": ..., "at": ...,
  * "variant": ...}, or the parameters alone: any mapping whose "set" is no mapping, where "id" is none of the
  * model's parameters. A number is in SI, in the unit of the parameter; a text is an expression such as
@@ -74,5 +74,34 @@ STRUT_API strut_status strut_request_read(const strut_study_file *file, const st
  */
 STRUT_API strut_status strut_request_setup(const strut_study_file *file, strut_request *request,
                                            strut_setup *setup, strut_request_findings *findings);
+
+/* ---- files of Dakota ---- */
+
+/** A function that DAKOTA wants. */
+typedef struct strut_dakota_function {
+  const char *name; /* the response's descriptor, "" where the file has none */
+  int wanted;       /* sum of 1: value, 2: gradient, 4: Hessian */
+  strut_place place;
+} strut_dakota_function;
+
+typedef struct strut_dakota_file {
+  size_t variable_count, function_count;
+  strut_request_value *variables;
+  strut_dakota_function *functions;
+  strut_arena arena;
+} strut_dakota_file;
+
+/** Reads a text. STRUT_BAD_SCENE with every finding in the diagnostics, whose source it must be. */
+STRUT_API strut_status strut_dakota_read(const char *text, size_t length,
+                                         strut_diagnostics *diagnostics, strut_dakota_file *file);
+STRUT_API void strut_dakota_free(strut_dakota_file *file);
+
+/**
+ * Makes the variables the values of a request of the study. STRUT_BAD_SCENE where a descriptor is no
+ * parameter of the model.
+ */
+STRUT_API strut_status strut_dakota_request(const strut_study_file *study,
+                                            const strut_dakota_file *file, strut_request *request,
+                                            strut_diagnostics *diagnostics);
 
 #endif

@@ -4,15 +4,68 @@
  * a property's own description only, never that of a definition behind it, and report alternatives
  * ("anyOf") vaguely; so every property has its description, and alternatives are "if type ... then".
  */
-#include "parser/write/schema.h"
+#include "parser/write/keys_page.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "engine/base/number_text.h"
-#include "parser/read/overlay.h"
-#include "parser/write/json_writer.h"
-#include "parser/write/key_text.h"
+
+/* ---- JSON ---- */
+
+static void begin_line(strut_json_writer *json) {
+  strut_put(&json->text, json->inside ? ",\n" : json->depth ? "\n" : "");
+  for (int i = 0; i < json->depth; i++) strut_put(&json->text, " ");
+  json->inside = true;
+}
+
+static void begin_value(strut_json_writer *json) {
+  if (!json->keyed) begin_line(json);
+  json->keyed = false;
+}
+
+void strut_json_open(strut_json_writer *json, char bracket) {
+  begin_value(json);
+  strut_put_part(&json->text, &bracket, 1);
+  json->depth++;
+  json->inside = false;
+}
+
+void strut_json_close(strut_json_writer *json, char bracket) {
+  json->depth--;
+  if (json->inside) {
+    strut_put(&json->text, "\n");
+    for (int i = 0; i < json->depth; i++) strut_put(&json->text, " ");
+  }
+  strut_put_part(&json->text, &bracket, 1);
+  json->inside = true;
+}
+
+void strut_json_key(strut_json_writer *json, const char *key) {
+  begin_line(json);
+  strut_put_quoted(&json->text, key);
+  strut_put(&json->text, ": ");
+  json->keyed = true;
+}
+
+void strut_json_put_text(strut_json_writer *json, const char *text) {
+  begin_value(json);
+  strut_put_quoted(&json->text, text); /* its escapes are those of JSON, too */
+}
+
+void strut_json_put_raw(strut_json_writer *json, const char *raw) {
+  begin_value(json);
+  strut_put(&json->text, raw);
+}
+
+char *strut_json_finish(strut_json_writer *json) {
+  strut_put(&json->text, "\n");
+  if (!json->text.failed) return json->text.text;
+  strut_release(json->text.text);
+  return NULL;
+}
+
+/* ---- the schema ---- */
 
 typedef struct schema {
   strut_json_writer json;
@@ -45,7 +98,7 @@ static void open_object(schema *s, const char *key) {
 
 static void close_object(schema *s) { strut_json_close(&s->json, '}'); }
 
-/* A quantity is a number or an expression in a text; which texts are expressions is not told. */
+/* A quantity is a number or an expression in a text; the schema does not say which texts are expressions. */
 #define NUMBER "[\"number\", \"string\"]"
 /* YAML makes numbers and switches of names and texts such as 1 and true; strut takes them as written. */
 #define SCALAR "[\"string\", \"number\", \"boolean\"]"
@@ -263,12 +316,6 @@ static void put_thing(schema *s, const strut_key *key) {
                {"derive", put_scalar},  {"ports", put_scalar},      {"onto", put_scalar},
                {"merge", put_scalar},   {"coupling", put_number},   {"shape", put_pair},
                {"positions", put_pair}, {"velocities", put_pair}};
-  static const struct {
-    const char *name;
-    strut_section section;
-  } others[] = {{"variants", STRUT_SECTION_VARIANT},
-                {"figures", STRUT_SECTION_FIGURE},
-                {"over", STRUT_SECTION_DISTRIBUTION}};
   for (size_t i = 0; i < sizeof plain / sizeof plain[0]; i++)
     if (strcmp(plain[i].name, key->name) == 0) {
       plain[i].put(s);
@@ -282,13 +329,8 @@ static void put_thing(schema *s, const strut_key *key) {
     put_along(s);
     return;
   }
-  for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
-    if (strcmp(others[i].name, key->name) == 0) {
-      put_section(s, others[i].section);
-      return;
-    }
-  strut_mapping_kind kind = strut_kind_below((strut_mapping_kind){key->section, false}, key->name);
-  if (kind.section != STRUT_SECTION_COUNT) put_any_section(s, kind.section);
+  strut_section section = strut_section_below(key);
+  if (section != STRUT_SECTION_COUNT) put_any_section(s, section);
 }
 
 /* With a base `remove` takes away a thing, or a whole mapping. */
@@ -352,7 +394,7 @@ static void put_value(schema *s, const strut_key *key) {
     case STRUT_TYPE_STEADY: put_either(s, "object", put_steady, put_switch); break;
     case STRUT_TYPE_KEEP: put_list(s, 0, 0, put_kept); break;
     case STRUT_TYPE_AXES: put_list(s, 0, 0, put_axis); break;
-    case STRUT_TYPE_MAP: put_section(s, strut_section_find(key->name)); break;
+    case STRUT_TYPE_MAP: put_section(s, strut_section_below(key)); break;
     case STRUT_TYPE_THINGS: put_things(s, key); break;
     case STRUT_TYPE_FREE: put_free(s, key); break;
   }
@@ -463,14 +505,13 @@ static void put_definition(schema *s, strut_section section) {
 
 /* A group may have the keys of all things that may name one. */
 static void put_group_definition(schema *s) {
-  static const strut_section sections[] = {STRUT_SECTION_MEMBER, STRUT_SECTION_NODE,
-                                           STRUT_SECTION_CONTACT, STRUT_SECTION_HINGE};
+  const strut_section *sections = strut_group_sections;
   open_object(s, "group");
   open_unless_removed(s);
   put_text_member(s, "title", "group");
   put_member(s, "type", "\"object\"");
   open_object(s, "properties");
-  for (size_t a = 0; a < sizeof sections / sizeof sections[0]; a++)
+  for (size_t a = 0; a < STRUT_GROUP_SECTIONS; a++)
     for (int i = 0; i < strut_section_size(sections[a]); i++) {
       const strut_key *key = strut_key_at(strut_section_first(sections[a]) + i);
       bool before = strcmp(key->name, "group") == 0;

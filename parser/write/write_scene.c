@@ -1,12 +1,233 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The structure as YAML, and the order of the whole file. See write_scene.h. */
+/* The structure and its drives as YAML, and the order of the whole file. See write_scene.h. */
 #include "parser/write/write_scene.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
 #include "engine/base/c_locale.h"
+#include "engine/base/vec.h"
 #include "parser/write/writer.h"
+
+/* ---- signals, and what they drive ---- */
+
+/* The name of the signal in the file; NULL if it is written where it is used. */
+const char *strut_signal_name(const strut_writer *writer, int32_t index) {
+  assert(index >= 0 && (size_t)index < writer->scene->signal_count);
+  const char *name = writer->scene->signals[index].name;
+  return name ? name : index == writer->period_signal ? "signal_of_the_period" : NULL;
+}
+
+/* The angle in radians that reads back as exactly this number of turns, if there is one. */
+static double radians(double turns) {
+  double angle = turns * STRUT_TAU, up = angle, down = angle;
+  for (int i = 0; i < 4; i++) {
+    if (up / STRUT_TAU == turns) return up;
+    if (down / STRUT_TAU == turns) return down;
+    up = nextafter(up, (double)INFINITY);
+    down = nextafter(down, -(double)INFINITY);
+  }
+  return angle;
+}
+
+static void put_signal(strut_writer *writer, int32_t index);
+
+void strut_put_signal_reference(strut_writer *writer, int32_t index) {
+  const char *name = strut_signal_name(writer, index);
+  if (name)
+    strut_put_name(writer, name);
+  else
+    put_signal(writer, index);
+}
+
+/* The phase is kept in turns and written as an angle. */
+static void put_phase(strut_writer *writer, strut_mapping *mapping, int key, const void *object) {
+  const strut_signal *signal = object;
+  if (signal->phase == 0.0 && !signbit(signal->phase)) return;
+  strut_put_key_name(writer, mapping, key);
+  strut_put_number(writer, radians(signal->phase));
+}
+
+static void put_wave(strut_writer *writer, const strut_signal *signal) {
+  strut_mapping mapping = STRUT_MAPPING_INLINE;
+  const strut_signal usual = strut_signal_default(signal->kind);
+  strut_put(writer, "{");
+  strut_put_fields(writer, &mapping, strut_wave_section(signal->kind), signal, &usual, put_phase);
+  strut_put(writer, "}");
+}
+
+static void put_table(strut_writer *writer, const strut_signal *s) {
+  strut_put(writer, "[");
+  for (size_t i = 0; i < s->point_count; i++) {
+    if (i) strut_put(writer, ", ");
+    strut_put_pair(writer, (const double[2]){s->time[i], s->value[i]});
+  }
+  strut_put(writer, "]");
+}
+
+static void put_trigger(strut_writer *writer, strut_mapping *mapping,
+                        const strut_trigger *trigger) {
+  const strut_scene *scene = writer->scene;
+  bool contact = trigger->kind == STRUT_TRIGGER_CONTACT;
+  strut_mapping inner = STRUT_MAPPING_INLINE;
+  if (trigger->kind == STRUT_TRIGGER_NONE) return;
+  strut_put_key_name(writer, mapping, STRUT_KEY_SIGNAL_STARTS);
+  strut_put(writer, "{");
+  strut_put_key_name(writer, &inner, contact ? STRUT_KEY_STARTS_CONTACT : STRUT_KEY_STARTS_SENSOR);
+  strut_put_name(writer,
+                 contact ? scene->nodes[trigger->item].name : scene->sensors[trigger->item].name);
+  if (!contact) {
+    strut_put_key_name(
+        writer, &inner,
+        trigger->kind == STRUT_TRIGGER_ABOVE ? STRUT_KEY_STARTS_ABOVE : STRUT_KEY_STARTS_BELOW);
+    strut_put_number(writer, trigger->level);
+  }
+  if (trigger->each) {
+    strut_put_key_name(writer, &inner, STRUT_KEY_STARTS_EACH);
+    strut_put(writer, "yes");
+  }
+  strut_put(writer, "}");
+}
+
+static void put_modifier(strut_writer *writer, strut_mapping *mapping, int key, double time) {
+  if (time == 0.0) return;
+  strut_put_key_name(writer, mapping, key);
+  strut_put_number(writer, time);
+}
+
+static void put_signal(strut_writer *writer, int32_t index) {
+  const strut_signal *s = &writer->scene->signals[index];
+  strut_mapping mapping = STRUT_MAPPING_INLINE;
+  strut_put(writer, "{");
+  strut_put_key_name(writer, &mapping, STRUT_KEY_SIGNAL_CONSTANT + (int)s->kind);
+  if (s->kind == STRUT_CONSTANT) {
+    strut_put_number(writer, s->amplitude);
+  } else if (s->kind == STRUT_TABLE) {
+    put_table(writer, s);
+  } else if (s->kind == STRUT_EXPRESSION) {
+    strut_put_program(writer, s->program.instruction, s->program.length);
+  } else if (s->kind == STRUT_SUM) {
+    strut_put(writer, "[");
+    for (size_t i = 0; i < s->term_count; i++) {
+      if (i) strut_put(writer, ", ");
+      strut_put_signal_reference(writer, s->terms[i]);
+    }
+    strut_put(writer, "]");
+  } else {
+    put_wave(writer, s);
+  }
+  put_trigger(writer, &mapping, &s->trigger);
+  put_modifier(writer, &mapping, STRUT_KEY_SIGNAL_LAG, s->lag);
+  put_modifier(writer, &mapping, STRUT_KEY_SIGNAL_EVERY, s->every);
+  strut_put(writer, "}");
+}
+
+static void put_sensor_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
+                               const void *object) {
+  const strut_sensor *sensor = object;
+  bool directed = sensor->kind == STRUT_SENSOR_POSITION || sensor->kind == STRUT_SENSOR_VELOCITY;
+  if (key != STRUT_KEY_SENSOR_ALONG || !directed) return;
+  strut_put_key_name(writer, mapping, key);
+  strut_put(writer, sensor->along ? "y" : "x");
+}
+
+static void put_states(strut_writer *writer) {
+  const strut_scene *scene = writer->scene;
+  if (scene->state_count) strut_put(writer, "states:\n");
+  for (size_t i = 0; i < scene->state_count; i++) {
+    const strut_internal_state *state = &scene->states[i];
+    strut_put(writer, "  ");
+    strut_put_name(writer, state->name);
+    strut_put(writer, ": {rate: ");
+    strut_put_program(writer, state->rate.instruction, state->rate.length);
+    strut_put(writer, state->unit ? ", start: \"" : ", start: ");
+    strut_put_number(writer, state->start);
+    strut_put(writer, state->unit ? " " : "");
+    strut_put(writer, state->unit ? state->unit : "");
+    strut_put(writer, state->unit ? "\"}\n" : "}\n");
+  }
+}
+
+static void put_named_signals(strut_writer *writer) {
+  bool any = false;
+  for (size_t i = 0; i < writer->scene->signal_count; i++) {
+    const char *name = strut_signal_name(writer, (int32_t)i);
+    if (!name || writer->scene->signals[i].kind == STRUT_RELAY) continue;
+    strut_put(writer, any ? "  " : "signals:\n  ");
+    any = true;
+    strut_put_name(writer, name);
+    strut_put(writer, ": ");
+    put_signal(writer, (int32_t)i);
+    strut_put(writer, "\n");
+  }
+}
+
+/* PID controllers have become signals and states. */
+static void put_relays(strut_writer *writer) {
+  bool any = false;
+  for (size_t i = 0; i < writer->scene->signal_count; i++) {
+    const strut_signal *s = &writer->scene->signals[i];
+    const strut_relay usual = {.off = (double)NAN}; /* it is always written */
+    strut_mapping mapping = STRUT_MAPPING_INLINE;
+    if (s->kind != STRUT_RELAY) continue;
+    strut_put(writer, any ? "  " : "controllers:\n  ");
+    any = true;
+    strut_put_name(writer, s->name);
+    strut_put(writer, ": {");
+    strut_put_key_name(writer, &mapping, STRUT_KEY_RELAY_KIND);
+    strut_put(writer, "relay");
+    strut_put_key_name(writer, &mapping, STRUT_KEY_RELAY_OF);
+    strut_put_program(writer, s->program.instruction, s->program.length);
+    strut_put_fields(writer, &mapping, STRUT_SECTION_RELAY, &s->relay, &usual, NULL);
+    put_modifier(writer, &mapping, STRUT_KEY_RELAY_EVERY, s->every);
+    strut_put(writer, "}\n");
+  }
+}
+
+/* What a signal adds to, or its force or moment. */
+static void put_actuator_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
+                                 const void *object) {
+  const strut_actuator *a = object;
+  int own = !a->force        ? STRUT_KEY_ACTUATOR_SIGNAL
+            : a->member >= 0 ? STRUT_KEY_ACTUATOR_FORCE
+                             : STRUT_KEY_ACTUATOR_MOMENT;
+  if (key != own) return;
+  strut_put_key_name(writer, mapping, key);
+  strut_put_signal_reference(writer, a->signal);
+}
+
+static void put_unbalance_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
+                                  const void *object) {
+  const strut_unbalance *u = object;
+  if (key != STRUT_KEY_UNBALANCE_SPEED || u->signal >= 0) return;
+  strut_put_key_name(writer, mapping, key);
+  strut_put_number(writer, u->speed);
+}
+
+static void put_slider_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
+                               const void *object) {
+  const strut_sliding_mass *s = object;
+  if (key != STRUT_KEY_SLIDER_MEMBER) return;
+  strut_put_key_name(writer, mapping, key);
+  strut_put_name(writer, writer->scene->members[s->member].name);
+}
+
+void strut_put_drives(strut_writer *writer) {
+  const strut_sliding_mass placed = {.share = (double)NAN}; /* the position is always written */
+  strut_put_things(writer, STRUT_THING_SENSOR, STRUT_SECTION_SENSOR, NULL, put_sensor_by_hand);
+  put_states(writer);
+  put_named_signals(writer);
+  put_relays(writer);
+  strut_put_things(writer, STRUT_THING_ACTUATOR, STRUT_SECTION_ACTUATOR, NULL,
+                   put_actuator_by_hand);
+  strut_put_things(writer, STRUT_THING_UNBALANCE, STRUT_SECTION_UNBALANCE, NULL,
+                   put_unbalance_by_hand);
+  strut_put_things(writer, STRUT_THING_SLIDER, STRUT_SECTION_SLIDER, &placed, put_slider_by_hand);
+  strut_put_things(writer, STRUT_THING_LOAD, STRUT_SECTION_LOAD, NULL, NULL);
+}
+
+/* ---- the whole file ---- */
 
 /* An expression, on one line. */
 static void put_expression(strut_writer *writer, const char *text) {
@@ -104,22 +325,17 @@ static void put_nodes(strut_writer *writer) {
   }
 }
 
+/* The list of a law that has one. */
 static void put_law_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
                             const void *object) {
   const strut_law *law = object;
-  int parameter = 0;
-  while (parameter < STRUT_LAW_PARAMETER_COUNT &&
-         strcmp(strut_law_key(parameter), strut_key_at(key)->name) != 0)
-    parameter++;
-  if (parameter == STRUT_LAW_PARAMETER_COUNT || !strut_law_allows(law->kind, parameter)) return;
+  bool points = key == STRUT_KEY_LAW_POINTS;
+  int list = points ? STRUT_LAW_PARAMETER_POINTS : STRUT_LAW_PARAMETER_COEFFICIENTS;
+  if (!strut_law_allows(law->kind, list)) return;
   strut_put_key_name(writer, mapping, key);
-  if (parameter < STRUT_LAW_NUMBER_COUNT) {
-    strut_put_number(writer, strut_law_value(law, parameter));
-    return;
-  }
   for (size_t i = 0; i < law->count; i++) {
     strut_put(writer, i ? ", " : "[");
-    if (key == STRUT_KEY_LAW_POINTS)
+    if (points)
       strut_put_pair(writer, (const double[2]){law->x[i], law->force[i]});
     else
       strut_put_number(writer, law->force[i]);
@@ -127,90 +343,45 @@ static void put_law_by_hand(strut_writer *writer, strut_mapping *mapping, int ke
   strut_put(writer, "]");
 }
 
-static void put_law(strut_writer *writer, strut_mapping *mapping, int key, const strut_law *law) {
+void strut_put_law(strut_writer *writer, const strut_law *law) {
   strut_law usual = {.kind = STRUT_LAW_LINEAR};
   for (int i = 0; i < STRUT_LAW_NUMBER_COUNT; i++) /* what a law needs is written, zero or not */
     if (strut_law_needs(law->kind, i)) *strut_law_number(&usual, i) = (double)NAN;
   strut_mapping inner = STRUT_MAPPING_INLINE;
-  if (law->kind == STRUT_LAW_LINEAR && law->carries == STRUT_CARRIES_BOTH) return;
-  strut_put_key_name(writer, mapping, key);
   strut_put(writer, "{");
   strut_put_fields(writer, &inner, STRUT_SECTION_LAW, law, &usual, put_law_by_hand);
   strut_put(writer, "}");
 }
 
-/* The nodes, the law, and the rest length in the way in which it was given. */
+/* The nodes; groups have been applied. */
 static void put_member_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
                                const void *object) {
-  const strut_node *nodes = writer->scene->nodes;
   const strut_member *m = object;
-  if (key == STRUT_KEY_MEMBER_NODES) {
-    strut_put_key_name(writer, mapping, key);
-    for (size_t k = 0; k < m->guide_count + 2; k++) {
-      strut_put(writer, k ? ", " : "[");
-      strut_put_name(writer, nodes[strut_member_node(m, k)].name);
-    }
-    strut_put(writer, "]");
-  } else if (key == STRUT_KEY_MEMBER_LAW) {
-    put_law(writer, mapping, key, &m->law);
-  } else if (key == STRUT_KEY_MEMBER_MAXWELL) {
-    const strut_maxwell none = {0};
-    strut_mapping inner = STRUT_MAPPING_INLINE;
-    if (m->maxwell.stiffness == 0.0) return;
-    strut_put_key_name(writer, mapping, key);
-    strut_put(writer, "{");
-    strut_put_fields(writer, &inner, STRUT_SECTION_MAXWELL, &m->maxwell, &none, NULL);
-    strut_put(writer, "}");
-  } else if (key == strut_rest_key(m->rest_kind)) {
-    strut_put_key_name(writer, mapping, key);
-    strut_put_number(writer, m->rest_value);
-  }
-}
-
-static void put_members(strut_writer *writer) {
-  const strut_scene *scene = writer->scene;
-  const strut_member usual = strut_member_default();
-  if (scene->member_count) strut_put(writer, "members:\n");
-  for (size_t i = 0; i < scene->member_count; i++) {
-    strut_mapping mapping = STRUT_MAPPING_INLINE;
-    strut_put(writer, "  ");
-    strut_put_name(writer, scene->members[i].name);
-    strut_put(writer, ": {");
-    strut_put_fields(writer, &mapping, STRUT_SECTION_MEMBER, &scene->members[i], &usual,
-                     put_member_by_hand);
-    strut_put(writer, "}\n");
-  }
-}
-
-static void put_hinge_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
-                              const void *object) {
-  const strut_hinge *h = object;
-  if (key == STRUT_KEY_HINGE_LAW) {
-    put_law(writer, mapping, key, &h->law);
-    return;
-  }
-  if (key != STRUT_KEY_HINGE_NODES) return; /* groups have been applied */
+  if (key != STRUT_KEY_MEMBER_NODES) return;
   strut_put_key_name(writer, mapping, key);
-  for (int k = 0; k < 3; k++) {
+  for (size_t k = 0; k < m->guide_count + 2; k++) {
     strut_put(writer, k ? ", " : "[");
-    strut_put_name(writer, writer->scene->nodes[h->node[k]].name);
+    strut_put_name(writer, writer->scene->nodes[strut_member_node(m, k)].name);
   }
   strut_put(writer, "]");
 }
 
-static void put_hinges(strut_writer *writer) {
-  const strut_scene *scene = writer->scene;
-  const strut_hinge usual = strut_hinge_default();
-  if (scene->hinge_count) strut_put(writer, "hinges:\n");
-  for (size_t i = 0; i < scene->hinge_count; i++) {
-    strut_mapping mapping = STRUT_MAPPING_INLINE;
-    strut_put(writer, "  ");
-    strut_put_name(writer, scene->hinges[i].name);
-    strut_put(writer, ": {");
-    strut_put_fields(writer, &mapping, STRUT_SECTION_HINGE, &scene->hinges[i], &usual,
-                     put_hinge_by_hand);
-    strut_put(writer, "}\n");
-  }
+static void put_gas_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
+                            const void *object) {
+  const strut_cell *cell = object;
+  strut_put_key_name(writer, mapping, key);
+  strut_put(writer, cell->law == STRUT_LAW_ISENTROPIC ? "isentropic" : "isothermal");
+}
+
+static void put_cell_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
+                             const void *object) {
+  const strut_cell *cell = object, usual = strut_cell_default();
+  strut_mapping inner = STRUT_MAPPING_INLINE;
+  if (key != STRUT_KEY_CELL_GAS || cell->law == STRUT_LAW_PRESSURE) return;
+  strut_put_key_name(writer, mapping, key);
+  strut_put(writer, "{");
+  strut_put_fields(writer, &inner, STRUT_SECTION_GAS, cell, &usual, put_gas_by_hand);
+  strut_put(writer, "}");
 }
 
 static void put_rayleigh(strut_writer *writer) {
@@ -222,29 +393,27 @@ static void put_rayleigh(strut_writer *writer) {
   strut_put(writer, "}\n");
 }
 
-static const strut_friction no_friction;
-
-static bool frictions_differ(const strut_friction *a, const strut_friction *b) {
-  return strut_fields_differ(STRUT_SECTION_FRICTION, a, b) || a->directional != b->directional ||
-         (a->directional && (a->mu_static_backward != b->mu_static_backward ||
-                             a->mu_kinetic_backward != b->mu_kinetic_backward));
+/* With these a friction is compared: of one with a direction, all its coefficients are written. */
+static strut_friction usual_friction(const strut_friction *f) {
+  strut_friction usual = {STRUT_FRICTION_NONE};
+  if (f->directional) usual.mu_static_backward = usual.mu_kinetic_backward = (double)NAN;
+  return usual;
 }
 
-static bool has_friction(const strut_friction *f) { return frictions_differ(f, &no_friction); }
+static bool frictions_differ(const strut_friction *a, const strut_friction *b) {
+  return strut_fields_differ(STRUT_SECTION_FRICTION, a, b) || a->directional != b->directional;
+}
 
-static void put_friction_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
-                                 const void *object) {
-  const strut_friction *f = object;
-  bool backward = key == STRUT_KEY_FRICTION_MU_BACKWARD;
-  if (!f->directional || (!backward && key != STRUT_KEY_FRICTION_MU_BACKWARD_STATIC)) return;
-  strut_put_key_name(writer, mapping, key);
-  strut_put_number(writer, backward ? f->mu_kinetic_backward : f->mu_static_backward);
+static bool has_friction(const strut_friction *f) {
+  const strut_friction none = {STRUT_FRICTION_NONE};
+  return frictions_differ(f, &none);
 }
 
 static void put_friction(strut_writer *writer, const strut_friction *f) {
   strut_mapping mapping = STRUT_MAPPING_INLINE;
+  const strut_friction usual = usual_friction(f);
   strut_put(writer, "{");
-  strut_put_fields(writer, &mapping, STRUT_SECTION_FRICTION, f, &no_friction, put_friction_by_hand);
+  strut_put_fields(writer, &mapping, STRUT_SECTION_FRICTION, f, &usual, NULL);
   strut_put(writer, "}");
 }
 
@@ -318,62 +487,9 @@ static void put_ground_nodes(strut_writer *writer) {
   if (!every) strut_put(writer, "]");
 }
 
-static void put_profile(strut_writer *writer, const strut_ground *g) {
-  for (size_t k = 0; k < g->point_count; k++) {
-    strut_put(writer, k ? ", " : "[");
-    strut_put_pair(writer, g->points[k]);
-  }
-  strut_put(writer, "]");
-}
-
-static void put_motion(strut_writer *writer, const strut_ground *g) {
-  strut_mapping mapping = STRUT_MAPPING_INLINE;
-  strut_put(writer, "{");
-  for (int c = 0; c < 2; c++) {
-    if (!g->moves[c]) continue;
-    strut_put_key_name(writer, &mapping, c ? STRUT_KEY_MOTION_IN_Y : STRUT_KEY_MOTION_IN_X);
-    strut_put_signal_reference(writer, g->motion[c]);
-  }
-  strut_put(writer, "}");
-}
-
-/* Keys of a ground's shape and motion; true if `key` is one of them. */
-static bool put_ground_shape(strut_writer *writer, strut_mapping *mapping, int key,
-                             const strut_ground *g) {
-  strut_mapping inner = STRUT_MAPPING_INLINE;
-  const strut_ground usual = {.radius = 0.0};
-  switch (key) {
-    case STRUT_KEY_GROUND_NORMAL: return true; /* as the slope */
-    case STRUT_KEY_GROUND_THROUGH:
-      if (!g->placed) return true;
-      strut_put_key_name(writer, mapping, key);
-      strut_put_pair(writer, g->through);
-      return true;
-    case STRUT_KEY_GROUND_PROFILE:
-      if (g->shape != STRUT_GROUND_PROFILE) return true;
-      strut_put_key_name(writer, mapping, key);
-      put_profile(writer, g);
-      return true;
-    case STRUT_KEY_GROUND_CIRCLE:
-      if (g->shape != STRUT_GROUND_CIRCLE) return true;
-      strut_put_key_name(writer, mapping, key);
-      strut_put(writer, "{");
-      strut_put_fields(writer, &inner, STRUT_SECTION_CIRCLE, g, &usual, NULL);
-      strut_put(writer, "}");
-      return true;
-    case STRUT_KEY_GROUND_MOTION:
-      if (!g->moves[0] && !g->moves[1]) return true;
-      strut_put_key_name(writer, mapping, key);
-      put_motion(writer, g);
-      return true;
-    default: return false;
-  }
-}
-
 static void put_ground_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
                                const void *object) {
   const strut_ground_section *section = object;
-  if (put_ground_shape(writer, mapping, key, &section->ground)) return;
   if (key == STRUT_KEY_GROUND_FRICTION) {
     const strut_friction *friction = &section->contact.friction;
     if (!friction_is_shared(writer) || !has_friction(friction)) return;
@@ -381,7 +497,7 @@ static void put_ground_by_hand(strut_writer *writer, strut_mapping *mapping, int
     put_friction(writer, friction);
   } else if (key == STRUT_KEY_GROUND_CONTACTS) {
     put_contacts(writer, mapping);
-  } else {
+  } else if (key == STRUT_KEY_GROUND_NODES) { /* a normal is written as the slope */
     strut_put_key_name(writer, mapping, key);
     put_ground_nodes(writer);
   }
@@ -436,10 +552,10 @@ char *strut_setup_write(const strut_setup *setup) {
   strut_c_locale locale = strut_c_locale_enter();
   put_head(&writer);
   put_nodes(&writer);
-  put_members(&writer);
-  put_hinges(&writer);
-  strut_put_cells(&writer);
-  strut_put_collisions(&writer);
+  strut_put_things(&writer, STRUT_THING_MEMBER, STRUT_SECTION_MEMBER, NULL, put_member_by_hand);
+  strut_put_things(&writer, STRUT_THING_HINGE, STRUT_SECTION_HINGE, NULL, NULL);
+  strut_put_things(&writer, STRUT_THING_CELL, STRUT_SECTION_CELL, NULL, put_cell_by_hand);
+  strut_put_things(&writer, STRUT_THING_COLLISION, STRUT_SECTION_COLLISION, NULL, NULL);
   put_rayleigh(&writer);
   put_ground(&writer);
   strut_put_drives(&writer);

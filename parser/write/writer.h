@@ -48,32 +48,40 @@ void strut_put_key(strut_writer *writer, strut_mapping *mapping, const char *key
 /** As strut_put_key, with the key's name in the language. */
 void strut_put_key_name(strut_writer *writer, strut_mapping *mapping, int key);
 
-/** Writes a key without a field, if the object has a value for it. */
+/** Writes a key that rows do not write, if the object has a value for it. */
 typedef void strut_put_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
                                const void *object);
 /**
- * Writes the keys of a section in the order of the table: fields of `object` that are always written or
- * differ from those of `usual`, and the keys without a field by `by_hand` (NULL: they are left out).
+ * Writes the keys of a section in the order of the table: values of `object` that are always written or
+ * differ from those of `usual`, things and lists that there are, of several keys the chosen one, and the
+ * keys that rows do not write by `by_hand` (NULL: they are left out).
  */
 void strut_put_fields(strut_writer *writer, strut_mapping *mapping, strut_section section,
                       const void *object, const void *usual, strut_put_by_hand *by_hand);
 /** True where some field of the section differs between two objects. */
 bool strut_fields_differ(strut_section section, const void *object, const void *usual);
 
+/**
+ * Writes all things of a kind, a line each, with strut_put_fields. usual: what they are compared with, NULL:
+ * the defaults of the kind.
+ */
+void strut_put_things(strut_writer *writer, strut_thing kind, strut_section section,
+                      const void *usual, strut_put_by_hand *by_hand);
+/** write_scene.c: a law as a mapping. */
+void strut_put_law(strut_writer *writer, const strut_law *law);
+
+/** The name of a signal in the file; NULL if it is written where it is used. */
+const char *strut_signal_name(const strut_writer *writer, int32_t index);
 /** A signal's name, or the signal itself where it has none. */
 void strut_put_signal_reference(strut_writer *writer, int32_t index);
-/** write_cells.c */
-void strut_put_cells(strut_writer *writer);
-/** write_collisions.c */
-void strut_put_collisions(strut_writer *writer);
-/** write_drives.c: signals, actuators, loads, run, solver, output. */
+/** signals, actuators, loads, run, solver, output. */
 void strut_put_drives(strut_writer *writer);
 void strut_put_experiment(strut_writer *writer);
-/** write_quantities.c: a program as an expression in quotes. */
+/** a program as an expression in quotes. */
 void strut_put_program(strut_writer *writer, const strut_instruction *program, size_t length);
-/** write_quantities.c: `quantities` of the measurement, if there are any. */
+/** `quantities` of the measurement, if there are any. */
 void strut_put_quantities(strut_writer *writer, strut_mapping *mapping);
-/** write_shapes.c: configurations, the search for equilibria, the initial state. */
+/** configurations, the search for equilibria, the initial state. */
 void strut_put_shapes(strut_writer *writer);
 
 #endif

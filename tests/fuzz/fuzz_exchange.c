@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "parser/import/import.h"
-#include "parser/study/dakota_file.h"
+#include "parser/study/study_request.h"
 #include "parser/yaml/json_text.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);

@@ -32,6 +32,9 @@ static const char OSCILLATOR[] =
     "initial: {positions: {block: [1.01, 0]}}\n"
     "solver: {integrator: euler-forward, step: 1e-4}\nrun: {duration: 1}\n";
 
+/* things.c */
+int test_a_number_of_hinges(void);
+
 static int failures;
 
 static void expect(bool good, const char *what, const char *where, double value) {
@@ -419,6 +422,7 @@ int main(void) {
   test_the_member_law(1, "bar");
   test_the_member_law(5, "bar");
   test_the_method();
+  failures += test_a_number_of_hinges();
   if (!failures) printf("the recipes work\n");
   return failures > 0;
 }

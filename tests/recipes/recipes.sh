@@ -17,7 +17,8 @@ cd "$scratch"
 touched=$(sed -n 's/^+++ b\///p' recipes.diff | sort | tr '\n' ' ')
 expected="engine/forces/elements.c engine/forces/strains/span.h engine/integrate/euler_forward.c \
 engine/model/elements.c engine/model/elements.h engine/scene/experiment.h engine/scene/law.h \
-engine/scene/laws/friction.h engine/scene/laws/stiffening.h "
+engine/scene/laws/friction.h engine/scene/laws/stiffening.h engine/scene/scene.c \
+engine/scene/scene.h engine/scene/things_table.h "
 [ "$touched" = "$expected" ] || { echo "the recipes touch other files: $touched"; exit 1; }
 patch -s -p1 <recipes.diff
 
@@ -32,7 +33,7 @@ for name in $(grep -o 'strut_code_[a-z]*_template' engine/output/code/templates.
 done
 cmake "-DSOURCE=templates.c" "-DHEADER=engine/output/code/templates.h" "-DEMBED=$embedded" \
   -P EmbedFiles.cmake
-sources="tests/recipes/recipes.c templates.c $(ls engine/base/*.c engine/scene/*.c \
+sources="tests/recipes/recipes.c tests/recipes/things.c templates.c $(ls engine/base/*.c engine/scene/*.c \
   engine/model/*.c engine/forces/*.c engine/statics/search/*.c engine/statics/equilibria/*.c \
   engine/output/code/*.c) $(find engine/integrate parser/yaml parser/expression parser/language \
   parser/read parser/write -name '*.c') $(ls engine/run/settle*.c engine/output/buffer.c \

@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "parser/read/safe_path.h"
+#include "parser/read/used_files.h"
 
 static char folder[] = "/tmp/strut-safe-XXXXXX";
 

@@ -5,7 +5,7 @@
 #include "engine/base/memory.h"
 #include "engine/output/draw/palette.h"
 #include "engine/output/draw/structure.h"
-#include "engine/scene/outline.h"
+#include "engine/scene/profile.h"
 
 static const double DEPTH = 8.0; /* of the hatching below a surface [pt] */
 

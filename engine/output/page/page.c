@@ -12,7 +12,7 @@
 #include "engine/output/quantity_text.h"
 #include "engine/output/report/equilibria_report.h"
 #include "engine/output/summary_rows.h"
-#include "engine/scene/outline.h"
+#include "engine/scene/profile.h"
 
 /* The cards of the page: the choice of equilibria and their data. */
 

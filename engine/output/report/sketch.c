@@ -13,7 +13,7 @@
 #include "engine/base/memory.h"
 #include "engine/output/buffer.h"
 #include "engine/output/quantity_text.h"
-#include "engine/scene/outline.h"
+#include "engine/scene/profile.h"
 
 /* Code points of marks, in ascending order; ASCII output substitutes others. */
 enum {

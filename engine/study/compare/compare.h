@@ -14,8 +14,8 @@
 #include "engine/model/model.h"
 #include "engine/output/draw/plot.h"
 #include "engine/run/measure/summary.h"
-#include "engine/scene/difference.h"
 #include "engine/scene/experiment.h"
+#include "engine/scene/things.h"
 
 enum { STRUT_COMPARE_MOST = 100, STRUT_COMPARE_FREQUENCIES = 3 };
 

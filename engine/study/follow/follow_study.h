@@ -8,7 +8,7 @@
 
 #include "engine/output/draw/plot.h"
 #include "engine/run/follow/follow_curve.h"
-#include "engine/scene/study_follow.h"
+#include "engine/scene/study.h"
 
 enum { STRUT_FOLLOW_KICKS = 4, STRUT_FOLLOW_MOST_BASINS = 64, STRUT_FOLLOW_MOST_CURVES = 24 };
 enum { STRUT_FOLLOW_MOST_BRANCHES = 24, STRUT_FOLLOW_NOTE = 320, STRUT_FOLLOW_LABEL = 120 };

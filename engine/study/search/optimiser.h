@@ -13,7 +13,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "engine/scene/study_search.h"
+#include "engine/scene/study.h"
 
 /** Answers an optimiser. */
 typedef struct strut_search_asker {

@@ -9,7 +9,7 @@
 #include "engine/base/number_text.h"
 #include "engine/output/buffer.h"
 #include "engine/output/file.h"
-#include "engine/scene/sensitivity_design.h"
+#include "engine/scene/sample.h"
 
 enum { MOST_TEXTS = 12 };
 static const strut_estimate MISSING = {(double)NAN, (double)NAN, (double)NAN, (double)NAN};

@@ -5,6 +5,7 @@
 #include <pthread.h>
 #include <string.h>
 
+#include "engine/scene/things.h"
 #include "engine/statics/equilibria/rest_state.h"
 #include "engine/statics/search/critical.h"
 
@@ -36,7 +37,8 @@ struct strut_equilibrium_cache {
   structure *kept[MOST_KEPT];
 };
 
-static void add(structure *s, double value) {
+static void add(void *context, double value) {
+  structure *s = context;
   if (s->length == s->capacity && !s->failed) {
     size_t capacity = s->capacity ? 2 * s->capacity : 256;
     double *key = strut_reallocate(s->key, capacity, sizeof *key);
@@ -47,147 +49,6 @@ static void add(structure *s, double value) {
     s->failed = !key;
   }
   if (!s->failed) s->key[s->length++] = value;
-}
-
-static void add_all(structure *s, const double *values, size_t count) {
-  for (size_t i = 0; i < count; i++) add(s, values[i]);
-}
-
-static void add_set(structure *s, const strut_node_set *set) {
-  add(s, (double)set->count);
-  for (size_t i = 0; i < set->count; i++) add(s, set->node[i]);
-}
-
-static void add_nodes(structure *s, const strut_scene *scene) {
-  add(s, (double)scene->node_count);
-  for (size_t i = 0; i < scene->node_count; i++) {
-    const strut_node *n = &scene->nodes[i];
-    add_all(s, n->position, 2);
-    add_all(s, n->start, 2);
-    add(s, n->mass);
-    add(s, n->fixed[0] + 2 * n->fixed[1]);
-  }
-  for (size_t i = 0; i < scene->configuration_count; i++) {
-    const strut_configuration *c = &scene->configurations[i];
-    add(s, c->shaped);
-    if (c->position) add_all(s, c->position[0], 2 * scene->node_count);
-    add(s, (double)c->set_count);
-    for (size_t k = 0; k < c->set_count; k++) add_set(s, &c->sets[k]);
-  }
-}
-
-static void add_law(structure *s, const strut_law *law) {
-  add(s, law->kind);
-  add(s, law->carries);
-  add(s, law->smooth);
-  add(s, (double)law->count);
-  for (int p = 0; p < STRUT_LAW_NUMBER_COUNT; p++) add(s, strut_law_value(law, p));
-  add_all(s, law->force, law->count);
-  if (law->kind == STRUT_LAW_TABLE) add_all(s, law->x, law->count);
-}
-
-static void add_forces(structure *s, const strut_scene *scene) {
-  add(s, (double)scene->member_count);
-  for (size_t i = 0; i < scene->member_count; i++) {
-    const strut_member *m = &scene->members[i];
-    const double values[] = {m->node[0], m->node[1], m->kind,      m->stiffness, m->axial_stiffness,
-                             m->damping, m->mass,    m->rest_kind, m->rest_value};
-    add_all(s, values, sizeof values / sizeof values[0]);
-    const double more[] = {m->shortest, m->longest, m->stop_stiffness, m->stop_damping,
-                           m->damping_ratio};
-    add_all(s, more, sizeof more / sizeof more[0]);
-    add(s, (double)m->guide_count);
-    for (size_t k = 0; k < m->guide_count; k++) add(s, m->guides[k]);
-    add_law(s, &m->law);
-  }
-  add(s, (double)scene->hinge_count);
-  for (size_t i = 0; i < scene->hinge_count; i++) {
-    const strut_hinge *h = &scene->hinges[i];
-    const double values[] = {h->node[0],   h->node[1], h->node[2],
-                             h->stiffness, h->damping, strut_hinge_rest(scene, i)};
-    add_all(s, values, sizeof values / sizeof values[0]);
-    add_law(s, &h->law);
-  }
-  add(s, (double)scene->cell_count);
-  for (size_t i = 0; i < scene->cell_count; i++) {
-    const strut_cell *c = &scene->cells[i];
-    const double values[] = {c->law, c->pressure, c->exponent, c->outside, (double)c->node_count};
-    add_all(s, values, sizeof values / sizeof values[0]);
-    for (size_t k = 0; k < c->node_count; k++) add(s, c->node[k]);
-  }
-  add(s, (double)scene->collision_count);
-  for (size_t i = 0; i < scene->collision_count; i++) {
-    const strut_collision *c = &scene->collisions[i];
-    const double values[] = {c->node[0],   c->node[1],   c->member[0], c->member[1],
-                             c->thickness, c->stiffness, c->damping};
-    add_all(s, values, sizeof values / sizeof values[0]);
-  }
-  add(s, (double)scene->contact_count);
-  for (size_t i = 0; i < scene->contact_count; i++) {
-    const strut_contact *c = &scene->contacts[i];
-    const double values[] = {c->node, c->stiffness, c->damping, c->dissipation};
-    add_all(s, values, sizeof values / sizeof values[0]);
-    if (scene->ground_count) add(s, c->ground), add(s, c->piece);
-  }
-  for (size_t i = 0; i < scene->ground_count; i++) {
-    const strut_ground *g = &scene->grounds[i];
-    const double values[] = {g->shape,      g->height,     g->slope,      g->placed,
-                             g->through[0], g->through[1], g->centre[0],  g->centre[1],
-                             g->radius,     g->inside,     g->belt_speed, g->damping_law};
-    add_all(s, values, sizeof values / sizeof values[0]);
-    for (size_t k = 0; k < g->point_count; k++) add_all(s, g->points[k], 2);
-  }
-  for (size_t i = 0; i < scene->load_count; i++) {
-    const strut_load *l = &scene->loads[i];
-    if (l->signal >= 0) continue;
-    const double values[] = {l->node, l->force[0], l->force[1]};
-    add_all(s, values, sizeof values / sizeof values[0]);
-  }
-}
-
-static void add_rest(structure *s, const strut_setup *setup) {
-  const strut_scene *scene = &setup->scene;
-  const strut_search *search = &setup->experiment.search;
-  const strut_ground *g = &scene->ground;
-  const strut_settle *settle = &setup->experiment.settle;
-  const double values[] = {scene->mass_model,
-                           scene->bar_model,
-                           scene->gravity[0],
-                           scene->gravity[1],
-                           g->present,
-                           g->height,
-                           g->slope,
-                           g->damping_law,
-                           settle->wanted,
-                           settle->friction,
-                           settle->speed,
-                           settle->acceleration,
-                           settle->limit,
-                           settle->evaluations,
-                           settle->step,
-                           settle->perturb,
-                           (double)search->starts,
-                           (double)search->seed,
-                           scene->rayleigh_mass,
-                           scene->rayleigh_stiffness};
-  add_all(s, values, sizeof values / sizeof values[0]);
-  for (size_t i = 0; i < search->support_count; i++) add_set(s, &search->supports[i]);
-  for (size_t i = 0; i < scene->support_motion_count; i++) {
-    const strut_support_motion *m = &scene->support_motions[i];
-    double value, rate;
-    strut_signal_evaluate(scene->signals, m->signal, 0.0, &value, &rate);
-    const double motion[] = {m->node, m->axis, value};
-    add_all(s, motion, sizeof motion / sizeof motion[0]);
-  }
-  for (size_t i = 0; i < scene->unbalance_count; i++) {
-    add(s, scene->unbalances[i].node);
-    add(s, scene->unbalances[i].mass);
-  }
-  for (size_t i = 0; i < scene->sliding_count; i++) {
-    const strut_sliding_mass *m = &scene->sliding_masses[i];
-    const double at_rest[] = {m->member, m->mass, strut_sliding_mass_share(scene, i, 0.0)};
-    add_all(s, at_rest, sizeof at_rest / sizeof at_rest[0]);
-  }
 }
 
 static void free_structure(structure *s) {
@@ -204,9 +65,7 @@ static structure *describe(const strut_setup *setup) {
   structure *s = strut_allocate(1, sizeof *s);
   if (!s) return NULL;
   s->count = scene->configuration_count;
-  add_nodes(s, scene);
-  add_forces(s, scene);
-  add_rest(s, setup);
+  strut_setup_at_rest(setup, add, s);
   if (!s->failed) s->configurations = strut_allocate(s->count, sizeof *s->configurations);
   if (s->configurations && pthread_mutex_init(&s->lock, NULL) == 0) return s;
   strut_release(s->configurations);

@@ -1,0 +1,339 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Rules about the ground, and about shapes on it. See check.h. */
+#include <math.h>
+#include <stdio.h>
+
+#include "engine/scene/check_rules.h"
+#include "engine/scene/profile.h"
+#include "engine/scene/signal_motion.h"
+#include "engine/scene/signal_program.h"
+
+/* ---- grounds and contacts ---- */
+
+static const double QUARTER_TURN = 1.57079632679489661923;
+
+static void check_friction(strut_checker *checker, size_t index, const char *owner) {
+  const strut_friction *f = &checker->scene->contacts[index].friction;
+  if ((unsigned)f->law >= STRUT_FRICTION_LAW_COUNT) {
+    strut_report_finding(checker, STRUT_ON_CONTACT, index, "law",
+                         "the friction law of %s is unknown", owner);
+    return;
+  }
+  const strut_checked whose = {STRUT_ON_CONTACT, index, owner, NULL};
+  const strut_friction none = {0};
+  strut_check_fields(checker, &whose, STRUT_FIELDS_FRICTION, f, &none);
+  for (int p = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++)
+    if (strut_friction_needs(f->law, p) && strut_friction_value(f, p) == 0.0)
+      strut_check_number(checker, &whose, STRUT_FIELDS_FRICTION, strut_friction_key(p), 0.0);
+}
+
+static void check_line(strut_checker *checker, size_t index, const char *owner) {
+  const strut_ground *g = &checker->scene->grounds[index];
+  const strut_checked whose = {STRUT_ON_GROUND, index, owner, NULL};
+  strut_check_number(checker, &whose, STRUT_FIELDS_GROUND, "height", g->height);
+  strut_check_number(checker, &whose, STRUT_FIELDS_GROUND, "slope", g->slope);
+  for (int c = 0; c < 2; c++)
+    strut_check_number(checker, &whose, STRUT_FIELDS_GROUND, "through", g->through[c]);
+  if (!g->placed && fabs(cos(g->slope)) < 1e-12)
+    strut_report_finding(checker, STRUT_ON_GROUND, index, "slope",
+                         "%s is upright, so that it has no height at x = 0; give a point of it, "
+                         "through: [x, y]",
+                         owner);
+}
+
+static void check_profile(strut_checker *checker, size_t index, const char *owner) {
+  size_t segment, other;
+  strut_profile_fault fault =
+      strut_profile_check(&checker->scene->grounds[index], &segment, &other);
+  switch (fault) {
+    case STRUT_PROFILE_FINE: break;
+    case STRUT_PROFILE_NO_MEMORY: checker->out_of_memory = true; break;
+    case STRUT_PROFILE_SHORT:
+      strut_report_finding(checker, STRUT_ON_GROUND, index, "profile",
+                           "the profile of %s needs at least two points", owner);
+      break;
+    case STRUT_PROFILE_POINT:
+      strut_report_finding(checker, STRUT_ON_GROUND, index, "profile",
+                           "point %zu of the profile of %s is not finite", segment + 1, owner);
+      break;
+    case STRUT_PROFILE_ZERO:
+      strut_report_finding(checker, STRUT_ON_GROUND, index, "profile",
+                           "points %zu and %zu of the profile of %s are one point", segment + 1,
+                           segment + 2, owner);
+      break;
+    case STRUT_PROFILE_BACK:
+      strut_report_finding(checker, STRUT_ON_GROUND, index, "profile",
+                           "the profile of %s turns back onto itself at point %zu", owner,
+                           segment + 1);
+      break;
+    case STRUT_PROFILE_CROSSES:
+      strut_report_finding(checker, STRUT_ON_GROUND, index, "profile",
+                           "the profile of %s crosses itself: its segments %zu and %zu meet; its "
+                           "ends continue straight",
+                           owner, other + 1, segment + 1);
+      break;
+  }
+}
+
+/* A displacement that jumps would take the ground through nodes. */
+static void check_motion(strut_checker *checker, size_t index, const char *owner) {
+  const strut_scene *scene = checker->scene;
+  const strut_ground *g = &scene->grounds[index];
+  double when;
+  for (int c = 0; c < 2; c++) {
+    const char *axis = c ? "y" : "x";
+    if (!g->moves[c]) continue;
+    int32_t signal = g->motion[c];
+    if (signal < 0 || (size_t)signal >= scene->signal_count)
+      strut_report_finding(checker, STRUT_ON_GROUND, index, "motion",
+                           "the motion of %s in %s has no signal", owner, axis);
+    else if (!checker->wild[signal] && !strut_signal_is_wave(scene->signals, signal))
+      strut_report_finding(
+          checker, STRUT_ON_GROUND, index, "motion",
+          "the motion of %s in %s is an expression, a lag, samples or a start, whose "
+          "acceleration is not known; use waves, ramps, tables and sums of them",
+          owner, axis);
+    else if (!checker->wild[signal] &&
+             strut_signal_value_jumps(scene->signals, signal, HUGE_VAL, &when))
+      strut_report_finding(checker, STRUT_ON_GROUND, index, "motion",
+                           "the motion of %s in %s jumps; use a ramp, a table, or waves that begin "
+                           "and stop at zero",
+                           owner, axis);
+  }
+}
+
+static void check_grounds(strut_checker *checker) {
+  const strut_scene *scene = checker->scene;
+  if (scene->ground.present)
+    strut_report_finding(checker, STRUT_ON_GROUND, 0, NULL, "there are both a ground and grounds");
+  for (size_t i = 0; i < scene->ground_count; i++) {
+    const strut_ground *g = &scene->grounds[i];
+    bool single = scene->ground_count == 1 && !(g->name && *g->name), used = false;
+    char owner[200];
+    if (single)
+      snprintf(owner, sizeof owner, "the ground");
+    else
+      strut_format_name(owner, "ground", g->name, i);
+    const strut_checked whose = {STRUT_ON_GROUND, i, owner, NULL};
+    const strut_checked circle = {STRUT_ON_GROUND, i, owner, "circle"};
+    strut_check_number(checker, &whose, STRUT_FIELDS_GROUND, "belt_speed", g->belt_speed);
+    if ((unsigned)g->damping_law >= STRUT_DAMPING_COUNT)
+      strut_report_finding(checker, STRUT_ON_GROUND, i, "damping_law",
+                           "the damping law of %s is unknown", owner);
+    switch (g->shape) {
+      case STRUT_GROUND_LINE: check_line(checker, i, owner); break;
+      case STRUT_GROUND_PROFILE: check_profile(checker, i, owner); break;
+      case STRUT_GROUND_CIRCLE:
+        for (int c = 0; c < 2; c++)
+          strut_check_number(checker, &circle, STRUT_FIELDS_CIRCLE, "centre", g->centre[c]);
+        strut_check_number(checker, &circle, STRUT_FIELDS_CIRCLE, "radius", g->radius);
+        break;
+    }
+    check_motion(checker, i, owner);
+    for (size_t k = 0; k < scene->contact_count; k++)
+      used = used || scene->contacts[k].ground == (int32_t)i;
+    if (!used)
+      strut_report_finding(checker, STRUT_ON_GROUND, i, "nodes", "no node may touch %s", owner);
+  }
+}
+
+/* Contacts follow their nodes, then grounds, then pieces, one of each. */
+static bool follows(const strut_contact *before, const strut_contact *c) {
+  if (c->node != before->node) return c->node > before->node;
+  if (c->ground != before->ground) return c->ground > before->ground;
+  return c->piece > before->piece;
+}
+
+/* Pieces of each ground; of a profile with faults, which are reported, any number. */
+static size_t *count_pieces(strut_checker *checker) {
+  const strut_scene *scene = checker->scene;
+  size_t *pieces = strut_allocate(scene->ground_count + 1, sizeof *pieces), segment, other;
+  if (!pieces) checker->out_of_memory = true;
+  for (size_t i = 0; i < scene->ground_count && pieces; i++) {
+    const strut_ground *g = &scene->grounds[i];
+    bool faulty = g->shape == STRUT_GROUND_PROFILE && strut_profile_check(g, &segment, &other);
+    pieces[i] = faulty ? SIZE_MAX : strut_ground_pieces(g);
+  }
+  return pieces;
+}
+
+static bool has_surface(const strut_scene *scene, const strut_contact *c, const size_t *pieces) {
+  if (!scene->ground_count) return c->ground == 0 && c->piece == 0;
+  if (c->ground < 0 || (size_t)c->ground >= scene->ground_count || c->piece < 0) return false;
+  return (size_t)c->piece < pieces[c->ground];
+}
+
+static void check_contacts(strut_checker *checker, const size_t *pieces) {
+  const strut_scene *scene = checker->scene;
+  for (size_t i = 0; i < scene->contact_count; i++) {
+    const strut_contact *c = &scene->contacts[i];
+    if (c->node < 0 || (size_t)c->node >= scene->node_count) {
+      strut_report_finding(checker, STRUT_ON_CONTACT, i, NULL,
+                           "contact number %zu is of a node that does not exist", i + 1);
+      continue;
+    }
+    char owner[200];
+    strut_format_name(owner, "the contact of node", scene->nodes[c->node].name, (size_t)c->node);
+    if (i && !follows(&scene->contacts[i - 1], c))
+      strut_report_finding(checker, STRUT_ON_CONTACT, i, NULL,
+                           "%s is out of order: contacts follow their nodes, one for each at most",
+                           owner);
+    if (!has_surface(scene, c, pieces))
+      strut_report_finding(checker, STRUT_ON_CONTACT, i, NULL,
+                           "%s is with a ground, or a piece of one, that does not exist", owner);
+    const strut_checked whose = {STRUT_ON_CONTACT, i, owner, NULL};
+    strut_check_fields(checker, &whose, STRUT_FIELDS_CONTACT, c, NULL);
+    check_friction(checker, i, owner);
+  }
+}
+
+void strut_check_ground(strut_checker *checker) {
+  const strut_scene *scene = checker->scene;
+  const strut_ground *g = &scene->ground;
+  const strut_checked whose = {STRUT_ON_GROUND, 0, "the ground", NULL};
+  strut_check_number(checker, &whose, STRUT_FIELDS_GROUND, "height", g->height);
+  strut_check_number(checker, &whose, STRUT_FIELDS_GROUND, "belt_speed", g->belt_speed);
+  if (!(fabs(g->slope) < QUARTER_TURN))
+    strut_report_finding(
+        checker, STRUT_ON_GROUND, 0, "slope",
+        "the slope of the ground must lie between -90 deg and 90 deg, found %g deg; a line at any "
+        "angle needs a point, through: [x, y]",
+        g->slope / QUARTER_TURN * 90.0);
+  if ((unsigned)g->damping_law >= STRUT_DAMPING_COUNT)
+    strut_report_finding(checker, STRUT_ON_GROUND, 0, "damping_law",
+                         "the ground's damping law is unknown");
+  if (g->present && !scene->contact_count)
+    strut_report_finding(checker, STRUT_ON_GROUND, 0, "nodes", "no node may touch the ground");
+  if (scene->ground_count) check_grounds(checker);
+  if (!strut_scene_has_ground(scene) && scene->contact_count)
+    strut_report_finding(checker, STRUT_ON_GROUND, 0, NULL, "there are contacts but no ground");
+  size_t *pieces = count_pieces(checker);
+  if (pieces) check_contacts(checker, pieces);
+  strut_release(pieces);
+}
+
+/* ---- configurations and the search for equilibria ---- */
+
+/* State for checking sets of contact nodes. */
+typedef struct sets_check {
+  strut_checker *checker;
+  bool *touches;   /* (node_count) may touch the ground */
+  uint64_t *stamp; /* (node_count) the last set that contains it */
+  uint64_t now;
+} sets_check;
+
+/* Checks one set; the finding is about `subject`, `index`, `key`. False: it is invalid. */
+static bool check_set(sets_check *check, const strut_node_set *set, strut_subject subject,
+                      size_t index, const char *key, const char *owner) {
+  strut_checker *checker = check->checker;
+  const strut_scene *scene = checker->scene;
+  check->now++;
+  if (!set->count) {
+    strut_report_finding(checker, subject, index, key, "the %s of %s have an empty list", key,
+                         owner);
+    return false;
+  }
+  for (size_t i = 0; i < set->count; i++) {
+    int32_t n = set->node[i];
+    if (n < 0 || (size_t)n >= scene->node_count) {
+      strut_report_finding(checker, subject, index, key,
+                           "the %s of %s name a node that does not exist", key, owner);
+      return false;
+    }
+    char node[200];
+    strut_format_name(node, "node", scene->nodes[n].name, (size_t)n);
+    bool twice = check->stamp[n] == check->now;
+    check->stamp[n] = check->now;
+    if (check->touches[n] && !twice) continue;
+    strut_report_finding(checker, subject, index, key,
+                         twice ? "the %s of %s name %s twice"
+                               : "the %s of %s name %s, but 'nodes' of the ground lacks it",
+                         key, owner, node);
+    return false;
+  }
+  return true;
+}
+
+static void check_sets(sets_check *check, const strut_node_set *sets, size_t count,
+                       strut_subject subject, size_t index, const char *key, const char *owner) {
+  const strut_scene *scene = check->checker->scene;
+  if (count && scene->ground_count && subject == STRUT_ON_EQUILIBRIA) {
+    strut_report_finding(check->checker, subject, index, key,
+                         "the %s of %s take the place of one straight line at rest, and the scene "
+                         "has other grounds; leave them out",
+                         key, owner);
+    return;
+  }
+  if (count && !strut_scene_has_ground(scene)) {
+    strut_report_finding(check->checker, subject, index, key,
+                         "the %s of %s need a ground to rest on, and the scene has none", key,
+                         owner);
+    return;
+  }
+  for (size_t i = 0; i < count; i++)
+    if (!check_set(check, &sets[i], subject, index, key, owner)) return;
+}
+
+static void check_positions(strut_checker *checker, size_t index, const char *owner) {
+  const strut_scene *scene = checker->scene;
+  const strut_configuration *c = &scene->configurations[index];
+  for (size_t i = 0; i < scene->node_count; i++) {
+    const double *drawn = scene->nodes[i].position;
+    if (isfinite(c->position[i][0]) && isfinite(c->position[i][1])) continue;
+    if (!isfinite(drawn[0]) || !isfinite(drawn[1])) continue; /* reported at the node */
+    char node[200];
+    strut_report_finding(checker, STRUT_ON_CONFIGURATION, index, NULL,
+                         "the position of %s in %s is not finite",
+                         strut_format_name(node, "node", scene->nodes[i].name, i), owner);
+    return;
+  }
+}
+
+static void check_search(strut_checker *checker) {
+  const strut_scene *scene = checker->scene;
+  const strut_search *search = &checker->experiment->search;
+  if (search->starts < 0 || search->starts > STRUT_MOST_STARTS)
+    strut_report_finding(checker, STRUT_ON_EQUILIBRIA, 0, "starts",
+                         "the starts of the search for equilibria must be from 0 to %d",
+                         STRUT_MOST_STARTS);
+  if ((double)search->seed > STRUT_MOST_SEED)
+    strut_report_finding(checker, STRUT_ON_EQUILIBRIA, 0, "seed",
+                         "the seed of the search for equilibria must be at most %.0f",
+                         STRUT_MOST_SEED);
+  if (scene->start_equilibrium < -1 ||
+      (scene->start_equilibrium >= 0 &&
+       (size_t)scene->start_equilibrium >= scene->configuration_count))
+    strut_report_finding(
+        checker, STRUT_ON_INITIAL, 0, NULL,
+        "the initial state is the equilibrium of a configuration that does not exist");
+  else if (scene->start_equilibrium >= 0 && checker->experiment->settle.wanted)
+    strut_report_finding(checker, STRUT_ON_INITIAL, 0, NULL,
+                         "the initial state is an equilibrium, so there is nothing to settle");
+}
+
+void strut_check_shapes(strut_checker *checker) {
+  const strut_scene *scene = checker->scene;
+  sets_check check = {.checker = checker};
+  check.touches = strut_allocate(scene->node_count, sizeof *check.touches);
+  check.stamp = strut_allocate(scene->node_count, sizeof *check.stamp);
+  if (!check.touches || !check.stamp) checker->out_of_memory = true;
+  for (size_t i = 0; !checker->out_of_memory && i < scene->contact_count; i++) {
+    int32_t node = scene->contacts[i].node;
+    if (node >= 0 && (size_t)node < scene->node_count) check.touches[node] = true;
+  }
+  for (size_t i = 0; !checker->out_of_memory && i < scene->configuration_count; i++) {
+    const strut_configuration *c = &scene->configurations[i];
+    char owner[200];
+    strut_format_name(owner, "configuration", c->name, i);
+    check_positions(checker, i, owner);
+    check_sets(&check, c->sets, c->set_count, STRUT_ON_CONFIGURATION, i, "contacts", owner);
+  }
+  if (!checker->out_of_memory) {
+    const strut_search *search = &checker->experiment->search;
+    check_sets(&check, search->supports, search->support_count, STRUT_ON_EQUILIBRIA, 0, "supports",
+               "the search for equilibria");
+    check_search(checker);
+  }
+  strut_release(check.touches);
+  strut_release(check.stamp);
+}

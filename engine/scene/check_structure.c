@@ -1,0 +1,455 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Rules about laws, hinges, cells and collisions. See check.h. */
+#include <math.h>
+#include <stdio.h>
+
+#include "engine/base/vec.h"
+#include "engine/scene/check_rules.h"
+
+/* ---- laws, stops and hinges ---- */
+
+/* Methods with events number the pieces of a law by 16 bits. */
+enum { MOST_POINTS = 30000 };
+
+/* What is wrong with the lists of a law, or NULL. */
+static const char *fault_of_lists(const strut_law *law) {
+  bool points = strut_law_needs(law->kind, STRUT_LAW_PARAMETER_POINTS);
+  for (size_t i = 0; i < law->count; i++)
+    if (!isfinite(law->force[i]) || (points && !isfinite(law->x[i])))
+      return "has a number that is not finite";
+  if (law->count > MOST_POINTS) return "has more than 30000 points";
+  if (strut_law_needs(law->kind, STRUT_LAW_PARAMETER_COEFFICIENTS) && !law->count)
+    return "needs at least one coefficient";
+  if (points && law->count < 2) return "needs at least two points";
+  bool zero = law->count > 0;
+  for (size_t i = 0; i < law->count; i++) zero = zero && law->force[i] == 0.0;
+  if (zero) return "gives no force anywhere; leave it out, or give it a number that is not 0";
+  for (size_t i = 1; i < law->count && points; i++)
+    if (!(law->x[i] > law->x[i - 1])) return "needs points with increasing x";
+  return NULL;
+}
+
+/* The law of `owner` by itself. */
+static bool check_law_numbers(strut_checker *checker, strut_subject subject, size_t index,
+                              const char *owner, const strut_law *law) {
+  bool unknown = (unsigned)law->kind >= STRUT_LAW_COUNT || law->kind == STRUT_LAW_AXIAL;
+  const char *fault = unknown                            ? "is of an unknown kind"
+                      : strut_law_is_of_cells(law->kind) ? "is for cells only"
+                      : (unsigned)law->carries > STRUT_CARRIES_COMPRESSION
+                          ? "carries an unknown sign"
+                          : fault_of_lists(law);
+  if (fault) {
+    strut_report_finding(checker, subject, index, "law", "the law of %s %s", owner, fault);
+    return false;
+  }
+  bool valid = true;
+  for (int p = 0; p < STRUT_LAW_NUMBER_COUNT; p++) {
+    double value = strut_law_value(law, p);
+    bool needed = strut_law_needs(law->kind, p);
+    if (isfinite(value) && !(needed && strut_law_above_zero(p) && !(value > 0.0))) continue;
+    strut_report_finding(checker, subject, index, "law", "the law of %s needs a %s%s", owner,
+                         strut_law_key(p), strut_law_above_zero(p) ? " above zero" : "");
+    valid = false;
+  }
+  return valid;
+}
+
+/* Is the law valid, and the stiffness given where and only where the law does not bring its own? */
+static bool check_law(strut_checker *checker, strut_subject subject, size_t index,
+                      const char *owner, const strut_law *law, bool stiffness) {
+  if (!check_law_numbers(checker, subject, index, owner, law)) return false;
+  if (stiffness && strut_law_at(law->kind)->own)
+    strut_report_finding(checker, subject, index, "stiffness",
+                         "%s gives a stiffness beside its law, which has its own", owner);
+  else if (!stiffness && !strut_law_at(law->kind)->own && law->kind != STRUT_LAW_LINEAR)
+    strut_report_finding(checker, subject, index, "law", "the law %s of %s needs a stiffness",
+                         strut_law_at(law->kind)->word, owner);
+  else
+    return true;
+  return false;
+}
+
+/* Does the second slope of an elastic-plastic law lie between 0 and the first? `stiffness`: the first. */
+static bool check_hardening(strut_checker *checker, strut_subject subject, size_t index,
+                            const char *owner, const strut_law *law, double stiffness) {
+  if (law->kind != STRUT_LAW_ELASTIC_PLASTIC) return true;
+  if (law->second_stiffness >= 0.0 && law->second_stiffness < stiffness) return true;
+  strut_report_finding(checker, subject, index, "law",
+                       "the second_stiffness of %s must be at least 0 and below its stiffness, "
+                       "found %g beside %g",
+                       owner, law->second_stiffness, stiffness);
+  return false;
+}
+
+static bool check_end_of_member(strut_checker *checker, size_t index, const char *owner) {
+  const strut_member *m = &checker->scene->members[index];
+  bool rigid = m->kind == STRUT_BAR && checker->scene->bar_model == STRUT_BARS_RIGID;
+  const char *key = m->breaks_at > 0.0 ? "breaks_at" : "released_at";
+  if (strut_member_ends(m) && rigid)
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, key,
+                         "%s is a rigid bar, which cannot break or be released; make the member a "
+                         "spring, or bars: elastic",
+                         owner);
+  else if (m->breaks_at > 0.0 && m->law.carries == STRUT_CARRIES_COMPRESSION)
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, key,
+                         "%s carries compression only, so that no tension breaks it", owner);
+  else
+    return true;
+  return false;
+}
+
+static bool check_guide_friction(strut_checker *checker, size_t index, const char *owner,
+                                 double length) {
+  const strut_member *m = &checker->scene->members[index];
+  const char *fault = m->guide_friction == 0.0 ? NULL
+                      : !m->guide_count        ? "has guide_friction, but runs over no guides"
+                      : m->law.kind != STRUT_LAW_LINEAR
+                          ? "has guide_friction and a law; only linear cables may rub"
+                      : !(length > 0.0) ? "has guide_friction, which needs a rest length above zero"
+                                        : NULL;
+  if (fault)
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, "guide_friction", "%s %s", owner, fault);
+  return !fault;
+}
+
+static bool check_stops(strut_checker *checker, size_t index, const char *owner) {
+  const strut_member *m = &checker->scene->members[index];
+  bool stops = m->shortest > 0.0 || m->longest > 0.0;
+  bool stiff = m->stop_stiffness > 0.0 || m->stiffness > 0.0 || m->axial_stiffness > 0.0 ||
+               strut_law_at(m->law.kind)->own;
+  if (m->longest > 0.0 && m->shortest >= m->longest)
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, "longest",
+                         "the longest of %s, %g m, must be above its shortest, %g m", owner,
+                         m->longest, m->shortest);
+  else if (!stops && (m->stop_stiffness > 0.0 || m->stop_damping > 0.0))
+    strut_report_finding(checker, STRUT_ON_MEMBER, index,
+                         m->stop_stiffness > 0.0 ? "stop_stiffness" : "stop_damping",
+                         "%s describes stops, but has neither a shortest nor a longest", owner);
+  else if (stops && !stiff)
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, "stop_stiffness",
+                         "the stops of %s need a stop_stiffness", owner);
+  else
+    return true;
+  return false;
+}
+
+bool strut_check_member_law(strut_checker *checker, size_t index, const char *owner) {
+  const strut_member *m = &checker->scene->members[index];
+  bool stiffness = m->stiffness > 0.0 || m->axial_stiffness > 0.0;
+  if (!check_law(checker, STRUT_ON_MEMBER, index, owner, &m->law, stiffness)) return false;
+  if (m->kind == STRUT_CABLE && m->law.carries == STRUT_CARRIES_COMPRESSION) {
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, "law",
+                         "%s is a cable, which cannot carry compression", owner);
+    return false;
+  }
+  if (m->law.kind == STRUT_LAW_LOGARITHMIC && m->rest_value <= 0.0) {
+    strut_report_finding(checker, STRUT_ON_MEMBER, index, "law",
+                         "the law logarithmic of %s needs a rest length above zero", owner);
+    return false;
+  }
+  strut_rest rest;
+  bool known = !checker->loose[index] && strut_member_rest(checker->scene, index, &rest);
+  double slope = known ? rest.stiffness : HUGE_VAL;
+  if (!check_guide_friction(checker, index, owner, known ? rest.length : 1.0)) return false;
+  return check_hardening(checker, STRUT_ON_MEMBER, index, owner, &m->law, slope) &&
+         check_end_of_member(checker, index, owner) && check_stops(checker, index, owner);
+}
+
+/* Do the nodes of a hinge exist, are they three, and do both arms have a direction? */
+static void check_arms(strut_checker *checker, size_t index, const char *owner) {
+  const strut_scene *scene = checker->scene;
+  const strut_hinge *h = &scene->hinges[index];
+  for (int k = 0; k < 3; k++)
+    if (h->node[k] < 0 || (size_t)h->node[k] >= scene->node_count) {
+      strut_report_finding(checker, STRUT_ON_HINGE, index, "nodes",
+                           "%s is at a node that does not exist", owner);
+      return;
+    }
+  for (int k = 0; k < 3; k++)
+    if (h->node[k] == h->node[(k + 1) % 3]) {
+      strut_report_finding(checker, STRUT_ON_HINGE, index, "nodes",
+                           "%s names node '%s' twice, expected three different nodes", owner,
+                           scene->nodes[h->node[k]].name);
+      return;
+    }
+  const strut_node *b = &scene->nodes[h->node[1]];
+  for (int k = 0; k < 3; k += 2) {
+    const strut_node *end = &scene->nodes[h->node[k]];
+    bool drawn = strut_distance(b->position, end->position) == 0.0;
+    if (!drawn && strut_distance(b->start, end->start) != 0.0) continue;
+    strut_report_finding(checker, STRUT_ON_HINGE, index, "nodes",
+                         "nodes '%s' and '%s' %s in one place, so an arm of %s has no direction",
+                         b->name, end->name, drawn ? "are drawn" : "start", owner);
+    return;
+  }
+}
+
+void strut_check_hinges(strut_checker *checker) {
+  const strut_scene *scene = checker->scene;
+  for (size_t i = 0; i < scene->hinge_count; i++) {
+    const strut_hinge *h = &scene->hinges[i];
+    char owner[200];
+    strut_format_name(owner, "hinge", h->name, i);
+    const strut_checked whose = {STRUT_ON_HINGE, i, owner, NULL};
+    bool valid = strut_check_fields(checker, &whose, STRUT_FIELDS_HINGE, h,
+                                    strut_thing_at(STRUT_THING_HINGE)->usual) &&
+                 check_law(checker, STRUT_ON_HINGE, i, owner, &h->law, h->stiffness > 0.0) &&
+                 check_hardening(checker, STRUT_ON_HINGE, i, owner, &h->law, h->stiffness);
+    if (valid && h->law.kind == STRUT_LAW_LOGARITHMIC)
+      strut_report_finding(checker, STRUT_ON_HINGE, i, "law",
+                           "the law logarithmic is for members, not for %s", owner);
+    else if (valid && h->stiffness == 0.0 && h->damping == 0.0 && !strut_law_at(h->law.kind)->own &&
+             !strut_is_pulled(scene, -1, (int32_t)i))
+      strut_report_finding(checker, STRUT_ON_HINGE, i, NULL,
+                           "%s has neither stiffness nor damping, so it does nothing", owner);
+    check_arms(checker, i, owner);
+  }
+}
+
+/* ---- cells ---- */
+
+/* A cell with a smaller share of the area of a square of the same circumference has no area. */
+static const double THIN = 1e-9;
+
+/* Do the corners exist, each but once? */
+static bool check_corners(strut_checker *checker, size_t index, const char *owner) {
+  const strut_scene *scene = checker->scene;
+  const strut_cell *c = &scene->cells[index];
+  if (c->node_count < 3 || c->node_count > STRUT_MOST_ELEMENT_NODES) {
+    strut_report_finding(checker, STRUT_ON_CELL, index, "nodes",
+                         "%s has %zu nodes, expected 3 to %d", owner, c->node_count,
+                         STRUT_MOST_ELEMENT_NODES);
+    return false;
+  }
+  for (size_t k = 0; k < c->node_count; k++) {
+    if (c->node[k] < 0 || (size_t)c->node[k] >= scene->node_count) {
+      strut_report_finding(checker, STRUT_ON_CELL, index, "nodes",
+                           "%s has a node that does not exist", owner);
+      return false;
+    }
+    for (size_t i = 0; i < k; i++)
+      if (c->node[i] == c->node[k]) {
+        strut_report_finding(checker, STRUT_ON_CELL, index, "nodes",
+                             "%s names node '%s' twice, expected each corner once", owner,
+                             scene->nodes[c->node[k]].name);
+        return false;
+      }
+  }
+  return true;
+}
+
+typedef struct polygon {
+  size_t count;
+  double corner[STRUT_MOST_ELEMENT_NODES][2];
+} polygon;
+
+static polygon polygon_of(const strut_scene *scene, const strut_cell *c, bool start) {
+  polygon p = {.count = c->node_count};
+  for (size_t k = 0; k < c->node_count; k++) {
+    const strut_node *node = &scene->nodes[c->node[k]];
+    for (int d = 0; d < 2; d++) p.corner[k][d] = start ? node->start[d] : node->position[d];
+  }
+  return p;
+}
+
+/* Twice the area of the triangle a, b, c. */
+static double turn_of(const double a[2], const double b[2], const double c[2]) {
+  return (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
+}
+
+static double area_of(const polygon *p) {
+  double twice = 0.0;
+  for (size_t k = 1; k + 1 < p->count; k++)
+    twice += turn_of(p->corner[0], p->corner[k], p->corner[k + 1]);
+  return 0.5 * twice;
+}
+
+static double circumference_of(const polygon *p) {
+  double sum = 0.0;
+  for (size_t k = 0; k < p->count; k++)
+    sum += strut_distance(p->corner[k], p->corner[(k + 1) % p->count]);
+  return sum;
+}
+
+static bool cross(const double *a, const double *b, const double *c, const double *d) {
+  return turn_of(a, b, c) * turn_of(a, b, d) < 0.0 && turn_of(c, d, a) * turn_of(c, d, b) < 0.0;
+}
+
+/* The first side that crosses a later one, which goes to *other; or the number of sides. */
+static size_t crossing_side(const polygon *p, size_t *other) {
+  for (size_t i = 0; i < p->count; i++)
+    for (size_t j = i + 2; j < p->count; j++) {
+      if ((j + 1) % p->count == i) continue;
+      *other = j;
+      if (cross(p->corner[i], p->corner[(i + 1) % p->count], p->corner[j],
+                p->corner[(j + 1) % p->count]))
+        return i;
+    }
+  return p->count;
+}
+
+/* An area as drawn, without crossing sides, and one of the same sense at the start. */
+static void check_area(strut_checker *checker, size_t index, const char *owner) {
+  const strut_scene *scene = checker->scene;
+  const strut_cell *c = &scene->cells[index];
+  polygon drawn = polygon_of(scene, c, false), start = polygon_of(scene, c, true);
+  double area = area_of(&drawn), circumference = circumference_of(&drawn);
+  size_t n = c->node_count, j = 0, i = crossing_side(&drawn, &j);
+  if (!isfinite(area) || !isfinite(area_of(&start))) return; /* reported at the node */
+  if (i < n)
+    strut_report_finding(
+        checker, STRUT_ON_CELL, index, "nodes",
+        "the sides '%s'-'%s' and '%s'-'%s' of %s cross, expected corners in order around the cell",
+        scene->nodes[c->node[i]].name, scene->nodes[c->node[(i + 1) % n]].name,
+        scene->nodes[c->node[j]].name, scene->nodes[c->node[(j + 1) % n]].name, owner);
+  else if (!(fabs(area) > THIN * circumference * circumference / 16.0))
+    strut_report_finding(checker, STRUT_ON_CELL, index, "nodes", "%s is drawn without an area",
+                         owner);
+  else if (!(area_of(&start) / area > STRUT_CELL_COLLAPSED))
+    strut_report_finding(checker, STRUT_ON_CELL, index, "nodes",
+                         "%s starts without an area, or turned over beside how it is drawn", owner);
+}
+
+void strut_check_cells(strut_checker *checker) {
+  const strut_scene *scene = checker->scene;
+  for (size_t i = 0; i < scene->cell_count; i++) {
+    const strut_cell *c = &scene->cells[i];
+    bool gas = c->law != STRUT_LAW_PRESSURE;
+    char owner[200];
+    strut_format_name(owner, "cell", c->name, i);
+    if ((unsigned)c->law >= STRUT_LAW_COUNT || !strut_law_is_of_cells(c->law))
+      strut_report_finding(checker, STRUT_ON_CELL, i, "gas", "%s has a law that is not for cells",
+                           owner);
+    const strut_checked whose = {STRUT_ON_CELL, i, owner, NULL};
+    bool fine = strut_check_fields(checker, &whose, gas ? STRUT_FIELDS_GAS : STRUT_FIELDS_CELL, c,
+                                   strut_thing_at(STRUT_THING_CELL)->usual);
+    if (fine && c->law == STRUT_LAW_ISENTROPIC && !(c->exponent > 1.0))
+      strut_report_finding(checker, STRUT_ON_CELL, i, "exponent",
+                           "the exponent of %s must be above 1, found %g", owner, c->exponent);
+    if (check_corners(checker, i, owner)) check_area(checker, i, owner);
+  }
+}
+
+/* ---- collisions ---- */
+
+/* Do two bodies exist, and do both members run straight? */
+static bool check_bodies(strut_checker *checker, size_t index, const char *owner) {
+  const strut_scene *scene = checker->scene;
+  const strut_collision *c = &scene->collisions[index];
+  int bodies = 0;
+  for (int k = 0; k < 2; k++) {
+    bodies += (c->node[k] != -1) + (c->member[k] != -1);
+    if ((c->node[k] == -1 || strut_exists(c->node[k], scene->node_count)) &&
+        (c->member[k] == -1 || strut_exists(c->member[k], scene->member_count)))
+      continue;
+    strut_report_finding(checker, STRUT_ON_COLLISION, index, NULL,
+                         "%s is of a node or a member that does not exist", owner);
+    return false;
+  }
+  if (bodies != 2 || (c->node[0] == -1 && c->node[1] != -1) ||
+      (c->member[0] == -1 && c->member[1] != -1)) {
+    strut_report_finding(checker, STRUT_ON_COLLISION, index, NULL,
+                         "%s must be of two nodes, of two members, or of a node and a member",
+                         owner);
+    return false;
+  }
+  for (int k = 0; k < 2; k++) {
+    if (c->member[k] < 0 || !scene->members[c->member[k]].guide_count) continue;
+    strut_report_finding(checker, STRUT_ON_COLLISION, index, k ? "members" : "member",
+                         "%s is of member '%s', which runs over guides; only straight members "
+                         "collide",
+                         owner, scene->members[c->member[k]].name);
+    return false;
+  }
+  return true;
+}
+
+/* The node that both bodies have, or -1. */
+static int32_t shared_node(const strut_scene *scene, const strut_collision *c) {
+  int32_t ends[2][2];
+  for (int k = 0; k < 2; k++) {
+    int32_t body = k == 0 && c->node[0] < 0 ? 0 : k == 1 && c->node[0] < 0 ? 1 : -1;
+    int32_t member = body >= 0 ? c->member[body] : k == 1 ? c->member[0] : -1;
+    int32_t node = member >= 0 ? -1 : c->node[k];
+    for (int e = 0; e < 2; e++) ends[k][e] = member >= 0 ? scene->members[member].node[e] : node;
+  }
+  for (int i = 0; i < 2; i++)
+    for (int j = 0; j < 2; j++)
+      if (ends[0][i] == ends[1][j]) return ends[0][i];
+  return -1;
+}
+
+void strut_check_collisions(strut_checker *checker) {
+  const strut_scene *scene = checker->scene;
+  for (size_t i = 0; i < scene->collision_count; i++) {
+    const strut_collision *c = &scene->collisions[i];
+    char owner[200];
+    strut_format_name(owner, "collision", c->name, i);
+    const strut_checked whose = {STRUT_ON_COLLISION, i, owner, NULL};
+    strut_check_fields(checker, &whose, STRUT_FIELDS_COLLISION, c, NULL);
+    if (!check_bodies(checker, i, owner)) continue;
+    int32_t shared = shared_node(scene, c);
+    bool ends = c->member[0] < 0 ||
+                (strut_exists(scene->members[c->member[0]].node[0], scene->node_count) &&
+                 strut_exists(scene->members[c->member[0]].node[1], scene->node_count));
+    if (shared < 0 || !ends) continue;
+    const char *key = c->node[1] >= 0 ? "nodes" : c->member[1] >= 0 ? "members" : "node";
+    const char *name = scene->nodes[shared].name;
+    if (c->node[1] >= 0)
+      strut_report_finding(checker, STRUT_ON_COLLISION, i, key,
+                           "%s names node '%s' twice, expected two different nodes", owner, name);
+    else if (c->member[1] >= 0)
+      strut_report_finding(checker, STRUT_ON_COLLISION, i, key,
+                           "%s is of members that share node '%s' and so always touch", owner,
+                           name);
+    else
+      strut_report_finding(checker, STRUT_ON_COLLISION, i, key,
+                           "%s is of node '%s' and a member that ends there, so they always touch",
+                           owner, name);
+  }
+}
+
+static double distance_to_segment(const double p[2], const double a[2], const double b[2]) {
+  double wx = b[0] - a[0], wy = b[1] - a[1], w2 = wx * wx + wy * wy;
+  double s = w2 > 0.0 ? ((p[0] - a[0]) * wx + (p[1] - a[1]) * wy) / w2 : 0.0;
+  s = fmin(fmax(s, 0.0), 1.0);
+  return hypot(p[0] - a[0] - s * wx, p[1] - a[1] - s * wy);
+}
+
+/* Least distance of the two axes at the start. */
+static double start_distance(const strut_scene *scene, const strut_collision *c) {
+  const double *node[2] = {NULL, NULL};
+  const double *end[2][2] = {{NULL, NULL}, {NULL, NULL}};
+  for (int k = 0; k < 2; k++) {
+    if (c->node[k] >= 0) node[k] = scene->nodes[c->node[k]].start;
+    for (int e = 0; e < 2 && c->member[k] >= 0; e++)
+      end[k][e] = scene->nodes[scene->members[c->member[k]].node[e]].start;
+  }
+  if (node[1]) return strut_distance(node[0], node[1]);
+  if (node[0]) return distance_to_segment(node[0], end[0][0], end[0][1]);
+  double least = HUGE_VAL;
+  for (int k = 0; k < 2; k++)
+    for (int e = 0; e < 2; e++)
+      least = fmin(least, distance_to_segment(end[k][e], end[1 - k][0], end[1 - k][1]));
+  return least;
+}
+
+void strut_warn_of_overlaps(strut_checker *checker) {
+  const strut_scene *scene = checker->scene;
+  const double rounding = 1e-9;
+  size_t count = 0, first = 0;
+  double depth = 0.0;
+  for (size_t i = 0; i < scene->collision_count; i++) {
+    const strut_collision *c = &scene->collisions[i];
+    double overlap = c->thickness - start_distance(scene, c);
+    if (!(overlap > rounding * c->thickness)) continue;
+    if (!count++) first = i, depth = overlap;
+  }
+  char more[40] = "";
+  if (count > 1) snprintf(more, sizeof more, "; the same of %zu more", count - 1);
+  if (count)
+    strut_report_finding(checker, STRUT_ON_COLLISION, first, "overlap",
+                         "collision '%s' starts with an overlap of %.3g m, so that its two sides "
+                         "are pushed apart; move them, or reduce the thickness%s",
+                         scene->collisions[first].name, depth, more);
+}

@@ -1,0 +1,304 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Growing YAML text, and objects as mappings by the rows of their keys. See writer.h. */
+#include <assert.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/base/number_text.h"
+#include "parser/write/writer.h"
+#include "parser/yaml/text.h"
+
+/* ---- growing text ---- */
+
+void strut_put_part(strut_writer *writer, const char *text, size_t length) {
+  if (writer->failed) return;
+  if (writer->length + length + 1 > writer->capacity) {
+    size_t capacity = 2 * (writer->capacity + length + 1);
+    char *bigger = strut_reallocate(writer->text, capacity, 1);
+    if (!bigger) {
+      writer->failed = true;
+      return;
+    }
+    writer->text = bigger;
+    writer->capacity = capacity;
+  }
+  memcpy(writer->text + writer->length, text, length);
+  writer->length += length;
+  writer->text[writer->length] = '\0';
+}
+
+void strut_put(strut_writer *writer, const char *text) {
+  strut_put_part(writer, text, strlen(text));
+}
+
+void strut_put_number(strut_writer *writer, double value) {
+  char text[STRUT_NUMBER_TEXT];
+  strut_put_part(writer, text, strut_number_text(value, text));
+}
+
+void strut_put_pair(strut_writer *writer, const double pair[2]) {
+  strut_put(writer, "[");
+  strut_put_number(writer, pair[0]);
+  strut_put(writer, ", ");
+  strut_put_number(writer, pair[1]);
+  strut_put(writer, "]");
+}
+
+/* One code point within double quotes. */
+static void put_escaped(strut_writer *writer, const char *text, size_t bytes, uint32_t code) {
+  char escape[16];
+  if (code == STRUT_BAD_CODE || strut_text_forbidden(code)) { /* no text may hold it */
+    strut_put(writer, "\\uFFFD");
+  } else if (code == '"' || code == '\\') {
+    snprintf(escape, sizeof escape, "\\%c", (char)code);
+    strut_put(writer, escape);
+  } else if (code < 0x20 || strut_text_break(text, bytes)) {
+    snprintf(escape, sizeof escape, code > 0xffff ? "\\U%08X" : "\\u%04X", (unsigned)code);
+    strut_put(writer, escape);
+  } else {
+    strut_put_part(writer, text, bytes);
+  }
+}
+
+void strut_put_quoted(strut_writer *writer, const char *text) {
+  size_t left = strlen(text);
+  strut_put(writer, "\"");
+  while (left > 0) {
+    uint32_t code;
+    size_t bytes = strut_text_decode(text, left, &code);
+    put_escaped(writer, text, bytes, code);
+    text += bytes;
+    left -= bytes;
+  }
+  strut_put(writer, "\"");
+}
+
+void strut_put_name(strut_writer *writer, const char *name) {
+  bool plain = *name && *name != '-' && *name != '.';
+  for (const char *c = name; *c && plain; c++)
+    plain = (*c >= 'a' && *c <= 'z') || (*c >= 'A' && *c <= 'Z') || (*c >= '0' && *c <= '9') ||
+            *c == '_' || *c == '-' || *c == '.';
+  if (plain)
+    strut_put(writer, name);
+  else
+    strut_put_quoted(writer, name);
+}
+
+void strut_put_key(strut_writer *writer, strut_mapping *mapping, const char *key) {
+  strut_put(writer, mapping->separator);
+  mapping->separator = mapping->next;
+  strut_put(writer, key);
+  strut_put(writer, ": ");
+}
+
+void strut_put_key_name(strut_writer *writer, strut_mapping *mapping, int key) {
+  strut_put_key(writer, mapping, strut_key_at(key)->name);
+}
+
+/* ---- values ---- */
+
+static void put_word(strut_writer *writer, const strut_key *key, int i) {
+  char word[40];
+  const char *found = strut_word_at(key->words, i, word, sizeof word);
+  assert(found);
+  if (found) strut_put(writer, found);
+}
+
+static void put_words(strut_writer *writer, const strut_key *key, uint32_t bits) {
+  bool any = false;
+  strut_put(writer, "[");
+  for (int i = 0; i < 32; i++) {
+    if (!(bits >> i & 1u)) continue;
+    if (any) strut_put(writer, ", ");
+    any = true;
+    put_word(writer, key, i);
+  }
+  strut_put(writer, "]");
+}
+
+static void put_value(strut_writer *writer, const strut_key *key, const void *field) {
+  switch (key->field.type) {
+    case STRUT_FIELD_DOUBLE: strut_put_number(writer, *(const double *)field); break;
+    case STRUT_FIELD_INT32: strut_put_number(writer, *(const int32_t *)field); break;
+    case STRUT_FIELD_INT64: strut_put_number(writer, (double)*(const int64_t *)field); break;
+    case STRUT_FIELD_UINT64: strut_put_number(writer, (double)*(const uint64_t *)field); break;
+    case STRUT_FIELD_UINT32:
+      if (key->type == STRUT_TYPE_WORDS)
+        put_words(writer, key, *(const uint32_t *)field);
+      else
+        put_word(writer, key, (int)*(const uint32_t *)field);
+      break;
+    case STRUT_FIELD_BOOL: put_word(writer, key, *(const bool *)field); break;
+    case STRUT_FIELD_DOUBLE_PAIR: strut_put_pair(writer, field); break;
+    case STRUT_FIELD_BOOL_PAIR:
+      put_word(writer, key, ((const bool *)field)[0] + 2 * ((const bool *)field)[1]);
+      break;
+    case STRUT_FIELD_TEXT:
+      if (key->type == STRUT_TYPE_TEXT)
+        strut_put_quoted(writer, *(const char *const *)field);
+      else
+        strut_put_name(writer, *(const char *const *)field);
+      break;
+    case STRUT_FIELD_OBJECT: assert(false);
+  }
+}
+
+static void put_thing_name(strut_writer *writer, strut_thing kind, int32_t i) {
+  strut_put_name(writer, strut_thing_name(writer->scene, kind, (size_t)i));
+}
+
+/* A name, or "[a, b]". */
+static void put_references(strut_writer *writer, const strut_key *key, const int32_t *index,
+                           size_t count) {
+  bool list = count != 1 || key->field.role == STRUT_FIELD_LIST;
+  for (size_t k = 0; k < count; k++) {
+    if (list) strut_put(writer, k ? ", " : "[");
+    put_thing_name(writer, key->field.kind, index[k]);
+  }
+  if (list) strut_put(writer, "]");
+}
+
+static void put_list(strut_writer *writer, const strut_key *key, const char *object) {
+  size_t count = *(const size_t *)(const void *)(object + key->field.number);
+  const double *number;
+  memcpy(&number, object + key->field.offset, sizeof number);
+  if (key->field.type == STRUT_FIELD_INT32) {
+    put_references(writer, key, (const int32_t *)(const void *)number, count);
+    return;
+  }
+  for (size_t k = 0; k < count; k++) {
+    strut_put(writer, k ? ", " : "[");
+    if (key->field.type == STRUT_FIELD_DOUBLE_PAIR)
+      strut_put_pair(writer, number + 2 * k);
+    else
+      strut_put_number(writer, number[k]);
+  }
+  strut_put(writer, "]");
+}
+
+/* ---- does an object have a value for a key? ---- */
+
+/* By bits, so that 0 and -0 differ; texts by their characters. */
+static bool values_equal(const strut_key *key, const void *a, const void *b) {
+  if (key->field.type == STRUT_FIELD_TEXT)
+    return strcmp(*(const char *const *)a, *(const char *const *)b) == 0;
+  return memcmp(a, b, key->field.size) == 0;
+}
+
+static bool is_chosen(const strut_field *field, const char *object) {
+  if (field->tag_size == sizeof(bool))
+    return *(const bool *)(object + field->tag) == (field->tag_value != 0);
+  return *(const uint32_t *)(const void *)(object + field->tag) == field->tag_value;
+}
+
+static bool has_references(const strut_field *field, const char *object) {
+  const int32_t *index = (const int32_t *)(const void *)(object + field->offset);
+  for (size_t k = 0; k < field->size / sizeof *index; k++)
+    if (index[k] < 0) return false;
+  return true;
+}
+
+/* A law is written where it is not the linear one. */
+static bool is_plain_law(const strut_law *law) {
+  return law->kind == STRUT_LAW_LINEAR && law->carries == STRUT_CARRIES_BOTH;
+}
+
+static bool differs(const strut_key *key, const char *object, const char *usual) {
+  const strut_field *field = &key->field;
+  const char *value = object + field->offset;
+  if (field->chosen && !is_chosen(field, object)) return false;
+  switch (field->role) {
+    case STRUT_FIELD_VALUE:
+      if (key->type == STRUT_TYPE_SIGNAL) return *(const int32_t *)(const void *)value >= 0;
+      return field->chosen || !values_equal(key, value, usual + field->offset);
+    case STRUT_FIELD_REFERENCE: return has_references(field, object);
+    case STRUT_FIELD_LIST: return *(const size_t *)(const void *)(object + field->number) > 0;
+    case STRUT_FIELD_NESTED:
+      if (key->type == STRUT_TYPE_LAW) return !is_plain_law((const void *)value);
+      return field->chosen ||
+             strut_fields_differ(strut_section_below(key), value, usual + field->offset);
+    case STRUT_FIELD_BY_HAND:
+    case STRUT_FIELD_NONE:
+    case STRUT_FIELD_SECTION:
+    case STRUT_FIELD_THINGS: break;
+  }
+  return false;
+}
+
+bool strut_fields_differ(strut_section section, const void *object, const void *usual) {
+  for (int i = 0; i < strut_section_size(section); i++)
+    if (differs(strut_key_at(strut_section_first(section) + i), object, usual)) return true;
+  return false;
+}
+
+/* ---- mappings ---- */
+
+static void put_nested(strut_writer *writer, const strut_key *key, const char *object,
+                       const char *usual) {
+  strut_mapping inner = STRUT_MAPPING_INLINE;
+  if (key->type == STRUT_TYPE_LAW) {
+    strut_put_law(writer, (const void *)(object + key->field.offset));
+    return;
+  }
+  strut_put(writer, "{");
+  strut_put_fields(writer, &inner, strut_section_below(key), object + key->field.offset,
+                   usual + key->field.offset, NULL);
+  strut_put(writer, "}");
+}
+
+static void put_key(strut_writer *writer, const strut_key *key, const char *object,
+                    const char *usual) {
+  const void *value = object + key->field.offset;
+  switch (key->field.role) {
+    case STRUT_FIELD_VALUE:
+      if (key->type == STRUT_TYPE_SIGNAL)
+        strut_put_signal_reference(writer, *(const int32_t *)value);
+      else
+        put_value(writer, key, value);
+      break;
+    case STRUT_FIELD_REFERENCE:
+      put_references(writer, key, value, key->field.size / sizeof(int32_t));
+      break;
+    case STRUT_FIELD_LIST: put_list(writer, key, object); break;
+    case STRUT_FIELD_NESTED: put_nested(writer, key, object, usual); break;
+    case STRUT_FIELD_BY_HAND:
+    case STRUT_FIELD_NONE:
+    case STRUT_FIELD_SECTION:
+    case STRUT_FIELD_THINGS: assert(false);
+  }
+}
+
+void strut_put_fields(strut_writer *writer, strut_mapping *mapping, strut_section section,
+                      const void *object, const void *usual, strut_put_by_hand *by_hand) {
+  for (int i = 0; i < strut_section_size(section); i++) {
+    int index = strut_section_first(section) + i;
+    const strut_key *key = strut_key_at(index);
+    bool kept = key->field.role == STRUT_FIELD_VALUE && !key->field.chosen;
+    if (key->field.role == STRUT_FIELD_BY_HAND || key->field.role == STRUT_FIELD_SECTION ||
+        key->field.role == STRUT_FIELD_THINGS || key->field.role == STRUT_FIELD_NONE) {
+      if (by_hand) by_hand(writer, mapping, index, object);
+    } else if ((kept && key->need != STRUT_OPTIONAL) || differs(key, object, usual)) {
+      strut_put_key(writer, mapping, key->name);
+      put_key(writer, key, object, usual);
+    }
+  }
+}
+
+void strut_put_things(strut_writer *writer, strut_thing kind, strut_section section,
+                      const void *usual, strut_put_by_hand *by_hand) {
+  const strut_thing_row *row = strut_thing_at(kind);
+  size_t count = strut_thing_count(writer->scene, kind);
+  if (count) strut_put(writer, row->things);
+  if (count) strut_put(writer, ":\n");
+  for (size_t i = 0; i < count; i++) {
+    strut_mapping mapping = STRUT_MAPPING_INLINE;
+    strut_put(writer, "  ");
+    put_thing_name(writer, kind, (int32_t)i);
+    strut_put(writer, ": {");
+    strut_put_fields(writer, &mapping, section, strut_thing_object(writer->scene, kind, i),
+                     usual ? usual : row->usual, by_hand);
+    strut_put(writer, "}\n");
+  }
+}
