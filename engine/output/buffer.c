@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/output/buffer.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "engine/base/memory.h"
+#include "engine/base/number_text.h"
 
 static bool make_room(strut_buffer *buffer, size_t more) {
   if (buffer->length + more < buffer->room) return true;
@@ -17,12 +20,10 @@ static bool make_room(strut_buffer *buffer, size_t more) {
   return true;
 }
 
-void strut_buffer_add(strut_buffer *buffer, const char *format, ...) {
-  va_list arguments, again;
-  va_start(arguments, format);
+static void append(strut_buffer *buffer, const char *format, va_list arguments) {
+  va_list again;
   va_copy(again, arguments);
   int length = vsnprintf(NULL, 0, format, arguments);
-  va_end(arguments);
   if (length < 0 || !make_room(buffer, (size_t)length)) {
     buffer->failed = true;
   } else {
@@ -30,6 +31,13 @@ void strut_buffer_add(strut_buffer *buffer, const char *format, ...) {
     buffer->length += (size_t)length;
   }
   va_end(again);
+}
+
+void strut_buffer_add(strut_buffer *buffer, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  append(buffer, format, arguments);
+  va_end(arguments);
 }
 
 char *strut_buffer_take(strut_buffer *buffer) {
@@ -40,6 +48,59 @@ char *strut_buffer_take(strut_buffer *buffer) {
   }
   *buffer = (strut_buffer){0};
   return text;
+}
+
+/* ---- CSV ---- */
+
+static bool needs_quotes(const char *text, size_t length) {
+  bool needed = false;
+  for (size_t i = 0; i < length; i++)
+    needed = needed || text[i] == ',' || text[i] == '"' || text[i] == '\r' || text[i] == '\n';
+  return needed;
+}
+
+size_t strut_csv_quote(const char *text, size_t length, char *cell) {
+  size_t written = 0;
+  length = strnlen(text, length);
+  bool quoted = needs_quotes(text, length);
+  if (quoted) cell[written++] = '"';
+  for (size_t i = 0; i < length; i++) {
+    if (text[i] == '"') cell[written++] = '"';
+    cell[written++] = text[i];
+  }
+  if (quoted) cell[written++] = '"';
+  return written;
+}
+
+void strut_csv_write(FILE *stream, const char *text) {
+  bool quoted = needs_quotes(text, strlen(text));
+  if (quoted) fputc('"', stream);
+  for (; *text; text++) {
+    if (*text == '"') fputc('"', stream);
+    fputc(*text, stream);
+  }
+  if (quoted) fputc('"', stream);
+}
+
+void strut_csv_text(strut_buffer *csv, const char *format, ...) {
+  strut_buffer text = {0};
+  va_list arguments;
+  va_start(arguments, format);
+  append(&text, format, arguments);
+  va_end(arguments);
+  if (text.failed || !make_room(csv, 2 * text.length + 2)) {
+    csv->failed = true;
+  } else {
+    csv->length += strut_csv_quote(text.text, text.length, csv->text + csv->length);
+    csv->text[csv->length] = '\0';
+  }
+  strut_release(text.text);
+}
+
+void strut_csv_number(strut_buffer *csv, double value) {
+  char text[STRUT_NUMBER_TEXT] = "";
+  if (!isnan(value)) strut_number_text(value, text);
+  strut_buffer_add(csv, "%s", text);
 }
 
 /* ---- base 64 ---- */

@@ -7,6 +7,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
 #include "engine/base/export.h"
 
@@ -22,6 +23,19 @@ STRUT_API void strut_buffer_add(strut_buffer *buffer, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 /** Returns the text, to be released by the caller, and zeroes the buffer; NULL if memory was out. */
 STRUT_API char *strut_buffer_take(strut_buffer *buffer);
+
+/**
+ * The text, of which no more than `length` bytes count, as a cell of CSV: RFC 4180 requires quotes around one with
+ * a comma, a quote or a break. Writes up to 2 length + 2 bytes to `cell`; returns their number.
+ */
+STRUT_API size_t strut_csv_quote(const char *text, size_t length, char *cell);
+/** Writes a text to a stream as such a cell. */
+STRUT_API void strut_csv_write(FILE *stream, const char *text);
+/** Appends a cell with a printf-style text. */
+STRUT_API void strut_csv_text(strut_buffer *csv, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+/** Appends a cell with a number as its shortest text; empty for NAN. */
+STRUT_API void strut_csv_number(strut_buffer *csv, double value);
 
 /** Appends (count) bytes in base64, without line breaks. */
 STRUT_API void strut_base64_add(strut_buffer *buffer, const void *bytes, size_t count);

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "engine/base/c_locale.h"
-#include "engine/base/number_text.h"
 #include "engine/forces/elements.h"
 #include "engine/output/buffer.h"
 #include "engine/output/file.h"
@@ -51,19 +50,10 @@ size_t strut_build_holes(const strut_scene *scene, size_t node) {
 
 /* ---- tables ---- */
 
-/* A cell; RFC 4180 requires quotes around a text with a comma, a quote or a break. */
-static void add_text(strut_buffer *to, const char *text) {
-  bool quoted = strpbrk(text, ",\"\r\n") != NULL;
-  if (quoted) strut_buffer_add(to, "\"");
-  for (; *text; text++) strut_buffer_add(to, *text == '"' ? "\"\"" : "%c", *text);
-  if (quoted) strut_buffer_add(to, "\"");
-}
-
 /* A number in the next cell; empty where there is none. */
 static void add_number(strut_buffer *to, double value) {
-  char text[STRUT_NUMBER_TEXT] = "";
-  if (!isnan(value)) strut_number_text(value, text);
-  strut_buffer_add(to, ",%s", text);
+  strut_buffer_add(to, ",");
+  strut_csv_number(to, value);
 }
 
 static char *write_members(const strut_build *b) {
@@ -78,13 +68,13 @@ static char *write_members(const strut_build *b) {
     strut_buffer over = {0};
     for (size_t k = 0; k < m->guide_count; k++)
       strut_buffer_add(&over, "%s%s", k ? ";" : "", scene->nodes[m->guides[k]].name);
-    add_text(&text, m->name);
+    strut_csv_text(&text, "%s", m->name);
     strut_buffer_add(&text, ",%s,", kinds[m->kind]);
-    add_text(&text, scene->nodes[m->node[0]].name);
+    strut_csv_text(&text, "%s", scene->nodes[m->node[0]].name);
     strut_buffer_add(&text, ",");
-    add_text(&text, over.text ? over.text : "");
+    strut_csv_text(&text, "%s", over.text ? over.text : "");
     strut_buffer_add(&text, ",");
-    add_text(&text, scene->nodes[m->node[1]].name);
+    strut_csv_text(&text, "%s", scene->nodes[m->node[1]].name);
     add_number(&text, line.made);
     add_number(&text, line.cut);
     add_number(&text, line.length);
@@ -112,7 +102,7 @@ static char *write_nodes(const strut_build *b) {
   strut_buffer_add(&text, "node,x [m],y [m],fixed,holes,bars,springs,cables\n");
   for (size_t i = 0; i < scene->node_count; i++) {
     const strut_node *n = &scene->nodes[i];
-    add_text(&text, n->name);
+    strut_csv_text(&text, "%s", n->name);
     add_number(&text, b->q[2 * i]);
     add_number(&text, b->q[2 * i + 1]);
     strut_buffer_add(&text, ",%s,%zu,%zu,%zu,%zu\n", held[n->fixed[0] + 2 * n->fixed[1]],

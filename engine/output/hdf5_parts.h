@@ -13,8 +13,9 @@
 #include <stdbool.h>
 
 #include "engine/output/hdf5_calls.h"
+#include "engine/scene/channels.h"
 
-enum { STRUT_HDF5_RANK = 3, STRUT_HDF5_USERS = 8 };
+enum { STRUT_HDF5_RANK = 3, STRUT_HDF5_USERS = STRUT_CHANNEL_COUNT };
 
 /** Switches HDF5's printing of errors off and back on. */
 typedef struct strut_hdf5_quiet {

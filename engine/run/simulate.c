@@ -462,7 +462,7 @@ strut_status strut_run_sample(strut_run *r, int64_t *stop) {
     strut_measure_begin(r->model, r->state, &r->measure);
   if (lost < 0 && (n == strut_recording_next_step(&r->recording) ||
                    (n >= r->steps && strut_recording_lacks(&r->recording, n)))) {
-    strut_status status = strut_recording_sample(r->model, r->state, &r->recording, r->error);
+    strut_status status = strut_recording_sample(r->state, &r->recording, r->error);
     if (status) return status;
   }
   if (n == r->answer) fill_summary(r, STRUT_OK);

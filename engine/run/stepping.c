@@ -104,7 +104,7 @@ double strut_stepping_time(const strut_stepping *s) { return strut_run_time(&s->
 double strut_stepping_step(const strut_stepping *s) { return s->run.dt; }
 
 static void refresh(strut_stepping *s) {
-  if (s->shown) strut_recording_observe(s->model, s->run.state, &s->live, s->shown);
+  if (s->shown) strut_recording_observe(s->run.state, &s->live, s->shown);
 }
 
 /* ---- steps ---- */

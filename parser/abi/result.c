@@ -152,28 +152,10 @@ static const abi_array *find_array(const abi_array *arrays, size_t count, const 
   return NULL;
 }
 
-static long component_of(const char *name) {
-  static const char *const names[][2] = {{"x", "y"}, {"normal", "friction"}};
-  for (size_t i = 0; i < 2; i++)
-    for (long c = 0; c < 2; c++)
-      if (strcmp(name, names[i][c]) == 0) return c;
+static long component_of(const strut_channel_row *row, const char *name) {
+  for (size_t c = 0; c < row->components; c++)
+    if (strcmp(name, row->component_names[c]) == 0) return (long)c;
   return -1;
-}
-
-static const char *const energies[] = {STRUT_ENERGY_NAMES};
-
-/* The names of the things that the second dimension of a recorded channel counts. */
-static const char *thing_at(const strutlib_result *result, const char *channel, size_t i) {
-  const strut_scene *s = &result->setup.scene;
-  bool nodes = strcmp(channel, "position") == 0 || strcmp(channel, "velocity") == 0;
-  bool hinges = strcmp(channel, "angle") == 0 || strcmp(channel, "moment") == 0;
-  bool cells = strcmp(channel, "area") == 0 || strcmp(channel, "pressure") == 0;
-  if (strcmp(channel, "energy") == 0) return energies[i];
-  if (strcmp(channel, "contact") == 0) return strut_contact_name(s, i);
-  return nodes    ? s->nodes[i].name
-         : hinges ? s->hinges[i].name
-         : cells  ? s->cells[i].name
-                  : s->members[i].name;
 }
 
 /* "position.n1" or "position.n1.x" of the channel "position". */
@@ -183,11 +165,12 @@ static bool slice(const strutlib_result *result, const abi_array *whole, const c
   if (!result->opened || strncmp(name, whole->name, before) != 0 || name[before] != '.')
     return false;
   const char *rest = name + before + 1;
-  for (size_t i = 0; whole->dimensions > 1 && i < whole->shape[1]; i++) {
-    const char *thing = thing_at(result, whole->name, i);
+  const strut_channel_row *row = strut_channel_named(whole->name);
+  for (size_t i = 0; row && whole->dimensions > 1 && i < whole->shape[1]; i++) {
+    const char *thing = strut_channel_thing(row, &result->setup.scene, i);
     size_t length = strlen(thing);
     if (strncmp(rest, thing, length) != 0 || (rest[length] && rest[length] != '.')) continue;
-    long component = rest[length] ? component_of(rest + length + 1) : 0;
+    long component = rest[length] ? component_of(row, rest + length + 1) : 0;
     if (rest[length] && (component < 0 || whole->dimensions < 3)) continue;
     *part = *whole;
     part->data += i * whole->stride[1] + (size_t)component;

@@ -37,18 +37,12 @@ const strut_trajectory *abi_result_motion(const strutlib_result *result) {
 
 /* ---- what is recorded ---- */
 
-static const char *const channel_words[] = {"position", "velocity", "length", "force",
-                                            "contact",  "angle",    "moment", "area",
-                                            "pressure", "energy",   NULL};
-static const strut_channel channel_ids[] = {
-    STRUT_CHANNEL_POSITION, STRUT_CHANNEL_VELOCITY, STRUT_CHANNEL_LENGTH, STRUT_CHANNEL_FORCE,
-    STRUT_CHANNEL_CONTACT,  STRUT_CHANNEL_ANGLE,    STRUT_CHANNEL_MOMENT, STRUT_CHANNEL_AREA,
-    STRUT_CHANNEL_PRESSURE, STRUT_CHANNEL_ENERGY};
-
 /* Of "position,force" the bits of one after the other. */
 static strut_status read_channels(const strut_arguments *given, const char *text,
                                   unsigned *channels) {
   strut_arguments one = *given;
+  const char *words[STRUT_CHANNEL_COUNT + 1] = {NULL};
+  for (size_t i = 0; i < STRUT_CHANNEL_COUNT; i++) words[i] = strut_channel_at(i)->name;
   *channels = 0;
   while (*text) {
     char word[40];
@@ -59,9 +53,9 @@ static strut_status read_channels(const strut_arguments *given, const char *text
     word[kept] = '\0';
     one.texts[STRUT_OPTION_CHANNELS - STRUT_OPTION_TEXTS] = word;
     strut_status status =
-        strut_option_word(&abi_run_command, &one, STRUT_OPTION_CHANNELS, channel_words, &index);
+        strut_option_word(&abi_run_command, &one, STRUT_OPTION_CHANNELS, words, &index);
     if (status != STRUT_OK) return status;
-    *channels |= (unsigned)channel_ids[index];
+    *channels |= (unsigned)strut_channel_at((size_t)index)->id;
     text += length;
     if (*text) text++;
   }
@@ -127,27 +121,19 @@ static strut_status simulate(abi_call *call, const strutlib_result *result, run_
 
 /* ---- what it shows ---- */
 
-static bool add(strutlib_result *result, const char *name, const char *unit, const double *data,
-                size_t frames, size_t items, size_t components) {
-  const size_t shape[] = {frames, items, components};
-  int dimensions = components ? 3 : items ? 2 : 1;
-  return !data || abi_result_add_array(result, name, unit, data, dimensions, shape);
-}
-
 static bool add_arrays(strutlib_result *result, const strut_trajectory *m) {
-  size_t n = m->frames;
-  if (n == 0) return true;
-  return add(result, "time", "s", m->time, n, 0, 0) &&
-         add(result, "position", "m", m->position, n, m->node_count, 2) &&
-         add(result, "velocity", "m/s", m->velocity, n, m->node_count, 2) &&
-         add(result, "length", "m", m->length, n, m->member_count, 0) &&
-         add(result, "force", "N", m->force, n, m->member_count, 0) &&
-         add(result, "contact", "N", m->contact, n, m->contact_count, 2) &&
-         add(result, "angle", "rad", m->angle, n, m->hinge_count, 0) &&
-         add(result, "moment", "N m", m->moment, n, m->hinge_count, 0) &&
-         add(result, "area", "m^2", m->area, n, m->cell_count, 0) &&
-         add(result, "pressure", "N/m", m->pressure, n, m->cell_count, 0) &&
-         add(result, "energy", "J", m->energy, n, STRUT_ENERGIES, 0);
+  const strut_channel_row *row;
+  bool good = m->frames == 0 ||
+              abi_result_add_array(result, "time", "s", m->time, 1, (const size_t[]){m->frames});
+  for (size_t i = 0; good && m->frames && (row = strut_channel_at(i)) != NULL; i++) {
+    const double *values = strut_trajectory_channel(m, row->id);
+    const size_t shape[] = {m->frames, strut_channel_things(row, &result->setup.scene),
+                            row->components};
+    int dimensions = row->owner != STRUT_OWNER_SYSTEM && row->components > 1 ? 3 : 2;
+    if (values)
+      good = abi_result_add_array(result, row->name, row->unit, values, dimensions, shape);
+  }
+  return good;
 }
 
 static bool complete(strutlib_result *result, run_detail *run) {

@@ -11,20 +11,11 @@
 
 /* ---- names ---- */
 
-static const struct {
-  strut_channel id;
-  const char *name;
-} channels[] = {{STRUT_CHANNEL_POSITION, "position"}, {STRUT_CHANNEL_VELOCITY, "velocity"},
-                {STRUT_CHANNEL_LENGTH, "length"},     {STRUT_CHANNEL_FORCE, "force"},
-                {STRUT_CHANNEL_CONTACT, "contact"},   {STRUT_CHANNEL_ANGLE, "angle"},
-                {STRUT_CHANNEL_MOMENT, "moment"},     {STRUT_CHANNEL_AREA, "area"},
-                {STRUT_CHANNEL_PRESSURE, "pressure"}, {STRUT_CHANNEL_ENERGY, "energy"}};
-enum { CHANNELS = sizeof channels / sizeof channels[0] };
-
 /* The i-th of the channels that are recorded, or NULL. */
-static const char *channel_at(unsigned recorded, size_t i) {
-  for (size_t k = 0; k < CHANNELS; k++)
-    if ((recorded & (unsigned)channels[k].id) && i-- == 0) return channels[k].name;
+static const char *recorded_at(unsigned recorded, size_t i) {
+  const strut_channel_row *row;
+  for (size_t k = 0; (row = strut_channel_at(k)) != NULL; k++)
+    if ((recorded & (unsigned)row->id) && i-- == 0) return row->name;
   return NULL;
 }
 
@@ -55,8 +46,6 @@ static const char *const kinds[] = {
     "kinds",
     NULL};
 
-static const char *const energies[] = {STRUT_ENERGY_NAMES};
-
 static const char *name_at(const strut_setup *setup, const char *kind, size_t i) {
   const strut_scene *scene = &setup->scene;
 #define NAME(things, count)                                                                        \
@@ -69,10 +58,10 @@ static const char *name_at(const strut_setup *setup, const char *kind, size_t i)
     return i < scene->contact_count ? strut_contact_name(scene, i) : NULL;
   if (strcmp(kind, "quantities") == 0)
     return i < setup->experiment.quantity_count ? setup->experiment.quantities[i].name : NULL;
-  if (strcmp(kind, "channels") == 0) return channel_at(setup->experiment.channels, i);
-  if (strcmp(kind, "energies") == 0) return i < STRUT_ENERGIES ? energies[i] : NULL;
+  if (strcmp(kind, "channels") == 0) return recorded_at(setup->experiment.channels, i);
   if (strcmp(kind, "kinds") == 0) return i < sizeof kinds / sizeof kinds[0] ? kinds[i] : NULL;
-  return NULL;
+  const strut_channel_row *row = strut_channel_named(strcmp(kind, "energies") ? kind : "energy");
+  return row && i < strut_channel_things(row, scene) ? strut_channel_thing(row, scene, i) : NULL;
 }
 
 const char *strutlib_name(const strutlib_scene *scene, const char *kind, size_t i) {
@@ -97,6 +86,29 @@ long strutlib_index(const strutlib_scene *scene, const char *kind, const char *n
   for (size_t i = 0; scene && kind && name && (there = name_at(&scene->setup, kind, i)); i++)
     if (strcmp(there, name) == 0) return (long)i;
   return -1;
+}
+
+/* ---- channels ---- */
+
+const char *strutlib_channel(size_t i) {
+  const strut_channel_row *row = strut_channel_at(i);
+  return row ? row->name : NULL;
+}
+
+const char *strutlib_channel_kind(const char *channel) {
+  const strut_channel_row *row = channel ? strut_channel_named(channel) : NULL;
+  return row ? strut_owner_row_of(row->owner)->things : NULL;
+}
+
+const char *strutlib_channel_component(const char *channel, size_t i) {
+  const strut_channel_row *row = channel ? strut_channel_named(channel) : NULL;
+  bool several = row && row->owner != STRUT_OWNER_SYSTEM && row->components > 1;
+  return several && i < row->components ? row->component_names[i] : NULL;
+}
+
+const char *strutlib_channel_column(const char *channel, size_t i) {
+  const strut_channel_row *row = channel ? strut_channel_named(channel) : NULL;
+  return row && i < row->components ? row->column_names[i] : NULL;
 }
 
 /* ---- arrays ---- */

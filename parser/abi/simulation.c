@@ -109,25 +109,12 @@ static int show(size_t items, size_t components, int *dimensions, size_t *shape,
 
 int strutlib_simulation_array(strutlib_simulation *simulation, const char *name,
                               const double **data, int *dimensions, size_t *shape, size_t *stride) {
-  static const struct {
-    const char *name;
-    strut_channel id;
-  } channels[] = {{"position", STRUT_CHANNEL_POSITION}, {"velocity", STRUT_CHANNEL_VELOCITY},
-                  {"length", STRUT_CHANNEL_LENGTH},     {"force", STRUT_CHANNEL_FORCE},
-                  {"contact", STRUT_CHANNEL_CONTACT},   {"angle", STRUT_CHANNEL_ANGLE},
-                  {"moment", STRUT_CHANNEL_MOMENT},     {"area", STRUT_CHANNEL_AREA},
-                  {"pressure", STRUT_CHANNEL_PRESSURE}, {"energy", STRUT_CHANNEL_ENERGY}};
   if (!simulation || !name || !data || !dimensions || !shape || !stride) return 0;
-  for (size_t i = 0; i < sizeof channels / sizeof channels[0]; i++) {
-    if (strcmp(channels[i].name, name) != 0) continue;
-    const strut_record_channel *c =
-        strut_stepping_channel(simulation->stepping, channels[i].id, data);
-    if (!c) return 0;
-    size_t items = c->id == STRUT_CHANNEL_ENERGY ? c->components : c->items;
-    return show(items, c->id == STRUT_CHANNEL_ENERGY ? 1 : c->components, dimensions, shape,
-                stride);
-  }
-  return 0;
+  const strut_channel_row *row = strut_channel_named(name);
+  if (!row || !strut_stepping_channel(simulation->stepping, row->id, data)) return 0;
+  bool of_system = row->owner == STRUT_OWNER_SYSTEM; /* its components are the things */
+  return show(strut_channel_things(row, &simulation->setup.scene), of_system ? 1 : row->components,
+              dimensions, shape, stride);
 }
 
 static const char *const input_names[] = {"rest", "actuators", "load", NULL};

@@ -342,7 +342,7 @@
   X(STEADY, SHOOTING, "shooting", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_steady, shooting), "Solve for the periodic orbit by Newton's method (shooting) and report its Floquet multipliers; for structures with up to 48 degrees of freedom.") \
   X(OUTPUT, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, "a thousandth of the recorded time", OPTIONAL, 0, "", FIELD(strut_experiment, output_every), "Time between two samples.") \
   X(OUTPUT, LAST, "last", NUMBER, CONTEXT, ABOVE_ZERO, "the whole run", OPTIONAL, 0, "", FIELD(strut_experiment, output_last), "Record only the end of the run: a number of periods if the run is given in periods, otherwise a time.") \
-  X(OUTPUT, CHANNELS, "channels", WORDS, NONE, ANY, "[position, length, force]", WRITTEN, 0, "position|velocity|length|force|contact|energy|angle|moment|area|pressure", FIELD(strut_experiment, channels), "The channels to record: `position` and `velocity` of nodes, `length` and `force` of members, `contact` forces, `energy`, `angle` and `moment` of hinges, `area` and `pressure` of cells.") \
+  X(OUTPUT, CHANNELS, "channels", WORDS, NONE, ANY, "[position, length, force]", WRITTEN, 0, STRUT_CHANNEL_WORDS, FIELD(strut_experiment, channels), STRUT_CHANNEL_DESCRIPTION) \
   X(STUDY, VERSION, "strut", VERSION, NONE, ANY, "", REQUIRED, 0, "1", BY_HAND, "Version of the language.") \
   X(STUDY, NAME, "study", TEXT, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_study, name), "Name of the study.") \
   X(STUDY, DESCRIPTION, "description", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study, description), "What the study is for.") \

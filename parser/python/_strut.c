@@ -254,6 +254,38 @@ static PyObject *options(PyObject *module, PyObject *argument) {
   return list;
 }
 
+/* A tuple of texts: those of a function of a channel and an index, up to the first NULL. */
+static PyObject *texts_of(const char *(*text)(const char *channel, size_t i), const char *channel) {
+  Py_ssize_t count = 0;
+  while (text(channel, (size_t)count) != NULL) {
+    count++;
+  }
+  PyObject *tuple = PyTuple_New(count);
+  for (Py_ssize_t i = 0; tuple != NULL && i < count; i++) {
+    PyObject *item = strut_py_text(text(channel, (size_t)i));
+    if (item == NULL || PyTuple_SetItem(tuple, i, item) != 0) {
+      Py_CLEAR(tuple);
+    }
+  }
+  return tuple;
+}
+
+static PyObject *channels(PyObject *module, PyObject *none) {
+  (void)module, (void)none;
+  PyObject *list = PyList_New(0);
+  const char *name;
+  for (size_t i = 0; list != NULL && (name = strutlib_channel(i)) != NULL; i++) {
+    PyObject *channel = Py_BuildValue(
+        "(NNNN)", strut_py_text(name), strut_py_text(strutlib_channel_kind(name)),
+        texts_of(strutlib_channel_component, name), texts_of(strutlib_channel_column, name));
+    if (channel == NULL || PyList_Append(list, channel) != 0) {
+      Py_CLEAR(list);
+    }
+    Py_XDECREF(channel);
+  }
+  return list;
+}
+
 static PyObject *status_name(PyObject *module, PyObject *argument) {
   (void)module;
   int status = (int)PyLong_AsLong(argument);
@@ -277,6 +309,7 @@ static PyMethodDef functions[] = {
     {"open_text", open_text, METH_VARARGS, "open_text(name, text, names, values): a scene's text."},
     {"with_", scene_with, METH_VARARGS, "with_(scene, names, values): further settings."},
     {"options", options, METH_O, "options(command): its options and what they mean."},
+    {"channels", channels, METH_NOARGS, "channels(): (name, kind, components, columns) of each."},
     {"status_name", status_name, METH_O, "status_name(number): a status as a word."},
     {"status_text", status_text, METH_O, "status_text(number): a status as a few words."},
     {NULL, NULL, 0, NULL}};

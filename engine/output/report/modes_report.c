@@ -5,7 +5,6 @@
 #include <stdio.h>
 
 #include "engine/base/c_locale.h"
-#include "engine/base/number_text.h"
 #include "engine/base/vec.h"
 #include "engine/output/buffer.h"
 #include "engine/output/json_settle.h"
@@ -148,9 +147,8 @@ char *strut_modes_table(const strut_model *model, const strut_modes *modes) {
 }
 
 static void add_number(strut_buffer *csv, double value) {
-  char text[STRUT_NUMBER_TEXT];
-  strut_number_text(value, text);
-  strut_buffer_add(csv, ",%s", text);
+  strut_buffer_add(csv, ",");
+  strut_csv_number(csv, value);
 }
 
 char *strut_modes_csv(const strut_modes *modes) {

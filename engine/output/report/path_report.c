@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "engine/base/c_locale.h"
-#include "engine/base/number_text.h"
 #include "engine/output/buffer.h"
 #include "engine/output/json_value.h"
 #include "engine/output/quantity_text.h"
@@ -357,18 +356,14 @@ char *strut_path_table(const strut_path *path, const strut_scene *scene) {
   return strut_buffer_take(&table);
 }
 
-/* A cell of the header; RFC 4180 wants quotes around one that holds a comma, a quote or a break. */
 static void add_cell(strut_buffer *csv, const char *name, const char *what) {
-  bool quoted = strpbrk(name, ",\"\r\n") != NULL;
-  strut_buffer_add(csv, quoted ? ",\"" : ",");
-  for (; *name; name++) strut_buffer_add(csv, *name == '"' ? "\"\"" : "%c", *name);
-  strut_buffer_add(csv, ".%s%s", what, quoted ? "\"" : "");
+  strut_buffer_add(csv, ",");
+  strut_csv_text(csv, "%s.%s", name, what);
 }
 
 static void add_number(strut_buffer *csv, double value) {
-  char text[STRUT_NUMBER_TEXT];
-  strut_number_text(value, text);
-  strut_buffer_add(csv, ",%s", text);
+  strut_buffer_add(csv, ",");
+  strut_csv_number(csv, value);
 }
 
 static void add_header(strut_buffer *csv, const strut_path *path, const strut_scene *scene) {
@@ -396,9 +391,7 @@ static void add_header(strut_buffer *csv, const strut_path *path, const strut_sc
 
 static void add_numbers(strut_buffer *csv, const strut_path *path, const strut_scene *scene,
                         const state *at, const char *negative, const char *event) {
-  char text[STRUT_NUMBER_TEXT];
-  strut_number_text(at->factor, text);
-  strut_buffer_add(csv, "%s", text);
+  strut_csv_number(csv, at->factor);
   if (path->over == STRUT_PATH_OVER_LOAD && path->reference > 0)
     add_number(csv, at->factor * path->reference);
   add_number(csv, at->arc);

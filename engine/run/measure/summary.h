@@ -8,24 +8,9 @@
 #include <stdint.h>
 
 #include "engine/base/status.h"
+#include "engine/scene/channels.h"
 
-/**
- * Energies, works and losses [J] in the order of all outputs, with their kind and what people read.
- * Energies are those at the end of the summary's duration; works and losses are over all of it.
- */
-#define STRUT_ENERGY_TABLE(X)                                                                      \
-  X(kinetic, ENERGY, "kinetic")                                                                    \
-  X(elastic, ENERGY, "elastic")                                                                    \
-  X(gravity, ENERGY, "gravity")                    /* zero at y = 0 (x = 0) */                     \
-  X(contact, ENERGY, "ground springs")             /* elastic */                                   \
-  X(drive_work, WORK, "drive work")                /* done on the structure by the actuators */    \
-  X(load_work, WORK, "load work")                  /* by loads */                                  \
-  X(belt_work, WORK, "belt work")                  /* by the moving ground */                      \
-  X(support_work, WORK, "support work")            /* by supports that move */                     \
-  X(dissipated_members, LOSSES, "lost in members") /* positive: lost */                            \
-  X(dissipated_contact, LOSSES, "lost in contact")                                                 \
-  X(dissipated_friction, LOSSES, "lost to friction")
-
+/** Rows of STRUT_ENERGY_TABLE [J], and what belongs to their balance. */
 typedef struct strut_energy {
 #define STRUT_ENERGY_FIELD(name, kind, label) double name;
   STRUT_ENERGY_TABLE(STRUT_ENERGY_FIELD)
@@ -36,10 +21,6 @@ typedef struct strut_energy {
   double moved;    /* sum of the absolute energies exchanged, or the largest kinetic energy seen if
                       that is more: the scale of the residual */
 } strut_energy;
-
-/** Their names as a list of strings, for outputs. */
-#define STRUT_ENERGY_NAME(name, kind, label) #name,
-#define STRUT_ENERGY_NAMES STRUT_ENERGY_TABLE(STRUT_ENERGY_NAME)
 
 /** State of the energy balance. Open: the residual is more than 1 % of the exchanged energy. */
 typedef enum strut_balance {
