@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/csv.h"
+#include "engine/output/record_files.h"
 
 #include <string.h>
 
@@ -42,8 +42,8 @@ static void add_name(strut_buffer *header, const strut_record_channel *channel, 
   const strut_channel_row *row = strut_channel_row_of(channel->id);
   bool whole = row->owner == STRUT_OWNER_SYSTEM;
   strut_buffer_add(header, ",");
-  strut_csv_text(header, "%s%s%s [%s]", whole ? "" : channel->item_names[item], whole ? "" : ".",
-                 row->column_names[component], channel->unit);
+  strut_csv_add_text(header, "%s%s%s [%s]", whole ? "" : channel->item_names[item],
+                     whole ? "" : ".", row->column_names[component], channel->unit);
 }
 
 static bool is_in_table(const strut_record_channel *channel, int owner) {

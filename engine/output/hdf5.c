@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/hdf5.h"
+#include "engine/output/record_files.h"
 
 #include <errno.h>
 #include <string.h>
 
 #include "engine/base/memory.h"
 #include "engine/output/file.h"
-#include "engine/output/hdf5_disk.h"
 #include "engine/output/hdf5_parts.h"
 
 enum { CHUNK_BYTES = 1 << 18, CHUNK_DOUBLES = CHUNK_BYTES / 8 };

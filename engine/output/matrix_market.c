@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/matrix_market.h"
+#include "engine/output/exports.h"
 
 #include <inttypes.h>
 #include <stdio.h>

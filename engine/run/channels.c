@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/run/channels.h"
+#include "engine/run/recording.h"
 
 #include <assert.h>
 #include <string.h>

@@ -85,7 +85,7 @@ typedef enum strut_channel {
   " `" #name "` " text " [" unit "];"
 #define STRUT_CHANNEL_DESCRIPTION                                                                  \
   "The channels to record:" STRUT_CHANNEL_TABLE(                                                   \
-      STRUT_CHANNEL_SENTENCE) " as far as the scene has such things."
+      STRUT_CHANNEL_SENTENCE) " channels of things that the scene lacks are left out."
 
 typedef enum strut_channel_owner {
 #define STRUT_CHANNEL_OWNER(OWNER, ...) STRUT_OWNER_##OWNER,

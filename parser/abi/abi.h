@@ -68,7 +68,7 @@ extern "C" {
 #define STRUTLIB_WORK_LIMIT 7     /* the work allowed was used up */
 #define STRUTLIB_FILE_TROUBLE 8   /* a file could not be read or written */
 #define STRUTLIB_NO_MEMORY 9      /* memory is out */
-#define STRUTLIB_INTERRUPTED 10   /* by strutlib_interrupt; what there is so far is returned */
+#define STRUTLIB_INTERRUPTED 10   /* by strutlib_interrupt; partial results are returned */
 #define STRUTLIB_INACCURATE 11    /* of the program alone: less accurate than requested */
 
 /** A scene as it was opened, with its settings: constant. */
@@ -485,7 +485,7 @@ STRUTLIB_API int strutlib_simulation_array(strutlib_simulation *simulation, cons
 /**
  * Inputs: arrays that the caller writes, at any time between two calls. They hold from the next
  * advance on, until they are written again. A change is an event: methods with events begin anew
- * there, and the ledger counts the work it does.
+ * there, and the energy balance counts its work.
  *   "rest" (members): rest lengths [m], to which a driven member's signal is added;
  *   "actuators" (actuators): what the signal is, in its unit; NAN (as at the beginning): as the
  *     scene says;

@@ -7,7 +7,7 @@
 #include <time.h>
 
 #include "engine/integrate/lanes/batch.h"
-#include "engine/run/simulate_batch.h"
+#include "engine/run/simulate.h"
 #include "tests/bench/scenes.h"
 
 enum { WIDTHS = 5, METHODS = 2, MOST = 1001 };

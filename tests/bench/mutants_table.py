@@ -176,7 +176,7 @@ MUTANTS = [
     Mutant("settled-by-speed-alone", "engine/run/settle.c",
            "if (find_largest(r->acceleration, length, &node) < enough) return STRUT_OK;", "return STRUT_OK;",
            "settling ends at the first turning point, at rest or not", "simulate|models|crawler"),
-    Mutant("balance-without-loads", "engine/run/measure/balance.c",
+    Mutant("balance-without-loads", "engine/run/measure/measure.c",
            "e->load_work = w[STRUT_POWER_LOAD] + loads;", "e->load_work = w[STRUT_POWER_LOAD];",
            "constant loads do no work in the energy balance", "energy|simulate"),
 

@@ -12,9 +12,9 @@
 #include "engine/model/mass.h"
 #include "engine/output/code/templates.h"
 #include "engine/output/code/writer.h"
+#include "engine/output/exports.h"
 #include "engine/output/file.h"
 #include "engine/output/results.h"
-#include "engine/output/untold.h"
 
 /* ---- what there is no code for ---- */
 
@@ -39,7 +39,7 @@ static const strut_law_set written = {
               STRUT_HAS(STRUT_STRAIN, ANGLE) | STRUT_HAS(STRUT_STRAIN, AREA) |
               STRUT_HAS(STRUT_STRAIN, REACH)};
 
-static void add_unwritten_laws(strut_untold *r, strut_law_set has) {
+static void add_unwritten_laws(strut_unsupported *r, strut_law_set has) {
   strut_law_set more = strut_laws_beyond(has, written);
   char text[200];
   for (unsigned k = 0; k < STRUT_FRICTION_LAW_COUNT; k++) {
@@ -47,29 +47,29 @@ static void add_unwritten_laws(strut_untold *r, strut_law_set has) {
     snprintf(
         text, sizeof text, "friction law %s%s", strut_friction_law_at((strut_friction_law)k)->word,
         exact ? " (its stops and starts are located within steps; use karnopp or smooth)" : "");
-    strut_untold_add(r, more.friction >> k & 1u, text);
+    strut_unsupported_add(r, more.friction >> k & 1u, text);
   }
-  strut_untold_add(r, more.damping, "this damping_law of a ground");
+  strut_unsupported_add(r, more.damping, "this damping_law of a ground");
   for (unsigned k = 0; k < STRUT_LAW_COUNT; k++) {
     snprintf(text, sizeof text, "law %s", strut_law_at((strut_law_kind)k)->word);
-    strut_untold_add(r, more.law >> k & 1u, text);
+    strut_unsupported_add(r, more.law >> k & 1u, text);
   }
   for (unsigned k = 0; k < STRUT_STRAIN_COUNT; k++) {
     snprintf(text, sizeof text, "strain %s", strut_strain_name((strut_strain_kind)k));
-    strut_untold_add(r, more.strain >> k & 1u, text);
+    strut_unsupported_add(r, more.strain >> k & 1u, text);
   }
 }
 
 strut_status strut_code_check(const strut_model *model, strut_error *error) {
   const strut_scene *s = model->scene;
-  strut_untold r = {.used = 0};
-  strut_untold_add(&r, (model->plan & STRUT_TERM_RIGID) != 0,
+  strut_unsupported r = {.used = 0};
+  strut_unsupported_add(&r, (model->plan & STRUT_TERM_RIGID) != 0,
                    "bars: rigid (their forces follow from equations "
                    "that each step would solve; use bars: elastic)");
-  strut_untold_add(&r, count_rubbing(s), "friction at guides");
+  strut_unsupported_add(&r, count_rubbing(s), "friction at guides");
   add_unwritten_laws(&r, model->laws);
-  strut_untold_add(&r, s->support_motion_count, "moves of nodes");
-  strut_untold_add(&r, s->unbalance_count, "unbalances");
+  strut_unsupported_add(&r, s->support_motion_count, "moves of nodes");
+  strut_unsupported_add(&r, s->unbalance_count, "unbalances");
   if (r.used)
     return strut_fail(error, STRUT_BAD_SCENE,
                       "the scene has what no C code is written for: %s; leave it out, or compute "

@@ -6,7 +6,7 @@
 #define STRUT_ENGINE_OUTPUT_DRAW_AXES_H
 
 #include "engine/output/draw/palette.h"
-#include "engine/output/quantity_text.h"
+#include "engine/output/buffer.h"
 
 /** One axis as wanted. Its label reads "name in prefix unit", such as "velocity in mm/s". */
 typedef struct strut_axis {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/page/page_motion.h"
+#include "engine/output/page/page.h"
 
 #include <assert.h>
 #include <float.h>

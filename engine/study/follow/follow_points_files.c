@@ -9,7 +9,6 @@
 #include "engine/output/buffer.h"
 #include "engine/output/file.h"
 #include "engine/output/json_value.h"
-#include "engine/output/quantity_text.h"
 #include "engine/study/follow/follow_parts.h"
 #include "engine/study/sweep/grid.h"
 

@@ -6,7 +6,6 @@
 #include "engine/base/c_locale.h"
 #include "engine/output/buffer.h"
 #include "engine/output/json_value.h"
-#include "engine/output/quantity_text.h"
 #include "engine/study/follow/follow_parts.h"
 
 static const double DEGREES = 57.29577951308232;
@@ -15,12 +14,12 @@ enum { MOST_LISTED = 12 };
 
 static void add_number(strut_buffer *csv, double value) {
   strut_buffer_add(csv, ",");
-  strut_csv_number(csv, isfinite(value) ? value : (double)NAN);
+  strut_csv_add_number(csv, isfinite(value) ? value : (double)NAN);
 }
 
 static void add_text(strut_buffer *csv, const char *text) {
   strut_buffer_add(csv, ",");
-  strut_csv_text(csv, "%s", text ? text : "");
+  strut_csv_add_text(csv, "%s", text ? text : "");
 }
 
 /* Does stability change at a special point? Nothing of other points. */

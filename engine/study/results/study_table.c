@@ -6,8 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/base/number_text.h"
 #include "engine/base/memory.h"
+#include "engine/base/number_text.h"
 #include "engine/output/buffer.h"
 #include "engine/output/file.h"
 
@@ -65,7 +65,8 @@ static bool put_header(writer *w, const strut_slots_plan *plan) {
   for (size_t i = 0; i < plan->column_count; i++) {
     const strut_slot_column *column = &plan->columns[i];
     bool plain = strcmp(column->unit, "1") == 0 || !*column->unit;
-    strut_csv_text(&header, plain ? "%s%s" : "%s [%s]", column->name, plain ? "" : column->unit);
+    strut_csv_add_text(&header, plain ? "%s%s" : "%s [%s]", column->name,
+                       plain ? "" : column->unit);
     strut_buffer_add(&header, ",");
   }
   strut_buffer_add(&header, "status,message\n");

@@ -287,12 +287,12 @@ strut_status strut_sensitivity_find(const strut_study *study, strut_slots *slots
 /* ---- the table ---- */
 
 static void put_text(strut_buffer *b, const char *text) {
-  strut_csv_text(b, "%s", text);
+  strut_csv_add_text(b, "%s", text);
   strut_buffer_add(b, ",");
 }
 
 static void put_number(strut_buffer *b, double value) {
-  strut_csv_number(b, isfinite(value) ? value : (double)NAN);
+  strut_csv_add_number(b, isfinite(value) ? value : (double)NAN);
   strut_buffer_add(b, ",");
 }
 

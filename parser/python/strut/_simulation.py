@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Callable
+from typing import TYPE_CHECKING, Callable
 
 from . import _strut
 from ._values import Named, numpy, unknown
@@ -18,9 +18,10 @@ _INPUTS = {"rest": "members", "actuators": "actuators", "load": "nodes"}
 class Simulation:
     """A run that is advanced from outside, by one thread at a time.
 
-    Arrays are live: they follow every advance; copy() what shall stay. Those are the channels of a scene's
-    output: position and velocity (nodes, 2), length and force (members), contact (contacts, 2), energy, ... Inputs are written at any time, and hold from the next advance on: rest (members) [m],
-    actuators (in their unit; NAN: as the scene says), load (nodes, 2) [N]:
+    Arrays are live: they follow every advance; copy() what shall stay. They are the channels that a scene
+    can record: position and velocity (nodes, 2), length and force (members), contact (contacts, 2), energy, ...
+    Inputs are written at any time, and hold from the next advance on: rest (members) [m], actuators (in
+    their unit; NAN: as the scene says), load (nodes, 2) [N]:
 
         sim.rest["m8"] = sim.rest0["m8"] + 0.3e-3
         sim.advance(10)
@@ -30,22 +31,6 @@ class Simulation:
     advance: Callable[[int], None]  #: advance(steps): bits do not depend on how steps are divided
     snapshot: Callable[[], _strut.Snapshot]  #: all of the state, inputs too
     restore: Callable[[_strut.Snapshot], None]  #: back to a snapshot; what follows has the same bits
-
-    if TYPE_CHECKING:
-        position: Named
-        velocity: Named
-        length: Named
-        force: Named
-        contact: Named
-        angle: Named
-        moment: Named
-        area: Named
-        pressure: Named
-        energy: Named
-        rest: Named
-        rest0: Named
-        actuators: Named
-        load: Named
 
     def __init__(self, raw: _strut.Simulation, scene: Scene) -> None:
         self._raw = raw
@@ -71,8 +56,8 @@ class Simulation:
         """Work that changes of inputs have done [J]."""
         return self._raw.input_work
 
-    def __getattr__(self, name: str) -> Any:
-        # Only for arrays that nobody has asked for yet: they become attributes.
+    def __getattr__(self, name: str) -> Named:
+        # Only for arrays that were not read yet: they become attributes.
         if name in _CHANNELS:
             array, kind = self._raw.array(name), name
         elif name in _INPUTS:
