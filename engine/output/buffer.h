@@ -11,7 +11,7 @@
 
 #include "engine/base/export.h"
 
-/* ---- A text that grows by printf ---- */
+/* ---- a text that grows by printf ---- */
 
 /** Zero-initialise it. */
 typedef struct strut_buffer {
@@ -42,7 +42,7 @@ STRUT_API void strut_csv_add_number(strut_buffer *csv, double value);
 /** Appends (count) bytes in base64, without line breaks. */
 STRUT_API void strut_base64_add(strut_buffer *buffer, const void *bytes, size_t count);
 
-/* ---- Files that were put into the program at build time (EmbedFiles.cmake) ---- */
+/* ---- files that were put into the program at build time (EmbedFiles.cmake) ---- */
 
 /** A file: `length` bytes of UTF-8 and a NUL. Lists of them end with a row of NULL. */
 typedef struct strut_embedded {
@@ -50,7 +50,7 @@ typedef struct strut_embedded {
   size_t length;
 } strut_embedded;
 
-/* ---- A number with a unit as people like to read it: "9.78 mm/s", "110 s", "3 kN/m" ---- */
+/* ---- a number with a unit as people like to read it: "9.78 mm/s", "110 s", "3 kN/m" ---- */
 
 enum { STRUT_QUANTITY_TEXT = 64 };
 

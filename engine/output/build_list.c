@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Lists and drawings to build a structure by. */
 #include <math.h>
 #include <string.h>
 

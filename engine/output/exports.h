@@ -126,7 +126,7 @@ STRUT_API char *strut_build_table(const strut_build *build);
 STRUT_API char *strut_build_svg(const strut_build *build);
 STRUT_API char *strut_build_dxf(const strut_build *build);
 
-/* ---- What of a scene a foreign format has no words for, as a list in one sentence ---- */
+/* ---- what of a scene a foreign format cannot express, as a list in one sentence ---- */
 
 typedef struct strut_unsupported {
   char text[600]; /* empty: nothing is refused */

@@ -65,10 +65,11 @@ typedef struct strut_stage {
 } strut_stage;
 
 /** Creates one inside the directory, after removing those of killed processes. */
-strut_status strut_stage_create(strut_stage *stage, const char *directory, strut_error *error);
+STRUT_API strut_status strut_stage_create(strut_stage *stage, const char *directory,
+                                          strut_error *error);
 /** Removes it with its contents. A zeroed struct is allowed. */
-void strut_stage_remove(strut_stage *stage);
+STRUT_API void strut_stage_remove(strut_stage *stage);
 /** Removes the folders that killed processes left in the directory; true if there were any. */
-bool strut_stage_sweep(const char *directory);
+STRUT_API bool strut_stage_sweep(const char *directory);
 
 #endif

@@ -56,7 +56,8 @@ static strut_status check(const strut_model *model, strut_error *error) {
   strut_unsupported_add(&r, s->unbalance_count, "rotating masses");
   strut_unsupported_add(&r, s->sliding_count, "sliders");
   strut_unsupported_add(&r, s->sensor_count + s->state_count, "sensors and controllers");
-  strut_unsupported_add(&r, s->rayleigh_mass > 0.0 || s->rayleigh_stiffness > 0.0, "Rayleigh's damping");
+  strut_unsupported_add(&r, s->rayleigh_mass > 0.0 || s->rayleigh_stiffness > 0.0,
+                        "Rayleigh's damping");
   refuse_members(&r, s);
   if (r.used)
     return strut_fail(

@@ -5,14 +5,14 @@
 
 #include "engine/run/recorder.h"
 
-/* ---- Trajectories as CSV: nodes.csv, members.csv, hinges.csv, cells.csv, contacts.csv, energy.csv, whichever has channels ---- */
+/* ---- CSV: nodes.csv, members.csv, ..., energy.csv, as far as they have channels ---- */
 
 /** A sink that writes into directory (which exists). NULL when memory is out. */
 STRUT_API strut_sink *strut_csv_create(const char *directory);
 /** Frees the sink; abandons what was not ended. */
 STRUT_API void strut_csv_free(strut_sink *sink);
 
-/* ---- Trajectories as one HDF5 file, trajectory.h5, one dataset per channel with dimension scales ---- */
+/* ---- HDF5: trajectory.h5, a dataset for each channel, with dimension scales ---- */
 
 /** A sink that writes directory/trajectory.h5; `scene_text` is kept in it as an attribute. */
 STRUT_API strut_sink *strut_hdf5_create(const char *directory, const char *scene_text);

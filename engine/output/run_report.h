@@ -11,7 +11,7 @@
 #include "engine/run/measure/summary.h"
 #include "engine/scene/experiment.h"
 
-/* ---- A run's summary as JSON and as a short table for people ---- */
+/* ---- a run's summary as JSON and as a short table for people ---- */
 
 /**
  * The summary as one JSON object in a block of strut_allocate, or NULL when memory is out. The same
@@ -22,12 +22,13 @@ STRUT_API char *strut_summary_json(const strut_summary *summary, const strut_sce
 /** A table of a screenful in a block of strut_allocate, or NULL when memory is out. */
 STRUT_API char *strut_summary_table(const strut_summary *summary, const strut_scene *scene);
 
-/* ---- How a start settled, as every report's JSON has it ---- */
+/* ---- how a start settled, as every report's JSON has it ---- */
 
 /** Adds how a start settled as the member `settle`; nothing where it did not. */
-void strut_json_settle(strut_json *json, struct cJSON *to, const strut_settle_summary *how);
+STRUT_API void strut_json_settle(strut_json *json, struct cJSON *to,
+                                 const strut_settle_summary *how);
 
-/* ---- What a run amounts to as rows of text, read back from its summary.json ---- */
+/* ---- rows of text, read back from summary.json ---- */
 
 /**
  * Appends {label, value}, ready to show, to the array `to`. `summary` is the text of the file, or

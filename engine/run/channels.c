@@ -143,8 +143,8 @@ static void record_energy(strut_channel_view *v, double *out) {
 
 /*
  * momentum = M u of each node at velocities u (nodes, 2), with the model's mass matrix, lumped or consistent, of
- * all nodes, supported ones too. Masses that slide along their line at its rate move beside it by q's line;
- * q NULL: they do not slide. Forces must have been observed where some mass moves.
+ * all nodes, supported ones too. Masses that slide add their speed along their lines at the positions q; without it
+ * where q is NULL. Forces must have been observed where some mass slides.
  */
 static void multiply_by_mass(const strut_channel_view *v, const double *u, const double *q,
                              double *momentum) {
@@ -173,7 +173,7 @@ static void multiply_by_mass(const strut_channel_view *v, const double *u, const
   }
 }
 
-/* Means of x and y: sum of weights times values over the sum of weights, or of the values themselves; all (nodes, 2). */
+/* Sums of x and of y, of weights times values or of the values alone, over the total; all (nodes, 2). */
 static strut_vec2 mean(const strut_model *model, const double *weights, const double *values,
                        double total) {
   double sum[2] = {0.0, 0.0};

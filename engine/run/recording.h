@@ -42,7 +42,7 @@ void strut_channel_view_show(strut_channel_view *view, strut_state *state, doubl
 /** Fills the (items, components) numbers of the channel. */
 void strut_channel_record(strut_channel_view *view, strut_channel id, double *out);
 
-/* ---- Recording: lays out the rows of a run, samples the state and hands rows to the sinks ---- */
+/* ---- recording: lays out the rows of a run, samples the state and hands rows to the sinks ---- */
 
 /** Channels of one sink, as a layout of their own. */
 typedef struct strut_recording_part {

@@ -5,8 +5,8 @@
 
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/run/measure/measure.h"
-#include "engine/run/measure/monitors.h"
 #include "engine/run/measure/meter.h"
+#include "engine/run/measure/monitors.h"
 #include "engine/run/orbit/steady_detector.h"
 #include "engine/run/recording.h"
 #include "engine/run/simulate.h"

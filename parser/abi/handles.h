@@ -215,7 +215,7 @@ const strut_trajectory *abi_result_motion(const strutlib_result *result);
 /** A text of strut_allocate as one that strutlib_release releases. */
 char *abi_give(char *text, strutlib_error **error);
 
-/* ---- Figures and pages as texts ---- */
+/* ---- figures and pages as texts ---- */
 
 enum { ABI_MOST_TIMES = 100 };
 
@@ -225,7 +225,7 @@ strut_status abi_run_figure_read(const strut_arguments *arguments, strut_run_fig
 /** Options "title" and "width" into a plot that goes to `path`. */
 strut_status abi_plot_read(const strut_arguments *arguments, const char *path, strut_plot *plot);
 
-/* ---- A folder for what is made as a file and shown as a text or as arrays: it is gone when the call returns ---- */
+/* ---- a temporary folder for what is made as a file and shown as a text or as arrays ---- */
 
 typedef struct abi_scratch {
   char folder[300], path[340]; /* path: of the one file in it */
@@ -238,7 +238,7 @@ char *abi_scratch_read(const abi_scratch *scratch, const char *name, strut_error
 /** Removes the folder and these files in it; NULL after the last. */
 void abi_scratch_end(const abi_scratch *scratch, const char *const *names);
 
-/* ---- Results of statics, for other files of the library ---- */
+/* ---- results of statics, for other files of the library ---- */
 
 /** The equilibria that a result of strutlib_equilibria holds, or NULL. */
 const strut_equilibria *abi_result_equilibria(const strutlib_result *result);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Equilibria, modes, rigidity, form, path: what the program's commands of these names do, without files. */
+/* Equilibria, modes, rigidity, form, path, matrices: what the program's commands of these names do, without files. */
 #include <stdio.h>
 #include <string.h>
 

@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/*
- * Long calls. Python runs the handlers of signals between two of its own instructions only, and only in the
- * thread that began the program. A call therefore computes in a thread of its own, and the thread that made it
- * looks for signals: Ctrl-C ends everything within a moment, also what reports no progress.
- */
+/* The module: long calls, texts, and functions of the package as a whole. */
 #include <pthread.h>
 #include <signal.h>
 #include <stdlib.h>
@@ -11,6 +7,12 @@
 #include <time.h>
 
 #include "parser/python/module.h"
+
+/*
+ * Long calls. Python runs the handlers of signals between two of its own instructions only, and only in the
+ * thread that began the program. A call therefore computes in a thread of its own, and the thread that made it
+ * looks for signals: Ctrl-C ends everything within a moment, also what reports no progress.
+ */
 
 #define LOOK_EVERY 50000000L /* ns */
 

@@ -64,8 +64,8 @@ strut_status strut_code_check(const strut_model *model, strut_error *error) {
   const strut_scene *s = model->scene;
   strut_unsupported r = {.used = 0};
   strut_unsupported_add(&r, (model->plan & STRUT_TERM_RIGID) != 0,
-                   "bars: rigid (their forces follow from equations "
-                   "that each step would solve; use bars: elastic)");
+                        "bars: rigid (their forces follow from equations "
+                        "that each step would solve; use bars: elastic)");
   strut_unsupported_add(&r, count_rubbing(s), "friction at guides");
   add_unwritten_laws(&r, model->laws);
   strut_unsupported_add(&r, s->support_motion_count, "moves of nodes");

@@ -15,7 +15,9 @@
  *   motion: null or {
  *     frames, recorded, every: as in strut_trajectory, status: completed|diverged|interrupted,
  *     track: node index or null for the centre of mass (as the scene measures)
- *     time, position, force, contact, energy: null or a block (time and position are always there);
+ *     time, position, force, contact, energy, angle, moment, area, pressure: null or a block (time and
+ *       position are always there); other channels, where recorded, are blocks with their unit, things (nodes,
+ *       members, ...) and components, for a common kind of chart;
  *     energy_names: [text, ...]; weights: [kg, ...] of the nodes, for the centre of mass }
  *   equilibria: null or [{name, label, fate, verdict, energy [J], stands: bool,
  *     position: [x, y, ...], force: [N, ...] of members, contacts: [node index, ...],
@@ -71,7 +73,7 @@ typedef struct strut_page_frames {
 STRUT_API char *strut_page_html(const strut_page *page, strut_page_frames *frames,
                                 strut_error *error);
 
-/* ---- The parts of the page that are the same for every run, put in at build time (EmbedFiles.cmake) ---- */
+/* ---- parts of the page that are the same for every run, put in at build time (EmbedFiles.cmake) ---- */
 
 /*
  * Each ends with a row of NULL. In the template, page.html, four comments are replaced:
@@ -83,7 +85,7 @@ extern const strut_embedded strut_page_styles[];
 extern const strut_embedded strut_page_notice[];  /* of dygraphs: whose it is, and its licence */
 extern const strut_embedded strut_page_scripts[]; /* in the order in which they run */
 
-/* ---- The motion of a page: arrays over time as compact blocks, in the format that page.h describes ---- */
+/* ---- arrays over time as compact blocks ---- */
 
 /** An array (frames, columns) of which every `every`-th frame is used, and the last. */
 typedef struct strut_rows {
@@ -125,7 +127,7 @@ STRUT_API void strut_block_free(strut_block *block);
  * Appends the value of the key motion, about `room` bytes of it, or null. Frames from the first
  * that is not finite, or far out of all bounds, are left out; then as many evenly as it takes.
  */
-void strut_page_add_motion(strut_buffer *buffer, const strut_page *page, size_t room,
-                           strut_page_frames *frames);
+STRUT_API void strut_page_add_motion(strut_buffer *buffer, const strut_page *page, size_t room,
+                                     strut_page_frames *frames);
 
 #endif

@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/*
- * Which nodes coincide and which members cross. Nodes and members are entered into the squares of a net over
- * the shape, and only those of one square are compared, so that the effort grows with their number alone.
- */
+/* Reports the results of a search for equilibria: flaws of their shapes, JSON, and tables that fit a screen. */
 #include <assert.h>
 #include <float.h>
 #include <inttypes.h>
@@ -16,6 +13,13 @@
 #include "engine/output/json_value.h"
 #include "engine/output/report/reports.h"
 #include "engine/output/run_report.h"
+
+/* ---- flaws of shapes ---- */
+
+/*
+ * Which nodes coincide and which members cross. Nodes and members are entered into the squares of a net over
+ * the shape, and only those of one square are compared, so that the effort grows with their number alone.
+ */
 
 enum {
   FEW = 64,

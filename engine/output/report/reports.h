@@ -32,13 +32,13 @@ STRUT_API strut_shape_flaws strut_find_shape_flaws(const strut_model *model, con
 /** "stands", "tips", "below ground", "unstable", "floppy", "no rest". */
 STRUT_API const char *strut_outcome_name(strut_outcome fate);
 
-/* ---- What a found form holds, as a table and as JSON ---- */
+/* ---- a form that was found, as a table and as JSON ---- */
 
 /** Texts in blocks of strut_allocate; NULL: memory was out. The scene is the one found. */
 STRUT_API char *strut_form_json(const strut_form *form, const strut_scene *scene);
 STRUT_API char *strut_form_table(const strut_form *form, const strut_setup *setup);
 
-/* ---- Natural frequencies and shapes as JSON, as a table for people, and as CSV ---- */
+/* ---- natural frequencies and shapes as JSON, as a table for people, and as CSV ---- */
 
 /** Blocks of strut_allocate, or NULL when memory is out. */
 STRUT_API char *strut_modes_json(const strut_model *model, const strut_modes *modes);
@@ -46,7 +46,7 @@ STRUT_API char *strut_modes_table(const strut_model *model, const strut_modes *m
 /** A row for each mode, shapes left out. */
 STRUT_API char *strut_modes_csv(const strut_modes *modes);
 
-/* ---- A path of equilibria as a table for people, as JSON, and as a curve in CSV ---- */
+/* ---- a path of equilibria as a table for people, as JSON, and as a curve in CSV ---- */
 
 /** Texts in blocks of strut_allocate; NULL: memory was out. */
 STRUT_API char *strut_path_json(const strut_path *path, const strut_scene *scene);
@@ -59,7 +59,7 @@ STRUT_API char *strut_path_table(const strut_path *path, const strut_scene *scen
  */
 STRUT_API char *strut_path_csv(const strut_path *path, const strut_scene *scene);
 
-/* ---- The report of strut rigidity, as JSON and as a table ---- */
+/* ---- the report of strut rigidity, as JSON and as a table ---- */
 
 /** Both in a block of strut_allocate, or NULL: out of memory. `at` is the name of the shape. */
 STRUT_API char *strut_rigidity_json(const strut_rigidity *rigidity, const strut_model *model,
@@ -67,7 +67,7 @@ STRUT_API char *strut_rigidity_json(const strut_rigidity *rigidity, const strut_
 STRUT_API char *strut_rigidity_table(const strut_rigidity *rigidity, const strut_model *model,
                                      const char *at);
 
-/* ---- A structure in a few lines of text, true to scale, so that a wrong coordinate is seen at once ---- */
+/* ---- a structure in a few lines of text, true to scale ---- */
 
 enum { STRUT_SKETCH_LEAST_COLUMNS = 20, STRUT_SKETCH_LEAST_ROWS = 5, STRUT_SKETCH_MOST = 400 };
 

@@ -5,11 +5,11 @@
 
 #include "engine/forces/energy.h"
 #include "engine/model/state.h"
+#include "engine/run/measure/meter.h"
 #include "engine/run/measure/quantities.h"
 #include "engine/run/measure/summary.h"
-#include "engine/run/measure/meter.h"
 
-/* ---- Energy balance of a run: stored energies, works, losses and residual ---- */
+/* ---- energy balance of a run: stored energies, works, losses and residual ---- */
 
 /**
  * Fills the balance from the stored energies at the start and now, at time t [s], and the works that
@@ -69,7 +69,7 @@ void strut_balance_warn(strut_summary *summary, const char *why);
 /** Open where more than 1 % of the exchanged energy is missing, and more than rounding explains. */
 strut_balance strut_balance_judge(const strut_energy *energy, int64_t steps);
 
-/* ---- Measures over the window: mean velocity (14) and its spread, contact duty and height ---- */
+/* ---- measures over the window: mean velocity (14) and its spread, contact duty and height ---- */
 
 /**
  * The window is cut at marks: its ends and, in a run by periods, every period between. The tracked

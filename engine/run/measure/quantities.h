@@ -12,7 +12,7 @@
 #include "engine/scene/experiment.h"
 #include "engine/scene/quantity.h"
 
-/* ---- Columns of the motion, of which measured quantities are made, evaluated at a state ---- */
+/* ---- columns of the motion, of which measured quantities are made, evaluated at a state ---- */
 
 /** Distinct columns with their values now and over the window. */
 typedef struct strut_columns {
@@ -51,7 +51,7 @@ double strut_columns_span(const strut_columns *columns, size_t index);
 /** Rounding error of a column in the window, SI. */
 double strut_columns_noise(const strut_columns *columns, size_t index);
 
-/* ---- Evaluates the postfix program of a measured quantity; see engine/scene/quantity.h ---- */
+/* ---- the postfix program of a measured quantity; see engine/scene/quantity.h ---- */
 
 /** Evaluates a program; `index` (length): position of each column in `value`. */
 STRUT_API double strut_quantity_program_evaluate(const strut_quantity_definition *definition,

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An array of doubles by the buffer protocol: numpy.asarray and memoryview see it without a copy. */
+/* Results and simulations, and the arrays that they show. */
 #include <time.h>
 
 #include "parser/python/module.h"
+
+/* ---- an array of doubles by the buffer protocol: numpy.asarray and memoryview see it without a copy ---- */
 
 typedef struct {
   PyObject_HEAD PyObject *module;
