@@ -16,7 +16,7 @@ typedef struct strut_motion_piece {
   double
       moment; /* signals that jump at the begin have their value from after it so much later [s] */
   const double *q[2], *v[2];        /* [m], [m/s] */
-  const double *a[2];               /* [m/s^2]; NULL: of a method without events, see dense.h */
+  const double *a[2];               /* [m/s^2]; NULL: of a method without events, see meter.h */
   const double *work[2], *power[2]; /* [J], [W]; only with the ledger */
   bool smooth;    /* it continues the piece before: nothing has switched or jumped in between */
   bool ends_only; /* velocities have jumped within it: only its ends are known */

@@ -1,11 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/output/buffer.h"
 
+#include <math.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
+#include "engine/base/c_locale.h"
 #include "engine/base/memory.h"
+#include "engine/base/number_text.h"
 
 static bool make_room(strut_buffer *buffer, size_t more) {
   if (buffer->length + more < buffer->room) return true;
@@ -17,12 +23,10 @@ static bool make_room(strut_buffer *buffer, size_t more) {
   return true;
 }
 
-void strut_buffer_add(strut_buffer *buffer, const char *format, ...) {
-  va_list arguments, again;
-  va_start(arguments, format);
+static void append(strut_buffer *buffer, const char *format, va_list arguments) {
+  va_list again;
   va_copy(again, arguments);
   int length = vsnprintf(NULL, 0, format, arguments);
-  va_end(arguments);
   if (length < 0 || !make_room(buffer, (size_t)length)) {
     buffer->failed = true;
   } else {
@@ -30,6 +34,13 @@ void strut_buffer_add(strut_buffer *buffer, const char *format, ...) {
     buffer->length += (size_t)length;
   }
   va_end(again);
+}
+
+void strut_buffer_add(strut_buffer *buffer, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  append(buffer, format, arguments);
+  va_end(arguments);
 }
 
 char *strut_buffer_take(strut_buffer *buffer) {
@@ -40,6 +51,59 @@ char *strut_buffer_take(strut_buffer *buffer) {
   }
   *buffer = (strut_buffer){0};
   return text;
+}
+
+/* ---- CSV ---- */
+
+static bool needs_quotes(const char *text, size_t length) {
+  bool needed = false;
+  for (size_t i = 0; i < length; i++)
+    needed = needed || text[i] == ',' || text[i] == '"' || text[i] == '\r' || text[i] == '\n';
+  return needed;
+}
+
+size_t strut_csv_quote(const char *text, size_t length, char *cell) {
+  size_t written = 0;
+  length = strnlen(text, length);
+  bool quoted = needs_quotes(text, length);
+  if (quoted) cell[written++] = '"';
+  for (size_t i = 0; i < length; i++) {
+    if (text[i] == '"') cell[written++] = '"';
+    cell[written++] = text[i];
+  }
+  if (quoted) cell[written++] = '"';
+  return written;
+}
+
+void strut_csv_write(FILE *stream, const char *text) {
+  bool quoted = needs_quotes(text, strlen(text));
+  if (quoted) fputc('"', stream);
+  for (; *text; text++) {
+    if (*text == '"') fputc('"', stream);
+    fputc(*text, stream);
+  }
+  if (quoted) fputc('"', stream);
+}
+
+void strut_csv_add_text(strut_buffer *csv, const char *format, ...) {
+  strut_buffer text = {0};
+  va_list arguments;
+  va_start(arguments, format);
+  append(&text, format, arguments);
+  va_end(arguments);
+  if (text.failed || !make_room(csv, 2 * text.length + 2)) {
+    csv->failed = true;
+  } else {
+    csv->length += strut_csv_quote(text.text, text.length, csv->text + csv->length);
+    csv->text[csv->length] = '\0';
+  }
+  strut_release(text.text);
+}
+
+void strut_csv_add_number(strut_buffer *csv, double value) {
+  char text[STRUT_NUMBER_TEXT] = "";
+  if (!isnan(value)) strut_number_text(value, text);
+  strut_buffer_add(csv, "%s", text);
 }
 
 /* ---- base 64 ---- */
@@ -70,4 +134,60 @@ void strut_base64_add(strut_buffer *buffer, const void *bytes, size_t count) {
     int length = (int)encode(from + done, part, text);
     strut_buffer_add(buffer, "%.*s", length, text);
   }
+}
+
+/* ---- quantities ---- */
+
+enum { FIRST = -5, LAST = 3 }; /* femto to giga */
+
+static const char *const prefixes[] = {"f", "p", "n", "u", "m", "", "k", "M", "G"};
+
+const char *strut_quantity_text(double value, int digits, const char *unit,
+                                char text[STRUT_QUANTITY_TEXT]) {
+  if (isnan(value)) {
+    snprintf(text, STRUT_QUANTITY_TEXT, "none");
+    return text;
+  }
+  if (isinf(value)) {
+    snprintf(text, STRUT_QUANTITY_TEXT, "no limit");
+    return text;
+  }
+  strut_c_locale locale = strut_c_locale_enter();
+  /* Rounded first: 0.99996 m to four digits is 1 m, not 1000 mm. */
+  snprintf(text, STRUT_QUANTITY_TEXT, "%.*e", digits - 1, value);
+  double rounded = strtod(text, NULL);
+  int thousands = rounded != 0.0 ? (int)floor(log10(fabs(rounded)) / 3.0 + 1e-12) : 0;
+  if (thousands < FIRST) thousands = FIRST;
+  if (thousands > LAST) thousands = LAST;
+  double scaled = rounded;
+  for (int i = thousands; i < 0; i++) scaled *= 1000.0;
+  for (int i = thousands; i > 0; i--) scaled /= 1000.0;
+  /* and with three digits at least: 680 us to two digits is not 6.8e+02 us */
+  snprintf(text, STRUT_QUANTITY_TEXT, "%.*g %s%s", digits < 3 ? 3 : digits, scaled,
+           prefixes[thousands - FIRST], unit);
+  strut_c_locale_leave(locale);
+  return text;
+}
+
+strut_rounded_quantity strut_quantity_of(double value, int digits, const char *unit) {
+  strut_rounded_quantity quantity;
+  strut_quantity_text(value, digits, unit, quantity.text);
+  return quantity;
+}
+
+/* A prefix belongs to the unit's first word, whose power it would get. */
+static bool takes_prefix(const char *unit) {
+  size_t word = strspn(unit, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ");
+  return word > 0 && unit[word] != '^' && strncmp(unit, "kg", 2) != 0;
+}
+
+strut_rounded_quantity strut_quantity_of_any(double value, int digits, const char *unit) {
+  if (!isfinite(value) || takes_prefix(unit)) return strut_quantity_of(value, digits, unit);
+  strut_rounded_quantity quantity;
+  bool none = strcmp(unit, "1") == 0;
+  strut_c_locale locale = strut_c_locale_enter();
+  snprintf(quantity.text, sizeof quantity.text, "%.*g%s%.40s", digits, value, none ? "" : " ",
+           none ? "" : unit);
+  strut_c_locale_leave(locale);
+  return quantity;
 }

@@ -1,14 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * A text that grows by printf.
+ * Texts: one that grows by printf, cells of CSV, quantities with a unit, files put into the program.
  */
 #ifndef STRUT_ENGINE_OUTPUT_BUFFER_H
 #define STRUT_ENGINE_OUTPUT_BUFFER_H
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
 #include "engine/base/export.h"
+
+/* ---- a text that grows by printf ---- */
 
 /** Zero-initialise it. */
 typedef struct strut_buffer {
@@ -23,7 +26,48 @@ STRUT_API void strut_buffer_add(strut_buffer *buffer, const char *format, ...)
 /** Returns the text, to be released by the caller, and zeroes the buffer; NULL if memory was out. */
 STRUT_API char *strut_buffer_take(strut_buffer *buffer);
 
+/**
+ * The text, of which no more than `length` bytes count, as a cell of CSV: RFC 4180 requires quotes around one with
+ * a comma, a quote or a break. Writes up to 2 length + 2 bytes to `cell`; returns their number.
+ */
+STRUT_API size_t strut_csv_quote(const char *text, size_t length, char *cell);
+/** Writes a text to a stream as such a cell. */
+STRUT_API void strut_csv_write(FILE *stream, const char *text);
+/** Appends a cell with a printf-style text. */
+STRUT_API void strut_csv_add_text(strut_buffer *csv, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+/** Appends a cell with a number as its shortest text; empty for NAN. */
+STRUT_API void strut_csv_add_number(strut_buffer *csv, double value);
+
 /** Appends (count) bytes in base64, without line breaks. */
 STRUT_API void strut_base64_add(strut_buffer *buffer, const void *bytes, size_t count);
+
+/* ---- files that were put into the program at build time (EmbedFiles.cmake) ---- */
+
+/** A file: `length` bytes of UTF-8 and a NUL. Lists of them end with a row of NULL. */
+typedef struct strut_embedded {
+  const char *text;
+  size_t length;
+} strut_embedded;
+
+/* ---- a number with a unit as people like to read it: "9.78 mm/s", "110 s", "3 kN/m" ---- */
+
+enum { STRUT_QUANTITY_TEXT = 64 };
+
+/**
+ * Writes value [unit] with an SI prefix and `digits` significant digits (1 to 12), trailing zeros
+ * dropped, in any locale; returns text. The unit must take a prefix ("m", "N/m"; not "kg"). "none"
+ * where the value is not a number, "no limit" where it is infinite.
+ */
+STRUT_API const char *strut_quantity_text(double value, int digits, const char *unit,
+                                          char text[STRUT_QUANTITY_TEXT]);
+
+/** As strut_quantity_text, by value for use in one call of printf: strut_quantity_of(v, 4, "m").text. */
+typedef struct strut_rounded_quantity {
+  char text[STRUT_QUANTITY_TEXT];
+} strut_rounded_quantity;
+STRUT_API strut_rounded_quantity strut_quantity_of(double value, int digits, const char *unit);
+/** As strut_quantity_of for any unit; units that take no prefix ("1", "m^2", "kg m/s") stay unchanged. */
+STRUT_API strut_rounded_quantity strut_quantity_of_any(double value, int digits, const char *unit);
 
 #endif

@@ -1,26 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/csv.h"
+#include "engine/output/record_files.h"
 
 #include <string.h>
 
 #include "engine/base/memory.h"
 #include "engine/base/number_text.h"
+#include "engine/output/buffer.h"
 #include "engine/output/file.h"
 
-enum { BUFFER = 1 << 16, FILE_COUNT = 6 };
-
-/* The channels of each file; a file without channels is not written. */
-static const struct {
-  const char *name;
-  unsigned channels;
-} kinds[FILE_COUNT] = {
-    {"nodes.csv", STRUT_CHANNEL_POSITION | STRUT_CHANNEL_VELOCITY},
-    {"members.csv", STRUT_CHANNEL_LENGTH | STRUT_CHANNEL_FORCE},
-    {"hinges.csv", STRUT_CHANNEL_ANGLE | STRUT_CHANNEL_MOMENT},
-    {"cells.csv", STRUT_CHANNEL_AREA | STRUT_CHANNEL_PRESSURE},
-    {"contacts.csv", STRUT_CHANNEL_CONTACT},
-    {"energy.csv", STRUT_CHANNEL_ENERGY},
-};
+enum { BUFFER = 1 << 16 };
 
 typedef struct table {
   strut_file file;
@@ -31,11 +19,15 @@ typedef struct table {
 typedef struct csv {
   strut_sink sink;
   char *directory;
-  size_t width; /* doubles in a row of the recorder */
-  table tables[FILE_COUNT];
+  size_t width;                    /* doubles in a row of the recorder */
+  table tables[STRUT_OWNER_COUNT]; /* a file without channels is not written */
   size_t used;
   char buffer[BUFFER]; /* not yet written */
 } csv;
+
+static const char *file_name(int owner) {
+  return strut_owner_row_of((strut_channel_owner)owner)->file;
+}
 
 static strut_status flush(csv *self, table *t, strut_error *error) {
   size_t count = self->used;
@@ -44,68 +36,61 @@ static strut_status flush(csv *self, table *t, strut_error *error) {
   return strut_file_trouble(&t->file, error);
 }
 
-/* A cell of the header; RFC 4180 requires quotes around one with a comma, a quote or a break. */
-static void write_cell(FILE *stream, const char *const parts[4], const char *unit) {
-  bool quoted = false;
-  for (int i = 0; i < 4; i++) quoted = quoted || strpbrk(parts[i], ",\"\r\n");
-  if (quoted) fputc('"', stream);
-  for (int i = 0; i < 4; i++) {
-    for (const char *c = parts[i]; *c; c++) {
-      if (*c == '"') fputc('"', stream);
-      fputc(*c, stream);
-    }
-  }
-  fprintf(stream, " [%s]%s", unit, quoted ? "\"" : "");
+/* "n1.x [m]", "n1.vx [m/s]", "m1.length [m]", "kinetic [J]". */
+static void add_name(strut_buffer *header, const strut_record_channel *channel, size_t item,
+                     size_t component) {
+  const strut_channel_row *row = strut_channel_row_of(channel->id);
+  bool whole = row->owner == STRUT_OWNER_SYSTEM;
+  strut_buffer_add(header, ",");
+  strut_csv_add_text(header, "%s%s%s [%s]", whole ? "" : channel->item_names[item],
+                     whole ? "" : ".", row->column_names[component], channel->unit);
 }
 
-/* "n1.x", "n1.vx", "m1.length", "n1.normal", "kinetic". */
-static void write_name(FILE *stream, const strut_record_channel *channel, size_t item,
-                       size_t component) {
-  bool energy = channel->id == STRUT_CHANNEL_ENERGY;
-  const char *name = channel->component_names[component];
-  if (*name == '\0') name = channel->name;
-  const char *const parts[4] = {energy ? "" : channel->item_names[item], energy ? "" : ".",
-                                channel->id == STRUT_CHANNEL_VELOCITY ? "v" : "", name};
-  write_cell(stream, parts, channel->unit);
+static bool is_in_table(const strut_record_channel *channel, int owner) {
+  return (int)strut_channel_row_of(channel->id)->owner == owner;
 }
 
 /* Adds the columns of one item, channel by channel, so that the columns of a node are adjacent. */
-static void add_item(table *t, unsigned mask, const strut_record_layout *layout, size_t item) {
+static void add_item(table *t, strut_buffer *header, const strut_record_layout *layout, int owner,
+                     size_t item) {
   for (size_t i = 0; i < layout->channel_count; i++) {
     const strut_record_channel *channel = &layout->channels[i];
-    if (!(channel->id & mask) || item >= channel->items) continue;
+    if (!is_in_table(channel, owner) || item >= channel->items) continue;
     for (size_t j = 0; j < channel->components; j++) {
       t->columns[t->column_count++] = channel->offset + item * channel->components + j;
-      fputc(',', t->file.stream);
-      write_name(t->file.stream, channel, item, j);
+      add_name(header, channel, item, j);
     }
   }
 }
 
-static strut_status begin_table(csv *self, int kind, const strut_record_layout *layout,
+static strut_status begin_table(csv *self, int owner, const strut_record_layout *layout,
                                 strut_error *error) {
-  table *t = &self->tables[kind];
-  unsigned mask = kinds[kind].channels;
+  table *t = &self->tables[owner];
   size_t total = 0, items = 0;
   for (size_t i = 0; i < layout->channel_count; i++) {
     const strut_record_channel *channel = &layout->channels[i];
-    if (!(channel->id & mask)) continue;
+    if (!is_in_table(channel, owner)) continue;
     total += channel->items * channel->components;
     if (channel->items > items) items = channel->items;
   }
   if (total == 0) return STRUT_OK;
   t->columns = strut_allocate(total, sizeof *t->columns);
   if (!t->columns) return strut_no_memory(error, "for the CSV columns");
-  strut_status status = strut_file_open(&t->file, self->directory, kinds[kind].name, error);
+  strut_status status = strut_file_open(&t->file, self->directory, file_name(owner), error);
   if (status != STRUT_OK) return status;
-  fputs("time [s]", t->file.stream);
-  for (size_t item = 0; item < items; item++) add_item(t, mask, layout, item);
-  fputc('\n', t->file.stream);
+  strut_buffer header = {0};
+  strut_buffer_add(&header, "time [s]");
+  for (size_t item = 0; item < items; item++) add_item(t, &header, layout, owner, item);
+  strut_buffer_add(&header, "\n");
+  char *text = strut_buffer_take(&header);
+  if (!text) return strut_no_memory(error, "for the CSV columns");
+  fputs(text, t->file.stream);
+  strut_release(text);
   return ferror(t->file.stream) ? strut_file_trouble(&t->file, error) : STRUT_OK;
 }
 
 static void abandon(csv *self) {
-  for (int i = 0; i < FILE_COUNT; i++) {
+  for (int i = 0; i < STRUT_OWNER_COUNT; i++) {
     strut_file_abandon(&self->tables[i].file);
     strut_release(self->tables[i].columns);
     self->tables[i] = (table){0};
@@ -115,8 +100,8 @@ static void abandon(csv *self) {
 static strut_status begin(void *context, const strut_record_layout *layout, strut_error *error) {
   csv *self = context;
   self->width = layout->width;
-  for (int kind = 0; kind < FILE_COUNT; kind++) {
-    strut_status status = begin_table(self, kind, layout, error);
+  for (int owner = 0; owner < STRUT_OWNER_COUNT; owner++) {
+    strut_status status = begin_table(self, owner, layout, error);
     if (status == STRUT_OK) continue;
     abandon(self);
     return status;
@@ -143,7 +128,7 @@ static strut_status write_rows(csv *self, table *t, const double *rows, size_t c
 
 static strut_status take_rows(void *context, const double *rows, size_t count, strut_error *error) {
   csv *self = context;
-  for (int i = 0; i < FILE_COUNT; i++) {
+  for (int i = 0; i < STRUT_OWNER_COUNT; i++) {
     table *t = &self->tables[i];
     strut_status status = t->columns ? write_rows(self, t, rows, count, error) : STRUT_OK;
     if (status != STRUT_OK) return status;
@@ -153,11 +138,11 @@ static strut_status take_rows(void *context, const double *rows, size_t count, s
 
 /* Completes all files or none. */
 static strut_status commit(csv *self, strut_error *error) {
-  for (int i = 0; i < FILE_COUNT; i++) {
+  for (int i = 0; i < STRUT_OWNER_COUNT; i++) {
     if (!self->tables[i].file.stream) continue;
     strut_status status = strut_file_commit(&self->tables[i].file, error);
     for (int j = 0; status != STRUT_OK && j < i; j++) {
-      if (self->tables[j].columns) strut_file_remove(self->directory, kinds[j].name);
+      if (self->tables[j].columns) strut_file_remove(self->directory, file_name(j));
     }
     if (status != STRUT_OK) return status;
   }

@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/hdf5.h"
+#include "engine/output/record_files.h"
 
 #include <errno.h>
 #include <string.h>
 
 #include "engine/base/memory.h"
 #include "engine/output/file.h"
-#include "engine/output/hdf5_disk.h"
 #include "engine/output/hdf5_parts.h"
 
-enum { CHUNK_BYTES = 1 << 18, CHUNK_DOUBLES = CHUNK_BYTES / 8, CHANNELS = 8, SCALES = 12 };
+enum { CHUNK_BYTES = 1 << 18, CHUNK_DOUBLES = CHUNK_BYTES / 8 };
+/* Of the time, of components, of owners with and without a total. */
+enum { SCALES = 1 + STRUT_CHANNEL_COUNT + 2 * STRUT_OWNER_COUNT };
 
 /* One growing dataset; rows are collected until they fill a chunk. */
 typedef struct series {
@@ -28,43 +29,10 @@ typedef struct hdf5 {
   strut_hdf5_disk disk;
   hid_t id; /* 0: no file open */
   size_t width, series_count;
-  series series[1 + CHANNELS]; /* the time comes first */
+  series series[1 + STRUT_CHANNEL_COUNT]; /* the time comes first */
   int scale_count;
   strut_hdf5_scale scales[SCALES];
 } hdf5;
-
-/* Labels of the second and the third dimension. */
-static const char *item_scale(strut_channel id) {
-  switch (id) {
-    case STRUT_CHANNEL_POSITION:
-    case STRUT_CHANNEL_VELOCITY: return "node";
-    case STRUT_CHANNEL_LENGTH:
-    case STRUT_CHANNEL_FORCE: return "member";
-    case STRUT_CHANNEL_ANGLE:
-    case STRUT_CHANNEL_MOMENT: return "hinge";
-    case STRUT_CHANNEL_AREA:
-    case STRUT_CHANNEL_PRESSURE: return "cell";
-    case STRUT_CHANNEL_CONTACT: return "contact_node";
-    case STRUT_CHANNEL_ENERGY: break;
-  }
-  return "system";
-}
-
-static const char *component_scale(strut_channel id) {
-  switch (id) {
-    case STRUT_CHANNEL_CONTACT: return "contact_component";
-    case STRUT_CHANNEL_ENERGY: return "energy_component";
-    case STRUT_CHANNEL_POSITION:
-    case STRUT_CHANNEL_VELOCITY:
-    case STRUT_CHANNEL_LENGTH:
-    case STRUT_CHANNEL_FORCE:
-    case STRUT_CHANNEL_ANGLE:
-    case STRUT_CHANNEL_MOMENT:
-    case STRUT_CHANNEL_AREA:
-    case STRUT_CHANNEL_PRESSURE: break;
-  }
-  return "axis";
-}
 
 /* Closes the HDF5 file; false if not all of it could be written. */
 static bool close_file(hdf5 *self) {
@@ -141,11 +109,14 @@ static bool create_channel(hdf5 *self, const strut_record_channel *channel, size
                 .size = channel->items * channel->components};
   if (!create_series(self, s, channel->name, channel->unit, expected_rows)) return false;
   strut_hdf5_scale *scales[STRUT_HDF5_RANK] = {&self->scales[0]};
-  scales[1] = scale_of_names(self, item_scale(channel->id), channel->item_names, channel->items);
+  const strut_channel_row *row = strut_channel_row_of(channel->id);
+  const strut_owner_row *owner = strut_owner_row_of(row->owner);
+  scales[1] = scale_of_names(self, row->total ? owner->axis_with_total : owner->axis,
+                             channel->item_names, channel->items);
   if (!scales[1]) return false;
   if (channel->component_names[0][0] != '\0') { /* a single one without a name needs no scale */
-    scales[2] = scale_of_names(self, component_scale(channel->id), channel->component_names,
-                               channel->components);
+    scales[2] =
+        scale_of_names(self, row->component_axis, channel->component_names, channel->components);
     if (!scales[2]) return false;
   }
   return strut_hdf5_scale_attach(self->id, s->dataset, channel->name, STRUT_HDF5_RANK, scales);

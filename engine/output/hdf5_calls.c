@@ -4,7 +4,7 @@
 #include <stdatomic.h>
 #include <stdbool.h>
 
-#include "engine/output/hdf5.h"
+#include "engine/output/record_files.h"
 
 const void *strut_hdf5_loaded;
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/matrix_market.h"
+#include "engine/output/exports.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -7,6 +7,7 @@
 
 #include "engine/base/c_locale.h"
 #include "engine/base/number_text.h"
+#include "engine/output/buffer.h"
 #include "engine/output/file.h"
 #include "engine/output/results.h"
 #include "engine/statics/rigidity/linear_matrices.h"
@@ -40,23 +41,12 @@ static void write_number(FILE *stream, double value) {
   fputs(text, stream);
 }
 
-/* RFC 4180 requires quotes around a text with a comma, a quote or a break. */
-static void write_text(FILE *stream, const char *text) {
-  bool quoted = strpbrk(text, ",\"\r\n") != NULL;
-  if (quoted) fputc('"', stream);
-  for (const char *c = text; *c; c++) {
-    if (*c == '"') fputc('"', stream);
-    fputc(*c, stream);
-  }
-  if (quoted) fputc('"', stream);
-}
-
 static void write_nodes(FILE *stream, const source *from) {
   const strut_scene *scene = from->model->scene;
   fputs("row,node,x,y\n", stream);
   for (size_t i = 0; i < scene->node_count; i++) {
     fprintf(stream, "%zu,", i + 1);
-    write_text(stream, scene->nodes[i].name);
+    strut_csv_write(stream, scene->nodes[i].name);
     for (size_t k = 0; k < 2; k++) {
       fputc(',', stream);
       write_number(stream, from->q[2 * i + k]);
@@ -71,7 +61,7 @@ static void write_rows(FILE *stream, const source *from) {
   for (int32_t r = 0; r < a->rows; r++) {
     int32_t at = a->coordinate[r];
     fprintf(stream, "%" PRId32 ",", r + 1);
-    write_text(stream, from->model->scene->nodes[at / 2].name);
+    strut_csv_write(stream, from->model->scene->nodes[at / 2].name);
     fputs(at % 2 ? ",y\n" : ",x\n", stream);
   }
 }
@@ -93,11 +83,11 @@ static void write_member_column(FILE *stream, const strut_scene *scene, size_t j
   static const char *const kinds[] = {"bar", "spring", "cable"};
   const strut_member *member = &scene->members[j];
   fprintf(stream, "%zu,", j + 1);
-  write_text(stream, member->name);
+  strut_csv_write(stream, member->name);
   fprintf(stream, ",%s,", kinds[member->kind]);
-  write_text(stream, scene->nodes[member->node[0]].name);
+  strut_csv_write(stream, scene->nodes[member->node[0]].name);
   fputc(',', stream);
-  write_text(stream, scene->nodes[member->node[1]].name);
+  strut_csv_write(stream, scene->nodes[member->node[1]].name);
   if (inner) write_guides(stream, scene, member);
   fputc('\n', stream);
 }
@@ -105,10 +95,10 @@ static void write_member_column(FILE *stream, const strut_scene *scene, size_t j
 static void write_hinge_column(FILE *stream, const strut_scene *scene, size_t i) {
   const strut_hinge *hinge = &scene->hinges[i];
   fprintf(stream, "%zu,", scene->member_count + i + 1);
-  write_text(stream, hinge->name);
+  strut_csv_write(stream, hinge->name);
   fputs(",hinge,", stream);
   for (int k = 0; k < 3; k++) {
-    write_text(stream, scene->nodes[hinge->node[(int[]){0, 2, 1}[k]]].name);
+    strut_csv_write(stream, scene->nodes[hinge->node[(int[]){0, 2, 1}[k]]].name);
     fputc(k < 2 ? ',' : '\n', stream);
   }
 }
@@ -117,11 +107,11 @@ static void write_cell_column(FILE *stream, const strut_scene *scene, size_t i) 
   const strut_cell *cell = &scene->cells[i];
   size_t last = cell->node_count - 1;
   fprintf(stream, "%zu,", scene->member_count + scene->hinge_count + i + 1);
-  write_text(stream, cell->name);
+  strut_csv_write(stream, cell->name);
   fputs(",cell,", stream);
-  write_text(stream, scene->nodes[cell->node[0]].name);
+  strut_csv_write(stream, scene->nodes[cell->node[0]].name);
   fputc(',', stream);
-  write_text(stream, scene->nodes[cell->node[last]].name);
+  strut_csv_write(stream, scene->nodes[cell->node[last]].name);
   fputc(',', stream);
   for (size_t k = 1; k < last; k++)
     fprintf(stream, "%s%s", k > 1 ? " " : "", scene->nodes[cell->node[k]].name);

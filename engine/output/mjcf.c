@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/mjcf.h"
+#include "engine/output/exports.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -8,7 +8,6 @@
 #include "engine/base/c_locale.h"
 #include "engine/base/number_text.h"
 #include "engine/output/buffer.h"
-#include "engine/output/untold.h"
 
 typedef struct mjcf_writer {
   const strut_model *model;
@@ -23,9 +22,9 @@ static void note(mjcf_writer *w, const char *text) {
   if (w->out->note_count < STRUT_MJCF_MOST_NOTES) w->out->notes[w->out->note_count++] = text;
 }
 
-/* ---- what there is no word for ---- */
+/* ---- what MJCF cannot express ---- */
 
-static void refuse_members(strut_untold *r, const strut_scene *scene) {
+static void refuse_members(strut_unsupported *r, const strut_scene *scene) {
   size_t laws = 0, stops = 0, ends = 0, maxwell = 0, rub = 0, ratios = 0;
   for (size_t i = 0; i < scene->member_count; i++) {
     const strut_member *m = &scene->members[i];
@@ -37,27 +36,28 @@ static void refuse_members(strut_untold *r, const strut_scene *scene) {
     rub += m->guide_friction > 0.0;
     ratios += m->guide_count && m->damping_ratio > 0.0;
   }
-  strut_untold_add(r, laws, "laws of members");
-  strut_untold_add(r, stops, "stops");
-  strut_untold_add(r, ends, "members that break or are released");
-  strut_untold_add(r, maxwell, "Maxwell branches");
-  strut_untold_add(r, rub, "friction at guides");
-  strut_untold_add(r, ratios, "damping ratios of running cables");
+  strut_unsupported_add(r, laws, "laws of members");
+  strut_unsupported_add(r, stops, "stops");
+  strut_unsupported_add(r, ends, "members that break or are released");
+  strut_unsupported_add(r, maxwell, "Maxwell branches");
+  strut_unsupported_add(r, rub, "friction at guides");
+  strut_unsupported_add(r, ratios, "damping ratios of running cables");
 }
 
 static strut_status check(const strut_model *model, strut_error *error) {
   const strut_scene *s = model->scene;
-  strut_untold r = {.used = 0};
-  strut_untold_add(&r, s->hinge_count, "hinges and beams");
-  strut_untold_add(&r, s->cell_count, "cells");
-  strut_untold_add(&r, s->collision_count, "collisions");
-  strut_untold_add(&r, s->ground_count, "grounds other than one line at rest");
-  strut_untold_add(&r, s->ground.present && s->ground.belt_speed != 0.0, "belts");
-  strut_untold_add(&r, s->support_motion_count, "supports that move");
-  strut_untold_add(&r, s->unbalance_count, "rotating masses");
-  strut_untold_add(&r, s->sliding_count, "sliders");
-  strut_untold_add(&r, s->sensor_count + s->state_count, "sensors and controllers");
-  strut_untold_add(&r, s->rayleigh_mass > 0.0 || s->rayleigh_stiffness > 0.0, "Rayleigh's damping");
+  strut_unsupported r = {.used = 0};
+  strut_unsupported_add(&r, s->hinge_count, "hinges and beams");
+  strut_unsupported_add(&r, s->cell_count, "cells");
+  strut_unsupported_add(&r, s->collision_count, "collisions");
+  strut_unsupported_add(&r, s->ground_count, "grounds other than one line at rest");
+  strut_unsupported_add(&r, s->ground.present && s->ground.belt_speed != 0.0, "belts");
+  strut_unsupported_add(&r, s->support_motion_count, "supports that move");
+  strut_unsupported_add(&r, s->unbalance_count, "rotating masses");
+  strut_unsupported_add(&r, s->sliding_count, "sliders");
+  strut_unsupported_add(&r, s->sensor_count + s->state_count, "sensors and controllers");
+  strut_unsupported_add(&r, s->rayleigh_mass > 0.0 || s->rayleigh_stiffness > 0.0,
+                        "Rayleigh's damping");
   refuse_members(&r, s);
   if (r.used)
     return strut_fail(

@@ -3,14 +3,16 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <inttypes.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "engine/base/checksum.h"
 #include "engine/base/memory.h"
 #include "engine/output/file.h"
-#include "engine/output/ownership.h"
 
 static const char *const run_names[] = {
     "summary.json", "scene.yaml",   "nodes.csv",  "members.csv",   "hinges.csv",
@@ -102,4 +104,236 @@ void strut_results_abandon(strut_results *results) {
   }
   strut_release(results->directory);
   *results = (strut_results){0};
+}
+
+/* An entry is a line "SIZE CHECKSUM NAME". */
+enum { BLOCK = 1 << 16, ENTRY_NUMBERS = 64, LIST_MOST = 1 << 28 };
+
+typedef struct list {
+  char *text; /* "" if there is no list */
+  size_t length;
+  size_t
+      at; /* after the entry found last, as names are mostly requested in the order of the list */
+} list;
+
+static strut_status trouble_with(strut_error *error, const char *what, const char *directory,
+                                 const char *name, int code) {
+  char reason[128];
+  if (strerror_r(code, reason, sizeof reason) != 0)
+    snprintf(reason, sizeof reason, "error %d", code);
+  return strut_fail(error, STRUT_FILE_TROUBLE, "cannot %s '%s/%s': %s", what, directory, name,
+                    reason);
+}
+
+/* Fills a block but at the end of the file; the bytes read, or -1 with errno. */
+static ssize_t read_block(int file, unsigned char *block) {
+  size_t filled = 0;
+  while (filled < BLOCK) {
+    ssize_t got = read(file, block + filled, BLOCK - filled);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return -1;
+    if (got == 0) break;
+    filled += (size_t)got;
+  }
+  return (ssize_t)filled;
+}
+
+/* Size and checksum of an open file, block by block, each seeded by those before it; 0 or an errno. */
+static int measure(int file, uint64_t *size, uint64_t *sum) {
+  unsigned char *block = strut_allocate(BLOCK, 1);
+  ssize_t got = BLOCK;
+  *size = *sum = 0;
+  if (!block) return ENOMEM;
+  while (got == BLOCK && (got = read_block(file, block)) > 0) {
+    *sum = strut_checksum(block, (size_t)got, *sum);
+    *size += (uint64_t)got;
+  }
+  int code = got < 0 ? errno : 0;
+  strut_release(block);
+  return code;
+}
+
+static int measure_at(int folder, const char *name, uint64_t *size, uint64_t *sum) {
+  int file = openat(folder, name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (file < 0) return errno;
+  int code = measure(file, size, sum);
+  close(file);
+  return code;
+}
+
+/* Reads the list of a folder; an empty one if none can be read. */
+static strut_status read_list(int folder, list *l, strut_error *error) {
+  struct stat found;
+  *l = (list){.text = NULL};
+  int file = openat(folder, STRUT_OWNERSHIP_LIST, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  size_t capacity = 0;
+  if (file >= 0 && fstat(file, &found) == 0 && S_ISREG(found.st_mode) && found.st_size < LIST_MOST)
+    capacity = (size_t)found.st_size;
+  l->text = strut_allocate(capacity + 1, 1);
+  ssize_t got = 1;
+  while (l->text && l->length < capacity && got > 0) {
+    got = read(file, l->text + l->length, capacity - l->length);
+    if (got > 0) l->length += (size_t)got;
+  }
+  if (file >= 0) close(file);
+  return l->text ? STRUT_OK : strut_no_memory(error, "while writing files");
+}
+
+/* Finds the next entry of that name, cyclically from the current place; false: none is left. */
+static bool next_entry(list *l, const char *name, size_t *visited, uint64_t *size, uint64_t *sum) {
+  size_t wanted = strlen(name);
+  while (*visited < l->length) {
+    if (l->at >= l->length) l->at = 0;
+    const char *line = l->text + l->at, *end = memchr(line, '\n', l->length - l->at);
+    size_t length = end ? (size_t)(end - line) : l->length - l->at;
+    int numbers = 0;
+    l->at += length + 1;
+    *visited += length + 1;
+    if (!end || length <= wanted || line[length - wanted - 1] != ' ' ||
+        memcmp(line + length - wanted, name, wanted) != 0)
+      continue;
+    if (sscanf(line, "%" SCNu64 " %" SCNx64 " %n", size, sum, &numbers) == 2 &&
+        (size_t)numbers == length - wanted)
+      return true;
+  }
+  return false;
+}
+
+/* Is an entry of this name, size and checksum in the list? */
+static bool is_listed(list *l, const char *name, uint64_t size, uint64_t sum) {
+  uint64_t listed_size, listed_sum;
+  for (size_t visited = 0; next_entry(l, name, &visited, &listed_size, &listed_sum);)
+    if (listed_size == size && listed_sum == sum) return true;
+  return false;
+}
+
+/* May the file be replaced? 0, EEXIST if strut did not write it, or another errno. */
+static int check_one(int folder, list *l, const char *name) {
+  struct stat found;
+  uint64_t size = 0, sum = 0;
+  if (fstatat(folder, name, &found, AT_SYMLINK_NOFOLLOW) != 0) return errno == ENOENT ? 0 : errno;
+  if (S_ISDIR(found.st_mode)) return EISDIR;
+  if (!S_ISREG(found.st_mode)) return EEXIST;
+  if (found.st_size == 0) return 0; /* nothing would be lost */
+  if (!l->length) return EEXIST;
+  int code = measure_at(folder, name, &size, &sum);
+  if (code == EACCES || code == ENOMEM) return code;
+  return !code && is_listed(l, name, size, sum) ? 0 : EEXIST;
+}
+
+strut_status strut_ownership_check(const char *directory, const char *const *names,
+                                   strut_error *error) {
+  list l = {.text = NULL};
+  int folder = open(directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder < 0) return STRUT_OK; /* does not exist, or writing will report the error */
+  strut_status status = read_list(folder, &l, error);
+  for (int i = 0; names[i] && status == STRUT_OK; i++) {
+    int code = check_one(folder, &l, names[i]);
+    if (code == EEXIST)
+      status = strut_fail(error, STRUT_FILE_TROUBLE,
+                          "'%s/%s' is not overwritten: strut did not write it, or it has been "
+                          "changed since; move it away, or give another name",
+                          directory, names[i]);
+    else if (code == ENOMEM)
+      status = strut_no_memory(error, "while writing files");
+    else if (code)
+      status = trouble_with(error, "write", directory, names[i], code);
+  }
+  strut_release(l.text);
+  close(folder);
+  return status;
+}
+
+/* Opens the list of a folder for appending; -1 on failure. */
+static int open_list(int folder) {
+  struct stat found;
+  int file = openat(folder, STRUT_OWNERSHIP_LIST,
+                    O_WRONLY | O_APPEND | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
+  if (file < 0 || (fstat(file, &found) == 0 && S_ISREG(found.st_mode))) return file;
+  close(file);
+  return -1;
+}
+
+/* Appends an entry in one piece, since other processes may append as well. 0 or an errno. */
+static int append(int folder, const char *name, uint64_t size, uint64_t sum) {
+  size_t capacity = strlen(name) + ENTRY_NUMBERS;
+  char *line = strut_allocate(capacity, 1);
+  if (!line) return ENOMEM;
+  int length = snprintf(line, capacity, "%" PRIu64 " %016" PRIx64 " %s\n", size, sum, name);
+  int file = open_list(folder), code = 0;
+  errno = 0;
+  if (file >= 0 && write(file, line, (size_t)length) != length) code = errno ? errno : ENOSPC;
+  if (file >= 0) close(file);
+  strut_release(line);
+  return code;
+}
+
+/* Lists directory/name, whose bytes are those of from/source. */
+static int claim_one(int folder, list *l, int from, const char *source, const char *name) {
+  uint64_t size, sum;
+  int code = measure_at(from, source, &size, &sum);
+  if (code == ENOENT) return 0; /* not written this time */
+  return code || is_listed(l, name, size, sum) ? code : append(folder, name, size, sum);
+}
+
+/* Files `sources` of the directory `stage` as files `names` of `directory`. */
+static strut_status claim(const char *directory, const char *stage, const char *const *sources,
+                          const char *const *names, strut_error *error) {
+  list l = {.text = NULL};
+  int folder = open(directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  int from = open(stage, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  bool usable = folder >= 0 && from >= 0;
+  strut_status status = usable ? read_list(folder, &l, error) : STRUT_OK;
+  for (int i = 0; usable && names[i] && status == STRUT_OK; i++) {
+    int code = claim_one(folder, &l, from, sources[i], names[i]);
+    if (code == ENOMEM)
+      status = strut_no_memory(error, "while writing files");
+    else if (code)
+      status = trouble_with(error, "write", directory, names[i], code);
+  }
+  strut_release(l.text);
+  if (from >= 0) close(from);
+  if (folder >= 0) close(folder);
+  return status;
+}
+
+strut_status strut_ownership_claim(const char *directory, const char *stage,
+                                   const char *const *names, strut_error *error) {
+  return claim(directory, stage, names, names, error);
+}
+
+/* The folder of a path in a block of strut_allocate, and its name within. NULL: memory is out. */
+static char *split(const char *path, const char **name) {
+  const char *slash = strrchr(path, '/');
+  size_t length = slash ? (size_t)(slash - path) + (slash == path) : 1;
+  char *folder = strut_allocate(length + 1, 1);
+  *name = slash ? slash + 1 : path;
+  if (folder) memcpy(folder, slash ? path : ".", length);
+  return folder;
+}
+
+/* Is it a staging folder? Ownership is checked when its files are moved. */
+static bool is_stage(const char *folder) {
+  const char *slash = strrchr(folder, '/');
+  return strncmp(slash ? slash + 1 : folder, STRUT_STAGE_PREFIX, strlen(STRUT_STAGE_PREFIX)) == 0;
+}
+
+strut_status strut_ownership_check_path(const char *path, strut_error *error) {
+  const char *names[2] = {NULL, NULL};
+  char *folder = split(path, &names[0]);
+  if (!folder) return strut_no_memory(error, "while writing files");
+  strut_status status = is_stage(folder) ? STRUT_OK : strut_ownership_check(folder, names, error);
+  strut_release(folder);
+  return status;
+}
+
+strut_status strut_ownership_claim_path(const char *path, const char *part, strut_error *error) {
+  const char *names[2] = {NULL, NULL}, *sources[2] = {NULL, NULL};
+  char *folder = split(path, &names[0]);
+  if (!folder) return strut_no_memory(error, "while writing files");
+  const char *slash = strrchr(part, '/'); /* beside it */
+  sources[0] = slash ? slash + 1 : part;
+  strut_status status = is_stage(folder) ? STRUT_OK : claim(folder, folder, sources, names, error);
+  strut_release(folder);
+  return status;
 }

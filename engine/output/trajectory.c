@@ -2,16 +2,14 @@
 /* A motion in memory: recorded by a sink, or read back from trajectory.h5. */
 #include "engine/output/trajectory.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
-#include <stdbool.h>
 #include "engine/base/memory.h"
 #include "engine/output/hdf5_parts.h"
-
-enum { STRUT_TRAJECTORY_ARRAYS = 9 };
 
 /* One array of a trajectory: `size` doubles of each frame. */
 typedef struct trajectory_array {
@@ -30,25 +28,24 @@ typedef struct keeper {
   size_t room, frame_size, width; /* doubles: limit, per frame, per row */
   size_t capacity, most;          /* frames: allocated, and the limit */
   size_t array_count;
-  trajectory_array arrays[STRUT_TRAJECTORY_ARRAYS];
+  trajectory_array arrays[1 + STRUT_CHANNEL_COUNT];
   double *last; /* (width) the latest row, */
   bool waiting; /* the latest row is not yet a frame */
 } keeper;
 
-static double **trajectory_array_of(strut_trajectory *t, strut_channel id) {
-  switch (id) {
-    case STRUT_CHANNEL_POSITION: return &t->position;
-    case STRUT_CHANNEL_VELOCITY: return &t->velocity;
-    case STRUT_CHANNEL_LENGTH: return &t->length;
-    case STRUT_CHANNEL_FORCE: return &t->force;
-    case STRUT_CHANNEL_CONTACT: return &t->contact;
-    case STRUT_CHANNEL_ANGLE: return &t->angle;
-    case STRUT_CHANNEL_MOMENT: return &t->moment;
-    case STRUT_CHANNEL_AREA: return &t->area;
-    case STRUT_CHANNEL_PRESSURE: return &t->pressure;
-    case STRUT_CHANNEL_ENERGY: break;
-  }
-  return &t->energy;
+static size_t place_of(strut_channel id) {
+  size_t place = 0;
+  while (1u << place != (unsigned)id) place++;
+  assert(place < STRUT_CHANNEL_COUNT);
+  return place;
+}
+
+static double **array_of(strut_trajectory *t, strut_channel id) {
+  return &t->channel[place_of(id)];
+}
+
+const double *strut_trajectory_channel(const strut_trajectory *t, strut_channel id) {
+  return t->channel[place_of(id)];
 }
 
 /* Memory for `capacity` frames. */
@@ -126,9 +123,8 @@ static strut_status begin(void *context, const strut_record_layout *layout, stru
   k->array_count = k->frame_size = 1;
   for (size_t i = 0; i < layout->channel_count; i++) {
     const strut_record_channel *c = &layout->channels[i];
-    k->arrays[k->array_count++] = (trajectory_array){.values = trajectory_array_of(t, c->id),
-                                                     .size = c->items * c->components,
-                                                     .offset = c->offset};
+    k->arrays[k->array_count++] = (trajectory_array){
+        .values = array_of(t, c->id), .size = c->items * c->components, .offset = c->offset};
     k->frame_size += c->items * c->components;
   }
   k->most = k->room / k->frame_size;
@@ -178,34 +174,12 @@ void strut_trajectory_sink_free(strut_sink *sink) {
 
 void strut_trajectory_free(strut_trajectory *t) {
   strut_release(t->time);
-  strut_release(t->position);
-  strut_release(t->velocity);
-  strut_release(t->length);
-  strut_release(t->force);
-  strut_release(t->contact);
-  strut_release(t->angle);
-  strut_release(t->moment);
-  strut_release(t->area);
-  strut_release(t->pressure);
-  strut_release(t->energy);
+  for (size_t k = 0; k < STRUT_CHANNEL_COUNT; k++) strut_release(t->channel[k]);
   strut_arena_free(&t->arena);
   *t = (strut_trajectory){0};
 }
 
 /* ---- reading back ---- */
-
-static const struct {
-  strut_channel id;
-  const char *name;
-  size_t components;
-} channels[] = {
-    {STRUT_CHANNEL_POSITION, "position", 2}, {STRUT_CHANNEL_VELOCITY, "velocity", 2},
-    {STRUT_CHANNEL_LENGTH, "length", 1},     {STRUT_CHANNEL_FORCE, "force", 1},
-    {STRUT_CHANNEL_CONTACT, "contact", 2},   {STRUT_CHANNEL_ENERGY, "energy", STRUT_ENERGIES},
-    {STRUT_CHANNEL_ANGLE, "angle", 1},       {STRUT_CHANNEL_MOMENT, "moment", 1},
-    {STRUT_CHANNEL_AREA, "area", 1},         {STRUT_CHANNEL_PRESSURE, "pressure", 1},
-};
-enum { CHANNELS = sizeof channels / sizeof *channels };
 
 typedef struct reader {
   hid_t file;
@@ -222,14 +196,6 @@ static strut_status trouble(const reader *r, const char *what) {
 
 static strut_status report_no_memory(const reader *r) {
   return strut_no_memory(r->error, "for the recorded motion");
-}
-
-static size_t items_of(const reader *r, strut_channel id) {
-  if (id == STRUT_CHANNEL_POSITION || id == STRUT_CHANNEL_VELOCITY) return r->scene->node_count;
-  if (id == STRUT_CHANNEL_LENGTH || id == STRUT_CHANNEL_FORCE) return r->scene->member_count;
-  if (id == STRUT_CHANNEL_ANGLE || id == STRUT_CHANNEL_MOMENT) return r->scene->hinge_count;
-  if (id == STRUT_CHANNEL_AREA || id == STRUT_CHANNEL_PRESSURE) return r->scene->cell_count;
-  return id == STRUT_CHANNEL_CONTACT ? r->scene->contact_count : 1;
 }
 
 /* The shape of a dataset of that rank; false where it has another, or no doubles. */
@@ -266,9 +232,11 @@ static bool read_rows(hid_t dataset, int rank, const hsize_t *shape, size_t fram
   return good;
 }
 
-/* Does the list of that name in the file equal `expected`? A missing list counts as empty. */
-static bool same_names(const reader *r, const char *list, size_t count,
-                       const char *(*expected)(const strut_scene *, size_t)) {
+/* Is the file's list of the names of such things the scene's? A missing list counts as such. */
+static bool same_names(const reader *r, const strut_channel_row *row) {
+  const strut_owner_row *owner = strut_owner_row_of(row->owner);
+  const char *list = row->total ? owner->axis_with_total : owner->axis;
+  size_t count = strut_channel_items(row, r->scene);
   if (H5Lexists(r->file, list, H5P_DEFAULT) <= 0) return true;
   hid_t dataset = H5Dopen2(r->file, list, H5P_DEFAULT);
   hid_t type = H5Dget_type(dataset), space = H5Dget_space(dataset);
@@ -278,7 +246,7 @@ static bool same_names(const reader *r, const char *list, size_t count,
   char *texts = good ? strut_allocate(count, longest) : NULL;
   good = texts && H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, texts) >= 0;
   for (size_t i = 0; i < count && good; i++) {
-    const char *name = expected(r->scene, i);
+    const char *name = strut_channel_item(row, r->scene, i);
     good = strlen(name) <= longest && strncmp(name, texts + i * longest, longest) == 0;
   }
   strut_release(texts);
@@ -288,26 +256,16 @@ static bool same_names(const reader *r, const char *list, size_t count,
   return good;
 }
 
-static const char *node_name(const strut_scene *scene, size_t i) { return scene->nodes[i].name; }
-static const char *member_name(const strut_scene *scene, size_t i) {
-  return scene->members[i].name;
-}
-static const char *hinge_name(const strut_scene *scene, size_t i) { return scene->hinges[i].name; }
-static const char *cell_name(const strut_scene *scene, size_t i) { return scene->cells[i].name; }
-static const char *contact_name(const strut_scene *scene, size_t i) {
-  return strut_contact_name(scene, i);
-}
-
-static strut_status read_channel(reader *r, int i) {
-  if (H5Lexists(r->file, channels[i].name, H5P_DEFAULT) <= 0) return STRUT_OK;
-  hid_t dataset = H5Dopen2(r->file, channels[i].name, H5P_DEFAULT);
+static strut_status read_channel(reader *r, const strut_channel_row *row) {
+  if (H5Lexists(r->file, row->name, H5P_DEFAULT) <= 0) return STRUT_OK;
+  hid_t dataset = H5Dopen2(r->file, row->name, H5P_DEFAULT);
   hsize_t shape[STRUT_HDF5_RANK] = {0};
-  size_t items = items_of(r, channels[i].id), size = items * channels[i].components;
+  size_t items = strut_channel_items(row, r->scene), size = items * row->components;
   bool fits = dataset >= 0 && shape_of(dataset, 3, shape) && shape[0] == r->t->recorded &&
-              shape[1] == items && shape[2] == channels[i].components;
+              shape[1] == items && shape[2] == row->components;
   double *values = fits ? strut_allocate(r->t->frames, size * sizeof *values) : NULL;
   bool good = values && read_rows(dataset, 3, shape, r->t->frames, r->t->every, size, values);
-  *trajectory_array_of(r->t, channels[i].id) = values;
+  *array_of(r->t, row->id) = values;
   if (dataset >= 0) H5Dclose(dataset);
   if (!fits) return trouble(r, "it belongs to another structure than the scene beside it");
   return good ? STRUT_OK : values ? trouble(r, "it is damaged") : report_no_memory(r);
@@ -324,9 +282,10 @@ static strut_status read_time(reader *r, size_t room) {
   }
   strut_trajectory *t = r->t;
   size_t frame = 1;
-  for (int i = 0; i < CHANNELS; i++)
-    if (H5Lexists(r->file, channels[i].name, H5P_DEFAULT) > 0)
-      frame += items_of(r, channels[i].id) * channels[i].components;
+  const strut_channel_row *row;
+  for (size_t i = 0; (row = strut_channel_at(i)) != NULL; i++)
+    if (H5Lexists(r->file, row->name, H5P_DEFAULT) > 0)
+      frame += strut_channel_items(row, r->scene) * row->components;
   t->recorded = shape[0];
   t->every = 1;
   while (t->recorded / t->every > 4 && (t->recorded / t->every + 2) * frame > room) t->every *= 2;
@@ -362,16 +321,15 @@ static strut_status read_file(reader *r, size_t room) {
   t->member_count = r->scene->member_count;
   t->hinge_count = r->scene->hinge_count;
   t->cell_count = r->scene->cell_count;
-  if (!same_names(r, "node", t->node_count, node_name) ||
-      !same_names(r, "member", t->member_count, member_name) ||
-      !same_names(r, "hinge", t->hinge_count, hinge_name) ||
-      !same_names(r, "cell", t->cell_count, cell_name) ||
-      !same_names(r, "contact_node", r->scene->contact_count, contact_name))
-    return trouble(r, "it belongs to another structure than the scene beside it");
+  const strut_channel_row *row;
+  for (size_t i = 0; (row = strut_channel_at(i)) != NULL; i++)
+    if (row->owner != STRUT_OWNER_SYSTEM && !same_names(r, row))
+      return trouble(r, "it belongs to another structure than the scene beside it");
   if (!trajectory_contacts(t, r->scene)) return report_no_memory(r);
   t->status = run_status(r);
   strut_status status = read_time(r, room);
-  for (int i = 0; i < CHANNELS && status == STRUT_OK && t->frames; i++) status = read_channel(r, i);
+  for (size_t i = 0; status == STRUT_OK && t->frames && (row = strut_channel_at(i)) != NULL; i++)
+    status = read_channel(r, row);
   return status;
 }
 

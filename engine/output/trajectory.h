@@ -7,31 +7,30 @@
 
 #include "engine/run/measure/summary.h"
 #include "engine/run/recorder.h"
+#include "engine/scene/channels.h"
 
 /** Frames over time, SI. What was not recorded is NULL. Zero-initialise. */
 typedef struct strut_trajectory {
-  size_t frames, node_count, member_count, hinge_count, contact_count;
+  size_t frames, node_count, member_count, hinge_count, cell_count, contact_count;
   size_t every;          /* stride of the frames in the recorded samples; 1: all */
   size_t recorded;       /* number of recorded samples */
   double *time;          /* (frames) */
-  double *position;      /* (frames, nodes, 2); NULL only where positions were not recorded */
-  double *velocity;      /* (frames, nodes, 2) */
-  double *length;        /* (frames, members) */
-  double *force;         /* (frames, members) tension positive */
-  double *contact;       /* (frames, contacts, 2) normal, friction */
-  double *angle;         /* (frames, hinges) */
-  double *moment;        /* (frames, hinges) */
   int32_t *contact_node; /* (contacts) index of the node in the scene */
-  double *energy;        /* (frames, STRUT_ENERGIES) in the recorder's order */
   strut_status status;   /* of the run: STRUT_OK, STRUT_DIVERGED or STRUT_INTERRUPTED */
   strut_arena arena;
-  size_t cell_count;
-  double *area;     /* (frames, cells) */
-  double *pressure; /* (frames, cells) */
+  /* (frames, items, components) of each channel, by its name, as `position`, or its place in the table */
+  union {
+    struct {
+#define STRUT_TRAJECTORY_FIELD(NAME, name, ...) double *name;
+      STRUT_CHANNEL_TABLE(STRUT_TRAJECTORY_FIELD)
+#undef STRUT_TRAJECTORY_FIELD
+    };
+    double *channel[STRUT_CHANNEL_COUNT];
+  };
 } strut_trajectory;
-#define STRUT_ENERGY_ONE(name, kind, label) +1
-enum { STRUT_ENERGIES = STRUT_ENERGY_TABLE(STRUT_ENERGY_ONE) };
-#undef STRUT_ENERGY_ONE
+/** Its values of a channel, (frames, items, components); NULL where it was not recorded. */
+STRUT_API const double *strut_trajectory_channel(const strut_trajectory *trajectory,
+                                                 strut_channel id);
 
 /** Default limit on the doubles of a trajectory: half a gigabyte. */
 #define STRUT_TRAJECTORY_ROOM ((size_t)1 << 26)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/vtk.h"
+#include "engine/output/exports.h"
 
 #include <dirent.h>
 #include <errno.h>

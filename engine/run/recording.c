@@ -7,78 +7,34 @@
 #include <string.h>
 
 #include "engine/base/memory_limit.h"
-#include "engine/forces/energy.h"
-#include "engine/forces/forces.h"
-#include "engine/forces/support_motion.h"
-#include "engine/run/measure/summary.h"
-
-static const char *const xy[] = {"x", "y"};
-static const char *const single[] = {""};
-static const char *const reactions[] = {"normal", "friction"};
-static const char *const energies[] = {STRUT_ENERGY_NAMES};
-static const char *const total[] = {"total"};
-
-static const struct {
-  strut_channel id;
-  const char *name, *unit;
-  size_t components;
-  const char *const *component_names;
-} kinds[] = {
-    {STRUT_CHANNEL_POSITION, "position", "m", 2, xy},
-    {STRUT_CHANNEL_VELOCITY, "velocity", "m/s", 2, xy},
-    {STRUT_CHANNEL_LENGTH, "length", "m", 1, single},
-    {STRUT_CHANNEL_FORCE, "force", "N", 1, single},
-    {STRUT_CHANNEL_CONTACT, "contact", "N", 2, reactions},
-    {STRUT_CHANNEL_ANGLE, "angle", "rad", 1, single},
-    {STRUT_CHANNEL_MOMENT, "moment", "N m", 1, single},
-    {STRUT_CHANNEL_AREA, "area", "m^2", 1, single},
-    {STRUT_CHANNEL_PRESSURE, "pressure", "N/m", 1, single},
-    {STRUT_CHANNEL_ENERGY, "energy", "J", sizeof energies / sizeof energies[0], energies},
-};
 
 static const unsigned ALL_CHANNELS = ~0u;
 
-/* The *count names of the items of a channel, in the arena. */
-static const char *const *item_names(const strut_model *model, strut_channel id, strut_arena *arena,
-                                     size_t *count) {
-  const strut_scene *scene = model->scene;
-  bool of_nodes = id == STRUT_CHANNEL_POSITION || id == STRUT_CHANNEL_VELOCITY;
-  bool of_contacts = id == STRUT_CHANNEL_CONTACT;
-  bool of_hinges = id == STRUT_CHANNEL_ANGLE || id == STRUT_CHANNEL_MOMENT;
-  bool of_cells = id == STRUT_CHANNEL_AREA || id == STRUT_CHANNEL_PRESSURE;
-  *count = 1;
-  if (id == STRUT_CHANNEL_ENERGY) return total;
-  *count = of_nodes      ? scene->node_count
-           : of_contacts ? (size_t)model->contacts.count
-           : of_hinges   ? scene->hinge_count
-           : of_cells    ? scene->cell_count
-                         : scene->member_count;
-  const char **names = strut_arena_allocate(arena, *count, sizeof *names);
-  for (size_t i = 0; names && i < *count; i++)
-    names[i] = of_nodes      ? scene->nodes[i].name
-               : of_contacts ? strut_contact_name(scene, i)
-               : of_hinges   ? scene->hinges[i].name
-               : of_cells    ? scene->cells[i].name
-                             : scene->members[i].name;
+/* Names of the items of a channel, in the arena. */
+static const char *const *item_names(const strut_model *model, const strut_channel_row *row,
+                                     size_t count, strut_arena *arena) {
+  const char **names = strut_arena_allocate(arena, count, sizeof *names);
+  for (size_t i = 0; names && i < count; i++) names[i] = strut_channel_item(row, model->scene, i);
   return names;
 }
 
 static bool create_layout(const strut_model *model, unsigned wanted, strut_recording *r) {
+  const strut_channel_row *row;
   r->layout.width = 1;
-  for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
-    if (!(wanted & kinds[k].id)) continue;
-    strut_record_channel *c = &r->channel[r->layout.channel_count];
-    *c = (strut_record_channel){.id = kinds[k].id,
-                                .name = kinds[k].name,
-                                .unit = kinds[k].unit,
-                                .components = kinds[k].components,
-                                .component_names = kinds[k].component_names,
+  for (size_t k = 0; (row = strut_channel_at(k)) != NULL; k++) {
+    size_t items = strut_channel_items(row, model->scene);
+    if (!(wanted & row->id) || items <= row->total) continue; /* a total of nothing is left out */
+    strut_record_channel *c = &r->channel[r->layout.channel_count++];
+    *c = (strut_record_channel){.id = row->id,
+                                .name = row->name,
+                                .unit = row->unit,
+                                .items = items,
+                                .components = row->components,
+                                .component_names = row->component_names,
                                 .offset = r->layout.width};
-    c->item_names = item_names(model, c->id, &r->arena, &c->items);
+    c->item_names = item_names(model, row, items, &r->arena);
     if (!c->item_names) return false;
-    if (!c->items) continue;
     r->layout.width += c->items * c->components;
-    r->layout.channel_count++;
   }
   r->layout.channels = r->channel;
   return true;
@@ -116,29 +72,6 @@ static bool create_parts(const strut_experiment *experiment, strut_recording *r)
   return r->parts && (all_whole || r->picked);
 }
 
-/* Space for what is measured of members, hinges and cells. */
-static bool create_scratch(const strut_model *model, strut_recording *r) {
-  size_t members = model->scene->member_count, hinges = model->scene->hinge_count;
-  size_t cells = model->scene->cell_count;
-  r->length = strut_arena_allocate(&r->arena, members, sizeof(double));
-  r->force = strut_arena_allocate(&r->arena, members, sizeof(double));
-  r->angle = strut_arena_allocate(&r->arena, hinges, sizeof(double));
-  r->moment = strut_arena_allocate(&r->arena, hinges, sizeof(double));
-  r->hinge = strut_arena_allocate(&r->arena, hinges, sizeof *r->hinge);
-  r->area = strut_arena_allocate(&r->arena, cells, sizeof(double));
-  r->pressure = strut_arena_allocate(&r->arena, cells, sizeof(double));
-  r->cell = strut_arena_allocate(&r->arena, cells, sizeof *r->cell);
-  if (!r->length || !r->force || !r->angle || !r->moment || !r->hinge || !r->area || !r->pressure ||
-      !r->cell)
-    return false;
-  for (int32_t i = 0; i < model->elements.count; i++) {
-    const strut_element *e = &model->elements.element[i];
-    if (e->role == STRUT_ELEMENT_HINGE) r->hinge[e->item] = i;
-    if (e->role == STRUT_ELEMENT_CELL) r->cell[e->item] = i;
-  }
-  return true;
-}
-
 static strut_status begin_sinks(strut_recording *r, strut_error *error) {
   for (; r->begun < r->sink_count; r->begun++) {
     strut_sink *sink = r->sinks[r->begun];
@@ -158,7 +91,8 @@ strut_status strut_recording_create(const strut_model *model, const strut_experi
   r->every = span.record_every;
   unsigned wanted = 0;
   for (size_t s = 0; s < sink_count; s++) wanted |= requested_channels(experiment, sinks[s]);
-  bool ready = create_scratch(model, r) && create_layout(model, wanted, r);
+  bool ready =
+      strut_channel_view_create(model, &r->arena, &r->view) && create_layout(model, wanted, r);
   double expected = (span.duration - span.record_start) / fmax(span.record_every, grid->step) + 1.0;
   r->layout.expected_rows = expected < 1e15 ? (size_t)expected : (size_t)1e15;
   char what[80];
@@ -185,57 +119,6 @@ int64_t strut_recording_next_step(const strut_recording *r) {
 
 bool strut_recording_lacks(const strut_recording *r, int64_t n) {
   return r->sink_count && r->last < n;
-}
-
-/* Values of one channel, (items, components) in the row's order. */
-static void fill_channel(const strut_model *model, strut_state *state, const strut_recording *r,
-                         const strut_record_channel *c, double *out) {
-  const double *from = c->id == STRUT_CHANNEL_POSITION ? state->q : state->v;
-  switch (c->id) {
-    case STRUT_CHANNEL_POSITION:
-    case STRUT_CHANNEL_VELOCITY: memcpy(out, from, 2 * c->items * sizeof *out); break;
-    case STRUT_CHANNEL_LENGTH: memcpy(out, r->length, c->items * sizeof *out); break;
-    case STRUT_CHANNEL_FORCE: memcpy(out, r->force, c->items * sizeof *out); break;
-    case STRUT_CHANNEL_ANGLE: memcpy(out, r->angle, c->items * sizeof *out); break;
-    case STRUT_CHANNEL_MOMENT: memcpy(out, r->moment, c->items * sizeof *out); break;
-    case STRUT_CHANNEL_AREA: memcpy(out, r->area, c->items * sizeof *out); break;
-    case STRUT_CHANNEL_PRESSURE: memcpy(out, r->pressure, c->items * sizeof *out); break;
-    case STRUT_CHANNEL_CONTACT:
-      for (size_t i = 0; i < c->items; i++) {
-        out[2 * i] = state->normal[i];
-        out[2 * i + 1] = state->friction[i];
-      }
-      break;
-    case STRUT_CHANNEL_ENERGY: {
-      strut_energies stored =
-          strut_energy_evaluate(model, state, strut_time_grid_at(&r->grid, state->step));
-      const double *w = state->work;
-      double values[] = {
-          stored.kinetic,         stored.elastic,
-          stored.gravity,         stored.contact,
-          w[STRUT_POWER_DRIVE],   w[STRUT_POWER_LOAD] + strut_energy_load_work(model, state),
-          w[STRUT_POWER_BELT],    strut_support_motion_work(model, state),
-          w[STRUT_POWER_MEMBERS], w[STRUT_POWER_CONTACT],
-          w[STRUT_POWER_FRICTION]};
-      memcpy(out, values, sizeof values);
-    }
-  }
-}
-
-static void measure_hinges(const strut_model *model, const strut_state *state, strut_recording *r) {
-  for (size_t i = 0; i < model->scene->hinge_count; i++) {
-    strut_hinge_values values = strut_hinge_measure(model, state, r->hinge[i]);
-    r->angle[i] = values.angle;
-    r->moment[i] = values.moment;
-  }
-}
-
-static void measure_cells(const strut_model *model, const strut_state *state, strut_recording *r) {
-  for (size_t i = 0; i < model->scene->cell_count; i++) {
-    strut_cell_values values = strut_cell_measure(model, state, r->cell[i]);
-    r->area[i] = values.area;
-    r->pressure[i] = values.pressure;
-  }
 }
 
 /* Rows of one sink: the full ones, or a copy of its channels. */
@@ -266,25 +149,17 @@ static strut_status flush_rows(strut_recording *r, strut_error *error) {
   return STRUT_OK;
 }
 
-static void fill_row(const strut_model *model, strut_state *state, strut_recording *r,
-                     unsigned wanted, double *row) {
-  double t = strut_time_grid_at(&r->grid, state->step);
-  if (wanted & ~(unsigned)(STRUT_CHANNEL_POSITION | STRUT_CHANNEL_VELOCITY)) {
-    strut_forces_observe(model, state, t);
-    strut_members_measure(model, state, r->length, r->force);
-    measure_hinges(model, state, r);
-    measure_cells(model, state, r);
-  }
+static void fill_row(strut_state *state, strut_recording *r, unsigned wanted, double *row) {
+  strut_channel_view_show(&r->view, state, strut_time_grid_at(&r->grid, state->step));
   row[0] = strut_time_grid_real(&r->grid, state->step);
   for (size_t k = 0; k < r->layout.channel_count; k++)
     if (wanted & (unsigned)r->channel[k].id)
-      fill_channel(model, state, r, &r->channel[k], row + r->channel[k].offset);
+      strut_channel_record(&r->view, r->channel[k].id, row + r->channel[k].offset);
 }
 
-strut_status strut_recording_sample(const strut_model *model, strut_state *state,
-                                    strut_recording *r, strut_error *error) {
+strut_status strut_recording_sample(strut_state *state, strut_recording *r, strut_error *error) {
   assert(r->sink_count && r->row_count < r->capacity && state->step > r->last);
-  fill_row(model, state, r, ALL_CHANNELS, r->rows + r->row_count++ * r->layout.width);
+  fill_row(state, r, ALL_CHANNELS, r->rows + r->row_count++ * r->layout.width);
   r->last = state->step;
   r->sampled++;
   return r->row_count == r->capacity ? flush_rows(r, error) : STRUT_OK;
@@ -293,14 +168,14 @@ strut_status strut_recording_sample(const strut_model *model, strut_state *state
 strut_status strut_recording_create_alone(const strut_model *model, const strut_time_grid *grid,
                                           strut_recording *r, strut_error *error) {
   *r = (strut_recording){.grid = *grid, .last = -1};
-  bool good = create_scratch(model, r) && create_layout(model, ALL_CHANNELS, r);
+  bool good = strut_channel_view_create(model, &r->arena, &r->view) &&
+              create_layout(model, ALL_CHANNELS, r);
   if (good) r->rows = strut_arena_allocate(&r->arena, r->layout.width, sizeof *r->rows);
   return r->rows ? STRUT_OK : strut_no_memory(error, "");
 }
 
-void strut_recording_observe(const strut_model *model, strut_state *state, strut_recording *r,
-                             unsigned wanted) {
-  if (wanted) fill_row(model, state, r, wanted, r->rows);
+void strut_recording_observe(strut_state *state, strut_recording *r, unsigned wanted) {
+  if (wanted) fill_row(state, r, wanted, r->rows);
 }
 
 strut_status strut_recording_finish(strut_recording *r, strut_status run_status,

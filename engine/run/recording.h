@@ -6,36 +6,65 @@
 #define STRUT_ENGINE_RUN_RECORDING_H
 
 #include "engine/model/state.h"
-#include "engine/run/measure/time_grid.h"
+#include "engine/run/measure/meter.h"
 #include "engine/run/recorder.h"
+#include "engine/scene/channels.h"
 
-enum { STRUT_CHANNELS = 8 };
+/*
+ * Values of channels: each row of STRUT_CHANNEL_TABLE has a function record_NAME here that fills its numbers
+ * from a model and its state.
+ */
+
+/** Two numbers of each of some things, which are measured together, once for a state. */
+typedef struct strut_measured_pair {
+  double *first, *second; /* (things) */
+  bool fresh;             /* those of the present state */
+} strut_measured_pair;
+
+/** A state of a model, and what channels share that is measured of it. */
+typedef struct strut_channel_view {
+  const strut_model *model;
+  strut_state *state;
+  double time;                          /* [s] */
+  bool observed;                        /* forces are those of the state */
+  strut_measured_pair members;          /* lengths, forces */
+  strut_measured_pair hinges;           /* angles, moments */
+  strut_measured_pair cells;            /* areas, pressures */
+  const int32_t *hinge, *cell;          /* their elements */
+  double *momentum, *relative_velocity; /* (nodes, 2) scratch */
+} strut_channel_view;
+
+/** Allocates what channels share from the arena; false: memory is out. */
+bool strut_channel_view_create(const strut_model *model, strut_arena *arena,
+                               strut_channel_view *view);
+/** From now on the view shows this state at time t [s]; nothing is measured of it yet. */
+void strut_channel_view_show(strut_channel_view *view, strut_state *state, double t);
+/** Fills the (items, components) numbers of the channel. */
+void strut_channel_record(strut_channel_view *view, strut_channel id, double *out);
+
+/* ---- recording: lays out the rows of a run, samples the state and hands rows to the sinks ---- */
 
 /** Channels of one sink, as a layout of their own. */
 typedef struct strut_recording_part {
   bool whole; /* all channels: rows are passed on unchanged */
   strut_record_layout layout;
-  strut_record_channel channel[STRUT_CHANNELS];
-  size_t from[STRUT_CHANNELS]; /* offset of each in a full row */
+  strut_record_channel channel[STRUT_CHANNEL_COUNT];
+  size_t from[STRUT_CHANNEL_COUNT]; /* offset of each in a full row */
 } strut_recording_part;
 
 typedef struct strut_recording {
   strut_sink **sinks;
   size_t sink_count, begun;   /* sinks whose begin succeeded */
   strut_record_layout layout; /* union of the channels of all sinks */
-  strut_record_channel channel[STRUT_CHANNELS];
+  strut_record_channel channel[STRUT_CHANNEL_COUNT];
   strut_recording_part *parts; /* (sink_count) */
   double *rows;                /* (capacity, width) rows not yet passed on */
   double *picked; /* (capacity, width) rows of one sink; NULL where every sink takes all channels */
   size_t row_count, capacity;
   strut_time_grid grid;
-  double start, every;     /* first sample, interval [s] */
-  int64_t sampled, last;   /* samples so far; step of the latest, -1 before the first */
-  double *length, *force;  /* (members) scratch */
-  double *angle, *moment;  /* (hinges) scratch */
-  int32_t *hinge;          /* (hinges) their elements */
-  double *area, *pressure; /* (cells) scratch */
-  int32_t *cell;           /* (cells) their elements */
+  double start, every;   /* first sample, interval [s] */
+  int64_t sampled, last; /* samples so far; step of the latest, -1 before the first */
+  strut_channel_view view;
   strut_arena arena;
 } strut_recording;
 
@@ -52,8 +81,8 @@ int64_t strut_recording_next_step(const strut_recording *recording);
 /** Is a sample of step n missing? False without sinks. */
 bool strut_recording_lacks(const strut_recording *recording, int64_t n);
 /** Samples the state; passes rows on when the block is full. */
-strut_status strut_recording_sample(const strut_model *model, strut_state *state,
-                                    strut_recording *recording, strut_error *error);
+strut_status strut_recording_sample(strut_state *state, strut_recording *recording,
+                                    strut_error *error);
 /**
  * Passes the remaining rows on and ends every sink with the status of the run; returns the first
  * failure.
@@ -67,8 +96,7 @@ strut_status strut_recording_finish(strut_recording *recording, strut_status run
 strut_status strut_recording_create_alone(const strut_model *model, const strut_time_grid *grid,
                                           strut_recording *recording, strut_error *error);
 /** Fills the channels of `wanted` (strut_channel bits) into its row. */
-void strut_recording_observe(const strut_model *model, strut_state *state,
-                             strut_recording *recording, unsigned wanted);
+void strut_recording_observe(strut_state *state, strut_recording *recording, unsigned wanted);
 /** Frees the recording; ends sinks that are still open with STRUT_FILE_TROUBLE. */
 void strut_recording_free(strut_recording *recording);
 

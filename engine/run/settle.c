@@ -9,7 +9,9 @@
 #include "engine/forces/elements.h"
 #include "engine/forces/energy.h"
 #include "engine/forces/forces.h"
+#include "engine/forces/tangent.h"
 #include "engine/integrate/integrator.h"
+#include "engine/integrate/limit/step_limit.h"
 #include "engine/model/pose.h"
 #include "engine/scene/things.h"
 
@@ -212,4 +214,323 @@ strut_status strut_settle_state(const strut_model *model, const strut_experiment
   }
   strut_relaxation_free(&r);
   return status;
+}
+
+/* ---- settling an experiment ---- */
+
+/* Part of the largest stiffness that rounding may give a motion without stiffness. */
+static const double ROUNDING = 1e-12;
+/* Relative accuracy of the shift that makes the matrix definite, and steps of inverse iteration. */
+static const double SHIFT_ACCURACY = 0.01;
+enum { ITERATIONS = 40 };
+
+/* The most unstable direction of an equilibrium. */
+typedef struct instability {
+  int32_t node;       /* that moves most; -1: the equilibrium is not unstable */
+  double stiffness;   /* lowest eigenvalue of the Hessian [N/m] */
+  double growth_rate; /* [1/s] */
+  double *direction;  /* (length) 1 where the node moves; of the arena; NULL where not unstable */
+} instability;
+
+typedef struct shifted_matrix {
+  const strut_sparse *matrix;
+  strut_ldl *ldl;
+  strut_status status;
+} shifted_matrix;
+
+/*
+ * Counts the negative eigenvalues of the matrix plus shift; moves a shift that hits an eigenvalue a
+ * little.
+ */
+static int32_t count_negative(shifted_matrix *s, double *shift) {
+  strut_inertia inertia = {0};
+  for (int i = 0; i < 4; i++, *shift *= 1.001) {
+    s->status = strut_ldl_factorise(s->ldl, s->matrix, *shift, &inertia);
+    if (s->status != STRUT_SINGULAR) break;
+  }
+  return s->status ? 0 : inertia.negative;
+}
+
+/*
+ * Finds approximately the smallest shift that makes the matrix positive definite, and factorises it
+ * there.
+ */
+static double find_definite_shift(shifted_matrix *s, double low) {
+  double high = low;
+  do {
+    low = high;
+    high *= 16.0;
+  } while (count_negative(s, &high) > 0 && isfinite(high) && !s->status);
+  while (high - low > SHIFT_ACCURACY * high && !s->status) {
+    double middle = sqrt(low * high);
+    if (count_negative(s, &middle) > 0)
+      low = middle;
+    else
+      high = middle;
+  }
+  count_negative(s, &high);
+  return high;
+}
+
+/* A number from -1 to 1 that depends on the index only. */
+static double pseudo_random(uint64_t i) {
+  uint64_t z = (i + 1) * 0x9e3779b97f4a7c15u;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return (double)((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1.0;
+}
+
+/* Scales x to length 1; false where it is zero or not finite. */
+static bool normalise(double *x, int32_t n) {
+  double most = 0.0, sum = 0.0;
+  for (int32_t i = 0; i < n; i++) most = fmax(most, fabs(x[i]));
+  if (!(most > 0.0) || !isfinite(most)) return false;
+  for (int32_t i = 0; i < n; i++) x[i] /= most, sum += x[i] * x[i];
+  for (int32_t i = 0; i < n; i++) x[i] /= sqrt(sum);
+  return true;
+}
+
+/* Row of a coordinate, or -1 where it is fixed; coordinates are in ascending order. */
+static int32_t find_row(const strut_tangent *tangent, int32_t coordinate) {
+  int32_t low = 0, high = tangent->n;
+  while (low < high) {
+    int32_t middle = low + (high - low) / 2;
+    if (tangent->coordinate[middle] < coordinate)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low < tangent->n && tangent->coordinate[low] == coordinate ? low : -1;
+}
+
+/* Adds the ground stiffness along the ground for contacts that touch and may stick. */
+static void add_stick_stiffness(const strut_model *model, const double *q, strut_tangent *tangent) {
+  const strut_contact_table *c = &model->contacts;
+  for (int32_t i = 0; i < c->count; i++) {
+    const strut_contact_entry *e = &c->entry[i];
+    const strut_contact_pose pose = strut_contact_pose_at(c, i, q, NULL, -1);
+    const double *t = pose.axes.tangent;
+    bool touches = pose.gap < 0.0;
+    bool sticks =
+        strut_friction_has_band(e->friction.law) || strut_friction_is_exact(e->friction.law);
+    if (!touches || !sticks ||
+        !(e->friction.mu_static > 0.0 || e->friction.mu_static_backward > 0.0))
+      continue;
+    strut_sparse *k = tangent->stiffness;
+    const int32_t row[2] = {find_row(tangent, (int32_t)c->at[i]),
+                            find_row(tangent, (int32_t)c->at[i] + 1)};
+    for (int a = 0; a < 2; a++) {
+      if (row[a] < 0) continue;
+      k->value[k->start[row[a]]] += e->stiffness * t[a] * t[a];
+      for (int32_t p = k->start[row[a]] + 1; a == 0 && p < k->start[row[a] + 1]; p++)
+        if (k->row[p] == row[1]) k->value[p] += e->stiffness * t[0] * t[1];
+    }
+  }
+}
+
+/* Threshold below which a stiffness is rounding or due to forces not quite in balance. */
+static double find_stiffness_threshold(const strut_model *model, double acceleration,
+                                       const strut_sparse *k) {
+  double stiffest = 0.0, heaviest = 0.0;
+  for (int32_t i = 0; i < k->n; i++) stiffest = fmax(stiffest, fabs(k->value[k->start[i]]));
+  for (int32_t i = 0; i < model->node_count; i++) heaviest = fmax(heaviest, model->weight[i]);
+  return ROUNDING * stiffest + 10.0 * acceleration * heaviest / model->size;
+}
+
+/* Describes the eigenvector x (n): the node that moves most, its direction, and the growth rate. */
+static void describe_direction(const strut_model *model, const strut_tangent *tangent,
+                               const double *x, instability *found) {
+  double *d = found->direction, most = -1.0;
+  for (int32_t i = 0; i < tangent->n; i++) d[tangent->coordinate[i]] = x[i];
+  for (int32_t i = 0; i < model->node_count; i++) {
+    double moved = hypot(d[2 * i], d[2 * i + 1]);
+    if (moved > most * (1.0 + 1e-9)) most = moved, found->node = i;
+  }
+  const double *at = d + 2 * found->node;
+  double scale = (fabs(at[0]) >= 1e-6 * fabs(at[1]) ? at[0] : at[1]) < 0.0 ? -most : most;
+  for (int32_t i = 0; i < 2 * model->node_count; i++) d[i] = d[i] / scale + 0.0;
+  double inertia = 2.0 * strut_energy_kinetic(model, d) * most * most;
+  found->growth_rate = inertia > 0.0 ? sqrt(-found->stiffness / inertia) : 0.0;
+}
+
+/* Finds the lowest eigenvector by inverse iteration with the shifted matrix. */
+static void find_unstable_direction(shifted_matrix *s, const strut_model *model,
+                                    const strut_tangent *tangent, double least, double *x,
+                                    double *product, instability *found) {
+  int32_t n = tangent->n;
+  find_definite_shift(s, least);
+  for (int32_t i = 0; i < n; i++) x[i] = pseudo_random((uint64_t)i);
+  for (int turn = 0; turn < ITERATIONS && !s->status; turn++) {
+    if (!normalise(x, n)) return;
+    strut_ldl_solve(s->ldl, x);
+  }
+  if (s->status || !normalise(x, n)) return;
+  strut_sparse_multiply(s->matrix, x, product);
+  found->stiffness = 0.0;
+  for (int32_t i = 0; i < n; i++) found->stiffness += x[i] * product[i];
+  if (found->stiffness < -0.5 * least) describe_direction(model, tangent, x, found);
+}
+
+/*
+ * Counts the negative eigenvalues of the tangent stiffness at q by Sylvester's law of inertia,
+ * touching contacts closed, and held along the ground where they stick. Motions without stiffness,
+ * such as those of a free structure, are no instability; nor is a stiffness within the residual
+ * `acceleration` [m/s^2] of rest. STRUT_NO_MEMORY.
+ */
+static strut_status find_instability(const strut_model *model, double acceleration, const double *q,
+                                     strut_arena *arena, instability *found, strut_error *error) {
+  strut_arena scratch = {0};
+  strut_tangent tangent;
+  shifted_matrix s = {.status = STRUT_OK};
+  *found = (instability){.node = -1};
+  strut_status status = strut_tangent_assemble(model, q, model->members.rest, STRUT_CLOSED_TOUCHING,
+                                               &scratch, &tangent);
+  double *x = NULL;
+  if (!status) {
+    x = strut_arena_allocate(&scratch, 2 * (size_t)tangent.n + 1, sizeof *x);
+    found->direction = strut_arena_allocate(arena, (size_t)model->length, sizeof(double));
+    if (!x || !found->direction) status = STRUT_NO_MEMORY;
+  }
+  if (status) strut_fail(error, status, "out of memory");
+  if (!status && tangent.n > 0) {
+    s.matrix = tangent.stiffness;
+    add_stick_stiffness(model, q, &tangent);
+    double least = find_stiffness_threshold(model, acceleration, s.matrix), shift = least;
+    status = strut_ldl_create(s.matrix, &s.ldl, error);
+    if (!status && least > 0.0 && isfinite(least) && count_negative(&s, &shift) > 0)
+      find_unstable_direction(&s, model, &tangent, least, x, x + tangent.n, found);
+    if (s.status == STRUT_NO_MEMORY) status = strut_no_memory(error, "");
+  }
+  if (found->node < 0) *found = (instability){.node = -1};
+  strut_ldl_free(s.ldl);
+  strut_arena_free(&scratch);
+  return status;
+}
+
+/* ---- the settled start of an experiment ---- */
+
+/*
+ * Part of the largest stable step taken where the scene gives none; times a diverging step is
+ * halved.
+ */
+static const double LIMIT_FRACTION = 0.5;
+enum { HALVINGS = 6, MOST_PERTURBATIONS = 8 };
+/* Perturbation of the node that moves most, in model sizes. */
+static const double PUSH = 1e-4;
+
+static strut_status choose_settle_step(strut_relaxation *r, strut_step_limits *limits,
+                                       strut_error *error) {
+  const strut_settle *settle = &r->experiment->settle;
+  double given = settle->step == 0.0 ? r->experiment->step : settle->step, limit = 0.0;
+  if (!r->model->mass) return strut_fail(error, STRUT_SINGULAR, "a free node has no mass");
+  strut_status status = limits ? strut_step_limit_cached(r->model, r->method, limits, &limit, error)
+                               : strut_step_limit_for_method(r->model, r->method, &limit, error);
+  if (status) return status;
+  if (given > 0.0 && given <= limit)
+    r->step = given;
+  else
+    r->step = isfinite(limit) ? LIMIT_FRACTION * limit : 1e-4 * settle->limit;
+  return STRUT_OK;
+}
+
+/* Relaxes from `from` (length), with a smaller step where it diverges. */
+static strut_status relax_from(strut_relaxation *r, const double *from, strut_error *error) {
+  strut_status status = STRUT_DIVERGED;
+  for (int i = 0; i <= HALVINGS && status == STRUT_DIVERGED; i++) {
+    if (i > 0) r->step *= 0.5;
+    strut_state_reset(r->model, r->state);
+    memcpy(r->state->q, from, (size_t)r->model->length * sizeof *from);
+    status = strut_relaxation_run(r, error);
+  }
+  return status;
+}
+
+static void perturb_start(const strut_relaxation *r, const instability *unstable, double *q) {
+  for (int32_t i = 0; i < 2 * r->model->node_count; i++)
+    q[i] = r->state->q[i] + PUSH * r->model->size * unstable->direction[i];
+}
+
+/*
+ * Settles, and leaves unstable equilibria where requested. q (length): start positions in, settled
+ * positions out.
+ */
+static strut_status settle_and_perturb(strut_relaxation *r, double *q, strut_settle_summary *how,
+                                       strut_error *error) {
+  instability unstable;
+  for (;;) {
+    strut_status status = relax_from(r, q, error);
+    if (!status)
+      status = find_instability(r->model, r->experiment->settle.acceleration, r->state->q,
+                                &r->arena, &unstable, error);
+    if (status) return status;
+    if (unstable.node < 0 || !r->experiment->settle.perturb ||
+        how->perturbations == MOST_PERTURBATIONS)
+      break;
+    perturb_start(r, &unstable, q);
+    how->perturbations++;
+  }
+  memcpy(q, r->state->q, (size_t)r->model->length * sizeof *q);
+  how->step = r->step;
+  how->evaluations = r->evaluations;
+  how->unstable = unstable.node >= 0;
+  if (!how->unstable) return STRUT_OK;
+  how->stiffness = unstable.stiffness;
+  how->growth_rate = unstable.growth_rate;
+  how->node = r->scene.nodes[unstable.node].name;
+  return STRUT_OK;
+}
+
+strut_status strut_settle_experiment(const strut_model *model, const strut_experiment *experiment,
+                                     strut_step_limits *limits,
+                                     const volatile sig_atomic_t *interrupt, double *q,
+                                     double *time, strut_settle_summary *how, strut_error *error) {
+  strut_relaxation r;
+  strut_status status = strut_relaxation_create(model, experiment, &r, error);
+  *how = (strut_settle_summary){0};
+  r.interrupt = interrupt;
+  memcpy(q, model->start, (size_t)model->length * sizeof *q);
+  if (!status) status = choose_settle_step(&r, limits, error);
+  if (!status) status = settle_and_perturb(&r, q, how, error);
+  *time = r.time;
+  strut_relaxation_free(&r);
+  return status;
+}
+
+/* Copies the scene with its nodes at rest in the positions q (length). */
+static strut_status move_start(const strut_scene *scene, const double *q,
+                               strut_settled_start *start) {
+  strut_scene *settled = start->scene = strut_arena_allocate(&start->arena, 1, sizeof *settled);
+  if (!settled) return STRUT_NO_MEMORY;
+  *settled = *scene;
+  settled->nodes = strut_arena_allocate(&start->arena, scene->node_count, sizeof *settled->nodes);
+  if (!settled->nodes) return STRUT_NO_MEMORY;
+  memcpy(settled->nodes, scene->nodes, scene->node_count * sizeof *settled->nodes);
+  for (size_t i = 0; i < scene->node_count; i++)
+    for (size_t c = 0; c < 2; c++) {
+      if (!scene->nodes[i].fixed[c]) settled->nodes[i].start[c] = q[2 * i + c];
+      settled->nodes[i].velocity[c] = 0.0;
+    }
+  return STRUT_OK;
+}
+
+strut_status strut_settle_model(const strut_model *model, const strut_experiment *experiment,
+                                const volatile sig_atomic_t *interrupt, strut_settled_start *start,
+                                strut_error *error) {
+  *start = (strut_settled_start){.model = model};
+  if (!experiment->settle.wanted) return STRUT_OK;
+  double *q = strut_arena_allocate(&start->arena, (size_t)model->length, sizeof *q);
+  if (!q) return strut_no_memory(error, "");
+  strut_status status = strut_settle_experiment(model, experiment, NULL, interrupt, q, &start->time,
+                                                &start->how, error);
+  if (status) return status;
+  if (move_start(model->scene, q, start)) return strut_no_memory(error, "");
+  status = strut_model_compile(start->scene, &start->own, error);
+  start->model = start->own;
+  return status;
+}
+
+void strut_settled_start_free(strut_settled_start *start) {
+  strut_model_free(start->own);
+  strut_arena_free(&start->arena);
+  *start = (strut_settled_start){.model = NULL};
 }

@@ -423,7 +423,7 @@ void strut_run_step(strut_run *r, int64_t stop) {
 
 static void fill_summary(strut_run *r, strut_status status);
 
-/* The time of the state; where a drive jumps there, just after that, as a method with events has booked it. */
+/* The time of the state; where a drive jumps there, just after that, as a method with events has accumulated its work. */
 static double time_of_balance(const strut_run *r) {
   double t = strut_time_grid_at(&r->grid, r->state->step), near = 2e-9 * r->dt;
   if (!r->method->events) return t;
@@ -462,7 +462,7 @@ strut_status strut_run_sample(strut_run *r, int64_t *stop) {
     strut_measure_begin(r->model, r->state, &r->measure);
   if (lost < 0 && (n == strut_recording_next_step(&r->recording) ||
                    (n >= r->steps && strut_recording_lacks(&r->recording, n)))) {
-    strut_status status = strut_recording_sample(r->model, r->state, &r->recording, r->error);
+    strut_status status = strut_recording_sample(r->state, &r->recording, r->error);
     if (status) return status;
   }
   if (n == r->answer) fill_summary(r, STRUT_OK);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/run/simulate_batch.h"
+#include "engine/run/simulate.h"
 
 #include <assert.h>
 

@@ -4,11 +4,9 @@
 #define STRUT_ENGINE_RUN_SIMULATE_PARTS_H
 
 #include "engine/integrate/limit/step_limit.h"
-#include "engine/run/measure/balance.h"
 #include "engine/run/measure/measure.h"
-#include "engine/run/measure/step_limit_monitor.h"
-#include "engine/run/measure/stick_band.h"
-#include "engine/run/measure/time_grid.h"
+#include "engine/run/measure/meter.h"
+#include "engine/run/measure/monitors.h"
 #include "engine/run/orbit/steady_detector.h"
 #include "engine/run/recording.h"
 #include "engine/run/simulate.h"

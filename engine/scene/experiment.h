@@ -11,6 +11,7 @@
 
 #include <signal.h>
 
+#include "engine/scene/channels.h"
 #include "engine/scene/quantity.h"
 #include "engine/scene/scene.h"
 
@@ -31,19 +32,6 @@ typedef struct strut_settle {
 } strut_settle;
 
 static const double STRUT_SETTLE_EVALUATIONS = 4e7;
-
-typedef enum strut_channel {
-  STRUT_CHANNEL_POSITION = 1,
-  STRUT_CHANNEL_VELOCITY = 2,
-  STRUT_CHANNEL_LENGTH = 4,
-  STRUT_CHANNEL_FORCE = 8,
-  STRUT_CHANNEL_CONTACT = 16,
-  STRUT_CHANNEL_ENERGY = 32,
-  STRUT_CHANNEL_ANGLE = 64, /* of hinges */
-  STRUT_CHANNEL_MOMENT = 128,
-  STRUT_CHANNEL_AREA = 256, /* of cells */
-  STRUT_CHANNEL_PRESSURE = 512
-} strut_channel;
 
 enum { STRUT_MOST_STARTS = 1000000000 };
 #define STRUT_MOST_SEED 9007199254740992.0 /* 2^53: every seed is a number of the language */

@@ -99,7 +99,7 @@ typedef struct strut_column {
   int32_t item, other; /* node, contact, member, hinge, ...; the second node of a pair; else -1 */
 } strut_column;
 
-/** How a result changes with its operands; see quantity_program.c. */
+/** How a result changes with its operands; see engine/run/measure/quantities.c. */
 typedef enum strut_sensitivity {
   STRUT_SENSITIVITY_SUM, /* as much as they do */
   STRUT_SENSITIVITY_PRODUCT,

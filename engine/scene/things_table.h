@@ -28,6 +28,8 @@
 #ifndef STRUT_ENGINE_SCENE_THINGS_TABLE_H
 #define STRUT_ENGINE_SCENE_THINGS_TABLE_H
 
+#include "engine/scene/channels.h"
+
 #include <math.h>
 
 #include "engine/base/number_text.h"
@@ -407,7 +409,7 @@
 #define STRUT_OUTPUT_FIELDS(X) \
   X(OUTPUT, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, "a thousandth of the recorded time", OPTIONAL, 0, "", FIELD(strut_experiment, output_every), "Time between two samples.") \
   X(OUTPUT, LAST, "last", NUMBER, CONTEXT, ABOVE_ZERO, "the whole run", OPTIONAL, 0, "", FIELD(strut_experiment, output_last), "Record only the end of the run: a number of periods if the run is given in periods, otherwise a time.") \
-  X(OUTPUT, CHANNELS, "channels", WORDS, NONE, ANY, "[position, length, force]", WRITTEN, 0, "position|velocity|length|force|contact|energy|angle|moment|area|pressure", FIELD(strut_experiment, channels), "The channels to record: `position` and `velocity` of nodes, `length` and `force` of members, `contact` forces, `energy`, `angle` and `moment` of hinges, `area` and `pressure` of cells.")
+  X(OUTPUT, CHANNELS, "channels", WORDS, NONE, ANY, "[position, length, force]", WRITTEN, 0, STRUT_CHANNEL_WORDS, FIELD(strut_experiment, channels), STRUT_CHANNEL_DESCRIPTION)
 
 /* clang-format on */
 

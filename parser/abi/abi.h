@@ -68,7 +68,7 @@ extern "C" {
 #define STRUTLIB_WORK_LIMIT 7     /* the work allowed was used up */
 #define STRUTLIB_FILE_TROUBLE 8   /* a file could not be read or written */
 #define STRUTLIB_NO_MEMORY 9      /* memory is out */
-#define STRUTLIB_INTERRUPTED 10   /* by strutlib_interrupt; what there is so far is returned */
+#define STRUTLIB_INTERRUPTED 10   /* by strutlib_interrupt; partial results are returned */
 #define STRUTLIB_INACCURATE 11    /* of the program alone: less accurate than requested */
 
 /** A scene as it was opened, with its settings: constant. */
@@ -205,8 +205,9 @@ STRUTLIB_API void strutlib_close(strutlib_scene *scene);
  * Names of the things of a kind, which is a key of the scene: "parameters", "nodes", "members",
  * "hinges", "cells", "contacts", "collisions", "actuators", "loads", "sensors", "states",
  * "configurations", "quantities", "grounds", "unbalances" or "sliders"; or "channels": those that
- * the scene records; "energies": the components of the channel "energy"; "kinds": all these words.
- * How many there are; 0 for any other word.
+ * the scene records; "energies": the components of the channel "energy"; "kinds": all these words;
+ * or a channel: what its array counts behind the samples, such as the nodes and "total" of
+ * "angular_momentum". How many there are; 0 for any other word.
  */
 STRUTLIB_API size_t strutlib_name_count(const strutlib_scene *scene, const char *kind);
 /**
@@ -215,6 +216,15 @@ STRUTLIB_API size_t strutlib_name_count(const strutlib_scene *scene, const char 
 STRUTLIB_API const char *strutlib_name(const strutlib_scene *scene, const char *kind, size_t i);
 /** Its index, or -1. */
 STRUTLIB_API long strutlib_index(const strutlib_scene *scene, const char *kind, const char *name);
+
+/** The i-th channel that a run can record, such as "position"; NULL beyond the last. */
+STRUTLIB_API const char *strutlib_channel(size_t i);
+/** The kind of the things it belongs to: "nodes", "members", ...; "energies" of "energy". */
+STRUTLIB_API const char *strutlib_channel_kind(const char *channel);
+/** The i-th component of each thing's: "x", "normal", ...; NULL beyond the last, and of single numbers. */
+STRUTLIB_API const char *strutlib_channel_component(const char *channel, size_t i);
+/** The i-th name in a table with a column for each number of a thing: "x", "vx", "length", ... */
+STRUTLIB_API const char *strutlib_channel_column(const char *channel, size_t i);
 
 /**
  * Values of the scene by dotted name, as strutlib_scene_yaml shows it: "run.duration",
@@ -277,13 +287,13 @@ STRUTLIB_API const char *strutlib_option_help(const char *command, size_t i);
  */
 
 /**
- * `strut run`. Arrays: "time" (samples) [s], and each channel that the scene records: "position",
+ * `strut run`. Arrays: "time" (samples) [s], and each channel that is recorded: "position",
  * "velocity" (samples, nodes, 2), "length", "force" (samples, members), "contact" (samples,
- * contacts, 2: normal, friction), "angle", "moment" (samples, hinges), "area", "pressure"
- * (samples, cells), "energy" (samples, components). Behind a dot one thing of it, and behind
- * another one component: "position.n1" (samples, 2), "position.n1.x" (samples), "force.m8",
- * "contact.n1.normal", "energy.kinetic". Recorded are the scene's channels and what figures and
- * pages show, at the times that the scene's `output` gives.
+ * contacts, 2: normal, friction), "energy" (samples, energies), and whatever else strutlib_channel
+ * lists, as (samples, things) or (samples, things, components). Behind a dot one thing of it, and
+ * behind another one component: "position.n1" (samples, 2), "position.n1.x" (samples), "force.m8",
+ * "contact.n1.normal", "energy.kinetic", "angular_momentum.total". Recorded are the scene's channels
+ * and what figures and pages show, at the times that the scene's `output` gives.
  * Two options are the library's own: "channels", a list with commas of channels to record
  * instead; and "record": yes (default) or no.
  */
@@ -465,9 +475,8 @@ STRUTLIB_API double strutlib_simulation_time(const strutlib_simulation *simulati
 /** The step [s]: of an adaptive method the time between two stops. */
 STRUTLIB_API double strutlib_simulation_step(const strutlib_simulation *simulation);
 /**
- * Live arrays, which follow every advance, set and restore: "position", "velocity" (nodes, 2),
- * "length", "force" (members), "contact" (contacts, 2), "angle", "moment" (hinges), "area",
- * "pressure" (cells), "energy" (components), as of strutlib_run. What no one asks for costs
+ * Live arrays, which follow every advance, set and restore: channels as of strutlib_run, without
+ * samples, such as "position" (nodes, 2), "force" (members), "energy" (energies). What no one asks for costs
  * nothing. 1 where there is such an array, else 0.
  */
 STRUTLIB_API int strutlib_simulation_array(strutlib_simulation *simulation, const char *name,
@@ -476,7 +485,7 @@ STRUTLIB_API int strutlib_simulation_array(strutlib_simulation *simulation, cons
 /**
  * Inputs: arrays that the caller writes, at any time between two calls. They hold from the next
  * advance on, until they are written again. A change is an event: methods with events begin anew
- * there, and the ledger counts the work it does.
+ * there, and the energy balance counts its work.
  *   "rest" (members): rest lengths [m], to which a driven member's signal is added;
  *   "actuators" (actuators): what the signal is, in its unit; NAN (as at the beginning): as the
  *     scene says;

@@ -8,12 +8,54 @@
 #include <pthread.h>
 #include <signal.h>
 #include <stdatomic.h>
+#include <stdbool.h>
+#include <stddef.h>
 
+#include "engine/base/memory.h"
+#include "engine/base/status.h"
 #include "engine/model/model.h"
+#include "engine/output/draw/plot.h"
+#include "engine/output/figures/run_figure.h"
 #include "engine/output/trajectory.h"
+#include "engine/statics/equilibria/equilibria.h"
 #include "parser/abi/abi.h"
-#include "parser/abi/tree.h"
 #include "parser/command/arguments.h"
+#include "parser/yaml/document.h"
+
+/*
+ * A tree of named values, by dotted names: what JSON texts and scenes hold.
+ *
+ * A name may itself contain dots, as those of things in copies do: the longest one that fits is taken.
+ * Items of lists are called by their number, from 0.
+ */
+
+typedef struct cJSON abi_tree;
+
+/** The tree of a JSON text; NULL: memory is out. */
+abi_tree *abi_tree_read(const char *json);
+/** The tree of a resolved scene: texts in quotes stay texts, plain ones become numbers or flags if they are. */
+abi_tree *abi_tree_of(const strut_tree *root);
+/** As a JSON text in a block of strut_allocate; NULL: memory is out. */
+char *abi_tree_write(const abi_tree *tree);
+void abi_tree_free(abi_tree *tree); /* NULL is allowed */
+
+bool abi_tree_number(const abi_tree *tree, const char *name, double *value);
+bool abi_tree_flag(const abi_tree *tree, const char *name, int *value);
+const char *abi_tree_text(const abi_tree *tree, const char *name);
+/** Number of items of a list or mapping; "" is the whole. */
+size_t abi_tree_count(const abi_tree *tree, const char *name);
+/** The i-th key of a mapping, or NULL. */
+const char *abi_tree_key(const abi_tree *tree, const char *name, size_t i);
+/** Replaces a value of the mapping called `name` by a number or, where text is not NULL, by a text. False: no memory. */
+bool abi_tree_set(abi_tree *tree, const char *name, const char *key, double number,
+                  const char *text);
+
+/**
+ * The numbers behind a name as an array, row by row: each list on the way is a dimension, and so is what lies behind. NULL where
+ * there is none, or more than `most` dimensions; *no_memory says whether memory was out.
+ */
+double *abi_tree_array(const abi_tree *tree, const char *name, int most, strut_arena *arena,
+                       int *dimensions, size_t *shape, bool *no_memory);
 
 /* ---- control ---- */
 
@@ -172,5 +214,33 @@ const strut_trajectory *abi_result_motion(const strutlib_result *result);
 
 /** A text of strut_allocate as one that strutlib_release releases. */
 char *abi_give(char *text, strutlib_error **error);
+
+/* ---- figures and pages as texts ---- */
+
+enum { ABI_MOST_TIMES = 100 };
+
+/** Options "draw", "scale", "times", "title" and "width" into a figure of a run; times has room for ABI_MOST_TIMES. */
+strut_status abi_run_figure_read(const strut_arguments *arguments, strut_run_figure *figure,
+                                 double *times);
+/** Options "title" and "width" into a plot that goes to `path`. */
+strut_status abi_plot_read(const strut_arguments *arguments, const char *path, strut_plot *plot);
+
+/* ---- a temporary folder for what is made as a file and shown as a text or as arrays ---- */
+
+typedef struct abi_scratch {
+  char folder[300], path[340]; /* path: of the one file in it */
+} abi_scratch;
+
+/** Makes the folder below TMPDIR or /tmp, for a file of that name. STRUT_FILE_TROUBLE. */
+strut_status abi_scratch_begin(abi_scratch *scratch, const char *name, strut_error *error);
+/** Its file, or another one in it, as a text of strut_allocate; NULL with the error. */
+char *abi_scratch_read(const abi_scratch *scratch, const char *name, strut_error *error);
+/** Removes the folder and these files in it; NULL after the last. */
+void abi_scratch_end(const abi_scratch *scratch, const char *const *names);
+
+/* ---- results of statics, for other files of the library ---- */
+
+/** The equilibria that a result of strutlib_equilibria holds, or NULL. */
+const strut_equilibria *abi_result_equilibria(const strutlib_result *result);
 
 #endif

@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Figures as SVG and pages as HTML, in memory. */
-#include "parser/abi/pictures.h"
+#include "parser/abi/handles.h"
 
 #include "engine/model/state.h"
 #include "engine/output/draw/structure.h"
 #include "engine/output/page/page.h"
-#include "parser/abi/scratch.h"
-#include "parser/abi/statics.h"
 #include "parser/command/plot_options.h"
 #include "parser/write/write_scene.h"
 

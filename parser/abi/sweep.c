@@ -8,7 +8,6 @@
 #include "engine/study/results/study_table.h"
 #include "engine/study/sweep/sweep.h"
 #include "parser/abi/handles.h"
-#include "parser/abi/scratch.h"
 #include "parser/command/fidelity_settings.h"
 #include "parser/command/option_values.h"
 #include "parser/command/run_settings.h"
@@ -21,7 +20,7 @@ static const char *const files[] = {slots_name, table_name, NULL};
 /* A sweep under way. Stays where it is. */
 typedef struct sweep {
   const strutlib_scene *scene;
-  strut_arguments options; /* of method and model, for each point; nobody listens */
+  strut_arguments options; /* of method and model, for each point; without messages */
   strut_purpose purpose;
   bool located; /* the error is there, with its places */
   strut_study study;
@@ -33,7 +32,7 @@ typedef struct sweep {
   strutlib_control *control, own;
   strutlib_row row;
   void *context;
-  uint8_t *told; /* (points) 1 where `row` has heard of it */
+  uint8_t *reported; /* (points) 1 where `row` was called */
   strut_arena arena;
 } sweep;
 
@@ -272,13 +271,13 @@ static strut_status setup_of(void *context, const strut_study_value *values, str
 
 /* ---- rows ---- */
 
-/* Tells of all rows that are done and were not told. */
-static void tell_rows(sweep *s) {
+/* Reports all rows that are done and were not reported. */
+static void report_rows(sweep *s) {
   for (int64_t i = 0; s->row && i < s->plan.points; i++) {
     strut_result_slot slot;
-    if (s->told[i] || !strut_slots_done(s->slots, i)) continue;
+    if (s->reported[i] || !strut_slots_done(s->slots, i)) continue;
     if (!strut_slots_get(s->slots, i, &slot)) continue;
-    s->told[i] = 1;
+    s->reported[i] = 1;
     if (s->row(s->context, (size_t)i, (int)slot.status)) s->control->interrupt = 1;
   }
 }
@@ -286,7 +285,7 @@ static void tell_rows(sweep *s) {
 static void show_progress(void *context, const strut_sweep_state *state) {
   sweep *s = context;
   double fraction = state->points > 0 ? (double)state->done / (double)state->points : 1.0;
-  tell_rows(s);
+  report_rows(s);
   if (s->control->progress && s->control->progress(s->control->context, fraction))
     s->control->interrupt = 1;
 }
@@ -304,11 +303,11 @@ static strut_status run_points(sweep *s, const abi_scratch *scratch, strut_sweep
                                    .interrupt = &s->control->interrupt,
                                    .progress = show_progress,
                                    .progress_context = s};
-  s->told = strut_arena_allocate(&s->arena, (size_t)s->plan.points, 1);
-  if (!s->told) return strut_no_memory(what, "");
+  s->reported = strut_arena_allocate(&s->arena, (size_t)s->plan.points, 1);
+  if (!s->reported) return strut_no_memory(what, "");
   strut_status status = strut_slots_open(scratch->path, &plan, &s->slots, what);
   if (status == STRUT_OK) status = strut_sweep_run(&s->plan, s->slots, &how, state, what);
-  if (status == STRUT_OK || status == STRUT_INTERRUPTED) tell_rows(s);
+  if (status == STRUT_OK || status == STRUT_INTERRUPTED) report_rows(s);
   return status;
 }
 

@@ -7,8 +7,7 @@
 #include <stdio.h>
 
 #include "engine/forces/elements.h"
-#include "engine/output/matrix_market.h"
-#include "engine/output/vtk.h"
+#include "engine/output/exports.h"
 #include "parser/cli/option_values.h"
 #include "parser/cli/streams.h"
 #include "parser/command/statics_options.h"

@@ -7,7 +7,7 @@
 #include "engine/base/memory.h"
 #include "engine/output/figures/statics_figures.h"
 #include "engine/output/file.h"
-#include "engine/output/report/form_report.h"
+#include "engine/output/report/reports.h"
 #include "parser/cli/open_model.h"
 #include "parser/cli/option_values.h"
 #include "parser/cli/streams.h"

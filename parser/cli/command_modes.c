@@ -3,7 +3,7 @@
 #include "parser/cli/commands.h"
 
 #include "engine/output/figures/statics_figures.h"
-#include "engine/output/report/modes_report.h"
+#include "engine/output/report/reports.h"
 #include "parser/command/overload_warnings.h"
 #include "parser/command/statics_options.h"
 

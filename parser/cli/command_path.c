@@ -4,7 +4,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/figures/statics_figures.h"
-#include "engine/output/report/path_report.h"
+#include "engine/output/report/reports.h"
 #include "engine/statics/path/path.h"
 #include "parser/cli/options.h"
 #include "parser/cli/streams.h"

@@ -3,7 +3,7 @@
 #include "parser/cli/commands.h"
 
 #include "engine/output/figures/statics_figures.h"
-#include "engine/output/report/rigidity_report.h"
+#include "engine/output/report/reports.h"
 #include "parser/command/statics_options.h"
 
 static const char *const file_names[] = {"rigidity.json", NULL};

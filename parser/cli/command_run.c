@@ -4,11 +4,10 @@
 #include <stdio.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/csv.h"
 #include "engine/output/file.h"
-#include "engine/output/hdf5.h"
-#include "engine/output/json.h"
+#include "engine/output/record_files.h"
 #include "engine/output/results.h"
+#include "engine/output/run_report.h"
 #include "engine/run/accuracy/accuracy.h"
 #include "engine/run/simulate.h"
 #include "parser/cli/open_model.h"

@@ -4,10 +4,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/output/build_list.h"
 #include "engine/output/code/code.h"
+#include "engine/output/exports.h"
 #include "engine/output/file.h"
-#include "engine/output/mjcf.h"
 #include "engine/run/settle.h"
 #include "parser/cli/commands.h"
 #include "parser/cli/open_model.h"

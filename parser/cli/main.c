@@ -10,8 +10,8 @@
 #include <sys/resource.h>
 #include <time.h>
 
-#include "engine/output/hdf5.h"
-#include "engine/output/quantity_text.h"
+#include "engine/output/buffer.h"
+#include "engine/output/record_files.h"
 #include "parser/cli/commands.h"
 #include "parser/cli/complete.h"
 #include "parser/cli/streams.h"

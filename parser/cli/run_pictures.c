@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/quantity_text.h"
+#include "engine/output/buffer.h"
 #include "parser/cli/option_values.h"
 #include "parser/cli/progress.h"
 #include "parser/cli/streams.h"

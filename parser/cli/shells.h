@@ -3,7 +3,7 @@
 #ifndef STRUT_PARSER_CLI_SHELLS_H
 #define STRUT_PARSER_CLI_SHELLS_H
 
-#include "engine/output/page/page_assets.h"
+#include "engine/output/page/page.h"
 
 extern const strut_embedded strut_bash_script[], strut_zsh_script[], strut_fish_script[];
 /** The scene of `strut new`, with @FILE@ and @NAME@ for its names. */

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "engine/output/figures/table_figure.h"
-#include "engine/output/ownership.h"
+#include "engine/output/results.h"
 #include "engine/study/sweep/study_runs.h"
 #include "parser/cli/streams.h"
 #include "parser/cli/table_file.h"

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "engine/output/buffer.h"
-#include "engine/output/quantity_text.h"
 #include "engine/study/sensitivity/sensitivity.h"
 #include "parser/cli/streams.h"
 #include "parser/cli/sweep.h"

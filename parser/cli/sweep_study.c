@@ -7,7 +7,7 @@
 
 #include "engine/base/checksum.h"
 #include "engine/output/file.h"
-#include "engine/output/ownership.h"
+#include "engine/output/results.h"
 #include "engine/study/search/score.h"
 #include "engine/study/sweep/grid.h"
 #include "parser/cli/streams.h"

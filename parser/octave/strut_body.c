@@ -296,29 +296,10 @@ static mxArray *warnings_of(const strutlib_result *r) {
 
 /* ---- recorded channels ---- */
 
-/* A channel of things: the struct that has a field for each thing, the kind of thing, the fields of a
-   thing, and those of the matrices with a column for each. */
-typedef struct channel {
-  const char *name, *kind;
-  const char *component[2], *field[2], *matrix[2];
-} channel;
-
-static const channel channels[] = {
-    {"position", "nodes", {"x", "y"}, {"x", "y"}, {"x", "y"}},
-    {"velocity", "nodes", {"x", "y"}, {"vx", "vy"}, {"vx", "vy"}},
-    {"length", "members", {NULL}, {"length"}, {"length"}},
-    {"force", "members", {NULL}, {"force"}, {"force"}},
-    {"contact", "contacts", {"normal", "friction"}, {"normal", "friction"}, {"normal", "friction"}},
-    {"angle", "hinges", {NULL}, {"angle"}, {"angle"}},
-    {"moment", "hinges", {NULL}, {"moment"}, {"moment"}},
-    {"area", "cells", {NULL}, {"area"}, {"area"}},
-    {"pressure", "cells", {NULL}, {"pressure"}, {"pressure"}},
-};
-
-static const channel *find_channel(const char *name) {
-  for (size_t i = 0; i < sizeof channels / sizeof channels[0]; i++)
-    if (strcmp(channels[i].name, name) == 0) return &channels[i];
-  return NULL;
+/* Is it a channel of things, for each of which there is a field? Energies are those of the whole. */
+static bool is_of_things(const char *name) {
+  const char *kind = strutlib_channel_kind(name);
+  return kind && strcmp(kind, "energies") != 0;
 }
 
 /* Component c of an array (samples, things[, components]) as a matrix (samples, things). */
@@ -351,15 +332,17 @@ static void add_thing(mxArray *things, const char *name, const char *field, cons
   add_field(mxGetField(things, 0, own), field, values);
 }
 
+/* Each thing's columns into its field of nodes, members, ..., and matrices (samples, things) of all. */
 static void add_channel(mxArray *result, const strutlib_scene *scene, const strutlib_result *r,
-                        const channel *c) {
-  for (size_t k = 0; k < 2 && c->field[k]; k++) {
-    mxArray *matrix = plane_of(r, c->name, k), *things = things_of(result, c->kind);
+                        const char *name) {
+  const char *column, *kind = strutlib_channel_kind(name);
+  for (size_t k = 0; (column = strutlib_channel_column(name, k)) != NULL; k++) {
+    mxArray *matrix = plane_of(r, name, k), *things = things_of(result, kind);
     if (!matrix) continue;
-    size_t count = mxGetN(matrix), known = strutlib_name_count(scene, c->kind);
+    size_t count = mxGetN(matrix), known = strutlib_name_count(scene, kind);
     for (size_t i = 0; i < count && i < known; i++)
-      add_thing(things, strutlib_name(scene, c->kind, i), c->field[k], matrix, i);
-    add_field(result, c->matrix[k], matrix);
+      add_thing(things, strutlib_name(scene, kind, i), column, matrix, i);
+    add_field(result, column, matrix);
   }
 }
 
@@ -398,9 +381,8 @@ static mxArray *run(const strutlib_scene *scene, int count, const mxArray *const
   mxArray *all = summarise(scene, r);
   const char *name;
   for (size_t i = 0; (name = strutlib_result_array_name(r, i)) != NULL; i++) {
-    const channel *c = find_channel(name);
-    if (c) {
-      add_channel(all, scene, r, c);
+    if (is_of_things(name)) {
+      add_channel(all, scene, r, name);
       continue;
     }
     mxArray *array = strchr(name, '.') ? NULL : result_array(r, name);

@@ -1,8 +1,130 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/python/module.h"
-
+/* The module: long calls, texts, and functions of the package as a whole. */
+#include <pthread.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
+
+#include "parser/python/module.h"
+
+/*
+ * Long calls. Python runs the handlers of signals between two of its own instructions only, and only in the
+ * thread that began the program. A call therefore computes in a thread of its own, and the thread that made it
+ * looks for signals: Ctrl-C ends everything within a moment, also what reports no progress.
+ */
+
+#define LOOK_EVERY 50000000L /* ns */
+
+typedef struct {
+  void (*compute)(void *context);
+  void *context;
+  pthread_mutex_t mutex;
+  pthread_cond_t changed;
+  int done;
+  double fraction;
+} call;
+
+static void *compute(void *argument) {
+  call *c = argument;
+  c->compute(c->context);
+  pthread_mutex_lock(&c->mutex);
+  c->done = 1;
+  pthread_cond_signal(&c->changed);
+  pthread_mutex_unlock(&c->mutex);
+  return NULL;
+}
+
+static int note_progress(void *context, double fraction) {
+  call *c = context;
+  pthread_mutex_lock(&c->mutex);
+  c->fraction = fraction;
+  pthread_mutex_unlock(&c->mutex);
+  return 0;
+}
+
+/* Starts the thread, which receives no signals: 0, or what pthread_create returns. */
+static int start(call *c, pthread_t *thread) {
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  int refused = pthread_create(thread, NULL, compute, c);
+  pthread_sigmask(SIG_SETMASK, &before, NULL);
+  return refused;
+}
+
+/* Waits until the call is done, or a moment: 1 if it is done. */
+static int is_done(call *c, int patient) {
+  struct timespec until;
+  clock_gettime(CLOCK_MONOTONIC, &until);
+  until.tv_nsec += LOOK_EVERY;
+  if (until.tv_nsec >= 1000000000L) {
+    until.tv_nsec -= 1000000000L;
+    until.tv_sec++;
+  }
+  int late = 0;
+  pthread_mutex_lock(&c->mutex);
+  while (!c->done && !late) {
+    late = patient ? pthread_cond_wait(&c->changed, &c->mutex)
+                   : pthread_cond_timedwait(&c->changed, &c->mutex, &until);
+  }
+  int done = c->done;
+  pthread_mutex_unlock(&c->mutex);
+  return done;
+}
+
+/* Handlers of signals and progress(fraction), with the interpreter's lock: 0, or -1 if one raises. */
+static int look(call *c, PyObject *progress) {
+  if (PyErr_CheckSignals() != 0) {
+    return -1;
+  }
+  if (progress == Py_None) {
+    return 0;
+  }
+  pthread_mutex_lock(&c->mutex);
+  double fraction = c->fraction;
+  pthread_mutex_unlock(&c->mutex);
+  PyObject *answer = PyObject_CallFunction(progress, "d", fraction);
+  Py_XDECREF(answer);
+  return answer == NULL ? -1 : 0;
+}
+
+int strut_py_wait(void (*function)(void *), void *context, strutlib_control *control,
+                  PyObject *progress) {
+  call c = {.compute = function, .context = context};
+  pthread_condattr_t attributes;
+  pthread_condattr_init(&attributes);
+  pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
+  pthread_mutex_init(&c.mutex, NULL);
+  pthread_cond_init(&c.changed, &attributes);
+  pthread_condattr_destroy(&attributes);
+  if (control != NULL && progress != Py_None) {
+    strutlib_control_on_progress(control, note_progress, &c);
+  }
+  int raised = 0;
+  pthread_t thread;
+  PyThreadState *unlocked = PyEval_SaveThread();
+  if (start(&c, &thread) != 0) { /* no threads left: then without Ctrl-C */
+    compute(&c);
+  } else {
+    while (!is_done(&c, raised)) {
+      PyEval_RestoreThread(unlocked);
+      raised = look(&c, progress) != 0;
+      if (raised && control != NULL) {
+        strutlib_interrupt(control);
+      }
+      unlocked = PyEval_SaveThread();
+    }
+    pthread_join(thread, NULL);
+  }
+  PyEval_RestoreThread(unlocked);
+  if (control != NULL) {
+    strutlib_control_on_progress(control, NULL, NULL);
+  }
+  pthread_cond_destroy(&c.changed);
+  pthread_mutex_destroy(&c.mutex);
+  return raised ? -1 : 0;
+}
 
 strut_py_types *strut_py_types_of(PyObject *module) { return PyModule_GetState(module); }
 
@@ -254,6 +376,38 @@ static PyObject *options(PyObject *module, PyObject *argument) {
   return list;
 }
 
+/* A tuple of texts: those of a function of a channel and an index, up to the first NULL. */
+static PyObject *texts_of(const char *(*text)(const char *channel, size_t i), const char *channel) {
+  Py_ssize_t count = 0;
+  while (text(channel, (size_t)count) != NULL) {
+    count++;
+  }
+  PyObject *tuple = PyTuple_New(count);
+  for (Py_ssize_t i = 0; tuple != NULL && i < count; i++) {
+    PyObject *item = strut_py_text(text(channel, (size_t)i));
+    if (item == NULL || PyTuple_SetItem(tuple, i, item) != 0) {
+      Py_CLEAR(tuple);
+    }
+  }
+  return tuple;
+}
+
+static PyObject *channels(PyObject *module, PyObject *none) {
+  (void)module, (void)none;
+  PyObject *list = PyList_New(0);
+  const char *name;
+  for (size_t i = 0; list != NULL && (name = strutlib_channel(i)) != NULL; i++) {
+    PyObject *channel = Py_BuildValue(
+        "(NNNN)", strut_py_text(name), strut_py_text(strutlib_channel_kind(name)),
+        texts_of(strutlib_channel_component, name), texts_of(strutlib_channel_column, name));
+    if (channel == NULL || PyList_Append(list, channel) != 0) {
+      Py_CLEAR(list);
+    }
+    Py_XDECREF(channel);
+  }
+  return list;
+}
+
 static PyObject *status_name(PyObject *module, PyObject *argument) {
   (void)module;
   int status = (int)PyLong_AsLong(argument);
@@ -277,6 +431,7 @@ static PyMethodDef functions[] = {
     {"open_text", open_text, METH_VARARGS, "open_text(name, text, names, values): a scene's text."},
     {"with_", scene_with, METH_VARARGS, "with_(scene, names, values): further settings."},
     {"options", options, METH_O, "options(command): its options and what they mean."},
+    {"channels", channels, METH_NOARGS, "channels(): (name, kind, components, columns) of each."},
     {"status_name", status_name, METH_O, "status_name(number): a status as a word."},
     {"status_text", status_text, METH_O, "status_text(number): a status as a few words."},
     {NULL, NULL, 0, NULL}};

@@ -7,7 +7,7 @@
 #include <time.h>
 
 #include "engine/integrate/lanes/batch.h"
-#include "engine/run/simulate_batch.h"
+#include "engine/run/simulate.h"
 #include "tests/bench/scenes.h"
 
 enum { WIDTHS = 4, METHODS = 1, MOST = 1001 };

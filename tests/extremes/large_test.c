@@ -9,7 +9,7 @@
 
 #include "engine/forces/energy.h"
 #include "engine/integrate/limit/step_limit.h"
-#include "engine/run/measure/balance.h"
+#include "engine/run/measure/measure.h"
 #include "tests/support/allocations.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"

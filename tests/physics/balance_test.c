@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/run/measure/balance.h"
+#include "engine/run/measure/measure.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"
 #include "tests/support/motion.h"

@@ -8,7 +8,7 @@
 
 #include "engine/integrate/lanes/batch.h"
 #include "engine/model/small_model.h"
-#include "engine/run/simulate_batch.h"
+#include "engine/run/simulate.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"
 #include "tests/support/motion.h"

@@ -37,7 +37,7 @@ sources="tests/recipes/recipes.c tests/recipes/things.c templates.c $(ls engine/
   engine/model/*.c engine/forces/*.c engine/statics/search/*.c engine/statics/equilibria/*.c \
   engine/output/code/*.c) $(find engine/integrate parser/yaml parser/expression parser/language \
   parser/read parser/write -name '*.c') $(ls engine/run/settle*.c engine/output/buffer.c \
-  engine/output/file.c engine/output/ownership.c engine/output/results.c engine/output/stage.c)
+  engine/output/file.c engine/output/results.c)
   engine/statics/curvature.c engine/statics/dense_algebra.c engine/statics/minimise.c
   engine/statics/potential.c engine/statics/rigid_motions.c engine/statics/spectrum.c"
 # shellcheck disable=SC2086

@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/csv.h"
+#include "engine/output/record_files.h"
 #include "tests/support/heap.h"
 #include "tests/unit/sample.h"
 #include "tests/unit/scratch.h"

@@ -17,7 +17,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/file.h"
-#include "engine/output/hdf5.h"
+#include "engine/output/record_files.h"
 #include "tests/unit/sample.h"
 #include "tests/unit/scratch.h"
 

@@ -15,8 +15,8 @@
 #include <cjson/cJSON.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/json.h"
-#include "engine/output/quantity_text.h"
+#include "engine/output/buffer.h"
+#include "engine/output/run_report.h"
 
 static strut_node node = {.name = "n1"};
 static strut_parameter parameters[] = {

@@ -16,7 +16,6 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/page/page.h"
-#include "engine/output/page/page_motion.h"
 #include "tests/support/build.h"
 
 static uint64_t seed = 1;

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/output/hdf5.h"
+#include "engine/output/record_files.h"
 #include "engine/output/trajectory.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"

@@ -11,10 +11,10 @@
 #include <cmocka.h>
 
 #include "engine/base/memory.h"
+#include "engine/output/exports.h"
 #include "engine/output/film/encoder.h"
 #include "engine/output/film/film.h"
-#include "engine/output/report/sketch.h"
-#include "engine/output/vtk.h"
+#include "engine/output/report/reports.h"
 #include "parser/read/read_scene.h"
 #include "tests/unit/scratch.h"
 

@@ -12,9 +12,9 @@
 #include "engine/model/mass.h"
 #include "engine/output/code/law_text.h"
 #include "engine/output/code/templates.h"
+#include "engine/output/exports.h"
 #include "engine/output/file.h"
 #include "engine/output/results.h"
-#include "engine/output/untold.h"
 
 /* ---- what there is no code for ---- */
 
@@ -25,7 +25,7 @@ static size_t count_rubbing(const strut_scene *scene) {
 }
 
 /* Laws and strains are their own texts. Sticking that is exact needs a method with events. */
-static void add_unwritten_laws(strut_untold *r, strut_law_set has) {
+static void add_unwritten_laws(strut_unsupported *r, strut_law_set has) {
   char text[200];
   for (unsigned k = 0; k < STRUT_FRICTION_LAW_COUNT; k++) {
     bool exact = strut_friction_is_exact((strut_friction_law)k);
@@ -33,11 +33,11 @@ static void add_unwritten_laws(strut_untold *r, strut_law_set has) {
         text, sizeof text,
         "friction law %s (its stops and starts are located within steps; use karnopp or smooth)",
         strut_friction_law_at((strut_friction_law)k)->word);
-    strut_untold_add(r, exact && has.friction >> k & 1u, text);
+    strut_unsupported_add(r, exact && has.friction >> k & 1u, text);
   }
   for (unsigned k = 0; k < STRUT_LAW_COUNT; k++) {
     snprintf(text, sizeof text, "law %s", strut_law_at((strut_law_kind)k)->word);
-    strut_untold_add(r, has.law >> k & 1u && !strut_code_knows_element_law((strut_law_kind)k),
+    strut_unsupported_add(r, has.law >> k & 1u && !strut_code_knows_element_law((strut_law_kind)k),
                      text);
   }
   for (unsigned k = 0; k < STRUT_STRAIN_COUNT; k++) {
@@ -45,20 +45,20 @@ static void add_unwritten_laws(strut_untold *r, strut_law_set has) {
     char function[100];
     snprintf(function, sizeof function, "strain_%s", name);
     snprintf(text, sizeof text, "strain %s", name);
-    strut_untold_add(r, has.strain >> k & 1u && !strut_code_knows_law(function), text);
+    strut_unsupported_add(r, has.strain >> k & 1u && !strut_code_knows_law(function), text);
   }
 }
 
 strut_status strut_code_check(const strut_model *model, strut_error *error) {
   const strut_scene *s = model->scene;
-  strut_untold r = {.used = 0};
-  strut_untold_add(&r, (model->plan & STRUT_TERM_RIGID) != 0,
-                   "bars: rigid (their forces follow from equations "
-                   "that each step would solve; use bars: elastic)");
-  strut_untold_add(&r, count_rubbing(s), "friction at guides");
+  strut_unsupported r = {.used = 0};
+  strut_unsupported_add(&r, (model->plan & STRUT_TERM_RIGID) != 0,
+                        "bars: rigid (their forces follow from equations "
+                        "that each step would solve; use bars: elastic)");
+  strut_unsupported_add(&r, count_rubbing(s), "friction at guides");
   add_unwritten_laws(&r, model->laws);
-  strut_untold_add(&r, s->support_motion_count, "moves of nodes");
-  strut_untold_add(&r, s->unbalance_count, "unbalances");
+  strut_unsupported_add(&r, s->support_motion_count, "moves of nodes");
+  strut_unsupported_add(&r, s->unbalance_count, "unbalances");
   if (r.used)
     return strut_fail(error, STRUT_BAD_SCENE,
                       "the scene has what no C code is written for: %s; leave it out, or compute "

@@ -11,7 +11,7 @@
 #ifndef STRUT_ENGINE_OUTPUT_CODE_TEMPLATES_H
 #define STRUT_ENGINE_OUTPUT_CODE_TEMPLATES_H
 
-#include "engine/output/embedded.h"
+#include "engine/output/buffer.h"
 
 extern const strut_embedded strut_code_header_template[], strut_code_source_template[],
     strut_code_example_template[], strut_code_elements_template[], strut_code_duals_template[],

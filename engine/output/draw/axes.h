@@ -5,8 +5,8 @@
 #ifndef STRUT_ENGINE_OUTPUT_DRAW_AXES_H
 #define STRUT_ENGINE_OUTPUT_DRAW_AXES_H
 
+#include "engine/output/buffer.h"
 #include "engine/output/draw/palette.h"
-#include "engine/output/quantity_text.h"
 
 /** One axis as wanted. Its label reads "name in prefix unit", such as "velocity in mm/s". */
 typedef struct strut_axis {

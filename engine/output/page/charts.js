@@ -57,6 +57,17 @@
       .map((c) => c.curve);
   }
 
+  /* A channel as the table of channels describes it: columns of each thing, then of their total. */
+  function plainKind(data, name, block, values) {
+    const things = data[block.things] || [], components = block.components;
+    const nameOf = (k) => k >= things.length ? "total" : things[k].name ||
+      (data.contact_names ? data.contact_names[k] : data.nodes[things[k]].name);
+    return { name: name.replaceAll("_", " "), unit: block.unit,
+      curves: Array.from({ length: block.columns }, (_, i) => ({
+        name: (nameOf(Math.floor(i / components.length)) + " " + components[i % components.length]).trim(),
+        at: column(values, block.columns, i) })) };
+  }
+
   /* The possible charts: {name, unit, curves: [{name, at(frame)}]}. */
   function kindsOf(data, motion) {
     const count = data.nodes.length, kinds = [], track = page.trackedX(data, motion);
@@ -92,6 +103,8 @@
     if (motion.energy)
       kinds.push({ name: "energy", unit: "J", curves: data.motion.energy_names.map((name, i) => ({
         name, at: column(motion.energy, data.motion.energy_names.length, i) })) });
+    for (const [name, block] of Object.entries(data.motion))
+      if (block && block.unit) kinds.push(plainKind(data, name, block, motion[name]));
     for (const kind of kinds) {
       kind.all = kind.curves.length;
       kind.curves = liveliest(kind.curves, motion.frames);
@@ -195,7 +208,7 @@
     function add(kind) {
       const box = document.createElement("div"), title = document.createElement("div");
       const plot = document.createElement("div"), cursor = document.createElement("div");
-      const holder = document.createElement("div"), prefix = ["m^2", "deg"].includes(kind.unit)
+      const holder = document.createElement("div"), prefix = /^kg|\^2$|deg/.test(kind.unit)
         ? { text: "", factor: 1 } : prefixOf(kind.curves, motion.frames);
       const chart = { kind, box, plot, cursor };
       chart.scaled = kind.curves.map((c) => ({ at: (f) => c.at(f) / prefix.factor }));

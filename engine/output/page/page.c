@@ -7,11 +7,9 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/page/page_assets.h"
-#include "engine/output/page/page_motion.h"
-#include "engine/output/quantity_text.h"
-#include "engine/output/report/equilibria_report.h"
-#include "engine/output/summary_rows.h"
+#include "engine/output/buffer.h"
+#include "engine/output/report/reports.h"
+#include "engine/output/run_report.h"
 #include "engine/scene/profile.h"
 
 /* The cards of the page: the choice of equilibria and their data. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/page/page_motion.h"
+#include "engine/output/page/page.h"
 
 #include <assert.h>
 #include <float.h>
@@ -169,10 +169,27 @@ static const double POSITION_QUANTUM = 1e-6, VALUE_QUANTUM = 1e-5, COLUMN_QUANTU
 /* A diverged run is shown up to this distance from its start, in sizes. */
 static const double DIVERGED_REACH = 1e3;
 
-enum { TIME, POSITION, FORCE, CONTACT, ENERGY, ANGLE, MOMENT, AREA, PRESSURE, BLOCKS };
-static const char *const keys[BLOCKS] = {"time",  "position", "force", "contact", "energy",
-                                         "angle", "moment",   "area",  "pressure"};
-static const char *const energy_names[STRUT_ENERGIES] = {STRUT_ENERGY_NAMES};
+/* Blocks: the time, then the channels in the order of their table. The page draws the motion, not velocities and
+   lengths; it has charts of its own for some channels, whose keys are always there, and a common one for others. */
+enum {
+  TIME,
+  POSITION = 1 + STRUT_CHANNEL_PLACE_POSITION,
+  ENERGY = 1 + STRUT_CHANNEL_PLACE_ENERGY,
+  BLOCKS = 1 + STRUT_CHANNEL_COUNT
+};
+static const unsigned LEFT_OUT = STRUT_CHANNEL_VELOCITY | STRUT_CHANNEL_LENGTH,
+                      OWN_CHARTS = STRUT_CHANNEL_POSITION | STRUT_CHANNEL_FORCE |
+                                   STRUT_CHANNEL_CONTACT | STRUT_CHANNEL_ENERGY |
+                                   STRUT_CHANNEL_ANGLE | STRUT_CHANNEL_MOMENT | STRUT_CHANNEL_AREA |
+                                   STRUT_CHANNEL_PRESSURE;
+
+static const strut_channel_row *channel_of(int block) {
+  return strut_channel_row_of((strut_channel)(1u << (block - 1)));
+}
+
+static bool has_common_chart(int block) {
+  return block != TIME && !(OWN_CHARTS & channel_of(block)->id);
+}
 
 typedef struct motion {
   const strut_page *page;
@@ -213,14 +230,12 @@ static size_t count_frames(const motion *m) {
 static void find_rows(motion *m) {
   const strut_trajectory *t = m->page->motion;
   m->rows[TIME] = (strut_rows){t->time, t->frames, 1, 1};
-  m->rows[POSITION] = (strut_rows){t->position, t->frames, 2 * t->node_count, 1};
-  m->rows[FORCE] = (strut_rows){t->force, t->frames, t->member_count, 1};
-  m->rows[CONTACT] = (strut_rows){t->contact, t->frames, 2 * t->contact_count, 1};
-  m->rows[ENERGY] = (strut_rows){t->energy, t->frames, STRUT_ENERGIES, 1};
-  m->rows[ANGLE] = (strut_rows){t->angle, t->frames, t->hinge_count, 1};
-  m->rows[MOMENT] = (strut_rows){t->moment, t->frames, t->hinge_count, 1};
-  m->rows[AREA] = (strut_rows){t->area, t->frames, t->cell_count, 1};
-  m->rows[PRESSURE] = (strut_rows){t->pressure, t->frames, t->cell_count, 1};
+  for (int b = 1; b < BLOCKS; b++) {
+    const strut_channel_row *row = channel_of(b);
+    size_t columns = strut_channel_items(row, m->page->model->scene) * row->components;
+    if (!(LEFT_OUT & row->id))
+      m->rows[b] = (strut_rows){strut_trajectory_channel(t, row->id), t->frames, columns, 1};
+  }
   m->frames = count_frames(m);
   for (int b = 0; b < BLOCKS; b++) m->rows[b].frames = m->frames;
 }
@@ -266,7 +281,7 @@ static double wanted_quantum(const motion *m, int b, double largest) {
 
 static void choose_quanta(motion *m) {
   m->quantum[TIME] = time_quantum(m);
-  for (int b = POSITION; b < BLOCKS; b++) {
+  for (int b = 1; b < BLOCKS; b++) {
     if (!m->rows[b].values) continue;
     double largest = strut_rows_largest(&m->rows[b]);
     m->quantum[b] = strut_round_quantum(wanted_quantum(m, b, largest), largest);
@@ -308,14 +323,23 @@ static void add_number(strut_buffer *buffer, double value) {
   strut_buffer_add(buffer, "%s", text);
 }
 
-static void add_block(strut_buffer *buffer, const char *key, const strut_block *block) {
-  strut_buffer_add(buffer, ",\"%s\":", key);
+/* A channel without a chart of its own says what the common one needs to know. */
+static void add_block(strut_buffer *buffer, const motion *m, int b) {
+  const strut_block *block = &m->block[b];
   if (!block->bytes) {
     strut_buffer_add(buffer, "null");
     return;
   }
   strut_buffer_add(buffer, "{\"columns\":%zu,\"quantum\":", block->columns);
   add_number(buffer, block->quantum);
+  if (has_common_chart(b)) {
+    const strut_channel_row *row = channel_of(b);
+    strut_buffer_add(buffer, ",\"unit\":\"%s\",\"things\":\"%s\",\"components\":[", row->unit,
+                     strut_owner_row_of(row->owner)->things);
+    for (size_t i = 0; i < row->components; i++)
+      strut_buffer_add(buffer, "%s\"%s\"", i ? "," : "", row->component_names[i]);
+    strut_buffer_add(buffer, "]");
+  }
   strut_buffer_add(buffer, ",\"bytes\":\"");
   strut_base64_add(buffer, block->bytes, block->size);
   strut_buffer_add(buffer, "\"}");
@@ -338,10 +362,14 @@ static void add_head(strut_buffer *buffer, const motion *m) {
 static void add_motion(strut_buffer *buffer, const motion *m) {
   const strut_model *model = m->page->model;
   add_head(buffer, m);
-  for (int b = 0; b < BLOCKS; b++) add_block(buffer, keys[b], &m->block[b]);
+  for (int b = 0; b < BLOCKS; b++) {
+    if (has_common_chart(b) && !m->block[b].bytes) continue;
+    strut_buffer_add(buffer, ",\"%s\":", b == TIME ? "time" : channel_of(b)->name);
+    add_block(buffer, m, b);
+  }
   strut_buffer_add(buffer, ",\"energy_names\":[");
-  for (int i = 0; i < STRUT_ENERGIES; i++)
-    strut_buffer_add(buffer, "%s\"%s\"", i ? "," : "", energy_names[i]);
+  for (size_t i = 0; i < STRUT_ENERGIES; i++)
+    strut_buffer_add(buffer, "%s\"%s\"", i ? "," : "", channel_of(ENERGY)->component_names[i]);
   strut_buffer_add(buffer, "],\"weights\":[");
   for (int32_t i = 0; i < model->node_count; i++) {
     if (i) strut_buffer_add(buffer, ",");

@@ -43,9 +43,8 @@ window.strutPage = {};
   page.decodeMotion = async function (motion) {
     if (!motion) return null;
     const decoded = { frames: motion.frames };
-    for (const name of ["time", "position", "length", "force", "contact", "energy", "angle",
-      "moment", "area", "pressure"])
-      decoded[name] = await page.decodeBlock(motion[name], motion.frames);
+    for (const [name, block] of Object.entries(motion))
+      if (block && block.bytes) decoded[name] = await page.decodeBlock(block, motion.frames);
     return decoded;
   };
 })(window.strutPage);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/report/form_report.h"
+#include "engine/output/report/reports.h"
 
 #include <math.h>
 
@@ -7,7 +7,6 @@
 #include "engine/forces/elements.h"
 #include "engine/output/buffer.h"
 #include "engine/output/json_value.h"
-#include "engine/output/quantity_text.h"
 
 enum { MOST_MEMBERS = 40, DIGITS = 7 };
 

@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/report/modes_report.h"
+#include "engine/output/report/reports.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "engine/base/c_locale.h"
-#include "engine/base/number_text.h"
 #include "engine/base/vec.h"
 #include "engine/output/buffer.h"
-#include "engine/output/json_settle.h"
 #include "engine/output/json_value.h"
-#include "engine/output/quantity_text.h"
+#include "engine/output/run_report.h"
 #include "engine/scene/signal_program.h"
 
 enum { MOST_ROWS = 40, DIGITS = 6 };
@@ -36,19 +35,29 @@ static const char *left_out(const strut_model *model) {
                              : NULL;
 }
 
+/* A mode as a row; its description, the last one, is always in quotes in the CSV. */
+enum { MODE_CELLS = 10 };
+static void fill_cells(const strut_mode *m, strut_report_value cells[MODE_CELLS]) {
+  const strut_report_value row[MODE_CELLS] = {
+      {"frequency", "Hz", m->angular_frequency / STRUT_TAU, NULL, true},
+      {"angular_frequency", "1/s", m->angular_frequency, NULL, false},
+      {"eigenvalue", "1/s^2", m->eigenvalue, NULL, false},
+      {"damping_ratio", "1", m->damping_ratio, NULL, true},
+      {"damped_frequency", "Hz", m->damped_frequency / STRUT_TAU, NULL, true},
+      {"decay_rate", "1/s", m->decay_rate, NULL, true},
+      {"residual", "1", m->residual, NULL, false},
+      {"error", "1", m->error, NULL, true},
+      {"kind", "1", 0.0, strut_mode_kind_name(m->kind), true},
+      {"description", "1", 0.0, m->description, true}};
+  memcpy(cells, row, sizeof row);
+}
+
 static void add_mode(strut_json *json, struct cJSON *list, const strut_model *model,
                      const strut_mode *mode) {
   struct cJSON *row = strut_json_object(json, list, NULL);
-  strut_json_number(json, row, "frequency", mode->angular_frequency / STRUT_TAU);
-  strut_json_number(json, row, "angular_frequency", mode->angular_frequency);
-  strut_json_number(json, row, "eigenvalue", mode->eigenvalue);
-  strut_json_number(json, row, "damping_ratio", mode->damping_ratio);
-  strut_json_number(json, row, "damped_frequency", mode->damped_frequency / STRUT_TAU);
-  strut_json_number(json, row, "decay_rate", mode->decay_rate);
-  strut_json_number(json, row, "residual", mode->residual);
-  strut_json_number(json, row, "error", mode->error);
-  strut_json_text(json, row, "kind", strut_mode_kind_name(mode->kind));
-  strut_json_text(json, row, "description", mode->description);
+  strut_report_value cells[MODE_CELLS];
+  fill_cells(mode, cells);
+  strut_json_cells(json, row, cells, MODE_CELLS);
   add_nodes(json, row, "shape", model, mode->shape);
 }
 
@@ -147,26 +156,18 @@ char *strut_modes_table(const strut_model *model, const strut_modes *modes) {
   return strut_buffer_take(&table);
 }
 
-static void add_number(strut_buffer *csv, double value) {
-  char text[STRUT_NUMBER_TEXT];
-  strut_number_text(value, text);
-  strut_buffer_add(csv, ",%s", text);
-}
-
 char *strut_modes_csv(const strut_modes *modes) {
   strut_buffer csv = {0};
-  strut_buffer_add(&csv,
-                   "mode,frequency [Hz],damping ratio,damped frequency [Hz],decay rate [1/s],"
-                   "error,kind,description\n");
+  strut_report_value cells[MODE_CELLS];
+  fill_cells(&(strut_mode){.description = ""}, cells);
+  strut_buffer_add(&csv, "mode");
+  strut_csv_add_columns(&csv, cells, MODE_CELLS);
   for (size_t i = 0; i < modes->count; i++) {
-    const strut_mode *mode = &modes->list[i];
-    strut_buffer_add(&csv, "%zu", i + 1);
-    add_number(&csv, mode->angular_frequency / STRUT_TAU);
-    add_number(&csv, mode->damping_ratio);
-    add_number(&csv, mode->damped_frequency / STRUT_TAU);
-    add_number(&csv, mode->decay_rate);
-    add_number(&csv, mode->error);
-    strut_buffer_add(&csv, ",%s,\"%s\"\n", strut_mode_kind_name(mode->kind), mode->description);
+    fill_cells(&modes->list[i], cells);
+    strut_buffer_add(&csv, "\n%zu", i + 1);
+    strut_csv_add_cells(&csv, cells, MODE_CELLS - 1);
+    strut_buffer_add(&csv, ",\"%s\"", modes->list[i].description);
   }
+  strut_buffer_add(&csv, "\n");
   return strut_buffer_take(&csv);
 }

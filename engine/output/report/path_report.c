@@ -1,15 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/report/path_report.h"
+#include "engine/output/report/reports.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "engine/base/c_locale.h"
-#include "engine/base/number_text.h"
 #include "engine/output/buffer.h"
 #include "engine/output/json_value.h"
-#include "engine/output/quantity_text.h"
 
 enum {
   MOST_ROWS = 20,
@@ -39,30 +37,58 @@ static state state_of_event(const strut_path_event *e) {
                  e->moment, e->reaction, e->contact, e->pressure};
 }
 
-/* The largest member force anywhere on the path [N]. */
-static double largest_force(const strut_path *path, const strut_scene *scene) {
-  double most = 0;
-  for (size_t k = 0; k < path->point_count; k++)
-    for (size_t j = 0; j < scene->member_count; j++)
-      most = fmax(most, fabs(path->points[k].force[j]));
-  return most;
+/* ---- what carries load: one row for JSON, CSV and the table each ---- */
+
+typedef enum carrier { MEMBERS, HINGES, CELLS, SUPPORTS, CONTACTS, CARRIERS } carrier;
+
+/* Key in JSON; column of the CSV and words in the table, of supports along x and y; unit. */
+static const struct {
+  const char *key, *column[2], *words[2], *unit;
+} carriers[CARRIERS] = {
+    [MEMBERS] = {"forces", {"force [N]"}, {""}, "N"},
+    [HINGES] = {"moments", {"moment [N m]"}, {" moment"}, "N m"},
+    [CELLS] = {"pressures", {"pressure [N/m]"}, {" pressure"}, "N/m"},
+    [SUPPORTS] = {"reactions",
+                  {"reaction_x [N]", "reaction_y [N]"},
+                  {" support x", " support y"},
+                  "N"},
+    [CONTACTS] = {"contacts", {"ground [N]"}, {" ground"}, "N"},
+};
+
+/* Number of values of a kind at a state; of supports two for each node. */
+static size_t count_values(const strut_scene *scene, carrier kind) {
+  const size_t counts[CARRIERS] = {scene->member_count, scene->hinge_count, scene->cell_count,
+                                   2 * scene->node_count, scene->contact_count};
+  return counts[kind];
 }
 
-/* The largest moment of a hinge anywhere on the path [N m]. */
-static double largest_moment(const strut_path *path, const strut_scene *scene) {
-  double most = 0;
-  for (size_t k = 0; k < path->point_count; k++)
-    for (size_t i = 0; i < scene->hinge_count; i++)
-      most = fmax(most, fabs(path->points[k].moment[i]));
-  return most;
+static const double *values_of(const state *at, carrier kind) {
+  const double *const values[CARRIERS] = {at->force, at->moment, at->pressure, at->reaction,
+                                          at->contact};
+  return values[kind];
 }
 
-/* The largest pressure of a cell anywhere on the path [N/m]. */
-static double largest_pressure(const strut_path *path, const strut_scene *scene) {
+static const char *name_of(const strut_scene *scene, carrier kind, size_t i) {
+  switch (kind) {
+    case MEMBERS: return scene->members[i].name;
+    case HINGES: return scene->hinges[i].name;
+    case CELLS: return scene->cells[i].name;
+    case SUPPORTS: return scene->nodes[i / 2].name;
+    case CONTACTS: return scene->nodes[scene->contacts[i].node].name;
+    case CARRIERS: break;
+  }
+  return "";
+}
+
+/* The largest value of a kind anywhere on the path; of supports and the ground that of members. */
+static double largest_value(const strut_path *path, const strut_scene *scene, carrier kind) {
+  carrier of = kind == HINGES || kind == CELLS ? kind : MEMBERS;
   double most = 0;
-  for (size_t k = 0; k < path->point_count; k++)
-    for (size_t i = 0; i < scene->cell_count; i++)
-      most = fmax(most, fabs(path->points[k].pressure[i]));
+  for (size_t k = 0; k < path->point_count; k++) {
+    state at = state_of_point(&path->points[k]);
+    for (size_t i = 0; i < count_values(scene, of); i++)
+      most = fmax(most, fabs(values_of(&at, of)[i]));
+  }
   return most;
 }
 
@@ -76,6 +102,10 @@ static bool is_held(const strut_path *path, const strut_scene *scene, size_t nod
   return scene->nodes[node].fixed[axis] || path->coordinate == (int32_t)(2 * node) + axis;
 }
 
+static bool has_value(const strut_path *path, const strut_scene *scene, carrier kind, size_t i) {
+  return kind != SUPPORTS || is_held(path, scene, i / 2, (int)(i % 2));
+}
+
 static void add_nodes(strut_json *json, struct cJSON *to, const strut_scene *scene,
                       const double *q) {
   struct cJSON *nodes = strut_json_object(json, to, "nodes");
@@ -83,26 +113,21 @@ static void add_nodes(strut_json *json, struct cJSON *to, const strut_scene *sce
     strut_json_numbers(json, nodes, scene->nodes[i].name, q + 2 * i, 2);
 }
 
+/* Hinges and cells only where there are some; supports as pairs. */
 static void add_forces(strut_json *json, struct cJSON *to, const strut_path *path,
                        const strut_scene *scene, const state *at) {
-  struct cJSON *forces = strut_json_object(json, to, "forces");
-  for (size_t j = 0; j < scene->member_count; j++)
-    strut_json_number(json, forces, scene->members[j].name, at->force[j]);
-  if (scene->hinge_count) {
-    struct cJSON *moments = strut_json_object(json, to, "moments");
-    for (size_t i = 0; i < scene->hinge_count; i++)
-      strut_json_number(json, moments, scene->hinges[i].name, at->moment[i]);
+  for (carrier kind = MEMBERS; kind < CARRIERS; kind++) {
+    size_t count = count_values(scene, kind);
+    if (!count && (kind == HINGES || kind == CELLS)) continue;
+    struct cJSON *values = strut_json_object(json, to, carriers[kind].key);
+    for (size_t i = 0; i < count; i += kind == SUPPORTS ? 2 : 1) {
+      const double *value = values_of(at, kind) + i;
+      if (kind != SUPPORTS)
+        strut_json_number(json, values, name_of(scene, kind, i), *value);
+      else if (has_value(path, scene, kind, i) || has_value(path, scene, kind, i + 1))
+        strut_json_numbers(json, values, name_of(scene, kind, i), value, 2);
+    }
   }
-  struct cJSON *pressures = scene->cell_count ? strut_json_object(json, to, "pressures") : NULL;
-  for (size_t i = 0; i < scene->cell_count; i++)
-    strut_json_number(json, pressures, scene->cells[i].name, at->pressure[i]);
-  struct cJSON *reactions = strut_json_object(json, to, "reactions");
-  for (size_t i = 0; i < scene->node_count; i++)
-    if (is_held(path, scene, i, 0) || is_held(path, scene, i, 1))
-      strut_json_numbers(json, reactions, scene->nodes[i].name, at->reaction + 2 * i, 2);
-  struct cJSON *contacts = strut_json_object(json, to, "contacts");
-  for (size_t i = 0; i < scene->contact_count; i++)
-    strut_json_number(json, contacts, scene->nodes[scene->contacts[i].node].name, at->contact[i]);
 }
 
 /* The parameter: a load's factor and what it is in newtons, or a value. */
@@ -282,7 +307,6 @@ static void add_force_table(strut_buffer *table, const strut_path *path, const s
   double values[MOST_STOPS], largest[MOST_STOPS];
   char text[STRUT_QUANTITY_TEXT];
   size_t count = choose_stops(path, stops, heads), rows = 0, left = 0;
-  for (size_t k = 0; k < count; k++) largest[k] = largest_force(path, scene);
   strut_buffer_add(table, "\n  %-*s", LABEL, "forces at");
   for (size_t k = 0; k < count; k++) {
     strut_buffer_add(table, "  ");
@@ -293,36 +317,15 @@ static void add_force_table(strut_buffer *table, const strut_path *path, const s
   for (size_t k = 0; k < count; k++)
     strut_buffer_add(table, "  %14s", value_text(path, stops[k].factor, text));
   strut_buffer_add(table, "\n");
-  for (size_t j = 0; j < scene->member_count; j++) {
-    for (size_t k = 0; k < count; k++) values[k] = stops[k].force[j];
-    if (rows++ < MOST_FORCES)
-      add_force_row(table, scene->members[j].name, "", "N", count, values, largest);
-  }
-  double moments[MOST_STOPS];
-  for (size_t k = 0; k < count; k++) moments[k] = largest_moment(path, scene);
-  for (size_t i = 0; i < scene->hinge_count; i++) {
-    for (size_t k = 0; k < count; k++) values[k] = stops[k].moment[i];
-    if (rows++ < MOST_FORCES)
-      add_force_row(table, scene->hinges[i].name, " moment", "N m", count, values, moments);
-  }
-  for (size_t k = 0; k < count; k++) moments[k] = largest_pressure(path, scene);
-  for (size_t i = 0; i < scene->cell_count; i++) {
-    for (size_t k = 0; k < count; k++) values[k] = stops[k].pressure[i];
-    if (rows++ < MOST_FORCES)
-      add_force_row(table, scene->cells[i].name, " pressure", "N/m", count, values, moments);
-  }
-  for (size_t i = 0; i < 2 * scene->node_count; i++) {
-    if (!is_held(path, scene, i / 2, i % 2)) continue;
-    for (size_t k = 0; k < count; k++) values[k] = stops[k].reaction[i];
-    if (rows++ < MOST_FORCES)
-      add_force_row(table, scene->nodes[i / 2].name, i % 2 ? " support y" : " support x", "N",
-                    count, values, largest);
-  }
-  for (size_t i = 0; i < scene->contact_count; i++) {
-    for (size_t k = 0; k < count; k++) values[k] = stops[k].contact[i];
-    if (rows++ < MOST_FORCES)
-      add_force_row(table, scene->nodes[scene->contacts[i].node].name, " ground", "N", count,
+  for (carrier kind = MEMBERS; kind < CARRIERS; kind++) {
+    for (size_t k = 0; k < count; k++) largest[k] = largest_value(path, scene, kind);
+    for (size_t i = 0; i < count_values(scene, kind); i++) {
+      if (!has_value(path, scene, kind, i) || rows++ >= MOST_FORCES) continue;
+      for (size_t k = 0; k < count; k++) values[k] = values_of(&stops[k], kind)[i];
+      add_force_row(table, name_of(scene, kind, i),
+                    carriers[kind].words[kind == SUPPORTS ? i % 2 : 0], carriers[kind].unit, count,
                     values, largest);
+    }
   }
   left = rows > MOST_FORCES ? rows - MOST_FORCES : 0;
   if (left) strut_buffer_add(table, "  and %zu more; -o DIR writes all of them\n", left);
@@ -332,7 +335,7 @@ char *strut_path_table(const strut_path *path, const strut_scene *scene) {
   strut_buffer table = {0};
   size_t node = farthest_node(path, scene), at = 0;
   size_t every = (path->point_count + MOST_ROWS - 1) / MOST_ROWS;
-  double largest = path->coordinate >= 0 ? largest_force(path, scene) : 0;
+  double largest = path->coordinate >= 0 ? largest_value(path, scene, MEMBERS) : 0;
   strut_c_locale locale = strut_c_locale_enter();
   strut_buffer_add(&table, "%s%spath %s %s, %zu points\n\n", scene->name, *scene->name ? ": " : "",
                    path->over == STRUT_PATH_OVER_LOAD ? "of" : "over", path->name,
@@ -357,59 +360,42 @@ char *strut_path_table(const strut_path *path, const strut_scene *scene) {
   return strut_buffer_take(&table);
 }
 
-/* A cell of the header; RFC 4180 wants quotes around one that holds a comma, a quote or a break. */
 static void add_cell(strut_buffer *csv, const char *name, const char *what) {
-  bool quoted = strpbrk(name, ",\"\r\n") != NULL;
-  strut_buffer_add(csv, quoted ? ",\"" : ",");
-  for (; *name; name++) strut_buffer_add(csv, *name == '"' ? "\"\"" : "%c", *name);
-  strut_buffer_add(csv, ".%s%s", what, quoted ? "\"" : "");
+  strut_buffer_add(csv, ",");
+  strut_csv_add_text(csv, "%s.%s", name, what);
 }
 
 static void add_number(strut_buffer *csv, double value) {
-  char text[STRUT_NUMBER_TEXT];
-  strut_number_text(value, text);
-  strut_buffer_add(csv, ",%s", text);
+  strut_buffer_add(csv, ",");
+  strut_csv_add_number(csv, value);
 }
 
 static void add_header(strut_buffer *csv, const strut_path *path, const strut_scene *scene) {
   static const char *const axes[] = {"x [m]", "y [m]"};
-  static const char *const reactions[] = {"reaction_x [N]", "reaction_y [N]"};
   bool loads = path->over == STRUT_PATH_OVER_LOAD;
   strut_buffer_add(csv, loads ? "factor" : *path->unit ? "value [%s]" : "value", path->unit);
   if (loads && path->reference > 0) strut_buffer_add(csv, ",force [N]");
   strut_buffer_add(csv, ",arc,negative_eigenvalues,event");
   for (size_t i = 0; i < 2 * scene->node_count; i++)
     add_cell(csv, scene->nodes[i / 2].name, axes[i % 2]);
-  for (size_t j = 0; j < scene->member_count; j++)
-    add_cell(csv, scene->members[j].name, "force [N]");
-  for (size_t i = 0; i < scene->hinge_count; i++)
-    add_cell(csv, scene->hinges[i].name, "moment [N m]");
-  for (size_t i = 0; i < scene->cell_count; i++)
-    add_cell(csv, scene->cells[i].name, "pressure [N/m]");
-  for (size_t i = 0; i < 2 * scene->node_count; i++)
-    if (is_held(path, scene, i / 2, i % 2))
-      add_cell(csv, scene->nodes[i / 2].name, reactions[i % 2]);
-  for (size_t i = 0; i < scene->contact_count; i++)
-    add_cell(csv, scene->nodes[scene->contacts[i].node].name, "ground [N]");
+  for (carrier kind = MEMBERS; kind < CARRIERS; kind++)
+    for (size_t i = 0; i < count_values(scene, kind); i++)
+      if (has_value(path, scene, kind, i))
+        add_cell(csv, name_of(scene, kind, i), carriers[kind].column[kind == SUPPORTS ? i % 2 : 0]);
   strut_buffer_add(csv, "\n");
 }
 
 static void add_numbers(strut_buffer *csv, const strut_path *path, const strut_scene *scene,
                         const state *at, const char *negative, const char *event) {
-  char text[STRUT_NUMBER_TEXT];
-  strut_number_text(at->factor, text);
-  strut_buffer_add(csv, "%s", text);
+  strut_csv_add_number(csv, at->factor);
   if (path->over == STRUT_PATH_OVER_LOAD && path->reference > 0)
     add_number(csv, at->factor * path->reference);
   add_number(csv, at->arc);
   strut_buffer_add(csv, ",%s,%s", negative, event);
   for (size_t i = 0; i < 2 * scene->node_count; i++) add_number(csv, at->q[i]);
-  for (size_t j = 0; j < scene->member_count; j++) add_number(csv, at->force[j]);
-  for (size_t i = 0; i < scene->hinge_count; i++) add_number(csv, at->moment[i]);
-  for (size_t i = 0; i < scene->cell_count; i++) add_number(csv, at->pressure[i]);
-  for (size_t i = 0; i < 2 * scene->node_count; i++)
-    if (is_held(path, scene, i / 2, i % 2)) add_number(csv, at->reaction[i]);
-  for (size_t i = 0; i < scene->contact_count; i++) add_number(csv, at->contact[i]);
+  for (carrier kind = MEMBERS; kind < CARRIERS; kind++)
+    for (size_t i = 0; i < count_values(scene, kind); i++)
+      if (has_value(path, scene, kind, i)) add_number(csv, values_of(at, kind)[i]);
   strut_buffer_add(csv, "\n");
 }
 

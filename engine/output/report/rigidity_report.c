@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The rigidity of a shape as a table that fits a screen. */
-#include "engine/output/report/rigidity_report.h"
+#include "engine/output/report/reports.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -8,7 +8,6 @@
 #include "engine/base/c_locale.h"
 #include "engine/output/buffer.h"
 #include "engine/output/json_value.h"
-#include "engine/output/quantity_text.h"
 #include "engine/statics/rigidity/rigidity.h"
 
 enum { STRUT_RIGIDITY_WORDS = 240 };

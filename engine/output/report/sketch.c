@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/report/sketch.h"
+#include "engine/output/report/reports.h"
 
 #include <limits.h>
 #include <math.h>
@@ -12,7 +12,6 @@
 #include <stdint.h>
 #include "engine/base/memory.h"
 #include "engine/output/buffer.h"
-#include "engine/output/quantity_text.h"
 #include "engine/scene/profile.h"
 
 /* Code points of marks, in ascending order; ASCII output substitutes others. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/run/measure/columns.h"
+#include "engine/run/measure/quantities.h"
 
 #include <math.h>
 

@@ -11,8 +11,107 @@
 #ifndef STRUT_ENGINE_RUN_MEASURE_METER_H
 #define STRUT_ENGINE_RUN_MEASURE_METER_H
 
+#include <stdint.h>
+
+#include "engine/integrate/observer.h"
 #include "engine/run/measure/summary.h"
 #include "engine/scene/quantity.h"
+
+/*
+ * End times of the steps of a run: whole multiples of the step, except for a shorter last one.
+ * Interpolation within a step.
+ */
+
+typedef struct strut_time_grid {
+  double step;   /* [s] */
+  double offset; /* time of step 0, not 0 in a run that starts between two steps [s] */
+  int64_t last;  /* last step, which ends at `end`; -1: none */
+  double end;    /* end of the run without the offset [s] */
+} strut_time_grid;
+
+/** End of step n without the offset [s]: the time of methods and forces. */
+static inline double strut_time_grid_at(const strut_time_grid *grid, int64_t n) {
+  return n == grid->last ? grid->end : (double)n * grid->step;
+}
+
+/** End of step n [s], as reported. */
+static inline double strut_time_grid_real(const strut_time_grid *grid, int64_t n) {
+  return grid->offset + strut_time_grid_at(grid, n);
+}
+
+/** Length of the last step [s] where it is shorter than the others, otherwise 0. */
+static inline double strut_time_grid_rest(const strut_time_grid *grid) {
+  double rest = grid->last > 0 ? grid->end - (double)(grid->last - 1) * grid->step : grid->step;
+  return rest < grid->step * (1.0 - 1e-6) ? rest : 0.0;
+}
+
+/**
+ * Cubic Hermite interpolation at the fraction s of a step of length h, from x0 with slope v0 to x1
+ * with slope v1.
+ */
+static inline double strut_hermite(double x0, double v0, double x1, double v1, double h, double s) {
+  double r = 1.0 - s;
+  return x0 * (1.0 + 2.0 * s) * r * r + h * v0 * s * r * r + x1 * s * s * (3.0 - 2.0 * s) -
+         h * v1 * s * s * r;
+}
+
+/*
+ * Reduces the values of one quantity over the window and over each of its periods, by its samples
+ * between the steps.
+ *
+ * A part so short that the values change evenly needs no samples between its ends: its integral and
+ * its extremes are those of the parabola through these and the value before. Any other one is halved
+ * until a parabola through its samples meets those between. There integrals are by Simpson's rule,
+ * extremes and arrivals are searched for where the samples show one.
+ */
+
+/*
+ * Dense output: the state at any instant within a piece of the motion.
+ *
+ * Positions are the polynomials of fifth order through positions, velocities and accelerations at both
+ * ends, velocities and works the cubics through their values and rates. Contact forces follow by
+ * their own law, in the modes that a method with events has frozen.
+ */
+
+typedef struct strut_dense {
+  const strut_model *model;
+  double *q, *v;             /* (length) at the instant */
+  double *begin_q, *begin_v; /* (length) at the begin of a step of the grid */
+  double *a[2];              /* (length) accelerations at its ends */
+  double begin_work[STRUT_POWER_ROOM], power[2][STRUT_POWER_ROOM];
+  /* what the state has at the end of the piece, while it is elsewhere */
+  double *end_q, *end_v;
+  double end_work[STRUT_POWER_ROOM];
+  bool away;   /* the state has been elsewhere since strut_dense_return */
+  bool coarse; /* positions and velocities by polynomials of one order less */
+} strut_dense;
+
+/** Allocates in the arena. False: out of memory. */
+bool strut_dense_create(const strut_model *model, strut_arena *arena, strut_dense *dense);
+/** Keeps the state as the begin of the next step of a method without events. */
+void strut_dense_keep(strut_dense *dense, const strut_state *state);
+/** The piece from the kept state to the present one, h apart; accelerations are computed when they
+    are first needed. Its begin is at t [s]. */
+strut_motion_piece strut_dense_step(strut_dense *dense, const strut_state *state, double t,
+                                    double h);
+/**
+ * Moves the state to the fraction `s` of the piece. Returns the time there, without time_offset [s].
+ * Just after the begin where s is 0.
+ */
+double strut_dense_place(strut_dense *dense, strut_state *state, strut_motion_piece *piece,
+                         double s);
+/** Moves the state back to the end of the piece, with all that follows from it as before. */
+void strut_dense_return(strut_dense *dense, strut_state *state, const strut_motion_piece *piece);
+
+/*
+ * Reduces the values of one quantity over the window and over each of its periods, by its samples
+ * between the steps.
+ *
+ * A part so short that the values change evenly needs no samples between its ends: its integral and
+ * its extremes are those of the parabola through these and the value before. Any other one is halved
+ * until a parabola through its samples meets those between. There integrals are by Simpson's rule,
+ * extremes and arrivals are searched for where the samples show one.
+ */
 
 /** Samples are at most so deep: 2^depth parts. */
 enum { STRUT_DEEPEST = 5, STRUT_MOST_SAMPLES = (1 << STRUT_DEEPEST) + 1 };

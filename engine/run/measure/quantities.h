@@ -1,16 +1,81 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Measured quantities of a run: evaluated over the pieces of the motion in the window, between their
- * ends too (dense.h), and reduced over it and over each of its periods (meter.h).
- *
- * The mean of a single velocity, or of the rate of a length, is displacement over time.
+ * Measured quantities: columns of the motion, the programs over them, and their values over a window.
  */
 #ifndef STRUT_ENGINE_RUN_MEASURE_QUANTITIES_H
 #define STRUT_ENGINE_RUN_MEASURE_QUANTITIES_H
 
+#include "engine/base/export.h"
+#include "engine/forces/energy.h"
 #include "engine/model/state.h"
 #include "engine/run/measure/summary.h"
 #include "engine/scene/experiment.h"
+#include "engine/scene/quantity.h"
+
+/* ---- columns of the motion, of which measured quantities are made, evaluated at a state ---- */
+
+/** Distinct columns with their values now and over the window. */
+typedef struct strut_columns {
+  const strut_model *model;
+  double time;      /* of the latest evaluation, without the state's time_offset [s] */
+  double normal[2]; /* of the ground */
+  size_t count;
+  strut_column *column;  /* (count) `item` of CONTACT indexes the model's contacts, -1: no contact;
+                           those of HINGE, CELL, COLLISION index elements */
+  double *value;         /* (count) now, SI */
+  double *least, *most;  /* (count) over the window */
+  double *largest;       /* (count) largest absolute value of the terms that it sums */
+  double fastest;        /* largest speed of a node in the window [m/s]; only with `speeds` */
+  bool forces;           /* some column needs the forces at the state */
+  bool energies;         /* some column needs the stored energies */
+  bool speeds;           /* some column is a velocity, whose rounding scales with the node speeds */
+  strut_energies stored; /* [J]; with `energies` */
+  int32_t loaded_now,
+      loaded_most; /* member of the largest force now, and in the window; -1: none */
+} strut_columns;
+
+/** Allocates for `most` columns in the arena. False: out of memory. */
+bool strut_columns_create(const strut_model *model, size_t most, strut_arena *arena,
+                          strut_columns *columns);
+/** Returns the index of a column, added if it is new. */
+size_t strut_columns_add(strut_columns *columns, strut_column column);
+/**
+ * Evaluates all columns at the state, at time t [s] without its time_offset; updates forces and rest
+ * lengths of the state, which follow from q, v and t. Angles continue from their last value.
+ */
+void strut_columns_evaluate(strut_columns *columns, strut_state *state, double t);
+/** Starts the window at the present values. Angles are within half a turn of 0 here. */
+void strut_columns_begin(strut_columns *columns, strut_state *state, double t);
+/** Range of a column, or of the terms that it sums, in the window, SI. */
+double strut_columns_span(const strut_columns *columns, size_t index);
+/** Rounding error of a column in the window, SI. */
+double strut_columns_noise(const strut_columns *columns, size_t index);
+
+/* ---- the postfix program of a measured quantity; see engine/scene/quantity.h ---- */
+
+/** Evaluates a program; `index` (length): position of each column in `value`. */
+STRUT_API double strut_quantity_program_evaluate(const strut_quantity_definition *definition,
+                                                 const size_t *index, const double *value,
+                                                 double *stack);
+
+/** Size of a term, and two uncertainties that propagate alike. */
+typedef struct strut_magnitude {
+  double size;  /* largest absolute value of the terms */
+  double span;  /* range */
+  double noise; /* rounding error */
+} strut_magnitude;
+
+/** Evaluates the program on magnitudes: sums take the larger size and add range and rounding. */
+strut_magnitude strut_quantity_program_magnitude(const strut_quantity_definition *definition,
+                                                 const size_t *index, const strut_magnitude *value,
+                                                 strut_magnitude *stack);
+
+/*
+ * Measured quantities of a run: evaluated over the pieces of the motion in the window, between their
+ * ends too, and reduced over it and over each of its periods (meter.h).
+ *
+ * The mean of a single velocity, or of the rate of a length, is displacement over time.
+ */
 
 typedef struct strut_quantities strut_quantities;
 
@@ -25,7 +90,7 @@ typedef struct strut_marks {
 /** Allocates for the quantities of the scene in the arena; NULL: out of memory. */
 strut_quantities *strut_quantities_create(const strut_model *model,
                                           const strut_experiment *experiment, strut_arena *arena);
-/** Does a quantity of the scene need works or losses, which only the ledger has? */
+/** Does a quantity of the scene need works or losses, which only the energy balance has? */
 bool strut_quantities_need_ledger(const strut_experiment *experiment);
 /** Does a quantity depend on the motion between steps? */
 bool strut_quantities_need_pieces(const strut_quantities *quantities);

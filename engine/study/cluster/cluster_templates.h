@@ -6,7 +6,7 @@
 #ifndef STRUT_ENGINE_STUDY_CLUSTER_CLUSTER_TEMPLATES_H
 #define STRUT_ENGINE_STUDY_CLUSTER_CLUSTER_TEMPLATES_H
 
-#include "engine/output/embedded.h"
+#include "engine/output/buffer.h"
 
 extern const strut_embedded strut_slurm_template[], strut_parallel_template[],
     strut_htcondor_template[];

@@ -10,7 +10,6 @@
 #include "engine/base/number_text.h"
 #include "engine/output/buffer.h"
 #include "engine/output/json_value.h"
-#include "engine/output/quantity_text.h"
 
 enum {
   LABELS = 24, /* width of the column of labels */
@@ -214,16 +213,6 @@ char *strut_compare_table(const strut_compare *r, int columns) {
 
 /* ---- CSV ---- */
 
-static void add_quoted(strut_buffer *csv, const char *text) {
-  if (!strpbrk(text, ",\"\r\n")) {
-    strut_buffer_add(csv, "%s", text);
-    return;
-  }
-  strut_buffer_add(csv, "\"");
-  for (; *text; text++) strut_buffer_add(csv, *text == '"' ? "\"\"" : "%c", *text);
-  strut_buffer_add(csv, "\"");
-}
-
 char *strut_compare_csv(const strut_compare *r) {
   strut_buffer csv = {0};
   strut_buffer_add(&csv, "model,name");
@@ -236,9 +225,9 @@ char *strut_compare_csv(const strut_compare *r) {
   strut_buffer_add(&csv, "\n");
   for (size_t i = 0; i < r->count; i++) {
     const strut_compare_column *c = &r->columns[i];
-    add_quoted(&csv, c->input->label);
+    strut_csv_add_text(&csv, "%s", c->input->label);
     strut_buffer_add(&csv, ",");
-    add_quoted(&csv, c->input->setup->scene.name);
+    strut_csv_add_text(&csv, "%s", c->input->setup->scene.name);
     for (int row = 0; row < STRUT_COMPARE_QUANTITIES; row++) {
       char text[STRUT_NUMBER_TEXT] = "";
       if (isfinite(c->cell[row].value)) strut_number_text(c->cell[row].value, text);

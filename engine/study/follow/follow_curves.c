@@ -8,7 +8,6 @@
 #include "engine/base/number_text.h"
 #include "engine/output/buffer.h"
 #include "engine/output/json_value.h"
-#include "engine/output/quantity_text.h"
 #include "engine/study/follow/branch_picture.h"
 #include "engine/study/follow/follow_parts.h"
 

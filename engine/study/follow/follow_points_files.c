@@ -9,7 +9,6 @@
 #include "engine/output/buffer.h"
 #include "engine/output/file.h"
 #include "engine/output/json_value.h"
-#include "engine/output/quantity_text.h"
 #include "engine/study/follow/follow_parts.h"
 #include "engine/study/sweep/grid.h"
 
@@ -17,15 +16,9 @@ enum { MOST_LINES = 60, MOST_BLOCK = 1 << 28 };
 
 /* A text as a cell of a CSV file. */
 static char *quote_cell(const char *text, strut_arena *arena) {
-  if (!strpbrk(text, ",\"\r\n")) return strut_arena_format(arena, "%s", text);
-  char *cell = strut_arena_allocate(arena, 2 * strlen(text) + 3, 1), *to = cell;
-  if (!cell) return NULL;
-  *to++ = '"';
-  for (; *text; text++) {
-    if (*text == '"') *to++ = '"';
-    *to++ = *text;
-  }
-  *to++ = '"';
+  size_t length = strlen(text);
+  char *cell = strut_arena_allocate(arena, 2 * length + 3, 1);
+  if (cell) strut_csv_quote(text, length, cell);
   return cell;
 }
 

@@ -4,10 +4,8 @@
 #include <string.h>
 
 #include "engine/base/c_locale.h"
-#include "engine/base/number_text.h"
 #include "engine/output/buffer.h"
 #include "engine/output/json_value.h"
-#include "engine/output/quantity_text.h"
 #include "engine/study/follow/follow_parts.h"
 
 static const double DEGREES = 57.29577951308232;
@@ -15,17 +13,13 @@ static const double DEGREES = 57.29577951308232;
 enum { MOST_LISTED = 12 };
 
 static void add_number(strut_buffer *csv, double value) {
-  char text[STRUT_NUMBER_TEXT] = "";
-  if (isfinite(value)) strut_number_text(value, text);
-  strut_buffer_add(csv, ",%s", text);
+  strut_buffer_add(csv, ",");
+  strut_csv_add_number(csv, isfinite(value) ? value : (double)NAN);
 }
 
 static void add_text(strut_buffer *csv, const char *text) {
-  if (!text) text = "";
-  bool quoted = strpbrk(text, ",\"\r\n") != NULL;
-  strut_buffer_add(csv, quoted ? ",\"" : ",");
-  for (; *text; text++) strut_buffer_add(csv, *text == '"' ? "\"\"" : "%c", *text);
-  strut_buffer_add(csv, quoted ? "\"" : "");
+  strut_buffer_add(csv, ",");
+  strut_csv_add_text(csv, "%s", text ? text : "");
 }
 
 /* Does stability change at a special point? Nothing of other points. */

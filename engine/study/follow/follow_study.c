@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/output/quantity_text.h"
+#include "engine/output/buffer.h"
 #include "engine/run/accuracy/accuracy.h"
 #include "engine/statics/equilibria/rest_state.h"
 

@@ -6,7 +6,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/memory.h"
 #include "engine/base/number_text.h"
+#include "engine/output/buffer.h"
 #include "engine/output/file.h"
 
 /* PART: bytes written at once. The buffer holds one more cell of any length. */
@@ -57,32 +59,21 @@ static strut_status finish(writer *w, strut_error *error) {
   return status;
 }
 
-/* A name with its unit; RFC 4180 requires quotes around one with a comma, a quote or a break. */
-static void put_name(writer *w, const char *text, const char *unit) {
-  bool quoted = strpbrk(text, ",\"\r\n") || strpbrk(unit, ",\"\r\n");
-  if (quoted) put(w, "\"", 1);
-  const char *parts[] = {text, *unit ? " [" : "", unit, *unit ? "]" : ""};
-  for (int i = 0; i < 4; i++)
-    for (const char *at = parts[i]; *at;) {
-      size_t length = strcspn(at, "\"");
-      put(w, at, length);
-      at += length;
-      if (*at) {
-        put(w, "\"\"", 2);
-        at++;
-      }
-    }
-  if (quoted) put(w, "\"", 1);
-}
-
-static void put_header(writer *w, const strut_slots_plan *plan) {
-  put(w, "point,", 6);
+static bool put_header(writer *w, const strut_slots_plan *plan) {
+  strut_buffer header = {0};
+  strut_buffer_add(&header, "point,");
   for (size_t i = 0; i < plan->column_count; i++) {
     const strut_slot_column *column = &plan->columns[i];
-    put_name(w, column->name, strcmp(column->unit, "1") == 0 ? "" : column->unit);
-    put(w, ",", 1);
+    bool plain = strcmp(column->unit, "1") == 0 || !*column->unit;
+    strut_csv_add_text(&header, plain ? "%s%s" : "%s [%s]", column->name,
+                       plain ? "" : column->unit);
+    strut_buffer_add(&header, ",");
   }
-  put(w, "status,message\n", 15);
+  strut_buffer_add(&header, "status,message\n");
+  char *text = strut_buffer_take(&header);
+  if (text) put(w, text, strlen(text));
+  strut_release(text);
+  return text != NULL;
 }
 
 static void put_number(writer *w, double value) {
@@ -90,27 +81,8 @@ static void put_number(writer *w, double value) {
   end_cell(w, ',');
 }
 
-/* A short text: copied, then copied again with quotes if it needs them. */
 static void put_text(writer *w, const char *text, size_t room, char mark) {
-  char *at = w->buffer + w->used;
-  size_t length = 0;
-  bool plain = true;
-  for (; length + 1 < room && text[length]; length++) {
-    char c = text[length];
-    plain = plain && c != ',' && c != '"' && c != '\r' && c != '\n';
-    at[length] = c;
-  }
-  if (!plain) {
-    char *to = at;
-    *to++ = '"';
-    for (size_t i = 0; i < length; i++) {
-      if (text[i] == '"') *to++ = '"';
-      *to++ = text[i];
-    }
-    *to++ = '"';
-    length = (size_t)(to - at);
-  }
-  w->used += length;
+  w->used += strut_csv_quote(text, room - 1, w->buffer + w->used);
   end_cell(w, mark);
 }
 
@@ -136,7 +108,10 @@ static strut_status write_table(const char *directory, const char *name,
   const strut_slots_plan *plan = strut_slots_plan_of(sources[0]);
   strut_status status = strut_file_open(&w.file, directory, name, error);
   if (status != STRUT_OK) return status;
-  put_header(&w, plan);
+  if (!put_header(&w, plan)) {
+    strut_file_abandon(&w.file);
+    return strut_no_memory(error, "");
+  }
   *rows = 0;
   for (int64_t point = 0; point < plan->points && !w.failed; point++) {
     strut_result_slot row;
@@ -175,7 +150,10 @@ strut_status strut_study_table_write_points(const char *directory, const char *n
   const strut_slots_plan *plan = strut_slots_plan_of(source);
   strut_status status = strut_file_open(&w.file, directory, name, error);
   if (status != STRUT_OK) return status;
-  put_header(&w, plan);
+  if (!put_header(&w, plan)) {
+    strut_file_abandon(&w.file);
+    return strut_no_memory(error, "");
+  }
   for (size_t i = 0; i < count && !w.failed; i++) {
     strut_result_slot row;
     if (strut_slots_get(source, points[i], &row)) put_row(&w, plan, points[i], &row);

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/run/measure/quantity_program.h"
+#include "engine/run/measure/quantities.h"
 #include "engine/study/sweep/sweep_parts.h"
 
 /* Numbers on the stack of a program and its columns, at most: the reader bounds the text. */

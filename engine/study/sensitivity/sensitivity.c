@@ -287,16 +287,13 @@ strut_status strut_sensitivity_find(const strut_study *study, strut_slots *slots
 /* ---- the table ---- */
 
 static void put_text(strut_buffer *b, const char *text) {
-  bool quoted = strpbrk(text, ",\"\r\n") != NULL;
-  strut_buffer_add(b, quoted ? "\"" : "");
-  for (; *text; text++) strut_buffer_add(b, *text == '"' ? "\"\"" : "%c", *text);
-  strut_buffer_add(b, quoted ? "\"," : ",");
+  strut_csv_add_text(b, "%s", text);
+  strut_buffer_add(b, ",");
 }
 
 static void put_number(strut_buffer *b, double value) {
-  char text[STRUT_NUMBER_TEXT];
-  if (isfinite(value)) strut_number_text(value, text);
-  strut_buffer_add(b, "%s,", isfinite(value) ? text : "");
+  strut_csv_add_number(b, isfinite(value) ? value : (double)NAN);
+  strut_buffer_add(b, ",");
 }
 
 /* Columns of the other axes: all before that of the analysis. */

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "engine/integrate/lanes/batch.h"
-#include "engine/run/simulate_batch.h"
+#include "engine/run/simulate.h"
 #include "engine/study/sweep/sweep_parts.h"
 
 /* ---- points in lockstep ---- */
@@ -121,10 +121,6 @@ void strut_sweep_work(const strut_sweep_worker *worker, const strut_sweep_queue 
 #ifdef _OPENMP
 #include <omp.h>
 #endif
-
-#include "engine/integrate/lanes/batch.h"
-#include "engine/run/simulate.h"
-#include "engine/study/sweep/sweep_parts.h"
 
 /* Time between two reports [s]. */
 static const double OFTEN = 0.1;

@@ -14,48 +14,56 @@ static const strut_keep USUAL[] = {STRUT_KEEP_VELOCITY,  STRUT_KEEP_SPREAD,     
                                    STRUT_KEEP_QUANTITIES};
 
 /*
- * The columns of each word of `keep`, in order: word, name, unit, whether its cells are words, and the
- * value in a summary s, where `watched` says whether steady motion was looked for.
+ * The columns of each word of `keep`, in order: word, name, result of a summary. Those without a result are made
+ * of several (combine).
  */
 #define ENTRY_TABLE(X)                                                                             \
-  X(VELOCITY, "velocity", "m/s", false, s->velocity)                                               \
-  X(SPREAD, "velocity_spread", "m/s", false, s->velocity_spread)                                   \
-  X(INTERVAL, "velocity_interval", "m/s", false, watched ? s->steady.interval : (double)NAN)       \
-  X(MOTION, "motion", "1", true, (double)NAN)                                                      \
-  X(REPEATS, "repeats", "1", false, watched ? (double)s->steady.repeats : (double)NAN)             \
-  X(PERIODS, "periods", "1", false,                                                                \
-    watched        ? (double)s->steady.periods                                                     \
-    : period > 0.0 ? s->duration / period                                                          \
-                   : (double)NAN)                                                                  \
-  X(DISTANCE, "distance", "m", false, period > 0.0 ? s->velocity * period : (double)NAN)           \
-  X(DURATION, "duration", "s", false, s->duration)                                                 \
-  X(SETTLE_TIME, "settle_time", "s", false, s->settle_time)                                        \
-  X(STEPS, "steps", "1", false, (double)s->steps)                                                  \
-  X(EVALUATIONS, "force_evaluations", "1", false, (double)s->force_evaluations)                    \
-  X(CHECKS, "check_evaluations", "1", false, (double)s->accuracy.check_evaluations)                \
-  X(EVENTS, "events", "1", false, (double)s->events)                                               \
-  X(METHOD, "method", "1", true, (double)NAN)                                                      \
-  X(STEP, "step", "s", false, s->step)                                                             \
-  X(STEP_LIMIT, "step_limit", "s", false, s->step_limit)                                           \
-  X(EXPECTED, "expected_error", "1", false,                                                        \
-    s->accuracy.wanted > 0.0 ? s->accuracy.expected : (double)NAN)                                 \
-  X(KEPT, STRUT_KEPT_COLUMN, "1", false, accuracy_kept(s))                                         \
+  X(VELOCITY, "velocity", STRUT_RESULT_run_velocity)                                               \
+  X(SPREAD, "velocity_spread", STRUT_RESULT_run_velocity_spread)                                   \
+  X(INTERVAL, "velocity_interval", STRUT_RESULT_steady_velocity_interval)                          \
+  X(MOTION, "motion", STRUT_RESULT_steady_kind)                                                    \
+  X(REPEATS, "repeats", STRUT_RESULT_steady_repeats)                                               \
+  X(PERIODS, "periods", NO_RESULT)                                                                 \
+  X(DISTANCE, "distance", NO_RESULT)                                                               \
+  X(DURATION, "duration", STRUT_RESULT_run_duration)                                               \
+  X(SETTLE_TIME, "settle_time", STRUT_RESULT_run_settle_time)                                      \
+  X(STEPS, "steps", STRUT_RESULT_run_steps)                                                        \
+  X(EVALUATIONS, "force_evaluations", STRUT_RESULT_run_force_evaluations)                          \
+  X(CHECKS, "check_evaluations", NO_RESULT)                                                        \
+  X(EVENTS, "events", STRUT_RESULT_run_events)                                                     \
+  X(METHOD, "method", STRUT_RESULT_run_method)                                                     \
+  X(STEP, "step", STRUT_RESULT_run_step)                                                           \
+  X(STEP_LIMIT, "step_limit", STRUT_RESULT_run_step_limit)                                         \
+  X(EXPECTED, "expected_error", STRUT_RESULT_accuracy_expected)                                    \
+  X(KEPT, STRUT_KEPT_COLUMN, STRUT_RESULT_accuracy_kept)                                           \
   STRUT_ENERGY_TABLE(ENERGY_##X)                                                                   \
-  X(RESIDUAL, "residual", "J", false, s->energy.residual)                                          \
-  X(COST, "cost_of_transport", "1", false, cost_of_transport(s))                                   \
-  X(COST, "work_per_distance", "N", false, work_per_distance(s))
+  X(RESIDUAL, "residual", STRUT_RESULT_energy_residual)                                            \
+  X(COST, "cost_of_transport", STRUT_RESULT_table_cost_of_transport)                               \
+  X(COST, "work_per_distance", STRUT_RESULT_table_work_per_distance)
+#define NO_RESULT STRUT_RESULT_COUNT
 
 typedef struct entry {
   strut_keep keep;
-  const char *name, *unit;
-  bool word;
+  const char *name;
+  strut_result_id result;
 } entry;
 
 static const entry entries[] = {
-#define ENTRY(keep, name, unit, word, value) {STRUT_KEEP_##keep, name, unit, word},
-#define ENERGY_ENTRY(name, kind, label) ENTRY(kind, #name, "J", false, )
+#define ENTRY(keep, name, result) {STRUT_KEEP_##keep, name, result},
+#define ENERGY_ENTRY(name, kind, label) ENTRY(kind, #name, STRUT_RESULT_energy_##name)
     ENTRY_TABLE(ENTRY)};
 enum { ENTRIES = sizeof entries / sizeof entries[0] };
+
+/* Of a summary with these words alone. */
+static const char *unit_of(const entry *e) {
+  static const strut_summary none;
+  if (e->keep == STRUT_KEEP_DISTANCE) return "m";
+  return e->result == NO_RESULT ? "1" : strut_summary_result(&none, e->result).unit;
+}
+
+static bool is_word(const entry *e) {
+  return e->keep == STRUT_KEEP_MOTION || e->keep == STRUT_KEEP_METHOD;
+}
 
 /* The structure of a point: word, name, unit, value of a model. */
 #define COUNT_TABLE(X)                                                                             \
@@ -64,8 +72,11 @@ enum { ENTRIES = sizeof entries / sizeof entries[0] };
   X(FREEDOMS, "degrees_of_freedom", "1", count_freedoms(model))                                    \
   X(TOTAL_MASS, "total_mass", "kg", total_mass(model))
 
-static const entry counts[] = {
-#define COUNT(keep, name, unit, value) {STRUT_KEEP_##keep, name, unit, false},
+static const struct {
+  strut_keep keep;
+  const char *name, *unit;
+} counts[] = {
+#define COUNT(keep, name, unit, value) {STRUT_KEEP_##keep, name, unit},
     COUNT_TABLE(COUNT)};
 enum { COUNTS = sizeof counts / sizeof counts[0] };
 
@@ -181,7 +192,8 @@ static bool add_entries(strut_sweep_plan *plan) {
   bool fine = true;
   for (size_t i = 0; i < ENTRIES && fine; i++)
     if (keeps(plan, entries[i].keep))
-      fine = strut_sweep_add_column(plan, "", entries[i].name, entries[i].unit, entries[i].word);
+      fine = strut_sweep_add_column(plan, "", entries[i].name, unit_of(&entries[i]),
+                                    is_word(&entries[i]));
   return fine;
 }
 
@@ -295,37 +307,28 @@ void strut_sweep_word(strut_row_buffer *cells, const char *word) {
   for (size_t i = 0; i + 1 < STRUT_SLOT_WORD && word[i]; i++) to[i] = word[i];
 }
 
-/* Net work of the drives over the distance that the measured point moves; missing where it stands. */
-static double work_per_distance(const strut_summary *s) {
-  double distance = fabs(s->velocity) * s->window_time;
-  bool moves = !s->velocity_zero && distance > 0.0;
-  return moves ? s->window_work / distance : (double)NAN;
-}
-
-/* 1 or 0; missing where no accuracy is requested. */
-static double accuracy_kept(const strut_summary *s) {
-  return s->accuracy.wanted > 0.0 ? (double)s->accuracy.kept : (double)NAN;
-}
-
-/* The same over the weight, as `strut compare` has it: missing where drives do no work. */
-static double cost_of_transport(const strut_summary *s) {
-  double cost = work_per_distance(s) / s->weight;
-  return s->weight > 0.0 && cost > 0.0 ? cost : (double)NAN;
-}
-
-/* The value of an entry; NAN if the summary has none. */
-static double number_of(const strut_summary *s, const strut_setup *setup, size_t index) {
+/* The value of an entry without a result of its own. */
+static double combine(const strut_summary *s, const strut_setup *setup, strut_keep keep) {
   double period = strut_experiment_span(&setup->experiment, &setup->scene).period;
   bool watched = s->steady.kind != STRUT_MOTION_NOT_WATCHED;
-  const double values[] = {
-#define VALUE(keep, name, unit, word, value) value,
-#define ENERGY_VALUE(name, kind, label) s->energy.name,
-      ENTRY_TABLE(VALUE)};
-  return values[index];
+  if (keep == STRUT_KEEP_CHECKS) return (double)s->accuracy.check_evaluations;
+  if (keep == STRUT_KEEP_PERIODS && watched) return (double)s->steady.periods;
+  if (!(period > 0.0)) return (double)NAN;
+  return keep == STRUT_KEEP_PERIODS ? s->duration / period : s->velocity * period;
 }
 
-static const char *word_of(const strut_summary *s, strut_keep keep) {
-  return keep == STRUT_KEEP_METHOD ? s->method : strut_motion_name(s->steady.kind);
+/* NAN if the summary has none. */
+static double result_of(const strut_summary *s, strut_result_id id) {
+  strut_result r = strut_summary_result(s, id);
+  return r.there ? r.number : (double)NAN;
+}
+
+static double number_of(const strut_summary *s, const strut_setup *setup, const entry *e) {
+  return e->result == NO_RESULT ? combine(s, setup, e->keep) : result_of(s, e->result);
+}
+
+static const char *word_of(const strut_summary *s, size_t index) {
+  return strut_summary_result(s, entries[index].result).text;
 }
 
 static double count_freedoms(const strut_model *model) {
@@ -401,10 +404,10 @@ void strut_sweep_fill(const strut_sweep_plan *plan, const strut_setup *setup,
                       const strut_summary *summary, const char *outcome, strut_row_buffer *cells) {
   for (size_t i = 0; i < ENTRIES; i++) {
     if (!keeps(plan, entries[i].keep)) continue;
-    if (entries[i].word)
-      strut_sweep_word(cells, summary ? word_of(summary, entries[i].keep) : "");
+    if (is_word(&entries[i]))
+      strut_sweep_word(cells, summary ? word_of(summary, i) : "");
     else
-      strut_sweep_number(cells, summary ? number_of(summary, setup, i) : (double)NAN);
+      strut_sweep_number(cells, summary ? number_of(summary, setup, &entries[i]) : (double)NAN);
   }
   if (summary) {
     bool known = summary->node_count == setup->scene.node_count;
@@ -419,5 +422,7 @@ void strut_sweep_fill(const strut_sweep_plan *plan, const strut_setup *setup,
                        : (double)NAN);
   if (plan->start)
     strut_sweep_number(cells, summary ? (double)summary->settle.unstable : (double)NAN);
-  if (plan->accurate) strut_sweep_number(cells, summary ? accuracy_kept(summary) : (double)NAN);
+  if (plan->accurate)
+    strut_sweep_number(cells,
+                       summary ? result_of(summary, STRUT_RESULT_accuracy_kept) : (double)NAN);
 }

@@ -5,9 +5,9 @@
 #include <unistd.h>
 
 #include "engine/output/file.h"
-#include "engine/output/hdf5.h"
-#include "engine/output/json.h"
+#include "engine/output/record_files.h"
 #include "engine/output/results.h"
+#include "engine/output/run_report.h"
 #include "engine/study/sweep/sweep_parts.h"
 
 struct strut_sweep_record {

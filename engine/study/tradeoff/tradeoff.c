@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "engine/model/model.h"
-#include "engine/output/quantity_text.h"
+#include "engine/output/buffer.h"
 #include "engine/study/tradeoff/tradeoff_parts.h"
 
 /* ---- errors, spreads over the operating points, and the Pareto front ---- */

@@ -7,8 +7,8 @@
 
 #include "engine/base/c_locale.h"
 #include "engine/base/number_text.h"
+#include "engine/output/buffer.h"
 #include "engine/output/json_value.h"
-#include "engine/output/quantity_text.h"
 #include "engine/study/tradeoff/tradeoff_parts.h"
 
 /* ---- words ---- */

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "engine/output/quantity_text.h"
+#include "engine/output/buffer.h"
 #include "engine/run/simulate.h"
 #include "engine/study/tradeoff/tradeoff_parts.h"
 

@@ -206,24 +206,18 @@ class _List(Result):
         return self._things[key]
 
 
-_COMPONENTS = {
-    "position": ("x", "y"),
-    "velocity": ("x", "y"),
-    "contact": ("normal", "friction"),
-}
-#: channels and the things that their columns are
-KINDS = {
-    "position": "nodes",
-    "velocity": "nodes",
-    "length": "members",
-    "force": "members",
-    "contact": "contacts",
-    "angle": "hinges",
-    "moment": "hinges",
-    "area": "cells",
-    "pressure": "cells",
-    "energy": "energies",
-}
+#: the components of each channel: ("x", "y") of "position"
+_COMPONENTS = {name: components for name, _, components, _ in _strut.channels()}
+
+
+def _recorded(kind: str) -> dict[str, tuple[str, int | None]]:
+    """What is recorded of one thing of a kind by the names of its columns: channel and component."""
+    return {
+        column: (name, i if len(columns) > 1 else None)
+        for name, of, _, columns in _strut.channels()
+        if of == kind
+        for i, column in enumerate(columns)
+    }
 
 
 class _Trajectories:
@@ -250,13 +244,8 @@ class _Trajectories:
         return f"<{self._name}: {', '.join([*self._words, *self._arrays])}>"
 
 
-_NODE: dict[str, tuple[str, int | None]] = {
-    "x": ("position", 0),
-    "y": ("position", 1),
-    "vx": ("velocity", 0),
-    "vy": ("velocity", 1),
-}
-_MEMBER: dict[str, tuple[str, int | None]] = {"length": ("length", None), "force": ("force", None)}
+_NODE = _recorded("nodes")
+_MEMBER = _recorded("members")
 
 
 class Run(Result):
@@ -312,11 +301,11 @@ class Run(Result):
         if channel not in self.channels:
             return None
         assert self._scene is not None
-        return self._scene.names(KINDS[channel])
+        return self._scene.names(channel)
 
     @property
     def nodes(self) -> Words:
-        """Each node: x, y, vx, vy over time as recorded, and the summary's `position` at the end."""
+        """Each node: x, y, vx, vy, ... over time as recorded, and the summary's `position` at the end."""
         there = self.summary.get("nodes", {})
         assert self._scene is not None
         names = self._scene.names("nodes")

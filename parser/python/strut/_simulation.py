@@ -3,25 +3,25 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Callable
+from typing import TYPE_CHECKING, Callable
 
 from . import _strut
-from ._results import KINDS
 from ._values import Named, numpy, unknown
 
 if TYPE_CHECKING:
     from ._scene import Scene
 
+_CHANNELS = [name for name, *_ in _strut.channels()]
 _INPUTS = {"rest": "members", "actuators": "actuators", "load": "nodes"}
 
 
 class Simulation:
     """A run that is advanced from outside, by one thread at a time.
 
-    Arrays are live: they follow every advance; copy() what shall stay. position and velocity (nodes, 2), length
-    and force (members), contact (contacts, 2), angle and moment (hinges), area and pressure (cells),
-    energy. Inputs are written at any time, and hold from the next advance on: rest (members) [m],
-    actuators (in their unit; NAN: as the scene says), load (nodes, 2) [N]:
+    Arrays are live: they follow every advance; copy() what shall stay. They are the channels that a scene
+    can record: position and velocity (nodes, 2), length and force (members), contact (contacts, 2), energy, ...
+    Inputs are written at any time, and hold from the next advance on: rest (members) [m], actuators (in
+    their unit; NAN: as the scene says), load (nodes, 2) [N]:
 
         sim.rest["m8"] = sim.rest0["m8"] + 0.3e-3
         sim.advance(10)
@@ -31,22 +31,6 @@ class Simulation:
     advance: Callable[[int], None]  #: advance(steps): bits do not depend on how steps are divided
     snapshot: Callable[[], _strut.Snapshot]  #: all of the state, inputs too
     restore: Callable[[_strut.Snapshot], None]  #: back to a snapshot; what follows has the same bits
-
-    if TYPE_CHECKING:
-        position: Named
-        velocity: Named
-        length: Named
-        force: Named
-        contact: Named
-        angle: Named
-        moment: Named
-        area: Named
-        pressure: Named
-        energy: Named
-        rest: Named
-        rest0: Named
-        actuators: Named
-        load: Named
 
     def __init__(self, raw: _strut.Simulation, scene: Scene) -> None:
         self._raw = raw
@@ -72,17 +56,17 @@ class Simulation:
         """Work that changes of inputs have done [J]."""
         return self._raw.input_work
 
-    def __getattr__(self, name: str) -> Any:
-        # Only for arrays that nobody has asked for yet: they become attributes.
-        if name in KINDS:
-            array, kind = self._raw.array(name), KINDS[name]
+    def __getattr__(self, name: str) -> Named:
+        # Only for arrays that were not read yet: they become attributes.
+        if name in _CHANNELS:
+            array, kind = self._raw.array(name), name
         elif name in _INPUTS:
             array, kind = self._raw.input(name), _INPUTS[name]
         elif name == "rest0":
             kind = "members"
             array = None if self._rest0 is None else numpy().frombuffer(self._rest0)
         else:
-            raise AttributeError(unknown(name, [*KINDS, *_INPUTS, "rest0", "advance"]))
+            raise AttributeError(unknown(name, [*_CHANNELS, *_INPUTS, "rest0", "advance"]))
         if array is None:
             raise AttributeError(f"this simulation has no {name}")
         array = numpy().asarray(array)

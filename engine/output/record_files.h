@@ -1,11 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Trajectories as one HDF5 file, trajectory.h5, one dataset per channel with dimension scales.
- */
-#ifndef STRUT_ENGINE_OUTPUT_HDF5_H
-#define STRUT_ENGINE_OUTPUT_HDF5_H
+/** Sinks that write what a run records: CSV and HDF5. */
+#ifndef STRUT_ENGINE_OUTPUT_RECORD_FILES_H
+#define STRUT_ENGINE_OUTPUT_RECORD_FILES_H
 
 #include "engine/run/recorder.h"
+
+/* ---- CSV: nodes.csv, members.csv, ..., energy.csv, as far as they have channels ---- */
+
+/** A sink that writes into directory (which exists). NULL when memory is out. */
+STRUT_API strut_sink *strut_csv_create(const char *directory);
+/** Frees the sink; abandons what was not ended. */
+STRUT_API void strut_csv_free(strut_sink *sink);
+
+/* ---- HDF5: trajectory.h5, a dataset for each channel, with dimension scales ---- */
 
 /** A sink that writes directory/trajectory.h5; `scene_text` is kept in it as an attribute. */
 STRUT_API strut_sink *strut_hdf5_create(const char *directory, const char *scene_text);

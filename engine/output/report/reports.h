@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/** Reports of statics: tables that fit a screen, JSON and CSV, each in a block of strut_allocate. */
+#ifndef STRUT_ENGINE_OUTPUT_REPORT_REPORTS_H
+#define STRUT_ENGINE_OUTPUT_REPORT_REPORTS_H
+
+#include "engine/model/model.h"
+#include "engine/statics/equilibria/equilibria.h"
+#include "engine/statics/form/form.h"
+#include "engine/statics/modes/modes.h"
+#include "engine/statics/path/path.h"
+#include "engine/statics/rigidity/rigidity.h"
+
+/*
+ * What a search for equilibria found, as one JSON object or as tables. Blocks of strut_allocate,
+ * NULL when memory is out.
+ */
+
+STRUT_API char *strut_equilibria_json(const strut_equilibria *equilibria, const strut_model *model);
+/** Lists the equilibria that stand and their barriers; with `all` every equilibrium and its shape. */
+STRUT_API char *strut_equilibria_table(const strut_equilibria *equilibria, const strut_model *model,
+                                       bool all);
+
+/** Oddities of a shape: coinciding nodes, crossing members. */
+typedef struct strut_shape_flaws {
+  bool collapsed;    /* two nodes coincide, or a member has no length, within 1e-4 model sizes */
+  int32_t crossings; /* pairs of members that cross, away from their ends */
+} strut_shape_flaws;
+
+/** q: (length) positions [m]. */
+STRUT_API strut_shape_flaws strut_find_shape_flaws(const strut_model *model, const double *q);
+
+/** "stands", "tips", "below ground", "unstable", "floppy", "no rest". */
+STRUT_API const char *strut_outcome_name(strut_outcome fate);
+
+/* ---- a form that was found, as a table and as JSON ---- */
+
+/** Texts in blocks of strut_allocate; NULL: memory was out. The scene is the one found. */
+STRUT_API char *strut_form_json(const strut_form *form, const strut_scene *scene);
+STRUT_API char *strut_form_table(const strut_form *form, const strut_setup *setup);
+
+/* ---- natural frequencies and shapes as JSON, as a table for people, and as CSV ---- */
+
+/** Blocks of strut_allocate, or NULL when memory is out. */
+STRUT_API char *strut_modes_json(const strut_model *model, const strut_modes *modes);
+STRUT_API char *strut_modes_table(const strut_model *model, const strut_modes *modes);
+/** A row for each mode, shapes left out. */
+STRUT_API char *strut_modes_csv(const strut_modes *modes);
+
+/* ---- a path of equilibria as a table for people, as JSON, and as a curve in CSV ---- */
+
+/** Texts in blocks of strut_allocate; NULL: memory was out. */
+STRUT_API char *strut_path_json(const strut_path *path, const strut_scene *scene);
+STRUT_API char *strut_path_table(const strut_path *path, const strut_scene *scene);
+/**
+ * One row per point: the parameter ("factor" and, of loads that are alike, "force [N]"; else "value"
+ * with its unit), arc, eigenvalues below zero as the path goes on; x and y of every node [m], tension
+ * of every member, reactions of what is held, normal forces of contacts [N]. Events stand among the
+ * points with their kind in the column "event".
+ */
+STRUT_API char *strut_path_csv(const strut_path *path, const strut_scene *scene);
+
+/* ---- the report of strut rigidity, as JSON and as a table ---- */
+
+/** Both in a block of strut_allocate, or NULL: out of memory. `at` is the name of the shape. */
+STRUT_API char *strut_rigidity_json(const strut_rigidity *rigidity, const strut_model *model,
+                                    const char *at);
+STRUT_API char *strut_rigidity_table(const strut_rigidity *rigidity, const strut_model *model,
+                                     const char *at);
+
+/* ---- a structure in a few lines of text, true to scale ---- */
+
+enum { STRUT_SKETCH_LEAST_COLUMNS = 20, STRUT_SKETCH_LEAST_ROWS = 5, STRUT_SKETCH_MOST = 400 };
+
+/**
+ * Draws the shape q (model->length) in at most `columns` by `rows` character cells, each taken to
+ * be twice as high as wide, and a line with its extent: bars solid, springs and cables dotted, nodes
+ * with their names where these fit, supports, and the ground where it is near. Braille dots in
+ * UTF-8 if `unicode`, else ASCII. Names that a terminal may not print from left to right in a known width
+ * are replaced by the node's number, #1 for the first. Lines end with '\n' and without blanks. A
+ * block of strut_allocate; NULL when memory is out.
+ */
+STRUT_API char *strut_sketch(const strut_model *model, const double *q, int columns, int rows,
+                             bool unicode);
+
+#endif

@@ -1,0 +1,596 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/output/run_report.h"
+
+#include <cjson/cJSON.h>
+#include <float.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/base/c_locale.h"
+#include "engine/base/vec.h"
+#include "engine/output/buffer.h"
+#include "engine/run/measure/summary.h"
+
+/* ---- JSON ---- */
+
+static void put_warnings(strut_json *json, cJSON *to, const strut_summary *s) {
+  cJSON *warnings = strut_json_array(json, to, "warnings");
+  for (size_t i = 0; i < s->warning_count; i++) {
+    cJSON *warning = strut_json_object(json, warnings, NULL);
+    strut_json_text(json, warning, "code", s->warnings[i].code);
+    strut_json_text(json, warning, "text", s->warnings[i].text);
+  }
+}
+
+void strut_json_settle(strut_json *json, cJSON *to, const strut_settle_summary *how) {
+  char warning[300];
+  if (how->evaluations == 0) return;
+  cJSON *object = strut_json_object(json, to, "settle");
+  bool unstable = strut_settle_warning(how, warning, sizeof warning);
+  strut_json_number(json, object, "step", how->step);
+  strut_json_integer(json, object, "evaluations", how->evaluations);
+  strut_json_integer(json, object, "perturbations", how->perturbations);
+  strut_json_bool(json, object, "stable", !how->unstable);
+  strut_json_text(json, object, "node", how->node);
+  strut_json_number(json, object, "stiffness", unstable ? how->stiffness : (double)NAN);
+  strut_json_number(json, object, "growth_rate", unstable ? how->growth_rate : (double)NAN);
+  strut_json_text(json, object, "warning", unstable ? warning : NULL);
+}
+
+static void put_multipliers(strut_json *json, cJSON *to, const strut_steady_summary *s) {
+  double sizes[STRUT_MOST_MULTIPLIERS];
+  for (size_t i = 0; i < s->multiplier_count; i++)
+    sizes[i] = hypot(s->multiplier[i][0], s->multiplier[i][1]);
+  strut_json_numbers(json, to, "multipliers", &s->multiplier[0][0], 2 * s->multiplier_count);
+  strut_json_numbers(json, to, "multiplier_sizes", sizes, s->multiplier_count);
+}
+
+static void put_result(strut_json *json, cJSON *to, const strut_summary *s, strut_result_id id) {
+  strut_result r = strut_summary_result(s, id);
+  switch (r.type) {
+    case STRUT_RESULT_NUMBER: strut_json_number(json, to, r.key, r.number); break;
+    case STRUT_RESULT_COUNT_OF: strut_json_integer(json, to, r.key, r.count); break;
+    case STRUT_RESULT_FLAG: strut_json_bool(json, to, r.key, r.count != 0); break;
+    case STRUT_RESULT_TEXT: strut_json_text(json, to, r.key, r.text); break;
+    case STRUT_RESULT_PART:
+      if (id == STRUT_RESULT_run_settle) strut_json_settle(json, to, &s->settle);
+      if (id == STRUT_RESULT_steady_multipliers) put_multipliers(json, to, &s->steady);
+  }
+}
+
+/* The results from `first` to `last`, each group an object. */
+static void put_results(strut_json *json, cJSON *to, const strut_summary *s, strut_result_id first,
+                        strut_result_id last) {
+  const char *group = "run";
+  cJSON *object = to;
+  for (strut_result_id id = first; id <= last; id++) {
+    strut_result r = strut_summary_result(s, id);
+    if (!r.there) continue;
+    if (strcmp(r.group, group) != 0)
+      object = strcmp(r.group, "run") == 0 ? to : strut_json_object(json, to, r.group);
+    group = r.group;
+    put_result(json, object, s, id);
+  }
+}
+
+static void put_run(strut_json *json, cJSON *to, const strut_summary *s, bool with_wall_time) {
+  strut_json_text(json, to, "status", strut_status_text(s->status));
+  strut_json_text(json, to, "reason", s->reason[0] ? s->reason : NULL);
+  put_warnings(json, to, s);
+  char worth[200];
+  strut_summary_worth(s, worth, sizeof worth);
+  strut_json_text(json, to, "worth", worth[0] ? worth : NULL);
+  strut_json_text(json, to, "caveat", s->caveat[0] ? s->caveat : NULL);
+  put_results(json, to, s, 0, STRUT_RESULT_accuracy_check_evaluations);
+  if (with_wall_time) strut_json_number(json, to, "wall_time", s->wall_time);
+}
+
+static void put_parameters(strut_json *json, cJSON *to, const strut_scene *scene) {
+  cJSON *parameters = strut_json_object(json, to, "parameters");
+  for (size_t i = 0; i < scene->parameter_count; i++) {
+    const strut_parameter *parameter = &scene->parameters[i];
+    if (isnan(parameter->value)) {
+      strut_json_text(json, parameters, parameter->name, parameter->text);
+    } else {
+      strut_json_number(json, parameters, parameter->name, parameter->value);
+    }
+  }
+}
+
+static void put_nodes(strut_json *json, cJSON *to, const strut_summary *s) {
+  cJSON *nodes = strut_json_object(json, to, "nodes");
+  for (size_t i = 0; i < s->node_count; i++) {
+    cJSON *node = strut_json_object(json, nodes, s->node_names[i]);
+    strut_json_numbers(json, node, "position", s->positions + 2 * i, 2);
+  }
+}
+
+/* The key exists only if the scene has hinges. */
+static void put_hinges(strut_json *json, cJSON *to, const strut_summary *s) {
+  cJSON *hinges = s->hinge_count ? strut_json_object(json, to, "hinges") : NULL;
+  for (size_t i = 0; i < s->hinge_count; i++) {
+    cJSON *hinge = strut_json_object(json, hinges, s->hinges[i].hinge);
+    strut_json_number(json, hinge, "angle", s->hinges[i].angle);
+    strut_json_number(json, hinge, "moment", s->hinges[i].moment);
+  }
+}
+
+/* Likewise of cells. */
+static void put_cells(strut_json *json, cJSON *to, const strut_summary *s) {
+  cJSON *cells = s->cell_count ? strut_json_object(json, to, "cells") : NULL;
+  for (size_t i = 0; i < s->cell_count; i++) {
+    cJSON *cell = strut_json_object(json, cells, s->cells[i].cell);
+    strut_json_number(json, cell, "area", s->cells[i].area);
+    strut_json_number(json, cell, "pressure", s->cells[i].pressure);
+  }
+}
+
+/* The key exists only if something broke or was released. */
+static void put_breaks(strut_json *json, cJSON *to, const strut_summary *s) {
+  cJSON *broken = s->break_count ? strut_json_object(json, to, "broken") : NULL;
+  for (size_t i = 0; i < s->break_count; i++) {
+    cJSON *one = strut_json_object(json, broken, s->breaks[i].name);
+    strut_json_number(json, one, "time", s->breaks[i].time);
+    strut_json_bool(json, one, "released", s->breaks[i].released);
+  }
+}
+
+static void put_contacts(strut_json *json, cJSON *to, const strut_summary *s) {
+  cJSON *contacts = strut_json_object(json, to, "contacts");
+  for (size_t i = 0; i < s->contact_count; i++) {
+    cJSON *contact = strut_json_object(json, contacts, s->contacts[i].node);
+    strut_json_number(json, contact, "duty", s->contacts[i].duty);
+    strut_json_number(json, contact, "max_height", s->contacts[i].max_height);
+    if (s->contacts[i].band_needed > 0.0)
+      strut_json_number(json, contact, "stick_velocity_needed", s->contacts[i].band_needed);
+  }
+}
+
+/* The key exists only if the scene measures quantities. */
+static void put_measured(strut_json *json, cJSON *to, const strut_summary *s) {
+  if (!s->measured_count) return;
+  cJSON *measured = strut_json_object(json, to, "measured");
+  for (size_t i = 0; i < s->measured_count; i++) {
+    const strut_measured *m = &s->measured[i];
+    cJSON *quantity = strut_json_object(json, measured, m->name);
+    strut_json_number(json, quantity, "value", m->value);
+    strut_json_text(json, quantity, "unit", m->unit);
+    strut_json_number(json, quantity, "spread", m->spread);
+    strut_json_number(json, quantity, "scale", m->scale);
+    strut_json_bool(json, quantity, "zero", m->zero);
+    if (m->member) strut_json_text(json, quantity, "member", m->member);
+    if (!isfinite(m->expected)) continue;
+    strut_json_number(json, quantity, "expected", m->expected);
+    strut_json_bool(json, quantity, "kept", m->kept);
+  }
+}
+
+char *strut_summary_json(const strut_summary *summary, const strut_scene *scene,
+                         bool with_wall_time) {
+  strut_json json = strut_json_begin();
+  strut_json_text(&json, json.root, "name", scene->name);
+  strut_json_text(&json, json.root, "strut_version", STRUT_VERSION);
+  strut_json_integer(&json, json.root, "language", STRUT_LANGUAGE_VERSION);
+  put_run(&json, json.root, summary, with_wall_time);
+  put_measured(&json, json.root, summary);
+  put_parameters(&json, json.root, scene);
+  put_nodes(&json, json.root, summary);
+  put_hinges(&json, json.root, summary);
+  put_cells(&json, json.root, summary);
+  put_breaks(&json, json.root, summary);
+  put_contacts(&json, json.root, summary);
+  put_results(&json, json.root, summary, STRUT_RESULT_energy_kinetic, STRUT_RESULT_energy_balance);
+  return strut_json_end(&json);
+}
+
+/* ---- a table that fits a screen ---- */
+
+enum { MOST_ROWS = 10, DIGITS = 4 };
+
+static strut_rounded_quantity in(double value, const char *unit) {
+  return strut_quantity_of(value, DIGITS, unit);
+}
+
+/* What the numbers are worth in one line, then why. */
+static void add_worth(strut_buffer *table, const strut_summary *s) {
+  const strut_accuracy_summary *a = &s->accuracy;
+  char worth[200];
+  strut_summary_worth(s, worth, sizeof worth);
+  if (*worth) strut_buffer_add(table, "  accuracy    %s\n", worth);
+  if (a->wanted > 0.0)
+    strut_buffer_add(table, "              %s; checked with %" PRId64 " more force evaluations\n",
+                     a->why, a->check_evaluations);
+  else if (s->caveat[0])
+    strut_buffer_add(table, "              %s\n", s->caveat);
+}
+
+/* Steady motion, and what is known of it. */
+static void add_claims(strut_buffer *table, const strut_summary *s) {
+  const strut_steady_summary *m = &s->steady;
+  bool checked = s->accuracy.wanted > 0.0;
+  if (m->kind == STRUT_MOTION_PERIODIC) {
+    strut_buffer_add(table, "  steady      after %" PRId64 " periods, every ", m->periods);
+    if (m->repeats > 1)
+      strut_buffer_add(table, "%d of them repeating", (int)m->repeats);
+    else
+      strut_buffer_add(table, "one repeating");
+    strut_buffer_add(table, checked ? "; velocity known within %s\n" : " within %s\n",
+                     in(m->interval, "m/s").text);
+  } else if (m->kind == STRUT_MOTION_TRANSIENT) {
+    strut_buffer_add(table, "  steady      not within %" PRId64 " periods\n", m->periods);
+  } else if (m->kind == STRUT_MOTION_IRREGULAR) {
+    strut_buffer_add(table, "  irregular   mean velocity known within %s\n",
+                     in(m->interval, "m/s").text);
+  } else if (m->kind == STRUT_MOTION_CREEPING) {
+    strut_buffer_add(table,
+                     "  creeping    over %" PRId64 " periods; mean velocity known within %s\n",
+                     m->periods, in(m->interval, "m/s").text);
+  }
+  if (m->shot) {
+    double most = 0.0;
+    for (size_t i = 0; i < m->multiplier_count; i++)
+      most = fmax(most, hypot(m->multiplier[i][0], m->multiplier[i][1]));
+    const char *kind = most < 1.0 - 1e-6 ? "stable" : most > 1.0 + 1e-6 ? "unstable" : "neutral";
+    strut_buffer_add(table, "  orbit       closed within %.2g of the size; %s, multipliers of size",
+                     m->residual, kind);
+    for (size_t i = 0; i < m->multiplier_count; i++)
+      strut_buffer_add(table, " %.4g", hypot(m->multiplier[i][0], m->multiplier[i][1]));
+    strut_buffer_add(table, "\n");
+  } else if (m->reason[0]) {
+    strut_buffer_add(table, "  orbit       not computed: %s\n", m->reason);
+  }
+  add_worth(table, s);
+}
+
+static void add_head(strut_buffer *table, const strut_summary *s, const strut_scene *scene) {
+  strut_buffer_add(table, "%s%s%s", scene->name, *scene->name ? ": " : "",
+                   strut_status_text(s->status));
+  if (s->reason[0]) strut_buffer_add(table, ": %s", s->reason);
+  strut_buffer_add(table, "\n  velocity    %s of %s", in(s->velocity, "m/s").text,
+                   s->measured_node ? s->measured_node : "the centre of mass");
+  if (isfinite(s->velocity_spread)) {
+    strut_buffer_add(table, ", spread %s", in(s->velocity_spread, "m/s").text);
+  }
+  strut_buffer_add(table, ", from %s%s\n", in(s->window_start, "s").text,
+                   s->velocity_zero && s->velocity != 0.0 && !(s->accuracy.wanted > 0.0)
+                       ? ", zero up to rounding"
+                       : "");
+  strut_buffer_add(table, "  duration    %s, %" PRId64 " steps", in(s->duration, "s").text,
+                   s->steps);
+  if (s->settle_time > 0.0) {
+    strut_buffer_add(table, ", after %s of settling", in(s->settle_time, "s").text);
+  }
+  if (s->settle.unstable)
+    strut_buffer_add(table,
+                     "\n  start       settled on an UNSTABLE equilibrium; node %s moves most in "
+                     "the unstable direction",
+                     s->settle.node);
+  strut_buffer_add(table, "\n  step        %s, stable up to %s%s\n", in(s->step, "s").text,
+                   in(s->step_limit, "s").text, s->feedback ? " without feedback" : "");
+  if (s->limit_fell.limit > 0.0)
+    strut_buffer_add(table, "              TOO LARGE since %s: the stability limit fell to %s\n",
+                     in(s->limit_fell.since, "s").text, in(s->limit_fell.limit, "s").text);
+  strut_buffer_add(table, "  computed    %" PRId64 " force evaluations in %s", s->force_evaluations,
+                   in(s->wall_time, "s").text);
+  if (s->steps > 0) {
+    strut_buffer_add(table, ", %s per step", in(s->wall_time / (double)s->steps, "s").text);
+  }
+  if (s->events > 0) strut_buffer_add(table, ", %" PRId64 " events located", s->events);
+  strut_buffer_add(table, "\n");
+  add_claims(table, s);
+}
+
+/* Why a quantity has no value. */
+static const char *missing(const strut_summary *s, const strut_measured *m) {
+  if (m->arrival && s->status == STRUT_OK) return "the target was not reached";
+  return s->status == STRUT_OK ? "not finite" : "the window was not reached";
+}
+
+static void add_measured(strut_buffer *table, const strut_summary *s) {
+  if (s->measured_count)
+    strut_buffer_add(table, "\n  %-16s %14s %14s\n", "measured", "value", "spread");
+  for (size_t i = 0; i < s->measured_count; i++) {
+    const strut_measured *m = &s->measured[i];
+    strut_buffer_add(table, "  %-16s %14s", m->name,
+                     strut_quantity_of_any(m->value, DIGITS, m->unit).text);
+    if (isfinite(m->spread))
+      strut_buffer_add(table, " %14s", strut_quantity_of_any(m->spread, DIGITS, m->unit).text);
+    if (isnan(m->value)) strut_buffer_add(table, "  %s", missing(s, m));
+    if (m->zero) strut_buffer_add(table, "  zero up to rounding");
+    if (m->member) strut_buffer_add(table, "  in %.40s", m->member);
+    if (isfinite(m->expected))
+      strut_buffer_add(table, "  %s within %s",
+                       m->kept ? "known" : "NOT as accurate as requested, but",
+                       strut_quantity_of_any(m->expected, 2, m->unit).text);
+    strut_buffer_add(table, "\n");
+  }
+}
+
+static void add_more(strut_buffer *table, size_t count) {
+  if (count > MOST_ROWS) strut_buffer_add(table, "  ... and %zu more\n", count - MOST_ROWS);
+}
+
+static void add_positions(strut_buffer *table, const strut_summary *s) {
+  if (s->node_count)
+    strut_buffer_add(table, "\n  %-16s %14s %14s   after %s\n", "node", "x", "y",
+                     in(s->duration, "s").text);
+  for (size_t i = 0; i < s->node_count && i < MOST_ROWS; i++) {
+    strut_buffer_add(table, "  %-16s %14s %14s\n", s->node_names[i],
+                     in(s->positions[2 * i], "m").text, in(s->positions[2 * i + 1], "m").text);
+  }
+  add_more(table, s->node_count);
+}
+
+static void add_hinges(strut_buffer *table, const strut_summary *s) {
+  if (s->hinge_count) strut_buffer_add(table, "\n  %-16s %14s %14s\n", "hinge", "angle", "moment");
+  for (size_t i = 0; i < s->hinge_count && i < MOST_ROWS; i++)
+    strut_buffer_add(table, "  %-16s %10.5g deg %14s\n", s->hinges[i].hinge,
+                     s->hinges[i].angle * (180.0 / STRUT_PI), in(s->hinges[i].moment, "N m").text);
+  add_more(table, s->hinge_count);
+}
+
+static void add_cells(strut_buffer *table, const strut_summary *s) {
+  if (s->cell_count) strut_buffer_add(table, "\n  %-16s %14s %14s\n", "cell", "area", "pressure");
+  for (size_t i = 0; i < s->cell_count && i < MOST_ROWS; i++)
+    strut_buffer_add(table, "  %-16s %10.4g m^2 %14s\n", s->cells[i].cell, s->cells[i].area,
+                     in(s->cells[i].pressure, "N/m").text);
+  add_more(table, s->cell_count);
+}
+
+static void add_breaks(strut_buffer *table, const strut_summary *s) {
+  if (s->break_count) strut_buffer_add(table, "\n  %-16s %14s\n", "carries nothing", "from");
+  for (size_t i = 0; i < s->break_count && i < MOST_ROWS; i++)
+    strut_buffer_add(table, "  %-16s %14s   %s\n", s->breaks[i].name,
+                     in(s->breaks[i].time, "s").text, s->breaks[i].released ? "released" : "broke");
+  add_more(table, s->break_count);
+}
+
+static void add_contacts(strut_buffer *table, const strut_summary *s) {
+  if (s->contact_count) {
+    strut_buffer_add(table, "\n  %-16s %14s %14s\n", "contact", "contact time", "max. height");
+  }
+  for (size_t i = 0; i < s->contact_count && i < MOST_ROWS; i++) {
+    const strut_contact_summary *contact = &s->contacts[i];
+    if (isnan(contact->duty)) { /* the run ended before its window */
+      strut_buffer_add(table, "  %-16s %14s %14s\n", contact->node, "none", "none");
+      continue;
+    }
+    strut_buffer_add(table, "  %-16s %12.1f %% %14s\n", contact->node, 100.0 * contact->duty,
+                     in(contact->max_height, "m").text);
+  }
+  add_more(table, s->contact_count);
+}
+
+/* The residual of the balance and what it means, in one statement. */
+static void add_balance(strut_buffer *table, const strut_summary *s) {
+  const strut_energy *e = &s->energy;
+  strut_rounded_quantity residual = in(e->residual, "J");
+  if (s->balance == STRUT_BALANCE_NOT_KEPT || !(e->moved > 0.0)) {
+    if (e->residual != 0.0) strut_buffer_add(table, "  %-16s %14s\n", "residual", residual.text);
+    return;
+  }
+  double part = fabs(e->residual) / e->moved;
+  if (s->balance == STRUT_BALANCE_OPEN)
+    strut_buffer_add(table, "  %-16s %14s   balance NOT closed: %.2g %% of the energy exchanged\n",
+                     "residual", residual.text, 100.0 * part);
+  else
+    strut_buffer_add(table, "  %-16s %14s   balance closed%s\n", "residual", residual.text,
+                     part <= 0.01 ? " within 1 % of the energy exchanged"
+                                  : " up to the rounding of the stored energy");
+}
+
+/* Energies below this part of all of them are rounding. */
+static const double ENERGY_ROUNDING = 4.0 * DBL_EPSILON;
+
+static void add_energy(strut_buffer *table, const strut_summary *s) {
+  const strut_energy *e = &s->energy;
+  const struct {
+    const char *name;
+    double value;
+  } rows[] = {
+#define ENERGY_ROW(name, kind, label) {label, e->name},
+      STRUT_ENERGY_TABLE(ENERGY_ROW)
+#undef ENERGY_ROW
+  };
+  double most = e->moved + fabs(e->initial);
+  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) most = fmax(most, fabs(rows[i].value));
+  strut_buffer_add(table, "\n  energy after %s, works and losses until then\n",
+                   in(s->duration, "s").text);
+  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+    if (!(fabs(rows[i].value) > ENERGY_ROUNDING * most)) continue; /* not in this scene */
+    strut_buffer_add(table, "  %-16s %14s\n", rows[i].name, in(rows[i].value, "J").text);
+  }
+}
+
+char *strut_summary_table(const strut_summary *summary, const strut_scene *scene) {
+  strut_buffer table = {0};
+  strut_c_locale locale = strut_c_locale_enter();
+  add_head(&table, summary, scene);
+  add_measured(&table, summary);
+  add_positions(&table, summary);
+  add_hinges(&table, summary);
+  add_cells(&table, summary);
+  add_breaks(&table, summary);
+  add_contacts(&table, summary);
+  add_energy(&table, summary);
+  add_balance(&table, summary);
+  strut_c_locale_leave(locale);
+  return strut_buffer_take(&table);
+}
+
+/* ---- rows of a page, read back from summary.json ---- */
+
+enum { MOST_CONTACTS = 12, LABEL = 300, VALUE = 800 };
+
+typedef struct rows {
+  strut_json *json;
+  cJSON *to;
+  const cJSON *from; /* the summary */
+} rows;
+
+static void show_row(rows *r, const char *label, const char *value) {
+  cJSON *row = strut_json_object(r->json, r->to, NULL);
+  strut_json_text(r->json, row, "label", label);
+  strut_json_text(r->json, row, "value", value);
+}
+
+/* NAN if there is no such number. */
+static double number(const cJSON *from, const char *key) {
+  const cJSON *item = cJSON_GetObjectItemCaseSensitive(from, key);
+  return cJSON_IsNumber(item) ? item->valuedouble : (double)NAN;
+}
+
+static const char *text(const cJSON *from, const char *key) {
+  return cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(from, key));
+}
+
+static void show_quantity(rows *r, const char *label, const char *key, const char *unit) {
+  double value = number(r->from, key);
+  if (isfinite(value)) show_row(r, label, in(value, unit).text);
+}
+
+static void show_status(rows *r) {
+  const char *status = text(r->from, "status"), *reason = text(r->from, "reason");
+  char value[VALUE];
+  if (!status) return;
+  bool twice = reason && strncmp(reason, status, strlen(status)) == 0;
+  snprintf(value, sizeof value, "%s%s%s", twice ? "" : status, reason && !twice ? ": " : "",
+           reason ? reason : "");
+  show_row(r, "run", value);
+}
+
+static void show_warnings(rows *r) {
+  const cJSON *warnings = cJSON_GetObjectItemCaseSensitive(r->from, "warnings"), *warning;
+  cJSON_ArrayForEach(warning, warnings) {
+    const char *said = text(warning, "text");
+    if (said) show_row(r, "warning", said);
+  }
+}
+
+/* What the numbers are worth, and why; of version 0.1 only the latter. */
+static void show_worth(rows *r) {
+  const cJSON *accuracy = cJSON_GetObjectItemCaseSensitive(r->from, "accuracy");
+  const char *worth = text(r->from, "worth"), *caveat = text(r->from, "caveat");
+  const char *why = accuracy ? text(accuracy, "why") : caveat;
+  if (worth) show_row(r, "accuracy", worth);
+  if (why) show_row(r, worth ? "because" : "accuracy", why);
+}
+
+static void show_velocity(rows *r, const strut_experiment *experiment, const strut_scene *scene) {
+  int32_t node = experiment->measure_node;
+  char label[LABEL], value[VALUE];
+  double spread = number(r->from, "velocity_spread"), from = number(r->from, "window_start");
+  if (!isfinite(number(r->from, "velocity"))) return;
+  snprintf(label, sizeof label, "mean velocity of %s",
+           node >= 0 ? scene->nodes[node].name : "the centre of mass");
+  snprintf(value, sizeof value, "%s%s%s, from %s", in(number(r->from, "velocity"), "m/s").text,
+           isfinite(spread) ? ", spread " : "", isfinite(spread) ? in(spread, "m/s").text : "",
+           isfinite(from) ? in(from, "s").text : "the start");
+  show_row(r, label, value);
+}
+
+static void show_measured(rows *r) {
+  const cJSON *measured = cJSON_GetObjectItemCaseSensitive(r->from, "measured"), *item;
+  char value[VALUE];
+  cJSON_ArrayForEach(item, measured) {
+    const char *unit = text(item, "unit");
+    double number_of = number(item, "value"), spread = number(item, "spread");
+    if (!unit || !item->string || !isfinite(number_of)) continue;
+    snprintf(value, sizeof value, "%s%s%s%s", strut_quantity_of_any(number_of, DIGITS, unit).text,
+             isfinite(spread) ? ", spread " : "",
+             isfinite(spread) ? strut_quantity_of_any(spread, DIGITS, unit).text : "",
+             cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(item, "zero")) ? ", zero up to rounding"
+                                                                          : "");
+    show_row(r, item->string, value);
+  }
+}
+
+static void show_steps(rows *r) {
+  char value[VALUE];
+  double step = number(r->from, "step"), limit = number(r->from, "step_limit");
+  double steps = number(r->from, "steps"), settled = number(r->from, "settle_time");
+  show_quantity(r, "duration", "duration", "s");
+  if (settled > 0) show_row(r, "settling time", in(settled, "s").text);
+  if (!isfinite(step) || !isfinite(steps)) return;
+  snprintf(value, sizeof value, "%.0f of %s", steps, in(step, "s").text);
+  show_row(r, "steps", value);
+  show_row(r, "largest stable step", isfinite(limit) ? in(limit, "s").text : "no limit");
+}
+
+static void show_contacts(rows *r) {
+  const cJSON *contacts = cJSON_GetObjectItemCaseSensitive(r->from, "contacts"), *contact;
+  char label[LABEL], value[VALUE];
+  int shown = 0;
+  cJSON_ArrayForEach(contact, contacts) {
+    double duty = number(contact, "duty"), height = number(contact, "max_height");
+    if (!isfinite(duty) || !contact->string) continue;
+    if (shown++ == MOST_CONTACTS) {
+      snprintf(value, sizeof value, "%d more", cJSON_GetArraySize(contacts) - MOST_CONTACTS);
+      show_row(r, "contacts", value);
+      return;
+    }
+    snprintf(label, sizeof label, "contact of %s", contact->string);
+    snprintf(value, sizeof value, "%.1f %% of the time, at most %s high", 100 * duty,
+             in(height, "m").text);
+    show_row(r, label, value);
+  }
+}
+
+/* Works and losses that are not zero, and the residual of the balance. */
+static void show_energy(rows *r) {
+  enum { ENERGY, WORK, LOSSES };
+  static const struct {
+    int kind;
+    const char *key, *label;
+  } parts[] = {
+#define PART_ROW(name, kind, label) {kind, #name, label},
+      STRUT_ENERGY_TABLE(PART_ROW)
+#undef PART_ROW
+  };
+  const cJSON *energy = cJSON_GetObjectItemCaseSensitive(r->from, "energy");
+  char value[VALUE];
+  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+    double amount = number(energy, parts[i].key);
+    if (parts[i].kind != ENERGY && isfinite(amount) && amount != 0)
+      show_row(r, parts[i].label, in(amount, "J").text);
+  }
+  double residual = number(energy, "residual"), moved = number(energy, "exchanged");
+  if (!isfinite(moved)) moved = number(energy, "moved"); /* its name up to version 0.1 */
+  const char *balance = text(energy, "balance");
+  bool open = balance && strcmp(balance, "open") == 0;
+  if (!isfinite(residual)) return;
+  if (moved > 0)
+    snprintf(value, sizeof value, "%s, %.1e of the energy exchanged%s", in(residual, "J").text,
+             fabs(residual) / moved,
+             open                            ? ": the balance does not close"
+             : fabs(residual) > 0.01 * moved ? ", which is rounding of the stored energy"
+                                             : "");
+  else
+    snprintf(value, sizeof value, "%s", in(residual, "J").text);
+  show_row(r, "energy residual", value);
+}
+
+void strut_summary_rows(strut_json *json, cJSON *to, const char *summary,
+                        const strut_experiment *experiment, const strut_scene *scene) {
+  rows r = {.json = json, .to = to};
+  if (!summary) return;
+  strut_c_locale locale = strut_c_locale_enter();
+  cJSON *root = cJSON_Parse(summary);
+  r.from = root;
+  if (cJSON_IsObject(root)) {
+    show_status(&r);
+    show_warnings(&r);
+    show_velocity(&r, experiment, scene);
+    show_worth(&r);
+    show_measured(&r);
+    show_steps(&r);
+    show_contacts(&r);
+    show_energy(&r);
+  } else {
+    show_row(&r, "summary", "summary.json cannot be read");
+  }
+  cJSON_Delete(root);
+  strut_c_locale_leave(locale);
+}
