@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * An HDF5 file driver whose writing never fails; for hdf5.c alone.
+ * An HDF5 file driver whose writing never fails; for hdf5_writer.c alone.
  *
  * HDF5 1.10 cannot close a file once a write has failed: it keeps the file, complains, and crashes
  * when the program exits. So this driver hides a full disk from the library. What did not fit is
@@ -9,7 +9,7 @@
 #ifndef STRUT_ENGINE_OUTPUT_HDF5_DISK_H
 #define STRUT_ENGINE_OUTPUT_HDF5_DISK_H
 
-#include "engine/output/hdf5_calls.h"
+#include <hdf5.h>
 
 /** Destination of one file's bytes. Must outlive the file's closing. */
 typedef struct strut_hdf5_disk {

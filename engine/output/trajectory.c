@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A motion in memory: recorded by a sink, or read back from trajectory.h5. */
+/* A motion in memory: recorded by a sink, or read back from trajectory.h5 (trajectory_file.c). */
 #include "engine/output/trajectory.h"
 
 #include <errno.h>
@@ -9,7 +9,7 @@
 
 #include <stdbool.h>
 #include "engine/base/memory.h"
-#include "engine/output/hdf5_parts.h"
+#include "engine/output/hdf5_library.h"
 
 enum { STRUT_TRAJECTORY_ARRAYS = 9 };
 
@@ -35,7 +35,7 @@ typedef struct keeper {
   bool waiting; /* the latest row is not yet a frame */
 } keeper;
 
-static double **trajectory_array_of(strut_trajectory *t, strut_channel id) {
+double **strut_trajectory_array(strut_trajectory *t, strut_channel id) {
   switch (id) {
     case STRUT_CHANNEL_POSITION: return &t->position;
     case STRUT_CHANNEL_VELOCITY: return &t->velocity;
@@ -126,7 +126,7 @@ static strut_status begin(void *context, const strut_record_layout *layout, stru
   k->array_count = k->frame_size = 1;
   for (size_t i = 0; i < layout->channel_count; i++) {
     const strut_record_channel *c = &layout->channels[i];
-    k->arrays[k->array_count++] = (trajectory_array){.values = trajectory_array_of(t, c->id),
+    k->arrays[k->array_count++] = (trajectory_array){.values = strut_trajectory_array(t, c->id),
                                                      .size = c->items * c->components,
                                                      .offset = c->offset};
     k->frame_size += c->items * c->components;
@@ -194,210 +194,35 @@ void strut_trajectory_free(strut_trajectory *t) {
 
 /* ---- reading back ---- */
 
-static const struct {
-  strut_channel id;
-  const char *name;
-  size_t components;
-} channels[] = {
-    {STRUT_CHANNEL_POSITION, "position", 2}, {STRUT_CHANNEL_VELOCITY, "velocity", 2},
-    {STRUT_CHANNEL_LENGTH, "length", 1},     {STRUT_CHANNEL_FORCE, "force", 1},
-    {STRUT_CHANNEL_CONTACT, "contact", 2},   {STRUT_CHANNEL_ENERGY, "energy", STRUT_ENERGIES},
-    {STRUT_CHANNEL_ANGLE, "angle", 1},       {STRUT_CHANNEL_MOMENT, "moment", 1},
-    {STRUT_CHANNEL_AREA, "area", 1},         {STRUT_CHANNEL_PRESSURE, "pressure", 1},
-};
-enum { CHANNELS = sizeof channels / sizeof *channels };
-
-typedef struct reader {
-  hid_t file;
-  const char *path;
-  const strut_scene *scene;
-  strut_trajectory *t;
-  strut_error *error;
-} reader;
-
-static strut_status trouble(const reader *r, const char *what) {
-  return strut_fail(r->error, STRUT_FILE_TROUBLE,
-                    "cannot read '%s': %s; run the model again with -o", r->path, what);
-}
-
-static strut_status report_no_memory(const reader *r) {
-  return strut_no_memory(r->error, "for the recorded motion");
-}
-
-static size_t items_of(const reader *r, strut_channel id) {
-  if (id == STRUT_CHANNEL_POSITION || id == STRUT_CHANNEL_VELOCITY) return r->scene->node_count;
-  if (id == STRUT_CHANNEL_LENGTH || id == STRUT_CHANNEL_FORCE) return r->scene->member_count;
-  if (id == STRUT_CHANNEL_ANGLE || id == STRUT_CHANNEL_MOMENT) return r->scene->hinge_count;
-  if (id == STRUT_CHANNEL_AREA || id == STRUT_CHANNEL_PRESSURE) return r->scene->cell_count;
-  return id == STRUT_CHANNEL_CONTACT ? r->scene->contact_count : 1;
-}
-
-/* The shape of a dataset of that rank; false where it has another, or no doubles. */
-static bool shape_of(hid_t dataset, int rank, hsize_t shape[STRUT_HDF5_RANK]) {
-  hid_t space = H5Dget_space(dataset), type = H5Dget_type(dataset);
-  bool good = H5Tget_class(type) == H5T_FLOAT && H5Sget_simple_extent_ndims(space) == rank &&
-              H5Sget_simple_extent_dims(space, shape, NULL) == rank;
-  H5Tclose(type);
-  H5Sclose(space);
-  return good;
-}
-
-/* Reads `frames` rows of `size` doubles with a stride of `every`, and the last row. */
-static bool read_rows(hid_t dataset, int rank, const hsize_t *shape, size_t frames, size_t every,
-                      size_t size, double *values) {
-  size_t even = (shape[0] + every - 1) / every; /* those evenly spaced */
-  hsize_t start[STRUT_HDF5_RANK] = {0}, stride[STRUT_HDF5_RANK] = {every, 1, 1};
-  hsize_t count[STRUT_HDF5_RANK] = {even, rank > 1 ? shape[1] : 1, rank > 2 ? shape[2] : 1};
-  hsize_t length = even * size;
-  hid_t from = H5Dget_space(dataset), to = H5Screate_simple(1, &length, NULL);
-  bool good = H5Sselect_hyperslab(from, H5S_SELECT_SET, start, stride, count, NULL) >= 0 &&
-              H5Dread(dataset, H5T_NATIVE_DOUBLE, to, from, H5P_DEFAULT, values) >= 0;
-  H5Sclose(to);
-  if (good && frames > even) {
-    start[0] = shape[0] - 1;
-    stride[0] = count[0] = 1;
-    length = size;
-    to = H5Screate_simple(1, &length, NULL);
-    good = H5Sselect_hyperslab(from, H5S_SELECT_SET, start, stride, count, NULL) >= 0 &&
-           H5Dread(dataset, H5T_NATIVE_DOUBLE, to, from, H5P_DEFAULT, values + even * size) >= 0;
-    H5Sclose(to);
-  }
-  H5Sclose(from);
-  return good;
-}
-
-/* Does the list of that name in the file equal `expected`? A missing list counts as empty. */
-static bool same_names(const reader *r, const char *list, size_t count,
-                       const char *(*expected)(const strut_scene *, size_t)) {
-  if (H5Lexists(r->file, list, H5P_DEFAULT) <= 0) return true;
-  hid_t dataset = H5Dopen2(r->file, list, H5P_DEFAULT);
-  hid_t type = H5Dget_type(dataset), space = H5Dget_space(dataset);
-  size_t longest = H5Tget_size(type);
-  bool good = H5Tget_class(type) == H5T_STRING && !H5Tis_variable_str(type) &&
-              H5Sget_simple_extent_npoints(space) == (hssize_t)count;
-  char *texts = good ? strut_allocate(count, longest) : NULL;
-  good = texts && H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, texts) >= 0;
-  for (size_t i = 0; i < count && good; i++) {
-    const char *name = expected(r->scene, i);
-    good = strlen(name) <= longest && strncmp(name, texts + i * longest, longest) == 0;
-  }
-  strut_release(texts);
-  H5Sclose(space);
-  H5Tclose(type);
-  H5Dclose(dataset);
-  return good;
-}
-
-static const char *node_name(const strut_scene *scene, size_t i) { return scene->nodes[i].name; }
-static const char *member_name(const strut_scene *scene, size_t i) {
-  return scene->members[i].name;
-}
-static const char *hinge_name(const strut_scene *scene, size_t i) { return scene->hinges[i].name; }
-static const char *cell_name(const strut_scene *scene, size_t i) { return scene->cells[i].name; }
-static const char *contact_name(const strut_scene *scene, size_t i) {
-  return strut_contact_name(scene, i);
-}
-
-static strut_status read_channel(reader *r, int i) {
-  if (H5Lexists(r->file, channels[i].name, H5P_DEFAULT) <= 0) return STRUT_OK;
-  hid_t dataset = H5Dopen2(r->file, channels[i].name, H5P_DEFAULT);
-  hsize_t shape[STRUT_HDF5_RANK] = {0};
-  size_t items = items_of(r, channels[i].id), size = items * channels[i].components;
-  bool fits = dataset >= 0 && shape_of(dataset, 3, shape) && shape[0] == r->t->recorded &&
-              shape[1] == items && shape[2] == channels[i].components;
-  double *values = fits ? strut_allocate(r->t->frames, size * sizeof *values) : NULL;
-  bool good = values && read_rows(dataset, 3, shape, r->t->frames, r->t->every, size, values);
-  *trajectory_array_of(r->t, channels[i].id) = values;
-  if (dataset >= 0) H5Dclose(dataset);
-  if (!fits) return trouble(r, "it belongs to another structure than the scene beside it");
-  return good ? STRUT_OK : values ? trouble(r, "it is damaged") : report_no_memory(r);
-}
-
-/* Chooses the number of frames and reads their times. */
-static strut_status read_time(reader *r, size_t room) {
-  hsize_t shape[STRUT_HDF5_RANK] = {0};
-  hid_t dataset =
-      H5Lexists(r->file, "time", H5P_DEFAULT) > 0 ? H5Dopen2(r->file, "time", H5P_DEFAULT) : -1;
-  if (dataset < 0 || !shape_of(dataset, 1, shape)) {
-    if (dataset >= 0) H5Dclose(dataset);
-    return trouble(r, "not a trajectory of strut");
-  }
-  strut_trajectory *t = r->t;
-  size_t frame = 1;
-  for (int i = 0; i < CHANNELS; i++)
-    if (H5Lexists(r->file, channels[i].name, H5P_DEFAULT) > 0)
-      frame += items_of(r, channels[i].id) * channels[i].components;
-  t->recorded = shape[0];
-  t->every = 1;
-  while (t->recorded / t->every > 4 && (t->recorded / t->every + 2) * frame > room) t->every *= 2;
-  t->frames = (t->recorded + t->every - 1) / t->every;
-  t->frames += t->recorded > 0 && (t->recorded - 1) % t->every != 0;
-  t->time = strut_allocate(t->frames, sizeof *t->time);
-  bool good =
-      t->time && (!t->frames || read_rows(dataset, 1, shape, t->frames, t->every, 1, t->time));
-  H5Dclose(dataset);
-  return good ? STRUT_OK : t->time ? trouble(r, "it is damaged") : report_no_memory(r);
-}
-
-/* The run's status from its text. */
-static strut_status run_status(const reader *r) {
-  char *text = NULL;
-  strut_status found = STRUT_OK;
-  hid_t attribute = H5Aexists(r->file, "status") > 0 ? H5Aopen(r->file, "status", H5P_DEFAULT) : -1;
-  if (attribute < 0) return STRUT_INTERRUPTED; /* it was never written */
-  hid_t type = H5Aget_type(attribute);
-  if (H5Tis_variable_str(type) > 0 && H5Aread(attribute, type, &text) >= 0 && text) {
-    for (int s = 0; s < STRUT_STATUS_COUNT; s++)
-      if (strcmp(text, strut_status_text((strut_status)s)) == 0) found = (strut_status)s;
-    H5free_memory(text);
-  }
-  H5Tclose(type);
-  H5Aclose(attribute);
-  return found;
-}
-
-static strut_status read_file(reader *r, size_t room) {
-  strut_trajectory *t = r->t;
-  t->node_count = r->scene->node_count;
-  t->member_count = r->scene->member_count;
-  t->hinge_count = r->scene->hinge_count;
-  t->cell_count = r->scene->cell_count;
-  if (!same_names(r, "node", t->node_count, node_name) ||
-      !same_names(r, "member", t->member_count, member_name) ||
-      !same_names(r, "hinge", t->hinge_count, hinge_name) ||
-      !same_names(r, "cell", t->cell_count, cell_name) ||
-      !same_names(r, "contact_node", r->scene->contact_count, contact_name))
-    return trouble(r, "it belongs to another structure than the scene beside it");
-  if (!trajectory_contacts(t, r->scene)) return report_no_memory(r);
-  t->status = run_status(r);
-  strut_status status = read_time(r, room);
-  for (int i = 0; i < CHANNELS && status == STRUT_OK && t->frames; i++) status = read_channel(r, i);
-  return status;
-}
-
 strut_status strut_trajectory_read(const char *directory, const strut_scene *scene, size_t room,
                                    strut_trajectory *trajectory, strut_error *error) {
   size_t length = strlen(directory) + sizeof "/trajectory.h5";
   char *path = strut_allocate(length, 1);
-  *trajectory = (strut_trajectory){0};
+  const strut_hdf5_library *library = NULL;
+  *trajectory = (strut_trajectory){.node_count = scene->node_count,
+                                   .member_count = scene->member_count,
+                                   .hinge_count = scene->hinge_count,
+                                   .cell_count = scene->cell_count};
   if (!path) return strut_no_memory(error, "");
   snprintf(path, length, "%s/trajectory.h5", directory);
-  reader r = {.path = path, .scene = scene, .t = trajectory, .error = error};
   strut_status status = STRUT_OK;
   if (!strut_hdf5_has_memory()) {
     status = strut_fail(error, STRUT_NO_MEMORY, "out of memory reading '%s'", path);
   } else if (access(path, R_OK) != 0) {
     char reason[128];
     if (strerror_r(errno, reason, sizeof reason) != 0) snprintf(reason, sizeof reason, "no access");
-    status = trouble(&r, reason);
-  } else if ((status = strut_hdf5_load(error)) == STRUT_OK) {
-    strut_hdf5_quiet quiet = strut_hdf5_hush();
-    r.file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
-    status = r.file >= 0 ? read_file(&r, room) : trouble(&r, "it is not an HDF5 file, or damaged");
-    if (r.file >= 0) H5Fclose(r.file);
-    strut_hdf5_unhush(quiet);
+    status = strut_trajectory_trouble(path, reason, error);
+  } else if ((status = strut_hdf5_ready(&library, error)) == STRUT_OK) {
+    status = trajectory_contacts(trajectory, scene)
+                 ? library->read(path, scene, room, trajectory, error)
+                 : strut_no_memory(error, "for the recorded motion");
   }
   strut_release(path);
   if (status != STRUT_OK) strut_trajectory_free(trajectory);
   return status;
+}
+
+strut_status strut_trajectory_trouble(const char *path, const char *reason, strut_error *error) {
+  return strut_fail(error, STRUT_FILE_TROUBLE, "cannot read '%s': %s; run the model again with -o",
+                    path, reason);
 }
