@@ -63,7 +63,7 @@ breaches() {
       if (!ours) {
         base = name; sub("^suitesparse/", "", base)
         if (quoted) breach("not spelled from the repository root")
-        else if (base in home && from != home[base] && from !~ "^parser/(cli|command|abi)$") breach("belongs to " home[base])
+        else if (base in home && from != home[base] && from !~ "^parser/(program|command|abi)$") breach("belongs to " home[base])
         else if (base in room_of && index(" " room_of[base] " ", " " stem(file) " ") == 0)
           breach("belongs to " room_of[base])
         next
@@ -73,13 +73,13 @@ breaches() {
       if (to ~ "^tests") { breach("the product includes a test"); next }
       if (from == to) next
       # On top of everything: the program and the shared library, and below both their options.
-      if (from == "parser/cli" || from == "parser/abi") {
-        if (to == "parser/cli" || to == "parser/abi") breach("runs up")
+      if (from == "parser/program" || from == "parser/abi") {
+        if (to == "parser/program" || to == "parser/abi") breach("runs up")
         next
       }
-      if (from == "parser/command") { if (to == "parser/cli" || to == "parser/abi") breach("runs up"); next }
+      if (from == "parser/command") { if (to == "parser/program" || to == "parser/abi") breach("runs up"); next }
       # The front door of the libraries names them all, but never the program.
-      if (file == "parser/strut.h") { if (to ~ "^parser/(cli|command|abi)$") breach("runs up"); next }
+      if (file == "parser/strut.h") { if (to ~ "^parser/(program|command|abi)$") breach("runs up"); next }
       if (from ~ "^parser") {
         if (to == "engine/base" || to == "engine/scene") next
         if (!(from in parser_floor)) breach("a folder without a floor")
@@ -103,7 +103,7 @@ expect() {
   for header in engine/base/a.h engine/scene/a.h engine/model/a.h engine/forces/a.h \
     engine/integrate/a.h engine/run/a.h engine/statics/a.h engine/statics/search/a.h \
     engine/statics/modes/a.h engine/output/a.h engine/study/sweep/a.h engine/run/orbit/a.h \
-    engine/odd/a.h parser/a.h parser/yaml/a.h parser/read/a.h parser/cli/a.h parser/command/a.h \
+    engine/odd/a.h parser/a.h parser/yaml/a.h parser/read/a.h parser/program/a.h parser/command/a.h \
     parser/abi/a.h tests/a.h "$2"; do
     mkdir -p "$scratch/tree/${header%/*}"
     : >"$scratch/tree/$header"
@@ -124,11 +124,11 @@ expect 1 engine/run/orbit/b.c '#include "engine/run/a.h"'
 expect 0 parser/read/b.c '#include "parser/yaml/a.h"'
 expect 1 parser/yaml/b.c '#include "parser/read/a.h"'
 expect 0 parser/b.c '#include "engine/scene/a.h"'
-expect 0 parser/cli/b.c '#include "engine/study/sweep/a.h"'
-expect 0 parser/cli/b.c '#include "parser/command/a.h"'
+expect 0 parser/program/b.c '#include "engine/study/sweep/a.h"'
+expect 0 parser/program/b.c '#include "parser/command/a.h"'
 expect 0 parser/abi/b.c '#include "parser/command/a.h"'
-expect 1 parser/command/b.c '#include "parser/cli/a.h"'
-expect 1 parser/abi/b.c '#include "parser/cli/a.h"'
+expect 1 parser/command/b.c '#include "parser/program/a.h"'
+expect 1 parser/abi/b.c '#include "parser/program/a.h"'
 expect 1 parser/read/b.c '#include "parser/command/a.h"'
 expect 0 parser/octave/b.c '#include "strut/abi.h"'
 expect 0 parser/python/b.c '#include <Python.h>'
@@ -152,11 +152,11 @@ expect 1 engine/statics/search/b.c '#include "engine/statics/modes/a.h"'
 expect 1 engine/statics/form/b.c '#include "engine/statics/modes/a.h"'
 expect 1 engine/run/b.c '#include "parser/a.h"'
 expect 1 parser/b.c '#include "engine/model/a.h"'
-expect 1 parser/b.c '#include "parser/cli/a.h"'
-expect 1 parser/strut.h '#include "parser/cli/a.h"'
+expect 1 parser/b.c '#include "parser/program/a.h"'
+expect 1 parser/strut.h '#include "parser/program/a.h"'
 expect 1 engine/odd/b.c '#include "engine/base/a.h"'
 expect 1 engine/run/b.c '#include "tests/a.h"'
-expect 1 parser/cli/b.c '#include "tests/a.h"'
+expect 1 parser/program/b.c '#include "tests/a.h"'
 expect 1 parser/b.c '#include "a.h"'
 expect 1 parser/b.c '#include "../engine/base/a.h"'
 expect 1 engine/run/b.c '#include <engine/base/a.h>'
