@@ -30,7 +30,7 @@ breaches() {
         "engine/output/figures engine/output/film engine/output/page engine/output/code|engine/study/results|" \
         "engine/study/sensitivity|" \
         "engine/study/cluster engine/study/tradeoff engine/study/sweep|" \
-        "engine/study/compare engine/study/search engine/study/follow", line, "|")
+        "engine/study/compare engine/study/search engine/study/follow|engine/study/report", line, "|")
       for (i = 1; i <= count; i++) {
         n = split(line[i], side, " ")
         for (k = 1; k <= n; k++) floor[side[k]] = i

@@ -14,13 +14,13 @@
 #include "engine/output/report/sketch.h"
 #include "engine/run/measure/stick_band.h"
 #include "engine/run/plan.h"
+#include "parser/command/fidelity_settings.h"
+#include "parser/command/run_settings.h"
 #include "parser/program/check_messages.h"
 #include "parser/program/check_study.h"
 #include "parser/program/open_model.h"
 #include "parser/program/progress.h"
 #include "parser/program/streams.h"
-#include "parser/command/fidelity_settings.h"
-#include "parser/command/run_settings.h"
 
 enum { MOST_MEMBERS = 40, DIGITS = 5, SKETCH_COLUMNS = 72, SKETCH_ROWS = 16 };
 

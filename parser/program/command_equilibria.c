@@ -4,9 +4,9 @@
 
 #include "engine/output/figures/statics_figures.h"
 #include "engine/output/report/equilibria_report.h"
-#include "parser/program/streams.h"
 #include "parser/command/overload_warnings.h"
 #include "parser/command/statics_options.h"
+#include "parser/program/streams.h"
 
 static const char *const file_names[] = {"equilibria.json", NULL};
 

@@ -3,10 +3,10 @@
 #include <string.h>
 
 #include "engine/output/json_value.h"
+#include "parser/command/option_values.h"
 #include "parser/program/commands.h"
 #include "parser/program/evaluate.h"
 #include "parser/program/streams.h"
-#include "parser/command/option_values.h"
 
 enum { MOST_MESSAGES = 50, MOST_THREADS = 4096 };
 

@@ -9,9 +9,9 @@
 #include "engine/forces/elements.h"
 #include "engine/output/matrix_market.h"
 #include "engine/output/vtk.h"
+#include "parser/command/statics_options.h"
 #include "parser/program/option_values.h"
 #include "parser/program/streams.h"
-#include "parser/command/statics_options.h"
 
 /* ---- a motion or a shape for ParaView ---- */
 

@@ -9,11 +9,11 @@
 #include "engine/output/results.h"
 #include "engine/study/follow/follow_study.h"
 #include "engine/study/sweep/sweep.h"
+#include "parser/command/follow_options.h"
 #include "parser/program/open_model.h"
 #include "parser/program/option_values.h"
 #include "parser/program/progress.h"
 #include "parser/program/streams.h"
-#include "parser/command/follow_options.h"
 
 static const char *const file_names[] = {"branches.csv", "branches.json", "branches.svg",
                                          "curves.csv",   "curves.svg",    NULL};

@@ -8,10 +8,10 @@
 #include "engine/output/figures/statics_figures.h"
 #include "engine/output/file.h"
 #include "engine/output/report/form_report.h"
+#include "parser/command/statics_options.h"
 #include "parser/program/open_model.h"
 #include "parser/program/option_values.h"
 #include "parser/program/streams.h"
-#include "parser/command/statics_options.h"
 #include "parser/write/write_scene.h"
 
 static const strut_option options[] = {

@@ -3,10 +3,10 @@
 #include <string.h>
 
 #include "engine/output/file.h"
+#include "parser/import/import.h"
 #include "parser/program/commands.h"
 #include "parser/program/option_values.h"
 #include "parser/program/streams.h"
-#include "parser/import/import.h"
 #include "parser/read/read_scene.h"
 
 enum { MOST_MESSAGES = 50, MOST_FILES = 2 };

@@ -6,10 +6,10 @@
 #include "engine/output/figures/statics_figures.h"
 #include "engine/output/report/path_report.h"
 #include "engine/statics/path/path.h"
-#include "parser/program/options.h"
-#include "parser/program/streams.h"
 #include "parser/command/overload_warnings.h"
 #include "parser/command/path_options.h"
+#include "parser/program/options.h"
+#include "parser/program/streams.h"
 
 static const char *const file_names[] = {"path.json", "path.csv", NULL};
 

@@ -11,12 +11,12 @@
 #include "engine/output/results.h"
 #include "engine/run/accuracy/accuracy.h"
 #include "engine/run/simulate.h"
+#include "parser/command/fidelity_settings.h"
+#include "parser/command/run_settings.h"
 #include "parser/program/open_model.h"
 #include "parser/program/progress.h"
 #include "parser/program/run_pictures.h"
 #include "parser/program/streams.h"
-#include "parser/command/fidelity_settings.h"
-#include "parser/command/run_settings.h"
 #include "parser/write/write_scene.h"
 
 static const strut_option options[] = {

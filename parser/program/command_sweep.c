@@ -5,7 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/base/memory.h"
 #include "engine/output/file.h"
+#include "engine/study/report/study_report.h"
 #include "engine/study/results/shard.h"
 #include "engine/study/results/study_table.h"
 #include "parser/program/option_values.h"
@@ -83,15 +85,20 @@ static strut_status show_status(const strut_arguments *arguments, strut_sweep_st
   if (status) return status;
   status = strut_shards_find(arguments->output, &found, arena, &error);
   if (status) return strut_print_failure(status, &error);
-  if (!shard.count && found.count)
-    return strut_sweep_print_shards(arguments->output, &found, arena, arguments->json);
+  if (!shard.count && found.count) {
+    char *text = NULL;
+    status = strut_shards_report(arguments->output, &found, arena, arguments->json, &text, &error);
+    if (!status) return strut_print_block(text);
+    strut_release(text);
+    return strut_print_failure(status, &error);
+  }
   status = strut_slots_read(path, &slots, &there, &error);
   if (status) return strut_print_failure(status, &error);
   status = study->plan.study->search
                ? strut_sweep_search_status(slots, arguments->output, arguments->json)
            : study->plan.study->refine_depth
                ? strut_sweep_refine_status(&study->plan, arguments->output, slots, arguments->json)
-               : strut_sweep_print_status(slots, arguments->json);
+               : strut_print_block(strut_sweep_status_report(slots, arguments->json));
   strut_slots_close(slots);
   return status;
 }
@@ -227,7 +234,7 @@ static strut_status complete_sweep(const strut_arguments *arguments, strut_sweep
     status = strut_sweep_figures_draw(&study->plan, arguments->output, table, refinement);
   if (status) return status;
   if (!arguments->quiet || arguments->json)
-    status = strut_sweep_print_end(state, table, arguments->json);
+    status = strut_print_block(strut_sweep_end_report(state, table, arguments->json));
   if (!status && !shard.count)
     status = strut_sweep_sensitivity_complete(&study->plan, slots, arguments->output,
                                               !arguments->quiet && !arguments->json);
@@ -346,7 +353,7 @@ static strut_status run_sweep(const strut_arguments *arguments) {
   if (!status && study.plan.study->search) status = check_search(arguments);
   if (!status && study.plan.study->follow) status = check_follow(arguments);
   if (!status && arguments->count_points)
-    status = strut_sweep_print_count(&study.plan, arguments->json);
+    status = strut_print_block(strut_sweep_count_report(&study.plan, arguments->json));
   else if (!status && strut_option_text(arguments, STRUT_OPTION_EMIT))
     status = emit_script(arguments, study.plan.study);
   else if (!status && arguments->status)

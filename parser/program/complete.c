@@ -7,8 +7,8 @@
 #include <unistd.h>
 
 #include "engine/integrate/integrator.h"
-#include "parser/program/commands.h"
 #include "parser/language/keys.h"
+#include "parser/program/commands.h"
 
 void strut_offer(const strut_completion *c, const char *text, const char *end, const char *help) {
   if (strncmp(text, c->word, strlen(c->word)) != 0 || strpbrk(text, "\t\n")) return;

@@ -9,11 +9,11 @@
 #include "engine/output/file.h"
 #include "engine/output/mjcf.h"
 #include "engine/run/settle.h"
+#include "parser/command/statics_options.h"
 #include "parser/program/commands.h"
 #include "parser/program/open_model.h"
 #include "parser/program/option_values.h"
 #include "parser/program/streams.h"
-#include "parser/command/statics_options.h"
 
 /* A model to export, with its arguments. */
 typedef struct exported {

@@ -6,8 +6,8 @@
 #define STRUT_PARSER_PROGRAM_OPTION_VALUES_H
 
 #include "engine/output/draw/plot.h"
-#include "parser/program/options.h"
 #include "parser/command/plot_options.h"
+#include "parser/program/options.h"
 
 /** Rows for a command's table of options. */
 #define STRUT_PLOT_OPTIONS                                                                         \

@@ -14,6 +14,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "engine/base/number_text.h"
+
 /* ---- the terminal ---- */
 
 static bool says_utf8(const char *name) {
@@ -77,19 +79,6 @@ strut_progress strut_progress_begin(bool quiet) {
   };
 }
 
-void strut_progress_time(char *text, size_t size, double seconds) {
-  double whole = ceil(seconds);
-  if (!(whole < 1e7)) {
-    snprintf(text, size, "?");
-  } else if (whole < 60) {
-    snprintf(text, size, "%.0f s", whole);
-  } else if (whole < 3600) {
-    snprintf(text, size, "%d min %02d s", (int)whole / 60, (int)whole % 60);
-  } else {
-    snprintf(text, size, "%d h %02d min", (int)whole / 3600, (int)whole / 60 % 60);
-  }
-}
-
 /* "46.2 of 110 s, ", in the unit of the whole; empty where no time passes. */
 static void write_simulated(char *text, size_t size, double fraction, double span) {
   static const char *const units[] = {"s", "ms", "us"};
@@ -125,29 +114,28 @@ void strut_progress_phase(void *context, const char *name) {
 
 /* ", up to 12 s left in this run": a run may stop early; what follows it is unknown. Empty at first. */
 static void write_run_left(strut_progress *progress, double fraction, char *text, size_t size) {
-  char left[32];
+  char left[STRUT_DURATION_TEXT];
   if (fraction < progress->last) progress->run_start = now(); /* the phase begins another run */
   progress->last = fraction;
   double elapsed = now() - progress->run_start;
   *text = '\0';
   if (elapsed < PATIENCE || !(fraction > 0)) return;
-  strut_progress_time(left, sizeof left, elapsed * (1.0 - fraction) / fraction);
+  strut_duration_text(elapsed * (1.0 - fraction) / fraction, left);
   snprintf(text, size, ", up to %s left in this run", left);
 }
 
 void strut_progress_show(void *context, double fraction) {
   strut_progress *progress = context;
-  char bar[BAR_ROOM], left[32], simulated[48], run_left[64], text[TEXT];
+  char bar[BAR_ROOM], left[STRUT_DURATION_TEXT], simulated[48], run_left[64], text[TEXT];
   double elapsed = now() - progress->start;
   write_run_left(progress, fraction, run_left, sizeof run_left);
   if (elapsed < PATIENCE) return;
-  strut_progress_time(left, sizeof left,
-                      fraction > 0 ? elapsed * (1.0 - fraction) / fraction : HUGE_VAL);
+  strut_duration_text(fraction > 0 ? elapsed * (1.0 - fraction) / fraction : HUGE_VAL, left);
   write_simulated(simulated, sizeof simulated, fraction, progress->span);
   double percent = floor(100.0 * fraction);
   int length;
   if (progress->phase) { /* the number of runs that follow is unknown */
-    strut_progress_time(left, sizeof left, elapsed);
+    strut_duration_text(elapsed, left);
     length = snprintf(text, sizeof text, " %s: %.0f %%, %s so far%s", progress->phase, percent,
                       left, run_left);
     if (progress->columns - 1 - length < LEAST)

@@ -31,8 +31,6 @@ strut_progress strut_progress_begin(bool quiet);
 void strut_progress_show(void *context, double fraction);
 /** Starts another part of the work: `context` is the strut_progress, `name` a constant text. */
 void strut_progress_phase(void *context, const char *name);
-/** "2 min 03 s" */
-void strut_progress_time(char *text, size_t size, double seconds);
 /** Writes a bar of `width` columns into 3 * width + 1 bytes: block characters, or ASCII. */
 void strut_progress_bar(char *bar, int width, double fraction, bool unicode);
 /** Erases the bar. */

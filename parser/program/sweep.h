@@ -63,15 +63,6 @@ strut_status strut_sweep_figures_draw(const strut_sweep_plan *plan, const char *
 /** Takes note of what all files of a directory hold: `own`, and those of other shards. */
 void strut_sweep_refine_learn(strut_refinement *refinement, const char *directory,
                               strut_shard shard, strut_slots *own);
-/** Does the figure show the two axes that are refined? */
-bool strut_sweep_refine_shows(const strut_sweep_plan *plan, const strut_study_figure *figure);
-/**
- * The table of all points of the finest grid, in an arena of its own: points that were not computed have
- * the row of the known one that stands for them, `from` being the table of these.
- */
-strut_status strut_sweep_refine_expand(const strut_sweep_plan *plan,
-                                       const strut_refinement *refinement, const strut_table *from,
-                                       strut_table *to, strut_error *error);
 /** Prints how far the refinement in a directory is. */
 strut_status strut_sweep_refine_status(const strut_sweep_plan *plan, const char *directory,
                                        strut_slots *slots, bool json);
@@ -102,47 +93,21 @@ strut_sweep_progress strut_sweep_progress_begin(const strut_sweep_plan *plan, bo
 void strut_sweep_progress_show(void *context, const strut_sweep_state *state);
 void strut_sweep_progress_end(strut_sweep_progress *progress);
 
-/** Prints the number of points and the columns on stdout. */
-strut_status strut_sweep_print_count(const strut_sweep_plan *plan, bool json);
-/** Prints what is done, missing and failed in a file of slots on stdout. */
-strut_status strut_sweep_print_status(strut_slots *slots, bool json);
 /** Prints each warning of the runs once, with its count, on stderr. */
 void strut_sweep_print_warnings(const strut_sweep_state *state);
-/** Prints the final report on stdout. `table`: its path. */
-strut_status strut_sweep_print_end(const strut_sweep_state *state, const char *table, bool json);
-
 /** Prints how many points failed or are inaccurate on stderr; the status that follows from it. */
 strut_status strut_sweep_judge(int64_t points, int64_t failed, int64_t inaccurate);
-
-/** Prints a line, or an object of a JSON list, for each started or missing shard. */
-strut_status strut_sweep_print_shards(const char *directory, const strut_shards_found *found,
-                                      strut_arena *arena, bool json);
 
 /** Does what the command does with a study that searches, once it is open. */
 strut_status strut_sweep_search(const strut_arguments *arguments, strut_sweep_study *study,
                                 int threads, int lanes);
 /** Prints how far the searches in a directory are. */
 strut_status strut_sweep_search_status(strut_slots *slots, const char *directory, bool json);
-/** Prints what a search has found on stdout; `table`: the path of its rows. */
-strut_status strut_sweep_search_report(const strut_sweep_plan *plan,
-                                       const strut_search_result *result,
-                                       const strut_sweep_state *state, const char *table,
-                                       bool json);
-
 /** Adds the columns of a study that follows motions, and checks that its first point has some. */
 strut_status strut_sweep_follow_check(strut_sweep_study *study, strut_error *error);
 /** Does what the command does with a study that follows motions, once it is open. */
 strut_status strut_sweep_follow(const strut_arguments *arguments, strut_sweep_study *study,
                                 int threads);
-
-/** Draws `best` beside the start of its search into the file `path`. */
-strut_status strut_sweep_search_winner(const strut_sweep_plan *plan, const strut_study_figure *f,
-                                       const char *path, const strut_search_point *best,
-                                       double width, strut_error *error);
-/** Draws a figure of a search, of its table, into the file `path`. */
-strut_status strut_sweep_search_figure(const strut_sweep_plan *plan,
-                                       const strut_study_figure *figure, const char *path,
-                                       const strut_table *table, double width, strut_error *error);
 
 /** Prints the script for the study of that name. */
 strut_status strut_sweep_emit(const strut_arguments *arguments, const char *name);

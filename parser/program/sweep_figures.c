@@ -4,14 +4,12 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/output/figures/table_figure.h"
 #include "engine/output/ownership.h"
+#include "engine/study/report/study_report.h"
 #include "engine/study/sweep/study_runs.h"
 #include "parser/program/streams.h"
 #include "parser/program/table_file.h"
 #include "parser/yaml/diagnostics.h"
-
-static const double PAGE = 510.24; /* 180 mm [pt] */
 
 static bool of_runs(const strut_study_figure *f) {
   return f->kind >= STRUT_FIGURE_MOTION && f->kind <= STRUT_FIGURE_SNAPSHOTS;
@@ -140,99 +138,13 @@ strut_status strut_sweep_figures_check_files(const strut_sweep_plan *plan, const
   return status;
 }
 
-static int column_of(const strut_table *table, const char *name) {
-  for (size_t i = 0; name && i < table->column_count; i++)
-    if (strcmp(table->columns[i].name, name) == 0) return (int)i;
-  return STRUT_NO_COLUMN;
-}
-
-/* COLUMN=TEXT. */
-static int column_of_match(const strut_table *table, const char *match, const char **text) {
-  size_t length = match ? strcspn(match, "=") : 0;
-  for (size_t i = 0; match && i < table->column_count; i++) {
-    const char *name = table->columns[i].name;
-    if (strlen(name) != length || memcmp(name, match, length) != 0) continue;
-    *text = match + length + 1;
-    return (int)i;
-  }
-  return STRUT_NO_COLUMN;
-}
-
-static strut_axis_choice axis_of(const char *label, const double limits[2]) {
-  return (strut_axis_choice){label, limits[0] < limits[1], limits[0], limits[1]};
-}
-
-static strut_status draw_table(const strut_study_figure *f, const char *path,
-                               const strut_table *table, strut_error *error) {
-  strut_table_choice choice = {.difference = column_of(table, f->difference)};
-  choice.only = column_of_match(table, f->only, &choice.only_value);
-  if (f->kind == STRUT_FIGURE_MAP) {
-    const strut_table_map_figure map = {.title = f->title,
-                                        .width = PAGE,
-                                        .x = column_of(table, f->x),
-                                        .y = column_of(table, f->y),
-                                        .value = column_of(table, f->color),
-                                        .x_axis = axis_of(f->x_label, f->x_limits),
-                                        .y_axis = axis_of(f->y_label, f->y_limits),
-                                        .colours = (strut_colours)f->colours,
-                                        .panels = column_of(table, f->panels),
-                                        .doubt = column_of(table, "flips"),
-                                        .choice = choice};
-    return strut_table_map(path, &map, table, error);
-  }
-  strut_table_figure lines = {.title = f->title,
-                              .width = PAGE,
-                              .x = column_of(table, f->x),
-                              .y = {column_of(table, f->y)},
-                              .y_count = 1,
-                              .x_axis = axis_of(f->x_label, f->x_limits),
-                              .y_axis = axis_of(f->y_label, f->y_limits),
-                              .by = column_of(table, f->series),
-                              .panels = column_of(table, f->panels),
-                              .choice = choice,
-                              .between = f->kind == STRUT_FIGURE_MOTION};
-  lines.band = column_of_match(table, f->band, &lines.band_value);
-  return strut_table_curves(path, &lines, table, error);
-}
-
-static strut_status draw_motion(const strut_sweep_plan *plan, const char *directory,
-                                const strut_study_figure *f, const char *path, strut_error *error) {
-  strut_table motion = {0};
-  strut_status status = strut_study_motion(plan, directory, f, &motion, error);
-  if (!status) status = draw_table(f, path, &motion, error);
-  strut_arena_free(&motion.arena);
-  return status;
-}
-
-/* A map of the finest grid. */
-static strut_status draw_refined(const strut_sweep_plan *plan, const strut_study_figure *f,
-                                 const char *path, const strut_table *table,
-                                 const strut_refinement *refinement, strut_error *error) {
-  strut_table fine = {0};
-  strut_status status = strut_sweep_refine_expand(plan, refinement, table, &fine, error);
-  if (!status) status = draw_table(f, path, &fine, error);
-  strut_arena_free(&fine.arena);
-  return status;
-}
-
+/* A figure of a winner is not of the table: sweep_search.c draws it. */
 static strut_status draw_figure(const strut_sweep_plan *plan, const char *directory,
-                                const strut_study_figure *f, strut_table *table,
+                                const strut_study_figure *f, const strut_table *table,
                                 const strut_refinement *refinement) {
   strut_error error = {0};
-  const char *file = strut_arena_format(&table->arena, "%s/%s.svg", directory, f->name);
-  if (f->kind == STRUT_FIGURE_WINNER) return STRUT_OK; /* not of the table: sweep_search.c */
-  if (!file) return strut_print_out_of_memory();
-  strut_status status = STRUT_OK;
-  if (f->kind == STRUT_FIGURE_MOTION)
-    status = draw_motion(plan, directory, f, file, &error);
-  else if (of_search(f))
-    status = strut_sweep_search_figure(plan, f, file, table, PAGE, &error);
-  else if (of_runs(f))
-    status = strut_study_pictures(plan, directory, f, PAGE, &error);
-  else if (refinement && f->kind == STRUT_FIGURE_MAP && strut_sweep_refine_shows(plan, f))
-    status = draw_refined(plan, f, file, table, refinement, &error);
-  else
-    status = draw_table(f, file, table, &error);
+  if (f->kind == STRUT_FIGURE_WINNER) return STRUT_OK;
+  strut_status status = strut_sweep_figure(plan, directory, f, table, refinement, &error);
   if (error.message[0]) strut_print_error(&error);
   return status;
 }

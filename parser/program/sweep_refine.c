@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Refined studies: what the files of all shards hold, their table, and maps of the finest grid. */
+/* Refined studies: what the files of all shards hold, and their table. */
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "engine/base/number_text.h"
 #include "engine/study/results/study_table.h"
-#include "engine/study/sweep/grid.h"
 #include "parser/program/streams.h"
 #include "parser/program/sweep.h"
 
@@ -32,96 +30,6 @@ void strut_sweep_refine_learn(strut_refinement *refinement, const char *director
       strut_slots_close(slots);
     }
   strut_arena_free(&arena);
-}
-
-/* Is it a column of this axis? */
-static bool is_of_axis(const strut_study *study, size_t axis, const char *name) {
-  for (size_t i = 0; name && i < study->axes[axis].column_count; i++)
-    if (strcmp(study->axes[axis].columns[i].name, name) == 0) return true;
-  return false;
-}
-
-bool strut_sweep_refine_shows(const strut_sweep_plan *plan, const strut_study_figure *f) {
-  const strut_study *study = plan->study;
-  const size_t *axes = study->refine_axes;
-  return (is_of_axis(study, axes[0], f->x) && is_of_axis(study, axes[1], f->y)) ||
-         (is_of_axis(study, axes[1], f->x) && is_of_axis(study, axes[0], f->y));
-}
-
-/* The row of each known point, + 1; 0: none. */
-static uint32_t *find_rows(const strut_sweep_plan *plan, const strut_table *from,
-                           strut_arena *arena) {
-  uint32_t *row = strut_arena_allocate(arena, (size_t)plan->points, sizeof *row);
-  for (size_t i = 0; row && i < from->row_count; i++) {
-    double point = from->columns[0].value ? from->columns[0].value[i] : -1.0;
-    if (point >= 0.0 && point < (double)plan->points) row[(size_t)point] = (uint32_t)i + 1;
-  }
-  return row;
-}
-
-/* Which value of a point is the column's; axis_columns: none of a refined axis. */
-static size_t refined_value(const strut_sweep_plan *plan, const char *name) {
-  const strut_study *study = plan->study;
-  for (size_t i = 0; i < plan->axis_columns; i++) {
-    size_t axis;
-    const strut_study_column *c = strut_grid_column(study, i, &axis);
-    bool refined = axis == study->refine_axes[0] || axis == study->refine_axes[1];
-    if (refined && strcmp(c->name, name) == 0) return i;
-  }
-  return plan->axis_columns;
-}
-
-static bool make_column(strut_table *to, const strut_table_column *from, size_t rows, size_t i) {
-  strut_table_column *c = &to->columns[i];
-  c->name = from->name;
-  c->unit = from->unit;
-  c->text = strut_arena_allocate(&to->arena, rows, sizeof *c->text);
-  if (from->value) c->value = strut_arena_allocate(&to->arena, rows, sizeof *c->value);
-  return c->text && (!from->value || c->value);
-}
-
-/* Fills a row for `point` from the row `source` of `from`. */
-static bool fill_row(const strut_sweep_plan *plan, const strut_table *from, size_t source,
-                     const strut_study_value *values, strut_table *to) {
-  size_t row = to->row_count++;
-  for (size_t i = 0; i < from->column_count; i++) {
-    const strut_table_column *c = &from->columns[i];
-    const char **text = (const char **)to->columns[i].text;
-    double *value = (double *)to->columns[i].value;
-    size_t k = refined_value(plan, c->name);
-    text[row] = c->text[source];
-    if (value) value[row] = c->value[source];
-    if (k == plan->axis_columns || !value) continue;
-    char number[STRUT_NUMBER_TEXT];
-    size_t length = strut_number_text(values[k].number, number);
-    value[row] = values[k].number;
-    text[row] = strut_arena_text(&to->arena, number, length);
-    if (!text[row]) return false;
-  }
-  return true;
-}
-
-strut_status strut_sweep_refine_expand(const strut_sweep_plan *plan,
-                                       const strut_refinement *refinement, const strut_table *from,
-                                       strut_table *to, strut_error *error) {
-  strut_arena arena = {0};
-  size_t points = (size_t)plan->points;
-  *to = (strut_table){0};
-  uint32_t *row = find_rows(plan, from, &arena);
-  strut_study_value *values = strut_arena_allocate(&arena, plan->axis_columns + 1, sizeof *values);
-  to->columns = strut_arena_allocate(&to->arena, from->column_count, sizeof *to->columns);
-  to->column_count = from->column_count;
-  bool fine = row && values && to->columns;
-  for (size_t i = 0; i < from->column_count && fine; i++)
-    fine = make_column(to, &from->columns[i], points, i);
-  for (int64_t point = 0; point < plan->points && fine; point++) {
-    int64_t source = strut_refinement_stand_in(refinement, point);
-    if (source < 0 || !row[source]) continue;
-    strut_grid_values(plan->study, point, values);
-    fine = fill_row(plan, from, row[source] - 1, values, to);
-  }
-  strut_arena_free(&arena);
-  return fine ? STRUT_OK : strut_no_memory(error, "while drawing");
 }
 
 strut_status strut_sweep_refine_status(const strut_sweep_plan *plan, const char *directory,

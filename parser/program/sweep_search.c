@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "engine/output/file.h"
+#include "engine/study/report/study_report.h"
 #include "engine/study/results/study_table.h"
 #include "parser/program/option_values.h"
 #include "parser/program/streams.h"
@@ -176,7 +177,7 @@ static strut_status draw_winner(const strut_arguments *arguments, strut_sweep_pl
     if (f->kind != STRUT_FIGURE_WINNER) continue;
     const char *path = strut_arena_format(&plan->arena, "%s/%s.svg", arguments->output, f->name);
     if (!path) return strut_print_out_of_memory();
-    status = strut_sweep_search_winner(plan, f, path, best, PAGE, &error);
+    status = strut_search_winner_figure(plan, f, path, best, PAGE, strut_interrupt_watch(), &error);
     if (status) strut_print_failure(status, &error);
   }
   return status;
@@ -200,7 +201,8 @@ static strut_status complete(const strut_arguments *arguments, strut_sweep_study
   status = strut_sweep_figures_draw(&study->plan, arguments->output, table, NULL);
   if (!status) status = draw_winner(arguments, &study->plan, best);
   if (!status && (!arguments->quiet || arguments->json))
-    status = strut_sweep_search_report(&study->plan, result, state, table, arguments->json);
+    status =
+        strut_print_block(strut_search_report(&study->plan, result, state, table, arguments->json));
   if (status) return status;
   bool found = false;
   for (size_t i = 0; i < result->worth_count; i++)

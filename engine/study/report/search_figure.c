@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Figures of a search: its best objective over evaluations, and its points over two variables. */
+/* Figures of a search: its best objective over evaluations, and its points over two variables, its best point. */
+#include "engine/study/report/study_report.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "engine/output/figures/scatter_figure.h"
 #include "engine/output/figures/table_figure.h"
-#include "parser/program/sweep.h"
+#include "engine/study/compare/compare.h"
+#include "engine/study/sweep/grid.h"
 
 /* What a row of the table means to a search. */
 typedef struct tracker {
@@ -163,9 +166,9 @@ static strut_axis_choice axis_of(const char *label, const double limits[2]) {
   return (strut_axis_choice){label, limits[0] < limits[1], limits[0], limits[1]};
 }
 
-strut_status strut_sweep_search_figure(const strut_sweep_plan *plan, const strut_study_figure *f,
-                                       const char *path, const strut_table *table, double width,
-                                       strut_error *error) {
+strut_status strut_search_figure(const strut_sweep_plan *plan, const strut_study_figure *f,
+                                 const char *path, const strut_table *table, double width,
+                                 strut_error *error) {
   const tracker t = track(plan, table);
   strut_table own = {0};
   size_t rows = table->row_count;
@@ -218,5 +221,45 @@ strut_status strut_sweep_search_figure(const strut_sweep_plan *plan, const strut
     status = strut_table_scatter(path, &points, table, error);
   }
   strut_arena_free(&own.arena);
+  return status;
+}
+
+/* ---- the best point beside its start, with the numbers of `strut compare` ---- */
+
+/* The scene of the best point, or of the start with the same axes and scenario. */
+static strut_status set_up(const strut_sweep_plan *plan, const strut_search_point *best, bool start,
+                           strut_setup *setup, strut_error *error) {
+  strut_study_value *values = strut_allocate(plan->axis_columns + 1, sizeof *values);
+  if (!values) return strut_no_memory(error, "");
+  strut_grid_values(plan->study, best->worst, values); /* the variables' own axis holds the start */
+  if (!start) strut_search_values(plan, best->worst, best->values, values);
+  strut_status status = plan->scenes.setup(plan->scenes.context, values, setup, error);
+  strut_release(values);
+  return status;
+}
+
+strut_status strut_search_winner_figure(const strut_sweep_plan *plan, const strut_study_figure *f,
+                                        const char *path, const strut_search_point *best,
+                                        double width, const volatile sig_atomic_t *interrupt,
+                                        strut_error *error) {
+  strut_setup setups[2];
+  strut_compare result = {0};
+  const strut_compare_input inputs[] = {{.label = "start", .setup = &setups[0]},
+                                        {.label = "best", .setup = &setups[1]}};
+  strut_status status = set_up(plan, best, true, &setups[0], error);
+  if (status) return status;
+  status = set_up(plan, best, false, &setups[1], error);
+  if (!status) {
+    const strut_compare_options options = {.accuracy = setups[1].experiment.accuracy,
+                                           .no_motion = plan->study->compute != STRUT_COMPUTE_RUN,
+                                           .no_states = true,
+                                           .interrupt = interrupt};
+    const strut_plot plot = {.path = path, .title = f->title, .width = width};
+    status = strut_compare_make(inputs, 2, &options, &result, error);
+    if (!status) status = strut_compare_figure(&plot, &result, 0, result.count, error);
+    strut_compare_free(&result);
+    strut_setup_free(&setups[1]);
+  }
+  strut_setup_free(&setups[0]);
   return status;
 }

@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a search has found, and what it is worth. */
+#include "engine/study/report/study_report.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "engine/base/c_locale.h"
 #include "engine/base/memory.h"
+#include "engine/base/number_text.h"
 #include "engine/output/buffer.h"
 #include "engine/output/json_value.h"
 #include "engine/study/sweep/grid.h"
-#include "parser/program/streams.h"
-#include "parser/program/sweep.h"
 
 /* Changes of the objective that count: of a more exact run, and among the best points. */
 static const double STANDS = 0.02, FLAT = 1e-3;
@@ -292,27 +293,22 @@ static char *make_json(const report *r, const strut_sweep_state *state, const ch
   return strut_json_end_line(&j);
 }
 
-strut_status strut_sweep_search_report(const strut_sweep_plan *plan,
-                                       const strut_search_result *result,
-                                       const strut_sweep_state *state, const char *table,
-                                       bool json) {
+char *strut_search_report(const strut_sweep_plan *plan, const strut_search_result *result,
+                          const strut_sweep_state *state, const char *table, bool json) {
   report r = {.plan = plan, .search = plan->study->search, .result = result};
-  char time[32], *text;
+  char time[STRUT_DURATION_TEXT], *text;
   strut_c_locale locale = strut_c_locale_enter();
   if (json) {
     text = make_json(&r, state, table);
   } else {
     for (size_t i = 0; i < result->worth_count; i++) add_best(&r, &result->worths[i]);
     for (size_t i = 0; i < result->front_count; i++) add_front(&r, &result->fronts[i]);
-    strut_progress_time(time, sizeof time, state->seconds);
+    strut_duration_text(state->seconds, time);
     strut_buffer_add(&r.text, "%lld points, %lld failed; %lld computed in %s\n%s\n",
                      (long long)state->points, (long long)state->failed, (long long)state->computed,
                      time, table);
     text = strut_buffer_take(&r.text);
   }
   strut_c_locale_leave(locale);
-  if (!text) return strut_print_out_of_memory();
-  strut_status status = strut_print(text);
-  strut_release(text);
-  return status;
+  return text;
 }
