@@ -31,14 +31,15 @@ strut_describe_and_install(bash-completion/completions strut completion bash)
 strut_describe_and_install(zsh/vendor-completions _strut completion zsh)
 strut_describe_and_install(fish/vendor_completions.d strut.fish completion fish)
 
-# Manual pages: of the program, of each command (cli/command_NAME.c), of the language.
+# Manual pages: of the program, of each command in the table of commands.c, of the language.
 strut_describe_and_install(man/man1 strut.1 help --man)
 strut_describe_and_install(man/man5 strut-model.5 help --man model)
-get_target_property(sources strut SOURCES)
-foreach(source IN LISTS sources)
-  if(source MATCHES "cli/command_(.*)[.]c$")
-    strut_describe_and_install(man/man1 strut-${CMAKE_MATCH_1}.1 help --man ${CMAKE_MATCH_1})
-  endif()
+set(commands "${PROJECT_SOURCE_DIR}/parser/program/commands.c")
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${commands}")
+file(STRINGS "${commands}" rows REGEX "^    &strut_command_[a-z]+,$")
+foreach(row IN LISTS rows)
+  string(REGEX REPLACE ".*&strut_command_([a-z]+).*" "\\1" command "${row}")
+  strut_describe_and_install(man/man1 strut-${command}.1 help --man ${command})
 endforeach()
 
 add_custom_target(strut_descriptions ALL DEPENDS ${strut_described})

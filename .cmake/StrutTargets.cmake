@@ -54,14 +54,12 @@ function(strut_library room)
                SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 endfunction()
 
-# strut_module(NAME SOURCE...): modules/strut-NAME.so, which the program loads by itself.
+# strut_module(NAME SOURCE...): modules/strut-NAME.so, which the program loads by itself and which calls functions of the program.
 function(strut_module name)
   add_library(strut_${name}_module MODULE ${ARGN})
   strut_compile_options(strut_${name}_module)
   target_include_directories(strut_${name}_module PRIVATE "${PROJECT_SOURCE_DIR}")
   target_link_options(strut_${name}_module PRIVATE -Wl,--as-needed)
-  # A module calls no function of the C library itself, but Debian wants every library to name it.
-  target_link_libraries(strut_${name}_module PRIVATE "-Wl,--push-state,--no-as-needed,-lc,--pop-state")
   set_target_properties(
     strut_${name}_module PROPERTIES PREFIX "" OUTPUT_NAME strut-${name}
                                     LIBRARY_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/modules")

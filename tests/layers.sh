@@ -16,7 +16,7 @@ breaches() {
       xargs grep -nE '^[[:space:]]*#[[:space:]]*include' /dev/null || true
   ) | awk -v root="$1" '
     function folder(path) { sub("/[^/]*$", "", path); return path }
-    function room(path) { sub("^.*/", "", path); sub("[.][ch]$", "", path); return path }
+    function stem(path) { sub("[.][ch]$", "", path); return path }
     function breach(why) { print place ": " why ": " text }
     BEGIN {
       # Folders in the order in which they may include each other; those of a line stand side by side.
@@ -30,7 +30,7 @@ breaches() {
         "engine/output/figures engine/output/film engine/output/page engine/output/code|engine/study/results|" \
         "engine/study/sensitivity|" \
         "engine/study/cluster engine/study/tradeoff engine/study/sweep|" \
-        "engine/study/compare engine/study/search engine/study/follow", line, "|")
+        "engine/study/compare engine/study/search engine/study/follow|engine/study/report", line, "|")
       for (i = 1; i <= count; i++) {
         n = split(line[i], side, " ")
         for (k = 1; k <= n; k++) floor[side[k]] = i
@@ -44,10 +44,9 @@ breaches() {
       home["Python.h"] = "parser/python"
       home["zlib.h"] = "engine/output/page"; home["cairo.h"] = home["cairo-pdf.h"] = "engine/output/draw"
       home["cairo-svg.h"] = home["pango/pangocairo.h"] = "engine/output/draw"
-      table = "^engine/model/algebra_library[.]h$" # of their functions, which the program loads late
-      room_of["cholmod.h"] = "engine/model/linear_solver"
-      room_of["SuiteSparseQR_C.h"] = "engine/statics/rigidity/sparse_qr"
-      room_of["arpack.h"] = room_of["arpack/arpack.h"] = "engine/statics/modes/lanczos"
+      room_of["cholmod.h"] = "engine/model/cholmod_factor engine/statics/sparse_algebra"
+      room_of["SuiteSparseQR_C.h"] = "engine/statics/sparse_algebra"
+      room_of["arpack.h"] = room_of["arpack/arpack.h"] = "engine/statics/sparse_algebra"
       room_of["glpk.h"] = "engine/statics/linear_program"
       room_of["nlopt.h"] = "engine/study/search/nlopt_optimiser"
     }
@@ -64,8 +63,8 @@ breaches() {
       if (!ours) {
         base = name; sub("^suitesparse/", "", base)
         if (quoted) breach("not spelled from the repository root")
-        else if (base in home && from != home[base] && from !~ "^parser/(cli|command|abi)$") breach("belongs to " home[base])
-        else if (base in room_of && index(file, room_of[base] ".") != 1 && file !~ table)
+        else if (base in home && from != home[base] && from !~ "^parser/(program|command|abi)$") breach("belongs to " home[base])
+        else if (base in room_of && index(" " room_of[base] " ", " " stem(file) " ") == 0)
           breach("belongs to " room_of[base])
         next
       }
@@ -74,13 +73,13 @@ breaches() {
       if (to ~ "^tests") { breach("the product includes a test"); next }
       if (from == to) next
       # On top of everything: the program and the shared library, and below both their options.
-      if (from == "parser/cli" || from == "parser/abi") {
-        if (to == "parser/cli" || to == "parser/abi") breach("runs up")
+      if (from == "parser/program" || from == "parser/abi") {
+        if (to == "parser/program" || to == "parser/abi") breach("runs up")
         next
       }
-      if (from == "parser/command") { if (to == "parser/cli" || to == "parser/abi") breach("runs up"); next }
+      if (from == "parser/command") { if (to == "parser/program" || to == "parser/abi") breach("runs up"); next }
       # The front door of the libraries names them all, but never the program.
-      if (file == "parser/strut.h") { if (to ~ "^parser/(cli|command|abi)$") breach("runs up"); next }
+      if (file == "parser/strut.h") { if (to ~ "^parser/(program|command|abi)$") breach("runs up"); next }
       if (from ~ "^parser") {
         if (to == "engine/base" || to == "engine/scene") next
         if (!(from in parser_floor)) breach("a folder without a floor")
@@ -104,7 +103,7 @@ expect() {
   for header in engine/base/a.h engine/scene/a.h engine/model/a.h engine/forces/a.h \
     engine/integrate/a.h engine/run/a.h engine/statics/a.h engine/statics/search/a.h \
     engine/statics/modes/a.h engine/output/a.h engine/study/sweep/a.h engine/run/orbit/a.h \
-    engine/odd/a.h parser/a.h parser/yaml/a.h parser/read/a.h parser/cli/a.h parser/command/a.h \
+    engine/odd/a.h parser/a.h parser/yaml/a.h parser/read/a.h parser/program/a.h parser/command/a.h \
     parser/abi/a.h tests/a.h "$2"; do
     mkdir -p "$scratch/tree/${header%/*}"
     : >"$scratch/tree/$header"
@@ -125,11 +124,11 @@ expect 1 engine/run/orbit/b.c '#include "engine/run/a.h"'
 expect 0 parser/read/b.c '#include "parser/yaml/a.h"'
 expect 1 parser/yaml/b.c '#include "parser/read/a.h"'
 expect 0 parser/b.c '#include "engine/scene/a.h"'
-expect 0 parser/cli/b.c '#include "engine/study/sweep/a.h"'
-expect 0 parser/cli/b.c '#include "parser/command/a.h"'
+expect 0 parser/program/b.c '#include "engine/study/sweep/a.h"'
+expect 0 parser/program/b.c '#include "parser/command/a.h"'
 expect 0 parser/abi/b.c '#include "parser/command/a.h"'
-expect 1 parser/command/b.c '#include "parser/cli/a.h"'
-expect 1 parser/abi/b.c '#include "parser/cli/a.h"'
+expect 1 parser/command/b.c '#include "parser/program/a.h"'
+expect 1 parser/abi/b.c '#include "parser/program/a.h"'
 expect 1 parser/read/b.c '#include "parser/command/a.h"'
 expect 0 parser/octave/b.c '#include "strut/abi.h"'
 expect 0 parser/python/b.c '#include <Python.h>'
@@ -138,7 +137,8 @@ expect 1 parser/octave/b.c '#include "parser/abi/a.h"'
 expect 0 parser/strut.h '#include "engine/output/a.h"'
 expect 0 parser/yaml/b.c '#include <yaml.h>'
 expect 1 parser/read/b.c '#include <yaml.h>'
-expect 0 engine/model/linear_solver.c '#include <suitesparse/cholmod.h>'
+expect 0 engine/model/cholmod_factor.c '#include <suitesparse/cholmod.h>'
+expect 1 engine/model/linear_solver.c '#include <cholmod.h>'
 expect 0 engine/base/b.c '#include <stdio.h>'
 expect 1 engine/base/b.h '#include "engine/scene/a.h"'
 expect 1 engine/scene/b.c '  #  include "engine/model/a.h"'
@@ -152,11 +152,11 @@ expect 1 engine/statics/search/b.c '#include "engine/statics/modes/a.h"'
 expect 1 engine/statics/form/b.c '#include "engine/statics/modes/a.h"'
 expect 1 engine/run/b.c '#include "parser/a.h"'
 expect 1 parser/b.c '#include "engine/model/a.h"'
-expect 1 parser/b.c '#include "parser/cli/a.h"'
-expect 1 parser/strut.h '#include "parser/cli/a.h"'
+expect 1 parser/b.c '#include "parser/program/a.h"'
+expect 1 parser/strut.h '#include "parser/program/a.h"'
 expect 1 engine/odd/b.c '#include "engine/base/a.h"'
 expect 1 engine/run/b.c '#include "tests/a.h"'
-expect 1 parser/cli/b.c '#include "tests/a.h"'
+expect 1 parser/program/b.c '#include "tests/a.h"'
 expect 1 parser/b.c '#include "a.h"'
 expect 1 parser/b.c '#include "../engine/base/a.h"'
 expect 1 engine/run/b.c '#include <engine/base/a.h>'
@@ -181,9 +181,10 @@ printf 'STRUT_CLONES\nstatic void same(int a) {\n' | tee "$scratch/twins/engine/
 # What docs/architecture.md says of the tree: who uses CHOLMOD, GLPK and NLopt, and the files that it and
 # docs/recipes.md name by the end of their paths. Those in strut/ are installed.
 strangers() {
-  for pair in 'cholmod_:(model/(linear_solver|algebra_[a-z]+)|statics/rigidity/sparse_qr)' \
-    'glp_:statics/linear_program' 'nlopt_:study/search/nlopt_optimiser'; do
-    (cd "$1" && grep -rlE "\b${pair%%:*}[a-z_]+ *\(" engine parser --include='*.[ch]' || true) |
+  for pair in 'cholmod_:(model/cholmod_factor|statics/sparse_algebra)' \
+    'ds[ae]upd_:statics/sparse_algebra' 'glp_:statics/linear_program' 'nlopt_:study/search/nlopt_optimiser' \
+    '(cairo|pango)_:output/draw/cairo_page' 'H5[A-Z]:output/(hdf5_(disk|parts|writer)|trajectory_file)'; do
+    (cd "$1" && grep -rlE "\b${pair%%:*}[a-z0-9_]+ *\(" engine parser --include='*.[ch]' || true) |
       grep -vE "^engine/${pair#*:}[.][ch]$" | sed "s/$/ uses ${pair%%:*}/" || true
   done
 }

@@ -10,6 +10,7 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "engine/base/number_powers.h"
@@ -209,4 +210,18 @@ size_t strut_number_text(double value, char text[STRUT_NUMBER_TEXT]) {
   }
   *at = '\0';
   return (size_t)(at - text);
+}
+
+void strut_duration_text(double seconds, char text[STRUT_DURATION_TEXT]) {
+  const size_t size = STRUT_DURATION_TEXT;
+  double whole = ceil(seconds);
+  if (!(whole < 1e7)) {
+    snprintf(text, size, "?");
+  } else if (whole < 60) {
+    snprintf(text, size, "%.0f s", whole);
+  } else if (whole < 3600) {
+    snprintf(text, size, "%d min %02d s", (int)whole / 60, (int)whole % 60);
+  } else {
+    snprintf(text, size, "%d h %02d min", (int)whole / 3600, (int)whole / 60 % 60);
+  }
 }

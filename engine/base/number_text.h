@@ -22,4 +22,9 @@ enum { STRUT_NUMBER_TEXT = 32 };
  */
 STRUT_API size_t strut_number_text(double value, char text[STRUT_NUMBER_TEXT]);
 
+/** Room that any text of strut_duration_text fits in. */
+enum { STRUT_DURATION_TEXT = 32 };
+/** Writes a time in whole seconds such as "2 min 03 s"; "?" for 1e7 s and more. */
+STRUT_API void strut_duration_text(double seconds, char text[STRUT_DURATION_TEXT]);
+
 #endif

@@ -1,44 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/model/linear_solver.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/model/algebra_calls.h"
+#include "engine/model/cholmod_factor.h"
 #include "engine/model/hot.h"
 #include "engine/model/memory_estimate.h"
 
-static void start_cholmod(cholmod_common *common) {
-  cholmod_start(common);
-  common->supernodal = CHOLMOD_SIMPLICIAL;
-  common->final_ll = 0;
-  common->nmethods = 1;
-  common->method[0].ordering = CHOLMOD_AMD;
-  common->postorder = 1;
-  common->print = 0;
-  common->error_handler = NULL;
+strut_status strut_linear_solver_load(strut_error *error) {
+  const strut_cholmod_library *cholmod;
+  return strut_cholmod_load(&cholmod, error);
 }
-
-/* A view of our matrix as CHOLMOD's; nothing is copied. */
-static cholmod_sparse view(const strut_sparse *matrix) {
-  cholmod_sparse result = {0};
-  result.nrow = result.ncol = (size_t)matrix->n;
-  result.nzmax = (size_t)matrix->start[matrix->n];
-  result.p = matrix->start;
-  result.i = matrix->row;
-  result.x = matrix->value;
-  result.stype = -1;
-  result.itype = CHOLMOD_INT;
-  result.xtype = CHOLMOD_REAL;
-  result.dtype = CHOLMOD_DOUBLE;
-  result.sorted = 1;
-  result.packed = 1;
-  return result;
-}
-
-strut_status strut_linear_solver_load(strut_error *error) { return strut_algebra_load(error); }
 
 static strut_factor *allocate_factor(int32_t n, size_t nonzeros) {
   strut_factor *factor = strut_allocate(1, sizeof *factor);
@@ -56,10 +32,11 @@ static strut_factor *allocate_factor(int32_t n, size_t nonzeros) {
 }
 
 /* CHOLMOD keeps D as the first entry of each column of L; we keep 1/D apart. */
-static void copy_into(const cholmod_factor *l, strut_factor *factor) {
-  const int *start = l->p, *row = l->i, *order = l->Perm;
-  const double *value = l->x;
+static void copy_into(const strut_cholmod_columns *l, strut_factor *factor) {
+  const int *start = l->start, *row = l->row, *order = l->order;
+  const double *value = l->value;
   int32_t n = factor->n;
+  assert(n == l->n);
   memcpy(factor->order, order, (size_t)n * sizeof *factor->order);
   int32_t at = 0;
   for (int32_t j = 0; j < n; j++) {
@@ -73,10 +50,8 @@ static void copy_into(const cholmod_factor *l, strut_factor *factor) {
   factor->start[n] = at;
 }
 
-static strut_factor *copy_out(const cholmod_factor *l) {
-  const int *start = l->p;
-  int32_t n = (int32_t)l->n;
-  strut_factor *factor = allocate_factor(n, (size_t)(start[n] - n));
+static strut_factor *copy_out(const strut_cholmod_columns *l) {
+  strut_factor *factor = allocate_factor(l->n, (size_t)(l->start[l->n] - l->n));
   if (factor) copy_into(l, factor);
   return factor;
 }
@@ -154,30 +129,28 @@ static bool weave_parts(strut_factor **factor) {
  * The row of A at which it shows not to be positive definite, or -1. CHOLMOD's L D L' stops at a
  * zero in D only, so the signs are looked at here.
  */
-static int32_t bad_row(const cholmod_factor *l) {
-  const int *start = l->p, *order = l->Perm;
-  const double *value = l->x;
-  if (l->minor < l->n) return order[l->minor];
-  for (size_t j = 0; j < l->n; j++)
-    if (!(value[start[j]] > 0)) return order[j];
+static int32_t bad_row(const strut_cholmod_columns *l) {
+  if (l->finished < l->n) return l->order[l->finished];
+  for (int32_t j = 0; j < l->n; j++)
+    if (!(l->value[l->start[j]] > 0)) return l->order[j];
   return -1;
 }
 
 strut_status strut_factor_create(const strut_sparse *matrix, strut_factor **factor,
                                  strut_error *error) {
-  cholmod_common common;
   *factor = NULL;
-  strut_status status = strut_algebra_load(error);
+  const strut_cholmod_library *cholmod = NULL;
+  strut_status status = strut_cholmod_load(&cholmod, error);
   if (status) return status;
-  start_cholmod(&common);
-  cholmod_sparse a = view(matrix);
-  cholmod_factor *l = cholmod_analyze(&a, &common);
-  double nonzeros = common.lnz; /* counted by the analysis */
-  status = l ? strut_memory_check_factor(matrix->n, nonzeros, error) : STRUT_OK;
-  if (l && !status && cholmod_factorize(&a, l, &common) && common.status >= CHOLMOD_OK &&
-      cholmod_change_factor(CHOLMOD_REAL, 0, 0, 1, 1, l, &common)) {
-    int32_t row = bad_row(l);
-    if (row < 0 && (*factor = copy_out(l)) && !weave_parts(factor)) {
+  double nonzeros = 0.0; /* counted by the analysis */
+  strut_cholmod_columns l;
+  strut_cholmod_factor *analysed = cholmod->analyse(matrix, &nonzeros);
+  if (!analysed)
+    return strut_fail(error, STRUT_NO_MEMORY, "out of memory while factorising a matrix");
+  status = strut_memory_check_factor(matrix->n, nonzeros, error);
+  if (!status && cholmod->factorise(analysed, matrix, 0.0, &l)) {
+    int32_t row = bad_row(&l);
+    if (row < 0 && (*factor = copy_out(&l)) && !weave_parts(factor)) {
       strut_factor_free(*factor);
       *factor = NULL;
     }
@@ -185,11 +158,8 @@ strut_status strut_factor_create(const strut_sparse *matrix, strut_factor **fact
       status = strut_fail(error, STRUT_SINGULAR,
                           "the matrix is not positive definite (row %d of %d)", row, matrix->n);
   }
-  if (!*factor && status == STRUT_OK)
-    status = l ? strut_memory_fail_factor(matrix->n, nonzeros, error)
-               : strut_fail(error, STRUT_NO_MEMORY, "out of memory while factorising a matrix");
-  cholmod_free_factor(&l, &common);
-  cholmod_finish(&common);
+  if (!*factor && !status) status = strut_memory_fail_factor(matrix->n, nonzeros, error);
+  cholmod->free(analysed);
   return status;
 }
 
@@ -233,8 +203,8 @@ void strut_factor_solve_pair(const strut_factor *factor, double *restrict b) {
 }
 
 struct strut_ldl {
-  cholmod_common common;
-  cholmod_factor *symbolic;
+  const strut_cholmod_library *cholmod;
+  strut_cholmod_factor *analysed;
   strut_factor *factor; /* of what was factorised last; NULL before */
   double *work;         /* (3 n) */
   double norm;          /* |A + shift I|_1 of it */
@@ -242,16 +212,17 @@ struct strut_ldl {
 
 strut_status strut_ldl_create(const strut_sparse *pattern, strut_ldl **ldl, strut_error *error) {
   *ldl = NULL;
-  strut_status status = strut_algebra_load(error);
+  const strut_cholmod_library *cholmod = NULL;
+  strut_status status = strut_cholmod_load(&cholmod, error);
   if (status) return status;
   strut_ldl *l = *ldl = strut_allocate(1, sizeof *l);
   if (!l) return strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-  start_cholmod(&l->common);
-  cholmod_sparse a = view(pattern);
-  l->symbolic = cholmod_analyze(&a, &l->common);
+  double nonzeros = 0.0;
+  l->cholmod = cholmod;
+  l->analysed = cholmod->analyse(pattern, &nonzeros);
   l->work = strut_allocate(3 * (size_t)pattern->n, sizeof *l->work);
-  status = l->symbolic && l->work
-               ? strut_memory_check_factor(pattern->n, l->common.lnz, error)
+  status = l->analysed && l->work
+               ? strut_memory_check_factor(pattern->n, nonzeros, error)
                : strut_fail(error, STRUT_NO_MEMORY, "out of memory while analysing a matrix");
   if (status == STRUT_OK) return status;
   strut_ldl_free(l);
@@ -261,8 +232,7 @@ strut_status strut_ldl_create(const strut_sparse *pattern, strut_ldl **ldl, stru
 
 void strut_ldl_free(strut_ldl *ldl) {
   if (!ldl) return;
-  cholmod_free_factor(&ldl->symbolic, &ldl->common);
-  cholmod_finish(&ldl->common);
+  ldl->cholmod->free(ldl->analysed);
   strut_factor_free(ldl->factor);
   strut_release(ldl->work);
   strut_release(ldl);
@@ -284,26 +254,25 @@ static double norm_of(const strut_sparse *a, double shift, double *sum) {
 }
 
 /* False where a pivot cannot be divided by. */
-static bool read_inertia(const cholmod_factor *l, const strut_sparse *a, double shift,
+static bool read_inertia(const strut_cholmod_columns *l, const strut_sparse *a, double shift,
                          strut_inertia *inertia) {
-  const int *start = l->p, *order = l->Perm;
-  const double *value = l->x;
   *inertia = (strut_inertia){.row = -1, .smallest = HUGE_VAL, .least = HUGE_VAL};
-  if (l->minor < l->n) {
-    inertia->row = order[l->minor];
+  if (l->finished < l->n) {
+    inertia->row = l->order[l->finished];
     inertia->smallest = inertia->least = 0.0;
     return false;
   }
-  for (size_t j = 0; j < l->n; j++) {
-    double d = value[start[j]], size = fabs(d);
-    double before = fabs(a->value[a->start[order[j]]] + shift);
+  for (int32_t j = 0; j < l->n; j++) {
+    int32_t row = l->order[j];
+    double d = l->value[l->start[j]], size = fabs(d);
+    double before = fabs(a->value[a->start[row]] + shift);
     double left = before > 0 ? size / before : 1.0;
     if (!(size > 0) || !isfinite(size)) {
-      *inertia = (strut_inertia){.row = order[j]};
+      *inertia = (strut_inertia){.row = row};
       return false;
     }
     if (d < 0) inertia->negative++;
-    if (left < inertia->smallest) inertia->smallest = left, inertia->row = order[j];
+    if (left < inertia->smallest) inertia->smallest = left, inertia->row = row;
     inertia->least = fmin(inertia->least, size);
     inertia->largest = fmax(inertia->largest, size);
   }
@@ -312,22 +281,17 @@ static bool read_inertia(const cholmod_factor *l, const strut_sparse *a, double 
 
 strut_status strut_ldl_factorise(strut_ldl *ldl, const strut_sparse *matrix, double shift,
                                  strut_inertia *inertia) {
-  cholmod_common *common = &ldl->common;
-  cholmod_sparse a = view(matrix);
-  double beta[2] = {shift, 0.0};
-  cholmod_factor *l = cholmod_copy_factor(ldl->symbolic, common);
+  strut_cholmod_columns l;
   strut_status status = STRUT_NO_MEMORY;
   *inertia = (strut_inertia){.row = -1};
   ldl->norm = norm_of(matrix, shift, ldl->work);
-  if (l && cholmod_factorize_p(&a, beta, NULL, 0, l, common) && common->status >= CHOLMOD_OK &&
-      cholmod_change_factor(CHOLMOD_REAL, 0, 0, 1, 1, l, common)) {
-    const int *start = l->p;
-    bool good = read_inertia(l, matrix, shift, inertia);
-    if (!ldl->factor) ldl->factor = allocate_factor(matrix->n, (size_t)(start[l->n] - matrix->n));
-    if (ldl->factor && good) copy_into(l, ldl->factor);
+  if (ldl->cholmod->factorise(ldl->analysed, matrix, shift, &l)) {
+    bool good = read_inertia(&l, matrix, shift, inertia);
+    if (!ldl->factor) ldl->factor = allocate_factor(matrix->n, (size_t)(l.start[l.n] - matrix->n));
+    if (ldl->factor && good) copy_into(&l, ldl->factor);
     if (ldl->factor) status = good ? STRUT_OK : STRUT_SINGULAR;
   }
-  cholmod_free_factor(&l, common);
+  ldl->cholmod->forget(ldl->analysed);
   return status;
 }
 

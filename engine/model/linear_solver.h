@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * The seam around SuiteSparse: a sparse symmetric matrix and its L D L' factor.
- *
- * Only linear_solver.c sees cholmod.h. The factor is simplicial, so that its bits do not depend on
- * the installed BLAS, and is copied out, so that solving in the step loop allocates nothing.
+ * A sparse symmetric matrix and its L D L' factor, which CHOLMOD computes (cholmod_factor.h). The factor is
+ * copied out, so that solving in the step loop allocates nothing.
  */
 #ifndef STRUT_ENGINE_MODEL_LINEAR_SOLVER_H
 #define STRUT_ENGINE_MODEL_LINEAR_SOLVER_H
@@ -32,7 +30,7 @@ typedef struct strut_factor {
   double *inverse_diagonal; /* (n) 1 / D */
 } strut_factor;
 
-/** Loads the libraries of all below, and tells why where they cannot be had. */
+/** Loads what computes factors; fails where that cannot be loaded. */
 strut_status strut_linear_solver_load(strut_error *error);
 
 /**

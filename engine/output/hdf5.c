@@ -1,233 +1,57 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The sink in front of the HDF5 library, which is loaded when a run begins to write. */
 #include "engine/output/record_files.h"
 
-#include <errno.h>
+#include <stdatomic.h>
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/file.h"
-#include "engine/output/hdf5_parts.h"
+#include "engine/output/hdf5_library.h"
 
-enum { CHUNK_BYTES = 1 << 18, CHUNK_DOUBLES = CHUNK_BYTES / 8 };
-/* Of the time, of components, of owners with and without a total. */
-enum { SCALES = 1 + STRUT_CHANNEL_COUNT + 2 * STRUT_OWNER_COUNT };
+enum { RESERVE = 8 << 20 };
 
-/* One growing dataset; rows are collected until they fill a chunk. */
-typedef struct series {
-  hid_t dataset;
-  int rank;
-  hsize_t shape[STRUT_HDF5_RANK]; /* rows in the file, items, components */
-  size_t offset, size;            /* place in a row of the recorder, and doubles there */
-  size_t most, held;
-  double *rows; /* (most, size) */
-} series;
+static atomic_bool leaves_at_exit;
 
-typedef struct hdf5 {
+void strut_hdf5_leave_at_exit(void) { leaves_at_exit = true; }
+
+bool strut_hdf5_has_memory(void) {
+  void *block = strut_allocate(1, RESERVE);
+  strut_release(block);
+  return block != NULL;
+}
+
+strut_status strut_hdf5_ready(const strut_hdf5_library **library, strut_error *error) {
+  strut_status status = strut_hdf5_load(library, error);
+  if (status == STRUT_OK && atomic_exchange(&leaves_at_exit, false)) (*library)->leave_at_exit();
+  return status;
+}
+
+typedef struct late_sink {
   strut_sink sink;
   char *directory, *scene_text;
-  strut_file file;
-  strut_hdf5_disk disk;
-  hid_t id; /* 0: no file open */
-  size_t width, series_count;
-  series series[1 + STRUT_CHANNEL_COUNT]; /* the time comes first */
-  int scale_count;
-  strut_hdf5_scale scales[SCALES];
-} hdf5;
-
-/* Closes the HDF5 file; false if not all of it could be written. */
-static bool close_file(hdf5 *self) {
-  bool good = true;
-  if (self->id > 0) good = H5Fclose(self->id) >= 0;
-  self->id = 0;
-  errno = self->disk.trouble;
-  good = good && !self->disk.trouble;
-  strut_hdf5_disk_free(&self->disk);
-  return good;
-}
-
-static void abandon(hdf5 *self) {
-  close_file(self);
-  strut_file_abandon(&self->file);
-  for (size_t i = 0; i < self->series_count; i++) strut_release(self->series[i].rows);
-  self->series_count = 0;
-  self->scale_count = 0;
-}
-
-/* Without a message of the library, which where no file is open is not initialised, and need not be. */
-static void abandon_quietly(hdf5 *self) {
-  if (self->id <= 0) {
-    abandon(self);
-    return;
-  }
-  strut_hdf5_quiet quiet = strut_hdf5_hush();
-  abandon(self);
-  strut_hdf5_unhush(quiet);
-}
-
-/* The scale of that name, created from the names if necessary; NULL on failure. */
-static strut_hdf5_scale *scale_of_names(hdf5 *self, const char *name, const char *const *names,
-                                        size_t count) {
-  for (int i = 0; i < self->scale_count; i++) {
-    if (strcmp(self->scales[i].name, name) == 0) return &self->scales[i];
-  }
-  strut_hdf5_scale *scale = &self->scales[self->scale_count];
-  hid_t dataset = strut_hdf5_names(self->id, name, names, count);
-  if (dataset < 0 || !strut_hdf5_scale_begin(scale, self->id, dataset, name)) return NULL;
-  self->scale_count++;
-  return scale;
-}
-
-/* Rows per chunk: about CHUNK_BYTES, and no more than will be recorded. Very long rows are split. */
-static bool create_series(hdf5 *self, series *s, const char *name, const char *unit,
-                          size_t expected_rows) {
-  hsize_t chunk[STRUT_HDF5_RANK] = {1, s->shape[1], s->shape[2]};
-  s->most = s->size < CHUNK_DOUBLES ? CHUNK_DOUBLES / s->size : 1;
-  if (s->most > expected_rows) s->most = expected_rows > 0 ? expected_rows : 1;
-  chunk[0] = s->most;
-  if (s->size > CHUNK_DOUBLES) chunk[1] = CHUNK_DOUBLES / s->shape[2];
-  s->rows = strut_allocate(s->most, s->size * sizeof *s->rows);
-  if (!s->rows) {
-    errno = ENOMEM;
-    return false;
-  }
-  s->dataset = strut_hdf5_series(self->id, name, s->rank, s->shape, chunk);
-  return s->dataset >= 0 && strut_hdf5_text(s->dataset, "units", unit);
-}
-
-static bool create_time(hdf5 *self, size_t expected_rows) {
-  series *s = &self->series[self->series_count++];
-  *s = (series){.rank = 1, .size = 1, .shape = {0, 1, 1}};
-  return create_series(self, s, "time", "s", expected_rows) &&
-         strut_hdf5_scale_begin(&self->scales[self->scale_count++], self->id, s->dataset, "time");
-}
-
-static bool create_channel(hdf5 *self, const strut_record_channel *channel, size_t expected_rows) {
-  series *s = &self->series[self->series_count++];
-  *s = (series){.rank = STRUT_HDF5_RANK,
-                .shape = {0, channel->items, channel->components},
-                .offset = channel->offset,
-                .size = channel->items * channel->components};
-  if (!create_series(self, s, channel->name, channel->unit, expected_rows)) return false;
-  strut_hdf5_scale *scales[STRUT_HDF5_RANK] = {&self->scales[0]};
-  const strut_channel_row *row = strut_channel_row_of(channel->id);
-  const strut_owner_row *owner = strut_owner_row_of(row->owner);
-  scales[1] = scale_of_names(self, row->total ? owner->axis_with_total : owner->axis,
-                             channel->item_names, channel->items);
-  if (!scales[1]) return false;
-  if (channel->component_names[0][0] != '\0') { /* a single one without a name needs no scale */
-    scales[2] =
-        scale_of_names(self, row->component_axis, channel->component_names, channel->components);
-    if (!scales[2]) return false;
-  }
-  return strut_hdf5_scale_attach(self->id, s->dataset, channel->name, STRUT_HDF5_RANK, scales);
-}
-
-/* The driver does not report failures; they are read from its state here. */
-static bool written(const hdf5 *self) {
-  if (self->disk.trouble) errno = self->disk.trouble;
-  return !self->disk.trouble;
-}
-
-static bool create_all(hdf5 *self, const strut_record_layout *layout) {
-  self->id = strut_hdf5_disk_create(&self->disk, fileno(self->file.stream));
-  bool good = self->id > 0 && strut_hdf5_text(self->id, "strut_version", STRUT_VERSION) &&
-              strut_hdf5_text(self->id, "scene", self->scene_text) &&
-              create_time(self, layout->expected_rows);
-  for (size_t i = 0; good && i < layout->channel_count; i++) {
-    const strut_record_channel *channel = &layout->channels[i];
-    if (channel->items * channel->components > 0) {
-      good = create_channel(self, channel, layout->expected_rows);
-    }
-  }
-  for (int i = 0; good && i < self->scale_count; i++) good = strut_hdf5_scale_end(&self->scales[i]);
-  return written(self) && good;
-}
+  const strut_hdf5_library *library;
+  strut_sink *writer; /* NULL until the run begins */
+} late_sink;
 
 static strut_status begin(void *context, const strut_record_layout *layout, strut_error *error) {
-  hdf5 *self = context;
-  self->width = layout->width;
+  late_sink *self = context;
   if (!strut_hdf5_has_memory()) return strut_no_memory(error, "while writing files");
-  strut_status status = strut_hdf5_load(error);
+  strut_status status = strut_hdf5_ready(&self->library, error);
   if (status != STRUT_OK) return status;
-  status = strut_file_open(&self->file, self->directory, "trajectory.h5", error);
-  if (status != STRUT_OK) return status;
-  strut_hdf5_quiet quiet = strut_hdf5_hush();
-  errno = 0;
-  if (!create_all(self, layout)) {
-    status = strut_file_trouble(&self->file, error);
-    abandon(self);
-  }
-  strut_hdf5_unhush(quiet);
-  return status;
+  if (!self->writer) self->writer = self->library->create(self->directory, self->scene_text);
+  if (!self->writer) return strut_no_memory(error, "while writing files");
+  return self->writer->begin(self->writer->context, layout, error);
 }
 
-/* Appends the rows gathered to the dataset. */
-static bool flush_series(series *s) {
-  if (s->held == 0) return true;
-  if (!strut_hdf5_has_memory()) {
-    errno = ENOMEM;
-    return false;
-  }
-  hsize_t start[STRUT_HDF5_RANK] = {s->shape[0]};
-  hsize_t count[STRUT_HDF5_RANK] = {s->held, s->shape[1], s->shape[2]};
-  s->shape[0] += s->held;
-  if (H5Dset_extent(s->dataset, s->shape) < 0) return false;
-  hid_t file_space = H5Dget_space(s->dataset);
-  hid_t memory_space = H5Screate_simple(s->rank, count, NULL);
-  bool good =
-      H5Sselect_hyperslab(file_space, H5S_SELECT_SET, start, NULL, count, NULL) >= 0 &&
-      H5Dwrite(s->dataset, H5T_NATIVE_DOUBLE, memory_space, file_space, H5P_DEFAULT, s->rows) >= 0;
-  H5Sclose(memory_space);
-  H5Sclose(file_space);
-  s->held = 0;
-  return good;
-}
-
-static bool take_row(hdf5 *self, const double *row) {
-  for (size_t i = 0; i < self->series_count; i++) {
-    series *s = &self->series[i];
-    memcpy(s->rows + s->held * s->size, row + s->offset, s->size * sizeof *row);
-    if (++s->held == s->most && !(flush_series(s) && written(self))) return false;
-  }
-  return true;
-}
-
-static strut_status take_rows(void *context, const double *rows, size_t count, strut_error *error) {
-  hdf5 *self = context;
-  strut_status status = STRUT_OK;
-  strut_hdf5_quiet quiet = strut_hdf5_hush();
-  errno = 0;
-  for (size_t i = 0; status == STRUT_OK && i < count; i++) {
-    if (!take_row(self, rows + i * self->width)) status = strut_file_trouble(&self->file, error);
-  }
-  strut_hdf5_unhush(quiet);
-  return status;
-}
-
-/* Writes pending rows, closes the file and renames it. */
-static strut_status complete(hdf5 *self, strut_status run_status, strut_error *error) {
-  errno = 0;
-  bool good = true;
-  for (size_t i = 0; good && i < self->series_count; i++) good = flush_series(&self->series[i]);
-  good = good && strut_hdf5_text(self->id, "status", strut_status_text(run_status));
-  int code = errno;
-  bool closed = close_file(self);
-  if (!good && !errno) errno = code; /* report the first failure */
-  good = good && closed;
-  return good ? strut_file_commit(&self->file, error) : strut_file_trouble(&self->file, error);
+static strut_status write_rows(void *context, const double *rows, size_t count,
+                               strut_error *error) {
+  const strut_sink *writer = ((late_sink *)context)->writer;
+  return writer->rows(writer->context, rows, count, error);
 }
 
 static strut_status end(void *context, strut_status run_status, strut_error *error) {
-  hdf5 *self = context;
-  strut_status status = STRUT_OK;
-  bool keep = run_status != STRUT_FILE_TROUBLE && run_status != STRUT_NO_MEMORY;
-  if (keep && self->id > 0) {
-    strut_hdf5_quiet quiet = strut_hdf5_hush();
-    status = complete(self, run_status, error);
-    strut_hdf5_unhush(quiet);
-  }
-  abandon_quietly(self);
-  return status;
+  const strut_sink *writer = ((late_sink *)context)->writer;
+  return writer->end(writer->context, run_status, error);
 }
 
 static char *copy(const char *text) {
@@ -238,9 +62,9 @@ static char *copy(const char *text) {
 }
 
 strut_sink *strut_hdf5_create(const char *directory, const char *scene_text) {
-  hdf5 *self = strut_allocate(1, sizeof *self);
+  late_sink *self = strut_allocate(1, sizeof *self);
   if (!self) return NULL;
-  self->sink = (strut_sink){self, begin, take_rows, end, 0};
+  self->sink = (strut_sink){self, begin, write_rows, end, 0};
   self->directory = copy(directory);
   self->scene_text = copy(scene_text);
   if (self->directory && self->scene_text) return &self->sink;
@@ -250,8 +74,8 @@ strut_sink *strut_hdf5_create(const char *directory, const char *scene_text) {
 
 void strut_hdf5_free(strut_sink *sink) {
   if (!sink) return;
-  hdf5 *self = sink->context;
-  abandon_quietly(self);
+  late_sink *self = sink->context;
+  if (self->writer) self->library->free(self->writer);
   strut_release(self->directory);
   strut_release(self->scene_text);
   strut_release(self);

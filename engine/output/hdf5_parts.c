@@ -11,19 +11,13 @@
 
 #include "engine/base/memory.h"
 
-enum { DEFLATE_LEVEL = 4, RESERVE = 8 << 20 };
+enum { DEFLATE_LEVEL = 4 };
 
 strut_hdf5_quiet strut_hdf5_hush(void) {
   strut_hdf5_quiet quiet = {0};
   H5Eget_auto2(H5E_DEFAULT, &quiet.function, &quiet.data);
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   return quiet;
-}
-
-bool strut_hdf5_has_memory(void) {
-  void *block = strut_allocate(1, RESERVE);
-  strut_release(block);
-  return block != NULL;
 }
 
 void strut_hdf5_unhush(strut_hdf5_quiet quiet) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * The pieces of an HDF5 file of results: datasets, texts, dimension scales; for hdf5.c alone.
+ * The pieces of an HDF5 file of results: datasets, texts, dimension scales; for
+ * hdf5_writer.c and trajectory_file.c.
  *
  * Scales follow the HDF5 Dimension Scale specification, so that netCDF-4 and xarray see named axes.
  * The library's own H5DS functions would copy the padding of a C struct into the file, and two
@@ -12,7 +13,10 @@
 
 #include <stdbool.h>
 
-#include "engine/output/hdf5_calls.h"
+#include <hdf5.h>
+
+#include "engine/base/status.h"
+#include "engine/output/trajectory.h"
 #include "engine/scene/channels.h"
 
 enum { STRUT_HDF5_RANK = 3, STRUT_HDF5_USERS = STRUT_CHANNEL_COUNT };
@@ -23,12 +27,11 @@ typedef struct strut_hdf5_quiet {
   void *data;
 } strut_hdf5_quiet;
 strut_hdf5_quiet strut_hdf5_hush(void);
-/**
- * Whether there is as much memory as a few calls of the library take, chunks and filters included. It
- * crashes where its own allocations fail, so that this is asked before.
- */
-bool strut_hdf5_has_memory(void);
 void strut_hdf5_unhush(strut_hdf5_quiet quiet);
+
+/** The `read` of strut_hdf5_library. */
+strut_status strut_trajectory_read_file(const char *path, const strut_scene *scene, size_t room,
+                                        strut_trajectory *trajectory, strut_error *error);
 
 /** An attribute that holds a UTF-8 text of any length. */
 bool strut_hdf5_text(hid_t object, const char *name, const char *text);
@@ -59,7 +62,7 @@ bool strut_hdf5_scale_attach(hid_t file, hid_t dataset, const char *name, int ra
 bool strut_hdf5_scale_end(const strut_hdf5_scale *scale);
 
 /*
- * An HDF5 file driver whose writing never fails; for hdf5.c alone.
+ * An HDF5 file driver whose writing never fails; for hdf5_writer.c alone.
  *
  * HDF5 1.10 cannot close a file once a write has failed: it keeps the file, complains, and crashes
  * when the program exits. So this driver hides a full disk from the library. What did not fit is

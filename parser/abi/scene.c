@@ -8,7 +8,6 @@
 #include "engine/statics/equilibria/rest_state.h"
 #include "parser/abi/handles.h"
 #include "parser/write/write_scene.h"
-#include "parser/write/write_short.h"
 #include "parser/yaml/memory_estimate.h"
 
 /* ---- names ---- */

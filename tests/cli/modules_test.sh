@@ -18,6 +18,15 @@ else
   exit 77
 fi
 
+# What the modules call of strut, the program has.
+nm -D --defined-only "$strut" | awk '{ print $3 }' | sort >offered
+for module in "$built"/modules/*.so; do
+  nm -D --undefined-only "$module" | awk '$2 ~ /^strut_/ { print $2 }' | sort >called
+  [ -s called ] || fail "${module##*/} calls nothing of strut"
+  [ -z "$(comm -23 called offered)" ] ||
+    fail "${module##*/} calls what the program does not offer: $(comm -23 called offered)"
+done
+
 mkdir -p moved/bin moved/modules
 cp "$strut" moved/bin/strut
 strut=$work/moved/bin/strut

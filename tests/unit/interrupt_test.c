@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "parser/cli/streams.c" /* the program is no library to link with */
+#include "parser/program/streams.c" /* the program is no library to link with */
 
 static void test_first_and_second(void **state) {
   const int *signal_number = *state;

@@ -11,8 +11,8 @@
 
 #include <cmocka.h>
 
-#include "parser/cli/streams.c" /* the program is no library to link with */
-#include "parser/cli/table_file.c"
+#include "parser/program/streams.c" /* the program is no library to link with */
+#include "parser/program/table_file.c"
 #include "tests/support/heap.h"
 #include "tests/unit/scratch.h"
 

@@ -2,7 +2,7 @@
 /**
  * A page to draw on: SVG, PDF or PNG, whichever its file's name ends with; or pixels in memory.
  *
- * The only room that sees Cairo and Pango. Lengths are points, 1/72 inch; x runs right and y down
+ * Cairo and Pango draw it (cairo_page.h). Lengths are points, 1/72 inch; x runs right and y down
  * from the upper left corner. Drawing never fails: strut_canvas_commit reports errors. The same
  * drawing gives the same bytes; there is no date in them.
  */

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/model/algebra_calls.h"
+#include "engine/model/linear_solver.h"
 #include "engine/run/settle.h"
 #include "engine/statics/equilibria/equilibrium_search.h"
 #include "engine/statics/equilibria/naming.h"
@@ -364,8 +364,8 @@ strut_status strut_equilibria_find(const strut_model *model, const strut_experim
                                    const strut_equilibria_options *options,
                                    strut_equilibria *equilibria, strut_error *error) {
   memset(equilibria, 0, sizeof *equilibria);
-  strut_status status =
-      strut_algebra_load(error); /* its parts say no more than that memory is out */
+  /* Here, since its parts report nothing but a lack of memory. */
+  strut_status status = strut_linear_solver_load(error);
   if (status) return status;
   strut_equilibrium_search h = {
       .experiment = experiment, .options = options, .out = equilibria, .error = error};

@@ -8,7 +8,7 @@
 
 #include "engine/base/vec.h"
 #include "engine/integrate/limit/step_limit.h"
-#include "engine/model/algebra_calls.h"
+#include "engine/model/linear_solver.h"
 #include "engine/model/pose.h"
 #include "engine/statics/form/form.h"
 #include "engine/statics/minimise.h"
@@ -497,7 +497,7 @@ strut_status strut_form_find(strut_setup *setup, const strut_form_options *optio
   strut_model *model = NULL;
   strut_potential *potential = NULL;
   *form = (strut_form){.from = choose_source(scene, options->from)};
-  strut_status status = strut_algebra_load(error);
+  strut_status status = strut_linear_solver_load(error);
   if (status) return status;
   strut_former f = {
       .scene = scene, .experiment = &setup->experiment, .options = options, .form = form};

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
-#include "engine/statics/modes/lanczos.h"
+#include "engine/statics/sparse_algebra.h"
 
 /* All modes of a small structure, by GSL's dense eigensolvers. */
 
@@ -281,7 +281,10 @@ strut_status strut_modes_sparse(strut_modes_work *work, int32_t count, strut_err
   for (int i = 0; i < MOST_FACTORS && count_below(work, shift) > 0; i++) shift *= 4.0;
   strut_lanczos_problem problem = {v->n,          shift,      work,
                                    apply_inverse, apply_mass, work->experiment->interrupt};
-  strut_status status = strut_lanczos(&problem, below, set->value, set->vector, error);
+  const strut_sparse_algebra_library *sparse = NULL;
+  strut_status status = strut_sparse_algebra_load(&sparse, error);
+  if (status == STRUT_OK)
+    status = sparse->lowest_eigenpairs(&problem, below, set->value, set->vector, error);
   /* All that the signs have counted must be there. */
   if (status == STRUT_OK && !(set->value[below - 1] < 1.001 * bound))
     status = strut_fail(error, STRUT_SINGULAR,

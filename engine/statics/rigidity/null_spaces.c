@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "engine/statics/rigidity/null_space_methods.h"
-#include "engine/statics/rigidity/sparse_qr.h"
+#include "engine/statics/sparse_algebra.h"
 
 /* Bases with more vectors, or more numbers, than these are for nobody to read. */
 enum { MOST_VECTORS = 200, MOST_NUMBERS = 4000000 };
@@ -146,12 +146,15 @@ strut_status strut_null_spaces_sparse(const strut_equilibrium_matrix *a, strut_a
   *spaces = (strut_null_spaces){.dropped = (double)NAN};
   if (a->rows == 0 || a->columns == 0) return trivial(a, arena, spaces, error);
   strut_sparse_qr *qr = NULL;
-  strut_status status = strut_sparse_qr_create(a->rows, a->columns, a->start, a->row, a->value,
-                                               STRUT_RANK_TOLERANCE * sqrt(2.0), &qr, error);
+  const strut_sparse_algebra_library *sparse = NULL;
+  strut_status status = strut_sparse_algebra_load(&sparse, error);
+  if (status != STRUT_OK) return status;
+  status = sparse->create_qr(a->rows, a->columns, a->start, a->row, a->value,
+                             STRUT_RANK_TOLERANCE * sqrt(2.0), &qr, error);
   if (status != STRUT_OK) return status;
   size_t rows = (size_t)a->rows, columns = (size_t)a->columns;
-  spaces->rank = strut_sparse_qr_rank(qr);
-  strut_sparse_qr_diagonal(qr, &spaces->kept, &spaces->largest);
+  spaces->rank = sparse->rank(qr);
+  sparse->diagonal(qr, &spaces->kept, &spaces->largest);
   spaces->states = a->columns - spaces->rank, spaces->motions = a->rows - spaces->rank;
   if (few(spaces->states, a->columns)) {
     spaces->state = strut_arena_allocate(arena, (size_t)spaces->states * columns, sizeof(double));
@@ -162,10 +165,10 @@ strut_status strut_null_spaces_sparse(const strut_equilibrium_matrix *a, strut_a
     if (!spaces->motion) status = strut_no_memory(error, "");
   }
   for (int32_t i = 0; i < spaces->states && spaces->state; i++)
-    strut_sparse_qr_null(qr, i, spaces->state + (size_t)i * columns);
+    sparse->null(qr, i, spaces->state + (size_t)i * columns);
   for (int32_t i = 0; i < spaces->motions && spaces->motion; i++)
-    strut_sparse_qr_left_null(qr, i, spaces->motion + (size_t)i * rows);
-  strut_sparse_qr_free(qr);
+    sparse->left_null(qr, i, spaces->motion + (size_t)i * rows);
+  sparse->free_qr(qr);
   return status;
 }
 

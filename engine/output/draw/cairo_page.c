@@ -1,0 +1,348 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/output/draw/cairo_page.h"
+
+#include <assert.h>
+#include <cairo-pdf.h>
+#include <cairo-svg.h>
+#include <cairo.h>
+#include <math.h>
+#include <pango/pangocairo.h>
+
+#include "engine/base/memory.h"
+#include "engine/base/vec.h"
+
+struct strut_cairo_page {
+  cairo_t *cairo;
+  PangoLayout *layout; /* used for every text in turn */
+  strut_page_format format;
+  void *context;
+  strut_status (*write)(void *context, const void *bytes, size_t count);
+};
+
+/* Limit of Cairo's fixed-point numbers; nothing on a page is as far away [pt]. */
+static const double FARTHEST = 1e6;
+
+/* Sets the colour of what is drawn next. */
+static void set_ink(strut_cairo_page *c, strut_colour colour) {
+  if (colour.alpha >= 1.0) { /* an opaque source keeps SVG and PDF free of transparency */
+    cairo_set_source_rgb(c->cairo, colour.red, colour.green, colour.blue);
+  } else {
+    cairo_set_source_rgba(c->cairo, colour.red, colour.green, colour.blue, colour.alpha);
+  }
+}
+
+/* A coordinate that Cairo can take: the page's neighbourhood at most; NaN is far away. */
+static double clamp_coordinate(double coordinate) {
+  if (!(coordinate > -FARTHEST)) return -FARTHEST;
+  return coordinate < FARTHEST ? coordinate : FARTHEST;
+}
+
+/* ---- texts, set by Pango: any script, either direction, taken literally ---- */
+
+/* A fixed family: pictures look alike on every machine that has it. */
+static const char *const FAMILY = "DejaVu Sans, Liberation Sans, sans-serif";
+static const double USUAL_SIZE = 8.0, HALO = 2.4;
+
+static PangoLayout *create_layout(cairo_t *cairo) {
+  PangoLayout *layout = pango_cairo_create_layout(cairo);
+  if (!layout) return NULL;
+  PangoContext *context = pango_layout_get_context(layout);
+  cairo_font_options_t *options = cairo_font_options_create();
+  /* Letters keep their places whatever the resolution. */
+  cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);
+  cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
+  cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
+  pango_cairo_context_set_font_options(context, options);
+  cairo_font_options_destroy(options);
+  pango_cairo_context_set_resolution(context, 72.0);
+  pango_context_set_round_glyph_positions(context, FALSE);
+  pango_layout_context_changed(layout);
+  return layout;
+}
+
+static void set_text(strut_cairo_page *c, const char *text, const strut_font *font) {
+  PangoFontDescription *wanted = pango_font_description_new();
+  pango_font_description_set_family_static(wanted, FAMILY);
+  pango_font_description_set_absolute_size(
+      wanted, (font->size > 0 ? font->size : USUAL_SIZE) * PANGO_SCALE);
+  if (font->bold) pango_font_description_set_weight(wanted, PANGO_WEIGHT_BOLD);
+  if (font->italic) pango_font_description_set_style(wanted, PANGO_STYLE_ITALIC);
+  pango_layout_set_font_description(c->layout, wanted);
+  pango_font_description_free(wanted);
+  pango_layout_set_width(c->layout, font->width > 0 ? (int)(font->width * PANGO_SCALE) : -1);
+  PangoAlignment side = font->across > 0.75   ? PANGO_ALIGN_RIGHT
+                        : font->across > 0.25 ? PANGO_ALIGN_CENTER
+                                              : PANGO_ALIGN_LEFT;
+  pango_layout_set_alignment(c->layout, side);
+  pango_layout_set_wrap(c->layout, PANGO_WRAP_WORD_CHAR);
+  if (g_utf8_validate(text, -1, NULL)) {
+    pango_layout_set_text(c->layout, text, -1);
+  } else { /* which Pango would complain of on the standard error stream */
+    gchar *mended = g_utf8_make_valid(text, -1);
+    pango_layout_set_text(c->layout, mended, -1);
+    g_free(mended);
+  }
+}
+
+/* The layout's size [pt]. */
+static void measure_layout(strut_cairo_page *c, double *width, double *height) {
+  PangoRectangle logical;
+  pango_layout_get_extents(c->layout, NULL, &logical);
+  *width = (double)logical.width / PANGO_SCALE;
+  *height = (double)logical.height / PANGO_SCALE;
+}
+
+static void find_text_size(strut_cairo_page *c, const char *text, strut_font font, double *width,
+                           double *height) {
+  set_text(c, text, &font);
+  measure_layout(c, width, height);
+}
+
+static void draw_text(strut_cairo_page *c, const double at[2], const char *text, strut_font font) {
+  double width, height;
+  if (!text || !*text) return;
+  set_text(c, text, &font);
+  measure_layout(c, &width, &height);
+  PangoRectangle logical;
+  pango_layout_get_extents(c->layout, NULL, &logical);
+  cairo_save(c->cairo);
+  cairo_translate(c->cairo, clamp_coordinate(at[0]), clamp_coordinate(at[1]));
+  if (font.upwards) cairo_rotate(c->cairo, -0.5 * STRUT_PI);
+  cairo_move_to(c->cairo, -font.across * width - (double)logical.x / PANGO_SCALE,
+                -font.down * height);
+  if (font.halo.alpha > 0) {
+    cairo_save(c->cairo);
+    set_ink(c, font.halo);
+    pango_cairo_layout_path(c->cairo, c->layout);
+    cairo_set_dash(c->cairo, NULL, 0, 0);
+    cairo_set_line_width(c->cairo, HALO);
+    cairo_stroke(c->cairo);
+    cairo_restore(c->cairo);
+    cairo_move_to(c->cairo, -font.across * width - (double)logical.x / PANGO_SCALE,
+                  -font.down * height);
+  }
+  set_ink(c, font.colour.alpha > 0 ? font.colour : (strut_colour){0, 0, 0, 1});
+  pango_cairo_show_layout(c->cairo, c->layout);
+  cairo_new_path(c->cairo);
+  cairo_restore(c->cairo);
+}
+
+/* ---- pages ---- */
+
+static cairo_status_t write_bytes(void *context, const unsigned char *bytes, unsigned int count) {
+  strut_cairo_page *page = context;
+  strut_status status = page->write(page->context, bytes, count);
+  return status == STRUT_OK          ? CAIRO_STATUS_SUCCESS
+         : status == STRUT_NO_MEMORY ? CAIRO_STATUS_NO_MEMORY
+                                     : CAIRO_STATUS_WRITE_ERROR;
+}
+
+static cairo_surface_t *create_surface(strut_cairo_page *page, const strut_page_request *request) {
+  double width = request->width, height = request->height, scale = request->scale;
+  if (request->format == STRUT_PAGE_SVG)
+    return cairo_svg_surface_create_for_stream(write_bytes, page, width, height);
+  if (request->format == STRUT_PAGE_PNG || request->format == STRUT_PAGE_PIXELS)
+    return cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)(width * scale + 0.5),
+                                      (int)(height * scale + 0.5));
+  cairo_surface_t *surface = cairo_pdf_surface_create_for_stream(write_bytes, page, width, height);
+  cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_TITLE, request->title);
+  cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATOR, "strut " STRUT_VERSION);
+  /* A fixed date keeps the bytes reproducible. */
+  cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, "1970-01-01T00:00:00Z");
+  return surface;
+}
+
+static void free_page(strut_cairo_page *page) {
+  if (!page) return;
+  if (page->layout) g_object_unref(page->layout);
+  cairo_surface_finish(cairo_get_target(page->cairo));
+  cairo_destroy(page->cairo);
+  strut_release(page);
+}
+
+static strut_cairo_page *open_page(const strut_page_request *request) {
+  assert(request->scale > 0);
+  strut_cairo_page *page = strut_allocate(1, sizeof *page);
+  if (!page) return NULL;
+  page->format = request->format;
+  page->context = request->context, page->write = request->write;
+  cairo_surface_t *surface = create_surface(page, request);
+  page->cairo = cairo_create(surface);
+  cairo_surface_destroy(surface); /* the context keeps it */
+  cairo_scale(page->cairo, request->scale, request->scale);
+  cairo_set_line_join(page->cairo, CAIRO_LINE_JOIN_ROUND);
+  page->layout = create_layout(page->cairo);
+  if (page->layout && cairo_status(page->cairo) == CAIRO_STATUS_SUCCESS) return page;
+  free_page(page);
+  return NULL;
+}
+
+static const unsigned char *pixels_of(strut_cairo_page *page, size_t *stride) {
+  assert(page->format == STRUT_PAGE_PIXELS);
+  cairo_surface_t *surface = cairo_get_target(page->cairo);
+  cairo_surface_flush(surface);
+  *stride = (size_t)cairo_image_surface_get_stride(surface);
+  return cairo_image_surface_get_data(surface);
+}
+
+static strut_status finish_page(strut_cairo_page *page, const char **reason) {
+  cairo_status_t status = cairo_status(page->cairo);
+  cairo_surface_t *surface = cairo_get_target(page->cairo);
+  *reason = NULL;
+  if (status == CAIRO_STATUS_SUCCESS) {
+    if (page->format == STRUT_PAGE_PNG)
+      status = cairo_surface_write_to_png_stream(surface, write_bytes, page);
+    cairo_surface_finish(surface);
+    if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_status(surface);
+  }
+  if (status == CAIRO_STATUS_SUCCESS) return STRUT_OK;
+  if (status == CAIRO_STATUS_NO_MEMORY) return STRUT_NO_MEMORY;
+  if (status != CAIRO_STATUS_WRITE_ERROR) *reason = cairo_status_to_string(status);
+  return STRUT_FILE_TROUBLE;
+}
+
+static void clear_page(strut_cairo_page *page, strut_colour colour) {
+  set_ink(page, colour);
+  cairo_paint(page->cairo);
+}
+
+static void clip_to(strut_cairo_page *page, strut_box box) {
+  cairo_save(page->cairo);
+  cairo_rectangle(page->cairo, box.x, box.y, box.width, box.height);
+  cairo_clip(page->cairo);
+}
+
+static void unclip(strut_cairo_page *page) { cairo_restore(page->cairo); }
+
+/* ---- lines, areas and their hatching ---- */
+
+static const double HATCH_DISTANCE = 4.0, HATCH_WIDTH = 0.6;
+
+static void set_pen(strut_cairo_page *c, const strut_pen *pen) {
+  int dashes = 0;
+  while (dashes < 4 && pen->dash[dashes] > 0) dashes++;
+  set_ink(c, pen->colour);
+  cairo_set_line_width(c->cairo, pen->width);
+  cairo_set_dash(c->cairo, pen->dash, dashes, 0);
+  cairo_set_line_cap(c->cairo, pen->butt ? CAIRO_LINE_CAP_BUTT : CAIRO_LINE_CAP_ROUND);
+}
+
+static void trace(strut_cairo_page *c, const double (*points)[2], size_t count) {
+  cairo_new_path(c->cairo);
+  for (size_t i = 0; i < count; i++)
+    cairo_line_to(c->cairo, clamp_coordinate(points[i][0]), clamp_coordinate(points[i][1]));
+}
+
+static void draw_line(strut_cairo_page *c, const double (*points)[2], size_t count, strut_pen pen) {
+  if (!count || !(pen.colour.alpha > 0)) return;
+  trace(c, points, count);
+  set_pen(c, &pen);
+  cairo_stroke(c->cairo);
+}
+
+static void draw_segments(strut_cairo_page *c, const double (*ends)[2], size_t count,
+                          strut_pen pen) {
+  if (!count || !(pen.colour.alpha > 0)) return;
+  cairo_new_path(c->cairo);
+  for (size_t i = 0; i < count; i++) {
+    cairo_move_to(c->cairo, clamp_coordinate(ends[2 * i][0]), clamp_coordinate(ends[2 * i][1]));
+    cairo_line_to(c->cairo, clamp_coordinate(ends[2 * i + 1][0]),
+                  clamp_coordinate(ends[2 * i + 1][1]));
+  }
+  set_pen(c, &pen);
+  cairo_stroke(c->cairo);
+}
+
+/* One line at every HATCH_DISTANCE across the clip, anchored to the page so that areas side by side
+   join; `slant` is the line's rise for each point it runs to the right. */
+static void hatch_lines(strut_cairo_page *c, double slant) {
+  double x1, y1, x2, y2;
+  cairo_clip_extents(c->cairo, &x1, &y1, &x2, &y2);
+  double step = slant == 0 ? HATCH_DISTANCE : HATCH_DISTANCE * sqrt(2.0);
+  double low = y1 + fmin(slant * x1, slant * x2), high = y2 + fmax(slant * x1, slant * x2);
+  for (double k = floor(low / step); k * step <= high; k++) {
+    cairo_move_to(c->cairo, x1, k * step - slant * x1);
+    cairo_line_to(c->cairo, x2, k * step - slant * x2);
+  }
+  cairo_stroke(c->cairo);
+}
+
+static void hatch_dots(strut_cairo_page *c) {
+  double x1, y1, x2, y2;
+  cairo_clip_extents(c->cairo, &x1, &y1, &x2, &y2);
+  for (double j = floor(y1 / HATCH_DISTANCE); j * HATCH_DISTANCE <= y2; j++)
+    for (double i = floor(x1 / HATCH_DISTANCE); i * HATCH_DISTANCE <= x2; i++) {
+      cairo_arc(c->cairo, i * HATCH_DISTANCE, j * HATCH_DISTANCE, HATCH_WIDTH, 0, 2 * STRUT_PI);
+      cairo_fill(c->cairo);
+    }
+}
+
+static void hatch(strut_cairo_page *c, const strut_fill *fill) {
+  cairo_save(c->cairo);
+  cairo_clip_preserve(c->cairo);
+  cairo_path_t *outline = cairo_copy_path(c->cairo);
+  cairo_new_path(c->cairo);
+  const strut_pen pen = {.colour = fill->hatch_colour, .width = HATCH_WIDTH, .butt = true};
+  set_pen(c, &pen);
+  if (fill->hatch == STRUT_HATCH_RISING || fill->hatch == STRUT_HATCH_CROSSED) hatch_lines(c, 1);
+  if (fill->hatch == STRUT_HATCH_FALLING || fill->hatch == STRUT_HATCH_CROSSED) hatch_lines(c, -1);
+  if (fill->hatch == STRUT_HATCH_LEVEL) hatch_lines(c, 0);
+  if (fill->hatch == STRUT_HATCH_DOTS) hatch_dots(c);
+  cairo_restore(c->cairo);
+  cairo_append_path(c->cairo, outline);
+  cairo_path_destroy(outline);
+}
+
+/* Fills and strokes the current path. */
+static void paint(strut_cairo_page *c, const strut_fill *fill, const strut_pen *pen) {
+  if (fill && fill->colour.alpha > 0) {
+    set_ink(c, fill->colour);
+    cairo_fill_preserve(c->cairo);
+  }
+  if (fill && fill->hatch != STRUT_HATCH_NONE) hatch(c, fill);
+  if (pen && pen->colour.alpha > 0) {
+    set_pen(c, pen);
+    cairo_stroke_preserve(c->cairo);
+  }
+  cairo_new_path(c->cairo);
+}
+
+static void draw_polygon(strut_cairo_page *c, const double (*points)[2], size_t count,
+                         const strut_fill *fill, const strut_pen *pen) {
+  trace(c, points, count);
+  cairo_close_path(c->cairo);
+  paint(c, fill, pen);
+}
+
+static void draw_circle(strut_cairo_page *c, const double centre[2], double radius,
+                        const strut_fill *fill, const strut_pen *pen) {
+  cairo_new_path(c->cairo);
+  cairo_arc(c->cairo, clamp_coordinate(centre[0]), clamp_coordinate(centre[1]), radius, 0,
+            2 * STRUT_PI);
+  cairo_close_path(c->cairo);
+  paint(c, fill, pen);
+}
+
+extern STRUT_API const strut_cairo_library strut_cairo_table;
+const strut_cairo_library strut_cairo_table = {
+    .stamp = STRUT_LIBRARY_STAMP(strut_cairo_library),
+    .open = open_page,
+    .pixels = pixels_of,
+    .finish = finish_page,
+    .free = free_page,
+    .clear = clear_page,
+    .clip = clip_to,
+    .unclip = unclip,
+    .line = draw_line,
+    .segments = draw_segments,
+    .polygon = draw_polygon,
+    .circle = draw_circle,
+    .text = draw_text,
+    .text_size = find_text_size,
+};
+
+strut_status strut_cairo_load(const strut_cairo_library **library, strut_error *error) {
+  (void)error;
+  *library = &strut_cairo_table;
+  return STRUT_OK;
+}

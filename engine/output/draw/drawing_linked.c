@@ -1,9 +1,0 @@
-/* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The definition for programs that are linked to Cairo and Pango; alone in its file, so that an archive's member is left
-   out where a program has its own. */
-#include "engine/output/draw/drawing_library.h"
-
-const void *strut_drawing_table_find(strut_error *error) {
-  (void)error;
-  return &strut_drawing_table;
-}

@@ -1,0 +1,334 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/statics/sparse_algebra.h"
+
+#include <SuiteSparseQR_C.h>
+#include <arpack.h>
+#include <assert.h>
+#include <cholmod.h>
+#include <math.h>
+#include <pthread.h>
+#include <stdbool.h>
+#include <string.h>
+
+#include "engine/base/memory.h"
+
+/* ---- one thread for the BLAS, whose sums have other bits with several ---- */
+
+/* Found among the libraries that the others need, if the BLAS is OpenBLAS; else NULL. */
+extern void openblas_set_num_threads(int count) __attribute__((weak));
+extern int openblas_get_num_threads(void) __attribute__((weak));
+
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+static int inside, threads_before;
+
+static void begin_single_thread(void) {
+  if (!openblas_set_num_threads || !openblas_get_num_threads) return;
+  pthread_mutex_lock(&lock);
+  if (inside++ == 0) {
+    threads_before = openblas_get_num_threads();
+    openblas_set_num_threads(1);
+  }
+  pthread_mutex_unlock(&lock);
+}
+
+static void end_single_thread(void) {
+  if (!openblas_set_num_threads || !openblas_get_num_threads) return;
+  pthread_mutex_lock(&lock);
+  assert(inside > 0);
+  if (--inside == 0) openblas_set_num_threads(threads_before);
+  pthread_mutex_unlock(&lock);
+}
+
+/* ---- rank-revealing QR, by SPQR ---- */
+
+/* A column of the squeezed R is live where it reaches one row further down than those before it. */
+struct strut_sparse_qr {
+  cholmod_common common;
+  cholmod_sparse *r, *h; /* H: reflections, one per column, in the order of permuted rows */
+  cholmod_dense *tau;    /* of the reflections */
+  int64_t *order;        /* (columns) column of A at position k in R; NULL: identity */
+  int64_t *place;        /* (rows) where a row of A stands among the permuted ones */
+  int32_t rows, columns, rank;
+  int32_t *live; /* (rank) column of R with the diagonal of row k */
+  int32_t *dead; /* (columns - rank) the others */
+  double *work;  /* (rows) */
+};
+
+static cholmod_sparse *copy_matrix(strut_sparse_qr *qr, const int32_t *start, const int32_t *row,
+                                   const double *value) {
+  size_t count = (size_t)start[qr->columns];
+  cholmod_sparse *a = cholmod_l_allocate_sparse(
+      (size_t)qr->rows, (size_t)qr->columns, count ? count : 1, 1, 1, 0, CHOLMOD_REAL, &qr->common);
+  if (!a) return NULL;
+  int64_t *p = a->p, *i = a->i;
+  for (int32_t j = 0; j <= qr->columns; j++) p[j] = start[j];
+  for (size_t k = 0; k < count; k++) i[k] = row[k];
+  memcpy(a->x, value, count * sizeof *value);
+  return a;
+}
+
+/* Row of the last entry of a column of R, -1 where it is empty; rows need not be sorted. */
+static int64_t last_entry(const cholmod_sparse *r, int32_t column, double *value) {
+  const int64_t *p = r->p, *i = r->i;
+  const double *x = r->x;
+  int64_t last = -1;
+  for (int64_t k = p[column]; k < p[column + 1]; k++)
+    if (i[k] > last) last = i[k], *value = x[k];
+  return last;
+}
+
+static void sort_columns(strut_sparse_qr *qr) {
+  int32_t live = 0, dead = 0;
+  double value = 0.0;
+  for (int32_t j = 0; j < qr->columns; j++) {
+    bool step = live < qr->rank && last_entry(qr->r, j, &value) == live;
+    if (step)
+      qr->live[live++] = j;
+    else if (dead < qr->columns - qr->rank)
+      qr->dead[dead++] = j;
+  }
+}
+
+static bool factorise(strut_sparse_qr *qr, cholmod_sparse *a, double tolerance) {
+  int64_t rank = SuiteSparseQR_C(SPQR_ORDERING_DEFAULT, tolerance, 0, 0, a, NULL, NULL, NULL, NULL,
+                                 &qr->r, &qr->order, &qr->h, &qr->place, &qr->tau, &qr->common);
+  if (rank < 0 || !qr->r || !qr->h || !qr->tau) return false;
+  qr->rank = (int32_t)rank;
+  qr->live = strut_allocate((size_t)rank + 1, sizeof *qr->live);
+  qr->dead = strut_allocate((size_t)(qr->columns - rank) + 1, sizeof *qr->dead);
+  qr->work = strut_allocate((size_t)qr->rows + 1, sizeof *qr->work);
+  if (!qr->live || !qr->dead || !qr->work) {
+    qr->common.status = CHOLMOD_OUT_OF_MEMORY;
+    return false;
+  }
+  sort_columns(qr);
+  return true;
+}
+
+static void free_qr(strut_sparse_qr *qr) {
+  if (!qr) return;
+  cholmod_l_free_sparse(&qr->r, &qr->common);
+  cholmod_l_free_sparse(&qr->h, &qr->common);
+  cholmod_l_free_dense(&qr->tau, &qr->common);
+  cholmod_l_free((size_t)qr->columns, sizeof *qr->order, qr->order, &qr->common);
+  cholmod_l_free((size_t)qr->rows, sizeof *qr->place, qr->place, &qr->common);
+  cholmod_l_finish(&qr->common);
+  strut_release(qr->live);
+  strut_release(qr->dead);
+  strut_release(qr->work);
+  strut_release(qr);
+}
+
+static strut_status create_qr(int32_t rows, int32_t columns, const int32_t *start,
+                              const int32_t *row, const double *value, double tolerance,
+                              strut_sparse_qr **result, strut_error *error) {
+  *result = NULL;
+  strut_sparse_qr *qr = *result = strut_allocate(1, sizeof *qr);
+  if (!qr) return strut_no_memory(error, "");
+  cholmod_l_start(&qr->common);
+  qr->common.print = 0;
+  qr->common.error_handler = NULL;
+  qr->common.SPQR_nthreads = 1;
+  qr->rows = rows, qr->columns = columns;
+  cholmod_sparse *a = copy_matrix(qr, start, row, value);
+  begin_single_thread();
+  bool done = a && factorise(qr, a, tolerance);
+  end_single_thread();
+  bool memory =
+      qr->common.status == CHOLMOD_OUT_OF_MEMORY || qr->common.status == CHOLMOD_TOO_LARGE;
+  cholmod_l_free_sparse(&a, &qr->common);
+  if (done) return STRUT_OK;
+  free_qr(qr);
+  *result = NULL;
+  if (memory) return strut_no_memory(error, "");
+  return strut_fail(error, STRUT_SINGULAR, "the equilibrium matrix could not be factorised");
+}
+
+static int32_t rank_of(const strut_sparse_qr *qr) { return qr->rank; }
+
+static void find_diagonal(const strut_sparse_qr *qr, double *smallest, double *largest) {
+  *smallest = *largest = 0.0;
+  for (int32_t k = 0; k < qr->rank; k++) {
+    double value = 0.0;
+    last_entry(qr->r, qr->live[k], &value);
+    value = fabs(value);
+    if (k == 0 || value < *smallest) *smallest = value;
+    if (value > *largest) *largest = value;
+  }
+}
+
+/* Q e: the reflections in reverse, then the rows back to where A has them. */
+static void find_left_null(const strut_sparse_qr *qr, int32_t i, double *y) {
+  assert(i >= 0 && i < qr->rows - qr->rank);
+  const int64_t *p = qr->h->p, *at = qr->h->i;
+  const double *h = qr->h->x, *tau = qr->tau->x;
+  double *w = qr->work;
+  memset(w, 0, (size_t)qr->rows * sizeof *w);
+  w[qr->rank + i] = 1.0;
+  for (int64_t j = (int64_t)qr->h->ncol - 1; j >= 0; j--) {
+    double sum = 0.0;
+    for (int64_t k = p[j]; k < p[j + 1]; k++) sum += h[k] * w[at[k]];
+    sum *= tau[j];
+    for (int64_t k = p[j]; k < p[j + 1]; k++) w[at[k]] -= sum * h[k];
+  }
+  for (int32_t k = 0; k < qr->rows; k++) y[k] = w[qr->place ? qr->place[k] : k];
+}
+
+/* Back substitution: R of the live columns times x is minus the dead column. */
+static void find_null(const strut_sparse_qr *qr, int32_t i, double *x) {
+  assert(i >= 0 && i < qr->columns - qr->rank);
+  const int64_t *p = qr->r->p, *at = qr->r->i;
+  const double *r = qr->r->x;
+  double *w = qr->work;
+  int32_t dead = qr->dead[i];
+  memset(w, 0, (size_t)qr->rows * sizeof *w);
+  memset(x, 0, (size_t)qr->columns * sizeof *x);
+  for (int64_t k = p[dead]; k < p[dead + 1]; k++) w[at[k]] = -r[k];
+  x[qr->order ? qr->order[dead] : dead] = 1.0;
+  for (int32_t k = qr->rank - 1; k >= 0; k--) {
+    int32_t column = qr->live[k];
+    double pivot = 1.0;
+    last_entry(qr->r, column, &pivot);
+    double value = w[k] / pivot;
+    if (value == 0.0) continue;
+    for (int64_t m = p[column]; m < p[column + 1]; m++)
+      if (at[m] != k) w[at[m]] -= value * r[m];
+    x[qr->order ? qr->order[column] : column] = value;
+  }
+}
+
+/* ---- lowest eigenpairs, by ARPACK ---- */
+
+enum {
+  INTERRUPTED = 1000, /* no code of ARPACK's */
+  SHIFT_INVERT = 3,
+  MOST_RESTARTS = 2000,
+  LEAST_VECTORS = 40
+};
+
+/* Relative error of the vectors; that of the eigenvalues is its square. */
+static const double GOOD = 1e-11;
+
+static pthread_mutex_t arpack_lock = PTHREAD_MUTEX_INITIALIZER;
+
+typedef struct search {
+  int32_t n, wanted, vectors;
+  double *residual, *basis, *work, *small, *value;
+  a_int *select, parameter[11], pointer[14];
+} search;
+
+/* A start that leans on no motion: bits stirred from the index. */
+static double stirred(uint64_t i) {
+  uint64_t z = (i + 1) * 0x9e3779b97f4a7c15u;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  return (double)((z ^ (z >> 27)) >> 11) * 0x1p-53 - 0.5;
+}
+
+static bool allocate_search(search *s, strut_arena *arena) {
+  size_t n = (size_t)s->n, p = (size_t)s->vectors;
+  s->residual = strut_arena_allocate(arena, n, sizeof(double));
+  s->basis = strut_arena_allocate(arena, n * p, sizeof(double));
+  s->work = strut_arena_allocate(arena, 3 * n, sizeof(double));
+  s->small = strut_arena_allocate(arena, p * (p + 8), sizeof(double));
+  s->value = strut_arena_allocate(arena, p, sizeof(double));
+  s->select = strut_arena_allocate(arena, p, sizeof *s->select);
+  if (!s->residual || !s->basis || !s->work || !s->small || !s->value || !s->select) return false;
+  for (int32_t i = 0; i < s->n; i++) s->residual[i] = stirred((uint64_t)i);
+  s->parameter[0] = 1; /* ARPACK chooses the shifts of its restarts */
+  s->parameter[2] = MOST_RESTARTS;
+  s->parameter[6] = SHIFT_INVERT;
+  return true;
+}
+
+/* ARPACK asks for products until it is done; its pointers count from 1. */
+static a_int iterate(const strut_lanczos_problem *problem, search *s) {
+  a_int task = 0, info = 1; /* the residual is ours */
+  a_int small = s->vectors * (s->vectors + 8);
+  for (;;) {
+    if (problem->interrupt && *problem->interrupt) return INTERRUPTED;
+    dsaupd_c(&task, "G", s->n, "LM", s->wanted, GOOD, s->residual, s->vectors, s->basis, s->n,
+             s->parameter, s->pointer, s->work, s->small, small, &info);
+    double *x = s->work + s->pointer[0] - 1, *y = s->work + s->pointer[1] - 1;
+    if (task == 2) {
+      problem->mass(problem->context, x, y);
+    } else if (task == -1) {
+      problem->mass(problem->context, x, y);
+      problem->solve(problem->context, y);
+    } else if (task == 1) {
+      memcpy(y, s->work + s->pointer[2] - 1, (size_t)s->n * sizeof *y);
+      problem->solve(problem->context, y);
+    } else {
+      return info;
+    }
+  }
+}
+
+static a_int extract_pairs(const strut_lanczos_problem *problem, search *s) {
+  a_int info = 0, small = s->vectors * (s->vectors + 8);
+  dseupd_c(1, "A", s->select, s->value, s->basis, s->n, problem->shift, "G", s->n, "LM", s->wanted,
+           GOOD, s->residual, s->vectors, s->basis, s->n, s->parameter, s->pointer, s->work,
+           s->small, small, &info);
+  return info;
+}
+
+static void copy_sorted(const search *s, double *value, double *vector) {
+  for (int32_t i = 0; i < s->wanted; i++) {
+    int32_t rank = 0;
+    for (int32_t k = 0; k < s->wanted; k++)
+      rank += s->value[k] < s->value[i] || (s->value[k] == s->value[i] && k < i);
+    value[rank] = s->value[i];
+    memcpy(vector + (size_t)rank * (size_t)s->n, s->basis + (size_t)i * (size_t)s->n,
+           (size_t)s->n * sizeof *vector);
+  }
+}
+
+static strut_status find_lowest(const strut_lanczos_problem *problem, int32_t count, double *value,
+                                double *vector, strut_error *error) {
+  assert(count > 0 && count < problem->n);
+  strut_arena arena = {0};
+  search s = {.n = problem->n, .wanted = count};
+  s.vectors = 2 * count + 10 > LEAST_VECTORS ? 2 * count + 10 : LEAST_VECTORS;
+  if (s.vectors > s.n) s.vectors = s.n;
+  strut_status status = STRUT_OK;
+  if (!allocate_search(&s, &arena)) {
+    status = strut_no_memory(error, "");
+  } else {
+    pthread_mutex_lock(&arpack_lock);
+    begin_single_thread();
+    a_int info = iterate(problem, &s);
+    if (info == 0) info = extract_pairs(problem, &s);
+    end_single_thread();
+    pthread_mutex_unlock(&arpack_lock);
+    if (info == INTERRUPTED)
+      status = strut_fail(error, STRUT_INTERRUPTED, "interrupted");
+    else if (info != 0 || s.parameter[4] < count)
+      status = strut_fail(error, STRUT_SINGULAR,
+                          "Lanczos's method found %d of the %d lowest modes (ARPACK code %d)",
+                          (int)s.parameter[4], (int)count, (int)info);
+    else
+      copy_sorted(&s, value, vector);
+  }
+  strut_arena_free(&arena);
+  return status;
+}
+
+/* ---- the table ---- */
+
+extern STRUT_API const strut_sparse_algebra_library strut_sparse_algebra_table;
+const strut_sparse_algebra_library strut_sparse_algebra_table = {
+    .stamp = STRUT_LIBRARY_STAMP(strut_sparse_algebra_library),
+    .create_qr = create_qr,
+    .free_qr = free_qr,
+    .rank = rank_of,
+    .diagonal = find_diagonal,
+    .left_null = find_left_null,
+    .null = find_null,
+    .lowest_eigenpairs = find_lowest,
+};
+
+strut_status strut_sparse_algebra_load(const strut_sparse_algebra_library **library,
+                                       strut_error *error) {
+  (void)error;
+  *library = &strut_sparse_algebra_table;
+  return STRUT_OK;
+}

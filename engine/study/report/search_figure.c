@@ -1,0 +1,265 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Figures of a search: its best objective over evaluations, and its points over two variables, its best point. */
+#include "engine/study/report/study_report.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/output/figures/scatter_figure.h"
+#include "engine/output/figures/table_figure.h"
+#include "engine/study/compare/compare.h"
+#include "engine/study/sweep/grid.h"
+
+/* What a row of the table means to a search. */
+typedef struct tracker {
+  const strut_study_search *search;
+  const strut_table *table;
+  int number, evaluation, objective, second, violation; /* columns */
+  size_t outer; /* columns of the axes before the searches */
+} tracker;
+
+static int find(const strut_table *table, const char *name) {
+  for (size_t i = 0; name && i < table->column_count; i++)
+    if (strcmp(table->columns[i].name, name) == 0) return (int)i;
+  return STRUT_NO_COLUMN;
+}
+
+static double value_at(const tracker *t, int column, size_t row) {
+  const double *value = column >= 0 ? t->table->columns[column].value : NULL;
+  return value ? value[row] : (double)NAN;
+}
+
+static bool same_text(const tracker *t, size_t column, size_t a, size_t b) {
+  const char *const *text = t->table->columns[column].text;
+  return text && text[a] && text[b] ? strcmp(text[a], text[b]) == 0
+                                    : value_at(t, (int)column, a) == value_at(t, (int)column, b);
+}
+
+/* Are both rows of one search, or even of one evaluation? Column 0 is the point. */
+static bool same_search(const tracker *t, size_t a, size_t b) {
+  bool same = value_at(t, t->number, a) == value_at(t, t->number, b);
+  for (size_t i = 1; i <= t->outer && same; i++) same = same_text(t, i, a, b);
+  return same;
+}
+
+static bool same_evaluation(const tracker *t, size_t a, size_t b) {
+  return same_search(t, a, b) && value_at(t, t->evaluation, a) == value_at(t, t->evaluation, b);
+}
+
+/* The worst of the scenarios from `row` on, NAN where a condition is broken; *next: the row behind. */
+static double judge(const tracker *t, int column, size_t row, size_t *next) {
+  double worst = value_at(t, column, row);
+  bool broken = false;
+  size_t i = row;
+  for (; i < t->table->row_count && same_evaluation(t, row, i); i++) {
+    double value = value_at(t, column, i);
+    bool worse = t->search->maximise ? value < worst : value > worst;
+    if (worse || isnan(value)) worst = value;
+    broken = broken || isnan(value) || value_at(t, t->violation, i) > 0.0;
+  }
+  *next = i;
+  return broken ? (double)NAN : worst;
+}
+
+static tracker track(const strut_sweep_plan *plan, const strut_table *table) {
+  tracker t = {.search = plan->study->search,
+               .table = table,
+               .number = find(table, "search"),
+               .evaluation = find(table, "evaluation"),
+               .objective = find(table, "objective"),
+               .second = find(table, "objective_2"),
+               .violation = find(table, "violation")};
+  for (size_t i = 0; i < t.search->axis; i++) t.outer += plan->study->axes[i].column_count;
+  return t;
+}
+
+/* Fills the best objective so far, in each row of a search, and marks the row of the best of each. */
+static void follow(const tracker *t, double *best, bool *shown, bool *marked) {
+  double so_far = (double)NAN;
+  size_t at = 0, next = 0;
+  bool any = false;
+  for (size_t row = 0; row < t->table->row_count; row = next) {
+    bool begins = row == 0 || !same_search(t, row - 1, row);
+    if (begins && any) marked[at] = true;
+    if (begins) so_far = (double)NAN, any = false;
+    double value = judge(t, t->objective, row, &next);
+    bool proper = value_at(t, t->number, row) > 0.0;
+    if (proper && isfinite(value) &&
+        (isnan(so_far) || (t->search->maximise ? value > so_far : value < so_far)))
+      so_far = value, at = row, any = true;
+    for (size_t i = row; i < next; i++) {
+      best[i] = proper ? so_far : (double)NAN;
+      shown[i] = proper && i == row;
+    }
+  }
+  if (any) marked[at] = true;
+}
+
+/* Marks the points that no other of the same axes beats in both goals. */
+static bool mark_front(const tracker *t, const bool *shown, bool *marked, strut_arena *arena) {
+  size_t rows = t->table->row_count, next;
+  double sign = t->search->maximise ? -1.0 : 1.0;
+  double(*goal)[2] = strut_arena_allocate(arena, rows, sizeof *goal);
+  for (size_t i = 0; goal && i < rows; i++) {
+    marked[i] = false;
+    if (!shown[i]) continue;
+    goal[i][0] = sign * judge(t, t->objective, i, &next);
+    goal[i][1] = sign * judge(t, t->second, i, &next);
+    marked[i] = !isnan(goal[i][0]) && !isnan(goal[i][1]);
+  }
+  for (size_t i = 0; goal && i < rows; i++)
+    for (size_t k = 0; k < rows && marked[i]; k++) {
+      bool same = shown[k];
+      for (size_t c = 1; c <= t->outer && same; c++) same = same_text(t, c, i, k);
+      bool better = same && goal[k][0] <= goal[i][0] && goal[k][1] <= goal[i][1] &&
+                    (goal[k][0] < goal[i][0] || goal[k][1] < goal[i][1]);
+      if (better) marked[i] = false;
+    }
+  return goal != NULL;
+}
+
+/* A column of the rows that are shown. */
+static bool copy_column(const strut_table_column *from, const size_t *rows, size_t count,
+                        strut_arena *arena, strut_table_column *to) {
+  const char **text = from->text ? strut_arena_allocate(arena, count, sizeof *text) : NULL;
+  double *value = from->value ? strut_arena_allocate(arena, count, sizeof *value) : NULL;
+  *to = (strut_table_column){.name = from->name, .unit = from->unit, .text = text, .value = value};
+  for (size_t i = 0; i < count; i++) {
+    if (text) text[i] = from->text[rows[i]];
+    if (value) value[i] = from->value[rows[i]];
+  }
+  return (text || !from->text) && (value || !from->value);
+}
+
+/* The rows that are shown, with a further column. */
+static bool extend(const strut_table *from, const double *best, const bool *shown, const char *unit,
+                   strut_table *to) {
+  const strut_table_column last = {.name = "best so far", .unit = unit, .value = best};
+  size_t *rows = strut_arena_allocate(&to->arena, from->row_count, sizeof *rows);
+  to->column_count = from->column_count + 1;
+  to->columns = strut_arena_allocate(&to->arena, to->column_count, sizeof *to->columns);
+  if (!to->columns || !rows) return false;
+  for (size_t i = 0; i < from->row_count; i++)
+    if (shown[i]) rows[to->row_count++] = i;
+  bool fine = true;
+  for (size_t i = 0; i < to->column_count && fine; i++)
+    fine = copy_column(i < from->column_count ? &from->columns[i] : &last, rows, to->row_count,
+                       &to->arena, &to->columns[i]);
+  return fine;
+}
+
+/* Hides rows that `only`, COLUMN=TEXT, does not choose. */
+static int choose(const tracker *t, const char *only, const char **text, bool *shown) {
+  char name[60];
+  if (!only) return STRUT_NO_COLUMN;
+  snprintf(name, sizeof name, "%.*s", (int)strcspn(only, "="), only);
+  *text = only + strcspn(only, "=") + 1;
+  int column = find(t->table, name);
+  const char *const *cells = column >= 0 ? t->table->columns[column].text : NULL;
+  for (size_t i = 0; cells && i < t->table->row_count; i++)
+    shown[i] = shown[i] && cells[i] && strcmp(cells[i], *text) == 0;
+  return column;
+}
+
+static strut_axis_choice axis_of(const char *label, const double limits[2]) {
+  return (strut_axis_choice){label, limits[0] < limits[1], limits[0], limits[1]};
+}
+
+strut_status strut_search_figure(const strut_sweep_plan *plan, const strut_study_figure *f,
+                                 const char *path, const strut_table *table, double width,
+                                 strut_error *error) {
+  const tracker t = track(plan, table);
+  strut_table own = {0};
+  size_t rows = table->row_count;
+  double *best = strut_arena_allocate(&own.arena, rows, sizeof *best);
+  bool *shown = strut_arena_allocate(&own.arena, rows, sizeof *shown);
+  bool *marked = strut_arena_allocate(&own.arena, rows, sizeof *marked);
+  const char *unit = t.search->goal.program.unit;
+  strut_status status = STRUT_OK;
+  if (!best || !shown || !marked) {
+    strut_arena_free(&own.arena);
+    return strut_no_memory(error, "while drawing");
+  }
+  follow(&t, best, shown, marked);
+  if (t.second >= 0 && !mark_front(&t, shown, marked, &own.arena)) {
+    strut_arena_free(&own.arena);
+    return strut_no_memory(error, "while drawing");
+  }
+  strut_table_choice choice = STRUT_TABLE_ALL;
+  choice.only = choose(&t, f->only, &choice.only_value, shown);
+  if (f->kind == STRUT_FIGURE_BEST) {
+    if (!extend(table, best, shown, strcmp(unit, "1") == 0 ? "" : unit, &own)) {
+      strut_arena_free(&own.arena);
+      return strut_no_memory(error, "while drawing");
+    }
+    const char *series = f->series ? f->series : t.search->starts > 1 ? "search" : NULL;
+    const strut_table_figure lines = {
+        .title = f->title,
+        .width = width,
+        .x = t.evaluation,
+        .y = {(int)table->column_count},
+        .y_count = 1,
+        .x_axis = axis_of(f->x_label, f->x_limits),
+        .y_axis = axis_of(f->y_label ? f->y_label : t.search->goal.text, f->y_limits),
+        .by = find(table, series),
+        .panels = find(table, f->panels),
+        .band = STRUT_NO_COLUMN,
+        .choice = choice};
+    status = strut_table_curves(path, &lines, &own, error);
+  } else {
+    const strut_scatter_figure points = {.title = f->title,
+                                         .width = width,
+                                         .x = find(table, f->x),
+                                         .y = find(table, f->y),
+                                         .value = find(table, f->color ? f->color : "objective"),
+                                         .x_axis = axis_of(f->x_label, f->x_limits),
+                                         .y_axis = axis_of(f->y_label, f->y_limits),
+                                         .colours = (strut_colours)f->colours,
+                                         .shown = shown,
+                                         .marked = marked};
+    status = strut_table_scatter(path, &points, table, error);
+  }
+  strut_arena_free(&own.arena);
+  return status;
+}
+
+/* ---- the best point beside its start, with the numbers of `strut compare` ---- */
+
+/* The scene of the best point, or of the start with the same axes and scenario. */
+static strut_status set_up(const strut_sweep_plan *plan, const strut_search_point *best, bool start,
+                           strut_setup *setup, strut_error *error) {
+  strut_study_value *values = strut_allocate(plan->axis_columns + 1, sizeof *values);
+  if (!values) return strut_no_memory(error, "");
+  strut_grid_values(plan->study, best->worst, values); /* the variables' own axis holds the start */
+  if (!start) strut_search_values(plan, best->worst, best->values, values);
+  strut_status status = plan->scenes.setup(plan->scenes.context, values, setup, error);
+  strut_release(values);
+  return status;
+}
+
+strut_status strut_search_winner_figure(const strut_sweep_plan *plan, const strut_study_figure *f,
+                                        const char *path, const strut_search_point *best,
+                                        double width, const volatile sig_atomic_t *interrupt,
+                                        strut_error *error) {
+  strut_setup setups[2];
+  strut_compare result = {0};
+  const strut_compare_input inputs[] = {{.label = "start", .setup = &setups[0]},
+                                        {.label = "best", .setup = &setups[1]}};
+  strut_status status = set_up(plan, best, true, &setups[0], error);
+  if (status) return status;
+  status = set_up(plan, best, false, &setups[1], error);
+  if (!status) {
+    const strut_compare_options options = {.accuracy = setups[1].experiment.accuracy,
+                                           .no_motion = plan->study->compute != STRUT_COMPUTE_RUN,
+                                           .no_states = true,
+                                           .interrupt = interrupt};
+    const strut_plot plot = {.path = path, .title = f->title, .width = width};
+    status = strut_compare_make(inputs, 2, &options, &result, error);
+    if (!status) status = strut_compare_figure(&plot, &result, 0, result.count, error);
+    strut_compare_free(&result);
+    strut_setup_free(&setups[1]);
+  }
+  strut_setup_free(&setups[0]);
+  return status;
+}

@@ -1,0 +1,445 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/program/commands.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "engine/base/memory.h"
+#include "engine/base/number_text.h"
+#include "engine/output/file.h"
+#include "engine/output/results.h"
+#include "engine/study/compare/compare.h"
+#include "parser/program/option_values.h"
+#include "parser/program/options.h"
+#include "parser/program/progress.h"
+#include "parser/program/streams.h"
+#include "parser/read/difference.h"
+#include "parser/read/read_scene.h"
+#include "parser/write/write_scene.h"
+
+/* ---- reading the models ---- */
+
+/* Zero-initialise. */
+typedef struct compared_models {
+  size_t count;
+  strut_compare_input *inputs; /* (count) */
+  strut_setup *setups;         /* (count) */
+  strut_arena arena;           /* of names and differences */
+  const char *notes;           /* on --set, as printed so far; or NULL */
+} compared_models;
+
+enum { MOST_MESSAGES = 50 };
+
+/* A model being read. */
+typedef struct model_source {
+  const char *path, *shown;
+  char *text;
+  size_t length;
+  strut_override *known; /* (known_count) of --set: parameters that it has */
+  size_t known_count;
+} model_source;
+
+/* ---- names ---- */
+
+static bool is_taken(const compared_models *compared, size_t count, const char *label) {
+  for (size_t i = 0; i < count; i++)
+    if (strcmp(compared->inputs[i].label, label) == 0) return true;
+  return false;
+}
+
+/* The label with the values of --set behind the model: "crawler friction=0.2". */
+static const char *add_own_settings(const strut_arguments *arguments, compared_models *compared,
+                                    size_t number, const char *label) {
+  for (size_t i = 0; i < arguments->override_count && label; i++)
+    if (arguments->override_model[i] == number + 1)
+      label = strut_arena_format(&compared->arena, "%s %s=%s", label, arguments->overrides[i].name,
+                                 arguments->overrides[i].value);
+  return label;
+}
+
+/* The file's name without its folder and ending, else its path, else that with a number; unique. */
+static const char *choose_label(const strut_arguments *arguments, compared_models *compared,
+                                size_t number, const char *path) {
+  const char *slash = strrchr(path, '/'), *name = slash && slash[1] ? slash + 1 : path;
+  if (strcmp(path, "-") == 0) name = "stdin";
+  size_t length = strlen(name);
+  const char *dot = strrchr(name, '.');
+  if (dot && dot > name && (strcmp(dot, ".yaml") == 0 || strcmp(dot, ".yml") == 0))
+    length = (size_t)(dot - name);
+  const char *label = strut_arena_text(&compared->arena, name, length);
+  label = add_own_settings(arguments, compared, number, label);
+  if (label && is_taken(compared, number, label))
+    label = add_own_settings(arguments, compared, number, path);
+  const char *stem = label;
+  for (int k = 2; label && is_taken(compared, number, label); k++)
+    label = strut_arena_format(&compared->arena, "%s (%d)", stem, k);
+  return label;
+}
+
+/* ---- reading ---- */
+
+/* Prints the notes on --set that no earlier column gave. */
+static bool print_notes(compared_models *compared, strut_diagnostics *diagnostics) {
+  if (diagnostics->note_count == 0) return true;
+  const char *notes = strut_diagnostics_render_notes(diagnostics);
+  const char *before = compared->notes ? compared->notes : "";
+  if (notes && strstr(before, notes)) return true;
+  if (notes) fputs(notes, stderr);
+  if (notes) compared->notes = strut_arena_format(&compared->arena, "%s%s", before, notes);
+  return notes && compared->notes;
+}
+
+static strut_status read_setup(compared_models *compared, const model_source *from,
+                               const strut_override *overrides, size_t count, strut_setup *setup) {
+  strut_diagnostics diagnostics = {0};
+  strut_status status = strut_setup_read(setup, from->shown, from->text, from->length, overrides,
+                                         count, STRUT_FOR_ANY, &diagnostics);
+  if (status == STRUT_BAD_SCENE) {
+    const char *messages = strut_diagnostics_render(&diagnostics, MOST_MESSAGES);
+    if (messages) fputs(messages, stderr);
+    if (!messages) status = STRUT_NO_MEMORY;
+  }
+  if (status == STRUT_OK && !print_notes(compared, &diagnostics)) {
+    strut_setup_free(setup);
+    status = STRUT_NO_MEMORY;
+  }
+  if (status == STRUT_NO_MEMORY) strut_print_out_of_memory();
+  strut_diagnostics_free(&diagnostics);
+  return status;
+}
+
+static bool has_parameter(const strut_scene *scene, const char *name) {
+  for (size_t i = 0; i < scene->parameter_count; i++)
+    if (strcmp(scene->parameters[i].name, name) == 0) return true;
+  return false;
+}
+
+/* Splits the settings for a model into those whose parameter it has and the others. */
+static strut_status split_settings(const strut_arguments *arguments, const strut_scene *scene,
+                                   compared_models *compared, size_t number, model_source *from) {
+  size_t count = arguments->override_count;
+  strut_compare_input *input = &compared->inputs[number];
+  const char **without = strut_arena_allocate(&compared->arena, count + 1, sizeof *without);
+  from->known = strut_arena_allocate(&compared->arena, count + 1, sizeof *from->known);
+  if (!without || !from->known) return strut_print_out_of_memory();
+  for (size_t i = 0; i < count; i++) {
+    size_t owner = arguments->override_model[i]; /* 0: all models */
+    if (owner != 0 && owner != number + 1) continue;
+    if (has_parameter(scene, arguments->overrides[i].name))
+      from->known[from->known_count++] = arguments->overrides[i];
+    else
+      without[input->without_count++] = arguments->overrides[i].name;
+  }
+  input->without = without;
+  return STRUT_OK;
+}
+
+static strut_status open_one(const strut_arguments *arguments, compared_models *compared,
+                             size_t number) {
+  const char *path = arguments->models[number];
+  model_source from = {.path = path, .shown = strcmp(path, "-") == 0 ? "<stdin>" : path};
+  strut_compare_input *input = &compared->inputs[number];
+  strut_setup *setup = &compared->setups[number];
+  strut_error error = {0};
+  input->setup = setup;
+  input->label = choose_label(arguments, compared, number, path);
+  if (!input->label) return strut_print_out_of_memory();
+  strut_status status = strut_file_read(path, &from.text, &from.length, &error);
+  if (status != STRUT_OK) {
+    strut_print_error(&error);
+    return status;
+  }
+  status = read_setup(compared, &from, NULL, 0, setup);
+  if (status == STRUT_OK)
+    status = split_settings(arguments, &setup->scene, compared, number, &from);
+  if (status == STRUT_OK && from.known_count > 0) {
+    strut_setup_free(setup);
+    status = read_setup(compared, &from, from.known, from.known_count, setup);
+  }
+  strut_release(from.text);
+  return status;
+}
+
+/* ---- all models ---- */
+
+/* Parameters of all models, concatenated: candidates for suggestions. */
+static const char *parameter_at(const void *context, size_t i) {
+  const compared_models *compared = context;
+  for (size_t k = 0; k < compared->count; k++) {
+    if (i < compared->setups[k].scene.parameter_count)
+      return compared->setups[k].scene.parameters[i].name;
+    i -= compared->setups[k].scene.parameter_count;
+  }
+  return NULL;
+}
+
+static strut_status check_settings(const strut_command *command, const strut_arguments *arguments,
+                                   const compared_models *compared) {
+  for (size_t i = 0; i < arguments->override_count; i++) {
+    const char *name = arguments->overrides[i].name;
+    size_t owner = arguments->override_model[i];
+    bool known = false;
+    for (size_t k = 0; k < compared->count; k++)
+      known = known ||
+              ((owner == 0 || owner == k + 1) && has_parameter(&compared->setups[k].scene, name));
+    if (known) continue;
+    const char *near = strut_did_you_mean(name, parameter_at, compared);
+    fprintf(stderr, "strut %s: --set %s: ", command->name, name);
+    if (owner == 0)
+      fprintf(stderr, "no model has such a parameter");
+    else
+      fprintf(stderr, "'%s' has no such parameter", arguments->models[owner - 1]);
+    if (near) fprintf(stderr, "; did you mean '%s'?", near);
+    fputc('\n', stderr);
+    return STRUT_USAGE;
+  }
+  return STRUT_OK;
+}
+
+/* Runs before starts are resolved, so that scenes are compared as written. */
+static strut_status find_differences(compared_models *compared) {
+  strut_status status = STRUT_OK;
+  char *first = strut_setup_write(&compared->setups[0]);
+  if (!first) return strut_print_out_of_memory();
+  for (size_t i = 1; i < compared->count && status == STRUT_OK; i++) {
+    strut_compare_input *input = &compared->inputs[i];
+    strut_difference *list = NULL;
+    char *text = strut_setup_write(&compared->setups[i]);
+    status = text ? strut_text_differences(first, text, &compared->arena, &list,
+                                           &input->difference_count)
+                  : STRUT_NO_MEMORY;
+    input->differences = list;
+    strut_release(text);
+    if (status != STRUT_OK) strut_print_out_of_memory();
+  }
+  strut_release(first);
+  return status == STRUT_OK ? STRUT_OK : STRUT_NO_MEMORY;
+}
+
+static strut_status check_models(const strut_command *command, const strut_arguments *arguments) {
+  size_t standard = 0;
+  for (size_t i = 0; i < arguments->model_count; i++)
+    standard += strcmp(arguments->models[i], "-") == 0;
+  if (standard > 1) {
+    fprintf(stderr, "strut %s: standard input can be read only once: give '-' once\n",
+            command->name);
+    return STRUT_USAGE;
+  }
+  if (arguments->model_count > STRUT_COMPARE_MOST) {
+    fprintf(stderr, "strut %s: %zu models given, at most %d can be compared\n", command->name,
+            arguments->model_count, STRUT_COMPARE_MOST);
+    return STRUT_USAGE;
+  }
+  return STRUT_OK;
+}
+
+static void free_compared(compared_models *compared) {
+  for (size_t i = 0; i < compared->count; i++) strut_setup_free(&compared->setups[i]);
+  strut_arena_free(&compared->arena);
+  *compared = (compared_models){0};
+}
+
+static strut_status open_compared(const strut_command *command, const strut_arguments *arguments,
+                                  compared_models *compared) {
+  size_t count = arguments->model_count;
+  strut_status status = check_models(command, arguments);
+  *compared = (compared_models){.count = 0};
+  if (status != STRUT_OK) return status;
+  compared->inputs = strut_arena_allocate(&compared->arena, count, sizeof *compared->inputs);
+  compared->setups = strut_arena_allocate(&compared->arena, count, sizeof *compared->setups);
+  if (!compared->inputs || !compared->setups) status = strut_print_out_of_memory();
+  for (size_t i = 0; i < count && status != STRUT_NO_MEMORY; i++) {
+    strut_status here = open_one(arguments, compared, i);
+    compared->count = i + 1;
+    if (status == STRUT_OK || here == STRUT_NO_MEMORY) status = here;
+  }
+  if (status == STRUT_OK) status = check_settings(command, arguments, compared);
+  if (status == STRUT_OK) status = find_differences(compared);
+  if (status != STRUT_OK) free_compared(compared);
+  return status;
+}
+
+enum { USUAL_COLUMNS = 100, FIXED_FILES = 3, FILE_NAME = 24, PATH = 4096 };
+static const double PAGE = 510.24, ONE = 249.45; /* 180 mm, 88 mm [pt] */
+
+static const strut_option options[] = {
+    {STRUT_OPTION_SET, "set", "NAME=VALUE",
+     "change a parameter of all models that have it; after a MODEL, of that one"},
+    {STRUT_OPTION_ACCURACY, "accuracy", "X",
+     "relative accuracy of velocities, such as 1% (default " STRUT_TEXT_OF(
+         STRUT_COMPARE_USUAL_PERCENT) "%)"},
+    {STRUT_OPTION_NO_MOTION, "no-motion", NULL, "skip the simulated motion"},
+    {STRUT_OPTION_NO_STATES, "no-states", NULL, "skip the search for stable states"},
+    {STRUT_OPTION_OUTPUT, "output", "DIR",
+     "write compare.csv, .json, .svg and model-1.svg, ... into DIR"},
+    {STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object"},
+    {STRUT_OPTION_CSV, "csv", NULL, "print CSV, one row per model"},
+    STRUT_PLOT_OPTIONS,
+    {STRUT_OPTION_END, NULL, NULL, NULL},
+};
+
+/* Names of all files that a comparison may write. */
+typedef struct file_names {
+  char pictures[STRUT_COMPARE_MOST][FILE_NAME];
+  const char *list[STRUT_COMPARE_MOST + FIXED_FILES + 1];
+} file_names;
+
+static void fill_names(file_names *names) {
+  names->list[0] = "compare.csv";
+  names->list[1] = "compare.json";
+  names->list[2] = "compare.svg";
+  for (int i = 0; i < STRUT_COMPARE_MOST; i++) {
+    snprintf(names->pictures[i], FILE_NAME, "model-%d.svg", i + 1);
+    names->list[FIXED_FILES + i] = names->pictures[i];
+  }
+  names->list[STRUT_COMPARE_MOST + FIXED_FILES] = NULL;
+}
+
+static strut_status draw_comparison(const char *stage, const char *name, double width,
+                                    const strut_compare *result, size_t first, size_t count,
+                                    strut_error *error) {
+  char path[PATH];
+  if (snprintf(path, sizeof path, "%s/%s", stage, name) >= (int)sizeof path)
+    return strut_fail(error, STRUT_FILE_TROUBLE, "cannot write '%s': the path is too long", name);
+  return strut_compare_figure(&(strut_plot){.path = path, .width = width}, result, first, count,
+                              error);
+}
+
+/* Writes all files, or none. */
+static strut_status write_files(strut_results *files, const file_names *names,
+                                const strut_compare *result) {
+  strut_error error = {0};
+  if (!files->stage) return STRUT_OK;
+  strut_status status =
+      strut_file_write_block(files->stage, "compare.csv", strut_compare_csv(result), &error);
+  if (status == STRUT_OK)
+    status =
+        strut_file_write_block(files->stage, "compare.json", strut_compare_json(result), &error);
+  if (status == STRUT_OK)
+    status = draw_comparison(files->stage, "compare.svg", PAGE, result, 0, result->count, &error);
+  for (size_t i = 0; i < result->count && status == STRUT_OK; i++)
+    status = draw_comparison(files->stage, names->pictures[i], ONE, result, i, 1, &error);
+  if (status == STRUT_OK) status = strut_results_commit(files, &error);
+  if (status != STRUT_OK) strut_print_error(&error);
+  return status;
+}
+
+static strut_status print_comparison(const strut_arguments *arguments,
+                                     const strut_compare *result) {
+  if (arguments->quiet && !arguments->json && !arguments->csv) return STRUT_OK;
+  char *text = arguments->json  ? strut_compare_json(result)
+               : arguments->csv ? strut_compare_csv(result)
+                                : strut_compare_table(
+                                      result, strut_terminal_columns(STDOUT_FILENO, USUAL_COLUMNS));
+  return strut_print_block(text);
+}
+
+/* Repeats on stderr what could not be computed, or not as accurately as requested. */
+static strut_status report_failures(const strut_compare *result) {
+  strut_status status = STRUT_OK;
+  for (size_t i = 0; i < result->count; i++) {
+    const strut_compare_column *c = &result->columns[i];
+    strut_error error = {0};
+    if (c->inaccurate) {
+      fprintf(stderr, "strut: warning: %s: the velocity is less accurate than requested: %s\n",
+              c->input->label, c->how);
+      if (status == STRUT_OK) status = STRUT_INACCURATE;
+    }
+    if (c->status == STRUT_OK) continue;
+    strut_fail(&error, c->status, "%s: %s", c->input->label, c->message);
+    strut_print_error(&error);
+    if (status == STRUT_OK || status == STRUT_INACCURATE) status = c->status;
+  }
+  return status;
+}
+
+static strut_status compare_models(const strut_arguments *arguments, const strut_plot *plot,
+                                   strut_compare_options *wanted, const compared_models *models) {
+  strut_results files = {0};
+  strut_compare result = {0};
+  strut_error error = {0};
+  file_names names;
+  fill_names(&names);
+  wanted->interrupt = strut_interrupt_watch(); /* before there are files */
+  strut_status status = STRUT_OK;
+  if (arguments->output)
+    status = strut_results_begin_named(&files, arguments->output, names.list, &error);
+  if (status == STRUT_OK) {
+    strut_progress progress = strut_progress_begin(arguments->quiet);
+    wanted->progress = progress.wanted ? strut_progress_show : NULL;
+    wanted->progress_context = &progress;
+    status = strut_compare_make(models->inputs, models->count, wanted, &result, &error);
+    strut_progress_end(&progress);
+  }
+  if (status != STRUT_OK) {
+    strut_print_error(&error);
+  } else {
+    status = write_files(&files, &names, &result);
+    if (status == STRUT_OK) status = print_comparison(arguments, &result);
+    if (status == STRUT_OK && plot->path) {
+      status = strut_compare_figure(plot, &result, 0, result.count, &error);
+      if (status != STRUT_OK) strut_print_error(&error);
+    }
+    if (status == STRUT_OK) status = report_failures(&result);
+  }
+  strut_compare_free(&result);
+  strut_results_abandon(&files); /* does nothing once they are complete */
+  return status;
+}
+
+static strut_status read_options(const strut_arguments *arguments, strut_plot *plot,
+                                 strut_compare_options *wanted) {
+  strut_status status = strut_plot_read(&strut_command_compare, arguments, 0, plot);
+  if (status == STRUT_OK)
+    status = strut_option_number(&strut_command_compare, arguments, STRUT_OPTION_ACCURACY,
+                                 STRUT_DIM_NONE, &wanted->accuracy);
+  if (status != STRUT_OK) return status;
+  bool given = strut_option_text(arguments, STRUT_OPTION_ACCURACY);
+  if (given && !(wanted->accuracy > 0.0 && wanted->accuracy <= 1.0)) {
+    fputs("strut compare: --accuracy must be above 0 and at most 1, that is 100%\n", stderr);
+    return STRUT_USAGE;
+  }
+  if (arguments->json && arguments->csv) {
+    fputs("strut compare: give either --json or --csv, not both\n", stderr);
+    return STRUT_USAGE;
+  }
+  wanted->no_motion = arguments->no_motion;
+  wanted->no_states = arguments->no_states;
+  return STRUT_OK;
+}
+
+static strut_status run_compare(const strut_arguments *arguments) {
+  strut_compare_options wanted = {.accuracy = 0.0};
+  compared_models models;
+  strut_plot plot;
+  strut_status status = read_options(arguments, &plot, &wanted);
+  if (status == STRUT_OK) status = open_compared(&strut_command_compare, arguments, &models);
+  if (status != STRUT_OK) return status;
+  status = compare_models(arguments, &plot, &wanted, &models);
+  free_compared(&models);
+  return status;
+}
+
+const strut_command strut_command_compare = {
+    .name = "compare",
+    .model = "MODEL...",
+    .many = true,
+    .summary = "compares models side by side: structure, statics and motion",
+    .details =
+        "\nFor each model, the results of check, rigidity, equilibria, modes and run:\n"
+        "counts, mass, self-stress, mechanisms; stable states and the lowest escape barrier of "
+        "the\n"
+        "starting one; forces, frequencies and stiffness at rest (of each node under a unit load "
+        "in\n"
+        "x and y, contacts held); the largest step; and for a model with a run the velocity, "
+        "travel\n"
+        "per period, drive energy, cost of transport (drive power over weight times speed) and\n"
+        "duty factor of the steady motion, with the cost of a simulated second.\n"
+        "Then how the effective scenes differ from the first: + added, - removed, ~ changed.\n"
+        "Missing values are '-', left empty in CSV, and null with a reason in JSON.\n"
+        "'strut compare m.yaml m.yaml --set mu=0.2' compares a model with a variant of itself.\n",
+    .options = options,
+    .run = run_compare,
+    .timed = true,
+};

@@ -1,0 +1,182 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/program/analysis.h"
+#include "parser/program/commands.h"
+#include "parser/program/export_formats.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "engine/forces/elements.h"
+#include "engine/output/exports.h"
+#include "parser/program/option_values.h"
+#include "parser/program/streams.h"
+#include "parser/command/statics_options.h"
+#include "parser/program/option_values.h"
+#include "parser/program/streams.h"
+
+/* ---- a motion or a shape for ParaView ---- */
+
+/* A motion of one frame at rest, in the arena: the shape, its lengths and its elastic forces. */
+static strut_status still_of(const strut_arguments *arguments, const strut_opened *opened,
+                             strut_arena *arena, strut_trajectory *motion, strut_error *error) {
+  const strut_model *model = opened->model;
+  strut_named_shape shape;
+  strut_status status =
+      strut_named_shape_find(arguments, model, &opened->setup.experiment, arena, &shape, error);
+  if (status != STRUT_OK) return status;
+  size_t nodes = model->scene->node_count, members = model->scene->member_count;
+  *motion = (strut_trajectory){.frames = 1, .node_count = nodes, .member_count = members};
+  motion->position = strut_arena_allocate(arena, 2 * nodes, sizeof(double));
+  motion->length = strut_arena_allocate(arena, members, sizeof(double));
+  motion->force = strut_arena_allocate(arena, members, sizeof(double));
+  if (!motion->position || !motion->length || !motion->force) return strut_no_memory(error, "");
+  for (size_t i = 0; i < 2 * nodes; i++) motion->position[i] = shape.q[i];
+  for (size_t i = 0; i < members; i++) {
+    motion->length[i] = strut_member_path_length(model, (int32_t)i, shape.q);
+    motion->force[i] =
+        strut_member_elastic_tension(model, model->members.rest, (int32_t)i, shape.q);
+  }
+  return STRUT_OK;
+}
+
+static void print_written(const strut_arguments *arguments, const strut_trajectory *motion,
+                          const strut_vtk_written *written) {
+  printf("%zu frame%s in '%s': open structure.pvd with ParaView\n", written->frames,
+         written->frames == 1 ? "" : "s", arguments->output);
+  size_t recorded = motion->recorded > motion->frames ? motion->recorded : motion->frames;
+  if (recorded > written->frames)
+    printf("evenly chosen from %zu recorded: at most %d are written\n", recorded,
+           STRUT_VTK_MOST_FRAMES);
+}
+
+static const char *const no_names[] = {NULL}; /* frames are checked once their number is known */
+
+static strut_status export_vtk(const strut_command *command, const strut_arguments *arguments) {
+  strut_opened opened = {0};
+  strut_arena arena = {0};
+  strut_trajectory still = {0};
+  strut_error error = {0};
+  strut_vtk_written written = {0};
+  strut_status status = strut_check_output_writable(arguments, no_names);
+  if (status == STRUT_OK)
+    status = strut_open_run(command, arguments, STRUT_OPEN_FOR_ANY, STRUT_TRAJECTORY_ROOM, &opened);
+  if (status != STRUT_OK) return status;
+  if (opened.run && strut_option_text(arguments, STRUT_OPTION_AT)) {
+    status = strut_fail(&error, STRUT_USAGE, "--at is for models: a run has its own shapes");
+  } else if (!opened.run) {
+    status = still_of(arguments, &opened, &arena, &still, &error);
+  }
+  const strut_trajectory *motion = opened.run ? &opened.motion : &still;
+  if (status == STRUT_OK)
+    status = strut_vtk_write(arguments->output, opened.model, motion, &written, &error);
+  if (status == STRUT_OK) {
+    if (!arguments->quiet) print_written(arguments, motion, &written);
+  } else {
+    strut_print_error(&error);
+  }
+  strut_arena_free(&arena);
+  strut_opened_free(&opened);
+  return status;
+}
+
+static const strut_option options[] = {
+    {STRUT_OPTION_MATRICES, "matrices", "DIR", "write the matrices into DIR"},
+    {STRUT_OPTION_FORMAT, "format", "FORMAT",
+     "vtk: a motion or a shape, for ParaView; build: lengths to cut; mjcf: for MuJoCo"},
+    {STRUT_OPTION_OUTPUT, "output", "DIR", "where --format writes: a directory, for mjcf a file"},
+    {STRUT_OPTION_ALLOWANCE, "allowance", "LENGTH",
+     "build: what a cable needs at each end, such as 20 mm"},
+    {STRUT_OPTION_CODE, "code", "DIR", "write C99 that steps the model by itself into DIR"},
+    {STRUT_OPTION_REAL, "real", "TYPE", "of --code: double (default) or float"},
+    {STRUT_OPTION_PREFIX, "prefix", "NAME",
+     "of --code: begins all names; default: the file's name"},
+    {STRUT_OPTION_AT, "at", "NAME", "the shape: drawn (default), start, or an equilibrium"},
+    {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
+    {STRUT_OPTION_END, NULL, NULL, NULL},
+};
+
+static strut_status write_matrices(strut_analysis *a, strut_error *error) {
+  const char *directory = strut_option_text(a->arguments, STRUT_OPTION_MATRICES);
+  strut_arena arena = {0};
+  strut_named_shape shape;
+  strut_status status =
+      strut_named_shape_find(a->arguments, a->model, &a->setup.experiment, &arena, &shape, error);
+  if (status == STRUT_OK)
+    status = strut_matrices_write(directory, a->model, shape.q, shape.name, error);
+  strut_arena_free(&arena);
+  return status;
+}
+
+static strut_status export_format(const strut_arguments *arguments, const char *matrices) {
+  static const char *const formats[] = {"vtk", "build", "mjcf", NULL};
+  const strut_command *command = &strut_command_export;
+  int format = 0;
+  strut_status status =
+      strut_option_word(command, arguments, STRUT_OPTION_FORMAT, formats, &format);
+  if (status != STRUT_OK) return status;
+  if (matrices)
+    return strut_print_usage_error(command, "give either --matrices or --format, not both");
+  if (format != 1 && strut_option_text(arguments, STRUT_OPTION_ALLOWANCE))
+    return strut_print_usage_error(command, "--allowance is for --format build");
+  if (!arguments->output || !*arguments->output)
+    return strut_print_usage_error(command, "missing -o %s", format == 2 ? "FILE.xml" : "DIR");
+  if (format == 0) return export_vtk(command, arguments);
+  return format == 1 ? strut_export_build(arguments) : strut_export_mjcf(arguments);
+}
+
+/* Options of --code without it, and --code with those of others. */
+static strut_status check_code_options(const strut_arguments *arguments) {
+  const char *code = strut_option_text(arguments, STRUT_OPTION_CODE);
+  const strut_command *command = &strut_command_export;
+  if (!code && strut_option_text(arguments, STRUT_OPTION_REAL))
+    return strut_print_usage_error(command, "--real is for --code DIR");
+  if (!code && strut_option_text(arguments, STRUT_OPTION_PREFIX))
+    return strut_print_usage_error(command, "--prefix is for --code DIR");
+  if (!code) return STRUT_OK;
+  if (!*code) return strut_print_usage_error(command, "--code expects a directory");
+  if (strut_option_text(arguments, STRUT_OPTION_FORMAT) ||
+      strut_option_text(arguments, STRUT_OPTION_MATRICES) || arguments->output)
+    return strut_print_usage_error(
+        command, "--code DIR stands alone: leave out --format, --matrices and -o");
+  return STRUT_OK;
+}
+
+static strut_status run_export(const strut_arguments *arguments) {
+  const char *directory = strut_option_text(arguments, STRUT_OPTION_MATRICES);
+  strut_status status = check_code_options(arguments);
+  if (status) return status;
+  if (strut_option_text(arguments, STRUT_OPTION_CODE)) return strut_export_code(arguments);
+  if (strut_option_text(arguments, STRUT_OPTION_FORMAT)) return export_format(arguments, directory);
+  if (!directory || !*directory || arguments->output) {
+    fprintf(stderr, "strut export: %s\n",
+            arguments->output
+                ? "-o DIR needs --format"
+                : "missing --matrices DIR, --code DIR, or --format vtk, build or mjcf with -o");
+    return STRUT_USAGE;
+  }
+  return strut_analysis_run(&strut_command_export, arguments, NULL, write_matrices);
+}
+
+const strut_command strut_command_export = {
+    .name = "export",
+    .model = "RUN|MODEL",
+    .summary = "writes matrices, C code, a motion for ParaView, lengths to cut, or MuJoCo's format",
+    .details =
+        "\nWith --matrices, for MATLAB, Octave or Python: Matrix Market files:\n"
+        "connectivity, equilibrium, mass, stiffness_elastic,\n"
+        "stiffness_geometric, damping and, where nodes touch the ground, stiffness_contact;\n"
+        "node_names.csv, rows.csv (free coordinates) and columns.csv (members) name their rows\n"
+        "and columns. The tangent stiffness is the sum of the three.\n"
+        "With --format vtk, for ParaView: structure.pvd, a .vtp file for every frame of RUN (a\n"
+        "directory that 'strut run -o' made) or one for the shape of MODEL, and ground.vtp.\n"
+        "With --format build, to build it: members.csv and nodes.csv, with lengths to cut and "
+        "holes,\n"
+        "and drawing.svg and drawing.dxf at true scale.\n"
+        "With --format mjcf, FILE.xml for MuJoCo; what it cannot say is refused or listed.\n"
+        "With --code, for microcontrollers, controllers and other simulators: PREFIX.h and "
+        "PREFIX.c,\n"
+        "which start and step the model by rk4 or verlet with strut's bits, and PREFIX_example.c.\n"
+        "Either all files are written or none.\n",
+    .options = options,
+    .run = run_export,
+};

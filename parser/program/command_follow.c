@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/program/commands.h"
+
+#include <stdio.h>
+
+#include "engine/base/memory.h"
+#include "engine/base/number_text.h"
+#include "engine/output/file.h"
+#include "engine/output/results.h"
+#include "engine/study/follow/follow_study.h"
+#include "engine/study/sweep/sweep.h"
+#include "parser/command/follow_options.h"
+#include "parser/program/open_model.h"
+#include "parser/program/option_values.h"
+#include "parser/program/progress.h"
+#include "parser/program/streams.h"
+
+static const char *const file_names[] = {"branches.csv", "branches.json", "branches.svg",
+                                         "curves.csv",   "curves.svg",    NULL};
+
+static const strut_option options[] = {
+    {STRUT_OPTION_OVER, "over", "NAME=LOW..HIGH", "the parameter and its range"},
+    {STRUT_OPTION_AND, "and", "NAME=LOW..HIGH",
+     "a second parameter, over which curves of folds, doublings and grazings are followed"},
+    {STRUT_OPTION_AT, "at", "VALUE,...",
+     "values at which branches start (default: the model's own, or the middle)"},
+    {STRUT_OPTION_FROM, "from", "NAME,...", "configurations to start from (default: the start)"},
+    {STRUT_OPTION_ACCURACY, "accuracy", "E",
+     "relative error of velocities (default " STRUT_TEXT_OF(STRUT_FOLLOW_USUAL_PERCENT) " %)"},
+    {STRUT_OPTION_INTEGRATOR, "integrator", "NAME",
+     "method, which must locate events (default: rk4-events, or else adaptive)"},
+    {STRUT_OPTION_STEPS, "steps", "N",
+     "maximum number of steps each way (default " STRUT_TEXT_OF(
+         STRUT_FOLLOW_USUAL_STEPS) ", of curves " STRUT_TEXT_OF(STRUT_FOLLOW_USUAL_CURVE_STEPS) ")"},
+    {STRUT_OPTION_BASINS, "basins", NULL, "kick the stable motions at the values of --at"},
+    {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
+    {STRUT_OPTION_OUTPUT, "output", "DIR", "write branches.csv, .json and .svg into DIR"},
+    {STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object"},
+    STRUT_PLOT_OPTIONS,
+    STRUT_AXIS_OPTIONS,
+    {STRUT_OPTION_END, NULL, NULL, NULL},
+};
+
+/* The curves over both parameters. */
+static strut_status write_curves(const char *directory, const strut_follow_result *result,
+                                 const strut_plot *plot, strut_error *error) {
+  char path[4096];
+  strut_plot own = *plot;
+  strut_status status =
+      strut_file_write_block(directory, "curves.csv", strut_follow_curves_csv(result), error);
+  if (status || !result->curve_count) return status;
+  if (snprintf(path, sizeof path, "%s/curves.svg", directory) >= (int)sizeof path)
+    return strut_fail(error, STRUT_FILE_TROUBLE, "cannot write '%s': the path is too long",
+                      directory);
+  own.path = path;
+  return strut_follow_curves_figure(&own, result, error);
+}
+
+/* Writes all files, or none. */
+static strut_status write_files(const char *directory, const strut_follow_result *result,
+                                const strut_plot *plot, strut_error *error) {
+  strut_results files = {0};
+  char path[4096];
+  strut_plot own = *plot;
+  strut_status status = strut_results_begin_named(&files, directory, file_names, error);
+  if (!status)
+    status = strut_file_write_block(files.stage, "branches.csv", strut_follow_csv(result), error);
+  if (!status)
+    status = strut_file_write_block(files.stage, "branches.json", strut_follow_json(result), error);
+  if (!status && snprintf(path, sizeof path, "%s/branches.svg", files.stage) >= (int)sizeof path)
+    status =
+        strut_fail(error, STRUT_FILE_TROUBLE, "cannot write '%s': the path is too long", directory);
+  own.path = path;
+  if (!status) status = strut_follow_figure(&own, result, error);
+  if (!status && result->second.name) status = write_curves(files.stage, result, plot, error);
+  if (!status) status = strut_results_commit(&files, error);
+  strut_results_abandon(&files);
+  return status;
+}
+
+static strut_status report(const strut_arguments *arguments, const strut_plot *plot,
+                           const strut_follow_result *result) {
+  strut_error error = {0};
+  strut_status status = STRUT_OK;
+  if (arguments->output) status = write_files(arguments->output, result, plot, &error);
+  bool curves = result->second.name && result->curve_count;
+  if (!status && plot->path)
+    status = curves ? strut_follow_curves_figure(plot, result, &error)
+                    : strut_follow_figure(plot, result, &error);
+  if (status) {
+    strut_print_error(&error);
+    return status;
+  }
+  return strut_print_report(
+      arguments, arguments->json ? strut_follow_json(result) : strut_follow_table(result));
+}
+
+static strut_status follow(const strut_arguments *arguments, const strut_plot *plot,
+                           strut_follow_options *wanted) {
+  strut_error error = {0};
+  strut_follow_result *result = strut_allocate(1, sizeof *result);
+  if (!result) return strut_print_out_of_memory();
+  strut_progress progress = strut_progress_begin(arguments->quiet);
+  wanted->interrupt = strut_interrupt_watch();
+  wanted->progress = progress.wanted ? strut_progress_show : NULL;
+  wanted->progress_context = &progress;
+  wanted->threads = strut_sweep_threads();
+  strut_status status = strut_follow_make(wanted, result, &error);
+  strut_progress_end(&progress);
+  if (status) strut_print_error(&error);
+  if (!status)
+    status = report(arguments, plot, result);
+  else if (status == STRUT_INTERRUPTED && result->count > 0)
+    report(arguments, plot, result);
+  strut_follow_free(result);
+  strut_release(result);
+  return status;
+}
+
+static strut_status run_follow(const strut_arguments *arguments) {
+  strut_setup setup;
+  strut_plot plot;
+  strut_follow_source source = {.scenes = {.file = strut_model_name(arguments)}};
+  strut_follow_options wanted = {0};
+  char *text = NULL;
+  strut_status status = strut_plot_read(&strut_command_follow, arguments, 0, &plot);
+  if (!status) status = strut_check_output_writable(arguments, file_names);
+  if (!status) status = strut_open_model_text(arguments, &text, &source.scenes.length, &setup);
+  if (status) return status;
+  source.scenes.text = text;
+  status =
+      strut_follow_options_read(&strut_command_follow, arguments, &setup.scene, &source, &wanted);
+  strut_setup_free(&setup);
+  if (!status) status = follow(arguments, &plot, &wanted);
+  strut_follow_source_free(&source);
+  strut_release(text);
+  return status;
+}
+
+const strut_command strut_command_follow = {
+    .name = "follow",
+    .model = "MODEL",
+    .summary = "follows periodic motions, stable or not, as a parameter changes",
+    .details =
+        "\nRuns the model at each VALUE from each NAME until its motion is steady, and follows "
+        "the\n"
+        "periodic motion both ways over the parameter, past folds. Tells at each point whether "
+        "the\n"
+        "motion is stable, by its Floquet multipliers, and locates folds, period doublings (whose\n"
+        "branches it follows, too), tori, and where touchdowns, lift-offs, stick or slip begin "
+        "or\n"
+        "cease within a period. Motions that travel along level ground repeat but for their "
+        "travel.\n"
+        "--and follows these points over a second parameter: curves of folds, doublings, grazings "
+        "and\n"
+        "lift-offs, with their cusps.\n",
+    .options = options,
+    .run = run_follow,
+    .timed = true,
+};

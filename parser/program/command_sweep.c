@@ -1,0 +1,391 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/program/commands.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/base/memory.h"
+#include "engine/output/file.h"
+#include "engine/study/report/study_report.h"
+#include "engine/study/results/shard.h"
+#include "engine/study/results/study_table.h"
+#include "parser/program/option_values.h"
+#include "parser/program/streams.h"
+#include "parser/program/sweep.h"
+
+static const strut_option options[] = {
+    {STRUT_OPTION_OUTPUT, "output", "DIR", "results directory; an unfinished sweep is resumed"},
+    {STRUT_OPTION_THREADS, "threads", "N", "number of threads (default: one per processor)"},
+    {STRUT_OPTION_LANES, "lanes", "N",
+     "points per thread in lockstep: 1, 2, 4 or 8 (default automatic)"},
+    {STRUT_OPTION_RETRY, "retry", NULL, "recompute points that failed"},
+    {STRUT_OPTION_SHARD, "shard", "K/N",
+     "only points K, K+N, K+2N, ... with K from 0 to N-1; or slurm/N, pbs/N, torque/N, lsf/N, "
+     "sge/N, kubernetes/N, env:VARIABLE/N"},
+    {STRUT_OPTION_EMIT, "emit", "KIND",
+     "only print a cluster script: slurm, parallel (GNU parallel) or htcondor"},
+    {STRUT_OPTION_SHARDS, "shards", "N", "with --emit: number of shards"},
+    {STRUT_OPTION_CPUS, "cpus", "N", "with --emit: processors per task (default 1)"},
+    {STRUT_OPTION_TIME, "time", "TIME", "with --emit slurm: time limit per task, such as 12:00:00"},
+    {STRUT_OPTION_MEMORY, "memory", "SIZE",
+     "with --emit slurm or htcondor: memory per task, such as 2G"},
+    {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
+    {STRUT_OPTION_COUNT_POINTS, "count", NULL, "only print the number of points and the columns"},
+    {STRUT_OPTION_STATUS, "status", NULL, "only print what is done, missing and failed in DIR"},
+    {STRUT_OPTION_JSON, "json", NULL, "print one JSON object"},
+    {STRUT_OPTION_END, NULL, NULL, NULL},
+};
+
+enum { MOST_THREADS = 4096, MOST_LANES = 8 };
+static const char table_name[] = "table.csv", partial_name[] = "table-partial.csv";
+/* The table of a sweep that is running is written anew after these times, ever less often [s]. */
+static const double FIRST_PARTIAL = 2.0, RAREST_PARTIAL = 60.0;
+
+/* Concurrency; 0: automatic. */
+typedef struct concurrency {
+  int64_t threads, lanes;
+} concurrency;
+
+/* DIR/name in the study's arena, or NULL. */
+static const char *inside(strut_sweep_study *study, const char *directory, const char *name) {
+  return strut_arena_format(&study->plan.arena, "%s/%s", directory, name);
+}
+
+/* Finds the shard that --shard names, and the file of its slots. */
+static strut_status find_shard(const strut_arguments *arguments, strut_sweep_study *study,
+                               strut_shard *shard, const char **path) {
+  const strut_array_task task = {
+      .id = getenv("SLURM_ARRAY_TASK_ID"),
+      .min = getenv("SLURM_ARRAY_TASK_MIN"),
+      .max = getenv("SLURM_ARRAY_TASK_MAX"),
+      .step = getenv("SLURM_ARRAY_TASK_STEP"),
+      .count = getenv("SLURM_ARRAY_TASK_COUNT"),
+      .variable = getenv,
+  };
+  const char *text = strut_option_text(arguments, STRUT_OPTION_SHARD);
+  strut_error error = {0};
+  *shard = (strut_shard){0};
+  strut_status status = text ? strut_shard_read(text, &task, shard, &error) : STRUT_OK;
+  if (status) return strut_print_failure(status, &error);
+  if (shard->count) strut_shard_points(*shard, &study->slots);
+  *path = strut_shard_path(arguments->output, *shard, &study->plan.arena);
+  return *path ? STRUT_OK : strut_print_out_of_memory();
+}
+
+static strut_status show_status(const strut_arguments *arguments, strut_sweep_study *study) {
+  strut_slots *slots = NULL;
+  strut_slots_plan there;
+  strut_error error = {0};
+  strut_shard shard;
+  const char *path;
+  strut_shards_found found;
+  strut_arena *arena = &study->plan.arena;
+  strut_status status = find_shard(arguments, study, &shard, &path);
+  if (status) return status;
+  status = strut_shards_find(arguments->output, &found, arena, &error);
+  if (status) return strut_print_failure(status, &error);
+  if (!shard.count && found.count) {
+    char *text = NULL;
+    status = strut_shards_report(arguments->output, &found, arena, arguments->json, &text, &error);
+    if (!status) return strut_print_block(text);
+    strut_release(text);
+    return strut_print_failure(status, &error);
+  }
+  status = strut_slots_read(path, &slots, &there, &error);
+  if (status) return strut_print_failure(status, &error);
+  status = study->plan.study->search
+               ? strut_sweep_search_status(slots, arguments->output, arguments->json)
+           : study->plan.study->refine_depth
+               ? strut_sweep_refine_status(&study->plan, arguments->output, slots, arguments->json)
+               : strut_print_block(strut_sweep_status_report(slots, arguments->json));
+  strut_slots_close(slots);
+  return status;
+}
+
+/* What a running sweep shows: progress, and now and then the rows that there are. */
+typedef struct display {
+  strut_sweep_progress progress;
+  strut_slots *slots;
+  const char *directory; /* NULL: no partial table, of a shard */
+  double next, interval; /* [s] since the sweep began */
+} display;
+
+static void show(void *context, const strut_sweep_state *state) {
+  display *d = context;
+  strut_sweep_progress_show(&d->progress, state);
+  if (!d->directory || state->seconds < d->next) return;
+  strut_slots *const sources[] = {d->slots};
+  strut_study_table_write_partial(d->directory, partial_name, sources, 1, NULL, NULL);
+  if (d->interval < RAREST_PARTIAL) d->interval *= 2.0;
+  d->next = state->seconds + d->interval;
+}
+
+/* The rows of a sweep that has ended before its last point. */
+static void write_partial(const char *directory, strut_slots *slots) {
+  int64_t rows = 0;
+  strut_error error = {0};
+  strut_slots *const sources[] = {slots};
+  strut_status status =
+      strut_study_table_write_partial(directory, partial_name, sources, 1, &rows, &error);
+  if (status)
+    strut_print_error(&error);
+  else
+    fprintf(stderr, "strut: %s/%s has the %lld rows that are done\n", directory, partial_name,
+            (long long)rows);
+}
+
+static strut_status run_points(const strut_arguments *arguments, strut_sweep_study *study,
+                               concurrency at_a_time, bool partial, strut_slots *slots,
+                               const strut_refinement *refinement, strut_sweep_state *state,
+                               strut_error *error) {
+  display shown = {.progress = strut_sweep_progress_begin(&study->plan, arguments->quiet),
+                   .slots = slots,
+                   .directory = partial ? arguments->output : NULL,
+                   .next = FIRST_PARTIAL,
+                   .interval = FIRST_PARTIAL};
+  strut_sweep_options how = {.threads = (int)at_a_time.threads,
+                             .lanes = (int)at_a_time.lanes,
+                             .interrupt = strut_interrupt_watch(),
+                             .directory = arguments->output,
+                             .progress = show,
+                             .progress_context = &shown};
+  if (refinement) {
+    how.wants = strut_refinement_wants;
+    how.wants_context = refinement;
+    strut_refinement_count(refinement, slots, &how.wanted, &how.wanted_done);
+  }
+  strut_status status = strut_sweep_texts_write(arguments, study, error);
+  if (!status) status = strut_sweep_run(&study->plan, slots, &how, state, error);
+  strut_sweep_progress_end(&shown.progress);
+  strut_error late = {0};
+  strut_status synced = strut_slots_sync(slots, &late);
+  if (!status && synced) status = strut_fail(error, synced, "%s", late.message);
+  if (status && partial && state->done > 0) write_partial(arguments->output, slots);
+  if (status == STRUT_INTERRUPTED)
+    strut_fail(error, status, "interrupted after %lld of %lld points; the same command resumes",
+               (long long)state->done, (long long)state->points);
+  return status;
+}
+
+/* Adds the warnings of a round to those before. */
+static void add_warnings(strut_sweep_state *all, const strut_sweep_state *round) {
+  for (size_t i = 0; i < round->warning_count; i++) {
+    const strut_sweep_warning *w = &round->warnings[i];
+    size_t at = 0;
+    while (at < all->warning_count && strcmp(all->warnings[at].code, w->code) != 0) at++;
+    if (at == STRUT_SWEEP_MOST_WARNINGS) continue;
+    int64_t runs = at < all->warning_count ? all->warnings[at].runs : 0;
+    bool first = at == all->warning_count || w->point < all->warnings[at].point;
+    if (at == all->warning_count) all->warning_count++;
+    if (first) all->warnings[at] = *w;
+    all->warnings[at].runs = runs + w->runs;
+  }
+}
+
+/*
+ * Computes what is wanted until that wants nothing further. *others: points of other shards that must be
+ * known before more can be.
+ */
+static strut_status run_refined(const strut_arguments *arguments, strut_sweep_study *study,
+                                concurrency at_a_time, strut_shard shard, strut_slots *slots,
+                                strut_refinement *refinement, int64_t *others,
+                                strut_sweep_state *state, strut_error *error) {
+  int64_t wanted, done;
+  strut_sweep_state all = {0};
+  strut_status status = STRUT_OK;
+  *state = (strut_sweep_state){0};
+  while (!status) {
+    strut_sweep_refine_learn(refinement, arguments->output, shard, slots);
+    *others = strut_refinement_choose(refinement);
+    strut_refinement_count(refinement, slots, &wanted, &done);
+    if (wanted == done && state->points) break;
+    status = run_points(arguments, study, at_a_time, !shard.count, slots, refinement, state, error);
+    all.computed += state->computed;
+    all.seconds += state->seconds;
+    add_warnings(&all, state);
+  }
+  state->computed = all.computed;
+  state->seconds = all.seconds;
+  state->warning_count = all.warning_count;
+  memcpy(state->warnings, all.warnings, sizeof all.warnings);
+  return status;
+}
+
+/* Writes table and figures. Failed points do not stop a sweep, but change the exit code. */
+static strut_status complete_sweep(const strut_arguments *arguments, strut_sweep_study *study,
+                                   strut_shard shard, strut_slots *slots,
+                                   const strut_refinement *refinement,
+                                   const strut_sweep_state *state) {
+  strut_error error = {0};
+  strut_slots *const sources[] = {slots};
+  const char *table = shard.count ? "one shard: 'strut merge' writes the table of all"
+                                  : inside(study, arguments->output, table_name);
+  if (!table) return strut_print_out_of_memory();
+  strut_status status = STRUT_OK;
+  if (!shard.count && refinement)
+    status =
+        strut_study_table_write_partial(arguments->output, table_name, sources, 1, NULL, &error);
+  else if (!shard.count)
+    status = strut_study_table_write(arguments->output, table_name, sources, 1, &error);
+  if (status) return strut_print_failure(status, &error);
+  if (!shard.count) strut_file_remove(arguments->output, partial_name);
+  if (!shard.count)
+    status = strut_sweep_figures_draw(&study->plan, arguments->output, table, refinement);
+  if (status) return status;
+  if (!arguments->quiet || arguments->json)
+    status = strut_print_block(strut_sweep_end_report(state, table, arguments->json));
+  if (!status && !shard.count)
+    status = strut_sweep_sensitivity_complete(&study->plan, slots, arguments->output,
+                                              !arguments->quiet && !arguments->json);
+  return status ? status
+                : strut_sweep_judge(state->points, state->failed, strut_slots_inaccurate(slots));
+}
+
+static strut_status compute_points(const strut_arguments *arguments, strut_sweep_study *study,
+                                   concurrency at_a_time) {
+  strut_slots *slots = NULL;
+  strut_sweep_state state = {0};
+  strut_error error = {0};
+  strut_shard shard;
+  const char *path;
+  strut_refinement *refinement = NULL;
+  int64_t others = 0;
+  strut_status status = find_shard(arguments, study, &shard, &path);
+  if (status) return status;
+  status = strut_sweep_texts_check(arguments, study, &error);
+  if (!status && !shard.count)
+    status = strut_sweep_figures_check_files(&study->plan, arguments->output, &error);
+  if (!status) status = strut_directory_create(arguments->output, &error);
+  if (!status) status = strut_shard_begin(arguments->output, shard, &error);
+  if (!status) status = strut_slots_open(path, &study->slots, &slots, &error);
+  if (!status && arguments->retry) status = strut_slots_retry(slots, &error);
+  if (!status && !shard.count && strut_slots_missing(slots) > 0)
+    strut_file_remove(arguments->output, table_name); /* outdated */
+  if (!status && study->plan.study->refine_depth)
+    status = strut_refinement_create(&study->plan, &refinement, &error);
+  if (!status && refinement)
+    status =
+        run_refined(arguments, study, at_a_time, shard, slots, refinement, &others, &state, &error);
+  else if (!status)
+    status = run_points(arguments, study, at_a_time, !shard.count, slots, NULL, &state, &error);
+  strut_sweep_print_warnings(&state);
+  strut_print_failure(status, &error);
+  if (!status) status = complete_sweep(arguments, study, shard, slots, refinement, &state);
+  if (others && (!status || status == STRUT_DIVERGED || status == STRUT_INACCURATE))
+    fprintf(stderr,
+            "strut: %lld points of other shards decide what is refined next: run this shard again "
+            "when they are done\n",
+            (long long)others);
+  strut_refinement_free(refinement);
+  strut_slots_close(slots);
+  return status;
+}
+
+/* Prints the script for a cluster. */
+static strut_status emit_script(const strut_arguments *arguments, const strut_study *study) {
+  strut_status status = strut_sweep_emit(arguments, study->name);
+  if (!status && study->refine_depth)
+    fputs(
+        "strut: a refined study needs its shards in rounds: submit the script again until no shard "
+        "asks for another\n",
+        stderr);
+  return status;
+}
+
+/* A search decides by each point where the next one is. */
+static strut_status check_search(const strut_arguments *arguments) {
+  const char *option = arguments->retry                                   ? "--retry"
+                       : strut_option_text(arguments, STRUT_OPTION_SHARD) ? "--shard"
+                       : strut_option_text(arguments, STRUT_OPTION_EMIT)  ? "--emit"
+                                                                          : NULL;
+  if (!option) return STRUT_OK;
+  fprintf(
+      stderr,
+      "strut sweep: %s cannot be used with a study that searches: each of its points depends on "
+      "those before it\n",
+      option);
+  return STRUT_USAGE;
+}
+
+/* The branches of all points go into one folder. */
+static strut_status check_follow(const strut_arguments *arguments) {
+  const char *option = strut_option_text(arguments, STRUT_OPTION_SHARD)   ? "--shard"
+                       : strut_option_text(arguments, STRUT_OPTION_EMIT)  ? "--emit"
+                       : strut_option_text(arguments, STRUT_OPTION_LANES) ? "--lanes"
+                                                                          : NULL;
+  if (!option) return STRUT_OK;
+  fprintf(stderr,
+          "strut sweep: %s cannot be used with a study that follows motions: its points run on the "
+          "threads of one machine\n",
+          option);
+  return STRUT_USAGE;
+}
+
+static strut_status run_sweep(const strut_arguments *arguments) {
+  strut_sweep_study study = {0};
+  concurrency at_a_time = {0};
+  strut_status status = strut_option_integer(&strut_command_sweep, arguments, STRUT_OPTION_THREADS,
+                                             1, MOST_THREADS, &at_a_time.threads);
+  if (!status)
+    status = strut_option_integer(&strut_command_sweep, arguments, STRUT_OPTION_LANES, 1,
+                                  MOST_LANES, &at_a_time.lanes);
+  if (status) return status;
+  if (arguments->retry && (arguments->count_points || arguments->status ||
+                           strut_option_text(arguments, STRUT_OPTION_EMIT))) {
+    fputs("strut sweep: --retry cannot be combined with --count, --status or --emit\n", stderr);
+    return STRUT_USAGE;
+  }
+  if (!arguments->output && !arguments->count_points) {
+    fputs("strut sweep: missing -o DIR, the results directory\n", stderr);
+    return STRUT_USAGE;
+  }
+  status = strut_sweep_study_open(arguments, &study);
+  if (!status && study.plan.study->sensitivity.wanted &&
+      (strut_option_text(arguments, STRUT_OPTION_SHARD) ||
+       strut_option_text(arguments, STRUT_OPTION_EMIT))) {
+    fputs(
+        "strut sweep: a sensitivity analysis needs all points in one file: run it without "
+        "--shard and --emit\n",
+        stderr);
+    status = STRUT_USAGE;
+  }
+  if (!status && study.plan.study->search) status = check_search(arguments);
+  if (!status && study.plan.study->follow) status = check_follow(arguments);
+  if (!status && arguments->count_points)
+    status = strut_print_block(strut_sweep_count_report(&study.plan, arguments->json));
+  else if (!status && strut_option_text(arguments, STRUT_OPTION_EMIT))
+    status = emit_script(arguments, study.plan.study);
+  else if (!status && arguments->status)
+    status = show_status(arguments, &study);
+  else if (!status && study.plan.study->search)
+    status = strut_sweep_search(arguments, &study, (int)at_a_time.threads, (int)at_a_time.lanes);
+  else if (!status && study.plan.study->follow)
+    status = strut_sweep_follow(arguments, &study, (int)at_a_time.threads);
+  else if (!status)
+    status = compute_points(arguments, &study, at_a_time);
+  strut_sweep_study_close(&study);
+  return status;
+}
+
+const strut_command strut_command_sweep = {
+    .name = "sweep",
+    .model = "STUDY",
+    .summary = "simulates a model at many parameter values",
+    .details =
+        "\nSTUDY is a file that names a model, axes over its parameters and what to keep of each "
+        "run\n"
+        "(see 'strut keys'). DIR receives table.csv, one row per point, and points.slots, which\n"
+        "stores every result as soon as its point is finished. After any interruption the same\n"
+        "command resumes; the final table is the same byte for byte, whatever the number of\n"
+        "threads. Remove points.slots to start afresh.\n"
+        "An interrupted sweep leaves table-partial.csv, the rows that are done.\n"
+        "A failed point is a row that gives the reason; the exit code is then 3, and only --retry\n"
+        "recomputes it. Where an accuracy is requested, the column accuracy_kept says of each "
+        "point\n"
+        "whether it was reached; the exit code is 5 if it was not everywhere. Ctrl-C stops after "
+        "a\n"
+        "moment.\n",
+    .options = options,
+    .run = run_sweep,
+};

@@ -1,0 +1,342 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/program/commands.h"
+
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/base/c_locale.h"
+#include "engine/base/memory.h"
+#include "engine/base/number_text.h"
+#include "engine/output/file.h"
+#include "engine/output/results.h"
+#include "engine/study/tradeoff/tradeoff.h"
+#include "parser/program/open_model.h"
+#include "parser/program/option_values.h"
+#include "parser/program/options.h"
+#include "parser/program/progress.h"
+#include "parser/program/streams.h"
+
+/* ---- operating points: parameters drawn at random, the same from the same seed ---- */
+
+/* Scenes of one model. Zero-initialise. */
+typedef struct operating_points {
+  strut_setup *setups;      /* (count) */
+  const strut_setup **list; /* (count) them */
+  size_t count;
+} operating_points;
+
+enum { MOST_TEXT = 400 };
+
+/* Vigna's splitmix64: any seed works, and all machines draw the same numbers. */
+static double draw_uniform(uint64_t *seed) {
+  uint64_t z = (*seed += 0x9E3779B97F4A7C15u);
+  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
+  return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
+}
+
+static size_t word_count(const char *text) {
+  size_t count = 1;
+  for (; *text; text++) count += *text == ',';
+  return count;
+}
+
+/* Writes the value at the fraction u of a range, as an expression, or the word at u. */
+static bool write_drawn_value(const char *range, double u, char text[MOST_TEXT]) {
+  const char *dots = strstr(range, "..");
+  int used;
+  if (dots) {
+    int low = (int)(dots - range);
+    strut_c_locale locale = strut_c_locale_enter();
+    used = snprintf(text, MOST_TEXT, "(%.*s) + %.17g*((%s) - (%.*s))", low, range, u, dots + 2, low,
+                    range);
+    strut_c_locale_leave(locale);
+  } else {
+    size_t wanted = (size_t)(u * (double)word_count(range));
+    const char *word = range;
+    while (wanted-- > 0) word = strchr(word, ',') + 1;
+    used = snprintf(text, MOST_TEXT, "%.*s", (int)strcspn(word, ","), word);
+  }
+  return used > 0 && used < MOST_TEXT;
+}
+
+/* Checks NAME=LOW..HIGH or NAME=WORD,WORD. */
+static strut_status check_varied(const strut_command *command, const strut_override *varied) {
+  const char *value = varied->value, *dots = strstr(value, "..");
+  bool good = dots ? dots > value && dots[2] : *value && *value != ',';
+  for (const char *c = value; *c && !dots; c++)
+    good = good && !(*c == ',' && (c[1] == ',' || c[1] == '\0'));
+  if (good && strlen(value) < MOST_TEXT / 3) return STRUT_OK;
+  fprintf(stderr, "strut %s: --vary expects NAME=LOW..HIGH or NAME=WORD,WORD,... and not '%s=%s'\n",
+          command->name, varied->name, value);
+  return STRUT_USAGE;
+}
+
+static strut_status open_point(const strut_command *command, const strut_arguments *arguments,
+                               uint64_t *seed, size_t number, strut_setup *setup) {
+  size_t varied = arguments->varied_count, set = arguments->override_count;
+  strut_override *overrides = strut_allocate(set + varied + 1, sizeof *overrides);
+  char(*texts)[MOST_TEXT] = strut_allocate(varied + 1, sizeof *texts);
+  strut_status status = overrides && texts ? STRUT_OK : strut_print_out_of_memory();
+  for (size_t i = 0; i < set && status == STRUT_OK; i++) overrides[i] = arguments->overrides[i];
+  for (size_t i = 0; i < varied && status == STRUT_OK; i++) {
+    write_drawn_value(arguments->varied[i].value, draw_uniform(seed), texts[i]);
+    overrides[set + i] = (strut_override){arguments->varied[i].name, texts[i]};
+  }
+  if (status == STRUT_OK) {
+    strut_arguments here = *arguments;
+    here.overrides = overrides;
+    here.override_count = set + varied;
+    status = strut_open_model(&here, STRUT_OPEN_FOR_RUN, setup);
+    if (status != STRUT_OK && varied > 0) {
+      fprintf(stderr, "strut %s: at operating point %zu:", command->name, number + 1);
+      for (size_t i = 0; i < varied; i++)
+        fprintf(stderr, " --set '%s=%s'", overrides[set + i].name, overrides[set + i].value);
+      fputc('\n', stderr);
+    }
+  }
+  strut_release(overrides);
+  strut_release(texts);
+  return status;
+}
+
+static void free_points(operating_points *points) {
+  for (size_t p = 0; p < points->count; p++) strut_setup_free(&points->setups[p]);
+  strut_release(points->setups);
+  strut_release(points->list);
+  *points = (operating_points){.count = 0};
+}
+
+static strut_status open_points(const strut_command *command, const strut_arguments *arguments,
+                                size_t count, uint64_t seed, operating_points *points) {
+  strut_status status = STRUT_OK;
+  for (size_t i = 0; i < arguments->varied_count && status == STRUT_OK; i++)
+    status = check_varied(command, &arguments->varied[i]);
+  if (status == STRUT_OK && count > 1 && strcmp(arguments->model, "-") == 0) {
+    fprintf(stderr, "strut %s: operating points need a model file, not standard input\n",
+            command->name);
+    status = STRUT_USAGE;
+  }
+  *points = (operating_points){.count = 0};
+  if (status != STRUT_OK) return status;
+  points->setups = strut_allocate(count, sizeof *points->setups);
+  points->list = strut_allocate(count, sizeof *points->list);
+  if (!points->setups || !points->list) status = strut_print_out_of_memory();
+  for (size_t p = 0; p < count && status == STRUT_OK; p++) {
+    status = open_point(command, arguments, &seed, p, &points->setups[p]);
+    points->list[p] = &points->setups[p];
+    if (status == STRUT_OK) points->count++;
+  }
+  if (status != STRUT_OK) free_points(points);
+  return status;
+}
+
+enum { MOST_METHODS = 64, MOST_POINTS = 10000 };
+#define USUAL_POINTS 40
+#define USUAL_SEED 1
+static const double PAGE = 510.24; /* 180 mm [pt] */
+static const double LEAST_BUDGET = 1e-3, MOST_BUDGET = 1e7, MOST_PERIODS = 1e7;
+
+static const strut_option options[] = {
+    {STRUT_OPTION_MEASURE, "measure", "WHAT",
+     "measured quantity: velocity, position or energy (default automatic)"},
+    {STRUT_OPTION_METHODS, "methods", "LIST", "only these methods, such as rk4,verlet-events"},
+    {STRUT_OPTION_STEPS, "steps", "N",
+     "steps per method, five per decade (default " STRUT_TEXT_OF(STRUT_TRADEOFF_USUAL_STEPS) ")"},
+    {STRUT_OPTION_PERIODS, "periods", "N",
+     "maximum number of periods of a run (default " STRUT_TEXT_OF(
+         STRUT_TRADEOFF_USUAL_PERIODS) ")"},
+    {STRUT_OPTION_VARY, "vary", "NAME=RANGE",
+     "draw a parameter at random: LOW..HIGH or WORD,WORD; may be repeated"},
+    {STRUT_OPTION_POINTS, "points", "N",
+     "number of points drawn with --vary (default " STRUT_TEXT_OF(USUAL_POINTS) ")"},
+    {STRUT_OPTION_SEED, "seed", "N",
+     "seed of the random points (default " STRUT_TEXT_OF(USUAL_SEED) ")"},
+    {STRUT_OPTION_BUDGET, "budget", "TIME",
+     "approximate CPU time to spend (default " STRUT_TEXT_OF(STRUT_TRADEOFF_USUAL_BUDGET) " s)"},
+    {STRUT_OPTION_OWN_MODEL, "own-model", NULL, "skip variants of the model"},
+    {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
+    {STRUT_OPTION_OUTPUT, "output", "DIR", "write tradeoff.csv, .json and .svg into DIR"},
+    {STRUT_OPTION_JSON, "json", NULL, "print everything as one JSON object"},
+    {STRUT_OPTION_END, NULL, NULL, NULL},
+};
+
+static const char *const file_names[] = {"tradeoff.csv", "tradeoff.json", "tradeoff.svg", NULL};
+
+/* Options as read. */
+typedef struct tradeoff_request {
+  strut_tradeoff_options study;
+  const strut_integrator *methods[MOST_METHODS];
+  size_t points;
+  uint64_t seed;
+} tradeoff_request;
+
+static strut_status bad_method(const char *name, int length) {
+  fprintf(stderr, "strut tradeoff: --methods: unknown method '%.*s'; expected", length, name);
+  for (size_t i = 0; strut_integrator_at(i); i++)
+    fprintf(stderr, "%s %s", i ? "," : "", strut_integrator_at(i)->name);
+  fputc('\n', stderr);
+  return STRUT_USAGE;
+}
+
+static strut_status read_methods(const strut_arguments *arguments, tradeoff_request *w) {
+  const char *text = strut_option_text(arguments, STRUT_OPTION_METHODS);
+  while (text) {
+    size_t length = strcspn(text, ",");
+    const strut_integrator *found = NULL;
+    for (size_t i = 0; strut_integrator_at(i); i++) {
+      const char *name = strut_integrator_at(i)->name;
+      if (strlen(name) == length && strncmp(name, text, length) == 0)
+        found = strut_integrator_at(i);
+    }
+    if (!found || w->study.method_count == MOST_METHODS) return bad_method(text, (int)length);
+    w->methods[w->study.method_count++] = found;
+    text = text[length] ? text + length + 1 : NULL;
+  }
+  w->study.methods = w->methods;
+  return STRUT_OK;
+}
+
+static strut_status check_positive(const char *name, double value, double least, double most) {
+  if (value == 0 || (value >= least && value <= most)) return STRUT_OK;
+  fprintf(stderr, "strut tradeoff: --%s expects a value from %g to %g\n", name, least, most);
+  return STRUT_USAGE;
+}
+
+static strut_status read_numbers(const strut_arguments *arguments, tradeoff_request *w) {
+  const strut_command *command = &strut_command_tradeoff;
+  static const char *const measures[] = {"velocity", "position", "energy", NULL};
+  int64_t steps = 0, seed = USUAL_SEED, points = arguments->varied_count > 0 ? USUAL_POINTS : 1;
+  int measure = -1;
+  strut_status status =
+      strut_option_word(command, arguments, STRUT_OPTION_MEASURE, measures, &measure);
+  if (status == STRUT_OK)
+    status = strut_option_integer(command, arguments, STRUT_OPTION_STEPS, 1,
+                                  STRUT_TRADEOFF_MOST_STEPS, &steps);
+  if (status == STRUT_OK)
+    status = strut_option_integer(command, arguments, STRUT_OPTION_SEED, 0, INT64_MAX / 10, &seed);
+  if (status == STRUT_OK)
+    status = strut_option_integer(command, arguments, STRUT_OPTION_POINTS, 1, MOST_POINTS, &points);
+  if (status == STRUT_OK)
+    status = strut_option_number(command, arguments, STRUT_OPTION_PERIODS, STRUT_DIM_NONE,
+                                 &w->study.periods);
+  if (status == STRUT_OK)
+    status = strut_option_number(command, arguments, STRUT_OPTION_BUDGET, STRUT_DIM_TIME,
+                                 &w->study.budget);
+  if (status == STRUT_OK) status = check_positive("periods", w->study.periods, 1, MOST_PERIODS);
+  if (status == STRUT_OK)
+    status = check_positive("budget", w->study.budget, LEAST_BUDGET, MOST_BUDGET);
+  w->study.steps = (int)steps;
+  w->study.measure = (strut_tradeoff_measure)(measure + 1);
+  w->points = (size_t)points;
+  w->seed = (uint64_t)seed;
+  return status;
+}
+
+static strut_status read_options(const strut_arguments *arguments, tradeoff_request *w) {
+  strut_status status = read_numbers(arguments, w);
+  if (status == STRUT_OK) status = read_methods(arguments, w);
+  if (status != STRUT_OK) return status;
+  w->study.own_model = arguments->own_model;
+  if (arguments->varied_count == 0 && (strut_option_text(arguments, STRUT_OPTION_POINTS) ||
+                                       strut_option_text(arguments, STRUT_OPTION_SEED))) {
+    fputs("strut tradeoff: --points and --seed need --vary\n", stderr);
+    return STRUT_USAGE;
+  }
+  return STRUT_OK;
+}
+
+/* Writes all three files, or none. */
+static strut_status write_files(const char *stage, const strut_tradeoff *result, const char *json,
+                                strut_error *error) {
+  char path[4096];
+  strut_status status =
+      strut_file_write_block(stage, "tradeoff.csv", strut_tradeoff_csv(result), error);
+  if (status == STRUT_OK) status = strut_file_write_text(stage, "tradeoff.json", json, error);
+  int used = snprintf(path, sizeof path, "%s/tradeoff.svg", stage);
+  if (status == STRUT_OK && used >= (int)sizeof path)
+    status =
+        strut_fail(error, STRUT_FILE_TROUBLE, "cannot write '%s': the path is too long", stage);
+  return status == STRUT_OK ? strut_tradeoff_figure(path, PAGE, result, error) : status;
+}
+
+static strut_status print_study(const strut_arguments *arguments, const strut_tradeoff *result,
+                                const char *json) {
+  if (arguments->json) return strut_print(json);
+  if (arguments->quiet) return STRUT_OK;
+  return strut_print_block(strut_tradeoff_table(result));
+}
+
+static strut_status report_study(const strut_arguments *arguments, strut_results *files,
+                                 const strut_tradeoff *result, const operating_points *points) {
+  strut_error error = {0};
+  char *json = strut_tradeoff_json(result, points->list);
+  if (!json) return strut_print_out_of_memory();
+  strut_status status = STRUT_OK;
+  if (files->stage) {
+    status = write_files(files->stage, result, json, &error);
+    if (status == STRUT_OK) status = strut_results_commit(files, &error);
+    if (status != STRUT_OK) strut_print_error(&error);
+  }
+  if (status == STRUT_OK) status = print_study(arguments, result, json);
+  strut_release(json);
+  return status;
+}
+
+static strut_status run_study(const strut_arguments *arguments, tradeoff_request *w,
+                              const operating_points *points) {
+  strut_results files = {0};
+  strut_tradeoff result = {.name = ""};
+  strut_error error = {0};
+  w->study.interrupt = strut_interrupt_watch(); /* before there are files */
+  strut_status status = STRUT_OK;
+  if (arguments->output)
+    status = strut_results_begin_named(&files, arguments->output, file_names, &error);
+  if (status == STRUT_OK) {
+    strut_progress progress = strut_progress_begin(arguments->quiet);
+    w->study.progress = progress.wanted ? strut_progress_show : NULL;
+    w->study.progress_context = &progress;
+    status = strut_tradeoff_make(points->list, points->count, &w->study, &result, &error);
+    strut_progress_end(&progress);
+  }
+  if (status == STRUT_OK)
+    status = report_study(arguments, &files, &result, points);
+  else
+    strut_print_error(&error);
+  strut_tradeoff_free(&result);
+  strut_results_abandon(&files); /* does nothing once they are complete */
+  return status;
+}
+
+static strut_status run_tradeoff(const strut_arguments *arguments) {
+  tradeoff_request w = {.points = 1};
+  operating_points points = {0};
+  strut_status status = read_options(arguments, &w);
+  if (status == STRUT_OK)
+    status = open_points(&strut_command_tradeoff, arguments, w.points, w.seed, &points);
+  if (status != STRUT_OK) return status;
+  status = run_study(arguments, &w, &points);
+  free_points(&points);
+  return status;
+}
+
+const strut_command strut_command_tradeoff = {
+    .name = "tradeoff",
+    .model = "MODEL",
+    .summary = "measures error against cost of methods, steps and model variants",
+    .details =
+        "\nRuns the model with every method, with steps from above the stability limit downwards,\n"
+        "and as variants (lumped masses, rigid bars, other laws of friction and ground), as far "
+        "as\n"
+        "they apply. Errors are relative to references on which two methods agree; their "
+        "remaining\n"
+        "difference is the floor of all errors. Costs are relative to rk4 with the scene's step:\n"
+        "force evaluations, and CPU time as measured here. The step error of a run is kept apart\n"
+        "from the model error of a variant. Ends with recommendations.\n"
+        "With --vary, errors are median, 90th percentile and worst over random points, since a\n"
+        "single small error at a large step may be luck.\n",
+    .options = options,
+    .run = run_tradeoff,
+    .timed = true,
+};

@@ -1,0 +1,159 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/program/commands.h"
+
+#include <limits.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+#include "engine/base/memory.h"
+#include "engine/output/file.h"
+#include "engine/output/page/page.h"
+#include "parser/program/open_model.h"
+#include "parser/program/option_values.h"
+#include "parser/program/streams.h"
+#include "parser/write/write_scene.h"
+
+/* A page holds a few million numbers: reading more than 128 MB of motion would be wasted. */
+static const size_t ROOM = (size_t)1 << 24;
+
+static const char *const searches[] = {"all", "none", NULL};
+enum { SEARCH_ALL, SEARCH_NONE, SEARCH_OF_MODEL };
+
+static const strut_option options[] = {
+    {STRUT_OPTION_OUTPUT, "output", "FILE.html", "the page to write (default RUN.html)"},
+    {STRUT_OPTION_EQUILIBRIA, "equilibria", "WHICH",
+     "all or none (default: all of a MODEL, none of a RUN)"},
+    {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter of MODEL; may be repeated"},
+    {STRUT_OPTION_END, NULL, NULL, NULL},
+};
+
+static bool ends_with(const char *text, const char *end) {
+  size_t length = strlen(text), wanted = strlen(end);
+  return length > wanted && strcasecmp(text + length - wanted, end) == 0;
+}
+
+/* RUN.html or MODEL.html beside what is shown, in `text`; false where that has no name. */
+static bool choose_page(const char *shown, char *text, size_t size) {
+  size_t length = strlen(shown);
+  while (length > 1 && shown[length - 1] == '/') length--;
+  int used = snprintf(text, size, "%.*s", (int)length, shown);
+  const char *slash = strrchr(text, '/'), *name = slash ? slash + 1 : text;
+  bool nameless =
+      !*name || strcmp(name, "-") == 0 || strcmp(name, ".") == 0 || strcmp(name, "..") == 0;
+  if (nameless || used < 0 || (size_t)used + sizeof ".html" > size) return false;
+  char *end = text + used;
+  if (ends_with(text, ".yaml")) end -= strlen(".yaml");
+  if (ends_with(text, ".yml")) end -= strlen(".yml");
+  strcpy(end, ".html");
+  return true;
+}
+
+/* Checks before anything is computed that the page has a valid name and can be written. */
+static strut_status check_output(const char *path) {
+  if (!ends_with(path, ".html") && !ends_with(path, ".htm"))
+    return strut_print_usage_error(&strut_command_view,
+                                   "'%s' is not the name of a page: it must end in .html", path);
+  return strut_try_file(path);
+}
+
+/* A search that fails leaves a remark on the page; only an interrupt or lack of memory is a failure. */
+static strut_status find_equilibria(const strut_opened *opened, int search,
+                                    const volatile sig_atomic_t *interrupt, strut_equilibria *all,
+                                    strut_error *remark) {
+  strut_equilibria_options wanted = {.interrupt = interrupt};
+  if (search != SEARCH_ALL) return STRUT_OK;
+  strut_status status =
+      strut_equilibria_find(opened->model, &opened->setup.experiment, &wanted, all, remark);
+  return status == STRUT_INTERRUPTED || status == STRUT_NO_MEMORY ? status : STRUT_OK;
+}
+
+static void print_written(const strut_arguments *arguments, const strut_page_frames *frames,
+                          size_t bytes) {
+  if (arguments->quiet) return;
+  printf("%s: ", arguments->output);
+  if (frames->shown > 0) printf("%zu frame%s, ", frames->shown, frames->shown == 1 ? "" : "s");
+  if (frames->shown > 0 && frames->shown < frames->recorded)
+    printf("evenly chosen from %zu recorded, ", frames->recorded);
+  printf("%.1f MB\n", 1e-6 * (double)bytes);
+}
+
+static strut_status write_page(const strut_arguments *arguments, const strut_page *page,
+                               const volatile sig_atomic_t *interrupt, strut_error *error) {
+  strut_page_frames frames;
+  char *html = strut_page_html(page, &frames, error);
+  if (!html) return error->status;
+  strut_status status =
+      *interrupt ? strut_fail(error, STRUT_INTERRUPTED, "interrupted; no page was written")
+                 : strut_file_write_path(arguments->output, html, error);
+  if (status == STRUT_OK) print_written(arguments, &frames, strlen(html));
+  strut_release(html);
+  return status;
+}
+
+static strut_status make_page(const strut_arguments *arguments, const strut_opened *opened,
+                              int search) {
+  strut_equilibria all = {0};
+  strut_error error = {0}, remark = {0};
+  char *yaml = NULL;
+  const volatile sig_atomic_t *interrupt = strut_interrupt_watch();
+  strut_status status = find_equilibria(opened, search, interrupt, &all, &remark);
+  if (status != STRUT_OK) error = remark;
+  if (status == STRUT_OK) {
+    yaml = strut_setup_write(&opened->setup);
+    if (!yaml) status = strut_fail(&error, STRUT_NO_MEMORY, "out of memory");
+  }
+  if (status == STRUT_OK) {
+    strut_page page = {
+        .model = opened->model,
+        .experiment = &opened->setup.experiment,
+        .motion = opened->run ? &opened->motion : NULL,
+        .equilibria = remark.status == STRUT_OK ? &all : NULL,
+        .remark = search == SEARCH_NONE ? "No search for equilibria was made." : remark.message,
+        .summary = opened->summary,
+        .yaml = yaml};
+    status = write_page(arguments, &page, interrupt, &error);
+  }
+  if (status != STRUT_OK) strut_print_error(&error);
+  strut_release(yaml);
+  strut_equilibria_free(&all);
+  return status;
+}
+
+static strut_status run_view(const strut_arguments *given) {
+  strut_opened opened = {0};
+  strut_arguments with_output = *given, *arguments = &with_output;
+  char page[PATH_MAX];
+  if (!arguments->output && choose_page(arguments->model, page, sizeof page))
+    arguments->output = page;
+  if (!arguments->output)
+    return strut_print_usage_error(&strut_command_view, "missing -o FILE.html");
+  int search = SEARCH_OF_MODEL;
+  strut_status status =
+      strut_option_word(&strut_command_view, arguments, STRUT_OPTION_EQUILIBRIA, searches, &search);
+  if (status == STRUT_OK) status = check_output(arguments->output);
+  if (status == STRUT_OK)
+    status = strut_open_run(&strut_command_view, arguments, STRUT_OPEN_AS_RUN, ROOM, &opened);
+  if (status != STRUT_OK) return status;
+  if (search == SEARCH_OF_MODEL && !opened.run) search = SEARCH_ALL;
+  status = make_page(arguments, &opened, search);
+  strut_opened_free(&opened);
+  return status;
+}
+
+const strut_command strut_command_view = {
+    .name = "view",
+    .model = "RUN|MODEL",
+    .summary = "writes an interactive HTML page of a run or model",
+    .details =
+        "\nRUN is a directory written by 'strut run MODEL -o DIR': the page plays its motion, "
+        "with\n"
+        "charts, parameters and summary; --equilibria all adds the equilibria as cards. For a\n"
+        "MODEL the page shows the shape at the start and the equilibria. The page is a single "
+        "file\n"
+        "that works offline; above about 4 MB it keeps an even selection of the frames, and says\n"
+        "so. Without -o it is RUN.html or MODEL.html beside the input; a file that strut did not\n"
+        "write is never overwritten.\n",
+    .options = options,
+    .run = run_view,
+};

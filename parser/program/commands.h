@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * The program's commands, one file command_NAME.c each, and the table that finds them by name.
+ */
+#ifndef STRUT_PARSER_PROGRAM_COMMANDS_H
+#define STRUT_PARSER_PROGRAM_COMMANDS_H
+
+#include "parser/program/options.h"
+
+extern const strut_command strut_command_check;
+extern const strut_command strut_command_compare;
+extern const strut_command strut_command_equilibria;
+extern const strut_command strut_command_evaluate;
+extern const strut_command strut_command_export;
+extern const strut_command strut_command_form;
+extern const strut_command strut_command_import;
+extern const strut_command strut_command_keys;
+extern const strut_command strut_command_merge;
+extern const strut_command strut_command_modes;
+extern const strut_command strut_command_path;
+extern const strut_command strut_command_plot;
+extern const strut_command strut_command_rigidity;
+extern const strut_command strut_command_run;
+extern const strut_command strut_command_sweep;
+extern const strut_command strut_command_tradeoff;
+extern const strut_command strut_command_view;
+extern const strut_command strut_command_write;
+extern const strut_command strut_command_schema;
+extern const strut_command strut_command_fmt;
+extern const strut_command strut_command_new;
+extern const strut_command strut_command_examples;
+extern const strut_command strut_command_completion;
+extern const strut_command strut_command_follow;
+
+/** The i-th command, or NULL after the last. */
+const strut_command *strut_command_at(size_t i);
+/** The command of that name, or NULL with the reason and a suggestion on stderr. */
+const strut_command *strut_command_find(const char *name);
+
+/** Prints the help of the whole program on stdout. */
+void strut_program_help(void);
+
+#endif

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * What is installed with the program: found from where the program is, so that all may be moved. And
+ * files of the user's.
+ */
+#ifndef STRUT_PARSER_PROGRAM_INSTALLED_H
+#define STRUT_PARSER_PROGRAM_INSTALLED_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "engine/base/status.h"
+
+enum { STRUT_LONGEST_PATH = 4096 };
+
+/**
+ * The path of `name` below share/strut, or of `built` beside a program that is not installed; false where
+ * neither exists.
+ */
+bool strut_find_installed(const char *name, const char *built, char path[STRUT_LONGEST_PATH]);
+/** The path of a module of the program: below lib/strut, or in modules beside a program that is not installed. */
+bool strut_find_module(const char *name, char path[STRUT_LONGEST_PATH]);
+/** Creates a file with this text. STRUT_FILE_TROUBLE where one of this name exists, which stays as it is. */
+strut_status strut_create_file(const char *path, const char *text, size_t length,
+                               strut_error *error);
+
+/**
+ * Replaces a file by one with this text, whole or not at all: written beside it and renamed. Permissions
+ * stay; where the path is a link, the file behind it is replaced.
+ */
+strut_status strut_replace_file(const char *path, const char *text, size_t length,
+                                strut_error *error);
+
+#endif

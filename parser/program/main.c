@@ -1,0 +1,90 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The program strut: finds the command, runs it, and returns its exit code. */
+#include <gsl/gsl_errno.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <time.h>
+
+#include "engine/output/buffer.h"
+#include "engine/output/record_files.h"
+#include "parser/program/commands.h"
+#include "parser/program/complete.h"
+#include "parser/program/streams.h"
+
+static double now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* Below a table; never in JSON or a file, which must not change from run to run. */
+static void print_time(double taken) {
+  printf("\n  took %s\n", strut_quantity_of(taken, 3, "s").text);
+}
+
+static strut_status run_command(const strut_command *command, int argc, char **argv) {
+  strut_arguments arguments;
+  double begin = now();
+  strut_status status = strut_arguments_read(command, argc, argv, &arguments);
+  if (status == STRUT_OK && arguments.help) {
+    strut_command_help(command);
+  } else if (status == STRUT_OK) {
+    status = command->run(&arguments);
+    if (status == STRUT_OK && command->timed && !arguments.json && !arguments.quiet)
+      print_time(now() - begin);
+  }
+  strut_arguments_free(&arguments);
+  return status;
+}
+
+static strut_status run_program(int argc, char **argv) {
+  const char *first = argc > 1 ? argv[1] : NULL;
+  if (!first) {
+    fprintf(stderr, "strut: missing COMMAND; 'strut help' lists the commands\n");
+    return STRUT_USAGE;
+  }
+  if (strcmp(first, "--version") == 0 || strcmp(first, "-V") == 0) {
+    printf("strut %s\n", STRUT_VERSION);
+    return STRUT_OK;
+  }
+  if (strcmp(first, "complete") == 0) return strut_complete(argc - 2, argv + 2);
+  if (strcmp(first, "--help") == 0 || strcmp(first, "-h") == 0) first = "help";
+  const strut_command *command = strut_command_find(first);
+  return command ? run_command(command, argc - 1, argv + 1) : STRUT_USAGE;
+}
+
+/*
+ * Blocks from this size on go back to the system when they are freed. By default glibc keeps those of up to 32 MB
+ * as soon as one of that size has been freed: a file of a million members then takes 50 MB more.
+ */
+enum { LARGE_BLOCK = 4 << 20 };
+
+static void return_large_blocks(void) {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, LARGE_BLOCK);
+#endif
+}
+
+/*
+ * OpenBLAS starts its threads when it is loaded, and at exit waits for ever for those that it had no memory for.
+ * Where the process's memory is limited (ulimit -v), it gets none.
+ */
+static void keep_blas_to_one_thread(void) {
+  struct rlimit limit;
+  bool limited = getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+  if (limited) setenv("OPENBLAS_NUM_THREADS", "1", 1);
+}
+
+int main(int argc, char **argv) {
+  return_large_blocks();
+  keep_blas_to_one_thread();
+  strut_streams_open();
+  strut_hdf5_leave_at_exit();
+  gsl_set_error_handler_off(); /* GSL reports by its return values; it must not abort */
+  return strut_streams_close(run_program(argc, argv));
+}

@@ -1,0 +1,293 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/program/open_model.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "engine/base/memory.h"
+#include "engine/output/file.h"
+#include "engine/output/results.h"
+#include "engine/statics/equilibria/rest_state.h"
+#include "parser/program/streams.h"
+#include "parser/read/read_scene.h"
+#include "parser/write/write_scene.h"
+#include "parser/yaml/memory_estimate.h"
+
+enum { MOST_MESSAGES = 50 };
+
+typedef struct source {
+  const char *name;
+  char *text;
+  size_t length;
+} source;
+
+const char *strut_model_name(const strut_arguments *arguments) {
+  return strcmp(arguments->model, "-") == 0 ? "<stdin>" : arguments->model;
+}
+
+/* Prints what was found; on failure nothing is left of the setup. */
+static strut_status print_found(strut_diagnostics *diagnostics, strut_status status,
+                                strut_setup *setup) {
+  if (status == STRUT_BAD_SCENE) {
+    const char *messages = strut_diagnostics_render(diagnostics, MOST_MESSAGES);
+    if (messages) fputs(messages, stderr);
+    if (!messages) status = STRUT_NO_MEMORY;
+  }
+  if (status == STRUT_OK && diagnostics->note_count) {
+    const char *notes = strut_diagnostics_render_notes(diagnostics);
+    if (notes) fputs(notes, stderr);
+    if (!notes) strut_setup_free(setup);
+    if (!notes) status = STRUT_NO_MEMORY;
+  }
+  return status;
+}
+
+/* `report` NULL: messages are printed. */
+static strut_status read_source(const strut_arguments *arguments, const source *from,
+                                strut_purpose purpose, strut_setup *setup,
+                                strut_diagnostics *report) {
+  strut_diagnostics own = {0}, *diagnostics = report ? report : &own;
+  strut_error error = {0};
+  strut_status status = strut_memory_check_document(from->name, from->text, from->length, &error);
+  if (status == STRUT_NO_MEMORY) {
+    strut_print_error(&error);
+    return status;
+  }
+  status = strut_setup_read(setup, from->name, from->text, from->length, arguments->overrides,
+                            arguments->override_count, purpose, diagnostics);
+  if (!report) status = print_found(diagnostics, status, setup);
+  if (status == STRUT_NO_MEMORY) {
+    strut_memory_fail_document(from->name, from->text, from->length, &error);
+    strut_print_error(&error);
+  }
+  strut_diagnostics_free(&own);
+  return status;
+}
+
+/* Reads the scene and keeps its text, which is NULL after a failure. */
+static strut_status open_text(const strut_arguments *arguments, strut_purpose purpose, source *from,
+                              strut_setup *setup, strut_diagnostics *report) {
+  strut_error error = {0};
+  *from = (source){.name = strut_model_name(arguments)};
+  strut_status status = strut_file_read(arguments->model, &from->text, &from->length, &error);
+  if (status != STRUT_OK) return strut_print_failure(status, &error);
+  status = read_source(arguments, from, purpose, setup, report);
+  if (status == STRUT_OK || report) return status;
+  strut_release(from->text);
+  from->text = NULL;
+  return status;
+}
+
+static strut_purpose scene_purpose(const strut_arguments *arguments, strut_open_purpose purpose) {
+  bool later = strut_option_text(arguments, STRUT_OPTION_ACCURACY) ||
+               strut_option_text(arguments, STRUT_OPTION_STEP);
+  if (purpose != STRUT_OPEN_FOR_RUN) return STRUT_FOR_ANY;
+  return later ? STRUT_FOR_RUN_STEP_LATER : STRUT_FOR_RUN;
+}
+
+strut_status strut_open_model_reported(const strut_arguments *arguments, strut_open_purpose purpose,
+                                       strut_setup *setup, strut_open_report *report) {
+  source from;
+  strut_status status =
+      open_text(arguments, scene_purpose(arguments, purpose), &from, setup, &report->diagnostics);
+  report->text = from.text;
+  report->length = from.length;
+  if (status != STRUT_OK || purpose == STRUT_OPEN_FOR_ANY) return status;
+  status = strut_resolve_start_equilibrium(setup, &report->error);
+  if (status != STRUT_OK) strut_setup_free(setup);
+  return status;
+}
+
+void strut_open_report_free(strut_open_report *report) {
+  strut_diagnostics_free(&report->diagnostics);
+  strut_release(report->text);
+  *report = (strut_open_report){.text = NULL};
+}
+
+strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpose purpose,
+                              strut_setup *setup) {
+  source from;
+  strut_error error = {0};
+  strut_status status = open_text(arguments, scene_purpose(arguments, purpose), &from, setup, NULL);
+  strut_release(from.text);
+  if (status != STRUT_OK || purpose == STRUT_OPEN_FOR_ANY) return status;
+  status = strut_resolve_start_equilibrium(setup, &error);
+  if (status != STRUT_OK) {
+    strut_print_error(&error);
+    strut_setup_free(setup);
+  }
+  return status;
+}
+
+strut_status strut_warn_of_scene(const strut_setup *setup) {
+  strut_findings warnings = {0};
+  strut_status status = strut_setup_warn(setup, &warnings);
+  for (size_t i = 0; i < warnings.count && !status; i++)
+    fprintf(stderr, "strut: warning: %s\n", warnings.items[i].message);
+  strut_findings_free(&warnings);
+  return status ? strut_print_out_of_memory() : STRUT_OK;
+}
+
+strut_status strut_open_model_text(const strut_arguments *arguments, char **text, size_t *length,
+                                   strut_setup *setup) {
+  source from;
+  strut_status status = open_text(arguments, STRUT_FOR_ANY, &from, setup, NULL);
+  *text = from.text;
+  *length = from.length;
+  return status;
+}
+
+/* Does the scene say something in a way that a flat one loses? */
+static bool is_abbreviated(const strut_tree *root) {
+  static const char *const keys[] = {"parameters", "groups", "parts"};
+  for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++)
+    if (strut_tree_find(root, keys[i], NULL)) return true;
+  return false;
+}
+
+strut_status strut_write_short(const strut_arguments *arguments, const char *text, size_t length,
+                               const char *before, const strut_setup *setup, bool all,
+                               char **result) {
+  strut_diagnostics unused = {0};
+  strut_scene_source *tree = NULL;
+  const char *name = strut_model_name(arguments);
+  bool wanted = true;
+  *result = NULL;
+  strut_status status = strut_scene_source_open(name, text, length, &unused, &tree);
+  strut_diagnostics_free(&unused);
+  if (status == STRUT_OK) wanted = all || is_abbreviated(strut_scene_source_document(tree)->root);
+  if (status == STRUT_OK && wanted)
+    status = strut_short_write(tree, arguments->overrides, arguments->override_count, before, setup,
+                               result);
+  strut_scene_source_free(tree);
+  if (status == STRUT_NO_MEMORY) return strut_print_out_of_memory();
+  if (!*result && wanted)
+    fputs(
+        "strut: the scene is written without parameters, groups and parts, which cannot say all of "
+        "it, such as that a node of a copy was moved\n",
+        stderr);
+  return STRUT_OK;
+}
+
+strut_status strut_check_output_writable(const strut_arguments *arguments,
+                                         const char *const *names) {
+  strut_results results = {0};
+  strut_error error = {0};
+  if (!arguments->output) return STRUT_OK;
+  strut_status status = strut_results_begin_named(&results, arguments->output, names, &error);
+  if (status != STRUT_OK) strut_print_error(&error);
+  strut_results_abandon(&results);
+  return status;
+}
+
+strut_status strut_try_file(const char *path) {
+  strut_file file = {0};
+  strut_error error = {0};
+  if (!path) return STRUT_OK;
+  strut_status status = strut_file_open_path(&file, path, &error);
+  if (status != STRUT_OK) strut_print_error(&error);
+  strut_file_abandon(&file);
+  return status;
+}
+
+/* ---- runs ---- */
+
+static bool is_directory(const char *path) {
+  struct stat found;
+  if (strcmp(path, "-") == 0) return false; /* the standard input */
+  return stat(path, &found) == 0 && S_ISDIR(found.st_mode);
+}
+
+/* directory/name in the arena, or NULL. */
+static char *inside(strut_arena *arena, const char *directory, const char *name) {
+  size_t length = strlen(directory);
+  bool slash = length > 0 && directory[length - 1] == '/';
+  return strut_arena_format(arena, "%s%s%s", directory, slash ? "" : "/", name);
+}
+
+/* Checks for the files that every run writes. */
+static strut_status check_files(const char *directory, const char *scene, const char *trajectory,
+                                strut_error *error) {
+  struct stat found;
+  bool described = stat(scene, &found) == 0, recorded = stat(trajectory, &found) == 0;
+  if (!described) {
+    return strut_fail(error, STRUT_FILE_TROUBLE,
+                      "'%s' holds no run: it has no scene.yaml ('strut run MODEL -o DIR' "
+                      "writes one)",
+                      directory);
+  }
+  if (recorded) return STRUT_OK;
+  return strut_fail(error, STRUT_FILE_TROUBLE,
+                    "'%s' holds no recorded motion: it has no trajectory.h5", directory);
+}
+
+static strut_status read_motion(const char *directory, size_t room, strut_opened *opened,
+                                strut_error *error) {
+  strut_status status =
+      strut_trajectory_read(directory, &opened->setup.scene, room, &opened->motion, error);
+  if (status != STRUT_OK) return status;
+  if (opened->motion.position && opened->motion.frames > 0) return STRUT_OK;
+  return strut_fail(
+      error, STRUT_FILE_TROUBLE,
+      opened->motion.frames == 0
+          ? "the run in '%s' ended before anything was recorded"
+          : "the run in '%s' recorded no positions: add 'position' to the channels of "
+            "'output' in its scene",
+      directory);
+}
+
+/* Reads the run in a directory. Messages about its scene are printed by strut_open_model. */
+static strut_status open_directory(const strut_arguments *arguments, size_t room,
+                                   strut_arena *arena, strut_opened *opened, strut_error *error) {
+  const char *directory = arguments->model;
+  char *scene = inside(arena, directory, "scene.yaml");
+  char *trajectory = inside(arena, directory, "trajectory.h5");
+  char *summary = inside(arena, directory, "summary.json");
+  if (!scene || !trajectory || !summary) return strut_no_memory(error, "");
+  strut_status status = check_files(directory, scene, trajectory, error);
+  if (status != STRUT_OK) return status;
+  strut_arguments inner = *arguments;
+  inner.model = scene;
+  status = strut_open_model(&inner, STRUT_OPEN_FOR_ANY, &opened->setup);
+  if (status != STRUT_OK) return status;
+  status = strut_model_compile(&opened->setup.scene, &opened->model, error);
+  if (status == STRUT_OK) status = read_motion(directory, room, opened, error);
+  size_t length = 0;
+  struct stat found;
+  if (status == STRUT_OK && stat(summary, &found) == 0)
+    status = strut_file_read(summary, &opened->summary, &length, error);
+  return status;
+}
+
+strut_status strut_open_run(const strut_command *command, const strut_arguments *arguments,
+                            strut_open_purpose purpose, size_t room, strut_opened *opened) {
+  strut_error error = {0};
+  strut_arena arena = {0};
+  *opened = (strut_opened){.run = is_directory(arguments->model)};
+  if (opened->run && arguments->override_count > 0) {
+    fprintf(stderr, "strut %s: --set needs a model, not the finished run '%s'\n", command->name,
+            arguments->model);
+    return STRUT_USAGE;
+  }
+  strut_status status;
+  if (opened->run) {
+    status = open_directory(arguments, room, &arena, opened, &error);
+  } else {
+    status = strut_open_model(arguments, purpose, &opened->setup);
+    if (status == STRUT_OK)
+      status = strut_model_compile(&opened->setup.scene, &opened->model, &error);
+  }
+  if (status != STRUT_OK && error.status != STRUT_OK) strut_print_error(&error);
+  if (status != STRUT_OK) strut_opened_free(opened);
+  strut_arena_free(&arena);
+  return status;
+}
+
+void strut_opened_free(strut_opened *opened) {
+  strut_release(opened->summary);
+  strut_trajectory_free(&opened->motion);
+  strut_model_free(opened->model);
+  strut_setup_free(&opened->setup);
+  *opened = (strut_opened){0};
+}

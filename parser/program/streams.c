@@ -1,0 +1,216 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* fopencookie is of GNU and musl. */
+#ifndef _GNU_SOURCE
+#define _GNU_SOURCE
+#endif
+#include "parser/program/streams.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "engine/base/memory.h"
+#include "parser/yaml/text.h"
+
+/* ---- hidden characters ---- */
+
+/* A stream that people read. */
+typedef struct reading {
+  int descriptor;
+  size_t count;
+  char held[4]; /* (count) the begin of a character */
+} reading;
+
+/* May the held bytes become a character? */
+static bool is_begun(const reading *r) {
+  unsigned char lead = (unsigned char)r->held[0];
+  size_t size = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : lead >= 0xC2 ? 2 : 1;
+  for (size_t i = 1; i < r->count; i++)
+    if (((unsigned char)r->held[i] & 0xC0) != 0x80) return false;
+  return lead <= 0xF4 && r->count < size;
+}
+
+/* Moves the first held character, or bad byte, to `to`, where there is space for 16 bytes. */
+static size_t show_character(reading *r, char *to) {
+  uint32_t code;
+  size_t size = strut_text_decode(r->held, r->count, &code);
+  int shown = (int)size;
+  if (code != STRUT_BAD_CODE && strut_text_hidden(code))
+    shown = snprintf(to, 16, code > 0xFFFF ? "\\U%08X" : "\\u%04X", (unsigned)code);
+  else
+    memcpy(to, r->held, size);
+  r->count -= size;
+  memmove(r->held, r->held + size, r->count);
+  return (size_t)shown;
+}
+
+static bool write_whole(int descriptor, const char *bytes, size_t size) {
+  while (size > 0) {
+    ssize_t done = write(descriptor, bytes, size);
+    if (done < 0 && errno != EINTR) return false;
+    if (done > 0) bytes += done, size -= (size_t)done;
+  }
+  return true;
+}
+
+static ssize_t write_shown(void *cookie, const char *bytes, size_t size) {
+  reading *r = cookie;
+  char out[1024];
+  size_t used = 0;
+  bool whole = true;
+  for (size_t i = 0; i < size && whole; i++) {
+    r->held[r->count++] = bytes[i];
+    while (r->count && !is_begun(r)) used += show_character(r, out + used);
+    if (used + 4 * 16 <= sizeof out) continue;
+    whole = write_whole(r->descriptor, out, used);
+    used = 0;
+  }
+  return whole && write_whole(r->descriptor, out, used) ? (ssize_t)size : 0;
+}
+
+/* A stream in place of a standard one; NULL: that one stays. */
+static FILE *open_reading(reading *r, int mode) {
+  FILE *stream = fopencookie(r, "w", (cookie_io_functions_t){.write = write_shown});
+  if (stream) setvbuf(stream, NULL, mode, BUFSIZ);
+  return stream;
+}
+
+static void show_hidden(void) {
+  static reading out = {.descriptor = STDOUT_FILENO}, messages = {.descriptor = STDERR_FILENO};
+  FILE *stream = isatty(STDOUT_FILENO) ? open_reading(&out, _IOLBF) : NULL;
+  if (stream) stdout = stream;
+  if ((stream = open_reading(&messages, _IONBF))) stderr = stream;
+}
+
+/* ---- output ---- */
+
+void strut_streams_open(void) {
+  /* Reversed on purpose: using a closed stream must stay an error. */
+  static const int modes[] = {O_WRONLY, O_RDONLY, O_RDONLY};
+  for (int i = 0; i < 3; i++) {
+    if (fcntl(i, F_GETFD) == -1 && errno == EBADF && open("/dev/null", modes[i]) != i) break;
+  }
+  show_hidden();
+}
+
+static void print_output_error(int reason) {
+  fprintf(stderr, "strut: error: cannot write to the standard output: %s\n",
+          reason ? strerror(reason) : "an earlier write failed");
+}
+
+strut_status strut_print(const char *text) {
+  errno = 0;
+  if (fputs(text, stdout) >= 0 && fflush(stdout) == 0) return STRUT_OK;
+  print_output_error(errno);
+  return STRUT_FILE_TROUBLE;
+}
+
+strut_status strut_print_block(char *text) {
+  strut_status status = text ? strut_print(text) : strut_print_out_of_memory();
+  strut_release(text);
+  return status;
+}
+
+strut_status strut_print_report(const strut_arguments *arguments, char *text) {
+  bool suppressed = arguments->quiet && !arguments->json && !arguments->csv;
+  if (!suppressed || !text) return strut_print_block(text);
+  strut_release(text);
+  return STRUT_OK;
+}
+
+int strut_streams_close(strut_status status) {
+  int code = strut_status_exit_code(status);
+  errno = 0;
+  bool failed = ferror(stdout) != 0;
+  if (fflush(stdout) != 0) failed = true;
+  int reason = errno;
+  if (fclose(stdout) != 0 && !failed) {
+    failed = true;
+    reason = errno;
+  }
+  if (!failed || code != 0) return code; /* that failure has been reported */
+  print_output_error(reason);
+  return strut_status_exit_code(STRUT_FILE_TROUBLE);
+}
+
+void strut_print_error(const strut_error *error) {
+  fprintf(stderr, "strut: error: %s\n",
+          error->message[0] ? error->message : strut_status_text(error->status));
+}
+
+strut_status strut_print_failure(strut_status status, const strut_error *error) {
+  if (status != STRUT_OK) strut_print_error(error);
+  return status;
+}
+
+strut_status strut_print_usage_error(const strut_command *command, const char *format, ...) {
+  va_list values;
+  va_start(values, format);
+  fprintf(stderr, "strut %s: ", command->name);
+  vfprintf(stderr, format, values);
+  fputc('\n', stderr);
+  va_end(values);
+  return STRUT_USAGE;
+}
+
+strut_status strut_print_out_of_memory(void) {
+  strut_error error = {STRUT_NO_MEMORY, ""};
+  strut_print_error(&error);
+  return STRUT_NO_MEMORY;
+}
+
+static void show_message(void *context, strut_message_kind kind, const char *command,
+                         const char *text) {
+  (void)context;
+  switch (kind) {
+    case STRUT_MESSAGE_USAGE: fprintf(stderr, "strut %s: %s\n", command, text); break;
+    case STRUT_MESSAGE_ERROR: fprintf(stderr, "strut: error: %s\n", text); break;
+    case STRUT_MESSAGE_WARNING: fprintf(stderr, "strut: warning: %s\n", text); break;
+    case STRUT_MESSAGE_NOTE: fprintf(stderr, "strut %s: note: %s\n", command, text); break;
+    case STRUT_MESSAGE_REMARK: fprintf(stderr, "strut: %s\n", text); break;
+  }
+}
+
+const strut_listener *strut_stderr_listener(void) {
+  static const strut_listener listener = {NULL, show_message};
+  return &listener;
+}
+
+/* ---- interrupts ---- */
+
+/* One press may arrive twice: timeout(1), for one, signals the program and then its whole group. */
+enum { SAME_PRESS = 300 /* [ms] */ };
+
+/* A signal handler has no context: the only variables of the program that live outside of main. */
+static volatile sig_atomic_t interrupted, first_time;
+
+static int milliseconds(void) {
+  struct timespec time = {0, 0};
+  clock_gettime(CLOCK_MONOTONIC, &time);
+  return (int)(time.tv_sec % 1000000 * 1000 + time.tv_nsec / 1000000);
+}
+
+static void note(int signal_number) {
+  int time = milliseconds();
+  if (!interrupted) {
+    interrupted = 1;
+    first_time = time;
+  } else if (time < first_time || time - first_time > SAME_PRESS) {
+    signal(signal_number, SIG_DFL);
+    raise(signal_number); /* takes effect when the handler returns */
+  }
+}
+
+const volatile sig_atomic_t *strut_interrupt_watch(void) {
+  struct sigaction action = {.sa_handler = note, .sa_flags = SA_RESTART};
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, NULL);
+  sigaction(SIGTERM, &action, NULL);
+  return &interrupted;
+}

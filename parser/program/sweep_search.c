@@ -1,0 +1,263 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* `strut sweep` of a study that searches. */
+#include <math.h>
+#include <stdio.h>
+#include <unistd.h>
+
+#include "engine/output/file.h"
+#include "engine/study/report/study_report.h"
+#include "engine/study/results/study_table.h"
+#include "parser/program/option_values.h"
+#include "parser/program/streams.h"
+#include "parser/program/sweep.h"
+
+static const char table_name[] = "table.csv", partial_name[] = "table-partial.csv";
+static const double PAGE = 510.24; /* 180 mm [pt] */
+/* A running search writes its rows after these times, ever less often [s]. */
+static const double FIRST_PARTIAL = 2.0, RAREST_PARTIAL = 60.0;
+
+/* What a running search shows. */
+typedef struct display {
+  strut_sweep_progress progress;
+  strut_slots *slots;
+  const char *directory;
+  double next, interval; /* [s] since it began */
+} display;
+
+static void show(void *context, const strut_sweep_state *state) {
+  display *d = context;
+  strut_sweep_progress_show(&d->progress, state);
+  if (state->seconds < d->next) return;
+  strut_slots *const sources[] = {d->slots};
+  strut_study_table_write_partial(d->directory, partial_name, sources, 1, NULL, NULL);
+  if (d->interval < RAREST_PARTIAL) d->interval *= 2.0;
+  d->next = state->seconds + d->interval;
+}
+
+static void write_partial(const char *directory, strut_slots *slots) {
+  int64_t rows = 0;
+  strut_error error = {0};
+  strut_slots *const sources[] = {slots};
+  if (strut_study_table_write_partial(directory, partial_name, sources, 1, &rows, &error))
+    strut_print_error(&error);
+  else
+    fprintf(stderr, "strut: %s/%s has the %lld rows that are done\n", directory, partial_name,
+            (long long)rows);
+}
+
+static strut_status run_search(const strut_arguments *arguments, strut_sweep_study *study,
+                               int threads, int lanes, strut_slots *slots, strut_sweep_state *state,
+                               strut_search_result *result, strut_error *error) {
+  display shown = {.progress = strut_sweep_progress_begin(&study->plan, arguments->quiet),
+                   .slots = slots,
+                   .directory = arguments->output,
+                   .next = FIRST_PARTIAL,
+                   .interval = FIRST_PARTIAL};
+  const strut_sweep_options how = {.threads = threads,
+                                   .lanes = lanes,
+                                   .interrupt = strut_interrupt_watch(),
+                                   .progress = show,
+                                   .progress_context = &shown};
+  strut_status status = strut_sweep_texts_write(arguments, study, error);
+  if (!status) status = strut_search_run(&study->plan, slots, &how, state, result, error);
+  strut_sweep_progress_end(&shown.progress);
+  strut_error late = {0};
+  strut_status synced = strut_slots_sync(slots, &late);
+  if (!status && synced) status = strut_fail(error, synced, "%s", late.message);
+  if (status && state->done > 0) write_partial(arguments->output, slots);
+  if (status == STRUT_INTERRUPTED)
+    strut_fail(error, status, "interrupted after %lld points; the same command resumes",
+               (long long)state->done);
+  return status;
+}
+
+/*
+ * A row for each search that has found something, of the worst scenario; of two goals, for each point of the
+ * front.
+ */
+static strut_status write_best_rows(const strut_arguments *arguments, strut_slots *slots,
+                                    const strut_search_result *result, strut_error *error) {
+  size_t count = 0, room = result->outcome_count;
+  for (size_t i = 0; i < result->front_count; i++) room += result->fronts[i].count;
+  int64_t *points = strut_allocate(room, sizeof *points);
+  if (!points) return strut_no_memory(error, "");
+  for (size_t i = 0; i < result->front_count; i++)
+    for (size_t k = 0; k < result->fronts[i].count; k++)
+      points[count++] = result->fronts[i].points[k].worst;
+  for (size_t i = 0; i < result->outcome_count && !result->front_count; i++)
+    if (result->outcomes[i].best.evaluation >= 0) points[count++] = result->outcomes[i].best.worst;
+  strut_status status =
+      strut_study_table_write_points(arguments->output, "best.csv", slots, points, count, error);
+  strut_release(points);
+  return status;
+}
+
+/* The scene of a best point as a file that runs. */
+static strut_status write_scene(const strut_arguments *arguments, const strut_sweep_plan *plan,
+                                const strut_search_point *best, const char *name,
+                                strut_error *error) {
+  strut_setup setup;
+  strut_study_value *values = strut_allocate(plan->axis_columns + 1, sizeof *values);
+  if (!values) return strut_no_memory(error, "");
+  strut_search_values(plan, best->worst, best->values, values);
+  strut_status status = plan->scenes.setup(plan->scenes.context, values, &setup, error);
+  strut_release(values);
+  if (status) return status;
+  char *text = plan->scenes.text(&setup);
+  status = text ? strut_file_write_text(arguments->output, name, text, error)
+                : strut_no_memory(error, "");
+  strut_release(text);
+  strut_setup_free(&setup);
+  return status;
+}
+
+/* Of a front, which is in order of the first goal: the point nearest to the best of both, in ranges. */
+static const strut_search_point *compromise_of(const strut_search_front *front, bool maximise) {
+  const strut_search_point *first = front->points, *last = front->points + front->count - 1;
+  const strut_search_point *best = maximise ? last : first, *other = maximise ? first : last;
+  const strut_search_point *found = NULL;
+  double x = last->objective - first->objective, y = fabs(last->second - first->second);
+  double least = 0.0;
+  for (const strut_search_point *p = first; p <= last; p++) {
+    double a = x > 0.0 ? (p->objective - best->objective) / x : 0.0;
+    double b = y > 0.0 ? (p->second - other->second) / y : 0.0;
+    if (found && a * a + b * b >= least) continue;
+    least = a * a + b * b;
+    found = p;
+  }
+  return found;
+}
+
+/* What is written of each point of the axes: its best, or the compromise of its front; NULL: nothing. */
+static const strut_search_point *pick(const strut_search_result *result, bool maximise, size_t i,
+                                      int64_t *outer) {
+  if (result->front_count) {
+    *outer = (int64_t)i;
+    return result->fronts[i].count ? compromise_of(&result->fronts[i], maximise) : NULL;
+  }
+  const strut_search_outcome *o = &result->outcomes[result->worths[i].best];
+  *outer = o->outer;
+  return &o->best;
+}
+
+/*
+ * best.yaml of all, whose point is *of_all, and best-N.yaml of each point of the axes where there are
+ * several.
+ */
+static strut_status write_best_scenes(const strut_arguments *arguments,
+                                      const strut_sweep_plan *plan,
+                                      const strut_search_result *result,
+                                      const strut_search_point **of_all, strut_error *error) {
+  const strut_study_search *search = plan->study->search;
+  const strut_search_point *best = NULL;
+  strut_status status = STRUT_OK;
+  bool several = result->outcome_count > (size_t)search->starts;
+  size_t count = result->front_count ? result->front_count : result->worth_count;
+  for (size_t i = 0; i < count && !status; i++) {
+    int64_t outer;
+    const strut_search_point *found = pick(result, search->maximise, i, &outer);
+    char name[40];
+    if (!found) continue;
+    snprintf(name, sizeof name, "best-%lld.yaml", (long long)outer + 1);
+    if (several) status = write_scene(arguments, plan, found, name, error);
+    if (!best || strut_search_better(search, found, best)) best = found;
+  }
+  if (!status && best) status = write_scene(arguments, plan, best, "best.yaml", error);
+  *of_all = best;
+  return status;
+}
+
+/* The figures of the best of all. A search that found none has none. */
+static strut_status draw_winner(const strut_arguments *arguments, strut_sweep_plan *plan,
+                                const strut_search_point *best) {
+  strut_error error = {0};
+  strut_status status = STRUT_OK;
+  for (size_t i = 0; i < plan->study->figure_count && best && !status; i++) {
+    const strut_study_figure *f = &plan->study->figures[i];
+    if (f->kind != STRUT_FIGURE_WINNER) continue;
+    const char *path = strut_arena_format(&plan->arena, "%s/%s.svg", arguments->output, f->name);
+    if (!path) return strut_print_out_of_memory();
+    status = strut_search_winner_figure(plan, f, path, best, PAGE, strut_interrupt_watch(), &error);
+    if (status) strut_print_failure(status, &error);
+  }
+  return status;
+}
+
+static strut_status complete(const strut_arguments *arguments, strut_sweep_study *study,
+                             strut_slots *slots, const strut_sweep_state *state,
+                             const strut_search_result *result) {
+  strut_error error = {0};
+  const strut_search_point *best = NULL;
+  strut_slots *const sources[] = {slots};
+  const char *table =
+      strut_arena_format(&study->plan.arena, "%s/%s", arguments->output, table_name);
+  if (!table) return strut_print_out_of_memory();
+  strut_status status =
+      strut_study_table_write_partial(arguments->output, table_name, sources, 1, NULL, &error);
+  if (!status) status = write_best_rows(arguments, slots, result, &error);
+  if (!status) status = write_best_scenes(arguments, &study->plan, result, &best, &error);
+  if (status) return strut_print_failure(status, &error);
+  strut_file_remove(arguments->output, partial_name);
+  status = strut_sweep_figures_draw(&study->plan, arguments->output, table, NULL);
+  if (!status) status = draw_winner(arguments, &study->plan, best);
+  if (!status && (!arguments->quiet || arguments->json))
+    status =
+        strut_print_block(strut_search_report(&study->plan, result, state, table, arguments->json));
+  if (status) return status;
+  bool found = false;
+  for (size_t i = 0; i < result->worth_count; i++)
+    found = found || result->outcomes[result->worths[i].best].best.violation <= 0.0;
+  for (size_t i = 0; i < result->front_count; i++) found = found || result->fronts[i].count > 0;
+  if (!found) {
+    fputs("strut: no point was found that is computed and meets all conditions\n", stderr);
+    return STRUT_DIVERGED;
+  }
+  if (!best || !strut_slots_is_inaccurate(slots, best->worst)) return STRUT_OK;
+  fputs("strut: the best point is less accurate than requested\n", stderr);
+  return STRUT_INACCURATE;
+}
+
+strut_status strut_sweep_search_status(strut_slots *slots, const char *directory, bool json) {
+  char text[300];
+  strut_arena arena = {0};
+  const strut_slots_plan *plan = strut_slots_plan_of(slots);
+  const char *table = strut_arena_format(&arena, "%s/%s", directory, table_name);
+  if (!table) return strut_print_out_of_memory();
+  bool over = access(table, F_OK) == 0; /* written at the end */
+  long long failed = (long long)strut_slots_failed(slots);
+  long long done = (long long)(plan->count - strut_slots_missing(slots));
+  snprintf(text, sizeof text,
+           json ? "{\"points\": %lld, \"done\": %lld, \"failed\": %lld, \"finished\": %s}\n"
+                : "at most %lld points, %lld done, %lld of the done failed: %s\n",
+           (long long)plan->count, done, failed,
+           json   ? over ? "true" : "false"
+           : over ? "the searches are finished"
+                  : "the searches are not finished");
+  strut_arena_free(&arena);
+  return strut_print(text);
+}
+
+strut_status strut_sweep_search(const strut_arguments *arguments, strut_sweep_study *study,
+                                int threads, int lanes) {
+  strut_slots *slots = NULL;
+  strut_sweep_state state = {0};
+  strut_search_result result = {0};
+  strut_error error = {0};
+  const char *path = strut_shard_path(arguments->output, (strut_shard){0}, &study->plan.arena);
+  if (!path) return strut_print_out_of_memory();
+  strut_status status = strut_sweep_texts_check(arguments, study, &error);
+  if (!status) status = strut_sweep_figures_check_files(&study->plan, arguments->output, &error);
+  if (!status) status = strut_directory_create(arguments->output, &error);
+  if (!status) status = strut_shard_begin(arguments->output, (strut_shard){0}, &error);
+  if (!status) status = strut_slots_open(path, &study->slots, &slots, &error);
+  if (!status && strut_slots_missing(slots) == strut_slots_plan_of(slots)->count)
+    strut_file_remove(arguments->output, table_name); /* of another search */
+  if (!status)
+    status = run_search(arguments, study, threads, lanes, slots, &state, &result, &error);
+  strut_sweep_print_warnings(&state);
+  strut_print_failure(status, &error);
+  if (!status) status = complete(arguments, study, slots, &state, &result);
+  strut_search_result_free(&result);
+  strut_slots_close(slots);
+  return status;
+}

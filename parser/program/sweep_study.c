@@ -1,0 +1,221 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/program/sweep.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "engine/base/checksum.h"
+#include "engine/output/file.h"
+#include "engine/output/results.h"
+#include "engine/study/search/score.h"
+#include "engine/study/sweep/grid.h"
+#include "parser/program/streams.h"
+#include "parser/study/read_study.h"
+#include "parser/write/write_scene.h"
+
+enum { MOST_MESSAGES = 50 };
+
+strut_status strut_sweep_study_report(strut_sweep_study *study, strut_status status,
+                                      strut_error *error) {
+  strut_study_file *file = &study->file;
+  if (status == STRUT_BAD_SCENE && !error->message[0]) {
+    const char *messages = strut_study_messages(file, MOST_MESSAGES);
+    if (!messages) return strut_print_out_of_memory();
+    fputs(messages, stderr);
+  } else if (status != STRUT_OK) {
+    if (!error->message[0]) strut_fail(error, status, "%s", strut_status_text(status));
+    strut_print_error(error);
+  }
+  return status;
+}
+
+/* Tries a point; of motions that are followed, at both ends of the parameter. */
+static strut_status try_point(strut_study_file *file, const strut_study_value *values) {
+  const strut_study_follow *f = file->study.follow;
+  if (!f) return strut_study_try(file, values);
+  strut_status status = strut_study_try_at(file, values, f->from);
+  return status ? status : strut_study_try_at(file, values, f->to);
+}
+
+/* Tries the first point, then both ends of each axis with the others at their first values. */
+static strut_status try_ends(strut_study_file *file) {
+  const strut_study *study = &file->study;
+  strut_study_value *values = strut_allocate(file->column_count + 1, sizeof *values);
+  if (!values) return STRUT_NO_MEMORY;
+  strut_grid_values(study, 0, values);
+  strut_status status = try_point(file, values);
+  int64_t stride = 1;
+  for (size_t a = study->axis_count; a-- > 0 && !status;) {
+    bool evaluations = study->search && a == study->search->axis; /* no parameters */
+    if (study->axes[a].count > 1 && !evaluations) {
+      strut_grid_values(study, stride * (study->axes[a].count - 1), values);
+      status = try_point(file, values);
+    }
+    stride *= study->axes[a].count;
+  }
+  strut_release(values);
+  return status;
+}
+
+static strut_status setup_of(void *context, const strut_study_value *values, strut_setup *setup,
+                             strut_error *error) {
+  return strut_study_setup(context, values, setup, error);
+}
+
+/* Hashes everything that decides the results: the study, its model and the version. */
+static bool identify(const strut_study_file *file, uint8_t hash[STRUT_STUDY_HASH]) {
+  char *text = strut_study_identity(file);
+  if (!text) return false;
+  size_t length = strlen(text);
+  for (uint64_t i = 0; i < 2; i++) {
+    uint64_t seed = strut_checksum(STRUT_VERSION, strlen(STRUT_VERSION), i);
+    uint64_t sum = strut_checksum(text, length, seed);
+    for (size_t k = 0; k < 8; k++) hash[8 * i + k] = (uint8_t)(sum >> 8 * k);
+  }
+  strut_release(text);
+  return true;
+}
+
+/* The expressions of a search are those of the table's columns. */
+static strut_status bind_search(strut_sweep_study *study, strut_error *error) {
+  strut_sweep_plan *plan = &study->plan;
+  strut_table_name *names = strut_arena_allocate(&plan->arena, plan->column_count, sizeof *names);
+  if (!names) return strut_no_memory(error, "");
+  for (size_t i = 0; i < plan->column_count; i++)
+    names[i] =
+        (strut_table_name){plan->columns[i].name, plan->columns[i].unit, plan->columns[i].word};
+  strut_status status = strut_study_search_bind(&study->file, names, plan->column_count);
+  return status ? status : strut_search_add_columns(plan, error);
+}
+
+strut_status strut_sweep_study_try(const strut_arguments *arguments, strut_sweep_study *study,
+                                   strut_error *error) {
+  strut_study_file *file = &study->file;
+  const strut_sweep_scenes scenes = {setup_of, strut_setup_write, file};
+  strut_status status = strut_study_open(arguments->model, arguments->overrides,
+                                         arguments->override_count, file, error);
+  if (!status) status = try_ends(file);
+  if (!status) status = strut_sweep_plan_make(&file->study, &scenes, &study->plan, error);
+  if (!status && file->study.search) status = bind_search(study, error);
+  if (!status && file->study.follow) status = strut_sweep_follow_check(study, error);
+  if (!status) status = strut_sweep_figures_check(&study->plan, error);
+  if (!status) status = strut_sweep_sensitivity_check(&study->plan, error);
+  return status;
+}
+
+strut_status strut_sweep_study_open(const strut_arguments *arguments, strut_sweep_study *study) {
+  strut_error error = {0};
+  strut_study_file *file = &study->file;
+  strut_status status = strut_sweep_study_try(arguments, study, &error);
+  if (!status && !identify(file, study->slots.hash)) status = STRUT_NO_MEMORY;
+  if (status) return strut_sweep_study_report(study, status, &error);
+  const char *notes = strut_study_notes(file);
+  if (!notes) return strut_print_out_of_memory();
+  fputs(notes, stderr);
+  study->slots.version = STRUT_VERSION;
+  study->slots.name = file->study.name;
+  study->slots.points = study->slots.count = study->plan.points;
+  study->slots.columns = study->plan.columns;
+  study->slots.column_count = study->plan.column_count;
+  return STRUT_OK;
+}
+
+void strut_sweep_study_close(strut_sweep_study *study) {
+  strut_sweep_plan_free(&study->plan);
+  strut_study_close(&study->file);
+}
+
+/* ---- copies of the texts beside the results ---- */
+
+/* A copy and its source. */
+typedef struct copy {
+  const char *name, *source, *text;
+  const char *study, *model; /* paths of both sources */
+} copy;
+
+enum { COPIES = 2 };
+static const char model_name[] = "model.yaml";
+
+static bool same_file(const char *a, const char *b) {
+  struct stat first, second;
+  return stat(a, &first) == 0 && stat(b, &second) == 0 && first.st_dev == second.st_dev &&
+         first.st_ino == second.st_ino;
+}
+
+/* Does the file have these bytes? */
+static bool holds_text(const char *path, const char *text) {
+  char *there = NULL;
+  size_t length;
+  bool same = strut_file_read(path, &there, &length, NULL) == STRUT_OK && length == strlen(text) &&
+              memcmp(there, text, length) == 0;
+  strut_release(there);
+  return same;
+}
+
+/* Is the file in the directory? */
+static bool lies_in(const char *directory, const char *path, strut_arena *arena) {
+  const char *slash = strrchr(path, '/');
+  size_t length = slash == path ? 1 : slash ? (size_t)(slash - path) : 0;
+  const char *folder = slash ? strut_arena_text(arena, path, length) : ".";
+  return folder && same_file(directory, folder);
+}
+
+/* Fails where a copy would overwrite a file that strut did not write. */
+static strut_status check_copy(const char *directory, const copy *c, strut_arena *arena,
+                               strut_error *error) {
+  struct stat found;
+  char *path = strut_arena_format(arena, "%s/%s", directory, c->name);
+  if (!path) return strut_no_memory(error, "");
+  if (stat(path, &found) != 0 || same_file(path, c->source) || holds_text(path, c->text))
+    return STRUT_OK;
+  if (!lies_in(directory, c->study, arena) && !lies_in(directory, c->model, arena))
+    return strut_ownership_check_path(path, error);
+  return strut_fail(
+      error, STRUT_USAGE,
+      "'%s' is the folder of the study or its model, and the copy of '%s' that is kept "
+      "with the results would overwrite '%s': give another directory",
+      directory, c->source, path);
+}
+
+static strut_status write_copy(const char *directory, const copy *c, strut_arena *arena,
+                               strut_error *error) {
+  char *path = strut_arena_format(arena, "%s/%s", directory, c->name);
+  if (!path) return strut_no_memory(error, "");
+  if (same_file(path, c->source) || holds_text(path, c->text)) return STRUT_OK; /* already there */
+  return strut_file_write_text(directory, c->name, c->text, error);
+}
+
+static strut_status for_each(const strut_arguments *arguments, const strut_sweep_study *study,
+                             strut_status (*what)(const char *, const copy *, strut_arena *,
+                                                  strut_error *),
+                             strut_error *error) {
+  strut_arena arena = {0};
+  const strut_study_file *file = &study->file;
+  char *text = strut_study_copy(file, model_name, arguments->overrides, arguments->override_count);
+  const char *study_path = file->path, *model_path = file->model_path;
+  const char *model = file->model_copy ? file->model_copy : file->model_text;
+  const copy copies[COPIES] = {{"study.yaml", study_path, text, study_path, model_path},
+                               {model_name, model_path, model, study_path, model_path}};
+  strut_status status = text ? STRUT_OK : strut_no_memory(error, "");
+  for (int i = 0; i < COPIES && status == STRUT_OK; i++)
+    status = what(arguments->output, &copies[i], &arena, error);
+  for (size_t i = 0; i < file->table_count && status == STRUT_OK; i++) {
+    const strut_study_points *points = &file->tables[i];
+    const copy table = {points->copy, points->file.path, points->file.text, study_path, model_path};
+    status = what(arguments->output, &table, &arena, error);
+  }
+  strut_release(text);
+  strut_arena_free(&arena);
+  return status;
+}
+
+strut_status strut_sweep_texts_check(const strut_arguments *arguments,
+                                     const strut_sweep_study *study, strut_error *error) {
+  return for_each(arguments, study, check_copy, error);
+}
+
+strut_status strut_sweep_texts_write(const strut_arguments *arguments,
+                                     const strut_sweep_study *study, strut_error *error) {
+  return for_each(arguments, study, write_copy, error);
+}
