@@ -3,14 +3,16 @@
 """The schema and the reader agree: what strut accepts passes the schema, and what the schema can see of
 a bad file it reports in the same line; it reports nothing in lines that are right.
 
-    schema_test.py STRUT"""
+    schema_test.py STRUT UNPACK_CASES"""
 import glob
 import json
 import os
 import random
 import re
+import shutil
 import subprocess
 import sys
+import tempfile
 
 try:
     import yaml
@@ -151,20 +153,18 @@ def is_visible(message):
     return bool(found) and found.group(1) in known_words
 
 
-def announced(path, text):
-    if os.path.exists(path + ".expect"):
-        with open(path + ".expect", encoding="utf-8") as file:
-            lines = file.read().splitlines()
-    else:
-        lines = [line[len("# expect: "):] for line in text.splitlines() if line.startswith("# expect: ")]
-    for line in lines:
-        place = re.match(r"([0-9]+):[0-9]+: (.*)", line)
-        if place:
-            yield int(place.group(1)), place.group(2)
+def announced(path):
+    with open(path.replace(".yaml", ".expect"), encoding="utf-8") as file:
+        for line in file:
+            place = re.match(r"([0-9]+):[0-9]+: (.*)", line)
+            if place:
+                yield int(place.group(1)), place.group(2)
 
 
 visible = missed = 0
-for path in sorted(glob.glob(os.path.join(here, "bad", "*.yaml"))):
+bad = tempfile.mkdtemp()
+subprocess.run([sys.argv[2], os.path.join(here, "bad"), bad, "--messages"], check=True)
+for path in sorted(glob.glob(os.path.join(bad, "*.yaml"))):
     with open(path, "rb") as file:
         text = file.read()
     try:
@@ -172,7 +172,7 @@ for path in sorted(glob.glob(os.path.join(here, "bad", "*.yaml"))):
         document = Located(text)
     except (UnicodeDecodeError, yaml.YAMLError, AttributeError, TypeError, RecursionError):
         continue # a fault of YAML
-    expected = list(announced(path, text))
+    expected = list(announced(path))
     seen = list(complaints(validator_of(document), document))
     lines = {line for line, _ in seen}
     for line, message in expected:
@@ -184,6 +184,7 @@ for path in sorted(glob.glob(os.path.join(here, "bad", "*.yaml"))):
     for line, message in seen:
         if line not in right:
             fail(f"{path}:{line}: the schema says '{message}', strut nothing")
+shutil.rmtree(bad)
 print(f"{visible} faults that a schema can see")
 if visible < 120:
     fail("too few faults were compared")

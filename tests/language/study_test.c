@@ -16,18 +16,9 @@
 #include "engine/study/sweep/grid.h"
 #include "parser/language/keys.h"
 #include "parser/study/read_study.h"
+#include "tests/language/cases.h"
 
 #define FOLDER STRUT_TESTS_DIR "/language/studies/"
-
-enum { MOST_LINES = 40, MOST_SETS = 4 };
-
-/* What a file announces: "# expect: [model |table ]LINE:COLUMN: message", "# set: name=value". */
-typedef struct announcement {
-  size_t count, sets;
-  char *expected[MOST_LINES];
-  strut_override set[MOST_SETS];
-  char *text;
-} announcement;
 
 static char *read_text(const char *path) {
   FILE *file = fopen(path, "rb");
@@ -36,22 +27,6 @@ static char *read_text(const char *path) {
   if (fread(text, 1, (1 << 16) - 1, file) == 0) text[0] = '\0';
   fclose(file);
   return text;
-}
-
-static announcement read_announcement(const char *path) {
-  announcement a = {.text = read_text(path)};
-  assert_non_null(a.text);
-  for (char *line = strtok(a.text, "\n"); line; line = strtok(NULL, "\n")) {
-    if (strncmp(line, "# expect: ", 10) == 0) {
-      assert_true(a.count < MOST_LINES);
-      a.expected[a.count++] = line + 10;
-    } else if (strncmp(line, "# set: ", 7) == 0) {
-      char *equals = strchr(line, '=');
-      *equals = '\0';
-      a.set[a.sets++] = (strut_override){line + 7, equals + 1};
-    }
-  }
-  return a;
 }
 
 /* As `strut sweep` does: the first point, then the ends of each axis. */
@@ -69,67 +44,79 @@ static strut_status try_ends(strut_study_file *file) {
   return status;
 }
 
-/* Strikes a message off those expected. */
-static size_t strike(announcement *a, const char *name, const char *where,
-                     const strut_diagnostics *found) {
+/* Strikes messages off those expected; returns how many were not. */
+static size_t strike(faulty_case *c, const char *where, const strut_diagnostics *found) {
   size_t wrong = 0;
   for (size_t i = 0; i < found->count; i++) {
     char line[1200];
     bool expected = false;
     const strut_diagnostic *d = &found->items[i];
     snprintf(line, sizeof line, "%s%u:%u: %s", where, d->place.line, d->place.column, d->message);
-    for (size_t k = 0; k < a->count && !expected; k++)
-      if (a->expected[k] && strcmp(a->expected[k], line) == 0) {
-        a->expected[k] = NULL;
+    for (size_t k = 0; k < c->message_count && !expected; k++)
+      if (strcmp(c->message[k], line) == 0) {
+        c->message[k][0] = '\0';
         expected = true;
       }
     if (expected) continue;
-    print_error("%s: said: %s\n", name, line);
+    print_error("%s: %s: not expected: %s\n", c->document, c->name, line);
     wrong++;
   }
   return wrong;
 }
 
-static size_t check_bad(const char *name) {
-  char path[600];
+/* Reads a base or case from the folder, which holds the models and tables that it names. */
+static size_t check_case(faulty_case *c, const char *folder) {
+  char path[600], *equals = NULL;
   size_t wrong = 0;
   strut_study_file file;
   strut_error error = {0};
-  snprintf(path, sizeof path, FOLDER "bad/%s", name);
-  announcement a = read_announcement(path);
-  strut_status status = strut_study_open(path, a.set, a.sets, &file, &error);
+  strut_override set = {0};
+  if (c->set_count) {
+    equals = strchr(c->set[0], '=');
+    *equals = '\0';
+    set = (strut_override){c->set[0], equals + 1};
+  }
+  assert_true(c->set_count <= 1 && write_faulty_case(c, folder));
+  snprintf(path, sizeof path, "%s/%s.yaml", folder, c->name);
+  strut_status status = strut_study_open(path, &set, c->set_count, &file, &error);
   if (status == STRUT_OK) status = try_ends(&file);
-  if (status != STRUT_BAD_SCENE || a.count == 0) {
-    print_error("%s: status %d, %s\n", name, status, error.message);
+  if (status != (c->is_base ? STRUT_OK : STRUT_BAD_SCENE)) {
+    print_error("%s: %s: status %d, %s\n", c->document, c->name, status, error.message);
     wrong++;
   }
-  wrong += strike(&a, name, "", &file.diagnostics);
-  wrong += strike(&a, name, "model ", &file.model_diagnostics);
+  wrong += strike(c, "", &file.diagnostics);
+  wrong += strike(c, "model ", &file.model_diagnostics);
   for (size_t i = 0; i < file.table_count; i++)
-    wrong += strike(&a, name, "table ", &file.tables[i].diagnostics);
-  for (size_t i = 0; i < a.count; i++)
-    if (a.expected[i]) {
-      print_error("%s: did not say: %s\n", name, a.expected[i]);
+    wrong += strike(c, "table ", &file.tables[i].diagnostics);
+  for (size_t i = 0; i < c->message_count; i++)
+    if (c->message[i][0]) {
+      print_error("%s: %s: not found: %s\n", c->document, c->name, c->message[i]);
       wrong++;
     }
   assert_non_null(strut_study_messages(&file, 50));
   strut_study_close(&file);
-  free(a.text);
   return wrong;
 }
 
 static void bad_studies_are_refused(void **state) {
   (void)state;
-  DIR *folder = opendir(FOLDER "bad");
-  size_t wrong = 0, count = 0;
-  assert_non_null(folder);
-  for (struct dirent *entry; (entry = readdir(folder)) != NULL;) {
-    if (!strstr(entry->d_name, ".yaml")) continue;
-    wrong += check_bad(entry->d_name);
-    count++;
+  char folder[] = "/tmp/strut-studies-XXXXXX", command[700];
+  size_t wrong = 0, faulty = 0;
+  assert_non_null(mkdtemp(folder));
+  snprintf(command, sizeof command, "cp -R " FOLDER "bad/. %s", folder);
+  assert_int_equal(system(command), 0);
+  faulty_cases cases = read_faulty_cases(FOLDER "bad");
+  for (size_t i = 0; i < cases.count; i++)
+    if (!cases.items[i].is_base) assert_true(write_faulty_case(&cases.items[i], folder));
+  for (size_t i = 0; i < cases.count; i++) {
+    wrong += check_case(&cases.items[i], folder);
+    faulty += !cases.items[i].is_base;
   }
-  closedir(folder);
-  assert_true(count > 10);
+  free_faulty_cases(&cases);
+  snprintf(command, sizeof command, "rm -rf %s", folder);
+  assert_int_equal(system(command), 0);
+  print_message("%zu faulty studies\n", faulty);
+  assert_true(faulty > 10);
   assert_int_equal(wrong, 0);
 }
 

@@ -15,6 +15,7 @@
 
 #include "parser/read/read_scene.h"
 #include "parser/write/write_scene.h"
+#include "tests/language/cases.h"
 
 /* What every scene here ends with. */
 #define RUN "solver: {step: 1 ms}\nrun: {duration: 10 s}\n"
@@ -293,20 +294,22 @@ static void memory_may_run_out_anywhere(void **state) {
 
 static void memory_may_run_out_in_a_bad_file(void **state) {
   (void)state;
-  size_t length;
-  char *text = read_path(STRUT_TESTS_DIR "/language/bad/many-errors.yaml", &length);
+  faulty_cases cases = read_faulty_cases(STRUT_TESTS_DIR "/language/bad");
+  const faulty_case *many = find_faulty_case(&cases, "many-errors");
   strut_status status = STRUT_NO_MEMORY;
+  assert_non_null(many);
   for (int64_t n = 0; status == STRUT_NO_MEMORY && n < 5000; n++) {
     strut_setup s;
     strut_diagnostics diagnostics = {0};
     strut_fail_allocation_after(n);
-    status = strut_setup_read(&s, "f", text, length, NULL, 0, STRUT_FOR_RUN, &diagnostics);
+    status =
+        strut_setup_read(&s, "f", many->text, many->length, NULL, 0, STRUT_FOR_RUN, &diagnostics);
     strut_fail_allocation_after(-1);
     assert_null(s.scene.nodes);
     strut_diagnostics_free(&diagnostics);
   }
   assert_int_equal(status, STRUT_BAD_SCENE);
-  strut_release(text);
+  free_faulty_cases(&cases);
 }
 
 /* Builds a German locale in a scratch folder and makes it current; false where that fails. */
