@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Every case of tests/language/bad is refused with exactly the messages that it announces; bases are valid. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "parser/read/read_scene.h"
 #include "tests/language/cases.h"
+#include "tests/support/test.h"
 
 static int by_text(const void *a, const void *b) {
   return strcmp(*(char *const *)a, *(char *const *)b);
@@ -84,8 +79,7 @@ static size_t check_case(faulty_case *c) {
   return wrong;
 }
 
-static void every_case_says_what_it_announces(void **state) {
-  (void)state;
+TEST(every_case_says_what_it_announces) {
   faulty_cases cases = read_faulty_cases(STRUT_TESTS_DIR "/language/bad");
   size_t wrong = 0, faulty = 0;
   for (size_t i = 0; i < cases.count; i++) {
@@ -96,9 +90,4 @@ static void every_case_says_what_it_announces(void **state) {
   print_message("%zu faulty scenes\n", faulty);
   assert_int_equal(wrong, 0);
   assert_true(faulty >= 100);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(every_case_says_what_it_announces)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

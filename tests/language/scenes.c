@@ -2,17 +2,13 @@
 #include "tests/language/scenes.h"
 
 #include <dirent.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "parser/write/write_scene.h"
 #include "tests/language/cases.h"
+#include "tests/support/test.h"
 
 enum { MOST_BYTES = 1 << 20 };
 

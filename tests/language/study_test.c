@@ -2,21 +2,16 @@
 /* Studies that are read, and studies that are refused with exactly the messages they announce. */
 #include <dirent.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "engine/base/memory.h"
 #include "engine/study/sweep/grid.h"
 #include "parser/language/keys.h"
 #include "parser/study/read_study.h"
 #include "tests/language/cases.h"
+#include "tests/support/test.h"
 
 #define FOLDER STRUT_TESTS_DIR "/language/studies/"
 
@@ -98,8 +93,7 @@ static size_t check_case(faulty_case *c, const char *folder) {
   return wrong;
 }
 
-static void bad_studies_are_refused(void **state) {
-  (void)state;
+TEST(bad_studies_are_refused) {
   char folder[] = "/tmp/strut-studies-XXXXXX", command[700];
   size_t wrong = 0, faulty = 0;
   assert_non_null(mkdtemp(folder));
@@ -148,8 +142,7 @@ static bool stands_in_a_good_study(const char *text) {
   return found;
 }
 
-static void every_key_stands_in_a_good_study(void **state) {
-  (void)state;
+TEST(every_key_stands_in_a_good_study) {
   for (int key = strut_section_first(STRUT_SECTION_STUDY); key < STRUT_KEY_COUNT; key++) {
     char with_colon[60];
     snprintf(with_colon, sizeof with_colon, "%s:", strut_key_at(key)->name);
@@ -159,8 +152,7 @@ static void every_key_stands_in_a_good_study(void **state) {
 }
 
 /* The words of `keep` are bits of the study, in one order. */
-static void keep_is_one_table(void **state) {
-  (void)state;
+TEST(keep_is_one_table) {
   static const char *const words[] = {
 #define WORD(name, word, of) word,
       STRUT_KEEP_TABLE(WORD)
@@ -175,8 +167,7 @@ static void keep_is_one_table(void **state) {
                             sizeof word));
 }
 
-static void points_of_files_and_samples(void **state) {
-  (void)state;
+TEST(points_of_files_and_samples) {
   strut_study_file file;
   strut_study_value values[16];
   strut_setup setup;
@@ -201,8 +192,7 @@ static void points_of_files_and_samples(void **state) {
   strut_study_close(&file);
 }
 
-static void studies_of_what_is_at_rest(void **state) {
-  (void)state;
+TEST(studies_of_what_is_at_rest) {
   static const char *const names[] = {"path.yaml", "path-load.yaml", "form.yaml", "modes.yaml"};
   strut_study_file file;
   for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
@@ -219,8 +209,7 @@ static void studies_of_what_is_at_rest(void **state) {
   }
 }
 
-static void a_study_is_what_it_says(void **state) {
-  (void)state;
+TEST(a_study_is_what_it_says) {
   strut_study_file file;
   strut_setup setup;
   strut_error error = {0};
@@ -265,8 +254,7 @@ static void a_study_is_what_it_says(void **state) {
 }
 
 /* Former names of keys in a study and its variants: read, noted once, and replaced by current ones. */
-static void former_names_are_noted_once(void **state) {
-  (void)state;
+TEST(former_names_are_noted_once) {
   static const double expected[] = {1e-3, 1e-9};
   strut_study_file file;
   strut_error error = {0};
@@ -293,8 +281,7 @@ static void former_names_are_noted_once(void **state) {
 }
 
 /* Comments and blanks change nothing; what decides results does. */
-static void identity(void **state) {
-  (void)state;
+TEST(identity) {
   static const strut_override stiff[] = {{"stiffness", "101 N/m"}};
   strut_study_file a, b, c;
   strut_error error = {0};
@@ -314,8 +301,7 @@ static void identity(void **state) {
 }
 
 /* Every allocation fails once: an answer, and nothing left behind. */
-static void no_memory(void **state) {
-  (void)state;
+TEST(no_memory) {
   strut_status status = STRUT_NO_MEMORY;
   for (int64_t n = 0; status == STRUT_NO_MEMORY; n++) {
     strut_study_file file;
@@ -337,19 +323,4 @@ static void no_memory(void **state) {
     strut_study_close(&file);
   }
   assert_int_equal(status, STRUT_OK);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(bad_studies_are_refused),
-      cmocka_unit_test(every_key_stands_in_a_good_study),
-      cmocka_unit_test(keep_is_one_table),
-      cmocka_unit_test(a_study_is_what_it_says),
-      cmocka_unit_test(points_of_files_and_samples),
-      cmocka_unit_test(studies_of_what_is_at_rest),
-      cmocka_unit_test(former_names_are_noted_once),
-      cmocka_unit_test(identity),
-      cmocka_unit_test(no_memory),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -212,32 +212,25 @@ static void compare(int32_t width, int count, const char *method, bool without_l
   strut_setup_free(&crawler);
 }
 
-static void test_every_width(void **unused) {
-  (void)unused;
+TEST(every_width) {
   for (int32_t width = 1; width <= strut_batch_widest(); width *= 2)
     compare(width, POINTS, "rk4", false);
 }
 
-static void test_without_ledger(void **unused) {
-  (void)unused;
-  compare(0, POINTS, "rk4", true);
-}
+TEST(without_ledger) { compare(0, POINTS, "rk4", true); }
 
-static void test_events(void **unused) {
-  (void)unused;
+TEST(events) {
   compare(2, POINTS, "verlet-events", false);
   compare(4, POINTS, "verlet-events", true);
   compare(0, POINTS, "verlet-events", false);
 }
 
-static void test_few_points(void **unused) {
-  (void)unused;
+TEST(few_points) {
   for (int count = 0; count < 4; count++) compare(0, count, "rk4", false);
 }
 
 /* Lanes are no duty: without memory for them each run is made alone. */
-static void test_no_memory_for_lanes(void **unused) {
-  (void)unused;
+TEST(no_memory_for_lanes) {
   static points all;
   strut_setup crawler;
   strut_setup_init(&crawler);
@@ -260,8 +253,7 @@ static void test_no_memory_for_lanes(void **unused) {
 }
 
 /* Where single runs have a kernel of their own that is as fast, they are not put into lanes. */
-static void test_lanes_that_pay(void **unused) {
-  (void)unused;
+TEST(lanes_that_pay) {
   strut_setup crawler;
   strut_setup_init(&crawler);
   structure_crawler(&crawler.scene, 10, 1e-4, 0.1, false);
@@ -277,14 +269,4 @@ static void test_lanes_that_pay(void **unused) {
   assert_true(strut_batch_pays(model, events, 8));
   strut_model_free(model);
   strut_setup_free(&crawler);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_every_width),
-                                     cmocka_unit_test(test_without_ledger),
-                                     cmocka_unit_test(test_events),
-                                     cmocka_unit_test(test_few_points),
-                                     cmocka_unit_test(test_no_memory_for_lanes),
-                                     cmocka_unit_test(test_lanes_that_pay)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }
