@@ -9,10 +9,8 @@ import json
 import os
 import random
 import re
-import shutil
 import subprocess
 import sys
-import tempfile
 
 try:
     import yaml
@@ -21,16 +19,10 @@ except ImportError as missing:
     print(f"skipped: {missing}")
     sys.exit(77)
 
-strut = os.path.abspath(sys.argv[1])
+from testing import fail, finish, strut, work  # noqa: E402
+
 here = os.path.dirname(os.path.abspath(__file__))
 top = os.path.dirname(os.path.dirname(here))
-failures = 0
-
-
-def fail(text):
-    global failures
-    failures += 1
-    print("FAILED:", text)
 
 
 def schema(*options):
@@ -162,9 +154,8 @@ def announced(path):
 
 
 visible = missed = 0
-bad = tempfile.mkdtemp()
-subprocess.run([sys.argv[2], os.path.join(here, "bad"), bad, "--messages"], check=True)
-for path in sorted(glob.glob(os.path.join(bad, "*.yaml"))):
+subprocess.run([sys.argv[2], os.path.join(here, "bad"), work, "--messages"], check=True)
+for path in sorted(glob.glob(os.path.join(work, "*.yaml"))):
     with open(path, "rb") as file:
         text = file.read()
     try:
@@ -184,7 +175,6 @@ for path in sorted(glob.glob(os.path.join(bad, "*.yaml"))):
     for line, message in seen:
         if line not in right:
             fail(f"{path}:{line}: the schema says '{message}', strut nothing")
-shutil.rmtree(bad)
 print(f"{visible} faults that a schema can see")
 if visible < 120:
     fail("too few faults were compared")
@@ -229,4 +219,4 @@ for path in sorted(glob.glob(os.path.join(here, "good", "*.yaml"))):
 print(f"{compared} misspelt keys")
 if compared < 60:
     fail("too few misspelt keys were compared")
-sys.exit(1 if failures else 0)
+finish()
