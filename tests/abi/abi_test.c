@@ -8,18 +8,14 @@
 #include <locale.h>
 #include <math.h>
 #include <pthread.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strut/abi.h>
 #include <time.h>
 
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 static const char crawler[] = "models/crawler/crawler.yaml";
 
@@ -85,8 +81,7 @@ static void assert_refused(strutlib_error *error, int status, const char *words)
 
 /* ---- versions and codes ---- */
 
-static void versions_and_codes_are_told(void **unused) {
-  (void)unused;
+TEST(versions_and_codes_are_told) {
   assert_int_equal(strutlib_abi_version(), STRUTLIB_ABI_VERSION);
   assert_non_null(strchr(strutlib_version(), '.'));
   assert_string_equal(strutlib_status_name(STRUTLIB_OK), "ok");
@@ -107,8 +102,7 @@ static void versions_and_codes_are_told(void **unused) {
 
 /* ---- scenes ---- */
 
-static void a_scene_shows_names_and_values(void **unused) {
-  (void)unused;
+TEST(a_scene_shows_names_and_values) {
   strutlib_scene *scene = open_crawler();
   const double *data;
   int dimensions, flag;
@@ -150,8 +144,7 @@ static void a_scene_shows_names_and_values(void **unused) {
   strutlib_close(scene);
 }
 
-static void a_setting_changes_a_scene(void **unused) {
-  (void)unused;
+TEST(a_setting_changes_a_scene) {
   strutlib_error *error;
   const char *names[] = {"frequency", "friction"}, *values[] = {"12 Hz", "0.25"};
   const char *more_names[] = {"friction"}, *more_values[] = {"0.5"};
@@ -173,8 +166,7 @@ static void a_setting_changes_a_scene(void **unused) {
   strutlib_close(other);
 }
 
-static void json_is_a_scene_too(void **unused) {
-  (void)unused;
+TEST(json_is_a_scene_too) {
   static const char json[] =
       "{\"strut\": 1, \"nodes\": {\"a\": {\"position\": [0, 0], \"fixed\": \"both\"}, \"b\": [1, "
       "0]},\n"
@@ -203,8 +195,7 @@ static void json_is_a_scene_too(void **unused) {
   strutlib_close(scene);
 }
 
-static void a_scene_is_written_short_too(void **unused) {
-  (void)unused;
+TEST(a_scene_is_written_short_too) {
   strutlib_error *error;
   strutlib_scene *scene = open_triangle();
   char *flat = strutlib_scene_yaml(scene, 0, &error), *text = strutlib_scene_yaml(scene, 1, &error);
@@ -219,8 +210,7 @@ static void a_scene_is_written_short_too(void **unused) {
 
 /* ---- errors ---- */
 
-static void an_error_knows_all_its_places(void **unused) {
-  (void)unused;
+TEST(an_error_knows_all_its_places) {
   static const char bad[] =
       "strut: 1\n"
       "nodes:\n"
@@ -254,8 +244,7 @@ static void an_error_knows_all_its_places(void **unused) {
   assert_refused(error, STRUTLIB_FILE_TROUBLE, "no file");
 }
 
-static void options_are_checked_as_on_the_command_line(void **unused) {
-  (void)unused;
+TEST(options_are_checked_as_on_the_command_line) {
   strutlib_error *error;
   strutlib_scene *scene = open_crawler();
   static const struct {
@@ -293,8 +282,7 @@ static void options_are_checked_as_on_the_command_line(void **unused) {
 
 /* ---- runs ---- */
 
-static void a_run_has_its_channels(void **unused) {
-  (void)unused;
+TEST(a_run_has_its_channels) {
   strutlib_error *error;
   strutlib_scene *scene = open_triangle();
   strutlib_result *result = strutlib_run(scene, 0, NULL, NULL, NULL, &error);
@@ -345,8 +333,7 @@ static void a_run_has_its_channels(void **unused) {
   strutlib_result_free(result);
 }
 
-static void a_run_records_what_is_asked_for(void **unused) {
-  (void)unused;
+TEST(a_run_records_what_is_asked_for) {
   strutlib_error *error;
   strutlib_scene *scene = open_triangle();
   const char *names[] = {"channels"}, *values[] = {"force,energy"};
@@ -370,8 +357,7 @@ static void a_run_records_what_is_asked_for(void **unused) {
   strutlib_close(scene);
 }
 
-static void a_run_that_diverges_is_there_up_to_then(void **unused) {
-  (void)unused;
+TEST(a_run_that_diverges_is_there_up_to_then) {
   strutlib_error *error;
   strutlib_scene *scene = open_triangle();
   const char *names[] = {"force", "step", "integrator"}, *values[] = {"yes", "5 ms", "rk4"};
@@ -398,8 +384,7 @@ static void check_picture(const strutlib_result *result, const char *const *name
   strutlib_release(svg);
 }
 
-static void statics_have_arrays_and_pictures(void **unused) {
-  (void)unused;
+TEST(statics_have_arrays_and_pictures) {
   strutlib_error *error;
   strutlib_scene *scene = open_crawler();
   const char *names[] = {"title", "width"}, *values[] = {"A title", "column"};
@@ -464,8 +449,7 @@ static void statics_have_arrays_and_pictures(void **unused) {
   strutlib_close(scene);
 }
 
-static void scenes_and_runs_are_drawn(void **unused) {
-  (void)unused;
+TEST(scenes_and_runs_are_drawn) {
   strutlib_error *error;
   strutlib_scene *scene = open_triangle();
   char *text = strutlib_scene_svg(scene, &error);
@@ -506,8 +490,7 @@ static int hear_row(void *context, size_t point, int status) {
   return 0;
 }
 
-static void a_sweep_is_a_table(void **unused) {
-  (void)unused;
+TEST(a_sweep_is_a_table) {
   strutlib_error *error;
   strutlib_scene *scene = open_triangle();
   const char *axes[] = {"drop"}, *keep[] = {"velocity", "steps", "method"};
@@ -547,8 +530,7 @@ static void a_sweep_is_a_table(void **unused) {
   strutlib_close(scene);
 }
 
-static void words_are_swept_and_failures_are_rows(void **unused) {
-  (void)unused;
+TEST(words_are_swept_and_failures_are_rows) {
   strutlib_error *error;
   const char *names[] = {"frequency"}, *values[] = {"10 Hz"};
   const char *axes[] = {"amplitude", "start"}, *keep[] = {"outcome", "velocity"};
@@ -579,8 +561,7 @@ static void host_handler(const char *reason, const char *file, int line, int cod
   (void)reason, (void)file, (void)line, (void)code;
 }
 
-static void nothing_of_the_host_is_changed(void **unused) {
-  (void)unused;
+TEST(nothing_of_the_host_is_changed) {
   strutlib_error *error;
   struct sigaction before, after;
   const char *locale = setlocale(LC_ALL, "");
@@ -622,8 +603,7 @@ static void *run_once(void *scene) {
   return text;
 }
 
-static void eight_threads_get_the_bytes_of_one(void **unused) {
-  (void)unused;
+TEST(eight_threads_get_the_bytes_of_one) {
   enum { THREADS = 8 };
   pthread_t thread[THREADS];
   strutlib_scene *scene = open_triangle();
@@ -658,8 +638,7 @@ static int interrupt_soon(void *context, double fraction) {
   return 1;
 }
 
-static void an_interrupt_returns_what_there_is(void **unused) {
-  (void)unused;
+TEST(an_interrupt_returns_what_there_is) {
   strutlib_error *error;
   strutlib_scene *scene = open_crawler();
   strutlib_control *control = strutlib_control_create();
@@ -701,8 +680,7 @@ static void *interrupt_later(void *control) {
   return NULL;
 }
 
-static void another_thread_interrupts_searches_and_sweeps(void **unused) {
-  (void)unused;
+TEST(another_thread_interrupts_searches_and_sweeps) {
   strutlib_error *error;
   strutlib_scene *scene = open_crawler();
   strutlib_control *control = strutlib_control_create();
@@ -731,8 +709,7 @@ static void another_thread_interrupts_searches_and_sweeps(void **unused) {
 }
 
 /* Statics look at the interrupt between factorisations, and within a linear programme of 40 s. */
-static void statics_end_too(void **unused) {
-  (void)unused;
+TEST(statics_end_too) {
   static strutlib_result *(*const find[])(const strutlib_scene *, size_t, const char *const *,
                                           const char *const *, strutlib_control *,
                                           strutlib_error **) = {strutlib_form, strutlib_modes};
@@ -753,29 +730,4 @@ static void statics_end_too(void **unused) {
   }
   strutlib_control_free(control);
   strutlib_close(scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(versions_and_codes_are_told),
-      cmocka_unit_test(a_scene_shows_names_and_values),
-      cmocka_unit_test(a_setting_changes_a_scene),
-      cmocka_unit_test(json_is_a_scene_too),
-      cmocka_unit_test(a_scene_is_written_short_too),
-      cmocka_unit_test(an_error_knows_all_its_places),
-      cmocka_unit_test(options_are_checked_as_on_the_command_line),
-      cmocka_unit_test(a_run_has_its_channels),
-      cmocka_unit_test(a_run_records_what_is_asked_for),
-      cmocka_unit_test(a_run_that_diverges_is_there_up_to_then),
-      cmocka_unit_test(statics_have_arrays_and_pictures),
-      cmocka_unit_test(scenes_and_runs_are_drawn),
-      cmocka_unit_test(a_sweep_is_a_table),
-      cmocka_unit_test(words_are_swept_and_failures_are_rows),
-      cmocka_unit_test(nothing_of_the_host_is_changed),
-      cmocka_unit_test(eight_threads_get_the_bytes_of_one),
-      cmocka_unit_test(an_interrupt_returns_what_there_is),
-      cmocka_unit_test(another_thread_interrupts_searches_and_sweeps),
-      cmocka_unit_test(statics_end_too),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

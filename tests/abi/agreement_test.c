@@ -5,18 +5,14 @@
  *
  *   test_abi_agreement PROGRAM
  */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strut/abi.h>
 #include <unistd.h>
 
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 static const char *program;
 static char folder[] = "/tmp/strut-agreement-XXXXXX";
@@ -173,8 +169,18 @@ static bool check_statics(const char *model, const strutlib_scene *scene, const 
   return there;
 }
 
-static void the_library_agrees_with_the_program(void **unused) {
-  (void)unused;
+BEFORE_ALL {
+  program = test_word(1);
+  assert_non_null(program);
+  assert_non_null(mkdtemp(folder));
+}
+
+AFTER_ALL {
+  clear();
+  rmdir(folder);
+}
+
+TEST(the_library_agrees_with_the_program) {
   static const struct {
     const char *command;
     call *compute;
@@ -201,14 +207,4 @@ static void the_library_agrees_with_the_program(void **unused) {
     strutlib_close(scene);
   }
   assert_true(agreed > 2 * MODELS);
-}
-
-int main(int count, char **arguments) {
-  if (count != 2 || !mkdtemp(folder)) return 1;
-  program = arguments[1];
-  const struct CMUnitTest tests[] = {cmocka_unit_test(the_library_agrees_with_the_program)};
-  int failed = cmocka_run_group_tests(tests, NULL, NULL);
-  clear();
-  rmdir(folder);
-  return failed;
 }

@@ -3,18 +3,13 @@
  * Memory that is out is an error of every call, never an abort: the k-th allocation fails, for k from 1 on,
  * until a call succeeds. Sees the library from inside, where tests can make allocations fail.
  */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "engine/base/memory.h"
 #include "parser/abi/abi.h"
+#include "tests/support/test.h"
 
 static const char text[] =
     "strut: 1\n"
@@ -139,8 +134,7 @@ static int64_t fail_each(strutlib_scene *scene, attempt call) {
   }
 }
 
-static void memory_that_is_out_is_an_error(void **unused) {
-  (void)unused;
+TEST(memory_that_is_out_is_an_error) {
   static const struct {
     const char *name;
     attempt call;
@@ -154,9 +148,4 @@ static void memory_that_is_out_is_an_error(void **unused) {
     assert_true(count > 3);
   }
   strutlib_close(scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(memory_that_is_out_is_an_error)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

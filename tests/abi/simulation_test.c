@@ -5,19 +5,15 @@
  */
 #include <limits.h>
 #include <math.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strut/abi.h>
 #include <unistd.h>
 
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 static const char *const methods[] = {"rk4",          "euler",         "verlet",   "rk4-events",
                                       "euler-events", "verlet-events", "adaptive", "midpoint"};
@@ -73,8 +69,7 @@ static void advance(strutlib_simulation *simulation, long steps) {
   fail();
 }
 
-static void steps_do_not_depend_on_their_division(void **unused) {
-  (void)unused;
+TEST(steps_do_not_depend_on_their_division) {
   for (int m = 0; m < METHODS; m++) {
     size_t n, k;
     strutlib_scene *scene = open_for(methods[m]);
@@ -99,8 +94,7 @@ static void steps_do_not_depend_on_their_division(void **unused) {
 }
 
 /* The run ends at 0.1 s, where the simulation stands after 4000 steps. */
-static void steps_are_those_of_a_run(void **unused) {
-  (void)unused;
+TEST(steps_are_those_of_a_run) {
   static const char text[] =
       "strut: 1\nbase: models/crawler/crawler.yaml\nrun: {duration: 0.1 s, measure: {last: 0.1 "
       "s}}\n"
@@ -133,8 +127,7 @@ static void steps_are_those_of_a_run(void **unused) {
   }
 }
 
-static void a_snapshot_goes_on_with_the_same_bits(void **unused) {
-  (void)unused;
+TEST(a_snapshot_goes_on_with_the_same_bits) {
   for (int m = 0; m < METHODS; m++) {
     size_t n, k;
     strutlib_error *error;
@@ -200,8 +193,7 @@ static double open_balance(const char *step, double *worked) {
   return fabs(gap);
 }
 
-static void the_ledger_counts_what_inputs_do(void **unused) {
-  (void)unused;
+TEST(the_ledger_counts_what_inputs_do) {
   double coarse_work, fine_work;
   double coarse = open_balance("0.05 ms", &coarse_work),
          fine = open_balance("0.025 ms", &fine_work);
@@ -249,16 +241,14 @@ static void check_held_input(const char *member) {
 }
 
 /* A rest length that is held changes the motion as a scene with that rest length: EA is over it, too. */
-static void a_held_input_is_as_if_the_scene_had_it(void **unused) {
-  (void)unused;
+TEST(a_held_input_is_as_if_the_scene_had_it) {
   check_held_input("stiffness: 100 N/m");
   check_held_input("axial_stiffness: 100 N");
   check_held_input("axial_stiffness: 100 N, law: {kind: play, gap: 1 mm}");
   check_held_input("axial_stiffness: 100 N, longest: 1.5 m, stop_stiffness: 1 kN/m");
 }
 
-static void inputs_are_checked(void **unused) {
-  (void)unused;
+TEST(inputs_are_checked) {
   strutlib_error *error;
   size_t k;
   strutlib_scene *scene = open_for("rk4");
@@ -287,8 +277,7 @@ static void inputs_are_checked(void **unused) {
   strutlib_close(scene);
 }
 
-static void a_divergence_stays_until_a_restore(void **unused) {
-  (void)unused;
+TEST(a_divergence_stays_until_a_restore) {
   strutlib_error *error;
   strutlib_scene *scene = open_for("rk4");
   const char *names[] = {"step", "force", "integrator"}, *values[] = {"2 ms", "yes", "rk4"};
@@ -316,8 +305,7 @@ static void interrupt(int signal) {
 }
 
 /* The largest number of steps is a number of steps, which an interrupt ends. */
-static void an_endless_advance_can_be_interrupted(void **unused) {
-  (void)unused;
+TEST(an_endless_advance_can_be_interrupted) {
   strutlib_error *error;
   strutlib_scene *scene = open_for("rk4");
   control = strutlib_control_create();
@@ -333,18 +321,4 @@ static void an_endless_advance_can_be_interrupted(void **unused) {
   strutlib_simulation_close(s);
   strutlib_control_free(control);
   strutlib_close(scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(an_endless_advance_can_be_interrupted),
-      cmocka_unit_test(steps_do_not_depend_on_their_division),
-      cmocka_unit_test(steps_are_those_of_a_run),
-      cmocka_unit_test(a_snapshot_goes_on_with_the_same_bits),
-      cmocka_unit_test(the_ledger_counts_what_inputs_do),
-      cmocka_unit_test(a_held_input_is_as_if_the_scene_had_it),
-      cmocka_unit_test(inputs_are_checked),
-      cmocka_unit_test(a_divergence_stays_until_a_restore),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,22 +8,11 @@ import pty
 import random
 import re
 import resource
-import shutil
 import signal
 import subprocess
-import sys
-import tempfile
 import time
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import check, files_in, finish  # noqa: E402
-
-strut = os.path.realpath(sys.argv[1])
-work = tempfile.mkdtemp()
-
-def write(name, text):
-    with open(os.path.join(work, name), "w", encoding="utf-8") as file:
-        file.write(text)
+from testing import check, files_in, finish, strut, work, write
 
 
 def run(*words, code=0):
@@ -132,5 +121,4 @@ profiles()
 endless_runs()
 killed()
 hidden()
-shutil.rmtree(work)
 finish()

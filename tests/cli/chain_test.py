@@ -10,13 +10,10 @@ import json
 import math
 import os
 import subprocess
-import sys
 import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import fail, finish  # noqa: E402
+from testing import fail, finish, strut
 
-strut = os.path.abspath(sys.argv[1])
 HEIGHT, SPACING = 0.3, 2.0
 REST = math.sqrt(1 + HEIGHT * HEIGHT)
 

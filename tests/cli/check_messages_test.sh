@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # check --json: messages with their places, for editors; and studies.
-bad=$(dirname "$0")/../language/bad
-bad=$(realpath "$bad")
+unpack=$(realpath "$2")
+bad=$(realpath "$(dirname "$0")/../language/bad")
 studies=$(realpath "$(dirname "$0")/../language/studies")
 . "$(dirname "$0")/lib.sh"
 
@@ -26,7 +26,9 @@ jq -e '.valid == false and .unlisted == 0' out >/dev/null || fail "not invalid"
 jq -e '.messages[0].file == "<stdin>" and (.messages | length) == 3' out >/dev/null || fail "no messages of stdin"
 # JSON and text say the same, in the same order.
 count=0
-for file in "$bad"/*.yaml; do
+mkdir bad
+"$unpack" "$bad" bad || fail "no bad scenes"
+for file in bad/*.yaml; do
   count=$((count + 1))
   [ $((count % 25)) -eq 0 ] || continue
   "$strut" check "$file" --json >out 2>err
@@ -105,6 +107,7 @@ err_has "No such file"
 
 # Studies.
 cp -R "$studies" studies
+"$unpack" studies/bad studies/bad || fail "no bad studies"
 for study in studies/good/*.yaml; do
   expect 0 check "$study"
   out_has ": valid"

@@ -2,17 +2,14 @@
 # strut export --code of what only some scenes have: several grounds, what breaks or yields, what follows the
 # motion, and sliders. The C has strut's bits, by rk4 and verlet, and compiles without a warning.
 #
-#   python3 code_features_test.py STRUT MODELS
+#   python3 code_features_test.py STRUT
 import csv
 import os
 import re
-import shutil
 import subprocess
-import sys
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from exported_code import build, code_rows, compare, compilers, models, path, run, work, write  # noqa: E402
-from findings import check, finish  # noqa: E402
+from exported_code import build, code_rows, compare, compilers
+from testing import check, finish, models, path, run, write
 
 
 def scene(name, text, method, step, steps, every, channels="position, energy"):
@@ -387,5 +384,4 @@ if __name__ == "__main__":
         test_feedback()
         test_sliders()
         test_alone()
-    shutil.rmtree(work)
     finish()

@@ -4,19 +4,16 @@
 # gcc-arm-none-eabi, libnewlib-arm-none-eabi, qemu-system-arm). Floats stay near; what there is no code for is
 # refused by the name of its key.
 #
-#   python3 code_test.py STRUT MODELS
+#   python3 code_test.py STRUT
 import csv
 import os
 import re
 import shutil
 import subprocess
-import sys
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from exported_code import (  # noqa: E402
-    STRICT, build, code_rows, compare, compare_model, compilers, here, models, path, run, same_rows, scene,
-    strut_rows, work, write)
-from findings import check, finish  # noqa: E402
+from exported_code import (
+    STRICT, build, code_rows, compare, compare_model, compilers, here, same_rows, scene, strut_rows)
+from testing import check, finish, models, path, run, write
 
 
 # Every kind of signal, slack cables, several drives of a member, a slope, a belt and friction of every kind.
@@ -323,5 +320,4 @@ if __name__ == "__main__":
         test_floats()
         test_arm()
         test_page()
-    shutil.rmtree(work)
     finish()

@@ -20,11 +20,8 @@ except ImportError as missing:
     print(f"{missing}: stiffness cannot be computed here")
     sys.exit(77)
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import fail, files_in, finish  # noqa: E402
+from testing import fail, files_in, finish, models, strut
 
-strut = os.path.abspath(sys.argv[1])
-models = os.path.abspath("models")
 CRAWLER, X = f"{models}/crawler/crawler.yaml", f"{models}/gallery/x-frame.yaml"
 SQUARE, PENDULUM = f"{models}/basics/x-frame.yaml", f"{models}/basics/pendulum.yaml"
 TWO, SNAP = f"{models}/gallery/two-mass-crawler.yaml", f"{models}/gallery/von-mises.yaml"

@@ -2,27 +2,20 @@
 # Single evaluations: the bits of a sweep, answers in order whatever fails, hostile requests, interrupts,
 # and the files of DAKOTA.
 #
-#   python3 evaluate_test.py STRUT MODELS
+#   python3 evaluate_test.py STRUT
 import csv
 import json
 import math
 import os
 import signal
-import shutil
 import subprocess
-import sys
-import tempfile
 import time
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import check, finish  # noqa: E402
+from testing import check, copy_models, finish, models, strut, work, write
 
-strut = os.path.realpath(sys.argv[1])
-models = os.path.realpath(sys.argv[2])
 truss = f"{models}/basics/von-mises-truss.yaml"
 crawler = f"{models}/crawler/crawler.yaml"
-work = tempfile.mkdtemp()
-shutil.copytree(models, f"{work}/copied")  # a study names what is below its folder
+copy_models()
 
 
 def run(*words, code=0, lines=None, timeout=60):
@@ -36,11 +29,6 @@ def run(*words, code=0, lines=None, timeout=60):
 def answers(*words, code=0, lines):
     out = run("evaluate", *words, code=code, lines=lines).stdout.decode()
     return [json.loads(line) for line in out.splitlines()]
-
-
-def write(name, text):
-    with open(os.path.join(work, name), "w", encoding="utf-8") as file:
-        file.write(text)
 
 
 def read(name):

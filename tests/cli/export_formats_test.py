@@ -3,7 +3,7 @@
 # vibration and its motions are strut's, where a MuJoCo is here (Python's, Debian's libmujoco-dev, or npm's
 # mujoco-js named by STRUT_MUJOCO_JS); what it cannot say is refused or listed.
 #
-#   python3 export_formats_test.py STRUT MODELS
+#   python3 export_formats_test.py STRUT
 import csv
 import json
 import math
@@ -11,17 +11,11 @@ import os
 import re
 import shutil
 import subprocess
-import sys
-import tempfile
 import xml.etree.ElementTree as xml
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import check, finish  # noqa: E402
+from testing import check, finish, models, path, strut, work, write
 
-strut = os.path.realpath(sys.argv[1])
-models = os.path.realpath(sys.argv[2])
 here = os.path.dirname(os.path.realpath(__file__))
-work = tempfile.mkdtemp()
 SVG = "{http://www.w3.org/2000/svg}"
 
 
@@ -30,15 +24,6 @@ def run(*words, code=0, lines=b""):
     check(done.returncode == code, f"strut {' '.join(words)}: exit code {done.returncode}, expected "
           f"{code}: {done.stderr.decode()}")
     return done
-
-
-def path(name):
-    return os.path.join(work, name)
-
-
-def write(name, text):
-    with open(path(name), "w", encoding="utf-8") as file:
-        file.write(text)
 
 
 def table(name):

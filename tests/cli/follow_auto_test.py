@@ -10,18 +10,14 @@ import re
 import shutil
 import subprocess
 import sys
-import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import check, finish  # noqa: E402
+from testing import check, finish, strut, work
 
 auto = shutil.which("auto-07p")
 if not auto or not shutil.which("gfortran"):
     print("skipped: auto-07p or gfortran is not installed")
     sys.exit(77)
 
-strut = os.path.realpath(sys.argv[1])
-work = tempfile.mkdtemp()
 DAMPING, CUBIC, FORCE = 0.05, 0.05, 0.1
 FROM, TO = 0.14, 0.22  # [Hz]
 

@@ -2,21 +2,16 @@
 # Curves over two parameters: Duffing's folds and their cusp by the harmonic balance, the bilinear oscillator's
 # grazing by its transfer function, doublings against single branches; files, refusals.
 #
-#   python3 follow_curves_test.py STRUT MODELS
+#   python3 follow_curves_test.py STRUT
 import csv
 import json
 import math
 import os
 import subprocess
-import sys
-import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import check, finish  # noqa: E402
+from testing import check, finish, models, strut, work, write
 
-strut = os.path.realpath(sys.argv[1])
-duffing = os.path.join(os.path.realpath(sys.argv[2]), "basics", "duffing.yaml")
-work = tempfile.mkdtemp()
+duffing = os.path.join(models, "basics", "duffing.yaml")
 
 
 def run(*words, code=0):
@@ -24,11 +19,6 @@ def run(*words, code=0):
     check(done.returncode == code,
           f"strut follow {' '.join(words)}: exit code {done.returncode}, expected {code}: {done.stderr}")
     return done
-
-
-def write(name, text):
-    with open(os.path.join(work, name), "w", encoding="utf-8") as file:
-        file.write(text)
 
 
 def near(got, want, tolerance, what):

@@ -2,7 +2,6 @@
 # Studies that follow motions: Duffing's folds over the force, threads, a kill, Ctrl-C, refusals.
 #
 #   python3 follow_study_test.py STRUT
-import csv
 import filecmp
 import json
 import math
@@ -10,36 +9,9 @@ import os
 import shutil
 import signal
 import subprocess
-import sys
-import tempfile
 import time
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import check, finish  # noqa: E402
-
-strut = os.path.realpath(sys.argv[1])
-work = tempfile.mkdtemp()
-
-
-def path(*parts):
-    return os.path.join(work, *parts)
-
-
-def write(name, text):
-    with open(path(name), "w", encoding="utf-8") as file:
-        file.write(text)
-
-
-def run(*words, code=0):
-    done = subprocess.run([strut, *words], capture_output=True, text=True, cwd=work, timeout=120, check=False)
-    check(done.returncode == code,
-          f"strut {' '.join(words)}: exit code {done.returncode}, expected {code}: {done.stderr}")
-    return done
-
-
-def rows(*parts):
-    with open(path(*parts), newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+from testing import check, finish, path, rows, run, strut, work, write
 
 
 write("duffing.yaml", """strut: 1

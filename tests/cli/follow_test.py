@@ -3,23 +3,16 @@
 # Duffing's folds, the cascade of doublings in two wells, the bilinear oscillator's grazing, Den Hartog's
 # boundary of motions without stops, the two-mass crawler; refusals, threads, files.
 #
-#   python3 follow_test.py STRUT MODELS
+#   python3 follow_test.py STRUT
 import csv
 import json
 import math
 import os
 import signal
 import subprocess
-import sys
-import tempfile
 import time
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import check, finish  # noqa: E402
-
-strut = os.path.realpath(sys.argv[1])
-models = os.path.realpath(sys.argv[2])
-work = tempfile.mkdtemp()
+from testing import check, finish, models, strut, work, write
 
 
 def run(*words, code=0, env=None):
@@ -28,11 +21,6 @@ def run(*words, code=0, env=None):
     check(done.returncode == code,
           f"strut {' '.join(words)}: exit code {done.returncode}, expected {code}: {done.stderr}")
     return done
-
-
-def write(name, text):
-    with open(os.path.join(work, name), "w", encoding="utf-8") as file:
-        file.write(text)
 
 
 def rows(directory):

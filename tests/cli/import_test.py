@@ -2,21 +2,16 @@
 # Foreign structures: imported, they have the results of the same structure in the gallery or of a closed
 # form; what a scene cannot say is listed by place, what cannot be read is an error by place and leaves no file.
 #
-#   python3 import_test.py STRUT MODELS
+#   python3 import_test.py STRUT
 import json
 import math
 import os
 import re
 import subprocess
-import sys
-import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import check, finish  # noqa: E402
+from testing import check, finish, models, strut, work
 
-strut = os.path.realpath(sys.argv[1])
-gallery = os.path.join(os.path.realpath(sys.argv[2]), "gallery")
-work = tempfile.mkdtemp()
+gallery = os.path.join(models, "gallery")
 
 
 def run(*words, code=0, timeout=60):

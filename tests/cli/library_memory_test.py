@@ -16,10 +16,8 @@ import resource
 import shutil
 import subprocess
 import sys
-import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
-from findings import check, finish  # noqa: E402
+from testing import check, finish, work
 
 STRUT, PRELOAD, COUNT = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2]), int(sys.argv[3])
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -94,7 +92,7 @@ def limited(name, words, times=1, **environment):
     print(f"{name}: from {begin >> 20} MB on, exit codes {codes}", flush=True)
 
 
-os.chdir(tempfile.mkdtemp())
+os.chdir(work)
 for model in (HOPPER, f"{MODELS}/basics/oscillator.yaml"):
     shutil.copy(model, ".")
 with open("study.yaml", "w", encoding="utf-8") as study:

@@ -10,13 +10,10 @@ import json
 import os
 import random
 import subprocess
-import sys
 import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import check, finish  # noqa: E402
+from testing import check, finish, strut
 
-strut = os.path.abspath(sys.argv[1])
 STRUCTURES = 60
 
 

@@ -4,46 +4,13 @@
 # stiffness at a node, distances from a shape and from a curve of force over displacement.
 #
 #   python3 objectives_test.py STRUT
-import csv
 import json
 import math
 import os
-import shutil
-import subprocess
-import sys
-import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import check, finish  # noqa: E402
+from testing import check, copy_models, finish, models, near, run, sweep, work, write
 
-strut = os.path.realpath(sys.argv[1])
-models = os.path.realpath("models")
-work = tempfile.mkdtemp()
-shutil.copytree(models, f"{work}/copied")  # a study names what is below its folder
-
-
-def run(*words, code=0):
-    done = subprocess.run([strut, *words], capture_output=True, text=True, cwd=work)
-    check(done.returncode == code,
-          f"strut {' '.join(words)}: exit code {done.returncode}, expected {code}: {done.stderr}")
-    return done
-
-
-def write(name, text):
-    with open(os.path.join(work, name), "w", encoding="utf-8") as file:
-        file.write(text)
-
-
-def sweep(name, text, *words, code=0):
-    write(name + "-study.yaml", "strut: 1\nstudy: s\n" + text)
-    run("sweep", name + "-study.yaml", "-o", name, "--quiet", *words, code=code)
-    with open(os.path.join(work, name, "table.csv"), newline="") as file:
-        return list(csv.DictReader(file))
-
-
-def near(found, wanted, what, relative=1e-9):
-    check(found != "" and math.isclose(float(found), wanted, rel_tol=relative),
-          f"{what}: {found}, expected {wanted}")
+copy_models()
 
 
 # A block that a stiff actuator pushes along rough ground: the work per distance is the friction, and
@@ -262,5 +229,4 @@ goals()
 lanes()
 compared()
 at_rest()
-shutil.rmtree(work)
 finish()

@@ -10,13 +10,9 @@ import os
 import re
 import shutil
 import subprocess
-import sys
-import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import check, finish  # noqa: E402
+from testing import check, finish, strut, work, write
 
-strut = os.path.abspath(sys.argv[1])
 models, tests = os.path.abspath("models"), os.path.dirname(os.path.abspath(__file__))
 
 # A robot that becomes steady long before its 400 periods are over, to an accuracy by its orbit.
@@ -55,11 +51,6 @@ solver: {integrator: euler, step: 30 ms}
 run: {duration: 100 s}
 output: {every: 0.13 s}
 """
-
-
-def write(name, text):
-    with open(name, "w", encoding="utf-8") as file:
-        file.write(text)
 
 
 def run(*words, code=0, stdin=None):
@@ -140,7 +131,7 @@ def check_span(name):
     return s
 
 
-os.chdir(tempfile.mkdtemp(prefix="one-answer-"))
+os.chdir(work)
 write("robot.yaml", ROBOT)
 write("fixed.yaml", FIXED)
 write("measured.yaml", MEASURED)

@@ -2,52 +2,19 @@
 # Studies that search: an optimum with a formula, by each method; the same bytes whatever the threads, lanes
 # and kills; constraints, worst cases, choices; and searches that cannot find anything, which are told.
 #
-#   python3 search_test.py STRUT MODELS [--long]
-import csv
+#   python3 search_test.py STRUT [--long]
 import json
 import math
 import os
 import re
-import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import check, finish  # noqa: E402
+from testing import check, copy_models, finish, path, read, rows, run, strut, work, write
 
-strut = os.path.realpath(sys.argv[1])
-models = os.path.realpath(sys.argv[2])
-work = tempfile.mkdtemp()
-shutil.copytree(models, f"{work}/copied")  # a study names what is below its folder
-
-
-def run(*words, code=0):
-    done = subprocess.run([strut, *words], capture_output=True, text=True, cwd=work, timeout=60)
-    check(done.returncode == code,
-          f"strut {' '.join(words)}: exit code {done.returncode}, expected {code}: {done.stderr}")
-    return done
-
-
-def path(*name):
-    return os.path.join(work, *name)
-
-
-def write(name, text):
-    with open(path(name), "w", encoding="utf-8") as file:
-        file.write(text)
-
-
-def read(*name):
-    with open(path(*name), "rb") as file:
-        return file.read()
-
-
-def rows(*name):
-    with open(path(*name), newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+copy_models()
 
 
 def search(name, body, *words, code=0):
@@ -294,5 +261,4 @@ check("is a text" in run("sweep", "words.yaml", "-o", "no", code=2).stderr, "a r
 write("words.yaml", read("words.yaml").decode().replace("360", "90"))
 check("full turn" in run("sweep", "words.yaml", "-o", "no", code=2).stderr, "half an angle wraps")
 
-shutil.rmtree(work)
 finish()

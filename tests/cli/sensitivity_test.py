@@ -7,33 +7,8 @@
 import csv
 import math
 import os
-import shutil
-import subprocess
-import sys
-import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import check, finish  # noqa: E402
-
-strut = os.path.realpath(sys.argv[1])
-work = tempfile.mkdtemp()
-
-
-def run(*words, code=0):
-    done = subprocess.run([strut, *words], capture_output=True, text=True, cwd=work)
-    check(done.returncode == code,
-          f"strut {' '.join(words)}: exit code {done.returncode}, expected {code}: {done.stderr}")
-    return done
-
-
-def write(name, text):
-    with open(os.path.join(work, name), "w", encoding="utf-8") as file:
-        file.write(text)
-
-
-def read(name):
-    with open(os.path.join(work, name), "rb") as file:
-        return file.read()
+from testing import check, finish, read, run, work, write
 
 
 def rows_of(name):
@@ -281,5 +256,4 @@ products()
 errors()
 texts()
 refused()
-shutil.rmtree(work)
 finish()

@@ -3,48 +3,20 @@
 # bytes that they have in the end.
 #
 #   python3 study_limits_test.py STRUT
-import csv
 import os
 import shutil
 import signal
 import subprocess
-import sys
-import tempfile
 import time
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import check, finish  # noqa: E402
+from testing import check, copy_models, finish, path, rows, run, strut, work, write
 
-strut = os.path.realpath(sys.argv[1])
-models = os.path.realpath("models")
-work = tempfile.mkdtemp()
-shutil.copytree(models, f"{work}/copied")  # a study names what is below its folder
-
-
-def run(*words, code=0):
-    done = subprocess.run([strut, *words], capture_output=True, text=True, cwd=work, timeout=120)
-    check(done.returncode == code,
-          f"strut {' '.join(words)}: exit code {done.returncode}, expected {code}: {done.stderr}")
-    return done
-
-
-def path(name):
-    return os.path.join(work, name)
-
-
-def write(name, text):
-    with open(path(name), "w", encoding="utf-8") as file:
-        file.write(text)
+copy_models()
 
 
 def lines(name):
     with open(path(name), encoding="utf-8") as file:
         return file.read().splitlines()
-
-
-def rows(name):
-    with open(path(name), newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
 
 
 write("block.yaml", """strut: 1
@@ -157,10 +129,7 @@ def partial():
     check(not os.path.exists(path("stopped/table-partial.csv")), "the partial table is removed")
 
 
-try:
-    evaluations()
-    clock()
-    partial()
-finally:
-    shutil.rmtree(work)
+evaluations()
+clock()
+partial()
 finish()

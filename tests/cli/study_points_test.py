@@ -4,19 +4,12 @@
 # elsewhere.
 #
 #   python3 study_points_test.py STRUT
-import csv
 import math
 import os
 import shutil
 import subprocess
-import sys
-import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import check, finish  # noqa: E402
-
-strut = os.path.realpath(sys.argv[1])
-work = tempfile.mkdtemp()
+from testing import check, finish, path, read, rows, strut, work
 
 
 def run(*words, code=0, timeout=60):
@@ -26,23 +19,9 @@ def run(*words, code=0, timeout=60):
     return done
 
 
-def path(name):
-    return os.path.join(work, name)
-
-
 def write(name, text):
     with open(path(name), "w", encoding="utf-8", newline="") as file:
         file.write(text)
-
-
-def read(name):
-    with open(path(name), "rb") as file:
-        return file.read()
-
-
-def rows(name):
-    with open(path(name), newline="") as file:
-        return list(csv.DictReader(file))
 
 
 write("block.yaml", """strut: 1
@@ -190,12 +169,9 @@ def elsewhere():
     refused("{points: many.csv}", "1000001 rows")
 
 
-try:
-    own_tables_are_points()
-    units_and_quotes()
-    samples()
-    same_bytes()
-    elsewhere()
-finally:
-    shutil.rmtree(work)
+own_tables_are_points()
+units_and_quotes()
+samples()
+same_bytes()
+elsewhere()
 finish()

@@ -4,7 +4,6 @@
 # finest grid.
 #
 #   python3 study_refine_test.py STRUT
-import csv
 import json
 import math
 import os
@@ -12,41 +11,9 @@ import random
 import shutil
 import signal
 import subprocess
-import sys
-import tempfile
 import time
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import check, finish  # noqa: E402
-
-strut = os.path.realpath(sys.argv[1])
-work = tempfile.mkdtemp()
-
-
-def run(*words, code=0):
-    done = subprocess.run([strut, *words], capture_output=True, text=True, cwd=work, timeout=120)
-    check(done.returncode == code,
-          f"strut {' '.join(words)}: exit code {done.returncode}, expected {code}: {done.stderr}")
-    return done
-
-
-def path(name):
-    return os.path.join(work, name)
-
-
-def write(name, text):
-    with open(path(name), "w", encoding="utf-8") as file:
-        file.write(text)
-
-
-def read(name):
-    with open(path(name), "rb") as file:
-        return file.read()
-
-
-def rows(name):
-    with open(path(name), newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+from testing import check, finish, path, read, rows, run, strut, work, write
 
 
 write("truss.yaml", """strut: 1
@@ -182,14 +149,11 @@ axes: [{{height: {COARSE[0]}}}, {{load: {COARSE[1]}}}, {{stiffness: [1, 2]}}]
     check(said in text, f"lacks '{said}': {text}")
 
 
-try:
-    the_edge_is_found()
-    same_bytes()
-    emitted()
-    killed()
-    numbers_and_failures()
-    refused("refine: {where: outcome, depth: 2}\n", "no column 'outcome'")
-    refused("refine: {where: stable_count, depth: 2, axes: [height, stiffness]}\n", "cannot be refined")
-finally:
-    shutil.rmtree(work)
+the_edge_is_found()
+same_bytes()
+emitted()
+killed()
+numbers_and_failures()
+refused("refine: {where: outcome, depth: 2}\n", "no column 'outcome'")
+refused("refine: {where: stable_count, depth: 2, axes: [height, stiffness]}\n", "cannot be refined")
 finish()

@@ -11,7 +11,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 
 try:
@@ -20,31 +19,10 @@ except ImportError:
     print("numpy is missing: nothing tested")
     sys.exit(77)
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import check, finish  # noqa: E402
+from testing import check, copy_models, finish, models, read, run, strut, work, write
 
-strut = os.path.realpath(sys.argv[1])
 kills = int(sys.argv[2]) if len(sys.argv) > 2 else 10
-models = os.path.realpath("models")
-work = tempfile.mkdtemp()
-shutil.copytree(models, f"{work}/copied")  # a study names what is below its folder
-
-
-def run(*words, code=0):
-    done = subprocess.run([strut, *words], capture_output=True, text=True, cwd=work)
-    check(done.returncode == code,
-          f"strut {' '.join(words)}: exit code {done.returncode}, expected {code}: {done.stderr}")
-    return done
-
-
-def write(name, text):
-    with open(os.path.join(work, name), "w", encoding="utf-8") as file:
-        file.write(text)
-
-
-def read(name):
-    with open(os.path.join(work, name), "rb") as file:
-        return file.read()
+copy_models()
 
 
 def rows(name):
@@ -591,16 +569,13 @@ keep: [velocity]
     check(peak[1] < peak[0] + 3000, f"memory grows with the points: {peak} kB")
 
 
-try:
-    for test in (points_are_those_of_numpy, warnings_are_counted, rows_are_single_runs, the_same_bytes,
-                 lanes_change_nothing, killed_and_resumed, interrupted, points_that_fail,
-                 failed_points_once_more, a_directory_stands_for_itself, checked_again, figures,
-                 trajectories, killed_while_recording,
-                 what_has_changed_is_refused, names_of_columns, two_at_once,
-                 no_room, wrong_use, memory_is_flat):
-        began = time.time()
-        test()
-        print(f"{test.__name__}: {time.time() - began:.1f} s")
-finally:
-    shutil.rmtree(work)
+for test in (points_are_those_of_numpy, warnings_are_counted, rows_are_single_runs, the_same_bytes,
+             lanes_change_nothing, killed_and_resumed, interrupted, points_that_fail,
+             failed_points_once_more, a_directory_stands_for_itself, checked_again, figures,
+             trajectories, killed_while_recording,
+             what_has_changed_is_refused, names_of_columns, two_at_once,
+             no_room, wrong_use, memory_is_flat):
+    began = time.time()
+    test()
+    print(f"{test.__name__}: {time.time() - began:.1f} s")
 finish()

@@ -13,16 +13,12 @@ import re
 import shutil
 import subprocess
 import sys
-import tempfile
 import xml.etree.ElementTree as tree
 import zipfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import check, finish  # noqa: E402
+from testing import check, finish, strut, work
 
-strut = os.path.realpath(sys.argv[1])
 root = os.getcwd()
-work = tempfile.mkdtemp()
 
 
 def lines_of(program):
@@ -161,21 +157,18 @@ def spreadsheet():
                 check(good, f"spreadsheet: {path}: {name}: {value}, not {cell}")
 
 
-try:
-    tested = 0
-    octave_program = shutil.which("octave-cli") or shutil.which("octave")
-    modules = all(importlib.util.find_spec(m) for m in ("pandas", "matplotlib"))
-    make_tables()
-    for name, there, test in (
-            ("pandas and matplotlib", modules, pandas),
-            ("Octave", octave_program, lambda: octave(octave_program)),
-            ("LibreOffice", shutil.which("soffice"), spreadsheet)):
-        if there:
-            test()
-            tested += 1
-            print(f"{name}: tested")
-        else:
-            print(f"{name}: skipped, not installed")
-finally:
-    shutil.rmtree(work)
+tested = 0
+octave_program = shutil.which("octave-cli") or shutil.which("octave")
+modules = all(importlib.util.find_spec(m) for m in ("pandas", "matplotlib"))
+make_tables()
+for name, there, test in (
+        ("pandas and matplotlib", modules, pandas),
+        ("Octave", octave_program, lambda: octave(octave_program)),
+        ("LibreOffice", shutil.which("soffice"), spreadsheet)):
+    if there:
+        test()
+        tested += 1
+        print(f"{name}: tested")
+    else:
+        print(f"{name}: skipped, not installed")
 finish(tested)

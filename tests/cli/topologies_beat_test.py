@@ -7,13 +7,10 @@ import csv
 import os
 import shutil
 import subprocess
-import sys
 import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import check, finish  # noqa: E402
+from testing import check, finish, strut
 
-strut = os.path.abspath(sys.argv[1])
 STUDY = """
 strut: 1
 study: Three grounds

@@ -8,12 +8,8 @@ import json
 import os
 import re
 import subprocess
-import sys
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import fail, finish  # noqa: E402
-
-strut = os.path.abspath(sys.argv[1])
+from testing import fail, finish, strut
 
 
 def run(*words):

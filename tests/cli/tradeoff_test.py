@@ -12,20 +12,11 @@ import subprocess
 import sys
 import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
-from findings import files_in  # noqa: E402
+from testing import fail, files_in, finish, strut
 
-strut = os.path.abspath(sys.argv[1])
 slower = int(sys.argv[2]) if len(sys.argv) > 2 else 1
 OSCILLATOR, BALL = "models/basics/oscillator.yaml", "models/basics/bouncing-node.yaml"
 HOPPER = "tests/cli/hopper.yaml"
-failures = 0
-
-
-def fail(text):
-    global failures
-    failures += 1
-    print("FAILED:", text)
 
 
 def budgeted(words):
@@ -337,4 +328,4 @@ for words, text in ((("--vary", "heigth=1..2"), "heigth"),
 done = run("models/gallery/x-joint.yaml", code=2)
 if done.stdout or not done.stderr:
     fail(f"a scene without a run: {done.stderr}")
-sys.exit(failures > 0)
+finish()

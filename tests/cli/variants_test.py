@@ -6,19 +6,10 @@ usage: variants_test.py STRUT
 import csv
 import os
 import subprocess
-import sys
-import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import check, finish  # noqa: E402
+from testing import check, finish, strut, work, write
 
-strut = os.path.realpath(sys.argv[1])
-os.chdir(tempfile.mkdtemp())
-
-
-def write(name, text):
-    with open(name, "w", encoding="utf-8") as file:
-        file.write(text)
+os.chdir(work)
 
 
 def sweep(name, text, *words, code=0):

@@ -108,19 +108,8 @@ static void check_separation(strut_bar_model bars, const char *name) {
   assert_relative(lambda, expected, 0.05);
 }
 
-static void test_separation_of_stiff_bars(void **unused) {
-  (void)unused;
-  check_separation(STRUT_BARS_ELASTIC, "stiff");
-}
+BEFORE_ALL { ensembles = (int)test_number(1, ensembles); }
 
-static void test_separation_of_rigid_bars(void **unused) {
-  (void)unused;
-  check_separation(STRUT_BARS_RIGID, "rigid");
-}
+TEST(separation_of_stiff_bars) { check_separation(STRUT_BARS_ELASTIC, "stiff"); }
 
-int main(int count, char **words) {
-  if (count > 1) ensembles = atoi(words[1]);
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_separation_of_stiff_bars),
-                                     cmocka_unit_test(test_separation_of_rigid_bars)};
-  return cmocka_run_group_tests_name("extremes: chaos", tests, NULL, NULL);
-}
+TEST(separation_of_rigid_bars) { check_separation(STRUT_BARS_RIGID, "rigid"); }

@@ -43,8 +43,7 @@ static double bounce(const char *method, double zeta, double z) {
   return e;
 }
 
-static void test_restitution_of_the_one_sided_damper(void **unused) {
-  (void)unused;
+TEST(restitution_of_the_one_sided_damper) {
   static const double zeta[] = {0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 1, 1.5, 3};
   for (int k = 0; k < LOCATED_COUNT; k++) {
     double worst = 0;
@@ -57,8 +56,7 @@ static void test_restitution_of_the_one_sided_damper(void **unused) {
   }
 }
 
-static void test_order_through_a_bounce(void **unused) {
-  (void)unused;
+TEST(order_through_a_bounce) {
   static const double zeta[] = {0.05, 0.2, 0.4, 0.6, 0.8, 1.5};
   for (size_t i = 0; i < sizeof zeta / sizeof zeta[0]; i++) {
     double error[4];
@@ -112,8 +110,7 @@ static double turning_period(motion *m, double stiffness, double friction, int c
   return (last - first) / (count - 1);
 }
 
-static void test_belt_stick_slip_period(void **unused) {
-  (void)unused;
+TEST(belt_stick_slip_period) {
   const double k = 100, belt = 0.1, weight = 9.81, most = 2, kinetic = 1, omega = 10;
   const double gap = (most - kinetic) / k;
   const double period = 2 * gap / belt + (PI + 2 * atan(belt / (omega * gap))) / omega;
@@ -133,8 +130,7 @@ static void test_belt_stick_slip_period(void **unused) {
 }
 
 /* Carried along until it slips, the block swings by itself: it meets the belt's speed, no longer. */
-static void test_no_stick_slip_with_equal_coefficients(void **unused) {
-  (void)unused;
+TEST(no_stick_slip_with_equal_coefficients) {
   const double k = 100, belt = 0.1, weight = 9.81, kinetic = 1, omega = 10;
   for (int i = 0; i < LOCATED_COUNT; i++) {
     strut_setup setup;
@@ -158,8 +154,7 @@ static double amplitude(const motion *m, double shift, double omega) {
   return hypot(m->state->q[0] - centre, m->state->v[0] / omega);
 }
 
-static void test_coulomb_oscillator(void **unused) {
-  (void)unused;
+TEST(coulomb_oscillator) {
   const double k = 100, omega = 10, weight = 9.81, start = 0.1;
   static const double mus[] = {0.05, 0.0813, 0.2};
   for (int i = 0; i < LOCATED_COUNT * 3; i++) {
@@ -205,8 +200,7 @@ static void loaded_block(strut_setup *setup, double ground, double y, double mu,
 }
 
 /* Pulled by more than friction from rest: uniformly accelerated, and no part of a step is lost at the edge. */
-static void test_the_band_is_left_where_its_edge_is(void **unused) {
-  (void)unused;
+TEST(the_band_is_left_where_its_edge_is) {
   const double ground = 1e5, mu = 0.1, load = 2;
   for (int i = 0; i < LOCATED_COUNT; i++) {
     for (double step = 1e-3; step < 6e-3; step += 1.3e-3) {
@@ -229,8 +223,7 @@ static void test_the_band_is_left_where_its_edge_is(void **unused) {
  * Slowed down to the edge of the band, where forces balance, the block keeps that speed until the load, which grows
  * as a sine, exceeds what friction can balance.
  */
-static void test_the_edge_of_the_band_is_left_where_balance_ends(void **unused) {
-  (void)unused;
+TEST(the_edge_of_the_band_is_left_where_balance_ends) {
   const double ground = 1e5, mu = 0.1, load = 4, frequency = 0.05, edge = 1e-2, most = mu * GRAVITY;
   const double omega = 2 * PI * frequency, leaves = asin(most / load) / omega, end = 1.5;
   for (int i = 0; i < LOCATED_COUNT; i++) {
@@ -256,8 +249,7 @@ static void test_the_edge_of_the_band_is_left_where_balance_ends(void **unused) 
  * Pushed backwards by a load that begins at 0, as the normal force does: friction is against the push from the start,
  * and the block never within what it could balance.
  */
-static void test_friction_is_against_a_push_that_begins(void **unused) {
-  (void)unused;
+TEST(friction_is_against_a_push_that_begins) {
   const double ground = 1000, omega = sqrt(ground), mu = 0.3, load = -400, frequency = 0.5;
   const double drive = 2 * PI * frequency, step = 1e-3, t = 50 * step;
   for (int i = 0; i < LOCATED_COUNT; i++) {
@@ -281,8 +273,7 @@ static void test_friction_is_against_a_push_that_begins(void **unused) {
  * Drawn on the ground, which does not carry it yet, a block slips under the smallest load, until it is carried: here
  * within the first step.
  */
-static void test_a_slip_may_end_in_the_step_in_which_it_begins(void **unused) {
-  (void)unused;
+TEST(a_slip_may_end_in_the_step_in_which_it_begins) {
   const double ground = 1000, omega = sqrt(ground), mu = 0.3, load = 0.01, most = mu * GRAVITY;
   double t = sqrt(6 * load / most) / omega;
   for (int k = 0; k < 50; k++)
@@ -301,19 +292,4 @@ static void test_a_slip_may_end_in_the_step_in_which_it_begins(void **unused) {
     motion_end(&m);
     strut_setup_free(&setup);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_restitution_of_the_one_sided_damper),
-      cmocka_unit_test(test_order_through_a_bounce),
-      cmocka_unit_test(test_belt_stick_slip_period),
-      cmocka_unit_test(test_no_stick_slip_with_equal_coefficients),
-      cmocka_unit_test(test_coulomb_oscillator),
-      cmocka_unit_test(test_the_band_is_left_where_its_edge_is),
-      cmocka_unit_test(test_the_edge_of_the_band_is_left_where_balance_ends),
-      cmocka_unit_test(test_friction_is_against_a_push_that_begins),
-      cmocka_unit_test(test_a_slip_may_end_in_the_step_in_which_it_begins),
-  };
-  return cmocka_run_group_tests_name("extremes: events", tests, NULL, NULL);
 }

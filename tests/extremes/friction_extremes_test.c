@@ -41,8 +41,9 @@ static double momentum(const motion *m) {
   return sum;
 }
 
-static void test_without_friction_horizontal_momentum_stays(void **unused) {
-  (void)unused;
+BEFORE_ALL { times = test_number(1, times); }
+
+TEST(without_friction_horizontal_momentum_stays) {
   static const char *const methods[] = {"rk4", "rk4-events", "verlet-events"};
   for (int k = 0; k < 3; k++) {
     strut_setup setup;
@@ -84,8 +85,7 @@ static double creep(const char *method, strut_friction_law law, double mu, doubl
   return way;
 }
 
-static void test_friction_of_a_million_holds_a_frame(void **unused) {
-  (void)unused;
+TEST(friction_of_a_million_holds_a_frame) {
   double seconds = 10 * times;
   static const char *const methods[] = {"rk4-events", "verlet-events", "euler-events"};
   for (int k = 0; k < 3; k++) {
@@ -99,8 +99,7 @@ static void test_friction_of_a_million_holds_a_frame(void **unused) {
  * Karnopp's band does not hold: it keeps the speed with which a node came into it. Methods without
  * events are not here: mu N changes the slip by millions of bands in a step, and they blow up.
  */
-static void test_karnopps_band_creeps_at_most_at_its_edge(void **unused) {
-  (void)unused;
+TEST(karnopps_band_creeps_at_most_at_its_edge) {
   double seconds = 10 * times;
   static const char *const methods[] = {"rk4-events", "verlet-events"};
   for (int k = 0; k < 2; k++) {
@@ -135,8 +134,7 @@ static double way_down(const char *method, double slope, double mu, double secon
 }
 
 /* tan(slope) = mu (1 -+ 1e-6): one holds, the other slides as the closed form says. */
-static void test_slopes_beside_the_angle_of_friction(void **unused) {
-  (void)unused;
+TEST(slopes_beside_the_angle_of_friction) {
   static const char *const methods[] = {"rk4-events", "verlet-events", "euler-events", "adaptive"};
   static const double mus[] = {0.01, 0.4, 3};
   for (int k = 0; k < 12; k++) {
@@ -150,15 +148,4 @@ static void test_slopes_beside_the_angle_of_friction(void **unused) {
                   expected);
     assert_relative(way, expected, 2e-4); /* Euler's is first order: 1e-4 */
   }
-}
-
-int main(int count, char **words) {
-  if (count > 1) times = strtod(words[1], NULL);
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_without_friction_horizontal_momentum_stays),
-      cmocka_unit_test(test_friction_of_a_million_holds_a_frame),
-      cmocka_unit_test(test_karnopps_band_creeps_at_most_at_its_edge),
-      cmocka_unit_test(test_slopes_beside_the_angle_of_friction),
-  };
-  return cmocka_run_group_tests_name("extremes: friction", tests, NULL, NULL);
 }

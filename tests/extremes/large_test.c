@@ -122,22 +122,26 @@ static void land(int32_t n, int64_t count, strut_mass_model mass, double mu) {
   strut_setup_free(&setup);
 }
 
-static void test_many_nodes(void **unused) {
-  (void)unused;
+BEFORE_ALL {
+  nodes = (int32_t)test_number(1, nodes);
+  steps = (int64_t)test_number(2, (double)steps);
+  many_steps = (int64_t)test_number(3, (double)many_steps);
+  largest_nodes = (int32_t)test_number(4, largest_nodes);
+}
+
+TEST(many_nodes) {
   land(nodes, steps, STRUT_MASS_LUMPED, 0);
   land(nodes, steps, STRUT_MASS_LUMPED, 0.3);
   land(nodes, steps, STRUT_MASS_CONSISTENT, 0.3);
 }
 
-static void test_many_steps(void **unused) {
-  (void)unused;
+TEST(many_steps) {
   land(1000, many_steps, STRUT_MASS_LUMPED, 0);
   land(1000, many_steps, STRUT_MASS_CONSISTENT, 0);
 }
 
 /* Grids beside each other in one scene, each where the one alone is, know nothing of each other. */
-static void test_copies(void **unused) {
-  (void)unused;
+TEST(copies) {
   enum { COPIES = 50, EACH = 100 };
   strut_setup one, all;
   motion a, b;
@@ -210,22 +214,7 @@ static void take_largest(strut_mass_model mass) {
   strut_setup_free(&setup);
 }
 
-static void test_the_largest(void **unused) {
-  (void)unused;
+TEST(the_largest) {
   take_largest(STRUT_MASS_LUMPED);
   take_largest(STRUT_MASS_CONSISTENT);
-}
-
-int main(int count, char **words) {
-  if (count > 1) nodes = (int32_t)strtol(words[1], NULL, 10);
-  if (count > 2) steps = strtoll(words[2], NULL, 10);
-  if (count > 3) many_steps = strtoll(words[3], NULL, 10);
-  if (count > 4) largest_nodes = (int32_t)strtol(words[4], NULL, 10);
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_copies),
-      cmocka_unit_test(test_many_nodes),
-      cmocka_unit_test(test_many_steps),
-      cmocka_unit_test(test_the_largest),
-  };
-  return cmocka_run_group_tests_name("extremes: large", tests, NULL, NULL);
 }

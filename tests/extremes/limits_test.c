@@ -117,8 +117,7 @@ static void check_growth(const explicit_method *method, double zeta, double part
   strut_setup_free(&setup);
 }
 
-static void test_growth_beside_the_limit(void **unused) {
-  (void)unused;
+TEST(growth_beside_the_limit) {
   static const double zeta[] = {0, 0.1, 1, 10};
   for (int k = 0; k < METHOD_COUNT; k++)
     for (int i = 0; i < (METHODS[k].damped ? 4 : 1); i++) {
@@ -128,8 +127,7 @@ static void test_growth_beside_the_limit(void **unused) {
 }
 
 /* What check prints is that limit. */
-static void test_the_limit_is_predicted(void **unused) {
-  (void)unused;
+TEST(the_limit_is_predicted) {
   static const double zeta[] = {0, 0.1, 1, 10};
   for (int k = 0; k < METHOD_COUNT; k++)
     for (int i = 0; i < (METHODS[k].damped ? 4 : 1); i++) {
@@ -143,12 +141,4 @@ static void test_the_limit_is_predicted(void **unused) {
       strut_model_free(model);
       strut_setup_free(&setup);
     }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_growth_beside_the_limit),
-      cmocka_unit_test(test_the_limit_is_predicted),
-  };
-  return cmocka_run_group_tests_name("extremes: limits", tests, NULL, NULL);
 }

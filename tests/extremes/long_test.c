@@ -35,9 +35,10 @@ static long resident(void) {
   return usage.ru_maxrss;
 }
 
+BEFORE_ALL { steps = (int64_t)test_number(1, (double)steps); }
+
 /* RK4 keeps 1 - z^6/72 + z^8/576 of the energy per step, exactly. */
-static void test_energy_of_rk4(void **unused) {
-  (void)unused;
+TEST(energy_of_rk4) {
   static const double zs[] = {0.01, 0.1};
   for (int k = 0; k < 2; k++) {
     strut_setup setup;
@@ -63,8 +64,7 @@ static void test_energy_of_rk4(void **unused) {
 }
 
 /* Verlet's energy stays within z^2 / 4 of what it was, for ever. */
-static void test_energy_of_verlet(void **unused) {
-  (void)unused;
+TEST(energy_of_verlet) {
   strut_setup setup;
   motion m;
   double z = 0.1, low = HUGE_VAL, high = 0;
@@ -86,8 +86,7 @@ static void test_energy_of_verlet(void **unused) {
 }
 
 /* The drive tells the time: its phase after so many steps of 1e-4 s, whose sum would drift. */
-static void test_the_clock(void **unused) {
-  (void)unused;
+TEST(the_clock) {
   const double frequency = 12.70003, amplitude = 0.01, dt = 1e-4, pi = 3.14159265358979323846;
   strut_setup setup;
   motion m;
@@ -105,14 +104,4 @@ static void test_the_clock(void **unused) {
   assert_true(fabs(late) < 1e-9);
   motion_end(&m);
   strut_setup_free(&setup);
-}
-
-int main(int count, char **words) {
-  if (count > 1) steps = strtoll(words[1], NULL, 10);
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_energy_of_rk4),
-      cmocka_unit_test(test_energy_of_verlet),
-      cmocka_unit_test(test_the_clock),
-  };
-  return cmocka_run_group_tests_name("extremes: long", tests, NULL, NULL);
 }

@@ -25,8 +25,7 @@ static void through(strut_setup *setup, double rest, double miss) {
 }
 
 /* Without a rest length the orbit is an ellipse: cos w t, miss sin w t. */
-static void test_orbits_of_zero_rest_length_close(void **unused) {
-  (void)unused;
+TEST(orbits_of_zero_rest_length_close) {
   static const double misses[] = {0, 1e-300, 1e-12, 1e-6, 0.5};
   const double omega = sqrt(K / MASS), step = 2 * PI / omega / 2000;
   for (int k = 0; k < METHOD_COUNT * 5; k++) {
@@ -53,8 +52,7 @@ static void test_orbits_of_zero_rest_length_close(void **unused) {
  * With a rest length the force turns round on the way through: a method that meets this inside a
  * step is wrong by up to the jump times the way of a step, and its balance must say so.
  */
-static void test_bars_through_no_length_keep_their_balance(void **unused) {
-  (void)unused;
+TEST(bars_through_no_length_keep_their_balance) {
   static const double misses[] = {0, 1e-300, 1e-12, 1e-9};
   const double rest = 0.4, speed = 20;
   for (int k = 0; k < METHOD_COUNT * 4; k++) {
@@ -137,8 +135,7 @@ static double shaken(uint64_t seed, double step, int steps, double *residual) {
  * Passing no length closely, single runs come late to their order, or meet a residual that happens
  * to be small; their sum falls as it must.
  */
-static void test_frames_turned_inside_out_keep_their_balance(void **unused) {
-  (void)unused;
+TEST(frames_turned_inside_out_keep_their_balance) {
   double sum[4] = {0}, deepest = 1;
   int inverted = 0;
   for (uint64_t seed = 1; seed <= 12; seed++) {
@@ -160,8 +157,7 @@ static void test_frames_turned_inside_out_keep_their_balance(void **unused) {
 }
 
 /* Up to a million times its size and down again: the centre of mass on its parabola. */
-static void test_a_throw_of_a_million_sizes(void **unused) {
-  (void)unused;
+TEST(a_throw_of_a_million_sizes) {
   const double g = 9.81, way = 2e5, speed = sqrt(2 * g * way), seconds = 2 * speed / g;
   strut_setup setup;
   springs(&setup, 0.3);
@@ -192,14 +188,4 @@ static void test_a_throw_of_a_million_sizes(void **unused) {
   strut_model_free(model);
   strut_summary_free(&s);
   strut_setup_free(&setup);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_orbits_of_zero_rest_length_close),
-      cmocka_unit_test(test_bars_through_no_length_keep_their_balance),
-      cmocka_unit_test(test_frames_turned_inside_out_keep_their_balance),
-      cmocka_unit_test(test_a_throw_of_a_million_sizes),
-  };
-  return cmocka_run_group_tests_name("extremes: members", tests, NULL, NULL);
 }

@@ -11,8 +11,7 @@
 #include "tests/support/random.h"
 
 /* A row of springs along x, pulled at its end: it gives by the sum of pull / stiffness. */
-static void test_statics_of_a_stiffness_ratio(void **unused) {
-  (void)unused;
+TEST(statics_of_a_stiffness_ratio) {
   for (int links = 3; links <= 200; links += 197) { /* a dense Hessian, and a sparse one */
     const double pull = 0.01;
     strut_scene scene;
@@ -49,8 +48,7 @@ static void test_statics_of_a_stiffness_ratio(void **unused) {
 
 /* Support - 1e12 N/m - 1 kg - 1 N/m - 1 kg: the slow mode from its end to its middle, in steps
    that the fast one bears. */
-static void test_dynamics_of_a_stiffness_ratio(void **unused) {
-  (void)unused;
+TEST(dynamics_of_a_stiffness_ratio) {
   const double stiff = 1e12, soft = 1, pi = 3.14159265358979323846;
   double sum = stiff + 2 * soft, product = stiff * soft;
   double omega = sqrt(2 * product / (sum + sqrt(sum * sum - 4 * product)));
@@ -76,8 +74,7 @@ static void test_dynamics_of_a_stiffness_ratio(void **unused) {
 }
 
 /* Bars of 1 kg and 1e-9 kg by turns in one connected body of 1e5 nodes: M a = f, both ways. */
-static void test_masses_of_a_ratio_on_many_nodes(void **unused) {
-  (void)unused;
+TEST(masses_of_a_ratio_on_many_nodes) {
   enum { NODES = 100000 };
   strut_scene scene;
   uint64_t r = 5;
@@ -115,13 +112,4 @@ static void test_masses_of_a_ratio_on_many_nodes(void **unused) {
   free(force);
   strut_model_free(model);
   strut_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_statics_of_a_stiffness_ratio),
-      cmocka_unit_test(test_dynamics_of_a_stiffness_ratio),
-      cmocka_unit_test(test_masses_of_a_ratio_on_many_nodes),
-  };
-  return cmocka_run_group_tests_name("extremes: ratios", tests, NULL, NULL);
 }

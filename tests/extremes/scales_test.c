@@ -33,8 +33,11 @@ static void shaken_frame(strut_setup *setup, double shift) {
 }
 
 /* Each step rounds a position by half of 1.2e-10 m out there. */
-static void test_a_million_metres_from_the_origin(void **unused) {
-  (void)unused;
+BEFORE_ALL {
+  gsl_set_error_handler_off(); /* as the program does: GSL reports by its return values */
+}
+
+TEST(a_million_metres_from_the_origin) {
   static const char *const methods[] = {"rk4", "verlet-events", "adaptive"};
   for (int k = 0; k < 3; k++) {
     strut_setup near, far;
@@ -134,8 +137,7 @@ static void run_wild(uint64_t seed, tally *t) {
   strut_setup_free(&setup);
 }
 
-static void test_parameters_of_any_size(void **unused) {
-  (void)unused;
+TEST(parameters_of_any_size) {
   tally t = {0};
   for (uint64_t seed = 1; seed <= 4000; seed++) run_wild(seed, &t);
   print_message("1e-300 to 1e300: %d invalid, %d refused, %d stopped with a sentence, %d answers\n",
@@ -175,8 +177,7 @@ static void dying(strut_setup *setup, double amplitude) {
 }
 
 /* Amplitudes whose squares, or which themselves, are subnormal. */
-static void test_motion_that_dies_is_not_slow(void **unused) {
-  (void)unused;
+TEST(motion_that_dies_is_not_slow) {
   static const char *const methods[] = {"rk4", "rk4-events", "verlet-events"};
   static const double amplitude[] = {1, 1e-154, 1e-158, 1e-161, 1e-308, 1e-312, 1e-320};
   for (int k = 0; k < 3; k++) {
@@ -191,14 +192,4 @@ static void test_motion_that_dies_is_not_slow(void **unused) {
     print_message("%s: subnormal motion takes %.2f times as long\n", methods[k], slowest / alive);
     assert_true(slowest <= 2 * alive);
   }
-}
-
-int main(void) {
-  gsl_set_error_handler_off(); /* as the program does: GSL reports by its return values */
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_million_metres_from_the_origin),
-      cmocka_unit_test(test_parameters_of_any_size),
-      cmocka_unit_test(test_motion_that_dies_is_not_slow),
-  };
-  return cmocka_run_group_tests_name("extremes: scales", tests, NULL, NULL);
 }

@@ -2,7 +2,7 @@
 /*
  * libFuzzer target: the library's entries for texts. The input is a name, a value and a text with NULs between
  * them: any text is opened or refused with a message, any setting and any option is taken or refused, and
- * any dotted name has a value or none. Seeds: tests/language/good and tests/language/bad.
+ * any dotted name has a value or none. Seeds: as of fuzz_scene.
  */
 #include <stdbool.h>
 #include <stddef.h>

@@ -2,7 +2,7 @@
 /*
  * libFuzzer target: any text is read or refused, with the same messages whether rows are deferred or not; what
  * is read can be written, read again and written to the same text. Seeds: tests/language/good and
- * tests/language/bad.
+ * the cases of tests/language/bad, unpacked.
  */
 #include <stddef.h>
 #include <stdint.h>

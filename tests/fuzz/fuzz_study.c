@@ -2,7 +2,7 @@
 /*
  * libFuzzer target: any text is read as a study of the model of tests/language/studies or refused with
  * a message; of what is read, the first, the middle and the last point have a scene or a message.
- * Seeds: tests/language/studies/good and bad. It runs in the repository's root.
+ * Seeds: tests/language/studies/good and the cases of bad, unpacked. It runs in the repository's root.
  */
 #include <math.h>
 #include <stdint.h>

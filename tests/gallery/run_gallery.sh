@@ -5,8 +5,9 @@
 #
 #   sh tests/gallery/run_gallery.sh ROOT STRUT [NAME...]     NAMEs: only these models
 #
-# tests/gallery/NAME.answers belongs to the NAME.yaml of one of the two. Its lines:
+# A section of a file tests/gallery/*.answers belongs to the NAME.yaml of one of the two. Its lines:
 #
+#   [NAME]
 #   # a comment
 #   COMMAND [OPTIONS...] [%VARIANT] | FILTER | EXPECTED | TOLERANCE
 #   %VARIANT = SED-SCRIPT
@@ -76,11 +77,15 @@ trim() {
   trimmed=${trimmed%"${trimmed##*[! ]}"}
 }
 
-# answers FILE MODEL: all lines of a file; one line of output for each that is wrong.
+# answers FILE MODEL [NAME]: all lines of a file, or of its section NAME; one line of output for each that is
+# wrong.
 answers() {
   rm -f "$scratch"/*.sed
   asked_last=
-  awk '{ if (!start) start = NR }
+  awk -v name="${3-}" 'BEGIN { asked = name == "" }
+       /^\[/ { asked = $0 == "[" name "]"; next }
+       !asked { next }
+       { if (!start) start = NR }
        /\\$/ { sub(/\\$/, ""); held = held $0; next }
        { print start ": " held $0; held = ""; start = 0 }' "$1" >"$scratch/lines"
   while IFS= read -r line; do
@@ -154,19 +159,18 @@ for number in 1 2 3 4 5 6 7 8 9 10; do
 done
 
 : >"$scratch/asked"
-for file in "$here"/*.answers "$root"/models/gallery/*.yaml "$root"/models/parts/*.yaml; do
-  name=${file##*/}
-  name=${name%.*}
+sed -n 's/^\[\(.*\)]$/\1/p' "$here"/*.answers | sort >"$scratch/sections"
+for name in $(ls "$root"/models/gallery/*.yaml "$root"/models/parts/*.yaml | sed 's|.*/||; s|\.yaml$||' |
+  sort -u - "$scratch/sections"); do
   case " ${*:-$name} " in *" $name "*) ;; *) continue ;; esac
   model=$root/models/gallery/$name.yaml
   [ -e "$model" ] || model=$root/models/parts/$name.yaml
-  if [ ! -e "$here/$name.answers" ] || [ ! -e "$model" ]; then
-    echo "$name: has only one of models/gallery or parts/$name.yaml, tests/gallery/$name.answers"
+  if [ ! -e "$model" ] || [ "$(grep -cx "$name" "$scratch/sections")" != 1 ]; then
+    echo "$name: needs models/gallery or parts/$name.yaml and one section [$name] in tests/gallery"
     failures=$((failures + 1))
     continue
   fi
-  [ "$file" = "$here/$name.answers" ] || continue
-  answers "$file" "$model" >"$scratch/wrong"
+  answers "$(grep -lxF "[$name]" "$here"/*.answers)" "$model" "$name" >"$scratch/wrong"
   cat "$scratch/wrong"
   failures=$((failures + $(wc -l <"$scratch/wrong")))
 done

@@ -3,10 +3,6 @@
  * Scenes whose nodes and members are read from deferred rows: the same scene or messages as without, for all
  * scenes of the repository, good and bad, and with faults in their rows. And what a large file takes.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,13 +10,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "parser/read/reader.h"
 #include "parser/write/write_scene.h"
 #include "tests/language/faults.h"
 #include "tests/language/scenes.h"
 #include "tests/support/sanitized.h"
+#include "tests/support/test.h"
 
 /* ---- the same, deferred or not ---- */
 
@@ -78,8 +73,7 @@ static void scenes_with_faults_are_the_same(scene_file *file) {
   }
 }
 
-static void every_scene_is_the_same(void **state) {
-  (void)state;
+TEST(every_scene_is_the_same) {
   for (int bad = 0; bad < 2; bad++) {
     scene_file *files;
     size_t count = bad ? refused_files(&files) : scene_files(&files);
@@ -136,18 +130,11 @@ static double measure_reading(const char *text) {
   return bytes;
 }
 
-static void a_member_takes_few_bytes(void **state) {
-  (void)state;
+TEST(a_member_takes_few_bytes) {
   char *text = make_chain();
   double bytes = measure_reading(text) / MEMBERS;
   free(text);
   print_message("%.0f bytes for each of %d members and its node\n", bytes, MEMBERS);
   assert_true(bytes > 0.0);
   if (!SANITIZED) assert_true(bytes < 450);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(every_scene_is_the_same),
-                                     cmocka_unit_test(a_member_takes_few_bytes)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

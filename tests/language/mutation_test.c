@@ -3,18 +3,13 @@
  * No value is lost silently: drop, rename or double any key of a valid scene, or change any number,
  * and either an error is reported or what is written back differs.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "parser/yaml/document.h"
 #include "tests/language/scenes.h"
+#include "tests/support/test.h"
 
 /* What saying nothing means too: dropping such a key changes nothing, and must not. */
 static const char *const said_anyway[] = {
@@ -141,8 +136,7 @@ static void mutate(mutation *m, const strut_tree *value) {
   }
 }
 
-static void no_value_is_lost(void **state) {
-  (void)state;
+TEST(no_value_is_lost) {
   scene_file *files;
   size_t count = scene_files(&files), lost = 0, tried = 0;
   char *room = malloc(1 << 20);
@@ -179,8 +173,7 @@ static void misspell(mutation *m, const strut_tree *value) {
   }
 }
 
-static void a_second_fault_is_survived(void **state) {
-  (void)state;
+TEST(a_second_fault_is_survived) {
   scene_file *files;
   size_t count = refused_files(&files), tried = 0;
   char *room = malloc(1 << 20);
@@ -197,10 +190,4 @@ static void a_second_fault_is_survived(void **state) {
   free(room);
   free_scene_files(files, count);
   assert_true(tried > 1000);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(no_value_is_lost),
-                                     cmocka_unit_test(a_second_fault_is_survived)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

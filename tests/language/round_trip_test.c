@@ -1,19 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is written reads back to the same bits, for every valid scene of the repository. */
 #include <locale.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "parser/language/keys.h"
 #include "parser/write/write_scene.h"
 #include "tests/language/scenes.h"
+#include "tests/support/test.h"
 
 static void same_bits(const char *what, const void *a, const void *b, size_t size) {
   if (memcmp(a, b, size) != 0) fail_msg("%s: not the same bits", what);
@@ -180,8 +175,7 @@ static const char *body(const char *text) {
   return text;
 }
 
-static void written_scenes_read_back_to_the_same_bits(void **state) {
-  (void)state;
+TEST(written_scenes_read_back_to_the_same_bits) {
   scene_file *files;
   size_t count = scene_files(&files);
   for (size_t i = 0; i < count; i++) {
@@ -205,8 +199,7 @@ static void written_scenes_read_back_to_the_same_bits(void **state) {
 }
 
 /* Numbers whose shortest text is easily got wrong, through the whole writer and reader. */
-static void single_numbers_survive(void **state) {
-  (void)state;
+TEST(single_numbers_survive) {
   uint64_t seed = 12345;
   strut_node nodes[2] = {{.name = "a", .mass = 1}, {.name = "b", .mass = 1}};
   strut_setup setup;
@@ -244,8 +237,7 @@ static void single_numbers_survive(void **state) {
 }
 
 /* A scene of the C interface whose drive has no name anywhere still says what its periods are of. */
-static void a_nameless_period_gets_a_name(void **state) {
-  (void)state;
+TEST(a_nameless_period_gets_a_name) {
   strut_node nodes[1] = {{.name = "a", .mass = 1}};
   strut_signal signal = strut_signal_default(STRUT_SINE);
   signal.amplitude = 1;
@@ -271,8 +263,7 @@ static void a_nameless_period_gets_a_name(void **state) {
   strut_release(text);
 }
 
-static void every_key_stands_in_a_good_file(void **state) {
-  (void)state;
+TEST(every_key_stands_in_a_good_file) {
   scene_file *files;
   size_t count = scene_files(&files);
   for (int key = 0; key < strut_section_first(STRUT_SECTION_STUDY);
@@ -284,14 +275,4 @@ static void every_key_stands_in_a_good_file(void **state) {
     if (!found) fail_msg("no good file has the key '%s'", strut_key_at(key)->name);
   }
   free_scene_files(files, count);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(written_scenes_read_back_to_the_same_bits),
-      cmocka_unit_test(single_numbers_survive),
-      cmocka_unit_test(a_nameless_period_gets_a_name),
-      cmocka_unit_test(every_key_stands_in_a_good_file),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,34 +2,40 @@
 #include "tests/language/scenes.h"
 
 #include <dirent.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "parser/write/write_scene.h"
+#include "tests/language/cases.h"
+#include "tests/support/test.h"
+
+enum { MOST_BYTES = 1 << 20 };
 
 typedef struct collection {
   scene_file *files;
   size_t count;
 } collection;
 
+/* Takes the text, unless it is a study. */
+static void add_text(collection *all, const char *path, char *text, size_t length) {
+  if (strstr(text, "\nstudy:")) {
+    free(text);
+    return;
+  }
+  all->files = realloc(all->files, (all->count + 1) * sizeof *all->files);
+  scene_file *added = &all->files[all->count++];
+  *added = (scene_file){.text = text, .length = length};
+  snprintf(added->path, sizeof added->path, "%s", path);
+}
+
 static void add_file(collection *all, const char *path) {
   FILE *file = fopen(path, "rb");
   assert_non_null(file);
-  all->files = realloc(all->files, (all->count + 1) * sizeof *all->files);
-  scene_file *added = &all->files[all->count++];
-  snprintf(added->path, sizeof added->path, "%s", path);
-  added->text = calloc(1, 1 << 20);
-  added->length = fread(added->text, 1, (1 << 20) - 1, file);
+  char *text = calloc(1, MOST_BYTES);
+  size_t length = fread(text, 1, MOST_BYTES - 1, file);
   fclose(file);
-  if (!strstr(added->text, "\nstudy:")) return;
-  free(added->text); /* a study */
-  all->count--;
+  add_text(all, path, text, length);
 }
 
 static void walk(collection *all, const char *folder) {
@@ -69,7 +75,18 @@ size_t scene_files(scene_file **files) {
 
 size_t refused_files(scene_file **files) {
   collection all = {NULL, 0};
-  walk(&all, STRUT_TESTS_DIR "/language/bad");
+  faulty_cases cases = read_faulty_cases(STRUT_TESTS_DIR "/language/bad");
+  for (size_t i = 0; i < cases.count; i++) {
+    char path[600];
+    const faulty_case *c = &cases.items[i];
+    if (c->is_base) continue;
+    snprintf(path, sizeof path, STRUT_TESTS_DIR "/language/bad/%s.yaml", c->name);
+    char *text = calloc(1, MOST_BYTES);
+    assert_true(c->length < MOST_BYTES);
+    memcpy(text, c->text, c->length);
+    add_text(&all, path, text, c->length);
+  }
+  free_faulty_cases(&cases);
   return sorted_files(&all, files);
 }
 

@@ -17,7 +17,7 @@ typedef struct scene_file {
 
 /** Every .yaml file below tests/language/good and models but for studies; none fails the test. */
 size_t scene_files(scene_file **files);
-/** The same of tests/language/bad: files that are refused. */
+/** The cases of tests/language/bad, each as if it were a file there: texts that are refused. */
 size_t refused_files(scene_file **files);
 void free_scene_files(scene_file *files, size_t count);
 

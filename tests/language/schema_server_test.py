@@ -12,23 +12,15 @@ import re
 import shutil
 import subprocess
 import sys
-import tempfile
 import threading
 
-strut = os.path.abspath(sys.argv[1])
+from testing import check, failed, strut, work
+
 top = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 program = os.environ.get("STRUT_YAML_SERVER") or shutil.which("yaml-language-server")
 if not program or not shutil.which("node"):
     print("skipped: yaml-language-server is not installed")
     sys.exit(77)
-failures = 0
-
-
-def check(true, text):
-    global failures
-    if not true:
-        failures += 1
-        print("FAILED:", text)
 
 
 class Server:
@@ -88,7 +80,6 @@ class Server:
                  d["range"]["end"]["character"]], d["message"]) for d in found["params"]["diagnostics"]]
 
 
-work = tempfile.mkdtemp()
 schema = os.path.join(work, "strut-1.schema.json")
 with open(schema, "w", encoding="utf-8") as file:
     subprocess.run([strut, "schema"], check=True, stdout=file)
@@ -185,5 +176,5 @@ one("strut: 1\ngroups:\n  g: {stiffness: -1}\n", 3, "-1", "minimum")
 server.process.kill()
 server.process.wait()
 shutil.rmtree(work)
-print("some expectations failed" if failures else f"{number} documents, {program}")
-os._exit(1 if failures else 0)
+print("some expectations failed" if failed() else f"{number} documents, {program}")
+os._exit(failed())

@@ -3,7 +3,7 @@
 """The schema and the reader agree: what strut accepts passes the schema, and what the schema can see of
 a bad file it reports in the same line; it reports nothing in lines that are right.
 
-    schema_test.py STRUT"""
+    schema_test.py STRUT UNPACK_CASES"""
 import glob
 import json
 import os
@@ -19,16 +19,10 @@ except ImportError as missing:
     print(f"skipped: {missing}")
     sys.exit(77)
 
-strut = os.path.abspath(sys.argv[1])
+from testing import fail, finish, strut, work  # noqa: E402
+
 here = os.path.dirname(os.path.abspath(__file__))
 top = os.path.dirname(os.path.dirname(here))
-failures = 0
-
-
-def fail(text):
-    global failures
-    failures += 1
-    print("FAILED:", text)
 
 
 def schema(*options):
@@ -151,20 +145,17 @@ def is_visible(message):
     return bool(found) and found.group(1) in known_words
 
 
-def announced(path, text):
-    if os.path.exists(path + ".expect"):
-        with open(path + ".expect", encoding="utf-8") as file:
-            lines = file.read().splitlines()
-    else:
-        lines = [line[len("# expect: "):] for line in text.splitlines() if line.startswith("# expect: ")]
-    for line in lines:
-        place = re.match(r"([0-9]+):[0-9]+: (.*)", line)
-        if place:
-            yield int(place.group(1)), place.group(2)
+def announced(path):
+    with open(path.replace(".yaml", ".expect"), encoding="utf-8") as file:
+        for line in file:
+            place = re.match(r"([0-9]+):[0-9]+: (.*)", line)
+            if place:
+                yield int(place.group(1)), place.group(2)
 
 
 visible = missed = 0
-for path in sorted(glob.glob(os.path.join(here, "bad", "*.yaml"))):
+subprocess.run([sys.argv[2], os.path.join(here, "bad"), work, "--messages"], check=True)
+for path in sorted(glob.glob(os.path.join(work, "*.yaml"))):
     with open(path, "rb") as file:
         text = file.read()
     try:
@@ -172,7 +163,7 @@ for path in sorted(glob.glob(os.path.join(here, "bad", "*.yaml"))):
         document = Located(text)
     except (UnicodeDecodeError, yaml.YAMLError, AttributeError, TypeError, RecursionError):
         continue # a fault of YAML
-    expected = list(announced(path, text))
+    expected = list(announced(path))
     seen = list(complaints(validator_of(document), document))
     lines = {line for line, _ in seen}
     for line, message in expected:
@@ -228,4 +219,4 @@ for path in sorted(glob.glob(os.path.join(here, "good", "*.yaml"))):
 print(f"{compared} misspelt keys")
 if compared < 60:
     fail("too few misspelt keys were compared")
-sys.exit(1 if failures else 0)
+finish()

@@ -2,32 +2,18 @@
 /* Studies that are read, and studies that are refused with exactly the messages they announce. */
 #include <dirent.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "engine/base/memory.h"
 #include "engine/study/sweep/grid.h"
 #include "parser/language/keys.h"
 #include "parser/study/read_study.h"
+#include "tests/language/cases.h"
+#include "tests/support/test.h"
 
 #define FOLDER STRUT_TESTS_DIR "/language/studies/"
-
-enum { MOST_LINES = 40, MOST_SETS = 4 };
-
-/* What a file announces: "# expect: [model |table ]LINE:COLUMN: message", "# set: name=value". */
-typedef struct announcement {
-  size_t count, sets;
-  char *expected[MOST_LINES];
-  strut_override set[MOST_SETS];
-  char *text;
-} announcement;
 
 static char *read_text(const char *path) {
   FILE *file = fopen(path, "rb");
@@ -36,22 +22,6 @@ static char *read_text(const char *path) {
   if (fread(text, 1, (1 << 16) - 1, file) == 0) text[0] = '\0';
   fclose(file);
   return text;
-}
-
-static announcement read_announcement(const char *path) {
-  announcement a = {.text = read_text(path)};
-  assert_non_null(a.text);
-  for (char *line = strtok(a.text, "\n"); line; line = strtok(NULL, "\n")) {
-    if (strncmp(line, "# expect: ", 10) == 0) {
-      assert_true(a.count < MOST_LINES);
-      a.expected[a.count++] = line + 10;
-    } else if (strncmp(line, "# set: ", 7) == 0) {
-      char *equals = strchr(line, '=');
-      *equals = '\0';
-      a.set[a.sets++] = (strut_override){line + 7, equals + 1};
-    }
-  }
-  return a;
 }
 
 /* As `strut sweep` does: the first point, then the ends of each axis. */
@@ -69,67 +39,78 @@ static strut_status try_ends(strut_study_file *file) {
   return status;
 }
 
-/* Strikes a message off those expected. */
-static size_t strike(announcement *a, const char *name, const char *where,
-                     const strut_diagnostics *found) {
+/* Strikes messages off those expected; returns how many were not. */
+static size_t strike(faulty_case *c, const char *where, const strut_diagnostics *found) {
   size_t wrong = 0;
   for (size_t i = 0; i < found->count; i++) {
     char line[1200];
     bool expected = false;
     const strut_diagnostic *d = &found->items[i];
     snprintf(line, sizeof line, "%s%u:%u: %s", where, d->place.line, d->place.column, d->message);
-    for (size_t k = 0; k < a->count && !expected; k++)
-      if (a->expected[k] && strcmp(a->expected[k], line) == 0) {
-        a->expected[k] = NULL;
+    for (size_t k = 0; k < c->message_count && !expected; k++)
+      if (strcmp(c->message[k], line) == 0) {
+        c->message[k][0] = '\0';
         expected = true;
       }
     if (expected) continue;
-    print_error("%s: said: %s\n", name, line);
+    print_error("%s: %s: not expected: %s\n", c->document, c->name, line);
     wrong++;
   }
   return wrong;
 }
 
-static size_t check_bad(const char *name) {
-  char path[600];
+/* Reads a base or case from the folder, which holds the models and tables that it names. */
+static size_t check_case(faulty_case *c, const char *folder) {
+  char path[600], *equals = NULL;
   size_t wrong = 0;
   strut_study_file file;
   strut_error error = {0};
-  snprintf(path, sizeof path, FOLDER "bad/%s", name);
-  announcement a = read_announcement(path);
-  strut_status status = strut_study_open(path, a.set, a.sets, &file, &error);
+  strut_override set = {0};
+  if (c->set_count) {
+    equals = strchr(c->set[0], '=');
+    *equals = '\0';
+    set = (strut_override){c->set[0], equals + 1};
+  }
+  assert_true(c->set_count <= 1 && write_faulty_case(c, folder));
+  snprintf(path, sizeof path, "%s/%s.yaml", folder, c->name);
+  strut_status status = strut_study_open(path, &set, c->set_count, &file, &error);
   if (status == STRUT_OK) status = try_ends(&file);
-  if (status != STRUT_BAD_SCENE || a.count == 0) {
-    print_error("%s: status %d, %s\n", name, status, error.message);
+  if (status != (c->is_base ? STRUT_OK : STRUT_BAD_SCENE)) {
+    print_error("%s: %s: status %d, %s\n", c->document, c->name, status, error.message);
     wrong++;
   }
-  wrong += strike(&a, name, "", &file.diagnostics);
-  wrong += strike(&a, name, "model ", &file.model_diagnostics);
+  wrong += strike(c, "", &file.diagnostics);
+  wrong += strike(c, "model ", &file.model_diagnostics);
   for (size_t i = 0; i < file.table_count; i++)
-    wrong += strike(&a, name, "table ", &file.tables[i].diagnostics);
-  for (size_t i = 0; i < a.count; i++)
-    if (a.expected[i]) {
-      print_error("%s: did not say: %s\n", name, a.expected[i]);
+    wrong += strike(c, "table ", &file.tables[i].diagnostics);
+  for (size_t i = 0; i < c->message_count; i++)
+    if (c->message[i][0]) {
+      print_error("%s: %s: not found: %s\n", c->document, c->name, c->message[i]);
       wrong++;
     }
   assert_non_null(strut_study_messages(&file, 50));
   strut_study_close(&file);
-  free(a.text);
   return wrong;
 }
 
-static void bad_studies_are_refused(void **state) {
-  (void)state;
-  DIR *folder = opendir(FOLDER "bad");
-  size_t wrong = 0, count = 0;
-  assert_non_null(folder);
-  for (struct dirent *entry; (entry = readdir(folder)) != NULL;) {
-    if (!strstr(entry->d_name, ".yaml")) continue;
-    wrong += check_bad(entry->d_name);
-    count++;
+TEST(bad_studies_are_refused) {
+  char folder[] = "/tmp/strut-studies-XXXXXX", command[700];
+  size_t wrong = 0, faulty = 0;
+  assert_non_null(mkdtemp(folder));
+  snprintf(command, sizeof command, "cp -R " FOLDER "bad/. %s", folder);
+  assert_int_equal(system(command), 0);
+  faulty_cases cases = read_faulty_cases(FOLDER "bad");
+  for (size_t i = 0; i < cases.count; i++)
+    if (!cases.items[i].is_base) assert_true(write_faulty_case(&cases.items[i], folder));
+  for (size_t i = 0; i < cases.count; i++) {
+    wrong += check_case(&cases.items[i], folder);
+    faulty += !cases.items[i].is_base;
   }
-  closedir(folder);
-  assert_true(count > 10);
+  free_faulty_cases(&cases);
+  snprintf(command, sizeof command, "rm -rf %s", folder);
+  assert_int_equal(system(command), 0);
+  print_message("%zu faulty studies\n", faulty);
+  assert_true(faulty > 10);
   assert_int_equal(wrong, 0);
 }
 
@@ -161,8 +142,7 @@ static bool stands_in_a_good_study(const char *text) {
   return found;
 }
 
-static void every_key_stands_in_a_good_study(void **state) {
-  (void)state;
+TEST(every_key_stands_in_a_good_study) {
   for (int key = strut_section_first(STRUT_SECTION_STUDY); key < STRUT_KEY_COUNT; key++) {
     char with_colon[60];
     snprintf(with_colon, sizeof with_colon, "%s:", strut_key_at(key)->name);
@@ -172,8 +152,7 @@ static void every_key_stands_in_a_good_study(void **state) {
 }
 
 /* The words of `keep` are bits of the study, in one order. */
-static void keep_is_one_table(void **state) {
-  (void)state;
+TEST(keep_is_one_table) {
   static const char *const words[] = {
 #define WORD(name, word, of) word,
       STRUT_KEEP_TABLE(WORD)
@@ -188,8 +167,7 @@ static void keep_is_one_table(void **state) {
                             sizeof word));
 }
 
-static void points_of_files_and_samples(void **state) {
-  (void)state;
+TEST(points_of_files_and_samples) {
   strut_study_file file;
   strut_study_value values[16];
   strut_setup setup;
@@ -214,8 +192,7 @@ static void points_of_files_and_samples(void **state) {
   strut_study_close(&file);
 }
 
-static void studies_of_what_is_at_rest(void **state) {
-  (void)state;
+TEST(studies_of_what_is_at_rest) {
   static const char *const names[] = {"path.yaml", "path-load.yaml", "form.yaml", "modes.yaml"};
   strut_study_file file;
   for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
@@ -232,8 +209,7 @@ static void studies_of_what_is_at_rest(void **state) {
   }
 }
 
-static void a_study_is_what_it_says(void **state) {
-  (void)state;
+TEST(a_study_is_what_it_says) {
   strut_study_file file;
   strut_setup setup;
   strut_error error = {0};
@@ -278,8 +254,7 @@ static void a_study_is_what_it_says(void **state) {
 }
 
 /* Former names of keys in a study and its variants: read, noted once, and replaced by current ones. */
-static void former_names_are_noted_once(void **state) {
-  (void)state;
+TEST(former_names_are_noted_once) {
   static const double expected[] = {1e-3, 1e-9};
   strut_study_file file;
   strut_error error = {0};
@@ -306,8 +281,7 @@ static void former_names_are_noted_once(void **state) {
 }
 
 /* Comments and blanks change nothing; what decides results does. */
-static void identity(void **state) {
-  (void)state;
+TEST(identity) {
   static const strut_override stiff[] = {{"stiffness", "101 N/m"}};
   strut_study_file a, b, c;
   strut_error error = {0};
@@ -327,8 +301,7 @@ static void identity(void **state) {
 }
 
 /* Every allocation fails once: an answer, and nothing left behind. */
-static void no_memory(void **state) {
-  (void)state;
+TEST(no_memory) {
   strut_status status = STRUT_NO_MEMORY;
   for (int64_t n = 0; status == STRUT_NO_MEMORY; n++) {
     strut_study_file file;
@@ -350,19 +323,4 @@ static void no_memory(void **state) {
     strut_study_close(&file);
   }
   assert_int_equal(status, STRUT_OK);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(bad_studies_are_refused),
-      cmocka_unit_test(every_key_stands_in_a_good_study),
-      cmocka_unit_test(keep_is_one_table),
-      cmocka_unit_test(a_study_is_what_it_says),
-      cmocka_unit_test(points_of_files_and_samples),
-      cmocka_unit_test(studies_of_what_is_at_rest),
-      cmocka_unit_test(former_names_are_noted_once),
-      cmocka_unit_test(identity),
-      cmocka_unit_test(no_memory),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

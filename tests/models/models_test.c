@@ -11,8 +11,7 @@
 
 static const double PI = 3.14159265358979323846, G = 9.81;
 
-static void oscillator(void **unused) {
-  (void)unused;
+TEST(oscillator) {
   const double w = sqrt(100.0 / 1.0), a = 0.01, steps = 10.25 * 200, z = 2 * PI / 200;
   model_run run;
   model_run_file(&run, "basics/oscillator", set_none);
@@ -37,8 +36,7 @@ static double complete_elliptic(double modulus) {
   return PI / (2 * a);
 }
 
-static void pendulum(void **unused) {
-  (void)unused;
+TEST(pendulum) {
   double period = 4 * sqrt(2 * 1.0 / (3 * G)) * complete_elliptic(sin(PI / 4)), error[2];
   const char *stiffness[] = {"stiffness=1e6", "stiffness=1e7"};
   for (int i = 0; i < 2; i++) {
@@ -54,8 +52,7 @@ static void pendulum(void **unused) {
   assert_within(error[0] / error[1], 7, 13); /* ... which falls as 1 / stiffness */
 }
 
-static void spinning_bar(void **unused) {
-  (void)unused;
+TEST(spinning_bar) {
   const double spin = 2 * PI * 2, time = 10 / 2.0, speed = 1.5;
   double length = 1 / (1 - 1.2 * spin * spin / (12 * 1000));
   model_run run;
@@ -89,8 +86,7 @@ static void x_frame_force(const model_run *run, int node, double load, double fo
   }
 }
 
-static void x_frame(void **unused) {
-  (void)unused;
+TEST(x_frame) {
   double side = (100 * 0.95 + 1000 * 1) / (100 + 1000.0);
   model_run run;
   model_run_file(&run, "basics/x-frame", set_none);
@@ -106,8 +102,7 @@ static void x_frame(void **unused) {
   model_run_free(&run);
 }
 
-static void x_frame_loaded(void **unused) {
-  (void)unused;
+TEST(x_frame_loaded) {
   static const struct {
     const char *set;
     double load;
@@ -145,8 +140,7 @@ static double bounce_height(double zeta, double *arrival, double *departure) {
   return *departure * *departure / (2 * G);
 }
 
-static void bouncing_node(void **unused) {
-  (void)unused;
+TEST(bouncing_node) {
   static const struct {
     const char *set;
     double step;
@@ -162,8 +156,7 @@ static void bouncing_node(void **unused) {
   }
 }
 
-static void sliding_block(void **unused) {
-  (void)unused;
+TEST(sliding_block) {
   double way = 1 / (2 * 0.2 * G), time = 1 / (0.2 * G), step = 1e-4, band = 1e-4;
   model_run run;
   model_run_file(&run, "basics/sliding-block", set_none);
@@ -174,8 +167,7 @@ static void sliding_block(void **unused) {
   model_run_free(&run);
 }
 
-static void slope(void **unused) {
-  (void)unused;
+TEST(slope) {
   static const struct {
     const char *set;
     double mu, tolerance;
@@ -204,8 +196,7 @@ static void swing(const model_run *run, double *low, double *high) {
   }
 }
 
-static void belt(void **unused) {
-  (void)unused;
+TEST(belt) {
   const double belt_speed = 0.1, w = 10, offset = (2 - 1) / 100.0, middle = 1 / 100.0;
   double reach = hypot(offset, belt_speed / w), low, high, error[2];
   for (int i = 0; i < 2; i++) {
@@ -223,8 +214,7 @@ static void belt(void **unused) {
   assert_true(fabs(error[1]) < fabs(error[0]) / 4);
 }
 
-static void belt_without_stick_slip(void **unused) {
-  (void)unused;
+TEST(belt_without_stick_slip) {
   double low, high;
   model_run run;
   model_run_file(&run, "basics/belt", set_to("static=1"));
@@ -237,8 +227,7 @@ static void belt_without_stick_slip(void **unused) {
 /* The load that holds the arch's apex at y. */
 static double arch_load(double y) { return 2 * 1000 * y * (hypot(1, 0.3) / hypot(1, y) - 1); }
 
-static void von_mises_truss(void **unused) {
-  (void)unused;
+TEST(von_mises_truss) {
   double free_length = hypot(1, 0.3), length = cbrt(free_length * 1 * 1);
   double limit = arch_load(sqrt(length * length - 1));
   char set[2][64];
@@ -259,8 +248,7 @@ static void von_mises_truss(void **unused) {
 }
 
 /* Put on at once, a smaller load is enough: the largest of k (L0 - L)^2 / (h - y) over y. */
-static void von_mises_truss_at_once(void **unused) {
-  (void)unused;
+TEST(von_mises_truss_at_once) {
   double most = 0;
   for (double y = -0.3; y < 0.2999; y += 1e-5) {
     double shorter = hypot(1, 0.3) - hypot(1, y);
@@ -279,22 +267,4 @@ static void von_mises_truss_at_once(void **unused) {
     assert_true(i ? lowest < -0.3 : lowest > 0);
     model_run_free(&run);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(oscillator),
-      cmocka_unit_test(pendulum),
-      cmocka_unit_test(spinning_bar),
-      cmocka_unit_test(x_frame),
-      cmocka_unit_test(x_frame_loaded),
-      cmocka_unit_test(bouncing_node),
-      cmocka_unit_test(sliding_block),
-      cmocka_unit_test(slope),
-      cmocka_unit_test(belt),
-      cmocka_unit_test(belt_without_stick_slip),
-      cmocka_unit_test(von_mises_truss),
-      cmocka_unit_test(von_mises_truss_at_once),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -50,8 +50,7 @@ static void settle_both(const strut_setup *setup, motion *m, reference_crawler *
   assert_true(reference_settle(it, STEP, z));
 }
 
-static void test_it_comes_to_rest_where_the_other_program_does(void **unused) {
-  (void)unused;
+TEST(it_comes_to_rest_where_the_other_program_does) {
   for (int two = 0; two < 2; two++) {
     strut_setup setup;
     motion m;
@@ -88,8 +87,7 @@ static void follow(double f, double mu, bool two, const double *rest) {
   strut_setup_free(&setup);
 }
 
-static void test_the_first_trajectories_are_the_same(void **unused) {
-  (void)unused;
+TEST(the_first_trajectories_are_the_same) {
   for (int two = 0; two < 2; two++) {
     double rest[REFERENCE_STATE];
     reference_crawler it = {.frequency = 10, .mu = 0, .amplitude = 0};
@@ -99,8 +97,7 @@ static void test_the_first_trajectories_are_the_same(void **unused) {
   }
 }
 
-static void test_velocities_agree_in_the_mean(void **unused) {
-  (void)unused;
+TEST(velocities_agree_in_the_mean) {
   for (int c = 0; c < 2 * CASES; c++) {
     strut_setup setup;
     reference_figures figures;
@@ -129,8 +126,7 @@ static void test_velocities_agree_in_the_mean(void **unused) {
 }
 
 /* The paper's own setting: 1100 periods, measured over the last 100. */
-static void test_the_papers_velocities(void **unused) {
-  (void)unused;
+TEST(the_papers_velocities) {
   for (int two = 0; two < 2; two++) {
     strut_setup setup;
     make(&setup, 10, 0.1, two, 1100, 100);
@@ -149,8 +145,7 @@ static void test_the_papers_velocities(void **unused) {
   }
 }
 
-static void test_the_papers_contacts(void **unused) {
-  (void)unused;
+TEST(the_papers_contacts) {
   strut_setup setup;
   make(&setup, 10, 0.2, false, 1100, 100);
   strut_summary s = motion_simulate(&setup);
@@ -161,15 +156,4 @@ static void test_the_papers_contacts(void **unused) {
   assert_true(s.contacts[1].duty == 0 && s.contacts[2].duty == 0 && s.contacts[4].duty == 0);
   strut_summary_free(&s);
   strut_setup_free(&setup);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_it_comes_to_rest_where_the_other_program_does),
-      cmocka_unit_test(test_the_first_trajectories_are_the_same),
-      cmocka_unit_test(test_velocities_agree_in_the_mean),
-      cmocka_unit_test(test_the_papers_velocities),
-      cmocka_unit_test(test_the_papers_contacts),
-  };
-  return cmocka_run_group_tests_name("crawler", tests, NULL, NULL);
 }

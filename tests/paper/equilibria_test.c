@@ -35,8 +35,7 @@ static const struct {
 static model_run crawler;
 static strut_equilibria all;
 
-static int read_and_search(void **unused) {
-  (void)unused;
+BEFORE_ALL {
   strut_error error = {0};
   strut_equilibria_options options = {0};
   model_read(&crawler, "crawler/crawler", set_none);
@@ -45,14 +44,11 @@ static int read_and_search(void **unused) {
     status =
         strut_equilibria_find(crawler.model, &crawler.setup.experiment, &options, &all, &error);
   if (status) fail_msg("%s", error.message);
-  return 0;
 }
 
-static int free_all(void **unused) {
-  (void)unused;
+AFTER_ALL {
   strut_equilibria_free(&all);
   model_run_free(&crawler);
-  return 0;
 }
 
 /* Node numbers as in the paper, from 1. */
@@ -80,8 +76,7 @@ static const strut_equilibrium *on_1_and_4(double energy) {
   return NULL;
 }
 
-static void test_the_two_solutions(void **unused) {
-  (void)unused;
+TEST(the_two_solutions) {
   for (int s = 0; s < 2; s++) {
     const strut_equilibrium *e = on_1_and_4(published[s].energy);
     for (int i = 0; i < 5; i++)
@@ -121,8 +116,7 @@ static int slow_solutions(const statics *s, int starts, double (*found)[STATICS]
   return count;
 }
 
-static void test_all_the_other_solutions(void **unused) {
-  (void)unused;
+TEST(all_the_other_solutions) {
   static double found[20][STATICS], energy[20];
   statics s = {.held = {[0] = true, [1] = true, [7] = true}};
   int count = slow_solutions(&s, 150, found, energy), listed = 0, below = 0;
@@ -148,8 +142,7 @@ static void test_all_the_other_solutions(void **unused) {
 }
 
 /* Energy, gradient, eigenvalues and reactions of everything listed, computed once more. */
-static void test_every_figure(void **unused) {
-  (void)unused;
+TEST(every_figure) {
   assert_true(all.count > 60);
   for (size_t i = 0; i < all.count; i++) {
     const strut_equilibrium *e = &all.list[i];
@@ -181,8 +174,7 @@ static void test_every_figure(void **unused) {
   }
 }
 
-static void test_it_tips_onto_nodes_2_and_4(void **unused) {
-  (void)unused;
+TEST(it_tips_onto_nodes_2_and_4) {
   const strut_equilibrium *second = on_1_and_4(published[1].energy);
   const strut_equilibrium *one = called("I"), *two = called("II");
   assert_int_equal(second->outcome, STRUT_OUTCOME_TIPS);
@@ -228,8 +220,7 @@ static void simulate_to_break_off(const double q[STATICS], double end[STATICS]) 
   memcpy(end, z, STATICS * sizeof *end);
 }
 
-static void test_relaxation_ends_where_the_plain_model_does(void **unused) {
-  (void)unused;
+TEST(relaxation_ends_where_the_plain_model_does) {
   double weight = 0.14 * 9.81;
   for (size_t i = 0; i < all.count; i++) {
     const strut_equilibrium *e = &all.list[i];
@@ -244,8 +235,7 @@ static void test_relaxation_ends_where_the_plain_model_does(void **unused) {
 }
 
 /* Break-off with all speeds 0: what the residual accelerates. */
-static void test_break_off(void **unused) {
-  (void)unused;
+TEST(break_off) {
   double none[REFERENCE_STATE];
   reference_crawler it = {.frequency = 10};
   reference_prepare(&it, 0, none);
@@ -266,8 +256,7 @@ static void test_break_off(void **unused) {
   assert_true(checked >= 10);
 }
 
-static void test_state_III(void **unused) {
-  (void)unused;
+TEST(state_III) {
   const strut_equilibrium *three = called("III"), *other = called("III-2");
   assert_true(rests_on(three, 1, 5) && rests_on(other, 2, 5));
   assert_near(three->rest_energy, other->rest_energy, 1e-10);
@@ -298,8 +287,7 @@ static const strut_barrier *barrier(const char *from, const char *to) {
  * 22.239377841 J from III over node 5 to its mirror image; I at 22.706124755 J and III at
  * 22.239299001 J.
  */
-static void test_barriers(void **unused) {
-  (void)unused;
+TEST(barriers) {
   const double one = 22.706124755, three = 22.239299001, between = 22.708987716;
   assert_near(barrier("I", "III")->height, between - one, 2e-9);
   assert_near(barrier("III", "I")->height, between - three, 2e-9);
@@ -314,8 +302,7 @@ static void test_barriers(void **unused) {
 }
 
 /* Down from saddles of the real ground, either way, by the other program. */
-static void test_saddles_lead_down(void **unused) {
-  (void)unused;
+TEST(saddles_lead_down) {
   statics s = {.ground = GROUND};
   int checked = 0;
   for (size_t i = 0; i < all.barrier_count && checked < 8; i++) {
@@ -342,8 +329,7 @@ static void test_saddles_lead_down(void **unused) {
 }
 
 /* By name, without the list: the same places. */
-static void test_shapes_to_stand_in(void **unused) {
-  (void)unused;
+TEST(shapes_to_stand_in) {
   static const char *const names[] = {"I", "II", "III"};
   for (int i = 0; i < 3; i++) {
     strut_arena arena = {0};
@@ -363,20 +349,4 @@ static void test_shapes_to_stand_in(void **unused) {
     }
     strut_arena_free(&arena);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_the_two_solutions),
-      cmocka_unit_test(test_all_the_other_solutions),
-      cmocka_unit_test(test_every_figure),
-      cmocka_unit_test(test_it_tips_onto_nodes_2_and_4),
-      cmocka_unit_test(test_relaxation_ends_where_the_plain_model_does),
-      cmocka_unit_test(test_break_off),
-      cmocka_unit_test(test_state_III),
-      cmocka_unit_test(test_barriers),
-      cmocka_unit_test(test_saddles_lead_down),
-      cmocka_unit_test(test_shapes_to_stand_in),
-  };
-  return cmocka_run_group_tests(tests, read_and_search, free_all);
 }

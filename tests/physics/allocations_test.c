@@ -10,8 +10,7 @@
 #include "tests/support/motion.h"
 #include "tests/support/structures.h"
 
-static void test_the_count_counts(void **unused) {
-  (void)unused;
+TEST(the_count_counts) {
   uint64_t before = allocations_so_far();
   void *volatile block = malloc(10);
   assert_non_null(block);
@@ -64,23 +63,19 @@ static void check_kind(size_t frames, strut_mass_model mass_model, bool blocks, 
   strut_setup_free(&setup);
 }
 
-static void test_steps_with_a_diagonal_mass_allocate_nothing(void **unused) {
-  (void)unused;
+TEST(steps_with_a_diagonal_mass_allocate_nothing) {
   check_kind(30, STRUT_MASS_LUMPED, false, false);
 }
 
-static void test_steps_with_dense_blocks_allocate_nothing(void **unused) {
-  (void)unused;
+TEST(steps_with_dense_blocks_allocate_nothing) {
   check_kind(8, STRUT_MASS_CONSISTENT, true, false);
 }
 
-static void test_steps_with_a_sparse_factor_allocate_nothing(void **unused) {
-  (void)unused;
+TEST(steps_with_a_sparse_factor_allocate_nothing) {
   check_kind(30, STRUT_MASS_CONSISTENT, false, true);
 }
 
-static void test_steps_of_random_scenes_allocate_nothing(void **unused) {
-  (void)unused;
+TEST(steps_of_random_scenes_allocate_nothing) {
   for (uint64_t seed = 1; seed <= 40; seed++) {
     strut_setup setup;
     strut_setup_init(&setup);
@@ -135,21 +130,8 @@ static uint64_t whole_run(int64_t steps) {
   return count;
 }
 
-static void test_a_longer_run_allocates_no_more(void **unused) {
-  (void)unused;
+TEST(a_longer_run_allocates_no_more) {
   uint64_t before = whole_run(1000);
   assert_true(before > 0);
   assert_int_equal(whole_run(5000), before);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_the_count_counts),
-      cmocka_unit_test(test_steps_with_a_diagonal_mass_allocate_nothing),
-      cmocka_unit_test(test_steps_with_dense_blocks_allocate_nothing),
-      cmocka_unit_test(test_steps_with_a_sparse_factor_allocate_nothing),
-      cmocka_unit_test(test_steps_of_random_scenes_allocate_nothing),
-      cmocka_unit_test(test_a_longer_run_allocates_no_more),
-  };
-  return cmocka_run_group_tests_name("allocations", tests, NULL, NULL);
 }

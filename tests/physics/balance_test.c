@@ -36,8 +36,7 @@ static strut_summary bounce(const char *method, double step) {
 }
 
 /* Without losses its energy at the end is that at the start: known without the ledger. */
-static void test_steps_over_touchdowns(void **unused) {
-  (void)unused;
+TEST(steps_over_touchdowns) {
   strut_summary s = bounce("rk4", 2e-3);
   double end = s.energy.kinetic + s.energy.gravity + s.energy.contact;
   assert_true(fabs(end - 1) > 0.02);
@@ -72,8 +71,7 @@ static strut_summary let_go(double takes) {
   return s;
 }
 
-static void test_a_drive_that_jumps(void **unused) {
-  (void)unused;
+TEST(a_drive_that_jumps) {
   strut_summary s = let_go(1e-5);
   assert_int_equal(s.balance, STRUT_BALANCE_OPEN);
   assert_says(&s, "the drive of member 'm2'");
@@ -87,8 +85,7 @@ static void test_a_drive_that_jumps(void **unused) {
 }
 
 /* A run that ends where its drive jumps: methods with events have booked that jump, whatever rounding says. */
-static void test_a_run_that_ends_at_a_jump(void **unused) {
-  (void)unused;
+TEST(a_run_that_ends_at_a_jump) {
   static const char *const methods[] = {"rk4-events", "adaptive"};
   for (size_t i = 0; i < 2; i++)
     for (int periods = 1; periods < 12; periods++) {
@@ -112,8 +109,7 @@ static void test_a_run_that_ends_at_a_jump(void **unused) {
 }
 
 /* A free swing that ends where it began: nothing seems to have moved, and the error is small. */
-static void test_a_swing_that_ends_as_it_began(void **unused) {
-  (void)unused;
+TEST(a_swing_that_ends_as_it_began) {
   strut_setup setup;
   strut_setup_init(&setup);
   build_support(&setup.scene, 0, 0);
@@ -131,8 +127,7 @@ static void test_a_swing_that_ends_as_it_began(void **unused) {
 }
 
 /* What stands still loses or gains what rounding does, which is all that moves. */
-static void test_rest_is_no_open_balance(void **unused) {
-  (void)unused;
+TEST(rest_is_no_open_balance) {
   strut_energy e = {.elastic = 0.45, .initial = 0.45, .residual = -6e-16, .moved = 6e-16};
   assert_int_equal(strut_balance_judge(&e, 200), STRUT_BALANCE_CLOSED);
   e.residual = -6e-9, e.moved = 6e-9;
@@ -143,8 +138,7 @@ static void test_rest_is_no_open_balance(void **unused) {
   assert_int_equal(strut_balance_judge(&e, 200), STRUT_BALANCE_CLOSED);
 }
 
-static void test_without_a_ledger_nothing_is_said(void **unused) {
-  (void)unused;
+TEST(without_a_ledger_nothing_is_said) {
   strut_setup setup;
   strut_setup_init(&setup);
   setup.scene.gravity[1] = -10;
@@ -190,8 +184,7 @@ static void build_driving_friction(strut_scene *scene) {
 }
 
 /* No valid scene has these; methods that go wrong do. Scenes are not checked here. */
-static void test_a_loss_that_gives_ends_the_run(void **unused) {
-  (void)unused;
+TEST(a_loss_that_gives_ends_the_run) {
   static const char *const methods[] = {"rk4",        "euler",    "verlet",
                                         "rk4-events", "adaptive", "verlet-events"};
   static void (*const builders[])(strut_scene *) = {build_driving_damper, build_driving_ground,
@@ -225,8 +218,7 @@ static void test_a_loss_that_gives_ends_the_run(void **unused) {
 }
 
 /* A ball on a spring that bounces on ground of any roughness: sliding ends as it touches. */
-static void test_friction_of_any_size_only_takes(void **unused) {
-  (void)unused;
+TEST(friction_of_any_size_only_takes) {
   static const char *const methods[] = {"rk4-events", "adaptive", "verlet-events"};
   static const double mu[] = {1e6, 2e8, 1e9};
   double right = 0;
@@ -252,18 +244,4 @@ static void test_friction_of_any_size_only_takes(void **unused) {
       strut_summary_free(&s);
       strut_setup_free(&setup);
     }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_steps_over_touchdowns),
-      cmocka_unit_test(test_a_drive_that_jumps),
-      cmocka_unit_test(test_a_run_that_ends_at_a_jump),
-      cmocka_unit_test(test_a_swing_that_ends_as_it_began),
-      cmocka_unit_test(test_rest_is_no_open_balance),
-      cmocka_unit_test(test_without_a_ledger_nothing_is_said),
-      cmocka_unit_test(test_a_loss_that_gives_ends_the_run),
-      cmocka_unit_test(test_friction_of_any_size_only_takes),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -165,8 +165,7 @@ static void compare_random(uint64_t seed, void make(strut_scene *, uint64_t), wa
   for (int i = 0; i < count; i++) end_point(&points[i]);
 }
 
-static void test_random_structures(void **unused) {
-  (void)unused;
+TEST(random_structures) {
   int done = 0, seeds = 150;
   for (int seed = 1; seed <= seeds; seed++)
     for (size_t w = 0; w < way_count(); w++)
@@ -174,8 +173,7 @@ static void test_random_structures(void **unused) {
   assert_true(done >= seeds / 2 * (int)way_count()); /* those with a sparse factor have no lanes */
 }
 
-static void test_random_elements(void **unused) {
-  (void)unused;
+TEST(random_elements) {
   int done = 0, seeds = 80;
   if (!way_count()) skip();
   for (int seed = 1; seed <= seeds; seed++)
@@ -203,15 +201,13 @@ static void run_crawlers(const char *method, way how, bool ledger) {
   for (int i = 0; i < POINTS; i++) end_point(&points[i]);
 }
 
-static void test_crawler(void **unused) {
-  (void)unused;
+TEST(crawler) {
   for (size_t w = 0; w < way_count(); w++)
     for (int ledger = 0; ledger < 2; ledger++) run_crawlers("rk4", ways[w], ledger);
 }
 
 /* A lane that may take any number of steps does not end the others' before they are done. */
-static void test_endless_lane(void **unused) {
-  (void)unused;
+TEST(endless_lane) {
   static point points[2];
   const int64_t left[STRUT_MOST_LANES] = {10, INT64_MAX};
   if (!way_count()) skip();
@@ -258,14 +254,12 @@ static void run_at_edges(const char *method, way how) {
   }
 }
 
-static void test_edges_of_friction(void **unused) {
-  (void)unused;
+TEST(edges_of_friction) {
   for (size_t w = 0; w < way_count(); w++) run_at_edges("rk4", ways[w]);
 }
 
 /* What has no kernel, or another topology, is refused. */
-static void test_refusals(void **unused) {
-  (void)unused;
+TEST(refusals) {
   strut_setup chain, crawler, other;
   strut_setup_init(&chain), strut_setup_init(&crawler), strut_setup_init(&other);
   structure_chain(&chain.scene, 20, STRUT_MASS_CONSISTENT);
@@ -299,8 +293,7 @@ static strut_model *variant(strut_setup *setup, int which) {
   return motion_compile(&setup->scene);
 }
 
-static void test_only_one_topology_shares_a_batch(void **unused) {
-  (void)unused;
+TEST(only_one_topology_shares_a_batch) {
   strut_setup setup, other;
   strut_model *first = variant(&setup, 0);
   for (int which = 0; which <= 5; which++) {
@@ -314,8 +307,7 @@ static void test_only_one_topology_shares_a_batch(void **unused) {
   strut_setup_free(&setup);
 }
 
-static void test_no_memory(void **unused) {
-  (void)unused;
+TEST(no_memory) {
   strut_setup crawler;
   strut_setup_init(&crawler);
   structure_crawler(&crawler.scene, 10, 1e-4, 0.1, false);
@@ -331,16 +323,4 @@ static void test_no_memory(void **unused) {
   strut_batch_free(batch);
   strut_model_free(model);
   strut_setup_free(&crawler);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_random_structures),
-                                     cmocka_unit_test(test_random_elements),
-                                     cmocka_unit_test(test_crawler),
-                                     cmocka_unit_test(test_endless_lane),
-                                     cmocka_unit_test(test_edges_of_friction),
-                                     cmocka_unit_test(test_refusals),
-                                     cmocka_unit_test(test_only_one_topology_shares_a_batch),
-                                     cmocka_unit_test(test_no_memory)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

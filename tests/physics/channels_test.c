@@ -82,8 +82,7 @@ static void assert_conserved(const char *text, const char *what) {
   model_run_free(&run);
 }
 
-static void test_a_free_structure_keeps_its_angular_momentum(void **unused) {
-  (void)unused;
+TEST(a_free_structure_keeps_its_angular_momentum) {
   char text[sizeof FREE + 40];
   assert_conserved(FREE, "consistent masses");
   const char *after = strstr(FREE, "nodes:");
@@ -117,8 +116,7 @@ static void assert_closed_form(const char *model, double part) {
   model_run_free(&run);
 }
 
-static void test_a_bar_that_turns_has_the_closed_form(void **unused) {
-  (void)unused;
+TEST(a_bar_that_turns_has_the_closed_form) {
   assert_closed_form("consistent", 1.0 / 12.0);
   assert_closed_form("lumped", 1.0 / 4.0);
 }
@@ -148,8 +146,7 @@ static const char EVERYTHING[] =
     "output: {every: 1 ms}\n";
 
 /* All of them at once, more than any one scene had before: every one comes back with the same bits. */
-static void test_every_channel_comes_back_out_of_its_file(void **unused) {
-  (void)unused;
+TEST(every_channel_comes_back_out_of_its_file) {
   model_run run;
   strut_trajectory t = {0}, read = {0};
   strut_error error = {0};
@@ -179,13 +176,4 @@ static void test_every_channel_comes_back_out_of_its_file(void **unused) {
   strut_trajectory_free(&read);
   model_run_free(&run);
   scratch_remove();
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_free_structure_keeps_its_angular_momentum),
-      cmocka_unit_test(test_a_bar_that_turns_has_the_closed_form),
-      cmocka_unit_test(test_every_channel_comes_back_out_of_its_file),
-  };
-  return cmocka_run_group_tests_name("channels", tests, NULL, NULL);
 }

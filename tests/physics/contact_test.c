@@ -42,8 +42,7 @@ static double mean_error(double zeta, double expected, double step) {
   return sum;
 }
 
-static void test_restitution_converges_to_its_closed_form(void **unused) {
-  (void)unused;
+TEST(restitution_converges_to_its_closed_form) {
   static const double zetas[] = {0.05, 0.2, 0.8};
   for (int z = 0; z < 3; z++) {
     double zeta = zetas[z], omega = sqrt(K / MASS), error[5];
@@ -58,8 +57,7 @@ static void test_restitution_converges_to_its_closed_form(void **unused) {
   }
 }
 
-static void test_without_damping_nothing_is_lost(void **unused) {
-  (void)unused;
+TEST(without_damping_nothing_is_lost) {
   double omega = sqrt(K / MASS), step = 1e-3 / omega;
   bounce seen = hit(0, step, 0.3);
   assert_near(seen.restitution, 1, 1e-5);
@@ -87,16 +85,14 @@ static void rest(double slope) {
   strut_scene_free(&scene);
 }
 
-static void test_rest_is_where_the_ground_carries_the_weight(void **unused) {
-  (void)unused;
+TEST(rest_is_where_the_ground_carries_the_weight) {
   rest(0);
   rest(0.3); /* gravity turned with the ground, so that nothing slides */
   rest(-0.7);
 }
 
 /* A rod that falls on a smooth ground turns, but its middle does not move sideways. */
-static void test_a_falling_rod_does_not_move_sideways(void **unused) {
-  (void)unused;
+TEST(a_falling_rod_does_not_move_sideways) {
   strut_scene scene;
   motion m;
   strut_scene_init(&scene);
@@ -116,14 +112,4 @@ static void test_a_falling_rod_does_not_move_sideways(void **unused) {
   assert_true(fell && fabs(m.state->q[2] - m.state->q[0]) > 0.35); /* it has fallen over */
   motion_end(&m);
   strut_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_restitution_converges_to_its_closed_form),
-      cmocka_unit_test(test_without_damping_nothing_is_lost),
-      cmocka_unit_test(test_rest_is_where_the_ground_carries_the_weight),
-      cmocka_unit_test(test_a_falling_rod_does_not_move_sideways),
-  };
-  return cmocka_run_group_tests_name("contact", tests, NULL, NULL);
 }

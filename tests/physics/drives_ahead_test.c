@@ -58,16 +58,14 @@ static void run_steps(double start, double stop, double offset) {
   end(&c);
 }
 
-static void test_steps(void **unused) {
-  (void)unused;
+TEST(steps) {
   run_steps(0.0, HUGE_VAL, 0.0);
   run_steps(0.0, HUGE_VAL, 1234.5);
   run_steps(0.01, 0.03, 0.0);
   run_steps(-1e17, HUGE_VAL, 0.0); /* so many turns that they are taken modulo 1 first */
 }
 
-static void test_stages_of_a_step(void **unused) {
-  (void)unused;
+TEST(stages_of_a_step) {
   static const double part[6] = {0.0, 0.2, 0.3, 0.8, 8.0 / 9, 1.0};
   crawlers c;
   begin(&c, 0.0, 0.02);
@@ -85,21 +83,11 @@ static void test_stages_of_a_step(void **unused) {
 }
 
 /* Scenes with rare terms have drives that may follow what is not known beforehand. */
-static void test_rare_terms_are_left_alone(void **unused) {
-  (void)unused;
+TEST(rare_terms_are_left_alone) {
   crawlers c;
   begin(&c, 0.0, HUGE_VAL);
   strut_drives_ahead drives;
   drives_ahead_begin(c.together.model, STRUT_TERMS_ALL, &drives);
   assert_false(drives.used);
   end(&c);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_steps),
-      cmocka_unit_test(test_stages_of_a_step),
-      cmocka_unit_test(test_rare_terms_are_left_alone),
-  };
-  return cmocka_run_group_tests_name("drives ahead", tests, NULL, NULL);
 }

@@ -271,19 +271,10 @@ static void check_structure(uint64_t seed) {
 }
 
 /* Where a running cable pulls a hinge's arm to nothing there is no angle, and no equilibrium. */
-static void a_hinge_without_an_arm_is_at_rest_nowhere(void **unused) {
-  (void)unused;
-  check_structure(10);
-}
+BEFORE_ALL { gsl_set_error_handler_off(); }
 
-static void all_stable_shapes_are_found(void **unused) {
-  (void)unused;
+TEST(a_hinge_without_an_arm_is_at_rest_nowhere) { check_structure(10); }
+
+TEST(all_stable_shapes_are_found) {
   for (uint64_t seed = 1; seed <= 5; seed++) check_structure(seed);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(all_stable_shapes_are_found),
-                                     cmocka_unit_test(a_hinge_without_an_arm_is_at_rest_nowhere)};
-  gsl_set_error_handler_off();
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

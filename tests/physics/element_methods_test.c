@@ -66,8 +66,7 @@ typedef struct method {
       least_gain; /* error at that step [m]; and the mean factor by which half a step is better */
 } method;
 
-static void test_methods_agree(void **unused) {
-  (void)unused;
+TEST(methods_agree) {
   static const method methods[] = {{"rk4-events", 1e-3, 1e-6, 2e-5, 5},
                                    {"verlet-events", 1e-3, 1e-6, 2e-3, 2.5},
                                    {"adaptive", 1e-2, 1e-8, 1e-5, 0},
@@ -94,8 +93,7 @@ static void test_methods_agree(void **unused) {
   assert_true(events > 5 * SCENES);
 }
 
-static void test_energy_balances_close(void **unused) {
-  (void)unused;
+TEST(energy_balances_close) {
   static const method methods[] = {{"rk4-events", 1e-3, 1e-6, 2e-5, 0},
                                    {"verlet-events", 1e-3, 1e-6, 1e-3, 0},
                                    {"adaptive", 1e-2, 1e-8, 2e-5, 0},
@@ -114,12 +112,4 @@ static void test_energy_balances_close(void **unused) {
       print_message("%s, damping %d: residual %.2g\n", methods[m].name, damped, worst);
       assert_true(worst < methods[m].most);
     }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_methods_agree),
-      cmocka_unit_test(test_energy_balances_close),
-  };
-  return cmocka_run_group_tests_name("element_methods", tests, NULL, NULL);
 }

@@ -65,8 +65,7 @@ static void add_hinge(long double *force, const strut_scene *scene, size_t i, lo
               sign_of(h->law.carries));
 }
 
-static void test_forces_by_definition(void **unused) {
-  (void)unused;
+TEST(forces_by_definition) {
   for (uint64_t seed = 1; seed <= SCENES; seed++) {
     strut_setup setup;
     motion m;
@@ -197,18 +196,11 @@ static void compare(void change(strut_scene *), void move(double *), const char 
   }
 }
 
-static void test_changed_scenes(void **unused) {
-  (void)unused;
+TEST(changed_scenes) {
   static const char *const methods[] = {"rk4", "rk4-events"};
   for (int k = 0; k < 2; k++) {
     compare(keep, turn_pair, methods[k]);
     compare(reflect, mirror_pair, methods[k]);
     compare(enlarge, enlarge_pair, methods[k]);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_forces_by_definition),
-                                     cmocka_unit_test(test_changed_scenes)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

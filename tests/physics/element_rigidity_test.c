@@ -66,8 +66,7 @@ static double moved(const strut_model *model, const strut_equilibrium_matrix *a,
   return measure(model, column, q);
 }
 
-static void columns_and_forms_are_derivatives(void **unused) {
-  (void)unused;
+TEST(columns_and_forms_are_derivatives) {
   uint64_t r = 4;
   const double h = 1e-3;
   for (int round = 0; round < 20; round++) {
@@ -99,9 +98,4 @@ static void columns_and_forms_are_derivatives(void **unused) {
     strut_model_free(model);
     strut_setup_free(&setup);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(columns_and_forms_are_derivatives)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

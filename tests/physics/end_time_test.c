@@ -94,8 +94,7 @@ static places places_after(const char *method, double step, double duration) {
   return p;
 }
 
-static void test_every_method_ends_on_time(void **unused) {
-  (void)unused;
+TEST(every_method_ends_on_time) {
   const double durations[] = {0.049969, 0.0500004, 0.0513, 0.0506999};
   for (size_t i = 0; strut_integrator_at(i); i++) {
     const char *method = strut_integrator_at(i)->name;
@@ -113,8 +112,7 @@ static void test_every_method_ends_on_time(void **unused) {
 }
 
 /* The mean velocity over a window that ends with the run. */
-static void test_velocity_to_the_end(void **unused) {
-  (void)unused;
+TEST(velocity_to_the_end) {
   for (size_t i = 0; strut_integrator_at(i); i++) {
     const strut_integrator *method = strut_integrator_at(i);
     strut_setup setup;
@@ -136,8 +134,7 @@ static void test_velocity_to_the_end(void **unused) {
 }
 
 /* A run of whole steps has the bits of its steps, and its last sample where it always was. */
-static void test_whole_steps_are_not_cut(void **unused) {
-  (void)unused;
+TEST(whole_steps_are_not_cut) {
   strut_setup setup;
   motion m;
   rows r;
@@ -155,8 +152,7 @@ static void test_whole_steps_are_not_cut(void **unused) {
 }
 
 /* What goes on from the end of a run does so at its time, and with the drives as they are then. */
-static void test_going_on_between_steps(void **unused) {
-  (void)unused;
+TEST(going_on_between_steps) {
   for (size_t i = 0; strut_integrator_at(i); i++) {
     const strut_integrator *method = strut_integrator_at(i);
     strut_setup setup;
@@ -179,14 +175,4 @@ static void test_going_on_between_steps(void **unused) {
     strut_summary_free(&second);
     strut_setup_free(&setup);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_every_method_ends_on_time),
-      cmocka_unit_test(test_velocity_to_the_end),
-      cmocka_unit_test(test_whole_steps_are_not_cut),
-      cmocka_unit_test(test_going_on_between_steps),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -42,8 +42,7 @@ static double worst_residual(const smooth_scene *smooth, double step) {
   return worst;
 }
 
-static void test_smooth_scenes_close_their_balance(void **unused) {
-  (void)unused;
+TEST(smooth_scenes_close_their_balance) {
   for (int s = 0; s < SMOOTH_SCENES; s++) {
     const smooth_scene *smooth = &smooth_scenes[s];
     double error[5];
@@ -102,8 +101,7 @@ static void check_rough(const char *name, void (*make)(strut_scene *), double st
   assert_true(error[5] < 0.25 * error[0]);
 }
 
-static void test_scenes_with_jumps_close_as_the_step_falls(void **unused) {
-  (void)unused;
+TEST(scenes_with_jumps_close_as_the_step_falls) {
   check_rough("bouncing node", bouncing_node, 1e-3, 1);
   check_rough("crawler", crawler, 1e-4, 0.3);
   check_rough("belt", belt, 1e-3, 2);
@@ -111,8 +109,7 @@ static void test_scenes_with_jumps_close_as_the_step_falls(void **unused) {
 }
 
 /* The parts by hand where they are known. */
-static void test_the_parts_of_a_sliding_block(void **unused) {
-  (void)unused;
+TEST(the_parts_of_a_sliding_block) {
   strut_setup setup;
   strut_setup_init(&setup);
   setup.scene.gravity[1] = -9.81;
@@ -132,8 +129,7 @@ static void test_the_parts_of_a_sliding_block(void **unused) {
   strut_setup_free(&setup);
 }
 
-static void test_the_parts_of_a_loaded_mass(void **unused) {
-  (void)unused;
+TEST(the_parts_of_a_loaded_mass) {
   strut_setup setup;
   strut_setup_init(&setup);
   build_mass(&setup.scene, 0, 0, 2);
@@ -147,8 +143,7 @@ static void test_the_parts_of_a_loaded_mass(void **unused) {
 }
 
 /* A slack cable stores nothing, a taut one c s^2 / 2. */
-static void test_a_slack_cable_stores_nothing(void **unused) {
-  (void)unused;
+TEST(a_slack_cable_stores_nothing) {
   for (int slack = 0; slack < 2; slack++) {
     strut_setup setup;
     strut_setup_init(&setup);
@@ -175,8 +170,7 @@ static void note_ring(int number) {
 }
 
 /* One step of the grid that takes the adaptive method for ever: a signal ends it, and undoes it all. */
-static void test_an_interrupted_step_is_undone_with_its_works(void **unused) {
-  (void)unused;
+TEST(an_interrupted_step_is_undone_with_its_works) {
   const struct itimerval soon = {.it_value = {.tv_usec = 50000}};
   struct sigaction before, action = {.sa_handler = note_ring};
   strut_setup setup;
@@ -203,16 +197,4 @@ static void test_an_interrupted_step_is_undone_with_its_works(void **unused) {
   for (int p = 0; p < STRUT_POWER_COUNT; p++) assert_true(m.state->work[p] == 0);
   motion_end(&m);
   strut_setup_free(&setup);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_smooth_scenes_close_their_balance),
-      cmocka_unit_test(test_scenes_with_jumps_close_as_the_step_falls),
-      cmocka_unit_test(test_the_parts_of_a_sliding_block),
-      cmocka_unit_test(test_the_parts_of_a_loaded_mass),
-      cmocka_unit_test(test_a_slack_cable_stores_nothing),
-      cmocka_unit_test(test_an_interrupted_step_is_undone_with_its_works),
-  };
-  return cmocka_run_group_tests_name("energy", tests, NULL, NULL);
 }

@@ -59,8 +59,7 @@ static void give_density(strut_setup *setup, int32_t member, double density) {
 }
 
 /* A cable net between supports with weights: sum of q (x_j - x_i) + f = 0 at every free node. */
-static void test_net(void **state) {
-  (void)state;
+TEST(net) {
   strut_setup setup;
   strut_setup_init(&setup);
   setup.scene.gravity[1] = -9.81;
@@ -100,8 +99,7 @@ static void hexagon(strut_setup *setup, double diagonal) {
     give_density(setup, build_member(&setup->scene, STRUT_BAR, i, i + 3, 1000, 0, 0), diagonal);
 }
 
-static void test_standing_hexagon(void **state) {
-  (void)state;
+TEST(standing_hexagon) {
   for (int i = 0; i < 2; i++) {
     double diagonal = i ? -0.4 : -0.5, q[9];
     strut_setup setup;
@@ -163,16 +161,14 @@ static void check_prestress(strut_form_objective objective, bool ground) {
   strut_setup_free(&setup);
 }
 
-static void test_prestress_under_weight(void **state) {
-  (void)state;
+TEST(prestress_under_weight) {
   for (int objective = 0; objective < 3; objective++)
     for (int ground = 0; ground < 2; ground++)
       check_prestress((strut_form_objective)objective, ground);
 }
 
 /* Two vertebrae of six bars each and four cables, after tiso: least squares with q >= 0.5 N/m. */
-static void test_spine(void **state) {
-  (void)state;
+TEST(spine) {
   const double e = 0.1016, s = 0.1524, least = 0.5;
   const double answer[4] = {4.149565, 12.115363, 48.294783, least};
   const double tension[4] = {0.632394, 1.846381, 5.485913, 0.056796};
@@ -203,8 +199,7 @@ static void test_spine(void **state) {
 }
 
 /* The shape of lengths that fit together is the one drawn from them; of those that do not, rest. */
-static void test_lengths(void **state) {
-  (void)state;
+TEST(lengths) {
   strut_setup setup;
   frame(&setup, false);
   setup.scene.gravity[1] = 0;
@@ -227,8 +222,7 @@ static void test_lengths(void **state) {
   strut_setup_free(&setup);
 }
 
-static void test_refusals(void **state) {
-  (void)state;
+TEST(refusals) {
   strut_setup setup;
   strut_form form;
   strut_error error = {0};
@@ -256,8 +250,7 @@ static void test_refusals(void **state) {
   strut_setup_free(&setup);
 }
 
-static void test_memory(void **state) {
-  (void)state;
+TEST(memory) {
   strut_status status = STRUT_NO_MEMORY;
   int64_t n = 0;
   for (; status != STRUT_OK && n < 10000; n++) {
@@ -276,14 +269,4 @@ static void test_memory(void **state) {
   }
   assert_true(n > 20);
   assert_int_equal(status, STRUT_OK);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_net),     cmocka_unit_test(test_standing_hexagon),
-      cmocka_unit_test(test_spine),   cmocka_unit_test(test_prestress_under_weight),
-      cmocka_unit_test(test_lengths), cmocka_unit_test(test_refusals),
-      cmocka_unit_test(test_memory),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -26,8 +26,7 @@ static void block(strut_scene *scene, double slope, double mu_static, double mu_
 }
 
 /* The band follows the step, as it must: four times the change of speed in one step. */
-static void test_a_block_slides_to_rest(void **unused) {
-  (void)unused;
+TEST(a_block_slides_to_rest) {
   const double mu = 0.2, speed = 0.3, way = speed * speed / (2 * mu * G), time = speed / (mu * G);
   double last_bound = 1;
   for (int k = 0; k < 5; k++) {
@@ -52,8 +51,7 @@ static void test_a_block_slides_to_rest(void **unused) {
 }
 
 /* Before it comes near the band the block is uniformly decelerated, which RK4 follows exactly. */
-static void test_sliding_is_uniformly_decelerated(void **unused) {
-  (void)unused;
+TEST(sliding_is_uniformly_decelerated) {
   strut_scene scene;
   motion m;
   block(&scene, 0, 0.9, 0.25, 1e-4);
@@ -81,15 +79,13 @@ static double way_down(double slope, double mu_static, double mu_kinetic) {
   return way;
 }
 
-static void test_a_slope_below_the_friction_angle_holds(void **unused) {
-  (void)unused;
+TEST(a_slope_below_the_friction_angle_holds) {
   assert_near(way_down(atan(0.4 * 0.999), 0.4, 0.4), 0, 1e-12);
   assert_near(way_down(-atan(0.4 * 0.999), 0.4, 0.1), 0, 1e-12);
   assert_near(way_down(atan(0.4 * 0.9999999), 0.4, 0.3), 0, 1e-12);
 }
 
-static void test_a_slope_above_the_friction_angle_lets_go(void **unused) {
-  (void)unused;
+TEST(a_slope_above_the_friction_angle_lets_go) {
   static const double mu_kinetic[] = {0.4, 0.1};
   for (int i = 0; i < 4; i++) {
     double slope = atan(0.4 * 1.001) * (i % 2 ? -1 : 1), mu = mu_kinetic[i / 2];
@@ -100,8 +96,7 @@ static void test_a_slope_above_the_friction_angle_lets_go(void **unused) {
 }
 
 /* Between the two coefficients a block at rest stays and a moving one slides on. */
-static void test_a_moving_block_meets_kinetic_friction_only(void **unused) {
-  (void)unused;
+TEST(a_moving_block_meets_kinetic_friction_only) {
   double slope = atan(0.3), a = G * (sin(slope) - 0.2 * cos(slope));
   strut_scene scene;
   motion m;
@@ -149,8 +144,7 @@ static belt_cycle ride(double step, double band, double mu_static, double speed)
   return cycle;
 }
 
-static void test_a_mass_on_a_belt_sticks_and_slips(void **unused) {
-  (void)unused;
+TEST(a_mass_on_a_belt_sticks_and_slips) {
   const double v = 0.1, omega = 10, d = 0.01;
   double expected = 2 * d / v + (acos(-1) + 2 * atan(v / (omega * d))) / omega, error[5];
   assert_near(expected, 0.671238898, 1e-9);
@@ -166,29 +160,13 @@ static void test_a_mass_on_a_belt_sticks_and_slips(void **unused) {
 }
 
 /* A band narrower than one step's change of speed cannot catch the mass: known, and to be seen. */
-static void test_a_band_that_is_too_narrow_loses_sticking(void **unused) {
-  (void)unused;
+TEST(a_band_that_is_too_narrow_loses_sticking) {
   belt_cycle cycle = ride(1e-3, 1e-8, 2, 0.1);
   assert_true(fabs(cycle.period - 0.671238898) > 0.02);
 }
 
 /* With one coefficient there is no stick-slip: the mass ends in a pure oscillation. */
-static void test_one_coefficient_gives_no_stick_slip(void **unused) {
-  (void)unused;
+TEST(one_coefficient_gives_no_stick_slip) {
   belt_cycle cycle = ride(1e-4, 1.5e-4, 1, 0.1);
   assert_relative(cycle.period, 2 * acos(-1) / 10, 2e-3);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_block_slides_to_rest),
-      cmocka_unit_test(test_sliding_is_uniformly_decelerated),
-      cmocka_unit_test(test_a_slope_below_the_friction_angle_holds),
-      cmocka_unit_test(test_a_slope_above_the_friction_angle_lets_go),
-      cmocka_unit_test(test_a_moving_block_meets_kinetic_friction_only),
-      cmocka_unit_test(test_a_mass_on_a_belt_sticks_and_slips),
-      cmocka_unit_test(test_a_band_that_is_too_narrow_loses_sticking),
-      cmocka_unit_test(test_one_coefficient_gives_no_stick_slip),
-  };
-  return cmocka_run_group_tests_name("friction", tests, NULL, NULL);
 }

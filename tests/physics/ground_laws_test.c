@@ -24,8 +24,7 @@ static double departure_after(double approach, double chi) {
   return low;
 }
 
-static void test_hunt_crossley_restitution_and_depth(void **unused) {
-  (void)unused;
+TEST(hunt_crossley_restitution_and_depth) {
   static const double chis[] = {0.05, 0.5, 3};
   for (int k = 0; k < 3; k++) {
     strut_setup setup;
@@ -54,8 +53,7 @@ static void test_hunt_crossley_restitution_and_depth(void **unused) {
 }
 
 /* A node that leaves faster than 1 / chi, from deep in the ground: nothing holds it back. */
-static void test_hunt_crossley_never_pulls(void **unused) {
-  (void)unused;
+TEST(hunt_crossley_never_pulls) {
   const double chi = 3, speed = 2, depth = 0.01, step = 1e-4;
   const strut_integrator *method;
   for (size_t i = 0; (method = strut_integrator_at(i)); i++) {
@@ -95,8 +93,7 @@ static void block(strut_setup *setup, double slope, double mu, double width) {
 /* sqrt(u^2 + w^2) - w asinh(w/u) falls by mu g t. */
 static double slid(double u, double w) { return sqrt(u * u + w * w) - w * asinh(w / u); }
 
-static void test_smooth_friction_slows_a_block_by_its_closed_form(void **unused) {
-  (void)unused;
+TEST(smooth_friction_slows_a_block_by_its_closed_form) {
   static const double slopes[] = {0, 0.3};
   for (int k = 0; k < 2; k++) {
     strut_setup setup;
@@ -118,8 +115,7 @@ static void test_smooth_friction_slows_a_block_by_its_closed_form(void **unused)
 }
 
 /* Under a load below mu N it creeps at w F / sqrt((mu N)^2 - F^2). */
-static void test_smooth_friction_creeps(void **unused) {
-  (void)unused;
+TEST(smooth_friction_creeps) {
   strut_setup setup;
   motion m;
   const double mu = 0.4, width = 0.01, full = mu * MASS * G, push = 0.6 * full;
@@ -133,8 +129,7 @@ static void test_smooth_friction_creeps(void **unused) {
 }
 
 /* Friction's slope at rest, mu N / width, is a rate of decay that the step must follow. */
-static void test_the_step_limit_counts_smooth_friction(void **unused) {
-  (void)unused;
+TEST(the_step_limit_counts_smooth_friction) {
   strut_setup setup;
   const double mu = 0.4, width = 1e-4;
   block(&setup, 0, mu, width);
@@ -145,8 +140,7 @@ static void test_the_step_limit_counts_smooth_friction(void **unused) {
   strut_setup_free(&setup);
 }
 
-static void test_exact_friction_needs_a_method_with_events(void **unused) {
-  (void)unused;
+TEST(exact_friction_needs_a_method_with_events) {
   strut_setup setup;
   strut_error error = {0};
   strut_summary summary;
@@ -164,16 +158,4 @@ static void test_exact_friction_needs_a_method_with_events(void **unused) {
   strut_summary_free(&summary);
   strut_model_free(model);
   strut_setup_free(&setup);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_hunt_crossley_restitution_and_depth),
-      cmocka_unit_test(test_hunt_crossley_never_pulls),
-      cmocka_unit_test(test_smooth_friction_slows_a_block_by_its_closed_form),
-      cmocka_unit_test(test_smooth_friction_creeps),
-      cmocka_unit_test(test_the_step_limit_counts_smooth_friction),
-      cmocka_unit_test(test_exact_friction_needs_a_method_with_events),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -86,14 +86,6 @@ static void check(const char *name) {
   strut_setup_free(&setup);
 }
 
-static void test_a_structure_that_tightens(void **unused) {
-  (void)unused;
+TEST(a_structure_that_tightens) {
   for (size_t i = 0; i < sizeof METHODS / sizeof METHODS[0]; i++) check(METHODS[i]);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_structure_that_tightens),
-  };
-  return cmocka_run_group_tests_name("guard", tests, NULL, NULL);
 }

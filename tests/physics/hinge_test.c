@@ -25,8 +25,7 @@ static const char rotor[] =
     "output: {channels: [position]}\n";
 
 /* Amplitude = speed / (arm omega), omega^2 = kappa / (m arm^2): ten radians. */
-static void test_an_arm_turns_several_times_against_its_hinge(void **unused) {
-  (void)unused;
+TEST(an_arm_turns_several_times_against_its_hinge) {
   static const char *const methods[] = {"rk4", "rk4-events", "adaptive", "verlet-events",
                                         "midpoint"};
   const double omega = sqrt(0.3 / (2 * 0.25)), amplitude = 4 / 0.5 / omega;
@@ -64,8 +63,7 @@ static const char pendulum[] =
     "solver: {step: 0.1 ms}\n"
     "run: {duration: 1 s}\n";
 
-static void test_a_pendulum_with_a_hinge(void **unused) {
-  (void)unused;
+TEST(a_pendulum_with_a_hinge) {
   const double omega = sqrt(3 / (2 * 0.25) + G / 0.5);
   model_run run;
   model_read_text(&run, "pendulum", pendulum, set_none);
@@ -93,8 +91,7 @@ static const char held[] =
     "solver: {step: 0.1 ms}\n"
     "run: {duration: 0.5 s}\n";
 
-static void test_a_driven_hinge_between_held_arms(void **unused) {
-  (void)unused;
+TEST(a_driven_hinge_between_held_arms) {
   for (int damped = 0; damped < 2; damped++)
     for (int quarter = 1; quarter <= 4; quarter++) {
       const double c = damped ? 0.02 : 0, w = 4 * PI, t = quarter * 0.125;
@@ -135,8 +132,7 @@ static const char leg[] =
     "solver: {step: 0.1 ms}\n"
     "run: {duration: 1 s}\n";
 
-static void test_the_balance_of_a_driven_leg_closes(void **unused) {
-  (void)unused;
+TEST(the_balance_of_a_driven_leg_closes) {
   static const struct {
     const char *method;
     double tolerance;
@@ -157,14 +153,4 @@ static void test_the_balance_of_a_driven_leg_closes(void **unused) {
     assert_near(e->residual, 0, known[i].tolerance * e->moved);
     model_run_free(&run);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_an_arm_turns_several_times_against_its_hinge),
-      cmocka_unit_test(test_a_pendulum_with_a_hinge),
-      cmocka_unit_test(test_a_driven_hinge_between_held_arms),
-      cmocka_unit_test(test_the_balance_of_a_driven_leg_closes),
-  };
-  return cmocka_run_group_tests_name("hinge", tests, NULL, NULL);
 }

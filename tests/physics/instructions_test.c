@@ -91,8 +91,7 @@ static long count_of(const budget *b) {
   return count;
 }
 
-static void test_what_the_crawler_does_not_use_costs_it_nothing(void **unused) {
-  (void)unused;
+TEST(what_the_crawler_does_not_use_costs_it_nothing) {
   int over = 0;
   if (!numbers_hold_here()) {
     print_message("the numbers are of another compiler, build or processor\n");
@@ -167,8 +166,7 @@ static long count_of_lanes(const lanes_budget *b) {
 }
 
 /* Their budgets are of the day when they were first counted. */
-static void test_nor_does_it_cost_lanes(void **unused) {
-  (void)unused;
+TEST(nor_does_it_cost_lanes) {
   int over = 0;
   if (!numbers_hold_here() || !__builtin_cpu_supports("avx512dq") ||
       !__builtin_cpu_supports("avx512vl")) {
@@ -186,12 +184,4 @@ static void test_nor_does_it_cost_lanes(void **unused) {
     over += !good;
   }
   assert_int_equal(over, 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_what_the_crawler_does_not_use_costs_it_nothing),
-      cmocka_unit_test(test_nor_does_it_cost_lanes),
-  };
-  return cmocka_run_group_tests_name("instructions", tests, NULL, NULL);
 }

@@ -183,14 +183,12 @@ static void smaller(strut_setup *setup) { scale_lengths(setup, 1 / FACTOR); }
 static void heavier(strut_setup *setup) { scale_masses(setup, FACTOR); }
 static void lighter(strut_setup *setup) { scale_masses(setup, 1 / FACTOR); }
 
-static void test_other_lengths_scale_every_bit(void **unused) {
-  (void)unused;
+TEST(other_lengths_scale_every_bit) {
   check_change(larger, (factors){FACTOR, FACTOR, FACTOR * FACTOR, 1});
   check_change(smaller, (factors){1 / FACTOR, 1 / FACTOR, 1 / (FACTOR * FACTOR), 1});
 }
 
-static void test_other_masses_scale_every_bit(void **unused) {
-  (void)unused;
+TEST(other_masses_scale_every_bit) {
   check_change(heavier, (factors){1, 1, FACTOR, 1});
   check_change(lighter, (factors){1, 1, 1 / FACTOR, 1});
 }
@@ -198,31 +196,22 @@ static void test_other_masses_scale_every_bit(void **unused) {
 static void slower(strut_setup *setup) { scale_times(setup, FACTOR); }
 static void faster(strut_setup *setup) { scale_times(setup, 1 / FACTOR); }
 
-static void test_other_times_scale_every_bit(void **unused) {
-  (void)unused;
+TEST(other_times_scale_every_bit) {
   check_change(slower, (factors){1, 1, 1 / (FACTOR * FACTOR), FACTOR});
   check_change(faster, (factors){1, 1, FACTOR * FACTOR, 1 / FACTOR});
 }
 
-static void test_events_scale_with_lengths(void **unused) {
-  (void)unused;
+TEST(events_scale_with_lengths) {
   check_events(larger, (factors){FACTOR, FACTOR, FACTOR * FACTOR, 1});
 }
 
-static void test_events_scale_with_masses(void **unused) {
-  (void)unused;
-  check_events(heavier, (factors){1, 1, FACTOR, 1});
-}
+TEST(events_scale_with_masses) { check_events(heavier, (factors){1, 1, FACTOR, 1}); }
 
-static void test_events_scale_with_times(void **unused) {
-  (void)unused;
+TEST(events_scale_with_times) {
   check_events(slower, (factors){1, 1, 1 / (FACTOR * FACTOR), FACTOR});
 }
 
-static void test_the_mirror_image_moves_as_the_mirror_image(void **unused) {
-  (void)unused;
-  check_change(mirror, (factors){-1, 1, 1, 1});
-}
+TEST(the_mirror_image_moves_as_the_mirror_image) { check_change(mirror, (factors){-1, 1, 1, 1}); }
 
 /* The same scene with nodes and members in another order: new_of[i] is where node i has gone. */
 static void shuffle(const strut_setup *from, strut_setup *to, int32_t *new_of, uint64_t *r) {
@@ -261,8 +250,7 @@ static void shuffle(const strut_setup *from, strut_setup *to, int32_t *new_of, u
   free(place);
 }
 
-static void test_another_order_agrees_to_rounding(void **unused) {
-  (void)unused;
+TEST(another_order_agrees_to_rounding) {
   uint64_t r = 7;
   for (uint64_t number = 0; number <= RANDOM_SCENES; number++) {
     strut_setup first, second;
@@ -300,8 +288,7 @@ static double drive(double frequency, double step, double n) {
 }
 
 /* One step after a million periods, none of which was a whole number of steps. */
-static void test_a_drive_does_not_drift(void **unused) {
-  (void)unused;
+TEST(a_drive_does_not_drift) {
   const double frequency = 7.3, step = 1e-4, n = 1369863014; /* 1e6 periods and a little */
   strut_setup setup;
   motion m;
@@ -317,19 +304,4 @@ static void test_a_drive_does_not_drift(void **unused) {
   assert_int_equal(m.state->step, (int64_t)n + 1);
   motion_end(&m);
   strut_setup_free(&setup);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_other_lengths_scale_every_bit),
-      cmocka_unit_test(test_other_masses_scale_every_bit),
-      cmocka_unit_test(test_other_times_scale_every_bit),
-      cmocka_unit_test(test_events_scale_with_lengths),
-      cmocka_unit_test(test_events_scale_with_masses),
-      cmocka_unit_test(test_events_scale_with_times),
-      cmocka_unit_test(test_the_mirror_image_moves_as_the_mirror_image),
-      cmocka_unit_test(test_another_order_agrees_to_rounding),
-      cmocka_unit_test(test_a_drive_does_not_drift),
-  };
-  return cmocka_run_group_tests_name("invariance", tests, NULL, NULL);
 }

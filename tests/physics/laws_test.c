@@ -41,8 +41,7 @@ static void read_oscillator(model_run *run, const char *member, const char *out)
 }
 
 /* k x + k3 x^3: T = 4 K(m) / omega_r with omega_r^2 = (k + k3 A^2) / M, m = k3 A^2 / 2 / (k + k3 A^2). */
-static void test_duffings_oscillator_keeps_its_period(void **unused) {
-  (void)unused;
+TEST(duffings_oscillator_keeps_its_period) {
   static const char *const methods[] = {"rk4", "rk4-events", "adaptive", "verlet-events",
                                         "midpoint"};
   static const double tolerance[] = {1e-10, 1e-10, 1e-6, 1e-5, 1e-5};
@@ -64,8 +63,7 @@ static void test_duffings_oscillator_keeps_its_period(void **unused) {
 }
 
 /* A quarter of a period of each law in closed form, met where pieces change by methods with events. */
-static void test_bilinear_springs_and_free_play_keep_their_period(void **unused) {
-  (void)unused;
+TEST(bilinear_springs_and_free_play_keep_their_period) {
   static const double tolerance[] = {1e-9, 1e-5, 1e-5, 1e-2};
   const double mass = 2, k = 50, out = 0.2;
   /* soft to 0.05, then 300: from out to the knee by cosine, from there to 0 by sine */
@@ -99,8 +97,7 @@ static void test_bilinear_springs_and_free_play_keep_their_period(void **unused)
 }
 
 /* The same through a table with the bilinear spring's points, and a one-sided spring's by its word. */
-static void test_a_table_is_the_spring_that_it_lists(void **unused) {
-  (void)unused;
+TEST(a_table_is_the_spring_that_it_lists) {
   for (int i = 0; i < 4; i++) {
     double at[2];
     for (int table = 0; table < 2; table++) {
@@ -121,8 +118,7 @@ static void test_a_table_is_the_spring_that_it_lists(void **unused) {
 }
 
 /* Elastic energy is the integral of the table, and force its value, at rest and beyond its ends. */
-static void test_a_tables_energy_is_its_integral(void **unused) {
-  (void)unused;
+TEST(a_tables_energy_is_its_integral) {
   static const struct {
     const char *out;
     double force, energy;
@@ -163,8 +159,7 @@ static const char against_stop[] =
  * Without adhesion the stop lets go where its force is zero: at the phase 2 acos(zeta) of the damped
  * oscillation, with exp(-2 zeta acos(zeta) / sqrt(1 - zeta^2)) of the speed.
  */
-static void test_a_stop_gives_back_what_its_damper_leaves(void **unused) {
-  (void)unused;
+TEST(a_stop_gives_back_what_its_damper_leaves) {
   static const char *const methods[] = {"rk4",          "rk4-events", "adaptive", "verlet-events",
                                         "euler-events", "verlet",     "euler",    "midpoint"};
   static const double tolerance[] = {2e-2, 1e-8, 1e-5, 1e-4, 2e-2, 2e-2, 5e-2, 2e-2};
@@ -205,8 +200,7 @@ static const char two_masses[] =
     "run: {duration: 1 s}\n"
     "output: {channels: [position, velocity]}\n";
 
-static void test_stops_keep_the_momentum_of_two_masses(void **unused) {
-  (void)unused;
+TEST(stops_keep_the_momentum_of_two_masses) {
   const double momentum[] = {2 * 0.4 + 0.5 * 3, 2 * -0.2 + 0.5 * 0.5};
   const double spin = 0.5 * (1 * 0.5 - 0.3 * 3);
   static const double tolerance[] = {1e-5, 1e-5, 1e-4, 0.05};
@@ -247,8 +241,7 @@ static const char thrown[] =
     "solver: {step: 0.1 ms}\n"
     "run: {duration: 1 s}\n";
 
-static void test_a_cable_of_any_law_throws_its_block_back(void **unused) {
-  (void)unused;
+TEST(a_cable_of_any_law_throws_its_block_back) {
   static const char *const laws[] = {
       "stiffness: 40",
       "law: {kind: polynomial, coefficients: [0, 0, 400]}",
@@ -294,8 +287,7 @@ static const char driven[] =
     "solver: {step: 0.5 ms}\n"
     "run: {duration: 2 s}\n";
 
-static void test_the_balance_of_driven_laws_closes(void **unused) {
-  (void)unused;
+TEST(the_balance_of_driven_laws_closes) {
   static const char *const laws[] = {
       "stiffness: 40, law: compression_only",
       "stiffness: 40, law: {kind: bilinear, knee: 50 mm, second_stiffness: 90}",
@@ -326,18 +318,4 @@ static void test_the_balance_of_driven_laws_closes(void **unused) {
         assert_true(e->dissipated_members > 0 && e->drive_work != 0);
         model_run_free(&run);
       }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_duffings_oscillator_keeps_its_period),
-      cmocka_unit_test(test_bilinear_springs_and_free_play_keep_their_period),
-      cmocka_unit_test(test_a_table_is_the_spring_that_it_lists),
-      cmocka_unit_test(test_a_tables_energy_is_its_integral),
-      cmocka_unit_test(test_a_stop_gives_back_what_its_damper_leaves),
-      cmocka_unit_test(test_stops_keep_the_momentum_of_two_masses),
-      cmocka_unit_test(test_a_cable_of_any_law_throws_its_block_back),
-      cmocka_unit_test(test_the_balance_of_driven_laws_closes),
-  };
-  return cmocka_run_group_tests_name("laws", tests, NULL, NULL);
 }

@@ -61,8 +61,7 @@ static void make_blocks(strut_scene *scene) {
   }
 }
 
-static void test_blocks_stop_where_coulomb_says(void **unused) {
-  (void)unused;
+TEST(blocks_stop_where_coulomb_says) {
   static const char *const methods[] = {"rk4-events", "adaptive"};
   for (int k = 0; k < 2; k++) {
     strut_scene scene;
@@ -86,8 +85,7 @@ static void test_blocks_stop_where_coulomb_says(void **unused) {
 static const double TOLERANCE = 1e-9;
 
 /* Blocks that fall from one height all touch and open at once; each moves as it would alone. */
-static void test_blocks_that_touch_at_once_move_as_one(void **unused) {
-  (void)unused;
+TEST(blocks_that_touch_at_once_move_as_one) {
   static const char *const methods[] = {"rk4-events", "adaptive", "verlet-events"};
   for (int k = 0; k < 3; k++) {
     double alone[2] = {0.0, 0.0};
@@ -219,23 +217,13 @@ static void compare(uint64_t seed, int law, bool lumped) {
   strut_scene_free(&scene);
 }
 
-static void test_grids_fall_as_by_steps_of_the_whole(void **unused) {
-  (void)unused;
+TEST(grids_fall_as_by_steps_of_the_whole) {
   for (int lumped = 0; lumped < 2; lumped++)
     for (int law = 0; law < LAWS; law++) compare(1 + (uint64_t)law, law, lumped);
 }
 
 /* Contacts at rest that let go and hold again: forces have kinks where a threshold is passed. */
-static void test_grids_on_yielding_contacts_fall_so_too(void **unused) {
-  (void)unused;
+TEST(grids_on_yielding_contacts_fall_so_too) {
   for (uint64_t seed = 1; seed <= 8; seed++) compare(seed, 2, true);
   compare(23, 2, true);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_blocks_stop_where_coulomb_says),
-                                     cmocka_unit_test(test_blocks_that_touch_at_once_move_as_one),
-                                     cmocka_unit_test(test_grids_fall_as_by_steps_of_the_whole),
-                                     cmocka_unit_test(test_grids_on_yielding_contacts_fall_so_too)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

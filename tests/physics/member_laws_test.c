@@ -32,14 +32,12 @@ static void orbit(double x, double y, double vx, double vy) {
   strut_setup_free(&setup);
 }
 
-static void test_a_spring_of_no_rest_length_makes_an_ellipse(void **unused) {
-  (void)unused;
+TEST(a_spring_of_no_rest_length_makes_an_ellipse) {
   orbit(0.4, 0, 0, 1.5);
   orbit(0.3, 0.4, 2, -1);
 }
 
-static void test_the_ellipse_may_be_as_narrow_as_one_likes(void **unused) {
-  (void)unused;
+TEST(the_ellipse_may_be_as_narrow_as_one_likes) {
   orbit(0.4, 0, 0, 1e-9);
   orbit(0.3, 0.4, 1e-14, 0);
   orbit(0.3, 0.4, 0, 0);
@@ -68,8 +66,7 @@ static double pull(strut_member_kind kind, double stretch, double rate) {
   return force;
 }
 
-static void test_a_slack_cable_carries_nothing(void **unused) {
-  (void)unused;
+TEST(a_slack_cable_carries_nothing) {
   assert_true(pull(STRUT_CABLE, -0.125, 0) == 0);
   assert_true(pull(STRUT_CABLE, -0.125, 4) == 0); /* lengthens, but is slack: no damper either */
   assert_true(pull(STRUT_CABLE, -0.125, -4) == 0);
@@ -85,8 +82,7 @@ static void test_a_slack_cable_carries_nothing(void **unused) {
 }
 
 /* A ball thrown at the cable's anchor flies on freely, passes by and is caught on the other side. */
-static void test_a_ball_flies_freely_until_its_cable_is_taut(void **unused) {
-  (void)unused;
+TEST(a_ball_flies_freely_until_its_cable_is_taut) {
   const double k = 400, mass = 0.5, speed = 2, omega = sqrt(k / mass);
   strut_setup setup;
   motion m;
@@ -111,8 +107,7 @@ static void test_a_ball_flies_freely_until_its_cable_is_taut(void **unused) {
 }
 
 /* Every method: a cable that lengthens but is slack lets a ball fly on, whatever its damper. */
-static void test_a_slack_cable_holds_nothing_back_by_any_method(void **unused) {
-  (void)unused;
+TEST(a_slack_cable_holds_nothing_back_by_any_method) {
   const strut_integrator *method;
   for (size_t i = 0; (method = strut_integrator_at(i)); i++) {
     strut_setup setup;
@@ -137,8 +132,7 @@ static void test_a_slack_cable_holds_nothing_back_by_any_method(void **unused) {
  * A damped cable that was pulled out draws its ball in until damper and spring balance, at the phase
  * acos(zeta): from there on the ball keeps its speed, A omega exp(-zeta acos(zeta) / sqrt(1 - zeta^2)).
  */
-static void test_a_cable_lets_go_where_its_damper_would_push(void **unused) {
-  (void)unused;
+TEST(a_cable_lets_go_where_its_damper_would_push) {
   static const struct {
     const char *method;
     double tolerance;
@@ -168,8 +162,7 @@ static void test_a_cable_lets_go_where_its_damper_would_push(void **unused) {
 
 /* An actuator that lengthens a cable lets it go slack; the rate of the drive pulls through k only
    while it is taut. */
-static void test_a_driven_cable_goes_slack(void **unused) {
-  (void)unused;
+TEST(a_driven_cable_goes_slack) {
   strut_setup setup;
   motion m;
   strut_setup_init(&setup);
@@ -186,17 +179,4 @@ static void test_a_driven_cable_goes_slack(void **unused) {
   assert_true(m.state->force[2] == 0);
   motion_end(&m);
   strut_setup_free(&setup);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_spring_of_no_rest_length_makes_an_ellipse),
-      cmocka_unit_test(test_the_ellipse_may_be_as_narrow_as_one_likes),
-      cmocka_unit_test(test_a_slack_cable_carries_nothing),
-      cmocka_unit_test(test_a_ball_flies_freely_until_its_cable_is_taut),
-      cmocka_unit_test(test_a_slack_cable_holds_nothing_back_by_any_method),
-      cmocka_unit_test(test_a_cable_lets_go_where_its_damper_would_push),
-      cmocka_unit_test(test_a_driven_cable_goes_slack),
-  };
-  return cmocka_run_group_tests_name("member_laws", tests, NULL, NULL);
 }

@@ -43,8 +43,7 @@ static void pendulum(strut_setup *setup, double stiffness) {
   build_member(&setup->scene, STRUT_BAR, pin, tip, stiffness, 0, 1);
 }
 
-static void test_stiff_pendulum_is_the_rigid_one(void **unused) {
-  (void)unused;
+TEST(stiff_pendulum_is_the_rigid_one) {
   const double period = 4.0 * sqrt(2.0 / (3.0 * 9.81)) * 1.8540746773013719;
   for (double stiffness = 1e8; stiffness < 2e12; stiffness *= 100) {
     double error[3];
@@ -65,8 +64,7 @@ static void test_stiff_pendulum_is_the_rigid_one(void **unused) {
 }
 
 /* A closed frame, spinning and vibrating, at 100 times the largest step of RK4. */
-static void test_energy_of_a_stiff_frame(void **unused) {
-  (void)unused;
+TEST(energy_of_a_stiff_frame) {
   strut_setup setup;
   const x_frame frame = {.side = 1,
                          .cable_stiffness = 1e7,
@@ -113,8 +111,7 @@ static void chain(strut_setup *setup, double ratio) {
   }
 }
 
-static void test_stiff_chain_against_rk4(void **unused) {
-  (void)unused;
+TEST(stiff_chain_against_rk4) {
   strut_setup setup;
   const double duration = 0.5;
   chain(&setup, 1e6);
@@ -141,8 +138,7 @@ static void test_stiff_chain_against_rk4(void **unused) {
  * kinds, rest lengths of zero. What is left of the error is compared with RK4 at a fine step; the
  * balance closes whatever the step.
  */
-static void test_random_scenes(void **unused) {
-  (void)unused;
+TEST(random_scenes) {
   enum { SCENES = 30 };
   const double duration = 0.25;
   double balance = 0.0;
@@ -199,8 +195,7 @@ static void take_jumps_out(strut_setup *setup) {
 }
 
 /* Of each scene, not of most: the error against RK4 falls by 4 when the step is halved. */
-static void test_order_on_random_scenes(void **unused) {
-  (void)unused;
+TEST(order_on_random_scenes) {
   enum { SCENES = 40 };
   const double duration = 0.016;
   double least = HUGE_VAL, most = 0.0;
@@ -229,8 +224,7 @@ static void test_order_on_random_scenes(void **unused) {
 }
 
 /* A mass on a cable with a damper, thrown through its slack length again and again: 1000 steps. */
-static void test_cable_in_large_steps(void **unused) {
-  (void)unused;
+TEST(cable_in_large_steps) {
   strut_setup setup;
   strut_setup_init(&setup);
   setup.scene.gravity[1] = -9.81;
@@ -247,8 +241,7 @@ static void test_cable_in_large_steps(void **unused) {
 }
 
 /* A swing of small amplitude: midpoint turns by 2 atan(omega h / 2) in a step. */
-static void test_frequency_is_that_of_midpoint(void **unused) {
-  (void)unused;
+TEST(frequency_is_that_of_midpoint) {
   strut_setup setup;
   strut_setup_init(&setup);
   int32_t wall = build_support(&setup.scene, 0, 0), mass = build_mass(&setup.scene, 1, 0, 2);
@@ -275,8 +268,7 @@ static void expect_refusal(strut_setup *setup, const char *word) {
   strut_model_free(model);
 }
 
-static void test_refusals(void **unused) {
-  (void)unused;
+TEST(refusals) {
   strut_setup setup;
   pendulum(&setup, 1e6);
   setup.scene.bar_model = STRUT_BARS_RIGID;
@@ -288,8 +280,7 @@ static void test_refusals(void **unused) {
 }
 
 /* A force that no number of metres a second goes with. */
-static void test_no_solution_is_named(void **unused) {
-  (void)unused;
+TEST(no_solution_is_named) {
   strut_setup setup;
   strut_summary s;
   strut_error error = {0};
@@ -310,19 +301,4 @@ static void test_no_solution_is_named(void **unused) {
   strut_summary_free(&s);
   strut_model_free(model);
   strut_setup_free(&setup);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_stiff_pendulum_is_the_rigid_one),
-      cmocka_unit_test(test_energy_of_a_stiff_frame),
-      cmocka_unit_test(test_stiff_chain_against_rk4),
-      cmocka_unit_test(test_random_scenes),
-      cmocka_unit_test(test_order_on_random_scenes),
-      cmocka_unit_test(test_cable_in_large_steps),
-      cmocka_unit_test(test_frequency_is_that_of_midpoint),
-      cmocka_unit_test(test_refusals),
-      cmocka_unit_test(test_no_solution_is_named),
-  };
-  return cmocka_run_group_tests_name("midpoint", tests, NULL, NULL);
 }

@@ -82,8 +82,7 @@ static void check_frame(strut_mass_model mass_model, const double expected[5]) {
   strut_scene_free(&scene);
 }
 
-static void test_x_frame_with_consistent_masses(void **unused) {
-  (void)unused;
+TEST(x_frame_with_consistent_masses) {
   double kc = 1000, kb = 5e4, q = 120, mc = 0.02, mb = 0.3;
   double pair = 8 * (kc + q) / (4 * mc / 3 + 2 * mb);
   double opposed = 8 * (kb + q) / (8 * mc / 3 + 2 * mb / 3);
@@ -93,8 +92,7 @@ static void test_x_frame_with_consistent_masses(void **unused) {
   assert_relative(opposed, 1582736.8421, 1e-10);
 }
 
-static void test_x_frame_with_lumped_masses(void **unused) {
-  (void)unused;
+TEST(x_frame_with_lumped_masses) {
   double kc = 1000, kb = 5e4, q = 120, node = 0.02 + 0.3 / 2;
   double pair = 2 * (kc + q) / node;
   check_frame(STRUT_MASS_LUMPED, (double[]){2 * (kc - q) / node, pair, pair, 2 * (kb + q) / node,
@@ -123,8 +121,7 @@ static void check_chain(strut_mass_model mass_model) {
   strut_scene_free(&scene);
 }
 
-static void test_chain_of_twenty_bars(void **unused) {
-  (void)unused;
+TEST(chain_of_twenty_bars) {
   check_chain(STRUT_MASS_CONSISTENT);
   check_chain(STRUT_MASS_LUMPED);
 }
@@ -164,8 +161,7 @@ static void apex_response(double y, double *stiffness, double *force) {
   strut_scene_free(&scene);
 }
 
-static void test_von_mises_truss_snaps_at_its_limit_point(void **unused) {
-  (void)unused;
+TEST(von_mises_truss_snaps_at_its_limit_point) {
   double l0 = hypot(HALF_SPAN, RISE), l = cbrt(l0 * HALF_SPAN * HALF_SPAN);
   double y = sqrt(l * l - HALF_SPAN * HALF_SPAN), k = EA / l0, top, at_limit, force;
   apex_response(RISE, &top, &force);
@@ -200,8 +196,7 @@ static double lowest_apex(double load) {
   return lowest;
 }
 
-static void test_von_mises_truss_under_a_sudden_load(void **unused) {
-  (void)unused;
+TEST(von_mises_truss_under_a_sudden_load) {
   double l0 = hypot(HALF_SPAN, RISE), k = EA / l0, threshold = 0;
   for (double y = 0; y < 0.9; y += 1e-5) {
     double shorter = l0 - hypot(HALF_SPAN, y);
@@ -210,15 +205,4 @@ static void test_von_mises_truss_under_a_sudden_load(void **unused) {
   assert_relative(threshold, 2910.77e3, 2e-6);
   assert_true(lowest_apex(0.999 * threshold) > 0);
   assert_true(lowest_apex(1.001 * threshold) < -RISE);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_x_frame_with_consistent_masses),
-      cmocka_unit_test(test_x_frame_with_lumped_masses),
-      cmocka_unit_test(test_chain_of_twenty_bars),
-      cmocka_unit_test(test_von_mises_truss_snaps_at_its_limit_point),
-      cmocka_unit_test(test_von_mises_truss_under_a_sudden_load),
-  };
-  return cmocka_run_group_tests_name("modes", tests, NULL, NULL);
 }

@@ -45,8 +45,9 @@ static const x_frame FRAME = {.side = 1,
                               .cable_mass = 0.02,
                               .bar_mass = 0.3};
 
-static void test_x_frame(void **unused) {
-  (void)unused;
+BEFORE_ALL { gsl_set_error_handler_off(); }
+
+TEST(x_frame) {
   strut_setup setup;
   double kc = 1000, kb = 5e4, q = 120, mc = 0.02, mb = 0.3;
   double expected[5] = {8 * (kc + q) / (4 * mc / 3 + 2 * mb), 8 * (kc + q) / (4 * mc / 3 + 2 * mb),
@@ -98,8 +99,7 @@ static void assemble(const strut_setup *setup, gsl_matrix *k, gsl_matrix *m) {
   }
 }
 
-static void test_x_frame_with_unequal_members(void **unused) {
-  (void)unused;
+TEST(x_frame_with_unequal_members) {
   strut_setup setup;
   strut_setup_init(&setup);
   structure_x_frame(&setup.scene, &FRAME);
@@ -150,16 +150,14 @@ static void check_chain(strut_mass_model mass_model, bool sparse) {
   free_modes(&setup);
 }
 
-static void test_chain_of_twenty(void **unused) {
-  (void)unused;
+TEST(chain_of_twenty) {
   check_chain(STRUT_MASS_CONSISTENT, false);
   check_chain(STRUT_MASS_LUMPED, false);
   check_chain(STRUT_MASS_CONSISTENT, true);
   check_chain(STRUT_MASS_LUMPED, true);
 }
 
-static void test_free_bar(void **unused) {
-  (void)unused;
+TEST(free_bar) {
   for (int lumped = 0; lumped < 2; lumped++) {
     strut_setup setup;
     strut_setup_init(&setup);
@@ -175,8 +173,7 @@ static void test_free_bar(void **unused) {
 }
 
 /* Rods hang straight down; their stretch by the weight is 1/k, and so is the frequencies' error. */
-static void test_double_pendulum_goes_to_the_rigid_limit(void **unused) {
-  (void)unused;
+TEST(double_pendulum_goes_to_the_rigid_limit) {
   double limit[2] = {9.81 * (3 - 6 / sqrt(7)), 9.81 * (3 + 6 / sqrt(7))}, error[2][6];
   size_t count = 0;
   for (double k = 1e5; k < 2e10; k *= 10, count++) {
@@ -200,8 +197,7 @@ static void test_double_pendulum_goes_to_the_rigid_limit(void **unused) {
 }
 
 /* A mass on a spring with a damper: the closed form, below and above critical. */
-static void test_damped_oscillator(void **unused) {
-  (void)unused;
+TEST(damped_oscillator) {
   const double k = 90, m = 2.5;
   for (int i = 0; i < 3; i++) {
     double zeta = (double[]){0.03, 0.6, 1.7}[i], omega = sqrt(k / m);
@@ -223,8 +219,7 @@ static void test_damped_oscillator(void **unused) {
 }
 
 /* Two masses in a row, only one of them damped: det(z^2 M + z D + K) = 0 at what is reported. */
-static void test_damping_that_couples_modes(void **unused) {
-  (void)unused;
+TEST(damping_that_couples_modes) {
   const double k[3] = {50, 80, 20}, m[2] = {1, 3}, d = 4;
   strut_setup setup;
   strut_setup_init(&setup);
@@ -249,8 +244,7 @@ static void test_damping_that_couples_modes(void **unused) {
 }
 
 /* Four bars in a square: it may move, turn, and shear. */
-static void test_mechanism_beside_rigid_motions(void **unused) {
-  (void)unused;
+TEST(mechanism_beside_rigid_motions) {
   strut_setup setup;
   strut_setup_init(&setup);
   for (int i = 0; i < 4; i++)
@@ -271,8 +265,7 @@ static void test_mechanism_beside_rigid_motions(void **unused) {
 }
 
 /* A weight on top of a rod falls over: one unstable motion, of the pendulum turned round. */
-static void test_unstable(void **unused) {
-  (void)unused;
+TEST(unstable) {
   strut_setup setup;
   strut_setup_init(&setup);
   build_support(&setup.scene, 0, 0), build_mass(&setup.scene, 0, 2, 3);
@@ -288,8 +281,7 @@ static void test_unstable(void **unused) {
 }
 
 /* Frames in a row: 240 coordinates by both ways. */
-static void test_sparse_is_dense(void **unused) {
-  (void)unused;
+TEST(sparse_is_dense) {
   strut_setup setup;
   strut_setup_init(&setup);
   structure_chain(&setup.scene, 60, STRUT_MASS_CONSISTENT);
@@ -317,8 +309,7 @@ static void test_sparse_is_dense(void **unused) {
 }
 
 /* The sparse way without supports, where K has zeros: rigid motions are named there too. */
-static void test_sparse_with_rigid_motions(void **unused) {
-  (void)unused;
+TEST(sparse_with_rigid_motions) {
   strut_setup setup;
   strut_setup_init(&setup);
   structure_chain(&setup.scene, 30, STRUT_MASS_CONSISTENT);
@@ -336,8 +327,7 @@ static void test_sparse_with_rigid_motions(void **unused) {
  * Springs of 1 and 1e12 in turn, longitudinal: two masses with soft springs beside stiff pairs. The
  * soft modes are those of the stiff pairs taken as rigid, but for parts of 1e-12.
  */
-static void test_stiffness_ratios_of_a_million_million(void **unused) {
-  (void)unused;
+TEST(stiffness_ratios_of_a_million_million) {
   strut_setup setup;
   strut_setup_init(&setup);
   setup.scene.mass_model = STRUT_MASS_LUMPED;
@@ -372,8 +362,7 @@ static void test_stiffness_ratios_of_a_million_million(void **unused) {
 }
 
 /* Soft cables around bars 1e13 times as stiff: their stretch decides, which is known. */
-static void test_stiff_bars_in_soft_cables(void **unused) {
-  (void)unused;
+TEST(stiff_bars_in_soft_cables) {
   strut_setup setup;
   double kc = 1, kb = 1e13, q = 0.1, mc = 0.02, mb = 0.3;
   x_frame frame = FRAME;
@@ -391,8 +380,7 @@ static void test_stiff_bars_in_soft_cables(void **unused) {
 }
 
 /* A mass in the middle of a stiff string whose tension is some last bits of its length. */
-static void test_refuses_what_the_last_bits_decide(void **unused) {
-  (void)unused;
+TEST(refuses_what_the_last_bits_decide) {
   strut_setup setup;
   strut_error error = {0};
   strut_setup_init(&setup);
@@ -415,8 +403,7 @@ static void test_refuses_what_the_last_bits_decide(void **unused) {
 }
 
 /* A node without mass between two springs: condensed, as one spring of half the stiffness. */
-static void test_node_without_mass(void **unused) {
-  (void)unused;
+TEST(node_without_mass) {
   strut_setup setup;
   strut_error error = {0};
   strut_setup_init(&setup);
@@ -442,8 +429,7 @@ static void test_node_without_mass(void **unused) {
 }
 
 /* The crawler in state I: a bending mode just above the paper's critical band, 8 to 10 Hz. */
-static void test_crawler_bends_near_its_critical_band(void **unused) {
-  (void)unused;
+TEST(crawler_bends_near_its_critical_band) {
   strut_setup setup;
   strut_setup_init(&setup);
   structure_crawler(&setup.scene, 10, 0, 0.1, false);
@@ -463,8 +449,7 @@ static void test_crawler_bends_near_its_critical_band(void **unused) {
 }
 
 /* Every refusal of memory is an error without a leak (the sanitizers look at that). */
-static void test_out_of_memory(void **unused) {
-  (void)unused;
+TEST(out_of_memory) {
   strut_setup setup;
   strut_setup_init(&setup);
   structure_x_frame(&setup.scene, &FRAME);
@@ -483,28 +468,4 @@ static void test_out_of_memory(void **unused) {
   assert_within((double)allowed, 10, 999);
   strut_model_free(model);
   strut_setup_free(&setup);
-}
-
-int main(void) {
-  gsl_set_error_handler_off();
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_x_frame),
-      cmocka_unit_test(test_x_frame_with_unequal_members),
-      cmocka_unit_test(test_chain_of_twenty),
-      cmocka_unit_test(test_free_bar),
-      cmocka_unit_test(test_double_pendulum_goes_to_the_rigid_limit),
-      cmocka_unit_test(test_damped_oscillator),
-      cmocka_unit_test(test_damping_that_couples_modes),
-      cmocka_unit_test(test_mechanism_beside_rigid_motions),
-      cmocka_unit_test(test_unstable),
-      cmocka_unit_test(test_sparse_is_dense),
-      cmocka_unit_test(test_sparse_with_rigid_motions),
-      cmocka_unit_test(test_stiffness_ratios_of_a_million_million),
-      cmocka_unit_test(test_stiff_bars_in_soft_cables),
-      cmocka_unit_test(test_refuses_what_the_last_bits_decide),
-      cmocka_unit_test(test_node_without_mass),
-      cmocka_unit_test(test_crawler_bends_near_its_critical_band),
-      cmocka_unit_test(test_out_of_memory),
-  };
-  return cmocka_run_group_tests_name("natural modes", tests, NULL, NULL);
 }

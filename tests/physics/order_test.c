@@ -52,8 +52,7 @@ static double order_of(const smooth_scene *smooth, const strut_integrator *metho
   return order;
 }
 
-static void test_every_method_has_its_order(void **unused) {
-  (void)unused;
+TEST(every_method_has_its_order) {
   int failures = 0;
   for (int s = 0; s < SMOOTH_SCENES; s++) {
     double exact[MOST];
@@ -91,8 +90,7 @@ static double caught_ball(const char *method, double step, double tolerance) {
 }
 
 /* Methods with events keep their order across them, drives that go on meanwhile included. */
-static void test_events_keep_the_order(void **unused) {
-  (void)unused;
+TEST(events_keep_the_order) {
   static const char *const methods[] = {"rk4-events", "verlet-events", "euler-events"};
   double exact = caught_ball("rk4-events", 1.0 / 16384, 0);
   for (int i = 0; i < 3; i++) {
@@ -108,8 +106,7 @@ static void test_events_keep_the_order(void **unused) {
 }
 
 /* Fast, but small beside the structure: it is the error of the velocity that error control must see. */
-static void test_error_control_sees_velocities(void **unused) {
-  (void)unused;
+TEST(error_control_sees_velocities) {
   const double size = 1e-6, omega = 1000, time = 0.1;
   strut_setup setup;
   motion m;
@@ -125,11 +122,4 @@ static void test_error_control_sees_velocities(void **unused) {
   assert_near(m.state->v[2], size * omega * cos(omega * time), 1e-3 * size * omega);
   motion_end(&m);
   strut_setup_free(&setup);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_every_method_has_its_order),
-                                     cmocka_unit_test(test_events_keep_the_order),
-                                     cmocka_unit_test(test_error_control_sees_velocities)};
-  return cmocka_run_group_tests_name("order", tests, NULL, NULL);
 }

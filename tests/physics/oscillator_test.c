@@ -30,8 +30,7 @@ static void keep_energy(double z, int64_t steps, double stretch) {
   strut_scene_free(&scene);
 }
 
-static void test_energy_after_a_million_steps(void **unused) {
-  (void)unused;
+TEST(energy_after_a_million_steps) {
   keep_energy(0.01, 1000000, 0.25);
   keep_energy(0.1, 1000000, 0.25);
   keep_energy(0.2, 1000000, 0.25);
@@ -39,8 +38,7 @@ static void test_energy_after_a_million_steps(void **unused) {
 }
 
 /* On both sides of the stability limit 2 sqrt(2). */
-static void test_growth_about_the_stability_limit(void **unused) {
-  (void)unused;
+TEST(growth_about_the_stability_limit) {
   keep_energy(0.99 * sqrt(8), 60, 1e-4);
   keep_energy(1.01 * sqrt(8), 60, 1e-4);
 }
@@ -63,8 +61,7 @@ static double error_of(const smooth_scene *smooth, double step, const double *ex
   return error;
 }
 
-static void test_smooth_scenes_converge_at_order_four(void **unused) {
-  (void)unused;
+TEST(smooth_scenes_converge_at_order_four) {
   for (int s = 0; s < SMOOTH_SCENES; s++) {
     const smooth_scene *smooth = &smooth_scenes[s];
     double error[5], exact[100];
@@ -75,13 +72,4 @@ static void test_smooth_scenes_converge_at_order_four(void **unused) {
                   error[4]);
     assert_within(order, 3.9, 4.1);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_energy_after_a_million_steps),
-      cmocka_unit_test(test_growth_about_the_stability_limit),
-      cmocka_unit_test(test_smooth_scenes_converge_at_order_four),
-  };
-  return cmocka_run_group_tests_name("oscillator", tests, NULL, NULL);
 }

@@ -66,8 +66,7 @@ static double toggle_load(double x) {
 }
 
 /* The load turns at both kinks, where the stiffness jumps from one sign to the other. */
-static void test_limit_points_at_kinks(void **state) {
-  (void)state;
+TEST(limit_points_at_kinks) {
   strut_setup setup;
   toggle(&setup);
   double turn = toggle_load(-STOP),
@@ -99,8 +98,7 @@ static void test_limit_points_at_kinks(void **state) {
 }
 
 /* The other way along it: the same points, each side judged as before. */
-static void test_kinks_backwards(void **state) {
-  (void)state;
+TEST(kinks_backwards) {
   strut_setup setup;
   toggle(&setup);
   setup.scene.nodes[TIP].start[0] = 0.12;
@@ -117,8 +115,7 @@ static void test_kinks_backwards(void **state) {
  * A mast of stiffness K between two guys, loaded from above: it is straight and stable as long as
  * the guys pull, and straight but unstable as soon as they do not.
  */
-static void test_bifurcation_at_kink(void **state) {
-  (void)state;
+TEST(bifurcation_at_kink) {
   const double mast = 5e3, top = 0.9;
   strut_setup setup;
   strut_setup_init(&setup);
@@ -145,8 +142,7 @@ static void test_bifurcation_at_kink(void **state) {
 }
 
 /* Von Mises' truss falls on the ground between its limit points: stable from there, the load grows. */
-static void test_touchdown_restores_stability(void **state) {
-  (void)state;
+TEST(touchdown_restores_stability) {
   const double a = 1, h = 0.3, k = 1000, floor = 0.05;
   strut_setup setup;
   strut_setup_init(&setup);
@@ -217,8 +213,7 @@ static double found_buckling_load(double bar, double spring, double x, double y)
 }
 
 /* The load of a stiff bar is known to as many digits as that of a soft one. */
-static void test_stiff_bars(void **state) {
-  (void)state;
+TEST(stiff_bars) {
   static const double stiff[] = {1e4, 1e6, 1e8, 1e9, 1e10, 1e11};
   static const double along[][2] = {{0, 1}, {3, 4}, {-5, 12}};
   for (size_t i = 0; i < sizeof stiff / sizeof *stiff; i++)
@@ -339,8 +334,7 @@ static void check_points(const strut_model *model, const strut_path *path, size_
   strut_potential_free(potential);
 }
 
-static void test_random_nets(void **state) {
-  (void)state;
+TEST(random_nets) {
   size_t kinks = 0, followed = 0;
   for (uint64_t seed = 1; seed <= 200; seed++) {
     strut_setup setup;
@@ -358,16 +352,4 @@ static void test_random_nets(void **state) {
     strut_setup_free(&setup);
   }
   assert_true(followed > 100 && kinks > 5);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_limit_points_at_kinks),
-      cmocka_unit_test(test_kinks_backwards),
-      cmocka_unit_test(test_bifurcation_at_kink),
-      cmocka_unit_test(test_touchdown_restores_stability),
-      cmocka_unit_test(test_stiff_bars),
-      cmocka_unit_test(test_random_nets),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

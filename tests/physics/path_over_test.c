@@ -90,8 +90,7 @@ static void check_displaced_apex(bool supported, double from) {
   strut_setup_free(&setup);
 }
 
-static void test_displacement_of_a_node(void **state) {
-  (void)state;
+TEST(displacement_of_a_node) {
   check_displaced_apex(true, 0);
   check_displaced_apex(false, 0);
   check_displaced_apex(false, -0.05);
@@ -99,8 +98,7 @@ static void test_displacement_of_a_node(void **state) {
 }
 
 /* A free node that carries a load: displaced from where that holds it. */
-static void test_displacement_under_load(void **state) {
-  (void)state;
+TEST(displacement_under_load) {
   const double k = 1000, load = 5;
   strut_setup setup;
   arch(&setup, k);
@@ -121,8 +119,7 @@ static void test_displacement_under_load(void **state) {
 }
 
 /* A support pulls a slack cable taut, and then a spring behind it. */
-static void test_displacement_of_a_support(void **state) {
-  (void)state;
+TEST(displacement_of_a_support) {
   const double spring = 300, cable = 600, slack = 0.1;
   strut_setup setup;
   strut_setup_init(&setup);
@@ -172,8 +169,7 @@ static double turning_height(double k) {
 }
 
 /* An actuator of a bistable truss: it snaps where length over height has its limit points. */
-static void test_actuator_snaps(void **state) {
-  (void)state;
+TEST(actuator_snaps) {
   const double k = 1000;
   strut_setup setup;
   arch(&setup, k);
@@ -235,8 +231,7 @@ static strut_path_options over_stiffness(family *f, double from, double until) {
 }
 
 /* Softer and softer: the truss gives way where its limit load is the load that it carries. */
-static void test_stiffness_of_a_scene(void **state) {
-  (void)state;
+TEST(stiffness_of_a_scene) {
   family f = {0};
   strut_setup setup;
   assert_int_equal(scene_of_stiffness(&f, 1000, &setup, NULL), STRUT_OK);
@@ -261,8 +256,7 @@ static void test_stiffness_of_a_scene(void **state) {
 }
 
 /* It ends where the scene means nothing any more, with what the scene says. */
-static void test_end_of_validity(void **state) {
-  (void)state;
+TEST(end_of_validity) {
   family f = {.unloaded = true};
   strut_setup setup;
   assert_int_equal(scene_of_stiffness(&f, 1000, &setup, NULL), STRUT_OK);
@@ -298,8 +292,7 @@ static strut_status scene_of_ground(void *context, double value, strut_setup *se
   return STRUT_OK;
 }
 
-static void test_rising_ground(void **state) {
-  (void)state;
+TEST(rising_ground) {
   strut_setup setup;
   assert_int_equal(scene_of_ground(NULL, -0.2, &setup, NULL), STRUT_OK);
   strut_model *model = motion_compile(&setup.scene);
@@ -326,8 +319,7 @@ static void test_rising_ground(void **state) {
 }
 
 /* A number that does nothing, or that changes what the structure is made of. */
-static void test_refusals(void **state) {
-  (void)state;
+TEST(refusals) {
   family idle = {.idle = true}, grows = {.more_nodes = 1500};
   strut_setup setup;
   strut_error error = {0};
@@ -354,8 +346,7 @@ static void test_refusals(void **state) {
   strut_setup_free(&setup);
 }
 
-static void test_memory(void **state) {
-  (void)state;
+TEST(memory) {
   family f = {0};
   strut_setup setup;
   assert_int_equal(scene_of_stiffness(&f, 1000, &setup, NULL), STRUT_OK);
@@ -379,19 +370,4 @@ static void test_memory(void **state) {
   }
   strut_model_free(model);
   strut_setup_free(&setup);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_displacement_of_a_node),
-      cmocka_unit_test(test_displacement_under_load),
-      cmocka_unit_test(test_displacement_of_a_support),
-      cmocka_unit_test(test_actuator_snaps),
-      cmocka_unit_test(test_stiffness_of_a_scene),
-      cmocka_unit_test(test_end_of_validity),
-      cmocka_unit_test(test_rising_ground),
-      cmocka_unit_test(test_refusals),
-      cmocka_unit_test(test_memory),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -90,8 +90,7 @@ static void check_arch(double a, double h, double k, double expected, double dig
   strut_setup_free(&setup);
 }
 
-static void test_limit_points(void **state) {
-  (void)state;
+TEST(limit_points) {
   double b = 5, h = 1;
   check_arch(b, h, 1280e6 / hypot(b, h), 3789.46e3, 0.005e3);
   check_arch(0.84523652, 1.81261557, 2.625e8, 3.03160194e8, 1);
@@ -112,8 +111,7 @@ static double sideways_load(double a, double rest) {
   return arch_load(a, sqrt(rest * rest - a * a), 1, sqrt(high * high - a * a));
 }
 
-static void test_sideways_buckling(void **state) {
-  (void)state;
+TEST(sideways_buckling) {
   const double steepest = 67.3624, right_angle = 90, pi = 3.14159265358979323846;
   for (int i = 0; i < 4; i++) { /* base angles; the criterion is a / L0 < sqrt(4 / 27) */
     double angle = (const double[]){70, 80, steepest + 0.1, steepest - 0.1}[i];
@@ -151,8 +149,7 @@ static void half_t_bar(strut_setup *setup) {
   build_load(&setup->scene, n4, 1, 0, -1);
 }
 
-static void test_published_path(void **state) {
-  (void)state;
+TEST(published_path) {
   static const double shapes[][4] = {/* load, x, y, half a digit of what is printed */
                                      {101.010101, 0.00089041, 0.99999515, 3e-7},
                                      {202.020202, 0.00207840, 0.99998457, 3e-7},
@@ -186,8 +183,7 @@ static void snelson(strut_setup *setup) {
   build_member(&setup->scene, STRUT_BAR, n1, n3, 1000, 0, 0);
 }
 
-static void test_slack_cables(void **state) {
-  (void)state;
+TEST(slack_cables) {
   strut_setup setup;
   snelson(&setup);
   build_load(&setup.scene, 2, 0, -1, -1);
@@ -239,8 +235,7 @@ static double hexagon_moves(double p, double load) {
   return moved;
 }
 
-static void test_stiffening_mechanism(void **state) {
-  (void)state;
+TEST(stiffening_mechanism) {
   static const double load[4] = {0.001, 0.01, 0.05, 0.1};
   static const double tight[4] = {0.00176694, 0.01762614, 0.08713378, 0.17156672};
   /* the third is printed as 0.30517872; Newton's method written in Octave gives 0.305178712051 */
@@ -252,8 +247,7 @@ static void test_stiffening_mechanism(void **state) {
 }
 
 /* A node on an upright spring above the ground, pressed onto it and let off again. */
-static void test_touchdown(void **state) {
-  (void)state;
+TEST(touchdown) {
   const double k = 100, ground = 1000, gap = 0.1;
   strut_setup setup;
   strut_setup_init(&setup);
@@ -280,8 +274,7 @@ static void test_touchdown(void **state) {
 }
 
 /* A box lifted at one corner tips when the load is half its weight: the others leave together. */
-static void test_lift_off(void **state) {
-  (void)state;
+TEST(lift_off) {
   strut_setup setup;
   snelson(&setup);
   setup.scene.gravity[1] = -9.81;
@@ -342,8 +335,7 @@ static bool mixed_state(double kc) {
   return mixed;
 }
 
-static void test_mixed_state_is_lost(void **state) {
-  (void)state;
+TEST(mixed_state_is_lost) {
   double threshold = pow(hypot(1, 0.3), 2.0 / 3.0) - 1; /* both cells at their limit height */
   assert_near(threshold, 0.0291424666, 5e-11);
   assert_true(mixed_state(0.01));
@@ -352,8 +344,7 @@ static void test_mixed_state_is_lost(void **state) {
 }
 
 /* A load with a signal is followed by its name, with its force alone; the others stay. */
-static void test_named_load(void **state) {
-  (void)state;
+TEST(named_load) {
   strut_setup setup;
   strut_setup_init(&setup);
   int32_t a = build_support(&setup.scene, 0, 0), b = build_node(&setup.scene, 1, 0);
@@ -374,8 +365,7 @@ static void test_named_load(void **state) {
   strut_setup_free(&setup);
 }
 
-static void test_refusals(void **state) {
-  (void)state;
+TEST(refusals) {
   strut_setup setup;
   strut_path path = {0};
   strut_error error = {0};
@@ -403,8 +393,7 @@ static void test_refusals(void **state) {
   strut_setup_free(&setup);
 }
 
-static void test_memory(void **state) {
-  (void)state;
+TEST(memory) {
   strut_setup setup;
   half_t_bar(&setup);
   strut_model *model = motion_compile(&setup.scene);
@@ -423,21 +412,4 @@ static void test_memory(void **state) {
   assert_int_equal(status, STRUT_OK);
   strut_model_free(model);
   strut_setup_free(&setup);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_limit_points),
-      cmocka_unit_test(test_sideways_buckling),
-      cmocka_unit_test(test_published_path),
-      cmocka_unit_test(test_slack_cables),
-      cmocka_unit_test(test_stiffening_mechanism),
-      cmocka_unit_test(test_touchdown),
-      cmocka_unit_test(test_lift_off),
-      cmocka_unit_test(test_mixed_state_is_lost),
-      cmocka_unit_test(test_named_load),
-      cmocka_unit_test(test_refusals),
-      cmocka_unit_test(test_memory),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

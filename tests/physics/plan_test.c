@@ -118,8 +118,7 @@ static void end_both(both *b) {
   }
 }
 
-static void test_leaving_a_term_out_changes_no_bit(void **unused) {
-  (void)unused;
+TEST(leaving_a_term_out_changes_no_bit) {
   for (int i = 0; i < COMPARISONS; i++) {
     both b;
     begin_both(&comparisons[i], &b);
@@ -134,8 +133,7 @@ static void test_leaving_a_term_out_changes_no_bit(void **unused) {
   }
 }
 
-static void test_the_plan_tells_its_terms(void **unused) {
-  (void)unused;
+TEST(the_plan_tells_its_terms) {
   for (int i = 0; i < COMPARISONS; i++)
     for (int with = 0; with < 2; with++) {
       strut_scene scene;
@@ -187,8 +185,7 @@ static void add_stranger(strut_scene *scene, strut_term term) {
   if (term == STRUT_TERM_FRICTION) build_rough_contact(scene, a, 100, 1, 0.5, 0.4, 0.01);
 }
 
-static void test_what_others_need_changes_no_bit(void **unused) {
-  (void)unused;
+TEST(what_others_need_changes_no_bit) {
   for (unsigned term = STRUT_TERM_MEMBERS; term <= STRUT_TERM_SOLVE; term <<= 1) {
     strut_scene scene[2];
     motion m[2];
@@ -216,8 +213,7 @@ static void test_what_others_need_changes_no_bit(void **unused) {
 static void one_step(void *context) { motion_steps(context, 1); }
 
 /* In instructions, which a busy machine does not change: fewer without the term than with it. */
-static void test_leaving_a_term_out_saves_its_time(void **unused) {
-  (void)unused;
+TEST(leaving_a_term_out_saves_its_time) {
   for (int i = 0; i < SINGLE; i++) {
     both b;
     long count[2];
@@ -233,14 +229,4 @@ static void test_leaving_a_term_out_saves_its_time(void **unused) {
     }
     assert_true(count[0] < count[1]);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_leaving_a_term_out_changes_no_bit),
-      cmocka_unit_test(test_the_plan_tells_its_terms),
-      cmocka_unit_test(test_what_others_need_changes_no_bit),
-      cmocka_unit_test(test_leaving_a_term_out_saves_its_time),
-  };
-  return cmocka_run_group_tests_name("plan", tests, NULL, NULL);
 }

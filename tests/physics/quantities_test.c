@@ -52,8 +52,7 @@ static const strut_measured *get(const measured_run *r, const char *name) {
 static double value(const measured_run *r, const char *name) { return get(r, name)->value; }
 
 /* m g + sqrt((m g)^2 + 2 k m g h) where a mass falls by h before the cable pulls. */
-static void test_a_mass_caught_by_a_cable(void **unused) {
-  (void)unused;
+TEST(a_mass_caught_by_a_cable) {
   static const char text[] =
       "strut: 1\n"
       "parameters: {drop: 0.5 m, stiff: 2 kN/m}\n"
@@ -95,8 +94,7 @@ static void test_a_mass_caught_by_a_cable(void **unused) {
 }
 
 /* An undamped oscillator of 50 rad/s about x = 1 m, amplitude 0.1 m, over ten whole periods. */
-static void test_an_oscillator(void **unused) {
-  (void)unused;
+TEST(an_oscillator) {
   measured_run r = run_text(
       "strut: 1\n"
       "nodes: {wall: {position: [0, 0], fixed: both}, block: {position: [1, 0], mass: 2 kg, fixed: "
@@ -145,8 +143,7 @@ static void test_an_oscillator(void **unused) {
 }
 
 /* Extremes between steps where the window has a peak at a fraction of a step. */
-static void test_peaks_between_steps(void **unused) {
-  (void)unused;
+TEST(peaks_between_steps) {
   static const char text[] =
       "strut: 1\n"
       "parameters: {late: 0}\n"
@@ -169,8 +166,7 @@ static void test_peaks_between_steps(void **unused) {
 }
 
 /* A force that jumps has no vertex between its steps: nothing is larger than what was there. */
-static void test_a_jump_is_no_peak(void **unused) {
-  (void)unused;
+TEST(a_jump_is_no_peak) {
   measured_run r = run_text(
       "strut: 1\n"
       "nodes: {ball: {position: [0, 0.3], mass: 1 kg}}\n"
@@ -185,8 +181,7 @@ static void test_a_jump_is_no_peak(void **unused) {
 }
 
 /* A rigid pendulum released at 60 degrees: tension m g (3 - 2 cos) at the bottom. */
-static void test_a_pendulum(void **unused) {
-  (void)unused;
+TEST(a_pendulum) {
   measured_run r = run_text(
       "strut: 1\n"
       "bars: rigid\n"
@@ -218,8 +213,7 @@ static void test_a_pendulum(void **unused) {
 }
 
 /* Angles go on beyond a turn: a spoke that spins at 7 rad/s for 10 s. */
-static void test_an_angle_beyond_a_turn(void **unused) {
-  (void)unused;
+TEST(an_angle_beyond_a_turn) {
   measured_run r = run_text(
       "strut: 1\n"
       "bars: rigid\n"
@@ -236,8 +230,7 @@ static void test_an_angle_beyond_a_turn(void **unused) {
 }
 
 /* Free fall above a slope of 30 degrees, over the last second of two. */
-static void test_a_falling_mass(void **unused) {
-  (void)unused;
+TEST(a_falling_mass) {
   measured_run r = run_text(
       "strut: 1\n"
       "nodes: {ball: {position: [1, 50], mass: 2 kg}, other: {position: [5, 60], mass: 1 kg}}\n"
@@ -292,15 +285,13 @@ static void rest_on_slope(const char *method) {
   end_run(&r);
 }
 
-static void test_contact_forces_at_rest_carry_the_weight(void **unused) {
-  (void)unused;
+TEST(contact_forces_at_rest_carry_the_weight) {
   rest_on_slope("rk4");
   rest_on_slope("verlet-events");
 }
 
 /* x = A sin in the drive's own frame: works and losses of a damper that an actuator pulls. */
-static void test_works_and_periods(void **unused) {
-  (void)unused;
+TEST(works_and_periods) {
   measured_run r = run_text(
       "strut: 1\n"
       "nodes: {wall: {position: [0, 0], fixed: both}, block: {position: [1, 0], mass: 1e9 kg}}\n"
@@ -336,8 +327,7 @@ static void test_works_and_periods(void **unused) {
 }
 
 /* Two masses that swing against each other: the centre stays, to rounding. */
-static void test_zero_by_symmetry(void **unused) {
-  (void)unused;
+TEST(zero_by_symmetry) {
   measured_run r = run_text(
       "strut: 1\n"
       "nodes: {a: {position: [-1/3, 0.2], mass: 0.7}, b: {position: [1/3, 0.2], mass: 0.7}}\n"
@@ -375,8 +365,7 @@ static strut_summary hop(const char *method, const char *quantities, strut_setup
 }
 
 /* Looking on changes no bit of the motion, and a scene without quantities has none. */
-static void test_measuring_changes_nothing(void **unused) {
-  (void)unused;
+TEST(measuring_changes_nothing) {
   static const char *const methods[] = {"rk4", "verlet", "verlet-events", "rk4-events", "adaptive"};
   for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
     strut_setup plain, more;
@@ -394,8 +383,7 @@ static void test_measuring_changes_nothing(void **unused) {
 }
 
 /* Works are there where the run keeps no ledger for itself. */
-static void test_works_without_the_ledger(void **unused) {
-  (void)unused;
+TEST(works_without_the_ledger) {
   strut_setup setup;
   strut_summary with = hop("rk4", ALL, &setup), without;
   strut_error error = {0};
@@ -410,8 +398,7 @@ static void test_works_without_the_ledger(void **unused) {
 }
 
 /* A stopped window gives no number, and no crash. */
-static void test_a_run_that_is_interrupted(void **unused) {
-  (void)unused;
+TEST(a_run_that_is_interrupted) {
   strut_setup setup;
   strut_error error = {0};
   strut_summary full = hop("rk4", ALL, &setup), s;
@@ -428,8 +415,7 @@ static void test_a_run_that_is_interrupted(void **unused) {
 }
 
 /* Twice as many steps take as many allocations. */
-static void test_steps_allocate_nothing(void **unused) {
-  (void)unused;
+TEST(steps_allocate_nothing) {
   uint64_t count[2];
   for (int i = 0; i < 2; i++) {
     strut_setup setup;
@@ -452,8 +438,7 @@ static void test_steps_allocate_nothing(void **unused) {
 }
 
 /* Every allocation of reading and running fails once: an error, no crash and no leak. */
-static void test_memory_that_runs_out(void **unused) {
-  (void)unused;
+TEST(memory_that_runs_out) {
   char text[1400];
   snprintf(text, sizeof text, HOPPER, "rk4", ALL);
   strut_status status = STRUT_NO_MEMORY;
@@ -490,8 +475,7 @@ static void test_memory_that_runs_out(void **unused) {
 }
 
 /* Driven at 1 Hz and 0.5 Hz, of which the first counts: a motion of two periods. */
-static void test_a_steady_run_measures_its_whole_orbit(void **unused) {
-  (void)unused;
+TEST(a_steady_run_measures_its_whole_orbit) {
   measured_run r = run_text(
       "strut: 1\n"
       "nodes: {wall: {position: [0, 0], fixed: both}, block: {position: [1, 0], mass: 1 kg, fixed: "
@@ -515,8 +499,7 @@ static void test_a_steady_run_measures_its_whole_orbit(void **unused) {
 }
 
 /* A mass on an arm with a hinge: sqrt(kappa/(m l^2)) = 2 rad/s, 0.3 rad about the rest angle. */
-static void test_a_hinge_swings(void **unused) {
-  (void)unused;
+TEST(a_hinge_swings) {
   measured_run r = run_text(
       "strut: 1\n"
       "nodes: {a: {position: [-1, 0], fixed: both}, o: {position: [0, 0], fixed: both},"
@@ -538,8 +521,7 @@ static void test_a_hinge_swings(void **unused) {
 }
 
 /* A running cable's length is its path's; its stretch is the tension over the stiffness. */
-static void test_a_running_cable(void **unused) {
-  (void)unused;
+TEST(a_running_cable) {
   measured_run r = run_text(
       "strut: 1\n"
       "nodes: {low: {position: [0, -1], mass: 3 kg}, left: {position: [0, 0], fixed: both},"
@@ -563,8 +545,7 @@ static void test_a_running_cable(void **unused) {
  * A ball without weight meets the ground for half a period of sqrt(k/m): each way of taking its force, by
  * every method that steps over contacts, whose steps pass over the greatest force.
  */
-static void test_a_blow_between_steps(void **unused) {
-  (void)unused;
+TEST(a_blow_between_steps) {
   static const char text[] =
       "strut: 1\n"
       "gravity: [0, 0]\n"
@@ -609,8 +590,7 @@ static void test_a_blow_between_steps(void **unused) {
 }
 
 /* Fixed steps that are too coarse for a greatest force say so. */
-static void test_a_step_too_coarse_for_a_peak(void **unused) {
-  (void)unused;
+TEST(a_step_too_coarse_for_a_peak) {
   static const char text[] =
       "strut: 1\n"
       "parameters: {dt: 1 ms}\n"
@@ -633,30 +613,4 @@ static void test_a_step_too_coarse_for_a_peak(void **unused) {
                         strstr(r.summary.warnings[i].text, "'p'"));
   assert_true(warned);
   end_run(&r);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_mass_caught_by_a_cable),
-      cmocka_unit_test(test_an_oscillator),
-      cmocka_unit_test(test_peaks_between_steps),
-      cmocka_unit_test(test_a_jump_is_no_peak),
-      cmocka_unit_test(test_a_pendulum),
-      cmocka_unit_test(test_an_angle_beyond_a_turn),
-      cmocka_unit_test(test_a_falling_mass),
-      cmocka_unit_test(test_contact_forces_at_rest_carry_the_weight),
-      cmocka_unit_test(test_works_and_periods),
-      cmocka_unit_test(test_zero_by_symmetry),
-      cmocka_unit_test(test_measuring_changes_nothing),
-      cmocka_unit_test(test_works_without_the_ledger),
-      cmocka_unit_test(test_a_run_that_is_interrupted),
-      cmocka_unit_test(test_steps_allocate_nothing),
-      cmocka_unit_test(test_memory_that_runs_out),
-      cmocka_unit_test(test_a_steady_run_measures_its_whole_orbit),
-      cmocka_unit_test(test_a_hinge_swings),
-      cmocka_unit_test(test_a_running_cable),
-      cmocka_unit_test(test_a_blow_between_steps),
-      cmocka_unit_test(test_a_step_too_coarse_for_a_peak),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

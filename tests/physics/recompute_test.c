@@ -178,8 +178,7 @@ static void recompute(uint64_t seed, coverage *seen) {
   strut_scene_free(&scene);
 }
 
-static void test_random_scenes_agree_with_a_slow_recomputation(void **unused) {
-  (void)unused;
+TEST(random_scenes_agree_with_a_slow_recomputation) {
   coverage seen = {0};
   for (uint64_t seed = 1; seed <= SCENES; seed++) recompute(seed, &seen);
   /* A scene that exercises something must be among them, else the test says nothing about it. */
@@ -196,11 +195,4 @@ static void test_random_scenes_agree_with_a_slow_recomputation(void **unused) {
   assert_true(seen.slack >= 50 && seen.taut >= 50 && seen.fixed_member >= 20);
   assert_true(seen.touching >= 50 && seen.flying >= 50);
   assert_true(seen.sticking >= 10 && seen.breaking >= 10 && seen.sliding >= 50);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_random_scenes_agree_with_a_slow_recomputation),
-  };
-  return cmocka_run_group_tests_name("recompute", tests, NULL, NULL);
 }

@@ -72,13 +72,13 @@ static strut_status run(const strut_setup *setup, strut_error *error) {
   return status;
 }
 
-static int clean(void **unused) {
-  (void)unused;
+static void clean(void) {
   memset(&first, 0, sizeof first);
   memset(&second, 0, sizeof second);
   first_wants = second_wants = 0;
-  return 0;
 }
+
+BEFORE_EACH { clean(); }
 
 /* x = 1 + 0.5 t for the mass, which nothing moves. */
 static void gliding(strut_setup *setup, double step, double duration, double every) {
@@ -94,7 +94,7 @@ static void gliding(strut_setup *setup, double step, double duration, double eve
 static void check_rows(double step, double duration, double last, double every, size_t count) {
   strut_setup setup;
   strut_error error;
-  clean(NULL);
+  clean();
   gliding(&setup, step, duration, every);
   setup.experiment.output_last = last;
   assert_int_equal(run(&setup, &error), STRUT_OK);
@@ -117,8 +117,7 @@ static void check_rows(double step, double duration, double last, double every, 
   strut_setup_free(&setup);
 }
 
-static void test_rows_come_at_their_times(void **unused) {
-  (void)unused;
+TEST(rows_come_at_their_times) {
   check_rows(1e-3, 1, 0, 0.01, 101);
   check_rows(1e-3, 1, 0, 0.0025, 401);  /* between steps: the next one */
   check_rows(1e-3, 1, 0.2, 0.01, 21);   /* the last 0.2 s only */
@@ -126,8 +125,7 @@ static void test_rows_come_at_their_times(void **unused) {
   check_rows(1e-4, 110, 1, 1 / 7.3, 9); /* far from 0 */
 }
 
-static void test_rows_are_a_thousandth_apart_if_nothing_is_said(void **unused) {
-  (void)unused;
+TEST(rows_are_a_thousandth_apart_if_nothing_is_said) {
   strut_setup setup;
   strut_error error;
   gliding(&setup, 1e-4, 2, 0);
@@ -138,8 +136,7 @@ static void test_rows_are_a_thousandth_apart_if_nothing_is_said(void **unused) {
 }
 
 /* More often than there are steps: each step once. */
-static void test_no_step_is_recorded_twice(void **unused) {
-  (void)unused;
+TEST(no_step_is_recorded_twice) {
   strut_setup setup;
   strut_error error;
   gliding(&setup, 0.01, 1, 0.001);
@@ -150,8 +147,7 @@ static void test_no_step_is_recorded_twice(void **unused) {
 }
 
 /* Every channel of the crawler against the state that a motion by hand has at the same step. */
-static void test_every_channel_holds_what_it_says(void **unused) {
-  (void)unused;
+TEST(every_channel_holds_what_it_says) {
   strut_setup setup;
   strut_error error;
   motion m;
@@ -212,8 +208,7 @@ static void check_part(const memory *part, const memory *whole, unsigned channel
 }
 
 /* A sink may want channels that the scene does not record, and changes nothing for the others. */
-static void test_each_sink_gets_the_channels_it_wants(void **unused) {
-  (void)unused;
+TEST(each_sink_gets_the_channels_it_wants) {
   static const unsigned pairs[][2] = {
       {STRUT_CHANNEL_POSITION | STRUT_CHANNEL_CONTACT, 0},
       {0, STRUT_CHANNEL_VELOCITY},
@@ -232,7 +227,7 @@ static void test_each_sink_gets_the_channels_it_wants(void **unused) {
   assert_int_equal(whole.count, 201);
   setup.experiment.channels = STRUT_CHANNEL_FORCE | STRUT_CHANNEL_ENERGY;
   for (size_t p = 0; p < sizeof pairs / sizeof *pairs; p++) {
-    clean(NULL);
+    clean();
     first_wants = pairs[p][0], second_wants = pairs[p][1];
     assert_int_equal(run(&setup, &error), STRUT_OK);
     check_part(&first, &whole, pairs[p][0] ? pairs[p][0] : setup.experiment.channels);
@@ -242,8 +237,7 @@ static void test_each_sink_gets_the_channels_it_wants(void **unused) {
 }
 
 /* Recording looks on: a run with sinks ends with the bits of one without. */
-static void test_recording_changes_no_bit(void **unused) {
-  (void)unused;
+TEST(recording_changes_no_bit) {
   strut_setup setup;
   strut_error error;
   strut_setup_init(&setup);
@@ -253,7 +247,7 @@ static void test_recording_changes_no_bit(void **unused) {
   assert_int_equal(run(&setup, &error), STRUT_OK);
   double coarse[10];
   memcpy(coarse, first.row[1] + 1, sizeof coarse);
-  clean(NULL);
+  clean();
   setup.experiment.output_every = 0.0007, setup.experiment.channels = 63;
   assert_int_equal(run(&setup, &error), STRUT_OK);
   strut_summary s = motion_simulate(&setup);
@@ -262,8 +256,7 @@ static void test_recording_changes_no_bit(void **unused) {
   strut_setup_free(&setup);
 }
 
-static void test_a_sink_that_fails_stops_the_run(void **unused) {
-  (void)unused;
+TEST(a_sink_that_fails_stops_the_run) {
   strut_setup setup;
   strut_error error;
   gliding(&setup, 1e-3, 1e4, 1e-3); /* ten million rows if nobody stops it */
@@ -276,8 +269,7 @@ static void test_a_sink_that_fails_stops_the_run(void **unused) {
   strut_setup_free(&setup);
 }
 
-static void test_a_sink_that_cannot_begin(void **unused) {
-  (void)unused;
+TEST(a_sink_that_cannot_begin) {
   strut_setup setup;
   strut_error error;
   gliding(&setup, 1e-3, 1, 0.1);
@@ -289,8 +281,7 @@ static void test_a_sink_that_cannot_begin(void **unused) {
   strut_setup_free(&setup);
 }
 
-static void test_a_sink_that_cannot_end(void **unused) {
-  (void)unused;
+TEST(a_sink_that_cannot_end) {
   strut_setup setup;
   strut_error error;
   gliding(&setup, 1e-3, 1, 0.1);
@@ -302,8 +293,7 @@ static void test_a_sink_that_cannot_end(void **unused) {
 }
 
 /* What was recorded before a divergence is handed over, and marked. */
-static void test_rows_of_a_run_that_diverges_are_kept(void **unused) {
-  (void)unused;
+TEST(rows_of_a_run_that_diverges_are_kept) {
   strut_setup setup;
   strut_error error;
   gliding(&setup, 0.01, 1000, 0.01);
@@ -336,8 +326,7 @@ static void demanding(strut_setup *setup) {
   motion_experiment(setup, 1e-5, 1e-3);
 }
 
-static void test_every_allocation_may_fail(void **unused) {
-  (void)unused;
+TEST(every_allocation_may_fail) {
   strut_setup setup;
   demanding(&setup);
   int64_t n = 0;
@@ -347,7 +336,7 @@ static void test_every_allocation_may_fail(void **unused) {
     strut_model *model = NULL;
     strut_summary summary = {0};
     strut_error error = {0};
-    clean(NULL);
+    clean();
     strut_fail_allocation_after(n);
     strut_status status = strut_model_compile(&setup.scene, &model, &error);
     if (!status) status = strut_simulate(model, &setup.experiment, &options, &summary, &error);
@@ -366,14 +355,13 @@ static void test_every_allocation_may_fail(void **unused) {
 }
 
 /* A block that exact friction holds against a push: what is recorded is what holds it. */
-static void test_contact_forces_of_methods_with_events(void **unused) {
-  (void)unused;
+TEST(contact_forces_of_methods_with_events) {
   static const char *const methods[] = {"rk4-events", "verlet-events", "euler-events", "adaptive"};
   const double mass = 2, g = 9.81, k = 1e4, push = 0.2 * mass * g;
   for (int i = 0; i < 4; i++) {
     strut_setup setup;
     strut_error error;
-    clean(NULL);
+    clean();
     strut_setup_init(&setup);
     build_contact(&setup.scene, build_mass(&setup.scene, 0, -mass * g / k, mass), k, 10);
     setup.scene.contacts[0].friction =
@@ -392,22 +380,4 @@ static void test_contact_forces_of_methods_with_events(void **unused) {
     }
     strut_setup_free(&setup);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test_setup(test_rows_come_at_their_times, clean),
-      cmocka_unit_test_setup(test_rows_are_a_thousandth_apart_if_nothing_is_said, clean),
-      cmocka_unit_test_setup(test_no_step_is_recorded_twice, clean),
-      cmocka_unit_test_setup(test_every_channel_holds_what_it_says, clean),
-      cmocka_unit_test_setup(test_contact_forces_of_methods_with_events, clean),
-      cmocka_unit_test_setup(test_each_sink_gets_the_channels_it_wants, clean),
-      cmocka_unit_test_setup(test_recording_changes_no_bit, clean),
-      cmocka_unit_test_setup(test_a_sink_that_fails_stops_the_run, clean),
-      cmocka_unit_test_setup(test_a_sink_that_cannot_begin, clean),
-      cmocka_unit_test_setup(test_a_sink_that_cannot_end, clean),
-      cmocka_unit_test_setup(test_rows_of_a_run_that_diverges_are_kept, clean),
-      cmocka_unit_test_setup(test_every_allocation_may_fail, clean),
-  };
-  return cmocka_run_group_tests_name("recording", tests, NULL, NULL);
 }

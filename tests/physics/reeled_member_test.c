@@ -57,8 +57,7 @@ static void check_reel(const char *kind, const char *nodes, const char *more, do
 }
 
 /* EA (l - L0) / L0, and EA (l - L0)^2 / (2 L0) in energy. */
-static void test_the_force_is_ea_over_the_present_length(void **unused) {
-  (void)unused;
+TEST(the_force_is_ea_over_the_present_length) {
   check_reel("cable", "[a, b]", "", 100, 25);
   check_reel("cable", "[a, g, b]", "", 100, 25);
   check_reel("spring", "[a, b]", "", 100, 25);
@@ -67,8 +66,7 @@ static void test_the_force_is_ea_over_the_present_length(void **unused) {
 }
 
 /* The law of the material with k = EA / L0: what a scene with that rest length has. */
-static void test_laws_follow_the_length_too(void **unused) {
-  (void)unused;
+TEST(laws_follow_the_length_too) {
   check_reel("spring", "[a, b]", ", law: logarithmic", 100 * log(2), 100 * (log(2) - 0.5));
   check_reel("spring", "[a, b]", ", law: {kind: play, gap: 0.1}", 200 * 0.4, 100 * 0.16);
   check_reel("spring", "[a, b]", ", law: {kind: bilinear, knee: 0.2, second_stiffness: 50 N/m}",
@@ -79,8 +77,7 @@ static void test_laws_follow_the_length_too(void **unused) {
 }
 
 /* What is let out pulls less than k (l - L0) would, and a slack rope nothing. */
-static void test_letting_out(void **unused) {
-  (void)unused;
+TEST(letting_out) {
   model_run run;
   read_reel(&run, "cable", "[a, b]", ", rest_length: 0.5", "0.3");
   model_simulate(&run);
@@ -95,8 +92,7 @@ static void test_letting_out(void **unused) {
 }
 
 /* A mass that swings on a rope that a sine winds in and out, with a damper: energy is accounted for. */
-static void test_energy_in_motion(void **unused) {
-  (void)unused;
+TEST(energy_in_motion) {
   static const double open[METHODS] = {1e-5, 2e-2, 1e-3, 1e-9, 1e-5, 1e-4, 1e-3, 2e-2};
   static const char swing[] =
       "strut: 1\n"
@@ -129,8 +125,7 @@ static void test_energy_in_motion(void **unused) {
 }
 
 /* EA over the length that is left: the step limit falls as it does. */
-static void test_a_step_that_becomes_too_large_is_noticed(void **unused) {
-  (void)unused;
+TEST(a_step_that_becomes_too_large_is_noticed) {
   static const char text[] =
       "strut: 1\n"
       "nodes: {a: {position: [0, 0], fixed: both}, c: {position: [1, 0], mass: 1, fixed: y}}\n"
@@ -159,8 +154,7 @@ static void test_a_step_that_becomes_too_large_is_noticed(void **unused) {
 }
 
 /* Without a drive, or with stiffness, it stays a plain member, which every kernel steps. */
-static void test_others_pay_nothing(void **unused) {
-  (void)unused;
+TEST(others_pay_nothing) {
   static const char *const members[] = {"axial_stiffness: 100", "stiffness: 100"};
   static const char *const driven[] = {"tail", "rope", "rope"};
   for (int i = 0; i < 3; i++) {
@@ -182,15 +176,4 @@ static void test_others_pay_nothing(void **unused) {
     run.model = NULL;
     strut_setup_free(&run.setup);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_the_force_is_ea_over_the_present_length),
-      cmocka_unit_test(test_laws_follow_the_length_too),
-      cmocka_unit_test(test_letting_out),
-      cmocka_unit_test(test_energy_in_motion),
-      cmocka_unit_test(test_a_step_that_becomes_too_large_is_noticed),
-      cmocka_unit_test(test_others_pay_nothing)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

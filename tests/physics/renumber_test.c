@@ -161,8 +161,7 @@ static void compare(const strut_setup *setup, const char *name, int threads, boo
 static const char *const methods[] = {"rk4", "verlet", "euler"};
 enum { METHODS = sizeof methods / sizeof *methods };
 
-static void test_every_method_has_the_same_bits(void **unused) {
-  (void)unused;
+TEST(every_method_has_the_same_bits) {
   strut_setup setup;
   for (int consistent = 0; consistent < 2; consistent++) {
     grid(&setup, true, consistent, true);
@@ -177,8 +176,7 @@ static void test_every_method_has_the_same_bits(void **unused) {
 }
 
 /* As listed, any number of threads sums the ledger, too, in the order of one. */
-static void test_any_number_of_threads_has_the_same_bits(void **unused) {
-  (void)unused;
+TEST(any_number_of_threads_has_the_same_bits) {
   static const int threads[] = {2, 3, 5, 8};
   strut_setup setup;
   grid(&setup, false, false, true);
@@ -193,8 +191,7 @@ static void test_any_number_of_threads_has_the_same_bits(void **unused) {
 }
 
 /* Rows of nodes that nothing couples; all nodes coupled; small groups; supports that differ in x and y. */
-static void test_coupled_masses(void **unused) {
-  (void)unused;
+TEST(coupled_masses) {
   enum { ROWS, ALL, GROUPS, SUPPORTS, KINDS };
   static const int threads[] = {3};
   strut_setup setup;
@@ -212,8 +209,7 @@ static void test_coupled_masses(void **unused) {
 }
 
 /* In another order, too, the ledger adds up the same for any number of threads. */
-static void test_the_ledger_does_not_depend_on_threads(void **unused) {
-  (void)unused;
+TEST(the_ledger_does_not_depend_on_threads) {
   static const int threads[] = {1, 2, 8};
   const strut_integrator_settings settings = {.step = 1e-3};
   strut_setup setup;
@@ -244,8 +240,7 @@ static void test_the_ledger_does_not_depend_on_threads(void **unused) {
 }
 
 /* All springs before all cables, as tables of a paper are: each thread would need all nodes. */
-static void test_kinds_one_after_the_other_are_reordered(void **unused) {
-  (void)unused;
+TEST(kinds_one_after_the_other_are_reordered) {
   strut_setup setup;
   grid(&setup, false, false, true);
   strut_scene *scene = &setup.scene;
@@ -273,8 +268,7 @@ static int by_later_node(const void *a, const void *b) {
 }
 
 /* Few members lead from one half to a node of the other that is tied to much of it: ghosts of ghosts. */
-static void test_a_hub_makes_no_difference(void **unused) {
-  (void)unused;
+TEST(a_hub_makes_no_difference) {
   enum { HUB = HIGH / 2 };
   static int32_t place[NODES];
   strut_setup setup;
@@ -294,8 +288,7 @@ static void test_a_hub_makes_no_difference(void **unused) {
 }
 
 /* One, and more than a team has: as many as it has. */
-static void test_one_thread_and_a_hundred(void **unused) {
-  (void)unused;
+TEST(one_thread_and_a_hundred) {
   enum { CELLS = 16000 };
   static strut_node node[2 * CELLS];
   static strut_member member[5 * CELLS];
@@ -341,8 +334,7 @@ static void test_one_thread_and_a_hundred(void **unused) {
   strut_setup_free(&setup);
 }
 
-static void test_what_is_in_order_stays_as_it_is(void **unused) {
-  (void)unused;
+TEST(what_is_in_order_stays_as_it_is) {
   strut_setup setup;
   grid(&setup, false, false, true);
   strut_model *model = compile(&setup.scene);
@@ -353,8 +345,7 @@ static void test_what_is_in_order_stays_as_it_is(void **unused) {
 }
 
 /* Members at each node keep their order of the scene; every one is stored once. */
-static void test_members_at_a_node_keep_their_order(void **unused) {
-  (void)unused;
+TEST(members_at_a_node_keep_their_order) {
   strut_setup setup;
   strut_renumbering *r;
   strut_error error = {0};
@@ -382,19 +373,4 @@ static void test_members_at_a_node_keep_their_order(void **unused) {
   strut_renumbering_free(r);
   strut_model_free(model);
   strut_setup_free(&setup);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_every_method_has_the_same_bits),
-      cmocka_unit_test(test_any_number_of_threads_has_the_same_bits),
-      cmocka_unit_test(test_coupled_masses),
-      cmocka_unit_test(test_the_ledger_does_not_depend_on_threads),
-      cmocka_unit_test(test_kinds_one_after_the_other_are_reordered),
-      cmocka_unit_test(test_a_hub_makes_no_difference),
-      cmocka_unit_test(test_one_thread_and_a_hundred),
-      cmocka_unit_test(test_what_is_in_order_stays_as_it_is),
-      cmocka_unit_test(test_members_at_a_node_keep_their_order),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

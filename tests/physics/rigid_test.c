@@ -17,8 +17,7 @@ static void begin(strut_setup *setup) {
 }
 
 /* From the horizontal, after a quarter of the elliptic integral's period it hangs straight down. */
-static void test_pendulum_has_the_period_of_the_elliptic_integral(void **unused) {
-  (void)unused;
+TEST(pendulum_has_the_period_of_the_elliptic_integral) {
   double a = 1.0, b = cos(acos(-1) / 4), error[3];
   for (int i = 0; i < 8; i++) {
     double mean = 0.5 * (a + b);
@@ -48,8 +47,7 @@ static void test_pendulum_has_the_period_of_the_elliptic_integral(void **unused)
 }
 
 /* Two uniform rods in a row: omega^2 = (3 -+ 6/sqrt 7) g/L; a quarter period ends in a straight line. */
-static void test_double_pendulum_of_rods_has_its_two_frequencies(void **unused) {
-  (void)unused;
+TEST(double_pendulum_of_rods_has_its_two_frequencies) {
   for (int mode = -1; mode <= 1; mode += 2) {
     strut_setup setup;
     motion m;
@@ -84,8 +82,7 @@ static void chain(strut_setup *setup) {
   setup->scene.nodes[last].mass = 0.2;
 }
 
-static void test_lengths_hold_over_a_long_tumble(void **unused) {
-  (void)unused;
+TEST(lengths_hold_over_a_long_tumble) {
   strut_setup setup;
   motion m;
   double kept[4];
@@ -106,8 +103,7 @@ static void test_lengths_hold_over_a_long_tumble(void **unused) {
   strut_setup_free(&setup);
 }
 
-static void test_energy_is_kept_at_fourth_order(void **unused) {
-  (void)unused;
+TEST(energy_is_kept_at_fourth_order) {
   double error[3];
   for (int k = 0; k < 3; k++) {
     strut_setup setup;
@@ -145,8 +141,7 @@ static double pushed_sled(double share) {
   return speed;
 }
 
-static void test_bars_and_stick_are_solved_together(void **unused) {
-  (void)unused;
+TEST(bars_and_stick_are_solved_together) {
   assert_near(pushed_sled(0.95), 0, 1e-7); /* more than one foot alone could hold */
   assert_relative(pushed_sled(1.2), 0.2 * (1.2 * 0.5 - 0.3) * G, 1e-2);
 }
@@ -162,8 +157,7 @@ static strut_status refusal(const strut_setup *setup, strut_error *error) {
   return status;
 }
 
-static void test_what_cannot_be_rigid_is_refused_by_name(void **unused) {
-  (void)unused;
+TEST(what_cannot_be_rigid_is_refused_by_name) {
   strut_setup setup;
   strut_error error = {0};
   begin(&setup);
@@ -188,8 +182,7 @@ static void test_what_cannot_be_rigid_is_refused_by_name(void **unused) {
 }
 
 /* Stiff bars no longer limit the step: what is left is a mass on a spring between rigid walls. */
-static void test_step_limit_is_that_of_the_motions_left(void **unused) {
-  (void)unused;
+TEST(step_limit_is_that_of_the_motions_left) {
   strut_setup setup;
   begin(&setup);
   setup.scene.gravity[1] = 0;
@@ -205,8 +198,7 @@ static void test_step_limit_is_that_of_the_motions_left(void **unused) {
 }
 
 /* A rod that only swings has no limit, also where it lies along an axis, in which nothing moves. */
-static void test_a_rod_that_only_swings_has_no_step_limit(void **unused) {
-  (void)unused;
+TEST(a_rod_that_only_swings_has_no_step_limit) {
   const double way[][2] = {{1, 0}, {0, -1}, {0.6, -0.8}, {-0.28, 0.96}};
   for (size_t i = 0; i < sizeof way / sizeof way[0]; i++) {
     strut_setup setup;
@@ -221,18 +213,4 @@ static void test_a_rod_that_only_swings_has_no_step_limit(void **unused) {
     strut_summary_free(&s);
     strut_setup_free(&setup);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_pendulum_has_the_period_of_the_elliptic_integral),
-      cmocka_unit_test(test_double_pendulum_of_rods_has_its_two_frequencies),
-      cmocka_unit_test(test_lengths_hold_over_a_long_tumble),
-      cmocka_unit_test(test_energy_is_kept_at_fourth_order),
-      cmocka_unit_test(test_bars_and_stick_are_solved_together),
-      cmocka_unit_test(test_what_cannot_be_rigid_is_refused_by_name),
-      cmocka_unit_test(test_step_limit_is_that_of_the_motions_left),
-      cmocka_unit_test(test_a_rod_that_only_swings_has_no_step_limit),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

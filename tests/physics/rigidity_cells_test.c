@@ -12,8 +12,7 @@
 
 static const double PI = 3.14159265358979323846;
 
-static void test_bistable_chain(void **unused) {
-  (void)unused;
+TEST(bistable_chain) {
   static const double at[][2] = {{-1, 2}, {1, 2}, {0, 2.3}, {-1, 4}, {1, 4}, {0, 4.3}};
   strut_scene scene;
   truss t;
@@ -28,8 +27,7 @@ static void test_bistable_chain(void **unused) {
   truss_free(&t);
 }
 
-static void test_zeeman(void **unused) {
-  (void)unused;
+TEST(zeeman) {
   static const double at[][2] = {{1, 0}, {0.975983, 0.499423}, {2, 0.25}, {0, 0}};
   strut_scene scene;
   truss t;
@@ -47,8 +45,7 @@ static void test_zeeman(void **unused) {
 }
 
 /* The anti-parallelogram: its bars alone move, and the walk along the motion shows it. */
-static void test_x_joint(void **unused) {
-  (void)unused;
+TEST(x_joint) {
   double s = sqrt(0.01 - 0.0025);
   const double at[][2] = {{0, 0}, {0.05, 0}, {0.05, s}, {0, s}};
   strut_scene scene;
@@ -73,8 +70,7 @@ static void test_x_joint(void **unused) {
   }
 }
 
-static void test_dual_triangle(void **unused) {
-  (void)unused;
+TEST(dual_triangle) {
   double c = cos(PI / 6), s = 0.5;
   const double at[][2] = {{0, 0}, {-c, s}, {-c, -s}, {c, s}, {c, -s}};
   strut_scene scene;
@@ -104,8 +100,7 @@ static void arm(strut_scene *scene) {
 }
 
 /* Two of its eight states are a cable each between fixed nodes; some prestress pulls all cables. */
-static void test_arm(void **unused) {
-  (void)unused;
+TEST(arm) {
   strut_scene scene;
   truss t;
   int alone = 0;
@@ -163,8 +158,7 @@ static void wheel(strut_scene *scene, int n, int layers, int parts) {
   }
 }
 
-static void test_michell_wheels(void **unused) {
-  (void)unused;
+TEST(michell_wheels) {
   static const struct {
     int sides, layers, parts, members, rank, s, inner;
   } known[] = {{6, 4, 3, 66, 47, 19, 0},   {6, 4, 2, 54, 47, 7, 0},    {6, 4, 1, 36, 36, 0, 9},
@@ -245,8 +239,7 @@ static void compare_methods(strut_scene *scene) {
   strut_scene_free(scene);
 }
 
-static void test_methods_agree(void **unused) {
-  (void)unused;
+TEST(methods_agree) {
   strut_scene scene;
   grid(&scene, 8, 1.0, true);
   compare_methods(&scene);
@@ -261,8 +254,7 @@ static void test_methods_agree(void **unused) {
 }
 
 /* 20 x 20 cells: 441 nodes, by QR. */
-static void test_large_grid(void **unused) {
-  (void)unused;
+TEST(large_grid) {
   strut_scene scene;
   truss t;
   grid(&scene, 20, 1.0, false);
@@ -275,8 +267,7 @@ static void test_large_grid(void **unused) {
 }
 
 /* Unit vectors know no lengths: parts of a thousandth and of a thousand metres change nothing. */
-static void test_sizes_do_not_matter(void **unused) {
-  (void)unused;
+TEST(sizes_do_not_matter) {
   strut_scene scene;
   truss t;
   double kept = 0.0;
@@ -302,8 +293,7 @@ static void spine(strut_scene *scene, const char *bars) {
 }
 
 /* Vertebrae of bars: as stars they flop, and that is a finite motion; as full bodies they hold. */
-static void test_spine(void **unused) {
-  (void)unused;
+TEST(spine) {
   strut_scene scene;
   truss t;
   spine(&scene, "1-2 1-3 1-4 5-6 5-7 5-8");
@@ -320,8 +310,7 @@ static void test_spine(void **unused) {
 }
 
 /* Random structures: s - f = b - d, and dense and sparse agree, bars of all directions. */
-static void test_random_structures(void **unused) {
-  (void)unused;
+TEST(random_structures) {
   for (uint64_t seed = 1; seed <= 60; seed++) {
     uint64_t r = seed;
     strut_scene scene;
@@ -344,8 +333,7 @@ static void test_random_structures(void **unused) {
 }
 
 /* Memory that runs out anywhere is an error, never a crash or a wrong answer. */
-static void test_out_of_memory(void **unused) {
-  (void)unused;
+TEST(out_of_memory) {
   strut_scene scene;
   strut_model *model = NULL;
   strut_error error = {0};
@@ -366,22 +354,4 @@ static void test_out_of_memory(void **unused) {
   assert_true(done);
   strut_model_free(model);
   strut_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_bistable_chain),
-      cmocka_unit_test(test_zeeman),
-      cmocka_unit_test(test_x_joint),
-      cmocka_unit_test(test_dual_triangle),
-      cmocka_unit_test(test_arm),
-      cmocka_unit_test(test_michell_wheels),
-      cmocka_unit_test(test_methods_agree),
-      cmocka_unit_test(test_large_grid),
-      cmocka_unit_test(test_sizes_do_not_matter),
-      cmocka_unit_test(test_spine),
-      cmocka_unit_test(test_random_structures),
-      cmocka_unit_test(test_out_of_memory),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -16,8 +16,7 @@ static void x_frame(strut_scene *scene) {
   truss_members(scene, STRUT_BAR, "2-4 1-3");
 }
 
-static void test_x_frame(void **unused) {
-  (void)unused;
+TEST(x_frame) {
   static const double density[] = {1, 1, 1, 1, -1, -1};
   strut_scene scene;
   truss t;
@@ -39,8 +38,7 @@ static void test_x_frame(void **unused) {
 }
 
 /* Without supports: three rigid-body motions, none of them out of the plane, and no other. */
-static void test_x_frame_unsupported(void **unused) {
-  (void)unused;
+TEST(x_frame_unsupported) {
   strut_scene scene;
   truss t;
   x_frame(&scene);
@@ -52,8 +50,7 @@ static void test_x_frame_unsupported(void **unused) {
 }
 
 /* Its bars as cables and its cables as bars: the state must press the sides, not the cables. */
-static void test_sign_follows_the_cables(void **unused) {
-  (void)unused;
+TEST(sign_follows_the_cables) {
   strut_scene scene;
   truss t;
   strut_scene_init(&scene);
@@ -69,8 +66,7 @@ static void test_sign_follows_the_cables(void **unused) {
 }
 
 /* Two cells that share a cable: each cell's state by itself, none loads the other's bars. */
-static void test_double_x(void **unused) {
-  (void)unused;
+TEST(double_x) {
   strut_scene scene;
   truss t;
   strut_scene_init(&scene);
@@ -97,8 +93,7 @@ static void test_double_x(void **unused) {
 }
 
 /* A rhombus of bars with two cables, pinned at a corner: it only turns. */
-static void test_d_bar(void **unused) {
-  (void)unused;
+TEST(d_bar) {
   static const double density[] = {-1, -1, -1, -1, 1, 1};
   strut_scene scene;
   truss t;
@@ -116,8 +111,7 @@ static void test_d_bar(void **unused) {
 }
 
 /* The same without cables: the rhombus moves, by more than the plane's three ways. */
-static void test_four_bars_move(void **unused) {
-  (void)unused;
+TEST(four_bars_move) {
   strut_scene scene;
   truss t;
   strut_scene_init(&scene);
@@ -133,8 +127,7 @@ static void test_four_bars_move(void **unused) {
 }
 
 /* A rhombus folded flat opens as a rhombus or as a bar that swings: two finite motions. */
-static void test_folded_rhombus(void **unused) {
-  (void)unused;
+TEST(folded_rhombus) {
   static const double at[][2] = {{0, 0}, {1, 0}, {2, 0}, {1, 0}};
   strut_scene scene;
   truss t;
@@ -147,8 +140,7 @@ static void test_folded_rhombus(void **unused) {
   truss_free(&t);
 }
 
-static void test_t_bar(void **unused) {
-  (void)unused;
+TEST(t_bar) {
   static const double at[][2] = {{-1, 0}, {0, -1}, {1, 0}, {0, 1}};
   strut_scene scene;
   truss t;
@@ -162,8 +154,7 @@ static void test_t_bar(void **unused) {
   truss_free(&t);
 }
 
-static void test_half_t_bar(void **unused) {
-  (void)unused;
+TEST(half_t_bar) {
   static const double at[][2] = {{-1, 0}, {0, 0}, {1, 0}, {0, 1}};
   strut_scene scene;
   truss t;
@@ -194,8 +185,7 @@ static void hexagon_of_two_struts(strut_scene *scene) {
 }
 
 /* A prestressed infinitesimal mechanism: the shear of the upper nodes against the lower ones. */
-static void test_hexagon_of_two_struts(void **unused) {
-  (void)unused;
+TEST(hexagon_of_two_struts) {
   strut_scene scene;
   truss t;
   double h = sqrt(7.0) / 4.0;
@@ -229,8 +219,7 @@ static void test_hexagon_of_two_struts(void **unused) {
 }
 
 /* Where the shape carries its prestress, the stiffness of the mechanism comes from it. */
-static void test_prestress_stiffens(void **unused) {
-  (void)unused;
+TEST(prestress_stiffens) {
   strut_scene scene;
   truss t;
   double h = sqrt(7.0) / 4.0, force[] = {1, h, 1, 1, h, 1, -0.75, -0.75};
@@ -264,8 +253,7 @@ static void hexagon(strut_scene *scene, double shift) {
 }
 
 /* Nodes on a conic: a state of self-stress and a mechanism that any shift of a node removes. */
-static void test_regular_hexagon(void **unused) {
-  (void)unused;
+TEST(regular_hexagon) {
   static const double density[] = {1, 1, 1, 1, 1, 1, -0.5, -0.5, -0.5};
   static const double eigenvalues[] = {0, 0, 0, 3, 3, 3};
   strut_scene scene;
@@ -293,8 +281,7 @@ static void test_regular_hexagon(void **unused) {
   }
 }
 
-static void test_cauchy_hexagon(void **unused) {
-  (void)unused;
+TEST(cauchy_hexagon) {
   static const double density[] = {1, 2, 2.5, 2, 1, 0.5, -0.5, -1, -1, -0.5};
   static const double eigenvalues[] = {0, 0, 0, 1.62771868, 3, 7.37228132};
   strut_scene scene;
@@ -313,8 +300,7 @@ static void test_cauchy_hexagon(void **unused) {
   truss_free(&t);
 }
 
-static void test_von_mises(void **unused) {
-  (void)unused;
+TEST(von_mises) {
   static const double at[][2] = {{-1, 0}, {1, 0}, {0, 0.3}};
   strut_scene scene;
   truss t;
@@ -332,8 +318,7 @@ static void test_von_mises(void **unused) {
 }
 
 /* Flat, it is the textbook's infinitesimal mechanism: tension stiffens it, and s = f = 1. */
-static void test_flat_von_mises(void **unused) {
-  (void)unused;
+TEST(flat_von_mises) {
   static const double at[][2] = {{-1, 0}, {1, 0}, {0, 0}};
   strut_scene scene;
   truss t;
@@ -351,8 +336,7 @@ static void test_flat_von_mises(void **unused) {
 }
 
 /* A parallelogram on two pins with a third bar in parallel: overbraced, and yet it moves. */
-static void test_parallel_bars_move(void **unused) {
-  (void)unused;
+TEST(parallel_bars_move) {
   static const double at[][2] = {{0, 0}, {1, 0}, {2, 0}, {0, 1}, {1, 1}, {2, 1}};
   strut_scene scene;
   truss t;
@@ -389,8 +373,7 @@ static bool lies_on_conic(int count, const double *angle) {
 }
 
 /* Two directions, however they are turned, always lie on a conic; three that differ never do. */
-static void test_two_directions_lie_on_a_conic(void **unused) {
-  (void)unused;
+TEST(two_directions_lie_on_a_conic) {
   for (int i = 0; i < 12; i++) {
     double turn = 0.5 * i, angle[] = {turn, turn + 0.9 + 0.1 * i, turn + 0.4};
     assert_true(lies_on_conic(1, angle));
@@ -399,27 +382,4 @@ static void test_two_directions_lie_on_a_conic(void **unused) {
     angle[2] = angle[0] + 1e-3; /* near is not on it */
     assert_false(lies_on_conic(3, angle));
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_x_frame),
-      cmocka_unit_test(test_x_frame_unsupported),
-      cmocka_unit_test(test_sign_follows_the_cables),
-      cmocka_unit_test(test_double_x),
-      cmocka_unit_test(test_d_bar),
-      cmocka_unit_test(test_four_bars_move),
-      cmocka_unit_test(test_folded_rhombus),
-      cmocka_unit_test(test_t_bar),
-      cmocka_unit_test(test_half_t_bar),
-      cmocka_unit_test(test_hexagon_of_two_struts),
-      cmocka_unit_test(test_prestress_stiffens),
-      cmocka_unit_test(test_regular_hexagon),
-      cmocka_unit_test(test_cauchy_hexagon),
-      cmocka_unit_test(test_von_mises),
-      cmocka_unit_test(test_flat_von_mises),
-      cmocka_unit_test(test_parallel_bars_move),
-      cmocka_unit_test(test_two_directions_lie_on_a_conic),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -22,8 +22,7 @@ static const char atwood[] =
     "run: {duration: 0.4 s}\n";
 
 /* m1 y1 - m2 y2 falls freely with m1 - m2 whatever the string does, and its stretch oscillates. */
-static void test_two_weights_over_a_guide(void **unused) {
-  (void)unused;
+TEST(two_weights_over_a_guide) {
   static const char *const methods[] = {"rk4", "rk4-events", "adaptive", "verlet-events"};
   static const double tolerance[] = {1e-10, 1e-10, 1e-6, 1e-6};
   const double m1 = 3, m2 = 2, k = 1e4, t = 0.4;
@@ -47,8 +46,7 @@ static void test_two_weights_over_a_guide(void **unused) {
 }
 
 /* The acceleration (m1 - m2) g / (m1 + m2) is met as the string gets stiffer. */
-static void test_stiffer_strings_fall_as_atwoods(void **unused) {
-  (void)unused;
+TEST(stiffer_strings_fall_as_atwoods) {
   static const char *const k[] = {"k=1e3", "k=1e4", "k=1e5", "k=1e6"};
   for (int i = 0; i < 4; i++) {
     model_run run;
@@ -91,8 +89,7 @@ static double residual_of(const char *method, double step) {
   return residual;
 }
 
-static void test_energy_is_kept_at_the_methods_order(void **unused) {
-  (void)unused;
+TEST(energy_is_kept_at_the_methods_order) {
   static const struct {
     const char *method;
     double low, high;
@@ -126,8 +123,7 @@ static const char ring[] =
     "run: {duration: 1 ms}\n"
     "output: {channels: [force, length]}\n";
 
-static void test_a_ring_rests_at_the_bottom_of_its_ellipse(void **unused) {
-  (void)unused;
+TEST(a_ring_rests_at_the_bottom_of_its_ellipse) {
   model_run run;
   model_read_text(&run, "ring", ring, set_none);
   model_simulate(&run);
@@ -138,14 +134,4 @@ static void test_a_ring_rests_at_the_bottom_of_its_ellipse(void **unused) {
   assert_near(model_position(&run, "ring")[0], 0.5, 1e-6);
   assert_near(model_position(&run, "ring")[1], -0.5 * sqrt(length * length - 1), 1e-6);
   model_run_free(&run);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_two_weights_over_a_guide),
-      cmocka_unit_test(test_stiffer_strings_fall_as_atwoods),
-      cmocka_unit_test(test_energy_is_kept_at_the_methods_order),
-      cmocka_unit_test(test_a_ring_rests_at_the_bottom_of_its_ellipse),
-  };
-  return cmocka_run_group_tests_name("running_cable", tests, NULL, NULL);
 }

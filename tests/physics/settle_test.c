@@ -41,8 +41,7 @@ static settled settle(const strut_setup *setup) {
   return s;
 }
 
-static void an_upright_rod_is_unstable(void **unused) {
-  (void)unused;
+TEST(an_upright_rod_is_unstable) {
   strut_setup setup;
   rod(&setup, 1e5, 0);
   settled s = settle(&setup);
@@ -60,8 +59,7 @@ static void an_upright_rod_is_unstable(void **unused) {
 }
 
 /* A rod 1e6 times as stiff: the same instability beside a stiffness that is 1e10 times larger. */
-static void a_stiff_rod_is_as_unstable(void **unused) {
-  (void)unused;
+TEST(a_stiff_rod_is_as_unstable) {
   strut_setup setup;
   rod(&setup, 1e11, 0);
   setup.experiment.step = 1e-7;
@@ -72,8 +70,7 @@ static void a_stiff_rod_is_as_unstable(void **unused) {
   strut_setup_free(&setup);
 }
 
-static void a_perturbed_rod_hangs(void **unused) {
-  (void)unused;
+TEST(a_perturbed_rod_hangs) {
   strut_setup setup;
   rod(&setup, 1e5, 0);
   setup.experiment.settle.perturb = true;
@@ -91,8 +88,7 @@ static void a_perturbed_rod_hangs(void **unused) {
 }
 
 /* Nothing is perturbed that is stable: the bits are those without the key. */
-static void a_stable_rest_is_left_alone(void **unused) {
-  (void)unused;
+TEST(a_stable_rest_is_left_alone) {
   strut_setup setup;
   rod(&setup, 1e5, 3.0);
   settled s = settle(&setup);
@@ -105,8 +101,7 @@ static void a_stable_rest_is_left_alone(void **unused) {
 }
 
 /* Motions without stiffness are none that grow: two masses that float, a block that slides. */
-static void free_motions_are_not_unstable(void **unused) {
-  (void)unused;
+TEST(free_motions_are_not_unstable) {
   strut_setup setup;
   strut_setup_init(&setup);
   for (int i = 0; i < 3; i++) build_mass(&setup.scene, 0.3 * i, 0.4 * (i % 2), 1 + i);
@@ -126,8 +121,7 @@ static void free_motions_are_not_unstable(void **unused) {
 }
 
 /* A block that friction keeps on a slope is held there. */
-static void what_friction_holds_is_not_unstable(void **unused) {
-  (void)unused;
+TEST(what_friction_holds_is_not_unstable) {
   strut_setup setup;
   strut_setup_init(&setup);
   build_rough_contact(&setup.scene, build_mass(&setup.scene, 0, 0, 1), 1e4, 10, 0.5, 0.5, 1e-3);
@@ -143,8 +137,7 @@ static void what_friction_holds_is_not_unstable(void **unused) {
 }
 
 /* A node that a spring above it presses on the ground: Karnopp's law keeps it there, a smooth one does not. */
-static void smooth_friction_holds_nothing(void **unused) {
-  (void)unused;
+TEST(smooth_friction_holds_nothing) {
   strut_setup setup;
   strut_setup_init(&setup);
   int32_t above = build_support(&setup.scene, 0, 1), node = build_mass(&setup.scene, 0, 0, 1);
@@ -164,8 +157,7 @@ static void smooth_friction_holds_nothing(void **unused) {
 }
 
 /* What method, step or accuracy a run has: it starts from the same bits. */
-static void every_method_starts_from_the_same_bits(void **unused) {
-  (void)unused;
+TEST(every_method_starts_from_the_same_bits) {
   static const char *const method[] = {"verlet", "verlet-events", "adaptive", "midpoint", "euler"};
   strut_setup setup;
   rod(&setup, 1e5, 2.5);
@@ -207,8 +199,7 @@ static strut_status end(void *context, strut_status status, strut_error *error) 
   return STRUT_OK;
 }
 
-static void an_accurate_run_starts_where_the_plain_one_does(void **unused) {
-  (void)unused;
+TEST(an_accurate_run_starts_where_the_plain_one_does) {
   strut_setup setup;
   first_row plain = {.taken = false}, accurate = {.taken = false};
   strut_sink sink = {&plain, begin, rows, end, STRUT_CHANNEL_POSITION}, *sinks[] = {&sink};
@@ -233,8 +224,7 @@ static void an_accurate_run_starts_where_the_plain_one_does(void **unused) {
 }
 
 /* `start` of statics is that state too; its list of equilibria knows it as the saddle it is. */
-static void statics_start_from_the_same_bits(void **unused) {
-  (void)unused;
+TEST(statics_start_from_the_same_bits) {
   for (int perturb = 0; perturb < 2; perturb++) {
     strut_setup setup;
     rod(&setup, 1e5, 0);
@@ -262,8 +252,7 @@ static void statics_start_from_the_same_bits(void **unused) {
 }
 
 /* A mass that falls for ever: it ends after so many evaluations, and says who moves and how fast. */
-static void settling_is_bounded_in_work(void **unused) {
-  (void)unused;
+TEST(settling_is_bounded_in_work) {
   strut_setup setup;
   strut_setup_init(&setup);
   build_mass(&setup.scene, 0, 0, 1);
@@ -281,8 +270,7 @@ static void settling_is_bounded_in_work(void **unused) {
 }
 
 /* A step above the stability limit, and none at all: it is chosen. */
-static void a_step_that_is_not_stable_is_replaced(void **unused) {
-  (void)unused;
+TEST(a_step_that_is_not_stable_is_replaced) {
   static const double step[] = {0.1, -1};
   for (size_t i = 0; i < 2; i++) {
     strut_setup setup;
@@ -294,22 +282,4 @@ static void a_step_that_is_not_stable_is_replaced(void **unused) {
     assert_near(s.q[3], -1 - G / 1e5, 1e-9);
     strut_setup_free(&setup);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(an_upright_rod_is_unstable),
-      cmocka_unit_test(a_stiff_rod_is_as_unstable),
-      cmocka_unit_test(a_perturbed_rod_hangs),
-      cmocka_unit_test(a_stable_rest_is_left_alone),
-      cmocka_unit_test(free_motions_are_not_unstable),
-      cmocka_unit_test(what_friction_holds_is_not_unstable),
-      cmocka_unit_test(smooth_friction_holds_nothing),
-      cmocka_unit_test(every_method_starts_from_the_same_bits),
-      cmocka_unit_test(an_accurate_run_starts_where_the_plain_one_does),
-      cmocka_unit_test(statics_start_from_the_same_bits),
-      cmocka_unit_test(settling_is_bounded_in_work),
-      cmocka_unit_test(a_step_that_is_not_stable_is_replaced),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -212,31 +212,24 @@ static void compare(int32_t width, int count, const char *method, bool without_l
   strut_setup_free(&crawler);
 }
 
-static void test_every_width(void **unused) {
-  (void)unused;
+TEST(every_width) {
   for (int32_t width = 1; width <= strut_batch_widest(); width *= 2) /* 2: one by one, too */
     compare(width, POINTS, "rk4", false);
 }
 
-static void test_without_ledger(void **unused) {
-  (void)unused;
-  compare(0, POINTS, "rk4", true);
-}
+TEST(without_ledger) { compare(0, POINTS, "rk4", true); }
 
-static void test_events(void **unused) {
-  (void)unused;
+TEST(events) {
   compare(4, POINTS, "verlet-events", true); /* without lanes, one by one */
   compare(0, POINTS, "verlet-events", false);
 }
 
-static void test_few_points(void **unused) {
-  (void)unused;
+TEST(few_points) {
   for (int count = 0; count < 4; count++) compare(0, count, "rk4", false);
 }
 
 /* Lanes are no duty: without memory for them each run is made alone. */
-static void test_no_memory_for_lanes(void **unused) {
-  (void)unused;
+TEST(no_memory_for_lanes) {
   static points all;
   strut_setup crawler;
   strut_setup_init(&crawler);
@@ -258,10 +251,4 @@ static void test_no_memory_for_lanes(void **unused) {
   strut_setup_free(&crawler);
 }
 
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_every_width), cmocka_unit_test(test_without_ledger),
-      cmocka_unit_test(test_events), cmocka_unit_test(test_few_points),
-      cmocka_unit_test(test_no_memory_for_lanes)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -24,8 +24,7 @@ static void drifting(strut_setup *setup, double steady) {
   setup->experiment.measure_last = 8;
 }
 
-static void test_velocity_over_periods_that_the_step_does_not_divide(void **unused) {
-  (void)unused;
+TEST(velocity_over_periods_that_the_step_does_not_divide) {
   strut_setup setup;
   drifting(&setup, 0);
   strut_summary s = motion_simulate(&setup);
@@ -38,8 +37,7 @@ static void test_velocity_over_periods_that_the_step_does_not_divide(void **unus
   strut_setup_free(&setup);
 }
 
-static void test_spread_of_an_accelerated_mass(void **unused) {
-  (void)unused;
+TEST(spread_of_an_accelerated_mass) {
   strut_setup setup;
   const double steady = 0.4, period = 1 / 7.3, a = steady / 2;
   drifting(&setup, steady);
@@ -52,8 +50,7 @@ static void test_spread_of_an_accelerated_mass(void **unused) {
 }
 
 /* Two masses that fly apart: of one node, or of their centre. */
-static void test_velocity_of_a_node_or_of_the_centre_of_mass(void **unused) {
-  (void)unused;
+TEST(velocity_of_a_node_or_of_the_centre_of_mass) {
   for (int32_t node = -1; node < 2; node++) {
     strut_setup setup;
     strut_setup_init(&setup);
@@ -76,8 +73,7 @@ static void test_velocity_of_a_node_or_of_the_centre_of_mass(void **unused) {
 }
 
 /* A mass that swings by 0.1 m about a ground too soft to be felt, 0.04 m above its middle. */
-static void test_duty_and_height_of_a_contact(void **unused) {
-  (void)unused;
+TEST(duty_and_height_of_a_contact) {
   strut_setup setup;
   strut_setup_init(&setup);
   build_support(&setup.scene, 0, -1);
@@ -98,8 +94,7 @@ static void test_duty_and_height_of_a_contact(void **unused) {
 }
 
 /* A mass that flies off sloping ground: its height is measured across the ground. */
-static void test_height_above_sloping_ground(void **unused) {
-  (void)unused;
+TEST(height_above_sloping_ground) {
   static const double slopes[] = {0.4, -0.7, 0};
   for (int i = 0; i < 3; i++) {
     const double x = 0.3, y = 1.5, vx = 3, vy = 2.5, height = 0.25;
@@ -140,8 +135,7 @@ static strut_status simulate(const strut_setup *setup, const strut_run_options *
   return status;
 }
 
-static void test_a_step_above_the_limit_is_refused(void **unused) {
-  (void)unused;
+TEST(a_step_above_the_limit_is_refused) {
   strut_setup setup;
   strut_summary s;
   strut_error error;
@@ -159,8 +153,7 @@ static void test_a_step_above_the_limit_is_refused(void **unused) {
   strut_setup_free(&setup);
 }
 
-static void test_force_runs_above_the_limit_until_it_diverges(void **unused) {
-  (void)unused;
+TEST(force_runs_above_the_limit_until_it_diverges) {
   strut_setup setup;
   strut_summary s;
   strut_error error;
@@ -185,8 +178,7 @@ static void test_force_runs_above_the_limit_until_it_diverges(void **unused) {
 }
 
 /* A mass that is blown away without any instability: beyond 1e10 sizes it is lost. */
-static void test_a_mass_that_flies_beyond_all_bounds_is_lost(void **unused) {
-  (void)unused;
+TEST(a_mass_that_flies_beyond_all_bounds_is_lost) {
   strut_setup setup;
   strut_summary s;
   strut_error error;
@@ -213,8 +205,7 @@ static void stop_at_once(void *context, double fraction) {
   stop = 1;
 }
 
-static void test_an_interrupt_stops_within_a_second(void **unused) {
-  (void)unused;
+TEST(an_interrupt_stops_within_a_second) {
   strut_setup setup;
   strut_summary s;
   strut_error error;
@@ -249,8 +240,7 @@ static void hanging(strut_setup *setup) {
   motion_experiment(setup, 1e-3, 1e-3);
 }
 
-static void test_settling_finds_the_static_equilibrium(void **unused) {
-  (void)unused;
+TEST(settling_finds_the_static_equilibrium) {
   strut_setup setup;
   hanging(&setup);
   strut_model *model = motion_compile(&setup.scene);
@@ -270,8 +260,7 @@ static void test_settling_finds_the_static_equilibrium(void **unused) {
   strut_setup_free(&setup);
 }
 
-static void test_settling_gives_up_at_its_limit(void **unused) {
-  (void)unused;
+TEST(settling_gives_up_at_its_limit) {
   strut_setup setup;
   strut_summary s;
   strut_error error;
@@ -285,8 +274,7 @@ static void test_settling_gives_up_at_its_limit(void **unused) {
 }
 
 /* On a slope of 0.2 rad a block rests with mu 0.5 if friction is kept, and without it never. */
-static void test_settling_on_a_slope_needs_friction(void **unused) {
-  (void)unused;
+TEST(settling_on_a_slope_needs_friction) {
   for (int kept = 0; kept < 2; kept++) {
     strut_setup setup;
     strut_setup_init(&setup);
@@ -314,8 +302,7 @@ static void test_settling_on_a_slope_needs_friction(void **unused) {
   }
 }
 
-static void test_settling_can_be_interrupted(void **unused) {
-  (void)unused;
+TEST(settling_can_be_interrupted) {
   strut_setup setup;
   strut_summary s;
   strut_error error;
@@ -334,8 +321,7 @@ static void test_settling_can_be_interrupted(void **unused) {
   strut_setup_free(&setup);
 }
 
-static void test_a_scene_without_mass_or_method_does_not_run(void **unused) {
-  (void)unused;
+TEST(a_scene_without_mass_or_method_does_not_run) {
   strut_setup setup;
   strut_summary s;
   strut_error error;
@@ -350,24 +336,4 @@ static void test_a_scene_without_mass_or_method_does_not_run(void **unused) {
   assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_SINGULAR);
   strut_summary_free(&s);
   strut_setup_free(&setup);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_velocity_over_periods_that_the_step_does_not_divide),
-      cmocka_unit_test(test_spread_of_an_accelerated_mass),
-      cmocka_unit_test(test_velocity_of_a_node_or_of_the_centre_of_mass),
-      cmocka_unit_test(test_duty_and_height_of_a_contact),
-      cmocka_unit_test(test_height_above_sloping_ground),
-      cmocka_unit_test(test_a_step_above_the_limit_is_refused),
-      cmocka_unit_test(test_force_runs_above_the_limit_until_it_diverges),
-      cmocka_unit_test(test_a_mass_that_flies_beyond_all_bounds_is_lost),
-      cmocka_unit_test(test_an_interrupt_stops_within_a_second),
-      cmocka_unit_test(test_settling_finds_the_static_equilibrium),
-      cmocka_unit_test(test_settling_gives_up_at_its_limit),
-      cmocka_unit_test(test_settling_on_a_slope_needs_friction),
-      cmocka_unit_test(test_settling_can_be_interrupted),
-      cmocka_unit_test(test_a_scene_without_mass_or_method_does_not_run),
-  };
-  return cmocka_run_group_tests_name("simulate", tests, NULL, NULL);
 }

@@ -129,10 +129,9 @@ static void compare(const strut_setup *setup, const char *method, strut_small_le
   motion_end(&general);
 }
 
-static void test_small_models_have_the_bits_of_the_general_kernel(void **unused) {
+TEST(small_models_have_the_bits_of_the_general_kernel) {
   static const char *const methods[] = {"rk4", "verlet", "rk4-events", "verlet-events", "adaptive"};
   int stepped[STRUT_SMALL_AVX512 + 1] = {0};
-  (void)unused;
   for (uint64_t seed = 1; seed <= SCENES; seed++) {
     strut_setup setup = {.experiment = strut_experiment_default()};
     make_scene(&setup.scene, seed);
@@ -143,11 +142,4 @@ static void test_small_models_have_the_bits_of_the_general_kernel(void **unused)
   }
   print_message("%d motions by AVX2, %d by AVX-512\n", stepped[STRUT_SMALL_AVX2],
                 stepped[STRUT_SMALL_AVX512]);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_small_models_have_the_bits_of_the_general_kernel),
-  };
-  return cmocka_run_group_tests_name("small_model", tests, NULL, NULL);
 }

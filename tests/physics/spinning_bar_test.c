@@ -35,15 +35,11 @@ static void steady_length(strut_mass_model mass_model, double share) {
   strut_scene_free(&scene);
 }
 
-static void test_a_consistent_bar_spins_at_its_steady_length(void **unused) {
-  (void)unused;
+TEST(a_consistent_bar_spins_at_its_steady_length) {
   steady_length(STRUT_MASS_CONSISTENT, 1.0 / 12);
 }
 
-static void test_a_lumped_bar_spins_at_its_steady_length(void **unused) {
-  (void)unused;
-  steady_length(STRUT_MASS_LUMPED, 1.0 / 4);
-}
+TEST(a_lumped_bar_spins_at_its_steady_length) { steady_length(STRUT_MASS_LUMPED, 1.0 / 4); }
 
 /* Along its axis a bar is a linear oscillator, so every step of RK4 is known. */
 static void vibrate(strut_mass_model mass_model, double factor) {
@@ -65,8 +61,7 @@ static void vibrate(strut_mass_model mass_model, double factor) {
   strut_scene_free(&scene);
 }
 
-static void test_a_free_bar_vibrates_at_its_frequency(void **unused) {
-  (void)unused;
+TEST(a_free_bar_vibrates_at_its_frequency) {
   vibrate(STRUT_MASS_CONSISTENT, 12);
   vibrate(STRUT_MASS_LUMPED, 4);
 }
@@ -124,8 +119,7 @@ static void follow_the_parabola(strut_mass_model mass_model) {
   strut_scene_free(&scene);
 }
 
-static void test_the_centre_of_mass_follows_its_parabola(void **unused) {
-  (void)unused;
+TEST(the_centre_of_mass_follows_its_parabola) {
   follow_the_parabola(STRUT_MASS_CONSISTENT);
   follow_the_parabola(STRUT_MASS_LUMPED);
 }
@@ -165,19 +159,7 @@ static void keep_turning(strut_mass_model mass_model) {
   assert_true(observed_order(error, 5) > 3.9);
 }
 
-static void test_angular_momentum_is_conserved_at_order_four(void **unused) {
-  (void)unused;
+TEST(angular_momentum_is_conserved_at_order_four) {
   keep_turning(STRUT_MASS_CONSISTENT);
   keep_turning(STRUT_MASS_LUMPED);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_consistent_bar_spins_at_its_steady_length),
-      cmocka_unit_test(test_a_lumped_bar_spins_at_its_steady_length),
-      cmocka_unit_test(test_a_free_bar_vibrates_at_its_frequency),
-      cmocka_unit_test(test_the_centre_of_mass_follows_its_parabola),
-      cmocka_unit_test(test_angular_momentum_is_conserved_at_order_four),
-  };
-  return cmocka_run_group_tests_name("spinning_bar", tests, NULL, NULL);
 }

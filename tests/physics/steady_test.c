@@ -28,8 +28,7 @@ static void slow(double zeta, double tolerance, double periods) {
   strut_setup_free(&setup);
 }
 
-static void test_slow_transients_are_not_steady(void **unused) {
-  (void)unused;
+TEST(slow_transients_are_not_steady) {
   const double zeta[] = {1e-4, 1e-3, 1e-2, 0.1, 0.9};
   for (int i = 0; i < 5; i++) {
     slow(zeta[i], 0.005, 300);
@@ -38,8 +37,7 @@ static void test_slow_transients_are_not_steady(void **unused) {
   }
 }
 
-static void test_a_damped_oscillator_becomes_steady(void **unused) {
-  (void)unused;
+TEST(a_damped_oscillator_becomes_steady) {
   strut_setup setup;
   driven_oscillator(&setup, 2 * PI * sqrt(1.5), 0.05);
   driven_watch(&setup, 0.005, 400, 0.005);
@@ -52,8 +50,7 @@ static void test_a_damped_oscillator_becomes_steady(void **unused) {
 }
 
 /* x'' + 2 zeta w x' + w^2 x = sin(2 pi t): the orbit at t = 0 and the multipliers, exactly. */
-static void test_shooting_finds_the_orbit_and_its_multipliers(void **unused) {
-  (void)unused;
+TEST(shooting_finds_the_orbit_and_its_multipliers) {
   strut_setup setup;
   double w = 2 * PI * sqrt(1.5), zeta = 0.05, drive = 2 * PI;
   driven_oscillator(&setup, w, zeta);
@@ -104,16 +101,14 @@ static void creeping(double tolerance) {
   strut_setup_free(&setup);
 }
 
-static void test_what_is_steady_is_so_within_the_tolerance(void **unused) {
-  (void)unused;
+TEST(what_is_steady_is_so_within_the_tolerance) {
   creeping(0.02);
   creeping(0.005);
   creeping(0.001);
 }
 
 /* The drive\'s phase matters only every other period: forced at 1 Hz and 0.5 Hz. */
-static void test_a_motion_that_repeats_every_second_period(void **unused) {
-  (void)unused;
+TEST(a_motion_that_repeats_every_second_period) {
   strut_setup setup;
   driven_oscillator(&setup, 2 * PI * sqrt(1.5), 0.1);
   build_load(&setup.scene, 1, 1, 0, build_sine(&setup.scene, 1, 0.5));
@@ -151,15 +146,13 @@ static void claim_holds(double amplitude, double frequency) {
   strut_setup_free(&setup);
 }
 
-static void test_what_a_snapping_truss_is_said_to_do_it_does(void **unused) {
-  (void)unused;
+TEST(what_a_snapping_truss_is_said_to_do_it_does) {
   const double amplitude[] = {2, 12.5, 14, 15.5}; /* at 14 it comes near where it was by chance */
   for (int k = 0; k < 4; k++) claim_holds(amplitude[k], 1.1);
 }
 
 /* A second load begins at t = 100 s, or has a period that never meets the drive's. */
-static void test_late_loads_and_beats_are_not_steady(void **unused) {
-  (void)unused;
+TEST(late_loads_and_beats_are_not_steady) {
   for (int k = 0; k < 3; k++) {
     strut_setup setup;
     driven_oscillator(&setup, 2 * PI * sqrt(1.5), 0.1);
@@ -180,8 +173,7 @@ static void test_late_loads_and_beats_are_not_steady(void **unused) {
 }
 
 /* A driven block that friction holds: it stands still, and the run stops. */
-static void test_standing_still_is_steady(void **unused) {
-  (void)unused;
+TEST(standing_still_is_steady) {
   strut_setup setup;
   strut_setup_init(&setup);
   build_mass(&setup.scene, 0, 0, 1);
@@ -196,18 +188,4 @@ static void test_standing_still_is_steady(void **unused) {
   assert_within(s.velocity, 0, 1e-4);
   strut_summary_free(&s);
   strut_setup_free(&setup);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_slow_transients_are_not_steady),
-      cmocka_unit_test(test_a_damped_oscillator_becomes_steady),
-      cmocka_unit_test(test_shooting_finds_the_orbit_and_its_multipliers),
-      cmocka_unit_test(test_what_is_steady_is_so_within_the_tolerance),
-      cmocka_unit_test(test_a_motion_that_repeats_every_second_period),
-      cmocka_unit_test(test_what_a_snapping_truss_is_said_to_do_it_does),
-      cmocka_unit_test(test_late_loads_and_beats_are_not_steady),
-      cmocka_unit_test(test_standing_still_is_steady),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

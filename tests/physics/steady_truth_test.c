@@ -74,8 +74,7 @@ static void snap_scene(strut_setup *setup, double push, double frequency) {
  * From small pushes to large ones the motion doubles its period, is chaotic, has windows of period 3,
  * and is simple again. Which of them it is here is known; that is what the run must say, or nothing.
  */
-static void test_doubling_and_chaos(void **unused) {
-  (void)unused;
+TEST(doubling_and_chaos) {
   const struct {
     double frequency, push;
     int period;
@@ -103,8 +102,7 @@ static void test_doubling_and_chaos(void **unused) {
 }
 
 /* Of a motion that repeats itself every second period because it has doubled, not by its loads. */
-static void test_multipliers_of_a_doubled_motion(void **unused) {
-  (void)unused;
+TEST(multipliers_of_a_doubled_motion) {
   double z[6] = {RISE, 0, 1, 0, 0, 1};
   for (int p = 0; p < 600; p++) {
     snap_period(7, 2.6, p, z);
@@ -134,8 +132,7 @@ static void test_multipliers_of_a_doubled_motion(void **unused) {
  * An area of states shrinks by exp(-c/m t), t being how long the ground's damper works in a period:
  * touchdowns and take-offs leave it as it is. That is the product of the multipliers.
  */
-static void test_multipliers_of_a_bouncing_mass(void **unused) {
-  (void)unused;
+TEST(multipliers_of_a_bouncing_mass) {
   const double stiffness = 1e4, damping = 20, push = 8, frequency = 7;
   double y = 0.01, v = 0, works = 0;
   enum { FINE = 20000, PERIODS = 200 };
@@ -199,8 +196,7 @@ static double left_over(double ratio, double zeta, double tolerance, double peri
  * periods; a little beside 2 and 3 times it, its slow beat seems to decay for a while. The shape is
  * held to four tolerances of its way in half a period: 8 to 10 of its amplitude.
  */
-static void test_transients_in_tune_with_the_drive(void **unused) {
-  (void)unused;
+TEST(transients_in_tune_with_the_drive) {
   const double ratio[] = {1.0 / 3, 0.25, 0.75,   1.25,  4.0 / 3, 1.5,
                           2.0006,  3.0,  3.0009, 3.009, 1.0003,  0.3337};
   for (size_t i = 0; i < sizeof ratio / sizeof *ratio; i++) {
@@ -216,8 +212,7 @@ static void test_transients_in_tune_with_the_drive(void **unused) {
  * A hanging mass pushed up and down at twice its frequency as a pendulum: it begins to swing, from
  * as little as 1e-10 of its length. While nobody sees that yet the vertical motion has become steady.
  */
-static void test_a_swing_that_grows_from_almost_nothing(void **unused) {
-  (void)unused;
+TEST(a_swing_that_grows_from_almost_nothing) {
   for (int power = 4; power <= 10; power += 2) {
     strut_setup setup;
     strut_setup_init(&setup);
@@ -240,8 +235,7 @@ static void test_a_swing_that_grows_from_almost_nothing(void **unused) {
  * period; a cable goes taut when 5 % of it is left. Nothing is steady before, however quiet each period
  * is beside the one before it.
  */
-static void test_a_drift_that_ends_in_a_jolt(void **unused) {
-  (void)unused;
+TEST(a_drift_that_ends_in_a_jolt) {
   strut_setup setup;
   strut_setup_init(&setup);
   const double stiffness = 0.04, damping = 500 * stiffness, drift = 0.3, push = 0.2;
@@ -263,8 +257,7 @@ static void test_a_drift_that_ends_in_a_jolt(void **unused) {
 }
 
 /* A frame at rest under its weight that nothing moves: it stands still, and the run ends at once. */
-static void test_standing_still_under_its_weight(void **unused) {
-  (void)unused;
+TEST(standing_still_under_its_weight) {
   strut_setup setup;
   strut_setup_init(&setup);
   build_support(&setup.scene, 0, 0);
@@ -284,8 +277,7 @@ static void test_standing_still_under_its_weight(void **unused) {
 
 /* ---- shooting that is told to stop ---- */
 
-static void test_shooting_can_be_interrupted(void **unused) {
-  (void)unused;
+TEST(shooting_can_be_interrupted) {
   strut_setup setup;
   snap_scene(&setup, 5, 1.1);
   setup.experiment.steady.wanted = false;
@@ -311,18 +303,4 @@ static void test_shooting_can_be_interrupted(void **unused) {
   strut_period_map_free(&map);
   strut_model_free(model);
   strut_setup_free(&setup);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_doubling_and_chaos),
-      cmocka_unit_test(test_multipliers_of_a_doubled_motion),
-      cmocka_unit_test(test_multipliers_of_a_bouncing_mass),
-      cmocka_unit_test(test_transients_in_tune_with_the_drive),
-      cmocka_unit_test(test_a_swing_that_grows_from_almost_nothing),
-      cmocka_unit_test(test_a_drift_that_ends_in_a_jolt),
-      cmocka_unit_test(test_standing_still_under_its_weight),
-      cmocka_unit_test(test_shooting_can_be_interrupted),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -66,16 +66,8 @@ static void check_kernel(strut_small_level level, const char *name) {
   strut_scene_free(&setup.scene);
 }
 
-static void test_works_are_powers_with_the_weights_of_the_stages(void **unused) {
-  (void)unused;
+TEST(works_are_powers_with_the_weights_of_the_stages) {
   check_kernel(STRUT_SMALL_NONE, "general kernel");
   check_kernel(STRUT_SMALL_AVX2, "AVX2");
   check_kernel(STRUT_SMALL_AVX512, "AVX-512");
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_works_are_powers_with_the_weights_of_the_stages),
-  };
-  return cmocka_run_group_tests_name("step_ledger", tests, NULL, NULL);
 }

@@ -92,8 +92,7 @@ static double determinant(int32_t n, double *a) {
 
 static const char *const methods[] = {"rk4-events", "adaptive"};
 
-static void test_a_damped_oscillator_shrinks_volumes_by_its_damping(void **unused) {
-  (void)unused;
+TEST(a_damped_oscillator_shrinks_volumes_by_its_damping) {
   const double w = 9.0, zeta = 0.05;
   for (size_t k = 0; k < 2; k++) {
     strut_setup setup;
@@ -121,8 +120,7 @@ static void striking_mass(strut_setup *setup, double ground_damping) {
   setup->scene.nodes[1].fixed[0] = true;
 }
 
-static void test_strikes_on_a_damped_ground_shrink_volumes_while_they_go_down(void **unused) {
-  (void)unused;
+TEST(strikes_on_a_damped_ground_shrink_volumes_while_they_go_down) {
   const double damping = 8.0, step = 2e-5;
   enum { COUNT = 50000 };
   for (size_t k = 0; k < 2; k++) {
@@ -171,8 +169,7 @@ static void begin_crawler(motion *m, strut_setup *setup, const char *method, int
 /* Its derivative over a period from a steady motion against differences of runs with 30000 steps, relative to its
    largest entry: with the same steps, or error control to 1e-7, within 0.3 %; with 3000 steps within 15 %, for the
    phase in which 300 oscillations of the bars end. */
-static void test_a_period_of_the_crawler_is_differentiated_through_all_its_events(void **unused) {
-  (void)unused;
+TEST(a_period_of_the_crawler_is_differentiated_through_all_its_events) {
   const double unit[2] = {1e-3, 1e-3 * 2.0 * 3.14159265358979 * 10.0};
   const double small[2] = {1e-7 * unit[0], 1e-7 * unit[1]};
   strut_setup setup;
@@ -207,13 +204,4 @@ static void test_a_period_of_the_crawler_is_differentiated_through_all_its_event
   strut_setup_free(&setup);
   strut_release(z);
   strut_release(end);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_damped_oscillator_shrinks_volumes_by_its_damping),
-      cmocka_unit_test(test_strikes_on_a_damped_ground_shrink_volumes_while_they_go_down),
-      cmocka_unit_test(test_a_period_of_the_crawler_is_differentiated_through_all_its_events),
-  };
-  return cmocka_run_group_tests_name("variation", tests, NULL, NULL);
 }

@@ -51,16 +51,10 @@ static double lowest(double load, double mass, double duration) {
   return bottom;
 }
 
-static void test_step_load(void **state) {
-  (void)state;
+TEST(step_load) {
   double limit = threshold();
   assert_near(limit, 2910.77e3, 0.005e3);
   /* the slow passage of the top takes a few of the 10 ms periods at 100 kg */
   assert_true(lowest(0.999 * limit, 100, 0.5) > 0);
   assert_true(lowest(1.001 * limit, 100, 0.5) < -HEIGHT);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_step_load)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -181,8 +181,9 @@ static double compare(uint64_t seed, unsigned parts, const char *method, void mo
   return worst;
 }
 
-static void test_changed_scenes(void **unused) {
-  (void)unused;
+BEFORE_ALL { scenes = (uint64_t)test_number(1, (double)scenes); }
+
+TEST(changed_scenes) {
   static const unsigned kinds[] = {WORLD_BODIES, WORLD_GROUNDS | WORLD_LIGHT, WORLD_MEMORY};
   static const char *const methods[] = {"rk4", "rk4-events", "verlet-events"};
   static const struct change {
@@ -204,10 +205,4 @@ static void test_changed_scenes(void **unused) {
           fine = false;
         }
   assert_true(fine);
-}
-
-int main(int count, char **words) {
-  if (count > 1) scenes = strtoull(words[1], NULL, 10);
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_changed_scenes)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -91,8 +91,9 @@ static bool keeps_promise(const promise *by) {
          exp(gain / count) > by->gain;
 }
 
-static void test_methods_keep_their_promises(void **unused) {
-  (void)unused;
+BEFORE_ALL { scenes = (uint64_t)test_number(1, (double)scenes); }
+
+TEST(methods_keep_their_promises) {
   static const unsigned kinds[] = {WORLD_BODIES,
                                    WORLD_GROUNDS | WORLD_LIGHT,
                                    WORLD_DRIVES,
@@ -133,8 +134,7 @@ static strut_status run_with(int64_t allocations, const strut_setup *setup) {
 }
 
 /* A refusal of memory at any place is passed on, and nothing leaks. */
-static void test_refused_memory(void **unused) {
-  (void)unused;
+TEST(refused_memory) {
   static random_world world;
   static const char *const methods[] = {"rk4", "rk4-events", "adaptive"};
   model_run run;
@@ -150,11 +150,4 @@ static void test_refused_memory(void **unused) {
     assert_true(n >= 10);
   }
   model_run_free(&run);
-}
-
-int main(int count, char **words) {
-  if (count > 1) scenes = strtoull(words[1], NULL, 10);
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_methods_keep_their_promises),
-                                     cmocka_unit_test(test_refused_memory)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -119,8 +119,7 @@ static void check_forces(fixture *f) {
     assert_near(f->m.state->force[f->potential->coordinate[i]], -g[i], 1e-12 * scale);
 }
 
-static void test_derivatives_of_the_potential(void **unused) {
-  (void)unused;
+TEST(derivatives_of_the_potential) {
   static fixture f;
   static const unsigned kinds[] = {WORLD_BODIES, WORLD_GROUNDS, WORLD_BODIES | WORLD_GROUNDS,
                                    WORLD_BODIES | WORLD_SMOOTH};
@@ -134,9 +133,4 @@ static void test_derivatives_of_the_potential(void **unused) {
     }
   print_message("%d of %d columns\n", seen.checked, seen.all);
   assert_true(seen.checked > seen.all / 2);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_derivatives_of_the_potential)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -132,8 +132,12 @@ static void check_rates(fixture *f, coverage *seen) {
     assert_near(force[j], (double)slow_world_member(&f->slow, &f->at, j), TOLERANCE * scale);
 }
 
-static void test_forces_by_definition(void **unused) {
-  (void)unused;
+BEFORE_ALL {
+  scenes = (uint64_t)test_number(1, (double)scenes);
+  motions = (uint64_t)test_number(2, (double)motions);
+}
+
+TEST(forces_by_definition) {
   static fixture f;
   coverage seen = {0};
   for (size_t k = 0; k < KINDS; k++)
@@ -184,8 +188,7 @@ static int step_both(fixture *f, double *worst) {
   return STEPS;
 }
 
-static void test_motions(void **unused) {
-  (void)unused;
+TEST(motions) {
   static fixture f;
   for (size_t k = 0; k < KINDS; k++) {
     unsigned parts = k < 4 ? kinds[k] : kinds[k] | WORLD_SAMPLES;
@@ -217,8 +220,7 @@ static void rest_in_corner(model_run *run, motion *m, const char *rest) {
 }
 
 /* Frictions of two sides that meet flatly: found in turns they would take hundreds of turns. */
-static void test_a_node_rests_in_a_flat_corner(void **unused) {
-  (void)unused;
+TEST(a_node_rests_in_a_flat_corner) {
   model_run run;
   motion m;
   rest_in_corner(&run, &m,
@@ -234,8 +236,7 @@ static void test_a_node_rests_in_a_flat_corner(void **unused) {
 }
 
 /* Too deep to be held by both: the first side breaks loose, and the second holds the rest. */
-static void test_one_side_of_a_flat_corner_breaks_loose(void **unused) {
-  (void)unused;
+TEST(one_side_of_a_flat_corner_breaks_loose) {
   model_run run;
   motion m;
   rest_in_corner(&run, &m,
@@ -248,14 +249,4 @@ static void test_one_side_of_a_flat_corner_breaks_loose(void **unused) {
   assert_within(m.state->friction[1], -4.2, -4.1);
   motion_end(&m);
   model_run_free(&run);
-}
-
-int main(int count, char **words) {
-  if (count > 1) scenes = strtoull(words[1], NULL, 10);
-  if (count > 2) motions = strtoull(words[2], NULL, 10);
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_forces_by_definition),
-                                     cmocka_unit_test(test_motions),
-                                     cmocka_unit_test(test_a_node_rests_in_a_flat_corner),
-                                     cmocka_unit_test(test_one_side_of_a_flat_corner_breaks_loose)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -10,17 +10,16 @@ import signal
 import stat
 import subprocess
 import sys
-import tempfile
 import time
 
 if not shutil.which("ffmpeg") or not shutil.which("ffprobe"):
     print("skipped: there is no ffmpeg (Debian: ffmpeg)")
     sys.exit(77)
 
-strut, hopper = map(os.path.abspath, sys.argv[1:3])
-work = tempfile.mkdtemp()
+from testing import check, finish, strut, work  # noqa: E402
+
+hopper = os.path.abspath(sys.argv[2])
 os.chdir(work)
-failures = 0
 
 # A ball that flies 0.6 m in 1 s, on a straight line and at one speed.
 BALL = """strut: 1
@@ -31,13 +30,6 @@ solver: {integrator: rk4, step: 1 ms}
 run: {duration: 1}
 output: {every: 5 ms, channels: [energy]}
 """
-
-
-def check(condition, text):
-    global failures
-    if not condition:
-        failures += 1
-        print("FAILED:", text)
 
 
 def call(code, *words, path=None):
@@ -224,4 +216,4 @@ try:
 finally:
     os.chdir("/")
     shutil.rmtree(work)
-sys.exit(1 if failures else 0)
+finish()

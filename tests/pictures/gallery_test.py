@@ -9,22 +9,14 @@ import os
 import re
 import shlex
 import subprocess
-import sys
 import tempfile
 
 from svg_compare import differ
+from testing import fail, finish, strut
 
-strut = os.path.abspath(sys.argv[1])
 MOST_BYTES = 3.4e6
 # Their modes come in pairs of one frequency, of which every mixture is as good: last bits choose one.
 PAIRED = ("parts-michell-wheel.svg", "parts-michell-wheel-12.svg")
-failures = 0
-
-
-def fail(text):
-    global failures
-    failures += 1
-    print("FAILED:", text)
 
 
 page = open("docs/gallery.md", encoding="utf-8").read()
@@ -88,4 +80,4 @@ with tempfile.TemporaryDirectory() as now:
                             broken], stdout=subprocess.DEVNULL, check=True)
             if not differ(os.path.join(now, name), broken):
                 fail(f"{name} is taken for a picture of a model with {new} instead of {old}")
-sys.exit(failures > 0)
+finish()

@@ -8,15 +8,12 @@ import math
 import os
 import re
 import subprocess
-import sys
 import tempfile
 
 from svg_paths import has_segment, near, read, segments
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import fail, finish  # noqa: E402
+from testing import fail, finish, strut
 
-strut = os.path.abspath(sys.argv[1])
 SWING = 0.08  # of the structure's larger extent
 UNSTRAINED = 1e-9  # rounding
 REST, ARROW = (0.8, 0.8, 0.8), (0, 0x9E / 255, 0x73 / 255)

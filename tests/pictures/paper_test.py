@@ -13,10 +13,8 @@ import subprocess
 import sys
 import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import fail, finish  # noqa: E402
+from testing import fail, finish, strut
 
-strut = os.path.abspath(sys.argv[1])
 numbers = sys.argv[2:] or ["5", "6", "9", "11"]
 MOST_BYTES = 3.1e6
 

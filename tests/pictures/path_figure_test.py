@@ -9,15 +9,12 @@ import math
 import os
 import re
 import subprocess
-import sys
 import tempfile
 
 from svg_paths import distance, has_segment, near, read, segments
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import fail, finish  # noqa: E402
+from testing import fail, finish, strut
 
-strut = os.path.abspath(sys.argv[1])
 CURVE, CURVE_WIDTH = (0.15, 0.15, 0.15), 1.2
 
 

@@ -6,16 +6,12 @@ usage: plot_test.py STRUT
 import math
 import os
 import subprocess
-import sys
-import tempfile
 import time
 
 from svg_paths import near, read
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import check, finish  # noqa: E402
+from testing import check, finish, strut, work
 
-strut = os.path.abspath(sys.argv[1])
 FIRST, SECOND = (0, 0x60 / 255, 0xA8 / 255), (0xD5 / 255, 0x5E / 255, 0)
 BAND, FRAME = (0.86, 0.86, 0.86), (0.25, 0.25, 0.25)
 
@@ -69,7 +65,7 @@ def boxes(paths, fill):
     return found
 
 
-os.chdir(tempfile.mkdtemp())
+os.chdir(work)
 
 # Two curves in one frame, one of them broken.
 xs = [1 + 0.1 * i for i in range(40)]

@@ -9,15 +9,11 @@ import os
 import re
 import shutil
 import subprocess
-import sys
 import tempfile
 
 from svg_compare import differ
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import fail, finish  # noqa: E402
-
-strut = os.path.abspath(sys.argv[1])
+from testing import fail, finish, strut
 
 
 TABLE = "docs/paper/figure-8.csv"

@@ -9,16 +9,13 @@ import os
 import re
 import signal
 import subprocess
-import sys
 import tempfile
 import time
 
 from svg_paths import distance, has_segment, near, read, segments
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import fail, finish  # noqa: E402
+from testing import fail, finish, strut
 
-strut = os.path.abspath(sys.argv[1])
 crawler = open("models/crawler/crawler.yaml").read()
 EDGE, PALE, WHITE = (0.1, 0.1, 0.1), (0.72, 0.72, 0.72), (1, 1, 1)
 

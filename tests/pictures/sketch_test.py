@@ -6,14 +6,11 @@ usage: sketch_test.py STRUT
 import os
 import random
 import subprocess
-import sys
 import tempfile
 import unicodedata
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import fail, finish  # noqa: E402
+from testing import fail, finish, strut
 
-strut = os.path.abspath(sys.argv[1])
 MARKS = {"●": "free", "▲": "held", "△": "y", "▷": "x"}
 ASCII = {"o": "free", "#": "held", "^": "y", ">": "x"}
 

@@ -9,16 +9,12 @@ import os
 import re
 import shutil
 import subprocess
-import sys
-import tempfile
 import xml.etree.ElementTree as tree
 
 from svg_paths import has_segment, near, read, segments
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import check, finish  # noqa: E402
+from testing import check, finish, strut, work
 
-strut = os.path.abspath(sys.argv[1])
 EDGE, WHITE, BLUE = (0.1, 0.1, 0.1), (1, 1, 1), (0, 0x60 / 255, 0xA8 / 255)
 
 
@@ -85,7 +81,7 @@ def check_members(what, members, drawn, paths, forces=None):
 
 
 root = os.getcwd()
-os.chdir(tempfile.mkdtemp())
+os.chdir(work)
 crawler = os.path.join(root, "models/crawler/crawler.yaml")
 
 # Equilibria: those that stand, by energy, each to the same scale where it rests on the ground.

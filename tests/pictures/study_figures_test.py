@@ -6,21 +6,12 @@ usage: study_figures_test.py STRUT
 import math
 import os
 import subprocess
-import sys
-import tempfile
 
 from svg_paths import near, read
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import check, finish  # noqa: E402
+from testing import check, finish, strut, work, write
 
-strut = os.path.abspath(sys.argv[1])
 FIRST, DASHED = (0, 0x60 / 255, 0xA8 / 255), (0.05, 0.05, 0.05)
-
-
-def write(name, text):
-    with open(name, "w", encoding="utf-8") as file:
-        file.write(text)
 
 
 def sweep(text, code=0):
@@ -54,7 +45,7 @@ def close(name, end, wanted, tolerance):
     check(scale < 0 and worst < tolerance * height, f"{name}: off by {worst / height:.2g}")
 
 
-os.chdir(tempfile.mkdtemp())
+os.chdir(work)
 # x = 1 + a cos(10 t); two masses, the second at rest.
 write("block.yaml", """strut: 1
 name: Block

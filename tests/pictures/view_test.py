@@ -9,15 +9,10 @@ import html.parser
 import json
 import os
 import subprocess
-import sys
 import tempfile
 import zlib
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from findings import check, finish  # noqa: E402
-
-strut = os.path.abspath(sys.argv[1])
-models = os.path.abspath("models")
+from testing import check, finish, models, strut
 
 
 def run(*words, code=0):

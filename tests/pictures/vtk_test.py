@@ -9,7 +9,6 @@ import os
 import shutil
 import subprocess
 import sys
-import tempfile
 import xml.etree.ElementTree as ElementTree
 
 try:
@@ -18,20 +17,10 @@ except ImportError:
     print("skipped: Python has no VTK (Debian: python3-vtk9)")
     sys.exit(77)
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
-from findings import files_in  # noqa: E402
+from testing import check, files_in, finish, strut, work
 
-strut, hopper = map(os.path.abspath, sys.argv[1:3])
-work = tempfile.mkdtemp()
+hopper = os.path.abspath(sys.argv[2])
 os.chdir(work)
-failures = 0
-
-
-def check(condition, text):
-    global failures
-    if not condition:
-        failures += 1
-        print("FAILED:", text)
 
 
 def call(code, *words):
@@ -208,4 +197,4 @@ try:
 finally:
     os.chdir("/")
     shutil.rmtree(work)
-sys.exit(1 if failures else 0)
+finish()

@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * cmocka with all that it needs, and assertions about numbers that say the numbers.
+ * Tests, and assertions about numbers that say the numbers.
  */
 #ifndef STRUT_TESTS_SUPPORT_CHECK_H
 #define STRUT_TESTS_SUPPORT_CHECK_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 /** |actual - expected| <= tolerance; a NAN fails. */
 #define assert_near(actual, expected, tolerance)                                                   \

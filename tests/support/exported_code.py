@@ -7,31 +7,11 @@ import shutil
 import struct
 import subprocess
 import sys
-import tempfile
 
-from findings import check
+from testing import check, models, path, run, write
 
-strut = os.path.realpath(sys.argv[1])
-models = os.path.realpath(sys.argv[2])
 here = os.path.dirname(os.path.realpath(sys.argv[0]))
-work = tempfile.mkdtemp()
 STRICT = ["-std=c99", "-Wall", "-Wextra", "-Wconversion", "-pedantic", "-Werror"]
-
-
-def path(*names):
-    return os.path.join(work, *names)
-
-
-def run(*words, code=0):
-    done = subprocess.run([strut, *words], capture_output=True, cwd=work, timeout=100, text=True)
-    check(done.returncode == code, f"strut {' '.join(words)}: exit code {done.returncode}, expected {code}: "
-          f"{done.stderr}")
-    return done
-
-
-def write(name, text):
-    with open(path(name), "w", encoding="utf-8") as file:
-        file.write(text)
 
 
 def scene(name, method, step, steps, every, edit=lambda text: text):

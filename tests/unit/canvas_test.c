@@ -1,20 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The canvas: pixels where they belong, same bytes twice, whole files or none, colours that grow. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "engine/output/draw/canvas.h"
 #include "engine/output/draw/palette.h"
 #include "engine/output/file.h"
+#include "tests/support/test.h"
 
 static const char *const endings[] = {"svg", "pdf", "png"};
 
@@ -25,15 +20,9 @@ static const char *path_of(const char *name, const char *ending, char path[200])
   return path;
 }
 
-static int make_folder(void **state) {
-  (void)state;
-  return mkdtemp(folder) ? 0 : -1;
-}
+BEFORE_ALL { assert_non_null(mkdtemp(folder)); }
 
-static int remove_folder(void **state) {
-  (void)state;
-  return rmdir(folder); /* fails if a test left anything */
-}
+AFTER_ALL { assert_int_equal(rmdir(folder), 0); /* fails if a test left anything */ }
 
 static void draw_something(strut_canvas *c) {
   const double corners[3][2] = {{10, 10}, {60, 20}, {30, 70}};
@@ -63,8 +52,7 @@ static size_t read_all(const char *path, char *bytes, size_t room) {
   return count;
 }
 
-static void test_same_bytes(void **state) {
-  (void)state;
+TEST(same_bytes) {
   enum { ROOM = 1 << 20 };
   char *first = malloc(ROOM), *second = malloc(ROOM), a[200], b[200];
   for (size_t k = 0; k < 3; k++) {
@@ -82,8 +70,7 @@ static void test_same_bytes(void **state) {
   free(second);
 }
 
-static void test_png_size(void **state) {
-  (void)state;
+TEST(png_size) {
   char path[200];
   unsigned char head[24];
   write_picture(path_of("size", "png", path));
@@ -94,8 +81,7 @@ static void test_png_size(void **state) {
   unlink(path);
 }
 
-static void test_names(void **state) {
-  (void)state;
+TEST(names) {
   static const char *const good[] = {"a.svg", "b/c.pdf", "./x.y.png"};
   static const char *const bad[] = {"a", "a.bmp", ".svg", "d.svg/file", "d/.png", "a.SVG", ""};
   strut_error error;
@@ -107,8 +93,7 @@ static void test_names(void **state) {
   }
 }
 
-static void test_nothing_left(void **state) {
-  (void)state;
+TEST(nothing_left) {
   strut_canvas *c;
   strut_error error = {0};
   char path[200];
@@ -125,8 +110,7 @@ static void test_nothing_left(void **state) {
 }
 
 /* A full disk is told on commit. */
-static void test_full(void **state) {
-  (void)state;
+TEST(full) {
   strut_canvas *c;
   strut_error error = {0};
   char path[200];
@@ -147,8 +131,7 @@ static void assert_pixel(strut_canvas *c, int x, int y, unsigned red, unsigned g
     fail_msg("pixel %d, %d is %d %d %d", x, y, at[2], at[1], at[0]);
 }
 
-static void test_pixels(void **state) {
-  (void)state;
+TEST(pixels) {
   strut_canvas *c;
   strut_error error = {0};
   const strut_fill red = {.colour = {1, 0, 0, 1}}, blue = {.colour = {0, 0, 1, 1}};
@@ -172,8 +155,7 @@ static void test_pixels(void **state) {
 }
 
 /* Numbers that no page has change nothing else. */
-static void test_far_away(void **state) {
-  (void)state;
+TEST(far_away) {
   strut_canvas *c;
   strut_error error = {0};
   char path[200];
@@ -197,8 +179,7 @@ static void test_far_away(void **state) {
 /* Lightness as the eye sees it, about: luma of the sRGB values. */
 static double lightness(strut_colour c) { return 0.299 * c.red + 0.587 * c.green + 0.114 * c.blue; }
 
-static void test_palettes(void **state) {
-  (void)state;
+TEST(palettes) {
   for (int i = -100; i < 100; i++) {
     assert_true(lightness(strut_palette_signed((i + 1) / 100.0)) >
                 lightness(strut_palette_signed(i / 100.0)));
@@ -209,14 +190,4 @@ static void test_palettes(void **state) {
   assert_true(lightness(strut_palette_signed(5)) < 0.75);
   assert_true(lightness(strut_palette_sequence(5)) < 0.78);
   assert_true(strut_palette_signed(NAN).alpha > 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_same_bytes), cmocka_unit_test(test_png_size),
-      cmocka_unit_test(test_names),      cmocka_unit_test(test_nothing_left),
-      cmocka_unit_test(test_full),       cmocka_unit_test(test_pixels),
-      cmocka_unit_test(test_far_away),   cmocka_unit_test(test_palettes),
-  };
-  return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

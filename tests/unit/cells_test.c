@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Laws of cells: force, slope and drive against differences of the energy; a cell of a scene. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include "engine/scene/law.h"
 #include "tests/support/check.h"
+#include "tests/support/test.h"
 
 static const strut_law_numbers numbers = {.area = 2.0, .exponent = 1.4, .outside = 3.0};
 
@@ -31,8 +26,7 @@ static double slope_of(double (*f)(strut_law_kind, double, double), strut_law_ki
   return (4 * d[1] - d[0]) / 3;
 }
 
-static void force_is_the_slope_of_the_energy(void **unused) {
-  (void)unused;
+TEST(force_is_the_slope_of_the_energy) {
   for (int kind = STRUT_LAW_PRESSURE; kind < STRUT_LAW_COUNT; kind++)
     for (double e = 0.1; e < 20; e *= 1.37)
       for (double e0 = 0.5; e0 < 50; e0 *= 3.1) {
@@ -45,8 +39,7 @@ static void force_is_the_slope_of_the_energy(void **unused) {
       }
 }
 
-static void gases_follow_their_formulas(void **unused) {
-  (void)unused;
+TEST(gases_follow_their_formulas) {
   assert_near(force(STRUT_LAW_PRESSURE, 7, 5), -5, 0);
   assert_near(force(STRUT_LAW_ISOTHERMAL, 4, 5), 3 - 2.5, 1e-15);
   assert_near(energy(STRUT_LAW_ISOTHERMAL, 4, 5), -10 * log(2) + 6, 1e-14);
@@ -57,8 +50,7 @@ static void gases_follow_their_formulas(void **unused) {
 }
 
 /* With next to no area left the force goes straight on, and pushes ever more. */
-static void a_collapsed_gas_stays_finite(void **unused) {
-  (void)unused;
+TEST(a_collapsed_gas_stays_finite) {
   for (int kind = STRUT_LAW_ISOTHERMAL; kind < STRUT_LAW_COUNT; kind++) {
     strut_law_kind k = (strut_law_kind)kind;
     double least = STRUT_CELL_COLLAPSED * numbers.area, h = 1e-9;
@@ -70,11 +62,4 @@ static void a_collapsed_gas_stays_finite(void **unused) {
       assert_true(energy(k, e - 0.1, 5) > energy(k, e, 5));
     }
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(force_is_the_slope_of_the_energy),
-                                     cmocka_unit_test(gases_follow_their_formulas),
-                                     cmocka_unit_test(a_collapsed_gas_stays_finite)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

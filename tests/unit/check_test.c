@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The semantic rules on scenes made without a file: each spoilt in one way, each finding named. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "engine/scene/check.h"
+#include "tests/support/test.h"
 
 /* A valid scene that uses everything, in arrays that a test may spoil. */
 typedef struct sample {
@@ -103,8 +98,7 @@ static void expect(sample *s, strut_subject subject, size_t index, const char *k
   fill(s);
 }
 
-static void a_valid_scene_has_no_findings(void **state) {
-  (void)state;
+TEST(a_valid_scene_has_no_findings) {
   sample s;
   strut_findings findings = {0};
   fill(&s);
@@ -114,8 +108,7 @@ static void a_valid_scene_has_no_findings(void **state) {
   strut_findings_free(&findings);
 }
 
-static void nodes(void **state) {
-  (void)state;
+TEST(nodes) {
   sample s;
   fill(&s);
   s.nodes[1].name = "a";
@@ -143,8 +136,7 @@ static void nodes(void **state) {
   expect(&s, STRUT_ON_NODE, 2, NULL, "nothing uses node 'c'");
 }
 
-static void members(void **state) {
-  (void)state;
+TEST(members) {
   sample s;
   fill(&s);
   for (int32_t bad = -1; bad <= 3; bad += 4) {
@@ -191,8 +183,7 @@ static void members(void **state) {
   expect(&s, STRUT_ON_MEMBER, 1, NULL, "two members");
 }
 
-static void a_spring_of_no_length_may_begin_in_one_place(void **state) {
-  (void)state;
+TEST(a_spring_of_no_length_may_begin_in_one_place) {
   sample s;
   strut_findings findings = {0};
   fill(&s);
@@ -201,8 +192,7 @@ static void a_spring_of_no_length_may_begin_in_one_place(void **state) {
   assert_int_equal(strut_setup_check(&s.setup, STRUT_FOR_RUN, &findings), STRUT_OK);
 }
 
-static void ground(void **state) {
-  (void)state;
+TEST(ground) {
   sample s;
   fill(&s);
   s.setup.scene.ground.height = (double)NAN;
@@ -235,8 +225,7 @@ static void ground(void **state) {
   expect(&s, STRUT_ON_CONTACT, 0, "law", "unknown");
 }
 
-static void signals(void **state) {
-  (void)state;
+TEST(signals) {
   sample s;
   fill(&s);
   s.setup.experiment.periods = 0, s.setup.experiment.duration = 20;
@@ -267,8 +256,7 @@ static void signals(void **state) {
 }
 
 /* Sums of sums: two terms each make 2^40 in 40 steps; a chain of 100 is too deep to evaluate. */
-static void sums_cannot_explode(void **state) {
-  (void)state;
+TEST(sums_cannot_explode) {
   static strut_signal signals[101];
   static int32_t terms[101][2];
   for (int wide = 0; wide < 2; wide++) {
@@ -292,8 +280,7 @@ static void sums_cannot_explode(void **state) {
   }
 }
 
-static void drives(void **state) {
-  (void)state;
+TEST(drives) {
   sample s;
   fill(&s);
   s.actuators[0].member = 2;
@@ -310,8 +297,7 @@ static void drives(void **state) {
   expect(&s, STRUT_ON_LOAD, 0, "signal", "does not exist");
 }
 
-static void shapes(void **state) {
-  (void)state;
+TEST(shapes) {
   sample s;
   int32_t nodes[2] = {1, 2};
   double position[3][2] = {{0, 0}, {1, 0}, {2, 0}};
@@ -366,8 +352,7 @@ static void shapes(void **state) {
   }
 }
 
-static void experiment(void **state) {
-  (void)state;
+TEST(experiment) {
   sample s;
   fill(&s);
   strut_experiment *e = &s.setup.experiment;
@@ -413,8 +398,7 @@ static void experiment(void **state) {
   expect(&s, STRUT_ON_OUTPUT, 0, "every", "negative");
 }
 
-static void statics_need_neither_mass_nor_run(void **state) {
-  (void)state;
+TEST(statics_need_neither_mass_nor_run) {
   sample s;
   strut_findings findings = {0};
   fill(&s);
@@ -427,8 +411,7 @@ static void statics_need_neither_mass_nor_run(void **state) {
   strut_findings_free(&findings);
 }
 
-static void no_memory(void **state) {
-  (void)state;
+TEST(no_memory) {
   sample s;
   strut_status status = STRUT_NO_MEMORY;
   fill(&s);
@@ -444,8 +427,7 @@ static void no_memory(void **state) {
 }
 
 /* A valid cell and a valid collision, each spoilt in turn. */
-static void cells_and_collisions(void **state) {
-  (void)state;
+TEST(cells_and_collisions) {
   sample s;
   int32_t corners[3], *node = corners;
   strut_cell cell;
@@ -481,23 +463,4 @@ static void cells_and_collisions(void **state) {
   SPOILT(collision.node[1] = 0, STRUT_ON_COLLISION, "nodes", "twice");
   SPOILT(s.members[0].law.kind = STRUT_LAW_ISOTHERMAL, STRUT_ON_MEMBER, "law", "cells only");
 #undef SPOILT
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(cells_and_collisions),
-      cmocka_unit_test(a_valid_scene_has_no_findings),
-      cmocka_unit_test(nodes),
-      cmocka_unit_test(members),
-      cmocka_unit_test(a_spring_of_no_length_may_begin_in_one_place),
-      cmocka_unit_test(ground),
-      cmocka_unit_test(signals),
-      cmocka_unit_test(sums_cannot_explode),
-      cmocka_unit_test(drives),
-      cmocka_unit_test(shapes),
-      cmocka_unit_test(experiment),
-      cmocka_unit_test(statics_need_neither_mass_nor_run),
-      cmocka_unit_test(no_memory),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,18 +2,13 @@
 /* CMA-ES: evaluations that known functions take, bounds, the same bits, stops. tests/bench/cma.py
  * takes the same functions to python3-cmaes: evaluations here and there agree within a fifth. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "engine/study/search/cma.h"
+#include "tests/support/test.h"
 
 enum { MOST = 10, SEEDS = 15 };
 
@@ -130,8 +125,7 @@ static double measure(const char *name, function *f, size_t n, size_t population
 }
 
 /* The bounds are python3-cmaes 0.9.1's medians and a fifth. */
-static void evaluations_are_those_of_others(void **unused) {
-  (void)unused;
+TEST(evaluations_are_those_of_others) {
   int failures;
   assert_true(measure("sphere", sphere, 10, 0, &failures) < 1.2 * 1780.0);
   assert_int_equal(failures, 0);
@@ -143,8 +137,7 @@ static void evaluations_are_those_of_others(void **unused) {
   assert_true(failures <= 8); /* 6 of 15 there: many local minima */
 }
 
-static void a_minimum_on_a_bound_is_found(void **unused) {
-  (void)unused;
+TEST(a_minimum_on_a_bound_is_found) {
   const strut_cma_options options = {.dimension = 4, .seed = 3, .evaluations = 20000};
   strut_cma *c = search(&options, ramp);
   double value;
@@ -155,8 +148,7 @@ static void a_minimum_on_a_bound_is_found(void **unused) {
   strut_cma_free(c);
 }
 
-static void failed_points_are_worst(void **unused) {
-  (void)unused;
+TEST(failed_points_are_worst) {
   const strut_cma_options options = {
       .dimension = 3, .seed = 4, .evaluations = 5000, .target = 1e-10, .has_target = 1};
   strut_cma *c = search(&options, half);
@@ -164,8 +156,7 @@ static void failed_points_are_worst(void **unused) {
   strut_cma_free(c);
 }
 
-static void nothing_to_find_ends(void **unused) {
-  (void)unused;
+TEST(nothing_to_find_ends) {
   double value;
   const strut_cma_options options = {.dimension = 2, .seed = 5};
   strut_cma *c = search(&options, flat);
@@ -179,8 +170,7 @@ static void nothing_to_find_ends(void **unused) {
   strut_cma_free(c);
 }
 
-static void one_number_is_searched(void **unused) {
-  (void)unused;
+TEST(one_number_is_searched) {
   const strut_cma_options options = {.dimension = 1, .seed = 1, .target = 1e-12, .has_target = 1};
   strut_cma *c = search(&options, sphere);
   assert_int_equal(strut_cma_stopped(c), STRUT_CMA_TARGET);
@@ -188,8 +178,7 @@ static void one_number_is_searched(void **unused) {
   strut_cma_free(c);
 }
 
-static void seeds_decide_the_bits(void **unused) {
-  (void)unused;
+TEST(seeds_decide_the_bits) {
   strut_cma_options options = {.dimension = 5, .seed = 8, .evaluations = 2000};
   double value[3];
   for (int i = 0; i < 3; i++) {
@@ -202,8 +191,7 @@ static void seeds_decide_the_bits(void **unused) {
   assert_true(value[0] != value[2]);
 }
 
-static void populations_fill_lanes(void **unused) {
-  (void)unused;
+TEST(populations_fill_lanes) {
   strut_cma *c;
   strut_error error = {0};
   strut_cma_options options = {.dimension = 5, .multiple = 16};
@@ -220,8 +208,7 @@ static void populations_fill_lanes(void **unused) {
 }
 
 /* A minimum at 0.95 is near to a start at 0.05, if that is an angle; else the bound is in between. */
-static void an_angle_wraps(void **unused) {
-  (void)unused;
+TEST(an_angle_wraps) {
   const double start[] = {0.05, 0.05};
   const bool wraps[] = {true, true};
   for (uint32_t seed = 1; seed <= SEEDS; seed++) {
@@ -252,8 +239,7 @@ static void an_angle_wraps(void **unused) {
   }
 }
 
-static void wrong_options_are_refused(void **unused) {
-  (void)unused;
+TEST(wrong_options_are_refused) {
   strut_cma *c;
   strut_error error = {0};
   const double outside[] = {0.5, 1.5};
@@ -267,19 +253,4 @@ static void wrong_options_are_refused(void **unused) {
     assert_null(c);
     strut_cma_free(c);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(evaluations_are_those_of_others),
-      cmocka_unit_test(a_minimum_on_a_bound_is_found),
-      cmocka_unit_test(failed_points_are_worst),
-      cmocka_unit_test(nothing_to_find_ends),
-      cmocka_unit_test(one_number_is_searched),
-      cmocka_unit_test(seeds_decide_the_bits),
-      cmocka_unit_test(populations_fill_lanes),
-      cmocka_unit_test(an_angle_wraps),
-      cmocka_unit_test(wrong_options_are_refused),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

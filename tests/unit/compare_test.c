@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Comparing: differences of texts, every allocation failing once, an interrupt, what is told. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "engine/study/compare/compare.h"
 #include "parser/read/difference.h"
 #include "parser/read/read_scene.h"
+#include "tests/support/test.h"
 
 static const char hopper[] =
     "strut: 1\n"
@@ -33,8 +28,7 @@ static void read_hopper(strut_setup *setup) {
   strut_diagnostics_free(&diagnostics);
 }
 
-static void differences(void **unused) {
-  (void)unused;
+TEST(differences) {
   static const char first[] = "name: A\na: {b: 1, c: [1, {d: 2}], e: {f: 3}}\ng: 1\nsame: {x: 1}\n";
   static const char second[] = "name: B\nsame: {x: 1}\nnew: [1]\na: {b: 2, c: [1, {d: 3}]}\n";
   static const strut_difference wanted[] = {{"a.b", "1", "2"},
@@ -60,8 +54,7 @@ static void differences(void **unused) {
   strut_arena_free(&arena);
 }
 
-static void differences_without_memory(void **unused) {
-  (void)unused;
+TEST(differences_without_memory) {
   strut_status status = STRUT_NO_MEMORY;
   int64_t n = 0;
   for (; status == STRUT_NO_MEMORY && n < 1000; n++) {
@@ -107,8 +100,7 @@ static strut_status make(const strut_compare_options *options, bool tell) {
   return status;
 }
 
-static void without_memory(void **unused) {
-  (void)unused;
+TEST(without_memory) {
   const strut_compare_options options = {.no_states = true, .accuracy = 0.05};
   strut_status status = STRUT_NO_MEMORY;
   uint64_t before = strut_allocation_count();
@@ -131,15 +123,13 @@ static void without_memory(void **unused) {
   assert_true(refused > 50);
 }
 
-static void interrupted(void **unused) {
-  (void)unused;
+TEST(interrupted) {
   const volatile sig_atomic_t now = 1;
   const strut_compare_options options = {.interrupt = &now};
   assert_int_equal(make(&options, false), STRUT_INTERRUPTED);
 }
 
-static void told(void **unused) {
-  (void)unused;
+TEST(told) {
   strut_setup setup;
   strut_compare result;
   strut_error error = {0};
@@ -163,11 +153,4 @@ static void told(void **unused) {
                    STRUT_FILE_TROUBLE);
   strut_compare_free(&result);
   strut_setup_free(&setup);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(differences), cmocka_unit_test(differences_without_memory),
-      cmocka_unit_test(without_memory), cmocka_unit_test(interrupted), cmocka_unit_test(told)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,7 +7,7 @@
 #include "tests/unit/critical_support.h"
 
 /* P1: one shape in four placements. */
-static void snelsons_square(void **state) {
+TEST(snelsons_square) {
   static const node_row node[] = {{0, 0, 3}, {1, 0, 2}, {1, 1, 0}, {0, 1, 0}};
   static const double eigenvalue[] = {41.420771, 99.582797, 157.296395, 1105.450613, 1607.664949};
   const double diagonal = sqrt(2);
@@ -16,7 +16,6 @@ static void snelsons_square(void **state) {
       {STRUT_CABLE, 3, 4, 100, 0.95},    {STRUT_CABLE, 4, 1, 100, 0.95},
       {STRUT_BAR, 2, 4, 1000, diagonal}, {STRUT_BAR, 1, 3, 1000, diagonal}};
   fixture f = {0};
-  (void)state;
   BUILD(&f.scene, node, member);
   critical_find(&f, NULL, false, true);
   assert_minima(&f, (double[]){5.0 / 11}, 1, 1e-13);
@@ -35,7 +34,7 @@ static void snelsons_square(void **state) {
 }
 
 /* P2: the folded twin has the same member lengths and energy, and is another shape. */
-static void double_square(void **state) {
+TEST(double_square) {
   static const node_row node[] = {{0, 0, 3}, {1, 0, 2}, {1, 1, 0}, {0, 1, 0}, {2, 0, 0}, {2, 1, 0}};
   const double d = sqrt(2);
   const member_row member[] = {{STRUT_BAR, 1, 3, 1000, d},     {STRUT_BAR, 2, 4, 1000, d},
@@ -45,7 +44,6 @@ static void double_square(void **state) {
                                {STRUT_CABLE, 2, 5, 100, 0.95}, {STRUT_CABLE, 5, 6, 100, 0.95},
                                {STRUT_CABLE, 6, 3, 100, 0.95}};
   fixture f = {0};
-  (void)state;
   BUILD(&f.scene, node, member);
   critical_find(&f, NULL, false, false);
   assert_minima(&f, (double[]){0.741869206537, 0.741869206537}, 2, 1e-11);
@@ -58,7 +56,7 @@ static void double_square(void **state) {
 }
 
 /* P3: a rhombus of stiff bars: one prestressed shape that may turn, and one continuum of slack ones. */
-static void d_bar(void **state) {
+TEST(d_bar) {
   static const node_row node[] = {{0, 0, 3}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   const double d = sqrt(2), ea = 219.911486;
   const member_row member[] = {
@@ -66,7 +64,6 @@ static void d_bar(void **state) {
       {STRUT_BAR, 2, 3, 1e7, 1},      {STRUT_BAR, 3, 4, 1e7, 1},
       {STRUT_CABLE, 2, 4, ea / d, d}, {STRUT_CABLE, 1, 3, ea / d / 0.7, 0.7 * d}};
   fixture f = {0};
-  (void)state;
   BUILD(&f.scene, node, member);
   critical_find(&f, NULL, false, false);
   assert_int_equal(f.set.count, 2);
@@ -79,14 +76,13 @@ static void d_bar(void **state) {
 }
 
 /* P5 without load: upright and hanging, and two saddles with the bar on its side. */
-static void half_t_bar(void **state) {
+TEST(half_t_bar) {
   static const node_row node[] = {{-1, 0, 3}, {0, 0, 3}, {1, 0, 3}, {0, 1, 0}};
   const double bar = 1.0000043657, cable = 1.4140076829;
   const member_row member[] = {{STRUT_BAR, 2, 4, 11453019.53174 / bar, bar},
                                {STRUT_CABLE, 1, 4, 242825.130902 / cable, cable},
                                {STRUT_CABLE, 3, 4, 242825.130902 / cable, cable}};
   fixture f = {0};
-  (void)state;
   BUILD(&f.scene, node, member);
   critical_find(&f, NULL, false, true);
   assert_minima(&f, (double[]){0.00738808, 0.00738808}, 2, 1e-8);
@@ -98,7 +94,7 @@ static void half_t_bar(void **state) {
 }
 
 /* P6: a mechanism that prestress alone stiffens, with two kinds of saddle. */
-static void hexagon_of_cables(void **state) {
+TEST(hexagon_of_cables) {
   const double h = sqrt(7) / 4, p = 0.3;
   const node_row node[] = {{0, 0, 3},         {h, 0.75, 0},      {h + 1, 0.75, 0},
                            {2 * h + 1, 0, 3}, {h + 1, -0.75, 0}, {h, -0.75, 0}};
@@ -108,7 +104,6 @@ static void hexagon_of_cables(void **state) {
       {STRUT_CABLE, 5, 6, 1, 1 - p},         {STRUT_CABLE, 6, 1, 1, 1 - p},
       {STRUT_BAR, 2, 6, 0.5, 1.5 * (1 + p)}, {STRUT_BAR, 3, 5, 0.5, 1.5 * (1 + p)}};
   fixture f = {0};
-  (void)state;
   BUILD(&f.scene, node, member);
   critical_find(&f, NULL, false, true);
   assert_minima(&f, (double[]){0.363146484, 0.363146484}, 2, 1e-9);
@@ -121,12 +116,11 @@ static void hexagon_of_cables(void **state) {
 }
 
 /* P9: snap-through, and the apex beyond a support. */
-static void von_mises_truss(void **state) {
+TEST(von_mises_truss) {
   static const node_row node[] = {{-1, 0, 3}, {1, 0, 3}, {0, 0.5, 0}};
   const double l = sqrt(1.25);
   const member_row member[] = {{STRUT_BAR, 1, 3, 1, l}, {STRUT_BAR, 2, 3, 1, l}};
   fixture f = {0};
-  (void)state;
   BUILD(&f.scene, node, member);
   critical_find(&f, NULL, false, true);
   assert_minima(&f, (double[]){0, 0}, 2, 1e-15);
@@ -143,10 +137,9 @@ static void von_mises_truss(void **state) {
 }
 
 /* P10: two bistable cells; the mixed states go when the coupling grows. */
-static void bistable_cells(void **state) {
+TEST(bistable_cells) {
   const double l = sqrt(1.09), couplings[] = {0.01, 0.0290, 0.0293};
   const node_row node[] = {{-1, 0, 3}, {1, 0, 3}, {0, 0.3, 1}, {-1, 2, 3}, {1, 2, 3}, {0, 2.3, 1}};
-  (void)state;
   for (int i = 0; i < 3; i++) {
     fixture f = {0};
     const member_row member[] = {{STRUT_BAR, 1, 3, 1, l},
@@ -170,7 +163,7 @@ static void bistable_cells(void **state) {
 }
 
 /* P11: Zeeman's machine inside and outside its cusp. */
-static void zeemans_machine(void **state) {
+TEST(zeemans_machine) {
   static const struct {
     double x, y;
     size_t stable;
@@ -179,7 +172,6 @@ static void zeemans_machine(void **state) {
                 {0.1, -0.5, 1, {0.696760380}}, {0.1, -0.3433, 2, {0}},
                 {0.1, -0.3435, 1, {0}},        {0.1, -0.1447, 2, {0}},
                 {0.1, -0.1444, 1, {0}}};
-  (void)state;
   for (size_t i = 0; i < sizeof answer / sizeof answer[0]; i++) {
     fixture f = {0};
     const node_row node[] = {{1, 0, 3}, {2, 0.25, 3}, {answer[i].x, answer[i].y, 3}, {1.2, 0.4, 0}};
@@ -199,7 +191,7 @@ static void zeemans_machine(void **state) {
 }
 
 /* P12: crossed bars and the parallelogram, each up and down. */
-static void x_joint(void **state) {
+TEST(x_joint) {
   const double s = sqrt(0.0075);
   const node_row node[] = {{0, 0, 3}, {0.05, 0, 3}, {0.05, s, 0}, {0, s, 0}};
   const member_row member[] = {{STRUT_BAR, 1, 3, 1e6, 0.1},
@@ -209,7 +201,6 @@ static void x_joint(void **state) {
                                {STRUT_CABLE, 2, 3, 100, 0.06}};
   const double crossed = 0.070758901, open = 0.26833506;
   fixture f = {0};
-  (void)state;
   BUILD(&f.scene, node, member);
   critical_find(&f, NULL, false, true);
   assert_minima(&f, (double[]){crossed, crossed, open, open}, 4, 1e-8);
@@ -221,7 +212,7 @@ static void x_joint(void **state) {
  * P13: besides the four states of the formula, which takes a spring's length as signed, there is a
  * fifth beyond the cusp where one spring is a point: turned right round onto the fixed triangle.
  */
-static void dual_triangle(void **state) {
+TEST(dual_triangle) {
   const double c = sqrt(0.75);
   const node_row node[] = {{0, 0, 3}, {-c, 0.5, 3}, {-c, -0.5, 3}, {c, -0.5, 0}, {c, 0.5, 0}};
   const member_row member[] = {{STRUT_BAR, 1, 4, 1e6, 1},
@@ -230,7 +221,6 @@ static void dual_triangle(void **state) {
                                {STRUT_SPRING, 2, 4, 100, 0.8},
                                {STRUT_SPRING, 3, 5, 100, 0.8}};
   fixture f = {0};
-  (void)state;
   BUILD(&f.scene, node, member);
   critical_find(&f, NULL, false, true);
   assert_minima(&f, (double[]){0, 0, 4, 67.995, 67.995}, 5, 1e-3);
@@ -242,20 +232,4 @@ static void dual_triangle(void **state) {
   assert_saddle(&f, 86.8588, 1e-4, 1);
   assert_saddle(&f, 143.9856, 1e-4, 1);
   critical_tear_down(&f);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(snelsons_square),
-      cmocka_unit_test(double_square),
-      cmocka_unit_test(d_bar),
-      cmocka_unit_test(half_t_bar),
-      cmocka_unit_test(hexagon_of_cables),
-      cmocka_unit_test(von_mises_truss),
-      cmocka_unit_test(bistable_cells),
-      cmocka_unit_test(zeemans_machine),
-      cmocka_unit_test(x_joint),
-      cmocka_unit_test(dual_triangle),
-  };
-  return cmocka_run_group_tests_name("critical_gallery", tests, NULL, NULL);
 }

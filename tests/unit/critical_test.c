@@ -11,7 +11,7 @@
 #include "tests/support/structures.h"
 #include "tests/unit/critical_support.h"
 
-static void the_crawler_on_nodes_1_and_4(void **state) {
+TEST(the_crawler_on_nodes_1_and_4) {
   /* found again by every one of several seeds */
   static const double saddles[] = {22.672821403,  22.6786953479, 22.6833957641, 22.6844442893,
                                    22.6896852375, 22.7089940895, 22.7133877053, 22.7150093907,
@@ -20,7 +20,6 @@ static void the_crawler_on_nodes_1_and_4(void **state) {
                                   22.6690358567, 22.706131,     22.712029};
   uint8_t held[64] = {0};
   fixture f = {0};
-  (void)state;
   held[0] = held[1] = held[7] = 1;
   strut_scene_init(&f.scene);
   structure_crawler(&f.scene, 10, 1e-4, 0.1, false);
@@ -45,11 +44,10 @@ static void the_crawler_on_nodes_1_and_4(void **state) {
 }
 
 /* A node on a loose cable hangs, or lies anywhere where the cable is slack: one floppy point. */
-static void a_slack_arc_is_one_point(void **state) {
+TEST(a_slack_arc_is_one_point) {
   static const node_row node[] = {{1, 2, 3}, {3, 4, 3}, {2, 3, 0}};
   static const member_row member[] = {{STRUT_BAR, 1, 3, 1000, 2}, {STRUT_CABLE, 2, 3, 1, 1}};
   fixture f = {0};
-  (void)state;
   BUILD(&f.scene, node, member);
   critical_find(&f, NULL, false, false);
   assert_int_equal(f.set.count, 1);
@@ -62,7 +60,7 @@ static void a_slack_arc_is_one_point(void **state) {
  * A truss that snaps through, weakly loaded, beside a rod that may point anywhere: two shapes that are
  * floppy, whose energies differ by a part in 10000. A stretched spring between supports adds 1 J.
  */
-static void floppy_shapes_of_almost_one_energy_are_two(void **state) {
+TEST(floppy_shapes_of_almost_one_energy_are_two) {
   static const node_row node[] = {{-1, 0, 3}, {1, 0, 3}, {0, 0.3, 0}, {5, 0, 3}, {5, 1, 0}};
   static const member_row member[] = {{STRUT_BAR, 1, 3, 1000, 1.0440306508910550},
                                       {STRUT_BAR, 2, 3, 1000, 1.0440306508910550},
@@ -70,7 +68,6 @@ static void floppy_shapes_of_almost_one_energy_are_two(void **state) {
                                       {STRUT_BAR, 4, 5, 10, 1}};
   const double push = 2e-4;
   fixture f = {0};
-  (void)state;
   BUILD(&f.scene, node, member);
   build_load(&f.scene, 2, 0, push, -1);
   critical_find(&f, NULL, false, false);
@@ -84,11 +81,10 @@ static void floppy_shapes_of_almost_one_energy_are_two(void **state) {
 }
 
 /* Turned, shifted, mirrored: the same shape; a node moved by 0.1 is that far off at most. */
-static void the_distance_of_shapes(void **state) {
+TEST(the_distance_of_shapes) {
   static const double corner[4][2] = {{0, 0}, {2, 0}, {2, 1}, {0.3, 1.4}};
   fixture f = {0};
   bool mirrored;
-  (void)state;
   strut_scene_init(&f.scene);
   for (int i = 0; i < 4; i++) build_node(&f.scene, corner[i][0], corner[i][1]);
   build_member(&f.scene, STRUT_BAR, 0, 1, 1, 0, 0);
@@ -111,10 +107,9 @@ static void the_distance_of_shapes(void **state) {
 }
 
 /* A cable that pulls with next to nothing counts as slack where that is asked for, a contact too. */
-static void what_rounding_alone_closes(void **state) {
+TEST(what_rounding_alone_closes) {
   fixture f = {0};
   strut_arena arena = {0};
-  (void)state;
   strut_scene_init(&f.scene);
   build_support(&f.scene, 0, 1);
   build_node(&f.scene, 0, -1e-9);
@@ -133,9 +128,8 @@ static void what_rounding_alone_closes(void **state) {
 }
 
 /* Nothing holds it: every start falls for ever. */
-static void what_falls_has_no_point(void **state) {
+TEST(what_falls_has_no_point) {
   fixture f = {0};
-  (void)state;
   strut_scene_init(&f.scene);
   structure_crawler(&f.scene, 10, 1e-4, 0.1, false);
   critical_find(&f, NULL, false, false);
@@ -144,10 +138,9 @@ static void what_falls_has_no_point(void **state) {
   critical_tear_down(&f);
 }
 
-static void the_threads_change_no_bit(void **state) {
+TEST(the_threads_change_no_bit) {
   fixture one = {0}, three = {0};
   uint8_t held[64] = {0};
-  (void)state;
   held[0] = held[1] = held[7] = 1;
 #ifdef _OPENMP
   omp_set_num_threads(1);
@@ -179,12 +172,11 @@ static void the_threads_change_no_bit(void **state) {
   critical_tear_down(&three);
 }
 
-static void refused_memory(void **state) {
+TEST(refused_memory) {
   static const node_row node[] = {{-1, 0, 3}, {1, 0, 3}, {0, 0.5, 0}};
   static const member_row member[] = {{STRUT_BAR, 1, 3, 1, 1.1}, {STRUT_BAR, 2, 3, 1, 1.1}};
   strut_critical_effort effort = {.seed = 1, .saddles = true, .starts = 4};
   fixture f = {0};
-  (void)state;
 #ifdef _OPENMP
   omp_set_num_threads(1); /* else which allocation is refused is up to chance */
 #endif
@@ -204,9 +196,8 @@ static void refused_memory(void **state) {
 }
 
 /* By eigenvectors and by factors the same judgement: a chain just below the limit and above. */
-static void large_structures_are_judged_alike(void **state) {
+TEST(large_structures_are_judged_alike) {
   double before = 0;
-  (void)state;
   for (size_t frames = 28; frames <= 32; frames += 4) {
     fixture f = {0};
     strut_critical_effort effort = {.seed = 1};
@@ -230,19 +221,4 @@ static void large_structures_are_judged_alike(void **state) {
     before = scaled;
     critical_tear_down(&f);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_crawler_on_nodes_1_and_4),
-      cmocka_unit_test(a_slack_arc_is_one_point),
-      cmocka_unit_test(floppy_shapes_of_almost_one_energy_are_two),
-      cmocka_unit_test(the_distance_of_shapes),
-      cmocka_unit_test(what_rounding_alone_closes),
-      cmocka_unit_test(what_falls_has_no_point),
-      cmocka_unit_test(the_threads_change_no_bit),
-      cmocka_unit_test(refused_memory),
-      cmocka_unit_test(large_structures_are_judged_alike),
-  };
-  return cmocka_run_group_tests_name("critical", tests, NULL, NULL);
 }

@@ -1,19 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Trajectories as CSV: headers, every value's bits, full disks, no memory. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "engine/base/memory.h"
 #include "engine/output/record_files.h"
 #include "tests/support/heap.h"
+#include "tests/support/test.h"
 #include "tests/unit/sample.h"
 #include "tests/unit/scratch.h"
 
@@ -66,8 +61,7 @@ static void assert_all_tables(size_t rows) {
                (const size_t[]){21, 22, 23}, 3);
 }
 
-static void test_every_value_comes_back(void **unused) {
-  (void)unused;
+TEST(every_value_comes_back) {
   const char *directory = scratch_make();
   assert_int_equal(feed(directory, 1500, STRUT_OK, NULL), STRUT_OK);
   assert_int_equal(scratch_count(directory), 4);
@@ -75,8 +69,7 @@ static void test_every_value_comes_back(void **unused) {
   scratch_remove();
 }
 
-static void test_a_run_that_stopped_keeps_its_rows(void **unused) {
-  (void)unused;
+TEST(a_run_that_stopped_keeps_its_rows) {
   const char *directory = scratch_make();
   assert_int_equal(feed(directory, 7, STRUT_INTERRUPTED, NULL), STRUT_OK);
   assert_all_tables(7);
@@ -87,8 +80,7 @@ static void test_a_run_that_stopped_keeps_its_rows(void **unused) {
   scratch_remove();
 }
 
-static void test_trouble_elsewhere_removes_the_files(void **unused) {
-  (void)unused;
+TEST(trouble_elsewhere_removes_the_files) {
   const char *directory = scratch_make();
   assert_int_equal(feed(directory, 7, STRUT_FILE_TROUBLE, NULL), STRUT_OK);
   assert_int_equal(scratch_count(directory), 0);
@@ -101,8 +93,7 @@ static void test_trouble_elsewhere_removes_the_files(void **unused) {
   scratch_remove();
 }
 
-static void test_only_files_with_channels(void **unused) {
-  (void)unused;
+TEST(only_files_with_channels) {
   const char *directory = scratch_make();
   strut_record_layout layout = *sample_layout();
   layout.channel_count = 1;
@@ -115,8 +106,7 @@ static void test_only_files_with_channels(void **unused) {
   scratch_remove();
 }
 
-static void test_numbers_that_are_none(void **unused) {
-  (void)unused;
+TEST(numbers_that_are_none) {
   size_t length;
   const char *directory = scratch_make();
   strut_record_layout layout = *sample_layout();
@@ -135,8 +125,7 @@ static void test_numbers_that_are_none(void **unused) {
   scratch_remove();
 }
 
-static void test_a_full_disk(void **unused) {
-  (void)unused;
+TEST(a_full_disk) {
   const char *disk = scratch_make();
   int failures = 0;
   for (int kilobytes = 4; kilobytes <= 2048; kilobytes *= 2) {
@@ -177,8 +166,7 @@ static int64_t refuse_memory(const char *directory) {
 }
 
 /* Nor does anything stay behind: after some rounds malloc's own caches are full. */
-static void test_no_memory(void **unused) {
-  (void)unused;
+TEST(no_memory) {
   size_t before = 0;
   for (int round = 0; round < 12; round++) {
     if (round == 4) before = heap_in_use();
@@ -186,17 +174,4 @@ static void test_no_memory(void **unused) {
     scratch_remove();
   }
   assert_in_range(heap_in_use(), 0, before + 500);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_every_value_comes_back),
-      cmocka_unit_test(test_a_run_that_stopped_keeps_its_rows),
-      cmocka_unit_test(test_trouble_elsewhere_removes_the_files),
-      cmocka_unit_test(test_only_files_with_channels),
-      cmocka_unit_test(test_numbers_that_are_none),
-      cmocka_unit_test(test_a_full_disk),
-      cmocka_unit_test(test_no_memory),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Located messages: their text, order and limits, the caret, and suggestions. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "engine/base/memory.h"
 #include "parser/yaml/diagnostics.h"
+#include "tests/support/test.h"
 
 static strut_place at(uint32_t line, uint32_t column, uint32_t length) {
   return strut_place_at(line, column, length);
@@ -31,15 +26,13 @@ static void expect_shown(const char *text, strut_place place, const char *expect
   strut_diagnostics_free(&diagnostics);
 }
 
-static void nothing_is_shown_of_nothing(void **state) {
-  (void)state;
+TEST(nothing_is_shown_of_nothing) {
   strut_diagnostics diagnostics = about("a: 1\n");
   assert_string_equal(strut_diagnostics_render(&diagnostics, 50), "");
   strut_diagnostics_free(&diagnostics);
 }
 
-static void a_message_has_place_line_and_caret(void **state) {
-  (void)state;
+TEST(a_message_has_place_line_and_caret) {
   strut_diagnostics diagnostics = about("members:\n  m1: {group: rod, stifness: 3}\n");
   strut_diagnose(&diagnostics, at(2, 20, 8), "unknown key '%s' in member '%s'", "stifness", "m1");
   assert_int_equal(diagnostics.count, 1);
@@ -50,8 +43,7 @@ static void a_message_has_place_line_and_caret(void **state) {
   strut_diagnostics_free(&diagnostics);
 }
 
-static void the_caret_stands_right(void **state) {
-  (void)state;
+TEST(the_caret_stands_right) {
   expect_shown("a: 1", at(1, 4, 1), "a.yaml:1:4: error: wrong\n    1 | a: 1\n      |    ^\n");
   expect_shown("a: 1", at(1, 1, 0), "a.yaml:1:1: error: wrong\n    1 | a: 1\n      | ^\n");
   expect_shown("a:\t\t1", at(1, 5, 1),
@@ -70,8 +62,7 @@ static void the_caret_stands_right(void **state) {
       at(1, 2, 1), "a.yaml:1:2: error: wrong\n    1 | ab\n      |  ^\n");
 }
 
-static void the_stretch_ends_with_the_line(void **state) {
-  (void)state;
+TEST(the_stretch_ends_with_the_line) {
   expect_shown("a: bc\nd", at(1, 4, 99),
                "a.yaml:1:4: error: wrong\n    1 | a: bc\n      |    ^~\n");
   expect_shown("a: bc\nd", at(1, 4, UINT32_MAX),
@@ -80,8 +71,7 @@ static void the_stretch_ends_with_the_line(void **state) {
   expect_shown("a:\nd", at(1, 3, 5), "a.yaml:1:3: error: wrong\n    1 | a:\n      |   ^\n");
 }
 
-static void places_outside_show_no_line(void **state) {
-  (void)state;
+TEST(places_outside_show_no_line) {
   expect_shown("a: 1\n", at(0, 0, 0), "a.yaml: error: wrong\n");
   expect_shown("a: 1\n", at(2, 1, 1), "a.yaml:2:1: error: wrong\n");
   expect_shown("a: 1\n", at(9, 1, 1), "a.yaml:9:1: error: wrong\n");
@@ -93,8 +83,7 @@ static void places_outside_show_no_line(void **state) {
   strut_diagnostics_free(&none);
 }
 
-static void lines_end_where_libyaml_ends_them(void **state) {
-  (void)state;
+TEST(lines_end_where_libyaml_ends_them) {
   const char *expected = "a.yaml:3:1: error: wrong\n    3 | c\n      | ^\n";
   expect_shown("a\nb\nc\nd", at(3, 1, 1), expected);
   expect_shown("a\r\nb\r\nc\r\nd", at(3, 1, 1), expected);
@@ -113,8 +102,7 @@ static void lines_end_where_libyaml_ends_them(void **state) {
       at(3, 1, 1), expected);
 }
 
-static void long_lines_are_cut_around_the_place(void **state) {
-  (void)state;
+TEST(long_lines_are_cut_around_the_place) {
   char text[401], expected[700];
   for (int i = 0; i < 400; i++) text[i] = (char)('a' + i % 26);
   text[400] = '\0';
@@ -135,8 +123,7 @@ static void long_lines_are_cut_around_the_place(void **state) {
 }
 
 /* A terminal must not obey what a file holds. */
-static void bytes_of_the_source_are_made_harmless(void **state) {
-  (void)state;
+TEST(bytes_of_the_source_are_made_harmless) {
   expect_shown(
       "a\x1B[31m\xFF", at(1, 7, 1),
       "a.yaml:1:7: error: wrong\n    1 | a\xEF\xBF\xBD[31m\xEF\xBF\xBD\n      |       ^\n");
@@ -146,8 +133,7 @@ static void bytes_of_the_source_are_made_harmless(void **state) {
   strut_diagnostics_free(&diagnostics);
 }
 
-static void long_messages_are_cut_between_characters(void **state) {
-  (void)state;
+TEST(long_messages_are_cut_between_characters) {
   char word[2001];
   for (int shift = 0; shift < 4; shift++) {
     for (int i = 0; i + 1 < 2000; i += 2) memcpy(word + i, "\xC3\xA4", 2);
@@ -163,8 +149,7 @@ static void long_messages_are_cut_between_characters(void **state) {
   }
 }
 
-static void messages_are_sorted_by_place(void **state) {
-  (void)state;
+TEST(messages_are_sorted_by_place) {
   strut_diagnostics diagnostics = about("");
   strut_diagnose(&diagnostics, at(3, 1, 1), "e");
   strut_diagnose(&diagnostics, at(1, 9, 1), "c");
@@ -181,8 +166,7 @@ static void messages_are_sorted_by_place(void **state) {
   strut_diagnostics_free(&diagnostics);
 }
 
-static void millions_of_messages_are_only_counted(void **state) {
-  (void)state;
+TEST(millions_of_messages_are_only_counted) {
   strut_diagnostics diagnostics = about("");
   for (uint32_t i = 0; i < 100000; i++) strut_diagnose(&diagnostics, at(i + 1, 1, 1), "x");
   assert_int_equal(diagnostics.count, STRUT_DIAGNOSTICS_MOST);
@@ -192,8 +176,7 @@ static void millions_of_messages_are_only_counted(void **state) {
   strut_diagnostics_free(&diagnostics);
 }
 
-static void lost_memory_is_noticed(void **state) {
-  (void)state;
+TEST(lost_memory_is_noticed) {
   int failures = 0;
   for (int n = 0;; n++) {
     strut_diagnostics diagnostics = about("a: 1\n");
@@ -232,8 +215,7 @@ static void expect_suggestion(const char *word, const char *expected) {
     assert_string_equal(got, expected);
 }
 
-static void suggestions_are_near(void **state) {
-  (void)state;
+TEST(suggestions_are_near) {
   expect_suggestion("stifness", "stiffness");   /* one left out */
   expect_suggestion("stiffnesss", "stiffness"); /* one too many */
   expect_suggestion("stiffnexs", "stiffness");  /* another one */
@@ -264,29 +246,8 @@ static const char *endless(const void *context, size_t i) {
   return i == 20000 ? "word" : "another";
 }
 
-static void endless_candidates_are_cut(void **state) {
-  (void)state;
+TEST(endless_candidates_are_cut) {
   size_t calls = 0;
   assert_null(strut_did_you_mean("word", endless, &calls));
   assert_int_equal(calls, 10000);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(nothing_is_shown_of_nothing),
-      cmocka_unit_test(a_message_has_place_line_and_caret),
-      cmocka_unit_test(the_caret_stands_right),
-      cmocka_unit_test(the_stretch_ends_with_the_line),
-      cmocka_unit_test(places_outside_show_no_line),
-      cmocka_unit_test(lines_end_where_libyaml_ends_them),
-      cmocka_unit_test(long_lines_are_cut_around_the_place),
-      cmocka_unit_test(bytes_of_the_source_are_made_harmless),
-      cmocka_unit_test(long_messages_are_cut_between_characters),
-      cmocka_unit_test(messages_are_sorted_by_place),
-      cmocka_unit_test(millions_of_messages_are_only_counted),
-      cmocka_unit_test(lost_memory_is_noticed),
-      cmocka_unit_test(suggestions_are_near),
-      cmocka_unit_test(endless_candidates_are_cut),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

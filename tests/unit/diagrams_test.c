@@ -1,21 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What diagrams are made of: round ticks, prefixes, thinned curves, the front of the best. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "engine/output/draw/axes.h"
 #include "engine/output/draw/legend.h"
 #include "engine/output/draw/map.h"
 #include "engine/output/draw/work_precision.h"
 #include "tests/support/random.h"
+#include "tests/support/test.h"
 
 /* 1, 2 or 5 times a power of ten. */
 static bool is_round(double step) {
@@ -23,8 +18,7 @@ static bool is_round(double step) {
   return fabs(part - 1) < 1e-6 || fabs(part - 2) < 1e-6 || fabs(part - 5) < 1e-6;
 }
 
-static void test_ticks(void **state) {
-  (void)state;
+TEST(ticks) {
   uint64_t seed = 1;
   for (int i = 0; i < 20000; i++) {
     double low = 2 * random_between(&seed, 0, 1) - 1;
@@ -52,8 +46,7 @@ static void test_ticks(void **state) {
   assert_int_equal(strut_ticks(-1e308, 1e308, 5, ticks), 0);
 }
 
-static void test_prefixes(void **state) {
-  (void)state;
+TEST(prefixes) {
   static const struct {
     double largest;
     const char *unit, *prefix;
@@ -80,8 +73,7 @@ static strut_tick_set ticks_of(const char *unit, bool logarithmic, double low, d
   return set;
 }
 
-static void test_tick_texts(void **state) {
-  (void)state;
+TEST(tick_texts) {
   strut_tick_set set = ticks_of("m/s", false, -0.011, 0.012);
   assert_string_equal(set.label, "error in mm/s");
   assert_string_equal(set.text[0],
@@ -110,8 +102,7 @@ static void test_tick_texts(void **state) {
 }
 
 /* Whatever the data, there is an axis that can be drawn. */
-static void test_settle(void **state) {
-  (void)state;
+TEST(settle) {
   static const double values[] = {0,      -0.0,  1,        -3,          1e300,     -1e300, 1e-300,
                                   5e-324, 1e308, -1.7e308, (double)NAN, -HUGE_VAL, 42,     1e9};
   enum { COUNT = sizeof values / sizeof *values };
@@ -130,8 +121,7 @@ static void test_settle(void **state) {
 }
 
 /* Least and largest of each stretch survive, and the ends. */
-static void test_thinning(void **state) {
-  (void)state;
+TEST(thinning) {
   enum { COUNT = 20000 };
   double(*points)[2] = malloc(COUNT * sizeof *points), (*all)[2] = malloc(COUNT * sizeof *all);
   uint64_t seed = 2;
@@ -162,8 +152,7 @@ static void test_thinning(void **state) {
   free(all);
 }
 
-static void test_front(void **state) {
-  (void)state;
+TEST(front) {
   enum { COUNT = 60 };
   strut_saving b[COUNT];
   bool front[COUNT];
@@ -195,8 +184,7 @@ static const unsigned char *pixel(strut_canvas *canvas, double x, double y) {
 }
 
 /* Two by two cells: each quarter of the frame has its category's colour; without seams between. */
-static void test_map(void **state) {
-  (void)state;
+TEST(map) {
   static const double xs[] = {1, 2}, ys[] = {10, 20};
   static const int category[] = {0, 1, 1, 0};
   static const char *const names[] = {"I", "II"};
@@ -227,14 +215,4 @@ static void test_map(void **state) {
     assert_true(apart + other <= both + 6);
   }
   strut_canvas_free(canvas);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_ticks),      cmocka_unit_test(test_prefixes),
-      cmocka_unit_test(test_tick_texts), cmocka_unit_test(test_settle),
-      cmocka_unit_test(test_thinning),   cmocka_unit_test(test_front),
-      cmocka_unit_test(test_map),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

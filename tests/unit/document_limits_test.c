@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The YAML reader under pressure: limits, bombs, big texts, lost memory, files. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,16 +8,14 @@
 #include <time.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "engine/base/memory.h"
 #include "parser/read/read_scene.h"
 #include "parser/yaml/document.h"
 #include "tests/support/sanitized.h"
+#include "tests/support/test.h"
 #include "tests/unit/document_support.h"
 
-static void depth_is_limited(void **state) {
-  (void)state;
+TEST(depth_is_limited) {
   static const char *const kinds[][2] = {{"[", "]"}, {"{a: ", "}"}, {"- ", ""}};
   for (size_t i = 0; i < 3; i++) {
     for (size_t depth = 64; depth <= 65; depth++) {
@@ -46,8 +40,7 @@ static void depth_is_limited(void **state) {
 }
 
 /* Nesting cannot be built up from aliases either. */
-static void depth_counts_aliases(void **state) {
-  (void)state;
+TEST(depth_counts_aliases) {
   char *open = repeat("a: &a ", "[", 40, ""), *closed = repeat(open, "]", 40, "\nb: ");
   char *fits = repeat(closed, "[", 23, "*a"), *deep = repeat(closed, "[", 24, "*a");
   char *good = repeat(fits, "]", 23, ""), *bad = repeat(deep, "]", 24, "");
@@ -61,8 +54,7 @@ static void depth_counts_aliases(void **state) {
   for (size_t i = 0; i < 6; i++) free(texts[i]);
 }
 
-static void anchors_and_aliases_are_limited(void **state) {
-  (void)state;
+TEST(anchors_and_aliases_are_limited) {
   char *thousand = calloc(1100, 16);
   for (int i = 0; i < 1000; i++) sprintf(shown_end(thousand), "- &a%d x\n", i);
   char *most = repeat(thousand, "- *a999\n", 3, "- *a0\n"),
@@ -91,8 +83,7 @@ static void anchors_and_aliases_are_limited(void **state) {
   strut_diagnostics_free(&diagnostics);
 }
 
-static void a_thousand_problems_are_enough(void **state) {
-  (void)state;
+TEST(a_thousand_problems_are_enough) {
   char *text = repeat("a: [", "!x 1, ", 5000, "]");
   strut_document document = {0};
   strut_diagnostics diagnostics = {0};
@@ -171,8 +162,7 @@ static char *numbered(const char *before, const char *format, int count) {
   return text;
 }
 
-static void bombs_are_refused_at_once(void **state) {
-  (void)state;
+TEST(bombs_are_refused_at_once) {
   const char *deep = "more than 64 levels of nesting",
              *key = "a key must be a plain text, not a mapping";
   expect_bomb_defused("brackets", repeat("", "[", 100000, ""), deep);
@@ -203,8 +193,7 @@ static void bombs_are_refused_at_once(void **state) {
 }
 
 /* A good big text, at a tenth of the size that must be readable. */
-static void big_texts_are_read(void **state) {
-  (void)state;
+TEST(big_texts_are_read) {
   char *text = numbered("members:\n", "  m#: {group: rod, nodes: [n#, k#]}\n", 100000);
   strut_document document = {0};
   strut_diagnostics diagnostics = {0};
@@ -222,8 +211,7 @@ static void big_texts_are_read(void **state) {
 }
 
 /* Each allocation fails in turn: the answer is STRUT_NO_MEMORY or the right one, and nothing leaks. */
-static void lost_memory_is_reported(void **state) {
-  (void)state;
+TEST(lost_memory_is_reported) {
   static const char *const texts[] = {
       "a: &x {b: 1, c: [1, 2]}\nd: *x\ne: 'a text that is longer than what is shared'\n",
       "a: 1\na: 2\n<<: 3\nb: !x 1\n",
@@ -256,8 +244,7 @@ static void lost_memory_is_reported(void **state) {
 }
 
 /* Random texts made of YAML's own signs: no crash, and a verdict that fits the messages. */
-static void random_texts_are_survived(void **state) {
-  (void)state;
+TEST(random_texts_are_survived) {
   static const char *const parts[] = {
       "a",        "b: ",  ": ",    "- ",           "[",    "]",     "{",   "}",        ", ",   "\n",
       "\n  ",     "&x ",  "*x",    "!t ",          "'",    "\"",    "|\n", ">",        "#",    " #",
@@ -285,8 +272,7 @@ static void random_texts_are_survived(void **state) {
   assert_true(good > 1000);
 }
 
-static void files_are_read_whole(void **state) {
-  (void)state;
+TEST(files_are_read_whole) {
   char path[] = "/tmp/strut-text-XXXXXX", *text = NULL;
   size_t length = 7, big = 300001;
   strut_error error = {0};
@@ -326,8 +312,7 @@ static void files_are_read_whole(void **state) {
   assert_non_null(strstr(error.message, "directory"));
 }
 
-static void standard_input_is_read(void **state) {
-  (void)state;
+TEST(standard_input_is_read) {
   int pipes[2], kept = dup(0);
   assert_int_equal(pipe(pipes), 0);
   assert_int_equal(write(pipes[1], "a: 1\n", 5), 5);
@@ -344,20 +329,4 @@ static void standard_input_is_read(void **state) {
   assert_int_equal(length, 5);
   assert_string_equal(text, "a: 1\n");
   strut_release(text);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(depth_is_limited),
-      cmocka_unit_test(depth_counts_aliases),
-      cmocka_unit_test(anchors_and_aliases_are_limited),
-      cmocka_unit_test(a_thousand_problems_are_enough),
-      cmocka_unit_test(bombs_are_refused_at_once),
-      cmocka_unit_test(big_texts_are_read),
-      cmocka_unit_test(lost_memory_is_reported),
-      cmocka_unit_test(random_texts_are_survived),
-      cmocka_unit_test(files_are_read_whole),
-      cmocka_unit_test(standard_input_is_read),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

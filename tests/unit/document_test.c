@@ -1,20 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The YAML reader: trees and places, and every refusal with its words. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "parser/yaml/document.h"
+#include "tests/support/test.h"
 #include "tests/unit/document_support.h"
 
-static void trees_have_the_shape_of_the_text(void **state) {
-  (void)state;
+TEST(trees_have_the_shape_of_the_text) {
   expect_tree("a: 1\n", "{a: 1}");
   expect_tree("a: {b: [1, 2, {}], c: []}", "{a: {b: [1, 2, {}], c: []}}");
   expect_tree("a:\n- 1\n- b: 2\n  c: 3\n", "{a: [1, {b: 2, c: 3}]}");
@@ -30,8 +24,7 @@ static void trees_have_the_shape_of_the_text(void **state) {
   expect_tree("a: \"\\u00e4\\U0001F600\"\n", "{a: '\xC3\xA4\xF0\x9F\x98\x80'}");
 }
 
-static void values_know_their_places(void **state) {
-  (void)state;
+TEST(values_know_their_places) {
   expect_places("a: 12\nbc: xyz\n", "{a@1:1+1: 12@1:4+2, bc@2:1+2: xyz@2:5+3}@1:1+1");
   expect_places("a: {b: [1, 'x y']}",
                 "{a@1:1+1: {b@1:5+1: [1@1:9+1, 'x y'@1:12+5]@1:8+10}@1:4+15}@1:1+1");
@@ -56,8 +49,7 @@ static void values_know_their_places(void **state) {
       two);
 }
 
-static void anchors_repeat_values(void **state) {
-  (void)state;
+TEST(anchors_repeat_values) {
   expect_tree("a: &x 1\nb: *x\nc: [*x, *x]\n", "{a: 1, b: 1, c: [1, 1]}");
   expect_tree("a: &x {k: [1]}\nb: *x\nc: 2\n", "{a: {k: [1]}, b: {k: [1]}, c: 2}");
   expect_tree("a: &x 1\nb: &x 2\nc: *x\n", "{a: 1, b: 2, c: 2}");
@@ -72,8 +64,7 @@ static void anchors_repeat_values(void **state) {
   expect_places("\xC3\xA4: &x [&y 'z']\n", "{\xC3\xA4@1:1+1: ['z'@1:11+3]@1:7+8}@1:1+1");
 }
 
-static void bad_characters_are_refused(void **state) {
-  (void)state;
+TEST(bad_characters_are_refused) {
   static const char nul[] = "a: 1\nb: \0\n", two[] = "\x01: \x1F\n\x7F: 1";
   expect_of(nul, sizeof nul - 1, false, "", "2:4: a NUL byte is not allowed");
   expect_of(two, sizeof two - 1, false, "",
@@ -120,8 +111,7 @@ static void bad_characters_are_refused(void **state) {
   strut_diagnostics_free(&diagnostics);
 }
 
-static void escapes_do_not_smuggle(void **state) {
-  (void)state;
+TEST(escapes_do_not_smuggle) {
   expect_of("a: \"x\\0y\"", 9, false, "{a: ''}",
             "1:4: an escape makes the control character U+0000");
   expect_of("a: \"\\x1b[0m\"", 12, false, "{a: ''}",
@@ -133,8 +123,7 @@ static void escapes_do_not_smuggle(void **state) {
   expect_error("a: \"\\xZZ\"", "1:7: an escape lacks hexadecimal digits");
 }
 
-static void keys_are_plain_and_single(void **state) {
-  (void)state;
+TEST(keys_are_plain_and_single) {
   expect_of("a: 1\nb: 2\na: 3\n", 15, false, "{a: 1, b: 2}",
             "3:1: duplicate key 'a'; the first one is in line 1");
   expect_of("x: {b: 1, 'b': 2, b: 3}", 23, false, "{x: {b: 1}}",
@@ -150,8 +139,7 @@ static void keys_are_plain_and_single(void **state) {
 }
 
 /* More keys than are compared in pairs: the hash table finds what a plain search finds. */
-static void many_keys_are_compared_alike(void **state) {
-  (void)state;
+TEST(many_keys_are_compared_alike) {
   enum { MOST = 3000 };
   uint32_t seed = 5;
   for (int count = 5; count < MOST; count = count * 2 + 1) {
@@ -179,16 +167,14 @@ static void many_keys_are_compared_alike(void **state) {
 }
 
 /* One table serves map after map: none sees the keys of another. */
-static void big_maps_do_not_meet(void **state) {
-  (void)state;
+TEST(big_maps_do_not_meet) {
   const char *map = "{a: 1, b: 1, c: 1, d: 1, e: 1, f: 1, g: 1, h: 1, i: 1, j: 1}";
   char text[300];
   snprintf(text, sizeof text, "[%s, %s, %s]", map, map, map);
   expect_tree(text, text);
 }
 
-static void tags_and_directives_are_refused(void **state) {
-  (void)state;
+TEST(tags_and_directives_are_refused) {
   const char *tag = "1:4: tags (words that begin with '!') are not allowed";
   expect_of("a: !!int 1", 10, false, "{a: 1}", tag);
   expect_of("a: ! 1", 6, false, "{a: 1}", tag);
@@ -212,8 +198,7 @@ static void tags_and_directives_are_refused(void **state) {
   expect_error("%YAML 1.2\na: 1\n", "2:1: expected '---' after a %YAML line");
 }
 
-static void a_file_holds_one_document(void **state) {
-  (void)state;
+TEST(a_file_holds_one_document) {
   expect_error("", "0:0: the file is empty");
   expect_error("\xEF\xBB\xBF", "0:0: the file is empty");
   expect_error("# only a comment\n", "0:0: the file is empty");
@@ -226,8 +211,7 @@ static void a_file_holds_one_document(void **state) {
   expect_error("a: 1\n... b\n", "2:5: text after the end of the document");
 }
 
-static void common_mistakes_have_words(void **state) {
-  (void)state;
+TEST(common_mistakes_have_words) {
   expect_error(
       "a: b: c\n",
       "1:5: unexpected ':'; a key begins a new line, and a text that holds ': ' needs quotes");
@@ -268,8 +252,7 @@ static void common_mistakes_have_words(void **state) {
   expect_error("a: &x {b: {c: *x}}\n", "1:15: alias '*x' refers to a value that contains it");
 }
 
-static void finding_is_by_text(void **state) {
-  (void)state;
+TEST(finding_is_by_text) {
   const char *text = "a: 1\nb: {c: 2}\nd: b\n";
   strut_document document = {0};
   strut_diagnostics diagnostics = {0};
@@ -283,22 +266,4 @@ static void finding_is_by_text(void **state) {
   assert_null(strut_tree_find(strut_tree_find(document.root, "a", NULL), "1", NULL));
   strut_document_free(&document);
   strut_diagnostics_free(&diagnostics);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(trees_have_the_shape_of_the_text),
-      cmocka_unit_test(values_know_their_places),
-      cmocka_unit_test(anchors_repeat_values),
-      cmocka_unit_test(bad_characters_are_refused),
-      cmocka_unit_test(escapes_do_not_smuggle),
-      cmocka_unit_test(keys_are_plain_and_single),
-      cmocka_unit_test(many_keys_are_compared_alike),
-      cmocka_unit_test(big_maps_do_not_meet),
-      cmocka_unit_test(tags_and_directives_are_refused),
-      cmocka_unit_test(a_file_holds_one_document),
-      cmocka_unit_test(common_mistakes_have_words),
-      cmocka_unit_test(finding_is_by_text),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -41,9 +41,8 @@ static void check(int32_t rows) {
   }
 }
 
-static void random_matrices(void **state) {
+TEST(random_matrices) {
   uint32_t seed = 1;
-  (void)state;
   for (int32_t n = 1; n <= MOST; n += n < 12 ? 1 : 7)
     for (int turn = 0; turn < 8; turn++) {
       for (int32_t i = 0; i < n; i++)
@@ -53,9 +52,8 @@ static void random_matrices(void **state) {
 }
 
 /* Second differences: 2 - 2 cos(k pi / (n + 1)). */
-static void closed_form(void **state) {
+TEST(closed_form) {
   int32_t n = 30;
-  (void)state;
   memset(a, 0, sizeof a);
   for (int32_t i = 0; i < n; i++) {
     a[i * n + i] = 2.0;
@@ -68,9 +66,8 @@ static void closed_form(void **state) {
 }
 
 /* Rank one and none, equal values, blocks that are not connected, sizes from 1e-250 to 1e250. */
-static void awkward(void **state) {
+TEST(awkward) {
   int32_t n = 9;
-  (void)state;
   memset(a, 0, sizeof a);
   check(n);
   for (int32_t i = 0; i < n; i++) a[i * n + i] = 3.0;
@@ -88,10 +85,4 @@ static void awkward(void **state) {
   for (int32_t i = 0; i < n; i++) /* a stiff spring beside soft ones */
     for (int32_t k = 0; k < n; k++) a[i * n + k] = (i < 2 && k < 2 ? 1e12 : 1.0) / (1 + i + k);
   check(n);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(random_matrices),
-                                     cmocka_unit_test(closed_form), cmocka_unit_test(awkward)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -105,8 +105,7 @@ static void check_strain(const strain *s, int n, double *q, uint64_t *r) {
   }
 }
 
-static void test_gradients_and_second_derivatives_of_strains(void **unused) {
-  (void)unused;
+TEST(gradients_and_second_derivatives_of_strains) {
   uint64_t r = 11;
   for (int k = 0; k < STRAINS; k++)
     for (int pass = 0; pass < 200; pass++) {
@@ -120,8 +119,7 @@ static void test_gradients_and_second_derivatives_of_strains(void **unused) {
 }
 
 /* A gradient has no part along a shift, nor, but for an angle's, a part that a turn does not explain. */
-static void test_strains_do_not_feel_a_shift_or_a_turn(void **unused) {
-  (void)unused;
+TEST(strains_do_not_feel_a_shift_or_a_turn) {
   uint64_t r = 12;
   for (int k = 0; k < STRAINS; k++)
     for (int pass = 0; pass < 100; pass++) {
@@ -140,8 +138,7 @@ static void test_strains_do_not_feel_a_shift_or_a_turn(void **unused) {
     }
 }
 
-static void test_strains_of_known_figures(void **unused) {
-  (void)unused;
+TEST(strains_of_known_figures) {
   const double q[] = {0, 0, 4, 0, 4, 3, 0, 3};
   const uint32_t ring[] = {0, 2, 4, 6, 0}, back[] = {6, 4, 2, 0}, corner[] = {4, 0, 2};
   const uint32_t beside[] = {6, 0, 2}, beyond[] = {4, 0, 6};
@@ -157,8 +154,7 @@ static void test_strains_of_known_figures(void **unused) {
 }
 
 /* Nodes in one place: no direction, but numbers. */
-static void test_strains_without_a_direction_are_finite(void **unused) {
-  (void)unused;
+TEST(strains_without_a_direction_are_finite) {
   const double q[MOST_PLACES] = {0};
   for (int k = 0; k < STRAINS; k++) {
     double b[MOST_PLACES], h[MOST_PLACES * MOST_PLACES] = {0};
@@ -257,16 +253,14 @@ static void check_law(strut_law_kind kind, uint64_t *r) {
   free_law(&m);
 }
 
-static void test_force_is_the_slope_of_the_energy(void **unused) {
-  (void)unused;
+TEST(force_is_the_slope_of_the_energy) {
   uint64_t r = 21;
   for (int kind = 0; kind < STRUT_MEMBER_LAW_COUNT; kind++)
     for (int pass = 0; pass < 20; pass++) check_law((strut_law_kind)kind, &r);
 }
 
 /* Values, from the formulas of the reference. */
-static void test_laws_at_known_places(void **unused) {
-  (void)unused;
+TEST(laws_at_known_places) {
   const double c[] = {2, -1, 3};
   const strut_law_numbers n = {.stiffness = 4,
                                .knee = 0.5,
@@ -289,8 +283,7 @@ static void test_laws_at_known_places(void **unused) {
 }
 
 /* EA over the natural strain: force and work of the drive are the slopes of the energy, over e and over e0. */
-static void test_a_stiffness_that_follows_the_length(void **unused) {
-  (void)unused;
+TEST(a_stiffness_that_follows_the_length) {
   static const strut_law_kind materials[] = {STRUT_LAW_LINEAR, STRUT_LAW_BILINEAR, STRUT_LAW_PLAY,
                                              STRUT_LAW_LOGARITHMIC, STRUT_LAW_EXPONENTIAL};
   for (size_t k = 0; k < sizeof materials / sizeof *materials; k++)
@@ -316,8 +309,7 @@ static void test_a_stiffness_that_follows_the_length(void **unused) {
 }
 
 /* Energies of small strains, as series; and what a change of the natural strain does to them. */
-static void test_energies_of_small_strains_keep_their_digits(void **unused) {
-  (void)unused;
+TEST(energies_of_small_strains_keep_their_digits) {
   const strut_law_numbers n = {.stiffness = 4, .scale = 0.5};
   for (double u = 1e-9; u < 0.2; u *= 1.5)
     for (int sign = -1; sign <= 1; sign += 2) {
@@ -343,8 +335,7 @@ static void test_energies_of_small_strains_keep_their_digits(void **unused) {
 }
 
 /* A spline is smooth at its points, keeps to the range of two neighbours, and is straight on beyond. */
-static void test_a_smooth_table_has_no_kinks_and_does_not_overshoot(void **unused) {
-  (void)unused;
+TEST(a_smooth_table_has_no_kinks_and_does_not_overshoot) {
   const double x[] = {-2, -1, 0, 1, 1.5, 3}, y[] = {-1, -1, 0, 4, 4, 5};
   law_model m = {0};
   strut_scene_init(&m.scene);
@@ -460,8 +451,7 @@ static double largest_of(const double *x, int32_t n) {
   return largest;
 }
 
-static void test_forces_of_a_model_are_the_slope_of_its_energy(void **unused) {
-  (void)unused;
+TEST(forces_of_a_model_are_the_slope_of_its_energy) {
   int tried = 0;
   for (uint64_t seed = 0; seed < SCENES; seed++) {
     fixture f = {0};
@@ -488,8 +478,7 @@ static void test_forces_of_a_model_are_the_slope_of_its_energy(void **unused) {
 }
 
 /* Every entry, those that the pattern lacks too: they must be zero. */
-static void test_the_hessian_of_a_model_is_the_slope_of_its_gradient(void **unused) {
-  (void)unused;
+TEST(the_hessian_of_a_model_is_the_slope_of_its_gradient) {
   int tried = 0;
   for (uint64_t seed = 0; seed < SCENES; seed++) {
     fixture f = {0};
@@ -517,8 +506,7 @@ static void test_the_hessian_of_a_model_is_the_slope_of_its_gradient(void **unus
 }
 
 /* What an element dissipates is never negative, and forces do the work that the ledger books. */
-static void test_the_ledger_books_what_forces_do(void **unused) {
-  (void)unused;
+TEST(the_ledger_books_what_forces_do) {
   for (uint64_t seed = 0; seed < SCENES; seed++) {
     fixture f = {0};
     set_up(&f, seed, 1);
@@ -543,8 +531,7 @@ static void test_the_ledger_books_what_forces_do(void **unused) {
 }
 
 /* An arm that turns round and round against a hinge: its moment grows with every turn. */
-static void test_a_hinge_counts_its_turns(void **unused) {
-  (void)unused;
+TEST(a_hinge_counts_its_turns) {
   const double kappa = 3, arm = 0.5;
   strut_scene scene;
   strut_state *state;
@@ -660,8 +647,7 @@ static void compare_maps(uint64_t seed, const map *m) {
   tear_down(&f);
 }
 
-static void test_turned_mirrored_and_scaled_models(void **unused) {
-  (void)unused;
+TEST(turned_mirrored_and_scaled_models) {
   const map maps[] = {{0.7, 1, false}, {STRUT_PI, 1, false}, {0, 1, true},
                       {2.3, 1, true},  {0, 0.01, false},     {-1.2, 100, true}};
   for (uint64_t seed = 0; seed < 60; seed++)
@@ -669,8 +655,7 @@ static void test_turned_mirrored_and_scaled_models(void **unused) {
 }
 
 /* A refusal of memory at any place is passed on. */
-static void test_refused_memory(void **unused) {
-  (void)unused;
+TEST(refused_memory) {
   strut_scene scene;
   random_elements(&scene, 3, 1);
   for (int64_t n = 0;; n++) {
@@ -690,8 +675,7 @@ static void test_refused_memory(void **unused) {
 }
 
 /* In all directions and beside the axes, against the library's, to four units in the last place. */
-static void test_directions_are_those_of_atan2(void **unused) {
-  (void)unused;
+TEST(directions_are_those_of_atan2) {
   const double tiny[] = {0.0, 5e-324, 1e-300, 1e-17, 1e-9, 1e-3};
   for (int i = 0; i < 200000; i++) {
     double angle = STRUT_TAU * (i / 200000.0 - 0.5) + 1e-6, size = pow(10.0, i % 7 - 3);
@@ -709,8 +693,7 @@ static void test_directions_are_those_of_atan2(void **unused) {
 }
 
 /* Hinges are stepped four at a time: the forces of seven are those of each alone, to the bit. */
-static void test_hinges_in_vectors_have_the_forces_of_single_ones(void **unused) {
-  (void)unused;
+TEST(hinges_in_vectors_have_the_forces_of_single_ones) {
   enum { HINGES = 7 };
   double together[2 * (HINGES + 2)], alone[2 * (HINGES + 2)] = {0};
   for (int only = -1; only < HINGES; only++) {
@@ -742,27 +725,4 @@ static void test_hinges_in_vectors_have_the_forces_of_single_ones(void **unused)
     strut_scene_free(&scene);
   }
   for (int i = 0; i < 2 * (HINGES + 2); i++) assert_true(alone[i] == together[i]);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_directions_are_those_of_atan2),
-      cmocka_unit_test(test_hinges_in_vectors_have_the_forces_of_single_ones),
-      cmocka_unit_test(test_gradients_and_second_derivatives_of_strains),
-      cmocka_unit_test(test_strains_do_not_feel_a_shift_or_a_turn),
-      cmocka_unit_test(test_strains_of_known_figures),
-      cmocka_unit_test(test_strains_without_a_direction_are_finite),
-      cmocka_unit_test(test_force_is_the_slope_of_the_energy),
-      cmocka_unit_test(test_laws_at_known_places),
-      cmocka_unit_test(test_a_stiffness_that_follows_the_length),
-      cmocka_unit_test(test_energies_of_small_strains_keep_their_digits),
-      cmocka_unit_test(test_a_smooth_table_has_no_kinks_and_does_not_overshoot),
-      cmocka_unit_test(test_forces_of_a_model_are_the_slope_of_its_energy),
-      cmocka_unit_test(test_the_hessian_of_a_model_is_the_slope_of_its_gradient),
-      cmocka_unit_test(test_the_ledger_books_what_forces_do),
-      cmocka_unit_test(test_a_hinge_counts_its_turns),
-      cmocka_unit_test(test_turned_mirrored_and_scaled_models),
-      cmocka_unit_test(test_refused_memory),
-  };
-  return cmocka_run_group_tests_name("elements", tests, NULL, NULL);
 }

@@ -1,20 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Expressions that are refused: the place and the words; limits; random texts. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "engine/base/memory.h"
+#include "tests/support/test.h"
 #include "tests/unit/expression_support.h"
 
-static void malformed_numbers_are_named(void **state) {
-  (void)state;
+TEST(malformed_numbers_are_named) {
   const char *point = "a number has one decimal point and digits after it";
   expect_error("1.", 0, 2, point);
   expect_error("1.2.3", 0, 4, point);
@@ -33,8 +27,7 @@ static void malformed_numbers_are_named(void **state) {
   expect_error("1e-999", 0, 6, "this number is beyond the range of numbers");
 }
 
-static void wrong_units_are_named(void **state) {
-  (void)state;
+TEST(wrong_units_are_named) {
   expect_error("10 mmm", 3, 3, "unknown unit 'mmm'; did you mean 'mm'?");
   expect_error("1 Ns/m", 2, 2, "unknown unit 'Ns'; did you mean 'N s'?");
   expect_error("10 hz", 3, 2, "unknown unit 'hz'; did you mean 'Hz'?");
@@ -57,8 +50,7 @@ static void wrong_units_are_named(void **state) {
   expect_error("1 N q", 4, 1, "unexpected 'q', expected an operator or the end");
 }
 
-static void names_are_looked_up(void **state) {
-  (void)state;
+TEST(names_are_looked_up) {
   expect_error("amplitud", 0, 8, "unknown parameter 'amplitud'; did you mean 'amplitude'?");
   expect_error("1 + tow", 4, 3, "unknown parameter 'tow'; did you mean 'two'?");
   expect_error("xyzzy", 0, 5, "unknown parameter 'xyzzy'");
@@ -76,8 +68,7 @@ static void names_are_looked_up(void **state) {
   assert_false(strut_expression_reserved("mm", 2));
 }
 
-static void wrong_dimensions_are_named(void **state) {
-  (void)state;
+TEST(wrong_dimensions_are_named) {
   expect_error("2*(1 m + 1 s)", 3, 9, "'+' joins a length and a time, expected equal dimensions");
   expect_error("1 m - f", 0, 7, "'-' joins a length and a frequency, expected equal dimensions");
   expect_error("min(1 m, 1 kg)", 0, 14,
@@ -95,8 +86,7 @@ static void wrong_dimensions_are_named(void **state) {
   expect_error("max(1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1)", 0, 36, "more than 16 arguments");
 }
 
-static void results_are_finite(void **state) {
-  (void)state;
+TEST(results_are_finite) {
   expect_error("1/0", 0, 3, "division by zero");
   expect_error("2 + 1/(2 - 2)", 4, 9, "division by zero");
   expect_error("0/0", 0, 3, "division by zero");
@@ -112,8 +102,7 @@ static void results_are_finite(void **state) {
   expect_error("10^400", 0, 6, "the result of '^' is not finite");
 }
 
-static void syntax_is_strict(void **state) {
-  (void)state;
+TEST(syntax_is_strict) {
   const char *early = "the expression ends too early, expected a number, a name or '('";
   expect_error("", 0, 0, "a number is missing here");
   expect_error("  ", 0, 2, "a number is missing here");
@@ -139,8 +128,7 @@ static void syntax_is_strict(void **state) {
 }
 
 /* Offsets count characters, not bytes. */
-static void pasted_characters_are_explained(void **state) {
-  (void)state;
+TEST(pasted_characters_are_explained) {
   expect_error("10\u00A0mm", 2, 1,
                "unexpected '\u00A0'; this is a no-break space; use a plain one");
   expect_error("\u22125", 0, 1, "unexpected '\u2212'; write '-' for minus");
@@ -169,8 +157,7 @@ static bool accepts(char *text) {
   return fine;
 }
 
-static void nesting_and_length_are_limited(void **state) {
-  (void)state;
+TEST(nesting_and_length_are_limited) {
   assert_true(accepts(nest("(", "1", ")", 64)));
   assert_false(accepts(nest("(", "1", ")", 65)));
   assert_true(accepts(nest("-", "1", "", 64)));
@@ -188,8 +175,7 @@ static void nesting_and_length_are_limited(void **state) {
 }
 
 /* No text of the expression's own letters makes it crash, allocate or return what is not finite. */
-static void random_texts_are_survived(void **state) {
-  (void)state;
+TEST(random_texts_are_survived) {
   static const char *const parts[] = {
       "1", "2.5", "e",    "m",        "s",     "kg", "N",   "/",     "*",   "+",  "-",   "^",
       "(", ")",   ",",    "sin",      "min",   "pi", "two", "a",     "f",   " ",  "1e3", "%",
@@ -215,8 +201,7 @@ static void random_texts_are_survived(void **state) {
   assert_true(strut_allocation_count() == allocations);
 }
 
-static void lookups_are_few(void **state) {
-  (void)state;
+TEST(lookups_are_few) {
   int calls = 0;
   strut_scope counting = {.lookup = test_lookup, .names = test_scope.names, .context = &calls};
   strut_quantity q;
@@ -226,20 +211,4 @@ static void lookups_are_few(void **state) {
   assert_int_equal(calls, 0);
   assert_true(strut_expression_evaluate("10 N/m", &counting, &q, &error));
   assert_int_equal(calls, 1);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(malformed_numbers_are_named),
-      cmocka_unit_test(wrong_units_are_named),
-      cmocka_unit_test(names_are_looked_up),
-      cmocka_unit_test(wrong_dimensions_are_named),
-      cmocka_unit_test(results_are_finite),
-      cmocka_unit_test(syntax_is_strict),
-      cmocka_unit_test(pasted_characters_are_explained),
-      cmocka_unit_test(nesting_and_length_are_limited),
-      cmocka_unit_test(random_texts_are_survived),
-      cmocka_unit_test(lookups_are_few),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

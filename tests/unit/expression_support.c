@@ -2,13 +2,9 @@
 #include "tests/unit/expression_support.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 int test_lookup(void *context, const char *name, size_t length, strut_quantity *q) {
   static const struct {

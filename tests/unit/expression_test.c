@@ -1,17 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Expressions: values, units, dimensions. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 
-#include <cmocka.h>
-
+#include "tests/support/test.h"
 #include "tests/unit/expression_support.h"
 
-static void plain_numbers_are_bare(void **state) {
-  (void)state;
+TEST(plain_numbers_are_bare) {
   expect_bare("0", 0);
   expect_bare("1.5", 1.5);
   expect_bare("-1.5e-3", -1.5e-3);
@@ -23,8 +17,7 @@ static void plain_numbers_are_bare(void **state) {
   expect_bare("two", 2);
 }
 
-static void operators_bind_as_in_mathematics(void **state) {
-  (void)state;
+TEST(operators_bind_as_in_mathematics) {
   expect_bare("1 + 2*3", 7);
   expect_bare("(1 + 2)*3", 9);
   expect_bare("8/4/2", 1);
@@ -46,8 +39,7 @@ static void operators_bind_as_in_mathematics(void **state) {
   expect_bare("2*pi", 6.28318530717958647692);
 }
 
-static void functions_have_their_values(void **state) {
-  (void)state;
+TEST(functions_have_their_values) {
   expect_bare("sin(pi/2)", 1);
   expect_bare("sin(30 deg)", sin(3.14159265358979323846 / 6));
   expect_bare("cos(0)", 1);
@@ -72,8 +64,7 @@ static void functions_have_their_values(void **state) {
 }
 
 /* The bits are those of the SI number that a person would write. */
-static void units_scale_exactly(void **state) {
-  (void)state;
+TEST(units_scale_exactly) {
   expect_quantity("10 Hz", 10, STRUT_DIM_FREQUENCY);
   expect_quantity("10Hz", 10, STRUT_DIM_FREQUENCY);
   expect_quantity("0.1 mm", 0.0001, STRUT_DIM_LENGTH);
@@ -98,8 +89,7 @@ static void units_scale_exactly(void **state) {
   expect_quantity("9.81 m / min^2", 9.81 / 3600, STRUT_DIM_ACCELERATION);
 }
 
-static void units_end_where_an_operator_begins(void **state) {
-  (void)state;
+TEST(units_end_where_an_operator_begins) {
   expect_quantity("10 N/2", 5, STRUT_DIM_FORCE);
   expect_quantity("10 N*two", 20, STRUT_DIM_FORCE);
   expect_quantity("10 N/(2 m)", 5, STRUT_DIM_STIFFNESS);
@@ -112,8 +102,7 @@ static void units_end_where_an_operator_begins(void **state) {
   expect_quantity("5 t", 5000, STRUT_DIM_MASS); /* a parameter t cannot stand there */
 }
 
-static void dimensions_follow_the_operators(void **state) {
-  (void)state;
+TEST(dimensions_follow_the_operators) {
   expect_quantity("1 m + 2", 3, STRUT_DIM_LENGTH);
   expect_quantity("2 - 1 m", 1, STRUT_DIM_LENGTH);
   expect_quantity("2 * 3 m", 6, STRUT_DIM_LENGTH);
@@ -121,8 +110,7 @@ static void dimensions_follow_the_operators(void **state) {
   expect_quantity("a * f", 0.02, STRUT_DIM_VELOCITY);
 }
 
-static void division_reads_its_literal_whole(void **state) {
-  (void)state;
+TEST(division_reads_its_literal_whole) {
   expect_quantity("1 m / (2 m)", 0.5, STRUT_DIM_NONE);
   expect_quantity("(1 m) / 2 m", 0.5, STRUT_DIM_NONE); /* a literal owns its unit */
   expect_quantity("sqrt(4 m^2)", 2, STRUT_DIM_LENGTH);
@@ -136,17 +124,4 @@ static void division_reads_its_literal_whole(void **state) {
   expect_quantity("abs(-1 m)", 1, STRUT_DIM_LENGTH);
   expect_quantity("exp(1 m / (1 m))", exp(1), STRUT_DIM_NONE);
   expect_bare("0.1*cos(60 deg)", 0.1 * cos(3.14159265358979323846 / 3));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(plain_numbers_are_bare),
-      cmocka_unit_test(operators_bind_as_in_mathematics),
-      cmocka_unit_test(functions_have_their_values),
-      cmocka_unit_test(units_scale_exactly),
-      cmocka_unit_test(units_end_where_an_operator_begins),
-      cmocka_unit_test(dimensions_follow_the_operators),
-      cmocka_unit_test(division_reads_its_literal_whole),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,22 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files that appear whole or not at all, and directories of them. */
 #include <errno.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "engine/base/memory.h"
 #include "engine/output/file.h"
 #include "engine/output/results.h"
+#include "tests/support/test.h"
 #include "tests/unit/scratch.h"
 
 /* What the disk is asked for, in order; link options lead calls of fsync and rename here. */
@@ -60,8 +55,7 @@ static void assert_content(const char *path, const char *expected) {
   free(text);
 }
 
-static void test_a_file_appears_on_commit_only(void **unused) {
-  (void)unused;
+TEST(a_file_appears_on_commit_only) {
   strut_file file = {0};
   strut_error error = {0};
   const char *directory = scratch_make();
@@ -79,8 +73,7 @@ static void test_a_file_appears_on_commit_only(void **unused) {
   scratch_remove();
 }
 
-static void test_abandon_keeps_the_old_file(void **unused) {
-  (void)unused;
+TEST(abandon_keeps_the_old_file) {
   strut_file file = {0};
   const char *directory = scratch_make();
   assert_int_equal(strut_file_write_text(directory, "a.txt", "old", NULL), STRUT_OK);
@@ -94,8 +87,7 @@ static void test_abandon_keeps_the_old_file(void **unused) {
   scratch_remove();
 }
 
-static void test_permissions_follow_the_umask(void **unused) {
-  (void)unused;
+TEST(permissions_follow_the_umask) {
   struct stat found;
   const char *directory = scratch_make();
   mode_t before = umask(027);
@@ -107,8 +99,7 @@ static void test_permissions_follow_the_umask(void **unused) {
 }
 
 /* A file's bytes are on the disk before its name is, and the name before it is told to be there. */
-static void test_the_disk_has_a_file_before_its_name(void **unused) {
-  (void)unused;
+TEST(the_disk_has_a_file_before_its_name) {
   struct stat folder, file;
   const char *directory = scratch_make();
   char text[5001];
@@ -125,8 +116,7 @@ static void test_the_disk_has_a_file_before_its_name(void **unused) {
   scratch_remove();
 }
 
-static void test_a_disk_that_cannot_keep_it_is_told(void **unused) {
-  (void)unused;
+TEST(a_disk_that_cannot_keep_it_is_told) {
   strut_error error = {0};
   const char *directory = scratch_make();
   fsync_fails = EIO;
@@ -138,8 +128,7 @@ static void test_a_disk_that_cannot_keep_it_is_told(void **unused) {
   scratch_remove();
 }
 
-static void test_two_writers_do_not_meet(void **unused) {
-  (void)unused;
+TEST(two_writers_do_not_meet) {
   strut_file first = {0}, second = {0};
   const char *directory = scratch_make();
   assert_int_equal(strut_file_open(&first, directory, "a.txt", NULL), STRUT_OK);
@@ -154,8 +143,7 @@ static void test_two_writers_do_not_meet(void **unused) {
 }
 
 /* What a killed process left is written over; what another one writes stays. */
-static void test_left_files_go(void **unused) {
-  (void)unused;
+TEST(left_files_go) {
   const char *directory = scratch_make();
   int ready[2];
   assert_int_equal(pipe(ready), 0);
@@ -183,8 +171,7 @@ static void test_left_files_go(void **unused) {
   scratch_remove();
 }
 
-static void test_messages_name_the_file_and_the_reason(void **unused) {
-  (void)unused;
+TEST(messages_name_the_file_and_the_reason) {
   strut_file file = {0};
   strut_error error = {0};
   scratch_make();
@@ -197,8 +184,7 @@ static void test_messages_name_the_file_and_the_reason(void **unused) {
   scratch_remove();
 }
 
-static void test_directories(void **unused) {
-  (void)unused;
+TEST(directories) {
   strut_error error = {0};
   scratch_make();
   assert_int_equal(strut_directory_create(scratch_path("a/b//c/"), &error), STRUT_OK);
@@ -212,8 +198,7 @@ static void test_directories(void **unused) {
   scratch_remove();
 }
 
-static void test_a_full_disk_leaves_nothing(void **unused) {
-  (void)unused;
+TEST(a_full_disk_leaves_nothing) {
   strut_error error = {0};
   const char *disk = scratch_make();
   if (!scratch_mount_small_disk(disk, 16)) {
@@ -238,8 +223,7 @@ static void test_a_full_disk_leaves_nothing(void **unused) {
   scratch_remove();
 }
 
-static void test_no_memory_leaves_nothing(void **unused) {
-  (void)unused;
+TEST(no_memory_leaves_nothing) {
   const char *directory = scratch_make();
   strut_status status = STRUT_NO_MEMORY;
   int64_t n = 0;
@@ -265,8 +249,7 @@ static void write_results(strut_results *results, const char *directory, const c
   }
 }
 
-static void test_results_appear_together(void **unused) {
-  (void)unused;
+TEST(results_appear_together) {
   strut_results results = {0};
   scratch_make();
   write_results(&results, scratch_path("out/one"), "1", true);
@@ -290,8 +273,7 @@ static void test_results_appear_together(void **unused) {
   scratch_remove();
 }
 
-static void test_abandoned_results_leave_no_directory(void **unused) {
-  (void)unused;
+TEST(abandoned_results_leave_no_directory) {
   strut_results results = {0};
   scratch_make();
   write_results(&results, scratch_path("new"), "1", true);
@@ -301,8 +283,7 @@ static void test_abandoned_results_leave_no_directory(void **unused) {
   scratch_remove();
 }
 
-static void test_results_know_early_what_will_fail(void **unused) {
-  (void)unused;
+TEST(results_know_early_what_will_fail) {
   strut_results results = {0};
   strut_error error = {0};
   scratch_make();
@@ -317,8 +298,7 @@ static void test_results_know_early_what_will_fail(void **unused) {
   scratch_remove();
 }
 
-static void test_results_without_memory(void **unused) {
-  (void)unused;
+TEST(results_without_memory) {
   strut_results results = {0};
   scratch_make();
   strut_status status = STRUT_NO_MEMORY;
@@ -346,8 +326,7 @@ static void leave_a_stage(const char *directory) {
   assert_int_equal(status, 0);
 }
 
-static void test_stages_of_dead_processes_go(void **unused) {
-  (void)unused;
+TEST(stages_of_dead_processes_go) {
   strut_results alive = {0}, next = {0};
   scratch_make();
   char *out = strdup(scratch_path("out"));
@@ -368,26 +347,4 @@ static void test_stages_of_dead_processes_go(void **unused) {
   assert_int_equal(scratch_count(out), 2);
   free(out);
   scratch_remove();
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_file_appears_on_commit_only),
-      cmocka_unit_test(test_abandon_keeps_the_old_file),
-      cmocka_unit_test(test_permissions_follow_the_umask),
-      cmocka_unit_test(test_the_disk_has_a_file_before_its_name),
-      cmocka_unit_test(test_a_disk_that_cannot_keep_it_is_told),
-      cmocka_unit_test(test_two_writers_do_not_meet),
-      cmocka_unit_test(test_left_files_go),
-      cmocka_unit_test(test_messages_name_the_file_and_the_reason),
-      cmocka_unit_test(test_directories),
-      cmocka_unit_test(test_a_full_disk_leaves_nothing),
-      cmocka_unit_test(test_no_memory_leaves_nothing),
-      cmocka_unit_test(test_results_appear_together),
-      cmocka_unit_test(test_abandoned_results_leave_no_directory),
-      cmocka_unit_test(test_results_know_early_what_will_fail),
-      cmocka_unit_test(test_results_without_memory),
-      cmocka_unit_test(test_stages_of_dead_processes_go),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

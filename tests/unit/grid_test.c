@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The values of ranges: round where they are round, their ends as written, near the exact ones. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
-
 #include "engine/study/sweep/grid.h"
+#include "tests/support/test.h"
 
 static double value_of(strut_range_kind kind, double from, double to, int64_t i, int64_t count) {
   const strut_study_column column = {
@@ -36,8 +31,7 @@ static void assert_decades(int first, int last, int sign) {
   }
 }
 
-static void decades_are_round(void **unused) {
-  (void)unused;
+TEST(decades_are_round) {
   assert_decades(0, 7, 1); /* once 9999999.999999998 */
   assert_decades(-3, 0, 1);
   assert_decades(-9, 12, -1);
@@ -47,8 +41,7 @@ static void decades_are_round(void **unused) {
 }
 
 /* No decades: 15 digits of the exact value, here with long doubles from logarithms of base 2. */
-static void other_ratios(void **unused) {
-  (void)unused;
+TEST(other_ratios) {
   static const double ends[][2] = {
       {2.0, 3.0}, {0.1, 0.7}, {-5.0, -0.03}, {9.5, 11.0}, {1e-5, 37.0}};
   for (size_t k = 0; k < sizeof ends / sizeof ends[0]; k++)
@@ -66,8 +59,7 @@ static void other_ratios(void **unused) {
 }
 
 /* Tenths, thousandths, ... over zero too, are the doubles nearest to them. */
-static void even_steps_are_round(void **unused) {
-  (void)unused;
+TEST(even_steps_are_round) {
   static const struct {
     double from, to, unit;
     int64_t count;
@@ -88,8 +80,7 @@ static void even_steps_are_round(void **unused) {
 }
 
 /* Ends with more than 15 digits are as written, however many values lie between. */
-static void ends_are_as_written(void **unused) {
-  (void)unused;
+TEST(ends_are_as_written) {
   const double ends[] = {1.0 / 3.0, 0.1 + 0.2, 3.14159265358979323846, 1e22 / 7.0, 1e-300 / 3.0};
   for (size_t k = 0; k < sizeof ends / sizeof ends[0]; k++)
     for (int64_t count = 2; count < 20; count++) {
@@ -103,8 +94,7 @@ static void ends_are_as_written(void **unused) {
 }
 
 /* What is not round stays within 15 digits; the smallest and the largest numbers stay numbers. */
-static void extremes(void **unused) {
-  (void)unused;
+TEST(extremes) {
   for (int i = 0; i < 1000; i++) {
     double third = value_of(STRUT_RANGE_EVEN, 0.0, 1.0, i, 1000);
     assert_true(fabs(third - i / 999.0) <= 5.1e-15 * third);
@@ -116,8 +106,7 @@ static void extremes(void **unused) {
 }
 
 /* The last axis runs fastest: by hand for 2 x 3 x 2 points. */
-static void points_count_the_last_axis_first(void **unused) {
-  (void)unused;
+TEST(points_count_the_last_axis_first) {
   static const int64_t counts[] = {2, 3, 2};
   strut_study_column columns[3];
   strut_study_axis axes[3];
@@ -137,16 +126,4 @@ static void points_count_the_last_axis_first(void **unused) {
         assert_true(values[0].number == a && values[1].number == 10 + b);
         assert_true(values[2].number == 20 + c);
       }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(decades_are_round),
-      cmocka_unit_test(other_ratios),
-      cmocka_unit_test(even_steps_are_round),
-      cmocka_unit_test(ends_are_as_written),
-      cmocka_unit_test(points_count_the_last_axis_first),
-      cmocka_unit_test(extremes),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

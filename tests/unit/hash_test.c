@@ -19,8 +19,7 @@ static void digest_of(const char *text, size_t length, size_t part, size_t times
 }
 
 /* The examples of FIPS 180-4 and NIST's list of short messages. */
-static void test_sha256(void **unused) {
-  (void)unused;
+TEST(sha256) {
   static const struct {
     const char *text, *hex;
   } cases[] = {
@@ -45,8 +44,7 @@ static void test_sha256(void **unused) {
   assert_string_equal(hex, "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
-static void test_texts_keep_their_ends(void **unused) {
-  (void)unused;
+TEST(texts_keep_their_ends) {
   uint8_t first[STRUT_SHA256_BYTES], second[STRUT_SHA256_BYTES];
   strut_sha256 hash;
   strut_sha256_begin(&hash);
@@ -61,8 +59,7 @@ static void test_texts_keep_their_ends(void **unused) {
 }
 
 /* From the sanity check of xxHash itself: its buffer of 2222 bytes, and values for some lengths. */
-static void test_checksum(void **unused) {
-  (void)unused;
+TEST(checksum) {
   static const uint64_t seed = 2654435761U;
   static const struct {
     size_t length;
@@ -84,13 +81,4 @@ static void test_checksum(void **unused) {
     assert_true(strut_checksum(bytes, cases[i].length, seed) == cases[i].seeded);
   }
   assert_true(strut_checksum("abc", 3, 0) == 0x44BC2CF5AD770999);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_sha256),
-      cmocka_unit_test(test_texts_keep_their_ends),
-      cmocka_unit_test(test_checksum),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

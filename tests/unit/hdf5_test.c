@@ -1,23 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Trajectories as HDF5: read back through the library, equal bytes, full disks, silence. */
 #include <fcntl.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 #include <hdf5.h>
 #include <hdf5_hl.h>
 
 #include "engine/base/memory.h"
 #include "engine/output/file.h"
 #include "engine/output/record_files.h"
+#include "tests/support/test.h"
 #include "tests/unit/sample.h"
 #include "tests/unit/scratch.h"
 
@@ -134,8 +130,7 @@ static void assert_file(size_t rows, const char *status, const char *scene) {
   assert_true(H5Fclose(file) >= 0);
 }
 
-static void test_every_value_comes_back(void **unused) {
-  (void)unused;
+TEST(every_value_comes_back) {
   const char *directory = scratch_make();
   assert_int_equal(feed(directory, 1500, STRUT_OK, "strut: 1\n", NULL), STRUT_OK);
   assert_int_equal(scratch_count(directory), 1);
@@ -143,8 +138,7 @@ static void test_every_value_comes_back(void **unused) {
   scratch_remove();
 }
 
-static void test_a_run_that_stopped_is_marked(void **unused) {
-  (void)unused;
+TEST(a_run_that_stopped_is_marked) {
   const char *directory = scratch_make();
   assert_int_equal(feed(directory, 7, STRUT_INTERRUPTED, "s", NULL), STRUT_OK);
   assert_file(7, "interrupted", "s");
@@ -155,8 +149,7 @@ static void test_a_run_that_stopped_is_marked(void **unused) {
   scratch_remove();
 }
 
-static void test_a_long_scene_fits(void **unused) {
-  (void)unused;
+TEST(a_long_scene_fits) {
   enum { LENGTH = 3000000 };
   const char *directory = scratch_make();
   char *scene = calloc(LENGTH + 1, 1);
@@ -167,8 +160,7 @@ static void test_a_long_scene_fits(void **unused) {
   scratch_remove();
 }
 
-static void test_equal_runs_give_equal_bytes(void **unused) {
-  (void)unused;
+TEST(equal_runs_give_equal_bytes) {
   size_t first_length, second_length;
   const char *directory = scratch_make();
   assert_int_equal(feed(directory, 500, STRUT_OK, "scene", NULL), STRUT_OK);
@@ -190,8 +182,7 @@ static void test_equal_runs_give_equal_bytes(void **unused) {
   scratch_remove();
 }
 
-static void test_rows_longer_than_a_chunk(void **unused) {
-  (void)unused;
+TEST(rows_longer_than_a_chunk) {
   enum { NODES = 50000, ROWS = 3 };
   static const char *const axes[] = {"x", "y"};
   const char *directory = scratch_make();
@@ -214,8 +205,7 @@ static void test_rows_longer_than_a_chunk(void **unused) {
   scratch_remove();
 }
 
-static void test_trouble_elsewhere_removes_the_file(void **unused) {
-  (void)unused;
+TEST(trouble_elsewhere_removes_the_file) {
   const char *directory = scratch_make();
   assert_int_equal(feed(directory, 7, STRUT_FILE_TROUBLE, "", NULL), STRUT_OK);
   assert_int_equal(scratch_count(directory), 0);
@@ -231,8 +221,7 @@ static herr_t note_error(hid_t stack, void *data) {
   return 0;
 }
 
-static void test_the_host_keeps_its_error_handler(void **unused) {
-  (void)unused;
+TEST(the_host_keeps_its_error_handler) {
   H5E_auto2_t before = NULL, after = NULL;
   void *before_data = NULL, *after_data = NULL;
   int mine = 0;
@@ -259,8 +248,7 @@ static void feed_in_child(const char *disk, size_t rows, const char *errors) {
   exit(right ? 4 : 1);
 }
 
-static void test_a_full_disk_is_an_error_and_silent(void **unused) {
-  (void)unused;
+TEST(a_full_disk_is_an_error_and_silent) {
   int failures = 0, successes = 0, result = 0;
   scratch_make();
   const char *disk = scratch_path("disk"), *errors = scratch_path("errors");
@@ -295,8 +283,7 @@ static void test_a_full_disk_is_an_error_and_silent(void **unused) {
   scratch_remove();
 }
 
-static void test_no_memory(void **unused) {
-  (void)unused;
+TEST(no_memory) {
   const char *directory = scratch_make();
   strut_status status = STRUT_NO_MEMORY;
   int64_t n = 0;
@@ -310,19 +297,4 @@ static void test_no_memory(void **unused) {
   }
   assert_true(n > 15);
   scratch_remove();
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_every_value_comes_back),
-      cmocka_unit_test(test_a_run_that_stopped_is_marked),
-      cmocka_unit_test(test_a_long_scene_fits),
-      cmocka_unit_test(test_equal_runs_give_equal_bytes),
-      cmocka_unit_test(test_rows_longer_than_a_chunk),
-      cmocka_unit_test(test_trouble_elsewhere_removes_the_file),
-      cmocka_unit_test(test_the_host_keeps_its_error_handler),
-      cmocka_unit_test(test_a_full_disk_is_an_error_and_silent),
-      cmocka_unit_test(test_no_memory),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

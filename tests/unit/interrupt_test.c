@@ -1,21 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Ctrl-C: the first signal sets the flag, one that comes later kills. */
 #define _GNU_SOURCE /* streams.c is part of this file */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "parser/program/streams.c" /* the program is no library to link with */
+#include "tests/support/test.h"
 
-static void test_first_and_second(void **state) {
-  const int *signal_number = *state;
+/* A child process gets the signal three times. */
+static void send_signals(int signal_number) {
   int result = 0, pipe_ends[2];
   char mark = 0;
   assert_int_equal(pipe(pipe_ends), 0);
@@ -23,13 +18,13 @@ static void test_first_and_second(void **state) {
   if (child == 0) {
     const volatile sig_atomic_t *flag = strut_interrupt_watch();
     if (*flag) _exit(1);
-    raise(*signal_number);
+    raise(signal_number);
     if (!*flag) _exit(2);
-    raise(*signal_number); /* the same press, delivered twice */
+    raise(signal_number); /* the same press, delivered twice */
     struct timespec pause = {0, 400000000};
     nanosleep(&pause, NULL);
     if (write(pipe_ends[1], "x", 1) != 1) _exit(3);
-    raise(*signal_number);
+    raise(signal_number);
     _exit(4);
   }
   assert_int_equal(waitpid(child, &result, 0), child);
@@ -37,14 +32,9 @@ static void test_first_and_second(void **state) {
   assert_int_equal(read(pipe_ends[0], &mark, 1), 1); /* it lived until then */
   close(pipe_ends[0]);
   assert_true(WIFSIGNALED(result));
-  assert_int_equal(WTERMSIG(result), *signal_number);
+  assert_int_equal(WTERMSIG(result), signal_number);
 }
 
-int main(void) {
-  int interrupt = SIGINT, terminate = SIGTERM;
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test_prestate(test_first_and_second, &interrupt),
-      cmocka_unit_test_prestate(test_first_and_second, &terminate),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST(interrupts) { send_signals(SIGINT); }
+
+TEST(terminations) { send_signals(SIGTERM); }

@@ -2,21 +2,16 @@
 /* A run's summary as JSON, read back with cJSON bit by bit, and as a table for people. */
 #include <locale.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include <cjson/cJSON.h>
 
 #include "engine/base/memory.h"
 #include "engine/output/buffer.h"
 #include "engine/output/run_report.h"
+#include "tests/support/test.h"
 
 static strut_node node = {.name = "n1"};
 static strut_parameter parameters[] = {
@@ -98,8 +93,7 @@ static void assert_energy(const cJSON *energy, const strut_energy *e) {
   assert_int_equal(cJSON_GetArraySize(energy), sizeof fields / sizeof fields[0] + 1);
 }
 
-static void test_every_field(void **unused) {
-  (void)unused;
+TEST(every_field) {
   strut_scene scene = make_scene();
   strut_summary summary = make_summary();
   char *text = strut_summary_json(&summary, &scene, true);
@@ -135,8 +129,7 @@ static void test_every_field(void **unused) {
   strut_release(text);
 }
 
-static void test_files_know_no_wall_time(void **unused) {
-  (void)unused;
+TEST(files_know_no_wall_time) {
   strut_scene scene = make_scene();
   strut_summary summary = make_summary();
   char *first = strut_summary_json(&summary, &scene, false);
@@ -148,8 +141,7 @@ static void test_files_know_no_wall_time(void **unused) {
   strut_release(second);
 }
 
-static void test_a_run_that_stopped_says_why(void **unused) {
-  (void)unused;
+TEST(a_run_that_stopped_says_why) {
   strut_scene scene = make_scene();
   strut_summary summary = make_summary();
   summary.status = STRUT_DIVERGED;
@@ -171,8 +163,7 @@ static void test_a_run_that_stopped_says_why(void **unused) {
 /* cJSON's memory fails as ours does: no leak, no half text. */
 static void *counted_allocate(size_t size) { return strut_allocate(size, 1); }
 
-static void test_no_memory(void **unused) {
-  (void)unused;
+TEST(no_memory) {
   cJSON_Hooks hooks = {counted_allocate, strut_release};
   strut_scene scene = make_scene();
   strut_summary summary = make_summary();
@@ -198,8 +189,7 @@ static void test_no_memory(void **unused) {
   cJSON_InitHooks(NULL);
 }
 
-static void test_the_table(void **unused) {
-  (void)unused;
+TEST(the_table) {
   strut_scene scene = make_scene();
   strut_summary summary = make_summary();
   summary.steps = 1100000;
@@ -223,8 +213,7 @@ static void test_the_table(void **unused) {
   strut_release(text);
 }
 
-static void test_a_long_table_is_cut(void **unused) {
-  (void)unused;
+TEST(a_long_table_is_cut) {
   enum { NODES = 5000 };
   strut_scene scene = make_scene();
   strut_summary summary = make_summary();
@@ -244,8 +233,7 @@ static void test_a_long_table_is_cut(void **unused) {
   free(places);
 }
 
-static void test_quantities(void **unused) {
-  (void)unused;
+TEST(quantities) {
   static const struct {
     double value;
     int digits;
@@ -277,8 +265,7 @@ static void test_quantities(void **unused) {
 }
 
 /* A comma as decimal point must not come through; where no such locale is installed, skip. */
-static void test_the_locale_does_not_matter(void **unused) {
-  (void)unused;
+TEST(the_locale_does_not_matter) {
   strut_scene scene = make_scene();
   strut_summary summary = make_summary();
   char *json = strut_summary_json(&summary, &scene, true);
@@ -297,18 +284,4 @@ static void test_the_locale_does_not_matter(void **unused) {
   strut_release(table);
   strut_release(json_there);
   strut_release(table_there);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_every_field),
-      cmocka_unit_test(test_files_know_no_wall_time),
-      cmocka_unit_test(test_a_run_that_stopped_says_why),
-      cmocka_unit_test(test_no_memory),
-      cmocka_unit_test(test_the_table),
-      cmocka_unit_test(test_a_long_table_is_cut),
-      cmocka_unit_test(test_quantities),
-      cmocka_unit_test(test_the_locale_does_not_matter),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,21 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The table of keys is consistent, and the page made from it is the one in docs/. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "engine/base/memory.h"
 #include "parser/language/keys.h"
 #include "parser/write/keys_page.h"
+#include "tests/support/test.h"
 
-static void sections_divide_the_table(void **state) {
-  (void)state;
+TEST(sections_divide_the_table) {
   int key = 0;
   for (int section = 0; section < STRUT_SECTION_COUNT; section++) {
     assert_int_equal(strut_section_first((strut_section)section), key);
@@ -32,8 +26,7 @@ static void sections_divide_the_table(void **state) {
 }
 
 /* A group's key is read once for members, nodes and contacts: it must mean the same in each. */
-static void shared_keys_of_groups_agree(void **state) {
-  (void)state;
+TEST(shared_keys_of_groups_agree) {
   static const strut_section sections[] = {STRUT_SECTION_MEMBER, STRUT_SECTION_NODE,
                                            STRUT_SECTION_CONTACT};
   int shared = 0;
@@ -93,8 +86,7 @@ static bool is_plain(strut_key_type type) {
          type == STRUT_TYPE_WORDS || type == STRUT_TYPE_TEXT || type == STRUT_TYPE_FIXED;
 }
 
-static void plain_keys_are_bound_to_fields(void **state) {
-  (void)state;
+TEST(plain_keys_are_bound_to_fields) {
   size_t wrong = 0;
   for (int i = 0; i < STRUT_KEY_COUNT; i++) {
     const strut_key *key = strut_key_at(i);
@@ -108,8 +100,7 @@ static void plain_keys_are_bound_to_fields(void **state) {
 }
 
 /* Each of these has code in the reader, and in the writer: a key that rows can describe is none of them. */
-static void few_keys_are_read_by_hand(void **state) {
-  (void)state;
+TEST(few_keys_are_read_by_hand) {
   int by_hand = 0;
   for (int i = 0; i < STRUT_KEY_COUNT; i++)
     by_hand += strut_key_at(i)->field.role == STRUT_FIELD_BY_HAND;
@@ -117,8 +108,7 @@ static void few_keys_are_read_by_hand(void **state) {
 }
 
 /* A mapping leads to a section, which has the keys below it. */
-static void mappings_lead_to_sections(void **state) {
-  (void)state;
+TEST(mappings_lead_to_sections) {
   for (int i = 0; i < STRUT_KEY_COUNT; i++) {
     const strut_key *key = strut_key_at(i);
     if (key->type == STRUT_TYPE_MAP)
@@ -174,8 +164,7 @@ static bool is_spelled_otherwise(const strut_key *key) {
   return key->section == STRUT_SECTION_SETTLE && strcmp(key->name, "evaluations") == 0;
 }
 
-static void defaults_are_those_of_the_fields(void **state) {
-  (void)state;
+TEST(defaults_are_those_of_the_fields) {
   strut_setup setup;
   size_t compared = 0;
   strut_setup_init(&setup);
@@ -203,8 +192,7 @@ static void defaults_are_those_of_the_fields(void **state) {
   assert_true(compared >= 25);
 }
 
-static void words(void **state) {
-  (void)state;
+TEST(words) {
   char text[100];
   assert_string_equal(strut_words_text("bar|spring|cable", text, sizeof text),
                       "bar, spring or cable");
@@ -216,8 +204,7 @@ static void words(void **state) {
   assert_null(strut_word_at("a|b", 2, text, sizeof text));
 }
 
-static void the_page_in_docs_is_this_one(void **state) {
-  (void)state;
+TEST(the_page_in_docs_is_this_one) {
   char *page = strut_keys_page(), *committed = calloc(1, 1 << 20);
   assert_non_null(page);
   FILE *file = fopen(STRUT_SOURCE_DIR "/docs/language-keys.md", "rb");
@@ -229,25 +216,9 @@ static void the_page_in_docs_is_this_one(void **state) {
   strut_release(page);
 }
 
-static void no_memory(void **state) {
-  (void)state;
+TEST(no_memory) {
   strut_fail_allocation_after(3);
   char *page = strut_keys_page();
   strut_fail_allocation_after(-1);
   assert_null(page);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(sections_divide_the_table),
-      cmocka_unit_test(shared_keys_of_groups_agree),
-      cmocka_unit_test(plain_keys_are_bound_to_fields),
-      cmocka_unit_test(few_keys_are_read_by_hand),
-      cmocka_unit_test(mappings_lead_to_sections),
-      cmocka_unit_test(defaults_are_those_of_the_fields),
-      cmocka_unit_test(words),
-      cmocka_unit_test(the_page_in_docs_is_this_one),
-      cmocka_unit_test(no_memory),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

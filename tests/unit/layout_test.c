@@ -1,18 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The canonical layout of texts that are nearly YAML; tests/fuzz/fuzz_layout.c goes on for longer. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "engine/base/memory.h"
 #include "parser/yaml/layout.h"
 #include "tests/language/scenes.h"
+#include "tests/support/test.h"
 
 enum { ROUNDS = 4000, ROOM = 64 };
 
@@ -47,8 +42,7 @@ static char *disturbed(const scene_file *file, uint64_t *state) {
   return text;
 }
 
-static void a_layout_is_its_own_layout(void **state) {
-  (void)state;
+TEST(a_layout_is_its_own_layout) {
   scene_file *files;
   size_t count = scene_files(&files), laid_out = 0;
   uint64_t seed = 7;
@@ -71,8 +65,7 @@ static void a_layout_is_its_own_layout(void **state) {
   free_scene_files(files, count);
 }
 
-static void no_scene_is_refused(void **state) {
-  (void)state;
+TEST(no_scene_is_refused) {
   scene_file *files;
   size_t count = scene_files(&files);
   for (size_t i = 0; i < count; i++) {
@@ -90,10 +83,4 @@ static void no_scene_is_refused(void **state) {
   }
   assert_true(count > 60);
   free_scene_files(files, count);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(a_layout_is_its_own_layout),
-                                     cmocka_unit_test(no_scene_is_refused)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -72,9 +72,8 @@ static double true_rcond(const strut_sparse *m) {
   return 1 / (norm * inverse_norm);
 }
 
-static void it_solves_and_counts_signs(void **state) {
+TEST(it_solves_and_counts_signs) {
   uint64_t r = 11;
-  (void)state;
   for (int turn = 0; turn < 40; turn++) {
     strut_arena arena = {0};
     strut_sparse *m = random_matrix(&r, random_between(&r, -4, 4), &arena);
@@ -97,9 +96,8 @@ static void it_solves_and_counts_signs(void **state) {
   }
 }
 
-static void its_condition_is_estimated(void **state) {
+TEST(its_condition_is_estimated) {
   uint64_t r = 12;
-  (void)state;
   for (int turn = 0; turn < 40; turn++) {
     strut_arena arena = {0};
     strut_sparse *m = random_matrix(&r, 5, &arena);
@@ -115,12 +113,11 @@ static void its_condition_is_estimated(void **state) {
 }
 
 /* Springs of 1 and 1e12 in turn: CHOLMOD is content, the estimate is not. */
-static void an_ill_conditioned_chain_shows(void **state) {
+TEST(an_ill_conditioned_chain_shows) {
   strut_arena arena = {0};
   strut_triplets triplets = {0};
   strut_ldl *ldl;
   strut_inertia inertia;
-  (void)state;
   assert_true(strut_triplets_reserve(&triplets, 4 * N, &arena));
   for (int32_t i = 0; i < N; i++) {
     double stiffness = i % 2 ? 1e12 : 1;
@@ -138,13 +135,12 @@ static void an_ill_conditioned_chain_shows(void **state) {
   strut_arena_free(&arena);
 }
 
-static void a_zero_pivot_is_refused_and_a_shift_helps(void **state) {
+TEST(a_zero_pivot_is_refused_and_a_shift_helps) {
   strut_arena arena = {0};
   strut_triplets triplets = {0};
   strut_ldl *ldl;
   strut_inertia inertia;
   double b[2] = {1, 2};
-  (void)state;
   assert_true(strut_triplets_reserve(&triplets, 2, &arena));
   strut_triplets_add(&triplets, 0, 0, 1);
   strut_sparse *m = strut_sparse_build(2, &triplets, &arena);
@@ -161,11 +157,10 @@ static void a_zero_pivot_is_refused_and_a_shift_helps(void **state) {
   strut_arena_free(&arena);
 }
 
-static void refused_memory(void **state) {
+TEST(refused_memory) {
   strut_arena arena = {0};
   uint64_t r = 13;
   strut_sparse *m = random_matrix(&r, 5, &arena);
-  (void)state;
   for (int64_t n = 0;; n++) {
     strut_ldl *ldl;
     strut_inertia inertia;
@@ -179,15 +174,4 @@ static void refused_memory(void **state) {
     assert_true(n < 100);
   }
   strut_arena_free(&arena);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(it_solves_and_counts_signs),
-      cmocka_unit_test(its_condition_is_estimated),
-      cmocka_unit_test(an_ill_conditioned_chain_shows),
-      cmocka_unit_test(a_zero_pivot_is_refused_and_a_shift_helps),
-      cmocka_unit_test(refused_memory),
-  };
-  return cmocka_run_group_tests_name("ldl", tests, NULL, NULL);
 }

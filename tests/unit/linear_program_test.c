@@ -22,8 +22,7 @@ static void make_known(strut_linear_program *p, strut_arena *arena) {
   p->cost[0] = -3, p->cost[1] = -2;
 }
 
-static void test_optimum(void **state) {
-  (void)state;
+TEST(optimum) {
   strut_arena arena = {0};
   strut_linear_program p;
   strut_linear_program_end end;
@@ -41,8 +40,7 @@ static void test_optimum(void **state) {
   strut_arena_free(&arena);
 }
 
-static void test_no_optimum(void **state) {
-  (void)state;
+TEST(no_optimum) {
   strut_arena arena = {0};
   strut_linear_program p;
   strut_linear_program_end end = STRUT_PROGRAM_OPTIMAL;
@@ -104,8 +102,7 @@ static double least_with(const double *a, const double *b, const double *w, cons
   return good ? sum : HUGE_VAL;
 }
 
-static void test_bounded_squares(void **state) {
-  (void)state;
+TEST(bounded_squares) {
   uint64_t seed = 7;
   for (int round = 0; round < 200; round++) {
     double a[ROWS * COUNT], b[ROWS] = {0}, w[COUNT], low[COUNT], x[COUNT], best[COUNT], y[COUNT];
@@ -123,11 +120,4 @@ static void test_bounded_squares(void **state) {
     assert_true(strut_bounded_squares(ROWS, COUNT, a, w, low, x));
     for (size_t j = 0; j < COUNT; j++) assert_near(x[j], best[j], 1e-8);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_optimum),
-                                     cmocka_unit_test(test_no_optimum),
-                                     cmocka_unit_test(test_bounded_squares)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

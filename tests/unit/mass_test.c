@@ -19,8 +19,7 @@ static void build_row(strut_scene *scene, int32_t count, double mass, double rat
     build_member(scene, STRUT_BAR, first + i - 1, first + i, 1, 0, i % 2 ? mass : mass * ratio);
 }
 
-static void test_sets_are_sorted_by_size(void **unused) {
-  (void)unused;
+TEST(sets_are_sorted_by_size) {
   strut_scene scene;
   strut_scene_init(&scene);
   build_mass(&scene, 0, -1, 3);
@@ -43,8 +42,7 @@ static void test_sets_are_sorted_by_size(void **unused) {
 }
 
 /* A support cuts a row in two: 11 nodes become 5 and 5, in one coordinate or in both. */
-static void test_supports_cut_sets(void **unused) {
-  (void)unused;
+TEST(supports_cut_sets) {
   for (int both = 0; both < 2; both++) {
     strut_scene scene;
     strut_scene_init(&scene);
@@ -62,8 +60,7 @@ static void test_supports_cut_sets(void **unused) {
   }
 }
 
-static void test_lumped_masses_are_diagonal(void **unused) {
-  (void)unused;
+TEST(lumped_masses_are_diagonal) {
   strut_scene scene;
   strut_scene_init(&scene);
   scene.mass_model = STRUT_MASS_LUMPED;
@@ -77,8 +74,7 @@ static void test_lumped_masses_are_diagonal(void **unused) {
   strut_scene_free(&scene);
 }
 
-static void test_a_node_without_mass_is_for_statics_only(void **unused) {
-  (void)unused;
+TEST(a_node_without_mass_is_for_statics_only) {
   strut_scene scene;
   strut_scene_init(&scene);
   build_row(&scene, 3, 1, 1);
@@ -128,8 +124,7 @@ static void check_inverse(const strut_scene *scene) {
   strut_model_free(model);
 }
 
-static void test_the_inverse_is_one_at_any_mass_ratio(void **unused) {
-  (void)unused;
+TEST(the_inverse_is_one_at_any_mass_ratio) {
   static const double ratios[] = {1, 1e-3, 1e9, 1e-9};
   static const int32_t sizes[] = {2, 5, 8, 9, 100, 10000};
   for (int k = 0; k < 4; k++)
@@ -143,8 +138,7 @@ static void test_the_inverse_is_one_at_any_mass_ratio(void **unused) {
     }
 }
 
-static void test_the_inverse_of_a_meshed_structure(void **unused) {
-  (void)unused;
+TEST(the_inverse_of_a_meshed_structure) {
   strut_scene scene;
   strut_scene_init(&scene);
   structure_chain(&scene, 500, STRUT_MASS_CONSISTENT);
@@ -154,8 +148,7 @@ static void test_the_inverse_of_a_meshed_structure(void **unused) {
 }
 
 /* A uniform rigid rod: the inertia about its centre and about its end are exact. */
-static void test_a_consistent_bar_has_the_inertia_of_a_rod(void **unused) {
-  (void)unused;
+TEST(a_consistent_bar_has_the_inertia_of_a_rod) {
   strut_scene scene;
   const double m = 0.6, l = 2;
   strut_scene_init(&scene);
@@ -174,17 +167,4 @@ static void test_a_consistent_bar_has_the_inertia_of_a_rod(void **unused) {
     strut_model_free(model);
   }
   strut_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_sets_are_sorted_by_size),
-      cmocka_unit_test(test_supports_cut_sets),
-      cmocka_unit_test(test_lumped_masses_are_diagonal),
-      cmocka_unit_test(test_a_node_without_mass_is_for_statics_only),
-      cmocka_unit_test(test_the_inverse_is_one_at_any_mass_ratio),
-      cmocka_unit_test(test_the_inverse_of_a_meshed_structure),
-      cmocka_unit_test(test_a_consistent_bar_has_the_inertia_of_a_rod),
-  };
-  return cmocka_run_group_tests_name("mass", tests, NULL, NULL);
 }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Counted allocation, allocations that fail on demand, and arenas. */
 #include <stdbool.h>
-#include <stdint.h>
 #include <string.h>
 
 #include "engine/base/memory.h"
@@ -14,8 +13,7 @@ static bool all_zero(const void *block, size_t size) {
   return true;
 }
 
-static void test_blocks_are_zeroed_and_counted(void **unused) {
-  (void)unused;
+TEST(blocks_are_zeroed_and_counted) {
   uint64_t before = strut_allocation_count();
   int *block = strut_allocate(1000, sizeof *block);
   assert_non_null(block);
@@ -29,8 +27,7 @@ static void test_blocks_are_zeroed_and_counted(void **unused) {
   strut_release(NULL);
 }
 
-static void test_nothing_is_a_block_too(void **unused) {
-  (void)unused;
+TEST(nothing_is_a_block_too) {
   void *none = strut_allocate(0, 8), *also = strut_allocate(8, 0);
   assert_true(none && also);
   none = strut_reallocate(none, 0, 8);
@@ -39,8 +36,7 @@ static void test_nothing_is_a_block_too(void **unused) {
   strut_release(also);
 }
 
-static void test_sizes_that_overflow_are_refused(void **unused) {
-  (void)unused;
+TEST(sizes_that_overflow_are_refused) {
   strut_arena arena = {0};
   void *block = strut_allocate(1, 1);
   assert_null(strut_allocate(SIZE_MAX / 2, 3));
@@ -51,8 +47,7 @@ static void test_sizes_that_overflow_are_refused(void **unused) {
   strut_arena_free(&arena);
 }
 
-static void test_allocations_fail_on_demand(void **unused) {
-  (void)unused;
+TEST(allocations_fail_on_demand) {
   strut_arena arena = {0};
   strut_fail_allocation_after(2);
   void *a = strut_allocate(1, 1), *b = strut_allocate(1, 1);
@@ -70,8 +65,7 @@ static void test_allocations_fail_on_demand(void **unused) {
   strut_arena_free(&arena);
 }
 
-static void test_arena_blocks_are_aligned_zeroed_and_apart(void **unused) {
-  (void)unused;
+TEST(arena_blocks_are_aligned_zeroed_and_apart) {
   enum { BLOCKS = 400 };
   static unsigned char *block[BLOCKS];
   strut_arena arena = {0};
@@ -98,8 +92,7 @@ static void test_arena_blocks_are_aligned_zeroed_and_apart(void **unused) {
   strut_arena_free(&arena);
 }
 
-static void test_small_blocks_share_an_allocation(void **unused) {
-  (void)unused;
+TEST(small_blocks_share_an_allocation) {
   strut_arena arena = {0};
   uint64_t before = strut_allocation_count();
   for (int i = 0; i < 100; i++) assert_non_null(strut_arena_allocate(&arena, 1, 8));
@@ -107,8 +100,7 @@ static void test_small_blocks_share_an_allocation(void **unused) {
   strut_arena_free(&arena);
 }
 
-static void test_arena_texts(void **unused) {
-  (void)unused;
+TEST(arena_texts) {
   strut_arena arena = {0};
   char long_text[5000];
   memset(long_text, 'x', sizeof long_text - 1);
@@ -118,17 +110,4 @@ static void test_arena_texts(void **unused) {
   for (int i = 0; i < 10; i++)
     assert_string_equal(strut_arena_format(&arena, "%s", long_text), long_text);
   strut_arena_free(&arena);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_blocks_are_zeroed_and_counted),
-      cmocka_unit_test(test_nothing_is_a_block_too),
-      cmocka_unit_test(test_sizes_that_overflow_are_refused),
-      cmocka_unit_test(test_allocations_fail_on_demand),
-      cmocka_unit_test(test_arena_blocks_are_aligned_zeroed_and_apart),
-      cmocka_unit_test(test_small_blocks_share_an_allocation),
-      cmocka_unit_test(test_arena_texts),
-  };
-  return cmocka_run_group_tests_name("memory", tests, NULL, NULL);
 }

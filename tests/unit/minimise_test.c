@@ -47,14 +47,13 @@ static void assert_reached(const strut_descent *d) {
   assert_true(d->residual <= 8 * d->rounding);
 }
 
-static void the_crawlers_first_state(void **state) {
+TEST(the_crawlers_first_state) {
   static const double known[5][2] = {{0, 0},
                                      {96.5109e-3, 23.8714e-3},
                                      {52.6668e-3, 28.3691e-3},
                                      {60.2933e-3, 0},
                                      {43.4758e-3, 10.6875e-3}};
   fixture f = {0};
-  (void)state;
   crawler(&f);
   strut_descent d = strut_minimise(f.minimiser, f.q, 0);
   double force[64];
@@ -69,11 +68,10 @@ static void the_crawlers_first_state(void **state) {
 }
 
 /* Bars 300 times stiffer than the springs: still a few dozen steps, and always to a minimum. */
-static void from_random_shapes(void **state) {
+TEST(from_random_shapes) {
   fixture f = {0};
   uint64_t r = 1;
   int steps = 0;
-  (void)state;
   crawler(&f);
   for (int turn = 0; turn < 200; turn++) {
     for (int32_t i = 0; i < f.potential->n; i++)
@@ -115,8 +113,7 @@ static double tip_error(int32_t springs, double ratio, bool sparse, strut_descen
   return error;
 }
 
-static void stiffness_ratios(void **state) {
-  (void)state;
+TEST(stiffness_ratios) {
   for (int sparse = 0; sparse < 2; sparse++)
     for (int32_t springs = 2; springs <= 60; springs += 29)
       for (double ratio = 1e3; ratio < 1e13; ratio *= 1e3) {
@@ -128,9 +125,8 @@ static void stiffness_ratios(void **state) {
 }
 
 /* A drawn shape that is symmetric stands on the ridge; the descent leaves it. */
-static void it_leaves_a_ridge(void **state) {
+TEST(it_leaves_a_ridge) {
   fixture f = {0};
-  (void)state;
   strut_scene_init(&f.scene);
   build_support(&f.scene, -1, 0);
   build_support(&f.scene, 1, 0);
@@ -149,9 +145,8 @@ static void it_leaves_a_ridge(void **state) {
 }
 
 /* A bouncing ball's rest: weight over the ground's stiffness below the line, from a metre above. */
-static void it_falls_onto_the_ground(void **state) {
+TEST(it_falls_onto_the_ground) {
   fixture f = {0};
-  (void)state;
   strut_scene_init(&f.scene);
   build_mass(&f.scene, 0.3, 1, 2);
   build_contact(&f.scene, 0, 1e5, 0);
@@ -164,9 +159,8 @@ static void it_falls_onto_the_ground(void **state) {
   tear_down(&f);
 }
 
-static void without_ground_it_falls_for_ever(void **state) {
+TEST(without_ground_it_falls_for_ever) {
   fixture f = {0};
-  (void)state;
   strut_scene_init(&f.scene);
   build_mass(&f.scene, 0.3, 1, 2);
   f.scene.gravity[1] = -10;
@@ -176,9 +170,8 @@ static void without_ground_it_falls_for_ever(void **state) {
 }
 
 /* A mass on a slack cable falls until the cable holds it, then hangs. */
-static void a_slack_cable_catches(void **state) {
+TEST(a_slack_cable_catches) {
   fixture f = {0};
-  (void)state;
   strut_scene_init(&f.scene);
   build_support(&f.scene, 0, 0);
   build_mass(&f.scene, 0.4, -0.2, 1);
@@ -193,9 +186,8 @@ static void a_slack_cable_catches(void **state) {
 }
 
 /* A free prestressed square finds its side (gallery P1), wherever it drifts. */
-static void a_free_body(void **state) {
+TEST(a_free_body) {
   fixture f = {0};
-  (void)state;
   strut_scene_init(&f.scene);
   const double corner[4][2] = {{0, 0}, {1, 0.05}, {1.1, 1}, {0, 1}};
   for (int i = 0; i < 4; i++) build_node(&f.scene, corner[i][0], corner[i][1]);
@@ -213,10 +205,9 @@ static void a_free_body(void **state) {
 }
 
 /* A hanging net of 12 by 12 prestressed cables by sparse factors. */
-static void a_large_net(void **state) {
+TEST(a_large_net) {
   enum { SIDE = 12 };
   fixture f = {0};
-  (void)state;
   strut_scene_init(&f.scene);
   for (int i = 0; i < SIDE * SIDE; i++) {
     build_mass(&f.scene, i % SIDE, (double)(i / SIDE), 0.1);
@@ -237,11 +228,10 @@ static void a_large_net(void **state) {
   tear_down(&f);
 }
 
-static void refused_memory(void **state) {
+TEST(refused_memory) {
   strut_scene scene;
   strut_model *model;
   strut_potential *p;
-  (void)state;
   for (int large = 0; large < 2; large++) {
     strut_scene_init(&scene);
     structure_chain(&scene, large ? 40 : 2, STRUT_MASS_LUMPED);
@@ -261,20 +251,4 @@ static void refused_memory(void **state) {
     strut_model_free(model);
     strut_scene_free(&scene);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_crawlers_first_state),
-      cmocka_unit_test(from_random_shapes),
-      cmocka_unit_test(stiffness_ratios),
-      cmocka_unit_test(it_leaves_a_ridge),
-      cmocka_unit_test(it_falls_onto_the_ground),
-      cmocka_unit_test(without_ground_it_falls_for_ever),
-      cmocka_unit_test(a_slack_cable_catches),
-      cmocka_unit_test(a_free_body),
-      cmocka_unit_test(a_large_net),
-      cmocka_unit_test(refused_memory),
-  };
-  return cmocka_run_group_tests_name("minimise", tests, NULL, NULL);
 }

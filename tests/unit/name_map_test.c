@@ -1,20 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The map from names to indices, against a plain list. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
-
-#include <cmocka.h>
 
 #include "engine/base/memory.h"
 #include "engine/base/name_map.h"
+#include "tests/support/test.h"
 
 enum { MANY = 20000 };
 
-static void many_names(void **state) {
-  (void)state;
+TEST(many_names) {
   static char names[MANY][16];
   strut_name_map map = {0};
   assert_int_equal(strut_name_map_find(&map, "n0"), -1);
@@ -37,8 +31,7 @@ static void many_names(void **state) {
   assert_int_equal(map.count, 0);
 }
 
-static void reserved_room_holds_its_names(void **state) {
-  (void)state;
+TEST(reserved_room_holds_its_names) {
   static char names[MANY][16];
   strut_name_map map = {0};
   assert_true(strut_name_map_reserve(&map, 3)); /* few begin as ever */
@@ -57,8 +50,7 @@ static void reserved_room_holds_its_names(void **state) {
   strut_name_map_free(&map);
 }
 
-static void no_memory(void **state) {
-  (void)state;
+TEST(no_memory) {
   strut_name_map map = {0};
   strut_fail_allocation_after(0);
   assert_int_equal(strut_name_map_add(&map, "a", 0), -2);
@@ -68,11 +60,4 @@ static void no_memory(void **state) {
   assert_int_equal(strut_name_map_add(&map, "a", 7), -1);
   assert_int_equal(strut_name_map_find(&map, "a"), 7);
   strut_name_map_free(&map);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(many_names),
-                                     cmocka_unit_test(reserved_room_holds_its_names),
-                                     cmocka_unit_test(no_memory)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

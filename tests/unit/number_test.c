@@ -3,19 +3,14 @@
 #include <locale.h>
 #include <math.h>
 #include <regex.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "engine/base/memory.h"
 #include "parser/expression/expression.h"
 #include "parser/yaml/diagnostics.h"
+#include "tests/support/test.h"
 
 static uint64_t random_state = 42;
 
@@ -39,8 +34,7 @@ static void expect_refusal(const char *text) {
   if (strut_number_read(text, strlen(text), &got)) fail_msg("'%s' was read as %.17g", text, got);
 }
 
-static void literals_have_their_values(void **state) {
-  (void)state;
+TEST(literals_have_their_values) {
   expect_literal("0", 0);
   expect_literal("00.000e5", 0);
   expect_literal("0e99999999999999999999", 0);
@@ -60,8 +54,7 @@ static void literals_have_their_values(void **state) {
   expect_literal("0.1000000000000000055511151231257827021181583404541015625", 0.1);
 }
 
-static void other_texts_are_refused(void **state) {
-  (void)state;
+TEST(other_texts_are_refused) {
   static const char *const texts[] = {"",         " ",
                                       "1 ",       " 1",
                                       "+1",       "-1",
@@ -94,8 +87,7 @@ static void other_texts_are_refused(void **state) {
   free(longest);
 }
 
-static void length_bounds_the_literal(void **state) {
-  (void)state;
+TEST(length_bounds_the_literal) {
   double got;
   assert_true(strut_number_read("12345", 3, &got));
   assert_true(got == 123);
@@ -110,8 +102,7 @@ static void length_bounds_the_literal(void **state) {
 }
 
 /* Against strtod on random literals: every bit. */
-static void rounding_is_correct(void **state) {
-  (void)state;
+TEST(rounding_is_correct) {
   for (int i = 0; i < 300000; i++) {
     char text[80];
     int used = 0, whole = (int)random_below(i % 2 ? 8 : 25) + 1, digits = (int)random_below(20);
@@ -132,8 +123,7 @@ static void rounding_is_correct(void **state) {
 }
 
 /* What %.17g prints is read back to the same bits, whatever the bits. */
-static void every_double_comes_back(void **state) {
-  (void)state;
+TEST(every_double_comes_back) {
   for (int i = 0; i < 200000; i++) {
     uint64_t bits = (uint64_t)random_below(0x80000000) << 32 | random_below(UINT32_MAX);
     double value, got;
@@ -147,8 +137,7 @@ static void every_double_comes_back(void **state) {
 }
 
 /* A unit's power of ten goes into the literal's exponent: 0.1 ms has the bits of 1e-4. */
-static void scaling_rounds_once(void **state) {
-  (void)state;
+TEST(scaling_rounds_once) {
   for (int i = 0; i < 100000; i++) {
     char text[40], scaled[60];
     int decimal = (int)random_below(19) - 9;
@@ -161,8 +150,7 @@ static void scaling_rounds_once(void **state) {
 }
 
 /* Random mutations of literals against the grammar as a regular expression. */
-static void grammar_is_the_one_of_the_language(void **state) {
-  (void)state;
+TEST(grammar_is_the_one_of_the_language) {
   static const char alphabet[] = "0123456789..eeEE++--xXpP_,' \tnaifNAIF";
   static const char *const seeds[] = {"1.5e3", "0.001", "10", ".5", "12e-4", "1E+10", "123.456"};
   regex_t grammar;
@@ -211,8 +199,7 @@ static const char *german(char *folder, size_t size) {
   return name && strcmp(localeconv()->decimal_point, ",") == 0 ? name : NULL;
 }
 
-static void locale_does_not_matter(void **state) {
-  (void)state;
+TEST(locale_does_not_matter) {
   char folder[64], command[100];
   const char *name = german(folder, sizeof folder);
   double got = 0;
@@ -243,18 +230,4 @@ static void locale_does_not_matter(void **state) {
   assert_false(comma);
   assert_true(quantity);
   assert_true(shown);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(literals_have_their_values),
-      cmocka_unit_test(other_texts_are_refused),
-      cmocka_unit_test(length_bounds_the_literal),
-      cmocka_unit_test(rounding_is_correct),
-      cmocka_unit_test(every_double_comes_back),
-      cmocka_unit_test(scaling_rounds_once),
-      cmocka_unit_test(grammar_is_the_one_of_the_language),
-      cmocka_unit_test(locale_does_not_matter),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

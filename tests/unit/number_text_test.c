@@ -2,19 +2,14 @@
 /* The shortest text of a double: against the C library, over random bits and all hard corners. */
 #include <float.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "engine/base/number_powers.h"
 #include "engine/base/number_text.h"
+#include "tests/support/test.h"
 
 static uint64_t state = UINT64_C(0x9e3779b97f4a7c15);
 
@@ -74,16 +69,14 @@ static void assert_shortest(double value) {
   }
 }
 
-static void test_random_bits(void **unused) {
-  (void)unused;
+TEST(random_bits) {
   for (int i = 0; i < 300000; i++) {
     double value = from_bits(next_random());
     if (isfinite(value)) assert_shortest(value);
   }
 }
 
-static void test_numbers_of_everyday_size(void **unused) {
-  (void)unused;
+TEST(numbers_of_everyday_size) {
   for (int i = 0; i < 200000; i++) {
     double unit = (double)(next_random() >> 11) / 9007199254740992.0;
     assert_shortest((unit - 0.5) * pow(10.0, (double)(next_random() % 24) - 12.0));
@@ -91,8 +84,7 @@ static void test_numbers_of_everyday_size(void **unused) {
   }
 }
 
-static void test_powers_and_their_neighbours(void **unused) {
-  (void)unused;
+TEST(powers_and_their_neighbours) {
   for (int e = -1074; e <= 1023; e++) {
     double power = ldexp(1.0, e);
     assert_shortest(power);
@@ -109,8 +101,7 @@ static void test_powers_and_their_neighbours(void **unused) {
   }
 }
 
-static void test_how_numbers_look(void **unused) {
-  (void)unused;
+TEST(how_numbers_look) {
   static const struct {
     double value;
     const char *text;
@@ -174,8 +165,7 @@ static uint64_t bits_below(const uint32_t big[WORDS], int top) { /* bits top .. 
   return value;
 }
 
-static void test_positive_powers_of_the_table(void **unused) {
-  (void)unused;
+TEST(positive_powers_of_the_table) {
   uint32_t big[WORDS] = {1};
   for (int k = 0; k <= STRUT_NUMBER_POWER_LAST; k++, multiply_by_ten(big)) {
     int top = top_bit(big);
@@ -189,8 +179,7 @@ static void test_positive_powers_of_the_table(void **unused) {
 }
 
 /* 10^-k times 10^k is one: the product of the rows, just above a power of two. */
-static void test_negative_powers_of_the_table(void **unused) {
-  (void)unused;
+TEST(negative_powers_of_the_table) {
   for (int k = 1; k <= -STRUT_NUMBER_POWER_FIRST; k++) {
     const uint64_t *row = strut_number_powers[-k - STRUT_NUMBER_POWER_FIRST];
     uint32_t big[WORDS] = {1}, product[WORDS + 4] = {0};
@@ -219,16 +208,4 @@ static void test_negative_powers_of_the_table(void **unused) {
       }
     }
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_random_bits),
-      cmocka_unit_test(test_numbers_of_everyday_size),
-      cmocka_unit_test(test_powers_and_their_neighbours),
-      cmocka_unit_test(test_how_numbers_look),
-      cmocka_unit_test(test_positive_powers_of_the_table),
-      cmocka_unit_test(test_negative_powers_of_the_table),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

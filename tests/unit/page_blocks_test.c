@@ -3,20 +3,15 @@
    motion a page takes. */
 #include <float.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
 
-#include <cmocka.h>
-
 #include "engine/base/memory.h"
 #include "engine/output/page/page.h"
 #include "tests/support/build.h"
+#include "tests/support/test.h"
 
 static uint64_t seed = 1;
 static double uniform(void) { /* -1 to 1 */
@@ -82,8 +77,7 @@ static size_t check(const double *values, size_t frames, size_t columns, size_t 
   return size;
 }
 
-static void every_value_comes_back(void **state) {
-  (void)state;
+TEST(every_value_comes_back) {
   enum { FRAMES = 1001, COLUMNS = 7 };
   static double values[FRAMES * COLUMNS];
   static const double scales[] = {1e-300, 1e-9, 1, 12345.678, 1e300};
@@ -99,8 +93,7 @@ static void every_value_comes_back(void **state) {
 }
 
 /* From one end of what a block can hold to the other, and back. */
-static void the_largest_numbers_fit(void **state) {
-  (void)state;
+TEST(the_largest_numbers_fit) {
   static const double values[] = {
       STRUT_MOST_QUANTA, -STRUT_MOST_QUANTA, STRUT_MOST_QUANTA, -STRUT_MOST_QUANTA, 0, -1, 1,
       STRUT_MOST_QUANTA};
@@ -111,8 +104,7 @@ static void the_largest_numbers_fit(void **state) {
   check(values, 2, 1, 1, 1);
 }
 
-static void motion_takes_few_bytes(void **state) {
-  (void)state;
+TEST(motion_takes_few_bytes) {
   enum { FRAMES = 100001 };
   double *values = malloc(2 * FRAMES * sizeof *values);
   assert_non_null(values);
@@ -132,8 +124,7 @@ static bool is_round(double value) {
          strncmp(text + 1, ".00000000000000e", 16) == 0;
 }
 
-static void quanta_are_round_and_fine_enough(void **state) {
-  (void)state;
+TEST(quanta_are_round_and_fine_enough) {
   assert_true(strut_round_quantum(1e-7, 1) == 1e-7);
   assert_true(strut_round_quantum(0.999e-7, 1) == 5e-8);
   assert_true(strut_round_quantum(4.99, 1) == 2);
@@ -150,8 +141,7 @@ static void quanta_are_round_and_fine_enough(void **state) {
   assert_true(isfinite(strut_round_quantum(1e303, DBL_MAX)));
 }
 
-static void whole_steps_are_exact(void **state) {
-  (void)state;
+TEST(whole_steps_are_exact) {
   enum { FRAMES = 5000 };
   static double time[FRAMES];
   for (size_t i = 0; i < FRAMES; i++) time[i] = (double)(1000000 + 7 * i) * 1e-4;
@@ -222,8 +212,7 @@ static void has(const char *html, const char *text) {
 }
 
 /* What cannot be shown ends the motion, which counts as diverged then. */
-static void a_motion_ends_where_it_is_no_motion(void **state) {
-  (void)state;
+TEST(a_motion_ends_where_it_is_no_motion) {
   static const double bad[] = {(double)NAN, (double)INFINITY, -(double)INFINITY, 1e300, -1e300};
   strut_page_frames frames;
   strut_trajectory motion = swing();
@@ -262,8 +251,7 @@ static size_t count_data(const char *html) {
   return sum;
 }
 
-static void frames_are_left_out_until_they_fit(void **state) {
-  (void)state;
+TEST(frames_are_left_out_until_they_fit) {
   strut_page_frames frames;
   size_t previous = FRAMES + 1;
   strut_trajectory motion = swing();
@@ -284,8 +272,7 @@ static void frames_are_left_out_until_they_fit(void **state) {
   assert_true(previous < FRAMES / 4);
 }
 
-static void memory_that_is_out_is_told(void **state) {
-  (void)state;
+TEST(memory_that_is_out_is_told) {
   strut_setup setup;
   strut_error error = {0};
   strut_trajectory motion = swing();
@@ -316,8 +303,7 @@ static size_t count(const char *html, const char *text) {
 }
 
 /* A program that builds its own scene may give things names that the language refuses. */
-static void no_name_becomes_markup(void **state) {
-  (void)state;
+TEST(no_name_becomes_markup) {
   static const char evil[] = "</script><!--<script>&\"\\\xe2\x80\xa8\n";
   strut_setup setup;
   strut_error error = {0};
@@ -340,19 +326,4 @@ static void no_name_becomes_markup(void **state) {
   strut_release(html);
   strut_model_free(model);
   strut_setup_free(&setup);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_value_comes_back),
-      cmocka_unit_test(the_largest_numbers_fit),
-      cmocka_unit_test(motion_takes_few_bytes),
-      cmocka_unit_test(quanta_are_round_and_fine_enough),
-      cmocka_unit_test(whole_steps_are_exact),
-      cmocka_unit_test(a_motion_ends_where_it_is_no_motion),
-      cmocka_unit_test(frames_are_left_out_until_they_fit),
-      cmocka_unit_test(no_name_becomes_markup),
-      cmocka_unit_test(memory_that_is_out_is_told),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

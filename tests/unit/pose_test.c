@@ -87,19 +87,12 @@ static void compare_forces(double slope) {
   }
 }
 
-static void test_the_kernels_on_level_ground(void **unused) {
-  (void)unused;
-  compare_forces(0.0);
-}
+TEST(the_kernels_on_level_ground) { compare_forces(0.0); }
 
-static void test_the_kernels_on_a_slope(void **unused) {
-  (void)unused;
-  compare_forces(0.3);
-}
+TEST(the_kernels_on_a_slope) { compare_forces(0.3); }
 
 /* The stiffness across a member is what turning it by a small angle takes. */
-static void test_stiffness_along_and_across(void **unused) {
-  (void)unused;
+TEST(stiffness_along_and_across) {
   uint64_t r = 3;
   strut_scene scene;
   strut_model *model = NULL;
@@ -130,20 +123,9 @@ static void test_stiffness_along_and_across(void **unused) {
   strut_scene_free(&scene);
 }
 
-static void test_largest_magnitude_keeps_what_is_no_number(void **unused) {
-  (void)unused;
+TEST(largest_magnitude_keeps_what_is_no_number) {
   const double plain[] = {1, -3, 2}, poisoned[] = {1, (double)NAN, 2};
   assert_true(strut_largest_magnitude(plain, 3) == 3);
   assert_true(strut_largest_magnitude(plain, 0) == 0);
   assert_true(isnan(strut_largest_magnitude(poisoned, 3)));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_the_kernels_on_level_ground),
-      cmocka_unit_test(test_the_kernels_on_a_slope),
-      cmocka_unit_test(test_stiffness_along_and_across),
-      cmocka_unit_test(test_largest_magnitude_keeps_what_is_no_number),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

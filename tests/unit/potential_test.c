@@ -94,9 +94,8 @@ static void gradient_slope(fixture *f, int32_t at, double h, double *slope) {
   for (int32_t i = 0; i < f->potential->n; i++) slope[i] = (f->up[i] - f->down[i]) / (2 * h);
 }
 
-static void the_gradient_is_the_values_slope(void **state) {
+TEST(the_gradient_is_the_values_slope) {
   int tried = 0;
-  (void)state;
   for (uint64_t seed = 0; seed < SCENES; seed++) {
     fixture f = {0};
     if (set_up(&f, seed)) {
@@ -118,9 +117,8 @@ static void the_gradient_is_the_values_slope(void **state) {
 }
 
 /* Every entry, those that the pattern lacks too: they must be zero. */
-static void the_hessian_is_the_gradients_slope(void **state) {
+TEST(the_hessian_is_the_gradients_slope) {
   int tried = 0;
-  (void)state;
   for (uint64_t seed = 0; seed < SCENES; seed++) {
     fixture f = {0};
     if (set_up(&f, seed)) {
@@ -152,8 +150,7 @@ static void the_hessian_is_the_gradients_slope(void **state) {
 }
 
 /* The engine's forces, energies and tangent stiffness know nothing of this room. */
-static void it_agrees_with_the_engine(void **state) {
-  (void)state;
+TEST(it_agrees_with_the_engine) {
   for (uint64_t seed = 0; seed < SCENES; seed++) {
     fixture f = {0};
     if (!set_up(&f, seed)) {
@@ -203,12 +200,11 @@ static void it_agrees_with_the_engine(void **state) {
 }
 
 /* A spring of no length and no rest length pulls alike everywhere; one with a rest length not. */
-static void members_of_zero_length(void **state) {
+TEST(members_of_zero_length) {
   strut_scene scene;
   strut_model *model;
   strut_potential *p;
   strut_arena arena = {0};
-  (void)state;
   strut_scene_init(&scene);
   build_support(&scene, 0, 0);
   build_node(&scene, 0, 0);
@@ -238,11 +234,10 @@ static void members_of_zero_length(void **state) {
 }
 
 /* A weight on a soft ground that slopes: the force is the load's plus the ground's push. */
-static void a_slope_pushes_along_its_normal(void **state) {
+TEST(a_slope_pushes_along_its_normal) {
   strut_scene scene;
   strut_model *model;
   strut_potential *p;
-  (void)state;
   strut_scene_init(&scene);
   build_mass(&scene, 1, 0.4, 2);
   build_contact(&scene, 0, 1000, 5);
@@ -268,10 +263,9 @@ static void a_slope_pushes_along_its_normal(void **state) {
 }
 
 /* A refusal of memory at any place is passed on. */
-static void refused_memory(void **state) {
+TEST(refused_memory) {
   strut_scene scene;
   strut_model *model;
-  (void)state;
   random_scene(&scene, 3);
   assert_int_equal(strut_model_compile(&scene, &model, NULL), STRUT_OK);
   for (int64_t n = 0;; n++) {
@@ -286,16 +280,4 @@ static void refused_memory(void **state) {
   }
   strut_model_free(model);
   strut_scene_free(&scene);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_gradient_is_the_values_slope),
-      cmocka_unit_test(the_hessian_is_the_gradients_slope),
-      cmocka_unit_test(it_agrees_with_the_engine),
-      cmocka_unit_test(members_of_zero_length),
-      cmocka_unit_test(a_slope_pushes_along_its_normal),
-      cmocka_unit_test(refused_memory),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -57,8 +57,7 @@ static void compare_poses(const strut_surface *plain, const strut_surface *bound
   assert_int_equal(one, other);
 }
 
-static void bounds_do_not_change_the_nearest_facet(void **state) {
-  (void)state;
+TEST(bounds_do_not_change_the_nearest_facet) {
   uint64_t r = 1;
   for (int round = 0; round < 300; round++) {
     strut_facet facet[400];
@@ -104,8 +103,7 @@ static void read_terrain(uint64_t *r, size_t count, model_run *run) {
 }
 
 /* All that may touch are near, and few are. */
-static void only_pieces_nearby_are_looked_at(void **state) {
-  (void)state;
+TEST(only_pieces_nearby_are_looked_at) {
   uint64_t r = 7;
   enum { POINTS = 1000 };
   model_run run = {0};
@@ -182,8 +180,7 @@ static double cast_at_all(const strut_ground *g, const strut_stretch *ray, size_
   return first;
 }
 
-static void crossings_are_those_of_all_pairs(void **state) {
-  (void)state;
+TEST(crossings_are_those_of_all_pairs) {
   uint64_t r = 3;
   enum { POINTS = 120 };
   int crossed = 0, rounds = 400;
@@ -212,8 +209,7 @@ static void crossings_are_those_of_all_pairs(void **state) {
 }
 
 /* A spiral of many turns, whose last line leads out, is no graph over any line. */
-static void long_profiles_are_checked_at_once(void **state) {
-  (void)state;
+TEST(long_profiles_are_checked_at_once) {
   double(*points)[2] = malloc(LONGEST * sizeof *points);
   size_t segment, other;
   for (size_t k = 0; k < LONGEST; k++) {
@@ -232,14 +228,4 @@ static void long_profiles_are_checked_at_once(void **state) {
   assert_int_equal(strut_profile_check(&g, &segment, &other), STRUT_PROFILE_FINE);
   assert_within(seconds() - begin, 0.0, 1.0);
   free(points);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(bounds_do_not_change_the_nearest_facet),
-      cmocka_unit_test(only_pieces_nearby_are_looked_at),
-      cmocka_unit_test(crossings_are_those_of_all_pairs),
-      cmocka_unit_test(long_profiles_are_checked_at_once),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -50,8 +50,7 @@ static void check(int32_t count, const uint32_t *from, const uint32_t *to) {
 }
 
 /* From stars of a few nodes to members that hardly meet; some are padding. */
-static void test_random_structures(void **unused) {
-  (void)unused;
+TEST(random_structures) {
   uint64_t r = 7;
   for (int n = 0; n < 2000; n++) {
     uint32_t from[MOST], to[MOST];
@@ -66,8 +65,7 @@ static void test_random_structures(void **unused) {
 }
 
 /* Nodes of a crawler have three or four members: one row each. */
-static void test_rows_are_as_long_as_nodes_want_them(void **unused) {
-  (void)unused;
+TEST(rows_are_as_long_as_nodes_want_them) {
   static const uint32_t from[9] = {0, 4, 6, 0, 2, 2, 0, 0, 2}, to[9] = {2, 8, 8, 4, 4, 6, 6, 8, 8};
   strut_arena arena = {0};
   const strut_pull_rows *rows = strut_pull_rows_create(&arena, 9, from, to);
@@ -75,12 +73,4 @@ static void test_rows_are_as_long_as_nodes_want_them(void **unused) {
   assert_int_equal(rows->rows, 5);
   assert_int_equal(rows->width, 4);
   strut_arena_free(&arena);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_random_structures),
-      cmocka_unit_test(test_rows_are_as_long_as_nodes_want_them),
-  };
-  return cmocka_run_group_tests_name("pull rows", tests, NULL, NULL);
 }

@@ -2,19 +2,15 @@
 /* What the reader makes of a text: values, groups, parameters, --set, layers; memory; locale. */
 #include <locale.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-#include <cmocka.h>
-
 #include "parser/read/read_scene.h"
 #include "parser/write/write_scene.h"
+#include "tests/language/cases.h"
+#include "tests/support/test.h"
 
 /* What every scene here ends with. */
 #define RUN "solver: {step: 1 ms}\nrun: {duration: 10 s}\n"
@@ -46,8 +42,7 @@ static char *read_path(const char *path, size_t *length) {
   return text;
 }
 
-static void the_crawler_page(void **state) {
-  (void)state;
+TEST(the_crawler_page) {
   size_t length;
   strut_setup s;
   char *text = read_path(STRUT_TESTS_DIR "/language/good/crawler.yaml", &length);
@@ -87,8 +82,7 @@ static void the_crawler_page(void **state) {
   strut_setup_free(&s);
 }
 
-static void overrides(void **state) {
-  (void)state;
+TEST(overrides) {
   static const char text[] =
       "strut: 1\n"
       "parameters: {f: 10 Hz, l: 2 mm, twice: 2*l, bare: 3, start: \"I\"}\n"
@@ -115,8 +109,7 @@ static void overrides(void **state) {
   assert_int_equal(read_text(&s, text, &wrong, 1), STRUT_BAD_SCENE); /* where it is used */
 }
 
-static void configurations(void **state) {
-  (void)state;
+TEST(configurations) {
   static const char text[] =
       "strut: 1\n"
       "parameters: {start: \"I\"}\n"
@@ -154,8 +147,7 @@ static void configurations(void **state) {
   strut_setup_free(&s);
 }
 
-static void groups_give_defaults(void **state) {
-  (void)state;
+TEST(groups_give_defaults) {
   static const char text[] =
       "strut: 1\n"
       "groups:\n"
@@ -184,8 +176,7 @@ static void groups_give_defaults(void **state) {
   strut_setup_free(&s);
 }
 
-static void friction_comes_in_layers(void **state) {
-  (void)state;
+TEST(friction_comes_in_layers) {
   static const char text[] =
       "strut: 1\n"
       "groups: {ice: {friction: {mu: 0.01}}, wet: {damping: 9, friction: {mu_static: 0.2}}}\n"
@@ -210,8 +201,7 @@ static void friction_comes_in_layers(void **state) {
   strut_setup_free(&s);
 }
 
-static void signals_and_their_names(void **state) {
-  (void)state;
+TEST(signals_and_their_names) {
   static const char text[] =
       "strut: 1\n"
       "nodes: {a: {position: [0, 0], fixed: x, mass: 1}, b: {position: [1, 0], mass: 1}}\n"
@@ -247,8 +237,7 @@ static void signals_and_their_names(void **state) {
   strut_setup_free(&s);
 }
 
-static void statics_need_no_run(void **state) {
-  (void)state;
+TEST(statics_need_no_run) {
   static const char text[] =
       "strut: 1\nnodes: {a: {position: [0, 0], fixed: both}, b: [1, 0]}\n"
       "members: {m: {nodes: [a, b], kind: bar, stiffness: 1}}\n";
@@ -263,8 +252,7 @@ static void statics_need_no_run(void **state) {
 }
 
 /* Fails each allocation in turn: no crash, no leak, and never a scene that is only half there. */
-static void memory_may_run_out_anywhere(void **state) {
-  (void)state;
+TEST(memory_may_run_out_anywhere) {
   size_t length;
   char *text = read_path(STRUT_TESTS_DIR "/language/good/every-key.yaml", &length);
   strut_status status = STRUT_NO_MEMORY;
@@ -291,22 +279,23 @@ static void memory_may_run_out_anywhere(void **state) {
   strut_release(text);
 }
 
-static void memory_may_run_out_in_a_bad_file(void **state) {
-  (void)state;
-  size_t length;
-  char *text = read_path(STRUT_TESTS_DIR "/language/bad/many-errors.yaml", &length);
+TEST(memory_may_run_out_in_a_bad_file) {
+  faulty_cases cases = read_faulty_cases(STRUT_TESTS_DIR "/language/bad");
+  const faulty_case *many = find_faulty_case(&cases, "many-errors");
   strut_status status = STRUT_NO_MEMORY;
+  assert_non_null(many);
   for (int64_t n = 0; status == STRUT_NO_MEMORY && n < 5000; n++) {
     strut_setup s;
     strut_diagnostics diagnostics = {0};
     strut_fail_allocation_after(n);
-    status = strut_setup_read(&s, "f", text, length, NULL, 0, STRUT_FOR_RUN, &diagnostics);
+    status =
+        strut_setup_read(&s, "f", many->text, many->length, NULL, 0, STRUT_FOR_RUN, &diagnostics);
     strut_fail_allocation_after(-1);
     assert_null(s.scene.nodes);
     strut_diagnostics_free(&diagnostics);
   }
   assert_int_equal(status, STRUT_BAD_SCENE);
-  strut_release(text);
+  free_faulty_cases(&cases);
 }
 
 /* Builds a German locale in a scratch folder and makes it current; false where that fails. */
@@ -321,8 +310,7 @@ static bool become_german(char *folder, size_t size) {
 }
 
 /* A locale with a decimal comma changes neither what is read nor what is written or said. */
-static void the_locale_does_not_matter(void **state) {
-  (void)state;
+TEST(the_locale_does_not_matter) {
   static const char bad[] = "strut: 1\nnodes: {a: {position: [0, 0], mass: -1.5}}\n" RUN;
   char folder[64], command[100];
   size_t length;
@@ -386,8 +374,7 @@ static double seconds_to_read(int n, bool spoilt, strut_status expected) {
 }
 
 /* Time grows with the size and not with its square, errors and suggestions included. */
-static void big_files_take_linear_time(void **state) {
-  (void)state;
+TEST(big_files_take_linear_time) {
   double small = seconds_to_read(4000, false, STRUT_OK) + 0.01;
   assert_true(seconds_to_read(40000, false, STRUT_OK) < 40 * small);
   small = seconds_to_read(4000, true, STRUT_BAD_SCENE) + 0.05;
@@ -395,8 +382,7 @@ static void big_files_take_linear_time(void **state) {
 }
 
 /* Former names and synonyms mean what the current ones do; former ones are noted, once each. */
-static void other_spellings(void **state) {
-  (void)state;
+TEST(other_spellings) {
   static const char text[] =
       "strut: 1\n"
       "groups: {soft: {kind: string, stiffness: 10, damping: 1}}\n"
@@ -427,8 +413,7 @@ static void other_spellings(void **state) {
 }
 
 /* A key by both of its names is given twice. */
-static void both_spellings_of_a_key(void **state) {
-  (void)state;
+TEST(both_spellings_of_a_key) {
   static const char text[] =
       "strut: 1\n"
       "nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1}}\n"
@@ -445,23 +430,4 @@ static void both_spellings_of_a_key(void **state) {
                          "the steady state gives both 'floor' and 'absolute_tolerance', expected "
                          "one of them"));
   strut_diagnostics_free(&diagnostics);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_crawler_page),
-      cmocka_unit_test(overrides),
-      cmocka_unit_test(configurations),
-      cmocka_unit_test(other_spellings),
-      cmocka_unit_test(both_spellings_of_a_key),
-      cmocka_unit_test(groups_give_defaults),
-      cmocka_unit_test(friction_comes_in_layers),
-      cmocka_unit_test(signals_and_their_names),
-      cmocka_unit_test(statics_need_no_run),
-      cmocka_unit_test(memory_may_run_out_anywhere),
-      cmocka_unit_test(memory_may_run_out_in_a_bad_file),
-      cmocka_unit_test(the_locale_does_not_matter),
-      cmocka_unit_test(big_files_take_linear_time),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -28,8 +28,7 @@ static strut_status compile(size_t nodes, size_t members, strut_error *error) {
   return status;
 }
 
-static void test_more_than_the_machine_has(void **unused) {
-  (void)unused;
+TEST(more_than_the_machine_has) {
   strut_error error;
   assert_int_equal(compile((size_t)1 << 40, (size_t)1 << 41, &error), STRUT_NO_MEMORY);
   print_message("%s\n", error.message);
@@ -37,8 +36,7 @@ static void test_more_than_the_machine_has(void **unused) {
   assert_non_null(strstr(error.message, "MB of memory, and the machine has"));
 }
 
-static void test_more_than_the_process_may_have(void **unused) {
-  (void)unused;
+TEST(more_than_the_process_may_have) {
   static const int resource[] = {RLIMIT_AS, RLIMIT_DATA};
   for (int i = 0; i < 2; i++) {
     struct rlimit before, now;
@@ -55,8 +53,7 @@ static void test_more_than_the_process_may_have(void **unused) {
   }
 }
 
-static void test_a_small_scene_has_room(void **unused) {
-  (void)unused;
+TEST(a_small_scene_has_room) {
   strut_scene scene = {.node_count = 100, .member_count = 100};
   assert_int_equal(strut_memory_check_model(&scene, NULL), STRUT_OK);
 }
@@ -74,8 +71,7 @@ static rlim_t data_in_use(void) {
 }
 
 /* A plane grid's matrix, whose factor fills in: counted, refused, and not computed. */
-static void test_a_factor(void **unused) {
-  (void)unused;
+TEST(a_factor) {
   enum { SIDE = 600 };
   strut_arena arena = {0};
   strut_triplets t = {0};
@@ -109,8 +105,7 @@ static void test_a_factor(void **unused) {
   strut_arena_free(&arena);
 }
 
-static void test_a_factor_that_cannot_be_counted(void **unused) {
-  (void)unused;
+TEST(a_factor_that_cannot_be_counted) {
   strut_error error = {0};
   assert_int_equal(strut_memory_check_factor(100000000, 3e9, &error), STRUT_NO_MEMORY);
   assert_non_null(strstr(error.message, "3e+09 nonzeros"));
@@ -123,8 +118,7 @@ static double values_of(const strut_tree *tree) {
 }
 
 /* By hand; and hardly more than is read: a colon in running text counts for a pair. */
-static void test_a_text(void **unused) {
-  (void)unused;
+TEST(a_text) {
   static const char text[] = "a: {b: [1, 2], c: x, d: []}\n# e: f, [g, h]\ni: 'j: k, [l, m]'\n";
   size_t length = sizeof text - 1;
   assert_near(strut_document_needs(text, length), 12 * (double)sizeof(strut_tree) + (double)length,
@@ -148,8 +142,7 @@ static void test_a_text(void **unused) {
   }
 }
 
-static void test_a_large_text(void **unused) {
-  (void)unused;
+TEST(a_large_text) {
   enum { PAIRS = 4000000 };
   char *text = strut_allocate(5 * PAIRS + 1, 1);
   struct rlimit before, now;
@@ -172,17 +165,4 @@ static void test_a_large_text(void **unused) {
            1e-6 * (2.0 * PAIRS * sizeof(strut_tree) + 5.0 * PAIRS));
   assert_non_null(strstr(error.message, needs));
   strut_release(text);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_more_than_the_machine_has),
-      cmocka_unit_test(test_more_than_the_process_may_have),
-      cmocka_unit_test(test_a_small_scene_has_room),
-      cmocka_unit_test(test_a_factor),
-      cmocka_unit_test(test_a_factor_that_cannot_be_counted),
-      cmocka_unit_test(test_a_text),
-      cmocka_unit_test(test_a_large_text),
-  };
-  return cmocka_run_group_tests_name("room", tests, NULL, NULL);
 }

@@ -3,20 +3,15 @@
  * Runs of rows that libyaml does not see, deferred or not, give the tree and the messages that libyaml alone
  * gives: for every scene of the repository, good and bad, and for texts with random faults.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "parser/yaml/document_parts.h"
 #include "parser/yaml/rows.h"
 #include "tests/language/faults.h"
 #include "tests/language/scenes.h"
+#include "tests/support/test.h"
 
 /* Equal in every field, down to the last leaf. */
 static bool same_tree(const strut_tree *a, const strut_tree *b) {
@@ -97,8 +92,7 @@ static size_t expect_same(const char *text, size_t length) {
   return plain.status == STRUT_OK ? count : 0;
 }
 
-static void every_scene_is_the_same(void **state) {
-  (void)state;
+TEST(every_scene_is_the_same) {
   for (int bad = 0; bad < 2; bad++) {
     scene_file *files;
     size_t count = bad ? refused_files(&files) : scene_files(&files), runs = 0;
@@ -128,8 +122,7 @@ static const char *const texts[] = {
     "[2]\ng: *x\n",
 };
 
-static void faults_are_the_same(void **state) {
-  (void)state;
+TEST(faults_are_the_same) {
   enum { ROOM = 4096 };
   char spoilt[ROOM];
   size_t good = 0,
@@ -143,8 +136,7 @@ static void faults_are_the_same(void **state) {
   assert_true(good > turns / 2); /* often enough the runs were read */
 }
 
-static void only_plain_lines_are_rows(void **state) {
-  (void)state;
+TEST(only_plain_lines_are_rows) {
   static const struct {
     const char *text;
     int tokens; /* 0: no row */
@@ -183,11 +175,4 @@ static void only_plain_lines_are_rows(void **state) {
       print_error("%s", lines[i].text);
     assert_int_equal(found ? row.count : 0, lines[i].tokens);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(only_plain_lines_are_rows),
-                                     cmocka_unit_test(every_scene_is_the_same),
-                                     cmocka_unit_test(faults_are_the_same)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

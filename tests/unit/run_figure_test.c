@@ -18,8 +18,7 @@ static strut_summary summary;
 static strut_trajectory taken;
 static const strut_trajectory *beside; /* another motion, dashed over it */
 
-static int set_up(void **unused) {
-  (void)unused;
+BEFORE_ALL {
   scratch_make();
   strut_setup_init(&setup);
   structure_crawler(&setup.scene, 10, 1e-4, 0.1, false);
@@ -33,17 +32,14 @@ static int set_up(void **unused) {
   assert_int_equal(strut_simulate(model, &setup.experiment, &options, &summary, &error), STRUT_OK);
   strut_trajectory_sink_free(sink);
   assert_int_equal(taken.frames, 41);
-  return 0;
 }
 
-static int tear_down(void **unused) {
-  (void)unused;
+AFTER_ALL {
   strut_trajectory_free(&taken);
   strut_summary_free(&summary);
   strut_model_free(model);
   strut_setup_free(&setup);
   scratch_remove();
-  return 0;
 }
 
 static strut_status draw(strut_run_view view, const strut_trajectory *frames, strut_error *error) {
@@ -59,8 +55,7 @@ static strut_status draw(strut_run_view view, const strut_trajectory *frames, st
 
 /* Every so many-th allocation fails: nothing but the message, and no file, is left; nor is a picture
    made that lacks something. */
-static void test_no_memory(void **unused) {
-  (void)unused;
+TEST(no_memory) {
   beside = &taken;
   for (int view = STRUT_RUN_OVERVIEW; view <= STRUT_RUN_CURVES; view++) {
     strut_status status = STRUT_NO_MEMORY;
@@ -88,8 +83,7 @@ static void test_no_memory(void **unused) {
   beside = NULL;
 }
 
-static void test_nothing_to_draw(void **unused) {
-  (void)unused;
+TEST(nothing_to_draw) {
   strut_error error;
   strut_trajectory none = {0}, no_positions = taken, empty = taken;
   no_positions.position = NULL;
@@ -102,8 +96,7 @@ static void test_nothing_to_draw(void **unused) {
 }
 
 /* Few frames, and channels that are not there. */
-static void test_whatever_there_is_is_drawn(void **unused) {
-  (void)unused;
+TEST(whatever_there_is_is_drawn) {
   strut_error error;
   for (size_t frames = 1; frames <= 3; frames++)
     for (int view = STRUT_RUN_OVERVIEW; view <= STRUT_RUN_CURVES; view++) {
@@ -117,8 +110,7 @@ static void test_whatever_there_is_is_drawn(void **unused) {
 }
 
 /* Frames after a divergence are left out: the picture is that of the frames before. */
-static void test_frames_that_are_no_shapes(void **unused) {
-  (void)unused;
+TEST(frames_that_are_no_shapes) {
   size_t length, other_length;
   strut_error error;
   strut_trajectory few = taken, wild = taken;
@@ -141,14 +133,4 @@ static void test_frames_that_are_no_shapes(void **unused) {
   free(two);
   strut_release(positions);
   assert_int_equal(remove(scratch_path("a.svg")), 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_no_memory),
-      cmocka_unit_test(test_nothing_to_draw),
-      cmocka_unit_test(test_whatever_there_is_is_drawn),
-      cmocka_unit_test(test_frames_that_are_no_shapes),
-  };
-  return cmocka_run_group_tests_name("run_figure", tests, set_up, tear_down);
 }

@@ -1,18 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files that other files name: what is below the folder is read, all else refused and never opened. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "parser/read/used_files.h"
+#include "tests/support/test.h"
 
 static char folder[] = "/tmp/strut-safe-XXXXXX";
 
@@ -33,8 +28,7 @@ static void write_text(const char *name, const char *text) {
  * top/study.yaml, top/points.csv, top/in/part.yaml; beside: secret.csv. Links: top/fine leads to
  * points.csv, top/out and top/outside out, top/deep to in. top/pipe is a FIFO.
  */
-static int make_files(void **state) {
-  (void)state;
+BEFORE_ALL {
   char path[200];
   assert_non_null(mkdtemp(folder));
   mkdir(at("top"), 0700);
@@ -54,11 +48,9 @@ static int make_files(void **state) {
   assert_int_equal(mkfifo(at("top/pipe"), 0600), 0);
   snprintf(path, sizeof path, "%s", at("top"));
   assert_int_equal(symlink(path, at("link")), 0);
-  return 0;
 }
 
-static int remove_files(void **state) {
-  (void)state;
+AFTER_ALL {
   static const char *const files[] = {
       "link",           "top/fine",   "top/out",           "top/outside",      "top/deep",
       "top/circle",     "top/zero",   "top/pipe",          "top/in/part.yaml", "top/empty",
@@ -67,7 +59,7 @@ static int remove_files(void **state) {
   rmdir(at("top/in"));
   rmdir(at("top"));
   rmdir(at("topless"));
-  return rmdir(folder);
+  assert_int_equal(rmdir(folder), 0);
 }
 
 static strut_status read_from(const char *root, const char *from, const char *name, size_t most,
@@ -78,8 +70,7 @@ static strut_status read_from(const char *root, const char *from, const char *na
   return strut_safe_read(top, source, name, most, file, error);
 }
 
-static void files_below_the_folder_are_read(void **state) {
-  (void)state;
+TEST(files_below_the_folder_are_read) {
   strut_safe_text file, same;
   strut_error error = {0};
   assert_int_equal(read_from("top", "top/study.yaml", "points.csv", 8, &file, &error), STRUT_OK);
@@ -101,8 +92,7 @@ static void files_below_the_folder_are_read(void **state) {
   strut_safe_text_free(&file);
 }
 
-static void all_else_is_refused(void **state) {
-  (void)state;
+TEST(all_else_is_refused) {
   static const struct {
     const char *root, *from, *name;
     strut_status status;
@@ -139,8 +129,7 @@ static void all_else_is_refused(void **state) {
   assert_non_null(strstr(error.message, "has 8 bytes, expected at most 7"));
 }
 
-static void every_failed_allocation_is_said(void **state) {
-  (void)state;
+TEST(every_failed_allocation_is_said) {
   for (int n = 0;; n++) {
     strut_safe_text file;
     strut_error error = {0};
@@ -157,13 +146,4 @@ static void every_failed_allocation_is_said(void **state) {
   assert_string_equal(strut_folder_of("-", &arena), ".");
   assert_string_equal(strut_folder_of("/c.yaml", &arena), "/");
   strut_arena_free(&arena);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(files_below_the_folder_are_read),
-      cmocka_unit_test(all_else_is_refused),
-      cmocka_unit_test(every_failed_allocation_is_said),
-  };
-  return cmocka_run_group_tests(tests, make_files, remove_files);
 }

@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Defaults; the four ways to give a rest length; what an experiment amounts to. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "engine/scene/experiment.h"
+#include "tests/support/test.h"
 
 static void near(double found, double expected, double tolerance) {
   if (!(fabs(found - expected) <= tolerance))
@@ -28,8 +23,7 @@ static bool resolve(strut_member member, strut_rest *rest) {
   return strut_member_rest(&setup.scene, 0, rest);
 }
 
-static void defaults(void **state) {
-  (void)state;
+TEST(defaults) {
   strut_setup setup;
   memset(&setup, 0x55, sizeof setup);
   strut_setup_init(&setup);
@@ -53,8 +47,7 @@ static void defaults(void **state) {
 }
 
 /* Each of the four ways leads to the other three, for a stiffness and for EA. */
-static void the_four_ways_agree(void **state) {
-  (void)state;
+TEST(the_four_ways_agree) {
   for (int by_ea = 0; by_ea < 2; by_ea++)
     for (double ratio = 0.5; ratio < 2; ratio += 0.19) {
       strut_member m = strut_member_default();
@@ -80,8 +73,7 @@ static void the_four_ways_agree(void **state) {
     }
 }
 
-static void what_was_given_is_kept(void **state) {
-  (void)state;
+TEST(what_was_given_is_kept) {
   strut_member m = strut_member_default();
   strut_rest r;
   m.stiffness = 3;
@@ -93,8 +85,7 @@ static void what_was_given_is_kept(void **state) {
   assert_true(r.length == 0.7);
 }
 
-static void a_slack_cable_has_no_pretension(void **state) {
-  (void)state;
+TEST(a_slack_cable_has_no_pretension) {
   strut_member m = strut_member_default();
   strut_rest r;
   m.kind = STRUT_CABLE, m.stiffness = 10;
@@ -106,8 +97,7 @@ static void a_slack_cable_has_no_pretension(void **state) {
   assert_true(r.pretension == -10);
 }
 
-static void impossible_rests_are_refused(void **state) {
-  (void)state;
+TEST(impossible_rests_are_refused) {
   strut_rest r;
   strut_member m = strut_member_default();
   m.damping = 1;
@@ -133,8 +123,7 @@ static void impossible_rests_are_refused(void **state) {
   assert_false(resolve(m, &r));
 }
 
-static void a_span_in_seconds(void **state) {
-  (void)state;
+TEST(a_span_in_seconds) {
   strut_setup setup;
   strut_setup_init(&setup);
   setup.experiment.duration = 8;
@@ -147,8 +136,7 @@ static void a_span_in_seconds(void **state) {
   assert_true(span.window_start == 6 && span.record_start == 5 && span.record_every == 0.25);
 }
 
-static void a_span_in_periods(void **state) {
-  (void)state;
+TEST(a_span_in_periods) {
   strut_signal signal = strut_signal_default(STRUT_SINE);
   strut_setup setup;
   strut_setup_init(&setup);
@@ -159,17 +147,4 @@ static void a_span_in_periods(void **state) {
   strut_span span = strut_experiment_span(&setup.experiment, &setup.scene);
   assert_true(span.duration == 25 && span.period == 0.25);
   assert_true(span.window_start == 20 && span.record_start == 15 && span.record_every == 0.01);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(defaults),
-      cmocka_unit_test(the_four_ways_agree),
-      cmocka_unit_test(what_was_given_is_kept),
-      cmocka_unit_test(a_slack_cable_has_no_pretension),
-      cmocka_unit_test(impossible_rests_are_refused),
-      cmocka_unit_test(a_span_in_seconds),
-      cmocka_unit_test(a_span_in_periods),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

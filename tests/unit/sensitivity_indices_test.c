@@ -1,14 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sensitivity indices of made-up results: closed forms, missing ones, and results that hardly vary. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include "engine/study/sensitivity/indices.h"
+#include "tests/support/test.h"
 
 enum { SAMPLES = 4096, FEW = 24 };
 
@@ -18,12 +13,11 @@ static double uniform(uint64_t *seed) {
 }
 
 /* f = 2 x + y on the unit square: variances 4/12 and 1/12. */
-static void linear(void **state) {
+TEST(linear) {
   static double row[SAMPLES][4];
   strut_estimate first[2], total[2];
   uint64_t seed = 7;
   size_t used;
-  (void)state;
   for (size_t j = 0; j < SAMPLES; j++) {
     double a[2] = {uniform(&seed), uniform(&seed)}, b[2] = {uniform(&seed), uniform(&seed)};
     row[j][0] = 2 * a[0] + a[1];
@@ -46,8 +40,7 @@ static void linear(void **state) {
  * All base samples but one have the same result at A and B: about a third of the resamples are without that one,
  * and have no variance but the rounding of the mean. They give no indices.
  */
-static void one_differs(void **state) {
-  (void)state;
+TEST(one_differs) {
   for (size_t n = 5; n <= FEW; n++) {
     double row[FEW][4];
     strut_estimate first[2], total[2];
@@ -64,11 +57,10 @@ static void one_differs(void **state) {
   }
 }
 
-static void missing_and_constant(void **state) {
+TEST(missing_and_constant) {
   double row[FEW][3];
   strut_estimate first, total;
   size_t used;
-  (void)state;
   for (size_t j = 0; j < FEW; j++)
     for (size_t k = 0; k < 3; k++) row[j][k] = 0.7;
   assert_int_equal(strut_sensitivity_indices(row[0], FEW, 1, 1, &first, &total, &used), STRUT_OK);
@@ -79,10 +71,4 @@ static void missing_and_constant(void **state) {
   row[9][0] = (double)INFINITY;
   assert_int_equal(strut_sensitivity_indices(row[0], FEW, 1, 1, &first, &total, &used), STRUT_OK);
   assert_int_equal(used, FEW - 2);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(linear), cmocka_unit_test(one_differs),
-                                     cmocka_unit_test(missing_and_constant)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

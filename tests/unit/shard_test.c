@@ -30,8 +30,7 @@ static void refuse(const char *text, const strut_array_task *task, const char *w
   if (!strstr(error.message, words)) fail_msg("\"%s\" lacks \"%s\"", error.message, words);
 }
 
-static void test_texts(void **unused) {
-  (void)unused;
+TEST(texts) {
   expect("0/1", &nowhere, 0, 1);
   expect("7/8", &nowhere, 7, 8);
   expect("9998/9999", &nowhere, 9998, 9999);
@@ -45,8 +44,7 @@ static void test_texts(void **unused) {
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) refuse(bad[i], &task, "");
 }
 
-static void test_arrays(void **unused) {
-  (void)unused;
+TEST(arrays) {
   refuse("slurm", &nowhere, "not a task of a Slurm job array");
   refuse("slurm/8", &nowhere, "not a task of a Slurm job array");
   expect("slurm", &(strut_array_task){"3", "0", "7", "1", "8", NULL}, 3, 8);
@@ -62,8 +60,7 @@ static void test_arrays(void **unused) {
 }
 
 /* Every point once, in shards that differ by one point at most. */
-static void test_all_points_once(void **unused) {
-  (void)unused;
+TEST(all_points_once) {
   for (int64_t points = 0; points < 60; points++)
     for (int64_t n = 1; n < 70; n++) {
       int seen[60] = {0};
@@ -127,8 +124,7 @@ static char *table_of(int64_t n) {
   return scratch_read(scratch_path("d/table.csv"), &length);
 }
 
-static void test_the_same_table(void **unused) {
-  (void)unused;
+TEST(the_same_table) {
   scratch_make();
   run_shard(study, (strut_shard){0, 0}, 100);
   char *whole = table_of(0);
@@ -161,8 +157,7 @@ static void expect_merge(strut_status expected, const char *words) {
   assert_false(scratch_exists(scratch_path("d/table.csv")));
 }
 
-static void test_what_is_missing(void **unused) {
-  (void)unused;
+TEST(what_is_missing) {
   scratch_make();
   expect_merge(STRUT_FILE_TROUBLE, "holds no results of a study");
   run_shard(study, (strut_shard){0, 0}, 20);
@@ -185,8 +180,7 @@ static void test_what_is_missing(void **unused) {
   scratch_remove();
 }
 
-static void test_what_does_not_belong_together(void **unused) {
-  (void)unused;
+TEST(what_does_not_belong_together) {
   strut_error error = {0};
   strut_slots_plan other = study;
   other.hash[0] = 8;
@@ -221,8 +215,7 @@ static void test_what_does_not_belong_together(void **unused) {
   scratch_remove();
 }
 
-static void test_no_memory(void **unused) {
-  (void)unused;
+TEST(no_memory) {
   scratch_make();
   for (int64_t k = 0; k < 3; k++) run_shard(study, (strut_shard){k, 3}, 100);
   strut_status status = STRUT_NO_MEMORY;
@@ -239,8 +232,7 @@ static void test_no_memory(void **unused) {
   scratch_remove();
 }
 
-static void test_a_full_disk(void **unused) {
-  (void)unused;
+TEST(a_full_disk) {
   strut_error error = {0};
   strut_merged merged;
   const char *disk = scratch_make();
@@ -259,14 +251,4 @@ static void test_a_full_disk(void **unused) {
   assert_int_equal(scratch_count(scratch_path("d")), 1);
   scratch_unmount(disk);
   scratch_remove();
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_texts),           cmocka_unit_test(test_arrays),
-      cmocka_unit_test(test_all_points_once), cmocka_unit_test(test_the_same_table),
-      cmocka_unit_test(test_what_is_missing), cmocka_unit_test(test_what_does_not_belong_together),
-      cmocka_unit_test(test_no_memory),       cmocka_unit_test(test_a_full_disk),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

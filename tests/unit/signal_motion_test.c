@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Accelerations of signals against differences of their rates, and where their values jump. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "engine/scene/check.h"
 #include "engine/scene/signal_motion.h"
+#include "tests/support/test.h"
 
 static double rate_of(const strut_signal *signals, int32_t index, double t) {
   double value, rate;
@@ -24,8 +19,7 @@ static strut_signal wave(strut_signal_kind kind, double amplitude, double freque
   return s;
 }
 
-static void accelerations_are_derivatives(void **state) {
-  (void)state;
+TEST(accelerations_are_derivatives) {
   static const int32_t terms[] = {0, 1, 2};
   strut_signal s[4] = {wave(STRUT_SINE, 2, 1.5), wave(STRUT_HALF_SINE, 3, 0.25),
                        wave(STRUT_RAMP, 4, 0), strut_signal_default(STRUT_SUM)};
@@ -40,8 +34,7 @@ static void accelerations_are_derivatives(void **state) {
     }
 }
 
-static void jumps_of_values_are_found(void **state) {
-  (void)state;
+TEST(jumps_of_values_are_found) {
   double when = 0;
   strut_signal s = wave(STRUT_SINE, 1, 2);
   assert_false(strut_signal_value_jumps(&s, 0, HUGE_VAL, &when));
@@ -71,8 +64,7 @@ static void jumps_of_values_are_found(void **state) {
 }
 
 /* A scene made without the language is checked alike. */
-static void motions_are_checked(void **state) {
-  (void)state;
+TEST(motions_are_checked) {
   strut_node nodes[2] = {strut_node_default(), strut_node_default()};
   strut_member member = strut_member_default();
   strut_signal signal = wave(STRUT_SINE, 1e-3, 1);
@@ -102,13 +94,4 @@ static void motions_are_checked(void **state) {
     if (cases[i].words) assert_non_null(strstr(findings.items[0].message, cases[i].words));
     strut_findings_free(&findings);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(accelerations_are_derivatives),
-      cmocka_unit_test(jumps_of_values_are_found),
-      cmocka_unit_test(motions_are_checked),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,14 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Waveforms against their closed forms, and their rates against differences. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include "engine/scene/signal.h"
+#include "tests/support/test.h"
 
 static const double PI = 3.14159265358979323846;
 
@@ -35,15 +30,13 @@ static strut_signal sine(double amplitude, double frequency, double phase, doubl
   return s;
 }
 
-static void defaults(void **state) {
-  (void)state;
+TEST(defaults) {
   strut_signal s = strut_signal_default(STRUT_RAMP);
   assert_int_equal(s.kind, STRUT_RAMP);
   assert_true(s.start == 0.0 && isinf(s.stop) && s.phase == 0.0 && s.name == NULL);
 }
 
-static void constants_begin_at_zero(void **state) {
-  (void)state;
+TEST(constants_begin_at_zero) {
   strut_signal s = strut_signal_default(STRUT_CONSTANT);
   s.amplitude = 3;
   assert_true(value_of(&s, 0, -1) == 0.0);
@@ -52,8 +45,7 @@ static void constants_begin_at_zero(void **state) {
   assert_true(rate_of(&s, 0, 5) == 0.0);
 }
 
-static void sines(void **state) {
-  (void)state;
+TEST(sines) {
   strut_signal s = sine(2, 10, 0.125, 0.3);
   s.stop = 5;
   for (int i = 0; i < 1000; i++) {
@@ -67,8 +59,7 @@ static void sines(void **state) {
 }
 
 /* The phase is exact: after a million whole periods a sine stands where it began. */
-static void sines_do_not_drift(void **state) {
-  (void)state;
+TEST(sines_do_not_drift) {
   strut_signal s = sine(1, 0.25, 0, 0);
   for (int i = 0; i < 1000; i++) {
     double t = 4e6 + 0.015625 * i;
@@ -78,8 +69,7 @@ static void sines_do_not_drift(void **state) {
   assert_true(value_of(&s, 0, 4e6 + 2) == 0.0);
 }
 
-static void half_sines_are_one_pulse(void **state) {
-  (void)state;
+TEST(half_sines_are_one_pulse) {
   strut_signal s = sine(0.8, 10, 0, 1);
   s.kind = STRUT_HALF_SINE;
   assert_true(value_of(&s, 0, 0.99) == 0.0);
@@ -92,8 +82,7 @@ static void half_sines_are_one_pulse(void **state) {
   assert_true(strut_signal_period(&s, 0) == 1.0 / 10);
 }
 
-static void squares(void **state) {
-  (void)state;
+TEST(squares) {
   strut_signal s = sine(3, 2, 0, 0);
   s.kind = STRUT_SQUARE;
   assert_true(value_of(&s, 0, 0) == 3.0);
@@ -109,8 +98,7 @@ static void squares(void **state) {
   assert_true(strut_signal_period(&s, 0) == 0.5);
 }
 
-static void ramps_hold_their_end(void **state) {
-  (void)state;
+TEST(ramps_hold_their_end) {
   strut_signal s = strut_signal_default(STRUT_RAMP);
   s.amplitude = -6, s.start = 1, s.stop = 3;
   assert_true(value_of(&s, 0, 0.5) == 0.0);
@@ -122,8 +110,7 @@ static void ramps_hold_their_end(void **state) {
   assert_true(value_of(&s, 0, 1e6) == -6.0);
 }
 
-static void tables(void **state) {
-  (void)state;
+TEST(tables) {
   static const double time[] = {1, 2, 4, 4.5}, value[] = {10, 20, -20, 0};
   strut_signal s = strut_signal_default(STRUT_TABLE);
   s.time = time, s.value = value, s.point_count = 4;
@@ -137,8 +124,7 @@ static void tables(void **state) {
   assert_true(value_of(&s, 0, 0) == 10.0 && value_of(&s, 0, 3) == 10.0);
 }
 
-static void sums_add_values_and_rates(void **state) {
-  (void)state;
+TEST(sums_add_values_and_rates) {
   static const int32_t first[] = {0, 1, 1}, second[] = {2, 0};
   strut_signal s[4] = {sine(1, 3, 0, 0), strut_signal_default(STRUT_RAMP),
                        strut_signal_default(STRUT_SUM), strut_signal_default(STRUT_SUM)};
@@ -151,8 +137,7 @@ static void sums_add_values_and_rates(void **state) {
   }
 }
 
-static void rates_are_derivatives(void **state) {
-  (void)state;
+TEST(rates_are_derivatives) {
   static const double time[] = {0.2, 0.9, 1.7}, value[] = {1, -3, 5};
   static const int32_t terms[] = {0, 1, 2, 3};
   strut_signal s[5] = {sine(1, 3, 0.1, 0), sine(2, 0.5, 0, 0), strut_signal_default(STRUT_TABLE),
@@ -169,8 +154,7 @@ static void rates_are_derivatives(void **state) {
     }
 }
 
-static void periods(void **state) {
-  (void)state;
+TEST(periods) {
   static const int32_t fitting[] = {0, 1, 3}, clashing[] = {0, 2}, none[] = {3}, nested[] = {4, 1},
                        pulsed[] = {0, 8}, pulse[] = {3, 8};
   strut_signal s[11] = {sine(1, 10, 0, 0),
@@ -202,8 +186,7 @@ static void periods(void **state) {
 }
 
 /* When a signal or its rate jumps next: by hand, for each kind. */
-static void breaks(void **unused) {
-  (void)unused;
+TEST(breaks) {
   static const double times[] = {0.5, 1.0, 2.0}, values[] = {0, 1, 1};
   static const int32_t terms[] = {1, 4};
   strut_signal s[7];
@@ -243,22 +226,4 @@ static void breaks(void **unused) {
   assert_true(fabs(strut_signal_next_break(s, 5, 0.45) - (0.5)) <= 1e-12);
   assert_true(strut_signal_next_break(s, 6, 0) == 1.0 && strut_signal_next_break(s, 6, 1) == 2.0);
   assert_true(isinf(strut_signal_next_break(s, 6, 2)));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(breaks),
-      cmocka_unit_test(defaults),
-      cmocka_unit_test(constants_begin_at_zero),
-      cmocka_unit_test(sines),
-      cmocka_unit_test(sines_do_not_drift),
-      cmocka_unit_test(half_sines_are_one_pulse),
-      cmocka_unit_test(squares),
-      cmocka_unit_test(ramps_hold_their_end),
-      cmocka_unit_test(tables),
-      cmocka_unit_test(sums_add_values_and_rates),
-      cmocka_unit_test(rates_are_derivatives),
-      cmocka_unit_test(periods),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

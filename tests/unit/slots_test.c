@@ -87,8 +87,7 @@ static void make_file(const char *path, int64_t points) {
   strut_slots_close(slots);
 }
 
-static void test_rows_come_back(void **unused) {
-  (void)unused;
+TEST(rows_come_back) {
   scratch_make();
   const char *path = scratch_path("a.slots");
   strut_slots_plan plan = a_plan(1000), there;
@@ -122,8 +121,7 @@ static void test_rows_come_back(void **unused) {
   scratch_remove();
 }
 
-static void test_some_points_only(void **unused) {
-  (void)unused;
+TEST(some_points_only) {
   scratch_make();
   strut_error error = {0};
   strut_slots_plan plan = a_plan(100);
@@ -152,8 +150,7 @@ static void test_some_points_only(void **unused) {
   scratch_remove();
 }
 
-static void test_the_bytes_do_not_depend_on_the_order(void **unused) {
-  (void)unused;
+TEST(the_bytes_do_not_depend_on_the_order) {
   scratch_make();
   size_t first = 0, second = 0;
   make_file(scratch_path("a"), 20);
@@ -172,8 +169,7 @@ static void test_the_bytes_do_not_depend_on_the_order(void **unused) {
 }
 
 /* Cut at many lengths, close by all ends of slots and fields: rows are whole or missing, and the rest can be computed again. */
-static void test_a_file_that_is_cut(void **unused) {
-  (void)unused;
+TEST(a_file_that_is_cut) {
   scratch_make();
   size_t length = 0;
   make_file(scratch_path("a"), 5);
@@ -208,8 +204,7 @@ static void test_a_file_that_is_cut(void **unused) {
 }
 
 /* One bit turned anywhere: a slot is missing then, a header is refused, nothing else changes. */
-static void test_a_bit_flipped_anywhere(void **unused) {
-  (void)unused;
+TEST(a_bit_flipped_anywhere) {
   scratch_make();
   size_t length = 0;
   make_file(scratch_path("a"), 3);
@@ -240,8 +235,7 @@ static void test_a_bit_flipped_anywhere(void **unused) {
 }
 
 /* A slot of the right bytes in the wrong place, or of another study, is none. */
-static void test_slots_of_elsewhere(void **unused) {
-  (void)unused;
+TEST(slots_of_elsewhere) {
   scratch_make();
   size_t length = 0, other_length = 0;
   make_file(scratch_path("a"), 3);
@@ -284,8 +278,7 @@ static void expect_refused(const char *path, const strut_slots_plan *plan, strut
     fail_msg("\"%s\" lacks \"%s\"", error.message, words);
 }
 
-static void test_other_studies_are_refused(void **unused) {
-  (void)unused;
+TEST(other_studies_are_refused) {
   scratch_make();
   const char *path = scratch_path("a");
   size_t length = 0, after = 0;
@@ -313,8 +306,7 @@ static void test_other_studies_are_refused(void **unused) {
   scratch_remove();
 }
 
-static void test_foreign_files_are_refused(void **unused) {
-  (void)unused;
+TEST(foreign_files_are_refused) {
   scratch_make();
   strut_slots_plan plan = a_plan(9);
   const char *path = scratch_path("a");
@@ -344,8 +336,7 @@ static void test_foreign_files_are_refused(void **unused) {
   scratch_remove();
 }
 
-static void test_one_writer_at_a_time(void **unused) {
-  (void)unused;
+TEST(one_writer_at_a_time) {
   scratch_make();
   const char *path = scratch_path("a");
   strut_slots_plan plan = a_plan(9);
@@ -372,8 +363,7 @@ static void test_one_writer_at_a_time(void **unused) {
 }
 
 /* Processes killed while they write, each going on from the last. */
-static void test_killed_and_resumed(void **unused) {
-  (void)unused;
+TEST(killed_and_resumed) {
   enum { POINTS = 3000 };
   scratch_make();
   const char *path = scratch_path("a");
@@ -425,8 +415,7 @@ static void *work(void *context) {
   return NULL;
 }
 
-static void test_threads(void **unused) {
-  (void)unused;
+TEST(threads) {
   scratch_make();
   strut_slots_plan plan = a_plan(8000);
   strut_slots *slots = open_slots(scratch_path("a"), &plan);
@@ -450,8 +439,7 @@ static void test_threads(void **unused) {
 }
 
 /* Texts that are too long are cut between characters; nothing breaks a line of the table. */
-static void test_texts_that_do_not_fit(void **unused) {
-  (void)unused;
+TEST(texts_that_do_not_fit) {
   scratch_make();
   strut_slots_plan plan = a_plan(2);
   strut_slots *slots = open_slots(scratch_path("a"), &plan);
@@ -475,8 +463,7 @@ static void test_texts_that_do_not_fit(void **unused) {
 }
 
 /* No room: a complaint, a missing point, and all well when there is room again. */
-static void test_a_full_disk(void **unused) {
-  (void)unused;
+TEST(a_full_disk) {
   scratch_make();
   strut_slots_plan plan = a_plan(200);
   strut_slots *slots = open_slots(scratch_path("a"), &plan);
@@ -503,8 +490,7 @@ static void test_a_full_disk(void **unused) {
   scratch_remove();
 }
 
-static void test_a_full_small_disk(void **unused) {
-  (void)unused;
+TEST(a_full_small_disk) {
   const char *disk = scratch_make();
   if (!scratch_mount_small_disk(disk, 64)) {
     scratch_remove();
@@ -525,8 +511,7 @@ static void test_a_full_small_disk(void **unused) {
   scratch_remove();
 }
 
-static void test_no_memory(void **unused) {
-  (void)unused;
+TEST(no_memory) {
   scratch_make();
   strut_slots_plan plan = a_plan(100), there;
   make_file(scratch_path("a"), 100);
@@ -549,8 +534,7 @@ static void test_no_memory(void **unused) {
 }
 
 /* Rows that failed are missing until they have others; in the file they stay till then. */
-static void test_failed_rows_once_more(void **unused) {
-  (void)unused;
+TEST(failed_rows_once_more) {
   scratch_make();
   const char *path = scratch_path("a.slots");
   const double numbers[] = {1.0, 2.0};
@@ -582,26 +566,4 @@ static void test_failed_rows_once_more(void **unused) {
   check_row(slots, 14);
   strut_slots_close(slots);
   scratch_remove();
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_rows_come_back),
-      cmocka_unit_test(test_failed_rows_once_more),
-      cmocka_unit_test(test_some_points_only),
-      cmocka_unit_test(test_the_bytes_do_not_depend_on_the_order),
-      cmocka_unit_test(test_a_file_that_is_cut),
-      cmocka_unit_test(test_a_bit_flipped_anywhere),
-      cmocka_unit_test(test_slots_of_elsewhere),
-      cmocka_unit_test(test_other_studies_are_refused),
-      cmocka_unit_test(test_foreign_files_are_refused),
-      cmocka_unit_test(test_one_writer_at_a_time),
-      cmocka_unit_test(test_killed_and_resumed),
-      cmocka_unit_test(test_threads),
-      cmocka_unit_test(test_texts_that_do_not_fit),
-      cmocka_unit_test(test_a_full_disk),
-      cmocka_unit_test(test_a_full_small_disk),
-      cmocka_unit_test(test_no_memory),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

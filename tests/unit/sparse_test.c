@@ -27,8 +27,7 @@ static strut_sparse *random_matrix(uint64_t *r, int32_t n, size_t count, double 
   return strut_sparse_build(n, &triplets, arena);
 }
 
-static void test_contributions_are_summed_and_sorted(void **unused) {
-  (void)unused;
+TEST(contributions_are_summed_and_sorted) {
   uint64_t r = 3;
   static double dense[N * N];
   for (int turn = 0; turn < 50; turn++) {
@@ -52,8 +51,7 @@ static void test_contributions_are_summed_and_sorted(void **unused) {
 }
 
 /* Some columns at a time, from contributions that come again each time: the same bits. */
-static void test_stretches_of_columns_make_the_same_matrix(void **unused) {
-  (void)unused;
+TEST(stretches_of_columns_make_the_same_matrix) {
   static double dense[N * N];
   for (uint64_t turn = 0; turn < 50; turn++) {
     strut_arena arena = {0};
@@ -85,8 +83,7 @@ static void test_stretches_of_columns_make_the_same_matrix(void **unused) {
   }
 }
 
-static void test_product(void **unused) {
-  (void)unused;
+TEST(product) {
   uint64_t r = 4;
   static double dense[N * N];
   double x[N], y[N];
@@ -104,8 +101,7 @@ static void test_product(void **unused) {
   }
 }
 
-static void test_an_empty_matrix(void **unused) {
-  (void)unused;
+TEST(an_empty_matrix) {
   strut_arena arena = {0};
   strut_triplets none = {0};
   strut_sparse *m = strut_sparse_build(0, &none, &arena);
@@ -161,19 +157,12 @@ static void check_factor(double spread) {
   }
 }
 
-static void test_factors_solve(void **unused) {
-  (void)unused;
-  check_factor(2);
-}
+TEST(factors_solve) { check_factor(2); }
 
 /* Diagonals from 1e-12 to 1e12: heavy beside light nodes. */
-static void test_factors_solve_however_the_scales_differ(void **unused) {
-  (void)unused;
-  check_factor(1e6);
-}
+TEST(factors_solve_however_the_scales_differ) { check_factor(1e6); }
 
-static void test_a_singular_matrix_is_refused(void **unused) {
-  (void)unused;
+TEST(a_singular_matrix_is_refused) {
   for (int bad = 0; bad < 2; bad++) {
     strut_arena arena = {0};
     strut_triplets triplets = {0};
@@ -190,8 +179,7 @@ static void test_a_singular_matrix_is_refused(void **unused) {
   }
 }
 
-static void test_factors_without_memory(void **unused) {
-  (void)unused;
+TEST(factors_without_memory) {
   uint64_t r = 6;
   strut_arena arena = {0};
   strut_sparse *m = positive(&r, 1, &arena);
@@ -211,8 +199,7 @@ static void test_factors_without_memory(void **unused) {
 }
 
 /* Two paths and a ring that nothing couples, row by row in turns: each has the factor that it has alone. */
-static void test_parts_are_solved_in_turns(void **unused) {
-  (void)unused;
+TEST(parts_are_solved_in_turns) {
   enum { PART = 100, PARTS = 3, ALL = PART * PARTS };
   strut_arena arena = {0};
   strut_triplets triplets = {0};
@@ -250,8 +237,7 @@ static void test_parts_are_solved_in_turns(void **unused) {
 }
 
 /* One pattern, many numbers: solutions against products, and a matrix that is not positive definite. */
-static void test_factorised_again(void **unused) {
-  (void)unused;
+TEST(factorised_again) {
   uint64_t r = 9;
   static double dense[N * N];
   for (int turn = 0; turn < 30; turn++) {
@@ -280,20 +266,4 @@ static void test_factorised_again(void **unused) {
     }
     strut_arena_free(&arena);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_factorised_again),
-      cmocka_unit_test(test_parts_are_solved_in_turns),
-      cmocka_unit_test(test_contributions_are_summed_and_sorted),
-      cmocka_unit_test(test_stretches_of_columns_make_the_same_matrix),
-      cmocka_unit_test(test_product),
-      cmocka_unit_test(test_an_empty_matrix),
-      cmocka_unit_test(test_factors_solve),
-      cmocka_unit_test(test_factors_solve_however_the_scales_differ),
-      cmocka_unit_test(test_a_singular_matrix_is_refused),
-      cmocka_unit_test(test_factors_without_memory),
-  };
-  return cmocka_run_group_tests_name("sparse", tests, NULL, NULL);
 }

@@ -67,8 +67,7 @@ static void triangle(strut_setup *setup, double x) {
   setup->scene.gravity[1] = -G;
 }
 
-static void test_a_triangle_stands_on_every_side(void **unused) {
-  (void)unused;
+TEST(a_triangle_stands_on_every_side) {
   found f;
   triangle(&f.setup, 0.4);
   search(&f);
@@ -92,8 +91,7 @@ static void test_a_triangle_stands_on_every_side(void **unused) {
   done(&f);
 }
 
-static void test_it_tips_over_its_foot(void **unused) {
-  (void)unused;
+TEST(it_tips_over_its_foot) {
   found f;
   triangle(&f.setup, 2.5);
   search(&f);
@@ -119,8 +117,7 @@ static void truss(strut_setup *setup) {
   build_member(&setup->scene, STRUT_BAR, 1, 2, 1000, 0, 0);
 }
 
-static void test_a_truss_snaps(void **unused) {
-  (void)unused;
+TEST(a_truss_snaps) {
   found f;
   truss(&f.setup);
   search(&f);
@@ -138,8 +135,7 @@ static void test_a_truss_snaps(void **unused) {
 }
 
 /* A bar on a pin leaves one motion: its contact node alone is held. */
-static void test_one_motion_needs_one_support(void **unused) {
-  (void)unused;
+TEST(one_motion_needs_one_support) {
   found f;
   strut_setup_init(&f.setup);
   build_support(&f.setup.scene, 0, 0.6);
@@ -157,8 +153,7 @@ static void test_one_motion_needs_one_support(void **unused) {
   done(&f);
 }
 
-static void test_what_falls(void **unused) {
-  (void)unused;
+TEST(what_falls) {
   found f;
   strut_arena arena = {0};
   strut_rest_state stand;
@@ -179,8 +174,7 @@ static void test_what_falls(void **unused) {
   done(&f);
 }
 
-static void test_a_part_that_falls(void **unused) {
-  (void)unused;
+TEST(a_part_that_falls) {
   found f;
   truss(&f.setup);
   build_mass(&f.setup.scene, 5, 5, 1);
@@ -192,8 +186,7 @@ static void test_a_part_that_falls(void **unused) {
   done(&f);
 }
 
-static void test_a_mechanism(void **unused) {
-  (void)unused;
+TEST(a_mechanism) {
   found f;
   strut_setup_init(&f.setup);
   build_support(&f.setup.scene, 0, 0);
@@ -211,8 +204,7 @@ static void test_a_mechanism(void **unused) {
 }
 
 /* What friction would have to hold is a matter of all forces, not of the slope alone. */
-static void test_a_push_along_the_ground(void **unused) {
-  (void)unused;
+TEST(a_push_along_the_ground) {
   found f;
   triangle(&f.setup, 0.4);
   double weight = (1 + hypot(0.4, 1) + hypot(0.6, 1)) * G;
@@ -224,8 +216,7 @@ static void test_a_push_along_the_ground(void **unused) {
 }
 
 /* One node has no extent to measure distances by; it rests all the same. */
-static void test_one_node(void **unused) {
-  (void)unused;
+TEST(one_node) {
   strut_setup setup;
   strut_arena arena = {0};
   strut_rest_state stand;
@@ -245,8 +236,7 @@ static void test_one_node(void **unused) {
 }
 
 /* A slope is level ground with gravity turned: the same solutions, but nothing rests. */
-static void test_a_slope(void **unused) {
-  (void)unused;
+TEST(a_slope) {
   const double slope = 0.1, c = cos(slope), s = sin(slope);
   found level, steep;
   triangle(&level.setup, 0.4);
@@ -278,8 +268,7 @@ static void test_a_slope(void **unused) {
   done(&steep);
 }
 
-static void test_supports_must_touch(void **unused) {
-  (void)unused;
+TEST(supports_must_touch) {
   strut_setup setup;
   strut_equilibria all;
   strut_error error = {0};
@@ -312,8 +301,7 @@ static void with_configurations(strut_setup *setup) {
   setup->scene.configuration_count = 2;
 }
 
-static void test_stands(void **unused) {
-  (void)unused;
+TEST(stands) {
   strut_setup setup;
   strut_arena arena = {0};
   strut_rest_state drawn, start, one, two;
@@ -350,8 +338,7 @@ static void test_stands(void **unused) {
   strut_setup_free(&setup);
 }
 
-static void test_a_run_wants_it_resolved(void **unused) {
-  (void)unused;
+TEST(a_run_wants_it_resolved) {
   strut_setup setup;
   strut_error error = {0};
   strut_summary summary;
@@ -377,8 +364,7 @@ static void test_a_run_wants_it_resolved(void **unused) {
   strut_setup_free(&setup);
 }
 
-static void test_no_such_equilibrium(void **unused) {
-  (void)unused;
+TEST(no_such_equilibrium) {
   strut_setup setup;
   strut_arena arena = {0};
   strut_rest_state stand;
@@ -395,8 +381,7 @@ static void test_no_such_equilibrium(void **unused) {
   strut_setup_free(&setup);
 }
 
-static void test_refused_memory(void **unused) {
-  (void)unused;
+TEST(refused_memory) {
   strut_setup setup;
   strut_equilibria_options options = {.starts = 4};
   triangle(&setup, 2.5);
@@ -414,25 +399,4 @@ static void test_refused_memory(void **unused) {
   assert_true(n > 100);
   strut_model_free(model);
   strut_setup_free(&setup);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_triangle_stands_on_every_side),
-      cmocka_unit_test(test_it_tips_over_its_foot),
-      cmocka_unit_test(test_a_truss_snaps),
-      cmocka_unit_test(test_one_motion_needs_one_support),
-      cmocka_unit_test(test_what_falls),
-      cmocka_unit_test(test_a_part_that_falls),
-      cmocka_unit_test(test_a_mechanism),
-      cmocka_unit_test(test_a_push_along_the_ground),
-      cmocka_unit_test(test_one_node),
-      cmocka_unit_test(test_a_slope),
-      cmocka_unit_test(test_supports_must_touch),
-      cmocka_unit_test(test_stands),
-      cmocka_unit_test(test_a_run_wants_it_resolved),
-      cmocka_unit_test(test_no_such_equilibrium),
-      cmocka_unit_test(test_refused_memory),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -58,8 +58,7 @@ static bool change(strut_setup *s, int which) {
   return true;
 }
 
-static void test_each_structure_has_equilibria_of_its_own(void **unused) {
-  (void)unused;
+TEST(each_structure_has_equilibria_of_its_own) {
   strut_equilibrium_cache *shared = strut_equilibrium_cache_create();
   double first[2], again[2];
   assert_non_null(shared);
@@ -92,8 +91,7 @@ static void test_each_structure_has_equilibria_of_its_own(void **unused) {
 }
 
 /* What stands alike is looked for once: friction and the run's step change nothing of where. */
-static void test_points_that_stand_alike_share(void **unused) {
-  (void)unused;
+TEST(points_that_stand_alike_share) {
   strut_equilibrium_cache *shared = strut_equilibrium_cache_create();
   double at[2], other[2];
   assert_non_null(shared);
@@ -111,12 +109,4 @@ static void test_points_that_stand_alike_share(void **unused) {
   strut_equilibrium_cache_free(shared);
   strut_setup_free(&setup);
   strut_setup_free(&rough);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_each_structure_has_equilibria_of_its_own),
-      cmocka_unit_test(test_points_that_stand_alike_share),
-  };
-  return cmocka_run_group_tests_name("standing", tests, NULL, NULL);
 }

@@ -1,18 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Pictures of modes and of a path: without memory there is none, nor half of one. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 #include "engine/base/memory.h"
 #include "engine/output/draw/legend.h"
 #include "engine/output/figures/statics_figures.h"
 #include "tests/models/run_model.h"
+#include "tests/support/test.h"
 #include "tests/unit/scratch.h"
 
 enum { MOST = 400 };
@@ -50,8 +46,7 @@ static strut_status draw_path(const strut_model *model, const void *what, strut_
                            error);
 }
 
-static void test_modes(void **state) {
-  (void)state;
+TEST(modes) {
   model_run run = {0};
   strut_modes modes = {0};
   strut_error error = {0};
@@ -65,8 +60,7 @@ static void test_modes(void **state) {
   model_run_free(&run);
 }
 
-static void test_path(void **state) {
-  (void)state;
+TEST(path) {
   model_run run = {0};
   strut_path path = {0};
   strut_error error = {0};
@@ -81,8 +75,7 @@ static void test_path(void **state) {
 }
 
 /* No letter is cut in two, and what is not all of a text ends in an ellipsis. */
-static void test_texts(void **state) {
-  (void)state;
+TEST(texts) {
   char fitted[STRUT_FITTED_TEXT];
   strut_canvas *canvas = NULL;
   double width, height;
@@ -108,13 +101,4 @@ static void test_texts(void **state) {
   assert_int_equal(strut_text_bytes("a\xE2\x82\xAC", 4), 4);
   assert_int_equal(strut_text_bytes("\xD7\xA9\xD7", 3), 2); /* cut by who made it */
   assert_int_equal(strut_text_bytes("\xF0\x9F\x98\x80", 3), 0);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_modes),
-      cmocka_unit_test(test_path),
-      cmocka_unit_test(test_texts),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

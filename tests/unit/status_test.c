@@ -6,8 +6,7 @@
 #include "tests/support/check.h"
 
 /* The codes that scripts and papers rely on. */
-static void test_exit_codes_are_as_documented(void **unused) {
-  (void)unused;
+TEST(exit_codes_are_as_documented) {
   static const struct {
     strut_status status;
     int code;
@@ -20,8 +19,7 @@ static void test_exit_codes_are_as_documented(void **unused) {
     assert_int_equal(strut_status_exit_code(expected[i].status), expected[i].code);
 }
 
-static void test_texts_are_there_and_differ(void **unused) {
-  (void)unused;
+TEST(texts_are_there_and_differ) {
   assert_string_equal(strut_status_text(STRUT_OK), "completed");
   assert_string_equal(strut_status_text(STRUT_DIVERGED), "diverged");
   assert_string_equal(strut_status_text(STRUT_INTERRUPTED), "interrupted");
@@ -31,8 +29,7 @@ static void test_texts_are_there_and_differ(void **unused) {
                               strut_status_text((strut_status)k));
 }
 
-static void test_fail_fills_the_error(void **unused) {
-  (void)unused;
+TEST(fail_fills_the_error) {
   strut_error error = {0};
   assert_int_equal(strut_fail(&error, STRUT_SINGULAR, "node '%s' %d", "n1", 7), STRUT_SINGULAR);
   assert_int_equal(error.status, STRUT_SINGULAR);
@@ -40,8 +37,7 @@ static void test_fail_fills_the_error(void **unused) {
   assert_int_equal(strut_fail(NULL, STRUT_NO_MEMORY, "nobody listens"), STRUT_NO_MEMORY);
 }
 
-static void test_a_message_that_is_too_long_is_cut(void **unused) {
-  (void)unused;
+TEST(a_message_that_is_too_long_is_cut) {
   struct {
     strut_error error;
     char guard;
@@ -52,14 +48,4 @@ static void test_a_message_that_is_too_long_is_cut(void **unused) {
   strut_fail(&it.error, STRUT_USAGE, "%s", text);
   assert_int_equal(strlen(it.error.message), sizeof it.error.message - 1);
   assert_true(it.guard == 'g');
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_exit_codes_are_as_documented),
-      cmocka_unit_test(test_texts_are_there_and_differ),
-      cmocka_unit_test(test_fail_fills_the_error),
-      cmocka_unit_test(test_a_message_that_is_too_long_is_cut),
-  };
-  return cmocka_run_group_tests_name("status", tests, NULL, NULL);
 }

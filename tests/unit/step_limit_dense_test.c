@@ -228,8 +228,9 @@ static void chain(strut_scene *scene, double ratio, bool random, bool few, strut
   }
 }
 
-static void test_chains(void **unused) {
-  (void)unused;
+BEFORE_ALL { nodes = (int32_t)test_number(1, nodes); }
+
+TEST(chains) {
   for (int k = 0; k < 4; k++)
     for (int kind = 0; kind < 4; kind++) {
       strut_scene scene;
@@ -262,8 +263,7 @@ static void grid(strut_scene *scene, double ratio, double ground, bool touch, do
     build_rough_contact(scene, x, 5e4, damping_of(ground, 5e4, 0.3), 0.3, 0.3, 1e-3);
 }
 
-static void test_grids(void **unused) {
-  (void)unused;
+TEST(grids) {
   for (int k = 0; k < 4; k++)
     for (int kind = 0; kind < 3; kind++) {
       strut_scene scene;
@@ -276,8 +276,7 @@ static void test_grids(void **unused) {
 }
 
 /* Prestressed X-frames in a row, in which one cable is far stiffer, and one far more damped. */
-static void test_frames(void **unused) {
-  (void)unused;
+TEST(frames) {
   for (int k = 0; k < 4; k++) {
     strut_scene scene;
     char name[80];
@@ -294,8 +293,7 @@ static void test_frames(void **unused) {
 }
 
 /* The limit of a long even row is known; and it takes seconds. */
-static void test_time_of_many_nodes(void **unused) {
-  (void)unused;
+TEST(time_of_many_nodes) {
   for (int k = 0; k < 3; k++) {
     strut_scene scene;
     strut_step_limit limit;
@@ -319,15 +317,4 @@ static void test_time_of_many_nodes(void **unused) {
     strut_model_free(model);
     strut_scene_free(&scene);
   }
-}
-
-int main(int count, char **words) {
-  if (count > 1) nodes = (int32_t)strtol(words[1], NULL, 10);
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_chains),
-      cmocka_unit_test(test_grids),
-      cmocka_unit_test(test_frames),
-      cmocka_unit_test(test_time_of_many_nodes),
-  };
-  return cmocka_run_group_tests_name("step_limit, dense", tests, NULL, NULL);
 }

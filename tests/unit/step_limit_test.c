@@ -12,8 +12,7 @@
 
 static const double PI = 3.14159265358979323846, IMAGINARY = 2.8284271247461903;
 
-static void test_limits_on_the_axes(void **unused) {
-  (void)unused;
+TEST(limits_on_the_axes) {
   assert_relative(strut_rk4_limit(0, 1), IMAGINARY, 1e-9);
   assert_relative(strut_rk4_limit(0, -250), IMAGINARY / 250, 1e-9);
   assert_relative(strut_rk4_limit(-1, 0), 2.7852935634, 1e-9);
@@ -23,8 +22,7 @@ static void test_limits_on_the_axes(void **unused) {
 }
 
 /* Largest stable w h of a damped mode: measured, to the digits given. */
-static void test_limits_of_damped_modes(void **unused) {
-  (void)unused;
+TEST(limits_of_damped_modes) {
   static const double known[][2] = {{0.01, 2.8486}, {0.05, 2.9098}, {0.1, 2.9509}, {0.2, 2.9401},
                                     {0.3, 2.8353},  {0.5, 2.6225},  {0.7, 2.6980}, {1, 2.7853}};
   for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
@@ -42,8 +40,7 @@ static strut_step_limit limit_of(const strut_setup *setup) {
 }
 
 /* One mass on a damped spring, and one on damped ground. */
-static void test_limit_of_a_damped_oscillator(void **unused) {
-  (void)unused;
+TEST(limit_of_a_damped_oscillator) {
   static const double known[][2] = {{0, 2.8284271},  {0.2, 2.9401},   {0.5, 2.6225},
                                     {2, 0.74631717}, {10, 0.1396135}, {100, 0.013926816}};
   for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
@@ -67,8 +64,7 @@ static void test_limit_of_a_damped_oscillator(void **unused) {
 }
 
 /* Of a mass on damped ground each method has a limit of its own; implicit dampers have none. */
-static void test_limit_of_each_method_on_damped_ground(void **unused) {
-  (void)unused;
+TEST(limit_of_each_method_on_damped_ground) {
   const double k = 900, mass = 4, omega = 15, zetas[] = {0.2, 2};
   const double rk4[] = {2.9401, 0.74631717};
   const strut_integrator *method;
@@ -111,8 +107,7 @@ static bool change(strut_setup *s, int which) {
 }
 
 /* What was found for one model is told of another only where all is alike that matters. */
-static void test_limits_are_recalled_for_the_same_model_only(void **unused) {
-  (void)unused;
+TEST(limits_are_recalled_for_the_same_model_only) {
   strut_step_limits kept = {0};
   const strut_integrator *rk4 = strut_integrator_find("rk4"),
                          *euler = strut_integrator_find("euler");
@@ -150,8 +145,7 @@ static void test_limits_are_recalled_for_the_same_model_only(void **unused) {
   }
 }
 
-static void test_nothing_limits_free_masses(void **unused) {
-  (void)unused;
+TEST(nothing_limits_free_masses) {
   strut_setup setup;
   strut_setup_init(&setup);
   build_mass(&setup.scene, 0, 0, 1);
@@ -178,8 +172,7 @@ static double highest(int bars, strut_mass_model mass_model) {
 }
 
 /* Below the size of all eigenvalues the limit is exact, above it within a hundredth. */
-static void test_limit_of_rows_of_bars(void **unused) {
-  (void)unused;
+TEST(limit_of_rows_of_bars) {
   static const int sizes[] = {5, 30, 61, 62, 200, 2000};
   for (int s = 0; s < 12; s++) {
     strut_mass_model mass_model = s % 2 ? STRUT_MASS_LUMPED : STRUT_MASS_CONSISTENT;
@@ -198,8 +191,7 @@ static void test_limit_of_rows_of_bars(void **unused) {
 }
 
 /* Over-damped rows: modes of damping ratio 3 at the highest frequency. */
-static void test_limit_of_damped_rows(void **unused) {
-  (void)unused;
+TEST(limit_of_damped_rows) {
   static const int sizes[] = {20, 100};
   for (int s = 0; s < 2; s++) {
     strut_setup setup;
@@ -232,8 +224,7 @@ static double growth(const strut_setup *setup, const char *method, double step, 
 }
 
 /* The truth of it: just below the limit small motions stay small, just above they grow. */
-static void test_the_limit_is_where_motions_begin_to_grow(void **unused) {
-  (void)unused;
+TEST(the_limit_is_where_motions_begin_to_grow) {
   x_frame frame = {.side = 1,
                    .cable_stiffness = 400,
                    .bar_stiffness = 2000,
@@ -262,8 +253,7 @@ static void test_the_limit_is_where_motions_begin_to_grow(void **unused) {
   }
 }
 
-static void test_the_crawler(void **unused) {
-  (void)unused;
+TEST(the_crawler) {
   strut_setup setup;
   strut_setup_init(&setup);
   structure_crawler(&setup.scene, 10, 1e-4, 0.1, false);
@@ -275,8 +265,7 @@ static void test_the_crawler(void **unused) {
 }
 
 /* Above 60 coordinates the estimate, below all eigenvalues: two copies of a scene tell them apart. */
-static void test_the_estimate_is_within_a_percent(void **unused) {
-  (void)unused;
+TEST(the_estimate_is_within_a_percent) {
   int compared = 0;
   for (uint64_t seed = 1; seed <= 150; seed++) {
     strut_setup setup;
@@ -301,21 +290,4 @@ static void test_the_estimate_is_within_a_percent(void **unused) {
     strut_setup_free(&setup);
   }
   assert_true(compared > 50);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_limits_on_the_axes),
-      cmocka_unit_test(test_limits_of_damped_modes),
-      cmocka_unit_test(test_limit_of_a_damped_oscillator),
-      cmocka_unit_test(test_limit_of_each_method_on_damped_ground),
-      cmocka_unit_test(test_limits_are_recalled_for_the_same_model_only),
-      cmocka_unit_test(test_nothing_limits_free_masses),
-      cmocka_unit_test(test_limit_of_rows_of_bars),
-      cmocka_unit_test(test_limit_of_damped_rows),
-      cmocka_unit_test(test_the_limit_is_where_motions_begin_to_grow),
-      cmocka_unit_test(test_the_crawler),
-      cmocka_unit_test(test_the_estimate_is_within_a_percent),
-  };
-  return cmocka_run_group_tests_name("step_limit", tests, NULL, NULL);
 }

@@ -2,11 +2,7 @@
 /* The sweep itself: each point is computed once whatever kills it, and what a point costs besides. */
 #include <errno.h>
 #include <fcntl.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,10 +11,9 @@
 #include <time.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "engine/study/results/study_table.h"
 #include "engine/study/sweep/sweep.h"
+#include "tests/support/test.h"
 
 /* The thread sanitizer's own threads do not outlive a fork, and memory and time are its own. */
 #if defined(__SANITIZE_THREAD__)
@@ -103,8 +98,7 @@ static bool run_and_kill(const char *path, log_t *log, int milliseconds) {
 }
 
 /* First of all tests: a process that has threads of its own may not fork into more. */
-static void nothing_is_computed_twice(void **state) {
-  (void)state;
+TEST(nothing_is_computed_twice) {
   char folder[] = "/tmp/strut-sweep-XXXXXX", path[64], record[64];
   if (THREADS_WATCHED) skip();
   assert_non_null(mkdtemp(folder));
@@ -157,8 +151,7 @@ static double table_of(const char *folder, const char *path) {
 }
 
 /* Bounds that a busy machine keeps; what they are stands in the message. */
-static void a_million_points_cost_little(void **state) {
-  (void)state;
+TEST(a_million_points_cost_little) {
   char folder[] = "/tmp/strut-sweep-XXXXXX", path[64];
   log_t log = {-1};
   strut_sweep_state end;
@@ -182,12 +175,4 @@ static void a_million_points_cost_little(void **state) {
   print_message("%.2f us of CPU a point that is done\n", 1e6 * (cpu_time() - began) / MANY);
   unlink(path);
   rmdir(folder);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(nothing_is_computed_twice),
-      cmocka_unit_test(a_million_points_cost_little),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,18 +2,13 @@
 /* CSV tables read for pictures: cells, numbers, what is no table, and nothing left behind. */
 #define _GNU_SOURCE /* streams.c is part of this file */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "parser/program/streams.c" /* the program is no library to link with */
 #include "parser/program/table_file.c"
 #include "tests/support/heap.h"
+#include "tests/support/test.h"
 #include "tests/unit/scratch.h"
 
 static strut_status read_text_as_file(const char *text, strut_table *table) {
@@ -32,8 +27,7 @@ static strut_status read_text_as_file(const char *text, strut_table *table) {
   return status;
 }
 
-static void test_cells_and_numbers(void **unused) {
-  (void)unused;
+TEST(cells_and_numbers) {
   strut_table table;
   scratch_make();
   assert_int_equal(
@@ -54,8 +48,7 @@ static void test_cells_and_numbers(void **unused) {
 }
 
 /* Each way to fail gives everything back, whether the table had begun or not. */
-static void test_a_table_with_errors_leaves_nothing(void **unused) {
-  (void)unused;
+TEST(a_table_with_errors_leaves_nothing) {
   static const char *const bad[] = {"", "a,b\n", "a,b\n1,2\n3\n", "a,b\n1,\"2\n", "a\n\"1\"2\n"};
   size_t before = 0;
   scratch_make();
@@ -72,8 +65,7 @@ static void test_a_table_with_errors_leaves_nothing(void **unused) {
 }
 
 /* The same where memory is out. */
-static void test_no_memory_leaves_nothing(void **unused) {
-  (void)unused;
+TEST(no_memory_leaves_nothing) {
   size_t before = 0;
   scratch_make();
   for (int round = 0; round < 20; round++) {
@@ -95,13 +87,4 @@ static void test_no_memory_leaves_nothing(void **unused) {
   }
   assert_in_range(heap_in_use(), 0, before + 500);
   scratch_remove();
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_cells_and_numbers),
-      cmocka_unit_test(test_a_table_with_errors_leaves_nothing),
-      cmocka_unit_test(test_no_memory_leaves_nothing),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

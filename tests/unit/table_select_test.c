@@ -1,14 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tables chosen from tables: rows of a text, differences of two sides, between points too. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include "engine/output/figures/table_parts.h"
+#include "tests/support/test.h"
 
 enum { ROWS = 9 };
 enum { SIDE, X, Y, WORD, COLUMNS };
@@ -57,16 +52,14 @@ static void check(bool between, const double *wanted, const char *marks) {
 }
 
 /* b has x = 0, 2, 1, 4 in panel p and 2 in panel q, in that order. */
-static void differences(void **state) {
-  (void)state;
+TEST(differences) {
   const double alone[] = {10, NAN, 29, NAN, 43}, line[] = {10, 15, 29, NAN, 43};
   check(false, alone, "01110");
   check(true, line,
         "00110"); /* at 2, half way from 1 to 9; 4 is beyond the last; I is not II at 1 */
 }
 
-static void only(void **state) {
-  (void)state;
+TEST(only) {
   strut_table some;
   strut_error error = {0};
   assert_int_equal(strut_table_only(&table, COLUMNS, "q", &some, &error), STRUT_OK);
@@ -79,8 +72,7 @@ static void only(void **state) {
 }
 
 /* Both at once, and every allocation fails once. */
-static void no_memory(void **state) {
-  (void)state;
+TEST(no_memory) {
   const strut_table_choice choice = {.only = COLUMNS, .only_value = "p", .difference = SIDE};
   strut_status status = STRUT_NO_MEMORY;
   for (int64_t n = 0; status != STRUT_OK; n++) {
@@ -99,10 +91,4 @@ static void no_memory(void **state) {
     }
     strut_table_chosen_free(&chosen);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(differences), cmocka_unit_test(only),
-                                     cmocka_unit_test(no_memory)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

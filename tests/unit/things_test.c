@@ -1,18 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The tables of things: names by kind, and the numbers by which an equilibrium is known. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "engine/base/memory.h"
 #include "engine/scene/things.h"
 #include "parser/language/keys.h"
 #include "parser/read/read_scene.h"
+#include "tests/support/test.h"
 
 static const char text[] =
     "strut: 1\n"
@@ -117,8 +112,7 @@ static strut_setup read_scene(void) {
 }
 
 /* A cached equilibrium is that of another structure as soon as one number differs. */
-static void every_number_at_rest_counts(void **state) {
-  (void)state;
+TEST(every_number_at_rest_counts) {
   static const struct {
     strut_thing kind;
     strut_section section;
@@ -152,8 +146,7 @@ static void every_number_at_rest_counts(void **state) {
   strut_setup_free(&setup);
 }
 
-static void names_follow_the_arrays(void **state) {
-  (void)state;
+TEST(names_follow_the_arrays) {
   strut_setup setup = read_scene();
   assert_int_equal(strut_thing_count(&setup.scene, STRUT_THING_MEMBER), 3);
   assert_string_equal(strut_thing_name(&setup.scene, STRUT_THING_MEMBER, 2), "r");
@@ -162,10 +155,4 @@ static void names_follow_the_arrays(void **state) {
   assert_string_equal(strut_thing_name(&setup.scene, STRUT_THING_GROUND, 1), "pipe");
   assert_ptr_equal(strut_thing_object(&setup.scene, STRUT_THING_CELL, 0), setup.scene.cells);
   strut_setup_free(&setup);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(every_number_at_rest_counts),
-                                     cmocka_unit_test(names_follow_the_arrays)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -62,8 +62,7 @@ static void assert_same_motion(const strut_trajectory *a, const strut_trajectory
   assert_same(a->energy, b->energy, n * STRUT_ENERGIES);
 }
 
-static void test_the_file_gives_back_what_the_run_had(void **unused) {
-  (void)unused;
+TEST(the_file_gives_back_what_the_run_had) {
   strut_trajectory taken = {0}, read = {0};
   strut_setup setup;
   strut_error error = {0};
@@ -87,8 +86,7 @@ static void test_the_file_gives_back_what_the_run_had(void **unused) {
 }
 
 /* A sink takes what it asks for, whatever the scene records; the file has what the scene says. */
-static void test_channels_of_its_own(void **unused) {
-  (void)unused;
+TEST(channels_of_its_own) {
   strut_trajectory taken = {0}, read = {0};
   strut_setup setup;
   scratch_make();
@@ -126,8 +124,7 @@ static void check_thinned(const strut_trajectory *few, const strut_trajectory *a
   }
 }
 
-static void test_thinned_to_the_room(void **unused) {
-  (void)unused;
+TEST(thinned_to_the_room) {
   static const size_t rooms[] = {200, 1000, 5000, 12345, 19000};
   strut_trajectory all = {0};
   strut_setup setup;
@@ -151,8 +148,7 @@ static void test_thinned_to_the_room(void **unused) {
   scratch_remove();
 }
 
-static void test_a_run_that_diverged_is_marked(void **unused) {
-  (void)unused;
+TEST(a_run_that_diverged_is_marked) {
   strut_trajectory taken = {0}, read = {0};
   strut_setup setup;
   scratch_make();
@@ -186,8 +182,7 @@ static void refused(const strut_setup *setup, const char *directory, const char 
   strut_trajectory_free(&t);
 }
 
-static void test_refusals(void **unused) {
-  (void)unused;
+TEST(refusals) {
   strut_trajectory taken = {0};
   strut_setup setup;
   scratch_make();
@@ -216,8 +211,7 @@ static void test_refusals(void **unused) {
   scratch_remove();
 }
 
-static void test_every_allocation_may_fail(void **unused) {
-  (void)unused;
+TEST(every_allocation_may_fail) {
   strut_setup setup;
   crawler(&setup, 1e-4);
   strut_model *model = motion_compile(&setup.scene);
@@ -240,16 +234,4 @@ static void test_every_allocation_may_fail(void **unused) {
   }
   strut_model_free(model);
   strut_setup_free(&setup);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_the_file_gives_back_what_the_run_had),
-      cmocka_unit_test(test_channels_of_its_own),
-      cmocka_unit_test(test_thinned_to_the_room),
-      cmocka_unit_test(test_a_run_that_diverged_is_marked),
-      cmocka_unit_test(test_refusals),
-      cmocka_unit_test(test_every_allocation_may_fail),
-  };
-  return cmocka_run_group_tests_name("trajectory", tests, NULL, NULL);
 }

@@ -21,8 +21,7 @@ static void check(double turns) {
   assert_near(sine * sine + cosine * cosine, 1, 4 * BOUND);
 }
 
-static void test_random_turns(void **unused) {
-  (void)unused;
+TEST(random_turns) {
   uint64_t r = 1;
   for (int i = 0; i < 200000; i++) {
     check(random_between(&r, -1, 1));
@@ -34,8 +33,7 @@ static void test_random_turns(void **unused) {
 }
 
 /* About the places where the quadrant changes. */
-static void test_quadrant_borders(void **unused) {
-  (void)unused;
+TEST(quadrant_borders) {
   for (int eighth = -40; eighth <= 40; eighth++)
     for (int k = -3; k <= 3; k++) {
       double turns = eighth / 8.0, step = k < 0 ? -HUGE_VAL : HUGE_VAL;
@@ -44,8 +42,7 @@ static void test_quadrant_borders(void **unused) {
     }
 }
 
-static void test_quarter_turns_are_exact(void **unused) {
-  (void)unused;
+TEST(quarter_turns_are_exact) {
   static const double sines[] = {0, 1, 0, -1};
   for (int quarter = -4000; quarter < 4000; quarter++) {
     double sine, cosine;
@@ -56,8 +53,7 @@ static void test_quarter_turns_are_exact(void **unused) {
 }
 
 /* A drive must not drift, however long it runs: whole turns fall away exactly. */
-static void test_whole_turns_change_nothing(void **unused) {
-  (void)unused;
+TEST(whole_turns_change_nothing) {
   for (double whole = 1; whole < 0x1p44; whole *= 2)
     for (int k = 0; k < 64; k++) {
       double turns = k / 64.0, s1, c1, s2, c2;
@@ -68,8 +64,7 @@ static void test_whole_turns_change_nothing(void **unused) {
     }
 }
 
-static void test_the_sine_is_odd_and_the_cosine_even(void **unused) {
-  (void)unused;
+TEST(the_sine_is_odd_and_the_cosine_even) {
   uint64_t r = 2;
   for (int i = 0; i < 100000; i++) {
     double turns = random_between(&r, -100, 100), s1, c1, s2, c2;
@@ -79,8 +74,7 @@ static void test_the_sine_is_odd_and_the_cosine_even(void **unused) {
   }
 }
 
-static void test_huge_turns_stay_within_one(void **unused) {
-  (void)unused;
+TEST(huge_turns_stay_within_one) {
   for (double turns = 1; turns < 1e300; turns *= 3.7)
     for (int sign = -1; sign <= 1; sign += 2) {
       double sine, cosine;
@@ -88,16 +82,4 @@ static void test_huge_turns_stay_within_one(void **unused) {
       assert_true(fabs(sine) <= 1 && fabs(cosine) <= 1);
       assert_near(sine * sine + cosine * cosine, 1, 4 * BOUND);
     }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_random_turns),
-      cmocka_unit_test(test_quadrant_borders),
-      cmocka_unit_test(test_quarter_turns_are_exact),
-      cmocka_unit_test(test_whole_turns_change_nothing),
-      cmocka_unit_test(test_the_sine_is_odd_and_the_cosine_even),
-      cmocka_unit_test(test_huge_turns_stay_within_one),
-  };
-  return cmocka_run_group_tests_name("trig", tests, NULL, NULL);
 }

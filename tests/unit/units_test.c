@@ -1,22 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Units: the table's order and factors, and the words for dimensions. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "parser/expression/expression.h"
 #include "parser/expression/units.h"
+#include "tests/support/test.h"
 
 static const strut_unit *unit(const char *name) { return strut_unit_find(name, strlen(name)); }
 
-static void every_unit_is_found(void **state) {
-  (void)state;
+TEST(every_unit_is_found) {
   size_t count = 0;
   for (; strut_unit_at(count); count++) {
     const strut_unit *one = strut_unit_at(count);
@@ -29,8 +23,7 @@ static void every_unit_is_found(void **state) {
   assert_null(strut_unit_at(count + 1));
 }
 
-static void other_names_are_not(void **state) {
-  (void)state;
+TEST(other_names_are_not) {
   static const char *const names[] = {"",    "x",  "M",  "mmm", "hz", "HZ",
                                       "kgg", "m ", " m", "K",   "pi"};
   for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) assert_null(unit(names[i]));
@@ -38,8 +31,7 @@ static void other_names_are_not(void **state) {
   assert_ptr_equal(strut_unit_find("min", 1), unit("m"));
 }
 
-static void factors_are_right(void **state) {
-  (void)state;
+TEST(factors_are_right) {
   static const struct {
     const char *name;
     double factor;
@@ -79,8 +71,7 @@ static void expect_words(strut_dimension dimension, const char *name, const char
   assert_string_equal(strut_dimension_unit(dimension), si);
 }
 
-static void dimensions_have_words(void **state) {
-  (void)state;
+TEST(dimensions_have_words) {
   expect_words(STRUT_DIM_NONE, "a number without unit", "1");
   expect_words(STRUT_DIM_LENGTH, "a length", "m");
   expect_words(STRUT_DIM_MASS, "a mass", "kg");
@@ -97,8 +88,7 @@ static void dimensions_have_words(void **state) {
   expect_words((strut_dimension){0, -0.5f, 0, 0}, "m^-0.5", "SI");
 }
 
-static void short_buffers_are_respected(void **state) {
-  (void)state;
+TEST(short_buffers_are_respected) {
   char buffer[12];
   for (size_t size = 1; size <= 8; size++) {
     memset(buffer, '#', sizeof buffer);
@@ -110,8 +100,7 @@ static void short_buffers_are_respected(void **state) {
 }
 
 /* The examples that messages give must be what they claim. */
-static void examples_fit(void **state) {
-  (void)state;
+TEST(examples_fit) {
   const strut_dimension all[] = {STRUT_DIM_NONE,      STRUT_DIM_LENGTH,       STRUT_DIM_MASS,
                                  STRUT_DIM_TIME,      STRUT_DIM_FREQUENCY,    STRUT_DIM_ANGLE,
                                  STRUT_DIM_VELOCITY,  STRUT_DIM_ACCELERATION, STRUT_DIM_FORCE,
@@ -134,21 +123,10 @@ static void examples_fit(void **state) {
   assert_null(strut_dimension_example((strut_dimension){1, 1, 1, 1}));
 }
 
-static void equality_allows_for_roots(void **state) {
-  (void)state;
+TEST(equality_allows_for_roots) {
   float third = 1.0f / 3;
   assert_true(
       strut_dimension_equal((strut_dimension){third + third + third, 0, 0, 0}, STRUT_DIM_MASS));
   assert_false(strut_dimension_equal((strut_dimension){1.01f, 0, 0, 0}, STRUT_DIM_MASS));
   assert_false(strut_dimension_equal((strut_dimension){1, 0, 0, 1}, STRUT_DIM_MASS));
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_unit_is_found),         cmocka_unit_test(other_names_are_not),
-      cmocka_unit_test(factors_are_right),           cmocka_unit_test(dimensions_have_words),
-      cmocka_unit_test(short_buffers_are_respected), cmocka_unit_test(examples_fit),
-      cmocka_unit_test(equality_allows_for_roots),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

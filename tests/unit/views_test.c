@@ -1,14 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The sketch, the files for ParaView and films where memory or the disk is out. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "engine/base/memory.h"
 #include "engine/output/exports.h"
@@ -16,6 +10,7 @@
 #include "engine/output/film/film.h"
 #include "engine/output/report/reports.h"
 #include "parser/read/read_scene.h"
+#include "tests/support/test.h"
 #include "tests/unit/scratch.h"
 
 enum { FRAMES = 3, MOST = 1000 };
@@ -73,8 +68,7 @@ static void drop(things *t) {
   strut_setup_free(&t->setup);
 }
 
-static void test_sketch_without_memory(void **unused) {
-  (void)unused;
+TEST(sketch_without_memory) {
   things t;
   make(&t);
   char *whole = strut_sketch(t.model, t.model->start, 60, 12, true), *drawn = NULL;
@@ -93,8 +87,7 @@ static void test_sketch_without_memory(void **unused) {
 }
 
 /* All files or none, and the reason. */
-static void test_vtk_without_memory(void **unused) {
-  (void)unused;
+TEST(vtk_without_memory) {
   things t;
   make(&t);
   scratch_make();
@@ -115,8 +108,7 @@ static void test_vtk_without_memory(void **unused) {
   drop(&t);
 }
 
-static void test_vtk_on_a_full_disk(void **unused) {
-  (void)unused;
+TEST(vtk_on_a_full_disk) {
   things t;
   strut_error error = {0};
   strut_vtk_written written;
@@ -136,8 +128,7 @@ static void test_vtk_on_a_full_disk(void **unused) {
   drop(&t);
 }
 
-static void test_film_without_memory(void **unused) {
-  (void)unused;
+TEST(film_without_memory) {
   things t;
   if (strut_encoder_find(NULL) != STRUT_OK) skip();
   make(&t);
@@ -162,8 +153,7 @@ static void test_film_without_memory(void **unused) {
 }
 
 /* Frames that are no numbers end the film; one that begins so has none. */
-static void test_film_of_what_is_a_number(void **unused) {
-  (void)unused;
+TEST(film_of_what_is_a_number) {
   things t;
   strut_error error = {0};
   strut_film_made made;
@@ -181,13 +171,4 @@ static void test_film_of_what_is_a_number(void **unused) {
   assert_int_equal(scratch_count(directory), 1);
   scratch_remove();
   drop(&t);
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_sketch_without_memory),    cmocka_unit_test(test_vtk_without_memory),
-      cmocka_unit_test(test_vtk_on_a_full_disk),       cmocka_unit_test(test_film_without_memory),
-      cmocka_unit_test(test_film_of_what_is_a_number),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

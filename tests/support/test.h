@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Tests that register themselves, above cmocka. Each TEST of a program runs, in the order of its file, and
+ * is named when it fails:
+ *
+ *     TEST(a_member_pulls) { assert_true(...); }
+ *
+ * A program has no main() of its own; test.c has it.
+ */
+#ifndef STRUT_TESTS_SUPPORT_TEST_H
+#define STRUT_TESTS_SUPPORT_TEST_H
+
+/* What cmocka.h needs. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+/** When a function runs: as a test, before each test, before the first, after the last. */
+typedef enum test_moment {
+  TEST_ITSELF,
+  TEST_BEFORE_EACH,
+  TEST_BEFORE_ALL,
+  TEST_AFTER_ALL
+} test_moment;
+
+void register_test(test_moment moment, const char *name, void (*function)(void), int line);
+
+#define REGISTERED_TEST(moment, name)                                                              \
+  static void test_##name(void);                                                                   \
+  __attribute__((constructor)) static void register_##name(void) {                                 \
+    register_test(moment, #name, test_##name, __LINE__);                                           \
+  }                                                                                                \
+  static void test_##name(void)
+
+#define TEST(name) REGISTERED_TEST(TEST_ITSELF, name)
+#define BEFORE_EACH REGISTERED_TEST(TEST_BEFORE_EACH, before_each)
+#define BEFORE_ALL REGISTERED_TEST(TEST_BEFORE_ALL, before_all)
+#define AFTER_ALL REGISTERED_TEST(TEST_AFTER_ALL, after_all)
+
+/** The n-th word of the command line, from 1; NULL where there are fewer. */
+const char *test_word(int n);
+/** The same as a number; `otherwise` where there are fewer words. */
+double test_number(int n, double otherwise);
+
+#endif

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the Python tests share: the program, a folder to work in, and findings, which are printed as they come and
+counted. Tests are called as TEST.py STRUT ... in the repository's root, with this folder in PYTHONPATH."""
+import atexit
+import csv
+import math
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+
+strut = os.path.realpath(sys.argv[1])
+models = os.path.realpath("models")
+work = tempfile.mkdtemp()
+atexit.register(shutil.rmtree, work, ignore_errors=True)
+_found = 0
+
+
+def fail(text):
+    global _found
+    _found += 1
+    print("FAILED:", text)
+
+
+def check(good, text):
+    if not good:
+        fail(text)
+
+
+def failed():
+    return _found > 0
+
+
+def near(found, wanted, what, relative=1e-9):
+    check(found != "" and math.isclose(float(found), wanted, rel_tol=relative), f"{what}: {found}, expected {wanted}")
+
+
+def path(*names):
+    """Of a file in the folder of the test."""
+    return os.path.join(work, *names)
+
+
+def write(name, text):
+    with open(path(name), "w", encoding="utf-8") as file:
+        file.write(text)
+
+
+def read(*names):
+    with open(path(*names), "rb") as file:
+        return file.read()
+
+
+def rows(*names):
+    """Of a CSV file in the folder of the test, each as {column: text}."""
+    with open(path(*names), newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def run(*words, code=0, timeout=120):
+    """Runs strut in the folder of the test; what it printed."""
+    done = subprocess.run([strut, *words], capture_output=True, text=True, cwd=work, timeout=timeout, check=False)
+    check(done.returncode == code, f"strut {' '.join(words)}: exit code {done.returncode}, expected {code}: {done.stderr}")
+    return done
+
+
+def copy_models():
+    """A study names what is below its folder: models are then in `copied`."""
+    shutil.copytree(models, path("copied"))
+
+
+def sweep(name, text, *words, code=0):
+    """The table of a study."""
+    write(f"{name}-study.yaml", "strut: 1\nstudy: s\n" + text)
+    run("sweep", f"{name}-study.yaml", "-o", name, "--quiet", *words, code=code)
+    return rows(name, "table.csv")
+
+
+def files_in(folder):
+    """Names of all files in a folder but strut's list of those it wrote."""
+    return [name for name in os.listdir(folder) if name != ".strut-files"]
+
+
+def finish(tested=True):
+    """The end of a test: 1 where something failed, 77 (skipped) where nothing could be tested."""
+    print(f"{_found} failures")
+    sys.exit(1 if _found else 0 if tested else 77)
