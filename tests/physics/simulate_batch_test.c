@@ -250,5 +250,3 @@ TEST(no_memory_for_lanes) {
   strut_model_free(example);
   strut_setup_free(&crawler);
 }
-
-}
