@@ -3,7 +3,10 @@
 #ifndef STRUT_ENGINE_INTEGRATE_RK4_STAGES_H
 #define STRUT_ENGINE_INTEGRATE_RK4_STAGES_H
 
+#include <stdint.h>
+
 #include "engine/forces/member_law.h"
+#include "engine/model/pull_rows.h"
 
 #define STRUT_RK4_TIME(time, weight) time,
 #define STRUT_RK4_WEIGHT(time, weight) weight,

@@ -123,8 +123,9 @@ static strut_status begin(void *context, const strut_record_layout *layout, stru
   k->array_count = k->frame_size = 1;
   for (size_t i = 0; i < layout->channel_count; i++) {
     const strut_record_channel *c = &layout->channels[i];
-    k->arrays[k->array_count++] = (trajectory_array){
-        .values = strut_trajectory_array(t, c->id), .size = c->items * c->components, .offset = c->offset};
+    k->arrays[k->array_count++] = (trajectory_array){.values = strut_trajectory_array(t, c->id),
+                                                     .size = c->items * c->components,
+                                                     .offset = c->offset};
     k->frame_size += c->items * c->components;
   }
   k->most = k->room / k->frame_size;

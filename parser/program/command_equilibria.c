@@ -4,7 +4,6 @@
 
 #include "engine/output/figures/statics_figures.h"
 #include "engine/output/report/reports.h"
-#include "parser/program/streams.h"
 #include "parser/command/overload_warnings.h"
 #include "parser/command/statics_options.h"
 #include "parser/program/streams.h"

@@ -8,8 +8,6 @@
 
 #include "engine/forces/elements.h"
 #include "engine/output/exports.h"
-#include "parser/program/option_values.h"
-#include "parser/program/streams.h"
 #include "parser/command/statics_options.h"
 #include "parser/program/option_values.h"
 #include "parser/program/streams.h"

@@ -24,7 +24,7 @@ engine="tests/golden/golden.c engine/run/settle.c engine/integrate/rk4.c
   engine/integrate/events/contact_modes.c
   engine/integrate/events/contact_compliance.c engine/integrate/events/memory_modes.c
   engine/integrate/events/surface_contacts.c engine/integrate/events/variation.c
-  engine/integrate/events/mode_tangent.c
+  engine/integrate/events/mode_tangent.c $(ls engine/integrate/limit/*.c)
   $(ls engine/base/*.c engine/model/*.c engine/forces/*.c)"
 reader=$(find engine/scene parser/yaml parser/expression parser/language parser/read -name '*.c' | sort)
 

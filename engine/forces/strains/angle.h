@@ -6,6 +6,8 @@
 #ifndef STRUT_ENGINE_FORCES_STRAINS_ANGLE_H
 #define STRUT_ENGINE_FORCES_STRAINS_ANGLE_H
 
+#include <stdint.h>
+
 #include "engine/base/vec.h"
 #include "engine/forces/strains/direction.h"
 

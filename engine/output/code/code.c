@@ -38,7 +38,7 @@ static void add_unwritten_laws(strut_unsupported *r, strut_law_set has) {
   for (unsigned k = 0; k < STRUT_LAW_COUNT; k++) {
     snprintf(text, sizeof text, "law %s", strut_law_at((strut_law_kind)k)->word);
     strut_unsupported_add(r, has.law >> k & 1u && !strut_code_knows_element_law((strut_law_kind)k),
-                     text);
+                          text);
   }
   for (unsigned k = 0; k < STRUT_STRAIN_COUNT; k++) {
     const char *name = strut_strain_name((strut_strain_kind)k);

@@ -73,18 +73,6 @@ typedef struct strut_page_frames {
 STRUT_API char *strut_page_html(const strut_page *page, strut_page_frames *frames,
                                 strut_error *error);
 
-/* ---- parts of the page that are the same for every run, put in at build time (EmbedFiles.cmake) ---- */
-
-/*
- * Each ends with a row of NULL. In the template, page.html, four comments are replaced:
- * strut:title by the title's text, strut:style by <style> elements, strut:data by the <script>
- * element of the data, strut:scripts by <script> elements.
- */
-extern const strut_embedded strut_page_template[];
-extern const strut_embedded strut_page_styles[];
-extern const strut_embedded strut_page_notice[];  /* of dygraphs: whose it is, and its licence */
-extern const strut_embedded strut_page_scripts[]; /* in the order in which they run */
-
 /* ---- arrays over time as compact blocks ---- */
 
 /** An array (frames, columns) of which every `every`-th frame is used, and the last. */
