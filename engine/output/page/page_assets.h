@@ -6,7 +6,7 @@
 #ifndef STRUT_ENGINE_OUTPUT_PAGE_PAGE_ASSETS_H
 #define STRUT_ENGINE_OUTPUT_PAGE_PAGE_ASSETS_H
 
-#include "engine/output/embedded.h"
+#include "engine/output/buffer.h"
 
 /*
  * Each ends with a row of NULL. In the template, page.html, four comments are replaced:
