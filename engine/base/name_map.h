@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "engine/base/export.h"
+#include "engine/base/status.h"
 
 /** Zero-initialise it; strut_name_map_free releases it. Names are not copied. */
 typedef struct strut_name_map {

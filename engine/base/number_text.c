@@ -1,12 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/*
- * The method is Raffaello Giulietti's Schubfach ("The Schubfach way to render doubles", 2020): one
- * table of powers of ten to 128 bits, one product, no loop over digits to decide, no fallback.
- * A value is c * 2^q; everything below is scaled by 4 so that the ends of the interval that rounds
- * to it are integers.
- */
 #include "engine/base/number_text.h"
 
+#include <locale.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -14,6 +9,26 @@
 #include <string.h>
 
 #include "engine/base/number_powers.h"
+
+strut_c_locale strut_c_locale_enter(void) {
+  locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+  strut_c_locale result = {(void *)c, NULL};
+  if (c) result.previous = (void *)uselocale(c);
+  return result;
+}
+
+void strut_c_locale_leave(strut_c_locale locale) {
+  if (!locale.c) return;
+  uselocale((locale_t)locale.previous);
+  freelocale((locale_t)locale.c);
+}
+
+/*
+ * The method is Raffaello Giulietti's Schubfach ("The Schubfach way to render doubles", 2020): one
+ * table of powers of ten to 128 bits, one product, no loop over digits to decide, no fallback.
+ * A value is c * 2^q; everything below is scaled by 4 so that the ends of the interval that rounds
+ * to it are integers.
+ */
 
 /* digits * 10^exponent */
 typedef struct decimal {

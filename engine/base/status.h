@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Status codes and the message that travels with one.
+/** The mark of an exported symbol: everything else is hidden by the build. */
+#ifndef STRUT_ENGINE_BASE_STATUS_H
+#define STRUT_ENGINE_BASE_STATUS_H
+
+#define STRUT_API __attribute__((visibility("default")))
+
+/* Status codes and the message that travels with one.
  *
  * Every function of strut that can fail returns a strut_status and, where it takes a strut_error,
  * leaves one sentence there that says what failed, where, and what to do. The library never prints
  * and never exits. One table holds code, name, the program's exit code and the general text.
  */
-#ifndef STRUT_ENGINE_BASE_STATUS_H
-#define STRUT_ENGINE_BASE_STATUS_H
-
-#include "engine/base/export.h"
 
 /* X(code, exit code of the program, text) */
 #define STRUT_STATUS_TABLE(X)                                                                      \

@@ -51,4 +51,51 @@ static inline double strut_largest_magnitude(const double *x, ptrdiff_t n) {
   return largest;
 }
 
+/* Sine and cosine of an angle in turns, with the same bits on every machine.
+ *
+ * libm picks another routine where the processor has fused multiply-add, so its last bit may change
+ * from machine to machine. These use plain products and sums only. Because the angle comes in turns
+ * (cycles), its reduction is exact: a drive of f hertz at t seconds needs the turns f*t, and no
+ * multiple of pi is ever subtracted. In a header, since a drive needs them at every force evaluation.
+ */
+
+/*
+ * Taylor sums for |x| <= pi/4, s = x^2: the first term left out is below 2e-17 in both. The even
+ * and the odd powers of s are summed apart, so that neither waits for the other. For numbers, and for
+ * vectors of them, which then get the same bits.
+ */
+#define STRUT_DEFINE_TRIG(inlined, number, sine, cosine)                                           \
+  inlined number sine(number x) {                                                                  \
+    number s = x * x, ss = s * s;                                                                  \
+    number even =                                                                                  \
+        -1.0 / 6 + ss * (-1.0 / 5040 + ss * (-1.0 / 39916800 + ss * (-1.0 / 1307674368000.0)));    \
+    number odd = 1.0 / 120 + ss * (1.0 / 362880 + ss * (1.0 / 6227020800.0));                      \
+    return x + x * (s * (even + s * odd));                                                         \
+  }                                                                                                \
+  inlined number cosine(number x) {                                                                \
+    number s = x * x, ss = s * s;                                                                  \
+    number even =                                                                                  \
+        1.0 / 24 + ss * (1.0 / 40320 + ss * (1.0 / 479001600.0 + ss * (1.0 / 20922789888000.0)));  \
+    number odd = -1.0 / 720 + ss * (-1.0 / 3628800 + ss * (-1.0 / 87178291200.0));                 \
+    number half = 0.5 * s, rest = 1.0 - half;                                                      \
+    return rest + (((1.0 - rest) - half) + ss * (even + s * odd));                                 \
+  }
+
+STRUT_DEFINE_TRIG(static inline, double, strut_sine_of_small, strut_cosine_of_small)
+
+/** sine = sin(2 pi turns), cosine = cos(2 pi turns); error below 1.5 units in the last place of 1. */
+static inline void strut_sincos_turns(double turns, double *sine, double *cosine) {
+  /* Adding and taking away 1.5 * 2^52 rounds to an integer; above 2^49 turns floor comes first. */
+  const double rounder = 6755399441055744.0;
+  if (!(turns > -0x1p49 && turns < 0x1p49)) turns -= floor(turns);
+  double quarter = (4.0 * turns + rounder) - rounder; /* nearest quarter turn */
+  double rest = turns - 0.25 * quarter;               /* exact: in [-1/8, 1/8] */
+  double x = STRUT_TAU * rest;
+  double s = strut_sine_of_small(x), c = strut_cosine_of_small(x);
+  int quadrant = (int)((long long)quarter & 3);
+  double first = quadrant & 1 ? c : s, second = quadrant & 1 ? s : c;
+  *sine = quadrant & 2 ? -first : first;
+  *cosine = (quadrant + 1) & 2 ? -second : second;
+}
+
 #endif

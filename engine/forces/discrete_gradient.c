@@ -4,12 +4,11 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/forces/actuate.h"
-#include "engine/forces/drive.h"
+#include "engine/forces/drives.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/feedback.h"
+#include "engine/forces/history.h"
 #include "engine/forces/mass_damping.h"
-#include "engine/forces/maxwell.h"
 #include "engine/forces/unbalance.h"
 #include "engine/model/pose.h"
 

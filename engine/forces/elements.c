@@ -6,13 +6,13 @@
 
 #include "engine/forces/capstan.h"
 #include "engine/forces/elements_kernel.h"
-#include "engine/forces/memory.h"
+#include "engine/forces/history.h"
 #include "engine/forces/strains/angle.h"
 #include "engine/forces/strains/area.h"
 #include "engine/forces/strains/length.h"
 #include "engine/forces/strains/path.h"
 #include "engine/forces/strains/reach.h"
-#include "engine/model/element_compile.h"
+#include "engine/model/compile_parts.h"
 #include "engine/model/pose.h"
 
 /* Strain and gradient. */

@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/forces/energy.h"
 
-#include "engine/forces/drive.h"
+#include <math.h>
+
+#include "engine/forces/drives.h"
 #include "engine/forces/elements.h"
-#include "engine/forces/maxwell.h"
+#include "engine/forces/history.h"
 #include "engine/forces/sliding_masses.h"
 #include "engine/forces/support_motion.h"
+#include "engine/model/mass.h"
 #include "engine/model/pose.h"
 #include "engine/model/surface_search.h"
 
@@ -112,4 +115,17 @@ double strut_energy_load_work(const strut_model *model, const strut_state *state
 void strut_energy_reset_load_work(const strut_model *model, strut_state *state) {
   state->load_work_origin = strut_energy_load_potential(model, state);
   strut_support_motion_reset_work(model, state);
+}
+
+void strut_impulse_apply(const strut_model *model, strut_state *state, strut_power power) {
+  double work = 0.0, *change = state->support_answer;
+  strut_mass_solve(model, state->force, change, state->scratch);
+  if (model->plan & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_correct(model, state, change);
+  for (int32_t i = 0; i < model->length; i++) {
+    work += state->force[i] * (state->v[i] + 0.5 * change[i]);
+    state->v[i] += change[i];
+  }
+  if (!state->ledger) return;
+  state->work[power] += work;
+  state->work[STRUT_POWER_EXCHANGED] += fabs(work);
 }

@@ -4,9 +4,9 @@
 
 #include <assert.h>
 
-#include "engine/forces/actuate.h"
+#include "engine/forces/drives.h"
+#include "engine/forces/history.h"
 #include "engine/forces/mass_damping.h"
-#include "engine/forces/maxwell.h"
 #include "engine/forces/rigid.h"
 #include "engine/forces/unbalance.h"
 

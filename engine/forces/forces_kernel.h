@@ -8,7 +8,7 @@
 #ifndef STRUT_ENGINE_FORCES_FORCES_KERNEL_H
 #define STRUT_ENGINE_FORCES_FORCES_KERNEL_H
 
-#include "engine/forces/drive.h"
+#include "engine/forces/drives.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/feedback.h"
 #include "engine/forces/forces.h"

@@ -11,8 +11,8 @@
 
 #include <math.h>
 
-#include "engine/model/contact_law.h"
 #include "engine/model/hot.h"
+#include "engine/model/pose.h"
 #include "engine/model/state.h"
 
 /* Accumulates the powers of a contact in its place of the step's sums. */

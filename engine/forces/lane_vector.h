@@ -11,7 +11,6 @@
 
 #include <math.h>
 
-#include "engine/base/trig.h"
 #include "engine/base/vec.h"
 #include "engine/forces/lane_tables.h"
 #include "engine/model/hot.h"

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Lengths and forces of members, hinges and cells for observers (recording, measuring). The step's own loop:
    members_kernel.h. */
-#include "engine/forces/actuate.h"
+#include <math.h>
+
+#include "engine/forces/drives.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/forces.h"
-#include "engine/forces/maxwell.h"
-
-#include <math.h>
+#include "engine/forces/history.h"
+#include "engine/forces/members_kernel.h"
 #include "engine/forces/rigid.h"
 #include "engine/model/pose.h"
 
@@ -82,4 +83,27 @@ void strut_members_measure(const strut_model *model, const strut_state *state, d
   }
   if (state->rigid) strut_rigid_add_tensions(state->rigid, force);
   strut_actuator_forces_add_tensions(model, state, force);
+}
+
+/* Forces of more members than the ledger adds up in one sum: called, so that smaller structures do not pay for it. */
+
+STRUT_CLONES
+static void add_forces_of_many(const strut_model *model, const strut_state *state,
+                               const double *restrict q, const double *restrict v,
+                               double *restrict force, four_member_powers *powers) {
+  const strut_member_table t = model->members;
+  four_member_powers sum = {0}, part = {0};
+  for (int32_t b = 0; b < t.blocks; b++) {
+    members_of_block(&t, state, q, v, force, b, true, &part);
+    if ((b + 1) % STRUT_LEDGER_BLOCKS && b + 1 < t.blocks) continue;
+    members_add_powers(&sum, &part);
+    part = (four_member_powers){0};
+  }
+  *powers = sum;
+}
+
+void strut_many_members_add_forces(const strut_model *model, const strut_state *state,
+                                   const double *q, const double *v, double *force,
+                                   four_member_powers *powers) {
+  add_forces_of_many(model, state, q, v, force, powers);
 }

@@ -1,18 +1,29 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Hot: forces along members, equations (1), (2) and (6).
- *
- * Blocks of members are worked on in groups of STRUT_LANES: gather the ends, and compute along the
- * group. Then each node of the block adds up the pulls on it in the scene's order (pull_rows.h). What no
- * member of a block needs (dampers, slack, drive) is compiled out of the block's loop.
- */
+/** Texts of laws for four things side by side, the vectors of model/hot.h: members, angles of hinges, and
+    coordinates in a step. */
 #ifndef STRUT_ENGINE_FORCES_MEMBERS_KERNEL_H
 #define STRUT_ENGINE_FORCES_MEMBERS_KERNEL_H
 
 #include <math.h>
 
-#include "engine/forces/member_law.h"
+#include "engine/base/vec.h"
+#include "engine/model/hot.h"
 #include "engine/model/state.h"
+
+#define LAW(name) four_##name
+#define LAW_INLINE STRUT_INLINE
+#include "engine/forces/strains/direction.h"
+#include "engine/scene/laws/member.h"
+#include "engine/scene/laws/runge_kutta.h"
+#undef LAW
+#undef LAW_INLINE
+
+/* Hot: forces along members, equations (1), (2) and (6).
+ *
+ * Blocks of members are worked on in groups of STRUT_LANES: gather the ends, and compute along the
+ * group. Then each node of the block adds up the pulls on it in the scene's order (sparse.h). What no
+ * member of a block needs (dampers, slack, drive) is compiled out of the block's loop.
+ */
 
 /* Vectors from the first to the second nodes of a group: their x and their y. */
 typedef struct member_vectors {
@@ -184,7 +195,7 @@ STRUT_INLINE void members_add_powers(four_member_powers *sum, const four_member_
   sum->drive += part->drive, sum->exchanged += part->exchanged, sum->lost += part->lost;
 }
 
-/* In many_members.c: those of all members, whose powers are added up in parts. */
+/* In members.c: those of all members, whose powers are added up in parts. */
 void strut_many_members_add_forces(const strut_model *model, const strut_state *state,
                                    const double *q, const double *v, double *force,
                                    four_member_powers *powers);

@@ -67,7 +67,7 @@ void strut_rigid_add_tensions(const strut_rigid *rigid, double *force);
 /** That of one member [N]; 0 where it is no rigid bar. */
 double strut_rigid_tension(const strut_rigid *rigid, int32_t member);
 
-/* rigid_rows.c: the linear algebra. */
+/* rigid.c: the linear algebra. */
 
 /** Rows of all bars at q. */
 void strut_rigid_rows(strut_rigid *rigid, const double *q);

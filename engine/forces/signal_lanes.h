@@ -6,7 +6,7 @@
 #ifndef STRUT_ENGINE_FORCES_SIGNAL_LANES_H
 #define STRUT_ENGINE_FORCES_SIGNAL_LANES_H
 
-#include "engine/base/trig.h"
+#include "engine/base/vec.h"
 #include "engine/model/hot.h"
 #include "engine/model/model.h"
 

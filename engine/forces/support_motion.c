@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "engine/forces/energy.h"
-#include "engine/forces/impulse.h"
 #include "engine/scene/signal_motion.h"
 
 void strut_support_motion_place(const strut_model *model, const strut_state *state, double t,

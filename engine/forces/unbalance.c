@@ -5,9 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/base/trig.h"
 #include "engine/base/vec.h"
-#include "engine/forces/impulse.h"
+#include "engine/forces/energy.h"
 #include "engine/scene/signal_motion.h"
 
 /* Direction of the mass, and the first and second derivatives of its angle. */

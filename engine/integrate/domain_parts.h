@@ -8,7 +8,7 @@
 
 #include <stdatomic.h>
 
-#include "engine/base/team.h"
+#include "engine/base/thread_pool.h"
 #include "engine/forces/members_kernel.h"
 #include "engine/integrate/domain_steps.h"
 #include "engine/integrate/mass_shares.h"

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "engine/base/subnormals.h"
-#include "engine/forces/drive.h"
+#include "engine/forces/drives.h"
 #include "engine/forces/forces.h"
 #include "engine/forces/step_ledger.h"
 #include "engine/integrate/domain_parts.h"

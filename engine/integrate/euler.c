@@ -3,7 +3,7 @@
  * Semi-implicit (symplectic) Euler with a fixed step: v += h a(q, v), q += h v. Of first order, and
  * the cheapest step there is.
  */
-#include "engine/forces/memory.h"
+#include "engine/forces/history.h"
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/plain_steps.h"
 

@@ -7,7 +7,6 @@
 
 #include "engine/forces/energy.h"
 #include "engine/forces/feedback.h"
-#include "engine/forces/relay.h"
 #include "engine/forces/rigid.h"
 #include "engine/model/linear_solver.h"
 

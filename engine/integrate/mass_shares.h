@@ -8,7 +8,7 @@
 #ifndef STRUT_ENGINE_INTEGRATE_MASS_SHARES_H
 #define STRUT_ENGINE_INTEGRATE_MASS_SHARES_H
 
-#include "engine/base/team.h"
+#include "engine/base/thread_pool.h"
 #include "engine/model/model.h"
 
 typedef struct strut_mass_shares strut_mass_shares;

@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/forces/drive.h"
+#include "engine/forces/drives.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/support_motion.h"
 #include "engine/integrate/integrator.h"

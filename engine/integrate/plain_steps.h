@@ -7,7 +7,7 @@
 #ifndef STRUT_ENGINE_INTEGRATE_PLAIN_STEPS_H
 #define STRUT_ENGINE_INTEGRATE_PLAIN_STEPS_H
 
-#include "engine/forces/drives_ahead.h"
+#include "engine/forces/drives.h"
 #include "engine/forces/forces_kernel.h"
 #include "engine/forces/sliding_masses.h"
 #include "engine/forces/unbalance.h"

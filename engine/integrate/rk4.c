@@ -3,7 +3,7 @@
  * The classical Runge-Kutta method of fourth order with a fixed step, as the paper uses it: the
  * force law, contact and friction included, is evaluated at every stage.
  */
-#include "engine/forces/memory.h"
+#include "engine/forces/history.h"
 #include "engine/forces/rigid.h"
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/plain_steps.h"

@@ -5,8 +5,8 @@
 
 #include <stdint.h>
 
-#include "engine/forces/member_law.h"
-#include "engine/model/pull_rows.h"
+#include "engine/forces/members_kernel.h"
+#include "engine/model/sparse.h"
 
 #define STRUT_RK4_TIME(time, weight) time,
 #define STRUT_RK4_WEIGHT(time, weight) weight,

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/forces/member_law.h"
+#include "engine/forces/members_kernel.h"
 
 enum { LEDGER_MEMBERS = STRUT_BLOCK * STRUT_LEDGER_BLOCKS, FAR = 255 };
 

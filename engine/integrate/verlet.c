@@ -3,7 +3,7 @@
  * Velocity Verlet with a fixed step and one evaluation of the forces per step. Forces that depend on
  * velocities see the predicted v + h a, which keeps the second order.
  */
-#include "engine/forces/memory.h"
+#include "engine/forces/history.h"
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/plain_steps.h"
 #include "engine/integrate/small_steps.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/model/feedback_compile.h"
+#include "engine/model/compile_parts.h"
 
 static int32_t find_contact(const strut_model *model, int32_t node) {
   for (int32_t i = 0; i < model->contacts.count; i++)

@@ -15,6 +15,7 @@
 
 #include "engine/base/status.h"
 #include "engine/model/linear_solver.h"
+#include "engine/model/model.h"
 
 struct strut_model;
 
@@ -62,5 +63,15 @@ void strut_mass_factor_pair(const strut_mass_operator *op, const double *restric
                             double *restrict a, double *restrict work);
 void strut_mass_factor_single(const strut_mass_operator *op, const double *restrict f,
                               double *restrict a, double *restrict work);
+
+/* Assembly of the sparse mass matrix of one coordinate, supports eliminated. */
+
+/**
+ * M of the free nodes of coordinate 0 (x) or 1 (y): point masses, and per member (m/6)[2 1; 1 2]
+ * (consistent, exact for a uniform rigid rod) or m/2 at each end (lumped). *matrix (lower triangle)
+ * and *node (its node per row) live in the model's arena. STRUT_OK or STRUT_NO_MEMORY.
+ */
+strut_status strut_mass_matrix(strut_model *model, int coordinate, strut_arena *scratch,
+                               strut_sparse **matrix, int32_t **node);
 
 #endif

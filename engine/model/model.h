@@ -16,12 +16,11 @@
 
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
-#include "engine/model/actuator_forces.h"
 #include "engine/model/elements.h"
 #include "engine/model/feedback.h"
 #include "engine/model/law_set.h"
-#include "engine/model/pull_rows.h"
 #include "engine/model/sliding_masses.h"
+#include "engine/model/sparse.h"
 #include "engine/model/support_motion.h"
 #include "engine/model/surfaces.h"
 #include "engine/scene/scene.h"

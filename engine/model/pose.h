@@ -14,6 +14,7 @@
 
 #include "engine/base/vec.h"
 #include "engine/model/model.h"
+#include "engine/scene/laws/ground.h"
 #include "engine/scene/laws/member.h"
 
 typedef struct strut_member_pose {
@@ -181,6 +182,13 @@ static inline double strut_contact_along_ground(const strut_contact_table *c, in
 /** Sliding speed of contact i against the belt of a single straight ground at velocities v [m/s]. */
 static inline double strut_contact_slip(const strut_contact_table *c, int32_t i, const double *v) {
   return strut_contact_along_ground(c, i, v) - c->belt_speed;
+}
+
+/* The law of the ground for single contacts: the text of scene/laws/ground.h for doubles. */
+
+/** The numbers of a contact as the law takes them. */
+static inline strut_law_ground_numbers strut_contact_numbers(const strut_contact_entry *e) {
+  return (strut_law_ground_numbers){-e->stiffness, -e->damping, e->dissipation};
 }
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/model/sliding_compile.h"
+#include "engine/model/compile_parts.h"
 
 #include <math.h>
 #include <string.h>

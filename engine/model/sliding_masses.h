@@ -13,7 +13,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "engine/base/export.h"
+#include "engine/base/status.h"
 
 struct strut_model;
 

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/model/element_compile.h"
+#include "engine/model/compile_parts.h"
 #include "engine/model/memory_estimate.h"
 
 /* What contacts need that are not with one straight line at rest. */

@@ -108,8 +108,8 @@ typedef struct strut_state {
   bool ledger; /* keep the ledger? It costs some arithmetic per evaluation */
   double *scratch; /* (length) for the mass solve */
   strut_arena arena;
-  /* memory of elements, see forces/memory.h; the slots of `rest` that belong to them follow from it */
-  double *plastic; /* (memory_count) slip of sliders, see forces/memory.h */
+  /* memory of elements, see forces/history.h; the slots of `rest` that belong to them follow from it */
+  double *plastic; /* (memory_count) slip of sliders, see forces/history.h */
   double
       *broken_at; /* (breakable_count) since when it carries nothing [s]; INFINITY: it does not */
   int8_t *guide_mode; /* (memory_slots) at the slots of cables with guide friction: see capstan.h */

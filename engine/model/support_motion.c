@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/model/support_motion.h"
 
-#include "engine/model/element_compile.h"
+#include "engine/model/compile_parts.h"
 #include "engine/scene/signal_motion.h"
 
 /* Which moved coordinate stands at a place; NONE: none. */

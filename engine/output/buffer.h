@@ -9,7 +9,7 @@
 #include <stddef.h>
 #include <stdio.h>
 
-#include "engine/base/export.h"
+#include "engine/base/status.h"
 
 /* ---- a text that grows by printf ---- */
 

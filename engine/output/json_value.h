@@ -11,7 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "engine/base/export.h"
+#include "engine/base/status.h"
 
 struct cJSON;
 struct strut_buffer;

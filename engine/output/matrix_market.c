@@ -5,12 +5,11 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/base/c_locale.h"
 #include "engine/base/number_text.h"
 #include "engine/output/buffer.h"
 #include "engine/output/file.h"
 #include "engine/output/results.h"
-#include "engine/statics/rigidity/linear_matrices.h"
+#include "engine/statics/rigidity/rigidity_parts.h"
 
 static const char *const names[] = {"node_names.csv",
                                     "rows.csv",

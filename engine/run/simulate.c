@@ -8,14 +8,14 @@
 #include <time.h>
 
 #include "engine/base/subnormals.h"
-#include "engine/forces/drive.h"
+#include "engine/forces/drives.h"
 #include "engine/forces/forces.h"
-#include "engine/forces/memory.h"
+#include "engine/forces/history.h"
 #include "engine/forces/support_motion.h"
 #include "engine/integrate/large_steps.h"
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/model/memory_estimate.h"
-#include "engine/run/orbit/shooting.h"
+#include "engine/run/orbit/orbit.h"
 #include "engine/run/settle.h"
 #include "engine/run/simulate_parts.h"
 #include "engine/scene/signal_program.h"

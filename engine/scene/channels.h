@@ -11,7 +11,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "engine/base/export.h"
+#include "engine/base/status.h"
 
 struct strut_scene;
 

@@ -5,7 +5,6 @@
 #include <math.h>
 
 #include "engine/base/range_tree.h"
-#include "engine/base/trig.h"
 #include "engine/base/vec.h"
 
 static strut_vec2 segment_of(const strut_ground *g, size_t k) {

@@ -11,7 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "engine/base/export.h"
+#include "engine/base/status.h"
 #include "engine/scene/study.h"
 
 /** Ways to fill the unit cube, in the order of the language. */

@@ -13,7 +13,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "engine/base/export.h"
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
 #include "engine/scene/friction.h"

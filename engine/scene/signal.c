@@ -5,7 +5,6 @@
 #include <math.h>
 #include <stdbool.h>
 
-#include "engine/base/trig.h"
 #include "engine/base/vec.h"
 #include "engine/scene/signal_motion.h"
 #include "engine/scene/signal_program.h"

@@ -12,7 +12,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "engine/base/export.h"
+#include "engine/base/status.h"
 #include "engine/scene/quantity.h"
 
 typedef enum strut_signal_kind {

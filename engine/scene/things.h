@@ -10,7 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "engine/base/export.h"
+#include "engine/base/status.h"
 #include "engine/scene/things_table.h"
 
 typedef enum strut_thing {

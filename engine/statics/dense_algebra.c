@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/dense_algebra.h"
+#include "engine/statics/algebra.h"
 
 #include <assert.h>
 #include <float.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/linear_program.h"
+#include "engine/statics/algebra.h"
 
 #include <assert.h>
 #include <glpk.h>

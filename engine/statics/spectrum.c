@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/spectrum.h"
+#include "engine/statics/algebra.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "engine/forces/tangent.h"
-#include "engine/statics/dense_algebra.h"
 
 struct strut_spectrum_workspace {
   const strut_potential *potential;

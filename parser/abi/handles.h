@@ -14,7 +14,7 @@
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
 #include "engine/model/model.h"
-#include "engine/output/draw/plot.h"
+#include "engine/output/draw/chart.h"
 #include "engine/output/figures/run_figure.h"
 #include "engine/output/trajectory.h"
 #include "engine/statics/equilibria/equilibria.h"

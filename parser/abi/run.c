@@ -8,7 +8,7 @@
 #include "engine/run/accuracy/accuracy.h"
 #include "engine/run/simulate.h"
 #include "engine/run/stepping.h"
-#include "engine/statics/equilibria/rest_state.h"
+#include "engine/statics/equilibria/equilibria.h"
 #include "parser/abi/handles.h"
 #include "parser/command/fidelity_settings.h"
 #include "parser/command/option_values.h"

@@ -5,10 +5,10 @@
 
 #include "engine/run/measure/summary.h"
 #include "engine/scene/things.h"
-#include "engine/statics/equilibria/rest_state.h"
+#include "engine/statics/equilibria/equilibria.h"
 #include "parser/abi/handles.h"
-#include "parser/write/write_scene.h"
-#include "parser/yaml/memory_estimate.h"
+#include "parser/write/writer.h"
+#include "parser/yaml/document.h"
 
 /* ---- names ---- */
 

@@ -5,13 +5,12 @@
 
 #include "engine/output/figures/statics_figures.h"
 #include "engine/output/report/reports.h"
-#include "engine/statics/rigidity/equilibrium_matrix.h"
-#include "engine/statics/rigidity/linear_matrices.h"
+#include "engine/statics/rigidity/rigidity_parts.h"
 #include "parser/abi/handles.h"
 #include "parser/command/overload_warnings.h"
 #include "parser/command/path_options.h"
 #include "parser/command/statics_options.h"
-#include "parser/write/write_scene.h"
+#include "parser/write/writer.h"
 
 /* ---- what all do alike ---- */
 

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "engine/forces/memory.h"
+#include "engine/forces/history.h"
 
 void strut_warn_of_overload(const strut_listener *listener, const strut_model *model,
                             const double *q, const char *where) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Warnings about structures at rest in which something carries more than it can (forces/memory.h).
+ * Warnings about structures at rest in which something carries more than it can (forces/history.h).
  */
 #ifndef STRUT_PARSER_COMMAND_OVERLOAD_WARNINGS_H
 #define STRUT_PARSER_COMMAND_OVERLOAD_WARNINGS_H

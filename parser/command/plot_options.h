@@ -5,7 +5,7 @@
 #ifndef STRUT_PARSER_COMMAND_PLOT_OPTIONS_H
 #define STRUT_PARSER_COMMAND_PLOT_OPTIONS_H
 
-#include "engine/output/draw/plot.h"
+#include "engine/output/draw/chart.h"
 #include "engine/output/figures/run_figure.h"
 #include "parser/command/option_values.h"
 

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "engine/statics/equilibria/rest_state.h"
+#include "engine/statics/equilibria/equilibria.h"
 #include "parser/yaml/diagnostics.h"
 
 enum { MOST_MODES = 1000 };

@@ -10,9 +10,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "engine/base/export.h"
+#include "engine/base/status.h"
 #include "engine/scene/things.h"
-#include "parser/expression/units.h"
+#include "parser/expression/expression.h"
 #include "parser/language/keys_table.h"
 
 /** The mappings of the language. */

@@ -14,9 +14,9 @@
 #include "parser/program/options.h"
 #include "parser/program/progress.h"
 #include "parser/program/streams.h"
-#include "parser/read/difference.h"
+#include "parser/read/overlay.h"
 #include "parser/read/read_scene.h"
-#include "parser/write/write_scene.h"
+#include "parser/write/writer.h"
 
 /* ---- reading the models ---- */
 

@@ -4,7 +4,7 @@
 
 #include "parser/program/commands.h"
 #include "parser/program/streams.h"
-#include "parser/write/keys_page.h"
+#include "parser/write/writer.h"
 #include "parser/yaml/diagnostics.h"
 
 enum { LINE = 79 };

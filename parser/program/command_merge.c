@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <sys/resource.h>
 
-#include "engine/study/results/shard.h"
+#include "engine/study/results/study_table.h"
 #include "parser/program/streams.h"
 #include "parser/program/sweep.h"
 

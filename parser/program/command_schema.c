@@ -2,7 +2,7 @@
 #include "parser/program/commands.h"
 
 #include "parser/program/streams.h"
-#include "parser/write/keys_page.h"
+#include "parser/write/writer.h"
 
 static const strut_option options[] = {
     {STRUT_OPTION_STUDY, "study", NULL, "the schema of a study instead of a scene"},

@@ -8,7 +8,6 @@
 #include "engine/base/memory.h"
 #include "engine/output/file.h"
 #include "engine/study/report/study_report.h"
-#include "engine/study/results/shard.h"
 #include "engine/study/results/study_table.h"
 #include "parser/program/option_values.h"
 #include "parser/program/streams.h"

@@ -11,7 +11,7 @@
 #include "engine/output/json_value.h"
 #include "parser/program/evaluate.h"
 #include "parser/program/streams.h"
-#include "parser/yaml/json_text.h"
+#include "parser/yaml/text.h"
 
 enum { MOST_LINE = 1 << 20, READ_AT_ONCE = 1 << 16 };
 

@@ -13,7 +13,7 @@
 #include "engine/model/cholmod_factor.h"
 #include "engine/output/draw/cairo_page.h"
 #include "engine/output/hdf5_library.h"
-#include "engine/statics/sparse_algebra.h"
+#include "engine/statics/algebra.h"
 #include "parser/program/installed.h"
 
 /* Memory that the libraries of a module and their tables take while they are loaded [B]: GLib ends the process

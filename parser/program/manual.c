@@ -8,7 +8,7 @@
 
 #include "engine/base/memory.h"
 #include "parser/program/commands.h"
-#include "parser/write/keys_page.h"
+#include "parser/write/writer.h"
 
 enum { LINE = 78 };
 

@@ -8,11 +8,11 @@
 #include "engine/base/memory.h"
 #include "engine/output/file.h"
 #include "engine/output/results.h"
-#include "engine/statics/equilibria/rest_state.h"
+#include "engine/statics/equilibria/equilibria.h"
 #include "parser/program/streams.h"
 #include "parser/read/read_scene.h"
-#include "parser/write/write_scene.h"
-#include "parser/yaml/memory_estimate.h"
+#include "parser/write/writer.h"
+#include "parser/yaml/document.h"
 
 enum { MOST_MESSAGES = 50 };
 

@@ -5,7 +5,7 @@
 #ifndef STRUT_PARSER_PROGRAM_OPTION_VALUES_H
 #define STRUT_PARSER_PROGRAM_OPTION_VALUES_H
 
-#include "engine/output/draw/plot.h"
+#include "engine/output/draw/chart.h"
 #include "parser/command/plot_options.h"
 #include "parser/program/options.h"
 

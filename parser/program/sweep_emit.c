@@ -9,7 +9,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/study/cluster/cluster_script.h"
-#include "engine/study/results/shard.h"
+#include "engine/study/results/study_table.h"
 #include "parser/program/commands.h"
 #include "parser/program/option_values.h"
 #include "parser/program/streams.h"

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "engine/output/file.h"
-#include "engine/study/follow/follow_points.h"
+#include "engine/study/follow/follow_parts.h"
 #include "engine/study/results/study_table.h"
 #include "parser/program/option_values.h"
 #include "parser/program/streams.h"

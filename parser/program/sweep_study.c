@@ -8,11 +8,11 @@
 #include "engine/base/checksum.h"
 #include "engine/output/file.h"
 #include "engine/output/results.h"
-#include "engine/study/search/score.h"
+#include "engine/study/search/search.h"
 #include "engine/study/sweep/grid.h"
 #include "parser/program/streams.h"
 #include "parser/study/read_study.h"
-#include "parser/write/write_scene.h"
+#include "parser/write/writer.h"
 
 enum { MOST_MESSAGES = 50 };
 

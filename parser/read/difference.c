@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Differences of two scenes, as their effective texts. See difference.h. */
-#include "parser/read/difference.h"
+/* Differences of two scenes, as their effective texts. See overlay.h. */
+#include "parser/read/overlay.h"
 
 #include <stdbool.h>
 #include <stdio.h>

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/base/trig.h"
+#include "engine/base/vec.h"
 #include "parser/read/copies.h"
 
 /* ---- how often, and where copy k lies ---- */

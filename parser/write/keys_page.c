@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The reference of keys: docs/language-keys.md, and what `strut keys` prints. See keys_page.h. */
-#include "parser/write/keys_page.h"
+/* The reference of keys: docs/language-keys.md, and what `strut keys` prints. See writer.h. */
+#include "parser/write/writer.h"
 
 #include <string.h>
 

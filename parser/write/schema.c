@@ -4,7 +4,7 @@
  * a property's own description only, never that of a definition behind it, and report alternatives
  * ("anyOf") vaguely; so every property has its description, and alternatives are "if type ... then".
  */
-#include "parser/write/keys_page.h"
+#include "parser/write/writer.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -8,8 +8,11 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "engine/base/status.h"
 #include "engine/scene/experiment.h"
 #include "parser/language/keys.h"
+#include "parser/read/read_scene.h"
+#include "parser/yaml/document.h"
 
 typedef struct strut_writer {
   const strut_scene *scene;
@@ -83,5 +86,73 @@ void strut_put_program(strut_writer *writer, const strut_instruction *program, s
 void strut_put_quantities(strut_writer *writer, strut_mapping *mapping);
 /** configurations, the search for equilibria, the initial state. */
 void strut_put_shapes(strut_writer *writer);
+
+/* What the table of keys says, for readers and for editors. */
+
+/** The page as Markdown in a block of strut_allocate (release it); NULL: no memory. */
+STRUT_API char *strut_keys_page(void);
+
+/** A section in a block of strut_allocate (release it); NULL: no memory. */
+STRUT_API char *strut_keys_text(strut_section section);
+
+/* ---- parts of both, and of the schema ---- */
+
+/** The text above the table of a section's keys, as Markdown. */
+const char *strut_section_introduction(strut_section section);
+/** Appends what a key's value is, as Markdown: "number [N/m], not negative". */
+void strut_put_key_type(strut_writer *writer, const strut_key *key);
+/** Is a default a sentence about a value, rather than a value? */
+bool strut_default_is_described(const strut_key *key);
+/**
+ * Appends Markdown as plain text: `[text](link)` becomes its text; backticks are kept where `ticks`.
+ */
+void strut_put_without_links(strut_writer *writer, const char *markdown, bool ticks);
+
+/* ---- the schema for editors ---- */
+
+/** The schema of a scene, or of a study, in a block of strut_allocate (release it); NULL: no memory. */
+STRUT_API char *strut_schema_write(bool study);
+
+/* ---- JSON that grows ---- */
+
+typedef struct strut_json_writer {
+  strut_writer text;
+  int depth;
+  bool inside; /* the object or list that is open has something in it */
+  bool keyed;  /* a key waits for its value */
+} strut_json_writer;
+
+/** Opens an object '{' or a list '['; closes it. */
+void strut_json_open(strut_json_writer *json, char bracket);
+void strut_json_close(strut_json_writer *json, char bracket);
+/** The key of the value that follows, within an object. */
+void strut_json_key(strut_json_writer *json, const char *key);
+/** A value: a text, or what is JSON already (a number, true, false, null). */
+void strut_json_put_text(strut_json_writer *json, const char *text);
+void strut_json_put_raw(strut_json_writer *json, const char *raw);
+/** The text with a line break at its end, a block of strut_allocate; NULL: memory was out. */
+char *strut_json_finish(strut_json_writer *json);
+
+/* Scenes as YAML. */
+
+/** The effective scene and experiment as YAML text in a block of strut_allocate (release it); NULL: no memory. */
+STRUT_API char *strut_setup_write(const strut_setup *setup);
+
+/**
+ * The text of the source, in a block of strut_allocate, with its files written out, its parameters as they
+ * were set, and what has been changed since laid over it: the differences between `before`, the text of
+ * strut_setup_write of the scene as read, and `setup` as it is now. Reading it gives the same scene to
+ * the bit, which is checked: *text is NULL with STRUT_OK where the text would differ, as where a node of a
+ * copy has moved. STRUT_NO_MEMORY.
+ */
+STRUT_API strut_status strut_short_write(strut_scene_source *source,
+                                         const strut_override *overrides, size_t override_count,
+                                         const char *before, const strut_setup *setup, char **text);
+
+/**
+ * The text, a block of strut_allocate, that reads as this tree again; NULL: memory is out. Only texts of
+ * several lines that were not quoted become quoted. Aliases are written out. `comment`: the first line.
+ */
+STRUT_API char *strut_tree_write(const strut_tree *root, const char *comment);
 
 #endif

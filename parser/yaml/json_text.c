@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/yaml/json_text.h"
+#include "parser/yaml/text.h"
 
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-
-#include "parser/yaml/text.h"
 
 typedef struct json_reader {
   const char *text;

@@ -10,7 +10,6 @@
 
 #include "engine/base/memory.h"
 #include "parser/yaml/document.h"
-#include "parser/yaml/layout_parts.h"
 #include "parser/yaml/text.h"
 
 /* ---- text that grows ---- */

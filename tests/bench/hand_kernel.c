@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/base/trig.h"
+#include "engine/base/vec.h"
 #include "engine/model/hot.h"
 
 /* Table 1, and the inverse of the consistent mass: blocks of nodes (1, 2) and (3, 4, 5). */

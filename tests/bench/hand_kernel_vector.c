@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdint.h>
 
-#include "engine/base/trig.h"
+#include "engine/base/vec.h"
 #include "engine/model/hot.h"
 #include "tests/bench/hand_kernel.h"
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/base/trig.h"
+#include "engine/base/vec.h"
 
 /*
  * State I in the plane y = 0, z upwards. Joint angles are measured from the bars as drawn. Only the

@@ -9,7 +9,7 @@
 
 #include "parser/import/import.h"
 #include "parser/study/study_request.h"
-#include "parser/yaml/json_text.h"
+#include "parser/yaml/text.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "parser/write/write_scene.h"
+#include "parser/write/writer.h"
 #include "tests/language/cases.h"
 #include "tests/support/test.h"
 

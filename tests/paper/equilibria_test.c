@@ -9,7 +9,6 @@
 #include <string.h>
 
 #include "engine/statics/equilibria/equilibria.h"
-#include "engine/statics/equilibria/rest_state.h"
 #include "tests/models/run_model.h"
 #include "tests/paper/reference_crawler.h"
 #include "tests/paper/reference_statics.h"

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Drives that are computed for many evaluations at once have the bits of those computed one by one. */
-#include "engine/forces/drives_ahead.h"
+#include "engine/forces/drives.h"
 
-#include "engine/forces/drive.h"
 #include "tests/support/check.h"
 #include "tests/support/motion.h"
 #include "tests/support/structures.h"

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/statics/rigidity/null_space_methods.h"
+#include "engine/statics/rigidity/rigidity_parts.h"
 #include "tests/physics/truss.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"

@@ -6,7 +6,6 @@
 #include "engine/run/accuracy/accuracy.h"
 #include "engine/run/settle.h"
 #include "engine/statics/equilibria/equilibria.h"
-#include "engine/statics/equilibria/rest_state.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"
 #include "tests/support/motion.h"

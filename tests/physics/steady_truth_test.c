@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/run/orbit/shooting.h"
+#include "engine/run/orbit/orbit.h"
 #include "tests/physics/driven_scenes.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "engine/forces/memory.h"
+#include "engine/forces/history.h"
 #include "engine/scene/profile.h"
 #include "tests/models/run_model.h"
 #include "tests/physics/random_world.h"

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "engine/forces/memory.h"
+#include "engine/forces/history.h"
 #include "engine/forces/support_motion.h"
 #include "tests/models/run_model.h"
 #include "tests/physics/random_world.h"

@@ -25,13 +25,13 @@ patch -s -p1 <recipes.diff
 # The texts of exported code, of which those of the laws are now others.
 embedded="strut_code_law_texts|engine/base/vec.h|engine/scene/law.h"
 for text in engine/scene/laws/*.h engine/forces/strains/*.h; do embedded="$embedded|$text"; done
-for name in $(grep -o 'strut_code_[a-z]*_template' engine/output/code/templates.h); do
+for name in $(grep -o 'strut_code_[a-z]*_template' engine/output/code/code.h); do
   of=${name#strut_code_} of=${of%_template}
   file=engine/output/code/$of.c.in
   [ -e "$file" ] || file=engine/output/code/$of.h.in
   embedded="$embedded;$name|$file"
 done
-cmake "-DSOURCE=templates.c" "-DHEADER=engine/output/code/templates.h" "-DEMBED=$embedded" \
+cmake "-DSOURCE=templates.c" "-DHEADER=engine/output/code/code.h" "-DEMBED=$embedded" \
   -P EmbedFiles.cmake
 sources="tests/recipes/recipes.c tests/recipes/things.c templates.c $(ls engine/base/*.c engine/scene/*.c \
   engine/model/*.c engine/forces/*.c engine/statics/search/*.c engine/statics/equilibria/*.c \
@@ -39,7 +39,7 @@ sources="tests/recipes/recipes.c tests/recipes/things.c templates.c $(ls engine/
   parser/read parser/write -name '*.c') $(ls engine/run/settle*.c engine/output/buffer.c \
   engine/output/file.c engine/output/results.c)
   engine/statics/curvature.c engine/statics/dense_algebra.c engine/statics/minimise.c
-  engine/statics/potential.c engine/statics/rigid_motions.c engine/statics/spectrum.c"
+  engine/statics/potential.c engine/statics/curvature.c engine/statics/spectrum.c"
 # shellcheck disable=SC2086
 printf '%s\n' $sources | xargs -P 2 -n 12 sh -c 'cc=$1 includes=$2; shift 2
   for file; do

@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include "engine/output/draw/canvas.h"
-#include "engine/output/draw/palette.h"
 #include "engine/output/file.h"
 #include "tests/support/test.h"
 

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/study/search/cma.h"
+#include "engine/study/search/optimisers.h"
 #include "tests/support/test.h"
 
 enum { MOST = 10, SEEDS = 15 };

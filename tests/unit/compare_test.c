@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "engine/study/compare/compare.h"
-#include "parser/read/difference.h"
+#include "parser/read/overlay.h"
 #include "parser/read/read_scene.h"
 #include "tests/support/test.h"
 

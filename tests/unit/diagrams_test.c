@@ -5,9 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/output/draw/axes.h"
-#include "engine/output/draw/legend.h"
-#include "engine/output/draw/map.h"
+#include "engine/output/draw/chart.h"
 #include "engine/output/draw/work_precision.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"

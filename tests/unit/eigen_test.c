@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Eigenvalues of small matrices: closed forms, residuals and orthogonality, awkward scales. */
-#include "engine/statics/dense_algebra.h"
+#include "engine/statics/algebra.h"
 
 #include <float.h>
 #include <math.h>

@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "engine/base/checksum.h"
-#include "engine/base/sha256.h"
 #include "tests/support/check.h"
 
 static void digest_of(const char *text, size_t length, size_t part, size_t times, char hex[65]) {

@@ -6,7 +6,7 @@
 
 #include "engine/base/memory.h"
 #include "parser/language/keys.h"
-#include "parser/write/keys_page.h"
+#include "parser/write/writer.h"
 #include "tests/support/test.h"
 
 TEST(sections_divide_the_table) {

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/statics/algebra.h"
 #include "engine/statics/form/parts.h"
-#include "engine/statics/linear_program.h"
 #include "tests/support/check.h"
 #include "tests/support/random.h"
 

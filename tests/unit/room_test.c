@@ -12,7 +12,6 @@
 #include "engine/model/sparse.h"
 #include "parser/read/read_scene.h"
 #include "parser/yaml/document.h"
-#include "parser/yaml/memory_estimate.h"
 #include "tests/support/check.h"
 #include "tests/support/sanitized.h"
 

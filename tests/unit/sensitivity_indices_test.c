@@ -2,7 +2,7 @@
 /* Sensitivity indices of made-up results: closed forms, missing ones, and results that hardly vary. */
 #include <math.h>
 
-#include "engine/study/sensitivity/indices.h"
+#include "engine/study/sensitivity/sensitivity.h"
 #include "tests/support/test.h"
 
 enum { SAMPLES = 4096, FEW = 24 };

@@ -8,7 +8,6 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/file.h"
-#include "engine/study/results/shard.h"
 #include "engine/study/results/study_table.h"
 #include "tests/support/check.h"
 #include "tests/unit/scratch.h"

@@ -3,12 +3,11 @@
  * The search for equilibria on small structures with closed forms: which supports are held, what
  * becomes of the shapes, what is said where nothing can rest; and shapes to stand in by name.
  */
-#include "engine/statics/equilibria/rest_state.h"
+#include "engine/statics/equilibria/equilibria.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "engine/statics/equilibria/equilibria.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"
 #include "tests/support/motion.h"

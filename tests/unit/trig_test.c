@@ -2,7 +2,7 @@
 /* Sine and cosine of turns against the C library's long double. */
 #include <math.h>
 
-#include "engine/base/trig.h"
+#include "engine/base/vec.h"
 #include "tests/support/check.h"
 #include "tests/support/random.h"
 

@@ -6,7 +6,6 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/exports.h"
-#include "engine/output/film/encoder.h"
 #include "engine/output/film/film.h"
 #include "engine/output/report/reports.h"
 #include "parser/read/read_scene.h"

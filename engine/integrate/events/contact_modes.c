@@ -2,7 +2,7 @@
 /* Which mode follows: at the start, at an event, and when several contacts hold at once. */
 #include <math.h>
 
-#include "engine/forces/drive.h"
+#include "engine/forces/drives.h"
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/integrate/events/local_events.h"
 

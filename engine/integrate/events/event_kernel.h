@@ -14,7 +14,6 @@
 #include "engine/integrate/events/event_stepping.h"
 #include "engine/integrate/events/mode_law.h"
 #include "engine/integrate/events/surface_contacts.h"
-#include "engine/model/contact_law.h"
 #include "engine/model/pose.h"
 
 /* Normal force of the spring and, where `damped`, the damper, of a contact that touches. */

@@ -2,7 +2,7 @@
 /* Finding what ends a mode within a step. See event_stepping.h. */
 #include <math.h>
 
-#include "engine/forces/relay.h"
+#include "engine/forces/feedback.h"
 #include "engine/integrate/events/event_kernel.h"
 
 /* A ground damper this much weaker than the whole reaction is rounding, whatever its sign. */

@@ -5,8 +5,7 @@
 
 #include "engine/forces/energy.h"
 #include "engine/forces/feedback.h"
-#include "engine/forces/memory.h"
-#include "engine/forces/relay.h"
+#include "engine/forces/history.h"
 #include "engine/forces/unbalance.h"
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/integrate/events/event_log.h"
@@ -14,7 +13,7 @@
 #include "engine/integrate/events/small_modes.h"
 #include "engine/integrate/events/variation.h"
 #include "engine/integrate/observer.h"
-#include "engine/model/element_compile.h"
+#include "engine/model/compile_parts.h"
 
 /* A root this close to where the step begins, in grid steps, is there already. */
 static const double AT_ONCE = 1e-9;

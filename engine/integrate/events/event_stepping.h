@@ -10,7 +10,7 @@
 #ifndef STRUT_ENGINE_INTEGRATE_EVENTS_EVENT_STEPPING_H
 #define STRUT_ENGINE_INTEGRATE_EVENTS_EVENT_STEPPING_H
 
-#include "engine/forces/drives_ahead.h"
+#include "engine/forces/drives.h"
 #include "engine/integrate/integrator.h"
 
 /** Modes of a contact. u: sliding speed; N: normal force; s: the side, +-1. */

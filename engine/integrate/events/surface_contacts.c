@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "engine/forces/drive.h"
+#include "engine/forces/drives.h"
 #include "engine/forces/surfaces.h"
 #include "engine/integrate/events/event_kernel.h"
 

@@ -10,6 +10,7 @@
 #define STRUT_ENGINE_OUTPUT_CODE_CODE_H
 
 #include "engine/model/model.h"
+#include "engine/output/buffer.h"
 #include "engine/scene/experiment.h"
 
 typedef struct strut_code_options {
@@ -33,5 +34,19 @@ STRUT_API strut_status strut_code_check(const strut_model *model, strut_error *e
 STRUT_API strut_status strut_code_write(const char *directory, const strut_model *model,
                                         const strut_experiment *experiment,
                                         const strut_code_options *options, strut_error *error);
+
+/* The texts of which code.c makes C, put in at build time (EmbedFiles.cmake), each followed by a row of NULL.
+ *
+ * `$` is the prefix, `@_` the prefix in capitals, `@word` a number of the scene. Lines that begin with `@` are for
+ * the writer: between `@if word !word ...` and `@else` or `@end` is what a scene needs for which each word holds
+ * (none behind a `!`); in place of `@table word` come declarations with the scene's numbers.
+ *
+ * strut_code_law_texts are headers of the engine, see writer.h.
+ */
+
+extern const strut_embedded strut_code_header_template[], strut_code_source_template[],
+    strut_code_example_template[], strut_code_elements_template[], strut_code_duals_template[],
+    strut_code_grounds_template[], strut_code_memory_template[], strut_code_observed_template[],
+    strut_code_feedback_template[], strut_code_sliding_template[], strut_code_law_texts[];
 
 #endif

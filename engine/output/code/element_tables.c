@@ -5,9 +5,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/forces/memory.h"
-#include "engine/output/code/law_text.h"
-#include "engine/output/code/templates.h"
+#include "engine/forces/history.h"
+#include "engine/output/code/code.h"
+#include "engine/output/code/writer.h"
 #include "engine/scene/signal_program.h"
 
 static const char *const law_names[] = {

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/output/code/law_text.h"
+#include "engine/output/code/writer.h"
 
 /* ---- which there are ---- */
 

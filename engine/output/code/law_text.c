@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Functions of the engine's own laws, from their headers into the exported code. */
-#include "engine/output/code/law_text.h"
+#include "engine/output/code/writer.h"
 
 #include <assert.h>
 #include <ctype.h>
 #include <string.h>
 
-#include "engine/output/code/templates.h"
+#include "engine/output/code/code.h"
 
 /* A function or a type of a law's header, with the comment before it. */
 typedef struct definition {

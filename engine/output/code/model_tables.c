@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "engine/model/mass.h"
-#include "engine/output/code/law_text.h"
+#include "engine/output/code/writer.h"
 
 /* An array of numbers, or of those that follow from indices; `per` of them in a line. */
 static void add_array(strut_code_writer *w, const char *name, const double *values, size_t count,

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "engine/model/mass.h"
-#include "engine/output/code/templates.h"
+#include "engine/output/code/code.h"
 #include "engine/output/code/writer.h"
 
 /* ---- conditions ---- */

@@ -147,4 +147,16 @@ void strut_code_add_program(strut_code_writer *w, const strut_program *program);
 /* Expands a template into the text. */
 void strut_code_expand(strut_code_writer *w, const char *template);
 
+/* The engine's own texts of laws (scene/laws, forces/strains) in exported code: put into the program at build
+ * time, taken apart into functions and types, and written with the exported code's words.
+ *
+ * `LAW(name)` and `strut_name` become `name`, doubles `real`, numbers of formulas floats where these are
+ * wanted. Functions with preprocessor lines inside are not for other programs.
+ */
+
+/** Writes the function or type `name`, without prefix, after all that it names and that is not written yet. */
+void strut_code_add_law(strut_code_writer *w, const char *name);
+/** Do the texts have it? */
+bool strut_code_knows_law(const char *name);
+
 #endif

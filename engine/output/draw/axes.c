@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/draw/axes.h"
+#include "engine/output/draw/chart.h"
 
 #include <assert.h>
 #include <math.h>
@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/base/c_locale.h"
-#include "engine/output/draw/palette.h"
+#include "engine/base/number_text.h"
+#include "engine/output/draw/canvas.h"
 
 /* Round numbers on axes, and how they are written. */
 

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/draw/curves.h"
+#include "engine/output/draw/chart.h"
 
 #include <assert.h>
 #include <math.h>
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/draw/legend.h"
-#include "engine/output/draw/palette.h"
+#include "engine/output/draw/canvas.h"
 
 static const double GRAIN = 0.25, MARKER = 2.0, LONE_MARKER = 1.4, INSET = 4;
 enum { FEW_POINTS = 30, MARKERS = 8 };

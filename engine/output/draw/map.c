@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/draw/map.h"
+#include "engine/output/draw/chart.h"
 
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/draw/legend.h"
-#include "engine/output/draw/palette.h"
+#include "engine/output/draw/canvas.h"
 #include "engine/output/draw/structure.h"
 
 static const double SCALE_WIDTH = 46, GAP = 6;

@@ -9,9 +9,8 @@
 #include "engine/base/memory.h"
 #include "engine/forces/elements.h"
 #include "engine/model/pose.h"
-#include "engine/output/draw/axes.h"
-#include "engine/output/draw/legend.h"
-#include "engine/output/draw/palette.h"
+#include "engine/output/draw/canvas.h"
+#include "engine/output/draw/chart.h"
 
 /* The window, members and nodes. */
 

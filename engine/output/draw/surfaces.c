@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/draw/palette.h"
+#include "engine/output/draw/canvas.h"
 #include "engine/output/draw/structure.h"
 #include "engine/scene/profile.h"
 

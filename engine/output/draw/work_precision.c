@@ -4,8 +4,8 @@
 #include <math.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/draw/legend.h"
-#include "engine/output/draw/palette.h"
+#include "engine/output/draw/canvas.h"
+#include "engine/output/draw/chart.h"
 
 static const double MARKER = 2.4, STRIP = 18;
 

@@ -5,7 +5,7 @@
 #ifndef STRUT_ENGINE_OUTPUT_DRAW_WORK_PRECISION_H
 #define STRUT_ENGINE_OUTPUT_DRAW_WORK_PRECISION_H
 
-#include "engine/output/draw/axes.h"
+#include "engine/output/draw/chart.h"
 
 typedef struct strut_saving {
   int group;         /* index into groups: one method, joined by a line in the order given */

@@ -5,9 +5,8 @@
 #include <stdlib.h>
 
 #include "engine/model/pose.h"
-#include "engine/output/draw/axes.h"
-#include "engine/output/draw/legend.h"
-#include "engine/output/draw/palette.h"
+#include "engine/output/draw/canvas.h"
+#include "engine/output/draw/chart.h"
 #include "engine/output/draw/structure.h"
 #include "engine/output/figures/statics_figures.h"
 

@@ -6,7 +6,7 @@
 
 #include "engine/base/vec.h"
 #include "engine/forces/elements.h"
-#include "engine/output/draw/curves.h"
+#include "engine/output/draw/chart.h"
 #include "engine/output/figures/run_parts.h"
 
 /* Curves over time, one kind of quantity in each panel, and the overview that shows some below

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "engine/model/pose.h"
-#include "engine/output/draw/palette.h"
+#include "engine/output/draw/canvas.h"
 #include "engine/output/figures/run_parts.h"
 
 enum { LEAST_SAMPLES = 8 };         /* per period, for its shape to be visible */

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "engine/base/c_locale.h"
-#include "engine/output/draw/palette.h"
+#include "engine/base/number_text.h"
+#include "engine/output/draw/canvas.h"
 #include "engine/output/figures/run_parts.h"
 
 /* Node trajectories over the last period, enlarged, as in the paper's figure 9; and snapshots to

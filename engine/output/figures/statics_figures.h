@@ -7,7 +7,7 @@
 #define STRUT_ENGINE_OUTPUT_FIGURES_STATICS_FIGURES_H
 
 #include "engine/model/model.h"
-#include "engine/output/draw/plot.h"
+#include "engine/output/draw/chart.h"
 #include "engine/statics/equilibria/equilibria.h"
 #include "engine/statics/modes/modes.h"
 #include "engine/statics/path/path.h"

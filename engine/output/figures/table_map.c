@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/output/draw/map.h"
+#include "engine/output/draw/chart.h"
 #include "engine/output/draw/work_precision.h"
 #include "engine/output/figures/table_parts.h"
 

@@ -3,9 +3,7 @@
 
 #include <math.h>
 
-#include "engine/base/c_locale.h"
-#include "engine/output/film/encoder.h"
-#include "engine/output/film/frame.h"
+#include "engine/base/number_text.h"
 
 enum { WIDTH = 1280, HEIGHT = 720, GIF_WIDTH = 640, GIF_HEIGHT = 360 };
 

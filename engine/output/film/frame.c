@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/film/frame.h"
+#include "engine/output/film/film.h"
 
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
 
-#include "engine/output/draw/axes.h"
-#include "engine/output/draw/palette.h"
+#include "engine/output/draw/canvas.h"
+#include "engine/output/draw/chart.h"
 
 /* The camera follows motion beyond this many sizes of the structure, in x and in y. */
 static const double RANGE[2] = {2.05, 1.6};

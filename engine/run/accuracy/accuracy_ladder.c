@@ -11,7 +11,6 @@
 
 #include "engine/integrate/integrator.h"
 #include "engine/run/accuracy/accuracy.h"
-#include "engine/run/accuracy/accuracy_track.h"
 
 /*
  * Factor from one run with error control to the next. Local errors are of fifth order, so that half the

@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/run/follow/follow_curve.h"
+#include "engine/run/follow/follow_parts.h"
 
 #include <math.h>
 #include <string.h>
-
-#include "engine/run/follow/follow_criterion.h"
 
 /* Steps of arclength [1]: the first, the least, the most; of those near a cusp. */
 static const double FIRST = 0.01, LEAST = 2e-5, MOST = 0.3, CUSP = 0.01;

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/run/follow/follow_surface.h"
+#include "engine/run/follow/follow_parts.h"
 
 #include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <string.h>
 
-#include "engine/run/follow/follow_parts.h"
-#include "engine/run/orbit/shooting.h"
+#include "engine/run/orbit/orbit.h"
 
 /* Residuals of an orbit: wanted, and accepted where rounding or kinks prevent that; a step too long. */
 static const double CONVERGED = 1e-7, ACCEPTED = 2e-6, LONGEST = 2.0;

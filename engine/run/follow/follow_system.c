@@ -6,7 +6,7 @@
 
 #include "engine/base/vec.h"
 #include "engine/model/pose.h"
-#include "engine/run/orbit/shooting.h"
+#include "engine/run/orbit/orbit.h"
 
 #ifdef _OPENMP
 #include <omp.h>

@@ -12,7 +12,7 @@
 
 #include "engine/integrate/events/event_log.h"
 #include "engine/integrate/events/variation.h"
-#include "engine/run/orbit/period_map.h"
+#include "engine/run/orbit/orbit.h"
 
 enum { STRUT_FOLLOW_MOST = 96 }; /* most free coordinates and velocities */
 

@@ -4,10 +4,10 @@
 #include <math.h>
 
 #include "engine/base/vec.h"
-#include "engine/forces/drive.h"
+#include "engine/forces/drives.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/forces.h"
-#include "engine/forces/memory.h"
+#include "engine/forces/history.h"
 #include "engine/forces/sliding_masses.h"
 #include "engine/forces/support_motion.h"
 #include "engine/model/pose.h"

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/forces/drive.h"
+#include "engine/forces/drives.h"
 #include "engine/forces/forces.h"
 #include "engine/forces/support_motion.h"
 

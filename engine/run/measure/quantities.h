@@ -5,7 +5,7 @@
 #ifndef STRUT_ENGINE_RUN_MEASURE_QUANTITIES_H
 #define STRUT_ENGINE_RUN_MEASURE_QUANTITIES_H
 
-#include "engine/base/export.h"
+#include "engine/base/status.h"
 #include "engine/forces/energy.h"
 #include "engine/model/state.h"
 #include "engine/run/measure/summary.h"

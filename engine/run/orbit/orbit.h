@@ -1,6 +1,91 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * An accurate periodic motion from a coarse one, by defect correction on the period map.
+ * The period map of a driven motion: from the start of a drive period to its end, by one method.
+ *
+ * A state here is 2 length + 1 doubles: positions, velocities, and the remaining time of refined
+ * steps after a touchdown. Travel along the ground is removed after each period, so that a gait is
+ * a fixed point.
+ */
+#ifndef STRUT_ENGINE_RUN_ORBIT_ORBIT_H
+#define STRUT_ENGINE_RUN_ORBIT_ORBIT_H
+
+#include <signal.h>
+
+#include "engine/integrate/integrator.h"
+#include "engine/run/measure/measure.h"
+
+typedef struct strut_period_map {
+  const strut_model *model; /* borrowed */
+  strut_state *state;
+  const strut_integrator *method;
+  void *workspace;
+  strut_measurement measure;
+  double dt, period; /* [s] */
+  double time;       /* start of an application, for drives and loads [s]; may be set freely */
+  int64_t steps;     /* steps per drive period */
+  int32_t repeats;   /* drive periods per application */
+  bool travels;
+  const volatile sig_atomic_t
+      *interrupt;           /* an application ends soon after it is set; may be NULL */
+  int64_t most_evaluations; /* likewise after this many in all applications; 0: no limit */
+  int64_t evaluations, events, applied; /* so far; applied: drive periods */
+  /** Sees the state after each step of the grid; NULL: nobody looks. */
+  void (*watch)(void *context, const strut_state *state);
+  void *watch_context;
+} strut_period_map;
+
+/**
+ * Creates the map with method and step of `experiment`; the step is adjusted to divide the period.
+ */
+strut_status strut_period_map_create(const strut_model *model, const strut_experiment *experiment,
+                                     int32_t repeats, strut_period_map *map, strut_error *error);
+/**
+ * Moves y by `repeats` drive periods and removes its travel along the ground. Returns the travel of
+ * the measured point [m]; NAN where the motion was lost or the application interrupted.
+ */
+double strut_period_map_apply(strut_period_map *map, double *y);
+/** d = shape of `to` minus that of `from`: the mean shift along the ground is removed. */
+void strut_period_map_subtract(const strut_period_map *map, const double *from, const double *to,
+                               double *d);
+/** Is the interrupt flag set? */
+bool strut_period_map_interrupted(const strut_period_map *map);
+/** Is the limit of evaluations exceeded? */
+bool strut_period_map_spent(const strut_period_map *map);
+/** Size of a difference: the largest of positions over the structure's size, and velocities over
+    size times 2 pi f. */
+double strut_period_map_size(const strut_period_map *map, const double *d);
+/** NULL-safe on a zeroed map. */
+void strut_period_map_free(strut_period_map *map);
+
+/* Shooting: completes a periodic motion by Newton's method on the period map, with its Floquet
+ * multipliers.
+ *
+ * The derivative of the map is taken by central differences, one free coordinate and velocity after
+ * the other: two periods each, hence only for small structures. Where the structure travels, shifts
+ * along the ground are neutral; that direction is held, and its multiplier, 1, is left out. With
+ * contacts the map is differentiable only where no touchdown grazes and the method locates events;
+ * elsewhere the residual shows the accuracy reached.
+ */
+
+enum { STRUT_MOST_SHOT = 96 }; /* most free coordinates and velocities */
+
+/**
+ * x (n) becomes a^-1 x by elimination with pivots; a (n, n), row by row, is lost. False where a pivot is not
+ * above `least`.
+ */
+bool strut_solve_dense(double *a, double *x, size_t n, double least);
+
+/**
+ * Moves y (2 length + 1), near a fixed point, to the fixed point; *travel is its travel in one
+ * application [m]. Fills shot, iterations, reason, residual (the largest change of shape and
+ * velocities over one application, in sizes and sizes times 2 pi f) and the multipliers of `found`.
+ * Where Newton's method does not converge, y is unchanged, `shot` is false and `reason` is the
+ * cause. STRUT_OK, STRUT_INTERRUPTED (y is unchanged) or STRUT_NO_MEMORY.
+ */
+strut_status strut_shoot(strut_period_map *map, double *y, double *travel,
+                         strut_steady_summary *found);
+
+/* An accurate periodic motion from a coarse one, by defect correction on the period map.
  *
  * Let C and F be the period maps of a coarse and of an accurate method, and y a fixed point of C. F
  * leaves the defect r = F(y) - y. To first order the fixed point of F is y + sum_k J^k r, with J
@@ -8,10 +93,6 @@
  * accurate period and some coarse ones give the accurate orbit and its velocity. A repetition with
  * the defect at the new point reduces the error quadratically, and measures it.
  */
-#ifndef STRUT_ENGINE_RUN_ORBIT_ORBIT_H
-#define STRUT_ENGINE_RUN_ORBIT_ORBIT_H
-
-#include "engine/run/orbit/period_map.h"
 
 typedef struct strut_orbit {
   double *y;         /* (2 length + 1) coarse fixed point in, accurate one out */

@@ -4,7 +4,7 @@
  * force reaches the yield, then with the slope second_stiffness, and back along k where x turns.
  *
  * That is a memory, which a function of e cannot have: this header is the law before anything has yielded,
- * as statics take it. Runs shift e0 by what has yielded, see engine/forces/memory.h.
+ * as statics take it. Runs shift e0 by what has yielded, see engine/forces/history.h.
  */
 #ifndef STRUT_ENGINE_SCENE_LAWS_ELASTIC_PLASTIC_H
 #define STRUT_ENGINE_SCENE_LAWS_ELASTIC_PLASTIC_H

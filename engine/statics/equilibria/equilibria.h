@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * All equilibria of a scene by the paper's method: on static supports (12), then their outcome on
- * the real ground, and the barriers between the stable ones.
- */
+/** One equilibrium on the real ground, by name, for modes, matrices and starts of runs. */
 #ifndef STRUT_ENGINE_STATICS_EQUILIBRIA_EQUILIBRIA_H
 #define STRUT_ENGINE_STATICS_EQUILIBRIA_EQUILIBRIA_H
 
@@ -11,7 +8,44 @@
 #include "engine/model/model.h"
 #include "engine/run/measure/summary.h"
 #include "engine/scene/experiment.h"
-#include "engine/statics/search/critical_point.h"
+#include "engine/statics/search/critical.h"
+
+typedef struct strut_rest_state {
+  const char *name; /* "drawn", "start", a configuration's, or one that the list of all gives */
+  double *q;        /* (length) [m] */
+  bool at_rest;     /* false where it is no equilibrium on the real ground: as drawn, or listed on
+                        supports that it does not stand on */
+  double residual;  /* largest net force on a free coordinate [N] */
+  double scale;     /* sum of the weights and loads [N], or of member forces without any */
+  int32_t closed_count;
+  int32_t *closed;             /* (closed_count) nodes that touch the ground */
+  double *normal;              /* (closed_count) forces of the ground on them [N] */
+  strut_settle_summary settle; /* how the scene's start settled; zero where it was not asked to */
+} strut_rest_state;
+
+/**
+ * name NULL or "start": the equilibrium that the scene's start comes to rest in, where the scene
+ * settles the very positions that its run starts from (engine/run/settle.h); "drawn": the drawn
+ * shape as it is; else a configuration of the scene: from its positions where it has some, else by
+ * a search on its contacts; "n1-n4-2" and the like: from the list that strut_equilibria_find makes
+ * with the scene's own effort. All in the arena. Fails with STRUT_USAGE and a suggestion for an
+ * unknown name, STRUT_NOT_SETTLED where there is no such equilibrium, naming the nodes that move,
+ * STRUT_NO_MEMORY.
+ */
+STRUT_API strut_status strut_rest_state_find(const strut_model *model,
+                                             const strut_experiment *experiment, const char *name,
+                                             strut_arena *arena, strut_rest_state *rest,
+                                             strut_error *error);
+
+/**
+ * Moves the nodes' start positions to the equilibrium that the scene names as its start, and sets
+ * start_equilibrium to -1. Does nothing if the scene names none. Compiles the scene.
+ */
+STRUT_API strut_status strut_resolve_start_equilibrium(strut_setup *setup, strut_error *error);
+
+/* All equilibria of a scene by the paper's method: on static supports (12), then their outcome on
+ * the real ground, and the barriers between the stable ones.
+ */
 
 typedef enum strut_outcome {
   STRUT_OUTCOME_STANDS,       /* rests on the contacts it was found with */
@@ -91,5 +125,48 @@ STRUT_API strut_status strut_equilibria_find(const strut_model *model,
                                              const strut_equilibria_options *options,
                                              strut_equilibria *equilibria, strut_error *error);
 STRUT_API void strut_equilibria_free(strut_equilibria *equilibria);
+
+/* The stationary points of one potential as a landscape: basins, and the passes between them. */
+
+typedef struct strut_landscape {
+  const strut_potential *potential;
+  bool merged; /* congruent shapes are one point, mirror images too */
+  strut_critical_set set;
+  int32_t minima; /* stable and floppy points: the first ones of the set */
+  int32_t
+      *through; /* (set.count) a collision that a saddle's ways down lead through, or -1; NULL: the
+                        scene has no collision */
+  double *lowest;    /* (minima) potential of the lowest pass out of it [J]; HUGE_VAL: none known */
+  int32_t *parent;   /* (minima) scratch of the path searches below */
+  strut_arena arena; /* of the above */
+} strut_landscape;
+
+/** strut_landscape_free releases it, after a failure too. */
+strut_status strut_landscape_create(const strut_potential *potential,
+                                    const strut_critical_effort *effort, strut_landscape *landscape,
+                                    strut_error *error);
+void strut_landscape_free(strut_landscape *landscape);
+
+/** The minimum that the shape q (length) is, or -1. */
+int32_t strut_landscape_find(const strut_landscape *landscape, const double *q);
+
+/** A strut_pass_of for a landscape as the context. */
+double strut_landscape_pass(const void *landscape, const double *q);
+
+/**
+ * Index of the highest saddle on the lowest path from minimum a to minimum b; -1 if the known
+ * saddles do not connect them. Saddles that lead through a collision are none.
+ */
+int32_t strut_landscape_path(const strut_landscape *landscape, int32_t a, int32_t b);
+
+/** The lowest saddle that leads from minimum a down to minimum b the other way, or -1. */
+int32_t strut_landscape_direct(const strut_landscape *landscape, int32_t a, int32_t b);
+
+/**
+ * Writes the minima between a and b on the shortest path over saddles up to `highest` to via
+ * (minima), in order; returns their count.
+ */
+int32_t strut_landscape_between(const strut_landscape *landscape, int32_t a, int32_t b,
+                                int32_t highest, int32_t *via);
 
 #endif

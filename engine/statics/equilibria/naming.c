@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/equilibria/naming.h"
+#include "engine/statics/equilibria/equilibria_parts.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -9,7 +9,7 @@
 #include "engine/base/memory.h"
 #include "engine/base/vec.h"
 #include "engine/forces/elements.h"
-#include "engine/model/element_compile.h"
+#include "engine/model/compile_parts.h"
 #include "engine/model/pose.h"
 #include "engine/statics/search/critical.h"
 

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/equilibria/equilibrium_search.h"
+#include "engine/statics/equilibria/equilibria_parts.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/statics/equilibria/naming.h"
 #include "engine/statics/minimise.h"
 
 /* Nodes that move at least this share of the one that moves most. */

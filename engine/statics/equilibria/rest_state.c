@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/equilibria/rest_state.h"
+#include "engine/statics/equilibria/equilibria.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -7,8 +7,7 @@
 
 #include "engine/forces/elements.h"
 #include "engine/run/settle.h"
-#include "engine/statics/equilibria/equilibrium_search.h"
-#include "engine/statics/equilibria/naming.h"
+#include "engine/statics/equilibria/equilibria_parts.h"
 
 /* A start nearer to its minimum is at rest up to the ground's compliance; in model sizes. */
 static const double NEAR = 0.01;

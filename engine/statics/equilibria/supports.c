@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/equilibria/supports.h"
+#include "engine/statics/equilibria/equilibria_parts.h"
 
 #include <assert.h>
 #include <math.h>

@@ -8,8 +8,7 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
-#include "engine/statics/dense_algebra.h"
-#include "engine/statics/linear_program.h"
+#include "engine/statics/algebra.h"
 
 /*
  * Weighted least squares under equations and lower bounds, by an active set. Steps are taken in the

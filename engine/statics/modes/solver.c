@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/modes/solver.h"
+#include "engine/statics/modes/parts.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -6,10 +6,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/model/element_compile.h"
-#include "engine/statics/equilibria/rest_state.h"
+#include "engine/model/compile_parts.h"
+#include "engine/statics/equilibria/equilibria.h"
 #include "engine/statics/minimise.h"
-#include "engine/statics/path/walk.h"
+#include "engine/statics/path/path_parts.h"
 
 enum { NAMES = 400 };
 

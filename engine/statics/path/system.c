@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Stretches and gaps are differences of long numbers, made with twice a double's digits. */
-#include "engine/statics/path/system.h"
 #include "engine/forces/tangent.h"
-#include "engine/statics/dense_algebra.h"
+#include "engine/statics/algebra.h"
+#include "engine/statics/path/path_parts.h"
 
 #include <assert.h>
 #include <gsl/gsl_blas.h>

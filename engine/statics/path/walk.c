@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/path/walk.h"
+#include "engine/statics/path/path_parts.h"
 
 #include <math.h>
 #include <stdio.h>

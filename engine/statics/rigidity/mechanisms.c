@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/rigidity/mechanisms.h"
+#include "engine/statics/rigidity/rigidity_parts.h"
 
 #include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <string.h>
 
 #include "engine/base/vec.h"
-#include "engine/statics/dense_algebra.h"
-#include "engine/statics/rigid_motions.h"
-#include "engine/statics/rigidity/stress_matrix.h"
+#include "engine/statics/algebra.h"
+#include "engine/statics/potential.h"
 
 /* Most members of a walk: each step solves a dense system of that size. */
 enum { WALK_MEMBERS = 200 };

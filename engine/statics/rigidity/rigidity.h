@@ -6,8 +6,7 @@
 #ifndef STRUT_ENGINE_STATICS_RIGIDITY_RIGIDITY_H
 #define STRUT_ENGINE_STATICS_RIGIDITY_RIGIDITY_H
 
-#include "engine/statics/rigidity/mechanisms.h"
-#include "engine/statics/rigidity/stress_matrix.h"
+#include "engine/statics/rigidity/rigidity_parts.h"
 
 /** Residual forces up to this share of the largest force in the shape count as balance. */
 #define STRUT_BALANCE_TOLERANCE 1e-8

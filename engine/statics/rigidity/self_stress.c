@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/rigidity/self_stress.h"
+#include "engine/statics/rigidity/rigidity_parts.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/statics/dense_algebra.h"
-#include "engine/statics/linear_program.h"
+#include "engine/statics/algebra.h"
 
 static const double TINY = 1e-11;      /* beside the largest force: rounding */
 static const double PIVOT_SHARE = 0.1; /* of the largest entry: what a pivot must have */

@@ -6,10 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/statics/search/merge.h"
-#include "engine/statics/search/search_batch.h"
-#include "engine/statics/search/starts.h"
-
 /*
  * Work limit of all searches of one command (decomposed Hessians times their cost), and the share
  * of it at which each phase must end.

@@ -1,14 +1,43 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * All stationary points of one potential: found from many starts, merged, classified and connected.
- */
+/** A stationary point of a potential, and its kind. */
 #ifndef STRUT_ENGINE_STATICS_SEARCH_CRITICAL_H
 #define STRUT_ENGINE_STATICS_SEARCH_CRITICAL_H
 
 #include <signal.h>
+#include <stdint.h>
 
+#include "engine/base/status.h"
 #include "engine/statics/minimise.h"
-#include "engine/statics/search/critical_point.h"
+#include "engine/statics/potential.h"
+
+typedef enum strut_stability {
+  STRUT_STABLE, /* all eigenvalues positive, those of free rigid-body motions apart */
+  STRUT_FLOPPY, /* none negative, but a motion that is not a rigid one meets no stiffness */
+  STRUT_SADDLE, /* some negative */
+  STRUT_MAXIMUM /* all negative */
+} strut_stability;
+
+/** "stable", "floppy", "saddle", "maximum". */
+STRUT_API const char *strut_stability_name(strut_stability stability);
+
+typedef struct strut_critical_point {
+  double *q;        /* (length) of the first placement found */
+  double potential; /* [J] */
+  double residual;  /* largest entry of g [N] */
+  strut_stability label;
+  int32_t negative; /* eigenvalues of the Hessian below zero */
+  int32_t zero;     /* motions without stiffness, rigid ones included */
+  int32_t rigid;    /* rigid-body motions that the supports leave free */
+  int32_t eigenvalue_count;
+  double *eigenvalues; /* ascending [N/m]; all of them where dense, else the lowest */
+  double *softest;     /* (length) unit vector of the lowest that is no rigid-body motion */
+  int64_t found;       /* starts that ended here */
+  int32_t placements;  /* congruent copies merged into it: mirror images, turned, shifted */
+  int32_t shape;       /* points of one number are mirror images of each other, not merged */
+  int32_t down[2];     /* of a saddle with one negative: minima downhill either way, or -1 */
+} strut_critical_point;
+
+/* All stationary points of one potential: found from many starts, merged, classified and connected. */
 
 typedef struct strut_critical_set {
   size_t count;
@@ -67,5 +96,137 @@ STRUT_API strut_status strut_critical_judge(const strut_potential *potential, co
  */
 STRUT_API double strut_shape_distance(const strut_model *model, const double *a, const double *b,
                                       bool mirror, bool *mirrored);
+
+/* Descents and climbs side by side: each task by itself, results read in the tasks' order.
+ *
+ * A task depends only on its own description, so the number of threads changes no bit.
+ */
+
+/** Tasks run, and their results are read, in groups of this size. */
+enum { STRUT_BATCH = 64 };
+
+typedef enum strut_task_kind {
+  STRUT_TASK_SHAPE,        /* down from q */
+  STRUT_TASK_FOLD,         /* down from fold `number` of q */
+  STRUT_TASK_CROSS,        /* down by short steps from q with some nodes where `other` has them */
+  STRUT_TASK_SHAKE,        /* down by short steps from q shaken, by `number` */
+  STRUT_TASK_RANDOM,       /* down from random shape `number` */
+  STRUT_TASK_CLIMB_MODE,   /* up from the minimum q along mode `number`, `side` +-1 */
+  STRUT_TASK_CLIMB_SHAPE,  /* up from q itself, which is close to a saddle */
+  STRUT_TASK_CLIMB_PAIR,   /* up from the highest point on the straight line from q to other */
+  STRUT_TASK_CLIMB_RANDOM, /* up from random shape `number`, or from q shaken if not NULL */
+  STRUT_TASK_DOWN          /* down from the saddle q along `other`, `side` +-1 */
+} strut_task_kind;
+
+typedef struct strut_task {
+  strut_task_kind kind;
+  int64_t number;
+  double side;
+  const double *q, *other; /* (length) */
+  int32_t from;            /* index of the point that the task belongs to */
+} strut_task;
+
+typedef struct strut_task_result {
+  strut_descent_end end;
+  double *q;             /* (length) where it ended */
+  int64_t hessian_count; /* Hessians decomposed */
+} strut_task_result;
+
+typedef struct strut_search_tasks strut_search_tasks;
+/** climbs: will there be any? Only below STRUT_DENSE_STATICS coordinates. */
+strut_status strut_search_tasks_create(const strut_potential *potential, uint64_t seed, bool climbs,
+                                       strut_search_tasks **batch, strut_error *error);
+void strut_search_tasks_free(strut_search_tasks *batch);
+
+/**
+ * Runs up to STRUT_BATCH tasks; the results are valid until the next call. Tasks that begin once
+ * *interrupt is not 0 are left out, and then no result means anything; `interrupt` may be NULL.
+ */
+const strut_task_result *strut_search_tasks_run(strut_search_tasks *batch, const strut_task *task,
+                                                size_t count,
+                                                const volatile sig_atomic_t *interrupt);
+
+/* A set of stationary points without duplicates, with copies of one shape merged. */
+
+typedef struct strut_congruent_copy strut_congruent_copy;
+
+typedef struct strut_stationary_set {
+  const strut_potential *potential;
+  strut_arena *arena;    /* of the points; the caller's */
+  bool congruent;        /* copies of one shape are one point */
+  bool shifts[2], turns; /* rigid motions that no support, load or ground forbids */
+  double near;           /* two shapes are one within this [m] */
+  double flat;           /* two energies may differ by this anyway [J] */
+  size_t count, room;
+  strut_critical_point *points;     /* of strut_allocate */
+  strut_congruent_copy **placement; /* (count) their different placements; of strut_allocate */
+} strut_stationary_set;
+
+void strut_stationary_set_start(strut_stationary_set *set, const strut_potential *potential,
+                                strut_arena *arena);
+void strut_stationary_set_free(strut_stationary_set *set);
+
+/** Index of the point that q equals, or -1. */
+int32_t strut_stationary_set_find(const strut_stationary_set *set, const double *q);
+/** Finds or judges and adds q; *index is its point, whose `found` has grown by one. */
+strut_status strut_stationary_set_add(strut_stationary_set *set, const double *q, int32_t *index,
+                                      bool *fresh, strut_error *error);
+/** The k-th different placement of a point (length), or NULL. */
+const double *strut_stationary_set_placement(const strut_stationary_set *set, int32_t index,
+                                             int32_t k);
+
+/** Numbers the shapes: points of one number are mirror images of each other. */
+void strut_number_shapes(const strut_stationary_set *like, strut_critical_point *points,
+                         size_t count);
+
+/* Climbs from a shape to a stationary point with a given number of unstable directions.
+ *
+ * The potential is turned upside down along the modes that are followed (image function), so that a
+ * trust-region descent ends on a saddle: along the softest modes, or along the one that leans most
+ * on a given direction.
+ */
+
+typedef struct strut_climber strut_climber;
+/** For one thread at a time. NULL: out of memory. */
+strut_climber *strut_climber_create(const strut_potential *potential);
+/** Hessians decomposed so far: a measure of the work done. */
+int64_t strut_climber_hessian_count(const strut_climber *climber);
+void strut_climber_free(strut_climber *climber);
+
+/**
+ * Moves q (length) up along `index` >= 1 modes and down all others. direction (n), or NULL: which
+ * mode to follow first, with index 1. True if g = 0 there to what rounding allows.
+ */
+bool strut_climb(strut_climber *climber, int32_t index, const double *direction, double *q);
+
+/**
+ * Moves q by `far` along mode number `mode` of its Hessian, ascending, idle ones not counted, to
+ * start a climb; that direction is written to direction (n). False if there are fewer modes.
+ */
+bool strut_climb_away(strut_climber *climber, int32_t mode, double far, double *q,
+                      double *direction);
+
+/* Shapes to start a search from: folds of a known shape, and random ones, each by its number alone. */
+
+/** Number of folds of a shape: mirror images of the whole, of either side of a member, and
+    of single nodes across the line through two of their neighbours. */
+int64_t strut_fold_count(const strut_potential *potential);
+/** q (length) becomes fold number `fold` of itself; held coordinates stay. */
+void strut_fold(const strut_potential *potential, int64_t fold, double *q);
+
+/** Random shape number `index` of `seed`: positions at random, or a shaken or folded start. */
+void strut_random_shape(const strut_potential *potential, uint64_t seed, uint64_t index, double *q);
+
+/**
+ * Replaces nodes of q by those of `other`, chosen by the bits of random number `index` of `seed`.
+ */
+void strut_cross(const strut_potential *potential, uint64_t seed, uint64_t index,
+                 const double *other, double *q);
+
+/** q shaken by a random part of the structure's size, from a hundredth to a half. */
+void strut_shake(const strut_potential *potential, uint64_t seed, uint64_t index, double *q);
+
+/** Bits of a generator that is a counter: the same for the same (seed, index, counter). */
+uint64_t strut_counted_bits(uint64_t seed, uint64_t index, uint64_t *counter);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/search/saddle.h"
+#include "engine/statics/search/critical.h"
 
 #include <assert.h>
 #include <float.h>
@@ -9,8 +9,8 @@
 #include "engine/base/vec.h"
 #include "engine/forces/elements.h"
 #include "engine/model/pose.h"
+#include "engine/statics/algebra.h"
 #include "engine/statics/curvature.h"
-#include "engine/statics/spectrum.h"
 
 enum { MOST_STEPS = 150, MOST_POLISH = 12, MOST_BENDS = 4 };
 

@@ -12,7 +12,7 @@
 #include <stdbool.h>
 
 #include "engine/model/model.h"
-#include "engine/output/draw/plot.h"
+#include "engine/output/draw/chart.h"
 #include "engine/run/measure/summary.h"
 #include "engine/scene/experiment.h"
 #include "engine/scene/things.h"

@@ -5,10 +5,18 @@
  */
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-#include "engine/forces/memory.h"
+#include "engine/base/vec.h"
+#include "engine/forces/history.h"
+#include "engine/model/pose.h"
 #include "engine/run/accuracy/accuracy.h"
+#include "engine/statics/equilibria/equilibria.h"
+#include "engine/statics/modes/modes.h"
+#include "engine/statics/potential.h"
+#include "engine/statics/rigidity/rigidity.h"
+#include "engine/statics/rigidity/rigidity_parts.h"
 #include "engine/study/compare/compare_parts.h"
 #include "engine/study/tradeoff/tradeoff_parts.h"
 
@@ -166,4 +174,225 @@ strut_status strut_compare_motion(strut_compare_work *work, const strut_model *m
                                         status, true);
   strut_summary_free(&summary);
   return status;
+}
+
+/* Properties of a structure at rest: rigidity, forces, states, frequencies. */
+
+static void put_counts(strut_compare_work *work, const strut_rigidity *r) {
+  const strut_mechanisms *m = &r->mechanisms;
+  strut_compare_put(work, STRUT_COMPARE_SELF_STRESSES, r->states.count);
+  strut_compare_put(work, STRUT_COMPARE_MECHANISMS, m->count - m->rigid_body);
+  strut_compare_put(work, STRUT_COMPARE_FINITE, m->finite);
+  strut_compare_put(work, STRUT_COMPARE_RIGID_MOTIONS, m->rigid_body);
+}
+
+static void put_forces(strut_compare_work *work, const strut_rigidity *r, size_t count) {
+  double squares = 0.0, tension = 0.0, compression = 0.0;
+  if (count == 0) {
+    strut_compare_leave(work, STRUT_COMPARE_PRESTRESS, STRUT_COMPARE_COMPRESSION,
+                        "there are no members");
+    return;
+  }
+  for (size_t j = 0; j < count; j++) {
+    squares += r->force[j] * r->force[j];
+    tension = fmax(tension, r->force[j]);
+    compression = fmax(compression, -r->force[j]);
+  }
+  strut_compare_put(work, STRUT_COMPARE_PRESTRESS, sqrt(squares / (double)count));
+  strut_compare_put(work, STRUT_COMPARE_TENSION, tension);
+  strut_compare_put(work, STRUT_COMPARE_COMPRESSION, compression);
+}
+
+/* Evaluates the drawn shape, as `strut rigidity` does. */
+static strut_status evaluate_drawn(strut_compare_work *work, const strut_model *model) {
+  strut_error error = {0};
+  strut_arena scratch = {0};
+  strut_rest_state drawn;
+  strut_rigidity r = {0};
+  strut_status status = strut_rest_state_find(model, &work->column->input->setup->experiment,
+                                              "drawn", &scratch, &drawn, &error);
+  if (status == STRUT_OK) status = strut_rigidity_find(model, drawn.q, &r, &error);
+  if (status == STRUT_OK)
+    put_counts(work, &r);
+  else
+    status = strut_compare_leave_failed(work, STRUT_COMPARE_SELF_STRESSES,
+                                        STRUT_COMPARE_RIGID_MOTIONS, &error, status, true);
+  strut_rigidity_free(&r);
+  strut_arena_free(&scratch);
+  return status;
+}
+
+strut_status strut_compare_rigidity(strut_compare_work *work, const strut_model *model) {
+  strut_error error = {0};
+  strut_rigidity r = {0};
+  strut_status status = evaluate_drawn(work, model);
+  if (status != STRUT_OK || !work->rest.q) return status;
+  status = strut_rigidity_find(model, work->rest.q, &r, &error);
+  if (status == STRUT_OK)
+    put_forces(work, &r, model->scene->member_count);
+  else
+    status = strut_compare_leave_failed(work, STRUT_COMPARE_PRESTRESS, STRUT_COMPARE_COMPRESSION,
+                                        &error, status, true);
+  strut_rigidity_free(&r);
+  return status;
+}
+
+/* ---- states ---- */
+
+static int by_energy(const void *a, const void *b) {
+  const strut_compare_state *x = a, *y = b;
+  return (x->energy > y->energy) - (x->energy < y->energy);
+}
+
+static strut_status keep_states(strut_compare_work *work, const strut_equilibria *all) {
+  strut_compare_column *c = work->column;
+  c->states = strut_arena_allocate(work->arena, all->count + 1, sizeof *c->states);
+  c->barriers = strut_arena_allocate(work->arena, all->barrier_count + 1, sizeof *c->barriers);
+  const char **names = strut_arena_allocate(work->arena, all->count + 1, sizeof *names);
+  if (!c->states || !c->barriers || !names) return STRUT_NO_MEMORY;
+  for (size_t i = 0; i < all->count; i++) {
+    names[i] = strut_arena_format(work->arena, "%s", all->list[i].name);
+    if (!names[i]) return STRUT_NO_MEMORY;
+    if (all->list[i].outcome == STRUT_OUTCOME_STANDS)
+      c->states[c->state_count++] = (strut_compare_state){names[i], all->list[i].energy};
+  }
+  for (size_t i = 0; i < all->barrier_count; i++)
+    c->barriers[c->barrier_count++] = (strut_compare_barrier){
+        names[all->barriers[i].from], names[all->barriers[i].to], all->barriers[i].height};
+  qsort(c->states, c->state_count, sizeof *c->states, by_energy);
+  return STRUT_OK;
+}
+
+/* The name under which the list has the equilibrium that a run starts in, or NULL. */
+static const char *start_name(const strut_compare_work *work, const strut_model *model,
+                              const strut_equilibria *all) {
+  const double *q = work->rest.q;
+  if (!q) return NULL;
+  for (size_t i = 0; i < all->count; i++) {
+    const strut_equilibrium *e = &all->list[i];
+    const double *p = e->rest ? e->rest : e->point.q;
+    double shift = p[0] - q[0], apart = 0.0; /* along the ground it may lie anywhere */
+    if (e->outcome != STRUT_OUTCOME_STANDS) continue;
+    for (int32_t k = 0; k < 2 * model->node_count; k++)
+      apart = fmax(apart,
+                   fabs(p[k] - q[k] -
+                        (k % 2 || !strut_contacts_allow_travel(&model->contacts) ? 0.0 : shift)));
+    if (apart <= 1e-3 * model->size) return e->name;
+  }
+  return NULL;
+}
+
+static void put_barrier(strut_compare_work *work, const char *from, const strut_equilibria *all) {
+  const strut_compare_quantity at = STRUT_COMPARE_LOWEST_BARRIER;
+  double lowest = HUGE_VAL;
+  for (size_t i = 0; from && i < all->barrier_count; i++)
+    if (all->list[all->barriers[i].from].name == from)
+      lowest = fmin(lowest, all->barriers[i].height);
+  if (isfinite(lowest))
+    strut_compare_put(work, at, lowest);
+  else
+    strut_compare_leave(
+        work, at, at,
+        from ? "no path to another state is known" : "the start is in none of the listed states");
+}
+
+static void put_states(strut_compare_work *work, const char *from, const strut_equilibria *all) {
+  const strut_compare_column *c = work->column;
+  strut_compare_put(work, STRUT_COMPARE_STATES, (double)c->state_count);
+  if (c->state_count == 0) {
+    const char *why = strut_arena_format(
+        work->arena, "%s", all->remark[0] ? all->remark : "there is no state in which it stands");
+    strut_compare_leave(work, STRUT_COMPARE_LOWEST_ENERGY, STRUT_COMPARE_LOWEST_BARRIER,
+                        why ? why : "there is none");
+    return;
+  }
+  double low = c->states[0].energy, high = c->states[c->state_count - 1].energy;
+  strut_compare_put(work, STRUT_COMPARE_LOWEST_ENERGY, low);
+  strut_compare_put(work, STRUT_COMPARE_ENERGY_SPAN, high - low);
+  put_barrier(work, from, all);
+}
+
+strut_status strut_compare_states(strut_compare_work *work, const strut_model *model) {
+  const strut_equilibria_options wanted = {.interrupt = work->options->interrupt};
+  strut_error error = {0};
+  strut_equilibria all = {0};
+  if (work->options->no_states) {
+    strut_compare_leave(work, STRUT_COMPARE_STATES, STRUT_COMPARE_LOWEST_BARRIER, "not requested");
+    return STRUT_OK;
+  }
+  strut_status status =
+      strut_equilibria_find(model, &work->column->input->setup->experiment, &wanted, &all, &error);
+  if (status == STRUT_OK) {
+    status = keep_states(work, &all);
+    if (status == STRUT_OK) put_states(work, start_name(work, model, &all), &all);
+  } else {
+    status = strut_compare_leave_failed(work, STRUT_COMPARE_STATES, STRUT_COMPARE_LOWEST_BARRIER,
+                                        &error, status, true);
+  }
+  strut_equilibria_free(&all);
+  return status;
+}
+
+/* ---- frequencies ---- */
+
+strut_status strut_compare_frequencies(strut_compare_work *work, const strut_model *model) {
+  const strut_modes_options wanted = {.at = NULL};
+  strut_error error = {0};
+  strut_modes modes = {0};
+  strut_status status =
+      strut_modes_find(model, &work->column->input->setup->experiment, &wanted, &modes, &error);
+  if (status == STRUT_OK) {
+    int found = 0;
+    strut_compare_leave(work, STRUT_COMPARE_FREQUENCY_1, STRUT_COMPARE_FREQUENCY_3,
+                        "the model has fewer elastic modes");
+    for (size_t i = 0; i < modes.count && found < STRUT_COMPARE_FREQUENCIES; i++)
+      if (modes.list[i].kind == STRUT_MODE_ELASTIC)
+        strut_compare_put(work, (strut_compare_quantity)(STRUT_COMPARE_FREQUENCY_1 + found++),
+                          modes.list[i].angular_frequency / STRUT_TAU);
+  } else {
+    status = strut_compare_leave_failed(work, STRUT_COMPARE_FREQUENCY_1, STRUT_COMPARE_FREQUENCY_3,
+                                        &error, status, false);
+  }
+  strut_modes_free(&modes);
+  return status;
+}
+
+/* ---- stiffness of every node ---- */
+
+static void put_softest(strut_compare_work *work, const strut_model *model) {
+  strut_compare_column *c = work->column;
+  for (int d = 0; d < 2; d++) {
+    const strut_compare_quantity at = d ? STRUT_COMPARE_STIFFNESS_Y : STRUT_COMPARE_STIFFNESS_X;
+    for (int32_t i = 0; i < model->node_count; i++) {
+      bool softer = c->softest[d] < 0 || c->stiffness[i][d] < c->stiffness[c->softest[d]][d];
+      if (isfinite(c->stiffness[i][d]) && softer) c->softest[d] = i;
+    }
+    if (c->softest[d] >= 0)
+      strut_compare_put(work, at, c->stiffness[c->softest[d]][d]);
+    else
+      strut_compare_leave(work, at, at, "no node can move in that direction");
+  }
+}
+
+strut_status strut_compare_stiffness(strut_compare_work *work, const strut_model *model) {
+  static const double axes[2][2] = {{1.0, 0.0}, {0.0, 1.0}};
+  strut_node_stiffness *stiffness = NULL;
+  strut_compare_column *c = work->column;
+  const char *reason;
+  strut_error error = {0};
+  strut_status status =
+      strut_node_stiffness_create(model, work->rest.q, &stiffness, &reason, &error);
+  if (status) return status;
+  if (!stiffness) {
+    strut_compare_leave(work, STRUT_COMPARE_STIFFNESS_X, STRUT_COMPARE_STIFFNESS_Y, reason);
+    return STRUT_OK;
+  }
+  c->stiffness = strut_arena_allocate(work->arena, (size_t)model->node_count, sizeof *c->stiffness);
+  for (int32_t i = 0; i < model->node_count && c->stiffness; i++)
+    for (int d = 0; d < 2; d++)
+      c->stiffness[i][d] = strut_node_stiffness_along(stiffness, i, axes[d]);
+  strut_node_stiffness_free(stiffness);
+  if (!c->stiffness) return STRUT_NO_MEMORY;
+  put_softest(work, model);
+  return STRUT_OK;
 }

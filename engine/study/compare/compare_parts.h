@@ -5,7 +5,7 @@
 #ifndef STRUT_ENGINE_STUDY_COMPARE_COMPARE_PARTS_H
 #define STRUT_ENGINE_STUDY_COMPARE_COMPARE_PARTS_H
 
-#include "engine/statics/equilibria/rest_state.h"
+#include "engine/statics/equilibria/equilibria.h"
 #include "engine/study/compare/compare.h"
 
 /** A column being filled. */

@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** What the parts of a study of branches share. Internal to engine/study/follow. */
-#ifndef STRUT_ENGINE_STUDY_FOLLOW_PARTS_H
-#define STRUT_ENGINE_STUDY_FOLLOW_PARTS_H
+#ifndef STRUT_ENGINE_STUDY_FOLLOW_FOLLOW_PARTS_H
+#define STRUT_ENGINE_STUDY_FOLLOW_FOLLOW_PARTS_H
 
 #include "engine/output/buffer.h"
+#include "engine/output/draw/chart.h"
 #include "engine/output/json_value.h"
-#include "engine/study/follow/follow_points.h"
+#include "engine/output/table_data.h"
+#include "engine/run/follow/follow.h"
 #include "engine/study/follow/follow_study.h"
+#include "engine/study/sweep/sweep.h"
 
 /** Finds the smallest kicks that a stable motion y (both) at the system's value does not survive. */
 strut_status strut_follow_push(strut_follow_system *s, const double *y, strut_follow_basin *basin,
@@ -24,5 +27,99 @@ void strut_follow_curves_table(const strut_follow_result *r, strut_buffer *t);
 /** Header and cell of a column of the axes, as CSV, in the arena. False: out of memory. */
 bool strut_follow_axis_cell(const strut_slot_column *column, strut_study_value value,
                             strut_arena *arena, char **name, char **cell);
+
+/* Lines over a parameter whose unstable stretches are dashed, with marked points: see follow_figure.c. */
+
+typedef struct strut_branch_line {
+  size_t count, look; /* look: number of its colour */
+  double (*data)[2];  /* (count) */
+  bool *stable;       /* (count) */
+} strut_branch_line;
+
+typedef struct strut_branch_mark {
+  double data[2];
+  strut_follow_kind kind;
+  const char *node; /* or NULL */
+  const char *text; /* in place of the kind's word; or NULL */
+} strut_branch_mark;
+
+/** Texts and arrays belong to whoever made them. */
+typedef struct strut_branch_picture {
+  const char *title; /* unless the plot has one */
+  strut_axis x, y;   /* without ranges */
+  size_t line_count, mark_count, key_count;
+  strut_branch_line *lines;
+  strut_branch_mark *marks;
+  const strut_key_item *keys; /* (key_count) below the axes */
+} strut_branch_picture;
+
+enum { STRUT_BRANCH_KEYS = 6 };
+/** What a figure of branches explains: dashes, and the colours of marks. */
+void strut_branch_keys(strut_key_item keys[STRUT_BRANCH_KEYS]);
+/** The colour of the marks of a kind. */
+strut_colour strut_branch_colour(strut_follow_kind kind);
+
+strut_status strut_branch_draw(const strut_plot *plot, const strut_branch_picture *picture,
+                               strut_error *error);
+
+/* A study that follows motions: all branches over a parameter at every point of its axes.
+ *
+ * A point's branches are the files branches/POINT.csv and branches/POINT.json of the results, its row says
+ * how many there are, and what they reach. A point is done once its row is there, which is written last.
+ */
+
+typedef struct strut_follow_points_options {
+  /** The scene of the axes' values where the followed parameter has the value [SI]; from any thread. */
+  strut_status (*setup)(void *context, const strut_study_value *values, double value,
+                        strut_setup *setup, strut_error *error);
+  void *context;
+  const char *directory;
+  int threads;                            /* 0: strut_sweep_threads */
+  const volatile sig_atomic_t *interrupt; /* may be NULL */
+  /** After each point, one thread at a time; may be NULL. */
+  void (*progress)(void *context, const strut_sweep_state *state);
+  void *progress_context;
+} strut_follow_points_options;
+
+/** Adds the columns of a point's row behind those of the axes. */
+STRUT_API strut_status strut_follow_points_columns(strut_sweep_plan *plan, strut_error *error);
+/**
+ * STRUT_BAD_SCENE where motions of the first point cannot be followed: its scene has no drive that repeats,
+ * or a memory.
+ */
+STRUT_API strut_status strut_follow_points_check(const strut_sweep_plan *plan,
+                                                 const strut_follow_points_options *options,
+                                                 strut_error *error);
+/**
+ * Follows at every point that has no row yet. A failed point gets a row with the reason. With
+ * STRUT_INTERRUPTED what was followed of points under way is in branches/POINT-partial.csv. Files and rows
+ * depend on their point alone.
+ */
+STRUT_API strut_status strut_follow_points_run(const strut_sweep_plan *plan, strut_slots *slots,
+                                               const strut_follow_points_options *options,
+                                               strut_sweep_state *state, strut_error *error);
+
+/* follow_points_files.c */
+
+/**
+ * Writes directory/name with the branches of all points, by point; `partial`: with what was followed of
+ * interrupted points too, and a column that says which points are finished. *rows (may be NULL): how many.
+ */
+STRUT_API strut_status strut_follow_points_combine(const strut_sweep_plan *plan, strut_slots *slots,
+                                                   const char *directory, const char *name,
+                                                   bool partial, int64_t *rows, strut_error *error);
+/** All reports as one JSON text in *json, a block of strut_allocate. */
+STRUT_API strut_status strut_follow_points_json(const strut_sweep_plan *plan, strut_slots *slots,
+                                                const char *directory, char **json,
+                                                strut_error *error);
+/** A line for each point, for people; a block of strut_allocate, or NULL. */
+STRUT_API char *strut_follow_points_table(const strut_sweep_plan *plan, strut_slots *slots);
+
+/* follow_figure.c */
+
+/** Draws the branches of `table`, as combine has written it: a colour for each point of the axes. */
+STRUT_API strut_status strut_follow_points_figure(const strut_plot *plot,
+                                                  const strut_sweep_plan *plan,
+                                                  const strut_table *table, strut_error *error);
 
 #endif

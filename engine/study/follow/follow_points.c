@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The points of a study that follows motions, side by side. */
-#include "engine/study/follow/follow_points.h"
+#include "engine/study/follow/follow_parts.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -12,7 +12,6 @@
 
 #include "engine/output/file.h"
 #include "engine/run/simulate.h"
-#include "engine/study/follow/follow_parts.h"
 #include "engine/study/sweep/grid.h"
 #include "engine/study/sweep/sweep_parts.h"
 

@@ -8,7 +8,7 @@
 
 #include "engine/output/buffer.h"
 #include "engine/run/accuracy/accuracy.h"
-#include "engine/statics/equilibria/rest_state.h"
+#include "engine/statics/equilibria/equilibria.h"
 
 /* Accuracy of velocities, relative; the tolerance of error control for it; steps of a period. */
 static const double ACCURACY = STRUT_FOLLOW_USUAL_PERCENT / 100, TOLERANCE = 1e-3;

@@ -6,8 +6,8 @@
 #ifndef STRUT_ENGINE_STUDY_FOLLOW_STUDY_H
 #define STRUT_ENGINE_STUDY_FOLLOW_STUDY_H
 
-#include "engine/output/draw/plot.h"
-#include "engine/run/follow/follow_curve.h"
+#include "engine/output/draw/chart.h"
+#include "engine/run/follow/follow_parts.h"
 #include "engine/scene/study.h"
 
 enum { STRUT_FOLLOW_KICKS = 4, STRUT_FOLLOW_MOST_BASINS = 64, STRUT_FOLLOW_MOST_CURVES = 24 };

@@ -9,6 +9,7 @@
 #ifndef STRUT_ENGINE_STUDY_RESULTS_STUDY_TABLE_H
 #define STRUT_ENGINE_STUDY_RESULTS_STUDY_TABLE_H
 
+#include "engine/base/memory.h"
 #include "engine/study/results/slots.h"
 
 /**
@@ -32,5 +33,69 @@ STRUT_API strut_status strut_study_table_write_partial(const char *directory, co
 STRUT_API strut_status strut_study_table_write_points(const char *directory, const char *name,
                                                       strut_slots *source, const int64_t *points,
                                                       size_t count, strut_error *error);
+
+/* Parts of a study that are computed apart, on as many machines: shard k of n, counted from 0.
+ *
+ * Shard k has the points k, k + n, k + 2n, ...: what costs more at one end of an axis is spread over
+ * all of them, and half of the shards are a coarser map of the whole. The file of a shard is
+ * DIR/shards/shard-KKKK-of-NNNN.slots, that of a study in one piece DIR/points.slots.
+ */
+
+enum { STRUT_MOST_SHARDS = 9999 };
+
+/** One of `count` shards; count 0: the study in one piece. */
+typedef struct strut_shard {
+  int64_t index, count;
+} strut_shard;
+
+/** Environment of a task of a job array. Slurm's: SLURM_ARRAY_TASK_ID, ... NULL if not set. */
+typedef struct strut_array_task {
+  const char *id, *min, *max, *step, *count;
+  char *(*variable)(const char *name); /* any other, as getenv; NULL: none is set */
+} strut_array_task;
+
+/**
+ * Reads "k/n"; "slurm/n", where k is the task's number, and so for pbs, torque, lsf, sge and kubernetes,
+ * whose variables and first numbers are in one table, and "env:NAME/n" for any variable that counts from
+ * 0; or "slurm", where the array has a task for each shard and numbers them without gaps. STRUT_USAGE with
+ * the reason otherwise: a part of an array that is sent again must not be taken for the whole.
+ */
+STRUT_API strut_status strut_shard_read(const char *text, const strut_array_task *task,
+                                        strut_shard *shard, strut_error *error);
+/** Sets the plan's first, count and stride to the points of a shard. */
+STRUT_API void strut_shard_points(strut_shard shard, strut_slots_plan *plan);
+/** The path of a shard's file, in the arena; NULL when memory is out. */
+STRUT_API char *strut_shard_path(const char *directory, strut_shard shard, strut_arena *arena);
+/**
+ * Creates the directories of a shard's file. STRUT_USAGE where `directory` holds shards of another
+ * count, or the study in one piece beside shards: they could never be merged.
+ */
+STRUT_API strut_status strut_shard_begin(const char *directory, strut_shard shard,
+                                         strut_error *error);
+
+/** The files of slots in a directory. */
+typedef struct strut_shards_found {
+  bool whole;     /* DIR/points.slots exists */
+  int64_t count;  /* number of shards of the study; 0: no shard exists */
+  int64_t other;  /* a conflicting number of shards, or 0 */
+  uint8_t *there; /* (count) 1 if the file exists; owned by the arena */
+} strut_shards_found;
+
+/** Lists the files; a missing directory has none. */
+STRUT_API strut_status strut_shards_find(const char *directory, strut_shards_found *found,
+                                         strut_arena *arena, strut_error *error);
+
+/** Report of a merge. */
+typedef struct strut_merged {
+  int64_t shards; /* 0: the study was in one piece */
+  int64_t points, failed, inaccurate;
+} strut_merged;
+
+/**
+ * Writes directory/table.csv from all shards in directory/shards, or from directory/points.slots.
+ * STRUT_FILE_TROUBLE, saying which, where shards or points of them are missing; STRUT_USAGE where the
+ * files are not of one study, or cover points twice. Nothing is written then.
+ */
+STRUT_API strut_status strut_merge(const char *directory, strut_merged *merged, strut_error *error);
 
 #endif

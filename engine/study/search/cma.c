@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/study/search/cma.h"
+#include "engine/study/search/optimisers.h"
 
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/statics/dense_algebra.h"
+#include "engine/statics/algebra.h"
 
 /* Width next to each bound where the map into the box is a parabola. */
 static const double MARGIN = 0.05;

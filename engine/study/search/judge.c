@@ -1,11 +1,96 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rows of the table as points of a search. See search_parts.h. */
+#include "engine/study/search/search.h"
+
 #include <math.h>
 #include <string.h>
 
-#include "engine/study/search/box.h"
+#include "engine/run/measure/quantities.h"
+#include "engine/study/search/optimisers.h"
 #include "engine/study/search/search_parts.h"
 #include "engine/study/sweep/grid.h"
+#include "engine/study/sweep/sweep_parts.h"
+
+/* Numbers on the stack of a program and its columns, at most: the reader bounds the text. */
+enum { MOST = 1024 };
+
+/* Rank of a column among those with numbers, or among those with words. */
+static size_t rank_of(const strut_sweep_plan *plan, size_t column) {
+  size_t rank = 0;
+  for (size_t i = 0; i < column; i++) rank += plan->columns[i].word == plan->columns[column].word;
+  return rank;
+}
+
+/* The columns of a program become ranks, once the table is known. */
+static bool resolve(const strut_sweep_plan *plan, strut_search_formula *f) {
+  if (f->program.length > MOST || f->program.depth > MOST) return false;
+  for (size_t i = 0; i < f->program.length; i++) {
+    strut_instruction *p = &f->program.program[i];
+    if (p->operation != STRUT_OPERATION_COLUMN) continue;
+    p->column.item = (int32_t)rank_of(plan, (size_t)p->column.item);
+  }
+  return true;
+}
+
+strut_status strut_search_add_columns(strut_sweep_plan *plan, strut_error *error) {
+  strut_study_search *search = plan->study->search;
+  bool two = search->second.text != NULL;
+  bool fine = resolve(plan, &search->goal) && (!two || resolve(plan, &search->second));
+  for (size_t i = 0; i < search->condition_count && fine; i++) {
+    strut_search_condition *c = &search->conditions[i];
+    if (c->word)
+      c->column = rank_of(plan, c->column);
+    else
+      fine = resolve(plan, &c->left) && resolve(plan, &c->right);
+  }
+  if (!fine) return strut_fail(error, STRUT_USAGE, "an expression of the search is too long");
+  const char *unit = search->second.program.unit;
+  if (!strut_sweep_add_column(plan, "", "objective", search->goal.program.unit, false) ||
+      (two && !strut_sweep_add_column(plan, "", "objective_2", unit, false)) ||
+      !strut_sweep_add_column(plan, "", "violation", "1", false))
+    return strut_no_memory(error, "");
+  return STRUT_OK;
+}
+
+static double evaluate(const strut_search_formula *f, const double *numbers) {
+  size_t index[MOST];
+  double stack[MOST];
+  for (size_t i = 0; i < f->program.length; i++)
+    index[i] = f->program.program[i].operation == STRUT_OPERATION_COLUMN
+                   ? (size_t)f->program.program[i].column.item
+                   : 0;
+  return strut_quantity_program_evaluate(&f->program, index, numbers, stack);
+}
+
+static double broken_by(const strut_search_condition *c, const double *numbers,
+                        const char (*words)[STRUT_SLOT_WORD]) {
+  if (c->word) {
+    bool same = strcmp(words[c->column], c->word) == 0;
+    return same == (c->relation == STRUT_SEARCH_IS) ? 0.0 : 1.0;
+  }
+  double left = evaluate(&c->left, numbers), right = evaluate(&c->right, numbers);
+  double size = fabs(right) > 0.0 ? fabs(right) : 1.0;
+  double excess = (c->relation == STRUT_SEARCH_BELOW ? left - right : right - left) / size;
+  return isfinite(excess) ? excess : 1.0;
+}
+
+double strut_search_score(const strut_sweep_plan *plan, const double *numbers,
+                          const char (*words)[STRUT_SLOT_WORD], double *second, double *broken) {
+  const strut_study_search *search = plan->study->search;
+  for (size_t i = 0; i < search->condition_count; i++)
+    broken[i] = broken_by(&search->conditions[i], numbers, words);
+  double goal = evaluate(&search->goal, numbers);
+  *second = search->second.text ? evaluate(&search->second, numbers) : 0.0;
+  if (!isfinite(*second)) *second = (double)NAN;
+  return isfinite(goal) ? goal : (double)NAN;
+}
+
+double strut_search_violation(const strut_study_search *search, const double *broken) {
+  double most = 0.0;
+  for (size_t i = 0; i < search->condition_count; i++) most = fmax(most, broken[i]);
+  return most;
+}
+
+/* Rows of the table as points of a search. See search_parts.h. */
 
 /* Has the row these values of the variables? */
 static bool has_values(const strut_sweep_plan *plan, const strut_result_slot *row,
@@ -83,4 +168,165 @@ void strut_search_values(const strut_sweep_plan *plan, int64_t point,
   const strut_study_search *search = plan->study->search;
   strut_grid_values(plan->study, point, all);
   for (size_t i = 0; i < search->variable_count; i++) all[search->column + i] = values[i];
+}
+
+/* What a best point is worth: computed more exactly, and beside its neighbours. See search_parts.h. */
+
+/* How far neighbours are, in widths of the box, and which starts agree, of the best's size. */
+static const double BESIDE = 0.01, AGREEING = 0.01;
+
+/* A value beside another. False: there is none. */
+static bool beside(const strut_search_variable *v, strut_study_value at, int side,
+                   strut_study_value *value) {
+  double number = strut_search_number(v, at), step = BESIDE;
+  if (v->choice_count) return false;
+  if (v->integer) step = 1.0 / (double)strut_search_count(v);
+  number += side * step;
+  if (!v->wraps && (number < 0.0 || number > 1.0)) return false;
+  *value = strut_search_value(v, number);
+  return !strut_search_same(*value, at);
+}
+
+/* The best search of an outer point, or SIZE_MAX. */
+static size_t best_of(const strut_search_batch *b, const strut_search_result *r, int64_t outer) {
+  const strut_study_search *search = b->plan->study->search;
+  size_t best = SIZE_MAX;
+  for (size_t i = 0; i < r->outcome_count; i++) {
+    const strut_search_outcome *o = &r->outcomes[i];
+    if (o->outer != outer || o->best.evaluation < 0) continue;
+    if (best == SIZE_MAX || strut_search_better(search, &o->best, &r->outcomes[best].best))
+      best = i;
+  }
+  return best;
+}
+
+static int32_t count_agreeing(const strut_search_result *r, size_t best) {
+  const strut_search_outcome *first = &r->outcomes[best];
+  double size = strut_search_size(first);
+  int32_t count = 0;
+  if (size == 0.0) size = first->most - first->least;
+  for (size_t i = 0; i < r->outcome_count; i++) {
+    const strut_search_outcome *o = &r->outcomes[i];
+    double apart = fabs(o->best.objective - first->best.objective);
+    bool alike = (o->best.violation > 0.0) == (first->best.violation > 0.0);
+    count +=
+        o->outer == first->outer && o->best.evaluation >= 0 && alike && apart <= AGREEING * size;
+  }
+  return count;
+}
+
+static strut_study_value *copy_values(strut_search_batch *b, strut_search_result *r,
+                                      const strut_study_value *values) {
+  size_t n = b->plan->study->search->variable_count;
+  strut_study_value *copy = strut_arena_allocate(&r->arena, n, sizeof *copy);
+  if (copy) memcpy(copy, values, n * sizeof *copy);
+  return copy;
+}
+
+/* Lists the points to be computed about a best one. False: no memory. */
+static bool list_points(strut_search_batch *b, strut_search_result *r, strut_search_worth *w) {
+  const strut_study_search *search = b->plan->study->search;
+  const strut_search_outcome *o = &r->outcomes[w->best];
+  size_t n = search->variable_count;
+  w->agreeing = count_agreeing(r, w->best);
+  w->checked = b->plan->study->compute == STRUT_COMPUTE_RUN;
+  w->bound = strut_arena_allocate(&r->arena, n, sizeof *w->bound);
+  w->neighbours = strut_arena_allocate(&r->arena, n, sizeof *w->neighbours);
+  if (!w->bound || !w->neighbours) return false;
+  w->check.values = o->best.values;
+  bool fine = !w->checked || strut_search_batch_add(b, o->outer, b->first_check, o->best.values);
+  for (size_t i = 0; i < n && fine; i++) {
+    w->bound[i] = strut_search_bound(&search->variables[i], o->best.values[i]);
+    for (int side = 0; side < 2 && fine; side++) {
+      strut_search_neighbour *near = &w->neighbours[i][side];
+      strut_study_value value;
+      near->there = beside(&search->variables[i], o->best.values[i], side ? 1 : -1, &value);
+      if (!near->there) continue;
+      strut_study_value *values = copy_values(b, r, o->best.values);
+      if (!values) return false;
+      values[i] = value;
+      near->point.values = values;
+      fine =
+          strut_search_batch_add(b, o->outer, b->first_check + 1 + 2 * (int64_t)i + side, values);
+    }
+  }
+  return fine;
+}
+
+static strut_status judge(strut_search_batch *b, int64_t outer, int64_t row,
+                          strut_search_point *point) {
+  double broken[STRUT_SEARCH_MOST_CONDITIONS];
+  bool failed, valueless;
+  return strut_search_judge(b->plan, b->slots, outer, row, point->values, point, broken, &failed,
+                            &valueless, b->error);
+}
+
+static strut_status judge_points(strut_search_batch *b, strut_search_result *r,
+                                 strut_search_worth *w) {
+  int64_t outer = r->outcomes[w->best].outer;
+  strut_status status = STRUT_OK;
+  if (w->checked) status = judge(b, outer, b->first_check, &w->check);
+  for (size_t i = 0; i < b->plan->study->search->variable_count && !status; i++)
+    for (int side = 0; side < 2 && !status; side++)
+      if (w->neighbours[i][side].there)
+        status = judge(b, outer, b->first_check + 1 + 2 * (int64_t)i + side,
+                       &w->neighbours[i][side].point);
+  return status;
+}
+
+strut_status strut_search_find_worth(strut_search_batch *b, strut_search_result *r) {
+  const strut_search_layout l = strut_search_layout_of(b->plan);
+  r->worths = strut_arena_allocate(&r->arena, (size_t)l.outers, sizeof *r->worths);
+  if (!r->worths) return strut_no_memory(b->error, "");
+  if (r->front_count) return STRUT_OK; /* there is no one best */
+  for (int64_t outer = 0; outer < l.outers; outer++) {
+    size_t best = best_of(b, r, outer);
+    if (best == SIZE_MAX) continue;
+    strut_search_worth *w = &r->worths[r->worth_count++];
+    w->best = best;
+    if (!list_points(b, r, w)) return strut_no_memory(b->error, "");
+  }
+  strut_status status = strut_search_batch_run(b);
+  for (size_t i = 0; i < r->worth_count && !status; i++) status = judge_points(b, r, &r->worths[i]);
+  return status;
+}
+
+/* The points of two goals that no other point is better than in both. See search_parts.h. */
+
+/* Is a at least as good as b in both goals? */
+static bool covers(const strut_study_search *search, const strut_search_point *a,
+                   const strut_search_point *b) {
+  if (search->maximise) return a->objective >= b->objective && a->second >= b->second;
+  return a->objective <= b->objective && a->second <= b->second;
+}
+
+static bool make_room(strut_search_front *front, strut_arena *arena) {
+  if (front->count < front->room) return true;
+  size_t room = front->room ? 2 * front->room : 32;
+  strut_search_point *points = strut_arena_allocate(arena, room, sizeof *points);
+  if (!points) return false;
+  if (front->count) memcpy(points, front->points, front->count * sizeof *points);
+  front->points = points;
+  front->room = room;
+  return true;
+}
+
+bool strut_search_front_take(const strut_study_search *search, strut_search_front *front,
+                             const strut_search_point *point, strut_arena *arena) {
+  size_t n = search->variable_count, kept = 0, at = 0;
+  for (size_t i = 0; i < front->count; i++)
+    if (covers(search, &front->points[i], point)) return true;
+  strut_study_value *values = strut_arena_allocate(arena, n, sizeof *values);
+  if (!values || !make_room(front, arena)) return false;
+  memcpy(values, point->values, n * sizeof *values);
+  for (size_t i = 0; i < front->count; i++)
+    if (!covers(search, point, &front->points[i])) front->points[kept++] = front->points[i];
+  front->count = kept;
+  while (at < kept && front->points[at].objective < point->objective) at++;
+  if (!make_room(front, arena)) return false;
+  memmove(front->points + at + 1, front->points + at, (kept - at) * sizeof *front->points);
+  front->points[at] = *point;
+  front->points[at].values = values;
+  front->count++;
+  return true;
 }

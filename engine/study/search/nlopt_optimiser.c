@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/study/search/optimiser.h"
+#include "engine/study/search/optimisers.h"
 
 /* Movements below this end a search, in widths of the box. */
 static const double FINEST = 1e-7;

@@ -5,8 +5,7 @@
 #include <string.h>
 
 #include "engine/base/checksum.h"
-#include "engine/study/search/box.h"
-#include "engine/study/search/dialogue.h"
+#include "engine/study/search/optimisers.h"
 #include "engine/study/search/search_parts.h"
 
 /* Optimisers at the same time, and known points that one may ask for in a row. */

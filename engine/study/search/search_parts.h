@@ -5,6 +5,8 @@
 #ifndef STRUT_ENGINE_STUDY_SEARCH_SEARCH_PARTS_H
 #define STRUT_ENGINE_STUDY_SEARCH_SEARCH_PARTS_H
 
+#include "engine/base/status.h"
+#include "engine/study/search/optimisers.h"
 #include "engine/study/search/search.h"
 #include "engine/study/sweep/sweep_parts.h"
 
@@ -63,15 +65,39 @@ strut_status strut_search_judge(const strut_sweep_plan *plan, strut_slots *slots
                                 strut_search_point *point, double *broken, bool *failed,
                                 bool *valueless, strut_error *error);
 
-/* front.c */
+/* judge.c */
 
 /** Takes a feasible point into the front, unless another is as good in both goals. False: no memory. */
 bool strut_search_front_take(const strut_study_search *search, strut_search_front *front,
                              const strut_search_point *point, strut_arena *arena);
 
-/* worth.c */
+/* judge.c */
 
 /** Computes the best points of all outer points more exactly, and their neighbours. */
 strut_status strut_search_find_worth(strut_search_batch *batch, strut_search_result *result);
+
+/* An optimiser in a thread of its own, whose questions are answered from outside.
+ *
+ * So the questions of several optimisers can be answered side by side, whatever library they come from. An
+ * optimiser only runs between an answer and its next question.
+ */
+
+typedef struct strut_dialogue strut_dialogue;
+
+/** A question of an optimiser: the values and broken conditions of points, as of a strut_search_asker. */
+typedef struct strut_question {
+  size_t count;
+  const double *points;    /* (count, dimension) */
+  double *values, *broken; /* to be filled */
+} strut_question;
+
+/** Starts the optimiser; the task and what it points to must outlive it. NULL: no memory, or no thread. */
+strut_dialogue *strut_dialogue_begin(const strut_search_task *task);
+/** Waits for the next question. False: the optimiser has ended. */
+bool strut_dialogue_question(strut_dialogue *dialogue, strut_question *question);
+/** Says that the question is answered. */
+void strut_dialogue_answer(strut_dialogue *dialogue);
+/** Ends the optimiser, after a question or its end. False: it had no memory. NULL is allowed. */
+bool strut_dialogue_end(strut_dialogue *dialogue);
 
 #endif

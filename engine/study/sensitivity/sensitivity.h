@@ -1,20 +1,59 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * The sensitivity analysis of a study, from the rows of its points: see scene/sensitivity_design.h.
+ * Sensitivity indices of one result from the points of Saltelli's design, with standard errors.
  *
- * A result is a column of numbers; whether such a column is above 0, or above,
- * within or below a threshold; or whether a column of texts has a
- * certain one. Each is described at every point of the study's other axes.
+ * First order: Saltelli et al., Computer Physics Communications 181 (2010) 259, (b) of table 2; total:
+ * Jansen's, (f) there. Errors by the bootstrap over base samples.
  */
 #ifndef STRUT_ENGINE_STUDY_SENSITIVITY_SENSITIVITY_H
 #define STRUT_ENGINE_STUDY_SENSITIVITY_SENSITIVITY_H
 
 #include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
 
 #include "engine/base/memory.h"
+#include "engine/base/status.h"
 #include "engine/scene/study.h"
 #include "engine/study/results/slots.h"
-#include "engine/study/sensitivity/indices.h"
+
+/** A number and how well it is known. */
+typedef struct strut_estimate {
+  double value;     /* NAN: missing */
+  double error;     /* standard error; NAN: unknown */
+  double low, high; /* 95 % interval; NAN: unknown */
+} strut_estimate;
+
+/**
+ * result (samples, count + 2): f at A, at A with parameter k of B, at B; NAN: missing, and then the whole
+ * base sample is left out. first, total (count); missing where the result does not vary. *used: base
+ * samples. STRUT_NO_MEMORY.
+ */
+STRUT_API strut_status strut_sensitivity_indices(const double *result, size_t samples, size_t count,
+                                                 uint32_t seed, strut_estimate *first,
+                                                 strut_estimate *total, size_t *used);
+
+/** Mean of values (count), and its standard error as of independent ones; NANs are left out. */
+STRUT_API strut_estimate strut_sensitivity_mean(const double *values, size_t count);
+/** Standard deviation of the values themselves; NANs are left out. */
+STRUT_API double strut_sensitivity_deviation(const double *values, size_t count);
+/** Share of ones among values (count) that are 0 or 1, with Wilson's interval; NANs are left out. */
+STRUT_API strut_estimate strut_sensitivity_share(const double *values, size_t count);
+
+/**
+ * Derivative from results at a step up and down, and at half a step up and down, whose parameters differ
+ * by width and half_width. The value is that of half the step; the error the larger of the difference of
+ * both, which curvature and kinks cause, and of what `noise`, the error of each result, causes.
+ */
+STRUT_API strut_estimate strut_sensitivity_derivative(const double result[4], double width,
+                                                      double half_width, double noise);
+
+/* The sensitivity analysis of a study, from the rows of its points: see scene/sensitivity_design.h.
+ *
+ * A result is a column of numbers; whether such a column is above 0, or above,
+ * within or below a threshold; or whether a column of texts has a
+ * certain one. Each is described at every point of the study's other axes.
+ */
 
 /** X(NAME, word), in the order of the rows of a result. */
 #define STRUT_SENSITIVITY_MEASURES(X)                                                              \

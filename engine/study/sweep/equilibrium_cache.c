@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/study/sweep/equilibrium_cache.h"
+#include "engine/study/sweep/evaluation.h"
 
 #include <math.h>
 #include <pthread.h>
 #include <string.h>
 
 #include "engine/scene/things.h"
-#include "engine/statics/equilibria/rest_state.h"
+#include "engine/statics/equilibria/equilibria.h"
 #include "engine/statics/search/critical.h"
 
 /* Maximum number of cached structures; beyond that each point searches for itself. */

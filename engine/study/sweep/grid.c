@@ -5,6 +5,9 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
+#include "engine/base/checksum.h"
 
 int64_t strut_grid_points(const strut_study *study) {
   int64_t points = 1;
@@ -84,4 +87,215 @@ void strut_grid_values(const strut_study *study, int64_t point, strut_study_valu
     }
   }
   assert(k == 0 && point == 0);
+}
+
+struct strut_refinement {
+  const strut_sweep_plan *plan;
+  bool word;               /* the column has words */
+  size_t cell;             /* its number among the words, or the numbers, of a row */
+  double by;               /* by how much numbers must differ */
+  int64_t count[2];        /* values of the two axes in the finest grid */
+  int64_t stride[2];       /* of point numbers along them */
+  int64_t side;            /* of the coarsest cells, in steps of the finest grid */
+  uint8_t *known, *wanted; /* (points) */
+  uint64_t *value;         /* (points) bits of a number, checksum of a word or of a failure */
+};
+
+static int64_t stride_of(const strut_study *study, size_t axis) {
+  int64_t stride = 1;
+  for (size_t i = axis + 1; i < study->axis_count; i++) stride *= study->axes[i].count;
+  return stride;
+}
+
+static strut_status find_column(strut_refinement *r, strut_error *error) {
+  const strut_sweep_plan *plan = r->plan;
+  size_t words = 0, numbers = 0;
+  for (size_t i = 0; i < plan->column_count; i++) {
+    const strut_slot_column *c = &plan->columns[i];
+    if (strcmp(c->name, plan->study->refine_where) == 0) {
+      r->word = c->word;
+      r->cell = c->word ? words : numbers;
+      return STRUT_OK;
+    }
+    words += c->word;
+    numbers += !c->word;
+  }
+  return strut_fail(error, STRUT_BAD_SCENE,
+                    "refine: the table has no column '%.60s'; 'keep' chooses the columns",
+                    plan->study->refine_where);
+}
+
+strut_status strut_refinement_create(const strut_sweep_plan *plan, strut_refinement **refinement,
+                                     strut_error *error) {
+  const strut_study *study = plan->study;
+  strut_refinement *r = strut_allocate(1, sizeof *r);
+  *refinement = r;
+  if (!r) return strut_no_memory(error, "");
+  r->plan = plan;
+  r->by = study->refine_by;
+  r->side = (int64_t)1 << study->refine_depth;
+  for (int i = 0; i < 2; i++) {
+    r->count[i] = study->axes[study->refine_axes[i]].count;
+    r->stride[i] = stride_of(study, study->refine_axes[i]);
+  }
+  strut_status status = find_column(r, error);
+  if (!status) {
+    r->known = strut_allocate((size_t)plan->points, sizeof *r->known);
+    r->wanted = strut_allocate((size_t)plan->points, sizeof *r->wanted);
+    r->value = strut_allocate((size_t)plan->points, sizeof *r->value);
+    if (!r->known || !r->wanted || !r->value) status = strut_no_memory(error, "");
+  }
+  if (!status) return STRUT_OK;
+  strut_refinement_free(r);
+  *refinement = NULL;
+  return status;
+}
+
+void strut_refinement_free(strut_refinement *r) {
+  if (!r) return;
+  strut_release(r->known);
+  strut_release(r->wanted);
+  strut_release(r->value);
+  strut_release(r);
+}
+
+/* What two rows are compared by. */
+static uint64_t value_of(const strut_refinement *r, const strut_result_slot *row) {
+  uint64_t bits;
+  if (row->status) return strut_checksum(&row->status, sizeof row->status, 1);
+  if (r->word) return strut_checksum(row->words[r->cell], strlen(row->words[r->cell]), 0);
+  memcpy(&bits, &row->numbers[r->cell], sizeof bits);
+  return bits;
+}
+
+void strut_refinement_learn(strut_refinement *r, strut_slots *slots) {
+  int64_t count = strut_slots_plan_of(slots)->count;
+  for (int64_t i = 0; i < count; i++) {
+    strut_result_slot row;
+    int64_t point = strut_slots_point(slots, i);
+    if (r->known[point] || !strut_slots_done(slots, point)) continue;
+    if (!strut_slots_get(slots, point, &row)) continue;
+    r->value[point] = value_of(r, &row);
+    r->known[point] = 1 + (row.status != STRUT_OK);
+  }
+}
+
+/* The range of the known values on the edges of a cell. */
+typedef struct seen {
+  bool any, mixed; /* words, failures or missing numbers that are not all alike */
+  uint64_t first;
+  uint8_t kind;
+  double low, high;
+} seen;
+
+static void look_at(const strut_refinement *r, int64_t point, seen *s) {
+  if (!r->known[point]) return;
+  double number = (double)NAN;
+  bool failed = r->known[point] == 2;
+  if (!r->word && !failed) memcpy(&number, &r->value[point], sizeof number);
+  bool plain = !r->word && !failed && !isnan(number);
+  uint8_t kind = failed ? 2 : plain ? 1 : 0;
+  uint64_t value = plain || (!failed && !r->word) ? 0 : r->value[point];
+  if (s->any && (s->kind != kind || s->first != value)) s->mixed = true;
+  if (plain) {
+    s->low = s->any ? fmin(s->low, number) : number;
+    s->high = s->any ? fmax(s->high, number) : number;
+  }
+  if (!s->any) s->first = value, s->kind = kind;
+  s->any = true;
+}
+
+static bool differs(const strut_refinement *r, int64_t corner, int64_t side) {
+  int64_t a = r->stride[0], b = r->stride[1];
+  seen s = {.any = false};
+  for (int64_t i = 0; i <= side; i++) {
+    look_at(r, corner + i * a, &s);
+    look_at(r, corner + i * a + side * b, &s);
+    look_at(r, corner + i * b, &s);
+    look_at(r, corner + i * b + side * a, &s);
+  }
+  return s.mixed || (s.kind == 1 && s.high - s.low > r->by);
+}
+
+/* Wants the points that divide the cell, if it has to be, and its quarters'. */
+static void divide(strut_refinement *r, int64_t corner, int64_t side) {
+  int64_t half = side / 2, a = half * r->stride[0], b = half * r->stride[1];
+  const int64_t middle[5] = {corner + a, corner + b, corner + a + b, corner + a + 2 * b,
+                             corner + 2 * a + b};
+  bool all = true;
+  if (side == 1 || !differs(r, corner, side)) return;
+  for (int i = 0; i < 5; i++) {
+    r->wanted[middle[i]] = 1;
+    all = all && r->known[middle[i]];
+  }
+  if (!all) return; /* their values first */
+  divide(r, corner, half);
+  divide(r, corner + a, half);
+  divide(r, corner + b, half);
+  divide(r, corner + a + b, half);
+}
+
+/* The place of a point on one of the two axes. */
+static int64_t place(const strut_refinement *r, int64_t point, int axis) {
+  return point / r->stride[axis] % r->count[axis];
+}
+
+int64_t strut_refinement_choose(strut_refinement *r) {
+  int64_t unknown = 0;
+  for (int64_t point = 0; point < r->plan->points; point++) {
+    int64_t i = place(r, point, 0), k = place(r, point, 1);
+    if (i % r->side || k % r->side) continue;
+    r->wanted[point] = 1;
+    if (i + r->side < r->count[0] && k + r->side < r->count[1]) divide(r, point, r->side);
+  }
+  for (int64_t point = 0; point < r->plan->points; point++)
+    unknown += r->wanted[point] && !r->known[point];
+  return unknown;
+}
+
+bool strut_refinement_wants(const void *refinement, int64_t point) {
+  const strut_refinement *r = refinement;
+  return r->wanted[point];
+}
+
+void strut_refinement_count(const strut_refinement *r, strut_slots *slots, int64_t *wanted,
+                            int64_t *done) {
+  int64_t count = strut_slots_plan_of(slots)->count;
+  *wanted = *done = 0;
+  for (int64_t i = 0; i < count; i++) {
+    int64_t point = strut_slots_point(slots, i);
+    if (!r->wanted[point]) continue;
+    ++*wanted;
+    *done += strut_slots_done(slots, point);
+  }
+}
+
+int64_t strut_refinement_coarse(const strut_sweep_plan *plan) {
+  const strut_study *study = plan->study;
+  int64_t points = plan->points;
+  for (int i = 0; i < 2; i++) {
+    int64_t count = study->axes[study->refine_axes[i]].count;
+    points = points / count * ((count - 1) / ((int64_t)1 << study->refine_depth) + 1);
+  }
+  return points;
+}
+
+int64_t strut_refinement_stand_in(const strut_refinement *r, int64_t point) {
+  int64_t i = place(r, point, 0), k = place(r, point, 1);
+  if (r->known[point]) return point;
+  for (int64_t side = 2; side <= r->side; side *= 2) {
+    int64_t low[2] = {i / side * side, k / side * side}, high[2];
+    high[0] = i % side ? low[0] + side : low[0];
+    high[1] = k % side ? low[1] + side : low[1];
+    int64_t base = point - i * r->stride[0] - k * r->stride[1];
+    bool all = true;
+    for (int c = 0; c < 4; c++)
+      all = all && r->known[base + (c & 1 ? high : low)[0] * r->stride[0] +
+                            (c & 2 ? high : low)[1] * r->stride[1]];
+    if (!all) continue;
+    int64_t near_i = 2 * (i - low[0]) < side ? low[0] : high[0];
+    int64_t near_k = 2 * (k - low[1]) < side ? low[1] : high[1];
+    return base + near_i * r->stride[0] + near_k * r->stride[1];
+  }
+  return -1;
 }

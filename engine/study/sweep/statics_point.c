@@ -8,14 +8,13 @@
 #include <string.h>
 
 #include "engine/forces/elements.h"
-#include "engine/forces/memory.h"
+#include "engine/forces/history.h"
 #include "engine/statics/equilibria/equilibria.h"
-#include "engine/statics/equilibria/rest_state.h"
 #include "engine/statics/form/form.h"
 #include "engine/statics/modes/modes.h"
 #include "engine/statics/path/path.h"
 #include "engine/statics/rigidity/rigidity.h"
-#include "engine/study/sweep/goals.h"
+#include "engine/study/sweep/evaluation.h"
 #include "engine/study/sweep/sweep_parts.h"
 
 /* Results of one point; those of the study's computation are filled. */

@@ -6,7 +6,7 @@
 #define STRUT_ENGINE_STUDY_SWEEP_SWEEP_PARTS_H
 
 #include "engine/run/simulate.h"
-#include "engine/study/sweep/equilibrium_cache.h"
+#include "engine/study/sweep/evaluation.h"
 #include "engine/study/sweep/sweep.h"
 
 /** The cells of a row while its point is computed. */
@@ -111,7 +111,7 @@ strut_status strut_statics_check(const strut_study *study, const strut_scene *sc
 /** Computes what the study wants of a point at rest and appends its cells. */
 strut_status strut_statics_point(const strut_sweep_worker *worker, strut_sweep_job *job);
 
-/* sweep_watch.c */
+/* sweep_record.c */
 
 /** Ends jobs that take longer than the study allows. NULL: there is no memory or no thread for it. */
 struct strut_sweep_watch *strut_sweep_watch_create(double seconds, strut_sweep_job *jobs,

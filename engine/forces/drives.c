@@ -1,0 +1,215 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Hot: what changes with time alone: driven rest lengths (6) and loads on a signal. */
+#include "engine/forces/drives.h"
+
+#include <math.h>
+
+#include "engine/forces/feedback.h"
+#include "engine/forces/history.h"
+#include "engine/forces/signal_lanes.h"
+#include "engine/forces/sliding_masses.h"
+#include "engine/forces/strains/angle.h"
+#include "engine/forces/strains/path.h"
+#include "engine/scene/signal_motion.h"
+
+strut_signal_inputs strut_drive_inputs(const strut_model *model, const strut_state *state,
+                                       const double *v) {
+  return (strut_signal_inputs){.sensor = state->sensor,
+                               .sensor_rate = state->sensor_rate,
+                               .state = v + model->feedback.base,
+                               .states = model->scene->states,
+                               .lag_of = model->feedback.lag_of,
+                               .held = state->held,
+                               .started = state->started,
+                               .relay_side = state->relay_side};
+}
+
+/* The signal of a drive or a load now. */
+static void evaluate(const strut_model *model, const strut_state *state, const double *v,
+                     int32_t signal, double t, double *value, double *rate) {
+  const strut_signal *signals = model->scene->signals;
+  if (!(model->plan & STRUT_TERM_FEEDBACK)) {
+    strut_signal_evaluate(signals, signal, t, value, rate);
+    return;
+  }
+  const strut_signal_inputs in = strut_drive_inputs(model, state, v);
+  strut_signal_follow(signals, &in, signal, t, value, rate);
+}
+
+double strut_drive_signal(const strut_model *model, const strut_state *state, const double *v,
+                          int32_t signal, double t) {
+  double value, rate;
+  evaluate(model, state, v, signal, t, &value, &rate);
+  return value;
+}
+
+/* Rest lengths as the signals ask; `sensed`: they may read sensors. */
+static inline void drive_rest_lengths(const strut_model *model, strut_state *state, double t,
+                                      const double *v, bool sensed) {
+  const strut_drive_table *d = &model->drives;
+  const strut_signal *signals = model->scene->signals;
+  double *restrict rest = state->rest, *restrict rest_rate = state->rest_rate;
+  for (int32_t i = 0; i < d->count; i++) {
+    double value, rate;
+    int32_t member = d->member[i];
+    if (sensed)
+      evaluate(model, state, v, d->signal[i], t + state->time_offset, &value, &rate);
+    else
+      strut_signal_evaluate(signals, d->signal[i], t + state->time_offset, &value, &rate);
+    /* the first actuator of a member starts from its own rest length, further ones add */
+    rest[member] = (d->first[i] ? model->members.rest[member] : rest[member]) + value;
+    rest_rate[member] = d->first[i] ? rate : rest_rate[member] + rate;
+  }
+}
+
+void strut_drive_apply(const strut_model *model, strut_state *state, double t) {
+  if (!(model->plan & STRUT_TERMS_RARE)) {
+    state->drive_time = t;
+    drive_rest_lengths(model, state, t, NULL, false);
+  } else if (model->plan & STRUT_TERM_FEEDBACK) {
+    strut_feedback_apply(model, state, t, state->q, state->v);
+  } else {
+    strut_drive_apply_sensed(model, state, t, state->v);
+  }
+}
+
+void strut_drive_apply_sensed(const strut_model *model, strut_state *state, double t,
+                              const double *v) {
+  state->drive_time = t;
+  if (model->plan & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_place(model, state, t);
+  if (state->ground_motion) strut_grounds_move(model, t + state->time_offset, state->ground_motion);
+  drive_rest_lengths(model, state, t, v, true);
+  if (model->plan & STRUT_TERM_MEMORY) strut_memory_follow(model, state);
+}
+
+void strut_grounds_move(const strut_model *model, double t, strut_ground_motion *motion) {
+  const strut_scene *scene = model->scene;
+  for (size_t g = 0; g < scene->ground_count; g++)
+    for (int c = 0; c < 2; c++) {
+      strut_ground_motion *m = &motion[g];
+      const strut_ground *ground = &scene->grounds[g];
+      m->place[c] = m->rate[c] = m->bend[c] = 0.0;
+      if (!ground->moves[c]) continue;
+      strut_signal_evaluate(scene->signals, ground->motion[c], t, &m->place[c], &m->rate[c]);
+      m->bend[c] = strut_signal_acceleration(scene->signals, ground->motion[c], t);
+    }
+}
+
+void strut_loads_apply(const strut_model *model, strut_state *state, double t,
+                       const double *restrict v) {
+  const strut_load_table *loads = &model->loads;
+  for (int32_t i = 0; i < loads->count; i++) {
+    double factor, rate;
+    evaluate(model, state, v, loads->signal[i], t + state->time_offset, &factor, &rate);
+    int32_t at = 2 * loads->node[i];
+    double px = factor * loads->x[i], py = factor * loads->y[i];
+    state->force[at] += px;
+    state->force[at + 1] += py;
+    if (!state->ledger) continue;
+    double power = px * v[at] + py * v[at + 1];
+    state->power[STRUT_POWER_LOAD] += power;
+    state->power[STRUT_POWER_EXCHANGED] += fabs(power);
+  }
+}
+
+double strut_drive_next_break(const strut_model *model, const strut_state *state, double t) {
+  const strut_signal *signals = model->scene->signals;
+  double first = (double)INFINITY;
+  for (int32_t i = 0; i < model->drives.count; i++)
+    first = fmin(
+        first, strut_signal_next_break_since(signals, state->started, model->drives.signal[i], t));
+  for (int32_t i = 0; i < model->loads.count; i++)
+    first = fmin(first,
+                 strut_signal_next_break_since(signals, state->started, model->loads.signal[i], t));
+  for (int32_t i = 0; i < model->support_motion.count; i++)
+    first = fmin(first, strut_signal_next_break(signals, model->support_motion.item[i].signal, t));
+  for (size_t i = 0; i < model->scene->unbalance_count; i++)
+    if (model->scene->unbalances[i].signal >= 0)
+      first = fmin(first, strut_signal_next_break(signals, model->scene->unbalances[i].signal, t));
+  for (int32_t k = 0; k < model->sliding.moving_count; k++) {
+    const strut_sliding_item *s = &model->sliding.item[model->sliding.moving[k]];
+    first = fmin(first, strut_signal_next_break(signals, s->signal, t));
+  }
+  for (size_t g = 0; g < model->scene->ground_count && model->contacts.moves; g++)
+    for (int c = 0; c < 2; c++)
+      if (model->scene->grounds[g].moves[c])
+        first =
+            fmin(first, strut_signal_next_break(signals, model->scene->grounds[g].motion[c], t));
+  for (int32_t i = 0; i < model->elements.breakable_count; i++)
+    if (model->elements.breakable[i].time > t)
+      first = fmin(first, model->elements.breakable[i].time);
+  for (int32_t i = 0; i < model->actuator_forces.count; i++)
+    first = fmin(first, strut_signal_next_break_since(signals, state->started,
+                                                      model->actuator_forces.item[i].signal, t));
+  return fmin(first, strut_feedback_next_sample(model, t));
+}
+
+/* de/dq of the strain that the force works on. */
+static void gradient_of(const strut_actuator_force *a, const uint32_t *at, const double *q,
+                        double *b) {
+  if (a->strain == STRUT_STRAIN_ANGLE)
+    strut_strain_angle(at, a->nodes, q, 0.0, b);
+  else
+    strut_strain_path(at, a->nodes, q, 0.0, b);
+}
+
+void strut_actuator_forces_apply(const strut_model *model, strut_state *state, double t,
+                                 const double *q, const double *v) {
+  const strut_actuator_force_table *table = &model->actuator_forces;
+  for (int32_t i = 0; i < table->count; i++) {
+    const strut_actuator_force *a = &table->item[i];
+    const uint32_t *at = table->at + a->first;
+    double b[2 * STRUT_MOST_ELEMENT_NODES], size, speed = 0.0;
+    size = strut_drive_signal(model, state, v, a->signal, t + state->time_offset);
+    gradient_of(a, at, q, b);
+    state->actuator_force[i] = size;
+    for (int32_t k = 0; k < a->nodes; k++) {
+      state->force[at[k]] -= size * b[2 * k];
+      state->force[at[k] + 1] -= size * b[2 * k + 1];
+      speed += b[2 * k] * v[at[k]] + b[2 * k + 1] * v[at[k] + 1];
+    }
+    if (!state->ledger) continue;
+    state->power[STRUT_POWER_DRIVE] -= size * speed;
+    state->power[STRUT_POWER_EXCHANGED] += fabs(size * speed);
+  }
+}
+
+double strut_actuator_force_on_member(const strut_model *model, const strut_state *state,
+                                      int32_t member) {
+  const strut_actuator_force_table *table = &model->actuator_forces;
+  double sum = 0.0;
+  for (int32_t i = 0; i < table->count; i++)
+    if (table->item[i].member == member) sum += state->actuator_force[i];
+  return sum;
+}
+
+double strut_actuator_moment_on_hinge(const strut_model *model, const strut_state *state,
+                                      int32_t hinge) {
+  const strut_actuator_force_table *table = &model->actuator_forces;
+  double sum = 0.0;
+  for (int32_t i = 0; i < table->count; i++)
+    if (table->item[i].hinge == hinge) sum += state->actuator_force[i];
+  return sum;
+}
+
+void strut_actuator_forces_add_tensions(const strut_model *model, const strut_state *state,
+                                        double *force) {
+  const strut_actuator_force_table *table = &model->actuator_forces;
+  for (int32_t i = 0; i < table->count; i++)
+    if (table->item[i].member >= 0) force[table->item[i].member] += state->actuator_force[i];
+}
+
+STRUT_CLONES
+static void evaluate_ahead(const strut_model *model, strut_drives_ahead *drives) {
+  const strut_drive_table *d = &model->drives;
+  for (int32_t i = 0; i < d->count; i++)
+    signal_at_times(model->scene->signals, d->signal[i], drives->time, drives->count,
+                    drives->value[i], drives->rate[i]);
+}
+
+void strut_drives_ahead_evaluate(const strut_model *model, strut_drives_ahead *drives,
+                                 int32_t count) {
+  drives->next = 0;
+  drives->count = count;
+  evaluate_ahead(model, drives);
+}

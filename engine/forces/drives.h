@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/** Forces' terms that change with time alone; those of members and ground are in *_kernel.h. */
+#ifndef STRUT_ENGINE_FORCES_DRIVES_H
+#define STRUT_ENGINE_FORCES_DRIVES_H
+
+#include "engine/model/hot.h"
+#include "engine/model/state.h"
+
+/**
+ * Driven rest lengths and their rates (6): state->rest, rest_rate. Drives that follow sensors do so at
+ * the state's positions and velocities.
+ */
+void strut_drive_apply(const strut_model *model, strut_state *state, double t);
+/** The same with the sensors as they were evaluated last: the second half of strut_feedback_apply. */
+void strut_drive_apply_sensed(const strut_model *model, strut_state *state, double t,
+                              const double *v);
+/** Inputs of signals: the sensors as they were evaluated last, and the states at velocities v. */
+strut_signal_inputs strut_drive_inputs(const strut_model *model, const strut_state *state,
+                                       const double *v);
+/** A signal at time t [s], with the sensors as they were evaluated last, and states at velocities v. */
+double strut_drive_signal(const strut_model *model, const strut_state *state, const double *v,
+                          int32_t signal, double t);
+/** Adds the loads that change with time at velocities v (for their power). */
+void strut_loads_apply(const strut_model *model, strut_state *state, double t,
+                       const double *restrict v);
+
+/** Motion of every ground (grounds) at time t of the signals: 0 of those at rest. */
+void strut_grounds_move(const strut_model *model, double t, strut_ground_motion *motion);
+
+/**
+ * The first time after t [s] at which a drive, a load or its rate jumps, or something is released;
+ * INFINITY if none does.
+ */
+double strut_drive_next_break(const strut_model *model, const strut_state *state, double t);
+
+/* Forces and moments of actuators; see engine/model/elements.h. */
+
+/**
+ * Adds the actuators' forces at time t [s] and positions q to state->force, and their power at
+ * velocities v to the drive's. Notes their sizes in state->actuator_force.
+ */
+void strut_actuator_forces_apply(const strut_model *model, strut_state *state, double t,
+                                 const double *q, const double *v);
+
+/** Sum of the forces that actuators add to a member's own, when last applied; tension positive [N]. */
+double strut_actuator_force_on_member(const strut_model *model, const strut_state *state,
+                                      int32_t member);
+/** Sum of the moments that actuators add to a hinge's own [N m]. */
+double strut_actuator_moment_on_hinge(const strut_model *model, const strut_state *state,
+                                      int32_t hinge);
+/** Adds the forces on all members to `force` (members). */
+void strut_actuator_forces_add_tensions(const strut_model *model, const strut_state *state,
+                                        double *force);
+
+/* Hot: driven rest lengths for many evaluations to come, for methods that know beforehand when these are: sines are
+ * computed by vectors (signal_lanes.h), with the bits of strut_drive_apply.
+ *
+ * Holds for a run of steps, during which neither drives nor time_offset change.
+ */
+
+enum { STRUT_DRIVES_AHEAD = 8, STRUT_INSTANTS_AHEAD = 32 };
+
+typedef struct strut_drives_ahead {
+  bool used;
+  int32_t next, count;                                    /* instants */
+  double time[STRUT_INSTANTS_AHEAD];                      /* of the signals, ascending [s] */
+  double value[STRUT_DRIVES_AHEAD][STRUT_INSTANTS_AHEAD]; /* of each drive [m] */
+  double rate[STRUT_DRIVES_AHEAD][STRUT_INSTANTS_AHEAD];  /* [m/s] */
+} strut_drives_ahead;
+
+/**
+ * The drives' values at the first `count` of drives->time, which the caller has filled up to a whole number of
+ * STRUT_LANES.
+ */
+void strut_drives_ahead_evaluate(const strut_model *model, strut_drives_ahead *drives,
+                                 int32_t count);
+
+/* terms: as a copy of a step loop knows them. Drives of rare terms may follow sensors, and are not known beforehand. */
+STRUT_INLINE void drives_ahead_begin(const strut_model *model, unsigned terms,
+                                     strut_drives_ahead *drives) {
+  drives->used = terms == STRUT_TERMS_COMMON && model->plan & STRUT_TERM_DRIVE &&
+                 model->drives.count <= STRUT_DRIVES_AHEAD;
+  drives->next = drives->count = 0;
+}
+
+/* row[j] = x, by a store as wide as the loads of members: a wider load than the store before it would have to wait. */
+STRUT_INLINE void drives_ahead_put(double *row, int32_t j, double x) {
+  const strut_lane_mask place = {0, 1, 2, 3};
+  double *group = row + j / STRUT_LANES * STRUT_LANES;
+  strut_lanes all = {x, x, x, x};
+  strut_lanes_store(group, four_choose(place == j % STRUT_LANES, all, strut_lanes_load(group)));
+}
+
+/* Rest lengths at the next instant, which is time t of the state. */
+STRUT_INLINE void drives_ahead_place(const strut_model *model, strut_state *state,
+                                     strut_drives_ahead *drives, double t) {
+  const strut_drive_table *d = &model->drives;
+  int32_t h = drives->next++;
+  for (int32_t i = 0; i < d->count; i++) {
+    int32_t j = d->member[i];
+    /* the first actuator of a member starts from its own rest length, further ones add */
+    double rest = d->first[i] ? model->members.rest[j] : state->rest[j];
+    double rate = drives->rate[i][h];
+    drives_ahead_put(state->rest, j, rest + drives->value[i][h]);
+    drives_ahead_put(state->rest_rate, j, d->first[i] ? rate : state->rest_rate[j] + rate);
+  }
+  state->drive_time = t;
+}
+
+/**
+ * Rest lengths at time t = step * dt; `step` may be a half. Evaluations are `part` steps apart, and `most` of them are
+ * still to come. Does nothing where the state has them already, or where drives cannot be known beforehand.
+ */
+STRUT_INLINE void drives_ahead_apply(const strut_model *model, strut_state *state,
+                                     strut_drives_ahead *drives, double t, double step, double part,
+                                     double dt, int64_t most) {
+  if (!drives->used || t == state->drive_time) return;
+  if (drives->next == drives->count || drives->time[drives->next] != t + state->time_offset) {
+    for (int32_t h = 0; h < STRUT_INSTANTS_AHEAD; h++)
+      drives->time[h] = (step + part * (double)h) * dt + state->time_offset;
+    strut_drives_ahead_evaluate(model, drives,
+                                most < STRUT_INSTANTS_AHEAD ? (int32_t)most : STRUT_INSTANTS_AHEAD);
+  }
+  drives_ahead_place(model, state, drives, t);
+}
+
+/** Foresees the stages of one step of h from t on: 1 to `count`, at parts of it that do not descend. */
+STRUT_INLINE void drives_ahead_stages(const strut_model *model, const strut_state *state,
+                                      strut_drives_ahead *drives, double t, double h,
+                                      const double *part, int32_t count) {
+  if (!drives->used) return;
+  for (int32_t k = 0; k < (count + STRUT_LANES - 1) / STRUT_LANES * STRUT_LANES; k++)
+    drives->time[k] = t + part[k < count ? k + 1 : count] * h + state->time_offset;
+  strut_drives_ahead_evaluate(model, drives, count);
+}
+
+/**
+ * Foresees the ends of whole steps of h from step * h on, one after the other, unless the next of them has been: some,
+ * since an event may come between.
+ */
+STRUT_INLINE void drives_ahead_ends(const strut_model *model, const strut_state *state,
+                                    strut_drives_ahead *drives, double h) {
+  enum { ENDS = 2 * STRUT_LANES };
+  double begin = (double)state->step * h;
+  if (!drives->used || (drives->next < drives->count &&
+                        drives->time[drives->next] == begin + h + state->time_offset))
+    return;
+  for (int32_t k = 0; k < ENDS; k++)
+    drives->time[k] = (double)(state->step + k) * h + h + state->time_offset;
+  strut_drives_ahead_evaluate(model, drives, ENDS);
+}
+
+/** Rest lengths at time t, if that is the next stage; else strut_drive_apply will do it. */
+STRUT_INLINE void drives_ahead_meet(const strut_model *model, strut_state *state,
+                                    strut_drives_ahead *drives, double t) {
+  if (!drives->used || t == state->drive_time || drives->next == drives->count) return;
+  if (drives->time[drives->next] == t + state->time_offset)
+    drives_ahead_place(model, state, drives, t);
+}
+
+#endif

@@ -1,0 +1,367 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/forces/history.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "engine/forces/capstan.h"
+#include "engine/forces/drives.h"
+#include "engine/model/pose.h"
+
+/* An element's e0 as its member or hinge has it, before anything has yielded. */
+static double base_of(const strut_element *e, const double *rest) {
+  return e->base >= 0 ? rest[e->base] : e->natural;
+}
+
+static double base_rate_of(const strut_element *e, const strut_state *state) {
+  return e->base >= 0 ? state->rest_rate[e->base] : 0.0;
+}
+
+static bool yields(const strut_element *e) { return e->law == STRUT_LAW_ELASTIC_PLASTIC; }
+
+static double shift_of(const strut_element *e, double plastic) {
+  return strut_slider_share(e) * plastic;
+}
+
+/* The slip at which the slider at x is at its yield, on the side of `sign`. */
+static double plastic_at(const strut_element *e, double x, double sign) {
+  return x - sign * strut_slider_yield(e) / strut_slider_spring(e);
+}
+
+/* Which way the slider gives way at x: by its mode, or by its force; 0: it holds. */
+static int direction_at(const strut_state *state, const strut_element *e, int32_t i, double x) {
+  int piece = state->element_piece[i];
+  if (state->forgetful) return 0;
+  if (piece >= 0) return piece - STRUT_SLIDER_HOLDS;
+  double p = state->plastic[e->memory], force = strut_slider_spring(e) * (x - p);
+  if (e->carries && !(e->carries * (x - shift_of(e, p)) > 0.0)) return 0;
+  return fabs(force) > strut_slider_yield(e) ? (force > 0.0 ? 1 : -1) : 0;
+}
+
+double strut_memory_natural(const strut_model *model, const strut_state *state, int32_t i,
+                            double strain) {
+  const strut_element *e = &model->elements.element[i];
+  double base = base_of(e, state->rest);
+  if (strut_element_is_gone(state->rest[e->slot])) return state->rest[e->slot];
+  if (!yields(e)) return base;
+  int direction = direction_at(state, e, i, strain - base);
+  double plastic = direction ? plastic_at(e, strain - base, direction) : state->plastic[e->memory];
+  return base + shift_of(e, plastic);
+}
+
+double strut_memory_locked_energy(const strut_element *e, const double *rest) {
+  double shift = rest[e->slot] - base_of(e, rest), beside = e->numbers.second_stiffness;
+  if (!yields(e) || beside == 0.0) return 0.0;
+  return 0.5 * shift * shift * e->numbers.stiffness * beside / strut_slider_spring(e);
+}
+
+strut_slider strut_slider_at(const strut_model *model, const strut_state *state, int32_t i,
+                             const double *q, const double *v) {
+  const strut_element *e = &model->elements.element[i];
+  const uint32_t *at = model->elements.at + e->first;
+  double b[STRUT_MOST_GRADIENT], rate = -base_rate_of(e, state);
+  double x = strut_element_strain(model, i, q, state->element_turn[i], b) - base_of(e, state->rest);
+  for (int32_t k = 0; k < e->nodes; k++) rate += b[2 * k] * v[at[k]] + b[2 * k + 1] * v[at[k] + 1];
+  double p = state->plastic[e->memory], force = strut_slider_spring(e) * (x - p);
+  return (strut_slider){.force = force,
+                        .yield = strut_slider_yield(e),
+                        .rate = rate,
+                        .plastic = plastic_at(e, x, force < 0.0 ? -1.0 : 1.0),
+                        .acts = !e->carries || e->carries * (x - shift_of(e, p)) > 0.0};
+}
+
+void strut_slider_set(const strut_model *model, strut_state *state, int32_t i, int mode,
+                      const double *q) {
+  const strut_element *e = &model->elements.element[i];
+  double b[STRUT_MOST_GRADIENT];
+  int before = state->element_piece[i];
+  if (before >= 0 && before != STRUT_SLIDER_HOLDS) {
+    double strain = strut_element_strain(model, i, q, state->element_turn[i], b);
+    double x = strain - base_of(e, state->rest);
+    state->plastic[e->memory] = plastic_at(e, x, before - STRUT_SLIDER_HOLDS);
+  }
+  state->element_piece[i] = (int16_t)mode;
+}
+
+static void book_loss(strut_state *state, double energy) {
+  if (!state->ledger) return;
+  state->work[STRUT_POWER_MEMBERS] += energy;
+  state->work[STRUT_POWER_EXCHANGED] += fabs(energy);
+}
+
+void strut_slider_return(const strut_model *model, strut_state *state, int32_t i, const double *q,
+                         bool jumped) {
+  const strut_element *e = &model->elements.element[i];
+  strut_slider s = strut_slider_at(model, state, i, q, state->v);
+  if (!s.acts || !(fabs(s.force) > s.yield)) return;
+  double *p = &state->plastic[e->memory], slip = fabs(s.plastic - *p);
+  book_loss(state, slip * (jumped ? 0.5 * (fabs(s.force) + s.yield) : s.yield));
+  *p = s.plastic;
+  state->rest[e->slot] = base_of(e, state->rest) + shift_of(e, *p);
+}
+
+/* What an element with its damper does: how its sign is frozen or follows is as with all elements. */
+static bool element_acts(const strut_element *e, const strut_state *state, int32_t i, double x,
+                         double force) {
+  int8_t mode = state->element_acts[i];
+  if (!e->carries) return true;
+  return mode ? mode > 0 : e->carries * x > 0.0 && e->carries * force > 0.0;
+}
+
+/*
+ * Powers of an element. The part of its force that energy follows is all of the law's, or, while a slider
+ * gives way, that of the spring beside it; the rest is lost. Without modes that loss is found when p is
+ * renewed.
+ */
+static void add_powers(const strut_element *e, strut_state *state, int32_t i, double force,
+                       double elastic, double x, double rate) {
+  int piece = state->element_piece[i];
+  double drive = -force * base_rate_of(e, state), lost = force - elastic;
+  if (yields(e) && piece >= 0 && piece != STRUT_SLIDER_HOLDS && !state->forgetful)
+    lost = force - e->numbers.second_stiffness * x;
+  lost *= rate;
+  state->power[STRUT_POWER_DRIVE] += drive;
+  state->power[STRUT_POWER_MEMBERS] += lost;
+  state->power[STRUT_POWER_EXCHANGED] += fabs(drive) + fabs(lost);
+}
+
+static void add_element(const strut_model *model, strut_state *state, int32_t i, const double *q,
+                        const double *v, double *force) {
+  const strut_element *e = &model->elements.element[i];
+  const uint32_t *at = model->elements.at + e->first;
+  double b[STRUT_MOST_GRADIENT], rate = 0.0;
+  if (strut_capstan_remembers(e, state->rest) && !strut_element_is_gone(state->rest[e->slot])) {
+    strut_capstan_add_forces(model, state, i, q, v, force);
+    return;
+  }
+  double strain = strut_element_strain(model, i, q, state->element_turn[i], b);
+  state->element_turn[i] = strain;
+  double natural = strut_memory_natural(model, state, i, strain), x = strain - natural;
+  if (strut_element_is_gone(natural)) return;
+  state->rest[e->slot] = natural;
+  if (yields(e) && state->element_piece[i] >= 0)
+    state->plastic[e->memory] =
+        (natural - base_of(e, state->rest)) * e->numbers.stiffness / strut_slider_spring(e);
+  for (int32_t k = 0; k < e->nodes; k++) rate += b[2 * k] * v[at[k]] + b[2 * k + 1] * v[at[k] + 1];
+  rate -= base_rate_of(e, state); /* last, as of other elements: with their bits before it breaks */
+  strut_law_response r =
+      strut_law_respond(e->law, &e->numbers, strain, natural, state->element_piece[i]);
+  double whole = r.force + e->damping * rate;
+  if (!element_acts(e, state, i, x, whole)) {
+    /* a damper may outweigh the spring: that relaxes then, and the damper takes its energy */
+    double relaxing = e->carries * x > 0.0 ? r.force : 0.0;
+    if (state->ledger) add_powers(e, state, i, 0.0, relaxing, x, rate);
+    return;
+  }
+  for (int32_t k = 0; k < e->nodes; k++) {
+    force[at[k]] -= whole * b[2 * k];
+    force[at[k] + 1] -= whole * b[2 * k + 1];
+  }
+  if (!state->ledger) return;
+  add_powers(e, state, i, whole, r.force, strain - base_of(e, state->rest), rate);
+  double excess = r.excess * base_rate_of(e, state);
+  state->power[STRUT_POWER_DRIVE] += excess;
+  state->power[STRUT_POWER_EXCHANGED] += fabs(excess);
+}
+
+void strut_memory_add_forces(const strut_model *model, strut_state *state,
+                             const strut_element_block *block, const double *q, const double *v,
+                             double *force) {
+  for (int32_t i = block->begin; i < block->end; i++) add_element(model, state, i, q, v, force);
+}
+
+void strut_memory_follow(const strut_model *model, strut_state *state) {
+  for (int32_t m = 0; m < model->elements.memory_count; m++) {
+    const strut_element *e = &model->elements.element[model->elements.memory[m]];
+    double *own = &state->rest[e->slot];
+    if (strut_element_is_gone(*own)) continue;
+    *own = base_of(e, state->rest) + (yields(e) ? shift_of(e, state->plastic[m]) : 0.0);
+    state->rest_rate[e->slot] = base_rate_of(e, state);
+  }
+}
+
+void strut_memory_store(const strut_model *model, const strut_state *state, double *memory) {
+  const strut_element_table *t = &model->elements;
+  size_t slots = (size_t)t->memory_slots, count = (size_t)t->memory_count;
+  memcpy(memory, state->rest + t->memory_slot, slots * sizeof(double));
+  memcpy(memory + slots, state->plastic, count * sizeof(double));
+  memcpy(memory + slots + count, state->broken_at, (size_t)t->breakable_count * sizeof(double));
+}
+
+void strut_memory_load(const strut_model *model, strut_state *state, const double *memory) {
+  const strut_element_table *t = &model->elements;
+  size_t slots = (size_t)t->memory_slots, count = (size_t)t->memory_count;
+  memcpy(state->rest + t->memory_slot, memory, slots * sizeof(double));
+  memcpy(state->plastic, memory + slots, count * sizeof(double));
+  memcpy(state->broken_at, memory + slots + count, (size_t)t->breakable_count * sizeof(double));
+  strut_memory_follow(model, state);
+}
+
+/* ---- what breaks ---- */
+
+double strut_breakable_load(const strut_model *model, const strut_state *state, int32_t breakable,
+                            const double *q, const double *v) {
+  const strut_element_table *t = &model->elements;
+  const strut_breakable *b = &t->breakable[breakable];
+  double sum = 0.0;
+  for (int32_t i = b->first; i >= 0; i = t->element[i].sibling) {
+    if (strut_capstan_remembers(&t->element[i], state->rest)) {
+      sum += strut_capstan_tensions(model, state, i, q, v).most;
+      continue;
+    }
+    strut_element_motion m = strut_element_move(model, state, i, q, v);
+    if (element_acts(&t->element[i], state, i, m.stretch, m.force)) sum += m.force;
+  }
+  return b->role == STRUT_ELEMENT_HINGE ? fabs(sum) : sum;
+}
+
+void strut_breakable_break(const strut_model *model, strut_state *state, int32_t breakable,
+                           double t) {
+  const strut_element_table *table = &model->elements;
+  strut_element_pose pose;
+  double energy = 0.0;
+  for (int32_t i = table->breakable[breakable].first; i >= 0; i = table->element[i].sibling) {
+    strut_element_evaluate(model, i, state->rest, state->q, state->element_turn[i], &pose);
+    energy += pose.energy;
+    state->rest[table->element[i].slot] = HUGE_VAL;
+    state->rest_rate[table->element[i].slot] = 0.0;
+  }
+  book_loss(state, energy);
+  state->broken_at[breakable] = t;
+}
+
+bool strut_memory_release(const strut_model *model, strut_state *state, double t) {
+  bool released = false;
+  for (int32_t i = 0; i < model->elements.breakable_count && !state->forgetful; i++) {
+    double due = model->elements.breakable[i].time;
+    if (state->broken_at[i] < HUGE_VAL || due > t) continue;
+    strut_breakable_break(model, state, i, due);
+    released = true;
+  }
+  return released;
+}
+
+/* A step that ends this close to a time, in parts of it, has reached it. */
+static const double REACHED = 1e-12;
+
+static bool renew(const strut_model *model, strut_state *state, double t, bool jumped) {
+  const strut_element_table *table = &model->elements;
+  double now = t + state->time_offset;
+  bool broken = false;
+  if (state->forgetful) return false;
+  if (model->plan & STRUT_TERM_DRIVE && t != state->drive_time) strut_drive_apply(model, state, t);
+  for (int32_t m = 0; m < table->memory_count; m++) {
+    int32_t i = table->memory[m];
+    if (strut_has_capstan(&table->element[i]) &&
+        !strut_element_is_gone(state->rest[table->element[i].slot])) {
+      strut_capstan_begin(model, state, i, state->q);
+      strut_capstan_renew(model, state, i, state->q);
+    }
+    if (yields(&table->element[i]) && !strut_element_is_gone(state->rest[table->element[i].slot]))
+      strut_slider_return(model, state, i, state->q, jumped);
+  }
+  for (int32_t i = 0; i < table->breakable_count; i++)
+    if (state->broken_at[i] == HUGE_VAL && table->breakable[i].force < HUGE_VAL &&
+        strut_breakable_load(model, state, i, state->q, state->v) >= table->breakable[i].force) {
+      strut_breakable_break(model, state, i, now);
+      broken = true;
+    }
+  return strut_memory_release(model, state, now + REACHED * fabs(now)) || broken;
+}
+
+bool strut_memory_renew(const strut_model *model, strut_state *state, double t) {
+  return renew(model, state, t, false);
+}
+
+void strut_memory_begin(const strut_model *model, strut_state *state, double t) {
+  bool ledger = state->ledger;
+  state->ledger = false;
+  renew(model, state, t, true);
+  state->ledger = ledger;
+}
+
+double strut_element_last_force(const strut_model *model, const strut_state *state, int32_t i) {
+  strut_element_pose pose;
+  const strut_element *e = &model->elements.element[i];
+  if (strut_capstan_remembers(e, state->rest) && !strut_element_is_gone(state->rest[e->slot]))
+    return strut_capstan_tensions(model, state, i, state->q, state->v).last;
+  return strut_element_measure(model, state, i, &pose);
+}
+
+double strut_element_plastic(const strut_model *model, const strut_state *state, int32_t element) {
+  const strut_element *e = &model->elements.element[element];
+  return e->remembers && yields(e) ? shift_of(e, state->plastic[e->memory]) : 0.0;
+}
+
+static void keep_worst(const strut_model *model, strut_element_role role, int32_t item, bool breaks,
+                       double force, double limit, strut_overload *worst) {
+  const strut_scene *scene = model->scene;
+  bool hinge = role == STRUT_ELEMENT_HINGE;
+  if (!(force > limit) || (worst->name && force / limit <= worst->force / worst->limit)) return;
+  *worst = (strut_overload){.name = hinge ? scene->hinges[item].name : scene->members[item].name,
+                            .hinge = hinge,
+                            .breaks = breaks,
+                            .force = force,
+                            .limit = limit};
+}
+
+bool strut_memory_overload(const strut_model *model, const double *q, strut_overload *worst) {
+  const strut_element_table *t = &model->elements;
+  strut_element_pose pose;
+  *worst = (strut_overload){.name = NULL};
+  for (int32_t m = 0; m < t->memory_count; m++) {
+    const strut_element *e = &t->element[t->memory[m]];
+    if (!yields(e)) continue;
+    strut_element_evaluate(model, t->memory[m], model->members.rest, q, (double)NAN, &pose);
+    keep_worst(model, e->role, e->item, false, fabs(pose.force), e->numbers.yield, worst);
+  }
+  for (int32_t b = 0; b < t->breakable_count; b++) {
+    const strut_breakable *what = &t->breakable[b];
+    double sum = 0.0;
+    for (int32_t i = what->first; i >= 0; i = t->element[i].sibling) {
+      strut_element_evaluate(model, i, model->members.rest, q, (double)NAN, &pose);
+      sum += pose.force;
+    }
+    if (what->role == STRUT_ELEMENT_HINGE) sum = fabs(sum);
+    keep_worst(model, what->role, what->item, true, sum, what->force, worst);
+  }
+  return worst->name;
+}
+
+void strut_maxwell_apply(const strut_model *model, strut_state *state, const double *q,
+                         const double *v, double *force) {
+  const strut_feedback_table *f = &model->feedback;
+  const strut_member_table *t = &model->members;
+  for (int32_t i = 0; i < f->maxwell_count; i++) {
+    const strut_maxwell_entry *m = &f->maxwell[i];
+    strut_member_pose pose = strut_member_pose_at(t, state->rest, m->member, q);
+    double rest_rate = state->rest_rate[m->member], tension = v[f->base + m->state];
+    double rate = strut_member_rate(t, m->member, &pose, v) - rest_rate;
+    uint32_t a = t->from[m->member], b = t->to[m->member];
+    force[a] += tension * pose.unit.x, force[a + 1] += tension * pose.unit.y;
+    force[b] -= tension * pose.unit.x, force[b + 1] -= tension * pose.unit.y;
+    force[f->base + m->state] = m->stiffness * (rate - tension / m->damping);
+    if (!state->ledger) continue;
+    double drive = -tension * rest_rate, lost = tension * tension / m->damping;
+    state->power[STRUT_POWER_DRIVE] += drive;
+    state->power[STRUT_POWER_MEMBERS] += lost;
+    state->power[STRUT_POWER_EXCHANGED] += fabs(drive) + lost;
+  }
+}
+
+double strut_maxwell_force(const strut_model *model, const double *v, int32_t member) {
+  const strut_feedback_table *f = &model->feedback;
+  for (int32_t i = 0; i < f->maxwell_count; i++)
+    if (f->maxwell[i].member == member) return v[f->base + f->maxwell[i].state];
+  return 0.0;
+}
+
+double strut_maxwell_energy(const strut_model *model, const double *v) {
+  const strut_feedback_table *f = &model->feedback;
+  double sum = 0.0;
+  for (int32_t i = 0; i < f->maxwell_count; i++) {
+    double tension = v[f->base + f->maxwell[i].state];
+    sum += 0.5 * tension * tension / f->maxwell[i].stiffness;
+  }
+  return sum;
+}

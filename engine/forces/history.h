@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Elements that remember: those that break or are released, and those that yield.
+ *
+ * Such an element has a slot of its own among the natural strains, which follows that of its member or
+ * hinge. What breaks or is released gets the natural strain INFINITY, by which it carries and stores
+ * nothing. An elastic-plastic element is a spring k_1 in series with a slider that gives way at F_1,
+ * beside a spring k_2: with the slip p of the slider
+ *   force = k_1 (x - p) + k_2 x,  |k_1 (x - p)| <= F_1,  k_1 = k - k_2,  F_1 = yield (1 - k_2/k),
+ * which is k x about a natural strain that is k_1/k p larger, and the energy stored in k_1 against k_2.
+ * That shift, x - force/k, is the plastic strain: what remains when the force is taken away.
+ *
+ * Methods with events freeze whether the slider holds or gives way (state->element_piece); p is then
+ * constant, or follows from x. With others the slider gives way within a step as its force says, and p
+ * is renewed at the end of each step, at which it is also decided what has broken.
+ */
+#ifndef STRUT_ENGINE_FORCES_HISTORY_H
+#define STRUT_ENGINE_FORCES_HISTORY_H
+
+#include "engine/forces/elements.h"
+#include "engine/model/state.h"
+
+/** Modes of a slider, as state->element_piece holds them; -1: by its force. */
+enum { STRUT_SLIDER_BACK, STRUT_SLIDER_HOLDS, STRUT_SLIDER_FORTH };
+
+/** Has the element broken or been released, by its natural strain? */
+static inline bool strut_element_is_gone(double natural) { return isinf(natural) != 0; }
+
+/** k_1, F_1 and k_1 / k of an elastic-plastic element. */
+static inline double strut_slider_spring(const strut_element *e) {
+  return e->numbers.stiffness - e->numbers.second_stiffness;
+}
+static inline double strut_slider_share(const strut_element *e) {
+  return strut_slider_spring(e) / e->numbers.stiffness;
+}
+static inline double strut_slider_yield(const strut_element *e) {
+  return e->numbers.yield * strut_slider_share(e);
+}
+
+/** A slider at some strain x = e - e0 of its element. */
+typedef struct strut_slider {
+  double force, yield; /* k_1 (x - p), and F_1 */
+  double rate;         /* dx/dt */
+  double plastic;      /* p that would bring the force back to the yield */
+  bool acts;           /* the element is on the side that it carries */
+} strut_slider;
+/** Of elastic-plastic element i at q and v. */
+strut_slider strut_slider_at(const strut_model *model, const strut_state *state, int32_t i,
+                             const double *q, const double *v);
+/** Sets its mode; p follows from q where it holds from now on. */
+void strut_slider_set(const strut_model *model, strut_state *state, int32_t i, int mode,
+                      const double *q);
+/**
+ * Brings a slider that is beyond its yield at q back to it. Adds to the losses what its own force does,
+ * or, where something has jumped, all the energy that disappears.
+ */
+void strut_slider_return(const strut_model *model, strut_state *state, int32_t i, const double *q,
+                         bool jumped);
+
+/** The natural strain of element i, with memory, at strain e, with the state's base slots and modes. */
+double strut_memory_natural(const strut_model *model, const strut_state *state, int32_t i,
+                            double e);
+/** Energy that is stored in the slider's spring against the one beside it, by the slots in `rest`. */
+double strut_memory_locked_energy(const strut_element *e, const double *rest);
+
+/** As strut_elements_add_forces, for a block of elements with memory. */
+void strut_memory_add_forces(const strut_model *model, strut_state *state,
+                             const strut_element_block *block, const double *q, const double *v,
+                             double *force);
+/** Own slots after the slots that they follow have changed. */
+void strut_memory_follow(const strut_model *model, strut_state *state);
+
+/** Size of what the elements of a model remember. */
+static inline size_t strut_memory_count(const strut_model *model) {
+  const strut_element_table *t = &model->elements;
+  return (size_t)(t->memory_slots + t->memory_count + t->breakable_count);
+}
+/** Copies it from a state, and back. */
+STRUT_API void strut_memory_store(const strut_model *model, const strut_state *state,
+                                  double *memory);
+STRUT_API void strut_memory_load(const strut_model *model, strut_state *state,
+                                 const double *memory);
+
+/** Tension of a member, or size of a hinge's moment, that may break it [N], [N m]. */
+double strut_breakable_load(const strut_model *model, const strut_state *state, int32_t breakable,
+                            const double *q, const double *v);
+/** Takes it out from time t on. The energy that it held is lost. */
+void strut_breakable_break(const strut_model *model, strut_state *state, int32_t breakable,
+                           double t);
+/** Releases what is due at time t [s]. True if something was. */
+bool strut_memory_release(const strut_model *model, strut_state *state, double t);
+
+/** A member or a hinge that carries more than it can. */
+typedef struct strut_overload {
+  const char *name; /* owned by the scene */
+  bool hinge;
+  bool breaks;         /* the limit is that of breaking; otherwise of yielding */
+  double force, limit; /* sizes [N] or [N m] */
+} strut_overload;
+/**
+ * The worst overload at rest at positions q, where statics take everything as whole and elastic; false
+ * where there is none.
+ */
+STRUT_API bool strut_memory_overload(const strut_model *model, const double *q,
+                                     strut_overload *worst);
+
+/** Tension at the last node of element i: of a cable with guide friction another than at its first. */
+double strut_element_last_force(const strut_model *model, const strut_state *state, int32_t i);
+/** Plastic strain of an element, k_1/k p; 0 of one that cannot yield. */
+double strut_element_plastic(const strut_model *model, const strut_state *state, int32_t element);
+
+/**
+ * After a plain step that ends at time t: what has yielded, broken or is to be released. True if forces
+ * have jumped by that.
+ */
+bool strut_memory_renew(const strut_model *model, strut_state *state, double t);
+/** Before the first step: what is beyond its force already, or due. Keeps no ledger. */
+STRUT_API void strut_memory_begin(const strut_model *model, strut_state *state, double t);
+
+/* Maxwell branches of members: a spring k and a dashpot c in a row. The force F is an internal state,
+ * F' = k (u' - F / c), with the rate u' of the member's length beyond its rest length. F^2 / 2k is stored
+ * and F^2 / c lost.
+ */
+
+/**
+ * Adds the forces of all branches at q and v and the rates of these forces to `force`, and with the
+ * ledger their powers. The driven rest lengths must be those of this instant.
+ */
+void strut_maxwell_apply(const strut_model *model, strut_state *state, const double *q,
+                         const double *v, double *force);
+/** Force of the branch of a member, tension positive [N]; 0 without one. */
+double strut_maxwell_force(const strut_model *model, const double *v, int32_t member);
+/** Energy stored in all of them [J]. */
+double strut_maxwell_energy(const strut_model *model, const double *v);
+
+#endif

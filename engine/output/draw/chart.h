@@ -1,0 +1,248 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Axes: from a quantity's range to ticks, labels and a place on the page, with no tuning.
+ */
+#ifndef STRUT_ENGINE_OUTPUT_DRAW_CHART_H
+#define STRUT_ENGINE_OUTPUT_DRAW_CHART_H
+
+#include "engine/output/buffer.h"
+#include "engine/output/draw/canvas.h"
+
+/** One axis as wanted. Its label reads "name in prefix unit", such as "velocity in mm/s". */
+typedef struct strut_axis {
+  const char *name, *unit; /* the values' SI unit; "" for none. A prefix is chosen for the ticks */
+  bool logarithmic;
+  double low, high; /* the range; both NAN: from the data, with a little room */
+} strut_axis;
+
+/** A label and a range that replace those of an axis. Zero-initialised: none. */
+typedef struct strut_axis_choice {
+  const char *label; /* replaces the name; the unit still follows; NULL: the name stays */
+  bool limited;      /* the axis goes from low to high, in its unit */
+  double low, high;
+} strut_axis_choice;
+
+/** A pair of axes laid out in a box. strut_axes_place makes it. */
+typedef struct strut_axes {
+  strut_axis x, y;  /* ranges settled */
+  strut_axis right; /* a second y axis, on the right; where has_right */
+  bool has_right;
+  strut_box frame; /* where data go [pt] */
+} strut_axes;
+
+/**
+ * Whether values from low to high [unit] differ by rounding noise only and are drawn as a constant;
+ * a length or velocity far below an atom's size becomes zero.
+ */
+STRUT_API bool strut_is_noise(double *low, double *high, const char *unit);
+/**
+ * Widens an axis whose range is from the data by a value; values that are not finite are ignored.
+ */
+STRUT_API void strut_axis_include(strut_axis *axis, double value);
+/**
+ * Turns the included values into a range that can be drawn: not empty, positive on a logarithmic
+ * axis, 0 to 1 where nothing was included; widened by `room` of its width on either side.
+ */
+STRUT_API void strut_axis_settle(strut_axis *axis, double room);
+/** Replaces the name and, after strut_axis_settle, the range of an axis where `choice` has one. */
+STRUT_API void strut_axis_choose(strut_axis *axis, const strut_axis_choice *choice);
+/**
+ * Lays out a frame for settled axes in `box`, leaving room for ticks, labels, a second y axis on
+ * the right (NULL: none) and a title (NULL: none); panels side by side line up when their boxes do.
+ */
+STRUT_API strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut_axis x,
+                                      strut_axis y, const strut_axis *right, const char *title);
+/**
+ * Frame, ticks, faint grid, labels and title: before the data, so that these lie above the grid.
+ */
+STRUT_API void strut_draw_axes(strut_canvas *canvas, const strut_axes *axes, const char *title);
+/** The y axis with its grid only, for diagrams whose x axis has no numbers. */
+STRUT_API void strut_draw_vertical_axis(strut_canvas *canvas, const strut_axes *axes);
+/** Maps a pair of values to the page, y on the left axis. */
+STRUT_API void strut_axes_point(const strut_axes *axes, double x, double y, double point[2]);
+/** The same axes with the right one as their y, to place what belongs to it. */
+STRUT_API strut_axes strut_axes_right(const strut_axes *axes);
+
+enum { STRUT_MOST_TICKS = 40 };
+/** Round values in [low, high], about `wanted` of them: 1, 2 or 5 times a power of ten. */
+STRUT_API size_t strut_ticks(double low, double high, int wanted, double ticks[STRUT_MOST_TICKS]);
+/**
+ * The prefix for values up to `largest`: factor such as 1e-3 and text such as "m" ("" for 1). The
+ * units "", "%", "kg" and "deg" get no prefix.
+ */
+STRUT_API const char *strut_prefix(double largest, const char *unit, double *factor);
+
+/**
+ * A quantity as drawings write it: as strut_quantity_of, with a real minus sign and Greek micro.
+ */
+STRUT_API strut_rounded_quantity strut_drawn_quantity(double value, int digits, const char *unit);
+
+enum { STRUT_TICK_TEXT = 32, STRUT_MOST_MINOR = 120 };
+/** The ticks of a settled axis and their texts. */
+typedef struct strut_tick_set {
+  size_t count, minor_count;
+  double at[STRUT_MOST_TICKS];                  /* [SI] */
+  double minor[STRUT_MOST_MINOR];               /* without text: logarithmic axes only */
+  char text[STRUT_MOST_TICKS][STRUT_TICK_TEXT]; /* in the prefixed unit; "" for no text */
+  char label[200]; /* "velocity in mm/s", with an offset where one was taken */
+} strut_tick_set;
+/** Fills `set` with about `wanted` ticks. */
+STRUT_API void strut_axis_ticks(const strut_axis *axis, int wanted, strut_tick_set *set);
+
+/** A colour bar beside a drawing, with name, ticks and unit. */
+typedef struct strut_colour_scale {
+  const char *name, *unit;
+  double low, high; /* [unit]; ticks are chosen */
+  strut_colours colours;
+} strut_colour_scale;
+STRUT_API void strut_draw_colour_scale(strut_canvas *canvas, strut_box box,
+                                       const strut_colour_scale *scale);
+
+/* Where a figure goes, its width, and what replaces its title and axes. */
+
+typedef struct strut_plot {
+  const char *path;       /* ends with .svg, .pdf or .png; NULL: no figure is wanted */
+  double width;           /* [pt] */
+  const char *title;      /* replaces the figure's own; NULL: the model's name */
+  strut_axis_choice x, y; /* of a figure with one pair of axes */
+} strut_plot;
+
+/** The title that was given, else `name`. */
+static inline const char *strut_plot_title(const strut_plot *plot, const char *name) {
+  return plot->title ? plot->title : name;
+}
+
+/* Curves over one quantity: lines with markers, grey bands, and a legend placed clear of them. */
+
+typedef struct strut_series {
+  const char *label; /* in the legend; NULL: not there */
+  size_t count;
+  const double *x, *y;         /* (count) SI; a y that is not finite breaks the line */
+  int look;                    /* index of colour, dashes and marker; -1: the series' own index */
+  bool points, steps, no_line; /* markers at the points; a staircase; no line between */
+  bool right;                  /* y belongs to the right axis */
+} strut_series;
+
+/** A grey area from x = low to high; its label goes into the legend, or is NULL. */
+typedef struct strut_band {
+  double low, high;
+  const char *label;
+  int look; /* index of grey and hatching */
+} strut_band;
+
+typedef struct strut_curves {
+  const char *title; /* may be NULL */
+  strut_axis x, y;
+  const strut_axis *right; /* a second y axis for series of another unit; NULL: none */
+  size_t series_count, band_count;
+  const strut_series *series;
+  const strut_band *bands;
+  double cursor; /* a vertical line at this x; NAN: none */
+} strut_curves;
+
+/**
+ * Draws curves in a box. Points are thinned to the visible ones: first, least, largest and last in
+ * each quarter of a point. Fails with STRUT_NO_MEMORY only.
+ */
+STRUT_API strut_status strut_draw_curves(strut_canvas *canvas, strut_box box,
+                                         const strut_curves *curves);
+
+/* Maps over two quantities: a category or a number at every grid point; doubtful ones are hatched. */
+
+typedef struct strut_map {
+  const char *title; /* may be NULL */
+  strut_axis x, y;   /* linear; an empty range: all cells */
+  size_t columns, rows;
+  const double *xs, *ys; /* (columns), (rows) ascending; cell edges are midpoints */
+  const int *category;   /* (rows, columns) index into names, -1: no result; or NULL */
+  size_t category_count;
+  const char *const *names;     /* (category_count) */
+  const double *value;          /* (rows, columns) where category is NULL; NAN: no result */
+  double value_low, value_high; /* of the scale of colours; equal: from the values */
+  const char *value_name, *value_unit;
+  strut_colours colours;
+  const bool *doubtful; /* (rows, columns) drawn hatched; or NULL */
+  const char *doubt;    /* meaning of the hatching, for the legend */
+} strut_map;
+
+/** Draws a map with its legend or colour bar in a box. STRUT_NO_MEMORY. */
+STRUT_API strut_status strut_draw_map(strut_canvas *canvas, strut_box box, const strut_map *map);
+
+/* Styles that distinguish series (colour, dashes, markers), the legends of diagrams, keys below
+ * drawings, and texts cut to fit.
+ */
+
+/** The pen of the i-th style: its colour and dashes. */
+strut_pen strut_series_pen(size_t look);
+/** Draws the marker of a series at x, y. */
+void strut_draw_marker(strut_canvas *canvas, size_t look, double x, double y, double size);
+/** The fill of the i-th grey area. */
+strut_fill strut_band_fill(int look);
+
+/**
+ * Thins (count) points of ascending x in place to at most four in each `grain` of x, which leaves
+ * the drawn line unchanged. Returns the number kept; points in another order are all kept.
+ */
+size_t strut_thin(double (*points)[2], size_t count, double grain);
+
+/** One row of a legend: a line with a marker, or an area. */
+typedef struct strut_legend_entry {
+  const char *label;
+  bool area;
+  size_t look;       /* of a line */
+  bool line, marker; /* the parts that are drawn */
+  strut_fill fill;   /* of an area */
+} strut_legend_entry;
+
+/** Size of the legend as a column of rows, or in lines that fill `width` (0: a column). */
+void strut_legend_size(strut_canvas *canvas, const strut_legend_entry *entries, size_t count,
+                       double width, double size[2]);
+/** Draws it with its upper left corner at x, y; `background` makes it readable over data. */
+void strut_draw_legend(strut_canvas *canvas, const strut_legend_entry *entries, size_t count,
+                       double width, double x, double y, bool background);
+
+typedef enum strut_key_sign {
+  STRUT_KEY_LINE,   /* a short line by `pen` */
+  STRUT_KEY_ARROW,  /* an arrow by `pen` */
+  STRUT_KEY_DOT,    /* a circle by `fill` and `pen`, with `letter` beside it where there is one */
+  STRUT_KEY_SIGNED, /* the colours of strut_palette_signed between the words `before` and `text` */
+  STRUT_KEY_WORDS   /* no sign */
+} strut_key_sign;
+
+typedef struct strut_key_item {
+  strut_key_sign sign;
+  strut_pen pen;
+  strut_fill fill;
+  const char *before; /* for STRUT_KEY_SIGNED */
+  const char *letter; /* for STRUT_KEY_DOT; or NULL */
+  const char *text;
+} strut_key_item;
+
+/** Height [pt] of a key of this width [pt]. */
+STRUT_API double strut_key_height(strut_canvas *canvas, double width, const strut_key_item *items,
+                                  size_t count);
+/** Draws it from the upper left corner of `box` on; texts longer than a line are cut. */
+STRUT_API void strut_draw_key(strut_canvas *canvas, strut_box box, const strut_key_item *items,
+                              size_t count);
+
+/**
+ * Length of the longest prefix of `text` of at most `most` bytes that splits no UTF-8 character.
+ */
+STRUT_API int strut_text_bytes(const char *text, int most);
+enum { STRUT_FITTED_TEXT = 320 };
+/**
+ * Copies as much of `text` as fits into `width` by `height` [pt] (0: any height), with an ellipsis
+ * where it is cut; no UTF-8 character is split, and lines break at `font.width` only. Returns
+ * `fitted`.
+ */
+STRUT_API const char *strut_text_fit(strut_canvas *canvas, const char *text, strut_font font,
+                                     double width, double height, char fitted[STRUT_FITTED_TEXT]);
+
+/**
+ * A figure's heading: `name` in bold in the upper left corner, `note` in grey below it; texts are
+ * cut.
+ */
+STRUT_API void strut_draw_heading(strut_canvas *canvas, double edge, const char *name,
+                                  const char *note);
+
+#endif

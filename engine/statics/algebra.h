@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Small dense matrices: eigenvalues and factors.
+ *
+ * strut_eigen: Householder's reduction to a tridiagonal and QL steps with implicit shifts (Bowdler,
+ * Martin, Reinsch and Wilkinson, Handbook for Automatic Computation II). Searches for equilibria
+ * spend most of their time there, on matrices of some ten rows, where general libraries mostly
+ * administrate.
+ */
+#ifndef STRUT_ENGINE_STATICS_ALGEBRA_H
+#define STRUT_ENGINE_STATICS_ALGEBRA_H
+
+#include <gsl/gsl_matrix.h>
+#include <gsl/gsl_permutation.h>
+#include <signal.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "engine/base/library.h"
+#include "engine/base/memory.h"
+#include "engine/base/status.h"
+#include "engine/statics/potential.h"
+
+/**
+ * matrix (n, n), symmetric and finite, becomes the unit eigenvectors, one per row, in no order;
+ * value (n) their values; work (n). Errors are some last bits of the largest |value|. False: no
+ * convergence, which finite matrices do not show.
+ */
+STRUT_API bool strut_eigen(double *matrix, int32_t n, double *value, double *work);
+
+/**
+ * Of matrix (n, n), which it overwrites: value (n) ascending, and the unit vector of value i as row
+ * i of vector (n, n), its largest entry positive. False: out of memory.
+ */
+bool strut_symmetric_eigen(double *matrix, size_t n, double *value, double *vector);
+
+/**
+ * Factors the square matrix in place with row exchanges, as gsl_linalg_LU_solve wants it. A
+ * singular matrix leaves a zero on the diagonal.
+ */
+void strut_lu_factor(gsl_matrix *a, gsl_permutation *order);
+
+/* What statics needs of SPQR and ARPACK: a rank-revealing A E = Q R of a sparse matrix, and the lowest eigenpairs
+ * of K x = z M x by shift-invert Lanczos.
+ *
+ * Only sparse_algebra.c sees their headers. Q is kept as its reflections, since an explicit one would be dense.
+ * ARPACK keeps its state in static variables, so that one lock lets one search run at a time. While either works,
+ * the BLAS beneath them uses one thread.
+ */
+
+typedef struct strut_sparse_qr strut_sparse_qr;
+
+typedef struct strut_lanczos_problem {
+  int32_t n;
+  double shift; /* below all eigenvalues */
+  void *context;
+  void (*solve)(void *context, double *x);                 /* x becomes (K - shift M)^-1 x */
+  void (*mass)(void *context, const double *x, double *y); /* y = M x */
+  const volatile sig_atomic_t *interrupt; /* ends it with STRUT_INTERRUPTED; or NULL */
+} strut_lanczos_problem;
+
+typedef struct strut_sparse_algebra_library {
+  strut_library_stamp stamp;
+  /**
+   * Factorises A: (rows, columns), by columns as strut_equilibrium_matrix. Columns that keep a norm
+   * of `tolerance` or less beside those before them count as dependent. STRUT_NO_MEMORY, or
+   * STRUT_SINGULAR where SPQR fails for another reason.
+   */
+  strut_status (*create_qr)(int32_t rows, int32_t columns, const int32_t *start, const int32_t *row,
+                            const double *value, double tolerance, strut_sparse_qr **qr,
+                            strut_error *error);
+  void (*free_qr)(strut_sparse_qr *qr);
+  int32_t (*rank)(const strut_sparse_qr *qr);
+  /** Smallest and largest diagonal entry of R, absolute; 0 where the rank is 0. */
+  void (*diagonal)(const strut_sparse_qr *qr, double *smallest, double *largest);
+  /**
+   * The i-th vector of an orthonormal basis of what A' maps to zero, 0 <= i < rows - rank: y (rows).
+   */
+  void (*left_null)(const strut_sparse_qr *qr, int32_t i, double *y);
+  /**
+   * The i-th vector of a basis of what A maps to zero, 0 <= i < columns - rank: x (columns), 1 at a
+   * dependent column of its own, 0 at the other dependent ones.
+   */
+  void (*null)(const strut_sparse_qr *qr, int32_t i, double *x);
+  /**
+   * The `count` eigenvalues next above the shift, ascending, and their vectors (count, n) with
+   * x'Mx = 1. count < n. The start vector is always the same. STRUT_SINGULAR where it does not
+   * converge, STRUT_NO_MEMORY.
+   */
+  strut_status (*lowest_eigenpairs)(const strut_lanczos_problem *problem, int32_t count,
+                                    double *value, double *vector, strut_error *error);
+} strut_sparse_algebra_library;
+
+/** Fails where the libraries cannot be loaded (engine/base/library.h). */
+strut_status strut_sparse_algebra_load(const strut_sparse_algebra_library **library,
+                                       strut_error *error);
+
+/* The seam around GLPK: a linear programme with bounds, solved by the simplex method.
+ *
+ * The same programme gives the same bits.
+ */
+
+/** Least sum of cost x with row_low <= A x <= row_high, low <= x <= high; all may be infinite. */
+typedef struct strut_linear_program {
+  int32_t rows, columns;
+  double *row_low, *row_high; /* (rows); 0 at first */
+  double *low, *high, *cost;  /* (columns); 0, INFINITY, 0 at first */
+  size_t entry_count, entry_room;
+  int32_t *entry_row, *entry_column; /* each place once */
+  double *entry;
+  const volatile sig_atomic_t *interrupt; /* ends the solution; NULL at first */
+} strut_linear_program;
+
+typedef enum strut_linear_program_end {
+  STRUT_PROGRAM_OPTIMAL,
+  STRUT_PROGRAM_INFEASIBLE,
+  STRUT_PROGRAM_UNBOUNDED,
+  STRUT_PROGRAM_FAILED /* the simplex method gave up */
+} strut_linear_program_end;
+
+/** Room for `entries` nonzeros, all in the arena; false: out of memory. */
+bool strut_linear_program_create(strut_linear_program *program, int32_t rows, int32_t columns,
+                                 size_t entries, strut_arena *arena);
+/** A(row, column) = value; nothing where it is 0. */
+void strut_linear_program_add(strut_linear_program *program, int32_t row, int32_t column,
+                              double value);
+/** x (columns) and the sum, filled where optimal; STRUT_NO_MEMORY, STRUT_INTERRUPTED or STRUT_OK. */
+strut_status strut_linear_program_solve(const strut_linear_program *program, double *x, double *sum,
+                                        strut_linear_program_end *end);
+
+/* All eigenvalues and eigenvectors of a small Hessian, the soft ones to their own last digits.
+ *
+ * A dense solver leaves every eigenvalue with the rounding error of the largest: beside bars of
+ * 1e12 N/m nothing is left of a spring of 1 N/m. The soft ones are therefore found again in the
+ * space of their eigenvectors, from stretches summed member by member (Rayleigh-Ritz), which loses
+ * nothing.
+ */
+
+typedef struct strut_spectrum {
+  int32_t n;
+  double *value;  /* (n) ascending [N/m] */
+  double *vector; /* (n, n) the unit vector of value i in row i */
+  double *noise;  /* (n) what rounding may have done to the value, positions' last bits included */
+} strut_spectrum;
+
+/** Memory for computations with n free coordinates; for one thread at a time. */
+typedef struct strut_spectrum_workspace strut_spectrum_workspace;
+/** NULL: out of memory. */
+strut_spectrum_workspace *strut_spectrum_create(const strut_potential *potential);
+void strut_spectrum_free(strut_spectrum_workspace *room);
+
+/**
+ * The spectrum of strut_potential_hessian_above(q, least), valid until the next call. `careful`:
+ * noise is estimated mode by mode and soft modes are always refined; else only where the dense
+ * solver's error could matter, with one noise for all. False if the Hessian is not finite.
+ */
+bool strut_spectrum_compute(strut_spectrum_workspace *room, const double *q, double least,
+                            bool careful, strut_spectrum *spectrum);
+
+#endif

@@ -1,0 +1,264 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * The scene as statics sees it: nothing moves by itself, the ground is level, and static supports
+ * may take the ground's place, as in (12): contact nodes held in turn.
+ */
+#ifndef STRUT_ENGINE_STATICS_EQUILIBRIA_EQUILIBRIA_PARTS_H
+#define STRUT_ENGINE_STATICS_EQUILIBRIA_EQUILIBRIA_PARTS_H
+
+#include <signal.h>
+
+#include "engine/scene/experiment.h"
+#include "engine/scene/scene.h"
+#include "engine/statics/equilibria/equilibria.h"
+#include "engine/statics/minimise.h"
+#include "engine/statics/search/critical.h"
+
+typedef struct strut_level_frame {
+  strut_scene scene;   /* without actuators, loads on a signal, friction and belt; in coordinates
+                          along and across the ground. Shares texts with the original */
+  double cosine, sine; /* of the slope that was turned away: 1, 0 on level ground */
+  int32_t
+      oblique_node; /* node held in one direction only on a slope, or -1; then nothing is turned */
+  strut_arena arena;
+} strut_level_frame;
+
+/** The original must outlive it; strut_level_frame_free. STRUT_OK or STRUT_NO_MEMORY. */
+strut_status strut_level_frame_create(const strut_scene *original, strut_level_frame *level,
+                                      strut_error *error);
+void strut_level_frame_free(strut_level_frame *level);
+
+/** Turns count vectors (x, y) between level and original coordinates, in place. */
+void strut_level_frame_to_original(const strut_level_frame *level, size_t count, double *xy);
+void strut_level_frame_from_original(const strut_level_frame *level, size_t count, double *xy);
+
+/** More sets than this are not tried unless the scene names them. */
+enum { STRUT_MOST_SUPPORTS = 120 };
+
+typedef struct strut_supports {
+  size_t count;         /* 0: the real ground alone */
+  strut_node_set *sets; /* (count) */
+  bool pin;             /* the first of each set is held along the ground too, the others roll */
+  bool loose;           /* the scene itself holds no coordinate: shapes may be turned and moved */
+  bool many;            /* there would be more sets than STRUT_MOST_SUPPORTS */
+} strut_supports;
+
+/**
+ * The sets for a scene on level ground: `wanted`, else those the scene names, else every set of as
+ * many contact nodes as it takes to hold the rigid motions that the scene leaves free: pairs where
+ * it holds nothing, single nodes where one motion is left, none where its own supports suffice.
+ * Arrays in the arena. STRUT_OK, STRUT_NO_MEMORY, or STRUT_USAGE for a wanted node that cannot
+ * touch.
+ */
+strut_status strut_supports_choose(const strut_scene *level, const strut_search *search,
+                                   const strut_node_set *wanted, strut_arena *arena,
+                                   strut_supports *supports, strut_error *error);
+
+/** Sets held (2 node_count and more) to 1 where a set holds a coordinate, else leaves it. */
+void strut_supports_hold(const strut_supports *supports, const strut_node_set *set, uint8_t *held);
+
+/**
+ * Places a shape (node_count) on a set: the first node on the ground line at the x it is drawn at,
+ * the second on the line, by a rigid motion where the scene allows one, else node by node.
+ */
+void strut_supports_place(const strut_supports *supports, const strut_scene *level,
+                          const strut_node_set *set, double (*shape)[2]);
+
+/* Dynamic relaxation on the real ground: where (10) without drive and friction comes to rest.
+ *
+ * The model itself is simulated, with no damping but its own, until it can end in one place only;
+ * Newton's method then converges to it. The result is that of the undamped model, at less cost.
+ */
+
+/**
+ * Potential energy of the lowest known pass out of the basin of the minimum q [J]; -INFINITY if
+ * none is known: then the end is known only when the motion has died down.
+ */
+typedef double (*strut_pass_of)(const void *context, const double *q);
+
+typedef enum strut_relaxed_end {
+  STRUT_RELAXED_RESTS,
+  STRUT_RELAXED_LEAVES, /* moves off without end: falls, slides, is lifted */
+  STRUT_RELAXED_MOVES   /* still moves after the experiment's settle.limit, or 1e7 steps */
+} strut_relaxed_end;
+
+typedef struct strut_relaxed {
+  strut_relaxed_end end;
+  bool simulated;      /* false: below the pass from the start, or without a motion */
+  double time;         /* simulated [s] */
+  double residual;     /* largest net force at rest [N] */
+  double acceleration; /* largest there [m/s^2]; 0 for a scene without mass */
+} strut_relaxed;
+
+/** Memory of relaxations of one model, for one thread at a time. */
+typedef struct strut_relaxer strut_relaxer;
+/**
+ * potential: of a model without actuators, friction and loads on a signal, its ground included. It
+ * must outlive the relaxer. limit: of the time that a relaxation simulates [s]. Simulated are
+ * models with mass, some damping and up to STRUT_DENSE_STATICS free coordinates; others go downhill
+ * from where they are.
+ */
+strut_status strut_relaxer_create(const strut_potential *potential, double limit,
+                                  strut_relaxer **relaxer, strut_error *error);
+void strut_relaxer_free(strut_relaxer *relaxer);
+
+/** True if the model can be simulated. */
+bool strut_relaxer_simulates(const strut_relaxer *relaxer);
+
+/** Minimises from q (length) as strut_minimise does. */
+strut_descent strut_relaxer_quench(strut_relaxer *relaxer, double *q);
+
+/** Minimises without simulation, for a q with one possible end; reports as strut_relax does. */
+void strut_relax_down(strut_relaxer *relaxer, double *q, strut_relaxed *relaxed);
+
+/**
+ * Lets go of q (length) with no velocity; at the end it is the shape at rest, its centre of mass
+ * where the motion has left it along the ground. passes may be NULL. STRUT_OK or STRUT_INTERRUPTED.
+ */
+strut_status strut_relax(strut_relaxer *relaxer, double *q, strut_pass_of passes,
+                         const void *context, const volatile sig_atomic_t *interrupt,
+                         strut_relaxed *relaxed, strut_error *error);
+
+/* The state of a search for equilibria: the level scene and the candidates found so far. */
+
+/** Why the structure cannot rest on the ground. */
+typedef enum strut_instability_cause {
+  STRUT_INSTABILITY_NONE,
+  STRUT_INSTABILITY_FALLS,  /* nothing holds it: no equilibrium at all */
+  STRUT_INSTABILITY_SLIDES, /* along the ground, without friction */
+  STRUT_INSTABILITY_LIFTED  /* off the ground */
+} strut_instability_cause;
+
+/** An equilibrium under examination. */
+typedef struct strut_candidate_equilibrium {
+  strut_equilibrium e; /* in level coordinates */
+  int32_t group;       /* number of its supports in turn; the real ground's is the last */
+  int32_t number;      /* of the point in its search */
+  int32_t state;       /* the landscape's minimum that it rests in, or -1; -1 for saddles */
+  bool pulls;          /* some support holds it down */
+} strut_candidate_equilibrium;
+
+typedef struct strut_equilibrium_search {
+  const strut_experiment *experiment;
+  const strut_equilibria_options *options;
+  strut_equilibria *out;
+  strut_error *error;
+  strut_level_frame level;
+  strut_model *model; /* of level.scene */
+  strut_supports supports;
+  strut_instability_cause instability;
+  bool on_ground;             /* else there is no ground, or nothing presses on it */
+  strut_potential *potential; /* on the real ground */
+  strut_relaxer *relaxer;
+  strut_landscape landscape;
+  bool explored; /* the landscape is there */
+  size_t count, room;
+  strut_candidate_equilibrium *candidates; /* (room), in out->arena */
+} strut_equilibrium_search;
+
+/** Appends a candidate; returns its index, or -1 if memory is out. */
+int32_t strut_equilibrium_search_add(strut_equilibrium_search *search);
+
+/**
+ * Fills in what holds at point's shape: energy, member forces, reactions on `potential`, nodes
+ * below. `set` NULL: as the scene itself stands. The point's arrays are copied, its shape oriented.
+ */
+strut_status strut_equilibrium_search_fill(strut_equilibrium_search *search,
+                                           strut_candidate_equilibrium *find,
+                                           const strut_potential *potential, const uint8_t *held,
+                                           const strut_node_set *set,
+                                           const strut_critical_point *point);
+
+/** Nodes that touch the ground at q and with what force: contacts, contact_count, normal of e. */
+strut_status strut_equilibrium_search_contacts(strut_equilibrium_search *search, const double *q,
+                                               strut_equilibrium *e);
+
+/**
+ * Releases the candidates that may stand from their supports and judges them by where they come to
+ * rest.
+ */
+strut_status strut_equilibrium_search_follow(strut_equilibrium_search *search);
+
+/** Checks whether the structure can rest at all; if not, writes the cause to the remark. */
+strut_instability_cause strut_equilibrium_search_instability(strut_equilibrium_search *search);
+
+/** Writes the verdicts and the remark on free motions. Candidates must be named already. */
+void strut_report_candidates(strut_equilibrium_search *search, strut_candidate_equilibrium *finds,
+                             size_t count);
+
+/** More stable equilibria than this do not enter the table. */
+enum { STRUT_MOST_BARRIERS_BETWEEN = 12 };
+
+/**
+ * Fills search->out->barriers between every two stable equilibria of which configurations name
+ * at least some: those named and those one pass away from them; without names the lowest.
+ */
+strut_status strut_barriers_find(strut_equilibrium_search *search);
+
+/* Names for equilibria: a scene's configurations, by contacts and shape; and which way round a
+ * shape that has a mirror image is shown.
+ */
+
+/** Largest distance of a shape from the configuration that names it, in model sizes. */
+#define STRUT_NAMED_WITHIN 0.05
+
+/**
+ * Of a shape q and its mirror image, where that is an equilibrium too (nothing acts along x, and
+ * all that is held along x shares one x), takes the one that is nearest to a configuration, else to
+ * the drawn shape; softest (may be NULL) goes with it. held: (length) coordinates held besides the
+ * scene's. STRUT_OK or STRUT_NO_MEMORY.
+ */
+strut_status strut_orient_shape(const strut_model *model, const uint8_t *held, double *q,
+                                double *softest);
+
+/**
+ * Names the list (count). Equilibria that stand take the names of configurations where they fit;
+ * where one without a shape fits several, they are NAME, NAME-2, ...: by its contact sets in their
+ * order, then by energy. The others are named by the nodes that touch the ground and numbered by
+ * energy: n1-n4-2, n1-n4-saddle-1, held-n1-n4-3 for what rests only while its contacts are held,
+ * equilibrium-1 and saddle-1 where nothing touches. A search with another seed gives the same names
+ * as long as it finds the same shapes. Names are the scene's or in the arena.
+ */
+strut_status strut_name_equilibria(const strut_model *model, size_t count, strut_equilibrium **list,
+                                   strut_arena *arena);
+
+/** True if strut_name_equilibria may give this name. */
+bool strut_is_listed_name(const strut_scene *scene, const char *name);
+
+/** True where the set holds the same nodes, in any order. */
+bool strut_same_nodes(const strut_node_set *set, const int32_t *nodes, int32_t count);
+
+/** Writes "n1, n2 and n3" for the nodes with a flag; many become "n1, n2, n3 and 5 more". */
+void strut_list_nodes(const strut_scene *scene, const uint8_t *flag, size_t size, char *text);
+
+/* Where a change of shape pushes the bodies of a collision through each other.
+ *
+ * Collisions are springs of finite stiffness, and two rods that cross touch nowhere, so that the potential alone
+ * keeps no body out of another. Two rods pass through each other where an end of one meets the axis of the
+ * other, a node and a rod where the node does, two nodes where they come closer than half of the thickness.
+ */
+
+/** The first collision whose axes cross in the shape q (length), or come closer than half of the thickness;
+    -1: none. */
+int32_t strut_overlap_find(const strut_model *model, const double *q);
+
+/** The first collision whose bodies pass through each other while all nodes move straight from a to b (length);
+    -1: none. */
+int32_t strut_passage_find(const strut_model *model, const double *a, const double *b);
+
+/** The first collision of two rods that cross in one of the shapes a and b (length) only; -1: none. No motion
+    leads from one to the other without pushing an end of one rod through the other. */
+int32_t strut_crossing_find(const strut_model *model, const double *a, const double *b);
+
+/**
+ * through (set->count) gets for each saddle with one way down on either side a collision that is on one of them,
+ * else -1. A floppy minimum is listed once for all shapes of its energy: a way to it leads through a
+ * collision also where the straight way on to the shape that is listed does, or, where whole shapes are free to be
+ * placed (`merged`), where crossing rods tell the two apart.
+ * STRUT_OK or STRUT_NO_MEMORY. The flag ends it early; it may be NULL.
+ */
+strut_status strut_passages_find(const strut_potential *potential, const strut_critical_set *set,
+                                 bool merged, const volatile sig_atomic_t *interrupt,
+                                 int32_t *through, strut_error *error);
+
+#endif

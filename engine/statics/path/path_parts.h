@@ -1,0 +1,298 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/** The parameter of a path: how each number of the equations depends on it. */
+#ifndef STRUT_ENGINE_STATICS_PATH_PATH_PARTS_H
+#define STRUT_ENGINE_STATICS_PATH_PATH_PARTS_H
+
+#include <gsl/gsl_eigen.h>
+#include <gsl/gsl_permutation.h>
+
+#include "engine/base/double_double.h"
+#include "engine/forces/elements.h"
+#include "engine/statics/path/path.h"
+#include "engine/statics/potential.h"
+
+/**
+ * Numbers of the equations that a parameter may change, or their derivatives with respect to it.
+ */
+typedef struct strut_path_terms {
+  double *stiffness;               /* (slots) [N/m] */
+  double *rest, *rest_low;         /* (slots) rest length as a sum of two [m] */
+  double *position, *position_low; /* (length) of held coordinates, likewise [m] */
+  double *force;                   /* (length) gravity and loads [N] */
+  double *ground;                  /* (contacts) stiffness [N/m] */
+  double normal[2], point[2];      /* of the ground's line */
+  const strut_model *laws;         /* whose elements have laws and natural strains of these terms */
+  struct strut_path_scene *scene; /* that `laws` is of if it is not the path's own model, or NULL */
+} strut_path_terms;
+
+/** strut_path_parameter_create fills it; of the one in use the address must not change. */
+typedef struct strut_path_parameter {
+  const strut_path_options *options;
+  const strut_model *model; /* at `from`: of all others the structure must be the same */
+  const double *load;       /* (length) loads at factor 1 [N] */
+  double from, range;       /* [SI]; range is not 0 */
+  strut_path_terms base, low, high;
+  double apart;        /* of low and high as a derivative took them */
+  double refused_at;   /* the last value that was refused, and why */
+  strut_error refusal; /* STRUT_OK: none was */
+} strut_path_parameter;
+
+/** Is the ground of the model, if it has one, one straight line at rest? */
+bool strut_path_has_line(const strut_model *model);
+/** Terms of zeros in the arena; false: out of memory. */
+bool strut_path_terms_create(const strut_model *model, strut_arena *arena, strut_path_terms *terms);
+/** Releases the scene that terms were read from; what lies in the arena stays. */
+void strut_path_terms_release(strut_path_terms *terms);
+
+/**
+ * `position` (length) are the held coordinates at `from`. STRUT_USAGE where the parameter changes
+ * nothing at rest, or the structure itself; STRUT_NO_MEMORY.
+ */
+strut_status strut_path_parameter_create(const strut_model *model,
+                                         const strut_path_options *options, const double *load,
+                                         double from, double until, const double *position,
+                                         strut_arena *arena, strut_path_parameter *parameter,
+                                         strut_error *error);
+
+/** Releases what its terms hold outside of the arena; zero-initialised ones may be freed. */
+void strut_path_parameter_free(strut_path_parameter *parameter);
+
+/** The terms at a value; false: there are none, parameter->refusal says why. */
+bool strut_path_parameter_terms(strut_path_parameter *parameter, strut_dd value,
+                                strut_path_terms *terms);
+/** Their derivatives with respect to the parameter; false likewise. */
+bool strut_path_parameter_rates(strut_path_parameter *parameter, double value,
+                                strut_path_terms *rates);
+
+/* Elements in the equations of a path: running cables, hinges, other laws, stops. For system.c.
+ *
+ * They are evaluated in double. Which ones act and on which smooth piece of its law each stays is
+ * frozen between events, as for cables. An angle stays near that of the last point kept, so that it
+ * is continuous over whole turns.
+ */
+
+struct strut_path_system;
+
+/** An element at the point that was evaluated last. */
+typedef struct strut_path_element {
+  strut_element_pose pose; /* force and slope of its frozen piece; 0 where it does not act */
+  double rate;             /* of its force with the parameter, its strain held */
+  double turn;             /* value near which an angle is taken; NAN: its natural one */
+  bool acts;
+  int piece; /* of its law */
+} strut_path_element;
+
+/** What may change about an element: whether it acts (kink -1), or on which side of a kink it is. */
+typedef struct strut_path_element_switch {
+  int32_t element, kink;
+} strut_path_element_switch;
+
+typedef struct strut_path_elements {
+  int32_t switch_count;
+  strut_path_element *element;         /* (elements) */
+  strut_path_element_switch *switches; /* (switch_count) kinks of one element ascending */
+} strut_path_elements;
+
+/** False: out of memory. */
+bool strut_path_elements_create(const strut_model *model, strut_arena *arena,
+                                strut_path_elements *elements);
+
+/** Adds forces, stiffness and the parameter's slope of all elements at system->q. */
+void strut_path_add_elements(struct strut_path_system *system);
+/** Adds the forces that hold them, on all coordinates, to the reactions (length). */
+void strut_path_element_reactions(const struct strut_path_system *system, double *reaction);
+/** Angles are taken near those of the last evaluation from now on. */
+void strut_path_keep_turns(struct strut_path_system *system);
+
+/** Force of all elements of member j [N]. */
+double strut_path_element_tension(const struct strut_path_system *system, int32_t member);
+/** Moments of the hinges [N m] (hinges). */
+void strut_path_moments(const struct strut_path_system *system, double *moment);
+/** Pressures in the cells [N/m] (cells). */
+void strut_path_pressures(const struct strut_path_system *system, double *pressure);
+
+/** As strut_path_switch_value, for an element's switch at the terms and positions of the system. */
+double strut_path_element_switch_value(const struct strut_path_system *system, int32_t which);
+bool strut_path_element_switch_is_on(const struct strut_path_system *system, int32_t which);
+void strut_path_element_switch_set(struct strut_path_system *system, int32_t which, bool on);
+
+/* The equations of a path: equilibrium for a parameter, with what is taut and touching held fixed.
+ *
+ * Unknown is y: the free coordinates in units of the structure's size, then the parameter from
+ * `from` in units of its range; n + 1 numbers, followed by n + 1 that are added to them for the
+ * digits that a double does not have. A bar of 1e11 N/m turns the last bit of a metre into 1e-5 N.
+ */
+
+enum { STRUT_PATH_MOTIONS = 3 };
+
+/** A member as it lies, to all digits. */
+typedef struct strut_path_member {
+  double length, tension, ux, uy; /* [m], [N], direction from its first node to the second */
+  double across;                  /* stiffness across its direction: tension / length [N/m] */
+  bool pulls;                     /* or pushes */
+} strut_path_member;
+
+typedef struct strut_path_system {
+  const strut_model *model;
+  strut_potential *potential; /* for the numbers of its free coordinates */
+  int32_t n;
+  bool drifts; /* the parameter works on a motion of the whole that meets no stiffness */
+  double size; /* [m] */
+  strut_path_parameter parameter;
+  strut_path_terms terms, rates; /* at terms_at; about rates_at */
+  strut_dd terms_at;
+  double rates_at;
+  bool has_terms, has_rates;
+  uint8_t *pulling, *touching; /* (members), (contacts) 1 where forces act, of whatever sign */
+  double *q, *q_low, *g, *slope, *row; /* (length), (length), (n), (n) dg/dy_n, (n + 1) scratch */
+  strut_path_member *member;           /* (members) */
+  strut_path_elements elements;
+  double forces;      /* the largest force at the last place: what g is compared with [N] */
+  int32_t held_count; /* motions of the whole that were given a stiffness `held_by` */
+  double held_by, *held[STRUT_PATH_MOTIONS]; /* (n) each */
+  gsl_matrix *hessian, *work;                /* (n, n) */
+  gsl_matrix *bordered;                      /* (n + 1, n + 1) */
+  gsl_vector *right, *solution, *values;
+  gsl_matrix *vectors;
+  gsl_permutation *order;
+  gsl_eigen_symm_workspace *values_only;
+  gsl_eigen_symmv_workspace *eigen;
+  int32_t negative;  /* eigenvalues below zero, after strut_path_spectrum */
+  double noise;      /* rounding of the stiffness's entries [N/m], likewise */
+  double soft_parts; /* the largest part that an element has in a soft eigenvalue [N/m] */
+  strut_arena arena;
+} strut_path_system;
+
+/**
+ * `held` (length) or NULL: coordinates held besides the supports. The caller creates the parameter
+ * in system->parameter before any other call; the system's address must not change. Free it after a
+ * failure too.
+ */
+strut_status strut_path_system_create(const strut_model *model, const uint8_t *held,
+                                      strut_path_system *system, strut_error *error);
+void strut_path_system_free(strut_path_system *system);
+
+/** y (2 n + 2) from positions of the free coordinates, at the parameter's start. */
+void strut_path_unplace(const strut_path_system *system, const double *q, double *y);
+/** The parameter's value at y. */
+double strut_path_value(const strut_path_system *system, const double *y);
+
+/** Everything at y, which need be no equilibrium; false: no scene has this value. */
+bool strut_path_evaluate(strut_path_system *system, const double *y);
+/** After strut_path_evaluate: reactions (length) and normal forces of contacts. */
+void strut_path_reactions(const strut_path_system *system, double *reaction, double *contact);
+
+/**
+ * Newton's method to equilibrium on the plane row . y = value. Iterations used, or -1: it does not
+ * converge.
+ */
+int strut_path_correct(strut_path_system *system, const double *row, double value, double *y);
+
+/** The unit tangent with row . tangent > 0; false if the system is singular. */
+bool strut_path_tangent(strut_path_system *system, const double *y, const double *row,
+                        double *tangent);
+
+/** Detail of the stiffness's spectrum: each level costs several times the previous one. */
+typedef enum strut_path_spectrum_detail {
+  STRUT_PATH_SIGNS,  /* of eigenvalues: how many are negative */
+  STRUT_PATH_VALUES, /* with all digits near zero too, not only to those of the largest */
+  STRUT_PATH_VECTORS /* and eigenvectors */
+} strut_path_spectrum_detail;
+
+/**
+ * Eigenvalues of the stiffness, ascending, into system->values, vectors into system->vectors, the
+ * number of negative ones into system->negative. False: no scene has this value.
+ */
+bool strut_path_spectrum(strut_path_system *system, const double *y,
+                         strut_path_spectrum_detail wanted);
+
+/** Cables first, then contacts, then elements: what may change along the path. */
+int32_t strut_path_switch_count(const strut_path_system *system);
+/** Index of the first switch of elements. */
+int32_t strut_path_first_element_switch(const strut_path_system *system);
+/**
+ * Above 0 where it ought to be on (pulls, touches) [m], NAN where no scene has this value;
+ * -INFINITY for what never changes: members that are no cables, kinks where an element does not act.
+ */
+double strut_path_switch_value(strut_path_system *system, int32_t which, const double *y);
+bool strut_path_switch_is_on(const strut_path_system *system, int32_t which);
+void strut_path_switch_set(strut_path_system *system, int32_t which, bool on);
+
+/* Where something happens on one piece of a path, to rounding. */
+
+/**
+ * A step: from one point (2 n + 2) of the path to the next, and the tangent (n + 1) it began with.
+ */
+typedef struct strut_path_piece {
+  const double *from, *tangent, *to;
+  double length; /* tangent . (to - from) */
+} strut_path_piece;
+
+/** A number that changes along the path; `which` is the caller's. */
+typedef double (*strut_path_measure)(strut_path_system *system, const double *y,
+                                     const strut_path_piece *piece, int32_t which);
+
+/** The value of a switch, strut_path_switch_value. */
+double strut_path_measure_switch(strut_path_system *system, const double *y,
+                                 const strut_path_piece *piece, int32_t which);
+/** An eigenvalue of the stiffness, counted from the lowest. */
+double strut_path_measure_eigenvalue(strut_path_system *system, const double *y,
+                                     const strut_path_piece *piece, int32_t which);
+
+/**
+ * The point y (2 n + 2) of the piece where the measure is 0; it must have different signs at the
+ * ends. Returns the place along the tangent, 0 to piece->length, or -1: no such change of sign.
+ */
+double strut_path_locate(strut_path_system *system, const strut_path_piece *piece,
+                         strut_path_measure measure, int32_t which, double *y);
+
+/* The walk along a path: what its steps share. For path.c, walk.c and events.c. */
+
+typedef struct strut_path_walk {
+  strut_path_system system;
+  strut_path *path;
+  double *y, *next;               /* (2 n + 2) the present point, and the next */
+  double *tangent, *next_tangent; /* (n + 1) there */
+  double *trial, *spare, *upward; /* (2 n + 2) scratch; (0, ..., 0, 1) */
+  double arc, step;
+  int32_t negative; /* eigenvalues below zero, as the walk goes on from y */
+  size_t point_room, event_room;
+  bool failed; /* memory was out */
+} strut_path_walk;
+
+/** From y: what pulls and touches there, the tangent along which the load does work, a point. */
+bool strut_path_walk_begin(strut_path_walk *walk);
+/** One step, with all events on it; false: the path ends here, path->end says why. */
+bool strut_path_walk_step(strut_path_walk *walk);
+
+/** Switches this close to zero change together, in units of the structure's size. */
+#define STRUT_PATH_EVEN 1e-9
+
+/**
+ * Throws the switch `which` at walk->y, and those that stand at zero there and are thrown with it,
+ * and reports them and what the kink does to parameter and stability. `beyond` is where the old
+ * stiffness would have led. The new tangent goes on into the side that they were thrown to. False:
+ * there is none.
+ */
+bool strut_path_pass_kink(strut_path_walk *walk, int32_t which, const double *beyond);
+
+/** Eigenvalues below zero at walk->y, into walk->negative. */
+void strut_path_count_negative(strut_path_walk *walk);
+
+/** Name of the path's parameter, as the subject of a sentence. */
+const char *strut_path_subject(const strut_path_walk *walk);
+/**
+ * "can grow no further" where the parameter turns that went on by `turn` [ranges], or "grows again
+ * from".
+ */
+const char *strut_path_turn(const strut_path_walk *walk, double turn);
+
+/** Distance of two points of the path in y. */
+double strut_path_distance(const strut_path_walk *walk, const double *a, const double *b);
+/** Keeps walk->y; `negative` as the path goes on. */
+void strut_path_add_point(strut_path_walk *walk, int32_t negative);
+/** Keeps y, in the order of the path. `detail` is copied. */
+void strut_path_add_event(strut_path_walk *walk, strut_path_event_kind kind, const double *y,
+                          int32_t index, int32_t before, int32_t after, const char *detail);
+
+#endif

@@ -1,0 +1,351 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/statics/rigidity/rigidity_parts.h"
+
+#include <math.h>
+
+#include "engine/base/memory.h"
+#include "engine/model/pose.h"
+#include "engine/statics/algebra.h"
+#include "engine/statics/potential.h"
+
+/* Eigenvalues and sums this small beside the largest are rounding. */
+static const double ROUNDING = 1e-9;
+
+/* Motion of a node of a member along x or y; 0 where held. */
+static double moved(const strut_equilibrium_matrix *a, const double *motion, uint32_t at) {
+  int32_t row = a->row_of[at];
+  return row < 0 ? 0.0 : motion[row];
+}
+
+/* x' bend y of a running cable or a hinge. */
+static double bend_form(const strut_model *model, const strut_equilibrium_matrix *a, int32_t j,
+                        const double *x, const double *y) {
+  const strut_element *e = &model->elements.element[a->curved[j]];
+  const uint32_t *at = model->elements.at + e->first;
+  int32_t n = 2 * e->nodes;
+  double sum = 0.0;
+  for (int32_t r = 0; r < n; r++) {
+    double left = moved(a, x, at[r / 2] + (uint32_t)(r % 2));
+    for (int32_t c = 0; c < n && left != 0.0; c++)
+      sum += left * a->bend[j][r * n + c] * moved(a, y, at[c / 2] + (uint32_t)(c % 2));
+  }
+  return sum;
+}
+
+double strut_stress_form(const strut_model *model, const strut_equilibrium_matrix *a,
+                         const double *density, const double *x, const double *y) {
+  double sum = 0.0;
+  for (int32_t j = 0; j < a->columns; j++) {
+    if (density[j] == 0.0) continue;
+    if (a->curved[j] >= 0) {
+      sum += density[j] * bend_form(model, a, j, x, y);
+      continue;
+    }
+    uint32_t from = model->members.from[j], to = model->members.to[j];
+    double dx = moved(a, x, to) - moved(a, x, from);
+    double dy = moved(a, x, to + 1) - moved(a, x, from + 1);
+    double ex = moved(a, y, to) - moved(a, y, from);
+    double ey = moved(a, y, to + 1) - moved(a, y, from + 1);
+    sum += density[j] * (dx * ex + dy * ey);
+  }
+  return sum;
+}
+
+void strut_stress_form_on(const strut_model *model, const strut_equilibrium_matrix *a,
+                          const double *density, const double *motion, int32_t count,
+                          double *form) {
+  size_t n = (size_t)count, rows = (size_t)a->rows;
+  for (size_t i = 0; i < n; i++)
+    for (size_t k = 0; k <= i; k++)
+      form[i * n + k] = form[k * n + i] =
+          strut_stress_form(model, a, density, motion + i * rows, motion + k * rows);
+}
+
+/* Do the densities balance at every node, held ones too? Then supports have nothing to carry. */
+static bool balances_alone(const strut_model *model, const strut_equilibrium_matrix *a,
+                           const double *force, double *sum) {
+  double largest = 0.0;
+  for (int32_t j = 0; j < a->members; j++) {
+    uint32_t from = model->members.from[j], to = model->members.to[j];
+    largest = fmax(largest, fabs(force[j]));
+    for (uint32_t k = 0; k < 2; k++) {
+      sum[from + k] += force[j] * a->direction[j][k];
+      sum[to + k] -= force[j] * a->direction[j][k];
+    }
+  }
+  for (int32_t at = 0; at < 2 * model->node_count; at++)
+    if (fabs(sum[at]) > ROUNDING * largest) return false;
+  return true;
+}
+
+static void add_density(double *matrix, size_t n, int32_t i, int32_t k, double density) {
+  if (i >= 0) matrix[(size_t)i * n + (size_t)i] += density;
+  if (k >= 0) matrix[(size_t)k * n + (size_t)k] += density;
+  if (i < 0 || k < 0) return;
+  matrix[(size_t)i * n + (size_t)k] -= density;
+  matrix[(size_t)k * n + (size_t)i] -= density;
+}
+
+/* Nodes that a member meets get a row each; with supports free coordinates are the rows. */
+static void fill_matrix(const strut_model *model, const strut_equilibrium_matrix *a,
+                        const double *force, bool supported, int32_t *row, double *matrix,
+                        size_t n) {
+  int32_t nodes = 0;
+  for (int32_t j = 0; j < a->members; j++) {
+    uint32_t from = model->members.from[j], to = model->members.to[j];
+    double density = a->length[j] > 0 ? force[j] / a->length[j] : 0.0;
+    if (supported) {
+      for (uint32_t k = 0; k < 2; k++)
+        add_density(matrix, n, a->row_of[from + k], a->row_of[to + k], density);
+      continue;
+    }
+    if (row[from / 2] < 0) row[from / 2] = nodes++;
+    if (row[to / 2] < 0) row[to / 2] = nodes++;
+    add_density(matrix, n, row[from / 2], row[to / 2], density);
+  }
+}
+
+/* Is there a symmetric Q with u' Q u = 0 for all members that carry force? */
+static bool lies_on_conic(const strut_equilibrium_matrix *a) {
+  double gram[9] = {0}, value[3], vector[9];
+  for (int32_t j = 0; j < a->members; j++) {
+    if (a->curved[j] >= 0) continue;
+    double x = a->direction[j][0], y = a->direction[j][1], row[3] = {x * x, 2 * x * y, y * y};
+    for (int i = 0; i < 3; i++)
+      for (int k = 0; k < 3; k++) gram[3 * i + k] += row[i] * row[k];
+  }
+  return !strut_symmetric_eigen(gram, 3, value, vector) || value[0] <= ROUNDING * value[2];
+}
+
+static int32_t count_nodes(const strut_model *model, int32_t *row) {
+  int32_t nodes = 0;
+  for (int32_t j = 0; j < model->members.count; j++) {
+    uint32_t end[2] = {model->members.from[j] / 2, model->members.to[j] / 2};
+    for (int k = 0; k < 2; k++)
+      if (row[end[k]] < 0) row[end[k]] = nodes++;
+  }
+  for (int32_t i = 0; i < model->node_count; i++) row[i] = -1;
+  return nodes;
+}
+
+/* Densities may cancel at every node: eigenvalues are small beside them, not beside themselves. */
+static void judge(const strut_equilibrium_matrix *a, const double *force,
+                  strut_stress_matrix *stress) {
+  double largest = 0.0;
+  for (int32_t j = 0; j < a->members; j++)
+    if (a->length[j] > 0) largest = fmax(largest, fabs(force[j]) / a->length[j]);
+  stress->positive = largest > 0;
+  for (int32_t i = 0; i < stress->count; i++) {
+    if (fabs(stress->eigenvalues[i]) <= ROUNDING * largest) stress->nullity++;
+    if (stress->eigenvalues[i] < -ROUNDING * largest) stress->positive = false;
+  }
+  bool least = stress->supported ? stress->nullity == 0 : stress->nullity == 3;
+  stress->super_stable = stress->positive && least && (stress->supported || !stress->on_conic);
+}
+
+/* Does a running cable or a hinge carry a part of the forces? Its energy is no quadratic form. */
+static bool are_elements_loaded(const strut_equilibrium_matrix *a, const double *force) {
+  double largest = 0.0;
+  for (int32_t j = 0; j < a->columns; j++) largest = fmax(largest, fabs(force[j]));
+  for (int32_t j = 0; j < a->columns; j++)
+    if (a->curved[j] >= 0 && fabs(force[j]) > ROUNDING * largest) return true;
+  return false;
+}
+
+strut_status strut_stress_matrix_judge(const strut_model *model, const strut_equilibrium_matrix *a,
+                                       const double *force, strut_arena *arena,
+                                       strut_stress_matrix *stress) {
+  *stress = (strut_stress_matrix){0};
+  stress->by_elements = are_elements_loaded(a, force);
+  if (model->node_count > STRUT_DENSE_STRESS || stress->by_elements) return STRUT_OK;
+  strut_arena scratch = {0};
+  strut_status status = STRUT_NO_MEMORY;
+  size_t most = (size_t)model->length;
+  double *sum = strut_arena_allocate(&scratch, most, sizeof *sum);
+  int32_t *row = strut_arena_allocate(&scratch, most, sizeof *row);
+  double *matrix = strut_arena_allocate(&scratch, most * most, sizeof *matrix);
+  double *vector = strut_arena_allocate(&scratch, most * most, sizeof *vector);
+  stress->eigenvalues = strut_arena_allocate(arena, most, sizeof(double));
+  if (sum && row && matrix && vector && stress->eigenvalues) {
+    for (int32_t i = 0; i < model->node_count; i++) row[i] = -1;
+    stress->supported = !balances_alone(model, a, force, sum);
+    stress->count = stress->supported ? a->rows : count_nodes(model, row);
+    fill_matrix(model, a, force, stress->supported, row, matrix, (size_t)stress->count);
+    stress->on_conic = lies_on_conic(a);
+    if (strut_symmetric_eigen(matrix, (size_t)stress->count, stress->eigenvalues, vector)) {
+      stress->tested = true;
+      judge(a, force, stress);
+      status = STRUT_OK;
+    }
+  }
+  strut_arena_free(&scratch);
+  return status;
+}
+
+static const double NOTHING = 1e-9, PIVOT = 1e-12;
+
+typedef strut_node_stiffness stiff;
+struct strut_node_stiffness {
+  size_t n;
+  double *k;     /* (n, n) K, then its Cholesky factor in the lower triangle */
+  double *rigid; /* (rigid_count, n) orthonormal */
+  int32_t rigid_count;
+  double *load; /* (n) */
+  strut_potential *potential;
+  strut_arena arena;
+};
+
+static void add_sparse(stiff *s, const strut_sparse *a) {
+  for (int32_t j = 0; a && j < a->n; j++)
+    for (int32_t at = a->start[j]; at < a->start[j + 1]; at++) {
+      size_t r = (size_t)a->row[at], c = (size_t)j;
+      s->k[r * s->n + c] += a->value[at];
+      if (r != c) s->k[c * s->n + r] += a->value[at];
+    }
+}
+
+/* Adds to K a contact stiffness along the ground, equal to that normal to it. */
+static void hold_contacts(stiff *s, const strut_model *model, const double *q,
+                          const int32_t *row_of) {
+  const strut_contact_table *c = &model->contacts;
+  for (int32_t i = 0; i < c->count; i++) {
+    uint32_t at = c->at[i];
+    const strut_contact_pose pose = strut_contact_pose_at(c, i, q, NULL, -1);
+    const double *t = pose.axes.tangent;
+    if (!(pose.gap < 0)) continue;
+    for (uint32_t a = 0; a < 2; a++)
+      for (uint32_t b = 0; b < 2; b++)
+        if (row_of[at + a] >= 0 && row_of[at + b] >= 0)
+          s->k[(size_t)row_of[at + a] * s->n + (size_t)row_of[at + b]] +=
+              c->entry[i].stiffness * t[a] * t[b];
+  }
+}
+
+static double largest_diagonal(const stiff *s) {
+  double largest = 0.0;
+  for (size_t i = 0; i < s->n; i++) largest = fmax(largest, fabs(s->k[i * s->n + i]));
+  return largest;
+}
+
+/* x' K y */
+static double form(const stiff *s, const double *x, const double *y) {
+  double sum = 0.0;
+  for (size_t i = 0; i < s->n; i++)
+    for (size_t j = 0; j < s->n; j++) sum += x[i] * s->k[i * s->n + j] * y[j];
+  return sum;
+}
+
+/* Finds the rigid motions without stiffness in K, as combinations, and adds stiffness against them. */
+static void lift_rigid(stiff *s) {
+  double a[3][3] = {{0}}, value[3], vector[3][3], largest = largest_diagonal(s);
+  int32_t count = s->rigid_count, kept = 0;
+  for (int32_t i = 0; i < 3; i++)
+    for (int32_t j = 0; j < 3; j++) {
+      bool both = i < count && j < count;
+      a[i][j] = both ? form(s, s->rigid + (size_t)i * s->n, s->rigid + (size_t)j * s->n)
+                     : (i == j) * 2.0 * largest * (double)s->n; /* unused: sorted to the end */
+    }
+  strut_symmetric_3(a, value, vector);
+  while (kept < count && fabs(value[kept]) <= NOTHING * largest) kept++;
+  for (size_t i = 0; i < s->n; i++) {
+    double r[3] = {0, 0, 0}, combined[3];
+    for (int32_t m = 0; m < count; m++) r[m] = s->rigid[(size_t)m * s->n + i];
+    for (int32_t m = 0; m < kept; m++)
+      combined[m] = vector[m][0] * r[0] + vector[m][1] * r[1] + vector[m][2] * r[2];
+    for (int32_t m = 0; m < kept; m++) s->rigid[(size_t)m * s->n + i] = combined[m];
+  }
+  s->rigid_count = kept;
+  for (int32_t m = 0; m < kept; m++) {
+    const double *x = s->rigid + (size_t)m * s->n;
+    for (size_t i = 0; i < s->n; i++)
+      for (size_t j = 0; j < s->n; j++) s->k[i * s->n + j] += largest * x[i] * x[j];
+  }
+}
+
+/* False where K is not positive definite. */
+static bool factorise(stiff *s) {
+  for (size_t j = 0; j < s->n; j++) {
+    double *row = s->k + j * s->n, before = row[j];
+    for (size_t i = 0; i <= j; i++) {
+      double *other = s->k + i * s->n, sum = row[i];
+      for (size_t m = 0; m < i; m++) sum -= row[m] * other[m];
+      if (i < j)
+        row[i] = sum / other[i];
+      else if (!(sum > PIVOT * before))
+        return false;
+      else
+        row[j] = sqrt(sum);
+    }
+  }
+  return true;
+}
+
+double strut_node_stiffness_along(stiff *s, int32_t node, const double direction[2]) {
+  double compliance = 0.0;
+  const int32_t *row_of = &s->potential->row_of[2 * node];
+  for (size_t i = 0; i < s->n; i++) s->load[i] = 0.0;
+  for (int d = 0; d < 2; d++)
+    if (row_of[d] >= 0) s->load[row_of[d]] = direction[d];
+  for (int32_t m = 0; m < s->rigid_count; m++) {
+    const double *x = s->rigid + (size_t)m * s->n;
+    double along = 0.0;
+    for (int d = 0; d < 2; d++)
+      if (row_of[d] >= 0) along += direction[d] * x[row_of[d]];
+    for (size_t i = 0; i < s->n; i++) s->load[i] -= along * x[i];
+  }
+  for (size_t i = 0; i < s->n; i++) { /* |L^-1 d|^2 = d' K^-1 d */
+    const double *row = s->k + i * s->n;
+    double sum = s->load[i];
+    for (size_t m = 0; m < i; m++) sum -= row[m] * s->load[m];
+    s->load[i] = sum / row[i];
+    compliance += s->load[i] * s->load[i];
+  }
+  return compliance > 0.0 ? 1.0 / compliance : (double)NAN;
+}
+
+/* K at q, with its rigid motions lifted, factored; or why not. */
+static strut_status fill_stiffness(stiff *s, const strut_model *model, const double *q,
+                                   const char **reason) {
+  strut_linear_matrices matrices;
+  s->k = strut_arena_allocate(&s->arena, s->n * s->n, sizeof *s->k);
+  s->rigid = strut_arena_allocate(&s->arena, 3 * s->n, sizeof *s->rigid);
+  s->load = strut_arena_allocate(&s->arena, s->n, sizeof *s->load);
+  strut_status status = s->k && s->rigid && s->load
+                            ? strut_linear_matrices_build(model, q, &s->arena, &matrices)
+                            : STRUT_NO_MEMORY;
+  if (status) return status;
+  add_sparse(s, matrices.elastic);
+  add_sparse(s, matrices.geometric);
+  add_sparse(s, matrices.contact);
+  hold_contacts(s, model, q, s->potential->row_of);
+  s->rigid_count = strut_rigid_motions(s->potential, q, s->rigid);
+  lift_rigid(s);
+  if (!factorise(s)) *reason = "a motion has no stiffness";
+  return STRUT_OK;
+}
+
+strut_status strut_node_stiffness_create(const strut_model *model, const double *q, stiff **to,
+                                         const char **reason, strut_error *error) {
+  stiff *s = strut_allocate(1, sizeof *s);
+  *to = NULL;
+  *reason = NULL;
+  if (!s) return strut_no_memory(error, "");
+  strut_status status = strut_potential_create(model, NULL, true, &s->potential, error);
+  if (!status) s->n = (size_t)s->potential->n;
+  if (!status && s->n == 0) *reason = "nothing can move";
+  if (!status && s->n > STRUT_STIFFNESS_COORDINATES) *reason = "more than 1000 free coordinates";
+  if (!status && !*reason) status = fill_stiffness(s, model, q, reason);
+  if (status == STRUT_NO_MEMORY) strut_no_memory(error, "");
+  if (status || *reason)
+    strut_node_stiffness_free(s);
+  else
+    *to = s;
+  return status;
+}
+
+void strut_node_stiffness_free(stiff *s) {
+  if (!s) return;
+  strut_potential_free(s->potential);
+  strut_arena_free(&s->arena);
+  strut_release(s);
+}
