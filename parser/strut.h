@@ -43,7 +43,7 @@ extern "C" {
 #include "engine/output/run_report.h"
 #include "engine/output/trajectory.h"
 #include "engine/run/measure/summary.h"
-#include "engine/run/recording.h"
+#include "engine/run/recorder.h"
 #include "engine/run/simulate.h"
 #include "engine/scene/check.h"
 #include "engine/scene/experiment.h"
@@ -66,7 +66,7 @@ extern "C" {
 #include "parser/read/read_scene.h"
 #include "parser/study/read_study.h"
 #include "parser/study/study_request.h"
-#include "parser/write/writer.h"
+#include "parser/write/write_scene.h"
 
 #ifdef __cplusplus
 }

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/c_locale.h"
 #include "engine/base/number_powers.h"
 
 strut_c_locale strut_c_locale_enter(void) {

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Numbers look the same whatever locale the host program has chosen.
- *
- * A function that reads or writes numbers as text puts its body between enter and leave; both act
- * on the calling thread only.
+ * Doubles as the shortest decimal text that reads back to the same bits, in any locale.
  */
 #ifndef STRUT_ENGINE_BASE_NUMBER_TEXT_H
 #define STRUT_ENGINE_BASE_NUMBER_TEXT_H
@@ -11,18 +8,6 @@
 #include <stddef.h>
 
 #include "engine/base/status.h"
-
-/** Two opaque handles; keep it on the stack between enter and leave. */
-typedef struct strut_c_locale {
-  void *c, *previous;
-} strut_c_locale;
-
-/** Makes "C" the calling thread's locale. Where memory is out it changes nothing. */
-STRUT_API strut_c_locale strut_c_locale_enter(void);
-/** Restores what enter found. */
-STRUT_API void strut_c_locale_leave(strut_c_locale locale);
-
-/* Doubles as the shortest decimal text that reads back to the same bits, in any locale. */
 
 /** A constant as the code writes it, for help texts. */
 #define STRUT_TEXT_OF(constant) STRUT_LITERAL_OF(constant)

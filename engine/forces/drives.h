@@ -1,10 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/** Forces' terms that change with time alone; those of members and ground are in *_kernel.h. */
+/**
+ * Drives: terms that change with time alone, applied to the state, and computed for many evaluations at once.
+ */
 #ifndef STRUT_ENGINE_FORCES_DRIVES_H
 #define STRUT_ENGINE_FORCES_DRIVES_H
 
 #include "engine/model/hot.h"
 #include "engine/model/state.h"
+
+/* Forces' terms that change with time alone; those of members and ground are in *_kernel.h. */
 
 /**
  * Driven rest lengths and their rates (6): state->rest, rest_rate. Drives that follow sensors do so at

@@ -1,6 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Elements that remember: those that break or are released, and those that yield.
+/** What members remember: breaks, yields, releases, and the forces of Maxwell's branches. */
+#ifndef STRUT_ENGINE_FORCES_HISTORY_H
+#define STRUT_ENGINE_FORCES_HISTORY_H
+
+#include "engine/forces/elements.h"
+#include "engine/model/state.h"
+
+/* Elements that remember: those that break or are released, and those that yield.
  *
  * Such an element has a slot of its own among the natural strains, which follows that of its member or
  * hinge. What breaks or is released gets the natural strain INFINITY, by which it carries and stores
@@ -14,11 +20,6 @@
  * constant, or follows from x. With others the slider gives way within a step as its force says, and p
  * is renewed at the end of each step, at which it is also decided what has broken.
  */
-#ifndef STRUT_ENGINE_FORCES_HISTORY_H
-#define STRUT_ENGINE_FORCES_HISTORY_H
-
-#include "engine/forces/elements.h"
-#include "engine/model/state.h"
 
 /** Modes of a slider, as state->element_piece holds them; -1: by its force. */
 enum { STRUT_SLIDER_BACK, STRUT_SLIDER_HOLDS, STRUT_SLIDER_FORTH };

@@ -21,7 +21,7 @@
 /* Hot: forces along members, equations (1), (2) and (6).
  *
  * Blocks of members are worked on in groups of STRUT_LANES: gather the ends, and compute along the
- * group. Then each node of the block adds up the pulls on it in the scene's order (sparse.h). What no
+ * group. Then each node of the block adds up the pulls on it in the scene's order (pull_rows.h). What no
  * member of a block needs (dampers, slack, drive) is compiled out of the block's loop.
  */
 

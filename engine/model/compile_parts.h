@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/** From the members and hinges of a scene to the elements of a model; see elements.h. */
+/** The parts of compiling a scene: elements, feedback, and what slides. */
 #ifndef STRUT_ENGINE_MODEL_COMPILE_PARTS_H
 #define STRUT_ENGINE_MODEL_COMPILE_PARTS_H
 
 #include "engine/model/model.h"
+
+/* From the members and hinges of a scene to the elements of a model; see elements.h. */
 
 /** Slots for natural strains of elements that are no members, behind the members' own. */
 size_t strut_element_slots(const strut_scene *scene);

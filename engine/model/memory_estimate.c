@@ -3,7 +3,7 @@
 
 #include <stdio.h>
 
-#include "engine/base/memory.h"
+#include "engine/base/memory_limit.h"
 
 /* Bytes for each thing, from the tables and matrices that hold it: a little less than what
    chains and grids of 350,000 nodes were seen to take, so that nothing is refused that would do. */

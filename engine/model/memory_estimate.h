@@ -12,7 +12,7 @@ STRUT_API double strut_memory_needed(const strut_scene *scene);
 
 /**
  * STRUT_NO_MEMORY, with what is needed and what there is, where the process may not have so much or
- * the machine has not (memory.h); STRUT_OK otherwise.
+ * the machine has not (memory_limit.h); STRUT_OK otherwise.
  */
 STRUT_API strut_status strut_memory_check_model(const strut_scene *scene, strut_error *error);
 /** STRUT_NO_MEMORY in the same words, where memory has run out all the same. */

@@ -4,6 +4,8 @@
 #include <assert.h>
 #include <string.h>
 
+#include "engine/model/pull_rows.h"
+
 bool strut_triplets_reserve(strut_triplets *triplets, size_t capacity, strut_arena *arena) {
   triplets->row = strut_arena_allocate(arena, capacity, sizeof *triplets->row);
   triplets->column = strut_arena_allocate(arena, capacity, sizeof *triplets->column);

@@ -9,7 +9,7 @@
 #include "engine/model/model.h"
 #include "engine/output/trajectory.h"
 #include "engine/scene/experiment.h"
-#include "engine/statics/rigidity/rigidity_parts.h"
+#include "engine/statics/rigidity/rigidity.h"
 
 /*
  * Matrices for other programs: Matrix Market files, and what their rows and columns are called.

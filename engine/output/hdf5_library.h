@@ -11,7 +11,7 @@
 
 #include "engine/base/library.h"
 #include "engine/output/trajectory.h"
-#include "engine/run/recording.h"
+#include "engine/run/recorder.h"
 
 typedef struct strut_hdf5_library {
   strut_library_stamp stamp;

@@ -3,7 +3,7 @@
 #ifndef STRUT_ENGINE_OUTPUT_RECORD_FILES_H
 #define STRUT_ENGINE_OUTPUT_RECORD_FILES_H
 
-#include "engine/run/recording.h"
+#include "engine/run/recorder.h"
 
 /* ---- CSV: nodes.csv, members.csv, ..., energy.csv, as far as they have channels ---- */
 

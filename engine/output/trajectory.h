@@ -6,7 +6,7 @@
 #define STRUT_ENGINE_OUTPUT_TRAJECTORY_H
 
 #include "engine/run/measure/summary.h"
-#include "engine/run/recording.h"
+#include "engine/run/recorder.h"
 #include "engine/scene/channels.h"
 
 /** Frames over time, SI. What was not recorded is NULL. Zero-initialise. */

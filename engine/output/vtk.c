@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/c_locale.h"
 #include "engine/base/number_text.h"
 #include "engine/forces/elements.h"
 #include "engine/model/model.h"

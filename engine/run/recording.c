@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/base/memory.h"
+#include "engine/base/memory_limit.h"
 
 static const unsigned ALL_CHANNELS = ~0u;
 

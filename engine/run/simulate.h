@@ -7,7 +7,7 @@
 
 #include "engine/model/model.h"
 #include "engine/run/measure/summary.h"
-#include "engine/run/recording.h"
+#include "engine/run/recorder.h"
 #include "engine/scene/experiment.h"
 
 /**

@@ -11,7 +11,7 @@
 
 #include <signal.h>
 
-#include "engine/run/recording.h"
+#include "engine/run/recorder.h"
 #include "engine/scene/experiment.h"
 
 typedef struct strut_stepping strut_stepping;

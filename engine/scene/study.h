@@ -367,7 +367,7 @@ typedef struct strut_study {
   /* What is searched; NULL: the points are all of the axes. */
   strut_study_search *search;
   strut_study_sensitivity sensitivity;
-  /* Goals, see engine/study/sweep/evaluation.h. */
+  /* Goals, see engine/study/sweep/evaluation_parts.h. */
   const char *stiffness_node; /* of the column stiffness; NULL: none */
   double stiffness_direction; /* [rad] */
   const char *like;           /* a configuration: the shape that is wanted; NULL: `shape` */

@@ -1,12 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Small dense matrices: eigenvalues and factors.
- *
- * strut_eigen: Householder's reduction to a tridiagonal and QL steps with implicit shifts (Bowdler,
- * Martin, Reinsch and Wilkinson, Handbook for Automatic Computation II). Searches for equilibria
- * spend most of their time there, on matrices of some ten rows, where general libraries mostly
- * administrate.
- */
+/** Linear algebra of statics: dense and sparse matrices, linear programs, parts of a spectrum. */
 #ifndef STRUT_ENGINE_STATICS_ALGEBRA_H
 #define STRUT_ENGINE_STATICS_ALGEBRA_H
 
@@ -21,6 +14,14 @@
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
 #include "engine/statics/potential.h"
+
+/* Small dense matrices: eigenvalues and factors.
+ *
+ * strut_eigen: Householder's reduction to a tridiagonal and QL steps with implicit shifts (Bowdler,
+ * Martin, Reinsch and Wilkinson, Handbook for Automatic Computation II). Searches for equilibria
+ * spend most of their time there, on matrices of some ten rows, where general libraries mostly
+ * administrate.
+ */
 
 /**
  * matrix (n, n), symmetric and finite, becomes the unit eigenvectors, one per row, in no order;

@@ -6,7 +6,7 @@
 #include "engine/output/draw/structure.h"
 #include "engine/output/page/page.h"
 #include "parser/command/plot_options.h"
-#include "parser/write/writer.h"
+#include "parser/write/write_scene.h"
 
 #define END                                                                                        \
   { STRUT_OPTION_END, NULL, NULL, NULL }

@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/base/number_text.h"
+#include "engine/base/c_locale.h"
 #include "parser/abi/handles.h"
-#include "parser/write/writer.h"
+#include "parser/write/write_scene.h"
 
 abi_tree *abi_tree_read(const char *json) {
   strut_c_locale locale = strut_c_locale_enter();

@@ -7,8 +7,8 @@
 #include "engine/scene/things.h"
 #include "engine/statics/equilibria/equilibria.h"
 #include "parser/abi/handles.h"
-#include "parser/write/writer.h"
-#include "parser/yaml/document.h"
+#include "parser/write/write_scene.h"
+#include "parser/yaml/document_parts.h"
 
 /* ---- names ---- */
 

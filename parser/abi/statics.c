@@ -5,12 +5,13 @@
 
 #include "engine/output/figures/statics_figures.h"
 #include "engine/output/report/reports.h"
+#include "engine/statics/rigidity/rigidity.h"
 #include "engine/statics/rigidity/rigidity_parts.h"
 #include "parser/abi/handles.h"
 #include "parser/command/overload_warnings.h"
 #include "parser/command/path_options.h"
 #include "parser/command/statics_options.h"
-#include "parser/write/writer.h"
+#include "parser/write/write_scene.h"
 
 /* ---- what all do alike ---- */
 

@@ -11,7 +11,7 @@
 #include "parser/command/fidelity_settings.h"
 #include "parser/command/option_values.h"
 #include "parser/command/run_settings.h"
-#include "parser/write/writer.h"
+#include "parser/write/write_scene.h"
 
 enum { MOST_THREADS = 4096, MOST_LANES = 8 };
 static const char slots_name[] = "points.slots", table_name[] = "table.csv";

@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 #include "parser/command/arguments.h"
-#include "parser/expression/expression.h"
+#include "parser/expression/units.h"
 
 /**
  * Reads an option such as --least-tension "5 N" into *value [SI], which keeps what it holds where the

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/base/number_text.h"
+#include "engine/base/c_locale.h"
 #include "parser/expression/expression_parts.h"
 
 enum { EXPONENT_MOST = 99999, FAST_POWER = 22 };

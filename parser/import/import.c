@@ -6,10 +6,11 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/c_locale.h"
 #include "engine/base/number_text.h"
 #include "parser/import/import_parts.h"
+#include "parser/read/csv.h"
 #include "parser/read/read_scene.h"
-#include "parser/read/used_files.h"
 
 void strut_import_line(strut_import_scene *s, strut_writer *to, const char *format, ...) {
   char text[4000];

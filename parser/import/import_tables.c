@@ -6,7 +6,7 @@
 
 #include "parser/expression/expression.h"
 #include "parser/import/import_parts.h"
-#include "parser/read/used_files.h"
+#include "parser/read/csv.h"
 
 enum { MOST_COLUMNS = 64 };
 

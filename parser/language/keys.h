@@ -12,7 +12,7 @@
 
 #include "engine/base/status.h"
 #include "engine/scene/things.h"
-#include "parser/expression/expression.h"
+#include "parser/expression/units.h"
 #include "parser/language/keys_table.h"
 
 /** The mappings of the language. */

@@ -16,7 +16,7 @@
 #include "parser/program/streams.h"
 #include "parser/read/overlay.h"
 #include "parser/read/read_scene.h"
-#include "parser/write/writer.h"
+#include "parser/write/write_scene.h"
 
 /* ---- reading the models ---- */
 

@@ -12,7 +12,7 @@
 #include "parser/program/open_model.h"
 #include "parser/program/option_values.h"
 #include "parser/program/streams.h"
-#include "parser/write/writer.h"
+#include "parser/write/write_scene.h"
 
 static const strut_option options[] = {
     STRUT_FORM_OPTIONS,

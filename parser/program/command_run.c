@@ -16,7 +16,7 @@
 #include "parser/program/progress.h"
 #include "parser/program/run_pictures.h"
 #include "parser/program/streams.h"
-#include "parser/write/writer.h"
+#include "parser/write/write_scene.h"
 
 static const strut_option options[] = {
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},

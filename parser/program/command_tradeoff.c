@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/c_locale.h"
 #include "engine/base/memory.h"
 #include "engine/base/number_text.h"
 #include "engine/output/file.h"

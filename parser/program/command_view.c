@@ -12,7 +12,7 @@
 #include "parser/program/open_model.h"
 #include "parser/program/option_values.h"
 #include "parser/program/streams.h"
-#include "parser/write/writer.h"
+#include "parser/write/write_scene.h"
 
 /* A page holds a few million numbers: reading more than 128 MB of motion would be wasted. */
 static const size_t ROOM = (size_t)1 << 24;

@@ -4,7 +4,7 @@
 #include "engine/base/memory.h"
 #include "parser/program/open_model.h"
 #include "parser/program/streams.h"
-#include "parser/write/writer.h"
+#include "parser/write/write_scene.h"
 
 static const strut_option options[] = {
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},

@@ -11,8 +11,8 @@
 #include "engine/statics/equilibria/equilibria.h"
 #include "parser/program/streams.h"
 #include "parser/read/read_scene.h"
-#include "parser/write/writer.h"
-#include "parser/yaml/document.h"
+#include "parser/write/write_scene.h"
+#include "parser/yaml/document_parts.h"
 
 enum { MOST_MESSAGES = 50 };
 

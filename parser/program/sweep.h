@@ -9,7 +9,7 @@
 #include "engine/output/table_data.h"
 #include "engine/study/results/study_table.h"
 #include "engine/study/search/search.h"
-#include "engine/study/sweep/grid.h"
+#include "engine/study/sweep/refine.h"
 #include "engine/study/sweep/sweep.h"
 #include "parser/program/options.h"
 #include "parser/program/progress.h"

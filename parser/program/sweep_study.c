@@ -12,7 +12,7 @@
 #include "engine/study/sweep/grid.h"
 #include "parser/program/streams.h"
 #include "parser/study/read_study.h"
-#include "parser/write/writer.h"
+#include "parser/write/write_scene.h"
 
 enum { MOST_MESSAGES = 50 };
 

@@ -7,8 +7,8 @@
 
 #include "engine/base/memory.h"
 #include "parser/program/streams.h"
+#include "parser/read/csv.h"
 #include "parser/read/read_scene.h"
-#include "parser/read/used_files.h"
 
 enum { MOST_MESSAGES = 20 };
 

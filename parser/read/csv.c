@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/read/used_files.h"
+#include "parser/read/csv.h"
 
 #include <math.h>
 #include <stdint.h>

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/base/memory.h"
+#include "engine/base/memory_limit.h"
 #include "parser/read/copies.h"
 
 /* ---- parts ---- */

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/base/number_text.h"
+#include "engine/base/c_locale.h"
 #include "parser/read/copies.h"
 #include "parser/read/reader.h"
 #include "parser/read/used_files.h"

@@ -7,7 +7,7 @@
 
 #include "engine/scene/check.h"
 #include "engine/scene/experiment.h"
-#include "parser/expression/expression.h"
+#include "parser/expression/units.h"
 #include "parser/yaml/diagnostics.h"
 #include "parser/yaml/document.h"
 

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "engine/scene/sample.h"
-#include "parser/read/used_files.h"
+#include "parser/read/csv.h"
 #include "parser/study/study_reader.h"
 #include "parser/yaml/text.h"
 

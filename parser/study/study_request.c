@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/base/number_text.h"
+#include "engine/base/c_locale.h"
 #include "parser/expression/expression.h"
 #include "parser/language/keys.h"
 #include "parser/study/study_reader.h"

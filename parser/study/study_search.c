@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/base/number_text.h"
+#include "engine/base/c_locale.h"
 #include "parser/expression/expression.h"
 #include "parser/study/read_study.h"
 #include "parser/study/study_reader.h"

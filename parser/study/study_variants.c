@@ -8,6 +8,7 @@
 #include "parser/read/used_files.h"
 #include "parser/study/read_study.h"
 #include "parser/study/study_reader.h"
+#include "parser/write/write_scene.h"
 #include "parser/write/writer.h"
 #include "parser/yaml/text.h"
 

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The structure and its drives as YAML, and the order of the whole file. See writer.h. */
-#include "parser/write/writer.h"
+/* The structure and its drives as YAML, and the order of the whole file. See write_scene.h. */
+#include "parser/write/write_scene.h"
 
 #include <assert.h>
 #include <math.h>
 #include <string.h>
 
-#include "engine/base/number_text.h"
+#include "engine/base/c_locale.h"
 #include "engine/base/vec.h"
+#include "parser/write/writer.h"
 
 /* ---- signals, and what they drive ---- */
 

@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Scenes with parameters, groups and parts, as short as they were given. See writer.h. */
-#include "parser/write/writer.h"
+/* Scenes with parameters, groups and parts, as short as they were given. See write_scene.h. */
+#include "parser/write/write_scene.h"
 
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/c_locale.h"
 #include "engine/base/name_map.h"
 #include "engine/base/number_text.h"
 #include "parser/read/overlay.h"
+#include "parser/write/writer.h"
 #include "parser/yaml/text.h"
 
 /* ---- trees as they are ---- */

@@ -11,8 +11,6 @@
 #include "engine/base/status.h"
 #include "engine/scene/experiment.h"
 #include "parser/language/keys.h"
-#include "parser/read/read_scene.h"
-#include "parser/yaml/document.h"
 
 typedef struct strut_writer {
   const strut_scene *scene;
@@ -132,27 +130,5 @@ void strut_json_put_text(strut_json_writer *json, const char *text);
 void strut_json_put_raw(strut_json_writer *json, const char *raw);
 /** The text with a line break at its end, a block of strut_allocate; NULL: memory was out. */
 char *strut_json_finish(strut_json_writer *json);
-
-/* Scenes as YAML. */
-
-/** The effective scene and experiment as YAML text in a block of strut_allocate (release it); NULL: no memory. */
-STRUT_API char *strut_setup_write(const strut_setup *setup);
-
-/**
- * The text of the source, in a block of strut_allocate, with its files written out, its parameters as they
- * were set, and what has been changed since laid over it: the differences between `before`, the text of
- * strut_setup_write of the scene as read, and `setup` as it is now. Reading it gives the same scene to
- * the bit, which is checked: *text is NULL with STRUT_OK where the text would differ, as where a node of a
- * copy has moved. STRUT_NO_MEMORY.
- */
-STRUT_API strut_status strut_short_write(strut_scene_source *source,
-                                         const strut_override *overrides, size_t override_count,
-                                         const char *before, const strut_setup *setup, char **text);
-
-/**
- * The text, a block of strut_allocate, that reads as this tree again; NULL: memory is out. Only texts of
- * several lines that were not quoted become quoted. Aliases are written out. `comment`: the first line.
- */
-STRUT_API char *strut_tree_write(const strut_tree *root, const char *comment);
 
 #endif

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/base/c_locale.h"
 #include "engine/base/memory.h"
-#include "engine/base/number_text.h"
 #include "parser/yaml/text.h"
 
 enum { MESSAGE_MOST = 900 };

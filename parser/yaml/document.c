@@ -5,6 +5,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "parser/yaml/document_parts.h"
 #include "parser/yaml/rows.h"
 #include "parser/yaml/text.h"
 

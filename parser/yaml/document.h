@@ -13,10 +13,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <yaml.h>
 
 #include "engine/base/memory.h"
-#include "engine/base/status.h"
 #include "parser/yaml/diagnostics.h"
 
 typedef enum strut_tree_kind { STRUT_TREE_SCALAR, STRUT_TREE_LIST, STRUT_TREE_MAP } strut_tree_kind;
@@ -73,49 +71,5 @@ STRUT_API void strut_document_free(strut_document *document);
 /** Value of `key` in a map, or NULL; key_node (may be NULL) receives the key itself. */
 STRUT_API strut_tree *strut_tree_find(const strut_tree *map, const char *key,
                                       strut_tree **key_node);
-
-/* What the files of the document reader share; nobody else includes it. */
-
-/** Reports what must not reach libyaml: bad UTF-8, control characters, directives. False if any. */
-bool strut_document_scan(strut_diagnostics *diagnostics);
-
-/**
- * Turns libyaml's error into one located message. `open` is the innermost bracketed list or mapping
- * that is open, or NULL. False: memory was out.
- */
-bool strut_document_syntax_error(const yaml_parser_t *parser, const strut_tree *open,
-                                 strut_diagnostics *diagnostics);
-
-/** Not the same from seed to seed, so that no text can be made to collide on purpose. */
-uint64_t strut_document_hash(const char *text, size_t length, uint64_t seed);
-
-/** A hash table of the keys of a map, reused for the next map. Zero but for the seed; release `slots`. */
-typedef struct strut_key_table {
-  strut_tree **slots;
-  size_t capacity;
-  uint64_t seed;
-} strut_key_table;
-
-/** Reports keys that may not be, and takes them out of the map. False: memory is out. */
-bool strut_document_check_keys(strut_tree *map, strut_key_table *table,
-                               strut_diagnostics *diagnostics);
-
-/* Memory needed to read a text, estimated before its tree is built. */
-
-/**
- * A lower estimate of the size of the text and its tree [B], from its brackets, colons and commas. A
- * colon in running text counts as a pair, which is negligible in texts large enough to matter.
- */
-STRUT_API double strut_document_needs(const char *text, size_t length);
-
-/**
- * STRUT_OK, or STRUT_NO_MEMORY with the needed and the available memory (memory.h). Needed is what the tree
- * takes where rows are deferred (rows.h).
- */
-STRUT_API strut_status strut_memory_check_document(const char *name, const char *text,
-                                                   size_t length, strut_error *error);
-/** STRUT_NO_MEMORY with the same message, for memory that ran out in spite of the check. */
-STRUT_API strut_status strut_memory_fail_document(const char *name, const char *text, size_t length,
-                                                  strut_error *error);
 
 #endif

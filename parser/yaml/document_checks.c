@@ -2,7 +2,7 @@
 /* What is wrong with a text before it is a tree: characters, directives, and syntax in plain words. */
 #include <string.h>
 
-#include "parser/yaml/document.h"
+#include "parser/yaml/document_parts.h"
 #include "parser/yaml/text.h"
 
 /* Most forbidden characters that are reported. */

@@ -6,8 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/base/memory.h"
-#include "parser/yaml/document.h"
+#include "engine/base/memory_limit.h"
+#include "parser/yaml/document_parts.h"
 #include "parser/yaml/rows.h"
 
 static bool continues(unsigned char byte) { return (byte & 0xC0) == 0x80; }

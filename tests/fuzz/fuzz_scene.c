@@ -10,7 +10,7 @@
 #include <string.h>
 
 #include "parser/read/reader.h"
-#include "parser/write/writer.h"
+#include "parser/write/write_scene.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "parser/read/reader.h"
-#include "parser/write/writer.h"
+#include "parser/write/write_scene.h"
 #include "tests/language/faults.h"
 #include "tests/language/scenes.h"
 #include "tests/support/sanitized.h"

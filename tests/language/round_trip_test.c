@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "parser/language/keys.h"
-#include "parser/write/writer.h"
+#include "parser/write/write_scene.h"
 #include "tests/language/scenes.h"
 #include "tests/support/test.h"
 

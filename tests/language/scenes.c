@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "parser/write/writer.h"
+#include "parser/write/write_scene.h"
 #include "tests/language/cases.h"
 #include "tests/support/test.h"
 

@@ -5,7 +5,7 @@
 #ifndef STRUT_TESTS_MODELS_RUN_MODEL_H
 #define STRUT_TESTS_MODELS_RUN_MODEL_H
 
-#include "engine/run/recording.h"
+#include "engine/run/recorder.h"
 #include "engine/run/simulate.h"
 #include "parser/read/read_scene.h"
 

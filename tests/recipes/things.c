@@ -10,7 +10,7 @@
 
 #include "engine/scene/check.h"
 #include "parser/read/read_scene.h"
-#include "parser/write/writer.h"
+#include "parser/write/write_scene.h"
 
 int test_a_number_of_hinges(void);
 

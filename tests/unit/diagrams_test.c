@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "engine/output/draw/chart.h"
+#include "engine/output/draw/legend.h"
 #include "engine/output/draw/work_precision.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"

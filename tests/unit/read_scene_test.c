@@ -8,7 +8,7 @@
 #include <time.h>
 
 #include "parser/read/read_scene.h"
-#include "parser/write/writer.h"
+#include "parser/write/write_scene.h"
 #include "tests/language/cases.h"
 #include "tests/support/test.h"
 

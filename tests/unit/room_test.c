@@ -12,6 +12,7 @@
 #include "engine/model/sparse.h"
 #include "parser/read/read_scene.h"
 #include "parser/yaml/document.h"
+#include "parser/yaml/document_parts.h"
 #include "tests/support/check.h"
 #include "tests/support/sanitized.h"
 

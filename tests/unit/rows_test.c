@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "parser/yaml/document.h"
+#include "parser/yaml/document_parts.h"
 #include "parser/yaml/rows.h"
 #include "tests/language/faults.h"
 #include "tests/language/scenes.h"

@@ -3,7 +3,7 @@
 #ifndef STRUT_TESTS_UNIT_SAMPLE_H
 #define STRUT_TESTS_UNIT_SAMPLE_H
 
-#include "engine/run/recording.h"
+#include "engine/run/recorder.h"
 
 /** Three nodes (one with an awkward name), two members, two contacts, energy: all six channels. */
 const strut_record_layout *sample_layout(void);

@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/draw/chart.h"
+#include "engine/output/draw/legend.h"
 #include "engine/output/figures/statics_figures.h"
 #include "tests/models/run_model.h"
 #include "tests/support/test.h"

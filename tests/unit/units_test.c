@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "parser/expression/expression.h"
+#include "parser/expression/units.h"
 #include "tests/support/test.h"
 
 static const strut_unit *unit(const char *name) { return strut_unit_find(name, strlen(name)); }

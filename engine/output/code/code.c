@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/base/number_text.h"
+#include "engine/base/c_locale.h"
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/model/mass.h"

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Axes: from a quantity's range to ticks, labels and a place on the page, with no tuning.
- */
+/** Charts: axes with ticks, frames, curves and maps of colours on a page. */
 #ifndef STRUT_ENGINE_OUTPUT_DRAW_CHART_H
 #define STRUT_ENGINE_OUTPUT_DRAW_CHART_H
 
 #include "engine/output/buffer.h"
 #include "engine/output/draw/canvas.h"
+
+/* Axes: from a quantity's range to ticks, labels and a place on the page, with no tuning. */
 
 /** One axis as wanted. Its label reads "name in prefix unit", such as "velocity in mm/s". */
 typedef struct strut_axis {
@@ -167,82 +167,5 @@ typedef struct strut_map {
 
 /** Draws a map with its legend or colour bar in a box. STRUT_NO_MEMORY. */
 STRUT_API strut_status strut_draw_map(strut_canvas *canvas, strut_box box, const strut_map *map);
-
-/* Styles that distinguish series (colour, dashes, markers), the legends of diagrams, keys below
- * drawings, and texts cut to fit.
- */
-
-/** The pen of the i-th style: its colour and dashes. */
-strut_pen strut_series_pen(size_t look);
-/** Draws the marker of a series at x, y. */
-void strut_draw_marker(strut_canvas *canvas, size_t look, double x, double y, double size);
-/** The fill of the i-th grey area. */
-strut_fill strut_band_fill(int look);
-
-/**
- * Thins (count) points of ascending x in place to at most four in each `grain` of x, which leaves
- * the drawn line unchanged. Returns the number kept; points in another order are all kept.
- */
-size_t strut_thin(double (*points)[2], size_t count, double grain);
-
-/** One row of a legend: a line with a marker, or an area. */
-typedef struct strut_legend_entry {
-  const char *label;
-  bool area;
-  size_t look;       /* of a line */
-  bool line, marker; /* the parts that are drawn */
-  strut_fill fill;   /* of an area */
-} strut_legend_entry;
-
-/** Size of the legend as a column of rows, or in lines that fill `width` (0: a column). */
-void strut_legend_size(strut_canvas *canvas, const strut_legend_entry *entries, size_t count,
-                       double width, double size[2]);
-/** Draws it with its upper left corner at x, y; `background` makes it readable over data. */
-void strut_draw_legend(strut_canvas *canvas, const strut_legend_entry *entries, size_t count,
-                       double width, double x, double y, bool background);
-
-typedef enum strut_key_sign {
-  STRUT_KEY_LINE,   /* a short line by `pen` */
-  STRUT_KEY_ARROW,  /* an arrow by `pen` */
-  STRUT_KEY_DOT,    /* a circle by `fill` and `pen`, with `letter` beside it where there is one */
-  STRUT_KEY_SIGNED, /* the colours of strut_palette_signed between the words `before` and `text` */
-  STRUT_KEY_WORDS   /* no sign */
-} strut_key_sign;
-
-typedef struct strut_key_item {
-  strut_key_sign sign;
-  strut_pen pen;
-  strut_fill fill;
-  const char *before; /* for STRUT_KEY_SIGNED */
-  const char *letter; /* for STRUT_KEY_DOT; or NULL */
-  const char *text;
-} strut_key_item;
-
-/** Height [pt] of a key of this width [pt]. */
-STRUT_API double strut_key_height(strut_canvas *canvas, double width, const strut_key_item *items,
-                                  size_t count);
-/** Draws it from the upper left corner of `box` on; texts longer than a line are cut. */
-STRUT_API void strut_draw_key(strut_canvas *canvas, strut_box box, const strut_key_item *items,
-                              size_t count);
-
-/**
- * Length of the longest prefix of `text` of at most `most` bytes that splits no UTF-8 character.
- */
-STRUT_API int strut_text_bytes(const char *text, int most);
-enum { STRUT_FITTED_TEXT = 320 };
-/**
- * Copies as much of `text` as fits into `width` by `height` [pt] (0: any height), with an ellipsis
- * where it is cut; no UTF-8 character is split, and lines break at `font.width` only. Returns
- * `fitted`.
- */
-STRUT_API const char *strut_text_fit(strut_canvas *canvas, const char *text, strut_font font,
-                                     double width, double height, char fitted[STRUT_FITTED_TEXT]);
-
-/**
- * A figure's heading: `name` in bold in the upper left corner, `note` in grey below it; texts are
- * cut.
- */
-STRUT_API void strut_draw_heading(strut_canvas *canvas, double edge, const char *name,
-                                  const char *note);
 
 #endif

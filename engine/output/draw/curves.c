@@ -7,6 +7,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/draw/canvas.h"
+#include "engine/output/draw/legend.h"
 
 static const double GRAIN = 0.25, MARKER = 2.0, LONE_MARKER = 1.4, INSET = 4;
 enum { FEW_POINTS = 30, MARKERS = 8 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/draw/chart.h"
+#include "engine/output/draw/legend.h"
 
 #include <assert.h>
 #include <math.h>

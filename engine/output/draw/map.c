@@ -7,6 +7,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/draw/canvas.h"
+#include "engine/output/draw/legend.h"
 #include "engine/output/draw/structure.h"
 
 static const double SCALE_WIDTH = 46, GAP = 6;

@@ -11,6 +11,7 @@
 #include "engine/model/pose.h"
 #include "engine/output/draw/canvas.h"
 #include "engine/output/draw/chart.h"
+#include "engine/output/draw/legend.h"
 
 /* The window, members and nodes. */
 

@@ -5,7 +5,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/draw/canvas.h"
-#include "engine/output/draw/chart.h"
+#include "engine/output/draw/legend.h"
 
 static const double MARKER = 2.4, STRIP = 18;
 

@@ -7,6 +7,7 @@
 #include "engine/model/pose.h"
 #include "engine/output/draw/canvas.h"
 #include "engine/output/draw/chart.h"
+#include "engine/output/draw/legend.h"
 #include "engine/output/draw/structure.h"
 #include "engine/output/figures/statics_figures.h"
 

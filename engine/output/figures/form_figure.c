@@ -8,6 +8,7 @@
 
 #include "engine/output/draw/canvas.h"
 #include "engine/output/draw/chart.h"
+#include "engine/output/draw/legend.h"
 #include "engine/output/draw/structure.h"
 
 static const double EDGE = 5, TITLE = 28, MARGIN = 24, SCALE = 46;

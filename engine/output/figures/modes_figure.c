@@ -6,11 +6,12 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/c_locale.h"
 #include "engine/base/memory.h"
-#include "engine/base/number_text.h"
 #include "engine/base/vec.h"
 #include "engine/output/draw/canvas.h"
 #include "engine/output/draw/chart.h"
+#include "engine/output/draw/legend.h"
 #include "engine/output/draw/structure.h"
 
 enum { NAMED = 12, LED = 200, TITLE = 200 }; /* nodes with names, nodes with arrows; bytes */

@@ -4,10 +4,11 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/base/number_text.h"
+#include "engine/base/c_locale.h"
 #include "engine/base/vec.h"
 #include "engine/output/draw/canvas.h"
 #include "engine/output/draw/chart.h"
+#include "engine/output/draw/legend.h"
 #include "engine/output/draw/structure.h"
 #include "engine/output/figures/statics_figures.h"
 #include "engine/statics/path/path.h"

@@ -7,6 +7,7 @@
 
 #include "engine/output/draw/canvas.h"
 #include "engine/output/draw/chart.h"
+#include "engine/output/draw/legend.h"
 #include "engine/output/draw/structure.h"
 
 static const double EDGE = 5, TITLE = 28, LINE = 12, MARGIN = 18, NARROW = 110, SCALE = 34;

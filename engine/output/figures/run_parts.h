@@ -6,6 +6,7 @@
 #define STRUT_ENGINE_OUTPUT_FIGURES_RUN_PARTS_H
 
 #include "engine/output/draw/chart.h"
+#include "engine/output/draw/legend.h"
 #include "engine/output/draw/structure.h"
 #include "engine/output/figures/run_figure.h"
 

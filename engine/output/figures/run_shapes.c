@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "engine/base/number_text.h"
+#include "engine/base/c_locale.h"
 #include "engine/output/draw/canvas.h"
 #include "engine/output/figures/run_parts.h"
 

@@ -77,19 +77,4 @@ STRUT_API strut_status strut_table_savings(const char *path,
                                            const strut_table_savings_figure *figure,
                                            const strut_table *table, strut_error *error);
 
-/* Points of a table over two of its columns, coloured by a third, some of them marked. */
-
-typedef struct strut_scatter_figure {
-  const char *title; /* may be NULL */
-  double width;      /* [pt] */
-  int x, y, value;   /* columns of numbers; value: STRUT_NO_COLUMN for one colour */
-  strut_axis_choice x_axis, y_axis;
-  strut_colours colours;      /* AUTO: sequential */
-  const bool *shown, *marked; /* (rows) marked ones lie on top, in a ring */
-} strut_scatter_figure;
-
-/** As strut_table_curves. */
-STRUT_API strut_status strut_table_scatter(const char *path, const strut_scatter_figure *figure,
-                                           const strut_table *table, strut_error *error);
-
 #endif

@@ -11,8 +11,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "engine/base/c_locale.h"
 #include "engine/base/memory.h"
-#include "engine/base/number_text.h"
 
 enum { MOST_WORDS = 48, TEXT = 32, SAID = 300 };
 

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "engine/base/number_text.h"
+#include "engine/base/c_locale.h"
 
 enum { WIDTH = 1280, HEIGHT = 720, GIF_WIDTH = 640, GIF_HEIGHT = 360 };
 

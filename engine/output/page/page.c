@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/output/page/page.h"
+#include "engine/output/page/page_assets.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -118,18 +118,4 @@ STRUT_API void strut_block_free(strut_block *block);
 STRUT_API void strut_page_add_motion(strut_buffer *buffer, const strut_page *page, size_t room,
                                      strut_page_frames *frames);
 
-/* The parts of the page that are the same for every run, put in at build time (EmbedFiles.cmake). Apart from
- * page.h, which is installed.
- */
-
-/*
- * Each ends with a row of NULL. In the template, page.html, four comments are replaced:
- * strut:title by the title's text, strut:style by <style> elements, strut:data by the <script>
- * element of the data, strut:scripts by <script> elements.
- */
-extern const strut_embedded strut_page_template[];
-extern const strut_embedded strut_page_styles[];
-extern const strut_embedded strut_page_notice[];  /* of dygraphs: whose it is, and its licence */
-extern const strut_embedded strut_page_scripts[]; /* in the order in which they run */
-
 #endif

@@ -7,8 +7,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/c_locale.h"
 #include "engine/base/memory.h"
-#include "engine/base/number_text.h"
 #include "engine/output/buffer.h"
 #include "engine/output/json_value.h"
 #include "engine/output/report/reports.h"

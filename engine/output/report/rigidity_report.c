@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "engine/base/number_text.h"
+#include "engine/base/c_locale.h"
 #include "engine/output/buffer.h"
 #include "engine/output/json_value.h"
 #include "engine/statics/rigidity/rigidity.h"

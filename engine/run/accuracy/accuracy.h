@@ -4,7 +4,7 @@
 #define STRUT_ENGINE_RUN_ACCURACY_ACCURACY_H
 
 #include "engine/model/model.h"
-#include "engine/run/recording.h"
+#include "engine/run/recorder.h"
 #include "engine/run/simulate.h"
 
 /**

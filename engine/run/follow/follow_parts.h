@@ -1,16 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Periodic motions over two parameters: the surface G(z, p1, p2) = 0.
- *
- * Unknowns are those of follow_system.h and a second parameter, over its range as the first. At a point the
- * surface has a plane of tangents, the null space of [dP - 1, dG/dp1, dG/dp2], which is of full rank at
- * folds, too. Other points are found by Newton's method with two more equations.
+ * What following folds over two parameters is made of: the surface, the criterion, the curve, the parts of a walk.
  */
 #ifndef STRUT_ENGINE_RUN_FOLLOW_FOLLOW_PARTS_H
 #define STRUT_ENGINE_RUN_FOLLOW_FOLLOW_PARTS_H
 
 #include "engine/run/follow/follow.h"
 #include "engine/run/follow/follow_system.h"
+
+/* Periodic motions over two parameters: the surface G(z, p1, p2) = 0.
+ *
+ * Unknowns are those of follow_system.h and a second parameter, over its range as the first. At a point the
+ * surface has a plane of tangents, the null space of [dP - 1, dG/dp1, dG/dp2], which is of full rank at
+ * folds, too. Other points are found by Newton's method with two more equations.
+ */
 
 /** Makes the scene of two values [SI]; strut_setup_free releases it. */
 typedef struct strut_follow_plane {

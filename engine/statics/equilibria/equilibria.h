@@ -8,7 +8,7 @@
 #include "engine/model/model.h"
 #include "engine/run/measure/summary.h"
 #include "engine/scene/experiment.h"
-#include "engine/statics/search/critical.h"
+#include "engine/statics/search/critical_point.h"
 
 typedef struct strut_rest_state {
   const char *name; /* "drawn", "start", a configuration's, or one that the list of all gives */
@@ -125,48 +125,5 @@ STRUT_API strut_status strut_equilibria_find(const strut_model *model,
                                              const strut_equilibria_options *options,
                                              strut_equilibria *equilibria, strut_error *error);
 STRUT_API void strut_equilibria_free(strut_equilibria *equilibria);
-
-/* The stationary points of one potential as a landscape: basins, and the passes between them. */
-
-typedef struct strut_landscape {
-  const strut_potential *potential;
-  bool merged; /* congruent shapes are one point, mirror images too */
-  strut_critical_set set;
-  int32_t minima; /* stable and floppy points: the first ones of the set */
-  int32_t
-      *through; /* (set.count) a collision that a saddle's ways down lead through, or -1; NULL: the
-                        scene has no collision */
-  double *lowest;    /* (minima) potential of the lowest pass out of it [J]; HUGE_VAL: none known */
-  int32_t *parent;   /* (minima) scratch of the path searches below */
-  strut_arena arena; /* of the above */
-} strut_landscape;
-
-/** strut_landscape_free releases it, after a failure too. */
-strut_status strut_landscape_create(const strut_potential *potential,
-                                    const strut_critical_effort *effort, strut_landscape *landscape,
-                                    strut_error *error);
-void strut_landscape_free(strut_landscape *landscape);
-
-/** The minimum that the shape q (length) is, or -1. */
-int32_t strut_landscape_find(const strut_landscape *landscape, const double *q);
-
-/** A strut_pass_of for a landscape as the context. */
-double strut_landscape_pass(const void *landscape, const double *q);
-
-/**
- * Index of the highest saddle on the lowest path from minimum a to minimum b; -1 if the known
- * saddles do not connect them. Saddles that lead through a collision are none.
- */
-int32_t strut_landscape_path(const strut_landscape *landscape, int32_t a, int32_t b);
-
-/** The lowest saddle that leads from minimum a down to minimum b the other way, or -1. */
-int32_t strut_landscape_direct(const strut_landscape *landscape, int32_t a, int32_t b);
-
-/**
- * Writes the minima between a and b on the shortest path over saddles up to `highest` to via
- * (minima), in order; returns their count.
- */
-int32_t strut_landscape_between(const strut_landscape *landscape, int32_t a, int32_t b,
-                                int32_t highest, int32_t *via);
 
 #endif

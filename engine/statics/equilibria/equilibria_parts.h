@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * The scene as statics sees it: nothing moves by itself, the ground is level, and static supports
- * may take the ground's place, as in (12): contact nodes held in turn.
- */
+/** What the search for equilibria is made of: supports, relaxation, the search itself, and names. */
 #ifndef STRUT_ENGINE_STATICS_EQUILIBRIA_EQUILIBRIA_PARTS_H
 #define STRUT_ENGINE_STATICS_EQUILIBRIA_EQUILIBRIA_PARTS_H
 
@@ -11,8 +8,12 @@
 #include "engine/scene/experiment.h"
 #include "engine/scene/scene.h"
 #include "engine/statics/equilibria/equilibria.h"
+#include "engine/statics/equilibria/landscape.h"
 #include "engine/statics/minimise.h"
-#include "engine/statics/search/critical.h"
+
+/* The scene as statics sees it: nothing moves by itself, the ground is level, and static supports
+ * may take the ground's place, as in (12): contact nodes held in turn.
+ */
 
 typedef struct strut_level_frame {
   strut_scene scene;   /* without actuators, loads on a signal, friction and belt; in coordinates
@@ -230,35 +231,5 @@ bool strut_same_nodes(const strut_node_set *set, const int32_t *nodes, int32_t c
 
 /** Writes "n1, n2 and n3" for the nodes with a flag; many become "n1, n2, n3 and 5 more". */
 void strut_list_nodes(const strut_scene *scene, const uint8_t *flag, size_t size, char *text);
-
-/* Where a change of shape pushes the bodies of a collision through each other.
- *
- * Collisions are springs of finite stiffness, and two rods that cross touch nowhere, so that the potential alone
- * keeps no body out of another. Two rods pass through each other where an end of one meets the axis of the
- * other, a node and a rod where the node does, two nodes where they come closer than half of the thickness.
- */
-
-/** The first collision whose axes cross in the shape q (length), or come closer than half of the thickness;
-    -1: none. */
-int32_t strut_overlap_find(const strut_model *model, const double *q);
-
-/** The first collision whose bodies pass through each other while all nodes move straight from a to b (length);
-    -1: none. */
-int32_t strut_passage_find(const strut_model *model, const double *a, const double *b);
-
-/** The first collision of two rods that cross in one of the shapes a and b (length) only; -1: none. No motion
-    leads from one to the other without pushing an end of one rod through the other. */
-int32_t strut_crossing_find(const strut_model *model, const double *a, const double *b);
-
-/**
- * through (set->count) gets for each saddle with one way down on either side a collision that is on one of them,
- * else -1. A floppy minimum is listed once for all shapes of its energy: a way to it leads through a
- * collision also where the straight way on to the shape that is listed does, or, where whole shapes are free to be
- * placed (`merged`), where crossing rods tell the two apart.
- * STRUT_OK or STRUT_NO_MEMORY. The flag ends it early; it may be NULL.
- */
-strut_status strut_passages_find(const strut_potential *potential, const strut_critical_set *set,
-                                 bool merged, const volatile sig_atomic_t *interrupt,
-                                 int32_t *through, strut_error *error);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/equilibria/equilibria.h"
+#include "engine/statics/equilibria/landscape.h"
 
 #include <assert.h>
 #include <math.h>

@@ -20,6 +20,7 @@
 #include "engine/model/linear_solver.h"
 #include "engine/statics/equilibria/equilibria.h"
 #include "engine/statics/modes/modes.h"
+#include "engine/statics/modes/vibration.h"
 
 typedef struct strut_extended_factor {
   int32_t n;

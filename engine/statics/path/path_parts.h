@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/** The parameter of a path: how each number of the equations depends on it. */
+/** What an equilibrium path is made of: its parameter, its equations, events on it, and the walk. */
 #ifndef STRUT_ENGINE_STATICS_PATH_PATH_PARTS_H
 #define STRUT_ENGINE_STATICS_PATH_PATH_PARTS_H
 
@@ -10,6 +10,8 @@
 #include "engine/forces/elements.h"
 #include "engine/statics/path/path.h"
 #include "engine/statics/potential.h"
+
+/* The parameter of a path: how each number of the equations depends on it. */
 
 /**
  * Numbers of the equations that a parameter may change, or their derivatives with respect to it.

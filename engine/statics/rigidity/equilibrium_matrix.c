@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/rigidity/rigidity_parts.h"
+#include "engine/statics/rigidity/rigidity.h"
 
 #include <assert.h>
 #include <gsl/gsl_linalg.h>
@@ -10,6 +10,7 @@
 #include "engine/forces/tangent.h"
 #include "engine/model/pose.h"
 #include "engine/statics/algebra.h"
+#include "engine/statics/rigidity/rigidity_parts.h"
 
 enum { ENTRIES = 4 }; /* of a column at most */
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/rigidity/rigidity_parts.h"
+#include "engine/statics/rigidity/rigidity.h"
 
 #include <math.h>
 
@@ -7,6 +7,7 @@
 #include "engine/model/pose.h"
 #include "engine/statics/algebra.h"
 #include "engine/statics/potential.h"
+#include "engine/statics/rigidity/rigidity_parts.h"
 
 /* Eigenvalues and sums this small beside the largest are rounding. */
 static const double ROUNDING = 1e-9;

@@ -7,6 +7,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/buffer.h"
+#include "engine/study/cluster/cluster_templates.h"
 #include "engine/study/results/study_table.h"
 
 enum { MOST_NAME = 60 };

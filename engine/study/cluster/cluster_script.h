@@ -11,7 +11,6 @@
 #include <stdint.h>
 
 #include "engine/base/status.h"
-#include "engine/output/buffer.h"
 
 typedef enum strut_cluster {
   STRUT_CLUSTER_SLURM,
@@ -40,12 +39,5 @@ typedef struct strut_cluster_script {
 STRUT_API strut_status strut_cluster_script_write(strut_cluster cluster,
                                                   const strut_cluster_script *script, char **text,
                                                   strut_error *error);
-
-/* slurm.sh, parallel.sh and htcondor.sh, embedded at build time: each followed by a row of NULL. @NAME@ is to be
- * replaced, and a line whose NAME has no value left out.
- */
-
-extern const strut_embedded strut_slurm_template[], strut_parallel_template[],
-    strut_htcondor_template[];
 
 #endif

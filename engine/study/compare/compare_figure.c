@@ -4,9 +4,10 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "engine/base/number_text.h"
+#include "engine/base/c_locale.h"
 #include "engine/output/draw/canvas.h"
 #include "engine/output/draw/chart.h"
+#include "engine/output/draw/legend.h"
 #include "engine/output/draw/structure.h"
 
 static const double EDGE = 5, HEADING = 18, GAP = 12, TITLE = 13, LINE = 11, MARGIN = 16,

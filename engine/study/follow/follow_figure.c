@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/base/number_text.h"
+#include "engine/base/c_locale.h"
 #include "engine/study/follow/follow_study.h"
 
 static const double EDGE = 4.0, PAGE = 510.24, ASPECT = 0.6, ROOM = 0.04; /* [pt], [1] */

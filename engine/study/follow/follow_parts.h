@@ -5,6 +5,7 @@
 
 #include "engine/output/buffer.h"
 #include "engine/output/draw/chart.h"
+#include "engine/output/draw/legend.h"
 #include "engine/output/json_value.h"
 #include "engine/output/table_data.h"
 #include "engine/run/follow/follow.h"

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/base/number_text.h"
+#include "engine/base/c_locale.h"
 #include "engine/output/buffer.h"
 #include "engine/output/json_value.h"
 #include "engine/study/follow/follow_parts.h"

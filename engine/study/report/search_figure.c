@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/output/figures/scatter_figure.h"
 #include "engine/output/figures/table_figure.h"
 #include "engine/study/compare/compare.h"
 #include "engine/study/sweep/grid.h"

@@ -14,7 +14,7 @@
 #include "engine/study/results/study_table.h"
 #include "engine/study/search/search.h"
 #include "engine/study/sensitivity/sensitivity.h"
-#include "engine/study/sweep/grid.h"
+#include "engine/study/sweep/refine.h"
 #include "engine/study/sweep/sweep.h"
 
 /** The number of points and the columns. */

@@ -8,7 +8,7 @@
 #include "engine/base/memory.h"
 #include "engine/base/number_text.h"
 #include "engine/output/buffer.h"
-#include "engine/study/sweep/grid.h"
+#include "engine/study/sweep/refine.h"
 
 enum { MOST_FAILURES = 20, MOST_GAPS = 20 };
 

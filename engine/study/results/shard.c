@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "engine/output/file.h"
-#include "engine/study/results/slots.h"
+#include "engine/study/results/slots_parts.h"
 #include "engine/study/results/study_table.h"
 
 static const char WHOLE[] = "points.slots", FOLDER[] = "shards";

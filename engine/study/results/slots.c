@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "engine/base/checksum.h"
+#include "engine/study/results/slots_parts.h"
 
 enum { BLOCK_BYTES = 1 << 14, BITS = 64 };
 

@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "engine/base/checksum.h"
-#include "engine/study/results/slots.h"
+#include "engine/study/results/slots_parts.h"
 
 static const uint32_t BYTE_ORDER_MARK = 0x01020304, FOREIGN_MARK = 0x04030201, FORMAT = 1;
 static const char MAGIC[8] = {'\x89', 's', 't', 'r', 'u', 't', '\r', '\n'};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Between the values of a search's variables and points of the unit box.
+ * What searches a study's variables: the unit box they live in, the optimisers' interface, CMA-ES.
  */
 #ifndef STRUT_ENGINE_STUDY_SEARCH_OPTIMISERS_H
 #define STRUT_ENGINE_STUDY_SEARCH_OPTIMISERS_H
@@ -11,6 +11,8 @@
 
 #include "engine/base/status.h"
 #include "engine/scene/study.h"
+
+/* Between the values of a search's variables and points of the unit box. */
 
 /**
  * The value of a variable at a number of the box; numbers beyond it are brought in first. Values are rounded

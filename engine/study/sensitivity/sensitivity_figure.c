@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/base/number_text.h"
+#include "engine/base/c_locale.h"
 #include "engine/output/draw/canvas.h"
 #include "engine/output/draw/chart.h"
 #include "engine/output/figures/table_figure.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/study/sweep/evaluation.h"
+#include "engine/study/sweep/evaluation_parts.h"
 
 #include <math.h>
 #include <pthread.h>

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "engine/statics/rigidity/rigidity_parts.h"
+#include "engine/study/sweep/evaluation_parts.h"
 #include "engine/study/sweep/sweep_parts.h"
 
 #ifdef _OPENMP

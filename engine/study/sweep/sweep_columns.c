@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/study/sweep/evaluation.h"
+#include "engine/study/sweep/evaluation_parts.h"
 #include "engine/study/sweep/grid.h"
 #include "engine/study/sweep/sweep_parts.h"
 

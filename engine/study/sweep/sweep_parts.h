@@ -6,7 +6,7 @@
 #define STRUT_ENGINE_STUDY_SWEEP_SWEEP_PARTS_H
 
 #include "engine/run/simulate.h"
-#include "engine/study/sweep/evaluation.h"
+#include "engine/study/sweep/evaluation_parts.h"
 #include "engine/study/sweep/sweep.h"
 
 /** The cells of a row while its point is computed. */
