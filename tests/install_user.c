@@ -43,12 +43,12 @@ static strut_status sweep(strut_error *error) {
   strut_status status = strut_study_open("study.yaml", NULL, 0, &file, error);
   const strut_sweep_scenes scenes = {scene_at, strut_setup_write, &file};
   if (status == STRUT_OK) status = strut_sweep_plan_make(&file.study, &scenes, &plan, error);
-  const strut_slots_plan rows = {.version = "mine",
-                                 .name = "mine",
-                                 .points = plan.points,
-                                 .count = plan.points,
-                                 .columns = plan.columns,
-                                 .column_count = plan.column_count};
+  const strut_slots_description rows = {.version = "mine",
+                                        .name = "mine",
+                                        .points = plan.points,
+                                        .count = plan.points,
+                                        .columns = plan.columns,
+                                        .column_count = plan.column_count};
   if (status == STRUT_OK) status = strut_slots_open("points.slots", &rows, &slots, error);
   if (status == STRUT_OK) status = strut_sweep_run(&plan, slots, &options, &state, error);
   if (status == STRUT_OK) status = strut_study_table_write(".", "table.csv", &slots, 1, error);

@@ -22,7 +22,7 @@ breaches() {
       # Folders in the order in which they may include each other; those of a line stand side by side.
       count = split("engine/base|engine/scene/laws|engine/scene|engine/model|engine/forces/strains|" \
         "engine/forces|engine/integrate|" \
-        "engine/integrate/events engine/integrate/limit|engine/integrate/lanes|engine/run/measure|" \
+        "engine/integrate/events engine/integrate/limit|engine/integrate/batch|engine/run/measure|" \
         "engine/run/orbit|engine/run|engine/run/accuracy|engine/run/follow|engine/statics|engine/statics/search|" \
         "engine/statics/equilibria|" \
         "engine/statics/modes engine/statics/rigidity engine/statics/form engine/statics/path|" \
@@ -171,7 +171,7 @@ twins() {
   find "$1/engine" -name '*.c' -exec awk '
     cloned && match($0, /[a-z0-9_]+\(/) { print substr($0, RSTART, RLENGTH - 1); cloned = 0 }
     /^STRUT_CLONES/ { cloned = 1 }
-    /^STRUT_(PLAIN_STEPS|EVENT_TRIAL)\(/ { sub(/.*\(/, ""); sub(/,.*/, ""); print $0 "_with_ledger" }' {} + |
+    /^STRUT_(PLAIN_STEPS|EVENT_TRIAL)\(/ { sub(/.*\(/, ""); sub(/,.*/, ""); print $0 "_with_balance" }' {} + |
     sort | uniq -d | sed 's/$/ is the name of two cloned functions/'
 }
 mkdir -p "$scratch/twins/engine"

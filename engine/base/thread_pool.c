@@ -11,7 +11,7 @@
 /* Looks at whether the others have come before a thread sleeps: about 20 microseconds. */
 enum { LOOKS = 1000, MOST = 64 };
 
-struct strut_team {
+struct strut_thread_pool {
   int size;
   pthread_mutex_t lock;
   pthread_cond_t changed;
@@ -21,7 +21,7 @@ struct strut_team {
   void *context;
   bool over;
   struct member {
-    strut_team *team;
+    strut_thread_pool *pool;
     pthread_t thread;
     int number;
   } member[MOST];
@@ -33,81 +33,81 @@ static void pause_shortly(void) {
 #endif
 }
 
-void strut_team_meet(strut_team *team) {
-  if (!team) return;
-  unsigned meeting = atomic_load(&team->meeting);
-  if (atomic_fetch_sub(&team->missing, 1) == 1) {
-    atomic_store(&team->missing, team->size);
-    pthread_mutex_lock(&team->lock);
-    atomic_fetch_add(&team->meeting, 1);
-    pthread_cond_broadcast(&team->changed);
-    pthread_mutex_unlock(&team->lock);
+void strut_thread_pool_meet(strut_thread_pool *pool) {
+  if (!pool) return;
+  unsigned meeting = atomic_load(&pool->meeting);
+  if (atomic_fetch_sub(&pool->missing, 1) == 1) {
+    atomic_store(&pool->missing, pool->size);
+    pthread_mutex_lock(&pool->lock);
+    atomic_fetch_add(&pool->meeting, 1);
+    pthread_cond_broadcast(&pool->changed);
+    pthread_mutex_unlock(&pool->lock);
     return;
   }
   for (int i = 0; i < LOOKS; i++) {
-    if (atomic_load_explicit(&team->meeting, memory_order_acquire) != meeting) return;
+    if (atomic_load_explicit(&pool->meeting, memory_order_acquire) != meeting) return;
     pause_shortly();
   }
-  pthread_mutex_lock(&team->lock);
-  while (atomic_load(&team->meeting) == meeting) pthread_cond_wait(&team->changed, &team->lock);
-  pthread_mutex_unlock(&team->lock);
+  pthread_mutex_lock(&pool->lock);
+  while (atomic_load(&pool->meeting) == meeting) pthread_cond_wait(&pool->changed, &pool->lock);
+  pthread_mutex_unlock(&pool->lock);
 }
 
 static void *follow(void *context) {
   struct member *m = context;
-  strut_team *team = m->team;
+  strut_thread_pool *pool = m->pool;
   for (;;) {
-    strut_team_meet(team); /* there is work */
-    if (team->over) return NULL;
-    team->work(team->context, m->number);
-    strut_team_meet(team); /* it is done */
+    strut_thread_pool_meet(pool); /* there is work */
+    if (pool->over) return NULL;
+    pool->work(pool->context, m->number);
+    strut_thread_pool_meet(pool); /* it is done */
   }
 }
 
-strut_team *strut_team_create(int threads) {
+strut_thread_pool *strut_thread_pool_create(int threads) {
   if (threads > MOST) threads = MOST;
-  strut_team *team = threads > 1 ? strut_allocate(1, sizeof *team) : NULL;
-  if (!team) return NULL;
-  team->size = threads;
-  atomic_store(&team->missing, threads);
-  pthread_mutex_init(&team->lock, NULL);
-  pthread_cond_init(&team->changed, NULL);
+  strut_thread_pool *pool = threads > 1 ? strut_allocate(1, sizeof *pool) : NULL;
+  if (!pool) return NULL;
+  pool->size = threads;
+  atomic_store(&pool->missing, threads);
+  pthread_mutex_init(&pool->lock, NULL);
+  pthread_cond_init(&pool->changed, NULL);
   for (int i = 1; i < threads; i++) {
-    team->member[i] = (struct member){.team = team, .number = i};
-    if (pthread_create(&team->member[i].thread, NULL, follow, &team->member[i]) == 0) continue;
+    pool->member[i] = (struct member){.pool = pool, .number = i};
+    if (pthread_create(&pool->member[i].thread, NULL, follow, &pool->member[i]) == 0) continue;
     /* Those that have started wait for so many: stand in for the others, once. */
-    for (int k = i; k < threads; k++) atomic_fetch_sub(&team->missing, 1);
-    team->over = true;
-    strut_team_meet(team);
-    for (int k = 1; k < i; k++) pthread_join(team->member[k].thread, NULL);
-    team->size = 1;
-    strut_team_free(team);
+    for (int k = i; k < threads; k++) atomic_fetch_sub(&pool->missing, 1);
+    pool->over = true;
+    strut_thread_pool_meet(pool);
+    for (int k = 1; k < i; k++) pthread_join(pool->member[k].thread, NULL);
+    pool->size = 1;
+    strut_thread_pool_free(pool);
     return NULL;
   }
-  return team;
+  return pool;
 }
 
-void strut_team_free(strut_team *team) {
-  if (!team) return;
-  if (team->size > 1) {
-    team->over = true;
-    strut_team_meet(team);
-    for (int i = 1; i < team->size; i++) pthread_join(team->member[i].thread, NULL);
+void strut_thread_pool_free(strut_thread_pool *pool) {
+  if (!pool) return;
+  if (pool->size > 1) {
+    pool->over = true;
+    strut_thread_pool_meet(pool);
+    for (int i = 1; i < pool->size; i++) pthread_join(pool->member[i].thread, NULL);
   }
-  pthread_cond_destroy(&team->changed);
-  pthread_mutex_destroy(&team->lock);
-  strut_release(team);
+  pthread_cond_destroy(&pool->changed);
+  pthread_mutex_destroy(&pool->lock);
+  strut_release(pool);
 }
 
-int strut_team_size(const strut_team *team) { return team ? team->size : 1; }
+int strut_thread_pool_size(const strut_thread_pool *pool) { return pool ? pool->size : 1; }
 
-void strut_team_run(strut_team *team, void (*work)(void *, int), void *context) {
-  if (!team) {
+void strut_thread_pool_run(strut_thread_pool *pool, void (*work)(void *, int), void *context) {
+  if (!pool) {
     work(context, 0);
     return;
   }
-  team->work = work, team->context = context;
-  strut_team_meet(team);
+  pool->work = work, pool->context = context;
+  strut_thread_pool_meet(pool);
   work(context, 0);
-  strut_team_meet(team);
+  strut_thread_pool_meet(pool);
 }

@@ -6,17 +6,18 @@
 #ifndef STRUT_ENGINE_BASE_THREAD_POOL_H
 #define STRUT_ENGINE_BASE_THREAD_POOL_H
 
-typedef struct strut_team strut_team;
+typedef struct strut_thread_pool strut_thread_pool;
 
-/** A team of up to `threads`, the caller's one of them; NULL: out of memory, or fewer than two. */
-strut_team *strut_team_create(int threads);
+/** A pool of up to `threads`, the caller's one of them; NULL: out of memory, or fewer than two. */
+strut_thread_pool *strut_thread_pool_create(int threads);
 /** NULL is allowed. */
-void strut_team_free(strut_team *team);
+void strut_thread_pool_free(strut_thread_pool *pool);
 /** How many there are; 1 for NULL. */
-int strut_team_size(const strut_team *team);
+int strut_thread_pool_size(const strut_thread_pool *pool);
 /** Every thread calls work(context, its number); the caller is number 0. Returns when all have. */
-void strut_team_run(strut_team *team, void (*work)(void *context, int thread), void *context);
+void strut_thread_pool_run(strut_thread_pool *pool, void (*work)(void *context, int thread),
+                           void *context);
 /** Within the work: returns when all have come so far. Nothing for NULL. */
-void strut_team_meet(strut_team *team);
+void strut_thread_pool_meet(strut_thread_pool *pool);
 
 #endif

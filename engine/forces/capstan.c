@@ -236,17 +236,17 @@ static double energy_of(const cable *c) {
 
 static int8_t *modes_of(const strut_model *model, const strut_state *state, int32_t i) {
   const strut_element_table *t = &model->elements;
-  return state->guide_mode + (t->element[i].slot + 1 - t->memory_slot);
+  return state->guide_mode + (t->element[i].slot + 1 - t->history_slot);
 }
 
 static int8_t *sides_of(const strut_model *model, const strut_state *state, int32_t i) {
   const strut_element_table *t = &model->elements;
-  return state->guide_side + (t->element[i].slot + 1 - t->memory_slot);
+  return state->guide_side + (t->element[i].slot + 1 - t->history_slot);
 }
 
 static double *drops_of(const strut_model *model, const strut_state *state, int32_t i) {
   const strut_element_table *t = &model->elements;
-  return state->guide_drop + (t->element[i].slot + 1 - t->memory_slot);
+  return state->guide_drop + (t->element[i].slot + 1 - t->history_slot);
 }
 
 /* The cable at q in its modes; true where these are frozen. */
@@ -313,7 +313,7 @@ void strut_capstan_add_forces(const strut_model *model, strut_state *state, int3
     force[at[k]] += x, force[at[k] + 1] += y;
     force[at[k + 1]] -= x, force[at[k + 1] + 1] -= y;
   }
-  if (!state->ledger) return;
+  if (!state->balance) return;
   if (frozen) find_flows(&c);
   add_powers(state, &c, damper, frozen);
 }
@@ -338,7 +338,7 @@ void strut_capstan_renew(const strut_model *model, strut_state *state, int32_t i
   for (int k = 0; k + 1 < c.n; k++) {
     double now = carried(&c, k) - carried(&c, k + 1);
     moved += c.material[k] - before[k];
-    if (state->ledger && moved != 0.0) {
+    if (state->balance && moved != 0.0) {
       double lost = fmax(0.0, 0.5 * (drop[k] + now) * moved);
       state->work[STRUT_POWER_MEMBERS] += lost;
       state->work[STRUT_POWER_EXCHANGED] += lost;

@@ -34,10 +34,10 @@ void strut_discrete_gradient_begin(const strut_model *model, strut_state *state,
                                    double begin, double h, strut_discrete_gradient *step) {
   const strut_member_table *t = &model->members;
   step->begin = begin, step->h = h;
-  if (model->plan & STRUT_TERM_FEEDBACK) {
+  if (model->terms & STRUT_TERM_FEEDBACK) {
     strut_feedback_apply(model, state, begin, q, state->v);
     memcpy(step->rest0, state->rest, (size_t)t->slots * sizeof(double));
-  } else if (model->plan & STRUT_TERM_DRIVE) {
+  } else if (model->terms & STRUT_TERM_DRIVE) {
     if (begin != state->drive_time) strut_drive_apply(model, state, begin);
     memcpy(step->rest0, state->rest, (size_t)t->slots * sizeof(double));
     strut_drive_apply(model, state, begin + 0.5 * h);
@@ -119,7 +119,7 @@ static void add_members(const strut_model *model, strut_state *state, strut_disc
     step->tension[j] = now.tension, step->slope[j] = now.slope;
     force[a] += density * x, force[a + 1] += density * y;
     force[b] -= density * x, force[b + 1] -= density * y;
-    if (state->ledger)
+    if (state->balance)
       add_powers(state, &now, &m, state->rest[j] - step->rest0[j], step->rest_rate[j]);
   }
 }
@@ -224,7 +224,7 @@ static void add_element(const strut_model *model, strut_state *state, strut_disc
     uint32_t c = at[k / 2] + (uint32_t)(k % 2);
     state->force[c] -= force * (middle.b[k] + more * (q1[c] - q0[c]));
   }
-  if (!state->ledger) return;
+  if (!state->balance) return;
   const average now = {.tension = force, .elastic = elastic};
   const stretching m = {.rate = rate, .h = step->h};
   add_powers(state, &now, &m, origin1 - origin0, rest_rate);
@@ -252,7 +252,7 @@ static void follow(const strut_model *model, strut_state *state, strut_discrete_
   strut_feedback_apply(model, state, middle, step->middle, u);
   memcpy(step->rest_rate, state->rest_rate, (size_t)model->members.slots * sizeof(double));
   strut_feedback_add_rates(model, state, middle, u, state->force);
-  if (model->plan & STRUT_TERM_LOADS) strut_loads_apply(model, state, middle, u);
+  if (model->terms & STRUT_TERM_LOADS) strut_loads_apply(model, state, middle, u);
   strut_actuator_forces_apply(model, state, middle, step->middle, u);
   strut_maxwell_apply(model, state, step->middle, u, state->force);
   strut_feedback_apply(model, state, step->begin + step->h, q1, step->end_velocity);
@@ -264,22 +264,22 @@ void strut_discrete_gradient_forces(const strut_model *model, strut_state *state
   size_t bytes = (size_t)model->length * sizeof(double);
   state->evaluations++;
   memset(state->power, 0, sizeof state->power);
-  if (model->plan & STRUT_TERM_CONSTANT)
+  if (model->terms & STRUT_TERM_CONSTANT)
     memcpy(state->force, model->constant_force, bytes);
   else
     memset(state->force, 0, bytes);
-  if (model->plan & STRUT_TERM_FEEDBACK)
+  if (model->terms & STRUT_TERM_FEEDBACK)
     follow(model, state, step, q1, u);
-  else if (model->plan & STRUT_TERM_LOADS)
+  else if (model->terms & STRUT_TERM_LOADS)
     strut_loads_apply(model, state, step->begin + 0.5 * step->h, u);
   add_members(model, state, step, state->q, q1);
-  if (model->plan & STRUT_TERM_UNBALANCE)
+  if (model->terms & STRUT_TERM_UNBALANCE)
     strut_unbalance_apply_mean(model, state, step->begin, step->h, u);
-  if (model->plan & STRUT_TERM_MASS_DAMPING) strut_mass_damping_apply(model, state, u);
-  if (!(model->plan & (STRUT_TERM_ELEMENTS | STRUT_TERM_ACTUATOR_FORCES))) return;
+  if (model->terms & STRUT_TERM_MASS_DAMPING) strut_mass_damping_apply(model, state, u);
+  if (!(model->terms & (STRUT_TERM_ELEMENTS | STRUT_TERM_ACTUATOR_FORCES))) return;
   for (int32_t i = 0; i < model->length; i++) step->middle[i] = 0.5 * (state->q[i] + q1[i]);
   add_elements(model, state, step, state->q, q1);
-  if (!(model->plan & STRUT_TERM_FEEDBACK))
+  if (!(model->terms & STRUT_TERM_FEEDBACK))
     strut_actuator_forces_apply(model, state, step->begin + 0.5 * step->h, step->middle, u);
 }
 

@@ -6,7 +6,7 @@
 
 #include "engine/forces/feedback.h"
 #include "engine/forces/history.h"
-#include "engine/forces/signal_lanes.h"
+#include "engine/forces/signal_vector.h"
 #include "engine/forces/sliding_masses.h"
 #include "engine/forces/strains/angle.h"
 #include "engine/forces/strains/path.h"
@@ -28,7 +28,7 @@ strut_signal_inputs strut_drive_inputs(const strut_model *model, const strut_sta
 static void evaluate(const strut_model *model, const strut_state *state, const double *v,
                      int32_t signal, double t, double *value, double *rate) {
   const strut_signal *signals = model->scene->signals;
-  if (!(model->plan & STRUT_TERM_FEEDBACK)) {
+  if (!(model->terms & STRUT_TERM_FEEDBACK)) {
     strut_signal_evaluate(signals, signal, t, value, rate);
     return;
   }
@@ -63,10 +63,10 @@ static inline void drive_rest_lengths(const strut_model *model, strut_state *sta
 }
 
 void strut_drive_apply(const strut_model *model, strut_state *state, double t) {
-  if (!(model->plan & STRUT_TERMS_RARE)) {
+  if (!(model->terms & STRUT_TERMS_RARE)) {
     state->drive_time = t;
     drive_rest_lengths(model, state, t, NULL, false);
-  } else if (model->plan & STRUT_TERM_FEEDBACK) {
+  } else if (model->terms & STRUT_TERM_FEEDBACK) {
     strut_feedback_apply(model, state, t, state->q, state->v);
   } else {
     strut_drive_apply_sensed(model, state, t, state->v);
@@ -76,10 +76,10 @@ void strut_drive_apply(const strut_model *model, strut_state *state, double t) {
 void strut_drive_apply_sensed(const strut_model *model, strut_state *state, double t,
                               const double *v) {
   state->drive_time = t;
-  if (model->plan & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_place(model, state, t);
+  if (model->terms & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_place(model, state, t);
   if (state->ground_motion) strut_grounds_move(model, t + state->time_offset, state->ground_motion);
   drive_rest_lengths(model, state, t, v, true);
-  if (model->plan & STRUT_TERM_MEMORY) strut_memory_follow(model, state);
+  if (model->terms & STRUT_TERM_MEMORY) strut_history_follow(model, state);
 }
 
 void strut_grounds_move(const strut_model *model, double t, strut_ground_motion *motion) {
@@ -105,7 +105,7 @@ void strut_loads_apply(const strut_model *model, strut_state *state, double t,
     double px = factor * loads->x[i], py = factor * loads->y[i];
     state->force[at] += px;
     state->force[at + 1] += py;
-    if (!state->ledger) continue;
+    if (!state->balance) continue;
     double power = px * v[at] + py * v[at + 1];
     state->power[STRUT_POWER_LOAD] += power;
     state->power[STRUT_POWER_EXCHANGED] += fabs(power);
@@ -168,7 +168,7 @@ void strut_actuator_forces_apply(const strut_model *model, strut_state *state, d
       state->force[at[k] + 1] -= size * b[2 * k + 1];
       speed += b[2 * k] * v[at[k]] + b[2 * k + 1] * v[at[k] + 1];
     }
-    if (!state->ledger) continue;
+    if (!state->balance) continue;
     state->power[STRUT_POWER_DRIVE] -= size * speed;
     state->power[STRUT_POWER_EXCHANGED] += fabs(size * speed);
   }

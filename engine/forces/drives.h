@@ -57,7 +57,7 @@ void strut_actuator_forces_add_tensions(const strut_model *model, const strut_st
                                         double *force);
 
 /* Hot: driven rest lengths for many evaluations to come, for methods that know beforehand when these are: sines are
- * computed by vectors (signal_lanes.h), with the bits of strut_drive_apply.
+ * computed by vectors (signal_vector.h), with the bits of strut_drive_apply.
  *
  * Holds for a run of steps, during which neither drives nor time_offset change.
  */
@@ -82,7 +82,7 @@ void strut_drives_ahead_evaluate(const strut_model *model, strut_drives_ahead *d
 /* terms: as a copy of a step loop knows them. Drives of rare terms may follow sensors, and are not known beforehand. */
 STRUT_INLINE void drives_ahead_begin(const strut_model *model, unsigned terms,
                                      strut_drives_ahead *drives) {
-  drives->used = terms == STRUT_TERMS_COMMON && model->plan & STRUT_TERM_DRIVE &&
+  drives->used = terms == STRUT_TERMS_COMMON && model->terms & STRUT_TERM_DRIVE &&
                  model->drives.count <= STRUT_DRIVES_AHEAD;
   drives->next = drives->count = 0;
 }

@@ -65,7 +65,7 @@ void strut_element_evaluate(const strut_model *model, int32_t element, const dou
   pose->acts = beyond && (!e->carries || e->carries * r.force > 0.0);
   pose->force = pose->acts ? r.force : 0.0;
   pose->energy = beyond ? r.energy : 0.0;
-  if (e->remembers) pose->energy += strut_memory_locked_energy(e, rest);
+  if (e->remembers) pose->energy += strut_history_locked_energy(e, rest);
   if (strut_capstan_remembers(e, rest))
     pose->energy = strut_capstan_energy(model, element, rest, q);
   pose->slope = pose->acts ? r.slope : 0.0;
@@ -195,7 +195,7 @@ static inline void add_powers(strut_state *state, const exertion *x, double rest
       double natural = strut_element_natural(e, state->rest);                                      \
       double rest_rate = e->slot >= 0 ? state->rest_rate[e->slot] : 0.0;                           \
       state->element_turn[i] = strain;                                                             \
-      if (e->damping > 0.0 || state->ledger)                                                       \
+      if (e->damping > 0.0 || state->balance)                                                      \
         for (int32_t k = 0; k < e->nodes; k++)                                                     \
           rate += b[2 * k] * v[at[k]] + b[2 * k + 1] * v[at[k] + 1];                               \
       strut_law_response r =                                                                       \
@@ -205,7 +205,7 @@ static inline void add_powers(strut_state *state, const exertion *x, double rest
         force[at[k]] -= x.force * b[2 * k];                                                        \
         force[at[k] + 1] -= x.force * b[2 * k + 1];                                                \
       }                                                                                            \
-      if (state->ledger) add_powers(state, &x, rest_rate);                                         \
+      if (state->balance) add_powers(state, &x, rest_rate);                                        \
     }                                                                                              \
   }
 
@@ -223,7 +223,7 @@ static void add_hinges(const strut_model *model, strut_state *state,
   const uint32_t *at = t.at + t.element[rest.begin].first;
   for (; rest.end - rest.begin >= STRUT_LANES; rest.begin += STRUT_LANES, at += 3 * STRUT_LANES)
     add_four_hinges(&t, state, rest.begin, at, q, v, force, &powers);
-  for (int l = 0; l < STRUT_LANES && state->ledger; l++) {
+  for (int l = 0; l < STRUT_LANES && state->balance; l++) {
     state->power[STRUT_POWER_DRIVE] += powers.drive[l];
     state->power[STRUT_POWER_MEMBERS] += powers.lost[l];
     state->power[STRUT_POWER_EXCHANGED] += powers.exchanged[l];
@@ -245,11 +245,11 @@ static void add_running_cables(const strut_model *model, strut_state *state,
            natural = strut_element_natural(e, state->rest);
     double rest_rate = e->slot >= 0 ? state->rest_rate[e->slot] : 0.0, rate = 0.0;
     state->element_turn[i] = strain;
-    if (e->damping > 0.0 || state->ledger) rate = path_rate(at, e->nodes, v, b);
+    if (e->damping > 0.0 || state->balance) rate = path_rate(at, e->nodes, v, b);
     strut_law_response r = strut_law_linear(&e->numbers, strain, natural, -1);
     exertion x = exert(e, state, i, &r, strain - natural, rate - rest_rate);
     pull_path(at, e->nodes, force, b, x.force);
-    if (state->ledger) add_powers(state, &x, rest_rate);
+    if (state->balance) add_powers(state, &x, rest_rate);
   }
 }
 
@@ -269,7 +269,7 @@ void strut_elements_add_forces(const strut_model *model, strut_state *state, con
     bool hinges = block->strain == STRUT_STRAIN_ANGLE && block->law == STRUT_LAW_LINEAR;
     bool cables = block->strain == STRUT_STRAIN_PATH && block->law == STRUT_LAW_LINEAR;
     if (block->remembers)
-      strut_memory_add_forces(model, state, block, q, v, force);
+      strut_history_add_forces(model, state, block, q, v, force);
     else if (hinges && block->both_signs)
       add_hinges(model, state, block, q, v, force);
     else if (cables)
@@ -334,7 +334,7 @@ strut_element_motion strut_element_move(const strut_model *model, const strut_st
   const uint32_t *at = model->elements.at + e->first;
   double b[STRUT_MOST_GRADIENT], rate = 0.0;
   double strain = strain_of(e, at, q, state->element_turn[element], b);
-  double natural = e->remembers ? strut_memory_natural(model, state, element, strain)
+  double natural = e->remembers ? strut_history_natural(model, state, element, strain)
                                 : strut_element_natural(e, state->rest);
   if (strut_element_is_gone(natural)) return (strut_element_motion){-e->carries, 0.0, -e->carries};
   for (int32_t k = 0; k < e->nodes; k++) rate += b[2 * k] * v[at[k]] + b[2 * k + 1] * v[at[k] + 1];

@@ -45,7 +45,7 @@ double strut_energy_kinetic(const strut_model *model, const double *v) {
 static double elastic(const strut_model *model, const strut_state *state, const double *q) {
   const strut_member_table *t = &model->members;
   const strut_member *member = model->scene->members;
-  bool rigid = model->plan & STRUT_TERM_RIGID; /* rigid bars store nothing */
+  bool rigid = model->terms & STRUT_TERM_RIGID; /* rigid bars store nothing */
   double sum = 0.0;
   for (int32_t j = 0; j < t->count; j++) {
     if (rigid && member[j].kind == STRUT_BAR) continue;
@@ -89,7 +89,7 @@ strut_energies strut_energy_evaluate_at(const strut_model *model, const strut_st
   strut_energies e = {strut_energy_kinetic(model, v),
                       elastic(model, state, q) + strut_maxwell_energy(model, v), gravity(model, q),
                       contact(model, state, q)};
-  if (model->plan & STRUT_TERM_SLIDING_MASS)
+  if (model->terms & STRUT_TERM_SLIDING_MASS)
     strut_sliding_masses_add_energies(model, state, q, v, &e.kinetic, &e.gravity);
   return e;
 }
@@ -120,12 +120,12 @@ void strut_energy_reset_load_work(const strut_model *model, strut_state *state) 
 void strut_impulse_apply(const strut_model *model, strut_state *state, strut_power power) {
   double work = 0.0, *change = state->support_answer;
   strut_mass_solve(model, state->force, change, state->scratch);
-  if (model->plan & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_correct(model, state, change);
+  if (model->terms & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_correct(model, state, change);
   for (int32_t i = 0; i < model->length; i++) {
     work += state->force[i] * (state->v[i] + 0.5 * change[i]);
     state->v[i] += change[i];
   }
-  if (!state->ledger) return;
+  if (!state->balance) return;
   state->work[power] += work;
   state->work[STRUT_POWER_EXCHANGED] += fabs(work);
 }

@@ -106,8 +106,8 @@ static bool lacks_memory(const strut_model *model, const strut_state *state) {
 }
 
 /* The first samples and the sides of relays, at rest lengths without drives; parts before their users. */
-static void begin_memory(const strut_model *model, strut_state *state, double t, const double *q,
-                         const double *v) {
+static void begin_history(const strut_model *model, strut_state *state, double t, const double *q,
+                          const double *v) {
   const strut_signal *signals = model->scene->signals;
   const strut_signal_inputs in = strut_drive_inputs(model, state, v);
   double rate;
@@ -122,7 +122,7 @@ static void begin_memory(const strut_model *model, strut_state *state, double t,
 
 void strut_feedback_apply(const strut_model *model, strut_state *state, double t, const double *q,
                           const double *v) {
-  if (lacks_memory(model, state)) begin_memory(model, state, t + state->time_offset, q, v);
+  if (lacks_memory(model, state)) begin_history(model, state, t + state->time_offset, q, v);
   apply_drives(model, state, t, q, v);
 }
 

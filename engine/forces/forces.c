@@ -12,22 +12,22 @@
 
 void strut_forces_add_rare(const strut_model *model, strut_state *state, double t, const double *q,
                            const double *v) {
-  unsigned plan = model->plan;
-  if (plan & STRUT_TERM_FEEDBACK) strut_maxwell_apply(model, state, q, v, state->force);
-  if (plan & STRUT_TERM_ACTUATOR_FORCES) strut_actuator_forces_apply(model, state, t, q, v);
-  if (plan & STRUT_TERM_UNBALANCE) strut_unbalance_apply(model, state, t, v);
-  if (plan & STRUT_TERM_MASS_DAMPING) strut_mass_damping_apply(model, state, v);
-  if (plan & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_apply(model, state, t, q, v);
-  if (plan & STRUT_TERM_SUPPORT_MOTION) strut_support_motion_apply(model, state, t, v);
+  unsigned terms = model->terms;
+  if (terms & STRUT_TERM_FEEDBACK) strut_maxwell_apply(model, state, q, v, state->force);
+  if (terms & STRUT_TERM_ACTUATOR_FORCES) strut_actuator_forces_apply(model, state, t, q, v);
+  if (terms & STRUT_TERM_UNBALANCE) strut_unbalance_apply(model, state, t, v);
+  if (terms & STRUT_TERM_MASS_DAMPING) strut_mass_damping_apply(model, state, v);
+  if (terms & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_apply(model, state, t, q, v);
+  if (terms & STRUT_TERM_SUPPORT_MOTION) strut_support_motion_apply(model, state, t, v);
 }
 
 STRUT_CLONES
 static void sum_once(const strut_model *model, strut_state *state, double t,
                      const double *restrict q, const double *restrict v) {
-  if (state->ledger)
-    forces_sum(model, state, t, q, v, STRUT_TERMS_ALL, STRUT_BOOK_POWERS);
+  if (state->balance)
+    forces_sum(model, state, t, q, v, STRUT_TERMS_ALL, STRUT_ACCUMULATE_POWERS);
   else
-    forces_sum(model, state, t, q, v, STRUT_TERMS_ALL, STRUT_BOOK_NOTHING);
+    forces_sum(model, state, t, q, v, STRUT_TERMS_ALL, STRUT_ACCUMULATE_NOTHING);
 }
 
 void strut_forces_evaluate(const strut_model *model, strut_state *state, double t,
@@ -60,6 +60,6 @@ void strut_forces_acceleration(const strut_model *model, strut_state *state, dou
   assert(model->mass && "a model without mass is for statics only");
   strut_forces_evaluate(model, state, t, q, v);
   divide_by_mass(model, state, a, STRUT_TERMS_ALL);
-  if (state->ledger && model->plan & STRUT_TERM_SLIDING_MASS)
+  if (state->balance && model->terms & STRUT_TERM_SLIDING_MASS)
     strut_sliding_masses_add_power(model, state, q, v, a);
 }

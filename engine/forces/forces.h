@@ -2,7 +2,7 @@
 /**
  * All forces of a model at one instant, summed in a fixed order, and the acceleration they give.
  *
- * Only the terms in the model's plan are evaluated. Coordinate arrays are (length).
+ * Only the terms in the model's terms are evaluated. Coordinate arrays are (length).
  */
 #ifndef STRUT_ENGINE_FORCES_FORCES_H
 #define STRUT_ENGINE_FORCES_FORCES_H
@@ -12,7 +12,7 @@
 /**
  * a = M^-1 (constant + loads - K - C + contact), equation (10), at time t [s], positions q [m] and
  * velocities v [m/s], which need not be the state's own. Fills state->force, normal, friction, rest
- * and, with the ledger, power. The model must have a mass.
+ * and, with the energy balance, power. The model must have a mass.
  */
 STRUT_API void strut_forces_acceleration(const strut_model *model, strut_state *state, double t,
                                          const double *restrict q, const double *restrict v,

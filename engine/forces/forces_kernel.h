@@ -2,7 +2,7 @@
 /**
  * Hot: the sum of the terms in a fixed order, and the acceleration it gives, as one inlined piece.
  *
- * An integrator includes this to have one copy in its own loop. Only what the plan names is
+ * An integrator includes this to have one copy in its own loop. Only what the terms names is
  * evaluated.
  */
 #ifndef STRUT_ENGINE_FORCES_FORCES_KERNEL_H
@@ -15,14 +15,14 @@
 #include "engine/forces/ground_kernel.h"
 #include "engine/forces/members_kernel.h"
 #include "engine/forces/sliding_masses.h"
-#include "engine/forces/step_ledger.h"
+#include "engine/forces/step_balance.h"
 #include "engine/forces/support_motion.h"
 #include "engine/forces/surfaces.h"
 #include "engine/model/mass_kernel.h"
 
 STRUT_INLINE void forces_start(const strut_model *model, double *restrict force) {
   const double *restrict constant = model->constant_force;
-  if (model->plan & STRUT_TERM_CONSTANT)
+  if (model->terms & STRUT_TERM_CONSTANT)
     for (int32_t i = 0; i < model->length; i += STRUT_LANES)
       strut_lanes_store(force + i, strut_lanes_load(constant + i));
   else
@@ -32,13 +32,13 @@ STRUT_INLINE void forces_start(const strut_model *model, double *restrict force)
 
 STRUT_INLINE void forces_of_members(const strut_model *model, strut_state *state,
                                     const double *restrict q, const double *restrict v,
-                                    double *restrict force, strut_booking ledger) {
+                                    double *restrict force, strut_accumulation balance) {
   four_member_powers powers;
   powers.drive = powers.exchanged = powers.lost = (strut_lanes){0};
-  members_kernel(model, state, q, v, force, ledger != STRUT_BOOK_NOTHING, &powers);
-  if (!ledger) return;
-  if (ledger == STRUT_BOOK_LANES) {
-    strut_book_members(state->booked, &powers);
+  members_kernel(model, state, q, v, force, balance != STRUT_ACCUMULATE_NOTHING, &powers);
+  if (!balance) return;
+  if (balance == STRUT_ACCUMULATE_LANES) {
+    strut_accumulate_members(state->accumulated, &powers);
     return;
   }
   double *power = state->power, drive = 0.0, lost = 0.0, exchanged = power[STRUT_POWER_EXCHANGED];
@@ -57,51 +57,52 @@ STRUT_INLINE void forces_of_members(const strut_model *model, strut_state *state
 void strut_forces_add_rare(const strut_model *model, strut_state *state, double t, const double *q,
                            const double *v);
 
-/* All forces but the ground's. terms: which ones the plan may have, see STRUT_TERMS_RARE. */
+/* All forces but the ground's. allowed: which ones the model may have, see STRUT_TERMS_RARE. */
 STRUT_INLINE void forces_of_structure(const strut_model *model, strut_state *state, double t,
                                       const double *restrict q, const double *restrict v,
-                                      unsigned terms, strut_booking ledger) {
-  unsigned plan = model->plan & terms;
+                                      unsigned allowed, strut_accumulation balance) {
+  unsigned terms = model->terms & allowed;
   double *restrict force = state->force;
   state->evaluations++;
-  bool powers = ledger == STRUT_BOOK_POWERS || (ledger && plan & ~STRUT_TERMS_IN_LANES);
+  bool powers = balance == STRUT_ACCUMULATE_POWERS || (balance && terms & ~STRUT_TERMS_IN_LANES);
   for (int p = 0; p < STRUT_POWER_COUNT && powers; p++) state->power[p] = 0.0;
   forces_start(model, force);
-  if (plan & STRUT_TERM_FEEDBACK) {
+  if (terms & STRUT_TERM_FEEDBACK) {
     strut_feedback_apply(model, state, t, q, v);
     strut_feedback_add_rates(model, state, t, v, force);
   }
-  if (plan & STRUT_TERM_LOADS) strut_loads_apply(model, state, t, v);
-  if ((plan & STRUT_TERM_DRIVE) && t != state->drive_time) strut_drive_apply(model, state, t);
-  if (plan & STRUT_TERM_MEMBERS) forces_of_members(model, state, q, v, force, ledger);
-  if (plan & STRUT_TERM_ELEMENTS) strut_elements_add_forces(model, state, q, v, force);
-  if (plan & STRUT_TERMS_RARE) strut_forces_add_rare(model, state, t, q, v);
+  if (terms & STRUT_TERM_LOADS) strut_loads_apply(model, state, t, v);
+  if ((terms & STRUT_TERM_DRIVE) && t != state->drive_time) strut_drive_apply(model, state, t);
+  if (terms & STRUT_TERM_MEMBERS) forces_of_members(model, state, q, v, force, balance);
+  if (terms & STRUT_TERM_ELEMENTS) strut_elements_add_forces(model, state, q, v, force);
+  if (terms & STRUT_TERMS_RARE) strut_forces_add_rare(model, state, t, q, v);
 }
 
 STRUT_INLINE void forces_sum(const strut_model *model, strut_state *state, double t,
-                             const double *restrict q, const double *restrict v, unsigned terms,
-                             strut_booking ledger) {
-  forces_of_structure(model, state, t, q, v, terms, ledger);
-  if (model->plan & STRUT_TERM_CONTACT)
-    ground_kernel(model, state, q, v, state->force, ledger);
-  else if (model->plan & terms & STRUT_TERM_SURFACES)
+                             const double *restrict q, const double *restrict v, unsigned allowed,
+                             strut_accumulation balance) {
+  forces_of_structure(model, state, t, q, v, allowed, balance);
+  if (model->terms & STRUT_TERM_CONTACT)
+    ground_kernel(model, state, q, v, state->force, balance);
+  else if (model->terms & allowed & STRUT_TERM_SURFACES)
     strut_surfaces_add_forces(model, state, q, v);
 }
 
 /* a = M^-1 force, M with the masses that slide. */
 STRUT_INLINE void divide_by_mass(const strut_model *model, strut_state *state, double *restrict a,
-                                 unsigned terms) {
+                                 unsigned allowed) {
   mass_kernel(model, state->force, a, state->scratch);
-  if (model->plan & terms & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_correct(model, state, a);
+  if (model->terms & allowed & STRUT_TERM_SLIDING_MASS)
+    strut_sliding_masses_correct(model, state, a);
 }
 
 /* See strut_forces_acceleration. */
 STRUT_INLINE void forces_kernel(const strut_model *model, strut_state *state, double t,
                                 const double *restrict q, const double *restrict v,
-                                double *restrict a, unsigned terms, strut_booking ledger) {
-  forces_sum(model, state, t, q, v, terms, ledger);
-  divide_by_mass(model, state, a, terms);
-  if (ledger && model->plan & terms & STRUT_TERM_SLIDING_MASS)
+                                double *restrict a, unsigned allowed, strut_accumulation balance) {
+  forces_sum(model, state, t, q, v, allowed, balance);
+  divide_by_mass(model, state, a, allowed);
+  if (balance && model->terms & allowed & STRUT_TERM_SLIDING_MASS)
     strut_sliding_masses_add_power(model, state, q, v, a);
 }
 

@@ -16,8 +16,8 @@
 #include "engine/model/state.h"
 
 /* Accumulates the powers of a contact in its place of the step's sums. */
-STRUT_INLINE void ground_book_lanes(strut_power_lanes *restrict to, int32_t lane, bool moves,
-                                    strut_law_contact_powers p) {
+STRUT_INLINE void ground_accumulate_lanes(strut_power_lanes *restrict to, int32_t lane, bool moves,
+                                          strut_law_contact_powers p) {
   to->minus_damped[lane] += p.damper;
   to->minus_rubbed[lane] += p.friction;
   if (!moves) {
@@ -28,7 +28,7 @@ STRUT_INLINE void ground_book_lanes(strut_power_lanes *restrict to, int32_t lane
   to->turnover[lane] += fabs(p.friction) + fabs(p.belt);
 }
 
-STRUT_INLINE void ground_ledger(strut_state *state, strut_law_contact_powers p) {
+STRUT_INLINE void ground_balance(strut_state *state, strut_law_contact_powers p) {
   state->power[STRUT_POWER_CONTACT] -= p.damper;
   state->power[STRUT_POWER_FRICTION] -= p.friction;
   state->power[STRUT_POWER_BELT] += p.belt;
@@ -47,7 +47,7 @@ STRUT_INLINE double ground_friction(const strut_contact_entry *e, double normal,
 /* One node in contact; f, v: its force and velocity; gap < 0. */
 STRUT_INLINE void ground_touch(const strut_contact_table *c, strut_state *state, int32_t i,
                                double gap, double *restrict f, const double *restrict v,
-                               bool sloped, bool rough, bool laws, strut_booking ledger,
+                               bool sloped, bool rough, bool laws, strut_accumulation balance,
                                strut_power_lanes *lanes, bool moves) {
   const strut_contact_entry *e = &c->entry[i];
   strut_pair sum = strut_pair_load(f), reaction;
@@ -73,24 +73,24 @@ STRUT_INLINE void ground_touch(const strut_contact_table *c, strut_state *state,
   state->friction[i] = friction;
   strut_law_contact_powers powers =
       strut_law_contact_power(damper, into, friction, slip, c->belt_speed);
-  if (ledger == STRUT_BOOK_POWERS) ground_ledger(state, powers);
-  if (ledger == STRUT_BOOK_LANES) ground_book_lanes(lanes, e->lane, moves, powers);
+  if (balance == STRUT_ACCUMULATE_POWERS) ground_balance(state, powers);
+  if (balance == STRUT_ACCUMULATE_LANES) ground_accumulate_lanes(lanes, e->lane, moves, powers);
 }
 
 STRUT_INLINE void ground_all(const strut_model *model, strut_state *state, const double *restrict q,
                              const double *restrict v, double *restrict force, int32_t begin,
                              int32_t end, bool sloped, bool rough, bool laws,
-                             strut_booking ledger) {
+                             strut_accumulation balance) {
   const strut_contact_table *c = &model->contacts;
   const uint32_t *restrict at = c->at;
   const double height = c->height;
-  strut_power_lanes *lanes = state->booked;
+  strut_power_lanes *lanes = state->accumulated;
   bool moves = c->belt_speed != 0.0;
   for (int32_t i = begin; i < end; i++) {
     double gap = q[at[i] + 1] - height;
     if (sloped) gap = q[at[i]] * c->normal[0] + gap * c->normal[1];
     if (gap < 0.0)
-      ground_touch(c, state, i, gap, force + at[i], v + at[i], sloped, rough, laws, ledger, lanes,
+      ground_touch(c, state, i, gap, force + at[i], v + at[i], sloped, rough, laws, balance, lanes,
                    moves);
   }
 }
@@ -100,12 +100,12 @@ STRUT_INLINE void ground_all(const strut_model *model, strut_state *state, const
 STRUT_INLINE void ground_kernel_range(const strut_model *model, strut_state *state,
                                       const double *restrict q, const double *restrict v,
                                       double *restrict force, int32_t begin, int32_t end,
-                                      strut_booking ledger) {
+                                      strut_accumulation balance) {
   enum { F = STRUT_TERM_FRICTION, S = STRUT_TERM_SLOPE };
 #define STRUT_CASE(sloped, rough, laws)                                                            \
-  ground_all(model, state, q, v, force, begin, end, sloped, rough, laws, ledger);                  \
+  ground_all(model, state, q, v, force, begin, end, sloped, rough, laws, balance);                 \
   break
-  switch (model->plan & (S | F | STRUT_TERM_LAWS)) {
+  switch (model->terms & (S | F | STRUT_TERM_LAWS)) {
     case 0: STRUT_CASE(false, false, false);
     case F: STRUT_CASE(false, true, false);
     case S: STRUT_CASE(true, false, false);
@@ -118,8 +118,8 @@ STRUT_INLINE void ground_kernel_range(const strut_model *model, strut_state *sta
 /* Those on all contacts. */
 STRUT_INLINE void ground_kernel(const strut_model *model, strut_state *state,
                                 const double *restrict q, const double *restrict v,
-                                double *restrict force, strut_booking ledger) {
-  ground_kernel_range(model, state, q, v, force, 0, model->contacts.count, ledger);
+                                double *restrict force, strut_accumulation balance) {
+  ground_kernel_range(model, state, q, v, force, 0, model->contacts.count, balance);
 }
 
 #endif

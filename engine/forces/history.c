@@ -38,8 +38,8 @@ static int direction_at(const strut_state *state, const strut_element *e, int32_
   return fabs(force) > strut_slider_yield(e) ? (force > 0.0 ? 1 : -1) : 0;
 }
 
-double strut_memory_natural(const strut_model *model, const strut_state *state, int32_t i,
-                            double strain) {
+double strut_history_natural(const strut_model *model, const strut_state *state, int32_t i,
+                             double strain) {
   const strut_element *e = &model->elements.element[i];
   double base = base_of(e, state->rest);
   if (strut_element_is_gone(state->rest[e->slot])) return state->rest[e->slot];
@@ -49,7 +49,7 @@ double strut_memory_natural(const strut_model *model, const strut_state *state, 
   return base + shift_of(e, plastic);
 }
 
-double strut_memory_locked_energy(const strut_element *e, const double *rest) {
+double strut_history_locked_energy(const strut_element *e, const double *rest) {
   double shift = rest[e->slot] - base_of(e, rest), beside = e->numbers.second_stiffness;
   if (!yields(e) || beside == 0.0) return 0.0;
   return 0.5 * shift * shift * e->numbers.stiffness * beside / strut_slider_spring(e);
@@ -83,8 +83,8 @@ void strut_slider_set(const strut_model *model, strut_state *state, int32_t i, i
   state->element_piece[i] = (int16_t)mode;
 }
 
-static void book_loss(strut_state *state, double energy) {
-  if (!state->ledger) return;
+static void accumulate_loss(strut_state *state, double energy) {
+  if (!state->balance) return;
   state->work[STRUT_POWER_MEMBERS] += energy;
   state->work[STRUT_POWER_EXCHANGED] += fabs(energy);
 }
@@ -95,7 +95,7 @@ void strut_slider_return(const strut_model *model, strut_state *state, int32_t i
   strut_slider s = strut_slider_at(model, state, i, q, state->v);
   if (!s.acts || !(fabs(s.force) > s.yield)) return;
   double *p = &state->plastic[e->memory], slip = fabs(s.plastic - *p);
-  book_loss(state, slip * (jumped ? 0.5 * (fabs(s.force) + s.yield) : s.yield));
+  accumulate_loss(state, slip * (jumped ? 0.5 * (fabs(s.force) + s.yield) : s.yield));
   *p = s.plastic;
   state->rest[e->slot] = base_of(e, state->rest) + shift_of(e, *p);
 }
@@ -136,7 +136,7 @@ static void add_element(const strut_model *model, strut_state *state, int32_t i,
   }
   double strain = strut_element_strain(model, i, q, state->element_turn[i], b);
   state->element_turn[i] = strain;
-  double natural = strut_memory_natural(model, state, i, strain), x = strain - natural;
+  double natural = strut_history_natural(model, state, i, strain), x = strain - natural;
   if (strut_element_is_gone(natural)) return;
   state->rest[e->slot] = natural;
   if (yields(e) && state->element_piece[i] >= 0)
@@ -150,28 +150,28 @@ static void add_element(const strut_model *model, strut_state *state, int32_t i,
   if (!element_acts(e, state, i, x, whole)) {
     /* a damper may outweigh the spring: that relaxes then, and the damper takes its energy */
     double relaxing = e->carries * x > 0.0 ? r.force : 0.0;
-    if (state->ledger) add_powers(e, state, i, 0.0, relaxing, x, rate);
+    if (state->balance) add_powers(e, state, i, 0.0, relaxing, x, rate);
     return;
   }
   for (int32_t k = 0; k < e->nodes; k++) {
     force[at[k]] -= whole * b[2 * k];
     force[at[k] + 1] -= whole * b[2 * k + 1];
   }
-  if (!state->ledger) return;
+  if (!state->balance) return;
   add_powers(e, state, i, whole, r.force, strain - base_of(e, state->rest), rate);
   double excess = r.excess * base_rate_of(e, state);
   state->power[STRUT_POWER_DRIVE] += excess;
   state->power[STRUT_POWER_EXCHANGED] += fabs(excess);
 }
 
-void strut_memory_add_forces(const strut_model *model, strut_state *state,
-                             const strut_element_block *block, const double *q, const double *v,
-                             double *force) {
+void strut_history_add_forces(const strut_model *model, strut_state *state,
+                              const strut_element_block *block, const double *q, const double *v,
+                              double *force) {
   for (int32_t i = block->begin; i < block->end; i++) add_element(model, state, i, q, v, force);
 }
 
-void strut_memory_follow(const strut_model *model, strut_state *state) {
-  for (int32_t m = 0; m < model->elements.memory_count; m++) {
+void strut_history_follow(const strut_model *model, strut_state *state) {
+  for (int32_t m = 0; m < model->elements.history_count; m++) {
     const strut_element *e = &model->elements.element[model->elements.memory[m]];
     double *own = &state->rest[e->slot];
     if (strut_element_is_gone(*own)) continue;
@@ -180,21 +180,21 @@ void strut_memory_follow(const strut_model *model, strut_state *state) {
   }
 }
 
-void strut_memory_store(const strut_model *model, const strut_state *state, double *memory) {
+void strut_history_store(const strut_model *model, const strut_state *state, double *memory) {
   const strut_element_table *t = &model->elements;
-  size_t slots = (size_t)t->memory_slots, count = (size_t)t->memory_count;
-  memcpy(memory, state->rest + t->memory_slot, slots * sizeof(double));
+  size_t slots = (size_t)t->history_slots, count = (size_t)t->history_count;
+  memcpy(memory, state->rest + t->history_slot, slots * sizeof(double));
   memcpy(memory + slots, state->plastic, count * sizeof(double));
   memcpy(memory + slots + count, state->broken_at, (size_t)t->breakable_count * sizeof(double));
 }
 
-void strut_memory_load(const strut_model *model, strut_state *state, const double *memory) {
+void strut_history_load(const strut_model *model, strut_state *state, const double *memory) {
   const strut_element_table *t = &model->elements;
-  size_t slots = (size_t)t->memory_slots, count = (size_t)t->memory_count;
-  memcpy(state->rest + t->memory_slot, memory, slots * sizeof(double));
+  size_t slots = (size_t)t->history_slots, count = (size_t)t->history_count;
+  memcpy(state->rest + t->history_slot, memory, slots * sizeof(double));
   memcpy(state->plastic, memory + slots, count * sizeof(double));
   memcpy(state->broken_at, memory + slots + count, (size_t)t->breakable_count * sizeof(double));
-  strut_memory_follow(model, state);
+  strut_history_follow(model, state);
 }
 
 /* ---- what breaks ---- */
@@ -226,11 +226,11 @@ void strut_breakable_break(const strut_model *model, strut_state *state, int32_t
     state->rest[table->element[i].slot] = HUGE_VAL;
     state->rest_rate[table->element[i].slot] = 0.0;
   }
-  book_loss(state, energy);
+  accumulate_loss(state, energy);
   state->broken_at[breakable] = t;
 }
 
-bool strut_memory_release(const strut_model *model, strut_state *state, double t) {
+bool strut_history_release(const strut_model *model, strut_state *state, double t) {
   bool released = false;
   for (int32_t i = 0; i < model->elements.breakable_count && !state->forgetful; i++) {
     double due = model->elements.breakable[i].time;
@@ -249,8 +249,8 @@ static bool renew(const strut_model *model, strut_state *state, double t, bool j
   double now = t + state->time_offset;
   bool broken = false;
   if (state->forgetful) return false;
-  if (model->plan & STRUT_TERM_DRIVE && t != state->drive_time) strut_drive_apply(model, state, t);
-  for (int32_t m = 0; m < table->memory_count; m++) {
+  if (model->terms & STRUT_TERM_DRIVE && t != state->drive_time) strut_drive_apply(model, state, t);
+  for (int32_t m = 0; m < table->history_count; m++) {
     int32_t i = table->memory[m];
     if (strut_has_capstan(&table->element[i]) &&
         !strut_element_is_gone(state->rest[table->element[i].slot])) {
@@ -266,18 +266,18 @@ static bool renew(const strut_model *model, strut_state *state, double t, bool j
       strut_breakable_break(model, state, i, now);
       broken = true;
     }
-  return strut_memory_release(model, state, now + REACHED * fabs(now)) || broken;
+  return strut_history_release(model, state, now + REACHED * fabs(now)) || broken;
 }
 
-bool strut_memory_renew(const strut_model *model, strut_state *state, double t) {
+bool strut_history_renew(const strut_model *model, strut_state *state, double t) {
   return renew(model, state, t, false);
 }
 
-void strut_memory_begin(const strut_model *model, strut_state *state, double t) {
-  bool ledger = state->ledger;
-  state->ledger = false;
+void strut_history_begin(const strut_model *model, strut_state *state, double t) {
+  bool balance = state->balance;
+  state->balance = false;
   renew(model, state, t, true);
-  state->ledger = ledger;
+  state->balance = balance;
 }
 
 double strut_element_last_force(const strut_model *model, const strut_state *state, int32_t i) {
@@ -305,11 +305,11 @@ static void keep_worst(const strut_model *model, strut_element_role role, int32_
                             .limit = limit};
 }
 
-bool strut_memory_overload(const strut_model *model, const double *q, strut_overload *worst) {
+bool strut_history_overload(const strut_model *model, const double *q, strut_overload *worst) {
   const strut_element_table *t = &model->elements;
   strut_element_pose pose;
   *worst = (strut_overload){.name = NULL};
-  for (int32_t m = 0; m < t->memory_count; m++) {
+  for (int32_t m = 0; m < t->history_count; m++) {
     const strut_element *e = &t->element[t->memory[m]];
     if (!yields(e)) continue;
     strut_element_evaluate(model, t->memory[m], model->members.rest, q, (double)NAN, &pose);
@@ -341,7 +341,7 @@ void strut_maxwell_apply(const strut_model *model, strut_state *state, const dou
     force[a] += tension * pose.unit.x, force[a + 1] += tension * pose.unit.y;
     force[b] -= tension * pose.unit.x, force[b + 1] -= tension * pose.unit.y;
     force[f->base + m->state] = m->stiffness * (rate - tension / m->damping);
-    if (!state->ledger) continue;
+    if (!state->balance) continue;
     double drive = -tension * rest_rate, lost = tension * tension / m->damping;
     state->power[STRUT_POWER_DRIVE] += drive;
     state->power[STRUT_POWER_MEMBERS] += lost;

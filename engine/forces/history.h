@@ -59,28 +59,28 @@ void strut_slider_return(const strut_model *model, strut_state *state, int32_t i
                          bool jumped);
 
 /** The natural strain of element i, with memory, at strain e, with the state's base slots and modes. */
-double strut_memory_natural(const strut_model *model, const strut_state *state, int32_t i,
-                            double e);
+double strut_history_natural(const strut_model *model, const strut_state *state, int32_t i,
+                             double e);
 /** Energy that is stored in the slider's spring against the one beside it, by the slots in `rest`. */
-double strut_memory_locked_energy(const strut_element *e, const double *rest);
+double strut_history_locked_energy(const strut_element *e, const double *rest);
 
 /** As strut_elements_add_forces, for a block of elements with memory. */
-void strut_memory_add_forces(const strut_model *model, strut_state *state,
-                             const strut_element_block *block, const double *q, const double *v,
-                             double *force);
+void strut_history_add_forces(const strut_model *model, strut_state *state,
+                              const strut_element_block *block, const double *q, const double *v,
+                              double *force);
 /** Own slots after the slots that they follow have changed. */
-void strut_memory_follow(const strut_model *model, strut_state *state);
+void strut_history_follow(const strut_model *model, strut_state *state);
 
 /** Size of what the elements of a model remember. */
-static inline size_t strut_memory_count(const strut_model *model) {
+static inline size_t strut_history_count(const strut_model *model) {
   const strut_element_table *t = &model->elements;
-  return (size_t)(t->memory_slots + t->memory_count + t->breakable_count);
+  return (size_t)(t->history_slots + t->history_count + t->breakable_count);
 }
 /** Copies it from a state, and back. */
-STRUT_API void strut_memory_store(const strut_model *model, const strut_state *state,
-                                  double *memory);
-STRUT_API void strut_memory_load(const strut_model *model, strut_state *state,
-                                 const double *memory);
+STRUT_API void strut_history_store(const strut_model *model, const strut_state *state,
+                                   double *memory);
+STRUT_API void strut_history_load(const strut_model *model, strut_state *state,
+                                  const double *memory);
 
 /** Tension of a member, or size of a hinge's moment, that may break it [N], [N m]. */
 double strut_breakable_load(const strut_model *model, const strut_state *state, int32_t breakable,
@@ -89,7 +89,7 @@ double strut_breakable_load(const strut_model *model, const strut_state *state, 
 void strut_breakable_break(const strut_model *model, strut_state *state, int32_t breakable,
                            double t);
 /** Releases what is due at time t [s]. True if something was. */
-bool strut_memory_release(const strut_model *model, strut_state *state, double t);
+bool strut_history_release(const strut_model *model, strut_state *state, double t);
 
 /** A member or a hinge that carries more than it can. */
 typedef struct strut_overload {
@@ -102,8 +102,8 @@ typedef struct strut_overload {
  * The worst overload at rest at positions q, where statics take everything as whole and elastic; false
  * where there is none.
  */
-STRUT_API bool strut_memory_overload(const strut_model *model, const double *q,
-                                     strut_overload *worst);
+STRUT_API bool strut_history_overload(const strut_model *model, const double *q,
+                                      strut_overload *worst);
 
 /** Tension at the last node of element i: of a cable with guide friction another than at its first. */
 double strut_element_last_force(const strut_model *model, const strut_state *state, int32_t i);
@@ -114,9 +114,9 @@ double strut_element_plastic(const strut_model *model, const strut_state *state,
  * After a plain step that ends at time t: what has yielded, broken or is to be released. True if forces
  * have jumped by that.
  */
-bool strut_memory_renew(const strut_model *model, strut_state *state, double t);
-/** Before the first step: what is beyond its force already, or due. Keeps no ledger. */
-STRUT_API void strut_memory_begin(const strut_model *model, strut_state *state, double t);
+bool strut_history_renew(const strut_model *model, strut_state *state, double t);
+/** Before the first step: what is beyond its force already, or due. Keeps no balance. */
+STRUT_API void strut_history_begin(const strut_model *model, strut_state *state, double t);
 
 /* Maxwell branches of members: a spring k and a dashpot c in a row. The force F is an internal state,
  * F' = k (u' - F / c), with the rate u' of the member's length beyond its rest length. F^2 / 2k is stored
@@ -125,7 +125,7 @@ STRUT_API void strut_memory_begin(const strut_model *model, strut_state *state, 
 
 /**
  * Adds the forces of all branches at q and v and the rates of these forces to `force`, and with the
- * ledger their powers. The driven rest lengths must be those of this instant.
+ * balance their powers. The driven rest lengths must be those of this instant.
  */
 void strut_maxwell_apply(const strut_model *model, strut_state *state, const double *q,
                          const double *v, double *force);

@@ -48,7 +48,7 @@ void strut_mass_damping_apply(const strut_model *model, strut_state *state, cons
     }
   }
   if (model->sliding.count) lost += damp_sliding_masses(model, v - 2, force - 2);
-  if (!state->ledger) return;
+  if (!state->balance) return;
   state->power[STRUT_POWER_MEMBERS] += lost;
   state->power[STRUT_POWER_EXCHANGED] += lost;
 }
@@ -56,7 +56,7 @@ void strut_mass_damping_apply(const strut_model *model, strut_state *state, cons
 void strut_mass_damping_add(const strut_model *model, const int32_t *row_of, strut_triplets *sum) {
   const strut_member_table *t = &model->members;
   const mass_shares share = shares_of(model);
-  if (!(model->plan & STRUT_TERM_MASS_DAMPING)) return;
+  if (!(model->terms & STRUT_TERM_MASS_DAMPING)) return;
   for (int c = 0; c < 2; c++, row_of++) {
     for (int32_t i = 0; i < model->node_count; i++)
       if (row_of[2 * i] >= 0)

@@ -6,12 +6,12 @@
 #include "engine/model/sparse.h"
 #include "engine/model/state.h"
 
-/** Subtracts alpha M v from state->force and books what that takes as lost in members. */
+/** Subtracts alpha M v from state->force and accumulates what that takes as lost in members. */
 void strut_mass_damping_apply(const strut_model *model, strut_state *state, const double *v);
 
 /** Contributions of strut_mass_damping_add at most. */
 static inline size_t strut_mass_damping_entries(const strut_model *model) {
-  bool damped = model->plan & STRUT_TERM_MASS_DAMPING;
+  bool damped = model->terms & STRUT_TERM_MASS_DAMPING;
   return damped ? 2 * ((size_t)model->node_count + 3 * (size_t)model->members.count +
                        3 * (size_t)model->sliding.count)
                 : 0;

@@ -85,7 +85,7 @@ void strut_members_measure(const strut_model *model, const strut_state *state, d
   strut_actuator_forces_add_tensions(model, state, force);
 }
 
-/* Forces of more members than the ledger adds up in one sum: called, so that smaller structures do not pay for it. */
+/* Forces of more members than the energy balance adds up in one sum: called, so that smaller structures do not pay for it. */
 
 STRUT_CLONES
 static void add_forces_of_many(const strut_model *model, const strut_state *state,
@@ -95,7 +95,7 @@ static void add_forces_of_many(const strut_model *model, const strut_state *stat
   four_member_powers sum = {0}, part = {0};
   for (int32_t b = 0; b < t.blocks; b++) {
     members_of_block(&t, state, q, v, force, b, true, &part);
-    if ((b + 1) % STRUT_LEDGER_BLOCKS && b + 1 < t.blocks) continue;
+    if ((b + 1) % STRUT_BALANCE_BLOCKS && b + 1 < t.blocks) continue;
     members_add_powers(&sum, &part);
     part = (four_member_powers){0};
   }

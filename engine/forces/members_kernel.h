@@ -66,21 +66,21 @@ typedef struct member_pulls {
  */
 STRUT_INLINE member_pulls members_group(const strut_member_table *t, const strut_state *state,
                                         const double *restrict q, const double *restrict v,
-                                        int32_t j, unsigned terms, bool ledger,
+                                        int32_t j, unsigned terms, bool balance,
                                         four_member_powers *powers) {
   const uint32_t *restrict from = t->from + j, *restrict to = t->to + j;
   member_vectors d = members_gather(q, from, to);
   strut_lanes length = four_root(d.x * d.x + d.y * d.y);
   strut_lanes inverse = four_choose(length > 0.0, 1.0 / length, (strut_lanes){0}), rate = {0};
-  if ((terms & STRUT_TERM_DAMPING) || (ledger && (terms & STRUT_TERM_DRIVE))) {
+  if ((terms & STRUT_TERM_DAMPING) || (balance && (terms & STRUT_TERM_DRIVE))) {
     member_vectors w = members_gather(v, from, to);
     rate = (w.x * d.x + w.y * d.y) * inverse; /* the products need not wait for the root */
   }
   four_member_values m = members_values(t, state, j, terms & STRUT_TERM_DRIVE, length, rate);
   bool damped = terms & STRUT_TERM_DAMPING, slack = terms & STRUT_TERM_SLACK;
   bool driven = terms & STRUT_TERM_DRIVE;
-  strut_lanes damper, tension = four_member_tension(&m, damped, slack, driven, ledger, &damper);
-  if (ledger) four_member_add_powers(&m, damped, driven, tension, damper, powers);
+  strut_lanes damper, tension = four_member_tension(&m, damped, slack, driven, balance, &damper);
+  if (balance) four_member_add_powers(&m, damped, driven, tension, damper, powers);
   strut_lanes density = tension * inverse, px = density * d.x, py = density * d.y;
   return (member_pulls){__builtin_shufflevector(px, py, 0, 4, 2, 6),
                         __builtin_shufflevector(px, py, 1, 5, 3, 7)};
@@ -133,10 +133,10 @@ STRUT_INLINE void members_store(double *pull, member_pulls group, bool wide) {
 STRUT_INLINE void members_block(const strut_member_table *t, const strut_state *state,
                                 const double *restrict q, const double *restrict v,
                                 double *restrict pull, int32_t begin, int32_t end, unsigned terms,
-                                bool ledger, four_member_powers *powers) {
+                                bool balance, four_member_powers *powers) {
   bool wide = STRUT_WIDE_REGISTERS;
   for (int32_t j = begin; j < end; j += STRUT_LANES, pull += 4 * STRUT_LANES) {
-    member_pulls group = members_group(t, state, q, v, j, terms, ledger, powers);
+    member_pulls group = members_group(t, state, q, v, j, terms, balance, powers);
     members_store(pull, group, wide);
   }
 }
@@ -169,14 +169,14 @@ STRUT_INLINE void members_add_rows(const strut_pull_rows *t, double *restrict pu
 /* Block b; one copy of the loop per set of terms, so none is tested inside. */
 STRUT_INLINE void members_of_block(const strut_member_table *t, const strut_state *state,
                                    const double *restrict q, const double *restrict v,
-                                   double *restrict force, int32_t b, bool ledger,
+                                   double *restrict force, int32_t b, bool balance,
                                    four_member_powers *powers) {
   enum { K = STRUT_TERM_DAMPING, S = STRUT_TERM_SLACK, D = STRUT_TERM_DRIVE };
   _Alignas(64) double pull[STRUT_PULL_NUMBERS];
   int32_t begin = b * STRUT_BLOCK;
   int32_t end = begin + STRUT_BLOCK < t->slots ? begin + STRUT_BLOCK : t->slots;
 #define STRUT_CASE(set)                                                                            \
-  case set: members_block(t, state, q, v, pull, begin, end, set, ledger, powers); break
+  case set: members_block(t, state, q, v, pull, begin, end, set, balance, powers); break
   switch (t->block_terms[b] & (K | S | D)) {
     STRUT_CASE(0);
     STRUT_CASE(K);
@@ -203,14 +203,14 @@ void strut_many_members_add_forces(const strut_model *model, const strut_state *
 /* Adds the forces of all members. */
 STRUT_INLINE void members_kernel(const strut_model *model, strut_state *state,
                                  const double *restrict q, const double *restrict v,
-                                 double *restrict force, bool ledger, four_member_powers *powers) {
+                                 double *restrict force, bool balance, four_member_powers *powers) {
   const strut_member_table t = model->members;
-  if (ledger && t.blocks > STRUT_LEDGER_BLOCKS) {
+  if (balance && t.blocks > STRUT_BALANCE_BLOCKS) {
     strut_many_members_add_forces(model, state, q, v, force, powers);
     return;
   }
   for (int32_t b = 0; b < t.blocks; b++)
-    members_of_block(&t, state, q, v, force, b, ledger, powers);
+    members_of_block(&t, state, q, v, force, b, balance, powers);
 }
 
 #endif

@@ -212,7 +212,8 @@ static bool release(const strut_model *model, strut_state *state, strut_rigid *g
 }
 
 /* Friction's powers of the contacts within the band, which the kernel has left out. */
-static void book(const strut_model *model, strut_state *state, const double *q, const double *v) {
+static void accumulate(const strut_model *model, strut_state *state, const double *q,
+                       const double *v) {
   const strut_contact_table *c = &model->contacts;
   strut_rigid *g = state->rigid;
   int32_t count = find_stuck(model, g, q, v);
@@ -242,7 +243,7 @@ void strut_rigid_accelerate(const strut_model *model, strut_state *state, const 
   for (int32_t k = 0; k < stuck; k++) state->friction[g->stuck[k]] = g->right[g->bars + k];
   strut_rigid_spread(g, state->force);
   strut_mass_solve(model, state->force, a, state->scratch);
-  if (state->ledger && before) book(model, state, q, v);
+  if (state->balance && before) accumulate(model, state, q, v);
 }
 
 void strut_rigid_constrain(const strut_model *model, strut_state *state, const double *q,

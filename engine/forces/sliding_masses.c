@@ -126,7 +126,7 @@ void strut_sliding_masses_apply(const strut_model *model, strut_state *state, do
       state->force[item->at[0] + c] -= m * moved * g[c];
       state->force[item->at[1] + c] += m * moved * g[c];
     }
-    if (!state->ledger || alpha == 0.0) continue;
+    if (!state->balance || alpha == 0.0) continue;
     double lost = alpha * m * (u.x * u.x + u.y * u.y);
     state->power[STRUT_POWER_MEMBERS] += lost;
     state->power[STRUT_POWER_EXCHANGED] += lost;
@@ -205,14 +205,14 @@ static double work_of_jumps(const strut_model *model, const strut_state *state,
 bool strut_sliding_masses_kick(const strut_model *model, strut_state *state, double from,
                                double to) {
   double *change = state->support_answer;
-  if (!(model->plan & STRUT_TERM_SLIDING_MASS)) return false;
+  if (!(model->terms & STRUT_TERM_SLIDING_MASS)) return false;
   strut_sliding_masses_place(model, state, to);
   if (!model->sliding.corners || !find_impulses(model, state, from, to)) return false;
   strut_mass_solve(model, state->force, change, state->scratch);
   strut_sliding_masses_correct(model, state, change);
   double work = work_of_jumps(model, state, change);
   for (int32_t i = 0; i < model->length; i++) state->v[i] += change[i];
-  if (!state->ledger) return true;
+  if (!state->balance) return true;
   state->work[STRUT_POWER_DRIVE] += work;
   state->work[STRUT_POWER_EXCHANGED] += fabs(work);
   return true;

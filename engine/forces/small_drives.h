@@ -5,8 +5,8 @@
 #ifndef STRUT_ENGINE_FORCES_SMALL_DRIVES_H
 #define STRUT_ENGINE_FORCES_SMALL_DRIVES_H
 
-#include "engine/forces/signal_lanes.h"
-#include "engine/forces/small_ledger.h"
+#include "engine/forces/signal_vector.h"
+#include "engine/forces/small_balance.h"
 
 enum { SMALL_STEPS = 16, SMALL_INSTANTS = 2 * SMALL_STEPS + 4 }; /* whole groups of 4 */
 

@@ -24,7 +24,7 @@ typedef struct small_rest {
 static inline void strut_small_inputs_read(const strut_model *model, const strut_state *state,
                                            strut_small_inputs *inputs) {
   const strut_small_model *s = model->small;
-  bool constant = model->plan & STRUT_TERM_CONSTANT;
+  bool constant = model->terms & STRUT_TERM_CONSTANT;
   for (int32_t i = 0; i < STRUT_SMALL_NODES; i++)
     for (int32_t c = 0; c < 2; c++)
       inputs->constant[c][i] = constant && i < s->nodes ? model->constant_force[2 * i + c] : 0.0;
@@ -34,7 +34,7 @@ static inline void strut_small_inputs_read(const strut_model *model, const strut
     inputs->slack_force_threshold[j] = there ? state->slack_force_threshold[j] : 0.0;
   }
   inputs->driven = 0;
-  for (int32_t j = 0; j < s->members && model->plan & STRUT_TERM_DRIVE; j++)
+  for (int32_t j = 0; j < s->members && model->terms & STRUT_TERM_DRIVE; j++)
     if (state->rest_rate[j] != 0.0) inputs->driven |= 1u << j / 4;
   for (int32_t i = 0; i < model->drives.count; i++)
     inputs->driven |= 1u << model->drives.member[i] / 4;
@@ -43,7 +43,7 @@ static inline void strut_small_inputs_read(const strut_model *model, const strut
 /** Rest lengths before the drives change them, in `count` rows. */
 static inline void strut_small_rest_fill(const strut_model *model, const strut_state *state,
                                          int64_t count, small_rest *rows) {
-  bool driven = model->plan & STRUT_TERM_DRIVE;
+  bool driven = model->terms & STRUT_TERM_DRIVE;
   const double *rest = driven ? state->rest : model->members.rest;
   for (int64_t h = 0; h < count; h++)
     for (int32_t j = 0; j < STRUT_SMALL_SLOTS; j++) {

@@ -18,7 +18,7 @@ typedef struct small_run {
   const strut_small_model *tables;
   const strut_contact_table *contacts;
   const strut_small_inputs *inputs;
-  unsigned plan;   /* with the terms that a copy knows; see small_plan_in_copy */
+  unsigned terms;  /* with the terms that a copy knows; see small_terms_in_copy */
   unsigned driven; /* bit g: some of the members 4 g to 4 g + 3 is */
 } small_run;
 
@@ -31,23 +31,23 @@ typedef struct small_run {
               STRUT_TERM_FRICTION))
 
 /* The terms of the model that forces ask for. */
-static inline unsigned small_plan_of(const strut_model *model) {
+static inline unsigned small_terms_of(const strut_model *model) {
   unsigned belt = model->contacts.belt_speed != 0.0 ? STRUT_SMALL_BELT : 0;
-  return (model->plan & ~(unsigned)(STRUT_TERM_CONSTANT | STRUT_TERM_SOLVE)) | belt;
+  return (model->terms & ~(unsigned)(STRUT_TERM_CONSTANT | STRUT_TERM_SOLVE)) | belt;
 }
 /* Which of the three kinds of copies steps the model: 0 for all terms, 1 for common ones, 2 for exactly the usual. */
 static inline int small_copy_of(const strut_model *model) {
-  unsigned plan = small_plan_of(model);
-  return plan == STRUT_SMALL_USUAL ? 2 : !(plan & ~STRUT_SMALL_COMMON);
+  unsigned terms = small_terms_of(model);
+  return terms == STRUT_SMALL_USUAL ? 2 : !(terms & ~STRUT_SMALL_COMMON);
 }
 /* What a copy that knows these terms reads of them. */
-STRUT_SMALL_INLINE unsigned small_plan_in_copy(const strut_model *model, unsigned terms) {
-  return terms == STRUT_SMALL_USUAL ? terms : small_plan_of(model) & terms;
+STRUT_SMALL_INLINE unsigned small_terms_in_copy(const strut_model *model, unsigned terms) {
+  return terms == STRUT_SMALL_USUAL ? terms : small_terms_of(model) & terms;
 }
 
 /* The speed of the ground; 0 is known to copies without one. */
 STRUT_SMALL_INLINE double small_belt(const small_run *r) {
-  return r->plan & STRUT_SMALL_BELT ? r->contacts->belt_speed : 0.0;
+  return r->terms & STRUT_SMALL_BELT ? r->contacts->belt_speed : 0.0;
 }
 
 /* Along the members: differences of the ends' positions and velocities, pulls. */
@@ -78,19 +78,19 @@ STRUT_SMALL_INLINE double small_belt(const small_run *r) {
   }                                                                                                                         \
                                                                                                                             \
   /* Pulls of the members from j on, at differences u and w of their ends' velocities, which they replace; their tensions \
-     and, for the ledger, what their dampers lose. */ \
+     and, for the energy balance, what their dampers lose. */ \
   STRUT_SMALL_INLINE number PREFIX##_pull(const small_run *r, const small_rest *rest, int j,                                \
                                           const PREFIX##_shape *d, number *u, number *w,                                    \
-                                          bool ledger, number *lost) {                                                      \
+                                          bool balance, number *lost) {                                                     \
     number rate = {0}, damper;                                                                                              \
-    if (r->plan & STRUT_TERM_DAMPING) rate = (*u * d->x + *w * d->y) * d->inverse;                                          \
+    if (r->terms & STRUT_TERM_DAMPING) rate = (*u * d->x + *w * d->y) * d->inverse;                                         \
     law##_member_values m = PREFIX##_values_at(r, rest, j, d->length, rate);                                                \
-    bool damped = r->plan & STRUT_TERM_DAMPING, driven = r->plan & STRUT_TERM_DRIVE;                                        \
+    bool damped = r->terms & STRUT_TERM_DAMPING, driven = r->terms & STRUT_TERM_DRIVE;                                      \
     number tension =                                                                                                        \
-        law##_member_tension(&m, damped, r->plan & STRUT_TERM_SLACK, driven, ledger, &damper);                              \
+        law##_member_tension(&m, damped, r->terms & STRUT_TERM_SLACK, driven, balance, &damper);                            \
     number density = tension * d->inverse;                                                                                  \
     *u = density * d->x, *w = density * d->y;                                                                               \
-    if (ledger && damped) *lost = damper * law##_member_stretch_rate(&m, driven);                                           \
+    if (balance && damped) *lost = damper * law##_member_stretch_rate(&m, driven);                                          \
     return tension;                                                                                                         \
   }
 
@@ -140,30 +140,30 @@ STRUT_SMALL_INLINE void small_measure_members(const strut_small_model *s, const 
 }
 
 /*
- * Pulls of the members, whose shapes are those at the positions; sum: their powers for the ledger, added up in the order
+ * Pulls of the members, whose shapes are those at the positions; sum: their powers for the energy balance, added up in the order
  * of groups of 4; drive: what drives take. The shapes become those at next_q, the positions that are
  * wanted next, where these are known already: roots and divisions take long, and are there when velocities are.
  */
 STRUT_SMALL_INLINE void small_members(const small_run *r, const small_rest *rest,
                                       small_shapes *shapes, const small_points *next_q,
-                                      const small_points *v, bool ledger, small_pulls *px,
+                                      const small_points *v, bool balance, small_pulls *px,
                                       small_pulls *py, small4_member_powers *sum) {
   const strut_small_model *s = r->tables;
   small_shapes d = *shapes;
   small_real lost = {0}, tension;
   strut_lanes lost_last = {0}, tension_last = {0};
   *px = *py = (small_pulls){0};
-  if (r->plan & STRUT_TERM_DAMPING)
+  if (r->terms & STRUT_TERM_DAMPING)
     px->first = small_difference(s, 0, v->x), py->first = small_difference(s, 0, v->y);
   if (s->members > 8) {
-    if (r->plan & STRUT_TERM_DAMPING) {
+    if (r->terms & STRUT_TERM_DAMPING) {
       px->last = small_half(small_difference(s, 8, v->x), 0);
       py->last = small_half(small_difference(s, 8, v->y), 0);
     }
-    tension_last = small4_pull(r, rest, 8, &d.last, &px->last, &py->last, ledger, &lost_last);
+    tension_last = small4_pull(r, rest, 8, &d.last, &px->last, &py->last, balance, &lost_last);
   }
-  tension = small8_pull(r, rest, 0, &d.first, &px->first, &py->first, ledger, &lost);
-  if (ledger) {
+  tension = small8_pull(r, rest, 0, &d.first, &px->first, &py->first, balance, &lost);
+  if (balance) {
     sum->lost = small_half(lost, 0) + small_half(lost, 1) + lost_last;
     small_real drive = tension * small_load(rest->rate), size = small_magnitude(drive);
     sum->drive = small_half(drive, 0) + small_half(drive, 1);
@@ -183,7 +183,7 @@ STRUT_SMALL_INLINE strut_lanes small_gather(const int64_t *halves, small_row x) 
 }
 STRUT_SMALL_INLINE small_row small_permute(const strut_small_column *column, small_row x) {
   return (small_row){
-      {small_gather(column->lane_halves, x), small_gather(column->lane_halves + 4, x)}};
+      {small_gather(column->batch_halves, x), small_gather(column->batch_halves + 4, x)}};
 }
 STRUT_SMALL_INLINE strut_lanes small_difference(const strut_small_model *s, int j, small_row x) {
   return small_gather(s->to_halves + j, x) - small_gather(s->from_halves + j, x);
@@ -228,20 +228,20 @@ STRUT_SMALL_INLINE void small_measure_members(const strut_small_model *s, const 
 
 STRUT_SMALL_INLINE void small_members(const small_run *r, const small_rest *rest,
                                       small_shapes *shapes, const small_points *next_q,
-                                      const small_points *v, bool ledger, small_pulls *px,
+                                      const small_points *v, bool balance, small_pulls *px,
                                       small_pulls *py, small4_member_powers *sum) {
   const strut_small_model *s = r->tables;
   small_shapes d = *shapes;
   *px = *py = (small_pulls){0};
-  if (ledger) sum->drive = sum->exchanged = (strut_lanes){0};
+  if (balance) sum->drive = sum->exchanged = (strut_lanes){0};
 #pragma GCC unroll 3
   for (int g = 0; g < 3; g++) {
     strut_lanes u = {0}, w = {0}, lost = {0}, tension;
     if (4 * g >= s->members) break;
-    if (r->plan & STRUT_TERM_DAMPING) small_group_differences(s, g, v, &u, &w);
-    tension = small4_pull(r, rest, 4 * g, &d.part[g], &u, &w, ledger, &lost);
+    if (r->terms & STRUT_TERM_DAMPING) small_group_differences(s, g, v, &u, &w);
+    tension = small4_pull(r, rest, 4 * g, &d.part[g], &u, &w, balance, &lost);
     px->part[g] = u, py->part[g] = w;
-    if (!ledger) continue;
+    if (!balance) continue;
     sum->lost = g ? sum->lost + lost : lost;
     if (r->driven >> g & 1) small_add_drive(sum, tension, rest->rate + 4 * g);
   }
@@ -286,13 +286,13 @@ STRUT_SMALL_INLINE small_points small_sum_pulls(const small_run *r, const small_
 }
 #endif
 
-/* What the ground takes from the nodes that touch it, where it is booked; 0 at all others. */
+/* What the ground takes from the nodes that touch it, where it is accumulated; 0 at all others. */
 typedef struct small_touch {
   unsigned touching; /* a bit of each lane */
   small_row minus_damped, minus_rubbed, belt, exchanged;
 } small_touch;
 
-/* What the powers of one evaluation are made of, see small_ledger.h. */
+/* What the powers of one evaluation are made of, see small_balance.h. */
 typedef struct small_entries {
   small4_member_powers members;
   small_touch touch;
@@ -323,28 +323,28 @@ STRUT_SMALL_INLINE small_friction_choice small_choice_at(const strut_small_conta
   };
 }
 
-/* See ground_ledger; both_signs: what dampers do is exchanged by its size. */
-STRUT_SMALL_INLINE void small_book_contacts(const small_run *r, small_mask closed,
-                                            small_contact_powers powers, bool both_signs, int p,
-                                            small_touch *touch) {
+/* See ground_balance; both_signs: what dampers do is exchanged by its size. */
+STRUT_SMALL_INLINE void small_accumulate_contacts(const small_run *r, small_mask closed,
+                                                  small_contact_powers powers, bool both_signs,
+                                                  int p, small_touch *touch) {
   small_real damped = small_keep(closed, powers.damper);
   small_real rubbed = small_keep(closed, powers.friction);
   touch->minus_damped.part[p] = damped, touch->minus_rubbed.part[p] = rubbed;
   touch->exchanged.part[p] = both_signs ? small_magnitude(damped) + small_magnitude(rubbed)
                                         : small_magnitude(rubbed) - damped;
-  if (!(r->plan & STRUT_SMALL_BELT)) return;
+  if (!(r->terms & STRUT_SMALL_BELT)) return;
   touch->belt.part[p] = small_keep(closed, powers.belt);
   touch->exchanged.part[p] += small_magnitude(touch->belt.part[p]);
 }
 
 /* See ground_touch: adds the ground's forces on the nodes of part p. */
 STRUT_SMALL_INLINE void small_ground_part(const small_run *r, int p, small_real x, small_real y,
-                                          small_real u, small_real w, small_points *f, bool ledger,
+                                          small_real u, small_real w, small_points *f, bool balance,
                                           small_touch *touch) {
   const strut_small_contacts *c = &r->tables->contact;
   const strut_contact_table *t = r->contacts;
-  bool laws = r->plan & STRUT_TERM_LAWS, sloped = r->plan & (STRUT_TERM_SLOPE | STRUT_TERM_LAWS);
-  bool rough = r->plan & (STRUT_TERM_FRICTION | STRUT_TERM_LAWS);
+  bool laws = r->terms & STRUT_TERM_LAWS, sloped = r->terms & (STRUT_TERM_SLOPE | STRUT_TERM_LAWS);
+  bool rough = r->terms & (STRUT_TERM_FRICTION | STRUT_TERM_LAWS);
   small_real nx = small_all(t->normal[0]), ny = small_all(t->normal[1]);
   small_real tx = small_all(t->tangent[0]), ty = small_all(t->tangent[1]), zero = {0};
   small_real gap = y - t->height, into = w, along = u;
@@ -367,10 +367,10 @@ STRUT_SMALL_INLINE void small_ground_part(const small_run *r, int p, small_real 
   }
   f->x.part[p] = small_add_where(closed, fx, sloped ? friction * tx + normal * nx : friction);
   f->y.part[p] = small_add_where(closed, fy, sloped ? friction * ty + normal * ny : normal);
-  if (!ledger) return;
+  if (!balance) return;
   small_contact_powers powers =
       small_contact_power(damper, into, friction, slip, small_all(r->contacts->belt_speed));
-  small_book_contacts(r, closed, powers, false, p, touch);
+  small_accumulate_contacts(r, closed, powers, false, p, touch);
 }
 
 /* a = M^-1 f, and 0 where there is no mass to divide by. */
@@ -418,11 +418,12 @@ STRUT_SMALL_INLINE small_points small_divide_points(const strut_small_model *s,
 
 /* The ground's forces on all nodes. */
 STRUT_SMALL_INLINE void small_ground(const small_run *r, const small_points *q,
-                                     const small_points *v, small_points *f, bool ledger,
+                                     const small_points *v, small_points *f, bool balance,
                                      small_touch *touch) {
-  if (!(r->plan & STRUT_TERM_CONTACT)) return;
+  if (!(r->terms & STRUT_TERM_CONTACT)) return;
   SMALL_EACH(p)
-  small_ground_part(r, p, q->x.part[p], q->y.part[p], v->x.part[p], v->y.part[p], f, ledger, touch);
+  small_ground_part(r, p, q->x.part[p], q->y.part[p], v->x.part[p], v->y.part[p], f, balance,
+                    touch);
 }
 
 #endif

@@ -43,7 +43,7 @@ void strut_support_motion_apply(const strut_model *model, strut_state *state, do
     state->force[c->at] += push;
     power += push * v[c->at];
   }
-  if (state->ledger) add_reaction_power(model, state, power, v);
+  if (state->balance) add_reaction_power(model, state, power, v);
 }
 
 void strut_support_motion_apply_mean(const strut_model *model, strut_state *state, double h,
@@ -56,7 +56,7 @@ void strut_support_motion_apply_mean(const strut_model *model, strut_state *stat
     state->force[c->at] += push;
     power += push * u[c->at];
   }
-  if (state->ledger) add_reaction_power(model, state, power, u);
+  if (state->balance) add_reaction_power(model, state, power, u);
 }
 
 /* Sum of the jumps of a signal's rate after `from` and up to `to`. */
@@ -109,11 +109,11 @@ static double moved_energy(const strut_model *model, const strut_state *state) {
 }
 
 double strut_support_motion_work(const strut_model *model, const strut_state *state) {
-  if (!(model->plan & STRUT_TERM_SUPPORT_MOTION)) return 0.0;
+  if (!(model->terms & STRUT_TERM_SUPPORT_MOTION)) return 0.0;
   return state->work[STRUT_POWER_SUPPORT] + moved_energy(model, state) - state->support_work_origin;
 }
 
 void strut_support_motion_reset_work(const strut_model *model, strut_state *state) {
-  if (model->plan & STRUT_TERM_SUPPORT_MOTION)
+  if (model->terms & STRUT_TERM_SUPPORT_MOTION)
     state->support_work_origin = moved_energy(model, state) + state->work[STRUT_POWER_SUPPORT];
 }

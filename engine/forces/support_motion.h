@@ -3,7 +3,7 @@
  * Supports that move, as methods step them; see engine/model/support_motion.h.
  *
  * Their positions and velocities are those of their signals at every stage. The reaction on moved
- * coordinates c is R = M_cf a_f + M_cc a_c - F_c. Its work is that of the ledger's power
+ * coordinates c is R = M_cf a_f + M_cc a_c - F_c. Its work is that of the energy balance's power
  * -a_c' M_cf v_f - F_c' v_c, which needs no a_f, and the change of v_c' M_cf v_f + v_c' M_cc v_c / 2.
  */
 #ifndef STRUT_ENGINE_FORCES_SUPPORT_MOTION_H

@@ -147,7 +147,7 @@ static void rub_all(const strut_model *model, strut_state *state, const double *
 }
 
 /* Damper, friction, and what the ground's own motion and belt give to the structure. */
-static void book(const strut_model *model, strut_state *state, const double *v, int32_t i) {
+static void accumulate(const strut_model *model, strut_state *state, const double *v, int32_t i) {
   const strut_contact_table *c = &model->contacts;
   const strut_contact_pose *pose = &state->pose[i];
   const strut_ground_motion *own = strut_contact_motion(c, i, state->ground_motion);
@@ -177,7 +177,8 @@ void strut_surfaces_add_forces(const strut_model *model, strut_state *state,
       rub(model, state, v, all.contact[0]);
     else if (all.count)
       rub_all(model, state, v, &all);
-    for (int32_t k = 0; k < all.count && state->ledger; k++) book(model, state, v, all.contact[k]);
+    for (int32_t k = 0; k < all.count && state->balance; k++)
+      accumulate(model, state, v, all.contact[k]);
   }
 }
 

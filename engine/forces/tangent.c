@@ -254,7 +254,7 @@ strut_status strut_tangent_assemble(const strut_model *model, const double *q, c
   assembly a = {
       .model = model, .q = q, .row_of = row_of, .undamped = closed == STRUT_CLOSED_UNDAMPED};
   a.stiffest = closed == STRUT_CLOSED_ALL || closed == STRUT_CLOSED_UNDAMPED;
-  if (resting && (model->plan & STRUT_TERM_LAWS)) a.weight = resting_force(model);
+  if (resting && (model->terms & STRUT_TERM_LAWS)) a.weight = resting_force(model);
   tangent->coordinate = strut_arena_allocate(arena, both, sizeof *tangent->coordinate);
   tangent->rigid = NULL;
   strut_status status = STRUT_NO_MEMORY;

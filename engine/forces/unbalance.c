@@ -35,7 +35,7 @@ static void push(strut_state *state, const strut_unbalance *u, double fx, double
   int32_t at = 2 * u->node;
   state->force[at] += fx;
   state->force[at + 1] += fy;
-  if (!state->ledger) return;
+  if (!state->balance) return;
   double power = fx * v[at] + fy * v[at + 1];
   state->power[STRUT_POWER_DRIVE] += power;
   state->power[STRUT_POWER_EXCHANGED] += fabs(power);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
  * What domain_steps.c makes and domain_sweep.c works on: the arrays of each subdomain, and what subdomains leave for
- * each other and for the ledger.
+ * each other and for the energy balance.
  */
 #ifndef STRUT_ENGINE_INTEGRATE_DOMAIN_PARTS_H
 #define STRUT_ENGINE_INTEGRATE_DOMAIN_PARTS_H
@@ -37,26 +37,26 @@ typedef struct domain_part {
   int32_t begun, done[STRUT_PASSES], block[STRUT_PASSES]; /* progress of nodes and of members */
   int32_t contact[STRUT_PASSES], loaded[STRUT_PASSES], paid[STRUT_PASSES],
       drive[STRUT_PASSES];                /* and of these */
-  four_member_powers power[STRUT_PASSES]; /* since the last whole block of the ledger */
+  four_member_powers power[STRUT_PASSES]; /* since the last whole block of the energy balance */
   strut_arena arena;
   bool good;
 } domain_part;
 
-/* What subdomains leave for the ledger in one sweep; (STRUT_PASSES, ...). */
-typedef struct domain_ledger {
-  four_member_powers *member; /* blocks of the ledger */
+/* What subdomains leave for the energy balance in one sweep; (STRUT_PASSES, ...). */
+typedef struct domain_balance {
+  four_member_powers *member; /* blocks of the energy balance */
   double *contact, *load;     /* (contacts, DOMAIN_CONTACT_POWERS), (loads) */
   atomic_uchar *touched;      /* blocks of contacts: some of them touch */
-} domain_ledger;
+} domain_balance;
 
 struct strut_domain_steps {
   const strut_model *model;
   domain_method stepping;
-  strut_team *team;
+  strut_thread_pool *pool;
   strut_subdivision division;
   domain_part **part;
-  domain_ledger ledger[DOMAIN_SIDES];
-  int32_t ledger_blocks;
+  domain_balance balance[DOMAIN_SIDES];
+  int32_t balance_blocks;
   double *exchange[DOMAIN_SIDES]; /* (shared nodes, DOMAIN_EXCHANGED) */
   double *acceleration;           /* (length) of verlet at a restart, in the scene's order */
   double kept[STRUT_POWER_ROOM];  /* powers at the begin of a step of verlet */

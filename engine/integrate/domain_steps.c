@@ -7,7 +7,7 @@
 #include "engine/base/subnormals.h"
 #include "engine/forces/drives.h"
 #include "engine/forces/forces.h"
-#include "engine/forces/step_ledger.h"
+#include "engine/forces/step_balance.h"
 #include "engine/integrate/domain_parts.h"
 #include "engine/model/mass.h"
 
@@ -36,7 +36,7 @@ bool strut_domain_steps_possible(const strut_model *model, const strut_integrato
   domain_method kind;
   if (!find_stepping(method, &kind) || f->sampled_count || f->trigger_count || f->relay_count)
     return false;
-  return (model->plan & STRUT_TERM_MEMBERS) && !(model->plan & ~POSSIBLE) && model->mass;
+  return (model->terms & STRUT_TERM_MEMBERS) && !(model->terms & ~POSSIBLE) && model->mass;
 }
 
 /* ---- memory ---- */
@@ -70,7 +70,7 @@ static void make_arrays(const strut_domain_steps *s, domain_part *p) {
     p->inverse = ones(p); /* forces are replaced by accelerations */
   else
     p->inverse = copy_coordinates(p, model->mass->inverse);
-  if (model->plan & STRUT_TERM_CONSTANT) p->base = copy_coordinates(p, model->constant_force);
+  if (model->terms & STRUT_TERM_CONSTANT) p->base = copy_coordinates(p, model->constant_force);
   p->position = p->q, p->velocity = p->v;
   if (s->stepping != DOMAIN_EULER) p->velocity = p->v0 = numbers(p, n);
   if (s->stepping != DOMAIN_EULER) p->a[0] = numbers(p, n);
@@ -103,12 +103,12 @@ static bool parts_are_good(const strut_domain_steps *s) {
   return true;
 }
 
-static bool make_ledger(strut_domain_steps *s, domain_ledger *l) {
+static bool make_balance(strut_domain_steps *s, domain_balance *l) {
   const strut_model *model = s->model;
   size_t blocks = ((size_t)model->contacts.count + DOMAIN_CONTACT_BLOCK - 1) / DOMAIN_CONTACT_BLOCK;
-  s->ledger_blocks = (model->members.blocks + STRUT_LEDGER_BLOCKS - 1) / STRUT_LEDGER_BLOCKS;
+  s->balance_blocks = (model->members.blocks + STRUT_BALANCE_BLOCKS - 1) / STRUT_BALANCE_BLOCKS;
   l->member =
-      strut_arena_allocate(&s->arena, STRUT_PASSES * (size_t)s->ledger_blocks, sizeof *l->member);
+      strut_arena_allocate(&s->arena, STRUT_PASSES * (size_t)s->balance_blocks, sizeof *l->member);
   l->contact = strut_arena_allocate(
       &s->arena, DOMAIN_CONTACT_POWERS * STRUT_PASSES * (size_t)model->contacts.count,
       sizeof *l->contact);
@@ -130,14 +130,14 @@ static void free_parts(strut_domain_steps *s) {
   s->mass = NULL;
   for (int i = 0; i < s->division.parts && s->part; i++)
     if (s->part[i]) strut_arena_free(&s->part[i]->arena);
-  strut_team_free(s->team);
-  s->team = NULL;
+  strut_thread_pool_free(s->pool);
+  s->pool = NULL;
 }
 
 /* A subdomain for each thread that there is. False: out of memory. */
 static bool make_parts(strut_domain_steps *s, const int32_t *member, int threads) {
-  s->team = strut_team_create(threads);
-  threads = strut_team_size(s->team);
+  s->pool = strut_thread_pool_create(threads);
+  threads = strut_thread_pool_size(s->pool);
   bool coupled = !s->model->mass->diagonal;
   int depth = coupled ? 1 : STRUT_PASSES;
   if (!strut_subdivision_create(s->model, member, threads, depth, &s->arena, &s->division))
@@ -148,7 +148,7 @@ static bool make_parts(strut_domain_steps *s, const int32_t *member, int threads
   if (!s->part) return false;
   if (threads > 1 && strut_subdivision_overlap(&s->division) > MOST_OVERLAP) return true;
   if (coupled && !(s->mass = strut_mass_shares_create(s->model, threads))) return false;
-  strut_team_run(s->team, create_part, s);
+  strut_thread_pool_run(s->pool, create_part, s);
   return parts_are_good(s);
 }
 
@@ -169,12 +169,12 @@ static bool make_all(strut_domain_steps *s, const int32_t *member, int threads) 
   for (int i = 0; i < threads && domain; i++) domain[i] = &s->part[i]->domain;
   if (!domain) return false;
   strut_subdivision_share(&s->division, domain);
-  strut_team_run(s->team, connect_part, s);
+  strut_thread_pool_run(s->pool, connect_part, s);
   if (!parts_are_good(s)) return false;
   for (int i = 0; i < DOMAIN_SIDES; i++) {
     size_t shared = DOMAIN_EXCHANGED * (size_t)s->division.shared_count;
     s->exchange[i] = strut_arena_allocate(&s->arena, shared, sizeof(double));
-    if (!s->exchange[i] || !make_ledger(s, &s->ledger[i])) return false;
+    if (!s->exchange[i] || !make_balance(s, &s->balance[i])) return false;
   }
   if (s->mass) {
     s->sum = strut_arena_allocate(&s->arena, (size_t)s->model->length, sizeof(double));
@@ -193,8 +193,8 @@ strut_domain_steps *strut_domain_steps_create(const strut_model *model,
   if (!s) return NULL;
   s->model = model;
   find_stepping(method, &s->stepping);
-  s->needs_velocity =
-      model->plan & (STRUT_TERM_DAMPING | STRUT_TERM_DRIVE | STRUT_TERM_LOADS | STRUT_TERM_CONTACT);
+  s->needs_velocity = model->terms & (STRUT_TERM_DAMPING | STRUT_TERM_DRIVE | STRUT_TERM_LOADS |
+                                      STRUT_TERM_CONTACT);
   if (make_all(s, member, threads)) return s;
   strut_domain_steps_free(s);
   return NULL;
@@ -282,7 +282,7 @@ static void load_rest(const strut_domain_steps *s, domain_part *p) {
     d->state.normal[i] = state->normal[d->contact[i]];
     d->state.friction[i] = state->friction[d->contact[i]];
   }
-  d->state.ledger = state->ledger;
+  d->state.balance = state->balance;
   d->state.time_offset = state->time_offset;
   d->state.drive_time = (double)NAN;
 }
@@ -306,13 +306,13 @@ static void store_state(const strut_domain_steps *s, const domain_part *p) {
   }
 }
 
-/* ---- ledger ---- */
+/* ---- balance ---- */
 
-/* Of all blocks of the ledger, in their order. */
+/* Of all blocks of the energy balance, in their order. */
 static four_member_powers sum_member_powers(const strut_domain_steps *s,
                                             const four_member_powers *block) {
   four_member_powers sum = {0};
-  for (int32_t b = 0; b < s->ledger_blocks; b++) members_add_powers(&sum, &block[b]);
+  for (int32_t b = 0; b < s->balance_blocks; b++) members_add_powers(&sum, &block[b]);
   return sum;
 }
 
@@ -336,7 +336,7 @@ static void add_contact_to_powers(strut_state *state, const double *of) {
   for (int w = 0; w < DOMAIN_CONTACT_POWERS; w++) state->power[which[w]] += of[w];
 }
 
-/* As ground_book_lanes does. */
+/* As ground_accumulate_lanes does. */
 static void add_contact_to_lanes(strut_power_lanes *to, int32_t lane, bool moves,
                                  const double *of) {
   to->minus_damped[lane] -= of[0], to->minus_rubbed[lane] -= of[1];
@@ -350,13 +350,13 @@ static void add_contact_powers(const strut_domain_steps *s, int side, int k) {
   int32_t all = s->model->contacts.count,
           blocks = (all + DOMAIN_CONTACT_BLOCK - 1) / DOMAIN_CONTACT_BLOCK;
   for (int32_t b = 0; b < blocks; b++) {
-    atomic_uchar *touched = &s->ledger[side].touched[k * blocks + b];
+    atomic_uchar *touched = &s->balance[side].touched[k * blocks + b];
     if (!atomic_load_explicit(touched, memory_order_relaxed)) continue;
     atomic_store_explicit(touched, 0, memory_order_relaxed);
     int32_t end = (b + 1) * DOMAIN_CONTACT_BLOCK < all ? (b + 1) * DOMAIN_CONTACT_BLOCK : all;
     for (int32_t i = b * DOMAIN_CONTACT_BLOCK; i < end; i++) {
       double *of =
-          s->ledger[side].contact + DOMAIN_CONTACT_POWERS * ((size_t)k * (size_t)all + (size_t)i);
+          s->balance[side].contact + DOMAIN_CONTACT_POWERS * ((size_t)k * (size_t)all + (size_t)i);
       if (s->stepping == DOMAIN_RK4)
         add_contact_to_lanes(&s->state->lanes[strut_weight_side(k)],
                              s->model->contacts.entry[i].lane, moves, of);
@@ -380,15 +380,15 @@ static void add_works(strut_domain_steps *s, int k) {
     }
 }
 
-static void keep_ledger(strut_domain_steps *s, int passes, int side) {
+static void keep_balance(strut_domain_steps *s, int passes, int side) {
   strut_state *state = s->state;
   bool lanes = s->stepping == DOMAIN_RK4;
-  const domain_ledger *l = &s->ledger[side];
+  const domain_balance *l = &s->balance[side];
   int32_t loads = s->model->loads.count;
-  if (lanes) strut_step_ledger_begin(s->model, state);
+  if (lanes) strut_step_balance_begin(s->model, state);
   for (int k = 0; k < passes; k++) {
     double *power = state->power;
-    const four_member_powers *members = l->member + k * s->ledger_blocks;
+    const four_member_powers *members = l->member + k * s->balance_blocks;
     for (int p = 0; p < STRUT_POWER_COUNT; p++) power[p] = 0.0;
     for (int32_t i = 0; i < loads; i++) {
       power[STRUT_POWER_LOAD] += l->load[k * loads + i];
@@ -396,14 +396,14 @@ static void keep_ledger(strut_domain_steps *s, int passes, int side) {
     }
     if (lanes) {
       four_member_powers sum = sum_member_powers(s, members);
-      strut_book_members(&state->lanes[strut_weight_side(k)], &sum);
+      strut_accumulate_members(&state->lanes[strut_weight_side(k)], &sum);
     } else {
       add_member_powers(s, members, power);
     }
     add_contact_powers(s, side, k);
     if (!lanes || loads) add_works(s, k);
   }
-  if (lanes) strut_step_ledger_end(s->model, state, s->dt / 6.0);
+  if (lanes) strut_step_balance_end(s->model, state, s->dt / 6.0);
 }
 
 /* ---- steps ---- */
@@ -429,10 +429,10 @@ static void work(void *context, int thread) {
     else
       strut_domain_sweep(s, p, passes, side);
     publish(s, p, side);
-    strut_team_meet(s->team);
+    strut_thread_pool_meet(s->pool);
     n += steps;
     if (thread != 0) continue;
-    if (s->state->ledger) keep_ledger(s, passes, side);
+    if (s->state->balance) keep_balance(s, passes, side);
     s->state->evaluations += passes;
     s->state->step = n;
     s->side = side;
@@ -456,5 +456,5 @@ void strut_domain_steps_advance(strut_domain_steps *s, strut_state *state, doubl
   if (!s->started) strut_domain_steps_restart(s, state, dt);
   s->state = state, s->dt = dt, s->count = count;
   s->subnormals = strut_subnormals_mode();
-  strut_team_run(s->team, work, s);
+  strut_thread_pool_run(s->pool, work, s);
 }

@@ -7,7 +7,7 @@
  * and members are worked on again as soon as their nodes have moved: four passes read the tables from memory
  * once. Where masses are coupled, every evaluation ends with a solve by all of them (mass_shares.h) instead.
  *
- * Motions have the same bits as the method's own, the ledger's works too where members are stored as in the scene;
+ * Motions have the same bits as the method's own, the energy balance's works too where members are stored as in the scene;
  * both for any number of threads.
  */
 #ifndef STRUT_ENGINE_INTEGRATE_DOMAIN_STEPS_H
@@ -17,7 +17,7 @@
 
 typedef struct strut_domain_steps strut_domain_steps;
 
-/** Does it know the method, and all terms of the model's plan? */
+/** Does it know the method, and all terms of the model's terms? */
 bool strut_domain_steps_possible(const strut_model *model, const strut_integrator *method);
 /**
  * member: (members) the scene's member that is stored at k, so that members at a node keep their order; NULL: as in

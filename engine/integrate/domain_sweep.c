@@ -117,33 +117,34 @@ static void pay_loads(const strut_domain_steps *s, domain_part *p, int k, int si
     int32_t i = p->paid[k], at = 2 * l->node[i];
     const double *load = p->load + 2 * (k * l->count + i);
     if (!domain_part_owns(&p->domain, l->node[i])) continue;
-    s->ledger[side].load[k * s->model->loads.count + p->domain.load[i]] =
+    s->balance[side].load[k * s->model->loads.count + p->domain.load[i]] =
         load[0] * p->v[at] + load[1] * p->v[at + 1];
   }
 }
 
-/* The ground's forces of pass k, one contact after the other where the ledger asks what each one does. */
+/* The ground's forces of pass k, one contact after the other where the energy balance asks what each one does. */
 static void touch_ground(const strut_domain_steps *s, domain_part *p, int k, int side,
                          int32_t end) {
   strut_subdomain *d = &p->domain;
   const strut_contact_table *c = &d->model.contacts;
-  bool ledger = d->state.ledger;
+  bool balance = d->state.balance;
   int32_t i = p->contact[k], all = s->model->contacts.count;
   int32_t blocks = (all + DOMAIN_CONTACT_BLOCK - 1) / DOMAIN_CONTACT_BLOCK;
   for (; i < c->count && c->entry[i].node < end; i++) {
     double *power = d->state.power;
     int32_t of = d->contact[i];
     for (int32_t w = 0; w < STRUT_POWER_COUNT; w++) power[w] = 0.0;
-    ground_kernel_range(&d->model, &d->state, p->q, p->v, p->force, i, i + 1, ledger);
-    if (!ledger || !domain_part_owns(d, c->entry[i].node)) continue;
+    ground_kernel_range(&d->model, &d->state, p->q, p->v, p->force, i, i + 1, balance);
+    if (!balance || !domain_part_owns(d, c->entry[i].node)) continue;
     double *to =
-        s->ledger[side].contact + DOMAIN_CONTACT_POWERS * ((size_t)k * (size_t)all + (size_t)of);
+        s->balance[side].contact + DOMAIN_CONTACT_POWERS * ((size_t)k * (size_t)all + (size_t)of);
     const double now[DOMAIN_CONTACT_POWERS] = {power[STRUT_POWER_CONTACT],
                                                power[STRUT_POWER_FRICTION], power[STRUT_POWER_BELT],
                                                power[STRUT_POWER_EXCHANGED]};
-    if (now[0] == 0.0 && now[1] == 0.0 && now[2] == 0.0) continue; /* as it is in the ledger */
+    if (now[0] == 0.0 && now[1] == 0.0 && now[2] == 0.0)
+      continue; /* as it is in the energy balance */
     memcpy(to, now, sizeof now);
-    atomic_store_explicit(&s->ledger[side].touched[k * blocks + of / DOMAIN_CONTACT_BLOCK], 1,
+    atomic_store_explicit(&s->balance[side].touched[k * blocks + of / DOMAIN_CONTACT_BLOCK], 1,
                           memory_order_relaxed);
   }
   p->contact[k] = i;
@@ -162,7 +163,7 @@ static void begin_to(const strut_domain_steps *s, domain_part *p, int32_t end) {
 static void act_to(const strut_domain_steps *s, domain_part *p, int k, int side, int32_t end) {
   const strut_subdomain *d = &p->domain;
   if (d->model.contacts.count) touch_ground(s, p, k, side, end);
-  if (d->model.loads.count && d->state.ledger) pay_loads(s, p, k, side, end);
+  if (d->model.loads.count && d->state.balance) pay_loads(s, p, k, side, end);
 }
 
 static void move_to(const strut_domain_steps *s, domain_part *p, int k, bool last, int32_t end) {
@@ -185,9 +186,10 @@ static void finish_to(const strut_domain_steps *s, domain_part *p, int k, int pa
 
 STRUT_CLONES
 static void work_on_members(const strut_subdomain *d, const double *q, const double *v,
-                            double *force, int32_t block, bool ledger, four_member_powers *powers) {
+                            double *force, int32_t block, bool balance,
+                            four_member_powers *powers) {
   const strut_member_table t = d->model.members;
-  if (ledger)
+  if (balance)
     members_of_block(&t, &d->state, q, v, force, block, true, powers);
   else
     members_of_block(&t, &d->state, q, v, force, block, false, powers);
@@ -207,13 +209,13 @@ static void drive_block(domain_part *p, int k, int32_t block) {
 /* A block of members at pass k. */
 static void add_block(const strut_domain_steps *s, domain_part *p, int k, int side, int32_t block) {
   strut_subdomain *d = &p->domain;
-  bool counted = d->state.ledger && block >= d->block_begin && block < d->block_end;
+  bool counted = d->state.balance && block >= d->block_begin && block < d->block_end;
   if (d->model.drives.count) drive_block(p, k, block);
   work_on_members(d, p->q, p->v, p->force, block, counted, &p->power[k]);
   int32_t own = block + 1 - d->block_begin;
-  if (counted && (own % STRUT_LEDGER_BLOCKS == 0 || block + 1 == d->block_end)) {
-    int32_t to = d->ledger_begin + (own - 1) / STRUT_LEDGER_BLOCKS;
-    s->ledger[side].member[k * s->ledger_blocks + to] = p->power[k];
+  if (counted && (own % STRUT_BALANCE_BLOCKS == 0 || block + 1 == d->block_end)) {
+    int32_t to = d->balance_begin + (own - 1) / STRUT_BALANCE_BLOCKS;
+    s->balance[side].member[k * s->balance_blocks + to] = p->power[k];
     p->power[k] = (four_member_powers){0};
   }
 }
@@ -253,9 +255,9 @@ static void solve_for_accelerations(const strut_domain_steps *s, domain_part *p,
   const strut_subdomain *d = &p->domain;
   for (int32_t i = d->own_begin; i < d->own_end; i++)
     strut_pair_store(s->sum + 2 * d->node[i], strut_pair_load(p->force + 2 * i));
-  strut_team_meet(s->team);
-  strut_mass_shares_solve(s->mass, s->team, thread, s->sum, s->shared);
-  strut_team_meet(s->team);
+  strut_thread_pool_meet(s->pool);
+  strut_mass_shares_solve(s->mass, s->pool, thread, s->sum, s->shared);
+  strut_thread_pool_meet(s->pool);
   for (int32_t i = 0; i < d->count; i++)
     strut_pair_store(p->force + 2 * i, strut_pair_load(s->shared + 2 * d->node[i]));
 }

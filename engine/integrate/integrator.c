@@ -68,12 +68,12 @@ strut_status strut_integrator_check(const strut_model *model, const strut_experi
                       "%s cannot step over contacts, and node '%s' may touch the ground; use "
                       "solver.integrator verlet-events, rk4-events or adaptive",
                       name, scene->nodes[model->contacts.entry[0].node].name);
-  if (method->no_memory && model->plan & STRUT_TERM_MEMORY)
+  if (method->no_memory && model->terms & STRUT_TERM_MEMORY)
     return strut_fail(error, STRUT_USAGE,
                       "%s cannot step over what breaks, is released or yields; use "
                       "solver.integrator rk4-events, verlet-events or adaptive",
                       name);
-  if (method->no_sliding_masses && model->plan & STRUT_TERM_SLIDING_MASS)
+  if (method->no_sliding_masses && model->terms & STRUT_TERM_SLIDING_MASS)
     return strut_fail(error, STRUT_USAGE,
                       "%s has no varying mass matrix, and slider '%s' moves; use solver.integrator "
                       "rk4, verlet or adaptive",
@@ -82,8 +82,8 @@ strut_status strut_integrator_check(const strut_model *model, const strut_experi
     strut_status status = strut_linear_solver_load(error);
     if (status) return status;
   }
-  if (!(model->plan & STRUT_TERM_RIGID)) return STRUT_OK;
-  if (model->plan & STRUT_TERM_SURFACES)
+  if (!(model->terms & STRUT_TERM_RIGID)) return STRUT_OK;
+  if (model->terms & STRUT_TERM_SURFACES)
     return strut_fail(
         error, STRUT_USAGE,
         "rigid bars need a ground that is one straight line at rest; use bars: elastic");
@@ -99,20 +99,20 @@ strut_status strut_integrator_check(const strut_model *model, const strut_experi
 static const double ON_GRID = 1e-6;
 
 /*
- * Samples, starts and switches signals at the present grid point, and books what that does to the elastic
+ * Samples, starts and switches signals at the present grid point, and accumulates what that does to the elastic
  * energy. Methods with events take samples, touchdowns and relays where they are.
  */
 static void update_on_grid(const strut_integrator *method, const strut_model *model,
                            strut_state *state, void *workspace, double dt) {
   double t = (double)state->step * dt, before = 0.0;
-  if (state->ledger) before = strut_energy_evaluate(model, state, t).elastic;
+  if (state->balance) before = strut_energy_evaluate(model, state, t).elastic;
   bool changed = !method->events && strut_feedback_sample(model, state, t, ON_GRID * dt);
   if (model->feedback.trigger_count && strut_feedback_watch(model, state, t, !method->events))
     changed = true;
   if (model->feedback.relay_count && !method->events && strut_relays_follow(model, state, t))
     changed = true;
   if (!changed) return;
-  if (state->ledger) {
+  if (state->balance) {
     double gained = strut_energy_evaluate(model, state, t).elastic - before;
     state->work[STRUT_POWER_DRIVE] += gained;
     state->work[STRUT_POWER_EXCHANGED] += fabs(gained);

@@ -39,7 +39,7 @@ int strut_large_threads(void) {
 static strut_status create_reordered(strut_large_steps *s, const strut_model *model,
                                      const strut_integrator_settings *settings,
                                      strut_error *error) {
-  /* members in the order of subdomains: the ledger adds them up as they are stored */
+  /* members in the order of subdomains: the energy balance adds them up as they are stored */
   strut_status status = strut_renumbering_create(model, false, &s->order, error);
   if (!status) status = strut_state_create(s->order->model, &s->state, error);
   if (status) return status;
@@ -120,7 +120,7 @@ static void copy_numbers(const strut_state *from, strut_state *to) {
   to->interrupt = from->interrupt;
   to->most_evaluations = from->most_evaluations;
   to->trouble = from->trouble;
-  to->ledger = from->ledger;
+  to->balance = from->balance;
   to->load_work_origin = from->load_work_origin;
   memcpy(to->work, from->work, sizeof to->work);
   memcpy(to->power, from->power, sizeof to->power);

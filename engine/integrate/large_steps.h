@@ -2,7 +2,7 @@
 /**
  * Steps of a run whose structure is large: stored in another order where the scene's is scattered
  * (engine/model/renumber.h), and by several threads where there are any (domain_steps.h). Positions, velocities and contact
- * forces have the same bits as without. In another order, the ledger sums powers of members as they are stored:
+ * forces have the same bits as without. In another order, the energy balance sums powers of members as they are stored:
  * its works differ in rounding, but not with the number of threads.
  */
 #ifndef STRUT_ENGINE_INTEGRATE_LARGE_STEPS_H

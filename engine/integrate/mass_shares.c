@@ -367,7 +367,7 @@ static void backward(const branches *b, int32_t begin, int32_t end, double *acce
   }
 }
 
-static void solve_branches(const strut_mass_shares *s, strut_team *team, int thread,
+static void solve_branches(const strut_mass_shares *s, strut_thread_pool *pool, int thread,
                            const double *force, double *acceleration) {
   const branches *b = &s->branches;
   int32_t begin = b->begin[thread], end = b->begin[thread + 1], n = b->factor->n;
@@ -378,21 +378,21 @@ static void solve_branches(const strut_mass_shares *s, strut_team *team, int thr
   }
   forward(b, begin, end);
   if (b->above) {
-    strut_team_meet(team);
+    strut_thread_pool_meet(pool);
     int32_t from = (int32_t)((int64_t)b->above * thread / s->threads);
     int32_t to = (int32_t)((int64_t)b->above * (thread + 1) / s->threads);
     for (int32_t i = from; i < to; i++)
       strut_pair_store(row_above(b, i), strut_pair_load(force + 2 * b->node[b->column[first + i]]));
     gather_branches(b, from, to);
-    strut_team_meet(team);
+    strut_thread_pool_meet(pool);
     if (thread == 0) gather_above(b);
     if (thread == 0) backward(b, first, n, acceleration);
-    strut_team_meet(team);
+    strut_thread_pool_meet(pool);
   }
   backward(b, begin, end, acceleration);
 }
 
-void strut_mass_shares_solve(const strut_mass_shares *s, strut_team *team, int thread,
+void strut_mass_shares_solve(const strut_mass_shares *s, strut_thread_pool *pool, int thread,
                              const double *force, double *acceleration) {
   const strut_mass *mass = s->mass;
   const double *inverse = mass->inverse;
@@ -400,7 +400,7 @@ void strut_mass_shares_solve(const strut_mass_shares *s, strut_team *team, int t
     acceleration[s->single[i]] = force[s->single[i]] * inverse[s->single[i]];
   if (mass->shared) {
     mass_blocks(&s->blocks[thread], true, force, acceleration);
-    if (s->branches.factor) solve_branches(s, team, thread, force, acceleration);
+    if (s->branches.factor) solve_branches(s, pool, thread, force, acceleration);
     return;
   }
   for (int c = 0; c < 2; c++) {

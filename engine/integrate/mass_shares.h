@@ -13,15 +13,15 @@
 
 typedef struct strut_mass_shares strut_mass_shares;
 
-/** For a team of so many threads. NULL: out of memory. */
+/** For a pool of so many threads. NULL: out of memory. */
 strut_mass_shares *strut_mass_shares_create(const strut_model *model, int threads);
 /** NULL is allowed. */
 void strut_mass_shares_free(strut_mass_shares *shares);
 /**
- * acceleration = M^-1 force, both (length), by all threads of the team; `acceleration` is 0 before the first
+ * acceleration = M^-1 force, both (length), by all threads of the pool; `acceleration` is 0 before the first
  * time. Forces must be there before anyone begins, and accelerations are when all have returned.
  */
-void strut_mass_shares_solve(const strut_mass_shares *shares, strut_team *team, int thread,
+void strut_mass_shares_solve(const strut_mass_shares *shares, strut_thread_pool *pool, int thread,
                              const double *force, double *acceleration);
 
 #endif

@@ -92,7 +92,7 @@ static void *midpoint_create(const strut_model *model, strut_state *state,
 static void midpoint_restart(const strut_model *model, strut_state *state, void *workspace,
                              double dt) {
   midpoint_workspace *w = workspace;
-  if (model->plan & STRUT_TERM_DRIVE) strut_drive_apply(model, state, (double)state->step * dt);
+  if (model->terms & STRUT_TERM_DRIVE) strut_drive_apply(model, state, (double)state->step * dt);
   strut_discrete_gradient_tensions(model, state, w->held);
   w->known = 0;
   w->factor_step = 0.0;
@@ -125,7 +125,7 @@ static void guess(const strut_model *model, const strut_state *state, midpoint_w
 static void evaluate(const strut_model *model, strut_state *state, midpoint_workspace *w) {
   for (int32_t i = 0; i < model->length; i++) w->q1[i] = state->q[i] + w->step.h * w->u[i];
   strut_discrete_gradient_forces(model, state, &w->step, w->q1, w->u);
-  if (model->plan & STRUT_TERM_SUPPORT_MOTION)
+  if (model->terms & STRUT_TERM_SUPPORT_MOTION)
     strut_support_motion_apply_mean(model, state, w->step.h, w->moved[0], w->moved[1], w->u);
 }
 
@@ -265,9 +265,9 @@ static void finish(const strut_model *model, strut_state *state, midpoint_worksp
     state->q[at] += h * w->u[at];
     state->v[at] = 2.0 * w->u[at] - state->v[at];
   }
-  if (model->plan & STRUT_TERM_SUPPORT_MOTION)
+  if (model->terms & STRUT_TERM_SUPPORT_MOTION)
     strut_support_motion_place(model, state, w->step.begin + h, state->q, state->v);
-  for (int p = 0; p < STRUT_POWER_COUNT && state->ledger; p++)
+  for (int p = 0; p < STRUT_POWER_COUNT && state->balance; p++)
     state->work[p] += h * state->power[p];
   memcpy(w->held, w->step.tension, (size_t)model->members.count * sizeof *w->held);
   w->before[1] = w->before[0], w->before[0] = w->u, w->u = oldest;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * How a method of plain steps comes to run its loop: with the energy ledger and without it are two
+ * How a method of plain steps comes to run its loop: with the energy balance and without it are two
  * functions, and a third is for scenes with rare terms, each compiled for several processors, so that a
  * scene does not pay for what it does not need.
  */
@@ -29,36 +29,36 @@ static inline void end_moving_step(const strut_model *model, strut_state *state,
 
 /**
  * Defines NAME_plain(model, state, work, dt, count), which runs
- * `steps(model, state, work, dt, count, terms, ledger)`, an inlined function, as plan and ledger ask.
+ * `steps(model, state, work, dt, count, terms, balance)`, an inlined function, as terms and balance ask.
  * NAME must be the method's own: cloned functions of equal names do not link with clang (hot.h).
  */
 #define STRUT_PLAIN_STEPS(name, work_type, steps)                                                  \
   STRUT_CLONES                                                                                     \
-  static void name##_with_ledger(const strut_model *model, strut_state *state, work_type *work,    \
-                                 double dt, int64_t count) {                                       \
+  static void name##_with_balance(const strut_model *model, strut_state *state, work_type *work,   \
+                                  double dt, int64_t count) {                                      \
     steps(model, state, work, dt, count, STRUT_TERMS_COMMON, true);                                \
   }                                                                                                \
                                                                                                    \
   STRUT_CLONES                                                                                     \
-  static void name##_without_ledger(const strut_model *model, strut_state *state, work_type *work, \
-                                    double dt, int64_t count) {                                    \
+  static void name##_without_balance(const strut_model *model, strut_state *state,                 \
+                                     work_type *work, double dt, int64_t count) {                  \
     steps(model, state, work, dt, count, STRUT_TERMS_COMMON, false);                               \
   }                                                                                                \
                                                                                                    \
   STRUT_CLONES                                                                                     \
   static void name##_with_rare_terms(const strut_model *model, strut_state *state,                 \
                                      work_type *work, double dt, int64_t count) {                  \
-    steps(model, state, work, dt, count, STRUT_TERMS_ALL, state->ledger);                          \
+    steps(model, state, work, dt, count, STRUT_TERMS_ALL, state->balance);                         \
   }                                                                                                \
                                                                                                    \
   static void name##_plain(const strut_model *model, strut_state *state, work_type *work,          \
                            double dt, int64_t count) {                                             \
-    if (model->plan & STRUT_TERMS_RARE)                                                            \
+    if (model->terms & STRUT_TERMS_RARE)                                                           \
       name##_with_rare_terms(model, state, work, dt, count);                                       \
-    else if (state->ledger)                                                                        \
-      name##_with_ledger(model, state, work, dt, count);                                           \
+    else if (state->balance)                                                                       \
+      name##_with_balance(model, state, work, dt, count);                                          \
     else                                                                                           \
-      name##_without_ledger(model, state, work, dt, count);                                        \
+      name##_without_balance(model, state, work, dt, count);                                       \
   }
 
 #endif

@@ -20,7 +20,7 @@ static void *rk4_create(const strut_model *model, strut_state *state,
   (void)settings;
   rk4_workspace *w = strut_arena_allocate(&state->arena, 1, sizeof *w);
   if (!w) return NULL;
-  if ((model->plan & STRUT_TERM_RIGID) && !strut_rigid_create(model, state)) return NULL;
+  if ((model->terms & STRUT_TERM_RIGID) && !strut_rigid_create(model, state)) return NULL;
   double **all[] = {&w->q, &w->v[1], &w->v[2], &w->v[3], &w->a[0], &w->a[1], &w->a[2], &w->a[3]};
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
     *all[i] = strut_arena_allocate(&state->arena, (size_t)model->length, sizeof(double));
@@ -31,26 +31,26 @@ static void *rk4_create(const strut_model *model, strut_state *state,
 
 /*
  * The step as a loop over its stages, so that the forces stand in it once. Times are n dt, (n + 1/2)
- * dt and (n + 1) dt, never sums. With the ledger the powers enter the works with the stage's weight: those of members
- * and of level ground once for the whole step, see step_ledger.h, all others stage by stage.
+ * dt and (n + 1) dt, never sums. With the energy balance the powers enter the works with the stage's weight: those of members
+ * and of level ground once for the whole step, see step_balance.h, all others stage by stage.
  */
 STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, rk4_workspace *w,
-                            double dt, int64_t count, unsigned terms, bool ledger, bool rigid) {
+                            double dt, int64_t count, unsigned terms, bool balance, bool rigid) {
   const double *ahead = STRUT_RK4_AHEAD, *weight = STRUT_RK4_WEIGHTS;
-  strut_booking booking = ledger ? STRUT_BOOK_LANES : STRUT_BOOK_NOTHING;
+  strut_accumulation booking = balance ? STRUT_ACCUMULATE_LANES : STRUT_ACCUMULATE_NOTHING;
   double *restrict q = state->q, *restrict v = state->v;
   const double *const at[4] = {q, w->q, w->q, w->q};
   const double *const speed[4] = {v, w->v[1], w->v[2], w->v[3]};
   int32_t n = model->length;
-  bool moves = model->plan & terms & STRUT_TERMS_AT_STEP_END;
-  bool others = ledger && model->plan & terms & ~STRUT_TERMS_IN_LANES;
-  for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) state->power[p] = 0.0;
+  bool moves = model->terms & terms & STRUT_TERMS_AT_STEP_END;
+  bool others = balance && model->terms & terms & ~STRUT_TERMS_IN_LANES;
+  for (int p = 0; p < STRUT_POWER_COUNT && balance; p++) state->power[p] = 0.0;
   strut_drives_ahead drives;
   drives_ahead_begin(model, terms, &drives);
   for (int64_t end = state->step + count; state->step < end; state->step++) {
-    if (ledger) strut_step_ledger_begin(model, state);
+    if (balance) strut_step_balance_begin(model, state);
     for (int k = 0; k < 4; k++) {
-      if (ledger) state->booked = &state->lanes[strut_weight_side(k)];
+      if (balance) state->accumulated = &state->lanes[strut_weight_side(k)];
       double step = (double)state->step + ahead[k], t = step * dt;
       drives_ahead_apply(model, state, &drives, t, step, 0.5, dt, 2 * (end - state->step));
       forces_kernel(model, state, t, at[k], speed[k], w->a[k], terms, booking);
@@ -63,19 +63,19 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, rk4_wo
         strut_support_motion_place(model, state, ((double)state->step + ahead[k + 1]) * dt, w->q,
                                    w->v[k + 1]);
     }
-    if (ledger) strut_step_ledger_end(model, state, dt / 6.0);
+    if (balance) strut_step_balance_end(model, state, dt / 6.0);
     rk4_end_of_step(n, dt, q, v, w->v[1], w->v[2], w->v[3], q);
     rk4_end_of_step(n, dt, v, w->a[0], w->a[1], w->a[2], w->a[3], v);
     if (moves) end_moving_step(model, state, dt);
     if (rigid) strut_rigid_project(model, state, q, v);
-    if (model->plan & terms & STRUT_TERM_MEMORY)
-      strut_memory_renew(model, state, ((double)state->step + 1.0) * dt);
+    if (model->terms & terms & STRUT_TERM_MEMORY)
+      strut_history_renew(model, state, ((double)state->step + 1.0) * dt);
   }
 }
 
 STRUT_INLINE void run_elastic(const strut_model *model, strut_state *state, rk4_workspace *w,
-                              double dt, int64_t count, unsigned terms, bool ledger) {
-  run_steps(model, state, w, dt, count, terms, ledger, false);
+                              double dt, int64_t count, unsigned terms, bool balance) {
+  run_steps(model, state, w, dt, count, terms, balance, false);
 }
 
 STRUT_PLAIN_STEPS(rk4, rk4_workspace, run_elastic)
@@ -83,7 +83,7 @@ STRUT_PLAIN_STEPS(rk4, rk4_workspace, run_elastic)
 STRUT_CLONES
 static void rk4_rigid(const strut_model *model, strut_state *state, rk4_workspace *w, double dt,
                       int64_t count) {
-  run_steps(model, state, w, dt, count, STRUT_TERMS_ALL, state->ledger, true);
+  run_steps(model, state, w, dt, count, STRUT_TERMS_ALL, state->balance, true);
 }
 
 static void rk4_advance(const strut_model *model, strut_state *state, void *workspace, double dt,
@@ -110,7 +110,7 @@ const strut_integrator strut_integrator_rk4 = {
     .evaluations = 4,
     .region = STRUT_REGION_RK4,
     .role = STRUT_ROLE_PLAIN,
-    .lanes = true,
+    .batch = true,
     .rigid = true,
     .create = rk4_create,
     .restart = rk4_restart,

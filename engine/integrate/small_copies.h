@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * The methods of small models for one set of registers: with the ledger and without it, for all models, for those
+ * The methods of small models for one set of registers: with the energy balance and without it, for all models, for those
  * that have neither cables, slope nor other laws, and for those that have exactly the usual terms. Copies do not ask for
  * what they know.
  *
@@ -13,28 +13,28 @@
 #include "engine/integrate/small_rk4.h"
 #include "engine/integrate/small_verlet.h"
 
-#define STRUT_SMALL_COPY(method, name, terms, ledger)                                              \
+#define STRUT_SMALL_COPY(method, name, terms, balance)                                             \
   STRUT_SMALL_TARGET                                                                               \
   static void method##_##name(const strut_model *model, strut_state *state,                        \
                               const strut_small_kept *kept, double dt, int64_t count) {            \
-    small_##method(model, state, kept, dt, count, terms, ledger);                                  \
+    small_##method(model, state, kept, dt, count, terms, balance);                                 \
   }
 
 #define STRUT_SMALL_METHOD(method)                                                                 \
-  STRUT_SMALL_COPY(method, usual_with_ledger, STRUT_SMALL_USUAL, true)                             \
+  STRUT_SMALL_COPY(method, usual_with_balance, STRUT_SMALL_USUAL, true)                            \
   STRUT_SMALL_COPY(method, usual, STRUT_SMALL_USUAL, false)                                        \
-  STRUT_SMALL_COPY(method, common_with_ledger, STRUT_SMALL_COMMON, true)                           \
+  STRUT_SMALL_COPY(method, common_with_balance, STRUT_SMALL_COMMON, true)                          \
   STRUT_SMALL_COPY(method, common, STRUT_SMALL_COMMON, false)                                      \
-  STRUT_SMALL_COPY(method, with_ledger, STRUT_TERMS_ALL, true)                                     \
-  STRUT_SMALL_COPY(method, without_ledger, STRUT_TERMS_ALL, false)                                 \
+  STRUT_SMALL_COPY(method, with_balance, STRUT_TERMS_ALL, true)                                    \
+  STRUT_SMALL_COPY(method, without_balance, STRUT_TERMS_ALL, false)                                \
                                                                                                    \
   void STRUT_SMALL_NAME(method)(const strut_model *model, strut_state *state,                      \
                                 const strut_small_kept *kept, double dt, int64_t count) {          \
     static strut_small_steps *const copies[3][2] = {                                               \
-        {method##_without_ledger, method##_with_ledger},                                           \
-        {method##_common, method##_common_with_ledger},                                            \
-        {method##_usual, method##_usual_with_ledger}};                                             \
-    copies[small_copy_of(model)][state->ledger](model, state, kept, dt, count);                    \
+        {method##_without_balance, method##_with_balance},                                         \
+        {method##_common, method##_common_with_balance},                                           \
+        {method##_usual, method##_usual_with_balance}};                                            \
+    copies[small_copy_of(model)][state->balance](model, state, kept, dt, count);                   \
   }
 
 #endif

@@ -72,11 +72,11 @@ STRUT_SMALL_INLINE void small_begin(const strut_model *model, const strut_state 
   const strut_small_model *s = model->small;
   r->tables = s;
   r->contacts = &model->contacts;
-  r->plan = small_plan_in_copy(model, terms);
+  r->terms = small_terms_in_copy(model, terms);
   r->inputs = inputs;
   strut_small_inputs_read(model, state, inputs);
   r->driven = inputs->driven;
-  bool driven = r->plan & STRUT_TERM_DRIVE && model->drives.count;
+  bool driven = r->terms & STRUT_TERM_DRIVE && model->drives.count;
   strut_small_rest_fill(model, state,
                         !driven                     ? 1
                         : instants < SMALL_INSTANTS ? instants
@@ -99,16 +99,16 @@ STRUT_SMALL_INLINE void small_drive_instants(const strut_model *model, const str
 
 /* The state as the general kernel leaves it at its present step; rest: at its end. */
 STRUT_SMALL_INLINE void small_end(const small_run *r, strut_state *state, double dt,
-                                  const small_rest *rest, const small_motion *m, bool ledger) {
+                                  const small_rest *rest, const small_motion *m, bool balance) {
   const strut_small_model *s = r->tables;
   small_write(s, &m->q, state->q);
   small_write(s, &m->v, state->v);
   small_write(s, &m->f, state->force);
-  if (ledger) {
+  if (balance) {
     small_work_store(state->work, m->work);
     small_work_store(state->power, m->power);
   }
-  if (!(r->plan & STRUT_TERM_DRIVE)) return;
+  if (!(r->terms & STRUT_TERM_DRIVE)) return;
   state->drive_time = (double)state->step * dt;
   for (int32_t j = 0; j < s->members; j++)
     state->rest[j] = rest->rest[j], state->rest_rate[j] = rest->rate[j];

@@ -7,7 +7,7 @@
 
 #include "engine/forces/members_kernel.h"
 
-enum { LEDGER_MEMBERS = STRUT_BLOCK * STRUT_LEDGER_BLOCKS, FAR = 255 };
+enum { BALANCE_MEMBERS = STRUT_BLOCK * STRUT_BALANCE_BLOCKS, FAR = 255 };
 
 static int32_t member_at(const strut_subdivision *s, int32_t k) {
   return s->member ? s->member[k] : k;
@@ -32,17 +32,17 @@ static void order_nodes(strut_subdivision *s) {
     if (s->place[i] < 0) s->node[s->place[i] = --next] = i;
 }
 
-/* Whole blocks of the ledger for each part, and the nodes that they are the last ones of. */
+/* Whole blocks of the energy balance for each part, and the nodes that they are the last ones of. */
 static void divide(strut_subdivision *s) {
   const strut_member_table *t = &s->model->members;
-  int64_t blocks = (t->count + LEDGER_MEMBERS - 1) / LEDGER_MEMBERS;
+  int64_t blocks = (t->count + BALANCE_MEMBERS - 1) / BALANCE_MEMBERS;
   int part = s->parts;
   int32_t first = s->model->node_count;
   for (int p = 0; p <= part; p++) s->block[p] = (int32_t)(blocks * p / part);
   s->begin[0] = 0;
   for (int32_t k = t->count - 1; k >= 0;
        k--) { /* `first`: the first node whose last member is k or later */
-    while (part > 0 && k < s->block[part] * LEDGER_MEMBERS) s->begin[part--] = first;
+    while (part > 0 && k < s->block[part] * BALANCE_MEMBERS) s->begin[part--] = first;
     int32_t j = member_at(s, k), a = s->place[end_of(t->from, j)], b = s->place[end_of(t->to, j)];
     if (a == first - 1 || b == first - 1) first--;
     if (a == first - 1 || b == first - 1) first--;
@@ -70,14 +70,14 @@ double strut_subdivision_overlap(const strut_subdivision *s) {
   int64_t twice = 0;
   for (int p = 0; p < s->parts && s->parts > 1; p++) {
     int32_t end =
-        s->block[p + 1] * LEDGER_MEMBERS < t->count ? s->block[p + 1] * LEDGER_MEMBERS : t->count;
-    for (int32_t k = s->block[p] * LEDGER_MEMBERS; k < end; k++) {
+        s->block[p + 1] * BALANCE_MEMBERS < t->count ? s->block[p + 1] * BALANCE_MEMBERS : t->count;
+    for (int32_t k = s->block[p] * BALANCE_MEMBERS; k < end; k++) {
       int32_t j = member_at(s, k), a = s->place[end_of(t->from, j)], b = s->place[end_of(t->to, j)];
       twice += a < s->begin[p] || b < s->begin[p] || a >= s->begin[p + 1] || b >= s->begin[p + 1];
     }
   }
   return 1.0 + (double)twice * (s->depth + 1) /
-                   (double)t->count; /* a ring of ghosts per pass, on both sides */
+                   (double)t->count; /* a layer of ghosts per pass, on both sides */
 }
 
 /* ---- one of them ---- */
@@ -86,7 +86,7 @@ typedef struct builder {
   const strut_subdivision *s;
   strut_subdomain *d;
   strut_arena *arena, scratch;
-  uint8_t *level;  /* (nodes) 0: own; rings of ghosts; FAR: none of it */
+  uint8_t *level;  /* (nodes) 0: own; layers of ghosts; FAR: none of it */
   int32_t *local;  /* (nodes) */
   int32_t *member; /* (slots) the scene's, or -1 */
   int32_t slots;
@@ -105,20 +105,20 @@ static void *allocate_scratch(builder *b, size_t count, size_t size) {
   return block;
 }
 
-/* Own nodes; ends of their members and of those that the ledger counts here; and so on. */
+/* Own nodes; ends of their members and of those that the energy balance counts here; and so on. */
 static void find_levels(builder *b, int32_t first, int32_t end) {
   const strut_subdivision *s = b->s;
   const strut_member_table *t = &s->model->members;
   for (int32_t i = 0; i < s->model->node_count; i++)
     b->level[i] = s->place[i] >= b->d->own_begin && s->place[i] < b->d->own_end ? 0 : FAR;
   if (s->parts == 1) return;
-  for (uint8_t ring = 1; ring <= s->depth; ring++)
+  for (uint8_t layer = 1; layer <= s->depth; layer++)
     for (int32_t k = 0; k < t->count; k++) {
       int32_t j = member_at(s, k);
       uint8_t *from = &b->level[t->from[j] / 2], *to = &b->level[t->to[j] / 2];
-      bool met = *from < ring || *to < ring || (ring == 1 && k >= first && k < end);
-      if (met && *from > ring) *from = ring;
-      if (met && *to > ring) *to = ring;
+      bool met = *from < layer || *to < layer || (layer == 1 && k >= first && k < end);
+      if (met && *from > layer) *from = layer;
+      if (met && *to > layer) *to = layer;
     }
 }
 
@@ -144,7 +144,7 @@ static void number_nodes(builder *b) {
 
 static int32_t padded(int32_t count, int32_t to) { return (count + to - 1) / to * to; }
 
-/* Members with an end in the last ring but one, or nearer; whole blocks before, of, and behind the own ones. */
+/* Members with an end in the last layer but one, or nearer; whole blocks before, of, and behind the own ones. */
 static void list_members(builder *b, int32_t first, int32_t end) {
   const strut_subdivision *s = b->s;
   const strut_member_table *t = &s->model->members;
@@ -330,12 +330,12 @@ bool strut_subdomain_create(const strut_subdivision *s, int part, strut_arena *a
   const strut_model *model = s->model;
   size_t nodes = (size_t)model->node_count;
   builder b = {.s = s, .d = d, .arena = arena};
-  int32_t first = s->block[part] * LEDGER_MEMBERS, end = s->block[part + 1] * LEDGER_MEMBERS;
+  int32_t first = s->block[part] * BALANCE_MEMBERS, end = s->block[part + 1] * BALANCE_MEMBERS;
   if (end > model->members.count) end = model->members.count;
   *d = (strut_subdomain){.model = *model,
                          .own_begin = s->begin[part],
                          .own_end = s->begin[part + 1],
-                         .ledger_begin = s->block[part]};
+                         .balance_begin = s->block[part]};
   d->model.arena = (strut_arena){0};
   b.level = allocate_scratch(&b, nodes, 1);
   b.local = allocate_scratch(&b, nodes, sizeof *b.local);

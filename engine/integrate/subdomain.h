@@ -4,8 +4,8 @@
  * them.
  *
  * Ghosts reach so far that STRUT_PASSES evaluations of the forces, one after the other, give the own nodes the
- * right motion although the outermost ghosts lack members; or one ring, where others tell how ghosts move. Every node adds up its members in the scene's order, and
- * every member that the ledger counts is counted by one subdomain, in whole blocks of the ledger.
+ * right motion although the outermost ghosts lack members; or one layer, where others tell how ghosts move. Every node adds up its members in the scene's order, and
+ * every member that the energy balance counts is counted by one subdomain, in whole blocks of the energy balance.
  *
  * Nodes are stored in the order of their last members, so that a node is ready to move soon after it was met.
  */
@@ -25,10 +25,10 @@ typedef struct strut_subdivision {
   int32_t *node;  /* (nodes) nodes in the order of their last members */
   int32_t *place; /* (nodes) where each stands in it */
   int32_t parts, *begin; /* (parts + 1) places where the nodes of each part begin */
-  int32_t *block;        /* (parts + 1) blocks of the ledger where its members begin */
+  int32_t *block;        /* (parts + 1) blocks of the energy balance where its members begin */
   int32_t *shared;       /* (nodes) number of a node that is a ghost somewhere, or -1 */
   int32_t shared_count;
-  int depth; /* rings of ghosts */
+  int depth; /* layers of ghosts */
 } strut_subdivision;
 
 typedef struct strut_subdomain {
@@ -36,16 +36,16 @@ typedef struct strut_subdomain {
   strut_state state; /* what kernels ask of one; q and v stay empty */
   int32_t count, own_begin, own_end; /* nodes, and which of them are its own */
   int32_t *node;                     /* (count) of the scene */
-  int32_t block_begin, block_end;    /* blocks of members that the ledger counts here */
-  int32_t ledger_begin;              /* block of the ledger that the first of them belongs to */
-  int32_t *need, *ready;             /* (blocks) nodes that have been met; that are done */
-  int32_t *contact, *load;           /* of the scene; both by node */
-  int32_t *drive_order;              /* (drives) by slot */
+  int32_t block_begin, block_end;    /* blocks of members that the energy balance counts here */
+  int32_t balance_begin;   /* block of the energy balance that the first of them belongs to */
+  int32_t *need, *ready;   /* (blocks) nodes that have been met; that are done */
+  int32_t *contact, *load; /* of the scene; both by node */
+  int32_t *drive_order;    /* (drives) by slot */
   int32_t *published, *ghost, published_count,
       ghost_count; /* own nodes that are ghosts elsewhere */
 } strut_subdomain;
 
-/** depth: rings of ghosts, at most STRUT_PASSES. False: out of memory. */
+/** depth: layers of ghosts, at most STRUT_PASSES. False: out of memory. */
 bool strut_subdivision_create(const strut_model *model, const int32_t *member, int parts, int depth,
                               strut_arena *arena, strut_subdivision *division);
 /** Members that all subdomains work on, over those that there are, about; without making them. */

@@ -36,11 +36,11 @@ static void verlet_restart(const strut_model *model, strut_state *state, void *w
 }
 
 STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, verlet_workspace *w,
-                            double dt, int64_t count, unsigned terms, bool ledger) {
+                            double dt, int64_t count, unsigned terms, bool balance) {
   double *restrict q = state->q, *restrict v = state->v, *restrict predicted = w->predicted;
   double half = 0.5 * dt;
   int32_t n = model->length;
-  bool moves = model->plan & terms & STRUT_TERMS_AT_STEP_END;
+  bool moves = model->terms & terms & STRUT_TERMS_AT_STEP_END;
   strut_drives_ahead drives;
   drives_ahead_begin(model, terms, &drives);
   for (int64_t end = state->step + count; state->step < end; state->step++) {
@@ -53,19 +53,19 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, verlet
     double step = (double)state->step + 1.0, t = step * dt;
     if (moves) strut_support_motion_place(model, state, t, q, predicted);
     drives_ahead_apply(model, state, &drives, t, step, 1.0, dt, end - state->step);
-    forces_kernel(model, state, t, q, predicted, next, terms, ledger);
+    forces_kernel(model, state, t, q, predicted, next, terms, balance);
     for (int32_t i = 0; i < n; i += STRUT_LANES)
       strut_lanes_store(v + i, strut_lanes_load(v + i) + half * (strut_lanes_load(a + i) +
                                                                  strut_lanes_load_pairs(next + i)));
     if (moves) end_moving_step(model, state, dt);
-    for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) {
+    for (int p = 0; p < STRUT_POWER_COUNT && balance; p++) {
       state->work[p] += half * (w->power[p] + state->power[p]);
       w->power[p] = state->power[p];
     }
     w->a = next, w->next = a;
-    if (model->plan & terms & STRUT_TERM_MEMORY && strut_memory_renew(model, state, t)) {
-      forces_kernel(model, state, t, q, v, w->a, terms, ledger);
-      for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) w->power[p] = state->power[p];
+    if (model->terms & terms & STRUT_TERM_MEMORY && strut_history_renew(model, state, t)) {
+      forces_kernel(model, state, t, q, v, w->a, terms, balance);
+      for (int p = 0; p < STRUT_POWER_COUNT && balance; p++) w->power[p] = state->power[p];
     }
   }
 }

@@ -96,11 +96,11 @@ static void compile_members(strut_model *model, bool *failed) {
     damping[j] = member->damping, mass[j] = member->mass;
     unsigned needs = STRUT_TERM_MEMBERS;
     if (member->kind == STRUT_BAR && scene->bar_model == STRUT_BARS_RIGID)
-      model->plan |= STRUT_TERM_RIGID | STRUT_TERM_LAWS;
+      model->terms |= STRUT_TERM_RIGID | STRUT_TERM_LAWS;
     if (member->damping > 0) needs |= STRUT_TERM_DAMPING;
     if (member->kind == STRUT_CABLE) slack[j] = 0.0, needs |= STRUT_TERM_SLACK;
     terms[j / STRUT_BLOCK] = (uint16_t)(terms[j / STRUT_BLOCK] | needs);
-    model->plan |= needs;
+    model->terms |= needs;
   }
   t->from = from, t->to = to, t->stiffness = stiffness, t->damping = damping, t->rest = rest;
   t->slack = slack, t->mass = mass, t->block_terms = terms;
@@ -136,7 +136,7 @@ static void compile_drives(strut_model *model, bool *failed) {
     first[count++] = !driven[slot];
     driven[slot] = 1;
     if (slot < model->members.count) terms[slot / STRUT_BLOCK] |= STRUT_TERM_DRIVE;
-    model->plan |= STRUT_TERM_DRIVE;
+    model->terms |= STRUT_TERM_DRIVE;
   }
   strut_release(driven);
   model->drives = (strut_drive_table){(int32_t)count, member, signal, first};
@@ -180,7 +180,7 @@ static void compile_unbalances(strut_model *model, bool *failed) {
   (void)failed;
   for (size_t i = 0; i < scene->unbalance_count; i++) {
     int32_t signal = scene->unbalances[i].signal;
-    model->plan |= STRUT_TERM_UNBALANCE;
+    model->terms |= STRUT_TERM_UNBALANCE;
     if (signal >= 0 && strut_signal_next_break(scene->signals, signal, 0.0) < HUGE_VAL)
       model->unbalance_corners = true;
   }
@@ -218,7 +218,7 @@ static void compile_loads(strut_model *model, bool *failed) {
   }
   model->constant_force = any ? constant : NULL;
   model->loads = (strut_load_table){count, node, signal, x, y};
-  model->plan |= (any ? STRUT_TERM_CONSTANT : 0u) | (count ? STRUT_TERM_LOADS : 0u);
+  model->terms |= (any ? STRUT_TERM_CONSTANT : 0u) | (count ? STRUT_TERM_LOADS : 0u);
 }
 
 static const strut_ground *ground_of(const strut_scene *scene, const strut_contact *contact) {
@@ -234,7 +234,7 @@ static void set_damping(strut_model *model, strut_contact_entry *entry, strut_gr
     case STRUT_DAMPING_HUNT_CROSSLEY:
       entry->damping = 0.0;
       entry->dissipation = dissipation;
-      model->plan |= STRUT_TERM_LAWS;
+      model->terms |= STRUT_TERM_LAWS;
       return;
     case STRUT_DAMPING_COUNT: break;
   }
@@ -260,9 +260,9 @@ static void compile_contacts(strut_model *model, bool *failed) {
     model->laws.friction |= UINT32_C(1) << contact->friction.law;
     if (contact->friction.law == STRUT_FRICTION_NONE) continue;
     entry[i].friction = contact->friction;
-    model->plan |= STRUT_TERM_FRICTION;
-    if (contact->friction.law != STRUT_FRICTION_KARNOPP) model->plan |= STRUT_TERM_LAWS;
-    if (contact->friction.directional) model->plan |= STRUT_TERM_LAWS | STRUT_TERM_DIRECTION;
+    model->terms |= STRUT_TERM_FRICTION;
+    if (contact->friction.law != STRUT_FRICTION_KARNOPP) model->terms |= STRUT_TERM_LAWS;
+    if (contact->friction.directional) model->terms |= STRUT_TERM_LAWS | STRUT_TERM_DIRECTION;
   }
   *t = (strut_contact_table){.count = (int32_t)count,
                              .at = at,
@@ -275,12 +275,12 @@ static void compile_contacts(strut_model *model, bool *failed) {
     return;
   }
   t->height = scene->ground.height, t->belt_speed = scene->ground.belt_speed;
-  model->plan |= STRUT_TERM_CONTACT;
+  model->terms |= STRUT_TERM_CONTACT;
   if (scene->ground.slope == 0.0) return;
   double c = cos(scene->ground.slope), s = sin(scene->ground.slope);
   t->tangent[0] = c, t->tangent[1] = s, t->normal[0] = -s, t->normal[1] = c;
   t->axes = (strut_contact_axes){{c, s}, {-s, c}};
-  model->plan |= STRUT_TERM_SLOPE;
+  model->terms |= STRUT_TERM_SLOPE;
 }
 
 strut_status strut_model_compile(const strut_scene *scene, strut_model **result,
@@ -306,7 +306,7 @@ strut_status strut_model_compile(const strut_scene *scene, strut_model **result,
     strut_model_free(model);
     return status;
   }
-  if (model->mass && !model->mass->diagonal) model->plan |= STRUT_TERM_SOLVE;
+  if (model->mass && !model->mass->diagonal) model->terms |= STRUT_TERM_SOLVE;
   if (!strut_small_model_compile(model)) {
     strut_model_free(model);
     return strut_memory_fail_model(scene, error);
@@ -364,7 +364,7 @@ static void damp_member(strut_model *model, size_t j, double more) {
   ((double *)t->damping)[j] += more;
   uint16_t *terms = (uint16_t *)t->block_terms;
   terms[j / STRUT_BLOCK] = (uint16_t)(terms[j / STRUT_BLOCK] | STRUT_TERM_DAMPING);
-  model->plan |= STRUT_TERM_DAMPING;
+  model->terms |= STRUT_TERM_DAMPING;
 }
 
 static double stiffness_of(const strut_model *model, size_t j) {
@@ -386,5 +386,5 @@ void strut_damping_compile(strut_model *model) {
     if (e->role == STRUT_ELEMENT_HINGE) e->damping += share * fmax(0.0, e->numbers.stiffness);
   }
   model->mass_damping = scene->rayleigh_mass;
-  if (model->mass_damping > 0.0) model->plan |= STRUT_TERM_MASS_DAMPING;
+  if (model->mass_damping > 0.0) model->terms |= STRUT_TERM_MASS_DAMPING;
 }

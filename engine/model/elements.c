@@ -26,7 +26,7 @@ static bool rubs(const strut_member *m) { return m->guide_friction > 0.0; }
  * Slots of elements with memory: all of a member that breaks or is released, otherwise those that yield
  * or rub at guides; these have one more for each segment.
  */
-static size_t count_memory_slots(const strut_scene *scene) {
+static size_t count_history_slots(const strut_scene *scene) {
   size_t count = 0;
   for (size_t j = 0; j < scene->member_count; j++) {
     const strut_member *m = &scene->members[j];
@@ -40,7 +40,7 @@ static size_t count_memory_slots(const strut_scene *scene) {
 }
 
 size_t strut_element_slots(const strut_scene *scene) {
-  return scene->hinge_count + scene->cell_count + count_memory_slots(scene);
+  return scene->hinge_count + scene->cell_count + count_history_slots(scene);
 }
 
 /* The slots stand behind those of the members. */
@@ -220,15 +220,15 @@ static void remember(compilation *c, strut_element *e) {
   strut_model *model = c->model;
   e->remembers = true;
   e->base = e->slot;
-  e->memory = model->elements.memory_count++;
+  e->memory = model->elements.history_count++;
   strut_element_table *t = &model->elements;
-  t->memory_slot =
+  t->history_slot =
       hinge_slot(model, (int32_t)(model->scene->hinge_count + model->scene->cell_count));
-  e->slot = t->memory_slot + t->memory_slots++;
+  e->slot = t->history_slot + t->history_slots++;
   double *rest = (double *)model->members.rest;
   rest[e->slot] = e->base >= 0 ? rest[e->base] : e->natural;
   for (int32_t k = 0; k + 1 < e->nodes && e->guide_friction > 0.0; k++)
-    rest[t->memory_slot + t->memory_slots++] = -1.0; /* nothing is remembered yet */
+    rest[t->history_slot + t->history_slots++] = -1.0; /* nothing is remembered yet */
 }
 
 static void add_stop(compilation *c, size_t j, strut_element_role role, double at,
@@ -438,7 +438,7 @@ static bool list_breakables(strut_model *model) {
   const strut_scene *scene = model->scene;
   strut_element_table *t = &model->elements;
   strut_breakable *list =
-      strut_arena_allocate(&model->arena, (size_t)t->memory_count, sizeof *list);
+      strut_arena_allocate(&model->arena, (size_t)t->history_count, sizeof *list);
   if (!list) return false;
   for (size_t j = 0; j < scene->member_count; j++) {
     const strut_member *m = &scene->members[j];
@@ -460,13 +460,13 @@ static bool list_breakables(strut_model *model) {
 /* After the elements have been sorted. */
 static bool list_memories(strut_model *model) {
   strut_element_table *t = &model->elements;
-  if (!t->memory_count) return true;
-  int32_t *memory = strut_arena_allocate(&model->arena, (size_t)t->memory_count, sizeof *memory);
+  if (!t->history_count) return true;
+  int32_t *memory = strut_arena_allocate(&model->arena, (size_t)t->history_count, sizeof *memory);
   if (!memory) return false;
   for (int32_t i = 0; i < t->count; i++)
     if (t->element[i].remembers) memory[t->element[i].memory] = i;
   t->memory = memory;
-  model->plan |= STRUT_TERM_MEMORY;
+  model->terms |= STRUT_TERM_MEMORY;
   return list_breakables(model);
 }
 
@@ -486,7 +486,7 @@ static bool compile(strut_model *model, const uint8_t *reeled) {
   for (size_t i = 0; i < scene->collision_count; i++) add_collision(&c, i);
   assert(c.count <= (int32_t)elements && c.nodes <= (int32_t)nodes);
   model->elements.at = c.at;
-  model->plan |= STRUT_TERM_ELEMENTS;
+  model->terms |= STRUT_TERM_ELEMENTS;
   return !c.failed && sort_elements(&c, &model->elements) && lay_out(model, c.nodes) &&
          link_members(model) && list_memories(model);
 }
@@ -538,6 +538,6 @@ bool strut_actuator_forces_compile(strut_model *model) {
     first += n;
   }
   model->actuator_forces = (strut_actuator_force_table){(int32_t)count, item, at};
-  model->plan |= STRUT_TERM_ACTUATOR_FORCES;
+  model->terms |= STRUT_TERM_ACTUATOR_FORCES;
   return true;
 }

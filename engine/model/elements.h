@@ -97,10 +97,10 @@ typedef struct strut_element_table {
   const strut_element_block *block; /* (block_count) */
   const uint32_t *at;               /* where the nodes' x stand in coordinate arrays: 2 * node */
   const int32_t *of_member;         /* (members) first element of a member, or -1; NULL: none */
-  int32_t memory_count, breakable_count;
-  const int32_t *memory;             /* (memory_count) the elements with memory */
-  int32_t memory_slot, memory_slots; /* the first of their slots, and how many there are */
-  const strut_breakable *breakable;  /* (breakable_count) members, then hinges */
+  int32_t history_count, breakable_count;
+  const int32_t *memory;               /* (history_count) the elements with memory */
+  int32_t history_slot, history_slots; /* the first of their slots, and how many there are */
+  const strut_breakable *breakable;    /* (breakable_count) members, then hinges */
   /* (count) what vector loops read of elements, side by side; `at` is in the order of elements, too */
   const double *stiffness, *damping;
   const int32_t *slot;

@@ -97,6 +97,6 @@ bool strut_feedback_compile(strut_model *model) {
     velocity[(size_t)f->base + i] = scene->states[i].start;
   for (int32_t i = 0; i < f->state_count; i++) ((uint8_t *)model->fixed)[f->base + i] = 1;
   if (f->count || f->state_count || f->sampled_count || f->trigger_count || f->relay_count)
-    model->plan |= STRUT_TERM_FEEDBACK;
+    model->terms |= STRUT_TERM_FEEDBACK;
   return true;
 }

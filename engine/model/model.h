@@ -25,7 +25,7 @@
 #include "engine/model/surfaces.h"
 #include "engine/scene/scene.h"
 
-/** The terms a scene may need. The plan of a model is the set of those it does need. */
+/** The terms a scene may need. The terms of a model is the set of those it does need. */
 typedef enum strut_term {
   STRUT_TERM_MEMBERS = 1 << 0,  /* elastic forces (1) */
   STRUT_TERM_DAMPING = 1 << 1,  /* member dampers (2) */
@@ -81,14 +81,14 @@ typedef struct strut_member_table {
   const strut_pull_rows *rows; /* (blocks) */
 } strut_member_table;
 
-/** Sums in which the ledger of a Runge-Kutta step keeps the powers of contacts. */
+/** Sums in which the energy balance of a Runge-Kutta step keeps the powers of contacts. */
 enum { STRUT_CONTACT_LANES = 8 };
 
 /** A contact, a node with a surface: a record, because most of them are only asked whether they do. */
 typedef struct strut_contact_entry {
   int32_t node;
   int32_t
-      lane; /* of the ledger: the scene's node, modulo STRUT_CONTACT_LANES, however nodes are stored */
+      lane; /* of the energy balance: the scene's node, modulo STRUT_CONTACT_LANES, however nodes are stored */
   double stiffness, damping; /* c_g [N/m], k_g [N s/m] */
   double dissipation;        /* chi of the Hunt-Crossley law [s/m]; 0 with the approach-only one */
   strut_friction friction;   /* its numbers are 0 without friction */
@@ -126,7 +126,7 @@ typedef struct strut_load_table {
 
 typedef struct strut_model {
   const strut_scene *scene;
-  unsigned plan;      /* strut_term bits */
+  unsigned terms;     /* strut_term bits */
   strut_law_set laws; /* of its contacts and elements */
   int32_t node_count, length;
   double size;                  /* largest extent as drawn, or 1 [m]: the scale for "beyond" */

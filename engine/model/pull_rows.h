@@ -18,7 +18,7 @@
 /** Members are stepped in groups of STRUT_LANES, so tables are padded to a multiple of it; blocks are of whole groups. */
 enum { STRUT_LANES = 4, STRUT_BLOCK = 64 };
 /** The energy balance adds up the powers of so many blocks, and then these sums: threads share the work. */
-enum { STRUT_LEDGER_BLOCKS = 16 };
+enum { STRUT_BALANCE_BLOCKS = 16 };
 
 enum {
   STRUT_BLOCK_ENDS = 2 * STRUT_BLOCK,

@@ -41,7 +41,7 @@ bool strut_model_is_scattered(const strut_model *model) {
   const strut_member_table *t = &model->members;
   int32_t far = 0;
   const strut_feedback_table *f = &model->feedback;
-  if (t->count < LEAST_MEMBERS || (model->plan & ~STORED) || !model->mass) return false;
+  if (t->count < LEAST_MEMBERS || (model->terms & ~STORED) || !model->mass) return false;
   if (f->sampled_count || f->trigger_count || f->relay_count) return false;
   for (int32_t j = 1; j < t->count; j++) {
     int64_t from = t->from[j] / 2, to = t->to[j] / 2, before = t->from[j - 1] / 2;
@@ -276,7 +276,7 @@ static void copy_members(copier *c, strut_model *to) {
   if (!t->rows) c->failed = true;
 }
 
-/* Contacts and loads keep their order: sums over them are the ledger's. */
+/* Contacts and loads keep their order: sums over them are the energy balance's. */
 static void copy_contacts_and_loads(copier *c, strut_model *to) {
   size_t contacts = (size_t)c->model->contacts.count, loads = (size_t)c->model->loads.count;
   uint32_t *at = allocate(c, contacts, sizeof *at);

@@ -31,7 +31,7 @@ bool strut_sliding_masses_compile(strut_model *model) {
     if (s->signal < 0) continue;
     moving[t->moving_count++] = (int32_t)i;
     t->corners = t->corners || strut_signal_has_corners(scene->signals, s->signal);
-    model->plan |= STRUT_TERM_SLIDING_MASS;
+    model->terms |= STRUT_TERM_SLIDING_MASS;
   }
   t->count = (int32_t)count;
   t->item = item;

@@ -14,7 +14,7 @@ static strut_small_level level_here(void) {
 }
 
 static bool is_small(const strut_model *model) {
-  return !(model->plan & ~(unsigned)STRUT_TERMS_SMALL) && model->plan & STRUT_TERM_MEMBERS &&
+  return !(model->terms & ~(unsigned)STRUT_TERMS_SMALL) && model->terms & STRUT_TERM_MEMBERS &&
          model->node_count <= STRUT_SMALL_NODES && model->members.count <= STRUT_SMALL_MEMBERS &&
          model->members.slots <= STRUT_SMALL_SLOTS && model->drives.count <= STRUT_SMALL_DRIVES &&
          model->mass && !model->mass->coordinate[0].factor && !model->mass->coordinate[1].factor;
@@ -91,7 +91,7 @@ static void list_mass_turns(strut_small_model *s) {
       for (int64_t c = i % 2, l = i / 2, k = 0, at = begin; k < s->columns; k++) {
         const strut_small_column *p = &s->column[c][k];
         if (!p->has[l] || p->lane[l] / 4 != g) continue;
-        t->turn[at].halves[c][l] = p->lane_halves[l];
+        t->turn[at].halves[c][l] = p->batch_halves[l];
         t->turn[at].minus_inverse[c][l] = -p->inverse[l];
         t->turn[at++].has[c][l] = -1;
         t->end[g] = larger(t->end[g], at);
@@ -112,7 +112,7 @@ static void add_entry(strut_small_model *s, int c, int32_t j, int64_t row, int64
                       double inverse) {
   strut_small_column *to = &s->column[c][j];
   if (j >= s->columns) s->columns = j + 1;
-  to->lane[row] = column, to->lane_halves[row] = strut_small_halves(column);
+  to->lane[row] = column, to->batch_halves[row] = strut_small_halves(column);
   to->inverse[row] = inverse, to->has[row] = -1;
   to->bits = (uint8_t)(to->bits | 1u << row);
 }

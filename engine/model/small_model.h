@@ -44,7 +44,7 @@ static inline int64_t strut_small_halves(int64_t lane) {
 
 /** Column j of the blocks of the inverse mass matrix: of which lane, times what, and in which rows. */
 typedef struct strut_small_column {
-  strut_small_lanes lane, lane_halves;
+  strut_small_lanes lane, batch_halves;
   strut_small_row inverse;
   strut_small_mask has;
   uint8_t bits; /* of has */

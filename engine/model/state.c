@@ -38,18 +38,18 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
   state->element_piece = strut_arena_allocate(arena, elements, sizeof *state->element_piece);
   state->element_turn = strut_arena_allocate(arena, elements, sizeof *state->element_turn);
   state->plastic =
-      strut_arena_allocate(arena, (size_t)model->elements.memory_count, sizeof(double));
+      strut_arena_allocate(arena, (size_t)model->elements.history_count, sizeof(double));
   state->broken_at =
       strut_arena_allocate(arena, (size_t)model->elements.breakable_count, sizeof(double));
-  state->memory_kept =
+  state->history_kept =
       strut_arena_allocate(arena,
-                           (size_t)(model->elements.memory_slots + model->elements.memory_count +
+                           (size_t)(model->elements.history_slots + model->elements.history_count +
                                     model->elements.breakable_count),
                            sizeof(double));
-  size_t slots_of_memory = (size_t)model->elements.memory_slots;
-  state->guide_mode = strut_arena_allocate(arena, slots_of_memory, sizeof *state->guide_mode);
-  state->guide_side = strut_arena_allocate(arena, slots_of_memory, sizeof *state->guide_side);
-  state->guide_drop = strut_arena_allocate(arena, slots_of_memory, sizeof *state->guide_drop);
+  size_t history_slots = (size_t)model->elements.history_slots;
+  state->guide_mode = strut_arena_allocate(arena, history_slots, sizeof *state->guide_mode);
+  state->guide_side = strut_arena_allocate(arena, history_slots, sizeof *state->guide_side);
+  state->guide_drop = strut_arena_allocate(arena, history_slots, sizeof *state->guide_drop);
   state->force = strut_arena_allocate(arena, both, sizeof(double));
   state->normal = strut_arena_allocate(arena, contacts, sizeof(double));
   state->friction = strut_arena_allocate(arena, contacts, sizeof(double));
@@ -65,7 +65,7 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
   state->actuator_force =
       strut_arena_allocate(arena, (size_t)model->actuator_forces.count, sizeof(double));
   bool moves =
-      model->plan & (STRUT_TERM_SUPPORT_MOTION | STRUT_TERM_UNBALANCE | STRUT_TERM_SLIDING_MASS);
+      model->terms & (STRUT_TERM_SUPPORT_MOTION | STRUT_TERM_UNBALANCE | STRUT_TERM_SLIDING_MASS);
   size_t sliding = (size_t)model->sliding.moving_count;
   state->sliding = strut_arena_allocate(arena, sliding, sizeof *state->sliding);
   state->sliding_factor = strut_arena_allocate(arena, 2 * sliding * sliding, sizeof(double));
@@ -75,7 +75,7 @@ strut_status strut_state_create(const strut_model *model, strut_state **result,
   state->support_answer = strut_arena_allocate(arena, moves ? both : 0, sizeof(double));
   if (!state->q || !state->v || !state->rest || !state->element_acts || !state->element_piece ||
       !state->element_turn || !state->slack_length_threshold || !state->slack_force_threshold ||
-      !state->rest_rate || !state->plastic || !state->broken_at || !state->memory_kept ||
+      !state->rest_rate || !state->plastic || !state->broken_at || !state->history_kept ||
       !state->guide_mode || !state->guide_drop || !state->guide_side || !state->force ||
       !state->normal || !state->friction || !state->scratch || !state->actuator_force ||
       !state->support_rates || !state->support_answer || !surfaces || !state->sensor ||
@@ -120,8 +120,8 @@ void strut_state_reset(const strut_model *model, strut_state *state) {
   for (int32_t k = 0; k < model->sliding.moving_count; k++)
     state->sliding[k] =
         (strut_sliding_motion){.share = model->sliding.item[model->sliding.moving[k]].start};
-  for (int32_t i = 0; i < model->elements.memory_count; i++) state->plastic[i] = 0.0;
-  for (int32_t i = 0; i < model->elements.memory_slots; i++)
+  for (int32_t i = 0; i < model->elements.history_count; i++) state->plastic[i] = 0.0;
+  for (int32_t i = 0; i < model->elements.history_slots; i++)
     state->guide_mode[i] = 2, state->guide_side[i] = 1,
     state->guide_drop[i] = 0.0; /* STRUT_GUIDE_FREE */
   for (int32_t i = 0; i < model->elements.breakable_count; i++) state->broken_at[i] = HUGE_VAL;

@@ -12,7 +12,7 @@
 
 #include "engine/model/model.h"
 
-/** Powers that the ledger integrates beside the motion [W]. Kernels write them by fours. */
+/** Powers that the energy balance integrates beside the motion [W]. Kernels write them by fours. */
 typedef enum strut_power {
   STRUT_POWER_DRIVE,     /* actuators, on the structure */
   STRUT_POWER_LOAD,      /* loads that change with time */
@@ -26,7 +26,7 @@ typedef enum strut_power {
   STRUT_POWER_ROOM = 8 /* arrays of powers have this size: whole vectors; the rest is 0 */
 } strut_power;
 
-/** Powers of the evaluations of a Runge-Kutta step that have one weight [W]; step_ledger.h adds up the lanes at its
+/** Powers of the evaluations of a Runge-Kutta step that have one weight [W]; step_balance.h adds up the lanes at its
     end. Of members by place in groups of STRUT_LANES; of contacts by the lane that
     strut_contact_entry has. */
 typedef struct strut_power_lanes {
@@ -40,11 +40,11 @@ typedef struct strut_power_lanes {
 static inline int32_t strut_weight_side(int k) { return k == 1 || k == 2; }
 
 /** Where an evaluation of the forces leaves its powers. */
-typedef enum strut_booking {
-  STRUT_BOOK_NOTHING,
-  STRUT_BOOK_POWERS, /* in state->power */
-  STRUT_BOOK_LANES /* those of members and level ground in state->lanes, all others in state->power */
-} strut_booking;
+typedef enum strut_accumulation {
+  STRUT_ACCUMULATE_NOTHING,
+  STRUT_ACCUMULATE_POWERS, /* in state->power */
+  STRUT_ACCUMULATE_LANES /* those of members and level ground in state->lanes, all others in state->power */
+} strut_accumulation;
 
 typedef enum strut_failure {
   STRUT_FAILURE_NONE,
@@ -92,9 +92,9 @@ typedef struct strut_state {
   double *force;    /* net force on each node [N] */
   double *normal;   /* (contacts) normal force [N]; in the step only where it touches */
   double *friction; /* (contacts) friction force along the ground [N] */
-  double power[STRUT_POWER_ROOM]; /* [W]; only where the ledger is kept */
+  double power[STRUT_POWER_ROOM]; /* [W]; only where the energy balance is kept */
   strut_power_lanes lanes[2];     /* see strut_weight_side */
-  strut_power_lanes *booked;      /* which of them the next evaluation adds to */
+  strut_power_lanes *accumulated; /* which of them the next evaluation adds to */
 
   /* (contacts) contact forces as a method with events has them [N]; NULL with others, where the
      forces follow from q, v and t alone */
@@ -105,21 +105,22 @@ typedef struct strut_state {
   int8_t *trigger_was; /* (signals) did its condition hold when last looked at? -1: not looked at */
   double *held; /* (signals) of sampled ones the value at the latest sample; NAN before the first */
   bool kicked; /* velocities have jumped at the end of the latest step of a method without events */
-  bool ledger; /* keep the ledger? It costs some arithmetic per evaluation */
+  bool balance;    /* keep the energy balance? It costs some arithmetic per evaluation */
   double *scratch; /* (length) for the mass solve */
   strut_arena arena;
   /* memory of elements, see forces/history.h; the slots of `rest` that belong to them follow from it */
-  double *plastic; /* (memory_count) slip of sliders, see forces/history.h */
+  double *plastic; /* (history_count) slip of sliders, see forces/history.h */
   double
       *broken_at; /* (breakable_count) since when it carries nothing [s]; INFINITY: it does not */
-  int8_t *guide_mode; /* (memory_slots) at the slots of cables with guide friction: see capstan.h */
-  int8_t *guide_side; /* (memory_slots) the sign of the turning angles, frozen with the modes */
-  double *guide_drop; /* (memory_slots) what a length of cable loses as it slips [N] */
-  double *memory_kept;    /* what strut_memory_store stores, as it was at an earlier time */
-  bool forgetful;         /* nothing yields or breaks: while settling; strut_state_reset keeps it */
-  double *actuator_force; /* (actuator forces) when last evaluated [N], [N m] */
-  double *support_rates;  /* (moved coordinates) scratch */
-  double *support_answer; /* (length) scratch, 0 between uses; only where supports move */
+  int8_t
+      *guide_mode; /* (history_slots) at the slots of cables with guide friction: see capstan.h */
+  int8_t *guide_side;   /* (history_slots) the sign of the turning angles, frozen with the modes */
+  double *guide_drop;   /* (history_slots) what a length of cable loses as it slips [N] */
+  double *history_kept; /* what strut_history_store stores, as it was at an earlier time */
+  bool forgetful;       /* nothing yields or breaks: while settling; strut_state_reset keeps it */
+  double *actuator_force;     /* (actuator forces) when last evaluated [N], [N m] */
+  double *support_rates;      /* (moved coordinates) scratch */
+  double *support_answer;     /* (length) scratch, 0 between uses; only where supports move */
   double support_work_origin; /* strut_support_motion_reset_work: where it counts from [J] */
   /* with STRUT_TERM_SURFACES: poses of the contacts at the latest evaluation; and of grounds that are shaken
      the motion at drive_time, (grounds), NULL where none is */
@@ -142,7 +143,7 @@ typedef struct strut_state {
 /** All memory a run needs; an integrator adds its own to the arena. STRUT_OK or STRUT_NO_MEMORY. */
 STRUT_API strut_status strut_state_create(const strut_model *model, strut_state **state,
                                           strut_error *error);
-/** Back to the start: positions and velocities of the scene, time 0, empty ledger. */
+/** Back to the start: positions and velocities of the scene, time 0, empty balance. */
 STRUT_API void strut_state_reset(const strut_model *model, strut_state *state);
 /** NULL is allowed. */
 STRUT_API void strut_state_free(strut_state *state);

@@ -55,6 +55,6 @@ bool strut_support_motion_compile(strut_model *model) {
     ((double *)model->velocity)[item[i].at] = rate;
   }
   model->support_motion = (strut_support_motion_table){.count = (int32_t)count, .item = item};
-  model->plan |= STRUT_TERM_SUPPORT_MOTION;
+  model->terms |= STRUT_TERM_SUPPORT_MOTION;
   return scene->mass_model != STRUT_MASS_CONSISTENT || add_couplings(model);
 }

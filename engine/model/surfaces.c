@@ -177,7 +177,7 @@ bool strut_surfaces_compile(strut_model *model) {
   t->surface = surface, t->surface_of = of;
   t->surfaces = (int32_t)made;
   find_direction(t);
-  model->plan |= STRUT_TERM_SURFACES;
-  if (t->moves) model->plan |= STRUT_TERM_DRIVE; /* a function of time, too */
+  model->terms |= STRUT_TERM_SURFACES;
+  if (t->moves) model->terms |= STRUT_TERM_DRIVE; /* a function of time, too */
   return true;
 }

@@ -24,7 +24,7 @@ strut_status strut_run_fail_lost_node(const strut_run *r, int32_t node) {
          least = r->summary->step_limit;
   double seen = (double)r->step_monitor.last * r->dt;
   const char *remedy = r->dt > 0.5 * fmin(limit, least) ? "use a smaller step"
-                       : (r->model->plan & STRUT_TERM_FEEDBACK)
+                       : (r->model->terms & STRUT_TERM_FEEDBACK)
                            ? "look for a loop of sensors and drives that is unstable, of which the "
                              "largest step knows nothing; a smaller step may also help"
                            : "look for a member or contact that is far too stiff, or a load that "
@@ -183,7 +183,7 @@ strut_status strut_run_fail_method(const strut_run *r) {
  */
 static bool has_spurious_energy(const strut_run *r) {
   strut_energy e;
-  if (!r->state->ledger) return false;
+  if (!r->state->balance) return false;
   if (!(r->dt > 0.5 * r->summary->step_limit))
     return false; /* far below the limit, the step is not the cause */
   strut_balance_fill(r->model, r->state, &r->initial, strut_time_grid_at(&r->grid, r->state->step),
@@ -336,13 +336,14 @@ static bool has_switches(const strut_model *model) {
 /* Events that fixed steps pass over, or NULL. */
 static const char *describe_missed_events(const strut_run *r) {
   if (r->method->events || r->method->region == STRUT_REGION_ALL) return NULL;
-  bool friction = r->model->plan & STRUT_TERM_FRICTION, cables = r->model->plan & STRUT_TERM_SLACK;
+  bool friction = r->model->terms & STRUT_TERM_FRICTION,
+       cables = r->model->terms & STRUT_TERM_SLACK;
   bool bounces = has_touchdowns(r);
   if (bounces && friction) return "touchdowns and changes between sticking and slipping";
   if (bounces) return "touchdowns";
   if (friction) return "changes between sticking and slipping";
   if (cables) return "cables that become taut";
-  if (r->model->plan & STRUT_TERM_MEMORY) return "what breaks, is released or yields";
+  if (r->model->terms & STRUT_TERM_MEMORY) return "what breaks, is released or yields";
   return has_switches(r->model) ? "stops, cables or kinks of laws" : NULL;
 }
 

@@ -137,12 +137,12 @@ static strut_status place_state(strut_run *r) {
 }
 
 /* What breaks or yields at the start already, which statics and settling take as whole, is warned of. */
-static void begin_memory(strut_run *r, double begin) {
+static void begin_history(strut_run *r, double begin) {
   const strut_snapshot *from = r->options->from;
   strut_overload worst;
   if (from && from->memory) {
-    strut_memory_load(r->model, r->state, from->memory);
-  } else if (!from && strut_memory_overload(r->model, r->state->q, &worst)) {
+    strut_history_load(r->model, r->state, from->memory);
+  } else if (!from && strut_history_overload(r->model, r->state->q, &worst)) {
     strut_summary_warn(r->summary, "overloaded_start",
                        "%s '%s' carries %.4g %s at the start, above the %.4g %s at which it %s; it "
                        "does so at once",
@@ -150,7 +150,7 @@ static void begin_memory(strut_run *r, double begin) {
                        worst.hinge ? "N m" : "N", worst.limit, worst.hinge ? "N m" : "N",
                        worst.breaks ? "breaks" : "yields");
   }
-  strut_memory_begin(r->model, r->state, begin);
+  strut_history_begin(r->model, r->state, begin);
 }
 
 static strut_status prepare_run(strut_run *r) {
@@ -201,10 +201,10 @@ static strut_status prepare_run(strut_run *r) {
     strut_quantities_observe(r->measure.quantities);
   }
   if ((status = place_state(r))) return status;
-  if (r->model->plan & STRUT_TERM_SUPPORT_MOTION)
+  if (r->model->terms & STRUT_TERM_SUPPORT_MOTION)
     strut_support_motion_place(r->model, r->state, begin, r->state->q, r->state->v);
-  if (r->model->plan & STRUT_TERM_MEMORY) begin_memory(r, begin);
-  r->state->ledger = !r->options->without_ledger || strut_quantities_need_ledger(r->experiment);
+  if (r->model->terms & STRUT_TERM_MEMORY) begin_history(r, begin);
+  r->state->balance = !r->options->without_balance || strut_quantities_need_balance(r->experiment);
   r->state->interrupt = r->options->interrupt;
   r->state->most_evaluations = r->options->most_evaluations;
   if (r->method->restart) r->method->restart(r->model, r->state, r->workspace, r->dt);
@@ -213,7 +213,7 @@ static strut_status prepare_run(strut_run *r) {
     return strut_memory_fail_model(r->model->scene, r->error);
   strut_energy_reset_load_work(r->model, r->state);
   r->initial = strut_energy_evaluate(r->model, r->state, begin);
-  if (r->options->from && r->options->from->balance && r->state->ledger)
+  if (r->options->from && r->options->from->balance && r->state->balance)
     strut_balance_continue(r->options->from->balance, r->state, &r->initial);
   strut_balance_begin(r->state, &r->initial, begin, r->method->evaluations, &r->balance);
   return strut_recording_create(r->model, r->experiment, &r->grid, begin, r->options->sinks,
@@ -309,7 +309,7 @@ static strut_status detect_steady_motion(strut_run *r) {
   strut_measure_tracked_point(r->model, r->state, &r->measure, &x, &v);
   if (!strut_steady_detector_period(r->state, x, &r->steady) || before) return STRUT_OK;
   bool internal = strut_feedback_remembers(&r->model->feedback);
-  bool memory = internal || (r->model->plan & STRUT_TERM_MEMORY);
+  bool memory = internal || (r->model->terms & STRUT_TERM_MEMORY);
   if (memory && r->experiment->steady.shooting)
     snprintf(
         r->steady.result.reason, sizeof r->steady.result.reason,
@@ -432,7 +432,7 @@ static double time_of_balance(const strut_run *r) {
 }
 
 static strut_status sample_balance(strut_run *r) {
-  if (!r->state->ledger) return STRUT_OK;
+  if (!r->state->balance) return STRUT_OK;
   strut_balance_sample(r->model, r->state, &r->initial, time_of_balance(r), &r->balance,
                        &r->summary->energy);
   return strut_run_check_losses(r);
@@ -494,7 +494,7 @@ static void store_end_state(const strut_run *r) {
   size_t bytes = (size_t)r->model->length * sizeof(double);
   memcpy(to->q, r->state->q, bytes);
   memcpy(to->v, r->state->v, bytes);
-  if (to->memory) strut_memory_store(r->model, r->state, to->memory);
+  if (to->memory) strut_history_store(r->model, r->state, to->memory);
   to->time = strut_run_time(r);
   to->refined = fmax(0.0, r->state->refined_until - (to->time - r->grid.offset));
 }
@@ -560,7 +560,7 @@ static void fill_summary(strut_run *r, strut_status status) {
   for (size_t i = 0; i < 2 * s->node_count; i++) s->positions[i] = r->state->q[i];
   measure_elements(r);
   list_breaks(r);
-  if (r->state->ledger) {
+  if (r->state->balance) {
     (void)sample_balance(r);
     s->balance = strut_balance_judge(&s->energy, s->steps);
   }

@@ -18,7 +18,7 @@ typedef struct strut_snapshot {
   double *q, *v;  /* [m], [m/s] */
   double time;    /* time of drives and loads [s] */
   double refined; /* refinement after a touchdown lasts this much longer [s] */
-  double *memory; /* (strut_memory_count of the model) what elements remember; NULL: nothing */
+  double *memory; /* (strut_history_count of the model) what elements remember; NULL: nothing */
   const strut_energy *balance; /* up to there, which that of a run from there continues; not stored;
                                   NULL: works and losses begin anew */
 } strut_snapshot;
@@ -41,8 +41,8 @@ typedef struct strut_run_options {
   int64_t
       most_evaluations; /* force evaluations after which the run ends with STRUT_WORK_LIMIT; 0: no limit */
   bool chosen;          /* method and step were chosen for a wanted accuracy */
-  bool without_ledger; /* leaves works and energy residual of the summary 0; cheaper */
-  bool scene_order;    /* steps the model as it is stored, however scattered its nodes are */
+  bool without_balance; /* leaves works and energy residual of the summary 0; cheaper */
+  bool scene_order;     /* steps the model as it is stored, however scattered its nodes are */
 } strut_run_options;
 
 /**
@@ -60,12 +60,12 @@ STRUT_API strut_status strut_simulate(const strut_model *model, const strut_expe
 STRUT_API double strut_run_clock(void);
 
 /*
- * Many runs on one core: similar ones side by side in the lanes of a batch.
+ * Many runs on one core: similar ones side by side in the slots of a batch.
  *
- * A last step that is shorter than the others is made outside the lanes.
+ * A last step that is shorter than the others is made outside the batch.
  *
  * Every summary, row of a recording and failure is that of strut_simulate, bit for bit (except for
- * the sign of a NAN). Runs that do not fit a lane are made alone in between: methods other than rk4
+ * the sign of a NAN). Runs that do not fit a slot are made alone in between: methods other than rk4
  * and verlet-events, a topology other than that of the batch, rigid bars, ground laws other than
  * the default, mass groups too large for a dense inverse; with events also cables and slopes.
  */
@@ -89,13 +89,13 @@ typedef struct strut_batch_source {
   void (*result)(void *context, const strut_batch_point *point, strut_status status,
                  strut_summary *summary, const strut_error *error);
   /**
-   * A model whose topology the lanes share: points like it run in lanes. Must live until the end.
+   * A model of the topology that all slots share: points like it run in the batch. Must live until the end.
    */
   const strut_model *example;
-  const char *integrator; /* method of the points that run in lanes */
-  bool without_ledger;    /* as in the options of those points */
-  int32_t width;          /* 1, 2, 4 or 8 lanes; 0: chosen for the processor */
-  bool halves;            /* 8 lanes in registers of 4 on every processor; see batch.h */
+  const char *integrator; /* method of the points that run in the batch */
+  bool without_balance;   /* as in the options of those points */
+  int32_t width;          /* 1, 2, 4 or 8 slots; 0: chosen for the processor */
+  bool halves;            /* 8 slots in registers of 4 on every processor; see batch.h */
 } strut_batch_source;
 
 /** Runs all points; calls back from this thread only. */

@@ -81,7 +81,7 @@ static bool add_loads(stepping_inputs *in, strut_model *model) {
   scene->loads = loads;
   scene->load_count = before + in->nodes;
   model->constant_force = in->constant;
-  model->plan |= STRUT_TERM_CONSTANT;
+  model->terms |= STRUT_TERM_CONSTANT;
   in->loads = true;
   return true;
 }

@@ -357,7 +357,7 @@ typedef int (*strutlib_row)(void *context, size_t point, int status);
  * point, the scene as it is.
  * keep[0..keep_count): columns to keep, words as in a study's `keep`, or names of measured
  * quantities; none: the usual ones.
- * Options: "compute" (run, equilibria, modes, rigidity, path or form), "threads", "lanes"
+ * Options: "compute" (run, equilibria, modes, rigidity, path or form), "threads", "batch"
  * (default automatic), "limit_evaluations", "limit_time", "at", "lowest" as in a study, and those
  * of method and model as of strutlib_run: "accuracy", "step", "integrator", "bars", ...
  * Arrays: each column of numbers by its name, of the axes first, (points) [SI]; "status"

@@ -9,7 +9,7 @@
 void strut_warn_of_overload(const strut_listener *listener, const strut_model *model,
                             const double *q, const char *where) {
   strut_overload worst;
-  if (!strut_memory_overload(model, q, &worst)) return;
+  if (!strut_history_overload(model, q, &worst)) return;
   const char *unit = worst.hinge ? "N m" : "N";
   strut_tell(listener, STRUT_MESSAGE_WARNING, NULL,
              "%s %s '%s' carries %.4g %s, above the %.4g %s at which it %s; statics take it as %s",

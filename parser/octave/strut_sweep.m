@@ -10,7 +10,7 @@ function t = strut_sweep (s, varargin)
   %   plot (t.frequency, t.velocity);
   %
   % Options: "keep", a cell array of what to keep of each point, words as in a study; "compute" ("run",
-  % "equilibria", "modes", "rigidity", "path" or "form"), "threads", "lanes", "limit_time",
+  % "equilibria", "modes", "rigidity", "path" or "form"), "threads", "batch", "limit_time",
   % "limit_evaluations", "at", "lowest". T has a column for each axis and for what is kept, numbers as
   % vectors, words as cell arrays; T.status is 0 for points that could be computed.
   axes = {};
@@ -36,7 +36,7 @@ function t = strut_sweep (s, varargin)
     value = varargin{k + 1};
     if strcmp (name, "keep")
       keep = cellstr (value);
-    elseif any (strcmp (name, {"compute", "threads", "lanes", "limit_time", "limit_evaluations", "at", "lowest"}))
+    elseif any (strcmp (name, {"compute", "threads", "batch", "limit_time", "limit_evaluations", "at", "lowest"}))
       options(end + 1:end + 2) = {name, value};
     elseif whole
       error ("strut:usage", "unknown option '%s'", name);

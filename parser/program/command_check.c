@@ -12,8 +12,8 @@
 #include "engine/output/buffer.h"
 #include "engine/output/json_value.h"
 #include "engine/output/report/reports.h"
+#include "engine/run/cost_estimate.h"
 #include "engine/run/measure/monitors.h"
-#include "engine/run/plan.h"
 #include "parser/command/fidelity_settings.h"
 #include "parser/command/run_settings.h"
 #include "parser/program/check_messages.h"
@@ -41,29 +41,29 @@ static const char *kind_name(strut_member_kind kind) {
   return names[kind];
 }
 
-static void print_counts(const strut_plan *plan) {
-  size_t members = plan->bars + plan->springs + plan->cables;
-  printf("  nodes              %zu, with %zu degrees of freedom\n", plan->nodes,
-         plan->degrees_of_freedom);
-  printf("  members            %zu: bars %zu, springs %zu, cables %zu\n", members, plan->bars,
-         plan->springs, plan->cables);
-  if (plan->running_cables + plan->laws + plan->stops > 0)
+static void print_counts(const strut_cost_estimate *estimate) {
+  size_t members = estimate->bars + estimate->springs + estimate->cables;
+  printf("  nodes              %zu, with %zu degrees of freedom\n", estimate->nodes,
+         estimate->degrees_of_freedom);
+  printf("  members            %zu: bars %zu, springs %zu, cables %zu\n", members, estimate->bars,
+         estimate->springs, estimate->cables);
+  if (estimate->running_cables + estimate->laws + estimate->stops > 0)
     printf("  of them            running cables %zu, with a law %zu, stops %zu\n",
-           plan->running_cables, plan->laws, plan->stops);
-  if (plan->hinges) printf("  hinges             %zu\n", plan->hinges);
-  if (plan->cells) printf("  cells              %zu\n", plan->cells);
-  if (plan->collisions) printf("  collisions         %zu\n", plan->collisions);
+           estimate->running_cables, estimate->laws, estimate->stops);
+  if (estimate->hinges) printf("  hinges             %zu\n", estimate->hinges);
+  if (estimate->cells) printf("  cells              %zu\n", estimate->cells);
+  if (estimate->collisions) printf("  collisions         %zu\n", estimate->collisions);
   printf("  contacts           %zu\n  actuators          %zu\n  loads              %zu\n",
-         plan->contacts, plan->actuators, plan->loads);
-  printf("  memory             %s\n", in((double)plan->bytes, "B").text);
+         estimate->contacts, estimate->actuators, estimate->loads);
+  printf("  memory             %s\n", in((double)estimate->bytes, "B").text);
 }
 
 /* Step limits of the other methods, on one line. */
-static void print_limits(const strut_plan *plan) {
+static void print_limits(const strut_cost_estimate *estimate) {
   const char *between = "  of other methods   ";
   for (size_t i = 0; strut_integrator_at(i); i++) {
     const strut_integrator *method = strut_integrator_at(i);
-    double limit = strut_step_limit_of_method(&plan->limits, method);
+    double limit = strut_step_limit_of_method(&estimate->limits, method);
     if (method->region == STRUT_REGION_RK4 || !isfinite(limit)) continue;
     printf("%s%s %s", between, method->name, in(limit, "s").text);
     between = ", ";
@@ -71,27 +71,28 @@ static void print_limits(const strut_plan *plan) {
   if (*between == ',') printf("\n");
 }
 
-static void print_run(const strut_plan *plan, const strut_experiment *e) {
-  if (!plan->runnable) {
+static void print_run(const strut_cost_estimate *estimate, const strut_experiment *e) {
+  if (!estimate->runnable) {
     printf("  no run             a free node has no mass: statics only\n");
     return;
   }
-  double step = e->step, hertz = plan->largest_frequency / STRUT_TAU;
+  double step = e->step, hertz = estimate->largest_frequency / STRUT_TAU;
   printf("  mass matrix        %zu nonzeros, %zu in its factor, %zu in dense inverses\n",
-         plan->mass_nonzeros, plan->factor_nonzeros, plan->dense_entries);
-  bool bound = plan->limits.bound;
+         estimate->mass_nonzeros, estimate->factor_nonzeros, estimate->dense_entries);
+  bool bound = estimate->limits.bound;
   printf("  highest frequency  %s%s (undamped, all contacts closed)\n", bound ? "at most " : "",
          in(hertz, "Hz").text);
   printf("  largest step       %s%s for rk4, with contacts and damping (%s)\n",
-         bound ? "at least " : "", in(plan->step_limit, "s").text,
-         bound                    ? "a bound: the structure is too large for an estimate"
-         : plan->step_limit_exact ? "from all eigenvalues"
-                                  : "within 1 %");
-  print_limits(plan);
-  if (plan->feedback)
+         bound ? "at least " : "", in(estimate->step_limit, "s").text,
+         bound                        ? "a bound: the structure is too large for an estimate"
+         : estimate->step_limit_exact ? "from all eigenvalues"
+                                      : "within 1 %");
+  print_limits(estimate);
+  if (estimate->feedback)
     printf("  feedback           not counted in this frequency and these steps\n");
   const strut_integrator *method = strut_integrator_find(e->integrator);
-  double limit = method ? strut_step_limit_of_method(&plan->limits, method) : plan->step_limit;
+  double limit =
+      method ? strut_step_limit_of_method(&estimate->limits, method) : estimate->step_limit;
   if (method && method->region == STRUT_REGION_ALL) printf("  limit of %-9s none\n", method->name);
   if (step > limit) {
     printf("  step               %s: too large, strut run rejects it\n", in(step, "s").text);
@@ -125,10 +126,10 @@ static void print_bands(const strut_model *model, const strut_experiment *experi
           in(experiment->step, "s").text, in(needed, "m/s").text);
 }
 
-static void print_terms(const strut_plan *plan, bool wanted, const char *title) {
+static void print_terms(const strut_cost_estimate *estimate, bool wanted, const char *title) {
   bool any = false;
-  for (int i = 0; i < STRUT_PLAN_TERMS; i++) {
-    const strut_plan_term *term = &plan->terms[i];
+  for (int i = 0; i < STRUT_COST_TERMS; i++) {
+    const strut_cost_term *term = &estimate->terms[i];
     if (term->in != wanted) continue;
     if (!any) printf("\n%s\n", title);
     any = true;
@@ -333,17 +334,17 @@ static strut_status print_sketch(const strut_model *model, const double *q) {
   return STRUT_OK;
 }
 
-static strut_status print_plan(const strut_plan *plan, const strut_model *model,
-                               const strut_experiment *experiment) {
+static strut_status print_estimate(const strut_cost_estimate *estimate, const strut_model *model,
+                                   const strut_experiment *experiment) {
   const strut_scene *scene = model->scene;
   double *q = drawn_shape(model);
   if (!q) return strut_print_out_of_memory();
   printf("%s%svalid\n", scene->name, *scene->name ? ": " : "");
   strut_status status = print_sketch(model, q);
-  print_counts(plan);
-  print_run(plan, experiment);
-  print_terms(plan, true, "each step evaluates");
-  print_terms(plan, false, "omitted, as the scene does not need it");
+  print_counts(estimate);
+  print_run(estimate, experiment);
+  print_terms(estimate, true, "each step evaluates");
+  print_terms(estimate, false, "omitted, as the scene does not need it");
   print_members(model, q);
   print_running_cables(scene);
   print_laws(scene);
@@ -356,44 +357,46 @@ static strut_status print_plan(const strut_plan *plan, const strut_model *model,
   return status;
 }
 
-static void add_plan(strut_json *json, const strut_plan *plan, const strut_setup *setup) {
+static void add_estimate(strut_json *json, const strut_cost_estimate *estimate,
+                         const strut_setup *setup) {
   const strut_scene *scene = &setup->scene;
   struct cJSON *root = json->root;
   strut_json_text(json, root, "name", scene->name);
   strut_json_text(json, root, "strut_version", STRUT_VERSION);
   strut_json_integer(json, root, "language", STRUT_LANGUAGE_VERSION);
-  strut_json_integer(json, root, "nodes", (int64_t)plan->nodes);
-  strut_json_integer(json, root, "degrees_of_freedom", (int64_t)plan->degrees_of_freedom);
-  strut_json_integer(json, root, "bars", (int64_t)plan->bars);
-  strut_json_integer(json, root, "springs", (int64_t)plan->springs);
-  strut_json_integer(json, root, "cables", (int64_t)plan->cables);
-  strut_json_integer(json, root, "running_cables", (int64_t)plan->running_cables);
-  strut_json_integer(json, root, "laws", (int64_t)plan->laws);
-  strut_json_integer(json, root, "stops", (int64_t)plan->stops);
-  strut_json_integer(json, root, "contacts", (int64_t)plan->contacts);
-  strut_json_integer(json, root, "actuators", (int64_t)plan->actuators);
-  strut_json_integer(json, root, "loads", (int64_t)plan->loads);
-  strut_json_integer(json, root, "mass_nonzeros", (int64_t)plan->mass_nonzeros);
-  strut_json_integer(json, root, "factor_nonzeros", (int64_t)plan->factor_nonzeros);
-  strut_json_integer(json, root, "dense_entries", (int64_t)plan->dense_entries);
-  strut_json_integer(json, root, "bytes", (int64_t)plan->bytes);
-  strut_json_bool(json, root, "runnable", plan->runnable);
+  strut_json_integer(json, root, "nodes", (int64_t)estimate->nodes);
+  strut_json_integer(json, root, "degrees_of_freedom", (int64_t)estimate->degrees_of_freedom);
+  strut_json_integer(json, root, "bars", (int64_t)estimate->bars);
+  strut_json_integer(json, root, "springs", (int64_t)estimate->springs);
+  strut_json_integer(json, root, "cables", (int64_t)estimate->cables);
+  strut_json_integer(json, root, "running_cables", (int64_t)estimate->running_cables);
+  strut_json_integer(json, root, "laws", (int64_t)estimate->laws);
+  strut_json_integer(json, root, "stops", (int64_t)estimate->stops);
+  strut_json_integer(json, root, "contacts", (int64_t)estimate->contacts);
+  strut_json_integer(json, root, "actuators", (int64_t)estimate->actuators);
+  strut_json_integer(json, root, "loads", (int64_t)estimate->loads);
+  strut_json_integer(json, root, "mass_nonzeros", (int64_t)estimate->mass_nonzeros);
+  strut_json_integer(json, root, "factor_nonzeros", (int64_t)estimate->factor_nonzeros);
+  strut_json_integer(json, root, "dense_entries", (int64_t)estimate->dense_entries);
+  strut_json_integer(json, root, "bytes", (int64_t)estimate->bytes);
+  strut_json_bool(json, root, "runnable", estimate->runnable);
   strut_json_number(json, root, "largest_frequency",
-                    plan->runnable ? plan->largest_frequency / STRUT_TAU : (double)NAN);
+                    estimate->runnable ? estimate->largest_frequency / STRUT_TAU : (double)NAN);
   strut_json_number(json, root, "step", setup->experiment.step);
-  strut_json_number(json, root, "step_limit", plan->runnable ? plan->step_limit : (double)NAN);
-  strut_json_bool(json, root, "step_limit_exact", plan->step_limit_exact);
-  strut_json_bool(json, root, "step_limit_bound", plan->limits.bound);
+  strut_json_number(json, root, "step_limit",
+                    estimate->runnable ? estimate->step_limit : (double)NAN);
+  strut_json_bool(json, root, "step_limit_exact", estimate->step_limit_exact);
+  strut_json_bool(json, root, "step_limit_bound", estimate->limits.bound);
   struct cJSON *limits = strut_json_object(json, root, "step_limits");
-  for (size_t i = 0; strut_integrator_at(i) && plan->runnable; i++)
+  for (size_t i = 0; strut_integrator_at(i) && estimate->runnable; i++)
     strut_json_number(json, limits, strut_integrator_at(i)->name,
-                      strut_step_limit_of_method(&plan->limits, strut_integrator_at(i)));
+                      strut_step_limit_of_method(&estimate->limits, strut_integrator_at(i)));
 }
 
-static void add_terms(strut_json *json, const strut_plan *plan) {
+static void add_terms(strut_json *json, const strut_cost_estimate *estimate) {
   struct cJSON *terms = strut_json_object(json, json->root, "terms");
-  for (int i = 0; i < STRUT_PLAN_TERMS; i++) {
-    strut_json_bool(json, terms, plan->terms[i].name, plan->terms[i].in);
+  for (int i = 0; i < STRUT_COST_TERMS; i++) {
+    strut_json_bool(json, terms, estimate->terms[i].name, estimate->terms[i].in);
   }
 }
 
@@ -495,14 +498,14 @@ static bool add_warnings(strut_json *json, const strut_setup *setup, strut_open_
   return status == STRUT_OK;
 }
 
-static strut_status print_json(const strut_plan *plan, const strut_model *model,
+static strut_status print_json(const strut_cost_estimate *estimate, const strut_model *model,
                                const strut_setup *setup, strut_open_report *report) {
   double *q = drawn_shape(model);
   if (!q) return strut_print_out_of_memory();
   strut_json json = strut_json_begin();
   strut_json_bool(&json, json.root, "valid", true);
-  add_plan(&json, plan, setup);
-  add_terms(&json, plan);
+  add_estimate(&json, estimate, setup);
+  add_terms(&json, estimate);
   add_members(&json, model, q);
   add_hinges(&json, model, q);
   add_cells(&json, model->scene);
@@ -543,7 +546,7 @@ static strut_status open_checked(const strut_arguments *arguments, strut_setup *
 
 static strut_status check_model(const strut_arguments *arguments, strut_open_report *report) {
   strut_setup setup;
-  strut_plan plan;
+  strut_cost_estimate estimate;
   strut_model *model = NULL;
   strut_error error = {0};
   strut_status status = open_checked(arguments, &setup, report);
@@ -558,7 +561,7 @@ static strut_status check_model(const strut_arguments *arguments, strut_open_rep
   status = strut_model_compile(&setup.scene, &model, &error);
   if (status == STRUT_OK && has_fixed_method(&setup.experiment))
     status = strut_integrator_check(model, &setup.experiment, &error);
-  if (status == STRUT_OK) status = strut_plan_describe(model, &plan, &error);
+  if (status == STRUT_OK) status = strut_cost_estimate_describe(model, &estimate, &error);
   if (status == STRUT_OK) print_bands(model, &setup.experiment);
   if (status == STRUT_OK && (status = strut_warn_of_scene(&setup))) {
     /* reported already */
@@ -568,9 +571,9 @@ static strut_status check_model(const strut_arguments *arguments, strut_open_rep
     else
       strut_print_error(&error);
   } else if (arguments->json) {
-    status = print_json(&plan, model, &setup, report);
+    status = print_json(&estimate, model, &setup, report);
   } else if (!arguments->quiet) {
-    status = print_plan(&plan, model, &setup.experiment);
+    status = print_estimate(&estimate, model, &setup.experiment);
   }
   strut_model_free(model);
   strut_setup_free(&setup);

@@ -16,7 +16,7 @@
 static const strut_option options[] = {
     {STRUT_OPTION_OUTPUT, "output", "DIR", "results directory; an unfinished sweep is resumed"},
     {STRUT_OPTION_THREADS, "threads", "N", "number of threads (default: one per processor)"},
-    {STRUT_OPTION_LANES, "lanes", "N",
+    {STRUT_OPTION_BATCH, "batch", "N",
      "points per thread in lockstep: 1, 2, 4 or 8 (default automatic)"},
     {STRUT_OPTION_RETRY, "retry", NULL, "recompute points that failed"},
     {STRUT_OPTION_SHARD, "shard", "K/N",
@@ -36,14 +36,14 @@ static const strut_option options[] = {
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
-enum { MOST_THREADS = 4096, MOST_LANES = 8 };
+enum { MOST_THREADS = 4096, MOST_RUNS = 8 };
 static const char table_name[] = "table.csv", partial_name[] = "table-partial.csv";
 /* The table of a sweep that is running is written anew after these times, ever less often [s]. */
 static const double FIRST_PARTIAL = 2.0, RAREST_PARTIAL = 60.0;
 
 /* Concurrency; 0: automatic. */
 typedef struct concurrency {
-  int64_t threads, lanes;
+  int64_t threads, batch;
 } concurrency;
 
 /* DIR/name in the study's arena, or NULL. */
@@ -74,7 +74,7 @@ static strut_status find_shard(const strut_arguments *arguments, strut_sweep_stu
 
 static strut_status show_status(const strut_arguments *arguments, strut_sweep_study *study) {
   strut_slots *slots = NULL;
-  strut_slots_plan there;
+  strut_slots_description there;
   strut_error error = {0};
   strut_shard shard;
   const char *path;
@@ -144,7 +144,7 @@ static strut_status run_points(const strut_arguments *arguments, strut_sweep_stu
                    .next = FIRST_PARTIAL,
                    .interval = FIRST_PARTIAL};
   strut_sweep_options how = {.threads = (int)at_a_time.threads,
-                             .lanes = (int)at_a_time.lanes,
+                             .batch = (int)at_a_time.batch,
                              .interrupt = strut_interrupt_watch(),
                              .directory = arguments->output,
                              .progress = show,
@@ -311,7 +311,7 @@ static strut_status check_search(const strut_arguments *arguments) {
 static strut_status check_follow(const strut_arguments *arguments) {
   const char *option = strut_option_text(arguments, STRUT_OPTION_SHARD)   ? "--shard"
                        : strut_option_text(arguments, STRUT_OPTION_EMIT)  ? "--emit"
-                       : strut_option_text(arguments, STRUT_OPTION_LANES) ? "--lanes"
+                       : strut_option_text(arguments, STRUT_OPTION_BATCH) ? "--batch"
                                                                           : NULL;
   if (!option) return STRUT_OK;
   fprintf(stderr,
@@ -327,8 +327,8 @@ static strut_status run_sweep(const strut_arguments *arguments) {
   strut_status status = strut_option_integer(&strut_command_sweep, arguments, STRUT_OPTION_THREADS,
                                              1, MOST_THREADS, &at_a_time.threads);
   if (!status)
-    status = strut_option_integer(&strut_command_sweep, arguments, STRUT_OPTION_LANES, 1,
-                                  MOST_LANES, &at_a_time.lanes);
+    status = strut_option_integer(&strut_command_sweep, arguments, STRUT_OPTION_BATCH, 1, MOST_RUNS,
+                                  &at_a_time.batch);
   if (status) return status;
   if (arguments->retry && (arguments->count_points || arguments->status ||
                            strut_option_text(arguments, STRUT_OPTION_EMIT))) {
@@ -358,7 +358,7 @@ static strut_status run_sweep(const strut_arguments *arguments) {
   else if (!status && arguments->status)
     status = show_status(arguments, &study);
   else if (!status && study.plan.study->search)
-    status = strut_sweep_search(arguments, &study, (int)at_a_time.threads, (int)at_a_time.lanes);
+    status = strut_sweep_search(arguments, &study, (int)at_a_time.threads, (int)at_a_time.batch);
   else if (!status && study.plan.study->follow)
     status = strut_sweep_follow(arguments, &study, (int)at_a_time.threads);
   else if (!status)

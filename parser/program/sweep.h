@@ -19,7 +19,7 @@
 typedef struct strut_sweep_study {
   strut_study_file file;
   strut_sweep_plan plan;
-  strut_slots_plan slots; /* of all points in one file */
+  strut_slots_description slots; /* of all points in one file */
 } strut_sweep_study;
 
 /**
@@ -100,7 +100,7 @@ strut_status strut_sweep_judge(int64_t points, int64_t failed, int64_t inaccurat
 
 /** Does what the command does with a study that searches, once it is open. */
 strut_status strut_sweep_search(const strut_arguments *arguments, strut_sweep_study *study,
-                                int threads, int lanes);
+                                int threads, int batch);
 /** Prints how far the searches in a directory are. */
 strut_status strut_sweep_search_status(strut_slots *slots, const char *directory, bool json);
 /** Adds the columns of a study that follows motions, and checks that its first point has some. */

@@ -9,7 +9,7 @@
 #include "parser/program/sweep.h"
 
 /* Are the files of the same study? */
-static bool alike(const strut_slots_plan *a, const strut_slots_plan *b) {
+static bool alike(const strut_slots_description *a, const strut_slots_description *b) {
   return a->points == b->points && a->column_count == b->column_count &&
          memcmp(a->hash, b->hash, sizeof a->hash) == 0;
 }
@@ -22,11 +22,11 @@ void strut_sweep_refine_learn(strut_refinement *refinement, const char *director
   if (shard.count && strut_shards_find(directory, &found, &arena, NULL) == STRUT_OK)
     for (int64_t k = 0; k < found.count; k++) {
       strut_slots *slots = NULL;
-      strut_slots_plan there;
+      strut_slots_description there;
       if (k == shard.index || found.count != shard.count || !found.there[k]) continue;
       const char *path = strut_shard_path(directory, (strut_shard){k, found.count}, &arena);
       if (!path || strut_slots_read(path, &slots, &there, NULL) != STRUT_OK) continue;
-      if (alike(&there, strut_slots_plan_of(own))) strut_refinement_learn(refinement, slots);
+      if (alike(&there, strut_slots_description_of(own))) strut_refinement_learn(refinement, slots);
       strut_slots_close(slots);
     }
   strut_arena_free(&arena);
@@ -60,7 +60,7 @@ static strut_slots **open_shards(const char *directory, const strut_shards_found
   size_t count = found->count ? (size_t)found->count : 1;
   strut_slots **slots = strut_arena_allocate(arena, count, sizeof *slots);
   for (size_t k = 0; slots && k < count; k++) {
-    strut_slots_plan there;
+    strut_slots_description there;
     const char *path = strut_shard_path(directory, (strut_shard){(int64_t)k, found->count}, arena);
     if (path && (!found->count || found->there[k])) strut_slots_read(path, &slots[k], &there, NULL);
   }
@@ -81,9 +81,9 @@ static strut_status merge_shards(const strut_sweep_study *study, const char *dir
   for (size_t k = 0; k < count && !status; k++) {
     if (!slots[k])
       status = strut_fail(error, STRUT_FILE_TROUBLE, "shard %zu of %zu is missing", k, count);
-    else if (strut_slots_plan_of(slots[k])->points != study->plan.points ||
-             memcmp(strut_slots_plan_of(slots[k])->hash, strut_slots_plan_of(slots[0])->hash,
-                    STRUT_STUDY_HASH) != 0)
+    else if (strut_slots_description_of(slots[k])->points != study->plan.points ||
+             memcmp(strut_slots_description_of(slots[k])->hash,
+                    strut_slots_description_of(slots[0])->hash, STRUT_STUDY_HASH) != 0)
       status = strut_fail(error, STRUT_USAGE, "shard %zu of %zu is of another study", k, count);
     if (!status) strut_refinement_learn(r, slots[k]);
     if (!status) bad[0] += strut_slots_failed(slots[k]);

@@ -46,7 +46,7 @@ static void write_partial(const char *directory, strut_slots *slots) {
 }
 
 static strut_status run_search(const strut_arguments *arguments, strut_sweep_study *study,
-                               int threads, int lanes, strut_slots *slots, strut_sweep_state *state,
+                               int threads, int batch, strut_slots *slots, strut_sweep_state *state,
                                strut_search_result *result, strut_error *error) {
   display shown = {.progress = strut_sweep_progress_begin(&study->plan, arguments->quiet),
                    .slots = slots,
@@ -54,7 +54,7 @@ static strut_status run_search(const strut_arguments *arguments, strut_sweep_stu
                    .next = FIRST_PARTIAL,
                    .interval = FIRST_PARTIAL};
   const strut_sweep_options how = {.threads = threads,
-                                   .lanes = lanes,
+                                   .batch = batch,
                                    .interrupt = strut_interrupt_watch(),
                                    .progress = show,
                                    .progress_context = &shown};
@@ -220,7 +220,7 @@ static strut_status complete(const strut_arguments *arguments, strut_sweep_study
 strut_status strut_sweep_search_status(strut_slots *slots, const char *directory, bool json) {
   char text[300];
   strut_arena arena = {0};
-  const strut_slots_plan *plan = strut_slots_plan_of(slots);
+  const strut_slots_description *plan = strut_slots_description_of(slots);
   const char *table = strut_arena_format(&arena, "%s/%s", directory, table_name);
   if (!table) return strut_print_out_of_memory();
   bool over = access(table, F_OK) == 0; /* written at the end */
@@ -238,7 +238,7 @@ strut_status strut_sweep_search_status(strut_slots *slots, const char *directory
 }
 
 strut_status strut_sweep_search(const strut_arguments *arguments, strut_sweep_study *study,
-                                int threads, int lanes) {
+                                int threads, int batch) {
   strut_slots *slots = NULL;
   strut_sweep_state state = {0};
   strut_search_result result = {0};
@@ -250,10 +250,10 @@ strut_status strut_sweep_search(const strut_arguments *arguments, strut_sweep_st
   if (!status) status = strut_directory_create(arguments->output, &error);
   if (!status) status = strut_shard_begin(arguments->output, (strut_shard){0}, &error);
   if (!status) status = strut_slots_open(path, &study->slots, &slots, &error);
-  if (!status && strut_slots_missing(slots) == strut_slots_plan_of(slots)->count)
+  if (!status && strut_slots_missing(slots) == strut_slots_description_of(slots)->count)
     strut_file_remove(arguments->output, table_name); /* of another search */
   if (!status)
-    status = run_search(arguments, study, threads, lanes, slots, &state, &result, &error);
+    status = run_search(arguments, study, threads, batch, slots, &state, &result, &error);
   strut_sweep_print_warnings(&state);
   strut_print_failure(status, &error);
   if (!status) status = complete(arguments, study, slots, &state, &result);

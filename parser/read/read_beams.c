@@ -15,7 +15,7 @@
 
 /* Ends that are clamped to members and to other beams, see below. */
 static bool read_clamped_to(strut_reader *reader, const strut_slot *slot, strut_beam *b);
-static void add_joint_hinges(strut_reader *reader);
+static void add_coupling_hinges(strut_reader *reader);
 
 /* Node k of the beam, from 0 to its number of parts. */
 static int32_t node_of(const strut_beam *b, int32_t k) {
@@ -261,7 +261,7 @@ void strut_add_beam_hinges(strut_reader *reader) {
   for (size_t i = 0;
        i < reader->beam_count && scene->hinges && reader->things[STRUT_THING_HINGE].source; i++)
     add_hinges(reader, &reader->beams[i]);
-  add_joint_hinges(reader);
+  add_coupling_hinges(reader);
 }
 
 /* ---- ends that are clamped to members and to other beams ---- */
@@ -270,11 +270,11 @@ void strut_add_beam_hinges(strut_reader *reader) {
 enum { MOST_ENDS = 64 };
 
 /* What an end is clamped to: a member, or an end of a beam. */
-typedef struct joint_target {
+typedef struct coupling_target {
   int32_t member; /* -1: a beam */
   strut_beam *beam;
   int end;
-} joint_target;
+} coupling_target;
 
 static bool read_clamped_to(strut_reader *reader, const strut_slot *slot, strut_beam *b) {
   strut_fields fields;
@@ -310,12 +310,13 @@ static const char *target_name(const void *context, size_t i) {
   return i < reader->beam_count ? reader->beams[i].name : NULL;
 }
 
-static bool find_target(strut_reader *reader, const strut_beam *b, int end, joint_target *target) {
+static bool find_target(strut_reader *reader, const strut_beam *b, int end,
+                        coupling_target *target) {
   const strut_tree *value = b->clamped_to[end];
   const char *name = value->text, *which = end ? "ends" : "starts";
   const strut_node *node = &reader->scene->nodes[b->node[end]];
-  *target = (joint_target){strut_find_thing(reader, STRUT_THING_MEMBER, NULL, name),
-                           find_beam(reader, name), 0};
+  *target = (coupling_target){strut_find_thing(reader, STRUT_THING_MEMBER, NULL, name),
+                              find_beam(reader, name), 0};
   const strut_member *m = target->member >= 0 ? &reader->scene->members[target->member] : NULL;
   const int32_t *ends = m ? m->node : target->beam ? target->beam->node : NULL;
   if (!ends) {
@@ -381,7 +382,7 @@ static void join(const joints *j, int32_t a, int32_t b) {
   if (j->rigid[root] < 0) j->rigid[root] = j->rigid[other];
 }
 
-static bool make_joints(strut_reader *reader, joints *j) {
+static bool make_couplings(strut_reader *reader, joints *j) {
   size_t ends = 2 * reader->beam_count;
   int32_t **arrays[] = {&j->parent, &j->rigid, &j->target, &j->next, &j->last};
   j->reader = reader;
@@ -403,7 +404,7 @@ static void join_all(const joints *j) {
   strut_reader *reader = j->reader;
   for (int32_t e = 0; e < 2 * (int32_t)reader->beam_count; e++) {
     strut_beam *b = beam_of(j, e);
-    joint_target to;
+    coupling_target to;
     if (b->broken || !b->clamped_to[e % 2]) continue;
     strut_enter_scope(reader, b->key);
     bool found = find_target(reader, b, e % 2, &to);
@@ -428,8 +429,8 @@ static void join_all(const joints *j) {
   }
 }
 
-static void add_joint_hinge(const joints *j, int32_t end, int32_t other_node, const char *other,
-                            double stiffness, double time) {
+static void add_coupling_hinge(const joints *j, int32_t end, int32_t other_node, const char *other,
+                               double stiffness, double time) {
   strut_beam *b = beam_of(j, end);
   const char *name =
       strut_arena_format(&j->reader->scene->arena, "%s.%s%s%s", b->name, end % 2 ? "end" : "start",
@@ -449,16 +450,16 @@ static void add_pair(const joints *j, int32_t a, int32_t b, double sum) {
   const char *further = j->target[own] == other ? NULL : q->name;
   /* the dampings in a row, for slow motions */
   double time = (p->damping / k + q->damping / l) / (1.0 / k + 1.0 / l);
-  add_joint_hinge(j, own, inner_node(q, other % 2), further, k * l / sum, time);
+  add_coupling_hinge(j, own, inner_node(q, other % 2), further, k * l / sum, time);
 }
 
-static void add_joint(const joints *j, int32_t root) {
+static void add_coupling(const joints *j, int32_t root) {
   double sum = 0.0;
   for (int32_t e = root; e >= 0; e = j->next[e]) sum += half_stiffness(j->reader, beam_of(j, e));
   for (int32_t e = root; e >= 0; e = j->next[e]) {
     const strut_beam *b = beam_of(j, e);
     if (j->rigid[root] >= 0 && j->target[e] >= 0)
-      add_joint_hinge(j, e, j->rigid[root], NULL, half_stiffness(j->reader, b), b->damping);
+      add_coupling_hinge(j, e, j->rigid[root], NULL, half_stiffness(j->reader, b), b->damping);
     for (int32_t other = j->next[e]; other >= 0 && j->rigid[root] < 0; other = j->next[other])
       add_pair(j, e, other, sum);
   }
@@ -478,14 +479,14 @@ static size_t count_hinges(const joints *j, int32_t root) {
   return 0;
 }
 
-static void add_joint_hinges(strut_reader *reader) {
+static void add_coupling_hinges(strut_reader *reader) {
   strut_scene *scene = reader->scene;
   joints j;
   size_t more = 0;
   bool any = false;
   for (size_t i = 0; i < reader->beam_count; i++)
     any = any || reader->beams[i].clamped_to[0] || reader->beams[i].clamped_to[1];
-  if (!any || !make_joints(reader, &j)) return;
+  if (!any || !make_couplings(reader, &j)) return;
   join_all(&j);
   for (int32_t e = 0; e < 2 * (int32_t)reader->beam_count; e++)
     if (root_of(&j, e) == e) more += count_hinges(&j, e);
@@ -496,5 +497,5 @@ static void add_joint_hinges(strut_reader *reader) {
                scene->hinge_count, more, sizeof *reader->things[STRUT_THING_HINGE].source);
   if (!scene->hinges || !reader->things[STRUT_THING_HINGE].source || reader->failed) return;
   for (int32_t e = 0; e < 2 * (int32_t)reader->beam_count; e++)
-    if (root_of(&j, e) == e) add_joint(&j, e);
+    if (root_of(&j, e) == e) add_coupling(&j, e);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * Simulations: the steps of a run however they are divided, snapshots that go on with the same bits, inputs
- * that are events, and a ledger that closes over all of it.
+ * that are events, and an energy balance that closes over all of it.
  */
 #include <limits.h>
 #include <math.h>
@@ -193,7 +193,7 @@ static double open_balance(const char *step, double *worked) {
   return fabs(gap);
 }
 
-TEST(the_ledger_counts_what_inputs_do) {
+TEST(the_balance_counts_what_inputs_do) {
   double coarse_work, fine_work;
   double coarse = open_balance("0.05 ms", &coarse_work),
          fine = open_balance("0.025 ms", &fine_work);

@@ -24,8 +24,8 @@
 #ifdef BENCH_PARSER
 #include "parser/read/read_scene.h"
 #endif
+#include "tests/bench/batch_runs.h"
 #include "tests/bench/falls.h"
-#include "tests/bench/lanes.h"
 #include "tests/bench/large.h"
 #include "tests/bench/methods.h"
 #include "tests/bench/rivals.h"
@@ -224,7 +224,7 @@ static int usage(void) {
 
 int main(int argc, char **argv) {
   if (argc == 2 && strcmp(argv[1], "lanes") == 0) {
-    bench_lanes(15);
+    bench_batch(15);
     return 0;
   }
   if (argc >= 2 && strcmp(argv[1], "large") == 0) {
@@ -262,7 +262,7 @@ int main(int argc, char **argv) {
   }
   if (repeats < 1 || repeats > MOST_REPEATS) return usage();
   compare_crawlers(repeats);
-  bench_lanes(repeats);
+  bench_batch(repeats);
   bench_terms(repeats);
   bench_methods(repeats, NULL);
   compare_chains(members, repeats);

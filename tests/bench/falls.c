@@ -90,7 +90,7 @@ static fall_cost run(const strut_model *model, const char *name, int32_t local_f
   if (strut_state_create(model, &state, NULL)) return cost;
   void *work = method->create(model, state, &settings);
   if (work) {
-    state->ledger = true;
+    state->balance = true;
     double begin = now();
     method->advance(model, state, work, STEP, STEPS);
     cost.seconds = (now() - begin) / STEPS, cost.events = (double)state->events / STEPS;

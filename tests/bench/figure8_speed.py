@@ -6,7 +6,7 @@ usage: figure8_speed.py STRUT [THREADS [SAMPLE [SEED]]]
 
 All 1146 runs with `accuracy: 0.5 %`, until the motion is steady, by one `strut sweep` with THREADS (2)
 threads; against the same runs of 1100 periods of rk4 at 0.1 ms one after another on one thread without
-lanes. Of these a SAMPLE (24) is run, half of it before the sweep and half after: one frequency drawn from
+batch. Of these a SAMPLE (24) is run, half of it before the sweep and half after: one frequency drawn from
 each of so many parts of equal simulated time, friction and start drawn too, and their time per simulated
 second scaled to all. Prints elapsed and CPU seconds and both ratios; on a machine that does other things
 at the same time the CPU seconds say more.
@@ -79,7 +79,7 @@ def the_papers_way(name, points, work):
 
 def no_lanes():
     text = subprocess.run([strut, "sweep", "--help"], capture_output=True, text=True, check=False)
-    return ["--lanes", "1"] if "--lanes" in text.stdout + text.stderr else []
+    return ["--batch", "1"] if "--batch" in text.stdout + text.stderr else []
 
 
 def main():

@@ -126,7 +126,7 @@ static double triad_rate(bool both) {
 /* What an evaluation of the forces and the stage behind it read and write once: per member ends, stiffness, rest
    length, slack, damping; per node position, velocity, acceleration, inverse mass and the next two. */
 static double bytes_per_member(const strut_model *model) {
-  double member = 8 + 3 * 8 + (model->plan & STRUT_TERM_DAMPING ? 8 : 0), node = 6 * 16;
+  double member = 8 + 3 * 8 + (model->terms & STRUT_TERM_DAMPING ? 8 : 0), node = 6 * 16;
   return member + node * model->node_count / model->members.count;
 }
 
@@ -163,7 +163,7 @@ static bool time_steps(const strut_model *model, const char *name, timing *t) {
   int64_t steps = (int64_t)fmax(method->evaluations == 1 ? 16.0 : 4.0, 2e6 / members);
   for (int w = 0; w < WAYS; w++) {
     if (strut_state_create(model, &state[w], NULL)) return false;
-    state[w]->ledger = true;
+    state[w]->balance = true;
     if (w == 0) workspace = method->create(model, state[w], &settings);
     if (w > 0) strut_large_steps_create(model, method, &settings, threads_of[w], &large[w], NULL);
     if (large[w]) strut_large_steps_restart(large[w], state[w], settings.step);
@@ -271,7 +271,8 @@ void bench_large(long members) {
   double one = triad_rate(false), two = triad_rate(true);
   printf("triad: %.1f GB/s by one thread, %.1f by two\n", 1e-9 * one, 1e-9 * two);
   printf(
-      "ns of processor time of the busiest thread per member and step, with the ledger; medians, "
+      "ns of processor time of the busiest thread per member and step, with the energy balance; "
+      "medians, "
       "ratios with "
       "quartiles\n"
       "memory: time of a step at the triad's rate if each evaluation reads and writes all once, "

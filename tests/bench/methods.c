@@ -11,7 +11,7 @@
 #include "engine/model/small_model.h"
 #include "tests/bench/scenes.h"
 
-enum { STEPS = 4000, KERNELS = 3, LEDGERS = 2 };
+enum { STEPS = 4000, KERNELS = 3, BALANCES = 2 };
 
 typedef struct method_row {
   const char *method;
@@ -32,7 +32,7 @@ static double now(void) {
 }
 
 /* ns of a force evaluation; NAN where the processor has no such kernel. */
-static double run(const method_row *row, strut_small_level level, bool ledger) {
+static double run(const method_row *row, strut_small_level level, bool balance) {
   strut_setup setup = {0};
   strut_model *model = NULL;
   strut_state *state = NULL;
@@ -51,7 +51,7 @@ static double run(const method_row *row, strut_small_level level, bool ledger) {
       model && (level == STRUT_SMALL_NONE || (model->small && model->small->level >= level));
   if (work && here) {
     if (model->small) model->small->level = level;
-    state->ledger = ledger;
+    state->balance = balance;
     if (method->restart) method->restart(model, state, work, row->step);
     int64_t steps = (int64_t)(STEPS * 5e-5 / row->step);
     double begin = now();
@@ -69,16 +69,17 @@ static bool is_wanted(const method_row *row, const char *only) {
 }
 
 void bench_methods(int repeats, const char *only) {
-  static double best[ROWS][KERNELS][LEDGERS];
+  static double best[ROWS][KERNELS][BALANCES];
   for (int r = 0; r < repeats; r++)
     for (int i = 0; i < ROWS; i++)
       for (int k = 0; k < KERNELS && is_wanted(&rows[i], only); k++)
-        for (int b = 0; b < LEDGERS; b++) {
+        for (int b = 0; b < BALANCES; b++) {
           double time = run(&rows[i], levels[k], b == 1);
           best[i][k][b] = r ? fmin(best[i][k][b], time) : time;
         }
   printf(
-      "crawler, 10 Hz, friction 0.1: ns of a force evaluation, and times rk4; without the ledger, "
+      "crawler, 10 Hz, friction 0.1: ns of a force evaluation, and times rk4; without the energy "
+      "balance, "
       "and with it\n"
       "  %-16s %26s %26s %26s\n",
       "method", "AVX-512", "AVX2", "general kernel");

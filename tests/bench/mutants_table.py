@@ -120,10 +120,10 @@ MUTANTS = [
            "double more = along - across;", "double more = along + across;",
            "the tangent stiffness has the prestress twice along the member",
            "step_limit|step_limit_dense|potential"),
-    Mutant("lane-edge-of-band", "engine/forces/lane_kernel.h",
-           "lane_mask slides = lane_magnitude(slip) >= lane_row(entry, STRUT_LANE_STICK, p);",
-           "lane_mask slides = lane_magnitude(slip) > lane_row(entry, STRUT_LANE_STICK, p);",
-           "in lanes a contact at the edge of its band sticks, alone it slides", "batch|simulate_batch"),
+    Mutant("lane-edge-of-band", "engine/forces/batch_kernel.h",
+           "batch_mask slides = batch_magnitude(slip) >= batch_row(entry, STRUT_BATCH_STICK, p);",
+           "batch_mask slides = batch_magnitude(slip) > batch_row(entry, STRUT_BATCH_STICK, p);",
+           "in batch a contact at the edge of its band sticks, alone it slides", "batch|simulate_batch"),
 
     # Integrators, events, step limit.
     Mutant("rk4-weight-of-work", "engine/integrate/rk4.c",
@@ -245,7 +245,7 @@ MUTANTS = [
     Mutant("merge-mixes-studies", "engine/study/results/shard.c",
            "for (size_t i = first + 1; i < m->count; i++) {", "for (size_t i = first + 2; i < m->count; i++) {",
            "the second shard is merged whatever study it is of", "shard|cli_shard"),
-    Mutant("lanes-of-other-ends", "engine/forces/lane_tables.c",
+    Mutant("batch-of-other-ends", "engine/forces/batch_tables.c",
            "         same(s->to, t->to, s->slots, sizeof *s->to) &&\n", "",
            "points whose members end at other nodes share a batch",
            "batch|simulate_batch|variants"),

@@ -40,7 +40,7 @@ static void engine_free(void *crawler) {
 }
 
 /* level: the kernel, at most what the processor has. */
-static void *engine_make(bool ledger, strut_small_level level) {
+static void *engine_make(bool balance, strut_small_level level) {
   engine_crawler *it = calloc(1, sizeof *it);
   if (!it) return NULL;
   const strut_integrator_settings settings = {.step = 1e-4};
@@ -53,13 +53,13 @@ static void *engine_make(bool ledger, strut_small_level level) {
     return NULL;
   }
   strut_state_reset(it->model, it->state);
-  it->state->ledger = ledger;
+  it->state->balance = balance;
   if (it->model->small && level < it->model->small->level) it->model->small->level = level;
   return it;
 }
 
 static void *engine_create(void) { return engine_make(false, STRUT_SMALL_AVX512); }
-static void *engine_create_ledger(void) { return engine_make(true, STRUT_SMALL_AVX512); }
+static void *engine_create_balance(void) { return engine_make(true, STRUT_SMALL_AVX512); }
 static void *engine_create_avx2(void) { return engine_make(true, STRUT_SMALL_AVX2); }
 static void *engine_create_general(void) { return engine_make(true, STRUT_SMALL_NONE); }
 
@@ -167,7 +167,7 @@ static double octave_position(void *crawler) {
 
 static const rival rivals[] = {
     {"strut", 20000, engine_create, engine_run, engine_position, engine_free},
-    {"strut, with the energy ledger", 20000, engine_create_ledger, engine_run, engine_position,
+    {"strut, with the energy balance", 20000, engine_create_balance, engine_run, engine_position,
      engine_free},
     {"the same in registers of AVX2", 20000, engine_create_avx2, engine_run, engine_position,
      engine_free},

@@ -37,12 +37,12 @@ static strut_status write_all(strut_slots *slots, strut_error *error) {
 static strut_status measure(const char *path, strut_error *error) {
   strut_slot_column columns[NUMBERS + 1] = {{"motion", "", true}};
   for (int i = 1; i <= NUMBERS; i++) columns[i] = (strut_slot_column){"velocity", "m/s", false};
-  strut_slots_plan plan = {.version = "",
-                           .name = "",
-                           .points = POINTS,
-                           .count = POINTS,
-                           .columns = columns,
-                           .column_count = NUMBERS + 1};
+  strut_slots_description plan = {.version = "",
+                                  .name = "",
+                                  .points = POINTS,
+                                  .count = POINTS,
+                                  .columns = columns,
+                                  .column_count = NUMBERS + 1};
   strut_slots *slots = NULL;
   unlink(path);
   strut_status status = strut_slots_open(path, &plan, &slots, error);

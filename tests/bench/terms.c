@@ -18,7 +18,7 @@ typedef void (*change)(strut_setup *setup);
 typedef struct side {
   const char *method;
   change changes[2];
-  bool without_ledger;
+  bool without_balance;
 } side;
 
 typedef struct row {
@@ -74,7 +74,7 @@ static const row rows[] = {
      {"verlet-events", {NULL}, false}},
     {"consistent mass (lumped)", {"rk4", {NULL}, false}, {"rk4", {lumped}, false}},
     {"rigid bars (elastic)", {"rk4", {rigid}, false}, {"rk4", {NULL}, false}},
-    {"ledger of works", {"rk4", {NULL}, false}, {"rk4", {NULL}, true}},
+    {"balance of works", {"rk4", {NULL}, false}, {"rk4", {NULL}, true}},
     {"  the same, verlet-events",
      {"verlet-events", {NULL}, false},
      {"verlet-events", {NULL}, true}},
@@ -109,7 +109,7 @@ static double run(const strut_model *model, const side *it) {
   const strut_integrator *method = strut_integrator_find(it->method);
   void *work = method->create(model, state, &settings);
   if (work) {
-    state->ledger = !it->without_ledger;
+    state->balance = !it->without_balance;
     if (method->restart) method->restart(model, state, work, dt);
     double begin = now();
     method->advance(model, state, work, dt, STEPS);

@@ -43,7 +43,7 @@ rk4 step:~0.5~ms law:~karnopp,~stick_velocity:~1e-4~m/s 0.06
 adaptive step:~20~ms,~tolerance:~1e-5 law:~smooth,~width:~1e-5~m/s 0.02
 END
 
-# Points of a study run side by side in lanes: with the bits of single runs.
+# Points of a study run side by side in batch: with the bits of single runs.
 worm "$work/worm.yaml" rk4 "step: 0.5 ms" "law: karnopp, stick_velocity: 1e-4 m/s"
 cat >"$work/study.yaml" <<END
 strut: 1

@@ -84,20 +84,20 @@ keep: [velocity, cost_of_transport]
 
 
 # Lanes give the same bits, with events and without, and so does the compared design of `strut compare`.
-def lanes():
+def batch():
     for method in ("rk4", "verlet-events"):
         for n in ("1", "4"):
-            sweep(f"lanes-{method}-{n}", f"""model: copied/crawler/crawler.yaml
+            sweep(f"batch-{method}-{n}", f"""model: copied/crawler/crawler.yaml
 axes: [{{frequency: [9 Hz, 10 Hz, 11 Hz, 12 Hz, 13 Hz]}}]
 solver: {{integrator: {method}, step: 0.08 ms}}
 run: {{periods: 12, measure: {{last: 2}}}}
 keep: [velocity, cost_of_transport, work]
-""", "--lanes", n, "--threads", "1")
+""", "--batch", n, "--threads", "1")
         tables = []
         for n in ("1", "4"):
-            with open(os.path.join(work, f"lanes-{method}-{n}", "table.csv")) as file:
+            with open(os.path.join(work, f"batch-{method}-{n}", "table.csv")) as file:
                 tables.append(file.read())
-        check(tables[0] == tables[1] and ",," not in tables[0], f"lanes of {method}: {tables}")
+        check(tables[0] == tables[1] and ",," not in tables[0], f"batch of {method}: {tables}")
 
 
 def compared():
@@ -226,7 +226,7 @@ like: "II"
 
 moves()
 goals()
-lanes()
+batch()
 compared()
 at_rest()
 finish()

@@ -190,11 +190,11 @@ def lanes_change_nothing():
     write("events.yaml", EVENTS)
     ends = {"crawler": 0, "events": 0, "mixed": 3, "motions": 0}
     for name, code in ends.items():
-        run("sweep", f"{name}.yaml", "-o", f"{name}-1", "--lanes", "1", "--threads", "1",
+        run("sweep", f"{name}.yaml", "-o", f"{name}-1", "--batch", "1", "--threads", "1",
             "--quiet", code=code)
-        for lanes, threads in ((3, 1), (4, 2), (8, 1)):
-            folder = f"{name}-{lanes}-{threads}"
-            run("sweep", f"{name}.yaml", "-o", folder, "--lanes", f"{lanes}", "--threads",
+        for batch, threads in ((3, 1), (4, 2), (8, 1)):
+            folder = f"{name}-{batch}-{threads}"
+            run("sweep", f"{name}.yaml", "-o", folder, "--batch", f"{batch}", "--threads",
                 f"{threads}", "--quiet", code=code)
             for file in ("table.csv", "points.slots"):
                 check(read(f"{folder}/{file}") == read(f"{name}-1/{file}"), f"{folder}/{file}")
@@ -207,7 +207,7 @@ def lanes_change_nothing():
         for file in ("summary.json", "trajectory.h5", "scene.yaml"):
             name = f"runs/{n:09d}/{file}"
             check(read(f"motions-8-1/{name}") == read(f"motions-1/{name}"), name)
-    run("sweep", "mixed.yaml", "-o", "mixed-9", "--lanes", "9", code=1)
+    run("sweep", "mixed.yaml", "-o", "mixed-9", "--batch", "9", code=1)
 
 
 def killed_and_resumed():

@@ -61,7 +61,7 @@ static double fastest(const motion *m) {
   return most;
 }
 
-/* Of all that was exchanged [1]; times and losses are in the state's ledger. */
+/* Of all that was exchanged [1]; times and losses are in the state's balance. */
 static double residual(const motion *m, const strut_energies *begin) {
   strut_energy e;
   strut_balance_fill(m->model, m->state, begin, (double)m->state->step * m->step, &e);
@@ -71,7 +71,7 @@ static double residual(const motion *m, const strut_energies *begin) {
 
 static void begin(motion *m, const strut_setup *setup, double step, strut_energies *stored) {
   motion_begin(m, &setup->scene, step);
-  m->state->ledger = true;
+  m->state->balance = true;
   strut_energy_reset_load_work(m->model, m->state);
   *stored = strut_energy_evaluate(m->model, m->state, 0);
 }

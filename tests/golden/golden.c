@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * Prints two hashes of a run of a model for each of two methods, over every hundredth step: of the motion
- * (positions, velocities, forces) and of the works, so that another order of the ledger's sums shows as
+ * (positions, velocities, forces) and of the works, so that another order of the energy balance's sums shows as
  * that only. Whatever compiled it, the same file must give the same hashes.
  * Usage: golden MODEL STEPS
  *
@@ -70,7 +70,7 @@ static strut_status hash_methods(const strut_model *model, const strut_experimen
     double time = 0;
     if (!(status = strut_state_create(model, &state, error)) &&
         !(status = strut_settle_state(model, experiment, state, NULL, &time, error))) {
-      state->ledger = true;
+      state->balance = true;
       run_hashes hash = hash_run(model, experiment, state, methods[i], steps);
       printf("%s motion %016llx\n%s works %016llx\n", methods[i]->name,
              (unsigned long long)hash.motion, methods[i]->name, (unsigned long long)hash.works);

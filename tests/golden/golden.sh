@@ -22,7 +22,7 @@ engine="tests/golden/golden.c engine/run/settle.c engine/integrate/rk4.c
   engine/integrate/events/verlet_events.c engine/integrate/events/event_stepping.c
   engine/integrate/events/event_log.c engine/integrate/events/event_location.c
   engine/integrate/events/contact_modes.c
-  engine/integrate/events/contact_compliance.c engine/integrate/events/memory_modes.c
+  engine/integrate/events/contact_compliance.c engine/integrate/events/history_modes.c
   engine/integrate/events/surface_contacts.c engine/integrate/events/variation.c
   engine/integrate/events/mode_tangent.c $(ls engine/integrate/limit/*.c)
   $(ls engine/base/*.c engine/model/*.c engine/forces/*.c)"

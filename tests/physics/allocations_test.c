@@ -23,10 +23,10 @@ TEST(the_count_counts) {
   free(block);
 }
 
-static void check_steps(const strut_setup *setup, bool ledger) {
+static void check_steps(const strut_setup *setup, bool balance) {
   motion m;
   motion_begin(&m, &setup->scene, 1e-5);
-  m.state->ledger = ledger;
+  m.state->balance = balance;
   uint64_t before = allocations_so_far(), own = strut_allocation_count();
   motion_steps(&m, 1000);
   assert_int_equal(allocations_so_far(), before);

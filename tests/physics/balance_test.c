@@ -35,7 +35,7 @@ static strut_summary bounce(const char *method, double step) {
   return s;
 }
 
-/* Without losses its energy at the end is that at the start: known without the ledger. */
+/* Without losses its energy at the end is that at the start: known without the energy balance. */
 TEST(steps_over_touchdowns) {
   strut_summary s = bounce("rk4", 2e-3);
   double end = s.energy.kinetic + s.energy.gravity + s.energy.contact;
@@ -84,7 +84,7 @@ TEST(a_drive_that_jumps) {
   strut_summary_free(&s);
 }
 
-/* A run that ends where its drive jumps: methods with events have booked that jump, whatever rounding says. */
+/* A run that ends where its drive jumps: methods with events have accumulated that jump, whatever rounding says. */
 TEST(a_run_that_ends_at_a_jump) {
   static const char *const methods[] = {"rk4-events", "adaptive"};
   for (size_t i = 0; i < 2; i++)
@@ -138,7 +138,7 @@ TEST(rest_is_no_open_balance) {
   assert_int_equal(strut_balance_judge(&e, 200), STRUT_BALANCE_CLOSED);
 }
 
-TEST(without_a_ledger_nothing_is_said) {
+TEST(without_a_balance_nothing_is_said) {
   strut_setup setup;
   strut_setup_init(&setup);
   setup.scene.gravity[1] = -10;
@@ -146,7 +146,7 @@ TEST(without_a_ledger_nothing_is_said) {
   build_contact(&setup.scene, 0, 1e5, 0);
   motion_experiment(&setup, 2e-3, 1);
   strut_model *model = motion_compile(&setup.scene);
-  const strut_run_options options = {.without_ledger = true};
+  const strut_run_options options = {.without_balance = true};
   strut_summary s;
   assert_int_equal(strut_simulate(model, &setup.experiment, &options, &s, NULL), STRUT_OK);
   assert_int_equal(s.balance, STRUT_BALANCE_NOT_KEPT);

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * Lanes of a batch against single runs, bit for bit: random structures with all that a scene can have,
- * each lane with numbers of its own, lanes that end and are refilled, and the crawler from both starts.
+ * each slot with numbers of its own, slots that end and are refilled, and the crawler from both starts.
  */
 #include <string.h>
 
-#include "engine/integrate/lanes/batch.h"
+#include "engine/integrate/batch/batch.h"
 #include "tests/physics/random_elements.h"
 #include "tests/physics/random_scene.h"
 #include "tests/support/build.h"
@@ -14,10 +14,10 @@
 #include "tests/support/random.h"
 #include "tests/support/structures.h"
 
-/* A point: a scene of its own, run alone for the reference and in a lane. */
+/* A point: a scene of its own, run alone for the reference and in a slot. */
 typedef struct point {
   strut_setup setup;
-  motion alone, lane; /* the lane's state is where it is put from and taken to */
+  motion alone, slot; /* the slot's state is where it is put from and taken to */
   int64_t steps;
 } point;
 
@@ -56,40 +56,40 @@ static void vary(strut_setup *setup, uint64_t *r) {
   setup->scene.ground.belt_speed *= random_between(r, 0.5, 1.5);
 }
 
-static void begin_point(point *p, const char *method, double step, int64_t steps, bool ledger) {
+static void begin_point(point *p, const char *method, double step, int64_t steps, bool balance) {
   motion_begin_by(&p->alone, &p->setup, method, step);
-  motion_begin_by(&p->lane, &p->setup, method, step);
-  p->alone.state->ledger = p->lane.state->ledger = ledger;
+  motion_begin_by(&p->slot, &p->setup, method, step);
+  p->alone.state->balance = p->slot.state->balance = balance;
   p->steps = steps;
 }
 
 static void end_point(point *p) {
   motion_end(&p->alone);
-  motion_end(&p->lane);
+  motion_end(&p->slot);
   strut_setup_free(&p->setup);
 }
 
 /* Some of the motions are violent and end nowhere; of that only the sign may differ. */
-static void check_array(const double *lane, const double *alone, int32_t count) {
+static void check_array(const double *slot, const double *alone, int32_t count) {
   for (int32_t i = 0; i < count; i++)
-    if (!isnan(lane[i]) || !isnan(alone[i])) assert_same_bits(lane[i], alone[i]);
+    if (!isnan(slot[i]) || !isnan(alone[i])) assert_same_bits(slot[i], alone[i]);
 }
 
-static void check_point(point *p, bool ledger) {
-  const strut_state *a = p->lane.state, *b = p->alone.state;
-  const strut_model *m = p->lane.model;
+static void check_point(point *p, bool balance) {
+  const strut_state *a = p->slot.state, *b = p->alone.state;
+  const strut_model *m = p->slot.model;
   assert_int_equal(a->step, b->step);
   assert_int_equal(a->evaluations, b->evaluations);
   check_array(a->q, b->q, 2 * m->node_count);
   check_array(a->v, b->v, 2 * m->node_count);
-  if (ledger) check_array(a->work, b->work, STRUT_POWER_COUNT);
+  if (balance) check_array(a->work, b->work, STRUT_POWER_COUNT);
   check_array(a->force, b->force, 2 * m->node_count);
   check_array(a->rest, b->rest, m->members.slots);
   check_array(a->rest_rate, b->rest_rate, m->members.slots);
-  if (ledger) check_array(a->power, b->power, STRUT_POWER_COUNT);
+  if (balance) check_array(a->power, b->power, STRUT_POWER_COUNT);
 }
 
-/* All ways to step in lanes that this processor has: how many, and whether in halves. */
+/* All ways to step in slots that this processor has: how many, and whether in halves. */
 typedef struct way {
   int32_t width;
   bool halves;
@@ -99,29 +99,29 @@ static const way ways[] = {{4, false}, {8, true}, {8, false}};
 static size_t way_count(void) { return strut_batch_widest() == 8 ? 3 : 0; }
 
 /* All points through one batch; each has its own length, and makes room for the next. */
-static void run_in_lanes(point *points, int count, way how, bool ledger) {
-  point *in[STRUT_MOST_LANES] = {NULL};
+static void run_in_batch(point *points, int count, way how, bool balance) {
+  point *in[STRUT_BATCH_MOST] = {NULL};
   int32_t width = how.width;
-  strut_batch *b = strut_batch_create(points[0].lane.model, points[0].lane.method, width, ledger);
+  strut_batch *b = strut_batch_create(points[0].slot.model, points[0].slot.method, width, balance);
   assert_non_null(b);
   if (how.halves) strut_batch_halve(b);
   for (int next = 0, left = count; left > 0;) {
-    int64_t still[STRUT_MOST_LANES] = {0};
+    int64_t still[STRUT_BATCH_MOST] = {0};
     for (int32_t l = 0; l < width; l++) {
       if (!in[l] && next < count) {
         in[l] = &points[next++];
-        strut_batch_fill(b, l, in[l]->lane.model, in[l]->lane.step);
-        strut_batch_put(b, l, in[l]->lane.state);
+        strut_batch_fill(b, l, in[l]->slot.model, in[l]->slot.step);
+        strut_batch_put(b, l, in[l]->slot.state);
       }
-      if (in[l]) still[l] = in[l]->steps - in[l]->lane.state->step;
+      if (in[l]) still[l] = in[l]->steps - in[l]->slot.state->step;
     }
     strut_batch_advance(b, still);
     for (int32_t l = 0; l < width; l++) {
       if (!in[l]) continue;
-      strut_batch_get(b, l, in[l]->lane.state);
-      if (in[l]->lane.state->step < in[l]->steps) continue;
+      strut_batch_get(b, l, in[l]->slot.state);
+      if (in[l]->slot.state->step < in[l]->steps) continue;
       motion_steps(&in[l]->alone, in[l]->steps);
-      check_point(in[l], ledger);
+      check_point(in[l], balance);
       strut_batch_empty(b, l);
       in[l] = NULL;
       left--;
@@ -143,7 +143,7 @@ static void make_elements(strut_scene *scene, uint64_t seed) {
   scene->actuators[scene->actuator_count - 1].hinge = 0;
 }
 
-static void compare_random(uint64_t seed, void make(strut_scene *, uint64_t), way how, bool ledger,
+static void compare_random(uint64_t seed, void make(strut_scene *, uint64_t), way how, bool balance,
                            int *done) {
   enum { POINTS = 11 };
   static point points[POINTS];
@@ -156,11 +156,11 @@ static void compare_random(uint64_t seed, void make(strut_scene *, uint64_t), wa
     if (count) vary(&points[count].setup, &r);
     double slow = points[count].setup.scene.hinge_count ? 8.0 : 1.0;
     begin_point(&points[count], "rk4", slow * random_scale(&r, 1e-4, 1e-3),
-                3 + random_below(&r, 200), ledger);
-    possible = strut_batch_possible(points[0].lane.model, points[0].lane.method) &&
-               strut_lanes_alike(points[0].lane.model, points[count].lane.model);
+                3 + random_below(&r, 200), balance);
+    possible = strut_batch_possible(points[0].slot.model, points[0].slot.method) &&
+               strut_batch_takes_both(points[0].slot.model, points[count].slot.model);
   }
-  if (possible) run_in_lanes(points, count, how, ledger);
+  if (possible) run_in_batch(points, count, how, balance);
   *done += possible;
   for (int i = 0; i < count; i++) end_point(&points[i]);
 }
@@ -170,7 +170,7 @@ TEST(random_structures) {
   for (int seed = 1; seed <= seeds; seed++)
     for (size_t w = 0; w < way_count(); w++)
       compare_random((uint64_t)seed, random_scene, ways[w], seed % 2, &done);
-  assert_true(done >= seeds / 2 * (int)way_count()); /* those with a sparse factor have no lanes */
+  assert_true(done >= seeds / 2 * (int)way_count()); /* those with a sparse factor have no slots */
 }
 
 TEST(random_elements) {
@@ -179,11 +179,11 @@ TEST(random_elements) {
   for (int seed = 1; seed <= seeds; seed++)
     compare_random((uint64_t)seed, make_elements, ways[(size_t)seed / 2 % way_count()], seed % 2,
                    &done);
-  print_message("%d of %d structures in lanes\n", done, seeds);
+  print_message("%d of %d structures in slots\n", done, seeds);
   assert_true(done > seeds / 2);
 }
 
-static void run_crawlers(const char *method, way how, bool ledger) {
+static void run_crawlers(const char *method, way how, bool balance) {
   enum { POINTS = 21 };
   static point points[POINTS];
   uint64_t r = 7;
@@ -194,38 +194,38 @@ static void run_crawlers(const char *method, way how, bool ledger) {
     if (i % 5 == 3) points[i].setup.scene.signals[0].kind = STRUT_HALF_SINE;
     points[i].setup.experiment.refine = i % 4;
     begin_point(&points[i], method, random_between(&r, 5e-5, 1e-4), 200 + random_below(&r, 6000),
-                ledger);
-    assert_true(strut_batch_possible(points[i].lane.model, points[i].lane.method));
+                balance);
+    assert_true(strut_batch_possible(points[i].slot.model, points[i].slot.method));
   }
-  run_in_lanes(points, POINTS, how, ledger);
+  run_in_batch(points, POINTS, how, balance);
   for (int i = 0; i < POINTS; i++) end_point(&points[i]);
 }
 
 TEST(crawler) {
   for (size_t w = 0; w < way_count(); w++)
-    for (int ledger = 0; ledger < 2; ledger++) run_crawlers("rk4", ways[w], ledger);
+    for (int balance = 0; balance < 2; balance++) run_crawlers("rk4", ways[w], balance);
 }
 
-/* A lane that may take any number of steps does not end the others' before they are done. */
+/* A slot that may take any number of steps does not end the others' before they are done. */
 TEST(endless_lane) {
   static point points[2];
-  const int64_t left[STRUT_MOST_LANES] = {10, INT64_MAX};
+  const int64_t left[STRUT_BATCH_MOST] = {10, INT64_MAX};
   if (!way_count()) skip();
   for (int i = 0; i < 2; i++) {
     strut_setup_init(&points[i].setup);
     structure_crawler(&points[i].setup.scene, 10, 1e-4, 0.1, i);
     begin_point(&points[i], "rk4", 8e-5, 10, true);
   }
-  strut_batch *b = strut_batch_create(points[0].lane.model, points[0].lane.method, 4, true);
+  strut_batch *b = strut_batch_create(points[0].slot.model, points[0].slot.method, 4, true);
   assert_non_null(b);
   for (int i = 0; i < 2; i++) {
-    strut_batch_fill(b, i, points[i].lane.model, points[i].lane.step);
-    strut_batch_put(b, i, points[i].lane.state);
+    strut_batch_fill(b, i, points[i].slot.model, points[i].slot.step);
+    strut_batch_put(b, i, points[i].slot.state);
   }
   for (int turn = 1; turn <= 2; turn++) { /* the second begins behind step 0 */
     strut_batch_advance(b, left);
-    strut_batch_count(b, 0, points[0].lane.state);
-    assert_int_equal(points[0].lane.state->step, 10 * turn);
+    strut_batch_count(b, 0, points[0].slot.state);
+    assert_int_equal(points[0].slot.state->step, 10 * turn);
   }
   strut_batch_free(b);
   for (int i = 0; i < 2; i++) end_point(&points[i]);
@@ -245,9 +245,9 @@ static void run_at_edges(const char *method, way how) {
     build_load(&setup->scene, 0, pushes[i], -16, -1);
     setup->scene.ground.belt_speed = belts[i] * band;
     begin_point(&points[i], method, 1.0 / 1024, 3, true);
-    assert_true(strut_batch_possible(points[i].lane.model, points[i].lane.method));
+    assert_true(strut_batch_possible(points[i].slot.model, points[i].slot.method));
   }
-  run_in_lanes(points, POINTS, how, true);
+  run_in_batch(points, POINTS, how, true);
   for (int i = 0; i < POINTS; i++) {
     assert_true(points[i].alone.state->v[0] != 0.0); /* none of them is held */
     end_point(&points[i]);
@@ -272,9 +272,9 @@ TEST(refusals) {
   assert_false(strut_batch_possible(a, rk4));
   assert_true(strut_batch_possible(b, rk4));
   assert_false(strut_batch_possible(b, strut_integrator_find("adaptive")));
-  assert_true(strut_lanes_alike(b, b));
-  assert_false(strut_lanes_alike(b, c));
-  assert_false(strut_lanes_alike(a, b));
+  assert_true(strut_batch_takes_both(b, b));
+  assert_false(strut_batch_takes_both(b, c));
+  assert_false(strut_batch_takes_both(a, b));
   strut_model_free(a), strut_model_free(b), strut_model_free(c);
   strut_setup_free(&chain), strut_setup_free(&crawler), strut_setup_free(&other);
 }
@@ -298,8 +298,8 @@ TEST(only_one_topology_shares_a_batch) {
   strut_model *first = variant(&setup, 0);
   for (int which = 0; which <= 5; which++) {
     strut_model *model = variant(&other, which);
-    assert_int_equal(strut_lanes_alike(first, model), which == 0);
-    assert_int_equal(strut_lanes_alike(model, first), which == 0);
+    assert_int_equal(strut_batch_takes_both(first, model), which == 0);
+    assert_int_equal(strut_batch_takes_both(model, first), which == 0);
     strut_model_free(model);
     strut_setup_free(&other);
   }

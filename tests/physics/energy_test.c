@@ -183,7 +183,7 @@ TEST(an_interrupted_step_is_undone_with_its_works) {
   setup.scene.nodes[1].start[0] = 1.01;
   motion_experiment(&setup, 1e9, 1e9);
   motion_begin_by(&m, &setup, "adaptive", 1e9);
-  m.state->ledger = true;
+  m.state->balance = true;
   m.state->interrupt = &ring;
   ring = 0;
   assert_int_equal(sigaction(SIGALRM, &action, &before), 0);

@@ -37,7 +37,7 @@ TEST(hunt_crossley_restitution_and_depth) {
     setup.scene.ground.damping_law = STRUT_DAMPING_HUNT_CROSSLEY;
     setup.scene.contacts[c].dissipation = chi;
     motion_begin(&m, &setup.scene, 1e-6);
-    m.state->ledger = true;
+    m.state->balance = true;
     before = 0.5 * MASS * speed * speed;
     do {
       motion_steps(&m, 1);
@@ -103,7 +103,7 @@ TEST(smooth_friction_slows_a_block_by_its_closed_form) {
     setup.scene.nodes[0].velocity[0] = start * cos(slopes[k]);
     setup.scene.nodes[0].velocity[1] = start * sin(slopes[k]);
     motion_begin(&m, &setup.scene, 1e-4);
-    m.state->ledger = true;
+    m.state->balance = true;
     motion_steps(&m, 4000);
     double u = hypot(m.state->v[0], m.state->v[1]);
     assert_near(slid(u, width), slid(start, width) - mu * G * time, 1e-8);

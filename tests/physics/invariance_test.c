@@ -50,7 +50,7 @@ static double stable_step(const strut_setup *setup) {
 static void run(motion *m, const strut_setup *setup, const char *method, double step,
                 int64_t steps) {
   motion_begin_by(m, setup, method, step);
-  m->state->ledger = true;
+  m->state->balance = true;
   motion_steps(m, steps);
   for (size_t i = 0; i < 2 * setup->scene.node_count; i++) assert_true(isfinite(m->state->q[i]));
 }

@@ -27,7 +27,7 @@ static void begin(motion *m, const strut_scene *scene, const char *method, doubl
   m->method = strut_integrator_find(method);
   m->workspace = m->method->create(m->model, m->state, &settings);
   assert_non_null(m->workspace);
-  m->state->ledger = true;
+  m->state->balance = true;
 }
 
 /* ---- closed forms ---- */

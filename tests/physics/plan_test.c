@@ -5,7 +5,7 @@
  */
 #include <math.h>
 
-#include "engine/run/plan.h"
+#include "engine/run/cost_estimate.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"
 #include "tests/support/instructions.h"
@@ -107,7 +107,7 @@ static void begin_both(const comparison *c, both *b) {
     unsigned terms = c->others | (with ? (unsigned)c->term : 0);
     build_chain(&b->scene[with], terms, c->touching);
     motion_begin(&b->motion[with], &b->scene[with], 1e-5);
-    assert_int_equal(b->motion[with].model->plan, terms);
+    assert_int_equal(b->motion[with].model->terms, terms);
   }
 }
 
@@ -137,12 +137,12 @@ TEST(the_plan_tells_its_terms) {
   for (int i = 0; i < COMPARISONS; i++)
     for (int with = 0; with < 2; with++) {
       strut_scene scene;
-      strut_plan plan;
+      strut_cost_estimate plan;
       unsigned terms = comparisons[i].others | (with ? (unsigned)comparisons[i].term : 0), told = 0;
       build_chain(&scene, terms, comparisons[i].touching);
       strut_model *model = motion_compile(&scene);
-      assert_int_equal(strut_plan_describe(model, &plan, NULL), STRUT_OK);
-      for (int k = 0; k < STRUT_PLAN_TERMS; k++) {
+      assert_int_equal(strut_cost_estimate_describe(model, &plan, NULL), STRUT_OK);
+      for (int k = 0; k < STRUT_COST_TERMS; k++) {
         assert_true(plan.terms[k].name[0] && plan.terms[k].why[0]);
         if (plan.terms[k].in) told |= (unsigned)plan.terms[k].term;
       }
@@ -197,8 +197,8 @@ TEST(what_others_need_changes_no_bit) {
       motion_begin(&m[with], &scene[with], 1e-3);
       motion_steps(&m[with], 500);
     }
-    assert_false(m[0].model->plan & term);
-    assert_true(m[1].model->plan & term);
+    assert_false(m[0].model->terms & term);
+    assert_true(m[1].model->terms & term);
     for (int k = 0; k < 8; k++) {
       assert_same_bits(m[1].state->q[k], m[0].state->q[k]);
       assert_same_bits(m[1].state->v[k], m[0].state->v[k]);

@@ -382,13 +382,13 @@ TEST(measuring_changes_nothing) {
   }
 }
 
-/* Works are there where the run keeps no ledger for itself. */
-TEST(works_without_the_ledger) {
+/* Works are there where the run keeps no balance for itself. */
+TEST(works_without_the_balance) {
   strut_setup setup;
   strut_summary with = hop("rk4", ALL, &setup), without;
   strut_error error = {0};
   strut_model *model = motion_compile(&setup.scene);
-  strut_run_options options = {.without_ledger = true};
+  strut_run_options options = {.without_balance = true};
   assert_int_equal(strut_simulate(model, &setup.experiment, &options, &without, &error), STRUT_OK);
   assert_same_bits(without.measured[2].value, with.measured[2].value);
   assert_true(with.measured[2].value > 0);

@@ -94,21 +94,21 @@ static void check_powers(const strut_state *state, const slow_model *slow) {
 static void check_acceleration(const strut_scene *scene, const strut_model *model,
                                strut_state *state, const slow_model *slow, double t) {
   double *a = calloc((size_t)model->length, sizeof *a);
-  double *with_ledger = calloc((size_t)model->length, sizeof *a);
-  assert_true(a && with_ledger);
+  double *with_balance = calloc((size_t)model->length, sizeof *a);
+  assert_true(a && with_balance);
   double scale = largest(slow->acceleration, slow->n);
   strut_forces_acceleration(model, state, t, state->q, state->v, a);
   for (size_t i = 0; i < slow->n; i++) {
     assert_near(a[i], (double)slow->acceleration[i], TOLERANCE * scale);
     if (scene->nodes[i / 2].fixed[i % 2]) assert_true(a[i] == 0);
   }
-  state->ledger = true;
-  strut_forces_acceleration(model, state, t, state->q, state->v, with_ledger);
-  assert_memory_equal(a, with_ledger, slow->n * sizeof *a);
+  state->balance = true;
+  strut_forces_acceleration(model, state, t, state->q, state->v, with_balance);
+  assert_memory_equal(a, with_balance, slow->n * sizeof *a);
   check_powers(state, slow);
-  state->ledger = false;
+  state->balance = false;
   free(a);
-  free(with_ledger);
+  free(with_balance);
 }
 
 static void cover_mass(coverage *seen, const strut_scene *scene, const strut_mass *mass) {
@@ -171,7 +171,7 @@ static void recompute(uint64_t seed, coverage *seen) {
   cover_mass(seen, &scene, model->mass);
   cover_forces(seen, &scene, &slow, state->v);
   for (unsigned term = 1; term <= STRUT_TERM_SOLVE; term <<= 1)
-    seen->terms[term] += (model->plan & term) != 0;
+    seen->terms[term] += (model->terms & term) != 0;
   slow_free(&slow);
   strut_state_free(state);
   strut_model_free(model);

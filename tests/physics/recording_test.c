@@ -161,7 +161,7 @@ TEST(every_channel_holds_what_it_says) {
   assert_int_equal(first.count, 11);
   assert_int_equal(first.width, 1 + 10 + 10 + 9 + 9 + 10 + 11);
   motion_begin(&m, &setup.scene, 1e-4);
-  m.state->ledger = true;
+  m.state->balance = true;
   for (size_t i = 0; i < first.count; i++) {
     const double *row = first.row[i], *energy = row + first.offset[5];
     double length[9], force[9];

@@ -103,11 +103,11 @@ static strut_model *compile(const strut_scene *scene) {
   return model;
 }
 
-static strut_state *state_of(const strut_model *model, bool ledger) {
+static strut_state *state_of(const strut_model *model, bool balance) {
   strut_state *state;
   strut_error error = {0};
   assert_int_equal(strut_state_create(model, &state, &error), STRUT_OK);
-  state->ledger = ledger;
+  state->balance = balance;
   return state;
 }
 
@@ -117,11 +117,11 @@ static bool of_contacts(int power) {
 
 /* Both orders of storage, in pieces of several lengths; with a restart between. */
 static void compare(const strut_setup *setup, const char *name, int threads, bool exact,
-                    bool ledger) {
+                    bool balance) {
   const strut_integrator_settings settings = {.step = 1e-3};
   const strut_integrator *method = strut_integrator_find(name);
   strut_model *model = compile(&setup->scene);
-  strut_state *usual = state_of(model, ledger), *state = state_of(model, ledger);
+  strut_state *usual = state_of(model, balance), *state = state_of(model, balance);
   void *workspace = method->create(model, usual, &settings);
   strut_large_steps *other;
   strut_error error = {0};
@@ -175,7 +175,7 @@ TEST(every_method_has_the_same_bits) {
   strut_setup_free(&setup);
 }
 
-/* As listed, any number of threads sums the ledger, too, in the order of one. */
+/* As listed, any number of threads sums the energy balance, too, in the order of one. */
 TEST(any_number_of_threads_has_the_same_bits) {
   static const int threads[] = {2, 3, 5, 8};
   strut_setup setup;
@@ -208,8 +208,8 @@ TEST(coupled_masses) {
   }
 }
 
-/* In another order, too, the ledger adds up the same for any number of threads. */
-TEST(the_ledger_does_not_depend_on_threads) {
+/* In another order, too, the energy balance adds up the same for any number of threads. */
+TEST(the_balance_does_not_depend_on_threads) {
   static const int threads[] = {1, 2, 8};
   const strut_integrator_settings settings = {.step = 1e-3};
   strut_setup setup;

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/integrate/lanes/batch.h"
+#include "engine/integrate/batch/batch.h"
 #include "engine/model/small_model.h"
 #include "engine/run/simulate.h"
 #include "tests/support/build.h"
@@ -154,14 +154,14 @@ static void make_scene(strut_setup *setup, int i, const char *method, uint64_t *
   e->steady.shooting = i % 2;
 }
 
-static void make_points(points *all, int count, const char *method, bool without_ledger) {
+static void make_points(points *all, int count, const char *method, bool without_balance) {
   uint64_t r = 20;
   *all = (points){.count = count};
   for (int i = 0; i < count; i++) {
     point *p = &all->at[i];
     make_scene(&p->setup, i, method, &r);
     p->model = motion_compile(&p->setup.scene);
-    p->options.without_ledger = without_ledger;
+    p->options.without_balance = without_balance;
     p->sink = (strut_sink){&p->seen, trace_begin, trace_rows, trace_end, 0};
     p->sinks[0] = &p->sink;
     if (i % 3) continue;
@@ -185,20 +185,20 @@ static void check_alone(point *p) {
   strut_model_free(model);
 }
 
-static void compare(int32_t width, int count, const char *method, bool without_ledger) {
+static void compare(int32_t width, int count, const char *method, bool without_balance) {
   static points all;
   strut_setup crawler;
   strut_setup_init(&crawler);
   structure_crawler(&crawler.scene, 10, 1e-4, 0.1, false);
   crawler.experiment.integrator = method;
   strut_model *example = motion_compile(&crawler.scene);
-  make_points(&all, count, method, without_ledger);
+  make_points(&all, count, method, without_balance);
   strut_simulate_batch(&(strut_batch_source){.context = &all,
                                              .next = next_point,
                                              .result = take_result,
                                              .example = example,
                                              .integrator = method,
-                                             .without_ledger = without_ledger,
+                                             .without_balance = without_balance,
                                              .width = width});
   int failed = 0;
   for (int i = 0; i < count; i++) {
@@ -217,7 +217,7 @@ TEST(every_width) {
     compare(width, POINTS, "rk4", false);
 }
 
-TEST(without_ledger) { compare(0, POINTS, "rk4", true); }
+TEST(without_balance) { compare(0, POINTS, "rk4", true); }
 
 TEST(events) {
   compare(4, POINTS, "verlet-events", true); /* without lanes, one by one */

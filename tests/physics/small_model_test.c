@@ -110,14 +110,14 @@ static void check_states(const motion *small, const motion *general) {
 
 /* Steps in pieces of several lengths, with pauses in which others look on. */
 static void compare(const strut_setup *setup, const char *method, strut_small_level level,
-                    bool ledger, int *stepped) {
+                    bool balance, int *stepped) {
   motion small, general;
   motion_begin_by(&small, setup, method, 1e-3);
   motion_begin_by(&general, setup, method, 1e-3);
   general.model->small = NULL;
   if (small.model->small && small.model->small->level >= level) {
     small.model->small->level = level;
-    small.state->ledger = general.state->ledger = ledger;
+    small.state->balance = general.state->balance = balance;
     for (int64_t count = 1; count <= 64 && !general.state->trouble; count = 3 * count + 1) {
       motion_steps(&small, count);
       motion_steps(&general, count);

@@ -156,7 +156,7 @@ static void read_scene(model_run *run, uint64_t seed, unsigned parts) {
 
 static void advance(motion *m, const strut_setup *setup, const char *method) {
   motion_begin_by(m, setup, method, STEP);
-  strut_memory_begin(m->model, m->state, 0);
+  strut_history_begin(m->model, m->state, 0);
   motion_steps(m, STEPS);
 }
 

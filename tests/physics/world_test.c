@@ -178,7 +178,7 @@ static double difference(const fixture *f) {
 static int step_both(fixture *f, double *worst) {
   strut_state *state = f->m.state;
   strut_support_motion_place(f->m.model, state, 0, state->q, state->v);
-  strut_memory_begin(f->m.model, state, 0);
+  strut_history_begin(f->m.model, state, 0);
   for (int step = 0; step < STEPS; step++) {
     if (!slow_world_step(&f->slow, &f->at, (long double)STEP)) return step;
     strut_integrator_advance(f->m.method, f->m.model, state, f->m.workspace, STEP, 1);

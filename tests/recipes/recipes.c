@@ -9,9 +9,9 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
+#include "engine/integrate/batch/batch.h"
 #include "engine/integrate/domain_steps.h"
 #include "engine/integrate/integrator.h"
-#include "engine/integrate/lanes/batch.h"
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/model/small_model.h"
 #include "engine/output/code/code.h"
@@ -84,70 +84,70 @@ static bool lead(strut_model *model, const strut_integrator *method, run_way way
 }
 
 static bool step(const strut_model *model, strut_state *state, const strut_integrator *method,
-                 const run_plan *plan, run_way way) {
-  strut_integrator_settings settings = strut_integrator_settings_of(&plan->setup->experiment);
-  int64_t count = llround(plan->time / plan->dt);
-  settings.step = plan->dt;
+                 const run_plan *terms, run_way way) {
+  strut_integrator_settings settings = strut_integrator_settings_of(&terms->setup->experiment);
+  int64_t count = llround(terms->time / terms->dt);
+  settings.step = terms->dt;
   if (way == LOCAL) settings.local_from = 1;
   if (way == DOMAINS) {
     strut_domain_steps *steps = strut_domain_steps_create(model, method, NULL, 2);
     if (!steps) return false;
-    strut_domain_steps_restart(steps, state, plan->dt);
-    strut_domain_steps_advance(steps, state, plan->dt, count);
+    strut_domain_steps_restart(steps, state, terms->dt);
+    strut_domain_steps_advance(steps, state, terms->dt, count);
     strut_domain_steps_free(steps);
     return true;
   }
   void *workspace = method->create(model, state, &settings);
   if (!workspace) return false;
-  if (method->restart) method->restart(model, state, workspace, plan->dt);
-  strut_integrator_advance(method, model, state, workspace, plan->dt, count);
+  if (method->restart) method->restart(model, state, workspace, terms->dt);
+  strut_integrator_advance(method, model, state, workspace, terms->dt, count);
   return true;
 }
 
-static void run(run_plan *plan, const strut_integrator *method, run_way way) {
+static void run(run_plan *terms, const strut_integrator *method, run_way way) {
   strut_model *model = NULL;
   strut_state *state = NULL;
   char where[80];
   snprintf(where, sizeof where, "%s, %s", method->name, way_names[way]);
-  if (strut_model_compile(&plan->setup->scene, &model, NULL)) {
+  if (strut_model_compile(&terms->setup->scene, &model, NULL)) {
     expect(false, "the scene is not compiled", where, 0);
   } else if (lead(model, method, way)) {
-    bool good = !strut_state_create(model, &state, NULL) && step(model, state, method, plan, way);
+    bool good = !strut_state_create(model, &state, NULL) && step(model, state, method, terms, way);
     expect(good, "is not stepped", where, 0);
-    if (good) plan->compare(plan->setup, method, state->q, state->v, where);
-    plan->small += way == AVX2 || way == AVX512;
-    plan->domains += way == DOMAINS;
-    plan->local += way == LOCAL;
-    plan->methods += way == GENERAL;
+    if (good) terms->compare(terms->setup, method, state->q, state->v, where);
+    terms->small += way == AVX2 || way == AVX512;
+    terms->domains += way == DOMAINS;
+    terms->local += way == LOCAL;
+    terms->methods += way == GENERAL;
   }
   strut_state_free(state);
   strut_model_free(model);
 }
 
 /* All lanes of a batch have the same scene. */
-static void run_in_lanes(run_plan *plan, const strut_integrator *method, int32_t width) {
+static void run_in_batch(run_plan *terms, const strut_integrator *method, int32_t width) {
   strut_model *model = NULL;
-  strut_state *state[STRUT_MOST_LANES] = {0};
-  int64_t left[STRUT_MOST_LANES], count = llround(plan->time / plan->dt);
+  strut_state *state[STRUT_BATCH_MOST] = {0};
+  int64_t left[STRUT_BATCH_MOST], count = llround(terms->time / terms->dt);
   char where[80];
   snprintf(where, sizeof where, "%s, %d lanes", method->name, width);
-  bool good = !strut_model_compile(&plan->setup->scene, &model, NULL);
+  bool good = !strut_model_compile(&terms->setup->scene, &model, NULL);
   strut_batch *batch = NULL;
   if (good && strut_batch_possible(model, method)) {
     good = (batch = strut_batch_create(model, method, width, true)) != NULL;
     for (int32_t l = 0; l < width && good; l++) {
       good = !strut_state_create(model, &state[l], NULL);
       if (!good) break;
-      strut_batch_fill(batch, l, model, plan->dt);
+      strut_batch_fill(batch, l, model, terms->dt);
       strut_batch_put(batch, l, state[l]);
       left[l] = count;
     }
     if (good) strut_batch_advance(batch, left);
     for (int32_t l = 0; l < width && good; l++) {
       strut_batch_get(batch, l, state[l]);
-      plan->compare(plan->setup, method, state[l]->q, state[l]->v, where);
+      terms->compare(terms->setup, method, state[l]->q, state[l]->v, where);
     }
-    plan->lanes++;
+    terms->lanes++;
   }
   expect(good, "is not stepped", where, 0);
   strut_batch_free(batch);
@@ -155,14 +155,14 @@ static void run_in_lanes(run_plan *plan, const strut_integrator *method, int32_t
   strut_model_free(model);
 }
 
-static void run_all(run_plan *plan) {
-  bool ground = plan->setup->scene.contact_count > 0;
+static void run_all(run_plan *terms) {
+  bool ground = terms->setup->scene.contact_count > 0;
   for (size_t i = 0; strut_integrator_at(i); i++) {
     const strut_integrator *method = strut_integrator_at(i);
     if (method->no_ground && ground) continue;
-    for (int way = 0; way < WAYS; way++) run(plan, method, (run_way)way);
+    for (int way = 0; way < WAYS; way++) run(terms, method, (run_way)way);
     for (int32_t width = 4; width <= strut_batch_widest(); width *= 2)
-      run_in_lanes(plan, method, width);
+      run_in_batch(terms, method, width);
   }
 }
 
@@ -170,16 +170,16 @@ static void run_all(run_plan *plan) {
  * Writes C code of the scene into the folder `name`, and into its file `expected` where rk4 leads: recipes.sh
  * compiles the code and compares.
  */
-static void export_code(const run_plan *plan, const char *name) {
+static void export_code(const run_plan *terms, const char *name) {
   strut_model *model = NULL;
   strut_state *state = NULL;
   strut_error error = {0};
   char file[80];
   const strut_code_options options = {.prefix = "model", .program = "recipes"};
-  bool good = !strut_model_compile(&plan->setup->scene, &model, &error) &&
-              !strut_code_write(name, model, &plan->setup->experiment, &options, &error) &&
+  bool good = !strut_model_compile(&terms->setup->scene, &model, &error) &&
+              !strut_code_write(name, model, &terms->setup->experiment, &options, &error) &&
               !strut_state_create(model, &state, &error) &&
-              step(model, state, strut_integrator_find("rk4"), plan, GENERAL);
+              step(model, state, strut_integrator_find("rk4"), terms, GENERAL);
   expect(good, error.message, name, 0);
   snprintf(file, sizeof file, "%s/expected", name);
   FILE *out = good ? fopen(file, "w") : NULL;
@@ -247,17 +247,17 @@ static void test_the_friction_law(int count) {
          "is lost when the scene is written", "the friction law", count);
   if (back) strut_setup_free(&again);
   strut_release(written);
-  run_plan plan = {.setup = &setup, .dt = 1e-4, .time = 0.3, .compare = compare_blocks};
-  run_all(&plan);
-  expect(plan.methods >= 8 && plan.local >= 4 && (count == 1 || plan.domains == 3),
-         "too few runs are made", "friction law", plan.methods);
-  expect(strut_batch_widest() == 1 || plan.lanes == 2, "is not run in lanes", "friction law",
-         plan.lanes);
-  expect(strut_batch_widest() == 1 || count == 1 || count > STRUT_SMALL_NODES || plan.small >= 5,
-         "is not run by the small kernel", "friction law", plan.small);
+  run_plan terms = {.setup = &setup, .dt = 1e-4, .time = 0.3, .compare = compare_blocks};
+  run_all(&terms);
+  expect(terms.methods >= 8 && terms.local >= 4 && (count == 1 || terms.domains == 3),
+         "too few runs are made", "friction law", terms.methods);
+  expect(strut_batch_widest() == 1 || terms.lanes == 2, "is not run in lanes", "friction law",
+         terms.lanes);
+  expect(strut_batch_widest() == 1 || count == 1 || count > STRUT_SMALL_NODES || terms.small >= 5,
+         "is not run by the small kernel", "friction law", terms.small);
   expect(limit_of(&setup) < 0.2, "is not known to the step limit", "the law's slope", 0);
   snprintf(text, sizeof text, "code-friction-%d", count);
-  export_code(&plan, text);
+  export_code(&terms, text);
   strut_setup_free(&setup);
 }
 
@@ -366,17 +366,17 @@ static void test_the_member_law(int count, const char *kind) {
          "the member law", 0);
   if (back) strut_setup_free(&again);
   strut_release(written);
-  run_plan plan = {.setup = &setup, .dt = 1e-3, .time = 1, .compare = compare_pairs};
-  run_all(&plan);
-  expect(plan.methods >= 9 && plan.local >= 4, "too few runs are made", kind, plan.methods);
-  expect(bar || strut_batch_widest() == 1 ? plan.lanes == 0 : plan.lanes == 2, "lanes", kind,
-         plan.lanes);
+  run_plan terms = {.setup = &setup, .dt = 1e-3, .time = 1, .compare = compare_pairs};
+  run_all(&terms);
+  expect(terms.methods >= 9 && terms.local >= 4, "too few runs are made", kind, terms.methods);
+  expect(bar || strut_batch_widest() == 1 ? terms.lanes == 0 : terms.lanes == 2, "lanes", kind,
+         terms.lanes);
   /* about the start it is 4 (1 + 3 x^2 / s^2) = 37 N/m; rk4 is stable up to 2.83 over the rate */
   double limit = limit_of(&setup);
   expect(limit > 0 && limit < 2.83 / sqrt(4 * (1 + 0.75 / 0.09)) + 0.01,
          "is not known to the step limit", kind, limit);
   snprintf(text, sizeof text, "code-%s-%d", kind, count);
-  export_code(&plan, text);
+  export_code(&terms, text);
   strut_setup_free(&setup);
   test_at_rest(kind);
 }
@@ -393,10 +393,10 @@ static void test_the_method(void) {
   for (int k = 0; method && k < 2; k++) {
     strut_model *model = NULL;
     strut_state *state = NULL;
-    run_plan plan = {.setup = &setup, .dt = k ? 1e-4 : 2e-4, .time = 1};
+    run_plan terms = {.setup = &setup, .dt = k ? 1e-4 : 2e-4, .time = 1};
     bool good = !strut_model_compile(&setup.scene, &model, NULL) &&
                 !strut_state_create(model, &state, NULL) &&
-                step(model, state, method, &plan, GENERAL);
+                step(model, state, method, &terms, GENERAL);
     error[k] = good ? fabs(state->q[2] - (1 + 0.01 * cos(10.0))) : (double)NAN;
     strut_state_free(state);
     strut_model_free(model);

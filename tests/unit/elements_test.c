@@ -505,8 +505,8 @@ TEST(the_hessian_of_a_model_is_the_slope_of_its_gradient) {
   assert_true(tried > SCENES / 2);
 }
 
-/* What an element dissipates is never negative, and forces do the work that the ledger books. */
-TEST(the_ledger_books_what_forces_do) {
+/* What an element dissipates is never negative, and forces do the work that the energy balance accumulates. */
+TEST(the_balance_counts_what_forces_do) {
   for (uint64_t seed = 0; seed < SCENES; seed++) {
     fixture f = {0};
     set_up(&f, seed, 1);
@@ -515,7 +515,7 @@ TEST(the_ledger_books_what_forces_do) {
       double *v = f.up, work = 0, gained, h = 1e-5;
       memset(v, 0, (size_t)f.model->length * sizeof *v);
       for (int32_t i = 0; i < f.n; i++) v[f.potential->coordinate[i]] = random_between(&r, -2, 2);
-      f.state->ledger = true;
+      f.state->balance = true;
       strut_forces_evaluate(f.model, f.state, 0, f.q, v);
       for (int32_t i = 0; i < f.model->length; i++) work += f.state->force[i] * v[i];
       for (int32_t i = 0; i < f.model->length; i++) f.down[i] = f.q[i] + h * v[i];

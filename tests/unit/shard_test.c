@@ -64,14 +64,14 @@ TEST(all_points_once) {
     for (int64_t n = 1; n < 70; n++) {
       int seen[60] = {0};
       for (int64_t k = 0; k < n; k++) {
-        strut_slots_plan plan = {.points = points};
+        strut_slots_description plan = {.points = points};
         strut_shard_points((strut_shard){k, n}, &plan);
         assert_true(plan.count == points / n || plan.count == points / n + 1);
         for (int64_t i = 0; i < plan.count; i++) seen[plan.first + i * plan.stride]++;
       }
       for (int64_t i = 0; i < points; i++) assert_int_equal(seen[i], 1);
     }
-  strut_slots_plan plan = {.points = 1000000000};
+  strut_slots_description plan = {.points = 1000000000};
   strut_shard_points((strut_shard){0, 0}, &plan);
   assert_int_equal(plan.count, 1000000000);
 }
@@ -79,10 +79,10 @@ TEST(all_points_once) {
 /* A small study on disk. */
 static const strut_slot_column columns[] = {
     {"frequency", "Hz", false}, {"outcome", "1", true}, {"a \"b\", c", "m/s", false}};
-static const strut_slots_plan study = {
+static const strut_slots_description study = {
     .hash = {9}, .version = "1", .name = "s", .points = 23, .columns = columns, .column_count = 3};
 
-static strut_slots *open_shard(strut_slots_plan plan, strut_shard shard) {
+static strut_slots *open_shard(strut_slots_description plan, strut_shard shard) {
   strut_arena arena = {0};
   strut_slots *slots = NULL;
   strut_error error = {0};
@@ -95,9 +95,9 @@ static strut_slots *open_shard(strut_slots_plan plan, strut_shard shard) {
 }
 
 /* Puts up to `most` points that a shard lacks. */
-static void run_shard(strut_slots_plan plan, strut_shard shard, int64_t most) {
+static void run_shard(strut_slots_description plan, strut_shard shard, int64_t most) {
   strut_slots *slots = open_shard(plan, shard);
-  const strut_slots_plan *own = strut_slots_plan_of(slots);
+  const strut_slots_description *own = strut_slots_description_of(slots);
   for (int64_t i = own->count - 1; i >= 0 && most > 0; i--) {
     int64_t p = strut_slots_point(slots, i);
     if (strut_slots_done(slots, p)) continue;
@@ -181,7 +181,7 @@ TEST(what_is_missing) {
 
 TEST(what_does_not_belong_together) {
   strut_error error = {0};
-  strut_slots_plan other = study;
+  strut_slots_description other = study;
   other.hash[0] = 8;
   scratch_make();
   run_shard(study, (strut_shard){0, 3}, 100);

@@ -19,14 +19,14 @@
 static const strut_slot_column columns[] = {
     {"frequency", "Hz", false}, {"start", "", true}, {"velocity", "m/s", false}};
 
-static strut_slots_plan a_plan(int64_t points) {
-  return (strut_slots_plan){.hash = {1, 2, 3},
-                            .version = "1.2.3",
-                            .name = "study",
-                            .points = points,
-                            .count = points,
-                            .columns = columns,
-                            .column_count = 3};
+static strut_slots_description a_plan(int64_t points) {
+  return (strut_slots_description){.hash = {1, 2, 3},
+                                   .version = "1.2.3",
+                                   .name = "study",
+                                   .points = points,
+                                   .count = points,
+                                   .columns = columns,
+                                   .column_count = 3};
 }
 
 /* The row of a point: every fifth one failed. */
@@ -55,7 +55,7 @@ static void check_row(strut_slots *slots, int64_t point) {
   assert_string_equal(row.message, message);
 }
 
-static strut_slots *open_slots(const char *path, const strut_slots_plan *plan) {
+static strut_slots *open_slots(const char *path, const strut_slots_description *plan) {
   strut_error error = {0};
   strut_slots *slots = NULL;
   if (strut_slots_open(path, plan, &slots, &error) != STRUT_OK) fail_msg("%s", error.message);
@@ -65,7 +65,7 @@ static strut_slots *open_slots(const char *path, const strut_slots_plan *plan) {
 static strut_slots *read_slots(const char *path) {
   strut_error error = {0};
   strut_slots *slots = NULL;
-  strut_slots_plan plan;
+  strut_slots_description plan;
   if (strut_slots_read(path, &slots, &plan, &error) != STRUT_OK) fail_msg("%s", error.message);
   return slots;
 }
@@ -79,7 +79,7 @@ static void write_bytes(const char *path, const char *bytes, size_t length) {
 
 /* A finished file of some points, put in any order. */
 static void make_file(const char *path, int64_t points) {
-  strut_slots_plan plan = a_plan(points);
+  strut_slots_description plan = a_plan(points);
   strut_slots *slots = open_slots(path, &plan);
   for (int64_t i = 0; i < points; i++)
     assert_int_equal(put(slots, (i * 7 + 3) % points, NULL), STRUT_OK);
@@ -90,7 +90,7 @@ static void make_file(const char *path, int64_t points) {
 TEST(rows_come_back) {
   scratch_make();
   const char *path = scratch_path("a.slots");
-  strut_slots_plan plan = a_plan(1000), there;
+  strut_slots_description plan = a_plan(1000), there;
   strut_slots *slots = open_slots(path, &plan);
   assert_int_equal(strut_slots_missing(slots), 1000);
   uint64_t before = strut_allocation_count();
@@ -124,7 +124,7 @@ TEST(rows_come_back) {
 TEST(some_points_only) {
   scratch_make();
   strut_error error = {0};
-  strut_slots_plan plan = a_plan(100);
+  strut_slots_description plan = a_plan(100);
   plan.first = 3, plan.stride = 8, plan.count = 13; /* 3, 11, ..., 99 */
   strut_slots *slots = open_slots(scratch_path("a"), &plan);
   assert_int_equal(strut_slots_point(slots, 12), 99);
@@ -154,7 +154,7 @@ TEST(the_bytes_do_not_depend_on_the_order) {
   scratch_make();
   size_t first = 0, second = 0;
   make_file(scratch_path("a"), 20);
-  strut_slots_plan plan = a_plan(20);
+  strut_slots_description plan = a_plan(20);
   for (int64_t i = 0; i < 20; i++) { /* opened anew for each */
     strut_slots *slots = open_slots(scratch_path("b"), &plan);
     assert_int_equal(put(slots, i, NULL), STRUT_OK);
@@ -174,7 +174,7 @@ TEST(a_file_that_is_cut) {
   size_t length = 0;
   make_file(scratch_path("a"), 5);
   char *bytes = scratch_read(scratch_path("a"), &length);
-  strut_slots_plan plan = a_plan(5);
+  strut_slots_description plan = a_plan(5);
   int64_t slot = 24 + 2 * 8 + 24 + STRUT_SLOT_MESSAGE, header = (int64_t)length - 5 * slot;
   assert_true(header > 0 && header % 64 == 0);
   for (size_t cut = 0; cut <= length; cut += cut % 64 < 2 || cut % 64 > 61 ? 1 : 29) {
@@ -213,7 +213,7 @@ TEST(a_bit_flipped_anywhere) {
   for (size_t at = 0; at < length; at++)
     for (int bit = 0; bit < 8; bit += at < header + 64 ? 1 : 7) {
       strut_slots *slots = NULL;
-      strut_slots_plan plan = a_plan(3);
+      strut_slots_description plan = a_plan(3);
       strut_error error = {0};
       bytes[at] = (char)(bytes[at] ^ 1 << bit);
       write_bytes(scratch_path("b"), bytes, length);
@@ -241,7 +241,7 @@ TEST(slots_of_elsewhere) {
   make_file(scratch_path("a"), 3);
   char *bytes = scratch_read(scratch_path("a"), &length);
   size_t slot = 24 + 2 * 8 + 24 + STRUT_SLOT_MESSAGE, header = length - 3 * slot;
-  strut_slots_plan plan = a_plan(3);
+  strut_slots_description plan = a_plan(3);
   char *copy = malloc(length);
   memcpy(copy, bytes, length);
   memcpy(copy + header, bytes + header + slot, slot);
@@ -268,8 +268,8 @@ TEST(slots_of_elsewhere) {
 }
 
 /* expect PLAN: the file at `path` is refused with a sentence that has these words. */
-static void expect_refused(const char *path, const strut_slots_plan *plan, strut_status expected,
-                           const char *words) {
+static void expect_refused(const char *path, const strut_slots_description *plan,
+                           strut_status expected, const char *words) {
   strut_slots *slots = NULL;
   strut_error error = {0};
   assert_int_equal(strut_slots_open(path, plan, &slots, &error), expected);
@@ -284,7 +284,7 @@ TEST(other_studies_are_refused) {
   size_t length = 0, after = 0;
   make_file(path, 9);
   char *bytes = scratch_read(path, &length);
-  strut_slots_plan plan = a_plan(9);
+  strut_slots_description plan = a_plan(9);
   plan.hash[15] = 1;
   expect_refused(path, &plan, STRUT_USAGE, "differs in the model, its parameters or the axes:");
   plan = a_plan(9);
@@ -308,7 +308,7 @@ TEST(other_studies_are_refused) {
 
 TEST(foreign_files_are_refused) {
   scratch_make();
-  strut_slots_plan plan = a_plan(9);
+  strut_slots_description plan = a_plan(9);
   const char *path = scratch_path("a");
   size_t length = 0;
   write_bytes(path, "frequency,velocity\n1,2\n", 23);
@@ -339,13 +339,13 @@ TEST(foreign_files_are_refused) {
 TEST(one_writer_at_a_time) {
   scratch_make();
   const char *path = scratch_path("a");
-  strut_slots_plan plan = a_plan(9);
+  strut_slots_description plan = a_plan(9);
   strut_slots *slots = open_slots(path, &plan);
   assert_int_equal(put(slots, 0, NULL), STRUT_OK);
   pid_t child = fork();
   if (child == 0) {
     strut_slots *other = NULL;
-    strut_slots_plan there;
+    strut_slots_description there;
     strut_error error = {0};
     bool refused = strut_slots_open(path, &plan, &other, &error) == STRUT_FILE_TROUBLE &&
                    strstr(error.message, "is writing");
@@ -367,7 +367,7 @@ TEST(killed_and_resumed) {
   enum { POINTS = 3000 };
   scratch_make();
   const char *path = scratch_path("a");
-  strut_slots_plan plan = a_plan(POINTS);
+  strut_slots_description plan = a_plan(POINTS);
   int64_t missing = POINTS;
   int kills = 0;
   while (missing > 0) {
@@ -417,7 +417,7 @@ static void *work(void *context) {
 
 TEST(threads) {
   scratch_make();
-  strut_slots_plan plan = a_plan(8000);
+  strut_slots_description plan = a_plan(8000);
   strut_slots *slots = open_slots(scratch_path("a"), &plan);
   pthread_t threads[4];
   worker workers[4];
@@ -441,7 +441,7 @@ TEST(threads) {
 /* Texts that are too long are cut between characters; nothing breaks a line of the table. */
 TEST(texts_that_do_not_fit) {
   scratch_make();
-  strut_slots_plan plan = a_plan(2);
+  strut_slots_description plan = a_plan(2);
   strut_slots *slots = open_slots(scratch_path("a"), &plan);
   char message[401] = "", words[1][STRUT_SLOT_WORD];
   for (int i = 0; i < 200; i++) strcat(message, "\xC3\xA9");
@@ -465,7 +465,7 @@ TEST(texts_that_do_not_fit) {
 /* No room: a complaint, a missing point, and all well when there is room again. */
 TEST(a_full_disk) {
   scratch_make();
-  strut_slots_plan plan = a_plan(200);
+  strut_slots_description plan = a_plan(200);
   strut_slots *slots = open_slots(scratch_path("a"), &plan);
   struct rlimit before, small;
   assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
@@ -496,7 +496,7 @@ TEST(a_full_small_disk) {
     scratch_remove();
     skip();
   }
-  strut_slots_plan plan = a_plan(1000);
+  strut_slots_description plan = a_plan(1000);
   strut_slots *slots = open_slots(scratch_path("a"), &plan);
   strut_error error = {0};
   int64_t put_well = 0;
@@ -513,7 +513,7 @@ TEST(a_full_small_disk) {
 
 TEST(no_memory) {
   scratch_make();
-  strut_slots_plan plan = a_plan(100), there;
+  strut_slots_description plan = a_plan(100), there;
   make_file(scratch_path("a"), 100);
   for (int mode = 0; mode < 3; mode++) {
     strut_status status = STRUT_NO_MEMORY;
@@ -540,7 +540,7 @@ TEST(failed_rows_once_more) {
   const double numbers[] = {1.0, 2.0};
   const char words[1][STRUT_SLOT_WORD] = {"well"};
   const strut_result_slot good = {STRUT_OK, numbers, words, NULL};
-  strut_slots_plan plan = a_plan(1000);
+  strut_slots_description plan = a_plan(1000);
   strut_result_slot row;
   make_file(path, 1000);
   strut_slots *slots = open_slots(path, &plan);

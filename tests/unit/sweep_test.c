@@ -65,12 +65,12 @@ static strut_sweep_plan plan_of(int64_t points, log_t *log) {
 
 static strut_status sweep(const char *path, int64_t points, log_t *log, strut_sweep_state *state) {
   strut_sweep_plan plan = plan_of(points, log);
-  const strut_slots_plan file = {.version = "0",
-                                 .name = "test",
-                                 .points = points,
-                                 .count = points,
-                                 .columns = columns,
-                                 .column_count = 2};
+  const strut_slots_description file = {.version = "0",
+                                        .name = "test",
+                                        .points = points,
+                                        .count = points,
+                                        .columns = columns,
+                                        .column_count = 2};
   const strut_sweep_options options = {.threads = THREADS};
   strut_slots *slots;
   strut_error error = {0};
@@ -138,7 +138,7 @@ static double cpu_time(void) {
 /* The table of a file of slots: CPU time of a point [s]. */
 static double table_of(const char *folder, const char *path) {
   strut_slots *slots;
-  strut_slots_plan plan;
+  strut_slots_description plan;
   strut_error error = {0};
   char table[64];
   double began = cpu_time();

@@ -209,7 +209,7 @@ STRUT_INLINE void look_between(const strut_model *model, strut_state *state, str
 }
 
 STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                       double t, double h, unsigned terms, bool ledger) {
+                       double t, double h, unsigned terms, bool balance) {
   double *v[PAIR], *a[PAIR];
   for (int k = 0; k < PAIR; k++) v[k] = l->stage[V + k], a[k] = l->stage[A + k];
   v[0] = l->now->v, a[0] = l->now->a;
@@ -219,21 +219,21 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
   strut_drives_ahead drives;
   drives_ahead_begin(model, terms, &drives);
   drives_ahead_stages(model, state, &drives, t, h, ahead, PAIR - 2);
-  for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++)
+  for (int p = 0; p < STRUT_POWER_COUNT && balance; p++)
     l->gained[p] = table[PAIR - 1][0] * h * l->now->power[p];
   for (int k = 1; k < PAIR; k++) {
     double *q = k == PAIR - 1 ? l->next->q : l->stage[0];
     stage_of(n, h, l->now, v, a, k, q);
-    if (model->plan & terms & STRUT_TERM_SUPPORT_MOTION)
+    if (model->terms & terms & STRUT_TERM_SUPPORT_MOTION)
       strut_support_motion_place(model, state, t + ahead[k] * h, q, v[k]);
     if (k == PAIR - 1) break;
     drives_ahead_meet(model, state, &drives, t + ahead[k] * h);
-    accelerate_in_modes(model, state, l, t + ahead[k] * h, q, v[k], a[k], l->next, terms, ledger);
+    accelerate_in_modes(model, state, l, t + ahead[k] * h, q, v[k], a[k], l->next, terms, balance);
     if (l->closed_count && broken == 0.0 && any_contradicts_at_stage(model, l)) broken = ahead[k];
-    for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++)
+    for (int p = 0; p < STRUT_POWER_COUNT && balance; p++)
       l->gained[p] += table[PAIR - 1][k] * h * state->power[p];
   }
-  evaluate_step_end(model, state, l, t + h, l->next, terms, ledger);
+  evaluate_step_end(model, state, l, t + h, l->next, terms, balance);
   l->error = error_of(model, l, h, v, a);
   look_between(model, state, l, h, broken, terms);
 }

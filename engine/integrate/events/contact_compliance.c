@@ -28,7 +28,7 @@ static void solve_column(const strut_model *model, strut_state *state, uint32_t 
 
 /* Then the mass matrix changes with time, and with it the compliances. */
 static bool has_moving_masses(const strut_model *model) {
-  return model->plan & STRUT_TERM_SLIDING_MASS;
+  return model->terms & STRUT_TERM_SLIDING_MASS;
 }
 
 /* Where neither axes nor compliances of contacts stay. */
@@ -87,7 +87,7 @@ static strut_status make_response(const strut_model *model, strut_state *state, 
   }
   r->at = place, r->xy = xy;
   find_own(c, x[at], y[at + 1], r);
-  if (!(model->plan & STRUT_TERM_SLIDING_MASS)) return STRUT_OK;
+  if (!(model->terms & STRUT_TERM_SLIDING_MASS)) return STRUT_OK;
   double *constant = strut_arena_allocate(&state->arena, 2 * count, sizeof *constant);
   if (!constant) return STRUT_NO_MEMORY;
   memcpy(constant, xy, 2 * count * sizeof *constant);
@@ -171,11 +171,11 @@ strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *
   uint8_t *answers =
       strut_arena_allocate(&state->arena, (size_t)model->node_count, sizeof *answers);
   if (!answers) return STRUT_NO_MEMORY;
-  if (model->plan & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_place(model, state, 0.0);
+  if (model->terms & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_place(model, state, 0.0);
   for (int32_t i = 0; i < c->count; i++) {
     strut_status status = make_response(model, state, i, x, y, answers, &l->response[i]);
     if (status) return status;
-    if (model->plan & STRUT_TERM_SLIDING_MASS) refresh_compliance(model, state, l, i);
+    if (model->terms & STRUT_TERM_SLIDING_MASS) refresh_compliance(model, state, l, i);
     l->settling_time[i] = settling_time(&c->entry[i], l->response[i].normal);
     fastest = fmax(fastest, c->entry[i].damping * l->response[i].normal);
     fastest = fmax(fastest, sqrt(c->entry[i].stiffness * l->response[i].normal));

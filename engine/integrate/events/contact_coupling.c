@@ -64,7 +64,7 @@ static bool make_scratch(const strut_model *model, strut_arena *arena, const str
 
 strut_status strut_contact_coupling_create(const strut_model *model, strut_state *state,
                                            strut_event_stepper *l) {
-  bool fixed = !model->contacts.surface && !(model->plan & STRUT_TERM_SLIDING_MASS);
+  bool fixed = !model->contacts.surface && !(model->terms & STRUT_TERM_SLIDING_MASS);
   if (model->contacts.count < STRUT_MANY_CONTACTS || !fixed) return STRUT_OK;
   int32_t *owner = strut_allocate((size_t)model->node_count, sizeof *owner);
   struct strut_contact_coupling *p = strut_arena_allocate(&state->arena, 1, sizeof *p);

@@ -15,12 +15,13 @@ static void evaluate_now(const strut_model *model, strut_state *state, strut_eve
                          double t) {
   strut_step_end *now = l->now;
   if (!l->fresh) {
-    evaluate_step_end(model, state, l, t, now, STRUT_TERMS_ALL, state->ledger);
+    evaluate_step_end(model, state, l, t, now, STRUT_TERMS_ALL, state->balance);
   } else {
     for (int32_t i = 0; i < model->length; i++) state->force[i] = now->structure[i];
     for (int p = 0; p < STRUT_POWER_COUNT; p++) state->power[p] = now->structure_power[p];
-    if (model->plan & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_place(model, state, t);
-    accelerate_closed(model, state, l, now->q, now->v, now->a, now, STRUT_TERMS_ALL, state->ledger);
+    if (model->terms & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_place(model, state, t);
+    accelerate_closed(model, state, l, now->q, now->v, now->a, now, STRUT_TERMS_ALL,
+                      state->balance);
     measure_contact_rates(model, l, now, STRUT_TERMS_ALL);
     for (int p = 0; p < STRUT_POWER_COUNT; p++) now->power[p] = state->power[p];
   }
@@ -177,9 +178,9 @@ static void pass_kink(const strut_model *model, strut_state *state, strut_event_
 /* Which laws act, and on which piece, as positions, velocities and drives are. */
 static void start_laws(const strut_model *model, strut_state *state, strut_event_stepper *l,
                        double t) {
-  bool changed = false, memory = model->plan & STRUT_TERM_MEMORY;
+  bool changed = false, memory = model->terms & STRUT_TERM_MEMORY;
   if (memory) strut_drive_apply(model, state, t);
-  if (memory) strut_memory_thaw(model, state, l);
+  if (memory) strut_history_thaw(model, state, l);
   int32_t laws = strut_laws_of(l);
   for (int32_t n = 0; n < laws; n++) {
     int32_t k = strut_law_of(l, n);
@@ -188,7 +189,7 @@ static void start_laws(const strut_model *model, strut_state *state, strut_event
     else if (l->laws[k].event == STRUT_EVENT_ACTS)
       strut_cable_set_acting(state, l, k, true);
   }
-  if (memory) strut_memory_drop_gone(model, state, l);
+  if (memory) strut_history_drop_gone(model, state, l);
   derive_consistently(model, state, l, t);
   for (int32_t n = 0; n < laws; n++) {
     int32_t k = strut_law_of(l, n);
@@ -198,7 +199,7 @@ static void start_laws(const strut_model *model, strut_state *state, strut_event
     } else if (l->laws[k].event == STRUT_EVENT_RELAY) {
       continue;
     } else if (l->laws[k].event != STRUT_EVENT_ACTS) {
-      strut_memory_start(model, state, l, k);
+      strut_history_start(model, state, l, k);
       changed = true;
     } else if (!(l->now->stretch[k] > 0.0 && l->now->tension[k] > 0.0)) {
       strut_cable_set_acting(state, l, k, false);
@@ -314,7 +315,7 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_event
     case STRUT_EVENT_DAMPER: l->damper[i] = (int8_t)-l->damper[i]; break;
     case STRUT_EVENT_ACTS:
       strut_cable_set_acting(state, l, i, !l->acting[i]);
-      if (l->laws[i].whole) strut_memory_apply(model, state, l, i, t);
+      if (l->laws[i].whole) strut_history_apply(model, state, l, i, t);
       break;
     case STRUT_EVENT_KINK: pass_kink(model, state, l, i); break;
     case STRUT_EVENT_FACET: {
@@ -324,7 +325,7 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_event
       break;
     }
     case STRUT_EVENT_SLIDER:
-    case STRUT_EVENT_BREAK: strut_memory_apply(model, state, l, i, t); break;
+    case STRUT_EVENT_BREAK: strut_history_apply(model, state, l, i, t); break;
     case STRUT_EVENT_RELAY: /* by the stepper */
     case STRUT_EVENT_NONE: break;
   }

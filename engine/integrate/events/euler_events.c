@@ -4,16 +4,16 @@
 #include "engine/integrate/integrator.h"
 
 STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                       double t, double h, unsigned terms, bool ledger) {
+                       double t, double h, unsigned terms, bool balance) {
   for (int32_t i = 0; i < model->length; i += STRUT_LANES) {
     strut_lanes v = strut_lanes_load(l->now->v + i) + h * strut_lanes_load_pairs(l->now->a + i);
     strut_lanes_store(l->next->v + i, v);
     strut_lanes_store(l->next->q + i, strut_lanes_load(l->now->q + i) + h * v);
   }
-  if (model->plan & terms & STRUT_TERM_SUPPORT_MOTION)
+  if (model->terms & terms & STRUT_TERM_SUPPORT_MOTION)
     strut_support_motion_place(model, state, t + h, l->next->q, l->next->v);
-  evaluate_step_end(model, state, l, t + h, l->next, terms, ledger);
-  for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++)
+  evaluate_step_end(model, state, l, t + h, l->next, terms, balance);
+  for (int p = 0; p < STRUT_POWER_COUNT && balance; p++)
     l->gained[p] = 0.5 * h * (l->now->power[p] + l->next->power[p]);
 }
 

@@ -159,10 +159,10 @@ STRUT_INLINE void add_contact_powers(const strut_model *model, strut_state *stat
 
 /* Notes the forces of the structure at an end of a step. */
 STRUT_INLINE void keep_structure_forces(const strut_model *model, const strut_state *state,
-                                        strut_step_end *end, bool ledger) {
+                                        strut_step_end *end, bool balance) {
   for (int32_t i = 0; i < model->length; i += STRUT_LANES)
     strut_lanes_store(end->structure + i, strut_lanes_load_pairs(state->force + i));
-  for (int p = 0; p < STRUT_POWER_ROOM && ledger; p += STRUT_LANES)
+  for (int p = 0; p < STRUT_POWER_ROOM && balance; p += STRUT_LANES)
     strut_lanes_store(end->structure_power + p, strut_lanes_load(state->power + p));
 }
 
@@ -177,24 +177,24 @@ STRUT_INLINE void keep_ground_motion(const strut_model *model, const strut_state
 STRUT_INLINE void accelerate_closed(const strut_model *model, strut_state *state,
                                     strut_event_stepper *l, const double *restrict q,
                                     const double *restrict v, double *restrict a,
-                                    strut_step_end *end, unsigned terms, bool ledger) {
-  bool sliding = model->plan & terms & STRUT_TERM_SLIDING_MASS;
+                                    strut_step_end *end, unsigned terms, bool balance) {
+  bool sliding = model->terms & terms & STRUT_TERM_SLIDING_MASS;
   if (l->closed_count) add_contact_forces(model, l, q, v, state->force, true, end, terms);
   divide_by_mass(model, state, a, terms);
   if (sliding) strut_refresh_compliances(model, state, l);
   if (l->stuck_count) strut_solve_stick_constraints(model, l, a, end);
-  if (ledger && l->closed_count) add_contact_powers(model, state, l, end, terms);
-  if (ledger && sliding) strut_sliding_masses_add_power(model, state, q, v, a);
+  if (balance && l->closed_count) add_contact_powers(model, state, l, end, terms);
+  if (balance && sliding) strut_sliding_masses_add_power(model, state, q, v, a);
 }
 
 /* Acceleration with explicit contact dampers inside a step; contact forces into end->touch. */
 STRUT_INLINE void accelerate_in_modes(const strut_model *model, strut_state *state,
                                       strut_event_stepper *l, double t, const double *restrict q,
                                       const double *restrict v, double *restrict a,
-                                      strut_step_end *end, unsigned terms, bool ledger) {
-  forces_of_structure(model, state, t, q, v, terms, ledger);
+                                      strut_step_end *end, unsigned terms, bool balance) {
+  forces_of_structure(model, state, t, q, v, terms, balance);
   keep_ground_motion(model, state, end, terms);
-  accelerate_closed(model, state, l, q, v, a, end, terms, ledger);
+  accelerate_closed(model, state, l, q, v, a, end, terms, balance);
 }
 
 /* Do the forces on a contact within its band balance, but for rounding? Then its speed does not change. */
@@ -218,14 +218,14 @@ STRUT_INLINE void settle_band_ties(const strut_model *model, const strut_event_s
 /* The same at the end of a step, with all that belongs to that end. */
 STRUT_INLINE void evaluate_step_end(const strut_model *model, strut_state *state,
                                     strut_event_stepper *l, double t, strut_step_end *end,
-                                    unsigned terms, bool ledger) {
-  forces_of_structure(model, state, t, end->q, end->v, terms, ledger);
-  keep_structure_forces(model, state, end, ledger);
+                                    unsigned terms, bool balance) {
+  forces_of_structure(model, state, t, end->q, end->v, terms, balance);
+  keep_structure_forces(model, state, end, balance);
   keep_ground_motion(model, state, end, terms);
-  accelerate_closed(model, state, l, end->q, end->v, end->a, end, terms, ledger);
+  accelerate_closed(model, state, l, end->q, end->v, end->a, end, terms, balance);
   measure_contact_rates(model, l, end, terms);
   if (end == l->next && !l->all_sliding) settle_band_ties(model, l);
-  for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) end->power[p] = state->power[p];
+  for (int p = 0; p < STRUT_POWER_COUNT && balance; p++) end->power[p] = state->power[p];
 }
 
 /* Edge of the band, or 0 where sticking is exact. */
@@ -295,7 +295,7 @@ STRUT_INLINE strut_event_kind contradicting_event(const strut_contact_entry *e,
 
 /* next becomes now: q and v are the state's own and are copied, the rest changes hands. */
 STRUT_INLINE void accept_step(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                              bool ledger) {
+                              bool balance) {
   strut_step_end *now = l->next, *next = l->now;
   double *restrict q = now->q, *restrict v = now->v;
   for (int32_t i = 0; i < model->length; i += STRUT_LANES) {
@@ -306,7 +306,7 @@ STRUT_INLINE void accept_step(const strut_model *model, strut_state *state, stru
   next->q = q, next->v = v;
   l->now = now, l->next = next;
   l->fresh = true;
-  for (int p = 0; p < STRUT_POWER_ROOM && ledger; p += STRUT_LANES)
+  for (int p = 0; p < STRUT_POWER_ROOM && balance; p += STRUT_LANES)
     strut_lanes_store(state->work + p,
                       strut_lanes_load(state->work + p) + strut_lanes_load(l->gained + p));
 }
@@ -375,35 +375,35 @@ STRUT_INLINE void advance_within_grid(strut_state *state, strut_event_stepper *l
 
 /**
  * Defines NAME_trial, the trial of a strut_step_formula, which runs
- * `take(model, state, l, t, h, terms, ledger)`, an inlined function, in copies as those of plain_steps.h.
+ * `take(model, state, l, t, h, terms, balance)`, an inlined function, in copies as those of plain_steps.h.
  */
 #define STRUT_EVENT_TRIAL(name, take)                                                              \
   STRUT_CLONES                                                                                     \
-  static void name##_with_ledger(const strut_model *model, strut_state *state,                     \
-                                 strut_event_stepper *l, double t, double h) {                     \
+  static void name##_with_balance(const strut_model *model, strut_state *state,                    \
+                                  strut_event_stepper *l, double t, double h) {                    \
     take(model, state, l, t, h, STRUT_TERMS_COMMON, true);                                         \
   }                                                                                                \
                                                                                                    \
   STRUT_CLONES                                                                                     \
-  static void name##_without_ledger(const strut_model *model, strut_state *state,                  \
-                                    strut_event_stepper *l, double t, double h) {                  \
+  static void name##_without_balance(const strut_model *model, strut_state *state,                 \
+                                     strut_event_stepper *l, double t, double h) {                 \
     take(model, state, l, t, h, STRUT_TERMS_COMMON, false);                                        \
   }                                                                                                \
                                                                                                    \
   STRUT_CLONES                                                                                     \
   static void name##_with_rare_terms(const strut_model *model, strut_state *state,                 \
                                      strut_event_stepper *l, double t, double h) {                 \
-    take(model, state, l, t, h, STRUT_TERMS_ALL, state->ledger);                                   \
+    take(model, state, l, t, h, STRUT_TERMS_ALL, state->balance);                                  \
   }                                                                                                \
                                                                                                    \
   static void name##_trial(const strut_model *model, strut_state *state, strut_event_stepper *l,   \
                            double t, double h) {                                                   \
-    if (model->plan & STRUT_TERMS_RARE)                                                            \
+    if (model->terms & STRUT_TERMS_RARE)                                                           \
       name##_with_rare_terms(model, state, l, t, h);                                               \
-    else if (state->ledger)                                                                        \
-      name##_with_ledger(model, state, l, t, h);                                                   \
+    else if (state->balance)                                                                       \
+      name##_with_balance(model, state, l, t, h);                                                  \
     else                                                                                           \
-      name##_without_ledger(model, state, l, t, h);                                                \
+      name##_without_balance(model, state, l, t, h);                                               \
   }
 
 #endif

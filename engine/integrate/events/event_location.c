@@ -269,7 +269,7 @@ static void measure_laws(const strut_model *model, const strut_state *state,
     if (l->laws[k].event == STRUT_EVENT_RELAY)
       measure_relay(model, state, &l->laws[k], end, k);
     else if (l->laws[k].event >= STRUT_EVENT_SLIDER || l->laws[k].whole)
-      strut_memory_measure(model, state, l, end, k);
+      strut_history_measure(model, state, l, end, k);
     else
       measure_element(model, state, &l->laws[k], end, k);
   }

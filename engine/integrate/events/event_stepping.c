@@ -102,7 +102,7 @@ static bool list_laws(const strut_model *model, strut_state *state, strut_event_
     l->laws[l->law_count] = own;
     l->laws[l->law_count++].event = STRUT_EVENT_KINK;
   }
-  strut_memory_list(model, state, l);
+  strut_history_list(model, state, l);
   for (int32_t i = 0; i < model->feedback.relay_count; i++)
     l->laws[l->law_count++] = (strut_law_switch){.event = STRUT_EVENT_RELAY,
                                                  .member = -1,
@@ -246,8 +246,8 @@ void strut_event_stepper_restart(const strut_model *model, strut_state *state, v
 }
 
 /* What a jump of rest lengths at time t has done to the elastic energy is work of the drive. */
-static void book_jump(const strut_model *model, strut_state *state, double t, double before) {
-  if (!state->ledger) return;
+static void accumulate_jump(const strut_model *model, strut_state *state, double t, double before) {
+  if (!state->balance) return;
   double gained = strut_energy_evaluate(model, state, t).elastic - before;
   state->work[STRUT_POWER_DRIVE] += gained;
   state->work[STRUT_POWER_EXCHANGED] += fabs(gained);
@@ -263,17 +263,17 @@ static void pass_break(const strut_model *model, strut_state *state, strut_event
   if (t + state->time_offset < l->next_break - STRUT_AT_BREAK * dt) return;
   double moment = moment_before(t, dt), before = 0.0;
   end_smooth(l);
-  if (state->ledger) before = strut_energy_evaluate(model, state, t - moment).elastic;
+  if (state->balance) before = strut_energy_evaluate(model, state, t - moment).elastic;
   l->next_break =
       strut_drive_next_break(model, state, t + state->time_offset + STRUT_AT_BREAK * dt);
   strut_feedback_sample(model, state, t, STRUT_AT_BREAK * dt);
-  book_jump(model, state, t + moment, before);
-  if (model->plan & STRUT_TERM_MEMORY)
-    strut_memory_release(model, state, t + moment + state->time_offset + STRUT_AT_BREAK * dt);
+  accumulate_jump(model, state, t + moment, before);
+  if (model->terms & STRUT_TERM_MEMORY)
+    strut_history_release(model, state, t + moment + state->time_offset + STRUT_AT_BREAK * dt);
   bool kicked = model->contacts.moves; /* a ground may have changed its speed at once */
-  if (model->plan & STRUT_TERM_SLIDING_MASS)
+  if (model->terms & STRUT_TERM_SLIDING_MASS)
     kicked = strut_sliding_masses_kick(model, state, t - 2.0 * moment, t + 0.5 * moment) || kicked;
-  if (model->plan & (STRUT_TERM_SUPPORT_MOTION | STRUT_TERM_UNBALANCE)) {
+  if (model->terms & (STRUT_TERM_SUPPORT_MOTION | STRUT_TERM_UNBALANCE)) {
     kicked = strut_support_motion_kick(model, state, t - 2.0 * moment, t + 0.5 * moment) || kicked;
     kicked = strut_unbalance_kick(model, state, t - 2.0 * moment, t + 0.5 * moment) || kicked;
     strut_support_motion_place(model, state, t + moment, state->q, state->v);
@@ -434,20 +434,20 @@ static bool try_step(const strut_model *model, strut_state *state, strut_event_s
 /* A touchdown at time t may start signals: the drives jump as in pass_break. */
 static void start_signals(const strut_model *model, strut_state *state, strut_event_stepper *l,
                           int32_t contact, double t, double dt) {
-  double before = state->ledger ? strut_energy_evaluate(model, state, t).elastic : 0.0;
+  double before = state->balance ? strut_energy_evaluate(model, state, t).elastic : 0.0;
   if (!strut_feedback_touch(model, state, contact, t)) return;
   l->next_break =
       strut_drive_next_break(model, state, t + state->time_offset + STRUT_AT_BREAK * dt);
-  book_jump(model, state, t, before);
+  accumulate_jump(model, state, t, before);
   strut_modes_after_jump(model, state, l, t);
 }
 
 /* A relay whose input is at its threshold at time t: the drives jump likewise. */
 static void switch_relay(const strut_model *model, strut_state *state, strut_event_stepper *l,
                          int32_t signal, double t) {
-  double before = state->ledger ? strut_energy_evaluate(model, state, t).elastic : 0.0;
+  double before = state->balance ? strut_energy_evaluate(model, state, t).elastic : 0.0;
   strut_relay_switch(model, state, signal, t);
-  book_jump(model, state, t, before);
+  accumulate_jump(model, state, t, before);
   strut_modes_after_jump(model, state, l, t);
 }
 
@@ -456,7 +456,7 @@ static void accept_within(strut_state *state, strut_event_stepper *l) {
   strut_step_end *now = l->next;
   l->next = l->now, l->now = now;
   l->fresh = true;
-  for (int p = 0; p < STRUT_POWER_COUNT && state->ledger; p++) state->work[p] += l->gained[p];
+  for (int p = 0; p < STRUT_POWER_COUNT && state->balance; p++) state->work[p] += l->gained[p];
 }
 
 /* Counts an event; moved: a step has led to it. */
@@ -529,7 +529,7 @@ STRUT_INLINE double step_piece(const strut_model *model, strut_state *state, str
     if (l->within)
       accept_within(state, l);
     else
-      accept_step(model, state, l, state->ledger);
+      accept_step(model, state, l, state->balance);
     if (observed) show_piece(model, state, l, t, h, dt);
     l->at_once = 0;
   } else {
@@ -576,12 +576,12 @@ static bool given_up(const strut_model *model, strut_state *state, strut_event_s
     memcpy(kept[0], state->q, bytes);
     memcpy(kept[1], state->v, bytes);
     memcpy(l->work, state->work, sizeof l->work);
-    if (model->plan & STRUT_TERM_MEMORY) strut_memory_store(model, state, state->memory_kept);
+    if (model->terms & STRUT_TERM_MEMORY) strut_history_store(model, state, state->history_kept);
   } else if (wanted) {
     memcpy(state->q, kept[0], bytes);
     memcpy(state->v, kept[1], bytes);
     memcpy(state->work, l->work, sizeof l->work);
-    if (model->plan & STRUT_TERM_MEMORY) strut_memory_load(model, state, state->memory_kept);
+    if (model->terms & STRUT_TERM_MEMORY) strut_history_load(model, state, state->history_kept);
   }
   if (wanted) state->trouble = spent ? STRUT_FAILURE_WORK : STRUT_FAILURE_INTERRUPT;
   return wanted;
@@ -601,7 +601,7 @@ void strut_event_stepper_advance(const strut_model *model, strut_state *state, v
                                  double dt, int64_t count) {
   strut_event_stepper *l = workspace;
   if (!l->started) strut_event_stepper_restart(model, state, workspace, dt);
-  drives_ahead_begin(model, model->plan & STRUT_TERMS_RARE ? STRUT_TERMS_ALL : STRUT_TERMS_COMMON,
+  drives_ahead_begin(model, model->terms & STRUT_TERMS_RARE ? STRUT_TERMS_ALL : STRUT_TERMS_COMMON,
                      &l->drives);
   for (int64_t end = state->step + count; state->step < end && !state->trouble;) {
     if (l->stepper->advance_until_event && l->at_once == 0 && !model->contacts.surface &&

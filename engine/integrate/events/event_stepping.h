@@ -63,7 +63,7 @@ typedef struct strut_step_end {
   /* (switches) force as if it acted, and how far the strain is beyond the kink, both positive where it
      acts; and the rate of the latter. Of a kink: the margins to both ends of its piece, the lesser */
   double *tension, *stretch, *stretch_rate;
-  double power[STRUT_POWER_ROOM]; /* [W]; only with the ledger */
+  double power[STRUT_POWER_ROOM]; /* [W]; only with the energy balance */
   /* all forces but the ground's, and their powers: a change of modes needs no others anew */
   double *structure, structure_power[STRUT_POWER_ROOM];
   strut_ground_motion *motion; /* (grounds) NULL where none is shaken */
@@ -248,9 +248,9 @@ static inline int32_t strut_law_of(const strut_event_stepper *l, int32_t place) 
 
 /** Most laws that switch: each cable, each element by its sign, by its kinks and by its memory, relays. */
 static inline size_t strut_most_law_switches(const strut_model *model) {
-  bool slack = model->plan & STRUT_TERM_SLACK;
+  bool slack = model->terms & STRUT_TERM_SLACK;
   return (slack ? (size_t)model->members.count : 0) + 2 * (size_t)model->elements.count +
-         (size_t)(2 * model->elements.memory_slots + model->elements.breakable_count +
+         (size_t)(2 * model->elements.history_slots + model->elements.breakable_count +
                   model->feedback.relay_count);
 }
 
@@ -335,23 +335,23 @@ void strut_event_apply(const strut_model *model, strut_state *state, strut_event
 /** Modes from q and v alone. */
 void strut_modes_start(const strut_model *model, strut_state *state, strut_event_stepper *l,
                        double t);
-/* ---- memory_modes.c: sliders, and what breaks ---- */
+/* ---- history_modes.c: sliders, and what breaks ---- */
 
 /** Lists their switches in l->laws, for which there is space. */
-void strut_memory_list(const strut_model *model, const strut_state *state, strut_event_stepper *l);
+void strut_history_list(const strut_model *model, const strut_state *state, strut_event_stepper *l);
 /** Of a slider or what breaks, at an end: its margin into end->tension. */
-void strut_memory_measure(const strut_model *model, const strut_state *state,
-                          const strut_event_stepper *l, const strut_step_end *end, int32_t k);
+void strut_history_measure(const strut_model *model, const strut_state *state,
+                           const strut_event_stepper *l, const strut_step_end *end, int32_t k);
 /** Lets all sliders follow their forces at now, and back to their yields. */
-void strut_memory_thaw(const strut_model *model, strut_state *state, strut_event_stepper *l);
+void strut_history_thaw(const strut_model *model, strut_state *state, strut_event_stepper *l);
 /** Freezes the mode of switch k at now, whose forces have been evaluated. */
-void strut_memory_start(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                        int32_t k);
+void strut_history_start(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                         int32_t k);
 /** Changes the mode at the event of switch k, at time t. */
-void strut_memory_apply(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                        int32_t k, double t);
+void strut_history_apply(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                         int32_t k, double t);
 /** Of what has broken, no switch acts. */
-void strut_memory_drop_gone(const strut_model *model, strut_state *state, strut_event_stepper *l);
+void strut_history_drop_gone(const strut_model *model, strut_state *state, strut_event_stepper *l);
 
 /** A cable, law k, acts from now on, or not. */
 void strut_cable_set_acting(strut_state *state, strut_event_stepper *l, int32_t k, bool pulls);

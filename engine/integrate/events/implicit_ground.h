@@ -92,9 +92,9 @@ STRUT_INLINE void implicit_ground_together(const strut_model *model, strut_event
   }
 }
 
-/* Gaps, speeds and their rates at the end of the step; with the ledger the ground's powers. */
+/* Gaps, speeds and their rates at the end of the step; with the energy balance the ground's powers. */
 STRUT_INLINE void implicit_ground_finish(const strut_model *model, strut_state *state,
-                                         strut_event_stepper *l, unsigned terms, bool ledger) {
+                                         strut_event_stepper *l, unsigned terms, bool balance) {
   const strut_contact_table *c = &model->contacts;
   strut_step_end *next = l->next;
   strut_contact_frame *frame = frames_of(next, terms);
@@ -106,7 +106,7 @@ STRUT_INLINE void implicit_ground_finish(const strut_model *model, strut_state *
       measure_on_line(c, i, next->q, next->v, &next->touch[i]);
   }
   measure_contact_rates(model, l, next, terms);
-  if (ledger) add_contact_powers(model, state, l, next, terms);
+  if (balance) add_contact_powers(model, state, l, next, terms);
 }
 
 /* The force of one level contact, bodies apart; x, y: its node's acceleration without the ground. */
@@ -181,7 +181,7 @@ STRUT_INLINE void implicit_ground_slides(const strut_model *model, const strut_e
 
 /* As implicit_ground_finish, on level ground. */
 STRUT_INLINE void implicit_ground_leave(const strut_model *model, strut_state *state,
-                                        const strut_event_stepper *l, bool ledger) {
+                                        const strut_event_stepper *l, bool balance) {
   const strut_contact_table *c = &model->contacts;
   const double *restrict v = l->next->v, *restrict a = l->next->a;
   double contact = 0.0, friction = 0.0, belt = 0.0, exchanged = 0.0;
@@ -193,13 +193,13 @@ STRUT_INLINE void implicit_ground_leave(const strut_model *model, strut_state *s
     o->slip = v[at] - c->belt_speed;
     o->into_rate = a[at + 1];
     o->slip_rate = a[at];
-    if (!ledger) continue;
+    if (!balance) continue;
     double damped = -(o->normal + c->entry[i].stiffness * o->gap) * o->into;
     double rubbed = -o->friction * o->slip, carried = o->friction * c->belt_speed;
     contact += damped, friction += rubbed, belt += carried;
     exchanged += fabs(damped) + fabs(rubbed) + fabs(carried);
   }
-  if (!ledger) return;
+  if (!balance) return;
   double *low = state->power + STRUT_POWER_DRIVE, *high = state->power + STRUT_POWER_CONTACT;
   strut_lanes_store(low, strut_lanes_load(low) + (strut_lanes){0.0, 0.0, belt, 0.0});
   strut_lanes_store(high,

@@ -296,7 +296,7 @@ static void begin_region(const strut_model *model, strut_state *state, const str
   own->h = 0.0, own->fastest = l->fastest, own->longest = l->longest;
   copy_pairs(r->node, r->node_count, l->now->q, own->now->q);
   copy_pairs(r->node, r->node_count, l->now->v, own->now->v);
-  strut_local_place_rim(p, 0.0, own->now->q, own->now->v);
+  strut_local_place_halo(p, 0.0, own->now->q, own->now->v);
   strut_update_active_set(model, own);
   strut_evaluate_acceleration(model, state, own, t);
   copy_pairs(r->node, r->node_count, l->now->a, own->now->a);
@@ -338,10 +338,10 @@ static bool step_with_events(const strut_model *model, strut_state *state, strut
   return false;
 }
 
-/* By how much the region's end differs from that without events; and what its masses do to its rim. */
+/* By how much the region's end differs from that without events; and what its masses do to its halo. */
 static void pass_on(const strut_local_region *r, const double *end, const double *quiet,
                     double *push) {
-  for (int32_t k = 0; k < r->node_count && r->joint_count; k++)
+  for (int32_t k = 0; k < r->node_count && r->coupling_count; k++)
     for (int32_t c = 0; c < 2; c++)
       r->pair[2 * k + c] = end[2 * r->node[k] + c] - quiet[2 * r->node[k] + c];
   strut_local_region_pass_on(r, r->pair, push);
@@ -399,7 +399,7 @@ static bool step_region(const strut_model *model, strut_state *state, const stru
   begin_region(model, state, l, p, t);
   step_quietly(model, state, p, t, quiet);
   bool good = step_with_events(model, state, p, t, dt);
-  for (int k = 0; k < STRUT_POWER_COUNT && state->ledger; k++)
+  for (int k = 0; k < STRUT_POWER_COUNT && state->balance; k++)
     works[k] += state->work[k] - before[k] - quiet[k];
   memcpy(state->work, before, sizeof before);
   keep_result(p);
@@ -509,7 +509,7 @@ static void write_results(const strut_local_events *p, const strut_step_end *nex
 STRUT_CLONES
 static void evaluate_whole_end(const strut_model *model, strut_state *state, strut_event_stepper *l,
                                double t) {
-  evaluate_step_end(model, state, l, t, l->next, STRUT_TERMS_COMMON, state->ledger);
+  evaluate_step_end(model, state, l, t, l->next, STRUT_TERMS_COMMON, state->balance);
 }
 
 /* The region's reach for a step of h, by the next longer one that has been prepared; 0: too far. */
@@ -539,7 +539,7 @@ bool strut_local_events_take(const strut_model *model, strut_state *state, strut
     write_results(p, l->next);
     evaluate_whole_end(model, state, l, t + h);
     strut_event_measure(model, state, l, l->next);
-    for (int k = 0; k < STRUT_POWER_COUNT && state->ledger; k++) l->gained[k] += works[k];
+    for (int k = 0; k < STRUT_POWER_COUNT && state->balance; k++) l->gained[k] += works[k];
   } else {
     state->trouble = STRUT_FAILURE_NONE; /* that of a region, which the whole does not share */
     strut_update_active_set(model, l);

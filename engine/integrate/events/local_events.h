@@ -3,7 +3,7 @@
  * Events of large structures taken locally: see docs/numerics.md.
  *
  * A step of the whole structure is taken once, with modes frozen. Where its end contradicts a mode, a region about
- * that place is stepped again from event to event, while its rim moves as in the step of the whole. The region is
+ * that place is stepped again from event to event, while its halo moves as in the step of the whole. The region is
  * also stepped without events; what both differ by is added to the step of the whole.
  */
 #ifndef STRUT_ENGINE_INTEGRATE_EVENTS_LOCAL_EVENTS_H

@@ -7,10 +7,10 @@
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/integrate/events/local_events.h"
 
-/* ---- the rim: positions by the polynomial of degree 5 with the positions, velocities and accelerations of both
+/* ---- the halo: positions by the polynomial of degree 5 with the positions, velocities and accelerations of both
    ends, velocities by that of degree 3 ---- */
 
-void strut_local_place_rim(strut_local_events *p, double part, double *q, double *v) {
+void strut_local_place_halo(strut_local_events *p, double part, double *q, double *v) {
   const strut_local_region *r = &p->region;
   const strut_step_end *b = p->begin, *e = p->end;
   double x = part, h = p->span, x2 = x * x, x3 = x2 * x, rest = 1.0 - x;
@@ -19,13 +19,13 @@ void strut_local_place_rim(strut_local_events *p, double part, double *q, double
   double a0 = 0.5 * h * h * x2 * rest * rest * rest, a1 = 0.5 * h * h * x3 * rest * rest;
   double up = x2 * (3.0 - 2.0 * x), s0 = h * x * rest * rest, s1 = -h * x2 * rest;
   double slope = 6.0 * x * rest / h, d0 = rest * (1.0 - 3.0 * x), d1 = x * (3.0 * x - 2.0);
-  for (int32_t k = 0; k < r->rim_count; k++)
-    for (int32_t i = 2 * r->rim[k], c = 0; c < 2; i++, c++) {
+  for (int32_t k = 0; k < r->halo_count; k++)
+    for (int32_t i = 2 * r->halo[k], c = 0; c < 2; i++, c++) {
       double more = e->v[i] - b->v[i];
       q[i] = b->q[i] + rise * (e->q[i] - b->q[i]) + v0 * b->v[i] + v1 * e->v[i] + a0 * b->a[i] +
              a1 * e->a[i];
       v[i] = b->v[i] + up * more + s0 * b->a[i] + s1 * e->a[i];
-      r->rim_a[2 * k + c] = slope * more + d0 * b->a[i] + d1 * e->a[i];
+      r->halo_a[2 * k + c] = slope * more + d0 * b->a[i] + d1 * e->a[i];
     }
 }
 
@@ -57,7 +57,7 @@ static void refresh_members(const strut_model *model, const strut_state *state,
     p->shell.slack_length_threshold[k] = state->slack_length_threshold[j];
     p->shell.slack_force_threshold[k] = state->slack_force_threshold[j];
   }
-  for (int32_t k = 0; k < r->member_count && model->plan & STRUT_TERM_DRIVE; k++) {
+  for (int32_t k = 0; k < r->member_count && model->terms & STRUT_TERM_DRIVE; k++) {
     p->rest[k] = state->rest[r->member[k]];
     p->shell.rest_rate[k] = state->rest_rate[r->member[k]];
   }
@@ -72,15 +72,15 @@ static void count_evaluation(const strut_model *model, strut_state *state, strut
 }
 
 STRUT_INLINE void add_members(const strut_local_events *p, strut_state *state, const double *q,
-                              const double *v, bool driven, bool ledger) {
+                              const double *v, bool driven, bool balance) {
   enum { KEPT = STRUT_TERM_DAMPING | STRUT_TERM_SLACK, ALL = KEPT | STRUT_TERM_DRIVE };
   four_member_powers powers = {0};
   for (int32_t j = 0; j < p->table.slots; j += STRUT_LANES) {
     member_pulls pulls =
-        members_group(&p->table, &p->shell, q, v, j, driven ? ALL : KEPT, ledger, &powers);
+        members_group(&p->table, &p->shell, q, v, j, driven ? ALL : KEPT, balance, &powers);
     members_scatter(&p->table, j, pulls, state->force); /* made anew at each event: no rows */
   }
-  for (int l = 0; l < STRUT_LANES && ledger; l++) {
+  for (int l = 0; l < STRUT_LANES && balance; l++) {
     state->power[STRUT_POWER_DRIVE] += powers.drive[l];
     state->power[STRUT_POWER_MEMBERS] += powers.lost[l];
     state->power[STRUT_POWER_EXCHANGED] += powers.exchanged[l] + powers.lost[l];
@@ -89,71 +89,71 @@ STRUT_INLINE void add_members(const strut_local_events *p, strut_state *state, c
 
 /* All forces but the ground's. */
 STRUT_INLINE void region_forces(const strut_model *model, strut_state *state, strut_local_events *p,
-                                double t, const double *q, const double *v, bool ledger) {
+                                double t, const double *q, const double *v, bool balance) {
   const strut_local_region *r = &p->region;
-  const double *constant = model->plan & STRUT_TERM_CONSTANT ? model->constant_force : NULL;
+  const double *constant = model->terms & STRUT_TERM_CONSTANT ? model->constant_force : NULL;
   count_evaluation(model, state, p);
-  for (int k = 0; k < STRUT_POWER_COUNT && ledger; k++) state->power[k] = 0.0;
+  for (int k = 0; k < STRUT_POWER_COUNT && balance; k++) state->power[k] = 0.0;
   for (int32_t k = 0; k < r->node_count; k++)
     for (int32_t i = 2 * r->node[k]; i < 2 * r->node[k] + 2; i++)
       state->force[i] = constant ? constant[i] : 0.0;
-  if ((model->plan & STRUT_TERM_DRIVE) && t != state->drive_time)
+  if ((model->terms & STRUT_TERM_DRIVE) && t != state->drive_time)
     strut_drive_apply(model, state, t);
   refresh_members(model, state, p);
-  if (model->plan & STRUT_TERM_DRIVE)
-    add_members(p, state, q, v, true, ledger);
+  if (model->terms & STRUT_TERM_DRIVE)
+    add_members(p, state, q, v, true, balance);
   else
-    add_members(p, state, q, v, false, ledger);
+    add_members(p, state, q, v, false, balance);
 }
 
 STRUT_INLINE void region_accelerations(const strut_model *model, strut_state *state,
                                        strut_event_stepper *l, const double *q, const double *v,
-                                       double *a, strut_step_end *end, bool ledger) {
+                                       double *a, strut_step_end *end, bool balance) {
   strut_local_events *p = l->within;
   if (l->closed_count)
     add_contact_forces(model, l, q, v, state->force, true, end, STRUT_TERMS_COMMON);
   strut_local_region_divide(model, &p->region, state->force, a);
   if (l->stuck_count) strut_local_hold(model, l, a, end);
-  if (ledger && l->closed_count) add_contact_powers(model, state, l, end, STRUT_TERMS_COMMON);
+  if (balance && l->closed_count) add_contact_powers(model, state, l, end, STRUT_TERMS_COMMON);
 }
 
-/* As evaluate_step_end; the rim has been placed. */
+/* As evaluate_step_end; the halo has been placed. */
 STRUT_INLINE void region_end(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                             double t, strut_step_end *end, bool ledger) {
+                             double t, strut_step_end *end, bool balance) {
   const strut_local_region *r = &l->within->region;
-  region_forces(model, state, l->within, t, end->q, end->v, ledger);
+  region_forces(model, state, l->within, t, end->q, end->v, balance);
   for (int32_t k = 0; k < r->node_count; k++)
     for (int32_t i = 2 * r->node[k]; i < 2 * r->node[k] + 2; i++)
       end->structure[i] = state->force[i];
-  for (int k = 0; k < STRUT_POWER_COUNT && ledger; k++) end->structure_power[k] = state->power[k];
-  region_accelerations(model, state, l, end->q, end->v, end->a, end, ledger);
+  for (int k = 0; k < STRUT_POWER_COUNT && balance; k++) end->structure_power[k] = state->power[k];
+  region_accelerations(model, state, l, end->q, end->v, end->a, end, balance);
   measure_contact_rates(model, l, end, STRUT_TERMS_COMMON);
   if (end == l->next) settle_band_ties(model, l);
-  for (int k = 0; k < STRUT_POWER_COUNT && ledger; k++) end->power[k] = state->power[k];
+  for (int k = 0; k < STRUT_POWER_COUNT && balance; k++) end->power[k] = state->power[k];
 }
 
 STRUT_CLONES
 static void region_now(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                       double t, bool ledger) {
+                       double t, bool balance) {
   const strut_local_region *r = &l->within->region;
   strut_step_end *now = l->now;
-  strut_local_place_rim(l->within, (t - l->within->start) / l->within->span, now->q, now->v);
+  strut_local_place_halo(l->within, (t - l->within->start) / l->within->span, now->q, now->v);
   if (!l->fresh) {
-    region_end(model, state, l, t, now, ledger);
+    region_end(model, state, l, t, now, balance);
     return;
   }
   for (int32_t k = 0; k < r->node_count; k++)
     for (int32_t i = 2 * r->node[k]; i < 2 * r->node[k] + 2; i++)
       state->force[i] = now->structure[i];
-  for (int k = 0; k < STRUT_POWER_COUNT && ledger; k++) state->power[k] = now->structure_power[k];
-  region_accelerations(model, state, l, now->q, now->v, now->a, now, ledger);
+  for (int k = 0; k < STRUT_POWER_COUNT && balance; k++) state->power[k] = now->structure_power[k];
+  region_accelerations(model, state, l, now->q, now->v, now->a, now, balance);
   measure_contact_rates(model, l, now, STRUT_TERMS_COMMON);
-  for (int k = 0; k < STRUT_POWER_COUNT && ledger; k++) now->power[k] = state->power[k];
+  for (int k = 0; k < STRUT_POWER_COUNT && balance; k++) now->power[k] = state->power[k];
 }
 
 void strut_local_evaluate(const strut_model *model, strut_state *state, strut_event_stepper *l,
                           double t) {
-  region_now(model, state, l, t, state->ledger);
+  region_now(model, state, l, t, state->balance);
   l->fresh = true;
 }
 
@@ -198,7 +198,7 @@ STRUT_INLINE double region_error(const strut_model *model, const strut_event_ste
 }
 
 STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                       double t, double h, bool ledger) {
+                       double t, double h, bool balance) {
   const strut_tableau *tableau = l->stepper->tableau;
   strut_local_events *p = l->within;
   int stages = tableau->stages;
@@ -208,45 +208,45 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
   for (int k = 1; k < stages; k++) v[k] = l->stage[k], a[k] = l->stage[stages - 1 + k];
   v[stages] = l->next->v, a[stages] = l->next->a;
   const double *weight = tableau->weight, *last = weight + stages * stages;
-  for (int k = 0; k < STRUT_POWER_COUNT && ledger; k++)
+  for (int k = 0; k < STRUT_POWER_COUNT && balance; k++)
     l->gained[k] = last[0] * h * l->now->power[k];
   for (int s = 1; s < stages; s++) {
     double at = t + tableau->ahead[s] * h;
     region_stage(&p->region, h, l->now, v, a, weight + s * stages, s, q, v[s]);
-    strut_local_place_rim(p, (at - p->start) / p->span, q, v[s]);
-    region_forces(model, state, p, at, q, v[s], ledger);
-    region_accelerations(model, state, l, q, v[s], a[s], l->next, ledger);
+    strut_local_place_halo(p, (at - p->start) / p->span, q, v[s]);
+    region_forces(model, state, p, at, q, v[s], balance);
+    region_accelerations(model, state, l, q, v[s], a[s], l->next, balance);
     if (l->stepper->adaptive && broken == 0.0 && l->stepper->contradicts_at_stage(model, l))
       broken = tableau->ahead[s];
-    for (int k = 0; k < STRUT_POWER_COUNT && ledger; k++)
+    for (int k = 0; k < STRUT_POWER_COUNT && balance; k++)
       l->gained[k] += last[s] * h * state->power[k];
   }
   region_stage(&p->region, h, l->now, v, a, last, stages, l->next->q, l->next->v);
-  strut_local_place_rim(p, (t + h - p->start) / p->span, l->next->q, l->next->v);
-  region_end(model, state, l, t + h, l->next, ledger);
+  strut_local_place_halo(p, (t + h - p->start) / p->span, l->next->q, l->next->v);
+  region_end(model, state, l, t + h, l->next, balance);
   if (!l->stepper->adaptive) return;
   l->error = region_error(model, l, h, v, a);
   l->stepper->look_between(model, state, l, h, broken);
 }
 
 STRUT_CLONES
-static void take_with_ledger(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                             double t, double h) {
+static void take_with_balance(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                              double t, double h) {
   take(model, state, l, t, h, true);
 }
 
 STRUT_CLONES
-static void take_without_ledger(const strut_model *model, strut_state *state,
-                                strut_event_stepper *l, double t, double h) {
+static void take_without_balance(const strut_model *model, strut_state *state,
+                                 strut_event_stepper *l, double t, double h) {
   take(model, state, l, t, h, false);
 }
 
 void strut_local_trial(const strut_model *model, strut_state *state, strut_event_stepper *l,
                        double t, double h) {
-  if (state->ledger)
-    take_with_ledger(model, state, l, t, h);
+  if (state->balance)
+    take_with_balance(model, state, l, t, h);
   else
-    take_without_ledger(model, state, l, t, h);
+    take_without_balance(model, state, l, t, h);
 }
 
 /* ---- a step's end a little earlier or later ---- */
@@ -269,18 +269,18 @@ STRUT_INLINE void shift_nodes(const strut_event_stepper *l, double from, double 
 
 STRUT_CLONES
 static void shift(const strut_model *model, strut_state *state, strut_event_stepper *l, double t,
-                  double from, double to, bool ledger) {
+                  double from, double to, bool balance) {
   strut_local_events *p = l->within;
   strut_step_end *next = l->next;
   double half = 0.5 * (to - from);
-  for (int k = 0; k < STRUT_POWER_COUNT && ledger; k++) l->gained[k] += half * next->power[k];
+  for (int k = 0; k < STRUT_POWER_COUNT && balance; k++) l->gained[k] += half * next->power[k];
   shift_nodes(l, from, to - from);
-  strut_local_place_rim(p, (t + to - p->start) / p->span, next->q, next->v);
-  region_end(model, state, l, t + to, next, ledger);
-  for (int k = 0; k < STRUT_POWER_COUNT && ledger; k++) l->gained[k] += half * next->power[k];
+  strut_local_place_halo(p, (t + to - p->start) / p->span, next->q, next->v);
+  region_end(model, state, l, t + to, next, balance);
+  for (int k = 0; k < STRUT_POWER_COUNT && balance; k++) l->gained[k] += half * next->power[k];
 }
 
 void strut_local_shift(const strut_model *model, strut_state *state, strut_event_stepper *l,
                        double t, double from, double to) {
-  shift(model, state, l, t, from, to, state->ledger);
+  shift(model, state, l, t, from, to, state->balance);
 }

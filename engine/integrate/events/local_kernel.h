@@ -16,7 +16,7 @@ typedef struct strut_local_events {
   strut_local_region region;
   strut_event_stepper own; /* of the region under way */
   strut_step_formula formula;
-  /* the step of the whole, which moves the rim */
+  /* the step of the whole, which moves the halo */
   const strut_step_end *begin, *end;
   double start, span; /* [s] */
   /* members of the region, one after the other; and what else the law asks of a state */
@@ -54,7 +54,7 @@ void strut_local_trial(const strut_model *model, strut_state *state, strut_event
                        double t, double h);
 /** The members of the region into its table. */
 void strut_local_load_members(const strut_model *model, strut_local_events *p);
-/** Positions and velocities of the rim at a part of the step, and region->rim_a. */
-void strut_local_place_rim(strut_local_events *p, double part, double *q, double *v);
+/** Positions and velocities of the halo at a part of the step, and region->halo_a. */
+void strut_local_place_halo(strut_local_events *p, double part, double *q, double *v);
 
 #endif

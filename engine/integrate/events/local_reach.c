@@ -132,35 +132,35 @@ static double choose(int n, int k) {
   return ways;
 }
 
-/* What is left behind `rings` neighbours: s of them passed by members, in any order, the others by masses. */
-static double left_behind(const strut_local_passing *p, int rings) {
+/* What is left behind `layers` neighbours: s of them passed by members, in any order, the others by masses. */
+static double left_behind(const strut_local_passing *p, int layers) {
   double left = 0.0, over_factorial = 1.0; /* 1 / (s + 1)! */
-  for (int s = 0; s <= rings; s++, over_factorial /= s + 1.0) {
+  for (int s = 0; s <= layers; s++, over_factorial /= s + 1.0) {
     double members = 0.0, part = over_factorial; /* C(s, j) / (s + j + 1)! */
     for (int j = 0; j <= s; j++) {
       members += part * pow(p->stiffness, j) * pow(p->damping, s - j);
       part *= (double)(s - j) / ((j + 1.0) * (s + j + 2.0));
     }
-    left += members * choose(rings, s) * pow(p->mass, rings - s);
+    left += members * choose(layers, s) * pow(p->mass, layers - s);
   }
   return left;
 }
 
-/* The part of that which a member passes on still farther out: what masses alone do there is not left out. Each ring
+/* The part of that which a member passes on still farther out: what masses alone do there is not left out. Each layer
    leaves a smaller part than the one before. */
-static double passed_beyond(const strut_local_passing *p, int rings) {
-  double left = left_behind(p, rings), part = left_behind(p, rings + 1) / left;
+static double passed_beyond(const strut_local_passing *p, int layers) {
+  double left = left_behind(p, layers), part = left_behind(p, layers + 1) / left;
   if (!(part < 1.0)) return 1.0;
   return (p->stiffness / 6.0 + p->damping / 2.0) * left / (1.0 - part);
 }
 
 int strut_local_reach(const strut_local_passing *passing, double h, double left) {
   strut_local_passing p = {passing->stiffness * h * h, passing->damping * h, passing->mass};
-  for (int rings = 1; rings <= FARTHEST; rings++) {
+  for (int layers = 1; layers <= FARTHEST; layers++) {
     bool within = p.mass == 0.0
-                      ? left_behind(&p, rings) <= left
-                      : passed_beyond(&p, rings) <= left && pow(p.mass, 2 * rings) <= left;
-    if (within) return rings;
+                      ? left_behind(&p, layers) <= left
+                      : passed_beyond(&p, layers) <= left && pow(p.mass, 2 * layers) <= left;
+    if (within) return layers;
   }
   return 0;
 }

@@ -15,12 +15,12 @@ static const unsigned POSSIBLE = STRUT_TERM_MEMBERS | STRUT_TERM_DAMPING | STRUT
 bool strut_local_region_possible(const strut_model *model) {
   const strut_feedback_table *f = &model->feedback;
   if (f->sampled_count || f->trigger_count || f->relay_count) return false;
-  return (model->plan & STRUT_TERM_MEMBERS) && !(model->plan & ~POSSIBLE) && model->mass &&
+  return (model->terms & STRUT_TERM_MEMBERS) && !(model->terms & ~POSSIBLE) && model->mass &&
          model->mass->shared;
 }
 
 bool strut_local_region_is_far(const strut_local_region *region, int32_t node) {
-  return region->ring[node] > STRUT_LOCAL_MARGIN + 1;
+  return region->layer[node] > STRUT_LOCAL_MARGIN + 1;
 }
 
 /* ---- who is next to whom ---- */
@@ -131,18 +131,18 @@ strut_status strut_local_region_create(const strut_model *model, const strut_loc
   size_t most = nodes > members ? nodes : members;
   bool coupled = !model->mass->diagonal;
   r->node = strut_arena_allocate(arena, nodes, sizeof *r->node);
-  r->rim = strut_arena_allocate(arena, nodes, sizeof *r->rim);
+  r->halo = strut_arena_allocate(arena, nodes, sizeof *r->halo);
   r->member = strut_arena_allocate(arena, members, sizeof *r->member);
   r->contact = strut_arena_allocate(arena, contacts, sizeof *r->contact);
   r->slot = strut_arena_allocate(arena, nodes, sizeof *r->slot);
-  r->ring = strut_arena_allocate(arena, nodes, sizeof *r->ring);
+  r->layer = strut_arena_allocate(arena, nodes, sizeof *r->layer);
   r->seen = strut_arena_allocate(arena, most > contacts ? most : contacts, sizeof *r->seen);
   r->queue = strut_arena_allocate(arena, nodes, sizeof *r->queue);
   r->stack = strut_arena_allocate(arena, nodes, sizeof *r->stack);
   r->pair = strut_arena_allocate(arena, 2 * nodes, sizeof *r->pair);
-  r->rim_a = strut_arena_allocate(arena, 2 * nodes, sizeof *r->rim_a);
-  if (!r->node || !r->rim || !r->member || !r->contact || !r->slot || !r->ring || !r->seen ||
-      !r->queue || !r->stack || !r->rim_a || !r->pair)
+  r->halo_a = strut_arena_allocate(arena, 2 * nodes, sizeof *r->halo_a);
+  if (!r->node || !r->halo || !r->member || !r->contact || !r->slot || !r->layer || !r->seen ||
+      !r->queue || !r->stack || !r->halo_a || !r->pair)
     return STRUT_NO_MEMORY;
   if (!coupled) return STRUT_OK;
   r->room = count_entries(model, map);
@@ -150,16 +150,16 @@ strut_status strut_local_region_create(const strut_model *model, const strut_loc
   r->first = strut_arena_allocate(arena, nodes, sizeof *r->first);
   r->lower = strut_arena_allocate(arena, r->room, sizeof *r->lower);
   r->inverse = strut_arena_allocate(arena, nodes, sizeof *r->inverse);
-  r->joint = strut_arena_allocate(arena, (size_t)map->mass_start[nodes], sizeof *r->joint);
-  return r->row && r->first && r->lower && r->inverse && r->joint ? STRUT_OK : STRUT_NO_MEMORY;
+  r->coupling = strut_arena_allocate(arena, (size_t)map->mass_start[nodes], sizeof *r->coupling);
+  return r->row && r->first && r->lower && r->inverse && r->coupling ? STRUT_OK : STRUT_NO_MEMORY;
 }
 
 /* ---- growth ---- */
 
 static void clear(strut_local_region *r) {
-  for (int32_t k = 0; k < r->node_count; k++) r->slot[r->node[k]] = r->ring[r->node[k]] = 0;
-  for (int32_t k = 0; k < r->rim_count; k++) r->slot[r->rim[k]] = 0;
-  r->node_count = r->rim_count = r->member_count = r->contact_count = r->joint_count = 0;
+  for (int32_t k = 0; k < r->node_count; k++) r->slot[r->node[k]] = r->layer[r->node[k]] = 0;
+  for (int32_t k = 0; k < r->halo_count; k++) r->slot[r->halo[k]] = 0;
+  r->node_count = r->halo_count = r->member_count = r->contact_count = r->coupling_count = 0;
 }
 
 /* Nodes that have come nearer wait in a circle. */
@@ -168,11 +168,12 @@ typedef struct queue {
 } queue;
 
 static void offer(const strut_model *model, const strut_local_region_map *map,
-                  strut_local_region *r, queue *q, int32_t node, int ring) {
-  if (ring > r->reach || !(map->diagonal[node] > 0.0)) return; /* supported nodes pass nothing on */
-  if (r->ring[node] && r->ring[node] <= ring + 1) return;
-  if (!r->ring[node]) r->stack[r->node_count++] = node;
-  r->ring[node] = (uint8_t)(ring + 1);
+                  strut_local_region *r, queue *q, int32_t node, int layer) {
+  if (layer > r->reach || !(map->diagonal[node] > 0.0))
+    return; /* supported nodes pass nothing on */
+  if (r->layer[node] && r->layer[node] <= layer + 1) return;
+  if (!r->layer[node]) r->stack[r->node_count++] = node;
+  r->layer[node] = (uint8_t)(layer + 1);
   if (r->seen[node]) return;
   r->seen[node] = 1;
   r->queue[(q->begin + q->count++) % model->node_count] = node;
@@ -186,8 +187,8 @@ static void reach(const strut_model *model, const strut_local_region_map *map, i
     int32_t i = r->queue[q.begin];
     q.begin = (q.begin + 1) % model->node_count, q.count--;
     r->seen[i] = 0;
-    if (seed[i] && !joined[i]) joined[i] = 1, r->ring[i] = 1;
-    int next = r->ring[i];
+    if (seed[i] && !joined[i]) joined[i] = 1, r->layer[i] = 1;
+    int next = r->layer[i];
     for (int32_t e = map->member_start[i]; e < map->member_start[i + 1]; e++)
       offer(model, map, r, &q, other_end(&model->members, map->member[e], i), next);
     for (int32_t e = map->mass_start[i]; e < map->mass_start[i + 1]; e++)
@@ -218,10 +219,10 @@ static void list_nodes(const strut_model *model, const strut_local_region_map *m
   }
 }
 
-static void offer_rim(strut_local_region *r, int32_t node) {
+static void offer_halo(strut_local_region *r, int32_t node) {
   if (r->slot[node]) return;
-  r->rim[r->rim_count++] = node;
-  r->slot[node] = -r->rim_count;
+  r->halo[r->halo_count++] = node;
+  r->slot[node] = -r->halo_count;
 }
 
 static void list_rest(const strut_model *model, const strut_local_region_map *map,
@@ -229,11 +230,11 @@ static void list_rest(const strut_model *model, const strut_local_region_map *ma
   for (int32_t k = 0; k < r->node_count; k++) {
     int32_t i = r->node[k];
     for (int32_t e = map->member_start[i]; e < map->member_start[i + 1]; e++) {
-      offer_rim(r, other_end(&model->members, map->member[e], i));
+      offer_halo(r, other_end(&model->members, map->member[e], i));
       r->seen[map->member[e]] = 1;
     }
     for (int32_t e = map->mass_start[i]; e < map->mass_start[i + 1]; e++)
-      offer_rim(r, map->mass_node[e]);
+      offer_halo(r, map->mass_node[e]);
   }
   r->member_count = collect(r->seen, model->members.count, r->member);
   for (int32_t k = 0; k < r->node_count; k++)
@@ -309,13 +310,13 @@ static bool factor_region(const strut_local_region_map *map, strut_local_region 
   return true;
 }
 
-/* The masses that join the region to its rim. */
-static void list_joints(const strut_local_region_map *map, strut_local_region *r) {
+/* The masses that join the region to its halo. */
+static void list_couplings(const strut_local_region_map *map, strut_local_region *r) {
   for (int32_t k = 0; k < r->node_count; k++)
     for (int32_t e = map->mass_start[r->node[k]]; e < map->mass_start[r->node[k] + 1]; e++) {
-      int32_t rim = -1 - r->slot[map->mass_node[e]];
-      if (rim < 0) continue;
-      r->joint[r->joint_count++] = (strut_local_joint){k, rim, map->mass_value[e]};
+      int32_t halo = -1 - r->slot[map->mass_node[e]];
+      if (halo < 0) continue;
+      r->coupling[r->coupling_count++] = (strut_local_coupling){k, halo, map->mass_value[e]};
     }
 }
 
@@ -327,7 +328,7 @@ bool strut_local_region_grow(const strut_model *model, const strut_local_region_
   list_nodes(model, map, region);
   list_rest(model, map, region);
   if (model->mass->diagonal) return true;
-  list_joints(map, region);
+  list_couplings(map, region);
   return factor_region(map, region);
 }
 
@@ -381,10 +382,11 @@ void strut_local_region_divide(const strut_model *model, const strut_local_regio
   }
   for (int32_t k = 0; k < r->node_count; k++)
     strut_pair_store(r->pair + 2 * k, strut_pair_load(force + 2 * r->node[k]));
-  for (int32_t n = 0; n < r->joint_count; n++) {
-    const strut_local_joint *j = &r->joint[n];
+  for (int32_t n = 0; n < r->coupling_count; n++) {
+    const strut_local_coupling *j = &r->coupling[n];
     double *own = r->pair + 2 * j->own;
-    strut_pair_store(own, strut_pair_load(own) - j->mass * strut_pair_load(r->rim_a + 2 * j->rim));
+    strut_pair_store(own,
+                     strut_pair_load(own) - j->mass * strut_pair_load(r->halo_a + 2 * j->halo));
   }
   strut_local_region_solve(model, r);
   for (int32_t k = 0; k < r->node_count; k++)
@@ -392,10 +394,10 @@ void strut_local_region_divide(const strut_model *model, const strut_local_regio
 }
 
 void strut_local_region_pass_on(const strut_local_region *r, const double *change, double *force) {
-  for (int32_t n = 0; n < r->joint_count; n++) {
-    const strut_local_joint *j = &r->joint[n];
-    double *rim = force + 2 * r->rim[j->rim];
+  for (int32_t n = 0; n < r->coupling_count; n++) {
+    const strut_local_coupling *j = &r->coupling[n];
+    double *halo = force + 2 * r->halo[j->halo];
     strut_pair own = strut_pair_load(change + 2 * j->own);
-    strut_pair_store(rim, strut_pair_load(rim) - j->mass * own);
+    strut_pair_store(halo, strut_pair_load(halo) - j->mass * own);
   }
 }

@@ -33,31 +33,31 @@ typedef struct strut_local_passing {
   double stiffness, damping, mass; /* [1/s^2], [1/s], [1] */
 } strut_local_passing;
 
-/** A mass between a node of a region and one of its rim. */
-typedef struct strut_local_joint {
-  int32_t own, rim; /* indices in `node` and `rim` */
+/** A mass between a node of a region and one of its halo. */
+typedef struct strut_local_coupling {
+  int32_t own, halo; /* indices in `node` and `halo` */
   double mass;
-} strut_local_joint;
+} strut_local_coupling;
 
 /** Arrays have space for the whole structure; counts are those of the present region. */
 typedef struct strut_local_region {
-  int32_t node_count, rim_count, member_count, contact_count;
+  int32_t node_count, halo_count, member_count, contact_count;
   int32_t *node;    /* by rank */
-  int32_t *rim;     /* nodes outside it that members or masses join to it; supported ones too */
+  int32_t *halo;    /* nodes outside it that members or masses join to it; supported ones too */
   int32_t *member;  /* with at least one end in it, ascending */
   int32_t *contact; /* of its nodes, ascending */
-  int32_t *slot;    /* (nodes) 1 + index in `node`; -1 - index in `rim`; 0 elsewhere */
-  uint8_t *ring;    /* (nodes) 1 + neighbours from what it was grown from; 0 elsewhere */
+  int32_t *slot;    /* (nodes) 1 + index in `node`; -1 - index in `halo`; 0 elsewhere */
+  uint8_t *layer;   /* (nodes) 1 + neighbours from what it was grown from; 0 elsewhere */
   /* M of its nodes = L D L', row by row from the first entry that is not 0; not where masses are not coupled */
   size_t *row, room; /* (node_count + 1) begins of rows; space for so many entries */
   int32_t *first;
   double *lower;
   double *inverse; /* (node_count) of D */
-  strut_local_joint *joint;
-  int32_t joint_count;
-  double *pair;  /* (node_count, 2) scratch */
-  double *rim_a; /* (rim_count, 2) accelerations of the rim, which its masses feel [m/s^2] */
-  uint8_t *seen; /* (nodes, members or contacts) marks, 0 between uses */
+  strut_local_coupling *coupling;
+  int32_t coupling_count;
+  double *pair;   /* (node_count, 2) scratch */
+  double *halo_a; /* (halo_count, 2) accelerations of the halo, which its masses feel [m/s^2] */
+  uint8_t *seen;  /* (nodes, members or contacts) marks, 0 between uses */
   int32_t *queue, *stack; /* (nodes) scratch of the growth */
   int reach;              /* neighbours up to which it grows */
 } strut_local_region;
@@ -85,12 +85,12 @@ strut_status strut_local_passing_find(const strut_model *model, const strut_loca
 int strut_local_reach(const strut_local_passing *passing, double h, double left);
 /** Is a node of it so far from where it was grown that what happens there reaches beyond the region? */
 bool strut_local_region_is_far(const strut_local_region *region, int32_t node);
-/** region->pair, forces on its nodes, become accelerations, with the rim at rest. */
+/** region->pair, forces on its nodes, become accelerations, with the halo at rest. */
 void strut_local_region_solve(const strut_model *model, const strut_local_region *region);
-/** a = M^-1 (force - M' rim_a) at the region's nodes; arrays are those of the whole structure. */
+/** a = M^-1 (force - M' halo_a) at the region's nodes; arrays are those of the whole structure. */
 void strut_local_region_divide(const strut_model *model, const strut_local_region *region,
                                const double *force, double *a);
-/** Adds to `force` (length) what a change (node_count, 2) of the motion of its nodes does to the rim by its masses. */
+/** Adds to `force` (length) what a change (node_count, 2) of the motion of its nodes does to the halo by its masses. */
 void strut_local_region_pass_on(const strut_local_region *region, const double *change,
                                 double *force);
 

@@ -25,7 +25,7 @@ static const double RESTING = 1e-9;
 static const double DEPENDENT = 1e-12;
 
 bool strut_mode_tangent_possible(const strut_model *model) {
-  return !(model->plan & ~(unsigned)KNOWN) && model->mass && !model->contacts.surface;
+  return !(model->terms & ~(unsigned)KNOWN) && model->mass && !model->contacts.surface;
 }
 
 static bool allocate(const strut_model *model, strut_arena *arena, strut_mode_tangent *t) {
@@ -61,7 +61,7 @@ strut_mode_tangent *strut_mode_tangent_create(const strut_model *model, strut_st
     return NULL;
   t->n = strut_number_free(model, NULL, t->row_of, t->coordinate);
   t->width = (2 * t->n + STRUT_LANES - 1) / STRUT_LANES * STRUT_LANES;
-  t->plain = !(model->plan & DIFFERENCED);
+  t->plain = !(model->terms & DIFFERENCED);
   if (!allocate(model, arena, t)) return NULL;
   invert_mass(model, state, t);
   return t;
@@ -169,9 +169,9 @@ STRUT_INLINE void add_member(const strut_model *model, const strut_state *state,
 static void difference_forces(const strut_model *model, strut_state *state,
                               const strut_event_stepper *l, double time, const double *q,
                               const double *v, strut_mode_tangent *t) {
-  bool ledger = state->ledger;
+  bool balance = state->balance;
   const double unit[2] = {DIFFERENCE * model->size, DIFFERENCE * model->size / l->wanted_step};
-  state->ledger = false;
+  state->balance = false;
   memcpy(t->place, q, (size_t)model->length * sizeof(double));
   memcpy(t->speed, v, (size_t)model->length * sizeof(double));
   for (int32_t j = 0; j < 2 * t->n; j++) {
@@ -185,7 +185,7 @@ static void difference_forces(const strut_model *model, strut_state *state,
     }
     *x = keep;
   }
-  state->ledger = ledger;
+  state->balance = balance;
 }
 
 /* ---- the ground ---- */
@@ -319,7 +319,7 @@ void strut_mode_tangent_evaluate(const strut_model *model, strut_state *state,
   if (!t->plain) difference_forces(model, state, l, time, q, v, t);
   if (!t->plain || asks_applied(l))
     forces_of_structure(model, state, time, q, v, STRUT_TERMS_ALL, false);
-  else if ((model->plan & STRUT_TERM_DRIVE) && time != state->drive_time)
+  else if ((model->terms & STRUT_TERM_DRIVE) && time != state->drive_time)
     strut_drive_apply(model, state, time);
   for (int32_t j = 0; j < model->members.count && t->plain; j++)
     add_member(model, state, j, q, v, t);

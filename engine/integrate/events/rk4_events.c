@@ -16,25 +16,25 @@ STRUT_INLINE void gain(const strut_state *state, strut_event_stepper *l, double 
 }
 
 STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                       double t, double h, unsigned terms, bool ledger) {
+                       double t, double h, unsigned terms, bool balance) {
   const double *ahead = STRUT_RK4_AHEAD, *weight = STRUT_RK4_WEIGHTS;
   double **w = l->stage;
   const double *const v[4] = {l->now->v, w[V], w[V + 1], w[V + 2]};
   double *const a[4] = {l->now->a, w[A], w[A + 1], w[A + 2]};
   int32_t n = model->length;
-  bool moves = model->plan & terms & STRUT_TERM_SUPPORT_MOTION;
-  for (int p = 0; p < STRUT_POWER_COUNT && ledger; p++) l->gained[p] = h / 6.0 * l->now->power[p];
+  bool moves = model->terms & terms & STRUT_TERM_SUPPORT_MOTION;
+  for (int p = 0; p < STRUT_POWER_COUNT && balance; p++) l->gained[p] = h / 6.0 * l->now->power[p];
   for (int k = 1; k < 4; k++) {
     rk4_next_stage(n, ahead[k] * h, l->now->q, l->now->v, v[k - 1], a[k - 1], w[Q], w[V + k - 1]);
     if (moves) strut_support_motion_place(model, state, t + ahead[k] * h, w[Q], w[V + k - 1]);
     accelerate_in_modes(model, state, l, t + ahead[k] * h, w[Q], v[k], a[k], l->next, terms,
-                        ledger);
-    if (ledger) gain(state, l, weight[k] * h / 6.0);
+                        balance);
+    if (balance) gain(state, l, weight[k] * h / 6.0);
   }
   rk4_end_of_step(n, h, l->now->q, v[0], v[1], v[2], v[3], l->next->q);
   rk4_end_of_step(n, h, l->now->v, a[0], a[1], a[2], a[3], l->next->v);
   if (moves) strut_support_motion_place(model, state, t + h, l->next->q, l->next->v);
-  evaluate_step_end(model, state, l, t + h, l->next, terms, ledger);
+  evaluate_step_end(model, state, l, t + h, l->next, terms, balance);
 }
 
 STRUT_EVENT_TRIAL(rk4_events, take)

@@ -91,9 +91,9 @@ STRUT_SMALL_INLINE double small_error(const strut_model *model, strut_event_step
 STRUT_SMALL_INLINE double small_adaptive_step(small_events *e, const strut_model *model,
                                               strut_state *state, double t, double h,
                                               const small_end_point *now, small_end_point *next,
-                                              small_work *gained, bool ledger) {
+                                              small_work *gained, bool balance) {
   strut_event_stepper *l = e->stepper;
-  int stride = e->run.plan & STRUT_TERM_DRIVE ? 1 : 0;
+  int stride = e->run.terms & STRUT_TERM_DRIVE ? 1 : 0;
   const small_rest *rest = small_rest_at(model, state, l->small, t, h, ahead + 1, PAIR - 2);
   small_points v[PAIR], a[PAIR], q, next_q;
   double broken = 0.0;
@@ -102,7 +102,7 @@ STRUT_SMALL_INLINE double small_adaptive_step(small_events *e, const strut_model
   q.y = small_ahead(now->q.y, h, small_scaled(table[1][0], v[0].y));
   small_shapes shapes = {0};
   small_measure_members(e->run.tables, &q, &shapes);
-  if (ledger) *gained = small_scaled_work(table[PAIR - 1][0] * h, &now->power);
+  if (balance) *gained = small_scaled_work(table[PAIR - 1][0] * h, &now->power);
   for (int k = 1; k < PAIR; k++) {
     bool last = k == PAIR - 1;
     const double *further = table[last ? 0 : k + 1]; /* positions are a stage ahead */
@@ -111,11 +111,11 @@ STRUT_SMALL_INLINE double small_adaptive_step(small_events *e, const strut_model
     if (!last) small_add_weighted(&sum.v, further[k], &v[k]);
     next_q.x = small_ahead(now->q.x, h, sum.v.x), next_q.y = small_ahead(now->q.y, h, sum.v.y);
     a[k] = small_accelerate_in_modes(e, rest + (k < 6 ? k - 1 : 4) * stride, &q, &shapes,
-                                     last ? NULL : &next_q, &v[k], ledger);
+                                     last ? NULL : &next_q, &v[k], balance);
     if (last) break;
     q = next_q;
     if (l->closed_count && broken == 0.0 && small_contradicts_at_stage(e)) broken = ahead[k];
-    if (ledger) small_add_work(gained, table[PAIR - 1][k] * h, &e->power);
+    if (balance) small_add_work(gained, table[PAIR - 1][k] * h, &e->power);
   }
   state->evaluations += PAIR - 1;
   *next = (small_end_point){q, v[6], a[6], e->power};

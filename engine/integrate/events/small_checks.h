@@ -57,7 +57,7 @@ STRUT_SMALL_INLINE small_mask small_gives_way(const small_events *e, int p, smal
 STRUT_SMALL_INLINE bool small_contradicts(const small_events *e) {
   const strut_small_contacts *c = &e->run.tables->contact;
   const strut_small_modes *m = e->modes;
-  bool laws = e->run.plan & STRUT_TERM_LAWS, any = false;
+  bool laws = e->run.terms & STRUT_TERM_LAWS, any = false;
   SMALL_EACH(p) {
     small_real slip = e->contacts.slip.part[p], applied = e->contacts.applied.part[p], zero = {0};
     small_real margin = small_margin_of_slip(SMALL_MODE(side), slip, SMALL_MODE(edge));
@@ -99,7 +99,7 @@ STRUT_SMALL_INLINE small_measures small_measure(const small_events *e, int p,
   const strut_contact_table *t = e->run.contacts;
   small_real gap = x->q.y.part[p] - t->height, into = x->v.y.part[p], along = x->v.x.part[p];
   small_real rate = x->a.x.part[p];
-  if (e->run.plan & STRUT_TERM_SLOPE) {
+  if (e->run.terms & STRUT_TERM_SLOPE) {
     small_real u = along, w = into;
     gap = x->q.x.part[p] * t->normal[0] + gap * t->normal[1];
     into = u * t->normal[0] + w * t->normal[1], along = u * t->tangent[0] + w * t->tangent[1];

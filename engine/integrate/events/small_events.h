@@ -43,7 +43,7 @@ STRUT_SMALL_INLINE small_events small_events_begin(const strut_model *model, str
                                 .contacts = &model->contacts,
                                 .inputs = &l->small->inputs,
                                 .driven = l->small->inputs.driven,
-                                .plan = small_plan_in_copy(model, terms)},
+                                .terms = small_terms_in_copy(model, terms)},
                         .modes = l->small,
                         .stepper = l};
 }
@@ -83,7 +83,7 @@ STRUT_SMALL_INLINE void small_add_ground(small_events *e, int p, const small_poi
   const strut_small_contacts *c = &e->run.tables->contact;
   const strut_contact_table *t = e->run.contacts;
   const strut_small_modes *m = e->modes;
-  bool laws = e->run.plan & STRUT_TERM_LAWS, sloped = e->run.plan & STRUT_TERM_SLOPE;
+  bool laws = e->run.terms & STRUT_TERM_LAWS, sloped = e->run.terms & STRUT_TERM_SLOPE;
   small_real x = q->x.part[p], gap = q->y.part[p] - t->height, along = v->x.part[p];
   small_real into = v->y.part[p], fx = e->force.x.part[p], fy = e->force.y.part[p], applied = fx;
   small_real nx = small_all(t->normal[0]), ny = small_all(t->normal[1]);
@@ -152,7 +152,7 @@ STRUT_SMALL_INLINE void small_add_ground_powers(small_events *e) {
     small_contact_powers powers =
         small_contact_power(damper, o->into.part[p], o->friction.part[p], o->slip.part[p],
                             small_all(e->run.contacts->belt_speed));
-    small_book_contacts(&e->run, SMALL_MODE_MASK(closed), powers, true, p, &touch);
+    small_accumulate_contacts(&e->run, SMALL_MODE_MASK(closed), powers, true, p, &touch);
   }
   small_add_contacts(&e->run, &touch, &e->power);
 }
@@ -160,14 +160,14 @@ STRUT_SMALL_INLINE void small_add_ground_powers(small_events *e) {
 /* Forces of all but the ground into e->structure and e->force. For shapes and `next_q` see small_accelerate. */
 STRUT_SMALL_INLINE void small_structure(small_events *e, const small_rest *rest,
                                         small_shapes *shapes, const small_points *next_q,
-                                        const small_points *v, bool ledger) {
+                                        const small_points *v, bool balance) {
   small_pulls px, py;
   small4_member_powers members = {0};
   small_run run = e->run;
-  if (ledger) SMALL_READS_AGAIN(run.tables);
-  small_members(&run, rest, shapes, next_q, v, ledger, &px, &py, &members);
+  if (balance) SMALL_READS_AGAIN(run.tables);
+  small_members(&run, rest, shapes, next_q, v, balance, &px, &py, &members);
   e->structure = e->force = small_sum_pulls(&run, &px, &py);
-  if (ledger) e->structure_power = e->power = small_sum_members(&members);
+  if (balance) e->structure_power = e->power = small_sum_members(&members);
 }
 
 /* See accelerate_in_modes. */
@@ -175,13 +175,13 @@ STRUT_SMALL_INLINE small_points small_accelerate_in_modes(small_events *e, const
                                                           const small_points *q,
                                                           small_shapes *shapes,
                                                           const small_points *next_q,
-                                                          const small_points *v, bool ledger) {
+                                                          const small_points *v, bool balance) {
   const strut_event_stepper *l = e->stepper;
-  small_structure(e, rest, shapes, next_q, v, ledger);
+  small_structure(e, rest, shapes, next_q, v, balance);
   if (l->closed_count) SMALL_EACH(p) small_add_ground(e, p, q, v);
   small_points a = small_divide_points(e->run.tables, &e->force);
   if (l->stuck_count) small_hold(e, &a);
-  if (ledger && l->closed_count) small_add_ground_powers(e);
+  if (balance && l->closed_count) small_add_ground_powers(e);
   return a;
 }
 
@@ -190,7 +190,7 @@ STRUT_SMALL_INLINE bool small_contradicts_at_stage(const small_events *e) {
   const strut_small_contacts *c = &e->run.tables->contact;
   const strut_small_modes *m = e->modes;
   const double more = 1.0 + STRUT_STAGE_ERROR, fewer = 1.0 - STRUT_STAGE_ERROR;
-  bool laws = e->run.plan & STRUT_TERM_LAWS, any = false;
+  bool laws = e->run.terms & STRUT_TERM_LAWS, any = false;
   if (!m->any_band && !m->any_held) return false;
   SMALL_EACH(p) {
     small_real zero = {0}, normal = e->contacts.normal.part[p], side = SMALL_MODE(side);
@@ -218,7 +218,7 @@ STRUT_SMALL_INLINE void small_keep_contacts(const small_events *e, const strut_m
   const small_contacts *o = &e->contacts;
   strut_small_row row[8];
   small_points along = *a;
-  if (e->run.plan & STRUT_TERM_SLOPE) SMALL_EACH(p) {
+  if (e->run.terms & STRUT_TERM_SLOPE) SMALL_EACH(p) {
       small_real x = a->x.part[p], y = a->y.part[p];
       along.x.part[p] = x * c->tangent[0] + y * c->tangent[1];
       along.y.part[p] = x * c->normal[0] + y * c->normal[1];
@@ -243,10 +243,10 @@ STRUT_SMALL_INLINE void small_keep_contacts(const small_events *e, const strut_m
 
 /* Rest lengths and forces as the general kernel leaves them in the state after the latest evaluation. */
 STRUT_SMALL_INLINE void small_leave(const small_events *e, const strut_model *model,
-                                    strut_state *state, bool ledger) {
+                                    strut_state *state, bool balance) {
   small_write(e->run.tables, &e->force, state->force);
-  if (ledger) small_work_store(state->power, e->power);
-  if (!(e->run.plan & STRUT_TERM_DRIVE)) return;
+  if (balance) small_work_store(state->power, e->power);
+  if (!(e->run.terms & STRUT_TERM_DRIVE)) return;
   state->drive_time = e->time;
   for (int32_t i = 0; i < model->drives.count; i++) {
     int32_t j = model->drives.member[i];
@@ -257,12 +257,12 @@ STRUT_SMALL_INLINE void small_leave(const small_events *e, const strut_model *mo
 /* The step's end, with all that belongs to it, as evaluate_step_end leaves it. */
 STRUT_SMALL_INLINE void small_keep_end(const small_events *e, const strut_model *model,
                                        const small_points *q, const small_points *v,
-                                       const small_points *a, strut_step_end *end, bool ledger) {
+                                       const small_points *a, strut_step_end *end, bool balance) {
   const strut_small_model *s = e->run.tables;
   small_write(s, q, end->q), small_write(s, v, end->v), small_write(s, a, end->a);
   small_write(s, &e->structure, end->structure);
   if (e->stepper->closed_count) small_keep_contacts(e, model, a, end);
-  if (!ledger) return;
+  if (!balance) return;
   small_work_store(end->structure_power, e->structure_power);
   small_work_store(end->power, e->power);
 }
@@ -290,7 +290,7 @@ STRUT_SMALL_INLINE const small_rest *small_rest_at(const strut_model *model,
                                                    double t, double h, const double *part,
                                                    int32_t count) {
   double time[SMALL_INSTANTS];
-  if (!(model->plan & STRUT_TERM_DRIVE)) return m->rest;
+  if (!(model->terms & STRUT_TERM_DRIVE)) return m->rest;
   for (int32_t i = 0; i < (count + 3) / 4 * 4; i++)
     time[i] = t + part[i < count ? i : count - 1] * h + state->time_offset;
   small_drive(model, time, count, m->rest);

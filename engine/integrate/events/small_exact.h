@@ -13,12 +13,12 @@
 STRUT_SMALL_INLINE double small_exact_step(small_events *e, const strut_model *model,
                                            strut_state *state, double t, double h, bool adaptive,
                                            const small_end_point *now, small_end_point *next,
-                                           small_work *gained, bool ledger) {
+                                           small_work *gained, bool balance) {
   double broken = 0.0;
   if (adaptive)
-    broken = small_adaptive_step(e, model, state, t, h, now, next, gained, ledger);
+    broken = small_adaptive_step(e, model, state, t, h, now, next, gained, balance);
   else
-    small_rk4_events_step(e, model, state, t, h, now, next, gained, ledger);
+    small_rk4_events_step(e, model, state, t, h, now, next, gained, balance);
   if (e->stepper->closed_count && !e->stepper->all_sliding) small_settle_ties(e);
   return broken;
 }
@@ -76,7 +76,7 @@ STRUT_SMALL_INLINE bool small_is_eventful(const small_events *e, const strut_mod
 /* Leaves the step that has been tried, or is asked for, in l->next. Returns what the trial does. */
 STRUT_SMALL_INLINE double small_exact(const strut_model *model, strut_state *state,
                                       strut_event_stepper *l, small_request r, unsigned terms,
-                                      bool adaptive, bool ledger) {
+                                      bool adaptive, bool balance) {
   small_events e = small_events_begin(model, l, terms);
   small_kept kept;
   small_end_point now = small_end_now(model, l), next;
@@ -86,49 +86,49 @@ STRUT_SMALL_INLINE double small_exact(const strut_model *model, strut_state *sta
   double broken = 0.0;
   while (!r.quiet || small_next_quiet(state, l, &r)) {
     if (r.quiet && adaptive && l->done == 0.0) start = (small_grid_start){now.q, now.v, work, true};
-    broken = small_exact_step(&e, model, state, r.t, r.h, adaptive, &now, &next, &gained, ledger);
+    broken = small_exact_step(&e, model, state, r.t, r.h, adaptive, &now, &next, &gained, balance);
     tried = !r.quiet || small_is_eventful(&e, model, r.h, adaptive, broken, &now, &next);
     if (tried) break;
     taken = true;
     kept = small_kept_of(&e);
     now = next;
-    if (ledger) small_add_powers(&work, &gained);
+    if (balance) small_add_powers(&work, &gained);
     if (adaptive) control_step(l, r.h, r.h < l->h);
     advance_within_grid(state, l, r.h, r.dt);
   }
   if (r.quiet) l->tried = tried;
   small_keep_start(&start, model, l);
   if (!taken && !tried) return 0.0;
-  if (ledger) small_work_store(l->gained, gained);
+  if (balance) small_work_store(l->gained, gained);
   if (taken) {
     small_events at_now = small_at_kept(&e, &kept);
-    small_keep_end(&at_now, model, &now.q, &now.v, &now.a, l->now, ledger);
-    if (ledger) small_work_store(state->work, work);
+    small_keep_end(&at_now, model, &now.q, &now.v, &now.a, l->now, balance);
+    if (balance) small_work_store(state->work, work);
     l->fresh = true;
   }
-  if (tried) small_keep_end(&e, model, &next.q, &next.v, &next.a, l->next, ledger);
-  small_leave(&e, model, state, ledger);
+  if (tried) small_keep_end(&e, model, &next.q, &next.v, &next.a, l->next, balance);
+  small_leave(&e, model, state, balance);
   return broken;
 }
 
 /* Defines the trial and the quiet steps of a method: copies for models with common terms only and for all, with
-   the ledger and without. */
-#define STRUT_SMALL_EXACT_COPY(name, copy, terms, adaptive, ledger)                                \
+   the energy balance and without. */
+#define STRUT_SMALL_EXACT_COPY(name, copy, terms, adaptive, balance)                               \
   STRUT_SMALL_TARGET                                                                               \
   static double name##_##copy(const strut_model *model, strut_state *state,                        \
                               strut_event_stepper *l, small_request r) {                           \
-    return small_exact(model, state, l, r, terms, adaptive, ledger);                               \
+    return small_exact(model, state, l, r, terms, adaptive, balance);                              \
   }
 
 #define STRUT_SMALL_EXACT(name, adaptive)                                                          \
-  STRUT_SMALL_EXACT_COPY(name, usual_with_ledger, STRUT_SMALL_USUAL, adaptive, true)               \
+  STRUT_SMALL_EXACT_COPY(name, usual_with_balance, STRUT_SMALL_USUAL, adaptive, true)              \
   STRUT_SMALL_EXACT_COPY(name, usual, STRUT_SMALL_USUAL, adaptive, false)                          \
-  STRUT_SMALL_EXACT_COPY(name, any, STRUT_TERMS_ALL, adaptive, state->ledger)                      \
+  STRUT_SMALL_EXACT_COPY(name, any, STRUT_TERMS_ALL, adaptive, state->balance)                     \
   static double name##_steps(const strut_model *model, strut_state *state, strut_event_stepper *l, \
                              small_request r) {                                                    \
     if (small_copy_of(model) < 2) return name##_any(model, state, l, r);                           \
-    return state->ledger ? name##_usual_with_ledger(model, state, l, r)                            \
-                         : name##_usual(model, state, l, r);                                       \
+    return state->balance ? name##_usual_with_balance(model, state, l, r)                          \
+                          : name##_usual(model, state, l, r);                                      \
   }                                                                                                \
                                                                                                    \
   double STRUT_SMALL_NAME(name)(const strut_model *model, strut_state *state,                      \

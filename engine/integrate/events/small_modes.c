@@ -69,7 +69,7 @@ static void list_answers(const strut_model *model, const strut_event_stepper *l,
   for (int32_t k = 0; k < r->count; k++)
     for (int c = 0; c < 2; c++) {
       uint32_t n = r->at[k] / 2;
-      m->answer[c].lane[n] = from, m->answer[c].lane_halves[n] = strut_small_halves(from);
+      m->answer[c].lane[n] = from, m->answer[c].batch_halves[n] = strut_small_halves(from);
       m->answer[c].inverse[n] = r->xy[2 * k + c];
       m->answer[c].has[n] = -1;
     }

@@ -13,10 +13,10 @@
 STRUT_SMALL_INLINE void small_rk4_events_step(small_events *e, const strut_model *model,
                                               strut_state *state, double t, double h,
                                               const small_end_point *now, small_end_point *next,
-                                              small_work *gained, bool ledger) {
+                                              small_work *gained, bool balance) {
   static const double instants[2] = {0.5, 1.0}, part[4] = {0.0, 0.5, 0.5, 1.0};
   static const double weight[4] = {1.0, 2.0, 2.0, 1.0};
-  int stride = e->run.plan & STRUT_TERM_DRIVE ? 1 : 0;
+  int stride = e->run.terms & STRUT_TERM_DRIVE ? 1 : 0;
   const small_rest *rest = small_rest_at(model, state, e->stepper->small, t, h, instants, 2);
   const double sixth = h / 6.0;
   small_points v[5], a[5], q, next_q;
@@ -24,7 +24,7 @@ STRUT_SMALL_INLINE void small_rk4_events_step(small_events *e, const strut_model
   q.x = small_ahead(now->q.x, 0.5 * h, v[0].x), q.y = small_ahead(now->q.y, 0.5 * h, v[0].y);
   small_shapes shapes = {0};
   small_measure_members(e->run.tables, &q, &shapes);
-  if (ledger) *gained = small_scaled_work(sixth, &now->power);
+  if (balance) *gained = small_scaled_work(sixth, &now->power);
 #pragma GCC unroll 4
   for (int k = 1; k <= 4; k++) {
     const double step = part[k % 4] * h, further = part[(k + 1) % 4] * h;
@@ -43,9 +43,9 @@ STRUT_SMALL_INLINE void small_rk4_events_step(small_events *e, const strut_model
       next_q.y = small_combine(now->q.y, sixth, v[0].y, small_add(v[1].y, v[2].y), v[3].y);
     }
     a[k] = small_accelerate_in_modes(e, rest + k / 3 * stride, &q, &shapes, k < 4 ? &next_q : NULL,
-                                     &v[k], ledger);
+                                     &v[k], balance);
     if (k < 4) q = next_q;
-    if (ledger && k < 4) small_add_work(gained, weight[k] * h / 6.0, &e->power);
+    if (balance && k < 4) small_add_work(gained, weight[k] * h / 6.0, &e->power);
   }
   *next = (small_end_point){q, v[4], a[4], e->power};
   state->evaluations += 4;

@@ -10,38 +10,38 @@
 #include "engine/integrate/small_verlet.h"
 
 /* Steps due if nothing happens: where they begin, how long they are, and when their ends are. */
-typedef struct small_plan {
+typedef struct small_steps {
   int32_t count;
   int64_t step[STRUT_SMALL_INSTANTS + 1];
   double done[STRUT_SMALL_INSTANTS + 1], h[STRUT_SMALL_INSTANTS], time[STRUT_SMALL_INSTANTS + 4];
-} small_plan;
+} small_steps;
 
-/* Fills the plan with at most `most` steps, up to grid point `end` and before the next break. */
-STRUT_SMALL_INLINE void small_plan_steps(strut_state *state, strut_event_stepper *l, double dt,
-                                         int64_t end, int32_t most, small_plan *plan) {
+/* Fills in at most `most` steps, up to grid point `end` and before the next break. */
+STRUT_SMALL_INLINE void small_steps_fill(strut_state *state, strut_event_stepper *l, double dt,
+                                         int64_t end, int32_t most, small_steps *steps) {
   int64_t step = state->step;
   double done = l->done;
   int32_t n = 0, switches = l->switches;
   while (n < most && state->step < end) {
     double t = (double)state->step * dt + l->done, h = next_step_size(state, l, dt);
     if (t + h + state->time_offset > l->next_break - STRUT_AT_BREAK * dt) break;
-    plan->step[n] = state->step, plan->done[n] = l->done, plan->h[n] = h;
-    plan->time[n] = evaluation_time(l, t, dt) + h;
+    steps->step[n] = state->step, steps->done[n] = l->done, steps->h[n] = h;
+    steps->time[n] = evaluation_time(l, t, dt) + h;
     advance_within_grid(state, l, h, dt);
     n++;
   }
-  plan->step[n] = state->step, plan->done[n] = l->done;
-  plan->count = n;
+  steps->step[n] = state->step, steps->done[n] = l->done;
+  steps->count = n;
   state->step = step, l->done = done, l->switches = switches;
 }
 
 /* Rest lengths at the ends of the planned steps, from row 1 on. */
-STRUT_SMALL_INLINE void small_drive_plan(const strut_model *model, const strut_state *state,
-                                         strut_small_modes *m, const small_plan *plan) {
+STRUT_SMALL_INLINE void small_drive_steps(const strut_model *model, const strut_state *state,
+                                          strut_small_modes *m, const small_steps *steps) {
   double time[SMALL_INSTANTS];
-  for (int32_t i = 0; i < (plan->count + 3) / 4 * 4; i++)
-    time[i] = plan->time[i < plan->count ? i : plan->count - 1] + state->time_offset;
-  small_drive(model, time, plan->count, m->rest + 1);
+  for (int32_t i = 0; i < (steps->count + 3) / 4 * 4; i++)
+    time[i] = steps->time[i < steps->count ? i : steps->count - 1] + state->time_offset;
+  small_drive(model, time, steps->count, m->rest + 1);
 }
 
 /*
@@ -54,7 +54,7 @@ STRUT_SMALL_INLINE void small_implicit_ground(small_events *e, double h, const s
   const strut_small_contacts *c = &e->run.tables->contact;
   const strut_contact_table *t = e->run.contacts;
   const strut_small_modes *m = e->modes;
-  bool laws = e->run.plan & STRUT_TERM_LAWS;
+  bool laws = e->run.terms & STRUT_TERM_LAWS;
   small_contacts *o = &e->contacts;
   small_row x, y;
   SMALL_EACH(p) {
@@ -114,35 +114,35 @@ STRUT_SMALL_INLINE bool small_cable_switches(const small_events *e, const small_
 /* The steps until something happens, in registers. */
 STRUT_SMALL_INLINE void small_verlet_events(const strut_model *model, strut_state *state,
                                             strut_event_stepper *l, double dt, int64_t end,
-                                            unsigned terms, bool ledger) {
+                                            unsigned terms, bool balance) {
   enum { FIRST = 4 };
   const strut_small_model *s = model->small;
   strut_small_modes *m = l->small;
   small_events e = small_events_begin(model, l, terms);
   small_kept kept;
-  small_plan plan;
+  small_steps steps;
   small_work gained = small_work_load(l->gained), work = small_work_load(state->work);
   small_work power = small_work_load(l->now->power);
   small_points q = small_read(s, state->q), v = small_read(s, state->v);
   small_points a = small_read(s, l->now->a), q1, v1, a1;
   int64_t begin = state->step;
   int32_t taken = 0, n = 0, most = FIRST;
-  int stride = e.run.plan & STRUT_TERM_DRIVE ? 1 : 0;
+  int stride = e.run.terms & STRUT_TERM_DRIVE ? 1 : 0;
   bool tried = false, crosses = false;
   double t = 0.0;
   do {
     if (n && stride) m->rest[0] = m->rest[n];
-    small_plan_steps(state, l, dt, end, most, &plan);
-    if (plan.count && stride) small_drive_plan(model, state, m, &plan);
-    for (n = 0; n < plan.count; n++) {
-      const double h = plan.h[n], half = 0.5 * h;
+    small_steps_fill(state, l, dt, end, most, &steps);
+    if (steps.count && stride) small_drive_steps(model, state, m, &steps);
+    for (n = 0; n < steps.count; n++) {
+      const double h = steps.h[n], half = 0.5 * h;
       q1.x = small_glide(q.x, h, v.x, a.x), q1.y = small_glide(q.y, h, v.y, a.y);
       crosses = small_crosses(&e, &q1);
       if (crosses) break;
       small_points speed = {small_ahead(v.x, h, a.x), small_ahead(v.y, h, a.y)};
       small_shapes shapes = {0};
       small_measure_members(s, &q1, &shapes);
-      small_structure(&e, m->rest + (n + 1) * stride, &shapes, NULL, &speed, ledger);
+      small_structure(&e, m->rest + (n + 1) * stride, &shapes, NULL, &speed, balance);
       a1 = small_divide_points(s, &e.force);
       if (l->closed_count) small_implicit_ground(&e, h, &q1, &v, &a, &speed, &a1);
       v1.x = small_mean(v.x, half, a.x, a1.x), v1.y = small_mean(v.y, half, a.y, a1.y);
@@ -150,7 +150,7 @@ STRUT_SMALL_INLINE void small_verlet_events(const strut_model *model, strut_stat
         e.contacts.into.part[p] = v1.y.part[p];
         e.contacts.slip.part[p] = v1.x.part[p] - small_belt(&e.run);
       }
-      if (ledger && l->closed_count) {
+      if (balance && l->closed_count) {
         small_work structure = e.power;
         e.power = (small_work){0};
         small_add_ground_powers(&e);
@@ -158,7 +158,7 @@ STRUT_SMALL_INLINE void small_verlet_events(const strut_model *model, strut_stat
         e.power = structure;
       }
       if (!l->all_sliding && l->closed_count) small_settle_ties(&e);
-      if (ledger) {
+      if (balance) {
         small_work sum = power;
         small_add_powers(&sum, &e.power);
         gained = small_scaled_work(half, &sum);
@@ -168,38 +168,38 @@ STRUT_SMALL_INLINE void small_verlet_events(const strut_model *model, strut_stat
       if (tried) break;
       kept = small_kept_of(&e);
       q = q1, v = v1, a = a1, power = e.power;
-      if (ledger) small_add_powers(&work, &gained);
-      t = plan.time[n];
+      if (balance) small_add_powers(&work, &gained);
+      t = steps.time[n];
     }
     taken += n;
-    state->step = plan.step[n], l->done = plan.done[n];
+    state->step = steps.step[n], l->done = steps.done[n];
     most = STRUT_SMALL_INSTANTS - 1;
-  } while (n && n == plan.count && state->step < end && !crosses && !tried);
+  } while (n && n == steps.count && state->step < end && !crosses && !tried);
   if (state->step > begin) l->switches = 0;
   l->tried = tried;
   if (!taken && !tried) return;
   state->evaluations += taken + tried;
-  if (ledger) small_work_store(l->gained, gained);
+  if (balance) small_work_store(l->gained, gained);
   if (taken) {
     small_events at_now = small_at_kept(&e, &kept);
-    small_keep_end(&at_now, model, &q, &v, &a, l->now, ledger);
-    if (ledger) small_work_store(state->work, work);
+    small_keep_end(&at_now, model, &q, &v, &a, l->now, balance);
+    if (balance) small_work_store(state->work, work);
     l->fresh = true;
     e.rest = m->rest + n * stride, e.time = t;
-    small_leave(&e, model, state, ledger);
+    small_leave(&e, model, state, balance);
     strut_event_measure(model, state, l, l->now);
   }
   if (!tried) return;
-  small_keep_end(&e, model, &q1, &v1, &a1, l->next, ledger);
-  e.rest = m->rest + (n + 1) * stride, e.time = plan.time[n];
-  small_leave(&e, model, state, ledger);
+  small_keep_end(&e, model, &q1, &v1, &a1, l->next, balance);
+  e.rest = m->rest + (n + 1) * stride, e.time = steps.time[n];
+  small_leave(&e, model, state, balance);
 }
 
-/* Copies for models with common terms only and for all, with the ledger and without. */
+/* Copies for models with common terms only and for all, with the energy balance and without. */
 #define STRUT_SMALL_QUIET(name, steps)                                                             \
   STRUT_SMALL_TARGET                                                                               \
-  static void name##_usual_with_ledger(const strut_model *model, strut_state *state,               \
-                                       strut_event_stepper *l, double dt, int64_t end) {           \
+  static void name##_usual_with_balance(const strut_model *model, strut_state *state,              \
+                                        strut_event_stepper *l, double dt, int64_t end) {          \
     steps(model, state, l, dt, end, STRUT_SMALL_USUAL, true);                                      \
   }                                                                                                \
   STRUT_SMALL_TARGET                                                                               \
@@ -210,15 +210,15 @@ STRUT_SMALL_INLINE void small_verlet_events(const strut_model *model, strut_stat
   STRUT_SMALL_TARGET                                                                               \
   static void name##_any(const strut_model *model, strut_state *state, strut_event_stepper *l,     \
                          double dt, int64_t end) {                                                 \
-    steps(model, state, l, dt, end, STRUT_TERMS_ALL, state->ledger);                               \
+    steps(model, state, l, dt, end, STRUT_TERMS_ALL, state->balance);                              \
   }                                                                                                \
                                                                                                    \
   double STRUT_SMALL_NAME(name)(const strut_model *model, strut_state *state,                      \
                                 strut_event_stepper *l, double dt, int64_t end) {                  \
     if (small_copy_of(model) < 2)                                                                  \
       name##_any(model, state, l, dt, end);                                                        \
-    else if (state->ledger)                                                                        \
-      name##_usual_with_ledger(model, state, l, dt, end);                                          \
+    else if (state->balance)                                                                       \
+      name##_usual_with_balance(model, state, l, dt, end);                                         \
     else                                                                                           \
       name##_usual(model, state, l, dt, end);                                                      \
     return 0.0;                                                                                    \

@@ -144,7 +144,7 @@ void strut_variation_step(const strut_model *model, strut_state *state,
   double *swap = x->columns;
   x->columns = x->middle, x->middle = swap;
   memset(x->delay, 0, (size_t)x->stride * sizeof(double));
-  if ((model->plan & STRUT_TERM_DRIVE) && state->drive_time != t + h)
+  if ((model->terms & STRUT_TERM_DRIVE) && state->drive_time != t + h)
     strut_drive_apply(model, state, t + h);
 }
 
@@ -241,7 +241,7 @@ static double differenced_gradient(const strut_model *model, strut_state *state,
     }
     x->gradient[j] = (value[1] - value[0]) / (2.0 * part);
   }
-  if ((model->plan & STRUT_TERM_DRIVE) && state->drive_time != t)
+  if ((model->terms & STRUT_TERM_DRIVE) && state->drive_time != t)
     strut_drive_apply(model, state, t);
   return rate;
 }

@@ -29,17 +29,17 @@ STRUT_INLINE void correct(int32_t n, double h, const double *restrict v, const d
 }
 
 STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                       double t, double h, unsigned terms, bool ledger) {
+                       double t, double h, unsigned terms, bool balance) {
   int32_t n = model->length;
   double *predicted = l->stage[PREDICTED], *a1 = l->next->a;
-  bool moves = model->plan & terms & STRUT_TERM_SUPPORT_MOTION;
-  bool sliding = model->plan & terms & STRUT_TERM_SLIDING_MASS;
+  bool moves = model->terms & terms & STRUT_TERM_SUPPORT_MOTION;
+  bool sliding = model->terms & terms & STRUT_TERM_SLIDING_MASS;
   if (moves) strut_support_motion_place(model, state, t + h, l->next->q, predicted);
   if (terms == STRUT_TERMS_COMMON && t == (double)state->step * h)
     drives_ahead_ends(model, state, &l->drives, h);
   if (terms == STRUT_TERMS_COMMON) drives_ahead_meet(model, state, &l->drives, t + h);
-  forces_of_structure(model, state, t + h, l->next->q, predicted, terms, ledger);
-  keep_structure_forces(model, state, l->next, ledger);
+  forces_of_structure(model, state, t + h, l->next->q, predicted, terms, balance);
+  keep_structure_forces(model, state, l->next, balance);
   keep_ground_motion(model, state, l->next, terms);
   if (!l->closed_count) {
     divide_by_mass(model, state, a1, terms);
@@ -61,12 +61,12 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
   correct(n, h, l->now->v, l->now->a, a1, l->next->v);
   if (moves) strut_support_motion_place(model, state, t + h, l->next->q, l->next->v);
   if (l->closed_count && l->contacts_decoupled)
-    implicit_ground_leave(model, state, l, ledger);
+    implicit_ground_leave(model, state, l, balance);
   else if (l->closed_count)
-    implicit_ground_finish(model, state, l, terms, ledger);
+    implicit_ground_finish(model, state, l, terms, balance);
   if (!l->all_sliding) settle_band_ties(model, l);
-  if (ledger && sliding) strut_sliding_masses_add_power(model, state, l->next->q, l->next->v, a1);
-  for (int p = 0; p < STRUT_POWER_ROOM && ledger; p += STRUT_LANES) {
+  if (balance && sliding) strut_sliding_masses_add_power(model, state, l->next->q, l->next->v, a1);
+  for (int p = 0; p < STRUT_POWER_ROOM && balance; p += STRUT_LANES) {
     strut_lanes power = strut_lanes_load(state->power + p);
     strut_lanes_store(l->next->power + p, power);
     strut_lanes_store(l->gained + p, 0.5 * h * (strut_lanes_load(l->now->power + p) + power));
@@ -114,37 +114,37 @@ STRUT_INLINE bool contradicts(const strut_model *model, const strut_state *state
 
 STRUT_INLINE void advance_predicted(const strut_model *model, strut_state *state,
                                     strut_event_stepper *l, double dt, int64_t end, unsigned terms,
-                                    bool ledger) {
+                                    bool balance) {
   while (state->step < end) {
     double t = (double)state->step * dt + l->done, h = next_step_size(state, l, dt);
     if (t + h + state->time_offset > l->next_break - STRUT_AT_BREAK * dt) return;
     t = evaluation_time(l, t, dt);
     predict(model, l, h);
     if (crosses(&model->contacts, l, l->next->q)) return;
-    take(model, state, l, t, h, terms, ledger);
+    take(model, state, l, t, h, terms, balance);
     l->tried = contradicts(model, state, l, h);
     if (l->tried) return;
-    accept_step(model, state, l, ledger);
+    accept_step(model, state, l, balance);
     advance_within_grid(state, l, h, dt);
   }
 }
 
 STRUT_CLONES
-static void verlet_advance_with_ledger(const strut_model *model, strut_state *state,
-                                       strut_event_stepper *l, double dt, int64_t end) {
+static void verlet_advance_with_balance(const strut_model *model, strut_state *state,
+                                        strut_event_stepper *l, double dt, int64_t end) {
   advance_predicted(model, state, l, dt, end, STRUT_TERMS_COMMON, true);
 }
 
 STRUT_CLONES
-static void verlet_advance_without_ledger(const strut_model *model, strut_state *state,
-                                          strut_event_stepper *l, double dt, int64_t end) {
+static void verlet_advance_without_balance(const strut_model *model, strut_state *state,
+                                           strut_event_stepper *l, double dt, int64_t end) {
   advance_predicted(model, state, l, dt, end, STRUT_TERMS_COMMON, false);
 }
 
 STRUT_CLONES
 static void verlet_advance_with_rare_terms(const strut_model *model, strut_state *state,
                                            strut_event_stepper *l, double dt, int64_t end) {
-  advance_predicted(model, state, l, dt, end, STRUT_TERMS_ALL, state->ledger);
+  advance_predicted(model, state, l, dt, end, STRUT_TERMS_ALL, state->balance);
 }
 
 static void verlet_advance_until_event(const strut_model *model, strut_state *state,
@@ -152,12 +152,12 @@ static void verlet_advance_until_event(const strut_model *model, strut_state *st
   strut_small_quiet *small = STRUT_SMALL_EVENTS(model, state, l, strut_small_verlet_events);
   if (small && l->small->decoupled)
     small(model, state, l, dt, end);
-  else if (model->plan & STRUT_TERMS_RARE)
+  else if (model->terms & STRUT_TERMS_RARE)
     verlet_advance_with_rare_terms(model, state, l, dt, end);
-  else if (state->ledger)
-    verlet_advance_with_ledger(model, state, l, dt, end);
+  else if (state->balance)
+    verlet_advance_with_balance(model, state, l, dt, end);
   else
-    verlet_advance_without_ledger(model, state, l, dt, end);
+    verlet_advance_without_balance(model, state, l, dt, end);
 }
 
 static const strut_step_formula stepper = {.trial = verlet_events_trial,

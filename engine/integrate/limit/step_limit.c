@@ -205,7 +205,7 @@ static strut_status limits(const strut_model *model, const double *q, const doub
   strut_status status = strut_tangent_assemble(model, q, rest, closed, arena, &tangent);
   if (!status && tangent.n == 0) keep_to_relaxation(model, limit);
   if (status || tangent.n == 0) return status;
-  if ((model->plan & STRUT_TERM_RIGID) && !(tangent.rigid = strut_rigid_standing(model, q, arena)))
+  if ((model->terms & STRUT_TERM_RIGID) && !(tangent.rigid = strut_rigid_standing(model, q, arena)))
     return STRUT_NO_MEMORY;
   bool all = tangent.n <= STRUT_EXACT_LIMIT, room = true;
   if (tangent.rigid || tangent.n <= TOO_LARGE) {
@@ -329,7 +329,7 @@ static void digest_model(const strut_model *m, uint64_t key[2]) {
   const size_t slots = (size_t)t->slots * sizeof(double), both = (size_t)m->length * sizeof(double);
   key[0] = 14695981039346656037u, key[1] = 1;
   const double counts[] = {
-      m->plan, m->length, t->slots, t->count, c->count, m->scene->mass_model, m->scene->bar_model};
+      m->terms, m->length, t->slots, t->count, c->count, m->scene->mass_model, m->scene->bar_model};
   digest(key, counts, sizeof counts);
   for (int32_t j = 0; j < t->count; j++) {
     digest_number(key, t->from[j]);

@@ -53,7 +53,7 @@ static void add_unwritten_laws(strut_unsupported *r, strut_law_set has) {
 strut_status strut_code_check(const strut_model *model, strut_error *error) {
   const strut_scene *s = model->scene;
   strut_unsupported r = {.used = 0};
-  strut_unsupported_add(&r, (model->plan & STRUT_TERM_RIGID) != 0,
+  strut_unsupported_add(&r, (model->terms & STRUT_TERM_RIGID) != 0,
                         "bars: rigid (their forces follow from equations "
                         "that each step would solve; use bars: elastic)");
   strut_unsupported_add(&r, count_rubbing(s), "friction at guides");

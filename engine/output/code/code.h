@@ -3,7 +3,7 @@
  * A scene as C99 that steps itself: PREFIX.h, PREFIX.c, and an example with a main.
  *
  * No allocation and no library but libm. With doubles a step has the bits of the methods rk4 and verlet: sums
- * are in the scene's order. The formulas stand in templates (source.c.in), of which a scene gets what its plan
+ * are in the scene's order. The formulas stand in templates (source.c.in), of which a scene gets what its terms
  * names; its numbers are tables with the names as comments.
  */
 #ifndef STRUT_ENGINE_OUTPUT_CODE_CODE_H

@@ -79,7 +79,7 @@ static int32_t shake_of(const strut_code_writer *w, int32_t ground, int axis) {
 
 static bool has_shaken(const strut_code_writer *w) { return strut_code_shake_count(w->model) > 0; }
 static bool has_surfaces(const strut_code_writer *w) {
-  return w->model->plan & STRUT_TERM_SURFACES;
+  return w->model->terms & STRUT_TERM_SURFACES;
 }
 
 /* ---- contacts ---- */

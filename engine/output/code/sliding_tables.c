@@ -18,7 +18,7 @@ const char *strut_code_slider_name(const strut_code_writer *w, int32_t k) {
 }
 
 bool strut_code_has_sliding(const strut_code_writer *w) {
-  return w->model->plan & STRUT_TERM_SLIDING_MASS;
+  return w->model->terms & STRUT_TERM_SLIDING_MASS;
 }
 static bool has_corners(const strut_code_writer *w) {
   return strut_code_has_sliding(w) && w->model->sliding.corners;

@@ -10,7 +10,7 @@
 
 /* ---- conditions ---- */
 
-static bool in_plan(const strut_code_writer *w, unsigned term) { return w->model->plan & term; }
+static bool is_active(const strut_code_writer *w, unsigned term) { return w->model->terms & term; }
 
 static bool has_float(const strut_code_writer *w) { return w->options->single; }
 static bool has_inputs(const strut_code_writer *w) { return strut_code_input_count(w->model) > 0; }
@@ -20,17 +20,19 @@ static bool has_signals(const strut_code_writer *w) {
 static bool has_drive(const strut_code_writer *w) { return w->model->drives.count > 0; }
 static bool has_loads(const strut_code_writer *w) { return w->model->loads.count > 0; }
 static bool has_members(const strut_code_writer *w) { return w->scene->member_count > 0; }
-static bool has_damping(const strut_code_writer *w) { return in_plan(w, STRUT_TERM_DAMPING); }
-static bool has_slack(const strut_code_writer *w) { return in_plan(w, STRUT_TERM_SLACK); }
-static bool has_constant(const strut_code_writer *w) { return in_plan(w, STRUT_TERM_CONSTANT); }
+static bool has_damping(const strut_code_writer *w) { return is_active(w, STRUT_TERM_DAMPING); }
+static bool has_slack(const strut_code_writer *w) { return is_active(w, STRUT_TERM_SLACK); }
+static bool has_constant(const strut_code_writer *w) { return is_active(w, STRUT_TERM_CONSTANT); }
 static bool has_contact(const strut_code_writer *w) {
-  return in_plan(w, STRUT_TERM_CONTACT | STRUT_TERM_SURFACES);
+  return is_active(w, STRUT_TERM_CONTACT | STRUT_TERM_SURFACES);
 }
-static bool has_slope(const strut_code_writer *w) { return in_plan(w, STRUT_TERM_SLOPE); }
+static bool has_slope(const strut_code_writer *w) { return is_active(w, STRUT_TERM_SLOPE); }
 static bool has_friction(const strut_code_writer *w) {
-  return has_contact(w) && in_plan(w, STRUT_TERM_FRICTION);
+  return has_contact(w) && is_active(w, STRUT_TERM_FRICTION);
 }
-static bool has_directional(const strut_code_writer *w) { return in_plan(w, STRUT_TERM_DIRECTION); }
+static bool has_directional(const strut_code_writer *w) {
+  return is_active(w, STRUT_TERM_DIRECTION);
+}
 static bool has_elements(const strut_code_writer *w) { return w->model->elements.count > 0; }
 static bool has_actuator_forces(const strut_code_writer *w) {
   return w->model->actuator_forces.count > 0;
@@ -43,7 +45,7 @@ static bool has_expressions(const strut_code_writer *w) {
   return strut_code_has_internal_states(w) || strut_code_has_relays(w) ||
          strut_code_has_signal(w, STRUT_EXPRESSION);
 }
-static bool has_memory(const strut_code_writer *w) { return in_plan(w, STRUT_TERM_MEMORY); }
+static bool has_memory(const strut_code_writer *w) { return is_active(w, STRUT_TERM_MEMORY); }
 static bool has_laws(const strut_code_writer *w) {
   return has_members(w) || has_contact(w) || has_strains(w) || strut_code_has_sliding(w);
 }
@@ -58,7 +60,7 @@ static bool has_gravity(const strut_code_writer *w) {
   return w->scene->gravity[0] != 0.0 || w->scene->gravity[1] != 0.0;
 }
 static bool has_mass_damping(const strut_code_writer *w) {
-  return in_plan(w, STRUT_TERM_MASS_DAMPING);
+  return is_active(w, STRUT_TERM_MASS_DAMPING);
 }
 static bool has_consistent(const strut_code_writer *w) {
   return w->scene->mass_model == STRUT_MASS_CONSISTENT;

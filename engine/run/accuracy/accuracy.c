@@ -62,7 +62,7 @@ static strut_status choose_coarse_method(strut_accuracy *a) {
   double unit = span.period > 0.0 ? span.period : span.duration;
   strut_status status = STRUT_OK;
   if (!model->mass) return strut_fail(a->error, STRUT_SINGULAR, "a free node has no mass");
-  a->single_method = model->plan & STRUT_TERM_RIGID; /* supported by one method only */
+  a->single_method = model->terms & STRUT_TERM_RIGID; /* supported by one method only */
   if (a->single_method) status = refuse_exact_friction(a);
   if (status) return status;
   strut_experiment *e = &a->coarse;
@@ -122,7 +122,7 @@ strut_status strut_simulate_accurately(const strut_model *model, const strut_exp
   bool velocity =
       experiment->quantity_count == 0; /* the only quantity that these two strategies check */
   /* states that they know nothing of */
-  if (model->plan & STRUT_TERM_MEMORY) velocity = false;
+  if (model->terms & STRUT_TERM_MEMORY) velocity = false;
   if (strut_feedback_remembers(&model->feedback)) velocity = false;
   if (!status && velocity) status = strut_accuracy_try_midpoint(&a, &done);
   if (!status && !done && velocity && experiment->periods > 0.0 && !a.single_method)

@@ -479,7 +479,7 @@ static strut_status check_window(strut_orbit_solve *solve) {
     return STRUT_OK;
   strut_experiment whole = a->coarse;
   strut_summary run = {0};
-  strut_run_options options = {.without_ledger = true,
+  strut_run_options options = {.without_balance = true,
                                .interrupt = a->options->interrupt,
                                .progress = a->options->progress,
                                .progress_context = a->options->progress_context,

@@ -48,7 +48,7 @@ strut_status strut_orbit_solve_run_until_steady(strut_orbit_solve *solve, strut_
   e.measure_last = fmin(e.measure_last, e.periods);
   e.output_last = 0.0;
   /* the energy of the first run tells whether its step is too large: what it leads to would look periodic, too */
-  strut_run_options options = {.without_ledger = from_end && a->options->without_ledger,
+  strut_run_options options = {.without_balance = from_end && a->options->without_balance,
                                .interrupt = a->options->interrupt,
                                .progress = a->options->progress,
                                .progress_context = a->options->progress_context,

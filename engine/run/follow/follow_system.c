@@ -48,13 +48,13 @@ static strut_status check_scene(const strut_follow_system *s, strut_error *error
                       "that of the drive's period");
   if (!m->mass) return strut_fail(error, STRUT_SINGULAR, "a free node has no mass");
   if (!method) return strut_fail(error, STRUT_USAGE, "no method is called '%s'", s->method);
-  if (!method->events && (m->contacts.count || (m->plan & STRUT_TERM_SLACK)))
+  if (!method->events && (m->contacts.count || (m->terms & STRUT_TERM_SLACK)))
     return strut_fail(error, STRUT_USAGE,
                       "'%s' locates no events, without which the period map of contacts and cables "
                       "has no derivative; use adaptive, rk4-events or verlet-events",
                       s->method);
-  if ((m->plan & STRUT_TERM_MEMORY) || strut_feedback_remembers(&m->feedback) ||
-      (m->plan & STRUT_TERM_SLIDING_MASS))
+  if ((m->terms & STRUT_TERM_MEMORY) || strut_feedback_remembers(&m->feedback) ||
+      (m->terms & STRUT_TERM_SLIDING_MASS))
     return strut_fail(
         error, STRUT_USAGE,
         "positions and velocities are not the whole state here: what breaks, yields or "
@@ -269,7 +269,7 @@ static double amplitude_of(const strut_follow_system *s) {
 strut_follow_period strut_follow_apply(strut_follow_system *s, double *y, bool works) {
   strut_period_map *map = &s->map[0];
   strut_follow_period p = {0};
-  map->state->ledger = works;
+  map->state->balance = works;
   map->state->event_log = works ? s->log : NULL;
   map->watch = works ? watch_range : NULL;
   map->watch_context = s;
@@ -279,7 +279,7 @@ strut_follow_period strut_follow_apply(strut_follow_system *s, double *y, bool w
   p.travel = strut_period_map_apply(map, y);
   p.amplitude = works ? amplitude_of(s) : 0.0;
   map->watch = NULL;
-  map->state->ledger = false;
+  map->state->balance = false;
   map->state->event_log = NULL;
   const double *w = map->state->work;
   p.work = works ? w[STRUT_POWER_DRIVE] + w[STRUT_POWER_LOAD] + w[STRUT_POWER_BELT] : 0.0;

@@ -63,7 +63,7 @@ static bool is_of_hinge(strut_column_kind kind) {
 }
 
 static void note_needs(strut_columns *c, strut_column_kind kind) {
-  bool rigid = c->model->plan & STRUT_TERM_RIGID;
+  bool rigid = c->model->terms & STRUT_TERM_RIGID;
   bool force = kind == STRUT_COLUMN_FORCE || kind == STRUT_COLUMN_LARGEST_FORCE;
   if (rows[kind].owner == STRUT_COLUMN_OF_CONTACT || (force && rigid)) c->forces = true;
   if (rows[kind].owner == STRUT_COLUMN_OF_ENERGY) c->energies = true;
@@ -108,7 +108,7 @@ static double evaluate_centre(const strut_columns *c, const strut_state *state,
   int axis = kind == STRUT_COLUMN_CENTRE_Y || kind == STRUT_COLUMN_CENTRE_VY;
   bool rate = kind == STRUT_COLUMN_CENTRE_VX || kind == STRUT_COLUMN_CENTRE_VY;
   double mean = mean_by_mass(c->model, (rate ? state->v : state->q) + axis, size);
-  if (!(c->model->plan & STRUT_TERM_SLIDING_MASS)) return mean;
+  if (!(c->model->terms & STRUT_TERM_SLIDING_MASS)) return mean;
   double more = rate ? strut_sliding_masses_momentum(c->model, state, axis, state->q, state->v)
                      : strut_sliding_masses_moment(c->model, state, axis, state->q);
   double mass = 0.0;

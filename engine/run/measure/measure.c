@@ -61,7 +61,7 @@ void strut_balance_begin(const strut_state *state, const strut_energies *begin, 
   int64_t every = EVALUATIONS_PER_SAMPLE / evaluations;
   *monitor =
       (strut_balance_monitor){.every = every > 0 ? every : 1, .swing = begin->kinetic, .time = t};
-  monitor->next = state->ledger ? state->step + monitor->every : INT64_MAX;
+  monitor->next = state->balance ? state->step + monitor->every : INT64_MAX;
 }
 
 static double lost_in(const strut_energy *e, strut_loss loss) {
@@ -181,7 +181,7 @@ void strut_measure_tracked_point(const strut_model *model, const strut_state *st
     sum += model->weight[i] * state->q[2 * i];
     rate += model->weight[i] * state->v[2 * i];
   }
-  if (model->plan & STRUT_TERM_SLIDING_MASS) {
+  if (model->terms & STRUT_TERM_SLIDING_MASS) {
     sum += strut_sliding_masses_moment(model, state, 0, state->q);
     rate += strut_sliding_masses_momentum(model, state, 0, state->q, state->v);
   }
@@ -258,7 +258,7 @@ void strut_measure_begin(const strut_model *model, strut_state *state, strut_mea
   if (m->quantities) strut_quantities_begin(m->quantities, &marks, state);
   strut_measure_tracked_point(model, state, m, &m->last_x, &m->last_v);
   m->last_work = state->work[STRUT_POWER_DRIVE];
-  m->ledger = state->ledger;
+  m->balance = state->balance;
   double position = m->time[0] / m->grid.step - (double)state->step;
   if (fabs(position) < MARK_TOLERANCE) {
     m->x[0] = m->last_x;
@@ -357,7 +357,7 @@ void strut_measure_finish(const strut_measurement *m, strut_summary *summary) {
   summary->weight = m->weight;
   if (passed >= 2) {
     summary->window_time = m->time[passed - 1] - m->time[0];
-    if (m->ledger) summary->window_work = m->work[passed - 1] - m->work[0];
+    if (m->balance) summary->window_work = m->work[passed - 1] - m->work[0];
     summary->velocity = (m->x[passed - 1] - m->x[0]) / (m->time[passed - 1] - m->time[0]);
     double sum = 0.0, count = (double)(passed - 1);
     for (size_t i = 1; i < passed; i++) {

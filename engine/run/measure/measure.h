@@ -97,7 +97,7 @@ typedef struct strut_measurement {
   double *work;     /* (marks) work of the drives there [J] */
   double last_work; /* and after the latest step [J] */
   double weight;    /* of the structure [N] */
-  bool ledger;      /* works are known */
+  bool balance;     /* works are known */
 } strut_measurement;
 
 /**

@@ -82,9 +82,9 @@ double strut_dense_place(strut_dense *d, strut_state *state, strut_motion_piece 
   if (!piece->a[0]) accelerate_ends(d, state, piece);
   state->q = d->q, state->v = d->v;
   interpolate(d, piece, s);
-  if (d->model->plan & STRUT_TERM_SUPPORT_MOTION)
+  if (d->model->terms & STRUT_TERM_SUPPORT_MOTION)
     strut_support_motion_place(d->model, state, t, d->q, d->v);
-  for (int p = 0; p < STRUT_POWER_COUNT && state->ledger; p++)
+  for (int p = 0; p < STRUT_POWER_COUNT && state->balance; p++)
     state->work[p] = strut_hermite(piece->work[0][p], piece->power[0][p], piece->work[1][p],
                                    piece->power[1][p], piece->length, s);
   state->drive_time = (double)NAN;
@@ -101,7 +101,7 @@ void strut_dense_return(strut_dense *d, strut_state *state, const strut_motion_p
   memcpy(state->work, d->end_work, sizeof d->end_work);
   state->drive_time = (double)NAN;
   strut_drive_apply(model, state, t);
-  if (model->plan & (STRUT_TERMS_RARE | STRUT_TERM_ELEMENTS | STRUT_TERM_RIGID))
+  if (model->terms & (STRUT_TERMS_RARE | STRUT_TERM_ELEMENTS | STRUT_TERM_RIGID))
     strut_forces_observe(model, state, t);
 }
 

@@ -197,7 +197,7 @@ bool strut_step_limit_monitor_create(const strut_model *model, strut_state *stat
   *monitor =
       (strut_step_limit_monitor){.method = method, .step = step, .next = INT64_MAX, .noise = 1};
   assert(region->sets <= (int)(sizeof monitor->set / sizeof monitor->set[0]));
-  if (region->sets == 0 || (model->plan & STRUT_TERM_RIGID)) return true;
+  if (region->sets == 0 || (model->terms & STRUT_TERM_RIGID)) return true;
   monitor->known_limit = HUGE_VAL;
   monitor->count = region->sets;
   for (int i = 0; i < region->sets; i++)
@@ -373,7 +373,7 @@ void strut_stick_band_sample(const strut_model *model, const strut_state *state,
   band->last = state->step;
   bool with_acceleration = band->samples++ % ACCELERATION_INTERVAL == 0 && state->evaluations > 0;
   if (with_acceleration) strut_mass_solve(model, state->force, band->a, band->scratch);
-  if (with_acceleration && model->plan & STRUT_TERM_SLIDING_MASS)
+  if (with_acceleration && model->terms & STRUT_TERM_SLIDING_MASS)
     strut_sliding_masses_correct(model, state, band->a);
   int32_t count = c->surface ? strut_contacts_all_near(c, state->q, NULL, state->near) : c->count;
   for (int32_t k = 0; k < count; k++) {

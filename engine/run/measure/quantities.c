@@ -251,12 +251,12 @@ strut_quantities *strut_quantities_create(const strut_model *model, const strut_
   return ready ? q : NULL;
 }
 
-bool strut_quantities_need_ledger(const strut_experiment *e) {
+bool strut_quantities_need_balance(const strut_experiment *e) {
   for (size_t i = 0; i < e->quantity_count; i++)
     for (size_t k = 0; k < e->quantities[i].length; k++) {
       const strut_instruction *p = &e->quantities[i].program[k];
-      bool ledger = p->column.kind >= STRUT_COLUMN_DRIVES && p->column.kind <= STRUT_COLUMN_LOST;
-      if (p->operation == STRUT_OPERATION_COLUMN && ledger) return true;
+      bool balance = p->column.kind >= STRUT_COLUMN_DRIVES && p->column.kind <= STRUT_COLUMN_LOST;
+      if (p->operation == STRUT_OPERATION_COLUMN && balance) return true;
     }
   return false;
 }

@@ -91,7 +91,7 @@ typedef struct strut_marks {
 strut_quantities *strut_quantities_create(const strut_model *model,
                                           const strut_experiment *experiment, strut_arena *arena);
 /** Does a quantity of the scene need works or losses, which only the energy balance has? */
-bool strut_quantities_need_ledger(const strut_experiment *experiment);
+bool strut_quantities_need_balance(const strut_experiment *experiment);
 /** Does a quantity depend on the motion between steps? */
 bool strut_quantities_need_pieces(const strut_quantities *quantities);
 /** The method shows its pieces: from the next window on they are measured instead of the steps of the grid. */

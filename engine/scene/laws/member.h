@@ -31,17 +31,17 @@ LAW_INLINE real LAW(member_stretch_rate)(const LAW(member_values) * m, bool driv
 
 /**
  * Tensions [N], of cables never below 0. damper: what they have beyond their elastic part where members act
- * [N]; with `ledger`, where cables go slack while they are stretched, what they lack of it.
+ * [N]; with `balance`, where cables go slack while they are stretched, what they lack of it.
  */
 LAW_INLINE real LAW(member_tension)(const LAW(member_values) * m, bool damped, bool slack,
-                                    bool driven, bool ledger, real *damper) {
+                                    bool driven, bool balance, real *damper) {
   real stretch = m->length - m->rest, elastic = m->stiffness * stretch, tension = elastic;
   *damper = m->damping * LAW(member_stretch_rate)(m, driven);
   if (damped) tension = elastic + *damper;
   if (!slack) return tension;
   mask taut = LAW(member_is_taut)(stretch, m->slack_length_threshold);
   mask pulls = both(taut, less(m->slack_force_threshold, tension));
-  if (ledger) *damper = choose(pulls, *damper, keep(taut, -elastic));
+  if (balance) *damper = choose(pulls, *damper, keep(taut, -elastic));
   return keep(pulls, tension);
 }
 

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/run/plan.h"
+#include "engine/run/cost_estimate.h"
 #include "engine/study/compare/compare_parts.h"
 
 /* ---- structure and drive ---- */
@@ -184,9 +184,9 @@ static strut_status find_rest(strut_compare_work *work, const strut_model *model
 }
 
 static strut_status find_limit(strut_compare_work *work, const strut_model *model) {
-  strut_plan plan;
+  strut_cost_estimate plan;
   strut_error error = {0};
-  strut_status status = strut_plan_describe(model, &plan, &error);
+  strut_status status = strut_cost_estimate_describe(model, &plan, &error);
   if (status != STRUT_OK)
     return strut_compare_leave_failed(work, STRUT_COMPARE_STEP_LIMIT, STRUT_COMPARE_STEP_LIMIT,
                                       &error, status, false);

@@ -158,7 +158,7 @@ strut_status strut_compare_motion(strut_compare_work *work, const strut_model *m
   strut_snapshot end = {
       .q = strut_arena_allocate(work->arena, (size_t)model->length, sizeof *end.q),
       .v = strut_arena_allocate(work->arena, (size_t)model->length, sizeof *end.v),
-      .memory = strut_arena_allocate(work->arena, strut_memory_count(model), sizeof *end.memory)};
+      .memory = strut_arena_allocate(work->arena, strut_history_count(model), sizeof *end.memory)};
   if (!end.q || !end.v || !end.memory) return STRUT_NO_MEMORY;
   e->accuracy = work->options->accuracy;
   e->steady.wanted = e->periods > 0.0;

@@ -319,7 +319,8 @@ static void do_point(conductor *c, int64_t point, int threads) {
 }
 
 static void run_points(conductor *c, int threads) {
-  int64_t count = strut_slots_plan_of(c->slots)->count, missing = strut_slots_missing(c->slots);
+  int64_t count = strut_slots_description_of(c->slots)->count,
+          missing = strut_slots_missing(c->slots);
   int side = missing < threads ? (int)missing : threads;
   int inner = side > 1 ? 1 : threads; /* points go side by side, else the columns of derivatives */
   if (side < 1) return;
@@ -340,7 +341,7 @@ strut_status strut_follow_points_run(const strut_sweep_plan *plan, strut_slots *
                                      const strut_follow_points_options *options,
                                      strut_sweep_state *state, strut_error *error) {
   strut_error own = {0};
-  int64_t count = strut_slots_plan_of(slots)->count;
+  int64_t count = strut_slots_description_of(slots)->count;
   *state = (strut_sweep_state){.points = count,
                                .done = count - strut_slots_missing(slots),
                                .failed = strut_slots_failed(slots),

@@ -74,7 +74,7 @@ static strut_status run_start(follower *f, const strut_setup *setup, const strut
   e.periods = fmin(fmax(e.periods, LEAST_PERIODS), MOST_PERIODS);
   e.measure_last = fmin(e.measure_last, e.periods);
   e.output_last = 0.0;
-  strut_run_options options = {.interrupt = f->o->interrupt, .without_ledger = true, .to = &end};
+  strut_run_options options = {.interrupt = f->o->interrupt, .without_balance = true, .to = &end};
   strut_status status = strut_simulate_accurately(model, &e, &options, summary, f->error);
   y[2 * length] = 0.0;
   return status;

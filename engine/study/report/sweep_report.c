@@ -52,7 +52,7 @@ char *strut_sweep_count_report(const strut_sweep_plan *plan, bool json) {
 
 /* Ranges of missing points, the first few. */
 static void add_gaps(strut_buffer *b, strut_slots *slots, bool json) {
-  int64_t count = strut_slots_plan_of(slots)->count;
+  int64_t count = strut_slots_description_of(slots)->count;
   int gaps = 0;
   for (int64_t i = 0; i < count && gaps < MOST_GAPS;) {
     int64_t first = i;
@@ -73,7 +73,7 @@ static void add_gaps(strut_buffer *b, strut_slots *slots, bool json) {
 }
 
 static void add_failures(strut_buffer *b, strut_slots *slots, bool json) {
-  int64_t count = strut_slots_plan_of(slots)->count;
+  int64_t count = strut_slots_description_of(slots)->count;
   int reported = 0;
   for (int64_t i = 0; i < count && reported < MOST_FAILURES && strut_slots_failed(slots); i++) {
     strut_result_slot row;
@@ -98,7 +98,7 @@ static void add_failures(strut_buffer *b, strut_slots *slots, bool json) {
 
 char *strut_sweep_status_report(strut_slots *slots, bool json) {
   strut_buffer b = {0};
-  const strut_slots_plan *plan = strut_slots_plan_of(slots);
+  const strut_slots_description *plan = strut_slots_description_of(slots);
   long long missing = strut_slots_missing(slots), failed = strut_slots_failed(slots);
   strut_buffer_add(&b,
                    json ? "{\"points\": %lld, \"done\": %lld, \"missing\": %lld, \"failed\": %lld, "
@@ -148,7 +148,7 @@ char *strut_sweep_end_report(const strut_sweep_state *state, const char *table, 
 static strut_status add_shard(strut_buffer *b, const char *directory, strut_shard shard,
                               strut_arena *arena, bool json, strut_error *error) {
   strut_slots *slots = NULL;
-  strut_slots_plan plan;
+  strut_slots_description plan;
   char *path = strut_shard_path(directory, shard, arena);
   if (!path) return strut_no_memory(error, "");
   strut_status status = strut_slots_read(path, &slots, &plan, error);

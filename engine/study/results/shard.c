@@ -145,7 +145,7 @@ strut_status strut_shard_read(const char *text, const strut_array_task *task, st
   return check(text, *shard, error);
 }
 
-void strut_shard_points(strut_shard shard, strut_slots_plan *plan) {
+void strut_shard_points(strut_shard shard, strut_slots_description *plan) {
   bool whole = shard.count < 1;
   plan->first = whole ? 0 : shard.index;
   plan->stride = whole ? 1 : shard.count;
@@ -296,7 +296,7 @@ static strut_status check_gaps(const merge *m, strut_error *error) {
   for (size_t i = 0; i < m->count; i++) {
     int64_t missing = m->sources[i] ? strut_slots_missing(m->sources[i]) : 0;
     if (missing == 0) continue;
-    long long of = (long long)strut_slots_plan_of(m->sources[i])->count;
+    long long of = (long long)strut_slots_description_of(m->sources[i])->count;
     if (!m->found.count)
       return strut_fail(error, STRUT_FILE_TROUBLE,
                         "'%s': %lld of %lld points are missing: run the study again to resume it",
@@ -322,7 +322,7 @@ static strut_status open_sources(merge *m, strut_error *error) {
   m->sources = strut_arena_allocate(&m->arena, m->count, sizeof *m->sources);
   if (!m->sources) return strut_no_memory(error, "for shards");
   for (size_t i = 0; i < m->count && status == STRUT_OK; i++) {
-    strut_slots_plan plan;
+    strut_slots_description plan;
     if (m->found.count && !m->found.there[i]) continue;
     strut_shard shard = {(int64_t)i, m->found.count};
     char *path = strut_shard_path(m->directory, shard, &m->arena);
@@ -330,7 +330,7 @@ static strut_status open_sources(merge *m, strut_error *error) {
                   : strut_no_memory(error, "for shards");
     if (status != STRUT_OK) break;
     strut_shard_points(shard, &plan);
-    const strut_slots_plan *own = strut_slots_plan_of(m->sources[i]);
+    const strut_slots_description *own = strut_slots_description_of(m->sources[i]);
     if (plan.first != own->first || plan.count != own->count || plan.stride != own->stride)
       status = strut_fail(
           error, STRUT_USAGE,
@@ -345,8 +345,8 @@ static strut_status check_study(const merge *m, strut_error *error) {
   while (first < m->count && !m->sources[first]) first++;
   for (size_t i = first + 1; i < m->count; i++) {
     if (!m->sources[i]) continue;
-    const char *difference = strut_slots_difference(strut_slots_plan_of(m->sources[first]),
-                                                    strut_slots_plan_of(m->sources[i]));
+    const char *difference = strut_slots_difference(strut_slots_description_of(m->sources[first]),
+                                                    strut_slots_description_of(m->sources[i]));
     if (difference)
       return strut_fail(
           error, STRUT_USAGE,
@@ -391,7 +391,7 @@ strut_status strut_merge(const char *directory, strut_merged *merged, strut_erro
     status = strut_study_table_write(directory, "table.csv", m.sources, m.count, error);
   if (status == STRUT_OK) {
     merged->shards = m.found.count;
-    merged->points = strut_slots_plan_of(m.sources[0])->points;
+    merged->points = strut_slots_description_of(m.sources[0])->points;
     for (size_t i = 0; i < m.count; i++) {
       merged->failed += strut_slots_failed(m.sources[i]);
       merged->inaccurate += strut_slots_inaccurate(m.sources[i]);

@@ -19,7 +19,7 @@ struct strut_slots {
   bool writes;
   atomic_bool unsynced; /* rows were written since the last sync */
   char *path;
-  strut_slots_plan plan;
+  strut_slots_description plan;
   strut_slots_layout layout;
   uint64_t seed; /* of the checksums, so that slots of another study are not valid here */
   atomic_uint_fast64_t *done;
@@ -137,7 +137,7 @@ static strut_status lock(const strut_slots *s, strut_error *error) {
 }
 
 /* The header of a new file, or of one whose header was never finished. */
-static strut_status begin(strut_slots *s, const strut_slots_plan *plan, strut_error *error) {
+static strut_status begin(strut_slots *s, const strut_slots_description *plan, strut_error *error) {
   s->plan = *plan;
   if (!strut_slots_own(&s->plan, &s->arena)) return no_memory(error, s->path);
   strut_status status = strut_slots_lay_out(&s->plan, &s->layout, error);
@@ -152,9 +152,10 @@ static strut_status begin(strut_slots *s, const strut_slots_plan *plan, strut_er
 }
 
 /* Reads the existing header, which must belong to this plan. */
-static strut_status resume(strut_slots *s, const strut_slots_plan *plan, strut_error *error) {
+static strut_status resume(strut_slots *s, const strut_slots_description *plan,
+                           strut_error *error) {
   bool torn = false;
-  strut_slots_plan own = *plan;
+  strut_slots_description own = *plan;
   strut_status status = strut_slots_lay_out(&own, &s->layout, error);
   size_t header = s->layout.header_bytes;
   if (status == STRUT_OK) status = lock(s, error);
@@ -172,8 +173,8 @@ static strut_status look(strut_slots *s, strut_error *error) {
 }
 
 /* Opens for writing if there is a plan, otherwise read-only. */
-static strut_status open_file(const char *path, const strut_slots_plan *plan, strut_slots **slots,
-                              strut_error *error) {
+static strut_status open_file(const char *path, const strut_slots_description *plan,
+                              strut_slots **slots, strut_error *error) {
   *slots = NULL;
   strut_slots *s = strut_allocate(1, sizeof *s);
   if (!s) return no_memory(error, path);
@@ -197,16 +198,16 @@ static strut_status open_file(const char *path, const strut_slots_plan *plan, st
   return status;
 }
 
-strut_status strut_slots_open(const char *path, const strut_slots_plan *plan, strut_slots **slots,
-                              strut_error *error) {
-  strut_slots_plan wanted = *plan;
+strut_status strut_slots_open(const char *path, const strut_slots_description *plan,
+                              strut_slots **slots, strut_error *error) {
+  strut_slots_description wanted = *plan;
   strut_slots_layout layout;
   *slots = NULL;
   strut_status status = strut_slots_lay_out(&wanted, &layout, error); /* before creating a file */
   return status == STRUT_OK ? open_file(path, &wanted, slots, error) : status;
 }
 
-strut_status strut_slots_read(const char *path, strut_slots **slots, strut_slots_plan *plan,
+strut_status strut_slots_read(const char *path, strut_slots **slots, strut_slots_description *plan,
                               strut_error *error) {
   strut_status status = open_file(path, NULL, slots, error);
   if (status == STRUT_OK) *plan = (*slots)->plan;
@@ -224,7 +225,9 @@ void strut_slots_close(strut_slots *slots) {
   strut_release(slots);
 }
 
-const strut_slots_plan *strut_slots_plan_of(const strut_slots *slots) { return &slots->plan; }
+const strut_slots_description *strut_slots_description_of(const strut_slots *slots) {
+  return &slots->plan;
+}
 
 int64_t strut_slots_point(const strut_slots *slots, int64_t i) {
   return slots->plan.first + i * slots->plan.stride;
@@ -335,7 +338,7 @@ bool strut_slots_get(strut_slots *slots, int64_t point, strut_result_slot *row) 
 }
 
 bool strut_slots_is_inaccurate(strut_slots *slots, int64_t point) {
-  const strut_slots_plan *plan = &slots->plan;
+  const strut_slots_description *plan = &slots->plan;
   size_t column = 0, number = 0;
   strut_result_slot row;
   while (column < plan->column_count && strcmp(plan->columns[column].name, STRUT_KEPT_COLUMN) != 0)

@@ -35,7 +35,7 @@ typedef struct strut_slot_column {
 } strut_slot_column;
 
 /** Everything that must agree before results may be combined. */
-typedef struct strut_slots_plan {
+typedef struct strut_slots_description {
   uint8_t hash[STRUT_STUDY_HASH]; /* of the study */
   const char *version;            /* of the program */
   const char *name;               /* of the study */
@@ -44,7 +44,7 @@ typedef struct strut_slots_plan {
   int64_t stride;                 /* 0 means 1 */
   const strut_slot_column *columns;
   size_t column_count;
-} strut_slots_plan;
+} strut_slots_description;
 
 /** A row: numbers and words in the order of their columns. */
 typedef struct strut_result_slot {
@@ -65,19 +65,19 @@ typedef struct strut_slots strut_slots;
  * written, or is no such file. A process opens a file once at a time: the lock is the process's.
  * *slots is NULL on failure.
  */
-STRUT_API strut_status strut_slots_open(const char *path, const strut_slots_plan *plan,
+STRUT_API strut_status strut_slots_open(const char *path, const strut_slots_description *plan,
                                         strut_slots **slots, strut_error *error);
 /**
  * Opens a file of slots for reading only, beside one who writes it or not. Its header goes into
  * *plan, good until closed. STRUT_FILE_TROUBLE where it cannot be read or is no such file.
  */
 STRUT_API strut_status strut_slots_read(const char *path, strut_slots **slots,
-                                        strut_slots_plan *plan, strut_error *error);
+                                        strut_slots_description *plan, strut_error *error);
 /** Closes the file. NULL is allowed. */
 STRUT_API void strut_slots_close(strut_slots *slots);
 
 /** The header of an open file. */
-STRUT_API const strut_slots_plan *strut_slots_plan_of(const strut_slots *slots);
+STRUT_API const strut_slots_description *strut_slots_description_of(const strut_slots *slots);
 /** The number of the file's i-th point, 0 <= i < count. */
 STRUT_API int64_t strut_slots_point(const strut_slots *slots, int64_t i);
 /** Does the point belong to this file? */

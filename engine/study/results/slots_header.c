@@ -60,14 +60,14 @@ bool strut_slots_pwrite(int descriptor, const void *bytes, size_t length, int64_
   return true;
 }
 
-static size_t text_bytes(const strut_slots_plan *plan) {
+static size_t text_bytes(const strut_slots_description *plan) {
   size_t bytes = strlen(plan->version) + strlen(plan->name) + 2;
   for (size_t i = 0; i < plan->column_count; i++)
     bytes += strlen(plan->columns[i].name) + strlen(plan->columns[i].unit) + 3;
   return bytes;
 }
 
-strut_status strut_slots_lay_out(strut_slots_plan *plan, strut_slots_layout *layout,
+strut_status strut_slots_lay_out(strut_slots_description *plan, strut_slots_layout *layout,
                                  strut_error *error) {
   if (plan->stride == 0) plan->stride = 1;
   bool good =
@@ -92,7 +92,7 @@ strut_status strut_slots_lay_out(strut_slots_plan *plan, strut_slots_layout *lay
   return STRUT_OK;
 }
 
-bool strut_slots_own(strut_slots_plan *plan, strut_arena *arena) {
+bool strut_slots_own(strut_slots_description *plan, strut_arena *arena) {
   strut_slot_column *columns = strut_arena_allocate(arena, plan->column_count + 1, sizeof *columns);
   plan->version = strut_arena_text(arena, plan->version, strlen(plan->version));
   plan->name = strut_arena_text(arena, plan->name, strlen(plan->name));
@@ -114,8 +114,8 @@ static char *put_text(char *at, const char *text) {
   return at + length;
 }
 
-unsigned char *strut_slots_header(const strut_slots_plan *plan, const strut_slots_layout *layout,
-                                  strut_arena *arena) {
+unsigned char *strut_slots_header(const strut_slots_description *plan,
+                                  const strut_slots_layout *layout, strut_arena *arena) {
   unsigned char *header = strut_arena_allocate(arena, layout->header_bytes, 1);
   if (!header) return NULL;
   fixed_part fixed = {.byte_order = BYTE_ORDER_MARK,
@@ -151,7 +151,7 @@ static const char *take_text(const char **at, const char *end) {
 }
 
 /* Reads the texts of a header with a valid checksum. */
-static bool take_texts(strut_slots_plan *plan, const char *at, const char *end,
+static bool take_texts(strut_slots_description *plan, const char *at, const char *end,
                        strut_arena *arena) {
   strut_slot_column *columns = strut_arena_allocate(arena, plan->column_count + 1, sizeof *columns);
   if (!columns) return false;
@@ -186,7 +186,7 @@ static strut_status foreign(strut_error *error, const char *path, const char *wh
 }
 
 strut_status strut_slots_read_header(int descriptor, const char *path, size_t most,
-                                     strut_slots_plan *plan, strut_slots_layout *layout,
+                                     strut_slots_description *plan, strut_slots_layout *layout,
                                      strut_arena *arena, bool *torn, strut_error *error) {
   fixed_part fixed = {0};
   *torn = false;
@@ -217,11 +217,11 @@ strut_status strut_slots_read_header(int descriptor, const char *path, size_t mo
       strut_checksum(header, (size_t)fixed.header_bytes, 0) != checksum)
     return *torn ? STRUT_OK : foreign(error, path, damaged);
   *torn = false;
-  *plan = (strut_slots_plan){.points = fixed.points,
-                             .first = fixed.first,
-                             .stride = fixed.stride,
-                             .count = fixed.count,
-                             .column_count = (size_t)fixed.column_count};
+  *plan = (strut_slots_description){.points = fixed.points,
+                                    .first = fixed.first,
+                                    .stride = fixed.stride,
+                                    .count = fixed.count,
+                                    .column_count = (size_t)fixed.column_count};
   memcpy(plan->hash, fixed.hash, sizeof plan->hash);
   const char *texts = (const char *)header + sizeof fixed;
   if (!take_texts(plan, texts, texts + fixed.text_bytes, arena)) {
@@ -234,7 +234,7 @@ strut_status strut_slots_read_header(int descriptor, const char *path, size_t mo
   return status == STRUT_OK && agree ? STRUT_OK : foreign(error, path, damaged);
 }
 
-static bool same_columns(const strut_slots_plan *a, const strut_slots_plan *b) {
+static bool same_columns(const strut_slots_description *a, const strut_slots_description *b) {
   bool same = a->column_count == b->column_count;
   for (size_t i = 0; same && i < a->column_count; i++)
     same = strcmp(a->columns[i].name, b->columns[i].name) == 0 &&
@@ -243,7 +243,8 @@ static bool same_columns(const strut_slots_plan *a, const strut_slots_plan *b) {
   return same;
 }
 
-const char *strut_slots_difference(const strut_slots_plan *a, const strut_slots_plan *b) {
+const char *strut_slots_difference(const strut_slots_description *a,
+                                   const strut_slots_description *b) {
   if (strcmp(a->version, b->version) != 0) return "the version of strut";
   if (a->points != b->points) return "the number of points";
   if (!same_columns(a, b)) return "the columns";
@@ -251,8 +252,8 @@ const char *strut_slots_difference(const strut_slots_plan *a, const strut_slots_
   return NULL;
 }
 
-strut_status strut_slots_compare(const char *path, const strut_slots_plan *there,
-                                 const strut_slots_plan *wanted, strut_error *error) {
+strut_status strut_slots_compare(const char *path, const strut_slots_description *there,
+                                 const strut_slots_description *wanted, strut_error *error) {
   const char *difference = strut_slots_difference(there, wanted);
   char detail[160] = "";
   if (strcmp(there->version, wanted->version) != 0)

@@ -17,26 +17,27 @@ typedef struct strut_slots_layout {
 } strut_slots_layout;
 
 /** STRUT_USAGE if the plan's points or columns are invalid. Replaces a stride of 0 by 1. */
-strut_status strut_slots_lay_out(strut_slots_plan *plan, strut_slots_layout *layout,
+strut_status strut_slots_lay_out(strut_slots_description *plan, strut_slots_layout *layout,
                                  strut_error *error);
 /** Copies all texts of a plan into the arena. False when memory is out. */
-bool strut_slots_own(strut_slots_plan *plan, strut_arena *arena);
+bool strut_slots_own(strut_slots_description *plan, strut_arena *arena);
 /** The header of a plan: layout->header_bytes bytes in the arena, or NULL. */
-unsigned char *strut_slots_header(const strut_slots_plan *plan, const strut_slots_layout *layout,
-                                  strut_arena *arena);
+unsigned char *strut_slots_header(const strut_slots_description *plan,
+                                  const strut_slots_layout *layout, strut_arena *arena);
 /**
  * Reads the header of an open file into *plan, its texts owned by the arena. *torn is set, with
  * STRUT_OK, where the file has up to `most` bytes and these are zeros or the begin of a header:
  * the process that wrote it was stopped before the first slot.
  */
 strut_status strut_slots_read_header(int descriptor, const char *path, size_t most,
-                                     strut_slots_plan *plan, strut_slots_layout *layout,
+                                     strut_slots_description *plan, strut_slots_layout *layout,
                                      strut_arena *arena, bool *torn, strut_error *error);
 /** Names a difference between two plans, such as "the columns"; NULL: none. */
-const char *strut_slots_difference(const strut_slots_plan *a, const strut_slots_plan *b);
+const char *strut_slots_difference(const strut_slots_description *a,
+                                   const strut_slots_description *b);
 /** STRUT_USAGE with the difference, unless both have the same study and points. */
-strut_status strut_slots_compare(const char *path, const strut_slots_plan *there,
-                                 const strut_slots_plan *wanted, strut_error *error);
+strut_status strut_slots_compare(const char *path, const strut_slots_description *there,
+                                 const strut_slots_description *wanted, strut_error *error);
 /** STRUT_FILE_TROUBLE with the reason in errno's value `code`. */
 strut_status strut_slots_trouble(strut_error *error, const char *what, const char *path, int code);
 /**

@@ -59,7 +59,7 @@ static strut_status finish(writer *w, strut_error *error) {
   return status;
 }
 
-static bool put_header(writer *w, const strut_slots_plan *plan) {
+static bool put_header(writer *w, const strut_slots_description *plan) {
   strut_buffer header = {0};
   strut_buffer_add(&header, "point,");
   for (size_t i = 0; i < plan->column_count; i++) {
@@ -86,7 +86,7 @@ static void put_text(writer *w, const char *text, size_t room, char mark) {
   end_cell(w, mark);
 }
 
-static void put_row(writer *w, const strut_slots_plan *plan, int64_t point,
+static void put_row(writer *w, const strut_slots_description *plan, int64_t point,
                     const strut_result_slot *row) {
   size_t numbers = 0, words = 0;
   put_number(w, (double)point);
@@ -105,7 +105,7 @@ static strut_status write_table(const char *directory, const char *name,
                                 strut_slots *const *sources, size_t count, bool partial,
                                 int64_t *rows, strut_error *error) {
   writer w = {.used = 0};
-  const strut_slots_plan *plan = strut_slots_plan_of(sources[0]);
+  const strut_slots_description *plan = strut_slots_description_of(sources[0]);
   strut_status status = strut_file_open(&w.file, directory, name, error);
   if (status != STRUT_OK) return status;
   if (!put_header(&w, plan)) {
@@ -147,7 +147,7 @@ strut_status strut_study_table_write_points(const char *directory, const char *n
                                             strut_slots *source, const int64_t *points,
                                             size_t count, strut_error *error) {
   writer w = {.used = 0};
-  const strut_slots_plan *plan = strut_slots_plan_of(source);
+  const strut_slots_description *plan = strut_slots_description_of(source);
   strut_status status = strut_file_open(&w.file, directory, name, error);
   if (status != STRUT_OK) return status;
   if (!put_header(&w, plan)) {

@@ -63,7 +63,7 @@ typedef struct strut_array_task {
 STRUT_API strut_status strut_shard_read(const char *text, const strut_array_task *task,
                                         strut_shard *shard, strut_error *error);
 /** Sets the plan's first, count and stride to the points of a shard. */
-STRUT_API void strut_shard_points(strut_shard shard, strut_slots_plan *plan);
+STRUT_API void strut_shard_points(strut_shard shard, strut_slots_description *plan);
 /** The path of a shard's file, in the arena; NULL when memory is out. */
 STRUT_API char *strut_shard_path(const char *directory, strut_shard shard, strut_arena *arena);
 /**

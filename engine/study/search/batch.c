@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Points that searches ask for at the same time, on all threads and lanes. See search_parts.h. */
+/* Points that searches ask for at the same time, on all threads and batch. See search_parts.h. */
 #include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
 
 #include "engine/base/memory.h"
-#include "engine/integrate/lanes/batch.h"
+#include "engine/integrate/batch/batch.h"
 #include "engine/study/search/search_parts.h"
 #include "engine/study/sweep/grid.h"
 
@@ -71,9 +71,9 @@ strut_status strut_search_batch_begin(strut_search_batch *b) {
   b->options.adjust = make_exact;
   b->options.point_context = b;
   b->threads = b->given->threads > 0 ? b->given->threads : strut_sweep_threads();
-  b->lanes = strut_sweep_lanes_for(b->given->lanes, b->threads, INT64_MAX);
+  b->batch = strut_sweep_batch_size(b->given->batch, b->threads, INT64_MAX);
   b->first_check = search->starts * search->evaluations;
-  size_t jobs = (size_t)b->threads * (size_t)b->lanes;
+  size_t jobs = (size_t)b->threads * (size_t)b->batch;
   b->jobs = strut_sweep_make_jobs(b->plan, &b->arena, jobs);
   b->worker = (strut_sweep_worker){
       .plan = b->plan, .options = &b->options, .standing = strut_equilibrium_cache_create()};
@@ -187,7 +187,7 @@ strut_status strut_search_batch_run(strut_search_batch *b) {
   const volatile sig_atomic_t *interrupt = b->options.interrupt;
   b->next = 0;
   if (b->count > 0) {
-    int32_t lanes = strut_sweep_lanes_for(b->lanes, threads, (int64_t)b->count);
+    int32_t batch = strut_sweep_batch_size(b->batch, threads, (int64_t)b->count);
     qsort(b->wanted, b->count, sizeof *b->wanted, by_point);
 #ifdef _OPENMP
 #pragma omp parallel for schedule(static, 1) num_threads(threads)
@@ -196,7 +196,7 @@ strut_status strut_search_batch_run(strut_search_batch *b) {
 #ifdef _OPENMP
       omp_set_num_threads(1); /* of searches within a point */
 #endif
-      strut_sweep_work(&b->worker, &queue, b->jobs + i * b->lanes, lanes);
+      strut_sweep_work(&b->worker, &queue, b->jobs + i * b->batch, batch);
     }
   }
   if (!b->status && interrupt && *interrupt)

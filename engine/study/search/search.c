@@ -371,7 +371,7 @@ strut_status strut_search_run(const strut_sweep_plan *plan, strut_slots *slots,
                            .error = error ? error : &own,
                            .began = strut_run_clock()}};
   c.penalise = !strut_search_knows_conditions((strut_search_method)c.what->method);
-  int64_t count = strut_slots_plan_of(slots)->count;
+  int64_t count = strut_slots_description_of(slots)->count;
   *result = (strut_search_result){0};
   *state = (strut_sweep_state){.points = count,
                                .done = count - strut_slots_missing(slots),

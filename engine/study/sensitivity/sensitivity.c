@@ -88,7 +88,7 @@ static bool add_texts(analysis *a, target t) {
   char texts[MOST_TEXTS + 1][STRUT_SLOT_WORD];
   size_t count = 0;
   strut_result_slot row;
-  for (int64_t p = 0; p < strut_slots_plan_of(a->slots)->points; p++)
+  for (int64_t p = 0; p < strut_slots_description_of(a->slots)->points; p++)
     if (strut_slots_get(a->slots, p, &row) && row.status == STRUT_OK)
       count = note_text(texts, count, row.words[t.place]);
   for (size_t i = 0; i < count; i++) {
@@ -263,7 +263,7 @@ static strut_status analyse_target(analysis *a, int64_t first, const target *t) 
 
 strut_status strut_sensitivity_find(const strut_study *study, strut_slots *slots,
                                     strut_sensitivity_result *result, strut_error *error) {
-  const strut_slots_plan *plan = strut_slots_plan_of(slots);
+  const strut_slots_description *plan = strut_slots_description_of(slots);
   analysis a = {.study = study,
                 .s = &study->sensitivity,
                 .axis = &study->axes[study->sensitivity.axis],
@@ -307,7 +307,7 @@ static size_t other_columns(const strut_study *study) {
 }
 
 static void put_axes(strut_buffer *b, const strut_study *study, strut_slots *slots, int64_t point) {
-  const strut_slots_plan *plan = strut_slots_plan_of(slots);
+  const strut_slots_description *plan = strut_slots_description_of(slots);
   strut_result_slot row;
   size_t numbers = 0, texts = 0, count = other_columns(study);
   bool there = strut_slots_get(slots, point, &row);
@@ -322,7 +322,7 @@ static void put_axes(strut_buffer *b, const strut_study *study, strut_slots *slo
 strut_status strut_sensitivity_write(const strut_study *study, strut_slots *slots,
                                      const strut_sensitivity_result *result, const char *directory,
                                      strut_error *error) {
-  const strut_slots_plan *plan = strut_slots_plan_of(slots);
+  const strut_slots_description *plan = strut_slots_description_of(slots);
   strut_buffer b = {0};
   for (size_t i = 0; i < other_columns(study); i++) {
     const strut_slot_column *c = &plan->columns[i];

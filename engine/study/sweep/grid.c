@@ -170,7 +170,7 @@ static uint64_t value_of(const strut_refinement *r, const strut_result_slot *row
 }
 
 void strut_refinement_learn(strut_refinement *r, strut_slots *slots) {
-  int64_t count = strut_slots_plan_of(slots)->count;
+  int64_t count = strut_slots_description_of(slots)->count;
   for (int64_t i = 0; i < count; i++) {
     strut_result_slot row;
     int64_t point = strut_slots_point(slots, i);
@@ -261,7 +261,7 @@ bool strut_refinement_wants(const void *refinement, int64_t point) {
 
 void strut_refinement_count(const strut_refinement *r, strut_slots *slots, int64_t *wanted,
                             int64_t *done) {
-  int64_t count = strut_slots_plan_of(slots)->count;
+  int64_t count = strut_slots_description_of(slots)->count;
   *wanted = *done = 0;
   for (int64_t i = 0; i < count; i++) {
     int64_t point = strut_slots_point(slots, i);

@@ -371,7 +371,7 @@ static bool rank_states(rest_result *r) {
 static void warn_of_overload(strut_sweep_job *job, const strut_model *model, const double *q,
                              const char *where) {
   strut_overload worst;
-  if (job->warning_count > 0 || !strut_memory_overload(model, q, &worst)) return;
+  if (job->warning_count > 0 || !strut_history_overload(model, q, &worst)) return;
   strut_warning *warning = &job->warnings[job->warning_count++];
   warning->code = "overload";
   snprintf(warning->text, sizeof warning->text,

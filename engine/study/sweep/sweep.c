@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One thread's points of a sweep: alone, or side by side in the lanes of a batch. */
+/* One thread's points of a sweep: alone, or side by side in the batch of a batch. */
 #include "engine/study/sweep/sweep.h"
 
 #include <assert.h>
@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/integrate/lanes/batch.h"
+#include "engine/integrate/batch/batch.h"
 #include "engine/run/simulate.h"
 #include "engine/study/sweep/sweep_parts.h"
 
@@ -15,14 +15,14 @@
 
 /* A new batch starts after this many consecutive points that do not fit the current one. */
 enum { MOST_UNLIKE = 4 };
-/* Steps below which setting up a batch costs more than its lanes save. */
+/* Steps below which setting up a batch costs more than its batch save. */
 static const double FEWEST_STEPS = 200.0;
 
 typedef struct desk {
   const strut_sweep_worker *worker;
   const strut_sweep_queue *queue;
-  strut_sweep_job *jobs; /* (lanes) */
-  int32_t lanes;
+  strut_sweep_job *jobs; /* (batch) */
+  int32_t batch;
   strut_setup setup; /* of the example */
   strut_model *example;
   int unlike;
@@ -32,7 +32,7 @@ typedef struct desk {
 static strut_sweep_job *next_job(desk *d) {
   strut_sweep_job *idle = NULL;
   int64_t point;
-  for (int32_t i = 0; i < d->lanes; i++) {
+  for (int32_t i = 0; i < d->batch; i++) {
     if (d->jobs[i].stage == STRUT_SWEEP_WAITING) return &d->jobs[i];
     if (d->jobs[i].stage == STRUT_SWEEP_IDLE) idle = &d->jobs[i];
   }
@@ -48,8 +48,8 @@ static void finish_alone(desk *d, strut_sweep_job *job) {
   d->queue->over(d->queue->context, job);
 }
 
-/* Should its run be in lanes, or can it be where they were asked for? Leaves it with a model then. */
-static bool suits_lanes(strut_sweep_job *job) {
+/* Should its run be in batch, or can it be where they were asked for? Leaves it with a model then. */
+static bool suits_batch(strut_sweep_job *job) {
   const strut_experiment *e = &job->setup.experiment;
   const strut_integrator *method = strut_integrator_find(e->integrator);
   if (e->accuracy > 0.0 || !method || !strut_batch_knows(method)) return false;
@@ -61,11 +61,11 @@ static bool suits_lanes(strut_sweep_job *job) {
 static bool next_run(void *context, strut_batch_point *run) {
   desk *d = context;
   for (strut_sweep_job *job; (job = next_job(d));) {
-    if (!suits_lanes(job)) {
+    if (!suits_batch(job)) {
       finish_alone(d, job);
       continue;
     }
-    bool alike = strut_lanes_alike(d->example, job->model);
+    bool alike = strut_batch_takes_both(d->example, job->model);
     d->unlike = alike ? 0 : d->unlike + 1;
     if (d->unlike > MOST_UNLIKE) return false; /* it waits for the next batch */
     job->stage = STRUT_SWEEP_RUNNING;
@@ -99,17 +99,17 @@ static void run_batch(desk *d) {
                                              .result = take_result,
                                              .example = d->example,
                                              .integrator = d->setup.experiment.integrator,
-                                             .width = d->lanes});
+                                             .width = d->batch});
   strut_model_free(d->example);
   strut_setup_free(&d->setup);
   d->example = NULL;
 }
 
 void strut_sweep_work(const strut_sweep_worker *worker, const strut_sweep_queue *queue,
-                      strut_sweep_job *jobs, int32_t lanes) {
-  desk d = {.worker = worker, .queue = queue, .jobs = jobs, .lanes = lanes};
+                      strut_sweep_job *jobs, int32_t batch) {
+  desk d = {.worker = worker, .queue = queue, .jobs = jobs, .batch = batch};
   for (strut_sweep_job *job; (job = next_job(&d));) {
-    if (lanes > 1 && suits_lanes(job) && make_example(&d, job))
+    if (batch > 1 && suits_batch(job) && make_example(&d, job))
       run_batch(&d);
     else
       finish_alone(&d, job);
@@ -227,7 +227,7 @@ static void count_point(sweep *s, const strut_sweep_job *job) {
 /* The next point without a result; false: none is left, or the sweep is being stopped. */
 static bool next_point(void *context, int64_t *point) {
   sweep *s = context;
-  int64_t count = strut_slots_plan_of(s->slots)->count, i = 0;
+  int64_t count = strut_slots_description_of(s->slots)->count, i = 0;
   while (is_running(s)) {
 #ifdef _OPENMP
 #pragma omp atomic capture
@@ -253,7 +253,7 @@ static void store_point(void *context, const strut_sweep_job *job) {
     count_point(s, job);
 }
 
-static void run_threads(sweep *s, int threads, int32_t lanes, strut_sweep_job *jobs) {
+static void run_threads(sweep *s, int threads, int32_t batch, strut_sweep_job *jobs) {
   const strut_sweep_queue queue = {s, next_point, store_point};
   (void)threads;
 #ifdef _OPENMP
@@ -263,15 +263,15 @@ static void run_threads(sweep *s, int threads, int32_t lanes, strut_sweep_job *j
 #ifdef _OPENMP
     omp_set_num_threads(1); /* of searches within a point: the points are what goes side by side */
 #endif
-    strut_sweep_work(&s->worker, &queue, jobs + i * lanes, lanes);
+    strut_sweep_work(&s->worker, &queue, jobs + i * batch, batch);
   }
 }
 
-int32_t strut_sweep_lanes_for(int wanted, int threads, int64_t points) {
-  int32_t widest = strut_batch_widest(), lanes = 1;
+int32_t strut_sweep_batch_size(int wanted, int threads, int64_t points) {
+  int32_t widest = strut_batch_widest(), batch = 1;
   if (wanted > 0 && wanted < widest) widest = wanted;
-  while (2 * lanes <= widest && (int64_t)lanes * threads < points) lanes *= 2;
-  return lanes < 4 ? 1 : lanes; /* two runs take as long one after the other */
+  while (2 * batch <= widest && (int64_t)batch * threads < points) batch *= 2;
+  return batch < 4 ? 1 : batch; /* two runs take as long one after the other */
 }
 
 strut_sweep_job *strut_sweep_make_jobs(const strut_sweep_plan *plan, strut_arena *arena,
@@ -296,9 +296,9 @@ strut_status strut_sweep_run(const strut_sweep_plan *plan, strut_slots *slots,
       .error = error ? error : &own};
   int64_t missing =
       options->wants ? options->wanted - options->wanted_done : strut_slots_missing(slots);
-  int32_t lanes = strut_sweep_lanes_for(options->lanes, threads, missing);
-  strut_sweep_job *jobs = strut_sweep_make_jobs(plan, &arena, (size_t)threads * (size_t)lanes);
-  int64_t count = strut_slots_plan_of(slots)->count;
+  int32_t batch = strut_sweep_batch_size(options->batch, threads, missing);
+  strut_sweep_job *jobs = strut_sweep_make_jobs(plan, &arena, (size_t)threads * (size_t)batch);
+  int64_t count = strut_slots_description_of(slots)->count;
   *state = (strut_sweep_state){.points = count,
                                .done = count - strut_slots_missing(slots),
                                .failed = strut_slots_failed(slots),
@@ -310,10 +310,10 @@ strut_status strut_sweep_run(const strut_sweep_plan *plan, strut_slots *slots,
   if (options->directory) strut_sweep_records_clear(options->directory);
   double seconds = plan->study->limit_time;
   if (jobs && seconds > 0.0)
-    s.worker.watch = strut_sweep_watch_create(seconds, jobs, (size_t)threads * (size_t)lanes,
+    s.worker.watch = strut_sweep_watch_create(seconds, jobs, (size_t)threads * (size_t)batch,
                                               options->interrupt);
   if (jobs && s.worker.standing && (s.worker.watch || seconds <= 0.0))
-    run_threads(&s, threads, lanes, jobs);
+    run_threads(&s, threads, batch, jobs);
   else
     s.status = strut_fail(s.error, STRUT_NO_MEMORY, "out of memory");
   if (!s.status && options->interrupt && *options->interrupt && state->done < count)

@@ -131,14 +131,14 @@ typedef struct strut_sweep_queue {
   void (*over)(void *context, const strut_sweep_job *job);
 } strut_sweep_queue;
 
-/** Works on the queue until it is empty, `lanes` points at a time where they can go side by side. */
+/** Works on the queue until it is empty, `batch` points at a time where they can go side by side. */
 void strut_sweep_work(const strut_sweep_worker *worker, const strut_sweep_queue *queue,
-                      strut_sweep_job *jobs, int32_t lanes);
+                      strut_sweep_job *jobs, int32_t batch);
 
 /* sweep.c */
 
-/** No more lanes on each of the threads than there are points for it; wanted 0: as many as fit. */
-int32_t strut_sweep_lanes_for(int wanted, int threads, int64_t points);
+/** No more batch on each of the threads than there are points for it; wanted 0: as many as fit. */
+int32_t strut_sweep_batch_size(int wanted, int threads, int64_t points);
 /** Idle jobs with room for their rows; NULL: no memory. */
 strut_sweep_job *strut_sweep_make_jobs(const strut_sweep_plan *plan, strut_arena *arena,
                                        size_t count);

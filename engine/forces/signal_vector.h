@@ -3,21 +3,21 @@
  * Hot: a signal at many times at once. Sines go by vectors, with the bits of strut_signal_evaluate; all other signals
  * through it.
  */
-#ifndef STRUT_ENGINE_FORCES_SIGNAL_LANES_H
-#define STRUT_ENGINE_FORCES_SIGNAL_LANES_H
+#ifndef STRUT_ENGINE_FORCES_SIGNAL_VECTOR_H
+#define STRUT_ENGINE_FORCES_SIGNAL_VECTOR_H
 
 #include "engine/base/vec.h"
 #include "engine/model/hot.h"
 #include "engine/model/model.h"
 
-STRUT_DEFINE_TRIG(STRUT_INLINE, strut_lanes, signal_lanes_sine, signal_lanes_cosine)
+STRUT_DEFINE_TRIG(STRUT_INLINE, strut_lanes, signal_vector_sine, signal_vector_cosine)
 
 /* strut_sincos_turns for turns that need no floor; quarters are the last bits of the rounded number. */
-STRUT_INLINE void signal_lanes_sincos(strut_lanes turns, strut_lanes *sine, strut_lanes *cosine) {
+STRUT_INLINE void signal_vector_sincos(strut_lanes turns, strut_lanes *sine, strut_lanes *cosine) {
   const double rounder = 6755399441055744.0;
   strut_lanes rounded = 4.0 * turns + rounder, quarter = rounded - rounder;
   strut_lanes x = STRUT_TAU * (turns - 0.25 * quarter);
-  strut_lanes s = signal_lanes_sine(x), c = signal_lanes_cosine(x);
+  strut_lanes s = signal_vector_sine(x), c = signal_vector_cosine(x);
   strut_lane_mask quadrant = (strut_lane_mask)rounded, odd = -(quadrant & 1);
   strut_lanes first = four_choose(odd, c, s), second = four_choose(odd, s, c);
   *sine = four_choose(-((quadrant >> 1) & 1), -first, first);
@@ -45,7 +45,7 @@ STRUT_INLINE void signal_at_times(const strut_signal *signals, int32_t index, co
   for (int32_t h = 0; h < count; h += STRUT_LANES) {
     strut_lanes sine, cosine;
     strut_lanes turns = s->frequency * (strut_lanes_load(time + h) - s->start) + s->phase;
-    signal_lanes_sincos(turns, &sine, &cosine);
+    signal_vector_sincos(turns, &sine, &cosine);
     strut_lanes_store(value + h, s->amplitude * sine);
     strut_lanes_store(rate + h, fast * cosine);
   }

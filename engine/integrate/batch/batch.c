@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/integrate/lanes/batch.h"
+#include "engine/integrate/batch/batch.h"
 
 #include <assert.h>
 #include <math.h>
@@ -17,10 +17,10 @@ static bool has_four(void) { return false; }
 
 int32_t strut_batch_widest(void) { return has_four() ? 8 : 1; }
 
-bool strut_batch_knows(const strut_integrator *method) { return method->lanes; }
+bool strut_batch_knows(const strut_integrator *method) { return method->batch; }
 
 bool strut_batch_possible(const strut_model *model, const strut_integrator *method) {
-  return strut_batch_knows(method) && strut_lanes_possible(model);
+  return strut_batch_knows(method) && strut_batch_takes_model(model);
 }
 
 static void choose_kernel(strut_batch *b, bool halves) {
@@ -37,17 +37,17 @@ static bool create_stages(strut_batch *b) {
   bool good = true;
   for (size_t i = 0; i < sizeof all / sizeof all[0] && good; i++)
     good = (*all[i] = strut_arena_allocate(&b->arena, both, sizeof(double))) != NULL;
-  b->work = strut_arena_allocate(&b->arena, STRUT_LANE_POWERS * width, sizeof(double));
+  b->work = strut_arena_allocate(&b->arena, STRUT_BATCH_POWERS * width, sizeof(double));
   return good && b->work;
 }
 
 strut_batch *strut_batch_create(const strut_model *first, const strut_integrator *method,
-                                int32_t width, bool ledger) {
+                                int32_t width, bool balance) {
   strut_batch *b = strut_allocate(1, sizeof *b);
   if (!b) return NULL;
   b->method = method;
-  b->ledger = ledger;
-  bool good = strut_lane_tables_create(first, width, &b->arena, &b->tables) && create_stages(b);
+  b->balance = balance;
+  bool good = strut_batch_tables_create(first, width, &b->arena, &b->tables) && create_stages(b);
   b->dt = strut_arena_allocate(&b->arena, (size_t)width, sizeof(double));
   b->step = strut_arena_allocate(&b->arena, (size_t)width, sizeof(double));
   if (good && b->dt && b->step) {
@@ -70,74 +70,74 @@ static void copy_rows(double *table, int32_t rows, int32_t width, int32_t to, in
   for (int32_t i = 0; i < rows; i++) table[i * width + to] = table[i * width + from];
 }
 
-/* An idle lane does what another one does, which keeps it finite. */
+/* An idle slot does what another one does, which keeps it finite. */
 static void imitate(strut_batch *b, int32_t to, int32_t from) {
   int32_t width = b->tables.width, length = b->tables.first->length;
-  strut_lane_tables_copy(&b->tables, to, from);
+  strut_batch_tables_copy(&b->tables, to, from);
   copy_rows(b->q, length, width, to, from);
   copy_rows(b->v, length, width, to, from);
-  copy_rows(b->work, STRUT_LANE_POWERS, width, to, from);
+  copy_rows(b->work, STRUT_BATCH_POWERS, width, to, from);
   b->dt[to] = b->dt[from];
   b->step[to] = b->step[from];
   b->driven = false;
 }
 
-void strut_batch_fill(strut_batch *b, int32_t lane, const strut_model *model, double dt) {
-  strut_lane_tables_fill(&b->tables, lane, model);
-  b->dt[lane] = dt;
+void strut_batch_fill(strut_batch *b, int32_t slot, const strut_model *model, double dt) {
+  strut_batch_tables_fill(&b->tables, slot, model);
+  b->dt[slot] = dt;
   b->driven = false;
-  b->filled[lane] = true;
+  b->filled[slot] = true;
 }
 
-void strut_batch_empty(strut_batch *b, int32_t lane) {
-  b->filled[lane] = false;
+void strut_batch_empty(strut_batch *b, int32_t slot) {
+  b->filled[slot] = false;
   for (int32_t l = 0; l < b->tables.width; l++) /* those that imitate it, too */
     if (!b->filled[l]) b->tables.model[l] = NULL;
 }
 
-void strut_batch_put(strut_batch *b, int32_t lane, const strut_state *state) {
+void strut_batch_put(strut_batch *b, int32_t slot, const strut_state *state) {
   int32_t width = b->tables.width, length = b->tables.first->length;
   for (int32_t i = 0; i < length; i++) {
-    b->q[i * width + lane] = state->q[i];
-    b->v[i * width + lane] = state->v[i];
+    b->q[i * width + slot] = state->q[i];
+    b->v[i * width + slot] = state->v[i];
   }
-  for (int32_t p = 0; p < STRUT_LANE_POWERS; p++) b->work[p * width + lane] = state->work[p];
-  strut_lane_tables_put_elements(&b->tables, lane, state);
-  b->step[lane] = (double)state->step;
+  for (int32_t p = 0; p < STRUT_BATCH_POWERS; p++) b->work[p * width + slot] = state->work[p];
+  strut_batch_tables_put_elements(&b->tables, slot, state);
+  b->step[slot] = (double)state->step;
   b->driven = false;
 }
 
-void strut_batch_count(const strut_batch *b, int32_t lane, strut_state *state) {
+void strut_batch_count(const strut_batch *b, int32_t slot, strut_state *state) {
   int64_t before = state->step;
-  state->step = (int64_t)b->step[lane];
+  state->step = (int64_t)b->step[slot];
   state->evaluations += (state->step - before) * b->method->evaluations;
 }
 
-void strut_batch_sample(const strut_batch *b, int32_t lane, strut_state *state) {
+void strut_batch_sample(const strut_batch *b, int32_t slot, strut_state *state) {
   int32_t width = b->tables.width, length = 2 * b->tables.first->node_count;
   for (int32_t i = 0; i < length; i++) {
-    state->q[i] = b->q[i * width + lane];
-    state->v[i] = b->v[i * width + lane];
+    state->q[i] = b->q[i * width + slot];
+    state->v[i] = b->v[i * width + slot];
   }
-  if (b->ledger) state->work[STRUT_POWER_DRIVE] = b->work[STRUT_POWER_DRIVE * width + lane];
-  strut_batch_count(b, lane, state);
+  if (b->balance) state->work[STRUT_POWER_DRIVE] = b->work[STRUT_POWER_DRIVE * width + slot];
+  strut_batch_count(b, slot, state);
 }
 
-void strut_batch_get(strut_batch *b, int32_t lane, strut_state *state) {
-  const strut_lane_tables *t = &b->tables;
+void strut_batch_get(strut_batch *b, int32_t slot, strut_state *state) {
+  const strut_batch_tables *t = &b->tables;
   int32_t width = t->width;
-  strut_batch_sample(b, lane, state);
+  strut_batch_sample(b, slot, state);
   for (int32_t i = 0; i < 2 * t->first->node_count; i++)
-    state->force[i] = t->force[i * width + lane];
-  strut_lane_tables_get_elements(t, lane, state);
-  state->drive_time = b->driven ? b->step[lane] * b->dt[lane] : (double)NAN;
+    state->force[i] = t->force[i * width + slot];
+  strut_batch_tables_get_elements(t, slot, state);
+  state->drive_time = b->driven ? b->step[slot] * b->dt[slot] : (double)NAN;
   for (int32_t j = 0; j < t->first->members.slots && b->driven; j++) {
-    state->rest[j] = t->rest[j * width + lane];
-    state->rest_rate[j] = t->rest_rate[j * width + lane];
+    state->rest[j] = t->rest[j * width + slot];
+    state->rest_rate[j] = t->rest_rate[j * width + slot];
   }
-  for (int32_t p = 0; p < STRUT_LANE_POWERS && b->ledger; p++) {
-    state->work[p] = b->work[p * width + lane];
-    state->power[p] = t->power[p * width + lane];
+  for (int32_t p = 0; p < STRUT_BATCH_POWERS && b->balance; p++) {
+    state->work[p] = b->work[p * width + slot];
+    state->power[p] = t->power[p * width + slot];
   }
 }
 

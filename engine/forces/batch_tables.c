@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/forces/lane_tables.h"
+#include "engine/forces/batch_tables.h"
 
 #include <assert.h>
 #include <math.h>
@@ -8,7 +8,7 @@
 #include "engine/base/vec.h"
 #include "engine/model/mass.h"
 
-/* The laws and strains of lane_kernel.h and lane_elements.h. */
+/* The laws and strains of batch_kernel.h and batch_elements.h. */
 static const strut_law_set known = {.friction = STRUT_HAS_ALL,
                                     .damping = STRUT_HAS_ALL,
                                     .law = STRUT_HAS_ALL,
@@ -16,16 +16,16 @@ static const strut_law_set known = {.friction = STRUT_HAS_ALL,
                                               STRUT_HAS(STRUT_STRAIN, PATH) |
                                               STRUT_HAS(STRUT_STRAIN, ANGLE)};
 
-bool strut_lanes_possible(const strut_model *model) {
+bool strut_batch_takes_model(const strut_model *model) {
   const strut_mass *mass = model->mass;
   const unsigned one_by_one = STRUT_TERM_RIGID | STRUT_TERM_ACTUATOR_FORCES |
                               STRUT_TERM_MASS_DAMPING | STRUT_TERM_SUPPORT_MOTION |
                               STRUT_TERM_UNBALANCE | STRUT_TERM_MEMORY | STRUT_TERM_SURFACES |
                               STRUT_TERM_FEEDBACK | STRUT_TERM_SLIDING_MASS;
-  if (!mass || (model->plan & one_by_one) || !strut_laws_within(model->laws, known)) return false;
-  /* the ledger of one run adds up so many members in parts */
-  bool powers = model->plan & (STRUT_TERM_DAMPING | STRUT_TERM_DRIVE);
-  if (powers && model->members.blocks > STRUT_LEDGER_BLOCKS) return false;
+  if (!mass || (model->terms & one_by_one) || !strut_laws_within(model->laws, known)) return false;
+  /* the energy balance of one run adds up so many members in parts */
+  bool powers = model->terms & (STRUT_TERM_DAMPING | STRUT_TERM_DRIVE);
+  if (powers && model->members.blocks > STRUT_BALANCE_BLOCKS) return false;
   return !mass->coordinate[0].factor && !mass->coordinate[1].factor;
 }
 
@@ -72,9 +72,9 @@ static bool elements_alike(const strut_element_table *a, const strut_element_tab
   return true;
 }
 
-bool strut_lanes_alike(const strut_model *a, const strut_model *b) {
+bool strut_batch_takes_both(const strut_model *a, const strut_model *b) {
   const strut_member_table *s = &a->members, *t = &b->members;
-  if (a->plan != b->plan || a->length != b->length || a->node_count != b->node_count ||
+  if (a->terms != b->terms || a->length != b->length || a->node_count != b->node_count ||
       s->slots != t->slots || s->count != t->count || a->contacts.count != b->contacts.count ||
       a->drives.count != b->drives.count || a->loads.count != b->loads.count || !a->mass ||
       !b->mass)
@@ -97,7 +97,7 @@ typedef struct table {
 
 enum { TABLES = 25 };
 
-static void list_tables(strut_lane_tables *t, table *list) {
+static void list_tables(strut_batch_tables *t, table *list) {
   const strut_model *m = t->first;
   int32_t slots = m->members.slots, length = m->length, loads = m->loads.count;
   int32_t elements = m->elements.count;
@@ -112,9 +112,9 @@ static void list_tables(strut_lane_tables *t, table *list) {
                              {&t->slack_length_threshold, slots},
                              {&t->slack_force_threshold, slots},
                              {&t->constant, length},
-                             {&t->contact, m->contacts.count * STRUT_LANE_CONTACT_ROWS},
-                             {&t->ground, STRUT_LANE_GROUND_ROWS},
-                             {&t->wave, (m->drives.count + loads) * STRUT_LANE_WAVE_ROWS},
+                             {&t->contact, m->contacts.count * STRUT_BATCH_CONTACT_ROWS},
+                             {&t->ground, STRUT_BATCH_GROUND_ROWS},
+                             {&t->wave, (m->drives.count + loads) * STRUT_BATCH_WAVE_ROWS},
                              {&t->load_factor, loads},
                              {&t->load_x, loads},
                              {&t->load_y, loads},
@@ -122,7 +122,7 @@ static void list_tables(strut_lane_tables *t, table *list) {
                              {&t->block_inverse[0], blocks[0]},
                              {&t->block_inverse[1], blocks[1]},
                              {&t->force, length},
-                             {&t->power, STRUT_LANE_POWERS},
+                             {&t->power, STRUT_BATCH_POWERS},
                              {&t->element_stiffness, elements},
                              {&t->element_damping, elements},
                              {&t->element_natural, elements},
@@ -132,10 +132,10 @@ static void list_tables(strut_lane_tables *t, table *list) {
   memcpy(list, all, sizeof all);
 }
 
-bool strut_lane_tables_create(const strut_model *first, int32_t width, strut_arena *arena,
-                              strut_lane_tables *tables) {
+bool strut_batch_tables_create(const strut_model *first, int32_t width, strut_arena *arena,
+                               strut_batch_tables *tables) {
   table list[TABLES];
-  *tables = (strut_lane_tables){.width = width, .first = first};
+  *tables = (strut_batch_tables){.width = width, .first = first};
   list_tables(tables, list);
   for (int i = 0; i < TABLES; i++) {
     size_t count = (size_t)list[i].rows * (size_t)width;
@@ -147,21 +147,21 @@ bool strut_lane_tables_create(const strut_model *first, int32_t width, strut_are
   return tables->all_waves != NULL;
 }
 
-/* A lane of a table from an array; NULL: zeros. */
-static void spread(double *to, int32_t width, int32_t lane, const double *from, int32_t rows) {
-  for (int32_t i = 0; i < rows; i++) to[i * width + lane] = from ? from[i] : 0.0;
+/* A slot of a table from an array; NULL: zeros. */
+static void spread(double *to, int32_t width, int32_t slot, const double *from, int32_t rows) {
+  for (int32_t i = 0; i < rows; i++) to[i * width + slot] = from ? from[i] : 0.0;
 }
 
-static void fill_wave(double *to, int32_t width, int32_t lane, const strut_signal *s) {
-  const double row[STRUT_LANE_WAVE_ROWS] = {
-      [STRUT_LANE_AMPLITUDE] = s->amplitude,
-      [STRUT_LANE_RATE] = s->amplitude * STRUT_TAU * s->frequency,
-      [STRUT_LANE_FREQUENCY] = s->frequency,
-      [STRUT_LANE_PHASE] = s->phase,
-      [STRUT_LANE_START] = s->start,
-      [STRUT_LANE_STOP] = s->stop,
-      [STRUT_LANE_MOST_TURNS] = s->kind == STRUT_HALF_SINE ? 0.5 : HUGE_VAL};
-  spread(to, width, lane, row, STRUT_LANE_WAVE_ROWS);
+static void fill_wave(double *to, int32_t width, int32_t slot, const strut_signal *s) {
+  const double row[STRUT_BATCH_WAVE_ROWS] = {
+      [STRUT_BATCH_AMPLITUDE] = s->amplitude,
+      [STRUT_BATCH_RATE] = s->amplitude * STRUT_TAU * s->frequency,
+      [STRUT_BATCH_FREQUENCY] = s->frequency,
+      [STRUT_BATCH_PHASE] = s->phase,
+      [STRUT_BATCH_START] = s->start,
+      [STRUT_BATCH_STOP] = s->stop,
+      [STRUT_BATCH_MOST_TURNS] = s->kind == STRUT_HALF_SINE ? 0.5 : HUGE_VAL};
+  spread(to, width, slot, row, STRUT_BATCH_WAVE_ROWS);
 }
 
 /* The i-th of a model's signals: those of its drives, then those of its loads. */
@@ -170,10 +170,10 @@ static const strut_signal *signal_at(const strut_model *m, int32_t i) {
   return &m->scene->signals[i < drives ? m->drives.signal[i] : m->loads.signal[i - drives]];
 }
 
-static void fill_signals(strut_lane_tables *t, int32_t lane, const strut_model *m) {
-  int32_t count = m->drives.count + m->loads.count, rows = STRUT_LANE_WAVE_ROWS * t->width;
+static void fill_signals(strut_batch_tables *t, int32_t slot, const strut_model *m) {
+  int32_t count = m->drives.count + m->loads.count, rows = STRUT_BATCH_WAVE_ROWS * t->width;
   for (int32_t i = 0; i < count; i++) {
-    fill_wave(t->wave + i * rows, t->width, lane, signal_at(m, i));
+    fill_wave(t->wave + i * rows, t->width, slot, signal_at(m, i));
     t->all_waves[i] = true;
     for (int32_t l = 0; l < t->width; l++) {
       strut_signal_kind kind = t->model[l] ? signal_at(t->model[l], i)->kind : STRUT_SINE;
@@ -182,82 +182,84 @@ static void fill_signals(strut_lane_tables *t, int32_t lane, const strut_model *
   }
 }
 
-static void fill_ground(strut_lane_tables *t, int32_t lane, const strut_contact_table *c) {
+static void fill_ground(strut_batch_tables *t, int32_t slot, const strut_contact_table *c) {
   for (int32_t i = 0; i < c->count; i++) {
     const strut_contact_entry *e = &c->entry[i];
-    const double row[STRUT_LANE_CONTACT_ROWS] = {
-        [STRUT_LANE_MINUS_STIFFNESS] = -e->stiffness,
-        [STRUT_LANE_MINUS_DAMPING] = -e->damping,
-        [STRUT_LANE_DISSIPATION] = e->dissipation,
-#define STRUT_FRICTION_ROW(NAME, field, range) [STRUT_LANE_FRICTION_##NAME] = e->friction.field,
+    const double row[STRUT_BATCH_CONTACT_ROWS] = {
+        [STRUT_BATCH_MINUS_STIFFNESS] = -e->stiffness,
+        [STRUT_BATCH_MINUS_DAMPING] = -e->damping,
+        [STRUT_BATCH_DISSIPATION] = e->dissipation,
+#define STRUT_FRICTION_ROW(NAME, field, range) [STRUT_BATCH_FRICTION_##NAME] = e->friction.field,
         STRUT_FRICTION_PARAMETERS(STRUT_FRICTION_ROW)
 #undef STRUT_FRICTION_ROW
-            [STRUT_LANE_FRICTION_MU_STATIC_BACKWARD] = strut_friction_static(&e->friction, -1.0),
-        [STRUT_LANE_FRICTION_MU_KINETIC_BACKWARD] = strut_friction_kinetic(&e->friction, -1.0),
-        [STRUT_LANE_FRICTION_LAW] = e->friction.law};
-    spread(t->contact + i * STRUT_LANE_CONTACT_ROWS * t->width, t->width, lane, row,
-           STRUT_LANE_CONTACT_ROWS);
+            [STRUT_BATCH_FRICTION_MU_STATIC_BACKWARD] = strut_friction_static(&e->friction, -1.0),
+        [STRUT_BATCH_FRICTION_MU_KINETIC_BACKWARD] = strut_friction_kinetic(&e->friction, -1.0),
+        [STRUT_BATCH_FRICTION_LAW] = e->friction.law};
+    spread(t->contact + i * STRUT_BATCH_CONTACT_ROWS * t->width, t->width, slot, row,
+           STRUT_BATCH_CONTACT_ROWS);
   }
-  const double ground[STRUT_LANE_GROUND_ROWS] = {c->tangent[0], c->tangent[1], c->normal[0],
-                                                 c->normal[1],  c->height,     c->belt_speed};
-  spread(t->ground, t->width, lane, ground, STRUT_LANE_GROUND_ROWS);
+  const double ground[STRUT_BATCH_GROUND_ROWS] = {c->tangent[0], c->tangent[1], c->normal[0],
+                                                  c->normal[1],  c->height,     c->belt_speed};
+  spread(t->ground, t->width, slot, ground, STRUT_BATCH_GROUND_ROWS);
 }
 
-static void fill_elements(strut_lane_tables *t, int32_t lane, const strut_element_table *e) {
+static void fill_elements(strut_batch_tables *t, int32_t slot, const strut_element_table *e) {
   for (int32_t i = 0; i < e->count; i++) {
-    int32_t at = i * t->width + lane;
+    int32_t at = i * t->width + slot;
     t->element_stiffness[at] = e->element[i].numbers.stiffness;
     t->element_damping[at] = e->element[i].damping;
     t->element_natural[at] = e->element[i].natural;
   }
 }
 
-void strut_lane_tables_put_elements(strut_lane_tables *t, int32_t lane, const strut_state *state) {
+void strut_batch_tables_put_elements(strut_batch_tables *t, int32_t slot,
+                                     const strut_state *state) {
   for (int32_t i = 0; i < t->first->elements.count; i++) {
-    int32_t at = i * t->width + lane;
+    int32_t at = i * t->width + slot;
     t->element_turn[at] = state->element_turn[i];
     t->element_acts[at] = state->element_acts[i];
     t->element_piece[at] = state->element_piece[i];
   }
 }
 
-void strut_lane_tables_get_elements(const strut_lane_tables *t, int32_t lane, strut_state *state) {
+void strut_batch_tables_get_elements(const strut_batch_tables *t, int32_t slot,
+                                     strut_state *state) {
   for (int32_t i = 0; i < t->first->elements.count; i++)
-    state->element_turn[i] = t->element_turn[i * t->width + lane];
+    state->element_turn[i] = t->element_turn[i * t->width + slot];
 }
 
-void strut_lane_tables_fill(strut_lane_tables *t, int32_t lane, const strut_model *m) {
+void strut_batch_tables_fill(strut_batch_tables *t, int32_t slot, const strut_model *m) {
   const strut_member_table *s = &m->members;
   int32_t width = t->width;
   assert(strut_laws_within(m->laws, known));
-  t->model[lane] = m;
-  spread(t->stiffness, width, lane, s->stiffness, s->slots);
-  spread(t->damping, width, lane, s->damping, s->slots);
-  spread(t->rest0, width, lane, s->rest, s->slots);
-  spread(t->rest, width, lane, s->rest, s->slots);
-  spread(t->rest_rate, width, lane, NULL, s->slots);
-  spread(t->slack_length_threshold, width, lane, s->slack, s->slots);
-  spread(t->slack_force_threshold, width, lane, s->slack, s->slots);
-  spread(t->constant, width, lane, m->constant_force, m->length);
-  spread(t->load_x, width, lane, m->loads.x, m->loads.count);
-  spread(t->load_y, width, lane, m->loads.y, m->loads.count);
-  spread(t->inverse, width, lane, m->mass->inverse, m->length);
+  t->model[slot] = m;
+  spread(t->stiffness, width, slot, s->stiffness, s->slots);
+  spread(t->damping, width, slot, s->damping, s->slots);
+  spread(t->rest0, width, slot, s->rest, s->slots);
+  spread(t->rest, width, slot, s->rest, s->slots);
+  spread(t->rest_rate, width, slot, NULL, s->slots);
+  spread(t->slack_length_threshold, width, slot, s->slack, s->slots);
+  spread(t->slack_force_threshold, width, slot, s->slack, s->slots);
+  spread(t->constant, width, slot, m->constant_force, m->length);
+  spread(t->load_x, width, slot, m->loads.x, m->loads.count);
+  spread(t->load_y, width, slot, m->loads.y, m->loads.count);
+  spread(t->inverse, width, slot, m->mass->inverse, m->length);
   for (int c = 0; c < 2 && !m->mass->diagonal; c++) {
     const strut_mass_operator *op = &m->mass->coordinate[c];
-    spread(t->block_inverse[c], width, lane, op->block_inverse, entries_of(op));
+    spread(t->block_inverse[c], width, slot, op->block_inverse, entries_of(op));
   }
-  fill_elements(t, lane, &m->elements);
-  fill_ground(t, lane, &m->contacts);
-  fill_signals(t, lane, m);
+  fill_elements(t, slot, &m->elements);
+  fill_ground(t, slot, &m->contacts);
+  fill_signals(t, slot, m);
 }
 
-void strut_lane_tables_copy(strut_lane_tables *t, int32_t to, int32_t from) {
+void strut_batch_tables_copy(strut_batch_tables *t, int32_t to, int32_t from) {
   table list[TABLES];
   list_tables(t, list);
   t->model[to] = t->model[from];
   for (int i = 0; i < TABLES; i++)
     for (int32_t row = 0; row < list[i].rows; row++) {
-      double *lanes = *list[i].at + row * t->width;
-      lanes[to] = lanes[from];
+      double *slots = *list[i].at + row * t->width;
+      slots[to] = slots[from];
     }
 }

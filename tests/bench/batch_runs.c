@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tests/bench/lanes.h"
+#include "tests/bench/batch_runs.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
 
-#include "engine/integrate/lanes/batch.h"
+#include "engine/integrate/batch/batch.h"
 #include "engine/run/simulate.h"
 #include "tests/bench/scenes.h"
 
@@ -26,7 +26,7 @@ typedef struct lane {
 
 /* A batch and states of its own for it. */
 typedef struct together {
-  lane lanes[STRUT_MOST_LANES];
+  lane lanes[STRUT_BATCH_MOST];
   strut_batch *batch;
 } together;
 
@@ -59,7 +59,7 @@ static bool add_elements(strut_scene *scene) {
 
 static bool elements; /* the crawler with hinges and stops */
 
-static bool lane_make(lane *it, int i, const strut_integrator *method, double step, bool ledger) {
+static bool batch_make(lane *it, int i, const strut_integrator *method, double step, bool balance) {
   *it = (lane){0};
   strut_experiment experiment = strut_experiment_default();
   experiment.step = step;
@@ -70,24 +70,24 @@ static bool lane_make(lane *it, int i, const strut_integrator *method, double st
       strut_state_create(it->model, &it->state, NULL) != STRUT_OK ||
       !(it->workspace = method->create(it->model, it->state, &settings)))
     return false;
-  it->state->ledger = ledger;
+  it->state->balance = balance;
   if (method->restart) method->restart(it->model, it->state, it->workspace, step);
   return true;
 }
 
-static void lane_free(lane *it) {
+static void batch_free(lane *it) {
   strut_state_free(it->state);
   strut_model_free(it->model);
   strut_setup_free(&it->setup);
 }
 
 static bool together_make(together *it, int w, const strut_integrator *method, double step,
-                          bool ledger) {
+                          bool balance) {
   bool good = true;
-  for (int i = 0; i < STRUT_MOST_LANES; i++)
-    good &= lane_make(&it->lanes[i], i, method, step, ledger);
+  for (int i = 0; i < STRUT_BATCH_MOST; i++)
+    good &= batch_make(&it->lanes[i], i, method, step, balance);
   it->batch = good && w && widths[w] <= strut_batch_widest()
-                  ? strut_batch_create(it->lanes[0].model, method, widths[w], ledger)
+                  ? strut_batch_create(it->lanes[0].model, method, widths[w], balance)
                   : NULL;
   for (int32_t l = 0; l < widths[w] && it->batch; l++) {
     strut_batch_fill(it->batch, l, it->lanes[l].model, step);
@@ -106,7 +106,7 @@ static void together_step(together *it, int32_t width, const strut_integrator *m
     return;
   }
   for (int64_t end = first->step + count; first->step < end;) {
-    int64_t left[STRUT_MOST_LANES];
+    int64_t left[STRUT_BATCH_MOST];
     for (int32_t l = 0; l < width; l++) left[l] = l ? INT64_MAX : end - first->step;
     strut_batch_advance(it->batch, left);
     strut_batch_count(it->batch, 0, first);
@@ -114,13 +114,13 @@ static void together_step(together *it, int32_t width, const strut_integrator *m
 }
 
 /* One method: a run alone, and batches of each width. */
-static void compare(int m, bool ledger, int repeats) {
+static void compare(int m, bool balance, int repeats) {
   static double times[WIDTHS][MOST];
   static together all[WIDTHS];
   const strut_integrator *method = strut_integrator_find(methods[m]);
   bool good = true;
   const int64_t steps = 5000;
-  for (int w = 0; w < WIDTHS; w++) good &= together_make(&all[w], w, method, step_of[m], ledger);
+  for (int w = 0; w < WIDTHS; w++) good &= together_make(&all[w], w, method, step_of[m], balance);
   for (int r = -1; r < repeats && good; r++) /* the first round is for warming up */
     for (int w = 0; w < WIDTHS; w++) {
       if (w && !all[w].batch) continue;
@@ -132,12 +132,12 @@ static void compare(int m, bool ledger, int repeats) {
     if (w && !all[w].batch) continue;
     qsort(times[w], (size_t)repeats, sizeof times[w][0], ascending);
     double typical = times[w][repeats / 2];
-    printf("  %-14s %-8s %5d %-6s %10.1f %10.2f\n", methods[m], ledger ? "ledger" : "", widths[w],
+    printf("  %-14s %-8s %5d %-6s %10.1f %10.2f\n", methods[m], balance ? "balance" : "", widths[w],
            kinds[w], typical, times[0][repeats / 2] / typical);
   }
   for (int w = 0; w < WIDTHS; w++) {
     strut_batch_free(all[w].batch);
-    for (int i = 0; i < STRUT_MOST_LANES; i++) lane_free(&all[w].lanes[i]);
+    for (int i = 0; i < STRUT_BATCH_MOST; i++) batch_free(&all[w].lanes[i]);
   }
 }
 
@@ -173,19 +173,19 @@ static double time_points(points *all, int32_t width, bool halves) {
                                              .result = take_result,
                                              .example = all->at[0].model,
                                              .integrator = all->at[0].setup.experiment.integrator,
-                                             .without_ledger = all->options.without_ledger,
+                                             .without_balance = all->options.without_balance,
                                              .width = width,
                                              .halves = halves});
   return POINTS / (seconds() - start);
 }
 
-static void compare_points(int m, bool ledger, int repeats) {
+static void compare_points(int m, bool balance, int repeats) {
   static points all;
   static double rates[WIDTHS][MOST];
   bool good = true;
-  all = (points){.options = {.without_ledger = !ledger}};
+  all = (points){.options = {.without_balance = !balance}};
   for (int i = 0; i < POINTS; i++) {
-    good &= lane_make(&all.at[i], 2 * i, strut_integrator_find(methods[m]), step_of[m], ledger);
+    good &= batch_make(&all.at[i], 2 * i, strut_integrator_find(methods[m]), step_of[m], balance);
     all.at[i].setup.experiment.integrator = methods[m];
     all.at[i].setup.experiment.step = step_of[m];
     all.at[i].setup.experiment.measure_last = 0.1;
@@ -198,22 +198,23 @@ static void compare_points(int m, bool ledger, int repeats) {
     qsort(rates[w], (size_t)repeats, sizeof rates[w][0], ascending);
     double typical = rates[w][repeats / 2];
     printf("  %-14s %-8s %5d %-6s %10.1f %10.2f\n", all.failed ? "FAILED" : methods[m],
-           ledger ? "ledger" : "", widths[w], kinds[w], typical, typical / rates[0][repeats / 2]);
+           balance ? "balance" : "", widths[w], kinds[w], typical, typical / rates[0][repeats / 2]);
   }
-  for (int i = 0; i < POINTS; i++) lane_free(&all.at[i]);
+  for (int i = 0; i < POINTS; i++) batch_free(&all.at[i]);
 }
 
 static void compare_all(int repeats) {
   printf("\nlanes: the crawler%s, steps of 0.1 ms\n  %-14s %-8s %-12s %10s %10s\n",
          elements ? " with hinges and stops" : "", "", "", "lanes", "ns/step", "times");
   for (int m = 0; m < METHODS; m++)
-    for (int ledger = 0; ledger < 2; ledger++) compare(m, ledger, repeats);
+    for (int balance = 0; balance < 2; balance++) compare(m, balance, repeats);
   printf("  whole runs of 1 s%23s\n", "points/s");
   for (int m = 0; m < METHODS; m++)
-    for (int ledger = 0; ledger < 2; ledger++) compare_points(m, ledger, repeats > 5 ? 5 : repeats);
+    for (int balance = 0; balance < 2; balance++)
+      compare_points(m, balance, repeats > 5 ? 5 : repeats);
 }
 
-void bench_lanes(int repeats) {
+void bench_batch(int repeats) {
   for (int with = 0; with < 2; with++) {
     elements = with;
     compare_all(repeats);

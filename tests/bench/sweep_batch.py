@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Points of a sweep per second of CPU, with lanes and without, measured in turn in one run: the crawler
+# Points of a sweep per second of CPU, with batch and without, measured in turn in one run: the crawler
 # at the paper's numerics (rk4, 0.1 ms), and by verlet-events, on one thread.
 #
-#   python3 sweep_lanes.py STRUT [POINTS [PERIODS]]
+#   python3 sweep_batch.py STRUT [POINTS [PERIODS]]
 import os
 import resource
 import shutil
@@ -17,7 +17,7 @@ model = os.path.realpath(os.path.join(os.path.dirname(__file__), "../../models/c
 REPEATS = 3
 
 STUDY = """strut: 1
-study: lanes
+study: batch
 model: MODEL
 axes:
   - frequency: {from: 5 Hz, to: 15 Hz, count: POINTS}
@@ -27,12 +27,12 @@ keep: [velocity, periods]
 """
 
 
-def seconds(work, lanes):
+def seconds(work, batch):
     folder = os.path.join(work, "out")
     shutil.rmtree(folder, ignore_errors=True)
     before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     subprocess.run([strut, "sweep", "study.yaml", "-o", folder, "--threads", "1", "--quiet"] +
-                   (["--lanes", str(lanes)] if lanes else []), cwd=work, check=True)
+                   (["--batch", str(batch)] if batch else []), cwd=work, check=True)
     spent = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
     with open(os.path.join(folder, "table.csv"), "rb") as file:
         return spent, file.read()
@@ -48,12 +48,12 @@ for name, solver in (("rk4", ""), ("verlet-events",
                    .replace("SOLVER", solver).replace("PERIODS", str(periods)))
     best, tables = {}, set()
     for _ in range(REPEATS):
-        for lanes in (1, 2, 4, 0):
-            spent, table = seconds(work, lanes)
-            best[lanes] = min(spent, best.get(lanes, spent))
+        for batch in (1, 2, 4, 0):
+            spent, table = seconds(work, batch)
+            best[batch] = min(spent, best.get(batch, spent))
             tables.add(table)
-    for lanes, spent in best.items():
-        print(f"  {name:14} lanes {lanes or 'as is good'!s:10} {points / spent:8.1f}  "
+    for batch, spent in best.items():
+        print(f"  {name:14} batch {batch or 'as is good'!s:10} {points / spent:8.1f}  "
               f"x {best[1] / spent:.2f}")
     if len(tables) != 1:
         sys.exit("the tables differ")

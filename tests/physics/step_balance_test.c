@@ -44,7 +44,7 @@ static void check_kernel(strut_small_level level, const char *name) {
   if (level == STRUT_SMALL_NONE) m.model->small = NULL;
   if (level == STRUT_SMALL_NONE || (m.model->small && m.model->small->level >= level)) {
     if (m.model->small) m.model->small->level = level;
-    m.state->ledger = true;
+    m.state->balance = true;
     motion_steps(&m, SETTLED);
     for (int n = 0; n < STEPS; n++) {
       memcpy(before, m.state->work, sizeof before);

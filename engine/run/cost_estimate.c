@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/run/plan.h"
+#include "engine/run/cost_estimate.h"
 
 #include <string.h>
 
@@ -7,7 +7,7 @@
 #include "engine/model/mass.h"
 #include "engine/scene/signal_program.h"
 
-static const strut_plan_term terms[] = {
+static const strut_cost_term terms[] = {
     {STRUT_TERM_MEMBERS, "member springs", "a member", false},
     {STRUT_TERM_DAMPING, "member dampers", "a member with damping", false},
     {STRUT_TERM_SLACK, "slack test", "a cable", false},
@@ -35,72 +35,75 @@ static const strut_plan_term terms[] = {
     {STRUT_TERM_UNBALANCE, "unbalances", "a rotating mass", false},
     {STRUT_TERM_SLIDING_MASS, "sliding masses", "a slider that moves", false},
 };
-_Static_assert(sizeof terms / sizeof terms[0] == STRUT_PLAN_TERMS, "one for each term");
+_Static_assert(sizeof terms / sizeof terms[0] == STRUT_COST_TERMS, "one for each term");
 
-static void count_elements(const strut_model *model, strut_plan *plan) {
+static void count_elements(const strut_model *model, strut_cost_estimate *estimate) {
   const strut_scene *scene = model->scene;
-  plan->nodes = scene->node_count;
-  for (int32_t i = 0; i < 2 * model->node_count; i++) plan->degrees_of_freedom += !model->fixed[i];
+  estimate->nodes = scene->node_count;
+  for (int32_t i = 0; i < 2 * model->node_count; i++)
+    estimate->degrees_of_freedom += !model->fixed[i];
   for (size_t j = 0; j < scene->member_count; j++) {
-    plan->bars += scene->members[j].kind == STRUT_BAR;
-    plan->springs += scene->members[j].kind == STRUT_SPRING;
-    plan->cables += scene->members[j].kind == STRUT_CABLE;
+    estimate->bars += scene->members[j].kind == STRUT_BAR;
+    estimate->springs += scene->members[j].kind == STRUT_SPRING;
+    estimate->cables += scene->members[j].kind == STRUT_CABLE;
   }
   for (size_t j = 0; j < scene->member_count; j++) {
     const strut_member *m = &scene->members[j];
-    plan->running_cables += m->guide_count > 0;
-    plan->laws += m->law.kind != STRUT_LAW_LINEAR || m->law.carries == STRUT_CARRIES_COMPRESSION;
-    plan->stops += (size_t)(m->shortest > 0.0) + (size_t)(m->longest > 0.0);
+    estimate->running_cables += m->guide_count > 0;
+    estimate->laws +=
+        m->law.kind != STRUT_LAW_LINEAR || m->law.carries == STRUT_CARRIES_COMPRESSION;
+    estimate->stops += (size_t)(m->shortest > 0.0) + (size_t)(m->longest > 0.0);
   }
   for (int32_t i = 0; i < model->elements.count; i++)
-    plan->reeled += model->elements.element[i].law == STRUT_LAW_AXIAL;
-  plan->hinges = scene->hinge_count;
-  plan->cells = scene->cell_count;
-  plan->collisions = scene->collision_count;
-  plan->breakables = (size_t)model->elements.breakable_count;
-  plan->contacts = (size_t)model->contacts.count;
-  plan->actuators = scene->actuator_count;
-  plan->loads = scene->load_count;
-  plan->bytes = model->arena.bytes + sizeof *model;
+    estimate->reeled += model->elements.element[i].law == STRUT_LAW_AXIAL;
+  estimate->hinges = scene->hinge_count;
+  estimate->cells = scene->cell_count;
+  estimate->collisions = scene->collision_count;
+  estimate->breakables = (size_t)model->elements.breakable_count;
+  estimate->contacts = (size_t)model->contacts.count;
+  estimate->actuators = scene->actuator_count;
+  estimate->loads = scene->load_count;
+  estimate->bytes = model->arena.bytes + sizeof *model;
 }
 
 /* Elements are one term of the model, and one line here for each kind of them. */
-static bool has_element(const strut_plan *plan, const char *name) {
+static bool has_element(const strut_cost_estimate *estimate, const char *name) {
   const struct {
     const char *name;
     size_t count;
-  } kinds[] = {{"running cables", plan->running_cables},
-               {"member laws", plan->laws},
-               {"reeled members", plan->reeled},
-               {"stops", plan->stops},
-               {"hinges", plan->hinges},
-               {"cells", plan->cells},
-               {"collisions", plan->collisions},
-               {"driven rest lengths", plan->actuators},
-               {"breaks and releases", plan->breakables}};
+  } kinds[] = {{"running cables", estimate->running_cables},
+               {"member laws", estimate->laws},
+               {"reeled members", estimate->reeled},
+               {"stops", estimate->stops},
+               {"hinges", estimate->hinges},
+               {"cells", estimate->cells},
+               {"collisions", estimate->collisions},
+               {"driven rest lengths", estimate->actuators},
+               {"breaks and releases", estimate->breakables}};
   for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++)
     if (strcmp(kinds[i].name, name) == 0) return kinds[i].count > 0;
   return true;
 }
 
-strut_status strut_plan_describe(const strut_model *model, strut_plan *plan, strut_error *error) {
-  *plan = (strut_plan){0};
-  count_elements(model, plan);
-  for (int i = 0; i < STRUT_PLAN_TERMS; i++) {
-    plan->terms[i] = terms[i];
-    plan->terms[i].in = model->plan & terms[i].term && has_element(plan, terms[i].name);
+strut_status strut_cost_estimate_describe(const strut_model *model, strut_cost_estimate *estimate,
+                                          strut_error *error) {
+  *estimate = (strut_cost_estimate){0};
+  count_elements(model, estimate);
+  for (int i = 0; i < STRUT_COST_TERMS; i++) {
+    estimate->terms[i] = terms[i];
+    estimate->terms[i].in = model->terms & terms[i].term && has_element(estimate, terms[i].name);
   }
   if (!model->mass) return STRUT_OK;
-  plan->runnable = true;
-  plan->feedback = strut_scene_has_feedback(model->scene);
-  plan->mass_nonzeros = model->mass->matrix_nonzeros;
-  plan->factor_nonzeros = model->mass->factor_nonzeros;
-  plan->dense_entries = model->mass->dense_entries;
+  estimate->runnable = true;
+  estimate->feedback = strut_scene_has_feedback(model->scene);
+  estimate->mass_nonzeros = model->mass->matrix_nonzeros;
+  estimate->factor_nonzeros = model->mass->factor_nonzeros;
+  estimate->dense_entries = model->mass->dense_entries;
   strut_step_limit limit;
   strut_status status = strut_step_limit_estimate(model, &limit, error);
-  plan->largest_frequency = limit.largest_frequency;
-  plan->step_limit = limit.limit;
-  plan->limits = limit;
-  plan->step_limit_exact = limit.exact;
+  estimate->largest_frequency = limit.largest_frequency;
+  estimate->step_limit = limit.limit;
+  estimate->limits = limit;
+  estimate->step_limit_exact = limit.exact;
   return status;
 }

@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** Size of a model, its terms and its step limits. */
-#ifndef STRUT_ENGINE_RUN_PLAN_H
-#define STRUT_ENGINE_RUN_PLAN_H
+#ifndef STRUT_ENGINE_RUN_COST_ESTIMATE_H
+#define STRUT_ENGINE_RUN_COST_ESTIMATE_H
 
 #include "engine/integrate/limit/step_limit.h"
 
 /** A term of the model, and whether the model evaluates it. */
-typedef struct strut_plan_term {
+typedef struct strut_cost_term {
   strut_term term;
   const char *name; /* "member dampers" */
   const char *why;  /* what in a scene requires it: "a member with damping" */
   bool in;
-} strut_plan_term;
+} strut_cost_term;
 
-enum { STRUT_PLAN_TERMS = 25 };
+enum { STRUT_COST_TERMS = 25 };
 
-typedef struct strut_plan {
+typedef struct strut_cost_estimate {
   size_t nodes, degrees_of_freedom, bars, springs, cables, contacts, actuators, loads;
   size_t hinges, running_cables, laws, stops; /* laws: members with another law than the linear */
   size_t reeled;            /* members with an axial_stiffness whose rest length is driven */
@@ -28,14 +28,15 @@ typedef struct strut_plan {
   double step_limit;        /* largest stable RK4 step, contact stiffness and damping counted [s] */
   strut_step_limit limits;  /* of every method: strut_step_limit_of_method */
   bool step_limit_exact;    /* from all eigenvalues; else within 1 %, or limits.bound */
-  strut_plan_term terms[STRUT_PLAN_TERMS];
+  strut_cost_term terms[STRUT_COST_TERMS];
   size_t cells, collisions;
   size_t breakables; /* members and hinges that may break or are released */
   bool feedback;     /* signals follow sensors, which frequency and step limits leave out */
-} strut_plan;
+} strut_cost_estimate;
 
-/** Fills the plan of a compiled model. */
-STRUT_API strut_status strut_plan_describe(const strut_model *model, strut_plan *plan,
-                                           strut_error *error);
+/** Estimates the cost of a compiled model. */
+STRUT_API strut_status strut_cost_estimate_describe(const strut_model *model,
+                                                    strut_cost_estimate *estimate,
+                                                    strut_error *error);
 
 #endif

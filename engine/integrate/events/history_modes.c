@@ -13,9 +13,10 @@ static const double AT_YIELD = 1e-9, ROUNDING = 1e-12;
 /* Tensions of a cable that becomes taut are compared after this part of a step. */
 static const double SOON = 1e-6;
 
-void strut_memory_list(const strut_model *model, const strut_state *state, strut_event_stepper *l) {
+void strut_history_list(const strut_model *model, const strut_state *state,
+                        strut_event_stepper *l) {
   const strut_element_table *t = &model->elements;
-  for (int32_t m = 0; m < t->memory_count && !state->forgetful; m++) {
+  for (int32_t m = 0; m < t->history_count && !state->forgetful; m++) {
     const strut_element *e = &t->element[t->memory[m]];
     for (int32_t k = 0; strut_has_capstan(e) && k + 2 < e->nodes; k++) {
       strut_law_switch slips = {.event = STRUT_EVENT_SLIDER,
@@ -69,8 +70,8 @@ static bool is_taut(const strut_event_stepper *l, int32_t k) {
   return l->acting[whole];
 }
 
-void strut_memory_measure(const strut_model *model, const strut_state *state,
-                          const strut_event_stepper *l, const strut_step_end *end, int32_t k) {
+void strut_history_measure(const strut_model *model, const strut_state *state,
+                           const strut_event_stepper *l, const strut_step_end *end, int32_t k) {
   const strut_law_switch *law = &l->laws[k];
   end->stretch[k] = 1.0;
   end->stretch_rate[k] = 0.0;
@@ -100,7 +101,7 @@ void strut_memory_measure(const strut_model *model, const strut_state *state,
                                  strut_breakable_load(model, state, law->breakable, end->q, end->v);
 }
 
-void strut_memory_thaw(const strut_model *model, strut_state *state, strut_event_stepper *l) {
+void strut_history_thaw(const strut_model *model, strut_state *state, strut_event_stepper *l) {
   for (int32_t k = 0; k < l->law_count; k++) {
     int32_t i = l->laws[k].element;
     if (l->laws[k].event != STRUT_EVENT_SLIDER || is_gone(model, state, i)) continue;
@@ -115,8 +116,8 @@ void strut_memory_thaw(const strut_model *model, strut_state *state, strut_event
   }
 }
 
-void strut_memory_start(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                        int32_t k) {
+void strut_history_start(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                         int32_t k) {
   int32_t i = l->laws[k].element;
   if (l->laws[k].event != STRUT_EVENT_SLIDER || is_gone(model, state, i)) return;
   l->fresh = false;
@@ -132,7 +133,7 @@ void strut_memory_start(const strut_model *model, strut_state *state, strut_even
                    l->now->q);
 }
 
-void strut_memory_drop_gone(const strut_model *model, strut_state *state, strut_event_stepper *l) {
+void strut_history_drop_gone(const strut_model *model, strut_state *state, strut_event_stepper *l) {
   for (int32_t k = 0; k < l->law_count; k++) {
     const strut_law_switch *law = &l->laws[k];
     if (law->element < 0 || law->event != STRUT_EVENT_ACTS) continue;
@@ -142,8 +143,8 @@ void strut_memory_drop_gone(const strut_model *model, strut_state *state, strut_
   }
 }
 
-void strut_memory_apply(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                        int32_t k, double t) {
+void strut_history_apply(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                         int32_t k, double t) {
   const strut_law_switch *law = &l->laws[k];
   l->fresh = false;
   strut_drive_apply(model, state, t); /* a rejected step has been further */
@@ -154,7 +155,7 @@ void strut_memory_apply(const strut_model *model, strut_state *state, strut_even
   }
   if (law->event == STRUT_EVENT_BREAK) {
     strut_breakable_break(model, state, law->breakable, t + state->time_offset);
-    strut_memory_drop_gone(model, state, l);
+    strut_history_drop_gone(model, state, l);
     return;
   }
   if (law->straight) {

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Hot: powers of a small model for the energy ledger, with the bits of the general kernel: members are summed place by
+ * Hot: powers of a small model for the energy balance, with the bits of the general kernel: members are summed place by
  * place of groups of 4, then these places, then contacts in the order of their nodes. Transpositions make what is
  * summed one after the other into lanes of one register each.
  *
  * A sum that begins at 0 is never -0, so nothing is changed by adding 0 of a contact that is open.
  */
-#ifndef STRUT_ENGINE_FORCES_SMALL_LEDGER_H
-#define STRUT_ENGINE_FORCES_SMALL_LEDGER_H
+#ifndef STRUT_ENGINE_FORCES_SMALL_BALANCE_H
+#define STRUT_ENGINE_FORCES_SMALL_BALANCE_H
 
 #include "engine/forces/small_kernel.h"
 
@@ -103,14 +103,14 @@ STRUT_SMALL_INLINE strut_lanes small_quarter(small_row x, int h) {
 }
 
 /* x in the lanes of the bits, else 0 - x, which is no -0 where x is 0. */
-#define SMALL_BOOKED(x, bits) _mm256_blend_pd((strut_lanes){0} - (x), (x), bits)
+#define SMALL_ACCUMULATED(x, bits) _mm256_blend_pd((strut_lanes){0} - (x), (x), bits)
 
 /* The members' powers. */
 STRUT_SMALL_INLINE small_work small_sum_members(const small4_member_powers *m) {
   strut_lanes zero = {0};
   strut_lanes both = m->exchanged + m->lost;
   strut_lanes sum = small_add_rows(zero, small_transpose(m->drive, m->lost, both, zero));
-  sum = SMALL_BOOKED(sum, 0xe);
+  sum = SMALL_ACCUMULATED(sum, 0xe);
   strut_lanes low = _mm256_blend_pd(_mm256_permute4x64_pd(sum, 0x40), zero, 0x6);
   return small_work_join(low, _mm256_blend_pd(sum, zero, 0xb));
 }
@@ -119,7 +119,7 @@ STRUT_SMALL_INLINE small_work small_sum_members(const small4_member_powers *m) {
 STRUT_SMALL_INLINE void small_add_contacts(const small_run *r, const small_touch *t,
                                            small_work *power) {
   strut_lanes sum = small_work_high(*power), low = small_work_low(*power), belt = {0};
-  bool moves = r->plan & STRUT_SMALL_BELT;
+  bool moves = r->terms & STRUT_SMALL_BELT;
   for (int h = 0; h < 2; h++) {
     if (!(t->touching >> 4 * h & 0xf)) continue;
     if (moves) belt = small_quarter(t->belt, h);
@@ -127,7 +127,7 @@ STRUT_SMALL_INLINE void small_add_contacts(const small_run *r, const small_touch
         sum, small_transpose(small_quarter(t->minus_damped, h), small_quarter(t->minus_rubbed, h),
                              small_quarter(t->exchanged, h), belt));
   }
-  sum = SMALL_BOOKED(sum, 0xc);
+  sum = SMALL_ACCUMULATED(sum, 0xc);
   if (moves) low = _mm256_blend_pd(low, _mm256_permute4x64_pd(sum, 0x30), 0x4);
   *power = small_work_join(low, _mm256_blend_pd(sum, (strut_lanes){0}, 0x8));
 }
@@ -141,13 +141,13 @@ typedef struct small_stage_powers {
 /* Here the compiler has x in memory: powers wait for the end of the step, and registers are wanted for the motion. */
 #define SMALL_WAITS_IN_MEMORY(x) __asm__ volatile("" : "+m"(x))
 
-STRUT_SMALL_INLINE void small_book_touch(const small_run *r, const small_touch *t,
-                                         small_stage_powers *to) {
+STRUT_SMALL_INLINE void small_accumulate_touch(const small_run *r, const small_touch *t,
+                                               small_stage_powers *to) {
   to->minus_damped = t->minus_damped, to->minus_rubbed = t->minus_rubbed;
-  if (r->plan & STRUT_SMALL_BELT) to->belt = t->belt;
+  if (r->terms & STRUT_SMALL_BELT) to->belt = t->belt;
 }
 
-/* The weighted sums of what stages have: of members; of contacts, see step_ledger_contacts; of magnitudes of two. */
+/* The weighted sums of what stages have: of members; of contacts, see step_balance_contacts; of magnitudes of two. */
 STRUT_SMALL_INLINE strut_lanes small_weigh(strut_lanes k1, strut_lanes k2, strut_lanes k3,
                                            strut_lanes k4) {
   return (k1 + k4) + 2.0 * (k2 + k3);
@@ -174,23 +174,23 @@ STRUT_SMALL_INLINE small_row small_turnover(const small_stage_powers *k, bool mo
 STRUT_SMALL_INLINE strut_lanes small_fold(strut_lanes a, strut_lanes b) {
   return _mm256_permute2f128_pd(a, b, 0x20) + _mm256_permute2f128_pd(a, b, 0x31);
 }
-/* The sums of the lanes of a, b, c and d, in the order of step_ledger_add. */
+/* The sums of the lanes of a, b, c and d, in the order of step_balance_add. */
 STRUT_SMALL_INLINE strut_lanes small_sum_lanes(strut_lanes a, strut_lanes b, strut_lanes c,
                                                strut_lanes d) {
   strut_lanes ac = small_fold(a, c), bd = small_fold(b, d);
   return _mm256_unpacklo_pd(ac, bd) + _mm256_unpackhi_pd(ac, bd);
 }
 
-/* See strut_step_ledger_end; k: of the four stages. */
+/* See strut_step_balance_end; k: of the four stages. */
 STRUT_SMALL_INLINE void small_end_stages(const small_run *r, const small_stage_powers *k,
                                          double sixth, small_work *work) {
   strut_lanes zero = {0}, belt = zero, damped = zero, rubbed = zero, turnover = zero;
-  bool moves = r->plan & STRUT_SMALL_BELT;
+  bool moves = r->terms & STRUT_SMALL_BELT;
 #define SMALL_WEIGH(weigh, field) weigh(k[0].field, k[1].field, k[2].field, k[3].field)
   strut_lanes drive = SMALL_WEIGH(small_weigh, members.drive),
               lost = SMALL_WEIGH(small_weigh, members.lost);
   strut_lanes driven = SMALL_WEIGH(small_weigh, members.exchanged);
-  if (r->plan & STRUT_TERM_CONTACT) {
+  if (r->terms & STRUT_TERM_CONTACT) {
     damped = small_join_halves(SMALL_WEIGH(small_weigh_rows, minus_damped));
     rubbed = small_join_halves(SMALL_WEIGH(small_weigh_rows, minus_rubbed));
     turnover = small_join_halves(

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* rk4 for batches of 8 lanes in registers of 4. */
-#define STRUT_LANE_WIDTH 8
-#define STRUT_LANE_PARTS 2
+#define STRUT_BATCH_WIDTH 8
+#define STRUT_BATCH_PARTS 2
 #if defined(__x86_64__)
-#define STRUT_LANE_TARGET __attribute__((target("avx2")))
+#define STRUT_BATCH_TARGET __attribute__((target("avx2")))
 #endif
-#include "engine/integrate/lanes/batch_rk4.h"
+#include "engine/integrate/batch/batch_rk4.h"
 
 void strut_batch_rk4_8_halves(strut_batch *batch, int64_t count) { batch_rk4(batch, count); }
