@@ -8,7 +8,7 @@
 
 #include "engine/forces/discrete_gradient.h"
 #include "engine/forces/tangent.h"
-#include "engine/model/refactor.h"
+#include "engine/model/linear_solver.h"
 #include "engine/model/sparse.h"
 
 typedef struct strut_midpoint_matrix {

@@ -10,6 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "engine/base/memory.h"
 #include "engine/base/status.h"
 
 /** Lower triangle of a symmetric n x n matrix, compressed columns, rows ascending, diagonal first. */
@@ -81,5 +82,18 @@ bool strut_ldl_solve_many(strut_ldl *ldl, double *b, size_t count);
  * Higham); it is seldom off by more than a factor of 3. Solutions lose that many digits.
  */
 double strut_ldl_rcond(strut_ldl *ldl);
+
+/* L D L' of a positive definite matrix whose numbers change and whose pattern stays: ordered and
+ * analysed once, then factorised again and again without asking for memory.
+ */
+
+typedef struct strut_refactor strut_refactor;
+
+/** For matrices with the pattern of this one, whose numbers do not matter. NULL: out of memory. */
+strut_refactor *strut_refactor_create(const strut_sparse *pattern, strut_arena *arena);
+/** -1, or the row at which the matrix shows not to be positive definite: there is no factor then. */
+int32_t strut_refactor_apply(strut_refactor *refactor, const strut_sparse *matrix);
+/** b (n) becomes A^-1 b, in the matrix's own order. */
+void strut_refactor_solve(strut_refactor *refactor, double *b);
 
 #endif

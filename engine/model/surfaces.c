@@ -3,8 +3,10 @@
 
 #include <math.h>
 
+#include "engine/base/range_tree.h"
 #include "engine/base/vec.h"
 #include "engine/model/model.h"
+#include "engine/model/pose.h"
 #include "engine/model/surface_search.h"
 #include "engine/scene/profile.h"
 
@@ -180,4 +182,413 @@ bool strut_surfaces_compile(strut_model *model) {
   model->terms |= STRUT_TERM_SURFACES;
   if (t->moves) model->terms |= STRUT_TERM_DRIVE; /* a function of time, too */
   return true;
+}
+
+/* Bounds are widened by this part of the lengths they come from: more than these are rounded by. */
+static const double ROUNDING = 1e-14;
+
+/* ---- bounds ---- */
+
+static strut_line_bounds bound_lines(const strut_facet *first, size_t count) {
+  strut_line_bounds b = {.normal_low = {1.0, 1.0}, .normal_high = {-1.0, -1.0}};
+  const strut_facet *among = first + count / 2;
+  b.middle[0] = among->point[0], b.middle[1] = among->point[1];
+  b.least = HUGE_VAL, b.most = -HUGE_VAL;
+  for (size_t k = 0; k < count; k++) {
+    const strut_facet *f = first + k;
+    double distance = strut_facet_across(f, b.middle);
+    double wide = ROUNDING * strut_distance(f->point, b.middle);
+    b.least = fmin(b.least, distance - wide), b.most = fmax(b.most, distance + wide);
+    for (int c = 0; c < 2; c++) {
+      b.normal_low[c] = fmin(b.normal_low[c], f->axes.normal[c]);
+      b.normal_high[c] = fmax(b.normal_high[c], f->axes.normal[c]);
+    }
+  }
+  return b;
+}
+
+/* No facet of them is further on the outer side of its line than `high`, none less than `low`. */
+static void bound_across(const strut_line_bounds *b, const double p[2], double *low, double *high) {
+  double x = p[0] - b->middle[0], y = p[1] - b->middle[1];
+  double wide = ROUNDING * (fabs(x) + fabs(y));
+  double left = x * b->normal_low[0], right = x * b->normal_high[0];
+  double down = y * b->normal_low[1], up = y * b->normal_high[1];
+  *low = (left < right ? left : right) + (down < up ? down : up) + b->least - wide;
+  *high = (left < right ? right : left) + (down < up ? up : down) + b->most + wide;
+}
+
+static void reach_of(const strut_surface *s, int32_t k, double *low, double *high) {
+  *low = k == 0 ? -s->before : 0.0;
+  *high = s->facet[k].length + (k + 1 == s->facets ? s->beyond : 0.0);
+}
+
+/* Widens a box by a facet, as far as that reaches. */
+static void add_facet(const strut_surface *s, int32_t k, double box_low[2], double box_high[2]) {
+  const strut_facet *f = &s->facet[k];
+  double end[2];
+  reach_of(s, k, &end[0], &end[1]);
+  for (int e = 0; e < 2; e++)
+    for (int c = 0; c < 2; c++) {
+      double t = f->axes.tangent[c], x = f->point[c] + (t != 0.0 ? end[e] * t : 0.0);
+      double wide = ROUNDING * (fabs(f->point[0]) + fabs(f->point[1]) + f->length);
+      box_low[c] = fmin(box_low[c], x - wide), box_high[c] = fmax(box_high[c], x + wide);
+    }
+}
+
+/* The least distance of p from a box. */
+static double box_distance(const double low[2], const double high[2], const double p[2]) {
+  double x = fmax(0.0, fmax(low[0] - p[0], p[0] - high[0]));
+  double y = fmax(0.0, fmax(low[1] - p[1], p[1] - high[1])), size = sqrt(x * x + y * y);
+  return size - ROUNDING * (size + fabs(p[0]) + fabs(p[1]));
+}
+
+static void bound_facets(const strut_surface *s, strut_facet_bounds *node, strut_subtree r) {
+  strut_facet_bounds *b = &node[r.at];
+  for (int c = 0; c < 2; c++) b->low[c] = HUGE_VAL, b->high[c] = -HUGE_VAL;
+  for (size_t k = r.begin; k < r.end; k++) add_facet(s, (int32_t)k, b->low, b->high);
+  b->lines = bound_lines(&s->facet[r.begin], r.end - r.begin);
+  for (int i = 0; i < 2 && !strut_subtree_is_leaf(r); i++)
+    bound_facets(s, node, strut_subtree_child(r, i));
+}
+
+bool strut_surface_bound_facets(strut_arena *arena, strut_surface *s) {
+  size_t count = (size_t)s->facets;
+  if (count <= STRUT_SUBTREE_LEAF) return true;
+  strut_facet_bounds *node = strut_arena_allocate(arena, strut_subtree_nodes(count), sizeof *node);
+  if (node) bound_facets(s, node, (strut_subtree){0, 0, count});
+  s->bounds = node;
+  return node != NULL;
+}
+
+/* ---- pieces ---- */
+
+/* Bounds of some pieces, of their first facets, and of their last ones. */
+typedef struct piece_bounds {
+  double low[2], high[2]; /* all facets, as far as they reach [m] */
+  strut_line_bounds first, last;
+} piece_bounds;
+
+/* A tree over some of the pieces. */
+typedef struct piece_tree {
+  size_t count;
+  const int32_t *piece; /* (count) ascending */
+  const piece_bounds *node;
+} piece_tree;
+
+/* A piece that reaches without end has no box, but its line leads away from a point that is far above: trees of one
+   kind each can tell either way. */
+enum { KINDS = 4 };
+struct strut_piece_index {
+  piece_tree tree[KINDS];
+};
+
+static int kind_of(const strut_surface *piece) {
+  return (piece->before == HUGE_VAL) + 2 * (piece->beyond == HUGE_VAL);
+}
+
+/* first, last: the facets at the ends of each piece of the tree. */
+static void bound_pieces(const strut_surface *all, const piece_tree *tree, const strut_facet *first,
+                         const strut_facet *last, piece_bounds *node, strut_subtree r) {
+  size_t count = r.end - r.begin;
+  piece_bounds *b = &node[r.at];
+  b->first = bound_lines(first + r.begin, count);
+  b->last = bound_lines(last + r.begin, count);
+  for (int c = 0; c < 2; c++) b->low[c] = HUGE_VAL, b->high[c] = -HUGE_VAL;
+  for (size_t k = r.begin; k < r.end; k++) {
+    const strut_surface *piece = &all[tree->piece[k]];
+    for (int32_t i = 0; i < piece->facets; i++) add_facet(piece, i, b->low, b->high);
+  }
+  for (int i = 0; i < 2 && !strut_subtree_is_leaf(r); i++)
+    bound_pieces(all, tree, first, last, node, strut_subtree_child(r, i));
+}
+
+/* The tree of one kind of pieces; ends: space for twice as many facets. */
+static bool make_tree(strut_arena *arena, const strut_surface *all, size_t count, int kind,
+                      strut_facet *ends, piece_tree *tree) {
+  size_t n = 0;
+  for (size_t k = 0; k < count; k++) n += kind_of(&all[k]) == kind;
+  if (!n) return true;
+  int32_t *piece = strut_arena_allocate(arena, n, sizeof *piece);
+  piece_bounds *node = strut_arena_allocate(arena, strut_subtree_nodes(n), sizeof *node);
+  if (!piece || !node) return false;
+  *tree = (piece_tree){n, piece, node};
+  for (size_t k = 0, i = 0; k < count; k++) {
+    if (kind_of(&all[k]) != kind) continue;
+    ends[i] = all[k].facet[0], ends[n + i] = all[k].facet[all[k].facets - 1];
+    piece[i++] = (int32_t)k;
+  }
+  bound_pieces(all, tree, ends, ends + n, node, (strut_subtree){0, 0, n});
+  return true;
+}
+
+bool strut_surface_bound_pieces(strut_arena *arena, strut_surface *pieces, size_t count) {
+  if (count <= STRUT_SUBTREE_LEAF) return true;
+  struct strut_piece_index *index = strut_arena_allocate(arena, 1, sizeof *index);
+  strut_facet *ends = strut_allocate(2 * count, sizeof *ends);
+  bool fine = index && ends;
+  for (int kind = 0; kind < KINDS && fine; kind++)
+    fine = make_tree(arena, pieces, count, kind, ends, &index->tree[kind]);
+  for (size_t k = 0; k < count && fine; k++) pieces[k].index = index;
+  strut_release(ends);
+  return fine;
+}
+
+/* ---- searches ---- */
+
+typedef struct facet_search {
+  const strut_surface *surface;
+  const double *p;
+  int32_t except, which;
+  double best;
+  strut_facet_foot foot;
+} facet_search;
+
+static strut_subtree all_facets(const strut_surface *s) {
+  return (strut_subtree){0, 0, (size_t)s->facets};
+}
+
+/* How far inwards all facets of a node are at least, negated: the most that one can be outwards. */
+static double most_across(const facet_search *s, strut_subtree r) {
+  double low, high;
+  bound_across(&s->surface->bounds[r.at].lines, s->p, &low, &high);
+  return high;
+}
+
+static void search_outermost(facet_search *s, strut_subtree r) {
+  if (!s->surface->bounds || strut_subtree_is_leaf(r)) {
+    for (int32_t k = (int32_t)r.begin; k < (int32_t)r.end; k++) {
+      if (k == s->except) continue;
+      double own = strut_facet_across(&s->surface->facet[k], s->p);
+      if (own > s->best || (own == s->best && k < s->which)) s->best = own, s->which = k;
+    }
+    return;
+  }
+  strut_subtree one = strut_subtree_child(r, 0), other = strut_subtree_child(r, 1);
+  double at_one = most_across(s, one), at_other = most_across(s, other);
+  bool turned = at_other > at_one;
+  if (!((turned ? at_other : at_one) < s->best)) search_outermost(s, turned ? other : one);
+  if (!((turned ? at_one : at_other) < s->best)) search_outermost(s, turned ? one : other);
+}
+
+double strut_surface_outermost(const strut_surface *surface, const double p[2], int32_t except,
+                               int32_t *which) {
+  facet_search s = {.surface = surface, .p = p, .except = except, .best = -HUGE_VAL};
+  search_outermost(&s, all_facets(surface));
+  *which = s.which;
+  return s.best;
+}
+
+static strut_facet_foot foot_on(const strut_surface *s, int32_t k, const double p[2]) {
+  const strut_facet *f = &s->facet[k];
+  double low, high, at = strut_facet_along(f, p);
+  reach_of(s, k, &low, &high);
+  double held = at < low ? low : at > high ? high : at;
+  strut_facet_foot foot = {
+      .at = {f->point[0] + held * f->axes.tangent[0], f->point[1] + held * f->axes.tangent[1]},
+      .held = held != at};
+  foot.distance = foot.held ? strut_distance(foot.at, p) : fabs(strut_facet_across(f, p));
+  return foot;
+}
+
+/* The least distance that a facet of a node can have. */
+static double least_distance(const facet_search *s, strut_subtree r) {
+  const strut_facet_bounds *b = &s->surface->bounds[r.at];
+  return box_distance(b->low, b->high, s->p);
+}
+
+static void search_nearest(facet_search *s, strut_subtree r) {
+  if (!s->surface->bounds || strut_subtree_is_leaf(r)) {
+    for (int32_t k = (int32_t)r.begin; k < (int32_t)r.end; k++) {
+      strut_facet_foot foot = foot_on(s->surface, k, s->p);
+      if (foot.distance < s->best || (foot.distance == s->best && k < s->which))
+        s->best = foot.distance, s->which = k, s->foot = foot;
+    }
+    return;
+  }
+  strut_subtree one = strut_subtree_child(r, 0), other = strut_subtree_child(r, 1);
+  double at_one = least_distance(s, one), at_other = least_distance(s, other);
+  bool turned = at_other < at_one;
+  if (!((turned ? at_other : at_one) > s->best)) search_nearest(s, turned ? other : one);
+  if (!((turned ? at_one : at_other) > s->best)) search_nearest(s, turned ? one : other);
+}
+
+int32_t strut_surface_nearest(const strut_surface *surface, const double p[2],
+                              strut_facet_foot *foot) {
+  facet_search s = {.surface = surface, .p = p, .which = -1, .best = HUGE_VAL};
+  search_nearest(&s, all_facets(surface));
+  *foot = s.foot;
+  return s.which;
+}
+
+/* ---- contacts ---- */
+
+int32_t strut_contacts_of_profile(const strut_contact_table *c, int32_t first) {
+  const strut_surface *s = &c->surface[c->surface_of[first]];
+  int32_t last = first + s->pieces - 1;
+  bool whole = s->index && s->piece == 0 && last < c->count && c->at[last] == c->at[first] &&
+               c->surface_of[last] - c->surface_of[first] == last - first;
+  return whole ? s->pieces : 0;
+}
+
+int32_t strut_contacts_end_of_node(const strut_contact_table *c, int32_t first) {
+  int32_t end = first;
+  while (end < c->count && c->at[end] == c->at[first]) {
+    int32_t pieces = strut_contacts_of_profile(c, end);
+    end += pieces ? pieces : 1;
+  }
+  return end;
+}
+
+/* The node of contact i, as its ground sees it. */
+static void place_of(const strut_contact_table *c, int32_t i, const double *q,
+                     const strut_ground_motion *motion, double p[2]) {
+  const strut_ground_motion *own = strut_contact_motion(c, i, motion);
+  p[0] = q[c->at[i]] - (own ? own->place[0] : 0.0);
+  p[1] = q[c->at[i] + 1] - (own ? own->place[1] : 0.0);
+}
+
+typedef struct piece_search {
+  const strut_surface *all;
+  const piece_tree *tree;
+  const double *p;
+  double margin;
+  int32_t first, count, *list;
+} piece_search;
+
+/*
+ * Is no piece of a node of the tree within the margin, and none touched? The gap is not less than the distance from
+ * any of its lines; where it is negative, it is minus the distance from a point of the piece that is no further than
+ * each of them.
+ */
+static bool is_apart(const piece_bounds *b, const double p[2], double margin) {
+  double first, last, unused;
+  bound_across(&b->first, p, &first, &unused);
+  bound_across(&b->last, p, &last, &unused);
+  if (first > margin || last > margin) return true;
+  double deepest = first > last ? -first : -last;
+  return box_distance(b->low, b->high, p) > (deepest > margin ? deepest : margin);
+}
+
+static void search_pieces(piece_search *s, strut_subtree r) {
+  if (is_apart(&s->tree->node[r.at], s->p, s->margin)) return;
+  for (size_t k = r.begin; k < r.end && strut_subtree_is_leaf(r); k++) {
+    const strut_surface *piece = &s->all[s->tree->piece[k]];
+    if (!(strut_facet_across(&piece->facet[0], s->p) > s->margin) &&
+        !(strut_facet_across(&piece->facet[piece->facets - 1], s->p) > s->margin))
+      s->list[s->count++] = s->first + s->tree->piece[k];
+  }
+  for (int i = 0; i < 2 && !strut_subtree_is_leaf(r); i++)
+    search_pieces(s, strut_subtree_child(r, i));
+}
+
+/* Shell's sort, which needs no memory. */
+static void sort_numbers(int32_t *list, int32_t count) {
+  for (int32_t gap = count / 2; gap > 0; gap /= 2)
+    for (int32_t i = gap; i < count; i++) {
+      int32_t number = list[i], at = i;
+      for (; at >= gap && list[at - gap] > number; at -= gap) list[at] = list[at - gap];
+      list[at] = number;
+    }
+}
+
+int32_t strut_contacts_near(const strut_contact_table *c, int32_t first, int32_t end,
+                            const double *q, const strut_ground_motion *motion, double margin,
+                            int32_t *list) {
+  int32_t count = 0;
+  for (int32_t i = first, next; i < end; i = next) {
+    int32_t pieces = strut_contacts_of_profile(c, i);
+    next = i + (pieces ? pieces : 1);
+    if (!pieces) {
+      list[count++] = i;
+      continue;
+    }
+    double p[2];
+    place_of(c, i, q, motion, p);
+    const strut_surface *all = &c->surface[c->surface_of[i]];
+    piece_search s = {all, NULL, p, margin, i, 0, list + count};
+    for (int kind = 0; kind < KINDS; kind++) {
+      s.tree = &all->index->tree[kind];
+      if (s.tree->count) search_pieces(&s, (strut_subtree){0, 0, s.tree->count});
+    }
+    sort_numbers(s.list, s.count);
+    count += s.count;
+  }
+  return count;
+}
+
+int32_t strut_contacts_all_near(const strut_contact_table *c, const double *q,
+                                const strut_ground_motion *motion, int32_t *list) {
+  if (c->surface) return strut_contacts_near(c, 0, c->count, q, motion, 0.0, list);
+  for (int32_t i = 0; i < c->count; i++) list[i] = i;
+  return c->count;
+}
+
+/* ---- the lowest piece ---- */
+
+typedef struct lowest_search {
+  const strut_surface *all;
+  const piece_tree *tree;
+  const double *p;
+  int32_t which;
+  double gap;
+} lowest_search;
+
+/* No piece of a node of the tree has a smaller gap. */
+static double least_gap(const lowest_search *s, strut_subtree r) {
+  const piece_bounds *b = &s->tree->node[r.at];
+  double first, last, unused;
+  bound_across(&b->first, s->p, &first, &unused);
+  bound_across(&b->last, s->p, &last, &unused);
+  double lines = first > last ? first : last, box = box_distance(b->low, b->high, s->p);
+  return lines > 0.0 && box > lines ? box : lines;
+}
+
+static void search_lowest(lowest_search *s, strut_subtree r) {
+  for (size_t i = r.begin; i < r.end && strut_subtree_is_leaf(r); i++) {
+    int32_t k = s->tree->piece[i];
+    strut_contact_pose pose = {.gap = HUGE_VAL};
+    strut_surface_find(&s->all[k], s->p, -1, &pose);
+    if (pose.gap < s->gap || (pose.gap == s->gap && k < s->which)) s->gap = pose.gap, s->which = k;
+  }
+  if (strut_subtree_is_leaf(r)) return;
+  strut_subtree one = strut_subtree_child(r, 0), other = strut_subtree_child(r, 1);
+  double at_one = least_gap(s, one), at_other = least_gap(s, other);
+  bool turned = at_other < at_one;
+  if (!((turned ? at_other : at_one) > s->gap)) search_lowest(s, turned ? other : one);
+  if (!((turned ? at_one : at_other) > s->gap)) search_lowest(s, turned ? one : other);
+}
+
+int32_t strut_surface_lowest(const strut_surface *first, const double p[2], double *gap) {
+  lowest_search s = {first, NULL, p, 0, HUGE_VAL};
+  for (int kind = 0; kind < KINDS; kind++) {
+    s.tree = &first->index->tree[kind];
+    if (s.tree->count) search_lowest(&s, (strut_subtree){0, 0, s.tree->count});
+  }
+  *gap = s.gap;
+  return s.which;
+}
+
+int32_t strut_contacts_lowest(const strut_contact_table *c, int32_t first, const double *q,
+                              const strut_ground_motion *motion, double *gap) {
+  double p[2];
+  place_of(c, first, q, motion, p);
+  return first + strut_surface_lowest(&c->surface[c->surface_of[first]], p, gap);
+}
+
+int32_t strut_contacts_nearest(const strut_contact_table *c, int32_t first, const double *q,
+                               int32_t near[2]) {
+  int32_t ground = c->surface[c->surface_of[first]].ground, i = first;
+  double least[2] = {HUGE_VAL, HUGE_VAL};
+  near[0] = near[1] = first;
+  for (; i < c->count && c->at[i] == c->at[first]; i++) {
+    if (c->surface[c->surface_of[i]].ground != ground) break;
+    double gap = fabs(strut_contact_gap(c, i, q));
+    if (gap < least[0]) {
+      least[1] = least[0], near[1] = near[0];
+      least[0] = gap, near[0] = i;
+    } else if (gap < least[1]) {
+      least[1] = gap, near[1] = i;
+    }
+  }
+  return i;
 }

@@ -2,7 +2,7 @@
 /**
  * What strut needs of the HDF5 library: trajectory.h5 written by a sink, and read back.
  *
- * Only the files named hdf5_* and trajectory_file.c see hdf5.h.
+ * Only the files named hdf5_* and trajectory.c see hdf5.h.
  */
 #ifndef STRUT_ENGINE_OUTPUT_HDF5_LIBRARY_H
 #define STRUT_ENGINE_OUTPUT_HDF5_LIBRARY_H

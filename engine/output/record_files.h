@@ -3,6 +3,9 @@
 #ifndef STRUT_ENGINE_OUTPUT_RECORD_FILES_H
 #define STRUT_ENGINE_OUTPUT_RECORD_FILES_H
 
+#include <stddef.h>
+
+#include "engine/base/memory.h"
 #include "engine/run/recorder.h"
 
 /* ---- CSV: nodes.csv, members.csv, ..., energy.csv, as far as they have channels ---- */
@@ -23,5 +26,20 @@ STRUT_API strut_sink *strut_hdf5_create(const char *directory, const char *scene
 STRUT_API void strut_hdf5_leave_at_exit(void);
 /** Frees the sink; abandons what was not ended. */
 STRUT_API void strut_hdf5_free(strut_sink *sink);
+
+/* A table as figures take it: named columns of numbers or texts. */
+
+typedef struct strut_table_column {
+  const char *name, *unit; /* unit may be "" */
+  const char *const *text; /* (rows) as written; NULL, or NULL entries, if only values are known */
+  const double *value;     /* (rows), NAN for empty cells; NULL: not all are numbers */
+} strut_table_column;
+
+/** Owned by its arena. Zero-initialise. */
+typedef struct strut_table {
+  size_t column_count, row_count;
+  strut_table_column *columns;
+  strut_arena arena;
+} strut_table;
 
 #endif

@@ -6,7 +6,7 @@
 #ifndef STRUT_PARSER_PROGRAM_SWEEP_H
 #define STRUT_PARSER_PROGRAM_SWEEP_H
 
-#include "engine/output/table_data.h"
+#include "engine/output/record_files.h"
 #include "engine/study/results/study_table.h"
 #include "engine/study/search/search.h"
 #include "engine/study/sweep/refine.h"

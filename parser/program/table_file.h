@@ -6,7 +6,7 @@
 #define STRUT_PARSER_PROGRAM_TABLE_FILE_H
 
 #include "engine/base/status.h"
-#include "engine/output/table_data.h"
+#include "engine/output/record_files.h"
 
 /**
  * Reads the file, "-" being the standard input. Messages go to stderr with file, line and column;

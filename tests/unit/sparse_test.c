@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/model/refactor.h"
+#include "engine/model/linear_solver.h"
 #include "engine/model/sparse.h"
 #include "tests/support/check.h"
 #include "tests/support/random.h"

@@ -9,7 +9,6 @@
 #include "engine/output/draw/canvas.h"
 #include "engine/output/draw/chart.h"
 #include "engine/output/draw/legend.h"
-#include "engine/output/figures/scatter_figure.h"
 #include "engine/output/figures/table_parts.h"
 
 static const double EDGE = 5, TITLE = 15, LOWEST = 165, HIGHEST = 260;

@@ -9,7 +9,7 @@
 
 #include "engine/base/status.h"
 #include "engine/output/draw/chart.h"
-#include "engine/output/table_data.h"
+#include "engine/output/record_files.h"
 
 enum { STRUT_NO_COLUMN = -1, STRUT_MOST_Y = 20, STRUT_MOST_PANELS = 24 };
 

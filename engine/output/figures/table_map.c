@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/figures/table_figure.h"
-
 #include <assert.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "engine/output/draw/chart.h"
 #include "engine/output/draw/work_precision.h"
+#include "engine/output/figures/table_figure.h"
 #include "engine/output/figures/table_parts.h"
 
 static const double PANEL_WIDTH = 200, ASPECT = 0.8;
@@ -268,4 +268,211 @@ strut_status strut_table_savings(const char *path, const strut_table_savings_fig
   }
   strut_arena_free(&arena);
   return status;
+}
+
+/* A copy of the columns with the rows named (count) and room for one column more. */
+static strut_status copy_rows(const strut_table *table, const size_t *rows, size_t count,
+                              strut_table *some, strut_error *error) {
+  some->row_count = count;
+  some->column_count = table->column_count;
+  some->columns =
+      strut_arena_allocate(&some->arena, table->column_count + 1, sizeof *some->columns);
+  if (!some->columns) return strut_no_memory(error, "while drawing");
+  for (size_t i = 0; i < table->column_count; i++) {
+    const strut_table_column *from = &table->columns[i];
+    const char **text = strut_arena_allocate(&some->arena, count, sizeof *text);
+    double *value = strut_arena_allocate(&some->arena, count, sizeof *value);
+    if (!text || !value) return strut_no_memory(error, "while drawing");
+    for (size_t k = 0; k < count; k++) {
+      if (from->text) text[k] = from->text[rows[k]];
+      if (from->value) value[k] = from->value[rows[k]];
+    }
+    some->columns[i] = (strut_table_column){
+        .name = from->name, .unit = from->unit, .text = text, .value = from->value ? value : NULL};
+  }
+  return STRUT_OK;
+}
+
+/* Numbers of the rows with that text, in the arena; NULL: memory is out. */
+static size_t *rows_with(const strut_table *table, int column, const char *text, strut_arena *arena,
+                         size_t *count) {
+  size_t *rows = strut_arena_allocate(arena, table->row_count + 1, sizeof *rows);
+  *count = 0;
+  for (size_t i = 0; rows && i < table->row_count; i++)
+    if (strut_table_belongs(table, column, text, i)) rows[(*count)++] = i;
+  return rows;
+}
+
+strut_status strut_table_only(const strut_table *table, int column, const char *text,
+                              strut_table *some, strut_error *error) {
+  size_t count;
+  *some = (strut_table){0};
+  size_t *rows = rows_with(table, column, text, &some->arena, &count);
+  if (!rows) return strut_no_memory(error, "while drawing");
+  if (!count)
+    return strut_fail(error, STRUT_USAGE, "no row of the table has '%.60s' in column '%.60s'", text,
+                      table->columns[column].name);
+  return copy_rows(table, rows, count, some, error);
+}
+
+/* A row that knows where its keys are, to be sorted. */
+typedef struct keyed {
+  const strut_table *table;
+  const strut_table_pairing *pairing;
+  size_t row;
+} keyed;
+
+/* Numbers by value, NAN first; texts alphabetically. */
+static int compare_keys(const void *a, const void *b) {
+  const keyed *one = a, *two = b;
+  for (size_t i = 0; i < one->pairing->key_count; i++) {
+    int column = one->pairing->keys[i];
+    if (column == STRUT_NO_COLUMN) continue;
+    const strut_table_column *c = &one->table->columns[column];
+    int order;
+    if (c->value) {
+      double x = c->value[one->row], y = c->value[two->row];
+      order = isnan(x) || isnan(y) ? isnan(y) - isnan(x) : (x > y) - (x < y);
+    } else {
+      order = strcmp(c->text[one->row], c->text[two->row]);
+    }
+    if (order) return order;
+  }
+  return 0;
+}
+
+typedef struct sides {
+  strut_table_groups names; /* two */
+  size_t *second, second_count;
+  keyed *first; /* (first_count) sorted */
+  size_t first_count;
+} sides;
+
+static strut_status find_sides(const strut_table *table, const strut_table_pairing *p, sides *s,
+                               strut_arena *arena, strut_error *error) {
+  const char *name = table->columns[p->of].name;
+  strut_status status =
+      strut_table_groups_find(table, p->of, 2, "sides to compare", &s->names, error);
+  if (status) return status;
+  if (s->names.count < 2)
+    return strut_fail(error, STRUT_USAGE,
+                      "column '%.60s' has only the text '%.60s', so there is nothing to compare",
+                      name, s->names.name[0]);
+  size_t *rows = rows_with(table, p->of, s->names.name[0], arena, &s->first_count);
+  s->second = rows_with(table, p->of, s->names.name[1], arena, &s->second_count);
+  s->first = strut_arena_allocate(arena, s->first_count, sizeof *s->first);
+  if (!rows || !s->second || !s->first) return strut_no_memory(error, "while drawing");
+  for (size_t i = 0; i < s->first_count; i++)
+    s->first[i] = (keyed){.table = table, .pairing = p, .row = rows[i]};
+  qsort(s->first, s->first_count, sizeof *s->first, compare_keys);
+  return STRUT_OK;
+}
+
+/* The rows of the first side matching a row of the second. */
+typedef struct partner {
+  size_t row, next; /* SIZE_MAX: none */
+  double weight;    /* of `next` */
+} partner;
+
+/* True if all keys but the last are equal. */
+static bool alongside(const keyed *a, const keyed *b) {
+  strut_table_pairing but_last = *a->pairing;
+  but_last.key_count--;
+  const keyed one = {.table = a->table, .pairing = &but_last, .row = a->row};
+  const keyed two = {.table = b->table, .pairing = &but_last, .row = b->row};
+  return compare_keys(&one, &two) == 0;
+}
+
+static partner find_partner(const sides *s, const keyed *wanted) {
+  const strut_table_pairing *p = wanted->pairing;
+  size_t low = 0, high = s->first_count;
+  while (low < high) { /* the first not before `wanted` */
+    size_t middle = (low + high) / 2;
+    if (compare_keys(&s->first[middle], wanted) < 0) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  const keyed *after = s->first + low, *before = after - 1;
+  if (low < s->first_count && compare_keys(after, wanted) == 0)
+    return (partner){after->row, after->row, 0};
+  if (!p->between || low == 0 || low == s->first_count || !alongside(before, wanted) ||
+      !alongside(after, wanted))
+    return (partner){SIZE_MAX, SIZE_MAX, 0};
+  const double *x = wanted->table->columns[p->keys[p->key_count - 1]].value;
+  return (partner){before->row, after->row,
+                   (x[wanted->row] - x[before->row]) / (x[after->row] - x[before->row])};
+}
+
+/* Compares one column: numbers are subtracted, different texts marked. */
+static bool compare_column(const strut_table *table, const sides *s, const partner *partners,
+                           int column, strut_table *out, const char **mark) {
+  strut_table_column *to = &out->columns[column];
+  const strut_table_column *from = &table->columns[column];
+  for (size_t k = 0; !from->value && k < s->second_count; k++)
+    if (partners[k].row == SIZE_MAX || strcmp(from->text[partners[k].row], to->text[k]) != 0)
+      mark[k] = "1";
+  if (!from->value) return true;
+  double *value = strut_arena_allocate(&out->arena, s->second_count, sizeof *value);
+  to->name = strut_arena_format(&out->arena, "%s, %s less %s", from->name, s->names.name[1],
+                                s->names.name[0]);
+  if (!value || !to->name) return false;
+  for (size_t k = 0; k < s->second_count; k++) {
+    const partner *p = &partners[k];
+    value[k] = (double)NAN;
+    if (p->row == SIZE_MAX) continue;
+    value[k] = to->value[k] - from->value[p->row];
+    if (p->weight > 0) value[k] -= p->weight * (from->value[p->next] - from->value[p->row]);
+  }
+  to->value = value;
+  return true;
+}
+
+static strut_status subtract_sides(const strut_table *table, const strut_table_pairing *p,
+                                   const sides *s, strut_table *out, strut_error *error) {
+  partner *partners = strut_arena_allocate(&out->arena, s->second_count, sizeof *partners);
+  const char **mark = strut_arena_allocate(&out->arena, s->second_count, sizeof *mark);
+  const char *name = strut_arena_format(&out->arena, "%s: other", s->names.name[0]);
+  if (!partners || !mark || !name) return strut_no_memory(error, "while drawing");
+  for (size_t k = 0; k < s->second_count; k++) {
+    const keyed wanted = {.table = table, .pairing = p, .row = s->second[k]};
+    partners[k] = find_partner(s, &wanted);
+    mark[k] = "0";
+  }
+  for (size_t i = 0; i < p->value_count; i++)
+    if (!compare_column(table, s, partners, p->values[i], out, mark))
+      return strut_no_memory(error, "while drawing");
+  out->columns[out->column_count++] = (strut_table_column){.name = name, .unit = "", .text = mark};
+  return STRUT_OK;
+}
+
+strut_status strut_table_difference(const strut_table *table, const strut_table_pairing *pairing,
+                                    strut_table *difference, strut_error *error) {
+  sides s;
+  *difference = (strut_table){0};
+  strut_status status = find_sides(table, pairing, &s, &difference->arena, error);
+  if (!status) status = copy_rows(table, s.second, s.second_count, difference, error);
+  return status ? status : subtract_sides(table, pairing, &s, difference, error);
+}
+
+strut_status strut_table_choose(const strut_table *table, const strut_table_choice *choice,
+                                strut_table_pairing pairing, strut_table_chosen *chosen,
+                                strut_error *error) {
+  strut_status status = STRUT_OK;
+  chosen->table = table;
+  if (choice->only != STRUT_NO_COLUMN) {
+    status = strut_table_only(table, choice->only, choice->only_value, &chosen->some, error);
+    chosen->table = &chosen->some;
+  }
+  if (status || choice->difference == STRUT_NO_COLUMN) return status;
+  pairing.of = choice->difference;
+  status = strut_table_difference(chosen->table, &pairing, &chosen->difference, error);
+  chosen->table = &chosen->difference;
+  return status;
+}
+
+void strut_table_chosen_free(strut_table_chosen *chosen) {
+  strut_arena_free(&chosen->some.arena);
+  strut_arena_free(&chosen->difference.arena);
 }

@@ -7,7 +7,7 @@
 #include "engine/output/draw/chart.h"
 #include "engine/output/draw/legend.h"
 #include "engine/output/json_value.h"
-#include "engine/output/table_data.h"
+#include "engine/output/record_files.h"
 #include "engine/run/follow/follow.h"
 #include "engine/study/follow/follow_study.h"
 #include "engine/study/sweep/sweep.h"

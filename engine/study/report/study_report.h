@@ -10,7 +10,7 @@
 #include <signal.h>
 #include <stdbool.h>
 
-#include "engine/output/table_data.h"
+#include "engine/output/record_files.h"
 #include "engine/study/results/study_table.h"
 #include "engine/study/search/search.h"
 #include "engine/study/sensitivity/sensitivity.h"

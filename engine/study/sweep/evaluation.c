@@ -2,9 +2,13 @@
 #include "engine/study/sweep/evaluation.h"
 
 #include <math.h>
+#include <pthread.h>
 #include <string.h>
 
+#include "engine/scene/things.h"
+#include "engine/statics/equilibria/equilibria.h"
 #include "engine/statics/rigidity/rigidity_parts.h"
+#include "engine/statics/search/critical.h"
 #include "engine/study/sweep/evaluation_parts.h"
 #include "engine/study/sweep/sweep_parts.h"
 
@@ -244,4 +248,210 @@ strut_status strut_goals_stiffness(const strut_study *study, const strut_model *
   *stiffness = strut_node_stiffness_along(s, node, direction);
   strut_node_stiffness_free(s);
   return STRUT_OK;
+}
+
+/* Maximum number of cached structures; beyond that each point searches for itself. */
+enum { MOST_KEPT = 256 };
+static const double NEAR = 0.1; /* of the structure's size */
+
+/* The equilibrium of one configuration. */
+typedef struct found {
+  bool known;
+  strut_status status;
+  strut_error error;
+  double *q; /* (2 node_count) of strut_allocate */
+} found;
+
+/* One structure, identified by all numbers that determine its equilibria. */
+typedef struct structure {
+  double *key; /* of strut_allocate */
+  size_t length, capacity;
+  bool failed; /* memory was out */
+  size_t count;
+  found *configurations; /* (count) */
+  pthread_mutex_t lock;  /* of configurations */
+} structure;
+
+struct strut_equilibrium_cache {
+  pthread_mutex_t lock;
+  size_t count;
+  structure *kept[MOST_KEPT];
+};
+
+static void add(void *context, double value) {
+  structure *s = context;
+  if (s->length == s->capacity && !s->failed) {
+    size_t capacity = s->capacity ? 2 * s->capacity : 256;
+    double *key = strut_reallocate(s->key, capacity, sizeof *key);
+    if (key) {
+      s->key = key;
+      s->capacity = capacity;
+    }
+    s->failed = !key;
+  }
+  if (!s->failed) s->key[s->length++] = value;
+}
+
+static void free_structure(structure *s) {
+  for (size_t i = 0; s->configurations && i < s->count; i++) strut_release(s->configurations[i].q);
+  if (s->configurations) pthread_mutex_destroy(&s->lock);
+  strut_release(s->configurations);
+  strut_release(s->key);
+  strut_release(s);
+}
+
+/* NULL: memory is out. */
+static structure *describe(const strut_setup *setup) {
+  const strut_scene *scene = &setup->scene;
+  structure *s = strut_allocate(1, sizeof *s);
+  if (!s) return NULL;
+  s->count = scene->configuration_count;
+  strut_setup_at_rest(setup, add, s);
+  if (!s->failed) s->configurations = strut_allocate(s->count, sizeof *s->configurations);
+  if (s->configurations && pthread_mutex_init(&s->lock, NULL) == 0) return s;
+  strut_release(s->configurations);
+  s->configurations = NULL;
+  free_structure(s);
+  return NULL;
+}
+
+static bool alike(const structure *a, const structure *b) {
+  return a->count == b->count && a->length == b->length &&
+         memcmp(a->key, b->key, a->length * sizeof *a->key) == 0;
+}
+
+/* The structure of a scene, kept or new; *own: the caller frees it. NULL: memory is out. */
+static structure *structure_of(strut_equilibrium_cache *standing, const strut_setup *setup,
+                               bool *own) {
+  structure *s = describe(setup), *same = NULL;
+  *own = false;
+  if (!s) return NULL;
+  pthread_mutex_lock(&standing->lock);
+  for (size_t i = 0; i < standing->count && !same; i++)
+    if (alike(standing->kept[i], s)) same = standing->kept[i];
+  if (!same && standing->count < MOST_KEPT)
+    standing->kept[standing->count++] = s;
+  else
+    *own = !same;
+  pthread_mutex_unlock(&standing->lock);
+  if (same) free_structure(s);
+  return same ? same : s;
+}
+
+static void find_equilibrium(const strut_setup *setup, size_t configuration, found *f) {
+  const strut_scene *scene = &setup->scene;
+  strut_model *model = NULL;
+  strut_arena arena = {0};
+  strut_rest_state stand;
+  size_t size = 2 * scene->node_count;
+  f->known = true;
+  f->status = strut_model_compile(scene, &model, &f->error);
+  if (!f->status)
+    f->status =
+        strut_rest_state_find(model, &setup->experiment, scene->configurations[configuration].name,
+                              &arena, &stand, &f->error);
+  if (!f->status && !(f->q = strut_allocate(size, sizeof *f->q)))
+    f->status = strut_fail(&f->error, STRUT_NO_MEMORY, "out of memory");
+  if (!f->status) memcpy(f->q, stand.q, size * sizeof *f->q);
+  if (f->status == STRUT_NO_MEMORY) f->known = false; /* retry later */
+  strut_arena_free(&arena);
+  strut_model_free(model);
+}
+
+/*
+ * The equilibrium of a configuration; its positions are valid as long as the structure. A copy, since another
+ * thread searches again where memory was out.
+ */
+static found find(structure *s, const strut_setup *setup, size_t configuration) {
+  found *f = &s->configurations[configuration];
+  pthread_mutex_lock(&s->lock);
+  if (!f->known) find_equilibrium(setup, configuration, f);
+  found copy = *f;
+  pthread_mutex_unlock(&s->lock);
+  return copy;
+}
+
+strut_equilibrium_cache *strut_equilibrium_cache_create(void) {
+  strut_equilibrium_cache *standing = strut_allocate(1, sizeof *standing);
+  if (standing && pthread_mutex_init(&standing->lock, NULL) == 0) return standing;
+  strut_release(standing);
+  return NULL;
+}
+
+void strut_equilibrium_cache_free(strut_equilibrium_cache *standing) {
+  if (!standing) return;
+  for (size_t i = 0; i < standing->count; i++) free_structure(standing->kept[i]);
+  pthread_mutex_destroy(&standing->lock);
+  strut_release(standing);
+}
+
+strut_status strut_equilibrium_cache_resolve(strut_equilibrium_cache *standing, strut_setup *setup,
+                                             strut_error *error) {
+  strut_scene *scene = &setup->scene;
+  bool own;
+  if (scene->start_equilibrium < 0) return STRUT_OK;
+  structure *s = structure_of(standing, setup, &own);
+  if (!s) return strut_no_memory(error, "");
+  const found f = find(s, setup, (size_t)scene->start_equilibrium);
+  strut_status status = f.status;
+  if (status) strut_fail(error, status, "%s", f.error.message);
+  for (size_t i = 0; i < scene->node_count && !status; i++)
+    for (size_t c = 0; c < 2; c++)
+      if (!scene->nodes[i].fixed[c]) scene->nodes[i].start[c] = f.q[2 * i + c];
+  if (!status) scene->start_equilibrium = -1;
+  if (own) free_structure(s);
+  return status;
+}
+
+static double extent(const double *q, size_t nodes) {
+  double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+  for (size_t i = 0; i < 2 * nodes; i++) {
+    low[i % 2] = fmin(low[i % 2], q[i]);
+    high[i % 2] = fmax(high[i % 2], q[i]);
+  }
+  return fmax(high[0] - low[0], high[1] - low[1]);
+}
+
+/* *index: -1 where none is near. STRUT_OK or STRUT_NO_MEMORY. */
+static strut_status nearest(structure *s, const strut_setup *setup, const double *positions,
+                            int32_t *index, strut_error *error) {
+  const strut_scene *scene = &setup->scene;
+  const strut_model shape = {.node_count =
+                                 (int32_t)scene->node_count}; /* all fields that are read */
+  double least = HUGE_VAL;
+  for (size_t i = 0; i < scene->configuration_count; i++) {
+    const found f = find(s, setup, i);
+    if (f.status == STRUT_NO_MEMORY) return strut_fail(error, f.status, "%s", f.error.message);
+    if (f.status) continue;
+    double d = strut_shape_distance(&shape, f.q, positions, !scene->configurations[i].shaped, NULL);
+    if (!(d < least) || d > NEAR * extent(f.q, scene->node_count)) continue;
+    least = d;
+    *index = (int32_t)i;
+  }
+  return STRUT_OK;
+}
+
+/* The nearest configuration must not depend on the start of the run. */
+strut_status strut_equilibrium_cache_nearest(strut_equilibrium_cache *standing,
+                                             const strut_setup *setup, const double *positions,
+                                             int32_t *index, strut_error *error) {
+  bool own = false;
+  const strut_scene *scene = &setup->scene;
+  strut_setup drawn = *setup; /* shares all but its nodes */
+  *index = -1;
+  if (scene->configuration_count == 0) return STRUT_OK;
+  drawn.scene.start_equilibrium = -1;
+  drawn.scene.nodes = strut_allocate(scene->node_count, sizeof *drawn.scene.nodes);
+  for (size_t i = 0; drawn.scene.nodes && i < scene->node_count; i++) {
+    drawn.scene.nodes[i] = scene->nodes[i];
+    for (size_t c = 0; c < 2; c++)
+      if (!drawn.scene.nodes[i].fixed[c])
+        drawn.scene.nodes[i].start[c] = drawn.scene.nodes[i].position[c];
+  }
+  structure *s = drawn.scene.nodes ? structure_of(standing, &drawn, &own) : NULL;
+  strut_status status =
+      s ? nearest(s, &drawn, positions, index, error) : strut_no_memory(error, "");
+  strut_release(drawn.scene.nodes);
+  if (own) free_structure(s);
+  return status;
 }

@@ -5,7 +5,7 @@
 #ifndef STRUT_ENGINE_STUDY_SWEEP_STUDY_RUNS_H
 #define STRUT_ENGINE_STUDY_SWEEP_STUDY_RUNS_H
 
-#include "engine/output/table_data.h"
+#include "engine/output/record_files.h"
 #include "engine/output/trajectory.h"
 #include "engine/study/sweep/sweep.h"
 

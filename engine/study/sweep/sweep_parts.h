@@ -111,7 +111,7 @@ strut_status strut_statics_check(const strut_study *study, const strut_scene *sc
 /** Computes what the study wants of a point at rest and appends its cells. */
 strut_status strut_statics_point(const strut_sweep_worker *worker, strut_sweep_job *job);
 
-/* sweep_record.c */
+/* sweep_point.c */
 
 /** Ends jobs that take longer than the study allows. NULL: there is no memory or no thread for it. */
 struct strut_sweep_watch *strut_sweep_watch_create(double seconds, strut_sweep_job *jobs,
@@ -145,7 +145,7 @@ strut_sweep_job *strut_sweep_make_jobs(const strut_sweep_plan *plan, strut_arena
 /** Counts the warnings of a run by their code, and keeps the text of the first point. */
 void strut_sweep_count_warnings(strut_sweep_state *state, const strut_sweep_job *job);
 
-/* sweep_record.c */
+/* sweep_point.c */
 
 /** A directory of results for a run of a sweep. Zero-initialise. */
 typedef struct strut_sweep_record strut_sweep_record;
