@@ -216,16 +216,16 @@ void strut_batch_tables_put_elements(strut_batch_tables *t, int32_t slot,
                                      const strut_state *state) {
   for (int32_t i = 0; i < t->first->elements.count; i++) {
     int32_t at = i * t->width + slot;
-    t->element_turn[at] = state->element_turn[i];
-    t->element_acts[at] = state->element_acts[i];
-    t->element_piece[at] = state->element_piece[i];
+    t->element_turn[at] = state->latest.element_turn[i];
+    t->element_acts[at] = state->modes.element_acts[i];
+    t->element_piece[at] = state->modes.element_piece[i];
   }
 }
 
 void strut_batch_tables_get_elements(const strut_batch_tables *t, int32_t slot,
                                      strut_state *state) {
   for (int32_t i = 0; i < t->first->elements.count; i++)
-    state->element_turn[i] = t->element_turn[i * t->width + slot];
+    state->latest.element_turn[i] = t->element_turn[i * t->width + slot];
 }
 
 void strut_batch_tables_fill(strut_batch_tables *t, int32_t slot, const strut_model *m) {

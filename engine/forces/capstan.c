@@ -179,7 +179,7 @@ static void find_rates(const strut_model *model, const strut_state *state, int32
   const strut_element *e = &model->elements.element[i];
   const uint32_t *at = model->elements.at + e->first;
   double spin[MOST];
-  c->winding = state->rest_rate[e->base];
+  c->winding = state->latest.rest_rate[e->base];
   for (int k = 0; k < c->n; k++) {
     double x = v[at[k + 1]] - v[at[k]], y = v[at[k + 1] + 1] - v[at[k] + 1];
     c->length_rate[k] = c->x[k] * x + c->y[k] * y;
@@ -236,24 +236,24 @@ static double energy_of(const cable *c) {
 
 static int8_t *modes_of(const strut_model *model, const strut_state *state, int32_t i) {
   const strut_element_table *t = &model->elements;
-  return state->guide_mode + (t->element[i].slot + 1 - t->history_slot);
+  return state->history.guide_mode + (t->element[i].slot + 1 - t->history_slot);
 }
 
 static int8_t *sides_of(const strut_model *model, const strut_state *state, int32_t i) {
   const strut_element_table *t = &model->elements;
-  return state->guide_side + (t->element[i].slot + 1 - t->history_slot);
+  return state->history.guide_side + (t->element[i].slot + 1 - t->history_slot);
 }
 
 static double *drops_of(const strut_model *model, const strut_state *state, int32_t i) {
   const strut_element_table *t = &model->elements;
-  return state->guide_drop + (t->element[i].slot + 1 - t->history_slot);
+  return state->history.guide_drop + (t->element[i].slot + 1 - t->history_slot);
 }
 
 /* The cable at q in its modes; true where these are frozen. */
 static bool stand(const strut_model *model, const strut_state *state, int32_t i, const double *q,
                   cable *c) {
   const int8_t *mode = modes_of(model, state, i);
-  measure(model, state->rest, i, q, c);
+  measure(model, state->latest.rest, i, q, c);
   if (c->material[0] < 0.0) share_evenly(c);
   if (mode[0] == STRUT_GUIDE_FREE) {
     settle(c);
@@ -272,7 +272,7 @@ static bool stand(const strut_model *model, const strut_state *state, int32_t i,
 
 static void keep_materials(const strut_model *model, strut_state *state, int32_t i,
                            const cable *c) {
-  double *material = state->rest + model->elements.element[i].slot + 1;
+  double *material = state->latest.rest + model->elements.element[i].slot + 1;
   memcpy(material, c->material, (size_t)c->n * sizeof *material);
 }
 
@@ -294,9 +294,9 @@ static void add_powers(strut_state *state, const cable *c, double damper, bool f
   for (int k = 0; k + 1 < c->n && frozen; k++)
     lost += (carried(c, k) - carried(c, k + 1)) * c->flow[k];
   lost += damper * rate;
-  state->power[STRUT_POWER_DRIVE] += drive;
-  state->power[STRUT_POWER_MEMBERS] += lost;
-  state->power[STRUT_POWER_EXCHANGED] += fabs(drive) + fabs(lost);
+  state->latest.power[STRUT_POWER_DRIVE] += drive;
+  state->latest.power[STRUT_POWER_MEMBERS] += lost;
+  state->latest.power[STRUT_POWER_EXCHANGED] += fabs(drive) + fabs(lost);
 }
 
 void strut_capstan_add_forces(const strut_model *model, strut_state *state, int32_t i,
@@ -321,8 +321,8 @@ void strut_capstan_add_forces(const strut_model *model, strut_state *state, int3
 void strut_capstan_begin(const strut_model *model, strut_state *state, int32_t i, const double *q) {
   const strut_element *e = &model->elements.element[i];
   cable c;
-  if (strut_capstan_remembers(e, state->rest)) return;
-  measure(model, state->rest, i, q, &c);
+  if (strut_capstan_remembers(e, state->latest.rest)) return;
+  measure(model, state->latest.rest, i, q, &c);
   share_evenly(&c);
   keep_materials(model, state, i, &c);
   strut_capstan_thaw(model, state, i);
@@ -332,7 +332,7 @@ void strut_capstan_begin(const strut_model *model, strut_state *state, int32_t i
 void strut_capstan_renew(const strut_model *model, strut_state *state, int32_t i, const double *q) {
   cable c;
   double before[MOST], moved = 0.0, *drop = drops_of(model, state, i);
-  measure(model, state->rest, i, q, &c);
+  measure(model, state->latest.rest, i, q, &c);
   memcpy(before, c.material, sizeof before);
   settle(&c);
   for (int k = 0; k + 1 < c.n; k++) {
@@ -358,7 +358,7 @@ void strut_capstan_freeze(const strut_model *model, strut_state *state, int32_t 
   int8_t *mode = modes_of(model, state, i);
   cable c;
   strut_capstan_renew(model, state, i, q);
-  measure(model, state->rest, i, q, &c);
+  measure(model, state->latest.rest, i, q, &c);
   for (int k = 0; k < c.n; k++) c.mode[k] = STRUT_GUIDE_STICKS;
   solve(&c);
   for (int k = 0; k + 1 < c.n; k++) {
@@ -378,7 +378,7 @@ void strut_capstan_freeze(const strut_model *model, strut_state *state, int32_t 
 double strut_capstan_bend(const strut_model *model, const strut_state *state, int32_t i, int k,
                           const double *q) {
   cable c;
-  measure(model, state->rest, i, q, &c);
+  measure(model, state->latest.rest, i, q, &c);
   return bend_on_side(&c, k, sides_of(model, state, i)[k]) + STRAIGHT;
 }
 
@@ -400,7 +400,7 @@ double strut_capstan_margin(const strut_model *model, const strut_state *state, 
 strut_capstan_stretch strut_capstan_stretch_of(const strut_model *model, const strut_state *state,
                                                int32_t i, const double *q, const double *v) {
   cable c;
-  measure(model, state->rest, i, q, &c);
+  measure(model, state->latest.rest, i, q, &c);
   find_rates(model, state, i, v, &c);
   strut_capstan_stretch found = {-c.whole, -c.winding};
   for (int k = 0; k < c.n; k++) found.stretch += c.length[k], found.rate += c.length_rate[k];
@@ -411,7 +411,7 @@ void strut_capstan_tauten(const strut_model *model, strut_state *state, int32_t 
                           const double *v, double soon) {
   int8_t *mode = modes_of(model, state, i);
   cable c;
-  measure(model, state->rest, i, q, &c);
+  measure(model, state->latest.rest, i, q, &c);
   share_evenly(&c);
   keep_materials(model, state, i, &c);
   find_rates(model, state, i, v, &c);

@@ -19,7 +19,7 @@
 
 #include "engine/forces/elements.h"
 
-/** Modes of a guide, as state->guide_mode holds them: material slips to the first or the last node. */
+/** Modes of a guide, as state->history.guide_mode holds them: material slips to the first or the last node. */
 enum { STRUT_GUIDE_TO_LAST = -1, STRUT_GUIDE_STICKS, STRUT_GUIDE_TO_FIRST, STRUT_GUIDE_FREE };
 
 static inline bool strut_has_capstan(const strut_element *e) { return e->guide_friction > 0.0; }

@@ -36,19 +36,19 @@ void strut_discrete_gradient_begin(const strut_model *model, strut_state *state,
   step->begin = begin, step->h = h;
   if (model->terms & STRUT_TERM_FEEDBACK) {
     strut_feedback_apply(model, state, begin, q, state->v);
-    memcpy(step->rest0, state->rest, (size_t)t->slots * sizeof(double));
+    memcpy(step->rest0, state->latest.rest, (size_t)t->slots * sizeof(double));
   } else if (model->terms & STRUT_TERM_DRIVE) {
-    if (begin != state->drive_time) strut_drive_apply(model, state, begin);
-    memcpy(step->rest0, state->rest, (size_t)t->slots * sizeof(double));
+    if (begin != state->latest.drive_time) strut_drive_apply(model, state, begin);
+    memcpy(step->rest0, state->latest.rest, (size_t)t->slots * sizeof(double));
     strut_drive_apply(model, state, begin + 0.5 * h);
-    memcpy(step->rest_rate, state->rest_rate, (size_t)t->slots * sizeof(double));
+    memcpy(step->rest_rate, state->latest.rest_rate, (size_t)t->slots * sizeof(double));
     strut_drive_apply(model, state, begin + h);
   }
   for (int32_t j = 0; j < t->count; j++) step->length0[j] = strut_member_length(t, j, q);
   for (int32_t i = 0; i < model->elements.count; i++) {
     strut_element_pose pose;
-    strut_element_evaluate(model, i, step->rest0, q, state->element_turn[i], &pose);
-    step->strain0[i] = state->element_turn[i] = pose.strain;
+    strut_element_evaluate(model, i, step->rest0, q, state->latest.element_turn[i], &pose);
+    step->strain0[i] = state->latest.element_turn[i] = pose.strain;
     step->energy0[i] = pose.energy;
   }
 }
@@ -92,21 +92,21 @@ static void add_powers(strut_state *state, const average *a, const stretching *m
                        double rest_rate) {
   double damped = a->tension - a->elastic, lost = damped * m->rate;
   double drive = -a->elastic * change / m->h - damped * rest_rate;
-  state->power[STRUT_POWER_DRIVE] += drive;
-  state->power[STRUT_POWER_MEMBERS] += lost;
-  state->power[STRUT_POWER_EXCHANGED] += fabs(drive) + lost;
+  state->latest.power[STRUT_POWER_DRIVE] += drive;
+  state->latest.power[STRUT_POWER_MEMBERS] += lost;
+  state->latest.power[STRUT_POWER_EXCHANGED] += fabs(drive) + lost;
 }
 
 static void add_members(const strut_model *model, strut_state *state, strut_discrete_gradient *step,
                         const double *restrict q0, const double *restrict q1) {
   const strut_member_table *t = &model->members;
-  double *restrict force = state->force;
+  double *restrict force = state->latest.force;
   for (int32_t j = 0; j < t->count; j++) {
     uint32_t a = t->from[j], b = t->to[j];
     strut_vec2 d = strut_member_span(t, j, q1);
     double length = strut_vec2_length(d);
     const stretching m = {.s0 = step->length0[j] - step->rest0[j],
-                          .s1 = length - state->rest[j],
+                          .s1 = length - state->latest.rest[j],
                           .stiffness = t->stiffness[j],
                           .damping = t->damping[j],
                           .rate = (length - step->length0[j]) / step->h - step->rest_rate[j],
@@ -120,7 +120,7 @@ static void add_members(const strut_model *model, strut_state *state, strut_disc
     force[a] += density * x, force[a + 1] += density * y;
     force[b] -= density * x, force[b + 1] -= density * y;
     if (state->balance)
-      add_powers(state, &now, &m, state->rest[j] - step->rest0[j], step->rest_rate[j]);
+      add_powers(state, &now, &m, state->latest.rest[j] - step->rest0[j], step->rest_rate[j]);
   }
 }
 
@@ -196,8 +196,8 @@ static void add_element(const strut_model *model, strut_state *state, strut_disc
   const strut_element *e = &model->elements.element[i];
   const uint32_t *at = model->elements.at + e->first;
   strut_element_pose end, middle;
-  strut_element_evaluate(model, i, state->rest, q1, step->strain0[i], &end);
-  strut_element_evaluate(model, i, state->rest, step->middle, step->strain0[i], &middle);
+  strut_element_evaluate(model, i, state->latest.rest, q1, step->strain0[i], &end);
+  strut_element_evaluate(model, i, state->latest.rest, step->middle, step->strain0[i], &middle);
   double natural0 = e->slot >= 0 ? step->rest0[e->slot] : e->natural, square = 0.0, work = 0.0;
   double rest_rate = e->slot >= 0 ? step->rest_rate[e->slot] : 0.0;
   double origin0 = strut_element_origin(e, natural0),
@@ -222,7 +222,7 @@ static void add_element(const strut_model *model, strut_state *state, strut_disc
   step->element_slope[i] = none ? 0.0 : fmax(slope, 0.0);
   for (int32_t k = 0; k < 2 * e->nodes; k++) {
     uint32_t c = at[k / 2] + (uint32_t)(k % 2);
-    state->force[c] -= force * (middle.b[k] + more * (q1[c] - q0[c]));
+    state->latest.force[c] -= force * (middle.b[k] + more * (q1[c] - q0[c]));
   }
   if (!state->balance) return;
   const average now = {.tension = force, .elastic = elastic};
@@ -230,8 +230,8 @@ static void add_element(const strut_model *model, strut_state *state, strut_disc
   add_powers(state, &now, &m, origin1 - origin0, rest_rate);
   /* what the drive does to the energy at the same stretch, of a law that depends on more */
   double excess = (energy0 - step->energy0[i] + (end.energy - at1.energy)) / step->h;
-  state->power[STRUT_POWER_DRIVE] += excess;
-  state->power[STRUT_POWER_EXCHANGED] += fabs(excess);
+  state->latest.power[STRUT_POWER_DRIVE] += excess;
+  state->latest.power[STRUT_POWER_EXCHANGED] += fabs(excess);
 }
 
 static void add_elements(const strut_model *model, strut_state *state,
@@ -250,11 +250,11 @@ static void follow(const strut_model *model, strut_state *state, strut_discrete_
   }
   double middle = step->begin + 0.5 * step->h;
   strut_feedback_apply(model, state, middle, step->middle, u);
-  memcpy(step->rest_rate, state->rest_rate, (size_t)model->members.slots * sizeof(double));
-  strut_feedback_add_rates(model, state, middle, u, state->force);
+  memcpy(step->rest_rate, state->latest.rest_rate, (size_t)model->members.slots * sizeof(double));
+  strut_feedback_add_rates(model, state, middle, u, state->latest.force);
   if (model->terms & STRUT_TERM_LOADS) strut_loads_apply(model, state, middle, u);
   strut_actuator_forces_apply(model, state, middle, step->middle, u);
-  strut_maxwell_apply(model, state, step->middle, u, state->force);
+  strut_maxwell_apply(model, state, step->middle, u, state->latest.force);
   strut_feedback_apply(model, state, step->begin + step->h, q1, step->end_velocity);
 }
 
@@ -263,11 +263,11 @@ void strut_discrete_gradient_forces(const strut_model *model, strut_state *state
                                     const double *u) {
   size_t bytes = (size_t)model->length * sizeof(double);
   state->evaluations++;
-  memset(state->power, 0, sizeof state->power);
+  memset(state->latest.power, 0, sizeof state->latest.power);
   if (model->terms & STRUT_TERM_CONSTANT)
-    memcpy(state->force, model->constant_force, bytes);
+    memcpy(state->latest.force, model->constant_force, bytes);
   else
-    memset(state->force, 0, bytes);
+    memset(state->latest.force, 0, bytes);
   if (model->terms & STRUT_TERM_FEEDBACK)
     follow(model, state, step, q1, u);
   else if (model->terms & STRUT_TERM_LOADS)
@@ -287,7 +287,7 @@ void strut_discrete_gradient_tensions(const strut_model *model, const strut_stat
                                       double *tension) {
   const strut_member_table *t = &model->members;
   for (int32_t j = 0; j < t->count; j++) {
-    strut_member_pose pose = strut_member_pose_at(t, state->rest, j, state->q);
+    strut_member_pose pose = strut_member_pose_at(t, state->latest.rest, j, state->q);
     tension[j] = strut_member_elastic_force(t, j, &pose);
   }
 }

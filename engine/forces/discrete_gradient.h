@@ -40,7 +40,7 @@ void strut_discrete_gradient_begin(const strut_model *model, strut_state *state,
                                    double begin, double h, strut_discrete_gradient *step);
 /**
  * Net forces on the nodes over the step that ends at q1 with velocity u on average, (length) both,
- * into state->force; with the energy balance powers, which times h are the works. Loads are taken at the
+ * into state->latest.force; with the energy balance powers, which times h are the works. Loads are taken at the
  * middle of the step. Counts as an evaluation.
  */
 void strut_discrete_gradient_forces(const strut_model *model, strut_state *state,

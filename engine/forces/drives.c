@@ -14,14 +14,14 @@
 
 strut_signal_inputs strut_drive_inputs(const strut_model *model, const strut_state *state,
                                        const double *v) {
-  return (strut_signal_inputs){.sensor = state->sensor,
-                               .sensor_rate = state->sensor_rate,
+  return (strut_signal_inputs){.sensor = state->latest.sensor,
+                               .sensor_rate = state->latest.sensor_rate,
                                .state = v + model->feedback.base,
                                .states = model->scene->states,
                                .lag_of = model->feedback.lag_of,
-                               .held = state->held,
-                               .started = state->started,
-                               .relay_side = state->relay_side};
+                               .held = state->signals.held,
+                               .started = state->signals.started,
+                               .relay_side = state->signals.relay_side};
 }
 
 /* The signal of a drive or a load now. */
@@ -48,7 +48,7 @@ static inline void drive_rest_lengths(const strut_model *model, strut_state *sta
                                       const double *v, bool sensed) {
   const strut_drive_table *d = &model->drives;
   const strut_signal *signals = model->scene->signals;
-  double *restrict rest = state->rest, *restrict rest_rate = state->rest_rate;
+  double *restrict rest = state->latest.rest, *restrict rest_rate = state->latest.rest_rate;
   for (int32_t i = 0; i < d->count; i++) {
     double value, rate;
     int32_t member = d->member[i];
@@ -64,7 +64,7 @@ static inline void drive_rest_lengths(const strut_model *model, strut_state *sta
 
 void strut_drive_apply(const strut_model *model, strut_state *state, double t) {
   if (!(model->terms & STRUT_TERMS_RARE)) {
-    state->drive_time = t;
+    state->latest.drive_time = t;
     drive_rest_lengths(model, state, t, NULL, false);
   } else if (model->terms & STRUT_TERM_FEEDBACK) {
     strut_feedback_apply(model, state, t, state->q, state->v);
@@ -75,9 +75,10 @@ void strut_drive_apply(const strut_model *model, strut_state *state, double t) {
 
 void strut_drive_apply_sensed(const strut_model *model, strut_state *state, double t,
                               const double *v) {
-  state->drive_time = t;
+  state->latest.drive_time = t;
   if (model->terms & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_place(model, state, t);
-  if (state->ground_motion) strut_grounds_move(model, t + state->time_offset, state->ground_motion);
+  if (state->latest.ground_motion)
+    strut_grounds_move(model, t + state->time_offset, state->latest.ground_motion);
   drive_rest_lengths(model, state, t, v, true);
   if (model->terms & STRUT_TERM_MEMORY) strut_history_follow(model, state);
 }
@@ -103,12 +104,12 @@ void strut_loads_apply(const strut_model *model, strut_state *state, double t,
     evaluate(model, state, v, loads->signal[i], t + state->time_offset, &factor, &rate);
     int32_t at = 2 * loads->node[i];
     double px = factor * loads->x[i], py = factor * loads->y[i];
-    state->force[at] += px;
-    state->force[at + 1] += py;
+    state->latest.force[at] += px;
+    state->latest.force[at + 1] += py;
     if (!state->balance) continue;
     double power = px * v[at] + py * v[at + 1];
-    state->power[STRUT_POWER_LOAD] += power;
-    state->power[STRUT_POWER_EXCHANGED] += fabs(power);
+    state->latest.power[STRUT_POWER_LOAD] += power;
+    state->latest.power[STRUT_POWER_EXCHANGED] += fabs(power);
   }
 }
 
@@ -116,11 +117,11 @@ double strut_drive_next_break(const strut_model *model, const strut_state *state
   const strut_signal *signals = model->scene->signals;
   double first = (double)INFINITY;
   for (int32_t i = 0; i < model->drives.count; i++)
-    first = fmin(
-        first, strut_signal_next_break_since(signals, state->started, model->drives.signal[i], t));
+    first = fmin(first, strut_signal_next_break_since(signals, state->signals.started,
+                                                      model->drives.signal[i], t));
   for (int32_t i = 0; i < model->loads.count; i++)
-    first = fmin(first,
-                 strut_signal_next_break_since(signals, state->started, model->loads.signal[i], t));
+    first = fmin(first, strut_signal_next_break_since(signals, state->signals.started,
+                                                      model->loads.signal[i], t));
   for (int32_t i = 0; i < model->support_motion.count; i++)
     first = fmin(first, strut_signal_next_break(signals, model->support_motion.item[i].signal, t));
   for (size_t i = 0; i < model->scene->unbalance_count; i++)
@@ -139,7 +140,7 @@ double strut_drive_next_break(const strut_model *model, const strut_state *state
     if (model->elements.breakable[i].time > t)
       first = fmin(first, model->elements.breakable[i].time);
   for (int32_t i = 0; i < model->actuator_forces.count; i++)
-    first = fmin(first, strut_signal_next_break_since(signals, state->started,
+    first = fmin(first, strut_signal_next_break_since(signals, state->signals.started,
                                                       model->actuator_forces.item[i].signal, t));
   return fmin(first, strut_feedback_next_sample(model, t));
 }
@@ -162,15 +163,15 @@ void strut_actuator_forces_apply(const strut_model *model, strut_state *state, d
     double b[2 * STRUT_MOST_ELEMENT_NODES], size, speed = 0.0;
     size = strut_drive_signal(model, state, v, a->signal, t + state->time_offset);
     gradient_of(a, at, q, b);
-    state->actuator_force[i] = size;
+    state->latest.actuator_force[i] = size;
     for (int32_t k = 0; k < a->nodes; k++) {
-      state->force[at[k]] -= size * b[2 * k];
-      state->force[at[k] + 1] -= size * b[2 * k + 1];
+      state->latest.force[at[k]] -= size * b[2 * k];
+      state->latest.force[at[k] + 1] -= size * b[2 * k + 1];
       speed += b[2 * k] * v[at[k]] + b[2 * k + 1] * v[at[k] + 1];
     }
     if (!state->balance) continue;
-    state->power[STRUT_POWER_DRIVE] -= size * speed;
-    state->power[STRUT_POWER_EXCHANGED] += fabs(size * speed);
+    state->latest.power[STRUT_POWER_DRIVE] -= size * speed;
+    state->latest.power[STRUT_POWER_EXCHANGED] += fabs(size * speed);
   }
 }
 
@@ -179,7 +180,7 @@ double strut_actuator_force_on_member(const strut_model *model, const strut_stat
   const strut_actuator_force_table *table = &model->actuator_forces;
   double sum = 0.0;
   for (int32_t i = 0; i < table->count; i++)
-    if (table->item[i].member == member) sum += state->actuator_force[i];
+    if (table->item[i].member == member) sum += state->latest.actuator_force[i];
   return sum;
 }
 
@@ -188,7 +189,7 @@ double strut_actuator_moment_on_hinge(const strut_model *model, const strut_stat
   const strut_actuator_force_table *table = &model->actuator_forces;
   double sum = 0.0;
   for (int32_t i = 0; i < table->count; i++)
-    if (table->item[i].hinge == hinge) sum += state->actuator_force[i];
+    if (table->item[i].hinge == hinge) sum += state->latest.actuator_force[i];
   return sum;
 }
 
@@ -196,7 +197,7 @@ void strut_actuator_forces_add_tensions(const strut_model *model, const strut_st
                                         double *force) {
   const strut_actuator_force_table *table = &model->actuator_forces;
   for (int32_t i = 0; i < table->count; i++)
-    if (table->item[i].member >= 0) force[table->item[i].member] += state->actuator_force[i];
+    if (table->item[i].member >= 0) force[table->item[i].member] += state->latest.actuator_force[i];
 }
 
 STRUT_CLONES

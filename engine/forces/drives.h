@@ -11,7 +11,7 @@
 /* Forces' terms that change with time alone; those of members and ground are in *_kernel.h. */
 
 /**
- * Driven rest lengths and their rates (6): state->rest, rest_rate. Drives that follow sensors do so at
+ * Driven rest lengths and their rates (6): state->latest.rest, rest_rate. Drives that follow sensors do so at
  * the state's positions and velocities.
  */
 void strut_drive_apply(const strut_model *model, strut_state *state, double t);
@@ -40,8 +40,8 @@ double strut_drive_next_break(const strut_model *model, const strut_state *state
 /* Forces and moments of actuators; see engine/model/elements.h. */
 
 /**
- * Adds the actuators' forces at time t [s] and positions q to state->force, and their power at
- * velocities v to the drive's. Notes their sizes in state->actuator_force.
+ * Adds the actuators' forces at time t [s] and positions q to state->latest.force, and their power at
+ * velocities v to the drive's. Notes their sizes in state->latest.actuator_force.
  */
 void strut_actuator_forces_apply(const strut_model *model, strut_state *state, double t,
                                  const double *q, const double *v);
@@ -103,12 +103,13 @@ STRUT_INLINE void drives_ahead_place(const strut_model *model, strut_state *stat
   for (int32_t i = 0; i < d->count; i++) {
     int32_t j = d->member[i];
     /* the first actuator of a member starts from its own rest length, further ones add */
-    double rest = d->first[i] ? model->members.rest[j] : state->rest[j];
+    double rest = d->first[i] ? model->members.rest[j] : state->latest.rest[j];
     double rate = drives->rate[i][h];
-    drives_ahead_put(state->rest, j, rest + drives->value[i][h]);
-    drives_ahead_put(state->rest_rate, j, d->first[i] ? rate : state->rest_rate[j] + rate);
+    drives_ahead_put(state->latest.rest, j, rest + drives->value[i][h]);
+    drives_ahead_put(state->latest.rest_rate, j,
+                     d->first[i] ? rate : state->latest.rest_rate[j] + rate);
   }
-  state->drive_time = t;
+  state->latest.drive_time = t;
 }
 
 /**
@@ -118,7 +119,7 @@ STRUT_INLINE void drives_ahead_place(const strut_model *model, strut_state *stat
 STRUT_INLINE void drives_ahead_apply(const strut_model *model, strut_state *state,
                                      strut_drives_ahead *drives, double t, double step, double part,
                                      double dt, int64_t most) {
-  if (!drives->used || t == state->drive_time) return;
+  if (!drives->used || t == state->latest.drive_time) return;
   if (drives->next == drives->count || drives->time[drives->next] != t + state->time_offset) {
     for (int32_t h = 0; h < STRUT_INSTANTS_AHEAD; h++)
       drives->time[h] = (step + part * (double)h) * dt + state->time_offset;
@@ -157,7 +158,7 @@ STRUT_INLINE void drives_ahead_ends(const strut_model *model, const strut_state 
 /** Rest lengths at time t, if that is the next stage; else strut_drive_apply will do it. */
 STRUT_INLINE void drives_ahead_meet(const strut_model *model, strut_state *state,
                                     strut_drives_ahead *drives, double t) {
-  if (!drives->used || t == state->drive_time || drives->next == drives->count) return;
+  if (!drives->used || t == state->latest.drive_time || drives->next == drives->count) return;
   if (drives->time[drives->next] == t + state->time_offset)
     drives_ahead_place(model, state, drives, t);
 }

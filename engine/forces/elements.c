@@ -165,7 +165,7 @@ static inline exertion exert(const strut_element *e, const strut_state *state, i
                              const strut_law_response *r, double x, double own_rate) {
   double force = r->force + e->damping * own_rate;
   if (e->carries) {
-    int8_t mode = state->element_acts[i];
+    int8_t mode = state->modes.element_acts[i];
     bool acts = mode ? mode > 0 : e->carries * x > 0.0 && e->carries * force > 0.0;
     /* a damper may outweigh the spring: that relaxes then, and the damper takes its energy */
     bool beyond = e->carries * x > 0.0;
@@ -176,9 +176,9 @@ static inline exertion exert(const strut_element *e, const strut_state *state, i
 
 static inline void add_powers(strut_state *state, const exertion *x, double rest_rate) {
   double drive = (x->excess - x->force) * rest_rate, lost = (x->force - x->elastic) * x->own_rate;
-  state->power[STRUT_POWER_DRIVE] += drive;
-  state->power[STRUT_POWER_MEMBERS] += lost;
-  state->power[STRUT_POWER_EXCHANGED] += fabs(drive) + lost;
+  state->latest.power[STRUT_POWER_DRIVE] += drive;
+  state->latest.power[STRUT_POWER_MEMBERS] += lost;
+  state->latest.power[STRUT_POWER_EXCHANGED] += fabs(drive) + lost;
 }
 
 /* One element; `strain` and `law` are inlined, so that a block's loop tests neither. */
@@ -191,15 +191,16 @@ static inline void add_powers(strut_state *state, const exertion *x, double rest
       const strut_element *e = &t->element[i];                                                     \
       const uint32_t *at = t->at + e->first;                                                       \
       double b[STRUT_MOST_GRADIENT], rate = 0.0;                                                   \
-      double strain = strut_strain_##strain_name(at, e->nodes, q, state->element_turn[i], b);      \
-      double natural = strut_element_natural(e, state->rest);                                      \
-      double rest_rate = e->slot >= 0 ? state->rest_rate[e->slot] : 0.0;                           \
-      state->element_turn[i] = strain;                                                             \
+      double strain =                                                                              \
+          strut_strain_##strain_name(at, e->nodes, q, state->latest.element_turn[i], b);           \
+      double natural = strut_element_natural(e, state->latest.rest);                               \
+      double rest_rate = e->slot >= 0 ? state->latest.rest_rate[e->slot] : 0.0;                    \
+      state->latest.element_turn[i] = strain;                                                      \
       if (e->damping > 0.0 || state->balance)                                                      \
         for (int32_t k = 0; k < e->nodes; k++)                                                     \
           rate += b[2 * k] * v[at[k]] + b[2 * k + 1] * v[at[k] + 1];                               \
       strut_law_response r =                                                                       \
-          strut_law_##law_name(&e->numbers, strain, natural, state->element_piece[i]);             \
+          strut_law_##law_name(&e->numbers, strain, natural, state->modes.element_piece[i]);       \
       exertion x = exert(e, state, i, &r, strain - natural, rate - rest_rate);                     \
       for (int32_t k = 0; k < e->nodes; k++) {                                                     \
         force[at[k]] -= x.force * b[2 * k];                                                        \
@@ -224,9 +225,9 @@ static void add_hinges(const strut_model *model, strut_state *state,
   for (; rest.end - rest.begin >= STRUT_LANES; rest.begin += STRUT_LANES, at += 3 * STRUT_LANES)
     add_four_hinges(&t, state, rest.begin, at, q, v, force, &powers);
   for (int l = 0; l < STRUT_LANES && state->balance; l++) {
-    state->power[STRUT_POWER_DRIVE] += powers.drive[l];
-    state->power[STRUT_POWER_MEMBERS] += powers.lost[l];
-    state->power[STRUT_POWER_EXCHANGED] += powers.exchanged[l];
+    state->latest.power[STRUT_POWER_DRIVE] += powers.drive[l];
+    state->latest.power[STRUT_POWER_MEMBERS] += powers.lost[l];
+    state->latest.power[STRUT_POWER_EXCHANGED] += powers.exchanged[l];
   }
   add_angle_linear(model, state, &rest, q, v, force);
 }
@@ -242,9 +243,9 @@ static void add_running_cables(const strut_model *model, strut_state *state,
     const uint32_t *at = t->at + e->first;
     strut_pair b[STRUT_MOST_GRADIENT / 2 + 1];
     double strain = measure_path(at, e->nodes, q, b),
-           natural = strut_element_natural(e, state->rest);
-    double rest_rate = e->slot >= 0 ? state->rest_rate[e->slot] : 0.0, rate = 0.0;
-    state->element_turn[i] = strain;
+           natural = strut_element_natural(e, state->latest.rest);
+    double rest_rate = e->slot >= 0 ? state->latest.rest_rate[e->slot] : 0.0, rate = 0.0;
+    state->latest.element_turn[i] = strain;
     if (e->damping > 0.0 || state->balance) rate = path_rate(at, e->nodes, v, b);
     strut_law_response r = strut_law_linear(&e->numbers, strain, natural, -1);
     exertion x = exert(e, state, i, &r, strain - natural, rate - rest_rate);
@@ -333,15 +334,15 @@ strut_element_motion strut_element_move(const strut_model *model, const strut_st
   const strut_element *e = &model->elements.element[element];
   const uint32_t *at = model->elements.at + e->first;
   double b[STRUT_MOST_GRADIENT], rate = 0.0;
-  double strain = strain_of(e, at, q, state->element_turn[element], b);
+  double strain = strain_of(e, at, q, state->latest.element_turn[element], b);
   double natural = e->remembers ? strut_history_natural(model, state, element, strain)
-                                : strut_element_natural(e, state->rest);
+                                : strut_element_natural(e, state->latest.rest);
   if (strut_element_is_gone(natural)) return (strut_element_motion){-e->carries, 0.0, -e->carries};
   for (int32_t k = 0; k < e->nodes; k++) rate += b[2 * k] * v[at[k]] + b[2 * k + 1] * v[at[k] + 1];
   int32_t slot = e->remembers ? e->base : e->slot;
-  if (slot >= 0) rate -= state->rest_rate[slot];
+  if (slot >= 0) rate -= state->latest.rest_rate[slot];
   strut_law_response r =
-      strut_law_respond(e->law, &e->numbers, strain, natural, state->element_piece[element]);
+      strut_law_respond(e->law, &e->numbers, strain, natural, state->modes.element_piece[element]);
   return (strut_element_motion){strain - natural, rate, r.force + e->damping * rate};
 }
 
@@ -353,12 +354,13 @@ double strut_element_measure(const strut_model *model, const strut_state *state,
 double strut_element_measure_at(const strut_model *model, const strut_state *state, int32_t element,
                                 const double *q, const double *v, strut_element_pose *pose) {
   const strut_element *e = &model->elements.element[element];
-  strut_element_evaluate(model, element, state->rest, q, state->element_turn[element], pose);
+  strut_element_evaluate(model, element, state->latest.rest, q, state->latest.element_turn[element],
+                         pose);
   if (strut_element_is_gone(pose->natural)) return 0.0;
-  if (strut_capstan_remembers(e, state->rest))
+  if (strut_capstan_remembers(e, state->latest.rest))
     return strut_capstan_tensions(model, state, element, state->q, state->v).first;
   int32_t slot = e->remembers ? e->base : e->slot;
-  double rest_rate = slot >= 0 ? state->rest_rate[slot] : 0.0;
+  double rest_rate = slot >= 0 ? state->latest.rest_rate[slot] : 0.0;
   strut_law_response r = strut_law_respond(e->law, &e->numbers, pose->strain, pose->natural, -1);
   double own = strut_element_rate(model, element, pose, v) - rest_rate;
   double force = exert(e, state, element, &r, pose->strain - pose->natural, own).force;

@@ -44,13 +44,14 @@ STRUT_INLINE void add_four_hinges(const strut_element_table *t, strut_state *sta
   strut_lanes iu = four_choose(u2 > zero, 1.0 / u2, zero);
   strut_lanes iv = four_choose(v2 > zero, 1.0 / v2, zero);
   strut_lanes strain = four_direction_near(four_direction_of(ux * vx + uy * vy, ux * vy - uy * vx),
-                                           strut_lanes_load(state->element_turn + i));
-  strut_lanes_store(state->element_turn + i, strain);
+                                           strut_lanes_load(state->latest.element_turn + i));
+  strut_lanes_store(state->latest.element_turn + i, strain);
   strut_lanes ax = iu * uy, ay = -iu * ux, cx = -iv * vy, cy = iv * vx, bx = -ax - cx,
               by = -ay - cy;
   strut_lanes natural, rest_rate;
   for (int l = 0; l < STRUT_LANES; l++)
-    natural[l] = state->rest[t->slot[i + l]], rest_rate[l] = state->rest_rate[t->slot[i + l]];
+    natural[l] = state->latest.rest[t->slot[i + l]],
+    rest_rate[l] = state->latest.rest_rate[t->slot[i + l]];
   hinge_nodes wa = gather_hinges(v, at, 0), wo = gather_hinges(v, at, 1),
               wc = gather_hinges(v, at, 2);
   strut_lanes own =

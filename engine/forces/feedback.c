@@ -21,7 +21,8 @@ static void sense_length(const strut_model *model, const strut_state *state, int
 static void sense_angle(const strut_model *model, const strut_state *state, int32_t element,
                         const double *q, const double *v, double *value, double *rate) {
   strut_element_pose pose;
-  strut_element_evaluate(model, element, state->rest, q, state->element_turn[element], &pose);
+  strut_element_evaluate(model, element, state->latest.rest, q, state->latest.element_turn[element],
+                         &pose);
   *value = pose.strain;
   *rate = strut_element_rate(model, element, &pose, v);
 }
@@ -39,7 +40,7 @@ static bool touches(const strut_model *model, const strut_state *state, int32_t 
                     const double *q) {
   const strut_contact_table *c = &model->contacts;
   for (int32_t i = first; i >= 0 && i < c->count && c->at[i] == c->at[first]; i++)
-    if (strut_contact_gap_at(c, i, q, state->ground_motion) < 0.0) return true;
+    if (strut_contact_gap_at(c, i, q, state->latest.ground_motion) < 0.0) return true;
   return false;
 }
 
@@ -65,7 +66,8 @@ static void sense_all(const strut_model *model, strut_state *state, bool driven,
   const strut_feedback_table *f = &model->feedback;
   for (int32_t i = 0; i < f->count; i++)
     if (strut_sensor_needs_drives(f->sensor[i].kind) == driven)
-      sense(model, state, f->sensor[i], q, v, &state->sensor[i], &state->sensor_rate[i]);
+      sense(model, state, f->sensor[i], q, v, &state->latest.sensor[i],
+            &state->latest.sensor_rate[i]);
 }
 
 static void apply_drives(const strut_model *model, strut_state *state, double t, const double *q,
@@ -91,8 +93,8 @@ static bool take_samples(const strut_model *model, strut_state *state, double t,
     if (!(fabs(t - every * round(t / every)) <= tolerance)) continue;
     if (model->scene->signals[signal].kind == STRUT_RELAY)
       strut_relay_sample(model, state, signal, t, v);
-    strut_signal_follow_unsampled(model->scene->signals, &in, signal, t, &state->held[signal],
-                                  &rate);
+    strut_signal_follow_unsampled(model->scene->signals, &in, signal, t,
+                                  &state->signals.held[signal], &rate);
     any = true;
   }
   return any;
@@ -101,8 +103,8 @@ static bool take_samples(const strut_model *model, strut_state *state, double t,
 /* Are there sampled signals or relays that have no value yet? */
 static bool lacks_memory(const strut_model *model, const strut_state *state) {
   const strut_feedback_table *f = &model->feedback;
-  return (f->sampled_count && isnan(state->held[f->sampled[0]])) ||
-         (f->relay_count && state->relay_side[f->relay[0]] == 0);
+  return (f->sampled_count && isnan(state->signals.held[f->sampled[0]])) ||
+         (f->relay_count && state->signals.relay_side[f->relay[0]] == 0);
 }
 
 /* The first samples and the sides of relays, at rest lengths without drives; parts before their users. */
@@ -116,7 +118,7 @@ static void begin_history(const strut_model *model, strut_state *state, double t
   for (int32_t i = 0; i < (int32_t)model->scene->signal_count; i++) {
     if (signals[i].kind == STRUT_RELAY) strut_relay_start(model, state, i, t, v);
     if (signals[i].every > 0.0)
-      strut_signal_follow_unsampled(signals, &in, i, t, &state->held[i], &rate);
+      strut_signal_follow_unsampled(signals, &in, i, t, &state->signals.held[i], &rate);
   }
 }
 
@@ -164,8 +166,8 @@ bool strut_feedback_sample(const strut_model *model, strut_state *state, double 
 
 static bool start_signal(const strut_model *model, strut_state *state, int32_t signal, double t) {
   const strut_trigger *trigger = &model->scene->signals[signal].trigger;
-  if (state->started[signal] < (double)INFINITY && !trigger->each) return false;
-  state->started[signal] = t + state->time_offset;
+  if (state->signals.started[signal] < (double)INFINITY && !trigger->each) return false;
+  state->signals.started[signal] = t + state->time_offset;
   return true;
 }
 
@@ -186,8 +188,10 @@ static bool condition_holds(const strut_model *model, const strut_state *state,
                             const strut_trigger *trigger) {
   for (int32_t i = 0; i < model->contacts.count && trigger->kind == STRUT_TRIGGER_CONTACT; i++)
     if (model->contacts.entry[i].node == trigger->item) return touches(model, state, i, state->q);
-  if (trigger->kind == STRUT_TRIGGER_ABOVE) return state->sensor[trigger->item] > trigger->level;
-  return trigger->kind == STRUT_TRIGGER_BELOW && state->sensor[trigger->item] < trigger->level;
+  if (trigger->kind == STRUT_TRIGGER_ABOVE)
+    return state->latest.sensor[trigger->item] > trigger->level;
+  return trigger->kind == STRUT_TRIGGER_BELOW &&
+         state->latest.sensor[trigger->item] < trigger->level;
 }
 
 bool strut_feedback_watch(const strut_model *model, strut_state *state, double t, bool contacts) {
@@ -199,9 +203,9 @@ bool strut_feedback_watch(const strut_model *model, strut_state *state, double t
     const strut_trigger *trigger = &model->scene->signals[signal].trigger;
     if (trigger->kind == STRUT_TRIGGER_CONTACT && !contacts) continue;
     bool holds = condition_holds(model, state, trigger);
-    if (holds && state->trigger_was[signal] == 0 && start_signal(model, state, signal, t))
+    if (holds && state->signals.trigger_was[signal] == 0 && start_signal(model, state, signal, t))
       any = true;
-    state->trigger_was[signal] = holds;
+    state->signals.trigger_was[signal] = holds;
   }
   return any;
 }
@@ -221,25 +225,25 @@ void strut_relay_start(const strut_model *model, strut_state *state, int32_t sig
   const strut_relay *r = &model->scene->signals[signal].relay;
   double input = input_of(model, state, signal, now, v);
   bool above = input > r->upper || (!(input < r->lower) && r->on_at_start == r->on_above);
-  state->relay_side[signal] = above ? 1 : -1;
+  state->signals.relay_side[signal] = above ? 1 : -1;
 }
 
 double strut_relay_margin(const strut_model *model, const strut_state *state, int32_t signal,
                           double now, const double *v) {
   const strut_relay *r = &model->scene->signals[signal].relay;
   double input = input_of(model, state, signal, now, v);
-  return state->relay_side[signal] > 0 ? input - r->lower : r->upper - input;
+  return state->signals.relay_side[signal] > 0 ? input - r->lower : r->upper - input;
 }
 
 bool strut_relay_sample(const strut_model *model, strut_state *state, int32_t signal, double now,
                         const double *v) {
   if (!(strut_relay_margin(model, state, signal, now, v) < 0.0)) return false;
-  state->relay_side[signal] = (int8_t)-state->relay_side[signal];
+  state->signals.relay_side[signal] = (int8_t)-state->signals.relay_side[signal];
   return true;
 }
 
 void strut_relay_switch(const strut_model *model, strut_state *state, int32_t signal, double t) {
-  state->relay_side[signal] = (int8_t)-state->relay_side[signal];
+  state->signals.relay_side[signal] = (int8_t)-state->signals.relay_side[signal];
   strut_drive_apply(model, state, t);
   if (!(strut_relay_margin(model, state, signal, t + state->time_offset, state->v) < 0.0)) return;
   state->trouble = STRUT_FAILURE_RELAY;

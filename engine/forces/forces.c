@@ -13,7 +13,7 @@
 void strut_forces_add_rare(const strut_model *model, strut_state *state, double t, const double *q,
                            const double *v) {
   unsigned terms = model->terms;
-  if (terms & STRUT_TERM_FEEDBACK) strut_maxwell_apply(model, state, q, v, state->force);
+  if (terms & STRUT_TERM_FEEDBACK) strut_maxwell_apply(model, state, q, v, state->latest.force);
   if (terms & STRUT_TERM_ACTUATOR_FORCES) strut_actuator_forces_apply(model, state, t, q, v);
   if (terms & STRUT_TERM_UNBALANCE) strut_unbalance_apply(model, state, t, v);
   if (terms & STRUT_TERM_MASS_DAMPING) strut_mass_damping_apply(model, state, v);
@@ -33,16 +33,17 @@ static void sum_once(const strut_model *model, strut_state *state, double t,
 void strut_forces_evaluate(const strut_model *model, strut_state *state, double t,
                            const double *restrict q, const double *restrict v) {
   for (int32_t i = 0; i < model->contacts.count; i++)
-    state->normal[i] = state->friction[i] = 0.0; /* the sum fills those that touch, and only them */
+    state->latest.normal[i] = state->latest.friction[i] =
+        0.0; /* the sum fills those that touch, and only them */
   sum_once(model, state, t, q, v);
   if (state->rigid) strut_rigid_constrain(model, state, q, v);
 }
 
 bool strut_forces_show_held(const strut_model *model, strut_state *state) {
-  if (!state->held_normal) return false;
+  if (!state->modes.held_normal) return false;
   for (int32_t i = 0; i < model->contacts.count; i++) {
-    state->normal[i] = state->held_normal[i];
-    state->friction[i] = state->held_friction[i];
+    state->latest.normal[i] = state->modes.held_normal[i];
+    state->latest.friction[i] = state->modes.held_friction[i];
   }
   return true;
 }

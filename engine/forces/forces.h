@@ -11,14 +11,14 @@
 
 /**
  * a = M^-1 (constant + loads - K - C + contact), equation (10), at time t [s], positions q [m] and
- * velocities v [m/s], which need not be the state's own. Fills state->force, normal, friction, rest
+ * velocities v [m/s], which need not be the state's own. Fills state->latest.force, normal, friction, rest
  * and, with the energy balance, power. The model must have a mass.
  */
 STRUT_API void strut_forces_acceleration(const strut_model *model, strut_state *state, double t,
                                          const double *restrict q, const double *restrict v,
                                          double *restrict a);
 
-/** The same without the mass: leaves the net forces in state->force. */
+/** The same without the mass: leaves the net forces in state->latest.force. */
 STRUT_API void strut_forces_evaluate(const strut_model *model, strut_state *state, double t,
                                      const double *restrict q, const double *restrict v);
 

@@ -38,10 +38,11 @@ STRUT_INLINE void forces_of_members(const strut_model *model, strut_state *state
   members_kernel(model, state, q, v, force, balance != STRUT_ACCUMULATE_NOTHING, &powers);
   if (!balance) return;
   if (balance == STRUT_ACCUMULATE_LANES) {
-    strut_accumulate_members(state->accumulated, &powers);
+    strut_accumulate_members(state->latest.accumulated, &powers);
     return;
   }
-  double *power = state->power, drive = 0.0, lost = 0.0, exchanged = power[STRUT_POWER_EXCHANGED];
+  double *power = state->latest.power, drive = 0.0, lost = 0.0,
+         exchanged = power[STRUT_POWER_EXCHANGED];
   for (int l = 0; l < STRUT_LANES; l++) {
     drive += powers.drive[l];
     lost += powers.lost[l];
@@ -62,17 +63,18 @@ STRUT_INLINE void forces_of_structure(const strut_model *model, strut_state *sta
                                       const double *restrict q, const double *restrict v,
                                       unsigned allowed, strut_accumulation balance) {
   unsigned terms = model->terms & allowed;
-  double *restrict force = state->force;
+  double *restrict force = state->latest.force;
   state->evaluations++;
   bool powers = balance == STRUT_ACCUMULATE_POWERS || (balance && terms & ~STRUT_TERMS_IN_LANES);
-  for (int p = 0; p < STRUT_POWER_COUNT && powers; p++) state->power[p] = 0.0;
+  for (int p = 0; p < STRUT_POWER_COUNT && powers; p++) state->latest.power[p] = 0.0;
   forces_start(model, force);
   if (terms & STRUT_TERM_FEEDBACK) {
     strut_feedback_apply(model, state, t, q, v);
     strut_feedback_add_rates(model, state, t, v, force);
   }
   if (terms & STRUT_TERM_LOADS) strut_loads_apply(model, state, t, v);
-  if ((terms & STRUT_TERM_DRIVE) && t != state->drive_time) strut_drive_apply(model, state, t);
+  if ((terms & STRUT_TERM_DRIVE) && t != state->latest.drive_time)
+    strut_drive_apply(model, state, t);
   if (terms & STRUT_TERM_MEMBERS) forces_of_members(model, state, q, v, force, balance);
   if (terms & STRUT_TERM_ELEMENTS) strut_elements_add_forces(model, state, q, v, force);
   if (terms & STRUT_TERMS_RARE) strut_forces_add_rare(model, state, t, q, v);
@@ -83,7 +85,7 @@ STRUT_INLINE void forces_sum(const strut_model *model, strut_state *state, doubl
                              strut_accumulation balance) {
   forces_of_structure(model, state, t, q, v, allowed, balance);
   if (model->terms & STRUT_TERM_CONTACT)
-    ground_kernel(model, state, q, v, state->force, balance);
+    ground_kernel(model, state, q, v, state->latest.force, balance);
   else if (model->terms & allowed & STRUT_TERM_SURFACES)
     strut_surfaces_add_forces(model, state, q, v);
 }
@@ -91,7 +93,7 @@ STRUT_INLINE void forces_sum(const strut_model *model, strut_state *state, doubl
 /* a = M^-1 force, M with the masses that slide. */
 STRUT_INLINE void divide_by_mass(const strut_model *model, strut_state *state, double *restrict a,
                                  unsigned allowed) {
-  mass_kernel(model, state->force, a, state->scratch);
+  mass_kernel(model, state->latest.force, a, state->buffers.mass_solve);
   if (model->terms & allowed & STRUT_TERM_SLIDING_MASS)
     strut_sliding_masses_correct(model, state, a);
 }

@@ -29,10 +29,10 @@ STRUT_INLINE void ground_accumulate_lanes(strut_power_lanes *restrict to, int32_
 }
 
 STRUT_INLINE void ground_balance(strut_state *state, strut_law_contact_powers p) {
-  state->power[STRUT_POWER_CONTACT] -= p.damper;
-  state->power[STRUT_POWER_FRICTION] -= p.friction;
-  state->power[STRUT_POWER_BELT] += p.belt;
-  state->power[STRUT_POWER_EXCHANGED] += -p.damper + fabs(p.friction) + fabs(p.belt);
+  state->latest.power[STRUT_POWER_CONTACT] -= p.damper;
+  state->latest.power[STRUT_POWER_FRICTION] -= p.friction;
+  state->latest.power[STRUT_POWER_BELT] += p.belt;
+  state->latest.power[STRUT_POWER_EXCHANGED] += -p.damper + fabs(p.friction) + fabs(p.belt);
 }
 
 /* Within Karnopp's band at the ends of rigid bars friction is found with their forces: 0 here. */
@@ -69,8 +69,8 @@ STRUT_INLINE void ground_touch(const strut_contact_table *c, strut_state *state,
   else
     reaction = (strut_pair){friction, normal};
   strut_pair_store(f, sum + reaction);
-  state->normal[i] = normal;
-  state->friction[i] = friction;
+  state->latest.normal[i] = normal;
+  state->latest.friction[i] = friction;
   strut_law_contact_powers powers =
       strut_law_contact_power(damper, into, friction, slip, c->belt_speed);
   if (balance == STRUT_ACCUMULATE_POWERS) ground_balance(state, powers);
@@ -84,7 +84,7 @@ STRUT_INLINE void ground_all(const strut_model *model, strut_state *state, const
   const strut_contact_table *c = &model->contacts;
   const uint32_t *restrict at = c->at;
   const double height = c->height;
-  strut_power_lanes *lanes = state->accumulated;
+  strut_power_lanes *lanes = state->latest.accumulated;
   bool moves = c->belt_speed != 0.0;
   for (int32_t i = begin; i < end; i++) {
     double gap = q[at[i] + 1] - height;

@@ -14,7 +14,7 @@ static double base_of(const strut_element *e, const double *rest) {
 }
 
 static double base_rate_of(const strut_element *e, const strut_state *state) {
-  return e->base >= 0 ? state->rest_rate[e->base] : 0.0;
+  return e->base >= 0 ? state->latest.rest_rate[e->base] : 0.0;
 }
 
 static bool yields(const strut_element *e) { return e->law == STRUT_LAW_ELASTIC_PLASTIC; }
@@ -30,10 +30,10 @@ static double plastic_at(const strut_element *e, double x, double sign) {
 
 /* Which way the slider gives way at x: by its mode, or by its force; 0: it holds. */
 static int direction_at(const strut_state *state, const strut_element *e, int32_t i, double x) {
-  int piece = state->element_piece[i];
+  int piece = state->modes.element_piece[i];
   if (state->forgetful) return 0;
   if (piece >= 0) return piece - STRUT_SLIDER_HOLDS;
-  double p = state->plastic[e->memory], force = strut_slider_spring(e) * (x - p);
+  double p = state->history.plastic[e->memory], force = strut_slider_spring(e) * (x - p);
   if (e->carries && !(e->carries * (x - shift_of(e, p)) > 0.0)) return 0;
   return fabs(force) > strut_slider_yield(e) ? (force > 0.0 ? 1 : -1) : 0;
 }
@@ -41,11 +41,12 @@ static int direction_at(const strut_state *state, const strut_element *e, int32_
 double strut_history_natural(const strut_model *model, const strut_state *state, int32_t i,
                              double strain) {
   const strut_element *e = &model->elements.element[i];
-  double base = base_of(e, state->rest);
-  if (strut_element_is_gone(state->rest[e->slot])) return state->rest[e->slot];
+  double base = base_of(e, state->latest.rest);
+  if (strut_element_is_gone(state->latest.rest[e->slot])) return state->latest.rest[e->slot];
   if (!yields(e)) return base;
   int direction = direction_at(state, e, i, strain - base);
-  double plastic = direction ? plastic_at(e, strain - base, direction) : state->plastic[e->memory];
+  double plastic =
+      direction ? plastic_at(e, strain - base, direction) : state->history.plastic[e->memory];
   return base + shift_of(e, plastic);
 }
 
@@ -60,9 +61,10 @@ strut_slider strut_slider_at(const strut_model *model, const strut_state *state,
   const strut_element *e = &model->elements.element[i];
   const uint32_t *at = model->elements.at + e->first;
   double b[STRUT_MOST_GRADIENT], rate = -base_rate_of(e, state);
-  double x = strut_element_strain(model, i, q, state->element_turn[i], b) - base_of(e, state->rest);
+  double x = strut_element_strain(model, i, q, state->latest.element_turn[i], b) -
+             base_of(e, state->latest.rest);
   for (int32_t k = 0; k < e->nodes; k++) rate += b[2 * k] * v[at[k]] + b[2 * k + 1] * v[at[k] + 1];
-  double p = state->plastic[e->memory], force = strut_slider_spring(e) * (x - p);
+  double p = state->history.plastic[e->memory], force = strut_slider_spring(e) * (x - p);
   return (strut_slider){.force = force,
                         .yield = strut_slider_yield(e),
                         .rate = rate,
@@ -74,13 +76,13 @@ void strut_slider_set(const strut_model *model, strut_state *state, int32_t i, i
                       const double *q) {
   const strut_element *e = &model->elements.element[i];
   double b[STRUT_MOST_GRADIENT];
-  int before = state->element_piece[i];
+  int before = state->modes.element_piece[i];
   if (before >= 0 && before != STRUT_SLIDER_HOLDS) {
-    double strain = strut_element_strain(model, i, q, state->element_turn[i], b);
-    double x = strain - base_of(e, state->rest);
-    state->plastic[e->memory] = plastic_at(e, x, before - STRUT_SLIDER_HOLDS);
+    double strain = strut_element_strain(model, i, q, state->latest.element_turn[i], b);
+    double x = strain - base_of(e, state->latest.rest);
+    state->history.plastic[e->memory] = plastic_at(e, x, before - STRUT_SLIDER_HOLDS);
   }
-  state->element_piece[i] = (int16_t)mode;
+  state->modes.element_piece[i] = (int16_t)mode;
 }
 
 static void accumulate_loss(strut_state *state, double energy) {
@@ -94,16 +96,16 @@ void strut_slider_return(const strut_model *model, strut_state *state, int32_t i
   const strut_element *e = &model->elements.element[i];
   strut_slider s = strut_slider_at(model, state, i, q, state->v);
   if (!s.acts || !(fabs(s.force) > s.yield)) return;
-  double *p = &state->plastic[e->memory], slip = fabs(s.plastic - *p);
+  double *p = &state->history.plastic[e->memory], slip = fabs(s.plastic - *p);
   accumulate_loss(state, slip * (jumped ? 0.5 * (fabs(s.force) + s.yield) : s.yield));
   *p = s.plastic;
-  state->rest[e->slot] = base_of(e, state->rest) + shift_of(e, *p);
+  state->latest.rest[e->slot] = base_of(e, state->latest.rest) + shift_of(e, *p);
 }
 
 /* What an element with its damper does: how its sign is frozen or follows is as with all elements. */
 static bool element_acts(const strut_element *e, const strut_state *state, int32_t i, double x,
                          double force) {
-  int8_t mode = state->element_acts[i];
+  int8_t mode = state->modes.element_acts[i];
   if (!e->carries) return true;
   return mode ? mode > 0 : e->carries * x > 0.0 && e->carries * force > 0.0;
 }
@@ -115,14 +117,14 @@ static bool element_acts(const strut_element *e, const strut_state *state, int32
  */
 static void add_powers(const strut_element *e, strut_state *state, int32_t i, double force,
                        double elastic, double x, double rate) {
-  int piece = state->element_piece[i];
+  int piece = state->modes.element_piece[i];
   double drive = -force * base_rate_of(e, state), lost = force - elastic;
   if (yields(e) && piece >= 0 && piece != STRUT_SLIDER_HOLDS && !state->forgetful)
     lost = force - e->numbers.second_stiffness * x;
   lost *= rate;
-  state->power[STRUT_POWER_DRIVE] += drive;
-  state->power[STRUT_POWER_MEMBERS] += lost;
-  state->power[STRUT_POWER_EXCHANGED] += fabs(drive) + fabs(lost);
+  state->latest.power[STRUT_POWER_DRIVE] += drive;
+  state->latest.power[STRUT_POWER_MEMBERS] += lost;
+  state->latest.power[STRUT_POWER_EXCHANGED] += fabs(drive) + fabs(lost);
 }
 
 static void add_element(const strut_model *model, strut_state *state, int32_t i, const double *q,
@@ -130,22 +132,23 @@ static void add_element(const strut_model *model, strut_state *state, int32_t i,
   const strut_element *e = &model->elements.element[i];
   const uint32_t *at = model->elements.at + e->first;
   double b[STRUT_MOST_GRADIENT], rate = 0.0;
-  if (strut_capstan_remembers(e, state->rest) && !strut_element_is_gone(state->rest[e->slot])) {
+  if (strut_capstan_remembers(e, state->latest.rest) &&
+      !strut_element_is_gone(state->latest.rest[e->slot])) {
     strut_capstan_add_forces(model, state, i, q, v, force);
     return;
   }
-  double strain = strut_element_strain(model, i, q, state->element_turn[i], b);
-  state->element_turn[i] = strain;
+  double strain = strut_element_strain(model, i, q, state->latest.element_turn[i], b);
+  state->latest.element_turn[i] = strain;
   double natural = strut_history_natural(model, state, i, strain), x = strain - natural;
   if (strut_element_is_gone(natural)) return;
-  state->rest[e->slot] = natural;
-  if (yields(e) && state->element_piece[i] >= 0)
-    state->plastic[e->memory] =
-        (natural - base_of(e, state->rest)) * e->numbers.stiffness / strut_slider_spring(e);
+  state->latest.rest[e->slot] = natural;
+  if (yields(e) && state->modes.element_piece[i] >= 0)
+    state->history.plastic[e->memory] =
+        (natural - base_of(e, state->latest.rest)) * e->numbers.stiffness / strut_slider_spring(e);
   for (int32_t k = 0; k < e->nodes; k++) rate += b[2 * k] * v[at[k]] + b[2 * k + 1] * v[at[k] + 1];
   rate -= base_rate_of(e, state); /* last, as of other elements: with their bits before it breaks */
   strut_law_response r =
-      strut_law_respond(e->law, &e->numbers, strain, natural, state->element_piece[i]);
+      strut_law_respond(e->law, &e->numbers, strain, natural, state->modes.element_piece[i]);
   double whole = r.force + e->damping * rate;
   if (!element_acts(e, state, i, x, whole)) {
     /* a damper may outweigh the spring: that relaxes then, and the damper takes its energy */
@@ -158,10 +161,10 @@ static void add_element(const strut_model *model, strut_state *state, int32_t i,
     force[at[k] + 1] -= whole * b[2 * k + 1];
   }
   if (!state->balance) return;
-  add_powers(e, state, i, whole, r.force, strain - base_of(e, state->rest), rate);
+  add_powers(e, state, i, whole, r.force, strain - base_of(e, state->latest.rest), rate);
   double excess = r.excess * base_rate_of(e, state);
-  state->power[STRUT_POWER_DRIVE] += excess;
-  state->power[STRUT_POWER_EXCHANGED] += fabs(excess);
+  state->latest.power[STRUT_POWER_DRIVE] += excess;
+  state->latest.power[STRUT_POWER_EXCHANGED] += fabs(excess);
 }
 
 void strut_history_add_forces(const strut_model *model, strut_state *state,
@@ -173,27 +176,30 @@ void strut_history_add_forces(const strut_model *model, strut_state *state,
 void strut_history_follow(const strut_model *model, strut_state *state) {
   for (int32_t m = 0; m < model->elements.history_count; m++) {
     const strut_element *e = &model->elements.element[model->elements.memory[m]];
-    double *own = &state->rest[e->slot];
+    double *own = &state->latest.rest[e->slot];
     if (strut_element_is_gone(*own)) continue;
-    *own = base_of(e, state->rest) + (yields(e) ? shift_of(e, state->plastic[m]) : 0.0);
-    state->rest_rate[e->slot] = base_rate_of(e, state);
+    *own =
+        base_of(e, state->latest.rest) + (yields(e) ? shift_of(e, state->history.plastic[m]) : 0.0);
+    state->latest.rest_rate[e->slot] = base_rate_of(e, state);
   }
 }
 
 void strut_history_store(const strut_model *model, const strut_state *state, double *memory) {
   const strut_element_table *t = &model->elements;
   size_t slots = (size_t)t->history_slots, count = (size_t)t->history_count;
-  memcpy(memory, state->rest + t->history_slot, slots * sizeof(double));
-  memcpy(memory + slots, state->plastic, count * sizeof(double));
-  memcpy(memory + slots + count, state->broken_at, (size_t)t->breakable_count * sizeof(double));
+  memcpy(memory, state->latest.rest + t->history_slot, slots * sizeof(double));
+  memcpy(memory + slots, state->history.plastic, count * sizeof(double));
+  memcpy(memory + slots + count, state->history.broken_at,
+         (size_t)t->breakable_count * sizeof(double));
 }
 
 void strut_history_load(const strut_model *model, strut_state *state, const double *memory) {
   const strut_element_table *t = &model->elements;
   size_t slots = (size_t)t->history_slots, count = (size_t)t->history_count;
-  memcpy(state->rest + t->history_slot, memory, slots * sizeof(double));
-  memcpy(state->plastic, memory + slots, count * sizeof(double));
-  memcpy(state->broken_at, memory + slots + count, (size_t)t->breakable_count * sizeof(double));
+  memcpy(state->latest.rest + t->history_slot, memory, slots * sizeof(double));
+  memcpy(state->history.plastic, memory + slots, count * sizeof(double));
+  memcpy(state->history.broken_at, memory + slots + count,
+         (size_t)t->breakable_count * sizeof(double));
   strut_history_follow(model, state);
 }
 
@@ -205,7 +211,7 @@ double strut_breakable_load(const strut_model *model, const strut_state *state, 
   const strut_breakable *b = &t->breakable[breakable];
   double sum = 0.0;
   for (int32_t i = b->first; i >= 0; i = t->element[i].sibling) {
-    if (strut_capstan_remembers(&t->element[i], state->rest)) {
+    if (strut_capstan_remembers(&t->element[i], state->latest.rest)) {
       sum += strut_capstan_tensions(model, state, i, q, v).most;
       continue;
     }
@@ -221,20 +227,21 @@ void strut_breakable_break(const strut_model *model, strut_state *state, int32_t
   strut_element_pose pose;
   double energy = 0.0;
   for (int32_t i = table->breakable[breakable].first; i >= 0; i = table->element[i].sibling) {
-    strut_element_evaluate(model, i, state->rest, state->q, state->element_turn[i], &pose);
+    strut_element_evaluate(model, i, state->latest.rest, state->q, state->latest.element_turn[i],
+                           &pose);
     energy += pose.energy;
-    state->rest[table->element[i].slot] = HUGE_VAL;
-    state->rest_rate[table->element[i].slot] = 0.0;
+    state->latest.rest[table->element[i].slot] = HUGE_VAL;
+    state->latest.rest_rate[table->element[i].slot] = 0.0;
   }
   accumulate_loss(state, energy);
-  state->broken_at[breakable] = t;
+  state->history.broken_at[breakable] = t;
 }
 
 bool strut_history_release(const strut_model *model, strut_state *state, double t) {
   bool released = false;
   for (int32_t i = 0; i < model->elements.breakable_count && !state->forgetful; i++) {
     double due = model->elements.breakable[i].time;
-    if (state->broken_at[i] < HUGE_VAL || due > t) continue;
+    if (state->history.broken_at[i] < HUGE_VAL || due > t) continue;
     strut_breakable_break(model, state, i, due);
     released = true;
   }
@@ -249,19 +256,21 @@ static bool renew(const strut_model *model, strut_state *state, double t, bool j
   double now = t + state->time_offset;
   bool broken = false;
   if (state->forgetful) return false;
-  if (model->terms & STRUT_TERM_DRIVE && t != state->drive_time) strut_drive_apply(model, state, t);
+  if (model->terms & STRUT_TERM_DRIVE && t != state->latest.drive_time)
+    strut_drive_apply(model, state, t);
   for (int32_t m = 0; m < table->history_count; m++) {
     int32_t i = table->memory[m];
     if (strut_has_capstan(&table->element[i]) &&
-        !strut_element_is_gone(state->rest[table->element[i].slot])) {
+        !strut_element_is_gone(state->latest.rest[table->element[i].slot])) {
       strut_capstan_begin(model, state, i, state->q);
       strut_capstan_renew(model, state, i, state->q);
     }
-    if (yields(&table->element[i]) && !strut_element_is_gone(state->rest[table->element[i].slot]))
+    if (yields(&table->element[i]) &&
+        !strut_element_is_gone(state->latest.rest[table->element[i].slot]))
       strut_slider_return(model, state, i, state->q, jumped);
   }
   for (int32_t i = 0; i < table->breakable_count; i++)
-    if (state->broken_at[i] == HUGE_VAL && table->breakable[i].force < HUGE_VAL &&
+    if (state->history.broken_at[i] == HUGE_VAL && table->breakable[i].force < HUGE_VAL &&
         strut_breakable_load(model, state, i, state->q, state->v) >= table->breakable[i].force) {
       strut_breakable_break(model, state, i, now);
       broken = true;
@@ -283,14 +292,15 @@ void strut_history_begin(const strut_model *model, strut_state *state, double t)
 double strut_element_last_force(const strut_model *model, const strut_state *state, int32_t i) {
   strut_element_pose pose;
   const strut_element *e = &model->elements.element[i];
-  if (strut_capstan_remembers(e, state->rest) && !strut_element_is_gone(state->rest[e->slot]))
+  if (strut_capstan_remembers(e, state->latest.rest) &&
+      !strut_element_is_gone(state->latest.rest[e->slot]))
     return strut_capstan_tensions(model, state, i, state->q, state->v).last;
   return strut_element_measure(model, state, i, &pose);
 }
 
 double strut_element_plastic(const strut_model *model, const strut_state *state, int32_t element) {
   const strut_element *e = &model->elements.element[element];
-  return e->remembers && yields(e) ? shift_of(e, state->plastic[e->memory]) : 0.0;
+  return e->remembers && yields(e) ? shift_of(e, state->history.plastic[e->memory]) : 0.0;
 }
 
 static void keep_worst(const strut_model *model, strut_element_role role, int32_t item, bool breaks,
@@ -334,8 +344,8 @@ void strut_maxwell_apply(const strut_model *model, strut_state *state, const dou
   const strut_member_table *t = &model->members;
   for (int32_t i = 0; i < f->maxwell_count; i++) {
     const strut_maxwell_entry *m = &f->maxwell[i];
-    strut_member_pose pose = strut_member_pose_at(t, state->rest, m->member, q);
-    double rest_rate = state->rest_rate[m->member], tension = v[f->base + m->state];
+    strut_member_pose pose = strut_member_pose_at(t, state->latest.rest, m->member, q);
+    double rest_rate = state->latest.rest_rate[m->member], tension = v[f->base + m->state];
     double rate = strut_member_rate(t, m->member, &pose, v) - rest_rate;
     uint32_t a = t->from[m->member], b = t->to[m->member];
     force[a] += tension * pose.unit.x, force[a + 1] += tension * pose.unit.y;
@@ -343,9 +353,9 @@ void strut_maxwell_apply(const strut_model *model, strut_state *state, const dou
     force[f->base + m->state] = m->stiffness * (rate - tension / m->damping);
     if (!state->balance) continue;
     double drive = -tension * rest_rate, lost = tension * tension / m->damping;
-    state->power[STRUT_POWER_DRIVE] += drive;
-    state->power[STRUT_POWER_MEMBERS] += lost;
-    state->power[STRUT_POWER_EXCHANGED] += fabs(drive) + lost;
+    state->latest.power[STRUT_POWER_DRIVE] += drive;
+    state->latest.power[STRUT_POWER_MEMBERS] += lost;
+    state->latest.power[STRUT_POWER_EXCHANGED] += fabs(drive) + lost;
   }
 }
 

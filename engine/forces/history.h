@@ -16,12 +16,12 @@
  * which is k x about a natural strain that is k_1/k p larger, and the energy stored in k_1 against k_2.
  * That shift, x - force/k, is the plastic strain: what remains when the force is taken away.
  *
- * Methods with events freeze whether the slider holds or gives way (state->element_piece); p is then
+ * Methods with events freeze whether the slider holds or gives way (state->modes.element_piece); p is then
  * constant, or follows from x. With others the slider gives way within a step as its force says, and p
  * is renewed at the end of each step, at which it is also decided what has broken.
  */
 
-/** Modes of a slider, as state->element_piece holds them; -1: by its force. */
+/** Modes of a slider, as state->modes.element_piece holds them; -1: by its force. */
 enum { STRUT_SLIDER_BACK, STRUT_SLIDER_HOLDS, STRUT_SLIDER_FORTH };
 
 /** Has the element broken or been released, by its natural strain? */

@@ -31,7 +31,7 @@ static double damp_sliding_masses(const strut_model *model, const double *v, dou
 void strut_mass_damping_apply(const strut_model *model, strut_state *state, const double *v) {
   const strut_member_table *t = &model->members;
   const mass_shares share = shares_of(model);
-  double alpha = model->mass_damping, lost = 0.0, *force = state->force;
+  double alpha = model->mass_damping, lost = 0.0, *force = state->latest.force;
   for (int c = 0; c < 2; c++, v++, force++) {
     for (int32_t i = 0; i < model->node_count; i++) {
       double drag = alpha * model->point_mass[i] * v[2 * i];
@@ -49,8 +49,8 @@ void strut_mass_damping_apply(const strut_model *model, strut_state *state, cons
   }
   if (model->sliding.count) lost += damp_sliding_masses(model, v - 2, force - 2);
   if (!state->balance) return;
-  state->power[STRUT_POWER_MEMBERS] += lost;
-  state->power[STRUT_POWER_EXCHANGED] += lost;
+  state->latest.power[STRUT_POWER_MEMBERS] += lost;
+  state->latest.power[STRUT_POWER_EXCHANGED] += lost;
 }
 
 void strut_mass_damping_add(const strut_model *model, const int32_t *row_of, strut_triplets *sum) {

@@ -47,12 +47,12 @@ STRUT_INLINE four_member_values members_values(const strut_member_table *t,
   return (four_member_values){
       .length = length,
       .rate = rate,
-      .rest = strut_lanes_load((driven ? state->rest : t->rest) + j),
-      .rest_rate = driven ? strut_lanes_load(state->rest_rate + j) : (strut_lanes){0},
+      .rest = strut_lanes_load((driven ? state->latest.rest : t->rest) + j),
+      .rest_rate = driven ? strut_lanes_load(state->latest.rest_rate + j) : (strut_lanes){0},
       .stiffness = strut_lanes_load(t->stiffness + j),
       .damping = strut_lanes_load(t->damping + j),
-      .slack_length_threshold = strut_lanes_load(state->slack_length_threshold + j),
-      .slack_force_threshold = strut_lanes_load(state->slack_force_threshold + j)};
+      .slack_length_threshold = strut_lanes_load(state->modes.slack_length_threshold + j),
+      .slack_force_threshold = strut_lanes_load(state->modes.slack_force_threshold + j)};
 }
 
 /* Pulls of a group on the first ends: x and y of its even members, and of its odd ones. */

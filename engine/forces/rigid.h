@@ -48,12 +48,12 @@ STRUT_API strut_status strut_rigid_check(const strut_model *model, strut_error *
 
 /**
  * a (length): the acceleration without bars and stick in, with them out. Adds their forces to
- * state->force, sets friction of contacts in the band and tensions, and with the energy balance accumulates them.
+ * state->latest.force, sets friction of contacts in the band and tensions, and with the energy balance accumulates them.
  * state->trouble where it cannot be done.
  */
 void strut_rigid_accelerate(const strut_model *model, strut_state *state, const double *q,
                             const double *v, double *a);
-/** The same from state->force, for who wants forces only. */
+/** The same from state->latest.force, for who wants forces only. */
 void strut_rigid_constrain(const strut_model *model, strut_state *state, const double *q,
                            const double *v);
 /** Bars with their rows factorised at q, for the filter; NULL: out of memory. */

@@ -21,7 +21,7 @@ typedef struct slide {
 static slide slide_at(const strut_model *model, const strut_state *state, int32_t k,
                       const double *q, const double *v) {
   const strut_sliding_item *s = &model->sliding.item[model->sliding.moving[k]];
-  const strut_sliding_motion *at = &state->sliding[k];
+  const strut_sliding_motion *at = &state->latest.sliding[k];
   return (slide){.item = s,
                  .at = at,
                  .near = 1.0 - at->share,
@@ -77,7 +77,7 @@ void strut_sliding_masses_place(const strut_model *model, strut_state *state, do
   double when = t + state->time_offset;
   for (int32_t k = 0; k < n; k++) {
     const strut_sliding_item *s = &table->item[table->moving[k]];
-    strut_sliding_motion *at = &state->sliding[k];
+    strut_sliding_motion *at = &state->latest.sliding[k];
     double value, rate;
     strut_signal_evaluate(signals, s->signal, when, &value, &rate);
     at->share = s->base + s->scale * value;
@@ -85,8 +85,8 @@ void strut_sliding_masses_place(const strut_model *model, strut_state *state, do
     at->bend = s->scale * strut_signal_acceleration(signals, s->signal, when);
   }
   for (int c = 0; c < 2 && table->between; c++) {
-    double *matrix = state->sliding_factor + c * n * n;
-    fill(table, state->sliding, table->between + 4 * c * n * n, matrix);
+    double *matrix = state->buffers.sliding_factor + c * n * n;
+    fill(table, state->latest.sliding, table->between + 4 * c * n * n, matrix);
     if (!strut_cholesky_factor(n, NULL, matrix)) matrix[0] = NAN; /* as the motion is by then */
   }
 }
@@ -94,16 +94,17 @@ void strut_sliding_masses_place(const strut_model *model, strut_state *state, do
 void strut_sliding_masses_correct(const strut_model *model, const strut_state *state, double *a) {
   const strut_sliding_table *table = &model->sliding;
   int32_t n = table->moving_count;
-  double *push[2] = {state->sliding_push, state->sliding_push + n};
+  double *push[2] = {state->buffers.sliding_push, state->buffers.sliding_push + n};
   for (int32_t k = 0; k < n; k++) {
     const strut_sliding_item *s = &table->item[table->moving[k]];
-    double far = state->sliding[k].share, near = 1.0 - far;
+    double far = state->latest.sliding[k].share, near = 1.0 - far;
     for (uint32_t c = 0; c < 2; c++) push[c][k] = near * a[s->at[0] + c] + far * a[s->at[1] + c];
   }
-  for (int c = 0; c < 2; c++) strut_cholesky_solve(n, state->sliding_factor + c * n * n, push[c]);
+  for (int c = 0; c < 2; c++)
+    strut_cholesky_solve(n, state->buffers.sliding_factor + c * n * n, push[c]);
   for (int32_t k = 0; k < n; k++) {
     const strut_sliding_answer *r = &table->answer[k];
-    double far = state->sliding[k].share, near = 1.0 - far;
+    double far = state->latest.sliding[k].share, near = 1.0 - far;
     for (int32_t i = 0; i < r->count; i++) {
       const double *xy = r->xy + 4 * i;
       a[r->at[i]] -= push[0][k] * (near * xy[0] + far * xy[2]);
@@ -121,15 +122,15 @@ void strut_sliding_masses_apply(const strut_model *model, strut_state *state, do
     const strut_sliding_item *item = s.item;
     double m = item->mass, moved = s.at->share - item->start;
     strut_vec2 d = drift(&s), u = velocity(&s, v);
-    spread(&s, -m * (d.x + alpha * u.x), -m * (d.y + alpha * u.y), state->force);
+    spread(&s, -m * (d.x + alpha * u.x), -m * (d.y + alpha * u.y), state->latest.force);
     for (uint32_t c = 0; c < 2; c++) { /* the weights have its own where it started */
-      state->force[item->at[0] + c] -= m * moved * g[c];
-      state->force[item->at[1] + c] += m * moved * g[c];
+      state->latest.force[item->at[0] + c] -= m * moved * g[c];
+      state->latest.force[item->at[1] + c] += m * moved * g[c];
     }
     if (!state->balance || alpha == 0.0) continue;
     double lost = alpha * m * (u.x * u.x + u.y * u.y);
-    state->power[STRUT_POWER_MEMBERS] += lost;
-    state->power[STRUT_POWER_EXCHANGED] += lost;
+    state->latest.power[STRUT_POWER_MEMBERS] += lost;
+    state->latest.power[STRUT_POWER_EXCHANGED] += lost;
   }
 }
 
@@ -141,8 +142,8 @@ void strut_sliding_masses_add_power(const strut_model *model, strut_state *state
     strut_vec2 d = drift(&s), u = velocity(&s, v), bend = interpolate(&s, a);
     double x = bend.x + d.x + alpha * u.x - g[0], y = bend.y + d.y + alpha * u.y - g[1];
     double power = s.item->mass * s.at->rate * (x * s.span.x + y * s.span.y);
-    state->power[STRUT_POWER_DRIVE] += power;
-    state->power[STRUT_POWER_EXCHANGED] += fabs(power);
+    state->latest.power[STRUT_POWER_DRIVE] += power;
+    state->latest.power[STRUT_POWER_EXCHANGED] += fabs(power);
   }
 }
 
@@ -173,17 +174,17 @@ static double jump_of_rate(const strut_model *model, const strut_sliding_item *s
   return sum * s->scale;
 }
 
-/* Impulses of the jumps into state->force, the jumps into their motions. True if there are any. */
+/* Impulses of the jumps into state->latest.force, the jumps into their motions. True if there are any. */
 static bool find_impulses(const strut_model *model, strut_state *state, double from, double to) {
   bool any = false;
-  memset(state->force, 0, (size_t)model->length * sizeof *state->force);
+  memset(state->latest.force, 0, (size_t)model->length * sizeof *state->latest.force);
   for (int32_t k = 0; k < model->sliding.moving_count; k++) {
     slide s = slide_at(model, state, k, state->q, state->v);
     double jump = jump_of_rate(model, s.item, from + state->time_offset, to + state->time_offset);
     double push = -s.item->mass * jump;
-    state->sliding[k].jump = jump;
+    state->latest.sliding[k].jump = jump;
     any = any || jump != 0.0;
-    spread(&s, push * s.span.x, push * s.span.y, state->force);
+    spread(&s, push * s.span.x, push * s.span.y, state->latest.force);
   }
   return any;
 }
@@ -204,11 +205,11 @@ static double work_of_jumps(const strut_model *model, const strut_state *state,
 
 bool strut_sliding_masses_kick(const strut_model *model, strut_state *state, double from,
                                double to) {
-  double *change = state->support_answer;
+  double *change = state->buffers.support_answer;
   if (!(model->terms & STRUT_TERM_SLIDING_MASS)) return false;
   strut_sliding_masses_place(model, state, to);
   if (!model->sliding.corners || !find_impulses(model, state, from, to)) return false;
-  strut_mass_solve(model, state->force, change, state->scratch);
+  strut_mass_solve(model, state->latest.force, change, state->buffers.mass_solve);
   strut_sliding_masses_correct(model, state, change);
   double work = work_of_jumps(model, state, change);
   for (int32_t i = 0; i < model->length; i++) state->v[i] += change[i];
@@ -224,7 +225,7 @@ double strut_sliding_masses_moment(const strut_model *model, const strut_state *
   for (int32_t k = 0; k < model->sliding.moving_count; k++) {
     const strut_sliding_item *s = &model->sliding.item[model->sliding.moving[k]];
     double span = q[s->at[1] + (uint32_t)axis] - q[s->at[0] + (uint32_t)axis];
-    sum += s->mass * (state->sliding[k].share - s->start) * span;
+    sum += s->mass * (state->latest.sliding[k].share - s->start) * span;
   }
   return sum;
 }
@@ -234,7 +235,7 @@ double strut_sliding_masses_momentum(const strut_model *model, const strut_state
   double sum = strut_sliding_masses_moment(model, state, axis, v);
   for (int32_t k = 0; k < model->sliding.moving_count; k++) {
     const strut_sliding_item *s = &model->sliding.item[model->sliding.moving[k]];
-    sum += s->mass * state->sliding[k].rate *
+    sum += s->mass * state->latest.sliding[k].rate *
            (q[s->at[1] + (uint32_t)axis] - q[s->at[0] + (uint32_t)axis]);
   }
   return sum;

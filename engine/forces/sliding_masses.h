@@ -14,7 +14,7 @@
 
 /** Puts the moving masses where they are at time t [s], and factors what the acceleration needs. */
 void strut_sliding_masses_place(const strut_model *model, strut_state *state, double t);
-/** Does that, and adds their forces at positions q and velocities v to state->force. */
+/** Does that, and adds their forces at positions q and velocities v to state->latest.force. */
 void strut_sliding_masses_apply(const strut_model *model, strut_state *state, double t,
                                 const double *q, const double *v);
 /** From a = M^-1 f (length) to the acceleration with the moving masses, as they have been placed. */

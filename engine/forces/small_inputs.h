@@ -30,12 +30,12 @@ static inline void strut_small_inputs_read(const strut_model *model, const strut
       inputs->constant[c][i] = constant && i < s->nodes ? model->constant_force[2 * i + c] : 0.0;
   for (int32_t j = 0; j < STRUT_SMALL_SLOTS; j++) {
     bool there = j < s->members;
-    inputs->slack_length_threshold[j] = there ? state->slack_length_threshold[j] : 0.0;
-    inputs->slack_force_threshold[j] = there ? state->slack_force_threshold[j] : 0.0;
+    inputs->slack_length_threshold[j] = there ? state->modes.slack_length_threshold[j] : 0.0;
+    inputs->slack_force_threshold[j] = there ? state->modes.slack_force_threshold[j] : 0.0;
   }
   inputs->driven = 0;
   for (int32_t j = 0; j < s->members && model->terms & STRUT_TERM_DRIVE; j++)
-    if (state->rest_rate[j] != 0.0) inputs->driven |= 1u << j / 4;
+    if (state->latest.rest_rate[j] != 0.0) inputs->driven |= 1u << j / 4;
   for (int32_t i = 0; i < model->drives.count; i++)
     inputs->driven |= 1u << model->drives.member[i] / 4;
 }
@@ -44,12 +44,12 @@ static inline void strut_small_inputs_read(const strut_model *model, const strut
 static inline void strut_small_rest_fill(const strut_model *model, const strut_state *state,
                                          int64_t count, small_rest *rows) {
   bool driven = model->terms & STRUT_TERM_DRIVE;
-  const double *rest = driven ? state->rest : model->members.rest;
+  const double *rest = driven ? state->latest.rest : model->members.rest;
   for (int64_t h = 0; h < count; h++)
     for (int32_t j = 0; j < STRUT_SMALL_SLOTS; j++) {
       bool there = j < model->members.count;
       rows[h].rest[j] = there ? rest[j] : 0.0;
-      rows[h].rate[j] = there ? state->rest_rate[j] : 0.0;
+      rows[h].rate[j] = there ? state->latest.rest_rate[j] : 0.0;
     }
 }
 

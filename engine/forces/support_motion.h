@@ -15,7 +15,7 @@
 void strut_support_motion_place(const strut_model *model, const strut_state *state, double t,
                                 double *q, double *v);
 /**
- * Adds -M_fc a_c at time t to state->force, and the power of the supports at velocities v. Comes after
+ * Adds -M_fc a_c at time t to state->latest.force, and the power of the supports at velocities v. Comes after
  * all forces that act on moved coordinates.
  */
 void strut_support_motion_apply(const strut_model *model, strut_state *state, double t,

@@ -33,12 +33,12 @@ static rotation rotate(const strut_signal *signals, const strut_unbalance *u, do
 static void push(strut_state *state, const strut_unbalance *u, double fx, double fy,
                  const double *v) {
   int32_t at = 2 * u->node;
-  state->force[at] += fx;
-  state->force[at + 1] += fy;
+  state->latest.force[at] += fx;
+  state->latest.force[at + 1] += fy;
   if (!state->balance) return;
   double power = fx * v[at] + fy * v[at + 1];
-  state->power[STRUT_POWER_DRIVE] += power;
-  state->power[STRUT_POWER_EXCHANGED] += fabs(power);
+  state->latest.power[STRUT_POWER_DRIVE] += power;
+  state->latest.power[STRUT_POWER_EXCHANGED] += fabs(power);
 }
 
 void strut_unbalance_apply(const strut_model *model, strut_state *state, double t,
@@ -66,7 +66,7 @@ void strut_unbalance_apply_mean(const strut_model *model, strut_state *state, do
   }
 }
 
-/* Adds to state->force the impulses of one mass. True if there are any. */
+/* Adds to state->latest.force the impulses of one mass. True if there are any. */
 static bool add_impulses(const strut_model *model, strut_state *state, const strut_unbalance *u,
                          double from, double to) {
   const strut_signal *signals = model->scene->signals;
@@ -76,8 +76,8 @@ static bool add_impulses(const strut_model *model, strut_state *state, const str
     double moment = 8.0 * DBL_EPSILON * fmax(fabs(at), to - from);
     rotation before = rotate(signals, u, at - moment), after = rotate(signals, u, at + moment);
     double jump = u->mass * u->radius * (after.rate - before.rate);
-    state->force[2 * u->node] += jump * after.sine;
-    state->force[2 * u->node + 1] -= jump * after.cosine;
+    state->latest.force[2 * u->node] += jump * after.sine;
+    state->latest.force[2 * u->node + 1] -= jump * after.cosine;
     any = any || jump != 0.0;
   }
   return any;
@@ -87,7 +87,7 @@ bool strut_unbalance_kick(const strut_model *model, strut_state *state, double f
   const strut_scene *scene = model->scene;
   bool any = false;
   if (!model->unbalance_corners) return false;
-  memset(state->force, 0, (size_t)model->length * sizeof *state->force);
+  memset(state->latest.force, 0, (size_t)model->length * sizeof *state->latest.force);
   for (size_t i = 0; i < scene->unbalance_count; i++)
     any = add_impulses(model, state, &scene->unbalances[i], from + state->time_offset,
                        to + state->time_offset) ||

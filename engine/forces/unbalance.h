@@ -9,7 +9,7 @@
 
 #include "engine/model/state.h"
 
-/** Adds the forces at time t [s] to state->force, and their power at velocities v. */
+/** Adds the forces at time t [s] to state->latest.force, and their power at velocities v. */
 void strut_unbalance_apply(const strut_model *model, strut_state *state, double t, const double *v);
 /** Adds the forces on average over the time from t on for h [s], impulses within it too; u: mean velocity. */
 void strut_unbalance_apply_mean(const strut_model *model, strut_state *state, double t, double h,

@@ -80,7 +80,7 @@ static void make_arrays(const strut_domain_steps *s, domain_part *p) {
   p->load = numbers(p, 2 * STRUT_PASSES * (size_t)p->domain.model.loads.count);
   p->rest = numbers(p, STRUT_PASSES * (size_t)p->domain.model.drives.count);
   p->rest_rate = numbers(p, STRUT_PASSES * (size_t)p->domain.model.drives.count);
-  p->domain.state.force = p->force;
+  p->domain.state.latest.force = p->force;
 }
 
 /* By the thread that works on it, so that its memory is near. */
@@ -227,10 +227,11 @@ static void evaluate_signals(const strut_domain_steps *s, domain_part *p, int64_
   const strut_load_table *l = &d->model.loads;
   for (int k = 0; k < passes && (drives->count || l->count); k++) {
     double t = time_of_pass(s, n, k), rate, factor;
-    if (drives->count && t != d->state.drive_time) strut_drive_apply(&d->model, &d->state, t);
+    if (drives->count && t != d->state.latest.drive_time)
+      strut_drive_apply(&d->model, &d->state, t);
     for (int32_t i = 0; i < drives->count; i++) {
-      p->rest[k * drives->count + i] = d->state.rest[drives->member[i]];
-      p->rest_rate[k * drives->count + i] = d->state.rest_rate[drives->member[i]];
+      p->rest[k * drives->count + i] = d->state.latest.rest[drives->member[i]];
+      p->rest_rate[k * drives->count + i] = d->state.latest.rest_rate[drives->member[i]];
     }
     for (int32_t i = 0; i < l->count; i++) {
       double *load = p->load + 2 * (k * l->count + i);
@@ -238,7 +239,8 @@ static void evaluate_signals(const strut_domain_steps *s, domain_part *p, int64_
       load[0] = factor * l->x[i], load[1] = factor * l->y[i];
     }
   }
-  d->state.drive_time = (double)NAN; /* blocks of members set the rest lengths of their own pass */
+  d->state.latest.drive_time =
+      (double)NAN; /* blocks of members set the rest lengths of their own pass */
 }
 
 static void publish(const strut_domain_steps *s, const domain_part *p, int side) {
@@ -279,12 +281,12 @@ static void load_rest(const strut_domain_steps *s, domain_part *p) {
   strut_subdomain *d = &p->domain;
   const strut_state *state = s->state;
   for (int32_t i = 0; i < d->model.contacts.count; i++) {
-    d->state.normal[i] = state->normal[d->contact[i]];
-    d->state.friction[i] = state->friction[d->contact[i]];
+    d->state.latest.normal[i] = state->latest.normal[d->contact[i]];
+    d->state.latest.friction[i] = state->latest.friction[d->contact[i]];
   }
   d->state.balance = state->balance;
   d->state.time_offset = state->time_offset;
-  d->state.drive_time = (double)NAN;
+  d->state.latest.drive_time = (double)NAN;
 }
 
 /* Own nodes, and what contacts leave. */
@@ -299,10 +301,10 @@ static void store_state(const strut_domain_steps *s, const domain_part *p) {
   for (int32_t i = 0; i < d->model.contacts.count; i++) {
     int32_t node = d->model.contacts.entry[i].node;
     if (!domain_part_owns(d, node)) continue;
-    state->normal[d->contact[i]] = d->state.normal[i];
-    state->friction[d->contact[i]] = d->state.friction[i];
+    state->latest.normal[d->contact[i]] = d->state.latest.normal[i];
+    state->latest.friction[d->contact[i]] = d->state.latest.friction[i];
     const double *force = s->mass ? s->sum + 2 * d->node[node] : p->force + 2 * node;
-    strut_pair_store(state->force + 2 * d->node[node], strut_pair_load(force));
+    strut_pair_store(state->latest.force + 2 * d->node[node], strut_pair_load(force));
   }
 }
 
@@ -333,7 +335,7 @@ static void add_member_powers(const strut_domain_steps *s, const four_member_pow
 static void add_contact_to_powers(strut_state *state, const double *of) {
   static const int which[DOMAIN_CONTACT_POWERS] = {STRUT_POWER_CONTACT, STRUT_POWER_FRICTION,
                                                    STRUT_POWER_BELT, STRUT_POWER_EXCHANGED};
-  for (int w = 0; w < DOMAIN_CONTACT_POWERS; w++) state->power[which[w]] += of[w];
+  for (int w = 0; w < DOMAIN_CONTACT_POWERS; w++) state->latest.power[which[w]] += of[w];
 }
 
 /* As ground_accumulate_lanes does. */
@@ -358,7 +360,7 @@ static void add_contact_powers(const strut_domain_steps *s, int side, int k) {
       double *of =
           s->balance[side].contact + DOMAIN_CONTACT_POWERS * ((size_t)k * (size_t)all + (size_t)i);
       if (s->stepping == DOMAIN_RK4)
-        add_contact_to_lanes(&s->state->lanes[strut_weight_side(k)],
+        add_contact_to_lanes(&s->state->latest.lanes[strut_weight_side(k)],
                              s->model->contacts.entry[i].lane, moves, of);
       else
         add_contact_to_powers(s->state, of);
@@ -371,12 +373,12 @@ static void add_works(strut_domain_steps *s, int k) {
   static const double weight[STRUT_PASSES] = {1, 2, 2, 1};
   strut_state *state = s->state;
   for (int p = 0; p < STRUT_POWER_COUNT; p++) switch (s->stepping) {
-      case DOMAIN_RK4: state->work[p] += weight[k] * (s->dt / 6.0) * state->power[p]; break;
+      case DOMAIN_RK4: state->work[p] += weight[k] * (s->dt / 6.0) * state->latest.power[p]; break;
       case DOMAIN_VERLET:
-        state->work[p] += 0.5 * s->dt * (s->kept[p] + state->power[p]);
-        s->kept[p] = state->power[p];
+        state->work[p] += 0.5 * s->dt * (s->kept[p] + state->latest.power[p]);
+        s->kept[p] = state->latest.power[p];
         break;
-      case DOMAIN_EULER: state->work[p] += s->dt * state->power[p]; break;
+      case DOMAIN_EULER: state->work[p] += s->dt * state->latest.power[p]; break;
     }
 }
 
@@ -387,7 +389,7 @@ static void keep_balance(strut_domain_steps *s, int passes, int side) {
   int32_t loads = s->model->loads.count;
   if (lanes) strut_step_balance_begin(s->model, state);
   for (int k = 0; k < passes; k++) {
-    double *power = state->power;
+    double *power = state->latest.power;
     const four_member_powers *members = l->member + k * s->balance_blocks;
     for (int p = 0; p < STRUT_POWER_COUNT; p++) power[p] = 0.0;
     for (int32_t i = 0; i < loads; i++) {
@@ -396,7 +398,7 @@ static void keep_balance(strut_domain_steps *s, int passes, int side) {
     }
     if (lanes) {
       four_member_powers sum = sum_member_powers(s, members);
-      strut_accumulate_members(&state->lanes[strut_weight_side(k)], &sum);
+      strut_accumulate_members(&state->latest.lanes[strut_weight_side(k)], &sum);
     } else {
       add_member_powers(s, members, power);
     }
@@ -448,7 +450,7 @@ void strut_domain_steps_restart(strut_domain_steps *s, strut_state *state, doubl
   if (s->stepping != DOMAIN_VERLET) return;
   strut_forces_acceleration(s->model, state, (double)state->step * dt, state->q, state->v,
                             s->acceleration);
-  memcpy(s->kept, state->power, sizeof s->kept);
+  memcpy(s->kept, state->latest.power, sizeof s->kept);
 }
 
 void strut_domain_steps_advance(strut_domain_steps *s, strut_state *state, double dt,

@@ -131,7 +131,7 @@ static void touch_ground(const strut_domain_steps *s, domain_part *p, int k, int
   int32_t i = p->contact[k], all = s->model->contacts.count;
   int32_t blocks = (all + DOMAIN_CONTACT_BLOCK - 1) / DOMAIN_CONTACT_BLOCK;
   for (; i < c->count && c->entry[i].node < end; i++) {
-    double *power = d->state.power;
+    double *power = d->state.latest.power;
     int32_t of = d->contact[i];
     for (int32_t w = 0; w < STRUT_POWER_COUNT; w++) power[w] = 0.0;
     ground_kernel_range(&d->model, &d->state, p->q, p->v, p->force, i, i + 1, balance);
@@ -201,8 +201,8 @@ static void drive_block(domain_part *p, int k, int32_t block) {
   int32_t end = (block + 1) * STRUT_BLOCK;
   for (; p->drive[k] < t->count && t->member[d->drive_order[p->drive[k]]] < end; p->drive[k]++) {
     int32_t i = d->drive_order[p->drive[k]];
-    d->state.rest[t->member[i]] = p->rest[k * t->count + i];
-    d->state.rest_rate[t->member[i]] = p->rest_rate[k * t->count + i];
+    d->state.latest.rest[t->member[i]] = p->rest[k * t->count + i];
+    d->state.latest.rest_rate[t->member[i]] = p->rest_rate[k * t->count + i];
   }
 }
 

@@ -24,7 +24,8 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, double
     double step = (double)state->step, t = step * dt;
     drives_ahead_apply(model, state, &drives, t, step, 1.0, dt, end - state->step);
     forces_kernel(model, state, t, q, v, a, terms, balance);
-    for (int p = 0; p < STRUT_POWER_COUNT && balance; p++) state->work[p] += dt * state->power[p];
+    for (int p = 0; p < STRUT_POWER_COUNT && balance; p++)
+      state->work[p] += dt * state->latest.power[p];
     for (int32_t i = 0; i < model->length; i += STRUT_LANES) {
       strut_lanes next = strut_lanes_load(v + i) + dt * strut_lanes_load_pairs(a + i);
       strut_lanes_store(v + i, next);

@@ -60,7 +60,7 @@ typedef struct strut_integrator {
   void (*advance)(const strut_model *model, strut_state *state, void *workspace, double dt,
                   int64_t count);
   /**
-   * Prepares for a state->observer, which then sees every piece of the motion. False: out of memory.
+   * Prepares for a state->watched.observer, which then sees every piece of the motion. False: out of memory.
    * NULL: its pieces are the steps of the grid.
    */
   bool (*observe)(const strut_model *model, strut_state *state, void *workspace);

@@ -117,13 +117,13 @@ static void copy_numbers(const strut_state *from, strut_state *to) {
   to->refined_until = from->refined_until;
   to->evaluations = from->evaluations;
   to->events = from->events;
-  to->interrupt = from->interrupt;
-  to->most_evaluations = from->most_evaluations;
+  to->limits.interrupt = from->limits.interrupt;
+  to->limits.most_evaluations = from->limits.most_evaluations;
   to->trouble = from->trouble;
   to->balance = from->balance;
   to->load_work_origin = from->load_work_origin;
   memcpy(to->work, from->work, sizeof to->work);
-  memcpy(to->power, from->power, sizeof to->power);
+  memcpy(to->latest.power, from->latest.power, sizeof to->latest.power);
 }
 
 void strut_large_steps_restart(strut_large_steps *steps, strut_state *state, double dt) {
@@ -133,7 +133,7 @@ void strut_large_steps_restart(strut_large_steps *steps, strut_state *state, dou
   const strut_model *model = steps->order->model;
   const int32_t *place = steps->order->place;
   copy_numbers(state, own);
-  own->drive_time = (double)NAN;
+  own->latest.drive_time = (double)NAN;
   for (int32_t i = 0; i < model->node_count; i++) {
     memcpy(own->q + 2 * place[i], state->q + 2 * i, 2 * sizeof(double));
     memcpy(own->v + 2 * place[i], state->v + 2 * i, 2 * sizeof(double));
@@ -153,10 +153,10 @@ static void copy_back(const strut_renumbering *order, const strut_state *own, st
     memcpy(state->v + 2 * i, own->v + 2 * place[i], 2 * sizeof(double));
   }
   if (!contacts) return;
-  memcpy(state->normal, own->normal, contacts);
-  memcpy(state->friction, own->friction, contacts);
+  memcpy(state->latest.normal, own->latest.normal, contacts);
+  memcpy(state->latest.friction, own->latest.friction, contacts);
   for (int32_t i = 0; i < model->node_count; i++)
-    memcpy(state->force + 2 * i, own->force + 2 * place[i], 2 * sizeof(double));
+    memcpy(state->latest.force + 2 * i, own->latest.force + 2 * place[i], 2 * sizeof(double));
 }
 
 void strut_large_steps_advance(strut_large_steps *steps, strut_state *state, double dt,
@@ -167,7 +167,7 @@ void strut_large_steps_advance(strut_large_steps *steps, strut_state *state, dou
     return;
   }
   copy_numbers(state, own);
-  own->drive_time = (double)NAN;
+  own->latest.drive_time = (double)NAN;
   steps->method->advance(steps->order->model, own, steps->workspace, dt, count);
   copy_numbers(own, state);
   copy_back(steps->order, own, state);

@@ -136,7 +136,7 @@ static bool correct_states(const strut_model *model, const strut_state *state,
   bool finite = true;
   w->states_settled = true;
   for (int32_t i = f->base; i < f->base + f->state_count; i++) {
-    double next = state->v[i] + 0.5 * w->step.h * state->force[i];
+    double next = state->v[i] + 0.5 * w->step.h * state->latest.force[i];
     double close = CLOSE * ROUNDING * (fabs(next) + fabs(state->v[i]));
     if (!(fabs(next - w->u[i]) <= close)) w->states_settled = false;
     finite = finite && isfinite(next);
@@ -156,7 +156,7 @@ static bool correct(const strut_model *model, strut_state *state, midpoint_works
   for (int32_t i = 0; i < model->length; i++) w->u[i] += state->v[i];
   bool finite = correct_states(model, state, w);
   for (int32_t i = 0; i < m->n; i++) {
-    x[i] = 0.5 * h * state->force[m->coordinate[i]] - x[i];
+    x[i] = 0.5 * h * state->latest.force[m->coordinate[i]] - x[i];
     finite = finite && isfinite(x[i]);
   }
   return finite;
@@ -187,7 +187,7 @@ static double rounding_of(const strut_model *model, const strut_state *state,
 static bool renew(const strut_model *model, const strut_state *state, midpoint_workspace *w,
                   bool stiff) {
   w->factor_step = w->step.h;
-  return strut_midpoint_matrix_update(model, &w->step, state->rest, w->q1, w->held, stiff,
+  return strut_midpoint_matrix_update(model, &w->step, state->latest.rest, w->q1, w->held, stiff,
                                       &w->matrix);
 }
 
@@ -268,7 +268,7 @@ static void finish(const strut_model *model, strut_state *state, midpoint_worksp
   if (model->terms & STRUT_TERM_SUPPORT_MOTION)
     strut_support_motion_place(model, state, w->step.begin + h, state->q, state->v);
   for (int p = 0; p < STRUT_POWER_COUNT && state->balance; p++)
-    state->work[p] += h * state->power[p];
+    state->work[p] += h * state->latest.power[p];
   memcpy(w->held, w->step.tension, (size_t)model->members.count * sizeof *w->held);
   w->before[1] = w->before[0], w->before[0] = w->u, w->u = oldest;
   if (w->known < 2) w->known++;

@@ -27,7 +27,7 @@ typedef struct strut_motion_piece {
   void *workspace; /* of the method */
 } strut_motion_piece;
 
-/** state->observer; the state is at the end of the piece. */
+/** state->watched.observer; the state is at the end of the piece. */
 typedef struct strut_observer {
   void (*see)(struct strut_observer *observer, strut_state *state, const strut_motion_piece *piece);
 } strut_observer;

@@ -84,7 +84,7 @@ STRUT_SMALL_INLINE void small_begin(const strut_model *model, const strut_state 
                         rows);
   m->q = small_read(s, state->q), m->v = small_read(s, state->v);
   m->work = small_work_load(state->work);
-  m->power = small_work_load(state->power);
+  m->power = small_work_load(state->latest.power);
 }
 
 /* Rest lengths at `count` instants from the present step on, `part` steps apart. */
@@ -103,15 +103,15 @@ STRUT_SMALL_INLINE void small_end(const small_run *r, strut_state *state, double
   const strut_small_model *s = r->tables;
   small_write(s, &m->q, state->q);
   small_write(s, &m->v, state->v);
-  small_write(s, &m->f, state->force);
+  small_write(s, &m->f, state->latest.force);
   if (balance) {
     small_work_store(state->work, m->work);
-    small_work_store(state->power, m->power);
+    small_work_store(state->latest.power, m->power);
   }
   if (!(r->terms & STRUT_TERM_DRIVE)) return;
-  state->drive_time = (double)state->step * dt;
+  state->latest.drive_time = (double)state->step * dt;
   for (int32_t j = 0; j < s->members; j++)
-    state->rest[j] = rest->rest[j], state->rest_rate[j] = rest->rate[j];
+    state->latest.rest[j] = rest->rest[j], state->latest.rest_rate[j] = rest->rate[j];
 }
 
 #endif

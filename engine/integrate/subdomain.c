@@ -316,13 +316,13 @@ static void make_state(builder *b) {
   size_t slots = (size_t)b->slots, contacts = (size_t)d->model.contacts.count;
   bool driven = d->model.drives.count > 0;
   const double *rest = d->model.members.rest;
-  state->rest = driven ? copy_of_members(b, b->s->model->members.rest, 0.0) : (double *)rest;
-  state->rest_rate = allocate(b, driven ? slots : STRUT_LANES, sizeof(double));
-  state->slack_length_threshold = (double *)d->model.members.slack;
-  state->slack_force_threshold = (double *)d->model.members.slack;
-  state->normal = allocate(b, contacts, sizeof(double));
-  state->friction = allocate(b, contacts, sizeof(double));
-  state->drive_time = (double)NAN;
+  state->latest.rest = driven ? copy_of_members(b, b->s->model->members.rest, 0.0) : (double *)rest;
+  state->latest.rest_rate = allocate(b, driven ? slots : STRUT_LANES, sizeof(double));
+  state->modes.slack_length_threshold = (double *)d->model.members.slack;
+  state->modes.slack_force_threshold = (double *)d->model.members.slack;
+  state->latest.normal = allocate(b, contacts, sizeof(double));
+  state->latest.friction = allocate(b, contacts, sizeof(double));
+  state->latest.drive_time = (double)NAN;
 }
 
 bool strut_subdomain_create(const strut_subdivision *s, int part, strut_arena *arena,

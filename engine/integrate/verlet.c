@@ -31,7 +31,7 @@ static void verlet_restart(const strut_model *model, strut_state *state, void *w
                            double dt) {
   verlet_workspace *w = workspace;
   strut_forces_acceleration(model, state, (double)state->step * dt, state->q, state->v, w->a);
-  for (int p = 0; p < STRUT_POWER_COUNT; p++) w->power[p] = state->power[p];
+  for (int p = 0; p < STRUT_POWER_COUNT; p++) w->power[p] = state->latest.power[p];
   w->started = true;
 }
 
@@ -59,13 +59,13 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, verlet
                                                                  strut_lanes_load_pairs(next + i)));
     if (moves) end_moving_step(model, state, dt);
     for (int p = 0; p < STRUT_POWER_COUNT && balance; p++) {
-      state->work[p] += half * (w->power[p] + state->power[p]);
-      w->power[p] = state->power[p];
+      state->work[p] += half * (w->power[p] + state->latest.power[p]);
+      w->power[p] = state->latest.power[p];
     }
     w->a = next, w->next = a;
     if (model->terms & terms & STRUT_TERM_MEMORY && strut_history_renew(model, state, t)) {
       forces_kernel(model, state, t, q, v, w->a, terms, balance);
-      for (int p = 0; p < STRUT_POWER_COUNT && balance; p++) w->power[p] = state->power[p];
+      for (int p = 0; p < STRUT_POWER_COUNT && balance; p++) w->power[p] = state->latest.power[p];
     }
   }
 }

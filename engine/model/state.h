@@ -42,8 +42,8 @@ static inline int32_t strut_weight_side(int k) { return k == 1 || k == 2; }
 /** Where an evaluation of the forces leaves its powers. */
 typedef enum strut_accumulation {
   STRUT_ACCUMULATE_NOTHING,
-  STRUT_ACCUMULATE_POWERS, /* in state->power */
-  STRUT_ACCUMULATE_LANES /* those of members and level ground in state->lanes, all others in state->power */
+  STRUT_ACCUMULATE_POWERS, /* in state->latest.power */
+  STRUT_ACCUMULATE_LANES /* those of members and level ground in state->latest.lanes, all others in state->latest.power */
 } strut_accumulation;
 
 typedef enum strut_failure {
@@ -57,6 +57,87 @@ typedef enum strut_failure {
   STRUT_FAILURE_RELAY      /* a relay that switches takes its own input past the other threshold */
 } strut_failure;
 
+/** When a method whose steps may take long gives up. Nothing of it after the reset. */
+typedef struct strut_state_limits {
+  const volatile sig_atomic_t *interrupt; /* soon after it becomes non-zero; NULL: never */
+  int64_t most_evaluations;               /* of the forces: soon after so many; 0: never */
+} strut_state_limits;
+
+/** What methods with events freeze between events. */
+typedef struct strut_frozen_modes {
+  double
+      *slack_length_threshold;   /* (slots) a member acts where both are exceeded [m], [N]: 0 for */
+  double *slack_force_threshold; /* cables, -INFINITY otherwise */
+  int8_t *element_acts;          /* (elements) 1 acts, -1 does not, 0 by strain and force */
+  int16_t *element_piece;        /* (elements) the law's smooth piece; -1 by the strain */
+  const double *held_normal;   /* (contacts) forces [N]; both NULL with other methods, where they */
+  const double *held_friction; /* follow from q, v and t alone */
+} strut_frozen_modes;
+
+/** What elements remember, see forces/history.h; the slots of `rest` that belong to them follow from it. */
+typedef struct strut_history {
+  double *plastic; /* (history_count) slip of sliders */
+  double
+      *broken_at; /* (breakable_count) since when it carries nothing [s]; INFINITY: it does carry */
+  int8_t
+      *guide_mode; /* (history_slots) at the slots of cables with guide friction: see capstan.h */
+  int8_t *guide_side; /* (history_slots) the sign of the turning angles, frozen with the modes */
+  double *guide_drop; /* (history_slots) what a length of cable loses as it slips [N] */
+  double *kept;       /* what strut_history_store stores, as it was at an earlier time */
+} strut_history;
+
+/** What signals remember; arrays are (signals). */
+typedef struct strut_signal_states {
+  double *started;     /* when those with a trigger started [s]; INFINITY: not yet */
+  int8_t *trigger_was; /* did the condition hold when last looked at? -1: not looked at */
+  double *held;        /* of sampled ones the value at the latest sample; NAN before the first */
+  int8_t *relay_side;  /* of relays: 1 last above, -1 last below; 0: not yet known */
+} strut_signal_states;
+
+/**
+ * What the latest evaluation of the forces left, in the order in which it works: first what depends on time alone
+ * (strut_drive_apply, strut_loads_apply), then on positions and velocities too (strut_forces).
+ */
+typedef struct strut_latest {
+  double drive_time; /* the time of rest and rest_rate [s]; NAN before the first evaluation */
+  double *rest;      /* (slots) rest lengths [m]; equal to the model's where not driven */
+  double *rest_rate; /* (slots) [m/s] */
+  strut_ground_motion
+      *ground_motion;           /* (grounds) that are shaken, at drive_time; NULL where none is */
+  strut_contact_pose *pose;     /* (contacts) with STRUT_TERM_SURFACES */
+  double *element_turn;         /* (elements) strain, near which an angle is taken */
+  double *actuator_force;       /* (actuator forces) [N], [N m] */
+  double *sensor, *sensor_rate; /* (sensors) in SI units */
+  double *force;                /* net force on each node [N] */
+  double *normal;               /* (contacts) normal force [N]; in the step only where it touches */
+  double *friction;             /* (contacts) friction force along the ground [N] */
+  strut_sliding_motion *sliding;  /* masses that slide, in the table's order of moving ones */
+  double power[STRUT_POWER_ROOM]; /* [W]; only where the energy balance is kept */
+  strut_power_lanes lanes[2];     /* see strut_weight_side */
+  strut_power_lanes *accumulated; /* which of them the next evaluation adds to */
+} strut_latest;
+
+/** Room that evaluations use and leave without meaning. */
+typedef struct strut_state_buffers {
+  double *mass_solve;     /* (length) */
+  double *support_rates;  /* (moved coordinates) */
+  double *support_answer; /* (length) 0 between uses; only where supports move */
+  int32_t *near;          /* (contacts) those that may touch; with STRUT_TERM_SURFACES */
+  double *
+      sliding_factor; /* (2, n, n) Cholesky factors of 1/m + N M^-1 N' of n sliding masses, of x, then y */
+  double *sliding_push; /* (2, n) */
+} strut_state_buffers;
+
+/** Who looks on; NULL: nobody. */
+typedef struct strut_state_watched {
+  struct strut_event_log *event_log; /* methods with events note there when modes change, see
+                                        integrate/events/event_log.h */
+  struct strut_variation *variation; /* exact methods with events carry it along, see
+                                        integrate/events/variation.h */
+  struct strut_observer *observer;   /* sees each piece of the motion of a method with events, see
+                                        integrate/observer.h */
+} strut_state_watched;
+
 typedef struct strut_state {
   /* the state proper: filled by strut_state_reset, advanced by an integrator */
   int64_t step;                  /* n; time is n * dt, never a sum */
@@ -64,80 +145,25 @@ typedef struct strut_state {
   double *v;                     /* velocities [m/s] */
   double work[STRUT_POWER_ROOM]; /* powers integrated since t = 0 [J] */
   double load_work_origin;       /* strut_energy_reset_load_work: where the works count from [J] */
-  double refined_until;          /* methods that refine after touchdowns do so until then [s] */
-  int64_t evaluations;           /* of the forces since the reset */
-  int64_t events;                /* switches located in time, since the reset */
-  const volatile sig_atomic_t *interrupt; /* a method whose steps may take long gives up soon after
-                                             it becomes non-zero; NULL after the reset */
-  int64_t most_evaluations; /* of the forces: it gives up soon after so many too; 0: any
-                                     number, as after the reset */
-  strut_failure trouble;    /* why a method could not go on; it stays on the latest grid point */
-  int32_t trouble_node;     /* where, with STRUT_FAILURE_IMPLICIT; the signal, with _RELAY */
-
-  /* time dependent: strut_drive_apply, strut_loads_apply */
-  double *rest;      /* (slots) rest lengths now [m]; equal to the model's where not driven */
-  double *rest_rate; /* (slots) [m/s] */
-  double *slack_length_threshold,
-      *slack_force_threshold; /* (slots) a member acts where both are exceeded [m], [N]:
-                        0 for cables, -INFINITY otherwise; methods with events freeze cables here */
-  /* (elements) modes that methods with events freeze: 1 acts, -1 does not, 0 by strain and force; the
-     law's smooth piece, -1 by the strain */
-  int8_t *element_acts;
-  int16_t *element_piece;
-  double *element_turn; /* (elements) strain when last evaluated, near which an angle is taken */
-  double drive_time;    /* the time these two are for [s]; NAN before the first evaluation */
-  double time_offset;   /* drives and loads stand where they do so much later than n * dt [s] */
-
-  /* position, velocity and time dependent: strut_forces */
-  double *force;    /* net force on each node [N] */
-  double *normal;   /* (contacts) normal force [N]; in the step only where it touches */
-  double *friction; /* (contacts) friction force along the ground [N] */
-  double power[STRUT_POWER_ROOM]; /* [W]; only where the energy balance is kept */
-  strut_power_lanes lanes[2];     /* see strut_weight_side */
-  strut_power_lanes *accumulated; /* which of them the next evaluation adds to */
-
-  /* (contacts) contact forces as a method with events has them [N]; NULL with others, where the
-     forces follow from q, v and t alone */
-  const double *held_normal, *held_friction;
-  struct strut_rigid *rigid;    /* forces of rigid bars, see rigid.h; NULL where bars are elastic */
-  double *sensor, *sensor_rate; /* (sensors) when last evaluated, in SI units */
-  double *started;     /* (signals) when those with a trigger started [s]; INFINITY: not yet */
-  int8_t *trigger_was; /* (signals) did its condition hold when last looked at? -1: not looked at */
-  double *held; /* (signals) of sampled ones the value at the latest sample; NAN before the first */
+  double support_work_origin;    /* strut_support_motion_reset_work: where it counts from [J] */
+  double time_offset;    /* drives and loads stand where they do so much later than n * dt [s] */
+  double refined_until;  /* methods that refine after touchdowns do so until then [s] */
+  int64_t evaluations;   /* of the forces since the reset */
+  int64_t events;        /* switches located in time, since the reset */
+  strut_failure trouble; /* why a method could not go on; it stays on the latest grid point */
+  int32_t trouble_node;  /* where, with STRUT_FAILURE_IMPLICIT; the signal, with _RELAY */
   bool kicked; /* velocities have jumped at the end of the latest step of a method without events */
-  bool balance;    /* keep the energy balance? It costs some arithmetic per evaluation */
-  double *scratch; /* (length) for the mass solve */
+  bool balance;   /* keep the energy balance? It costs some arithmetic per evaluation */
+  bool forgetful; /* nothing yields or breaks: while settling; strut_state_reset keeps it */
+  strut_state_limits limits;
+  strut_frozen_modes modes;
+  strut_history history;
+  strut_signal_states signals;
+  strut_latest latest;
+  struct strut_rigid *rigid; /* forces of rigid bars, see rigid.h; NULL where bars are elastic */
+  strut_state_buffers buffers;
+  strut_state_watched watched;
   strut_arena arena;
-  /* memory of elements, see forces/history.h; the slots of `rest` that belong to them follow from it */
-  double *plastic; /* (history_count) slip of sliders, see forces/history.h */
-  double
-      *broken_at; /* (breakable_count) since when it carries nothing [s]; INFINITY: it does not */
-  int8_t
-      *guide_mode; /* (history_slots) at the slots of cables with guide friction: see capstan.h */
-  int8_t *guide_side;   /* (history_slots) the sign of the turning angles, frozen with the modes */
-  double *guide_drop;   /* (history_slots) what a length of cable loses as it slips [N] */
-  double *history_kept; /* what strut_history_store stores, as it was at an earlier time */
-  bool forgetful;       /* nothing yields or breaks: while settling; strut_state_reset keeps it */
-  double *actuator_force;     /* (actuator forces) when last evaluated [N], [N m] */
-  double *support_rates;      /* (moved coordinates) scratch */
-  double *support_answer;     /* (length) scratch, 0 between uses; only where supports move */
-  double support_work_origin; /* strut_support_motion_reset_work: where it counts from [J] */
-  /* with STRUT_TERM_SURFACES: poses of the contacts at the latest evaluation; and of grounds that are shaken
-     the motion at drive_time, (grounds), NULL where none is */
-  strut_contact_pose *pose;
-  int32_t *near; /* (contacts) scratch: those that may touch */
-  strut_ground_motion *ground_motion;
-  int8_t *relay_side; /* (signals) of relays: 1 last above, -1 last below; 0: not yet known */
-  /* masses that slide, in the table's order of moving ones, as last placed: */
-  strut_sliding_motion *sliding; /* (n) */
-  double *sliding_factor;        /* (2, n, n) Cholesky factors of 1/m + N M^-1 N', of x, then y */
-  double *sliding_push;          /* (2, n) scratch */
-  struct strut_event_log *event_log; /* methods with events note there when modes change, see
-                                        integrate/events/event_log.h; NULL: nobody asks */
-  struct strut_variation *variation; /* exact methods with events carry it along, see
-                                        integrate/events/variation.h; NULL: nobody asks */
-  struct strut_observer *observer;   /* sees each piece of the motion of a method with events, see
-                                        integrate/observer.h; NULL: nobody asks */
 } strut_state;
 
 /** All memory a run needs; an integrator adds its own to the arena. STRUT_OK or STRUT_NO_MEMORY. */

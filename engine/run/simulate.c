@@ -205,8 +205,8 @@ static strut_status prepare_run(strut_run *r) {
     strut_support_motion_place(r->model, r->state, begin, r->state->q, r->state->v);
   if (r->model->terms & STRUT_TERM_MEMORY) begin_history(r, begin);
   r->state->balance = !r->options->without_balance || strut_quantities_need_balance(r->experiment);
-  r->state->interrupt = r->options->interrupt;
-  r->state->most_evaluations = r->options->most_evaluations;
+  r->state->limits.interrupt = r->options->interrupt;
+  r->state->limits.most_evaluations = r->options->most_evaluations;
   if (r->method->restart) r->method->restart(r->model, r->state, r->workspace, r->dt);
   if (!strut_step_limit_monitor_create(r->model, r->state, r->method, r->dt, &r->step_monitor) ||
       !strut_stick_band_create(r->model, r->state, r->method, r->dt, &r->band))
@@ -396,11 +396,11 @@ static void step_short(strut_run *r) {
   double later = (double)state->step * (r->dt - length);
   state->time_offset += later;
   state->refined_until -= later;
-  state->drive_time = (double)NAN;
+  state->latest.drive_time = (double)NAN;
   advance(r, length, 1);
   state->time_offset = before;
   state->refined_until += later;
-  state->drive_time = (double)NAN;
+  state->latest.drive_time = (double)NAN;
   if (state->step != r->grid.last || state->step <= strut_measure_first_step(&r->measure)) return;
   if (r->measure.quantities)
     strut_measure_step_quantities(r->model, state, &r->measure);
@@ -529,7 +529,7 @@ static void list_breaks(const strut_run *r) {
   s->break_count = 0;
   for (int32_t b = 0; b < r->model->elements.breakable_count; b++) {
     const strut_breakable *what = &r->model->elements.breakable[b];
-    double time = r->state->broken_at[b];
+    double time = r->state->history.broken_at[b];
     bool hinge = what->role == STRUT_ELEMENT_HINGE;
     if (!(time < HUGE_VAL)) continue;
     s->breaks[s->break_count++] = (strut_break_summary){

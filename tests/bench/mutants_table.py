@@ -10,19 +10,19 @@ Mutant = namedtuple("Mutant", "name file text instead breaks tests")
 MUTANTS = [
     # Bugs that the suite once did not notice.
     Mutant("slack-cable-pulls", "engine/integrate/events/contact_modes.c",
-           "state->slack_length_threshold[j] = pulls ? -HUGE_VAL : 0.0;\n"
-           "  state->slack_force_threshold[j] = pulls ? -HUGE_VAL : HUGE_VAL;",
-           "state->slack_length_threshold[j] = -HUGE_VAL;\n"
-           "  state->slack_force_threshold[j] = pulls ? -HUGE_VAL : 0.0;",
+           "state->modes.slack_length_threshold[j] = pulls ? -HUGE_VAL : 0.0;\n"
+           "  state->modes.slack_force_threshold[j] = pulls ? -HUGE_VAL : HUGE_VAL;",
+           "state->modes.slack_length_threshold[j] = -HUGE_VAL;\n"
+           "  state->modes.slack_force_threshold[j] = pulls ? -HUGE_VAL : 0.0;",
            "the damper of a slack cable pulls in the methods with events",
            "member_laws|recompute|batch|simulate_batch|extremes_events|extremes_members"),
     Mutant("slope-in-height", "engine/run/measure/measure.c",
-           "double gap = strut_contact_gap_at(c, i, state->q, state->ground_motion);",
-           "double gap = strut_contact_gap_at(c, i, state->q, state->ground_motion) / c->normal[1];",
+           "double gap = strut_contact_gap_at(c, i, state->q, state->latest.ground_motion);",
+           "double gap = strut_contact_gap_at(c, i, state->q, state->latest.ground_motion) / c->normal[1];",
            "the largest height above sloping ground is measured along the vertical",
            "simulate|recording|models"),
     Mutant("height-without-slope", "engine/run/measure/measure.c",
-           "double gap = strut_contact_gap_at(c, i, state->q, state->ground_motion);",
+           "double gap = strut_contact_gap_at(c, i, state->q, state->latest.ground_motion);",
            "double gap = state->q[c->at[i] + 1] - c->height;",
            "the largest height ignores the slope", "simulate|recording|models"),
     Mutant("range-end-rounded", "engine/study/sweep/grid.c",
@@ -127,8 +127,8 @@ MUTANTS = [
 
     # Integrators, events, step limit.
     Mutant("rk4-weight-of-work", "engine/integrate/rk4.c",
-           "state->work[p] += weight[k] * (dt / 6.0) * state->power[p];",
-           "state->work[p] += (dt / 4.0) * state->power[p];",
+           "state->work[p] += weight[k] * (dt / 6.0) * state->latest.power[p];",
+           "state->work[p] += (dt / 4.0) * state->latest.power[p];",
            "works of RK4 are summed with equal weights", "energy|recompute"),
     Mutant("verlet-half-step-forward", "engine/integrate/verlet.c",
            "strut_lanes_store(predicted + i, rate + dt * bend);",
@@ -171,7 +171,7 @@ MUTANTS = [
            "if (!drives_repeat(w, n)) return false;", "if (!drives_repeat(w, 1)) return false;",
            "a motion with a subharmonic drive never is steady", "steady|steady_truth"),
     Mutant("recording-without-held", "engine/forces/forces.c",
-           "state->friction[i] = state->held_friction[i];", "",
+           "state->latest.friction[i] = state->modes.held_friction[i];", "",
            "recorded friction of event methods is that of the plain law", "recording|simulate"),
     Mutant("settled-by-speed-alone", "engine/run/settle.c",
            "if (find_largest(r->acceleration, length, &node) < enough) return STRUT_OK;", "return STRUT_OK;",

@@ -83,10 +83,10 @@ static void check_point(point *p, bool balance) {
   check_array(a->q, b->q, 2 * m->node_count);
   check_array(a->v, b->v, 2 * m->node_count);
   if (balance) check_array(a->work, b->work, STRUT_POWER_COUNT);
-  check_array(a->force, b->force, 2 * m->node_count);
-  check_array(a->rest, b->rest, m->members.slots);
-  check_array(a->rest_rate, b->rest_rate, m->members.slots);
-  if (balance) check_array(a->power, b->power, STRUT_POWER_COUNT);
+  check_array(a->latest.force, b->latest.force, 2 * m->node_count);
+  check_array(a->latest.rest, b->latest.rest, m->members.slots);
+  check_array(a->latest.rest_rate, b->latest.rest_rate, m->members.slots);
+  if (balance) check_array(a->latest.power, b->latest.power, STRUT_POWER_COUNT);
 }
 
 /* All ways to step in slots that this processor has: how many, and whether in halves. */

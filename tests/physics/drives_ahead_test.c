@@ -33,10 +33,10 @@ static void end(crawlers *c) {
 static void compare(crawlers *c, double t) {
   const strut_state *a = c->together.state, *b = c->alone.state;
   strut_drive_apply(c->alone.model, c->alone.state, t);
-  assert_same_bits(a->drive_time, b->drive_time);
+  assert_same_bits(a->latest.drive_time, b->latest.drive_time);
   for (int32_t j = 0; j < c->alone.model->members.slots; j++) {
-    assert_same_bits(a->rest[j], b->rest[j]);
-    assert_same_bits(a->rest_rate[j], b->rest_rate[j]);
+    assert_same_bits(a->latest.rest[j], b->latest.rest[j]);
+    assert_same_bits(a->latest.rest_rate[j], b->latest.rest_rate[j]);
   }
 }
 

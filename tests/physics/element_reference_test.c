@@ -89,7 +89,7 @@ TEST(forces_by_definition) {
     strut_forces_evaluate(m.model, m.state, 0, m.state->q, m.state->v);
     for (size_t i = 0; i < n; i++) most = fmaxl(most, fabsl(force[i]));
     for (size_t i = 0; i < n; i++)
-      assert_near(m.state->force[i], (double)force[i], TOLERANCE * (double)most);
+      assert_near(m.state->latest.force[i], (double)force[i], TOLERANCE * (double)most);
     motion_end(&m);
     strut_setup_free(&setup);
   }

@@ -184,7 +184,7 @@ TEST(an_interrupted_step_is_undone_with_its_works) {
   motion_experiment(&setup, 1e9, 1e9);
   motion_begin_by(&m, &setup, "adaptive", 1e9);
   m.state->balance = true;
-  m.state->interrupt = &ring;
+  m.state->limits.interrupt = &ring;
   ring = 0;
   assert_int_equal(sigaction(SIGALRM, &action, &before), 0);
   assert_int_equal(setitimer(ITIMER_REAL, &soon, NULL), 0);

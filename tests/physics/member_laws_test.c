@@ -58,7 +58,7 @@ static double pull(strut_member_kind kind, double stretch, double rate) {
   motion_begin(&m, &setup.scene, STEP);
   strut_forces_evaluate(m.model, m.state, 0, m.state->q, m.state->v);
   strut_members_measure(m.model, m.state, &length, &tension);
-  double force = -m.state->force[2];
+  double force = -m.state->latest.force[2];
   assert_near(tension, force, 1e-14 * fabs(force)); /* so slack: exactly 0 */
   assert_true(length == 1 + stretch);
   motion_end(&m);
@@ -174,9 +174,9 @@ TEST(a_driven_cable_goes_slack) {
   build_actuator(&setup.scene, cable, build_signal(&setup.scene, ramp));
   motion_begin(&m, &setup.scene, STEP);
   strut_forces_evaluate(m.model, m.state, 0, m.state->q, m.state->v);
-  assert_true(m.state->force[2] == -(100 * 0.25 - 8 * 0.25));
+  assert_true(m.state->latest.force[2] == -(100 * 0.25 - 8 * 0.25));
   strut_forces_evaluate(m.model, m.state, 1, m.state->q, m.state->v);
-  assert_true(m.state->force[2] == 0);
+  assert_true(m.state->latest.force[2] == 0);
   motion_end(&m);
   strut_setup_free(&setup);
 }

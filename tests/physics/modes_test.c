@@ -148,14 +148,14 @@ static void apex_response(double y, double *stiffness, double *force) {
   motion m;
   von_mises(&scene, y);
   motion_begin(&m, &scene, 1e-4);
-  assert_int_equal(strut_tangent_assemble(m.model, m.state->q, m.state->rest, STRUT_CLOSED_NONE,
-                                          &arena, &tangent),
+  assert_int_equal(strut_tangent_assemble(m.model, m.state->q, m.state->latest.rest,
+                                          STRUT_CLOSED_NONE, &arena, &tangent),
                    STRUT_OK);
   assert_int_equal(tangent.n, 2);
   const strut_sparse *k = tangent.stiffness;
   *stiffness = k->value[k->start[2] - 1]; /* lower right */
   strut_forces_evaluate(m.model, m.state, 0, m.state->q, m.state->v);
-  *force = m.state->force[5];
+  *force = m.state->latest.force[5];
   motion_end(&m);
   strut_arena_free(&arena);
   strut_scene_free(&scene);

@@ -138,8 +138,8 @@ static void compare(const strut_setup *setup, const char *name, int threads, boo
     assert_memory_equal(usual->q, state->q, bytes);
     assert_memory_equal(usual->v, state->v, bytes);
     for (int32_t i = 0; i < model->contacts.count; i++)
-      assert_same_bits(usual->normal[i] + usual->friction[i],
-                       state->normal[i] + state->friction[i]);
+      assert_same_bits(usual->latest.normal[i] + usual->latest.friction[i],
+                       state->latest.normal[i] + state->latest.friction[i]);
     for (int p = 0; p < STRUT_POWER_COUNT; p++)
       if (exact ||
           of_contacts(p)) /* contacts are added up in the scene's order, however nodes are stored */

@@ -96,16 +96,16 @@ static void check_states(const motion *small, const motion *general) {
   assert_int_equal(a->evaluations, b->evaluations);
   check_array(a->q, b->q, m->length);
   check_array(a->v, b->v, m->length);
-  check_array(a->force, b->force, 2 * m->node_count);
+  check_array(a->latest.force, b->latest.force, 2 * m->node_count);
   check_array(a->work, b->work, STRUT_POWER_ROOM);
-  check_array(a->power, b->power, STRUT_POWER_ROOM);
-  check_array(a->rest, b->rest, m->members.slots);
-  check_array(a->rest_rate, b->rest_rate, m->members.slots);
-  check_array(&a->drive_time, &b->drive_time, 1);
+  check_array(a->latest.power, b->latest.power, STRUT_POWER_ROOM);
+  check_array(a->latest.rest, b->latest.rest, m->members.slots);
+  check_array(a->latest.rest_rate, b->latest.rest_rate, m->members.slots);
+  check_array(&a->latest.drive_time, &b->latest.drive_time, 1);
   assert_int_equal(a->events, b->events);
-  if (!a->held_normal) return;
-  check_array(a->held_normal, b->held_normal, m->contacts.count);
-  check_array(a->held_friction, b->held_friction, m->contacts.count);
+  if (!a->modes.held_normal) return;
+  check_array(a->modes.held_normal, b->modes.held_normal, m->contacts.count);
+  check_array(a->modes.held_friction, b->modes.held_friction, m->contacts.count);
 }
 
 /* Steps in pieces of several lengths, with pauses in which others look on. */

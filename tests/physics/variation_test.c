@@ -36,10 +36,10 @@ static void advance(motion *m, int64_t count, double *z, double *jacobian) {
   strut_state_reset(m->model, m->state);
   memcpy(m->state->q, z, bytes);
   memcpy(m->state->v, z + m->model->length, bytes);
-  if (jacobian && !m->state->variation)
-    m->state->variation = strut_variation_create(m->model, m->state);
-  strut_variation *x = m->state->variation;
-  m->state->variation = jacobian ? x : NULL;
+  if (jacobian && !m->state->watched.variation)
+    m->state->watched.variation = strut_variation_create(m->model, m->state);
+  strut_variation *x = m->state->watched.variation;
+  m->state->watched.variation = jacobian ? x : NULL;
   if (jacobian) strut_variation_reset(x);
   m->method->restart(m->model, m->state, m->workspace, m->step);
   motion_steps(m, count);
@@ -47,7 +47,7 @@ static void advance(motion *m, int64_t count, double *z, double *jacobian) {
   memcpy(z + m->model->length, m->state->v, bytes);
   for (int32_t i = 0; jacobian && i < 4 * x->n * x->n; i++)
     jacobian[i] = x->columns[i / (2 * x->n) * x->stride + i % (2 * x->n)];
-  m->state->variation = x;
+  m->state->watched.variation = x;
 }
 
 /* The same by central differences, `unit` (2) of positions and speeds. */

@@ -469,7 +469,7 @@ TEST(forces_of_a_model_are_the_slope_of_its_energy) {
       memset(f.up, 0, (size_t)f.model->length * sizeof *f.up);
       strut_forces_evaluate(f.model, f.state, 0, f.q, f.up);
       for (int32_t i = 0; i < f.n; i++)
-        assert_near(f.state->force[f.potential->coordinate[i]], -f.g[i], 1e-12 * scale);
+        assert_near(f.state->latest.force[f.potential->coordinate[i]], -f.g[i], 1e-12 * scale);
       tried++;
     }
     tear_down(&f);
@@ -517,12 +517,12 @@ TEST(the_balance_counts_what_forces_do) {
       for (int32_t i = 0; i < f.n; i++) v[f.potential->coordinate[i]] = random_between(&r, -2, 2);
       f.state->balance = true;
       strut_forces_evaluate(f.model, f.state, 0, f.q, v);
-      for (int32_t i = 0; i < f.model->length; i++) work += f.state->force[i] * v[i];
+      for (int32_t i = 0; i < f.model->length; i++) work += f.state->latest.force[i] * v[i];
       for (int32_t i = 0; i < f.model->length; i++) f.down[i] = f.q[i] + h * v[i];
       gained = strut_potential_value(f.potential, f.down);
       for (int32_t i = 0; i < f.model->length; i++) f.down[i] = f.q[i] - h * v[i];
       gained = (gained - strut_potential_value(f.potential, f.down)) / (2 * h);
-      double lost = f.state->power[STRUT_POWER_MEMBERS];
+      double lost = f.state->latest.power[STRUT_POWER_MEMBERS];
       assert_true(lost >= 0);
       assert_near(-work, gained + lost, 1e-6 * (1 + fabs(work) + lost));
     }
@@ -549,9 +549,10 @@ TEST(a_hinge_counts_its_turns) {
       double angle = sign * 0.4 * k, moment = kappa * (angle - 0.25);
       state->q[4] = arm * cos(angle), state->q[5] = arm * sin(angle);
       strut_forces_evaluate(model, state, 0, state->q, state->v);
-      assert_near(state->force[4], moment / arm * sin(angle), 1e-11);
-      assert_near(state->force[5], -moment / arm * cos(angle), 1e-11);
-      double energy = strut_elements_energy(model, state->rest, state->element_turn, state->q);
+      assert_near(state->latest.force[4], moment / arm * sin(angle), 1e-11);
+      assert_near(state->latest.force[5], -moment / arm * cos(angle), 1e-11);
+      double energy =
+          strut_elements_energy(model, state->latest.rest, state->latest.element_turn, state->q);
       assert_near(energy, 0.5 * kappa * (angle - 0.25) * (angle - 0.25), 1e-10);
     }
   }
@@ -630,17 +631,18 @@ static void compare_maps(uint64_t seed, const map *m) {
   }
   strut_forces_evaluate(f.model, f.state, 0, f.q, v);
   strut_forces_evaluate(g.model, g.state, 0, there, w);
-  double scale = m->scale * largest_of(f.state->force, f.model->length);
+  double scale = m->scale * largest_of(f.state->latest.force, f.model->length);
   for (int32_t i = 0; i < 2 * f.model->node_count; i += 2) {
     double expected[2];
-    map_point(m, f.state->force + i, expected);
-    assert_near(g.state->force[i], expected[0], 1e-10 * scale);
-    assert_near(g.state->force[i + 1], expected[1], 1e-10 * scale);
+    map_point(m, f.state->latest.force + i, expected);
+    assert_near(g.state->latest.force[i], expected[0], 1e-10 * scale);
+    assert_near(g.state->latest.force[i + 1], expected[1], 1e-10 * scale);
   }
-  assert_relative(strut_elements_energy(g.model, g.state->rest, g.state->element_turn, there),
-                  m->scale * m->scale *
-                      strut_elements_energy(f.model, f.state->rest, f.state->element_turn, f.q),
-                  1e-10);
+  assert_relative(
+      strut_elements_energy(g.model, g.state->latest.rest, g.state->latest.element_turn, there),
+      m->scale * m->scale *
+          strut_elements_energy(f.model, f.state->latest.rest, f.state->latest.element_turn, f.q),
+      1e-10);
   strut_state_free(g.state);
   strut_model_free(g.model);
   strut_scene_free(&g.scene);
@@ -717,9 +719,9 @@ TEST(hinges_in_vectors_have_the_forces_of_single_ones) {
     strut_forces_evaluate(model, state, 0.0, state->q, state->v);
     for (int i = 0; i < 2 * (HINGES + 2); i++)
       if (only < 0)
-        together[i] = state->force[i];
+        together[i] = state->latest.force[i];
       else
-        alone[i] += state->force[i];
+        alone[i] += state->latest.force[i];
     strut_state_free(state);
     strut_model_free(model);
     strut_scene_free(&scene);

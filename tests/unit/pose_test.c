@@ -79,7 +79,8 @@ static void compare_forces(double slope) {
       strut_forces_evaluate(model, state, 0.0, state->q, state->v);
       add_forces(model, state->q, state->v, force);
       double scale = strut_largest_magnitude(force, 2 * NODES);
-      for (int32_t i = 0; i < 2 * NODES; i++) assert_near(state->force[i], force[i], 1e-13 * scale);
+      for (int32_t i = 0; i < 2 * NODES; i++)
+        assert_near(state->latest.force[i], force[i], 1e-13 * scale);
     }
     strut_state_free(state);
     strut_model_free(model);

@@ -128,16 +128,16 @@ void strut_batch_get(strut_batch *b, int32_t slot, strut_state *state) {
   int32_t width = t->width;
   strut_batch_sample(b, slot, state);
   for (int32_t i = 0; i < 2 * t->first->node_count; i++)
-    state->force[i] = t->force[i * width + slot];
+    state->latest.force[i] = t->force[i * width + slot];
   strut_batch_tables_get_elements(t, slot, state);
-  state->drive_time = b->driven ? b->step[slot] * b->dt[slot] : (double)NAN;
+  state->latest.drive_time = b->driven ? b->step[slot] * b->dt[slot] : (double)NAN;
   for (int32_t j = 0; j < t->first->members.slots && b->driven; j++) {
-    state->rest[j] = t->rest[j * width + slot];
-    state->rest_rate[j] = t->rest_rate[j * width + slot];
+    state->latest.rest[j] = t->rest[j * width + slot];
+    state->latest.rest_rate[j] = t->rest_rate[j * width + slot];
   }
   for (int32_t p = 0; p < STRUT_BATCH_POWERS && b->balance; p++) {
     state->work[p] = b->work[p * width + slot];
-    state->power[p] = t->power[p * width + slot];
+    state->latest.power[p] = t->power[p * width + slot];
   }
 }
 

@@ -164,10 +164,10 @@ STRUT_INLINE double earliest_dip(const strut_model *model, const strut_state *st
   double first = 0.0, part = fmax(0.1 * l->tolerance, 1e-12);
   double faint[2] = {0.01 * part * model->size, part * l->fastest}; /* of a gap, of a slip */
   bool surfaces = frames_of(l->next, terms) && !l->contact_list;
-  int32_t count =
-      surfaces ? strut_surface_candidates(model, l, h, state->near) : strut_contacts_of(model, l);
+  int32_t count = surfaces ? strut_surface_candidates(model, l, h, state->buffers.near)
+                           : strut_contacts_of(model, l);
   for (int32_t k = 0; k < count; k++) {
-    int32_t i = surfaces ? state->near[k] : strut_contact_of(l, k);
+    int32_t i = surfaces ? state->buffers.near[k] : strut_contact_of(l, k);
     strut_touch from, to;
     measure_at_end(c, l, l->now, i, terms, &from);
     measure_at_end(c, l, l->next, i, terms, &to);
@@ -231,7 +231,7 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
     accelerate_in_modes(model, state, l, t + ahead[k] * h, q, v[k], a[k], l->next, terms, balance);
     if (l->closed_count && broken == 0.0 && any_contradicts_at_stage(model, l)) broken = ahead[k];
     for (int p = 0; p < STRUT_POWER_COUNT && balance; p++)
-      l->gained[p] += table[PAIR - 1][k] * h * state->power[p];
+      l->gained[p] += table[PAIR - 1][k] * h * state->latest.power[p];
   }
   evaluate_step_end(model, state, l, t + h, l->next, terms, balance);
   l->error = error_of(model, l, h, v, a);

@@ -21,9 +21,9 @@ static const double MOST_REFINED = 64.0;
 /* The column of M^-1 for one coordinate of a node, into `column` (length). */
 static void solve_column(const strut_model *model, strut_state *state, uint32_t at,
                          double *column) {
-  memset(state->force, 0, (size_t)model->length * sizeof(double));
-  state->force[at] = 1.0;
-  strut_mass_solve(model, state->force, column, state->scratch);
+  memset(state->latest.force, 0, (size_t)model->length * sizeof(double));
+  state->latest.force[at] = 1.0;
+  strut_mass_solve(model, state->latest.force, column, state->buffers.mass_solve);
 }
 
 /* Then the mass matrix changes with time, and with it the compliances. */

@@ -17,13 +17,13 @@ static void evaluate_now(const strut_model *model, strut_state *state, strut_eve
   if (!l->fresh) {
     evaluate_step_end(model, state, l, t, now, STRUT_TERMS_ALL, state->balance);
   } else {
-    for (int32_t i = 0; i < model->length; i++) state->force[i] = now->structure[i];
-    for (int p = 0; p < STRUT_POWER_COUNT; p++) state->power[p] = now->structure_power[p];
+    for (int32_t i = 0; i < model->length; i++) state->latest.force[i] = now->structure[i];
+    for (int p = 0; p < STRUT_POWER_COUNT; p++) state->latest.power[p] = now->structure_power[p];
     if (model->terms & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_place(model, state, t);
     accelerate_closed(model, state, l, now->q, now->v, now->a, now, STRUT_TERMS_ALL,
                       state->balance);
     measure_contact_rates(model, l, now, STRUT_TERMS_ALL);
-    for (int p = 0; p < STRUT_POWER_COUNT; p++) now->power[p] = state->power[p];
+    for (int p = 0; p < STRUT_POWER_COUNT; p++) now->power[p] = state->latest.power[p];
   }
   l->fresh = true;
 }
@@ -68,11 +68,11 @@ void strut_cable_set_acting(strut_state *state, strut_event_stepper *l, int32_t 
   l->acting[k] = pulls;
   l->fresh = false;
   if (j < 0) {
-    state->element_acts[l->laws[k].element] = pulls ? 1 : -1;
+    state->modes.element_acts[l->laws[k].element] = pulls ? 1 : -1;
     return;
   }
-  state->slack_length_threshold[j] = pulls ? -HUGE_VAL : 0.0;
-  state->slack_force_threshold[j] = pulls ? -HUGE_VAL : HUGE_VAL;
+  state->modes.slack_length_threshold[j] = pulls ? -HUGE_VAL : 0.0;
+  state->modes.slack_force_threshold[j] = pulls ? -HUGE_VAL : HUGE_VAL;
 }
 
 /* May the node of a contact move along it? Otherwise a support holds it. */
@@ -154,7 +154,7 @@ static void derive_consistently(const strut_model *model, strut_state *state,
 }
 
 static void set_piece(strut_state *state, strut_event_stepper *l, int32_t k, int piece) {
-  state->element_piece[l->laws[k].element] = (int16_t)piece;
+  state->modes.element_piece[l->laws[k].element] = (int16_t)piece;
   l->fresh = false;
 }
 
@@ -169,7 +169,7 @@ static void find_piece(const strut_model *model, strut_state *state, strut_event
 static void pass_kink(const strut_model *model, strut_state *state, strut_event_stepper *l,
                       int32_t k) {
   const strut_element *e = &model->elements.element[l->laws[k].element];
-  int piece = state->element_piece[l->laws[k].element];
+  int piece = state->modes.element_piece[l->laws[k].element];
   double low, high;
   strut_law_margins(e->law, &e->numbers, piece, l->now->stretch[k], &low, &high);
   set_piece(state, l, k, low < high ? piece - 1 : piece + 1);

@@ -135,7 +135,7 @@ STRUT_INLINE void measure_contact_rates(const strut_model *model, const strut_ev
   }
 }
 
-/* The ground's powers, from forces and speeds noted at an end; the others are in state->power. */
+/* The ground's powers, from forces and speeds noted at an end; the others are in state->latest.power. */
 STRUT_INLINE void add_contact_powers(const strut_model *model, strut_state *state,
                                      const strut_event_stepper *l, const strut_step_end *end,
                                      unsigned terms) {
@@ -150,10 +150,10 @@ STRUT_INLINE void add_contact_powers(const strut_model *model, strut_state *stat
     if (frame)
       belt = o->friction * strut_contact_belt(c, l->closed[k]) +
              strut_surface_moving_power(o, &frame[l->closed[k]]);
-    state->power[STRUT_POWER_CONTACT] += damped;
-    state->power[STRUT_POWER_FRICTION] += rubbed;
-    state->power[STRUT_POWER_BELT] += belt;
-    state->power[STRUT_POWER_EXCHANGED] += fabs(damped) + fabs(rubbed) + fabs(belt);
+    state->latest.power[STRUT_POWER_CONTACT] += damped;
+    state->latest.power[STRUT_POWER_FRICTION] += rubbed;
+    state->latest.power[STRUT_POWER_BELT] += belt;
+    state->latest.power[STRUT_POWER_EXCHANGED] += fabs(damped) + fabs(rubbed) + fabs(belt);
   }
 }
 
@@ -161,25 +161,26 @@ STRUT_INLINE void add_contact_powers(const strut_model *model, strut_state *stat
 STRUT_INLINE void keep_structure_forces(const strut_model *model, const strut_state *state,
                                         strut_step_end *end, bool balance) {
   for (int32_t i = 0; i < model->length; i += STRUT_LANES)
-    strut_lanes_store(end->structure + i, strut_lanes_load_pairs(state->force + i));
+    strut_lanes_store(end->structure + i, strut_lanes_load_pairs(state->latest.force + i));
   for (int p = 0; p < STRUT_POWER_ROOM && balance; p += STRUT_LANES)
-    strut_lanes_store(end->structure_power + p, strut_lanes_load(state->power + p));
+    strut_lanes_store(end->structure_power + p, strut_lanes_load(state->latest.power + p));
 }
 
 /* Notes the motion of the grounds for which forces have just been evaluated. */
 STRUT_INLINE void keep_ground_motion(const strut_model *model, const strut_state *state,
                                      strut_step_end *end, unsigned terms) {
   if (!(terms & STRUT_TERM_SURFACES) || !end->motion) return;
-  for (size_t g = 0; g < model->scene->ground_count; g++) end->motion[g] = state->ground_motion[g];
+  for (size_t g = 0; g < model->scene->ground_count; g++)
+    end->motion[g] = state->latest.ground_motion[g];
 }
 
-/* From the forces of the structure in state->force to the acceleration. */
+/* From the forces of the structure in state->latest.force to the acceleration. */
 STRUT_INLINE void accelerate_closed(const strut_model *model, strut_state *state,
                                     strut_event_stepper *l, const double *restrict q,
                                     const double *restrict v, double *restrict a,
                                     strut_step_end *end, unsigned terms, bool balance) {
   bool sliding = model->terms & terms & STRUT_TERM_SLIDING_MASS;
-  if (l->closed_count) add_contact_forces(model, l, q, v, state->force, true, end, terms);
+  if (l->closed_count) add_contact_forces(model, l, q, v, state->latest.force, true, end, terms);
   divide_by_mass(model, state, a, terms);
   if (sliding) strut_refresh_compliances(model, state, l);
   if (l->stuck_count) strut_solve_stick_constraints(model, l, a, end);
@@ -225,7 +226,7 @@ STRUT_INLINE void evaluate_step_end(const strut_model *model, strut_state *state
   accelerate_closed(model, state, l, end->q, end->v, end->a, end, terms, balance);
   measure_contact_rates(model, l, end, terms);
   if (end == l->next && !l->all_sliding) settle_band_ties(model, l);
-  for (int p = 0; p < STRUT_POWER_COUNT && balance; p++) end->power[p] = state->power[p];
+  for (int p = 0; p < STRUT_POWER_COUNT && balance; p++) end->power[p] = state->latest.power[p];
 }
 
 /* Edge of the band, or 0 where sticking is exact. */
@@ -349,12 +350,12 @@ STRUT_INLINE void control_step(strut_event_stepper *l, double h, bool whole) {
 
 /* Has the method made all evaluations that it may? */
 STRUT_INLINE bool is_spent(const strut_state *state) {
-  return state->most_evaluations > 0 && state->evaluations > state->most_evaluations;
+  return state->limits.most_evaluations > 0 && state->evaluations > state->limits.most_evaluations;
 }
 
 /* Is it to give up, for that or on an interrupt? */
 STRUT_INLINE bool is_wanted_back(const strut_state *state) {
-  return is_spent(state) || (state->interrupt && *state->interrupt);
+  return is_spent(state) || (state->limits.interrupt && *state->limits.interrupt);
 }
 
 /* The time at which a step from t is evaluated; see moment_before. */

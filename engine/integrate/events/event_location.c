@@ -201,7 +201,7 @@ STRUT_INLINE void measure_cables_group(const strut_model *model, const strut_sta
   for (int n = 0; n < STRUT_LANES; n++) {
     int32_t j = l->laws[k[n]].member;
     from[n] = t->from[j], to[n] = t->to[j];
-    rest[n] = state->rest[j], rest_rate[n] = state->rest_rate[j];
+    rest[n] = state->latest.rest[j], rest_rate[n] = state->latest.rest_rate[j];
     stiffness[n] = t->stiffness[j], damping[n] = t->damping[j];
   }
   member_vectors d = members_gather(end->q, from, to), w = members_gather(end->v, from, to);
@@ -243,7 +243,7 @@ static void measure_element(const strut_model *model, const strut_state *state,
     end->tension[k] = e->carries * m.force;
     return;
   }
-  int piece = state->element_piece[law->element];
+  int piece = state->modes.element_piece[law->element];
   double low, high;
   strut_law_margins(e->law, &e->numbers, piece, m.stretch, &low, &high);
   end->stretch[k] = m.stretch;
@@ -254,7 +254,7 @@ static void measure_element(const strut_model *model, const strut_state *state,
 /* The sensors are those of the end. */
 static void measure_relay(const strut_model *model, const strut_state *state,
                           const strut_law_switch *law, const strut_step_end *end, int32_t k) {
-  double now = state->drive_time + state->time_offset;
+  double now = state->latest.drive_time + state->time_offset;
   end->stretch[k] = 1.0;
   end->stretch_rate[k] = 0.0;
   end->tension[k] = strut_relay_margin(model, state, law->relay - 1, now, end->v);
@@ -339,8 +339,8 @@ strut_event strut_event_first(const strut_model *model, const strut_state *state
                               const strut_event_stepper *l, double h) {
   int32_t count = strut_contacts_of(model, l);
   if (l->now->frame && !l->contact_list)
-    return first_event(model, state, l, h, state->near,
-                       strut_surface_candidates(model, l, 0.0, state->near), false,
+    return first_event(model, state, l, h, state->buffers.near,
+                       strut_surface_candidates(model, l, 0.0, state->buffers.near), false,
                        STRUT_TERMS_ALL);
   if (l->now->frame)
     return first_event(model, state, l, h, l->contact_list, count, false, STRUT_TERMS_ALL);
@@ -381,9 +381,10 @@ strut_event strut_event_predict(const strut_model *model, const strut_state *sta
   const strut_contact_table *c = &model->contacts;
   strut_event first = {STRUT_EVENT_NONE, 0, 1.0};
   bool surfaces = l->now->frame;
-  int32_t count = surfaces ? strut_surface_candidates(model, l, 0.0, state->near) : c->count;
+  int32_t count =
+      surfaces ? strut_surface_candidates(model, l, 0.0, state->buffers.near) : c->count;
   for (int32_t k = 0; k < count; k++) {
-    int32_t i = surfaces ? state->near[k] : k;
+    int32_t i = surfaces ? state->buffers.near[k] : k;
     bool closed = l->mode[i] != STRUT_MODE_OPEN;
     double gap = gap_at_end(c, l, i, l->next, STRUT_TERMS_ALL);
     if (closed ? gap <= 0.0 : gap >= 0.0) continue;

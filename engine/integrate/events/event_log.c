@@ -42,7 +42,7 @@ static void set_mode(strut_event_log *log, int32_t item, int8_t mode, double t) 
 
 void strut_event_log_note(const strut_model *model, const strut_state *state,
                           const strut_event_stepper *l, double t) {
-  strut_event_log *log = state->event_log;
+  strut_event_log *log = state->watched.event_log;
   for (int32_t i = 0; i < model->contacts.count; i++) set_mode(log, i, contact_mode(l, i), t);
   for (int32_t k = 0; k < l->law_count; k++) {
     const strut_law_switch *s = &l->laws[k];
@@ -52,13 +52,13 @@ void strut_event_log_note(const strut_model *model, const strut_state *state,
       set_mode(log, log->contacts + log->members + s->element, (int8_t)l->acting[k], t);
     else if (s->event == STRUT_EVENT_KINK && s->element >= 0)
       set_mode(log, log->contacts + log->members + log->elements + s->element,
-               (int8_t)state->element_piece[s->element], t);
+               (int8_t)state->modes.element_piece[s->element], t);
   }
 }
 
 void strut_event_log_begin(const strut_model *model, const strut_state *state,
                            const strut_event_stepper *l) {
-  strut_event_log *log = state->event_log;
+  strut_event_log *log = state->watched.event_log;
   for (int32_t i = 0; i < log->items; i++) log->now[i] = 0;
   strut_event_log_note(model, state, l, 0.0);
   for (int32_t i = 0; i < log->items; i++) log->first[i] = log->now[i];

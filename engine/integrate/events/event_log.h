@@ -33,7 +33,7 @@ typedef struct strut_event_log {
   bool full;                 /* later events are not there */
 } strut_event_log;
 
-/** A log for runs of the model, in the arena; attach it as state->event_log. NULL: out of memory. */
+/** A log for runs of the model, in the arena; attach it as state->watched.event_log. NULL: out of memory. */
 STRUT_API strut_event_log *strut_event_log_create(const strut_model *model, strut_arena *arena);
 
 struct strut_event_stepper;

@@ -125,7 +125,7 @@ static bool make_held(const strut_model *model, strut_state *state) {
   size_t contacts = (size_t)model->contacts.count;
   double *normal = strut_arena_allocate(&state->arena, contacts, sizeof *normal);
   double *friction = strut_arena_allocate(&state->arena, contacts, sizeof *friction);
-  state->held_normal = normal, state->held_friction = friction;
+  state->modes.held_normal = normal, state->modes.held_friction = friction;
   return normal && friction;
 }
 
@@ -152,7 +152,8 @@ void *strut_event_stepper_create(const strut_model *model, strut_state *state,
 /* Contact forces at an end, for recording and measuring. */
 static void show_contacts(const strut_model *model, strut_state *state,
                           const strut_event_stepper *l, const strut_step_end *end) {
-  double *normal = (double *)state->held_normal, *friction = (double *)state->held_friction;
+  double *normal = (double *)state->modes.held_normal,
+         *friction = (double *)state->modes.held_friction;
   for (int32_t i = 0; i < model->contacts.count; i++) {
     /* a step may end a little beyond the opening */
     bool open = l->mode[i] == STRUT_MODE_OPEN || end->touch[i].gap > 0.0;
@@ -211,7 +212,7 @@ static void show_piece(const strut_model *model, strut_state *state, strut_event
       .hold = hold_contacts,
       .workspace = l};
   show_contacts(model, state, l, end);
-  state->observer->see(state->observer, state, &piece);
+  state->watched.observer->see(state->watched.observer, state, &piece);
   l->view->smooth = true;
 }
 
@@ -240,8 +241,8 @@ void strut_event_stepper_restart(const strut_model *model, strut_state *state, v
   strut_modes_start(model, state, l, t);
   show_contacts(model, state, l, l->now);
   end_smooth(l);
-  if (state->event_log) strut_event_log_begin(model, state, l);
-  if (state->variation) strut_variation_begin(model, state, l);
+  if (state->watched.event_log) strut_event_log_begin(model, state, l);
+  if (state->watched.variation) strut_variation_begin(model, state, l);
   l->started = true;
 }
 
@@ -282,7 +283,7 @@ static void pass_break(const strut_model *model, strut_state *state, strut_event
     strut_modes_start(model, state, l, t + moment);
   else
     strut_modes_after_jump(model, state, l, t + moment);
-  if (state->variation) strut_variation_pass(model, state, l, false);
+  if (state->watched.variation) strut_variation_pass(model, state, l, false);
 }
 
 /* Where a value passes 0: between low and high, and the latest two points of the search. */
@@ -523,8 +524,8 @@ STRUT_INLINE double step_piece(const strut_model *model, strut_state *state, str
     h = 0.0;
   }
   if (h > 0.0) {
-    if (state->variation) strut_variation_step(model, state, l, t, h);
-    bool observed = l->view && state->observer;
+    if (state->watched.variation) strut_variation_step(model, state, l, t, h);
+    bool observed = l->view && state->watched.observer;
     if (observed) keep_begin(model, state, l->view);
     if (l->within)
       accept_within(state, l);
@@ -535,7 +536,7 @@ STRUT_INLINE double step_piece(const strut_model *model, strut_state *state, str
   } else {
     l->at_once++;
   }
-  if (state->variation && event.kind)
+  if (state->watched.variation && event.kind)
     strut_variation_meet(model, state, l, &event, t + h, dt, h > 0.0);
   if (event.kind) {
     strut_event_apply(model, state, l, event, t + h);
@@ -554,7 +555,7 @@ STRUT_INLINE double step_piece(const strut_model *model, strut_state *state, str
     return h;
   }
   end_smooth(l);
-  if (state->variation && (event.kind || force))
+  if (state->watched.variation && (event.kind || force))
     strut_variation_pass(model, state, l, event.kind != STRUT_EVENT_NONE);
   return h;
 }
@@ -576,12 +577,12 @@ static bool given_up(const strut_model *model, strut_state *state, strut_event_s
     memcpy(kept[0], state->q, bytes);
     memcpy(kept[1], state->v, bytes);
     memcpy(l->work, state->work, sizeof l->work);
-    if (model->terms & STRUT_TERM_MEMORY) strut_history_store(model, state, state->history_kept);
+    if (model->terms & STRUT_TERM_MEMORY) strut_history_store(model, state, state->history.kept);
   } else if (wanted) {
     memcpy(state->q, kept[0], bytes);
     memcpy(state->v, kept[1], bytes);
     memcpy(state->work, l->work, sizeof l->work);
-    if (model->terms & STRUT_TERM_MEMORY) strut_history_load(model, state, state->history_kept);
+    if (model->terms & STRUT_TERM_MEMORY) strut_history_load(model, state, state->history.kept);
   }
   if (wanted) state->trouble = spent ? STRUT_FAILURE_WORK : STRUT_FAILURE_INTERRUPT;
   return wanted;
@@ -592,7 +593,7 @@ void strut_event_stepper_step(const strut_model *model, strut_state *state, void
   strut_event_stepper *l = workspace;
   double t = (double)state->step * dt + l->done, h = next_step_size(state, l, dt);
   double gone = step_piece(model, state, l, evaluation_time(l, t, dt), h, dt);
-  if (state->event_log) strut_event_log_note(model, state, l, t + gone);
+  if (state->watched.event_log) strut_event_log_note(model, state, l, t + gone);
   advance_within_grid(state, l, gone, dt);
   if (l->next_break < HUGE_VAL) pass_break(model, state, l, dt);
 }
@@ -605,7 +606,7 @@ void strut_event_stepper_advance(const strut_model *model, strut_state *state, v
                      &l->drives);
   for (int64_t end = state->step + count; state->step < end && !state->trouble;) {
     if (l->stepper->advance_until_event && l->at_once == 0 && !model->contacts.surface &&
-        !state->observer)
+        !state->watched.observer)
       l->stepper->advance_until_event(model, state, l, dt, end);
     if (state->step == end || (l->stepper->adaptive && given_up(model, state, l))) break;
     strut_event_stepper_step(model, state, l, dt);

@@ -48,7 +48,7 @@ void strut_history_list(const strut_model *model, const strut_state *state,
 
 static bool is_gone(const strut_model *model, const strut_state *state, int32_t element) {
   const strut_element *e = &model->elements.element[element];
-  return e->remembers && strut_element_is_gone(state->rest[e->slot]);
+  return e->remembers && strut_element_is_gone(state->latest.rest[e->slot]);
 }
 
 /* Force that is left to the yield while it holds; the rate, as a force, while it gives way. */
@@ -56,7 +56,7 @@ static double slider_margin(const strut_model *model, const strut_state *state,
                             const strut_event_stepper *l, const strut_step_end *end, int32_t i) {
   if (is_gone(model, state, i)) return 1.0;
   strut_slider s = strut_slider_at(model, state, i, end->q, end->v);
-  int mode = state->element_piece[i];
+  int mode = state->modes.element_piece[i];
   if (mode != STRUT_SLIDER_HOLDS)
     return (mode - STRUT_SLIDER_HOLDS) * s.rate * model->elements.element[i].numbers.stiffness *
            l->wanted_step;
@@ -95,7 +95,7 @@ void strut_history_measure(const strut_model *model, const strut_state *state,
                             : 1.0; /* which guides slip is found when it gets taut */
     return;
   }
-  bool broken = state->broken_at[law->breakable] < HUGE_VAL;
+  bool broken = state->history.broken_at[law->breakable] < HUGE_VAL;
   end->tension[k] = broken ? 1.0
                            : model->elements.breakable[law->breakable].force -
                                  strut_breakable_load(model, state, law->breakable, end->q, end->v);
@@ -138,7 +138,7 @@ void strut_history_drop_gone(const strut_model *model, strut_state *state, strut
     const strut_law_switch *law = &l->laws[k];
     if (law->element < 0 || law->event != STRUT_EVENT_ACTS) continue;
     if (!is_gone(model, state, law->element)) continue;
-    state->element_acts[law->element] = -1;
+    state->modes.element_acts[law->element] = -1;
     l->acting[k] = false;
   }
 }
@@ -167,7 +167,7 @@ void strut_history_apply(const strut_model *model, strut_state *state, strut_eve
     return;
   }
   int mode = STRUT_SLIDER_HOLDS;
-  if (state->element_piece[law->element] == STRUT_SLIDER_HOLDS) {
+  if (state->modes.element_piece[law->element] == STRUT_SLIDER_HOLDS) {
     strut_slider s = strut_slider_at(model, state, law->element, l->now->q, l->now->v);
     mode = s.force < 0.0 ? STRUT_SLIDER_BACK : STRUT_SLIDER_FORTH;
   }

@@ -200,7 +200,8 @@ STRUT_INLINE void implicit_ground_leave(const strut_model *model, strut_state *s
     exchanged += fabs(damped) + fabs(rubbed) + fabs(carried);
   }
   if (!balance) return;
-  double *low = state->power + STRUT_POWER_DRIVE, *high = state->power + STRUT_POWER_CONTACT;
+  double *low = state->latest.power + STRUT_POWER_DRIVE,
+         *high = state->latest.power + STRUT_POWER_CONTACT;
   strut_lanes_store(low, strut_lanes_load(low) + (strut_lanes){0.0, 0.0, belt, 0.0});
   strut_lanes_store(high,
                     strut_lanes_load(high) + (strut_lanes){contact, friction, exchanged, 0.0});

@@ -29,13 +29,13 @@ static bool make_members(const strut_model *model, strut_arena *arena, strut_loc
   double **all[] = {&p->stiffness,
                     &p->damping,
                     &p->rest,
-                    &p->shell.rest_rate,
-                    &p->shell.slack_length_threshold,
-                    &p->shell.slack_force_threshold};
+                    &p->shell.latest.rest_rate,
+                    &p->shell.modes.slack_length_threshold,
+                    &p->shell.modes.slack_force_threshold};
   bool good = p->from && p->to;
   for (size_t k = 0; k < sizeof all / sizeof *all && good; k++)
     good = (*all[k] = strut_arena_allocate(arena, slots, sizeof(double)));
-  p->shell.rest = p->rest;
+  p->shell.latest.rest = p->rest;
   p->table = (strut_member_table){.from = p->from,
                                   .to = p->to,
                                   .stiffness = p->stiffness,
@@ -489,7 +489,7 @@ static bool step_regions(const strut_model *model, strut_state *state, strut_eve
    events, and this lets go of them. */
 static void add_far_motion(const strut_model *model, strut_state *state, strut_event_stepper *l,
                            const double *push, double *far, double *x) {
-  strut_mass_solve(model, push, far, state->scratch);
+  strut_mass_solve(model, push, far, state->buffers.mass_solve);
   if (l->stuck_count) strut_solve_stick_constraints(model, l, far, l->next);
   for (int32_t i = 0; i < 2 * model->node_count; i++) x[i] += far[i];
 }
@@ -523,7 +523,8 @@ bool strut_local_events_take(const strut_model *model, strut_state *state, strut
                              double t, double h, double dt) {
   strut_local_events *p = l->local;
   double works[STRUT_POWER_ROOM];
-  if (state->event_log || state->variation || !(p->region.reach = find_reach(p, h))) return false;
+  if (state->watched.event_log || state->watched.variation || !(p->region.reach = find_reach(p, h)))
+    return false;
   p->begin = l->now, p->end = l->next;
   p->start = t, p->span = h;
   p->seed_count = p->written_count = 0;

@@ -43,8 +43,8 @@ void strut_local_load_members(const strut_model *model, strut_local_events *p) {
     p->stiffness[k] = pad ? 0.0 : t->stiffness[j];
     p->damping[k] = pad ? 0.0 : t->damping[j];
     p->rest[k] = pad ? 0.0 : t->rest[j];
-    p->shell.rest_rate[k] = 0.0;
-    p->shell.slack_length_threshold[k] = p->shell.slack_force_threshold[k] = -HUGE_VAL;
+    p->shell.latest.rest_rate[k] = 0.0;
+    p->shell.modes.slack_length_threshold[k] = p->shell.modes.slack_force_threshold[k] = -HUGE_VAL;
   }
   p->table.count = count, p->table.slots = slots;
 }
@@ -54,12 +54,12 @@ static void refresh_members(const strut_model *model, const strut_state *state,
   const strut_local_region *r = &p->region;
   for (int32_t k = 0; k < r->member_count; k++) {
     int32_t j = r->member[k];
-    p->shell.slack_length_threshold[k] = state->slack_length_threshold[j];
-    p->shell.slack_force_threshold[k] = state->slack_force_threshold[j];
+    p->shell.modes.slack_length_threshold[k] = state->modes.slack_length_threshold[j];
+    p->shell.modes.slack_force_threshold[k] = state->modes.slack_force_threshold[j];
   }
   for (int32_t k = 0; k < r->member_count && model->terms & STRUT_TERM_DRIVE; k++) {
-    p->rest[k] = state->rest[r->member[k]];
-    p->shell.rest_rate[k] = state->rest_rate[r->member[k]];
+    p->rest[k] = state->latest.rest[r->member[k]];
+    p->shell.latest.rest_rate[k] = state->latest.rest_rate[r->member[k]];
   }
 }
 
@@ -78,12 +78,13 @@ STRUT_INLINE void add_members(const strut_local_events *p, strut_state *state, c
   for (int32_t j = 0; j < p->table.slots; j += STRUT_LANES) {
     member_pulls pulls =
         members_group(&p->table, &p->shell, q, v, j, driven ? ALL : KEPT, balance, &powers);
-    members_scatter(&p->table, j, pulls, state->force); /* made anew at each event: no rows */
+    members_scatter(&p->table, j, pulls,
+                    state->latest.force); /* made anew at each event: no rows */
   }
   for (int l = 0; l < STRUT_LANES && balance; l++) {
-    state->power[STRUT_POWER_DRIVE] += powers.drive[l];
-    state->power[STRUT_POWER_MEMBERS] += powers.lost[l];
-    state->power[STRUT_POWER_EXCHANGED] += powers.exchanged[l] + powers.lost[l];
+    state->latest.power[STRUT_POWER_DRIVE] += powers.drive[l];
+    state->latest.power[STRUT_POWER_MEMBERS] += powers.lost[l];
+    state->latest.power[STRUT_POWER_EXCHANGED] += powers.exchanged[l] + powers.lost[l];
   }
 }
 
@@ -93,11 +94,11 @@ STRUT_INLINE void region_forces(const strut_model *model, strut_state *state, st
   const strut_local_region *r = &p->region;
   const double *constant = model->terms & STRUT_TERM_CONSTANT ? model->constant_force : NULL;
   count_evaluation(model, state, p);
-  for (int k = 0; k < STRUT_POWER_COUNT && balance; k++) state->power[k] = 0.0;
+  for (int k = 0; k < STRUT_POWER_COUNT && balance; k++) state->latest.power[k] = 0.0;
   for (int32_t k = 0; k < r->node_count; k++)
     for (int32_t i = 2 * r->node[k]; i < 2 * r->node[k] + 2; i++)
-      state->force[i] = constant ? constant[i] : 0.0;
-  if ((model->terms & STRUT_TERM_DRIVE) && t != state->drive_time)
+      state->latest.force[i] = constant ? constant[i] : 0.0;
+  if ((model->terms & STRUT_TERM_DRIVE) && t != state->latest.drive_time)
     strut_drive_apply(model, state, t);
   refresh_members(model, state, p);
   if (model->terms & STRUT_TERM_DRIVE)
@@ -111,8 +112,8 @@ STRUT_INLINE void region_accelerations(const strut_model *model, strut_state *st
                                        double *a, strut_step_end *end, bool balance) {
   strut_local_events *p = l->within;
   if (l->closed_count)
-    add_contact_forces(model, l, q, v, state->force, true, end, STRUT_TERMS_COMMON);
-  strut_local_region_divide(model, &p->region, state->force, a);
+    add_contact_forces(model, l, q, v, state->latest.force, true, end, STRUT_TERMS_COMMON);
+  strut_local_region_divide(model, &p->region, state->latest.force, a);
   if (l->stuck_count) strut_local_hold(model, l, a, end);
   if (balance && l->closed_count) add_contact_powers(model, state, l, end, STRUT_TERMS_COMMON);
 }
@@ -124,12 +125,13 @@ STRUT_INLINE void region_end(const strut_model *model, strut_state *state, strut
   region_forces(model, state, l->within, t, end->q, end->v, balance);
   for (int32_t k = 0; k < r->node_count; k++)
     for (int32_t i = 2 * r->node[k]; i < 2 * r->node[k] + 2; i++)
-      end->structure[i] = state->force[i];
-  for (int k = 0; k < STRUT_POWER_COUNT && balance; k++) end->structure_power[k] = state->power[k];
+      end->structure[i] = state->latest.force[i];
+  for (int k = 0; k < STRUT_POWER_COUNT && balance; k++)
+    end->structure_power[k] = state->latest.power[k];
   region_accelerations(model, state, l, end->q, end->v, end->a, end, balance);
   measure_contact_rates(model, l, end, STRUT_TERMS_COMMON);
   if (end == l->next) settle_band_ties(model, l);
-  for (int k = 0; k < STRUT_POWER_COUNT && balance; k++) end->power[k] = state->power[k];
+  for (int k = 0; k < STRUT_POWER_COUNT && balance; k++) end->power[k] = state->latest.power[k];
 }
 
 STRUT_CLONES
@@ -144,11 +146,12 @@ static void region_now(const strut_model *model, strut_state *state, strut_event
   }
   for (int32_t k = 0; k < r->node_count; k++)
     for (int32_t i = 2 * r->node[k]; i < 2 * r->node[k] + 2; i++)
-      state->force[i] = now->structure[i];
-  for (int k = 0; k < STRUT_POWER_COUNT && balance; k++) state->power[k] = now->structure_power[k];
+      state->latest.force[i] = now->structure[i];
+  for (int k = 0; k < STRUT_POWER_COUNT && balance; k++)
+    state->latest.power[k] = now->structure_power[k];
   region_accelerations(model, state, l, now->q, now->v, now->a, now, balance);
   measure_contact_rates(model, l, now, STRUT_TERMS_COMMON);
-  for (int k = 0; k < STRUT_POWER_COUNT && balance; k++) now->power[k] = state->power[k];
+  for (int k = 0; k < STRUT_POWER_COUNT && balance; k++) now->power[k] = state->latest.power[k];
 }
 
 void strut_local_evaluate(const strut_model *model, strut_state *state, strut_event_stepper *l,
@@ -219,7 +222,7 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
     if (l->stepper->adaptive && broken == 0.0 && l->stepper->contradicts_at_stage(model, l))
       broken = tableau->ahead[s];
     for (int k = 0; k < STRUT_POWER_COUNT && balance; k++)
-      l->gained[k] += last[s] * h * state->power[k];
+      l->gained[k] += last[s] * h * state->latest.power[k];
   }
   region_stage(&p->region, h, l->now, v, a, last, stages, l->next->q, l->next->v);
   strut_local_place_halo(p, (t + h - p->start) / p->span, l->next->q, l->next->v);

@@ -45,9 +45,9 @@ static bool allocate(const strut_model *model, strut_arena *arena, strut_mode_ta
 static void invert_mass(const strut_model *model, strut_state *state, strut_mode_tangent *t) {
   memset(t->place, 0, (size_t)model->length * sizeof(double));
   for (int32_t j = 0; j < t->n; j++) {
-    memset(state->force, 0, (size_t)model->length * sizeof(double));
-    state->force[t->coordinate[j]] = 1.0;
-    strut_mass_solve(model, state->force, t->place, state->scratch);
+    memset(state->latest.force, 0, (size_t)model->length * sizeof(double));
+    state->latest.force[t->coordinate[j]] = 1.0;
+    strut_mass_solve(model, state->latest.force, t->place, state->buffers.mass_solve);
     for (int32_t i = 0; i < t->n; i++) t->inverse[i * t->n + j] = t->place[t->coordinate[i]];
   }
 }
@@ -149,9 +149,10 @@ STRUT_INLINE void add_member(const strut_model *model, const strut_state *state,
   if (!(length > 0.0)) return;
   double u[2] = {x / length, y / length}, w[2] = {v[to] - v[from], v[to + 1] - v[from + 1]};
   double rate = u[0] * w[0] + u[1] * w[1], c = m->stiffness[j], k = m->damping[j];
-  double stretch = length - state->rest[j];
-  double tension = c * stretch + k * (rate - state->rest_rate[j]);
-  if (!(stretch > state->slack_length_threshold[j] && tension > state->slack_force_threshold[j]))
+  double stretch = length - state->latest.rest[j];
+  double tension = c * stretch + k * (rate - state->latest.rest_rate[j]);
+  if (!(stretch > state->modes.slack_length_threshold[j] &&
+        tension > state->modes.slack_force_threshold[j]))
     return;
   const int32_t *a = t->row_of + from, *b = t->row_of + to;
   double stiffness[2][2], damping[2][2], across = tension / length;
@@ -181,7 +182,7 @@ static void difference_forces(const strut_model *model, strut_state *state,
       *x = keep + side * unit[of];
       forces_of_structure(model, state, time, t->place, t->speed, STRUT_TERMS_ALL, false);
       for (int32_t i = 0; i < t->n; i++)
-        t->force[i * t->width + j] += side * state->force[t->coordinate[i]] / two;
+        t->force[i * t->width + j] += side * state->latest.force[t->coordinate[i]] / two;
     }
     *x = keep;
   }
@@ -273,7 +274,7 @@ static void add_contact(const strut_model *model, const strut_state *state,
   for (int k = 0; k < 2; k++)
     if (row[k] >= 0) x[k] = t->force + row[k] * t->width;
   measure_on_line(c, i, q, v, &o);
-  o.applied = strut_contact_along_ground(c, i, state->force);
+  o.applied = strut_contact_along_ground(c, i, state->latest.force);
   o.normal = contact_normal_force(e, l->damper[i], o.gap, o.into, true);
   friction_slopes f = slopes_of(e, l->mode[i], l->side[i], o.normal, o.slip, o.applied);
   differentiate_normal(e, l->damper[i], is_resting(e, l, i), &o, &gap, &into);
@@ -319,7 +320,7 @@ void strut_mode_tangent_evaluate(const strut_model *model, strut_state *state,
   if (!t->plain) difference_forces(model, state, l, time, q, v, t);
   if (!t->plain || asks_applied(l))
     forces_of_structure(model, state, time, q, v, STRUT_TERMS_ALL, false);
-  else if ((model->terms & STRUT_TERM_DRIVE) && time != state->drive_time)
+  else if ((model->terms & STRUT_TERM_DRIVE) && time != state->latest.drive_time)
     strut_drive_apply(model, state, time);
   for (int32_t j = 0; j < model->members.count && t->plain; j++)
     add_member(model, state, j, q, v, t);

@@ -12,7 +12,7 @@
 enum { Q, V, A = V + 3, STAGES = A + 3 };
 
 STRUT_INLINE void gain(const strut_state *state, strut_event_stepper *l, double weight) {
-  for (int p = 0; p < STRUT_POWER_COUNT; p++) l->gained[p] += weight * state->power[p];
+  for (int p = 0; p < STRUT_POWER_COUNT; p++) l->gained[p] += weight * state->latest.power[p];
 }
 
 STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event_stepper *l,

@@ -244,13 +244,13 @@ STRUT_SMALL_INLINE void small_keep_contacts(const small_events *e, const strut_m
 /* Rest lengths and forces as the general kernel leaves them in the state after the latest evaluation. */
 STRUT_SMALL_INLINE void small_leave(const small_events *e, const strut_model *model,
                                     strut_state *state, bool balance) {
-  small_write(e->run.tables, &e->force, state->force);
-  if (balance) small_work_store(state->power, e->power);
+  small_write(e->run.tables, &e->force, state->latest.force);
+  if (balance) small_work_store(state->latest.power, e->power);
   if (!(e->run.terms & STRUT_TERM_DRIVE)) return;
-  state->drive_time = e->time;
+  state->latest.drive_time = e->time;
   for (int32_t i = 0; i < model->drives.count; i++) {
     int32_t j = model->drives.member[i];
-    state->rest[j] = e->rest->rest[j], state->rest_rate[j] = e->rest->rate[j];
+    state->latest.rest[j] = e->rest->rest[j], state->latest.rest_rate[j] = e->rest->rate[j];
   }
 }
 

@@ -30,9 +30,9 @@ strut_small_quiet strut_small_rk4_events_quiet_avx2, strut_small_rk4_events_quie
 /** The function of that name; NULL where the general kernel steps. Variations need its stages. */
 #if defined(__x86_64__)
 #define STRUT_SMALL_EVENTS(model, state, l, name)                                                  \
-  (!strut_small_modes_of(model, state, l) || (state)->variation ? NULL                             \
-   : (model)->small->level == STRUT_SMALL_AVX512                ? name##_avx512                    \
-                                                                : name##_avx2)
+  (!strut_small_modes_of(model, state, l) || (state)->watched.variation ? NULL                     \
+   : (model)->small->level == STRUT_SMALL_AVX512                        ? name##_avx512            \
+                                                                        : name##_avx2)
 #else
 #define STRUT_SMALL_EVENTS(model, state, l, name) NULL
 #endif
@@ -40,7 +40,7 @@ strut_small_quiet strut_small_rk4_events_quiet_avx2, strut_small_rk4_events_quie
 /** May the methods that locate events exactly make quiet steps in registers? Cables are looked at by the
     general code, and so are switches that follow each other without end. */
 static inline bool strut_small_is_quiet(const strut_state *state, const strut_event_stepper *l) {
-  return !l->law_count && !state->event_log && l->switches < STRUT_MOST_SWITCHES;
+  return !l->law_count && !state->watched.event_log && l->switches < STRUT_MOST_SWITCHES;
 }
 
 #endif

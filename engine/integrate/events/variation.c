@@ -46,7 +46,7 @@ static double *velocities(const strut_variation *x) { return x->columns + x->n *
 
 void strut_variation_begin(const strut_model *model, strut_state *state,
                            const strut_event_stepper *l) {
-  strut_variation *x = state->variation;
+  strut_variation *x = state->watched.variation;
   memset(x->delay, 0, (size_t)x->stride * sizeof(double));
   strut_mode_tangent_hold(model, l, x->tangent);
   strut_mode_tangent_project(x->tangent, velocities(x), x->stride);
@@ -124,7 +124,7 @@ static const double *place_stage(const strut_model *model, const strut_event_ste
 
 void strut_variation_step(const strut_model *model, strut_state *state,
                           const strut_event_stepper *l, double t, double h) {
-  strut_variation *x = state->variation;
+  strut_variation *x = state->watched.variation;
   const strut_tableau *tableau = l->stepper->tableau;
   int32_t half = x->n * x->stride;
   size_t bytes = (size_t)half * sizeof(double);
@@ -144,7 +144,7 @@ void strut_variation_step(const strut_model *model, strut_state *state,
   double *swap = x->columns;
   x->columns = x->middle, x->middle = swap;
   memset(x->delay, 0, (size_t)x->stride * sizeof(double));
-  if ((model->terms & STRUT_TERM_DRIVE) && state->drive_time != t + h)
+  if ((model->terms & STRUT_TERM_DRIVE) && state->latest.drive_time != t + h)
     strut_drive_apply(model, state, t + h);
 }
 
@@ -241,14 +241,14 @@ static double differenced_gradient(const strut_model *model, strut_state *state,
     }
     x->gradient[j] = (value[1] - value[0]) / (2.0 * part);
   }
-  if ((model->terms & STRUT_TERM_DRIVE) && state->drive_time != t)
+  if ((model->terms & STRUT_TERM_DRIVE) && state->latest.drive_time != t)
     strut_drive_apply(model, state, t);
   return rate;
 }
 
 void strut_variation_meet(const strut_model *model, strut_state *state, strut_event_stepper *l,
                           const strut_event *e, double t, double dt, bool stepped) {
-  strut_variation *x = state->variation;
+  strut_variation *x = state->watched.variation;
   double normal, tangent;
   bool positions;
   for (int32_t i = 0; i < x->n; i++) x->before[i] = l->now->a[x->place[i]];
@@ -265,7 +265,7 @@ void strut_variation_meet(const strut_model *model, strut_state *state, strut_ev
 
 void strut_variation_pass(const strut_model *model, strut_state *state,
                           const strut_event_stepper *l, bool event) {
-  strut_variation *x = state->variation;
+  strut_variation *x = state->watched.variation;
   double *v = velocities(x);
   if (!event) memset(x->delay, 0, (size_t)x->stride * sizeof(double));
   for (int32_t i = 0; i < x->n && event; i++) {

@@ -31,7 +31,7 @@ typedef struct strut_variation {
 
 /** Can variations of the model's motions be carried along by the method? */
 STRUT_API bool strut_variation_possible(const strut_model *model, const strut_integrator *method);
-/** In the state's arena; attach it as state->variation. NULL: out of memory. */
+/** In the state's arena; attach it as state->watched.variation. NULL: out of memory. */
 STRUT_API strut_variation *strut_variation_create(const strut_model *model, strut_state *state);
 /** The columns become unit vectors: of the free coordinates, then of their velocities. */
 STRUT_API void strut_variation_reset(strut_variation *variation);

@@ -44,13 +44,13 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
   if (!l->closed_count) {
     divide_by_mass(model, state, a1, terms);
   } else if (l->all_sliding) {
-    mass_kernel(model, state->force, a1, state->scratch);
+    mass_kernel(model, state->latest.force, a1, state->buffers.mass_solve);
     implicit_ground_slides(model, l, h, a1);
   } else if (l->contacts_decoupled) {
-    mass_kernel(model, state->force, a1, state->scratch);
-    implicit_ground_decoupled(model, l, h, predicted, state->force, a1);
+    mass_kernel(model, state->latest.force, a1, state->buffers.mass_solve);
+    implicit_ground_decoupled(model, l, h, predicted, state->latest.force, a1);
   } else {
-    add_contact_forces(model, l, l->next->q, predicted, state->force, false, l->next, terms);
+    add_contact_forces(model, l, l->next->q, predicted, state->latest.force, false, l->next, terms);
     divide_by_mass(model, state, a1, terms);
     if (sliding) strut_refresh_compliances(model, state, l);
     if (l->coupling)
@@ -67,7 +67,7 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
   if (!l->all_sliding) settle_band_ties(model, l);
   if (balance && sliding) strut_sliding_masses_add_power(model, state, l->next->q, l->next->v, a1);
   for (int p = 0; p < STRUT_POWER_ROOM && balance; p += STRUT_LANES) {
-    strut_lanes power = strut_lanes_load(state->power + p);
+    strut_lanes power = strut_lanes_load(state->latest.power + p);
     strut_lanes_store(l->next->power + p, power);
     strut_lanes_store(l->gained + p, 0.5 * h * (strut_lanes_load(l->now->power + p) + power));
   }

@@ -270,7 +270,7 @@ strut_follow_period strut_follow_apply(strut_follow_system *s, double *y, bool w
   strut_period_map *map = &s->map[0];
   strut_follow_period p = {0};
   map->state->balance = works;
-  map->state->event_log = works ? s->log : NULL;
+  map->state->watched.event_log = works ? s->log : NULL;
   map->watch = works ? watch_range : NULL;
   map->watch_context = s;
   size_t count = 2 * (size_t)s->model->node_count, bytes = count * sizeof(double);
@@ -280,7 +280,7 @@ strut_follow_period strut_follow_apply(strut_follow_system *s, double *y, bool w
   p.amplitude = works ? amplitude_of(s) : 0.0;
   map->watch = NULL;
   map->state->balance = false;
-  map->state->event_log = NULL;
+  map->state->watched.event_log = NULL;
   const double *w = map->state->work;
   p.work = works ? w[STRUT_POWER_DRIVE] + w[STRUT_POWER_LOAD] + w[STRUT_POWER_BELT] : 0.0;
   return p;
@@ -306,9 +306,9 @@ strut_follow_period strut_follow_carry(strut_follow_system *s, double *y, bool w
   strut_variation *x = s->variation;
   size_t n = s->n;
   strut_variation_reset(x);
-  s->map[0].state->variation = x;
+  s->map[0].state->watched.variation = x;
   strut_follow_period p = strut_follow_apply(s, y, works);
-  s->map[0].state->variation = NULL;
+  s->map[0].state->watched.variation = NULL;
   for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j < n; j++)
       s->jacobian[i * n + j] =

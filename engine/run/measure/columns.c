@@ -149,7 +149,7 @@ static double height_above_surfaces(const strut_contact_table *t, const double q
 static double height_above_ground(const strut_columns *c, const strut_state *state,
                                   const double q[2]) {
   if (c->model->contacts.surface)
-    return height_above_surfaces(&c->model->contacts, q, state->ground_motion);
+    return height_above_surfaces(&c->model->contacts, q, state->latest.ground_motion);
   return q[0] * c->normal[0] + (q[1] - c->model->scene->ground.height) * c->normal[1];
 }
 
@@ -235,12 +235,13 @@ static double evaluate_column(strut_columns *c, const strut_state *state, strut_
     case STRUT_COLUMN_NODE_VY: return state->v[at + 1];
     case STRUT_COLUMN_HEIGHT: return height_above_ground(c, state, state->q + at);
     case STRUT_COLUMN_NORMAL:
-      return column.item < 0 ? 0.0 : sum_of_node(c, column.item, state->normal);
+      return column.item < 0 ? 0.0 : sum_of_node(c, column.item, state->latest.normal);
     case STRUT_COLUMN_FRICTION:
-      return column.item < 0 ? 0.0 : sum_of_node(c, column.item, state->friction);
+      return column.item < 0 ? 0.0 : sum_of_node(c, column.item, state->latest.friction);
     case STRUT_COLUMN_LENGTH: return strut_member_measure(c->model, state, column.item).length;
     case STRUT_COLUMN_STRETCH:
-      return strut_member_measure(c->model, state, column.item).length - state->rest[column.item];
+      return strut_member_measure(c->model, state, column.item).length -
+             state->latest.rest[column.item];
     case STRUT_COLUMN_RATE: return strut_member_measure(c->model, state, column.item).rate;
     case STRUT_COLUMN_FORCE: return strut_member_measure(c->model, state, column.item).force;
     case STRUT_COLUMN_PLASTIC: return plastic_of_member(c->model, state, column.item);
@@ -276,8 +277,8 @@ static double evaluate_column(strut_columns *c, const strut_state *state, strut_
       return strut_collision_measure(c->model, state, column.item).gap;
     case STRUT_COLUMN_COLLISION_FORCE:
       return strut_collision_measure(c->model, state, column.item).force;
-    case STRUT_COLUMN_SENSOR: return state->sensor[column.item];
-    case STRUT_COLUMN_SENSOR_RATE: return state->sensor_rate[column.item];
+    case STRUT_COLUMN_SENSOR: return state->latest.sensor[column.item];
+    case STRUT_COLUMN_SENSOR_RATE: return state->latest.sensor_rate[column.item];
     case STRUT_COLUMN_STATE: return state->v[c->model->feedback.base + column.item];
     case STRUT_COLUMN_SIGNAL:
       return strut_drive_signal(c->model, state, state->v, column.item, column_time(c, state));

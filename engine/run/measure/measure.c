@@ -270,11 +270,12 @@ void strut_measure_begin(const strut_model *model, strut_state *state, strut_mea
 /* Of the many pieces of a long profile: which touch, and the height over the lowest. */
 static void count_pieces(const strut_contact_table *c, const strut_state *state, int32_t first,
                          int32_t pieces, strut_measurement *m) {
-  const strut_ground_motion *motion = state->ground_motion;
-  int32_t near = strut_contacts_near(c, first, first + pieces, state->q, motion, 0.0, state->near);
+  const strut_ground_motion *motion = state->latest.ground_motion;
+  int32_t near =
+      strut_contacts_near(c, first, first + pieces, state->q, motion, 0.0, state->buffers.near);
   for (int32_t k = 0; k < near; k++)
-    if (strut_contact_gap_at(c, state->near[k], state->q, motion) < 0.0)
-      m->contact_steps[state->near[k]]++;
+    if (strut_contact_gap_at(c, state->buffers.near[k], state->q, motion) < 0.0)
+      m->contact_steps[state->buffers.near[k]]++;
   double gap;
   int32_t lowest = strut_contacts_lowest(c, first, state->q, motion, &gap);
   if (gap > m->max_height[lowest]) m->max_height[lowest] = gap;
@@ -292,7 +293,7 @@ static void count_contacts(const strut_model *model, const strut_state *state,
       i += pieces - 1;
       continue;
     }
-    double gap = strut_contact_gap_at(c, i, state->q, state->ground_motion), high = gap;
+    double gap = strut_contact_gap_at(c, i, state->q, state->latest.ground_motion), high = gap;
     double last = m->last_gap[i], before = m->gap_before[i];
     if (gap < 0.0) m->contact_steps[i]++;
     if (equal && last > gap && last > before) /* the vertex between these steps */

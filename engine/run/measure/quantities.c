@@ -419,7 +419,7 @@ static void see_piece(strut_observer *observer, strut_state *state,
   part.to = 1.0;
   if (q->next > 0 && q->next < q->marks.count) add_part(&part, begin + part.from * h);
   strut_dense_return(&q->dense, state, &piece);
-  if (q->next >= q->marks.count) state->observer = NULL;
+  if (q->next >= q->marks.count) state->watched.observer = NULL;
 }
 
 /* May a mark lie within the next step of the grid? */
@@ -443,7 +443,7 @@ void strut_quantities_begin(strut_quantities *q, const strut_marks *marks, strut
     q->meters[i].parts = 0;
   }
   if (q->observed)
-    state->observer = &q->observer;
+    state->watched.observer = &q->observer;
   else
     strut_dense_keep(&q->dense, state);
   if (fabs(marks->time[0] / marks->step - (double)state->step) >= MARK_TOLERANCE) return;

@@ -68,9 +68,9 @@ static void advance_application(strut_period_map *map) {
   strut_state *state = map->state;
   int64_t most = CHUNK_WORK / (model->members.count + model->node_count + 1) + 1;
   int64_t left = map->steps * map->repeats;
-  state->interrupt = map->interrupt;
+  state->limits.interrupt = map->interrupt;
   if (map->most_evaluations > 0)
-    state->most_evaluations =
+    state->limits.most_evaluations =
         map->most_evaluations > map->evaluations ? map->most_evaluations - map->evaluations : 1;
   while (left > 0 && !state->trouble && !strut_period_map_interrupted(map) && !is_spent_now(map)) {
     int64_t count = map->watch ? 1 : left < most ? left : most;
