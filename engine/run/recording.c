@@ -82,18 +82,19 @@ static strut_status begin_sinks(strut_recording *r, strut_error *error) {
 }
 
 strut_status strut_recording_create(const strut_model *model, const strut_experiment *experiment,
-                                    const strut_time_grid *grid, double begin, strut_sink **sinks,
-                                    size_t sink_count, strut_recording *r, strut_error *error) {
-  *r = (strut_recording){.sinks = sinks, .sink_count = sink_count, .grid = *grid, .last = -1};
-  if (!sink_count) return STRUT_OK;
+                                    double begin, strut_recording *r, strut_error *error) {
+  *r = (strut_recording){
+      .sinks = r->sinks, .sink_count = r->sink_count, .grid = r->grid, .last = -1};
+  if (!r->sink_count) return STRUT_OK;
   strut_span span = strut_experiment_span(experiment, model->scene);
   r->start = begin + span.record_start;
   r->every = span.record_every;
   unsigned wanted = 0;
-  for (size_t s = 0; s < sink_count; s++) wanted |= requested_channels(experiment, sinks[s]);
+  for (size_t s = 0; s < r->sink_count; s++) wanted |= requested_channels(experiment, r->sinks[s]);
   bool ready =
       strut_channel_view_create(model, &r->arena, &r->view) && create_layout(model, wanted, r);
-  double expected = (span.duration - span.record_start) / fmax(span.record_every, grid->step) + 1.0;
+  double expected =
+      (span.duration - span.record_start) / fmax(span.record_every, r->grid.step) + 1.0;
   r->layout.expected_rows = expected < 1e15 ? (size_t)expected : (size_t)1e15;
   char what[80];
   double bytes = sizeof(double) * (double)r->layout.width;

@@ -69,13 +69,11 @@ typedef struct strut_recording {
 } strut_recording;
 
 /**
- * Lays out the channels and begins every sink; nothing without sinks. begin: start of the run
- * without the offset of the grid [s].
+ * Lays out the channels and begins every sink; nothing without sinks. Of the recording, its sinks and grid
+ * are the caller's. begin: start of the run without the offset of the grid [s].
  */
 strut_status strut_recording_create(const strut_model *model, const strut_experiment *experiment,
-                                    const strut_time_grid *grid, double begin, strut_sink **sinks,
-                                    size_t sink_count, strut_recording *recording,
-                                    strut_error *error);
+                                    double begin, strut_recording *recording, strut_error *error);
 /** Step at whose end the next sample is due; INT64_MAX without sinks. */
 int64_t strut_recording_next_step(const strut_recording *recording);
 /** Is a sample of step n missing? False without sinks. */

@@ -484,7 +484,7 @@ static strut_status settle_and_perturb(strut_relaxation *r, double *q, strut_set
 strut_status strut_settle_experiment(const strut_model *model, const strut_experiment *experiment,
                                      strut_step_limits *limits,
                                      const volatile sig_atomic_t *interrupt, double *q,
-                                     double *time, strut_settle_summary *how, strut_error *error) {
+                                     strut_settle_summary *how, strut_error *error) {
   strut_relaxation r;
   strut_status status = strut_relaxation_create(model, experiment, &r, error);
   *how = (strut_settle_summary){0};
@@ -492,7 +492,7 @@ strut_status strut_settle_experiment(const strut_model *model, const strut_exper
   memcpy(q, model->start, (size_t)model->length * sizeof *q);
   if (!status) status = choose_settle_step(&r, limits, error);
   if (!status) status = settle_and_perturb(&r, q, how, error);
-  *time = r.time;
+  how->time = r.time;
   strut_relaxation_free(&r);
   return status;
 }
@@ -521,8 +521,8 @@ strut_status strut_settle_model(const strut_model *model, const strut_experiment
   if (!experiment->settle.wanted) return STRUT_OK;
   double *q = strut_arena_allocate(&start->arena, (size_t)model->length, sizeof *q);
   if (!q) return strut_no_memory(error, "");
-  strut_status status = strut_settle_experiment(model, experiment, NULL, interrupt, q, &start->time,
-                                                &start->how, error);
+  strut_status status =
+      strut_settle_experiment(model, experiment, NULL, interrupt, q, &start->how, error);
   if (status) return status;
   if (move_start(model->scene, q, start)) return strut_no_memory(error, "");
   status = strut_model_compile(start->scene, &start->own, error);

@@ -54,8 +54,7 @@ strut_status strut_settle_state(const strut_model *model, const strut_experiment
                                 double *time, strut_error *error);
 
 /**
- * Settles the start of an experiment: q (length) are the positions [m], *time the simulated time
- * [s], `how` the details. The step follows from the stability limit where the scene gives no stable
+ * Settles the start of an experiment: q (length) are the positions [m], `how` the details. The step follows from the stability limit where the scene gives no stable
  * one, and is halved where it diverges. With settle.perturb an unstable equilibrium is left.
  * limits: cache of step limits, may be NULL. Fails as strut_relaxation_run.
  */
@@ -63,8 +62,7 @@ STRUT_API strut_status strut_settle_experiment(const strut_model *model,
                                                const strut_experiment *experiment,
                                                strut_step_limits *limits,
                                                const volatile sig_atomic_t *interrupt, double *q,
-                                               double *time, strut_settle_summary *how,
-                                               strut_error *error);
+                                               strut_settle_summary *how, strut_error *error);
 
 /** A settled start shared by several experiments, so that all start from the same bits. */
 typedef struct strut_settled_start {

@@ -131,9 +131,11 @@ static strut_status place_state(strut_run *r) {
   }
   if (!r->experiment->settle.wanted) return STRUT_OK;
   memset(r->state->v, 0, 2 * (size_t)r->model->node_count * sizeof(double));
-  return strut_settle_experiment(r->model, r->experiment, r->limits, r->options->interrupt,
-                                 r->state->q, &r->summary->settle_time, &r->summary->settle,
-                                 r->error);
+  strut_status status =
+      strut_settle_experiment(r->model, r->experiment, r->limits, r->options->interrupt,
+                              r->state->q, &r->summary->settle, r->error);
+  r->summary->settle_time = r->summary->settle.time;
+  return status;
 }
 
 /* What breaks or yields at the start already, which statics and settling take as whole, is warned of. */
@@ -216,8 +218,9 @@ static strut_status prepare_run(strut_run *r) {
   if (r->options->from && r->options->from->balance && r->state->balance)
     strut_balance_continue(r->options->from->balance, r->state, &r->initial);
   strut_balance_begin(r->state, &r->initial, begin, r->method->evaluations, &r->balance);
-  return strut_recording_create(r->model, r->experiment, &r->grid, begin, r->options->sinks,
-                                r->options->sink_count, &r->recording, r->error);
+  r->recording = (strut_recording){
+      .sinks = r->options->sinks, .sink_count = r->options->sink_count, .grid = r->grid};
+  return strut_recording_create(r->model, r->experiment, begin, &r->recording, r->error);
 }
 
 /* Whoever changed the state has restarted the method, and steps it on from there. */

@@ -61,15 +61,21 @@ typedef struct strut_lanczos_problem {
   const volatile sig_atomic_t *interrupt; /* ends it with STRUT_INTERRUPTED; or NULL */
 } strut_lanczos_problem;
 
+/** A matrix (rows, columns) by columns: the entries of column j are row and value [start[j], start[j + 1]). */
+typedef struct strut_sparse_columns {
+  int32_t rows, columns;
+  const int32_t *start, *row;
+  const double *value;
+} strut_sparse_columns;
+
 typedef struct strut_sparse_algebra_library {
   strut_library_stamp stamp;
   /**
-   * Factorises A: (rows, columns), by columns as strut_equilibrium_matrix. Columns that keep a norm
+   * Factorises A by columns. Columns that keep a norm
    * of `tolerance` or less beside those before them count as dependent. STRUT_NO_MEMORY, or
    * STRUT_SINGULAR where SPQR fails for another reason.
    */
-  strut_status (*create_qr)(int32_t rows, int32_t columns, const int32_t *start, const int32_t *row,
-                            const double *value, double tolerance, strut_sparse_qr **qr,
+  strut_status (*create_qr)(const strut_sparse_columns *a, double tolerance, strut_sparse_qr **qr,
                             strut_error *error);
   void (*free_qr)(strut_sparse_qr *qr);
   int32_t (*rank)(const strut_sparse_qr *qr);

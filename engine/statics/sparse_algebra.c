@@ -119,8 +119,7 @@ static void free_qr(strut_sparse_qr *qr) {
   strut_release(qr);
 }
 
-static strut_status create_qr(int32_t rows, int32_t columns, const int32_t *start,
-                              const int32_t *row, const double *value, double tolerance,
+static strut_status create_qr(const strut_sparse_columns *matrix, double tolerance,
                               strut_sparse_qr **result, strut_error *error) {
   *result = NULL;
   strut_sparse_qr *qr = *result = strut_allocate(1, sizeof *qr);
@@ -129,8 +128,8 @@ static strut_status create_qr(int32_t rows, int32_t columns, const int32_t *star
   qr->common.print = 0;
   qr->common.error_handler = NULL;
   qr->common.SPQR_nthreads = 1;
-  qr->rows = rows, qr->columns = columns;
-  cholmod_sparse *a = copy_matrix(qr, start, row, value);
+  qr->rows = matrix->rows, qr->columns = matrix->columns;
+  cholmod_sparse *a = copy_matrix(qr, matrix->start, matrix->row, matrix->value);
   begin_single_thread();
   bool done = a && factorise(qr, a, tolerance);
   end_single_thread();

@@ -57,18 +57,29 @@ void strut_expression_emit(strut_expression_reader *r, strut_operation operation
     *push(r) = (strut_compiled){.instruction = {.operation = operation}};
 }
 
+/* What a look-up finds: > 0 there; 0 not; < 0 refused. */
+typedef struct looked_up {
+  int found;
+  strut_column column;
+  strut_dimension dimension;
+  strut_refusal refusal;
+} looked_up;
+
+static looked_up nothing(void) {
+  return (looked_up){.column = {.item = -1, .other = -1}, .dimension = STRUT_DIM_NONE};
+}
+
 /* Takes what a look-up has found for text[begin..end). */
-static int take(strut_expression_reader *r, size_t begin, size_t end, int found,
-                strut_column column, strut_dimension dimension, const strut_refusal *refusal,
+static int take(strut_expression_reader *r, size_t begin, size_t end, const looked_up *it,
                 strut_quantity *q) {
-  if (found < 0) strut_expression_fail(r, begin, end, "%s", refusal->text);
-  if (found <= 0) return found;
+  if (it->found < 0) strut_expression_fail(r, begin, end, "%s", it->refusal.text);
+  if (it->found <= 0) return it->found;
   *push(r) =
-      (strut_compiled){.instruction = {.operation = STRUT_OPERATION_COLUMN, .column = column}};
+      (strut_compiled){.instruction = {.operation = STRUT_OPERATION_COLUMN, .column = it->column}};
   note_depth(r->compiler);
-  bool bare = isnan(dimension.kg);
+  bool bare = isnan(it->dimension.kg);
   *q = (strut_quantity){
-      .value = 1, .dimension = bare ? STRUT_DIM_NONE : dimension, .bare = bare, .varies = true};
+      .value = 1, .dimension = bare ? STRUT_DIM_NONE : it->dimension, .bare = bare, .varies = true};
   r->at = end;
   return 1;
 }
@@ -79,12 +90,10 @@ static strut_piece piece(const strut_expression_reader *r, size_t begin, size_t 
 
 static int look_up(strut_expression_reader *r, const char *kind, size_t begin, strut_piece owner,
                    size_t field, size_t end, strut_quantity *q) {
-  strut_column column = {.item = -1, .other = -1};
-  strut_dimension dimension = STRUT_DIM_NONE;
-  strut_refusal refusal = {""};
-  int found = r->compiler->column(r->compiler->context, kind, owner, piece(r, field, end), &column,
-                                  &dimension, &refusal);
-  return take(r, begin, end, found, column, dimension, &refusal, q);
+  looked_up it = nothing();
+  it.found = r->compiler->column(r->compiler->context, kind, owner, piece(r, field, end),
+                                 &it.column, &it.dimension, &it.refusal);
+  return take(r, begin, end, &it, q);
 }
 
 /* A name within parentheses, without blanks about it, and `last`, which follows it. */
@@ -127,12 +136,10 @@ static int read_pair(strut_expression_reader *r, strut_piece word, size_t begin,
                      strut_quantity *q) {
   strut_piece first, second;
   if (!read_raw_name(r, ',', &first) || !read_raw_name(r, ')', &second)) return -1;
-  strut_column column = {.item = -1, .other = -1};
-  strut_dimension dimension = STRUT_DIM_NONE;
-  strut_refusal refusal = {""};
-  int found =
-      r->compiler->pair(r->compiler->context, word, first, second, &column, &dimension, &refusal);
-  return take(r, begin, r->at, found, column, dimension, &refusal, q);
+  looked_up it = nothing();
+  it.found = r->compiler->pair(r->compiler->context, word, first, second, &it.column, &it.dimension,
+                               &it.refusal);
+  return take(r, begin, r->at, &it, q);
 }
 
 /* rate(SENSOR) */
@@ -169,14 +176,11 @@ static int read_dotted(strut_expression_reader *r, strut_quantity *q) {
     size_t simple = begin;
     while (is_name_byte(r->text[simple])) simple++;
     bool plain = simple == dot && !is_digit(r->text[begin]);
-    strut_column column = {.item = -1, .other = -1};
-    strut_dimension dimension = STRUT_DIM_NONE;
-    strut_refusal refusal = {""};
-    int found =
-        r->compiler->column(r->compiler->context, NULL, piece(r, begin, dot),
-                            piece(r, dot + 1, dot + 1 + word), &column, &dimension, &refusal);
-    if (found > 0 || (found < 0 && plain))
-      return take(r, begin, dot + 1 + word, found, column, dimension, &refusal, q);
+    looked_up it = nothing();
+    it.found = r->compiler->column(r->compiler->context, NULL, piece(r, begin, dot),
+                                   piece(r, dot + 1, dot + 1 + word), &it.column, &it.dimension,
+                                   &it.refusal);
+    if (it.found > 0 || (it.found < 0 && plain)) return take(r, begin, dot + 1 + word, &it, q);
   }
   return 0;
 }

@@ -24,18 +24,17 @@ static void rod(strut_setup *setup, double stiffness, double angle) {
 }
 
 typedef struct settled {
-  double q[64], time;
+  double q[64];
   strut_settle_summary how;
   strut_error error;
   strut_status status;
 } settled;
 
 static settled settle(const strut_setup *setup) {
-  settled s = {.time = 0};
+  settled s = {.how.time = 0};
   strut_model *model = motion_compile(&setup->scene);
   assert_true(model->length <= 64);
-  s.status = strut_settle_experiment(model, &setup->experiment, NULL, NULL, s.q, &s.time, &s.how,
-                                     &s.error);
+  s.status = strut_settle_experiment(model, &setup->experiment, NULL, NULL, s.q, &s.how, &s.error);
   strut_model_free(model);
   return s;
 }

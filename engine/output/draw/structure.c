@@ -364,20 +364,21 @@ static bool collect_obstacles(const strut_window *w, const strut_model *model, c
 }
 
 void strut_draw_names(strut_canvas *canvas, const strut_window *w, const strut_model *model,
-                      const double *q, bool nodes, bool members, const double (*others)[2],
-                      size_t other_count) {
+                      const double *q, const strut_drawn_names *names) {
+  size_t other_count = names->other_count;
   const strut_scene *scene = model->scene;
   strut_arena arena = {0};
   obstacles o = {0};
   if (scene->node_count <= MOST_NAMED && collect_obstacles(w, model, q, other_count, &o, &arena)) {
-    if (other_count) memcpy(o.ends + 2 * o.segment_count, others, 2 * other_count * sizeof *others);
+    if (other_count)
+      memcpy(o.ends + 2 * o.segment_count, names->others, 2 * other_count * sizeof *names->others);
     o.segment_count += other_count;
-    for (size_t i = 0; i < scene->node_count && nodes; i++) {
+    for (size_t i = 0; i < scene->node_count && names->nodes; i++) {
       double at[2];
       strut_window_point(w, q + 2 * i, at);
       if (isfinite(at[0]) && isfinite(at[1])) draw_name(canvas, &o, at, GAP, scene->nodes[i].name);
     }
-    for (size_t j = 0; j < scene->member_count && members; j++) {
+    for (size_t j = 0; j < scene->member_count && names->members; j++) {
       /* the middle of its longest segment */
       const double at[2] = {0.5 * (o.ends[2 * j][0] + o.ends[2 * j + 1][0]),
                             0.5 * (o.ends[2 * j][1] + o.ends[2 * j + 1][1])};
@@ -665,5 +666,7 @@ void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
   if (!style->no_nodes) draw_nodes(canvas, &d);
   draw_sliding_masses(canvas, &d);
   if (style->node_names || style->member_names)
-    strut_draw_names(canvas, window, model, q, style->node_names, style->member_names, NULL, 0);
+    strut_draw_names(
+        canvas, window, model, q,
+        &(strut_drawn_names){.nodes = style->node_names, .members = style->member_names});
 }

@@ -64,14 +64,20 @@ typedef struct strut_structure_style {
 STRUT_API void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
                                     const strut_model *model, const double *q,
                                     const strut_structure_style *style);
+/** Which names are drawn, and segments that they avoid: their ends (other_count, 2) on the page [pt]. */
+typedef struct strut_drawn_names {
+  bool nodes, members;
+  const double (*others)[2]; /* NULL: none */
+  size_t other_count;
+} strut_drawn_names;
+
 /**
  * Draws names beside nodes and members where the page is emptiest, as the style's node_names and
- * member_names do, for callers that draw more before the names. Names also avoid `other_count`
- * segments given by their ends (other_count, 2) on the page [pt]; may be NULL.
+ * member_names do, for callers that draw more before the names.
  */
 STRUT_API void strut_draw_names(strut_canvas *canvas, const strut_window *window,
-                                const strut_model *model, const double *q, bool nodes, bool members,
-                                const double (*others)[2], size_t other_count);
+                                const strut_model *model, const double *q,
+                                const strut_drawn_names *names);
 /** The ground's line and body across the window; nothing where the scene has none. */
 STRUT_API void strut_draw_ground(strut_canvas *canvas, const strut_window *window,
                                  const strut_model *model);

@@ -282,7 +282,9 @@ static bool draw_names(plan *p, strut_canvas *canvas, const strut_window *window
     ends[2 * arrows + 1][1] = tip[1] + length * pose.axes.normal[1];
     arrows++;
   }
-  strut_draw_names(canvas, window, p->model, q, true, false, (const double(*)[2])ends, arrows);
+  strut_draw_names(canvas, window, p->model, q,
+                   &(strut_drawn_names){
+                       .nodes = true, .others = (const double(*)[2])ends, .other_count = arrows});
   return true;
 }
 

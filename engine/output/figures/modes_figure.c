@@ -272,8 +272,10 @@ static void draw_panel(figure *f, strut_box box, strut_bounds bounds, size_t num
   strut_draw_structure(f->canvas, &window, f->model, f->moved, &bent);
   size_t arrows = draw_arrows(f, &window);
   if (names_fit(f, box))
-    strut_draw_names(f->canvas, &window, f->model, f->moved, true, false,
-                     (const double(*)[2])f->arrows, arrows);
+    strut_draw_names(
+        f->canvas, &window, f->model, f->moved,
+        &(strut_drawn_names){
+            .nodes = true, .others = (const double(*)[2])f->arrows, .other_count = arrows});
 }
 
 /* Names the modes that have no panel; empty where all have one. */

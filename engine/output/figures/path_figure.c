@@ -353,8 +353,10 @@ static void draw_shapes(path_picture *p, strut_box box) {
   draw_markers(p, (const double(*)[2])stops);
   draw_letters(p, box, (const double(*)[2])stops);
   if (p->model->node_count <= NAMED)
-    strut_draw_names(p->canvas, &window, p->model, p->path->points[0].q, true, false,
-                     (const double(*)[2])p->others, p->other_count);
+    strut_draw_names(
+        p->canvas, &window, p->model, p->path->points[0].q,
+        &(strut_drawn_names){
+            .nodes = true, .others = (const double(*)[2])p->others, .other_count = p->other_count});
 }
 
 /* The path put in order, places to stop at, the page. */

@@ -280,8 +280,10 @@ void strut_run_draw_path(strut_run_scene *run, strut_canvas *canvas, const strut
 void strut_run_draw_names(strut_run_scene *run, strut_canvas *canvas, const strut_window *window,
                           const double *q) {
   if (run->model->node_count <= MOST_NAMES)
-    strut_draw_names(canvas, window, run->model, q, true, false, (const double(*)[2])run->avoid,
-                     run->avoid_count);
+    strut_draw_names(canvas, window, run->model, q,
+                     &(strut_drawn_names){.nodes = true,
+                                          .others = (const double(*)[2])run->avoid,
+                                          .other_count = run->avoid_count});
   run->avoid_count = 0;
 }
 

@@ -33,15 +33,23 @@ static double farthest(const strut_model *model, const double (*drawn)[2]) {
   return most;
 }
 
-static void draw_form(strut_canvas *canvas, const char *title, const strut_model *model,
-                      const double *before, const double (*drawn)[2], const double *force,
-                      double limit, strut_bounds bounds) {
+/* A shape that was found, beside the one that was drawn. */
+typedef struct found_form {
+  const strut_model *model;
+  const double *before; /* (length) as drawn */
+  const double *force;  /* (members) */
+  double limit, moved;  /* the largest of them; the way of the node that went farthest [m] */
+  strut_bounds bounds;
+} found_form;
+
+static void draw_form(strut_canvas *canvas, const char *title, const found_form *form) {
+  const strut_model *model = form->model;
   strut_box page = strut_canvas_box(canvas);
-  double inner = page.width - 2 * EDGE, moved = farthest(model, drawn);
+  double inner = page.width - 2 * EDGE, moved = form->moved, limit = form->limit;
   bool narrow = page.width < NARROW;
   strut_box box = {EDGE, EDGE + TITLE, inner - (narrow ? 0 : SCALE),
                    page.height - 2 * EDGE - TITLE - (narrow ? FOOT : 0)};
-  strut_window window = strut_window_fit(box, bounds, narrow ? LEAST_MARGIN : MARGIN);
+  strut_window window = strut_window_fit(box, form->bounds, narrow ? LEAST_MARGIN : MARGIN);
   char text[200];
   bool same = moved <= 1e-9 * model->size;
   if (same) {
@@ -57,12 +65,12 @@ static void draw_form(strut_canvas *canvas, const char *title, const strut_model
                                       .no_nodes = true,
                                       .no_supports = true};
   const strut_structure_style full = {.colouring = STRUT_COLOUR_FORCE,
-                                      .values = force,
-                                      .slack_forces = force,
+                                      .values = form->force,
+                                      .slack_forces = form->force,
                                       .limit = limit,
                                       .node_names = !narrow};
   strut_draw_ground(canvas, &window, model);
-  if (!same) strut_draw_structure(canvas, &window, model, before, &pale);
+  if (!same) strut_draw_structure(canvas, &window, model, form->before, &pale);
   strut_draw_structure(canvas, &window, model, model->start, &full);
   if (narrow) window.box.height += 14;
   strut_draw_yardstick(canvas, &window);
@@ -99,7 +107,8 @@ strut_status strut_form_figure(const strut_plot *plot, const strut_model *model,
   strut_status status =
       strut_canvas_open(plot->path, width, 2 * EDGE + TITLE + high, title, &canvas, error);
   if (status == STRUT_OK) {
-    draw_form(canvas, title, model, before, drawn, force, limit, bounds);
+    draw_form(canvas, title,
+              &(found_form){model, before, force, limit, farthest(model, drawn), bounds});
     status = strut_canvas_commit(canvas, error);
   }
   strut_canvas_free(canvas);

@@ -130,7 +130,7 @@ strut_status strut_simulate_accurately(const strut_model *model, const strut_exp
   if (!status && !done) status = strut_accuracy_climb_ladder(&a);
   summary->wall_time = strut_run_clock() - begin;
   summary->status = status;
-  summary->settle_time = start.time, summary->settle = start.how;
+  summary->settle_time = start.how.time, summary->settle = start.how;
   strut_summary_warn_of_start(summary);
   strut_summary_warn_of_accuracy(summary);
   strut_settled_start_free(&start);

@@ -59,14 +59,8 @@ typedef struct trial {
   double value, left, plane;
 } trial;
 
-/* The plane that the orbit is sought on. */
-typedef struct plane {
-  const double *normal, *base_y;
-  double base_value, distance;
-} plane;
-
 /* Evaluates t. False: interrupted, or the value has no scene; a lost motion has left = HUGE_VAL. */
-static bool evaluate(strut_follow_walk *w, const plane *p, trial *t) {
+static bool evaluate(strut_follow_walk *w, const strut_follow_section *p, trial *t) {
   if (interrupted(w) || !set_value(w, t->value)) return false;
   t->left = strut_follow_residual(w->s, t->y, t->f);
   t->plane = fabs(off_plane(w, t->y, t->value, p->normal, p->base_y, p->base_value, p->distance));
@@ -76,7 +70,7 @@ static bool evaluate(strut_follow_walk *w, const plane *p, trial *t) {
 static double size_of(const trial *t) { return fmax(t->left, t->plane); }
 
 /* Fills w->right with Newton's step at t. False: singular, or too long to trust. */
-static bool find_step(strut_follow_walk *w, const plane *p, const trial *t) {
+static bool find_step(strut_follow_walk *w, const strut_follow_section *p, const trial *t) {
   const strut_follow_system *s = w->s;
   double most = 0.0;
   for (size_t i = 0; i < s->n; i++) w->right[i] = -t->f[i];
@@ -87,8 +81,8 @@ static bool find_step(strut_follow_walk *w, const plane *p, const trial *t) {
 }
 
 /* Takes a part of the step from t to `next`. */
-static bool take_step(strut_follow_walk *w, const plane *p, const trial *t, double part,
-                      trial *next) {
+static bool take_step(strut_follow_walk *w, const strut_follow_section *p, const trial *t,
+                      double part, trial *next) {
   strut_follow_system *s = w->s;
   memcpy(next->y, t->y, s->both * sizeof(double));
   strut_follow_move(s, next->y, w->right, part);
@@ -121,7 +115,8 @@ static void update_derivative(strut_follow_walk *w, const double *f) {
  * The derivative of an earlier point serves, updated, while it makes the residual fall; where it does not,
  * a new one is made at the best point so far, and its steps are halved until the residual falls.
  */
-static bool iterate(strut_follow_walk *w, const plane *p, trial *here, trial *next, int *rounds) {
+static bool iterate(strut_follow_walk *w, const strut_follow_section *p, trial *here, trial *next,
+                    int *rounds) {
   const double enough = w->rough ? ROUGH : w->s->variation && !w->exact ? NEAR : CONVERGED;
   bool wanted = !w->s->differentiated;
   int slow = 0, made = 0;
@@ -156,15 +151,14 @@ static bool iterate(strut_follow_walk *w, const plane *p, trial *here, trial *ne
   return size_of(here) <= ACCEPTED;
 }
 
-bool strut_follow_newton(strut_follow_walk *w, double *y, double *value, const double *normal,
-                         const double *base_y, double base_value, double distance, int *rounds) {
+bool strut_follow_newton(strut_follow_walk *w, double *y, double *value,
+                         const strut_follow_section *plane, int *rounds) {
   const strut_follow_system *s = w->s;
-  const plane p = {normal, base_y, base_value, distance};
   trial here = {.y = w->trials, .f = w->trials + 2 * s->both, .value = *value};
   trial next = {.y = w->trials + s->both, .f = w->trials + 2 * s->both + s->n};
   memcpy(here.y, y, s->both * sizeof(double));
   *rounds = 0;
-  if (!iterate(w, &p, &here, &next, rounds)) return false;
+  if (!iterate(w, plane, &here, &next, rounds)) return false;
   memcpy(y, here.y, s->both * sizeof(double));
   *value = here.value;
   return true;
@@ -348,7 +342,8 @@ strut_status strut_follow_correct(strut_follow_system *s, double *y, bool *found
   normal[n] = 1.0;
   s->differentiated = false;
   w.exact = true;
-  *found = strut_follow_newton(&w, base, &value, normal, y, value, 0.0, &rounds);
+  *found = strut_follow_newton(&w, base, &value, &(strut_follow_section){normal, y, value, 0.0},
+                               &rounds);
   if (*found) memcpy(y, base, s->both * sizeof(double));
   if (!*found)
     snprintf(reason, 200,

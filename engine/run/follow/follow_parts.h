@@ -219,12 +219,17 @@ typedef struct strut_follow_walk {
 
 /* follow_orbit.c */
 
+/** The plane normal . (x - base) = distance; normal (n + 1), base a state and a value. */
+typedef struct strut_follow_section {
+  const double *normal, *base_y;
+  double base_value, distance;
+} strut_follow_section;
+
 /**
- * Newton's method from y and the value on the plane normal . (x - base) = distance; normal (n + 1), base a
- * state and a value. The derivative in the system serves as long as it converges. False: no orbit there.
+ * Newton's method from y and the value on a plane. The derivative in the system serves as long as it converges. False: no orbit there.
  */
-bool strut_follow_newton(strut_follow_walk *w, double *y, double *value, const double *normal,
-                         const double *base_y, double base_value, double distance, int *rounds);
+bool strut_follow_newton(strut_follow_walk *w, double *y, double *value,
+                         const strut_follow_section *plane, int *rounds);
 /**
  * Multipliers of the system's derivative by size; the one of shifts, 0 in it, is left out. scratch (n, n),
  * multiplier (n). False: out of memory.

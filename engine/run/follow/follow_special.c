@@ -39,7 +39,8 @@ static strut_follow_orbit *orbit_between(const span *p, const strut_follow_orbit
   for (size_t i = 0; i < s->both; i++) o->y[i] = left->y[i] + part * (right->y[i] - left->y[i]);
   o->value = left->value + part * (right->value - left->value);
   o->distance = distance;
-  if (!strut_follow_newton(w, o->y, &o->value, p->a->tangent, p->a->y, p->a->value, distance,
+  if (!strut_follow_newton(w, o->y, &o->value,
+                           &(strut_follow_section){p->a->tangent, p->a->y, p->a->value, distance},
                            &rounds) ||
       !strut_follow_measure(w, o))
     return NULL;

@@ -101,7 +101,8 @@ static strut_follow_orbit *try_step(strut_follow_walk *w, const strut_follow_orb
   if (!next) return NULL;
   predict(w, o, h, next);
   next->before = o;
-  if (!strut_follow_newton(w, next->y, &next->value, o->tangent, o->y, o->value, h, rounds)) {
+  if (!strut_follow_newton(w, next->y, &next->value,
+                           &(strut_follow_section){o->tangent, o->y, o->value, h}, rounds)) {
     *reason = "no periodic motion was found beyond: Newton's method does not converge";
     return NULL;
   }
@@ -187,7 +188,8 @@ static strut_follow_orbit *at_edge(strut_follow_walk *w, const strut_follow_orbi
   for (size_t i = 0; i < s->both; i++) last->y[i] = o->y[i] + part * (next->y[i] - o->y[i]);
   last->value = edge;
   normal[s->n] = 1.0;
-  if (!strut_follow_newton(w, last->y, &last->value, normal, last->y, edge, 0.0, &rounds) ||
+  if (!strut_follow_newton(w, last->y, &last->value,
+                           &(strut_follow_section){normal, last->y, edge, 0.0}, &rounds) ||
       !strut_follow_examine(w, last, o->tangent))
     return NULL;
   last->value = edge;

@@ -125,6 +125,7 @@ typedef struct strut_warning {
 enum { STRUT_MOST_WARNINGS = 8 };
 /** Settling of the start; all zero where the scene does not settle or the run starts elsewhere. */
 typedef struct strut_settle_summary {
+  double time;           /* simulated [s] */
   double step;           /* of the Runge-Kutta method that settled [s] */
   int64_t evaluations;   /* of the forces; not in the run's */
   int32_t perturbations; /* perturbations off an unstable equilibrium */

@@ -343,14 +343,13 @@ static int32_t find_nearest(const strut_model *model, const strut_equilibria *al
 
 /* Finds the equilibrium that a settling run of the scene starts from. */
 static strut_status settle_start(strut_equilibrium_search *h, const strut_model *model) {
-  double *q, time;
   strut_error trouble = {0};
   h->out->start = -1;
   if (!h->experiment->settle.wanted || !model->mass || h->options->standing_only) return STRUT_OK;
-  q = strut_arena_allocate(&h->out->arena, (size_t)model->length, sizeof *q);
+  double *q = strut_arena_allocate(&h->out->arena, (size_t)model->length, sizeof *q);
   if (!q) return strut_no_memory(h->error, "");
   strut_status status = strut_settle_experiment(model, h->experiment, NULL, h->options->interrupt,
-                                                q, &time, &h->out->settle, &trouble);
+                                                q, &h->out->settle, &trouble);
   if (!status) h->out->start = find_nearest(model, h->out, q);
   if (!status) return STRUT_OK;
   if (status != STRUT_NOT_SETTLED && status != STRUT_DIVERGED)

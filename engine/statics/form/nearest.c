@@ -41,10 +41,18 @@ static bool shortest(gsl_matrix *a, const gsl_vector *r, gsl_vector *x) {
   return good;
 }
 
+/* Room for the eigenvectors of a matrix. */
+typedef struct eigen_room {
+  gsl_matrix *matrix, *vectors;
+  gsl_vector *values;
+  gsl_eigen_symmv_workspace *work;
+} eigen_room;
+
 /* x onto the span of the three null-most eigenvectors of D(q). How far it went. */
 static double project_shape(const strut_scene *scene, const double *drawn, const double *q,
-                            gsl_matrix *d, gsl_matrix *vectors, gsl_vector *values,
-                            gsl_eigen_symmv_workspace *work, double *x) {
+                            const eigen_room *room, double *x) {
+  gsl_matrix *d = room->matrix, *vectors = room->vectors;
+  gsl_vector *values = room->values;
   size_t n = scene->node_count;
   double change = 0;
   gsl_matrix_set_zero(d);
@@ -55,7 +63,7 @@ static double project_shape(const strut_scene *scene, const double *drawn, const
     *gsl_matrix_ptr(d, a, b) -= q[j];
     *gsl_matrix_ptr(d, b, a) -= q[j];
   }
-  gsl_eigen_symmv(d, values, vectors, work);
+  gsl_eigen_symmv(d, values, vectors, room->work);
   gsl_eigen_symmv_sort(values, vectors, GSL_EIGEN_SORT_ABS_ASC);
   for (size_t c = 0; c < 2; c++) {
     for (size_t i = 0; i < n; i++) gsl_vector_set(values, i, 0.0);
@@ -114,11 +122,12 @@ static bool take_turns(strut_former *f, const double *drawn, double *x, double *
   gsl_vector *values = gsl_vector_alloc(n), *s = gsl_vector_alloc(2 * n);
   gsl_vector *room = gsl_vector_alloc(2 * n);
   gsl_eigen_symmv_workspace *work = gsl_eigen_symmv_alloc(n);
+  const eigen_room eigen = {d, vectors, values, work};
   bool good = d && vectors && balance && v && values && s && room && work;
   double largest = 0;
   for (size_t j = 0; j < b; j++) largest = fmax(largest, fabs(q[j]));
   for (int k = 0; k < TURNS && good; k++) {
-    double moved = project_shape(scene, drawn, q, d, vectors, values, work, x), changed = 0;
+    double moved = project_shape(scene, drawn, q, &eigen, x), changed = 0;
     good = decompose(scene, x, balance, v, s, room);
     if (good) changed = project_densities(scene, balance, s, q);
     if (moved <= SETTLED * f->size && changed <= SETTLED * largest) break;

@@ -55,6 +55,7 @@ typedef struct trial {
 } trial;
 
 typedef struct trials {
+  int32_t which; /* eigenvalue that is looked at */
   int count;
   trial kept[KEPT];
 } trials;
@@ -108,8 +109,8 @@ static bool interpolate(const strut_path_system *s, const trials *t, double leng
  * point is interpolated between four on its two sides, near enough for a cubic and far enough for
  * Newton's method. `slope` is the measure's derivative. False: they are not to be had.
  */
-static bool interpolate_fork(strut_path_system *s, const strut_path_piece *piece, int32_t which,
-                             double scale, double slope, trials *t, double *place, double *y) {
+static bool interpolate_fork(strut_path_system *s, const strut_path_piece *piece, double scale,
+                             double slope, trials *t, double *place, double *y) {
   static const double sides[KEPT] = {-2, -1, 1, 2};
   double apart = fmin(fmax(FORK * scale, BLURRED * s->noise) / slope, 0.1 * piece->length);
   double middle = *place;
@@ -117,7 +118,7 @@ static bool interpolate_fork(strut_path_system *s, const strut_path_piece *piece
   for (int k = 0; k < KEPT; k++) {
     double at = middle + sides[k] * apart;
     if (!point_at(s, piece, at, at / piece->length, piece->from, piece->to, y)) continue;
-    double value = strut_path_measure_eigenvalue(s, y, piece, which);
+    double value = strut_path_measure_eigenvalue(s, y, piece, t->which);
     if (fabs(value) <= 2 * scale) keep_trial(s, t, at, value, y);
   }
   return t->count > 1 && interpolate(s, t, piece->length, place, y);
@@ -133,7 +134,7 @@ double strut_path_locate(strut_path_system *s, const strut_path_piece *piece,
   bool fork = measure == strut_path_measure_eigenvalue;
   double near = (fork ? 10 * FORK : ZERO) * scale;
   strut_arena arena = {0};
-  trials t = {0};
+  trials t = {.which = which};
   double *end[2] = {strut_arena_allocate(&arena, 1, bytes), strut_arena_allocate(&arena, 1, bytes)};
   if (end[0] && end[1] && make_trials(s, &arena, &t) && value[0] * value[1] <= 0 && scale > 0) {
     memcpy(end[0], piece->from, bytes);
@@ -158,8 +159,7 @@ double strut_path_locate(strut_path_system *s, const strut_path_piece *piece,
     }
     double *rough = end[0];
     memcpy(rough, y, bytes);
-    if (fork && !interpolate_fork(s, piece, which, scale, slope, &t, &place, y))
-      memcpy(y, rough, bytes);
+    if (fork && !interpolate_fork(s, piece, scale, slope, &t, &place, y)) memcpy(y, rough, bytes);
   }
   strut_arena_free(&arena);
   return place;

@@ -418,8 +418,9 @@ strut_status strut_null_spaces_sparse(const strut_equilibrium_matrix *a, strut_a
   const strut_sparse_algebra_library *sparse = NULL;
   strut_status status = strut_sparse_algebra_load(&sparse, error);
   if (status != STRUT_OK) return status;
-  status = sparse->create_qr(a->rows, a->columns, a->start, a->row, a->value,
-                             STRUT_RANK_TOLERANCE * sqrt(2.0), &qr, error);
+  status =
+      sparse->create_qr(&(strut_sparse_columns){a->rows, a->columns, a->start, a->row, a->value},
+                        STRUT_RANK_TOLERANCE * sqrt(2.0), &qr, error);
   if (status != STRUT_OK) return status;
   size_t rows = (size_t)a->rows, columns = (size_t)a->columns;
   spaces->rank = sparse->rank(qr);

@@ -453,16 +453,14 @@ static strut_status sort(sorter *s, const strut_null_spaces *spaces, const doubl
   return status;
 }
 
-strut_status strut_mechanisms_find(const strut_model *model, const strut_equilibrium_matrix *a,
-                                   const double *q, const strut_null_spaces *spaces,
-                                   const strut_self_stress *states, const double *force,
-                                   strut_arena *arena, strut_mechanisms *mechanisms) {
-  *mechanisms = (strut_mechanisms){.count = spaces->motions};
-  if (spaces->motions == 0) return STRUT_OK;
-  sorter s = {.model = model, .a = a, .q = q, .states = states, .arena = arena};
-  s.rows = (size_t)a->rows, s.members = (size_t)a->columns;
-  strut_status status =
-      spaces->motion ? sort(&s, spaces, force, mechanisms) : only_count(&s, mechanisms);
+strut_status strut_mechanisms_find(const strut_model *model, const double *q, const double *force,
+                                   strut_rigidity *r) {
+  r->mechanisms = (strut_mechanisms){.count = r->spaces.motions};
+  if (r->spaces.motions == 0) return STRUT_OK;
+  sorter s = {.model = model, .a = &r->matrix, .q = q, .states = &r->states, .arena = &r->arena};
+  s.rows = (size_t)r->matrix.rows, s.members = (size_t)r->matrix.columns;
+  strut_status status = r->spaces.motion ? sort(&s, &r->spaces, force, &r->mechanisms)
+                                         : only_count(&s, &r->mechanisms);
   strut_arena_free(&s.scratch);
   return status;
 }

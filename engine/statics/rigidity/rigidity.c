@@ -294,8 +294,7 @@ static strut_status find_all(const strut_model *model, const double *q, strut_ri
   if (status == STRUT_OK) status = pull_cables(model, r);
   if (status != STRUT_OK) return status;
   const double *force = r->prestressed && r->equilibrium ? r->force : NULL;
-  status = strut_mechanisms_find(model, &r->matrix, q, &r->spaces, &r->states, force, &r->arena,
-                                 &r->mechanisms);
+  status = strut_mechanisms_find(model, q, force, r);
   choose_stress(r);
   if (status == STRUT_OK && r->judged) {
     status = strut_stress_matrix_judge(model, &r->matrix, r->judged, &r->arena, &r->stress);

@@ -176,19 +176,6 @@ typedef struct strut_mechanisms {
   bool stiffener_pulls; /* and presses no cable */
 } strut_mechanisms;
 
-/**
- * Sorts the motions of A at q (length). force (members) [N] are those in the shape, or NULL where
- * they do not balance. A mechanism is infinitesimal where a self-stress has a positive form
- * on all that are not rigid-body (prestress stability, Connelly and Whiteley 1996); finite where it
- * can be walked along by a tenth of the structure's size with all lengths kept. All in the arena.
- * STRUT_OK or STRUT_NO_MEMORY.
- */
-STRUT_API strut_status strut_mechanisms_find(const strut_model *model,
-                                             const strut_equilibrium_matrix *a, const double *q,
-                                             const strut_null_spaces *spaces,
-                                             const strut_self_stress *states, const double *force,
-                                             strut_arena *arena, strut_mechanisms *mechanisms);
-
 /* The stress matrix of force densities: the stiffness that member forces give to motions without
  * stretch.
  *
@@ -284,6 +271,16 @@ typedef struct strut_rigidity {
   strut_tensegrity tensegrity;
   strut_arena arena;
 } strut_rigidity;
+
+/**
+ * Sorts the motions of rigidity->spaces at q (length) into rigidity->mechanisms. force (members) [N] are those in
+ * the shape, or NULL where they do not balance. A mechanism is infinitesimal where a self-stress has a positive form
+ * on all that are not rigid-body (prestress stability, Connelly and Whiteley 1996); finite where it
+ * can be walked along by a tenth of the structure's size with all lengths kept. All in the arena.
+ * STRUT_OK or STRUT_NO_MEMORY.
+ */
+STRUT_API strut_status strut_mechanisms_find(const strut_model *model, const double *q,
+                                             const double *force, strut_rigidity *rigidity);
 
 /**
  * All of it at the positions q (length). strut_rigidity_free releases it, after a failure too.

@@ -142,7 +142,7 @@ static void draw_panel(const sheet *s, const strut_compare_column *c, strut_box 
   strut_draw_structure(s->canvas, &window, c->model, c->q, &by_kind);
   mark_driven(s, &window, c);
   if (c->model->node_count <= NAMED)
-    strut_draw_names(s->canvas, &window, c->model, c->q, true, false, NULL, 0);
+    strut_draw_names(s->canvas, &window, c->model, c->q, &(strut_drawn_names){.nodes = true});
   strut_canvas_unclip(s->canvas);
   if (!s->alike || c == s->columns) strut_draw_yardstick(s->canvas, &window);
 }

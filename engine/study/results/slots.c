@@ -160,16 +160,16 @@ static strut_status resume(strut_slots *s, const strut_slots_description *plan,
   size_t header = s->layout.header_bytes;
   if (status == STRUT_OK) status = lock(s, error);
   if (status == STRUT_OK)
-    status = strut_slots_read_header(s->descriptor, s->path, header, &s->plan, &s->layout,
-                                     &s->arena, &torn, error);
+    status = strut_slots_read_header(&(strut_slots_file){s->descriptor, s->path, header}, &s->plan,
+                                     &s->layout, &s->arena, &torn, error);
   if (status == STRUT_OK && torn) return begin(s, plan, error);
   return status == STRUT_OK ? strut_slots_compare(s->path, &s->plan, plan, error) : status;
 }
 
 static strut_status look(strut_slots *s, strut_error *error) {
   bool torn = false; /* unused: an unfinished header cannot be read */
-  return strut_slots_read_header(s->descriptor, s->path, 0, &s->plan, &s->layout, &s->arena, &torn,
-                                 error);
+  return strut_slots_read_header(&(strut_slots_file){s->descriptor, s->path, 0}, &s->plan,
+                                 &s->layout, &s->arena, &torn, error);
 }
 
 /* Opens for writing if there is a plan, otherwise read-only. */

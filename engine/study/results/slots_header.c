@@ -185,14 +185,16 @@ static strut_status foreign(strut_error *error, const char *path, const char *wh
   return strut_fail(error, STRUT_FILE_TROUBLE, "'%s' is %s", path, why);
 }
 
-strut_status strut_slots_read_header(int descriptor, const char *path, size_t most,
-                                     strut_slots_description *plan, strut_slots_layout *layout,
-                                     strut_arena *arena, bool *torn, strut_error *error) {
+strut_status strut_slots_read_header(const strut_slots_file *file, strut_slots_description *plan,
+                                     strut_slots_layout *layout, strut_arena *arena, bool *torn,
+                                     strut_error *error) {
+  const int descriptor = file->descriptor;
+  const char *path = file->path;
   fixed_part fixed = {0};
   *torn = false;
   int64_t got = strut_slots_pread(descriptor, &fixed, sizeof fixed, 0);
   if (got < 0) return strut_slots_trouble(error, "read", path, errno);
-  *torn = is_torn(descriptor, (unsigned char *)&fixed, got, most);
+  *torn = is_torn(descriptor, (unsigned char *)&fixed, got, file->most);
   bool ours = memcmp(fixed.magic, MAGIC, sizeof MAGIC) == 0;
   if (got < (int64_t)sizeof fixed || !ours)
     return *torn ? STRUT_OK : foreign(error, path, "not a file of study results");

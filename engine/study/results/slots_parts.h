@@ -24,14 +24,21 @@ bool strut_slots_own(strut_slots_description *plan, strut_arena *arena);
 /** The header of a plan: layout->header_bytes bytes in the arena, or NULL. */
 unsigned char *strut_slots_header(const strut_slots_description *plan,
                                   const strut_slots_layout *layout, strut_arena *arena);
+/** An open file of slots, of which up to `most` bytes may be what a stopped process left. */
+typedef struct strut_slots_file {
+  int descriptor;
+  const char *path;
+  size_t most;
+} strut_slots_file;
+
 /**
  * Reads the header of an open file into *plan, its texts owned by the arena. *torn is set, with
  * STRUT_OK, where the file has up to `most` bytes and these are zeros or the begin of a header:
  * the process that wrote it was stopped before the first slot.
  */
-strut_status strut_slots_read_header(int descriptor, const char *path, size_t most,
-                                     strut_slots_description *plan, strut_slots_layout *layout,
-                                     strut_arena *arena, bool *torn, strut_error *error);
+strut_status strut_slots_read_header(const strut_slots_file *file, strut_slots_description *plan,
+                                     strut_slots_layout *layout, strut_arena *arena, bool *torn,
+                                     strut_error *error);
 /** Names a difference between two plans, such as "the columns"; NULL: none. */
 const char *strut_slots_difference(const strut_slots_description *a,
                                    const strut_slots_description *b);

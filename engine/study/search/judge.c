@@ -122,9 +122,8 @@ bool strut_search_better(const strut_study_search *search, const strut_search_po
 }
 
 strut_status strut_search_judge(const strut_sweep_plan *plan, strut_slots *slots, int64_t outer,
-                                int64_t row, const strut_study_value *values,
-                                strut_search_point *point, double *broken, bool *failed,
-                                bool *valueless, strut_error *error) {
+                                int64_t row, strut_search_point *point, double *broken,
+                                strut_error *error) {
   const strut_study_search *search = plan->study->search;
   const strut_search_layout l = strut_search_layout_of(plan);
   int64_t first = (outer * l.rows + row) * l.scenarios;
@@ -132,8 +131,7 @@ strut_status strut_search_judge(const strut_sweep_plan *plan, strut_slots *slots
                                 .worst = first,
                                 .objective = (double)NAN,
                                 .second = (double)NAN,
-                                .values = values};
-  *failed = *valueless = false;
+                                .values = point->values};
   for (size_t i = 0; i < l.conditions; i++) broken[i] = -HUGE_VAL;
   for (int64_t i = 0; i < l.scenarios; i++) {
     strut_result_slot slot;
@@ -141,17 +139,17 @@ strut_status strut_search_judge(const strut_sweep_plan *plan, strut_slots *slots
     if (!strut_slots_get(slots, first + i, &slot))
       return strut_fail(error, STRUT_FILE_TROUBLE, "point %lld cannot be read",
                         (long long)(first + i));
-    if (!has_values(plan, &slot, values))
+    if (!has_values(plan, &slot, point->values))
       return strut_fail(error, STRUT_FILE_TROUBLE,
                         "point %lld of the results there is not what this search asks for, as by "
                         "another version of NLopt: remove points.slots to start afresh",
                         (long long)(first + i));
     if (slot.status) {
-      *failed = true;
+      point->failed = true;
       continue;
     }
     double goal = strut_search_score(plan, slot.numbers, slot.words, &second, own);
-    *valueless = *valueless || isnan(goal) || isnan(second);
+    point->valueless = point->valueless || isnan(goal) || isnan(second);
     point->violation = fmax(point->violation, strut_search_violation(search, own));
     for (size_t k = 0; k < l.conditions; k++) broken[k] = fmax(broken[k], own[k]);
     bool worse = search->maximise ? goal < point->objective : goal > point->objective;
@@ -159,7 +157,7 @@ strut_status strut_search_judge(const strut_sweep_plan *plan, strut_slots *slots
     if (worse_second || isnan(point->second)) point->second = second;
     if (worse || isnan(point->objective)) point->objective = goal, point->worst = first + i;
   }
-  if (*failed || *valueless) point->objective = (double)NAN;
+  if (point->failed || point->valueless) point->objective = (double)NAN;
   return STRUT_OK;
 }
 
@@ -256,9 +254,7 @@ static bool list_points(strut_search_batch *b, strut_search_result *r, strut_sea
 static strut_status judge(strut_search_batch *b, int64_t outer, int64_t row,
                           strut_search_point *point) {
   double broken[STRUT_SEARCH_MOST_CONDITIONS];
-  bool failed, valueless;
-  return strut_search_judge(b->plan, b->slots, outer, row, point->values, point, broken, &failed,
-                            &valueless, b->error);
+  return strut_search_judge(b->plan, b->slots, outer, row, point, broken, b->error);
 }
 
 static strut_status judge_points(strut_search_batch *b, strut_search_result *r,

@@ -16,7 +16,6 @@ typedef struct known {
   strut_study_value *values; /* (variables) */
   double *broken;            /* (conditions) */
   strut_search_point point;
-  bool failed, valueless;
   int32_t same_hash; /* the one before it with the same hash, or -1 */
 } known;
 
@@ -201,13 +200,13 @@ static strut_status judge_point(conductor *c, search *s, int32_t i) {
   known *k = &s->list[i];
   strut_sweep_state *state = c->batch.state;
   int64_t row = o->start * c->what->evaluations + i;
-  strut_status status =
-      strut_search_judge(c->plan, c->batch.slots, o->outer, row, k->values, &k->point, k->broken,
-                         &k->failed, &k->valueless, c->batch.error);
+  k->point.values = k->values;
+  strut_status status = strut_search_judge(c->plan, c->batch.slots, o->outer, row, &k->point,
+                                           k->broken, c->batch.error);
   if (status) return status;
   o->evaluations++;
-  o->failed += k->failed;
-  o->valueless += !k->failed && k->valueless;
+  o->failed += k->point.failed;
+  o->valueless += !k->point.failed && k->point.valueless;
   if (isnan(k->point.objective)) return STRUT_OK;
   bool feasible = k->point.violation <= 0.0;
   o->feasible += feasible;

@@ -34,6 +34,7 @@ typedef struct strut_search_point {
   double objective;                /* there, as maximised or minimised; NAN: failed */
   double second;                   /* likewise of the second goal, in its worst scenario; 0: none */
   double violation;                /* the largest of all scenarios */
+  bool failed, valueless;          /* some scenario failed; has no goal */
   const strut_study_value *values; /* (variable_count) */
 } strut_search_point;
 

@@ -56,14 +56,12 @@ strut_status strut_search_batch_run(strut_search_batch *batch);
 /* judge.c: rows to points of the search */
 
 /**
- * The worst of the scenarios of a row, all of which are there; broken (condition_count) is the largest of
- * each. *failed: the row has a failed point, *valueless: or one without a goal. STRUT_FILE_TROUBLE where the
- * rows have other values of the variables.
+ * The worst of the scenarios of a row, all of which are there, for the point with these values; broken
+ * (condition_count) is the largest of each. STRUT_FILE_TROUBLE where the rows have other values.
  */
 strut_status strut_search_judge(const strut_sweep_plan *plan, strut_slots *slots, int64_t outer,
-                                int64_t row, const strut_study_value *values,
-                                strut_search_point *point, double *broken, bool *failed,
-                                bool *valueless, strut_error *error);
+                                int64_t row, strut_search_point *point, double *broken,
+                                strut_error *error);
 
 /* judge.c */
 

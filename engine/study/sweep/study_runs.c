@@ -262,21 +262,30 @@ static const char *file_of(const strut_sweep_plan *plan, const char *directory,
   return name ? strut_arena_format(&o->arena, "%s/%s.svg", directory, name) : NULL;
 }
 
-static strut_status draw(const strut_sweep_plan *plan, const char *directory,
-                         const strut_study_figure *figure, double width, strut_study_opened *o,
-                         const strut_study_opened *other, const char *other_name,
-                         strut_error *error) {
+/* The pictures of a figure: one for each point. */
+typedef struct pictures {
+  const strut_sweep_plan *plan;
+  const char *directory;
+  const strut_study_figure *figure;
+  double width;
+  size_t axis; /* along which two points share a picture; axis_count: none */
+  bool drawn;  /* some are */
+} pictures;
+
+static strut_status draw(const pictures *p, strut_study_opened *o, const strut_study_opened *other,
+                         const char *other_name, strut_error *error) {
+  const strut_study_figure *figure = p->figure;
   strut_model *model = NULL;
   const strut_run_figure picture = {
       .experiment = &o->setup.experiment,
       .view = figure->kind == STRUT_FIGURE_PERIOD ? STRUT_RUN_PERIOD : STRUT_RUN_SNAPSHOTS,
-      .width = width,
+      .width = p->width,
       .scale = {figure->scale[0], figure->scale[1]},
       .time_count = figure->time_count,
       .times = figure->times,
       .other = other ? &other->motion : NULL,
       .other_name = other_name};
-  const char *path = file_of(plan, directory, figure, o);
+  const char *path = file_of(p->plan, p->directory, figure, o);
   if (!path) return strut_no_memory(error, "while drawing");
   strut_status status = strut_model_compile(&o->setup.scene, &model, error);
   if (!status) status = strut_run_figure_draw(path, &picture, model, &o->motion, NULL, error);
@@ -285,26 +294,25 @@ static strut_status draw(const strut_sweep_plan *plan, const char *directory,
 }
 
 /* Draws the figure of one point, if it has one. */
-static strut_status draw_point(const strut_sweep_plan *plan, const char *directory,
-                               const strut_study_figure *figure, double width, size_t axis,
-                               int64_t point, bool *drawn, strut_error *error) {
+static strut_status draw_point(pictures *p, int64_t point, strut_error *error) {
+  const strut_sweep_plan *plan = p->plan;
   strut_study_opened o, other;
-  bool there = false, beside = false, pairs = axis < plan->study->axis_count;
-  int64_t with = pairs ? partner(plan->study, axis, point) : point;
+  bool there = false, beside = false, pairs = p->axis < plan->study->axis_count;
+  int64_t with = pairs ? partner(plan->study, p->axis, point) : point;
   if (pairs && with == point) return STRUT_OK; /* drawn over its partner */
-  strut_status status = strut_study_run_open(plan, directory, figure, point, &o, &there, error);
+  strut_status status =
+      strut_study_run_open(plan, p->directory, p->figure, point, &o, &there, error);
   if (!status && there && pairs) {
-    status = strut_study_run_open(plan, directory, figure, with, &other, &beside, error);
+    status = strut_study_run_open(plan, p->directory, p->figure, with, &other, &beside, error);
     const char *name = NULL;
     for (size_t i = 0; i < plan->axis_columns && !status; i++)
-      if (strcmp(plan->columns[i].name, figure->difference) == 0) name = other.texts[i];
-    if (!status)
-      status = draw(plan, directory, figure, width, &o, beside ? &other : NULL, name, error);
+      if (strcmp(plan->columns[i].name, p->figure->difference) == 0) name = other.texts[i];
+    if (!status) status = draw(p, &o, beside ? &other : NULL, name, error);
     strut_study_run_close(&other);
   } else if (!status && there) {
-    status = draw(plan, directory, figure, width, &o, NULL, NULL, error);
+    status = draw(p, &o, NULL, NULL, error);
   }
-  *drawn = *drawn || there;
+  p->drawn = p->drawn || there;
   strut_study_run_close(&o);
   return status;
 }
@@ -312,12 +320,11 @@ static strut_status draw_point(const strut_sweep_plan *plan, const char *directo
 strut_status strut_study_pictures(const strut_sweep_plan *plan, const char *directory,
                                   const strut_study_figure *figure, double width,
                                   strut_error *error) {
-  size_t axis;
-  bool drawn = false;
-  strut_status status = find_axis(plan, figure, &axis, error);
+  pictures p = {.plan = plan, .directory = directory, .figure = figure, .width = width};
+  strut_status status = find_axis(plan, figure, &p.axis, error);
   for (int64_t point = 0; point < plan->points && !status; point++)
-    status = draw_point(plan, directory, figure, width, axis, point, &drawn, error);
-  if (status || drawn) return status;
+    status = draw_point(&p, point, error);
+  if (status || p.drawn) return status;
   return strut_fail(error, STRUT_USAGE, "figure '%.60s' of the study: no run recorded any of this",
                     figure->name);
 }
