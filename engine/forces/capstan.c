@@ -35,7 +35,7 @@ static void turn_at(cable *c, int k) {
   c->bend[k] = fabs(c->turn[k]);
 }
 
-/* The angle as it goes on through straight, from the side that is kept; at half a turn it turns back. */
+/* The angle continued through straight, from the side that is kept; at half a turn it turns back. */
 static double bend_on_side(const cable *c, int k, int side) {
   double bend = side * c->turn[k];
   return bend < -1.5 ? c->bend[k] : bend;

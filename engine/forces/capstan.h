@@ -42,7 +42,7 @@ void strut_capstan_freeze(const strut_model *model, strut_state *state, int32_t 
 /** How far guide k (0: the first) is from the end of its mode at q and v, as a force; `h`: a step [s]. */
 double strut_capstan_margin(const strut_model *model, const strut_state *state, int32_t i, int k,
                             const double *q, const double *v, double h);
-/** Turning angle of guide k, as it goes on through straight from the side on which modes were frozen. */
+/** Turning angle of guide k, continued through straight from the side on which modes were frozen. */
 double strut_capstan_bend(const strut_model *model, const strut_state *state, int32_t i, int k,
                           const double *q);
 /** It has passed straight. */

@@ -23,7 +23,7 @@ typedef struct strut_rigid {
   int32_t *member;           /* (bars) */
   double *length;            /* (bars) kept [m] */
   double *tension;           /* (bars) multipliers, tension positive [N] */
-  uint32_t *at;              /* (nodes) where their x stands in coordinate arrays */
+  uint32_t *at;              /* (nodes) index of their x in coordinate arrays */
   int32_t (*end)[2];         /* (bars) index of a bar's ends among the nodes */
   int32_t *foot;             /* (contacts) index of a contact's node among the nodes */
   double *inverse[2];        /* (nodes, nodes) M^-1 of x and of y [1/kg] */

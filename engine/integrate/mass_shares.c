@@ -306,7 +306,7 @@ static void forward(const branches *b, int32_t begin, int32_t end) {
   }
 }
 
-/* Where row i of those above stands in `work`. */
+/* The place of row i of those above in `work`. */
 static double *row_above(const branches *b, int32_t i) {
   return b->work + 2 * b->column[b->factor->n - b->above + i];
 }

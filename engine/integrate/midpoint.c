@@ -112,7 +112,7 @@ static void move_supports(const strut_model *model, const strut_state *state,
   }
 }
 
-/* The mean velocity goes on as it did, or else as the velocity is. */
+/* The mean velocity is extrapolated, or else set to the velocity. */
 static void guess(const strut_model *model, const strut_state *state, midpoint_workspace *w,
                   bool plain) {
   for (int32_t i = 0; i < model->length; i++)

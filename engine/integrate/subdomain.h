@@ -23,7 +23,7 @@ typedef struct strut_subdivision {
   const int32_t
       *member;    /* (members) the scene's member that is stored at k; NULL: as in the scene */
   int32_t *node;  /* (nodes) nodes in the order of their last members */
-  int32_t *place; /* (nodes) where each stands in it */
+  int32_t *place; /* (nodes) the place of each in it */
   int32_t parts, *begin; /* (parts + 1) places where the nodes of each part begin */
   int32_t *block;        /* (parts + 1) blocks of the energy balance where its members begin */
   int32_t *shared;       /* (nodes) number of a node that is a ghost somewhere, or -1 */

@@ -56,7 +56,7 @@ typedef struct strut_element {
   strut_element_role role;
   int32_t item;         /* member, hinge, ... of the scene */
   int32_t first, nodes; /* its nodes: `nodes` entries of the table's `at`, from `first` on */
-  int32_t slot;         /* where its natural strain stands in arrays of rest lengths; -1: fixed */
+  int32_t slot;         /* index of its natural strain in arrays of rest lengths; -1: fixed */
   double natural;       /* natural strain where there is no slot */
   int32_t place;        /* of its (2 nodes) (2 nodes + 1) / 2 entries among those of all elements */
   int32_t sibling;      /* the next element of the same member, or -1 */

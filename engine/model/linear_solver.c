@@ -127,7 +127,7 @@ static bool weave_parts(strut_factor **factor) {
 
 /*
  * The row of A at which it shows not to be positive definite, or -1. CHOLMOD's L D L' stops at a
- * zero in D only, so the signs are looked at here.
+ * zero in D only, so the signs are checked here.
  */
 static int32_t bad_row(const strut_cholmod_columns *l) {
   if (l->finished < l->n) return l->order[l->finished];
@@ -413,7 +413,7 @@ static bool copy_factor(const strut_factor *from, strut_factor *to, strut_arena 
   return true;
 }
 
-/* Where each entry of the matrix stands in the factor's order. */
+/* The place of each entry of the matrix in the factor's order. */
 static void place_entries(const strut_sparse *pattern, strut_refactor *r) {
   int32_t n = pattern->n, *place = r->next;
   for (int32_t i = 0; i < n; i++) place[r->factor.order[i]] = i;

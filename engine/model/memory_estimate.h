@@ -11,7 +11,7 @@
 STRUT_API double strut_memory_needed(const strut_scene *scene);
 
 /**
- * STRUT_NO_MEMORY, with what is needed and what there is, where the process may not have so much or
+ * STRUT_NO_MEMORY, with the memory needed and available, where the process may not have so much or
  * the machine has not (memory_limit.h); STRUT_OK otherwise.
  */
 STRUT_API strut_status strut_memory_check_model(const strut_scene *scene, strut_error *error);

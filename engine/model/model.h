@@ -96,7 +96,7 @@ typedef struct strut_contact_entry {
 
 typedef struct strut_contact_table {
   int32_t count;
-  const uint32_t *at;               /* where its x stands in coordinate arrays: 2 * node */
+  const uint32_t *at;               /* index of its x in coordinate arrays: 2 * node */
   const strut_contact_entry *entry; /* (count) */
   double tangent[2], normal[2];     /* unit vectors along and out of the ground */
   double height;                    /* at x = 0 [m] */

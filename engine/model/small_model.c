@@ -117,7 +117,7 @@ static void add_entry(strut_small_model *s, int c, int32_t j, int64_t row, int64
   to->bits = (uint8_t)(to->bits | 1u << row);
 }
 
-/* The inverse masses of one coordinate. Rows of blocks take the place of what stands in the diagonal. */
+/* The inverse masses of one coordinate. Rows of blocks replace the diagonal entries. */
 static void list_masses(const strut_model *model, strut_small_model *s, int c) {
   const strut_mass *mass = model->mass;
   const strut_mass_operator *op = &mass->coordinate[c];

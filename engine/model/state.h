@@ -89,7 +89,7 @@ typedef struct strut_history {
 /** What signals remember; arrays are (signals). */
 typedef struct strut_signal_states {
   double *started;     /* when those with a trigger started [s]; INFINITY: not yet */
-  int8_t *trigger_was; /* did the condition hold when last looked at? -1: not looked at */
+  int8_t *trigger_was; /* did the condition hold when last evaluated? -1: not evaluated yet */
   double *held;        /* of sampled ones the value at the latest sample; NAN before the first */
   int8_t *relay_side;  /* of relays: 1 last above, -1 last below; 0: not yet known */
 } strut_signal_states;

@@ -12,7 +12,7 @@
 #include <stdint.h>
 
 typedef struct strut_moved_coordinate {
-  int32_t at;     /* where it stands in coordinate arrays */
+  int32_t at;     /* index in coordinate arrays */
   int32_t signal; /* of the scene */
   double base;    /* position where the signal is 0 [m] */
 } strut_moved_coordinate;
@@ -20,7 +20,7 @@ typedef struct strut_moved_coordinate {
 /** An entry of the mass matrix between a moved coordinate and a free one. */
 typedef struct strut_support_coupling {
   int32_t item; /* moved coordinate */
-  int32_t at;   /* where the free one stands in coordinate arrays */
+  int32_t at;   /* index of the free one in coordinate arrays */
   double mass;  /* [kg] */
 } strut_support_coupling;
 

@@ -5,7 +5,7 @@
  *   strut_mex(COMMAND, HANDLE, ...)
  *
  * is what the functions beside this file call: strut_load, strut_run and so on. Scenes stay in the library and
- * are known by a handle, a uint64 number; everything else becomes Octave's own structs and matrices.
+ * have a handle, a uint64 number; everything else becomes Octave's own structs and matrices.
  * Numbers are passed as they are, not by a text, so that they have the program's bits.
  */
 #include <ctype.h>

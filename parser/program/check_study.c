@@ -84,8 +84,8 @@ strut_status strut_check_study(const strut_command *command, const strut_argumen
   strut_status status = refuse_options(command, arguments);
   if (status != STRUT_OK) return status;
   status = strut_sweep_study_try(arguments, &study, &error);
-  bool told = status == STRUT_OK || status == STRUT_BAD_SCENE;
-  if (arguments->json && told) {
+  bool reported = status == STRUT_OK || status == STRUT_BAD_SCENE;
+  if (arguments->json && reported) {
     strut_status printed = print_json(&study, status, &error);
     if (printed != STRUT_OK) status = printed;
   } else if (status != STRUT_OK) {

@@ -12,7 +12,7 @@ static const strut_option options[] = {
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
-/* The scene as short as the file gave it, or the flat one where that cannot be had. */
+/* The scene as short as the file gave it, or the flat one where that cannot be kept. */
 static strut_status write_parts(const strut_arguments *arguments) {
   strut_setup setup;
   char *text, *result = NULL;

@@ -65,7 +65,7 @@ static strut_status list_values(const strut_evaluation *evaluation, const strut_
   return STRUT_OK;
 }
 
-/* What the results file says: values, or FAIL, with which DAKOTA goes on by its own means. */
+/* What the results file says: values, or FAIL, after which DAKOTA continues as its input says. */
 static strut_status write_results(strut_status status, strut_buffer *text, const char *results) {
   strut_error error = {0};
   if (status == STRUT_DIVERGED) {

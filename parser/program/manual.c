@@ -14,7 +14,7 @@ enum { LINE = 78 };
 
 /* ---- man(7) ---- */
 
-/* What a typesetter must be told to print a character as it is; NULL: the character itself. */
+/* How a typesetter prints a character as it is; NULL: the character itself. */
 static const char *escape_of(char c) {
   switch (c) {
     case '\\': return "\\e";

@@ -237,7 +237,7 @@ static bool check_value(strut_reader *reader, const strut_tree *key, int of) {
     strut_tree *at = of == STRUT_KEY_SCENE_NODES ? strut_tree_find(value, "position", NULL) : NULL;
     if (!at) return true;
     strut_report_error(reader, at->place,
-                       "'%s' is placed, so its position stands in its part; give other keys here",
+                       "'%s' is placed, so its position is given by its part; give other keys here",
                        strut_sanitised_text(reader, key->text));
     return false;
   }

@@ -544,7 +544,7 @@ static bool read_with(strut_document *document, strut_diagnostics *diagnostics,
   return fine && !*no_memory;
 }
 
-/* Reads runs of rows without libyaml. False: something is wrong, which is not told. */
+/* Reads runs of rows without libyaml. False: something is wrong; there is no message. */
 static bool read_rows(strut_document *document, const strut_diagnostics *diagnostics,
                       uint32_t least, const char *const *keys, bool *no_memory) {
   strut_row_runs runs = {0};

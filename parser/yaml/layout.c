@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * libyaml's tokens one after the other, each as it stands in the text; what is between two of them is
+ * libyaml's tokens one after the other, each as written; what is between two of them is
  * blanks and comments, and is set anew. See layout.h.
  */
 #include "parser/yaml/layout.h"

@@ -18,7 +18,7 @@
 /**
  * The text in its layout, a block of strut_allocate. It has been read again: its values and comments are
  * those of `text`, and its own layout is itself. STRUT_BAD_SCENE with the reason in `error` where that
- * cannot be had, as with tags, explicit keys ("? key") or text that is not YAML; or STRUT_NO_MEMORY.
+ * cannot be rewritten safely, as with tags, explicit keys ("? key") or text that is not YAML; or STRUT_NO_MEMORY.
  */
 STRUT_API strut_status strut_layout_text(const char *text, size_t length, char **result,
                                          strut_error *error);

@@ -257,7 +257,7 @@ STRUT_INLINE double margin_of_push(const strut_contact_entry *e, const strut_tou
                                  : strut_law_margin_of_holding(holding, o->applied);
 }
 
-/* How far the applied force is from either end of where a contact goes on yielding [N]. */
+/* How far the applied force is from either end of the range in which a contact keeps yielding [N]. */
 STRUT_INLINE double margin_of_yield(const strut_contact_entry *e, const strut_touch *o) {
   double threshold = holding_limit(e, o->normal, o->applied);
   return 2.0 * STRUT_YIELD_LAYER * threshold - fabs(fabs(o->applied) - threshold);

@@ -340,7 +340,7 @@ static bool is_near(const strut_event_stepper *l, const strut_event *event, cons
   return fabs(s->value) <= 1e-8 * fabs(slope);
 }
 
-/* Where forces balance until then, an edge is left so gently that this part of a step is no matter. */
+/* Where forces balance until then, an edge is left so gently that this part of a step is harmless. */
 static const double BALANCED = 1e-8;
 
 /* Is the speed at the edge of the band, within STRUT_TIED? settle_band_ties keeps it no nearer. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
  * Hot: whether the end of a step contradicts a mode of a small model; see event_location.c and adaptive.c. What
- * says so here is looked at again by these, which also find where it began.
+ * says so here is checked again by these, which also find where it began.
  */
 #ifndef STRUT_ENGINE_INTEGRATE_EVENTS_SMALL_CHECKS_H
 #define STRUT_ENGINE_INTEGRATE_EVENTS_SMALL_CHECKS_H

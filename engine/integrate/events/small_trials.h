@@ -37,7 +37,7 @@ strut_small_quiet strut_small_rk4_events_quiet_avx2, strut_small_rk4_events_quie
 #define STRUT_SMALL_EVENTS(model, state, l, name) NULL
 #endif
 
-/** May the methods that locate events exactly make quiet steps in registers? Cables are looked at by the
+/** May the methods that locate events exactly make quiet steps in registers? Cables are checked by the
     general code, and so are switches that follow each other without end. */
 static inline bool strut_small_is_quiet(const strut_state *state, const strut_event_stepper *l) {
   return !l->law_count && !state->watched.event_log && l->switches < STRUT_MOST_SWITCHES;

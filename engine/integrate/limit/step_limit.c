@@ -18,7 +18,7 @@
  * ARPACK, a floor above, knows the first-order form only.
  */
 enum { ROOM = 64, LARGE_ROOM = 48, LARGE = 100000, MOST_ROUNDS = 14 };
-/* From here on a search would take tens of seconds, and the bound is told. */
+/* From here on a search would take tens of seconds, and the bound is reported. */
 enum { TOO_LARGE = 250000 };
 /* Quotients come from below; the space has converged to a fraction of this. */
 static const double MARGIN = 0.998, SETTLED = 2e-4;

@@ -23,7 +23,7 @@ typedef struct strut_step_limit {
  * STRUT_EXACT_LIMIT free coordinates all eigenvalues of the damped system are computed (GSL); above,
  * those that bind, from a space of motions that grows until they have settled: within 1 %, whatever
  * the damping. Above 250000 coordinates, and above 100000 where they do not settle, bounds from the
- * entries of the matrices (tangent_bound.h) are told. The model must have a mass.
+ * entries of the matrices (tangent_bound.h) are reported. The model must have a mass.
  */
 STRUT_API strut_status strut_step_limit_estimate(const strut_model *model, strut_step_limit *limit,
                                                  strut_error *error);
@@ -61,7 +61,7 @@ typedef struct strut_step_limits {
 
 /**
  * strut_step_limit_for_method, or what it said of the same members, masses, supports, springs and dampers of
- * contacts, start and kind of method: told by two independent hashes of all these numbers.
+ * contacts, start and kind of method: identified by two independent hashes of all these numbers.
  */
 STRUT_API strut_status strut_step_limit_cached(const strut_model *model,
                                                const strut_integrator *method,

@@ -6,7 +6,7 @@
 
 #include "engine/model/mass.h"
 
-/* Passes that improve the weights; rays along which RK4's region is looked at. */
+/* Passes that improve the weights; rays along which RK4's region is sampled. */
 enum { PASSES = 24, RAYS = 256 };
 /* Weights and masses never fall below; what rays between those looked at may be short of; and for
    the rounding of sums. */

@@ -202,7 +202,7 @@ bool strut_tangent_limits_find(const strut_krylov_basis *space, bool damped, boo
   bool good = symmetric_create(&s, (size_t)space->count);
   if (good) {
     double rate = find_symmetric(&s, space, damped, limits), omega = limits->largest_frequency;
-    /* what RK4 bears whichever way eigenvalues point; for where they cannot be had */
+    /* the stability of RK4 for eigenvalues of any direction, where they are unknown */
     double bound = fmin(omega > 0.0 ? 2.6 / omega : HUGE_VAL, strut_rk4_limit(-rate, 0.0));
     if (!damped)
       limits->of[STRUT_REGION_RK4] = strut_rk4_limit(0.0, omega);

@@ -17,7 +17,7 @@
 #include "engine/output/file.h"
 #include "engine/output/results.h"
 
-/* ---- what there is no code for ---- */
+/* ---- what cannot be exported ---- */
 
 static size_t count_rubbing(const strut_scene *scene) {
   size_t rubs = 0;

@@ -25,7 +25,7 @@ STRUT_API bool strut_code_is_prefix(const char *text);
 STRUT_API void strut_code_prefix_of(const char *text, char prefix[65]);
 
 /**
- * STRUT_BAD_SCENE, with all reasons in one sentence, where the scene has what there is no code for, or, with
+ * STRUT_BAD_SCENE, with all reasons in one sentence, where the scene has features that cannot be exported, or, with
  * floats, numbers that no float has.
  */
 STRUT_API strut_status strut_code_check(const strut_model *model, strut_error *error);

@@ -53,7 +53,7 @@ STRUT_API char *strut_path_json(const strut_path *path, const strut_scene *scene
 STRUT_API char *strut_path_table(const strut_path *path, const strut_scene *scene);
 /**
  * One row per point: the parameter ("factor" and, of loads that are alike, "force [N]"; else "value"
- * with its unit), arc, eigenvalues below zero as the path goes on; x and y of every node [m], tension
+ * with its unit), arc, eigenvalues below zero beyond the point; x and y of every node [m], tension
  * of every member, reactions of what is held, normal forces of contacts [N]. Events stand among the
  * points with their kind in the column "event".
  */

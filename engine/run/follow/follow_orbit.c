@@ -98,7 +98,7 @@ static bool differentiate_at(strut_follow_walk *w, const trial *t) {
 }
 
 /*
- * Broyden's update: the derivative that would have told the residual f behind the full step w->right.
+ * Broyden's update: the derivative that would have predicted the residual f behind the full step w->right.
  */
 static void update_derivative(strut_follow_walk *w, const double *f) {
   strut_follow_system *s = w->s;

@@ -145,7 +145,7 @@ static bool solve(strut_follow_surface *u, const double *const rows[2]) {
   return true;
 }
 
-/* Broyden's update: the derivative that would have told the residual f behind the step u->x. */
+/* Broyden's update: the derivative that would have predicted the residual f behind the step u->x. */
 static void update_derivative(strut_follow_surface *u, const double *f) {
   strut_follow_system *s = &u->s;
   double size = 0.0;

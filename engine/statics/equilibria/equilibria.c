@@ -120,7 +120,7 @@ static strut_status search_all_sets(strut_equilibrium_search *h) {
   return status;
 }
 
-/* True if a candidate found on supports stands in that minimum of the real ground. */
+/* True if a candidate found on supports is that minimum of the real ground. */
 static bool has_standing_candidate(const strut_equilibrium_search *h, int32_t state) {
   for (size_t i = 0; i < h->count; i++)
     if (h->candidates[i].e.supports && h->candidates[i].e.outcome == STRUT_OUTCOME_STANDS &&

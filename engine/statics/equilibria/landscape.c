@@ -156,7 +156,7 @@ int32_t strut_landscape_between(const strut_landscape *l, int32_t a, int32_t b, 
   return count;
 }
 
-/* The first candidate that stands in each of the landscape's minima, or -1. */
+/* The first candidate at each of the landscape's minima, or -1. */
 static void find_representatives(const strut_equilibrium_search *h, int32_t *of_state) {
   for (int32_t s = 0; s < h->landscape.minima; s++) of_state[s] = -1;
   for (size_t i = 0; i < h->count; i++) {

@@ -20,7 +20,7 @@ enum { ROUNDS = 1000 };
 static const double CUT = 1e-11;  /* of the largest singular value */
 static const double ZERO = 1e-12; /* of a step, of a multiplier */
 
-/* Columns that A maps to nothing: (count, k), in the arena of nobody; NULL: out of memory. */
+/* Columns that A maps to nothing: (count, k), for the caller to release; NULL: out of memory. */
 static gsl_matrix *null_space(int32_t rows, int32_t count, const double *equations) {
   size_t n = (size_t)count, m = (size_t)rows, tall = m > n ? m : n, k = 0;
   gsl_matrix *a = gsl_matrix_calloc(tall, n), *v = gsl_matrix_alloc(n, n), *basis = NULL;

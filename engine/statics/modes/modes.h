@@ -77,7 +77,7 @@ typedef struct strut_modes_options {
 
 /**
  * Fails with what strut_rest_state_find fails with; STRUT_SINGULAR where an elastic mode asked for
- * cannot be had to 1e-8, with the condition, and where a node without mass is held by nothing;
+ * cannot be computed to 1e-8, with the condition, and where a node without mass is held by nothing;
  * STRUT_BAD_SCENE where nothing is free to move or nothing has mass; STRUT_NO_MEMORY.
  * strut_modes_free releases it, after a failure too. The model must outlive it.
  */

@@ -32,7 +32,7 @@ typedef struct strut_extended_factor {
   double loss;                 /* that pivot, relative to what it was computed from */
   strut_factor *owned;
   strut_dd *work;     /* (n) */
-  int32_t *inverse;   /* (n) where a row of the matrix stands in the order */
+  int32_t *inverse;   /* (n) the place of a row of the matrix in the order */
   int32_t *next, *at; /* lists of columns while factorising */
 } strut_extended_factor;
 

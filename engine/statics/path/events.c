@@ -55,7 +55,7 @@ typedef struct trial {
 } trial;
 
 typedef struct trials {
-  int32_t which; /* eigenvalue that is looked at */
+  int32_t which; /* eigenvalue that is followed */
   int count;
   trial kept[KEPT];
 } trials;
@@ -217,7 +217,7 @@ static double change_ahead(strut_path_walk *w, const switch_group *g, int32_t i,
 }
 
 /*
- * The tangent with these switches thrown, into w->next_tangent, so that each switch goes on to
+ * The tangent with these switches thrown, into w->next_tangent, so that each switch continues to
  * where it was put. False: no such tangent exists, or it contradicts a switch.
  */
 static bool find_tangent(strut_path_walk *w, const switch_group *g, unsigned thrown,

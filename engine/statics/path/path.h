@@ -47,7 +47,7 @@ typedef struct strut_path_point {
   double factor;    /* the parameter: a load's factor [1], else in its SI unit */
   double arc;       /* from the beginning; coordinates in units of the structure's size, the
                         parameter in units of the range asked for [1] */
-  int32_t negative; /* eigenvalues of the stiffness below zero as the path goes on: 0 is stable */
+  int32_t negative; /* eigenvalues of the stiffness below zero beyond it: 0 is stable */
   double *q;        /* (length) [m] */
   double *force;    /* (members) tension, with stops [N] */
   double *moment;   /* (hinges) [N m] */

@@ -257,7 +257,7 @@ typedef struct strut_path_walk {
   double *tangent, *next_tangent; /* (n + 1) there */
   double *trial, *spare, *upward; /* (2 n + 2) scratch; (0, ..., 0, 1) */
   double arc, step;
-  int32_t negative; /* eigenvalues below zero, as the walk goes on from y */
+  int32_t negative; /* eigenvalues below zero beyond y */
   size_t point_room, event_room;
   bool failed; /* memory was out */
 } strut_path_walk;
@@ -273,7 +273,7 @@ bool strut_path_walk_step(strut_path_walk *walk);
 /**
  * Throws the switch `which` at walk->y, and those that stand at zero there and are thrown with it,
  * and reports them and what the kink does to parameter and stability. `beyond` is where the old
- * stiffness would have led. The new tangent goes on into the side that they were thrown to. False:
+ * stiffness would have led. The new tangent points to the side that they were thrown to. False:
  * there is none.
  */
 bool strut_path_pass_kink(strut_path_walk *walk, int32_t which, const double *beyond);
@@ -291,7 +291,7 @@ const char *strut_path_turn(const strut_path_walk *walk, double turn);
 
 /** Distance of two points of the path in y. */
 double strut_path_distance(const strut_path_walk *walk, const double *a, const double *b);
-/** Keeps walk->y; `negative` as the path goes on. */
+/** Keeps walk->y; `negative` beyond it. */
 void strut_path_add_point(strut_path_walk *walk, int32_t negative);
 /** Keeps y, in the order of the path. `detail` is copied. */
 void strut_path_add_event(strut_path_walk *walk, strut_path_event_kind kind, const double *y,

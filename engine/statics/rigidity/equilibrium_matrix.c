@@ -278,7 +278,7 @@ strut_status strut_linear_matrices_build(const strut_model *model, const double 
   return status;
 }
 
-/* Bases with more vectors, or more numbers, than these are for nobody to read. */
+/* Bases with more vectors, or more numbers, than these are not computed. */
 enum { MOST_VECTORS = 200, MOST_NUMBERS = 4000000 };
 
 /* T = U S V' of the tall one of A and A'. */

@@ -348,17 +348,17 @@ static strut_status try_between(sorter *s, strut_mechanism *two) {
 static strut_status try_to_walk(sorter *s, strut_mechanism *list) {
   size_t silent = 0;
   if (!separate(s, &silent)) return STRUT_NO_MEMORY;
-  bool told = s->states->count == 0 || s->forms; /* else silence says nothing */
+  bool judged = s->states->count == 0 || s->forms; /* else silence says nothing */
   for (size_t i = 0; i < s->n; i++) {
     list[i].kind = STRUT_MOTION_UNDECIDED;
-    if (told && i >= silent) continue;
+    if (judged && i >= silent) continue;
     /* without self-stress members are independent, and every mechanism is a finite one */
     if (s->states->count == 0) list[i].kind = STRUT_MOTION_FINITE;
     if (i >= MOST_MOTIONS) continue;
     strut_status status = follow(s, &list[i]);
     if (status != STRUT_OK) return status;
   }
-  bool pair = told && s->states->count == 1 && s->n - silent == 2;
+  bool pair = judged && s->states->count == 1 && s->n - silent == 2;
   return pair ? try_between(s, list + silent) : STRUT_OK;
 }
 

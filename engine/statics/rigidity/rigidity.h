@@ -72,7 +72,7 @@ STRUT_API void strut_equilibrium_dense(const strut_equilibrium_matrix *a, double
 /* The rank of an equilibrium matrix, with the gap that decides it, and its two null spaces.
  *
  * Up to STRUT_DENSE_RIGIDITY rows and columns by singular values; above by sparse QR, the diagonal
- * of whose R then stands in for them. Values above STRUT_RANK_TOLERANCE times the largest count
+ * of whose R then replaces them. Values above STRUT_RANK_TOLERANCE times the largest count
  * towards the rank. Since the columns of A are unit vectors, the size of a structure or of its
  * parts changes nothing.
  */
@@ -207,7 +207,7 @@ typedef struct strut_stress_matrix {
   bool super_stable;
 } strut_stress_matrix;
 
-/** Largest number of nodes whose stress matrix is looked at. */
+/** Largest number of nodes whose stress matrix is analysed. */
 enum { STRUT_DENSE_STRESS = 300 };
 
 /**

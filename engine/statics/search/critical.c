@@ -33,7 +33,7 @@ typedef struct search {
   int64_t *hits;        /* (count) starts that ended at each point; of strut_allocate */
   int64_t climbs_left;
   double cost, spent, budget; /* of one Hessian, so far, and at most */
-  size_t batch_size;          /* tasks before the work done is looked at again */
+  size_t batch_size;          /* tasks between checks of the work done */
   size_t climbed, paired;     /* points up to which modes and pairs were climbed */
   size_t shaken;              /* points up to which rare minima were shaken */
   strut_error *error;

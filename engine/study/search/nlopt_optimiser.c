@@ -15,7 +15,7 @@ static const double FIRST_STEP = 0.2, REFINED_STEP = 0.1;
 static const double SPREAD_SHARE = 0.4, GLOBAL_SHARE = 0.5;
 /*
  * multistart: share of the evaluations for evenly spread points; share of the rest for descents from the best of
- * them, which lie further apart than APART, in widths of the box; first step of the descent that goes on from the
+ * them, which lie further apart than APART, in widths of the box; first step of the descent that continues from the
  * best point with what is left.
  */
 static const double MULTISTART_SPREAD = 0.3, DESCENT_SHARE = 0.5, APART = 0.2, LAST_STEP = 0.05;
@@ -30,7 +30,7 @@ typedef struct nlopt_search {
   const strut_search_asker *asker;
   nlopt_opt opt;
   int64_t asked, most; /* by this method */
-  int64_t stuck;       /* how often in a row it has looked at the same point */
+  int64_t stuck;       /* how often in a row it has asked for the same point */
   bool ended;          /* the asker wants no more */
   double *best, least; /* (dimension) and its value */
   double *last, value; /* the latest point and its value, for the conditions */
@@ -221,7 +221,7 @@ static bool descend(nlopt_search *s, const double *from, double first_step, int6
 }
 
 /*
- * Descends from the best spread points that lie apart, and goes on from the better end: a narrow basin may be
+ * Descends from the best spread points that lie apart, and continues from the better end: a narrow basin may be
  * deeper than the one with the best of the spread points.
  */
 static bool descend_from_spread(nlopt_search *s) {

@@ -33,7 +33,7 @@ int strut_search_bound(const strut_search_variable *variable, strut_study_value 
 /* Optimisers in the unit box, by the word of the language.
  *
  * An optimiser asks for the values of points and decides by them where to ask next. It keeps no best point
- * for its caller, and it ends when it is told to stop or sees no way to go on. The same options and answers
+ * for its caller, and it ends when it is asked to stop or cannot continue. The same options and answers
  * give the same questions.
  */
 
@@ -81,7 +81,7 @@ bool strut_search_optimise_by_nlopt(const strut_search_task *task, const strut_s
 
 /* Minimisation by CMA-ES, the evolution strategy with covariance matrix adaptation (N. Hansen, The CMA
  * evolution strategy: a tutorial, arXiv 1604.00772), with negative weights, asked for a generation and
- * told its values.
+ * given its values.
  *
  * Points lie in the unit box. Bounds: the strategy lives in all of space; a number beyond the box is
  * mirrored into it, and next to each bound the map is a parabola, so that a minimum on a bound is a
@@ -132,7 +132,7 @@ STRUT_API void strut_cma_free(strut_cma *cma);
 STRUT_API size_t strut_cma_population(const strut_cma *cma);
 /**
  * The points of the generation, (population, dimension), each number in [0, 1]: the same until their
- * values are told. Owned by the search.
+ * values are given. Owned by the search.
  */
 STRUT_API const double *strut_cma_ask(strut_cma *cma);
 /** values (population), in the order of the points; the smaller the better. */
@@ -141,7 +141,7 @@ STRUT_API strut_cma_stop strut_cma_stopped(const strut_cma *cma);
 /** A sentence's end: why it stopped. */
 STRUT_API const char *strut_cma_stop_text(strut_cma_stop stop);
 
-/** The best point told so far (dimension) and its value; NULL and NAN before any was finite. */
+/** The best point given so far (dimension) and its value; NULL and NAN before any was finite. */
 STRUT_API const double *strut_cma_best(const strut_cma *cma, double *value);
 STRUT_API int64_t strut_cma_evaluations(const strut_cma *cma);
 /** Standard deviation of the k-th number in the next generation, in widths of the box. */

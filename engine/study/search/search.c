@@ -33,7 +33,7 @@ typedef struct search {
   uint32_t hashes;    /* a power of two */
   int64_t repeats;    /* in a row */
   double first, scale, second_scale,
-      worst; /* the first objective, its size, and the worst that was told */
+      worst; /* the first objective, its size, and the worst that was passed on */
   bool over;
   strut_arena arena;
 } search;
@@ -233,11 +233,11 @@ static strut_status judge_point(conductor *c, search *s, int32_t i) {
 }
 
 /*
- * What the optimiser is told: the objective in units of the first one. Where it does not know the conditions
+ * What the optimiser minimises: the objective in units of the first one. Where it does not know the conditions
  * itself, those of feasible points are pressed into (-1, 1), and the others are above. A failed point is
  * worse than all before it.
  */
-static double told(const conductor *c, search *s, const known *k, bool second) {
+static double as_asked(const conductor *c, search *s, const known *k, bool second) {
   double value = second ? k->point.second / s->second_scale : k->point.objective / s->scale;
   if (isnan(k->point.objective)) return s->worst + 1.0;
   if (c->what->maximise) value = -value;
@@ -283,10 +283,10 @@ static strut_status answer_question(conductor *c, search *s, int64_t all) {
   for (size_t i = 0; i < q->count && !s->over; i++) {
     const known *k = &s->list[s->answers[i]];
     if (c->result->front_count) {
-      q->values[2 * i] = told(c, s, k, false);
-      q->values[2 * i + 1] = told(c, s, k, true);
+      q->values[2 * i] = as_asked(c, s, k, false);
+      q->values[2 * i + 1] = as_asked(c, s, k, true);
     } else {
-      q->values[i] = told(c, s, k, false);
+      q->values[i] = as_asked(c, s, k, false);
     }
     for (size_t j = 0; j < m; j++)
       q->broken[i * m + j] = isnan(k->point.objective) ? 1.0 : fmin(fmax(k->broken[j], -1e9), 1e9);

@@ -36,7 +36,7 @@ strut_status strut_goals_stiffness(const strut_study *study, const strut_model *
 /* Equilibria of a study's scenes, found once for all points with the same statics.
  *
  * Where a structure stands does not depend on its drive, on friction or on how it is integrated. So
- * the points of most studies have their equilibria in common; those that have are known by the
+ * the points of most studies have their equilibria in common; those that have are identified by the
  * numbers that do matter, compared bit by bit. A point gets the bits it would get on its own.
  */
 

@@ -250,12 +250,12 @@ static const char *file_of(const strut_sweep_plan *plan, const char *directory,
     size_t axis, before = SIZE_MAX, length = figure->only ? strcspn(figure->only, "=") : 0;
     strut_grid_column(plan->study, i, &axis);
     if (i > 0) strut_grid_column(plan->study, i - 1, &before);
-    bool told =
+    bool named =
         plan->study->axes[axis].count > 1 && axis != before; /* zipped axes by their first column */
-    if (figure->difference && strcmp(column, figure->difference) == 0) told = false;
+    if (figure->difference && strcmp(column, figure->difference) == 0) named = false;
     if (figure->only && strlen(column) == length && memcmp(column, figure->only, length) == 0)
-      told = false;
-    if (told) name = strut_arena_format(&o->arena, "%s-%s", name, o->texts[i]);
+      named = false;
+    if (named) name = strut_arena_format(&o->arena, "%s-%s", name, o->texts[i]);
   }
   for (char *c = name; c && *c; c++)
     if (*c == '/') *c = '_';
