@@ -26,7 +26,7 @@ install(
   TARGETS strut_abi
   EXPORT strut-abi
   LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT library NAMELINK_COMPONENT development)
-install(FILES "${PROJECT_SOURCE_DIR}/parser/abi/abi.h"
+install(FILES "${PROJECT_SOURCE_DIR}/parser/bindings/abi/abi.h"
         DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/strut" COMPONENT development)
 install(EXPORT strut-abi NAMESPACE strut:: FILE strut-abiConfig.cmake
         DESTINATION "${CMAKE_INSTALL_LIBDIR}/cmake/strut-abi" COMPONENT development)

@@ -41,7 +41,7 @@ breaches() {
       # Foreign libraries live in one folder each; those of linear algebra even in one room.
       home["yaml.h"] = "parser/yaml"; home["hdf5.h"] = "engine/output"; home["hdf5_hl.h"] = "engine/output"
       home["cJSON.h"] = home["cjson/cJSON.h"] = "engine/output"
-      home["Python.h"] = "parser/python"
+      home["Python.h"] = "parser/bindings/python"
       home["zlib.h"] = "engine/output/page"; home["cairo.h"] = home["cairo-pdf.h"] = "engine/output/draw"
       home["cairo-svg.h"] = home["pango/pangocairo.h"] = "engine/output/draw"
       room_of["cholmod.h"] = "engine/model/cholmod_factor engine/statics/sparse_algebra"
@@ -59,11 +59,11 @@ breaches() {
       from = folder(file); to = folder(name)
       ours = name ~ "^(engine|parser|tests)/"
       # Bindings of other languages know the installed interface alone, and their host.
-      if (from ~ "^parser/(octave|python)$") { if (ours && to != from) breach("runs up"); next }
+      if (from ~ "^parser/bindings/(octave|python)$") { if (ours && to != from) breach("runs up"); next }
       if (!ours) {
         base = name; sub("^suitesparse/", "", base)
         if (quoted) breach("not spelled from the repository root")
-        else if (base in home && from != home[base] && from !~ "^parser/(program|command|abi)$") breach("belongs to " home[base])
+        else if (base in home && from != home[base] && from !~ "^parser/(program|command|bindings/abi)$") breach("belongs to " home[base])
         else if (base in room_of && index(" " room_of[base] " ", " " stem(file) " ") == 0)
           breach("belongs to " room_of[base])
         next
@@ -73,13 +73,13 @@ breaches() {
       if (to ~ "^tests") { breach("the product includes a test"); next }
       if (from == to) next
       # On top of everything: the program and the shared library, and below both their options.
-      if (from == "parser/program" || from == "parser/abi") {
-        if (to == "parser/program" || to == "parser/abi") breach("runs up")
+      if (from == "parser/program" || from == "parser/bindings/abi") {
+        if (to == "parser/program" || to == "parser/bindings/abi") breach("runs up")
         next
       }
-      if (from == "parser/command") { if (to == "parser/program" || to == "parser/abi") breach("runs up"); next }
+      if (from == "parser/command") { if (to == "parser/program" || to == "parser/bindings/abi") breach("runs up"); next }
       # The front door of the libraries names them all, but never the program.
-      if (file == "parser/strut.h") { if (to ~ "^parser/(program|command|abi)$") breach("runs up"); next }
+      if (file == "parser/strut.h") { if (to ~ "^parser/(program|command|bindings/abi)$") breach("runs up"); next }
       if (from ~ "^parser") {
         if (to == "engine/base" || to == "engine/scene") next
         if (!(from in parser_floor)) breach("a folder without a floor")
@@ -104,7 +104,7 @@ expect() {
     engine/integrate/a.h engine/run/a.h engine/statics/a.h engine/statics/search/a.h \
     engine/statics/modes/a.h engine/output/a.h engine/study/sweep/a.h engine/run/orbit/a.h \
     engine/odd/a.h parser/a.h parser/yaml/a.h parser/read/a.h parser/program/a.h parser/command/a.h \
-    parser/abi/a.h tests/a.h "$2"; do
+    parser/bindings/abi/a.h tests/a.h "$2"; do
     mkdir -p "$scratch/tree/${header%/*}"
     : >"$scratch/tree/$header"
   done
@@ -126,14 +126,14 @@ expect 1 parser/yaml/b.c '#include "parser/read/a.h"'
 expect 0 parser/b.c '#include "engine/scene/a.h"'
 expect 0 parser/program/b.c '#include "engine/study/sweep/a.h"'
 expect 0 parser/program/b.c '#include "parser/command/a.h"'
-expect 0 parser/abi/b.c '#include "parser/command/a.h"'
+expect 0 parser/bindings/abi/b.c '#include "parser/command/a.h"'
 expect 1 parser/command/b.c '#include "parser/program/a.h"'
-expect 1 parser/abi/b.c '#include "parser/program/a.h"'
+expect 1 parser/bindings/abi/b.c '#include "parser/program/a.h"'
 expect 1 parser/read/b.c '#include "parser/command/a.h"'
-expect 0 parser/octave/b.c '#include "strut/abi.h"'
-expect 0 parser/python/b.c '#include <Python.h>'
+expect 0 parser/bindings/octave/b.c '#include "strut/abi.h"'
+expect 0 parser/bindings/python/b.c '#include <Python.h>'
 expect 1 parser/read/b.c '#include <Python.h>'
-expect 1 parser/octave/b.c '#include "parser/abi/a.h"'
+expect 1 parser/bindings/octave/b.c '#include "parser/bindings/abi/a.h"'
 expect 0 parser/strut.h '#include "engine/output/a.h"'
 expect 0 parser/yaml/b.c '#include <yaml.h>'
 expect 1 parser/read/b.c '#include <yaml.h>'

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A motion in memory: recorded by a sink, or read back from trajectory.h5 (trajectory.c). */
+/* A motion in memory: recorded by a sink, or read back from trajectory.h5 (trajectory_file.c). */
 #include "engine/output/trajectory.h"
 
 #include <assert.h>
@@ -10,7 +10,6 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/hdf5_library.h"
-#include "engine/output/hdf5_parts.h"
 
 /* One array of a trajectory: `size` doubles of each frame. */
 typedef struct trajectory_array {
@@ -214,164 +213,4 @@ strut_status strut_trajectory_read(const char *directory, const strut_scene *sce
 strut_status strut_trajectory_trouble(const char *path, const char *reason, strut_error *error) {
   return strut_fail(error, STRUT_FILE_TROUBLE, "cannot read '%s': %s; run the model again with -o",
                     path, reason);
-}
-
-/* A trajectory from trajectory.h5: as many frames as there is room for, of the scene beside the file only. */
-
-typedef struct reader {
-  hid_t file;
-  const char *path;
-  const strut_scene *scene;
-  strut_trajectory *t;
-  strut_error *error;
-} reader;
-
-static strut_status trouble(const reader *r, const char *what) {
-  return strut_trajectory_trouble(r->path, what, r->error);
-}
-
-static strut_status report_no_memory(const reader *r) {
-  return strut_no_memory(r->error, "for the recorded motion");
-}
-
-/* The shape of a dataset of that rank; false where it has another, or no doubles. */
-static bool shape_of(hid_t dataset, int rank, hsize_t shape[STRUT_HDF5_RANK]) {
-  hid_t space = H5Dget_space(dataset), type = H5Dget_type(dataset);
-  bool good = H5Tget_class(type) == H5T_FLOAT && H5Sget_simple_extent_ndims(space) == rank &&
-              H5Sget_simple_extent_dims(space, shape, NULL) == rank;
-  H5Tclose(type);
-  H5Sclose(space);
-  return good;
-}
-
-/* Reads `frames` rows of `size` doubles with a stride of `every`, and the last row. */
-static bool read_rows(hid_t dataset, int rank, const hsize_t *shape, size_t frames, size_t every,
-                      size_t size, double *values) {
-  size_t even = (shape[0] + every - 1) / every; /* those evenly spaced */
-  hsize_t start[STRUT_HDF5_RANK] = {0}, stride[STRUT_HDF5_RANK] = {every, 1, 1};
-  hsize_t count[STRUT_HDF5_RANK] = {even, rank > 1 ? shape[1] : 1, rank > 2 ? shape[2] : 1};
-  hsize_t length = even * size;
-  hid_t from = H5Dget_space(dataset), to = H5Screate_simple(1, &length, NULL);
-  bool good = H5Sselect_hyperslab(from, H5S_SELECT_SET, start, stride, count, NULL) >= 0 &&
-              H5Dread(dataset, H5T_NATIVE_DOUBLE, to, from, H5P_DEFAULT, values) >= 0;
-  H5Sclose(to);
-  if (good && frames > even) {
-    start[0] = shape[0] - 1;
-    stride[0] = count[0] = 1;
-    length = size;
-    to = H5Screate_simple(1, &length, NULL);
-    good = H5Sselect_hyperslab(from, H5S_SELECT_SET, start, stride, count, NULL) >= 0 &&
-           H5Dread(dataset, H5T_NATIVE_DOUBLE, to, from, H5P_DEFAULT, values + even * size) >= 0;
-    H5Sclose(to);
-  }
-  H5Sclose(from);
-  return good;
-}
-
-/* Is the file's list of the names of such things the scene's? A missing list counts as such. */
-static bool same_names(const reader *r, const strut_channel_row *row) {
-  const strut_owner_row *owner = strut_owner_row_of(row->owner);
-  const char *list = row->total ? owner->axis_with_total : owner->axis;
-  size_t count = strut_channel_items(row, r->scene);
-  if (H5Lexists(r->file, list, H5P_DEFAULT) <= 0) return true;
-  hid_t dataset = H5Dopen2(r->file, list, H5P_DEFAULT);
-  hid_t type = H5Dget_type(dataset), space = H5Dget_space(dataset);
-  size_t longest = H5Tget_size(type);
-  bool good = H5Tget_class(type) == H5T_STRING && !H5Tis_variable_str(type) &&
-              H5Sget_simple_extent_npoints(space) == (hssize_t)count;
-  char *texts = good ? strut_allocate(count, longest) : NULL;
-  good = texts && H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, texts) >= 0;
-  for (size_t i = 0; i < count && good; i++) {
-    const char *name = strut_channel_item(row, r->scene, i);
-    good = strlen(name) <= longest && strncmp(name, texts + i * longest, longest) == 0;
-  }
-  strut_release(texts);
-  H5Sclose(space);
-  H5Tclose(type);
-  H5Dclose(dataset);
-  return good;
-}
-
-static strut_status read_channel(reader *r, const strut_channel_row *row) {
-  if (H5Lexists(r->file, row->name, H5P_DEFAULT) <= 0) return STRUT_OK;
-  hid_t dataset = H5Dopen2(r->file, row->name, H5P_DEFAULT);
-  hsize_t shape[STRUT_HDF5_RANK] = {0};
-  size_t items = strut_channel_items(row, r->scene), size = items * row->components;
-  bool fits = dataset >= 0 && shape_of(dataset, 3, shape) && shape[0] == r->t->recorded &&
-              shape[1] == items && shape[2] == row->components;
-  double *values = fits ? strut_allocate(r->t->frames, size * sizeof *values) : NULL;
-  bool good = values && read_rows(dataset, 3, shape, r->t->frames, r->t->every, size, values);
-  *strut_trajectory_array(r->t, row->id) = values;
-  if (dataset >= 0) H5Dclose(dataset);
-  if (!fits) return trouble(r, "it belongs to another structure than the scene beside it");
-  return good ? STRUT_OK : values ? trouble(r, "it is damaged") : report_no_memory(r);
-}
-
-/* Chooses the number of frames and reads their times. */
-static strut_status read_time(reader *r, size_t room) {
-  hsize_t shape[STRUT_HDF5_RANK] = {0};
-  hid_t dataset =
-      H5Lexists(r->file, "time", H5P_DEFAULT) > 0 ? H5Dopen2(r->file, "time", H5P_DEFAULT) : -1;
-  if (dataset < 0 || !shape_of(dataset, 1, shape)) {
-    if (dataset >= 0) H5Dclose(dataset);
-    return trouble(r, "not a trajectory of strut");
-  }
-  strut_trajectory *t = r->t;
-  size_t frame = 1;
-  const strut_channel_row *row;
-  for (size_t i = 0; (row = strut_channel_at(i)) != NULL; i++)
-    if (H5Lexists(r->file, row->name, H5P_DEFAULT) > 0)
-      frame += strut_channel_items(row, r->scene) * row->components;
-  t->recorded = shape[0];
-  t->every = 1;
-  while (t->recorded / t->every > 4 && (t->recorded / t->every + 2) * frame > room) t->every *= 2;
-  t->frames = (t->recorded + t->every - 1) / t->every;
-  t->frames += t->recorded > 0 && (t->recorded - 1) % t->every != 0;
-  t->time = strut_allocate(t->frames, sizeof *t->time);
-  bool good =
-      t->time && (!t->frames || read_rows(dataset, 1, shape, t->frames, t->every, 1, t->time));
-  H5Dclose(dataset);
-  return good ? STRUT_OK : t->time ? trouble(r, "it is damaged") : report_no_memory(r);
-}
-
-/* The run's status from its text. */
-static strut_status run_status(const reader *r) {
-  char *text = NULL;
-  strut_status found = STRUT_OK;
-  hid_t attribute = H5Aexists(r->file, "status") > 0 ? H5Aopen(r->file, "status", H5P_DEFAULT) : -1;
-  if (attribute < 0) return STRUT_INTERRUPTED; /* it was never written */
-  hid_t type = H5Aget_type(attribute);
-  if (H5Tis_variable_str(type) > 0 && H5Aread(attribute, type, &text) >= 0 && text) {
-    for (int s = 0; s < STRUT_STATUS_COUNT; s++)
-      if (strcmp(text, strut_status_text((strut_status)s)) == 0) found = (strut_status)s;
-    H5free_memory(text);
-  }
-  H5Tclose(type);
-  H5Aclose(attribute);
-  return found;
-}
-
-static strut_status read_file(reader *r, size_t room) {
-  strut_trajectory *t = r->t;
-  const strut_channel_row *row;
-  for (size_t i = 0; (row = strut_channel_at(i)) != NULL; i++)
-    if (row->owner != STRUT_OWNER_SYSTEM && !same_names(r, row))
-      return trouble(r, "it belongs to another structure than the scene beside it");
-  t->status = run_status(r);
-  strut_status status = read_time(r, room);
-  for (size_t i = 0; status == STRUT_OK && t->frames && (row = strut_channel_at(i)) != NULL; i++)
-    status = read_channel(r, row);
-  return status;
-}
-
-strut_status strut_trajectory_read_file(const char *path, const strut_scene *scene, size_t room,
-                                        strut_trajectory *trajectory, strut_error *error) {
-  reader r = {.path = path, .scene = scene, .t = trajectory, .error = error};
-  strut_hdf5_quiet quiet = strut_hdf5_hush();
-  r.file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
-  strut_status status =
-      r.file >= 0 ? read_file(&r, room) : trouble(&r, "it is not an HDF5 file, or damaged");
-  if (r.file >= 0) H5Fclose(r.file);
-  strut_hdf5_unhush(quiet);
-  return status;
 }

@@ -13,13 +13,13 @@ page() {
 
 `libstrut.so.0` does what the program does, for programs in any language that can call C: opaque handles, texts,
 arrays of doubles. It stays compatible; the [C tree](architecture.md#libraries-and-program) beside it changes with
-every release. This page is made of the comments in `parser/abi/abi.h` by `tests/abi/api_page.sh`.
+every release. This page is made of the comments in `parser/bindings/abi/abi.h` by `tests/abi/api_page.sh`.
 
 TEXT
   # The file's comment, without its first sentence.
   awk '/^\/\*\*/ { inside = 1; next }
     inside && /\*\// { exit }
-    inside { sub("^ [*] ?", ""); if (seen || /^$/) { seen = 1; print } }' "$root/parser/abi/abi.h" | sed 1d
+    inside { sub("^ [*] ?", ""); if (seen || /^$/) { seen = 1; print } }' "$root/parser/bindings/abi/abi.h" | sed 1d
   cat <<'TEXT'
 
 ## Example
@@ -61,7 +61,7 @@ TEXT
     inside { line = $0; sub("^ [*] ?", "", line); if (line ~ /^  [^ ]/) sub("^  ", "- ", line); else if (line ~ /^    /) sub("^    ", "  ", line); comment = comment line "\n"; next }
     /^$/ { next }
     { sub("^STRUTLIB_API ", ""); sub("^ {13}", ""); code = code $0 "\n" }
-    END { flush() }' "$root/parser/abi/abi.h"
+    END { flush() }' "$root/parser/bindings/abi/abi.h"
 }
 
 if [ "${2-}" = check ]; then
@@ -69,7 +69,7 @@ if [ "${2-}" = check ]; then
   trap 'rm -f "$scratch"' EXIT
   page >"$scratch"
   cmp "$scratch" "$root/docs/api.md" && exit
-  echo "docs/api.md is not what parser/abi/abi.h says: sh tests/abi/api_page.sh . >docs/api.md"
+  echo "docs/api.md is not what parser/bindings/abi/abi.h says: sh tests/abi/api_page.sh . >docs/api.md"
   exit 1
 fi
 page

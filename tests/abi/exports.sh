@@ -15,7 +15,7 @@ fail() { echo "$*"; failures=$((failures + 1)); }
 
 nm -D --defined-only "$library" | awk '$2 != "A" { print $3 }' | sort >"$scratch/there"
 sed -n 's/^STRUTLIB_API.*[ *]\(strutlib_[a-z_]*\)(.*/\1/p; s/^ *\(strutlib_[a-z_]*\)(.*/\1/p' \
-  "$root/parser/abi/abi.h" | sed 's/$/@@STRUT_0/' | sort -u >"$scratch/declared"
+  "$root/parser/bindings/abi/abi.h" | sed 's/$/@@STRUT_0/' | sort -u >"$scratch/declared"
 cmp "$scratch/there" "$scratch/declared" || {
   diff "$scratch/declared" "$scratch/there" || true
   fail "the library exports something else than its header declares"
@@ -28,8 +28,8 @@ awk '{ gsub("/[*][^*]*[*]/", "") }
   /^\/\*/ { inside = 1 }
   !inside && /^(STRUTLIB_API|typedef|  )/ { line = line " " $0 }
   !inside && /;$/ { gsub(/ +/, " ", line); gsub(/[(] /, "(", line); sub("^ (STRUTLIB_API )?", "", line); print line; line = "" }
-  /\*\// { inside = 0 }' "$root/parser/abi/abi.h" | sort >"$scratch/now"
-grep -E '^#define STRUTLIB_[A-Z_]+ [0-9]+' "$root/parser/abi/abi.h" |
+  /\*\// { inside = 0 }' "$root/parser/bindings/abi/abi.h" | sort >"$scratch/now"
+grep -E '^#define STRUTLIB_[A-Z_]+ [0-9]+' "$root/parser/bindings/abi/abi.h" |
   sed 's| */[*].*||' | grep -v ABI_VERSION | sort >>"$scratch/now"
 while read -r line; do
   grep -qxF "$line" "$scratch/now" || fail "no longer declared: $line"

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "parser/abi/abi.h"
+#include "parser/bindings/abi/abi.h"
 #include "tests/support/test.h"
 
 static const char text[] =

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "parser/abi/abi.h"
+#include "parser/bindings/abi/abi.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

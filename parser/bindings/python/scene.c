@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "parser/python/module.h"
+#include "parser/bindings/python/module.h"
 
 static strutlib_scene *handle(PyObject *self) { return ((strut_py_scene *)self)->scene; }
 

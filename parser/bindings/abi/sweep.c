@@ -7,7 +7,7 @@
 #include "engine/base/number_text.h"
 #include "engine/study/results/study_table.h"
 #include "engine/study/sweep/sweep.h"
-#include "parser/abi/handles.h"
+#include "parser/bindings/abi/handles.h"
 #include "parser/command/fidelity_settings.h"
 #include "parser/command/option_values.h"
 #include "parser/command/run_settings.h"

@@ -2,7 +2,7 @@
 /* Results and simulations, and the arrays that they show. */
 #include <time.h>
 
-#include "parser/python/module.h"
+#include "parser/bindings/python/module.h"
 
 /* ---- an array of doubles by the buffer protocol: numpy.asarray and memoryview see it without a copy ---- */
 

@@ -36,8 +36,8 @@
  * temporary folder below TMPDIR or /tmp, which is gone when the call returns; figures are drawn
  * by Pango and GLib, which abort where memory is out.
  */
-#ifndef STRUT_PARSER_ABI_ABI_H
-#define STRUT_PARSER_ABI_ABI_H
+#ifndef STRUT_PARSER_BINDINGS_ABI_ABI_H
+#define STRUT_PARSER_BINDINGS_ABI_ABI_H
 
 #include <stddef.h>
 

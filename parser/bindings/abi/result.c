@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "engine/base/c_locale.h"
-#include "parser/abi/handles.h"
+#include "parser/bindings/abi/handles.h"
 #include "parser/write/write_scene.h"
 
 abi_tree *abi_tree_read(const char *json) {

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * The Python module strut._strut: objects around the handles of parser/abi/abi.h, in CPython's limited
+ * The Python module strut._strut: objects around the handles of parser/bindings/abi/abi.h, in CPython's limited
  * interface, so that one file serves Python 3.11 and later. It converts and checks; names, tables and
  * everything for people are in the package's Python files.
  *
  * Every object keeps a reference to its module, which holds the types, and to what it was made of: an
  * array lives as long as somebody looks at it, and with it the handle that owns its numbers.
  */
-#ifndef STRUT_PARSER_PYTHON_MODULE_H
-#define STRUT_PARSER_PYTHON_MODULE_H
+#ifndef STRUT_PARSER_BINDINGS_PYTHON_MODULE_H
+#define STRUT_PARSER_BINDINGS_PYTHON_MODULE_H
 
 #define PY_SSIZE_T_CLEAN
 #include <Python.h>

@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "engine/output/results.h"
-#include "parser/abi/handles.h"
+#include "parser/bindings/abi/handles.h"
 #include "parser/command/fidelity_settings.h"
 #include "parser/command/path_options.h"
 #include "parser/command/run_settings.h"

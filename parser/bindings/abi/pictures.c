@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Figures as SVG and pages as HTML, in memory. */
-#include "parser/abi/handles.h"
+#include "parser/bindings/abi/handles.h"
 
 #include "engine/model/state.h"
 #include "engine/output/draw/structure.h"

@@ -9,7 +9,7 @@
 #include "engine/run/simulate.h"
 #include "engine/run/stepping.h"
 #include "engine/statics/equilibria/equilibria.h"
-#include "parser/abi/handles.h"
+#include "parser/bindings/abi/handles.h"
 #include "parser/command/fidelity_settings.h"
 #include "parser/command/option_values.h"
 #include "parser/command/run_settings.h"

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "parser/python/module.h"
+#include "parser/bindings/python/module.h"
 
 /*
  * Long calls. Python runs the handlers of signals between two of its own instructions only, and only in the

@@ -7,7 +7,7 @@
 #include "engine/output/report/reports.h"
 #include "engine/statics/rigidity/rigidity.h"
 #include "engine/statics/rigidity/rigidity_parts.h"
-#include "parser/abi/handles.h"
+#include "parser/bindings/abi/handles.h"
 #include "parser/command/overload_warnings.h"
 #include "parser/command/path_options.h"
 #include "parser/command/statics_options.h"

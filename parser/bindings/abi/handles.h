@@ -2,8 +2,8 @@
 /**
  * What the handles of abi.h are, and what all calls share: errors, messages, entering and leaving.
  */
-#ifndef STRUT_PARSER_ABI_HANDLES_H
-#define STRUT_PARSER_ABI_HANDLES_H
+#ifndef STRUT_PARSER_BINDINGS_ABI_HANDLES_H
+#define STRUT_PARSER_BINDINGS_ABI_HANDLES_H
 
 #include <pthread.h>
 #include <signal.h>
@@ -18,7 +18,7 @@
 #include "engine/output/figures/run_figure.h"
 #include "engine/output/trajectory.h"
 #include "engine/statics/equilibria/equilibria.h"
-#include "parser/abi/abi.h"
+#include "parser/bindings/abi/abi.h"
 #include "parser/command/arguments.h"
 #include "parser/yaml/document.h"
 

@@ -6,7 +6,7 @@
 #include "engine/run/measure/summary.h"
 #include "engine/scene/things.h"
 #include "engine/statics/equilibria/equilibria.h"
-#include "parser/abi/handles.h"
+#include "parser/bindings/abi/handles.h"
 #include "parser/write/write_scene.h"
 #include "parser/yaml/document_parts.h"
 
