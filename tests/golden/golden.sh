@@ -21,6 +21,7 @@ engine="tests/golden/golden.c engine/run/settle.c engine/integrate/rk4.c
   $(ls engine/integrate/events/local_*.c)
   engine/integrate/events/verlet_events.c engine/integrate/events/event_stepping.c
   engine/integrate/events/event_log.c engine/integrate/events/event_location.c
+  engine/integrate/events/event_kinds.c
   engine/integrate/events/contact_modes.c
   engine/integrate/events/contact_compliance.c engine/integrate/events/history_modes.c
   engine/integrate/events/surface_contacts.c engine/integrate/events/variation.c

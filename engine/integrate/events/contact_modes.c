@@ -47,8 +47,7 @@ static strut_contact_axes axes_now(const strut_contact_table *c, const strut_eve
   return strut_contact_pose_at(c, i, l->now->q, l->now->motion, facet).axes;
 }
 
-/* Sets the speed along the ground exactly. */
-static void snap(const strut_model *model, strut_event_stepper *l, int32_t i, double slip) {
+void strut_contact_snap(const strut_model *model, strut_event_stepper *l, int32_t i, double slip) {
   const strut_contact_table *c = &model->contacts;
   double *v = l->now->v + c->at[i];
   if (c->normal[0] == 0.0 && !l->now->frame) {
@@ -83,9 +82,8 @@ static bool is_free_along(const strut_model *model, const strut_event_stepper *l
   return strut_compliance_along(r, axes.tangent) > 1e-12 * r->tangent;
 }
 
-/* Mode of a contact that touches, from its speeds; with surfaces on `facet`, or -1: the nearest. */
-static void close_contact(const strut_model *model, strut_event_stepper *l, int32_t i,
-                          int32_t facet) {
+void strut_contact_close(const strut_model *model, strut_event_stepper *l, int32_t i,
+                         int32_t facet) {
   const strut_contact_entry *e = &model->contacts.entry[i];
   strut_touch o;
   l->mode[i] = STRUT_MODE_SLIDE;
@@ -109,7 +107,7 @@ static void close_contact(const strut_model *model, strut_event_stepper *l, int3
       l->mode[i] = STRUT_MODE_SLIP;
       if (fabs(o.slip) > TIE * model->size * sqrt(e->stiffness * l->response[i].normal)) break;
       l->mode[i] = STRUT_MODE_STICK;
-      snap(model, l, i, 0.0);
+      strut_contact_snap(model, l, i, 0.0);
       break;
   }
 }
@@ -140,9 +138,8 @@ static int32_t overloaded(const strut_model *model, const strut_event_stepper *l
   return found;
 }
 
-/* Derives, letting go of one overloaded stuck contact after the other. */
-static void derive_consistently(const strut_model *model, strut_state *state,
-                                strut_event_stepper *l, double t) {
+void strut_modes_derive(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                        double t) {
   for (int32_t k = 0; k <= model->contacts.count; k++) {
     strut_update_active_set(model, l);
     strut_evaluate_acceleration(model, state, l, t);
@@ -165,9 +162,8 @@ static void find_piece(const strut_model *model, strut_state *state, strut_event
   set_piece(state, l, k, strut_law_piece(e->law, &e->numbers, l->now->stretch[k]));
 }
 
-/* Over the nearer kink of the piece. */
-static void pass_kink(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                      int32_t k) {
+void strut_law_pass_kink(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                         int32_t k) {
   const strut_element *e = &model->elements.element[l->laws[k].element];
   int piece = state->modes.element_piece[l->laws[k].element];
   double low, high;
@@ -190,7 +186,7 @@ static void start_laws(const strut_model *model, strut_state *state, strut_event
       strut_cable_set_acting(state, l, k, true);
   }
   if (memory) strut_history_drop_gone(model, state, l);
-  derive_consistently(model, state, l, t);
+  strut_modes_derive(model, state, l, t);
   for (int32_t n = 0; n < laws; n++) {
     int32_t k = strut_law_of(l, n);
     if (l->laws[k].event == STRUT_EVENT_KINK) {
@@ -206,7 +202,7 @@ static void start_laws(const strut_model *model, strut_state *state, strut_event
       changed = true;
     }
   }
-  if (changed) derive_consistently(model, state, l, t);
+  if (changed) strut_modes_derive(model, state, l, t);
 }
 
 void strut_modes_after_jump(const strut_model *model, strut_state *state, strut_event_stepper *l,
@@ -225,111 +221,9 @@ void strut_modes_start(const strut_model *model, strut_state *state, strut_event
     int32_t i = strut_contact_of(l, k);
     l->mode[i] = STRUT_MODE_OPEN;
     measure_at_end(&model->contacts, l, l->now, i, STRUT_TERMS_ALL, &o);
-    if (o.gap < 0.0 || (o.gap == 0.0 && o.into <= 0.0)) close_contact(model, l, i, -1);
+    if (o.gap < 0.0 || (o.gap == 0.0 && o.into <= 0.0)) strut_contact_close(model, l, i, -1);
   }
   start_laws(model, state, l, t);
-}
-
-/*
- * At the edge of Karnopp's band, u = s delta: outside friction is -s mu N, inside it balances. The
- * node goes where the acceleration on that side leads; where both lead to the edge it creeps along.
- */
-static void decide_at_edge(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                           int32_t i, bool from_inside, double t) {
-  const strut_contact_entry *e = &model->contacts.entry[i];
-  double s = l->side[i];
-  snap(model, l, i, s * e->friction.stick_velocity);
-  l->mode[i] = STRUT_MODE_SLIP;
-  strut_update_active_set(model, l);
-  strut_evaluate_acceleration(model, state, l, t);
-  const strut_touch *o = &l->now->touch[i];
-  double outside = s * o->slip_rate;
-  double most = strut_friction_static(&e->friction, o->applied) * o->normal;
-  bool pushed = fabs(o->applied) >= most;
-  l->mode[i] = pushed && strut_friction_drops(&e->friction) ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
-  l->side[i] = (int8_t)(l->mode[i] == STRUT_MODE_PUSH ? strut_sign(o->applied) : s);
-  strut_update_active_set(model, l);
-  strut_evaluate_acceleration(model, state, l, t);
-  double inside = s * l->now->touch[i].slip_rate;
-  if (inside < 0.0 && (outside < 0.0 || !from_inside)) return;
-  l->side[i] = (int8_t)s;
-  l->mode[i] = outside > 0.0 ? STRUT_MODE_SLIP : STRUT_MODE_CREEP;
-}
-
-/* Where contact i is pushed to. Without a normal force yet, other forces may begin just now: those a step later say. */
-static int8_t side_of_push(const strut_event_stepper *l, int32_t i) {
-  const strut_touch *o = &l->now->touch[i];
-  double applied = o->normal > 0.0 ? o->applied : l->next->touch[i].applied;
-  return applied < 0.0 ? -1 : 1;
-}
-
-static void begin_refinement(const strut_event_stepper *l, int32_t i, double t, double *until) {
-  double time = l->refine_time > 0.0 ? l->refine_time : l->refine_memory * l->settling_time[i];
-  *until = fmax(*until, t + time);
-}
-
-void strut_event_apply(const strut_model *model, strut_state *state, strut_event_stepper *l,
-                       strut_event event, double t) {
-  int32_t i = event.index;
-  switch (event.kind) {
-    case STRUT_EVENT_TOUCH:
-      close_contact(model, l, i, -1);
-      begin_refinement(l, i, t, &state->refined_until);
-      break;
-    case STRUT_EVENT_OPEN: l->mode[i] = STRUT_MODE_OPEN; break;
-    case STRUT_EVENT_SLIP_ENDS:
-      if (stick_band_edge(&model->contacts.entry[i]) > 0.0) {
-        decide_at_edge(model, state, l, i, false, t);
-      } else {
-        snap(model, l, i, 0.0);
-        l->mode[i] = STRUT_MODE_STICK;
-      }
-      break;
-    case STRUT_EVENT_LEAVES_STICK_BAND:
-      l->side[i] = l->now->touch[i].slip < 0.0 ? -1 : 1;
-      decide_at_edge(model, state, l, i, true, t);
-      break;
-    case STRUT_EVENT_STICK_BREAKS:
-      l->side[i] = l->now->touch[i].friction > 0.0 ? -1 : 1;
-      l->mode[i] = STRUT_MODE_SLIP;
-      break;
-    case STRUT_EVENT_CREEP_OUT: l->mode[i] = STRUT_MODE_SLIP; break;
-    case STRUT_EVENT_CREEP_IN: l->mode[i] = STRUT_MODE_BAND; break;
-    case STRUT_EVENT_PUSH:
-      /* back and forth without a step between: the threshold attracts from both sides */
-      if (l->pushed == i && l->pushed_at == t)
-        l->mode[i] = STRUT_MODE_YIELD;
-      else
-        l->mode[i] = l->mode[i] == STRUT_MODE_BAND ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
-      l->pushed = i, l->pushed_at = t;
-      l->side[i] = side_of_push(l, i);
-      break;
-    case STRUT_EVENT_YIELDED: {
-      const strut_touch *o = &l->now->touch[i];
-      const strut_friction *f = &model->contacts.entry[i].friction;
-      bool over = fabs(o->applied) > strut_friction_static(f, o->applied) * o->normal;
-      l->mode[i] = over ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
-      l->side[i] = side_of_push(l, i);
-      break;
-    }
-    case STRUT_EVENT_DAMPER: l->damper[i] = (int8_t)-l->damper[i]; break;
-    case STRUT_EVENT_ACTS:
-      strut_cable_set_acting(state, l, i, !l->acting[i]);
-      if (l->laws[i].whole) strut_history_apply(model, state, l, i, t);
-      break;
-    case STRUT_EVENT_KINK: pass_kink(model, state, l, i); break;
-    case STRUT_EVENT_FACET: {
-      int32_t nearest;
-      strut_surface_facet_margin(&model->contacts, l, l->now, i, &nearest);
-      close_contact(model, l, i, nearest);
-      break;
-    }
-    case STRUT_EVENT_SLIDER:
-    case STRUT_EVENT_BREAK: strut_history_apply(model, state, l, i, t); break;
-    case STRUT_EVENT_RELAY: /* by the stepper */
-    case STRUT_EVENT_NONE: break;
-  }
-  derive_consistently(model, state, l, t);
 }
 
 bool strut_modes_after_step(const strut_model *model, strut_event_stepper *l) {

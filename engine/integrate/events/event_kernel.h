@@ -374,6 +374,23 @@ STRUT_INLINE void advance_within_grid(strut_state *state, strut_event_stepper *l
   state->step++;
 }
 
+/* The gap of a contact at an end of a step; of a closed contact over its facet. */
+STRUT_INLINE double gap_at_end(const strut_contact_table *c, const strut_event_stepper *l,
+                               int32_t i, const strut_step_end *end, unsigned terms) {
+  if (!frames_of(end, terms)) return strut_ground_gap(c, end->q + c->at[i]);
+  int32_t facet = l->mode[i] == STRUT_MODE_OPEN ? -1 : l->facet[i];
+  return strut_contact_pose_at(c, i, end->q, end->motion, facet).gap;
+}
+
+/* The value that the switch of a law ends at 0. */
+STRUT_INLINE double law_value(const strut_event_stepper *l, const strut_step_end *end, int32_t i) {
+  const strut_law_switch *law = &l->laws[i];
+  if (law->event != STRUT_EVENT_ACTS) return end->tension[i];
+  double k = law->stiffness, d = law->damping;
+  double elastic = (k > 0.0 ? k : d > 0.0 ? d / l->wanted_step : 1.0) * end->stretch[i];
+  return strut_law_cable_margin(l->acting[i], elastic, end->tension[i], law->abrupt);
+}
+
 /**
  * Defines NAME_trial, the trial of a strut_step_formula, which runs
  * `take(model, state, l, t, h, terms, balance)`, an inlined function, in copies as those of plain_steps.h.

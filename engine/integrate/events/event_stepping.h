@@ -82,25 +82,49 @@ typedef struct strut_sliding_contact {
   const double *xy;          /* (nodes, 2) */
 } strut_sliding_contact;
 
-/** Something that ends a mode. */
+/**
+ * Something that ends a mode: what it is of, the value that it ends at 0 (positive while the mode holds), that value's
+ * rate (NONE: not known, a secant must do), and what it does to the modes. The functions are in event_kinds.c.
+ */
+#define STRUT_EVENT_KINDS(X)                                                                       \
+  X(NONE, CONTACT, no_end, NULL, no_effect)                                                        \
+  /* an open contact closes */                                                                     \
+  X(TOUCH, CONTACT, gap, NULL, close_nearest)                                                      \
+  /* a closed one opens */                                                                         \
+  X(OPEN, CONTACT, depth, depth_rate, open)                                                        \
+  /* slip ends: u reaches 0, or the band */                                                        \
+  X(SLIP_ENDS, CONTACT, slip_left, slip_rate, end_slip)                                            \
+  /* |u| reaches the edge of the band from inside */                                               \
+  X(LEAVES_STICK_BAND, CONTACT, band_left, band_rate, leave_band)                                  \
+  /* a stuck node's multiplier leaves mu_0 N */                                                    \
+  X(STICK_BREAKS, CONTACT, stick_left, NULL, break_stick)                                          \
+  /* creep's multiplier reaches mu N: slip */                                                      \
+  X(CREEP_OUT, CONTACT, creep_out_left, NULL, creep_out)                                           \
+  /* it reaches the band's force: band */                                                          \
+  X(CREEP_IN, CONTACT, creep_in_left, NULL, creep_in)                                              \
+  /* |F_res| passes mu_0 N inside the band, either way */                                          \
+  X(PUSH, CONTACT, push_left, NULL, push)                                                          \
+  /* F_res leaves the layer about mu_0 N */                                                        \
+  X(YIELDED, CONTACT, yield_left, NULL, end_yield)                                                 \
+  /* the ground damper's sign changes */                                                           \
+  X(DAMPER, CONTACT, speed_left, speed_rate, turn_damper)                                          \
+  /* a cable or an element that carries one sign begins or ceases to act */                        \
+  X(ACTS, LAW, of_law, NULL, act)                                                                  \
+  /* an element's strain passes a kink of its law */                                               \
+  X(KINK, LAW, of_law, NULL, pass_kink)                                                            \
+  /* a slider or a cable at a guide gives way, or holds again */                                   \
+  X(SLIDER, LAW, of_law, NULL, remember)                                                           \
+  /* a member or a hinge breaks */                                                                 \
+  X(BREAK, LAW, of_law, NULL, remember)                                                            \
+  /* another facet of the surface comes nearer to a closed contact */                              \
+  X(FACET, CONTACT, facet_left, NULL, change_facet)                                                \
+  /* the input of a relay passes a threshold; the stepper switches it */                           \
+  X(RELAY, LAW, of_law, NULL, no_effect)
+
 typedef enum strut_event_kind {
-  STRUT_EVENT_NONE,
-  STRUT_EVENT_TOUCH,             /* an open contact closes */
-  STRUT_EVENT_OPEN,              /* a closed one opens */
-  STRUT_EVENT_SLIP_ENDS,         /* slip ends: u reaches 0, or the band */
-  STRUT_EVENT_LEAVES_STICK_BAND, /* |u| reaches the edge of the band from inside */
-  STRUT_EVENT_STICK_BREAKS,      /* a stuck node's multiplier leaves mu_0 N */
-  STRUT_EVENT_CREEP_OUT,         /* creep's multiplier reaches mu N: slip */
-  STRUT_EVENT_CREEP_IN,          /* it reaches the band's force: band */
-  STRUT_EVENT_PUSH,              /* |F_res| passes mu_0 N inside the band, either way */
-  STRUT_EVENT_YIELDED,           /* F_res leaves the layer about mu_0 N */
-  STRUT_EVENT_DAMPER,            /* the ground damper's sign changes */
-  STRUT_EVENT_ACTS,   /* a cable or an element that carries one sign begins or ceases to act */
-  STRUT_EVENT_KINK,   /* an element's strain passes a kink of its law */
-  STRUT_EVENT_SLIDER, /* a slider or a cable at a guide gives way, or holds again */
-  STRUT_EVENT_BREAK,  /* a member or a hinge breaks */
-  STRUT_EVENT_FACET,  /* another facet of the surface comes nearer to a closed contact */
-  STRUT_EVENT_RELAY   /* the input of a relay passes a threshold */
+#define STRUT_EVENT_ROW(NAME, ...) STRUT_EVENT_##NAME,
+  STRUT_EVENT_KINDS(STRUT_EVENT_ROW)
+#undef STRUT_EVENT_ROW
 } strut_event_kind;
 
 /** Something that switches: a cable or an element that carries one sign, an element's kinks, a relay. */
@@ -329,6 +353,19 @@ bool strut_event_rate(const strut_event_stepper *l, const strut_step_end *end,
 /** Before a step of a stepper that predicts: the first touchdown or opening. */
 strut_event strut_event_predict(const strut_model *model, const strut_state *state,
                                 const strut_event_stepper *l, double h);
+/* ---- contact_modes.c: what an event does is made of these ---- */
+
+/** Mode of contact i, which touches, from its speeds; with surfaces on `facet`, or -1: the nearest. */
+void strut_contact_close(const strut_model *model, strut_event_stepper *l, int32_t i,
+                         int32_t facet);
+/** Sets the speed of contact i along the ground exactly. */
+void strut_contact_snap(const strut_model *model, strut_event_stepper *l, int32_t i, double slip);
+/** Law k passes the nearer kink of its piece. */
+void strut_law_pass_kink(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                         int32_t k);
+/** Evaluates l->now at time t, letting go of one overloaded stuck contact after the other. */
+void strut_modes_derive(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                        double t);
 /** Changes the mode at l->now, time t, and leaves it fresh. */
 void strut_event_apply(const strut_model *model, strut_state *state, strut_event_stepper *l,
                        strut_event event, double t);
