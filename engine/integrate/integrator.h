@@ -66,7 +66,7 @@ typedef struct strut_integrator {
   bool (*observe)(const strut_model *model, strut_state *state, void *workspace);
   bool no_memory;         /* cannot step elements with memory */
   bool no_sliding_masses; /* cannot step masses that slide along members */
-  bool tangent;           /* carries variations along: events/variation.h */
+  bool tangent;           /* carries variations along: events/location/variation.h */
   bool solves;            /* linear systems, by the libraries of linear_solver.h */
 } strut_integrator;
 

@@ -131,9 +131,9 @@ typedef struct strut_state_buffers {
 /** Who looks on; NULL: nobody. */
 typedef struct strut_state_watched {
   struct strut_event_log *event_log; /* methods with events note there when modes change, see
-                                        integrate/events/event_log.h */
+                                        integrate/events/location/event_log.h */
   struct strut_variation *variation; /* exact methods with events carry it along, see
-                                        integrate/events/variation.h */
+                                        integrate/events/location/variation.h */
   struct strut_observer *observer;   /* sees each piece of the motion of a method with events, see
                                         integrate/observer.h */
 } strut_state_watched;

@@ -9,7 +9,7 @@ Mutant = namedtuple("Mutant", "name file text instead breaks tests")
 
 MUTANTS = [
     # Bugs that the suite once did not notice.
-    Mutant("slack-cable-pulls", "engine/integrate/events/contact_modes.c",
+    Mutant("slack-cable-pulls", "engine/integrate/events/contacts/contact_modes.c",
            "state->modes.slack_length_threshold[j] = pulls ? -HUGE_VAL : 0.0;\n"
            "  state->modes.slack_force_threshold[j] = pulls ? -HUGE_VAL : HUGE_VAL;",
            "state->modes.slack_length_threshold[j] = -HUGE_VAL;\n"
@@ -45,7 +45,7 @@ MUTANTS = [
            "return damper > -spring ? damper : -spring;", "return damper;",
            "a Hunt-Crossley contact pulls on what leaves it fast",
            "ground_laws|recompute"),
-    Mutant("hunt-crossley-pulls-in-events", "engine/integrate/events/implicit_ground.h",
+    Mutant("hunt-crossley-pulls-in-events", "engine/integrate/events/contacts/implicit_ground.h",
            "return force >= -spring ? force : spring > 0.0 ? -spring : 0.0;", "return force;",
            "the same with implicit dampers, in verlet-events",
            "ground_laws|extremes_events|batch"),
@@ -145,7 +145,7 @@ MUTANTS = [
            "strut_event_apply(model, state, l, event, t + h);",
            "strut_event_apply(model, state, l, event, t);",
            "drives after an event are those of the step's begin", "order|batch|extremes_events|energy"),
-    Mutant("release-to-wrong-side", "engine/integrate/events/contact_modes.c",
+    Mutant("release-to-wrong-side", "engine/integrate/events/contacts/contact_modes.c",
            "      l->side[i] = l->now->touch[i].friction > 0.0 ? -1 : 1;\n      l->mode[i] = STRUT_MODE_SLIP;\n      break;\n    case STRUT_EVENT_CREEP_OUT:",
            "      l->side[i] = l->now->touch[i].friction > 0.0 ? 1 : -1;\n      l->mode[i] = STRUT_MODE_SLIP;\n      break;\n    case STRUT_EVENT_CREEP_OUT:",
            "a contact that breaks away is taken to slide the other way", "friction|extremes_friction|extremes_events"),

@@ -17,15 +17,15 @@ expected=tests/golden/crawler.hash
 # What the run executes, and no more: the mechanics are compiled for each level, the
 # description and its reader once for each compiler.
 engine="tests/golden/golden.c engine/run/settle.c engine/integrate/rk4.c
-  $(ls engine/integrate/small_*.c engine/integrate/events/small_*.c engine/integrate/events/contact_coupling.c)
-  $(ls engine/integrate/events/local_*.c)
+  $(ls engine/integrate/small_*.c engine/integrate/events/small/small_*.c engine/integrate/events/contacts/contact_coupling.c)
+  $(ls engine/integrate/events/regions/local_*.c)
   engine/integrate/events/verlet_events.c engine/integrate/events/event_stepping.c
-  engine/integrate/events/event_log.c engine/integrate/events/event_location.c
-  engine/integrate/events/event_kinds.c
-  engine/integrate/events/contact_modes.c
-  engine/integrate/events/contact_compliance.c engine/integrate/events/history_modes.c
-  engine/integrate/events/surface_contacts.c engine/integrate/events/variation.c
-  engine/integrate/events/mode_tangent.c $(ls engine/integrate/limit/*.c)
+  engine/integrate/events/location/event_log.c engine/integrate/events/location/event_location.c
+  engine/integrate/events/location/event_kinds.c
+  engine/integrate/events/contacts/contact_modes.c
+  engine/integrate/events/contacts/contact_compliance.c engine/integrate/events/contacts/history_modes.c
+  engine/integrate/events/contacts/surface_contacts.c engine/integrate/events/location/variation.c
+  engine/integrate/events/location/mode_tangent.c $(ls engine/integrate/limit/*.c)
   $(ls engine/base/*.c engine/model/*.c engine/forces/*.c)"
 reader=$(find engine/scene parser/yaml parser/expression parser/language parser/read -name '*.c' | sort)
 

@@ -3,7 +3,7 @@
  * Variations against what they must be: differences of runs, the same with steps a tenth as long, and Liouville's
  * theorem, by which the determinant is exp of minus the integral of damping over mass.
  */
-#include "engine/integrate/events/variation.h"
+#include "engine/integrate/events/location/variation.h"
 
 #include <math.h>
 #include <string.h>

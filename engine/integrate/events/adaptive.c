@@ -9,7 +9,7 @@
  */
 #include "engine/integrate/events/dormand_prince.h"
 #include "engine/integrate/events/event_kernel.h"
-#include "engine/integrate/events/small_trials.h"
+#include "engine/integrate/events/small/small_trials.h"
 #include "engine/integrate/integrator.h"
 
 enum { V = 1, A = V + PAIR, KEPT = A + PAIR, STAGES = KEPT + 2 };

@@ -11,9 +11,9 @@
 #include <math.h>
 
 #include "engine/forces/forces_kernel.h"
+#include "engine/integrate/events/contacts/mode_law.h"
+#include "engine/integrate/events/contacts/surface_contacts.h"
 #include "engine/integrate/events/event_stepping.h"
-#include "engine/integrate/events/mode_law.h"
-#include "engine/integrate/events/surface_contacts.h"
 #include "engine/model/pose.h"
 
 /* Normal force of the spring and, where `damped`, the damper, of a contact that touches. */

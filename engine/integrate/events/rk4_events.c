@@ -4,7 +4,7 @@
  * that the fourth order holds through contact, friction and slack cables.
  */
 #include "engine/integrate/events/event_kernel.h"
-#include "engine/integrate/events/small_trials.h"
+#include "engine/integrate/events/small/small_trials.h"
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/rk4_stages.h"
 

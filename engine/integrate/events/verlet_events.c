@@ -3,9 +3,9 @@
  * Velocity Verlet between events, with the ground's dampers implicit: one evaluation a step, no
  * limit from the dampers, and shorter steps for a while after a touchdown.
  */
-#include "engine/integrate/events/contact_coupling.h"
-#include "engine/integrate/events/implicit_ground.h"
-#include "engine/integrate/events/small_trials.h"
+#include "engine/integrate/events/contacts/contact_coupling.h"
+#include "engine/integrate/events/contacts/implicit_ground.h"
+#include "engine/integrate/events/small/small_trials.h"
 #include "engine/integrate/integrator.h"
 
 enum { PREDICTED, STAGES };

@@ -10,8 +10,8 @@
 #ifndef STRUT_ENGINE_RUN_FOLLOW_SYSTEM_H
 #define STRUT_ENGINE_RUN_FOLLOW_SYSTEM_H
 
-#include "engine/integrate/events/event_log.h"
-#include "engine/integrate/events/variation.h"
+#include "engine/integrate/events/location/event_log.h"
+#include "engine/integrate/events/location/variation.h"
 #include "engine/run/orbit/orbit.h"
 
 enum { STRUT_FOLLOW_MOST = 96 }; /* most free coordinates and velocities */

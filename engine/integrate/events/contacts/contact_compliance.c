@@ -1,0 +1,398 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* How contact nodes answer to forces on them, and the multipliers that hold stuck ones. */
+#include <math.h>
+#include <string.h>
+
+#include "engine/integrate/events/contacts/contact_coupling.h"
+#include "engine/integrate/events/event_kernel.h"
+#include "engine/integrate/events/regions/local_events.h"
+#include "engine/integrate/events/small/small_modes.h"
+#include "engine/model/dense_cholesky.h"
+
+/* Entries below this part of a column's largest one change no bit that matters. */
+static const double NEGLIGIBLE = 1e-18;
+/* Sets of stuck contacts above this size are solved for by sweeps, without a matrix. */
+enum { LARGEST_FACTOR = 512 };
+/* So many stuck contacts push column by column; more of them by one solution with the mass matrix. */
+enum { FEW_COLUMNS = 16 };
+/* Steps are not made shorter than by this on a contact's account: its damper is implicit anyway. */
+static const double MOST_REFINED = 64.0;
+
+/* The column of M^-1 for one coordinate of a node, into `column` (length). */
+static void solve_column(const strut_model *model, strut_state *state, uint32_t at,
+                         double *column) {
+  memset(state->latest.force, 0, (size_t)model->length * sizeof(double));
+  state->latest.force[at] = 1.0;
+  strut_mass_solve(model, state->latest.force, column, state->buffers.mass_solve);
+}
+
+/* Then the mass matrix changes with time, and with it the compliances. */
+static bool has_moving_masses(const strut_model *model) {
+  return model->terms & STRUT_TERM_SLIDING_MASS;
+}
+
+/* Where neither axes nor compliances of contacts stay. */
+static bool has_moving_axes(const strut_model *model) {
+  return model->contacts.surface || has_moving_masses(model);
+}
+
+/* The compliances of the node itself, from the column of M^-1. */
+static void find_own(const strut_contact_table *c, double x, double y,
+                     strut_contact_compliance *r) {
+  r->own[0] = x, r->own[1] = y;
+  r->normal = x * c->normal[0] * c->normal[0] + y * c->normal[1] * c->normal[1];
+  r->tangent = x * c->tangent[0] * c->tangent[0] + y * c->tangent[1] * c->tangent[1];
+  if (c->surface) r->normal = r->tangent = fmax(x, y);
+}
+
+/* Marks the nodes that answer to a force, directly or through masses that slide. */
+static void mark_nodes(const strut_model *model, const double *x, const double *y, double least,
+                       uint8_t *answers) {
+  const strut_sliding_table *t = &model->sliding;
+  for (int32_t i = 0; i < model->node_count; i++)
+    answers[i] = fabs(x[2 * i]) > least || fabs(y[2 * i + 1]) > least;
+  for (bool more = t->moving_count > 0; more;) {
+    more = false;
+    for (int32_t k = 0; k < t->moving_count; k++) {
+      const strut_sliding_item *s = &t->item[t->moving[k]];
+      const strut_sliding_answer *r = &t->answer[k];
+      if (!answers[s->at[0] / 2] && !answers[s->at[1] / 2]) continue;
+      for (int32_t i = 0; i < r->count; i++) {
+        more = more || !answers[r->at[i] / 2];
+        answers[r->at[i] / 2] = 1;
+      }
+    }
+  }
+}
+
+static strut_status make_response(const strut_model *model, strut_state *state, int32_t i,
+                                  double *x, double *y, uint8_t *answers,
+                                  strut_contact_compliance *r) {
+  const strut_contact_table *c = &model->contacts;
+  uint32_t at = c->at[i];
+  solve_column(model, state, at, x);
+  solve_column(model, state, at + 1, y);
+  double least = NEGLIGIBLE * fmax(fabs(x[at]), fabs(y[at + 1]));
+  size_t count = 0;
+  mark_nodes(model, x, y, least, answers);
+  for (int32_t k = 0; k < model->node_count; k++) count += answers[k];
+  uint32_t *place = strut_arena_allocate(&state->arena, count, sizeof *place);
+  double *xy = strut_arena_allocate(&state->arena, 2 * count, sizeof *xy);
+  if (!place || !xy) return STRUT_NO_MEMORY;
+  for (int32_t k = 0; k < 2 * model->node_count; k += 2) {
+    if (!answers[k / 2]) continue;
+    place[r->count] = (uint32_t)k;
+    xy[2 * r->count] = x[k];
+    xy[2 * r->count++ + 1] = y[k + 1];
+  }
+  r->at = place, r->xy = xy;
+  find_own(c, x[at], y[at + 1], r);
+  if (!(model->terms & STRUT_TERM_SLIDING_MASS)) return STRUT_OK;
+  double *constant = strut_arena_allocate(&state->arena, 2 * count, sizeof *constant);
+  if (!constant) return STRUT_NO_MEMORY;
+  memcpy(constant, xy, 2 * count * sizeof *constant);
+  r->constant = constant;
+  return STRUT_OK;
+}
+
+/* The compliance of contact i with sliding masses as they have been placed. */
+static void refresh_compliance(const strut_model *model, const strut_state *state,
+                               strut_event_stepper *l, int32_t i) {
+  strut_contact_compliance *r = &l->response[i];
+  double *xy = (double *)r->xy, *column = l->scatter;
+  uint32_t at = model->contacts.at[i];
+  for (int32_t k = 0; k < r->count; k++)
+    for (uint32_t c = 0; c < 2; c++) column[r->at[k] + c] = r->constant[2 * (uint32_t)k + c];
+  strut_sliding_masses_correct(model, state, column);
+  find_own(&model->contacts, column[at], column[at + 1], r);
+  for (int32_t k = 0; k < r->count; k++)
+    for (uint32_t c = 0; c < 2; c++) {
+      xy[2 * (uint32_t)k + c] = column[r->at[k] + c];
+      column[r->at[k] + c] = 0.0;
+    }
+  for (int32_t m = 0; m < model->sliding.moving_count; m++) { /* what is cut from compliances */
+    const strut_sliding_answer *answer = &model->sliding.answer[m];
+    for (int32_t k = 0; k < answer->count; k++)
+      column[answer->at[k]] = column[answer->at[k] + 1] = 0.0;
+  }
+}
+
+void strut_refresh_compliances(const strut_model *model, const strut_state *state,
+                               strut_event_stepper *l) {
+  for (int32_t k = 0; k < l->closed_count; k++) refresh_compliance(model, state, l, l->closed[k]);
+}
+
+/*
+ * How long a closed contact remembers a touchdown: the slower root of m s^2 + k s + c, or, where
+ * nothing damps it, three of its periods.
+ */
+static double settling_time(const strut_contact_entry *e, double inverse_mass) {
+  double rate = 0.5 * e->damping * inverse_mass, square = e->stiffness * inverse_mass;
+  if (!(square > 0.0)) return 0.0;
+  double longest = 18.0 / sqrt(square);
+  if (rate * rate > square) rate -= sqrt(rate * rate - square);
+  return rate * longest > 1.0 ? 1.0 / rate : longest;
+}
+
+static int32_t root_of(int32_t *body, int32_t i) {
+  while (body[i] != i) i = body[i] = body[body[i]];
+  return i;
+}
+
+/* Joins contacts whose responses share a node. */
+static strut_status find_bodies(const strut_model *model, strut_event_stepper *l) {
+  size_t nodes = (size_t)model->node_count;
+  int32_t *seen = strut_allocate(nodes, sizeof *seen), count = model->contacts.count;
+  if (!seen) return STRUT_NO_MEMORY;
+  for (int32_t i = 0; i < count; i++) {
+    const strut_contact_compliance *r = &l->response[i];
+    l->body[i] = i;
+    for (int32_t k = 0; k < r->count; k++) {
+      int32_t *first = &seen[r->at[k] / 2]; /* one more than the index; 0: none yet */
+      if (*first)
+        l->body[root_of(l->body, *first - 1)] = root_of(l->body, i);
+      else
+        *first = i + 1;
+    }
+  }
+  for (int32_t i = 0; i < count; i++) l->body[i] = root_of(l->body, i);
+  strut_release(seen);
+  return STRUT_OK;
+}
+
+strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *state,
+                                         const strut_integrator_settings *e,
+                                         strut_event_stepper *l) {
+  const strut_contact_table *c = &model->contacts;
+  double *x = l->next->q, *y = l->next->v;
+  double fastest = 0.0;
+  memset(x, 0, (size_t)model->length * sizeof *x);
+  memset(y, 0, (size_t)model->length * sizeof *y);
+  uint8_t *answers =
+      strut_arena_allocate(&state->arena, (size_t)model->node_count, sizeof *answers);
+  if (!answers) return STRUT_NO_MEMORY;
+  if (model->terms & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_place(model, state, 0.0);
+  for (int32_t i = 0; i < c->count; i++) {
+    strut_status status = make_response(model, state, i, x, y, answers, &l->response[i]);
+    if (status) return status;
+    if (model->terms & STRUT_TERM_SLIDING_MASS) refresh_compliance(model, state, l, i);
+    l->settling_time[i] = settling_time(&c->entry[i], l->response[i].normal);
+    fastest = fmax(fastest, c->entry[i].damping * l->response[i].normal);
+    fastest = fmax(fastest, sqrt(c->entry[i].stiffness * l->response[i].normal));
+  }
+  double wanted = ceil(fastest * e->step / e->refine_rate);
+  l->wanted_step = e->step;
+  l->refine = e->refine > 0.0 ? e->refine : fmin(fmax(1.0, wanted), MOST_REFINED);
+  l->refine_time = e->refine_time;
+  l->refine_memory = e->refine_memory;
+  l->passes = c->surface || (c->normal[0] != 0.0 && !model->mass->shared) ? 8 : 1;
+  l->stuck_room = c->count < LARGEST_FACTOR ? c->count : LARGEST_FACTOR;
+  size_t room = (size_t)l->stuck_room;
+  l->stuck_factor = strut_arena_allocate(&state->arena, room * room, sizeof(double));
+  l->stuck_work = strut_arena_allocate(&state->arena, (size_t)c->count, sizeof(double));
+  l->body_seen = strut_arena_allocate(&state->arena, (size_t)c->count, sizeof *l->body_seen);
+  l->sliding = strut_arena_allocate(&state->arena, (size_t)c->count, sizeof *l->sliding);
+  if (!l->stuck_factor || !l->stuck_work || !l->body_seen || !l->sliding) return STRUT_NO_MEMORY;
+  strut_status status = strut_contact_coupling_create(model, state, l);
+  return status ? status : find_bodies(model, l);
+}
+
+void strut_apply_contact_impulse(const strut_event_stepper *l, int32_t i,
+                                 const strut_contact_axes *axes, double normal, double tangential,
+                                 double *a) {
+  const strut_contact_compliance *r = &l->response[i];
+  double fx = tangential * axes->tangent[0] + normal * axes->normal[0];
+  double fy = tangential * axes->tangent[1] + normal * axes->normal[1];
+  for (int32_t k = 0; k < r->count; k++) {
+    a[r->at[k]] += r->xy[2 * k] * fx;
+    a[r->at[k] + 1] += r->xy[2 * k + 1] * fy;
+  }
+}
+
+/* In place, lower triangle; false if it is not positive definite. */
+static bool factor(int32_t n, double *a) {
+  for (int32_t j = 0; j < n; j++) {
+    for (int32_t k = 0; k < j; k++)
+      for (int32_t i = j; i < n; i++) a[i * n + j] -= a[i * n + k] * a[j * n + k];
+    if (!(a[j * n + j] > 0.0)) return false;
+    double root = sqrt(a[j * n + j]);
+    for (int32_t i = j; i < n; i++) a[i * n + j] /= root;
+  }
+  return true;
+}
+
+/* T' M^-1 T of the stuck contacts, column by column through the scatter array. */
+static void factor_stuck(const strut_model *model, strut_event_stepper *l,
+                         const strut_contact_frame *frame) {
+  const strut_contact_table *c = &model->contacts;
+  int32_t n = l->stuck_count;
+  for (int32_t j = 0; j < n; j++) {
+    const strut_contact_compliance *r = &l->response[l->stuck[j]];
+    const double *t = strut_axes_of_contact(c, frame, l->stuck[j])->tangent;
+    for (int32_t k = 0; k < r->count; k++) {
+      l->scatter[r->at[k]] = r->xy[2 * k] * t[0];
+      l->scatter[r->at[k] + 1] = r->xy[2 * k + 1] * t[1];
+    }
+    for (int32_t i = j; i < n; i++) {
+      uint32_t at = c->at[l->stuck[i]];
+      const double *s = strut_axes_of_contact(c, frame, l->stuck[i])->tangent;
+      l->stuck_factor[i * n + j] = l->scatter[at] * s[0] + l->scatter[at + 1] * s[1];
+    }
+    for (int32_t k = 0; k < r->count; k++) l->scatter[r->at[k]] = l->scatter[r->at[k] + 1] = 0.0;
+  }
+  if (!factor(n, l->stuck_factor)) l->stuck_count = -n; /* singular: by sweeps */
+}
+
+static bool is_sliding(const strut_event_stepper *l, const strut_contact_entry *e, int32_t i) {
+  if (e->dissipation > 0.0) return false;
+  return l->mode[i] == STRUT_MODE_SLIP ||
+         (l->mode[i] == STRUT_MODE_SLIDE && !strut_friction_is_continuous(e->friction.law));
+}
+
+static void list_sliding_contacts(const strut_model *model, strut_event_stepper *l) {
+  l->all_sliding = l->contacts_decoupled;
+  for (int32_t k = 0; k < l->closed_count && l->all_sliding; k++) {
+    int32_t i = l->closed[k];
+    const strut_contact_entry *e = &model->contacts.entry[i];
+    const strut_contact_compliance *r = &l->response[i];
+    bool slips = l->mode[i] == STRUT_MODE_SLIP;
+    l->all_sliding = is_sliding(l, e, i);
+    l->sliding[k] = (strut_sliding_contact){
+        .at = model->contacts.at[i],
+        .index = i,
+        .nodes = r->count,
+        .stiffness = e->stiffness,
+        .damping = e->damping,
+        .answer = r->normal,
+        .friction = slips ? -l->side[i] * strut_friction_kinetic(&e->friction, l->side[i]) : 0.0,
+        .side = slips ? l->side[i] : 0.0,
+        .edge = slips ? stick_band_edge(e) : 0.0,
+        .place = r->at,
+        .xy = r->xy};
+  }
+}
+
+static void factor_matrix(const strut_model *model, strut_event_stepper *l) {
+  if (l->coupling)
+    strut_contact_coupling_factor(model, l);
+  else
+    factor_stuck(model, l, NULL);
+}
+
+void strut_update_active_set(const strut_model *model, strut_event_stepper *l) {
+  strut_small_modes_change(l);
+  l->closed_count = l->stuck_count = 0;
+  l->contacts_decoupled = model->contacts.normal[0] == 0.0 && !has_moving_axes(model);
+  int32_t count = strut_contacts_of(model, l);
+  for (int32_t k = 0; k < count; k++) l->body_seen[l->body[strut_contact_of(l, k)]] = false;
+  for (int32_t k = 0; k < count; k++) {
+    int32_t i = strut_contact_of(l, k);
+    l->outward[i] = l->mode[i] == STRUT_MODE_OPEN ? 1.0 : -1.0;
+    if (l->mode[i] == STRUT_MODE_OPEN) continue;
+    if (l->body_seen[l->body[i]]) l->contacts_decoupled = false;
+    l->body_seen[l->body[i]] = true;
+    l->closed[l->closed_count++] = i;
+    if (l->mode[i] == STRUT_MODE_STICK || l->mode[i] == STRUT_MODE_CREEP)
+      if (l->response[i].tangent > 0.0) l->stuck[l->stuck_count++] = i;
+  }
+  if (l->within) {
+    l->all_sliding = l->contacts_decoupled = false;
+    strut_local_factor(model, l);
+    return;
+  }
+  list_sliding_contacts(model, l);
+  if (l->stuck_count > l->stuck_room)
+    l->stuck_count = -l->stuck_count;
+  else if (l->stuck_count > 1 && !l->now->frame && !has_moving_masses(model))
+    factor_matrix(model, l);
+}
+
+/* Rate of the sliding speed of a contact under the accelerations x. */
+STRUT_INLINE double along(const strut_contact_table *c, int32_t i, const double *x,
+                          const strut_contact_frame *frame) {
+  const double *t = strut_axes_of_contact(c, frame, i)->tangent;
+  double rate = x[c->at[i]] * t[0] + x[c->at[i] + 1] * t[1];
+  return frame ? rate + frame[i].slip_drift : rate;
+}
+
+/* What rounding leaves of the accelerations of held nodes: nothing, so that they do not creep. */
+STRUT_INLINE void still(const strut_contact_table *c, int32_t i, double *a,
+                        const strut_contact_frame *frame) {
+  const double *t = strut_axes_of_contact(c, frame, i)->tangent;
+  double rest = along(c, i, a, frame);
+  a[c->at[i]] -= rest * t[0];
+  a[c->at[i] + 1] -= rest * t[1];
+}
+
+STRUT_INLINE double tangent_compliance(const strut_event_stepper *l, int32_t i,
+                                       const strut_contact_frame *frame) {
+  if (!frame) return l->response[i].tangent;
+  return strut_compliance_along(&l->response[i], frame[i].axes.tangent);
+}
+
+/* One after the other until none needs more: for sets too large for a matrix. */
+static void hold_by_sweeps(const strut_model *model, const strut_event_stepper *l, double *a,
+                           strut_step_end *end) {
+  const strut_contact_table *c = &model->contacts;
+  int32_t n = l->stuck_count < 0 ? -l->stuck_count : l->stuck_count;
+  for (int sweep = 0; sweep < 200; sweep++) {
+    double largest = 0.0, changed = 0.0;
+    for (int32_t k = 0; k < n; k++) {
+      int32_t i = l->stuck[k];
+      double more = -along(c, i, a, end->frame) / tangent_compliance(l, i, end->frame);
+      strut_apply_contact_impulse(l, i, strut_axes_of_contact(c, end->frame, i), 0.0, more, a);
+      end->touch[i].friction += more;
+      changed = fmax(changed, fabs(more));
+      largest = fmax(largest, fabs(end->touch[i].friction));
+    }
+    if (changed <= 1e-15 * largest) break;
+  }
+}
+
+STRUT_INLINE void hold_stuck(const strut_model *model, strut_event_stepper *l, double *a,
+                             strut_step_end *end, unsigned terms) {
+  const strut_contact_frame *frame = frames_of(end, terms);
+  const strut_contact_table *c = &model->contacts;
+  int32_t n = l->stuck_count;
+  double *x = l->stuck_work;
+  if ((frame || has_moving_masses(model)) &&
+      n > 1) { /* their axes turn, or have not been known until now */
+    factor_stuck(model, l, frame);
+    bool singular = l->stuck_count < 0;
+    l->stuck_count = n;
+    if (singular) {
+      hold_by_sweeps(model, l, a, end);
+      return;
+    }
+  }
+  if (n < 0) {
+    hold_by_sweeps(model, l, a, end);
+    return;
+  }
+  for (int32_t k = 0; k < n; k++) x[k] = -along(c, l->stuck[k], a, frame);
+  if (n == 1) {
+    x[0] /= tangent_compliance(l, l->stuck[0], frame);
+  } else if (l->coupling) {
+    strut_contact_coupling_solve(l, x);
+  } else {
+    strut_cholesky_solve(n, l->stuck_factor, x);
+  }
+  bool together = l->coupling && !model->mass->diagonal && n > FEW_COLUMNS;
+  if (together) strut_contact_coupling_push(model, l, x, a);
+  for (int32_t k = 0; k < n; k++) {
+    int32_t i = l->stuck[k];
+    if (!together)
+      strut_apply_contact_impulse(l, i, strut_axes_of_contact(c, frame, i), 0.0, x[k], a);
+    end->touch[i].friction += x[k];
+    still(c, i, a, frame);
+  }
+  for (int32_t k = 0; k < n; k++) still(c, l->stuck[k], a, frame);
+}
+
+void strut_solve_stick_constraints(const strut_model *model, strut_event_stepper *l, double *a,
+                                   strut_step_end *end) {
+  if (end->frame)
+    hold_stuck(model, l, a, end, STRUT_TERMS_ALL);
+  else
+    hold_stuck(model, l, a, end, STRUT_TERMS_COMMON);
+}

@@ -1,0 +1,330 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/integrate/events/location/mode_tangent.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "engine/forces/tangent.h"
+#include "engine/integrate/events/event_kernel.h"
+
+/* Terms that a tangent knows; those among them that it differentiates by differences. */
+enum {
+  KNOWN = STRUT_TERM_MEMBERS | STRUT_TERM_DAMPING | STRUT_TERM_SLACK | STRUT_TERM_DRIVE |
+          STRUT_TERM_CONSTANT | STRUT_TERM_LOADS | STRUT_TERM_CONTACT | STRUT_TERM_FRICTION |
+          STRUT_TERM_SLOPE | STRUT_TERM_SOLVE | STRUT_TERM_LAWS | STRUT_TERM_DIRECTION |
+          STRUT_TERM_ELEMENTS | STRUT_TERM_ACTUATOR_FORCES | STRUT_TERM_MASS_DAMPING,
+  DIFFERENCED = STRUT_TERM_ELEMENTS | STRUT_TERM_ACTUATOR_FORCES | STRUT_TERM_MASS_DAMPING
+};
+/* Steps of central differences: of positions over the size, of speeds over size per step, and of the
+   arguments of friction laws. */
+static const double DIFFERENCE = 1e-6;
+/* Where a damper of the approach gives less than this part of the reaction the contact rests: it acts for
+   half of the small motions about rest. */
+static const double RESTING = 1e-9;
+/* A contact that others hold already adds nothing. */
+static const double DEPENDENT = 1e-12;
+
+bool strut_mode_tangent_possible(const strut_model *model) {
+  return !(model->terms & ~(unsigned)KNOWN) && model->mass && !model->contacts.surface;
+}
+
+static bool allocate(const strut_model *model, strut_arena *arena, strut_mode_tangent *t) {
+  size_t n = (size_t)t->n, wide = n * (size_t)t->width, length = (size_t)model->length;
+  size_t contacts = (size_t)model->contacts.count;
+  return (t->inverse = strut_arena_allocate(arena, n * n, sizeof(double))) &&
+         (t->force = strut_arena_allocate(arena, wide, sizeof(double))) &&
+         (t->rate = strut_arena_allocate(arena, wide, sizeof(double))) &&
+         (t->functional = strut_arena_allocate(arena, contacts * n, sizeof(double))) &&
+         (t->response = strut_arena_allocate(arena, contacts * n, sizeof(double))) &&
+         (t->place = strut_arena_allocate(arena, length, sizeof(double))) &&
+         (t->speed = strut_arena_allocate(arena, length, sizeof(double))) &&
+         (t->pull = strut_arena_allocate(arena, (size_t)t->width, sizeof(double)));
+}
+
+/* M^-1, a column a free coordinate. */
+static void invert_mass(const strut_model *model, strut_state *state, strut_mode_tangent *t) {
+  memset(t->place, 0, (size_t)model->length * sizeof(double));
+  for (int32_t j = 0; j < t->n; j++) {
+    memset(state->latest.force, 0, (size_t)model->length * sizeof(double));
+    state->latest.force[t->coordinate[j]] = 1.0;
+    strut_mass_solve(model, state->latest.force, t->place, state->buffers.mass_solve);
+    for (int32_t i = 0; i < t->n; i++) t->inverse[i * t->n + j] = t->place[t->coordinate[i]];
+  }
+}
+
+strut_mode_tangent *strut_mode_tangent_create(const strut_model *model, strut_state *state) {
+  strut_arena *arena = &state->arena;
+  size_t length = (size_t)model->length;
+  strut_mode_tangent *t = strut_arena_allocate(arena, 1, sizeof *t);
+  if (!t || !(t->coordinate = strut_arena_allocate(arena, length, sizeof *t->coordinate)) ||
+      !(t->row_of = strut_arena_allocate(arena, length, sizeof *t->row_of)))
+    return NULL;
+  t->n = strut_number_free(model, NULL, t->row_of, t->coordinate);
+  t->width = (2 * t->n + STRUT_LANES - 1) / STRUT_LANES * STRUT_LANES;
+  t->plain = !(model->terms & DIFFERENCED);
+  if (!allocate(model, arena, t)) return NULL;
+  invert_mass(model, state, t);
+  return t;
+}
+
+/* ---- contacts that stick ---- */
+
+static double product(int32_t n, const double *a, const double *b) {
+  double sum = 0.0;
+  for (int32_t i = 0; i < n; i++) sum += a[i] * b[i];
+  return sum;
+}
+
+/* Adds a contact: its tangent, made orthogonal with respect to M^-1 to those before. */
+static void hold_contact(const strut_model *model, int32_t contact, strut_mode_tangent *t) {
+  int32_t n = t->n;
+  double *f = t->functional + t->held * n, *r = t->response + t->held * n;
+  memset(f, 0, (size_t)n * sizeof(double));
+  for (uint32_t c = 0; c < 2; c++) {
+    int32_t row = t->row_of[model->contacts.at[contact] + c];
+    if (row >= 0) f[row] = model->contacts.tangent[c];
+  }
+  for (int32_t i = 0; i < n; i++) r[i] = product(n, t->inverse + i * n, f);
+  double whole = product(n, f, r);
+  for (int32_t k = 0; k < t->held; k++) {
+    const double *g = t->functional + k * n, *s = t->response + k * n;
+    double part = product(n, g, r);
+    for (int32_t i = 0; i < n; i++) f[i] -= part * g[i], r[i] -= part * s[i];
+  }
+  double left = product(n, f, r);
+  if (!(left > DEPENDENT * whole)) return;
+  double root = sqrt(left);
+  for (int32_t i = 0; i < n; i++) f[i] /= root, r[i] /= root;
+  t->held++;
+}
+
+void strut_mode_tangent_hold(const strut_model *model, const strut_event_stepper *l,
+                             strut_mode_tangent *t) {
+  t->held = 0;
+  for (int32_t k = 0; k < l->closed_count; k++) {
+    uint8_t mode = l->mode[l->closed[k]];
+    if (mode == STRUT_MODE_STICK || mode == STRUT_MODE_CREEP) hold_contact(model, l->closed[k], t);
+  }
+}
+
+STRUT_CLONES
+static void remove_motion(int32_t n, int32_t width, const double *restrict functional,
+                          const double *restrict response, double *restrict x,
+                          double *restrict amount) {
+  for (int32_t c = 0; c < width; c++) amount[c] = 0.0;
+  for (int32_t i = 0; i < n; i++)
+    for (int32_t c = 0; c < width && functional[i] != 0.0; c++)
+      amount[c] += functional[i] * x[i * width + c];
+  for (int32_t i = 0; i < n; i++)
+    for (int32_t c = 0; c < width; c++) x[i * width + c] -= response[i] * amount[c];
+}
+
+void strut_mode_tangent_project(const strut_mode_tangent *t, double *x, int32_t width) {
+  for (int32_t k = 0; k < t->held; k++)
+    remove_motion(t->n, width, t->functional + k * t->n, t->response + k * t->n, x, t->pull);
+}
+
+/* ---- forces ---- */
+
+/* Adds `block` (2, 2), of the force on node a to what b has more than a, at columns `first` on. */
+STRUT_INLINE void add_block(strut_mode_tangent *t, const int32_t a[2], const int32_t b[2],
+                            double block[2][2], int32_t first) {
+  for (int r = 0; r < 2; r++)
+    for (int c = 0; c < 2; c++) {
+      double x = block[r][c];
+      int32_t ca = first + a[c], cb = first + b[c];
+      if (a[r] >= 0 && a[c] >= 0) t->force[a[r] * t->width + ca] -= x;
+      if (a[r] >= 0 && b[c] >= 0) t->force[a[r] * t->width + cb] += x;
+      if (b[r] >= 0 && a[c] >= 0) t->force[b[r] * t->width + ca] += x;
+      if (b[r] >= 0 && b[c] >= 0) t->force[b[r] * t->width + cb] -= x;
+    }
+}
+
+/* Member j: with d from end to end and w its rate, tension c (L - rest) + k (L' - rest'), L' = u . w. */
+STRUT_INLINE void add_member(const strut_model *model, const strut_state *state, int32_t j,
+                             const double *q, const double *v, strut_mode_tangent *t) {
+  const strut_member_table *m = &model->members;
+  uint32_t from = m->from[j], to = m->to[j];
+  double x = q[to] - q[from], y = q[to + 1] - q[from + 1], length = sqrt(x * x + y * y);
+  if (!(length > 0.0)) return;
+  double u[2] = {x / length, y / length}, w[2] = {v[to] - v[from], v[to + 1] - v[from + 1]};
+  double rate = u[0] * w[0] + u[1] * w[1], c = m->stiffness[j], k = m->damping[j];
+  double stretch = length - state->latest.rest[j];
+  double tension = c * stretch + k * (rate - state->latest.rest_rate[j]);
+  if (!(stretch > state->modes.slack_length_threshold[j] &&
+        tension > state->modes.slack_force_threshold[j]))
+    return;
+  const int32_t *a = t->row_of + from, *b = t->row_of + to;
+  double stiffness[2][2], damping[2][2], across = tension / length;
+  for (int r = 0; r < 2; r++)
+    for (int s = 0; s < 2; s++) {
+      double turn = k * (w[s] - rate * u[s]) / length; /* of the rate as the member turns */
+      stiffness[r][s] = u[r] * (c * u[s] + turn) + across * ((r == s) - u[r] * u[s]);
+      damping[r][s] = k * u[r] * u[s];
+    }
+  add_block(t, a, b, stiffness, 0);
+  if (k != 0.0) add_block(t, a, b, damping, t->n);
+}
+
+/* The same of all forces but the ground's, by differences. */
+static void difference_forces(const strut_model *model, strut_state *state,
+                              const strut_event_stepper *l, double time, const double *q,
+                              const double *v, strut_mode_tangent *t) {
+  bool balance = state->balance;
+  const double unit[2] = {DIFFERENCE * model->size, DIFFERENCE * model->size / l->wanted_step};
+  state->balance = false;
+  memcpy(t->place, q, (size_t)model->length * sizeof(double));
+  memcpy(t->speed, v, (size_t)model->length * sizeof(double));
+  for (int32_t j = 0; j < 2 * t->n; j++) {
+    int32_t of = j / t->n, at = t->coordinate[j % t->n];
+    double *x = of ? &t->speed[at] : &t->place[at], keep = *x, two = 2.0 * unit[of];
+    for (int side = -1; side <= 1; side += 2) {
+      *x = keep + side * unit[of];
+      forces_of_structure(model, state, time, t->place, t->speed, STRUT_TERMS_ALL, false);
+      for (int32_t i = 0; i < t->n; i++)
+        t->force[i * t->width + j] += side * state->latest.force[t->coordinate[i]] / two;
+    }
+    *x = keep;
+  }
+  state->balance = balance;
+}
+
+/* ---- the ground ---- */
+
+/* Derivatives of the friction to normal force, slip and applied force. */
+typedef struct friction_slopes {
+  double normal, slip, applied;
+} friction_slopes;
+
+static double slope_of(const strut_contact_entry *e, uint8_t mode, int8_t side, const double x[3],
+                       int argument, double step) {
+  double low[3] = {x[0], x[1], x[2]}, high[3] = {x[0], x[1], x[2]};
+  low[argument] -= step, high[argument] += step;
+  double more = friction_in_mode(e, mode, side, high[0], high[1], high[2]);
+  return (more - friction_in_mode(e, mode, side, low[0], low[1], low[2])) / (2.0 * step);
+}
+
+static friction_slopes slopes_of(const strut_contact_entry *e, uint8_t mode, int8_t side,
+                                 double normal, double slip, double applied) {
+  switch ((strut_contact_mode)mode) {
+    case STRUT_MODE_SLIP:
+    case STRUT_MODE_PUSH:
+      return (friction_slopes){.normal = -side * strut_friction_kinetic(&e->friction, side)};
+    case STRUT_MODE_BAND: {
+      double most = strut_friction_static(&e->friction, applied);
+      if (applied > most * normal) return (friction_slopes){.normal = -most};
+      if (applied < -most * normal) return (friction_slopes){.normal = most};
+      return (friction_slopes){.applied = -1.0};
+    }
+    case STRUT_MODE_SLIDE:
+    case STRUT_MODE_YIELD: {
+      const double x[3] = {normal, slip, applied};
+      double force = DIFFERENCE * (fabs(normal) + fabs(applied)) + 1e-300;
+      double speed = DIFFERENCE * (fabs(slip) + e->friction.stick_velocity) + 1e-12;
+      return (friction_slopes){.normal = slope_of(e, mode, side, x, 0, force),
+                               .slip = slope_of(e, mode, side, x, 1, speed),
+                               .applied = slope_of(e, mode, side, x, 2, force)};
+    }
+    case STRUT_MODE_OPEN:
+    case STRUT_MODE_STICK:
+    case STRUT_MODE_CREEP: break;
+  }
+  return (friction_slopes){0};
+}
+
+/* Does the friction of some closed contact depend on the other forces on its node? */
+static bool asks_applied(const strut_event_stepper *l) {
+  for (int32_t k = 0; k < l->closed_count; k++) {
+    uint8_t mode = l->mode[l->closed[k]];
+    if (mode == STRUT_MODE_BAND || mode == STRUT_MODE_YIELD || mode == STRUT_MODE_SLIDE)
+      return true;
+  }
+  return false;
+}
+
+/* Does contact i stay where it is through the step, but for rounding? */
+static bool is_resting(const strut_contact_entry *e, const strut_event_stepper *l, int32_t i) {
+  const strut_touch *from = &l->now->touch[i], *to = &l->next->touch[i];
+  double most = RESTING * fabs(to->normal);
+  return e->damping * fabs(from->into) <= most && e->damping * fabs(to->into) <= most;
+}
+
+/* Derivatives of the normal force to gap and speed out of the ground. */
+static void differentiate_normal(const strut_contact_entry *e, int8_t damper, bool resting,
+                                 const strut_touch *o, double *gap, double *into) {
+  if (e->dissipation > 0.0) {
+    bool acts = o->normal > 0.0 || o->gap >= 0.0;
+    *gap = acts ? -e->stiffness * (1.0 - e->dissipation * o->into) : 0.0;
+    *into = acts ? e->stiffness * o->gap * e->dissipation : 0.0;
+    return;
+  }
+  bool acts = damper ? damper > 0 : o->into < 0.0;
+  *gap = -e->stiffness;
+  *into = resting ? -0.5 * e->damping : acts ? -e->damping : 0.0;
+}
+
+static void add_contact(const strut_model *model, const strut_state *state,
+                        const strut_event_stepper *l, int32_t i, const double *q, const double *v,
+                        strut_mode_tangent *t) {
+  const strut_contact_table *c = &model->contacts;
+  const strut_contact_entry *e = &c->entry[i];
+  const int32_t *row = t->row_of + c->at[i];
+  double gap, into, *pull = t->pull, *x[2] = {NULL, NULL};
+  strut_touch o;
+  for (int k = 0; k < 2; k++)
+    if (row[k] >= 0) x[k] = t->force + row[k] * t->width;
+  measure_on_line(c, i, q, v, &o);
+  o.applied = strut_contact_along_ground(c, i, state->latest.force);
+  o.normal = contact_normal_force(e, l->damper[i], o.gap, o.into, true);
+  friction_slopes f = slopes_of(e, l->mode[i], l->side[i], o.normal, o.slip, o.applied);
+  differentiate_normal(e, l->damper[i], is_resting(e, l, i), &o, &gap, &into);
+  for (int32_t k = 0; k < t->width; k++) {
+    double along = (x[0] ? c->tangent[0] * x[0][k] : 0.0) + (x[1] ? c->tangent[1] * x[1][k] : 0.0);
+    pull[k] = f.applied * along;
+  }
+  for (int k = 0; k < 2; k++) {
+    if (row[k] < 0) continue;
+    pull[row[k]] += f.normal * gap * c->normal[k];
+    pull[t->n + row[k]] += f.normal * into * c->normal[k] + f.slip * c->tangent[k];
+  }
+  for (int k = 0; k < 2; k++) {
+    if (!x[k]) continue;
+    for (int32_t j = 0; j < t->width; j++) x[k][j] += pull[j] * c->tangent[k];
+    for (int j = 0; j < 2; j++) {
+      if (row[j] < 0) continue;
+      x[k][row[j]] += gap * c->normal[j] * c->normal[k];
+      x[k][t->n + row[j]] += into * c->normal[j] * c->normal[k];
+    }
+  }
+}
+
+/* rate = inverse force, row by row; half of the inverse is zeros, between x and y. */
+STRUT_CLONES
+static void divide_rows(int32_t n, int32_t width, const double *restrict inverse,
+                        const double *restrict force, double *restrict rate) {
+  for (int32_t i = 0; i < n; i++) {
+    double *restrict row = rate + i * width;
+    for (int32_t c = 0; c < width; c++) row[c] = 0.0;
+    for (int32_t k = 0; k < n; k++) {
+      double part = inverse[i * n + k];
+      if (part == 0.0) continue;
+      for (int32_t c = 0; c < width; c++) row[c] += part * force[k * width + c];
+    }
+  }
+}
+
+void strut_mode_tangent_evaluate(const strut_model *model, strut_state *state,
+                                 const strut_event_stepper *l, double time, const double *q,
+                                 const double *v, strut_mode_tangent *t) {
+  memset(t->force, 0, (size_t)(t->n * t->width) * sizeof(double));
+  if (!t->plain) difference_forces(model, state, l, time, q, v, t);
+  if (!t->plain || asks_applied(l))
+    forces_of_structure(model, state, time, q, v, STRUT_TERMS_ALL, false);
+  else if ((model->terms & STRUT_TERM_DRIVE) && time != state->latest.drive_time)
+    strut_drive_apply(model, state, time);
+  for (int32_t j = 0; j < model->members.count && t->plain; j++)
+    add_member(model, state, j, q, v, t);
+  for (int32_t k = 0; k < l->closed_count; k++) add_contact(model, state, l, l->closed[k], q, v, t);
+  divide_rows(t->n, t->width, t->inverse, t->force, t->rate);
+  strut_mode_tangent_project(t, t->rate, t->width);
+}

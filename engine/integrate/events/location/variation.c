@@ -1,0 +1,278 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/integrate/events/location/variation.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "engine/integrate/events/event_kernel.h"
+#include "engine/integrate/events/location/mode_tangent.h"
+
+enum { MOST_STAGES = 6 };
+/* Differences of an event's value: in time, in grid steps; along columns, relative to size and size per
+   step. */
+static const double TIME_DIFFERENCE = 1e-4, DIFFERENCE = 1e-7;
+
+bool strut_variation_possible(const strut_model *model, const strut_integrator *method) {
+  return method->tangent && strut_mode_tangent_possible(model);
+}
+
+strut_variation *strut_variation_create(const strut_model *model, strut_state *state) {
+  strut_arena *arena = &state->arena;
+  strut_variation *x = strut_arena_allocate(arena, 1, sizeof *x);
+  if (!x || !(x->tangent = strut_mode_tangent_create(model, state))) return NULL;
+  x->n = x->tangent->n, x->stride = x->tangent->width;
+  x->place = x->tangent->coordinate;
+  size_t rows = 2 * (size_t)x->n, all = rows * (size_t)x->stride, length = (size_t)model->length;
+  bool good = (x->columns = strut_arena_allocate(arena, all, sizeof(double))) &&
+              (x->middle = strut_arena_allocate(arena, all, sizeof(double))) &&
+              (x->delay = strut_arena_allocate(arena, (size_t)x->stride, sizeof(double))) &&
+              (x->gradient = strut_arena_allocate(arena, (size_t)x->stride, sizeof(double))) &&
+              (x->before = strut_arena_allocate(arena, (size_t)x->n, sizeof(double))) &&
+              (x->stage_q = strut_arena_allocate(arena, length, sizeof(double))) &&
+              (x->drift = strut_arena_allocate(arena, length, sizeof(double))) &&
+              (x->slope = strut_arena_allocate(arena, MOST_STAGES, sizeof *x->slope));
+  for (int k = 0; k < MOST_STAGES && good; k++)
+    good = (x->slope[k] = strut_arena_allocate(arena, all, sizeof(double)));
+  return good ? x : NULL;
+}
+
+void strut_variation_reset(strut_variation *x) {
+  size_t all = 2 * (size_t)x->n * (size_t)x->stride;
+  memset(x->columns, 0, all * sizeof(double));
+  for (int32_t i = 0; i < 2 * x->n; i++) x->columns[i * x->stride + i] = 1.0;
+}
+
+static double *velocities(const strut_variation *x) { return x->columns + x->n * x->stride; }
+
+void strut_variation_begin(const strut_model *model, strut_state *state,
+                           const strut_event_stepper *l) {
+  strut_variation *x = state->watched.variation;
+  memset(x->delay, 0, (size_t)x->stride * sizeof(double));
+  strut_mode_tangent_hold(model, l, x->tangent);
+  strut_mode_tangent_project(x->tangent, velocities(x), x->stride);
+}
+
+/* ---- steps ---- */
+
+/* Two rows of the product of (n, width) and (2 n, stride), in `vectors` vectors from a column on. */
+STRUT_INLINE void multiply_rows(int32_t inner, const double *restrict one,
+                                const double *restrict two, const double *restrict z,
+                                int32_t stride, double *to_one, double *to_two, int vectors) {
+  strut_lanes a[4] = {{0}}, b[4] = {{0}};
+  for (int32_t k = 0; k < inner; k++) {
+    const double *row = z + k * stride;
+#pragma GCC unroll 4
+    for (int c = 0; c < vectors; c++) {
+      strut_lanes x = strut_lanes_load(row + c * STRUT_LANES);
+      a[c] += one[k] * x;
+      b[c] += two[k] * x;
+    }
+  }
+#pragma GCC unroll 4
+  for (int c = 0; c < vectors; c++) {
+    strut_lanes_store(to_one + c * STRUT_LANES, a[c]);
+    strut_lanes_store(to_two + c * STRUT_LANES, b[c]);
+  }
+}
+
+/* out (n, stride) = rate (n, width) z (2 n, stride) */
+STRUT_CLONES
+static void multiply(int32_t n, int32_t stride, const double *restrict rate,
+                     const double *restrict z, double *restrict out) {
+  enum { BLOCK = 4 * STRUT_LANES };
+  for (int32_t i = 0; i < n; i += 2) {
+    int32_t next = i + 1 < n ? i + 1 : i, c = 0;
+    const double *one = rate + i * stride, *two = rate + next * stride;
+    double *to_one = out + i * stride, *to_two = out + next * stride;
+    for (; c + BLOCK <= stride; c += BLOCK)
+      multiply_rows(2 * n, one, two, z + c, stride, to_one + c, to_two + c, 4);
+    for (; c < stride; c += STRUT_LANES)
+      multiply_rows(2 * n, one, two, z + c, stride, to_one + c, to_two + c, 1);
+  }
+}
+
+/* A vector of z + h sum_j weight[j] slope[j], from i on. */
+STRUT_INLINE void combine_vector(int32_t i, double h, const double *weight, int count,
+                                 double *const *slope, const double *restrict z,
+                                 double *restrict out) {
+  strut_lanes sum = {0};
+  for (int j = 0; j < count; j++)
+    if (weight[j] != 0.0) sum += weight[j] * strut_lanes_load(slope[j] + i);
+  strut_lanes_store(out + i, strut_lanes_load(z + i) + h * sum);
+}
+
+/* out = z + h sum_j weight[j] slope[j] */
+STRUT_CLONES
+static void combine(int32_t all, double h, const double *weight, int count, double *const *slope,
+                    const double *restrict z, double *restrict out) {
+  for (int32_t i = 0; i < all; i += STRUT_LANES) combine_vector(i, h, weight, count, slope, z, out);
+}
+
+/* Positions and velocities of the motion itself at stage k. */
+static const double *place_stage(const strut_model *model, const strut_event_stepper *l, int k,
+                                 double h, double *q) {
+  const strut_tableau *t = l->stepper->tableau;
+  if (k == 0) return l->now->v;
+  const double *weight = t->weight + k * t->stages;
+  for (int32_t i = 0; i < model->length; i++) {
+    double sum = weight[0] * l->now->v[i];
+    for (int j = 1; j < k; j++) sum += weight[j] * l->stage[t->velocities + j][i];
+    q[i] = l->now->q[i] + h * sum;
+  }
+  return l->stage[t->velocities + k];
+}
+
+void strut_variation_step(const strut_model *model, strut_state *state,
+                          const strut_event_stepper *l, double t, double h) {
+  strut_variation *x = state->watched.variation;
+  const strut_tableau *tableau = l->stepper->tableau;
+  int32_t half = x->n * x->stride;
+  size_t bytes = (size_t)half * sizeof(double);
+  for (int k = 0; k < tableau->stages; k++) {
+    const double *z = k ? x->middle : x->columns;
+    const double *v = place_stage(model, l, k, h, x->stage_q);
+    if (k)
+      combine(2 * half, h, tableau->weight + k * tableau->stages, k, x->slope, x->columns,
+              x->middle);
+    strut_mode_tangent_evaluate(model, state, l, t + tableau->ahead[k] * h,
+                                k ? x->stage_q : l->now->q, v, x->tangent);
+    memcpy(x->slope[k], z + half, bytes);
+    multiply(x->n, x->stride, x->tangent->rate, z, x->slope[k] + half);
+  }
+  combine(2 * half, h, tableau->weight + tableau->stages * tableau->stages, tableau->stages,
+          x->slope, x->columns, x->middle);
+  double *swap = x->columns;
+  x->columns = x->middle, x->middle = swap;
+  memset(x->delay, 0, (size_t)x->stride * sizeof(double));
+  if ((model->terms & STRUT_TERM_DRIVE) && state->latest.drive_time != t + h)
+    strut_drive_apply(model, state, t + h);
+}
+
+/* ---- events ---- */
+
+/*
+ * Of events that positions and speeds of a contact decide: the value's slopes along normal and tangent,
+ * which act on speeds, or with TOUCH and OPEN on positions. False of others.
+ */
+static bool contact_slopes(const strut_event_stepper *l, const strut_event *e, double *normal,
+                           double *tangent, bool *positions) {
+  *normal = *tangent = 0.0, *positions = false;
+  switch (e->kind) {
+    case STRUT_EVENT_TOUCH: *normal = 1.0, *positions = true; return true;
+    case STRUT_EVENT_OPEN: *normal = -1.0, *positions = true; return true;
+    case STRUT_EVENT_SLIP_ENDS: *tangent = l->side[e->index]; return true;
+    case STRUT_EVENT_LEAVES_STICK_BAND:
+      *tangent = l->now->touch[e->index].slip < 0.0 ? 1.0 : -1.0;
+      return true;
+    case STRUT_EVENT_DAMPER: *normal = l->damper[e->index] > 0 ? -1.0 : 1.0; return true;
+    case STRUT_EVENT_STICK_BREAKS:
+    case STRUT_EVENT_CREEP_OUT:
+    case STRUT_EVENT_CREEP_IN:
+    case STRUT_EVENT_PUSH:
+    case STRUT_EVENT_YIELDED:
+    case STRUT_EVENT_ACTS:
+    case STRUT_EVENT_KINK:
+    case STRUT_EVENT_SLIDER:
+    case STRUT_EVENT_BREAK:
+    case STRUT_EVENT_FACET:
+    case STRUT_EVENT_RELAY:
+    case STRUT_EVENT_NONE: break;
+  }
+  return false;
+}
+
+static double contact_gradient(const strut_model *model, const strut_event_stepper *l,
+                               const strut_event *e, double normal, double tangent, bool positions,
+                               strut_variation *x) {
+  const strut_contact_table *c = &model->contacts;
+  uint32_t at = c->at[e->index];
+  const double *rows = positions ? x->columns : velocities(x);
+  const double *rate = positions ? l->now->v : l->now->a;
+  double sum = 0.0;
+  for (uint32_t k = 0; k < 2; k++) {
+    int32_t row = x->tangent->row_of[at + k];
+    double slope = normal * c->normal[k] + tangent * c->tangent[k];
+    sum += slope * rate[at + k];
+    for (int32_t j = 0; j < x->stride && row >= 0; j++)
+      x->gradient[j] += slope * rows[row * x->stride + j];
+  }
+  return sum;
+}
+
+/* The event's value at l->next, after it has been moved, in the present modes. */
+static double value_beside(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                           const strut_event *e, double t) {
+  evaluate_step_end(model, state, l, t, l->next, STRUT_TERMS_ALL, false);
+  strut_event_measure(model, state, l, l->next);
+  return strut_event_value(model, l, l->next, e->kind, e->index);
+}
+
+/* By central differences along the motion, which gives the rate, and along each column. */
+static double differenced_gradient(const strut_model *model, strut_state *state,
+                                   strut_event_stepper *l, const strut_event *e, double t,
+                                   double dt, strut_variation *x) {
+  const strut_step_end *now = l->now;
+  double value[2], step = TIME_DIFFERENCE * dt;
+  double length = model->size, speed = model->size / dt;
+  for (int side = 0; side < 2; side++) {
+    double h = side ? step : -step;
+    for (int32_t i = 0; i < model->length; i++) {
+      l->next->q[i] = now->q[i] + h * (now->v[i] + 0.5 * h * now->a[i]);
+      l->next->v[i] = now->v[i] + h * now->a[i];
+    }
+    value[side] = value_beside(model, state, l, e, t + h);
+  }
+  double rate = (value[1] - value[0]) / (2.0 * step);
+  for (int32_t j = 0; j < 2 * x->n; j++) {
+    double most = 0.0;
+    for (int32_t i = 0; i < 2 * x->n; i++)
+      most = fmax(most, fabs(x->columns[i * x->stride + j]) / (i < x->n ? length : speed));
+    if (!(most > 0.0)) continue;
+    double part = DIFFERENCE / most;
+    for (int side = 0; side < 2; side++) {
+      double factor = side ? part : -part;
+      memcpy(l->next->q, now->q, (size_t)model->length * sizeof(double));
+      memcpy(l->next->v, now->v, (size_t)model->length * sizeof(double));
+      for (int32_t i = 0; i < x->n; i++) {
+        l->next->q[x->place[i]] += factor * x->columns[i * x->stride + j];
+        l->next->v[x->place[i]] += factor * x->columns[(x->n + i) * x->stride + j];
+      }
+      value[side] = value_beside(model, state, l, e, t);
+    }
+    x->gradient[j] = (value[1] - value[0]) / (2.0 * part);
+  }
+  if ((model->terms & STRUT_TERM_DRIVE) && state->latest.drive_time != t)
+    strut_drive_apply(model, state, t);
+  return rate;
+}
+
+void strut_variation_meet(const strut_model *model, strut_state *state, strut_event_stepper *l,
+                          const strut_event *e, double t, double dt, bool stepped) {
+  strut_variation *x = state->watched.variation;
+  double normal, tangent;
+  bool positions;
+  for (int32_t i = 0; i < x->n; i++) x->before[i] = l->now->a[x->place[i]];
+  if (!stepped) return;
+  memset(x->gradient, 0, (size_t)x->stride * sizeof(double));
+  double rate = contact_slopes(l, e, &normal, &tangent, &positions)
+                    ? contact_gradient(model, l, e, normal, tangent, positions, x)
+                    : differenced_gradient(model, state, l, e, t, dt, x);
+  for (int32_t j = 0; j < x->stride; j++) {
+    double delay = -x->gradient[j] / rate;
+    x->delay[j] = isfinite(delay) ? delay : 0.0;
+  }
+}
+
+void strut_variation_pass(const strut_model *model, strut_state *state,
+                          const strut_event_stepper *l, bool event) {
+  strut_variation *x = state->watched.variation;
+  double *v = velocities(x);
+  if (!event) memset(x->delay, 0, (size_t)x->stride * sizeof(double));
+  for (int32_t i = 0; i < x->n && event; i++) {
+    double jump = x->before[i] - l->now->a[x->place[i]];
+    for (int32_t j = 0; j < x->stride && jump != 0.0; j++)
+      v[i * x->stride + j] += jump * x->delay[j];
+  }
+  strut_mode_tangent_hold(model, l, x->tangent);
+  strut_mode_tangent_project(x->tangent, v, x->stride);
+}

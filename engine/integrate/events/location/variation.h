@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Variations of a motion: how its end depends on its start, carried along with the steps of a method that
+ * locates events exactly.
+ *
+ * Between events the columns follow the derivative of the method's own step, with its length and its modes as
+ * they are. An event at which g = 0 comes sooner by dg/g' where a column raises it by dg: the columns then
+ * change by the jump of the acceleration times that time (the saltation matrix of Aizerman and Gantmacher
+ * 1958). At once with the step it costs no motion of its own.
+ */
+#ifndef STRUT_ENGINE_INTEGRATE_EVENTS_LOCATION_VARIATION_H
+#define STRUT_ENGINE_INTEGRATE_EVENTS_LOCATION_VARIATION_H
+
+#include "engine/integrate/integrator.h"
+
+struct strut_event_stepper;
+struct strut_event;
+
+typedef struct strut_variation {
+  int32_t n, stride;       /* free coordinates; columns, 2 n, rounded up to whole vectors */
+  const int32_t *place;    /* (n) of the free coordinates in coordinate arrays */
+  double *columns;         /* (2 n, stride) of positions, then of velocities, row by row */
+  double **slope;          /* (stages) (2 n, stride) time derivatives at the stages */
+  double *middle;          /* (2 n, stride) at a stage */
+  double *delay;           /* (stride) how much later the latest event is [s] */
+  double *before;          /* (n) acceleration before an event */
+  double *gradient;        /* (stride) of an event's value */
+  double *stage_q, *drift; /* (length) positions at a stage; scratch */
+  struct strut_mode_tangent *tangent;
+} strut_variation;
+
+/** Can variations of the model's motions be carried along by the method? */
+STRUT_API bool strut_variation_possible(const strut_model *model, const strut_integrator *method);
+/** In the state's arena; attach it as state->watched.variation. NULL: out of memory. */
+STRUT_API strut_variation *strut_variation_create(const strut_model *model, strut_state *state);
+/** The columns become unit vectors: of the free coordinates, then of their velocities. */
+STRUT_API void strut_variation_reset(strut_variation *variation);
+
+/** At the start of a run, when its modes are known. */
+void strut_variation_begin(const strut_model *model, strut_state *state,
+                           const struct strut_event_stepper *l);
+/** Along the step from l->now at time t over h, whose stages and end the stepper holds. */
+void strut_variation_step(const strut_model *model, strut_state *state,
+                          const struct strut_event_stepper *l, double t, double h);
+/**
+ * At an event at time t, before the modes change. `stepped`: a step has just led here; otherwise it is a
+ * consequence of the event before, at the same time.
+ */
+void strut_variation_meet(const strut_model *model, strut_state *state,
+                          struct strut_event_stepper *l, const struct strut_event *event, double t,
+                          double dt, bool stepped);
+/** After modes have changed; `event`: by an event that was met, otherwise at a time of its own. */
+void strut_variation_pass(const strut_model *model, strut_state *state,
+                          const struct strut_event_stepper *l, bool event);
+
+#endif
