@@ -9,7 +9,7 @@
 #include "engine/forces/feedback.h"
 #include "engine/forces/history.h"
 #include "engine/forces/mass_damping.h"
-#include "engine/forces/unbalance.h"
+#include "engine/forces/moving_masses.h"
 #include "engine/model/pose.h"
 
 bool strut_discrete_gradient_create(const strut_model *model, strut_state *state,

@@ -6,8 +6,8 @@
 
 #include "engine/forces/feedback.h"
 #include "engine/forces/history.h"
+#include "engine/forces/moving_masses.h"
 #include "engine/forces/signal_vector.h"
-#include "engine/forces/sliding_masses.h"
 #include "engine/forces/strains/angle.h"
 #include "engine/forces/strains/path.h"
 #include "engine/scene/signal_motion.h"

@@ -6,7 +6,7 @@
 #include "engine/forces/drives.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/history.h"
-#include "engine/forces/sliding_masses.h"
+#include "engine/forces/moving_masses.h"
 #include "engine/forces/support_motion.h"
 #include "engine/model/mass.h"
 #include "engine/model/pose.h"

@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Forces for whoever asks once; integrators have the kernel in their own loops. */
-#include "engine/forces/forces_kernel.h"
-
 #include <assert.h>
 
 #include "engine/forces/drives.h"
+#include "engine/forces/forces_kernel.h"
 #include "engine/forces/history.h"
 #include "engine/forces/mass_damping.h"
+#include "engine/forces/moving_masses.h"
 #include "engine/forces/rigid.h"
-#include "engine/forces/unbalance.h"
 
 void strut_forces_add_rare(const strut_model *model, strut_state *state, double t, const double *q,
                            const double *v) {
@@ -63,4 +62,83 @@ void strut_forces_acceleration(const strut_model *model, strut_state *state, dou
   divide_by_mass(model, state, a, STRUT_TERMS_ALL);
   if (state->balance && model->terms & STRUT_TERM_SLIDING_MASS)
     strut_sliding_masses_add_power(model, state, q, v, a);
+}
+
+/* Of the mass of a member at each of its ends, and between them. */
+typedef struct mass_shares {
+  double own, other;
+} mass_shares;
+
+static mass_shares shares_of(const strut_model *model) {
+  bool consistent = model->scene->mass_model == STRUT_MASS_CONSISTENT;
+  return consistent ? (mass_shares){1.0 / 3.0, 1.0 / 6.0} : (mass_shares){0.5, 0.0};
+}
+
+/* Of masses that rest on their members; returns what is lost. */
+static double damp_sliding_masses(const strut_model *model, const double *v, double *force) {
+  double lost = 0.0;
+  for (int32_t i = 0; i < model->sliding.count; i++) {
+    const strut_sliding_item *s = &model->sliding.item[i];
+    double far = s->start, near = 1.0 - far;
+    for (int c = 0; c < 2 && s->signal < 0; c++) {
+      uint32_t a = s->at[0] + (uint32_t)c, b = s->at[1] + (uint32_t)c;
+      double u = near * v[a] + far * v[b], drag = model->mass_damping * s->mass * u;
+      force[a] -= near * drag;
+      force[b] -= far * drag;
+      lost += drag * u;
+    }
+  }
+  return lost;
+}
+
+void strut_mass_damping_apply(const strut_model *model, strut_state *state, const double *v) {
+  const strut_member_table *t = &model->members;
+  const mass_shares share = shares_of(model);
+  double alpha = model->mass_damping, lost = 0.0, *force = state->latest.force;
+  for (int c = 0; c < 2; c++, v++, force++) {
+    for (int32_t i = 0; i < model->node_count; i++) {
+      double drag = alpha * model->point_mass[i] * v[2 * i];
+      force[2 * i] -= drag;
+      lost += drag * v[2 * i];
+    }
+    for (int32_t j = 0; j < t->count; j++) {
+      double a = v[t->from[j]], b = v[t->to[j]], m = alpha * t->mass[j];
+      double at_a = m * (share.own * a + share.other * b);
+      double at_b = m * (share.other * a + share.own * b);
+      force[t->from[j]] -= at_a;
+      force[t->to[j]] -= at_b;
+      lost += at_a * a + at_b * b;
+    }
+  }
+  if (model->sliding.count) lost += damp_sliding_masses(model, v - 2, force - 2);
+  if (!state->balance) return;
+  state->latest.power[STRUT_POWER_MEMBERS] += lost;
+  state->latest.power[STRUT_POWER_EXCHANGED] += lost;
+}
+
+void strut_mass_damping_add(const strut_model *model, const int32_t *row_of, strut_triplets *sum) {
+  const strut_member_table *t = &model->members;
+  const mass_shares share = shares_of(model);
+  if (!(model->terms & STRUT_TERM_MASS_DAMPING)) return;
+  for (int c = 0; c < 2; c++, row_of++) {
+    for (int32_t i = 0; i < model->node_count; i++)
+      if (row_of[2 * i] >= 0)
+        strut_triplets_add(sum, row_of[2 * i], row_of[2 * i],
+                           model->mass_damping * model->point_mass[i]);
+    for (int32_t j = 0; j < t->count; j++) {
+      double m = model->mass_damping * t->mass[j];
+      int32_t a = row_of[t->from[j]], b = row_of[t->to[j]];
+      if (a >= 0) strut_triplets_add(sum, a, a, share.own * m);
+      if (b >= 0) strut_triplets_add(sum, b, b, share.own * m);
+      if (a >= 0 && b >= 0) strut_triplets_add(sum, a, b, share.other * m);
+    }
+    for (int32_t i = 0; i < model->sliding.count; i++) {
+      const strut_sliding_item *s = &model->sliding.item[i];
+      int32_t a = row_of[s->at[0]], b = row_of[s->at[1]];
+      double m = model->mass_damping * s->mass, far = s->start, near = 1.0 - far;
+      if (a >= 0) strut_triplets_add(sum, a, a, near * near * m);
+      if (b >= 0) strut_triplets_add(sum, b, b, far * far * m);
+      if (a >= 0 && b >= 0) strut_triplets_add(sum, a, b, near * far * m);
+    }
+  }
 }

@@ -14,7 +14,7 @@
 #include "engine/forces/forces.h"
 #include "engine/forces/ground_kernel.h"
 #include "engine/forces/members_kernel.h"
-#include "engine/forces/sliding_masses.h"
+#include "engine/forces/moving_masses.h"
 #include "engine/forces/step_balance.h"
 #include "engine/forces/support_motion.h"
 #include "engine/forces/surfaces.h"

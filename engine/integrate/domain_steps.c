@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/integrate/domain_steps.h"
+#include "engine/integrate/domain_parts.h"
 
 #include <math.h>
 #include <string.h>
@@ -8,7 +8,6 @@
 #include "engine/forces/drives.h"
 #include "engine/forces/forces.h"
 #include "engine/forces/step_balance.h"
-#include "engine/integrate/domain_parts.h"
 #include "engine/model/mass.h"
 
 static const unsigned POSSIBLE = STRUT_TERM_MEMBERS | STRUT_TERM_DAMPING | STRUT_TERM_SLACK |

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Hot: one sweep over a subdomain. See domain_steps.h. */
+/* Hot: one sweep over a subdomain. See domain_parts.h. */
 #include <string.h>
 
 #include "engine/forces/ground_kernel.h"

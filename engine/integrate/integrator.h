@@ -8,7 +8,7 @@
 #include "engine/model/state.h"
 #include "engine/scene/experiment.h"
 
-/** Which steps are stable, by the eigenvalues of small motions: see stability.h. */
+/** Which steps are stable, by the eigenvalues of small motions: see step_limit.h. */
 typedef enum strut_region {
   STRUT_REGION_ALL, /* every step, or one that the method chooses */
   STRUT_REGION_RK4,

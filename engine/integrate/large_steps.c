@@ -7,7 +7,7 @@
 #include <omp.h>
 #endif
 
-#include "engine/integrate/domain_steps.h"
+#include "engine/integrate/domain_parts.h"
 #include "engine/model/mass.h"
 #include "engine/model/renumber.h"
 

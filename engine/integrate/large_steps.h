@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
  * Steps of a run whose structure is large: stored in another order where the scene's is scattered
- * (engine/model/renumber.h), and by several threads where there are any (domain_steps.h). Positions, velocities and contact
+ * (engine/model/renumber.h), and by several threads where there are any (domain_parts.h). Positions, velocities and contact
  * forces have the same bits as without. In another order, the energy balance sums powers of members as they are stored:
  * its works differ in rounding, but not with the number of threads.
  */

@@ -9,8 +9,7 @@
 
 #include "engine/forces/drives.h"
 #include "engine/forces/forces_kernel.h"
-#include "engine/forces/sliding_masses.h"
-#include "engine/forces/unbalance.h"
+#include "engine/forces/moving_masses.h"
 
 /** Terms whose impulses and positions plain methods apply at the end of a step. */
 enum {

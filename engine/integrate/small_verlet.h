@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Hot: velocity Verlet of small models; see verlet.c, whose operations these are.
+ * Hot: velocity Verlet of small models; see symplectic.c, whose operations these are.
  */
 #ifndef STRUT_ENGINE_INTEGRATE_SMALL_VERLET_H
 #define STRUT_ENGINE_INTEGRATE_SMALL_VERLET_H

@@ -7,9 +7,11 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #include "engine/base/status.h"
 #include "parser/command/messages.h"
+#include "parser/expression/units.h"
 #include "parser/read/read_scene.h"
 
 /** Names an option; its value is the option's letter where it has one. */
@@ -37,7 +39,7 @@ typedef enum strut_option_id {
   STRUT_OPTION_CHECK,  /* of fmt: change nothing */
   STRUT_OPTION_DAKOTA, /* of evaluate: the files of DAKOTA */
   STRUT_OPTION_BASINS, /* of follow */
-  /* kept as text: strut_option_text, and option_values.h for numbers */
+  /* kept as text: strut_option_text, and arguments.h for numbers */
   STRUT_OPTION_TEXTS,
   STRUT_OPTION_AT = STRUT_OPTION_TEXTS,
   STRUT_OPTION_COUNT,
@@ -173,5 +175,26 @@ strut_status strut_argument_set(const strut_command *command, const char *name, 
 /** Tells the listener "COMMAND: TEXT"; returns STRUT_USAGE. */
 strut_status strut_usage_error(const strut_command *command, const strut_arguments *arguments,
                                const char *format, ...) __attribute__((format(printf, 3, 4)));
+
+/* Options that are numbers, with units where they have a dimension; and options that are words. */
+
+/**
+ * Reads an option such as --least-tension "5 N" into *value [SI], which keeps what it holds where the
+ * option was not given. STRUT_USAGE; the listener hears why.
+ */
+strut_status strut_option_number(const strut_command *command, const strut_arguments *arguments,
+                                 strut_option_id id, strut_dimension dimension, double *value);
+/**
+ * Reads up to `most` values with commas between, such as "0 s, 80 ms", into values. Returns how many,
+ * or 0 where the text is something else.
+ */
+size_t strut_option_numbers(const char *text, strut_dimension dimension, double *values,
+                            size_t most);
+/** As strut_option_number, for whole numbers from low to high. */
+strut_status strut_option_integer(const strut_command *command, const strut_arguments *arguments,
+                                  strut_option_id id, int64_t low, int64_t high, int64_t *value);
+/** As strut_option_number, for one of `words` (ended by NULL): its index into *value. */
+strut_status strut_option_word(const strut_command *command, const strut_arguments *arguments,
+                               strut_option_id id, const char *const *words, int *value);
 
 #endif

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "parser/command/option_values.h"
+#include "parser/command/arguments.h"
 
 enum { MOST_STEPS = 100000, MOST_AT = 8 };
 

@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Where messages of a call go: the program prints them, the library collects them.
- */
+/** Messages to a listener, and the warnings of members that carry too much. */
 #ifndef STRUT_PARSER_COMMAND_MESSAGES_H
 #define STRUT_PARSER_COMMAND_MESSAGES_H
+
+#include "engine/statics/equilibria/equilibria.h"
+#include "engine/statics/path/path.h"
+
+/* Where messages of a call go: the program prints them, the library collects them. */
 
 typedef enum strut_message_kind {
   STRUT_MESSAGE_USAGE,   /* an option is wrong */
@@ -25,5 +28,17 @@ typedef struct strut_listener {
 /** Tells a message of at most STRUT_MESSAGE_MOST bytes. NULL: no one listens. */
 void strut_tell(const strut_listener *listener, strut_message_kind kind, const char *command,
                 const char *format, ...) __attribute__((format(printf, 4, 5)));
+
+/* Warnings about structures at rest in which something carries more than it can (forces/history.h). */
+
+/** Of the shape q (length), at `where`. */
+void strut_warn_of_overload(const strut_listener *listener, const strut_model *model,
+                            const double *q, const char *where);
+/** Of all stable equilibria. */
+void strut_warn_of_equilibria(const strut_listener *listener, const strut_model *model,
+                              const strut_equilibria *all);
+/** Of the first point of a path where that is so. */
+void strut_warn_of_path(const strut_listener *listener, const strut_scene *scene,
+                        const strut_path *path);
 
 #endif

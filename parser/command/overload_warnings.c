@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/command/overload_warnings.h"
+#include "parser/command/messages.h"
 
 #include <math.h>
 #include <stdio.h>

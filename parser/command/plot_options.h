@@ -7,7 +7,7 @@
 
 #include "engine/output/draw/chart.h"
 #include "engine/output/figures/run_figure.h"
-#include "parser/command/option_values.h"
+#include "parser/command/arguments.h"
 
 /** Rows for tables of options. */
 #define STRUT_PLOT_SETTING_OPTIONS                                                                 \

@@ -10,7 +10,6 @@
 #include "engine/output/file.h"
 #include "engine/output/results.h"
 #include "engine/study/compare/compare.h"
-#include "parser/program/option_values.h"
 #include "parser/program/options.h"
 #include "parser/program/progress.h"
 #include "parser/program/streams.h"

@@ -11,7 +11,7 @@
 #include "engine/study/sweep/sweep.h"
 #include "parser/command/follow_options.h"
 #include "parser/program/open_model.h"
-#include "parser/program/option_values.h"
+#include "parser/program/options.h"
 #include "parser/program/progress.h"
 #include "parser/program/streams.h"
 

@@ -5,7 +5,7 @@
 #include "engine/output/file.h"
 #include "parser/import/import.h"
 #include "parser/program/commands.h"
-#include "parser/program/option_values.h"
+#include "parser/program/options.h"
 #include "parser/program/streams.h"
 #include "parser/read/read_scene.h"
 

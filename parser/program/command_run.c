@@ -10,7 +10,6 @@
 #include "engine/output/run_report.h"
 #include "engine/run/accuracy/accuracy.h"
 #include "engine/run/simulate.h"
-#include "parser/command/fidelity_settings.h"
 #include "parser/command/run_settings.h"
 #include "parser/program/open_model.h"
 #include "parser/program/progress.h"

@@ -12,7 +12,6 @@
 #include "engine/output/results.h"
 #include "engine/study/tradeoff/tradeoff.h"
 #include "parser/program/open_model.h"
-#include "parser/program/option_values.h"
 #include "parser/program/options.h"
 #include "parser/program/progress.h"
 #include "parser/program/streams.h"

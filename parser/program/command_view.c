@@ -10,7 +10,7 @@
 #include "engine/output/file.h"
 #include "engine/output/page/page.h"
 #include "parser/program/open_model.h"
-#include "parser/program/option_values.h"
+#include "parser/program/options.h"
 #include "parser/program/streams.h"
 #include "parser/write/write_scene.h"
 

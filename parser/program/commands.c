@@ -5,7 +5,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "parser/program/manual.h"
 #include "parser/yaml/diagnostics.h"
 
 static strut_status print_help(const strut_arguments *arguments);

@@ -40,4 +40,17 @@ const strut_command *strut_command_find(const char *name);
 /** Prints the help of the whole program on stdout. */
 void strut_program_help(void);
 
+/* Manual pages in man(7), made from the tables of commands, options and keys. */
+
+/** Prints strut(1), the page of a command, or strut-model(5). */
+void strut_manual_of_program(void);
+void strut_manual_of_command(const strut_command *command);
+void strut_manual_of_language(void);
+
+/** manual.c: source of a page. Text is Markdown with code in backticks; lines are kept short. */
+void strut_manual_begin(const char *name, int chapter, const char *summary);
+void strut_manual_heading(const char *macro, const char *text);
+void strut_manual_text(const char *markdown);
+void strut_manual_item(const char *markdown); /* the tag of a paragraph that follows */
+
 #endif

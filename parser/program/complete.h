@@ -12,6 +12,7 @@
 #include <stddef.h>
 
 #include "engine/base/status.h"
+#include "engine/output/page/page.h"
 #include "parser/program/options.h"
 
 /** What is being completed. */
@@ -27,7 +28,7 @@ strut_status strut_complete(int count, char **words);
 /** Prints text + end if it begins as the word does. */
 void strut_offer(const strut_completion *c, const char *text, const char *end, const char *help);
 
-/** complete_model.c: names in the model, or in the table, that is among the arguments. */
+/** complete.c: names in the model, or in the table, that is among the arguments. */
 void strut_offer_parameters(const strut_completion *c);
 void strut_offer_values(const strut_completion *c); /* NAME=VALUE as the model has it */
 void strut_offer_shapes(const strut_completion *c);
@@ -38,7 +39,13 @@ void strut_offer_path_parameters(const strut_completion *c);
 void strut_offer_examples(const strut_completion *c);
 void strut_offer_columns(const strut_completion *c, const char *end);
 
-/** command_completion.c: the script for a shell, or NULL. */
+/** complete.c: the script for a shell, or NULL. */
 extern const char *const strut_shells[]; /* bash, zsh, fish, NULL */
+
+/* The scripts of the folder shells, embedded at build time: each followed by a row of NULL. */
+
+extern const strut_embedded strut_bash_script[], strut_zsh_script[], strut_fish_script[];
+/** The scene of `strut new`, with @FILE@ and @NAME@ for its names. */
+extern const strut_embedded strut_new_scene[];
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/program/manual.h"
+#include "parser/program/commands.h"
 
 #include <ctype.h>
 #include <stdbool.h>
@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "parser/program/commands.h"
 #include "parser/write/writer.h"
 
 enum { LINE = 78 };

@@ -7,7 +7,9 @@
 #ifndef STRUT_PARSER_PROGRAM_OPTIONS_H
 #define STRUT_PARSER_PROGRAM_OPTIONS_H
 
+#include "engine/output/draw/chart.h"
 #include "parser/command/arguments.h"
+#include "parser/command/plot_options.h"
 
 /** Parses argv[1..] of a command. STRUT_USAGE with the reason on stderr. */
 strut_status strut_arguments_read(const strut_command *command, int argc, char **argv,
@@ -19,5 +21,20 @@ const strut_option *strut_option_at(const strut_command *command, size_t i);
 
 /** Prints the help of a command on stdout. */
 void strut_command_help(const strut_command *command);
+
+/* Options of figures: file, width, title, axes. */
+
+/** Rows for a command's table of options. */
+#define STRUT_PLOT_OPTIONS                                                                         \
+  {STRUT_OPTION_PLOT, "plot", "FILE", "draw a figure into FILE (.svg, .pdf or .png)"},             \
+      STRUT_PLOT_SETTING_OPTIONS
+
+/**
+ * Reads all before anything is computed, and checks that FILE can be written: STRUT_USAGE or
+ * STRUT_FILE_TROUBLE with the reason on stderr, an option without --plot included. Leaves no trace.
+ * `usual` is the default width [pt]; 0: a page's.
+ */
+strut_status strut_plot_read(const strut_command *command, const strut_arguments *arguments,
+                             double usual, strut_plot *plot);
 
 #endif

@@ -8,7 +8,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/buffer.h"
-#include "parser/program/option_values.h"
+#include "parser/program/options.h"
 #include "parser/program/progress.h"
 #include "parser/program/streams.h"
 

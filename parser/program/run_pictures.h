@@ -8,7 +8,6 @@
 #include "engine/base/number_text.h"
 #include "engine/output/figures/run_figure.h"
 #include "engine/output/film/film.h"
-#include "parser/program/option_values.h"
 #include "parser/program/options.h"
 
 /** Rows for the table of options. */

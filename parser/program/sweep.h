@@ -9,8 +9,8 @@
 #include "engine/output/record_files.h"
 #include "engine/study/results/study_table.h"
 #include "engine/study/search/search.h"
-#include "engine/study/sweep/refine.h"
 #include "engine/study/sweep/sweep.h"
+#include "engine/study/sweep/sweep_parts.h"
 #include "parser/program/options.h"
 #include "parser/program/progress.h"
 #include "parser/study/read_study.h"
@@ -72,7 +72,7 @@ strut_status strut_sweep_refine_status(const strut_sweep_plan *plan, const char 
  */
 strut_status strut_sweep_refine_merge(const strut_arguments *arguments, bool *merged);
 
-/* sweep_sensitivity.c; nothing where the study has no sensitivity analysis */
+/* sweep_search.c; nothing where the study has no sensitivity analysis */
 
 /** Checks that what is analysed are columns. STRUT_BAD_SCENE with the reason. */
 strut_status strut_sweep_sensitivity_check(const strut_sweep_plan *plan, strut_error *error);

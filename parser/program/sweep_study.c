@@ -1,16 +1,25 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/program/sweep.h"
-
+#include <errno.h>
+#include <limits.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "engine/base/checksum.h"
+#include "engine/base/memory.h"
+#include "engine/base/number_text.h"
 #include "engine/output/file.h"
 #include "engine/output/results.h"
+#include "engine/study/cluster/cluster_script.h"
+#include "engine/study/results/study_table.h"
 #include "engine/study/search/search.h"
 #include "engine/study/sweep/grid.h"
+#include "parser/program/commands.h"
+#include "parser/program/options.h"
 #include "parser/program/streams.h"
+#include "parser/program/sweep.h"
 #include "parser/study/read_study.h"
 #include "parser/write/write_scene.h"
 
@@ -218,4 +227,181 @@ strut_status strut_sweep_texts_check(const strut_arguments *arguments,
 strut_status strut_sweep_texts_write(const strut_arguments *arguments,
                                      const strut_sweep_study *study, strut_error *error) {
   return for_each(arguments, study, write_copy, error);
+}
+
+enum { MOST_CPUS = 4096 };
+
+/* The settings of the command line, for every shard. */
+static const char *const *words_of(const strut_arguments *arguments, strut_arena *arena,
+                                   size_t *count) {
+  const char **words =
+      strut_arena_allocate(arena, 2 * arguments->override_count + 1, sizeof *words);
+  *count = 2 * arguments->override_count;
+  for (size_t i = 0; words && i < arguments->override_count; i++) {
+    const strut_override *override = &arguments->overrides[i];
+    words[2 * i] = "--set";
+    words[2 * i + 1] = strut_arena_format(arena, "%s=%s", override->name, override->value);
+    if (!words[2 * i + 1]) return NULL;
+  }
+  return words;
+}
+
+/* The paths of this program and of the current directory. */
+static strut_status find_places(char program[PATH_MAX], char folder[PATH_MAX]) {
+  ssize_t length = readlink("/proc/self/exe", program, PATH_MAX - 1);
+  if (length > 0)
+    program[length] = '\0';
+  else
+    strcpy(program, "strut");
+  if (getcwd(folder, PATH_MAX)) return STRUT_OK;
+  strut_error error = {0};
+  strut_fail(&error, STRUT_FILE_TROUBLE, "the current directory has no name: %s", strerror(errno));
+  strut_print_error(&error);
+  return STRUT_FILE_TROUBLE;
+}
+
+static strut_status print_script(const strut_arguments *arguments, strut_cluster_script *script,
+                                 strut_cluster cluster, strut_arena *arena) {
+  strut_error error = {0};
+  char program[PATH_MAX], folder[PATH_MAX], *text = NULL;
+  strut_status status = find_places(program, folder);
+  if (status != STRUT_OK) return status;
+  script->program = program;
+  script->folder = folder;
+  script->words = words_of(arguments, arena, &script->word_count);
+  if (!script->words) return strut_print_out_of_memory();
+  status = strut_cluster_script_write(cluster, script, &text, &error);
+  if (status == STRUT_USAGE) fprintf(stderr, "strut sweep: --emit: %s\n", error.message);
+  if (status == STRUT_NO_MEMORY) strut_print_error(&error);
+  if (status == STRUT_OK) status = strut_print(text);
+  strut_release(text);
+  return status;
+}
+
+/* Checks what does not depend on numbers. */
+static strut_status check_emit_options(const strut_arguments *arguments, strut_cluster cluster) {
+  const char *wrong = NULL;
+  if (strcmp(arguments->model, "-") == 0)
+    wrong = "--emit needs a file that the tasks can read, not standard input";
+  else if (cluster != STRUT_CLUSTER_SLURM && strut_option_text(arguments, STRUT_OPTION_TIME))
+    wrong = "--time is for --emit slurm";
+  else if (cluster == STRUT_CLUSTER_PARALLEL && strut_option_text(arguments, STRUT_OPTION_MEMORY))
+    wrong = "--memory is for --emit slurm and htcondor";
+  else if (!strut_option_text(arguments, STRUT_OPTION_SHARDS))
+    wrong = "--emit needs --shards N, the number of tasks";
+  if (!wrong) return STRUT_OK;
+  fprintf(stderr, "strut sweep: %s\n", wrong);
+  return STRUT_USAGE;
+}
+
+strut_status strut_sweep_emit(const strut_arguments *arguments, const char *name) {
+  static const char *const kinds[] = {"slurm", "parallel", "htcondor", NULL};
+  const strut_command *command = &strut_command_sweep;
+  strut_cluster_script script = {.name = name,
+                                 .study = arguments->model,
+                                 .output = arguments->output,
+                                 .time = strut_option_text(arguments, STRUT_OPTION_TIME),
+                                 .memory = strut_option_text(arguments, STRUT_OPTION_MEMORY),
+                                 .cpus = 1};
+  int kind = 0;
+  strut_status status = strut_option_word(command, arguments, STRUT_OPTION_EMIT, kinds, &kind);
+  if (status == STRUT_OK) status = check_emit_options(arguments, (strut_cluster)kind);
+  if (status == STRUT_OK)
+    status = strut_option_integer(command, arguments, STRUT_OPTION_SHARDS, 1, STRUT_MOST_SHARDS,
+                                  &script.shards);
+  if (status == STRUT_OK)
+    status =
+        strut_option_integer(command, arguments, STRUT_OPTION_CPUS, 1, MOST_CPUS, &script.cpus);
+  if (status != STRUT_OK) return status;
+  strut_arena arena = {0};
+  status = print_script(arguments, &script, (strut_cluster)kind, &arena);
+  strut_arena_free(&arena);
+  return status;
+}
+
+enum { WIDTH = 20, BAR_ROOM = 3 * WIDTH + 1, TEXT = 300 };
+
+/* Between two lines without a terminal, and before the first bar [s]. */
+static const double REPORT_INTERVAL = 30.0, PATIENCE = 0.5;
+
+strut_sweep_progress strut_sweep_progress_begin(const strut_sweep_plan *plan, bool quiet) {
+  return (strut_sweep_progress){.bar = strut_progress_begin(quiet), .plan = plan, .quiet = quiet};
+}
+
+/* "frequency 3.2 Hz, velocity 0.0098 m/s": the first few cells of a row. */
+static void format_row(const strut_sweep_plan *plan, const strut_result_slot *row, char *text,
+                       size_t size) {
+  size_t used = 0, number = 0, word = 0, most = plan->axis_columns + 1;
+  *text = '\0';
+  for (size_t i = 0; i < plan->column_count && i < most && used < size; i++) {
+    const strut_slot_column *c = &plan->columns[i];
+    const char *unit = strcmp(c->unit, "1") == 0 ? "" : c->unit;
+    int n = c->word ? snprintf(text + used, size - used, "%s%s %s", i ? ", " : "", c->name,
+                               row->words[word++])
+                    : snprintf(text + used, size - used, "%s%s %.4g%s%s", i ? ", " : "", c->name,
+                               row->numbers[number++], *unit ? " " : "", unit);
+    used += n > 0 ? (size_t)n : 0;
+  }
+  if (row->status != STRUT_OK && used < size)
+    snprintf(text + used, size - used, ": %s", strut_status_text(row->status));
+}
+
+/* "123 of 1146 points (2 failed), 45 a second, 2 min 03 s left" */
+static void format_state(const strut_sweep_state *state, char *text, size_t size) {
+  char left[STRUT_DURATION_TEXT], failed[40] = "";
+  double rate = state->seconds > 0.0 ? (double)state->computed / state->seconds : 0.0;
+  strut_duration_text(rate > 0.0 ? (double)(state->points - state->done) / rate : HUGE_VAL, left);
+  if (state->failed) snprintf(failed, sizeof failed, " (%lld failed)", (long long)state->failed);
+  snprintf(text, size, "%lld of %lld points%s, %.3g a second, %s left", (long long)state->done,
+           (long long)state->points, failed, rate, left);
+}
+
+void strut_sweep_progress_show(void *context, const strut_sweep_state *state) {
+  strut_sweep_progress *progress = context;
+  strut_progress *bar = &progress->bar;
+  char text[TEXT], row[TEXT], all[2 * TEXT + 40], blocks[BAR_ROOM];
+  if (progress->quiet || state->seconds < PATIENCE) return;
+  if (!bar->wanted && state->seconds - progress->reported < REPORT_INTERVAL) return;
+  progress->reported = state->seconds;
+  format_state(state, text, sizeof text);
+  format_row(progress->plan, state->row, row, sizeof row);
+  if (state->has_best)
+    snprintf(all, sizeof all, "%s; best %.5g; %s", text, state->best, row);
+  else
+    snprintf(all, sizeof all, "%s; %s", text, row);
+  if (!bar->wanted) {
+    fprintf(stderr, "strut: %s\n", all);
+    return;
+  }
+  int size = bar->columns - 1, width = size > 3 * WIDTH ? WIDTH : 0;
+  strut_progress_bar(blocks, width, (double)state->done / (double)state->points, bar->unicode);
+  const char *on = bar->colour ? "\033[36m" : "", *off = bar->colour ? "\033[0m" : "";
+  fprintf(stderr, "\r%s%s%s %-*.*s", on, blocks, off, size - width - 1, size - width - 1, all);
+  fflush(stderr);
+  bar->shown = true;
+}
+
+void strut_sweep_progress_end(strut_sweep_progress *progress) {
+  strut_progress_end(&progress->bar);
+}
+
+void strut_sweep_print_warnings(const strut_sweep_state *state) {
+  for (size_t i = 0; i < state->warning_count; i++) {
+    const strut_sweep_warning *w = &state->warnings[i];
+    fprintf(stderr, "strut: warning: %lld of %lld runs, first point %lld: %s\n", (long long)w->runs,
+            (long long)state->computed, (long long)w->point, w->text);
+  }
+}
+
+strut_status strut_sweep_judge(int64_t points, int64_t failed, int64_t inaccurate) {
+  if (failed)
+    fprintf(stderr,
+            "strut: %lld of %lld points failed: see the table's columns status and message\n",
+            (long long)failed, (long long)points);
+  if (inaccurate)
+    fprintf(stderr,
+            "strut: %lld of %lld points are less accurate than requested: see the table's "
+            "column " STRUT_KEPT_COLUMN "\n",
+            (long long)inaccurate, (long long)points);
+  return failed ? STRUT_DIVERGED : inaccurate ? STRUT_INACCURATE : STRUT_OK;
 }

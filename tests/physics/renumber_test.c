@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/integrate/domain_steps.h"
+#include "engine/integrate/domain_parts.h"
 #include "engine/integrate/large_steps.h"
 #include "engine/model/renumber.h"
 #include "tests/support/build.h"

@@ -10,7 +10,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/integrate/batch/batch.h"
-#include "engine/integrate/domain_steps.h"
+#include "engine/integrate/domain_parts.h"
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/model/small_model.h"

@@ -9,7 +9,7 @@
 
 #include "engine/forces/tangent.h"
 #include "engine/integrate/limit/step_limit.h"
-#include "engine/integrate/limit/tangent_bound.h"
+#include "engine/integrate/limit/tangent_limits.h"
 #include "engine/model/mass.h"
 #include "tests/support/build.h"
 #include "tests/support/check.h"

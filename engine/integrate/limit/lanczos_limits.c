@@ -1,11 +1,190 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lanczos's method for the largest eigenvalues of a tangent matrix: where to look for motions. */
+#include "engine/integrate/limit/tangent_limits.h"
+
 #include <gsl/gsl_eigen.h>
 #include <math.h>
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/integrate/limit/krylov_basis.h"
+#include "engine/base/vec.h"
+#include "engine/forces/rigid.h"
+#include "engine/model/mass.h"
+
+bool strut_krylov_basis_create(const strut_model *model, const strut_tangent *tangent, int most,
+                               strut_arena *arena, strut_krylov_basis *space) {
+  size_t n = (size_t)tangent->n, m = (size_t)most;
+  *space = (strut_krylov_basis){.model = model, .tangent = tangent, .most = most};
+  space->vector = strut_arena_allocate(arena, m * n, sizeof(double));
+  space->stiffness = strut_arena_allocate(arena, m * m, sizeof(double));
+  space->damping = strut_arena_allocate(arena, m * m, sizeof(double));
+  space->image = strut_arena_allocate(arena, n, sizeof(double));
+  space->node = strut_arena_allocate(arena, 3 * (size_t)model->length, sizeof(double));
+  return space->vector && space->stiffness && space->damping && space->image && space->node;
+}
+
+/* What rigid bars leave of it; nothing where they hold all of it and only rounding is left. */
+static void hold_rigid(const strut_model *model, strut_rigid *rigid, double *acceleration,
+                       double *scratch) {
+  double before = strut_largest_magnitude(acceleration, model->length);
+  strut_rigid_filter(model, rigid, acceleration, scratch);
+  if (strut_largest_magnitude(acceleration, model->length) < 1e-12 * before)
+    memset(acceleration, 0, (size_t)model->length * sizeof *acceleration);
+}
+
+void strut_apply_inverse_mass(strut_krylov_basis *space, double *x) {
+  const strut_model *model = space->model;
+  const strut_tangent *tangent = space->tangent;
+  size_t both = (size_t)model->length;
+  double *force = space->node, *acceleration = force + both, *scratch = force + 2 * both;
+  memset(force, 0, 2 * both * sizeof *force);
+  for (int32_t i = 0; i < tangent->n; i++) force[tangent->coordinate[i]] = x[i];
+  strut_mass_solve(model, force, acceleration, scratch);
+  if (tangent->rigid) hold_rigid(model, tangent->rigid, acceleration, scratch);
+  for (int32_t i = 0; i < tangent->n; i++) x[i] = acceleration[tangent->coordinate[i]];
+}
+
+void strut_tangent_mass(strut_krylov_basis *space, const double *x, double *y) {
+  const strut_model *model = space->model;
+  const strut_tangent *tangent = space->tangent;
+  size_t both = (size_t)model->length;
+  double *full = space->node, *gathered = full + both, *product = full + 2 * both;
+  memset(full, 0, both * sizeof *full);
+  for (int32_t i = 0; i < tangent->n; i++) full[tangent->coordinate[i]] = x[i];
+  for (int c = 0; c < 2; c++) {
+    const strut_mass_operator *op = &model->mass->coordinate[c];
+    for (int32_t i = 0; i < op->matrix->n; i++) gathered[i] = full[2 * op->matrix_node[i] + c];
+    strut_sparse_multiply(op->matrix, gathered, product);
+    for (int32_t i = 0; i < op->matrix->n; i++) full[2 * op->matrix_node[i] + c] = product[i];
+  }
+  for (int32_t i = 0; i < tangent->n; i++) y[i] = full[tangent->coordinate[i]];
+}
+
+void strut_tangent_apply(strut_krylov_basis *space, double a, double b, const double *x,
+                         double *y) {
+  int32_t n = space->tangent->n;
+  double *other = space->node;
+  if (a != 0.0)
+    strut_sparse_multiply(space->tangent->stiffness, x, y);
+  else
+    memset(y, 0, (size_t)n * sizeof *y);
+  if (a != 1.0)
+    for (int32_t i = 0; i < n; i++) y[i] *= a;
+  if (b == 0.0) return;
+  strut_sparse_multiply(space->tangent->damping, x, other);
+  for (int32_t i = 0; i < n; i++) y[i] += b * other[i];
+}
+
+/* Scales x to size 1 in the mass; its size before, 0 where it has none. `image` is then M x. */
+static double normalise(strut_krylov_basis *space, double *x) {
+  int32_t n = space->tangent->n;
+  double largest = strut_largest_magnitude(x, n);
+  if (!(largest > 0.0 && largest < HUGE_VAL)) return 0.0;
+  for (int32_t i = 0; i < n; i++) x[i] /= largest;
+  strut_tangent_mass(space, x, space->image);
+  double size = sqrt(fmax(0.0, strut_dot(x, space->image, n)));
+  if (!(size > 0.0)) return 0.0;
+  for (int32_t i = 0; i < n; i++) x[i] /= size, space->image[i] /= size;
+  return size * largest;
+}
+
+/* Rows and columns of the last vector in the projected matrices. */
+static void project_last(strut_krylov_basis *space) {
+  int32_t n = space->tangent->n;
+  int last = space->count - 1;
+  const double *x = space->vector + (size_t)last * (size_t)n;
+  for (int which = 0; which < 2; which++) {
+    double *small = which ? space->damping : space->stiffness;
+    strut_tangent_apply(space, which ? 0.0 : 1.0, which ? 1.0 : 0.0, x, space->image);
+    for (int j = 0; j <= last; j++) {
+      double value = strut_dot(space->vector + (size_t)j * (size_t)n, space->image, n);
+      small[j * space->most + last] = small[last * space->most + j] = value;
+    }
+  }
+}
+
+bool strut_krylov_basis_add(strut_krylov_basis *space, double *x) {
+  int32_t n = space->tangent->n;
+  if (space->count >= space->most || !(normalise(space, x) > 0.0)) return false;
+  for (int pass = 0; pass < 3; pass++) {
+    for (int j = 0; j < space->count; j++) {
+      const double *v = space->vector + (size_t)j * (size_t)n;
+      double part = strut_dot(v, space->image, n);
+      for (int32_t i = 0; i < n; i++) x[i] -= part * v[i];
+    }
+    double left = normalise(space, x);
+    if (!(left > 1e-8)) return false; /* what is left is rounding */
+    if (left > 0.5) break;
+  }
+  memcpy(space->vector + (size_t)space->count * (size_t)n, x, (size_t)n * sizeof *x);
+  space->count++;
+  project_last(space);
+  return true;
+}
+
+void strut_krylov_basis_combine(const strut_krylov_basis *space, const double *c, double *x) {
+  int32_t n = space->tangent->n;
+  memset(x, 0, (size_t)n * sizeof *x);
+  for (int j = 0; j < space->count; j++) {
+    const double *v = space->vector + (size_t)j * (size_t)n;
+    for (int32_t i = 0; i < n; i++) x[i] += c[j] * v[i];
+  }
+}
+
+/* Rows of c made orthonormal, the dependent ones dropped; how many are left. */
+static int orthonormal_rows(double *c, int rows, int columns) {
+  int kept = 0;
+  for (int r = 0; r < rows; r++) {
+    double *x = c + (size_t)r * (size_t)columns, *to = c + (size_t)kept * (size_t)columns;
+    double before = sqrt(strut_dot(x, x, columns));
+    for (int pass = 0; pass < 2; pass++)
+      for (int j = 0; j < kept; j++) {
+        const double *y = c + (size_t)j * (size_t)columns;
+        double part = strut_dot(x, y, columns);
+        for (int i = 0; i < columns; i++) x[i] -= part * y[i];
+      }
+    double size = sqrt(strut_dot(x, x, columns));
+    if (!(size > 1e-8 * before)) continue;
+    for (int i = 0; i < columns; i++) to[i] = x[i] / size;
+    kept++;
+  }
+  return kept;
+}
+
+/* small becomes c small c'. */
+static void rotate(double *small, int most, const double *c, int rows, int columns, double *work) {
+  for (int j = 0; j < columns; j++) { /* c small, column by column, in place of its upper rows */
+    for (int r = 0; r < rows; r++) {
+      work[r] = 0.0;
+      for (int i = 0; i < columns; i++) work[r] += c[r * columns + i] * small[i * most + j];
+    }
+    for (int r = 0; r < rows; r++) small[r * most + j] = work[r];
+  }
+  for (int r = 0; r < rows; r++) {
+    for (int s = 0; s < rows; s++) {
+      work[s] = 0.0;
+      for (int i = 0; i < columns; i++) work[s] += small[r * most + i] * c[s * columns + i];
+    }
+    for (int s = 0; s < rows; s++) small[r * most + s] = work[s];
+  }
+}
+
+void strut_krylov_basis_shrink(strut_krylov_basis *space, double *c, int rows, double *work) {
+  size_t n = (size_t)space->tangent->n;
+  int columns = space->count, kept = orthonormal_rows(c, rows, columns);
+  rotate(space->stiffness, space->most, c, kept, columns, work);
+  rotate(space->damping, space->most, c, kept, columns, work);
+  for (size_t i = 0; i < n; i++) {
+    for (int r = 0; r < kept; r++) {
+      work[r] = 0.0;
+      for (int j = 0; j < columns; j++)
+        work[r] += c[r * columns + j] * space->vector[(size_t)j * n + i];
+    }
+    for (int r = 0; r < kept; r++) space->vector[(size_t)r * n + i] = work[r];
+  }
+  space->count = kept;
+}
+
+/* Lanczos's method for the largest eigenvalues of a tangent matrix: where to look for motions. */
 
 /* Steps at most; and of its motions, how many are kept. */
 enum { MOST_STEPS = 80, KEPT = 3 };

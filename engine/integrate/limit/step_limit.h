@@ -1,12 +1,44 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * How large a step may be: the spectrum of small motions against a method's region of stability.
+ * Largest stable steps of the explicit methods for one damped mode, z^2 + d z + k = 0.
  */
 #ifndef STRUT_ENGINE_INTEGRATE_LIMIT_STEP_LIMIT_H
 #define STRUT_ENGINE_INTEGRATE_LIMIT_STEP_LIMIT_H
 
 #include "engine/forces/tangent.h"
-#include "engine/integrate/limit/stability.h"
+#include "engine/integrate/integrator.h"
+
+/** Largest h with |R(h lambda)| <= 1 for RK4's R and lambda = re + i im, re <= 0; INFINITY at 0. */
+STRUT_API double strut_rk4_limit(double re, double im);
+
+/**
+ * Velocity Verlet with velocity-dependent forces at the predicted velocity v + h a. k [1/s^2], d [1/s].
+ * 2/omega without damping.
+ */
+STRUT_API double strut_verlet_limit(double k, double d);
+
+/** Semi-implicit Euler: (sqrt(d^2 + 4 k) - d) / k. */
+STRUT_API double strut_euler_limit(double k, double d);
+
+/** The limit of a region for an eigenvalue re + i im of a mode with k and d. */
+STRUT_API double strut_region_limit(strut_region region, double re, double im, double k, double d);
+
+/**
+ * Data of a region that the monitor of the step limit uses. A step h is stable where no motion's
+ * quotient of h^2 stiff K + h damp D exceeds 1, for each of the sets.
+ */
+typedef struct strut_region_data {
+  int sets; /* 0: every step is stable */
+  struct {
+    double stiff, damp;
+  } set[2];
+  double growth;      /* at a ratio 1 + e of the limit motions grow by e times this per step, in
+                         logarithms, at least */
+  bool by_eigenvalue; /* the limit takes eigenvalues of the damped problem; else K and D suffice */
+} strut_region_data;
+const strut_region_data *strut_region_at(strut_region region);
+
+/* How large a step may be: the spectrum of small motions against a method's region of stability. */
 
 typedef struct strut_step_limit {
   double largest_frequency; /* undamped, all contacts closed [rad/s]; 0 where nothing vibrates */
@@ -23,7 +55,7 @@ typedef struct strut_step_limit {
  * STRUT_EXACT_LIMIT free coordinates all eigenvalues of the damped system are computed (GSL); above,
  * those that bind, from a space of motions that grows until they have settled: within 1 %, whatever
  * the damping. Above 250000 coordinates, and above 100000 where they do not settle, bounds from the
- * entries of the matrices (tangent_bound.h) are reported. The model must have a mass.
+ * entries of the matrices (tangent_limits.h) are reported. The model must have a mass.
  */
 STRUT_API strut_status strut_step_limit_estimate(const strut_model *model, strut_step_limit *limit,
                                                  strut_error *error);

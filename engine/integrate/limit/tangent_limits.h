@@ -1,6 +1,73 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * The eigenvalues of a space of motions that bind each method's step, and the motions they belong to.
+ * Limits of the step from the tangent: the Krylov basis, the bound from entries, the limits themselves.
+ */
+#ifndef STRUT_ENGINE_INTEGRATE_LIMIT_TANGENT_LIMITS_H
+#define STRUT_ENGINE_INTEGRATE_LIMIT_TANGENT_LIMITS_H
+
+#include <stdbool.h>
+
+#include "engine/forces/tangent.h"
+#include "engine/integrate/limit/step_limit.h"
+
+/* A few motions of many that matter for the step: a space of them, and the small problem within.
+ *
+ * Vectors are over the free coordinates (n) of a tangent. The space keeps vectors orthonormal in
+ * the mass, and K and D projected onto them: z^2 + z D + K = 0 of a few rows, symmetric and of the
+ * same signs as the large one, so that its eigenvalues lie within the bounds of the large one's.
+ */
+
+typedef struct strut_krylov_basis {
+  const strut_model *model;
+  const strut_tangent *tangent;
+  int count, most;             /* vectors it has, and has room for */
+  double *vector;              /* (most, n) */
+  double *stiffness, *damping; /* (most, most) projected [1/s^2], [1/s]; the leading count rows */
+  double *image;               /* (n) scratch */
+  double *node;                /* (3, length) scratch */
+} strut_krylov_basis;
+
+/** In the arena, empty. False: out of memory. */
+bool strut_krylov_basis_create(const strut_model *model, const strut_tangent *tangent, int most,
+                               strut_arena *arena, strut_krylov_basis *space);
+/** x becomes M^-1 x, through what rigid bars allow. */
+void strut_apply_inverse_mass(strut_krylov_basis *space, double *x);
+/** y = M x. */
+void strut_tangent_mass(strut_krylov_basis *space, const double *x, double *y);
+/** y = a K x + b D x; x and y apart. */
+void strut_tangent_apply(strut_krylov_basis *space, double a, double b, const double *x, double *y);
+/** Takes the space's motions out of x and appends the rest; false where nothing is left or no room. */
+bool strut_krylov_basis_add(strut_krylov_basis *space, double *x);
+/** x = the sum of the space's vectors times c (count). */
+void strut_krylov_basis_combine(const strut_krylov_basis *space, const double *c, double *x);
+/** The space becomes what the rows of c (rows, count) span; c is changed, work is (most). */
+void strut_krylov_basis_shrink(strut_krylov_basis *space, double *c, int rows, double *work);
+
+/**
+ * Adds the motions of the largest eigenvalues of M^-1 (a K + b D), found by Lanczos's method: twice
+ * the same three-term recurrence, so that no vectors but those wanted are kept. False: no memory.
+ */
+bool strut_lanczos_limits(strut_krylov_basis *space, double a, double b);
+
+/* How stiff small motions can be at most, from the entries of their matrices: bounds, not estimates.
+ *
+ * For any positive weights z and any masses m with M - diag(m) positive semidefinite, no quotient of
+ * |A| over M exceeds the largest (|A| z)_i / (m_i z_i) (Collatz, Wielandt). Weights that a few
+ * multiplications by the matrix itself improve make that close. Each pass costs two multiplications.
+ */
+
+/** What all motions keep to. */
+typedef struct strut_tangent_bound {
+  double frequency;         /* none of the undamped is above [rad/s] */
+  double rate;              /* largest quotient of D over M [1/s] */
+  double of[STRUT_REGIONS]; /* steps that are stable [s]; INFINITY where nothing limits them */
+} strut_tangent_bound;
+
+/** The model must have a mass. Scratch is in the arena; false: out of memory. */
+STRUT_API bool strut_tangent_bound_find(const strut_model *model, const strut_tangent *tangent,
+                                        strut_arena *arena, strut_tangent_bound *bound);
+
+/* The eigenvalues of a space of motions that bind each method's step, and the motions they belong to.
  *
  * Verlet and semi-implicit Euler first fail by motions that change sign at every step, x' = -x. Put
  * into their formulas this is (M - c h D - h^2/4 K) x = 0 with c = 1 (the damper sees v + h a) and
@@ -8,11 +75,6 @@
  * c h d + h^2/4 k < 1, within which one mode is stable. So their limit is exact also where damping
  * couples the modes. RK4's is that of the eigenvalues z of z^2 M + z D + K.
  */
-#ifndef STRUT_ENGINE_INTEGRATE_LIMIT_TANGENT_LIMITS_H
-#define STRUT_ENGINE_INTEGRATE_LIMIT_TANGENT_LIMITS_H
-
-#include "engine/integrate/limit/krylov_basis.h"
-#include "engine/integrate/limit/stability.h"
 
 enum { STRUT_CRITICAL_MODE_PAIRS = 4, STRUT_MOST_BINDING = 4 + 2 * STRUT_CRITICAL_MODE_PAIRS };
 

@@ -8,7 +8,7 @@
 #include "engine/forces/elements.h"
 #include "engine/forces/forces.h"
 #include "engine/forces/history.h"
-#include "engine/forces/sliding_masses.h"
+#include "engine/forces/moving_masses.h"
 #include "engine/forces/support_motion.h"
 #include "engine/model/pose.h"
 #include "engine/model/surface_search.h"

@@ -5,7 +5,7 @@
 #include <float.h>
 #include <math.h>
 
-#include "engine/forces/sliding_masses.h"
+#include "engine/forces/moving_masses.h"
 #include "engine/forces/support_motion.h"
 #include "engine/forces/surfaces.h"
 #include "engine/model/pose.h"

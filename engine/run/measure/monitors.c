@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/forces/sliding_masses.h"
+#include "engine/forces/moving_masses.h"
 #include "engine/forces/surfaces.h"
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/model/mass.h"

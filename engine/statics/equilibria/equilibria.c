@@ -9,7 +9,6 @@
 #include "engine/model/linear_solver.h"
 #include "engine/run/settle.h"
 #include "engine/statics/equilibria/equilibria_parts.h"
-#include "engine/statics/equilibria/landscape.h"
 
 /* Adds a search's counts; of its estimates the largest is kept. */
 static void count_starts(strut_equilibrium_search *h, const strut_critical_set *set) {

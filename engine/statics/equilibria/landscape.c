@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/equilibria/landscape.h"
+#include "engine/statics/equilibria/equilibria_parts.h"
 
 #include <assert.h>
 #include <math.h>
@@ -8,7 +8,6 @@
 #include "engine/base/vec.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/strains/reach.h"
-#include "engine/statics/equilibria/equilibria_parts.h"
 
 /* Two shapes are one: as a share of the model's size, and of the potential. */
 static const double SAME_SHAPE = 1e-5, SAME_POTENTIAL = 1e-8;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/modes/vibration.h"
+#include "engine/statics/modes/parts.h"
 
 #include <float.h>
 #include <math.h>

@@ -14,8 +14,8 @@
 #include "engine/study/results/study_table.h"
 #include "engine/study/search/search.h"
 #include "engine/study/sensitivity/sensitivity.h"
-#include "engine/study/sweep/refine.h"
 #include "engine/study/sweep/sweep.h"
+#include "engine/study/sweep/sweep_parts.h"
 
 /** The number of points and the columns. */
 char *strut_sweep_count_report(const strut_sweep_plan *plan, bool json);

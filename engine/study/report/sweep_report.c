@@ -8,7 +8,7 @@
 #include "engine/base/number_text.h"
 #include "engine/output/buffer.h"
 #include "engine/study/report/study_report.h"
-#include "engine/study/sweep/refine.h"
+#include "engine/study/sweep/sweep_parts.h"
 
 enum { MOST_FAILURES = 20, MOST_GAPS = 20 };
 

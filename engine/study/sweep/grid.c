@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "engine/base/checksum.h"
-#include "engine/study/sweep/refine.h"
+#include "engine/study/sweep/sweep_parts.h"
 
 int64_t strut_grid_points(const strut_study *study) {
   int64_t points = 1;

@@ -9,8 +9,6 @@
 
 #include "engine/output/results.h"
 #include "parser/bindings/abi/handles.h"
-#include "parser/command/fidelity_settings.h"
-#include "parser/command/path_options.h"
 #include "parser/command/run_settings.h"
 #include "parser/command/statics_options.h"
 #include "parser/read/read_scene.h"

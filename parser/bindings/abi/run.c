@@ -10,8 +10,7 @@
 #include "engine/run/stepping.h"
 #include "engine/statics/equilibria/equilibria.h"
 #include "parser/bindings/abi/handles.h"
-#include "parser/command/fidelity_settings.h"
-#include "parser/command/option_values.h"
+#include "parser/command/arguments.h"
 #include "parser/command/run_settings.h"
 
 /* No frame is left out: the caller decides how much is recorded. */

@@ -8,8 +8,7 @@
 #include "engine/statics/rigidity/rigidity.h"
 #include "engine/statics/rigidity/rigidity_parts.h"
 #include "parser/bindings/abi/handles.h"
-#include "parser/command/overload_warnings.h"
-#include "parser/command/path_options.h"
+#include "parser/command/messages.h"
 #include "parser/command/statics_options.h"
 #include "parser/write/write_scene.h"
 

@@ -8,8 +8,7 @@
 #include "engine/study/results/study_table.h"
 #include "engine/study/sweep/sweep.h"
 #include "parser/bindings/abi/handles.h"
-#include "parser/command/fidelity_settings.h"
-#include "parser/command/option_values.h"
+#include "parser/command/arguments.h"
 #include "parser/command/run_settings.h"
 #include "parser/write/write_scene.h"
 

@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Masses that slide along members as their signals say; see engine/model/sliding_masses.h.
+/** Masses that move in the structure: along members, and turning out of balance. */
+#ifndef STRUT_ENGINE_FORCES_MOVING_MASSES_H
+#define STRUT_ENGINE_FORCES_MOVING_MASSES_H
+
+#include "engine/model/state.h"
+
+/* Masses that slide along members as their signals say; see engine/model/sliding_masses.h.
  *
  * A mass m at x = N q, N = (1 - s, s), adds m N'N to the mass matrix and the force
  * N'm (g - 2 s' (v_b - v_a) - s'' (q_b - q_a)). With the constant matrix M factored, a = M^-1 f becomes
  * a - M^-1 N' (1/m + N M^-1 N')^-1 N a, for several of them with a small dense matrix. The drive gives
  * m (x'' - g) along the member, times s' (q_b - q_a).
  */
-#ifndef STRUT_ENGINE_FORCES_SLIDING_MASSES_H
-#define STRUT_ENGINE_FORCES_SLIDING_MASSES_H
-
-#include "engine/model/state.h"
 
 /** Puts the moving masses where they are at time t [s], and factors what the acceleration needs. */
 void strut_sliding_masses_place(const strut_model *model, strut_state *state, double t);
@@ -40,5 +41,21 @@ double strut_sliding_masses_moment(const strut_model *model, const strut_state *
 /** Its rate [kg m/s]. */
 double strut_sliding_masses_momentum(const strut_model *model, const strut_state *state, int axis,
                                      const double *q, const double *v);
+
+/* Rotating masses. A mass m at the distance r from its node, at the angle p from +x, adds m to the node's
+ * mass and the force -m r d2e/dt2 with e = (cos p, sin p). Its work is the drive's: what the motor does
+ * on the structure, not on the rotor itself.
+ */
+
+/** Adds the forces at time t [s] to state->latest.force, and their power at velocities v. */
+void strut_unbalance_apply(const strut_model *model, strut_state *state, double t, const double *v);
+/** Adds the forces on average over the time from t on for h [s], impulses within it too; u: mean velocity. */
+void strut_unbalance_apply_mean(const strut_model *model, strut_state *state, double t, double h,
+                                const double *u);
+/**
+ * The impulses of angular velocities that jump after the time `from` and up to `to` [s], on state->v.
+ * True if there were any.
+ */
+bool strut_unbalance_kick(const strut_model *model, strut_state *state, double from, double to);
 
 #endif
