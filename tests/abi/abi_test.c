@@ -81,7 +81,7 @@ static void assert_refused(strutlib_error *error, int status, const char *words)
 
 /* ---- versions and codes ---- */
 
-TEST(versions_and_codes_are_told) {
+TEST(versions_and_codes_are_reported) {
   assert_int_equal(strutlib_abi_version(), STRUTLIB_ABI_VERSION);
   assert_non_null(strchr(strutlib_version(), '.'));
   assert_string_equal(strutlib_status_name(STRUTLIB_OK), "ok");

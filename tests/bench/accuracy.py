@@ -73,7 +73,7 @@ with tempfile.TemporaryDirectory() as folder:
             if error > claim["wanted"]:
                 other = right_at(point, "rk4-events", "--step", "8 us")
                 print(f"missed {wanted} at {point}: {found['velocity']:.7g}, adaptive {right:.7g}, "
-                      f"rk4-events {other:.7g}, error {100 * error:.3g} %, told "
+                      f"rk4-events {other:.7g}, error {100 * error:.3g} %, reported "
                       f"{100 * claim['expected']:.3g} %")
         mean = lambda values: sum(values) / len(values)
         print(f"{wanted:>8} {at(0.5, errors):8.4f}% {at(0.9, errors):8.4f}% {max(errors):8.4f}% "

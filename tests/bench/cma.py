@@ -35,15 +35,15 @@ def evaluations(f, n, population, seed):
                  population_size=population)
     count = 0
     while count < 30000:
-        told = []
+        reported = []
         for _ in range(search.population_size):
             x = search.ask()
             value = f(x)
-            told.append((x, value))
+            reported.append((x, value))
             count += 1
-        if min(value for _, value in told) <= 1e-10:
+        if min(value for _, value in reported) <= 1e-10:
             return count
-        search.tell(told)
+        search.tell(reported)
     return None
 
 

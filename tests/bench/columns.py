@@ -191,24 +191,24 @@ def main():
                 if not mine["kept"] or mine["zero"]:
                     continue
                 size = max(abs(right["value"]), right["scale"] or 0.0)
-                told = mine["expected"]
+                reported = mine["expected"]
                 for c in (totals, row, column):
                     c["wrong"] += error > wanted
-                    c["told too small"] += bool(told is not None and error * size > told and error > 1e-6)
-                    c["by more than 3"] += bool(told is not None and error * size > 3 * told and error > 1e-6)
+                    c["reported too small"] += bool(reported is not None and error * size > reported and error > 1e-6)
+                    c["by more than 3"] += bool(reported is not None and error * size > 3 * reported and error > 1e-6)
                 if error > wanted:
                     bad = True
                     print(f"c{number} {name} {scene['run']['measure']['quantities'][name]}: {mine['value']:.9g}, "
-                          f"right {right['value']:.9g}, wanted {wanted}, told {told}", flush=True)
+                          f"right {right['value']:.9g}, wanted {wanted}, reported {reported}", flush=True)
             if bad and folder:
                 folder.mkdir(parents=True, exist_ok=True)
                 (folder / file.name).write_text(file.read_text(encoding="utf-8"), encoding="utf-8")
     for title, table in (("column", by_column), ("take", by_take), ("", {"all": totals})):
-        print(f"\n{title:24} values   kept  wrong  told too small  by more than 3")
+        print(f"\n{title:24} values   kept  wrong  reported too small  by more than 3")
         for name, row in sorted(table.items()):
-            print(f"{name:24} {row['values']:6} {row['kept']:6} {row['wrong']:6} {row['told too small']:10}"
+            print(f"{name:24} {row['values']:6} {row['kept']:6} {row['wrong']:6} {row['reported too small']:10}"
                   f" {row['by more than 3']:10}")
-    print({k: v for k, v in totals.items() if k not in ("values", "kept", "wrong", "told too small")})
+    print({k: v for k, v in totals.items() if k not in ("values", "kept", "wrong", "reported too small")})
     return 1 if totals["wrong"] else 0
 
 

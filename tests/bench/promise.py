@@ -76,12 +76,12 @@ def one_scene(kind, number, work, totals):
         if not found:
             return "none", file, f"{why} (right: {right})"
         error = abs(found["velocity"] - right) / max(abs(right), scale)
-        told = found["accuracy"]
-        totals["forces"] += found["force_evaluations"] + told["check_evaluations"]
+        reported = found["accuracy"]
+        totals["forces"] += found["force_evaluations"] + reported["check_evaluations"]
         totals["midpoint"] += found["method"] == "midpoint"
-        what = (f"wanted {wanted}, error {error:.2g}, expected {told['expected']}, "
-                f"v {found['velocity']:.6g} right {right:.6g} scale {scale:.2g}: {told['why']}")
-        if not told["kept"]:
+        what = (f"wanted {wanted}, error {error:.2g}, expected {reported['expected']}, "
+                f"v {found['velocity']:.6g} right {right:.6g} scale {scale:.2g}: {reported['why']}")
+        if not reported["kept"]:
             return "none", file, what
         return ("kept" if error <= wanted else "broken"), file, what
     return "none", file, "no scene with a reference"

@@ -47,7 +47,7 @@ cp "$work/out" "$work/json"
 [ "$(field '.steady.kind == "periodic" and .steady.periods <= 60')" = true ] || fail "it never stops"
 [ "$(field '(.velocity | fabs) < 3e-5')" = true ] || fail "it moves"
 
-# Slowly driven on rough ground it creeps in a way that no period repeats: that is told, with an error of its own, or,
+# Slowly driven on rough ground it creeps in a way that no period repeats: that is reported, with an error of its own, or,
 # where more is wanted, sought for some time. adaptive's mean over the last 100 of 500 periods is 0.0103 mm/s.
 expect 0 run "$crawler" --set frequency="1 Hz" --set friction=0.5 --steady 0.5% --accuracy 0.5%
 out_has "creeping    over"

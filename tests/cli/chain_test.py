@@ -96,19 +96,19 @@ def check(cells, coupling, seed):
     if done.returncode:
         fail(f"{what}: {done.stderr}")
         return
-    told = json.loads(done.stdout)
-    stable = [e for e in told["equilibria"] if e["label"] == "stable"]
+    reported = json.loads(done.stdout)
+    stable = [e for e in reported["equilibria"] if e["label"] == "stable"]
     for heights in states:
         if not any(all(abs(e["nodes"][f"apex{i}"][1] - SPACING * i - x) < 1e-6
                        for i, x in enumerate(heights)) for e in stable):
             fail(f"{what}: lacks the state at " + " ".join(f"{x:.6f}" for x in heights))
     if len(stable) != len(states):
         fail(f"{what}: {len(stable)} stable states, not {len(states)}")
-    missed = told["missed"]
+    missed = reported["missed"]
     if not 0 < missed["probability"] <= missed["probability_bound"] <= 1:
         fail(f"{what}: chance {missed}")
     rare = sum(e["found"] <= 2 for e in stable)
-    if rare > 2 and missed["unreached"] == 0 and missed["probability_bound"] < 4 / told["starts"]:
+    if rare > 2 and missed["unreached"] == 0 and missed["probability_bound"] < 4 / reported["starts"]:
         fail(f"{what}: {rare} states were hardly met, of which nothing is said: {missed}")
 
 

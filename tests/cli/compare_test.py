@@ -48,11 +48,11 @@ def same(what, found, wanted, relative=1e-12):
 
 
 def check_counts(path, v):
-    told = read("check", path)
+    reported = read("check", path)
     for key in ("nodes", "bars", "springs", "cables", "contacts", "actuators",
                 "degrees_of_freedom", "step_limit"):
-        same(f"{path}: {key}", v[key], told[key])
-    same(f"{path}: members", v["members"], len(told["members"]))
+        same(f"{path}: {key}", v[key], reported[key])
+    same(f"{path}: members", v["members"], len(reported["members"]))
 
 
 def check_rigidity(path, v):
@@ -62,8 +62,8 @@ def check_rigidity(path, v):
     same(f"{path}: rigid", v["rigid_body_motions"], moves["rigid_body"])
     same(f"{path}: mechanisms", v["mechanisms"], moves["count"] - moves["rigid_body"])
     same(f"{path}: finite", v["finite_mechanisms"], moves["finite"])
-    told = read("rigidity", path, "--at", "start")["members_at"]
-    force = [m["force"] for m in told.values()]
+    reported = read("rigidity", path, "--at", "start")["members_at"]
+    force = [m["force"] for m in reported.values()]
     same(f"{path}: tension", v["largest_tension"], max(0, *force), 1e-9)
     same(f"{path}: compression", v["largest_compression"], max(0, *[-f for f in force]), 1e-9)
     same(f"{path}: prestress", v["prestress"], math.sqrt(sum(f * f for f in force) / len(force)),
@@ -71,8 +71,8 @@ def check_rigidity(path, v):
 
 
 def check_states(path, model):
-    told, v = read("equilibria", path), model["values"]
-    stands = {e["name"]: e["energy"] for e in told["equilibria"] if e["outcome"] == "stands"}
+    reported, v = read("equilibria", path), model["values"]
+    stands = {e["name"]: e["energy"] for e in reported["equilibria"] if e["outcome"] == "stands"}
     if {s["name"]: s["energy"] for s in model["states"]} != stands:
         fail(f"{path}: states {model['states']}, not {stands}")
     energies = [s["energy"] for s in model["states"]]
@@ -81,7 +81,7 @@ def check_states(path, model):
     same(f"{path}: number of states", v["stable_states"], len(stands))
     same(f"{path}: lowest", v["lowest_energy"], min(stands.values()))
     same(f"{path}: span", v["energy_span"], max(stands.values()) - min(stands.values()))
-    barriers = [(b["from"], b["to"], b["height"]) for b in told["barriers"]]
+    barriers = [(b["from"], b["to"], b["height"]) for b in reported["barriers"]]
     if [(b["from"], b["to"], b["height"]) for b in model["barriers"]] != barriers:
         fail(f"{path}: barriers differ")
     return barriers
@@ -96,20 +96,20 @@ def check_frequencies(path, v):
 
 def check_motion(path, model, *options):
     """The run and, from it alone, what is made of it."""
-    told, v = read("run", path, "--accuracy", "0.5%", "--steady", "0.5%", *options), model["values"]
-    same(f"{path}: velocity", v["velocity"], told["velocity"])
-    same(f"{path}: error", v["velocity_error"], told["accuracy"]["expected"])
-    spent = told["force_evaluations"] + told["accuracy"]["check_evaluations"]
-    same(f"{path}: evaluations", v["evaluations_per_second"], spent / told["duration"])
+    reported, v = read("run", path, "--accuracy", "0.5%", "--steady", "0.5%", *options), model["values"]
+    same(f"{path}: velocity", v["velocity"], reported["velocity"])
+    same(f"{path}: error", v["velocity_error"], reported["accuracy"]["expected"])
+    spent = reported["force_evaluations"] + reported["accuracy"]["check_evaluations"]
+    same(f"{path}: evaluations", v["evaluations_per_second"], spent / reported["duration"])
     period = 1 / v["drive_frequency"]
-    same(f"{path}: travel", v["travel_per_period"], told["velocity"] * period)
+    same(f"{path}: travel", v["travel_per_period"], reported["velocity"] * period)
     # that run ends with whole periods of the steady motion, by another tolerance
-    work = told["window_drive_work"] / told["window_duration"] * period
+    work = reported["window_drive_work"] / reported["window_duration"] * period
     same(f"{path}: energy", v["drive_energy_per_period"], work, 2e-3)
     same(f"{path}: power", v["drive_power"], v["drive_energy_per_period"] / period)
     same(f"{path}: transport", v["cost_of_transport"],
          v["drive_power"] / (v["mass"] * 9.81 * abs(v["velocity"])))
-    duty = {n: c["duty"] for n, c in told["contacts"].items()}
+    duty = {n: c["duty"] for n, c in reported["contacts"].items()}
     for node, c in model["contacts"].items():
         if abs(c["duty"] - duty[node]) > 0.03:
             fail(f"{path}: {node} touches {c['duty']}, in the run {duty[node]}")
@@ -162,10 +162,10 @@ def stiffness(scene, at):
 def check_stiffness(path, model):
     scene = yaml.safe_load(run("write", path).stdout)
     wanted = stiffness(scene, model["nodes"])
-    for node, told in model["nodes"].items():
+    for node, reported in model["nodes"].items():
         for d in range(2):
             here = wanted[node][d]
-            same(f"{path}: stiffness of {node} in {'xy'[d]}", told["stiffness"][d],
+            same(f"{path}: stiffness of {node} in {'xy'[d]}", reported["stiffness"][d],
                  None if math.isnan(here) else here, 1e-6)
     for d in range(2):
         least = min(w[d] for w in wanted.values() if not math.isnan(w[d]))
@@ -202,7 +202,7 @@ same("frequency set", by["crawler"]["values"]["drive_frequency"], 10.5)
 same("frequency set", by["two-mass-crawler"]["values"]["drive_frequency"], 10.5, 1e-9)
 if by["x-frame"]["without_parameters"] != ["frequency", "start"] or \
         by["two-mass-crawler"]["without_parameters"] != ["start"]:
-    fail("parameters that a model does not have are not told")
+    fail("parameters that a model does not have are not reported")
 check_motion(CRAWLER, by["crawler"], "--set", "frequency=10.5 Hz", "--set", "start=II")
 if by["x-frame"]["values"]["velocity"] is not None or "drive" not in \
         by["x-frame"]["reasons"]["drive_frequency"]:
@@ -211,8 +211,8 @@ for model in both["models"]:
     for key, value in model["values"].items():
         if (value is None) != (key in model["reasons"]):
             fail(f"{model['model']}: {key} is {value}, the reason {model['reasons'].get(key)}")
-told = run("compare", CRAWLER, X, "--no-states", "--csv").stdout
-rows = list(csv.DictReader(io.StringIO(told)))
+reported = run("compare", CRAWLER, X, "--no-states", "--csv").stdout
+rows = list(csv.DictReader(io.StringIO(reported)))
 alone = read("compare", CRAWLER, X, "--no-states")["models"]
 for row, model in zip(rows, alone):
     if row["model"] != model["model"] or row["name"] != model["name"]:
@@ -239,12 +239,12 @@ members:
         "stiffness: stiff}", "stiffness: 200 N/m}\n  ac: {kind: cable, nodes: [a, b], "
         "stiffness: 1 N/m}").replace(", unlike: 1", ""))
     found = read("compare", "one.yaml", "two.yaml", "one.yaml", "--no-states", "--no-motion")
-    told = {d["where"]: (d["change"], d["was"], d["is"]) for d in found["models"][1]["differences"]}
-    if told != {"parameters.unlike": ("removed", "1", None),
+    reported = {d["where"]: (d["change"], d["was"], d["is"]) for d in found["models"][1]["differences"]}
+    if reported != {"parameters.unlike": ("removed", "1", None),
                 "members.ab.stiffness": ("changed", "100", "200"),
                 "members.ac": ("added", None, "{nodes: [a, b], kind: cable, stiffness: 1, "
                                "rest_length_ratio: 1}")}:
-        fail(f"differences: {told}")
+        fail(f"differences: {reported}")
     if found["models"][2]["differences"] or found["models"][2]["model"] != "one.yaml":
         fail("the same model twice has differences, or no label of its own")
     if "differences" in found["models"][0]:
@@ -346,9 +346,9 @@ run: {duration: 1 s}
 """
     open("falls.yaml", "w").write(falls)
     done = run("compare", "falls.yaml", "one.yaml", "--no-states", "--json", code=3)
-    told = json.loads(done.stdout)["models"]
-    if told[0]["status"] == "completed" or told[1]["status"] != "completed" or \
-            "falls" not in done.stderr or told[0]["values"]["velocity"] is not None:
-        fail(f"a model that fails: {told[0]['status']}, {done.stderr}")
+    reported = json.loads(done.stdout)["models"]
+    if reported[0]["status"] == "completed" or reported[1]["status"] != "completed" or \
+            "falls" not in done.stderr or reported[0]["values"]["velocity"] is not None:
+        fail(f"a model that fails: {reported[0]['status']}, {done.stderr}")
 
 finish()

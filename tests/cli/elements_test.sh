@@ -170,7 +170,7 @@ END
 expect 0 equilibria bent.yaml --json
 near '[.equilibria[] | select(.label == "stable" and .nodes.b[1] > 0)][0].nodes.c[0]' 1 1e-6
 
-# What fixed steps miss is told by name: a hinge whose angle jumps, and stops.
+# What fixed steps miss is reported by name: a hinge whose angle jumps, and stops.
 cat >jump.yaml <<'END'
 strut: 1
 nodes:

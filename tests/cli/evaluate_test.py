@@ -129,7 +129,7 @@ def failures_go_on():
     lines = [
         '{"height": 0.3}',
         '{"height": -1',                               # 2: cut off
-        '{"hight": 2, "load": true}',                  # 3: both are told
+        '{"hight": 2, "load": true}',                  # 3: both are reported
         '',                                            # blank lines are no requests
         '{"height": 1e999}',                           # 5
         '[1]', deep, '"\\ud800"', '{"height": 01}', '{"height": 1, "height": 2}',  # 6 to 10

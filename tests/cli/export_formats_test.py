@@ -149,7 +149,7 @@ def built_or_refused():
 
 def find_mujoco():
     """A function of a file, a step and a duration that gives rows of numbers, and the joints' names."""
-    def told(words, **more):
+    def reported(words, **more):
         def simulate(file, step, seconds):
             done = subprocess.run([*words, path(file), str(step), str(seconds)], capture_output=True,
                                   text=True, timeout=60, **more)
@@ -160,14 +160,14 @@ def find_mujoco():
         return simulate
 
     if os.environ.get("STRUT_MUJOCO_JS") and shutil.which("node"):
-        return told(["node", os.path.join(here, "mujoco_run.mjs")])
+        return reported(["node", os.path.join(here, "mujoco_run.mjs")])
     try:
         import mujoco
     except ImportError:
         compiler = shutil.which("cc")
         made = compiler and subprocess.run([compiler, os.path.join(here, "mujoco_run.c"), "-o",
                                             path("mujoco_run"), "-lmujoco"], capture_output=True)
-        return told([path("mujoco_run")]) if made and made.returncode == 0 else None
+        return reported([path("mujoco_run")]) if made and made.returncode == 0 else None
 
     def simulate(file, step, seconds):
         try:
@@ -287,9 +287,9 @@ def mjcf_motions():
 
 def mjcf_says_or_tells():
     done = run("export", f"{models}/crawler/crawler.yaml", "--format", "mjcf", "-o", "crawler.xml", code=0)
-    told = done.stderr.decode()
+    reported = done.stderr.decode()
     for text in ("signals of actuators", "contacts", "consistent masses"):
-        check(text in told, f"not told: {text}: {told}")
+        check(text in reported, f"not reported: {text}: {reported}")
     root = xml.parse(path("crawler.xml")).getroot()
     check(root.find("worldbody/geom[@type='plane']") is not None, "the ground")
     check(len(root.findall("actuator/motor")) > 0, "the drive")

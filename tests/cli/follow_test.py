@@ -222,7 +222,7 @@ with open(os.path.join(work, "threads-1", "branches.csv"), encoding="utf-8") as 
         open(os.path.join(work, "threads-3", "branches.csv"), encoding="utf-8") as b:
     check(a.read() == b.read(), "the number of threads changes the result")
 
-# ---- two starts on one branch are told
+# ---- two starts on one branch are reported
 
 both = follow("bilinear.yaml", "frequency=1Hz..1.4Hz", "--at", "1.1Hz,1.2Hz")
 check(len(both["branches"]) == 1 and "on branch 1" in both["notes"][0], f"notes {both['notes']}")

@@ -75,12 +75,12 @@ keep: [velocity, cost_of_transport]
     # the report and the summary
     said = run("run", "block.yaml").stdout
     check("in push" in said and "the target was not reached" in said, said)
-    told = json.loads(run("run", "block.yaml", "--json").stdout)["measured"]
-    check(told["peak"]["member"] == "push" and told["never"]["value"] is None, str(told))
-    check("member" not in told["there"], str(told))
+    reported = json.loads(run("run", "block.yaml", "--json").stdout)["measured"]
+    check(reported["peak"]["member"] == "push" and reported["never"]["value"] is None, str(reported))
+    check("member" not in reported["there"], str(reported))
     # an arrival that never comes does not keep a wanted accuracy from being reached
-    told = json.loads(run("run", "block.yaml", "--accuracy", "1%", "--json").stdout)
-    check(told["accuracy"]["kept"] is True and told["measured"]["never"]["value"] is None, str(told))
+    reported = json.loads(run("run", "block.yaml", "--accuracy", "1%", "--json").stdout)
+    check(reported["accuracy"]["kept"] is True and reported["measured"]["never"]["value"] is None, str(reported))
 
 
 # Lanes give the same bits, with events and without, and so does the compared design of `strut compare`.
@@ -107,9 +107,9 @@ solver: {{accuracy: 0.5 %}}
 run: {{measure: {{steady: true}}}}
 keep: [velocity, cost_of_transport]
 """)[0]
-    told = json.loads(run("compare", f"{models}/crawler/crawler.yaml",
+    reported = json.loads(run("compare", f"{models}/crawler/crawler.yaml",
                           f"{models}/basics/belt.yaml", "--no-states", "--json").stdout)
-    near(row["cost_of_transport"], told["models"][0]["values"]["cost_of_transport"],
+    near(row["cost_of_transport"], reported["models"][0]["values"]["cost_of_transport"],
          "cost of transport of strut compare", 0.01)
 
 

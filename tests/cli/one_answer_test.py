@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """One run has one answer: no output option changes a number, a summary speaks of one span, all outputs list the same
-equilibria, and an accuracy that was not reached is told everywhere.
+equilibria, and an accuracy that was not reached is reported everywhere.
 
 usage: one_answer_test.py STRUT
 """
@@ -195,8 +195,8 @@ check(plain["energy"]["balance"] == "closed" and "residual" not in plain["caveat
 for path, axis in (("crawler/crawler.yaml", "friction: [0.1]"), ("gallery/two-mass-crawler.yaml", "friction: [0.1]"),
                    ("gallery/d-bar.yaml", "end: [0.3 s]"), ("gallery/x-joint.yaml", "base: [50 mm]")):
     model = f"{models}/{path}"
-    told = json.loads(run("equilibria", model, "--json").stdout)["equilibria"]
-    stands = sorted((e for e in told if e["outcome"] == "stands"), key=lambda e: e["energy"])
+    reported = json.loads(run("equilibria", model, "--json").stdout)["equilibria"]
+    stands = sorted((e for e in reported if e["outcome"] == "stands"), key=lambda e: e["energy"])
     table = run("equilibria", model, "--plot", "e.pdf").stdout
     listed = re.search(r"\n  (?:stands|at rest) .*\n((?:  \S.*\n)*)", table)
     lines = listed.group(1).splitlines() if listed else []
@@ -230,9 +230,9 @@ done = run("run", chaos, *little, "--quiet", "-o", "chaos", code=5)
 check("strut: warning: the requested accuracy is NOT kept" in done.stderr and not done.stdout, done.stderr)
 done = run("run", chaos, *little, code=5)
 check("\n  accuracy    NOT kept: " in done.stdout, done.stdout)
-told = json.loads(run("run", chaos, *little, "--json", code=5).stdout)
-check(told["status"] == "completed" and not told["accuracy"]["kept"], str(told["accuracy"]))
-check([w["code"] for w in told["warnings"]] == ["accuracy"] and told["worth"].startswith("NOT kept"), str(told))
+reported = json.loads(run("run", chaos, *little, "--json", code=5).stdout)
+check(reported["status"] == "completed" and not reported["accuracy"]["kept"], str(reported["accuracy"]))
+check([w["code"] for w in reported["warnings"]] == ["accuracy"] and reported["worth"].startswith("NOT kept"), str(reported))
 run("view", "chaos", "-o", "chaos.html")
 with open("chaos.html", encoding="utf-8") as file:
     check("NOT kept" in file.read(), "the page does not say that the accuracy was not kept")

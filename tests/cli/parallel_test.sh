@@ -64,7 +64,7 @@ same "the results/table.csv" whole/table.csv
 [ "$(grep -c -- '--exact --nodes=1 --ntasks=1 sh .*job.sh --this-shard [0-5]' "$work/steps")" -eq 6 ] ||
   fail "not a step for each shard"
 
-# A shard that is missing is told.
+# A shard that is missing is reported.
 rm "the results/shards/shard-0003-of-0006.slots"
 sed 's/^last=5/last=2/' job.sh >short.sh
 sh short.sh >"$work/out" 2>"$work/err"

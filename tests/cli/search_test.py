@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Studies that search: an optimum with a formula, by each method; the same bytes whatever the threads, batch
-# and kills; constraints, worst cases, choices; and searches that cannot find anything, which are told.
+# and kills; constraints, worst cases, choices; and searches that cannot find anything, which are reported.
 #
 #   python3 search_test.py STRUT [--long]
 import json
@@ -185,14 +185,14 @@ search("drawn", "axes: [{mass: [1 kg, 2 kg]}]\nsearch: {" + GOAL + ", " + OVER +
 for name in ("best.svg", "points.svg", "beside.svg"):
     check(b"<svg" in read("drawn", name), f"no {name}")
 
-# ---- what cannot be found is told ----
+# ---- what cannot be found is reported ----
 
 found = search("never", f"search: {{{GOAL}, {OVER}, subject_to: [frequency_1 < 0.1 Hz], "
                "evaluations: 40}\n", code=3)
 check(not found["best"][0]["feasible"] and found["best"][0]["bounds"] == {"stiffness": "lower"},
       f"infeasible everywhere: {found['best'][0]}")
 found = search("constant", "search: {minimise: 0*frequency_1, " + OVER + ", evaluations: 30}\n")
-check(found["searches"][0]["constant"], "a constant objective is not told")
+check(found["searches"][0]["constant"], "a constant objective is not reported")
 found = search("nothing", "search: {minimise: frequency_3, " + OVER + ", evaluations: 30}\n", code=3)
 check(found["best"] == [] and found["searches"][0]["without_objective"] ==
       found["searches"][0]["evaluations"] > 0, f"no objective anywhere: {found['searches'][0]}")

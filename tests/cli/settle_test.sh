@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Settling: one state for all commands, unstable ones told and left, once for an accurate run.
+# Settling: one state for all commands, unstable ones reported and left, once for an accurate run.
 . "$(dirname "$0")/lib.sh"
 
 cat >rod.yaml <<'END'

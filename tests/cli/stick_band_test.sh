@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# A stick band that a step passes over is told by name, with the width it needs.
+# A stick band that a step passes over is reported by name, with the width it needs.
 . "$(dirname "$0")/lib.sh"
 belt=$2
 

@@ -476,7 +476,7 @@ check: {{half_step: yes}}
 
 
 def two_at_once():
-    """The second is told of the first, and what the first makes is the table."""
+    """The second is informed of the first, and what the first makes is the table."""
     write("two.yaml", read("crawler.yaml").decode())
     words = [strut, "sweep", "two.yaml", "-o", "two", "--threads", "1", "--quiet"]
     children = [subprocess.Popen(words, cwd=work, stderr=subprocess.PIPE, text=True)

@@ -61,11 +61,11 @@ def spread(values):
 def check_spreads(what, answer):
     for row in answer["settings"]:
         for kind in ("step_error", "total_error"):
-            told = row[kind]
-            wanted = spread(infinite(told["points"]))
+            reported = row[kind]
+            wanted = spread(infinite(reported["points"]))
             if not all(close(a, b) for a, b in zip(
-                    wanted, infinite([told["median"], told["percentile_90"], told["worst"]]))):
-                fail(f"{what}: {row['group']} {row['step']}: {kind} {told}, not {wanted}")
+                    wanted, infinite([reported["median"], reported["percentile_90"], reported["worst"]]))):
+                fail(f"{what}: {row['group']} {row['step']}: {kind} {reported}, not {wanted}")
         if row["diverged"] != sum(v is None for v in row["step_error"]["points"]):
             fail(f"{what}: {row['group']} {row['step']} does not count what diverged")
 
@@ -94,10 +94,10 @@ def check_advice(what, answer):
             if all(r["total_error"]["worst"] is not None and
                    r["total_error"]["worst"] <= advice["error"] for r in finer):
                 keepers.append(row["evaluations"])
-        told = advice["setting"]
-        if (told is None) != (not keepers) or (
-                keepers and answer["settings"][told]["evaluations"] != min(keepers)):
-            fail(f"{what}: advice for {advice['error']} is {told}, costs that keep it: {keepers}")
+        reported = advice["setting"]
+        if (reported is None) != (not keepers) or (
+                keepers and answer["settings"][reported]["evaluations"] != min(keepers)):
+            fail(f"{what}: advice for {advice['error']} is {reported}, costs that keep it: {keepers}")
 
 
 def check_errors(what, answer):
@@ -107,15 +107,15 @@ def check_errors(what, answer):
         own = answer["models"][0]
         for p, value in enumerate(row["values"]):
             for kind, m in (("step_error", model), ("total_error", own)):
-                told, reference = row[kind]["points"][p], m["values"][p]
+                reported, reference = row[kind]["points"][p], m["values"][p]
                 if value is None:
                     wanted = None
                 else:
                     wanted = max(abs(value - reference) / max(abs(reference), answer["scale"]),
                                  m["floor"]["points"][p])
-                if (told is None) != (wanted is None) or (told is not None and
-                                                          not close(told, wanted, 1e-9)):
-                    fail(f"{what}: {row['group']} {row['step']}: {kind} {told}, not {wanted}")
+                if (reported is None) != (wanted is None) or (reported is not None and
+                                                          not close(reported, wanted, 1e-9)):
+                    fail(f"{what}: {row['group']} {row['step']}: {kind} {reported}, not {wanted}")
 
 
 # ---- A mass on a spring: x = 1 + a Re R(i w h)^n for RK4, 1 + a cos(n acos(1 - z^2/2)) for Verlet.
@@ -167,9 +167,9 @@ if answer:
         n = round(answer["duration"] / row["step"])
         z = 10.0 * answer["duration"] / n
         gain = (1 - z**6 / 72 + z**8 / 576) ** n - 1
-        told = row["step_error"]["worst"]
-        if told is not None and z < 1 and not 0.2 * abs(gain) < told < 5 * abs(gain) + 1e-14:
-            fail(f"energy at {row['step']}: {told}, of the order of {abs(gain)}")
+        reported = row["step_error"]["worst"]
+        if reported is not None and z < 1 and not 0.2 * abs(gain) < reported < 5 * abs(gain) + 1e-14:
+            fail(f"energy at {row['step']}: {reported}, of the order of {abs(gain)}")
 
 # ---- Contact, drawn at random: everything once more from the values. Twice the same bits.
 words = (HOPPER, "--vary", "stiffness=(300 N/m)..(0.5 kN/m)", "--points", "11",

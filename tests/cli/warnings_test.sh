@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What is valid but hardly meant is told: in check, in run and in check --json, once per cause.
+# What is valid but hardly meant is reported: in check, in run and in check --json, once per cause.
 . "$(dirname "$0")/lib.sh"
 models=$2
 
@@ -14,7 +14,7 @@ write() { # MEMBERS-and-more on stdin
 }
 
 # check and run say the same, once; check --json lists it
-told() { # FILE CODE WORDS
+reported() { # FILE CODE WORDS
   expect 0 check "$1"
   once "$3"
   [ "$(grep -c warning err)" -eq 1 ] || fail "more than one warning"
@@ -24,7 +24,7 @@ told() { # FILE CODE WORDS
   out_has "\"code\":	\"$2\""
 }
 
-untold() { # FILE
+unreported() { # FILE
   for command in check "run --force"; do
     # shellcheck disable=SC2086
     expect 0 $command "$1"
@@ -42,8 +42,8 @@ members: {m: {kind: spring, nodes: [a, b], stiffness: 100, damping: 1, rest_leng
 actuators: {d: {member: m, signal: {sine: {amplitude: $amplitude mm, frequency: 1.7}}}}
 EOF
 done
-told drive60.yaml rest_length_below_zero "the rest length of 'm' to -0.01 m at t = 0.4412 s"
-untold drive40.yaml
+reported drive60.yaml rest_length_below_zero "the rest length of 'm' to -0.01 m at t = 0.4412 s"
+unreported drive40.yaml
 
 # two drives on one member together; four members, one line
 write four.yaml <<'EOF'
@@ -64,7 +64,7 @@ actuators:
   d7: {member: p, signal: half}
   d8: {member: p, signal: half}
 EOF
-told four.yaml rest_length_below_zero "the same of m, n, o and 1 more"
+reported four.yaml rest_length_below_zero "the same of m, n, o and 1 more"
 
 # a block at the depth where it rests, and one that is ten centimetres deep
 for depth in 100 0.0981; do
@@ -73,8 +73,8 @@ nodes: {block: {position: [0, -$depth mm], mass: 1}}
 ground: {stiffness: 1e5, damping: 100, friction: {mu: 0.3, stick_velocity: 1 mm/s}}
 EOF
 done
-told block100.yaml inside_ground "node block starts inside the ground, 'block' 0.1 m deep"
-untold block0.0981.yaml
+reported block100.yaml inside_ground "node block starts inside the ground, 'block' 0.1 m deep"
+unreported block0.0981.yaml
 
 # a member twice; a spring beside its damper
 write twice.yaml <<'EOF'
@@ -83,25 +83,25 @@ members:
   m: {kind: spring, nodes: [a, b], stiffness: 100}
   again: {kind: cable, nodes: [b, a], stiffness: 100}
 EOF
-told twice.yaml same_nodes "members 'm' and 'again' join the same two nodes"
+reported twice.yaml same_nodes "members 'm' and 'again' join the same two nodes"
 write damped.yaml <<'EOF'
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [0, -1], mass: 1}}
 members:
   m: {kind: spring, nodes: [a, b], stiffness: 100}
   damper: {kind: spring, nodes: [b, a], stiffness: 0, damping: 1}
 EOF
-untold damped.yaml
+unreported damped.yaml
 
 # a mass that was forgotten; one on its own is a scene
 write forgotten.yaml <<'EOF'
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [0, -1], mass: 1}, c: {position: [1, 0], mass: 1}}
 members: {m: {kind: spring, nodes: [a, b], stiffness: 100}}
 EOF
-told forgotten.yaml loose_mass "node c has mass and can move, but no member holds it"
+reported forgotten.yaml loose_mass "node c has mass and can move, but no member holds it"
 write alone.yaml <<'EOF'
 nodes: {c: {position: [1, 0], mass: 1}}
 EOF
-untold alone.yaml
+unreported alone.yaml
 
 # A plain number is in SI units: a note where that changes what the file has by more than 100 times.
 write scale.yaml <<'EOF'

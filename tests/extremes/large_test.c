@@ -168,7 +168,7 @@ TEST(copies) {
   strut_setup_free(&one), strut_setup_free(&all);
 }
 
-/* A step above the bound is refused, and the one told in its place is below. */
+/* A step above the bound is refused, and the one reported in its place is below. */
 static void refuse_above(strut_setup *setup, const strut_model *model, double limit) {
   strut_run_options options = {0};
   strut_summary summary;
@@ -177,10 +177,10 @@ static void refuse_above(strut_setup *setup, const strut_model *model, double li
   assert_int_equal(strut_simulate(model, &setup->experiment, &options, &summary, &error),
                    STRUT_STEP_TOO_LARGE);
   strut_summary_free(&summary);
-  const char *told = strstr(error.message, "solver.step <= ");
+  const char *reported = strstr(error.message, "solver.step <= ");
   assert_non_null(strstr(error.message, "a bound"));
-  assert_non_null(told);
-  assert_within(strtod(told + strlen("solver.step <= "), NULL), 0.97 * limit, limit);
+  assert_non_null(reported);
+  assert_within(strtod(reported + strlen("solver.step <= "), NULL), 0.97 * limit, limit);
 }
 
 /* Compiled, its step bounded, and a few steps taken by the run itself. */

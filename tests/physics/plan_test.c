@@ -138,15 +138,16 @@ TEST(the_plan_tells_its_terms) {
     for (int with = 0; with < 2; with++) {
       strut_scene scene;
       strut_cost_estimate plan;
-      unsigned terms = comparisons[i].others | (with ? (unsigned)comparisons[i].term : 0), told = 0;
+      unsigned terms = comparisons[i].others | (with ? (unsigned)comparisons[i].term : 0),
+               reported = 0;
       build_chain(&scene, terms, comparisons[i].touching);
       strut_model *model = motion_compile(&scene);
       assert_int_equal(strut_cost_estimate_describe(model, &plan, NULL), STRUT_OK);
       for (int k = 0; k < STRUT_COST_TERMS; k++) {
         assert_true(plan.terms[k].name[0] && plan.terms[k].why[0]);
-        if (plan.terms[k].in) told |= (unsigned)plan.terms[k].term;
+        if (plan.terms[k].in) reported |= (unsigned)plan.terms[k].term;
       }
-      assert_int_equal(told, terms);
+      assert_int_equal(reported, terms);
       assert_int_equal(plan.nodes, scene.node_count);
       assert_int_equal(plan.bars + plan.springs + plan.cables, scene.member_count);
       assert_int_equal(plan.contacts, scene.contact_count);

@@ -196,12 +196,12 @@ TEST(a_mass_that_flies_beyond_all_bounds_is_lost) {
 }
 
 static volatile sig_atomic_t stop;
-static int told;
+static int reported;
 
 static void stop_at_once(void *context, double fraction) {
-  assert_ptr_equal(context, &told);
+  assert_ptr_equal(context, &reported);
   assert_within(fraction, 0, 1);
-  told++;
+  reported++;
   stop = 1;
 }
 
@@ -210,11 +210,11 @@ TEST(an_interrupt_stops_within_a_second) {
   strut_summary s;
   strut_error error;
   strut_run_options options = {
-      .interrupt = &stop, .progress = stop_at_once, .progress_context = &told};
-  stop = 0, told = 0;
+      .interrupt = &stop, .progress = stop_at_once, .progress_context = &reported};
+  stop = 0, reported = 0;
   stiff(&setup, 1e-3, 1e9);
   assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_INTERRUPTED);
-  assert_int_equal(told, 1);
+  assert_int_equal(reported, 1);
   assert_within(s.wall_time, 0, 1);
   assert_true(s.steps > 0);
   assert_near(s.duration, 1e-3 * (double)s.steps, 1e-9 * s.duration);

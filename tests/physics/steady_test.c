@@ -76,7 +76,7 @@ TEST(shooting_finds_the_orbit_and_its_multipliers) {
 /*
  * A mass that is dragged along the ground comes to its speed as exp(-t / tau): smooth friction is a
  * damper of mu N / w at speeds far below w. It is steady once what is still to come is within the
- * tolerance of the speed; the speed told is that of the latest five periods, so older by half of them.
+ * tolerance of the speed; the speed reported is that of the latest five periods, so older by half of them.
  */
 static void creeping(double tolerance) {
   strut_setup setup;
@@ -95,8 +95,8 @@ static void creeping(double tolerance) {
   double left = exp(-damper * s.duration); /* of the speed, after the latest period */
   assert_within(left, 0.25 * tolerance, 1.05 * tolerance);
   /* the sine's first push leaves a speed of its own, 1 / (2 pi), that dies alike */
-  double told = speed - (speed - 1 / (2 * PI)) * exp(-damper * (s.duration - 2.5));
-  assert_near(s.velocity, told, 0.1 * tolerance);
+  double reported = speed - (speed - 1 / (2 * PI)) * exp(-damper * (s.duration - 2.5));
+  assert_near(s.velocity, reported, 0.1 * tolerance);
   strut_summary_free(&s);
   strut_setup_free(&setup);
 }

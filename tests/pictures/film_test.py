@@ -120,7 +120,7 @@ def test_names():
 
 
 def test_said():
-    """What is too short or recorded too seldom is told, with what to do."""
+    """What is too short or recorded too seldom is reported, with what to do."""
     said = call(0, hopper, "--animate", "d.gif").stdout
     check(re.search(r"lasts only 500 ms; --speed 1/10 makes a film of 5 s", said), said[-300:])
     with open(hopper, encoding="utf-8") as file:

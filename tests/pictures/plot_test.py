@@ -284,7 +284,7 @@ plot("ways.csv", "--difference", "f", "--plot", "a.svg", code=1, err="more than 
 plot("ways.csv", "--difference", "wya", "--plot", "a.svg", code=1, err="did you mean 'way'?")
 write("ragged.csv", "a,b\n1,2\n3\n4,5,6\n")
 done = plot("ragged.csv", "--plot", "a.svg", code=2, err="ragged.csv:3:1: error: 1 cells, expected 2")
-check("ragged.csv:4:1" in done.stderr, "only the first bad row is told")
+check("ragged.csv:4:1" in done.stderr, "only the first bad row is reported")
 write("open.csv", 'a,b\n1,"2\n')
 plot("open.csv", "--plot", "a.svg", code=2, err="open.csv:2:3: error: unterminated quoted cell")
 write("empty.csv", "")

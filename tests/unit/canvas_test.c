@@ -114,7 +114,7 @@ TEST(nothing_left) {
   assert_null(c);
 }
 
-/* A full disk is told on commit. */
+/* A full disk is reported on commit. */
 TEST(full) {
   strut_canvas *c;
   strut_error error = {0};

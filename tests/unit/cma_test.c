@@ -199,7 +199,7 @@ TEST(populations_fill_lanes) {
   assert_int_equal(strut_cma_population(c), 16);
   const double *points = strut_cma_ask(c);
   double first = points[0];
-  assert_true(strut_cma_ask(c)[0] == first); /* until values are told */
+  assert_true(strut_cma_ask(c)[0] == first); /* until values are reported */
   strut_cma_free(c);
   options.population = 17;
   assert_int_equal(strut_cma_create(&options, &c, &error), STRUT_OK);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Comparing: differences of texts, every allocation failing once, an interrupt, what is told. */
+/* Comparing: differences of texts, every allocation failing once, an interrupt, what is reported. */
 #include <math.h>
 #include <string.h>
 
@@ -129,7 +129,7 @@ TEST(interrupted) {
   assert_int_equal(make(&options, false), STRUT_INTERRUPTED);
 }
 
-TEST(told) {
+TEST(what_is_reported) {
   strut_setup setup;
   strut_compare result;
   strut_error error = {0};

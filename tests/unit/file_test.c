@@ -116,7 +116,7 @@ TEST(the_disk_has_a_file_before_its_name) {
   scratch_remove();
 }
 
-TEST(a_disk_that_cannot_keep_it_is_told) {
+TEST(a_disk_that_cannot_keep_it_is_reported) {
   strut_error error = {0};
   const char *directory = scratch_make();
   fsync_fails = EIO;

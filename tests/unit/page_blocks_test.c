@@ -272,7 +272,7 @@ TEST(frames_are_left_out_until_they_fit) {
   assert_true(previous < FRAMES / 4);
 }
 
-TEST(memory_that_is_out_is_told) {
+TEST(memory_that_is_out_is_reported) {
   strut_setup setup;
   strut_error error = {0};
   strut_trajectory motion = swing();

@@ -132,10 +132,10 @@ TEST(a_text) {
     assert_int_equal(strut_file_read(files[i], &file, &length, NULL), STRUT_OK);
     strut_diagnostics_source(&diagnostics, files[i], file, length);
     assert_int_equal(strut_document_read(&document, &diagnostics), STRUT_OK);
-    double told = (strut_document_needs(file, length) - (double)length) / sizeof(strut_tree);
+    double reported = (strut_document_needs(file, length) - (double)length) / sizeof(strut_tree);
     double read = values_of(document.root);
-    print_message("%s: %.0f values told, %.0f read\n", files[i], told, read);
-    assert_within(told, 0.8 * read, 1.02 * read);
+    print_message("%s: %.0f values reported, %.0f read\n", files[i], reported, read);
+    assert_within(reported, 0.8 * read, 1.02 * read);
     strut_document_free(&document);
     strut_diagnostics_free(&diagnostics);
     strut_release(file);
