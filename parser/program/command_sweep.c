@@ -134,17 +134,28 @@ static void write_partial(const char *directory, strut_slots *slots) {
             (long long)rows);
 }
 
-static strut_status run_points(const strut_arguments *arguments, strut_sweep_study *study,
-                               concurrency at_a_time, bool partial, strut_slots *slots,
-                               const strut_refinement *refinement, strut_sweep_state *state,
-                               strut_error *error) {
+/* A study that is run, and where its results go. */
+typedef struct sweep_run {
+  const strut_arguments *arguments;
+  strut_sweep_study *study;
+  concurrency at_a_time;
+  strut_shard shard; /* count 0: none */
+  strut_slots *slots;
+} sweep_run;
+
+static strut_status run_points(const sweep_run *r, const strut_refinement *refinement,
+                               strut_sweep_state *state, strut_error *error) {
+  const strut_arguments *arguments = r->arguments;
+  strut_sweep_study *study = r->study;
+  strut_slots *slots = r->slots;
+  const bool partial = !r->shard.count;
   display shown = {.progress = strut_sweep_progress_begin(&study->plan, arguments->quiet),
                    .slots = slots,
                    .directory = partial ? arguments->output : NULL,
                    .next = FIRST_PARTIAL,
                    .interval = FIRST_PARTIAL};
-  strut_sweep_options how = {.threads = (int)at_a_time.threads,
-                             .batch = (int)at_a_time.batch,
+  strut_sweep_options how = {.threads = (int)r->at_a_time.threads,
+                             .batch = (int)r->at_a_time.batch,
                              .interrupt = strut_interrupt_watch(),
                              .directory = arguments->output,
                              .progress = show,
@@ -186,20 +197,18 @@ static void add_warnings(strut_sweep_state *all, const strut_sweep_state *round)
  * Computes what is wanted until that wants nothing further. *others: points of other shards that must be
  * known before more can be.
  */
-static strut_status run_refined(const strut_arguments *arguments, strut_sweep_study *study,
-                                concurrency at_a_time, strut_shard shard, strut_slots *slots,
-                                strut_refinement *refinement, int64_t *others,
+static strut_status run_refined(const sweep_run *r, strut_refinement *refinement, int64_t *others,
                                 strut_sweep_state *state, strut_error *error) {
   int64_t wanted, done;
   strut_sweep_state all = {0};
   strut_status status = STRUT_OK;
   *state = (strut_sweep_state){0};
   while (!status) {
-    strut_sweep_refine_learn(refinement, arguments->output, shard, slots);
+    strut_sweep_refine_learn(refinement, r->arguments->output, r->shard, r->slots);
     *others = strut_refinement_choose(refinement);
-    strut_refinement_count(refinement, slots, &wanted, &done);
+    strut_refinement_count(refinement, r->slots, &wanted, &done);
     if (wanted == done && state->points) break;
-    status = run_points(arguments, study, at_a_time, !shard.count, slots, refinement, state, error);
+    status = run_points(r, refinement, state, error);
     all.computed += state->computed;
     all.seconds += state->seconds;
     add_warnings(&all, state);
@@ -263,11 +272,11 @@ static strut_status compute_points(const strut_arguments *arguments, strut_sweep
     strut_file_remove(arguments->output, table_name); /* outdated */
   if (!status && study->plan.study->refine_depth)
     status = strut_refinement_create(&study->plan, &refinement, &error);
+  const sweep_run run = {arguments, study, at_a_time, shard, slots};
   if (!status && refinement)
-    status =
-        run_refined(arguments, study, at_a_time, shard, slots, refinement, &others, &state, &error);
+    status = run_refined(&run, refinement, &others, &state, &error);
   else if (!status)
-    status = run_points(arguments, study, at_a_time, !shard.count, slots, NULL, &state, &error);
+    status = run_points(&run, NULL, &state, &error);
   strut_sweep_print_warnings(&state);
   strut_print_failure(status, &error);
   if (!status) status = complete_sweep(arguments, study, shard, slots, refinement, &state);
@@ -358,7 +367,8 @@ static strut_status run_sweep(const strut_arguments *arguments) {
   else if (!status && arguments->status)
     status = show_status(arguments, &study);
   else if (!status && study.plan.study->search)
-    status = strut_sweep_search(arguments, &study, (int)at_a_time.threads, (int)at_a_time.batch);
+    status =
+        strut_sweep_search(arguments, &study, (int)at_a_time.threads, (int)at_a_time.batch);
   else if (!status && study.plan.study->follow)
     status = strut_sweep_follow(arguments, &study, (int)at_a_time.threads);
   else if (!status)

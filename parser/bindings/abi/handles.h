@@ -157,14 +157,20 @@ typedef struct abi_call {
 void abi_enter(strutlib_error **error);
 void abi_leave(void);
 
+/** A call's options, as pairs of texts. */
+typedef struct abi_pairs {
+  size_t count;
+  const char *const *names, *const *values;
+} abi_pairs;
+
 /**
  * Begins a call: reads its options by the command's table, into messages of the result. STRUT_OK, or the
  * status with *error filled, as with STRUT_INTERRUPTED where the control is.
  */
 strut_status abi_call_begin(abi_call *call, const strutlib_scene *scene,
-                            const strut_command *command, size_t count, const char *const *names,
-                            const char *const *values, strutlib_control *control,
-                            strutlib_error **error, abi_messages *messages);
+                            const strut_command *command, const abi_pairs *options,
+                            strutlib_control *control, strutlib_error **error,
+                            abi_messages *messages);
 /** Fills *error of a call that failed, by what its listener heard or by `what`. */
 void abi_call_fail(abi_call *call, strut_status status, const strut_error *what);
 

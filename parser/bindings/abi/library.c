@@ -445,11 +445,12 @@ void abi_call_fail(abi_call *call, strut_status status, const strut_error *what)
 }
 
 strut_status abi_call_begin(abi_call *call, const strutlib_scene *scene,
-                            const strut_command *command, size_t count, const char *const *names,
-                            const char *const *values, strutlib_control *control,
-                            strutlib_error **error, abi_messages *messages) {
+                            const strut_command *command, const abi_pairs *options,
+                            strutlib_control *control, strutlib_error **error,
+                            abi_messages *messages) {
   *call = (abi_call){.error = error, .control = control, .messages = messages};
-  if (abi_lacks(error, scene, "scene") || abi_lacks_pairs(error, count, names, values))
+  if (abi_lacks(error, scene, "scene") ||
+      abi_lacks_pairs(error, options->count, options->names, options->values))
     return STRUT_USAGE;
   call->listener = abi_listen(messages);
   call->arguments = (strut_arguments){.model = scene->source->name,
@@ -457,8 +458,8 @@ strut_status abi_call_begin(abi_call *call, const strutlib_scene *scene,
                                       .override_count = scene->setting_count,
                                       .listener = &call->listener};
   strut_status status = STRUT_OK;
-  for (size_t i = 0; i < count && status == STRUT_OK; i++)
-    status = strut_argument_set(command, names[i], values[i], &call->arguments);
+  for (size_t i = 0; i < options->count && status == STRUT_OK; i++)
+    status = strut_argument_set(command, options->names[i], options->values[i], &call->arguments);
   if (status == STRUT_OK && control && control->interrupt) {
     abi_fail(error, STRUTLIB_INTERRUPTED, "interrupted before anything was computed");
     return STRUT_INTERRUPTED;

@@ -195,8 +195,8 @@ strutlib_result *strutlib_run(const strutlib_scene *scene, size_t count, const c
   strutlib_result *result = abi_result_create(&abi_run_command, error);
   strut_status status = result ? STRUT_OK : STRUT_NO_MEMORY;
   if (status == STRUT_OK)
-    status = abi_call_begin(&call, scene, &abi_run_command, count, names, values, control, error,
-                            &result->messages);
+    status = abi_call_begin(&call, scene, &abi_run_command, &(abi_pairs){count, names, values},
+                            control, error, &result->messages);
   if (status == STRUT_OK) status = open_setup(&call, scene, result);
   bool begun = status == STRUT_OK;
   if (begun) status = run_model(&call, result);
@@ -251,8 +251,8 @@ strutlib_simulation *strutlib_simulation_open(const strutlib_scene *scene, size_
   strutlib_simulation *simulation = strut_allocate(1, sizeof *simulation);
   strut_status status = STRUT_NO_MEMORY;
   if (simulation)
-    status = abi_call_begin(&call, scene, &abi_simulation_command, count, names, values, control,
-                            error, &messages);
+    status = abi_call_begin(&call, scene, &abi_simulation_command,
+                            &(abi_pairs){count, names, values}, control, error, &messages);
   else
     abi_no_memory(error);
   if (status == STRUT_OK) status = open_simulation(&call, scene, simulation);

@@ -45,17 +45,15 @@ static strut_status open_setup(abi_call *call, const strutlib_scene *scene, bool
 }
 
 static strutlib_result *analyse(const strutlib_scene *scene, const strut_command *command,
-                                size_t count, const char *const *names, const char *const *values,
-                                strutlib_control *control, strutlib_error **error, bool compiled,
-                                analysis compute) {
+                                const abi_pairs *options, strutlib_control *control,
+                                strutlib_error **error, bool compiled, analysis compute) {
   abi_call call;
   strut_error what = {0};
   abi_enter(error);
   strutlib_result *result = abi_result_create(command, error);
   strut_status status = result ? STRUT_OK : STRUT_NO_MEMORY;
   if (result)
-    status = abi_call_begin(&call, scene, command, count, names, values, control, error,
-                            &result->messages);
+    status = abi_call_begin(&call, scene, command, options, control, error, &result->messages);
   if (status == STRUT_OK) status = open_setup(&call, scene, compiled, result);
   if (status == STRUT_OK) {
     status = compute(&call, scene, result, &what);
@@ -118,8 +116,8 @@ static strut_status find_equilibria(abi_call *call, const strutlib_scene *scene,
 strutlib_result *strutlib_equilibria(const strutlib_scene *scene, size_t count,
                                      const char *const *names, const char *const *values,
                                      strutlib_control *control, strutlib_error **error) {
-  return analyse(scene, &abi_equilibria_command, count, names, values, control, error, true,
-                 find_equilibria);
+  return analyse(scene, &abi_equilibria_command, &(abi_pairs){count, names, values}, control, error,
+                 true, find_equilibria);
 }
 
 /* ---- modes ---- */
@@ -165,7 +163,8 @@ static strut_status find_modes(abi_call *call, const strutlib_scene *scene, stru
 strutlib_result *strutlib_modes(const strutlib_scene *scene, size_t count, const char *const *names,
                                 const char *const *values, strutlib_control *control,
                                 strutlib_error **error) {
-  return analyse(scene, &abi_modes_command, count, names, values, control, error, true, find_modes);
+  return analyse(scene, &abi_modes_command, &(abi_pairs){count, names, values}, control, error,
+                 true, find_modes);
 }
 
 /* ---- rigidity ---- */
@@ -215,8 +214,8 @@ static strut_status find_rigidity(abi_call *call, const strutlib_scene *scene,
 strutlib_result *strutlib_rigidity(const strutlib_scene *scene, size_t count,
                                    const char *const *names, const char *const *values,
                                    strutlib_control *control, strutlib_error **error) {
-  return analyse(scene, &abi_rigidity_command, count, names, values, control, error, true,
-                 find_rigidity);
+  return analyse(scene, &abi_rigidity_command, &(abi_pairs){count, names, values}, control, error,
+                 true, find_rigidity);
 }
 
 /* ---- form ---- */
@@ -256,7 +255,8 @@ static strut_status find_form(abi_call *call, const strutlib_scene *scene, strut
 strutlib_result *strutlib_form(const strutlib_scene *scene, size_t count, const char *const *names,
                                const char *const *values, strutlib_control *control,
                                strutlib_error **error) {
-  return analyse(scene, &abi_form_command, count, names, values, control, error, false, find_form);
+  return analyse(scene, &abi_form_command, &(abi_pairs){count, names, values}, control, error,
+                 false, find_form);
 }
 
 /* ---- path ---- */
@@ -310,7 +310,8 @@ static strut_status find_path(abi_call *call, const strutlib_scene *scene, strut
 strutlib_result *strutlib_path(const strutlib_scene *scene, size_t count, const char *const *names,
                                const char *const *values, strutlib_control *control,
                                strutlib_error **error) {
-  return analyse(scene, &abi_path_command, count, names, values, control, error, true, find_path);
+  return analyse(scene, &abi_path_command, &(abi_pairs){count, names, values}, control, error, true,
+                 find_path);
 }
 
 /* strutlib_matrices: what `strut export --matrices` writes, as arrays. */
@@ -427,8 +428,8 @@ strutlib_result *strutlib_matrices(const strutlib_scene *scene, size_t count,
   strutlib_result *result = abi_result_create(&abi_matrices_command, error);
   strut_status status = result ? STRUT_OK : STRUT_NO_MEMORY;
   if (result)
-    status = abi_call_begin(&call, scene, &abi_matrices_command, count, names, values, control,
-                            error, &result->messages);
+    status = abi_call_begin(&call, scene, &abi_matrices_command, &(abi_pairs){count, names, values},
+                            control, error, &result->messages);
   if (status == STRUT_OK) status = abi_setup(scene, STRUT_FOR_ANY, &result->setup, error);
   if (status == STRUT_OK) {
     result->opened = true;

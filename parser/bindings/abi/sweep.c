@@ -441,8 +441,8 @@ strutlib_result *strutlib_sweep(const strutlib_scene *scene, size_t axis_count,
   strutlib_result *result = abi_result_create(&abi_sweep_command, error);
   strut_status status = result ? STRUT_OK : STRUT_NO_MEMORY;
   if (result)
-    status = abi_call_begin(&call, scene, &abi_sweep_command, count, names, values, control, error,
-                            &result->messages);
+    status = abi_call_begin(&call, scene, &abi_sweep_command, &(abi_pairs){count, names, values},
+                            control, error, &result->messages);
   if (status == STRUT_OK &&
       (lacks_text(error, axis_count, axes, "axes") || lacks_text(error, keep_count, keep, "keep")))
     status = STRUT_USAGE;
