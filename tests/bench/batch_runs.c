@@ -205,7 +205,7 @@ static void compare_points(int m, bool balance, int repeats) {
 
 static void compare_all(int repeats) {
   printf("\nlanes: the crawler%s, steps of 0.1 ms\n  %-14s %-8s %-12s %10s %10s\n",
-         elements ? " with hinges and stops" : "", "", "", "lanes", "ns/step", "times");
+         elements ? " with hinges and stops" : "", "", "", "runs", "ns/step", "times");
   for (int m = 0; m < METHODS; m++)
     for (int balance = 0; balance < 2; balance++) compare(m, balance, repeats);
   printf("  whole runs of 1 s%23s\n", "points/s");

@@ -223,7 +223,7 @@ static int usage(void) {
 }
 
 int main(int argc, char **argv) {
-  if (argc == 2 && strcmp(argv[1], "lanes") == 0) {
+  if (argc == 2 && strcmp(argv[1], "batch") == 0) {
     bench_batch(15);
     return 0;
   }
