@@ -4,7 +4,7 @@
  *
  *   strut_bench [--repeats N] [--members N]  the crawler in strut and elsewhere, then chains of
  *                                            X-frames of 10 to N (default 1000000) members
- *   strut_bench lanes                        the crawler in 1, 4 and 8 lanes alone
+ *   strut_bench batch                        the crawler alone and in batches of 4 and 8
  *   strut_bench large [MEMBERS]              grids in order and shuffled, by one thread and several
  *   strut_bench terms                        what each term costs, alone
  *   strut_bench methods [METHOD]             what a force evaluation costs by each method, alone
@@ -212,7 +212,7 @@ static int load(const char *path) {
 static int usage(void) {
   fprintf(stderr,
           "usage: strut_bench [--repeats N] [--members N]\n"
-          "       strut_bench lanes\n"
+          "       strut_bench batch\n"
           "       strut_bench large [MEMBERS]\n"
           "       strut_bench terms\n"
           "       strut_bench methods [METHOD]\n"
