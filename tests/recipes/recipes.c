@@ -34,6 +34,7 @@ static const char OSCILLATOR[] =
 
 /* things.c */
 int test_a_number_of_hinges(void);
+int test_a_kind_of_thing(void);
 
 static int failures;
 
@@ -422,6 +423,7 @@ int main(void) {
   test_the_member_law(5, "bar");
   test_the_method();
   failures += test_a_number_of_hinges();
+  failures += test_a_kind_of_thing();
   if (!failures) printf("the recipes work\n");
   return failures > 0;
 }

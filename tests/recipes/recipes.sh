@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The recipes for a friction law, a law of members, a strain and a method of integration do what they promise:
+# The recipes for a friction law, a law of members, a strain, a number, a kind of thing and a method do what they promise:
 # copies the sources, applies the ```diff blocks of docs/recipes.md, compiles what recipes.c runs, and runs it.
 # Usage: recipes.sh ROOT SCRATCH CC INCLUDES LIBRARIES
 set -eu
@@ -14,11 +14,12 @@ cp "$root/.cmake/EmbedFiles.cmake" "$scratch/"
 awk '/^```diff/ { inside = 1; blocks++; next } /^```/ { inside = 0 } inside { print }
   END { exit blocks == 0 }' "$root/docs/recipes.md" >"$scratch/recipes.diff"
 cd "$scratch"
-touched=$(sed -n 's/^+++ b\///p' recipes.diff | sort | tr '\n' ' ')
+touched=$(sed -n 's/^+++ b\///p' recipes.diff | sort -u | tr '\n' ' ')
 expected="engine/forces/elements.c engine/forces/strains/span.h engine/integrate/euler_forward.c \
 engine/model/elements.c engine/model/elements.h engine/scene/experiment.h engine/scene/law.h \
 engine/scene/laws/friction.h engine/scene/laws/stiffening.h engine/scene/scene.c \
-engine/scene/scene.h engine/scene/things_table.h "
+engine/scene/scene.h engine/scene/things_table.h parser/language/keys_table.h parser/read/read_scene.c \
+parser/read/read_things.c parser/write/write_scene.c "
 [ "$touched" = "$expected" ] || { echo "the recipes touch other files: $touched"; exit 1; }
 patch -s -p1 <recipes.diff
 

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * The number of a hinge that docs/recipes.md adds by a row and a field: read, with its unit and its range, from
- * a group, from a parameter and from a part, checked in scenes without a file, written, and part of what an
- * equilibrium is known by.
+ * What docs/recipes.md adds to a scene by rows. The number of a hinge: read, with its unit and its range, from
+ * a group, from a parameter and from a part, checked in scenes without a file, written, and part of what
+ * identifies an equilibrium. A kind of thing: read from a scene and from copies of a part, its references
+ * resolved, its mistakes located, and written.
  */
 #include <math.h>
 #include <stdio.h>
@@ -13,6 +14,7 @@
 #include "parser/write/write_scene.h"
 
 int test_a_number_of_hinges(void);
+int test_a_kind_of_thing(void);
 
 static const char TEXT[] =
     "strut: 1\n"
@@ -32,7 +34,7 @@ static const char TEXT[] =
 static int failures;
 
 static void expect(bool good, const char *what) {
-  if (!good) printf("a number of hinges: %s\n", what);
+  if (!good) printf("recipes for things: %s\n", what);
   failures += !good;
 }
 
@@ -99,6 +101,54 @@ int test_a_number_of_hinges(void) {
   expect(!read_text(TEXT, "1 N", &again, message) && strstr(message, "an angle"),
          "its unit is not read");
   change_the_scene(&setup);
+  strut_setup_free(&setup);
+  return failures;
+}
+
+static const char MARKS[] =
+    "strut: 1\n"
+    "parameters: {wide: 3 mm}\n"
+    "parts:\n"
+    "  arm:\n"
+    "    nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1}}\n"
+    "    members: {p: {kind: bar, nodes: [a, b], stiffness: 9}}\n"
+    "    marks: {tip: {node: b, radius: 2 mm}}\n"
+    "place: {v: {part: arm, repeat: {count: 2, step: [0, 1]}}}\n"
+    "marks: {own: {node: v.0.a, radius: wide}}\n";
+
+int test_a_kind_of_thing(void) {
+  strut_setup setup, again;
+  char message[200];
+  failures = 0;
+  bool fine = read_text(MARKS, NULL, &setup, message);
+  expect(fine, message);
+  if (!fine) return failures;
+  const strut_mark *mark = setup.scene.marks;
+  int32_t second = -1, own = -1;
+  for (int32_t i = 0; i < (int32_t)setup.scene.mark_count; i++) {
+    if (strcmp(mark[i].name, "v.1.tip") == 0) second = i;
+    if (strcmp(mark[i].name, "own") == 0) own = i;
+  }
+  expect(setup.scene.mark_count == 3 && second >= 0 && own >= 0, "copies do not have it");
+  if (second < 0 || own < 0) return failures;
+  expect(strcmp(setup.scene.nodes[mark[second].node].name, "v.1.b") == 0, "its copy is elsewhere");
+  expect(mark[second].radius == 2e-3 && mark[own].radius == 3e-3, "its number is not read");
+  char *text = strut_setup_write(&setup);
+  expect(text && read_text(text, NULL, &again, message) && again.scene.mark_count == 3 &&
+             again.scene.marks[own].node == mark[own].node,
+         "it is not written");
+  strut_setup_free(&again);
+  strut_release(text);
+  static const char *const bad[][3] = {{"radius: 2 mm", "radius: 2 N ", "a length"},
+                                       {"radius: wide", "radius: -1  ", "above zero"},
+                                       {"node: v.0.a", "node: v.0.c", "v.0."},
+                                       {"marks: {own", "mraks: {own", "marks"}};
+  for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    char other[sizeof MARKS];
+    memcpy(other, MARKS, sizeof MARKS);
+    memcpy(strstr(other, bad[i][0]), bad[i][1], strlen(bad[i][1]));
+    expect(!read_text(other, NULL, &again, message) && strstr(message, bad[i][2]), message);
+  }
   strut_setup_free(&setup);
   return failures;
 }
