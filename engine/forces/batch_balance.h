@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Hot: the energy balance of a Runge-Kutta step of several runs at once; see step_balance.h, whose order of sums this is.
- * What is a lane there is a place here, since lanes are runs.
+ * Hot: the energy balance of a Runge-Kutta step of several runs at once; see step_balance.h, whose order of
+ * sums this is. What is a lane there is a place here, since a lane is a run here.
  */
 #ifndef STRUT_ENGINE_FORCES_BATCH_BALANCE_H
 #define STRUT_ENGINE_FORCES_BATCH_BALANCE_H

@@ -182,8 +182,10 @@ STRUT_BATCH_INLINE void batch_sum_powers(strut_batch_tables *t, int p,
   batch_put(t->power, STRUT_POWER_EXCHANGED, p, exchanged);
 }
 
-/* Slots of padding pull with no force, and no one asks for the place where they do. sums: where powers are accumulated;
-   NULL: in t->power. */
+/*
+ * Slots of padding pull with no force, and no one asks for the place where they do. sums: where powers are
+ * accumulated; NULL: in t->power.
+ */
 STRUT_BATCH_INLINE void batch_members(strut_batch_tables *t, const double *restrict q,
                                       const double *restrict v, bool balance,
                                       const batch_sums *sums) {

@@ -137,8 +137,8 @@ static bool law_scales(strut_law_kind law) {
 }
 
 /*
- * The end of a step at which the element's force is averaged. A law that does not depend on the stretch alone has the
- * natural strain half-way, so that the method keeps its order.
+ * The end of a step at which the element's force is averaged. A law that does not depend on the stretch alone
+ * has the natural strain half-way, so that the method keeps its order.
  */
 static strut_element_pose averaged_end(const strut_element *e, const strut_element_pose *end,
                                        double natural0) {

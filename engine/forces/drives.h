@@ -56,8 +56,9 @@ double strut_actuator_moment_on_hinge(const strut_model *model, const strut_stat
 void strut_actuator_forces_add_tensions(const strut_model *model, const strut_state *state,
                                         double *force);
 
-/* Hot: driven rest lengths for many evaluations to come, for methods that know beforehand when these are: sines are
- * computed by vectors (signal_vector.h), with the bits of strut_drive_apply.
+/*
+ * Hot: driven rest lengths for many evaluations to come, for methods that know beforehand when these are:
+ * sines are computed by vectors (signal_vector.h), with the bits of strut_drive_apply.
  *
  * Holds for a run of steps, during which neither drives nor time_offset change.
  */
@@ -79,7 +80,10 @@ typedef struct strut_drives_ahead {
 void strut_drives_ahead_evaluate(const strut_model *model, strut_drives_ahead *drives,
                                  int32_t count);
 
-/* terms: as a copy of a step loop knows them. Drives of rare terms may follow sensors, and are not known beforehand. */
+/*
+ * terms: as a copy of a step loop knows them. Drives of rare terms may follow sensors, and are not known
+ * beforehand.
+ */
 STRUT_INLINE void drives_ahead_begin(const strut_model *model, unsigned terms,
                                      strut_drives_ahead *drives) {
   drives->used = terms == STRUT_TERMS_COMMON && model->terms & STRUT_TERM_DRIVE &&
@@ -87,7 +91,10 @@ STRUT_INLINE void drives_ahead_begin(const strut_model *model, unsigned terms,
   drives->next = drives->count = 0;
 }
 
-/* row[j] = x, by a store as wide as the loads of members: a wider load than the store before it would have to wait. */
+/*
+ * row[j] = x, by a store as wide as the loads of members: a wider load than the store before it would have to
+ * wait.
+ */
 STRUT_INLINE void drives_ahead_put(double *row, int32_t j, double x) {
   const strut_lane_mask place = {0, 1, 2, 3};
   double *group = row + j / STRUT_LANES * STRUT_LANES;
@@ -113,8 +120,9 @@ STRUT_INLINE void drives_ahead_place(const strut_model *model, strut_state *stat
 }
 
 /**
- * Rest lengths at time t = step * dt; `step` may be a half. Evaluations are `part` steps apart, and `most` of them are
- * still to come. Does nothing where the state has them already, or where drives cannot be known beforehand.
+ * Rest lengths at time t = step * dt; `step` may be a half. Evaluations are `part` steps apart, and `most` of
+ * them are still to come. Does nothing where the state has them already, or where drives cannot be known
+ * beforehand.
  */
 STRUT_INLINE void drives_ahead_apply(const strut_model *model, strut_state *state,
                                      strut_drives_ahead *drives, double t, double step, double part,
@@ -140,8 +148,8 @@ STRUT_INLINE void drives_ahead_stages(const strut_model *model, const strut_stat
 }
 
 /**
- * Foresees the ends of whole steps of h from step * h on, one after the other, unless the next of them has been: some,
- * since an event may come between.
+ * Foresees the ends of whole steps of h from step * h on, one after the other, unless the next of them has
+ * been: some, since an event may come between.
  */
 STRUT_INLINE void drives_ahead_ends(const strut_model *model, const strut_state *state,
                                     strut_drives_ahead *drives, double h) {

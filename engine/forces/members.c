@@ -86,7 +86,10 @@ void strut_members_measure(const strut_model *model, const strut_state *state, d
   strut_actuator_forces_add_tensions(model, state, force);
 }
 
-/* Forces of more members than the energy balance adds up in one sum: called, so that smaller structures do not pay for it. */
+/*
+ * Forces of more members than the energy balance adds up in one sum: called, so that smaller structures do
+ * not pay for it.
+ */
 
 STRUT_CLONES
 static void add_forces_of_many(const strut_model *model, const strut_state *state,

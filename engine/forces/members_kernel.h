@@ -113,8 +113,8 @@ STRUT_INLINE void members_store_pairs(double *pull, strut_lanes pulls) {
 }
 
 /*
- * Pulls of a group where strut_pull_at tells. Where registers are narrower than strut_lanes, pair by pair: such a vector
- * would be put together in memory, and copying it from there would have to wait.
+ * Pulls of a group where strut_pull_at tells. Where registers are narrower than strut_lanes, pair by pair:
+ * such a vector would be put together in memory, and copying it from there would have to wait.
  */
 STRUT_INLINE void members_store(double *pull, member_pulls group, bool wide) {
   if (wide) {
@@ -128,8 +128,10 @@ STRUT_INLINE void members_store(double *pull, member_pulls group, bool wide) {
   }
 }
 
-/* A block: its pulls go where strut_pull_at tells. The table is a copy in the caller's frame, so that no store can be
-   taken to change it. */
+/*
+ * A block: its pulls go where strut_pull_at tells. The table is a copy in the caller's frame, so that no
+ * store can be taken to change it.
+ */
 STRUT_INLINE void members_block(const strut_member_table *t, const strut_state *state,
                                 const double *restrict q, const double *restrict v,
                                 double *restrict pull, int32_t begin, int32_t end, unsigned terms,

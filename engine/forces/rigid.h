@@ -48,8 +48,8 @@ STRUT_API strut_status strut_rigid_check(const strut_model *model, strut_error *
 
 /**
  * a (length): the acceleration without bars and stick in, with them out. Adds their forces to
- * state->latest.force, sets friction of contacts in the band and tensions, and with the energy balance accumulates them.
- * state->trouble where it cannot be done.
+ * state->latest.force, sets friction of contacts in the band and tensions, and with the energy balance
+ * accumulates them. state->trouble where it cannot be done.
  */
 void strut_rigid_accelerate(const strut_model *model, strut_state *state, const double *q,
                             const double *v, double *a);

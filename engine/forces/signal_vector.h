@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Hot: a signal at many times at once. Sines go by vectors, with the bits of strut_signal_evaluate; all other signals
- * through it.
+ * Hot: a signal at many times at once. Sines go by vectors, with the bits of strut_signal_evaluate; all other
+ * signals through it.
  */
 #ifndef STRUT_ENGINE_FORCES_SIGNAL_VECTOR_H
 #define STRUT_ENGINE_FORCES_SIGNAL_VECTOR_H

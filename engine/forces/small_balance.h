@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Hot: powers of a small model for the energy balance, with the bits of the general kernel: members are summed place by
- * place of groups of 4, then these places, then contacts in the order of their nodes. Transpositions make what is
- * summed one after the other into lanes of one register each.
+ * Hot: powers of a small model for the energy balance, with the bits of the general kernel: members are
+ * summed place by place of groups of 4, then these places, then contacts in the order of their nodes.
+ * Transpositions make what is summed one after the other into lanes of one register each.
  *
  * A sum that begins at 0 is never -0, so nothing is changed by adding 0 of a contact that is open.
  */
@@ -138,7 +138,10 @@ typedef struct small_stage_powers {
   small_row minus_damped, minus_rubbed, belt;
 } small_stage_powers;
 
-/* Here the compiler has x in memory: powers wait for the end of the step, and registers are wanted for the motion. */
+/*
+ * Here the compiler has x in memory: powers wait for the end of the step, and registers are wanted for the
+ * motion.
+ */
 #define SMALL_WAITS_IN_MEMORY(x) __asm__ volatile("" : "+m"(x))
 
 STRUT_SMALL_INLINE void small_accumulate_touch(const small_run *r, const small_touch *t,
@@ -147,7 +150,10 @@ STRUT_SMALL_INLINE void small_accumulate_touch(const small_run *r, const small_t
   if (r->terms & STRUT_SMALL_BELT) to->belt = t->belt;
 }
 
-/* The weighted sums of what stages have: of members; of contacts, see step_balance_contacts; of magnitudes of two. */
+/*
+ * The weighted sums of what stages have: of members; of contacts, see step_balance_contacts; of magnitudes of
+ * two.
+ */
 STRUT_SMALL_INLINE strut_lanes small_weigh(strut_lanes k1, strut_lanes k2, strut_lanes k3,
                                            strut_lanes k4) {
   return (k1 + k4) + 2.0 * (k2 + k3);

@@ -11,8 +11,8 @@
 enum { SMALL_STEPS = 16, SMALL_INSTANTS = 2 * SMALL_STEPS + 4 }; /* whole groups of 4 */
 
 /*
- * row[j] = x, by a store as wide as the loads that the law of members makes: one that has to gather a row from several
- * stores waits until these have left the processor's queue, and with them all that came before.
+ * row[j] = x, by a store as wide as the loads that the law of members makes: one that has to gather a row
+ * from several stores waits until these have left the processor's queue, and with them all that came before.
  */
 STRUT_SMALL_INLINE void small_put(double *row, int32_t j, double x) {
   static const int64_t one[2 * STRUT_SMALL_SLOTS] = {[STRUT_SMALL_SLOTS] = -1};

@@ -24,7 +24,10 @@ typedef struct small_run {
 
 /* A term of this kernel alone: the ground moves. */
 #define STRUT_SMALL_BELT (1u << 31)
-/* Copies know all terms, or those of most models, or are for models with exactly these, which they need not ask for. */
+/*
+ * Copies know all terms, or those of most models, or are for models with exactly these, which they need not
+ * ask for.
+ */
 #define STRUT_SMALL_COMMON (~(unsigned)(STRUT_TERM_SLACK | STRUT_TERM_SLOPE | STRUT_TERM_LAWS))
 #define STRUT_SMALL_USUAL                                                                          \
   ((unsigned)(STRUT_TERM_MEMBERS | STRUT_TERM_DAMPING | STRUT_TERM_DRIVE | STRUT_TERM_CONTACT |    \
@@ -35,7 +38,10 @@ static inline unsigned small_terms_of(const strut_model *model) {
   unsigned belt = model->contacts.belt_speed != 0.0 ? STRUT_SMALL_BELT : 0;
   return (model->terms & ~(unsigned)(STRUT_TERM_CONSTANT | STRUT_TERM_SOLVE)) | belt;
 }
-/* Which of the three kinds of copies steps the model: 0 for all terms, 1 for common ones, 2 for exactly the usual. */
+/*
+ * Which of the three kinds of copies steps the model: 0 for all terms, 1 for common ones, 2 for exactly the
+ * usual.
+ */
 static inline int small_copy_of(const strut_model *model) {
   unsigned terms = small_terms_of(model);
   return terms == STRUT_SMALL_USUAL ? 2 : !(terms & ~STRUT_SMALL_COMMON);
@@ -140,9 +146,10 @@ STRUT_SMALL_INLINE void small_measure_members(const strut_small_model *s, const 
 }
 
 /*
- * Pulls of the members, whose shapes are those at the positions; sum: their powers for the energy balance, added up in the order
- * of groups of 4; drive: what drives take. The shapes become those at next_q, the positions that are
- * wanted next, where these are known already: roots and divisions take long, and are there when velocities are.
+ * Pulls of the members, whose shapes are those at the positions; sum: their powers for the energy balance,
+ * added up in the order of groups of 4; drive: what drives take. The shapes become those at next_q, the
+ * positions that are wanted next, where these are known already: roots and divisions take long, and are there
+ * when velocities are.
  */
 STRUT_SMALL_INLINE void small_members(const small_run *r, const small_rest *rest,
                                       small_shapes *shapes, const small_points *next_q,

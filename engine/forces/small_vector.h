@@ -26,8 +26,8 @@
 enum { SMALL_WIDTH = STRUT_SMALL_WIDTH, SMALL_PARTS = STRUT_SMALL_NODES / STRUT_SMALL_WIDTH };
 
 /*
- * The compiler forgets what it has read of p: of tables that stay the same it would else hold so many rows in registers
- * that the motion has to leave them.
+ * The compiler forgets what it has read of p: of tables that stay the same it would else hold so many rows in
+ * registers that the motion has to leave them.
  */
 #define SMALL_READS_AGAIN(p) __asm__ volatile("" : "+r"(p))
 

@@ -10,8 +10,8 @@
 #include "engine/model/state.h"
 
 /**
- * Adds the reactions to state->latest.force; with the energy balance their powers. Friction comes last, and where several
- * contacts of a node stick within Karnopp's band it is found for all of them together.
+ * Adds the reactions to state->latest.force; with the energy balance their powers. Friction comes last, and
+ * where several contacts of a node stick within Karnopp's band it is found for all of them together.
  */
 void strut_surfaces_add_forces(const strut_model *model, strut_state *state,
                                const double *restrict q, const double *restrict v);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
  * Steps of a run whose structure is large: stored in another order where the scene's is scattered
- * (engine/model/renumber.h), and by several threads where there are any (domain_parts.h). Positions, velocities and contact
- * forces have the same bits as without. In another order, the energy balance sums powers of members as they are stored:
- * its works differ in rounding, but not with the number of threads.
+ * (engine/model/renumber.h), and by several threads where there are any (domain_parts.h). Positions,
+ * velocities and contact forces have the same bits as without. In another order, the energy balance sums
+ * powers of members as they are stored: its works differ in rounding, but not with the number of threads.
  */
 #ifndef STRUT_ENGINE_INTEGRATE_LARGE_STEPS_H
 #define STRUT_ENGINE_INTEGRATE_LARGE_STEPS_H
@@ -14,7 +14,10 @@ typedef struct strut_large_steps strut_large_steps;
 
 /** Threads that a run may use: one within what runs side by side already, else as OpenMP has them. */
 STRUT_API int strut_large_threads(void);
-/** Steps to take at once between two looks at the state: 1 for small structures. The same for any number of threads. */
+/**
+ * Steps to take at once between two looks at the state: 1 for small structures. The same for any number of
+ * threads.
+ */
 STRUT_API int64_t strut_large_steps_at_once(const strut_model *model,
                                             const strut_integrator *method);
 /** *steps is NULL where the method itself does as well. STRUT_OK or STRUT_NO_MEMORY. */

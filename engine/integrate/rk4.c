@@ -30,14 +30,14 @@ static void *rk4_create(const strut_model *model, strut_state *state,
 }
 
 /*
- * The step as a loop over its stages, so that the forces stand in it once. Times are n dt, (n + 1/2)
- * dt and (n + 1) dt, never sums. With the energy balance the powers enter the works with the stage's weight: those of members
- * and of level ground once for the whole step, see step_balance.h, all others stage by stage.
+ * The step as a loop over its stages, so that the forces stand in it once. Times are n dt, (n + 1/2) dt and
+ * (n + 1) dt, never sums. With the energy balance the powers enter the works with the stage's weight: those
+ * of members and of level ground once for the whole step, see step_balance.h, all others stage by stage.
  */
 STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, rk4_workspace *w,
                             double dt, int64_t count, unsigned terms, bool balance, bool rigid) {
   const double *ahead = STRUT_RK4_AHEAD, *weight = STRUT_RK4_WEIGHTS;
-  strut_accumulation booking = balance ? STRUT_ACCUMULATE_LANES : STRUT_ACCUMULATE_NOTHING;
+  strut_accumulation accumulation = balance ? STRUT_ACCUMULATE_LANES : STRUT_ACCUMULATE_NOTHING;
   double *restrict q = state->q, *restrict v = state->v;
   const double *const at[4] = {q, w->q, w->q, w->q};
   const double *const speed[4] = {v, w->v[1], w->v[2], w->v[3]};
@@ -53,7 +53,7 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, rk4_wo
       if (balance) state->latest.accumulated = &state->latest.lanes[strut_weight_side(k)];
       double step = (double)state->step + ahead[k], t = step * dt;
       drives_ahead_apply(model, state, &drives, t, step, 0.5, dt, 2 * (end - state->step));
-      forces_kernel(model, state, t, at[k], speed[k], w->a[k], terms, booking);
+      forces_kernel(model, state, t, at[k], speed[k], w->a[k], terms, accumulation);
       if (rigid) strut_rigid_accelerate(model, state, at[k], speed[k], w->a[k]);
       for (int p = 0; p < STRUT_POWER_COUNT && others; p++)
         state->work[p] += weight[k] * (dt / 6.0) * state->latest.power[p];

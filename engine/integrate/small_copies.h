@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * The methods of small models for one set of registers: with the energy balance and without it, for all models, for those
- * that have neither cables, slope nor other laws, and for those that have exactly the usual terms. Copies do not ask for
- * what they know.
+ * The methods of small models for one set of registers: with the energy balance and without it, for all
+ * models, for those that have neither cables, slope nor other laws, and for those that have exactly the usual
+ * terms. Copies do not ask for what they know.
  *
- * A file defines STRUT_SMALL_WIDTH and STRUT_SMALL_NAME(method), the name of the public function, and includes
- * this once.
+ * A file defines STRUT_SMALL_WIDTH and STRUT_SMALL_NAME(method), the name of the public function, and
+ * includes this once.
  */
 #ifndef STRUT_ENGINE_INTEGRATE_SMALL_COPIES_H
 #define STRUT_ENGINE_INTEGRATE_SMALL_COPIES_H

@@ -20,9 +20,9 @@ STRUT_SMALL_INLINE small_row small_add(small_row a, small_row b) {
 }
 
 /*
- * Forces f and accelerations at positions q and velocities v. shapes: of the members at q; they become those at next_q,
- * the positions of the stage after, which are known already: so roots and divisions are there when velocities are.
- * powers: those of this stage, where the energy balance is kept.
+ * Forces f and accelerations at positions q and velocities v. shapes: of the members at q; they become those
+ * at next_q, the positions of the stage after, which are known already: so roots and divisions are there when
+ * velocities are. powers: those of this stage, where the energy balance is kept.
  */
 STRUT_SMALL_INLINE small_points small_stage(const small_run *r, const small_rest *rest,
                                             const small_points *q, const small_points *next_q,
@@ -41,8 +41,10 @@ STRUT_SMALL_INLINE small_points small_stage(const small_run *r, const small_rest
   return small_divide_points(r->tables, f);
 }
 
-/* One step over the rest lengths at its begin, middle and end; shapes: of the members where it begins, and then where it
-   ends. Of the two inner stages sums are kept. */
+/*
+ * One step over the rest lengths at its begin, middle and end; shapes: of the members where it begins, and
+ * then where it ends. Of the two inner stages sums are kept.
+ */
 STRUT_SMALL_INLINE void small_rk4_step(const small_run *r, const small_rest *rest, int stride,
                                        double dt, small_motion *m, small_shapes *shapes,
                                        bool balance) {

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * A large structure divided among threads: each has a subdomain, a model of its own nodes and of ghost nodes around
- * them.
+ * A large structure divided among threads: each has a subdomain, a model of its own nodes and of ghost nodes
+ * around them.
  *
- * Ghosts reach so far that STRUT_PASSES evaluations of the forces, one after the other, give the own nodes the
- * right motion although the outermost ghosts lack members; or one layer, where others tell how ghosts move. Every node adds up its members in the scene's order, and
- * every member that the energy balance counts is counted by one subdomain, in whole blocks of the energy balance.
+ * Ghosts reach so far that STRUT_PASSES evaluations of the forces, one after the other, give the own nodes
+ * the right motion although the outermost ghosts lack members; or one layer, where others tell how ghosts
+ * move. Every node adds up its members in the scene's order, and every member that the energy balance counts
+ * is counted by one subdomain, in whole blocks of the energy balance.
  *
  * Nodes are stored in the order of their last members, so that a node is ready to move soon after it was met.
  */

@@ -2,11 +2,11 @@
 /**
  * The model: a scene compiled into indices and numbers, constant from then on.
  *
- * A model is shared by threads without locks. It refers to the scene it came from for names, so the
- * scene must outlive it. Coordinate arrays follow the paper's q = (x1, y1, x2, y2, ...): node i has
- * its x at 2 i and its y at 2 i + 1, and one unused node or more pad them to `length` doubles. Supports are eliminated
- * from the mass matrix, and their coordinates simply never accelerate.
- * Members keep the scene's order, so that a term left out changes no bit of the others.
+ * A model is shared by threads without locks. It refers to the scene it came from for names, so the scene
+ * must outlive it. Coordinate arrays follow the paper's q = (x1, y1, x2, y2, ...): node i has its x at 2 i
+ * and its y at 2 i + 1, and one unused node or more pad them to `length` doubles. Supports are eliminated
+ * from the mass matrix, and their coordinates simply never accelerate. Members keep the scene's order, so
+ * that a term left out changes no bit of the others.
  */
 #ifndef STRUT_ENGINE_MODEL_MODEL_H
 #define STRUT_ENGINE_MODEL_MODEL_H

@@ -112,8 +112,8 @@ static inline strut_contact_pose strut_contact_pose_at(const strut_contact_table
 /** The contact after those of the node of contact `first`. */
 STRUT_API int32_t strut_contacts_end_of_node(const strut_contact_table *c, int32_t first);
 /**
- * Contacts first .. end - 1, of one node, without those whose gap in q exceeds `margin` [m] for certain and is not
- * negative: few of the many pieces of a long profile. Ascending, into list; returns their number.
+ * Contacts first .. end - 1, of one node, without those whose gap in q exceeds `margin` [m] for certain and
+ * is not negative: few of the many pieces of a long profile. Ascending, into list; returns their number.
  */
 STRUT_API int32_t strut_contacts_near(const strut_contact_table *c, int32_t first, int32_t end,
                                       const double *q, const strut_ground_motion *motion,
@@ -133,8 +133,9 @@ static inline double strut_contact_gap(const strut_contact_table *c, int32_t i, 
 }
 
 /**
- * The two pieces that are nearest to their node of contacts `first` and following, of this node with one ground: a node
- * hardly touches more of them at once. near[1] is near[0] where there is only one. Returns the contact after these.
+ * The two pieces that are nearest to their node of contacts `first` and following, of this node with one
+ * ground: a node hardly touches more of them at once. near[1] is near[0] where there is only one. Returns the
+ * contact after these.
  */
 STRUT_API int32_t strut_contacts_nearest(const strut_contact_table *c, int32_t first,
                                          const double *q, int32_t near[2]);

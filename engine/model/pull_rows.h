@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Which pulls of a block of members its nodes add up, in rows: a node so loads and stores its force once for several
- * members.
+ * Which pulls of a block of members its nodes add up, in rows: a node so loads and stores its force once for
+ * several members.
  *
- * All rows of a block are equally long, so that the loop over them has nothing to decide. A node with more pulls has
- * several rows, one with fewer adds -0 as well, which changes no bit. Each node adds its pulls in the order of the
- * table's members.
+ * All rows of a block are equally long, so that the loop over them has nothing to decide. A node with more
+ * pulls has several rows, one with fewer adds -0 as well, which changes no bit. Each node adds its pulls in
+ * the order of the table's members.
  */
 #ifndef STRUT_ENGINE_MODEL_PULL_ROWS_H
 #define STRUT_ENGINE_MODEL_PULL_ROWS_H
@@ -15,7 +15,10 @@
 
 #include "engine/base/memory.h"
 
-/** Members are stepped in groups of STRUT_LANES, so tables are padded to a multiple of it; blocks are of whole groups. */
+/**
+ * Members are stepped in groups of STRUT_LANES, so tables are padded to a multiple of it; blocks are of whole
+ * groups.
+ */
 enum { STRUT_LANES = 4, STRUT_BLOCK = 64 };
 /** The energy balance adds up the powers of so many blocks, and then these sums: threads share the work. */
 enum { STRUT_BALANCE_BLOCKS = 16 };
@@ -37,8 +40,8 @@ typedef struct strut_pull_rows {
 } strut_pull_rows;
 
 /**
- * Where, in a block's numbers, the pull on the first or the second end of its member k stands. Members go by groups:
- * first ends of the even and of the odd ones, then second ends likewise.
+ * Where, in a block's numbers, the pull on the first or the second end of its member k stands. Members go by
+ * groups: first ends of the even and of the odd ones, then second ends likewise.
  */
 static inline uint16_t strut_pull_at(int32_t k, bool second) {
   int32_t group = k / STRUT_LANES, lane = k % STRUT_LANES;
@@ -47,8 +50,8 @@ static inline uint16_t strut_pull_at(int32_t k, bool second) {
 }
 
 /**
- * Rows of all blocks of `count` members, whose ends have their x at from and to (count). Those with both ends in one
- * place, as padding has them, pull nowhere. NULL: out of memory.
+ * Rows of all blocks of `count` members, whose ends have their x at from and to (count). Those with both ends
+ * in one place, as padding has them, pull nowhere. NULL: out of memory.
  */
 STRUT_API strut_pull_rows *strut_pull_rows_create(strut_arena *arena, int32_t count,
                                                   const uint32_t *from, const uint32_t *to);

@@ -2,9 +2,10 @@
 /**
  * Tables of a small model, by which its whole state stays in vector registers while it is stepped.
  *
- * Nodes are lanes. A member finds its ends, and a node the pulls of its members, by tables of lanes. Sums keep the scene's order, so that they have the bits of the
- * general kernel (forces_kernel.h). What may change between runs of one model (rest lengths, constant
- * forces, signals) is read from model and state, not from here.
+ * Nodes are lanes. A member finds its ends, and a node the pulls of its members, by tables of lanes. Sums
+ * keep the scene's order, so that they have the bits of the general kernel (forces_kernel.h). What may change
+ * between runs of one model (rest lengths, constant forces, signals) is read from model and state, not from
+ * here.
  */
 #ifndef STRUT_ENGINE_MODEL_SMALL_MODEL_H
 #define STRUT_ENGINE_MODEL_SMALL_MODEL_H
@@ -51,8 +52,8 @@ typedef struct strut_small_column {
 } strut_small_column;
 
 /**
- * The k-th member at each node: its slot, the sign bit with which it pulls, and at which nodes there is one. Elsewhere
- * the slot is that of a 0, and the sign makes it -0.
+ * The k-th member at each node: its slot, the sign bit with which it pulls, and at which nodes there is one.
+ * Elsewhere the slot is that of a 0, and the sign makes it -0.
  */
 typedef struct strut_small_pull {
   strut_small_lanes slot, slot_halves, sign;
@@ -60,9 +61,9 @@ typedef struct strut_small_pull {
 } strut_small_pull;
 
 /**
- * The same for AVX2, whose registers of 4 lanes are permuted one at a time: turns, each of one source register. Those
- * of register g lie before end[g]. Members, and columns, ascend at each node, so all of one register come before those
- * of the next, and sums keep their order.
+ * The same for AVX2, whose registers of 4 lanes are permuted one at a time: turns, each of one source
+ * register. Those of register g lie before end[g]. Members, and columns, ascend at each node, so all of one
+ * register come before those of the next, and sums keep their order.
  */
 typedef struct strut_small_pull_turn {
   strut_small_lanes halves, sign;

@@ -26,9 +26,11 @@ typedef enum strut_power {
   STRUT_POWER_ROOM = 8 /* arrays of powers have this size: whole vectors; the rest is 0 */
 } strut_power;
 
-/** Powers of the evaluations of a Runge-Kutta step that have one weight [W]; step_balance.h adds up the lanes at its
-    end. Of members by place in groups of STRUT_LANES; of contacts by the lane that
-    strut_contact_entry has. */
+/**
+ * Powers of the evaluations of a Runge-Kutta step that have one weight [W]; step_balance.h adds up the lanes
+ * at its end. Of members by place in groups of STRUT_LANES; of contacts by the lane that strut_contact_entry
+ * has.
+ */
 typedef struct strut_power_lanes {
   double drive[STRUT_LANES], lost[STRUT_LANES], driven[STRUT_LANES]; /* driven: magnitudes */
   double minus_damped[STRUT_CONTACT_LANES], minus_rubbed[STRUT_CONTACT_LANES];

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Which facet of a surface is nearest to a point, and which pieces of a profile are near: by trees of bounds where
- * there are many, with the answers of a search through all of them, ties included.
+ * Which facet of a surface is nearest to a point, and which pieces of a profile are near: by trees of bounds
+ * where there are many, with the answers of a search through all of them, ties included.
  */
 #ifndef STRUT_ENGINE_MODEL_SURFACE_SEARCH_H
 #define STRUT_ENGINE_MODEL_SURFACE_SEARCH_H
@@ -39,8 +39,10 @@ bool strut_surface_bound_facets(strut_arena *arena, strut_surface *surface);
 /** Makes the tree over the pieces of one profile, likewise, for all of them. */
 bool strut_surface_bound_pieces(strut_arena *arena, strut_surface *pieces, size_t count);
 
-/** Contacts from `first` on that are those of one node with all pieces of a long profile, which is searched by a tree;
-    0 where it begins none. */
+/**
+ * Contacts from `first` on that are those of one node with all pieces of a long profile, which is searched by
+ * a tree; 0 where it begins none.
+ */
 int32_t strut_contacts_of_profile(const strut_contact_table *contacts, int32_t first);
 /** The contact of these whose gap in q is least, the first of several; *gap: that [m]. */
 int32_t strut_contacts_lowest(const strut_contact_table *contacts, int32_t first, const double *q,

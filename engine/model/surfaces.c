@@ -275,8 +275,10 @@ typedef struct piece_tree {
   const piece_bounds *node;
 } piece_tree;
 
-/* A piece that reaches without end has no box, but its line leads away from a point that is far above: trees of one
-   kind each can tell either way. */
+/*
+ * A piece that reaches without end has no box, but its line leads away from a point that is far above: trees
+ * of one kind each can tell either way.
+ */
 enum { KINDS = 4 };
 struct strut_piece_index {
   piece_tree tree[KINDS];
@@ -456,9 +458,9 @@ typedef struct piece_search {
 } piece_search;
 
 /*
- * Is no piece of a node of the tree within the margin, and none touched? The gap is not less than the distance from
- * any of its lines; where it is negative, it is minus the distance from a point of the piece that is no further than
- * each of them.
+ * Is no piece of a node of the tree within the margin, and none touched? The gap is not less than the
+ * distance from any of its lines; where it is negative, it is minus the distance from a point of the piece
+ * that is no further than each of them.
  */
 static bool is_apart(const piece_bounds *b, const double p[2], double margin) {
   double first, last, unused;

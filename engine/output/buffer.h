@@ -27,8 +27,8 @@ STRUT_API void strut_buffer_add(strut_buffer *buffer, const char *format, ...)
 STRUT_API char *strut_buffer_take(strut_buffer *buffer);
 
 /**
- * The text, of which no more than `length` bytes count, as a cell of CSV: RFC 4180 requires quotes around one with
- * a comma, a quote or a break. Writes up to 2 length + 2 bytes to `cell`; returns their number.
+ * The text, of which no more than `length` bytes count, as a cell of CSV: RFC 4180 requires quotes around one
+ * with a comma, a quote or a break. Writes up to 2 length + 2 bytes to `cell`; returns their number.
  */
 STRUT_API size_t strut_csv_quote(const char *text, size_t length, char *cell);
 /** Writes a text to a stream as such a cell. */

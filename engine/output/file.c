@@ -311,8 +311,10 @@ static void empty(int folder) {
   unlinkat(folder, MARK, 0);
 }
 
-/* Removes a folder that no process holds. One without a whole mark and files is of a process that was killed before
-   it wrote the mark, or is about to write it: that process then makes another. */
+/*
+ * Removes a folder that no process holds. One without a whole mark and files is of a process that was killed
+ * before it wrote the mark, or is about to write it: that process then makes another.
+ */
 static bool remove_left(int parent, const char *name) {
   int folder = openat(parent, name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
   if (folder < 0) return false;

@@ -36,7 +36,10 @@ STRUT_API void strut_json_raw(strut_json *json, struct cJSON *to, const char *ke
 /** An array of numbers. */
 STRUT_API void strut_json_numbers(strut_json *json, struct cJSON *to, const char *key,
                                   const double *values, size_t count);
-/** A value of a row by its name, from which JSON, CSV and a table come; `text` instead of a number where it is one. */
+/**
+ * A value of a row by its name, from which JSON, CSV and a table come; `text` instead of a number where it is
+ * one.
+ */
 typedef struct strut_report_value {
   const char *key, *unit; /* "damping_ratio", "1"; the column of a CSV is "damping ratio" */
   double number;

@@ -142,9 +142,9 @@ static void record_energy(strut_channel_view *v, double *out) {
 }
 
 /*
- * momentum = M u of each node at velocities u (nodes, 2), with the model's mass matrix, lumped or consistent, of
- * all nodes, supported ones too. Masses that slide add their speed along their lines at the positions q; without it
- * where q is NULL. Forces must have been observed where some mass slides.
+ * momentum = M u of each node at velocities u (nodes, 2), with the model's mass matrix, lumped or consistent,
+ * of all nodes, supported ones too. Masses that slide add their speed along their lines at the positions q;
+ * without it where q is NULL. Forces must have been observed where some mass slides.
  */
 static void multiply_by_mass(const strut_channel_view *v, const double *u, const double *q,
                              double *momentum) {
@@ -183,8 +183,9 @@ static strut_vec2 mean(const strut_model *model, const double *weights, const do
 }
 
 /*
- * (r - c) x p of each node, and their sum: r its position, p its part of M (v - v_c), c and v_c the centre of mass
- * and its velocity. Since M couples x to x and y to y alike, forces within the structure leave the sum as it is.
+ * (r - c) x p of each node, and their sum: r its position, p its part of M (v - v_c), c and v_c the centre of
+ * mass and its velocity. Since M couples x to x and y to y alike, forces within the structure leave the sum
+ * as it is.
  */
 static void record_angular_momentum(strut_channel_view *v, double *out) {
   const strut_model *model = v->model;

@@ -54,9 +54,10 @@ strut_status strut_settle_state(const strut_model *model, const strut_experiment
                                 double *time, strut_error *error);
 
 /**
- * Settles the start of an experiment: q (length) are the positions [m], `how` the details. The step follows from the stability limit where the scene gives no stable
- * one, and is halved where it diverges. With settle.perturb an unstable equilibrium is left.
- * limits: cache of step limits, may be NULL. Fails as strut_relaxation_run.
+ * Settles the start of an experiment: q (length) are the positions [m], `how` the details. The step follows
+ * from the stability limit where the scene gives no stable one, and is halved where it diverges. With
+ * settle.perturb an unstable equilibrium is left. limits: cache of step limits, may be NULL. Fails as
+ * strut_relaxation_run.
  */
 STRUT_API strut_status strut_settle_experiment(const strut_model *model,
                                                const strut_experiment *experiment,

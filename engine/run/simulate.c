@@ -426,7 +426,10 @@ void strut_run_step(strut_run *r, int64_t stop) {
 
 static void fill_summary(strut_run *r, strut_status status);
 
-/* The time of the state; where a drive jumps there, just after that, as a method with events has accumulated its work. */
+/*
+ * The time of the state; where a drive jumps there, just after that, as a method with events has accumulated
+ * its work.
+ */
 static double time_of_balance(const strut_run *r) {
   double t = strut_time_grid_at(&r->grid, r->state->step), near = 2e-9 * r->dt;
   if (!r->method->events) return t;

@@ -23,8 +23,8 @@
 
 /**
  * The laws: X(NAME, name, word, needs, context); context is passed on. needs: bits of the parameters
- * (laws/parameters.h) that the law needs, NAME_MAY that it may have, 0 if not given; OWN: it has a stiffness of its
- * own, so that the element must not give one.
+ * (laws/parameters.h) that the law needs, NAME_MAY that it may have, 0 if not given; OWN: it has a stiffness
+ * of its own, so that the element must not give one.
  */
 #define STRUT_LAWS(X, context)                                                                     \
   X(LINEAR, linear, "linear", 0, context)                                                          \
@@ -38,8 +38,8 @@
   X(TABLE, table, "table", POINTS_BIT | OWN, context)
 
 /**
- * Those of members and hinges come first, then the one that a model gives to members with an axial_stiffness whose
- * rest length is driven. No scene can ask for that, so that it has no word.
+ * Those of members and hinges come first, then the one that a model gives to members with an axial_stiffness
+ * whose rest length is driven. No scene can ask for that, so that it has no word.
  */
 #define STRUT_ALL_LAWS(X, context)                                                                 \
   STRUT_LAWS(X, context) X(AXIAL, axial, "", 0, context) STRUT_CELL_LAWS(X, context)

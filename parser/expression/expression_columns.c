@@ -149,7 +149,10 @@ static int read_rate(strut_expression_reader *r, size_t begin, strut_quantity *q
   return look_up(r, "rate", begin, name, r->at, r->at, q);
 }
 
-/* What looks like a function: node(A).x, member(A).force, hinge(A).moment, cell(A).area, angle(A, B), distance(A, B). */
+/*
+ * What looks like a function: node(A).x, member(A).force, hinge(A).moment, cell(A).area, angle(A, B),
+ * distance(A, B).
+ */
 static int read_call(strut_expression_reader *r, size_t begin, size_t length, strut_quantity *q) {
   static const char *const words[] = {"node",   "member", "hinge",    "cell", "collision",
                                       "slider", "angle",  "distance", "rate"};

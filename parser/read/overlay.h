@@ -46,10 +46,10 @@ STRUT_API strut_tree *strut_mark_tree(const strut_overlay *overlay, const strut_
 /* Differences between two scenes, as texts; those of many copies of a part as one. */
 
 /**
- * Compares two texts of strut_setup_write (or any YAML) key by key in the order of the first, then lists
- * what only the second has. A list counts as one value, and so does a node or member that only one
- * has; a copy of a part that only one has is one difference, too. The scenes' name, description and source are left out. The results belong to the arena.
- * STRUT_OK, STRUT_BAD_SCENE if a text is not YAML, or STRUT_NO_MEMORY.
+ * Compares two texts of strut_setup_write (or any YAML) key by key in the order of the first, then lists what
+ * only the second has. A list counts as one value, and so does a node or member that only one has; a copy of
+ * a part that only one has is one difference, too. The scenes' name, description and source are left out. The
+ * results belong to the arena. STRUT_OK, STRUT_BAD_SCENE if a text is not YAML, or STRUT_NO_MEMORY.
  */
 STRUT_API strut_status strut_text_differences(const char *first, const char *second,
                                               strut_arena *arena, strut_difference **list,

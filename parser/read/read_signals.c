@@ -379,7 +379,10 @@ void strut_keep_signals(strut_reader *reader) {
   scene->signal_count = reader->signal_count;
 }
 
-/* What drives a structure, beyond the rows: moving supports, actuators, loads, unbalances, sliders. See reader.h. */
+/*
+ * What drives a structure, beyond the rows: moving supports, actuators, loads, unbalances, sliders. See
+ * reader.h.
+ */
 
 /* ---- actuators and loads ---- */
 

@@ -55,8 +55,8 @@ STRUT_API const char *strut_study_messages(strut_study_file *file, size_t most);
 /** All notes of the points tried, such as on former names of keys; NULL: memory is out. */
 STRUT_API const char *strut_study_notes(strut_study_file *file);
 /**
- * The scene and experiment where the axes have these values (column_count). On STRUT_BAD_SCENE `error` has the first
- * finding with its place. Safe from several threads.
+ * The scene and experiment where the axes have these values (column_count). On STRUT_BAD_SCENE `error` has
+ * the first finding with its place. Safe from several threads.
  */
 STRUT_API strut_status strut_study_setup(const strut_study_file *file,
                                          const strut_study_value *values, strut_setup *setup,
@@ -76,9 +76,9 @@ STRUT_API strut_status strut_study_try_at(strut_study_file *file, const strut_st
  */
 STRUT_API char *strut_study_identity(const strut_study_file *file);
 /**
- * The study's text as it was written, but naming `model` as its model and files of points by the names
- * of their copies, so that it may stand beside copies of them; comments at its end say what the model was, and what --set gave. A block of
- * strut_allocate, or NULL.
+ * The study's text as it was written, but naming `model` as its model and files of points by the names of
+ * their copies, so that it may stand beside copies of them; comments at its end say what the model was, and
+ * what --set gave. A block of strut_allocate, or NULL.
  */
 STRUT_API char *strut_study_copy(const strut_study_file *file, const char *model,
                                  const strut_override *overrides, size_t override_count);

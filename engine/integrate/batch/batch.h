@@ -19,7 +19,10 @@ STRUT_API int32_t strut_batch_widest(void);
 STRUT_API bool strut_batch_knows(const strut_integrator *method);
 /** Can it step this model in a batch? */
 STRUT_API bool strut_batch_possible(const strut_model *model, const strut_integrator *method);
-/** Does a batch of this width take less time than its runs one by one, which have kernels of their own? As measured. */
+/**
+ * Does a batch of this width take less time than its runs one by one, which have kernels of their own? As
+ * measured.
+ */
 STRUT_API bool strut_batch_pays(const strut_model *model, const strut_integrator *method,
                                 int32_t width);
 

@@ -15,8 +15,8 @@
 enum { V = 1, A = V + PAIR, KEPT = A + PAIR, STAGES = KEPT + 2 };
 
 /*
- * sum_j weight[j] k[j] over `count` stages at i; where these are constants the loop over them unrolls. `pairs`: the last one
- * has just been stored pair by pair.
+ * sum_j weight[j] k[j] over `count` stages at i; where these are constants the loop over them unrolls.
+ * `pairs`: the last one has just been stored pair by pair.
  */
 STRUT_INLINE strut_lanes weighted(double *const *k, const double *weight, int count, bool pairs,
                                   int32_t i) {

@@ -17,8 +17,10 @@
 
 /* A root this close to where the step begins, in grid steps, is there already. */
 static const double AT_ONCE = 1e-9;
-/* After so many switches of one contact or law without a step, or of all within one step of the grid, one is taken
-   whatever the modes say: switches may follow each other faster and faster without end (Zeno). */
+/*
+ * After so many switches of one contact or law without a step, or of all within one step of the grid, one is
+ * taken whatever the modes say: switches may follow each other faster and faster without end (Zeno).
+ */
 enum { MOST_AT_ONCE = 8, MOST_TRIALS = 60 };
 
 /* What contacts of surfaces need beside the others. */
@@ -355,9 +357,9 @@ static bool is_above_threshold(const strut_friction *f, const strut_touch *o) {
 }
 
 /*
- * May the end of a region's step be moved, instead of taking it again? Not far, and not where a force has had a kink on
- * the way, which the polynomial of both ends does not know: a contact within its band is held by as much as acts on it,
- * up to its threshold, where its mode may end.
+ * May the end of a region's step be moved, instead of taking it again? Not far, and not where a force has had
+ * a kink on the way, which the polynomial of both ends does not know: a contact within its band is held by as
+ * much as acts on it, up to its threshold, where its mode may end.
  */
 static bool may_shift(const strut_model *model, const strut_event_stepper *l, double from,
                       double to) {
@@ -480,8 +482,8 @@ static bool must_step(const strut_event_stepper *l) {
 }
 
 /*
- * A step that is taken whatever the modes say. Where a contact opens within AT_ONCE, it may stick and slip in turn until
- * then, and in the wrong mode friction would push it on: that step only passes the opening.
+ * A step that is taken whatever the modes say. Where a contact opens within AT_ONCE, it may stick and slip in
+ * turn until then, and in the wrong mode friction would push it on: that step only passes the opening.
  */
 static double forced_step(const strut_model *model, strut_event_stepper *l, double h, double dt) {
   double moment = 10.0 * AT_ONCE * dt;

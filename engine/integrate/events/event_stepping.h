@@ -83,8 +83,9 @@ typedef struct strut_sliding_contact {
 } strut_sliding_contact;
 
 /**
- * Something that ends a mode: what it is of, the value that it ends at 0 (positive while the mode holds), that value's
- * rate (NONE: not known, a secant must do), and what it does to the modes. The functions are in event_kinds.c.
+ * Something that ends a mode: what it is of, the value that it ends at 0 (positive while the mode holds),
+ * that value's rate (NONE: not known, a secant must do), and what it does to the modes. The functions are in
+ * event_kinds.c.
  */
 #define STRUT_EVENT_KINDS(X)                                                                       \
   X(NONE, CONTACT, no_end, NULL, no_effect)                                                        \
@@ -156,7 +157,10 @@ typedef struct strut_event_view {
   bool smooth;                   /* nothing has switched or jumped since the latest piece */
 } strut_event_view;
 
-/** An explicit Runge-Kutta method, for what follows its steps; velocities are those of an equation of second order. */
+/**
+ * An explicit Runge-Kutta method, for what follows its steps; velocities are those of an equation of second
+ * order.
+ */
 typedef struct strut_tableau {
   int stages;
   int velocities;      /* velocities of stage k > 0 are in l->stage[velocities + k] */

@@ -332,8 +332,10 @@ static bool ground_damps(const strut_model *model) {
   return damped;
 }
 
-/* The limits at the start. A structure that is scattered in memory and too large for more than a bound is stored in
-   another order first: every pass over its matrices would wait for memory. */
+/*
+ * The limits at the start. A structure that is scattered in memory and too large for more than a bound is
+ * stored in another order first: every pass over its matrices would wait for memory.
+ */
 static strut_status limits_at_start(const strut_model *model, strut_closed closed, bool rk4,
                                     strut_arena *arena, strut_step_limit *limit) {
   strut_renumbering *r = NULL;

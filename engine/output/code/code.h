@@ -25,8 +25,8 @@ STRUT_API bool strut_code_is_prefix(const char *text);
 STRUT_API void strut_code_prefix_of(const char *text, char prefix[65]);
 
 /**
- * STRUT_BAD_SCENE, with all reasons in one sentence, where the scene has features that cannot be exported, or, with
- * floats, numbers that no float has.
+ * STRUT_BAD_SCENE, with all reasons in one sentence, where the scene has features that cannot be exported,
+ * or, with floats, numbers that no float has.
  */
 STRUT_API strut_status strut_code_check(const strut_model *model, strut_error *error);
 
@@ -35,11 +35,12 @@ STRUT_API strut_status strut_code_write(const char *directory, const strut_model
                                         const strut_experiment *experiment,
                                         const strut_code_options *options, strut_error *error);
 
-/* The texts of which code.c makes C, put in at build time (EmbedFiles.cmake), each followed by a row of NULL.
+/*
+ * The texts of which code.c makes C, put in at build time (EmbedFiles.cmake), each followed by a row of NULL.
  *
- * `$` is the prefix, `@_` the prefix in capitals, `@word` a number of the scene. Lines that begin with `@` are for
- * the writer: between `@if word !word ...` and `@else` or `@end` is what a scene needs for which each word holds
- * (none behind a `!`); in place of `@table word` come declarations with the scene's numbers.
+ * `$` is the prefix, `@_` the prefix in capitals, `@word` a number of the scene. Lines that begin with `@`
+ * are for the writer: between `@if word !word ...` and `@else` or `@end` is what a scene needs for which each
+ * word holds (none behind a `!`); in place of `@table word` come declarations with the scene's numbers.
  *
  * strut_code_law_texts are headers of the engine, see writer.h.
  */

@@ -58,8 +58,9 @@ typedef struct strut_structure_style {
 } strut_structure_style;
 
 /**
- * Members, nodes, supports, cells (filled), hinges (an arc from arm to arm), stops that act (a bar across their
- * member) and masses on members (filled circles) of the shape q (model->length). Widths adapt to how many there are.
+ * Members, nodes, supports, cells (filled), hinges (an arc from arm to arm), stops that act (a bar across
+ * their member) and masses on members (filled circles) of the shape q (model->length). Widths adapt to how
+ * many there are.
  */
 STRUT_API void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
                                     const strut_model *model, const double *q,

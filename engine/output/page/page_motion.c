@@ -169,8 +169,11 @@ static const double POSITION_QUANTUM = 1e-6, VALUE_QUANTUM = 1e-5, COLUMN_QUANTU
 /* A diverged run is shown up to this distance from its start, in sizes. */
 static const double DIVERGED_REACH = 1e3;
 
-/* Blocks: the time, then the channels in the order of their table. The page draws the motion, not velocities and
-   lengths; it has charts of its own for some channels, whose keys are always there, and a common one for others. */
+/*
+ * Blocks: the time, then the channels in the order of their table. The page draws the motion, not velocities
+ * and lengths; it has charts of its own for some channels, whose keys are always there, and a common one for
+ * others.
+ */
 enum {
   TIME,
   POSITION = 1 + STRUT_CHANNEL_PLACE_POSITION,

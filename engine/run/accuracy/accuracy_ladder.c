@@ -18,8 +18,9 @@
  */
 static const double FINER_TOLERANCE = 1.0 / 30.0;
 /*
- * Tolerance of the first such run: at most, and over the wanted error. Looser ones cost hardly less, since the cost
- * is in the events and the longest step, and may agree with verlet-events on a motion that neither leads to.
+ * Tolerance of the first such run: at most, and over the wanted error. Looser ones cost hardly less, since
+ * the cost is in the events and the longest step, and may agree with verlet-events on a motion that neither
+ * leads to.
  */
 static const double FIRST_TOLERANCE = 1e-5, FIRST_TOLERANCE_PER_ERROR = 1e-3;
 /* Smallest tolerance: below it rounding dominates. */
@@ -91,9 +92,9 @@ static double divide_evenly(double unit, double step) {
 }
 
 /*
- * Steps between two moments in the k-th of runs of which the first has `first`: about twice as many from run to
- * run, without a common divisor. Two successive runs so meet at moments only, and a peak that both miss in between
- * is not missed alike.
+ * Steps between two moments in the k-th of runs of which the first has `first`: about twice as many from run
+ * to run, without a common divisor. Two successive runs so meet at moments only, and a peak that both miss in
+ * between is not missed alike.
  */
 static double count_steps_of_moment(double first, int k) {
   double count = first;
@@ -328,8 +329,8 @@ static strut_status create_ladder(strut_accuracy *a, ladder *l) {
 /* Shift of the start, over the size of the structure: no model is known to so many digits. */
 static const double SHIFT = 1e-12;
 /*
- * Only two runs with tolerances below this are checked: coarser ones differ from each other by more than the shift, so
- * that their difference contains its effect.
+ * Only two runs with tolerances below this are checked: coarser ones differ from each other by more than the
+ * shift, so that their difference contains its effect.
  */
 static const double CHECKED_BELOW = 1e-8;
 
@@ -352,8 +353,8 @@ static strut_status shift_start(ladder *l, strut_snapshot *start) {
 }
 
 /*
- * Repeats the run before the latest from the shifted start. The answer is not accepted where that changes it by more
- * than the wanted error.
+ * Repeats the run before the latest from the shifted start. The answer is not accepted where that changes it
+ * by more than the wanted error.
  */
 static strut_status check_sensitivity(ladder *l) {
   strut_accuracy *a = l->a;
@@ -438,7 +439,10 @@ static double choose_margin(const ladder *l) {
 /* Runs whose range counts where they are the same motion: earlier ones were further from it. */
 enum { LATEST = 3 };
 
-/* How far runs are from the latest, in quantity i or, behind them, in the velocity. The first run is coarser by far. */
+/*
+ * How far runs are from the latest, in quantity i or, behind them, in the velocity. The first run is coarser
+ * by far.
+ */
 static double range_about_latest(const ladder *l, size_t i) {
   size_t width = l->a->experiment.quantity_count + 1;
   double latest = l->results[(size_t)(l->runs - 1) * width + i], most = 0.0;

@@ -14,8 +14,8 @@ static const double COARSE = 0.0099;
 /* Wanted errors below which the reference method itself must become steady. */
 static const double FINE = 0.0019;
 /*
- * Part of the velocity below which errors are not relative: motions without a period that stay below it creep, unless
- * the wanted error is below FINE.
+ * Part of the velocity below which errors are not relative: motions without a period that stay below it
+ * creep, unless the wanted error is below FINE.
  */
 static const double CREEP = 0.2;
 /*
@@ -24,8 +24,8 @@ static const double CREEP = 0.2;
  */
 static const double LEAST = 20.0, LEAST_OF_RUN = 60.0;
 /*
- * A first correction below this part of the tolerated one needs no second; the same where a run with the finer step
- * confirms it.
+ * A first correction below this part of the tolerated one needs no second; the same where a run with the
+ * finer step confirms it.
  */
 static const double SMALL = 0.15, SMALL_CONFIRMED = 0.6;
 /* Part of the budget for the orbit; the rest is kept for repeated runs. */
@@ -52,14 +52,20 @@ static const double MEAN = 20.0;
 static const double TRIAL = 24.0, LONG_TRIAL = 60.0;
 /* Steps of the finer coarse method in one of the first coarse method. */
 static const double FINER = 4.0;
-/* Cycles of extrapolation towards a fixed point of either method; of a finer step where the motion may only creep. */
+/*
+ * Cycles of extrapolation towards a fixed point of either method; of a finer step where the motion may only
+ * creep.
+ */
 enum { MOST_CYCLES = 8, FINER_CYCLES = 3, CREEPING_CYCLES = 2 };
 /*
- * Where the answer hardly depends on extrapolation, a cycle follows only one in which the differences of periods fell
- * to this part.
+ * Where the answer hardly depends on extrapolation, a cycle follows only one in which the differences of
+ * periods fell to this part.
  */
 static const double FALL = 0.7;
-/* A run of the orbit with the finer step confirms it to this part of the wanted error; that of the reference method. */
+/*
+ * A run of the orbit with the finer step confirms it to this part of the wanted error; that of the reference
+ * method.
+ */
 static const double CONFIRMED_BY_FINER = 0.3, CONFIRMED = 0.6;
 
 /* Where stability bounds the coarse step, finer ones cost less than the reference method. */
@@ -203,7 +209,8 @@ static double orbit_periods(const strut_orbit_solve *solve) {
 }
 
 /*
- * Runs the orbit by the method of `e` over one repetition, or, to record it, over as many periods as `output` names.
+ * Runs the orbit by the method of `e` over one repetition, or, to record it, over as many periods as `output`
+ * names.
  */
 static strut_status run_orbit(strut_orbit_solve *solve, strut_experiment e, bool record,
                               strut_summary *summary) {
@@ -289,8 +296,9 @@ static strut_experiment finer_experiment(const strut_orbit_solve *solve) {
 }
 
 /*
- * A finer step may be what an orbit needs: finds the fixed point of its map, from the one of the coarse map or where
- * the coarse run ended. *found is false, and the maps are the coarse ones again, where there is none.
+ * A finer step may be what an orbit needs: finds the fixed point of its map, from the one of the coarse map
+ * or where the coarse run ended. *found is false, and the maps are the coarse ones again, where there is
+ * none.
  */
 static strut_status find_finer_fixed_point(strut_orbit_solve *solve, bool from_orbit, bool *found) {
   strut_accuracy *a = solve->a;
@@ -345,9 +353,9 @@ static strut_status correct_end_of_run(strut_orbit_solve *solve) {
 }
 
 /*
- * Finds the fixed point of the coarse map from a nearly steady state, by extrapolation or, where
- * that fails for a single period, by running on, too briefly for several. *steady is false where there is none. May
- * set solve->answer.
+ * Finds the fixed point of the coarse map from a nearly steady state, by extrapolation or, where that fails
+ * for a single period, by running on, too briefly for several. *steady is false where there is none. May set
+ * solve->answer.
  */
 static strut_status find_coarse_fixed_point(strut_orbit_solve *solve, bool *steady) {
   strut_accuracy *a = solve->a;
@@ -503,8 +511,9 @@ static void discard_run(strut_orbit_solve *solve, strut_summary *orbit) {
 }
 
 /*
- * Runs the orbit once. *confirmed: its velocity agrees within `part` of the wanted error. Where it is recorded it is
- * then run again, of which nothing is reported, so that the answer does not depend on recordings.
+ * Runs the orbit once. *confirmed: its velocity agrees within `part` of the wanted error. Where it is
+ * recorded it is then run again, of which nothing is reported, so that the answer does not depend on
+ * recordings.
  */
 static strut_status confirm_by(strut_orbit_solve *solve, strut_experiment e, double part,
                                strut_summary *orbit, bool *confirmed) {

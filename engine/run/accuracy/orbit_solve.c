@@ -401,8 +401,8 @@ static void explain_orbit(const strut_orbit_solve *solve, strut_accuracy_summary
 }
 
 /*
- * Estimated error of the velocity [m/s]. A first correction is not known better than the fixed point it starts from
- * was sought.
+ * Estimated error of the velocity [m/s]. A first correction is not known better than the fixed point it
+ * starts from was sought.
  */
 static double estimate_error(const strut_orbit_solve *solve) {
   double size = strut_accuracy_velocity_scale(solve->a, solve->orbit.velocity);
@@ -425,8 +425,8 @@ static int64_t sum_evaluations(const strut_orbit_solve *solve) {
 }
 
 /*
- * Makes the summary that of the whole motion from t = 0: up to the orbit, then along it, as `orbit` is, whose works
- * and losses are over all of it already.
+ * Makes the summary that of the whole motion from t = 0: up to the orbit, then along it, as `orbit` is, whose
+ * works and losses are over all of it already.
  */
 static void tell_whole_motion(const strut_orbit_solve *solve, const strut_summary *orbit,
                               strut_summary *s) {

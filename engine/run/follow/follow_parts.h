@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * What following folds over two parameters is made of: the surface, the criterion, the curve, the parts of a walk.
+ * What following folds over two parameters is made of: the surface, the criterion, the curve, the parts of a
+ * walk.
  */
 #ifndef STRUT_ENGINE_RUN_FOLLOW_FOLLOW_PARTS_H
 #define STRUT_ENGINE_RUN_FOLLOW_FOLLOW_PARTS_H
@@ -226,7 +227,8 @@ typedef struct strut_follow_section {
 } strut_follow_section;
 
 /**
- * Newton's method from y and the value on a plane. The derivative in the system serves as long as it converges. False: no orbit there.
+ * Newton's method from y and the value on a plane. The derivative in the system serves as long as it
+ * converges. False: no orbit there.
  */
 bool strut_follow_newton(strut_follow_walk *w, double *y, double *value,
                          const strut_follow_section *plane, int *rounds);

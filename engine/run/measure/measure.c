@@ -19,8 +19,8 @@ enum { EVALUATIONS_PER_SAMPLE = 256 };
 static const double OPEN = 0.01, ROUNDING = 16.0 * DBL_EPSILON;
 
 /*
- * Part of the exchanged energy that a loss may give between two samples. Weights of Runge-Kutta's stages below 0 do:
- * 4e-11 of it at most in all models, by each method and with steps far too long.
+ * Part of the exchanged energy that a loss may give between two samples. Weights of Runge-Kutta's stages
+ * below 0 do: 4e-11 of it at most in all models, by each method and with steps far too long.
  */
 static const double GIVEN = 1e-6;
 
@@ -90,7 +90,10 @@ static double creeping_power(const strut_model *model, const strut_state *state)
   return power;
 }
 
-/* May what members lose be below 0? Where a law pushes that carries tension only, or breaks with less than no energy. */
+/*
+ * May what members lose be below 0? Where a law pushes that carries tension only, or breaks with less than no
+ * energy.
+ */
 static bool members_may_give(const strut_model *model) {
   for (int32_t i = 0; i < model->elements.count; i++) {
     const strut_element *e = &model->elements.element[i];

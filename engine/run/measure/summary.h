@@ -179,10 +179,10 @@ typedef struct strut_summary {
 } strut_summary;
 
 /**
- * X(group, key, unit, TYPE, value, there): results of a run as expressions of its summary s, in the order of the
- * JSON. Those of `run` are its keys, those of other groups keys of an object of that name, which is left out where
- * none of its values is there; those of `table` are columns of studies only. TYPE: NUMBER, COUNT, FLAG, TEXT (NULL:
- * null), or PART, an object of its own.
+ * X(group, key, unit, TYPE, value, there): results of a run as expressions of its summary s, in the order of
+ * the JSON. Those of `run` are its keys, those of other groups keys of an object of that name, which is left
+ * out where none of its values is there; those of `table` are columns of studies only. TYPE: NUMBER, COUNT,
+ * FLAG, TEXT (NULL: null), or PART, an object of its own.
  */
 #define STRUT_RESULT_TABLE(X)                                                                      \
   X(run, velocity, "m/s", NUMBER, s->velocity, true)                                               \

@@ -26,7 +26,8 @@ enum { WINDOW = 5, KEPT = WINDOW + 1, MOST_PERIODS = 20, LOST = 12 };
 /* Larger weights lose more digits than extrapolation gains. */
 static const double MOST_WEIGHT = 100.0;
 /*
- * Differences grow where their multiplier is above GROWN; the square of what its fit leaves of them is at most FITTED.
+ * Differences grow where their multiplier is above GROWN; the square of what its fit leaves of them is at
+ * most FITTED.
  */
 static const double GROWN = 1.02, FITTED = 0.04;
 

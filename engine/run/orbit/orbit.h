@@ -123,8 +123,8 @@ typedef struct strut_extrapolation {
 } strut_extrapolation;
 
 /**
- * Extrapolates the sequence of applications of the map from y (2 length + 1) to its fixed point. Where it is found, y
- * is the fixed point and *travel its travel [m]. STRUT_OK or STRUT_NO_MEMORY.
+ * Extrapolates the sequence of applications of the map from y (2 length + 1) to its fixed point. Where it is
+ * found, y is the fixed point and *travel its travel [m]. STRUT_OK or STRUT_NO_MEMORY.
  */
 strut_status strut_orbit_limit(strut_period_map *map, strut_extrapolation *to, double *y,
                                double *travel);

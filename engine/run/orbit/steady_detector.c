@@ -25,14 +25,14 @@ enum { BATCHES = 8, LEAST_IRREGULAR = 256 };
 static const double STUDENT_7 = 2.365, STUDENT_6 = 2.447; /* 95 %, two-sided */
 
 /*
- * Periods over which a motion must creep, in batches of three; factor of its changes over half of them that is the
- * beginning of another motion, or the end of a transient.
+ * Periods over which a motion must creep, in batches of three; factor of its changes over half of them that
+ * is the beginning of another motion, or the end of a transient.
  */
 enum { CREEP_PERIODS = 3 * BATCHES };
 static const double CREEP_CHANGE = 1.5;
 /*
- * Part of the velocity below which motions creep. One that slow repeats itself after several periods only where its
- * velocities differ by less than this part.
+ * Part of the velocity below which motions creep. One that slow repeats itself after several periods only
+ * where its velocities differ by less than this part.
  */
 static const double CREEP_DIFFERENCE = 0.025;
 
@@ -230,8 +230,8 @@ static bool still_decays(const strut_steady_detector *w, int64_t now, int32_t n)
 }
 
 /*
- * Change of the velocity [m/s] that counts as none. Any change of a creeping motion is below a loose floor, so that it
- * would soon seem to repeat itself after one of the several numbers of periods that are tried.
+ * Change of the velocity [m/s] that counts as none. Any change of a creeping motion is below a loose floor,
+ * so that it would soon seem to repeat itself after one of the several numbers of periods that are tried.
  */
 static double allowed_change(const strut_steady_detector *w, double velocity, int32_t n) {
   double allowed = fmax(w->tolerance * fabs(velocity), w->floor);
@@ -275,8 +275,8 @@ static bool repeats_itself(strut_steady_detector *w, int64_t now, int k) {
 }
 
 /*
- * Is the mean velocity of the latest periods, with its confidence interval, slower than matters? A motion that sets
- * in would show in growing changes of the shape, one that will repeat itself in falling ones.
+ * Is the mean velocity of the latest periods, with its confidence interval, slower than matters? A motion
+ * that sets in would show in growing changes of the shape, one that will repeat itself in falling ones.
  */
 static bool creeps(strut_steady_detector *w, int64_t now) {
   if (!(w->creep > 0.0) || !w->travels || now < CREEP_PERIODS || now < w->creep_after ||

@@ -107,8 +107,10 @@ LAW_INLINE LAW(friction_numbers) LAW(friction_towards)(const LAW(friction_number
   return towards;
 }
 
-/** The most that friction holds against a push, and with which it slides, in these directions [N]; directional: some
-    contact's coefficients differ by direction. */
+/**
+ * The most that friction holds against a push, and with which it slides, in these directions [N];
+ * directional: some contact's coefficients differ by direction.
+ */
 LAW_INLINE real LAW(friction_holding)(const LAW(friction_numbers) * f, real normal, real towards,
                                       bool directional) {
   mask back = less(towards, all(0.0));

@@ -76,11 +76,11 @@ int32_t strut_passage_find(const strut_model *model, const double *a, const doub
 int32_t strut_crossing_find(const strut_model *model, const double *a, const double *b);
 
 /**
- * through (set->count) gets for each saddle with one way down on either side a collision that is on one of them,
- * else -1. A floppy minimum is listed once for all shapes of its energy: a way to it leads through a
- * collision also where the straight way on to the shape that is listed does, or, where whole shapes are free to be
- * placed (`merged`), where crossing rods tell the two apart.
- * STRUT_OK or STRUT_NO_MEMORY. The flag ends it early; it may be NULL.
+ * through (set->count) gets for each saddle with one way down on either side a collision that is on one of
+ * them, else -1. A floppy minimum is listed once for all shapes of its energy: a way to it leads through a
+ * collision also where the straight way on to the shape that is listed does, or, where whole shapes are free
+ * to be placed (`merged`), where crossing rods tell the two apart. STRUT_OK or STRUT_NO_MEMORY. The flag ends
+ * it early; it may be NULL.
  */
 strut_status strut_passages_find(const strut_potential *potential, const strut_critical_set *set,
                                  bool merged, const volatile sig_atomic_t *interrupt,

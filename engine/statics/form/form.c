@@ -286,7 +286,10 @@ static strut_status check_lengths(const strut_former *f, strut_error *error) {
   return STRUT_OK;
 }
 
-/* Writes rest lengths as lengths, rest angles as angles: given otherwise they would change with the drawn shape. */
+/*
+ * Writes rest lengths as lengths, rest angles as angles: given otherwise they would change with the drawn
+ * shape.
+ */
 static void fix_lengths(strut_scene *scene) {
   for (size_t j = 0; j < scene->member_count; j++) {
     strut_rest rest;

@@ -48,12 +48,12 @@ typedef struct strut_form {
 } strut_form;
 
 /**
- * Changes the scene and its experiment: positions, rest lengths, start. Supports stay where they
- * are drawn; gravity, constant loads and the ground are reckoned with, friction is not. The result
- * is an equilibrium that is stable or floppy. Fails with STRUT_NOT_SETTLED and a sentence that
- * names nodes where there is no such shape, no such forces or no stability, STRUT_SINGULAR where
- * densities determine no shape, STRUT_BAD_SCENE where densities or a prestress are wanted of running
- * cables, hinges or members with another law than the linear one, STRUT_NO_MEMORY; then the scene is of no further use.
+ * Changes the scene and its experiment: positions, rest lengths, start. Supports stay where they are drawn;
+ * gravity, constant loads and the ground are reckoned with, friction is not. The result is an equilibrium
+ * that is stable or floppy. Fails with STRUT_NOT_SETTLED and a sentence that names nodes where there is no
+ * such shape, no such forces or no stability, STRUT_SINGULAR where densities determine no shape,
+ * STRUT_BAD_SCENE where densities or a prestress are wanted of running cables, hinges or members with another
+ * law than the linear one, STRUT_NO_MEMORY; then the scene is of no further use.
  */
 STRUT_API strut_status strut_form_find(strut_setup *setup, const strut_form_options *options,
                                        strut_form *form, strut_error *error);

@@ -12,10 +12,12 @@
 #include "engine/statics/modes/modes.h"
 #include "engine/statics/potential.h"
 
-/* Small motions about a shape: M x'' + D x' + K x = 0 on the free coordinates.
+/*
+ * Small motions about a shape: M x'' + D x' + K x = 0 on the free coordinates.
  *
- * K and the forces are computed in twice a double's precision, because the softest motions of a
- * structure may be 1e-16 times as stiff as its hardest; strains of elements in a double's. Drives are at rest, friction does not act.
+ * K and the forces are computed in twice a double's precision, because the softest motions of a structure may
+ * be 1e-16 times as stiff as its hardest; strains of elements in a double's. Drives are at rest, friction
+ * does not act.
  */
 
 /** A member in the shape. */
@@ -202,8 +204,9 @@ strut_status strut_modes_dense(strut_modes_work *work, strut_error *error);
 strut_status strut_modes_sparse(strut_modes_work *work, int32_t count, strut_error *error);
 
 /**
- * Decides which members and elements that act one way only act in the shape, into work->idleness. One that is at the edge
- * counts as slack if it carries nothing there, or only what last bits of the scene's numbers make of it.
+ * Decides which members and elements that act one way only act in the shape, into work->idleness. One that is
+ * at the edge counts as slack if it carries nothing there, or only what last bits of the scene's numbers make
+ * of it.
  */
 strut_status strut_modes_loosen(strut_modes_work *work, bool at_rest, strut_error *error);
 

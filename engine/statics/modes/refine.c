@@ -345,9 +345,9 @@ static strut_dd exact_dot(const strut_dd *x, const strut_dd *y, int32_t n) {
 }
 
 /*
- * The quotient of x and its distance to an eigenvalue: at most |r|, and |r|^2 / gap, with the
- * norm of M^-1, which is at most twice that of its diagonal without sliding masses. Rows without mass store energy
- * |r|^2 / k.
+ * The quotient of x and its distance to an eigenvalue: at most |r|, and |r|^2 / gap, with the norm of M^-1,
+ * which is at most twice that of its diagonal without sliding masses. Rows without mass store energy |r|^2 /
+ * k.
  */
 static void measure(const strut_vibration *v, double gap, pair *p) {
   const strut_sparse *a = v->shape->pattern;

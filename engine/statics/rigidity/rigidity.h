@@ -273,10 +273,10 @@ typedef struct strut_rigidity {
 } strut_rigidity;
 
 /**
- * Sorts the motions of rigidity->spaces at q (length) into rigidity->mechanisms. force (members) [N] are those in
- * the shape, or NULL where they do not balance. A mechanism is infinitesimal where a self-stress has a positive form
- * on all that are not rigid-body (prestress stability, Connelly and Whiteley 1996); finite where it
- * can be walked along by a tenth of the structure's size with all lengths kept. All in the arena.
+ * Sorts the motions of rigidity->spaces at q (length) into rigidity->mechanisms. force (members) [N] are
+ * those in the shape, or NULL where they do not balance. A mechanism is infinitesimal where a self-stress has
+ * a positive form on all that are not rigid-body (prestress stability, Connelly and Whiteley 1996); finite
+ * where it can be walked along by a tenth of the structure's size with all lengths kept. All in the arena.
  * STRUT_OK or STRUT_NO_MEMORY.
  */
 STRUT_API strut_status strut_mechanisms_find(const strut_model *model, const double *q,

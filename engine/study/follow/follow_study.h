@@ -93,7 +93,10 @@ STRUT_API void strut_follow_free(strut_follow_result *result);
 
 /* follow_report.c: texts are blocks of strut_allocate; NULL: out of memory */
 STRUT_API char *strut_follow_csv(const strut_follow_result *result);
-/** The same with columns before its own: their headers, and their cells in every row, each followed by a comma. */
+/**
+ * The same with columns before its own: their headers, and their cells in every row, each followed by a
+ * comma.
+ */
 STRUT_API char *strut_follow_csv_beside(const strut_follow_result *result, const char *names,
                                         const char *values);
 STRUT_API char *strut_follow_json(const strut_follow_result *result);

@@ -14,9 +14,9 @@ static const double FIRST_STEP = 0.2, REFINED_STEP = 0.1;
 /* Shares of the evaluations of crs2 for evenly spread points, and of the rest for controlled random search. */
 static const double SPREAD_SHARE = 0.4, GLOBAL_SHARE = 0.5;
 /*
- * multistart: share of the evaluations for evenly spread points; share of the rest for descents from the best of
- * them, which lie further apart than APART, in widths of the box; first step of the descent that continues from the
- * best point with what is left.
+ * multistart: share of the evaluations for evenly spread points; share of the rest for descents from the best
+ * of them, which lie further apart than APART, in widths of the box; first step of the descent that continues
+ * from the best point with what is left.
  */
 static const double MULTISTART_SPREAD = 0.3, DESCENT_SHARE = 0.5, APART = 0.2, LAST_STEP = 0.05;
 enum { DESCENTS = 2 };

@@ -7,7 +7,10 @@
 
 #include "engine/study/sweep/sweep.h"
 
-/** Adds the columns `objective`, `objective_2` where there are two goals, and `violation` to the plan of a study that searches, behind all others. */
+/**
+ * Adds the columns `objective`, `objective_2` where there are two goals, and `violation` to the plan of a
+ * study that searches, behind all others.
+ */
 strut_status strut_search_add_columns(strut_sweep_plan *plan, strut_error *error);
 /**
  * The goal of a row of a point that did not fail; NAN where it has no value. *second: the same of the second

@@ -31,9 +31,9 @@ STRUT_API strut_status strut_study_motion(const strut_sweep_plan *plan, const ch
                                           const strut_study_figure *figure, strut_table *table,
                                           strut_error *error);
 /**
- * Draws each run by itself into directory/NAME.svg, or NAME-TEXT-TEXT.svg after the axes along which
- * they differ (what is zipped by its first); with `difference` those of the second text, the others dashed over them. As
- * strut_study_motion.
+ * Draws each run by itself into directory/NAME.svg, or NAME-TEXT-TEXT.svg after the axes along which they
+ * differ (what is zipped by its first); with `difference` those of the second text, the others dashed over
+ * them. As strut_study_motion.
  */
 STRUT_API strut_status strut_study_pictures(const strut_sweep_plan *plan, const char *directory,
                                             const strut_study_figure *figure, double width,

@@ -57,7 +57,7 @@ static bool suits_batch(strut_sweep_job *job) {
   return !strut_sweep_job_compile(job) && strut_batch_possible(job->model, method);
 }
 
-/* The next run for the batch. Points that no lane can take are run on the way. */
+/* The next run for the batch. Points that the batch cannot take are run on the way. */
 static bool next_run(void *context, strut_batch_point *run) {
   desk *d = context;
   for (strut_sweep_job *job; (job = next_job(d));) {

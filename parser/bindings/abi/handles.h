@@ -46,13 +46,16 @@ const char *abi_tree_text(const abi_tree *tree, const char *name);
 size_t abi_tree_count(const abi_tree *tree, const char *name);
 /** The i-th key of a mapping, or NULL. */
 const char *abi_tree_key(const abi_tree *tree, const char *name, size_t i);
-/** Replaces a value of the mapping called `name` by a number or, where text is not NULL, by a text. False: no memory. */
+/**
+ * Replaces a value of the mapping called `name` by a number or, where text is not NULL, by a text. False: no
+ * memory.
+ */
 bool abi_tree_set(abi_tree *tree, const char *name, const char *key, double number,
                   const char *text);
 
 /**
- * The numbers behind a name as an array, row by row: each list on the way is a dimension, and so is what lies behind. NULL where
- * there is none, or more than `most` dimensions; *no_memory says whether memory was out.
+ * The numbers behind a name as an array, row by row: each list on the way is a dimension, and so is what lies
+ * behind. NULL where there is none, or more than `most` dimensions; *no_memory says whether memory was out.
  */
 double *abi_tree_array(const abi_tree *tree, const char *name, int most, strut_arena *arena,
                        int *dimensions, size_t *shape, bool *no_memory);
@@ -225,7 +228,10 @@ char *abi_give(char *text, strutlib_error **error);
 
 enum { ABI_MOST_TIMES = 100 };
 
-/** Options "draw", "scale", "times", "title" and "width" into a figure of a run; times has room for ABI_MOST_TIMES. */
+/**
+ * Options "draw", "scale", "times", "title" and "width" into a figure of a run; times has room for
+ * ABI_MOST_TIMES.
+ */
 strut_status abi_run_figure_read(const strut_arguments *arguments, strut_run_figure *figure,
                                  double *times);
 /** Options "title" and "width" into a plot that goes to `path`. */

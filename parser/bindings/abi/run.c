@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs: strutlib_run does what `strut run` does, with the motion in memory; a simulation is advanced from outside. */
+/*
+ * Runs: strutlib_run does what `strut run` does, with the motion in memory; a simulation is advanced from
+ * outside.
+ */
 #include <math.h>
 #include <string.h>
 

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Scenes: a text that is read once, with settings; and what a scene holds, as names, values, arrays and a text. */
+/*
+ * Scenes: a text that is read once, with settings; and what a scene holds, as names, values, arrays and a
+ * text.
+ */
 #include <math.h>
 #include <string.h>
 

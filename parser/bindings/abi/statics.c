@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Equilibria, modes, rigidity, form, path, matrices: what the program's commands of these names do, without files. */
+/*
+ * Equilibria, modes, rigidity, form, path, matrices: what the program's commands of these names do, without
+ * files.
+ */
 #include <stdio.h>
 #include <string.h>
 
@@ -14,7 +17,10 @@
 
 /* ---- what all do alike ---- */
 
-/* Computes on the result's setup and, where it is compiled, its model; leaves an error that is not reported yet in `what`. */
+/*
+ * Computes on the result's setup and, where it is compiled, its model; leaves an error that is not reported
+ * yet in `what`.
+ */
 typedef strut_status (*analysis)(abi_call *call, const strutlib_scene *scene,
                                  strutlib_result *result, strut_error *what);
 

@@ -469,7 +469,10 @@ static mxArray *table_of(const strutlib_result *r, size_t points) {
   return all;
 }
 
-/* sweep(AXES, POINTS, WORDS, KEEP, pairs): POINTS is (points, axes), WORDS a cell array of the same size or empty. */
+/*
+ * sweep(AXES, POINTS, WORDS, KEEP, pairs): POINTS is (points, axes), WORDS a cell array of the same size or
+ * empty.
+ */
 static mxArray *sweep(const strutlib_scene *scene, int count, const mxArray *const *values) {
   size_t axis_count, word_count = 0, keep_count;
   strutlib_error *error = NULL;

@@ -112,7 +112,10 @@ static void decide_at_edge(const strut_model *model, strut_state *state, strut_e
   l->mode[i] = outside > 0.0 ? STRUT_MODE_SLIP : STRUT_MODE_CREEP;
 }
 
-/* Where contact i is pushed to. Without a normal force yet, other forces may begin just now: those a step later say. */
+/*
+ * Where contact i is pushed to. Without a normal force yet, other forces may begin just now: those a step
+ * later say.
+ */
 static int8_t side_of_push(const strut_event_stepper *l, int32_t i) {
   const strut_touch *o = &l->now->touch[i];
   double applied = o->normal > 0.0 ? o->applied : l->next->touch[i].applied;

@@ -41,8 +41,8 @@ static double room_to_leave(const strut_model *model, const strut_event_stepper 
 }
 
 /*
- * How far contact i is from ceasing to slip, where that is `room` by its speed, which is `after` at the end of the
- * step. A slip that begins where the step does, and grows at first, ends where it has come back.
+ * How far contact i is from ceasing to slip, where that is `room` by its speed, which is `after` at the end
+ * of the step. A slip that begins where the step does, and grows at first, ends where it has come back.
  */
 static double room_to_slip(const strut_model *model, const strut_event_stepper *l, int32_t i,
                            double room, double after) {
@@ -52,8 +52,10 @@ static double room_to_slip(const strut_model *model, const strut_event_stepper *
   return room <= least && rate > 0.0 ? fmax(least, -1e-12 * after) : room;
 }
 
-/* Rates of the value of a cable's law at both ends of a region's step, that of the stretch's own rate by a secant;
-   false where they are not known, or not alike at both ends. */
+/*
+ * Rates of the value of a cable's law at both ends of a region's step, that of the stretch's own rate by a
+ * secant; false where they are not known, or not alike at both ends.
+ */
 static bool cable_rates(const strut_event_stepper *l, int32_t i, double h, double *d0, double *d1) {
   const strut_law_switch *law = &l->laws[i];
   if (!l->within || law->event != STRUT_EVENT_ACTS || law->member < 0 || !(law->stiffness > 0.0))

@@ -485,8 +485,10 @@ static bool step_regions(const strut_model *model, strut_state *state, strut_eve
   return false;
 }
 
-/* x += M^-1 push, where what sticks keeps its place: regions have been stepped with their rims as they move without
-   events, and this lets go of them. */
+/*
+ * x += M^-1 push, where what sticks keeps its place: regions have been stepped with their rims as they move
+ * without events, and this lets go of them.
+ */
 static void add_far_motion(const strut_model *model, strut_state *state, strut_event_stepper *l,
                            const double *push, double *far, double *x) {
   strut_mass_solve(model, push, far, state->buffers.mass_solve);

@@ -2,9 +2,9 @@
 /**
  * Events of large structures taken locally: see docs/numerics.md.
  *
- * A step of the whole structure is taken once, with modes frozen. Where its end contradicts a mode, a region about
- * that place is stepped again from event to event, while its halo moves as in the step of the whole. The region is
- * also stepped without events; what both differ by is added to the step of the whole.
+ * A step of the whole structure is taken once, with modes frozen. Where its end contradicts a mode, a region
+ * about that place is stepped again from event to event, while its halo moves as in the step of the whole.
+ * The region is also stepped without events; what both differ by is added to the step of the whole.
  */
 #ifndef STRUT_ENGINE_INTEGRATE_EVENTS_REGIONS_LOCAL_EVENTS_H
 #define STRUT_ENGINE_INTEGRATE_EVENTS_REGIONS_LOCAL_EVENTS_H
@@ -19,9 +19,9 @@ strut_status strut_local_events_create(const strut_model *model, strut_state *st
                                        const strut_integrator_settings *settings,
                                        strut_event_stepper *l);
 /**
- * l->next is the end of the step of h [s] from l->now, at time t, with something that contradicts a mode. True: all
- * events of the step have been taken, and l->next, l->gained and the modes are those of its end. False: nothing has
- * changed but scratch; the whole structure must be stepped.
+ * l->next is the end of the step of h [s] from l->now, at time t, with something that contradicts a mode.
+ * True: all events of the step have been taken, and l->next, l->gained and the modes are those of its end.
+ * False: nothing has changed but scratch; the whole structure must be stepped.
  */
 bool strut_local_events_take(const strut_model *model, strut_state *state, strut_event_stepper *l,
                              double t, double h, double dt);
@@ -34,8 +34,8 @@ void strut_local_evaluate(const strut_model *model, strut_state *state, strut_ev
 /** Ends of a region's steps are shifted by up to this part of them. */
 static const double STRUT_LOCAL_SHIFT = 1e-3;
 /**
- * l->next, the end of a step of `from` from l->now at time t, becomes that of a step of `to`: by the polynomial that
- * has speeds and accelerations of both ends, whose error there is far below that of the step.
+ * l->next, the end of a step of `from` from l->now at time t, becomes that of a step of `to`: by the
+ * polynomial that has speeds and accelerations of both ends, whose error there is far below that of the step.
  */
 void strut_local_shift(const strut_model *model, strut_state *state, strut_event_stepper *l,
                        double t, double from, double to);

@@ -6,7 +6,10 @@
 #include "engine/integrate/events/event_stepping.h"
 #include "engine/integrate/events/regions/local_region.h"
 
-/* Steps of error control may be far shorter than the longest, by so many halvings; shorter ones reach no farther. */
+/*
+ * Steps of error control may be far shorter than the longest, by so many halvings; shorter ones reach no
+ * farther.
+ */
 enum { STRUT_LOCAL_HALVINGS = 24 };
 
 typedef struct strut_local_events {

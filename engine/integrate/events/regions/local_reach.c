@@ -7,12 +7,17 @@
 
 /* Regions that must reach farther do not pay. */
 enum { FARTHEST = 40 };
-/* Steps of the Lanczos iteration for the least eigenvalue of the scaled mass matrix; and the part of the spectrum by
-   which what they find may be too large. */
+/*
+ * Steps of the Lanczos iteration for the least eigenvalue of the scaled mass matrix; and the part of the
+ * spectrum by which what they find may be too large.
+ */
 enum { LANCZOS_STEPS = 24 };
 static const double UNCERTAIN = 0.05;
 
-/* Largest sums at a node: stiffnesses and dampings over its mass, and of the scaled mass matrix beside its diagonal. */
+/*
+ * Largest sums at a node: stiffnesses and dampings over its mass, and of the scaled mass matrix beside its
+ * diagonal.
+ */
 typedef struct largest_sums {
   double stiffness, damping, coupled;
 } largest_sums;
@@ -146,8 +151,10 @@ static double left_behind(const strut_local_passing *p, int layers) {
   return left;
 }
 
-/* The part of that which a member passes on still farther out: what masses alone do there is not left out. Each layer
-   leaves a smaller part than the one before. */
+/*
+ * The part of that which a member passes on still farther out: what masses alone do there is not left out.
+ * Each layer leaves a smaller part than the one before.
+ */
 static double passed_beyond(const strut_local_passing *p, int layers) {
   double left = left_behind(p, layers), part = left_behind(p, layers + 1) / left;
   if (!(part < 1.0)) return 1.0;

@@ -260,7 +260,10 @@ static bool place_rows(const strut_local_region_map *map, strut_local_region *r)
   return true;
 }
 
-/* L L' to L D L' with ones on the diagonal of L, and the inverse of D: its solutions have no products in a row. */
+/*
+ * L L' to L D L' with ones on the diagonal of L, and the inverse of D: its solutions have no products in a
+ * row.
+ */
 static void scale_rows(strut_local_region *r) {
   for (int32_t k = 0; k < r->node_count; k++) {
     double *row = r->lower + r->row[k];
@@ -343,7 +346,10 @@ STRUT_INLINE strut_pair dot(const double *row, const double *x, int32_t count) {
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
-/* pair becomes (L D L')^-1 pair. What the row before has just become is used last: nothing else need wait for it. */
+/*
+ * pair becomes (L D L')^-1 pair. What the row before has just become is used last: nothing else need wait for
+ * it.
+ */
 STRUT_CLONES
 static void solve_rows(const strut_local_region *r) {
   double *x = r->pair;

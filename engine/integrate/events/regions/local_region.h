@@ -2,13 +2,14 @@
 /**
  * The neighbourhood of some nodes in a large structure, stepped alone while the rest moves as is known.
  *
- * What happens at a node within a step reaches others by members and by the mass matrix. Its reach is the number of
- * neighbours, one after the other, behind which a given part of it is left, by a bound: of n members in a row, j
- * passed by their stiffness and n - j by their damping, remains C(n, j) x^j y^(n-j) / (n + j + 1)!, where x and y are
- * the largest sums of stiffnesses and dampings over a mass, times the step squared and the step; of an entry of the
- * inverse mass matrix (sqrt(c) - 1) / (sqrt(c) + 1), where c bounds its condition after scaling (3 for rods alone).
- * What masses alone pass on is not left out, however far: one solution with the mass matrix of the whole adds it when
- * the region has been stepped. The reach then counts what members would make of that, beyond the region.
+ * What happens at a node within a step reaches others by members and by the mass matrix. Its reach is the
+ * number of neighbours, one after the other, behind which a given part of it is left, by a bound: of n
+ * members in a row, j passed by their stiffness and n - j by their damping, remains C(n, j) x^j y^(n-j) / (n
+ * + j + 1)!, where x and y are the largest sums of stiffnesses and dampings over a mass, times the step
+ * squared and the step; of an entry of the inverse mass matrix (sqrt(c) - 1) / (sqrt(c) + 1), where c bounds
+ * its condition after scaling (3 for rods alone). What masses alone pass on is not left out, however far: one
+ * solution with the mass matrix of the whole adds it when the region has been stepped. The reach then counts
+ * what members would make of that, beyond the region.
  */
 #ifndef STRUT_ENGINE_INTEGRATE_EVENTS_REGIONS_LOCAL_REGION_H
 #define STRUT_ENGINE_INTEGRATE_EVENTS_REGIONS_LOCAL_REGION_H
@@ -27,8 +28,10 @@ typedef struct strut_local_region_map {
   int32_t *contact;       /* (nodes) or -1 */
 } strut_local_region_map;
 
-/** Bounds for what one neighbour passes on to the next: by stiffness over h^2, by damping over h, by an entry of the
-    inverse mass matrix (0 where masses are not coupled). */
+/**
+ * Bounds for what one neighbour passes on to the next: by stiffness over h^2, by damping over h, by an entry
+ * of the inverse mass matrix (0 where masses are not coupled).
+ */
 typedef struct strut_local_passing {
   double stiffness, damping, mass; /* [1/s^2], [1/s], [1] */
 } strut_local_passing;
@@ -90,7 +93,10 @@ void strut_local_region_solve(const strut_model *model, const strut_local_region
 /** a = M^-1 (force - M' halo_a) at the region's nodes; arrays are those of the whole structure. */
 void strut_local_region_divide(const strut_model *model, const strut_local_region *region,
                                const double *force, double *a);
-/** Adds to `force` (length) what a change (node_count, 2) of the motion of its nodes does to the halo by its masses. */
+/**
+ * Adds to `force` (length) what a change (node_count, 2) of the motion of its nodes does to the halo by its
+ * masses.
+ */
 void strut_local_region_pass_on(const strut_local_region *region, const double *change,
                                 double *force);
 
