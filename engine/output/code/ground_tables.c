@@ -188,15 +188,28 @@ void strut_code_add_friction(strut_code_writer *w) {
   if (has_bands(w) && has_corners(w)) add_bands(w);
 }
 
+/* Do directions have coefficients of their own, or does the text that holds corners read them? */
+static bool has_backward(const strut_code_writer *w) {
+  return strut_code_holds(w, "directional") || (has_bands(w) && has_corners(w));
+}
+
+/* Does a law in use, or the choice among directions, read number p? The latter reads what the law with a band does. */
+static bool has_number(const strut_code_writer *w, int p) {
+  bool reads = has_backward(w) && strut_friction_needs(STRUT_FRICTION_KARNOPP, p);
+  for (int k = 0; k < STRUT_FRICTION_LAW_COUNT; k++)
+    reads = reads || (has_friction(w, k) && strut_friction_needs((strut_friction_law)k, p));
+  return reads;
+}
+
 static void add_friction_numbers(strut_code_writer *w) {
   strut_buffer_add(&w->text,
-                   "/* Those of motion towards -x along the ground apart. */\n"
-                   "typedef struct friction_numbers {\n"
-#define STRUT_NAME(NAME, field, range) "  real " #field ";\n"
-                   STRUT_FRICTION_PARAMETERS(STRUT_NAME)
-#undef STRUT_NAME
-                       "  real mu_static_backward, mu_kinetic_backward;\n} friction_numbers;\n\n"
-                       "enum {");
+                   "/* What the laws below read. */\ntypedef struct friction_numbers {\n");
+  for (int p = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++)
+    if (has_number(w, p)) strut_buffer_add(&w->text, "  real %s;\n", strut_friction_key(p));
+  if (has_backward(w))
+    strut_buffer_add(&w->text,
+                     "  real mu_static_backward, mu_kinetic_backward; /* towards -x */\n");
+  strut_buffer_add(&w->text, "} friction_numbers;\n\nenum {");
   for (int k = 0, any = 0; k < STRUT_FRICTION_LAW_COUNT; k++) {
     if (!has_friction(w, k)) continue;
     strut_buffer_add(&w->text, any++ ? ", FRICTION_" : " FRICTION_");
@@ -230,12 +243,13 @@ static void add_contact(strut_code_writer *w, int32_t i) {
   strut_buffer_add(&w->text, "}");
   if (strut_code_holds(w, "friction")) {
     strut_buffer_add(&w->text, ", {");
-    for (int p = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++) {
-      if (p) strut_buffer_add(&w->text, ", ");
+    for (int p = 0, any = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++) {
+      if (!has_number(w, p)) continue;
+      if (any++) strut_buffer_add(&w->text, ", ");
       strut_code_add_real(w, strut_friction_value(f, p));
     }
-    strut_code_add_field(w, strut_friction_static(f, -1.0));
-    strut_code_add_field(w, strut_friction_kinetic(f, -1.0));
+    if (has_backward(w)) strut_code_add_field(w, strut_friction_static(f, -1.0));
+    if (has_backward(w)) strut_code_add_field(w, strut_friction_kinetic(f, -1.0));
     strut_buffer_add(&w->text, "}, FRICTION_");
     add_capitals(w, friction_names[f->law]);
   }
