@@ -30,9 +30,10 @@ STRUT_INLINE strut_lanes weighted(double *const *k, const double *weight, int co
   return sum;
 }
 
-/* Stage k: q = q0 + h sum v, speed = v0 + h sum a, over the stages before it. */
+/* Stage k: q = q0 + h sum v, v[k] = v0 + h sum a, over the stages before it. */
 STRUT_INLINE void stage(int32_t n, double h, const strut_step_end *now, double *const *v,
-                        double *const *a, int k, double *restrict q, double *restrict speed) {
+                        double *const *a, int k, double *restrict q) {
+  double *restrict speed = v[k];
   for (int32_t i = 0; i < n; i += STRUT_LANES) {
     strut_lanes_store(q + i, strut_lanes_load(now->q + i) + h * weighted(v, table[k], k, false, i));
     strut_lanes_store(speed + i,
@@ -43,12 +44,12 @@ STRUT_INLINE void stage(int32_t n, double h, const strut_step_end *now, double *
 STRUT_INLINE void stage_of(int32_t n, double h, const strut_step_end *now, double *const *v,
                            double *const *a, int k, double *restrict q) {
   switch (k) {
-    case 1: stage(n, h, now, v, a, 1, q, v[1]); break;
-    case 2: stage(n, h, now, v, a, 2, q, v[2]); break;
-    case 3: stage(n, h, now, v, a, 3, q, v[3]); break;
-    case 4: stage(n, h, now, v, a, 4, q, v[4]); break;
-    case 5: stage(n, h, now, v, a, 5, q, v[5]); break;
-    default: stage(n, h, now, v, a, 6, q, v[6]); break;
+    case 1: stage(n, h, now, v, a, 1, q); break;
+    case 2: stage(n, h, now, v, a, 2, q); break;
+    case 3: stage(n, h, now, v, a, 3, q); break;
+    case 4: stage(n, h, now, v, a, 4, q); break;
+    case 5: stage(n, h, now, v, a, 5, q); break;
+    default: stage(n, h, now, v, a, 6, q); break;
   }
 }
 

@@ -293,13 +293,9 @@ static strut_status check_effect(strut_path_parameter *p, strut_error *error) {
                     p->options->name);
 }
 
-strut_status strut_path_parameter_create(const strut_model *model,
-                                         const strut_path_options *options, const double *load,
-                                         double from, double until, const double *position,
-                                         strut_arena *arena, strut_path_parameter *p,
-                                         strut_error *error) {
-  *p = (strut_path_parameter){
-      .options = options, .model = model, .load = load, .from = from, .range = until - from};
+strut_status strut_path_parameter_create(strut_path_parameter *p, const double *position,
+                                         strut_arena *arena, strut_error *error) {
+  const strut_model *model = p->model;
   if (!strut_path_terms_create(model, arena, &p->base) ||
       !strut_path_terms_create(model, arena, &p->low) ||
       !strut_path_terms_create(model, arena, &p->high))

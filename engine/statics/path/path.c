@@ -264,8 +264,12 @@ static strut_status create_walk(path_start *b, double until, strut_path_walk *w,
                       "the structure has %d free coordinates; paths are followed with up to %d",
                       (int)s->n, STRUT_PATH_COORDINATES);
   if (!allocate_walk(w)) return strut_no_memory(error, "");
-  return strut_path_parameter_create(b->model, b->options, b->load, b->options->from, until, b->q,
-                                     &s->arena, &s->parameter, error);
+  s->parameter = (strut_path_parameter){.options = b->options,
+                                        .model = b->model,
+                                        .load = b->load,
+                                        .from = b->options->from,
+                                        .range = until - b->options->from};
+  return strut_path_parameter_create(&s->parameter, b->q, &s->arena, error);
 }
 
 static strut_status walk_from(path_start *b, double until, int32_t steps, strut_path *path,

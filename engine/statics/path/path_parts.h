@@ -47,14 +47,11 @@ bool strut_path_terms_create(const strut_model *model, strut_arena *arena, strut
 void strut_path_terms_release(strut_path_terms *terms);
 
 /**
- * `position` (length) are the held coordinates at `from`. STRUT_USAGE where the parameter changes
+ * Completes a parameter with model, options, load, from and range; `position` (length) are the held coordinates at `from`. STRUT_USAGE where the parameter changes
  * nothing at rest, or the structure itself; STRUT_NO_MEMORY.
  */
-strut_status strut_path_parameter_create(const strut_model *model,
-                                         const strut_path_options *options, const double *load,
-                                         double from, double until, const double *position,
-                                         strut_arena *arena, strut_path_parameter *parameter,
-                                         strut_error *error);
+strut_status strut_path_parameter_create(strut_path_parameter *parameter, const double *position,
+                                         strut_arena *arena, strut_error *error);
 
 /** Releases what its terms hold outside of the arena; zero-initialised ones may be freed. */
 void strut_path_parameter_free(strut_path_parameter *parameter);

@@ -224,17 +224,17 @@ STRUT_INLINE void keep_first_of(const strut_model *model, const strut_event_step
     keep_first(model, l, STRUT_EVENT_DAMPER, i, h, first);
 }
 
-/* Of `contacts` in a list, or all with NULL. whole: laws are all that there are, not those of a list. */
+/* Of `contacts` in a list and the laws of the stepper's list; NULL: of all contacts and laws. */
 STRUT_INLINE strut_event first_event(const strut_model *model, const strut_state *state,
                                      const strut_event_stepper *l, double h, const int32_t *list,
-                                     int32_t contacts, bool whole, unsigned terms) {
+                                     int32_t contacts, unsigned terms) {
   strut_event first = {STRUT_EVENT_NONE, 0, 1.0};
-  int32_t laws = whole ? l->law_count : strut_laws_of(l);
+  int32_t laws = list ? strut_laws_of(l) : l->law_count;
   for (int32_t k = 0; k < contacts; k++)
     keep_first_of(model, l, list ? list[k] : k, h, terms, &first);
   strut_event_measure(model, state, l, l->next);
   for (int32_t k = 0; k < laws; k++) {
-    int32_t j = whole ? k : strut_law_of(l, k);
+    int32_t j = list ? strut_law_of(l, k) : k;
     if (law_value(l, l->next, j) < 0.0) keep_first(model, l, l->laws[j].event, j, h, &first);
   }
   return first;
@@ -252,13 +252,12 @@ strut_event strut_event_first(const strut_model *model, const strut_state *state
   int32_t count = strut_contacts_of(model, l);
   if (l->now->frame && !l->contact_list)
     return first_event(model, state, l, h, state->buffers.near,
-                       strut_surface_candidates(model, l, 0.0, state->buffers.near), false,
+                       strut_surface_candidates(model, l, 0.0, state->buffers.near),
                        STRUT_TERMS_ALL);
   if (l->now->frame)
-    return first_event(model, state, l, h, l->contact_list, count, false, STRUT_TERMS_ALL);
-  if (l->within)
-    return first_event(model, state, l, h, l->contact_list, count, false, STRUT_TERMS_COMMON);
-  return first_event(model, state, l, h, NULL, model->contacts.count, true, STRUT_TERMS_COMMON);
+    return first_event(model, state, l, h, l->contact_list, count, STRUT_TERMS_ALL);
+  if (l->within) return first_event(model, state, l, h, l->contact_list, count, STRUT_TERMS_COMMON);
+  return first_event(model, state, l, h, NULL, model->contacts.count, STRUT_TERMS_COMMON);
 }
 
 /* First fraction in [0, 1] where gap + speed x + bend x^2 falls below 0; 2 if it does not. */
