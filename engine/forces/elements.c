@@ -91,6 +91,7 @@ void strut_element_stiffness(const strut_model *model, int32_t element,
 
 double strut_member_elastic_tension(const strut_model *model, const double *rest, int32_t member,
                                     const double *q) {
+  assert(member >= 0 && (size_t)member < model->scene->member_count);
   const strut_element *e = strut_element_of_member(&model->elements, member);
   strut_member_pose plain = strut_member_pose_at(&model->members, rest, member, q);
   double sum = strut_member_elastic_force(&model->members, member, &plain);
@@ -104,6 +105,7 @@ double strut_member_elastic_tension(const strut_model *model, const double *rest
 }
 
 double strut_member_path_length(const strut_model *model, int32_t member, const double *q) {
+  assert(member >= 0 && (size_t)member < model->scene->member_count);
   const strut_element *e = strut_element_of_member(&model->elements, member);
   double b[STRUT_MOST_GRADIENT];
   if (!e) return strut_member_length(&model->members, member, q);

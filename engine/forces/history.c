@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/forces/history.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -40,6 +41,7 @@ static int direction_at(const strut_state *state, const strut_element *e, int32_
 
 double strut_history_natural(const strut_model *model, const strut_state *state, int32_t i,
                              double strain) {
+  assert(i >= 0 && i < model->elements.count);
   const strut_element *e = &model->elements.element[i];
   double base = base_of(e, state->latest.rest);
   if (strut_element_is_gone(state->latest.rest[e->slot])) return state->latest.rest[e->slot];
@@ -58,6 +60,7 @@ double strut_history_locked_energy(const strut_element *e, const double *rest) {
 
 strut_slider strut_slider_at(const strut_model *model, const strut_state *state, int32_t i,
                              const double *q, const double *v) {
+  assert(i >= 0 && i < model->elements.count);
   const strut_element *e = &model->elements.element[i];
   const uint32_t *at = model->elements.at + e->first;
   double b[STRUT_MOST_GRADIENT], rate = -base_rate_of(e, state);
@@ -74,6 +77,7 @@ strut_slider strut_slider_at(const strut_model *model, const strut_state *state,
 
 void strut_slider_set(const strut_model *model, strut_state *state, int32_t i, int mode,
                       const double *q) {
+  assert(i >= 0 && i < model->elements.count);
   const strut_element *e = &model->elements.element[i];
   double b[STRUT_MOST_GRADIENT];
   int before = state->modes.element_piece[i];
@@ -93,6 +97,7 @@ static void accumulate_loss(strut_state *state, double energy) {
 
 void strut_slider_return(const strut_model *model, strut_state *state, int32_t i, const double *q,
                          bool jumped) {
+  assert(i >= 0 && i < model->elements.count);
   const strut_element *e = &model->elements.element[i];
   strut_slider s = strut_slider_at(model, state, i, q, state->v);
   if (!s.acts || !(fabs(s.force) > s.yield)) return;
@@ -129,6 +134,7 @@ static void add_powers(const strut_element *e, strut_state *state, int32_t i, do
 
 static void add_element(const strut_model *model, strut_state *state, int32_t i, const double *q,
                         const double *v, double *force) {
+  assert(i >= 0 && i < model->elements.count);
   const strut_element *e = &model->elements.element[i];
   const uint32_t *at = model->elements.at + e->first;
   double b[STRUT_MOST_GRADIENT], rate = 0.0;
@@ -290,6 +296,7 @@ void strut_history_begin(const strut_model *model, strut_state *state, double t)
 }
 
 double strut_element_last_force(const strut_model *model, const strut_state *state, int32_t i) {
+  assert(i >= 0 && i < model->elements.count);
   strut_element_pose pose;
   const strut_element *e = &model->elements.element[i];
   if (strut_capstan_remembers(e, state->latest.rest) &&
@@ -360,6 +367,7 @@ void strut_maxwell_apply(const strut_model *model, strut_state *state, const dou
 }
 
 double strut_maxwell_force(const strut_model *model, const double *v, int32_t member) {
+  assert(member >= 0 && (size_t)member < model->scene->member_count);
   const strut_feedback_table *f = &model->feedback;
   for (int32_t i = 0; i < f->maxwell_count; i++)
     if (f->maxwell[i].member == member) return v[f->base + f->maxwell[i].state];

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/forces/surfaces.h"
 
+#include <assert.h>
+
 #include "engine/forces/ground_kernel.h"
 
 /* Contacts of one node that touch: `count` indices, ascending. */
@@ -44,6 +46,7 @@ static double slip_of(const strut_model *model, const strut_state *state, const 
 
 /* Friction of contact i under the other forces on its node; returns its change. */
 static double rub(const strut_model *model, strut_state *state, const double *v, int32_t i) {
+  assert(i >= 0 && i < model->contacts.count);
   const strut_contact_table *c = &model->contacts;
   const strut_contact_entry *e = &c->entry[i];
   const double *t = state->latest.pose[i].axes.tangent;
@@ -58,12 +61,14 @@ static double rub(const strut_model *model, strut_state *state, const double *v,
 
 static bool can_hold(const strut_model *model, const strut_state *state, int32_t i,
                      double friction) {
+  assert(i >= 0 && i < model->contacts.count);
   const strut_friction *f = &model->contacts.entry[i].friction;
   return fabs(friction) < strut_friction_static(f, -friction) * state->latest.normal[i];
 }
 
 /* Is contact i within its band, and does it hold against the other forces as they are now? */
 static bool sticks(const strut_model *model, const strut_state *state, const double *v, int32_t i) {
+  assert(i >= 0 && i < model->contacts.count);
   const strut_friction *law = &model->contacts.entry[i].friction;
   const double *t = state->latest.pose[i].axes.tangent,
                *f = state->latest.force + model->contacts.at[i];
@@ -73,6 +78,7 @@ static bool sticks(const strut_model *model, const strut_state *state, const dou
 }
 
 static void set_friction(const strut_model *model, strut_state *state, int32_t i, double friction) {
+  assert(i >= 0 && i < model->contacts.count);
   double *f = state->latest.force + model->contacts.at[i],
          change = friction - state->latest.friction[i];
   f[0] += change * state->latest.pose[i].axes.tangent[0],
@@ -83,6 +89,7 @@ static void set_friction(const strut_model *model, strut_state *state, int32_t i
 /* The share of the way to `friction` at which contact i breaks loose; above 1: it does not. */
 static double way_to_break(const strut_model *model, const strut_state *state, int32_t i,
                            double friction) {
+  assert(i >= 0 && i < model->contacts.count);
   double change = friction - state->latest.friction[i], side = change < 0.0 ? -1.0 : 1.0;
   double bound = strut_friction_static(&model->contacts.entry[i].friction, -side);
   double way = side * bound * state->latest.normal[i] - state->latest.friction[i];
@@ -153,6 +160,7 @@ static void rub_all(const strut_model *model, strut_state *state, const double *
 
 /* Damper, friction, and what the ground's own motion and belt give to the structure. */
 static void accumulate(const strut_model *model, strut_state *state, const double *v, int32_t i) {
+  assert(i >= 0 && i < model->contacts.count);
   const strut_contact_table *c = &model->contacts;
   const strut_contact_pose *pose = &state->latest.pose[i];
   const strut_ground_motion *own = strut_contact_motion(c, i, state->latest.ground_motion);
