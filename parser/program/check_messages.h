@@ -11,7 +11,7 @@
 /* Messages with their places as JSON, for editors: `strut check --json`.
  *
  * Each has file, line, column, length (code points, from 1), severity (error, warning, note), message,
- * hint or null, and notes, which have places of their own. What is about a file as a whole stands at its
+ * hint or null, and notes, which have places of their own. Messages about a whole file point to its
  * first character with the length 0.
  */
 

@@ -308,8 +308,8 @@ const strut_command strut_command_plot = {
     .summary = "draws curves, a map or a work-precision diagram from a table",
     .details =
         "\nTABLE is a CSV file with a header such as \"frequency [Hz],velocity [m/s],start\", as\n"
-        "strut writes it, or - for the standard input. Units get prefixes, curves are told\n"
-        "apart by colour, dashes and markers, and cells without a number break a curve.\n",
+        "strut writes it, or - for the standard input. Units get prefixes, curves differ\n"
+        "by colour, dashes and markers, and cells without a number break a curve.\n",
     .options = options,
     .run = run_plot,
 };
