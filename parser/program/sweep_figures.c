@@ -11,7 +11,6 @@
 #include "parser/program/options.h"
 #include "parser/program/streams.h"
 #include "parser/program/sweep.h"
-#include "parser/program/table_file.h"
 #include "parser/yaml/diagnostics.h"
 
 static bool of_runs(const strut_study_figure *f) {

@@ -5,8 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "parser/program/command_plot.c"
 #include "parser/program/streams.c" /* the program is no library to link with */
+#include "parser/program/table_file.c"
 #include "tests/support/heap.h"
 #include "tests/support/test.h"
 #include "tests/unit/scratch.h"

@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/program/streams.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/base/memory.h"
+#include "parser/read/csv.h"
+#include "parser/read/read_scene.h"
+
+enum { MOST_MESSAGES = 20 };
+
+static bool fill_column(const strut_csv *csv, strut_table *t, size_t i) {
+  const char **text = strut_arena_allocate(&t->arena, t->row_count, sizeof *text);
+  double *value = strut_arena_allocate(&t->arena, t->row_count, sizeof *value);
+  bool numbers = true, some = false;
+  if (!text || !value) return false;
+  for (size_t k = 0; k < t->row_count; k++) {
+    text[k] = csv->cell[(k + 1) * t->column_count + i];
+    numbers = numbers && strut_csv_number(text[k], &value[k]);
+    some = some || (numbers && !isnan(value[k]));
+  }
+  t->columns[i].name = csv->titles[i].name;
+  t->columns[i].unit = csv->titles[i].unit;
+  t->columns[i].text = text;
+  t->columns[i].value = numbers && some ? value : NULL;
+  return true;
+}
+
+/* The table takes over the cells. */
+static bool make_columns(strut_csv *csv, strut_table *t) {
+  t->arena = csv->arena;
+  csv->arena = (strut_arena){0};
+  t->column_count = csv->column_count;
+  t->row_count = csv->row_count;
+  t->columns = strut_arena_allocate(&t->arena, t->column_count, sizeof *t->columns);
+  bool good = t->columns;
+  for (size_t i = 0; i < t->column_count && good; i++) good = fill_column(csv, t, i);
+  return good;
+}
+
+static strut_status print_messages(strut_diagnostics *diagnostics) {
+  const char *messages = strut_diagnostics_render(diagnostics, MOST_MESSAGES);
+  if (!messages) return strut_print_out_of_memory();
+  fputs(messages, stderr);
+  return STRUT_BAD_SCENE;
+}
+
+strut_status strut_table_read(const char *path, strut_table *table) {
+  char *text;
+  size_t length;
+  strut_error error = {0};
+  strut_diagnostics diagnostics = {0};
+  strut_csv csv;
+  *table = (strut_table){0};
+  strut_status status = strut_file_read(path, &text, &length, &error);
+  if (status != STRUT_OK) {
+    strut_print_error(&error);
+    return status;
+  }
+  strut_diagnostics_source(&diagnostics, strcmp(path, "-") == 0 ? "<stdin>" : path, text, length);
+  status = strut_csv_read(text, length, &diagnostics, &csv);
+  if (status == STRUT_OK && !make_columns(&csv, table)) status = STRUT_NO_MEMORY;
+  if (status == STRUT_BAD_SCENE)
+    status = print_messages(&diagnostics);
+  else if (status != STRUT_OK)
+    strut_print_out_of_memory();
+  strut_diagnostics_free(&diagnostics);
+  strut_arena_free(&csv.arena);
+  strut_release(text);
+  if (status != STRUT_OK) strut_arena_free(&table->arena);
+  return status;
+}
