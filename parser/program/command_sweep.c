@@ -367,8 +367,7 @@ static strut_status run_sweep(const strut_arguments *arguments) {
   else if (!status && arguments->status)
     status = show_status(arguments, &study);
   else if (!status && study.plan.study->search)
-    status =
-        strut_sweep_search(arguments, &study, (int)at_a_time.threads, (int)at_a_time.batch);
+    status = strut_sweep_search(arguments, &study, (int)at_a_time.threads, (int)at_a_time.batch);
   else if (!status && study.plan.study->follow)
     status = strut_sweep_follow(arguments, &study, (int)at_a_time.threads);
   else if (!status)
