@@ -20,17 +20,17 @@ int32_t strut_run_find_lost_node(const strut_model *model, const strut_state *st
 }
 
 strut_status strut_run_fail_lost_node(const strut_run *r, int32_t node) {
-  double limit = strut_step_limit_monitor_last_limit(r->model, &r->step_monitor),
+  double limit = strut_step_limit_monitor_last_limit(r->model, &r->watch.limit),
          least = r->summary->step_limit;
-  double seen = (double)r->step_monitor.last * r->dt;
+  double seen = (double)r->watch.limit.last * r->dt;
   const char *remedy = r->dt > 0.5 * fmin(limit, least) ? "use a smaller step"
                        : (r->model->terms & STRUT_TERM_FEEDBACK)
                            ? "look for a loop of sensors and drives that is unstable, of which the "
                              "largest step knows nothing; a smaller step may also help"
                            : "look for a member or contact that is far too stiff, or a load that "
                              "grows without bound; a smaller step may also help";
-  if (r->step_monitor.lowest > 0.0 && !r->options->force)
-    return strut_step_limit_monitor_fail(&r->step_monitor, r->state, least, r->error);
+  if (r->watch.limit.lowest > 0.0 && !r->options->force)
+    return strut_step_limit_monitor_fail(&r->watch.limit, r->state, least, r->error);
   if (limit < 0.99 * least)
     return strut_fail(r->error, STRUT_DIVERGED,
                       "node '%s' left all bounds at t = %.9g s with dt = %g s (largest stable step "
@@ -52,7 +52,7 @@ static double speed_of(const strut_run *r, uint32_t at) {
 
 void strut_run_watch_collisions(strut_run *r) {
   const strut_element_table *t = &r->model->elements;
-  for (int32_t i = 0; i < t->count && !r->tunnel; i++) {
+  for (int32_t i = 0; i < t->count && !r->tunnel.element; i++) {
     const strut_element *e = &t->element[i];
     const uint32_t *at = t->at + e->first;
     if (e->role != STRUT_ELEMENT_COLLISION) continue;
@@ -63,16 +63,16 @@ void strut_run_watch_collisions(strut_run *r) {
     strut_element_pose pose;
     strut_element_evaluate(r->model, i, r->state->latest.rest, r->state->q, (double)NAN, &pose);
     if (!fast && !(pose.strain < DEEP * e->natural)) continue;
-    r->tunnel = i + 1;
-    r->tunnel_speed = fast ? speed : 0.0;
+    r->tunnel.element = i + 1;
+    r->tunnel.speed = fast ? speed : 0.0;
   }
 }
 
 static void warn_of_tunnelling(const strut_run *r) {
-  if (!r->tunnel) return;
-  const strut_element *e = &r->model->elements.element[r->tunnel - 1];
+  if (!r->tunnel.element) return;
+  const strut_element *e = &r->model->elements.element[r->tunnel.element - 1];
   const strut_collision *c = &r->model->scene->collisions[e->item];
-  if (r->tunnel_speed == 0.0) {
+  if (r->tunnel.speed == 0.0) {
     strut_summary_warn(
         r->summary, "tunnelling",
         "the sides of collision '%s' were pressed into each other by more than half "
@@ -84,7 +84,7 @@ static void warn_of_tunnelling(const strut_run *r) {
                      "the sides of collision '%s' moved at up to %.3g m/s, which is more than its "
                      "thickness of %.3g m in a step of %g s: they may have passed through each "
                      "other; use a smaller step",
-                     c->name, r->tunnel_speed, c->thickness, r->dt);
+                     c->name, r->tunnel.speed, c->thickness, r->dt);
 }
 
 strut_status strut_run_check_collapse(const strut_run *r) {
@@ -122,7 +122,7 @@ strut_status strut_run_check_losses(const strut_run *r) {
   static const char *const names[] = {[STRUT_LOSS_MEMBERS] = "the dampers of members",
                                       [STRUT_LOSS_CONTACT] = "the ground's dampers",
                                       [STRUT_LOSS_FRICTION] = "friction"};
-  const strut_balance_monitor *b = &r->balance;
+  const strut_balance_monitor *b = &r->watch.balance;
   if (!(b->given > 0.0) || r->options->force) return STRUT_OK;
   bool contacts = b->giver != STRUT_LOSS_MEMBERS;
   return strut_fail(
@@ -186,23 +186,22 @@ static bool has_spurious_energy(const strut_run *r) {
   if (!r->state->balance) return false;
   if (!(r->dt > 0.5 * r->summary->step_limit))
     return false; /* far below the limit, the step is not the cause */
-  strut_balance_fill(r->model, r->state, &r->initial, strut_time_grid_at(&r->grid, r->state->step),
-                     &e);
+  strut_balance_fill(r->model, r->state, &r->watch.initial,
+                     strut_time_grid_at(&r->grid, r->state->step), &e);
   double there = e.kinetic + e.elastic + fabs(e.gravity) + e.contact;
   return e.residual > 0.5 * (e.moved + fabs(e.initial) + there);
 }
 
 strut_status strut_run_check_step_limit(strut_run *r) {
-  if (r->state->step < r->step_monitor.next) return STRUT_OK;
-  strut_stick_band_sample(r->model, r->state, &r->band);
+  if (r->state->step < r->watch.limit.next) return STRUT_OK;
+  strut_stick_band_sample(r->model, r->state, &r->watch.band);
   bool unstable = !r->options->force && has_spurious_energy(r);
-  if (unstable && !(r->step_monitor.lowest > 0.0))
-    strut_step_limit_monitor_check(r->model, r->state, &r->step_monitor);
-  if (!unstable) strut_step_limit_monitor_sample(r->model, r->state, &r->step_monitor);
+  if (unstable && !(r->watch.limit.lowest > 0.0))
+    strut_step_limit_monitor_check(r->model, r->state, &r->watch.limit);
+  if (!unstable) strut_step_limit_monitor_sample(r->model, r->state, &r->watch.limit);
   if (r->options->force) return STRUT_OK;
-  if (!r->step_monitor.motion_lost && !unstable) return STRUT_OK;
-  return strut_step_limit_monitor_fail(&r->step_monitor, r->state, r->summary->step_limit,
-                                       r->error);
+  if (!r->watch.limit.motion_lost && !unstable) return STRUT_OK;
+  return strut_step_limit_monitor_fail(&r->watch.limit, r->state, r->summary->step_limit, r->error);
 }
 
 /* ---- warnings ---- */
@@ -232,7 +231,7 @@ static void warn_of_narrow_bands(const strut_run *r) {
 
 /* Warns of feet that creep at different speeds and so strain a member. */
 static void warn_of_creep(const strut_run *r) {
-  const strut_band_tie *tie = strut_stick_band_strained(&r->band);
+  const strut_band_tie *tie = strut_stick_band_strained(&r->watch.band);
   if (!tie) return;
   const strut_scene *scene = r->model->scene;
   const strut_contact_entry *e = r->model->contacts.entry;
@@ -349,7 +348,7 @@ static const char *describe_missed_events(const strut_run *r) {
 
 /* Explains an open balance: likely cause and remedy. */
 static void explain_balance(const strut_run *r, char *text, size_t size) {
-  const strut_balance_monitor *b = &r->balance;
+  const strut_balance_monitor *b = &r->watch.balance;
   bool sudden = fabs(b->worst) > 0.5 * fabs(r->summary->energy.residual);
   double offset = r->grid.offset, from = b->from + offset, to = b->to + offset;
   double begin = (double)r->first * r->dt + offset, now = strut_run_time(r);

@@ -101,20 +101,20 @@ static void choose_steps(strut_run *r, const strut_span *span) {
   const strut_experiment *e = r->experiment;
   double last = e->output_last;
   r->dt = e->step;
-  if (r->detect_steady) {
-    r->period_steps = (int64_t)ceil(span->period / r->dt * (1.0 - 1e-9));
-    r->dt = span->period / (double)r->period_steps;
-    r->recorded_periods = r->options->sink_count ? (int64_t)ceil(last - 1e-9) : 0;
-    r->answer_periods = e->steady.run_on > 1 ? e->steady.run_on : 1;
+  if (r->steady.wanted) {
+    r->steady.period_steps = (int64_t)ceil(span->period / r->dt * (1.0 - 1e-9));
+    r->dt = span->period / (double)r->steady.period_steps;
+    r->steady.recorded_periods = r->options->sink_count ? (int64_t)ceil(last - 1e-9) : 0;
+    r->steady.answer_periods = e->steady.run_on > 1 ? e->steady.run_on : 1;
   }
   r->summary->step = r->dt;
   r->first = r->options->from ? llround(r->options->from->time / r->dt) : 0;
   r->steps = r->first + (int64_t)ceil(span->duration / r->dt - 1e-6);
-  r->answer = r->steps;
+  r->answer.step = r->steps;
   r->grid = (strut_time_grid){
       .step = r->dt, .last = r->steps, .end = (double)r->first * r->dt + span->duration};
   double offset = r->options->from ? r->options->from->time - (double)r->first * r->dt : 0.0;
-  if (!r->detect_steady && fabs(offset) > 1e-6 * r->dt) r->grid.offset = offset;
+  if (!r->steady.wanted && fabs(offset) > 1e-6 * r->dt) r->grid.offset = offset;
 }
 
 /* Places the state at the start: that of the scene, the settled one, or the end of another run. */
@@ -158,7 +158,7 @@ static void begin_history(strut_run *r, double begin) {
 static strut_status prepare_run(strut_run *r) {
   const strut_scene *scene = r->model->scene;
   strut_span span = strut_experiment_span(r->experiment, scene);
-  r->detect_steady = r->experiment->steady.wanted && span.period > 0.0;
+  r->steady.wanted = r->experiment->steady.wanted && span.period > 0.0;
   choose_steps(r, &span);
   strut_status status = strut_integrator_check(r->model, r->experiment, r->error);
   if (status) return status;
@@ -188,13 +188,13 @@ static strut_status prepare_run(strut_run *r) {
   const strut_integrator_settings settings = strut_integrator_settings_of(r->experiment);
   r->workspace = r->method->create(r->model, r->state, &settings);
   double begin = (double)r->first * r->dt;
-  int64_t marks =
-      r->answer_periods > STRUT_LONGEST_REPEAT ? r->answer_periods : STRUT_LONGEST_REPEAT;
+  int64_t marks = r->steady.answer_periods > STRUT_LONGEST_REPEAT ? r->steady.answer_periods
+                                                                  : STRUT_LONGEST_REPEAT;
   if (!r->workspace ||
       strut_measure_create(r->model, r->experiment, &r->grid, begin, (size_t)marks + 1,
                            &r->measure) ||
-      (r->detect_steady && strut_steady_detector_create(r->model, &r->experiment->steady,
-                                                        span.period, begin, &r->steady)))
+      (r->steady.wanted && strut_steady_detector_create(r->model, &r->experiment->steady,
+                                                        span.period, begin, &r->steady.detector)))
     return strut_memory_fail_model(r->model->scene, r->error);
   if (r->measure.quantities && strut_quantities_need_pieces(r->measure.quantities) &&
       r->method->observe) {
@@ -210,14 +210,15 @@ static strut_status prepare_run(strut_run *r) {
   r->state->limits.interrupt = r->options->interrupt;
   r->state->limits.most_evaluations = r->options->most_evaluations;
   if (r->method->restart) r->method->restart(r->model, r->state, r->workspace, r->dt);
-  if (!strut_step_limit_monitor_create(r->model, r->state, r->method, r->dt, &r->step_monitor) ||
-      !strut_stick_band_create(r->model, r->state, r->method, r->dt, &r->band))
+  if (!strut_step_limit_monitor_create(r->model, r->state, r->method, r->dt, &r->watch.limit) ||
+      !strut_stick_band_create(r->model, r->state, r->method, r->dt, &r->watch.band))
     return strut_memory_fail_model(r->model->scene, r->error);
   strut_energy_reset_load_work(r->model, r->state);
-  r->initial = strut_energy_evaluate(r->model, r->state, begin);
+  r->watch.initial = strut_energy_evaluate(r->model, r->state, begin);
   if (r->options->from && r->options->from->balance && r->state->balance)
-    strut_balance_continue(r->options->from->balance, r->state, &r->initial);
-  strut_balance_begin(r->state, &r->initial, begin, r->method->evaluations, &r->balance);
+    strut_balance_continue(r->options->from->balance, r->state, &r->watch.initial);
+  strut_balance_begin(r->state, &r->watch.initial, begin, r->method->evaluations,
+                      &r->watch.balance);
   r->recording = (strut_recording){
       .sinks = r->options->sinks, .sink_count = r->options->sink_count, .grid = r->grid};
   return strut_recording_create(r->model, r->experiment, begin, &r->recording, r->error);
@@ -258,16 +259,16 @@ static void jump_to_orbit(strut_run *r, const double *y) {
   restart(r);
   strut_energies after = strut_energy_evaluate(r->model, r->state, t);
   r->state->support_work_origin += strut_support_motion_work(r->model, r->state) - work;
-  r->initial.kinetic += after.kinetic - before.kinetic;
-  r->initial.elastic += after.elastic - before.elastic;
-  r->initial.gravity += after.gravity - before.gravity;
-  r->initial.contact += after.contact - before.contact;
+  r->watch.initial.kinetic += after.kinetic - before.kinetic;
+  r->watch.initial.elastic += after.elastic - before.elastic;
+  r->watch.initial.gravity += after.gravity - before.gravity;
+  r->watch.initial.contact += after.contact - before.contact;
 }
 
 /* Completes a periodic motion by shooting; keeps the state where that fails. */
 static strut_status shoot_orbit(strut_run *r) {
   size_t length = (size_t)r->model->length;
-  strut_steady_summary *found = &r->steady.result;
+  strut_steady_summary *found = &r->steady.detector.result;
   strut_period_map map = {.model = NULL};
   double travel = 0.0, *y = strut_allocate(2 * length + 1, sizeof *y);
   if (!y) return strut_no_memory(r->error, "");
@@ -287,9 +288,9 @@ static strut_status shoot_orbit(strut_run *r) {
   }
   if (!status && found->shot) {
     jump_to_orbit(r, y);
-    r->steady.velocity = travel / (map.period * found->repeats);
+    r->steady.detector.velocity = travel / (map.period * found->repeats);
   }
-  r->shooting_periods = map.applied;
+  r->steady.shooting_periods = map.applied;
   found->periods += map.applied;
   r->state->evaluations += map.evaluations;
   strut_period_map_free(&map);
@@ -303,34 +304,35 @@ static strut_status shoot_orbit(strut_run *r) {
  * for more that are recorded, of which the summary knows nothing: an answer does not depend on recordings.
  */
 static strut_status detect_steady_motion(strut_run *r) {
-  int64_t n = r->state->step, past = (n - r->first) % r->period_steps;
-  if (past == asymmetric_phase(r->period_steps))
-    strut_steady_detector_half_period(r->state, &r->steady);
+  int64_t n = r->state->step, past = (n - r->first) % r->steady.period_steps;
+  if (past == asymmetric_phase(r->steady.period_steps))
+    strut_steady_detector_half_period(r->state, &r->steady.detector);
   if (past != 0) return STRUT_OK;
   double x, v;
-  bool before = r->steady.known;
+  bool before = r->steady.detector.known;
   strut_measure_tracked_point(r->model, r->state, &r->measure, &x, &v);
-  if (!strut_steady_detector_period(r->state, x, &r->steady) || before) return STRUT_OK;
+  if (!strut_steady_detector_period(r->state, x, &r->steady.detector) || before) return STRUT_OK;
   bool internal = strut_feedback_remembers(&r->model->feedback);
   bool memory = internal || (r->model->terms & STRUT_TERM_MEMORY);
   if (memory && r->experiment->steady.shooting)
     snprintf(
-        r->steady.result.reason, sizeof r->steady.result.reason,
+        r->steady.detector.result.reason, sizeof r->steady.detector.result.reason,
         internal
             ? "internal states, samples, starts and relays are a memory that shooting does not "
               "correct"
             : "what breaks, is released or yields has a memory that shooting does not "
               "correct");
-  bool shoot = r->experiment->steady.shooting && r->steady.result.kind == STRUT_MOTION_PERIODIC;
+  bool shoot =
+      r->experiment->steady.shooting && r->steady.detector.result.kind == STRUT_MOTION_PERIODIC;
   strut_status status = shoot && !memory ? shoot_orbit(r) : STRUT_OK;
   if (status) return status;
-  double now = (double)n * r->dt, period = r->steady.period;
-  int64_t periods = r->answer_periods, repeats = r->steady.result.repeats;
+  double now = (double)n * r->dt, period = r->steady.detector.period;
+  int64_t periods = r->steady.answer_periods, repeats = r->steady.detector.result.repeats;
   if (r->measure.quantities && periods < repeats)
     periods = repeats; /* a window over the whole orbit */
-  int64_t recorded = r->recorded_periods, all = recorded > periods ? recorded : periods;
-  r->answer = n + periods * r->period_steps;
-  r->steps = n + all * r->period_steps;
+  int64_t recorded = r->steady.recorded_periods, all = recorded > periods ? recorded : periods;
+  r->answer.step = n + periods * r->steady.period_steps;
+  r->steps = n + all * r->steady.period_steps;
   r->grid.last = r->measure.grid.last = r->recording.grid.last = -1;
   strut_measure_window(r->model, r->state, now, period, (size_t)periods, &r->measure);
   if (recorded > 0) r->recording.start = now + (double)(all - recorded) * period;
@@ -349,10 +351,10 @@ static int64_t find_next_check(const strut_run *r, int64_t chunk) {
   int64_t whole = strut_time_grid_rest(&r->grid) > 0.0 ? r->steps - 1 : r->steps;
   if (stop > whole) stop = n < whole ? whole : r->steps;
   if (window > n && stop > window) stop = window;
-  if (r->balance.next > n && stop > r->balance.next) stop = r->balance.next;
-  if (r->step_monitor.next > n && stop > r->step_monitor.next) stop = r->step_monitor.next;
-  if (!r->detect_steady) return stop;
-  int64_t period = r->period_steps, past = (n - r->first) % period, end = n - past + period;
+  if (r->watch.balance.next > n && stop > r->watch.balance.next) stop = r->watch.balance.next;
+  if (r->watch.limit.next > n && stop > r->watch.limit.next) stop = r->watch.limit.next;
+  if (!r->steady.wanted) return stop;
+  int64_t period = r->steady.period_steps, past = (n - r->first) % period, end = n - past + period;
   int64_t middle = n - past + asymmetric_phase(period);
   if (middle > n && stop > middle) stop = middle;
   return stop > end ? end : stop;
@@ -439,7 +441,7 @@ static double time_of_balance(const strut_run *r) {
 
 static strut_status sample_balance(strut_run *r) {
   if (!r->state->balance) return STRUT_OK;
-  strut_balance_sample(r->model, r->state, &r->initial, time_of_balance(r), &r->balance,
+  strut_balance_sample(r->model, r->state, &r->watch.initial, time_of_balance(r), &r->watch.balance,
                        &r->summary->energy);
   return strut_run_check_losses(r);
 }
@@ -459,10 +461,10 @@ strut_status strut_run_sample(strut_run *r, int64_t *stop) {
   if (r->model->scene->collision_count) strut_run_watch_collisions(r);
   strut_status collapse_status = strut_run_check_collapse(r);
   if (collapse_status) return collapse_status;
-  bool balance_due = n == r->answer || (n >= r->balance.next && n < r->answer);
+  bool balance_due = n == r->answer.step || (n >= r->watch.balance.next && n < r->answer.step);
   strut_status balance_status = balance_due ? sample_balance(r) : STRUT_OK;
   if (balance_status) return balance_status;
-  strut_status steady_status = r->detect_steady ? detect_steady_motion(r) : STRUT_OK;
+  strut_status steady_status = r->steady.wanted ? detect_steady_motion(r) : STRUT_OK;
   if (steady_status) return steady_status;
   if (n == strut_measure_first_step(&r->measure))
     strut_measure_begin(r->model, r->state, &r->measure);
@@ -471,7 +473,7 @@ strut_status strut_run_sample(strut_run *r, int64_t *stop) {
     strut_status status = strut_recording_sample(r->state, &r->recording, r->error);
     if (status) return status;
   }
-  if (n == r->answer) fill_summary(r, STRUT_OK);
+  if (n == r->answer.step) fill_summary(r, STRUT_OK);
   if (n >= r->steps) return STRUT_OK;
   if (o->interrupt && *o->interrupt)
     return strut_fail(r->error, STRUT_INTERRUPTED, "interrupted at t = %.9g s", strut_run_time(r));
@@ -481,9 +483,9 @@ strut_status strut_run_sample(strut_run *r, int64_t *stop) {
                       "%s used up the work budget of %lld force evaluations at t = %.9g s",
                       r->method->name, (long long)o->most_evaluations, strut_run_time(r));
   if (r->state->trouble) return strut_run_fail_method(r);
-  if (o->progress && strut_run_clock() - r->progress_time > 0.1) {
+  if (o->progress && strut_run_clock() - r->clock.progress > 0.1) {
     o->progress(o->progress_context, (double)(n - r->first) / (double)(r->steps - r->first));
-    r->progress_time = strut_run_clock();
+    r->clock.progress = strut_run_clock();
   }
   int64_t sample = strut_recording_next_step(&r->recording);
   r->check = find_next_check(r, r->chunk);
@@ -507,7 +509,7 @@ static void store_end_state(const strut_run *r) {
 
 static void fill_contacts(strut_run *r) {
   for (int32_t i = 0; i < r->model->contacts.count; i++)
-    r->summary->contacts[i].band_needed = strut_stick_band_missed(r->model, &r->band, i);
+    r->summary->contacts[i].band_needed = strut_stick_band_missed(r->model, &r->watch.band, i);
 }
 
 /* Angles and moments of the hinges at the end, areas and pressures of the cells. */
@@ -556,12 +558,12 @@ static void fill_summary(strut_run *r, strut_status status) {
     s->duration = strut_experiment_span(r->experiment, r->model->scene).duration;
   s->force_evaluations = r->state->evaluations;
   s->events = r->state->events;
-  s->limit_fell = (strut_step_limit_violation){.limit = r->step_monitor.lowest,
-                                               .time = r->step_monitor.lowest_time,
-                                               .since = r->step_monitor.first_time,
-                                               .steps = r->step_monitor.steps_below};
+  s->limit_fell = (strut_step_limit_violation){.limit = r->watch.limit.lowest,
+                                               .time = r->watch.limit.lowest_time,
+                                               .since = r->watch.limit.first_time,
+                                               .steps = r->watch.limit.steps_below};
   strut_measure_finish(&r->measure, s);
-  if (r->detect_steady) strut_steady_detector_finish(&r->steady, s);
+  if (r->steady.wanted) strut_steady_detector_finish(&r->steady.detector, s);
   s->velocity_zero = strut_measure_is_zero(&r->measure, s->velocity);
   for (size_t i = 0; i < 2 * s->node_count; i++) s->positions[i] = r->state->q[i];
   measure_elements(r);
@@ -572,7 +574,7 @@ static void fill_summary(strut_run *r, strut_status status) {
   }
   strut_run_warn(r);
   store_end_state(r);
-  r->filled = true;
+  r->answer.filled = true;
 }
 
 strut_status strut_run_begin(const strut_model *model, const strut_experiment *experiment,
@@ -591,7 +593,7 @@ strut_status strut_run_begin(const strut_model *model, const strut_experiment *e
   r->chunk = chunk < 1 ? 1 : chunk > LONGEST_CHUNK ? LONGEST_CHUNK : chunk;
   strut_status status = prepare_run(r);
   r->ready = !status;
-  r->start_time = r->progress_time = strut_run_clock();
+  r->clock.start = r->clock.progress = strut_run_clock();
   return status;
 }
 
@@ -599,8 +601,8 @@ strut_status strut_run_end(strut_run *r, strut_status status) {
   strut_summary *summary = r->summary;
   strut_error *error = r->error;
   if (r->ready) {
-    if (status || !r->filled) fill_summary(r, status); /* where the run ended early */
-    summary->wall_time = strut_run_clock() - r->start_time;
+    if (status || !r->answer.filled) fill_summary(r, status); /* where the run ended early */
+    summary->wall_time = strut_run_clock() - r->clock.start;
     strut_error first = *error;
     strut_status written = strut_recording_finish(&r->recording, status, error);
     if (written && (!status || status == STRUT_DIVERGED || status == STRUT_INTERRUPTED))
@@ -613,7 +615,7 @@ strut_status strut_run_end(strut_run *r, strut_status status) {
     if (!(summary->reason[i] = error->message[i])) break;
   strut_recording_free(&r->recording);
   strut_measure_free(&r->measure);
-  strut_steady_detector_free(&r->steady);
+  strut_steady_detector_free(&r->steady.detector);
   strut_large_steps_free(r->large);
   strut_state_free(r->state);
   return status;

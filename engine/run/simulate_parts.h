@@ -22,32 +22,45 @@ typedef struct strut_run {
   strut_error *error;
   strut_state *state;
   void *workspace;
-  strut_measurement measure;
-  strut_recording recording;
-  strut_step_limit_monitor step_monitor;
-  strut_stick_band band;
-  strut_energies initial;
-  strut_balance_monitor balance;
-  bool detect_steady;
-  strut_steady_detector steady;
+  struct strut_large_steps *large; /* what steps instead of the method; NULL: the method */
   double dt;
   strut_time_grid grid;
-  int64_t first, steps;     /* first step number; last step number */
-  int64_t period_steps;     /* steps per drive period; only where steady motion is detected */
-  int64_t answer;           /* step at which the summary is filled; later ones are recorded only */
-  bool filled;              /* it has been */
-  int64_t answer_periods;   /* least periods of the summary once the motion is steady */
-  int64_t recorded_periods; /* and those that are recorded */
-  int64_t shooting_periods; /* drive periods run by shooting */
-  int64_t chunk;            /* most steps between two samples */
-  int64_t check;            /* step of the next check: a stop that nothing recorded asked for */
-  double start_time,
-      progress_time; /* wall clock at the first step and at the latest progress report [s] */
-  bool ready;        /* preparation succeeded: the first step may be made */
-  int32_t tunnel;    /* the element of a collision that may have been passed through, + 1; or 0 */
-  double
-      tunnel_speed; /* at which its two sides moved [m/s]; 0: they were pressed together instead */
-  struct strut_large_steps *large; /* what steps instead of the method; NULL: the method */
+  int64_t first, steps; /* first step number; last step number */
+  int64_t chunk;        /* most steps between two samples */
+  int64_t check;        /* step of the next check: a stop that nothing recorded asked for */
+  bool ready;           /* preparation succeeded: the first step may be made */
+  strut_measurement measure;
+  strut_recording recording;
+  /** What is watched. */
+  struct {
+    strut_step_limit_monitor limit;
+    strut_stick_band band;
+    strut_energies initial;
+    strut_balance_monitor balance;
+  } watch;
+  /** Where steady motion is detected. */
+  struct {
+    bool wanted;
+    strut_steady_detector detector;
+    int64_t period_steps;     /* per drive period */
+    int64_t answer_periods;   /* least periods of the summary once the motion is steady */
+    int64_t recorded_periods; /* and those that are recorded */
+    int64_t shooting_periods; /* drive periods run by shooting */
+  } steady;
+  /** When the summary is filled; later steps are recorded only. */
+  struct {
+    int64_t step;
+    bool filled;
+  } answer;
+  /** Wall clock at the first step and at the latest progress report [s]. */
+  struct {
+    double start, progress;
+  } clock;
+  /** A collision that may have been passed through. */
+  struct {
+    int32_t element; /* + 1; or 0 */
+    double speed;    /* at which its two sides moved [m/s]; 0: they were pressed together instead */
+  } tunnel;
 } strut_run;
 
 /**

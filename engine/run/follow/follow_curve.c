@@ -95,15 +95,15 @@ static bool add_point(walk *w, strut_follow_surface_point *p) {
   if (!y) return false;
   strut_follow_centre(s, p->y);
   memcpy(y, p->y, s->both * sizeof *y);
-  memcpy(s->end, p->y, s->both * sizeof *y);
-  const strut_follow_period period = strut_follow_apply(s, s->end, true);
+  memcpy(s->buffers.end, p->y, s->both * sizeof *y);
+  const strut_follow_period period = strut_follow_apply(s, s->buffers.end, true);
   if (!isfinite(period.travel)) return false;
   strut_follow_curve_point *to = append(w);
   if (!to) return false;
   *to = (strut_follow_curve_point){.value = {p->value[0], p->value[1]},
                                    .arc = w->backwards ? -w->arc : w->arc,
-                                   .velocity = period.travel / (s->period * s->repeats),
-                                   .work = period.work / s->repeats,
+                                   .velocity = period.travel / (s->period * s->how.repeats),
+                                   .work = period.work / s->how.repeats,
                                    .amplitude = period.amplitude,
                                    .y = y};
   judge(w, p, to);
@@ -427,9 +427,9 @@ strut_status strut_follow_curve_make(strut_follow_surface *u, const strut_follow
                                      const strut_follow_curve_limits *limits,
                                      strut_follow_curve *curve, strut_error *error) {
   strut_arena arena = {0};
-  int64_t maps = u->s.maps;
+  int64_t maps = u->s.spent.maps;
   *curve = (strut_follow_curve){
-      .kind = start->kind, .repeats = u->s.repeats, .travels = u->s.travels, .ends = {"", ""}};
+      .kind = start->kind, .repeats = u->s.how.repeats, .travels = u->s.travels, .ends = {"", ""}};
   walk w = {.u = u,
             .criterion = {.kind = start->kind},
             .curve = curve,
@@ -449,7 +449,7 @@ strut_status strut_follow_curve_make(strut_follow_surface *u, const strut_follow
     bool gap = start->kind == STRUT_FOLLOW_TOUCH || start->kind == STRUT_FOLLOW_LIFT;
     memcpy(p->value, start->value, sizeof p->value);
     memcpy(p->y, start->y, u->s.both * sizeof(double));
-    u->s.differentiated = false;
+    u->s.derivative.known = false;
     if (start->node) curve->node = strut_arena_format(&curve->arena, "%s", start->node);
     if (gap && !strut_follow_criterion_choose(u, &w.criterion, p, start->node))
       curve->ends[0] = "no extremum of its gap is near zero there";
@@ -459,7 +459,7 @@ strut_status strut_follow_curve_make(strut_follow_surface *u, const strut_follow
       walk_both_ways(&w, first, direction);
     curve->contact = w.criterion.contact;
   }
-  curve->maps = u->s.maps - maps;
+  curve->maps = u->s.spent.maps - maps;
   strut_arena_free(&arena);
   return u->status;
 }
@@ -474,7 +474,7 @@ bool strut_follow_curve_passes(const strut_follow_surface *u, const strut_follow
   const strut_follow_system *s = &u->s;
   bool same_node =
       !start->node == !curve->node && (!start->node || strcmp(start->node, curve->node) == 0);
-  if (curve->kind != start->kind || curve->repeats != s->repeats || !same_node) return false;
+  if (curve->kind != start->kind || curve->repeats != s->how.repeats || !same_node) return false;
   double b = start->value[1];
   for (size_t k = 0; k + 1 < curve->count; k++) {
     const strut_follow_curve_point *p = &curve->points[k], *q = p + 1;

@@ -36,7 +36,7 @@ static bool set_value(strut_follow_walk *w, double value) {
 }
 
 static bool interrupted(strut_follow_walk *w) {
-  if (!w->s->interrupt || !*w->s->interrupt) return false;
+  if (!w->s->how.interrupt || !*w->s->how.interrupt) return false;
   w->status =
       strut_fail(w->error, STRUT_INTERRUPTED, "interrupted at %.9g of the parameter", w->s->value);
   return true;
@@ -106,8 +106,9 @@ static void update_derivative(strut_follow_walk *w, const double *f) {
   for (size_t j = 0; j <= s->n; j++) size += w->right[j] * w->right[j];
   if (!(size > 0.0)) return;
   for (size_t i = 0; i < s->n; i++) {
-    for (size_t j = 0; j < s->n; j++) s->jacobian[i * s->n + j] += f[i] * w->right[j] / size;
-    s->column[i] += f[i] * w->right[s->n] / size;
+    for (size_t j = 0; j < s->n; j++)
+      s->derivative.jacobian[i * s->n + j] += f[i] * w->right[j] / size;
+    s->derivative.column[i] += f[i] * w->right[s->n] / size;
   }
 }
 
@@ -118,7 +119,7 @@ static void update_derivative(strut_follow_walk *w, const double *f) {
 static bool iterate(strut_follow_walk *w, const strut_follow_section *p, trial *here, trial *next,
                     int *rounds) {
   const double enough = w->rough ? ROUGH : w->s->variation && !w->exact ? NEAR : CONVERGED;
-  bool wanted = !w->s->differentiated;
+  bool wanted = !w->s->derivative.known;
   int slow = 0, made = 0;
   if (!evaluate(w, p, here) || !isfinite(here->left)) return false;
   for (*rounds = 0; *rounds < MOST_ROUNDS; ++*rounds) {
@@ -174,8 +175,8 @@ static bool measure(strut_follow_walk *w, strut_follow_orbit *o, bool carry) {
       carry ? strut_follow_carry(s, w->try_y, true) : strut_follow_apply(s, w->try_y, true);
   if (carry) strut_follow_change(s, o->y, w->try_y, w->f);
   if (interrupted(w) || !isfinite(p.travel)) return false;
-  o->velocity = p.travel / (s->period * s->repeats);
-  o->work = p.work / s->repeats;
+  o->velocity = p.travel / (s->period * s->how.repeats);
+  o->work = p.work / s->how.repeats;
   o->amplitude = p.amplitude;
   if (!strut_follow_word_read(s, &w->branch->arena, &o->word)) {
     w->status = strut_no_memory(w->error, "");
@@ -194,7 +195,7 @@ bool strut_follow_multipliers(const strut_follow_system *s, double *scratch,
   gsl_matrix_view view = gsl_matrix_view_array(scratch, n, n);
   gsl_eigen_nonsymm_workspace *space = gsl_eigen_nonsymm_alloc(n);
   gsl_vector_complex *values = gsl_vector_complex_alloc(n);
-  memcpy(scratch, s->jacobian, n * n * sizeof(double));
+  memcpy(scratch, s->derivative.jacobian, n * n * sizeof(double));
   bool good = space && values;
   bool found = good && gsl_eigen_nonsymm(&view.matrix, values, space) == 0;
   *count = 0;
@@ -299,11 +300,12 @@ bool strut_follow_eigenvector(strut_follow_walk *w, const strut_follow_orbit *o,
   if (!set_value(w, o->value) || !isfinite(strut_follow_residual(s, o->y, w->f))) return false;
   w->status = strut_follow_differentiate(s, o->y, w->f, &lost, w->error);
   if (w->status || lost) return false;
-  s->differentiated = false;
+  s->derivative.known = false;
   double *matrix =
-      s->jacobian; /* jacobian - 1 must be jacobian - value: shifted, and back by the next */
+      s->derivative
+          .jacobian; /* jacobian - 1 must be jacobian - value: shifted, and back by the next */
   for (size_t i = 0; i < n; i++) matrix[i * n + i] += 1.0 - value - 1e-7;
-  memset(s->column, 0, n * sizeof(double));
+  memset(s->derivative.column, 0, n * sizeof(double));
   for (size_t i = 0; i < n; i++) direction[i] = 1.0 / (double)(i + 1);
   double *unit = strut_arena_allocate(&w->branch->arena, n + 1, sizeof(double));
   if (!unit) w->status = strut_no_memory(w->error, "");
@@ -340,7 +342,7 @@ strut_status strut_follow_correct(strut_follow_system *s, double *y, bool *found
   }
   memcpy(base, y, s->both * sizeof(double));
   normal[n] = 1.0;
-  s->differentiated = false;
+  s->derivative.known = false;
   w.exact = true;
   *found = strut_follow_newton(&w, base, &value, &(strut_follow_section){normal, y, value, 0.0},
                                &rounds);

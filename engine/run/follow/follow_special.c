@@ -308,12 +308,12 @@ static bool find_extrema(strut_follow_surface *u, const strut_follow_surface_poi
   strut_period_map *map = &s->map[0];
   *w = (gap_watch){.model = s->model, .contact = contact, .highest = highest};
   w->dt = map->dt;
-  w->span = s->period * s->repeats;
-  memcpy(s->end, p->y, s->both * sizeof(double));
-  w->gap = gap_of(w, s->end, s->end + s->model->length, NULL, &w->rate);
+  w->span = s->period * s->how.repeats;
+  memcpy(s->buffers.end, p->y, s->both * sizeof(double));
+  w->gap = gap_of(w, s->buffers.end, s->buffers.end + s->model->length, NULL, &w->rate);
   map->watch = watch_gap;
   map->watch_context = w;
-  double travel = strut_period_map_apply(map, s->end);
+  double travel = strut_period_map_apply(map, s->buffers.end);
   map->watch = NULL;
   return isfinite(travel);
 }

@@ -96,7 +96,7 @@ void strut_follow_surface_move(const strut_follow_surface *u, strut_follow_surfa
 }
 
 static bool interrupted(strut_follow_surface *u) {
-  if (!u->s.interrupt || !*u->s.interrupt) return false;
+  if (!u->s.how.interrupt || !*u->s.how.interrupt) return false;
   u->status = strut_fail(u->error, STRUT_INTERRUPTED,
                          "interrupted at %.9g and %.9g of the parameters", u->s.value, u->second);
   return true;
@@ -133,8 +133,9 @@ static bool solve(strut_follow_surface *u, const double *const rows[2]) {
   size_t n = s->n, m = u->m;
   double most = 0.0;
   for (size_t i = 0; i < n; i++) {
-    for (size_t j = 0; j < n; j++) u->matrix[i * m + j] = s->jacobian[i * n + j] - (i == j);
-    u->matrix[i * m + n] = s->column[i];
+    for (size_t j = 0; j < n; j++)
+      u->matrix[i * m + j] = s->derivative.jacobian[i * n + j] - (i == j);
+    u->matrix[i * m + n] = s->derivative.column[i];
     u->matrix[i * m + n + 1] = u->second_column[i];
   }
   for (size_t k = 0; k < 2; k++) memcpy(u->matrix + (n + k) * m, rows[k], m * sizeof(double));
@@ -152,8 +153,8 @@ static void update_derivative(strut_follow_surface *u, const double *f) {
   for (size_t j = 0; j < u->m; j++) size += u->x[j] * u->x[j];
   if (!(size > 0.0)) return;
   for (size_t i = 0; i < s->n; i++) {
-    for (size_t j = 0; j < s->n; j++) s->jacobian[i * s->n + j] += f[i] * u->x[j] / size;
-    s->column[i] += f[i] * u->x[s->n] / size;
+    for (size_t j = 0; j < s->n; j++) s->derivative.jacobian[i * s->n + j] += f[i] * u->x[j] / size;
+    s->derivative.column[i] += f[i] * u->x[s->n] / size;
     u->second_column[i] += f[i] * u->x[s->n + 1] / size;
   }
 }
@@ -176,7 +177,7 @@ bool strut_follow_surface_correct(strut_follow_surface *u, strut_follow_surface_
     if (left <= CONVERGED) return true;
     bool slow = left > SLOW * before;
     if (slow && left <= ACCEPTED) return true;
-    if (slow || !s->differentiated) {
+    if (slow || !s->derivative.known) {
       if (made++ == MOST_DERIVATIVES) return false;
       if (!differentiate(u, p->y, p->value, u->f)) return false;
     } else if (round > 0) {
@@ -201,8 +202,8 @@ static bool find_basis(strut_follow_surface *u, strut_follow_surface_point *p) {
   bool good = transpose && q && r && scale;
   for (size_t i = 0; i < n && good; i++) {
     for (size_t j = 0; j < n; j++)
-      gsl_matrix_set(transpose, j, i, s->jacobian[i * n + j] - (i == j));
-    gsl_matrix_set(transpose, n, i, s->column[i]);
+      gsl_matrix_set(transpose, j, i, s->derivative.jacobian[i * n + j] - (i == j));
+    gsl_matrix_set(transpose, n, i, s->derivative.column[i]);
     gsl_matrix_set(transpose, n + 1, i, u->second_column[i]);
   }
   if (good) {
@@ -230,7 +231,7 @@ bool strut_follow_surface_complete(strut_follow_surface *u, strut_follow_surface
     u->status = strut_no_memory(u->error, "");
     return false;
   }
-  memcpy(p->jacobian, s->jacobian, s->n * s->n * sizeof(double));
+  memcpy(p->jacobian, s->derivative.jacobian, s->n * s->n * sizeof(double));
   p->complete = find_basis(u, p);
   return p->complete;
 }

@@ -37,7 +37,7 @@ static int64_t periods_before(const strut_scene *scene, double period) {
 
 static strut_status check_scene(const strut_follow_system *s, strut_error *error) {
   const strut_model *m = s->model;
-  const strut_integrator *method = strut_integrator_find(s->method);
+  const strut_integrator *method = strut_integrator_find(s->how.method);
   if (!(s->setup.experiment.periods > 0.0) || !(s->period > 0.0))
     return strut_fail(error, STRUT_USAGE,
                       "there is no drive whose period a motion could repeat: give 'run' in periods "
@@ -47,12 +47,12 @@ static strut_status check_scene(const strut_follow_system *s, strut_error *error
                       "the drive does not repeat itself: some signal's frequency is no multiple of "
                       "that of the drive's period");
   if (!m->mass) return strut_fail(error, STRUT_SINGULAR, "a free node has no mass");
-  if (!method) return strut_fail(error, STRUT_USAGE, "no method is called '%s'", s->method);
+  if (!method) return strut_fail(error, STRUT_USAGE, "no method is called '%s'", s->how.method);
   if (!method->events && (m->contacts.count || (m->terms & STRUT_TERM_SLACK)))
     return strut_fail(error, STRUT_USAGE,
                       "'%s' locates no events, without which the period map of contacts and cables "
                       "has no derivative; use adaptive, rk4-events or verlet-events",
-                      s->method);
+                      s->how.method);
   if ((m->terms & STRUT_TERM_MEMORY) || strut_feedback_remembers(&m->feedback) ||
       (m->terms & STRUT_TERM_SLIDING_MASS))
     return strut_fail(
@@ -60,16 +60,16 @@ static strut_status check_scene(const strut_follow_system *s, strut_error *error
         "positions and velocities are not the whole state here: what breaks, yields or "
         "slides along members, and internal states of controllers, cannot be followed");
   strut_experiment e = s->setup.experiment;
-  e.integrator = s->method;
+  e.integrator = s->how.method;
   return strut_integrator_check(m, &e, error);
 }
 
 /* ---- models of values ---- */
 
 static void drop_model(strut_follow_system *s) {
-  for (int i = 0; s->map && i < s->threads; i++) {
-    s->evaluations += s->map[i].evaluations;
-    s->maps += s->map[i].applied;
+  for (int i = 0; s->map && i < s->how.threads; i++) {
+    s->spent.evaluations += s->map[i].evaluations;
+    s->spent.maps += s->map[i].applied;
     strut_period_map_free(&s->map[i]);
   }
   strut_model_free(s->model);
@@ -81,18 +81,18 @@ static void drop_model(strut_follow_system *s) {
 
 static strut_status make_maps(strut_follow_system *s, strut_error *error) {
   strut_experiment e = s->setup.experiment;
-  e.integrator = s->method;
-  e.tolerance = s->tolerance;
-  e.step = s->period / (double)s->steps_per_period;
+  e.integrator = s->how.method;
+  e.tolerance = s->how.tolerance;
+  e.step = s->period / (double)s->how.steps_per_period;
   e.refine = e.refine_time = 0.0;
   e.accuracy = 0.0;
   int64_t before = periods_before(s->model->scene, s->period);
-  int count = s->threads;
+  int count = s->how.threads;
   for (int i = 0; i < count; i++) {
     strut_period_map *map = &s->map[i];
-    strut_status status = strut_period_map_create(s->model, &e, s->repeats, map, error);
+    strut_status status = strut_period_map_create(s->model, &e, s->how.repeats, map, error);
     if (status) return status;
-    map->interrupt = s->interrupt;
+    map->interrupt = s->how.interrupt;
     map->time = (double)before * s->period;
     if (strut_variation_possible(s->model, map->method)) count = 1; /* one run then does */
   }
@@ -116,7 +116,7 @@ strut_status strut_follow_set_value(strut_follow_system *s, double value, strut_
   drop_model(s);
   strut_status status = s->scenes.setup(s->scenes.context, value, &s->setup, error);
   if (status) return status;
-  s->scenes_made++;
+  s->spent.scenes++;
   status = strut_model_compile(&s->setup.scene, &s->model, error);
   if (!status) {
     s->period = strut_experiment_span(&s->setup.experiment, &s->setup.scene).period;
@@ -138,18 +138,18 @@ strut_status strut_follow_set_value(strut_follow_system *s, double value, strut_
 
 strut_status strut_follow_set_repeats(strut_follow_system *s, int32_t repeats, strut_error *error) {
   double value = s->value;
-  if (repeats == s->repeats) return STRUT_OK;
-  s->repeats = repeats;
-  s->differentiated = false;
+  if (repeats == s->how.repeats) return STRUT_OK;
+  s->how.repeats = repeats;
+  s->derivative.known = false;
   drop_model(s);
   return strut_follow_set_value(s, value, error);
 }
 
 strut_status strut_follow_set_steps(strut_follow_system *s, int64_t steps, strut_error *error) {
   double value = s->value;
-  if (steps == s->steps_per_period) return STRUT_OK;
-  s->steps_per_period = steps;
-  s->differentiated = false;
+  if (steps == s->how.steps_per_period) return STRUT_OK;
+  s->how.steps_per_period = steps;
+  s->derivative.known = false;
   drop_model(s);
   return strut_follow_set_value(s, value, error);
 }
@@ -159,12 +159,13 @@ static bool allocate(strut_follow_system *s) {
   size_t n = s->n, square = (n + 1) * (n + 1);
   return (s->place = strut_arena_allocate(a, n, sizeof *s->place)) &&
          (s->along = strut_arena_allocate(a, n, sizeof(double))) &&
-         (s->jacobian = strut_arena_allocate(a, square, sizeof(double))) &&
-         (s->column = strut_arena_allocate(a, n, sizeof(double))) &&
-         (s->there = strut_arena_allocate(a, (size_t)s->threads * s->both, sizeof(double))) &&
-         (s->end = strut_arena_allocate(a, s->both, sizeof(double))) &&
-         (s->seen = strut_arena_allocate(a, 4 * s->both, sizeof(double))) &&
-         (s->matrix = strut_arena_allocate(a, square, sizeof(double)));
+         (s->derivative.jacobian = strut_arena_allocate(a, square, sizeof(double))) &&
+         (s->derivative.column = strut_arena_allocate(a, n, sizeof(double))) &&
+         (s->buffers.there =
+              strut_arena_allocate(a, (size_t)s->how.threads * s->both, sizeof(double))) &&
+         (s->buffers.end = strut_arena_allocate(a, s->both, sizeof(double))) &&
+         (s->buffers.seen = strut_arena_allocate(a, 4 * s->both, sizeof(double))) &&
+         (s->buffers.matrix = strut_arena_allocate(a, square, sizeof(double)));
 }
 
 static void choose_unknowns(strut_follow_system *s) {
@@ -180,10 +181,10 @@ static void choose_unknowns(strut_follow_system *s) {
 }
 
 strut_status strut_follow_open(strut_follow_system *s, double value, strut_error *error) {
-  if (s->threads < 1) s->threads = 1;
+  if (s->how.threads < 1) s->how.threads = 1;
   s->value = (double)NAN;
   s->n = s->both = 0;
-  s->map = strut_arena_allocate(&s->arena, (size_t)s->threads, sizeof *s->map);
+  s->map = strut_arena_allocate(&s->arena, (size_t)s->how.threads, sizeof *s->map);
   if (!s->map) return strut_no_memory(error, "");
   strut_status status = strut_follow_set_value(s, value, error);
   if (status) return status;
@@ -215,7 +216,7 @@ bool strut_follow_set_units(strut_follow_system *s, const double *y) {
   double most = 0.0, at = map->time;
   int64_t steps = map->steps;
   int32_t repeats = map->repeats;
-  double *here = s->end;
+  double *here = s->buffers.end;
   memcpy(here, y, s->both * sizeof(double));
   bool good = true;
   /* parts of a period that are whole steps, as the map takes them */
@@ -239,7 +240,7 @@ bool strut_follow_set_units(strut_follow_system *s, const double *y) {
 static void watch_range(void *context, const strut_state *state) {
   strut_follow_system *s = context;
   size_t count = 2 * (size_t)s->model->node_count;
-  double *low = s->seen, *high = low + count, *q = high + count, *v = q + count;
+  double *low = s->buffers.seen, *high = low + count, *q = high + count, *v = q + count;
   double h = s->map[0].dt;
   for (size_t i = 0; i < count; i++) {
     double rise = state->q[i] - q[i], a = h * v[i], b = h * state->v[i];
@@ -262,7 +263,8 @@ static double amplitude_of(const strut_follow_system *s) {
   int32_t node = s->setup.experiment.measure_node;
   double most = 0.0;
   for (size_t i = 0; i < count; i++)
-    if (node < 0 || i / 2 == (size_t)node) most = fmax(most, s->seen[count + i] - s->seen[i]);
+    if (node < 0 || i / 2 == (size_t)node)
+      most = fmax(most, s->buffers.seen[count + i] - s->buffers.seen[i]);
   return 0.5 * most;
 }
 
@@ -274,8 +276,8 @@ strut_follow_period strut_follow_apply(strut_follow_system *s, double *y, bool w
   map->watch = works ? watch_range : NULL;
   map->watch_context = s;
   size_t count = 2 * (size_t)s->model->node_count, bytes = count * sizeof(double);
-  for (int k = 0; k < 3; k++) memcpy(s->seen + (size_t)k * count, y, bytes);
-  memcpy(s->seen + 3 * count, y + s->model->length, bytes);
+  for (int k = 0; k < 3; k++) memcpy(s->buffers.seen + (size_t)k * count, y, bytes);
+  memcpy(s->buffers.seen + 3 * count, y + s->model->length, bytes);
   p.travel = strut_period_map_apply(map, y);
   p.amplitude = works ? amplitude_of(s) : 0.0;
   map->watch = NULL;
@@ -297,9 +299,9 @@ double strut_follow_change(const strut_follow_system *s, const double *y, const 
 }
 
 double strut_follow_residual(strut_follow_system *s, const double *y, double *f) {
-  memcpy(s->end, y, s->both * sizeof(double));
-  if (!isfinite(strut_follow_apply(s, s->end, false).travel)) return HUGE_VAL;
-  return strut_follow_change(s, y, s->end, f);
+  memcpy(s->buffers.end, y, s->both * sizeof(double));
+  if (!isfinite(strut_follow_apply(s, s->buffers.end, false).travel)) return HUGE_VAL;
+  return strut_follow_change(s, y, s->buffers.end, f);
 }
 
 strut_follow_period strut_follow_carry(strut_follow_system *s, double *y, bool works) {
@@ -311,14 +313,14 @@ strut_follow_period strut_follow_carry(strut_follow_system *s, double *y, bool w
   s->map[0].state->watched.variation = NULL;
   for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j < n; j++)
-      s->jacobian[i * n + j] =
+      s->derivative.jacobian[i * n + j] =
           x->columns[i * (size_t)x->stride + j] * strut_follow_unit(s, j) / strut_follow_unit(s, i);
   for (size_t j = 0; j < n && s->travels; j++) { /* the map takes the travel out */
     double shift = 0.0;
-    for (size_t i = 0; i < n; i++) shift += s->along[i] * s->jacobian[i * n + j];
-    for (size_t i = 0; i < n; i++) s->jacobian[i * n + j] -= shift * s->along[i];
+    for (size_t i = 0; i < n; i++) shift += s->along[i] * s->derivative.jacobian[i * n + j];
+    for (size_t i = 0; i < n; i++) s->derivative.jacobian[i * n + j] -= shift * s->along[i];
   }
-  s->differentiated = isfinite(p.travel);
+  s->derivative.known = isfinite(p.travel);
   return p;
 }
 
@@ -326,7 +328,7 @@ void strut_follow_difference(strut_follow_system *s, const double *y, bool *lost
   size_t n = s->n;
   int gone = 0;
 #ifdef _OPENMP
-#pragma omp parallel for schedule(dynamic) num_threads(s->threads) reduction(+ : gone)
+#pragma omp parallel for schedule(dynamic) num_threads(s->how.threads) reduction(+ : gone)
 #endif
   for (size_t j = 0; j < n; j++) {
 #ifdef _OPENMP
@@ -334,29 +336,29 @@ void strut_follow_difference(strut_follow_system *s, const double *y, bool *lost
 #else
     int t = 0;
 #endif
-    double *there = s->there + (size_t)t * s->both;
+    double *there = s->buffers.there + (size_t)t * s->both;
     for (int side = -1; side <= 1; side += 2) {
       memcpy(there, y, s->both * sizeof(double));
       there[s->place[j]] += side * DIFFERENCE * strut_follow_unit(s, j);
       if (!isfinite(strut_period_map_apply(&s->map[t], there))) gone++;
       for (size_t i = 0; i < n; i++) {
         double moved = side * (there[s->place[i]] - y[s->place[i]]) / strut_follow_unit(s, i);
-        double *entry = &s->jacobian[i * n + j];
+        double *entry = &s->derivative.jacobian[i * n + j];
         *entry = (side < 0 ? 0.0 : *entry) + moved / (2.0 * DIFFERENCE);
       }
     }
   }
   for (size_t i = 0; i < n; i++)
-    for (size_t j = 0; j < n; j++) s->jacobian[i * n + j] -= s->along[i] * s->along[j];
+    for (size_t j = 0; j < n; j++) s->derivative.jacobian[i * n + j] -= s->along[i] * s->along[j];
   *lost = gone > 0;
-  s->differentiated = !*lost;
+  s->derivative.known = !*lost;
 }
 
 strut_status strut_follow_differentiate(strut_follow_system *s, const double *y, const double *f,
                                         bool *lost, strut_error *error) {
-  memcpy(s->end, y, s->both * sizeof(double));
+  memcpy(s->buffers.end, y, s->both * sizeof(double));
   if (s->variation)
-    *lost = !isfinite(strut_follow_carry(s, s->end, false).travel);
+    *lost = !isfinite(strut_follow_carry(s, s->buffers.end, false).travel);
   else
     strut_follow_difference(s, y, lost);
   return *lost ? STRUT_OK : strut_follow_differentiate_parameter(s, y, f, lost, error);
@@ -369,8 +371,9 @@ strut_status strut_follow_differentiate_parameter(strut_follow_system *s, const 
   if (value + step > fmax(s->low, s->high)) step = -step;
   strut_status status = strut_follow_set_value(s, value + step, error);
   if (status) return status;
-  *lost = !isfinite(strut_follow_residual(s, y, s->column));
-  for (size_t i = 0; i < n; i++) s->column[i] = (s->column[i] - f[i]) * (s->high - s->low) / step;
+  *lost = !isfinite(strut_follow_residual(s, y, s->derivative.column));
+  for (size_t i = 0; i < n; i++)
+    s->derivative.column[i] = (s->derivative.column[i] - f[i]) * (s->high - s->low) / step;
   return strut_follow_set_value(s, value, error);
 }
 
@@ -395,10 +398,10 @@ void strut_follow_centre(const strut_follow_system *s, double *y) {
 
 bool strut_follow_solve(strut_follow_system *s, const double *normal, double *x) {
   size_t n = s->n, m = n + 1;
-  double *a = s->matrix, most = 0.0;
+  double *a = s->buffers.matrix, most = 0.0;
   for (size_t i = 0; i < n; i++) {
-    for (size_t j = 0; j < n; j++) a[i * m + j] = s->jacobian[i * n + j] - (i == j);
-    a[i * m + n] = s->column[i];
+    for (size_t j = 0; j < n; j++) a[i * m + j] = s->derivative.jacobian[i * n + j] - (i == j);
+    a[i * m + n] = s->derivative.column[i];
   }
   memcpy(a + n * m, normal, m * sizeof(double));
   for (size_t i = 0; i < m * m; i++) most = fmax(most, fabs(a[i]));

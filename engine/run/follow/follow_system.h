@@ -24,37 +24,47 @@ typedef struct strut_follow_scenes {
 
 typedef struct strut_follow_system {
   strut_follow_scenes scenes;
-  double low, high;         /* range of the parameter [SI] */
-  const char *method;       /* of integration */
-  double tolerance;         /* of a method with error control [1] */
-  int64_t steps_per_period; /* of a method with fixed steps; of others the fewest */
-  int32_t repeats;          /* drive periods of P */
-  int threads;
-  const volatile sig_atomic_t *interrupt;
+  double low, high; /* range of the parameter [SI] */
+  /** How periods are computed. */
+  struct {
+    const char *method;       /* of integration */
+    double tolerance;         /* of a method with error control [1] */
+    int64_t steps_per_period; /* of a method with fixed steps; of others the fewest */
+    int32_t repeats;          /* drive periods of P */
+    int threads;
+    const volatile sig_atomic_t *interrupt;
+  } how;
   /* made by open and by the first value */
   double value; /* of the model below [SI]; NAN: there is none */
   strut_setup setup;
   strut_model *model;
-  strut_period_map *map; /* (threads) */
-  double period;         /* of the drive there [s] */
-  strut_event_log *log;  /* of map[0] */
-  size_t n, both;        /* free coordinates and velocities; 2 length + 1 */
-  size_t *place;         /* (n) of an unknown in a state */
-  double *along;         /* (n) unit vector of shifts along the ground, or zeros */
+  strut_period_map *map;      /* (threads) */
+  double period;              /* of the drive there [s] */
+  strut_event_log *log;       /* of map[0] */
+  strut_variation *variation; /* of map[0]; NULL: derivatives are differences of runs */
+  size_t n, both;             /* free coordinates and velocities; 2 length + 1 */
+  size_t *place;              /* (n) of an unknown in a state */
+  double *along;              /* (n) unit vector of shifts along the ground, or zeros */
   bool travels;
   double length, speed; /* units of the unknowns [m], [m/s] */
-  double *jacobian;     /* (n, n) derivative of P, without shifts */
-  bool differentiated;  /* both are those of some point on the way */
-  double *column;       /* (n) derivative of G to the parameter over its range */
-  double *there;        /* (threads, both) scratch */
-  double *end;          /* (both) */
-  double *seen;   /* (4, 2 nodes) lowest and highest positions, latest positions and velocities */
-  double *matrix; /* (n + 1, n + 1) scratch */
-  int64_t evaluations; /* of the forces */
-  int64_t maps;        /* periods computed */
-  int64_t scenes_made;
+  /** At some point on the way. */
+  struct {
+    bool known;
+    double *jacobian; /* (n, n) of P, without shifts */
+    double *column;   /* (n) of G to the parameter over its range */
+  } derivative;
+  struct {
+    double *there;  /* (threads, both) */
+    double *end;    /* (both) */
+    double *seen;   /* (4, 2 nodes) lowest and highest positions, latest positions and velocities */
+    double *matrix; /* (n + 1, n + 1) */
+  } buffers;
+  struct {
+    int64_t evaluations; /* of the forces */
+    int64_t maps;        /* periods computed */
+    int64_t scenes;      /* made */
+  } spent;
   strut_arena arena;
-  strut_variation *variation; /* of map[0]; NULL: derivatives are differences of runs */
 } strut_follow_system;
 
 /** Result of one application of P. */

@@ -364,8 +364,9 @@ strut_status strut_follow_branch_make(strut_follow_system *s, const double *y,
                                       const double *direction, const strut_follow_limits *limits,
                                       strut_follow_branch *branch, strut_error *error) {
   double clock = strut_run_clock();
-  int64_t evaluations = s->evaluations, maps = s->maps, scenes = s->scenes_made;
-  *branch = (strut_follow_branch){.repeats = s->repeats, .travels = s->travels, .ends = {"", ""}};
+  int64_t evaluations = s->spent.evaluations, maps = s->spent.maps, scenes = s->spent.scenes;
+  *branch =
+      (strut_follow_branch){.repeats = s->how.repeats, .travels = s->travels, .ends = {"", ""}};
   strut_follow_walk w = {.s = s, .limits = limits, .branch = branch, .error = error};
   double first = fmin(FIRST, limits->longest);
   if (!allocate(&w)) return w.status;
@@ -390,9 +391,9 @@ strut_status strut_follow_branch_make(strut_follow_system *s, const double *y,
     }
     order_points(branch, forth);
   }
-  branch->evaluations = s->evaluations - evaluations;
-  branch->maps = s->maps - maps;
-  branch->scenes = s->scenes_made - scenes;
+  branch->evaluations = s->spent.evaluations - evaluations;
+  branch->maps = s->spent.maps - maps;
+  branch->scenes = s->spent.scenes - scenes;
   branch->seconds = strut_run_clock() - clock;
   return w.status;
 }
@@ -482,7 +483,7 @@ static bool tell_motion(strut_follow_system *s, const double *y, double *velocit
   if (!end) return false;
   memcpy(end, y, s->both * sizeof *end);
   strut_follow_period p = strut_follow_apply(s, end, true);
-  *velocity = p.travel / (s->period * s->repeats);
+  *velocity = p.travel / (s->period * s->how.repeats);
   *swing = p.amplitude / s->period;
   return isfinite(p.travel);
 }
@@ -494,7 +495,7 @@ strut_status strut_follow_check_steps(strut_follow_system *s, double *y, double 
   char reason[200];
   if (!fine) return strut_no_memory(error, "");
   for (int k = 0; k < MOST_DOUBLINGS; k++) {
-    int64_t steps = s->steps_per_period;
+    int64_t steps = s->how.steps_per_period;
     bool found = tell_motion(s, y, &u[0], &swing[0]);
     memcpy(fine, y, s->both * sizeof *fine);
     strut_status status = strut_follow_set_steps(s, 2 * steps, error);

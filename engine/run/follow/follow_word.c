@@ -13,7 +13,7 @@ enum { MOST_TEXT = 400 };
 bool strut_follow_word_read(const strut_follow_system *s, strut_arena *arena,
                             strut_follow_word *word) {
   const strut_event_log *log = s->log;
-  double span = s->period * s->repeats, begin = s->map[0].time;
+  double span = s->period * s->how.repeats, begin = s->map[0].time;
   word->count = 0;
   word->letter = strut_arena_allocate(arena, log->count + 1, sizeof *word->letter);
   word->first = strut_arena_allocate(arena, (size_t)log->items + 1, 1);

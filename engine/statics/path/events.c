@@ -31,7 +31,7 @@ double strut_path_measure_eigenvalue(strut_path_system *s, const double *y,
   assert(which >= 0 && which < s->n);
   (void)piece;
   if (!strut_path_spectrum(s, y, STRUT_PATH_VALUES)) return (double)NAN;
-  return gsl_vector_get(s->values, (size_t)which);
+  return gsl_vector_get(s->algebra.values, (size_t)which);
 }
 
 /* Linear interpolation between two points; must be corrected afterwards. */
@@ -112,7 +112,7 @@ static bool interpolate(const strut_path_system *s, const trials *t, double leng
 static bool interpolate_fork(strut_path_system *s, const strut_path_piece *piece, double scale,
                              double slope, trials *t, double *place, double *y) {
   static const double sides[KEPT] = {-2, -1, 1, 2};
-  double apart = fmin(fmax(FORK * scale, BLURRED * s->noise) / slope, 0.1 * piece->length);
+  double apart = fmin(fmax(FORK * scale, BLURRED * s->spectrum.noise) / slope, 0.1 * piece->length);
   double middle = *place;
   t->count = 0;
   for (int k = 0; k < KEPT; k++) {
@@ -372,8 +372,8 @@ static void relative_motion(const strut_path_system *s, int32_t j, size_t mode, 
   const strut_member_table *t = &s->model->members;
   for (uint32_t c = 0; c < 2; c++) {
     int32_t a = s->potential->row_of[t->from[j] + c], b = s->potential->row_of[t->to[j] + c];
-    d[c] = (b >= 0 ? gsl_matrix_get(s->vectors, (size_t)b, mode) : 0.0) -
-           (a >= 0 ? gsl_matrix_get(s->vectors, (size_t)a, mode) : 0.0);
+    d[c] = (b >= 0 ? gsl_matrix_get(s->algebra.vectors, (size_t)b, mode) : 0.0) -
+           (a >= 0 ? gsl_matrix_get(s->algebra.vectors, (size_t)a, mode) : 0.0);
   }
 }
 
@@ -381,14 +381,16 @@ static double contact_motion(const strut_path_system *s, int32_t i, size_t mode)
   const int32_t *row = s->potential->row_of + s->model->contacts.at[i];
   double sum = 0;
   for (int c = 0; c < 2; c++)
-    if (row[c] >= 0) sum += s->terms.normal[c] * gsl_matrix_get(s->vectors, (size_t)row[c], mode);
+    if (row[c] >= 0)
+      sum +=
+          s->equations.terms.normal[c] * gsl_matrix_get(s->algebra.vectors, (size_t)row[c], mode);
   return sum;
 }
 
 static double held_motion(const strut_path_system *s, int32_t k, size_t mode) {
   double sum = 0;
   for (int32_t i = 0; i < s->n; i++)
-    sum += s->held[k][i] * gsl_matrix_get(s->vectors, (size_t)i, mode);
+    sum += s->held.motion[k][i] * gsl_matrix_get(s->algebra.vectors, (size_t)i, mode);
   return sum;
 }
 
@@ -408,12 +410,12 @@ static void project_element(strut_path_system *s, int32_t i, size_t first, gsl_m
   double bend[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT] = {0};
   int32_t n = 2 * e->nodes;
   size_t count = ritz->size1;
-  strut_element_bend(s->model, i, s->q, pose->force, bend);
+  strut_element_bend(s->model, i, s->latest.q, pose->force, bend);
   for (size_t k = 0; k < count; k++) {
     along[k] = 0.0;
     for (int32_t c = 0; c < n; c++) {
       int32_t row = s->potential->row_of[at[c / 2] + (uint32_t)(c % 2)];
-      motion[k][c] = row >= 0 ? gsl_matrix_get(s->vectors, (size_t)row, first + k) : 0.0;
+      motion[k][c] = row >= 0 ? gsl_matrix_get(s->algebra.vectors, (size_t)row, first + k) : 0.0;
       along[k] += pose->b[c] * motion[k][c];
     }
   }
@@ -425,8 +427,8 @@ static void project_element(strut_path_system *s, int32_t i, size_t first, gsl_m
         for (int32_t b = 0; b < n; b++) sum += motion[k][a] * bend[a * n + b] * motion[l][b];
       *gsl_matrix_ptr(ritz, k, l) += sum;
       if (k == l)
-        s->soft_parts =
-            fmax(s->soft_parts, fmax(fabs(sum), fabs(pose->slope) * along[k] * along[k]));
+        s->spectrum.soft_parts =
+            fmax(s->spectrum.soft_parts, fmax(fabs(sum), fabs(pose->slope) * along[k] * along[k]));
     }
 }
 
@@ -444,19 +446,19 @@ static void project(strut_path_system *s, size_t first, gsl_matrix *ritz) {
       along[k] = m->length > 0 ? m->ux * d[0] + m->uy * d[1] : d[0];
       across[k] = m->length > 0 ? m->ux * d[1] - m->uy * d[0] : d[1];
     }
-    add_square(ritz, along, m->length > 0 ? s->terms.stiffness[j] : m->across);
+    add_square(ritz, along, m->length > 0 ? s->equations.terms.stiffness[j] : m->across);
     add_square(ritz, across, m->across);
   }
-  s->soft_parts = 0.0;
+  s->spectrum.soft_parts = 0.0;
   for (int32_t i = 0; i < s->model->elements.count; i++)
     if (s->elements.element[i].acts) project_element(s, i, first, ritz);
   for (int32_t i = 0; i < s->model->contacts.count; i++) {
     for (size_t k = 0; k < count; k++) along[k] = contact_motion(s, i, first + k);
-    if (s->touching[i]) add_square(ritz, along, s->terms.ground[i]);
+    if (s->latest.touching[i]) add_square(ritz, along, s->equations.terms.ground[i]);
   }
-  for (int32_t i = 0; i < s->held_count; i++) {
+  for (int32_t i = 0; i < s->held.count; i++) {
     for (size_t k = 0; k < count; k++) along[k] = held_motion(s, i, first + k);
-    add_square(ritz, along, s->held_by);
+    add_square(ritz, along, s->held.by);
   }
 }
 
@@ -471,11 +473,11 @@ static bool refine(strut_path_system *s, size_t first, size_t count) {
     project(s, first, ritz);
     gsl_eigen_symmv(ritz, values, turn, eigen);
     gsl_eigen_symmv_sort(values, turn, GSL_EIGEN_SORT_VAL_ASC);
-    gsl_matrix_view soft = gsl_matrix_submatrix(s->vectors, 0, first, (size_t)s->n, count);
+    gsl_matrix_view soft = gsl_matrix_submatrix(s->algebra.vectors, 0, first, (size_t)s->n, count);
     gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1.0, &soft.matrix, turn, 0.0, turned);
     gsl_matrix_memcpy(&soft.matrix, turned);
     for (size_t k = 0; k < count; k++)
-      gsl_vector_set(s->values, first + k, gsl_vector_get(values, k));
+      gsl_vector_set(s->algebra.values, first + k, gsl_vector_get(values, k));
   }
   gsl_matrix_free(ritz);
   gsl_matrix_free(turn);
@@ -494,23 +496,25 @@ static double largest_across(const strut_path_system *s) {
 }
 
 static void find_vectors(strut_path_system *s) {
-  gsl_matrix_memcpy(s->work, s->hessian);
-  gsl_eigen_symmv(s->work, s->values, s->vectors, s->eigen);
-  gsl_eigen_symmv_sort(s->values, s->vectors, GSL_EIGEN_SORT_VAL_ASC);
+  gsl_matrix_memcpy(s->algebra.work, s->algebra.hessian);
+  gsl_eigen_symmv(s->algebra.work, s->algebra.values, s->algebra.vectors, s->algebra.eigen);
+  gsl_eigen_symmv_sort(s->algebra.values, s->algebra.vectors, GSL_EIGEN_SORT_VAL_ASC);
 }
 
 /* The soft eigenvalues are contiguous: index of the first and their number, nearest to zero. */
 static size_t find_soft(const strut_path_system *s, double below, size_t *first) {
   size_t count = 0, nearest = 0;
   for (size_t i = 1; i < (size_t)s->n; i++)
-    if (fabs(gsl_vector_get(s->values, i)) < fabs(gsl_vector_get(s->values, nearest))) nearest = i;
+    if (fabs(gsl_vector_get(s->algebra.values, i)) <
+        fabs(gsl_vector_get(s->algebra.values, nearest)))
+      nearest = i;
   *first = nearest;
-  if (fabs(gsl_vector_get(s->values, nearest)) > below) return 0;
+  if (fabs(gsl_vector_get(s->algebra.values, nearest)) > below) return 0;
   while (*first > 0 && nearest - *first < MOST_SOFT / 2 &&
-         fabs(gsl_vector_get(s->values, *first - 1)) <= below)
+         fabs(gsl_vector_get(s->algebra.values, *first - 1)) <= below)
     --*first;
   while (*first + count < (size_t)s->n && count < MOST_SOFT &&
-         fabs(gsl_vector_get(s->values, *first + count)) <= below)
+         fabs(gsl_vector_get(s->algebra.values, *first + count)) <= below)
     count++;
   return count;
 }
@@ -518,17 +522,17 @@ static size_t find_soft(const strut_path_system *s, double below, size_t *first)
 bool strut_path_spectrum(strut_path_system *s, const double *y, strut_path_spectrum_detail wanted) {
   size_t first;
   if (!strut_path_evaluate(s, y)) return false;
-  s->negative = 0;
+  s->spectrum.negative = 0;
   if (s->n == 0) return true;
   if (wanted == STRUT_PATH_VECTORS) {
     find_vectors(s);
   } else {
-    gsl_matrix_memcpy(s->work, s->hessian);
-    gsl_eigen_symm(s->work, s->values, s->values_only);
-    gsl_sort_vector(s->values);
+    gsl_matrix_memcpy(s->algebra.work, s->algebra.hessian);
+    gsl_eigen_symm(s->algebra.work, s->algebra.values, s->algebra.values_only);
+    gsl_sort_vector(s->algebra.values);
   }
-  double largest =
-      fmax(fabs(gsl_vector_get(s->values, 0)), fabs(gsl_vector_get(s->values, (size_t)s->n - 1)));
+  double largest = fmax(fabs(gsl_vector_get(s->algebra.values, 0)),
+                        fabs(gsl_vector_get(s->algebra.values, (size_t)s->n - 1)));
   double below = (wanted == STRUT_PATH_SIGNS ? UNSIGNED : SOFT) * largest;
   size_t soft = find_soft(s, below, &first);
   if (soft && wanted != STRUT_PATH_VECTORS) {
@@ -536,12 +540,12 @@ bool strut_path_spectrum(strut_path_system *s, const double *y, strut_path_spect
     soft = find_soft(s, below, &first);
   }
   if (soft && !refine(s, first, soft)) return false;
-  double parts = fmax(largest_across(s), soft ? s->soft_parts : 0.0);
+  double parts = fmax(largest_across(s), soft ? s->spectrum.soft_parts : 0.0);
   double zero = fmax(ZERO_VALUE * parts, NO_VALUE * largest);
-  s->noise = ROUNDING * largest;
+  s->spectrum.noise = ROUNDING * largest;
   for (size_t i = 0; i < (size_t)s->n; i++) {
     bool is_soft = i >= first && i < first + soft;
-    if (gsl_vector_get(s->values, i) < (is_soft ? -zero : 0.0)) s->negative++;
+    if (gsl_vector_get(s->algebra.values, i) < (is_soft ? -zero : 0.0)) s->spectrum.negative++;
   }
   return true;
 }

@@ -367,21 +367,22 @@ static double find_rate(const strut_path_system *s, int32_t i) {
     double high = respond(&p->high, i, strain, natural_in(&p->high, i), own->piece).force;
     return (high - low) / p->apart;
   }
-  double rate = e->slot >= 0 ? s->rates.rest[e->slot] : 0.0;
+  double rate = e->slot >= 0 ? s->equations.rates.rest[e->slot] : 0.0;
   if (rate == 0.0) return 0.0;
   double h = STRAIN_STEP * fmax(fabs(natural), fabs(strain));
   if (!(h > 0.0)) h = STRAIN_STEP;
-  double low = respond(&s->terms, i, strain, natural - h, own->piece).force;
-  double high = respond(&s->terms, i, strain, natural + h, own->piece).force;
+  double low = respond(&s->equations.terms, i, strain, natural - h, own->piece).force;
+  double high = respond(&s->equations.terms, i, strain, natural + h, own->piece).force;
   return rate * (high - low) / (2.0 * h);
 }
 
 /* Strain and gradient at system->q, natural strain of its terms, force and slope of its piece. */
 static void evaluate_element(strut_path_system *s, int32_t i) {
   strut_path_element *own = &s->elements.element[i];
-  strut_element_evaluate(s->model, i, s->terms.rest, s->q, own->turn, &own->pose);
-  own->pose.natural = natural_in(&s->terms, i);
-  strut_law_response r = respond(&s->terms, i, own->pose.strain, own->pose.natural, own->piece);
+  strut_element_evaluate(s->model, i, s->equations.terms.rest, s->latest.q, own->turn, &own->pose);
+  own->pose.natural = natural_in(&s->equations.terms, i);
+  strut_law_response r =
+      respond(&s->equations.terms, i, own->pose.strain, own->pose.natural, own->piece);
   own->pose.force = own->acts ? r.force : 0.0;
   own->pose.slope = own->acts ? r.slope : 0.0;
   own->rate = own->acts ? find_rate(s, i) : 0.0;
@@ -396,22 +397,22 @@ static void add_element(strut_path_system *s, int32_t i) {
   const strut_path_element *own = &s->elements.element[i];
   double k[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
   int32_t n = 2 * e->nodes;
-  strut_element_stiffness(s->model, i, &own->pose, s->q, k);
+  strut_element_stiffness(s->model, i, &own->pose, s->latest.q, k);
   for (int32_t a = 0; a < n; a++) {
     int32_t row = s->potential->row_of[place_of(s, e, a)];
     if (row < 0) continue;
     double pull = own->pose.force * own->pose.b[a], slope = own->rate * own->pose.b[a];
-    s->forces = fmax(s->forces, fabs(pull));
+    s->latest.forces = fmax(s->latest.forces, fabs(pull));
     for (int32_t b = 0; b < n; b++) {
       uint32_t at = place_of(s, e, b);
       int32_t column = s->potential->row_of[at];
       if (column >= 0)
-        *gsl_matrix_ptr(s->hessian, (size_t)row, (size_t)column) += k[a * n + b];
+        *gsl_matrix_ptr(s->algebra.hessian, (size_t)row, (size_t)column) += k[a * n + b];
       else
-        slope += k[a * n + b] * s->rates.position[at];
+        slope += k[a * n + b] * s->equations.rates.position[at];
     }
-    s->g[row] += pull;
-    s->slope[row] += slope;
+    s->latest.g[row] += pull;
+    s->latest.slope[row] += slope;
   }
 }
 
@@ -456,7 +457,7 @@ void strut_path_moments(const strut_path_system *s, double *moment) {
 }
 
 void strut_path_pressures(const strut_path_system *s, double *pressure) {
-  const strut_element_table *t = &s->model->elements, *now = &s->terms.laws->elements;
+  const strut_element_table *t = &s->model->elements, *now = &s->equations.terms.laws->elements;
   for (int32_t i = 0; i < t->count; i++)
     if (t->element[i].role == STRUT_ELEMENT_CELL)
       pressure[t->element[i].item] =
@@ -469,18 +470,19 @@ void strut_path_pressures(const strut_path_system *s, double *pressure) {
  */
 double strut_path_element_switch_value(const strut_path_system *s, int32_t which) {
   const strut_path_element_switch *w = &s->elements.switches[which];
-  const strut_element *e = &s->terms.laws->elements.element[w->element];
+  const strut_element *e = &s->equations.terms.laws->elements.element[w->element];
   const strut_path_element *own = &s->elements.element[w->element];
   strut_element_pose pose;
-  strut_element_evaluate(s->model, w->element, s->terms.rest, s->q, own->turn, &pose);
-  double natural = natural_in(&s->terms, w->element), x = pose.strain - natural;
+  strut_element_evaluate(s->model, w->element, s->equations.terms.rest, s->latest.q, own->turn,
+                         &pose);
+  double natural = natural_in(&s->equations.terms, w->element), x = pose.strain - natural;
   double unit = e->strain == STRUT_STRAIN_ANGLE ? s->size : 1.0;
   if (w->kink >= 0) {
     double kink = strut_law_kink(e->law, &e->numbers, w->kink);
     return is_kink_felt(e, kink) ? unit * (x - kink) : -HUGE_VAL;
   }
   double beyond = e->carries * x;
-  strut_law_response r = respond(&s->terms, w->element, pose.strain, natural, -1);
+  strut_law_response r = respond(&s->equations.terms, w->element, pose.strain, natural, -1);
   double slope = fmax(fabs(r.slope), e->numbers.stiffness);
   if (beyond > 0.0 && r.force != 0.0 && slope > 0.0)
     beyond = fmin(beyond, e->carries * r.force / slope);

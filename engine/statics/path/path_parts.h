@@ -138,27 +138,41 @@ typedef struct strut_path_system {
   bool drifts; /* the parameter works on a motion of the whole that meets no stiffness */
   double size; /* [m] */
   strut_path_parameter parameter;
-  strut_path_terms terms, rates; /* at terms_at; about rates_at */
-  strut_dd terms_at;
-  double rates_at;
-  bool has_terms, has_rates;
-  uint8_t *pulling, *touching; /* (members), (contacts) 1 where forces act, of whatever sign */
-  double *q, *q_low, *g, *slope, *row; /* (length), (length), (n), (n) dg/dy_n, (n + 1) scratch */
-  strut_path_member *member;           /* (members) */
+  strut_path_member *member; /* (members) */
   strut_path_elements elements;
-  double forces;      /* the largest force at the last place: what g is compared with [N] */
-  int32_t held_count; /* motions of the whole that were given a stiffness `held_by` */
-  double held_by, *held[STRUT_PATH_MOTIONS]; /* (n) each */
-  gsl_matrix *hessian, *work;                /* (n, n) */
-  gsl_matrix *bordered;                      /* (n + 1, n + 1) */
-  gsl_vector *right, *solution, *values;
-  gsl_matrix *vectors;
-  gsl_permutation *order;
-  gsl_eigen_symm_workspace *values_only;
-  gsl_eigen_symmv_workspace *eigen;
-  int32_t negative;  /* eigenvalues below zero, after strut_path_spectrum */
-  double noise;      /* rounding of the stiffness's entries [N/m], likewise */
-  double soft_parts; /* the largest part that an element has in a soft eigenvalue [N/m] */
+  /** The numbers of the equations, and their rates with the parameter. */
+  struct {
+    strut_path_terms terms, rates; /* at terms_at; about rates_at */
+    strut_dd terms_at;
+    double rates_at;
+    bool has_terms, has_rates;
+  } equations;
+  /** The latest place. */
+  struct {
+    uint8_t *pulling, *touching; /* (members), (contacts) 1 where forces act, of whatever sign */
+    double *q, *q_low, *g, *slope, *row; /* (length), (length), (n), (n) dg/dy_n, (n + 1) scratch */
+    double forces;                       /* the largest force: what g is compared with [N] */
+  } latest;
+  /** Motions of the whole that were given a stiffness. */
+  struct {
+    int32_t count;
+    double by, *motion[STRUT_PATH_MOTIONS]; /* (n) each */
+  } held;
+  struct {
+    gsl_matrix *hessian, *work; /* (n, n) */
+    gsl_matrix *bordered;       /* (n + 1, n + 1) */
+    gsl_vector *right, *solution, *values;
+    gsl_matrix *vectors;
+    gsl_permutation *order;
+    gsl_eigen_symm_workspace *values_only;
+    gsl_eigen_symmv_workspace *eigen;
+  } algebra;
+  /** After strut_path_spectrum. */
+  struct {
+    int32_t negative;  /* eigenvalues below zero */
+    double noise;      /* rounding of the stiffness's entries [N/m] */
+    double soft_parts; /* the largest part that an element has in a soft eigenvalue [N/m] */
+  } spectrum;
   strut_arena arena;
 } strut_path_system;
 

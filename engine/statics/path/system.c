@@ -22,34 +22,35 @@ static const double FRESH = 1e-3;      /* of the range: rates from so near by do
 static bool make_matrices(strut_path_system *s) {
   size_t unknowns = (size_t)s->n + 1; /* all may be held: then the parameter alone is unknown */
   size_t n = s->n > 0 ? (size_t)s->n : 1;
-  s->hessian = gsl_matrix_alloc(n, n);
-  s->work = gsl_matrix_alloc(n, n);
-  s->vectors = gsl_matrix_alloc(n, n);
-  s->values = gsl_vector_alloc(n);
-  s->eigen = gsl_eigen_symmv_alloc(n);
-  s->values_only = gsl_eigen_symm_alloc(n);
-  s->bordered = gsl_matrix_alloc(unknowns, unknowns);
-  s->right = gsl_vector_alloc(unknowns);
-  s->solution = gsl_vector_alloc(unknowns);
-  s->order = gsl_permutation_alloc(unknowns);
-  return s->hessian && s->work && s->vectors && s->values && s->eigen && s->values_only &&
-         s->bordered && s->right && s->solution && s->order;
+  s->algebra.hessian = gsl_matrix_alloc(n, n);
+  s->algebra.work = gsl_matrix_alloc(n, n);
+  s->algebra.vectors = gsl_matrix_alloc(n, n);
+  s->algebra.values = gsl_vector_alloc(n);
+  s->algebra.eigen = gsl_eigen_symmv_alloc(n);
+  s->algebra.values_only = gsl_eigen_symm_alloc(n);
+  s->algebra.bordered = gsl_matrix_alloc(unknowns, unknowns);
+  s->algebra.right = gsl_vector_alloc(unknowns);
+  s->algebra.solution = gsl_vector_alloc(unknowns);
+  s->algebra.order = gsl_permutation_alloc(unknowns);
+  return s->algebra.hessian && s->algebra.work && s->algebra.vectors && s->algebra.values &&
+         s->algebra.eigen && s->algebra.values_only && s->algebra.bordered && s->algebra.right &&
+         s->algebra.solution && s->algebra.order;
 }
 
 static bool make_arrays(strut_path_system *s) {
   size_t length = (size_t)s->model->length, members = (size_t)s->model->members.count;
-  double **arrays[] = {&s->q,   &s->q_low,   &s->g,       &s->slope,
-                       &s->row, &s->held[0], &s->held[1], &s->held[2]};
+  double **arrays[] = {&s->latest.q,   &s->latest.q_low,   &s->latest.g,       &s->latest.slope,
+                       &s->latest.row, &s->held.motion[0], &s->held.motion[1], &s->held.motion[2]};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
     if (!(*arrays[i] = strut_arena_allocate(&s->arena, length + 1, sizeof(double)))) return false;
-  s->pulling = strut_arena_allocate(&s->arena, members, 1);
-  s->touching = strut_arena_allocate(&s->arena, (size_t)s->model->contacts.count, 1);
+  s->latest.pulling = strut_arena_allocate(&s->arena, members, 1);
+  s->latest.touching = strut_arena_allocate(&s->arena, (size_t)s->model->contacts.count, 1);
   s->member = strut_arena_allocate(&s->arena, members, sizeof *s->member);
-  if (!s->pulling || !s->touching || !s->member) return false;
-  memset(s->pulling, 1, members);
+  if (!s->latest.pulling || !s->latest.touching || !s->member) return false;
+  memset(s->latest.pulling, 1, members);
   if (!strut_path_elements_create(s->model, &s->arena, &s->elements)) return false;
-  return strut_path_terms_create(s->model, &s->arena, &s->terms) &&
-         strut_path_terms_create(s->model, &s->arena, &s->rates);
+  return strut_path_terms_create(s->model, &s->arena, &s->equations.terms) &&
+         strut_path_terms_create(s->model, &s->arena, &s->equations.rates);
 }
 
 strut_status strut_path_system_create(const strut_model *model, const uint8_t *held,
@@ -65,19 +66,19 @@ strut_status strut_path_system_create(const strut_model *model, const uint8_t *h
 }
 
 void strut_path_system_free(strut_path_system *s) {
-  gsl_matrix_free(s->hessian);
-  gsl_matrix_free(s->work);
-  gsl_matrix_free(s->vectors);
-  gsl_matrix_free(s->bordered);
-  gsl_vector_free(s->values);
-  gsl_vector_free(s->right);
-  gsl_vector_free(s->solution);
-  gsl_permutation_free(s->order);
-  gsl_eigen_symmv_free(s->eigen);
-  gsl_eigen_symm_free(s->values_only);
+  gsl_matrix_free(s->algebra.hessian);
+  gsl_matrix_free(s->algebra.work);
+  gsl_matrix_free(s->algebra.vectors);
+  gsl_matrix_free(s->algebra.bordered);
+  gsl_vector_free(s->algebra.values);
+  gsl_vector_free(s->algebra.right);
+  gsl_vector_free(s->algebra.solution);
+  gsl_permutation_free(s->algebra.order);
+  gsl_eigen_symmv_free(s->algebra.eigen);
+  gsl_eigen_symm_free(s->algebra.values_only);
   strut_potential_free(s->potential);
   strut_path_parameter_free(&s->parameter);
-  strut_path_terms_release(&s->terms);
+  strut_path_terms_release(&s->equations.terms);
   strut_arena_free(&s->arena);
   *s = (strut_path_system){0};
 }
@@ -102,31 +103,32 @@ void strut_path_unplace(const strut_path_system *s, const double *q, double *y) 
 /* Terms at y's value, and where everything is. */
 static bool place(strut_path_system *s, const double *y) {
   strut_dd value = long_value(s, y);
-  if (!s->has_terms || value.hi != s->terms_at.hi || value.lo != s->terms_at.lo) {
-    s->has_terms = strut_path_parameter_terms(&s->parameter, value, &s->terms);
-    s->terms_at = value;
-    if (!s->has_terms) return false;
+  if (!s->equations.has_terms || value.hi != s->equations.terms_at.hi ||
+      value.lo != s->equations.terms_at.lo) {
+    s->equations.has_terms = strut_path_parameter_terms(&s->parameter, value, &s->equations.terms);
+    s->equations.terms_at = value;
+    if (!s->equations.has_terms) return false;
   }
-  size_t bytes = (size_t)s->model->length * sizeof *s->q;
-  memcpy(s->q, s->terms.position, bytes);
-  memcpy(s->q_low, s->terms.position_low, bytes);
+  size_t bytes = (size_t)s->model->length * sizeof *s->latest.q;
+  memcpy(s->latest.q, s->equations.terms.position, bytes);
+  memcpy(s->latest.q_low, s->equations.terms.position_low, bytes);
   for (int32_t i = 0; i < s->n; i++) {
     const strut_dd share = {y[i], y[s->n + 1 + i]};
     strut_dd at = dd_scale(share, s->size);
-    s->q[s->potential->coordinate[i]] = at.hi;
-    s->q_low[s->potential->coordinate[i]] = at.lo;
+    s->latest.q[s->potential->coordinate[i]] = at.hi;
+    s->latest.q_low[s->potential->coordinate[i]] = at.lo;
   }
   return true;
 }
 
 static strut_dd coordinate(const strut_path_system *s, uint32_t at) {
-  return (strut_dd){s->q[at], s->q_low[at]};
+  return (strut_dd){s->latest.q[at], s->latest.q_low[at]};
 }
 
 /* Length of a member, and what it is longer than its rest length. */
 static double measure_member(const strut_path_system *s, int32_t j, strut_path_member *m) {
   const strut_member_table *t = &s->model->members;
-  const strut_dd rest = {s->terms.rest[j], s->terms.rest_low[j]};
+  const strut_dd rest = {s->equations.terms.rest[j], s->equations.terms.rest_low[j]};
   strut_dd dx = dd_sub(coordinate(s, t->to[j]), coordinate(s, t->from[j]));
   strut_dd dy = dd_sub(coordinate(s, t->to[j] + 1), coordinate(s, t->from[j] + 1));
   strut_dd length = dd_length(dx, dy);
@@ -137,7 +139,7 @@ static double measure_member(const strut_path_system *s, int32_t j, strut_path_m
 
 static double gap_of(const strut_path_system *s, int32_t i) {
   uint32_t at = s->model->contacts.at[i];
-  const double *point = s->terms.point, *normal = s->terms.normal;
+  const double *point = s->equations.terms.point, *normal = s->equations.terms.normal;
   strut_dd x = dd_sub(coordinate(s, at), dd_of(point[0]));
   strut_dd y = dd_sub(coordinate(s, at + 1), dd_of(point[1]));
   return dd_double(dd_add(dd_scale(x, normal[0]), dd_scale(y, normal[1])));
@@ -147,22 +149,22 @@ static void add_stiffness(strut_path_system *s, const int32_t *row, int count, d
   for (int a = 0; a < count; a++)
     for (int b = 0; b < count; b++)
       if (row[a] >= 0 && row[b] >= 0)
-        *gsl_matrix_ptr(s->hessian, (size_t)row[a], (size_t)row[b]) += block[a][b];
+        *gsl_matrix_ptr(s->algebra.hessian, (size_t)row[a], (size_t)row[b]) += block[a][b];
 }
 
 /* Derivative of a member's force on its second node with respect to the parameter, at fixed nodes. */
 static void member_rate(const strut_path_system *s, int32_t j, double rate[2]) {
   const strut_path_member *m = &s->member[j];
   const uint32_t a = s->model->members.from[j], b = s->model->members.to[j];
-  double d[2], k = s->terms.stiffness[j];
+  double d[2], k = s->equations.terms.stiffness[j];
   for (uint32_t c = 0; c < 2; c++) {
-    double there = s->potential->row_of[b + c] < 0 ? s->rates.position[b + c] : 0;
-    double here = s->potential->row_of[a + c] < 0 ? s->rates.position[a + c] : 0;
+    double there = s->potential->row_of[b + c] < 0 ? s->equations.rates.position[b + c] : 0;
+    double here = s->potential->row_of[a + c] < 0 ? s->equations.rates.position[a + c] : 0;
     d[c] = there - here;
   }
   double along = m->ux * d[0] + m->uy * d[1];
-  double tension = k * (along - s->rates.rest[j]);
-  if (k > 0) tension += s->rates.stiffness[j] * m->tension / k;
+  double tension = k * (along - s->equations.rates.rest[j]);
+  if (k > 0) tension += s->equations.rates.stiffness[j] * m->tension / k;
   rate[0] = tension * m->ux + m->across * (d[0] - along * m->ux);
   rate[1] = tension * m->uy + m->across * (d[1] - along * m->uy);
 }
@@ -170,13 +172,13 @@ static void member_rate(const strut_path_system *s, int32_t j, double rate[2]) {
 static void add_members(strut_path_system *s) {
   for (int32_t j = 0; j < s->model->members.count; j++) {
     strut_path_member *m = &s->member[j];
-    double stretch = measure_member(s, j, m), k = s->terms.stiffness[j], rate[2];
-    m->pulls = s->pulling[j];
+    double stretch = measure_member(s, j, m), k = s->equations.terms.stiffness[j], rate[2];
+    m->pulls = s->latest.pulling[j];
     if (!m->pulls) continue;
     m->tension = k * stretch;
     /* of zero length and zero rest length: a spring alike in all directions */
-    m->across = m->length > 0 ? m->tension / m->length : s->terms.rest[j] > 0 ? 0.0 : k;
-    s->forces = fmax(s->forces, fabs(m->tension));
+    m->across = m->length > 0 ? m->tension / m->length : s->equations.terms.rest[j] > 0 ? 0.0 : k;
+    s->latest.forces = fmax(s->latest.forces, fabs(m->tension));
     int32_t row[4];
     double block[4][4], along = k - m->across;
     const double u[2] = {m->ux, m->uy}, force[2] = {m->tension * m->ux, m->tension * m->uy};
@@ -184,7 +186,8 @@ static void add_members(strut_path_system *s) {
     member_rate(s, j, rate);
     for (int a = 0; a < 4; a++) {
       double sign = a < 2 ? -1.0 : 1.0;
-      if (row[a] >= 0) s->g[row[a]] += sign * force[a % 2], s->slope[row[a]] += sign * rate[a % 2];
+      if (row[a] >= 0)
+        s->latest.g[row[a]] += sign * force[a % 2], s->latest.slope[row[a]] += sign * rate[a % 2];
       for (int b = 0; b < 4; b++) {
         double entry = along * u[a % 2] * u[b % 2] + (a % 2 == b % 2 ? m->across : 0.0);
         block[a][b] = a / 2 == b / 2 ? entry : -entry;
@@ -196,23 +199,26 @@ static void add_members(strut_path_system *s) {
 
 /* The ground as a spring that is there or not, whatever the sign of the gap. */
 static void add_contacts(strut_path_system *s) {
-  const double *normal = s->terms.normal, *turn = s->rates.normal, *point = s->terms.point;
+  const double *normal = s->equations.terms.normal, *turn = s->equations.rates.normal,
+               *point = s->equations.terms.point;
   for (int32_t i = 0; i < s->model->contacts.count; i++) {
     uint32_t at = s->model->contacts.at[i];
     const int32_t *row = s->potential->row_of + at;
-    double gap = gap_of(s, i), k = s->terms.ground[i], block[4][4] = {{0}};
-    if (!s->touching[i]) continue;
-    double rate = (s->q[at] - point[0]) * turn[0] + (s->q[at + 1] - point[1]) * turn[1] -
-                  (s->rates.point[0] * normal[0] + s->rates.point[1] * normal[1]);
+    double gap = gap_of(s, i), k = s->equations.terms.ground[i], block[4][4] = {{0}};
+    if (!s->latest.touching[i]) continue;
+    double rate =
+        (s->latest.q[at] - point[0]) * turn[0] + (s->latest.q[at + 1] - point[1]) * turn[1] -
+        (s->equations.rates.point[0] * normal[0] + s->equations.rates.point[1] * normal[1]);
     for (int a = 0; a < 2; a++) { /* a support on the ground that is moved */
-      if (row[a] < 0) rate += normal[a] * s->rates.position[at + (uint32_t)a];
+      if (row[a] < 0) rate += normal[a] * s->equations.rates.position[at + (uint32_t)a];
       for (int b = 0; b < 2; b++) block[a][b] = k * normal[a] * normal[b];
     }
-    s->forces = fmax(s->forces, fabs(k * gap));
+    s->latest.forces = fmax(s->latest.forces, fabs(k * gap));
     for (int a = 0; a < 2; a++) {
       if (row[a] < 0) continue;
-      s->g[row[a]] += k * gap * normal[a];
-      s->slope[row[a]] += (s->rates.ground[i] * gap + k * rate) * normal[a] + k * gap * turn[a];
+      s->latest.g[row[a]] += k * gap * normal[a];
+      s->latest.slope[row[a]] +=
+          (s->equations.rates.ground[i] * gap + k * rate) * normal[a] + k * gap * turn[a];
     }
     add_stiffness(s, row, 2, block);
   }
@@ -222,19 +228,20 @@ static void add_contacts(strut_path_system *s) {
 static bool rigid_motion(const strut_path_system *s, int which, double *motion) {
   const double axis[2][2] = {{1, 0}, {0, 1}};
   bool sloped = s->model->contacts.count > 0;
-  const double *out = sloped ? s->terms.normal : axis[1];
+  const double *out = sloped ? s->equations.terms.normal : axis[1];
   const double tangent[2] = {out[1], -out[0]}, *along = sloped ? tangent : axis[0];
   double centre[2] = {0, 0}, sum = 0;
   int32_t nodes = s->model->node_count, pins = 0;
   const int32_t *row_of = s->potential->row_of;
   for (int32_t i = 0; i < nodes; i++)
-    for (int c = 0; c < 2; c++) centre[c] += s->q[2 * i + c] / nodes;
+    for (int c = 0; c < 2; c++) centre[c] += s->latest.q[2 * i + c] / nodes;
   for (int32_t i = 0; i < nodes; i++)
     if (row_of[2 * i] < 0 && row_of[2 * i + 1] < 0 && pins++ == 0)
-      centre[0] = s->q[2 * i], centre[1] = s->q[2 * i + 1];
+      centre[0] = s->latest.q[2 * i], centre[1] = s->latest.q[2 * i + 1];
   bool possible = true;
   for (int32_t at = 0; at < 2 * nodes; at++) {
-    double turn = at % 2 == 0 ? -(s->q[at + 1] - centre[1]) : s->q[at - 1] - centre[0];
+    double turn =
+        at % 2 == 0 ? -(s->latest.q[at + 1] - centre[1]) : s->latest.q[at - 1] - centre[0];
     double there = which == 0 ? along[at % 2] : which == 1 ? out[at % 2] : turn / s->size;
     int32_t row = row_of[at];
     if (row < 0 && fabs(there) > RIGID) possible = false;
@@ -249,53 +256,54 @@ static void hold_rigid_motions(strut_path_system *s) {
   size_t n = (size_t)s->n;
   double low, high, work = 0, load = 0;
   s->drifts = false;
-  s->held_count = 0;
+  s->held.count = 0;
   if (n == 0) return;
-  gsl_matrix_minmax(s->hessian, &low, &high);
+  gsl_matrix_minmax(s->algebra.hessian, &low, &high);
   double stiff = fmax(-low, high);
-  s->held_by = stiff > 0 ? stiff : 1.0;
-  gsl_vector_view product = gsl_vector_subvector(s->solution, 0, n);
+  s->held.by = stiff > 0 ? stiff : 1.0;
+  gsl_vector_view product = gsl_vector_subvector(s->algebra.solution, 0, n);
   for (int k = 0; k < STRUT_PATH_MOTIONS; k++) {
-    double *row = s->held[s->held_count];
+    double *row = s->held.motion[s->held.count];
     gsl_vector_view motion = gsl_vector_view_array(row, n);
     if (!rigid_motion(s, k, row)) continue;
     work = load = 0;
     for (int32_t i = 0; i < s->n; i++)
-      work += s->slope[i] * row[i], load += s->slope[i] * s->slope[i];
-    gsl_blas_dsymv(CblasLower, 1.0, s->hessian, &motion.vector, 0.0, &product.vector);
+      work += s->latest.slope[i] * row[i], load += s->latest.slope[i] * s->latest.slope[i];
+    gsl_blas_dsymv(CblasLower, 1.0, s->algebra.hessian, &motion.vector, 0.0, &product.vector);
     if (gsl_blas_dnrm2(&product.vector) > RIGID * stiff) continue;
     if (fabs(work) > RIGID * sqrt(load)) {
       s->drifts = true;
       continue;
     }
-    gsl_blas_dger(s->held_by, &motion.vector, &motion.vector, s->hessian);
-    s->held_count++;
+    gsl_blas_dger(s->held.by, &motion.vector, &motion.vector, s->algebra.hessian);
+    s->held.count++;
   }
 }
 
 /* Rates of about there, or of exactly there. */
 static bool update_rates(strut_path_system *s, bool exactly) {
-  double value = dd_double(s->terms_at);
-  double apart = fabs(value - s->rates_at) / fabs(s->parameter.range);
-  if (s->has_rates && (exactly ? apart == 0 : apart <= FRESH)) return true;
-  s->has_rates = strut_path_parameter_rates(&s->parameter, value, &s->rates);
-  s->rates_at = value;
-  return s->has_rates;
+  double value = dd_double(s->equations.terms_at);
+  double apart = fabs(value - s->equations.rates_at) / fabs(s->parameter.range);
+  if (s->equations.has_rates && (exactly ? apart == 0 : apart <= FRESH)) return true;
+  s->equations.has_rates = strut_path_parameter_rates(&s->parameter, value, &s->equations.rates);
+  s->equations.rates_at = value;
+  return s->equations.has_rates;
 }
 
 static bool evaluate(strut_path_system *s, const double *y, bool exactly) {
   if (!place(s, y) || !update_rates(s, exactly)) return false;
-  s->forces = 0;
+  s->latest.forces = 0;
   for (int32_t i = 0; i < s->n; i++) {
     int32_t at = s->potential->coordinate[i];
-    s->g[i] = -s->terms.force[at], s->slope[i] = -s->rates.force[at];
-    s->forces = fmax(s->forces, fabs(s->terms.force[at]));
+    s->latest.g[i] = -s->equations.terms.force[at],
+    s->latest.slope[i] = -s->equations.rates.force[at];
+    s->latest.forces = fmax(s->latest.forces, fabs(s->equations.terms.force[at]));
   }
-  gsl_matrix_set_zero(s->hessian);
+  gsl_matrix_set_zero(s->algebra.hessian);
   add_members(s);
   strut_path_add_elements(s);
   add_contacts(s);
-  for (int32_t i = 0; i < s->n; i++) s->slope[i] *= s->parameter.range;
+  for (int32_t i = 0; i < s->n; i++) s->latest.slope[i] *= s->parameter.range;
   hold_rigid_motions(s);
   return true;
 }
@@ -304,7 +312,7 @@ bool strut_path_evaluate(strut_path_system *s, const double *y) { return evaluat
 
 void strut_path_reactions(const strut_path_system *s, double *reaction, double *contact) {
   const strut_member_table *t = &s->model->members;
-  for (int32_t at = 0; at < s->model->length; at++) reaction[at] = -s->terms.force[at];
+  for (int32_t at = 0; at < s->model->length; at++) reaction[at] = -s->equations.terms.force[at];
   for (int32_t j = 0; j < t->count; j++) {
     const strut_path_member *m = &s->member[j];
     double fx = m->tension * m->ux, fy = m->tension * m->uy;
@@ -313,9 +321,9 @@ void strut_path_reactions(const strut_path_system *s, double *reaction, double *
   }
   strut_path_element_reactions(s, reaction);
   for (int32_t i = 0; i < s->model->contacts.count; i++) {
-    contact[i] = s->touching[i] ? 0.0 - s->terms.ground[i] * gap_of(s, i) : 0.0;
+    contact[i] = s->latest.touching[i] ? 0.0 - s->equations.terms.ground[i] * gap_of(s, i) : 0.0;
     for (uint32_t c = 0; c < 2; c++)
-      reaction[s->model->contacts.at[i] + c] -= contact[i] * s->terms.normal[c];
+      reaction[s->model->contacts.at[i] + c] -= contact[i] * s->equations.terms.normal[c];
   }
   for (int32_t at = 0; at < s->model->length; at++)
     reaction[at] =
@@ -329,19 +337,20 @@ static bool solve(strut_path_system *s, const double *row, const double *top, do
     double most = 0;
     for (size_t j = 0; j <= n; j++) {
       double entry = i == n  ? row[j]
-                     : j < n ? s->size * gsl_matrix_get(s->hessian, i, j)
-                             : s->slope[i];
-      gsl_matrix_set(s->bordered, i, j, entry);
+                     : j < n ? s->size * gsl_matrix_get(s->algebra.hessian, i, j)
+                             : s->latest.slope[i];
+      gsl_matrix_set(s->algebra.bordered, i, j, entry);
       most = fmax(most, fabs(entry));
     }
     if (!(most > 0) || !isfinite(most)) return false;
-    gsl_vector_set(s->right, i, (i == n ? bottom : top ? top[i] : 0.0) / most);
-    for (size_t j = 0; j <= n; j++) *gsl_matrix_ptr(s->bordered, i, j) /= most;
+    gsl_vector_set(s->algebra.right, i, (i == n ? bottom : top ? top[i] : 0.0) / most);
+    for (size_t j = 0; j <= n; j++) *gsl_matrix_ptr(s->algebra.bordered, i, j) /= most;
   }
-  strut_lu_factor(s->bordered, s->order);
+  strut_lu_factor(s->algebra.bordered, s->algebra.order);
   for (size_t i = 0; i <= n; i++)
-    if (gsl_matrix_get(s->bordered, i, i) == 0.0) return false;
-  return gsl_linalg_LU_solve(s->bordered, s->order, s->right, s->solution) == 0;
+    if (gsl_matrix_get(s->algebra.bordered, i, i) == 0.0) return false;
+  return gsl_linalg_LU_solve(s->algebra.bordered, s->algebra.order, s->algebra.right,
+                             s->algebra.solution) == 0;
 }
 
 int strut_path_correct(strut_path_system *s, const double *row, double value, double *y) {
@@ -354,18 +363,18 @@ int strut_path_correct(strut_path_system *s, const double *row, double value, do
     for (int32_t i = 0; i < count; i++) bottom -= row[i] * y[i];
     for (int32_t i = 0; i < count; i++) bottom -= row[i] * y[count + i];
     for (int32_t i = 0; i < s->n; i++) {
-      left = fmax(left, fabs(s->g[i]));
-      s->g[i] = -s->g[i];
+      left = fmax(left, fabs(s->latest.g[i]));
+      s->latest.g[i] = -s->latest.g[i];
     }
-    if (!solve(s, row, s->g, bottom)) return -1;
+    if (!solve(s, row, s->latest.g, bottom)) return -1;
     for (int32_t i = 0; i < count; i++) {
-      double step = gsl_vector_get(s->solution, (size_t)i);
+      double step = gsl_vector_get(s->algebra.solution, (size_t)i);
       change = fmax(change, fabs(step));
       strut_dd sum = dd_add((strut_dd){y[i], y[count + i]}, dd_of(step));
       y[i] = sum.hi, y[count + i] = sum.lo;
     }
     if (!used && change <= CONVERGED) used = k;
-    if ((change <= CONVERGED && left <= BALANCED * s->forces) ||
+    if ((change <= CONVERGED && left <= BALANCED * s->latest.forces) ||
         (before <= NEAR && change <= NEAR && change > 0.3 * before))
       return used ? used : k;
     if (!isfinite(change) || change > FAR || (k > 2 && change > 4 * before)) return -1;
@@ -378,7 +387,7 @@ bool strut_path_tangent(strut_path_system *s, const double *y, const double *row
   double sum = 0;
   if (!evaluate(s, y, true) || !solve(s, row, NULL, 1.0)) return false;
   for (int32_t i = 0; i <= s->n; i++) {
-    tangent[i] = gsl_vector_get(s->solution, (size_t)i);
+    tangent[i] = gsl_vector_get(s->algebra.solution, (size_t)i);
     sum += tangent[i] * tangent[i];
   }
   if (!isfinite(sum) || sum == 0) return false;
@@ -412,7 +421,7 @@ double strut_path_switch_value(strut_path_system *s, int32_t which, const double
 bool strut_path_switch_is_on(const strut_path_system *s, int32_t which) {
   int32_t members = s->model->members.count, elements = strut_path_first_element_switch(s);
   if (which >= elements) return strut_path_element_switch_is_on(s, which - elements);
-  return which < members ? s->pulling[which] : s->touching[which - members] != 0;
+  return which < members ? s->latest.pulling[which] : s->latest.touching[which - members] != 0;
 }
 
 void strut_path_switch_set(strut_path_system *s, int32_t which, bool on) {
@@ -421,7 +430,7 @@ void strut_path_switch_set(strut_path_system *s, int32_t which, bool on) {
   if (which >= elements)
     strut_path_element_switch_set(s, which - elements, on);
   else if (which < members)
-    s->pulling[which] = on;
+    s->latest.pulling[which] = on;
   else
-    s->touching[which - members] = on;
+    s->latest.touching[which - members] = on;
 }

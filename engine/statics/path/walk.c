@@ -45,7 +45,7 @@ static bool keep_state(strut_path_walk *w, const double *y, strut_path_point *po
     return false;
   }
   strut_path_evaluate(s, y); /* y is of the path: its value was not refused */
-  memcpy(point->q, s->q, length * sizeof *s->q);
+  memcpy(point->q, s->latest.q, length * sizeof *s->latest.q);
   for (size_t j = 0; j < members; j++) {
     bool cable = model->scene->members[j].kind == STRUT_CABLE; /* at a kink a rounding may push */
     point->force[j] = cable ? fmax(s->member[j].tension, 0.0) : s->member[j].tension;
@@ -146,7 +146,8 @@ static int32_t most_moved(const strut_path_system *s, const gsl_vector *vector) 
 static double coupling(const strut_path_system *s, const gsl_vector *vector) {
   double work = 0, load = 0;
   for (int32_t i = 0; i < s->n; i++)
-    work += s->slope[i] * gsl_vector_get(vector, (size_t)i), load += s->slope[i] * s->slope[i];
+    work += s->latest.slope[i] * gsl_vector_get(vector, (size_t)i),
+        load += s->latest.slope[i] * s->latest.slope[i];
   return load > 0 ? fabs(work) / sqrt(load) : 0;
 }
 
@@ -168,7 +169,7 @@ static void find_critical(strut_path_walk *w, const strut_path_piece *piece, int
   /* no sign at one end: a loose part, neutral there, and no branch */
   if (strut_path_locate(s, piece, strut_path_measure_eigenvalue, which, w->trial) < 0) return;
   if (!strut_path_spectrum(s, w->trial, STRUT_PATH_VECTORS)) return;
-  gsl_vector_const_view null = gsl_matrix_const_column(s->vectors, (size_t)which);
+  gsl_vector_const_view null = gsl_matrix_const_column(s->algebra.vectors, (size_t)which);
   int32_t node = most_moved(s, &null.vector);
   const char *name = s->model->scene->nodes[node].name;
   const char *stable = before == 0  ? ", unstable from here"
@@ -210,7 +211,7 @@ static double first_switch(strut_path_walk *w, const strut_path_piece *piece, in
 void strut_path_count_negative(strut_path_walk *w) {
   strut_path_spectrum(&w->system, w->y,
                       STRUT_PATH_SIGNS); /* y is of the path: its value was not refused */
-  w->negative = w->system.negative;
+  w->negative = w->system.spectrum.negative;
 }
 
 /* Predictor and corrector, shorter until they succeed: the next point and its tangent. */
@@ -258,7 +259,8 @@ static bool find_next_on_branch(strut_path_walk *w) {
   bool found = find_next(w), jumped = found && w->negative >= 0;
   while (jumped) {
     jumped = w->step > SHORTEST_CHECKED && w->tangent[s->n] * w->next_tangent[s->n] > 0 &&
-             strut_path_spectrum(s, w->next, STRUT_PATH_SIGNS) && s->negative != w->negative;
+             strut_path_spectrum(s, w->next, STRUT_PATH_SIGNS) &&
+             s->spectrum.negative != w->negative;
     if (!jumped) break;
     if (!y) y = strut_allocate(1, bytes_of(w)), tangent = strut_allocate(1, bytes_of(w));
     w->failed = w->failed || !y || !tangent;
@@ -295,7 +297,7 @@ static void find_criticals(strut_path_walk *w, const strut_path_piece *piece) {
   strut_path_system *s = &w->system;
   double turn = w->next_tangent[s->n];
   if (!strut_path_spectrum(s, piece->to, STRUT_PATH_SIGNS)) return;
-  int32_t before = w->negative, after = s->negative;
+  int32_t before = w->negative, after = s->spectrum.negative;
   for (int32_t k = before; k < after && piece->length > 0; k++)
     find_critical(w, piece, k, turn, k, k + 1);
   for (int32_t k = before; k > after && piece->length > 0; k--)
@@ -327,7 +329,7 @@ static void name_vanished(strut_path_walk *w, char *text, size_t room) {
   const strut_scene *scene = w->system.model->scene;
   *text = '\0';
   if (!strut_path_evaluate(&w->system, w->y)) return;
-  const double *q = w->system.q;
+  const double *q = w->system.latest.q;
   for (size_t i = 0; i < scene->member_count; i++) {
     const strut_member *m = &scene->members[i];
     for (size_t k = 0; k < m->guide_count + 1; k++) {
@@ -418,7 +420,7 @@ bool strut_path_walk_step(strut_path_walk *w) {
 static bool first_tangent(strut_path_walk *w) {
   strut_path_system *s = &w->system;
   if (strut_path_tangent(s, w->y, w->upward, w->tangent)) return true;
-  for (int32_t i = 0; i < s->n; i++) w->trial[i] = -s->slope[i];
+  for (int32_t i = 0; i < s->n; i++) w->trial[i] = -s->latest.slope[i];
   w->trial[s->n] = 0;
   return strut_path_tangent(s, w->y, w->trial, w->tangent);
 }

@@ -37,10 +37,10 @@ static strut_status follow_from(const strut_follow_options *o, strut_follow_resu
     if (strut_follow_curve_passes(u, &r->curves[i], &start)) return STRUT_OK;
   if (r->curve_count == STRUT_FOLLOW_MOST_CURVES) return STRUT_OK;
   strut_follow_curve *c = &r->curves[r->curve_count];
-  int64_t steps = u->s.steps_per_period;
-  if (gap && steps < STEPS_PER_PERIOD) u->s.steps_per_period = STEPS_PER_PERIOD;
+  int64_t steps = u->s.how.steps_per_period;
+  if (gap && steps < STEPS_PER_PERIOD) u->s.how.steps_per_period = STEPS_PER_PERIOD;
   strut_status status = strut_follow_curve_make(u, &start, &limits, c, error);
-  u->s.steps_per_period = steps;
+  u->s.how.steps_per_period = steps;
   if (c->count > 1 && (!status || status == STRUT_INTERRUPTED)) {
     r->curve_count++;
     return status;
@@ -63,12 +63,12 @@ strut_status strut_follow_find_curves(const strut_follow_options *o, strut_follo
   strut_follow_surface u = {.scenes = o->second.scenes,
                             .low = {o->low, o->second.low},
                             .high = {o->high, o->second.high},
-                            .s = {.method = like->method,
-                                  .tolerance = like->tolerance,
-                                  .steps_per_period = like->steps_per_period,
-                                  .repeats = 1,
-                                  .threads = o->threads,
-                                  .interrupt = o->interrupt}};
+                            .s = {.how.method = like->how.method,
+                                  .how.tolerance = like->how.tolerance,
+                                  .how.steps_per_period = like->how.steps_per_period,
+                                  .how.repeats = 1,
+                                  .how.threads = o->threads,
+                                  .how.interrupt = o->interrupt}};
   const double value[2] = {0.5 * (o->low + o->high), o->second.value};
   strut_status status = strut_follow_surface_open(&u, value, error);
   u.s.length = like->length, u.s.speed = like->speed;
@@ -76,7 +76,7 @@ strut_status strut_follow_find_curves(const strut_follow_options *o, strut_follo
     const strut_follow_branch *b = &r->branches[i].branch;
     for (size_t k = 0; k < b->count && !status; k++) {
       if (!strut_follow_curve_known(b->points[k].kind)) continue;
-      u.s.repeats = b->repeats;
+      u.s.how.repeats = b->repeats;
       u.s.value = (double)NAN; /* the maps are made again, with their repeats and steps */
       status = follow_from(o, r, &u, &b->points[k], error);
     }
@@ -299,7 +299,7 @@ static bool comes_back(strut_follow_system *s, const double *y, const kick *k, d
     double along = ground ? t[i % 2] : i % 2 == 0, outward = ground ? n[i % 2] : i % 2 == 1;
     if (!m->fixed[i]) work[m->length + i] += speed * (k->along * along + k->outward * outward);
   }
-  for (int period = 0; period < PERIODS; period += s->repeats) {
+  for (int period = 0; period < PERIODS; period += s->how.repeats) {
     if (!isfinite(strut_follow_apply(s, work, false).travel)) return false;
     strut_follow_centre(s, work);
     double off = 0.0;
@@ -316,12 +316,12 @@ static double smallest_kick(strut_follow_system *s, const double *y, const kick 
   while (comes_back(s, y, k, high, work)) {
     low = high, high *= GROWTH;
     if (high > LARGEST * s->speed) return HUGE_VAL;
-    if (s->interrupt && *s->interrupt) return (double)NAN;
+    if (s->how.interrupt && *s->how.interrupt) return (double)NAN;
   }
   for (int i = 0; i < HALVINGS; i++) {
     double middle = low > 0.0 ? sqrt(low * high) : 0.5 * high;
     *(comes_back(s, y, k, middle, work) ? &low : &high) = middle;
-    if (s->interrupt && *s->interrupt) return (double)NAN;
+    if (s->how.interrupt && *s->how.interrupt) return (double)NAN;
   }
   return high;
 }
@@ -332,7 +332,7 @@ strut_status strut_follow_push(strut_follow_system *s, const double *y, strut_fo
   if (!work) return strut_no_memory(error, "");
   for (int i = 0; i < STRUT_FOLLOW_KICKS; i++)
     basin->kick[i] = smallest_kick(s, y, &kicks[i], work);
-  if (s->interrupt && *s->interrupt)
+  if (s->how.interrupt && *s->how.interrupt)
     return strut_fail(error, STRUT_INTERRUPTED, "interrupted while motions were kicked");
   return STRUT_OK;
 }

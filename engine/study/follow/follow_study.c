@@ -91,14 +91,14 @@ static strut_status open_with(follower *f, double value, const char *method) {
   *s = (strut_follow_system){.scenes = f->o->scenes,
                              .low = f->o->low,
                              .high = f->o->high,
-                             .method = method,
-                             .tolerance = fmin(2.5e-6, accuracy_of(f) * TOLERANCE),
-                             .steps_per_period = adaptive ? STEPS_PER_PERIOD : FIXED_STEPS,
-                             .repeats = 1,
-                             .threads = f->o->threads,
-                             .interrupt = f->o->interrupt};
+                             .how.method = method,
+                             .how.tolerance = fmin(2.5e-6, accuracy_of(f) * TOLERANCE),
+                             .how.steps_per_period = adaptive ? STEPS_PER_PERIOD : FIXED_STEPS,
+                             .how.repeats = 1,
+                             .how.threads = f->o->threads,
+                             .how.interrupt = f->o->interrupt};
   snprintf(f->r->method, sizeof f->r->method, "%s", method);
-  f->r->tolerance = s->tolerance;
+  f->r->tolerance = s->how.tolerance;
   f->opened = true;
   return strut_follow_open(s, value, f->error);
 }
@@ -131,7 +131,7 @@ static strut_status find_known(follower *f, const double *y, const char *label, 
   *known = false;
   for (size_t i = 0; i < f->r->count && !*known; i++) {
     const strut_follow_branch *b = &f->r->branches[i].branch;
-    if (b->repeats != f->s.repeats) continue;
+    if (b->repeats != f->s.how.repeats) continue;
     strut_status status = strut_follow_is_on(&f->s, b, y, known, f->error);
     if (status) return status;
     if (*known) {

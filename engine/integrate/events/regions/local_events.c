@@ -24,55 +24,57 @@ enum { MOST_ATTEMPTS = 8, MOST_PIECES = 20000 };
 static bool make_members(const strut_model *model, strut_arena *arena, strut_local_events *p) {
   const strut_member_table *t = &model->members;
   size_t slots = (size_t)t->slots + STRUT_LANES;
-  p->from = strut_arena_allocate(arena, slots, sizeof *p->from);
-  p->to = strut_arena_allocate(arena, slots, sizeof *p->to);
-  double **all[] = {&p->stiffness,
-                    &p->damping,
-                    &p->rest,
+  p->members.from = strut_arena_allocate(arena, slots, sizeof *p->members.from);
+  p->members.to = strut_arena_allocate(arena, slots, sizeof *p->members.to);
+  double **all[] = {&p->members.stiffness,
+                    &p->members.damping,
+                    &p->members.rest,
                     &p->shell.latest.rest_rate,
                     &p->shell.modes.slack_length_threshold,
                     &p->shell.modes.slack_force_threshold};
-  bool good = p->from && p->to;
+  bool good = p->members.from && p->members.to;
   for (size_t k = 0; k < sizeof all / sizeof *all && good; k++)
     good = (*all[k] = strut_arena_allocate(arena, slots, sizeof(double)));
-  p->shell.latest.rest = p->rest;
-  p->table = (strut_member_table){.from = p->from,
-                                  .to = p->to,
-                                  .stiffness = p->stiffness,
-                                  .damping = p->damping,
-                                  .rest = p->rest};
+  p->shell.latest.rest = p->members.rest;
+  p->members.table = (strut_member_table){.from = p->members.from,
+                                          .to = p->members.to,
+                                          .stiffness = p->members.stiffness,
+                                          .damping = p->members.damping,
+                                          .rest = p->members.rest};
   return good;
 }
 
 static bool make_laws(const strut_model *model, strut_arena *arena, const strut_event_stepper *l,
                       strut_local_events *p) {
   size_t members = (size_t)model->members.count, laws = (size_t)l->law_count;
-  p->law_of = strut_arena_allocate(arena, members, sizeof *p->law_of);
-  p->law = strut_arena_allocate(arena, laws, sizeof *p->law);
-  p->acting = strut_arena_allocate(arena, laws, 1);
-  if (!p->law_of || !p->law || !p->acting) return false;
-  for (size_t j = 0; j < members; j++) p->law_of[j] = -1;
-  for (int32_t k = 0; k < l->law_count; k++) p->law_of[l->laws[k].member] = k;
+  p->members.law_of = strut_arena_allocate(arena, members, sizeof *p->members.law_of);
+  p->members.law = strut_arena_allocate(arena, laws, sizeof *p->members.law);
+  p->before.acting = strut_arena_allocate(arena, laws, 1);
+  if (!p->members.law_of || !p->members.law || !p->before.acting) return false;
+  for (size_t j = 0; j < members; j++) p->members.law_of[j] = -1;
+  for (int32_t k = 0; k < l->law_count; k++) p->members.law_of[l->laws[k].member] = k;
   return true;
 }
 
 static bool make_scratch(const strut_model *model, strut_arena *arena, strut_local_events *p) {
   size_t contacts = (size_t)model->contacts.count, nodes = (size_t)model->node_count;
-  double **all[] = {&p->quiet_q, &p->quiet_v, &p->more_q, &p->more_v, &p->own_q,
-                    &p->own_v,   &p->push_q,  &p->push_v, &p->far_q,  &p->far_v};
-  uint8_t **marks[] = {&p->seed, &p->joined, &p->regions, &p->inside};
+  double **all[] = {&p->motion.quiet_q, &p->motion.quiet_v, &p->motion.more_q, &p->motion.more_v,
+                    &p->motion.own_q,   &p->motion.own_v,   &p->motion.push_q, &p->motion.push_v,
+                    &p->motion.far_q,   &p->motion.far_v};
+  uint8_t **marks[] = {&p->nodes.seed, &p->nodes.joined, &p->nodes.regions, &p->nodes.inside};
   bool good = true;
   for (size_t k = 0; k < sizeof all / sizeof *all && good; k++)
     good = (*all[k] = strut_arena_allocate(arena, (size_t)model->length, sizeof(double)));
   for (size_t k = 0; k < sizeof marks / sizeof *marks && good; k++)
     good = (*marks[k] = strut_arena_allocate(arena, nodes, 1));
-  p->written = strut_arena_allocate(arena, nodes, sizeof *p->written);
-  p->seeds = strut_arena_allocate(arena, nodes, sizeof *p->seeds);
-  p->changed = strut_arena_allocate(arena, nodes, sizeof *p->changed);
-  p->mode = strut_arena_allocate(arena, contacts, 1);
-  p->side = strut_arena_allocate(arena, contacts, 1);
-  p->damper = strut_arena_allocate(arena, contacts, 1);
-  return good && p->written && p->seeds && p->changed && p->mode && p->side && p->damper;
+  p->nodes.written = strut_arena_allocate(arena, nodes, sizeof *p->nodes.written);
+  p->nodes.seeds = strut_arena_allocate(arena, nodes, sizeof *p->nodes.seeds);
+  p->nodes.changed = strut_arena_allocate(arena, nodes, sizeof *p->nodes.changed);
+  p->before.mode = strut_arena_allocate(arena, contacts, 1);
+  p->before.side = strut_arena_allocate(arena, contacts, 1);
+  p->before.damper = strut_arena_allocate(arena, contacts, 1);
+  return good && p->nodes.written && p->nodes.seeds && p->nodes.changed && p->before.mode &&
+         p->before.side && p->before.damper;
 }
 
 /* The stepper of regions: it shares modes with that of the whole structure. */
@@ -92,23 +94,25 @@ static bool make_stepper(const strut_model *model, strut_arena *arena, const str
   own->local = NULL;
   own->within = p;
   own->contact_list = p->region.contact;
-  own->law_list = p->law;
+  own->law_list = p->members.law;
   own->stuck_room = (int32_t)room;
   own->closed = strut_arena_allocate(arena, contacts, sizeof *own->closed);
   own->stuck = strut_arena_allocate(arena, contacts, sizeof *own->stuck);
   own->stuck_factor = strut_arena_allocate(arena, room * room, sizeof(double));
   own->stuck_work = strut_arena_allocate(arena, contacts, sizeof(double));
-  p->answers = strut_arena_allocate(arena, room * room, sizeof *p->answers);
-  p->columns = strut_arena_allocate(arena, FEW_STUCK * (size_t)model->length, sizeof *p->columns);
-  p->answered = strut_arena_allocate(arena, room, 1);
-  p->place = strut_arena_allocate(arena, contacts, sizeof *p->place);
-  p->first = strut_arena_allocate(arena, room, sizeof *p->first);
-  p->factored = strut_arena_allocate(arena, contacts, sizeof *p->factored);
+  p->answers.of = strut_arena_allocate(arena, room * room, sizeof *p->answers.of);
+  p->answers.columns =
+      strut_arena_allocate(arena, FEW_STUCK * (size_t)model->length, sizeof *p->answers.columns);
+  p->answers.known = strut_arena_allocate(arena, room, 1);
+  p->answers.place = strut_arena_allocate(arena, contacts, sizeof *p->answers.place);
+  p->answers.first = strut_arena_allocate(arena, room, sizeof *p->answers.first);
+  p->answers.factored = strut_arena_allocate(arena, contacts, sizeof *p->answers.factored);
   own->body_seen = strut_arena_allocate(arena, contacts, sizeof *own->body_seen);
   own->sliding = strut_arena_allocate(arena, contacts, sizeof *own->sliding);
   return own->closed && own->stuck && own->stuck_factor && own->stuck_work && own->body_seen &&
-         own->sliding && p->answers && p->columns && p->answered && p->place && p->first &&
-         p->factored && strut_switch_counts_create(model, arena, own) &&
+         own->sliding && p->answers.of && p->answers.columns && p->answers.known &&
+         p->answers.place && p->answers.first && p->answers.factored &&
+         strut_switch_counts_create(model, arena, own) &&
          strut_step_end_create(model, arena, own->now, false) &&
          strut_step_end_create(model, arena, own->next, false);
 }
@@ -162,9 +166,9 @@ static const double *find_answers(const strut_model *model, strut_local_events *
   const strut_local_region *r = &p->region;
   const strut_contact_table *c = &model->contacts;
   int32_t n = r->contact_count;
-  double *row = p->answers + (size_t)p->place[i] * (size_t)n;
-  if (p->answered[p->place[i]]) return row;
-  p->answered[p->place[i]] = 1;
+  double *row = p->answers.of + (size_t)p->answers.place[i] * (size_t)n;
+  if (p->answers.known[p->answers.place[i]]) return row;
+  p->answers.known[p->answers.place[i]] = 1;
   clear_pair(r);
   push_along(c, r, i, 1.0);
   strut_local_region_solve(model, r);
@@ -182,10 +186,11 @@ static void assemble_stuck(const strut_model *model, const strut_event_stepper *
   for (int32_t i = 0; i < n; i++) {
     const double *answers = find_answers(model, p, l->stuck[i]);
     double *row = l->stuck_factor + (size_t)i * (size_t)n;
-    double least = NEGLIGIBLE * answers[p->place[l->stuck[i]]];
-    for (int32_t j = 0; j <= i; j++) row[j] = answers[p->place[l->stuck[j]]];
-    p->first[i] = 0;
-    while (p->first[i] < i && fabs(row[p->first[i]]) <= least) p->first[i]++;
+    double least = NEGLIGIBLE * answers[p->answers.place[l->stuck[i]]];
+    for (int32_t j = 0; j <= i; j++) row[j] = answers[p->answers.place[l->stuck[j]]];
+    p->answers.first[i] = 0;
+    while (p->answers.first[i] < i && fabs(row[p->answers.first[i]]) <= least)
+      p->answers.first[i]++;
   }
 }
 
@@ -196,21 +201,21 @@ static void find_column(const strut_model *model, const strut_event_stepper *l, 
   clear_pair(r);
   push_along(&model->contacts, r, l->stuck[k], 1.0);
   strut_local_region_solve(model, r);
-  memcpy(p->columns + (size_t)k * nodes, r->pair, nodes * sizeof *r->pair);
+  memcpy(p->answers.columns + (size_t)k * nodes, r->pair, nodes * sizeof *r->pair);
 }
 
 void strut_local_factor(const strut_model *model, strut_event_stepper *l) {
   strut_local_events *p = l->within;
   int32_t n = l->stuck_count;
-  size_t bytes = (size_t)n * sizeof *p->factored;
-  if (n == p->factored_count && memcmp(p->factored, l->stuck, bytes) == 0) return;
+  size_t bytes = (size_t)n * sizeof *p->answers.factored;
+  if (n == p->answers.factored_count && memcmp(p->answers.factored, l->stuck, bytes) == 0) return;
   p->failed = p->failed || n > l->stuck_room;
   if (p->failed) return;
   assemble_stuck(model, l, p);
-  if (!strut_cholesky_factor(n, p->first, l->stuck_factor)) p->failed = true;
+  if (!strut_cholesky_factor(n, p->answers.first, l->stuck_factor)) p->failed = true;
   for (int32_t k = 0; k < n && n <= FEW_STUCK; k++) find_column(model, l, k);
-  memcpy(p->factored, l->stuck, bytes);
-  p->factored_count = n;
+  memcpy(p->answers.factored, l->stuck, bytes);
+  p->answers.factored_count = n;
 }
 
 /* a += M^-1 T x by the columns of M^-1 T. */
@@ -220,7 +225,7 @@ static void add_columns(const strut_local_events *p, int32_t n, const double *x,
   for (int32_t k = 0; k < r->node_count; k++) {
     double ax = 0.0, ay = 0.0;
     for (int32_t i = 0; i < n; i++) {
-      const double *column = p->columns + (size_t)i * nodes + 2 * (size_t)k;
+      const double *column = p->answers.columns + (size_t)i * nodes + 2 * (size_t)k;
       ax += column[0] * x[i], ay += column[1] * x[i];
     }
     a[2 * r->node[k]] += ax;
@@ -249,7 +254,7 @@ void strut_local_hold(const strut_model *model, strut_event_stepper *l, double *
   double *x = l->stuck_work;
   if (p->failed) return;
   for (int32_t i = 0; i < n; i++) x[i] = -strut_contact_along_ground(c, l->stuck[i], a);
-  strut_cholesky_solve_rows(n, p->first, l->stuck_factor, x);
+  strut_cholesky_solve_rows(n, p->answers.first, l->stuck_factor, x);
   for (int32_t k = 0; k < n; k++) end->touch[l->stuck[k]].friction += x[k];
   if (n <= FEW_STUCK)
     add_columns(p, n, x, a);
@@ -275,12 +280,13 @@ static void list_items(const strut_model *model, strut_local_events *p) {
   const strut_local_region *r = &p->region;
   p->own.law_list_count = 0;
   for (int32_t k = 0; k < r->member_count; k++)
-    if (p->law_of[r->member[k]] >= 0) p->law[p->own.law_list_count++] = p->law_of[r->member[k]];
+    if (p->members.law_of[r->member[k]] >= 0)
+      p->members.law[p->own.law_list_count++] = p->members.law_of[r->member[k]];
   p->own.contact_list_count = r->contact_count;
-  p->factored_count = -1;
+  p->answers.factored_count = -1;
   p->failed = r->contact_count > p->own.stuck_room;
   for (int32_t k = 0; k < r->contact_count && !p->failed; k++)
-    p->place[r->contact[k]] = k, p->answered[k] = 0;
+    p->answers.place[r->contact[k]] = k, p->answers.known[k] = 0;
   strut_local_load_members(model, p);
 }
 
@@ -315,12 +321,12 @@ static void step_quietly(const strut_model *model, strut_state *state, strut_loc
                          double t, double *gained) {
   const strut_local_region *r = &p->region;
   strut_event_stepper *own = &p->own;
-  strut_local_trial(model, state, own, t, p->span);
-  copy_pairs(r->node, r->node_count, own->next->q, p->quiet_q);
-  copy_pairs(r->node, r->node_count, own->next->v, p->quiet_v);
+  strut_local_trial(model, state, own, t, p->whole.span);
+  copy_pairs(r->node, r->node_count, own->next->q, p->motion.quiet_q);
+  copy_pairs(r->node, r->node_count, own->next->v, p->motion.quiet_v);
   memcpy(gained, own->gained, sizeof own->gained);
   own->tried = true;
-  if (p->formula.adaptive) own->h = p->span;
+  if (p->formula.adaptive) own->h = p->whole.span;
 }
 
 /* Piece by piece to the end of the step; false: it could not. */
@@ -329,7 +335,7 @@ static bool step_with_events(const strut_model *model, strut_state *state, strut
   strut_event_stepper *own = &p->own;
   double done = 0.0;
   for (int piece = 0; piece < MOST_PIECES && !state->trouble && !p->failed; piece++) {
-    double rest = p->span - done, h = rest;
+    double rest = p->whole.span - done, h = rest;
     if (p->formula.adaptive && own->h < rest) h = own->h > 0.5 * rest ? 0.5 * rest : own->h;
     double gone = strut_event_stepper_piece(model, state, own, t + done, h, dt);
     if (gone == rest || rest - gone <= 1e-12 * dt) return true;
@@ -350,19 +356,21 @@ static void pass_on(const strut_local_region *r, const double *end, const double
 /* What the region adds to the step of the whole. */
 static void keep_result(strut_local_events *p) {
   const strut_local_region *r = &p->region;
-  pass_on(r, p->own.now->q, p->quiet_q, p->push_q);
-  pass_on(r, p->own.now->v, p->quiet_v, p->push_v);
+  pass_on(r, p->own.now->q, p->motion.quiet_q, p->motion.push_q);
+  pass_on(r, p->own.now->v, p->motion.quiet_v, p->motion.push_v);
   const strut_step_end *end = p->own.now;
   for (int32_t k = 0; k < r->node_count; k++) {
     int32_t node = r->node[k];
-    bool first = p->regions[node] == 0;
-    if (first) p->written[p->written_count++] = node;
-    if (p->regions[node] < 2) p->regions[node]++;
-    p->inside[node] = !strut_local_region_is_far(r, node);
+    bool first = p->nodes.regions[node] == 0;
+    if (first) p->nodes.written[p->nodes.written_count++] = node;
+    if (p->nodes.regions[node] < 2) p->nodes.regions[node]++;
+    p->nodes.inside[node] = !strut_local_region_is_far(r, node);
     for (int32_t i = 2 * node; i < 2 * node + 2; i++) {
-      p->more_q[i] = (first ? 0.0 : p->more_q[i]) + (end->q[i] - p->quiet_q[i]);
-      p->more_v[i] = (first ? 0.0 : p->more_v[i]) + (end->v[i] - p->quiet_v[i]);
-      p->own_q[i] = end->q[i], p->own_v[i] = end->v[i];
+      p->motion.more_q[i] =
+          (first ? 0.0 : p->motion.more_q[i]) + (end->q[i] - p->motion.quiet_q[i]);
+      p->motion.more_v[i] =
+          (first ? 0.0 : p->motion.more_v[i]) + (end->v[i] - p->motion.quiet_v[i]);
+      p->motion.own_q[i] = end->q[i], p->motion.own_v[i] = end->v[i];
     }
   }
 }
@@ -373,19 +381,19 @@ static void note_changes(const strut_model *model, strut_local_events *p) {
   const strut_local_region *r = &p->region;
   for (int32_t k = 0; k < r->contact_count; k++) {
     int32_t i = r->contact[k], node = (int32_t)(model->contacts.at[i] / 2);
-    bool same =
-        own->mode[i] == p->mode[i] && own->side[i] == p->side[i] && own->damper[i] == p->damper[i];
-    if (same || p->seed[node] || p->changed_count >= model->node_count) continue;
-    p->changed[p->changed_count++] = node;
+    bool same = own->mode[i] == p->before.mode[i] && own->side[i] == p->before.side[i] &&
+                own->damper[i] == p->before.damper[i];
+    if (same || p->nodes.seed[node] || p->nodes.changed_count >= model->node_count) continue;
+    p->nodes.changed[p->nodes.changed_count++] = node;
     p->far = p->far || strut_local_region_is_far(r, node);
   }
   for (int32_t k = 0; k < own->law_list_count; k++) {
     int32_t i = own->law_list[k], j = own->laws[i].member;
-    if (own->acting[i] == p->acting[i]) continue;
+    if (own->acting[i] == p->before.acting[i]) continue;
     int32_t node = (int32_t)(model->members.from[j] / 2);
     if (r->slot[node] <= 0) node = (int32_t)(model->members.to[j] / 2);
-    if (p->seed[node] || p->changed_count >= model->node_count) continue;
-    p->changed[p->changed_count++] = node;
+    if (p->nodes.seed[node] || p->nodes.changed_count >= model->node_count) continue;
+    p->nodes.changed[p->nodes.changed_count++] = node;
     p->far = p->far || strut_local_region_is_far(r, node);
   }
 }
@@ -412,26 +420,27 @@ static bool step_region(const strut_model *model, strut_state *state, const stru
 static void save_modes(const strut_model *model, const strut_event_stepper *l,
                        strut_local_events *p) {
   size_t contacts = (size_t)model->contacts.count;
-  memcpy(p->mode, l->mode, contacts);
-  memcpy(p->side, l->side, contacts);
-  memcpy(p->damper, l->damper, contacts);
-  if (l->law_count) memcpy(p->acting, l->acting, (size_t)l->law_count);
+  memcpy(p->before.mode, l->mode, contacts);
+  memcpy(p->before.side, l->side, contacts);
+  memcpy(p->before.damper, l->damper, contacts);
+  if (l->law_count) memcpy(p->before.acting, l->acting, (size_t)l->law_count);
 }
 
 static void restore_modes(const strut_model *model, strut_state *state, strut_event_stepper *l,
                           const strut_local_events *p) {
   size_t contacts = (size_t)model->contacts.count;
-  memcpy(l->mode, p->mode, contacts);
-  memcpy(l->side, p->side, contacts);
-  memcpy(l->damper, p->damper, contacts);
+  memcpy(l->mode, p->before.mode, contacts);
+  memcpy(l->side, p->before.side, contacts);
+  memcpy(l->damper, p->before.damper, contacts);
   for (int32_t k = 0; k < l->law_count; k++)
-    if (l->acting[k] != p->acting[k]) strut_cable_set_acting(state, l, k, p->acting[k]);
+    if (l->acting[k] != p->before.acting[k])
+      strut_cable_set_acting(state, l, k, p->before.acting[k]);
 }
 
 static void add_seed(strut_local_events *p, int32_t node) {
-  if (p->seed[node] || !(p->map.diagonal[node] > 0.0)) return;
-  p->seed[node] = 1;
-  p->seeds[p->seed_count++] = node;
+  if (p->nodes.seed[node] || !(p->map.diagonal[node] > 0.0)) return;
+  p->nodes.seed[node] = 1;
+  p->nodes.seeds[p->nodes.seed_count++] = node;
 }
 
 static void find_seeds(const strut_model *model, const strut_event_stepper *l, double h,
@@ -447,9 +456,9 @@ static void find_seeds(const strut_model *model, const strut_event_stepper *l, d
 }
 
 static void forget_results(strut_local_events *p) {
-  for (int32_t k = 0; k < p->written_count; k++) p->regions[p->written[k]] = 0;
-  for (int32_t k = 0; k < p->seed_count; k++) p->joined[p->seeds[k]] = 0;
-  p->written_count = p->changed_count = 0;
+  for (int32_t k = 0; k < p->nodes.written_count; k++) p->nodes.regions[p->nodes.written[k]] = 0;
+  for (int32_t k = 0; k < p->nodes.seed_count; k++) p->nodes.joined[p->nodes.seeds[k]] = 0;
+  p->nodes.written_count = p->nodes.changed_count = 0;
   p->far = p->failed = false;
 }
 
@@ -457,8 +466,9 @@ static void forget_results(strut_local_events *p) {
    seeds. */
 static bool must_widen(strut_local_events *p) {
   bool more = p->far;
-  for (int32_t k = 0; k < p->changed_count; k++) more = more || p->regions[p->changed[k]] > 1;
-  for (int32_t k = 0; k < p->changed_count && more; k++) add_seed(p, p->changed[k]);
+  for (int32_t k = 0; k < p->nodes.changed_count; k++)
+    more = more || p->nodes.regions[p->nodes.changed[k]] > 1;
+  for (int32_t k = 0; k < p->nodes.changed_count && more; k++) add_seed(p, p->nodes.changed[k]);
   return more;
 }
 
@@ -468,15 +478,15 @@ static bool step_regions(const strut_model *model, strut_state *state, strut_eve
   for (int attempt = 0; attempt < MOST_ATTEMPTS; attempt++) {
     state->events = events;
     memset(works, 0, STRUT_POWER_ROOM * sizeof *works);
-    memset(p->push_q, 0, (size_t)model->length * sizeof *p->push_q);
-    memset(p->push_v, 0, (size_t)model->length * sizeof *p->push_v);
+    memset(p->motion.push_q, 0, (size_t)model->length * sizeof *p->motion.push_q);
+    memset(p->motion.push_v, 0, (size_t)model->length * sizeof *p->motion.push_v);
     forget_results(p);
     bool good = true;
-    for (int32_t k = 0; k < p->seed_count && good; k++)
-      if (!p->joined[p->seeds[k]])
-        good =
-            strut_local_region_grow(model, &p->map, p->seeds[k], p->seed, p->joined, &p->region) &&
-            step_region(model, state, l, p, t, dt, works);
+    for (int32_t k = 0; k < p->nodes.seed_count && good; k++)
+      if (!p->nodes.joined[p->nodes.seeds[k]])
+        good = strut_local_region_grow(model, &p->map, p->nodes.seeds[k], p->nodes.seed,
+                                       p->nodes.joined, &p->region) &&
+               step_region(model, state, l, p, t, dt, works);
     if (good && !must_widen(p)) return true;
     restore_modes(model, state, l, p);
     if (!good) break;
@@ -497,13 +507,13 @@ static void add_far_motion(const strut_model *model, strut_state *state, strut_e
 }
 
 static void write_results(const strut_local_events *p, const strut_step_end *next) {
-  for (int32_t k = 0; k < p->written_count; k++) {
-    int32_t node = p->written[k];
+  for (int32_t k = 0; k < p->nodes.written_count; k++) {
+    int32_t node = p->nodes.written[k];
     /* what sticks does so exactly */
-    bool own = p->map.contact[node] >= 0 && p->regions[node] == 1 && p->inside[node];
+    bool own = p->map.contact[node] >= 0 && p->nodes.regions[node] == 1 && p->nodes.inside[node];
     for (int32_t i = 2 * node; i < 2 * node + 2; i++) {
-      next->q[i] = own ? p->own_q[i] : next->q[i] + p->more_q[i];
-      next->v[i] = own ? p->own_v[i] : next->v[i] + p->more_v[i];
+      next->q[i] = own ? p->motion.own_q[i] : next->q[i] + p->motion.more_q[i];
+      next->v[i] = own ? p->motion.own_v[i] : next->v[i] + p->motion.more_v[i];
     }
   }
 }
@@ -527,17 +537,17 @@ bool strut_local_events_take(const strut_model *model, strut_state *state, strut
   double works[STRUT_POWER_ROOM];
   if (state->watched.event_log || state->watched.variation || !(p->region.reach = find_reach(p, h)))
     return false;
-  p->begin = l->now, p->end = l->next;
-  p->start = t, p->span = h;
-  p->seed_count = p->written_count = 0;
+  p->whole.begin = l->now, p->whole.end = l->next;
+  p->whole.start = t, p->whole.span = h;
+  p->nodes.seed_count = p->nodes.written_count = 0;
   find_seeds(model, l, h, p);
   save_modes(model, l, p);
-  bool good = p->seed_count > 0 && step_regions(model, state, l, p, t, dt, works);
+  bool good = p->nodes.seed_count > 0 && step_regions(model, state, l, p, t, dt, works);
   if (good) {
     strut_update_active_set(model, l);
     if (!model->mass->diagonal) {
-      add_far_motion(model, state, l, p->push_q, p->far_q, l->next->q);
-      add_far_motion(model, state, l, p->push_v, p->far_v, l->next->v);
+      add_far_motion(model, state, l, p->motion.push_q, p->motion.far_q, l->next->q);
+      add_far_motion(model, state, l, p->motion.push_v, p->motion.far_v, l->next->v);
     }
     write_results(p, l->next);
     evaluate_whole_end(model, state, l, t + h);
@@ -548,6 +558,6 @@ bool strut_local_events_take(const strut_model *model, strut_state *state, strut
     strut_update_active_set(model, l);
   }
   forget_results(p);
-  for (int32_t k = 0; k < p->seed_count; k++) p->seed[p->seeds[k]] = 0;
+  for (int32_t k = 0; k < p->nodes.seed_count; k++) p->nodes.seed[p->nodes.seeds[k]] = 0;
   return good;
 }

@@ -12,8 +12,8 @@
 
 void strut_local_place_halo(strut_local_events *p, double part, double *q, double *v) {
   const strut_local_region *r = &p->region;
-  const strut_step_end *b = p->begin, *e = p->end;
-  double x = part, h = p->span, x2 = x * x, x3 = x2 * x, rest = 1.0 - x;
+  const strut_step_end *b = p->whole.begin, *e = p->whole.end;
+  double x = part, h = p->whole.span, x2 = x * x, x3 = x2 * x, rest = 1.0 - x;
   double rise = x3 * (10.0 - x * (15.0 - 6.0 * x));
   double v0 = h * (x - x3 * (6.0 - x * (8.0 - 3.0 * x))), v1 = h * x3 * (x * (7.0 - 3.0 * x) - 4.0);
   double a0 = 0.5 * h * h * x2 * rest * rest * rest, a1 = 0.5 * h * h * x3 * rest * rest;
@@ -38,15 +38,15 @@ void strut_local_load_members(const strut_model *model, strut_local_events *p) {
   for (int32_t k = 0; k < slots; k++) {
     bool pad = k >= count;
     int32_t j = pad ? 0 : r->member[k];
-    p->from[k] = pad ? 2 * (uint32_t)model->node_count : t->from[j];
-    p->to[k] = pad ? p->from[k] : t->to[j];
-    p->stiffness[k] = pad ? 0.0 : t->stiffness[j];
-    p->damping[k] = pad ? 0.0 : t->damping[j];
-    p->rest[k] = pad ? 0.0 : t->rest[j];
+    p->members.from[k] = pad ? 2 * (uint32_t)model->node_count : t->from[j];
+    p->members.to[k] = pad ? p->members.from[k] : t->to[j];
+    p->members.stiffness[k] = pad ? 0.0 : t->stiffness[j];
+    p->members.damping[k] = pad ? 0.0 : t->damping[j];
+    p->members.rest[k] = pad ? 0.0 : t->rest[j];
     p->shell.latest.rest_rate[k] = 0.0;
     p->shell.modes.slack_length_threshold[k] = p->shell.modes.slack_force_threshold[k] = -HUGE_VAL;
   }
-  p->table.count = count, p->table.slots = slots;
+  p->members.table.count = count, p->members.table.slots = slots;
 }
 
 static void refresh_members(const strut_model *model, const strut_state *state,
@@ -58,7 +58,7 @@ static void refresh_members(const strut_model *model, const strut_state *state,
     p->shell.modes.slack_force_threshold[k] = state->modes.slack_force_threshold[j];
   }
   for (int32_t k = 0; k < r->member_count && model->terms & STRUT_TERM_DRIVE; k++) {
-    p->rest[k] = state->latest.rest[r->member[k]];
+    p->members.rest[k] = state->latest.rest[r->member[k]];
     p->shell.latest.rest_rate[k] = state->latest.rest_rate[r->member[k]];
   }
 }
@@ -75,10 +75,10 @@ STRUT_INLINE void add_members(const strut_local_events *p, strut_state *state, c
                               const double *v, bool driven, bool balance) {
   enum { KEPT = STRUT_TERM_DAMPING | STRUT_TERM_SLACK, ALL = KEPT | STRUT_TERM_DRIVE };
   four_member_powers powers = {0};
-  for (int32_t j = 0; j < p->table.slots; j += STRUT_LANES) {
+  for (int32_t j = 0; j < p->members.table.slots; j += STRUT_LANES) {
     member_pulls pulls =
-        members_group(&p->table, &p->shell, q, v, j, driven ? ALL : KEPT, balance, &powers);
-    members_scatter(&p->table, j, pulls,
+        members_group(&p->members.table, &p->shell, q, v, j, driven ? ALL : KEPT, balance, &powers);
+    members_scatter(&p->members.table, j, pulls,
                     state->latest.force); /* made anew at each event: no rows */
   }
   for (int l = 0; l < STRUT_LANES && balance; l++) {
@@ -139,7 +139,8 @@ static void region_now(const strut_model *model, strut_state *state, strut_event
                        double t, bool balance) {
   const strut_local_region *r = &l->within->region;
   strut_step_end *now = l->now;
-  strut_local_place_halo(l->within, (t - l->within->start) / l->within->span, now->q, now->v);
+  strut_local_place_halo(l->within, (t - l->within->whole.start) / l->within->whole.span, now->q,
+                         now->v);
   if (!l->fresh) {
     region_end(model, state, l, t, now, balance);
     return;
@@ -216,7 +217,7 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
   for (int s = 1; s < stages; s++) {
     double at = t + tableau->ahead[s] * h;
     region_stage(&p->region, h, l->now, v, a, weight + s * stages, s, q, v[s]);
-    strut_local_place_halo(p, (at - p->start) / p->span, q, v[s]);
+    strut_local_place_halo(p, (at - p->whole.start) / p->whole.span, q, v[s]);
     region_forces(model, state, p, at, q, v[s], balance);
     region_accelerations(model, state, l, q, v[s], a[s], l->next, balance);
     if (l->stepper->adaptive && broken == 0.0 && l->stepper->contradicts_at_stage(model, l))
@@ -225,7 +226,7 @@ STRUT_INLINE void take(const strut_model *model, strut_state *state, strut_event
       l->gained[k] += last[s] * h * state->latest.power[k];
   }
   region_stage(&p->region, h, l->now, v, a, last, stages, l->next->q, l->next->v);
-  strut_local_place_halo(p, (t + h - p->start) / p->span, l->next->q, l->next->v);
+  strut_local_place_halo(p, (t + h - p->whole.start) / p->whole.span, l->next->q, l->next->v);
   region_end(model, state, l, t + h, l->next, balance);
   if (!l->stepper->adaptive) return;
   l->error = region_error(model, l, h, v, a);
@@ -278,7 +279,7 @@ static void shift(const strut_model *model, strut_state *state, strut_event_step
   double half = 0.5 * (to - from);
   for (int k = 0; k < STRUT_POWER_COUNT && balance; k++) l->gained[k] += half * next->power[k];
   shift_nodes(l, from, to - from);
-  strut_local_place_halo(p, (t + to - p->start) / p->span, next->q, next->v);
+  strut_local_place_halo(p, (t + to - p->whole.start) / p->whole.span, next->q, next->v);
   region_end(model, state, l, t + to, next, balance);
   for (int k = 0; k < STRUT_POWER_COUNT && balance; k++) l->gained[k] += half * next->power[k];
 }

@@ -19,37 +19,51 @@ typedef struct strut_local_events {
   strut_local_region region;
   strut_event_stepper own; /* of the region under way */
   strut_step_formula formula;
-  /* the step of the whole, which moves the halo */
-  const strut_step_end *begin, *end;
-  double start, span; /* [s] */
-  /* members of the region, one after the other; and what else the law asks of a state */
-  uint32_t *from, *to;
-  double *stiffness, *damping, *rest;
-  strut_member_table table;
-  strut_state shell;
-  int32_t *law_of, *law;     /* (members) law of a cable, or -1; (laws) those of the region */
-  double *quiet_q, *quiet_v; /* (length) the region's step without events */
-  double *more_q, *more_v;   /* (length) what regions add to the step of the whole */
-  double *own_q, *own_v;     /* (length) their own ends */
-  double *push_q,
-      *push_v; /* (length) what their masses do to their rims: M times a change of motion */
-  double *far_q, *far_v;  /* (length) that change */
-  uint8_t *seed, *joined; /* (nodes) where events are; those that a region has been grown from */
-  uint8_t *regions;       /* (nodes) regions with this node: 0, 1, or 2 for more */
-  uint8_t *inside;        /* (nodes) whether it was in the middle of the region that wrote it */
-  int32_t *seeds, *written, *changed; /* (nodes) lists */
-  int32_t seed_count, written_count, changed_count;
-  /* contacts of the region: how they answer along the ground to each other, (place, place), where known */
-  double *answers;
-  double *columns; /* (few, node_count, 2) of M^-1 T where few are stuck */
-  uint8_t *answered;
-  int32_t *place; /* (contacts) in the region's list */
-  int32_t *first; /* columns where the rows of the stuck contacts' factor begin */
-  int32_t *factored, factored_count; /* the stuck contacts it belongs to */
-  bool far, failed;       /* something changed far out; the region cannot be stepped alone */
-  uint8_t *mode, *acting; /* (contacts), (laws) at the beginning of the step */
-  int8_t *side, *damper;
+  strut_state shell; /* what else the law asks of a state */
+  bool far, failed;  /* something changed far out; the region cannot be stepped alone */
   int64_t evaluated; /* nodes, since so many counted as an evaluation of the forces */
+  /** The step of the whole, which moves the halo. */
+  struct {
+    const strut_step_end *begin, *end;
+    double start, span; /* [s] */
+  } whole;
+  /** Members of the region, one after the other. */
+  struct {
+    uint32_t *from, *to;
+    double *stiffness, *damping, *rest;
+    strut_member_table table;
+    int32_t *law_of, *law; /* (members) law of a cable, or -1; (laws) those of the region */
+  } members;
+  /** (length) each. */
+  struct {
+    double *quiet_q, *quiet_v; /* the region's step without events */
+    double *more_q, *more_v;   /* what regions add to the step of the whole */
+    double *own_q, *own_v;     /* their own ends */
+    double *push_q, *push_v;   /* what their masses do to their halos: M times a change of motion */
+    double *far_q, *far_v;     /* that change */
+  } motion;
+  /** (nodes) each. */
+  struct {
+    uint8_t *seed, *joined; /* where events are; those that a region has been grown from */
+    uint8_t *regions;       /* regions with this node: 0, 1, or 2 for more */
+    uint8_t *inside;        /* whether it was in the middle of the region that wrote it */
+    int32_t *seeds, *written, *changed; /* lists */
+    int32_t seed_count, written_count, changed_count;
+  } nodes;
+  /** How contacts of the region answer along the ground to each other. */
+  struct {
+    double *of;      /* (place, place), where known */
+    double *columns; /* (few, node_count, 2) of M^-1 T where few are stuck */
+    uint8_t *known;
+    int32_t *place; /* (contacts) in the region's list */
+    int32_t *first; /* columns where the rows of the stuck contacts' factor begin */
+    int32_t *factored, factored_count; /* the stuck contacts it belongs to */
+  } answers;
+  /** Modes at the beginning of the step. */
+  struct {
+    uint8_t *mode, *acting; /* (contacts), (laws) */
+    int8_t *side, *damper;
+  } before;
 } strut_local_events;
 
 /** The trial of a region's stepper. */
