@@ -52,7 +52,7 @@ STRUT_BATCH_INLINE batch_real batch_strain(const strut_batch_tables *t, int32_t 
   const strut_element *e = &table->element[i];
   const uint32_t *at = table->at + e->first;
   if (e->strain == STRUT_STRAIN_ANGLE)
-    return batch_angle(at, q, p, batch_row(t->element_turn, (size_t)i, p), b);
+    return batch_angle(at, q, p, batch_row(t->elements.turn, (size_t)i, p), b);
   return batch_path(at, e->nodes, q, p, b);
 }
 
@@ -67,12 +67,12 @@ STRUT_BATCH_INLINE void batch_respond(const strut_batch_tables *t, int32_t i, in
                                       batch_real strain, batch_real natural, batch_element *x) {
   const strut_element *e = &t->first->elements.element[i];
   batch_real zero = {0};
-  x->elastic = batch_row(t->element_stiffness, (size_t)i, p) * x->stretch;
+  x->elastic = batch_row(t->elements.stiffness, (size_t)i, p) * x->stretch;
   x->excess = zero;
   if (e->law == STRUT_LAW_LINEAR) return;
   for (int l = 0; l < BATCH_WIDTH; l++) {
     const strut_model *m = t->model[p * BATCH_WIDTH + l];
-    int piece = (int)batch_row(t->element_piece, (size_t)i, p)[l];
+    int piece = (int)batch_row(t->elements.piece, (size_t)i, p)[l];
     strut_law_response r =
         strut_law_respond(e->law, &m->elements.element[i].numbers, strain[l], natural[l], piece);
     x->elastic[l] = r.force, x->excess[l] = r.excess;
@@ -88,14 +88,14 @@ STRUT_BATCH_INLINE batch_element batch_element_move(const strut_batch_tables *t,
   const uint32_t *at = table->at + e->first;
   size_t slot = (size_t)(e->slot >= 0 ? e->slot : i);
   batch_real zero = {0}, rate = zero;
-  batch_real natural = batch_row(e->slot >= 0 ? t->rest : t->element_natural, slot, p);
+  batch_real natural = batch_row(e->slot >= 0 ? t->members.rest : t->elements.natural, slot, p);
   batch_element x = {.stretch = strain - natural,
-                     .rest_rate = e->slot >= 0 ? batch_row(t->rest_rate, slot, p) : zero};
+                     .rest_rate = e->slot >= 0 ? batch_row(t->members.rest_rate, slot, p) : zero};
   for (int32_t k = 0; k < e->nodes && rated; k++)
     rate += b[2 * k] * batch_row(v, at[k], p) + b[2 * k + 1] * batch_row(v, at[k] + 1, p);
   x.own_rate = rate - x.rest_rate;
   batch_respond(t, i, p, strain, natural, &x);
-  x.force = x.elastic + batch_row(t->element_damping, (size_t)i, p) * x.own_rate;
+  x.force = x.elastic + batch_row(t->elements.damping, (size_t)i, p) * x.own_rate;
   return x;
 }
 
@@ -104,7 +104,7 @@ STRUT_BATCH_INLINE void batch_carry(const strut_batch_tables *t, int32_t i, int 
                                     batch_element *x) {
   int8_t carries = t->first->elements.element[i].carries;
   if (!carries) return;
-  batch_real zero = {0}, mode = batch_row(t->element_acts, (size_t)i, p), sign = zero + carries;
+  batch_real zero = {0}, mode = batch_row(t->elements.acts, (size_t)i, p), sign = zero + carries;
   batch_mask beyond = sign * x->stretch > zero, free = mode == zero;
   batch_mask acts = (mode > zero) | (free & beyond & (sign * x->force > zero));
   x->force = batch_choose(acts, x->force, zero);
@@ -119,7 +119,7 @@ STRUT_BATCH_INLINE void batch_add_element(strut_batch_tables *t, int32_t i, int 
   const strut_element *e = &table->element[i];
   const uint32_t *at = table->at + e->first;
   batch_real b[STRUT_MOST_GRADIENT], strain = batch_strain(t, i, q, p, b);
-  batch_put(t->element_turn, (size_t)i, p, strain);
+  batch_put(t->elements.turn, (size_t)i, p, strain);
   batch_element x = batch_element_move(t, i, p, strain, b, v, balance || e->damping > 0.0);
   batch_carry(t, i, p, &x);
   for (int32_t k = 0; k < e->nodes; k++) {

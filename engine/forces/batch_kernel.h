@@ -36,9 +36,9 @@ STRUT_BATCH_INLINE void batch_sincos(batch_real turns, batch_real *sine, batch_r
 STRUT_BATCH_INLINE void batch_signal(const strut_batch_tables *t, bool load, int32_t i, int p,
                                      batch_real time, batch_real *value, batch_real *rate) {
   size_t at = (size_t)(load ? t->first->drives.count + i : i);
-  const double *wave = t->wave + at * STRUT_BATCH_WAVE_ROWS * BATCH_ROW;
+  const double *wave = t->signals.wave + at * STRUT_BATCH_WAVE_ROWS * BATCH_ROW;
   batch_real zero = {0}, sine, cosine;
-  if (!t->all_waves[at]) {
+  if (!t->signals.all_waves[at]) {
     *value = *rate = zero;
     for (int l = 0; l < BATCH_WIDTH; l++) {
       const strut_model *m = t->model[p * BATCH_WIDTH + l];
@@ -65,12 +65,14 @@ STRUT_BATCH_INLINE void batch_drive_part(strut_batch_tables *t, int p, batch_rea
   for (int32_t i = 0; i < d->count; i++) {
     size_t j = (size_t)d->member[i];
     batch_signal(t, false, i, p, time, &value, &rate);
-    batch_put(t->rest, j, p, batch_row(d->first[i] ? t->rest0 : t->rest, j, p) + value);
-    batch_put(t->rest_rate, j, p, d->first[i] ? rate : batch_row(t->rest_rate, j, p) + rate);
+    batch_put(t->members.rest, j, p,
+              batch_row(d->first[i] ? t->members.rest0 : t->members.rest, j, p) + value);
+    batch_put(t->members.rest_rate, j, p,
+              d->first[i] ? rate : batch_row(t->members.rest_rate, j, p) + rate);
   }
   for (int32_t i = 0; i < t->first->loads.count; i++) {
     batch_signal(t, true, i, p, time, &value, &rate);
-    batch_put(t->load_factor, (size_t)i, p, value);
+    batch_put(t->signals.load_factor, (size_t)i, p, value);
   }
 }
 
@@ -85,8 +87,9 @@ STRUT_BATCH_INLINE void batch_loads(strut_batch_tables *t, int p, const double *
   const strut_load_table *loads = &t->first->loads;
   for (int32_t i = 0; i < loads->count; i++) {
     size_t k = (size_t)i, at = 2 * (size_t)loads->node[i];
-    batch_real factor = batch_row(t->load_factor, k, p);
-    batch_real px = factor * batch_row(t->load_x, k, p), py = factor * batch_row(t->load_y, k, p);
+    batch_real factor = batch_row(t->signals.load_factor, k, p);
+    batch_real px = factor * batch_row(t->signals.load_x, k, p),
+               py = factor * batch_row(t->signals.load_y, k, p);
     batch_put(t->force, at, p, batch_row(t->force, at, p) + px);
     batch_put(t->force, at + 1, p, batch_row(t->force, at + 1, p) + py);
     if (!balance) continue;
@@ -102,14 +105,15 @@ STRUT_BATCH_INLINE void batch_loads(strut_batch_tables *t, int p, const double *
 /* What the law asks of member j; `rate`: of its length [m/s]. */
 STRUT_BATCH_INLINE batch_member_values batch_values_of(const strut_batch_tables *t, size_t j, int p,
                                                        batch_real length, batch_real rate) {
-  return (batch_member_values){.length = length,
-                               .rate = rate,
-                               .rest = batch_row(t->rest, j, p),
-                               .rest_rate = batch_row(t->rest_rate, j, p),
-                               .stiffness = batch_row(t->stiffness, j, p),
-                               .damping = batch_row(t->damping, j, p),
-                               .slack_length_threshold = batch_row(t->slack_length_threshold, j, p),
-                               .slack_force_threshold = batch_row(t->slack_force_threshold, j, p)};
+  return (batch_member_values){
+      .length = length,
+      .rate = rate,
+      .rest = batch_row(t->members.rest, j, p),
+      .rest_rate = batch_row(t->members.rest_rate, j, p),
+      .stiffness = batch_row(t->members.stiffness, j, p),
+      .damping = batch_row(t->members.damping, j, p),
+      .slack_length_threshold = batch_row(t->members.slack_length_threshold, j, p),
+      .slack_force_threshold = batch_row(t->members.slack_force_threshold, j, p)};
 }
 
 /* Vector from the first to the second node, length, and its inverse or 0. */
@@ -255,7 +259,7 @@ STRUT_BATCH_INLINE void batch_touch(strut_batch_tables *t, const double *restric
                                     const double *entry, int p, batch_mask where, batch_real gap,
                                     batch_ground_terms has, batch_contact_sums *sums) {
   bool sloped = has.sloped, rough = has.rough, laws = has.laws;
-  const double *g = t->ground;
+  const double *g = t->ground.line;
   batch_real tx = batch_row(g, STRUT_BATCH_TANGENT_X, p),
              ty = batch_row(g, STRUT_BATCH_TANGENT_Y, p);
   batch_real nx = batch_row(g, STRUT_BATCH_NORMAL_X, p), ny = batch_row(g, STRUT_BATCH_NORMAL_Y, p);
@@ -288,10 +292,10 @@ STRUT_BATCH_INLINE void batch_contact(strut_batch_tables *t, const double *restr
                                       const double *restrict v, size_t at, const double *entry,
                                       int p, batch_ground_terms has, batch_contact_sums *sums) {
   batch_real zero = {0},
-             gap = batch_row(q, at + 1, p) - batch_row(t->ground, STRUT_BATCH_HEIGHT, p);
+             gap = batch_row(q, at + 1, p) - batch_row(t->ground.line, STRUT_BATCH_HEIGHT, p);
   if (has.sloped)
-    gap = batch_row(q, at, p) * batch_row(t->ground, STRUT_BATCH_NORMAL_X, p) +
-          gap * batch_row(t->ground, STRUT_BATCH_NORMAL_Y, p);
+    gap = batch_row(q, at, p) * batch_row(t->ground.line, STRUT_BATCH_NORMAL_X, p) +
+          gap * batch_row(t->ground.line, STRUT_BATCH_NORMAL_Y, p);
   batch_mask touches = gap < zero;
   if (batch_some(touches)) batch_touch(t, v, at, entry, p, touches, gap, has, sums);
 }
@@ -302,7 +306,7 @@ STRUT_BATCH_INLINE void batch_ground(strut_batch_tables *t, const double *restri
   const strut_contact_table *c = &t->first->contacts;
   has.moves = sums && sums->moves;
   for (int32_t i = 0; i < c->count; i++) {
-    const double *entry = t->contact + i * STRUT_BATCH_CONTACT_ROWS * BATCH_ROW;
+    const double *entry = t->ground.contact + i * STRUT_BATCH_CONTACT_ROWS * BATCH_ROW;
     batch_contact_sums *to = sums ? sums->contact[c->entry[i].lane] : NULL;
     BATCH_EACH(batch_contact(t, q, v, c->at[i], entry, p, has, to ? to + p : NULL));
   }
@@ -392,14 +396,14 @@ STRUT_BATCH_INLINE void batch_mass(const strut_batch_tables *t, double *restrict
   const strut_mass *mass = t->first->mass;
   const double *restrict f = t->force;
   for (size_t i = 0; i < 2 * (size_t)t->first->node_count && mass->any_single; i++)
-    BATCH_EACH(batch_put(a, i, p, batch_row(f, i, p) * batch_row(t->inverse, i, p)));
+    BATCH_EACH(batch_put(a, i, p, batch_row(f, i, p) * batch_row(t->mass.inverse, i, p)));
   if (mass->diagonal) return;
   if (mass->shared) {
-    batch_mass_blocks(&mass->coordinate[0], true, t->block_inverse[0], f, a);
+    batch_mass_blocks(&mass->coordinate[0], true, t->mass.block_inverse[0], f, a);
     return;
   }
   for (size_t c = 0; c < 2; c++)
-    batch_mass_blocks(&mass->coordinate[c], false, t->block_inverse[c], f + c * BATCH_ROW,
+    batch_mass_blocks(&mass->coordinate[c], false, t->mass.block_inverse[c], f + c * BATCH_ROW,
                       a + c * BATCH_ROW);
 }
 

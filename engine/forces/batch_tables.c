@@ -104,31 +104,31 @@ static void list_tables(strut_batch_tables *t, table *list) {
   const strut_mass *mass = m->mass;
   int32_t blocks[2];
   for (int c = 0; c < 2; c++) blocks[c] = mass->diagonal ? 0 : entries_of(&mass->coordinate[c]);
-  const table all[TABLES] = {{&t->stiffness, slots},
-                             {&t->damping, slots},
-                             {&t->rest0, slots},
-                             {&t->rest, slots},
-                             {&t->rest_rate, slots},
-                             {&t->slack_length_threshold, slots},
-                             {&t->slack_force_threshold, slots},
+  const table all[TABLES] = {{&t->members.stiffness, slots},
+                             {&t->members.damping, slots},
+                             {&t->members.rest0, slots},
+                             {&t->members.rest, slots},
+                             {&t->members.rest_rate, slots},
+                             {&t->members.slack_length_threshold, slots},
+                             {&t->members.slack_force_threshold, slots},
                              {&t->constant, length},
-                             {&t->contact, m->contacts.count * STRUT_BATCH_CONTACT_ROWS},
-                             {&t->ground, STRUT_BATCH_GROUND_ROWS},
-                             {&t->wave, (m->drives.count + loads) * STRUT_BATCH_WAVE_ROWS},
-                             {&t->load_factor, loads},
-                             {&t->load_x, loads},
-                             {&t->load_y, loads},
-                             {&t->inverse, length},
-                             {&t->block_inverse[0], blocks[0]},
-                             {&t->block_inverse[1], blocks[1]},
+                             {&t->ground.contact, m->contacts.count * STRUT_BATCH_CONTACT_ROWS},
+                             {&t->ground.line, STRUT_BATCH_GROUND_ROWS},
+                             {&t->signals.wave, (m->drives.count + loads) * STRUT_BATCH_WAVE_ROWS},
+                             {&t->signals.load_factor, loads},
+                             {&t->signals.load_x, loads},
+                             {&t->signals.load_y, loads},
+                             {&t->mass.inverse, length},
+                             {&t->mass.block_inverse[0], blocks[0]},
+                             {&t->mass.block_inverse[1], blocks[1]},
                              {&t->force, length},
                              {&t->power, STRUT_BATCH_POWERS},
-                             {&t->element_stiffness, elements},
-                             {&t->element_damping, elements},
-                             {&t->element_natural, elements},
-                             {&t->element_turn, elements},
-                             {&t->element_acts, elements},
-                             {&t->element_piece, elements}};
+                             {&t->elements.stiffness, elements},
+                             {&t->elements.damping, elements},
+                             {&t->elements.natural, elements},
+                             {&t->elements.turn, elements},
+                             {&t->elements.acts, elements},
+                             {&t->elements.piece, elements}};
   memcpy(list, all, sizeof all);
 }
 
@@ -143,8 +143,9 @@ bool strut_batch_tables_create(const strut_model *first, int32_t width, strut_ar
     if (!*list[i].at) return false;
   }
   size_t signals = (size_t)(first->drives.count + first->loads.count);
-  tables->all_waves = strut_arena_allocate(arena, signals, sizeof *tables->all_waves);
-  return tables->all_waves != NULL;
+  tables->signals.all_waves =
+      strut_arena_allocate(arena, signals, sizeof *tables->signals.all_waves);
+  return tables->signals.all_waves != NULL;
 }
 
 /* A slot of a table from an array; NULL: zeros. */
@@ -173,11 +174,11 @@ static const strut_signal *signal_at(const strut_model *m, int32_t i) {
 static void fill_signals(strut_batch_tables *t, int32_t slot, const strut_model *m) {
   int32_t count = m->drives.count + m->loads.count, rows = STRUT_BATCH_WAVE_ROWS * t->width;
   for (int32_t i = 0; i < count; i++) {
-    fill_wave(t->wave + i * rows, t->width, slot, signal_at(m, i));
-    t->all_waves[i] = true;
+    fill_wave(t->signals.wave + i * rows, t->width, slot, signal_at(m, i));
+    t->signals.all_waves[i] = true;
     for (int32_t l = 0; l < t->width; l++) {
       strut_signal_kind kind = t->model[l] ? signal_at(t->model[l], i)->kind : STRUT_SINE;
-      if (kind != STRUT_SINE && kind != STRUT_HALF_SINE) t->all_waves[i] = false;
+      if (kind != STRUT_SINE && kind != STRUT_HALF_SINE) t->signals.all_waves[i] = false;
     }
   }
 }
@@ -195,20 +196,20 @@ static void fill_ground(strut_batch_tables *t, int32_t slot, const strut_contact
             [STRUT_BATCH_FRICTION_MU_STATIC_BACKWARD] = strut_friction_static(&e->friction, -1.0),
         [STRUT_BATCH_FRICTION_MU_KINETIC_BACKWARD] = strut_friction_kinetic(&e->friction, -1.0),
         [STRUT_BATCH_FRICTION_LAW] = e->friction.law};
-    spread(t->contact + i * STRUT_BATCH_CONTACT_ROWS * t->width, t->width, slot, row,
+    spread(t->ground.contact + i * STRUT_BATCH_CONTACT_ROWS * t->width, t->width, slot, row,
            STRUT_BATCH_CONTACT_ROWS);
   }
   const double ground[STRUT_BATCH_GROUND_ROWS] = {c->tangent[0], c->tangent[1], c->normal[0],
                                                   c->normal[1],  c->height,     c->belt_speed};
-  spread(t->ground, t->width, slot, ground, STRUT_BATCH_GROUND_ROWS);
+  spread(t->ground.line, t->width, slot, ground, STRUT_BATCH_GROUND_ROWS);
 }
 
 static void fill_elements(strut_batch_tables *t, int32_t slot, const strut_element_table *e) {
   for (int32_t i = 0; i < e->count; i++) {
     int32_t at = i * t->width + slot;
-    t->element_stiffness[at] = e->element[i].numbers.stiffness;
-    t->element_damping[at] = e->element[i].damping;
-    t->element_natural[at] = e->element[i].natural;
+    t->elements.stiffness[at] = e->element[i].numbers.stiffness;
+    t->elements.damping[at] = e->element[i].damping;
+    t->elements.natural[at] = e->element[i].natural;
   }
 }
 
@@ -216,16 +217,16 @@ void strut_batch_tables_put_elements(strut_batch_tables *t, int32_t slot,
                                      const strut_state *state) {
   for (int32_t i = 0; i < t->first->elements.count; i++) {
     int32_t at = i * t->width + slot;
-    t->element_turn[at] = state->latest.element_turn[i];
-    t->element_acts[at] = state->modes.element_acts[i];
-    t->element_piece[at] = state->modes.element_piece[i];
+    t->elements.turn[at] = state->latest.element_turn[i];
+    t->elements.acts[at] = state->modes.element_acts[i];
+    t->elements.piece[at] = state->modes.element_piece[i];
   }
 }
 
 void strut_batch_tables_get_elements(const strut_batch_tables *t, int32_t slot,
                                      strut_state *state) {
   for (int32_t i = 0; i < t->first->elements.count; i++)
-    state->latest.element_turn[i] = t->element_turn[i * t->width + slot];
+    state->latest.element_turn[i] = t->elements.turn[i * t->width + slot];
 }
 
 void strut_batch_tables_fill(strut_batch_tables *t, int32_t slot, const strut_model *m) {
@@ -233,20 +234,20 @@ void strut_batch_tables_fill(strut_batch_tables *t, int32_t slot, const strut_mo
   int32_t width = t->width;
   assert(strut_laws_within(m->laws, known));
   t->model[slot] = m;
-  spread(t->stiffness, width, slot, s->stiffness, s->slots);
-  spread(t->damping, width, slot, s->damping, s->slots);
-  spread(t->rest0, width, slot, s->rest, s->slots);
-  spread(t->rest, width, slot, s->rest, s->slots);
-  spread(t->rest_rate, width, slot, NULL, s->slots);
-  spread(t->slack_length_threshold, width, slot, s->slack, s->slots);
-  spread(t->slack_force_threshold, width, slot, s->slack, s->slots);
+  spread(t->members.stiffness, width, slot, s->stiffness, s->slots);
+  spread(t->members.damping, width, slot, s->damping, s->slots);
+  spread(t->members.rest0, width, slot, s->rest, s->slots);
+  spread(t->members.rest, width, slot, s->rest, s->slots);
+  spread(t->members.rest_rate, width, slot, NULL, s->slots);
+  spread(t->members.slack_length_threshold, width, slot, s->slack, s->slots);
+  spread(t->members.slack_force_threshold, width, slot, s->slack, s->slots);
   spread(t->constant, width, slot, m->constant_force, m->length);
-  spread(t->load_x, width, slot, m->loads.x, m->loads.count);
-  spread(t->load_y, width, slot, m->loads.y, m->loads.count);
-  spread(t->inverse, width, slot, m->mass->inverse, m->length);
+  spread(t->signals.load_x, width, slot, m->loads.x, m->loads.count);
+  spread(t->signals.load_y, width, slot, m->loads.y, m->loads.count);
+  spread(t->mass.inverse, width, slot, m->mass->inverse, m->length);
   for (int c = 0; c < 2 && !m->mass->diagonal; c++) {
     const strut_mass_operator *op = &m->mass->coordinate[c];
-    spread(t->block_inverse[c], width, slot, op->block_inverse, entries_of(op));
+    spread(t->mass.block_inverse[c], width, slot, op->block_inverse, entries_of(op));
   }
   fill_elements(t, slot, &m->elements);
   fill_ground(t, slot, &m->contacts);

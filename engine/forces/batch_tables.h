@@ -57,23 +57,34 @@ typedef struct strut_batch_tables {
   int32_t width;
   const strut_model *first;                   /* topology; as long as the tables live */
   const strut_model *model[STRUT_BATCH_MOST]; /* whose numbers each slot has; NULL: none yet */
-  double *stiffness, *damping, *rest0;        /* (slots, width) */
-  double *rest, *rest_rate;                   /* (slots, width) now, as driven */
-  double *slack_length_threshold, *slack_force_threshold; /* (slots, width) */
-  double *constant;                                       /* (length, width) */
-  double *contact;          /* (contacts, STRUT_BATCH_CONTACT_ROWS, width) */
-  double *ground;           /* (STRUT_BATCH_GROUND_ROWS, width) */
-  double *wave;             /* (drives + loads, STRUT_BATCH_WAVE_ROWS, width) */
-  bool *all_waves;          /* (drives + loads) sines and half-waves only? */
-  double *load_factor;      /* (loads, width) now */
-  double *load_x, *load_y;  /* (loads, width) */
-  double *inverse;          /* (length, width) of masses that none couples */
-  double *block_inverse[2]; /* as strut_mass_operator, times width */
-  double *force;            /* (length, width) */
-  /* (elements, width): numbers; what a state has of each; modes as numbers */
-  double *element_stiffness, *element_damping, *element_natural;
-  double *element_turn, *element_acts, *element_piece;
-  double *power; /* (STRUT_BATCH_POWERS, width) */
+  double *constant;                           /* (length, width) */
+  double *force;                              /* (length, width) */
+  double *power;                              /* (STRUT_BATCH_POWERS, width) */
+  /** (member slots, width) each. */
+  struct {
+    double *stiffness, *damping, *rest0;
+    double *rest, *rest_rate; /* now, as driven */
+    double *slack_length_threshold, *slack_force_threshold;
+  } members;
+  struct {
+    double *contact; /* (contacts, STRUT_BATCH_CONTACT_ROWS, width) */
+    double *line;    /* (STRUT_BATCH_GROUND_ROWS, width) */
+  } ground;
+  struct {
+    double *wave;            /* (drives + loads, STRUT_BATCH_WAVE_ROWS, width) */
+    bool *all_waves;         /* (drives + loads) sines and half-waves only? */
+    double *load_factor;     /* (loads, width) now */
+    double *load_x, *load_y; /* (loads, width) */
+  } signals;
+  struct {
+    double *inverse;          /* (length, width) of masses that none couples */
+    double *block_inverse[2]; /* as strut_mass_operator, times width */
+  } mass;
+  /** (elements, width) each: numbers; what a state has of each; modes as numbers. */
+  struct {
+    double *stiffness, *damping, *natural;
+    double *turn, *acts, *piece;
+  } elements;
 } strut_batch_tables;
 
 /** Is there a kernel for what the model needs: no rigid bars, no factor? */

@@ -39,30 +39,30 @@ _Static_assert(sizeof terms / sizeof terms[0] == STRUT_COST_TERMS, "one for each
 
 static void count_elements(const strut_model *model, strut_cost_estimate *estimate) {
   const strut_scene *scene = model->scene;
-  estimate->nodes = scene->node_count;
+  estimate->count.nodes = scene->node_count;
   for (int32_t i = 0; i < 2 * model->node_count; i++)
-    estimate->degrees_of_freedom += !model->fixed[i];
+    estimate->count.degrees_of_freedom += !model->fixed[i];
   for (size_t j = 0; j < scene->member_count; j++) {
-    estimate->bars += scene->members[j].kind == STRUT_BAR;
-    estimate->springs += scene->members[j].kind == STRUT_SPRING;
-    estimate->cables += scene->members[j].kind == STRUT_CABLE;
+    estimate->count.bars += scene->members[j].kind == STRUT_BAR;
+    estimate->count.springs += scene->members[j].kind == STRUT_SPRING;
+    estimate->count.cables += scene->members[j].kind == STRUT_CABLE;
   }
   for (size_t j = 0; j < scene->member_count; j++) {
     const strut_member *m = &scene->members[j];
-    estimate->running_cables += m->guide_count > 0;
-    estimate->laws +=
+    estimate->count.running_cables += m->guide_count > 0;
+    estimate->count.laws +=
         m->law.kind != STRUT_LAW_LINEAR || m->law.carries == STRUT_CARRIES_COMPRESSION;
-    estimate->stops += (size_t)(m->shortest > 0.0) + (size_t)(m->longest > 0.0);
+    estimate->count.stops += (size_t)(m->shortest > 0.0) + (size_t)(m->longest > 0.0);
   }
   for (int32_t i = 0; i < model->elements.count; i++)
-    estimate->reeled += model->elements.element[i].law == STRUT_LAW_AXIAL;
-  estimate->hinges = scene->hinge_count;
-  estimate->cells = scene->cell_count;
-  estimate->collisions = scene->collision_count;
-  estimate->breakables = (size_t)model->elements.breakable_count;
-  estimate->contacts = (size_t)model->contacts.count;
-  estimate->actuators = scene->actuator_count;
-  estimate->loads = scene->load_count;
+    estimate->count.reeled += model->elements.element[i].law == STRUT_LAW_AXIAL;
+  estimate->count.hinges = scene->hinge_count;
+  estimate->count.cells = scene->cell_count;
+  estimate->count.collisions = scene->collision_count;
+  estimate->count.breakables = (size_t)model->elements.breakable_count;
+  estimate->count.contacts = (size_t)model->contacts.count;
+  estimate->count.actuators = scene->actuator_count;
+  estimate->count.loads = scene->load_count;
   estimate->bytes = model->arena.bytes + sizeof *model;
 }
 
@@ -71,15 +71,15 @@ static bool has_element(const strut_cost_estimate *estimate, const char *name) {
   const struct {
     const char *name;
     size_t count;
-  } kinds[] = {{"running cables", estimate->running_cables},
-               {"member laws", estimate->laws},
-               {"reeled members", estimate->reeled},
-               {"stops", estimate->stops},
-               {"hinges", estimate->hinges},
-               {"cells", estimate->cells},
-               {"collisions", estimate->collisions},
-               {"driven rest lengths", estimate->actuators},
-               {"breaks and releases", estimate->breakables}};
+  } kinds[] = {{"running cables", estimate->count.running_cables},
+               {"member laws", estimate->count.laws},
+               {"reeled members", estimate->count.reeled},
+               {"stops", estimate->count.stops},
+               {"hinges", estimate->count.hinges},
+               {"cells", estimate->count.cells},
+               {"collisions", estimate->count.collisions},
+               {"driven rest lengths", estimate->count.actuators},
+               {"breaks and releases", estimate->count.breakables}};
   for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++)
     if (strcmp(kinds[i].name, name) == 0) return kinds[i].count > 0;
   return true;
@@ -96,9 +96,9 @@ strut_status strut_cost_estimate_describe(const strut_model *model, strut_cost_e
   if (!model->mass) return STRUT_OK;
   estimate->runnable = true;
   estimate->feedback = strut_scene_has_feedback(model->scene);
-  estimate->mass_nonzeros = model->mass->matrix_nonzeros;
-  estimate->factor_nonzeros = model->mass->factor_nonzeros;
-  estimate->dense_entries = model->mass->dense_entries;
+  estimate->matrix.mass_nonzeros = model->mass->matrix_nonzeros;
+  estimate->matrix.factor_nonzeros = model->mass->factor_nonzeros;
+  estimate->matrix.dense_entries = model->mass->dense_entries;
   strut_step_limit limit;
   strut_status status = strut_step_limit_estimate(model, &limit, error);
   estimate->largest_frequency = limit.largest_frequency;

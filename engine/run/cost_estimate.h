@@ -16,22 +16,26 @@ typedef struct strut_cost_term {
 enum { STRUT_COST_TERMS = 25 };
 
 typedef struct strut_cost_estimate {
-  size_t nodes, degrees_of_freedom, bars, springs, cables, contacts, actuators, loads;
-  size_t hinges, running_cables, laws, stops; /* laws: members with another law than the linear */
-  size_t reeled;            /* members with an axial_stiffness whose rest length is driven */
-  size_t mass_nonzeros;     /* stored entries of M (lower triangle, each coordinate that differs) */
-  size_t factor_nonzeros;   /* entries of its sparse factor; 0 without one */
-  size_t dense_entries;     /* of dense block inverses */
+  struct {
+    size_t nodes, degrees_of_freedom, bars, springs, cables, contacts, actuators, loads;
+    size_t hinges, running_cables, laws, stops; /* laws: members with another law than the linear */
+    size_t reeled; /* members with an axial_stiffness whose rest length is driven */
+    size_t cells, collisions;
+    size_t breakables; /* members and hinges that may break or are released */
+  } count;
+  struct {
+    size_t mass_nonzeros;   /* stored entries of M (lower triangle, each coordinate that differs) */
+    size_t factor_nonzeros; /* entries of its sparse factor; 0 without one */
+    size_t dense_entries;   /* of dense block inverses */
+  } matrix;
   size_t bytes;             /* of the compiled model */
+  bool feedback;            /* signals follow sensors, which frequency and step limits leave out */
   bool runnable;            /* every free coordinate has mass; otherwise the fields below are 0 */
   double largest_frequency; /* undamped, all contacts closed [rad/s] */
   double step_limit;        /* largest stable RK4 step, contact stiffness and damping counted [s] */
   strut_step_limit limits;  /* of every method: strut_step_limit_of_method */
   bool step_limit_exact;    /* from all eigenvalues; else within 1 %, or limits.bound */
   strut_cost_term terms[STRUT_COST_TERMS];
-  size_t cells, collisions;
-  size_t breakables; /* members and hinges that may break or are released */
-  bool feedback;     /* signals follow sensors, which frequency and step limits leave out */
 } strut_cost_estimate;
 
 /** Estimates the cost of a compiled model. */

@@ -40,19 +40,19 @@ static const char *kind_name(strut_member_kind kind) {
 }
 
 static void print_counts(const strut_cost_estimate *estimate) {
-  size_t members = estimate->bars + estimate->springs + estimate->cables;
-  printf("  nodes              %zu, with %zu degrees of freedom\n", estimate->nodes,
-         estimate->degrees_of_freedom);
-  printf("  members            %zu: bars %zu, springs %zu, cables %zu\n", members, estimate->bars,
-         estimate->springs, estimate->cables);
-  if (estimate->running_cables + estimate->laws + estimate->stops > 0)
+  size_t members = estimate->count.bars + estimate->count.springs + estimate->count.cables;
+  printf("  nodes              %zu, with %zu degrees of freedom\n", estimate->count.nodes,
+         estimate->count.degrees_of_freedom);
+  printf("  members            %zu: bars %zu, springs %zu, cables %zu\n", members,
+         estimate->count.bars, estimate->count.springs, estimate->count.cables);
+  if (estimate->count.running_cables + estimate->count.laws + estimate->count.stops > 0)
     printf("  of them            running cables %zu, with a law %zu, stops %zu\n",
-           estimate->running_cables, estimate->laws, estimate->stops);
-  if (estimate->hinges) printf("  hinges             %zu\n", estimate->hinges);
-  if (estimate->cells) printf("  cells              %zu\n", estimate->cells);
-  if (estimate->collisions) printf("  collisions         %zu\n", estimate->collisions);
+           estimate->count.running_cables, estimate->count.laws, estimate->count.stops);
+  if (estimate->count.hinges) printf("  hinges             %zu\n", estimate->count.hinges);
+  if (estimate->count.cells) printf("  cells              %zu\n", estimate->count.cells);
+  if (estimate->count.collisions) printf("  collisions         %zu\n", estimate->count.collisions);
   printf("  contacts           %zu\n  actuators          %zu\n  loads              %zu\n",
-         estimate->contacts, estimate->actuators, estimate->loads);
+         estimate->count.contacts, estimate->count.actuators, estimate->count.loads);
   printf("  memory             %s\n", in((double)estimate->bytes, "B").text);
 }
 
@@ -76,7 +76,8 @@ static void print_run(const strut_cost_estimate *estimate, const strut_experimen
   }
   double step = e->step, hertz = estimate->largest_frequency / STRUT_TAU;
   printf("  mass matrix        %zu nonzeros, %zu in its factor, %zu in dense inverses\n",
-         estimate->mass_nonzeros, estimate->factor_nonzeros, estimate->dense_entries);
+         estimate->matrix.mass_nonzeros, estimate->matrix.factor_nonzeros,
+         estimate->matrix.dense_entries);
   bool bound = estimate->limits.bound;
   printf("  highest frequency  %s%s (undamped, all contacts closed)\n", bound ? "at most " : "",
          in(hertz, "Hz").text);
@@ -362,20 +363,20 @@ static void add_estimate(strut_json *json, const strut_cost_estimate *estimate,
   strut_json_text(json, root, "name", scene->name);
   strut_json_text(json, root, "strut_version", STRUT_VERSION);
   strut_json_integer(json, root, "language", STRUT_LANGUAGE_VERSION);
-  strut_json_integer(json, root, "nodes", (int64_t)estimate->nodes);
-  strut_json_integer(json, root, "degrees_of_freedom", (int64_t)estimate->degrees_of_freedom);
-  strut_json_integer(json, root, "bars", (int64_t)estimate->bars);
-  strut_json_integer(json, root, "springs", (int64_t)estimate->springs);
-  strut_json_integer(json, root, "cables", (int64_t)estimate->cables);
-  strut_json_integer(json, root, "running_cables", (int64_t)estimate->running_cables);
-  strut_json_integer(json, root, "laws", (int64_t)estimate->laws);
-  strut_json_integer(json, root, "stops", (int64_t)estimate->stops);
-  strut_json_integer(json, root, "contacts", (int64_t)estimate->contacts);
-  strut_json_integer(json, root, "actuators", (int64_t)estimate->actuators);
-  strut_json_integer(json, root, "loads", (int64_t)estimate->loads);
-  strut_json_integer(json, root, "mass_nonzeros", (int64_t)estimate->mass_nonzeros);
-  strut_json_integer(json, root, "factor_nonzeros", (int64_t)estimate->factor_nonzeros);
-  strut_json_integer(json, root, "dense_entries", (int64_t)estimate->dense_entries);
+  strut_json_integer(json, root, "nodes", (int64_t)estimate->count.nodes);
+  strut_json_integer(json, root, "degrees_of_freedom", (int64_t)estimate->count.degrees_of_freedom);
+  strut_json_integer(json, root, "bars", (int64_t)estimate->count.bars);
+  strut_json_integer(json, root, "springs", (int64_t)estimate->count.springs);
+  strut_json_integer(json, root, "cables", (int64_t)estimate->count.cables);
+  strut_json_integer(json, root, "running_cables", (int64_t)estimate->count.running_cables);
+  strut_json_integer(json, root, "laws", (int64_t)estimate->count.laws);
+  strut_json_integer(json, root, "stops", (int64_t)estimate->count.stops);
+  strut_json_integer(json, root, "contacts", (int64_t)estimate->count.contacts);
+  strut_json_integer(json, root, "actuators", (int64_t)estimate->count.actuators);
+  strut_json_integer(json, root, "loads", (int64_t)estimate->count.loads);
+  strut_json_integer(json, root, "mass_nonzeros", (int64_t)estimate->matrix.mass_nonzeros);
+  strut_json_integer(json, root, "factor_nonzeros", (int64_t)estimate->matrix.factor_nonzeros);
+  strut_json_integer(json, root, "dense_entries", (int64_t)estimate->matrix.dense_entries);
   strut_json_integer(json, root, "bytes", (int64_t)estimate->bytes);
   strut_json_bool(json, root, "runnable", estimate->runnable);
   strut_json_number(json, root, "largest_frequency",

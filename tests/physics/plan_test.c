@@ -148,9 +148,10 @@ TEST(the_plan_tells_its_terms) {
         if (plan.terms[k].in) reported |= (unsigned)plan.terms[k].term;
       }
       assert_int_equal(reported, terms);
-      assert_int_equal(plan.nodes, scene.node_count);
-      assert_int_equal(plan.bars + plan.springs + plan.cables, scene.member_count);
-      assert_int_equal(plan.contacts, scene.contact_count);
+      assert_int_equal(plan.count.nodes, scene.node_count);
+      assert_int_equal(plan.count.bars + plan.count.springs + plan.count.cables,
+                       scene.member_count);
+      assert_int_equal(plan.count.contacts, scene.contact_count);
       strut_model_free(model);
       strut_scene_free(&scene);
     }

@@ -132,8 +132,8 @@ void strut_batch_get(strut_batch *b, int32_t slot, strut_state *state) {
   strut_batch_tables_get_elements(t, slot, state);
   state->latest.drive_time = b->driven ? b->step[slot] * b->dt[slot] : (double)NAN;
   for (int32_t j = 0; j < t->first->members.slots && b->driven; j++) {
-    state->latest.rest[j] = t->rest[j * width + slot];
-    state->latest.rest_rate[j] = t->rest_rate[j * width + slot];
+    state->latest.rest[j] = t->members.rest[j * width + slot];
+    state->latest.rest_rate[j] = t->members.rest_rate[j * width + slot];
   }
   for (int32_t p = 0; p < STRUT_BATCH_POWERS && b->balance; p++) {
     state->work[p] = b->work[p * width + slot];

@@ -59,7 +59,7 @@ STRUT_BATCH_INLINE void batch_rk4_steps(strut_batch *b, int64_t count, bool bala
   bool others = balance && tables.first->terms & (STRUT_TERM_LOADS | STRUT_TERM_ELEMENTS);
   const strut_contact_table *contacts = &tables.first->contacts;
   bool moves = false;
-  BATCH_EACH(moves |= batch_some(batch_row(tables.ground, STRUT_BATCH_BELT, p) != 0.0));
+  BATCH_EACH(moves |= batch_some(batch_row(tables.ground.line, STRUT_BATCH_BELT, p) != 0.0));
   batch_step_sums sums;
   if (balance) batch_clear_sums(&sums);
   for (size_t k = 0; k < STRUT_BATCH_POWERS && balance; k++) /* accumulated ones are not here */

@@ -236,7 +236,7 @@ void strut_event_stepper_restart(const strut_model *model, strut_state *state, v
   l->at_once = l->switches = 0;
   l->pushed = -1;
   l->tried = false;
-  if (l->small) l->small->rows_current = false;
+  if (l->small) l->small->is.rows_current = false;
   l->next_break =
       strut_drive_next_break(model, state, t + state->time_offset + STRUT_AT_BREAK * dt);
   if (l->next_break < HUGE_VAL) t += moment_before(t, dt);

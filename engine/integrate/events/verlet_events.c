@@ -150,7 +150,7 @@ static void verlet_advance_with_rare_terms(const strut_model *model, strut_state
 static void verlet_advance_until_event(const strut_model *model, strut_state *state,
                                        strut_event_stepper *l, double dt, int64_t end) {
   strut_small_quiet *small = STRUT_SMALL_EVENTS(model, state, l, strut_small_verlet_events);
-  if (small && l->small->decoupled)
+  if (small && l->small->is.decoupled)
     small(model, state, l, dt, end);
   else if (model->terms & STRUT_TERMS_RARE)
     verlet_advance_with_rare_terms(model, state, l, dt, end);

@@ -68,26 +68,28 @@ strut_status strut_steady_detector_create(const strut_model *model, const strut_
                                           double period, double begin, strut_steady_detector *w) {
   size_t both = 2 * (size_t)model->length;
   assert(period > 0.0);
-  *w = (strut_steady_detector){
-      .model = model,
-      .period = period,
-      .tolerance = wanted->tolerance,
-      .floor = wanted->floor,
-      .mean_tolerance = wanted->mean_tolerance > 0.0 ? wanted->mean_tolerance : wanted->tolerance,
-      .successive = wanted->successive,
-      .creep = wanted->creep,
-      .creep_after = wanted->creep_after,
-      .stride = 1};
-  w->not_before = (last_signal_event(model->scene) - begin) / period;
-  if (w->successive < 2) w->successive = 2;
-  if (w->successive > STRUT_RING / 2) w->successive = STRUT_RING / 2;
-  if (!(w->floor > 0.0)) w->floor = STANDSTILL * model->size / period * w->tolerance;
+  *w = (strut_steady_detector){.model = model,
+                               .period = period,
+                               .rules.tolerance = wanted->tolerance,
+                               .rules.floor = wanted->floor,
+                               .rules.mean_tolerance = wanted->mean_tolerance > 0.0
+                                                           ? wanted->mean_tolerance
+                                                           : wanted->tolerance,
+                               .rules.successive = wanted->successive,
+                               .rules.creep = wanted->creep,
+                               .rules.creep_after = wanted->creep_after,
+                               .drift.stride = 1};
+  w->rules.not_before = (last_signal_event(model->scene) - begin) / period;
+  if (w->rules.successive < 2) w->rules.successive = 2;
+  if (w->rules.successive > STRUT_RING / 2) w->rules.successive = STRUT_RING / 2;
+  if (!(w->rules.floor > 0.0))
+    w->rules.floor = STANDSTILL * model->size / period * w->rules.tolerance;
   w->travels = strut_contacts_allow_travel(&model->contacts);
   for (int32_t i = 0; i < 2 * model->node_count; i++) w->travels = w->travels && !model->fixed[i];
-  bool ready = (w->middle = strut_arena_allocate(&w->arena, both, sizeof(double)));
+  bool ready = (w->latest.middle = strut_arena_allocate(&w->arena, both, sizeof(double)));
   for (int k = 0; k < STRUT_RING && ready; k++)
-    ready = (w->state[k] = strut_arena_allocate(&w->arena, both, sizeof(double)));
-  w->least_irregular = wanted->mean_tolerance > 0.0 ? LEAST_IRREGULAR / 2 : LEAST_IRREGULAR;
+    ready = (w->latest.state[k] = strut_arena_allocate(&w->arena, both, sizeof(double)));
+  w->rules.least_irregular = wanted->mean_tolerance > 0.0 ? LEAST_IRREGULAR / 2 : LEAST_IRREGULAR;
   w->result.kind = STRUT_MOTION_TRANSIENT;
   if (ready) return STRUT_OK;
   strut_steady_detector_free(w);
@@ -124,7 +126,7 @@ static double shape_distance(const strut_steady_detector *w, const double *a, co
 }
 
 void strut_steady_detector_half_period(const strut_state *state, strut_steady_detector *w) {
-  copy_state(state, w, w->middle);
+  copy_state(state, w, w->latest.middle);
 }
 
 /*
@@ -162,7 +164,7 @@ static double distance_to_limit(const strut_steady_detector *w, int64_t now, int
   const double *at[4];
   double along[3], sum[2][3] = {{0.0}};
   int32_t coordinates = 2 * w->model->node_count;
-  for (int k = 0; k < 4; k++) at[k] = w->state[(now - k * n) % STRUT_RING];
+  for (int k = 0; k < 4; k++) at[k] = w->latest.state[(now - k * n) % STRUT_RING];
   for (int k = 0; k < 3; k++) along[k] = mean_travel(w, at[k + 1], at[k]);
   for (int32_t i = 0; i < coordinates; i++) {
     double d[3], v[3];
@@ -193,7 +195,7 @@ static bool something_grows(const strut_steady_detector *w, int64_t now, int32_t
   const double *at[GROWTH_FACTORS + 2];
   double along[GROWTH_FACTORS + 1];
   if (now < (GROWTH_FACTORS + 1) * n || (GROWTH_FACTORS + 1) * n >= STRUT_RING) return false;
-  for (int k = 0; k < GROWTH_FACTORS + 2; k++) at[k] = w->state[(now - k * n) % STRUT_RING];
+  for (int k = 0; k < GROWTH_FACTORS + 2; k++) at[k] = w->latest.state[(now - k * n) % STRUT_RING];
   for (int k = 0; k < GROWTH_FACTORS + 1; k++) along[k] = mean_travel(w, at[k + 1], at[k]);
   for (int32_t i = 0; i < 2 * w->model->node_count; i++) {
     double d[GROWTH_FACTORS + 1], v, least = HUGE_VAL, most = 0.0;
@@ -203,14 +205,14 @@ static bool something_grows(const strut_steady_detector *w, int64_t now, int32_t
       double factor = d[k + 1] > 0.0 ? d[k] / d[k + 1] : 0.0;
       least = fmin(least, factor), most = fmax(most, factor);
     }
-    bool above_rounding = d[GROWTH_FACTORS] > ROUNDING * w->amplitude;
+    bool above_rounding = d[GROWTH_FACTORS] > ROUNDING * w->latest.amplitude;
     if (above_rounding && least > 1.0 && most - 1.0 < 1.25 * (least - 1.0)) return true;
   }
   return false;
 }
 
 static double mean_velocity(const strut_steady_detector *w, int64_t now, int32_t periods) {
-  double dx = w->place[now % STRUT_RING] - w->place[(now - periods) % STRUT_RING];
+  double dx = w->latest.place[now % STRUT_RING] - w->latest.place[(now - periods) % STRUT_RING];
   return dx / (periods * w->period);
 }
 
@@ -219,12 +221,12 @@ static double mean_velocity(const strut_steady_detector *w, int64_t now, int32_t
  * of them.
  */
 static bool still_decays(const strut_steady_detector *w, int64_t now, int32_t n) {
-  int32_t over = 2 * n > w->successive ? 2 * n : w->successive;
+  int32_t over = 2 * n > w->rules.successive ? 2 * n : w->rules.successive;
   if (now <= over + n) return true;
   double last = 0.0, first = 0.0; /* means over n periods, whose order then does not matter */
   for (int32_t j = 0; j < n; j++) {
-    last += w->residual[0][(now - j) % STRUT_RING];
-    first += w->residual[0][(now - over - j) % STRUT_RING];
+    last += w->latest.residual[0][(now - j) % STRUT_RING];
+    first += w->latest.residual[0][(now - over - j) % STRUT_RING];
   }
   return last < pow(0.99, over) * first;
 }
@@ -234,30 +236,30 @@ static bool still_decays(const strut_steady_detector *w, int64_t now, int32_t n)
  * so that it would soon seem to repeat itself after one of the several numbers of periods that are tried.
  */
 static double allowed_change(const strut_steady_detector *w, double velocity, int32_t n) {
-  double allowed = fmax(w->tolerance * fabs(velocity), w->floor);
-  bool slow = w->creep > 0.0 && fabs(velocity) <= w->creep;
-  return slow && n > 1 ? fmin(allowed, CREEP_DIFFERENCE * w->creep) : allowed;
+  double allowed = fmax(w->rules.tolerance * fabs(velocity), w->rules.floor);
+  bool slow = w->rules.creep > 0.0 && fabs(velocity) <= w->rules.creep;
+  return slow && n > 1 ? fmin(allowed, CREEP_DIFFERENCE * w->rules.creep) : allowed;
 }
 
 /* Does the motion repeat itself every n periods? */
 static bool repeats_itself(strut_steady_detector *w, int64_t now, int k) {
-  int32_t n = repeats[k], over = w->successive;
-  if (now < 2 * n + over || (double)now < w->not_before + n + over) return false;
+  int32_t n = repeats[k], over = w->rules.successive;
+  if (now < 2 * n + over || (double)now < w->rules.not_before + n + over) return false;
   if (!drives_repeat(w, n)) return false;
   if (n > 1 && (now < LEAST_PERIODS + 4 * n || still_decays(w, now, n))) return false;
   int32_t rounds = n * ((over + n - 1) / n);
   double velocity = mean_velocity(w, now, rounds), change = 0.0;
   for (int64_t j = now - over + 1; j <= now; j++)
-    change = fmax(change, w->change[k][j % STRUT_RING]);
-  double rest = remaining_decay(w->residual[k], now, n, over, w->amplitude);
+    change = fmax(change, w->latest.change[k][j % STRUT_RING]);
+  double rest = remaining_decay(w->latest.residual[k], now, n, over, w->latest.amplitude);
   double allowed = allowed_change(w, velocity, n);
-  double residual = w->residual[k][now % STRUT_RING];
-  double still = w->floor * w->period / w->model->size;
+  double residual = w->latest.residual[k][now % STRUT_RING];
+  double still = w->rules.floor * w->period / w->model->size;
   if (!(change <= allowed && change * rest <= allowed)) return false;
   /* n > 1 must meet a stricter limit, since a transient may seem to repeat */
-  double alike = (n > 1 ? 1.0 : 4.0) * fmax(w->tolerance * w->amplitude, still);
+  double alike = (n > 1 ? 1.0 : 4.0) * fmax(w->rules.tolerance * w->latest.amplitude, still);
   if (!(residual * fmax(rest, 1.0) <= alike)) return false;
-  if (residual > ROUNDING * w->amplitude) {
+  if (residual > ROUNDING * w->latest.amplitude) {
     if (something_grows(w, now, n)) return false;
     rest = fmax(rest, distance_to_limit(w, now, n) / residual);
     if (!(change * rest <= allowed && residual * rest <= alike)) return false;
@@ -265,12 +267,12 @@ static bool repeats_itself(strut_steady_detector *w, int64_t now, int k) {
   /* an irregular motion may return by chance, but not repeatedly */
   int32_t often = n > 1 && 2 * n > over ? 2 * n : over;
   for (int64_t j = now - often + 1; j <= now; j++)
-    if (w->residual[k][j % STRUT_RING] > (n > 1 ? alike : 4.0 * alike)) return false;
+    if (w->latest.residual[k][j % STRUT_RING] > (n > 1 ? alike : 4.0 * alike)) return false;
   w->result.kind = STRUT_MOTION_PERIODIC;
   w->result.repeats = n;
   w->result.periods = now;
   w->result.interval = change * (1.0 + rest);
-  w->result.residual = w->amplitude > 0.0 ? residual / w->amplitude : 0.0;
+  w->result.residual = w->latest.amplitude > 0.0 ? residual / w->latest.amplitude : 0.0;
   return true;
 }
 
@@ -279,8 +281,8 @@ static bool repeats_itself(strut_steady_detector *w, int64_t now, int k) {
  * that sets in would show in growing changes of the shape, one that will repeat itself in falling ones.
  */
 static bool creeps(strut_steady_detector *w, int64_t now) {
-  if (!(w->creep > 0.0) || !w->travels || now < CREEP_PERIODS || now < w->creep_after ||
-      (double)now < w->not_before + CREEP_PERIODS)
+  if (!(w->rules.creep > 0.0) || !w->travels || now < CREEP_PERIODS || now < w->rules.creep_after ||
+      (double)now < w->rules.not_before + CREEP_PERIODS)
     return false;
   if (!drives_repeat(w, 1)) return false;
   double mean = mean_velocity(w, now, CREEP_PERIODS), square = 0.0, changes[2] = {0.0};
@@ -289,9 +291,9 @@ static bool creeps(strut_steady_detector *w, int64_t now) {
     square += (speed - mean) * (speed - mean);
   }
   for (int j = 0; j < CREEP_PERIODS; j++)
-    changes[2 * j / CREEP_PERIODS] += w->residual[0][(now - j) % STRUT_RING];
+    changes[2 * j / CREEP_PERIODS] += w->latest.residual[0][(now - j) % STRUT_RING];
   double interval = STUDENT_7 * sqrt(square / (BATCHES - 1) / BATCHES);
-  if (!(fabs(mean) + interval <= w->creep)) return false;
+  if (!(fabs(mean) + interval <= w->rules.creep)) return false;
   if (changes[0] > CREEP_CHANGE * changes[1] || changes[1] > CREEP_CHANGE * changes[0])
     return false;
   w->result.kind = STRUT_MOTION_CREEPING;
@@ -305,17 +307,17 @@ static bool creeps(strut_steady_detector *w, int64_t now) {
  * Stores the position at equal intervals over the whole run, which double when the marks are full.
  */
 static void add_mark(strut_steady_detector *w, int64_t now, double x) {
-  w->wander += now > 0 ? w->residual[0][now % STRUT_RING] : 0.0;
-  if (now % w->stride != 0) return;
-  if (w->marks == STRUT_MARKS) {
+  w->drift.wander += now > 0 ? w->latest.residual[0][now % STRUT_RING] : 0.0;
+  if (now % w->drift.stride != 0) return;
+  if (w->drift.marks == STRUT_MARKS) {
     for (int32_t i = 0; 2 * i < STRUT_MARKS; i++)
-      w->mark[i] = w->mark[2 * i], w->wandered[i] = w->wandered[2 * i];
-    w->marks = (STRUT_MARKS + 1) / 2;
-    w->stride *= 2;
-    if (now % w->stride != 0) return;
+      w->drift.mark[i] = w->drift.mark[2 * i], w->drift.wandered[i] = w->drift.wandered[2 * i];
+    w->drift.marks = (STRUT_MARKS + 1) / 2;
+    w->drift.stride *= 2;
+    if (now % w->drift.stride != 0) return;
   }
-  w->mark[w->marks] = x;
-  w->wandered[w->marks++] = w->wander;
+  w->drift.mark[w->drift.marks] = x;
+  w->drift.wandered[w->drift.marks++] = w->drift.wander;
 }
 
 /*
@@ -325,10 +327,10 @@ static void add_mark(strut_steady_detector *w, int64_t now, double x) {
 static double batch_mean(const strut_steady_detector *w, int32_t each, double *interval,
                          double *trend) {
   double speed[BATCHES], mean = 0.0, square = 0.0, slope = 0.0;
-  double time = each * (double)w->stride * w->period;
+  double time = each * (double)w->drift.stride * w->period;
   for (int i = 0; i < BATCHES; i++) {
-    int32_t to = w->marks - 1 - i * each;
-    speed[i] = (w->mark[to] - w->mark[to - each]) / time;
+    int32_t to = w->drift.marks - 1 - i * each;
+    speed[i] = (w->drift.mark[to] - w->drift.mark[to - each]) / time;
     mean += speed[i] / BATCHES;
   }
   for (int i = 0; i < BATCHES; i++) {
@@ -348,8 +350,8 @@ static double batch_mean(const strut_steady_detector *w, int32_t each, double *i
 static bool wanders_evenly(const strut_steady_detector *w, int32_t each) {
   double sum[2] = {0.0, 0.0}, square[2] = {0.0, 0.0};
   for (int i = 0; i < 2 * BATCHES; i++) {
-    int32_t to = w->marks - 1 - i * each;
-    double part = w->wandered[to] - w->wandered[to - each];
+    int32_t to = w->drift.marks - 1 - i * each;
+    double part = w->drift.wandered[to] - w->drift.wandered[to - each];
     sum[i / BATCHES] += part, square[i / BATCHES] += part * part;
   }
   double scatter = 0.0;
@@ -364,13 +366,14 @@ static bool wanders_evenly(const strut_steady_detector *w, int32_t each) {
  * of the run, without trend, and with an even difference between neighbouring periods.
  */
 static void judge_irregular(strut_steady_detector *w) {
-  int32_t stretches = w->marks - 1, half = stretches / 2 / BATCHES, quarter = half / 2;
-  int64_t seen = w->seen - 1;
-  if (quarter < 1 || seen < w->least_irregular || (double)seen < 2.0 * w->not_before) return;
+  int32_t stretches = w->drift.marks - 1, half = stretches / 2 / BATCHES, quarter = half / 2;
+  int64_t seen = w->latest.seen - 1;
+  if (quarter < 1 || seen < w->rules.least_irregular || (double)seen < 2.0 * w->rules.not_before)
+    return;
   double wide, narrow, trend, other;
   double mean = batch_mean(w, half, &wide, &trend), late = batch_mean(w, quarter, &narrow, &other);
-  double times = w->mean_tolerance / w->tolerance;
-  double allowed = fmax(w->mean_tolerance * fabs(mean), w->floor * times);
+  double times = w->rules.mean_tolerance / w->rules.tolerance;
+  double allowed = fmax(w->rules.mean_tolerance * fabs(mean), w->rules.floor * times);
   if (wide > allowed || narrow > 2.0 * allowed || trend > STUDENT_6) return;
   if (fabs(mean - late) > wide + narrow) return;
   if (!wanders_evenly(w, quarter)) return;
@@ -380,23 +383,25 @@ static void judge_irregular(strut_steady_detector *w) {
 }
 
 bool strut_steady_detector_period(const strut_state *state, double x, strut_steady_detector *w) {
-  int64_t now = w->seen++;
-  double *latest = w->state[now % STRUT_RING];
+  int64_t now = w->latest.seen++;
+  double *latest = w->latest.state[now % STRUT_RING];
   copy_state(state, w, latest);
-  w->place[now % STRUT_RING] = x;
-  if (now > 0) w->amplitude = shape_distance(w, w->middle, latest);
+  w->latest.place[now % STRUT_RING] = x;
+  if (now > 0) w->latest.amplitude = shape_distance(w, w->latest.middle, latest);
   for (int k = 0; k < STRUT_REPEATS && now >= repeats[k]; k++) {
     int32_t n = repeats[k];
-    w->residual[k][now % STRUT_RING] = shape_distance(w, w->state[(now - n) % STRUT_RING], latest);
+    w->latest.residual[k][now % STRUT_RING] =
+        shape_distance(w, w->latest.state[(now - n) % STRUT_RING], latest);
     if (now < 2 * n) continue;
-    w->change[k][now % STRUT_RING] = fabs(mean_velocity(w, now, n) - mean_velocity(w, now - n, n));
+    w->latest.change[k][now % STRUT_RING] =
+        fabs(mean_velocity(w, now, n) - mean_velocity(w, now - n, n));
   }
   if (!w->known) add_mark(w, now, x);
   for (int k = 0; k < STRUT_REPEATS && !w->known; k++) w->known = repeats_itself(w, now, k);
   if (!w->known && creeps(w, now)) w->known = true;
   if (w->result.kind == STRUT_MOTION_CREEPING) return true;
   int32_t n = w->known ? w->result.repeats : 1;
-  int32_t rounds = n * ((w->successive + n - 1) / n);
+  int32_t rounds = n * ((w->rules.successive + n - 1) / n);
   if (now >= rounds && !w->result.shot) w->velocity = mean_velocity(w, now, rounds);
   return w->known;
 }
@@ -405,18 +410,18 @@ void strut_steady_detector_finish(strut_steady_detector *w, strut_summary *summa
   if (!w->known) judge_irregular(w);
   summary->steady = w->result;
   if (!w->known) {
-    summary->steady.periods = w->seen > 0 ? w->seen - 1 : 0;
+    summary->steady.periods = w->latest.seen > 0 ? w->latest.seen - 1 : 0;
     if (w->result.kind == STRUT_MOTION_IRREGULAR) summary->velocity = w->velocity;
     return;
   }
-  int64_t now = w->seen - 1;
+  int64_t now = w->latest.seen - 1;
   double square = 0.0;
-  for (int32_t j = 0; j < w->successive; j++) {
+  for (int32_t j = 0; j < w->rules.successive; j++) {
     double d = mean_velocity(w, now - j, 1) - w->velocity;
     square += d * d;
   }
   summary->velocity = w->velocity;
-  summary->velocity_spread = sqrt(square / (w->successive - 1));
+  summary->velocity_spread = sqrt(square / (w->rules.successive - 1));
 }
 
 void strut_steady_detector_free(strut_steady_detector *w) { strut_arena_free(&w->arena); }

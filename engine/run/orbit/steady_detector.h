@@ -22,30 +22,39 @@ enum { STRUT_RING = 32, STRUT_REPEATS = 6, STRUT_LONGEST_REPEAT = 8, STRUT_MARKS
 
 typedef struct strut_steady_detector {
   const strut_model *model;
-  double period;           /* [s] */
-  double tolerance, floor; /* [1], [m/s] */
-  double mean_tolerance;   /* of an irregular motion's mean [1] */
-  int64_t least_irregular; /* fewest periods of an irregular motion */
-  int32_t successive;
-  bool travels;              /* its travel along the ground is removed */
-  int64_t seen;              /* period ends so far, the start being the first */
-  double *state[STRUT_RING]; /* (2 length) positions, then velocities; of the latest period ends */
-  double *middle;            /* (2 length) within the latest period */
-  double place[STRUT_RING];  /* x of the measured point [m] */
-  double amplitude;          /* range of the shape within a period [1] */
-  double residual[STRUT_REPEATS][STRUT_RING]; /* of each tested repetition, per period [1] */
-  double change[STRUT_REPEATS][STRUT_RING];   /* of the velocity [m/s] */
-  double not_before;                          /* periods until the last signal has begun or ended */
-  double mark[STRUT_MARKS];     /* x of the measured point every `stride` periods [m] */
-  double wandered[STRUT_MARKS]; /* sum of the residuals until then [1] */
-  double wander;
-  int32_t marks;
-  int64_t stride;
-  double creep;        /* motions that stay slower end as creeping [m/s]; 0: none does */
-  int64_t creep_after; /* periods before, in which they may yet repeat themselves */
+  double period; /* [s] */
+  bool travels;  /* its travel along the ground is removed */
   strut_steady_summary result;
   double velocity, spread; /* over the latest repetitions [m/s] */
   bool known;
+  /** When a motion counts as steady. */
+  struct {
+    double tolerance, floor; /* [1], [m/s] */
+    double mean_tolerance;   /* of an irregular motion's mean [1] */
+    int64_t least_irregular; /* fewest periods of an irregular motion */
+    int32_t successive;
+    double not_before;   /* periods until the last signal has begun or ended */
+    double creep;        /* motions that stay slower end as creeping [m/s]; 0: none does */
+    int64_t creep_after; /* periods before, in which they may yet repeat themselves */
+  } rules;
+  /** The latest period ends. */
+  struct {
+    int64_t seen;                               /* so far, the start being the first */
+    double *state[STRUT_RING];                  /* (2 length) positions, then velocities */
+    double *middle;                             /* (2 length) within the latest period */
+    double place[STRUT_RING];                   /* x of the measured point [m] */
+    double amplitude;                           /* range of the shape within a period [1] */
+    double residual[STRUT_REPEATS][STRUT_RING]; /* of each tested repetition, per period [1] */
+    double change[STRUT_REPEATS][STRUT_RING];   /* of the velocity [m/s] */
+  } latest;
+  /** How an irregular motion goes on. */
+  struct {
+    double mark[STRUT_MARKS];     /* x of the measured point every `stride` periods [m] */
+    double wandered[STRUT_MARKS]; /* sum of the residuals until then [1] */
+    double wander;
+    int32_t marks;
+    int64_t stride;
+  } drift;
   strut_arena arena;
 } strut_steady_detector;
 

@@ -15,24 +15,24 @@ STRUT_SMALL_INLINE void small_settle_ties(small_events *e) {
   SMALL_EACH(p) {
     small_real *friction = &e->contacts.friction.part[p], *slip = &e->contacts.slip.part[p];
     small_real normal = e->contacts.normal.part[p], applied = e->contacts.applied.part[p];
-    small_real creeps = small_friction_in_creep(SMALL_MODE(side), normal, *friction, applied);
+    small_real creeps = small_friction_in_creep(SMALL_MODE(row.side), normal, *friction, applied);
     small_real inside = small_slip_in_band(*slip, SMALL_CONTACT(stick_velocity));
-    *friction = small_choose(SMALL_MODE_MASK(creep), creeps, *friction);
-    *slip = small_choose(SMALL_MODE_MASK(band), inside, *slip);
+    *friction = small_choose(SMALL_MODE_MASK(mask.creep), creeps, *friction);
+    *slip = small_choose(SMALL_MODE_MASK(mask.band), inside, *slip);
   }
 }
 
 /* Inside its band: where a contact leaves it, or where it is pushed, or no more. */
 STRUT_SMALL_INLINE small_mask small_leaves_band(const strut_small_modes *m, int p, small_real slip,
                                                 small_real holding, small_real applied) {
-  small_real zero = {0}, side = SMALL_MODE(side);
-  small_mask held = SMALL_MODE_MASK(band), pushes = SMALL_MODE_MASK(pushes);
+  small_real zero = {0}, side = SMALL_MODE(row.side);
+  small_mask held = SMALL_MODE_MASK(mask.band), pushes = SMALL_MODE_MASK(mask.pushes);
   small_mask leaves =
       (held | pushes) &
-      small_less(small_margin_of_band(small_magnitude(slip), SMALL_MODE(edge)), zero);
+      small_less(small_margin_of_band(small_magnitude(slip), SMALL_MODE(row.edge)), zero);
   held &= small_less(small_margin_of_holding(holding, applied), zero);
   pushes &= small_at_least(zero, small_margin_of_push(side, holding, applied));
-  return leaves | ((held | pushes) & SMALL_MODE_MASK(drops));
+  return leaves | ((held | pushes) & SMALL_MODE_MASK(mask.drops));
 }
 
 /* Where a contact that sticks or creeps does so no more. */
@@ -42,15 +42,15 @@ STRUT_SMALL_INLINE small_mask small_gives_way(const small_events *e, int p, smal
   const strut_small_modes *m = e->modes;
   const small_friction_numbers numbers = small_friction_at(c, p);
   small_real normal = e->contacts.normal.part[p], friction = e->contacts.friction.part[p];
-  small_real applied = e->contacts.applied.part[p], side = SMALL_MODE(side), zero = {0};
+  small_real applied = e->contacts.applied.part[p], side = SMALL_MODE(row.side), zero = {0};
   small_real held = small_friction_holding(&numbers, normal, -friction, laws);
   small_real at_edge = small_friction_at_edge(
       holding, small_friction_sliding(&numbers, normal, applied, laws), applied);
-  small_real out = small_margin_of_creep_out(side, SMALL_MODE(kinetic) * normal, friction);
+  small_real out = small_margin_of_creep_out(side, SMALL_MODE(row.kinetic) * normal, friction);
   small_mask ends = small_less(out, zero);
   ends |= small_less(small_margin_of_creep_in(side, at_edge, friction), zero);
-  return (SMALL_MODE_MASK(stick) & small_less(small_margin_of_holding(held, friction), zero)) |
-         (SMALL_MODE_MASK(creep) & ends);
+  return (SMALL_MODE_MASK(mask.stick) & small_less(small_margin_of_holding(held, friction), zero)) |
+         (SMALL_MODE_MASK(mask.creep) & ends);
 }
 
 /* See contradicting_event. */
@@ -60,14 +60,14 @@ STRUT_SMALL_INLINE bool small_contradicts(const small_events *e) {
   bool laws = e->run.terms & STRUT_TERM_LAWS, any = false;
   SMALL_EACH(p) {
     small_real slip = e->contacts.slip.part[p], applied = e->contacts.applied.part[p], zero = {0};
-    small_real margin = small_margin_of_slip(SMALL_MODE(side), slip, SMALL_MODE(edge));
-    small_mask bad = SMALL_MODE_MASK(slips) & small_less(margin, zero);
+    small_real margin = small_margin_of_slip(SMALL_MODE(row.side), slip, SMALL_MODE(row.edge));
+    small_mask bad = SMALL_MODE_MASK(mask.slips) & small_less(margin, zero);
     if (!e->stepper->all_sliding) {
       small_real holding = small_holding(c, p, e->contacts.normal.part[p], applied, laws);
-      if (m->any_band) bad |= small_leaves_band(m, p, slip, holding, applied);
-      if (m->any_held) bad |= small_gives_way(e, p, holding, laws);
+      if (m->is.any_band) bad |= small_leaves_band(m, p, slip, holding, applied);
+      if (m->is.any_held) bad |= small_gives_way(e, p, holding, laws);
     }
-    any = any || small_some(bad & SMALL_MODE_MASK(closed));
+    any = any || small_some(bad & SMALL_MODE_MASK(mask.closed));
   }
   return any;
 }
@@ -77,7 +77,7 @@ STRUT_SMALL_INLINE bool small_crosses(const small_events *e, const small_points 
   const strut_small_modes *m = e->modes;
   bool any = false;
   SMALL_EACH(p) {
-    small_real zero = {0}, gap = SMALL_MODE(outward) * (q->y.part[p] - e->run.contacts->height);
+    small_real zero = {0}, gap = SMALL_MODE(row.outward) * (q->y.part[p] - e->run.contacts->height);
     any = any || small_some(small_less(gap, zero));
   }
   return any;
@@ -129,11 +129,12 @@ STRUT_SMALL_INLINE bool small_dips(const small_events *e, const strut_model *mod
   bool any = false;
   SMALL_EACH(p) {
     small_measures from = small_measure(e, p, now), to = small_measure(e, p, next);
-    small_real side = SMALL_MODE(outward), s = SMALL_MODE(side), edge = SMALL_MODE(edge);
+    small_real side = SMALL_MODE(row.outward), s = SMALL_MODE(row.side),
+               edge = SMALL_MODE(row.edge);
     small_real zero = {0}, gap = side * to.gap, beyond = s * to.slip - edge;
     small_mask bad = SMALL_CONTACT_MASK(touches) & small_less(zero, gap);
     bad &= small_dips_below(side * from.gap, side * h * from.into, gap, side * h * to.into, faint);
-    small_mask slips = SMALL_MODE_MASK(slips) & small_less(zero, beyond);
+    small_mask slips = SMALL_MODE_MASK(mask.slips) & small_less(zero, beyond);
     if (small_some(slips))
       bad |= slips & small_dips_below(s * from.slip - edge, s * h * from.slip_rate, beyond,
                                       s * h * to.slip_rate, slow);
@@ -149,9 +150,9 @@ STRUT_SMALL_INLINE bool small_exact_event(const small_events *e, const small_end
   SMALL_EACH(p) {
     small_measures to = small_measure(e, p, next);
     small_real zero = {0};
-    small_mask turned = (SMALL_MODE_MASK(damper_on) & small_less(zero, to.into)) |
-                        (SMALL_MODE_MASK(damper_off) & small_less(to.into, zero));
-    turned |= small_less(SMALL_MODE(outward) * to.gap, zero);
+    small_mask turned = (SMALL_MODE_MASK(mask.damper_on) & small_less(zero, to.into)) |
+                        (SMALL_MODE_MASK(mask.damper_off) & small_less(to.into, zero));
+    turned |= small_less(SMALL_MODE(row.outward) * to.gap, zero);
     any = any || small_some(turned);
   }
   return any;

@@ -54,8 +54,8 @@ STRUT_SMALL_INLINE small_real small_normal_force(const strut_small_contacts *c,
                                                  small_real into, bool laws) {
   const small_ground_numbers numbers = small_ground_at(c, p);
   small_real zero = {0};
-  small_mask acts = SMALL_MODE_MASK(damper_on);
-  if (m->any_by_sign) acts |= SMALL_MODE_MASK(damper_by_sign) & small_less(into, zero);
+  small_mask acts = SMALL_MODE_MASK(mask.damper_on);
+  if (m->is.any_by_sign) acts |= SMALL_MODE_MASK(mask.damper_by_sign) & small_less(into, zero);
   return small_ground_normal_in_mode(&numbers, acts, gap, into, laws);
 }
 
@@ -71,10 +71,12 @@ STRUT_SMALL_INLINE small_real small_friction_in_mode(const strut_small_contacts 
                                                      const strut_small_modes *m, int p,
                                                      small_real normal, small_real applied,
                                                      bool laws) {
-  small_real friction = small_keep(SMALL_MODE_MASK(rubs), SMALL_MODE(slip_factor) * normal);
-  if (!m->any_band) return friction;
+  small_real friction =
+      small_keep(SMALL_MODE_MASK(mask.rubs), SMALL_MODE(row.slip_factor) * normal);
+  if (!m->is.any_band) return friction;
   small_real holding = small_holding(c, p, normal, applied, laws);
-  return small_choose(SMALL_MODE_MASK(band), small_friction_in_band(holding, applied), friction);
+  return small_choose(SMALL_MODE_MASK(mask.band), small_friction_in_band(holding, applied),
+                      friction);
 }
 
 /* See add_contact_forces. */
@@ -94,7 +96,7 @@ STRUT_SMALL_INLINE void small_add_ground(small_events *e, int p, const small_poi
     into = u * nx + w * ny, along = u * tx + w * ty;
     applied = fx * tx + fy * ty;
   }
-  small_mask closed = SMALL_MODE_MASK(closed);
+  small_mask closed = SMALL_MODE_MASK(mask.closed);
   small_real normal = small_normal_force(c, m, p, gap, into, laws);
   small_real friction = small_friction_in_mode(c, m, p, normal, applied, laws);
   e->contacts.gap.part[p] = gap, e->contacts.into.part[p] = into;
@@ -132,7 +134,7 @@ STRUT_SMALL_INLINE void small_hold(small_events *e, small_points *a) {
   }
   SMALL_EACH(p) {
     small_real zero = {0};
-    small_mask held = SMALL_MODE_MASK(held);
+    small_mask held = SMALL_MODE_MASK(mask.held);
     a->x.part[p] = small_choose(held, zero, a->x.part[p]);
     e->contacts.friction.part[p] =
         small_add_where(held, e->contacts.friction.part[p], small_load(more + p * SMALL_WIDTH));
@@ -146,13 +148,13 @@ STRUT_SMALL_INLINE void small_add_ground_powers(small_events *e) {
   small_touch touch = {0};
   SMALL_EACH(p) {
     const small_contacts *o = &e->contacts;
-    touch.touching |= small_set_bits(SMALL_MODE_MASK(closed)) << (p * SMALL_WIDTH);
+    touch.touching |= small_set_bits(SMALL_MODE_MASK(mask.closed)) << (p * SMALL_WIDTH);
     const small_ground_numbers numbers = small_ground_at(c, p);
     small_real damper = o->normal.part[p] - small_ground_spring(&numbers, o->gap.part[p]);
     small_contact_powers powers =
         small_contact_power(damper, o->into.part[p], o->friction.part[p], o->slip.part[p],
                             small_all(e->run.contacts->belt_speed));
-    small_accumulate_contacts(&e->run, SMALL_MODE_MASK(closed), powers, true, p, &touch);
+    small_accumulate_contacts(&e->run, SMALL_MODE_MASK(mask.closed), powers, true, p, &touch);
   }
   small_add_contacts(&e->run, &touch, &e->power);
 }
@@ -191,21 +193,21 @@ STRUT_SMALL_INLINE bool small_contradicts_at_stage(const small_events *e) {
   const strut_small_modes *m = e->modes;
   const double more = 1.0 + STRUT_STAGE_ERROR, fewer = 1.0 - STRUT_STAGE_ERROR;
   bool laws = e->run.terms & STRUT_TERM_LAWS, any = false;
-  if (!m->any_band && !m->any_held) return false;
+  if (!m->is.any_band && !m->is.any_held) return false;
   SMALL_EACH(p) {
-    small_real zero = {0}, normal = e->contacts.normal.part[p], side = SMALL_MODE(side);
+    small_real zero = {0}, normal = e->contacts.normal.part[p], side = SMALL_MODE(row.side);
     small_real friction = e->contacts.friction.part[p], applied = e->contacts.applied.part[p];
     small_real held = small_holding(c, p, normal, -friction, laws) * more;
     small_real holding = small_holding(c, p, normal, applied, laws);
-    small_real sliding = SMALL_MODE(kinetic) * normal * more;
-#define SMALL_ENDS(mode, margin) (SMALL_MODE_MASK(mode) & small_less(margin, zero))
+    small_real sliding = SMALL_MODE(row.kinetic) * normal * more;
+#define SMALL_ENDS(mode, margin) (SMALL_MODE_MASK(mask.mode) & small_less(margin, zero))
     small_mask bad = SMALL_ENDS(stick, small_margin_of_holding(held, friction));
-    bad |=
-        SMALL_MODE_MASK(drops) & SMALL_ENDS(band, small_margin_of_holding(holding * more, applied));
+    bad |= SMALL_MODE_MASK(mask.drops) &
+           SMALL_ENDS(band, small_margin_of_holding(holding * more, applied));
     bad |= SMALL_ENDS(pushes, small_margin_of_push(side, holding * fewer, applied));
     bad |= SMALL_ENDS(creep, small_margin_of_creep_out(side, sliding, friction));
 #undef SMALL_ENDS
-    any = any || small_some(bad & SMALL_MODE_MASK(closed) & small_less(zero, normal));
+    any = any || small_some(bad & SMALL_MODE_MASK(mask.closed) & small_less(zero, normal));
   }
   return any;
 }

@@ -39,26 +39,26 @@ static void list_contact(const strut_model *model, const strut_event_stepper *l,
   uint8_t mode = l->mode[i];
   double s = l->side[i], kinetic = strut_friction_kinetic(&e->friction, s);
   bool slips = mode == STRUT_MODE_SLIP || mode == STRUT_MODE_PUSH;
-  m->closed[n] = -1;
-  m->rubs[n] = mask_of(slips);
-  m->slips[n] = mask_of(mode == STRUT_MODE_SLIP);
-  m->pushes[n] = mask_of(mode == STRUT_MODE_PUSH);
-  m->band[n] = mask_of(mode == STRUT_MODE_BAND);
-  m->stick[n] = mask_of(mode == STRUT_MODE_STICK);
-  m->creep[n] = mask_of(mode == STRUT_MODE_CREEP);
-  m->any_held = m->any_held || m->stick[n] || m->creep[n];
-  m->any_band = m->any_band || m->band[n] || m->pushes[n];
-  m->any_by_sign = m->any_by_sign || l->damper[i] == 0;
-  m->drops[n] = mask_of(strut_friction_drops(&e->friction));
-  m->damper_on[n] = mask_of(l->damper[i] > 0);
-  m->damper_off[n] = mask_of(l->damper[i] < 0);
-  m->damper_by_sign[n] = mask_of(l->damper[i] == 0);
-  m->slip_factor[n] = slips ? -s * kinetic : 0.0;
-  m->side[n] = s;
-  m->edge[n] = stick_band_edge(e);
-  m->kinetic[n] = kinetic;
-  m->normal[n] = l->response[i].normal;
-  m->tangent[n] = l->response[i].tangent;
+  m->mask.closed[n] = -1;
+  m->mask.rubs[n] = mask_of(slips);
+  m->mask.slips[n] = mask_of(mode == STRUT_MODE_SLIP);
+  m->mask.pushes[n] = mask_of(mode == STRUT_MODE_PUSH);
+  m->mask.band[n] = mask_of(mode == STRUT_MODE_BAND);
+  m->mask.stick[n] = mask_of(mode == STRUT_MODE_STICK);
+  m->mask.creep[n] = mask_of(mode == STRUT_MODE_CREEP);
+  m->is.any_held = m->is.any_held || m->mask.stick[n] || m->mask.creep[n];
+  m->is.any_band = m->is.any_band || m->mask.band[n] || m->mask.pushes[n];
+  m->is.any_by_sign = m->is.any_by_sign || l->damper[i] == 0;
+  m->mask.drops[n] = mask_of(strut_friction_drops(&e->friction));
+  m->mask.damper_on[n] = mask_of(l->damper[i] > 0);
+  m->mask.damper_off[n] = mask_of(l->damper[i] < 0);
+  m->mask.damper_by_sign[n] = mask_of(l->damper[i] == 0);
+  m->row.slip_factor[n] = slips ? -s * kinetic : 0.0;
+  m->row.side[n] = s;
+  m->row.edge[n] = stick_band_edge(e);
+  m->row.kinetic[n] = kinetic;
+  m->row.normal[n] = l->response[i].normal;
+  m->row.tangent[n] = l->response[i].tangent;
 }
 
 /* The nodes that answer to contact i, and to no other that is closed. */
@@ -81,7 +81,7 @@ static void list_stuck(const strut_model *model, const strut_event_stepper *l, i
   strut_small_response *to = &m->stuck[k];
   memset(to, 0, sizeof *to);
   m->stuck_lane[k] = model->contacts.entry[l->stuck[k]].node;
-  m->held[m->stuck_lane[k]] = -1;
+  m->mask.held[m->stuck_lane[k]] = -1;
   for (int32_t j = 0; j < r->count; j++)
     to->x[r->at[j] / 2] = r->xy[2 * j], to->has[r->at[j] / 2] = -1;
 }
@@ -91,9 +91,9 @@ static void list_cable(const strut_event_stepper *l, int32_t k, strut_small_mode
   const strut_law_switch *law = &l->laws[k];
   double d = law->damping;
   int32_t j = law->member;
-  m->taut[j] = mask_of(l->acting[k]);
-  m->slack[j] = mask_of(!l->acting[k]);
-  m->elastic[j] = law->stiffness > 0.0 ? law->stiffness : d > 0.0 ? d / l->wanted_step : 1.0;
+  m->cables.taut[j] = mask_of(l->acting[k]);
+  m->cables.slack[j] = mask_of(!l->acting[k]);
+  m->cables.elastic[j] = law->stiffness > 0.0 ? law->stiffness : d > 0.0 ? d / l->wanted_step : 1.0;
 }
 
 void strut_small_modes_update(const strut_model *model, const strut_state *state,
@@ -101,19 +101,19 @@ void strut_small_modes_update(const strut_model *model, const strut_state *state
   strut_small_modes *m = l->small;
   const strut_contact_table *c = &model->contacts;
   bool level = c->normal[0] == 0.0;
-  if (!m->rows_current) strut_small_rest_fill(model, state, STRUT_SMALL_INSTANTS, m->rest);
+  if (!m->is.rows_current) strut_small_rest_fill(model, state, STRUT_SMALL_INSTANTS, m->rest);
   memset(m, 0, offsetof(strut_small_modes, stuck));
   memset(m->answer, 0, sizeof m->answer);
-  m->current = m->rows_current = true;
-  m->decoupled = l->contacts_decoupled && level;
-  m->in_registers = l->stuck_count >= 0 && (level || !l->stuck_count);
+  m->is.current = m->is.rows_current = true;
+  m->is.decoupled = l->contacts_decoupled && level;
+  m->is.in_registers = l->stuck_count >= 0 && (level || !l->stuck_count);
   strut_small_inputs_read(model, state, &m->inputs);
   for (int32_t i = 0; i < c->count; i++) {
-    m->outward[c->entry[i].node] = l->outward[i];
-    if (!is_known(&c->entry[i], l->mode[i])) m->in_registers = false;
+    m->row.outward[c->entry[i].node] = l->outward[i];
+    if (!is_known(&c->entry[i], l->mode[i])) m->is.in_registers = false;
     if (l->mode[i] == STRUT_MODE_OPEN) continue;
     list_contact(model, l, i, m);
-    if (m->decoupled) list_answers(model, l, i, m);
+    if (m->is.decoupled) list_answers(model, l, i, m);
   }
   for (int32_t k = 0; k < l->law_count; k++) list_cable(l, k, m);
   for (int32_t k = 0; k < l->stuck_count; k++) list_stuck(model, l, k, m);

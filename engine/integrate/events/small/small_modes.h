@@ -19,24 +19,32 @@ typedef struct strut_small_response {
 } strut_small_response;
 
 typedef struct strut_small_modes {
-  bool current;      /* they are those of the stepper */
-  bool rows_current; /* rest lengths of members that are not driven are in all rows */
-  bool in_registers; /* every contact is in a mode that registers hold */
-  bool decoupled;    /* and no two closed contacts are of one body, on level ground */
-  bool any_held;     /* some contact sticks or creeps */
-  bool any_band;     /* or is in Karnopp's band */
-  bool any_by_sign;  /* or has a damper that acts by its sign */
+  struct {
+    bool current;      /* they are those of the stepper */
+    bool rows_current; /* rest lengths of members that are not driven are in all rows */
+    bool in_registers; /* every contact is in a mode that registers hold */
+    bool decoupled;    /* and no two closed contacts are of one body, on level ground */
+    bool any_held;     /* some contact sticks or creeps */
+    bool any_band;     /* or is in Karnopp's band */
+    bool any_by_sign;  /* or has a damper that acts by its sign */
+  } is;
   strut_small_inputs inputs;
-  strut_small_mask closed, slips, rubs, band, pushes, held; /* rubs: slips or is pushed */
-  strut_small_mask stick, creep, drops; /* drops: static and kinetic friction differ */
-  strut_small_mask damper_on, damper_off, damper_by_sign;
-  strut_small_row slip_factor;         /* friction over normal force, where it slips [1] */
-  strut_small_row side, edge, kinetic; /* s; of the band [m/s]; mu towards s [1] */
-  strut_small_row outward;             /* the sign of gaps that keep the mode; 0: no contact */
-  strut_small_row normal, tangent;     /* of a closed contact's own node [1/kg] */
-  /* of cables: which act, and which do not; force per stretch, by which both are compared */
-  int64_t taut[STRUT_SMALL_SLOTS], slack[STRUT_SMALL_SLOTS];
-  double elastic[STRUT_SMALL_SLOTS];
+  struct {
+    strut_small_mask closed, slips, rubs, band, pushes, held; /* rubs: slips or is pushed */
+    strut_small_mask stick, creep, drops; /* drops: static and kinetic friction differ */
+    strut_small_mask damper_on, damper_off, damper_by_sign;
+  } mask;
+  struct {
+    strut_small_row slip_factor;         /* friction over normal force, where it slips [1] */
+    strut_small_row side, edge, kinetic; /* s; of the band [m/s]; mu towards s [1] */
+    strut_small_row outward;             /* the sign of gaps that keep the mode; 0: no contact */
+    strut_small_row normal, tangent;     /* of a closed contact's own node [1/kg] */
+  } row;
+  /** Which cables act, and which do not; force per stretch, by which both are compared. */
+  struct {
+    int64_t taut[STRUT_SMALL_SLOTS], slack[STRUT_SMALL_SLOTS];
+    double elastic[STRUT_SMALL_SLOTS];
+  } cables;
   strut_small_response stuck[STRUT_SMALL_NODES]; /* (l->stuck_count) */
   int32_t stuck_lane[STRUT_SMALL_NODES];
   strut_small_column
@@ -53,7 +61,7 @@ void strut_small_modes_update(const strut_model *model, const strut_state *state
 
 /** The modes have changed. */
 static inline void strut_small_modes_change(strut_event_stepper *l) {
-  if (l->small) l->small->current = false;
+  if (l->small) l->small->is.current = false;
 }
 
 /** The modes as lanes; NULL where the model is stepped by the general kernel. */
@@ -62,8 +70,8 @@ static inline strut_small_modes *strut_small_modes_of(const strut_model *model,
                                                       strut_event_stepper *l) {
   strut_small_modes *m = l->small;
   if (!m || !model->small || model->small->level == STRUT_SMALL_NONE) return NULL;
-  if (!m->current) strut_small_modes_update(model, state, l);
-  return m->in_registers ? m : NULL;
+  if (!m->is.current) strut_small_modes_update(model, state, l);
+  return m->is.in_registers ? m : NULL;
 }
 
 #endif

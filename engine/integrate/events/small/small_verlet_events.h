@@ -60,13 +60,13 @@ STRUT_SMALL_INLINE void small_implicit_ground(small_events *e, double h, const s
   SMALL_EACH(p) {
     small_real gap = q->y.part[p] - t->height, applied = e->force.x.part[p];
     const small_ground_numbers numbers = small_ground_at(c, p);
-    small_real spring = small_ground_spring(&numbers, gap), half = 0.5 * h * SMALL_MODE(normal);
+    small_real spring = small_ground_spring(&numbers, gap), half = 0.5 * h * SMALL_MODE(row.normal);
     small_real free = v->y.part[p] + 0.5 * h * (a0->y.part[p] + a1->y.part[p]) + half * spring;
     small_real normal = spring + small_ground_implicit_damper(&numbers, spring, free, half, laws);
     small_real friction = small_friction_in_mode(c, m, p, normal, applied, laws);
-    if (m->any_held)
-      friction = small_choose(SMALL_MODE_MASK(stick) | SMALL_MODE_MASK(creep),
-                              -a1->x.part[p] / SMALL_MODE(tangent), friction);
+    if (m->is.any_held)
+      friction = small_choose(SMALL_MODE_MASK(mask.stick) | SMALL_MODE_MASK(mask.creep),
+                              -a1->x.part[p] / SMALL_MODE(row.tangent), friction);
     o->gap.part[p] = gap, o->applied.part[p] = applied;
     o->slip.part[p] = speed->x.part[p] - small_belt(&e->run);
     x.part[p] = o->friction.part[p] = friction;
@@ -78,9 +78,9 @@ STRUT_SMALL_INLINE void small_implicit_ground(small_events *e, double h, const s
     small_mask has = small_mask_load(m->answer[0].has + p * SMALL_WIDTH);
     a1->x.part[p] = small_add_where(has, a1->x.part[p], SMALL_MODE(answer[0].inverse) * x.part[p]);
     a1->y.part[p] = small_add_where(has, a1->y.part[p], SMALL_MODE(answer[1].inverse) * y.part[p]);
-    if (m->any_held)
-      a1->x.part[p] =
-          small_choose(SMALL_MODE_MASK(stick) | SMALL_MODE_MASK(creep), zero, a1->x.part[p]);
+    if (m->is.any_held)
+      a1->x.part[p] = small_choose(SMALL_MODE_MASK(mask.stick) | SMALL_MODE_MASK(mask.creep), zero,
+                                   a1->x.part[p]);
   }
 }
 
@@ -103,8 +103,9 @@ STRUT_SMALL_INLINE bool small_cable_switches(const small_events *e, const small_
                                         .stiffness = small_load(s->stiffness + j),
                                         .damping = small_load(s->damping + j)};
     small_real damper, tension = small_member_tension(&values, true, false, true, false, &damper);
-    small_real elastic = small_load(m->elastic + j) * (length - values.rest);
-    small_mask taut = small_mask_load(m->taut + j), slack = small_mask_load(m->slack + j);
+    small_real elastic = small_load(m->cables.elastic + j) * (length - values.rest);
+    small_mask taut = small_mask_load(m->cables.taut + j),
+               slack = small_mask_load(m->cables.slack + j);
     small_real margin = small_cable_margin(taut, elastic, tension, false);
     any = any || small_some((slack | taut) & small_less(margin, zero));
   }
