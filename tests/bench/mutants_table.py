@@ -55,7 +55,7 @@ MUTANTS = [
     Mutant("csv-writer-leaks", "engine/output/csv.c",
            "  if (!self->directory) {\n    strut_release(self);\n", "  if (!self->directory) {\n",
            "a CSV writer that is refused memory for its folder's name leaks", "csv"),
-    Mutant("csv-reader-leaks", "parser/program/command_plot.c",
+    Mutant("csv-reader-leaks", "parser/program/table_file.c",
            "  if (status != STRUT_OK) strut_arena_free(&table->arena);\n", "",
            "what was read of a table with an error is not released", "table_file|table_select|csv"),
     Mutant("conic-without-rounding", "engine/statics/rigidity/stiffness.c",
