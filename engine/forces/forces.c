@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Forces for whoever asks once; integrators have the kernel in their own loops. */
+/* Forces for single evaluations; integrators have the kernel in their own loops. */
 #include <assert.h>
 
 #include "engine/forces/drives.h"

@@ -53,7 +53,7 @@ STRUT_API strut_status strut_rigid_check(const strut_model *model, strut_error *
  */
 void strut_rigid_accelerate(const strut_model *model, strut_state *state, const double *q,
                             const double *v, double *a);
-/** The same from state->latest.force, for who wants forces only. */
+/** The same from state->latest.force, where only forces are wanted. */
 void strut_rigid_constrain(const strut_model *model, strut_state *state, const double *q,
                            const double *v);
 /** Bars with their rows factorised at q, for the filter; NULL: out of memory. */

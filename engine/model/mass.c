@@ -293,7 +293,7 @@ strut_status strut_mass_matrix(strut_model *model, int coordinate, strut_arena *
   return *matrix ? STRUT_OK : STRUT_NO_MEMORY;
 }
 
-/* The mass solve for whoever asks once; the step's own loop has mass_kernel.h. */
+/* The mass solve for single evaluations; the step's own loop has mass_kernel.h. */
 
 void strut_mass_solve(const strut_model *model, const double *restrict force,
                       double *restrict acceleration, double *restrict work) {

@@ -60,7 +60,7 @@ STRUT_API void strut_batch_advance(strut_batch *batch, const int64_t *left);
 struct strut_batch {
   strut_batch_tables tables;
   const strut_integrator *method;
-  bool balance, driven; /* driven: all slots' drives stand at the present step */
+  bool balance, driven; /* driven: all slots' drives are those of the present step */
   bool filled[STRUT_BATCH_MOST];
   double *dt, *step; /* (width) */
   double *q, *v, *stage_q, *stage_v[4], *a[4];

@@ -47,7 +47,7 @@ typedef struct strut_steady_detector {
     double residual[STRUT_REPEATS][STRUT_RING]; /* of each tested repetition, per period [1] */
     double change[STRUT_REPEATS][STRUT_RING];   /* of the velocity [m/s] */
   } latest;
-  /** How an irregular motion goes on. */
+  /** What an irregular motion has done so far. */
   struct {
     double mark[STRUT_MARKS];     /* x of the measured point every `stride` periods [m] */
     double wandered[STRUT_MARKS]; /* sum of the residuals until then [1] */
