@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-
+/* The implicit midpoint method: first the matrix of its steps, then the method. */
 #include <math.h>
 #include <string.h>
 

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/*
- * Semi-implicit (symplectic) Euler with a fixed step: v += h a(q, v), q += h v. Of first order, and
- * the cheapest step there is.
- */
+/* Symplectic methods with a fixed step: semi-implicit Euler, and velocity Verlet. */
 #include "engine/forces/history.h"
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/plain_steps.h"
 #include "engine/integrate/small_steps.h"
+
+/*
+ * Semi-implicit (symplectic) Euler with a fixed step: v += h a(q, v), q += h v. Of first order, and
+ * the cheapest step there is.
+ */
 
 static void *euler_create(const strut_model *model, strut_state *state,
                           const strut_integrator_settings *settings) {

@@ -24,7 +24,7 @@ void strut_add_message(strut_json *json, struct cJSON *to, const char *file, con
 void strut_add_warnings(strut_json *json, struct cJSON *to, const strut_findings *found,
                         const strut_scene *scene, const strut_diagnostics *source);
 
-/* `strut check STUDY`: studies stand beside models in an editor, and are checked as these are. */
+/* `strut check STUDY`: studies are edited beside models, and are checked likewise. */
 
 /** Is the file a study? False too where it cannot be read. */
 bool strut_is_study(const char *path);

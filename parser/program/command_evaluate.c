@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One evaluation by the files of DAKOTA. */
+/* `strut evaluate`: requests by the files of DAKOTA, or line by line, and the command. */
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* `strut examples` and `strut new`: models that come with strut. */
 #include <dirent.h>
 #include <errno.h>
 #include <stdio.h>

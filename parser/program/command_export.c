@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-
+/* `strut export`: formats that describe a model, and the command. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

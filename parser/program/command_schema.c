@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* `strut keys` and `strut schema`: the language as a page and as a schema. */
 #include <stdio.h>
 #include <string.h>
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The commands of statics: equilibria, modes, rigidity, path, form, and what they have in common. */
 #include "parser/program/open_model.h"
 
 #include <stdio.h>
@@ -58,9 +59,9 @@ strut_status strut_report(const strut_arguments *arguments, const char *const *n
   return status;
 }
 
-static const char *const file_names[] = {"equilibria.json", NULL};
+static const char *const equilibria_file_names[] = {"equilibria.json", NULL};
 
-static const strut_option options[] = {
+static const strut_option equilibria_options[] = {
     {STRUT_OPTION_SET, "set", "NAME=VALUE", "change a parameter; may be repeated"},
     STRUT_EQUILIBRIA_OPTIONS,
     {STRUT_OPTION_OUTPUT, "output", "DIR", "write equilibria.json into DIR"},
@@ -91,7 +92,8 @@ static strut_status analyse_equilibria(strut_analysis *a, strut_error *error) {
 }
 
 static strut_status run_equilibria(const strut_arguments *arguments) {
-  return strut_analysis_run(&strut_command_equilibria, arguments, file_names, analyse_equilibria);
+  return strut_analysis_run(&strut_command_equilibria, arguments, equilibria_file_names,
+                            analyse_equilibria);
 }
 
 const strut_command strut_command_equilibria = {
@@ -106,7 +108,7 @@ const strut_command strut_command_equilibria = {
         "starts that ended there. --all adds shapes that sink, tip over or are unstable.\n"
         "Names such as n1-n4-2 give the touching nodes and the rank by energy.\n"
         "Exit code 3 if nothing ever comes to rest.\n",
-    .options = options,
+    .options = equilibria_options,
     .run = run_equilibria,
     .timed = true,
 };

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* `strut write` and `strut fmt`: a model as a text. */
 #include <stdio.h>
 #include <string.h>
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * The program's commands, one file command_NAME.c each, and the table that finds them by name.
+ * The program's commands (in files command_*.c), and the table that finds them by name.
  */
 #ifndef STRUT_PARSER_PROGRAM_COMMANDS_H
 #define STRUT_PARSER_PROGRAM_COMMANDS_H

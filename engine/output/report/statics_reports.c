@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Reports of modes and of a form that was found. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

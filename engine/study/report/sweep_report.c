@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How far a sweep is: its size, its files of points, its shards, its end. */
+/* What is printed of a sweep: how far it is; and of sensitivities. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -7,22 +7,19 @@
 
 /* ---- values and rates ---- */
 
-#define VALUE(name)                                                                                \
-  static double name(const strut_model *model, const strut_event_stepper *l,                       \
-                     const strut_step_end *end, int32_t i)
-#define RATE(name)                                                                                 \
-  static double name(const strut_event_stepper *l, const strut_step_end *end, int32_t i)
+/* A row need not read all that its function is given. */
+#define MAYBE __attribute__((unused))
 
-VALUE(no_end) {
-  (void)model, (void)l, (void)end, (void)i;
-  return 1.0;
-}
+#define VALUE(name)                                                                                \
+  static double name(MAYBE const strut_model *model, MAYBE const strut_event_stepper *l,           \
+                     MAYBE const strut_step_end *end, MAYBE int32_t i)
+#define RATE(name)                                                                                 \
+  static double name(MAYBE const strut_event_stepper *l, const strut_step_end *end, int32_t i)
+
+VALUE(no_end) { return 1.0; }
 VALUE(gap) { return gap_at_end(&model->contacts, l, i, end, STRUT_TERMS_ALL); }
 VALUE(depth) { return -gap_at_end(&model->contacts, l, i, end, STRUT_TERMS_ALL); }
-RATE(depth_rate) {
-  (void)l;
-  return -end->touch[i].into;
-}
+RATE(depth_rate) { return -end->touch[i].into; }
 VALUE(slip_left) {
   return strut_law_margin_of_slip(l->side[i], end->touch[i].slip,
                                   stick_band_edge(&model->contacts.entry[i]));
@@ -48,10 +45,7 @@ RATE(band_rate) {
   const strut_touch *o = &end->touch[i];
   return -way_out(l, o, i) * o->slip_rate;
 }
-VALUE(stick_left) {
-  (void)l;
-  return margin_of_stick(&model->contacts.entry[i], &end->touch[i]);
-}
+VALUE(stick_left) { return margin_of_stick(&model->contacts.entry[i], &end->touch[i]); }
 VALUE(creep_out_left) {
   return margin_of_creep_out(&model->contacts.entry[i], &end->touch[i], l->side[i]);
 }
@@ -61,30 +55,20 @@ VALUE(creep_in_left) {
 VALUE(push_left) {
   return margin_of_push(&model->contacts.entry[i], &end->touch[i], l->mode[i], l->side[i]);
 }
-VALUE(yield_left) {
-  (void)l;
-  return margin_of_yield(&model->contacts.entry[i], &end->touch[i]);
-}
-VALUE(speed_left) {
-  (void)model;
-  return l->damper[i] > 0 ? -end->touch[i].into : end->touch[i].into;
-}
+VALUE(yield_left) { return margin_of_yield(&model->contacts.entry[i], &end->touch[i]); }
+VALUE(speed_left) { return l->damper[i] > 0 ? -end->touch[i].into : end->touch[i].into; }
 RATE(speed_rate) { return l->damper[i] > 0 ? -end->touch[i].into_rate : end->touch[i].into_rate; }
 VALUE(facet_left) {
   int32_t nearest;
   return strut_surface_facet_margin(&model->contacts, l, end, i, &nearest);
 }
-VALUE(of_law) {
-  (void)model;
-  return law_value(l, end, i);
-}
+VALUE(of_law) { return law_value(l, end, i); }
 
 /* ---- what follows ---- */
 
 #define EFFECT(name)                                                                               \
-  static void name(const strut_model *model, strut_state *state, strut_event_stepper *l,           \
-                   int32_t i, double t)
-#define UNUSED (void)model, (void)state, (void)l, (void)i, (void)t
+  static void name(MAYBE const strut_model *model, MAYBE strut_state *state,                       \
+                   MAYBE strut_event_stepper *l, MAYBE int32_t i, MAYBE double t)
 
 /*
  * At the edge of Karnopp's band, u = s delta: outside friction is -s mu N, inside it balances. The
@@ -122,16 +106,13 @@ static int8_t side_of_push(const strut_event_stepper *l, int32_t i) {
   return applied < 0.0 ? -1 : 1;
 }
 
-EFFECT(no_effect) { UNUSED; }
+EFFECT(no_effect) {}
 EFFECT(close_nearest) {
   double time = l->refine_time > 0.0 ? l->refine_time : l->refine_memory * l->settling_time[i];
   strut_contact_close(model, l, i, -1);
   state->refined_until = fmax(state->refined_until, t + time);
 }
-EFFECT(open) {
-  UNUSED;
-  l->mode[i] = STRUT_MODE_OPEN;
-}
+EFFECT(open) { l->mode[i] = STRUT_MODE_OPEN; }
 EFFECT(end_slip) {
   if (stick_band_edge(&model->contacts.entry[i]) > 0.0) {
     decide_at_edge(model, state, l, i, false, t);
@@ -145,20 +126,12 @@ EFFECT(leave_band) {
   decide_at_edge(model, state, l, i, true, t);
 }
 EFFECT(break_stick) {
-  UNUSED;
   l->side[i] = l->now->touch[i].friction > 0.0 ? -1 : 1;
   l->mode[i] = STRUT_MODE_SLIP;
 }
-EFFECT(creep_out) {
-  UNUSED;
-  l->mode[i] = STRUT_MODE_SLIP;
-}
-EFFECT(creep_in) {
-  UNUSED;
-  l->mode[i] = STRUT_MODE_BAND;
-}
+EFFECT(creep_out) { l->mode[i] = STRUT_MODE_SLIP; }
+EFFECT(creep_in) { l->mode[i] = STRUT_MODE_BAND; }
 EFFECT(push) {
-  UNUSED;
   /* back and forth without a step between: the threshold attracts from both sides */
   if (l->pushed == i && l->pushed_at == t)
     l->mode[i] = STRUT_MODE_YIELD;
@@ -168,28 +141,20 @@ EFFECT(push) {
   l->side[i] = side_of_push(l, i);
 }
 EFFECT(end_yield) {
-  (void)state, (void)t;
   const strut_touch *o = &l->now->touch[i];
   const strut_friction *f = &model->contacts.entry[i].friction;
   bool over = fabs(o->applied) > strut_friction_static(f, o->applied) * o->normal;
   l->mode[i] = over ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
   l->side[i] = side_of_push(l, i);
 }
-EFFECT(turn_damper) {
-  UNUSED;
-  l->damper[i] = (int8_t)-l->damper[i];
-}
+EFFECT(turn_damper) { l->damper[i] = (int8_t)-l->damper[i]; }
 EFFECT(act) {
   strut_cable_set_acting(state, l, i, !l->acting[i]);
   if (l->laws[i].whole) strut_history_apply(model, state, l, i, t);
 }
-EFFECT(pass_kink) {
-  (void)t;
-  strut_law_pass_kink(model, state, l, i);
-}
+EFFECT(pass_kink) { strut_law_pass_kink(model, state, l, i); }
 EFFECT(remember) { strut_history_apply(model, state, l, i, t); }
 EFFECT(change_facet) {
-  (void)state, (void)t;
   int32_t nearest;
   strut_surface_facet_margin(&model->contacts, l, l->now, i, &nearest);
   strut_contact_close(model, l, i, nearest);
