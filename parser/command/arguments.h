@@ -150,6 +150,9 @@ typedef struct strut_arguments {
   bool basins;
 } strut_arguments;
 
+/** What a command computes of one model: analyses.h. */
+typedef struct strut_analysis_kind strut_analysis_kind;
+
 /** A command: how it is called, explained and run. */
 typedef struct strut_command {
   const char *name;
@@ -158,6 +161,7 @@ typedef struct strut_command {
   const char *summary;         /* half a sentence for the list of commands */
   const char *details;         /* lines for its own help; may be NULL */
   const strut_option *options; /* besides --quiet and --help, which every command has; or NULL */
+  const strut_analysis_kind *analysis; /* what it computes and reports, where `run` is NULL */
   strut_status (*run)(const strut_arguments *arguments);
   bool timed; /* print the elapsed time below the report */
 } strut_command;

@@ -208,15 +208,23 @@ static const strut_option options[] = {
     {STRUT_OPTION_END, NULL, NULL, NULL},
 };
 
-static strut_status write_matrices(strut_analysis *a, strut_error *error) {
-  const char *directory = strut_option_text(a->arguments, STRUT_OPTION_MATRICES);
+static strut_status export_matrices(const strut_arguments *arguments, const char *directory) {
+  strut_setup setup;
+  strut_model *model = NULL;
   strut_arena arena = {0};
   strut_named_shape shape;
-  strut_status status =
-      strut_named_shape_find(a->arguments, a->model, &a->setup.experiment, &arena, &shape, error);
+  strut_error error = {0};
+  strut_status status = strut_open_model(arguments, STRUT_OPEN_FOR_ANY, &setup);
+  if (status != STRUT_OK) return status;
+  status = strut_model_compile(&setup.scene, &model, &error);
   if (status == STRUT_OK)
-    status = strut_matrices_write(directory, a->model, shape.q, shape.name, error);
+    status = strut_named_shape_find(arguments, model, &setup.experiment, &arena, &shape, &error);
+  if (status == STRUT_OK)
+    status = strut_matrices_write(directory, model, shape.q, shape.name, &error);
+  if (status != STRUT_OK && error.message[0]) strut_print_error(&error);
   strut_arena_free(&arena);
+  strut_model_free(model);
+  strut_setup_free(&setup);
   return status;
 }
 
@@ -267,7 +275,7 @@ static strut_status run_export(const strut_arguments *arguments) {
                 : "missing --matrices DIR, --code DIR, or --format vtk, build or mjcf with -o");
     return STRUT_USAGE;
   }
-  return strut_analysis_run(&strut_command_export, arguments, NULL, write_matrices);
+  return export_matrices(arguments, directory);
 }
 
 const strut_command strut_command_export = {

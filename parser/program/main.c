@@ -14,6 +14,7 @@
 #include "engine/output/record_files.h"
 #include "parser/program/commands.h"
 #include "parser/program/complete.h"
+#include "parser/program/open_model.h"
 #include "parser/program/streams.h"
 
 static double now(void) {
@@ -34,7 +35,7 @@ static strut_status run_command(const strut_command *command, int argc, char **a
   if (status == STRUT_OK && arguments.help) {
     strut_command_help(command);
   } else if (status == STRUT_OK) {
-    status = command->run(&arguments);
+    status = command->run ? command->run(&arguments) : strut_analysis_run(command, &arguments);
     if (status == STRUT_OK && command->timed && !arguments.json && !arguments.quiet)
       print_time(now() - begin);
   }

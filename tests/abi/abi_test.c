@@ -384,6 +384,37 @@ static void check_picture(const strutlib_result *result, const char *const *name
   strutlib_release(svg);
 }
 
+/* Names given as options belong to the caller, who may release them after the call. */
+TEST(pictures_of_paths_outlive_the_options) {
+  static const char text[] =
+      "strut: 1\n"
+      "parameters: {softness: 1 kN/m}\n"
+      "nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1 m, 0], fixed: y, mass: 1 kg}}\n"
+      "members: {s: {kind: spring, nodes: [a, b], stiffness: softness}}\n"
+      "loads: {push: {node: b, force: [-9 N, 0]}}\n";
+  const char *names[2][3] = {{"load", "steps"}, {"over", "steps", "until"}};
+  for (size_t i = 0; i < 2; i++) {
+    strutlib_error *error;
+    char name[] = "push    ";
+    const char *values[] = {name, "9", "2 kN/m"};
+    strcpy(name, i == 0 ? "push" : "softness");
+    strutlib_scene *scene = strutlib_open_text("s", text, strlen(text), 0, NULL, NULL, &error);
+    if (!scene) print_message("%s\n", strutlib_error_message(error));
+    assert_non_null(scene);
+    strutlib_result *result = strutlib_path(scene, 2 + i, names[i], values, NULL, &error);
+    if (!result) print_message("%s\n", strutlib_error_message(error));
+    assert_non_null(result);
+    char *before = strutlib_result_svg(result, 0, NULL, NULL, &error);
+    memset(name, 'X', strlen(name));
+    char *after = strutlib_result_svg(result, 0, NULL, NULL, &error);
+    assert_string_equal(before, after);
+    strutlib_release(before);
+    strutlib_release(after);
+    strutlib_result_free(result);
+    strutlib_close(scene);
+  }
+}
+
 TEST(statics_have_arrays_and_pictures) {
   strutlib_error *error;
   strutlib_scene *scene = open_crawler();

@@ -307,15 +307,17 @@ static strut_status name_parameter(const strut_model *model, const strut_path_op
                                    strut_path *path, strut_error *error) {
   const strut_scene *scene = model->scene;
   path->over = o->over;
-  path->load = o->load;
+  /* The names may be those of a call's options, which do not stay. */
+  if (o->load) path->load = strut_arena_text(&path->arena, o->load, strlen(o->load));
   path->coordinate = o->over == STRUT_PATH_OVER_COORDINATE ? o->index : -1;
   path->unit = o->over == STRUT_PATH_OVER_LOAD       ? ""
                : o->over == STRUT_PATH_OVER_SCENE    ? o->unit
                : o->over == STRUT_PATH_OVER_ACTUATOR ? unit_of_drive(&scene->actuators[o->index])
                                                      : "m";
-  if (o->over == STRUT_PATH_OVER_LOAD) path->name = o->load ? o->load : "all loads";
+  if (o->over == STRUT_PATH_OVER_LOAD) path->name = o->load ? path->load : "all loads";
   if (o->over == STRUT_PATH_OVER_ACTUATOR) path->name = scene->actuators[o->index].name;
-  if (o->over == STRUT_PATH_OVER_SCENE) path->name = o->name;
+  if (o->over == STRUT_PATH_OVER_SCENE)
+    path->name = strut_arena_text(&path->arena, o->name, strlen(o->name));
   if (o->over == STRUT_PATH_OVER_COORDINATE)
     path->name = strut_arena_format(&path->arena, "%s.%c", scene->nodes[o->index / 2].name,
                                     o->index % 2 ? 'y' : 'x');

@@ -343,6 +343,8 @@ STRUTLIB_API strutlib_result *strutlib_path(const strutlib_scene *scene, size_t 
 STRUTLIB_API strutlib_result *strutlib_matrices(const strutlib_scene *scene, size_t count,
                                                 const char *const *names, const char *const *values,
                                                 strutlib_control *control, strutlib_error **error);
+/** X(name) for each of these functions, strutlib_run to strutlib_matrices, which are called alike. */
+#define STRUTLIB_CALLS(X) X(run) X(equilibria) X(modes) X(rigidity) X(form) X(path) X(matrices)
 
 /**
  * A row of a sweep is done. Called once for each row, some rows at a time, from one thread at a

@@ -193,7 +193,7 @@ typedef struct abi_detail {
 struct strutlib_result {
   const strut_command *command;
   int status;
-  char *json, *table, *yaml; /* of strut_allocate; yaml may be NULL */
+  char *json, *table; /* of strut_allocate */
   abi_messages messages;
   bool opened; /* there is a setup */
   strut_setup setup;
@@ -204,7 +204,6 @@ struct strutlib_result {
   /** Draws a figure into the file; NULL: there is none. */
   strut_status (*draw)(const strutlib_result *result, const strut_arguments *arguments,
                        const char *path, strut_error *error);
-  double *drawn;        /* of a form: the shape before it (nodes, 2), in the arena */
   void *detail;         /* of the kind, begins with an abi_detail; or NULL */
   pthread_mutex_t lock; /* of what follows, made when it is first asked for */
   abi_tree *tree;

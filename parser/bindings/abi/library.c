@@ -9,8 +9,8 @@
 
 #include "engine/output/results.h"
 #include "parser/bindings/abi/handles.h"
+#include "parser/command/analyses.h"
 #include "parser/command/run_settings.h"
-#include "parser/command/statics_options.h"
 #include "parser/read/read_scene.h"
 
 enum { MOST_MESSAGES = 50 }; /* that a report shows */
@@ -482,11 +482,6 @@ static const strut_option run_options[] = {
     {STRUT_OPTION_CHANNELS, "channels", "NAME,...", "channels to record, instead of the scene's"},
     {STRUT_OPTION_RECORD, "record", "YES|NO", "record channels (default yes)"},
     END};
-static const strut_option equilibria_options[] = {STRUT_EQUILIBRIA_OPTIONS, END};
-static const strut_option modes_options[] = {STRUT_MODES_OPTIONS, END};
-static const strut_option rigidity_options[] = {STRUT_SHAPE_OPTIONS, END};
-static const strut_option form_options[] = {STRUT_FORM_OPTIONS, END};
-static const strut_option path_options[] = {STRUT_PATH_OPTIONS, END};
 static const strut_option simulation_options[] = {
     FORCE,
     {STRUT_OPTION_INTEGRATOR, "integrator", "NAME",
@@ -510,21 +505,23 @@ static const strut_option sweep_options[] = {
     END};
 
 const strut_command abi_run_command = {.name = "run", .options = run_options},
-                    abi_equilibria_command = {.name = "equilibria", .options = equilibria_options},
-                    abi_modes_command = {.name = "modes", .options = modes_options},
-                    abi_rigidity_command = {.name = "rigidity", .options = rigidity_options},
-                    abi_form_command = {.name = "form", .options = form_options},
-                    abi_path_command = {.name = "path", .options = path_options},
-                    abi_matrices_command = {.name = "matrices", .options = rigidity_options},
+                    abi_matrices_command = {.name = "matrices",
+                                            .options = strut_rigidity_analysis_options},
                     abi_sweep_command = {.name = "sweep", .options = sweep_options},
                     abi_simulation_command = {.name = "simulation_open",
                                               .options = simulation_options};
 
+#define ANALYSIS(NAME)                                                                             \
+  const strut_command abi_##NAME##_command = {.name = #NAME,                                       \
+                                              .options = strut_##NAME##_analysis_options,          \
+                                              .analysis = &strut_##NAME##_analysis};
+STRUT_ANALYSES(ANALYSIS)
+
 const strut_command *abi_command_at(size_t i) {
-  static const strut_command *const all[] = {
-      &abi_run_command,      &abi_equilibria_command, &abi_modes_command,
-      &abi_rigidity_command, &abi_form_command,       &abi_path_command,
-      &abi_matrices_command, &abi_sweep_command,      &abi_simulation_command};
+#define COMMAND(NAME) &abi_##NAME##_command,
+  static const strut_command *const all[] = {&abi_run_command,
+                                             STRUT_ANALYSES(COMMAND) & abi_matrices_command,
+                                             &abi_sweep_command, &abi_simulation_command};
   return i < sizeof all / sizeof all[0] ? all[i] : NULL;
 }
 

@@ -262,7 +262,6 @@ void strutlib_result_free(strutlib_result *result) {
   abi_tree_free(result->tree);
   strut_release(result->json);
   strut_release(result->table);
-  strut_release(result->yaml);
   strut_release(result->made);
   abi_messages_free(&result->messages);
   strut_arena_free(&result->arena);
@@ -297,13 +296,10 @@ char *strutlib_result_yaml(const strutlib_result *result, strutlib_error **error
   if (abi_lacks(error, result, "result")) return NULL;
   abi_enter(error);
   char *text = NULL;
-  if (result->yaml || result->opened)
-    text = abi_give(result->yaml ? strut_allocate(strlen(result->yaml) + 1, 1)
-                                 : strut_setup_write(&result->setup),
-                    error);
+  if (result->opened)
+    text = abi_give(strut_setup_write(&result->setup), error);
   else
     abi_fail(error, STRUTLIB_USAGE, "the result of %s holds no scene", result->command->name);
-  if (text && result->yaml) strcpy(text, result->yaml);
   abi_leave();
   return text;
 }

@@ -554,14 +554,11 @@ static void load(int outputs, mxArray **output, int count, const mxArray *const 
   if (outputs > 1) output[1] = describe(scene);
 }
 
+#define COMPUTE(NAME) {#NAME, strutlib_##NAME},
 static const struct {
   const char *name;
   compute what;
-} computes[] = {{"equilibria", strutlib_equilibria},
-                {"modes", strutlib_modes},
-                {"rigidity", strutlib_rigidity},
-                {"form", strutlib_form},
-                {"path", strutlib_path}};
+} computes[] = {STRUTLIB_CALLS(COMPUTE)};
 
 static void at_exit(void) {
   close_all();

@@ -136,13 +136,11 @@ static PyObject *html(PyObject *self, PyObject *equilibria) {
 typedef strutlib_result *command(const strutlib_scene *, size_t, const char *const *,
                                  const char *const *, strutlib_control *, strutlib_error **);
 
+#define COMMAND(NAME) {#NAME, strutlib_##NAME},
 static const struct {
   const char *name;
   command *function;
-} commands[] = {{"run", strutlib_run},           {"equilibria", strutlib_equilibria},
-                {"modes", strutlib_modes},       {"rigidity", strutlib_rigidity},
-                {"form", strutlib_form},         {"path", strutlib_path},
-                {"matrices", strutlib_matrices}, {NULL, NULL}};
+} commands[] = {STRUTLIB_CALLS(COMMAND){NULL, NULL}};
 
 /* One call of the library, with all that it needs and returns. */
 typedef struct {
