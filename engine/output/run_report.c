@@ -84,7 +84,7 @@ static void put_run(strut_json *json, cJSON *to, const strut_summary *s, bool wi
   strut_json_text(json, to, "worth", worth[0] ? worth : NULL);
   strut_json_text(json, to, "caveat", s->caveat[0] ? s->caveat : NULL);
   put_results(json, to, s, 0, STRUT_RESULT_accuracy_check_evaluations);
-  if (with_wall_time) strut_json_number(json, to, "wall_time", s->wall_time);
+  if (with_wall_time) strut_json_number(json, to, "wall_time", s->spent.wall_time);
 }
 
 static void put_parameters(strut_json *json, cJSON *to, const strut_scene *scene) {
@@ -101,50 +101,50 @@ static void put_parameters(strut_json *json, cJSON *to, const strut_scene *scene
 
 static void put_nodes(strut_json *json, cJSON *to, const strut_summary *s) {
   cJSON *nodes = strut_json_object(json, to, "nodes");
-  for (size_t i = 0; i < s->node_count; i++) {
-    cJSON *node = strut_json_object(json, nodes, s->node_names[i]);
-    strut_json_numbers(json, node, "position", s->positions + 2 * i, 2);
+  for (size_t i = 0; i < s->end.node_count; i++) {
+    cJSON *node = strut_json_object(json, nodes, s->end.node_names[i]);
+    strut_json_numbers(json, node, "position", s->end.positions + 2 * i, 2);
   }
 }
 
 /* The key exists only if the scene has hinges. */
 static void put_hinges(strut_json *json, cJSON *to, const strut_summary *s) {
-  cJSON *hinges = s->hinge_count ? strut_json_object(json, to, "hinges") : NULL;
-  for (size_t i = 0; i < s->hinge_count; i++) {
-    cJSON *hinge = strut_json_object(json, hinges, s->hinges[i].hinge);
-    strut_json_number(json, hinge, "angle", s->hinges[i].angle);
-    strut_json_number(json, hinge, "moment", s->hinges[i].moment);
+  cJSON *hinges = s->end.hinge_count ? strut_json_object(json, to, "hinges") : NULL;
+  for (size_t i = 0; i < s->end.hinge_count; i++) {
+    cJSON *hinge = strut_json_object(json, hinges, s->end.hinges[i].hinge);
+    strut_json_number(json, hinge, "angle", s->end.hinges[i].angle);
+    strut_json_number(json, hinge, "moment", s->end.hinges[i].moment);
   }
 }
 
 /* Likewise of cells. */
 static void put_cells(strut_json *json, cJSON *to, const strut_summary *s) {
-  cJSON *cells = s->cell_count ? strut_json_object(json, to, "cells") : NULL;
-  for (size_t i = 0; i < s->cell_count; i++) {
-    cJSON *cell = strut_json_object(json, cells, s->cells[i].cell);
-    strut_json_number(json, cell, "area", s->cells[i].area);
-    strut_json_number(json, cell, "pressure", s->cells[i].pressure);
+  cJSON *cells = s->end.cell_count ? strut_json_object(json, to, "cells") : NULL;
+  for (size_t i = 0; i < s->end.cell_count; i++) {
+    cJSON *cell = strut_json_object(json, cells, s->end.cells[i].cell);
+    strut_json_number(json, cell, "area", s->end.cells[i].area);
+    strut_json_number(json, cell, "pressure", s->end.cells[i].pressure);
   }
 }
 
 /* The key exists only if something broke or was released. */
 static void put_breaks(strut_json *json, cJSON *to, const strut_summary *s) {
-  cJSON *broken = s->break_count ? strut_json_object(json, to, "broken") : NULL;
-  for (size_t i = 0; i < s->break_count; i++) {
-    cJSON *one = strut_json_object(json, broken, s->breaks[i].name);
-    strut_json_number(json, one, "time", s->breaks[i].time);
-    strut_json_bool(json, one, "released", s->breaks[i].released);
+  cJSON *broken = s->end.break_count ? strut_json_object(json, to, "broken") : NULL;
+  for (size_t i = 0; i < s->end.break_count; i++) {
+    cJSON *one = strut_json_object(json, broken, s->end.breaks[i].name);
+    strut_json_number(json, one, "time", s->end.breaks[i].time);
+    strut_json_bool(json, one, "released", s->end.breaks[i].released);
   }
 }
 
 static void put_contacts(strut_json *json, cJSON *to, const strut_summary *s) {
   cJSON *contacts = strut_json_object(json, to, "contacts");
-  for (size_t i = 0; i < s->contact_count; i++) {
-    cJSON *contact = strut_json_object(json, contacts, s->contacts[i].node);
-    strut_json_number(json, contact, "duty", s->contacts[i].duty);
-    strut_json_number(json, contact, "max_height", s->contacts[i].max_height);
-    if (s->contacts[i].band_needed > 0.0)
-      strut_json_number(json, contact, "stick_velocity_needed", s->contacts[i].band_needed);
+  for (size_t i = 0; i < s->end.contact_count; i++) {
+    cJSON *contact = strut_json_object(json, contacts, s->end.contacts[i].node);
+    strut_json_number(json, contact, "duty", s->end.contacts[i].duty);
+    strut_json_number(json, contact, "max_height", s->end.contacts[i].max_height);
+    if (s->end.contacts[i].band_needed > 0.0)
+      strut_json_number(json, contact, "stick_velocity_needed", s->end.contacts[i].band_needed);
   }
 }
 
@@ -253,12 +253,12 @@ static void add_head(strut_buffer *table, const strut_summary *s, const strut_sc
   if (isfinite(s->velocity_spread)) {
     strut_buffer_add(table, ", spread %s", in(s->velocity_spread, "m/s").text);
   }
-  strut_buffer_add(table, ", from %s%s\n", in(s->window_start, "s").text,
+  strut_buffer_add(table, ", from %s%s\n", in(s->window.start, "s").text,
                    s->velocity_zero && s->velocity != 0.0 && !(s->accuracy.wanted > 0.0)
                        ? ", zero up to rounding"
                        : "");
   strut_buffer_add(table, "  duration    %s, %" PRId64 " steps", in(s->duration, "s").text,
-                   s->steps);
+                   s->spent.steps);
   if (s->settle_time > 0.0) {
     strut_buffer_add(table, ", after %s of settling", in(s->settle_time, "s").text);
   }
@@ -272,12 +272,13 @@ static void add_head(strut_buffer *table, const strut_summary *s, const strut_sc
   if (s->limit_fell.limit > 0.0)
     strut_buffer_add(table, "              TOO LARGE since %s: the stability limit fell to %s\n",
                      in(s->limit_fell.since, "s").text, in(s->limit_fell.limit, "s").text);
-  strut_buffer_add(table, "  computed    %" PRId64 " force evaluations in %s", s->force_evaluations,
-                   in(s->wall_time, "s").text);
-  if (s->steps > 0) {
-    strut_buffer_add(table, ", %s per step", in(s->wall_time / (double)s->steps, "s").text);
+  strut_buffer_add(table, "  computed    %" PRId64 " force evaluations in %s", s->spent.evaluations,
+                   in(s->spent.wall_time, "s").text);
+  if (s->spent.steps > 0) {
+    strut_buffer_add(table, ", %s per step",
+                     in(s->spent.wall_time / (double)s->spent.steps, "s").text);
   }
-  if (s->events > 0) strut_buffer_add(table, ", %" PRId64 " events located", s->events);
+  if (s->spent.events > 0) strut_buffer_add(table, ", %" PRId64 " events located", s->spent.events);
   strut_buffer_add(table, "\n");
   add_claims(table, s);
 }
@@ -313,46 +314,51 @@ static void add_more(strut_buffer *table, size_t count) {
 }
 
 static void add_positions(strut_buffer *table, const strut_summary *s) {
-  if (s->node_count)
+  if (s->end.node_count)
     strut_buffer_add(table, "\n  %-16s %14s %14s   after %s\n", "node", "x", "y",
                      in(s->duration, "s").text);
-  for (size_t i = 0; i < s->node_count && i < MOST_ROWS; i++) {
-    strut_buffer_add(table, "  %-16s %14s %14s\n", s->node_names[i],
-                     in(s->positions[2 * i], "m").text, in(s->positions[2 * i + 1], "m").text);
+  for (size_t i = 0; i < s->end.node_count && i < MOST_ROWS; i++) {
+    strut_buffer_add(table, "  %-16s %14s %14s\n", s->end.node_names[i],
+                     in(s->end.positions[2 * i], "m").text,
+                     in(s->end.positions[2 * i + 1], "m").text);
   }
-  add_more(table, s->node_count);
+  add_more(table, s->end.node_count);
 }
 
 static void add_hinges(strut_buffer *table, const strut_summary *s) {
-  if (s->hinge_count) strut_buffer_add(table, "\n  %-16s %14s %14s\n", "hinge", "angle", "moment");
-  for (size_t i = 0; i < s->hinge_count && i < MOST_ROWS; i++)
-    strut_buffer_add(table, "  %-16s %10.5g deg %14s\n", s->hinges[i].hinge,
-                     s->hinges[i].angle * (180.0 / STRUT_PI), in(s->hinges[i].moment, "N m").text);
-  add_more(table, s->hinge_count);
+  if (s->end.hinge_count)
+    strut_buffer_add(table, "\n  %-16s %14s %14s\n", "hinge", "angle", "moment");
+  for (size_t i = 0; i < s->end.hinge_count && i < MOST_ROWS; i++)
+    strut_buffer_add(table, "  %-16s %10.5g deg %14s\n", s->end.hinges[i].hinge,
+                     s->end.hinges[i].angle * (180.0 / STRUT_PI),
+                     in(s->end.hinges[i].moment, "N m").text);
+  add_more(table, s->end.hinge_count);
 }
 
 static void add_cells(strut_buffer *table, const strut_summary *s) {
-  if (s->cell_count) strut_buffer_add(table, "\n  %-16s %14s %14s\n", "cell", "area", "pressure");
-  for (size_t i = 0; i < s->cell_count && i < MOST_ROWS; i++)
-    strut_buffer_add(table, "  %-16s %10.4g m^2 %14s\n", s->cells[i].cell, s->cells[i].area,
-                     in(s->cells[i].pressure, "N/m").text);
-  add_more(table, s->cell_count);
+  if (s->end.cell_count)
+    strut_buffer_add(table, "\n  %-16s %14s %14s\n", "cell", "area", "pressure");
+  for (size_t i = 0; i < s->end.cell_count && i < MOST_ROWS; i++)
+    strut_buffer_add(table, "  %-16s %10.4g m^2 %14s\n", s->end.cells[i].cell, s->end.cells[i].area,
+                     in(s->end.cells[i].pressure, "N/m").text);
+  add_more(table, s->end.cell_count);
 }
 
 static void add_breaks(strut_buffer *table, const strut_summary *s) {
-  if (s->break_count) strut_buffer_add(table, "\n  %-16s %14s\n", "carries nothing", "from");
-  for (size_t i = 0; i < s->break_count && i < MOST_ROWS; i++)
-    strut_buffer_add(table, "  %-16s %14s   %s\n", s->breaks[i].name,
-                     in(s->breaks[i].time, "s").text, s->breaks[i].released ? "released" : "broke");
-  add_more(table, s->break_count);
+  if (s->end.break_count) strut_buffer_add(table, "\n  %-16s %14s\n", "carries nothing", "from");
+  for (size_t i = 0; i < s->end.break_count && i < MOST_ROWS; i++)
+    strut_buffer_add(table, "  %-16s %14s   %s\n", s->end.breaks[i].name,
+                     in(s->end.breaks[i].time, "s").text,
+                     s->end.breaks[i].released ? "released" : "broke");
+  add_more(table, s->end.break_count);
 }
 
 static void add_contacts(strut_buffer *table, const strut_summary *s) {
-  if (s->contact_count) {
+  if (s->end.contact_count) {
     strut_buffer_add(table, "\n  %-16s %14s %14s\n", "contact", "contact time", "max. height");
   }
-  for (size_t i = 0; i < s->contact_count && i < MOST_ROWS; i++) {
-    const strut_contact_summary *contact = &s->contacts[i];
+  for (size_t i = 0; i < s->end.contact_count && i < MOST_ROWS; i++) {
+    const strut_contact_summary *contact = &s->end.contacts[i];
     if (isnan(contact->duty)) { /* the run ended before its window */
       strut_buffer_add(table, "  %-16s %14s %14s\n", contact->node, "none", "none");
       continue;
@@ -360,7 +366,7 @@ static void add_contacts(strut_buffer *table, const strut_summary *s) {
     strut_buffer_add(table, "  %-16s %12.1f %% %14s\n", contact->node, 100.0 * contact->duty,
                      in(contact->max_height, "m").text);
   }
-  add_more(table, s->contact_count);
+  add_more(table, s->end.contact_count);
 }
 
 /* The residual of the balance and what it means, in one statement. */

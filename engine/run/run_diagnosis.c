@@ -35,12 +35,12 @@ strut_status strut_run_fail_lost_node(const strut_run *r, int32_t node) {
     return strut_fail(r->error, STRUT_DIVERGED,
                       "node '%s' left all bounds at t = %.9g s with dt = %g s (largest stable step "
                       "at the start: %.4g s, at t = %.9g s: %.4g s); %s",
-                      r->summary->node_names[node], strut_run_time(r), r->dt, least, seen, limit,
-                      remedy);
+                      r->summary->end.node_names[node], strut_run_time(r), r->dt, least, seen,
+                      limit, remedy);
   return strut_fail(r->error, STRUT_DIVERGED,
                     "node '%s' left all bounds at t = %.9g s with dt = %g s (largest stable step "
                     "at the start: %.4g s); %s",
-                    r->summary->node_names[node], strut_run_time(r), r->dt, least, remedy);
+                    r->summary->end.node_names[node], strut_run_time(r), r->dt, least, remedy);
 }
 
 /* Bodies this near to each other beside their thickness may soon have passed through each other. */
@@ -165,7 +165,8 @@ strut_status strut_run_fail_method(const strut_run *r) {
         r->error, STRUT_DIVERGED,
         "%s found no solution of its step at t = %.9g s, near node '%s', with dt = %g s; use a "
         "smaller step, or look there for a member whose length passes through zero",
-        r->method->name, strut_run_time(r), r->summary->node_names[r->state->trouble_node], r->dt);
+        r->method->name, strut_run_time(r), r->summary->end.node_names[r->state->trouble_node],
+        r->dt);
   if (r->state->trouble == STRUT_FAILURE_RELAY)
     return strut_fail(
         r->error, STRUT_DIVERGED,
@@ -212,12 +213,12 @@ static void warn_of_narrow_bands(const strut_run *r) {
   const char *first = NULL;
   size_t count = 0;
   double needed = 0.0, times = 0.0;
-  for (size_t i = 0; i < s->contact_count; i++) {
-    if (!(s->contacts[i].band_needed > 0.0)) continue;
-    if (!count++) first = s->contacts[i].node;
-    needed = fmax(needed, s->contacts[i].band_needed);
+  for (size_t i = 0; i < s->end.contact_count; i++) {
+    if (!(s->end.contacts[i].band_needed > 0.0)) continue;
+    if (!count++) first = s->end.contacts[i].node;
+    needed = fmax(needed, s->end.contacts[i].band_needed);
     double band = r->model->contacts.entry[i].friction.stick_velocity;
-    times = fmax(times, s->contacts[i].band_needed / band);
+    times = fmax(times, s->end.contacts[i].band_needed / band);
   }
   char more[40] = "";
   if (count > 1) snprintf(more, sizeof more, " and %zu more", count - 1);
@@ -319,8 +320,8 @@ static jump find_jump(const strut_run *r, double from, double to) {
 }
 
 static bool has_touchdowns(const strut_run *r) {
-  for (size_t i = 0; i < r->summary->contact_count; i++)
-    if (r->summary->contacts[i].max_height > 0.0) return true;
+  for (size_t i = 0; i < r->summary->end.contact_count; i++)
+    if (r->summary->end.contacts[i].max_height > 0.0) return true;
   return false;
 }
 

@@ -60,20 +60,20 @@ static strut_status allocate_summary(strut_run *r) {
   strut_summary *s = r->summary;
   const strut_experiment *e = r->experiment;
   size_t contacts = (size_t)r->model->contacts.count;
-  s->node_names = strut_allocate(scene->node_count, sizeof *s->node_names);
-  s->positions = strut_allocate(2 * scene->node_count, sizeof *s->positions);
-  s->contacts = strut_allocate(contacts, sizeof *s->contacts);
-  s->hinges = strut_allocate(scene->hinge_count, sizeof *s->hinges);
-  s->cells = strut_allocate(scene->cell_count, sizeof *s->cells);
-  s->breaks = strut_allocate((size_t)r->model->elements.breakable_count, sizeof *s->breaks);
+  s->end.node_names = strut_allocate(scene->node_count, sizeof *s->end.node_names);
+  s->end.positions = strut_allocate(2 * scene->node_count, sizeof *s->end.positions);
+  s->end.contacts = strut_allocate(contacts, sizeof *s->end.contacts);
+  s->end.hinges = strut_allocate(scene->hinge_count, sizeof *s->end.hinges);
+  s->end.cells = strut_allocate(scene->cell_count, sizeof *s->end.cells);
+  s->end.breaks = strut_allocate((size_t)r->model->elements.breakable_count, sizeof *s->end.breaks);
   if (e->quantity_count) s->measured = strut_allocate(e->quantity_count, sizeof *s->measured);
-  if (!s->node_names || !s->positions || !s->contacts || !s->hinges || !s->cells || !s->breaks ||
-      (e->quantity_count && !s->measured))
+  if (!s->end.node_names || !s->end.positions || !s->end.contacts || !s->end.hinges ||
+      !s->end.cells || !s->end.breaks || (e->quantity_count && !s->measured))
     return strut_memory_fail_model(r->model->scene, r->error);
-  s->node_count = scene->node_count;
-  s->contact_count = contacts;
-  s->hinge_count = scene->hinge_count;
-  s->cell_count = scene->cell_count;
+  s->end.node_count = scene->node_count;
+  s->end.contact_count = contacts;
+  s->end.hinge_count = scene->hinge_count;
+  s->end.cell_count = scene->cell_count;
   s->measured_count = e->quantity_count;
   if (e->measure_node >= 0) s->measured_node = scene->nodes[e->measure_node].name;
   for (size_t i = 0; i < s->measured_count; i++)
@@ -84,12 +84,12 @@ static strut_status allocate_summary(strut_run *r) {
                                       .scale = (double)NAN,
                                       .expected = (double)NAN,
                                       .arrival = e->quantities[i].take == STRUT_TAKE_ARRIVAL};
-  for (size_t i = 0; i < s->node_count; i++) s->node_names[i] = scene->nodes[i].name;
-  for (size_t i = 0; i < s->hinge_count; i++)
-    s->hinges[i] = (strut_hinge_summary){scene->hinges[i].name, (double)NAN, (double)NAN};
-  for (size_t i = 0; i < s->cell_count; i++)
-    s->cells[i] = (strut_cell_summary){scene->cells[i].name, (double)NAN, (double)NAN};
-  for (size_t i = 0; i < contacts; i++) s->contacts[i].node = strut_contact_name(scene, i);
+  for (size_t i = 0; i < s->end.node_count; i++) s->end.node_names[i] = scene->nodes[i].name;
+  for (size_t i = 0; i < s->end.hinge_count; i++)
+    s->end.hinges[i] = (strut_hinge_summary){scene->hinges[i].name, (double)NAN, (double)NAN};
+  for (size_t i = 0; i < s->end.cell_count; i++)
+    s->end.cells[i] = (strut_cell_summary){scene->cells[i].name, (double)NAN, (double)NAN};
+  for (size_t i = 0; i < contacts; i++) s->end.contacts[i].node = strut_contact_name(scene, i);
   return STRUT_OK;
 }
 
@@ -509,7 +509,7 @@ static void store_end_state(const strut_run *r) {
 
 static void fill_contacts(strut_run *r) {
   for (int32_t i = 0; i < r->model->contacts.count; i++)
-    r->summary->contacts[i].band_needed = strut_stick_band_missed(r->model, &r->watch.band, i);
+    r->summary->end.contacts[i].band_needed = strut_stick_band_missed(r->model, &r->watch.band, i);
 }
 
 /* Angles and moments of the hinges at the end, areas and pressures of the cells. */
@@ -521,12 +521,12 @@ static void measure_elements(strut_run *r) {
     const strut_element *e = &r->model->elements.element[i];
     if (e->role == STRUT_ELEMENT_HINGE) {
       strut_hinge_values values = strut_hinge_measure(r->model, r->state, i);
-      r->summary->hinges[e->item].angle = values.angle;
-      r->summary->hinges[e->item].moment = values.moment;
+      r->summary->end.hinges[e->item].angle = values.angle;
+      r->summary->end.hinges[e->item].moment = values.moment;
     } else if (e->role == STRUT_ELEMENT_CELL) {
       strut_cell_values values = strut_cell_measure(r->model, r->state, i);
-      r->summary->cells[e->item].area = values.area;
-      r->summary->cells[e->item].pressure = values.pressure;
+      r->summary->end.cells[e->item].area = values.area;
+      r->summary->end.cells[e->item].pressure = values.pressure;
     }
   }
 }
@@ -534,13 +534,13 @@ static void measure_elements(strut_run *r) {
 static void list_breaks(const strut_run *r) {
   const strut_scene *scene = r->model->scene;
   strut_summary *s = r->summary;
-  s->break_count = 0;
+  s->end.break_count = 0;
   for (int32_t b = 0; b < r->model->elements.breakable_count; b++) {
     const strut_breakable *what = &r->model->elements.breakable[b];
     double time = r->state->history.broken_at[b];
     bool hinge = what->role == STRUT_ELEMENT_HINGE;
     if (!(time < HUGE_VAL)) continue;
-    s->breaks[s->break_count++] = (strut_break_summary){
+    s->end.breaks[s->end.break_count++] = (strut_break_summary){
         .name = hinge ? scene->hinges[what->item].name : scene->members[what->item].name,
         .hinge = hinge,
         .released = time == what->time,
@@ -552,12 +552,12 @@ static void fill_summary(strut_run *r, strut_status status) {
   strut_summary *s = r->summary;
   fill_contacts(r);
   s->status = status;
-  s->steps = r->state->step - r->first;
-  s->duration = (double)s->steps * r->dt;
+  s->spent.steps = r->state->step - r->first;
+  s->duration = (double)s->spent.steps * r->dt;
   if (r->state->step == r->grid.last)
     s->duration = strut_experiment_span(r->experiment, r->model->scene).duration;
-  s->force_evaluations = r->state->evaluations;
-  s->events = r->state->events;
+  s->spent.evaluations = r->state->evaluations;
+  s->spent.events = r->state->events;
   s->limit_fell = (strut_step_limit_violation){.limit = r->watch.limit.lowest,
                                                .time = r->watch.limit.lowest_time,
                                                .since = r->watch.limit.first_time,
@@ -565,12 +565,12 @@ static void fill_summary(strut_run *r, strut_status status) {
   strut_measure_finish(&r->measure, s);
   if (r->steady.wanted) strut_steady_detector_finish(&r->steady.detector, s);
   s->velocity_zero = strut_measure_is_zero(&r->measure, s->velocity);
-  for (size_t i = 0; i < 2 * s->node_count; i++) s->positions[i] = r->state->q[i];
+  for (size_t i = 0; i < 2 * s->end.node_count; i++) s->end.positions[i] = r->state->q[i];
   measure_elements(r);
   list_breaks(r);
   if (r->state->balance) {
     (void)sample_balance(r);
-    s->balance = strut_balance_judge(&s->energy, s->steps);
+    s->balance = strut_balance_judge(&s->energy, s->spent.steps);
   }
   strut_run_warn(r);
   store_end_state(r);
@@ -602,7 +602,7 @@ strut_status strut_run_end(strut_run *r, strut_status status) {
   strut_error *error = r->error;
   if (r->ready) {
     if (status || !r->answer.filled) fill_summary(r, status); /* where the run ended early */
-    summary->wall_time = strut_run_clock() - r->clock.start;
+    summary->spent.wall_time = strut_run_clock() - r->clock.start;
     strut_error first = *error;
     strut_status written = strut_recording_finish(&r->recording, status, error);
     if (written && (!status || status == STRUT_DIVERGED || status == STRUT_INTERRUPTED))

@@ -337,45 +337,50 @@ typedef struct strut_study {
   const char *name, *description, *model; /* model: its file, from the study's folder */
   size_t axis_count, figure_count;
   strut_study_axis *axes;
+  strut_study_figure *figures;
   strut_keep_set keep; /* empty: what is usual, if no quantity is kept either */
   size_t quantity_count;
   const char **quantities; /* (quantity_count) measured quantities that are kept by name */
   bool trajectories;       /* a directory of results for each run */
   bool half_step;          /* run each point again with half the step */
   double check_accuracy;   /* or with this accuracy; 0: not */
-  strut_study_figure *figures;
-  uint32_t compute; /* strut_compute */
-  int32_t lowest;   /* energies, barriers, frequencies in a row; 0: STRUT_STUDY_LOWEST */
+  uint32_t compute;        /* strut_compute */
+  int32_t lowest;          /* energies, barriers, frequencies in a row; 0: STRUT_STUDY_LOWEST */
   const char *at; /* equilibrium of modes, rigidity and path, as their commands know it; or NULL */
-  /* of PATH, as the command's options; NULL, 0: not given */
-  const char *path_load, *path_over;
-  double path_from, path_until;                 /* in SI, or a load factor */
-  const char *path_from_unit, *path_until_unit; /* NULL: a number without unit */
-  bool path_from_given, path_until_given;
-  int32_t path_steps;
-  /* of FORM, likewise */
-  uint32_t form_from;                            /* strut_form_source */
-  uint32_t form_objective;                       /* strut_form_objective */
-  double form_least_tension, form_least_density; /* [N], [N/m] */
-  int64_t limit_evaluations; /* of the forces, in each run of a point; 0: any number */
-  double limit_time;         /* of a point [s], by the clock; 0: any */
-  /* Refinement of a map: the two axes then have the values of the finest grid. */
-  int32_t refine_depth;     /* halvings of the axes' steps; 0: no refinement */
-  const char *refine_where; /* column whose value decides which cells are divided */
-  double refine_by;         /* by how much its numbers must differ, in SI */
-  size_t refine_axes[2];    /* the axes, in their order */
-  /* What is searched; NULL: the points are all of the axes. */
-  strut_study_search *search;
+  struct {        /* as the command's options; NULL, 0: not given */
+    const char *load, *over;
+    double from, until;                 /* in SI, or a load factor */
+    const char *from_unit, *until_unit; /* NULL: a number without unit */
+    bool from_given, until_given;
+    int32_t steps;
+  } path;
+  struct {                               /* likewise */
+    uint32_t from;                       /* strut_form_source */
+    uint32_t objective;                  /* strut_form_objective */
+    double least_tension, least_density; /* [N], [N/m] */
+  } form;
+  struct {
+    int64_t evaluations; /* of the forces, in each run of a point; 0: any number */
+    double time;         /* of a point [s], by the clock; 0: any */
+  } limit;
+  struct {             /* of a map: the two axes then have the values of the finest grid */
+    int32_t depth;     /* halvings of the axes' steps; 0: no refinement */
+    const char *where; /* column whose value decides which cells are divided */
+    double by;         /* by how much its numbers must differ, in SI */
+    size_t axes[2];    /* in their order */
+  } refine;
+  strut_study_search *search; /* what is searched; NULL: the points are all of the axes */
   strut_study_sensitivity sensitivity;
-  /* Goals, see engine/study/sweep/evaluation_parts.h. */
-  const char *stiffness_node; /* of the column stiffness; NULL: none */
-  double stiffness_direction; /* [rad] */
-  const char *like;           /* a configuration: the shape that is wanted; NULL: `shape` */
-  size_t shape_count;
-  const char **shape_nodes; /* (shape_count) */
-  double (*shape)[2];       /* (shape_count) [m] */
-  size_t curve_count;
-  double (*curve)[2];         /* (curve_count) displacement [m], force [N] */
+  struct {                      /* see engine/study/sweep/evaluation_parts.h */
+    const char *stiffness_node; /* of the column stiffness; NULL: none */
+    double stiffness_direction; /* [rad] */
+    const char *like;           /* a configuration: the shape that is wanted; NULL: `shape` */
+    size_t shape_count;
+    const char **shape_nodes; /* (shape_count) */
+    double (*shape)[2];       /* (shape_count) [m] */
+    size_t curve_count;
+    double (*curve)[2]; /* (curve_count) displacement [m], force [N] */
+  } goal;
   strut_study_follow *follow; /* motions that are followed; NULL: none */
 } strut_study;
 

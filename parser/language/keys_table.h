@@ -131,7 +131,7 @@
   X(STUDY, SENSITIVITY, "sensitivity", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(SENSITIVITY), "How much each parameter contributes to each column: derivatives, and first-order and total indices from samples, at every point of the axes.") \
   X(STUDY, STIFFNESS_AT, "stiffness_at", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(STIFFNESS_AT), "Of `compute: modes`: the node and the direction of the column `stiffness`.") \
   X(STUDY, SHAPE, "shape", THINGS, NONE, ANY, "", OPTIONAL, 0, "positions `[x, y]` of nodes", BY_HAND, "The shape that `shape_distance` compares with: places of some nodes or of all.") \
-  X(STUDY, LIKE, "like", NAME, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study, like), "Instead of `shape`: a configuration of the model that has positions.") \
+  X(STUDY, LIKE, "like", NAME, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study, goal.like), "Instead of `shape`: a configuration of the model that has positions.") \
   X(STUDY, CURVE, "curve", POINTS, CONTEXT, ANY, "", OPTIONAL, 0, "", BY_HAND, "Of `compute: path` with `over: NODE.x` or `NODE.y`: displacements and forces `[[-1 mm, 2 N], ...]` that `curve_distance` compares with.") \
   X(STUDY, LIMIT, "limit", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(LIMIT), "What a point may cost. One that needs more fails, and its row says so.") \
   X(STUDY, FORM, "form", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(FORM), "How `compute: form` finds the form.") \
@@ -177,17 +177,17 @@
   X(FIGURE, COLORS, "colors", WORD, NONE, ANY, "auto", OPTIONAL, 0, "auto|sequential|diverging|grey", FIELD(strut_study_figure, colours), "Map: the colour scale of numbers.")
 
 #define STRUT_PATH_KEYS(X) \
-  X(PATH, LOAD, "load", TEXT, NONE, ANY, "all without a signal", OPTIONAL, 6, "", FIELD(strut_study, path_load), "The load to scale.") \
-  X(PATH, OVER, "over", TEXT, NONE, ANY, "", OPTIONAL, 6, "", FIELD(strut_study, path_over), "Instead of loads, an actuator, or a displacement `NODE.x` or `NODE.y`.") \
-  X(PATH, FROM, "from", NUMBER, CONTEXT, ANY, "0", OPTIONAL, 0, "", CHOICE(strut_study, path_from_given, true, FIELD(strut_study, path_from)), "Start value: a load factor, or in the unit of `over`.") \
-  X(PATH, UNTIL, "until", NUMBER, CONTEXT, ANY, "load factor 1", OPTIONAL, 0, "", CHOICE(strut_study, path_until_given, true, FIELD(strut_study, path_until)), "End value, likewise; required with `over`.") \
-  X(PATH, STEPS, "steps", NUMBER, NONE, WHOLE(1, 1000000), "400", OPTIONAL, 0, "", FIELD(strut_study, path_steps), "Maximum number of steps.")
+  X(PATH, LOAD, "load", TEXT, NONE, ANY, "all without a signal", OPTIONAL, 6, "", FIELD(strut_study, path.load), "The load to scale.") \
+  X(PATH, OVER, "over", TEXT, NONE, ANY, "", OPTIONAL, 6, "", FIELD(strut_study, path.over), "Instead of loads, an actuator, or a displacement `NODE.x` or `NODE.y`.") \
+  X(PATH, FROM, "from", NUMBER, CONTEXT, ANY, "0", OPTIONAL, 0, "", CHOICE(strut_study, path.from_given, true, FIELD(strut_study, path.from)), "Start value: a load factor, or in the unit of `over`.") \
+  X(PATH, UNTIL, "until", NUMBER, CONTEXT, ANY, "load factor 1", OPTIONAL, 0, "", CHOICE(strut_study, path.until_given, true, FIELD(strut_study, path.until)), "End value, likewise; required with `over`.") \
+  X(PATH, STEPS, "steps", NUMBER, NONE, WHOLE(1, 1000000), "400", OPTIONAL, 0, "", FIELD(strut_study, path.steps), "Maximum number of steps.")
 
 #define STRUT_FORM_KEYS(X) \
-  X(FORM, FROM, "from", WORD, NONE, ANY, "scene", OPTIONAL, 0, "scene|densities|lengths|prestress", FIELD(strut_study, form_from), "What gives the shape; `scene`: as the model's keys say.") \
-  X(FORM, LEAST_TENSION, "least_tension", NUMBER, FORCE, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_study, form_least_tension), "Lower bound on the tension of every cable.") \
-  X(FORM, LEAST_DENSITY, "least_density", NUMBER, STIFFNESS, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_study, form_least_density), "Lower bound on the force density of every cable.") \
-  X(FORM, OBJECTIVE, "objective", WORD, NONE, ANY, "largest", OPTIONAL, 0, "largest|sum|squares", FIELD(strut_study, form_objective), "Which prestress: that whose minimum this is.")
+  X(FORM, FROM, "from", WORD, NONE, ANY, "scene", OPTIONAL, 0, "scene|densities|lengths|prestress", FIELD(strut_study, form.from), "What gives the shape; `scene`: as the model's keys say.") \
+  X(FORM, LEAST_TENSION, "least_tension", NUMBER, FORCE, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_study, form.least_tension), "Lower bound on the tension of every cable.") \
+  X(FORM, LEAST_DENSITY, "least_density", NUMBER, STIFFNESS, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_study, form.least_density), "Lower bound on the force density of every cable.") \
+  X(FORM, OBJECTIVE, "objective", WORD, NONE, ANY, "largest", OPTIONAL, 0, "largest|sum|squares", FIELD(strut_study, form.objective), "Which prestress: that whose minimum this is.")
 
 #define STRUT_POINTS_KEYS(X) \
   X(POINTS, FILE, "file", TEXT, NONE, ANY, "", REQUIRED, 0, "", BY_HAND, "A CSV file with a header, below the folder of the study. `NAME [UNIT]` heads the values of a parameter; without a unit they are in SI.") \
@@ -207,13 +207,13 @@
   X(DISTRIBUTION, TRIANGULAR, "triangular", NUMBERS, CONTEXT, ANY, "", OPTIONAL, 10, "", CHOICE(strut_distribution, kind, STRUT_DISTRIBUTION_TRIANGULAR, NUMBERS(strut_distribution, number)), "`[LEAST, MODE, MOST]`.")
 
 #define STRUT_LIMIT_KEYS(X) \
-  X(LIMIT, EVALUATIONS, "evaluations", NUMBER, NONE, WHOLE(1, 1000000000000000), "none", OPTIONAL, 0, "", FIELD(strut_study, limit_evaluations), "Force evaluations of each run, the check's too. The same points fail on every machine.") \
-  X(LIMIT, TIME, "time", NUMBER, TIME, ABOVE_ZERO, "none", OPTIONAL, 0, "", FIELD(strut_study, limit_time), "Time of a point by the clock. Which points fail depends on the machine and its load; `--retry` computes them again.")
+  X(LIMIT, EVALUATIONS, "evaluations", NUMBER, NONE, WHOLE(1, 1000000000000000), "none", OPTIONAL, 0, "", FIELD(strut_study, limit.evaluations), "Force evaluations of each run, the check's too. The same points fail on every machine.") \
+  X(LIMIT, TIME, "time", NUMBER, TIME, ABOVE_ZERO, "none", OPTIONAL, 0, "", FIELD(strut_study, limit.time), "Time of a point by the clock. Which points fail depends on the machine and its load; `--retry` computes them again.")
 
 #define STRUT_REFINE_KEYS(X) \
-  X(REFINE, WHERE, "where", NAME, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_study, refine_where), "A column of the table, such as `outcome`. Cells whose points differ in it are divided; a point that failed differs from others.") \
-  X(REFINE, DEPTH, "depth", NUMBER, NONE, WHOLE(1, 10), "", REQUIRED, 0, "", FIELD(strut_study, refine_depth), "How often: the finest cells have 2^depth of the width of those of the axes.") \
-  X(REFINE, BY, "by", NUMBER, NONE, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_study, refine_by), "Numbers must differ by more than this, in the SI unit of the column.") \
+  X(REFINE, WHERE, "where", NAME, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_study, refine.where), "A column of the table, such as `outcome`. Cells whose points differ in it are divided; a point that failed differs from others.") \
+  X(REFINE, DEPTH, "depth", NUMBER, NONE, WHOLE(1, 10), "", REQUIRED, 0, "", FIELD(strut_study, refine.depth), "How often: the finest cells have 2^depth of the width of those of the axes.") \
+  X(REFINE, BY, "by", NUMBER, NONE, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_study, refine.by), "Numbers must differ by more than this, in the SI unit of the column.") \
   X(REFINE, AXES, "axes", NAMES, NONE, ANY, "the axes with ranges", OPTIONAL, 0, "", BY_HAND, "The parameters of the two axes to divide.")
 
 #define STRUT_SENSITIVITY_KEYS(X) \
@@ -226,8 +226,8 @@
   X(SENSITIVITY, THRESHOLD, "threshold", NUMBER, NONE, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_study_sensitivity, threshold), "Shares of the samples above it, within it in both directions, and below minus it, in the SI unit of the columns; 0: the share above 0.")
 
 #define STRUT_STIFFNESS_AT_KEYS(X) \
-  X(STIFFNESS_AT, NODE, "node", NAME, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_study, stiffness_node), "A node of the model.") \
-  X(STIFFNESS_AT, DIRECTION, "direction", NUMBER, ANGLE, ANY, "", REQUIRED, 0, "", FIELD(strut_study, stiffness_direction), "From the x axis: 90 deg is upwards.")
+  X(STIFFNESS_AT, NODE, "node", NAME, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_study, goal.stiffness_node), "A node of the model.") \
+  X(STIFFNESS_AT, DIRECTION, "direction", NUMBER, ANGLE, ANY, "", REQUIRED, 0, "", FIELD(strut_study, goal.stiffness_direction), "From the x axis: 90 deg is upwards.")
 
 #define STRUT_SEARCH_KEYS(X) \
   X(SEARCH, MAXIMISE, "maximise", FREE, NONE, ANY, "", OPTIONAL, 12, "an expression of columns, or a list of two", BY_HAND, "What is to be as large as possible: a column of the table, or an expression of columns such as `velocity/frequency`. Two of them, `[velocity, -cost_of_transport]`: the points that no other one beats in both.") \

@@ -95,7 +95,7 @@ static strut_status show_status(const strut_arguments *arguments, strut_sweep_st
   if (status) return strut_print_failure(status, &error);
   status = study->plan.study->search
                ? strut_sweep_search_status(slots, arguments->output, arguments->json)
-           : study->plan.study->refine_depth
+           : study->plan.study->refine.depth
                ? strut_sweep_refine_status(&study->plan, arguments->output, slots, arguments->json)
                : strut_print_block(strut_sweep_status_report(slots, arguments->json));
   strut_slots_close(slots);
@@ -270,7 +270,7 @@ static strut_status compute_points(const strut_arguments *arguments, strut_sweep
   if (!status && arguments->retry) status = strut_slots_retry(slots, &error);
   if (!status && !shard.count && strut_slots_missing(slots) > 0)
     strut_file_remove(arguments->output, table_name); /* outdated */
-  if (!status && study->plan.study->refine_depth)
+  if (!status && study->plan.study->refine.depth)
     status = strut_refinement_create(&study->plan, &refinement, &error);
   const sweep_run run = {arguments, study, at_a_time, shard, slots};
   if (!status && refinement)
@@ -293,7 +293,7 @@ static strut_status compute_points(const strut_arguments *arguments, strut_sweep
 /* Prints the script for a cluster. */
 static strut_status emit_script(const strut_arguments *arguments, const strut_study *study) {
   strut_status status = strut_sweep_emit(arguments, study->name);
-  if (!status && study->refine_depth)
+  if (!status && study->refine.depth)
     fputs(
         "strut: a refined study needs its shards in rounds: submit the script again until no shard "
         "asks for another\n",

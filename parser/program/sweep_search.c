@@ -374,7 +374,7 @@ strut_status strut_sweep_refine_merge(const strut_arguments *arguments, bool *me
     return STRUT_OK;
   }
   strut_status status = strut_study_open(inner.model, NULL, 0, &study.file, &error);
-  *merged = !status && study.file.study.refine_depth > 0;
+  *merged = !status && study.file.study.refine.depth > 0;
   if (!status && study.file.study.search) {
     *merged = true;
     strut_fail(&error, STRUT_USAGE,

@@ -255,14 +255,14 @@ static void read_path(strut_study_reader *r, const strut_slot *slot) {
   if (slot->state != STRUT_GIVEN) return;
   strut_read_fields(r->reader, STRUT_SECTION_PATH, slot->value, path_owner, &fields);
   strut_store_fields(r->reader, &fields, path_owner, &r->file->arena, study, sizeof *study);
-  read_path_value(r, &fields, STRUT_KEY_PATH_FROM, &study->path_from_unit);
-  read_path_value(r, &fields, STRUT_KEY_PATH_UNTIL, &study->path_until_unit);
+  read_path_value(r, &fields, STRUT_KEY_PATH_FROM, &study->path.from_unit);
+  read_path_value(r, &fields, STRUT_KEY_PATH_UNTIL, &study->path.until_unit);
   if (fields.broken) return;
-  if (study->path_over && !study->path_until_given)
+  if (study->path.over && !study->path.until_given)
     strut_report_error(r->reader, slot->value->place,
                        "the path lacks 'until', the end value of '%s'",
-                       strut_sanitised_text(r->reader, study->path_over));
-  if (study->path_from_given && study->path_until_given && study->path_from == study->path_until)
+                       strut_sanitised_text(r->reader, study->path.over));
+  if (study->path.from_given && study->path.until_given && study->path.from == study->path.until)
     strut_report_error(r->reader, slot->value->place, "'from' and 'until' of the path are equal");
 }
 

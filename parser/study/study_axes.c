@@ -336,21 +336,21 @@ static bool choose_axes(strut_study_reader *r, const strut_slot *refine, const s
     for (const strut_tree *item = named->value->first; item; item = item->next) {
       size_t axis = find_axis(r, item);
       if (axis == study->axis_count) return false;
-      if (count < 2) study->refine_axes[count] = axis;
+      if (count < 2) study->refine.axes[count] = axis;
       count++;
     }
   } else {
     for (size_t i = 0; i < study->axis_count; i++) {
       if (!is_range(&study->axes[i])) continue;
-      if (count < 2) study->refine_axes[count] = i;
+      if (count < 2) study->refine.axes[count] = i;
       count++;
     }
   }
-  if (count == 2 && study->refine_axes[0] != study->refine_axes[1]) {
-    if (study->refine_axes[0] > study->refine_axes[1]) {
-      size_t first = study->refine_axes[1];
-      study->refine_axes[1] = study->refine_axes[0];
-      study->refine_axes[0] = first;
+  if (count == 2 && study->refine.axes[0] != study->refine.axes[1]) {
+    if (study->refine.axes[0] > study->refine.axes[1]) {
+      size_t first = study->refine.axes[1];
+      study->refine.axes[1] = study->refine.axes[0];
+      study->refine.axes[0] = first;
     }
     return true;
   }
@@ -377,13 +377,13 @@ void strut_study_read_refine(strut_study_reader *r, const strut_slot *slot) {
   if (!fields.broken) strut_require(r->reader, &fields, refine_owner, slot->value->place);
   if (fields.broken || r->reader->failed) return; /* the axes may be incomplete */
   strut_store_fields(r->reader, &fields, refine_owner, &r->file->arena, study, sizeof *study);
-  int32_t depth = study->refine_depth;
-  study->refine_depth = 0;
+  int32_t depth = study->refine.depth;
+  study->refine.depth = 0;
   if (!choose_axes(r, slot, strut_slot_of(&fields, STRUT_KEY_REFINE_AXES))) return;
   double points = 1.0;
-  for (int i = 0; i < 2; i++) refine_axis(&study->axes[study->refine_axes[i]], depth);
+  for (int i = 0; i < 2; i++) refine_axis(&study->axes[study->refine.axes[i]], depth);
   for (size_t i = 0; i < study->axis_count; i++) points *= (double)study->axes[i].count;
-  study->refine_depth = depth;
+  study->refine.depth = depth;
   if (points > (double)STRUT_STUDY_MOST_REFINED)
     strut_report_error(r->reader, slot->key->place,
                        "the finest grid has %.3g points, a refined study may have %.0e", points,
@@ -396,25 +396,26 @@ static const strut_owner curve_owner = {"the curve", NULL};
 static void read_shape(strut_study_reader *r, const strut_slot *slot) {
   strut_study *study = &r->file->study;
   size_t count = slot->value->count, i = 0;
-  study->shape_nodes =
-      strut_reader_allocate(r->reader, &r->file->arena, count + 1, sizeof *study->shape_nodes);
-  study->shape = strut_reader_allocate(r->reader, &r->file->arena, count + 1, sizeof *study->shape);
-  if (!study->shape_nodes || !study->shape) return;
+  study->goal.shape_nodes =
+      strut_reader_allocate(r->reader, &r->file->arena, count + 1, sizeof *study->goal.shape_nodes);
+  study->goal.shape =
+      strut_reader_allocate(r->reader, &r->file->arena, count + 1, sizeof *study->goal.shape);
+  if (!study->goal.shape_nodes || !study->goal.shape) return;
   for (const strut_tree *key = slot->value->first; key; key = key->next->next, i++) {
-    study->shape_nodes[i] = key->text;
+    study->goal.shape_nodes[i] = key->text;
     strut_read_pair(r->reader, key->next, key->text, shape_owner, STRUT_DIM_LENGTH,
-                    study->shape[i]);
+                    study->goal.shape[i]);
   }
-  study->shape_count = count;
+  study->goal.shape_count = count;
 }
 
 static void read_curve(strut_study_reader *r, const strut_slot *slot) {
   strut_study *study = &r->file->study;
-  study->curve = strut_reader_allocate(r->reader, &r->file->arena, slot->value->count + 1,
-                                       sizeof *study->curve);
-  if (!study->curve) return;
+  study->goal.curve = strut_reader_allocate(r->reader, &r->file->arena, slot->value->count + 1,
+                                            sizeof *study->goal.curve);
+  if (!study->goal.curve) return;
   for (const strut_tree *item = slot->value->first; item; item = item->next) {
-    double *pair = study->curve[study->curve_count];
+    double *pair = study->goal.curve[study->goal.curve_count];
     if (item->kind != STRUT_TREE_LIST || item->count != 2) {
       strut_report_error(r->reader, item->place,
                          "expected a displacement and a force such as [-1 mm, 2 N] for 'curve' of "
@@ -426,7 +427,7 @@ static void read_curve(strut_study_reader *r, const strut_slot *slot) {
                           STRUT_RANGE_ANY, &pair[0]) &&
         strut_read_number(r->reader, item->first->next, "curve", curve_owner, STRUT_DIM_FORCE,
                           STRUT_RANGE_ANY, &pair[1]))
-      study->curve_count++;
+      study->goal.curve_count++;
   }
 }
 
@@ -481,7 +482,7 @@ void strut_study_read_goals(strut_study_reader *r, strut_fields *top) {
   if (shape->state == STRUT_GIVEN) read_shape(r, shape);
   if (curve->state == STRUT_GIVEN) read_curve(r, curve);
   if (curve->state == STRUT_GIVEN && r->file->study.compute == STRUT_COMPUTE_PATH &&
-      (!r->file->study.path_over || !strchr(r->file->study.path_over, '.')))
+      (!r->file->study.path.over || !strchr(r->file->study.path.over, '.')))
     strut_report_error(r->reader, curve->key->place,
                        "'curve' is force over the displacement of a node: the path needs "
                        "'over: NODE.x' or 'over: NODE.y'");

@@ -54,7 +54,7 @@ void strut_request_begin(const strut_study_file *file, strut_request *request) {
   request->study.axis_count = request->study.figure_count = 0;
   request->study.axes = NULL;
   request->study.trajectories = false;
-  request->study.refine_depth = 0;
+  request->study.refine.depth = 0;
   request->study.search = NULL;
 }
 

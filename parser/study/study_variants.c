@@ -313,18 +313,18 @@ static void put_computed(strut_writer *w, const strut_study *study) {
   put_number(w, (double)study->compute);
   put_number(w, (double)study->lowest);
   put_word(w, study->at ? study->at : "");
-  put_word(w, study->path_load ? study->path_load : "");
-  put_word(w, study->path_over ? study->path_over : "");
-  put_number(w, study->path_from);
-  put_number(w, study->path_until);
-  put_word(w, study->path_from_unit ? study->path_from_unit : "");
-  put_word(w, study->path_until_unit ? study->path_until_unit : "");
-  put_number(w, study->path_from_given + 2 * study->path_until_given);
-  put_number(w, (double)study->path_steps);
-  put_number(w, (double)study->form_from);
-  put_number(w, (double)study->form_objective);
-  put_number(w, study->form_least_tension);
-  put_number(w, study->form_least_density);
+  put_word(w, study->path.load ? study->path.load : "");
+  put_word(w, study->path.over ? study->path.over : "");
+  put_number(w, study->path.from);
+  put_number(w, study->path.until);
+  put_word(w, study->path.from_unit ? study->path.from_unit : "");
+  put_word(w, study->path.until_unit ? study->path.until_unit : "");
+  put_number(w, study->path.from_given + 2 * study->path.until_given);
+  put_number(w, (double)study->path.steps);
+  put_number(w, (double)study->form.from);
+  put_number(w, (double)study->form.objective);
+  put_number(w, study->form.least_tension);
+  put_number(w, study->form.least_density);
 }
 
 /* What is searched; the goal decides the column `objective`. */
@@ -386,14 +386,14 @@ char *strut_study_identity(const strut_study_file *file) {
   put_number(&w, study->half_step);
   put_number(&w, study->check_accuracy);
   put_computed(&w, study);
-  if (study->refine_depth) {
-    put_number(&w, (double)study->refine_depth);
-    put_number(&w, study->refine_by);
-    put_word(&w, study->refine_where);
+  if (study->refine.depth) {
+    put_number(&w, (double)study->refine.depth);
+    put_number(&w, study->refine.by);
+    put_word(&w, study->refine.where);
   }
   if (study->search) put_search(&w, study->search);
   if (study->follow) put_follow(&w, study->follow);
-  if (study->limit_evaluations) put_number(&w, (double)study->limit_evaluations);
+  if (study->limit.evaluations) put_number(&w, (double)study->limit.evaluations);
   if (!w.failed) return w.text;
   strut_release(w.text);
   return NULL;

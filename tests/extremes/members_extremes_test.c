@@ -73,7 +73,7 @@ TEST(bars_through_no_length_keep_their_balance) {
       } else {
         double kept = s.energy.kinetic + s.energy.elastic - s.energy.initial;
         double allowed = 7 * 2 * K * rest * speed * step; /* seven times through in 1.05 s */
-        for (int i = 0; i < 4; i++) assert_true(isfinite(s.positions[i]));
+        for (int i = 0; i < 4; i++) assert_true(isfinite(s.end.positions[i]));
         assert_near(s.energy.residual, kept, 1e-12 * s.energy.initial);
         assert_true(fabs(kept) <= allowed);
         worst = fmax(worst, fabs(kept) / s.energy.initial / step);
@@ -171,7 +171,7 @@ TEST(a_throw_of_a_million_sizes) {
   double mass = 0, x = 0, y = 0, start = 0, drift = 0, rise = 0;
   for (int32_t i = 0; i < 4; i++) {
     double weight = model->weight[i];
-    mass += weight, x += weight * s.positions[2 * i], y += weight * s.positions[2 * i + 1];
+    mass += weight, x += weight * s.end.positions[2 * i], y += weight * s.end.positions[2 * i + 1];
     start += weight * setup.scene.nodes[i].start[1];
     drift += weight * setup.scene.nodes[i].velocity[0],
         rise += weight * setup.scene.nodes[i].velocity[1];

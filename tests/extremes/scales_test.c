@@ -126,9 +126,9 @@ static void run_wild(uint64_t seed, tally *t) {
       strut_summary s = {0};
       status = strut_simulate(model, &setup.experiment, &options, &s, &error);
       if (status) assert_true(strlen(error.message) > 10);
-      *(!status ? &t->answered : s.steps ? &t->stopped : &t->refused) += 1;
-      for (size_t i = 0; !status && i < 2 * s.node_count; i++) {
-        assert_true(isfinite(s.positions[i]));
+      *(!status ? &t->answered : s.spent.steps ? &t->stopped : &t->refused) += 1;
+      for (size_t i = 0; !status && i < 2 * s.end.node_count; i++) {
+        assert_true(isfinite(s.end.positions[i]));
       }
       strut_summary_free(&s);
     }

@@ -199,12 +199,12 @@ TEST(studies_of_what_is_at_rest) {
     open_good(names[i], &file);
     if (i == 0) {
       assert_int_equal(file.study.compute, STRUT_COMPUTE_PATH);
-      assert_string_equal(file.study.path_over, "drive");
-      assert_true(file.study.path_from == -1e-3 && file.study.path_until == 10e-3);
-      assert_string_equal(file.study.path_until_unit, "m");
-      assert_int_equal(file.study.path_steps, 50);
+      assert_string_equal(file.study.path.over, "drive");
+      assert_true(file.study.path.from == -1e-3 && file.study.path.until == 10e-3);
+      assert_string_equal(file.study.path.until_unit, "m");
+      assert_int_equal(file.study.path.steps, 50);
     }
-    if (i == 2) assert_true(file.study.form_least_density == 2.0 && file.study.form_from == 3);
+    if (i == 2) assert_true(file.study.form.least_density == 2.0 && file.study.form.from == 3);
     strut_study_close(&file);
   }
 }

@@ -15,7 +15,7 @@ TEST(oscillator) {
   const double w = sqrt(100.0 / 1.0), a = 0.01, steps = 10.25 * 200, z = 2 * PI / 200;
   model_run run;
   model_run_file(&run, "basics/oscillator", set_none);
-  assert_int_equal(run.summary.steps, 2050);
+  assert_int_equal(run.summary.spent.steps, 2050);
   /* RK4's phase is late by z^5/120 of a step's angle, its amplitude low by z^6/144. */
   double late = steps * pow(z, 5) / 120;
   assert_relative(run.summary.velocity, -2 * a * w / PI, 2 * late);
@@ -151,7 +151,7 @@ TEST(bouncing_node) {
     model_run_file(&run, "basics/bouncing-node", set_to(cases[i].set));
     /* The damper's jump, damping * arrival, is seen up to a step late. */
     double late = 2 * 0.1 * 100 * arrival * cases[i].step;
-    assert_near(run.summary.contacts[0].max_height, height, departure / G * late);
+    assert_near(run.summary.end.contacts[0].max_height, height, departure / G * late);
     model_run_free(&run);
   }
 }

@@ -91,8 +91,8 @@ void model_run_free(model_run *run) {
 }
 
 const double *model_position(const model_run *run, const char *node) {
-  for (size_t i = 0; i < run->summary.node_count; i++)
-    if (!strcmp(run->summary.node_names[i], node)) return run->summary.positions + 2 * i;
+  for (size_t i = 0; i < run->summary.end.node_count; i++)
+    if (!strcmp(run->summary.end.node_names[i], node)) return run->summary.end.positions + 2 * i;
   fail_msg("no node '%s'", node);
   return NULL;
 }

@@ -117,8 +117,8 @@ TEST(velocities_agree_in_the_mean) {
     double deviation = cases[c % CASES].deviation;
     assert_near(1e3 * s.velocity, 1e3 * figures.velocity, 5 * sqrt(2) * deviation + 1e-3);
     for (int i = 0; i < 5; i++) {
-      assert_near(s.contacts[i].duty, figures.duty[i], deviation > 0 ? 0.01 : 1e-3);
-      assert_near(s.contacts[i].max_height, figures.highest[i], deviation > 0 ? 2e-5 : 1e-6);
+      assert_near(s.end.contacts[i].duty, figures.duty[i], deviation > 0 ? 0.01 : 1e-3);
+      assert_near(s.end.contacts[i].max_height, figures.highest[i], deviation > 0 ? 2e-5 : 1e-6);
     }
     strut_summary_free(&s);
     strut_setup_free(&setup);
@@ -135,8 +135,8 @@ TEST(the_papers_velocities) {
                   1e3 * s.velocity_spread);
     assert_near(1e3 * s.velocity, two ? -10.10 : 9.78, 0.05);
     assert_within(s.velocity_spread, 1e-6, 5e-4);
-    assert_int_equal(s.steps, 1100000);
-    assert_int_equal(s.force_evaluations, 4400000);
+    assert_int_equal(s.spent.steps, 1100000);
+    assert_int_equal(s.spent.evaluations, 4400000);
     assert_near(s.duration, 110, 1e-9);
     assert_true(s.step_limit > STEP && s.step_limit < 1.5e-4);
     assert_true(fabs(s.energy.residual) < 1e-3 * s.energy.moved);
@@ -149,11 +149,12 @@ TEST(the_papers_contacts) {
   strut_setup setup;
   make(&setup, 10, 0.2, false, 1100, 100);
   strut_summary s = motion_simulate(&setup);
-  assert_near(s.contacts[3].duty, 0.73, 0.01);
-  assert_near(s.contacts[3].max_height, 1.1e-3, 0.05e-3);
-  assert_near(s.contacts[0].duty, 0.90, 0.02);
-  assert_within(s.contacts[0].max_height, 5e-6, 25e-6);
-  assert_true(s.contacts[1].duty == 0 && s.contacts[2].duty == 0 && s.contacts[4].duty == 0);
+  assert_near(s.end.contacts[3].duty, 0.73, 0.01);
+  assert_near(s.end.contacts[3].max_height, 1.1e-3, 0.05e-3);
+  assert_near(s.end.contacts[0].duty, 0.90, 0.02);
+  assert_within(s.end.contacts[0].max_height, 5e-6, 25e-6);
+  assert_true(s.end.contacts[1].duty == 0 && s.end.contacts[2].duty == 0 &&
+              s.end.contacts[4].duty == 0);
   strut_summary_free(&s);
   strut_setup_free(&setup);
 }

@@ -122,7 +122,7 @@ static uint64_t whole_run(int64_t steps) {
   uint64_t before = allocations_so_far();
   assert_int_equal(strut_simulate(model, &setup.experiment, &options, &summary, NULL), STRUT_OK);
   uint64_t count = allocations_so_far() - before;
-  assert_int_equal(summary.steps, steps);
+  assert_int_equal(summary.spent.steps, steps);
   assert_int_equal(rows, steps / 10 + 1);
   strut_summary_free(&summary);
   strut_model_free(model);

@@ -209,7 +209,7 @@ TEST(a_loss_that_gives_ends_the_run) {
         if (!forced && !strstr(error.message, words[k]))
           fail_msg("%s said: %s", methods[i], error.message);
         assert_int_equal(s.status, status);
-        assert_true(forced ? s.steps == 2000 : s.steps > 0 && s.steps < 2000);
+        assert_true(forced ? s.spent.steps == 2000 : s.spent.steps > 0 && s.spent.steps < 2000);
         strut_summary_free(&s);
         strut_model_free(model);
       }

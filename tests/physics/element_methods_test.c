@@ -43,10 +43,10 @@ static outcome run(uint64_t seed, double damping, const char *method, double ste
   setup.experiment.integrator = method;
   setup.experiment.tolerance = tolerance;
   strut_summary s = motion_simulate(&setup);
-  assert_true(2 * s.node_count <= MOST);
-  memcpy(o.q, s.positions, 2 * s.node_count * sizeof *o.q);
+  assert_true(2 * s.end.node_count <= MOST);
+  memcpy(o.q, s.end.positions, 2 * s.end.node_count * sizeof *o.q);
   o.residual = s.energy.residual, o.moved = s.energy.moved;
-  o.lost = s.energy.dissipated_members, o.events = s.events;
+  o.lost = s.energy.dissipated_members, o.events = s.spent.events;
   strut_summary_free(&s);
   strut_setup_free(&setup);
   return o;

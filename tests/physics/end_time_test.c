@@ -83,12 +83,12 @@ static places places_after(const char *method, double step, double duration) {
   pushed(&setup, method, step, duration);
   setup.experiment.output_every = 7e-3; /* does not divide it */
   strut_summary s = record(&setup, (strut_run_options){0}, &r);
-  places p = {s.positions[0], s.positions[4]};
+  places p = {s.end.positions[0], s.end.positions[4]};
   assert_same_bits(s.duration, duration);
   assert_same_bits(r.time, duration);
   assert_same_bits(r.place, p.forced);
   if (step == STEP) assert_int_equal(r.count, (size_t)ceil(duration / 7e-3 - 1e-9) + 1);
-  assert_int_equal(s.steps, (int64_t)ceil(duration / step - 1e-6));
+  assert_int_equal(s.spent.steps, (int64_t)ceil(duration / step - 1e-6));
   strut_summary_free(&s);
   strut_setup_free(&setup);
   return p;
@@ -142,8 +142,8 @@ TEST(whole_steps_are_not_cut) {
   motion_begin_by(&m, &setup, "rk4", STEP);
   motion_steps(&m, 50);
   strut_summary s = record(&setup, (strut_run_options){0}, &r);
-  assert_int_equal(s.steps, 50);
-  for (int i = 0; i < 6; i++) assert_same_bits(s.positions[i], m.state->q[i]);
+  assert_int_equal(s.spent.steps, 50);
+  for (int i = 0; i < 6; i++) assert_same_bits(s.end.positions[i], m.state->q[i]);
   assert_int_equal(r.count, 51); /* every step: a thousandth of it is less */
   assert_same_bits(r.time, 0.05);
   motion_end(&m);
@@ -169,8 +169,10 @@ TEST(going_on_between_steps) {
     assert_near(r.time, 0.0503, 1e-15);
     places exact = places_after("adaptive", 0.0503 / 51, 0.0503);
     places whole = places_after(method->name, 0.0503 / 51, 0.0503);
-    assert_near(second.positions[0], exact.forced, 2 * fabs(whole.forced - exact.forced) + 1e-9);
-    assert_near(second.positions[4], exact.driven, 2 * fabs(whole.driven - exact.driven) + 1e-9);
+    assert_near(second.end.positions[0], exact.forced,
+                2 * fabs(whole.forced - exact.forced) + 1e-9);
+    assert_near(second.end.positions[4], exact.driven,
+                2 * fabs(whole.driven - exact.driven) + 1e-9);
     strut_summary_free(&first);
     strut_summary_free(&second);
     strut_setup_free(&setup);

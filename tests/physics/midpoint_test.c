@@ -30,8 +30,8 @@ static strut_summary run_by(strut_setup *setup, const char *method, double step,
 
 static double farthest(const strut_summary *a, const strut_summary *b) {
   double most = 0.0;
-  for (size_t i = 0; i < 2 * a->node_count; i++)
-    most = fmax(most, fabs(a->positions[i] - b->positions[i]));
+  for (size_t i = 0; i < 2 * a->end.node_count; i++)
+    most = fmax(most, fabs(a->end.positions[i] - b->end.positions[i]));
   return most;
 }
 
@@ -51,7 +51,7 @@ TEST(stiff_pendulum_is_the_rigid_one) {
       strut_setup setup;
       pendulum(&setup, stiffness);
       strut_summary s = run_by(&setup, "midpoint", period / (100 << k), 10.25 * period);
-      error[k] = hypot(s.positions[2], s.positions[3] + 1.0);
+      error[k] = hypot(s.end.positions[2], s.end.positions[3] + 1.0);
       assert_near(s.energy.residual, 0.0, 1e-9 * s.energy.moved + 1e-9);
       print_message(
           "stiffness %g, %d steps a period, %.0f times RK4's limit: %.2g m off after ten\n",
@@ -121,7 +121,7 @@ TEST(stiff_chain_against_rk4) {
   for (int k = 0; k < 3; k++) {
     strut_summary s = run_by(&setup, "midpoint", ldexp(100.0 * limit, -k), duration);
     error[k] = farthest(&s, &exact);
-    double saving = (double)usual.force_evaluations / (double)s.force_evaluations;
+    double saving = (double)usual.spent.evaluations / (double)s.spent.evaluations;
     print_message("stiffness ratio 1e6, %d times RK4's limit: %.2g m off, a %.0fth of its forces\n",
                   100 >> k, error[k], saving);
     if (k == 0) assert_true(saving > 20.0);
@@ -162,7 +162,7 @@ TEST(random_scenes) {
     balance = fmax(balance, fabs(coarse.energy.residual) / (coarse.energy.moved + 1.0));
     balance = fmax(balance, fabs(s.energy.residual) / (s.energy.moved + 1.0));
     better += error < 0.25 * before;
-    evaluations += coarse.force_evaluations, steps += coarse.steps;
+    evaluations += coarse.spent.evaluations, steps += coarse.spent.steps;
     strut_summary_free(&exact);
     strut_summary_free(&coarse);
     strut_summary_free(&s);
@@ -234,7 +234,7 @@ TEST(cable_in_large_steps) {
   print_message("cable: energy off by %.2g of %.2g J moved; %.2f J lost\n", s.energy.residual,
                 s.energy.moved, s.energy.dissipated_members);
   assert_near(s.energy.residual, 0.0, 1e-9 * s.energy.moved);
-  assert_true(hypot(s.positions[2], s.positions[3]) < 1.01);
+  assert_true(hypot(s.end.positions[2], s.end.positions[3]) < 1.01);
   assert_true(s.energy.dissipated_members > 0.0);
   strut_summary_free(&s);
   strut_setup_free(&setup);
@@ -297,7 +297,7 @@ TEST(no_solution_is_named) {
   assert_non_null(strstr(error.message, "no solution of its step at t = 0.5 s"));
   assert_non_null(strstr(error.message, "node 'n2'"));
   assert_non_null(strstr(error.message, "smaller step"));
-  assert_int_equal(s.steps, 50);
+  assert_int_equal(s.spent.steps, 50);
   strut_summary_free(&s);
   strut_model_free(model);
   strut_setup_free(&setup);

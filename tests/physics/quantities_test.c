@@ -134,7 +134,7 @@ TEST(an_oscillator) {
   assert_relative(get(&r, "kept")->scale, energy, 1e-6);
   assert_relative(value(&r, "end"), 1.1, 1e-6);
   assert_near(value(&r, "drift"), 0, 1e-6);
-  assert_same_bits(value(&r, "went"), r.summary.positions[2] - 1.1);
+  assert_same_bits(value(&r, "went"), r.summary.end.positions[2] - 1.1);
   assert_relative(value(&r, "clock"), 20 * PI / 50, 1e-12);
   assert_relative(value(&r, "pace"), 3, 1e-12);
   assert_string_equal(get(&r, "pace")->unit, "1");
@@ -371,11 +371,11 @@ TEST(measuring_changes_nothing) {
     strut_setup plain, more;
     strut_summary s = hop(methods[i], "", &plain), m = hop(methods[i], ALL, &more);
     assert_true(s.measured_count == 0 && !s.measured && m.measured_count == 6);
-    assert_int_equal(s.force_evaluations, m.force_evaluations);
+    assert_int_equal(s.spent.evaluations, m.spent.evaluations);
     assert_same_bits(s.velocity, m.velocity);
     assert_same_bits(m.measured[5].value, m.velocity);
     assert_same_bits(s.energy.residual, m.energy.residual);
-    for (size_t k = 0; k < 4; k++) assert_same_bits(s.positions[k], m.positions[k]);
+    for (size_t k = 0; k < 4; k++) assert_same_bits(s.end.positions[k], m.end.positions[k]);
     for (size_t k = 0; k < 6; k++) assert_true(isfinite(m.measured[k].value));
     strut_summary_free(&s), strut_summary_free(&m);
     strut_setup_free(&plain), strut_setup_free(&more);

@@ -251,7 +251,7 @@ TEST(recording_changes_no_bit) {
   setup.experiment.output_every = 0.0007, setup.experiment.channels = 63;
   assert_int_equal(run(&setup, &error), STRUT_OK);
   strut_summary s = motion_simulate(&setup);
-  assert_memory_equal(coarse, s.positions, sizeof coarse);
+  assert_memory_equal(coarse, s.end.positions, sizeof coarse);
   strut_summary_free(&s);
   strut_setup_free(&setup);
 }
@@ -342,7 +342,7 @@ TEST(every_allocation_may_fail) {
     if (!status) status = strut_simulate(model, &setup.experiment, &options, &summary, &error);
     strut_fail_allocation_after(-1);
     assert_int_equal(first.begun, first.ended);
-    if (!status) assert_int_equal(summary.steps, 100);
+    if (!status) assert_int_equal(summary.spent.steps, 100);
     strut_summary_free(&summary);
     strut_model_free(model);
     if (!status) break;

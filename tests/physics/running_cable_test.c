@@ -84,7 +84,7 @@ static double residual_of(const char *method, double step) {
   model_simulate(&run);
   double residual = fabs(run.summary.energy.residual);
   assert_true(run.summary.energy.dissipated_members == 0);
-  assert_true(run.summary.events == 0); /* so that no method has a kink to step over */
+  assert_true(run.summary.spent.events == 0); /* so that no method has a kink to step over */
   model_run_free(&run);
   return residual;
 }

@@ -100,23 +100,24 @@ static void same_summary(const strut_summary *a, const strut_summary *b) {
   assert_string_equal(a->reason, b->reason);
   same_number(a->velocity, b->velocity);
   same_number(a->velocity_spread, b->velocity_spread);
-  same_number(a->window_start, b->window_start);
+  same_number(a->window.start, b->window.start);
   same_number(a->duration, b->duration);
-  assert_int_equal(a->steps, b->steps);
-  assert_int_equal(a->force_evaluations, b->force_evaluations);
-  assert_int_equal(a->events, b->events);
+  assert_int_equal(a->spent.steps, b->spent.steps);
+  assert_int_equal(a->spent.evaluations, b->spent.evaluations);
+  assert_int_equal(a->spent.events, b->spent.events);
   assert_string_equal(a->method, b->method);
   same_number(a->step, b->step);
   same_number(a->step_limit, b->step_limit);
   same_number(a->limit_fell.limit, b->limit_fell.limit);
   assert_int_equal(a->limit_fell.steps, b->limit_fell.steps);
-  assert_int_equal(a->node_count, b->node_count);
-  for (size_t i = 0; i < 2 * a->node_count; i++) same_number(a->positions[i], b->positions[i]);
-  assert_int_equal(a->contact_count, b->contact_count);
-  for (size_t i = 0; i < a->contact_count; i++) {
-    same_number(a->contacts[i].duty, b->contacts[i].duty);
-    same_number(a->contacts[i].max_height, b->contacts[i].max_height);
-    same_number(a->contacts[i].band_needed, b->contacts[i].band_needed);
+  assert_int_equal(a->end.node_count, b->end.node_count);
+  for (size_t i = 0; i < 2 * a->end.node_count; i++)
+    same_number(a->end.positions[i], b->end.positions[i]);
+  assert_int_equal(a->end.contact_count, b->end.contact_count);
+  for (size_t i = 0; i < a->end.contact_count; i++) {
+    same_number(a->end.contacts[i].duty, b->end.contacts[i].duty);
+    same_number(a->end.contacts[i].max_height, b->end.contacts[i].max_height);
+    same_number(a->end.contacts[i].band_needed, b->end.contacts[i].band_needed);
   }
   same_energy(&a->energy, &b->energy);
   assert_int_equal(a->steady.kind, b->steady.kind);

@@ -30,8 +30,8 @@ TEST(velocity_over_periods_that_the_step_does_not_divide) {
   strut_summary s = motion_simulate(&setup);
   assert_near(s.velocity, 0.3 + 5 / (2 * 2 * PI * 7.3), 1e-9);
   assert_within(s.velocity_spread, 0, 1e-8);
-  assert_relative(s.window_start, 42 / 7.3, 1e-15);
-  assert_int_equal(s.steps, (int64_t)ceil(50 / 7.3 / 1e-3));
+  assert_relative(s.window.start, 42 / 7.3, 1e-15);
+  assert_int_equal(s.spent.steps, (int64_t)ceil(50 / 7.3 / 1e-3));
   assert_same_bits(s.duration, 50 / 7.3);
   strut_summary_free(&s);
   strut_setup_free(&setup);
@@ -63,10 +63,10 @@ TEST(velocity_of_a_node_or_of_the_centre_of_mass) {
     strut_summary s = motion_simulate(&setup);
     assert_near(s.velocity, node < 0 ? 0.25 : node ? 1 : -2, 1e-12);
     assert_true(isnan(s.velocity_spread));
-    assert_near(s.window_start, 0.667, 1e-15);
-    assert_int_equal(s.node_count, 2);
-    assert_string_equal(s.node_names[1], "n2");
-    assert_near(s.positions[2], 2, 1e-13);
+    assert_near(s.window.start, 0.667, 1e-15);
+    assert_int_equal(s.end.node_count, 2);
+    assert_string_equal(s.end.node_names[1], "n2");
+    assert_near(s.end.positions[2], 2, 1e-13);
     strut_summary_free(&s);
     strut_setup_free(&setup);
   }
@@ -85,10 +85,10 @@ TEST(duty_and_height_of_a_contact) {
   motion_experiment(&setup, 1e-4, 5);
   setup.experiment.measure_last = 3;
   strut_summary s = motion_simulate(&setup);
-  assert_int_equal(s.contact_count, 1);
-  assert_string_equal(s.contacts[0].node, "n2");
-  assert_near(s.contacts[0].duty, 1 - acos(0.4) / PI, 3e-4);
-  assert_near(s.contacts[0].max_height, 0.06, 1e-7);
+  assert_int_equal(s.end.contact_count, 1);
+  assert_string_equal(s.end.contacts[0].node, "n2");
+  assert_near(s.end.contacts[0].duty, 1 - acos(0.4) / PI, 3e-4);
+  assert_near(s.end.contacts[0].max_height, 0.06, 1e-7);
   strut_summary_free(&s);
   strut_setup_free(&setup);
 }
@@ -107,8 +107,8 @@ TEST(height_above_sloping_ground) {
     motion_experiment(&setup, 1e-3, 1);
     strut_summary s = motion_simulate(&setup);
     double up = (y + vy - height) * cos(slopes[i]) - (x + vx) * sin(slopes[i]);
-    assert_near(s.contacts[0].max_height, up, 1e-12);
-    assert_near(s.contacts[0].duty, 0, 0);
+    assert_near(s.end.contacts[0].max_height, up, 1e-12);
+    assert_near(s.end.contacts[0].duty, 0, 0);
     strut_summary_free(&s);
     strut_setup_free(&setup);
   }
@@ -145,7 +145,7 @@ TEST(a_step_above_the_limit_is_refused) {
   assert_non_null(strstr(error.message, "0.142 s"));
   assert_non_null(strstr(error.message, "0.1414 s"));
   assert_relative(s.step_limit, sqrt(8) / 20, 1e-6);
-  assert_int_equal(s.steps, 0);
+  assert_int_equal(s.spent.steps, 0);
   strut_summary_free(&s);
   setup.experiment.step = 0.141;
   assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_OK);
@@ -160,7 +160,7 @@ TEST(force_runs_above_the_limit_until_it_diverges) {
   strut_run_options options = {.force = true};
   stiff(&setup, 0.142, 0.142 * 20);
   assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_OK); /* a short run survives */
-  assert_int_equal(s.steps, 20);
+  assert_int_equal(s.spent.steps, 20);
   strut_summary_free(&s);
   setup.experiment.step = 0.2, setup.experiment.duration = 1000;
   assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_DIVERGED);
@@ -169,10 +169,10 @@ TEST(force_runs_above_the_limit_until_it_diverges) {
   assert_non_null(strstr(error.message, "dt = 0.2 s"));
   assert_non_null(strstr(error.message, "0.1414 s"));
   assert_non_null(strstr(error.message, "smaller step"));
-  assert_true(s.steps > 0 && s.steps < 5000);
-  assert_near(s.duration, 0.2 * (double)s.steps, 1e-9);
-  assert_int_equal(s.node_count, 2);
-  assert_string_equal(s.node_names[1], "n2");
+  assert_true(s.spent.steps > 0 && s.spent.steps < 5000);
+  assert_near(s.duration, 0.2 * (double)s.spent.steps, 1e-9);
+  assert_int_equal(s.end.node_count, 2);
+  assert_string_equal(s.end.node_names[1], "n2");
   strut_summary_free(&s);
   strut_setup_free(&setup);
 }
@@ -190,7 +190,7 @@ TEST(a_mass_that_flies_beyond_all_bounds_is_lost) {
   assert_non_null(strstr(error.message, "node 'n3'"));
   assert_null(strstr(error.message, "use a smaller step"));
   assert_within(s.duration, 10, 10 + 64 * 0.01 + 1e-9);
-  assert_true(isfinite(s.positions[2]));
+  assert_true(isfinite(s.end.positions[2]));
   strut_summary_free(&s);
   strut_setup_free(&setup);
 }
@@ -215,10 +215,10 @@ TEST(an_interrupt_stops_within_a_second) {
   stiff(&setup, 1e-3, 1e9);
   assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_INTERRUPTED);
   assert_int_equal(reported, 1);
-  assert_within(s.wall_time, 0, 1);
-  assert_true(s.steps > 0);
-  assert_near(s.duration, 1e-3 * (double)s.steps, 1e-9 * s.duration);
-  assert_true(isfinite(s.positions[2]) && isfinite(s.energy.residual));
+  assert_within(s.spent.wall_time, 0, 1);
+  assert_true(s.spent.steps > 0);
+  assert_near(s.duration, 1e-3 * (double)s.spent.steps, 1e-9 * s.duration);
+  assert_true(isfinite(s.end.positions[2]) && isfinite(s.energy.residual));
   strut_summary_free(&s);
   strut_setup_free(&setup);
 }
@@ -248,11 +248,11 @@ TEST(settling_finds_the_static_equilibrium) {
   strut_run_options options = {0};
   assert_int_equal(strut_simulate(model, &setup.experiment, &options, &s, NULL), STRUT_OK);
   assert_true(s.settle_time > 0);
-  assert_int_equal(s.steps, 1);
+  assert_int_equal(s.spent.steps, 1);
   assert_near(s.duration, 1e-3, 1e-18);
   /* after one step of 1 ms: 100 N at 2 Hz moved it by less than 1e-6 m */
-  assert_near(s.positions[2], 0, 1e-6);
-  assert_near(s.positions[3], -1 - (2 * 9.81 + 4) / 300, 1e-5);
+  assert_near(s.end.positions[2], 0, 1e-6);
+  assert_near(s.end.positions[3], -1 - (2 * 9.81 + 4) / 300, 1e-5);
   assert_relative(s.energy.initial,
                   150 * pow((2 * 9.81 + 4) / 300, 2) - 2 * 9.81 * (1 + (2 * 9.81 + 4) / 300), 1e-8);
   strut_summary_free(&s);
@@ -292,8 +292,8 @@ TEST(settling_on_a_slope_needs_friction) {
     strut_status status = strut_simulate(model, &setup.experiment, &options, &s, &error);
     assert_int_equal(status, kept ? STRUT_OK : STRUT_NOT_SETTLED);
     if (kept) /* the weight's share across the slope, over the ground's stiffness */
-      assert_near(s.positions[0] * sin(0.2) - s.positions[1] * cos(0.2), 9.81 * cos(0.2) / 1e4,
-                  1e-9);
+      assert_near(s.end.positions[0] * sin(0.2) - s.end.positions[1] * cos(0.2),
+                  9.81 * cos(0.2) / 1e4, 1e-9);
     else
       assert_non_null(strstr(error.message, "initial.settle.friction"));
     strut_summary_free(&s);

@@ -61,7 +61,7 @@ TEST(shooting_finds_the_orbit_and_its_multipliers) {
   assert_true(s.steady.shot);
   assert_within(s.steady.residual, 0, 1e-11);
   double re = w * w - drive * drive, im = 2 * zeta * w * drive;
-  assert_near(s.positions[2], 1 - im / (re * re + im * im), 1e-10);
+  assert_near(s.end.positions[2], 1 - im / (re * re + im * im), 1e-10);
   assert_int_equal(s.steady.multiplier_count, 2);
   double size = exp(-zeta * w), angle = w * sqrt(1 - zeta * zeta);
   for (int k = 0; k < 2; k++) {
@@ -137,7 +137,7 @@ static void claim_holds(double amplitude, double frequency) {
     for (int k = 0; k < 2; k++) {
       setup.experiment.periods = round(at) + 480.0 * k;
       strut_summary later = motion_simulate(&setup);
-      y[k] = later.positions[5];
+      y[k] = later.end.positions[5];
       strut_summary_free(&later);
     }
     assert_near(y[1], y[0], 0.02);

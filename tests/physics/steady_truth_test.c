@@ -161,7 +161,7 @@ TEST(multipliers_of_a_bouncing_mass) {
   strut_summary s = motion_simulate(&setup);
   assert_int_equal(s.steady.repeats, 1);
   assert_true(s.steady.shot);
-  assert_within(s.contacts[0].duty, 0.1, 0.5);
+  assert_within(s.end.contacts[0].duty, 0.1, 0.5);
   assert_int_equal(s.steady.multiplier_count, 2);
   double product = 1;
   for (int k = 0; k < 2; k++)

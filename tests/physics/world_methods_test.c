@@ -40,8 +40,8 @@ static outcome run(uint64_t seed, unsigned parts, const char *method, double ste
   o.stopped = status != STRUT_OK;
   o.n = 2 * run.setup.scene.node_count;
   if (!o.stopped) {
-    memcpy(o.q, s.positions, o.n * sizeof *o.q);
-    o.residual = fabs(s.energy.residual) / s.energy.moved, o.events = s.events;
+    memcpy(o.q, s.end.positions, o.n * sizeof *o.q);
+    o.residual = fabs(s.energy.residual) / s.energy.moved, o.events = s.spent.events;
   }
   strut_summary_free(&s);
   strut_model_free(model);
@@ -122,7 +122,7 @@ TEST(methods_keep_their_promises) {
 /* A whole run with so many allocations. */
 static strut_status run_with(int64_t allocations, const strut_setup *setup) {
   strut_model *model = NULL;
-  strut_summary s = {.node_count = 0};
+  strut_summary s = {.end.node_count = 0};
   const strut_run_options options = {0};
   strut_fail_allocation_after(allocations);
   strut_status status = strut_model_compile(&setup->scene, &model, NULL);

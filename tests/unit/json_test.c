@@ -33,19 +33,19 @@ static strut_summary make_summary(void) {
   return (strut_summary){.status = STRUT_OK,
                          .velocity = 9.7812345678901234e-3,
                          .velocity_spread = (double)NAN,
-                         .window_start = 100.0,
+                         .window.start = 100.0,
                          .duration = 110.0,
                          .settle_time = 0.7,
-                         .steps = INT64_C(9007199254740993), /* not a double */
-                         .force_evaluations = 4400000,
+                         .spent.steps = INT64_C(9007199254740993), /* not a double */
+                         .spent.evaluations = 4400000,
                          .step = 1e-4,
                          .step_limit = (double)INFINITY,
-                         .wall_time = 0.25,
-                         .node_count = 2,
-                         .contact_count = 1,
-                         .node_names = names,
-                         .positions = positions,
-                         .contacts = contacts,
+                         .spent.wall_time = 0.25,
+                         .end.node_count = 2,
+                         .end.contact_count = 1,
+                         .end.node_names = names,
+                         .end.positions = positions,
+                         .end.contacts = contacts,
                          .energy = {1.0 / 7.0, 2, 3, 4, 5, 6, 7, 7.5, 8, 9, 10, 11, -1e-17, 13},
                          .balance = STRUT_BALANCE_OPEN};
 }
@@ -133,7 +133,7 @@ TEST(files_know_no_wall_time) {
   strut_scene scene = make_scene();
   strut_summary summary = make_summary();
   char *first = strut_summary_json(&summary, &scene, false);
-  summary.wall_time = 17.0;
+  summary.spent.wall_time = 17.0;
   char *second = strut_summary_json(&summary, &scene, false);
   assert_null(strstr(first, "wall_time"));
   assert_string_equal(first, second);
@@ -192,7 +192,7 @@ TEST(no_memory) {
 TEST(the_table) {
   strut_scene scene = make_scene();
   strut_summary summary = make_summary();
-  summary.steps = 1100000;
+  summary.spent.steps = 1100000;
   summary.step_limit = 5.123456e-4;
   summary.velocity_spread = 2e-6;
   char *text = strut_summary_table(&summary, &scene);
@@ -220,9 +220,9 @@ TEST(a_long_table_is_cut) {
   const char **many = calloc(NODES, sizeof *many);
   double *places = calloc(2 * NODES, sizeof *places);
   for (size_t i = 0; i < NODES; i++) many[i] = "n";
-  summary.node_names = many;
-  summary.positions = places;
-  summary.node_count = NODES;
+  summary.end.node_names = many;
+  summary.end.positions = places;
+  summary.end.node_count = NODES;
   char *text = strut_summary_table(&summary, &scene);
   assert_non_null(strstr(text, "  ... and 4990 more\n"));
   int lines = 0;

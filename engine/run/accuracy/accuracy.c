@@ -37,7 +37,7 @@ strut_status strut_accuracy_run(strut_accuracy *a, const strut_experiment *exper
   bounded.chosen = true;
   bounded.most_evaluations = strut_accuracy_evaluations_left(a);
   strut_status status = strut_simulate(a->model, &plain, &bounded, summary, a->error);
-  a->used += summary->force_evaluations;
+  a->used += summary->spent.evaluations;
   return status;
 }
 
@@ -128,7 +128,7 @@ strut_status strut_simulate_accurately(const strut_model *model, const strut_exp
   if (!status && !done && velocity && experiment->periods > 0.0 && !a.single_method)
     status = strut_accuracy_try_orbit(&a, &done);
   if (!status && !done) status = strut_accuracy_climb_ladder(&a);
-  summary->wall_time = strut_run_clock() - begin;
+  summary->spent.wall_time = strut_run_clock() - begin;
   summary->status = status;
   summary->settle_time = start.how.time, summary->settle = start.how;
   strut_summary_warn_of_start(summary);

@@ -201,7 +201,7 @@ static strut_status run_next_rung(ladder *l) {
   strut_accuracy_begin_phase(l->a, l->runs == 1 ? "first run" : "checking by a finer run");
   quiet.sinks = sinks, quiet.sink_count = 1, quiet.to = NULL;
   strut_status status = strut_accuracy_run(l->a, &next->e, &quiet, &next->s);
-  next->cost = next->s.force_evaluations;
+  next->cost = next->s.spent.evaluations;
   l->a->check_evaluations += next->cost;
   if (status == STRUT_WORK_LIMIT) return discard_unfinished_run(l);
   l->earliest_change = l->earlier_change;
@@ -370,7 +370,7 @@ static strut_status check_sensitivity(ladder *l) {
   strut_accuracy_begin_phase(a, "checking with a shifted start");
   a->allowed = INT64_MAX; /* the same run was within the budget before */
   status = strut_accuracy_run(a, &r->e, &quiet, &shifted);
-  a->check_evaluations += shifted.force_evaluations;
+  a->check_evaluations += shifted.spent.evaluations;
   size_t worst = l->worst;
   l->sensitivity = status ? HUGE_VAL : compare_results(l, &r->s, &shifted, l->shifted);
   l->worst = worst;

@@ -145,9 +145,9 @@ static double tolerated_error(const midpoint_runs *h) {
 /* Largest distance of a node between the ends of the last two runs [m]. */
 static double distance_of_ends(const midpoint_runs *h) {
   double most = 0.0;
-  for (size_t i = 0; i + 1 < 2 * h->now.node_count; i += 2)
-    most = fmax(most, hypot(h->now.positions[i] - h->before.positions[i],
-                            h->now.positions[i + 1] - h->before.positions[i + 1]));
+  for (size_t i = 0; i + 1 < 2 * h->now.end.node_count; i += 2)
+    most = fmax(most, hypot(h->now.end.positions[i] - h->before.end.positions[i],
+                            h->now.end.positions[i + 1] - h->before.end.positions[i + 1]));
   return most;
 }
 
@@ -166,10 +166,10 @@ static strut_status run_with_half_step(midpoint_runs *h, bool *kept) {
   h->now = (strut_summary){0};
   h->e.output_every = h->e.step, h->e.output_last = 0.0; /* velocities of every step */
   strut_status status = strut_accuracy_run(a, &h->e, &quiet, &h->now);
-  a->check_evaluations += h->now.force_evaluations;
+  a->check_evaluations += h->now.spent.evaluations;
   h->earlier = h->moved;
   h->moved = h->change = HUGE_VAL;
-  if (status || h->before.steps == 0) return status;
+  if (status || h->before.spent.steps == 0) return status;
   double window = span.duration - span.window_start, size = a->scale * 1e3 * span.duration;
   if (span.period > 0.0) size = a->scale * 1e3 * span.period;
   h->change = fabs(h->now.velocity - h->before.velocity);
@@ -202,7 +202,7 @@ static void report_midpoint(midpoint_runs *h, double explicit_evaluations) {
 /* Delivers the finest run; repeats it where it is recorded. */
 static strut_status deliver_answer(midpoint_runs *h) {
   strut_accuracy *a = h->a;
-  a->check_evaluations -= h->now.force_evaluations;
+  a->check_evaluations -= h->now.spent.evaluations;
   if (!a->options->sink_count && !a->options->to) {
     *a->summary = h->now;
     h->now = (strut_summary){0};
@@ -235,7 +235,7 @@ static strut_status halve_until_kept(midpoint_runs *h, bool *done) {
   strut_accuracy_begin_phase(h->a, "midpoint with ever smaller steps");
   for (; !status && !*done && time * next < explicit_evaluations; h->e.step *= 0.5) {
     status = run_with_half_step(h, done);
-    next = 2.0 * (double)h->now.force_evaluations;
+    next = 2.0 * (double)h->now.spent.evaluations;
     if (*done) break;
   }
   if (!status && *done) status = deliver_answer(h);

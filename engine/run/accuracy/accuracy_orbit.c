@@ -94,7 +94,7 @@ static strut_status run_coarse_from_start(strut_orbit_solve *solve, double perio
     double limit = solve->coarse_run.limit_fell.limit;
     bool fell = limit > 0.0 && limit < a->coarse.step;
     if (status ? status != STRUT_DIVERGED : !fell) return status;
-    a->check_evaluations += solve->coarse_run.force_evaluations;
+    a->check_evaluations += solve->coarse_run.spent.evaluations;
     strut_summary_free(&solve->coarse_run);
     solve->coarse_run = (strut_summary){0};
     a->coarse.step = fell ? STRUT_COARSE_STEP * limit : 0.5 * a->coarse.step;
@@ -237,9 +237,9 @@ static strut_status run_orbit(strut_orbit_solve *solve, strut_experiment e, bool
 
 /* Charges the cost of a failed orbit search to the checks of the next strategy. */
 static void charge_costs(strut_orbit_solve *solve, strut_summary *orbit) {
-  solve->a->check_evaluations += solve->coarse_run.force_evaluations +
+  solve->a->check_evaluations += solve->coarse_run.spent.evaluations +
                                  solve->coarse_map.evaluations + solve->reference_map.evaluations +
-                                 solve->last_run.force_evaluations + orbit->force_evaluations;
+                                 solve->last_run.spent.evaluations + orbit->spent.evaluations;
   strut_summary_free(orbit);
 }
 
@@ -430,7 +430,7 @@ static strut_status find_creep(strut_orbit_solve *solve, bool *steady) {
   if (!status) status = strut_orbit_solve_confirm_creep(solve);
   if (status || solve->answer) return status;
   a->coarse.steady.creep = 0.0;
-  a->check_evaluations += solve->coarse_run.force_evaluations + solve->last_run.force_evaluations;
+  a->check_evaluations += solve->coarse_run.spent.evaluations + solve->last_run.spent.evaluations;
   strut_summary_free(&solve->coarse_run);
   strut_summary_free(&solve->last_run);
   solve->coarse_run = solve->last_run = (strut_summary){0};
@@ -482,7 +482,7 @@ static strut_status check_window(strut_orbit_solve *solve) {
   strut_accuracy *a = solve->a;
   bool of_orbit = solve->answer >= STRUT_ORBIT_COARSE && solve->answer <= STRUT_ORBIT_STUCK;
   double periods = a->experiment.periods, before = (double)solve->coarse_run.steady.periods;
-  double work = (double)solve->coarse_run.force_evaluations / fmax(1.0, before) * periods;
+  double work = (double)solve->coarse_run.spent.evaluations / fmax(1.0, before) * periods;
   if (!of_orbit || a->experiment.steady.wanted || work > WHOLE_RUN * (double)a->used)
     return STRUT_OK;
   strut_experiment whole = a->coarse;
@@ -495,7 +495,7 @@ static strut_status check_window(strut_orbit_solve *solve) {
   whole.step = solve->coarse_map.dt;
   strut_accuracy_begin_phase(a, "checking by the whole run");
   strut_status status = strut_accuracy_run(a, &whole, &options, &run);
-  a->check_evaluations += run.force_evaluations;
+  a->check_evaluations += run.spent.evaluations;
   double away = fabs(run.velocity - solve->coarse_run.velocity);
   if (!status && !(away <= 0.3 * a->target * strut_accuracy_velocity_scale(a, run.velocity)))
     solve->answer = STRUT_ORBIT_NONE;
@@ -505,7 +505,7 @@ static strut_status check_window(strut_orbit_solve *solve) {
 
 /* A run that does not agree counts as a check. */
 static void discard_run(strut_orbit_solve *solve, strut_summary *orbit) {
-  solve->a->check_evaluations += orbit->force_evaluations;
+  solve->a->check_evaluations += orbit->spent.evaluations;
   strut_summary_free(orbit);
   *orbit = (strut_summary){0};
 }

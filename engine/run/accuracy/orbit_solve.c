@@ -17,16 +17,18 @@ void strut_orbit_solve_count_evaluations(strut_orbit_solve *solve) {
 }
 
 void strut_summary_append(strut_summary *whole, strut_summary *part) {
-  int64_t steps = whole->steps + part->steps, events = whole->events + part->events;
-  int64_t evaluations = whole->force_evaluations + part->force_evaluations;
+  int64_t steps = whole->spent.steps + part->spent.steps,
+          events = whole->spent.events + part->spent.events;
+  int64_t evaluations = whole->spent.evaluations + part->spent.evaluations;
   int64_t periods = whole->steady.periods + part->steady.periods;
-  double duration = whole->duration + part->duration, wall = whole->wall_time + part->wall_time;
+  double duration = whole->duration + part->duration,
+         wall = whole->spent.wall_time + part->spent.wall_time;
   double settle = whole->settle_time;
   strut_summary_free(whole);
   *whole = *part;
   *part = (strut_summary){0};
-  whole->steps = steps, whole->events = events, whole->force_evaluations = evaluations;
-  whole->duration = duration, whole->wall_time = wall, whole->settle_time = settle;
+  whole->spent.steps = steps, whole->spent.events = events, whole->spent.evaluations = evaluations;
+  whole->duration = duration, whole->spent.wall_time = wall, whole->settle_time = settle;
   whole->steady.periods = periods;
 }
 
@@ -58,8 +60,8 @@ strut_status strut_orbit_solve_run_until_steady(strut_orbit_solve *solve, strut_
   from.balance = &solve->history.energy;
   strut_status status = strut_accuracy_run(a, &e, &options, summary);
   solve->history.energy = summary->energy; /* it continues that of the runs before */
-  solve->history.steps += summary->steps;
-  solve->history.events += summary->events;
+  solve->history.steps += summary->spent.steps;
+  solve->history.events += summary->spent.events;
   return status;
 }
 
@@ -147,7 +149,7 @@ static strut_status repeat_with_finer_tolerance(strut_orbit_solve *solve) {
     bool stands =
         apart <= 0.5 * a->target * strut_accuracy_velocity_scale(a, solve->orbit.velocity);
     if (stands || !periodic) {
-      a->check_evaluations += finer.force_evaluations;
+      a->check_evaluations += finer.spent.evaluations;
       solve->error = fmax(solve->error, stands ? apart : 0.0);
       solve->reference.tolerance *= 10.0;
     } else {
@@ -418,10 +420,10 @@ static double estimate_error(const strut_orbit_solve *solve) {
 
 /* The force evaluations of all parts of the answer. */
 static int64_t sum_evaluations(const strut_orbit_solve *solve) {
-  int64_t coarse = solve->coarse_run.force_evaluations;
+  int64_t coarse = solve->coarse_run.spent.evaluations;
   if (solve->answer == STRUT_ORBIT_COARSE) return coarse + solve->until_steady;
   return coarse + solve->coarse_map.evaluations + solve->reference_map.evaluations +
-         solve->last_run.force_evaluations;
+         solve->last_run.spent.evaluations;
 }
 
 /*
@@ -433,8 +435,8 @@ static void tell_whole_motion(const strut_orbit_solve *solve, const strut_summar
   const strut_snapshot *from = solve->a->options->from;
   double before = solve->orbit_time - (from ? from->time : 0.0);
   s->duration = before + orbit->duration;
-  s->steps = solve->orbit_history.steps + orbit->steps;
-  s->events = solve->orbit_history.events + orbit->events;
+  s->spent.steps = solve->orbit_history.steps + orbit->spent.steps;
+  s->spent.events = solve->orbit_history.events + orbit->spent.events;
   s->steady.periods = llround(before / solve->coarse_map.period);
 }
 
@@ -454,10 +456,10 @@ void strut_orbit_solve_report(strut_orbit_solve *solve, const strut_summary *orb
   s->steady = ran_on ? solve->last_run.steady : solve->coarse_run.steady;
   s->steady.interval = error;
   tell_whole_motion(solve, orbit, s);
-  s->force_evaluations = sum_evaluations(solve);
+  s->spent.evaluations = sum_evaluations(solve);
   s->step = solve->coarse_map.dt;
   s->step_limit = solve->coarse_run.step_limit;
-  s->wall_time = solve->coarse_run.wall_time;
+  s->spent.wall_time = solve->coarse_run.spent.wall_time;
   bool adaptive = solve->answer == STRUT_ORBIT_CORRECTED || solve->answer == STRUT_ORBIT_REFERENCE;
   snprintf(s->method, sizeof s->method, "%s%s%s", strut_integrator_for(STRUT_ROLE_COARSE)->name,
            adaptive ? "+" : "", adaptive ? strut_integrator_for(STRUT_ROLE_REFERENCE)->name : "");
@@ -466,7 +468,7 @@ void strut_orbit_solve_report(strut_orbit_solve *solve, const strut_summary *orb
       .expected = error / strut_accuracy_velocity_scale(a, s->velocity),
       .scale = a->scale,
       .check_evaluations =
-          a->check_evaluations + orbit->force_evaluations + (coarse_suffices ? corrections : 0)};
+          a->check_evaluations + orbit->spent.evaluations + (coarse_suffices ? corrections : 0)};
   /* of what creeps only that is promised */
   double known = solve->answer == STRUT_ORBIT_CREEPING ? 0.0 : s->accuracy.expected;
   s->accuracy.kept = strut_accuracy_is_kept(true, known, a->target);

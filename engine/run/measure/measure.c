@@ -356,12 +356,12 @@ void strut_measure_finish(const strut_measurement *m, strut_summary *summary) {
   size_t passed = m->next;
   if (m->quantities) strut_quantities_finish(m->quantities, summary);
   summary->velocity = summary->velocity_spread = (double)NAN;
-  summary->window_start = m->time[0] + m->grid.offset;
-  summary->window_time = summary->window_work = (double)NAN;
+  summary->window.start = m->time[0] + m->grid.offset;
+  summary->window.time = summary->window.work = (double)NAN;
   summary->weight = m->weight;
   if (passed >= 2) {
-    summary->window_time = m->time[passed - 1] - m->time[0];
-    if (m->balance) summary->window_work = m->work[passed - 1] - m->work[0];
+    summary->window.time = m->time[passed - 1] - m->time[0];
+    if (m->balance) summary->window.work = m->work[passed - 1] - m->work[0];
     summary->velocity = (m->x[passed - 1] - m->x[0]) / (m->time[passed - 1] - m->time[0]);
     double sum = 0.0, count = (double)(passed - 1);
     for (size_t i = 1; i < passed; i++) {
@@ -370,8 +370,8 @@ void strut_measure_finish(const strut_measurement *m, strut_summary *summary) {
     }
     if (m->by_periods && passed > 2) summary->velocity_spread = sqrt(sum / (count - 1.0));
   }
-  for (size_t i = 0; i < summary->contact_count; i++) {
-    strut_contact_summary *c = &summary->contacts[i];
+  for (size_t i = 0; i < summary->end.contact_count; i++) {
+    strut_contact_summary *c = &summary->end.contacts[i];
     bool any = m->window_steps > 0;
     c->duty = any ? (double)m->contact_steps[i] / (double)m->window_steps : (double)NAN;
     c->max_height = any && isfinite(m->max_height[i]) ? m->max_height[i] : (double)NAN;

@@ -37,22 +37,23 @@ void strut_summary_withdraw(strut_summary *summary, const char *code) {
 }
 
 void strut_summary_free(strut_summary *summary) {
-  strut_release(summary->node_names);
-  strut_release(summary->positions);
-  strut_release(summary->contacts);
-  strut_release(summary->hinges);
-  strut_release(summary->cells);
-  strut_release(summary->breaks);
-  summary->breaks = NULL;
-  summary->break_count = 0;
+  strut_release(summary->end.node_names);
+  strut_release(summary->end.positions);
+  strut_release(summary->end.contacts);
+  strut_release(summary->end.hinges);
+  strut_release(summary->end.cells);
+  strut_release(summary->end.breaks);
+  summary->end.breaks = NULL;
+  summary->end.break_count = 0;
   strut_release(summary->measured);
-  summary->node_names = NULL;
-  summary->positions = NULL;
-  summary->contacts = NULL;
-  summary->hinges = NULL;
-  summary->cells = NULL;
+  summary->end.node_names = NULL;
+  summary->end.positions = NULL;
+  summary->end.contacts = NULL;
+  summary->end.hinges = NULL;
+  summary->end.cells = NULL;
   summary->measured = NULL;
-  summary->node_count = summary->contact_count = summary->hinge_count = summary->cell_count = 0;
+  summary->end.node_count = summary->end.contact_count = summary->end.hinge_count =
+      summary->end.cell_count = 0;
   summary->measured_count = 0;
 }
 
@@ -126,9 +127,9 @@ const char *strut_balance_name(strut_balance balance) {
 }
 
 double strut_summary_work_per_distance(const strut_summary *s) {
-  double distance = fabs(s->velocity) * s->window_time;
+  double distance = fabs(s->velocity) * s->window.time;
   bool moves = !s->velocity_zero && distance > 0.0;
-  return moves ? s->window_work / distance : (double)NAN;
+  return moves ? s->window.work / distance : (double)NAN;
 }
 
 double strut_summary_cost_of_transport(const strut_summary *s) {

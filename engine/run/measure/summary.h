@@ -142,23 +142,34 @@ typedef struct strut_summary {
   double velocity;        /* (14): mean x-velocity over the window [m/s] */
   double velocity_spread; /* standard deviation over the window's periods; NAN without periods */
   bool velocity_zero;     /* zero by symmetry: only rounding beside the node speeds */
-  double window_start;    /* [s] */
-  double duration;        /* from t = 0 to the end, whose state, works and losses these are [s] */
-  double settle_time;     /* simulated before t = 0 to come to rest [s]; not in duration */
+  struct {                /* of the velocity */
+    double start;         /* [s] */
+    double time;          /* between the marks that the velocity is measured by [s]; or NAN */
+    double work;          /* of the drives in that time [J]; NAN without works */
+  } window;
+  double duration;    /* from t = 0 to the end, whose state, works and losses these are [s] */
+  double settle_time; /* simulated before t = 0 to come to rest [s]; not in duration */
   strut_settle_summary settle;
-  int64_t steps;             /* of the duration */
-  int64_t force_evaluations; /* of these steps and of what corrected the state */
-  int64_t events;            /* events located in time; 0 with methods that locate none */
-  char method[32];           /* method used */
-  double step, step_limit;   /* [s]; step_limit is INFINITY where nothing limits it */
+  struct {
+    int64_t steps;       /* of the duration */
+    int64_t evaluations; /* of forces, in these steps and in what corrected the state */
+    int64_t events;      /* located in time; 0 with methods that locate none */
+    double wall_time;    /* seconds spent stepping; never written into a file */
+  } spent;
+  char method[32];         /* method used */
+  double step, step_limit; /* [s]; step_limit is INFINITY where nothing limits it */
   strut_step_limit_violation limit_fell;
-  double wall_time; /* seconds spent stepping; never written into a file */
-  size_t node_count, contact_count, hinge_count;
-  const char **node_names;         /* (node_count) names owned by the scene */
-  double *positions;               /* (node_count, 2) at the end [m] */
-  strut_contact_summary *contacts; /* (contact_count) */
-  strut_hinge_summary *hinges;     /* (hinge_count) */
-  const char *measured_node;       /* node of the measured velocity; NULL: centre of mass */
+  bool feedback; /* signals follow sensors, which the step limit leaves out */
+  struct {
+    size_t node_count, contact_count, hinge_count, cell_count, break_count;
+    const char **node_names;         /* (node_count) names owned by the scene */
+    double *positions;               /* (node_count, 2) [m] */
+    strut_contact_summary *contacts; /* (contact_count) */
+    strut_hinge_summary *hinges;     /* (hinge_count) */
+    strut_cell_summary *cells;       /* (cell_count) */
+    strut_break_summary *breaks;     /* (break_count) in the scene's order, members first */
+  } end;                             /* where and how things are at the end, or were on the way */
+  const char *measured_node;         /* node of the measured velocity; NULL: centre of mass */
   size_t measured_count;
   strut_measured *measured; /* (measured_count) in the experiment's order */
   strut_energy energy;
@@ -168,14 +179,7 @@ typedef struct strut_summary {
   char caveat[400]; /* why the error of the result is not known, and how to learn it; else empty */
   size_t warning_count;
   strut_warning warnings[STRUT_MOST_WARNINGS];
-  size_t cell_count;
-  strut_cell_summary *cells; /* (cell_count) */
-  size_t break_count;
-  strut_break_summary *breaks; /* (break_count) in the scene's order, members first */
-  bool feedback;               /* signals follow sensors, which the step limit leaves out */
-  double window_time;          /* between the marks that the velocity is measured by [s]; or NAN */
-  double window_work;          /* of the drives in that time [J]; NAN without works */
-  double weight;               /* of the whole structure [N] */
+  double weight; /* of the whole structure [N] */
 } strut_summary;
 
 /**
@@ -188,15 +192,15 @@ typedef struct strut_summary {
   X(run, velocity, "m/s", NUMBER, s->velocity, true)                                               \
   X(run, velocity_spread, "m/s", NUMBER, s->velocity_spread, true)                                 \
   X(run, velocity_zero, "1", FLAG, s->velocity_zero, s->velocity_zero)                             \
-  X(run, window_start, "s", NUMBER, s->window_start, true)                                         \
-  X(run, window_duration, "s", NUMBER, s->window_time, true)                                       \
-  X(run, window_drive_work, "J", NUMBER, s->window_work, true)                                     \
+  X(run, window_start, "s", NUMBER, s->window.start, true)                                         \
+  X(run, window_duration, "s", NUMBER, s->window.time, true)                                       \
+  X(run, window_drive_work, "J", NUMBER, s->window.work, true)                                     \
   X(run, duration, "s", NUMBER, s->duration, true)                                                 \
   X(run, settle_time, "s", NUMBER, s->settle_time, true)                                           \
   X(run, settle, "1", PART, 0.0, s->settle.evaluations != 0)                                       \
-  X(run, steps, "1", COUNT, s->steps, true)                                                        \
-  X(run, force_evaluations, "1", COUNT, s->force_evaluations, true)                                \
-  X(run, events, "1", COUNT, s->events, true)                                                      \
+  X(run, steps, "1", COUNT, s->spent.steps, true)                                                  \
+  X(run, force_evaluations, "1", COUNT, s->spent.evaluations, true)                                \
+  X(run, events, "1", COUNT, s->spent.events, true)                                                \
   X(run, method, "1", TEXT, s->method, true)                                                       \
   X(run, step, "s", NUMBER, s->step, true)                                                         \
   X(run, step_limit, "s", NUMBER, s->step_limit, true)                                             \

@@ -56,12 +56,12 @@ static strut_status run_window(const strut_compare_work *work, const strut_summa
 static strut_status put_contacts(strut_compare_work *work, const strut_summary *s) {
   strut_compare_column *c = work->column;
   double sum = 0.0, touching = 0.0;
-  c->contacts = strut_arena_allocate(work->arena, s->contact_count + 1, sizeof *c->contacts);
+  c->contacts = strut_arena_allocate(work->arena, s->end.contact_count + 1, sizeof *c->contacts);
   if (!c->contacts) return STRUT_NO_MEMORY;
-  for (size_t i = 0; i < s->contact_count; i++) {
-    c->contacts[c->contact_count++] = s->contacts[i];
-    if (s->contacts[i].duty > 0.0) touching++;
-    sum += s->contacts[i].duty;
+  for (size_t i = 0; i < s->end.contact_count; i++) {
+    c->contacts[c->contact_count++] = s->end.contacts[i];
+    if (s->end.contacts[i].duty > 0.0) touching++;
+    sum += s->end.contacts[i].duty;
   }
   if (touching > 0.0)
     strut_compare_put(work, STRUT_COMPARE_DUTY, sum / touching);
@@ -109,7 +109,7 @@ static void put_velocity(strut_compare_work *work, const strut_summary *s, doubl
 }
 
 static void put_cost(strut_compare_work *work, const strut_summary *s, double cpu) {
-  double spent = (double)(s->force_evaluations + s->accuracy.check_evaluations);
+  double spent = (double)(s->spent.evaluations + s->accuracy.check_evaluations);
   strut_compare_put(work, STRUT_COMPARE_EVALUATIONS, spent / s->duration);
   strut_compare_put(work, STRUT_COMPARE_CPU, cpu / s->duration);
 }

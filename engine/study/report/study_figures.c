@@ -33,7 +33,7 @@ static bool is_of_axis(const strut_study *study, size_t axis, const char *name) 
 /* Does the figure show the two axes that are refined? */
 static bool shows_refined_axes(const strut_sweep_plan *plan, const strut_study_figure *f) {
   const strut_study *study = plan->study;
-  const size_t *axes = study->refine_axes;
+  const size_t *axes = study->refine.axes;
   return (is_of_axis(study, axes[0], f->x) && is_of_axis(study, axes[1], f->y)) ||
          (is_of_axis(study, axes[1], f->x) && is_of_axis(study, axes[0], f->y));
 }
@@ -55,7 +55,7 @@ static size_t refined_value(const strut_sweep_plan *plan, const char *name) {
   for (size_t i = 0; i < plan->axis_columns; i++) {
     size_t axis;
     const strut_study_column *c = strut_grid_column(study, i, &axis);
-    bool refined = axis == study->refine_axes[0] || axis == study->refine_axes[1];
+    bool refined = axis == study->refine.axes[0] || axis == study->refine.axes[1];
     if (refined && strcmp(c->name, name) == 0) return i;
   }
   return plan->axis_columns;

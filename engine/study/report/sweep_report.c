@@ -29,7 +29,7 @@ static void add_string(strut_buffer *b, const char *text) {
 
 char *strut_sweep_count_report(const strut_sweep_plan *plan, bool json) {
   strut_buffer b = {0};
-  bool refined = plan->study->refine_depth > 0;
+  bool refined = plan->study->refine.depth > 0;
   int64_t points = refined ? strut_refinement_coarse(plan) : plan->points;
   if (plan->study->search && !json) strut_buffer_add(&b, "at most ");
   strut_buffer_add(&b, json ? "{\"points\": %lld" : "%lld points", (long long)points);

@@ -63,7 +63,7 @@ strut_search_layout strut_search_layout_of(const strut_sweep_plan *plan) {
 
 strut_status strut_search_batch_begin(strut_search_batch *b) {
   const strut_study_search *search = b->plan->study->search;
-  double seconds = b->plan->study->limit_time;
+  double seconds = b->plan->study->limit.time;
   b->options = *b->given;
   b->options.wants = NULL;
   b->options.directory = NULL;

@@ -66,8 +66,8 @@ static bool allocate_cells(strut_sweep_plan *plan, strut_row_buffer *cells) {
 static bool compute(strut_evaluator *e, const strut_study *study) {
   const strut_sweep_options options = {.interrupt = e->interrupt};
   strut_sweep_worker worker = {.plan = &e->plan, .options = &options, .standing = e->equilibria};
-  if (study->limit_time > 0.0) {
-    worker.watch = strut_sweep_watch_create(study->limit_time, &e->job, 1, e->interrupt);
+  if (study->limit.time > 0.0) {
+    worker.watch = strut_sweep_watch_create(study->limit.time, &e->job, 1, e->interrupt);
     if (!worker.watch) return false;
   }
 #ifdef _OPENMP
@@ -159,18 +159,19 @@ static strut_status check_node(const strut_scene *scene, const char *key, const 
 
 strut_status strut_goals_check(const strut_study *study, const strut_scene *scene,
                                strut_error *error) {
-  strut_status status = check_node(scene, "stiffness_at", study->stiffness_node, error);
-  for (size_t i = 0; i < study->shape_count && !status; i++)
-    status = check_node(scene, "shape", study->shape_nodes[i], error);
-  if (status || !study->like) return status;
-  const strut_configuration *c = find_configuration(scene, study->like);
+  strut_status status = check_node(scene, "stiffness_at", study->goal.stiffness_node, error);
+  for (size_t i = 0; i < study->goal.shape_count && !status; i++)
+    status = check_node(scene, "shape", study->goal.shape_nodes[i], error);
+  if (status || !study->goal.like) return status;
+  const strut_configuration *c = find_configuration(scene, study->goal.like);
   if (!c)
     return strut_fail(error, STRUT_BAD_SCENE,
-                      "'like' of the study: the model has no configuration '%.60s'", study->like);
+                      "'like' of the study: the model has no configuration '%.60s'",
+                      study->goal.like);
   if (!c->shaped)
     return strut_fail(error, STRUT_BAD_SCENE,
                       "'like' of the study: configuration '%.60s' gives no positions of its shape",
-                      study->like);
+                      study->goal.like);
   return STRUT_OK;
 }
 
@@ -178,17 +179,18 @@ strut_status strut_goals_check(const strut_study *study, const strut_scene *scen
 static bool find_pair(const strut_study *study, const strut_scene *scene,
                       const strut_configuration *like, const double *positions, size_t i,
                       double is[2], double wanted[2]) {
-  int32_t node = like ? (int32_t)i : find_node(scene, study->shape_nodes[i]);
+  int32_t node = like ? (int32_t)i : find_node(scene, study->goal.shape_nodes[i]);
   if (node < 0) return false;
   memcpy(is, positions + 2 * node, 2 * sizeof *is);
-  memcpy(wanted, like ? like->position[i] : study->shape[i], 2 * sizeof *wanted);
+  memcpy(wanted, like ? like->position[i] : study->goal.shape[i], 2 * sizeof *wanted);
   return true;
 }
 
 double strut_goals_shape_distance(const strut_study *study, const strut_scene *scene,
                                   const double *positions) {
-  const strut_configuration *like = study->like ? find_configuration(scene, study->like) : NULL;
-  size_t count = like ? scene->node_count : study->like ? 0 : study->shape_count;
+  const strut_configuration *like =
+      study->goal.like ? find_configuration(scene, study->goal.like) : NULL;
+  size_t count = like ? scene->node_count : study->goal.like ? 0 : study->goal.shape_count;
   double a[2], b[2], middle_a[2] = {0.0, 0.0}, middle_b[2] = {0.0, 0.0};
   double square = 0.0, dot = 0.0, cross = 0.0, n = (double)count;
   for (size_t i = 0; i < count; i++) {
@@ -227,24 +229,26 @@ static double force_at(const strut_path *path, double displacement) {
 
 double strut_goals_curve_distance(const strut_study *study, const strut_path *path) {
   double square = 0.0;
-  if (path->coordinate < 0 || !study->curve_count) return (double)NAN;
-  for (size_t i = 0; i < study->curve_count; i++) {
-    double away = force_at(path, study->curve[i][0]) - study->curve[i][1];
+  if (path->coordinate < 0 || !study->goal.curve_count) return (double)NAN;
+  for (size_t i = 0; i < study->goal.curve_count; i++) {
+    double away = force_at(path, study->goal.curve[i][0]) - study->goal.curve[i][1];
     square += away * away;
   }
-  return sqrt(square / (double)study->curve_count);
+  return sqrt(square / (double)study->goal.curve_count);
 }
 
 strut_status strut_goals_stiffness(const strut_study *study, const strut_model *model,
                                    const double *q, double *stiffness, strut_error *error) {
   strut_node_stiffness *s;
   const char *reason;
-  int32_t node = study->stiffness_node ? find_node(model->scene, study->stiffness_node) : -1;
+  int32_t node =
+      study->goal.stiffness_node ? find_node(model->scene, study->goal.stiffness_node) : -1;
   *stiffness = (double)NAN;
   if (node < 0) return STRUT_OK;
   strut_status status = strut_node_stiffness_create(model, q, &s, &reason, error);
   if (status || !s) return status;
-  const double direction[2] = {cos(study->stiffness_direction), sin(study->stiffness_direction)};
+  const double direction[2] = {cos(study->goal.stiffness_direction),
+                               sin(study->goal.stiffness_direction)};
   *stiffness = strut_node_stiffness_along(s, node, direction);
   strut_node_stiffness_free(s);
   return STRUT_OK;

@@ -113,7 +113,7 @@ static strut_status find_column(strut_refinement *r, strut_error *error) {
   size_t words = 0, numbers = 0;
   for (size_t i = 0; i < plan->column_count; i++) {
     const strut_slot_column *c = &plan->columns[i];
-    if (strcmp(c->name, plan->study->refine_where) == 0) {
+    if (strcmp(c->name, plan->study->refine.where) == 0) {
       r->word = c->word;
       r->cell = c->word ? words : numbers;
       return STRUT_OK;
@@ -123,7 +123,7 @@ static strut_status find_column(strut_refinement *r, strut_error *error) {
   }
   return strut_fail(error, STRUT_BAD_SCENE,
                     "refine: the table has no column '%.60s'; 'keep' chooses the columns",
-                    plan->study->refine_where);
+                    plan->study->refine.where);
 }
 
 strut_status strut_refinement_create(const strut_sweep_plan *plan, strut_refinement **refinement,
@@ -133,11 +133,11 @@ strut_status strut_refinement_create(const strut_sweep_plan *plan, strut_refinem
   *refinement = r;
   if (!r) return strut_no_memory(error, "");
   r->plan = plan;
-  r->by = study->refine_by;
-  r->side = (int64_t)1 << study->refine_depth;
+  r->by = study->refine.by;
+  r->side = (int64_t)1 << study->refine.depth;
   for (int i = 0; i < 2; i++) {
-    r->count[i] = study->axes[study->refine_axes[i]].count;
-    r->stride[i] = stride_of(study, study->refine_axes[i]);
+    r->count[i] = study->axes[study->refine.axes[i]].count;
+    r->stride[i] = stride_of(study, study->refine.axes[i]);
   }
   strut_status status = find_column(r, error);
   if (!status) {
@@ -275,8 +275,8 @@ int64_t strut_refinement_coarse(const strut_sweep_plan *plan) {
   const strut_study *study = plan->study;
   int64_t points = plan->points;
   for (int i = 0; i < 2; i++) {
-    int64_t count = study->axes[study->refine_axes[i]].count;
-    points = points / count * ((count - 1) / ((int64_t)1 << study->refine_depth) + 1);
+    int64_t count = study->axes[study->refine.axes[i]].count;
+    points = points / count * ((count - 1) / ((int64_t)1 << study->refine.depth) + 1);
   }
   return points;
 }

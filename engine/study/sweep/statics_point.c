@@ -278,28 +278,28 @@ static const char *unit_of_actuator(const strut_actuator *a) {
 static strut_status choose_path(const strut_study *study, const strut_scene *scene,
                                 strut_path_options *to, const char **unit, strut_error *error) {
   *to = (strut_path_options){.over = STRUT_PATH_OVER_LOAD,
-                             .load = study->path_load,
+                             .load = study->path.load,
                              .at = study->at,
-                             .from = study->path_from,
-                             .until = study->path_until_given ? study->path_until : 1.0,
-                             .steps = study->path_steps};
+                             .from = study->path.from,
+                             .until = study->path.until_given ? study->path.until : 1.0,
+                             .steps = study->path.steps};
   *unit = "1";
-  if (study->path_over) {
+  if (study->path.over) {
     to->over = STRUT_PATH_OVER_ACTUATOR;
-    to->index = find_actuator(scene, study->path_over);
+    to->index = find_actuator(scene, study->path.over);
     if (to->index >= 0) *unit = unit_of_actuator(&scene->actuators[to->index]);
     if (to->index < 0) {
       to->over = STRUT_PATH_OVER_COORDINATE;
-      to->index = strut_path_coordinate(scene, study->path_over);
+      to->index = strut_path_coordinate(scene, study->path.over);
       *unit = "m";
     }
     if (to->index < 0)
       return strut_fail(error, STRUT_BAD_SCENE,
                         "path: 'over' expects an actuator or a coordinate of a node, such as "
                         "'%.60s.x', not '%.60s'; parameters are axes of the study",
-                        scene->node_count ? scene->nodes[0].name : "node", study->path_over);
+                        scene->node_count ? scene->nodes[0].name : "node", study->path.over);
   }
-  const char *given[] = {study->path_from_unit, study->path_until_unit};
+  const char *given[] = {study->path.from_unit, study->path.until_unit};
   for (int i = 0; i < 2; i++)
     if (given[i] && strcmp(given[i], *unit) != 0)
       return strut_fail(error, STRUT_BAD_SCENE, "path: '%s' is in %s, expected %s%s",
@@ -407,7 +407,7 @@ static strut_status find_modes(const strut_study *study, strut_sweep_job *job, r
   strut_status status =
       strut_modes_find(r->model, &job->setup.experiment, &options, &r->modes, &job->error);
   if (!status) warn_of_overload(job, r->model, r->modes.q, r->modes.at);
-  if (!status && study->stiffness_node)
+  if (!status && study->goal.stiffness_node)
     status = strut_goals_stiffness(study, r->model, r->modes.q, &r->stiffness, &job->error);
   return status;
 }
@@ -434,10 +434,10 @@ static strut_status follow_path(const strut_study *study, strut_sweep_job *job, 
 }
 
 static strut_status find_form(const strut_study *study, strut_sweep_job *job, rest_result *r) {
-  const strut_form_options options = {.from = (strut_form_source)study->form_from,
-                                      .objective = (strut_form_objective)study->form_objective,
-                                      .least_tension = study->form_least_tension,
-                                      .least_density = study->form_least_density};
+  const strut_form_options options = {.from = (strut_form_source)study->form.from,
+                                      .objective = (strut_form_objective)study->form.objective,
+                                      .least_tension = study->form.least_tension,
+                                      .least_density = study->form.least_density};
   return strut_form_find(&job->setup, &options, &r->form, &job->error);
 }
 

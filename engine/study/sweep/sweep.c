@@ -308,7 +308,7 @@ strut_status strut_sweep_run(const strut_sweep_plan *plan, strut_slots *slots,
     state->done = options->wanted_done;
   }
   if (options->directory) strut_sweep_records_clear(options->directory);
-  double seconds = plan->study->limit_time;
+  double seconds = plan->study->limit.time;
   if (jobs && seconds > 0.0)
     s.worker.watch = strut_sweep_watch_create(seconds, jobs, (size_t)threads * (size_t)batch,
                                               options->interrupt);

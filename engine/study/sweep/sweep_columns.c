@@ -377,10 +377,10 @@ static void fill_contacts(const strut_sweep_plan *plan, const strut_scene *scene
                           const strut_summary *s, strut_row_buffer *cells) {
   for (size_t i = 0; i < plan->contact_count; i++) {
     size_t count =
-        s->contact_count < scene->contact_count ? s->contact_count : scene->contact_count;
+        s->end.contact_count < scene->contact_count ? s->end.contact_count : scene->contact_count;
     int64_t at = strut_sweep_named(plan->contacts[i], i, count, contact_name, scene);
-    strut_sweep_number(cells, at >= 0 ? s->contacts[at].duty : (double)NAN);
-    strut_sweep_number(cells, at >= 0 ? s->contacts[at].max_height : (double)NAN);
+    strut_sweep_number(cells, at >= 0 ? s->end.contacts[at].duty : (double)NAN);
+    strut_sweep_number(cells, at >= 0 ? s->end.contacts[at].max_height : (double)NAN);
   }
 }
 
@@ -410,16 +410,16 @@ void strut_sweep_fill(const strut_sweep_plan *plan, const strut_setup *setup,
       strut_sweep_number(cells, summary ? number_of(summary, setup, &entries[i]) : (double)NAN);
   }
   if (summary) {
-    bool known = summary->node_count == setup->scene.node_count;
+    bool known = summary->end.node_count == setup->scene.node_count;
     fill_contacts(plan, &setup->scene, summary, cells);
-    strut_sweep_fill_positions(plan, &setup->scene, known ? summary->positions : NULL, cells);
+    strut_sweep_fill_positions(plan, &setup->scene, known ? summary->end.positions : NULL, cells);
   }
   fill_measured(plan, summary, cells);
   if (keeps(plan, STRUT_KEEP_OUTCOME)) strut_sweep_word(cells, outcome);
   if (keeps(plan, STRUT_KEEP_SHAPE))
-    strut_sweep_number(
-        cells, summary ? strut_goals_shape_distance(plan->study, &setup->scene, summary->positions)
-                       : (double)NAN);
+    strut_sweep_number(cells, summary ? strut_goals_shape_distance(plan->study, &setup->scene,
+                                                                   summary->end.positions)
+                                      : (double)NAN);
   if (plan->start)
     strut_sweep_number(cells, summary ? (double)summary->settle.unstable : (double)NAN);
   if (plan->accurate)

@@ -43,7 +43,7 @@ static strut_status explain_interrupt(const strut_sweep_worker *w, strut_sweep_j
   return strut_fail(&job->error, STRUT_WORK_LIMIT,
                     "stopped after %.4g s by the clock, the study's limit: another machine may get "
                     "further",
-                    w->plan->study->limit_time);
+                    w->plan->study->limit.time);
 }
 
 /* Ends the point with its row, or with an error that stops the sweep. */
@@ -74,7 +74,7 @@ static bool finish_with_scene(const strut_sweep_worker *w, strut_sweep_job *job,
 
 static void set_options(const strut_sweep_worker *w, strut_sweep_job *job) {
   job->options = (strut_run_options){.interrupt = strut_sweep_interrupt_of(w, job),
-                                     .most_evaluations = w->plan->study->limit_evaluations};
+                                     .most_evaluations = w->plan->study->limit.evaluations};
 }
 
 /* Records the run into its own folder, as `strut run -o` does, if the study keeps trajectories. */
@@ -133,8 +133,8 @@ static strut_status name_outcome(const strut_sweep_worker *w, strut_sweep_job *j
   int32_t index = -1;
   if (!strut_keep_has(&w->plan->keep, STRUT_KEEP_OUTCOME) || !scene->configuration_count)
     return STRUT_OK;
-  strut_status status = strut_equilibrium_cache_nearest(w->standing, &job->setup,
-                                                        summary->positions, &index, &job->error);
+  strut_status status = strut_equilibrium_cache_nearest(
+      w->standing, &job->setup, summary->end.positions, &index, &job->error);
   snprintf(name, STRUT_SLOT_WORD, "%s", index >= 0 ? scene->configurations[index].name : "other");
   return status;
 }

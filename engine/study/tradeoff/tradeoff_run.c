@@ -75,7 +75,7 @@ static strut_status end_clock(void *context, strut_status status, strut_error *e
 static void take_values(const tradeoff_study *s, const strut_summary *summary, double *value) {
   switch (s->result->measure) {
     case STRUT_TRADEOFF_POSITION:
-      memcpy(value, summary->positions, 2 * summary->node_count * sizeof *value);
+      memcpy(value, summary->end.positions, 2 * summary->end.node_count * sizeof *value);
       break;
     case STRUT_TRADEOFF_ENERGY:
       value[0] = summary->energy.moved > 0 ? summary->energy.residual / summary->energy.moved : 0;
@@ -115,7 +115,7 @@ static strut_status simulate(const tradeoff_study *s, size_t point, int variant,
       .force = true, .interrupt = s->options->interrupt, .sinks = sinks, .sink_count = 1};
   strut_status status = strut_tradeoff_compile(s, point, variant, &model);
   if (status == STRUT_OK) status = strut_simulate(model, experiment, &options, &summary, s->error);
-  outcome->evaluations = summary.force_evaluations;
+  outcome->evaluations = summary.spent.evaluations;
   outcome->step_limit = useful_limit(s, point, summary.step_limit);
   outcome->cannot = is_permanent_failure(status);
   bool ours = status == STRUT_INTERRUPTED || status == STRUT_NO_MEMORY;

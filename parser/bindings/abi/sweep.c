@@ -164,11 +164,11 @@ static strut_status read_options(abi_call *call, sweep *s, strut_error *what) {
         strut_option_integer(command, a, STRUT_OPTION_LOWEST, 1, STRUT_STUDY_MOST_LOWEST, &lowest);
   if (!status)
     status = strut_option_integer(command, a, STRUT_OPTION_LIMIT_EVALUATIONS, 1, INT64_MAX / 16,
-                                  &s->study.limit_evaluations);
+                                  &s->study.limit.evaluations);
   if (!status)
     status = strut_option_number(command, a, STRUT_OPTION_LIMIT_TIME, STRUT_DIM_TIME,
-                                 &s->study.limit_time);
-  if (!status && s->study.limit_time < 0.0)
+                                 &s->study.limit.time);
+  if (!status && s->study.limit.time < 0.0)
     return strut_fail(what, STRUT_USAGE, "limit_time must not be below 0");
   if (!status && at && !(s->study.at = strut_arena_text(&s->arena, at, strlen(at))))
     return strut_no_memory(what, "");
