@@ -230,7 +230,7 @@ static strut_status inputs_apply(stepping_inputs *in, strut_model *model, strut_
   return STRUT_OK;
 }
 
-/* ---- snapshots ---- */
+/* ---- inputs of a snapshot ---- */
 
 static double *inputs_store(const stepping_inputs *in) {
   double *stored = strut_allocate(2 * in->count + 1, sizeof *stored);
@@ -275,7 +275,7 @@ struct strut_stepping_snapshot {
   strut_state state;
   int64_t checked;
   strut_status status;
-  double *inputs; /* stepping_inputs_store */
+  double *inputs; /* inputs_store */
   void *arena;    /* strut_arena_store */
 };
 

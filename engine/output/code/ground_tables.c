@@ -106,19 +106,25 @@ static const char *const friction_names[] = {
 #undef STRUT_NAME
 };
 
-static bool has_friction(const strut_code_writer *w, int law) {
+/* The first law from k on that some contact has; STRUT_FRICTION_LAW_COUNT: none. */
+static int law_from(const strut_code_writer *w, int k) {
   const strut_contact_table *c = &w->model->contacts;
-  for (int32_t i = 0; i < c->count; i++)
-    if ((int)c->entry[i].friction.law == law) return true;
-  return false;
+  int first = STRUT_FRICTION_LAW_COUNT;
+  for (int32_t i = 0; i < c->count; i++) {
+    int law = (int)c->entry[i].friction.law;
+    if (law >= k && law < first) first = law;
+  }
+  return first;
 }
+
+enum { LAWS = STRUT_FRICTION_LAW_COUNT };
 
 static bool has_band_of(int law) { return strut_friction_has_band((strut_friction_law)law); }
 
 static bool has_bands(const strut_code_writer *w) {
-  for (int k = 0; k < STRUT_FRICTION_LAW_COUNT; k++)
-    if (has_friction(w, k) && has_band_of(k)) return strut_code_holds(w, "friction");
-  return false;
+  bool any = false;
+  for (int k = law_from(w, 0); k < LAWS; k = law_from(w, k + 1)) any = any || has_band_of(k);
+  return any && strut_code_holds(w, "friction");
 }
 
 const strut_code_condition strut_code_ground_conditions[] = {
@@ -127,9 +133,11 @@ const strut_code_condition strut_code_ground_conditions[] = {
     {"corners", has_corners},          {"band", has_bands},    {NULL, NULL},
 };
 
-/* A name in capitals. */
-static void add_capitals(strut_code_writer *w, const char *name) {
-  for (; *name; name++) strut_buffer_add(&w->text, "%c", toupper((unsigned char)*name));
+/* The constant that stands for a law, behind some text. */
+static void add_law_name(strut_code_writer *w, const char *before, int law) {
+  strut_buffer_add(&w->text, "%sFRICTION_", before);
+  for (const char *c = friction_names[law]; *c; c++)
+    strut_buffer_add(&w->text, "%c", toupper((unsigned char)*c));
 }
 
 void strut_code_add_ground_law(strut_code_writer *w) {
@@ -140,10 +148,8 @@ void strut_code_add_ground_law(strut_code_writer *w) {
 static void add_choice_of_friction(strut_code_writer *w, bool directional) {
   const char *of = directional ? "&towards" : "&c->friction";
   strut_buffer_add(&w->text, "  switch (c->law) {\n");
-  for (int k = 0; k < STRUT_FRICTION_LAW_COUNT; k++) {
-    if (!has_friction(w, k)) continue;
-    strut_buffer_add(&w->text, "    case FRICTION_");
-    add_capitals(w, friction_names[k]);
+  for (int k = law_from(w, 0); k < LAWS; k = law_from(w, k + 1)) {
+    add_law_name(w, "    case ", k);
     strut_buffer_add(&w->text, ": return friction_%s(%s, normal, slip, applied);\n",
                      friction_names[k], of);
   }
@@ -153,10 +159,8 @@ static void add_choice_of_friction(strut_code_writer *w, bool directional) {
 /* The contacts that may stick, where several touch one node. */
 static void add_bands(strut_code_writer *w) {
   strut_buffer_add(&w->text, "static int has_band(const contact *c) {\n  switch (c->law) {\n");
-  for (int k = 0; k < STRUT_FRICTION_LAW_COUNT; k++) {
-    if (!has_friction(w, k)) continue;
-    strut_buffer_add(&w->text, "    case FRICTION_");
-    add_capitals(w, friction_names[k]);
+  for (int k = law_from(w, 0); k < LAWS; k = law_from(w, k + 1)) {
+    add_law_name(w, "    case ", k);
     strut_buffer_add(&w->text, ": return %d;\n", has_band_of(k));
   }
   strut_buffer_add(&w->text, "  }\n  return 0;\n}\n\n");
@@ -167,9 +171,9 @@ static void add_bands(strut_code_writer *w) {
 void strut_code_add_friction(strut_code_writer *w) {
   bool directional = strut_code_holds(w, "directional");
   char name[64];
-  for (int k = 0; k < STRUT_FRICTION_LAW_COUNT; k++) {
+  for (int k = law_from(w, 0); k < LAWS; k = law_from(w, k + 1)) {
     snprintf(name, sizeof name, "friction_%s", friction_names[k]);
-    if (has_friction(w, k)) strut_code_add_law(w, name);
+    strut_code_add_law(w, name);
   }
   if (directional) strut_code_add_law(w, "friction_towards");
   strut_buffer_add(&w->text,
@@ -196,8 +200,8 @@ static bool has_backward(const strut_code_writer *w) {
 /* Does a law in use, or the choice among directions, read number p? The latter reads what the law with a band does. */
 static bool has_number(const strut_code_writer *w, int p) {
   bool reads = has_backward(w) && strut_friction_needs(STRUT_FRICTION_KARNOPP, p);
-  for (int k = 0; k < STRUT_FRICTION_LAW_COUNT; k++)
-    reads = reads || (has_friction(w, k) && strut_friction_needs((strut_friction_law)k, p));
+  for (int k = law_from(w, 0); k < LAWS; k = law_from(w, k + 1))
+    reads = reads || strut_friction_needs((strut_friction_law)k, p);
   return reads;
 }
 
@@ -210,11 +214,8 @@ static void add_friction_numbers(strut_code_writer *w) {
     strut_buffer_add(&w->text,
                      "  real mu_static_backward, mu_kinetic_backward; /* towards -x */\n");
   strut_buffer_add(&w->text, "} friction_numbers;\n\nenum {");
-  for (int k = 0, any = 0; k < STRUT_FRICTION_LAW_COUNT; k++) {
-    if (!has_friction(w, k)) continue;
-    strut_buffer_add(&w->text, any++ ? ", FRICTION_" : " FRICTION_");
-    add_capitals(w, friction_names[k]);
-  }
+  for (int k = law_from(w, 0); k < LAWS; k = law_from(w, k + 1))
+    add_law_name(w, k == law_from(w, 0) ? " " : ", ", k);
   strut_buffer_add(&w->text, " };\n\n");
 }
 
@@ -250,8 +251,7 @@ static void add_contact(strut_code_writer *w, int32_t i) {
     }
     if (has_backward(w)) strut_code_add_field(w, strut_friction_static(f, -1.0));
     if (has_backward(w)) strut_code_add_field(w, strut_friction_kinetic(f, -1.0));
-    strut_buffer_add(&w->text, "}, FRICTION_");
-    add_capitals(w, friction_names[f->law]);
+    add_law_name(w, "}, ", (int)f->law);
   }
   strut_code_end_row(w, strut_contact_name(w->scene, (size_t)i));
 }

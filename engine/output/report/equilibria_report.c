@@ -21,10 +21,8 @@
  * the shape, and only those of one square are compared, so that the effort grows with their number alone.
  */
 
-enum {
-  FEW = 64,
-  ENTRIES_MOST = 8
-}; /* fewer things are all compared; entries per thing on average */
+/* Fewer things are all compared; entries per thing on average. */
+enum { FEW = 64, ENTRIES_MOST = 8 };
 
 /* Twice the area of a, b, c: positive where they turn left. */
 static double turn(const double *a, const double *b, const double *c) {
@@ -175,8 +173,6 @@ strut_shape_flaws strut_find_shape_flaws(const strut_model *model, const double 
   find_flaws(&(things){model, q, model->members.count, true, &flaws});
   return flaws;
 }
-
-/* ---- JSON ---- */
 
 /* ---- JSON ---- */
 

@@ -303,7 +303,7 @@ void strut_update_active_set(const strut_model *model, strut_event_stepper *l) {
   list_sliding_contacts(model, l);
   if (l->stuck_count > l->stuck_room)
     l->stuck_count = -l->stuck_count;
-  else if (l->stuck_count > 1 && !l->now->frame && !has_moving_masses(model))
+  else if (l->stuck_count > 1 && !model->contacts.surface && !has_moving_masses(model))
     factor_matrix(model, l);
 }
 
@@ -391,7 +391,7 @@ STRUT_INLINE void hold_stuck(const strut_model *model, strut_event_stepper *l, d
 
 void strut_solve_stick_constraints(const strut_model *model, strut_event_stepper *l, double *a,
                                    strut_step_end *end) {
-  if (end->frame)
+  if (model->contacts.surface)
     hold_stuck(model, l, a, end, STRUT_TERMS_ALL);
   else
     hold_stuck(model, l, a, end, STRUT_TERMS_COMMON);

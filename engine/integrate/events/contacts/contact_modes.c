@@ -43,14 +43,14 @@ void strut_evaluate_acceleration(const strut_model *model, strut_state *state,
 /* Along and out of the ground where the node of closed contact i is. */
 static strut_contact_axes axes_now(const strut_contact_table *c, const strut_event_stepper *l,
                                    int32_t i) {
-  int32_t facet = l->facet ? l->facet[i] : -1;
+  int32_t facet = c->surface ? l->facet[i] : -1;
   return strut_contact_pose_at(c, i, l->now->q, l->now->motion, facet).axes;
 }
 
 void strut_contact_snap(const strut_model *model, strut_event_stepper *l, int32_t i, double slip) {
   const strut_contact_table *c = &model->contacts;
   double *v = l->now->v + c->at[i];
-  if (c->normal[0] == 0.0 && !l->now->frame) {
+  if (c->normal[0] == 0.0 && !c->surface) {
     v[0] = slip + c->belt_speed;
     return;
   }
@@ -77,7 +77,7 @@ void strut_cable_set_acting(strut_state *state, strut_event_stepper *l, int32_t 
 /* May the node of a contact move along it? Otherwise a support holds it. */
 static bool is_free_along(const strut_model *model, const strut_event_stepper *l, int32_t i) {
   const strut_contact_compliance *r = &l->response[i];
-  if (!l->now->frame) return r->tangent > 0.0;
+  if (!model->contacts.surface) return r->tangent > 0.0;
   strut_contact_axes axes = axes_now(&model->contacts, l, i);
   return strut_compliance_along(r, axes.tangent) > 1e-12 * r->tangent;
 }
@@ -87,9 +87,9 @@ void strut_contact_close(const strut_model *model, strut_event_stepper *l, int32
   const strut_contact_entry *e = &model->contacts.entry[i];
   strut_touch o;
   l->mode[i] = STRUT_MODE_SLIDE;
-  if (l->facet && facet < 0)
+  if (model->contacts.surface && facet < 0)
     facet = strut_contact_pose_at(&model->contacts, i, l->now->q, l->now->motion, -1).facet;
-  if (l->facet) l->facet[i] = facet;
+  if (model->contacts.surface) l->facet[i] = facet;
   measure_at_end(&model->contacts, l, l->now, i, STRUT_TERMS_ALL, &o);
   l->damper[i] = 0;
   if (l->stepper->exact && e->damping > 0.0) l->damper[i] = o.into < 0.0 ? 1 : -1;

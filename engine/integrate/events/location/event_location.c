@@ -250,11 +250,11 @@ strut_event strut_event_of_contact(const strut_model *model, const strut_event_s
 strut_event strut_event_first(const strut_model *model, const strut_state *state,
                               const strut_event_stepper *l, double h) {
   int32_t count = strut_contacts_of(model, l);
-  if (l->now->frame && !l->contact_list)
+  if (model->contacts.surface && !l->contact_list)
     return first_event(model, state, l, h, state->buffers.near,
                        strut_surface_candidates(model, l, 0.0, state->buffers.near),
                        STRUT_TERMS_ALL);
-  if (l->now->frame)
+  if (model->contacts.surface)
     return first_event(model, state, l, h, l->contact_list, count, STRUT_TERMS_ALL);
   if (l->within) return first_event(model, state, l, h, l->contact_list, count, STRUT_TERMS_COMMON);
   return first_event(model, state, l, h, NULL, model->contacts.count, STRUT_TERMS_COMMON);
@@ -274,7 +274,7 @@ static double crossing(const strut_model *model, const strut_state *state,
                        const strut_event_stepper *l, int32_t i, double sign, double h) {
   const strut_contact_table *c = &model->contacts;
   const strut_step_end *now = l->now;
-  if (now->frame) {
+  if (c->surface) {
     strut_touch o;
     strut_contact_frame frame;
     strut_surface_measure(c, l, now->motion, i, now->q, now->v, &o, &frame);
@@ -291,7 +291,7 @@ strut_event strut_event_predict(const strut_model *model, const strut_state *sta
                                 const strut_event_stepper *l, double h) {
   const strut_contact_table *c = &model->contacts;
   strut_event first = {STRUT_EVENT_NONE, 0, 1.0};
-  bool surfaces = l->now->frame;
+  bool surfaces = c->surface;
   int32_t count =
       surfaces ? strut_surface_candidates(model, l, 0.0, state->buffers.near) : c->count;
   for (int32_t k = 0; k < count; k++) {
