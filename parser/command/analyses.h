@@ -6,9 +6,72 @@
 #ifndef STRUT_PARSER_COMMAND_ANALYSES_H
 #define STRUT_PARSER_COMMAND_ANALYSES_H
 
+#include "engine/base/number_text.h"
 #include "engine/output/draw/chart.h"
+#include "engine/statics/equilibria/equilibria.h"
+#include "engine/statics/form/form.h"
+#include "engine/statics/modes/modes.h"
+#include "engine/statics/path/path.h"
 #include "engine/statics/rigidity/rigidity.h"
-#include "parser/command/statics_options.h"
+#include "parser/command/arguments.h"
+#include "parser/command/varied_scenes.h"
+
+/* ---- rows for tables of options ---- */
+
+#define STRUT_EQUILIBRIA_OPTIONS                                                                   \
+  {STRUT_OPTION_SUPPORTS, "supports", "NODES", "hold only these contact nodes, such as n1,n4"},    \
+      {STRUT_OPTION_STARTS, "starts", "N",                                                         \
+       "number of random starts per search (default automatic)"},                                  \
+      {STRUT_OPTION_SEED, "seed", "S", "seed of the random starts (default as the scene says)"}, { \
+    STRUT_OPTION_ALL, "all", NULL, "list every equilibrium, and the positions of those that stand" \
+  }
+
+#define STRUT_MODES_OPTIONS                                                                        \
+  {STRUT_OPTION_AT, "at", "NAME",                                                                  \
+   "equilibrium to linearise about (default: that of the start), or drawn"},                       \
+      {STRUT_OPTION_COUNT, "count", "N", "number of modes, lowest first"}, {                       \
+    STRUT_OPTION_STUCK, "stuck", NULL, "treat closed contacts as stuck instead of frictionless"    \
+  }
+
+#define STRUT_FORM_OPTIONS                                                                         \
+  {STRUT_OPTION_FROM, "from", "WHAT",                                                              \
+   "densities, lengths or prestress (default: by what the model gives)"},                          \
+      {STRUT_OPTION_LEAST_TENSION, "least-tension", "FORCE",                                       \
+       "lower bound on the tension of every cable"},                                               \
+      {STRUT_OPTION_LEAST_DENSITY, "least-density", "DENSITY",                                     \
+       "lower bound on the force density of every cable"},                                         \
+  {                                                                                                \
+    STRUT_OPTION_OBJECTIVE, "objective", "WHAT",                                                   \
+        "which prestress: minimal largest (default), sum or squares"                               \
+  }
+
+#define STRUT_SHAPE_OPTIONS                                                                        \
+  { STRUT_OPTION_AT, "at", "NAME", "the shape: drawn (default), start, or an equilibrium" }
+
+#define STRUT_PATH_OPTIONS                                                                         \
+  {STRUT_OPTION_LOAD, "load", "NAME", "load to scale (default: all loads without a signal)"},      \
+      {STRUT_OPTION_OVER, "over", "WHAT",                                                          \
+       "vary a parameter, an actuator, or a displacement NODE.x or NODE.y"},                       \
+      {STRUT_OPTION_FROM, "from", "VALUE", "start value: a load factor, or in the unit of WHAT"},  \
+      {STRUT_OPTION_UNTIL, "until", "VALUE", "end value, likewise (default: load factor 1)"},      \
+      {STRUT_OPTION_AT, "at", "NAME", "equilibrium to start from (default: that of the start)"}, { \
+    STRUT_OPTION_STEPS, "steps", "N",                                                              \
+        "maximum number of steps (default " STRUT_TEXT_OF(STRUT_PATH_USUAL_STEPS) ")"              \
+  }
+
+/* ---- shapes ---- */
+
+typedef struct strut_named_shape {
+  const char *name; /* "drawn", or the value of --at */
+  const double *q;  /* (length) positions [m], in the arena */
+} strut_named_shape;
+
+/** Finds the shape that --at names, by default the drawn one; errors as strut_rest_state_find. */
+strut_status strut_named_shape_find(const strut_arguments *arguments, const strut_model *model,
+                                    const strut_experiment *experiment, strut_arena *arena,
+                                    strut_named_shape *shape, strut_error *error);
+
+/* ---- analyses ---- */
 
 /** ROW(name) for each analysis. */
 #define STRUT_ANALYSES(ROW) ROW(equilibria) ROW(modes) ROW(rigidity) ROW(form) ROW(path)

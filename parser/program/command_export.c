@@ -9,7 +9,7 @@
 #include "engine/output/exports.h"
 #include "engine/output/file.h"
 #include "engine/run/settle.h"
-#include "parser/command/statics_options.h"
+#include "parser/command/analyses.h"
 #include "parser/program/commands.h"
 #include "parser/program/open_model.h"
 #include "parser/program/options.h"
