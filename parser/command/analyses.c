@@ -345,13 +345,10 @@ const strut_analysis_kind strut_modes_analysis = {.files = {"modes.json", "modes
 /* ---- rigidity ---- */
 
 static strut_status compute_rigidity(strut_analysis *a, strut_error *error) {
-  strut_named_shape *shape = &a->result.rigidity.shape;
+  const strut_named_shape *shape = &a->result.rigidity.shape;
   strut_status status = strut_named_shape_find(a->arguments, a->model, &a->setup->experiment,
-                                               &a->arena, shape, error);
+                                               &a->arena, &a->result.rigidity.shape, error);
   if (status != STRUT_OK) return status;
-  /* The name may be the option's text, which does not stay. */
-  shape->name = strut_arena_text(&a->arena, shape->name, strlen(shape->name));
-  if (!shape->name) return strut_no_memory(error, "");
   return strut_rigidity_find(a->model, shape->q, &a->result.rigidity.found, error);
 }
 
@@ -415,8 +412,7 @@ static strut_status draw_form(const strut_analysis *a, const strut_plot *plot, s
 
 const strut_option strut_form_analysis_options[] = {STRUT_FORM_OPTIONS, END};
 
-const strut_analysis_kind strut_form_analysis = {.files = {"form.json"},
-                                                 .uncompiled = true,
+const strut_analysis_kind strut_form_analysis = {.uncompiled = true,
                                                  .compute = compute_form,
                                                  .json = form_json,
                                                  .table = form_table,

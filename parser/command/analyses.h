@@ -80,17 +80,17 @@ typedef struct strut_analysis strut_analysis;
 
 /** A kind of analysis. Texts are blocks of strut_allocate, NULL where memory is out. */
 struct strut_analysis_kind {
-  const char *files[3]; /* of its JSON and, where it has one, its CSV; NULL after the last */
+  const char *files[3]; /* that -o DIR receives: JSON and, where there is `csv`, CSV; then NULL */
   bool uncompiled;      /* compute needs no model */
   bool asks;            /* compute soon notices an interrupt */
   /** Reads the options, whose faults the listener hears, and computes. */
   strut_status (*compute)(strut_analysis *a, strut_error *error);
-  /** May be NULL. Fails where the result is that there is none. */
+  /** Fails where nothing was found, which is a result, too. May be NULL. */
   strut_status (*verdict)(const strut_analysis *a, strut_error *error);
   char *(*json)(const strut_analysis *a);
   char *(*csv)(const strut_analysis *a); /* NULL: no such file */
   char *(*table)(const strut_analysis *a);
-  /** May be NULL. Tells of what is doubtful in the result. */
+  /** Tells the listener what is doubtful in the result. May be NULL. */
   void (*warn)(const strut_analysis *a, const strut_listener *listener);
   strut_status (*draw)(const strut_analysis *a, const strut_plot *plot, strut_error *error);
   void (*release)(strut_analysis *a); /* may be NULL */

@@ -30,13 +30,9 @@ static strut_status report(const strut_arguments *arguments, const strut_analysi
   if (arguments->output && kind->csv) csv = kind->csv(a);
   if (arguments->output) status = write_files(arguments->output, kind->files, json, csv, error);
   strut_release(csv);
-  if (status == STRUT_OK && !arguments->json) {
-    strut_release(json);
-    json = NULL;
-  }
-  if (status == STRUT_OK) return strut_print_report(arguments, json ? json : kind->table(a));
+  if (status == STRUT_OK && arguments->json) return strut_print_report(arguments, json);
   strut_release(json);
-  return status;
+  return status == STRUT_OK ? strut_print_report(arguments, kind->table(a)) : status;
 }
 
 static strut_status compute_and_report(const strut_arguments *arguments, const strut_plot *plot,

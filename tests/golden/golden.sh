@@ -6,8 +6,8 @@
 # BUILT is the program as the tests have built it: it takes the place of all but three levels.
 #
 # A hash may change only together with a change of the numerics that the changelog names: run this
-# script, see all builds agree, and put the new hash into the file. A change of the ledger leaves
-# the motions' hashes as they are.
+# script, see all builds agree, and put the new hash into the file. A change of the energy
+# balance leaves the motions' hashes as they are.
 set -eu
 root=$1 scratch=$2 includes=$3 libraries=$4 built=$5
 rm -rf "$scratch"
@@ -15,7 +15,7 @@ mkdir -p "$scratch"
 cd "$root"
 expected=tests/golden/crawler.hash
 # What the run executes, and no more: the mechanics are compiled for each level, the
-# description and its reader once.
+# description and its reader once, or once by each compiler.
 engine="tests/golden/golden.c engine/run/settle.c engine/integrate/rk4.c
   $(ls engine/integrate/small_*.c engine/integrate/events/small/small_*.c engine/integrate/events/contacts/contact_coupling.c)
   $(ls engine/integrate/events/regions/local_*.c)

@@ -519,9 +519,9 @@ STRUT_ANALYSES(ANALYSIS)
 
 const strut_command *abi_command_at(size_t i) {
 #define COMMAND(NAME) &abi_##NAME##_command,
-  static const strut_command *const all[] = {&abi_run_command,
-                                             STRUT_ANALYSES(COMMAND) & abi_matrices_command,
-                                             &abi_sweep_command, &abi_simulation_command};
+  static const strut_command *const all[] = {&abi_run_command, &abi_matrices_command,
+                                             &abi_sweep_command, &abi_simulation_command,
+                                             STRUT_ANALYSES(COMMAND)};
   return i < sizeof all / sizeof all[0] ? all[i] : NULL;
 }
 
