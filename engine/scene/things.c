@@ -49,6 +49,20 @@ const char *strut_thing_name(const strut_scene *scene, strut_thing kind, size_t 
   return name;
 }
 
+int32_t strut_thing_find(const strut_scene *scene, strut_thing kind, const char *name) {
+  size_t count = strut_thing_count(scene, kind);
+  for (size_t i = 0; i < count; i++) {
+    const char *own = strut_thing_name(scene, kind, i);
+    if (own && strcmp(own, name) == 0) return (int32_t)i;
+  }
+  return -1;
+}
+
+const strut_configuration *strut_configuration_named(const strut_scene *scene, const char *name) {
+  int32_t i = strut_thing_find(scene, STRUT_THING_CONFIGURATION, name);
+  return i >= 0 ? &scene->configurations[i] : NULL;
+}
+
 /* ---- fields ---- */
 
 #define STRUT_BELOW(SECTION) 0 /* the engine has no mappings */

@@ -33,6 +33,11 @@ STRUT_API size_t strut_thing_count(const strut_scene *scene, strut_thing kind);
 STRUT_API const void *strut_thing_object(const strut_scene *scene, strut_thing kind, size_t i);
 /** Its name, NULL behind the last one; "" or NULL where it has none. */
 STRUT_API const char *strut_thing_name(const strut_scene *scene, strut_thing kind, size_t i);
+/** Index of the thing of that name, -1: none. */
+STRUT_API int32_t strut_thing_find(const strut_scene *scene, strut_thing kind, const char *name);
+/** The configuration of that name, NULL: none. */
+STRUT_API const strut_configuration *strut_configuration_named(const strut_scene *scene,
+                                                               const char *name);
 
 /** The object of the section `ground`: its line, and the contact that every node starts from. */
 typedef struct strut_ground_section {

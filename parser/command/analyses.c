@@ -8,6 +8,7 @@
 #include "engine/base/memory.h"
 #include "engine/output/figures/statics_figures.h"
 #include "engine/output/report/reports.h"
+#include "engine/scene/things.h"
 #include "parser/yaml/diagnostics.h"
 
 strut_status strut_analysis_compute(strut_analysis *a, strut_error *error) {
@@ -158,10 +159,9 @@ static strut_status reject_name(const strut_command *command, const strut_argume
                                 const strut_scene *scene, const char *name) {
   strut_arena arena = {0};
   const candidates all = {.scene = scene, .arena = &arena};
-  for (size_t i = 0; i < scene->load_count; i++)
-    if (strcmp(scene->loads[i].name, name) == 0)
-      return strut_usage_error(command, arguments, "--over: '%s' is a load; use --load %s", name,
-                               name);
+  if (strut_thing_find(scene, STRUT_THING_LOAD, name) >= 0)
+    return strut_usage_error(command, arguments, "--over: '%s' is a load; use --load %s", name,
+                             name);
   const char *near = strut_did_you_mean(name, candidate_at, &all);
   strut_usage_error(command, arguments,
                     "--over: no parameter, actuator, or coordinate of a node (such as '%s.x') is "
@@ -170,12 +170,6 @@ static strut_status reject_name(const strut_command *command, const strut_argume
                     near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
   strut_arena_free(&arena);
   return STRUT_USAGE;
-}
-
-static int32_t find_actuator(const strut_scene *scene, const char *name) {
-  for (size_t i = 0; i < scene->actuator_count; i++)
-    if (strcmp(scene->actuators[i].name, name) == 0) return (int32_t)i;
-  return -1;
 }
 
 static strut_status choose_followed(const strut_command *command, const strut_arguments *arguments,
@@ -199,7 +193,7 @@ static strut_status choose_followed(const strut_command *command, const strut_ar
     return status;
   }
   wanted->over = STRUT_PATH_OVER_ACTUATOR;
-  wanted->index = find_actuator(scene, name);
+  wanted->index = strut_thing_find(scene, STRUT_THING_ACTUATOR, name);
   if (wanted->index >= 0) {
     const strut_actuator *a = &scene->actuators[wanted->index];
     if (a->member < 0) *dimension = a->hinge >= 0 ? STRUT_DIM_ANGLE : STRUT_DIM_STIFFNESS;

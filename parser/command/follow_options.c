@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/scene/things.h"
 #include "parser/command/arguments.h"
 
 enum { MOST_STEPS = 100000, MOST_AT = 8 };
@@ -160,14 +161,10 @@ static size_t read_names(const strut_arguments *arguments, strut_follow_source *
 
 static strut_status check_names(const strut_command *command, const strut_arguments *arguments,
                                 const strut_scene *scene, const char *const *names, size_t count) {
-  for (size_t i = 0; i < count; i++) {
-    bool known = false;
-    for (size_t k = 0; k < scene->configuration_count; k++)
-      known = known || strcmp(scene->configurations[k].name, names[i]) == 0;
-    if (!known)
+  for (size_t i = 0; i < count; i++)
+    if (strut_thing_find(scene, STRUT_THING_CONFIGURATION, names[i]) < 0)
       return strut_usage_error(command, arguments, "--from: the model has no configuration '%s'",
                                names[i]);
-  }
   return STRUT_OK;
 }
 

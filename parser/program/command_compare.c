@@ -10,6 +10,7 @@
 #include "engine/output/file.h"
 #include "engine/output/results.h"
 #include "engine/study/compare/compare.h"
+#include "parser/command/varied_scenes.h"
 #include "parser/program/options.h"
 #include "parser/program/progress.h"
 #include "parser/program/streams.h"
@@ -108,12 +109,6 @@ static strut_status read_setup(compared_models *compared, const model_source *fr
   return status;
 }
 
-static bool has_parameter(const strut_scene *scene, const char *name) {
-  for (size_t i = 0; i < scene->parameter_count; i++)
-    if (strcmp(scene->parameters[i].name, name) == 0) return true;
-  return false;
-}
-
 /* Splits the settings for a model into those whose parameter it has and the others. */
 static strut_status split_settings(const strut_arguments *arguments, const strut_scene *scene,
                                    compared_models *compared, size_t number, model_source *from) {
@@ -125,7 +120,7 @@ static strut_status split_settings(const strut_arguments *arguments, const strut
   for (size_t i = 0; i < count; i++) {
     size_t owner = arguments->override_model[i]; /* 0: all models */
     if (owner != 0 && owner != number + 1) continue;
-    if (has_parameter(scene, arguments->overrides[i].name))
+    if (strut_find_parameter(scene, arguments->overrides[i].name))
       from->known[from->known_count++] = arguments->overrides[i];
     else
       without[input->without_count++] = arguments->overrides[i].name;
@@ -180,8 +175,8 @@ static strut_status check_settings(const strut_command *command, const strut_arg
     size_t owner = arguments->override_model[i];
     bool known = false;
     for (size_t k = 0; k < compared->count; k++)
-      known = known ||
-              ((owner == 0 || owner == k + 1) && has_parameter(&compared->setups[k].scene, name));
+      known = known || ((owner == 0 || owner == k + 1) &&
+                        strut_find_parameter(&compared->setups[k].scene, name));
     if (known) continue;
     const char *near = strut_did_you_mean(name, parameter_at, compared);
     fprintf(stderr, "strut %s: --set %s: ", command->name, name);

@@ -8,6 +8,7 @@
 
 #include "engine/base/c_locale.h"
 #include "engine/base/number_text.h"
+#include "engine/scene/things.h"
 #include "parser/study/study_reader.h"
 
 static const strut_owner study_owner = {"the study", NULL}, path_owner = {"the path", NULL},
@@ -559,10 +560,7 @@ static strut_status check_starts(strut_study_file *file, const strut_scene *scen
   const strut_tree *list = follow ? strut_tree_find(follow, "start_from", NULL) : NULL;
   strut_status status = STRUT_OK;
   for (const strut_tree *item = list ? list->first : NULL; item; item = item->next) {
-    size_t i = 0;
-    while (i < scene->configuration_count && strcmp(scene->configurations[i].name, item->text) != 0)
-      i++;
-    if (i < scene->configuration_count) continue;
+    if (strut_thing_find(scene, STRUT_THING_CONFIGURATION, item->text) >= 0) continue;
     strut_diagnose(&file->diagnostics, item->place,
                    "'start_from' of what is followed: the model has no configuration '%.60s'",
                    item->text);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
+#include "engine/scene/things.h"
 #include "parser/expression/expression.h"
 #include "parser/write/writer.h"
 
@@ -84,9 +85,7 @@ static void put_search(strut_writer *writer) {
 }
 
 static bool is_configuration(const strut_scene *scene, const char *name) {
-  for (size_t i = 0; i < scene->configuration_count; i++)
-    if (strcmp(scene->configurations[i].name, name) == 0) return true;
-  return false;
+  return strut_thing_find(scene, STRUT_THING_CONFIGURATION, name) >= 0;
 }
 
 /* A name that refers to the configuration: its own, unless a text parameter has that name. */

@@ -107,6 +107,7 @@ members:
   reeled: {kind: cable, nodes: [a, p, c], axial_stiffness: 20 N, damping: 0.1, rest_length: 1.5}
   wound: {kind: spring, nodes: [p, b], axial_stiffness: 5 N, law: logarithmic}
   down: {kind: spring, nodes: [c, q], stiffness: 40}
+  odd: {kind: spring, nodes: [a, c], stiffness: 5} # 17 members: slots of hinges and cells lie behind a gap
 hinges:
   plain: {nodes: [a, p, q], stiffness: 2 N m/rad, damping: 0.1 N m s/rad, rest_angle: 170 deg}
   drawn: {nodes: [p, q, b], stiffness: 3, law: {kind: play, gap: 2 deg}}

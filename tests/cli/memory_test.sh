@@ -82,6 +82,12 @@ expect 0 check string.yaml
 out_has 'breaks and releases'
 out_has 'string                5 N            -'
 
+# The stop carries its share of what breaks a member: 5 N = k e + 100 k (e - 20 mm).
+sed 's/longest: 1.5/longest: 1.02/' string.yaml >stopped.yaml
+expect 0 run stopped.yaml --json
+near .energy.dissipated_members '(205 / 10100) as $e | 50 * $e * $e + 5000 * ($e - 0.02) * ($e - 0.02)' 1e-9
+near .energy.residual 0 1e-9
+
 # A hinge breaks by its moment, on either side: the arm flies on with what is left of its speed.
 cat >hinge.yaml <<'YAML'
 strut: 1

@@ -11,6 +11,7 @@
 #include "engine/forces/elements.h"
 #include "engine/model/compile_parts.h"
 #include "engine/model/pose.h"
+#include "engine/scene/things.h"
 #include "engine/statics/search/critical.h"
 
 enum { MOST_LISTED = 4 };
@@ -154,9 +155,7 @@ static bool is_name_taken(size_t count, strut_equilibrium **list, const strut_sc
                           const char *name) {
   for (size_t i = 0; i < count; i++)
     if (list[i]->name && strcmp(list[i]->name, name) == 0) return true;
-  for (size_t i = 0; i < scene->configuration_count; i++)
-    if (strcmp(scene->configurations[i].name, name) == 0) return true;
-  return false;
+  return strut_thing_find(scene, STRUT_THING_CONFIGURATION, name) >= 0;
 }
 
 /* STEM-n with the first unused n from *n on. */

@@ -7,6 +7,7 @@
 
 #include "engine/forces/elements.h"
 #include "engine/run/settle.h"
+#include "engine/scene/things.h"
 #include "engine/statics/equilibria/equilibria_parts.h"
 
 /* A start nearer to its minimum is at rest up to the ground's compliance; in model sizes. */
@@ -225,12 +226,6 @@ static strut_status search_configuration(const strut_model *model,
       c->name, c->set_count ? " on its contacts" : "", c->shaped ? " near its shape" : "", instead);
 }
 
-static const strut_configuration *find_configuration(const strut_scene *scene, const char *name) {
-  for (size_t i = 0; i < scene->configuration_count; i++)
-    if (strcmp(scene->configurations[i].name, name) == 0) return &scene->configurations[i];
-  return NULL;
-}
-
 static strut_status report_unknown(const strut_scene *scene, const char *name, strut_error *error) {
   char names[300] = "";
   size_t used = 0;
@@ -308,7 +303,7 @@ strut_status strut_rest_state_find(const strut_model *model, const strut_experim
   *rest = (strut_rest_state){.name = start ? "start" : "drawn"};
   rest->q = strut_arena_allocate(arena, (size_t)model->length, sizeof *rest->q);
   if (!rest->q) return strut_no_memory(error, "");
-  if (name && (c = find_configuration(scene, name)))
+  if (name && (c = strut_configuration_named(scene, name)))
     start = drawn = false; /* a configuration has this name */
   if (!c && !start && !drawn) {
     if (!strut_is_listed_name(scene, name)) return report_unknown(scene, name, error);

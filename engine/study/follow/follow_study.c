@@ -8,6 +8,7 @@
 
 #include "engine/output/buffer.h"
 #include "engine/run/accuracy/accuracy.h"
+#include "engine/scene/things.h"
 #include "engine/statics/equilibria/equilibria.h"
 
 /* Accuracy of velocities, relative; the tolerance of error control for it; steps of a period. */
@@ -48,10 +49,7 @@ static void name_start(const follower *f, const strut_follow_start *start, char 
 static strut_status place_start(follower *f, const strut_follow_start *start, strut_setup *setup) {
   strut_scene *scene = &setup->scene;
   if (start->from) {
-    scene->start_equilibrium = -1;
-    for (size_t i = 0; i < scene->configuration_count; i++)
-      if (strcmp(scene->configurations[i].name, start->from) == 0)
-        scene->start_equilibrium = (int32_t)i;
+    scene->start_equilibrium = strut_thing_find(scene, STRUT_THING_CONFIGURATION, start->from);
     if (scene->start_equilibrium < 0)
       return strut_fail(f->error, STRUT_USAGE, "the model has no configuration '%s' to start from",
                         start->from);

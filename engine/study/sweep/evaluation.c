@@ -139,15 +139,7 @@ strut_status strut_evaluate(strut_evaluator *e, const strut_study *study, strut_
 }
 
 static int32_t find_node(const strut_scene *scene, const char *name) {
-  for (size_t i = 0; i < scene->node_count; i++)
-    if (strcmp(scene->nodes[i].name, name) == 0) return (int32_t)i;
-  return -1;
-}
-
-static const strut_configuration *find_configuration(const strut_scene *scene, const char *name) {
-  for (size_t i = 0; i < scene->configuration_count; i++)
-    if (strcmp(scene->configurations[i].name, name) == 0) return &scene->configurations[i];
-  return NULL;
+  return strut_thing_find(scene, STRUT_THING_NODE, name);
 }
 
 static strut_status check_node(const strut_scene *scene, const char *key, const char *name,
@@ -163,7 +155,7 @@ strut_status strut_goals_check(const strut_study *study, const strut_scene *scen
   for (size_t i = 0; i < study->goal.shape_count && !status; i++)
     status = check_node(scene, "shape", study->goal.shape_nodes[i], error);
   if (status || !study->goal.like) return status;
-  const strut_configuration *c = find_configuration(scene, study->goal.like);
+  const strut_configuration *c = strut_configuration_named(scene, study->goal.like);
   if (!c)
     return strut_fail(error, STRUT_BAD_SCENE,
                       "'like' of the study: the model has no configuration '%.60s'",
@@ -189,7 +181,7 @@ static bool find_pair(const strut_study *study, const strut_scene *scene,
 double strut_goals_shape_distance(const strut_study *study, const strut_scene *scene,
                                   const double *positions) {
   const strut_configuration *like =
-      study->goal.like ? find_configuration(scene, study->goal.like) : NULL;
+      study->goal.like ? strut_configuration_named(scene, study->goal.like) : NULL;
   size_t count = like ? scene->node_count : study->goal.like ? 0 : study->goal.shape_count;
   double a[2], b[2], middle_a[2] = {0.0, 0.0}, middle_b[2] = {0.0, 0.0};
   double square = 0.0, dot = 0.0, cross = 0.0, n = (double)count;

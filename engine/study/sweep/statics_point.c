@@ -9,6 +9,7 @@
 
 #include "engine/forces/elements.h"
 #include "engine/forces/history.h"
+#include "engine/scene/things.h"
 #include "engine/statics/equilibria/equilibria.h"
 #include "engine/statics/form/form.h"
 #include "engine/statics/modes/modes.h"
@@ -264,12 +265,6 @@ static bool is_kept(const strut_sweep_plan *plan, const column *c) {
 
 /* ---- what a path follows ---- */
 
-static int32_t find_actuator(const strut_scene *scene, const char *name) {
-  for (size_t i = 0; i < scene->actuator_count; i++)
-    if (strcmp(scene->actuators[i].name, name) == 0) return (int32_t)i;
-  return -1;
-}
-
 static const char *unit_of_actuator(const strut_actuator *a) {
   return a->member >= 0 ? "m" : a->hinge >= 0 ? "rad" : "N/m";
 }
@@ -286,7 +281,7 @@ static strut_status choose_path(const strut_study *study, const strut_scene *sce
   *unit = "1";
   if (study->path.over) {
     to->over = STRUT_PATH_OVER_ACTUATOR;
-    to->index = find_actuator(scene, study->path.over);
+    to->index = strut_thing_find(scene, STRUT_THING_ACTUATOR, study->path.over);
     if (to->index >= 0) *unit = unit_of_actuator(&scene->actuators[to->index]);
     if (to->index < 0) {
       to->over = STRUT_PATH_OVER_COORDINATE;

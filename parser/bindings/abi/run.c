@@ -11,6 +11,7 @@
 #include "engine/run/accuracy/accuracy.h"
 #include "engine/run/simulate.h"
 #include "engine/run/stepping.h"
+#include "engine/scene/things.h"
 #include "engine/statics/equilibria/equilibria.h"
 #include "parser/bindings/abi/handles.h"
 #include "parser/command/arguments.h"
@@ -337,11 +338,9 @@ int strutlib_simulation_input(strutlib_simulation *simulation, const char *name,
 /* Index of "m8", "drive" or "n1.x" in an input, or -1. */
 static long index_of(const strut_scene *scene, int input, const char *name) {
   if (input == STRUT_INPUT_REST) {
-    for (size_t i = 0; i < scene->member_count; i++)
-      if (strcmp(scene->members[i].name, name) == 0) return (long)i;
+    return strut_thing_find(scene, STRUT_THING_MEMBER, name);
   } else if (input == STRUT_INPUT_ACTUATORS) {
-    for (size_t i = 0; i < scene->actuator_count; i++)
-      if (strcmp(scene->actuators[i].name, name) == 0) return (long)i;
+    return strut_thing_find(scene, STRUT_THING_ACTUATOR, name);
   } else {
     for (size_t i = 0; i < scene->node_count; i++) {
       size_t length = strlen(scene->nodes[i].name);
