@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/forces/capstan.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -43,6 +44,7 @@ static double bend_on_side(const cable *c, int k, int side) {
 
 static void measure(const strut_model *model, const double *rest, int32_t i, const double *q,
                     cable *c) {
+  assert(i >= 0 && i < model->elements.count);
   const strut_element *e = &model->elements.element[i];
   const uint32_t *at = model->elements.at + e->first;
   double others = 0.0;
@@ -78,6 +80,7 @@ static double ratio_at(const cable *c, int k) {
 
 /* Tensions and materials of segments a .. b, all guides between which slip. */
 static void solve_group(cable *c, int a, int b) {
+  assert(a <= b);
   double ratio[MOST], sum = 0.0, material = 0.0, strain = 0.0;
   ratio[a] = 1.0;
   for (int k = a; k <= b; k++) {
@@ -190,6 +193,7 @@ static void find_rates(const strut_model *model, const strut_state *state, int32
 
 /* The flows in the group of segments a .. b. */
 static void find_group_flows(cable *c, int a, int b) {
+  assert(a <= b);
   double ratio = 1.0, ratio_rate = 0.0, strain = c->tension[a] / c->ea;
   double loose[MOST], stiff[MOST], sum = 0.0, weight = 0.0, passed;
   for (int k = a; k <= b; k++) { /* rate of material: loose - stiff * rate of the first strain */
@@ -301,6 +305,7 @@ static void add_powers(strut_state *state, const cable *c, double damper, bool f
 
 void strut_capstan_add_forces(const strut_model *model, strut_state *state, int32_t i,
                               const double *q, const double *v, double *force) {
+  assert(i >= 0 && i < model->elements.count);
   const strut_element *e = &model->elements.element[i];
   const uint32_t *at = model->elements.at + e->first;
   cable c;
@@ -319,6 +324,7 @@ void strut_capstan_add_forces(const strut_model *model, strut_state *state, int3
 }
 
 void strut_capstan_begin(const strut_model *model, strut_state *state, int32_t i, const double *q) {
+  assert(i >= 0 && i < model->elements.count);
   const strut_element *e = &model->elements.element[i];
   cable c;
   if (strut_capstan_remembers(e, state->latest.rest)) return;
@@ -349,6 +355,7 @@ void strut_capstan_renew(const strut_model *model, strut_state *state, int32_t i
 }
 
 void strut_capstan_thaw(const strut_model *model, strut_state *state, int32_t i) {
+  assert(i >= 0 && i < model->elements.count);
   int8_t *mode = modes_of(model, state, i);
   for (int k = 0; k + 1 < model->elements.element[i].nodes; k++) mode[k] = STRUT_GUIDE_FREE;
 }
@@ -435,6 +442,7 @@ void strut_capstan_switch(const strut_model *model, strut_state *state, int32_t 
 
 strut_capstan_ends strut_capstan_tensions(const strut_model *model, const strut_state *state,
                                           int32_t i, const double *q, const double *v) {
+  assert(i >= 0 && i < model->elements.count);
   const strut_element *e = &model->elements.element[i];
   strut_capstan_ends ends = {0.0, 0.0, 0.0};
   cable c;
@@ -454,6 +462,7 @@ double strut_capstan_energy(const strut_model *model, int32_t i, const double *r
 }
 
 void strut_capstan_stiffness(const strut_model *model, int32_t i, const double *q, double *k) {
+  assert(i >= 0 && i < model->elements.count);
   const strut_element *e = &model->elements.element[i];
   int32_t rows = 2 * e->nodes;
   double whole = 0.0;

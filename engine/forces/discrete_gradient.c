@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/forces/discrete_gradient.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -193,6 +194,7 @@ static double part_beyond(const strut_element *e, double stretch0, double stretc
  */
 static void add_element(const strut_model *model, strut_state *state, strut_discrete_gradient *step,
                         int32_t i, const double *restrict q0, const double *restrict q1) {
+  assert(i >= 0 && i < model->elements.count);
   const strut_element *e = &model->elements.element[i];
   const uint32_t *at = model->elements.at + e->first;
   strut_element_pose end, middle;

@@ -30,6 +30,7 @@ static double strain_of(const strut_element *e, const uint32_t *at, const double
 
 double strut_element_strain(const strut_model *model, int32_t element, const double *q, double turn,
                             double *b) {
+  assert(element >= 0 && element < model->elements.count);
   const strut_element *e = &model->elements.element[element];
   return strain_of(e, model->elements.at + e->first, q, turn, b);
 }
@@ -73,6 +74,7 @@ void strut_element_evaluate(const strut_model *model, int32_t element, const dou
 
 double strut_element_rate(const strut_model *model, int32_t element, const strut_element_pose *pose,
                           const double *v) {
+  assert(element >= 0 && element < model->elements.count);
   const strut_element *e = &model->elements.element[element];
   const uint32_t *at = model->elements.at + e->first;
   double sum = 0.0;
@@ -83,6 +85,7 @@ double strut_element_rate(const strut_model *model, int32_t element, const strut
 
 void strut_element_stiffness(const strut_model *model, int32_t element,
                              const strut_element_pose *pose, const double *q, double *k) {
+  assert(element >= 0 && element < model->elements.count);
   int32_t n = 2 * model->elements.element[element].nodes;
   for (int32_t i = 0; i < n; i++)
     for (int32_t j = 0; j < n; j++) k[i * n + j] = pose->slope * pose->b[i] * pose->b[j];
@@ -132,6 +135,7 @@ void strut_elements_visit(const strut_model *model, const double *rest, const do
 }
 
 double strut_element_stiffest(const strut_model *model, int32_t element) {
+  assert(element >= 0 && element < model->elements.count);
   static const double places[] = {-0.3, -0.1, -0.01, 0.0, 0.01, 0.1, 0.3};
   const strut_element *e = &model->elements.element[element];
   double natural = strut_element_start(model, element), stiffest = 0.0;
@@ -324,6 +328,7 @@ bool strut_shape_has_collapsed(const strut_model *model, const double *q) {
 
 bool strut_element_has_collapsed(const strut_model *model, int32_t element, double share,
                                  const double *q) {
+  assert(element >= 0 && element < model->elements.count);
   const strut_element *e = &model->elements.element[element];
   if (e->strain != STRUT_STRAIN_LENGTH || e->carries > 0) return false;
   strut_element_pose pose;
@@ -333,6 +338,7 @@ bool strut_element_has_collapsed(const strut_model *model, int32_t element, doub
 
 strut_element_motion strut_element_move(const strut_model *model, const strut_state *state,
                                         int32_t element, const double *q, const double *v) {
+  assert(element >= 0 && element < model->elements.count);
   const strut_element *e = &model->elements.element[element];
   const uint32_t *at = model->elements.at + e->first;
   double b[STRUT_MOST_GRADIENT], rate = 0.0;
@@ -355,6 +361,7 @@ double strut_element_measure(const strut_model *model, const strut_state *state,
 
 double strut_element_measure_at(const strut_model *model, const strut_state *state, int32_t element,
                                 const double *q, const double *v, strut_element_pose *pose) {
+  assert(element >= 0 && element < model->elements.count);
   const strut_element *e = &model->elements.element[element];
   strut_element_evaluate(model, element, state->latest.rest, q, state->latest.element_turn[element],
                          pose);

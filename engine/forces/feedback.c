@@ -2,6 +2,7 @@
 /* Hot where a scene has sensors. See feedback.h. */
 #include "engine/forces/feedback.h"
 
+#include <assert.h>
 #include <math.h>
 
 #include "engine/forces/drives.h"
@@ -20,6 +21,7 @@ static void sense_length(const strut_model *model, const strut_state *state, int
 
 static void sense_angle(const strut_model *model, const strut_state *state, int32_t element,
                         const double *q, const double *v, double *value, double *rate) {
+  assert(element >= 0 && element < model->elements.count);
   strut_element_pose pose;
   strut_element_evaluate(model, element, state->latest.rest, q, state->latest.element_turn[element],
                          &pose);
@@ -38,6 +40,7 @@ static double sense_energy(const strut_model *model, const strut_state *state, i
 /* Does the node of contact `first`, or -1, touch any of its grounds? A node's contacts are side by side. */
 static bool touches(const strut_model *model, const strut_state *state, int32_t first,
                     const double *q) {
+  assert(first >= 0 && first < model->contacts.count);
   const strut_contact_table *c = &model->contacts;
   for (int32_t i = first; i >= 0 && i < c->count && c->at[i] == c->at[first]; i++)
     if (strut_contact_gap_at(c, i, q, state->latest.ground_motion) < 0.0) return true;
@@ -172,6 +175,7 @@ static bool start_signal(const strut_model *model, strut_state *state, int32_t s
 }
 
 bool strut_feedback_touch(const strut_model *model, strut_state *state, int32_t contact, double t) {
+  assert(contact >= 0 && contact < model->contacts.count);
   const strut_feedback_table *f = &model->feedback;
   bool any = false;
   for (int32_t i = 0; i < f->trigger_count; i++) {
@@ -230,6 +234,7 @@ void strut_relay_start(const strut_model *model, strut_state *state, int32_t sig
 
 double strut_relay_margin(const strut_model *model, const strut_state *state, int32_t signal,
                           double now, const double *v) {
+  assert(signal >= 0 && signal < (int32_t)model->scene->signal_count);
   const strut_relay *r = &model->scene->signals[signal].relay;
   double input = input_of(model, state, signal, now, v);
   return state->signals.relay_side[signal] > 0 ? input - r->lower : r->upper - input;
@@ -243,6 +248,7 @@ bool strut_relay_sample(const strut_model *model, strut_state *state, int32_t si
 }
 
 void strut_relay_switch(const strut_model *model, strut_state *state, int32_t signal, double t) {
+  assert(signal >= 0 && signal < (int32_t)model->scene->signal_count);
   state->signals.relay_side[signal] = (int8_t)-state->signals.relay_side[signal];
   strut_drive_apply(model, state, t);
   if (!(strut_relay_margin(model, state, signal, t + state->time_offset, state->v) < 0.0)) return;

@@ -213,6 +213,7 @@ void strut_history_load(const strut_model *model, strut_state *state, const doub
 
 double strut_breakable_load(const strut_model *model, const strut_state *state, int32_t breakable,
                             const double *q, const double *v) {
+  assert(breakable >= 0 && breakable < model->elements.breakable_count);
   const strut_element_table *t = &model->elements;
   const strut_breakable *b = &t->breakable[breakable];
   double sum = 0.0;
@@ -229,6 +230,7 @@ double strut_breakable_load(const strut_model *model, const strut_state *state, 
 
 void strut_breakable_break(const strut_model *model, strut_state *state, int32_t breakable,
                            double t) {
+  assert(breakable >= 0 && breakable < model->elements.breakable_count);
   const strut_element_table *table = &model->elements;
   strut_element_pose pose;
   double energy = 0.0;
@@ -306,6 +308,7 @@ double strut_element_last_force(const strut_model *model, const strut_state *sta
 }
 
 double strut_element_plastic(const strut_model *model, const strut_state *state, int32_t element) {
+  assert(element >= 0 && element < model->elements.count);
   const strut_element *e = &model->elements.element[element];
   return e->remembers && yields(e) ? shift_of(e, state->history.plastic[e->memory]) : 0.0;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Lengths and forces of members, hinges and cells for observers (recording, measuring). The step's own loop:
    members_kernel.h. */
+#include <assert.h>
 #include <math.h>
 
 #include "engine/forces/drives.h"
@@ -26,6 +27,7 @@ static void measure_elements(const strut_model *model, const strut_state *state,
 
 strut_member_values strut_member_measure_at(const strut_model *model, const strut_state *state,
                                             int32_t j, const double *q, const double *v) {
+  assert(j >= 0 && j < model->members.count);
   const strut_member_table *t = &model->members;
   strut_member_pose pose = strut_member_pose_at(t, state->latest.rest, j, q);
   double rate = strut_member_rate(t, j, &pose, v);
@@ -49,6 +51,7 @@ strut_member_values strut_member_measure(const strut_model *model, const strut_s
 
 strut_hinge_values strut_hinge_measure(const strut_model *model, const strut_state *state,
                                        int32_t element) {
+  assert(element >= 0 && element < model->elements.count);
   strut_element_pose pose;
   double moment = strut_element_measure(model, state, element, &pose);
   moment += strut_actuator_moment_on_hinge(model, state, model->elements.element[element].item);
@@ -58,6 +61,7 @@ strut_hinge_values strut_hinge_measure(const strut_model *model, const strut_sta
 
 strut_cell_values strut_cell_measure(const strut_model *model, const strut_state *state,
                                      int32_t element) {
+  assert(element >= 0 && element < model->elements.count);
   strut_element_pose pose;
   double force = strut_element_measure(model, state, element, &pose);
   return (strut_cell_values){pose.strain, model->elements.element[element].numbers.outside - force};

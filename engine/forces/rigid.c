@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/forces/rigid.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -13,6 +14,7 @@ static const double NEAR = 1e-13, ROUNDING = 4.5e-16;
 static const double FAR = 1e-9;
 
 static bool is_rigid(const strut_model *model, int32_t j) {
+  assert(j >= 0 && j < model->members.count);
   return model->scene->members[j].kind == STRUT_BAR;
 }
 
@@ -316,6 +318,7 @@ void strut_rigid_rows(strut_rigid *rigid, const double *q) {
 }
 
 void strut_rigid_add_foot(const strut_model *model, strut_rigid *rigid, int32_t contact) {
+  assert(contact >= 0 && contact < model->contacts.count);
   int32_t r = rigid->rows++;
   rigid->row[r][0] = -1, rigid->row[r][1] = rigid->foot[contact];
   rigid->direction[r] = (strut_vec2){model->contacts.tangent[0], model->contacts.tangent[1]};

@@ -103,6 +103,7 @@ static double way_to_break(const strut_model *model, const strut_state *state, i
  */
 static void hold_together(const strut_model *model, strut_state *state, const double *v, int32_t a,
                           int32_t b) {
+  assert(a != b);
   const double *ta = state->latest.pose[a].axes.tangent, *tb = state->latest.pose[b].axes.tangent;
   const double *f = state->latest.force + model->contacts.at[a];
   double area = ta[0] * tb[1] - ta[1] * tb[0];

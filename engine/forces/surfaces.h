@@ -6,6 +6,8 @@
 #ifndef STRUT_ENGINE_FORCES_SURFACES_H
 #define STRUT_ENGINE_FORCES_SURFACES_H
 
+#include <assert.h>
+
 #include "engine/model/pose.h"
 #include "engine/model/state.h"
 
@@ -20,6 +22,7 @@ void strut_surfaces_add_forces(const strut_model *model, strut_state *state,
 static inline strut_vec2 strut_contact_velocity(const strut_contact_table *c, int32_t i,
                                                 const double *v,
                                                 const strut_ground_motion *motion) {
+  assert(i >= 0 && i < c->count);
   const double *at = v + c->at[i];
   const strut_ground_motion *own = strut_contact_motion(c, i, motion);
   return own ? (strut_vec2){at[0] - own->rate[0], at[1] - own->rate[1]}

@@ -19,6 +19,7 @@ void strut_block_add(const strut_stiffness_block *b, int count, const int32_t *r
 
 void strut_element_add(const strut_model *model, int32_t element, const double *k,
                        const int32_t *row_of, strut_triplets *sum) {
+  assert(element >= 0 && element < model->elements.count);
   const strut_element *e = &model->elements.element[element];
   const uint32_t *at = model->elements.at + e->first;
   int32_t n = 2 * e->nodes;
@@ -34,6 +35,7 @@ void strut_element_add(const strut_model *model, int32_t element, const double *
 
 void strut_element_scatter(const strut_model *model, int32_t element, const double *k,
                            const int32_t *place, double *value) {
+  assert(element >= 0 && element < model->elements.count);
   const strut_element *e = &model->elements.element[element];
   const uint32_t *at = model->elements.at + e->first;
   int32_t n = 2 * e->nodes;

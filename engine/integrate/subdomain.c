@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/integrate/subdomain.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -327,6 +328,7 @@ static void make_state(builder *b) {
 
 bool strut_subdomain_create(const strut_subdivision *s, int part, strut_arena *arena,
                             strut_subdomain *d) {
+  assert(part >= 0 && part < s->parts);
   const strut_model *model = s->model;
   size_t nodes = (size_t)model->node_count;
   builder b = {.s = s, .d = d, .arena = arena};

@@ -54,6 +54,7 @@ static int32_t cell_slot(const strut_model *model, int32_t cell) {
 }
 
 int32_t strut_actuator_slot(const strut_model *model, size_t i) {
+  assert(i < model->scene->actuator_count);
   const strut_actuator *a = &model->scene->actuators[i];
   return a->member >= 0  ? a->member
          : a->hinge >= 0 ? hinge_slot(model, a->hinge)
@@ -61,6 +62,7 @@ int32_t strut_actuator_slot(const strut_model *model, size_t i) {
 }
 
 double strut_element_start(const strut_model *model, int32_t element) {
+  assert(element >= 0 && element < model->elements.count);
   const strut_element *e = &model->elements.element[element];
   return e->slot >= 0 ? model->members.rest[e->slot] : e->natural;
 }

@@ -10,6 +10,7 @@
 #ifndef STRUT_ENGINE_MODEL_ELEMENTS_H
 #define STRUT_ENGINE_MODEL_ELEMENTS_H
 
+#include <assert.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -132,6 +133,7 @@ static inline int32_t strut_element_of_collision(const strut_element_table *t, i
 
 /** The element behind the last one of the same item; elements of a collision follow each other. */
 static inline int32_t strut_element_end(const strut_element_table *t, int32_t first) {
+  assert(first >= 0 && first < t->count);
   int32_t k = first;
   while (k < t->count && t->element[k].role == t->element[first].role &&
          t->element[k].item == t->element[first].item)

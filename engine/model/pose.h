@@ -39,6 +39,7 @@ static inline double strut_member_length(const strut_member_table *t, int32_t j,
 static inline strut_member_pose strut_member_pose_at(const strut_member_table *t,
                                                      const double *rest, int32_t j,
                                                      const double *q) {
+  assert(j >= 0 && j < t->count);
   strut_member_pose pose = {.span = strut_member_span(t, j, q)};
   pose.length = strut_vec2_length(pose.span);
   pose.unit = strut_vec2_unit(pose.span, pose.length);
@@ -152,6 +153,7 @@ static inline bool strut_contacts_allow_travel(const strut_contact_table *c) {
 
 /** Speed of the belt of contact i [m/s]. */
 static inline double strut_contact_belt(const strut_contact_table *c, int32_t i) {
+  assert(i >= 0 && i < c->count);
   return c->surface ? c->surface[c->surface_of[i]].belt_speed : c->belt_speed;
 }
 
@@ -159,6 +161,7 @@ static inline double strut_contact_belt(const strut_contact_table *c, int32_t i)
 static inline const strut_ground_motion *strut_contact_motion(const strut_contact_table *c,
                                                               int32_t i,
                                                               const strut_ground_motion *motion) {
+  assert(i >= 0 && i < c->count);
   if (!c->surface || !motion) return NULL;
   const strut_surface *s = &c->surface[c->surface_of[i]];
   return s->moves ? &motion[s->ground] : NULL;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/model/surfaces.h"
 
+#include <assert.h>
 #include <math.h>
 
 #include "engine/base/range_tree.h"
@@ -72,6 +73,7 @@ void strut_surface_find(const strut_surface *s, const double point[2], int32_t f
 
 double strut_surface_margin(const strut_surface *s, const double point[2], int32_t facet,
                             int32_t *nearest) {
+  assert(facet >= 0 && facet < s->facets);
   double other = strut_surface_outermost(s, point, facet, nearest);
   if (other == -HUGE_VAL) *nearest = facet;
   return strut_facet_across(&s->facet[facet], point) - other;
@@ -425,6 +427,7 @@ int32_t strut_surface_nearest(const strut_surface *surface, const double p[2],
 /* ---- contacts ---- */
 
 int32_t strut_contacts_of_profile(const strut_contact_table *c, int32_t first) {
+  assert(first >= 0 && first < c->count);
   const strut_surface *s = &c->surface[c->surface_of[first]];
   int32_t last = first + s->pieces - 1;
   bool whole = s->index && s->piece == 0 && last < c->count && c->at[last] == c->at[first] &&
@@ -433,6 +436,7 @@ int32_t strut_contacts_of_profile(const strut_contact_table *c, int32_t first) {
 }
 
 int32_t strut_contacts_end_of_node(const strut_contact_table *c, int32_t first) {
+  assert(first >= 0 && first < c->count);
   int32_t end = first;
   while (end < c->count && c->at[end] == c->at[first]) {
     int32_t pieces = strut_contacts_of_profile(c, end);
@@ -572,6 +576,7 @@ int32_t strut_surface_lowest(const strut_surface *first, const double p[2], doub
 
 int32_t strut_contacts_lowest(const strut_contact_table *c, int32_t first, const double *q,
                               const strut_ground_motion *motion, double *gap) {
+  assert(first >= 0 && first < c->count);
   double p[2];
   place_of(c, first, q, motion, p);
   return first + strut_surface_lowest(&c->surface[c->surface_of[first]], p, gap);
@@ -579,6 +584,7 @@ int32_t strut_contacts_lowest(const strut_contact_table *c, int32_t first, const
 
 int32_t strut_contacts_nearest(const strut_contact_table *c, int32_t first, const double *q,
                                int32_t near[2]) {
+  assert(first >= 0 && first < c->count);
   int32_t ground = c->surface[c->surface_of[first]].ground, i = first;
   double least[2] = {HUGE_VAL, HUGE_VAL};
   near[0] = near[1] = first;

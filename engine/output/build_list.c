@@ -12,7 +12,6 @@
 
 static const char *const file_names[] = {"members.csv", "nodes.csv", "drawing.svg", "drawing.dxf",
                                          NULL};
-static const char *const kinds[] = {"bar", "spring", "cable"};
 
 static double start_length(const strut_scene *scene, const strut_member *m) {
   double length = 0.0;
@@ -69,7 +68,7 @@ static char *write_members(const strut_build *b) {
     for (size_t k = 0; k < m->guide_count; k++)
       strut_buffer_add(&over, "%s%s", k ? ";" : "", scene->nodes[m->guides[k]].name);
     strut_csv_add_text(&text, "%s", m->name);
-    strut_buffer_add(&text, ",%s,", kinds[m->kind]);
+    strut_buffer_add(&text, ",%s,", strut_member_kind_name(m->kind));
     strut_csv_add_text(&text, "%s", scene->nodes[m->node[0]].name);
     strut_buffer_add(&text, ",");
     strut_csv_add_text(&text, "%s", over.text ? over.text : "");
@@ -166,7 +165,7 @@ char *strut_build_table(const strut_build *b) {
   for (size_t i = 0; i < scene->member_count; i++) {
     strut_build_member line = strut_build_member_of(b, i);
     strut_buffer_add(&text, "  %-*s  %-6s", width, scene->members[i].name,
-                     kinds[scene->members[i].kind]);
+                     strut_member_kind_name(scene->members[i].kind));
     add_millimetres(&text, line.made);
     add_millimetres(&text, line.cut);
     add_millimetres(&text, line.length);
@@ -266,10 +265,7 @@ static void add_svg_member(strut_buffer *to, const sheet *s, size_t i) {
   const strut_member *m = &s->scene->members[i];
   double at[2], angle;
   strut_buffer_add(to, "<polyline class=\"%s\" fill=\"none\" stroke=\"black\" %s points=\"",
-                   m->kind == STRUT_BAR     ? "bar"
-                   : m->kind == STRUT_CABLE ? "cable"
-                                            : "spring",
-                   strokes[m->kind]);
+                   strut_member_kind_name(m->kind), strokes[m->kind]);
   for (size_t k = 0; k < m->guide_count + 2; k++) {
     int32_t node = strut_member_node(m, k);
     strut_buffer_add(to, "%s%.6f,%.6f", k ? " " : "", x_of(s, node) - s->left,

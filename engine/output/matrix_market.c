@@ -80,11 +80,10 @@ static bool has_inner_nodes(const strut_scene *scene) {
 }
 
 static void write_member_column(FILE *stream, const strut_scene *scene, size_t j, bool inner) {
-  static const char *const kinds[] = {"bar", "spring", "cable"};
   const strut_member *member = &scene->members[j];
   fprintf(stream, "%zu,", j + 1);
   strut_csv_write(stream, member->name);
-  fprintf(stream, ",%s,", kinds[member->kind]);
+  fprintf(stream, ",%s,", strut_member_kind_name(member->kind));
   strut_csv_write(stream, scene->nodes[member->node[0]].name);
   fputc(',', stream);
   strut_csv_write(stream, scene->nodes[member->node[1]].name);

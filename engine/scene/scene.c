@@ -15,6 +15,15 @@ void strut_scene_init(strut_scene *scene) {
   scene->start_equilibrium = -1;
 }
 
+const char *strut_member_kind_name(strut_member_kind kind) {
+  switch (kind) {
+    case STRUT_BAR: return "bar";
+    case STRUT_SPRING: return "spring";
+    case STRUT_CABLE: return "cable";
+  }
+  return "";
+}
+
 #define USUAL(KIND) (strut_thing_at(STRUT_THING_##KIND)->usual)
 strut_node strut_node_default(void) { return *(const strut_node *)USUAL(NODE); }
 strut_member strut_member_default(void) { return *(const strut_member *)USUAL(MEMBER); }

@@ -37,6 +37,9 @@ typedef enum strut_member_kind {
   STRUT_CABLE   /* pulls only: force max(0, elastic + damper) while stretched, 0 while slack */
 } strut_member_kind;
 
+/** "bar", "spring" or "cable". */
+STRUT_API const char *strut_member_kind_name(strut_member_kind kind);
+
 /** The quantity that defines the rest length; strut_member_rest converts it to the others. */
 typedef enum strut_rest_kind {
   STRUT_REST_RATIO,        /* rest length / drawn length [1]; the default, with value 1 */

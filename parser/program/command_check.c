@@ -34,11 +34,6 @@ static strut_rounded_quantity in(double value, const char *unit) {
   return strut_quantity_of(value, DIGITS, unit);
 }
 
-static const char *kind_name(strut_member_kind kind) {
-  static const char *const names[] = {"bar", "spring", "cable"};
-  return names[kind];
-}
-
 static void print_counts(const strut_cost_estimate *estimate) {
   size_t members = estimate->count.bars + estimate->count.springs + estimate->count.cables;
   printf("  nodes              %zu, with %zu degrees of freedom\n", estimate->count.nodes,
@@ -170,10 +165,10 @@ static void print_members(const strut_model *model, const double *q) {
     strut_rest rest;
     const strut_member *member = &scene->members[i];
     if (!describe_member(model, q, i, &rest)) continue;
-    printf("  %-12s %-6s %12s %12s %10.5g %12s %13s %12s\n", member->name, kind_name(member->kind),
-           in(rest.drawn_length, "m").text, in(rest.length, "m").text, rest.ratio,
-           in(rest.pretension, "N").text, in(rest.force_density, "N/m").text,
-           in(rest.stiffness, "N/m").text);
+    printf("  %-12s %-6s %12s %12s %10.5g %12s %13s %12s\n", member->name,
+           strut_member_kind_name(member->kind), in(rest.drawn_length, "m").text,
+           in(rest.length, "m").text, rest.ratio, in(rest.pretension, "N").text,
+           in(rest.force_density, "N/m").text, in(rest.stiffness, "N/m").text);
   }
   if (scene->member_count > MOST_MEMBERS) {
     printf("  ... and %zu more; --json lists all\n", scene->member_count - MOST_MEMBERS);
@@ -470,7 +465,7 @@ static void add_members(strut_json *json, const strut_model *model, const double
     const strut_member *member = &scene->members[i];
     if (!describe_member(model, q, i, &rest)) continue;
     struct cJSON *row = strut_json_object(json, members, member->name);
-    strut_json_text(json, row, "kind", kind_name(member->kind));
+    strut_json_text(json, row, "kind", strut_member_kind_name(member->kind));
     strut_json_number(json, row, "drawn_length", rest.drawn_length);
     strut_json_number(json, row, "rest_length", rest.length);
     strut_json_number(json, row, "rest_length_ratio", rest.ratio);

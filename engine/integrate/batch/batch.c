@@ -83,6 +83,7 @@ static void imitate(strut_batch *b, int32_t to, int32_t from) {
 }
 
 void strut_batch_fill(strut_batch *b, int32_t slot, const strut_model *model, double dt) {
+  assert(slot >= 0 && slot < STRUT_BATCH_MOST);
   strut_batch_tables_fill(&b->tables, slot, model);
   b->dt[slot] = dt;
   b->driven = false;
@@ -90,12 +91,14 @@ void strut_batch_fill(strut_batch *b, int32_t slot, const strut_model *model, do
 }
 
 void strut_batch_empty(strut_batch *b, int32_t slot) {
+  assert(slot >= 0 && slot < STRUT_BATCH_MOST);
   b->filled[slot] = false;
   for (int32_t l = 0; l < b->tables.width; l++) /* those that imitate it, too */
     if (!b->filled[l]) b->tables.model[l] = NULL;
 }
 
 void strut_batch_put(strut_batch *b, int32_t slot, const strut_state *state) {
+  assert(slot >= 0 && slot < STRUT_BATCH_MOST);
   int32_t width = b->tables.width, length = b->tables.first->length;
   for (int32_t i = 0; i < length; i++) {
     b->q[i * width + slot] = state->q[i];
@@ -108,6 +111,7 @@ void strut_batch_put(strut_batch *b, int32_t slot, const strut_state *state) {
 }
 
 void strut_batch_count(const strut_batch *b, int32_t slot, strut_state *state) {
+  assert(slot >= 0 && slot < STRUT_BATCH_MOST);
   int64_t before = state->step;
   state->step = (int64_t)b->step[slot];
   state->evaluations += (state->step - before) * b->method->evaluations;
@@ -124,6 +128,7 @@ void strut_batch_sample(const strut_batch *b, int32_t slot, strut_state *state) 
 }
 
 void strut_batch_get(strut_batch *b, int32_t slot, strut_state *state) {
+  assert(slot >= 0 && slot < STRUT_BATCH_MOST);
   const strut_batch_tables *t = &b->tables;
   int32_t width = t->width;
   strut_batch_sample(b, slot, state);

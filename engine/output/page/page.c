@@ -199,7 +199,6 @@ static void add_nodes(strut_json *json, const strut_scene *scene) {
 }
 
 static void add_members(strut_json *json, const strut_scene *scene) {
-  static const char *const kinds[] = {"bar", "spring", "cable"};
   struct cJSON *members = strut_json_array(json, json->root, "members");
   for (size_t i = 0; i < scene->member_count; i++) {
     const strut_member *member = &scene->members[i];
@@ -207,7 +206,7 @@ static void add_members(strut_json *json, const strut_scene *scene) {
     strut_json_text(json, to, "name", member->name);
     strut_json_integer(json, to, "from", member->node[0]);
     strut_json_integer(json, to, "to", member->node[1]);
-    strut_json_text(json, to, "kind", kinds[member->kind]);
+    strut_json_text(json, to, "kind", strut_member_kind_name(member->kind));
     if (!member->guide_count) continue;
     struct cJSON *guides = strut_json_array(json, to, "guides");
     for (size_t k = 0; k < member->guide_count; k++)

@@ -16,11 +16,6 @@ enum { STRUT_RIGIDITY_WORDS = 240 };
 
 enum { FEW_DIGITS = 4 };
 
-static const char *member_kind_words(strut_member_kind kind) {
-  static const char *const names[] = {"bar", "spring", "cable"};
-  return names[kind];
-}
-
 static const char *stress_source_words(strut_stress_source source) {
   static const char *const words[] = {
       "no self-stress state", "the self-stress state", "the member forces",
@@ -272,7 +267,7 @@ static void put_members(strut_json *json, const strut_rigidity *r, const strut_s
   struct cJSON *members = strut_json_object(json, json->root, "members_at");
   for (size_t j = 0; j < scene->member_count; j++) {
     struct cJSON *row = strut_json_object(json, members, scene->members[j].name);
-    strut_json_text(json, row, "kind", member_kind_words(scene->members[j].kind));
+    strut_json_text(json, row, "kind", strut_member_kind_name(scene->members[j].kind));
     strut_json_number(json, row, "length", r->matrix.length[j]);
     strut_json_number(json, row, "force", r->force[j]);
     strut_json_number(json, row, "force_density",
@@ -444,8 +439,9 @@ static void add_members(strut_buffer *table, const strut_rigidity *r, const stru
   strut_buffer_add(table, "\n");
   for (size_t j = 0; j < members && j < MOST_ROWS; j++) {
     strut_buffer_add(table, "  %-12s %-6s %12s %12s %13s", scene->members[j].name,
-                     member_kind_words(scene->members[j].kind), in(r->matrix.length[j], "m").text,
-                     in(r->force[j], "N").text, in(r->density[j], "N/m").text);
+                     strut_member_kind_name(scene->members[j].kind),
+                     in(r->matrix.length[j], "m").text, in(r->force[j], "N").text,
+                     in(r->density[j], "N/m").text);
     for (int32_t i = 0; i < states; i++)
       strut_buffer_add(table, " %10.6g", r->states.force[(size_t)i * columns + j]);
     strut_buffer_add(table, "\n");

@@ -237,7 +237,6 @@ static strut_model *compile_elements(const strut_scene *scene) {
 
 char *strut_form_table(const strut_form *form, const strut_setup *setup) {
   const strut_scene *scene = &setup->scene;
-  static const char *const kinds[] = {"bar", "spring", "cable"};
   strut_buffer table = {0};
   strut_model *model = compile_elements(scene);
   strut_c_locale locale = strut_c_locale_enter();
@@ -247,9 +246,9 @@ char *strut_form_table(const strut_form *form, const strut_setup *setup) {
   for (size_t j = 0; j < scene->member_count && j < MOST_MEMBERS; j++) {
     const strut_member *m = &scene->members[j];
     pose p = pose_of(scene, model, j);
-    strut_buffer_add(&table, "  %-12s %-6s %14s %14s %14s %14s\n", m->name, kinds[m->kind],
-                     in(p.length, "m").text, in(p.rest.length, "m").text, in(p.force, "N").text,
-                     in(p.density, "N/m").text);
+    strut_buffer_add(&table, "  %-12s %-6s %14s %14s %14s %14s\n", m->name,
+                     strut_member_kind_name(m->kind), in(p.length, "m").text,
+                     in(p.rest.length, "m").text, in(p.force, "N").text, in(p.density, "N/m").text);
   }
   if (scene->member_count > MOST_MEMBERS)
     strut_buffer_add(&table, "  ... and %zu more\n", scene->member_count - MOST_MEMBERS);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which mode follows: at the start, at an event, and when several contacts hold at once. */
+#include <assert.h>
 #include <math.h>
 
 #include "engine/forces/drives.h"
@@ -48,6 +49,7 @@ static strut_contact_axes axes_now(const strut_contact_table *c, const strut_eve
 }
 
 void strut_contact_snap(const strut_model *model, strut_event_stepper *l, int32_t i, double slip) {
+  assert(i >= 0 && i < model->contacts.count);
   const strut_contact_table *c = &model->contacts;
   double *v = l->now->v + c->at[i];
   if (c->normal[0] == 0.0 && !c->surface) {
@@ -84,6 +86,7 @@ static bool is_free_along(const strut_model *model, const strut_event_stepper *l
 
 void strut_contact_close(const strut_model *model, strut_event_stepper *l, int32_t i,
                          int32_t facet) {
+  assert(i >= 0 && i < model->contacts.count);
   const strut_contact_entry *e = &model->contacts.entry[i];
   strut_touch o;
   l->mode[i] = STRUT_MODE_SLIDE;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/integrate/events/contacts/surface_contacts.h"
 
+#include <assert.h>
 #include <string.h>
 
 #include "engine/forces/drives.h"
@@ -10,6 +11,7 @@
 void strut_surface_measure(const strut_contact_table *c, const strut_event_stepper *l,
                            const strut_ground_motion *motion, int32_t i, const double *q,
                            const double *v, strut_touch *o, strut_contact_frame *frame) {
+  assert(i >= 0 && i < c->count);
   int32_t facet = l->mode[i] == STRUT_MODE_OPEN ? -1 : l->facet[i];
   const strut_contact_pose pose = strut_contact_pose_at(c, i, q, motion, facet);
   const strut_ground_motion *own = strut_contact_motion(c, i, motion);
@@ -101,6 +103,7 @@ void strut_surface_add_forces(const strut_model *model, const strut_event_steppe
 
 void strut_surface_measure_rates(const strut_contact_table *c, int32_t i, const double *a,
                                  strut_touch *o, const strut_contact_frame *frame) {
+  assert(i >= 0 && i < c->count);
   const double *at = a + c->at[i];
   o->into_rate = strut_component(frame->axes.normal, at[0], at[1]) + frame->into_drift;
   o->slip_rate = strut_component(frame->axes.tangent, at[0], at[1]) + frame->slip_drift;
@@ -112,6 +115,7 @@ double strut_surface_moving_power(const strut_touch *o, const strut_contact_fram
 
 double strut_surface_facet_margin(const strut_contact_table *c, const strut_event_stepper *l,
                                   const strut_step_end *end, int32_t i, int32_t *nearest) {
+  assert(i >= 0 && i < c->count);
   const strut_surface *s = &c->surface[c->surface_of[i]];
   const double *at = end->q + c->at[i];
   const strut_ground_motion *own = strut_contact_motion(c, i, end->motion);

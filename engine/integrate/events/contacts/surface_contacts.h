@@ -8,6 +8,8 @@
 #ifndef STRUT_ENGINE_INTEGRATE_EVENTS_CONTACTS_SURFACE_CONTACTS_H
 #define STRUT_ENGINE_INTEGRATE_EVENTS_CONTACTS_SURFACE_CONTACTS_H
 
+#include <assert.h>
+
 #include "engine/integrate/events/event_stepping.h"
 
 /** Fills *touch and *frame with the kinematics of contact i at q, v and the motion of the grounds then. */
@@ -43,6 +45,7 @@ static inline double strut_compliance_along(const strut_contact_compliance *r,
 static inline const strut_contact_axes *strut_axes_of_contact(const strut_contact_table *c,
                                                               const strut_contact_frame *frame,
                                                               int32_t i) {
+  assert(i >= 0 && i < c->count);
   return frame ? &frame[i].axes : &c->axes;
 }
 /**

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/integrate/events/location/mode_tangent.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -77,6 +78,7 @@ static double product(int32_t n, const double *a, const double *b) {
 
 /* Adds a contact: its tangent, made orthogonal with respect to M^-1 to those before. */
 static void hold_contact(const strut_model *model, int32_t contact, strut_mode_tangent *t) {
+  assert(contact >= 0 && contact < model->contacts.count);
   int32_t n = t->n;
   double *f = t->functional + t->held * n, *r = t->response + t->held * n;
   memset(f, 0, (size_t)n * sizeof(double));
@@ -198,6 +200,7 @@ typedef struct friction_slopes {
 
 static double slope_of(const strut_contact_entry *e, uint8_t mode, int8_t side, const double x[3],
                        int argument, double step) {
+  assert(argument >= 0 && argument < 3 && step > 0.0);
   double low[3] = {x[0], x[1], x[2]}, high[3] = {x[0], x[1], x[2]};
   low[argument] -= step, high[argument] += step;
   double more = friction_in_mode(e, mode, side, high[0], high[1], high[2]);
